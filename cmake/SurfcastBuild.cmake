@@ -1,0 +1,60 @@
+# Every build setting of the project in one place.
+
+option(SURFCAST_TESTS "Build the tests" ON)
+option(SURFCAST_BENCH "Build the benchmarks" ON)
+set(SURFCAST_SANITIZE "" CACHE STRING "Sanitizers to build with, as the compiler names them (address,undefined)")
+
+set(CMAKE_CXX_STANDARD 20)
+set(CMAKE_CXX_STANDARD_REQUIRED ON)
+set(CMAKE_CXX_EXTENSIONS OFF)
+set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
+set(CMAKE_RUNTIME_OUTPUT_DIRECTORY ${CMAKE_BINARY_DIR}/bin)
+if(NOT CMAKE_BUILD_TYPE)
+  set(CMAKE_BUILD_TYPE Release)
+endif()
+
+find_program(CCACHE_PROGRAM ccache)
+if(CCACHE_PROGRAM)
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+endif()
+
+find_package(Threads REQUIRED)
+
+# Warnings are errors for our own code; generated and third-party code does not link this target.
+add_library(surfcast_warnings INTERFACE)
+target_compile_options(surfcast_warnings INTERFACE
+  -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor
+  -Woverloaded-virtual -Wnull-dereference -Wimplicit-fallthrough -Werror)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # GCC 12 reports these inside inlined standard library code that is correct.
+  target_compile_options(surfcast_warnings INTERFACE -Wno-null-dereference -Wno-maybe-uninitialized
+    -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow)
+endif()
+
+if(SURFCAST_SANITIZE)
+  add_compile_options(-fsanitize=${SURFCAST_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
+  add_link_options(-fsanitize=${SURFCAST_SANITIZE})
+endif()
+
+# surfcast_module(NAME SOURCES file... [PUBLIC lib...] [PRIVATE lib...])
+# One folder of server/ is one static library `surfcast_NAME`, included as "NAME/header.h".
+function(surfcast_module name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  add_library(surfcast_${name} STATIC ${ARG_SOURCES})
+  target_include_directories(surfcast_${name} PUBLIC ${PROJECT_SOURCE_DIR}/server ${PROJECT_SOURCE_DIR}/shaders)
+  target_link_libraries(surfcast_${name} PUBLIC ${ARG_PUBLIC} PRIVATE surfcast_warnings ${ARG_PRIVATE})
+endfunction()
+
+# surfcast_test(NAME SOURCES file... [LIBS lib...] [LABELS label...])
+# One GoogleTest program of one module; every case becomes a ctest case of its own.
+function(surfcast_test name)
+  cmake_parse_arguments(ARG "" "" "SOURCES;LIBS;LABELS" ${ARGN})
+  add_executable(${name} ${ARG_SOURCES})
+  target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
+  target_link_libraries(${name} PRIVATE surfcast_warnings ${ARG_LIBS} GTest::gtest_main GTest::gmock)
+  target_compile_definitions(${name} PRIVATE SURFCAST_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data")
+  if(NOT ARG_LABELS)
+    set(ARG_LABELS unit)
+  endif()
+  gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 300)
+endfunction()

@@ -1,0 +1,115 @@
+#include "base/atomic_file.h"
+
+#include <cerrno>
+#include <cstdlib>
+#include <cstring>
+#include <utility>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include "base/contract.h"
+
+namespace surfcast {
+namespace {
+
+tl::unexpected<Error> io_error(const std::filesystem::path& path, const char* what, int code) {
+  return fail(ErrorKind::kIo, path.string() + ": " + what + ": " + std::strerror(code));
+}
+
+Status write_all(int descriptor, std::span<const std::byte> bytes, const std::filesystem::path& target, off_t offset) {
+  while (!bytes.empty()) {
+    const ssize_t written = ::pwrite(descriptor, bytes.data(), bytes.size(), offset);
+    if (written < 0 && errno == EINTR) continue;
+    if (written < 0) return io_error(target, "cannot write", errno);
+    bytes = bytes.subspan(static_cast<size_t>(written));
+    offset += written;
+  }
+  return {};
+}
+
+/// Makes the rename itself durable: the directory's entry is flushed too.
+void flush_directory_of(const std::filesystem::path& target) {
+  const std::filesystem::path parent = target.parent_path().empty() ? "." : target.parent_path();
+  const int descriptor = ::open(parent.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (descriptor < 0) return;
+  ::fsync(descriptor);
+  ::close(descriptor);
+}
+
+}  // namespace
+
+Result<AtomicFile> AtomicFile::create(const std::filesystem::path& target) {
+  std::string name = target.string() + ".tmpXXXXXX";
+  const int descriptor = ::mkostemp(name.data(), O_CLOEXEC);
+  if (descriptor < 0) return io_error(target, "cannot create", errno);
+  // mkostemp creates private files; a result is readable like any other output, as the umask allows.
+  const mode_t mask = ::umask(0);
+  ::umask(mask);
+  ::fchmod(descriptor, 0666 & ~mask);
+  return AtomicFile(target, name, descriptor);
+}
+
+AtomicFile::AtomicFile(std::filesystem::path target, std::filesystem::path temporary, int descriptor)
+    : target_(std::move(target)), temporary_(std::move(temporary)), descriptor_(descriptor) {}
+
+AtomicFile::AtomicFile(AtomicFile&& other) noexcept
+    : target_(std::move(other.target_)),
+      temporary_(std::move(other.temporary_)),
+      descriptor_(std::exchange(other.descriptor_, -1)),
+      position_(other.position_) {}
+
+AtomicFile& AtomicFile::operator=(AtomicFile&& other) noexcept {
+  if (this == &other) return *this;
+  discard();
+  target_ = std::move(other.target_);
+  temporary_ = std::move(other.temporary_);
+  descriptor_ = std::exchange(other.descriptor_, -1);
+  position_ = other.position_;
+  return *this;
+}
+
+AtomicFile::~AtomicFile() {
+  discard();
+}
+
+void AtomicFile::discard() noexcept {
+  if (descriptor_ < 0) return;
+  ::close(std::exchange(descriptor_, -1));
+  ::unlink(temporary_.c_str());
+}
+
+Status AtomicFile::append(std::span<const std::byte> bytes) {
+  SURFCAST_EXPECTS(descriptor_ >= 0);
+  if (Status status = write_all(descriptor_, bytes, target_, static_cast<off_t>(position_)); !status) return status;
+  position_ += bytes.size();
+  return {};
+}
+
+Status AtomicFile::overwrite(size_t offset, std::span<const std::byte> bytes) {
+  SURFCAST_EXPECTS(descriptor_ >= 0 && offset + bytes.size() <= position_);
+  return write_all(descriptor_, bytes, target_, static_cast<off_t>(offset));
+}
+
+Status AtomicFile::commit() {
+  SURFCAST_EXPECTS(descriptor_ >= 0);
+  if (::fsync(descriptor_) != 0) return io_error(target_, "cannot flush", errno);
+  if (::rename(temporary_.c_str(), target_.c_str()) != 0) return io_error(target_, "cannot rename into place", errno);
+  ::close(std::exchange(descriptor_, -1));
+  flush_directory_of(target_);
+  return {};
+}
+
+Status write_file_atomically(const std::filesystem::path& target, std::span<const std::byte> bytes) {
+  Result<AtomicFile> file = AtomicFile::create(target);
+  if (!file) return fail(std::move(file.error()));
+  if (Status status = file->append(bytes); !status) return status;
+  return file->commit();
+}
+
+Status write_file_atomically(const std::filesystem::path& target, std::string_view text) {
+  return write_file_atomically(target, std::as_bytes(std::span(text.data(), text.size())));
+}
+
+}  // namespace surfcast

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <span>
+#include <string_view>
+
+#include "base/result.h"
+
+namespace surfcast {
+
+/// An output that appears under its name only when it is whole: bytes go to a temporary file beside the target, and
+/// `commit` flushes it to the disk and renames it. Destroyed without `commit`, it leaves nothing behind.
+class AtomicFile {
+ public:
+  static Result<AtomicFile> create(const std::filesystem::path& target);
+
+  AtomicFile(AtomicFile&& other) noexcept;
+  AtomicFile& operator=(AtomicFile&& other) noexcept;
+  AtomicFile(const AtomicFile&) = delete;
+  AtomicFile& operator=(const AtomicFile&) = delete;
+  ~AtomicFile();
+
+  /// Appends; `position()` is the number of bytes appended so far.
+  Status append(std::span<const std::byte> bytes);
+  /// Writes over bytes already appended (a header whose figures are known last).
+  Status overwrite(size_t offset, std::span<const std::byte> bytes);
+  [[nodiscard]] size_t position() const { return position_; }
+
+  Status commit();
+
+ private:
+  AtomicFile(std::filesystem::path target, std::filesystem::path temporary, int descriptor);
+  void discard() noexcept;
+
+  std::filesystem::path target_;
+  std::filesystem::path temporary_;
+  int descriptor_ = -1;
+  size_t position_ = 0;
+};
+
+/// Writes a whole small file atomically.
+Status write_file_atomically(const std::filesystem::path& target, std::span<const std::byte> bytes);
+Status write_file_atomically(const std::filesystem::path& target, std::string_view text);
+
+}  // namespace surfcast

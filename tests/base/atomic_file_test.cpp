@@ -1,0 +1,76 @@
+#include "base/atomic_file.h"
+
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include <gtest/gtest.h>
+
+namespace surfcast {
+namespace {
+
+namespace fs = std::filesystem;
+
+class AtomicFileTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(::testing::TempDir()) /
+              ("atomic_file_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  static std::string content(const fs::path& path) {
+    std::ifstream stream(path, std::ios::binary);
+    std::ostringstream text;
+    text << stream.rdbuf();
+    return text.str();
+  }
+  [[nodiscard]] size_t entries() const {
+    return static_cast<size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
+  }
+
+  fs::path folder_;
+};
+
+TEST_F(AtomicFileTest, CommitReplacesTheOldFile) {
+  const fs::path target = folder_ / "out";
+  ASSERT_TRUE(write_file_atomically(target, "old"));
+  ASSERT_TRUE(write_file_atomically(target, "new"));
+  EXPECT_EQ(content(target), "new");
+  EXPECT_EQ(entries(), 1u);
+}
+
+TEST_F(AtomicFileTest, WithoutCommitTheOldFileStaysAndNothingElse) {
+  const fs::path target = folder_ / "out";
+  ASSERT_TRUE(write_file_atomically(target, "old"));
+  {
+    Result<AtomicFile> file = AtomicFile::create(target);
+    ASSERT_TRUE(file);
+    ASSERT_TRUE(file->append(std::as_bytes(std::span("half", 4))));
+  }
+  EXPECT_EQ(content(target), "old");
+  EXPECT_EQ(entries(), 1u);
+}
+
+TEST_F(AtomicFileTest, HeaderIsOverwrittenInPlace) {
+  const fs::path target = folder_ / "out";
+  Result<AtomicFile> file = AtomicFile::create(target);
+  ASSERT_TRUE(file);
+  ASSERT_TRUE(file->append(std::as_bytes(std::span("....body", 8))));
+  ASSERT_TRUE(file->overwrite(0, std::as_bytes(std::span("head", 4))));
+  ASSERT_TRUE(file->commit());
+  EXPECT_EQ(content(target), "headbody");
+}
+
+TEST_F(AtomicFileTest, MissingFolderIsAnErrorThatNamesTheFile) {
+  const Status status = write_file_atomically(folder_ / "absent" / "out", "text");
+  ASSERT_FALSE(status);
+  EXPECT_EQ(status.error().kind, ErrorKind::kIo);
+  EXPECT_NE(status.error().message.find("absent/out"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace surfcast
