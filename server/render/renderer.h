@@ -1,0 +1,46 @@
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <string>
+
+#include "base/result.h"
+#include "model/model_file.h"
+#include "render/picture.h"
+
+namespace surfcast {
+
+struct RendererConfig {
+  int gpu = -1;  ///< index of the EGL device; -1 chooses: the first hardware device, else software
+};
+
+struct DeviceInfo {
+  std::string vendor;
+  std::string renderer;
+  std::string version;
+  bool software = false;  ///< pixels are computed by the CPU
+};
+
+/// Draws pictures of models. Owns a GL context: create, use and destroy it on one thread.
+class Renderer {
+ public:
+  static Result<std::unique_ptr<Renderer>> create(const RendererConfig& config);
+  ~Renderer();
+
+  /// Draws one picture. Blocks of the model stay resident for the next call. Fails on a wrong camera or resolution;
+  /// returns kCancelled soon after `cancelled` becomes true.
+  Result<Frame> draw(const ModelFile& model, const PictureRequest& request, const std::atomic<bool>& cancelled);
+  /// Lets go of what is resident of a model that will not be drawn again.
+  void forget(const ModelFile& model);
+
+  [[nodiscard]] const DeviceInfo& device() const;
+  /// Largest picture side in pixels that the device can draw.
+  [[nodiscard]] int max_resolution() const;
+
+ private:
+  struct State;
+  explicit Renderer(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace surfcast

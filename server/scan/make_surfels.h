@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "base/result.h"
+#include "scan/scan_points.h"
+#include "surfel/surfel_cloud.h"
+
+namespace surfcast {
+
+/// What was dropped and estimated on the way from points to surfels.
+struct SurfelReport {
+  uint64_t points_read = 0;
+  uint64_t not_finite = 0;    ///< dropped: NaN or infinite coordinates
+  uint64_t duplicates = 0;    ///< dropped: same position and same attributes as an earlier point
+  uint64_t zero_normals = 0;  ///< dropped: a stored normal of zero or not finite, in a scan that has normals
+  uint64_t normals_estimated = 0;
+  uint64_t radii_estimated = 0;
+  bool oriented = false;
+};
+
+/// Cleans the scans, joins them into one cloud, and estimates the normals and radii that are missing. Everything but
+/// the weights of the cloud is filled in. Fails when no surfel is left.
+Result<SurfelCloud> make_surfels(std::vector<ScanPoints> scans, SurfelReport& report);
+
+}  // namespace surfcast
