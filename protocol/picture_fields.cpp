@@ -1,0 +1,183 @@
+#include "protocol/picture_fields.h"
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "protocol/parse.h"
+
+namespace surfcast {
+namespace {
+
+constexpr std::array kFields{
+    PictureField{"position", "camera-position", "X,Y,Z", "where the eye is, world coordinates"},
+    PictureField{"focal_point", "camera-focal-point", "X,Y,Z", "what the eye looks at, world coordinates"},
+    PictureField{"view_up", "camera-view-up", "X,Y,Z", "direction that is up in the picture"},
+    PictureField{"view_angle", "camera-view-angle", "DEGREES", "vertical field of view, in (0, 180)"},
+    PictureField{"resolution", "resolution", "W,H", "pixels (default 1280,720)"},
+    PictureField{"format", "format", "png|jpg|webp|exr", "of the picture's file"},
+    PictureField{"quality", "quality", "1..100", "of JPEG and WebP (default 90)"},
+    PictureField{"normalization", "normalization", "pixel|surfel",
+                 "how overlapping splats are weighed (default pixel)"},
+    PictureField{"filter", "filter", "ewa|none", "the prefilter against aliasing (default ewa)"},
+    PictureField{"spacing", "spacing", "PIXELS",
+                 "projected spacing of surfels to stop at; 0 is the finest (default 0)"},
+    PictureField{"shading", "shading", "auto|unlit|lit", "whether surfels are lit (default auto)"},
+    PictureField{"background", "background", "R,G,B", "colour behind the model, 0 to 255 each (default 0,0,0)"},
+};
+
+template <typename Enum>
+struct Choice {
+  std::string_view name;
+  Enum value;
+};
+
+constexpr std::array kFormats{
+    Choice<wire::FileFormat>{"png", wire::FILE_FORMAT_PNG},   Choice<wire::FileFormat>{"jpg", wire::FILE_FORMAT_JPEG},
+    Choice<wire::FileFormat>{"jpeg", wire::FILE_FORMAT_JPEG}, Choice<wire::FileFormat>{"webp", wire::FILE_FORMAT_WEBP},
+    Choice<wire::FileFormat>{"exr", wire::FILE_FORMAT_EXR},
+};
+constexpr std::array kNormalizations{
+    Choice<wire::Normalization>{"pixel", wire::NORMALIZATION_PIXEL},
+    Choice<wire::Normalization>{"surfel", wire::NORMALIZATION_SURFEL},
+};
+constexpr std::array kFilters{
+    Choice<wire::Filter>{"ewa", wire::FILTER_EWA},
+    Choice<wire::Filter>{"none", wire::FILTER_NONE},
+};
+constexpr std::array kShadings{
+    Choice<wire::Shading>{"auto", wire::SHADING_AUTO},
+    Choice<wire::Shading>{"unlit", wire::SHADING_UNLIT},
+    Choice<wire::Shading>{"lit", wire::SHADING_LIT},
+};
+
+template <typename Choices>
+auto choose(const Choices& choices, std::string_view text) {
+  std::optional<decltype(choices[0].value)> value;
+  for (const auto& choice : choices) {
+    if (choice.name == text) value = choice.value;
+  }
+  return value;
+}
+
+// Each setter stores the value of `text`, or returns false and leaves the picture as it was.
+
+bool set_vector(wire::Vector3* vector, std::string_view text) {
+  const auto values = parse_doubles(text, 3);
+  if (!values) return false;
+  vector->set_x((*values)[0]);
+  vector->set_y((*values)[1]);
+  vector->set_z((*values)[2]);
+  return true;
+}
+
+bool set_view_angle(wire::DrawPicture& picture, std::string_view text) {
+  const auto value = parse_double(text);
+  if (!value || !(*value > 0 && *value < 180)) return false;
+  picture.mutable_camera()->set_view_angle(*value);
+  return true;
+}
+
+bool set_resolution(wire::DrawPicture& picture, std::string_view text) {
+  const auto values = parse_unsigneds(text, 2);
+  if (!values || (*values)[0] == 0 || (*values)[1] == 0) return false;
+  picture.mutable_resolution()->set_width((*values)[0]);
+  picture.mutable_resolution()->set_height((*values)[1]);
+  return true;
+}
+
+bool set_quality(wire::DrawPicture& picture, std::string_view text) {
+  const auto value = parse_unsigned(text);
+  if (!value || *value < 1 || *value > 100) return false;
+  picture.set_quality(*value);
+  return true;
+}
+
+bool set_spacing(wire::DrawPicture& picture, std::string_view text) {
+  const auto value = parse_double(text);
+  if (!value || *value < 0) return false;
+  picture.set_spacing(*value);
+  return true;
+}
+
+bool set_background(wire::DrawPicture& picture, std::string_view text) {
+  const auto values = parse_unsigneds(text, 3);
+  if (!values || (*values)[0] > 255 || (*values)[1] > 255 || (*values)[2] > 255) return false;
+  picture.mutable_background()->set_red((*values)[0]);
+  picture.mutable_background()->set_green((*values)[1]);
+  picture.mutable_background()->set_blue((*values)[2]);
+  return true;
+}
+
+template <typename Choices, typename Setter>
+bool set_choice(const Choices& choices, std::string_view text, Setter set) {
+  const auto value = choose(choices, text);
+  if (value) set(*value);
+  return value.has_value();
+}
+
+bool set_by_name(wire::DrawPicture& picture, std::string_view name, std::string_view text) {
+  if (name == "position") return set_vector(picture.mutable_camera()->mutable_position(), text);
+  if (name == "focal_point") return set_vector(picture.mutable_camera()->mutable_focal_point(), text);
+  if (name == "view_up") return set_vector(picture.mutable_camera()->mutable_view_up(), text);
+  if (name == "view_angle") return set_view_angle(picture, text);
+  if (name == "resolution") return set_resolution(picture, text);
+  if (name == "format") return set_choice(kFormats, text, [&](auto value) { picture.set_format(value); });
+  if (name == "quality") return set_quality(picture, text);
+  if (name == "normalization") {
+    return set_choice(kNormalizations, text, [&](auto value) { picture.set_normalization(value); });
+  }
+  if (name == "filter") return set_choice(kFilters, text, [&](auto value) { picture.set_filter(value); });
+  if (name == "spacing") return set_spacing(picture, text);
+  if (name == "shading") return set_choice(kShadings, text, [&](auto value) { picture.set_shading(value); });
+  return name == "background" && set_background(picture, text);
+}
+
+}  // namespace
+
+std::span<const PictureField> picture_fields() {
+  return kFields;
+}
+
+Status set_picture_field(wire::DrawPicture& picture, std::string_view name, std::string_view text) {
+  for (const PictureField& field : kFields) {
+    if (field.name != name) continue;
+    if (set_by_name(picture, name, text)) return {};
+    return fail(ErrorKind::kInvalidInput,
+                std::string(name) + ": " + std::string(field.form) + " is wanted, not '" + std::string(text) + "'");
+  }
+  return fail(ErrorKind::kNotFound, "there is no parameter '" + std::string(name) + "'");
+}
+
+Result<wire::FileFormat> parse_file_format(std::string_view text) {
+  if (const auto format = choose(kFormats, text)) return *format;
+  return fail(ErrorKind::kUnsupported, "'" + std::string(text) + "' is not a picture format: png, jpg, webp, exr");
+}
+
+std::string_view name_of(wire::FileFormat format) {
+  switch (format) {
+    case wire::FILE_FORMAT_JPEG:
+      return "jpeg";
+    case wire::FILE_FORMAT_WEBP:
+      return "webp";
+    case wire::FILE_FORMAT_EXR:
+      return "exr";
+    default:
+      return "png";
+  }
+}
+
+std::string_view media_type(wire::FileFormat format) {
+  switch (format) {
+    case wire::FILE_FORMAT_JPEG:
+      return "image/jpeg";
+    case wire::FILE_FORMAT_WEBP:
+      return "image/webp";
+    case wire::FILE_FORMAT_EXR:
+      return "image/x-exr";
+    default:
+      return "image/png";
+  }
+}
+
+}  // namespace surfcast

@@ -1,0 +1,67 @@
+#include "protocol/picture_query.h"
+
+#include <set>
+
+#include "protocol/picture_fields.h"
+#include "protocol/validate.h"
+
+namespace surfcast {
+namespace {
+
+int hex_digit(char c) {
+  if (c >= '0' && c <= '9') return c - '0';
+  if (c >= 'a' && c <= 'f') return c - 'a' + 10;
+  if (c >= 'A' && c <= 'F') return c - 'A' + 10;
+  return -1;
+}
+
+/// The byte that the escape at `text[i]` ("%2C") stands for; nothing usable is negative or zero.
+int escaped_byte(std::string_view text, size_t i) {
+  if (i + 2 >= text.size()) return -1;
+  const int high = hex_digit(text[i + 1]);
+  const int low = hex_digit(text[i + 2]);
+  return high < 0 || low < 0 ? -1 : high * 16 + low;
+}
+
+}  // namespace
+
+Result<std::string> decode_url(std::string_view text) {
+  std::string decoded;
+  for (size_t i = 0; i < text.size(); ++i) {
+    if (text[i] == '+') {
+      decoded += ' ';
+    } else if (text[i] != '%') {
+      decoded += text[i];
+    } else {
+      const int byte = escaped_byte(text, i);
+      if (byte <= 0) return fail(ErrorKind::kInvalidInput, "the URL has a malformed escape");
+      decoded += static_cast<char>(byte);
+      i += 2;
+    }
+  }
+  return decoded;
+}
+
+Result<wire::DrawPicture> parse_picture_query(std::string_view model, std::string_view query) {
+  wire::DrawPicture picture;
+  picture.set_model(std::string(model));
+  std::set<std::string> seen;
+  while (!query.empty()) {
+    const std::string_view part = query.substr(0, query.find('&'));
+    query.remove_prefix(std::min(query.size(), part.size() + 1));
+    if (part.empty()) continue;
+    const size_t equals = part.find('=');
+    const Result<std::string> name = decode_url(part.substr(0, equals));
+    const Result<std::string> text = decode_url(equals == std::string_view::npos ? "" : part.substr(equals + 1));
+    if (!name) return fail(name.error());
+    if (!text) return fail(text.error());
+    if (!seen.insert(*name).second) return fail(ErrorKind::kInvalidInput, *name + ": given twice");
+    if (Status status = set_picture_field(picture, *name, *text); !status) {
+      return fail(ErrorKind::kInvalidInput, status.error().message);
+    }
+  }
+  if (Status status = check_picture(picture); !status) return fail(status.error());
+  return picture;
+}
+
+}  // namespace surfcast

@@ -1,0 +1,147 @@
+#include "protocol/request_flags.h"
+
+#include <CLI/CLI.hpp>
+#include <cctype>
+#include <cmath>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "base/contract.h"
+#include "base/mapped_file.h"
+#include "protocol/picture_fields.h"
+#include "protocol/validate.h"
+
+namespace surfcast {
+namespace {
+
+using nlohmann::json;
+
+/// Checks a flag's text while the command line is parsed, so that a wrong value is a wrong command line. The message
+/// begins with the flag's name anyway, so the field's own name is left out.
+std::string check_flag(std::string_view name, const std::string& text) {
+  wire::DrawPicture scratch;
+  const Status status = set_picture_field(scratch, name, text);
+  if (status) return {};
+  return status.error().message.substr(name.size() + 2);
+}
+
+bool read_number(const json& value, double& number) {
+  if (!value.is_number()) return false;
+  number = value.get<double>();
+  return std::isfinite(number);
+}
+
+bool read_vector(const json& value, wire::Vector3* vector) {
+  double x = 0;
+  double y = 0;
+  double z = 0;
+  if (!value.is_array() || value.size() != 3) return false;
+  if (!read_number(value[0], x) || !read_number(value[1], y) || !read_number(value[2], z)) return false;
+  vector->set_x(x);
+  vector->set_y(y);
+  vector->set_z(z);
+  return true;
+}
+
+bool read_camera_field(const std::string& key, const json& value, wire::Camera& camera) {
+  if (key == "position") return read_vector(value, camera.mutable_position());
+  if (key == "focal_point") return read_vector(value, camera.mutable_focal_point());
+  if (key == "view_up") return read_vector(value, camera.mutable_view_up());
+  double angle = 0;
+  if (key != "view_angle" || !read_number(value, angle)) return false;
+  camera.set_view_angle(angle);
+  return true;
+}
+
+Status read_camera_file(const std::string& path, wire::Camera& camera) {
+  const Result<MappedFile> file = MappedFile::open(path);
+  if (!file) return fail(file.error());
+  const std::string_view text(reinterpret_cast<const char*>(file->bytes().data()), file->bytes().size());
+  if (Status status = parse_camera_json(text, camera); !status) {
+    return fail(status.error().kind, path + ": " + status.error().message);
+  }
+  return {};
+}
+
+}  // namespace
+
+std::string environment_name(std::string_view flag) {
+  std::string name = "SURFCAST_";
+  for (const char c : flag) name += c == '-' ? '_' : static_cast<char>(std::toupper(static_cast<unsigned char>(c)));
+  return name;
+}
+
+Status parse_camera_json(std::string_view text, wire::Camera& camera) {
+  const json document = json::parse(text, nullptr, /*allow_exceptions=*/false);
+  if (!document.is_object()) return fail(ErrorKind::kInvalidInput, "not a JSON object");
+  for (const auto& [key, value] : document.items()) {
+    if (!read_camera_field(key, value, camera)) {
+      return fail(ErrorKind::kInvalidInput, "'" + key + "' is not a field of a camera, or has a wrong value");
+    }
+  }
+  return {};
+}
+
+void RequestFlags::add_to(CLI::App& command) {
+  command.add_option("--output", output_, "the picture's file; - is standard output, and needs --format")
+      ->required()
+      ->envname(environment_name("output"))
+      ->type_name("FILE");
+  command.add_option("--camera", camera_file_, "a camera as JSON: position, focal_point, view_up, view_angle")
+      ->envname(environment_name("camera"))
+      ->type_name("FILE");
+  for (const PictureField& field : picture_fields()) {
+    command.add_option("--" + std::string(field.flag), values_[std::string(field.name)], std::string(field.help))
+        ->envname(environment_name(field.flag))
+        ->type_name(std::string(field.form))
+        ->check([name = field.name](const std::string& text) { return check_flag(name, text); });
+  }
+  command.add_option("--stats", stats_, "write what drawing took as JSON")
+      ->envname(environment_name("stats"))
+      ->type_name("FILE");
+}
+
+Result<wire::FileFormat> RequestFlags::format() const {
+  if (const std::string& given = values_.at("format"); !given.empty()) return parse_file_format(given);
+  if (output_ == "-") return fail(ErrorKind::kInvalidInput, "--output - needs --format");
+  std::string extension = std::filesystem::path(output_).extension().string();
+  if (extension.empty()) {
+    return fail(ErrorKind::kInvalidInput, output_ + ": give it an extension (png, jpg, webp, exr), or --format");
+  }
+  for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  return parse_file_format(extension.substr(1)).map_error([this](Error error) {
+    return Error{error.kind, output_ + ": " + error.message};
+  });
+}
+
+Status RequestFlags::check() const {
+  if (const Result<wire::FileFormat> chosen = format(); !chosen) return fail(chosen.error());
+  const bool position = !values_.at("position").empty();
+  const bool focal_point = !values_.at("focal_point").empty();
+  const bool rest = !values_.at("view_up").empty() || !values_.at("view_angle").empty();
+  if (camera_file_.empty() && (position || focal_point || rest) && !(position && focal_point)) {
+    return fail(ErrorKind::kInvalidInput, "a camera needs --camera-position and --camera-focal-point");
+  }
+  return {};
+}
+
+Result<wire::DrawPicture> RequestFlags::request(std::string_view model) const {
+  wire::DrawPicture picture;
+  picture.set_model(std::string(model));
+  if (!camera_file_.empty()) {
+    if (Status status = read_camera_file(camera_file_, *picture.mutable_camera()); !status) {
+      return fail(status.error());
+    }
+  }
+  for (const auto& [name, text] : values_) {
+    if (text.empty()) continue;
+    if (Status status = set_picture_field(picture, name, text); !status) return fail(status.error());
+  }
+  const Result<wire::FileFormat> chosen = format();
+  SURFCAST_EXPECTS(chosen.has_value());
+  picture.set_format(*chosen);
+  if (Status status = check_picture(picture); !status) return fail(status.error());
+  return picture;
+}
+
+}  // namespace surfcast

@@ -1,0 +1,18 @@
+#pragma once
+
+#include "base/result.h"
+#include "surfcast.pb.h"
+
+namespace surfcast {
+
+inline constexpr uint32_t kDefaultWidth = 1280;  ///< pixels
+inline constexpr uint32_t kDefaultHeight = 720;  ///< pixels
+inline constexpr uint32_t kDefaultQuality = 90;  ///< of JPEG and WebP
+inline constexpr double kDefaultViewAngle = 30;  ///< vertical, degrees
+inline constexpr size_t kMaxModelNameBytes = 512;
+
+/// Whether a request for a picture means something, whatever the model and the device: numbers finite and in range,
+/// choices known, the camera whole. Limits of the server (resolution) are not looked at here.
+Status check_picture(const wire::DrawPicture& picture);
+
+}  // namespace surfcast

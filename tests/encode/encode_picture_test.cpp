@@ -1,0 +1,151 @@
+#include "encode/encode_picture.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <vector>
+
+#include <OpenImageIO/filesystem.h>
+#include <OpenImageIO/imageio.h>
+#include <gtest/gtest.h>
+
+namespace surfcast {
+namespace {
+
+/// Smooth colours with a black corner, as a rendered picture has.
+Image make_picture(int width, int height) {
+  Image image{width, height, PixelFormat::kSrgb8, {}};
+  for (int y = 0; y < height; ++y) {
+    for (int x = 0; x < width; ++x) {
+      const bool background = x < width / 4 && y < height / 4;
+      for (int c = 0; c < 3; ++c) {
+        const double value = 128 + 100 * std::sin(0.03 * x + c) * std::cos(0.02 * y);
+        image.pixels.push_back(static_cast<std::byte>(background ? 0 : static_cast<int>(value)));
+      }
+      image.pixels.push_back(std::byte{0xff});
+    }
+  }
+  return image;
+}
+
+Image make_light(int width, int height) {
+  Image image{width, height, PixelFormat::kLinearFloat, {}};
+  std::vector<float> values;
+  for (int i = 0; i < width * height; ++i) {
+    values.insert(values.end(), {0.001F * static_cast<float>(i), 12345.678F, -1e-6F, 1.0F});
+  }
+  image.pixels.resize(values.size() * sizeof(float));
+  std::memcpy(image.pixels.data(), values.data(), image.pixels.size());
+  return image;
+}
+
+template <typename T>
+struct Decoded {
+  int width = 0;
+  int height = 0;
+  int channels = 0;
+  std::vector<T> values;
+};
+
+template <typename T>
+Decoded<T> decode(const std::vector<std::byte>& bytes, const char* reader, OIIO::TypeDesc type) {
+  OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(bytes.data()), bytes.size());
+  const auto input = OIIO::ImageInput::open(std::string("memory.") + reader, nullptr, &memory);
+  if (!input) return {};
+  const OIIO::ImageSpec& spec = input->spec();
+  Decoded<T> decoded{spec.width, spec.height, spec.nchannels, {}};
+  decoded.values.resize(static_cast<size_t>(spec.width) * spec.height * spec.nchannels);
+  if (!input->read_image(0, 0, 0, spec.nchannels, type, decoded.values.data())) return {};
+  return decoded;
+}
+
+/// Largest difference of a colour between the picture and what was decoded.
+int largest_error(const Image& image, const Decoded<uint8_t>& decoded) {
+  int largest = 0;
+  for (size_t pixel = 0; pixel < decoded.values.size() / 3; ++pixel) {
+    for (size_t c = 0; c < 3; ++c) {
+      const int expected = std::to_integer<int>(image.pixels[4 * pixel + c]);
+      largest = std::max(largest, std::abs(expected - decoded.values[3 * pixel + c]));
+    }
+  }
+  return largest;
+}
+
+TEST(EncodePicture, PngComesBackToTheLastBit) {
+  const Image image = make_picture(301, 77);
+  const auto bytes = encode_picture(image, FileFormat::kPng, 90);
+  ASSERT_TRUE(bytes);
+  const auto decoded = decode<uint8_t>(*bytes, "png", OIIO::TypeDesc::UINT8);
+  ASSERT_EQ(decoded.width, 301);
+  ASSERT_EQ(decoded.height, 77);
+  ASSERT_EQ(decoded.channels, 3);
+  EXPECT_EQ(largest_error(image, decoded), 0);
+}
+
+TEST(EncodePicture, JpegComesBackClose) {
+  const Image image = make_picture(301, 77);
+  const auto bytes = encode_picture(image, FileFormat::kJpeg, 95);
+  ASSERT_TRUE(bytes);
+  const auto decoded = decode<uint8_t>(*bytes, "jpg", OIIO::TypeDesc::UINT8);
+  ASSERT_EQ(decoded.width, 301);
+  ASSERT_EQ(decoded.channels, 3);
+  EXPECT_LT(largest_error(make_picture(301, 77), decoded), 90);  // at the hard edge of the corner
+}
+
+TEST(EncodePicture, WebpComesBackClose) {
+  const Image image = make_picture(301, 77);
+  const auto bytes = encode_picture(image, FileFormat::kWebp, 95);
+  ASSERT_TRUE(bytes);
+  const auto decoded = decode<uint8_t>(*bytes, "webp", OIIO::TypeDesc::UINT8);
+  ASSERT_EQ(decoded.width, 301);
+  ASSERT_EQ(decoded.height, 77);
+  EXPECT_LT(largest_error(image, decoded), 90);
+}
+
+TEST(EncodePicture, LowerQualityGivesSmallerFiles) {
+  const Image image = make_picture(640, 480);
+  for (const FileFormat format : {FileFormat::kJpeg, FileFormat::kWebp}) {
+    const auto low = encode_picture(image, format, 20);
+    const auto high = encode_picture(image, format, 95);
+    ASSERT_TRUE(low && high);
+    EXPECT_LT(low->size(), high->size());
+  }
+}
+
+TEST(EncodePicture, ExrKeepsLinearFloatsToTheLastBit) {
+  const Image image = make_light(40, 30);
+  const auto bytes = encode_picture(image, FileFormat::kExr, 90);
+  ASSERT_TRUE(bytes);
+  const auto decoded = decode<float>(*bytes, "exr", OIIO::TypeDesc::FLOAT);
+  ASSERT_EQ(decoded.channels, 3);
+  ASSERT_EQ(decoded.values.size(), 40u * 30u * 3u);
+  EXPECT_EQ(decoded.values[3 * 7], 0.001F * 7);
+  EXPECT_EQ(decoded.values[3 * 7 + 1], 12345.678F);
+  EXPECT_EQ(decoded.values[3 * 7 + 2], -1e-6F);
+}
+
+TEST(EncodePicture, TheSameImageGivesTheSameBytes) {
+  for (const FileFormat format : {FileFormat::kPng, FileFormat::kJpeg, FileFormat::kWebp, FileFormat::kExr}) {
+    const Image image = format == FileFormat::kExr ? make_light(40, 30) : make_picture(200, 100);
+    const auto first = encode_picture(image, format, 90);
+    const auto second = encode_picture(image, format, 90);
+    ASSERT_TRUE(first && second);
+    EXPECT_TRUE(*first == *second);
+  }
+}
+
+TEST(EncodePicture, OnePixelIsAPicture) {
+  for (const FileFormat format : {FileFormat::kPng, FileFormat::kJpeg, FileFormat::kWebp}) {
+    EXPECT_TRUE(encode_picture(make_picture(1, 1), format, 90));
+  }
+  EXPECT_TRUE(encode_picture(make_light(1, 1), FileFormat::kExr, 90));
+}
+
+TEST(EncodePicture, ASideBeyondTheFormatIsAnErrorAndNotACrash) {
+  // WebP ends at 16383 pixels.
+  const Result<std::vector<std::byte>> bytes = encode_picture(make_picture(16384, 1), FileFormat::kWebp, 90);
+  EXPECT_FALSE(bytes);
+}
+
+}  // namespace
+}  // namespace surfcast
