@@ -11,6 +11,8 @@
 
 #include "base/result.h"
 #include "geometry/box.h"
+#include "geometry/normal_cone.h"
+#include "ldc/octree_key.h"
 #include "surfel/grid.h"
 #include "surfel/scalar_attribute.h"
 #include "surfel/surfel_cloud.h"
@@ -30,10 +32,12 @@ struct ModelInfo {
 
 /// One entry of the table of blocks: enough to select with, without touching the block.
 struct BlockEntry {
-  int level = 0;          ///< 0 is the finest
-  Box bounds;             ///< of the surfel centres, world units
-  double spacing = 0;     ///< median radius of its surfels, world units
-  double max_radius = 0;  ///< largest radius of its surfels: what `bounds` must grow by to hold the discs
+  int level = 0;                      ///< 0 is the finest
+  OctreeKey key;                      ///< the octree cell that holds it; parents and children follow from it
+  Box bounds;                         ///< of the surfel centres, world units
+  double spacing = 0;                 ///< median radius of its surfels, world units
+  double max_radius = 0;              ///< largest radius of its surfels: what `bounds` must grow by to hold the discs
+  std::optional<NormalCone> normals;  ///< holds all its normals; none when the model is not oriented
   uint32_t surfels = 0;
   uint64_t offset = 0;  ///< of its bytes in the file
   uint32_t bytes = 0;

@@ -1,0 +1,36 @@
+#include "ldc/lattice.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+namespace surfcast {
+namespace {
+
+/// Exponent k of the largest 2^k not above x > 0.
+int floor_log2(double x) {
+  return std::ilogb(x);
+}
+
+double largest_magnitude(const Box& box) {
+  const glm::dvec3 m = glm::max(glm::abs(box.min), glm::abs(box.max));
+  return std::max({m.x, m.y, m.z});
+}
+
+}  // namespace
+
+Grid choose_lattice(const Box& box, double max_error) {
+  // Rounding to a cubic lattice of step h moves a point by at most h sqrt(3) / 2.
+  const int wanted = floor_log2(2 * max_error / std::numbers::sqrt3);
+  const double magnitude = largest_magnitude(box);
+  const int finest_double = magnitude > 0 ? std::max(floor_log2(magnitude) - 52, -1074) : -1074;
+  return {glm::dvec3(std::ldexp(1.0, std::max(wanted, finest_double))), glm::dvec3(0)};
+}
+
+bool indices_fit(const Grid& grid, const Box& box) {
+  const glm::i64vec3 extent = grid.index(box.max) - grid.index(box.min);
+  constexpr int64_t kLimit = int64_t{1} << kMaxIndexBits;
+  return extent.x < kLimit && extent.y < kLimit && extent.z < kLimit;
+}
+
+}  // namespace surfcast

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <optional>
+
+#include "geometry/box.h"
+#include "surfel/grid.h"
+
+namespace surfcast {
+
+/// Lattice indices within a block stay below 2^kMaxIndexBits, so that they fit a signed 32 bit integer with room.
+inline constexpr int kMaxIndexBits = 30;
+/// Without a wanted precision a stored position is off by at most its surfel's radius over this.
+inline constexpr double kRadiusOverError = 256;
+
+/// The coarsest lattice of step 2^k through the origin on which every point of the box has a lattice point within
+/// `max_error` (Euclidean, world units). The step is never finer than the spacing of doubles at the box: there, the
+/// lattice already holds every coordinate exactly.
+Grid choose_lattice(const Box& box, double max_error);
+
+/// Largest Euclidean error to accept for a surfel of that radius.
+inline double position_tolerance(double radius, const std::optional<double>& precision) {
+  return precision ? *precision : radius / kRadiusOverError;
+}
+
+/// True when all points in the box get indices below 2^kMaxIndexBits, counted from the box's lowest corner.
+bool indices_fit(const Grid& grid, const Box& box);
+
+}  // namespace surfcast

@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+
+namespace surfcast {
+
+/// A cell of the octree over a model: the root cube, halved `depth` times along each axis. Parent and children follow
+/// from the coordinates, so no links are stored.
+struct OctreeKey {
+  static constexpr int kMaxDepth = 21;  ///< three coordinates interleave into 63 bits
+
+  uint8_t depth = 0;  ///< 0 is the root
+  uint32_t x = 0;     ///< counted in cells of this depth
+  uint32_t y = 0;
+  uint32_t z = 0;
+
+  [[nodiscard]] OctreeKey parent() const { return {static_cast<uint8_t>(depth - 1), x >> 1, y >> 1, z >> 1}; }
+  /// Child 0 to 7: bit 0 is x, bit 1 is y, bit 2 is z.
+  [[nodiscard]] OctreeKey child(uint32_t octant) const {
+    return {static_cast<uint8_t>(depth + 1), x * 2 + (octant & 1), y * 2 + ((octant >> 1) & 1),
+            z * 2 + ((octant >> 2) & 1)};
+  }
+  bool operator==(const OctreeKey&) const = default;
+};
+
+}  // namespace surfcast

@@ -1,0 +1,238 @@
+#include "model/format.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <numbers>
+
+#include <xxhash.h>
+
+#include "ldc/lattice.h"
+#include "model/byte_stream.h"
+#include "model/quantize.h"
+
+namespace surfcast {
+namespace {
+
+constexpr std::array<char, 8> kMagic{'S', 'U', 'R', 'F', 'C', 'A', 'S', 'T'};
+constexpr size_t kHeaderChecksumAt = kHeaderBytes - sizeof(uint64_t);
+constexpr uint16_t kOrientedFlag = 1;
+constexpr uint16_t kZUpFlag = 2;
+/// Half angle of a record without cone.
+constexpr float kNoCone = -1;
+/// More than an axis turns when it is quantised like a normal, radians.
+constexpr float kAxisError = 0.1f * std::numbers::pi_v<float> / 180;
+
+void put_vector(ByteWriter& writer, const auto& v) {
+  writer.put(v.x);
+  writer.put(v.y);
+  writer.put(v.z);
+}
+
+template <typename Vector>
+Vector get_vector(ByteReader& reader) {
+  using T = typename Vector::value_type;
+  const T x = reader.get<T>();
+  const T y = reader.get<T>();
+  const T z = reader.get<T>();
+  return {x, y, z};
+}
+
+void put_cone(ByteWriter& writer, const std::optional<NormalCone>& cone) {
+  const NormalCone stored = cone.value_or(NormalCone{{0, 0, 1}, kNoCone});
+  const glm::u16vec2 axis = encode_normal(stored.axis);
+  writer.put(axis.x);
+  writer.put(axis.y);
+  writer.put(cone ? std::min(stored.half_angle + kAxisError, std::numbers::pi_v<float>) : kNoCone);
+}
+
+std::optional<NormalCone> get_cone(ByteReader& reader) {
+  const auto u = std::min<uint16_t>(reader.get<uint16_t>(), 2 * kOctahedralHalf);
+  const auto v = std::min<uint16_t>(reader.get<uint16_t>(), 2 * kOctahedralHalf);
+  const auto half_angle = reader.get<float>();
+  if (!(half_angle >= 0 && half_angle <= std::numbers::pi_v<float>)) return std::nullopt;
+  return NormalCone{decode_normal({u, v}), half_angle};
+}
+
+void put_block(ByteWriter& writer, const BlockRecord& block) {
+  writer.put(block.offset);
+  writer.put(block.checksum);
+  put_vector(writer, block.origin);
+  put_vector(writer, block.extent);
+  put_vector(writer, block.key);
+  writer.put(block.key.depth);
+  writer.put(block.level);
+  writer.put(uint16_t{0});
+  writer.put(block.grid);
+  writer.put(block.bytes);
+  writer.put(block.surfels);
+  writer.put(block.spacing);
+  writer.put(block.max_radius);
+  put_cone(writer, block.normals);
+}
+
+BlockRecord get_block(ByteReader& reader) {
+  BlockRecord block;
+  block.offset = reader.get<uint64_t>();
+  block.checksum = reader.get<uint64_t>();
+  block.origin = get_vector<glm::i64vec3>(reader);
+  block.extent = get_vector<glm::u32vec3>(reader);
+  const auto cell = get_vector<glm::u32vec3>(reader);
+  block.key = {reader.get<uint8_t>(), cell.x, cell.y, cell.z};
+  block.level = reader.get<uint8_t>();
+  reader.get<uint16_t>();
+  block.grid = reader.get<uint32_t>();
+  block.bytes = reader.get<uint32_t>();
+  block.surfels = reader.get<uint32_t>();
+  block.spacing = reader.get<float>();
+  block.max_radius = reader.get<float>();
+  block.normals = get_cone(reader);
+  return block;
+}
+
+bool finite(const glm::dvec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+bool valid_grid(const Grid& grid) {
+  return finite(grid.scale) && finite(grid.offset) && grid.scale.x > 0 && grid.scale.y > 0 && grid.scale.z > 0;
+}
+
+bool valid_lattice_box(const BlockRecord& block, const Grid& grid) {
+  constexpr uint32_t kExtent = uint32_t{1} << kMaxIndexBits;
+  constexpr int64_t kOrigin = int64_t{1} << 62;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (block.extent[axis] >= kExtent || block.origin[axis] > kOrigin || block.origin[axis] < -kOrigin) return false;
+  }
+  return finite(grid.position(block.origin)) && finite(grid.position(block.origin + glm::i64vec3(block.extent)));
+}
+
+bool valid_key(const OctreeKey& key) {
+  return key.depth <= OctreeKey::kMaxDepth && std::max({key.x, key.y, key.z}) >> key.depth == 0;
+}
+
+bool valid_block(const BlockRecord& block, const Directory& directory, const ModelHeader& header) {
+  const bool bytes_inside = block.offset >= kHeaderBytes && block.offset <= header.directory_offset &&
+                            block.bytes <= header.directory_offset - block.offset;
+  return bytes_inside && valid_key(block.key) && block.surfels >= 1 && block.surfels <= kMaxBlockSurfels &&
+         std::isfinite(block.spacing) && block.spacing > 0 && std::isfinite(block.max_radius) &&
+         block.max_radius >= block.spacing && block.grid < directory.grids.size() &&
+         valid_lattice_box(block, directory.grids[block.grid]);
+}
+
+/// A count of things that take at least `bytes_each` in the rest of the buffer; zero (and a failed reader) when they
+/// cannot be there, so that nothing is allocated for them.
+uint32_t get_count(ByteReader& reader, size_t bytes_each) {
+  const auto count = reader.get<uint32_t>();
+  if (count <= reader.rest().size() / bytes_each) return count;
+  reader.get_bytes(reader.rest().size() + 1);
+  return 0;
+}
+
+tl::unexpected<Error> damaged(const char* what) {
+  return fail(ErrorKind::kInvalidInput, what);
+}
+
+}  // namespace
+
+uint64_t checksum_of(std::span<const std::byte> bytes) {
+  return XXH3_64bits(bytes.data(), bytes.size());
+}
+
+std::vector<std::byte> write_header(const ModelHeader& header) {
+  ByteWriter writer;
+  writer.put_bytes(std::as_bytes(std::span(kMagic)));
+  writer.put(kModelVersion);
+  writer.put(static_cast<uint16_t>((header.oriented ? kOrientedFlag : 0) | (header.z_up ? kZUpFlag : 0)));
+  writer.put(static_cast<uint16_t>(header.color_bits));
+  writer.put(header.file_bytes);
+  writer.put(header.directory_offset);
+  writer.put(header.directory_bytes);
+  writer.put(header.directory_checksum);
+  writer.put(uint64_t{0});
+  writer.put(checksum_of(writer.bytes()));
+  return std::move(writer).take();
+}
+
+Result<ModelHeader> read_header(std::span<const std::byte> file) {
+  ByteReader reader(file);
+  const std::span<const std::byte> magic = reader.get_bytes(kMagic.size());
+  if (!reader.ok() || std::memcmp(magic.data(), kMagic.data(), kMagic.size()) != 0) {
+    return damaged("not a Surfcast model");
+  }
+  const auto version = reader.get<uint32_t>();
+  if (reader.ok() && version != kModelVersion) {
+    return fail(ErrorKind::kUnsupported, "model format version " + std::to_string(version) +
+                                             " is not supported; this program reads version " +
+                                             std::to_string(kModelVersion));
+  }
+  if (file.size() < kHeaderBytes) return damaged("model is cut off within its header");
+  ModelHeader header;
+  const auto flags = reader.get<uint16_t>();
+  header.oriented = (flags & kOrientedFlag) != 0;
+  header.z_up = (flags & kZUpFlag) != 0;
+  header.color_bits = reader.get<uint16_t>();
+  header.file_bytes = reader.get<uint64_t>();
+  header.directory_offset = reader.get<uint64_t>();
+  header.directory_bytes = reader.get<uint64_t>();
+  header.directory_checksum = reader.get<uint64_t>();
+  reader.get<uint64_t>();
+  if (reader.get<uint64_t>() != checksum_of(file.first(kHeaderChecksumAt))) return damaged("model header is damaged");
+  if (header.color_bits != 0 && header.color_bits != 8 && header.color_bits != 16) {
+    return damaged("model header states a wrong colour depth");
+  }
+  if (header.file_bytes != file.size()) return damaged("model is cut off or has bytes after its end");
+  if (header.directory_offset < kHeaderBytes || header.directory_offset > file.size() ||
+      header.directory_bytes != file.size() - header.directory_offset) {
+    return damaged("model header points outside the file");
+  }
+  return header;
+}
+
+std::vector<std::byte> write_directory(const Directory& directory) {
+  ByteWriter writer;
+  writer.put(static_cast<uint32_t>(directory.source_names.size()));
+  for (const std::string& name : directory.source_names) writer.put_string(name);
+  writer.put(static_cast<uint32_t>(directory.scalar_names.size()));
+  for (size_t i = 0; i < directory.scalar_names.size(); ++i) {
+    writer.put(directory.scalar_types[i]);
+    writer.put_string(directory.scalar_names[i]);
+  }
+  writer.put(static_cast<uint32_t>(directory.grids.size()));
+  for (const Grid& grid : directory.grids) {
+    put_vector(writer, grid.scale);
+    put_vector(writer, grid.offset);
+  }
+  writer.put(static_cast<uint32_t>(directory.blocks.size()));
+  for (const BlockRecord& block : directory.blocks) put_block(writer, block);
+  return std::move(writer).take();
+}
+
+Result<Directory> read_directory(std::span<const std::byte> bytes, const ModelHeader& header) {
+  if (checksum_of(bytes) != header.directory_checksum) return damaged("model tables are damaged");
+  ByteReader reader(bytes);
+  Directory directory;
+  for (uint32_t n = get_count(reader, 4); n > 0; --n) directory.source_names.push_back(reader.get_string());
+  uint32_t scalars = get_count(reader, 5);
+  if (scalars > kMaxScalars) return damaged("model has too many attributes");
+  for (; scalars > 0; --scalars) {
+    directory.scalar_types.push_back(reader.get<ScalarType>());
+    directory.scalar_names.push_back(reader.get_string());
+    if (directory.scalar_types.back() >= std::variant_size_v<ScalarValues>) return damaged("unknown attribute type");
+  }
+  for (uint32_t n = get_count(reader, 48); n > 0; --n) {
+    const auto scale = get_vector<glm::dvec3>(reader);
+    directory.grids.push_back({scale, get_vector<glm::dvec3>(reader)});
+    if (!valid_grid(directory.grids.back())) return damaged("model has a wrong grid");
+  }
+  for (uint32_t n = get_count(reader, kBlockRecordBytes); n > 0; --n) {
+    directory.blocks.push_back(get_block(reader));
+    if (!valid_block(directory.blocks.back(), directory, header)) return damaged("model has a wrong block record");
+  }
+  if (!reader.ok() || !reader.rest().empty()) return damaged("model tables have a wrong length");
+  if (directory.blocks.empty()) return damaged("model has no blocks");
+  return directory;
+}
+
+}  // namespace surfcast

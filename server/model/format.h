@@ -1,0 +1,67 @@
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "model/block_codec.h"
+
+namespace surfcast {
+
+/// Version of the format that is written, and the only one that is read.
+inline constexpr uint32_t kModelVersion = 1;
+inline constexpr size_t kHeaderBytes = 64;
+inline constexpr size_t kBlockRecordBytes = 96;
+/// Limits of the format: what a hostile table can make the reader allocate for one block is bounded by them.
+inline constexpr uint32_t kMaxBlockSurfels = 32768;
+inline constexpr uint32_t kMaxScalars = 128;
+
+uint64_t checksum_of(std::span<const std::byte> bytes);
+
+/// The first kHeaderBytes of a file.
+struct ModelHeader {
+  bool oriented = false;
+  bool z_up = true;
+  int color_bits = 0;
+  uint64_t file_bytes = 0;
+  uint64_t directory_offset = 0;
+  uint64_t directory_bytes = 0;
+  uint64_t directory_checksum = 0;
+};
+
+std::vector<std::byte> write_header(const ModelHeader& header);
+/// Checks magic, version, checksum, and that everything it points at is in a file of that many bytes.
+Result<ModelHeader> read_header(std::span<const std::byte> file);
+
+/// One record of the table of blocks.
+struct BlockRecord {
+  uint8_t level = 0;
+  OctreeKey key;
+  uint32_t grid = 0;  ///< index into Directory::grids
+  glm::i64vec3 origin{0};
+  glm::u32vec3 extent{0};
+  uint32_t surfels = 0;
+  float spacing = 0;
+  float max_radius = 0;
+  std::optional<NormalCone> normals;
+  uint64_t offset = 0;
+  uint32_t bytes = 0;
+  uint64_t checksum = 0;
+};
+
+/// The tables at the end of a file.
+struct Directory {
+  std::vector<std::string> source_names;
+  std::vector<std::string> scalar_names;
+  std::vector<ScalarType> scalar_types;
+  std::vector<Grid> grids;
+  std::vector<BlockRecord> blocks;
+};
+
+std::vector<std::byte> write_directory(const Directory& directory);
+/// Checks every field that later code relies on; blocks must lie between the header and the directory.
+Result<Directory> read_directory(std::span<const std::byte> bytes, const ModelHeader& header);
+
+}  // namespace surfcast

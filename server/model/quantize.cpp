@@ -1,0 +1,52 @@
+#include "model/quantize.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+
+namespace surfcast {
+namespace {
+
+double sign(double x) {
+  return x < 0 ? -1 : 1;
+}
+
+/// The lower half of the octahedron is folded outward over the diagonals of the square, and back.
+glm::dvec2 fold(const glm::dvec2& p) {
+  return {(1 - std::abs(p.y)) * sign(p.x), (1 - std::abs(p.x)) * sign(p.y)};
+}
+
+glm::dvec3 unfold(const glm::u16vec2& code) {
+  const glm::dvec2 p = glm::dvec2(code) / double{kOctahedralHalf} - 1.0;
+  const double z = 1 - std::abs(p.x) - std::abs(p.y);
+  return {z < 0 ? fold(p) : p, z};
+}
+
+}  // namespace
+
+glm::u16vec2 encode_normal(const glm::vec3& unit) {
+  const glm::dvec3 n(unit);
+  const double norm = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
+  const glm::dvec2 flat = glm::dvec2(n) / norm;
+  const glm::dvec2 p = n.z < 0 ? fold(flat) : flat;
+  return glm::u16vec2(glm::round((p + 1.0) * double{kOctahedralHalf}));
+}
+
+glm::vec3 decode_normal(const glm::u16vec2& code) {
+  return glm::vec3(glm::normalize(unfold(code)));
+}
+
+uint32_t encode_log(float value) {
+  return static_cast<uint32_t>(std::lround(std::log2(static_cast<double>(value)) * kLogSteps) + kLogBias);
+}
+
+float decode_log(uint32_t code) {
+  const double value = std::exp2((static_cast<double>(code) - kLogBias) / kLogSteps);
+  // Rounding up past the largest float, or below the smallest, must not make an infinity or a zero of it.
+  return static_cast<float>(
+      std::clamp(value, double{std::numeric_limits<float>::denorm_min()}, double{std::numeric_limits<float>::max()}));
+}
+
+}  // namespace surfcast

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <glm/geometric.hpp>
+#include <random>
+#include <string>
+
+#include "surfel/surfel_cloud.h"
+
+namespace surfcast {
+
+/// Says that one source without a grid covers the whole cloud, and fills what is still missing with plain values.
+inline SurfelCloud finish_cloud(SurfelCloud cloud) {
+  cloud.normals.resize(cloud.size(), glm::vec3(0, 0, 1));
+  cloud.radii.resize(cloud.size(), 1.0f);
+  cloud.weights.resize(cloud.size(), 1.0f);
+  if (cloud.sources.empty()) cloud.sources.push_back({"generated", 0, cloud.size(), std::nullopt});
+  return cloud;
+}
+
+/// Points spread evenly over the unit sphere (a golden angle spiral), with outward normals and colours.
+inline SurfelCloud sphere_cloud(size_t count) {
+  SurfelCloud cloud;
+  cloud.oriented = true;
+  cloud.colors.emplace();
+  const double golden = M_PI * (3 - std::sqrt(5.0));
+  for (size_t i = 0; i < count; ++i) {
+    const double z = 1 - (2 * static_cast<double>(i) + 1) / static_cast<double>(count);
+    const double r = std::sqrt(1 - z * z);
+    const double angle = golden * static_cast<double>(i);
+    const glm::dvec3 p(r * std::cos(angle), r * std::sin(angle), z);
+    cloud.positions.push_back(p);
+    cloud.normals.emplace_back(p);
+    cloud.colors->values.emplace_back(glm::u16vec3(glm::round((p + 1.0) * 127.5)));
+  }
+  const double spacing = std::sqrt(4 * M_PI / static_cast<double>(count));
+  cloud.radii.assign(count, static_cast<float>(spacing));
+  return finish_cloud(std::move(cloud));
+}
+
+}  // namespace surfcast
