@@ -1,0 +1,43 @@
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <iostream>
+
+#include "base/log.h"
+#include "base/result.h"
+#include "cmd/inspect.h"
+
+namespace {
+
+constexpr int kDone = 0;
+constexpr int kFailed = 1;
+constexpr int kWrongCommandLine = 2;
+
+int report(const std::string& message, int code) {
+  std::cerr << "surfcastd: " << message << '\n';
+  return code;
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{"Server of large scans: builds, inspects, serves and draws models", "surfcastd"};
+  app.require_subcommand(1);
+  surfcast::Status outcome;
+  surfcast::add_inspect_command(app, outcome);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);  // --help
+    return report(error.what(), kWrongCommandLine);
+  }
+  return outcome ? kDone : report(outcome.error().message, kFailed);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    surfcast::start_logging("surfcastd");
+    return run(argc, argv);
+  } catch (const std::exception& error) {  // out of memory, mostly
+    return report(error.what(), kFailed);
+  }
+}

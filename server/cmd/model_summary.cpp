@@ -1,0 +1,95 @@
+#include "cmd/model_summary.h"
+
+#include <algorithm>
+#include <map>
+#include <nlohmann/json.hpp>
+
+#include <spdlog/fmt/fmt.h>
+
+namespace surfcast {
+namespace {
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
+  return text.empty() ? "none" : text;
+}
+
+/// Names of everything a surfel of the model has.
+std::vector<std::string> attribute_names(const ModelInfo& info) {
+  std::vector<std::string> names{"position", "normal", "radius", "weight"};
+  if (info.color_bits > 0) names.push_back("color");
+  names.insert(names.end(), info.scalar_names.begin(), info.scalar_names.end());
+  return names;
+}
+
+std::string text_of(const glm::dvec3& v) {
+  return fmt::format("{} {} {}", v.x, v.y, v.z);
+}
+
+nlohmann::ordered_json json_of(const LevelSummary& level) {
+  return {{"level", level.level},
+          {"blocks", level.blocks},
+          {"surfels", level.surfels},
+          {"bytes", level.bytes},
+          {"spacing", {level.smallest_spacing, level.largest_spacing}}};
+}
+
+}  // namespace
+
+ModelSummary summarize(const ModelFile& model, uint64_t file_bytes) {
+  std::map<int, LevelSummary> levels;
+  for (const BlockEntry& block : model.blocks()) {
+    LevelSummary& level = levels[block.level];
+    level.level = block.level;
+    level.smallest_spacing = level.blocks == 0 ? block.spacing : std::min(level.smallest_spacing, block.spacing);
+    level.largest_spacing = std::max(level.largest_spacing, block.spacing);
+    ++level.blocks;
+    level.surfels += block.surfels;
+    level.bytes += block.bytes;
+  }
+  ModelSummary summary{model.path(), file_bytes, model.info(), {}};
+  for (const auto& [number, level] : levels) summary.levels.push_back(level);
+  return summary;
+}
+
+std::string to_text(const ModelSummary& summary) {
+  const ModelInfo& info = summary.info;
+  std::string text = fmt::format("model: {}\n", summary.path.string());
+  text += fmt::format("sources: {}\n", joined(info.source_names));
+  text += fmt::format("surfels: {}\n", info.surfels);
+  text += fmt::format("bytes: {} ({:.3f} per surfel)\n", summary.file_bytes, summary.bytes_per_surfel());
+  text += fmt::format("bounds: {} .. {}\n", text_of(info.bounds.min), text_of(info.bounds.max));
+  text += fmt::format("up: {}\n", info.z_up ? "z" : "y");
+  text += fmt::format("oriented: {}\n", info.oriented ? "yes" : "no");
+  text += fmt::format("color bits: {}\n", info.color_bits);
+  text += fmt::format("attributes: {}\n", joined(attribute_names(info)));
+  for (const LevelSummary& level : summary.levels) {
+    text += fmt::format("level {}: {} blocks, {} surfels, {} bytes, spacing {:.6g} .. {:.6g}\n", level.level,
+                        level.blocks, level.surfels, level.bytes, level.smallest_spacing, level.largest_spacing);
+  }
+  return text;
+}
+
+std::string to_json(const ModelSummary& summary) {
+  const ModelInfo& info = summary.info;
+  const auto array_of = [](const glm::dvec3& v) { return nlohmann::ordered_json{v.x, v.y, v.z}; };
+  nlohmann::ordered_json json{
+      {"model", summary.path.string()},
+      {"sources", info.source_names},
+      {"surfels", info.surfels},
+      {"bytes", summary.file_bytes},
+      {"bytes_per_surfel", summary.bytes_per_surfel()},
+      {"bounds", {{"min", array_of(info.bounds.min)}, {"max", array_of(info.bounds.max)}}},
+      {"z_up", info.z_up},
+      {"oriented", info.oriented},
+      {"color_bits", info.color_bits},
+      {"attributes", attribute_names(info)},
+      {"levels", nlohmann::ordered_json::array()},
+  };
+  for (const LevelSummary& level : summary.levels) json["levels"].push_back(json_of(level));
+  // Names come from files and need not be UTF-8.
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+}  // namespace surfcast

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <cstdint>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "model/model_file.h"
+
+namespace surfcast {
+
+/// The blocks of one level together.
+struct LevelSummary {
+  int level = 0;
+  uint64_t blocks = 0;
+  uint64_t surfels = 0;
+  uint64_t bytes = 0;           ///< of the encoded blocks
+  double smallest_spacing = 0;  ///< of its blocks' medians, world units
+  double largest_spacing = 0;
+};
+
+/// What `inspect` says about a model.
+struct ModelSummary {
+  std::filesystem::path path;
+  uint64_t file_bytes = 0;
+  ModelInfo info;
+  std::vector<LevelSummary> levels;  ///< finest first
+
+  [[nodiscard]] double bytes_per_surfel() const {
+    return static_cast<double>(file_bytes) / static_cast<double>(info.surfels);
+  }
+};
+
+ModelSummary summarize(const ModelFile& model, uint64_t file_bytes);
+
+/// Lines of `name: value` for a person.
+std::string to_text(const ModelSummary& summary);
+std::string to_json(const ModelSummary& summary);
+
+}  // namespace surfcast
