@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 #include "base/result.h"
@@ -18,6 +19,7 @@ struct SurfelReport {
   uint64_t normals_estimated = 0;
   uint64_t radii_estimated = 0;
   bool oriented = false;
+  std::vector<std::string> notes;  ///< one line each: what was filled in for a scan that lacks an attribute of another
 };
 
 /// Cleans the scans, joins them into one cloud, and estimates the normals and radii that are missing. Everything but

@@ -1,0 +1,75 @@
+#include "scan/attribute_names.h"
+
+#include <array>
+#include <cctype>
+#include <utility>
+
+namespace surfcast {
+namespace {
+
+using Alias = std::pair<std::string_view, std::string_view>;
+
+// Keys are lower case, without underscores, spaces and a leading "scalar".
+constexpr std::array kAliases = {
+    Alias{"x", "x"},
+    Alias{"y", "y"},
+    Alias{"z", "z"},
+    Alias{"nx", "nx"},
+    Alias{"ny", "ny"},
+    Alias{"nz", "nz"},
+    Alias{"normalx", "nx"},
+    Alias{"normaly", "ny"},
+    Alias{"normalz", "nz"},
+    Alias{"red", "red"},
+    Alias{"green", "green"},
+    Alias{"blue", "blue"},
+    Alias{"r", "red"},
+    Alias{"g", "green"},
+    Alias{"b", "blue"},
+    Alias{"diffusered", "red"},
+    Alias{"diffusegreen", "green"},
+    Alias{"diffuseblue", "blue"},
+    Alias{"rgb", "rgb"},
+    Alias{"rgba", "rgba"},
+    Alias{"alpha", "alpha"},
+    Alias{"a", "alpha"},
+    Alias{"diffusealpha", "alpha"},
+    Alias{"radius", "radius"},
+    Alias{"intensity", "intensity"},
+    Alias{"i", "intensity"},
+    Alias{"classification", "classification"},
+    Alias{"class", "classification"},
+    Alias{"returnnumber", "return_number"},
+    Alias{"numberofreturns", "number_of_returns"},
+    Alias{"pointsourceid", "point_source_id"},
+    Alias{"gpstime", "gps_time"},
+    Alias{"userdata", "user_data"},
+    Alias{"scananglerank", "scan_angle_rank"},
+    Alias{"scanangle", "scan_angle"},
+    Alias{"scandirectionflag", "scan_direction_flag"},
+    Alias{"edgeofflightline", "edge_of_flight_line"},
+    Alias{"nir", "nir"},
+    Alias{"infrared", "nir"},
+};
+
+std::string key_of(std::string_view name) {
+  std::string key;
+  for (const char c : name) {
+    if (c != '_' && c != ' ') key += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  constexpr std::string_view kPrefix = "scalar";
+  if (key.size() > kPrefix.size() && key.starts_with(kPrefix)) key.erase(0, kPrefix.size());
+  return key;
+}
+
+}  // namespace
+
+std::string canonical_attribute_name(std::string_view name) {
+  const std::string key = key_of(name);
+  for (const auto& [alias, canonical] : kAliases) {
+    if (alias == key) return std::string(canonical);
+  }
+  return std::string(name);
+}
+
+}  // namespace surfcast

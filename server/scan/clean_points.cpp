@@ -1,0 +1,150 @@
+#include "scan/clean_points.h"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <cstring>
+#include <glm/geometric.hpp>
+#include <tuple>
+
+#include <tbb/parallel_for.h>
+
+#include "scan/first_equals.h"
+
+namespace surfcast {
+namespace {
+
+using Keep = std::vector<bool>;
+
+bool finite(const glm::dvec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+template <typename T>
+void compact(std::vector<T>& values, const Keep& keep) {
+  if (values.empty()) return;
+  size_t kept = 0;
+  for (size_t i = 0; i < values.size(); ++i) {
+    if (keep[i]) values[kept++] = values[i];
+  }
+  values.resize(kept);
+}
+
+/// Points and clouds have their attributes under the same names.
+template <typename Points>
+void compact_attributes(Points& points, const Keep& keep) {
+  compact(points.positions, keep);
+  compact(points.normals, keep);
+  compact(points.radii, keep);
+  if (points.colors) compact(points.colors->values, keep);
+  for (ScalarAttribute& scalar : points.scalars) {
+    std::visit([&keep](auto& values) { compact(values, keep); }, scalar.values);
+  }
+}
+
+/// Unit, computed in double so that neither very short nor very long normals are lost; zero when there is none.
+glm::vec3 unit_or_zero(const glm::vec3& normal) {
+  const glm::dvec3 n(normal);
+  const double length = glm::length(n);
+  return std::isfinite(length) && length > 0 ? glm::vec3(n / length) : glm::vec3(0);
+}
+
+// ---- duplicates
+
+/// Bytes of one attribute, the same number for each surfel.
+struct Bytes {
+  const std::byte* first;
+  size_t stride;
+};
+
+template <typename T>
+void add_bytes(std::vector<Bytes>& all, const std::vector<T>& values) {
+  if (!values.empty()) all.push_back({reinterpret_cast<const std::byte*>(values.data()), sizeof(T)});
+}
+
+std::vector<Bytes> all_bytes(const SurfelCloud& cloud) {
+  std::vector<Bytes> all;
+  add_bytes(all, cloud.positions);
+  add_bytes(all, cloud.normals);
+  add_bytes(all, cloud.radii);
+  if (cloud.colors) add_bytes(all, cloud.colors->values);
+  for (const ScalarAttribute& scalar : cloud.scalars) {
+    std::visit([&all](const auto& values) { add_bytes(all, values); }, scalar.values);
+  }
+  return all;
+}
+
+uint64_t hash_bytes(const std::byte* at, size_t size, uint64_t hash) {
+  while (size > 0) {
+    const size_t step = std::min(size, sizeof(uint64_t));
+    uint64_t word = 0;
+    std::memcpy(&word, at, step);
+    hash = mix_hash(hash ^ word) + 0x9e3779b97f4a7c15ULL;
+    at += step;
+    size -= step;
+  }
+  return hash;
+}
+
+std::vector<uint64_t> hash_surfels(const std::vector<Bytes>& all, size_t count) {
+  std::vector<uint64_t> hashes(count);
+  tbb::parallel_for(size_t{0}, count, [&](size_t i) {
+    uint64_t hash = 0;
+    for (const auto& [first, stride] : all) hash = hash_bytes(first + i * stride, stride, hash);
+    hashes[i] = hash;
+  });
+  return hashes;
+}
+
+void shrink_sources(std::vector<SourceRange>& sources, const Keep& keep) {
+  size_t first = 0;
+  for (SourceRange& source : sources) {
+    const auto begin = keep.begin() + static_cast<std::ptrdiff_t>(source.first);
+    source.count = static_cast<size_t>(std::count(begin, begin + static_cast<std::ptrdiff_t>(source.count), true));
+    source.first = first;
+    first += source.count;
+  }
+}
+
+}  // namespace
+
+void drop_unusable_points(ScanPoints& points, SurfelReport& report) {
+  for (glm::vec3& normal : points.normals) normal = unit_or_zero(normal);
+  Keep keep(points.size(), true);
+  uint64_t dropped = 0;
+  for (size_t i = 0; i < points.size(); ++i) {
+    points.positions[i] += 0.0;  // -0 becomes +0: they are the same place
+    if (!finite(points.positions[i])) {
+      ++report.not_finite;
+    } else if (!points.normals.empty() && points.normals[i] == glm::vec3(0)) {
+      ++report.zero_normals;
+    } else {
+      continue;
+    }
+    keep[i] = false;
+    ++dropped;
+  }
+  if (dropped > 0) compact_attributes(points, keep);
+}
+
+void drop_duplicates(SurfelCloud& cloud, SurfelReport& report) {
+  const std::vector<Bytes> all = all_bytes(cloud);
+  const std::vector<uint64_t> hashes = hash_surfels(all, cloud.size());
+  const std::vector<uint32_t> first = first_equals(hashes, [&all](size_t a, size_t b) {
+    return std::all_of(all.begin(), all.end(), [a, b](const Bytes& bytes) {
+      return std::memcmp(bytes.first + a * bytes.stride, bytes.first + b * bytes.stride, bytes.stride) == 0;
+    });
+  });
+  Keep keep(cloud.size());
+  size_t kept = 0;
+  for (size_t i = 0; i < cloud.size(); ++i) {
+    keep[i] = first[i] == i;
+    kept += keep[i] ? 1 : 0;
+  }
+  if (kept == cloud.size()) return;
+  report.duplicates += cloud.size() - kept;
+  shrink_sources(cloud.sources, keep);
+  compact_attributes(cloud, keep);
+}
+
+}  // namespace surfcast

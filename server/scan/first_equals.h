@@ -1,0 +1,36 @@
+#pragma once
+
+#include <bit>
+#include <cstdint>
+#include <limits>
+#include <span>
+#include <vector>
+
+namespace surfcast {
+
+/// Stirs all bits of a hash into all others (the finaliser of SplitMix64, Steele et al. 2014).
+[[nodiscard]] constexpr uint64_t mix_hash(uint64_t h) {
+  h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9ULL;
+  h = (h ^ (h >> 27)) * 0x94d049bb133111ebULL;
+  return h ^ (h >> 31);
+}
+
+/// For every item the index of the first item equal to it (its own when it is the first). `equal(i, j)` decides;
+/// equal items have equal hashes. At most 2^32 - 2 items.
+template <typename Equal>
+std::vector<uint32_t> first_equals(std::span<const uint64_t> hashes, const Equal& equal) {
+  constexpr uint32_t kFree = std::numeric_limits<uint32_t>::max();
+  std::vector<uint32_t> slots(std::bit_ceil(2 * hashes.size() + 1), kFree);
+  const size_t mask = slots.size() - 1;
+  std::vector<uint32_t> first(hashes.size());
+  for (uint32_t i = 0; i < hashes.size(); ++i) {
+    size_t slot = hashes[i] & mask;
+    while (slots[slot] != kFree && !(hashes[slots[slot]] == hashes[i] && equal(slots[slot], i)))
+      slot = (slot + 1) & mask;
+    if (slots[slot] == kFree) slots[slot] = i;
+    first[i] = slots[slot];
+  }
+  return first;
+}
+
+}  // namespace surfcast

@@ -1,0 +1,163 @@
+#include "scan/las_header.h"
+
+#include <array>
+#include <cmath>
+#include <optional>
+#include <string_view>
+
+#include "scan/text_tokens.h"
+
+namespace surfcast {
+namespace {
+
+using Bytes = std::span<const std::byte>;
+
+// Offsets in the public header block, LAS 1.4 specification, table 3.
+constexpr size_t kHeaderSize = 227;  // of LAS 1.0 to 1.2, the smallest
+constexpr size_t kHeaderSize14 = 375;
+constexpr size_t kRecordHeaderSize = 54;   // of a variable length record
+constexpr uint8_t kCompressedBits = 0xC0;  // set in the point format by LASzip
+
+tl::unexpected<Error> invalid(std::string what) {
+  return fail(ErrorKind::kInvalidInput, std::move(what));
+}
+
+uint64_t point_count(Bytes bytes, int minor_version) {
+  const auto legacy = load<uint32_t>(&bytes[107]);
+  if (minor_version < 4) return legacy;
+  const auto count = load<uint64_t>(&bytes[247]);
+  return count != 0 ? count : legacy;
+}
+
+bool usable_grid(const Grid& grid) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!std::isfinite(grid.scale[axis]) || grid.scale[axis] == 0 || !std::isfinite(grid.offset[axis])) return false;
+  }
+  return true;
+}
+
+Status check_sizes(Bytes bytes, const LasHeader& header) {
+  if (header.data_offset < load<uint16_t>(&bytes[94])) return invalid("LAS points are said to begin in the header");
+  if (header.data_offset > bytes.size()) return invalid("truncated: the LAS points begin beyond the end of the file");
+  if (header.record_length < las_record_length(header.point_format)) {
+    return invalid("LAS point records of " + std::to_string(header.record_length) +
+                   " bytes are too short for point format " + std::to_string(header.point_format));
+  }
+  const uint64_t there = (bytes.size() - header.data_offset) / header.record_length;
+  if (header.count > there) {
+    return invalid("truncated: the header states " + std::to_string(header.count) + " points, the file holds " +
+                   std::to_string(there));
+  }
+  return {};
+}
+
+/// The number type of an extra field; none for undocumented bytes and the deprecated arrays.
+std::optional<ScalarType> extra_type(uint8_t code) {
+  constexpr std::array kTypes = {ScalarType::kUint8,   ScalarType::kInt8,   ScalarType::kUint16, ScalarType::kInt16,
+                                 ScalarType::kUint32,  ScalarType::kInt32,  ScalarType::kUint64, ScalarType::kInt64,
+                                 ScalarType::kFloat32, ScalarType::kFloat64};
+  if (code < 1 || code > kTypes.size()) return std::nullopt;
+  return kTypes[code - 1U];
+}
+
+/// Bytes of an extra field in the record. Codes 11 to 20 and 21 to 30 are the deprecated pairs and triples.
+size_t extra_size(uint8_t code, uint8_t options) {
+  if (code == 0) return options;  // undocumented bytes
+  if (code > 30) return 0;
+  return size_of(*extra_type(static_cast<uint8_t>((code - 1) % 10 + 1))) * ((code - 1U) / 10 + 1);
+}
+
+LasExtraField describe_extra(Bytes entry, ScalarType type, size_t offset) {
+  constexpr uint8_t kHasScale = 8;
+  constexpr uint8_t kHasOffset = 16;
+  const auto options = load<uint8_t>(&entry[3]);
+  const std::string_view name = as_text(entry.subspan(4, 32));
+  LasExtraField field{std::string(name.substr(0, name.find('\0'))), type, offset, 1, 0};
+  if (options & kHasScale) field.scale = load<double>(&entry[112]);
+  if (options & kHasOffset) field.shift = load<double>(&entry[136]);
+  return field;
+}
+
+/// `body` is the content of the record that declares extra fields: entries of 192 bytes.
+void parse_extra_fields(Bytes body, LasHeader& header) {
+  constexpr size_t kEntrySize = 192;
+  size_t offset = las_record_length(header.point_format);
+  for (; body.size() >= kEntrySize; body = body.subspan(kEntrySize)) {
+    const auto code = load<uint8_t>(&body[2]);
+    const size_t size = extra_size(code, load<uint8_t>(&body[3]));
+    if (offset + size > header.record_length) return;
+    if (const auto type = extra_type(code)) {
+      header.extra_fields.push_back(describe_extra(body.first(kEntrySize), *type, offset));
+    }
+    offset += size;
+  }
+}
+
+/// Looks through the variable length records. Their number is not to be trusted: the walk ends at the points.
+void parse_variable_records(Bytes bytes, LasHeader& header) {
+  const auto count = load<uint32_t>(&bytes[100]);
+  size_t at = load<uint16_t>(&bytes[94]);
+  for (uint32_t i = 0; i < count && at + kRecordHeaderSize <= header.data_offset; ++i) {
+    const std::string_view user = as_text(bytes.subspan(at + 2, 16));
+    const auto id = load<uint16_t>(&bytes[at + 18]);
+    const auto length = load<uint16_t>(&bytes[at + 20]);
+    at += kRecordHeaderSize;
+    if (length > header.data_offset - at) return;
+    if (id == 4 && user.starts_with("LASF_Spec")) parse_extra_fields(bytes.subspan(at, length), header);
+    at += length;
+  }
+}
+
+Status check_version(Bytes bytes) {
+  const auto major = load<uint8_t>(&bytes[24]);
+  const auto minor = load<uint8_t>(&bytes[25]);
+  if (major != 1 || minor > 4) {
+    return fail(ErrorKind::kUnsupported,
+                "LAS version " + std::to_string(major) + "." + std::to_string(minor) + " is not supported");
+  }
+  const size_t size = load<uint16_t>(&bytes[94]);
+  if (size < (minor == 4 ? kHeaderSize14 : kHeaderSize)) return invalid("LAS header size is too small");
+  if (size > bytes.size()) return invalid("truncated: the file ends within its LAS header");
+  return {};
+}
+
+Status check_point_format(uint8_t stated) {
+  if (stated & kCompressedBits) {
+    return fail(ErrorKind::kUnsupported, "LAZ compressed points are not supported; decompress the file to LAS");
+  }
+  if (stated > 10) {
+    return fail(ErrorKind::kUnsupported, "LAS point format " + std::to_string(stated) + " is not supported");
+  }
+  return {};
+}
+
+}  // namespace
+
+size_t las_record_length(int point_format) {
+  constexpr std::array<size_t, 11> kLengths = {20, 28, 26, 34, 57, 63, 30, 36, 38, 59, 67};
+  return kLengths.at(static_cast<size_t>(point_format));
+}
+
+Result<LasHeader> parse_las_header(Bytes bytes) {
+  if (bytes.size() < kHeaderSize) return invalid("truncated: the file ends within its LAS header");
+  if (Status status = check_version(bytes); !status) return fail(status.error());
+  const auto stated_format = load<uint8_t>(&bytes[104]);
+  if (Status status = check_point_format(stated_format); !status) return fail(status.error());
+  LasHeader header;
+  header.minor_version = load<uint8_t>(&bytes[25]);
+  header.point_format = stated_format;
+  header.record_length = load<uint16_t>(&bytes[105]);
+  header.data_offset = load<uint32_t>(&bytes[96]);
+  header.count = point_count(bytes, header.minor_version);
+  for (int axis = 0; axis < 3; ++axis) {
+    header.grid.scale[axis] = load<double>(&bytes[131 + 8 * static_cast<size_t>(axis)]);
+    header.grid.offset[axis] = load<double>(&bytes[155 + 8 * static_cast<size_t>(axis)]);
+  }
+  if (!usable_grid(header.grid)) return invalid("LAS scale or offset is not usable");
+  if (Status status = check_sizes(bytes, header); !status) return fail(status.error());
+  if (header.count == 0) return invalid("has no points");
+  parse_variable_records(bytes, header);
+  return header;
+}
+
+}  // namespace surfcast

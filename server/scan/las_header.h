@@ -1,0 +1,41 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "scan/scalar_type.h"
+#include "surfel/grid.h"
+
+namespace surfcast {
+
+/// A per-point value that a LAS file declares beyond its point format (LAS 1.4, table 24 "extra bytes").
+struct LasExtraField {
+  std::string name;
+  ScalarType type = ScalarType::kUint8;
+  size_t offset = 0;  ///< within the point record
+  double scale = 1;   ///< the value is raw * scale + shift
+  double shift = 0;
+};
+
+/// What reading the points takes from the header and the variable length records of a LAS file.
+struct LasHeader {
+  int minor_version = 2;
+  int point_format = 0;  ///< 0 to 10
+  size_t record_length = 0;
+  size_t data_offset = 0;
+  uint64_t count = 0;
+  Grid grid;
+  std::vector<LasExtraField> extra_fields;
+};
+
+/// Checks the header against the bytes that are there: on success all `count` records lie within the file.
+Result<LasHeader> parse_las_header(std::span<const std::byte> bytes);
+
+/// Bytes of a point record of that format without extra bytes.
+size_t las_record_length(int point_format);
+
+}  // namespace surfcast

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "base/result.h"
+#include "scan/scan_points.h"
+
+namespace surfcast {
+
+/// Reads the element "vertex" of a PLY file, ascii or binary in either byte order; other elements are checked to be
+/// whole and left out. PLY is a graphics format: `z_up` stays false unless the points look like a survey (see
+/// up_axis.h). Files of 3D Gaussians are refused.
+Result<ScanPoints> read_ply(std::span<const std::byte> bytes);
+
+}  // namespace surfcast

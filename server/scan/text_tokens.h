@@ -1,0 +1,51 @@
+#pragma once
+
+#include <charconv>
+#include <cstddef>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "scan/scalar_type.h"
+
+namespace surfcast {
+
+[[nodiscard]] inline std::string_view as_text(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// Text from a file as part of a one-line message: shortened, and without control characters.
+std::string printable(std::string_view text);
+
+[[nodiscard]] constexpr bool is_space(char c) {
+  return c == ' ' || c == '\n' || c == '\t' || c == '\r' || c == '\f' || c == '\v';
+}
+
+/// The words of a text, one after another.
+class Tokens {
+ public:
+  explicit Tokens(std::string_view text) : at_(text.data()), end_(text.data() + text.size()) {}
+
+  /// The next word; empty at the end.
+  std::string_view next() {
+    while (at_ != end_ && is_space(*at_)) ++at_;
+    const char* first = at_;
+    while (at_ != end_ && !is_space(*at_)) ++at_;
+    return {first, static_cast<size_t>(at_ - first)};
+  }
+
+ private:
+  const char* at_;
+  const char* end_;
+};
+
+/// The whole word as a number of type T, or nothing. A leading plus is accepted; integers may be written as decimals
+/// ("255.0") and floats beyond the range of T become zero or infinite.
+template <typename T>
+std::optional<T> parse_number(std::string_view word);
+
+/// Appends the number to values of any type; false when the word is no number of that type.
+bool append_number(ScalarValues& values, std::string_view word);
+
+}  // namespace surfcast

@@ -1,0 +1,97 @@
+#include "scan/ply_reader.h"
+
+#include <string>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "scan/bytes.h"
+
+namespace surfcast {
+namespace {
+
+using testing::as_bytes;
+using testing::Bytes;
+using ::testing::ElementsAre;
+using ::testing::HasSubstr;
+using testing::scalar_values;
+
+/// Two points with every kind of attribute, between elements to be skipped.
+std::string binary_ply(bool big) {
+  Bytes file("ply\nformat " + std::string(big ? "binary_big_endian" : "binary_little_endian") +
+             " 1.0\ncomment made here\nelement face 2\nproperty uchar flags\nproperty list uchar int vertex_indices\n"
+             "element vertex 2\nproperty uchar red\nproperty double z\nproperty float nx\nproperty float y\n"
+             "property short confidence\nproperty uchar green\nproperty float ny\nproperty float nz\nproperty int x\n"
+             "property uchar blue\nproperty uchar alpha\nproperty float radius\nproperty ushort intensity\n"
+             "element tail 1\nproperty list ushort double weights\nend_header\n");
+  file.add<uint8_t>(1, big).add<uint8_t>(3, big).add<int32_t>(0, big).add<int32_t>(1, big).add<int32_t>(0, big);
+  file.add<uint8_t>(2, big).add<uint8_t>(0, big);
+  for (int i = 0; i < 2; ++i) {
+    file.add<uint8_t>(static_cast<uint8_t>(10 + i), big).add<double>(0.1 + i, big).add<float>(0.0F, big);
+    file.add<float>(2.5F + static_cast<float>(i), big).add<int16_t>(static_cast<int16_t>(-7 - i), big);
+    file.add<uint8_t>(20, big).add<float>(3.0F, big).add<float>(4.0F, big).add<int32_t>(-100000 + i, big);
+    file.add<uint8_t>(30, big).add<uint8_t>(128, big).add<float>(0.25F, big).add<uint16_t>(65000, big);
+  }
+  file.add<uint16_t>(1, big).add<double>(0.5, big);
+  return file.text();
+}
+
+void expect_binary_content(const ScanPoints& points) {
+  EXPECT_THAT(points.positions, ElementsAre(glm::dvec3(-100000, 2.5, 0.1), glm::dvec3(-99999, 3.5, 1.1)));
+  EXPECT_THAT(points.normals, ElementsAre(glm::vec3(0, 3, 4), glm::vec3(0, 3, 4)));
+  ASSERT_TRUE(points.colors);
+  EXPECT_EQ(points.colors->bits, 8);
+  EXPECT_THAT(points.colors->values, ElementsAre(glm::u16vec3(10, 20, 30), glm::u16vec3(11, 20, 30)));
+  EXPECT_THAT(points.radii, ElementsAre(0.25F, 0.25F));
+  EXPECT_THAT(scalar_values<int16_t>(points, "confidence"), ElementsAre(-7, -8));
+  EXPECT_THAT(scalar_values<uint8_t>(points, "alpha"), ElementsAre(128, 128));
+  EXPECT_THAT(scalar_values<uint16_t>(points, "intensity"), ElementsAre(65000, 65000));
+  EXPECT_EQ(points.scalars.size(), 3u);
+}
+
+TEST(PlyReaderTest, BinaryOfBothByteOrdersReadsEveryProperty) {
+  for (const bool big : {false, true}) {
+    const Result<ScanPoints> points = read_ply(as_bytes(binary_ply(big)));
+    ASSERT_TRUE(points) << points.error().message;
+    expect_binary_content(*points);
+  }
+}
+
+TEST(PlyReaderTest, EveryTruncationFails) {
+  for (const bool big : {false, true}) {
+    const std::string whole = binary_ply(big);
+    for (size_t size = 0; size < whole.size(); ++size) {
+      EXPECT_FALSE(read_ply(as_bytes(whole).first(size))) << size;
+    }
+  }
+}
+
+TEST(PlyReaderTest, AsciiReadsAnyOrder) {
+  const std::string text =
+      "ply\r\nformat ascii 1.0\r\nelement vertex 2\r\nproperty float z\r\nproperty list uchar int parts\r\n"
+      "property float x\r\nproperty double y\r\nend_header\r\n3 2 7 8 1 2e0\r\n-3 0 +1.5 -2\r\n";
+  const Result<ScanPoints> points = read_ply(as_bytes(text));
+  ASSERT_TRUE(points) << points.error().message;
+  EXPECT_THAT(points->positions, ElementsAre(glm::dvec3(1, 2, 3), glm::dvec3(1.5, -2, -3)));
+  EXPECT_FALSE(points->colors);
+}
+
+TEST(PlyReaderTest, GaussiansAreRefused) {
+  const std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+      "property float f_dc_0\nend_header\n1 2 3 4\n";
+  const Result<ScanPoints> points = read_ply(as_bytes(text));
+  ASSERT_FALSE(points);
+  EXPECT_EQ(points.error().kind, ErrorKind::kUnsupported);
+  EXPECT_THAT(points.error().message, HasSubstr("3D Gaussians"));
+}
+
+TEST(PlyReaderTest, HugeCountsOfElementsAndListsFailAtOnce) {
+  const std::string head = "ply\nformat binary_little_endian 1.0\nelement vertex ";
+  const std::string tail = "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
+  EXPECT_FALSE(read_ply(as_bytes(head + "18446744073709551615" + tail + std::string(24, '\1'))));
+  EXPECT_FALSE(read_ply(as_bytes(head + "1537228672809129302" + tail + std::string(24, '\1'))));  // times 12 wraps
+}
+
+}  // namespace
+}  // namespace surfcast
