@@ -1,11 +1,19 @@
 #include "scan/read_scan.h"
 
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
 #include <span>
 
 #include "base/mapped_file.h"
+#include "geometry/box.h"
+#include "scan/draco_reader.h"
 #include "scan/las_reader.h"
+#include "scan/pcd_reader.h"
 #include "scan/ply_reader.h"
+#include "scan/ptx_reader.h"
 #include "scan/scan_format.h"
+#include "scan/text_reader.h"
 
 namespace surfcast {
 namespace {
@@ -16,8 +24,24 @@ Result<ScanPoints> read_format(ScanFormat format, std::span<const std::byte> byt
       return read_ply(bytes);
     case ScanFormat::kLas:
       return read_las(bytes);
+    case ScanFormat::kPcd:
+      return read_pcd(bytes);
+    case ScanFormat::kPtx:
+      return read_ptx(bytes);
+    case ScanFormat::kDraco:
+      return read_draco(bytes);
+    case ScanFormat::kText:
+      break;
   }
-  return fail(ErrorKind::kInternal, "scan format without a reader");
+  return read_text(bytes);
+}
+
+/// A scanner at the origin, farther from all points than they spread, is a default of the writer's and no scanner.
+void drop_default_sensor(ScanPoints& points) {
+  if (points.sensor != glm::dvec3(0)) return;
+  const Box box = finite_bounds(points.positions);
+  const glm::dvec3 nearest = glm::clamp(glm::dvec3(0), box.min, box.max);
+  if (box.empty() || glm::length(nearest) > box.diagonal()) points.sensor.reset();
 }
 
 }  // namespace
@@ -30,6 +54,7 @@ Result<ScanPoints> read_scan(const std::filesystem::path& path) {
   });
   if (!points) return fail(points.error().kind, path.string() + ": " + points.error().message);
   points->name = path.filename().string();
+  drop_default_sensor(*points);
   return points;
 }
 

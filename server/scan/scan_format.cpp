@@ -1,30 +1,157 @@
 #include "scan/scan_format.h"
 
+#include <algorithm>
+#include <cctype>
 #include <optional>
+#include <string>
 #include <string_view>
+#include <utility>
 
+#include "scan/ptx_reader.h"
 #include "scan/text_tokens.h"
 
 namespace surfcast {
 namespace {
 
-/// A word at the start of the file, followed by the end of its line.
-bool first_line_is(std::string_view text, std::string_view word) {
+using Known = std::pair<std::string_view, std::string_view>;
+
+/// How files begin that are no readable scans, and what they are.
+constexpr Known kOtherContents[] = {
+    {"ASTM-E57", "E57 scans are not supported"},
+    {"pnts", "3D Tiles point tiles are not supported"},
+    {"glTF", "glTF meshes are not supported"},
+    {"[Expe/PointSet", "Expe point sets are not supported"},
+    {"\x1F\x8B", "gzip-compressed files (SPZ among them) are not supported"},
+    {"NGSP", "SPZ files of 3D Gaussians are not supported"},
+    {"PK\x03\x04", "zip archives are not supported"},
+    {"NRRD", "volumes (NRRD) are not supported"},
+    {"# vtk DataFile", "VTK files are not supported"},
+    {"<", "XML and HTML files are not supported"},
+    {"{", "JSON files are not supported"},
+    {"\x89PNG", "pictures are not scans"},
+    {"\xFF\xD8\xFF", "pictures are not scans"},
+    {"RIFF", "pictures are not scans"},
+    {"OFF", "OFF meshes are not supported"},
+    {"solid ", "STL meshes are not supported"},
+};
+
+constexpr Known kOtherExtensions[] = {
+    {".obj", "OBJ meshes are not supported"},
+    {".stl", "STL meshes are not supported"},
+    {".mtl", "OBJ materials are not scans"},
+    {".off", "OFF meshes are not supported"},
+    {".splat", "files of 3D Gaussians (.splat) are not supported"},
+    {".surf", "the file is a model already, not a scan"},
+    {".raw", "raw volumes are not supported"},
+    {".mhd", "volumes (MetaImage) are not supported"},
+    {".nhdr", "volumes (NRRD) are not supported"},
+};
+
+constexpr std::pair<std::string_view, ScanFormat> kExtensions[] = {
+    {".ply", ScanFormat::kPly},  {".las", ScanFormat::kLas},   {".laz", ScanFormat::kLas},  {".pcd", ScanFormat::kPcd},
+    {".ptx", ScanFormat::kPtx},  {".drc", ScanFormat::kDraco}, {".xyz", ScanFormat::kText}, {".pts", ScanFormat::kText},
+    {".txt", ScanFormat::kText}, {".csv", ScanFormat::kText},  {".asc", ScanFormat::kText},
+};
+
+std::string_view format_name(ScanFormat format) {
+  switch (format) {
+    case ScanFormat::kPly:
+      return "PLY";
+    case ScanFormat::kLas:
+      return "LAS";
+    case ScanFormat::kPcd:
+      return "PCD";
+    case ScanFormat::kPtx:
+      return "PTX";
+    case ScanFormat::kDraco:
+      return "Draco";
+    case ScanFormat::kText:
+      break;
+  }
+  return "text";
+}
+
+/// A word at the start of the text, followed by a space or the end of the line.
+bool starts_with_word(std::string_view text, std::string_view word) {
   return text.starts_with(word) && text.size() > word.size() && is_space(text[word.size()]);
 }
 
+/// No control characters but spaces in the first few thousand bytes.
+bool is_text(std::string_view text) {
+  constexpr size_t kLook = 4096;
+  const std::string_view head = text.substr(0, kLook);
+  return std::all_of(head.begin(), head.end(),
+                     [](char c) { return static_cast<unsigned char>(c) >= ' ' || is_space(c); });
+}
+
+/// PCD files may begin with comments; FIELDS comes in the first lines.
+bool is_pcd(std::string_view text) {
+  return text.starts_with("# .PCD") || starts_with_word(text, "VERSION") || starts_with_word(text, "FIELDS");
+}
+
 std::optional<ScanFormat> by_content(std::string_view text) {
-  if (first_line_is(text, "ply")) return ScanFormat::kPly;
+  if (starts_with_word(text, "ply")) return ScanFormat::kPly;
   if (text.starts_with("LASF")) return ScanFormat::kLas;
+  if (text.starts_with("DRACO")) return ScanFormat::kDraco;
+  if (is_pcd(text)) return ScanFormat::kPcd;
   return std::nullopt;
+}
+
+/// Whether the first line that is neither blank nor a comment begins with a number.
+bool begins_with_number(std::string_view text) {
+  Tokens tokens(text.substr(0, 4096));
+  std::string_view word = tokens.next();
+  while (word.starts_with('#') || word.starts_with("//")) {
+    const std::string_view rest = tokens.rest();
+    tokens = Tokens(rest.substr(std::min(rest.find('\n'), rest.size())));
+    word = tokens.next();
+  }
+  const std::string_view number = word.substr(0, word.find_first_of(",;"));
+  return parse_number<double>(number).has_value();
+}
+
+std::string extension_of(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+tl::unexpected<Error> unsupported(std::string_view what) {
+  return fail(ErrorKind::kUnsupported, std::string(what));
+}
+
+/// The format of text without a signature. A file that is called PLY, PCD and so on but does not begin like one is
+/// damaged, even if numbers are in it.
+Result<ScanFormat> format_of_text(std::string_view text, std::optional<ScanFormat> named) {
+  const bool may_be_text = !named || *named == ScanFormat::kText || *named == ScanFormat::kPtx;
+  if (!may_be_text) {
+    return fail(ErrorKind::kInvalidInput, std::string(format_name(*named)) + " header missing");
+  }
+  if (looks_like_ptx(text)) return ScanFormat::kPtx;
+  if (named || begins_with_number(text)) return named.value_or(ScanFormat::kText);
+  return unsupported("not a scan of a supported format");
 }
 
 }  // namespace
 
-Result<ScanFormat> scan_format_of(std::span<const std::byte> bytes, const std::filesystem::path&) {
+Result<ScanFormat> scan_format_of(std::span<const std::byte> bytes, const std::filesystem::path& path) {
   if (bytes.empty()) return fail(ErrorKind::kInvalidInput, "the file is empty");
-  if (const auto format = by_content(as_text(bytes))) return *format;
-  return fail(ErrorKind::kUnsupported, "not a scan of a supported format");
+  const std::string_view text = as_text(bytes);
+  if (const auto format = by_content(text)) return *format;
+  for (const auto& [start, what] : kOtherContents) {
+    if (text.starts_with(start)) return unsupported(what);
+  }
+  const std::string extension = extension_of(path);
+  for (const auto& [known, what] : kOtherExtensions) {
+    if (extension == known) return unsupported(what);
+  }
+  const auto* named = std::find_if(std::begin(kExtensions), std::end(kExtensions),
+                                   [&extension](const auto& entry) { return entry.first == extension; });
+  const bool has_name = named != std::end(kExtensions);
+  if (is_text(text)) return format_of_text(text, has_name ? std::optional(named->second) : std::nullopt);
+  if (!has_name) return unsupported("not a scan of a supported format");
+  return fail(ErrorKind::kInvalidInput, "not a " + std::string(format_name(named->second)) + " file");
 }
 
 }  // namespace surfcast

@@ -8,10 +8,10 @@
 
 namespace surfcast {
 
-enum class ScanFormat { kPly, kLas };
+enum class ScanFormat { kPly, kLas, kPcd, kPtx, kText, kDraco };
 
-/// Tells the format of a file by its first bytes, and by its extension where they do not decide. Fails with the
-/// reason for files that are empty, of a known other format, or not recognised.
+/// Tells the format of a file by its first bytes, and where they do not decide by its extension. Fails with the reason
+/// for files that are empty, of a known format that is no readable scan, or not recognised.
 Result<ScanFormat> scan_format_of(std::span<const std::byte> bytes, const std::filesystem::path& path);
 
 }  // namespace surfcast

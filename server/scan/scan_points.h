@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "geometry/box.h"
 #include "surfel/grid.h"
 #include "surfel/scalar_attribute.h"
 #include "surfel/surfel_cloud.h"
@@ -26,5 +27,8 @@ struct ScanPoints {
 
   [[nodiscard]] size_t size() const { return positions.size(); }
 };
+
+/// The bounds of the points whose coordinates are all finite.
+Box finite_bounds(const std::vector<glm::dvec3>& positions);
 
 }  // namespace surfcast

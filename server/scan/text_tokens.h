@@ -34,6 +34,8 @@ class Tokens {
     while (at_ != end_ && !is_space(*at_)) ++at_;
     return {first, static_cast<size_t>(at_ - first)};
   }
+  /// What has not been handed out.
+  [[nodiscard]] std::string_view rest() const { return {at_, static_cast<size_t>(end_ - at_)}; }
 
  private:
   const char* at_;

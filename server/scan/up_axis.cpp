@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <string_view>
 
 #include "geometry/box.h"
@@ -14,14 +13,6 @@ bool is_lidar_attribute(const ScalarAttribute& attribute) {
   constexpr std::array<std::string_view, 5> kNames = {"classification", "return_number", "number_of_returns",
                                                       "gps_time", "point_source_id"};
   return std::find(kNames.begin(), kNames.end(), attribute.name) != kNames.end();
-}
-
-Box finite_bounds(const std::vector<glm::dvec3>& positions) {
-  Box box;
-  for (const glm::dvec3& p : positions) {
-    if (std::isfinite(p.x + p.y + p.z)) box.include(p);
-  }
-  return box;
 }
 
 }  // namespace
