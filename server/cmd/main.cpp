@@ -4,6 +4,7 @@
 
 #include "base/log.h"
 #include "base/result.h"
+#include "cmd/build.h"
 #include "cmd/inspect.h"
 
 namespace {
@@ -21,6 +22,7 @@ int run(int argc, char** argv) {
   CLI::App app{"Server of large scans: builds, inspects, serves and draws models", "surfcastd"};
   app.require_subcommand(1);
   surfcast::Status outcome;
+  surfcast::add_build_command(app, outcome);
   surfcast::add_inspect_command(app, outcome);
   try {
     app.parse(argc, argv);

@@ -1,0 +1,105 @@
+#include "cmd/build.h"
+
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include <spdlog/fmt/fmt.h>
+#include <unistd.h>
+
+#include "base/atomic_file.h"
+#include "base/log.h"
+#include "cmd/build_model.h"
+
+namespace surfcast {
+namespace {
+
+struct BuildCommand {
+  std::vector<std::filesystem::path> inputs;
+  std::filesystem::path output;
+  std::optional<double> precision;
+  std::filesystem::path report;
+};
+
+/// One line on a terminal that is rewritten as the build goes on; silent where stderr is not a terminal.
+class ProgressLine {
+ public:
+  ~ProgressLine() {
+    if (!shown_.empty()) std::cerr << "\r\033[K" << std::flush;
+  }
+  void show(std::string_view stage, double part) {
+    if (!terminal_) return;
+    const std::string text = part > 0 ? fmt::format("{} {:.0f} %", stage, 100 * part) : std::string(stage);
+    if (text == shown_) return;
+    shown_ = text;
+    std::cerr << "\r\033[K" << text << std::flush;
+  }
+
+ private:
+  bool terminal_ = ::isatty(STDERR_FILENO) == 1;
+  std::string shown_;
+};
+
+std::string figures(const BuildReport& report) {
+  return fmt::format("{} points read, {} surfels, {} bytes, {:.2f} s, {:.0f} points/s, {:.0f} MiB peak memory\n",
+                     report.scan.points_read, report.surfels, report.bytes, report.seconds, report.points_per_second(),
+                     static_cast<double>(report.peak_memory) / (1024.0 * 1024.0));
+}
+
+std::string to_json(const BuildCommand& command, const BuildReport& report) {
+  nlohmann::ordered_json json{
+      {"output", command.output.string()},
+      {"points_read", report.scan.points_read},
+      {"surfels", report.surfels},
+      {"blocks", report.blocks},
+      {"bytes", report.bytes},
+      {"seconds", report.seconds},
+      {"points_per_second", report.points_per_second()},
+      {"peak_memory_bytes", report.peak_memory},
+      {"dropped",
+       {{"not_finite", report.scan.not_finite},
+        {"duplicates", report.scan.duplicates},
+        {"zero_normals", report.scan.zero_normals}}},
+      {"estimated", {{"normals", report.scan.normals_estimated}, {"radii", report.scan.radii_estimated}}},
+      {"oriented", report.scan.oriented},
+      {"notes", report.scan.notes},
+      {"inputs", nlohmann::ordered_json::array()},
+  };
+  for (const std::filesystem::path& input : command.inputs) json["inputs"].push_back(input.string());
+  // File names need not be UTF-8.
+  return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+Status build(const BuildCommand& command) {
+  Result<BuildReport> report;
+  {
+    ProgressLine line;
+    report = build_model(command.inputs, command.output, {command.precision},
+                         [&line](std::string_view stage, double part) { line.show(stage, part); });
+  }
+  if (!report) return fail(std::move(report.error()));
+  for (const std::string& note : report->scan.notes) spdlog::warn("{}", note);
+  std::cout << figures(*report);
+  if (command.report.empty()) return {};
+  return write_file_atomically(command.report, to_json(command, *report));
+}
+
+}  // namespace
+
+void add_build_command(CLI::App& app, Status& outcome) {
+  auto command = std::make_shared<BuildCommand>();
+  CLI::App* build_command = app.add_subcommand("build", "Make a model file of scans");
+  build_command->add_option("INPUT", command->inputs, "Scans of any supported format")->required();
+  build_command->add_option("--output", command->output, "The model file to write")->required();
+  build_command
+      ->add_option("--precision", command->precision, "Largest error of a stored position, in units of the scan")
+      ->check(CLI::PositiveNumber);
+  build_command->add_option("--report", command->report, "Write the figures of the build as JSON");
+  build_command->callback([command, &outcome] { outcome = build(*command); });
+}
+
+}  // namespace surfcast

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "base/result.h"
+
+namespace surfcast {
+
+/// Adds `build INPUT... --output MODEL.surf [--precision METRES] [--report FILE.json]`: scans to a model. The command
+/// leaves how it went in `outcome`.
+void add_build_command(CLI::App& app, Status& outcome);
+
+}  // namespace surfcast

@@ -1,0 +1,61 @@
+#include "cmd/build_model.h"
+
+#include <utility>
+#include <vector>
+
+#include "base/stopwatch.h"
+#include "model/model_writer.h"
+#include "scan/read_scan.h"
+#include "surfel/normalization_weights.h"
+
+namespace surfcast {
+namespace {
+
+/// Found wrong now, not after a long build.
+Status check_folder_of(const std::filesystem::path& target) {
+  const std::filesystem::path folder = target.parent_path();
+  std::error_code ignored;
+  if (folder.empty() || std::filesystem::is_directory(folder, ignored)) return {};
+  return fail(ErrorKind::kIo, target.string() + ": no such folder: " + folder.string());
+}
+
+Result<std::vector<ScanPoints>> read_scans(std::span<const std::filesystem::path> inputs,
+                                           const BuildProgress& progress) {
+  std::vector<ScanPoints> scans;
+  for (const std::filesystem::path& input : inputs) {
+    progress("reading", static_cast<double>(scans.size()) / static_cast<double>(inputs.size()));
+    Result<ScanPoints> scan = read_scan(input);
+    if (!scan) return fail(std::move(scan.error()));
+    scans.push_back(std::move(*scan));
+  }
+  return scans;
+}
+
+}  // namespace
+
+Result<BuildReport> build_model(std::span<const std::filesystem::path> inputs, const std::filesystem::path& target,
+                                const BuildOptions& options, const BuildProgress& progress) {
+  const Stopwatch stopwatch;
+  if (Status status = check_folder_of(target); !status) return fail(std::move(status.error()));
+  Result<std::vector<ScanPoints>> scans = read_scans(inputs, progress);
+  if (!scans) return fail(std::move(scans.error()));
+
+  BuildReport report;
+  progress("making surfels", 0);
+  Result<SurfelCloud> cloud = make_surfels(std::move(*scans), report.scan);
+  if (!cloud) return fail(std::move(cloud.error()));
+  progress("weighing", 0);
+  cloud->weights = normalization_weights(*cloud);
+
+  const auto writing = [&progress](double part) { progress("writing", part); };
+  const Result<WriteReport> written = write_model(*cloud, target, {options.precision, writing});
+  if (!written) return fail(written.error());
+  report.surfels = written->surfels;
+  report.blocks = written->blocks;
+  report.bytes = written->bytes;
+  report.seconds = stopwatch.seconds();
+  report.peak_memory = peak_resident_bytes();
+  return report;
+}
+
+}  // namespace surfcast
