@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <deque>
+#include <optional>
+
+namespace surfcast {
+
+/// Who asks: all jobs of one connection share one.
+using SessionId = uint64_t;
+using JobId = uint64_t;
+
+/// What the render thread does next. Sessions take turns, one job each, so that one that asks for a thousand pictures
+/// delays another by one picture at most; the jobs of one session keep their order. Not thread-safe.
+class JobQueue {
+ public:
+  /// `limit`: jobs that may wait at a time, over all sessions.
+  explicit JobQueue(size_t limit) : limit_(limit) {}
+
+  /// False when the queue is full; the job has not been taken then.
+  [[nodiscard]] bool push(SessionId session, JobId job);
+  std::optional<JobId> pop();
+  /// False when the job does not wait here.
+  bool remove(JobId job);
+  [[nodiscard]] size_t size() const { return size_; }
+
+ private:
+  struct Line {
+    SessionId session = 0;
+    std::deque<JobId> jobs;  ///< never empty between calls
+  };
+
+  size_t limit_;
+  size_t size_ = 0;
+  std::deque<Line> lines_;  ///< in the order of their turns
+};
+
+}  // namespace surfcast

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "model/model_file.h"
+
+namespace surfcast {
+
+/// What a user is told about a model.
+struct ModelDescription {
+  ModelInfo info;
+  uint32_t levels = 0;
+  uint32_t blocks = 0;
+};
+
+/// The models that are served, by name. Safe to call from several threads at once; may touch the disk.
+class ModelSource {
+ public:
+  virtual ~ModelSource() = default;
+
+  /// Sorted.
+  [[nodiscard]] virtual std::vector<std::string> names() const = 0;
+  [[nodiscard]] virtual Result<ModelDescription> describe(const std::string& name) const = 0;
+};
+
+}  // namespace surfcast

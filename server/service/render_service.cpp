@@ -1,0 +1,262 @@
+#include "service/render_service.h"
+
+#include <algorithm>
+#include <atomic>
+#include <condition_variable>
+#include <exception>
+#include <future>
+#include <map>
+#include <mutex>
+#include <thread>
+#include <utility>
+
+#include "base/stopwatch.h"
+#include "service/worker_pool.h"
+
+namespace surfcast {
+namespace {
+
+tl::unexpected<Error> cancelled_error() {
+  return fail(ErrorKind::kCancelled, "the request was cancelled");
+}
+
+/// Runs what may throw (memory runs out in a library) and makes a value of it, so that one job cannot end the server.
+template <typename Function>
+auto guarded(Function function) -> decltype(function()) {
+  try {
+    return function();
+  } catch (const std::exception& error) {
+    return fail(ErrorKind::kInternal, std::string("unexpected: ") + error.what());
+  }
+}
+
+}  // namespace
+
+struct RenderService::State {
+  struct Job {
+    JobId id = 0;
+    PictureJob wish;
+    PictureDone done;
+    std::atomic<bool> cancelled = false;
+    Stopwatch since_submission;
+  };
+  using JobPointer = std::shared_ptr<Job>;
+
+  State(const ModelSource& source, const ServiceLimits& service_limits)
+      : models(source), limits(service_limits), queue(service_limits.queued_jobs) {}
+
+  // Render thread.
+  void run(const PainterFactory& make_painter, std::promise<Status> started);
+  JobPointer next_job();
+  Result<Frame> paint(Painter& painter, Job& job);
+  void draw_one(Painter& painter, const JobPointer& job);
+
+  // Pool.
+  void encode_one(const JobPointer& job, Result<Frame> frame);
+
+  // Any thread.
+  [[nodiscard]] Status check(const PictureJob& wish) const;
+  JobId add(SessionId session, PictureJob wish, PictureDone done);
+  void finish(const JobPointer& job, Result<EncodedPicture> result);
+  void stop();
+
+  const ModelSource& models;
+  const ServiceLimits limits;
+  DeviceInfo device;       ///< set before start() returns, constant afterwards
+  int max_resolution = 0;  ///< likewise
+
+  mutable std::mutex mutex;  ///< guards what follows
+  std::condition_variable wake;
+  JobQueue queue;
+  std::map<JobId, JobPointer> jobs;  ///< outstanding: waiting, being drawn or being encoded
+  JobId last_id = 0;
+  size_t frames_in_encoding = 0;
+  bool stopping = false;
+
+  // Declared last, so that the threads end before what they use.
+  std::unique_ptr<WorkerPool> pool;
+  std::jthread render_thread;
+};
+
+void RenderService::State::run(const PainterFactory& make_painter, std::promise<Status> started) {
+  Result<std::unique_ptr<Painter>> painter = guarded([&] { return make_painter(); });
+  if (!painter) {
+    started.set_value(fail(painter.error()));
+    return;
+  }
+  device = (*painter)->device();
+  max_resolution = (*painter)->max_resolution();
+  started.set_value({});
+  while (const JobPointer job = next_job()) draw_one(**painter, job);
+}
+
+/// Waits for a job and for room behind the painter; null when the service stops.
+RenderService::State::JobPointer RenderService::State::next_job() {
+  std::unique_lock lock(mutex);
+  wake.wait(lock, [this] { return stopping || (queue.size() > 0 && frames_in_encoding < limits.frames_in_encoding); });
+  if (stopping) return nullptr;
+  ++frames_in_encoding;
+  return jobs.at(*queue.pop());
+}
+
+Result<Frame> RenderService::State::paint(Painter& painter, Job& job) {
+  PictureRequest request = job.wish.request;
+  request.format = pixel_format_of(job.wish.format);
+  if (request.camera && job.wish.up_from_model) {
+    const Result<ModelDescription> description = models.describe(job.wish.model);
+    if (!description) return fail(description.error());
+    request.camera->view_up = description->info.z_up ? glm::dvec3{0, 0, 1} : glm::dvec3{0, 1, 0};
+  }
+  return painter.draw(job.wish.model, request, job.cancelled);
+}
+
+void RenderService::State::draw_one(Painter& painter, const JobPointer& job) {
+  const double waited = job->since_submission.milliseconds();
+  Result<Frame> frame = guarded([&] { return paint(painter, *job); });
+  if (frame) frame->stats.stages.insert(frame->stats.stages.begin(), StageTime{"queue", waited});
+  pool->post([this, job, frame = std::move(frame)]() mutable { encode_one(job, std::move(frame)); });
+}
+
+void RenderService::State::encode_one(const JobPointer& job, Result<Frame> frame) {
+  const auto encode = [&]() -> Result<EncodedPicture> {
+    if (!frame) return fail(frame.error());
+    if (job->cancelled) return cancelled_error();
+    const Stopwatch watch;
+    Result<std::vector<std::byte>> bytes = encode_picture(frame->image, job->wish.format, job->wish.quality);
+    if (!bytes) return fail(bytes.error());
+    if (job->cancelled) return cancelled_error();
+    EncodedPicture picture;
+    picture.bytes = std::move(*bytes);
+    picture.format = job->wish.format;
+    picture.width = frame->image.width;
+    picture.height = frame->image.height;
+    picture.camera = frame->camera;
+    picture.normalization = job->wish.request.normalization;
+    picture.spacing = job->wish.request.spacing;
+    picture.stats = std::move(frame->stats);
+    picture.stats.stages.push_back({"encode", watch.milliseconds()});
+    return picture;
+  };
+  Result<EncodedPicture> result = guarded(encode);
+  frame = cancelled_error();  // lets go of the pixels before the render thread may make more
+  {
+    const std::lock_guard lock(mutex);
+    --frames_in_encoding;
+  }
+  wake.notify_one();
+  finish(job, std::move(result));
+}
+
+Status RenderService::State::check(const PictureJob& wish) const {
+  const int width = wish.request.width;
+  const int height = wish.request.height;
+  const std::string size = std::to_string(width) + "," + std::to_string(height);
+  if (width < 1 || height < 1) return fail(ErrorKind::kInvalidInput, "resolution: must be at least 1,1");
+  if (width > max_resolution || height > max_resolution) {
+    return fail(ErrorKind::kLimit,
+                "resolution: " + size + " is beyond " + std::to_string(max_resolution) + " pixels a side");
+  }
+  if (static_cast<size_t>(width) * static_cast<size_t>(height) > limits.pixels) {
+    return fail(ErrorKind::kLimit,
+                "resolution: " + size + " is more than " + std::to_string(limits.pixels) + " pixels");
+  }
+  return {};
+}
+
+JobId RenderService::State::add(SessionId session, PictureJob wish, PictureDone done) {
+  const Status checked = check(wish);
+  std::unique_lock lock(mutex);
+  const JobId id = ++last_id;
+  const bool room = checked && !stopping && queue.push(session, id);
+  if (room) {
+    const auto job = std::make_shared<Job>();
+    job->id = id;
+    job->wish = std::move(wish);
+    job->done = std::move(done);
+    jobs.emplace(id, job);
+    lock.unlock();
+    wake.notify_one();
+    return id;
+  }
+  lock.unlock();
+  done(checked ? fail(ErrorKind::kUnavailable, "the server is busy: too many pictures wait") : fail(checked.error()));
+  return id;
+}
+
+void RenderService::State::finish(const JobPointer& job, Result<EncodedPicture> result) {
+  {
+    const std::lock_guard lock(mutex);
+    if (jobs.erase(job->id) == 0) return;
+  }
+  job->done(std::move(result));
+}
+
+void RenderService::State::stop() {
+  std::vector<JobPointer> waiting;
+  {
+    const std::lock_guard lock(mutex);
+    stopping = true;
+    for (const auto& [id, job] : jobs) job->cancelled = true;
+    while (const std::optional<JobId> id = queue.pop()) waiting.push_back(jobs.at(*id));
+  }
+  wake.notify_all();
+  for (const JobPointer& job : waiting) finish(job, cancelled_error());
+  if (render_thread.joinable()) render_thread.join();
+  pool.reset();
+}
+
+RenderService::RenderService(std::unique_ptr<State> state) : state_(std::move(state)) {}
+
+Result<std::unique_ptr<RenderService>> RenderService::start(const ModelSource& models, PainterFactory make_painter,
+                                                            const ServiceLimits& limits) {
+  auto state = std::make_unique<State>(models, limits);
+  state->pool = std::make_unique<WorkerPool>(limits.encoders);
+  std::promise<Status> promise;
+  std::future<Status> started = promise.get_future();
+  state->render_thread = std::jthread([raw = state.get(), make = std::move(make_painter),
+                                       made = std::move(promise)]() mutable { raw->run(make, std::move(made)); });
+  if (Status status = started.get(); !status) return fail(status.error());
+  return std::unique_ptr<RenderService>(new RenderService(std::move(state)));
+}
+
+RenderService::~RenderService() {
+  state_->stop();
+}
+
+JobId RenderService::draw(SessionId session, PictureJob job, PictureDone done) {
+  return state_->add(session, std::move(job), std::move(done));
+}
+
+bool RenderService::cancel(JobId id) {
+  State::JobPointer waiting;
+  {
+    const std::lock_guard lock(state_->mutex);
+    const auto found = state_->jobs.find(id);
+    if (found == state_->jobs.end()) return false;
+    found->second->cancelled = true;
+    if (state_->queue.remove(id)) waiting = found->second;
+  }
+  if (waiting) state_->finish(waiting, cancelled_error());
+  return true;
+}
+
+void RenderService::list_models(NamesDone done) {
+  state_->pool->post([state = state_.get(), done = std::move(done)] { done(state->models.names()); });
+}
+
+void RenderService::describe_model(const std::string& name, DescriptionDone done) {
+  state_->pool->post([state = state_.get(), name, done = std::move(done)] {
+    done(guarded([&] { return state->models.describe(name); }));
+  });
+}
+
+const DeviceInfo& RenderService::device() const {
+  return state_->device;
+}
+
+size_t RenderService::queued() const {
+  const std::lock_guard lock(state_->mutex);
+  return state_->queue.size();
+}
+
+}  // namespace surfcast

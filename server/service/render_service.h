@@ -1,0 +1,82 @@
+#pragma once
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "encode/encode_picture.h"
+#include "render/picture.h"
+#include "service/job_queue.h"
+#include "service/model_source.h"
+#include "service/painter.h"
+
+namespace surfcast {
+
+struct ServiceLimits {
+  size_t queued_jobs = 256;         ///< pictures that may wait for the render thread, over all sessions
+  size_t pixels = size_t{1} << 25;  ///< of one picture (8192 x 4096)
+  unsigned encoders = 2;            ///< threads that encode pictures and look up models
+  size_t frames_in_encoding = 3;    ///< drawn pictures held in memory before the render thread waits
+};
+
+/// A picture somebody wants, as a file.
+struct PictureJob {
+  std::string model;
+  PictureRequest request;      ///< its pixel format follows from `format`
+  bool up_from_model = false;  ///< take the model's vertical axis as the camera's view_up
+  FileFormat format = FileFormat::kPng;
+  int quality = 90;  ///< of JPEG and WebP, 1 to 100
+};
+
+/// A picture as a file, and what it shows.
+struct EncodedPicture {
+  std::vector<std::byte> bytes;
+  FileFormat format = FileFormat::kPng;
+  int width = 0;   ///< pixels
+  int height = 0;  ///< pixels
+  Camera camera;   ///< the one that was used
+  Normalization normalization = Normalization::kPixel;
+  double spacing = 0;     ///< as in PictureRequest
+  bool converged = true;  ///< the painter draws every picture to its end
+  FrameStats stats;       ///< its stages begin with "queue" and end with "encode"
+};
+
+/// Turns wishes into encoded pictures. One render thread owns the painter and takes jobs from a queue that is fair
+/// between sessions; a small pool encodes. Every method may be called from any thread.
+///
+/// Callbacks run on a thread of the service or, for a job that is refused or cancelled while it waits, on the caller's
+/// own before the call returns. They must not throw or block. Each is called exactly once.
+class RenderService {
+ public:
+  using PictureDone = std::function<void(Result<EncodedPicture>)>;
+  using NamesDone = std::function<void(std::vector<std::string>)>;
+  using DescriptionDone = std::function<void(Result<ModelDescription>)>;
+
+  /// Starts the threads; fails when the painter cannot be made. `models` must outlive the service.
+  static Result<std::unique_ptr<RenderService>> start(const ModelSource& models, PainterFactory make_painter,
+                                                      const ServiceLimits& limits);
+  /// Cancels what is outstanding and joins the threads.
+  ~RenderService();
+
+  JobId draw(SessionId session, PictureJob job, PictureDone done);
+  /// True when the job was outstanding; its callback then gets kCancelled, unless the picture is just being handed
+  /// over.
+  bool cancel(JobId job);
+
+  void list_models(NamesDone done);
+  void describe_model(const std::string& name, DescriptionDone done);
+
+  [[nodiscard]] const DeviceInfo& device() const;
+  /// Jobs that wait for the render thread.
+  [[nodiscard]] size_t queued() const;
+
+ private:
+  struct State;
+  explicit RenderService(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace surfcast

@@ -1,0 +1,93 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <cstring>
+#include <memory>
+#include <semaphore>
+#include <string>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "service/model_source.h"
+#include "service/painter.h"
+
+namespace surfcast {
+
+/// Two models: "cube", z-up, and "teapot", y-up.
+class FakeModels : public ModelSource {
+ public:
+  [[nodiscard]] std::vector<std::string> names() const override { return {"cube", "teapot"}; }
+  [[nodiscard]] Result<ModelDescription> describe(const std::string& name) const override {
+    if (name != "cube" && name != "teapot") return fail(ErrorKind::kNotFound, name + ": there is no such model");
+    ModelDescription description;
+    description.info.surfels = 1234;
+    description.info.bounds.include(glm::dvec3{-1, -2, -3});
+    description.info.bounds.include(glm::dvec3{4, 5, 6});
+    description.info.z_up = name == "cube";
+    description.info.color_bits = 8;
+    description.info.scalar_names = {"intensity"};
+    description.info.source_names = {name + ".las"};
+    description.levels = 3;
+    description.blocks = 7;
+    return description;
+  }
+};
+
+/// What a fake painter is told to do, shared with the test that watches it.
+struct FakeStudio {
+  std::atomic<int> drawn = 0;      ///< pictures begun
+  std::atomic<int> cancelled = 0;  ///< pictures given up half-way
+  std::atomic<bool> slow = false;  ///< every picture goes on until it is cancelled or `slow` is taken back
+  std::vector<std::string> order;  ///< models in the order they were drawn; read it when nothing is being drawn
+};
+
+/// Fills pictures with the background's colour.
+class FakePainter : public Painter {
+ public:
+  explicit FakePainter(std::shared_ptr<FakeStudio> studio) : studio_(std::move(studio)) {}
+
+  Result<Frame> draw(const std::string& model, const PictureRequest& request,
+                     const std::atomic<bool>& cancelled) override {
+    studio_->order.push_back(model);
+    ++studio_->drawn;
+    while (studio_->slow && !cancelled) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    if (cancelled) {
+      ++studio_->cancelled;
+      return fail(ErrorKind::kCancelled, "cancelled");
+    }
+    if (model != "cube" && model != "teapot") return fail(ErrorKind::kNotFound, model + ": there is no such model");
+    Frame frame;
+    frame.image = plain_image(request);
+    if (request.camera) frame.camera = *request.camera;
+    frame.stats = {.surfels_drawn = 99, .blocks_drawn = 5, .gl_renderer = "fake", .stages = {{"draw", 1.5}}};
+    return frame;
+  }
+  [[nodiscard]] const DeviceInfo& device() const override { return device_; }
+  [[nodiscard]] int max_resolution() const override { return 8192; }
+
+ private:
+  static Image plain_image(const PictureRequest& request) {
+    Image image{request.width, request.height, request.format, {}};
+    const size_t pixels = static_cast<size_t>(request.width) * static_cast<size_t>(request.height);
+    if (request.format == PixelFormat::kLinearFloat) {
+      image.pixels.resize(pixels * 4 * sizeof(float));
+      return image;
+    }
+    for (size_t i = 0; i < pixels; ++i) {
+      for (int c = 0; c < 3; ++c) image.pixels.push_back(static_cast<std::byte>(request.background[c]));
+      image.pixels.push_back(std::byte{0});
+    }
+    return image;
+  }
+
+  std::shared_ptr<FakeStudio> studio_;
+  DeviceInfo device_{"nobody", "fake", "1", false};
+};
+
+inline PainterFactory fake_painters(std::shared_ptr<FakeStudio> studio) {
+  return [studio]() -> Result<std::unique_ptr<Painter>> { return std::make_unique<FakePainter>(studio); };
+}
+
+}  // namespace surfcast

@@ -1,0 +1,71 @@
+#include "service/job_queue.h"
+
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace surfcast {
+namespace {
+
+std::vector<JobId> drain(JobQueue& queue) {
+  std::vector<JobId> jobs;
+  while (const auto job = queue.pop()) jobs.push_back(*job);
+  return jobs;
+}
+
+TEST(JobQueue, OneSessionKeepsItsOrder) {
+  JobQueue queue(10);
+  for (JobId job = 1; job <= 4; ++job) ASSERT_TRUE(queue.push(7, job));
+  EXPECT_EQ(drain(queue), (std::vector<JobId>{1, 2, 3, 4}));
+}
+
+TEST(JobQueue, SessionsTakeTurnsHoweverManyJobsOneHas) {
+  JobQueue queue(10);
+  for (JobId job = 10; job < 15; ++job) ASSERT_TRUE(queue.push(1, job));
+  ASSERT_TRUE(queue.push(2, 20));
+  ASSERT_TRUE(queue.push(3, 30));
+  ASSERT_TRUE(queue.push(2, 21));
+  EXPECT_EQ(drain(queue), (std::vector<JobId>{10, 20, 30, 11, 21, 12, 13, 14}));
+}
+
+TEST(JobQueue, ASessionThatWasServedWaitsBehindTheOthers) {
+  JobQueue queue(10);
+  ASSERT_TRUE(queue.push(1, 10));
+  ASSERT_TRUE(queue.push(2, 20));
+  EXPECT_EQ(queue.pop(), 10u);
+  ASSERT_TRUE(queue.push(1, 11));
+  EXPECT_EQ(drain(queue), (std::vector<JobId>{20, 11}));
+}
+
+TEST(JobQueue, AFullQueueTakesNothingUntilAJobLeaves) {
+  JobQueue queue(2);
+  ASSERT_TRUE(queue.push(1, 1));
+  ASSERT_TRUE(queue.push(2, 2));
+  EXPECT_FALSE(queue.push(3, 3));
+  EXPECT_EQ(queue.size(), 2u);
+  EXPECT_EQ(queue.pop(), 1u);
+  EXPECT_TRUE(queue.push(3, 3));
+  EXPECT_EQ(drain(queue), (std::vector<JobId>{2, 3}));
+}
+
+TEST(JobQueue, ARemovedJobIsNeverHandedOut) {
+  JobQueue queue(10);
+  ASSERT_TRUE(queue.push(1, 1));
+  ASSERT_TRUE(queue.push(1, 2));
+  ASSERT_TRUE(queue.push(2, 3));
+  EXPECT_TRUE(queue.remove(1));
+  EXPECT_TRUE(queue.remove(3));
+  EXPECT_FALSE(queue.remove(3));
+  EXPECT_EQ(queue.size(), 1u);
+  EXPECT_EQ(drain(queue), (std::vector<JobId>{2}));
+  EXPECT_EQ(queue.size(), 0u);
+}
+
+TEST(JobQueue, AnEmptyQueueHasNothing) {
+  JobQueue queue(1);
+  EXPECT_EQ(queue.pop(), std::nullopt);
+  EXPECT_FALSE(queue.remove(1));
+}
+
+}  // namespace
+}  // namespace surfcast

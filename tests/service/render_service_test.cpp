@@ -1,0 +1,187 @@
+#include "service/render_service.h"
+
+#include <future>
+#include <thread>
+
+#include <gtest/gtest.h>
+
+#include "service/fake_models.h"
+
+namespace surfcast {
+namespace {
+
+class RenderServiceTest : public ::testing::Test {
+ protected:
+  void start(const ServiceLimits& limits = {}) {
+    auto started = RenderService::start(models_, fake_painters(studio_), limits);
+    ASSERT_TRUE(started);
+    service_ = std::move(*started);
+  }
+  std::pair<JobId, std::future<Result<EncodedPicture>>> draw(SessionId session, PictureJob job) {
+    const auto promise = std::make_shared<std::promise<Result<EncodedPicture>>>();
+    const JobId id = service_->draw(session, std::move(job), [promise](auto result) { promise->set_value(result); });
+    return {id, promise->get_future()};
+  }
+  void wait_for_drawing(int pictures) const {
+    while (studio_->drawn < pictures) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  static PictureJob job_for(const std::string& model) {
+    PictureJob job;
+    job.model = model;
+    job.request.width = 8;
+    job.request.height = 4;
+    return job;
+  }
+
+  FakeModels models_;
+  std::shared_ptr<FakeStudio> studio_ = std::make_shared<FakeStudio>();
+  std::unique_ptr<RenderService> service_;
+};
+
+TEST_F(RenderServiceTest, APictureComesBackEncodedWithItsFigures) {
+  start();
+  auto [id, future] = draw(1, job_for("cube"));
+  const Result<EncodedPicture> picture = future.get();
+  ASSERT_TRUE(picture);
+  EXPECT_EQ(std::to_integer<char>(picture->bytes[1]), 'P');
+  EXPECT_EQ(picture->width, 8);
+  EXPECT_EQ(picture->height, 4);
+  EXPECT_EQ(picture->stats.surfels_drawn, 99u);
+  ASSERT_EQ(picture->stats.stages.size(), 3u);
+  EXPECT_EQ(picture->stats.stages.front().name, "queue");
+  EXPECT_EQ(picture->stats.stages.back().name, "encode");
+}
+
+TEST_F(RenderServiceTest, ExrIsPaintedInLinearFloats) {
+  start();
+  PictureJob job = job_for("cube");
+  job.format = FileFormat::kExr;
+  auto [id, future] = draw(1, job);
+  const Result<EncodedPicture> picture = future.get();
+  ASSERT_TRUE(picture);
+  EXPECT_EQ(std::to_integer<int>(picture->bytes[0]), 0x76);  // the magic of OpenEXR
+}
+
+TEST_F(RenderServiceTest, UpIsTheVerticalAxisOfTheModelWhenTheCameraHasNone) {
+  start();
+  for (const auto& [model, up] : {std::pair{"cube", glm::dvec3{0, 0, 1}}, std::pair{"teapot", glm::dvec3{0, 1, 0}}}) {
+    PictureJob job = job_for(model);
+    job.request.camera = Camera{{1, 2, 3}, {0, 0, 0}, {9, 9, 9}, 40};
+    job.up_from_model = true;
+    auto [id, future] = draw(1, job);
+    const Result<EncodedPicture> picture = future.get();
+    ASSERT_TRUE(picture);
+    EXPECT_EQ(picture->camera.view_up, up);
+  }
+}
+
+TEST_F(RenderServiceTest, ErrorsOfThePainterArriveAsTheyAre) {
+  start();
+  auto [id, future] = draw(1, job_for("absent"));
+  const Result<EncodedPicture> picture = future.get();
+  ASSERT_FALSE(picture);
+  EXPECT_EQ(picture.error().kind, ErrorKind::kNotFound);
+}
+
+TEST_F(RenderServiceTest, APictureBeyondTheLimitsIsRefusedBeforeItIsDrawn) {
+  start({.pixels = 1000});
+  for (const auto& [width, height] : {std::pair{9000, 1}, std::pair{1, 9000}, std::pair{100, 11}}) {
+    PictureJob job = job_for("cube");
+    job.request.width = width;
+    job.request.height = height;
+    auto [id, future] = draw(1, job);
+    const Result<EncodedPicture> picture = future.get();
+    ASSERT_FALSE(picture);
+    EXPECT_EQ(picture.error().kind, ErrorKind::kLimit);
+  }
+  EXPECT_EQ(studio_->drawn, 0);
+}
+
+TEST_F(RenderServiceTest, AFullQueueAnswersBusyAtOnce) {
+  studio_->slow = true;
+  start({.queued_jobs = 1});
+  auto [first, drawing] = draw(1, job_for("cube"));
+  wait_for_drawing(1);
+  auto [second, waiting] = draw(1, job_for("cube"));
+  auto [third, refused] = draw(1, job_for("cube"));
+  const Result<EncodedPicture> answer = refused.get();
+  ASSERT_FALSE(answer);
+  EXPECT_EQ(answer.error().kind, ErrorKind::kUnavailable);
+  studio_->slow = false;
+  EXPECT_TRUE(drawing.get());
+  EXPECT_TRUE(waiting.get());
+}
+
+TEST_F(RenderServiceTest, AJobThatIsBeingDrawnStopsWhenCancelled) {
+  studio_->slow = true;
+  start();
+  auto [id, future] = draw(1, job_for("cube"));
+  wait_for_drawing(1);
+  EXPECT_TRUE(service_->cancel(id));
+  const Result<EncodedPicture> picture = future.get();
+  ASSERT_FALSE(picture);
+  EXPECT_EQ(picture.error().kind, ErrorKind::kCancelled);
+  EXPECT_EQ(studio_->cancelled, 1);
+  EXPECT_FALSE(service_->cancel(id));
+}
+
+TEST_F(RenderServiceTest, AJobThatWaitsIsCancelledWithoutBeingDrawn) {
+  studio_->slow = true;
+  start();
+  auto [first, drawing] = draw(1, job_for("cube"));
+  wait_for_drawing(1);
+  auto [second, waiting] = draw(1, job_for("teapot"));
+  EXPECT_TRUE(service_->cancel(second));
+  EXPECT_FALSE(waiting.get());
+  studio_->slow = false;
+  EXPECT_TRUE(drawing.get());
+  EXPECT_EQ(studio_->drawn, 1);
+}
+
+TEST_F(RenderServiceTest, ASecondSessionDoesNotWaitBehindAllOfTheFirst) {
+  studio_->slow = true;
+  start();
+  std::vector<std::future<Result<EncodedPicture>>> futures;
+  futures.push_back(draw(1, job_for("cube")).second);
+  wait_for_drawing(1);
+  for (int i = 0; i < 4; ++i) futures.push_back(draw(1, job_for("cube")).second);
+  futures.push_back(draw(2, job_for("teapot")).second);
+  studio_->slow = false;
+  for (auto& future : futures) EXPECT_TRUE(future.get());
+  ASSERT_EQ(studio_->order.size(), 6u);
+  EXPECT_EQ(studio_->order[2], "teapot");
+}
+
+TEST_F(RenderServiceTest, StoppingCancelsWhatIsDrawnAndWhatWaits) {
+  studio_->slow = true;
+  start();
+  auto [first, drawing] = draw(1, job_for("cube"));
+  wait_for_drawing(1);
+  auto [second, waiting] = draw(1, job_for("cube"));
+  service_.reset();
+  EXPECT_EQ(drawing.get().error().kind, ErrorKind::kCancelled);
+  EXPECT_EQ(waiting.get().error().kind, ErrorKind::kCancelled);
+}
+
+TEST_F(RenderServiceTest, AServiceWithoutAPainterDoesNotStart) {
+  const auto started = RenderService::start(
+      models_,
+      []() -> Result<std::unique_ptr<Painter>> { return fail(ErrorKind::kUnavailable, "there is no GL device"); }, {});
+  ASSERT_FALSE(started);
+  EXPECT_EQ(started.error().message, "there is no GL device");
+}
+
+TEST_F(RenderServiceTest, ModelsAreListedAndDescribed) {
+  start();
+  std::promise<std::vector<std::string>> names;
+  service_->list_models([&](auto list) { names.set_value(std::move(list)); });
+  EXPECT_EQ(names.get_future().get(), (std::vector<std::string>{"cube", "teapot"}));
+  std::promise<Result<ModelDescription>> description;
+  service_->describe_model("teapot", [&](auto result) { description.set_value(std::move(result)); });
+  const Result<ModelDescription> teapot = description.get_future().get();
+  ASSERT_TRUE(teapot);
+  EXPECT_EQ(teapot->blocks, 7u);
+}
+
+}  // namespace
+}  // namespace surfcast
