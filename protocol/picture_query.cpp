@@ -1,5 +1,6 @@
 #include "protocol/picture_query.h"
 
+#include <algorithm>
 #include <set>
 
 #include "protocol/picture_fields.h"
@@ -23,14 +24,19 @@ int escaped_byte(std::string_view text, size_t i) {
   return high < 0 || low < 0 ? -1 : high * 16 + low;
 }
 
+/// In a query, a plus sign is a blank.
+Result<std::string> decode_query(std::string_view text) {
+  std::string blanks(text);
+  std::replace(blanks.begin(), blanks.end(), '+', ' ');
+  return decode_escapes(blanks);
+}
+
 }  // namespace
 
-Result<std::string> decode_url(std::string_view text) {
+Result<std::string> decode_escapes(std::string_view text) {
   std::string decoded;
   for (size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == '+') {
-      decoded += ' ';
-    } else if (text[i] != '%') {
+    if (text[i] != '%') {
       decoded += text[i];
     } else {
       const int byte = escaped_byte(text, i);
@@ -51,8 +57,8 @@ Result<wire::DrawPicture> parse_picture_query(std::string_view model, std::strin
     query.remove_prefix(std::min(query.size(), part.size() + 1));
     if (part.empty()) continue;
     const size_t equals = part.find('=');
-    const Result<std::string> name = decode_url(part.substr(0, equals));
-    const Result<std::string> text = decode_url(equals == std::string_view::npos ? "" : part.substr(equals + 1));
+    const Result<std::string> name = decode_query(part.substr(0, equals));
+    const Result<std::string> text = decode_query(equals == std::string_view::npos ? "" : part.substr(equals + 1));
     if (!name) return fail(name.error());
     if (!text) return fail(text.error());
     if (!seen.insert(*name).second) return fail(ErrorKind::kInvalidInput, *name + ": given twice");

@@ -8,8 +8,8 @@
 
 namespace surfcast {
 
-/// "%2C" and "+" of a part of a URL as the characters they stand for; a malformed escape or a NUL is an error.
-Result<std::string> decode_url(std::string_view text);
+/// The escapes of a part of a URL ("%2C") as the characters they stand for; a malformed escape or a NUL is an error.
+Result<std::string> decode_escapes(std::string_view text);
 
 /// The query of a picture's URL ("resolution=640,480&position=1,2,3") as a request for `model`. A parameter that is
 /// unknown, given twice or malformed is an error.

@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <string_view>
+
+#include "base/result.h"
+
+namespace surfcast {
+
+/// Where a server listens.
+struct Endpoint {
+  std::string host;  ///< name or address; without the brackets of IPv6
+  uint16_t port = 0;
+};
+
+/// "HOST:PORT", perhaps after "tcp://"; an IPv6 address stands in brackets.
+Result<Endpoint> parse_endpoint(std::string_view text);
+/// The same way around; addresses of IPv6 get their brackets.
+std::string to_string(const Endpoint& endpoint);
+
+/// A server and a model of it.
+struct ModelUrl {
+  Endpoint server;
+  std::string model;
+};
+
+/// "HOST:PORT/MODEL".
+Result<ModelUrl> parse_model_url(std::string_view text);
+
+}  // namespace surfcast

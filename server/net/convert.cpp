@@ -1,0 +1,148 @@
+#include "net/convert.h"
+
+#include <limits>
+#include <utility>
+
+#include "protocol/errors.h"
+#include "protocol/picture_fields.h"
+#include "protocol/validate.h"
+
+namespace surfcast {
+namespace {
+
+glm::dvec3 from_wire(const wire::Vector3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+void to_wire(const glm::dvec3& v, wire::Vector3* message) {
+  message->set_x(v.x);
+  message->set_y(v.y);
+  message->set_z(v.z);
+}
+
+/// Resolutions beyond int are refused later like any that is too large.
+int clamp_to_int(uint32_t value) {
+  constexpr uint32_t kLargest = std::numeric_limits<int>::max();
+  return static_cast<int>(value < kLargest ? value : kLargest);
+}
+
+Normalization from_wire(wire::Normalization value) {
+  return value == wire::NORMALIZATION_SURFEL ? Normalization::kSurfel : Normalization::kPixel;
+}
+
+Filter from_wire(wire::Filter value) {
+  return value == wire::FILTER_NONE ? Filter::kNone : Filter::kEwa;
+}
+
+Shading from_wire(wire::Shading value) {
+  if (value == wire::SHADING_UNLIT) return Shading::kUnlit;
+  return value == wire::SHADING_LIT ? Shading::kLit : Shading::kAuto;
+}
+
+FileFormat from_wire(wire::FileFormat value) {
+  switch (value) {
+    case wire::FILE_FORMAT_JPEG:
+      return FileFormat::kJpeg;
+    case wire::FILE_FORMAT_WEBP:
+      return FileFormat::kWebp;
+    case wire::FILE_FORMAT_EXR:
+      return FileFormat::kExr;
+    default:
+      return FileFormat::kPng;
+  }
+}
+
+wire::FileFormat to_wire(FileFormat value) {
+  switch (value) {
+    case FileFormat::kJpeg:
+      return wire::FILE_FORMAT_JPEG;
+    case FileFormat::kWebp:
+      return wire::FILE_FORMAT_WEBP;
+    case FileFormat::kExr:
+      return wire::FILE_FORMAT_EXR;
+    case FileFormat::kPng:
+      break;
+  }
+  return wire::FILE_FORMAT_PNG;
+}
+
+Camera from_wire(const wire::Camera& camera) {
+  return {.position = from_wire(camera.position()),
+          .focal_point = from_wire(camera.focal_point()),
+          .view_up = from_wire(camera.view_up()),
+          .view_angle = camera.has_view_angle() ? camera.view_angle() : kDefaultViewAngle};
+}
+
+void to_wire(const Camera& camera, wire::Camera* message) {
+  to_wire(camera.position, message->mutable_position());
+  to_wire(camera.focal_point, message->mutable_focal_point());
+  to_wire(camera.view_up, message->mutable_view_up());
+  message->set_view_angle(camera.view_angle);
+}
+
+}  // namespace
+
+Result<PictureJob> to_job(const wire::DrawPicture& request) {
+  if (Status status = check_picture(request); !status) return fail(status.error());
+  const wire::Resolution& resolution = request.resolution();
+  const wire::Color& background = request.background();
+  PictureJob job;
+  job.model = request.model();
+  if (request.has_camera()) job.request.camera = from_wire(request.camera());
+  job.up_from_model = request.has_camera() && !request.camera().has_view_up();
+  job.request.width = clamp_to_int(request.has_resolution() ? resolution.width() : kDefaultWidth);
+  job.request.height = clamp_to_int(request.has_resolution() ? resolution.height() : kDefaultHeight);
+  job.request.normalization = from_wire(request.normalization());
+  job.request.filter = from_wire(request.filter());
+  job.request.shading = from_wire(request.shading());
+  job.request.spacing = request.spacing();
+  job.request.background = {background.red(), background.green(), background.blue()};
+  job.format = from_wire(request.format());
+  job.quality = static_cast<int>(request.quality() == 0 ? kDefaultQuality : request.quality());
+  return job;
+}
+
+void to_wire(EncodedPicture picture, wire::Picture& message) {
+  message.set_data(picture.bytes.data(), picture.bytes.size());
+  message.set_format(to_wire(picture.format));
+  to_wire(picture.camera, message.mutable_camera());
+  message.mutable_resolution()->set_width(static_cast<uint32_t>(picture.width));
+  message.mutable_resolution()->set_height(static_cast<uint32_t>(picture.height));
+  message.set_normalization(picture.normalization == Normalization::kSurfel ? wire::NORMALIZATION_SURFEL
+                                                                            : wire::NORMALIZATION_PIXEL);
+  message.set_spacing(picture.spacing);
+  message.set_converged(picture.converged);
+  message.set_surfels_drawn(picture.stats.surfels_drawn);
+  message.set_blocks_drawn(picture.stats.blocks_drawn);
+  message.set_gl_renderer(clean_utf8(picture.stats.gl_renderer));
+  for (const StageTime& time : picture.stats.stages) {
+    wire::Stage* stage = message.add_stages();
+    stage->set_name(clean_utf8(time.name));
+    stage->set_milliseconds(time.milliseconds);
+  }
+}
+
+void to_wire(const std::vector<std::string>& names, wire::ModelList& message) {
+  for (const std::string& name : names) message.add_models(clean_utf8(name));
+}
+
+void to_wire(const std::string& name, const ModelDescription& description, wire::ModelDescription& message) {
+  const ModelInfo& info = description.info;
+  message.set_model(name);
+  message.set_surfels(info.surfels);
+  to_wire(info.bounds.min, message.mutable_bounds()->mutable_min());
+  to_wire(info.bounds.max, message.mutable_bounds()->mutable_max());
+  message.set_oriented(info.oriented);
+  message.set_z_up(info.z_up);
+  message.set_color_bits(static_cast<uint32_t>(info.color_bits));
+  for (const std::string& attribute : info.scalar_names) message.add_attributes(clean_utf8(attribute));
+  for (const std::string& source : info.source_names) message.add_sources(clean_utf8(source));
+  message.set_levels(description.levels);
+  message.set_blocks(description.blocks);
+}
+
+std::string media_type(FileFormat format) {
+  return std::string(media_type(to_wire(format)));
+}
+
+}  // namespace surfcast

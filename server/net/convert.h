@@ -1,0 +1,25 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "service/model_source.h"
+#include "service/render_service.h"
+#include "surfcast.pb.h"
+
+namespace surfcast {
+
+// Messages of the wire and values of the service, both ways.
+
+/// The job that a request asks for, once it has been checked; what it leaves out gets its default.
+Result<PictureJob> to_job(const wire::DrawPicture& request);
+
+/// Takes the bytes out of the picture.
+void to_wire(EncodedPicture picture, wire::Picture& message);
+void to_wire(const std::vector<std::string>& names, wire::ModelList& message);
+void to_wire(const std::string& name, const ModelDescription& description, wire::ModelDescription& message);
+
+/// MIME type of a file format.
+std::string media_type(FileFormat format);
+
+}  // namespace surfcast

@@ -1,0 +1,174 @@
+#include "net/http_answer.h"
+
+#include <array>
+#include <nlohmann/json.hpp>
+#include <sstream>
+
+#include "net/convert.h"
+#include "protocol/errors.h"
+
+namespace surfcast {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::string_view kJson = "application/json";
+
+unsigned status_of(ErrorKind kind) {
+  switch (kind) {
+    case ErrorKind::kInvalidInput:
+    case ErrorKind::kLimit:
+      return 400;
+    case ErrorKind::kUnsupported:
+      return 501;
+    case ErrorKind::kNotFound:
+      return 404;
+    case ErrorKind::kCancelled:
+    case ErrorKind::kUnavailable:
+      return 503;
+    case ErrorKind::kIo:
+    case ErrorKind::kInternal:
+      break;
+  }
+  return 500;
+}
+
+HttpAnswer json_answer(const json& document) {
+  // Names of files may hold any byte; JSON wants UTF-8.
+  return text_answer(document.dump(2, ' ', false, json::error_handler_t::replace) + "\n", kJson);
+}
+
+json to_json(const glm::dvec3& v) {
+  return {v.x, v.y, v.z};
+}
+
+json to_json(const Camera& camera) {
+  return {{"position", to_json(camera.position)},
+          {"focal_point", to_json(camera.focal_point)},
+          {"view_up", to_json(camera.view_up)},
+          {"view_angle", camera.view_angle}};
+}
+
+/// A header's value must be a token there: anything else becomes an underscore.
+std::string token(std::string_view text) {
+  std::string clean(text);
+  for (char& c : clean) {
+    const bool allowed = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') || c == '-';
+    if (!allowed) c = '_';
+  }
+  return clean;
+}
+
+std::string server_timing(const std::vector<StageTime>& stages) {
+  std::ostringstream out;
+  for (const StageTime& stage : stages) {
+    if (out.tellp() > 0) out << ", ";
+    out << token(stage.name) << ";dur=" << stage.milliseconds;
+  }
+  return out.str();
+}
+
+std::string escape_html(std::string_view text) {
+  std::string escaped;
+  for (const char c : text) {
+    if (c == '&') {
+      escaped += "&amp;";
+    } else if (c == '<') {
+      escaped += "&lt;";
+    } else if (c == '>') {
+      escaped += "&gt;";
+    } else if (c == '"') {
+      escaped += "&quot;";
+    } else {
+      escaped += c;
+    }
+  }
+  return escaped;
+}
+
+/// A part of a path: all but the unreserved characters of RFC 3986 is escaped.
+std::string escape_path(std::string_view text) {
+  constexpr std::string_view kDigits = "0123456789ABCDEF";
+  constexpr std::string_view kUnreserved = "-._~";
+  std::string escaped;
+  for (const char c : text) {
+    const auto byte = static_cast<unsigned char>(c);
+    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
+    if (letter || kUnreserved.find(c) != std::string_view::npos) {
+      escaped += c;
+    } else {
+      escaped += {'%', kDigits[byte >> 4], kDigits[byte & 15]};
+    }
+  }
+  return escaped;
+}
+
+}  // namespace
+
+HttpAnswer text_answer(std::string_view text, std::string_view content_type) {
+  HttpAnswer answer;
+  answer.content_type = content_type;
+  const auto* first = reinterpret_cast<const std::byte*>(text.data());
+  answer.body.assign(first, first + text.size());
+  return answer;
+}
+
+HttpAnswer error_answer(const Error& error, unsigned status) {
+  HttpAnswer answer = json_answer({{"error", {{"kind", name_of(error.kind)}, {"message", clean_utf8(error.message)}}}});
+  answer.status = status;
+  if (status == 503) answer.headers.emplace_back("Retry-After", "1");
+  return answer;
+}
+
+HttpAnswer error_answer(const Error& error) {
+  return error_answer(error, status_of(error.kind));
+}
+
+HttpAnswer models_answer(const std::vector<std::string>& names) {
+  return json_answer({{"models", names}});
+}
+
+HttpAnswer model_answer(const std::string& name, const ModelDescription& description) {
+  const ModelInfo& info = description.info;
+  return json_answer({{"model", name},
+                      {"surfels", info.surfels},
+                      {"bounds", {{"min", to_json(info.bounds.min)}, {"max", to_json(info.bounds.max)}}},
+                      {"oriented", info.oriented},
+                      {"up_axis", info.z_up ? "z" : "y"},
+                      {"color_bits", info.color_bits},
+                      {"attributes", info.scalar_names},
+                      {"sources", info.source_names},
+                      {"levels", description.levels},
+                      {"blocks", description.blocks}});
+}
+
+HttpAnswer picture_answer(EncodedPicture picture) {
+  HttpAnswer answer;
+  answer.content_type = media_type(picture.format);
+  answer.headers = {{"Server-Timing", server_timing(picture.stats.stages)},
+                    {"X-Surfcast-Camera", to_json(picture.camera).dump()},
+                    {"X-Surfcast-Surfels", std::to_string(picture.stats.surfels_drawn)},
+                    {"X-Surfcast-Blocks", std::to_string(picture.stats.blocks_drawn)},
+                    {"X-Surfcast-Converged", picture.converged ? "true" : "false"},
+                    {"Cache-Control", "no-cache"}};
+  answer.body = std::move(picture.bytes);
+  return answer;
+}
+
+HttpAnswer page_answer(const std::vector<std::string>& names) {
+  std::ostringstream page;
+  page << "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>Surfcast</title></head>\n<body>\n"
+          "<h1>Models</h1>\n";
+  if (names.empty()) page << "<p>There are none.</p>\n";
+  for (const std::string& name : names) {
+    const std::string place = "/api/models/" + escape_path(name);
+    page << "<figure><a href=\"" << place << "/image?resolution=1920,1080\"><img src=\"" << place
+         << "/image?resolution=480,270&amp;format=jpg\" width=\"480\" height=\"270\" loading=\"lazy\" alt=\"\"></a>"
+         << "<figcaption><a href=\"" << place << "\">" << escape_html(clean_utf8(name))
+         << "</a></figcaption></figure>\n";
+  }
+  page << "</body>\n</html>\n";
+  return text_answer(page.str(), "text/html; charset=utf-8");
+}
+
+}  // namespace surfcast

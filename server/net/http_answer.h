@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "base/result.h"
+#include "service/model_source.h"
+#include "service/render_service.h"
+
+namespace surfcast {
+
+/// An answer of HTTP before it is written.
+struct HttpAnswer {
+  unsigned status = 200;
+  std::string content_type;
+  std::vector<std::pair<std::string, std::string>> headers;
+  std::vector<std::byte> body;
+};
+
+HttpAnswer text_answer(std::string_view text, std::string_view content_type);
+
+/// {"error": {"kind": "not_found", "message": "..."}} with the status that fits the kind.
+HttpAnswer error_answer(const Error& error);
+/// The same with a status that no kind stands for.
+HttpAnswer error_answer(const Error& error, unsigned status);
+
+/// {"models": ["a", "b"]}
+HttpAnswer models_answer(const std::vector<std::string>& names);
+HttpAnswer model_answer(const std::string& name, const ModelDescription& description);
+/// The picture, with what drawing it took in the headers Server-Timing and X-Surfcast-*.
+HttpAnswer picture_answer(EncodedPicture picture);
+/// A page that shows the models.
+HttpAnswer page_answer(const std::vector<std::string>& names);
+
+}  // namespace surfcast

@@ -1,0 +1,55 @@
+#include "net/http_route.h"
+
+#include <array>
+#include <utility>
+
+#include "protocol/picture_query.h"
+
+namespace surfcast {
+namespace {
+
+using Kind = HttpRoute::Kind;
+
+constexpr std::string_view kModels = "/api/models";
+constexpr std::string_view kImage = "/image";
+constexpr std::array<std::pair<std::string_view, Kind>, 5> kPlaces{{
+    {"/", Kind::kPage},
+    {kModels, Kind::kModels},
+    {"/healthz", Kind::kHealth},
+    {"/readyz", Kind::kReady},
+    {"/metrics", Kind::kMetrics},
+}};
+
+tl::unexpected<Error> no_such_place(std::string_view path) {
+  return fail(ErrorKind::kNotFound, "there is nothing at " + std::string(path));
+}
+
+/// "NAME" or "NAME/image", what follows "/api/models/".
+Result<HttpRoute> route_model(std::string_view rest, std::string_view query) {
+  HttpRoute route{Kind::kModel, {}, std::string(query)};
+  if (rest.ends_with(kImage)) {
+    route.kind = Kind::kPicture;
+    rest.remove_suffix(kImage.size());
+  }
+  if (rest.empty() || rest.find('/') != std::string_view::npos) return no_such_place(kModels);
+  Result<std::string> name = decode_escapes(rest);
+  if (!name) return fail(name.error());
+  route.model = std::move(*name);
+  return route;
+}
+
+}  // namespace
+
+Result<HttpRoute> route_http(std::string_view target) {
+  const size_t mark = target.find('?');
+  const std::string_view path = target.substr(0, mark);
+  const std::string_view query = mark == std::string_view::npos ? std::string_view() : target.substr(mark + 1);
+  for (const auto& [place, kind] : kPlaces) {
+    if (path == place) return HttpRoute{kind, {}, std::string(query)};
+  }
+  const std::string prefix = std::string(kModels) + "/";
+  if (path.starts_with(prefix)) return route_model(path.substr(prefix.size()), query);
+  return no_such_place(path);
+}
+
+}  // namespace surfcast

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "base/result.h"
+
+namespace surfcast {
+
+/// What an HTTP request asks for.
+struct HttpRoute {
+  enum class Kind { kPage, kModels, kModel, kPicture, kHealth, kReady, kMetrics };
+  Kind kind = Kind::kPage;
+  std::string model;  ///< of kModel and kPicture
+  std::string query;  ///< of kPicture, still escaped
+};
+
+/// Where the target of a GET leads: kNotFound for no such place, kInvalidInput for a malformed one.
+Result<HttpRoute> route_http(std::string_view target);
+
+}  // namespace surfcast

@@ -1,0 +1,262 @@
+#include "net/http_session.h"
+
+#include <algorithm>
+#include <array>
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <boost/asio/executor_work_guard.hpp>
+#include <boost/asio/post.hpp>
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http/empty_body.hpp>
+#include <boost/beast/http/parser.hpp>
+#include <boost/beast/http/read.hpp>
+#include <boost/beast/http/span_body.hpp>
+#include <boost/beast/http/write.hpp>
+#include <optional>
+#include <utility>
+
+#include "net/convert.h"
+#include "net/http_answer.h"
+#include "net/http_route.h"
+#include "protocol/picture_query.h"
+
+namespace surfcast {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = boost::beast::http;
+using asio::ip::tcp;
+using boost::system::error_code;
+
+constexpr uint32_t kHeaderLimit = 16384;  // bytes of a request's header
+constexpr uint64_t kBodyLimit = 4096;     // bytes of a body, which no request needs
+
+auto into(error_code& code) {
+  return asio::redirect_error(asio::use_awaitable, code);
+}
+
+/// Waits in a coroutine for something that calls back from another thread. `start` gets the callback. The io_context
+/// runs on until it was called.
+template <typename Value, typename Start>
+asio::awaitable<Value> answer_of(Start start) {
+  const auto initiate = [&start](auto handler) {
+    const auto executor = asio::get_associated_executor(handler);
+    const auto shared = std::make_shared<decltype(handler)>(std::move(handler));
+    start([shared, work = asio::make_work_guard(executor)](Value value) {
+      asio::post(work.get_executor(),
+                 [shared, value = std::make_shared<Value>(std::move(value))] { (*shared)(std::move(*value)); });
+    });
+  };
+  co_return co_await asio::async_initiate<const asio::use_awaitable_t<>, void(Value)>(initiate, asio::use_awaitable);
+}
+
+class HttpSession : public Session, public std::enable_shared_from_this<HttpSession> {
+ public:
+  explicit HttpSession(Connection connection)
+      : stream_(std::move(connection.socket)),
+        context_(std::move(connection.context)),
+        open_(std::move(connection.open)),
+        id_(connection.id),
+        busy_(connection.busy) {}
+
+  void start() {
+    asio::co_spawn(
+        stream_.get_executor(),
+        [](std::shared_ptr<HttpSession> self) -> asio::awaitable<void> { co_await self->serve(); }(shared_from_this()),
+        asio::detached);
+  }
+  void drain() override {
+    if (!answering_) abort();
+  }
+  void abort() override {
+    if (job_) context_->service.cancel(*job_);
+    stream_.close();
+  }
+
+ private:
+  using Parser = http::request_parser<http::empty_body>;
+
+  asio::awaitable<void> serve();
+  asio::awaitable<bool> serve_one();
+  asio::awaitable<HttpAnswer> answer(const Parser::value_type& request);
+  asio::awaitable<HttpAnswer> answer_place(HttpRoute route);
+  asio::awaitable<HttpAnswer> answer_model(std::string name);
+  asio::awaitable<HttpAnswer> answer_picture(HttpRoute route);
+  asio::awaitable<std::vector<std::string>> models();
+  asio::awaitable<Result<EncodedPicture>> draw(PictureJob job);
+  asio::awaitable<void> cancel_when_client_leaves(JobId job);
+  asio::awaitable<bool> write(const HttpAnswer& answer, unsigned version, bool keep_alive, bool head);
+
+  beast::tcp_stream stream_;
+  beast::flat_buffer buffer_{kHeaderLimit + kBodyLimit};
+  std::shared_ptr<NetContext> context_;
+  OpenConnection open_;
+  SessionId id_;
+  bool busy_;
+  bool answering_ = false;
+  bool first_ = true;
+  std::optional<JobId> job_;  ///< being drawn for this client
+};
+
+asio::awaitable<void> HttpSession::serve() {
+  while (co_await serve_one()) {
+  }
+  error_code ignored;
+  stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
+  // Closing with bytes of the client unread resets the connection, and the answer may be lost on its way.
+  stream_.expires_after(std::min(context_->config.hello, context_->config.stall));
+  std::array<char, 4096> scratch{};
+  while (!ignored && !context_->draining) {
+    co_await stream_.async_read_some(asio::buffer(scratch), into(ignored));
+  }
+  stream_.close();
+}
+
+/// Reads one request and answers it. False when the connection is at its end.
+asio::awaitable<bool> HttpSession::serve_one() {
+  error_code code;
+  Parser parser;
+  parser.header_limit(kHeaderLimit);
+  parser.body_limit(kBodyLimit);
+  stream_.expires_after(first_ ? context_->config.hello : context_->config.idle);
+  first_ = false;
+  co_await http::async_read_header(stream_, buffer_, parser, into(code));
+  if (code == http::error::end_of_stream || !stream_.socket().is_open()) co_return false;
+  if (code && code.category() != http::make_error_code(http::error::bad_method).category()) co_return false;
+  ++context_->metrics.requests;
+  answering_ = true;
+  const Parser::value_type& request = parser.get();
+  HttpAnswer result;
+  if (code) {
+    result = error_answer({ErrorKind::kInvalidInput, "not a request of HTTP/1.1: " + code.message()},
+                          code == http::error::header_limit ? 431 : 400);
+  } else if (!parser.is_done()) {
+    result = error_answer({ErrorKind::kLimit, "a request with a body is not wanted here"}, 413);
+  } else {
+    result = co_await answer(request);
+  }
+  if (result.status >= 400) ++context_->metrics.errors;
+  const bool keep_alive = !code && parser.is_done() && request.keep_alive() && !context_->draining && !busy_;
+  const bool head = !code && request.method() == http::verb::head;
+  const bool written = co_await write(result, code ? 11 : request.version(), keep_alive, head);
+  answering_ = false;
+  co_return written&& keep_alive;
+}
+
+asio::awaitable<HttpAnswer> HttpSession::answer(const Parser::value_type& request) {
+  if (busy_) co_return error_answer({ErrorKind::kUnavailable, "the server is busy: too many connections"});
+  const std::string_view target(request.target().data(), request.target().size());
+  Result<HttpRoute> route = route_http(target);
+  if (!route) co_return error_answer(route.error());
+  if (request.method() != http::verb::get && request.method() != http::verb::head) {
+    HttpAnswer refusal = error_answer({ErrorKind::kUnsupported, "only GET and HEAD are answered"}, 405);
+    refusal.headers.emplace_back("Allow", "GET, HEAD");
+    co_return refusal;
+  }
+  co_return co_await answer_place(std::move(*route));
+}
+
+asio::awaitable<HttpAnswer> HttpSession::answer_place(HttpRoute route) {
+  switch (route.kind) {
+    case HttpRoute::Kind::kPage:
+      co_return page_answer(co_await models());
+    case HttpRoute::Kind::kModels:
+      co_return models_answer(co_await models());
+    case HttpRoute::Kind::kModel:
+      co_return co_await answer_model(std::move(route.model));
+    case HttpRoute::Kind::kPicture:
+      co_return co_await answer_picture(std::move(route));
+    case HttpRoute::Kind::kHealth:
+      co_return text_answer("ok\n", "text/plain");
+    case HttpRoute::Kind::kReady:
+      if (context_->draining) co_return error_answer({ErrorKind::kUnavailable, "the server is stopping"});
+      co_return text_answer("ready\n", "text/plain");
+    case HttpRoute::Kind::kMetrics:
+      break;
+  }
+  co_return text_answer(to_prometheus(context_->metrics, context_->service.queued()), "text/plain; version=0.0.4");
+}
+
+asio::awaitable<std::vector<std::string>> HttpSession::models() {
+  co_return co_await answer_of<std::vector<std::string>>(
+      [this](auto done) { context_->service.list_models(std::move(done)); });
+}
+
+asio::awaitable<HttpAnswer> HttpSession::answer_model(std::string name) {
+  const auto description = co_await answer_of<Result<ModelDescription>>(
+      [&](auto done) { context_->service.describe_model(name, std::move(done)); });
+  co_return description ? model_answer(name, *description) : error_answer(description.error());
+}
+
+asio::awaitable<HttpAnswer> HttpSession::answer_picture(HttpRoute route) {
+  const Result<wire::DrawPicture> request = parse_picture_query(route.model, route.query);
+  if (!request) co_return error_answer(request.error());
+  Result<PictureJob> job = to_job(*request);
+  if (!job) co_return error_answer(job.error());
+  Result<EncodedPicture> picture = co_await draw(std::move(*job));
+  if (!picture) co_return error_answer(picture.error());
+  context_->metrics.count_picture(picture->bytes.size(), picture->stats);
+  co_return picture_answer(std::move(*picture));
+}
+
+asio::awaitable<Result<EncodedPicture>> HttpSession::draw(PictureJob job) {
+  stream_.expires_never();
+  Result<EncodedPicture> picture = co_await answer_of<Result<EncodedPicture>>([&](auto done) {
+    job_ = context_->service.draw(id_, std::move(job), std::move(done));
+    asio::co_spawn(
+        stream_.get_executor(),
+        [](std::shared_ptr<HttpSession> self, JobId id) -> asio::awaitable<void> {
+          co_await self->cancel_when_client_leaves(id);
+        }(shared_from_this(), *job_),
+        asio::detached);
+  });
+  job_.reset();
+  error_code ignored;
+  if (stream_.socket().is_open()) stream_.socket().cancel(ignored);  // the watch for the client's leaving
+  co_return picture;
+}
+
+/// Looks at what arrives while a picture is drawn: the end of the stream means that nobody waits for it any more.
+asio::awaitable<void> HttpSession::cancel_when_client_leaves(JobId job) {
+  error_code code;
+  co_await stream_.socket().async_wait(tcp::socket::wait_read, into(code));
+  if (code || job_ != job) co_return;
+  char byte = 0;
+  stream_.socket().non_blocking(true, code);
+  const size_t count = stream_.socket().receive(asio::buffer(&byte, 1), tcp::socket::message_peek, code);
+  if (count == 0 && code != asio::error::would_block) context_->service.cancel(job);
+}
+
+asio::awaitable<bool> HttpSession::write(const HttpAnswer& answer, unsigned version, bool keep_alive, bool head) {
+  using Body = http::span_body<const char>;
+  http::response<Body> response{static_cast<http::status>(answer.status), version};
+  response.set(http::field::server, "surfcastd");
+  response.set(http::field::content_type, answer.content_type);
+  response.set("X-Content-Type-Options", "nosniff");
+  for (const auto& [name, value] : answer.headers) response.set(name, value);
+  response.content_length(answer.body.size());
+  response.keep_alive(keep_alive);
+  if (!head) response.body() = {reinterpret_cast<const char*>(answer.body.data()), answer.body.size()};
+  http::response_serializer<Body> serializer{response};
+  error_code code;
+  while (!serializer.is_done() && !code) {
+    stream_.expires_after(context_->config.stall);  // for some bytes, not for all of them
+    co_await http::async_write_some(stream_, serializer, into(code));
+  }
+  co_return !code;
+}
+
+}  // namespace
+
+std::shared_ptr<Session> start_http_session(Connection connection) {
+  const auto session = std::make_shared<HttpSession>(std::move(connection));
+  session->start();
+  return session;
+}
+
+}  // namespace surfcast

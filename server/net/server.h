@@ -1,0 +1,48 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <string>
+
+#include "base/result.h"
+#include "net/request_window.h"
+#include "service/render_service.h"
+
+namespace surfcast {
+
+struct ServerConfig {
+  std::string host = "127.0.0.1";
+  uint16_t port = 7600;  ///< 0: any free one
+  size_t connections = 256;
+  RequestWindow::Limits requests;           ///< of one connection of the framed protocol
+  size_t unread_bytes = size_t{64} << 20;   ///< of answers; beyond it the connection is not read from
+  std::chrono::milliseconds hello{10'000};  ///< for the first words of a connection
+  std::chrono::milliseconds idle{300'000};  ///< without a whole request and with nothing outstanding
+  std::chrono::milliseconds stall{30'000};  ///< without any byte of an answer being taken
+  std::chrono::milliseconds drain{5'000};   ///< for what is outstanding when the server stops
+};
+
+/// The listener and its connections: framed protocol and HTTP on one port. Everything happens on the thread that calls
+/// `run`, and none of it waits for a picture or for a slow client.
+class Server {
+ public:
+  /// Binds the port. `service` must outlive the server.
+  static Result<std::unique_ptr<Server>> create(RenderService& service, const ServerConfig& config);
+  ~Server();
+
+  [[nodiscard]] uint16_t port() const;
+  /// Serves until `stop` is called or, if asked for, SIGINT or SIGTERM arrives; then takes no more connections,
+  /// finishes what is outstanding within ServerConfig::drain, and returns.
+  void run(bool until_signal);
+  /// From any thread.
+  void stop();
+
+ private:
+  struct State;
+  explicit Server(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
+
+}  // namespace surfcast
