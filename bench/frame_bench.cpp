@@ -1,0 +1,87 @@
+// frame_bench [SURFELS] [SIDE]: a per-pixel EWA frame beside a frame of plain sized GL points from the same buffers, on
+// a sphere that fills 80 % of the height, camera moving, picture read back. Medians of one run, interleaved.
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "base/stopwatch.h"
+#include "gl_points.h"
+#include "model/model_writer.h"
+#include "render/renderer.h"
+#include "support/clouds.h"
+
+namespace {
+
+using namespace surfcast;
+
+double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+template <typename T>
+T value_or_exit(Result<T> result) {
+  if (result) return std::move(*result);
+  std::fprintf(stderr, "frame_bench: %s\n", result.error().message.c_str());
+  std::exit(1);
+}
+
+/// A camera that sees a unit sphere at 80 % of the picture's height, `angle` radians around it.
+Camera orbit(double angle) {
+  constexpr double kViewAngle = 30;
+  const double eta_per_height = 1 / (2 * std::tan(kViewAngle / 2 * 3.14159265358979 / 180));
+  const double distance = std::sqrt(1 + std::pow(2 * eta_per_height / 0.8, 2));
+  return {{distance * std::sin(angle), 0, distance * std::cos(angle)}, {0, 0, 0}, {0, 1, 0}, kViewAngle};
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  const size_t surfels = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 1000000;
+  const int side = argc > 2 ? std::atoi(argv[2]) : 1024;
+  constexpr int kFrames = 15;
+  constexpr int kWarmUp = 2;
+
+  const auto path = std::filesystem::temp_directory_path() / "surfcast_frame_bench.surf";
+  value_or_exit(write_model(testing::fibonacci_sphere(surfels, 1, {0, 0, 0}, {200, 90, 20}), path, {}));
+  const ModelFile model = value_or_exit(ModelFile::open(path));
+  const std::unique_ptr<Renderer> renderer = value_or_exit(Renderer::create({}));
+  const ResidentModel resident = value_or_exit(ResidentModel::load(model));
+  bench::GlPoints points(side, side);
+  std::vector<std::byte> pixels;
+
+  std::map<std::string, std::vector<double>> times;
+  uint64_t splats = 0;
+  for (int k = 0; k < kFrames + kWarmUp; ++k) {
+    PictureRequest request;
+    request.camera = orbit(0.03 * k);
+    request.width = side;
+    request.height = side;
+    const CameraFrame frame = value_or_exit(make_camera_frame(*request.camera, side, side));
+    const Stopwatch points_watch;
+    points.draw(resident, frame, pixels);
+    const double points_ms = points_watch.milliseconds();
+    const std::atomic<bool> cancelled{false};
+    const Stopwatch ewa_watch;
+    const Frame drawn = value_or_exit(renderer->draw(model, request, cancelled));
+    const double ewa_ms = ewa_watch.milliseconds();
+    if (k < kWarmUp) continue;
+    splats = drawn.stats.surfels_drawn;
+    times["points"].push_back(points_ms);
+    times["ewa"].push_back(ewa_ms);
+    times["ratio"].push_back(ewa_ms / points_ms);
+    for (const StageTime& stage : drawn.stats.stages) times["ewa." + stage.name].push_back(stage.milliseconds);
+  }
+  std::printf("%s, %zu surfels, %d x %d, %llu splats; medians of %d frames\n", renderer->device().renderer.c_str(),
+              surfels, side, side, static_cast<unsigned long long>(splats), kFrames);
+  for (const auto& [name, values] : times) std::printf("%-12s %8.2f\n", name.c_str(), median(values));
+  std::filesystem::remove(path);
+  return 0;
+}

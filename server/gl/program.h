@@ -1,0 +1,24 @@
+#pragma once
+
+#include <initializer_list>
+#include <string>
+#include <string_view>
+
+#include "base/result.h"
+#include "gl/objects.h"
+
+namespace surfcast::gl {
+
+/// One stage of a program. `source` is the text after #version.
+struct StageSource {
+  GLenum stage;
+  std::string_view name;  ///< for messages
+  std::string_view source;
+};
+
+/// Compiles and links. `defines` is text such as "#define LIT 1\n" and stands before every source. The message of a
+/// failure holds the driver's log.
+Result<Program> make_program(const char* label, std::initializer_list<StageSource> stages,
+                             const std::string& defines = {});
+
+}  // namespace surfcast::gl

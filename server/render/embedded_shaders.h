@@ -1,0 +1,16 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+
+namespace surfcast {
+
+struct EmbeddedShader {
+  std::string_view name;  ///< path below shaders/
+  std::string_view text;
+};
+
+/// Every file of shaders/, generated at build time.
+std::span<const EmbeddedShader> embedded_shaders();
+
+}  // namespace surfcast

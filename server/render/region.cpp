@@ -1,0 +1,65 @@
+#include "render/region.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "shared/kernel.h"
+
+namespace surfcast {
+namespace {
+
+constexpr int kTile = SURFCAST_TILE;
+
+/// Without the prefilter the kernel alone is drawn; this much variance, pixels squared, keeps its inverse finite.
+constexpr double kNoPrefilter = 1e-6;
+
+/// Per-pixel normalisation weighs every surfel alike: by the inverse of the sum that its kernels have inside an evenly
+/// sampled surface, 2 pi sigma^2 / h^2, where the mean distance to six neighbours is r = 1.08 h.
+double even_sampling_weight() {
+  constexpr double kRadiusOverSpacing = 1.08;
+  const double sigma = SURFCAST_KERNEL_SIGMA * kRadiusOverSpacing;
+  return std::min(1.0, 1 / (2 * std::numbers::pi * sigma * sigma));
+}
+
+float decode_srgb(uint8_t value) {
+  const double encoded = value / 255.0;
+  return static_cast<float>(encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4));
+}
+
+}  // namespace
+
+std::vector<Region> cut_into_regions(int width, int height) {
+  std::vector<Region> regions;
+  for (int y = 0; y < height; y += kMaxRegionSide) {
+    for (int x = 0; x < width; x += kMaxRegionSide) {
+      regions.push_back({x, y, std::min(kMaxRegionSide, width - x), std::min(kMaxRegionSide, height - y)});
+    }
+  }
+  return regions;
+}
+
+int tiles_across(const Region& region) {
+  return (region.width + kTile - 1) / kTile;
+}
+int tiles_down(const Region& region) {
+  return (region.height + kTile - 1) / kTile;
+}
+
+layout::FrameConstants frame_constants(const CameraFrame& frame, const Region& region, const PictureRequest& request,
+                                       bool oriented) {
+  layout::FrameConstants c;
+  c.right = glm::vec4(glm::vec3(frame.right), static_cast<float>(frame.eta));
+  c.up = glm::vec4(glm::vec3(frame.up), 0.5F * static_cast<float>(frame.width));
+  c.forward = glm::vec4(glm::vec3(frame.forward), 0.5F * static_cast<float>(frame.height));
+  c.region = {region.x, region.y, region.width, region.height};
+  c.tiles = {tiles_across(region), tiles_down(region), tiles_across(region) * tiles_down(region), 0};
+  const double prefilter = request.filter == Filter::kEwa ? 1.0 : kNoPrefilter;
+  c.filter_ = {prefilter, SURFCAST_VISIBILITY_PIXELS * SURFCAST_VISIBILITY_PIXELS, even_sampling_weight(), 0};
+  c.background = {decode_srgb(request.background.r), decode_srgb(request.background.g),
+                  decode_srgb(request.background.b), 0};
+  c.flags = {oriented ? 1 : 0, request.normalization == Normalization::kSurfel ? 1 : 0, 0, 0};
+  return c;
+}
+
+}  // namespace surfcast

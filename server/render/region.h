@@ -1,0 +1,32 @@
+#pragma once
+
+#include <vector>
+
+#include "geometry/camera.h"
+#include "render/picture.h"
+#include "shared/frame_layout.h"
+
+namespace surfcast {
+
+/// A rectangle of a picture that is drawn at once, pixels from the top left.
+struct Region {
+  int x = 0;
+  int y = 0;
+  int width = 0;
+  int height = 0;
+};
+
+/// Largest side of a region: its picture and its tile lists fit in the smallest storage blocks that GL promises.
+inline constexpr int kMaxRegionSide = 2048;
+
+/// Cuts a picture into regions, row by row.
+std::vector<Region> cut_into_regions(int width, int height);
+
+[[nodiscard]] int tiles_across(const Region& region);
+[[nodiscard]] int tiles_down(const Region& region);
+
+/// What the passes need to know of one region. `oriented` says whether normals tell front from back.
+layout::FrameConstants frame_constants(const CameraFrame& frame, const Region& region, const PictureRequest& request,
+                                       bool oriented);
+
+}  // namespace surfcast

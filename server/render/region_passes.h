@@ -1,0 +1,40 @@
+#pragma once
+
+#include <atomic>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "base/result.h"
+#include "render/programs.h"
+#include "render/region.h"
+#include "render/splat_buffers.h"
+#include "residency/resident_model.h"
+
+namespace surfcast {
+
+/// One region to draw: what is seen, from where, how.
+struct RegionTask {
+  const ResidentModel* model = nullptr;
+  std::vector<size_t> visible_blocks;
+  CameraFrame frame;
+  Region region;
+  layout::FrameConstants constants;
+  Variant variant;
+};
+
+/// Milliseconds and counts of one region.
+struct RegionStats {
+  uint64_t splats = 0;
+  double project_ms = 0;  ///< projection, culling, counting
+  double bin_ms = 0;
+  double splat_ms = 0;  ///< visibility, accumulation, normalisation, shading
+  double read_ms = 0;
+};
+
+/// Draws a region with the four passes: project, bin_offsets, bin, splat; reads its pixels into `pixels` (4 bytes or 4
+/// floats per pixel, rows from the top).
+Result<RegionStats> draw_region(const RegionTask& task, Programs& programs, SplatBuffers& buffers,
+                                const std::atomic<bool>& cancelled, std::span<std::byte> pixels);
+
+}  // namespace surfcast

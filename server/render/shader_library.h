@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+#include <string_view>
+
+#include "base/result.h"
+
+namespace surfcast {
+
+/// The text of a shader with its `#include "..."` lines replaced by the files they name, each once.
+Result<std::string> shader_text(std::string_view name);
+
+}  // namespace surfcast

@@ -1,0 +1,44 @@
+#include "render/splat_buffers.h"
+
+#include <algorithm>
+
+namespace surfcast {
+
+void TexelBuffer::reserve(size_t texels) {
+  if (texels <= texels_) return;
+  texels_ = texels;
+  texture_ = gl::Texture();
+  buffer_ = gl::make_buffer(label_, texels * texel_bytes_);
+  texture_ = gl::make_buffer_texture(label_, format_, buffer_);
+}
+
+void TexelBuffer::bind_for_writing(GLuint unit) const {
+  glBindImageTexture(unit, texture_.name(), 0, GL_FALSE, 0, GL_WRITE_ONLY, format_);
+}
+
+void TexelBuffer::bind_for_reading(GLuint unit) const {
+  glBindTextureUnit(unit, texture_.name());
+}
+
+void StorageBuffer::reserve(size_t bytes) {
+  if (bytes <= bytes_) return;
+  bytes_ = bytes;
+  buffer_ = gl::make_buffer(label_, bytes, GL_DYNAMIC_STORAGE_BIT);
+}
+
+void StorageBuffer::clear() const {
+  glClearNamedBufferData(buffer_.name(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
+}
+
+void StorageBuffer::bind(GLuint binding) const {
+  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer_.name());
+}
+
+void SplatBuffers::reserve_splats(size_t count, bool with_normals) {
+  splats.reserve(2 * count);
+  discs.reserve(count);
+  bounds.reserve(count);
+  if (with_normals) normals.reserve(std::max(count, discs.texels()));
+}
+
+}  // namespace surfcast

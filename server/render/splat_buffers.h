@@ -1,0 +1,66 @@
+#pragma once
+
+#include <cstddef>
+
+#include "gl/objects.h"
+
+namespace surfcast {
+
+/// A buffer that grows, seen as texels: records of splats may outgrow a storage block, texel buffers may not.
+class TexelBuffer {
+ public:
+  TexelBuffer(const char* label, GLenum format, size_t texel_bytes)
+      : label_(label), format_(format), texel_bytes_(texel_bytes) {}
+
+  /// Room for `texels`, content undefined.
+  void reserve(size_t texels);
+  void bind_for_writing(GLuint unit) const;
+  void bind_for_reading(GLuint unit) const;
+  [[nodiscard]] size_t texels() const { return texels_; }
+
+ private:
+  const char* label_;
+  GLenum format_;
+  size_t texel_bytes_;
+  size_t texels_ = 0;
+  gl::Buffer buffer_;
+  gl::Texture texture_;
+};
+
+/// A storage buffer that grows.
+class StorageBuffer {
+ public:
+  explicit StorageBuffer(const char* label) : label_(label) {}
+
+  void reserve(size_t bytes);
+  void clear() const;
+  [[nodiscard]] GLuint name() const { return buffer_.name(); }
+  void bind(GLuint binding) const;
+
+ private:
+  const char* label_;
+  size_t bytes_ = 0;
+  gl::Buffer buffer_;
+};
+
+/// Everything between the passes of one region.
+struct SplatBuffers {
+  TexelBuffer splats{"splats", GL_RGBA32UI, 16};
+  TexelBuffer discs{"discs", GL_RG32UI, 8};
+  TexelBuffer bounds{"bounds", GL_RG32UI, 8};
+  TexelBuffer normals{"splat normals", GL_R32UI, 4};
+  TexelBuffer lists{"tile lists", GL_R32UI, 4};
+  StorageBuffer counters{"counters"};
+  StorageBuffer tile_count{"tile count"};
+  StorageBuffer tile_offset{"tile offset"};
+  StorageBuffer picture{"picture"};
+  StorageBuffer blocks{"blocks"};
+  StorageBuffer chunks{"chunks"};
+  StorageBuffer frame{"frame constants"};
+
+  /// Room for so many splat records; normals only for scenes that are lit and coloured.
+  void reserve_splats(size_t count, bool with_normals);
+  [[nodiscard]] size_t splat_capacity() const { return discs.texels(); }
+};
+
+}  // namespace surfcast

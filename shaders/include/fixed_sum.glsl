@@ -1,0 +1,28 @@
+// Sums of weights that do not depend on the order of their terms, so that the same request gives the same bytes
+// although the tile lists are filled in any order: sums of integers. A weight is at most 1 and is kept to 2^-25;
+// after every SURFCAST_CARRY_INTERVAL terms the 32 bit sums are carried over, so that a million splats in one pixel
+// neither overflow nor lose their small terms.
+#include "include/rows.glsl"
+
+const float kFixedOne = 33554432.0;  // 2^25
+
+struct FixedSum {
+  IntRows part;   // since the last carry
+  UintRows low;   // 16 bits
+  UintRows high;  // units of 2^16
+};
+
+FixedSum fixed_zero() { return FixedSum(IntRows(0), UintRows(0u), UintRows(0u)); }
+
+// `term` is in units of 1 / kFixedOne.
+void fixed_add(inout FixedSum sum, Rows term) { sum.part += IntRows(term); }
+
+void fixed_carry(inout FixedSum sum) {
+  UintRows part = UintRows(sum.part);
+  sum.low += part & 0xffffu;
+  sum.high += (part >> 16) + (sum.low >> 16);
+  sum.low &= 0xffffu;
+  sum.part = IntRows(0);
+}
+
+Rows fixed_value(FixedSum sum) { return (Rows(sum.high) * 65536.0 + Rows(sum.low)) / kFixedOne; }

@@ -1,0 +1,72 @@
+// Large splats: the exact filter in every pixel. Only where SURFCAST_ROWS is 1.
+#include "include/pixel_sums.glsl"
+#include "include/resampling_filter.glsl"
+#include "include/splat_record.glsl"
+
+LargeSplat fetch_large(int slot) {
+  return decode_large(texelFetch(splats, 2 * slot), texelFetch(splats, 2 * slot + 1));
+}
+
+float kernel_deviation(LargeSplat s) { return float(SURFCAST_KERNEL_SIGMA) * s.radius; }
+float kernel_extent(LargeSplat s) { return sqrt(SURFCAST_KERNEL_CUTOFF) * kernel_deviation(s); }
+bool astride(LargeSplat s) { return s.o.z <= 1.5 * kernel_extent(s); }
+
+// Inverse depth at which a ray meets the plane of the surfel; the bound only keeps edge-on surfels finite.
+float plane_inverse_depth(LargeSplat s, vec2 ray) {
+  return (dot(s.n.xy, ray) + s.n.z) / min(dot(s.n, s.o), -1e-30);
+}
+
+// The same, kept to the depth range of the disc itself; 0 or less where the ray misses.
+float large_inverse_depth(LargeSplat s, vec2 ray) {
+  float inverse_depth = plane_inverse_depth(s, ray);
+  if (astride(s)) return inverse_depth;
+  float range = kernel_extent(s) * sqrt(max(1.0 - s.n.z * s.n.z, 0.0));
+  return clamp(inverse_depth, 1.0 / (s.o.z + range), 1.0 / (s.o.z - range));
+}
+
+// Squared radius of a pixel in the filter of a kernel of variance `kernel_variance`, and the gain.
+vec2 large_form(LargeSplat s, vec2 pixel, vec2 ray, float kernel_variance, float prefilter_variance) {
+  if (astride(s)) {
+    // Cut by the eye plane, the surfel is so near that the prefilter is nothing beside its kernel: measure on the
+    // surface itself.
+    float inverse_depth = plane_inverse_depth(s, ray);
+    vec3 u = vec3(ray, 1.0) / inverse_depth - s.o;
+    return vec2(inverse_depth > 0.0 ? dot(u, u) / kernel_variance : 1e30, 1.0);
+  }
+  ScreenVariance v = screen_variance(s.o, s.n, ray, kernel_variance, prefilter_variance);
+  vec3 l = inverse_factor(v.s, v.det);
+  vec2 d = pixel - pixel_of_ray(s.o.xy / s.o.z);
+  float p = l.x * d.x + l.y * d.y;
+  float q = l.z * d.y;
+  return vec2(p * p + q * q, v.gain);
+}
+
+void see_large(uint first, uint count, vec2 pixel, inout float surface) {
+  vec2 ray = ray_of_pixel(pixel);
+  for (uint k = 0u; k < count; ++k) {
+    LargeSplat s = fetch_large(int(texelFetch(lists, int(first + k)).x));
+    float disc_radius = float(SURFCAST_VISIBILITY_RADIUS) * s.radius;
+    float push = 1.0 / (1.0 + float(SURFCAST_VISIBILITY_DEPTH) * s.radius / max(s.o.z, s.radius));
+    float form = large_form(s, pixel, ray, disc_radius * disc_radius, frame.filter_.y).x;
+    float z = large_inverse_depth(s, ray) * push;
+    surface = form <= 1.0 ? max(surface, z) : surface;
+  }
+}
+
+void accumulate_large(uint first, uint count, vec2 pixel, float surface, inout PixelSums sums) {
+  vec2 ray = ray_of_pixel(pixel);
+  for (uint begin = 0u; begin < count; begin += uint(SURFCAST_CARRY_INTERVAL)) {
+    uint end = min(begin + uint(SURFCAST_CARRY_INTERVAL), count);
+    for (uint k = begin; k < end; ++k) {
+      int slot = int(texelFetch(lists, int(first + k)).x);
+      LargeSplat s = fetch_large(slot);
+      float sigma = kernel_deviation(s);
+      vec2 form_gain = large_form(s, pixel, ray, sigma * sigma, frame.filter_.x);
+      float z = large_inverse_depth(s, ray);
+      bool visible = form_gain.x <= cutoff(form_gain.y) && z > 0.0 && z >= surface;
+      float weight = s.weight * form_gain.y * coverage_scale(form_gain.y) * exp(-0.5 * form_gain.x);
+      sums_add(sums, splat_value(s.color, slot), visible ? weight : 0.0);
+    }
+    sums_carry(sums);
+  }
+}

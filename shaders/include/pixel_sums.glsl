@@ -1,0 +1,82 @@
+// The sums of the pixels of a lane: weight, weighted colour, and weighted normal, as far as the scene has them.
+#include "include/fixed_sum.glsl"
+#include "include/packing.glsl"
+
+#ifdef SURFCAST_LIT_COLOR
+layout(binding = SURFCAST_UNIT_NORMALS) uniform usamplerBuffer normals;
+#endif
+
+struct PixelSums {
+  FixedSum weight;
+  FixedSum red;  // colour, or the biased normal where the scene has no colour
+  FixedSum green;
+  FixedSum blue;
+#ifdef SURFCAST_LIT_COLOR
+  FixedSum normal_x;
+  FixedSum normal_y;
+  FixedSum normal_z;
+#endif
+};
+
+// What one splat adds per unit of weight, in units of the fixed-point sums.
+struct SplatValue {
+  vec3 color;
+#ifdef SURFCAST_LIT_COLOR
+  vec3 normal;
+#endif
+};
+
+PixelSums sums_zero() {
+  PixelSums sums;
+  sums.weight = fixed_zero();
+  sums.red = fixed_zero();
+  sums.green = fixed_zero();
+  sums.blue = fixed_zero();
+#ifdef SURFCAST_LIT_COLOR
+  sums.normal_x = fixed_zero();
+  sums.normal_y = fixed_zero();
+  sums.normal_z = fixed_zero();
+#endif
+  return sums;
+}
+
+SplatValue splat_value(uint packed_color, int slot) {
+  SplatValue value;
+#ifdef SURFCAST_HAS_COLOR
+  value.color = unpack_linear_color(packed_color) * kFixedOne;
+#else
+  value.color = unpack_biased_normal(packed_color) * kFixedOne;
+#endif
+#ifdef SURFCAST_LIT_COLOR
+  value.normal = unpack_biased_normal(texelFetch(normals, slot).x) * kFixedOne;
+#endif
+  return value;
+}
+
+void sums_add(inout PixelSums sums, SplatValue value, Rows weight) {
+  fixed_add(sums.weight, weight * kFixedOne);
+#if defined(SURFCAST_HAS_COLOR) || defined(SURFCAST_LIT)
+  fixed_add(sums.red, weight * value.color.r);
+  fixed_add(sums.green, weight * value.color.g);
+  fixed_add(sums.blue, weight * value.color.b);
+#endif
+#ifdef SURFCAST_LIT_COLOR
+  fixed_add(sums.normal_x, weight * value.normal.x);
+  fixed_add(sums.normal_y, weight * value.normal.y);
+  fixed_add(sums.normal_z, weight * value.normal.z);
+#endif
+}
+
+void sums_carry(inout PixelSums sums) {
+  fixed_carry(sums.weight);
+#if defined(SURFCAST_HAS_COLOR) || defined(SURFCAST_LIT)
+  fixed_carry(sums.red);
+  fixed_carry(sums.green);
+  fixed_carry(sums.blue);
+#endif
+#ifdef SURFCAST_LIT_COLOR
+  fixed_carry(sums.normal_x);
+  fixed_carry(sums.normal_y);
+  fixed_carry(sums.normal_z);
+#endif
+}

@@ -1,0 +1,21 @@
+// A lane of the splat kernel holds SURFCAST_ROWS pixels, one below the other, as the components of one vector: what
+// the lane fetches of a splat serves all of them. Four on software GL, where fetches cost most; one on hardware.
+#if SURFCAST_ROWS == 4
+#define Rows vec4
+#define IntRows ivec4
+#define UintRows uvec4
+#define BoolRows bvec4
+const vec4 kRow = vec4(0.0, 1.0, 2.0, 3.0);
+BoolRows at_most(Rows a, Rows b) { return lessThanEqual(a, b); }
+BoolRows both(BoolRows a, BoolRows b) { return bvec4(uvec4(a) & uvec4(b)); }
+#define ROW(v, i) v[i]
+#else
+#define Rows float
+#define IntRows int
+#define UintRows uint
+#define BoolRows bool
+const float kRow = 0.0;
+BoolRows at_most(Rows a, Rows b) { return a <= b; }
+BoolRows both(BoolRows a, BoolRows b) { return a && b; }
+#define ROW(v, i) v
+#endif

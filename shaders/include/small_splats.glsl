@@ -1,0 +1,50 @@
+// Small splats: one ellipse each. Forms are evaluated for all rows of a lane at once.
+#include "include/pixel_sums.glsl"
+#include "include/splat_record.glsl"
+
+// The inverse depth of the splat's plane in the rows below the displacement v.
+Rows small_inverse_depth(SmallSplat s, vec2 v) {
+  float first = s.inverse_depth * (1.0 + dot(s.slope, v));
+  float step = s.inverse_depth * s.slope.y;
+  return clamp(first + step * kRow, Rows(s.inverse_depth / (1.0 + s.depth_range)),
+               Rows(s.inverse_depth / (1.0 - s.depth_range)));
+}
+
+// (l11 v.x + l21 v.y)^2 + (l22 v.y)^2 in the rows below the displacement v.
+Rows factored_form(vec3 factor, vec2 v) {
+  Rows p = (factor.x * v.x + factor.y * v.y) + factor.y * kRow;
+  Rows q = factor.z * v.y + factor.z * kRow;
+  return p * p + q * q;
+}
+
+SmallSplat fetch_small(int slot) {
+  return decode_small(texelFetch(splats, 2 * slot), texelFetch(splats, 2 * slot + 1));
+}
+
+void see_small(uint first, uint count, vec2 pixel, inout Rows surface) {
+  for (uint k = 0u; k < count; ++k) {
+    int slot = int(texelFetch(lists, int(first + k)).x);
+    SmallSplat s = fetch_small(slot);
+    uvec2 disc = texelFetch(discs, slot).xy;
+    vec2 factor_z_push = unpackHalf2x16(disc.y);
+    vec2 v = pixel - s.centre;
+    Rows form = factored_form(vec3(unpackHalf2x16(disc.x), factor_z_push.x), v);
+    Rows z = small_inverse_depth(s, v) * factor_z_push.y;
+    surface = mix(surface, max(surface, z), at_most(form, Rows(1.0)));
+  }
+}
+
+void accumulate_small(uint first, uint count, vec2 pixel, Rows surface, inout PixelSums sums) {
+  for (uint begin = 0u; begin < count; begin += uint(SURFCAST_CARRY_INTERVAL)) {
+    uint end = min(begin + uint(SURFCAST_CARRY_INTERVAL), count);
+    for (uint k = begin; k < end; ++k) {
+      int slot = int(texelFetch(lists, int(first + k)).x);
+      SmallSplat s = fetch_small(slot);
+      vec2 v = pixel - s.centre;
+      Rows form = factored_form(s.factor, v);
+      BoolRows visible = both(at_most(form, Rows(s.cutoff)), at_most(surface, small_inverse_depth(s, v)));
+      sums_add(sums, splat_value(s.color, slot), mix(Rows(0.0), s.weight * exp2(-form), visible));
+    }
+    sums_carry(sums);
+  }
+}

@@ -1,0 +1,50 @@
+// A splat is what the projection leaves of a visible surfel: two uvec4 and one uvec2 (its visibility disc).
+//
+// Small splats have one screen space ellipse; large ones (near, or wide in perspective) keep their surfel and are
+// evaluated with the exact variance of every pixel.
+
+#define SURFCAST_SQRT_HALF_LOG2E 0.84932180
+
+struct SmallSplat {
+  vec2 centre;          // pixels
+  float inverse_depth;  // 1 / z of the centre
+  vec2 slope;           // change of the plane's inverse depth per pixel, relative to the centre's
+  vec3 factor;          // inverse_factor(S) * SURFCAST_SQRT_HALF_LOG2E, so that the weight is exp2 of the form
+  float cutoff;         // largest value of the form
+  float depth_range;    // the disc's own depth range, relative to o.z: the plane of an edge-on surfel is not
+                        // extrapolated beyond it
+  float weight;         // gain times normalisation
+  uint color;
+};
+
+void encode_small(SmallSplat s, out uvec4 a, out uvec4 b) {
+  a = uvec4(floatBitsToUint(s.centre), floatBitsToUint(s.inverse_depth), packHalf2x16(s.slope));
+  b = uvec4(packHalf2x16(s.factor.xy), packHalf2x16(vec2(s.factor.z, s.cutoff)), s.color,
+            packHalf2x16(vec2(s.depth_range, s.weight)));
+}
+
+SmallSplat decode_small(uvec4 a, uvec4 b) {
+  vec2 c = unpackHalf2x16(b.y);
+  vec2 d = unpackHalf2x16(b.w);
+  return SmallSplat(uintBitsToFloat(a.xy), uintBitsToFloat(a.z), unpackHalf2x16(a.w), vec3(unpackHalf2x16(b.x), c.x),
+                    c.y, d.x, d.y, b.z);
+}
+
+struct LargeSplat {
+  vec3 o;        // centre, camera frame
+  float radius;  // world units
+  vec3 n;        // unit normal, camera frame
+  float weight;  // normalisation weight, > 0
+  uint color;
+};
+
+void encode_large(LargeSplat s, out uvec4 a, out uvec4 b) {
+  a = uvec4(floatBitsToUint(s.o), floatBitsToUint(s.radius));
+  b = uvec4(floatBitsToUint(s.weight * s.n), s.color);
+}
+
+LargeSplat decode_large(uvec4 a, uvec4 b) {
+  vec3 n = uintBitsToFloat(b.xyz);
+  float weight = length(n);
+  return LargeSplat(uintBitsToFloat(a.xyz), uintBitsToFloat(a.w), n / weight, weight, b.w);
+}

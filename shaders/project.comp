@@ -1,0 +1,207 @@
+// Projects, culls and bounds every surfel of the visible blocks once; what survives becomes a splat record, and the
+// tiles it touches are counted. The order of the records does not matter to the picture (see splat.comp).
+#include "shared/kernel.h"
+#include "shared/frame_layout.h"
+#include "include/frame.glsl"
+#include "include/packing.glsl"
+#include "include/resampling_filter.glsl"
+#include "include/splat_record.glsl"
+
+layout(local_size_x = SURFCAST_CHUNK) in;
+
+layout(std430, binding = SURFCAST_BIND_GEOMETRY) readonly buffer Geometry { uvec4 geometry[]; };
+layout(std430, binding = SURFCAST_BIND_SIZE) readonly buffer Size { uint size_and_weight[]; };
+#ifdef SURFCAST_HAS_COLOR
+layout(std430, binding = SURFCAST_BIND_COLOR) readonly buffer Color { uint color[]; };
+#endif
+layout(std430, binding = SURFCAST_BIND_BLOCKS) readonly buffer Blocks { BlockView blocks[]; };
+layout(std430, binding = SURFCAST_BIND_CHUNKS) readonly buffer Chunks { Chunk chunks[]; };
+layout(std430, binding = SURFCAST_BIND_COUNTERS) buffer CountersBuffer { Counters counters; };
+layout(std430, binding = SURFCAST_BIND_TILE_COUNT) buffer TileCount { uint tile_count[]; };
+layout(binding = SURFCAST_UNIT_SPLATS, rgba32ui) writeonly uniform uimageBuffer splats;
+layout(binding = SURFCAST_UNIT_DISCS, rg32ui) writeonly uniform uimageBuffer discs;
+layout(binding = SURFCAST_UNIT_BOUNDS, rg32ui) writeonly uniform uimageBuffer bounds;
+#ifdef SURFCAST_LIT_COLOR
+layout(binding = SURFCAST_UNIT_NORMALS, r32ui) writeonly uniform uimageBuffer normals;
+#endif
+
+// A splat is small when its ellipse hardly changes over its own extent: the exact variance differs from the one at the
+// centre by the kernel's tilt seen under the splat's own angle.
+const float kSmallExtent = 24.0;        // pixels
+const float kSmallPerspective = 0.02;  // relative change of the variance's root
+
+struct Surfel {
+  vec3 o;  // camera frame
+  vec3 n;  // unit, towards the eye
+  float radius;
+  float weight;
+  uint color;
+};
+
+uvec2 tile_range(vec2 low, vec2 high, out bool outside) {
+  // Pixel centres at +0.5 that lie within [low, high], clipped to the region.
+  vec2 first = ceil(low - 0.5 - vec2(frame.region.xy));
+  vec2 last = floor(high - 0.5 - vec2(frame.region.xy));
+  vec2 size = vec2(frame.region.zw);
+  outside = any(greaterThan(first, last)) || any(lessThan(last, vec2(0.0))) || any(greaterThanEqual(first, size)) ||
+            any(isnan(low + high));
+  uvec2 a = uvec2(clamp(first, vec2(0.0), size - 1.0)) / uint(SURFCAST_TILE);
+  uvec2 b = uvec2(clamp(last, vec2(0.0), size - 1.0)) / uint(SURFCAST_TILE);
+  return uvec2(a.x | (a.y << 16), b.x | (b.y << 16));
+}
+
+void count_tiles(uvec2 range, uint first_list) {
+  for (uint y = range.x >> 16; y <= range.y >> 16; ++y) {
+    for (uint x = range.x & 0xffffu; x <= (range.y & 0xffffu); ++x) {
+      atomicAdd(tile_count[first_list + y * uint(frame.tiles.x) + x], 1u);
+    }
+  }
+}
+
+void append(bool large, uvec2 range, uvec4 a, uvec4 b, uvec2 disc, vec3 n) {
+  uint slot = large ? atomicAdd(counters.counts.y, 1u) : atomicAdd(counters.counts.x, 1u);
+  // Large splats fill the record buffer from its end. Records beyond its capacity are only counted: the caller makes
+  // room and projects again.
+  uint capacity = uint(frame.tiles.w);
+  if (slot >= capacity) return;
+  if (large) slot = capacity - 1u - slot;
+  imageStore(splats, int(2u * slot), a);
+  imageStore(splats, int(2u * slot + 1u), b);
+  imageStore(discs, int(slot), uvec4(disc, 0u, 0u));
+  imageStore(bounds, int(slot), uvec4(range, 0u, 0u));
+#ifdef SURFCAST_LIT_COLOR
+  imageStore(normals, int(slot), uvec4(pack_biased_normal(n), 0u, 0u, 0u));
+#endif
+  count_tiles(range, large ? uint(frame.tiles.z) : 0u);
+}
+
+// Depth range of a disc of the given radius, as a distance along z.
+float depth_extent(Surfel s, float disc_radius) { return disc_radius * sqrt(max(1.0 - s.n.z * s.n.z, 0.0)); }
+
+void project_small(Surfel s, vec2 ray, vec2 centre, ScreenVariance v, float c) {
+  vec2 extent = sqrt(c * v.s.xz);
+  bool outside;
+  uvec2 range = tile_range(centre - extent, centre + extent, outside);
+  if (outside) return;
+
+  float kernel_extent = sqrt(c) * float(SURFCAST_KERNEL_SIGMA) * s.radius;
+  // 1/z of the plane is affine on the screen: 1/z = (n.ray) / (n.o). The bound only keeps edge-on surfels finite.
+  float facing = min(dot(s.n, s.o), -1e-30);
+  float relief = s.o.z / (eta() * facing);
+  SmallSplat splat;
+  splat.centre = centre;
+  splat.inverse_depth = 1.0 / s.o.z;
+  splat.slope = clamp(vec2(s.n.x, -s.n.y) * relief, vec2(-3e4), vec2(3e4));
+  splat.factor = inverse_factor(v.s, v.det) * SURFCAST_SQRT_HALF_LOG2E;
+  splat.cutoff = c * SURFCAST_SQRT_HALF_LOG2E * SURFCAST_SQRT_HALF_LOG2E;
+  splat.depth_range = min(depth_extent(s, kernel_extent) / s.o.z, 0.9);
+  splat.weight = s.weight * v.gain * coverage_scale(v.gain);
+  splat.color = s.color;
+  uvec4 a, b;
+  encode_small(splat, a, b);
+
+  float disc_radius = float(SURFCAST_VISIBILITY_RADIUS) * s.radius;
+  ScreenVariance d = screen_variance(s.o, s.n, ray, disc_radius * disc_radius, frame.filter_.y);
+  vec3 f = inverse_factor(d.s, d.det);
+  float push = 1.0 / (1.0 + float(SURFCAST_VISIBILITY_DEPTH) * s.radius / s.o.z);
+  append(false, range, a, b, uvec2(packHalf2x16(f.xy), packHalf2x16(vec2(f.z, push))), s.n);
+}
+
+// Bounds of the projected disc of radius `extent`, from the dual conic D = extent^2 (I - n n^T) - o o^T of its outline:
+// the line x = t z touches it where D_xx - 2 t D_xz + t^2 D_zz = 0. Needs the whole disc in front of the eye.
+void projected_disc_bounds(Surfel s, float extent, out vec2 low, out vec2 high) {
+  float e2 = extent * extent;
+  float dzz = e2 * (1.0 - s.n.z * s.n.z) - s.o.z * s.o.z;
+  vec2 dxz = -e2 * s.n.xy * s.n.z - s.o.xy * s.o.z;
+  vec2 dxx = e2 * (1.0 - s.n.xy * s.n.xy) - s.o.xy * s.o.xy;
+  vec2 root = sqrt(max(dxz * dxz - dxx * dzz, vec2(0.0)));
+  low = (dxz + root) / dzz;
+  high = (dxz - root) / dzz;
+}
+
+// True when a disc that is cut by the eye plane lies wholly behind it or beyond a side of the picture.
+bool astride_outside(Surfel s, float extent) {
+  if (s.o.z + depth_extent(s, extent) <= 0.0) return true;
+  vec2 margin = vec2(4.0);  // pixels
+  vec2 a = ray_of_pixel(vec2(frame.region.xy) - margin);
+  vec2 b = ray_of_pixel(vec2(frame.region.xy + frame.region.zw) + margin);
+  // Inward normals of the frustum's sides in the camera frame; y runs upwards, so the top row is the largest ray.
+  vec3 sides[4] = vec3[4](vec3(1.0, 0.0, -a.x), vec3(-1.0, 0.0, b.x), vec3(0.0, 1.0, -b.y), vec3(0.0, -1.0, a.y));
+  for (int i = 0; i < 4; ++i) {
+    float along_normal = dot(sides[i], s.n);
+    float reach = extent * sqrt(max(dot(sides[i], sides[i]) - along_normal * along_normal, 0.0));
+    if (dot(sides[i], s.o) + reach < 0.0) return true;
+  }
+  return false;
+}
+
+void project_large(Surfel s, float extent, bool astride) {
+  vec2 low = vec2(frame.region.xy);
+  vec2 high = vec2(frame.region.xy + frame.region.zw);
+  if (astride) {
+    if (astride_outside(s, extent)) return;
+  } else {
+    vec2 ray_low, ray_high;
+    projected_disc_bounds(s, extent, ray_low, ray_high);
+    // The prefilter widens the projection of each point p of the disc by sqrt(c) o.z / p.z pixels.
+    float dilation = sqrt(SURFCAST_KERNEL_CUTOFF * frame.filter_.x) * s.o.z /
+                     (s.o.z - depth_extent(s, extent));
+    low = pixel_of_ray(vec2(ray_low.x, ray_high.y)) - dilation;
+    high = pixel_of_ray(vec2(ray_high.x, ray_low.y)) + dilation;
+  }
+  bool outside;
+  uvec2 range = tile_range(low, high, outside);
+  if (outside) return;
+  uvec4 a, b;
+  encode_large(LargeSplat(s.o, s.radius, s.n, s.weight, s.color), a, b);
+  append(true, range, a, b, uvec2(0u), s.n);
+}
+
+void project(Surfel s) {
+  float sigma = float(SURFCAST_KERNEL_SIGMA) * s.radius;
+  float reach = max(sqrt(SURFCAST_KERNEL_CUTOFF) * sigma, float(SURFCAST_VISIBILITY_RADIUS) * s.radius);
+  bool astride = s.o.z <= 1.5 * sqrt(SURFCAST_KERNEL_CUTOFF) * sigma;
+  if (astride) {
+    project_large(s, reach, true);
+    return;
+  }
+  vec2 ray = s.o.xy / s.o.z;
+  ScreenVariance v = screen_variance(s.o, s.n, ray, sigma * sigma, frame.filter_.x);
+  float c = cutoff(v.gain);
+  vec2 extent = sqrt(c * v.s.xz);
+  float largest = max(extent.x, extent.y);
+  if (largest <= kSmallExtent && sigma * largest <= kSmallPerspective * s.o.z) {
+    project_small(s, ray, pixel_of_ray(ray), v, c);
+  } else {
+    project_large(s, reach, false);
+  }
+}
+
+void main() {
+  uvec4 run = chunks[gl_WorkGroupID.x].run;
+  if (gl_LocalInvocationID.x >= run.z) return;
+  uint i = run.y + gl_LocalInvocationID.x;
+  vec4 origin = blocks[run.x].origin;
+  uvec4 g = geometry[i];
+  mat3 rotation = transpose(mat3(frame.right.xyz, frame.up.xyz, frame.forward.xyz));
+  // Both are kept as logarithms: 2^(-32 u), so that one block may hold radii of any ratio.
+  vec2 size = exp2(-32.0 * unpackUnorm2x16(size_and_weight[i]));
+
+  Surfel s;
+  s.o = origin.xyz + rotation * uintBitsToFloat(g.xyz);
+  s.n = rotation * unpack_normal(g.w);
+  s.radius = size.x * origin.w;
+  s.weight = frame.flags.y != 0 ? size.y : frame.filter_.z;
+  if (s.o.z + s.radius * 2.0 <= 0.0) return;
+  bool away = dot(s.n, s.o) >= 0.0;
+  if (away && frame.flags.x != 0) return;
+  if (away) s.n = -s.n;
+#if defined(SURFCAST_HAS_COLOR)
+  s.color = color[i];
+#elif defined(SURFCAST_LIT)
+  s.color = pack_biased_normal(s.n);
+#else
+  s.color = 0u;
+#endif
+  project(s);
+}

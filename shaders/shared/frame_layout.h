@@ -1,0 +1,82 @@
+// Buffer layouts and bindings that C++ and GLSL share: one declaration, read by both (sizes are asserted in
+// render/frame_layout_check.cpp). A struct holds only 16-byte members, so std140, std430 and C++ agree on it.
+#ifndef SURFCAST_SHARED_FRAME_LAYOUT_H
+#define SURFCAST_SHARED_FRAME_LAYOUT_H
+
+#ifdef __cplusplus
+#include <glm/vec4.hpp>
+namespace surfcast::layout {
+#define SURFCAST_VEC4 glm::vec4
+#define SURFCAST_IVEC4 glm::ivec4
+#define SURFCAST_UVEC4 glm::uvec4
+#else
+#define SURFCAST_VEC4 vec4
+#define SURFCAST_IVEC4 ivec4
+#define SURFCAST_UVEC4 uvec4
+#endif
+
+// Side of a screen tile in pixels: the unit of binning and of the splat kernel.
+#define SURFCAST_TILE 8
+// Surfels that one work group projects; runs of a block are cut into chunks of this many.
+#define SURFCAST_CHUNK 128
+// Splats between two carries of the fixed-point sums (see splat.comp).
+#define SURFCAST_CARRY_INTERVAL 32
+
+// Constants of one region of one frame. Camera frame: x right, y up, z forward, origin at the eye.
+struct FrameConstants {
+  SURFCAST_VEC4 right;       // world to camera rotation, row x; w: eta, pixels per unit of tangent
+  SURFCAST_VEC4 up;          // row y; w: half the picture's width, pixels
+  SURFCAST_VEC4 forward;     // row z; w: half the picture's height, pixels
+  SURFCAST_IVEC4 region;     // first pixel x, y and size of the region, pixels from the top left of the picture
+  SURFCAST_IVEC4 tiles;      // tiles across, tiles down, tiles in all, splats that the record buffer holds
+  SURFCAST_VEC4 filter_;     // prefilter variance, visibility prefilter variance (pixels squared), unused, unused
+  SURFCAST_VEC4 background;  // linear light
+  SURFCAST_IVEC4 flags;      // x: back faces are culled, y: per-surfel weights
+};
+
+// One visible block: its origin relative to the eye, in camera coordinates, world units; w: unit of its radii.
+struct BlockView {
+  SURFCAST_VEC4 origin;
+};
+
+// A run of at most SURFCAST_CHUNK surfels of one block: block index, first surfel in the arena, surfels, unused.
+struct Chunk {
+  SURFCAST_UVEC4 run;
+};
+
+// What the projection counts: small splats, large splats, entries of all tile lists, unused.
+struct Counters {
+  SURFCAST_UVEC4 counts;
+};
+
+// Bindings. Storage buffers:
+#define SURFCAST_BIND_GEOMETRY 0  // uvec4 per surfel: position relative to its block (float x 3), octahedral normal
+#define SURFCAST_BIND_SIZE 1      // uint per surfel: radius in the block's unit and weight, both as 2^(-32 u), u 16 bit unorm
+#define SURFCAST_BIND_COLOR 2     // uint per surfel: packed linear colour, see include/packing.glsl
+#define SURFCAST_BIND_BLOCKS 3
+#define SURFCAST_BIND_CHUNKS 4
+#define SURFCAST_BIND_COUNTERS 5
+#define SURFCAST_BIND_TILE_COUNT 6   // uint per tile and list: entries; small lists first, then large lists
+#define SURFCAST_BIND_TILE_OFFSET 7  // uint per tile and list: first entry
+#define SURFCAST_BIND_PICTURE 8
+// Uniform buffer:
+#define SURFCAST_BIND_FRAME 0
+// Image and texture units of the buffers that are larger than a storage block may be:
+#define SURFCAST_UNIT_SPLATS 0   // two uvec4 per splat
+#define SURFCAST_UNIT_DISCS 1    // uvec2 per splat: the opaque disc of visibility splatting
+#define SURFCAST_UNIT_BOUNDS 2   // uvec2 per splat: its tiles, for binning
+#define SURFCAST_UNIT_LISTS 3    // uint per entry: splat
+#define SURFCAST_UNIT_NORMALS 4  // uint per splat: packed camera space normal, when a lit scene has colour too
+
+#ifdef __cplusplus
+static_assert(sizeof(FrameConstants) == 128);
+static_assert(sizeof(BlockView) == 16);
+static_assert(sizeof(Chunk) == 16);
+static_assert(sizeof(Counters) == 16);
+}  // namespace surfcast::layout
+#endif
+#undef SURFCAST_VEC4
+#undef SURFCAST_IVEC4
+#undef SURFCAST_UVEC4
+
+#endif
