@@ -72,7 +72,7 @@ LasExtraField describe_extra(Bytes entry, ScalarType type, size_t offset) {
   constexpr uint8_t kHasOffset = 16;
   const auto options = load<uint8_t>(&entry[3]);
   const std::string_view name = as_text(entry.subspan(4, 32));
-  LasExtraField field{std::string(name.substr(0, name.find('\0'))), type, offset, 1, 0};
+  LasExtraField field{printable(name.substr(0, name.find('\0'))), type, offset, 1, 0};
   if (options & kHasScale) field.scale = load<double>(&entry[112]);
   if (options & kHasOffset) field.shift = load<double>(&entry[136]);
   return field;

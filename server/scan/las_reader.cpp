@@ -103,20 +103,32 @@ constexpr OptionalOffsets kOptionalOffsets[] = {{0, 0, 0},    {20, 0, 0},  {0, 2
                                                 {20, 0, 0},   {20, 28, 0}, {22, 0, 0},  {22, 30, 0},
                                                 {22, 30, 36}, {22, 0, 0},  {22, 30, 36}};
 
+/// The name that the file gives, with a number behind it where another attribute has that name.
+std::string unused_name(const ScanPoints& points, const std::string& wanted) {
+  const auto taken = [&points](const std::string& name) {
+    return std::any_of(points.scalars.begin(), points.scalars.end(),
+                       [&name](const ScalarAttribute& scalar) { return scalar.name == name; });
+  };
+  std::string name = wanted;
+  for (int suffix = 2; name.empty() || taken(name); ++suffix) name = wanted + "_" + std::to_string(suffix);
+  return name;
+}
+
 void read_extra_field(const Records& records, const LasExtraField& field, ScanPoints& points) {
+  const std::string name = unused_name(points, field.name);
   if (field.scale != 1 || field.shift != 0) {
     std::vector<double> values = with_type(field.type, [&](auto zero) {
       return gather<double>(records, [&](const std::byte* at) {
         return static_cast<double>(load<decltype(zero)>(at + field.offset)) * field.scale + field.shift;
       });
     });
-    points.scalars.push_back({field.name, std::move(values)});
+    points.scalars.push_back({name, std::move(values)});
     return;
   }
   with_type(field.type, [&](auto zero) {
     using T = decltype(zero);
     points.scalars.push_back(
-        {field.name, gather<T>(records, [&](const std::byte* at) { return load<T>(at + field.offset); })});
+        {name, gather<T>(records, [&](const std::byte* at) { return load<T>(at + field.offset); })});
   });
 }
 

@@ -3,7 +3,6 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <span>
 
 #include "base/mapped_file.h"
 #include "geometry/box.h"
@@ -46,16 +45,19 @@ void drop_default_sensor(ScanPoints& points) {
 
 }  // namespace
 
-Result<ScanPoints> read_scan(const std::filesystem::path& path) {
-  const Result<MappedFile> file = MappedFile::open(path);
-  if (!file) return fail(file.error());
-  Result<ScanPoints> points = scan_format_of(file->bytes(), path).and_then([&](ScanFormat format) {
-    return read_format(format, file->bytes());
-  });
+Result<ScanPoints> read_scan_content(std::span<const std::byte> bytes, const std::filesystem::path& path) {
+  Result<ScanPoints> points =
+      scan_format_of(bytes, path).and_then([bytes](ScanFormat format) { return read_format(format, bytes); });
   if (!points) return fail(points.error().kind, path.string() + ": " + points.error().message);
   points->name = path.filename().string();
   drop_default_sensor(*points);
   return points;
+}
+
+Result<ScanPoints> read_scan(const std::filesystem::path& path) {
+  const Result<MappedFile> file = MappedFile::open(path);
+  if (!file) return fail(file.error());
+  return read_scan_content(file->bytes(), path);
 }
 
 }  // namespace surfcast

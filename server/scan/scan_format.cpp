@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "scan/ptx_reader.h"
+#include "scan/text_table.h"
 #include "scan/text_tokens.h"
 
 namespace surfcast {
@@ -76,9 +77,11 @@ bool starts_with_word(std::string_view text, std::string_view word) {
   return text.starts_with(word) && text.size() > word.size() && is_space(text[word.size()]);
 }
 
-/// No control characters but spaces in the first few thousand bytes.
+/// How far into a file to look for what kind of text it is.
+constexpr size_t kLook = 4096;
+
+/// No control characters but spaces.
 bool is_text(std::string_view text) {
-  constexpr size_t kLook = 4096;
   const std::string_view head = text.substr(0, kLook);
   return std::all_of(head.begin(), head.end(),
                      [](char c) { return static_cast<unsigned char>(c) >= ' ' || is_space(c); });
@@ -95,19 +98,6 @@ std::optional<ScanFormat> by_content(std::string_view text) {
   if (text.starts_with("DRACO")) return ScanFormat::kDraco;
   if (is_pcd(text)) return ScanFormat::kPcd;
   return std::nullopt;
-}
-
-/// Whether the first line that is neither blank nor a comment begins with a number.
-bool begins_with_number(std::string_view text) {
-  Tokens tokens(text.substr(0, 4096));
-  std::string_view word = tokens.next();
-  while (word.starts_with('#') || word.starts_with("//")) {
-    const std::string_view rest = tokens.rest();
-    tokens = Tokens(rest.substr(std::min(rest.find('\n'), rest.size())));
-    word = tokens.next();
-  }
-  const std::string_view number = word.substr(0, word.find_first_of(",;"));
-  return parse_number<double>(number).has_value();
 }
 
 std::string extension_of(const std::filesystem::path& path) {
@@ -129,7 +119,7 @@ Result<ScanFormat> format_of_text(std::string_view text, std::optional<ScanForma
     return fail(ErrorKind::kInvalidInput, std::string(format_name(*named)) + " header missing");
   }
   if (looks_like_ptx(text)) return ScanFormat::kPtx;
-  if (named || begins_with_number(text)) return named.value_or(ScanFormat::kText);
+  if (named || begins_like_text_table(text.substr(0, kLook))) return named.value_or(ScanFormat::kText);
   return unsupported("not a scan of a supported format");
 }
 

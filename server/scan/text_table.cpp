@@ -110,6 +110,9 @@ Result<bool> take_line(std::string_view line, std::string_view& header, Prologue
     return true;
   }
   if (!header.empty()) return fail(ErrorKind::kInvalidInput, "not a table of numbers: " + printable(line));
+  if (!names_coordinates(names_in(line, prologue.format))) {
+    return fail(ErrorKind::kInvalidInput, "text header does not name x, y and z: " + printable(line));
+  }
   header = line;
   return false;
 }
@@ -139,10 +142,8 @@ Result<Prologue> read_prologue(std::string_view text) {
     if (!*is_row) continue;
     prologue.names = names_in(header.empty() ? comment : header, prologue.format);
     if (Status status = check_columns(prologue, header); !status) return fail(status.error());
-    if (prologue.names.size() != prologue.format.columns || !names_coordinates(prologue.names)) {
-      if (!header.empty()) return fail(ErrorKind::kInvalidInput, "text header does not name x, y and z");
-      prologue.names.clear();
-    }
+    // A comment that is no header.
+    if (prologue.names.size() != prologue.format.columns || !names_coordinates(prologue.names)) prologue.names.clear();
     return prologue;
   }
   return fail(ErrorKind::kInvalidInput, "has no points");
@@ -230,6 +231,10 @@ std::vector<double> join(std::vector<Chunk> chunks) {
 }
 
 }  // namespace
+
+bool begins_like_text_table(std::string_view text) {
+  return read_prologue(text).has_value();
+}
 
 Result<TextTable> parse_text_table(std::string_view text) {
   Result<Prologue> prologue = read_prologue(text);

@@ -26,4 +26,7 @@ struct TextTable {
 /// must have as many numbers as the first.
 Result<TextTable> parse_text_table(std::string_view text);
 
+/// Whether everything before the rows, and the first row, is as parse_text_table takes it.
+bool begins_like_text_table(std::string_view text);
+
 }  // namespace surfcast

@@ -1,0 +1,37 @@
+#include "scan/draco_reader.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "scan/bytes.h"
+#include "scan/samples.h"
+
+namespace surfcast {
+namespace {
+
+using testing::as_bytes;
+using testing::scalar_values;
+
+TEST(DracoReaderTest, PointsKeepTheirAttributesTogether) {
+  for (const bool kd_tree : {false, true}) {
+    const Result<ScanPoints> points = read_draco(as_bytes(testing::draco_cloud(kd_tree)));
+    ASSERT_TRUE(points) << points.error().message;
+    ASSERT_EQ(points->size(), 300u);
+    ASSERT_TRUE(points->colors);
+    EXPECT_EQ(points->colors->bits, 8);
+    const std::vector<uint16_t> quality = scalar_values<uint16_t>(*points, "quality");
+    ASSERT_EQ(quality.size(), 300u);
+    for (size_t i = 0; i < points->size(); ++i) {  // the kd-tree coder changes the order of points
+      const int number = quality[i] / 7;
+      EXPECT_NEAR(points->positions[i].z, number * 0.1, 1e-3);
+      EXPECT_NEAR(points->positions[i].x, std::cos(number * 0.1), 1e-3);
+      EXPECT_EQ(points->colors->values[i], glm::u16vec3(number % 256, 20, 30));
+    }
+  }
+}
+
+}  // namespace
+}  // namespace surfcast
