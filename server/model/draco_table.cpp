@@ -14,77 +14,70 @@ namespace surfcast {
 namespace {
 
 /// Draco's 0 is the smallest and slowest, 10 the largest and fastest; docs/model-format.md has the measurement.
-constexpr int kDracoSpeed = 4;
+constexpr int kDracoSpeed = 5;
 
 draco::DataType data_type(uint8_t bytes) {
-  return bytes == 1 ? draco::DT_UINT8 : bytes == 2 ? draco::DT_UINT16 : draco::DT_UINT32;
+  return bytes == 1 ? draco::DT_UINT8 : draco::DT_UINT16;
 }
 
-template <typename T>
-void store(const TableColumn& column, draco::PointAttribute& attribute) {
-  for (size_t i = 0; i < column.values.size(); ++i) {
-    const auto value = static_cast<T>(column.values[i]);
-    attribute.SetAttributeValue(draco::AttributeValueIndex(static_cast<uint32_t>(i)), &value);
-  }
-}
-
-std::unique_ptr<draco::PointAttribute> make_attribute(const TableColumn& column) {
+std::unique_ptr<draco::PointAttribute> make_attribute(const TableAttribute& table) {
+  const auto [bytes, components] = table.type;
   draco::GeometryAttribute description;
-  description.Init(draco::GeometryAttribute::GENERIC, nullptr, 1, data_type(column.bytes), false, column.bytes, 0);
+  description.Init(draco::GeometryAttribute::GENERIC, nullptr, static_cast<int8_t>(components), data_type(bytes), false,
+                   int64_t{bytes} * components, 0);
   auto attribute = std::make_unique<draco::PointAttribute>(description);
   attribute->SetIdentityMapping();
-  attribute->Reset(column.values.size());
-  if (column.bytes == 1) store<uint8_t>(column, *attribute);
-  if (column.bytes == 2) store<uint16_t>(column, *attribute);
-  if (column.bytes == 4) store<uint32_t>(column, *attribute);
+  attribute->Reset(table.rows());
+  if (bytes == 1) {
+    const std::vector<uint8_t> narrow(table.values.begin(), table.values.end());
+    attribute->buffer()->Write(0, narrow.data(), narrow.size());
+  } else {
+    attribute->buffer()->Write(0, table.values.data(), table.values.size() * sizeof(uint16_t));
+  }
   return attribute;
 }
 
-template <typename T>
-void load(const draco::PointAttribute& attribute, uint32_t rows, std::vector<uint32_t>& values) {
-  values.resize(rows);
-  for (uint32_t i = 0; i < rows; ++i) {
-    T value{};
-    attribute.GetMappedValue(draco::PointIndex(i), &value);
-    values[i] = value;
-  }
-}
-
-/// Number of points as the stream's header states it; Draco allocates by it, so it is checked first. Layout of the
-/// header (Draco bitstream 2.3): "DRACO", version 2 bytes, encoder type, method, flags 2 bytes, points in 32 bits.
+/// Draco allocates by what its header states, so that is checked first. Layout of the header (Draco bitstream 2.3):
+/// "DRACO", version in 2 bytes, encoder type, method, flags in 2 bytes, number of points in 4.
 bool states_rows(std::span<const std::byte> bytes, uint32_t rows) {
   constexpr uint16_t kMetadataFlag = 0x8000;
   ByteReader reader(bytes);
   reader.get_bytes(7);
   const auto type = reader.get<uint8_t>();
-  reader.get<uint8_t>();
+  const auto method = reader.get<uint8_t>();
   const auto flags = reader.get<uint16_t>();
   const auto points = reader.get<uint32_t>();
-  return reader.ok() && type == draco::POINT_CLOUD && (flags & kMetadataFlag) == 0 && points == rows;
+  return reader.ok() && type == draco::POINT_CLOUD && method == draco::POINT_CLOUD_SEQUENTIAL_ENCODING &&
+         (flags & kMetadataFlag) == 0 && points == rows;
 }
 
-bool holds(const draco::PointAttribute& attribute, uint8_t width, uint32_t rows) {
-  return attribute.data_type() == data_type(width) && attribute.num_components() == 1 &&
-         attribute.byte_stride() == width && attribute.is_mapping_identity() && attribute.size() >= rows &&
-         attribute.buffer()->data_size() >= size_t{width} * rows;
+bool holds(const draco::PointAttribute& attribute, const TableType& type, uint32_t rows) {
+  const size_t stride = size_t{type.bytes} * type.components;
+  return attribute.data_type() == data_type(type.bytes) && attribute.num_components() == type.components &&
+         attribute.byte_stride() == static_cast<int64_t>(stride) && attribute.byte_offset() == 0 &&
+         attribute.is_mapping_identity() && attribute.buffer()->data_size() >= stride * rows;
 }
 
-TableColumn load_column(const draco::PointAttribute& attribute, uint8_t width, uint32_t rows) {
-  TableColumn column{width, {}};
-  if (width == 1) load<uint8_t>(attribute, rows, column.values);
-  if (width == 2) load<uint16_t>(attribute, rows, column.values);
-  if (width == 4) load<uint32_t>(attribute, rows, column.values);
-  return column;
+template <typename T>
+std::vector<uint16_t> load(const draco::PointAttribute& attribute, size_t count) {
+  std::vector<T> values(count);
+  attribute.buffer()->Read(0, values.data(), count * sizeof(T));
+  return {values.begin(), values.end()};
+}
+
+TableAttribute load_attribute(const draco::PointAttribute& attribute, const TableType& type, uint32_t rows) {
+  const size_t count = size_t{rows} * type.components;
+  return {type, type.bytes == 1 ? load<uint8_t>(attribute, count) : load<uint16_t>(attribute, count)};
 }
 
 }  // namespace
 
-std::vector<std::byte> encode_table(std::span<const TableColumn> columns) {
+std::vector<std::byte> encode_table(std::span<const TableAttribute> attributes) {
   draco::PointCloud cloud;
-  cloud.set_num_points(static_cast<uint32_t>(columns.front().values.size()));
-  for (const TableColumn& column : columns) cloud.AddAttribute(make_attribute(column));
+  cloud.set_num_points(static_cast<uint32_t>(attributes.front().rows()));
+  for (const TableAttribute& attribute : attributes) cloud.AddAttribute(make_attribute(attribute));
   draco::Encoder encoder;
-  encoder.SetEncodingMethod(draco::POINT_CLOUD_KD_TREE_ENCODING);
+  encoder.SetEncodingMethod(draco::POINT_CLOUD_SEQUENTIAL_ENCODING);
   encoder.SetSpeedOptions(kDracoSpeed, kDracoSpeed);
   draco::EncoderBuffer buffer;
   const draco::Status status = encoder.EncodePointCloudToBuffer(cloud, &buffer);
@@ -93,8 +86,8 @@ std::vector<std::byte> encode_table(std::span<const TableColumn> columns) {
   return {bytes.begin(), bytes.end()};
 }
 
-Result<std::vector<TableColumn>> decode_table(std::span<const std::byte> bytes, std::span<const uint8_t> widths,
-                                              uint32_t rows) {
+Result<std::vector<TableAttribute>> decode_table(std::span<const std::byte> bytes, std::span<const TableType> types,
+                                                 uint32_t rows) {
   if (!states_rows(bytes, rows)) return fail(ErrorKind::kInvalidInput, "its Draco data has another number of surfels");
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -102,16 +95,16 @@ Result<std::vector<TableColumn>> decode_table(std::span<const std::byte> bytes, 
   auto decoded = decoder.DecodePointCloudFromBuffer(&buffer);
   if (!decoded.ok()) return fail(ErrorKind::kInvalidInput, "Draco: " + decoded.status().error_msg_string());
   const std::unique_ptr<draco::PointCloud> cloud = std::move(decoded).value();
-  if (cloud->num_points() != rows || cloud->num_attributes() != static_cast<int>(widths.size())) {
+  if (cloud->num_points() != rows || cloud->num_attributes() != static_cast<int>(types.size())) {
     return fail(ErrorKind::kInvalidInput, "its Draco data has another shape");
   }
-  std::vector<TableColumn> columns;
-  for (size_t i = 0; i < widths.size(); ++i) {
+  std::vector<TableAttribute> attributes;
+  for (size_t i = 0; i < types.size(); ++i) {
     const draco::PointAttribute& attribute = *cloud->attribute(static_cast<int>(i));
-    if (!holds(attribute, widths[i], rows)) return fail(ErrorKind::kInvalidInput, "its Draco data has another type");
-    columns.push_back(load_column(attribute, widths[i], rows));
+    if (!holds(attribute, types[i], rows)) return fail(ErrorKind::kInvalidInput, "its Draco data has another type");
+    attributes.push_back(load_attribute(attribute, types[i], rows));
   }
-  return columns;
+  return attributes;
 }
 
 }  // namespace surfcast

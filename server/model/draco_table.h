@@ -9,17 +9,26 @@
 
 namespace surfcast {
 
-/// A column of unsigned integers of 1, 2 or 4 bytes.
-struct TableColumn {
-  uint8_t bytes = 4;
-  std::vector<uint32_t> values;
+/// The type of an attribute of a table. Wider values would be coded with tables as large as their range.
+struct TableType {
+  uint8_t bytes = 2;       ///< 1 or 2 per component
+  uint8_t components = 1;  ///< coded together
+  bool operator==(const TableType&) const = default;
 };
 
-/// Packs columns of one length as a Draco point cloud, each column one attribute. Rows may come back in another order.
-std::vector<std::byte> encode_table(std::span<const TableColumn> columns);
+/// An attribute of a table: unsigned integers, the components of a row side by side.
+struct TableAttribute {
+  TableType type;
+  std::vector<uint16_t> values;
 
-/// Unpacks a table that must have `rows` rows and columns of just these widths.
-Result<std::vector<TableColumn>> decode_table(std::span<const std::byte> bytes, std::span<const uint8_t> widths,
-                                              uint32_t rows);
+  [[nodiscard]] size_t rows() const { return values.size() / type.components; }
+};
+
+/// Packs attributes of one length as a Draco point cloud. Rows keep their order.
+std::vector<std::byte> encode_table(std::span<const TableAttribute> attributes);
+
+/// Unpacks a table that must have `rows` rows and attributes of just these types.
+Result<std::vector<TableAttribute>> decode_table(std::span<const std::byte> bytes, std::span<const TableType> types,
+                                                 uint32_t rows);
 
 }  // namespace surfcast

@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "base/result.h"
-#include "model/block_codec.h"
+#include "model/block_decoder.h"
 
 namespace surfcast {
 

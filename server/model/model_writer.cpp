@@ -11,6 +11,7 @@
 #include "base/atomic_file.h"
 #include "base/contract.h"
 #include "ldc/partition.h"
+#include "model/block_encoder.h"
 #include "model/format.h"
 
 namespace surfcast {

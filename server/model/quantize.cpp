@@ -24,6 +24,17 @@ glm::dvec3 unfold(const glm::u16vec2& code) {
   return {z < 0 ? fold(p) : p, z};
 }
 
+uint32_t encode_log(float value, int steps) {
+  return static_cast<uint32_t>(std::lround((std::log2(static_cast<double>(value)) + kLogRange) * steps));
+}
+
+float decode_log(uint32_t code, int steps) {
+  const double value = std::exp2(static_cast<double>(code) / steps - kLogRange);
+  // Rounding up past the largest float, or below the smallest, must not make an infinity or a zero of it.
+  return static_cast<float>(
+      std::clamp(value, double{std::numeric_limits<float>::denorm_min()}, double{std::numeric_limits<float>::max()}));
+}
+
 }  // namespace
 
 glm::u16vec2 encode_normal(const glm::vec3& unit) {
@@ -38,15 +49,20 @@ glm::vec3 decode_normal(const glm::u16vec2& code) {
   return glm::vec3(glm::normalize(unfold(code)));
 }
 
-uint32_t encode_log(float value) {
-  return static_cast<uint32_t>(std::lround(std::log2(static_cast<double>(value)) * kLogSteps) + kLogBias);
+uint32_t encode_radius(float radius) {
+  return encode_log(radius, kRadiusSteps);
 }
 
-float decode_log(uint32_t code) {
-  const double value = std::exp2((static_cast<double>(code) - kLogBias) / kLogSteps);
-  // Rounding up past the largest float, or below the smallest, must not make an infinity or a zero of it.
-  return static_cast<float>(
-      std::clamp(value, double{std::numeric_limits<float>::denorm_min()}, double{std::numeric_limits<float>::max()}));
+float decode_radius(uint32_t code) {
+  return decode_log(code, kRadiusSteps);
+}
+
+uint32_t encode_weight(float weight) {
+  return encode_log(weight, kWeightSteps);
+}
+
+float decode_weight(uint32_t code) {
+  return decode_log(code, kWeightSteps);
 }
 
 }  // namespace surfcast

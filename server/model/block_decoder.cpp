@@ -1,0 +1,108 @@
+#include "model/block_decoder.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "model/block_fields.h"
+#include "model/field.h"
+#include "model/quantize.h"
+#include "model/scalar_bits.h"
+
+namespace surfcast {
+namespace {
+
+bool all_at_most(const Column& column, uint64_t limit) {
+  return std::all_of(column.begin(), column.end(), [limit](uint64_t value) { return value <= limit; });
+}
+
+/// Values beyond what the shape allows would reach the renderer as wild numbers, so they are refused.
+bool in_range(const std::vector<Field>& fields, const BlockShape& shape) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!all_at_most(fields[kPositionField][axis], shape.extent[axis])) return false;
+  }
+  for (const Column& column : fields[kNormalField]) {
+    if (!all_at_most(column, 2 * kOctahedralHalf)) return false;
+  }
+  if (!all_at_most(fields[kRadiusField][0], kMaxRadiusCode) || !all_at_most(fields[kWeightField][0], kMaxWeightCode)) {
+    return false;
+  }
+  const uint64_t brightest = (uint64_t{1} << shape.color_bits) - 1;
+  const size_t colors = shape.color_bits > 0 ? 3 : 0;
+  for (size_t i = 0; i < colors; ++i) {
+    if (!all_at_most(fields[kFixedFields + i][0], brightest)) return false;
+  }
+  return true;
+}
+
+void read_positions(const Field& field, DecodedBlock& block) {
+  for (size_t i = 0; i < block.indices.size(); ++i) {
+    block.indices[i] = {static_cast<int>(field[0][i]), static_cast<int>(field[1][i]), static_cast<int>(field[2][i])};
+  }
+}
+
+void read_surfaces(const std::vector<Field>& fields, DecodedBlock& block) {
+  const Field& normals = fields[kNormalField];
+  const Column& radii = fields[kRadiusField][0];
+  const Column& weights = fields[kWeightField][0];
+  for (size_t i = 0; i < block.size(); ++i) {
+    block.normals[i] = decode_normal(glm::u16vec2(normals[0][i], normals[1][i]));
+    block.radii[i] = decode_radius(static_cast<uint32_t>(radii[i]));
+    block.weights[i] = decode_weight(static_cast<uint32_t>(weights[i]));
+  }
+}
+
+void read_colors(std::span<const Field> fields, int bits, DecodedBlock& block) {
+  block.colors.resize(block.size());
+  for (size_t i = 0; i < block.size(); ++i) {
+    const uint64_t green = fields[0][0][i];
+    block.colors[i] = glm::u16vec3(color_from_difference(fields[1][0][i], green, bits), green,
+                                   color_from_difference(fields[2][0][i], green, bits));
+  }
+}
+
+template <size_t... I>
+ScalarValues empty_values(ScalarType type, std::index_sequence<I...> /*types*/) {
+  ScalarValues values;
+  ((type == I ? void(values.emplace<I>()) : void()), ...);
+  return values;
+}
+
+ScalarAttribute read_scalar(const std::string& name, ScalarType type, const Column& column) {
+  ScalarAttribute scalar{name, empty_values(type, std::make_index_sequence<std::variant_size_v<ScalarValues>>())};
+  std::visit(
+      [&](auto& values) {
+        using T = typename std::decay_t<decltype(values)>::value_type;
+        values.reserve(column.size());
+        for (const uint64_t bits : column) values.push_back(from_ordered_bits<T>(static_cast<BitsOf<T>>(bits)));
+      },
+      scalar.values);
+  return scalar;
+}
+
+}  // namespace
+
+Result<DecodedBlock> decode_block(std::span<const std::byte> bytes, const BlockShape& shape) {
+  const bool colored = shape.color_bits > 0;
+  const std::vector<size_t> columns = field_columns(colored, shape.scalar_names.size());
+  const Result<std::vector<Field>> fields = decode_fields(bytes, columns, shape.surfels);
+  if (!fields) return fail(fields.error());
+  if (!in_range(*fields, shape)) return fail(ErrorKind::kInvalidInput, "values out of range");
+
+  DecodedBlock block;
+  block.grid = shape.grid;
+  block.origin = shape.origin;
+  block.indices.resize(shape.surfels);
+  block.normals.resize(shape.surfels);
+  block.radii.resize(shape.surfels);
+  block.weights.resize(shape.surfels);
+  read_positions((*fields)[kPositionField], block);
+  read_surfaces(*fields, block);
+  if (colored) read_colors(std::span(*fields).subspan(kFixedFields, 3), shape.color_bits, block);
+  const size_t first_scalar = kFixedFields + (colored ? 3 : 0);
+  for (size_t i = 0; i < shape.scalar_names.size(); ++i) {
+    block.scalars.push_back(read_scalar(shape.scalar_names[i], shape.scalar_types[i], (*fields)[first_scalar + i][0]));
+  }
+  return block;
+}
+
+}  // namespace surfcast

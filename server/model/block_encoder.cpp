@@ -1,0 +1,113 @@
+#include "model/block_encoder.h"
+
+#include <algorithm>
+
+#include "base/contract.h"
+#include "model/block_fields.h"
+#include "model/field.h"
+#include "model/path_order.h"
+#include "model/quantize.h"
+#include "model/scalar_bits.h"
+
+namespace surfcast {
+namespace {
+
+using Members = std::span<const uint32_t>;
+
+template <typename Value>
+Column make_column(Members members, Value value) {
+  Column column;
+  column.reserve(members.size());
+  for (const uint32_t surfel : members) column.push_back(value(surfel));
+  return column;
+}
+
+/// Lattice indices of the members, counted from the lowest, which becomes the block's origin.
+std::vector<glm::ivec3> make_indices(const SurfelCloud& cloud, Members members, const Grid& grid, EncodedBlock& block) {
+  std::vector<glm::i64vec3> absolute;
+  absolute.reserve(members.size());
+  for (const uint32_t surfel : members) absolute.push_back(grid.index(cloud.positions[surfel]));
+  glm::i64vec3 lowest = absolute.front();
+  glm::i64vec3 highest = absolute.front();
+  for (const glm::i64vec3& index : absolute) {
+    lowest = glm::min(lowest, index);
+    highest = glm::max(highest, index);
+  }
+  block.origin = lowest;
+  block.extent = glm::u32vec3(highest - lowest);
+  std::vector<glm::ivec3> indices;
+  indices.reserve(members.size());
+  for (const glm::i64vec3& index : absolute) indices.emplace_back(index - lowest);
+  return indices;
+}
+
+Field position_field(std::span<const glm::ivec3> indices, std::span<const uint32_t> path) {
+  Field field(3);
+  for (int axis = 0; axis < 3; ++axis) {
+    field[axis] = make_column(path, [&](uint32_t i) { return static_cast<uint64_t>(indices[i][axis]); });
+  }
+  return field;
+}
+
+Field normal_field(const SurfelCloud& cloud, Members members, EncodedBlock& block) {
+  Field field(2);
+  std::vector<glm::vec3> decoded;
+  for (const uint32_t surfel : members) {
+    const glm::u16vec2 code = encode_normal(cloud.normals[surfel]);
+    field[0].push_back(code.x);
+    field[1].push_back(code.y);
+    decoded.push_back(decode_normal(code));
+  }
+  if (cloud.oriented) block.normals = normal_cone(decoded);
+  return field;
+}
+
+Field radius_field(const SurfelCloud& cloud, Members members, EncodedBlock& block) {
+  Column codes = make_column(members, [&](uint32_t s) { return encode_radius(cloud.radii[s]); });
+  Column sorted = codes;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  block.spacing = decode_radius(static_cast<uint32_t>(*middle));
+  block.max_radius = decode_radius(static_cast<uint32_t>(*std::max_element(middle, sorted.end())));
+  return {std::move(codes)};
+}
+
+void append_colors(const ColorAttribute& colors, Members members, std::vector<Field>& fields) {
+  const auto& values = colors.values;
+  fields.push_back({make_column(members, [&](uint32_t s) { return values[s].y; })});
+  for (const int channel : {0, 2}) {
+    fields.push_back({make_column(
+        members, [&](uint32_t s) { return color_difference(values[s][channel], values[s].y, colors.bits); })});
+  }
+}
+
+Field scalar_field(const ScalarAttribute& scalar, Members members) {
+  return {std::visit(
+      [&](const auto& values) { return make_column(members, [&](uint32_t s) { return to_ordered_bits(values[s]); }); },
+      scalar.values)};
+}
+
+}  // namespace
+
+EncodedBlock encode_block(const SurfelCloud& cloud, std::span<const uint32_t> members, const Grid& grid) {
+  SURFCAST_EXPECTS(!members.empty());
+  EncodedBlock block;
+  block.surfels = static_cast<uint32_t>(members.size());
+  const std::vector<glm::ivec3> indices = make_indices(cloud, members, grid, block);
+  const std::vector<uint32_t> path = path_order(indices);
+  std::vector<uint32_t> ordered;
+  ordered.reserve(path.size());
+  for (const uint32_t i : path) ordered.push_back(members[i]);
+
+  std::vector<Field> fields;
+  fields.push_back(position_field(indices, path));
+  fields.push_back(normal_field(cloud, ordered, block));
+  fields.push_back(radius_field(cloud, ordered, block));
+  fields.push_back({make_column(ordered, [&](uint32_t s) { return encode_weight(cloud.weights[s]); })});
+  if (cloud.colors) append_colors(*cloud.colors, ordered, fields);
+  for (const ScalarAttribute& scalar : cloud.scalars) fields.push_back(scalar_field(scalar, ordered));
+  block.bytes = encode_fields(fields);
+  return block;
+}
+
+}  // namespace surfcast
