@@ -2,11 +2,18 @@
 // pushed back along the viewing ray; then the splats in front of it are accumulated, normalised and shaded. Sums stay
 // in registers.
 //
+// Where the visible surface covers a pixel only partly, at a silhouette, what lies behind shows through: the same two
+// passes draw the next surface, for as long as a pixel of the lane is not opaque. So one surface in front of another
+// has an antialiased edge instead of a seam in the colour of the background; elsewhere the loop ends after one round.
+//
 // Tiles with large splats and tiles without are drawn by two builds of this kernel (SURFCAST_LARGE): what large splats
 // need is paid where there are any.
 #include "shared/kernel.h"
 #include "shared/frame_layout.h"
 #include "include/frame.glsl"
+
+const int kMaxLayers = 3;
+const float kOpaque = 1.0 / 128.0;  // transmittance that is not worth another round
 
 layout(local_size_x = SURFCAST_TILE, local_size_y = SURFCAST_TILE / SURFCAST_ROWS) in;
 
@@ -27,34 +34,14 @@ layout(std430, binding = SURFCAST_BIND_PICTURE) writeonly buffer Picture { uint 
 #endif
 #include "include/resolve.glsl"
 
-void write_pixel(ivec2 at, vec4 sum, vec3 normal_sum) {
+void write_pixel(ivec2 at, vec3 light, float transmittance) {
   if (any(greaterThanEqual(at, frame.region.zw))) return;
-  vec4 color = resolve(sum, normal_sum, ray_of_pixel(vec2(frame.region.xy + at) + 0.5));
+  vec4 color = vec4(light + transmittance * frame.background.rgb, 1.0 - transmittance);
 #ifdef SURFCAST_FLOAT_PICTURE
   picture[at.y * frame.region.z + at.x] = color;
 #else
   picture[at.y * frame.region.z + at.x] = packUnorm4x8(vec4(encode_srgb(color.rgb), color.a));
 #endif
-}
-
-void write_rows(ivec2 local, PixelSums sums) {
-  Rows weight = fixed_value(sums.weight);
-  Rows red = fixed_value(sums.red);
-  Rows green = fixed_value(sums.green);
-  Rows blue = fixed_value(sums.blue);
-#ifdef SURFCAST_LIT_COLOR
-  Rows normal_x = fixed_value(sums.normal_x);
-  Rows normal_y = fixed_value(sums.normal_y);
-  Rows normal_z = fixed_value(sums.normal_z);
-#else
-  Rows normal_x = red;
-  Rows normal_y = green;
-  Rows normal_z = blue;
-#endif
-  for (int i = 0; i < SURFCAST_ROWS; ++i) {
-    write_pixel(local + ivec2(0, i), vec4(ROW(red, i), ROW(green, i), ROW(blue, i), ROW(weight, i)),
-                vec3(ROW(normal_x, i), ROW(normal_y, i), ROW(normal_z, i)));
-  }
 }
 
 void main() {
@@ -67,18 +54,29 @@ void main() {
   if (larges != 0u) return;
 #endif
   uint smalls = tile_count[tile];
+  uint first_small = tile_offset[tile];
+  uint first_large = tile_offset[large_list];
   ivec2 local = ivec2(gl_WorkGroupID.xy) * SURFCAST_TILE + ivec2(gl_LocalInvocationID.xy) * ivec2(1, SURFCAST_ROWS);
   vec2 pixel = vec2(frame.region.xy + local) + 0.5;
-  Rows surface = Rows(0.0);  // inverse depth; 0 is infinitely far
-  PixelSums sums = sums_zero();
-
-  see_small(tile_offset[tile], smalls, pixel, surface);
+  Light light = Light(Rows(0.0), Rows(0.0), Rows(0.0), Rows(1.0));
+  Rows limit = Rows(3e38);  // inverse depth: nothing is nearer
+  for (int layer = 0; layer < kMaxLayers; ++layer) {
+    Rows surface = Rows(0.0);  // infinitely far
+    PixelSums sums = sums_zero();
+    see_small(first_small, smalls, pixel, limit, surface);
 #ifdef SURFCAST_LARGE
-  see_large(tile_offset[large_list], larges, pixel, surface);
+    see_large(first_large, larges, pixel, limit, surface);
 #endif
-  accumulate_small(tile_offset[tile], smalls, pixel, surface, sums);
+    accumulate_small(first_small, smalls, pixel, limit, surface, sums);
 #ifdef SURFCAST_LARGE
-  accumulate_large(tile_offset[large_list], larges, pixel, surface, sums);
+    accumulate_large(first_large, larges, pixel, limit, surface, sums);
 #endif
-  write_rows(local, sums);
+    composite(light, sums, pixel);
+    limit = surface;
+    if (!any_of(both(less(Rows(0.0), surface), less(Rows(kOpaque), light.transmittance)))) break;
+  }
+  for (int i = 0; i < SURFCAST_ROWS; ++i) {
+    write_pixel(local + ivec2(0, i), vec3(ROW(light.red, i), ROW(light.green, i), ROW(light.blue, i)),
+                ROW(light.transmittance, i));
+  }
 }

@@ -41,19 +41,19 @@ vec2 large_form(LargeSplat s, vec2 pixel, vec2 ray, float kernel_variance, float
   return vec2(p * p + q * q, v.gain);
 }
 
-void see_large(uint first, uint count, vec2 pixel, inout float surface) {
+void see_large(uint first, uint count, vec2 pixel, float limit, inout float surface) {
   vec2 ray = ray_of_pixel(pixel);
   for (uint k = 0u; k < count; ++k) {
     LargeSplat s = fetch_large(int(texelFetch(lists, int(first + k)).x));
     float disc_radius = float(SURFCAST_VISIBILITY_RADIUS) * s.radius;
     float push = 1.0 / (1.0 + float(SURFCAST_VISIBILITY_DEPTH) * s.radius / max(s.o.z, s.radius));
     float form = large_form(s, pixel, ray, disc_radius * disc_radius, frame.filter_.y).x;
-    float z = large_inverse_depth(s, ray) * push;
-    surface = form <= 1.0 ? max(surface, z) : surface;
+    float z = large_inverse_depth(s, ray);
+    surface = form <= 1.0 && z < limit ? max(surface, z * push) : surface;
   }
 }
 
-void accumulate_large(uint first, uint count, vec2 pixel, float surface, inout PixelSums sums) {
+void accumulate_large(uint first, uint count, vec2 pixel, float limit, float surface, inout PixelSums sums) {
   vec2 ray = ray_of_pixel(pixel);
   for (uint begin = 0u; begin < count; begin += uint(SURFCAST_CARRY_INTERVAL)) {
     uint end = min(begin + uint(SURFCAST_CARRY_INTERVAL), count);
@@ -63,7 +63,7 @@ void accumulate_large(uint first, uint count, vec2 pixel, float surface, inout P
       float sigma = kernel_deviation(s);
       vec2 form_gain = large_form(s, pixel, ray, sigma * sigma, frame.filter_.x);
       float z = large_inverse_depth(s, ray);
-      bool visible = form_gain.x <= cutoff(form_gain.y) && z > 0.0 && z >= surface;
+      bool visible = form_gain.x <= cutoff(form_gain.y) && z > 0.0 && z >= surface && z < limit;
       float weight = s.weight * form_gain.y * coverage_scale(form_gain.y) * exp(-0.5 * form_gain.x);
       sums_add(sums, splat_value(s.color, slot), visible ? weight : 0.0);
     }

@@ -7,6 +7,8 @@
 #define BoolRows bvec4
 const vec4 kRow = vec4(0.0, 1.0, 2.0, 3.0);
 BoolRows at_most(Rows a, Rows b) { return lessThanEqual(a, b); }
+BoolRows less(Rows a, Rows b) { return lessThan(a, b); }
+bool any_of(BoolRows a) { return any(a); }
 BoolRows both(BoolRows a, BoolRows b) { return bvec4(uvec4(a) & uvec4(b)); }
 #define ROW(v, i) v[i]
 #else
@@ -16,6 +18,8 @@ BoolRows both(BoolRows a, BoolRows b) { return bvec4(uvec4(a) & uvec4(b)); }
 #define BoolRows bool
 const float kRow = 0.0;
 BoolRows at_most(Rows a, Rows b) { return a <= b; }
+BoolRows less(Rows a, Rows b) { return a < b; }
+bool any_of(BoolRows a) { return a; }
 BoolRows both(BoolRows a, BoolRows b) { return a && b; }
 #define ROW(v, i) v
 #endif

@@ -21,7 +21,8 @@ SmallSplat fetch_small(int slot) {
   return decode_small(texelFetch(splats, 2 * slot), texelFetch(splats, 2 * slot + 1));
 }
 
-void see_small(uint first, uint count, vec2 pixel, inout Rows surface) {
+// Finds the nearest surface behind `limit` (an inverse depth), pushed back.
+void see_small(uint first, uint count, vec2 pixel, Rows limit, inout Rows surface) {
   for (uint k = 0u; k < count; ++k) {
     int slot = int(texelFetch(lists, int(first + k)).x);
     SmallSplat s = fetch_small(slot);
@@ -29,12 +30,14 @@ void see_small(uint first, uint count, vec2 pixel, inout Rows surface) {
     vec2 factor_z_push = unpackHalf2x16(disc.y);
     vec2 v = pixel - s.centre;
     Rows form = factored_form(vec3(unpackHalf2x16(disc.x), factor_z_push.x), v);
-    Rows z = small_inverse_depth(s, v) * factor_z_push.y;
-    surface = mix(surface, max(surface, z), at_most(form, Rows(1.0)));
+    Rows z = small_inverse_depth(s, v);
+    BoolRows hit = both(at_most(form, Rows(1.0)), less(z, limit));
+    surface = mix(surface, max(surface, z * factor_z_push.y), hit);
   }
 }
 
-void accumulate_small(uint first, uint count, vec2 pixel, Rows surface, inout PixelSums sums) {
+// Accumulates the splats between `limit` and `surface`.
+void accumulate_small(uint first, uint count, vec2 pixel, Rows limit, Rows surface, inout PixelSums sums) {
   for (uint begin = 0u; begin < count; begin += uint(SURFCAST_CARRY_INTERVAL)) {
     uint end = min(begin + uint(SURFCAST_CARRY_INTERVAL), count);
     for (uint k = begin; k < end; ++k) {
@@ -42,7 +45,8 @@ void accumulate_small(uint first, uint count, vec2 pixel, Rows surface, inout Pi
       SmallSplat s = fetch_small(slot);
       vec2 v = pixel - s.centre;
       Rows form = factored_form(s.factor, v);
-      BoolRows visible = both(at_most(form, Rows(s.cutoff)), at_most(surface, small_inverse_depth(s, v)));
+      Rows z = small_inverse_depth(s, v);
+      BoolRows visible = both(at_most(form, Rows(s.cutoff)), both(at_most(surface, z), less(z, limit)));
       sums_add(sums, splat_value(s.color, slot), mix(Rows(0.0), s.weight * exp2(-form), visible));
     }
     sums_carry(sums);
