@@ -110,6 +110,9 @@ void shrink_sources(std::vector<SourceRange>& sources, const Keep& keep) {
 
 void drop_unusable_points(ScanPoints& points, SurfelReport& report) {
   for (glm::vec3& normal : points.normals) normal = unit_or_zero(normal);
+  const bool any_normal =
+      std::any_of(points.normals.begin(), points.normals.end(), [](const glm::vec3& n) { return n != glm::vec3(0); });
+  if (!any_normal) points.normals.clear();
   Keep keep(points.size(), true);
   uint64_t dropped = 0;
   for (size_t i = 0; i < points.size(); ++i) {

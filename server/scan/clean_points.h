@@ -7,7 +7,8 @@
 namespace surfcast {
 
 /// Drops points with coordinates that are not finite and, in a scan with normals, points whose normal is zero or not
-/// finite; makes the remaining normals unit. Counts in `report` what was dropped.
+/// finite; makes the remaining normals unit. A scan whose normals are all zero has none. Counts in `report` what was
+/// dropped.
 void drop_unusable_points(ScanPoints& points, SurfelReport& report);
 
 /// Drops surfels that equal an earlier one in position and every attribute, to the bit. Surfels that share a position

@@ -57,8 +57,8 @@ std::vector<glm::vec3> known_directions(const Sites& sites, const SurfelCloud& c
   return towards;
 }
 
-/// The normal stored for the first point of each site.
-std::vector<glm::vec3> stored_site_normals(const Sites& sites, const SurfelCloud& cloud) {
+/// The normal of the first point of each site.
+std::vector<glm::vec3> site_normals(const Sites& sites, const SurfelCloud& cloud) {
   std::vector<glm::vec3> normals(sites.size());
   for (size_t i = cloud.size(); i-- > 0;) normals[sites.of_point[i]] = cloud.normals[i];
   return normals;
@@ -69,7 +69,7 @@ void fill_normals(const Sites& sites, const NeighbourGraph& graph,
   size_t stored = 0;
   for (size_t i = 0; i < cloud.size(); ++i) stored += has_normal(cloud, i) ? 1 : 0;
   if (stored == cloud.size()) {
-    cloud.oriented = signs_agree(graph, stored_site_normals(sites, cloud));
+    cloud.oriented = signs_agree(graph, site_normals(sites, cloud));
     return;
   }
   std::vector<glm::vec3> estimated = estimate_normals(sites, graph);
@@ -79,6 +79,8 @@ void fill_normals(const Sites& sites, const NeighbourGraph& graph,
   for (size_t i = 0; i < cloud.size(); ++i) {
     if (none_stored || !has_normal(cloud, i)) cloud.normals[i] = estimated[sites.of_point[i]];
   }
+  // Scans with normals of their own may disagree among themselves.
+  if (!none_stored) cloud.oriented = cloud.oriented && signs_agree(graph, site_normals(sites, cloud));
   report.normals_estimated = cloud.size() - stored;
 }
 

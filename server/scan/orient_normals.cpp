@@ -4,7 +4,9 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <limits>
 
+#include "geometry/box.h"
 #include "scan/signed_forest.h"
 
 namespace surfcast {
@@ -64,7 +66,7 @@ double area_of(const Sites& sites, const NeighbourGraph& graph, size_t site) {
   return glm::dot(d, d);
 }
 
-/// Sums over the sites of one tree, weighted by area. Signs are those relative to the tree's root.
+/// Sums over the sites of one tree, weighted by area.
 struct Tree {
   double area = 0;
   double towards = 0;      ///< agreement with the known directions
@@ -77,59 +79,93 @@ struct Tree {
 };
 
 struct SignedTrees {
-  std::vector<Tree> trees;        ///< by root
-  std::vector<uint32_t> tree_of;  ///< root of every site
+  std::vector<Tree> trees;
+  std::vector<uint32_t> tree_of;  ///< index in `trees` for every site
 };
 
-SignedTrees measure_trees(const Sites& sites, const NeighbourGraph& graph, std::span<const glm::vec3> towards,
-                          SignedForest& forest, std::vector<glm::vec3>& normals) {
-  SignedTrees signed_trees{std::vector<Tree>(sites.size()), std::vector<uint32_t>(sites.size())};
-  auto& [trees, tree_of] = signed_trees;
-  for (uint32_t i = 0; i < sites.size(); ++i) {
+/// Gives every site the sign it has relative to its tree's root, and numbers the trees.
+SignedTrees number_trees(SignedForest& forest, std::vector<glm::vec3>& normals) {
+  constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
+  SignedTrees signed_trees{{}, std::vector<uint32_t>(normals.size())};
+  std::vector<uint32_t> number_of_root(normals.size(), kNone);
+  for (uint32_t i = 0; i < normals.size(); ++i) {
     const auto [root, opposed] = forest.find(i);
     if (opposed) normals[i] = -normals[i];
-    tree_of[i] = root;
+    uint32_t& number = number_of_root[root];
+    if (number == kNone) {
+      number = static_cast<uint32_t>(signed_trees.trees.size());
+      signed_trees.trees.emplace_back();
+    }
+    signed_trees.tree_of[i] = number;
+  }
+  return signed_trees;
+}
+
+void measure_trees(const Sites& sites, const NeighbourGraph& graph, std::span<const glm::vec3> towards,
+                   std::span<const glm::vec3> normals, SignedTrees& signed_trees) {
+  for (size_t i = 0; i < sites.size(); ++i) {
+    Tree& tree = signed_trees.trees[signed_trees.tree_of[i]];
     const double area = area_of(sites, graph, i);
-    Tree& tree = trees[root];
     tree.area += area;
     tree.towards += area * static_cast<double>(glm::dot(normals[i], towards[i]));
     tree.centroid += area * sites.positions[i];
     tree.normal += area * glm::dvec3(normals[i]);
   }
-  for (uint32_t i = 0; i < sites.size(); ++i) {
-    Tree& tree = trees[tree_of[i]];
+  for (size_t i = 0; i < sites.size(); ++i) {
+    Tree& tree = signed_trees.trees[signed_trees.tree_of[i]];
     const glm::dvec3 from_centroid = sites.positions[i] - tree.centroid / tree.area;
     const double area = area_of(sites, graph, i);
     tree.volume += area * glm::dot(glm::dvec3(normals[i]), from_centroid);
     tree.reach += area * glm::length(from_centroid);
   }
-  return signed_trees;
+}
+
+/// What is known of a scene as a whole when the sign of a tree is decided.
+struct Scene {
+  bool z_up = false;
+  bool may_be_room = false;  ///< at least twice as wide, both ways, as high: a closed surface may be seen from within
+};
+
+Scene describe_scene(const Sites& sites, bool z_up) {
+  Box box;
+  for (const glm::dvec3& p : sites.positions) box.include(p);
+  const glm::dvec3 size = box.size();
+  std::array<double, 3> sorted = {size.x, size.y, size.z};
+  std::sort(sorted.begin(), sorted.end());
+  return {z_up, z_up || 2 * sorted[0] <= sorted[1]};
+}
+
+/// Whether the tree is closed, or so nearly that its volume is sure. The normals of a closed surface sum to zero; what
+/// they do sum to is the area of the holes, and a lid over them takes away about that times its distance.
+bool encloses_volume(const Tree& tree) {
+  const double holes = glm::length(tree.normal) / tree.area;
+  const double fullness = std::abs(tree.volume) / tree.reach;
+  return fullness > 0.1 && fullness > 2 * holes;
 }
 
 /// Decides the sign of one tree and whether that is more than a guess.
-void decide(Tree& tree, bool z_up) {
-  constexpr double kDecided = 0.25;  // of what the vote could be at most
+void decide(Tree& tree, const Scene& scene) {
+  constexpr double kTerrain = 0.25;  // of the vote when all of the area faces up
   if (tree.towards != 0) {
     tree.flip = tree.towards < 0;
     tree.trusted = true;
-  } else if (z_up && std::abs(tree.normal.z) > kDecided * tree.area) {
+  } else if (scene.z_up && std::abs(tree.normal.z) > kTerrain * tree.area) {
     tree.flip = tree.normal.z < 0;
     tree.trusted = true;
   } else if (tree.volume != 0) {
-    const bool closed = glm::length(tree.normal) < kDecided * tree.area;
     tree.flip = tree.volume < 0;
-    tree.trusted = !z_up && closed && std::abs(tree.volume) > kDecided * tree.reach;
+    tree.trusted = !scene.may_be_room && encloses_volume(tree);
   } else {
     tree.flip = tree.normal.z < 0;
   }
 }
 
 /// Turns the trees; whether most of the area was decided by more than a guess.
-bool apply_signs(SignedTrees& signed_trees, bool z_up, std::vector<glm::vec3>& normals) {
+bool apply_signs(SignedTrees& signed_trees, const Scene& scene, std::vector<glm::vec3>& normals) {
   double area = 0;
   double trusted = 0;
   for (Tree& tree : signed_trees.trees) {
-    decide(tree, z_up);
+    decide(tree, scene);
     area += tree.area;
     if (tree.trusted) trusted += tree.area;
   }
@@ -167,8 +203,9 @@ bool orient_normals(const Sites& sites, const NeighbourGraph& graph, std::span<c
   if (face_known(towards, normals)) return true;
   if (graph.degree == 0) return false;
   SignedForest forest = spread_signs(graph, normals);
-  SignedTrees trees = measure_trees(sites, graph, towards, forest, normals);
-  const bool decided = apply_signs(trees, z_up, normals);
+  SignedTrees trees = number_trees(forest, normals);
+  measure_trees(sites, graph, towards, normals, trees);
+  const bool decided = apply_signs(trees, describe_scene(sites, z_up), normals);
   face_known(towards, normals);
   if (decided && signs_agree(graph, normals)) return true;
   if (z_up) {

@@ -17,9 +17,9 @@ namespace surfcast {
 /// otherwise such that the enclosed volume is positive.
 ///
 /// Returns whether the signs can be trusted to tell front from back. They cannot when too many neighbours disagree
-/// (foliage, noise), nor when nothing decides between the two sides: an open surface that is no terrain, and in a z-up
-/// scene a closed one as well, because that may be a room seen from within. A z-up scene without trust has its normals
-/// turned upwards one by one.
+/// (foliage, noise), nor when nothing decides between the two sides: an open surface that is no terrain, or a closed
+/// one in a scene that may be a room seen from within (z-up, or at least twice as wide, both ways, as high). To call
+/// such a cloud oriented would hide its front. A z-up scene without trust has its normals turned upwards one by one.
 bool orient_normals(const Sites& sites, const NeighbourGraph& graph, std::span<const glm::vec3> towards, bool z_up,
                     std::vector<glm::vec3>& normals);
 

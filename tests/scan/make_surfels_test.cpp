@@ -3,10 +3,12 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
-#include <numbers>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include "scan/shapes.h"
 
 namespace surfcast {
 namespace {
@@ -14,6 +16,9 @@ namespace {
 using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::FloatEq;
+using ::testing::HasSubstr;
+
+constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
 ScanPoints scan_of(std::vector<glm::dvec3> positions, bool z_up = true) {
   ScanPoints scan;
@@ -23,90 +28,273 @@ ScanPoints scan_of(std::vector<glm::dvec3> positions, bool z_up = true) {
   return scan;
 }
 
-SurfelCloud surfels_of(ScanPoints scan) {
+/// Turns scans, given one by one, into surfels, and keeps the report.
+struct Made {
+  template <typename... Scans>
+  explicit Made(Scans... given) {
+    std::vector<ScanPoints> scans;
+    (scans.push_back(std::move(given)), ...);
+    Result<SurfelCloud> result = make_surfels(std::move(scans), report);
+    EXPECT_TRUE(result) << result.error().message;
+    if (result) cloud = std::move(*result);
+  }
   SurfelReport report;
-  std::vector<ScanPoints> scans;
-  scans.push_back(std::move(scan));
-  Result<SurfelCloud> cloud = make_surfels(std::move(scans), report);
-  EXPECT_TRUE(cloud);
-  return cloud ? *std::move(cloud) : SurfelCloud{};
+  SurfelCloud cloud;
+};
+
+template <typename T>
+std::vector<T> values_of(const SurfelCloud& cloud, size_t scalar) {
+  return std::get<std::vector<T>>(cloud.scalars.at(scalar).values);
 }
 
-std::vector<glm::dvec3> square_lattice(int side, double spacing, const glm::dvec3& corner) {
-  std::vector<glm::dvec3> positions;
-  for (int y = 0; y < side; ++y) {
-    for (int x = 0; x < side; ++x) positions.push_back(corner + spacing * glm::dvec3(x, y, 0));
-  }
-  return positions;
-}
+// ---- radii
 
-/// Points spread evenly over a sphere (Fibonacci spiral).
-std::vector<glm::dvec3> sphere(int count, const glm::dvec3& centre, double radius) {
-  std::vector<glm::dvec3> positions;
-  for (int i = 0; i < count; ++i) {
-    const double z = 1 - 2 * (i + 0.5) / count;
-    const double angle = i * std::numbers::pi * (3 - std::sqrt(5.0));
-    const double r = std::sqrt(1 - z * z);
-    positions.push_back(centre + radius * glm::dvec3(r * std::cos(angle), r * std::sin(angle), z));
-  }
-  return positions;
-}
-
-TEST(MakeSurfelsTest, PlaneHasItsNormalUpwardsAndTheRadiusOfItsLattice) {
-  const SurfelCloud cloud = surfels_of(scan_of(square_lattice(9, 0.5, {0, 0, 3})));
-  EXPECT_TRUE(cloud.oriented);
-  for (const glm::vec3& n : cloud.normals) EXPECT_NEAR(n.z, 1, 1e-6);
-  // Four neighbours at h and two at h sqrt 2.
-  EXPECT_FLOAT_EQ(cloud.radii[4 * 9 + 4], static_cast<float>((4 + 2 * std::numbers::sqrt2) / 6 * 0.5));
-}
-
-TEST(MakeSurfelsTest, SphereNormalsPointOutwards) {
-  const glm::dvec3 centre(10, -4, 2);
-  const SurfelCloud cloud = surfels_of(scan_of(sphere(2000, centre, 3), false));
-  EXPECT_TRUE(cloud.oriented);
+/// The radius of the surfel at that position.
+float radius_at(const SurfelCloud& cloud, const glm::dvec3& position) {
   for (size_t i = 0; i < cloud.size(); ++i) {
-    EXPECT_GT(glm::dot(glm::dvec3(cloud.normals[i]), glm::normalize(cloud.positions[i] - centre)), 0.99);
+    if (glm::distance(cloud.positions[i], position) < 1e-9) return cloud.radii[i];
   }
+  return 0;
 }
 
-TEST(MakeSurfelsTest, MillimetresAtFiveMillionMetresKeepTheirSpacing) {
-  const SurfelCloud cloud = surfels_of(scan_of(square_lattice(9, 0.001, {500000, 5000000, 100})));
-  EXPECT_NEAR(cloud.radii[4 * 9 + 4], (4 + 2 * std::numbers::sqrt2) / 6 * 0.001, 1e-8);
-  for (const glm::vec3& n : cloud.normals) EXPECT_NEAR(n.z, 1, 1e-6);
+TEST(MakeSurfelsTest, RadiusIsTheMeanDistanceToTheSixNearest) {
+  // A square lattice has four neighbours at h and four at h sqrt 2.
+  const Made square(scan_of(testing::square_lattice(9, 0.5, {0, 0, 3})));
+  EXPECT_FLOAT_EQ(radius_at(square.cloud, {2, 2, 3}), static_cast<float>((4 + 2 * std::numbers::sqrt2) / 6 * 0.5));
+  const Made hexagonal(scan_of(testing::hexagonal_lattice(9, 0.25)));
+  EXPECT_FLOAT_EQ(radius_at(hexagonal.cloud, {1, std::numbers::sqrt3 / 2, 0}), 0.25F);
+  const Made line(scan_of({{0, 0, 0}, {1, 0, 0}, {3, 0, 0}}));  // fewer than six
+  EXPECT_THAT(line.cloud.radii, ElementsAre(2.0F, 1.5F, 2.5F));
+}
+
+TEST(MakeSurfelsTest, MillimetresAtFiveMillionMetresKeepTheirSpacingAndPlane) {
+  const Made made(scan_of(testing::square_lattice(9, 0.001, {500000, 5000000, 100})));
+  EXPECT_NEAR(made.cloud.radii[4 * 9 + 4], (4 + 2 * std::numbers::sqrt2) / 6 * 0.001, 1e-8);
+  for (const glm::vec3& n : made.cloud.normals) EXPECT_NEAR(n.z, 1, 1e-6);
+}
+
+TEST(MakeSurfelsTest, StoredRadiiStayAndUnusableOnesAreEstimated) {
+  ScanPoints scan = scan_of({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}});
+  scan.radii = {0.125F, 0, -1, kNan};
+  const Made made(std::move(scan));
+  EXPECT_THAT(made.cloud.radii, ElementsAre(0.125F, FloatEq(4.0F / 3), FloatEq(4.0F / 3), 2.0F));
+  EXPECT_EQ(made.report.radii_estimated, 3u);
 }
 
 TEST(MakeSurfelsTest, SinglePointGetsADefinedSurfel) {
-  const SurfelCloud cloud = surfels_of(scan_of({{1, 2, 3}}));
-  EXPECT_THAT(cloud.normals, ElementsAre(glm::vec3(0, 0, 1)));
-  EXPECT_THAT(cloud.radii, ElementsAre(1.0F));
+  const Made made(scan_of({{1, 2, 3}}));
+  EXPECT_THAT(made.cloud.normals, ElementsAre(glm::vec3(0, 0, 1)));
+  EXPECT_THAT(made.cloud.radii, ElementsAre(1.0F));
 }
 
-TEST(MakeSurfelsTest, CollinearPointsGetUnitNormalsAcrossTheLine) {
-  std::vector<glm::dvec3> line;
-  for (int i = 0; i < 20; ++i) line.push_back(static_cast<double>(i) * glm::dvec3(1, 2, -1));
-  const SurfelCloud cloud = surfels_of(scan_of(line));
-  for (const glm::vec3& n : cloud.normals) {
-    EXPECT_NEAR(glm::length(n), 1, 1e-6);
-    EXPECT_NEAR(glm::dot(n, glm::vec3(1, 2, -1)), 0, 1e-5);
+TEST(MakeSurfelsTest, CoincidentPointsThatDifferAllStayAndLookFurtherOutForTheirRadius) {
+  ScanPoints scan = scan_of({{0, 0, 0}, {0, 0, 0}, {2, 0, 0}});
+  scan.scalars.push_back({"intensity", std::vector<uint16_t>{1, 2, 3}});
+  const Made made(std::move(scan));
+  EXPECT_EQ(made.cloud.size(), 3u);
+  EXPECT_THAT(made.cloud.radii, Each(2.0F));
+  ScanPoints alone = scan_of({{5, 5, 5}, {5, 5, 5}});
+  alone.scalars.push_back({"intensity", std::vector<uint16_t>{1, 2}});
+  EXPECT_THAT(Made(std::move(alone)).cloud.radii, ElementsAre(1.0F, 1.0F));
+}
+
+TEST(MakeSurfelsTest, ManyCoincidentPointsTakeNoQuadraticTime) {
+  ScanPoints scan = scan_of(std::vector<glm::dvec3>(200000, glm::dvec3(7)));
+  std::vector<uint32_t> numbers(scan.size());
+  for (uint32_t i = 0; i < numbers.size(); ++i) numbers[i] = i;
+  scan.scalars.push_back({"number", numbers});
+  EXPECT_EQ(Made(std::move(scan)).cloud.size(), 200000u);
+}
+
+TEST(MakeSurfelsTest, CoordinatesNearTheLimitsOfDoublesGiveFiniteSurfels) {
+  constexpr double kMax = std::numeric_limits<double>::max();
+  const std::vector<std::vector<glm::dvec3>> extremes = {
+      {{-kMax, -kMax, 0}, {kMax, kMax, 0}, {0, 0, kMax}, {1, 2, 3}},
+      {{5e-324, 0, 0}, {0, 0, 0}, {1e-323, 5e-324, 0}},
+      {{1e-200, 0, 0}, {2e-200, 0, 0}, {1, 1, 1}, {0, 1e-180, 0}},
+      {{1e30, 0, 0}, {0.1, 0.2, 0.3}, {0.2, 0.2, 0.3}},
+  };
+  for (const auto& positions : extremes) {
+    const Made made(scan_of(positions));
+    for (size_t i = 0; i < made.cloud.size(); ++i) {
+      EXPECT_TRUE(std::isfinite(made.cloud.radii[i]) && made.cloud.radii[i] > 0);
+      EXPECT_NEAR(glm::length(made.cloud.normals[i]), 1, 1e-5);
+    }
   }
 }
+
+// ---- cleaning
 
 TEST(MakeSurfelsTest, NotFinitePointsAndExactDuplicatesAreDroppedAndCounted) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   ScanPoints scan = scan_of({{0, 0, 0}, {nan, 0, 0}, {1, 0, 0}, {0, INFINITY, 0}, {1, 0, 0}, {1, 0, 0}, {-0.0, 0, 0}});
   scan.scalars.push_back({"intensity", std::vector<uint16_t>{1, 2, 3, 4, 3, 9, 1}});
-  std::vector<ScanPoints> scans;
-  scans.push_back(std::move(scan));
+  const Made made(std::move(scan));
+  EXPECT_THAT(made.cloud.positions, ElementsAre(glm::dvec3(0), glm::dvec3(1, 0, 0), glm::dvec3(1, 0, 0)));
+  EXPECT_THAT(values_of<uint16_t>(made.cloud, 0), ElementsAre(1, 3, 9));
+  EXPECT_EQ(made.report.points_read, 7u);
+  EXPECT_EQ(made.report.not_finite, 2u);
+  EXPECT_EQ(made.report.duplicates, 2u);
+}
+
+TEST(MakeSurfelsTest, ZeroNormalsAreDroppedUnlessAllAreZero) {
+  ScanPoints some = scan_of(testing::square_lattice(3, 1, {0, 0, 0}));
+  some.normals.assign(9, glm::vec3(0, 0, 5e-30F));
+  some.normals[4] = glm::vec3(0);
+  some.normals[5] = glm::vec3(kNan, 0, 0);
+  const Made made(some);
+  EXPECT_EQ(made.report.zero_normals, 2u);
+  EXPECT_EQ(made.report.normals_estimated, 0u);
+  EXPECT_THAT(made.cloud.normals, Each(glm::vec3(0, 0, 1)));
+  some.normals.assign(9, glm::vec3(0));
+  const Made all(some);
+  EXPECT_EQ(all.cloud.size(), 9u);
+  EXPECT_EQ(all.report.normals_estimated, 9u);
+}
+
+TEST(MakeSurfelsTest, NothingUsableIsAFailure) {
   SurfelReport report;
-  const Result<SurfelCloud> cloud = make_surfels(std::move(scans), report);
-  ASSERT_TRUE(cloud);
-  EXPECT_THAT(cloud->positions, ElementsAre(glm::dvec3(0), glm::dvec3(1, 0, 0), glm::dvec3(1, 0, 0)));
-  EXPECT_THAT(std::get<std::vector<uint16_t>>(cloud->scalars[0].values), ElementsAre(1, 3, 9));
-  EXPECT_EQ(report.points_read, 7u);
-  EXPECT_EQ(report.not_finite, 2u);
-  EXPECT_EQ(report.duplicates, 2u);
-  // The two that share a position are both at distance 1 from the third.
-  EXPECT_THAT(cloud->radii, Each(FloatEq(1)));
+  EXPECT_FALSE(make_surfels({}, report));
+  const Result<SurfelCloud> cloud = make_surfels({scan_of({{NAN, 0, 0}})}, report);
+  ASSERT_FALSE(cloud);
+  EXPECT_EQ(cloud.error().kind, ErrorKind::kInvalidInput);
+}
+
+// ---- merging
+
+TEST(MakeSurfelsTest, MergedScansFillWhatOneLacksAndSaySo) {
+  ScanPoints first = scan_of({{0, 0, 0}, {1, 0, 0}});
+  first.name = "first.las";
+  first.grid = Grid{{0.01, 0.01, 0.01}, {0, 0, 0}};
+  first.colors = ColorAttribute{8, {{255, 0, 0}, {0, 128, 0}}};
+  first.scalars.push_back({"intensity", std::vector<uint8_t>{7, 8}});
+  ScanPoints second = scan_of({{0, 1, 0}, {0, 1, 0}, {NAN, 0, 0}, {1, 1, 0}});
+  second.name = "second.ply";
+  second.scalars.push_back({"intensity", std::vector<int16_t>{-1, -1, 0, 3}});
+  second.scalars.push_back({"gps_time", std::vector<double>{1, 1, 0, 2}});
+  ScanPoints third = scan_of({{2, 2, 2}});
+  third.name = "third.ply";
+  third.colors = ColorAttribute{16, {{1000, 2000, 3000}}};
+
+  const Made made(std::move(first), std::move(second), std::move(third));
+  ASSERT_EQ(made.cloud.size(), 5u);
+  ASSERT_EQ(made.cloud.sources.size(), 3u);
+  EXPECT_EQ(made.cloud.sources[1].name, "second.ply");
+  EXPECT_EQ(made.cloud.sources[1].first, 2u);
+  EXPECT_EQ(made.cloud.sources[1].count, 2u);
+  EXPECT_EQ(made.cloud.sources[2].first, 4u);
+  EXPECT_TRUE(made.cloud.sources[0].grid && !made.cloud.sources[1].grid);
+  ASSERT_TRUE(made.cloud.colors);
+  EXPECT_EQ(made.cloud.colors->bits, 16);
+  EXPECT_THAT(made.cloud.colors->values,
+              ElementsAre(glm::u16vec3(65535, 0, 0), glm::u16vec3(0, 128 * 257, 0), glm::u16vec3(32768),
+                          glm::u16vec3(32768), glm::u16vec3(1000, 2000, 3000)));
+  EXPECT_THAT(values_of<int16_t>(made.cloud, 0), ElementsAre(7, 8, -1, 3, 0));
+  EXPECT_THAT(values_of<double>(made.cloud, 1), ElementsAre(0, 0, 1, 2, 0));
+  EXPECT_THAT(made.report.notes, ElementsAre(HasSubstr("second.ply: no colour"), HasSubstr("third.ply: no intensity"),
+                                             HasSubstr("first.las: no gps_time"), HasSubstr("third.ply: no gps_time")));
+}
+
+TEST(MakeSurfelsTest, MergedScansOfNumbersWithoutACommonIntegerTypeBecomeDoubles) {
+  ScanPoints first = scan_of({{0, 0, 0}});
+  first.scalars.push_back({"time", std::vector<uint64_t>{5}});
+  ScanPoints second = scan_of({{1, 0, 0}});
+  second.scalars.push_back({"time", std::vector<int64_t>{-5}});
+  EXPECT_THAT(values_of<double>(Made(first, second).cloud, 0), ElementsAre(5, -5));
+  second.scalars[0].values = std::vector<uint8_t>{6};
+  EXPECT_THAT(values_of<uint64_t>(Made(first, second).cloud, 0), ElementsAre(5, 6));
+}
+
+TEST(MakeSurfelsTest, NormalsMissingInOneScanAreEstimatedAndFollowTheStoredOnes) {
+  ScanPoints first = scan_of(testing::square_lattice(10, 1, {0, 0, 0}));
+  first.normals.assign(first.size(), glm::vec3(0, 0, -1));  // seen from below
+  const Made made(first, scan_of(testing::square_lattice(10, 1, {10, 0, 0})));
+  EXPECT_TRUE(made.cloud.oriented);
+  EXPECT_EQ(made.report.normals_estimated, 100u);
+  for (const glm::vec3& n : made.cloud.normals) EXPECT_NEAR(n.z, -1, 1e-6);
+}
+
+// ---- normals and their sign
+
+TEST(MakeSurfelsTest, TerrainFacesUp) {
+  std::vector<glm::dvec3> hills = testing::square_lattice(40, 1, {0, 0, 0});
+  for (glm::dvec3& p : hills) p.z = 3 * std::sin(p.x / 4) * std::cos(p.y / 5);
+  const Made made(scan_of(hills));
+  EXPECT_TRUE(made.cloud.oriented);
+  for (const glm::vec3& n : made.cloud.normals) EXPECT_GT(n.z, 0.5F);
+}
+
+TEST(MakeSurfelsTest, SphereNormalsPointOutwards) {
+  const glm::dvec3 centre(10, -4, 2);
+  const Made made(scan_of(testing::sphere(2000, centre, 3), false));
+  EXPECT_TRUE(made.cloud.oriented);
+  for (size_t i = 0; i < made.cloud.size(); ++i) {
+    EXPECT_GT(glm::dot(glm::dvec3(made.cloud.normals[i]), glm::normalize(made.cloud.positions[i] - centre)), 0.99);
+  }
+}
+
+TEST(MakeSurfelsTest, SeparateObjectsAreEachTurnedOutwards) {
+  std::vector<glm::dvec3> both = testing::sphere(1000, {0, 0, 0}, 1);
+  const std::vector<glm::dvec3> second = testing::sphere(1000, {4, 0, 4}, 1);
+  both.insert(both.end(), second.begin(), second.end());
+  const Made made(scan_of(both, false));
+  for (size_t i = 0; i < made.cloud.size(); ++i) {
+    const glm::dvec3 centre = i < 1000 ? glm::dvec3(0) : glm::dvec3(4, 0, 4);
+    EXPECT_GT(glm::dot(glm::dvec3(made.cloud.normals[i]), made.cloud.positions[i] - centre), 0.9);
+  }
+}
+
+TEST(MakeSurfelsTest, RoomsAndNoiseAreNotCalledOriented) {
+  EXPECT_TRUE(Made(scan_of(testing::box_surface({2, 2, 2}, 0.1, {0, 0, 0}), false)).cloud.oriented);
+  EXPECT_FALSE(Made(scan_of(testing::box_surface({2, 2, 2}, 0.1, {0, 0, 0}), true)).cloud.oriented);
+  EXPECT_FALSE(Made(scan_of(testing::box_surface({6, 2.5, 8}, 0.1, {0, 0, 0}), false)).cloud.oriented);
+  EXPECT_FALSE(Made(scan_of(testing::noise(3000, 10), false)).cloud.oriented);
+  const Made foliage(scan_of(testing::noise(3000, 10), true));
+  EXPECT_FALSE(foliage.cloud.oriented);
+  for (const glm::vec3& n : foliage.cloud.normals) EXPECT_GE(n.z, 0);
+}
+
+TEST(MakeSurfelsTest, NormalsFaceTheSensorWhereItIsKnown) {
+  ScanPoints room = scan_of(testing::box_surface({6, 8, 2.5}, 0.1, {100, 0, 0}));
+  room.sensor = glm::dvec3(101, 1, 0);
+  const glm::dvec3 sensor = *room.sensor;
+  const Made made(std::move(room));
+  EXPECT_TRUE(made.cloud.oriented);
+  for (size_t i = 0; i < made.cloud.size(); ++i) {
+    EXPECT_GT(glm::dot(glm::dvec3(made.cloud.normals[i]), sensor - made.cloud.positions[i]), 0);
+  }
+}
+
+TEST(MakeSurfelsTest, StoredNormalsAreOrientedWhenNeighboursAgree) {
+  ScanPoints scan = scan_of(testing::sphere(1000, {0, 0, 0}, 2));
+  for (const glm::dvec3& p : scan.positions) scan.normals.emplace_back(p);  // not unit
+  const Made agreeing(scan);
+  EXPECT_TRUE(agreeing.cloud.oriented);
+  for (const glm::vec3& n : agreeing.cloud.normals) EXPECT_NEAR(glm::length(n), 1, 1e-6);
+  for (size_t i = 0; i < scan.size(); i += 3) scan.normals[i] = -scan.normals[i];
+  EXPECT_FALSE(Made(scan).cloud.oriented);
+}
+
+TEST(MakeSurfelsTest, CollinearPointsGetUnitNormalsAcrossTheLine) {
+  std::vector<glm::dvec3> line;
+  for (int i = 0; i < 20; ++i) line.push_back(static_cast<double>(i) * glm::dvec3(1, 2, -1));
+  const Made made(scan_of(line));
+  for (const glm::vec3& n : made.cloud.normals) {
+    EXPECT_NEAR(glm::length(n), 1, 1e-6);
+    EXPECT_NEAR(glm::dot(n, glm::vec3(1, 2, -1)), 0, 1e-5);
+  }
+}
+
+TEST(MakeSurfelsTest, ResultDoesNotDependOnTheNumberOfThreads) {
+  const auto make = [](size_t threads) {
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    return Made(scan_of(testing::noise(20000, 10))).cloud;
+  };
+  const SurfelCloud one = make(1);
+  const SurfelCloud four = make(4);
+  EXPECT_EQ(one.positions, four.positions);
+  EXPECT_EQ(one.normals, four.normals);
+  EXPECT_EQ(one.radii, four.radii);
 }
 
 }  // namespace
