@@ -11,7 +11,7 @@ namespace surfcast {
 
 struct PartitionOptions {
   uint32_t max_surfels = 16384;     ///< a block holds at most this many
-  uint32_t min_surfels = 2048;      ///< a smaller cell joins its neighbours of the same parent cell when all fit
+  uint32_t min_surfels = 4096;      ///< a smaller cell joins its neighbours of the same parent cell when all fit
   std::optional<double> precision;  ///< largest position error, world units; none: a fraction of each radius
 };
 

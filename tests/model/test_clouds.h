@@ -3,8 +3,10 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/geometric.hpp>
-#include <random>
-#include <string>
+#include <numbers>
+#include <numeric>
+#include <utility>
+#include <vector>
 
 #include "surfel/surfel_cloud.h"
 
@@ -19,24 +21,31 @@ inline SurfelCloud finish_cloud(SurfelCloud cloud) {
   return cloud;
 }
 
-/// Points spread evenly over the unit sphere (a golden angle spiral), with outward normals and colours.
-inline SurfelCloud sphere_cloud(size_t count) {
+/// Points spread evenly over a sphere about the origin (a golden angle spiral), with outward normals and colours.
+inline SurfelCloud sphere_cloud(size_t count, double radius = 1) {
   SurfelCloud cloud;
   cloud.oriented = true;
   cloud.colors.emplace();
-  const double golden = M_PI * (3 - std::sqrt(5.0));
+  const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
   for (size_t i = 0; i < count; ++i) {
     const double z = 1 - (2 * static_cast<double>(i) + 1) / static_cast<double>(count);
     const double r = std::sqrt(1 - z * z);
     const double angle = golden * static_cast<double>(i);
-    const glm::dvec3 p(r * std::cos(angle), r * std::sin(angle), z);
-    cloud.positions.push_back(p);
-    cloud.normals.emplace_back(p);
-    cloud.colors->values.emplace_back(glm::u16vec3(glm::round((p + 1.0) * 127.5)));
+    const glm::dvec3 direction(r * std::cos(angle), r * std::sin(angle), z);
+    cloud.positions.push_back(radius * direction);
+    cloud.normals.emplace_back(direction);
+    cloud.colors->values.emplace_back(glm::u16vec3(glm::round((direction + 1.0) * 127.5)));
   }
-  const double spacing = std::sqrt(4 * M_PI / static_cast<double>(count));
+  const double spacing = radius * std::sqrt(4 * std::numbers::pi / static_cast<double>(count));
   cloud.radii.assign(count, static_cast<float>(spacing));
   return finish_cloud(std::move(cloud));
+}
+
+/// Adds the attribute "id": the number of each surfel in the cloud, by which tests find it again.
+inline void number_surfels(SurfelCloud& cloud) {
+  std::vector<uint32_t> ids(cloud.size());
+  std::iota(ids.begin(), ids.end(), 0);
+  cloud.scalars.push_back({"id", std::move(ids)});
 }
 
 }  // namespace surfcast
