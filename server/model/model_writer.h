@@ -11,7 +11,7 @@
 namespace surfcast {
 
 struct WriteOptions {
-  std::optional<double> precision;         ///< largest position error, world units; none: 1/256 of each radius
+  std::optional<double> precision{};       ///< largest position error, world units; none: 1/256 of each radius
   std::function<void(double)> progress{};  ///< called with the part that is done, in [0, 1], from any one thread
 };
 

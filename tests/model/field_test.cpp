@@ -1,0 +1,96 @@
+#include "model/field.h"
+
+#include <limits>
+#include <random>
+
+#include <gtest/gtest.h>
+
+#include "model/path_order.h"
+
+namespace surfcast {
+namespace {
+
+constexpr uint64_t kMax = std::numeric_limits<uint64_t>::max();
+
+std::vector<Field> round_trip(const std::vector<Field>& fields) {
+  std::vector<size_t> columns;
+  for (const Field& field : fields) columns.push_back(field.size());
+  const auto rows = static_cast<uint32_t>(fields.front().front().size());
+  Result<std::vector<Field>> decoded = decode_fields(encode_fields(fields), columns, rows);
+  EXPECT_TRUE(decoded);
+  return decoded ? std::move(*decoded) : std::vector<Field>();
+}
+
+TEST(Field, PackingFindsBaseStrideAndLargest) {
+  const ColumnPacking packing = choose_packing({1000, 1257 + 257, 1257});
+  EXPECT_EQ(packing.base, 1000u);
+  EXPECT_EQ(packing.stride, 257u);
+  EXPECT_EQ(packing.largest, 2u);
+}
+
+TEST(Field, PackingOfAConstantStoresNothing) {
+  EXPECT_EQ(choose_packing({7, 7, 7}).largest, 0u);
+  EXPECT_EQ(choose_packing({7, 7, 7}).stride, 1u);
+}
+
+TEST(Field, PackingSpansTheWholeRange) {
+  const ColumnPacking packing = choose_packing({kMax, 0, 1});
+  EXPECT_EQ(packing.base, 0u);
+  EXPECT_EQ(packing.largest, kMax);
+}
+
+TEST(Field, ValuesOfEveryWidthComeBackInOrder) {
+  std::mt19937_64 random(1);
+  std::vector<Field> fields;
+  for (int bits = 0; bits <= 64; ++bits) {
+    Column column;
+    for (int i = 0; i < 50; ++i) column.push_back(bits == 0 ? 99 : random() >> (64 - bits));
+    fields.push_back({column});
+  }
+  EXPECT_EQ(round_trip(fields), fields);
+}
+
+TEST(Field, ColumnsOfOneFieldMayDifferInRange) {
+  const std::vector<Field> fields{{{1, 2, 3}, {kMax, 0, 5}, {8, 8, 8}}, {{4, 4, 4}}};
+  EXPECT_EQ(round_trip(fields), fields);
+}
+
+TEST(Field, AllConstantColumnsNeedNoDracoData) {
+  const std::vector<Field> fields{{Column(1000, 5), Column(1000, kMax)}};
+  EXPECT_LT(encode_fields(fields).size(), 20u);
+  EXPECT_EQ(round_trip(fields), fields);
+}
+
+TEST(Field, BytesOfAnotherShapeAreRefused) {
+  const std::vector<Field> fields{{{1, 2, 3}}, {{4, 9, 7000}}};
+  const std::vector<std::byte> bytes = encode_fields(fields);
+  const std::vector<size_t> right{1, 1};
+  const std::vector<size_t> joined{2};
+  const std::vector<size_t> more{1, 1, 1};
+  EXPECT_TRUE(decode_fields(bytes, right, 3));
+  EXPECT_FALSE(decode_fields(bytes, right, 4));
+  EXPECT_FALSE(decode_fields(bytes, joined, 3));
+  EXPECT_FALSE(decode_fields(bytes, more, 3));
+  EXPECT_FALSE(decode_fields({}, right, 3));
+}
+
+TEST(PathOrder, VisitsEveryPointOnce) {
+  std::mt19937 random(1);
+  std::vector<glm::ivec3> points;
+  for (int i = 0; i < 1000; ++i) points.emplace_back(random() % 100, random() % 100, random() % 3);
+  std::vector<uint32_t> order = path_order(points);
+  std::sort(order.begin(), order.end());
+  for (uint32_t i = 0; i < 1000; ++i) ASSERT_EQ(order[i], i);
+}
+
+TEST(PathOrder, FollowsALineThatIsGivenInDisorder) {
+  const std::vector<glm::ivec3> points{{0, 0, 0}, {3, 0, 0}, {1, 0, 0}, {4, 0, 0}, {2, 0, 0}};
+  EXPECT_EQ(path_order(points), (std::vector<uint32_t>{0, 2, 4, 1, 3}));
+}
+
+TEST(PathOrder, OfNothingIsNothing) {
+  EXPECT_TRUE(path_order({}).empty());
+}
+
+}  // namespace
+}  // namespace surfcast
