@@ -19,7 +19,7 @@ layout(std430, binding = SURFCAST_BIND_CHUNKS) readonly buffer Chunks { Chunk ch
 layout(std430, binding = SURFCAST_BIND_COUNTERS) buffer CountersBuffer { Counters counters; };
 layout(std430, binding = SURFCAST_BIND_TILE_COUNT) buffer TileCount { uint tile_count[]; };
 layout(binding = SURFCAST_UNIT_SPLATS, rgba32ui) writeonly uniform uimageBuffer splats;
-layout(binding = SURFCAST_UNIT_DISCS, rg32ui) writeonly uniform uimageBuffer discs;
+layout(binding = SURFCAST_UNIT_DISCS, rgba32ui) writeonly uniform uimageBuffer discs;
 layout(binding = SURFCAST_UNIT_BOUNDS, rg32ui) writeonly uniform uimageBuffer bounds;
 #ifdef SURFCAST_LIT_COLOR
 layout(binding = SURFCAST_UNIT_NORMALS, r32ui) writeonly uniform uimageBuffer normals;
@@ -45,8 +45,9 @@ uvec2 tile_range(vec2 low, vec2 high, out bool outside) {
   vec2 size = vec2(frame.region.zw);
   outside = any(greaterThan(first, last)) || any(lessThan(last, vec2(0.0))) || any(greaterThanEqual(first, size)) ||
             any(isnan(low + high));
-  uvec2 a = uvec2(clamp(first, vec2(0.0), size - 1.0)) / uint(SURFCAST_TILE);
-  uvec2 b = uvec2(clamp(last, vec2(0.0), size - 1.0)) / uint(SURFCAST_TILE);
+  uvec2 tile = uvec2(SURFCAST_TILE_WIDTH, SURFCAST_TILE_HEIGHT);
+  uvec2 a = uvec2(clamp(first, vec2(0.0), size - 1.0)) / tile;
+  uvec2 b = uvec2(clamp(last, vec2(0.0), size - 1.0)) / tile;
   return uvec2(a.x | (a.y << 16), b.x | (b.y << 16));
 }
 
@@ -58,7 +59,7 @@ void count_tiles(uvec2 range, uint first_list) {
   }
 }
 
-void append(bool large, uvec2 range, uvec4 a, uvec4 b, uvec2 disc, vec3 n) {
+void append(bool large, uvec2 range, uvec4 a, uvec4 b, uvec4 disc, vec3 n) {
   uint slot = large ? atomicAdd(counters.counts.y, 1u) : atomicAdd(counters.counts.x, 1u);
   // Large splats fill the record buffer from its end. Records beyond its capacity are only counted: the caller makes
   // room and projects again.
@@ -67,7 +68,7 @@ void append(bool large, uvec2 range, uvec4 a, uvec4 b, uvec2 disc, vec3 n) {
   if (large) slot = capacity - 1u - slot;
   imageStore(splats, int(2u * slot), a);
   imageStore(splats, int(2u * slot + 1u), b);
-  imageStore(discs, int(slot), uvec4(disc, 0u, 0u));
+  if (!large) imageStore(discs, int(slot), disc);
   imageStore(bounds, int(slot), uvec4(range, 0u, 0u));
 #ifdef SURFCAST_LIT_COLOR
   imageStore(normals, int(slot), uvec4(pack_biased_normal(n), 0u, 0u, 0u));
@@ -104,7 +105,7 @@ void project_small(Surfel s, vec2 ray, vec2 centre, ScreenVariance v, float c) {
   ScreenVariance d = screen_variance(s.o, s.n, ray, disc_radius * disc_radius, frame.filter_.y);
   vec3 f = inverse_factor(d.s, d.det);
   float push = 1.0 / (1.0 + float(SURFCAST_VISIBILITY_DEPTH) * s.radius / s.o.z);
-  append(false, range, a, b, uvec2(packHalf2x16(f.xy), packHalf2x16(vec2(f.z, push))), s.n);
+  append(false, range, a, b, encode_disc(Disc(f, push, splat.depth_range)), s.n);
 }
 
 // Bounds of the projected disc of radius `extent`, from the dual conic D = extent^2 (I - n n^T) - o o^T of its outline:
@@ -154,7 +155,7 @@ void project_large(Surfel s, float extent, bool astride) {
   if (outside) return;
   uvec4 a, b;
   encode_large(LargeSplat(s.o, s.radius, s.n, s.weight, s.color), a, b);
-  append(true, range, a, b, uvec2(0u), s.n);
+  append(true, range, a, b, uvec4(0u), s.n);
 }
 
 void project(Surfel s) {

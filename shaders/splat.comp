@@ -15,7 +15,7 @@
 const int kMaxLayers = 3;
 const float kOpaque = 1.0 / 128.0;  // transmittance that is not worth another round
 
-layout(local_size_x = SURFCAST_TILE, local_size_y = SURFCAST_TILE / SURFCAST_ROWS) in;
+layout(local_size_x = SURFCAST_TILE_WIDTH, local_size_y = SURFCAST_TILE_HEIGHT / SURFCAST_ROWS) in;
 
 layout(std430, binding = SURFCAST_BIND_TILE_COUNT) readonly buffer TileCount { uint tile_count[]; };
 layout(std430, binding = SURFCAST_BIND_TILE_OFFSET) readonly buffer TileOffset { uint tile_offset[]; };
@@ -56,7 +56,8 @@ void main() {
   uint smalls = tile_count[tile];
   uint first_small = tile_offset[tile];
   uint first_large = tile_offset[large_list];
-  ivec2 local = ivec2(gl_WorkGroupID.xy) * SURFCAST_TILE + ivec2(gl_LocalInvocationID.xy) * ivec2(1, SURFCAST_ROWS);
+  ivec2 local = ivec2(gl_WorkGroupID.xy) * ivec2(SURFCAST_TILE_WIDTH, SURFCAST_TILE_HEIGHT) +
+                ivec2(gl_LocalInvocationID.xy) * ivec2(1, SURFCAST_ROWS);
   vec2 pixel = vec2(frame.region.xy + local) + 0.5;
   Light light = Light(Rows(0.0), Rows(0.0), Rows(0.0), Rows(1.0));
   Rows limit = Rows(3e38);  // inverse depth: nothing is nearer

@@ -9,8 +9,6 @@
 namespace surfcast {
 namespace {
 
-constexpr int kTile = SURFCAST_TILE;
-
 /// Without the prefilter the kernel alone is drawn; this much variance, pixels squared, keeps its inverse finite.
 constexpr double kNoPrefilter = 1e-6;
 
@@ -40,10 +38,10 @@ std::vector<Region> cut_into_regions(int width, int height) {
 }
 
 int tiles_across(const Region& region) {
-  return (region.width + kTile - 1) / kTile;
+  return (region.width + SURFCAST_TILE_WIDTH - 1) / SURFCAST_TILE_WIDTH;
 }
 int tiles_down(const Region& region) {
-  return (region.height + kTile - 1) / kTile;
+  return (region.height + SURFCAST_TILE_HEIGHT - 1) / SURFCAST_TILE_HEIGHT;
 }
 
 layout::FrameConstants frame_constants(const CameraFrame& frame, const Region& region, const PictureRequest& request,

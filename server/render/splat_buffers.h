@@ -46,7 +46,7 @@ class StorageBuffer {
 /// Everything between the passes of one region.
 struct SplatBuffers {
   TexelBuffer splats{"splats", GL_RGBA32UI, 16};
-  TexelBuffer discs{"discs", GL_RG32UI, 8};
+  TexelBuffer discs{"discs", GL_RGBA32UI, 16};
   TexelBuffer bounds{"bounds", GL_RG32UI, 8};
   TexelBuffer normals{"splat normals", GL_R32UI, 4};
   TexelBuffer lists{"tile lists", GL_R32UI, 4};

@@ -2,12 +2,11 @@
 #include "include/pixel_sums.glsl"
 #include "include/splat_record.glsl"
 
-// The inverse depth of the splat's plane in the rows below the displacement v.
-Rows small_inverse_depth(SmallSplat s, vec2 v) {
-  float first = s.inverse_depth * (1.0 + dot(s.slope, v));
-  float step = s.inverse_depth * s.slope.y;
-  return clamp(first + step * kRow, Rows(s.inverse_depth / (1.0 + s.depth_range)),
-               Rows(s.inverse_depth / (1.0 - s.depth_range)));
+// The inverse depth of a splat's plane in the rows below the displacement v, kept to the depth range of its disc.
+Rows small_inverse_depth(float inverse_depth, vec2 slope, float depth_range, vec2 v) {
+  float first = inverse_depth * (1.0 + dot(slope, v));
+  return clamp(first + inverse_depth * slope.y * kRow, Rows(inverse_depth / (1.0 + depth_range)),
+               Rows(inverse_depth / (1.0 - depth_range)));
 }
 
 // (l11 v.x + l21 v.y)^2 + (l22 v.y)^2 in the rows below the displacement v.
@@ -25,14 +24,12 @@ SmallSplat fetch_small(int slot) {
 void see_small(uint first, uint count, vec2 pixel, Rows limit, inout Rows surface) {
   for (uint k = 0u; k < count; ++k) {
     int slot = int(texelFetch(lists, int(first + k)).x);
-    SmallSplat s = fetch_small(slot);
-    uvec2 disc = texelFetch(discs, slot).xy;
-    vec2 factor_z_push = unpackHalf2x16(disc.y);
-    vec2 v = pixel - s.centre;
-    Rows form = factored_form(vec3(unpackHalf2x16(disc.x), factor_z_push.x), v);
-    Rows z = small_inverse_depth(s, v);
-    BoolRows hit = both(at_most(form, Rows(1.0)), less(z, limit));
-    surface = mix(surface, max(surface, z * factor_z_push.y), hit);
+    uvec4 a = texelFetch(splats, 2 * slot);
+    Disc disc = decode_disc(texelFetch(discs, slot));
+    vec2 v = pixel - uintBitsToFloat(a.xy);
+    Rows z = small_inverse_depth(uintBitsToFloat(a.z), unpackHalf2x16(a.w), disc.depth_range, v);
+    BoolRows hit = both(at_most(factored_form(disc.factor, v), Rows(1.0)), less(z, limit));
+    surface = mix(surface, max(surface, z * disc.push), hit);
   }
 }
 
@@ -45,7 +42,7 @@ void accumulate_small(uint first, uint count, vec2 pixel, Rows limit, Rows surfa
       SmallSplat s = fetch_small(slot);
       vec2 v = pixel - s.centre;
       Rows form = factored_form(s.factor, v);
-      Rows z = small_inverse_depth(s, v);
+      Rows z = small_inverse_depth(s.inverse_depth, s.slope, s.depth_range, v);
       BoolRows visible = both(at_most(form, Rows(s.cutoff)), both(at_most(surface, z), less(z, limit)));
       sums_add(sums, splat_value(s.color, slot), mix(Rows(0.0), s.weight * exp2(-form), visible));
     }

@@ -30,6 +30,22 @@ SmallSplat decode_small(uvec4 a, uvec4 b) {
                     c.y, d.x, d.y, b.z);
 }
 
+// The opaque disc of a small splat for visibility splatting.
+struct Disc {
+  vec3 factor;        // inverse_factor of its variance: the disc is where the form is at most 1
+  float push;         // factor of inverse depths that pushes the surface back along the viewing rays
+  float depth_range;  // as in SmallSplat
+};
+
+uvec4 encode_disc(Disc d) {
+  return uvec4(packHalf2x16(d.factor.xy), packHalf2x16(vec2(d.factor.z, d.push)), floatBitsToUint(d.depth_range), 0u);
+}
+
+Disc decode_disc(uvec4 a) {
+  vec2 c = unpackHalf2x16(a.y);
+  return Disc(vec3(unpackHalf2x16(a.x), c.x), c.y, uintBitsToFloat(a.z));
+}
+
 struct LargeSplat {
   vec3 o;        // centre, camera frame
   float radius;  // world units

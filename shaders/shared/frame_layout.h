@@ -15,8 +15,10 @@ namespace surfcast::layout {
 #define SURFCAST_UVEC4 uvec4
 #endif
 
-// Side of a screen tile in pixels: the unit of binning and of the splat kernel.
-#define SURFCAST_TILE 8
+// Size of a screen tile in pixels: the unit of binning and of the splat kernel. 32 pixels are one warp on hardware and
+// one vector of columns on software GL, where taller tiles cost more in the kernel than they save in binning.
+#define SURFCAST_TILE_WIDTH 8
+#define SURFCAST_TILE_HEIGHT 4
 // Surfels that one work group projects; runs of a block are cut into chunks of this many.
 #define SURFCAST_CHUNK 128
 // Splats between two carries of the fixed-point sums (see splat.comp).
@@ -63,7 +65,7 @@ struct Counters {
 #define SURFCAST_BIND_FRAME 0
 // Image and texture units of the buffers that are larger than a storage block may be:
 #define SURFCAST_UNIT_SPLATS 0   // two uvec4 per splat
-#define SURFCAST_UNIT_DISCS 1    // uvec2 per splat: the opaque disc of visibility splatting
+#define SURFCAST_UNIT_DISCS 1    // uvec4 per small splat: the opaque disc of visibility splatting
 #define SURFCAST_UNIT_BOUNDS 2   // uvec2 per splat: its tiles, for binning
 #define SURFCAST_UNIT_LISTS 3    // uint per entry: splat
 #define SURFCAST_UNIT_NORMALS 4  // uint per splat: packed camera space normal, when a lit scene has colour too

@@ -1,19 +1,30 @@
 // The reconstruction kernel and the resampling filter: the constants that the model builder, the shaders and the
 // reference renderer share. Read by C++ and GLSL; plain macros only.
 //
-// Symbols (Ren 2002, Zwicker 2002): r a surfel's stored radius (world units), sigma = SURFCAST_KERNEL_SIGMA * r the
-// standard deviation of its Gaussian reconstruction kernel, c = SURFCAST_KERNEL_CUTOFF the squared Mahalanobis radius
-// beyond which the resampling filter is cut. docs/kernel.md has the measurement behind each value.
+// Symbols (Ren 2002, Zwicker 2002): r a surfel's stored radius (world units, the mean distance to its six nearest
+// neighbours); g in [0, 1] the gain of a fragment, the share of the kernel's peak that the prefilter leaves: 1 where
+// surfels are magnified, 0 where many share a pixel. docs/kernel.md defines every term and has the measurement behind
+// each value.
 #ifndef SURFCAST_SHARED_KERNEL_H
 #define SURFCAST_SHARED_KERNEL_H
 
+// Standard deviation of the Gaussian reconstruction kernel, in units of r.
 #define SURFCAST_KERNEL_SIGMA 0.38
-#define SURFCAST_KERNEL_CUTOFF_MINIFIED 9.0
+
+// The filter is cut at the squared Mahalanobis radius c = mix(MINIFIED, CUTOFF, g): the wide tail closes gaps between
+// magnified samples, and is worth nothing where the prefilter rules.
+#define SURFCAST_KERNEL_CUTOFF_MINIFIED 5.0
 #define SURFCAST_KERNEL_CUTOFF 9.0
+
+// A surfel's opaque disc: radius in units of r on the surface, widened by a Gaussian of so many pixels on the screen
+// so that discs smaller than a pixel still cover its centre, pushed back along the ray by so many r.
 #define SURFCAST_VISIBILITY_RADIUS 1.0
 #define SURFCAST_VISIBILITY_PIXELS 0.6
 #define SURFCAST_VISIBILITY_DEPTH 1.0
-#define SURFCAST_COVERAGE_MINIFIED 0.7
-#define SURFCAST_COVERAGE_MAGNIFIED 0.08
+
+// A pixel counts as covered when the sum of its normalised weights reaches a0 = mix(MINIFIED, MAGNIFIED, g): high
+// where the sum is the pixel's true coverage, low where it is a kernel's tail between samples.
+#define SURFCAST_COVERAGE_MINIFIED 0.75
+#define SURFCAST_COVERAGE_MAGNIFIED 0.05
 
 #endif
