@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "reference/linear_picture.h"
+#include "reference/resampling_filter.h"
+#include "render/picture.h"
+#include "surfel/surfel_cloud.h"
+
+namespace surfcast::reference {
+
+/// A picture, and what was accumulated for each of its pixels.
+struct ReferencePicture {
+  LinearPicture picture;         ///< blended with the background
+  std::vector<double> weights;   ///< A, the accumulated weights (times the multipliers of coverage)
+  std::vector<double> coverage;  ///< min(1, A)
+  uint64_t fragments = 0;        ///< fragments within the cutoff, hidden ones included: what drawing costs
+};
+
+/// Draws the finest level of the cloud in double precision, deterministically. The request states its camera; pixels
+/// are never quantised. Weights of the cloud are used for Normalization::kSurfel alone.
+ReferencePicture render(const SurfelCloud& cloud, const PictureRequest& request, const KernelParameters& kernel = {});
+
+/// The accumulated weight at which a pixel counts as fully covered, for fragments of the given gain.
+double saturation(double gain, const KernelParameters& kernel);
+
+}  // namespace surfcast::reference

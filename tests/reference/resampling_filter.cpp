@@ -1,0 +1,108 @@
+#include "reference/resampling_filter.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+
+namespace surfcast::reference {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+
+bool finite(const glm::dvec3& v) {
+  return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
+}
+
+}  // namespace
+
+std::optional<Splat> Splat::make(const glm::dvec3& o, const glm::dvec3& n, double radius, double eta, double prefilter,
+                                 const KernelParameters& kernel) {
+  const bool valid = finite(o) && finite(n) && glm::dot(n, n) > 0.5 && radius > 0 && std::isfinite(radius);
+  if (!valid) return std::nullopt;
+  Splat splat;
+  splat.o_ = o;
+  splat.n_ = glm::normalize(n);
+  splat.eta_ = eta;
+  splat.prefilter_ = prefilter;
+  splat.sigma_ = kernel.sigma * radius;
+  splat.disc_radius_ = kernel.visibility_radius * radius;
+  splat.push_ = kernel.visibility_depth * radius;
+  splat.disc_pixels_ = kernel.visibility_pixels;
+  const double widest = std::sqrt(std::max(kernel.cutoff_magnified, kernel.cutoff_minified)) * splat.sigma_;
+  splat.extent_ = std::max(widest, splat.disc_radius_);
+  splat.depth_range_ = splat.extent_ * std::sqrt(std::max(0.0, 1 - splat.n_.z * splat.n_.z));
+  if (o.z + splat.depth_range_ <= 0) return std::nullopt;
+  splat.astride_ = o.z <= 1.5 * splat.extent_;
+  splat.cutoff_ = kernel.cutoff_magnified;
+  if (!splat.astride_) {
+    const double gain = splat.fragment(o / o.z).gain;
+    splat.cutoff_ = glm::mix(kernel.cutoff_minified, kernel.cutoff_magnified, gain);
+  }
+  return splat;
+}
+
+// v^T S^-1 v with S = s^2 J J^T + rho^2 I, J the secant Jacobian in units of s, written as sums of squares so that
+// neither an inverse of J nor a difference of large terms occurs:
+//   det(S) r2 = s^2 |m x n|^2 + rho^2 |v|^2,           m = (v.y, -v.x, d.y v.x - d.x v.y) = (eta / o.z) (d x o)
+//   det(S)    = s^4 (n.d)^2 + s^2 rho^2 T + rho^4,     T = trace(J J^T) = 2 + |d.xy|^2 - |n.xy - d.xy n.z|^2
+Fragment Splat::quadratic(const glm::dvec3& d, double s, double rho) const {
+  const glm::dvec2 v{eta_ * (d.x - o_.x / o_.z), eta_ * (d.y - o_.y / o_.z)};
+  const glm::dvec3 m{v.y, -v.x, d.y * v.x - d.x * v.y};
+  const glm::dvec3 mn = glm::cross(m, n_);
+  const glm::dvec2 an{n_.x - d.x * n_.z, n_.y - d.y * n_.z};
+  const double nd = glm::dot(n_, d);
+  const double trace = 2 + d.x * d.x + d.y * d.y - glm::dot(an, an);
+  const double s2 = s * s;
+  const double rho2 = rho * rho;
+  const double det = s2 * s2 * nd * nd + s2 * rho2 * trace + rho2 * rho2;
+  return {(s2 * glm::dot(mn, mn) + rho2 * glm::dot(v, v)) / det, s2 * std::abs(nd) / std::sqrt(det)};
+}
+
+Fragment Splat::object_space(const glm::dvec3& d, double deviation) const {
+  const double t = glm::dot(n_, o_) / glm::dot(n_, d);
+  if (!(t > 0) || !std::isfinite(t)) return {kInfinity, 1};
+  const glm::dvec3 u = (t * d - o_) / deviation;
+  return {glm::dot(u, u), 1};
+}
+
+Fragment Splat::fragment(const glm::dvec3& d) const {
+  if (astride_) return object_space(d, sigma_);
+  return quadratic(d, sigma_ * eta_ / o_.z, prefilter_);
+}
+
+bool Splat::opaque(const glm::dvec3& d) const {
+  const Fragment f = astride_ ? object_space(d, disc_radius_) : quadratic(d, disc_radius_ * eta_ / o_.z, disc_pixels_);
+  return f.r2 <= 1;
+}
+
+double Splat::plane_depth(const glm::dvec3& d) const {
+  const double t = glm::dot(n_, o_) / glm::dot(n_, d);
+  return t > 0 ? t : kInfinity;
+}
+
+double Splat::fragment_depth(const glm::dvec3& d) const {
+  return astride_ ? plane_depth(d) : std::min(plane_depth(d), o_.z + depth_range_);
+}
+
+double Splat::disc_depth(const glm::dvec3& d) const {
+  if (astride_) return plane_depth(d) + push_;
+  return std::max(plane_depth(d), o_.z - depth_range_) * (1 + push_ / o_.z);
+}
+
+// A pixel of the splat sees a point d.xy = (o.xy + U.xy + b o.z / eta) / (o.z + U.z) with U on the disc and b within
+// the prefilter's reach: v^T (A + B)^-1 v is the least a^T A^-1 a + b^T B^-1 b over v = a + b.
+Splat::Bounds Splat::bounds() const {
+  const glm::dvec3 reach = extent_ * glm::sqrt(glm::max(glm::dvec3(0), 1.0 - n_ * n_));
+  const double pixels = astride_ ? 0 : std::max(prefilter_ * std::sqrt(cutoff_), disc_pixels_);
+  const double pad = pixels * o_.z / eta_;
+  const double near = astride_ ? 0 : o_.z - reach.z;  // x / 0 with its sign is the bound at the eye's plane
+  const double far = o_.z + reach.z;
+  const auto low = [&](double x) { return x < 0 ? x / near : x / far; };
+  const auto high = [&](double x) { return x > 0 ? x / near : x / far; };
+  return {{low(o_.x - reach.x - pad), low(o_.y - reach.y - pad)},
+          {high(o_.x + reach.x + pad), high(o_.y + reach.y + pad)}};
+}
+
+}  // namespace surfcast::reference

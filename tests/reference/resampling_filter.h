@@ -1,0 +1,79 @@
+#pragma once
+
+#include <glm/vec2.hpp>
+#include <glm/vec3.hpp>
+#include <optional>
+
+#include "geometry/camera.h"
+#include "shared/kernel.h"
+
+namespace surfcast::reference {
+
+/// The constants of shaders/shared/kernel.h as values, so that a study can vary them.
+struct KernelParameters {
+  double sigma = SURFCAST_KERNEL_SIGMA;
+  double cutoff_minified = SURFCAST_KERNEL_CUTOFF_MINIFIED;
+  double cutoff_magnified = SURFCAST_KERNEL_CUTOFF;
+  double visibility_radius = SURFCAST_VISIBILITY_RADIUS;
+  double visibility_pixels = SURFCAST_VISIBILITY_PIXELS;
+  double visibility_depth = SURFCAST_VISIBILITY_DEPTH;
+  double coverage_minified = SURFCAST_COVERAGE_MINIFIED;
+  double coverage_magnified = SURFCAST_COVERAGE_MAGNIFIED;
+};
+
+/// What a surfel contributes to one pixel, before its weight.
+struct Fragment {
+  double r2 = 0;    ///< squared Mahalanobis distance of the pixel in the resampling filter
+  double gain = 0;  ///< share of the filter's peak left by the prefilter, in [0, 1]
+};
+
+/// One surfel seen by one camera: the object space EWA filter (Ren 2002, section 4), exact in perspective.
+///
+/// Symbols: o centre, n unit normal, both in the camera frame; d = (x, y, 1) a pixel's ray; v = eta (d.xy - o.xy / o.z)
+/// the pixel's displacement from the projected centre, pixels, y up; s = sigma eta / o.z the kernel's standard
+/// deviation in pixels, were it seen from the front; rho the prefilter's standard deviation, pixels.
+class Splat {
+ public:
+  /// None where no pixel can see the surfel: behind the eye, or degenerate.
+  static std::optional<Splat> make(const glm::dvec3& o, const glm::dvec3& n, double radius, double eta,
+                                   double prefilter, const KernelParameters& kernel);
+
+  [[nodiscard]] Fragment fragment(const glm::dvec3& d) const;
+  [[nodiscard]] bool cut(double r2) const { return !(r2 <= cutoff_); }
+  /// Whether the surfel's opaque disc covers the pixel.
+  [[nodiscard]] bool opaque(const glm::dvec3& d) const;
+  /// Depth (camera z) at which a fragment is tested: the surfel's plane along the ray, yet never behind the splat's far
+  /// end, since a prefilter wider than the splat asks for the plane far beyond it.
+  [[nodiscard]] double fragment_depth(const glm::dvec3& d) const;
+  /// Depth of the opaque disc: the plane, never in front of the splat's near end, then pushed back along the ray
+  /// (Ren 2002, section 5.1). Coplanar fragments are never behind it, whatever the slope.
+  [[nodiscard]] double disc_depth(const glm::dvec3& d) const;
+
+  /// Bounds of d.xy over every pixel that the splat or its disc can touch.
+  struct Bounds {
+    glm::dvec2 min;
+    glm::dvec2 max;
+  };
+  [[nodiscard]] Bounds bounds() const;
+
+ private:
+  [[nodiscard]] double plane_depth(const glm::dvec3& d) const;
+  [[nodiscard]] Fragment quadratic(const glm::dvec3& d, double s, double rho) const;
+  [[nodiscard]] Fragment object_space(const glm::dvec3& d, double deviation) const;
+
+  glm::dvec3 o_{0};
+  glm::dvec3 n_{0};
+  double eta_ = 0;
+  double sigma_ = 0;
+  double prefilter_ = 0;
+  double cutoff_ = 0;
+  double extent_ = 0;       ///< radius of the splat in the tangent plane, world units
+  double depth_range_ = 0;  ///< how far the splat's rim lies before and behind its centre, camera z
+  double disc_radius_ = 0;
+  double disc_pixels_ = 0;
+  double push_ = 0;  ///< of the opaque disc along the ray, at the centre's depth, camera z
+
+  bool astride_ = false;  ///< the disc reaches the eye's plane, where nothing projects
+};
+
+}  // namespace surfcast::reference

@@ -1,0 +1,116 @@
+#include "reference/sampling.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <nanoflann.hpp>
+#include <numbers>
+#include <random>
+
+#include <tbb/parallel_for.h>
+
+#include "base/contract.h"
+#include "reference/linear_picture.h"
+
+namespace surfcast::reference {
+namespace {
+
+constexpr size_t kNeighbours = 6;
+
+/// What nanoflann asks of a point set.
+struct PointSet {
+  const std::vector<SurfacePoint>& points;
+
+  [[nodiscard]] size_t kdtree_get_point_count() const { return points.size(); }
+  [[nodiscard]] double kdtree_get_pt(size_t i, size_t axis) const { return points[i].position[static_cast<int>(axis)]; }
+  template <typename Bounds>
+  bool kdtree_get_bbox(Bounds&) const {
+    return false;
+  }
+};
+
+using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointSet>, PointSet, 3, uint32_t>;
+
+double mean_neighbour_distance(const Tree& tree, const glm::dvec3& position) {
+  std::array<uint32_t, kNeighbours + 1> indices{};
+  std::array<double, kNeighbours + 1> squares{};
+  const std::array<double, 3> query{position.x, position.y, position.z};
+  const size_t found = tree.knnSearch(query.data(), kNeighbours + 1, indices.data(), squares.data());
+  double sum = 0;
+  for (size_t i = 1; i < found; ++i) sum += std::sqrt(squares[i]);
+  return sum / static_cast<double>(found - 1);
+}
+
+}  // namespace
+
+std::vector<SurfacePoint> jittered_square(int side, double jitter, uint32_t seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> offset(0.5 - jitter, 0.5 + jitter);
+  std::vector<SurfacePoint> points;
+  for (int y = 0; y < side; ++y) {
+    for (int x = 0; x < side; ++x) {
+      const double u = (x + offset(random)) / side;
+      const double v = (y + offset(random)) / side;
+      points.push_back(square_point({2 * u - 1, 2 * v - 1}));
+    }
+  }
+  return points;
+}
+
+std::vector<SurfacePoint> random_square(int count, uint32_t seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> coordinate(-1, 1);
+  std::vector<SurfacePoint> points;
+  for (int i = 0; i < count; ++i) {
+    const double x = coordinate(random);
+    const double y = coordinate(random);
+    points.push_back(square_point({x, y}));
+  }
+  return points;
+}
+
+std::vector<SurfacePoint> jittered_sphere(int count, double jitter, uint32_t seed) {
+  std::mt19937 random(seed);
+  const double spacing = std::sqrt(4 * std::numbers::pi / count);
+  std::uniform_real_distribution<double> offset(-jitter * spacing, jitter * spacing);
+  const double golden_angle = std::numbers::pi * (3 - std::sqrt(5.0));
+  std::vector<SurfacePoint> points;
+  for (int i = 0; i < count; ++i) {
+    const double z = 1 - (2 * i + 1.0) / count;
+    const double r = std::sqrt(1 - z * z);
+    const glm::dvec3 p{r * std::cos(golden_angle * i), r * std::sin(golden_angle * i), z};
+    const glm::dvec3 east = glm::normalize(glm::dvec3(-p.y, p.x, 0));
+    const glm::dvec3 north = glm::cross(p, east);
+    const double x = offset(random);
+    const double y = offset(random);
+    points.push_back(sphere_point(p + x * east + y * north));
+  }
+  return points;
+}
+
+SurfelCloud surfels_at(const std::vector<SurfacePoint>& points) {
+  SURFCAST_EXPECTS(points.size() > 1);
+  const PointSet set{points};
+  const Tree tree(3, set);
+  SurfelCloud cloud;
+  cloud.oriented = true;
+  cloud.radii.resize(points.size());
+  for (const SurfacePoint& p : points) {
+    cloud.positions.push_back(p.position);
+    cloud.normals.emplace_back(p.normal);
+  }
+  tbb::parallel_for(size_t{0}, points.size(), [&](size_t i) {
+    cloud.radii[i] = static_cast<float>(mean_neighbour_distance(tree, points[i].position));
+  });
+  cloud.sources = {{"scene", 0, points.size(), std::nullopt}};
+  return cloud;
+}
+
+ColorAttribute sampled_colors(const std::vector<SurfacePoint>& points, const Texture& texture) {
+  ColorAttribute colors;
+  for (const SurfacePoint& p : points) colors.values.emplace_back(srgb8_from_linear(texture(p.uv)));
+  return colors;
+}
+
+}  // namespace surfcast::reference

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "reference/ray_surface.h"
+#include "reference/texture.h"
+#include "surfel/surfel_cloud.h"
+
+namespace surfcast::reference {
+
+/// A lattice of `side` x `side` samples on the square, every one moved by up to `jitter` cells along both axes.
+std::vector<SurfacePoint> jittered_square(int side, double jitter, uint32_t seed);
+/// As many samples of the square, each anywhere in it: a Poisson process, with holes and clusters.
+std::vector<SurfacePoint> random_square(int count, uint32_t seed);
+/// A Fibonacci lattice on the unit sphere, every sample moved by up to `jitter` spacings along both directions.
+std::vector<SurfacePoint> jittered_sphere(int count, double jitter, uint32_t seed);
+
+/// Surfels at the points: radius the mean distance to the six nearest neighbours, oriented, without colour.
+SurfelCloud surfels_at(const std::vector<SurfacePoint>& points);
+/// The texture's 8 bit sRGB colour at every point.
+ColorAttribute sampled_colors(const std::vector<SurfacePoint>& points, const Texture& texture);
+
+}  // namespace surfcast::reference
