@@ -131,11 +131,13 @@ class FramedSession : public Session, public std::enable_shared_from_this<Framed
 };
 
 asio::awaitable<void> FramedSession::read_all() {
-  if (co_await exchange_hellos()) {
-    greeted_ = true;
-    last_request_ = Clock::now();
-    while (socket_.is_open() && co_await read_some() && handle_frames()) {
-    }
+  bool going_on = co_await exchange_hellos();
+  greeted_ = going_on;
+  last_request_ = Clock::now();
+  while (going_on) {
+    // GCC 12 makes wrong code of a co_await inside a condition: it stands by itself here and below.
+    going_on = co_await read_some();
+    if (going_on) going_on = handle_frames();
   }
   if (!last_words_) close();
 }
@@ -173,7 +175,9 @@ asio::awaitable<bool> FramedSession::exchange_hellos() {
 /// Waits until the client has read enough of its answers, then reads. False at the end of the stream.
 asio::awaitable<bool> FramedSession::read_some() {
   error_code code;
-  while (too_much_unread() && socket_.is_open()) co_await room_.async_wait(into(code));
+  while (too_much_unread() && socket_.is_open()) {
+    co_await room_.async_wait(into(code));
+  }
   const size_t count = co_await socket_.async_read_some(asio::buffer(buffer_), into(code));
   if (code) co_return false;
   splitter_.append(std::span(buffer_).first(count));
@@ -319,8 +323,11 @@ asio::awaitable<void> FramedSession::write_all() {
   error_code code;
   while (!outgoing_.empty() && socket_.is_open()) {
     const Bytes& frame = outgoing_.front();
-    for (size_t sent = 0; sent < frame.size() && !code;) {
-      sent += co_await socket_.async_write_some(asio::buffer(frame.data() + sent, frame.size() - sent), into(code));
+    size_t sent = 0;
+    while (sent < frame.size() && !code) {
+      const size_t count =
+          co_await socket_.async_write_some(asio::buffer(frame.data() + sent, frame.size() - sent), into(code));
+      sent += count;
       last_write_ = Clock::now();
     }
     if (code) break;
@@ -339,7 +346,9 @@ asio::awaitable<void> FramedSession::write_all() {
 asio::awaitable<void> FramedSession::linger() {
   error_code code;
   socket_.shutdown(tcp::socket::shutdown_send, code);
-  while (!code) co_await socket_.async_read_some(asio::buffer(buffer_), into(code));
+  while (!code) {
+    co_await socket_.async_read_some(asio::buffer(buffer_), into(code));
+  }
   close();
 }
 

@@ -55,6 +55,11 @@ asio::awaitable<Value> answer_of(Start start) {
   co_return co_await asio::async_initiate<const asio::use_awaitable_t<>, void(Value)>(initiate, asio::use_awaitable);
 }
 
+unsigned status_of(const error_code& code) {
+  if (code == http::error::header_limit) return 431;
+  return code == http::error::body_limit ? 413 : 400;
+}
+
 class HttpSession : public Session, public std::enable_shared_from_this<HttpSession> {
  public:
   explicit HttpSession(Connection connection)
@@ -87,7 +92,7 @@ class HttpSession : public Session, public std::enable_shared_from_this<HttpSess
   asio::awaitable<HttpAnswer> answer_place(HttpRoute route);
   asio::awaitable<HttpAnswer> answer_model(std::string name);
   asio::awaitable<HttpAnswer> answer_picture(HttpRoute route);
-  asio::awaitable<std::vector<std::string>> models();
+  asio::awaitable<HttpAnswer> answer_models(HttpAnswer (*present)(const std::vector<std::string>&));
   asio::awaitable<Result<EncodedPicture>> draw(PictureJob job);
   asio::awaitable<void> cancel_when_client_leaves(JobId job);
   asio::awaitable<bool> write(const HttpAnswer& answer, unsigned version, bool keep_alive, bool head);
@@ -104,7 +109,9 @@ class HttpSession : public Session, public std::enable_shared_from_this<HttpSess
 };
 
 asio::awaitable<void> HttpSession::serve() {
-  while (co_await serve_one()) {
+  bool going_on = true;
+  while (going_on) {
+    going_on = co_await serve_one();
   }
   error_code ignored;
   stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
@@ -133,8 +140,7 @@ asio::awaitable<bool> HttpSession::serve_one() {
   const Parser::value_type& request = parser.get();
   HttpAnswer result;
   if (code) {
-    result = error_answer({ErrorKind::kInvalidInput, "not a request of HTTP/1.1: " + code.message()},
-                          code == http::error::header_limit ? 431 : 400);
+    result = error_answer({ErrorKind::kInvalidInput, "not a request of HTTP/1.1: " + code.message()}, status_of(code));
   } else if (!parser.is_done()) {
     result = error_answer({ErrorKind::kLimit, "a request with a body is not wanted here"}, 413);
   } else {
@@ -164,9 +170,9 @@ asio::awaitable<HttpAnswer> HttpSession::answer(const Parser::value_type& reques
 asio::awaitable<HttpAnswer> HttpSession::answer_place(HttpRoute route) {
   switch (route.kind) {
     case HttpRoute::Kind::kPage:
-      co_return page_answer(co_await models());
+      co_return co_await answer_models(page_answer);
     case HttpRoute::Kind::kModels:
-      co_return models_answer(co_await models());
+      co_return co_await answer_models(models_answer);
     case HttpRoute::Kind::kModel:
       co_return co_await answer_model(std::move(route.model));
     case HttpRoute::Kind::kPicture:
@@ -182,9 +188,10 @@ asio::awaitable<HttpAnswer> HttpSession::answer_place(HttpRoute route) {
   co_return text_answer(to_prometheus(context_->metrics, context_->service.queued()), "text/plain; version=0.0.4");
 }
 
-asio::awaitable<std::vector<std::string>> HttpSession::models() {
-  co_return co_await answer_of<std::vector<std::string>>(
+asio::awaitable<HttpAnswer> HttpSession::answer_models(HttpAnswer (*present)(const std::vector<std::string>&)) {
+  const auto names = co_await answer_of<std::vector<std::string>>(
       [this](auto done) { context_->service.list_models(std::move(done)); });
+  co_return present(names);
 }
 
 asio::awaitable<HttpAnswer> HttpSession::answer_model(std::string name) {

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "base/result.h"
+
+namespace surfcast {
+
+// Each adds one command, which leaves how it went in `outcome`. `interrupt` is as in ClientConfig.
+
+/// `models URL [--json]`: the names of what is served, one per line.
+void add_models_command(CLI::App& app, int interrupt, Status& outcome);
+/// `render URL/MODEL --output OUT ...`: one picture.
+void add_render_command(CLI::App& app, int interrupt, Status& outcome);
+/// `ping URL [--count N]`: round trip times.
+void add_ping_command(CLI::App& app, int interrupt, Status& outcome);
+
+}  // namespace surfcast

@@ -1,0 +1,46 @@
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <iostream>
+
+#include "base/result.h"
+#include "client/commands.h"
+#include "client/interrupt.h"
+
+namespace {
+
+constexpr int kDone = 0;
+constexpr int kFailed = 1;
+constexpr int kWrongCommandLine = 2;
+
+int report(const std::string& message, int code) {
+  std::cerr << "surfcast: " << message << '\n';
+  return code;
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{"Pictures of large scans, drawn by a server", "surfcast"};
+  app.set_version_flag("--version", "surfcast " SURFCAST_VERSION);
+  app.require_subcommand(1);
+  const int interrupt = surfcast::interrupt_descriptor();
+  surfcast::Status outcome;
+  surfcast::add_models_command(app, interrupt, outcome);
+  surfcast::add_render_command(app, interrupt, outcome);
+  surfcast::add_ping_command(app, interrupt, outcome);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);  // --help
+    return report(error.what(), kWrongCommandLine);
+  }
+  return outcome ? kDone : report(outcome.error().message, kFailed);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  try {
+    return run(argc, argv);
+  } catch (const std::exception& error) {  // out of memory, mostly
+    return report(error.what(), kFailed);
+  }
+}

@@ -1,0 +1,53 @@
+#include <iostream>
+#include <memory>
+#include <nlohmann/json.hpp>
+
+#include "client/commands.h"
+#include "client/time_limits.h"
+
+namespace surfcast {
+namespace {
+
+struct ModelsCommand {
+  std::string url;
+  bool json = false;
+  TimeLimits limits;
+};
+
+Result<wire::ModelList> ask_for_models(const Endpoint& server, const ClientConfig& config) {
+  Result<ServerConnection> connection = ServerConnection::open(server, config);
+  if (!connection) return fail(connection.error());
+  wire::Request request;
+  request.mutable_list_models();
+  Result<wire::Answer> answer = connection->ask(std::move(request));
+  if (!answer) return fail(answer.error());
+  return std::move(*answer->mutable_model_list());
+}
+
+Status list_models(const ModelsCommand& command, int interrupt) {
+  const Result<Endpoint> server = parse_endpoint(command.url);
+  if (!server) throw CLI::ValidationError(server.error().message);
+  const Result<wire::ModelList> list = ask_for_models(*server, command.limits.config(interrupt));
+  if (!list) return fail(list.error());
+  if (command.json) {
+    const std::vector<std::string> names(list->models().begin(), list->models().end());
+    std::cout << nlohmann::json{{"models", names}}.dump(2) << '\n';
+  } else {
+    for (const std::string& name : list->models()) std::cout << name << '\n';
+  }
+  if (!std::cout.flush()) return fail(ErrorKind::kIo, "cannot write to standard output");
+  return {};
+}
+
+}  // namespace
+
+void add_models_command(CLI::App& app, int interrupt, Status& outcome) {
+  const auto command = std::make_shared<ModelsCommand>();
+  CLI::App* sub = app.add_subcommand("models", "List the models of a server");
+  sub->add_option("url", command->url, "HOST:PORT of the server")->required();
+  sub->add_flag("--json", command->json, "as JSON");
+  command->limits.add_to(*sub);
+  sub->callback([command, interrupt, &outcome] { outcome = list_models(*command, interrupt); });
+}
+
+}  // namespace surfcast

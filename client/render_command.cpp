@@ -1,0 +1,43 @@
+#include <memory>
+
+#include "client/commands.h"
+#include "client/time_limits.h"
+#include "protocol/request_flags.h"
+#include "protocol/save_picture.h"
+
+namespace surfcast {
+namespace {
+
+struct RenderCommand {
+  std::string url;
+  RequestFlags flags;
+  TimeLimits limits;
+};
+
+Status render(const RenderCommand& command, int interrupt) {
+  const Result<ModelUrl> url = parse_model_url(command.url);
+  if (!url) throw CLI::ValidationError(url.error().message);
+  if (Status status = command.flags.check(); !status) throw CLI::ValidationError(status.error().message);
+  Result<wire::DrawPicture> picture = command.flags.request(url->model);
+  if (!picture) return fail(picture.error());
+  Result<ServerConnection> connection = ServerConnection::open(url->server, command.limits.config(interrupt));
+  if (!connection) return fail(connection.error());
+  wire::Request request;
+  *request.mutable_draw_picture() = std::move(*picture);
+  const Result<wire::Answer> answer = connection->ask(std::move(request));
+  if (!answer) return fail(answer.error());
+  return save_picture(answer->picture(), command.flags.output(), command.flags.stats());
+}
+
+}  // namespace
+
+void add_render_command(CLI::App& app, int interrupt, Status& outcome) {
+  const auto command = std::make_shared<RenderCommand>();
+  CLI::App* sub = app.add_subcommand("render", "Draw a picture of a model on a server");
+  sub->add_option("url", command->url, "HOST:PORT/MODEL")->required();
+  command->flags.add_to(*sub);
+  command->limits.add_to(*sub);
+  sub->callback([command, interrupt, &outcome] { outcome = render(*command, interrupt); });
+}
+
+}  // namespace surfcast

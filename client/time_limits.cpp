@@ -1,0 +1,27 @@
+#include "client/time_limits.h"
+
+#include "protocol/request_flags.h"
+
+namespace surfcast {
+namespace {
+
+std::chrono::milliseconds milliseconds(double seconds) {
+  return std::chrono::milliseconds(static_cast<int64_t>(seconds * 1e3));
+}
+
+}  // namespace
+
+void TimeLimits::add_to(CLI::App& command) {
+  command.add_option("--connect-timeout", connect, "seconds to wait for the connection (default 10)")
+      ->envname(environment_name("connect-timeout"))
+      ->check(CLI::Range(0.001, 86400.0));
+  command.add_option("--timeout", answer, "seconds to wait for an answer (default 120)")
+      ->envname(environment_name("timeout"))
+      ->check(CLI::Range(0.001, 86400.0));
+}
+
+ClientConfig TimeLimits::config(int interrupt) const {
+  return {.connect = milliseconds(connect), .answer = milliseconds(answer), .interrupt = interrupt};
+}
+
+}  // namespace surfcast

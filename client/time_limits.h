@@ -1,0 +1,18 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "client/server_connection.h"
+
+namespace surfcast {
+
+/// The flags `--connect-timeout` and `--timeout` that every command has. Must outlive the parsing.
+struct TimeLimits {
+  double connect = 10;  ///< seconds
+  double answer = 120;  ///< seconds
+
+  void add_to(CLI::App& command);
+  [[nodiscard]] ClientConfig config(int interrupt) const;
+};
+
+}  // namespace surfcast

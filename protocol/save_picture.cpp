@@ -1,0 +1,56 @@
+#include "protocol/save_picture.h"
+
+#include <cstdio>
+#include <nlohmann/json.hpp>
+
+#include "base/atomic_file.h"
+#include "protocol/picture_fields.h"
+
+namespace surfcast {
+namespace {
+
+using nlohmann::json;
+
+json to_json(const wire::Vector3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+json to_json(const wire::Camera& camera) {
+  return {{"position", to_json(camera.position())},
+          {"focal_point", to_json(camera.focal_point())},
+          {"view_up", to_json(camera.view_up())},
+          {"view_angle", camera.view_angle()}};
+}
+
+Status write_to_stdout(const std::string& data) {
+  if (std::fwrite(data.data(), 1, data.size(), stdout) == data.size() && std::fflush(stdout) == 0) return {};
+  return fail(ErrorKind::kIo, "cannot write the picture to standard output");
+}
+
+}  // namespace
+
+std::string picture_stats_json(const wire::Picture& picture) {
+  json stages = json::object();
+  for (const wire::Stage& stage : picture.stages()) stages[stage.name()] = stage.milliseconds();
+  const json document = {{"format", name_of(picture.format())},
+                         {"bytes", picture.data().size()},
+                         {"resolution", {picture.resolution().width(), picture.resolution().height()}},
+                         {"camera", to_json(picture.camera())},
+                         {"normalization", picture.normalization() == wire::NORMALIZATION_SURFEL ? "surfel" : "pixel"},
+                         {"spacing", picture.spacing()},
+                         {"converged", picture.converged()},
+                         {"surfels_drawn", picture.surfels_drawn()},
+                         {"blocks_drawn", picture.blocks_drawn()},
+                         {"gl_renderer", picture.gl_renderer()},
+                         {"milliseconds", stages}};
+  return document.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
+}
+
+Status save_picture(const wire::Picture& picture, const std::string& output, const std::string& stats) {
+  const Status written =
+      output == "-" ? write_to_stdout(picture.data()) : write_file_atomically(output, std::string_view(picture.data()));
+  if (!written || stats.empty()) return written;
+  return write_file_atomically(stats, picture_stats_json(picture));
+}
+
+}  // namespace surfcast

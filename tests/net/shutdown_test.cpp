@@ -1,0 +1,80 @@
+#include "base/stopwatch.h"
+#include "net/net_fixture.h"
+
+namespace surfcast {
+namespace {
+
+class ShutdownTest : public NetFixture {};
+
+TEST_F(ShutdownTest, APictureThatIsBeingDrawnIsFinishedAndDelivered) {
+  studio_->slow = true;
+  start();
+  auto connection = connect();
+  ASSERT_TRUE(connection);
+  ASSERT_TRUE(connection->send(picture_request("cube")));
+  ASSERT_TRUE(eventually([&] { return studio_->drawn == 1; }));
+  server_->stop();
+  std::this_thread::sleep_for(milliseconds(50));
+  studio_->slow = false;
+  const auto answer = connection->receive();
+  ASSERT_TRUE(answer);
+  EXPECT_TRUE(answer->has_picture());
+  stop();
+}
+
+TEST_F(ShutdownTest, APictureOfHttpIsFinishedAndDelivered) {
+  studio_->slow = true;
+  start();
+  RawSocket socket(port_);
+  socket.send("GET /api/models/cube/image?resolution=4,4 HTTP/1.1\r\nHost: here\r\n\r\n");
+  ASSERT_TRUE(eventually([&] { return studio_->drawn == 1; }));
+  server_->stop();
+  std::this_thread::sleep_for(milliseconds(50));
+  studio_->slow = false;
+  EXPECT_NE(socket.read_to_end().find("PNG"), std::string::npos);
+  stop();
+}
+
+TEST_F(ShutdownTest, APictureThatTakesTooLongIsCancelled) {
+  studio_->slow = true;
+  ServerConfig config;
+  config.drain = milliseconds(100);
+  start(config);
+  auto connection = connect();
+  ASSERT_TRUE(connection);
+  ASSERT_TRUE(connection->send(picture_request("cube")));
+  RawSocket http(port_);
+  http.send("GET /api/models/cube/image HTTP/1.1\r\nHost: here\r\n\r\n");
+  ASSERT_TRUE(eventually([&] { return studio_->drawn == 1 && service_->queued() == 1; }));
+  const Stopwatch watch;
+  stop();
+  EXPECT_LT(watch.seconds(), 5);
+  EXPECT_EQ(studio_->cancelled, 1);
+  EXPECT_FALSE(connection->receive());
+}
+
+TEST_F(ShutdownTest, IdleConnectionsDoNotDelayTheEnd) {
+  start();
+  auto connection = connect();
+  ASSERT_TRUE(connection);
+  ASSERT_TRUE(connection->ask(ping_request()));
+  RawSocket silent(port_);
+  RawSocket http(port_);
+  http.send("GET /healthz HTTP/1.1\r\nHost: here\r\n\r\n");
+  http.read_http();
+  const Stopwatch watch;
+  stop();
+  EXPECT_LT(watch.seconds(), 3);
+}
+
+TEST_F(ShutdownTest, APortInUseIsAnErrorThatNamesIt) {
+  start();
+  ServerConfig config;
+  config.port = port_;
+  const auto second = Server::create(*service_, config);
+  ASSERT_FALSE(second);
+  EXPECT_NE(second.error().message.find(std::to_string(port_)), std::string::npos);
+}
+
+}  // namespace
+}  // namespace surfcast
