@@ -6,6 +6,8 @@
 #include "base/result.h"
 #include "cmd/build.h"
 #include "cmd/inspect.h"
+#include "cmd/render.h"
+#include "cmd/serve.h"
 
 namespace {
 
@@ -24,6 +26,9 @@ int run(int argc, char** argv) {
   surfcast::Status outcome;
   surfcast::add_build_command(app, outcome);
   surfcast::add_inspect_command(app, outcome);
+  surfcast::add_serve_command(app, outcome);
+  surfcast::add_render_command(app, outcome);
+  surfcast::add_healthcheck_command(app, outcome);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -1,0 +1,53 @@
+#include "cmd/find_models.h"
+
+#include <algorithm>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include "cmd/scan_cache.h"
+
+namespace surfcast {
+namespace {
+
+namespace fs = std::filesystem;
+
+Result<fs::path> build_in_cache(const fs::path& scan, const fs::path& cache) {
+  if (!cache.empty()) return model_of_scan(scan, cache);
+  const Result<fs::path> folder = default_cache_folder();
+  if (!folder) return fail(folder.error());
+  return model_of_scan(scan, *folder);
+}
+
+/// The model file behind a path that is no folder; it must open.
+Result<NamedModel> find_model(const fs::path& path, const fs::path& cache) {
+  if (path.extension() != ".surf") {
+    const Result<fs::path> built = build_in_cache(path, cache);
+    if (!built) return fail(built.error());
+    return NamedModel{path.stem().string(), *built};
+  }
+  if (const Result<ModelFile> model = ModelFile::open(path); !model) return fail(model.error());
+  return NamedModel{path.stem().string(), path};
+}
+
+}  // namespace
+
+Result<std::unique_ptr<ModelCatalogue>> find_models(std::span<const fs::path> paths, const fs::path& cache) {
+  std::vector<NamedModel> files;
+  std::vector<fs::path> folders;
+  for (const fs::path& path : paths) {
+    std::error_code ignored;
+    if (fs::is_directory(path, ignored)) {
+      folders.push_back(path);
+      continue;
+    }
+    Result<NamedModel> model = find_model(path, cache);
+    if (!model) return fail(model.error());
+    const bool taken = std::ranges::any_of(files, [&](const NamedModel& other) { return other.name == model->name; });
+    if (taken) return fail(ErrorKind::kInvalidInput, path.string() + ": another model is served under that name");
+    files.push_back(std::move(*model));
+  }
+  return std::make_unique<ModelCatalogue>(std::move(files), std::move(folders));
+}
+
+}  // namespace surfcast

@@ -1,0 +1,17 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+#include <span>
+
+#include "base/result.h"
+#include "service/model_catalogue.h"
+
+namespace surfcast {
+
+/// The catalogue of what a command line names: model files, folders of them, and scans, which are built now unless the
+/// cache has their models. `cache` empty: the default folder.
+Result<std::unique_ptr<ModelCatalogue>> find_models(std::span<const std::filesystem::path> paths,
+                                                    const std::filesystem::path& cache);
+
+}  // namespace surfcast

@@ -1,0 +1,37 @@
+#include <memory>
+#include <string>
+
+#include "client/server_connection.h"
+#include "cmd/serve.h"
+#include "protocol/request_flags.h"
+
+namespace surfcast {
+namespace {
+
+constexpr std::chrono::milliseconds kPatience{5000};
+
+Status check_health(const Endpoint& server) {
+  Result<ServerConnection> connection = ServerConnection::open(server, {.connect = kPatience, .answer = kPatience});
+  if (!connection) return fail(connection.error());
+  wire::Request request;
+  request.mutable_ping();
+  const Result<wire::Answer> answer = connection->ask(std::move(request));
+  if (!answer) return fail(answer.error());
+  return {};
+}
+
+}  // namespace
+
+void add_healthcheck_command(CLI::App& app, Status& outcome) {
+  auto url = std::make_shared<std::string>("127.0.0.1:7600");
+  CLI::App* sub = app.add_subcommand("healthcheck", "Tell whether a server answers, by the exit code");
+  sub->add_option("--url", *url, "HOST:PORT of the server (default 127.0.0.1:7600)")
+      ->envname(environment_name("listen"));
+  sub->callback([url, &outcome] {
+    const Result<Endpoint> server = parse_endpoint(*url);
+    if (!server) throw CLI::ValidationError("--url", server.error().message);
+    outcome = check_health(*server);
+  });
+}
+
+}  // namespace surfcast

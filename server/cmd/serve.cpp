@@ -1,0 +1,73 @@
+#include "cmd/serve.h"
+
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "base/log.h"
+#include "cmd/find_models.h"
+#include "cmd/log_device.h"
+#include "net/server.h"
+#include "protocol/endpoint.h"
+#include "protocol/request_flags.h"
+#include "service/model_painter.h"
+#include "service/render_service.h"
+
+namespace surfcast {
+namespace {
+
+struct ServeCommand {
+  std::vector<std::filesystem::path> paths;
+  std::string listen = "127.0.0.1:7600";
+  std::filesystem::path cache;
+  RendererConfig renderer;
+  ServerConfig server;
+};
+
+Status serve(const ServeCommand& command) {
+  Result<std::unique_ptr<ModelCatalogue>> models = find_models(command.paths, command.cache);
+  if (!models) return fail(models.error());
+  const auto service = RenderService::start(**models, model_painters(**models, command.renderer), {});
+  if (!service) return fail(service.error());
+  log_device((*service)->device());
+  const auto server = Server::create(**service, command.server);
+  if (!server) return fail(server.error());
+  const size_t count = (*models)->names().size();
+  if (count == 0) spdlog::warn("there are no models yet; those that appear in the folders will be served");
+  const Endpoint bound{command.server.host, (*server)->port()};
+  std::cout << "surfcastd: serving " << count << (count == 1 ? " model" : " models") << " at http://"
+            << to_string(bound) << '/' << std::endl;
+  (*server)->run(/*until_signal=*/true);
+  spdlog::info("stopped");
+  return {};
+}
+
+}  // namespace
+
+void add_serve_command(CLI::App& app, Status& outcome) {
+  auto command = std::make_shared<ServeCommand>();
+  CLI::App* sub = app.add_subcommand("serve", "Serve models over TCP and HTTP");
+  sub->add_option("PATH", command->paths, "Models, folders of models, and scans (default: the current folder)");
+  sub->add_option("--listen", command->listen, "HOST:PORT; port 0 takes a free one (default 127.0.0.1:7600)")
+      ->envname(environment_name("listen"));
+  sub->add_option("--gpu", command->renderer.gpu, "Index of the EGL device (default: the first hardware device)")
+      ->envname(environment_name("gpu"))
+      ->check(CLI::NonNegativeNumber);
+  sub->add_option("--cache", command->cache, "Folder for the models of scans (default ~/.cache/surfcast)")
+      ->envname(environment_name("cache"));
+  sub->add_option("--connections", command->server.connections, "Most connections at once (default 256)")
+      ->envname(environment_name("connections"))
+      ->check(CLI::PositiveNumber);
+  sub->callback([command, &outcome] {
+    const Result<Endpoint> endpoint = parse_endpoint(command->listen);
+    if (!endpoint) throw CLI::ValidationError("--listen", endpoint.error().message);
+    command->server.host = endpoint->host;
+    command->server.port = endpoint->port;
+    if (command->paths.empty()) command->paths.emplace_back(".");
+    outcome = serve(*command);
+  });
+}
+
+}  // namespace surfcast

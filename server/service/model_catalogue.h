@@ -1,0 +1,50 @@
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "model/model_file.h"
+#include "service/model_source.h"
+
+namespace surfcast {
+
+/// A model file and the name it is served under.
+struct NamedModel {
+  std::string name;
+  std::filesystem::path path;
+};
+
+/// Model files by name: single ones, and whatever folders hold at the moment ("NAME.surf"). A single file hides one of
+/// the same name in a folder, an earlier folder one in a later. Files are opened when they are first asked for, and
+/// again when they have been replaced.
+class ModelCatalogue : public ModelSource {
+ public:
+  ModelCatalogue(std::vector<NamedModel> files, std::vector<std::filesystem::path> folders)
+      : files_(std::move(files)), folders_(std::move(folders)) {}
+
+  [[nodiscard]] std::vector<std::string> names() const override;
+  [[nodiscard]] Result<ModelDescription> describe(const std::string& name) const override;
+  /// The model of that name; the pointer changes when the file does.
+  [[nodiscard]] Result<std::shared_ptr<const ModelFile>> open(const std::string& name) const;
+
+ private:
+  struct Opened {
+    std::filesystem::path path;
+    std::filesystem::file_time_type written;
+    std::shared_ptr<const ModelFile> model;
+  };
+
+  [[nodiscard]] std::map<std::string, std::filesystem::path> find_all() const;
+
+  std::vector<NamedModel> files_;
+  std::vector<std::filesystem::path> folders_;
+  mutable std::mutex mutex_;
+  mutable std::map<std::string, Opened> opened_;  ///< by name
+};
+
+}  // namespace surfcast

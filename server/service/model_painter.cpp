@@ -1,0 +1,49 @@
+#include "service/model_painter.h"
+
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+
+namespace surfcast {
+namespace {
+
+class ModelPainter : public Painter {
+ public:
+  ModelPainter(const ModelCatalogue& models, std::unique_ptr<Renderer> renderer)
+      : models_(models), renderer_(std::move(renderer)) {}
+
+  Result<Frame> draw(const std::string& name, const PictureRequest& request,
+                     const std::atomic<bool>& cancelled) override {
+    Result<std::shared_ptr<const ModelFile>> model = models_.open(name);
+    if (!model) return fail(model.error());
+    return renderer_->draw(resident(name, std::move(*model)), request, cancelled);
+  }
+  [[nodiscard]] const DeviceInfo& device() const override { return renderer_->device(); }
+  [[nodiscard]] int max_resolution() const override { return renderer_->max_resolution(); }
+
+ private:
+  /// Keeps a model open while blocks of it may be resident, and lets those of a replaced file go.
+  const ModelFile& resident(const std::string& name, std::shared_ptr<const ModelFile> model) {
+    std::shared_ptr<const ModelFile>& held = held_[name];
+    if (held && held != model) renderer_->forget(*held);
+    held = std::move(model);
+    return *held;
+  }
+
+  const ModelCatalogue& models_;
+  std::map<std::string, std::shared_ptr<const ModelFile>> held_;
+  std::unique_ptr<Renderer> renderer_;  // goes first: it may refer to what is held
+};
+
+}  // namespace
+
+PainterFactory model_painters(const ModelCatalogue& models, const RendererConfig& config) {
+  return [&models, config]() -> Result<std::unique_ptr<Painter>> {
+    Result<std::unique_ptr<Renderer>> renderer = Renderer::create(config);
+    if (!renderer) return fail(renderer.error());
+    return std::make_unique<ModelPainter>(models, std::move(*renderer));
+  };
+}
+
+}  // namespace surfcast
