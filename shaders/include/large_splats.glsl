@@ -16,12 +16,17 @@ float plane_inverse_depth(LargeSplat s, vec2 ray) {
   return (dot(s.n.xy, ray) + s.n.z) / min(dot(s.n, s.o), -1e-30);
 }
 
-// The same, kept to the depth range of the disc itself; 0 or less where the ray misses.
-float large_inverse_depth(LargeSplat s, vec2 ray) {
-  float inverse_depth = plane_inverse_depth(s, ray);
-  if (astride(s)) return inverse_depth;
-  float range = kernel_extent(s) * sqrt(max(1.0 - s.n.z * s.n.z, 0.0));
-  return clamp(inverse_depth, 1.0 / (s.o.z + range), 1.0 / (s.o.z - range));
+float depth_range(LargeSplat s) { return kernel_extent(s) * sqrt(max(1.0 - s.n.z * s.n.z, 0.0)); }
+
+// A disc hides nothing that is nearer than its rim, and a fragment is never farther than its splat's rim (as for small
+// splats); 0 or less where the ray misses.
+float large_disc_inverse_depth(LargeSplat s, vec2 ray) {
+  float plane = plane_inverse_depth(s, ray);
+  return astride(s) ? plane : min(plane, 1.0 / (s.o.z - depth_range(s)));
+}
+float large_fragment_inverse_depth(LargeSplat s, vec2 ray) {
+  float plane = plane_inverse_depth(s, ray);
+  return astride(s) ? plane : max(plane, 1.0 / (s.o.z + depth_range(s)));
 }
 
 // Squared radius of a pixel in the filter of a kernel of variance `kernel_variance`, and the gain.
@@ -48,7 +53,7 @@ void see_large(uint first, uint count, vec2 pixel, float limit, inout float surf
     float disc_radius = float(SURFCAST_VISIBILITY_RADIUS) * s.radius;
     float push = 1.0 / (1.0 + float(SURFCAST_VISIBILITY_DEPTH) * s.radius / max(s.o.z, s.radius));
     float form = large_form(s, pixel, ray, disc_radius * disc_radius, frame.filter_.y).x;
-    float z = large_inverse_depth(s, ray);
+    float z = large_disc_inverse_depth(s, ray);
     surface = form <= 1.0 && z < limit ? max(surface, z * push) : surface;
   }
 }
@@ -62,7 +67,7 @@ void accumulate_large(uint first, uint count, vec2 pixel, float limit, float sur
       LargeSplat s = fetch_large(slot);
       float sigma = kernel_deviation(s);
       vec2 form_gain = large_form(s, pixel, ray, sigma * sigma, frame.filter_.x);
-      float z = large_inverse_depth(s, ray);
+      float z = large_fragment_inverse_depth(s, ray);
       bool visible = form_gain.x <= cutoff(form_gain.y) && z > 0.0 && z >= surface && z < limit;
       float weight = s.weight * form_gain.y * coverage_scale(form_gain.y) * exp(-0.5 * form_gain.x);
       sums_add(sums, splat_value(s.color, slot), visible ? weight : 0.0);

@@ -2,11 +2,18 @@
 #include "include/pixel_sums.glsl"
 #include "include/splat_record.glsl"
 
-// The inverse depth of a splat's plane in the rows below the displacement v, kept to the depth range of its disc.
-Rows small_inverse_depth(float inverse_depth, vec2 slope, float depth_range, vec2 v) {
-  float first = inverse_depth * (1.0 + dot(slope, v));
-  return clamp(first + inverse_depth * slope.y * kRow, Rows(inverse_depth / (1.0 + depth_range)),
-               Rows(inverse_depth / (1.0 - depth_range)));
+// The inverse depth of a splat's plane in the rows below the displacement v.
+Rows plane_inverse_depth(float inverse_depth, vec2 slope, vec2 v) {
+  return inverse_depth * (1.0 + dot(slope, v)) + inverse_depth * slope.y * kRow;
+}
+
+// A disc hides nothing that is nearer than its rim, and a fragment is never farther than its splat's rim: the plane is
+// extrapolated far beyond both by a prefilter wider than the splat (docs/kernel.md).
+Rows disc_inverse_depth(Rows plane, float inverse_depth, float depth_range) {
+  return min(plane, Rows(inverse_depth / (1.0 - depth_range)));
+}
+Rows fragment_inverse_depth(Rows plane, float inverse_depth, float depth_range) {
+  return max(plane, Rows(inverse_depth / (1.0 + depth_range)));
 }
 
 // (l11 v.x + l21 v.y)^2 + (l22 v.y)^2 in the rows below the displacement v.
@@ -27,7 +34,9 @@ void see_small(uint first, uint count, vec2 pixel, Rows limit, inout Rows surfac
     uvec4 a = texelFetch(splats, 2 * slot);
     Disc disc = decode_disc(texelFetch(discs, slot));
     vec2 v = pixel - uintBitsToFloat(a.xy);
-    Rows z = small_inverse_depth(uintBitsToFloat(a.z), unpackHalf2x16(a.w), disc.depth_range, v);
+    float inverse_depth = uintBitsToFloat(a.z);
+    Rows plane = plane_inverse_depth(inverse_depth, unpackHalf2x16(a.w), v);
+    Rows z = disc_inverse_depth(plane, inverse_depth, disc.depth_range);
     BoolRows hit = both(at_most(factored_form(disc.factor, v), Rows(1.0)), less(z, limit));
     surface = mix(surface, max(surface, z * disc.push), hit);
   }
@@ -42,7 +51,8 @@ void accumulate_small(uint first, uint count, vec2 pixel, Rows limit, Rows surfa
       SmallSplat s = fetch_small(slot);
       vec2 v = pixel - s.centre;
       Rows form = factored_form(s.factor, v);
-      Rows z = small_inverse_depth(s.inverse_depth, s.slope, s.depth_range, v);
+      Rows plane = plane_inverse_depth(s.inverse_depth, s.slope, v);
+      Rows z = fragment_inverse_depth(plane, s.inverse_depth, s.depth_range);
       BoolRows visible = both(at_most(form, Rows(s.cutoff)), both(at_most(surface, z), less(z, limit)));
       sums_add(sums, splat_value(s.color, slot), mix(Rows(0.0), s.weight * exp2(-form), visible));
     }

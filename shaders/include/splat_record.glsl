@@ -11,8 +11,7 @@ struct SmallSplat {
   vec2 slope;           // change of the plane's inverse depth per pixel, relative to the centre's
   vec3 factor;          // inverse_factor(S) * SURFCAST_SQRT_HALF_LOG2E, so that the weight is exp2 of the form
   float cutoff;         // largest value of the form
-  float depth_range;    // the disc's own depth range, relative to o.z: the plane of an edge-on surfel is not
-                        // extrapolated beyond it
+  float depth_range;    // how far the splat's rim lies before and behind its centre, relative to o.z
   float weight;         // gain times normalisation
   uint color;
 };
