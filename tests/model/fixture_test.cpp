@@ -1,0 +1,51 @@
+#include <cmath>
+
+#include "model/round_trip.h"
+
+namespace surfcast {
+namespace {
+
+/// The cloud that `write_model` made tests/data/sphere-and-grid-v1.surf of, when version 1 of the format was new.
+SurfelCloud fixture_cloud() {
+  SurfelCloud cloud = sphere_cloud(200);
+  const Grid grid{{0.01, 0.01, 0.01}, {5000000.3, -70.7, 12}};
+  for (int i = 0; i < 50; ++i) cloud.positions.push_back(grid.position({i * i, 5 * i, -i}));
+  cloud.sources = {{"sphere.ply", 0, 200, std::nullopt}, {"grid.las", 200, 50, grid}};
+  cloud.colors->bits = 16;
+  cloud.colors->values.resize(cloud.size(), glm::u16vec3(65535, 257, 0));
+  cloud = finish_cloud(std::move(cloud));
+  std::vector<double> times;
+  for (size_t i = 0; i < cloud.size(); ++i) {
+    times.push_back(1e9 + static_cast<double>(i) / 8);
+    cloud.weights[i] = 1 / (1 + static_cast<float>(i));
+  }
+  cloud.scalars.push_back({"gps_time", std::move(times)});
+  number_surfels(cloud);
+  return cloud;
+}
+
+/// A file of the past must be read as it was meant, by every later reader.
+TEST(ModelFixture, OfVersionOneIsStillRead) {
+  const Result<ModelFile> model = ModelFile::open(std::string(SURFCAST_TEST_DATA) + "/sphere-and-grid-v1.surf");
+  ASSERT_TRUE(model) << model.error().message;
+  const SurfelCloud cloud = fixture_cloud();
+  EXPECT_EQ(model->info().source_names, (std::vector<std::string>{"sphere.ply", "grid.las"}));
+  EXPECT_EQ(model->info().scalar_names, (std::vector<std::string>{"gps_time", "id"}));
+  ASSERT_EQ(model->info().surfels, cloud.size());
+  const DecodedModel decoded(*model);
+  for (size_t i = 0; i < cloud.size(); ++i) {
+    const auto [block, at] = decoded.surfels[i];
+    ASSERT_NE(block, nullptr);
+    const double error = glm::length(decoded.position(i) - cloud.positions[i]);
+    ASSERT_LE(error, i < 200 ? double{cloud.radii[i]} / 256 : 0.0);
+    ASSERT_GT(glm::dot(block->normals[at], cloud.normals[i]), 0.999998f);
+    ASSERT_NEAR(block->radii[at] / cloud.radii[i], 1, std::exp2(-11.5));
+    ASSERT_NEAR(block->weights[at] / cloud.weights[i], 1, 0.0014);
+    ASSERT_EQ(block->colors[at], cloud.colors->values[i]);
+    ASSERT_EQ(std::get<std::vector<double>>(block->scalars[0].values)[at],
+              std::get<std::vector<double>>(cloud.scalars[0].values)[i]);
+  }
+}
+
+}  // namespace
+}  // namespace surfcast
