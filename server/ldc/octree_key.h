@@ -2,12 +2,14 @@
 
 #include <cstdint>
 
+#include "geometry/morton.h"
+
 namespace surfcast {
 
 /// A cell of the octree over a model: the root cube, halved `depth` times along each axis. Parent and children follow
 /// from the coordinates, so no links are stored.
 struct OctreeKey {
-  static constexpr int kMaxDepth = 21;  ///< three coordinates interleave into 63 bits
+  static constexpr int kMaxDepth = kMortonDepth;
 
   uint8_t depth = 0;  ///< 0 is the root
   uint32_t x = 0;     ///< counted in cells of this depth
@@ -22,5 +24,13 @@ struct OctreeKey {
   }
   bool operator==(const OctreeKey&) const = default;
 };
+
+/// The cell of the given depth that a Morton code lies in.
+OctreeKey key_of_code(uint64_t code, int depth);
+
+/// Number of the child (0 to 7) that a Morton code lies in, of its cell at the given depth.
+inline uint32_t octant_of_code(uint64_t code, int depth) {
+  return static_cast<uint32_t>(code >> (3 * (OctreeKey::kMaxDepth - 1 - depth))) & 7u;
+}
 
 }  // namespace surfcast

@@ -9,8 +9,8 @@
 #include <oneapi/tbb/parallel_sort.h>
 
 #include "base/contract.h"
+#include "geometry/morton.h"
 #include "ldc/lattice.h"
-#include "ldc/morton.h"
 
 namespace surfcast {
 namespace {

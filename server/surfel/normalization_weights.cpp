@@ -6,12 +6,16 @@
 #include <glm/geometric.hpp>
 #include <map>
 #include <nanoflann.hpp>
+#include <numeric>
 #include <optional>
 #include <span>
+#include <utility>
 
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_sort.h>
 
 #include "base/contract.h"
+#include "geometry/morton.h"
 #include "shared/kernel.h"
 
 namespace surfcast {
@@ -20,16 +24,39 @@ namespace {
 /// A place that is too crowded is tried again with one in this many surfels.
 constexpr size_t kThinning = 4;
 
-using Surfels = std::vector<uint32_t>;
+/// What the sum needs of a surfel, side by side in memory.
+struct Site {
+  glm::dvec3 position;
+  glm::vec3 normal;
+  float radius;
+  uint32_t surfel;  ///< its index in the cloud
+};
 
-/// Some surfels of a cloud as nanoflann wants to see them.
+/// Indices into the list of sites.
+using Indices = std::vector<uint32_t>;
+
+/// The surfels along a Morton curve, so that neighbours in space are mostly neighbours in memory.
+std::vector<Site> sort_sites(const SurfelCloud& cloud) {
+  const RootCube root = root_cube(cloud.bounds());
+  std::vector<std::pair<uint64_t, uint32_t>> order(cloud.size());
+  oneapi::tbb::parallel_for(uint32_t{0}, static_cast<uint32_t>(order.size()), [&](uint32_t i) {
+    order[i] = {morton_code(root, cloud.positions[i]), i};
+  });
+  oneapi::tbb::parallel_sort(order);
+  std::vector<Site> sites;
+  sites.reserve(order.size());
+  for (const auto& [code, i] : order) sites.push_back({cloud.positions[i], cloud.normals[i], cloud.radii[i], i});
+  return sites;
+}
+
+/// Some of the sites as nanoflann wants to see them.
 struct PointSet {
-  const SurfelCloud* cloud;
-  std::span<const uint32_t> surfels;
+  std::span<const Site> sites;
+  std::span<const uint32_t> members;
 
-  [[nodiscard]] size_t kdtree_get_point_count() const { return surfels.size(); }
+  [[nodiscard]] size_t kdtree_get_point_count() const { return members.size(); }
   [[nodiscard]] double kdtree_get_pt(size_t i, size_t axis) const {
-    return cloud->positions[surfels[i]][static_cast<glm::length_t>(axis)];
+    return sites[members[i]].position[static_cast<glm::length_t>(axis)];
   }
   template <typename Box>
   bool kdtree_get_bbox(Box& /*box*/) const {
@@ -40,13 +67,13 @@ struct PointSet {
 using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointSet>, PointSet, 3, uint32_t>;
 
 /// r_j(u_k - u_j), or 0 when j is of another surface.
-double kernel_at(const SurfelCloud& cloud, uint32_t k, uint32_t j) {
-  const glm::dvec3 normal(cloud.normals[j]);
-  const double agreement = glm::dot(glm::dvec3(cloud.normals[k]), normal);
-  if ((cloud.oriented ? agreement : std::abs(agreement)) <= 0.5) return 0;
-  const glm::dvec3 offset = cloud.positions[k] - cloud.positions[j];
+double kernel_at(const Site& k, const Site& j, bool oriented) {
+  const glm::dvec3 normal(j.normal);
+  const double agreement = glm::dot(glm::dvec3(k.normal), normal);
+  if ((oriented ? agreement : std::abs(agreement)) <= 0.5) return 0;
+  const glm::dvec3 offset = k.position - j.position;
   const double height = glm::dot(normal, offset);
-  const double radius = double{cloud.radii[j]};
+  const double radius = double{j.radius};
   if (std::abs(height) >= radius) return 0;
   const double sigma = SURFCAST_KERNEL_SIGMA * radius;
   const glm::dvec3 u = offset - height * normal;
@@ -75,23 +102,25 @@ class Neighbours {
   double squared_range_;
 };
 
-/// Sum of the kernels around k, its own left out; none when there are too many.
-std::optional<double> sum_around(const PointSet& points, const Tree& tree, double squared_range, uint32_t k) {
+/// Sum of the kernels around site k, its own left out; none when there are too many.
+std::optional<double> sum_around(const PointSet& points, const Tree& tree, double squared_range, uint32_t k,
+                                 bool oriented) {
   thread_local std::vector<uint32_t> found;
   Neighbours neighbours(found, squared_range);
-  tree.findNeighbors(neighbours, &points.cloud->positions[k].x, nanoflann::SearchParams());
+  tree.findNeighbors(neighbours, &points.sites[k].position.x, nanoflann::SearchParams());
   if (found.size() >= kMaxNeighbours) return std::nullopt;
   double sum = 0;
   for (const uint32_t index : found) {
-    if (points.surfels[index] != k) sum += kernel_at(*points.cloud, k, points.surfels[index]);
+    const uint32_t j = points.members[index];
+    if (j != k) sum += kernel_at(points.sites[k], points.sites[j], oriented);
   }
   return sum;
 }
 
-/// Surfels by the octave of their radius: within a class the search range is right to a factor of two.
-std::map<int, Surfels> radius_classes(const SurfelCloud& cloud) {
-  std::map<int, Surfels> classes;
-  for (uint32_t i = 0; i < cloud.size(); ++i) classes[std::ilogb(cloud.radii[i])].push_back(i);
+/// Sites by the octave of their radius: within a class the search range is right to a factor of two.
+std::map<int, Indices> radius_classes(std::span<const Site> sites) {
+  std::map<int, Indices> classes;
+  for (uint32_t i = 0; i < sites.size(); ++i) classes[std::ilogb(sites[i].radius)].push_back(i);
   return classes;
 }
 
@@ -101,40 +130,36 @@ double squared_reach(double radius) {
   return SURFCAST_KERNEL_CUTOFF * sigma * sigma + radius * radius;
 }
 
-float largest_radius(const SurfelCloud& cloud, std::span<const uint32_t> surfels) {
+float largest_radius(const PointSet& points) {
   float largest = 0;
-  for (const uint32_t s : surfels) largest = std::max(largest, cloud.radii[s]);
+  for (const uint32_t i : points.members) largest = std::max(largest, points.sites[i].radius);
   return largest;
 }
 
-Surfels thin(const Surfels& sources, const std::vector<uint32_t>& order) {
-  Surfels thinned;
-  for (size_t i = 0; i < order.size(); i += kThinning) thinned.push_back(sources[order[i]]);
+Indices thin(const Indices& sources) {
+  Indices thinned;
+  for (size_t i = 0; i < sources.size(); i += kThinning) thinned.push_back(sources[i]);
   return thinned;
 }
 
-/// Adds to `sums` of the `targets` the kernels of `sources`, each standing for `multiplicity` surfels. Returns the
-/// targets that had too many near them, untouched, and thins the sources for the next try.
-Surfels add_kernels(const SurfelCloud& cloud, const Surfels& targets, Surfels& sources, double multiplicity,
+/// Adds to `sums` of the targets the kernels of the sources, each standing for `multiplicity` surfels. Returns the
+/// targets that had too many sources near them, untouched.
+Indices add_kernels(const PointSet& sources, const Indices& targets, double multiplicity, bool oriented,
                     std::vector<double>& sums) {
-  const PointSet points{&cloud, sources};
-  const Tree tree(3, points, nanoflann::KDTreeSingleIndexAdaptorParams(16));
-  const double squared_range = squared_reach(double{largest_radius(cloud, sources)});
+  const Tree tree(3, sources, nanoflann::KDTreeSingleIndexAdaptorParams(16));
+  const double squared_range = squared_reach(double{largest_radius(sources)});
   std::vector<uint8_t> crowded(targets.size(), 0);
   oneapi::tbb::parallel_for(size_t{0}, targets.size(), [&](size_t i) {
-    const uint32_t k = targets[i];
-    if (const std::optional<double> sum = sum_around(points, tree, squared_range, k)) {
-      sums[k] += multiplicity * *sum;
+    if (const std::optional<double> sum = sum_around(sources, tree, squared_range, targets[i], oriented)) {
+      sums[targets[i]] += multiplicity * *sum;
     } else {
       crowded[i] = 1;
     }
   });
-  Surfels rest;
+  Indices rest;
   for (size_t i = 0; i < targets.size(); ++i) {
     if (crowded[i] != 0) rest.push_back(targets[i]);
   }
-  // The order of a kd-tree's leaves is spatial, so it thins each place alike.
-  if (!rest.empty()) sources = thin(sources, tree.vAcc);
   return rest;
 }
 
@@ -142,17 +167,19 @@ Surfels add_kernels(const SurfelCloud& cloud, const Surfels& targets, Surfels& s
 
 std::vector<float> normalization_weights(const SurfelCloud& cloud) {
   SURFCAST_EXPECTS(cloud.normals.size() == cloud.size() && cloud.radii.size() == cloud.size());
-  std::vector<double> sums(cloud.size(), 1.0);  // the kernel of a surfel at its own centre
-  Surfels all(cloud.size());
-  for (uint32_t i = 0; i < cloud.size(); ++i) all[i] = i;
-  for (auto& [octave, sources] : radius_classes(cloud)) {
+  const std::vector<Site> sites = sort_sites(cloud);
+  std::vector<double> sums(sites.size(), 1.0);  // the kernel of a surfel at its own centre
+  Indices all(sites.size());
+  std::iota(all.begin(), all.end(), 0);
+  for (auto& [octave, sources] : radius_classes(sites)) {
     double multiplicity = 1;
-    for (Surfels targets = all; !targets.empty(); multiplicity *= kThinning) {
-      targets = add_kernels(cloud, targets, sources, multiplicity, sums);
+    for (Indices targets = all; !targets.empty(); multiplicity *= kThinning) {
+      targets = add_kernels({sites, sources}, targets, multiplicity, cloud.oriented, sums);
+      if (!targets.empty()) sources = thin(sources);
     }
   }
-  std::vector<float> weights(cloud.size());
-  std::transform(sums.begin(), sums.end(), weights.begin(), [](double sum) { return static_cast<float>(1 / sum); });
+  std::vector<float> weights(sites.size());
+  for (size_t i = 0; i < sites.size(); ++i) weights[sites[i].surfel] = static_cast<float>(1 / sums[i]);
   return weights;
 }
 

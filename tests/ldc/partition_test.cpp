@@ -6,8 +6,8 @@
 
 #include <gtest/gtest.h>
 
+#include "geometry/morton.h"
 #include "ldc/lattice.h"
-#include "ldc/morton.h"
 
 namespace surfcast {
 namespace {

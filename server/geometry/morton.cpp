@@ -1,4 +1,4 @@
-#include "ldc/morton.h"
+#include "geometry/morton.h"
 
 #include <algorithm>
 #include <cmath>
@@ -6,7 +6,7 @@
 namespace surfcast {
 namespace {
 
-constexpr uint32_t kCells = uint32_t{1} << OctreeKey::kMaxDepth;
+constexpr uint32_t kCells = uint32_t{1} << kMortonDepth;
 
 /// Moves bit i to bit 3i, for 21 bits.
 uint64_t spread(uint64_t v) {
@@ -15,16 +15,6 @@ uint64_t spread(uint64_t v) {
   v = (v | v << 8) & 0x100f00f00f00f00fULL;
   v = (v | v << 4) & 0x10c30c30c30c30c3ULL;
   return (v | v << 2) & 0x1249249249249249ULL;
-}
-
-uint32_t gather(uint64_t v) {
-  v &= 0x1249249249249249ULL;
-  v = (v ^ v >> 2) & 0x10c30c30c30c30c3ULL;
-  v = (v ^ v >> 4) & 0x100f00f00f00f00fULL;
-  v = (v ^ v >> 8) & 0x001f0000ff0000ffULL;
-  v = (v ^ v >> 16) & 0x001f00000000ffffULL;
-  v = (v ^ v >> 32) & 0x00000000001fffffULL;
-  return static_cast<uint32_t>(v);
 }
 
 uint64_t cell(double offset, double side) {
@@ -45,11 +35,6 @@ uint64_t morton_code(const RootCube& root, const glm::dvec3& point) {
   const glm::dvec3 offset = point - root.min;
   return spread(cell(offset.x, root.side)) | spread(cell(offset.y, root.side)) << 1 |
          spread(cell(offset.z, root.side)) << 2;
-}
-
-OctreeKey key_of_code(uint64_t code, int depth) {
-  const uint64_t prefix = code >> (3 * (OctreeKey::kMaxDepth - depth));
-  return {static_cast<uint8_t>(depth), gather(prefix), gather(prefix >> 1), gather(prefix >> 2)};
 }
 
 }  // namespace surfcast

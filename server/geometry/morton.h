@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+
+#include "geometry/box.h"
+
+namespace surfcast {
+
+/// Times that the cube is halved along each axis: three coordinates interleave into 63 bits.
+inline constexpr int kMortonDepth = 21;
+
+/// The cube that an octree halves: it holds the box, and its side is a power of two.
+struct RootCube {
+  glm::dvec3 min{0};
+  double side = 1;
+};
+
+RootCube root_cube(const Box& box);
+
+/// Interleaved cell coordinates at kMortonDepth of a point in the cube; three bits per depth, the root's first.
+uint64_t morton_code(const RootCube& root, const glm::dvec3& point);
+
+}  // namespace surfcast
