@@ -10,7 +10,10 @@ layout(std430, binding = SURFCAST_BIND_COUNTERS) buffer CountersBuffer { Counter
 layout(std430, binding = SURFCAST_BIND_TILE_COUNT) buffer TileCount { uint tile_count[]; };
 layout(std430, binding = SURFCAST_BIND_TILE_OFFSET) writeonly buffer TileOffset { uint tile_offset[]; };
 
+layout(std430, binding = SURFCAST_BIND_TILE_CROWD) writeonly buffer TileCrowd { uint tile_crowd[]; };
+
 shared uint sums[LANES];
+shared uint longest;
 
 void main() {
   uint lane = gl_LocalInvocationID.x;
@@ -18,9 +21,19 @@ void main() {
   uint share = (lists + uint(LANES) - 1u) / uint(LANES);
   uint first = min(lane * share, lists);
   uint last = min(first + share, lists);
+  if (lane == 0u) longest = 0u;
+  barrier();
   uint sum = 0u;
-  for (uint i = first; i < last; ++i) sum += tile_count[i];
+  uint most = 0u;
+  for (uint i = first; i < last; ++i) {
+    sum += tile_count[i];
+    uint tile = i % uint(frame.tiles.z);
+    uint crowd = tile_count[tile] + tile_count[tile + uint(frame.tiles.z)];
+    if (i == tile) tile_crowd[tile] = crowd;
+    most = max(most, crowd);
+  }
   sums[lane] = sum;
+  atomicMax(longest, most);
   barrier();
   if (lane == 0u) {
     uint total = 0u;
@@ -30,6 +43,7 @@ void main() {
       total += s;
     }
     counters.counts.z = total;
+    counters.counts.w = longest;
   }
   barrier();
   uint offset = sums[lane];

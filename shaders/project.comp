@@ -6,6 +6,7 @@
 #include "include/packing.glsl"
 #include "include/resampling_filter.glsl"
 #include "include/splat_record.glsl"
+#include "include/thinning.glsl"
 
 layout(local_size_x = SURFCAST_CHUNK) in;
 
@@ -31,6 +32,7 @@ const float kSmallExtent = 24.0;        // pixels
 const float kSmallPerspective = 0.02;  // relative change of the variance's root
 
 struct Surfel {
+  uint id;
   vec3 o;  // camera frame
   vec3 n;  // unit, towards the eye
   float radius;
@@ -84,8 +86,9 @@ void project_small(Surfel s, vec2 ray, vec2 centre, ScreenVariance v, float c) {
   bool outside;
   uvec2 range = tile_range(centre - extent, centre + extent, outside);
   if (outside) return;
+  float share = thinned_share(range, s.id);
+  if (share == 0.0) return;
 
-  float kernel_extent = sqrt(c) * float(SURFCAST_KERNEL_SIGMA) * s.radius;
   // 1/z of the plane is affine on the screen: 1/z = (n.ray) / (n.o). The bound only keeps edge-on surfels finite.
   float facing = min(dot(s.n, s.o), -1e-30);
   float relief = s.o.z / (eta() * facing);
@@ -95,8 +98,8 @@ void project_small(Surfel s, vec2 ray, vec2 centre, ScreenVariance v, float c) {
   splat.slope = clamp(vec2(s.n.x, -s.n.y) * relief, vec2(-3e4), vec2(3e4));
   splat.factor = inverse_factor(v.s, v.det) * SURFCAST_SQRT_HALF_LOG2E;
   splat.cutoff = c * SURFCAST_SQRT_HALF_LOG2E * SURFCAST_SQRT_HALF_LOG2E;
-  splat.depth_range = min(depth_extent(s, kernel_extent) / s.o.z, 0.9);
-  splat.weight = s.weight * v.gain * coverage_scale(v.gain);
+  splat.depth_range = min(depth_extent(s, surfel_extent(s.radius)) / s.o.z, 0.9);
+  splat.weight = share * s.weight * v.gain * coverage_scale(v.gain);
   splat.color = s.color;
   uvec4 a, b;
   encode_small(splat, a, b);
@@ -104,8 +107,7 @@ void project_small(Surfel s, vec2 ray, vec2 centre, ScreenVariance v, float c) {
   float disc_radius = float(SURFCAST_VISIBILITY_RADIUS) * s.radius;
   ScreenVariance d = screen_variance(s.o, s.n, ray, disc_radius * disc_radius, frame.filter_.y);
   vec3 f = inverse_factor(d.s, d.det);
-  float push = 1.0 / (1.0 + float(SURFCAST_VISIBILITY_DEPTH) * s.radius / s.o.z);
-  append(false, range, a, b, encode_disc(Disc(f, push, splat.depth_range)), s.n);
+  append(false, range, a, b, encode_disc(Disc(f, push_back(s.radius, s.o.z) / s.o.z, splat.depth_range, splat.weight)), s.n);
 }
 
 // Bounds of the projected disc of radius `extent`, from the dual conic D = extent^2 (I - n n^T) - o o^T of its outline:
@@ -136,7 +138,8 @@ bool astride_outside(Surfel s, float extent) {
   return false;
 }
 
-void project_large(Surfel s, float extent, bool astride) {
+void project_large(Surfel s, bool astride) {
+  float extent = surfel_extent(s.radius);
   vec2 low = vec2(frame.region.xy);
   vec2 high = vec2(frame.region.xy + frame.region.zw);
   if (astride) {
@@ -153,17 +156,17 @@ void project_large(Surfel s, float extent, bool astride) {
   bool outside;
   uvec2 range = tile_range(low, high, outside);
   if (outside) return;
+  float share = thinned_share(range, s.id);
+  if (share == 0.0) return;
   uvec4 a, b;
-  encode_large(LargeSplat(s.o, s.radius, s.n, s.weight, s.color), a, b);
+  encode_large(LargeSplat(s.o, s.radius, s.n, share * s.weight, s.color), a, b);
   append(true, range, a, b, uvec4(0u), s.n);
 }
 
 void project(Surfel s) {
   float sigma = float(SURFCAST_KERNEL_SIGMA) * s.radius;
-  float reach = max(sqrt(SURFCAST_KERNEL_CUTOFF) * sigma, float(SURFCAST_VISIBILITY_RADIUS) * s.radius);
-  bool astride = s.o.z <= 1.5 * sqrt(SURFCAST_KERNEL_CUTOFF) * sigma;
-  if (astride) {
-    project_large(s, reach, true);
+  if (is_astride(s.o.z, s.radius)) {
+    project_large(s, true);
     return;
   }
   vec2 ray = s.o.xy / s.o.z;
@@ -174,7 +177,7 @@ void project(Surfel s) {
   if (largest <= kSmallExtent && sigma * largest <= kSmallPerspective * s.o.z) {
     project_small(s, ray, pixel_of_ray(ray), v, c);
   } else {
-    project_large(s, reach, false);
+    project_large(s, false);
   }
 }
 
@@ -189,6 +192,7 @@ void main() {
   vec2 size = exp2(-32.0 * unpackUnorm2x16(size_and_weight[i]));
 
   Surfel s;
+  s.id = i;
   s.o = origin.xyz + rotation * uintBitsToFloat(g.xyz);
   s.n = rotation * unpack_normal(g.w);
   s.radius = size.x * origin.w;

@@ -63,16 +63,18 @@ void main() {
   Rows limit = Rows(3e38);  // inverse depth: nothing is nearer
   for (int layer = 0; layer < kMaxLayers; ++layer) {
     Rows surface = Rows(0.0);  // infinitely far
+    float peak = 0.0;
     PixelSums sums = sums_zero();
-    see_small(first_small, smalls, pixel, limit, surface);
+    see_small(first_small, smalls, pixel, limit, surface, peak);
 #ifdef SURFCAST_LARGE
-    see_large(first_large, larges, pixel, limit, surface);
+    see_large(first_large, larges, pixel, limit, surface, peak);
 #endif
-    accumulate_small(first_small, smalls, pixel, limit, surface, sums);
+    float unit = fixed_unit(peak);
+    accumulate_small(first_small, smalls, pixel, limit, surface, unit, sums);
 #ifdef SURFCAST_LARGE
-    accumulate_large(first_large, larges, pixel, limit, surface, sums);
+    accumulate_large(first_large, larges, pixel, limit, surface, unit, sums);
 #endif
-    composite(light, sums, pixel);
+    composite(light, sums, 1.0 / unit, pixel);
     limit = surface;
     if (!any_of(both(less(Rows(0.0), surface), less(Rows(kOpaque), light.transmittance)))) break;
   }

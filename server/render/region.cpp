@@ -10,7 +10,7 @@ namespace surfcast {
 namespace {
 
 /// Without the prefilter the kernel alone is drawn; this much variance, pixels squared, keeps its inverse finite.
-constexpr double kNoPrefilter = 1e-6;
+constexpr double kNoPrefilter = 1e-4;
 
 /// Per-pixel normalisation weighs every surfel alike: by the inverse of the sum that its kernels have inside an evenly
 /// sampled surface, 2 pi sigma^2 / h^2, where the mean distance to six neighbours is r = 1.08 h.

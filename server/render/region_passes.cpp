@@ -36,9 +36,10 @@ void upload(StorageBuffer& buffer, const std::vector<T>& values) {
   glNamedBufferSubData(buffer.name(), 0, static_cast<GLsizeiptr>(values.size() * sizeof(T)), values.data());
 }
 
-void upload_constants(const RegionTask& task, SplatBuffers& buffers) {
+void upload_constants(const RegionTask& task, bool thinned, SplatBuffers& buffers) {
   layout::FrameConstants constants = task.constants;
   constants.tiles.w = static_cast<int>(buffers.splat_capacity());
+  constants.flags.z = thinned ? 1 : 0;
   buffers.frame.reserve(sizeof constants);
   glNamedBufferSubData(buffers.frame.name(), 0, sizeof constants, &constants);
   glBindBufferBase(GL_UNIFORM_BUFFER, SURFCAST_BIND_FRAME, buffers.frame.name());
@@ -51,12 +52,14 @@ void clear_counts(const RegionTask& task, SplatBuffers& buffers) {
   buffers.tile_count.reserve(lists * 4);
   buffers.tile_count.clear();
   buffers.tile_offset.reserve(lists * 4);
+  buffers.tile_crowd.reserve(lists * 2);
 }
 
 void bind_for_projection(const RegionTask& task, const SplatBuffers& buffers) {
   buffers.counters.bind(SURFCAST_BIND_COUNTERS);
   buffers.tile_count.bind(SURFCAST_BIND_TILE_COUNT);
   buffers.tile_offset.bind(SURFCAST_BIND_TILE_OFFSET);
+  buffers.tile_crowd.bind(SURFCAST_BIND_TILE_CROWD);
   buffers.splats.bind_for_writing(SURFCAST_UNIT_SPLATS);
   buffers.discs.bind_for_writing(SURFCAST_UNIT_DISCS);
   buffers.bounds.bind_for_writing(SURFCAST_UNIT_BOUNDS);
@@ -83,15 +86,17 @@ layout::Counters read_counters(const SplatBuffers& buffers) {
   return counters;
 }
 
-/// Projects all visible surfels and sums up the tile counts; a second time if the records did not fit.
+/// Projects all visible surfels and sums up the tile counts; again if the records did not fit, or if a tile is so
+/// crowded that its splats are to be thinned out.
 layout::Counters project(const RegionTask& task, const std::vector<ArenaWork>& work, Programs& programs,
                          const SplatPrograms& variant, SplatBuffers& buffers) {
   const gl::DebugGroup group("project");
   constexpr size_t kFirstCapacity = 1u << 18;
   const bool with_normals = task.variant.colored && task.variant.lit;
   buffers.reserve_splats(std::max(kFirstCapacity, buffers.splat_capacity()), with_normals);
+  bool thinned = false;
   while (true) {
-    upload_constants(task, buffers);
+    upload_constants(task, thinned, buffers);
     clear_counts(task, buffers);
     bind_for_projection(task, buffers);
     glUseProgram(variant.project.name());
@@ -103,8 +108,14 @@ layout::Counters project(const RegionTask& task, const std::vector<ArenaWork>& w
     glMemoryBarrier(GL_ALL_BARRIER_BITS);
     const layout::Counters counters = read_counters(buffers);
     const size_t needed = size_t{counters.counts.x} + counters.counts.y;
-    if (needed <= buffers.splat_capacity()) return counters;
-    buffers.reserve_splats(needed + needed / 4, with_normals);
+    const bool fits = needed <= buffers.splat_capacity();
+    const bool crowded = counters.counts.w > SURFCAST_CROWD && !thinned;
+    if (fits && !crowded) return counters;
+    if (fits) {
+      thinned = true;
+    } else {
+      buffers.reserve_splats(needed + needed / 4, with_normals);
+    }
   }
 }
 

@@ -53,6 +53,7 @@ struct SplatBuffers {
   StorageBuffer counters{"counters"};
   StorageBuffer tile_count{"tile count"};
   StorageBuffer tile_offset{"tile offset"};
+  StorageBuffer tile_crowd{"tile crowd"};
   StorageBuffer picture{"picture"};
   StorageBuffer blocks{"blocks"};
   StorageBuffer chunks{"chunks"};

@@ -1,10 +1,14 @@
 // Sums of weights that do not depend on the order of their terms, so that the same request gives the same bytes
-// although the tile lists are filled in any order: sums of integers. A weight is at most 1 and is kept to 2^-25;
-// after every SURFCAST_CARRY_INTERVAL terms the 32 bit sums are carried over, so that a million splats in one pixel
-// neither overflow nor lose their small terms.
+// although the tile lists are filled in any order: sums of integers. A weight is kept to 2^-24 of the largest of its
+// list; after every SURFCAST_CARRY_INTERVAL terms the 32 bit sums are carried over, so that a million splats in one
+// pixel neither overflow nor lose their small terms.
 #include "include/rows.glsl"
 
-const float kFixedOne = 33554432.0;  // 2^25
+// Integer units per unit of weight: the power of two that takes weights up to `peak` below 2^25.
+float fixed_unit(float peak) {
+  int exponent = int(floatBitsToUint(max(peak, 1e-30)) >> 23);  // biased by 127; peak < 2^(exponent - 126)
+  return uintBitsToFloat(uint(127 + 25 + 126 - exponent) << 23);
+}
 
 struct FixedSum {
   IntRows part;   // since the last carry
@@ -14,7 +18,7 @@ struct FixedSum {
 
 FixedSum fixed_zero() { return FixedSum(IntRows(0), UintRows(0u), UintRows(0u)); }
 
-// `term` is in units of 1 / kFixedOne.
+// `term` is in integer units.
 void fixed_add(inout FixedSum sum, Rows term) { sum.part += IntRows(term); }
 
 void fixed_carry(inout FixedSum sum) {
@@ -25,4 +29,5 @@ void fixed_carry(inout FixedSum sum) {
   sum.part = IntRows(0);
 }
 
-Rows fixed_value(FixedSum sum) { return (Rows(sum.high) * 65536.0 + Rows(sum.low)) / kFixedOne; }
+// In integer units.
+Rows fixed_value(FixedSum sum) { return Rows(sum.high) * 65536.0 + Rows(sum.low); }

@@ -8,25 +8,24 @@ LargeSplat fetch_large(int slot) {
 }
 
 float kernel_deviation(LargeSplat s) { return float(SURFCAST_KERNEL_SIGMA) * s.radius; }
-float kernel_extent(LargeSplat s) { return sqrt(SURFCAST_KERNEL_CUTOFF) * kernel_deviation(s); }
-bool astride(LargeSplat s) { return s.o.z <= 1.5 * kernel_extent(s); }
+float depth_range(LargeSplat s) { return surfel_extent(s.radius) * sqrt(max(1.0 - s.n.z * s.n.z, 0.0)); }
+bool astride(LargeSplat s) { return is_astride(s.o.z, s.radius); }
 
 // Inverse depth at which a ray meets the plane of the surfel; the bound only keeps edge-on surfels finite.
-float plane_inverse_depth(LargeSplat s, vec2 ray) {
+float large_plane_inverse_depth(LargeSplat s, vec2 ray) {
   return (dot(s.n.xy, ray) + s.n.z) / min(dot(s.n, s.o), -1e-30);
 }
 
-float depth_range(LargeSplat s) { return kernel_extent(s) * sqrt(max(1.0 - s.n.z * s.n.z, 0.0)); }
-
-// A disc hides nothing that is nearer than its rim, and a fragment is never farther than its splat's rim (as for small
-// splats); 0 or less where the ray misses.
-float large_disc_inverse_depth(LargeSplat s, vec2 ray) {
-  float plane = plane_inverse_depth(s, ray);
-  return astride(s) ? plane : min(plane, 1.0 / (s.o.z - depth_range(s)));
-}
+// As for small splats; 0 or less where the ray misses.
 float large_fragment_inverse_depth(LargeSplat s, vec2 ray) {
-  float plane = plane_inverse_depth(s, ray);
+  float plane = large_plane_inverse_depth(s, ray);
   return astride(s) ? plane : max(plane, 1.0 / (s.o.z + depth_range(s)));
+}
+
+float large_disc_inverse_depth(LargeSplat s, vec2 ray) {
+  float plane = large_plane_inverse_depth(s, ray);
+  if (astride(s)) return 1.0 / (1.0 / plane + push_back(s.radius, s.o.z));
+  return min(plane, 1.0 / (s.o.z - depth_range(s))) / (1.0 + push_back(s.radius, s.o.z) / s.o.z);
 }
 
 // Squared radius of a pixel in the filter of a kernel of variance `kernel_variance`, and the gain.
@@ -34,7 +33,7 @@ vec2 large_form(LargeSplat s, vec2 pixel, vec2 ray, float kernel_variance, float
   if (astride(s)) {
     // Cut by the eye plane, the surfel is so near that the prefilter is nothing beside its kernel: measure on the
     // surface itself.
-    float inverse_depth = plane_inverse_depth(s, ray);
+    float inverse_depth = large_plane_inverse_depth(s, ray);
     vec3 u = vec3(ray, 1.0) / inverse_depth - s.o;
     return vec2(inverse_depth > 0.0 ? dot(u, u) / kernel_variance : 1e30, 1.0);
   }
@@ -46,19 +45,26 @@ vec2 large_form(LargeSplat s, vec2 pixel, vec2 ray, float kernel_variance, float
   return vec2(p * p + q * q, v.gain);
 }
 
-void see_large(uint first, uint count, vec2 pixel, float limit, inout float surface) {
+// Squared radius at which the splat is cut: a property of the splat, from the gain at its centre.
+float large_cutoff(LargeSplat s, float kernel_variance) {
+  if (astride(s)) return SURFCAST_KERNEL_CUTOFF;
+  return cutoff(screen_variance(s.o, s.n, s.o.xy / s.o.z, kernel_variance, frame.filter_.x).gain);
+}
+
+void see_large(uint first, uint count, vec2 pixel, float limit, inout float surface, inout float peak) {
   vec2 ray = ray_of_pixel(pixel);
   for (uint k = 0u; k < count; ++k) {
     LargeSplat s = fetch_large(int(texelFetch(lists, int(first + k)).x));
+    peak = max(peak, s.weight);
     float disc_radius = float(SURFCAST_VISIBILITY_RADIUS) * s.radius;
-    float push = 1.0 / (1.0 + float(SURFCAST_VISIBILITY_DEPTH) * s.radius / max(s.o.z, s.radius));
     float form = large_form(s, pixel, ray, disc_radius * disc_radius, frame.filter_.y).x;
-    float z = large_disc_inverse_depth(s, ray);
-    surface = form <= 1.0 && z < limit ? max(surface, z * push) : surface;
+    float z = large_fragment_inverse_depth(s, ray);
+    surface = form <= 1.0 && z < limit ? max(surface, large_disc_inverse_depth(s, ray)) : surface;
   }
 }
 
-void accumulate_large(uint first, uint count, vec2 pixel, float limit, float surface, inout PixelSums sums) {
+void accumulate_large(uint first, uint count, vec2 pixel, float limit, float surface, float unit,
+                      inout PixelSums sums) {
   vec2 ray = ray_of_pixel(pixel);
   for (uint begin = 0u; begin < count; begin += uint(SURFCAST_CARRY_INTERVAL)) {
     uint end = min(begin + uint(SURFCAST_CARRY_INTERVAL), count);
@@ -68,9 +74,9 @@ void accumulate_large(uint first, uint count, vec2 pixel, float limit, float sur
       float sigma = kernel_deviation(s);
       vec2 form_gain = large_form(s, pixel, ray, sigma * sigma, frame.filter_.x);
       float z = large_fragment_inverse_depth(s, ray);
-      bool visible = form_gain.x <= cutoff(form_gain.y) && z > 0.0 && z >= surface && z < limit;
+      bool visible = form_gain.x <= large_cutoff(s, sigma * sigma) && z > 0.0 && z >= surface && z < limit;
       float weight = s.weight * form_gain.y * coverage_scale(form_gain.y) * exp(-0.5 * form_gain.x);
-      sums_add(sums, splat_value(s.color, slot), visible ? weight : 0.0);
+      sums_add(sums, splat_value(s.color, slot, unit), visible ? weight : 0.0);
     }
     sums_carry(sums);
   }

@@ -18,8 +18,9 @@ struct PixelSums {
 #endif
 };
 
-// What one splat adds per unit of weight, in units of the fixed-point sums.
+// What one splat adds per unit of weight, in integer units of the sums.
 struct SplatValue {
+  float one;
   vec3 color;
 #ifdef SURFCAST_LIT_COLOR
   vec3 normal;
@@ -40,21 +41,22 @@ PixelSums sums_zero() {
   return sums;
 }
 
-SplatValue splat_value(uint packed_color, int slot) {
+SplatValue splat_value(uint packed_color, int slot, float unit) {
   SplatValue value;
+  value.one = unit;
 #ifdef SURFCAST_HAS_COLOR
-  value.color = unpack_linear_color(packed_color) * kFixedOne;
+  value.color = unpack_linear_color(packed_color) * unit;
 #else
-  value.color = unpack_biased_normal(packed_color) * kFixedOne;
+  value.color = unpack_biased_normal(packed_color) * unit;
 #endif
 #ifdef SURFCAST_LIT_COLOR
-  value.normal = unpack_biased_normal(texelFetch(normals, slot).x) * kFixedOne;
+  value.normal = unpack_biased_normal(texelFetch(normals, slot).x) * unit;
 #endif
   return value;
 }
 
 void sums_add(inout PixelSums sums, SplatValue value, Rows weight) {
-  fixed_add(sums.weight, weight * kFixedOne);
+  fixed_add(sums.weight, weight * value.one);
 #if defined(SURFCAST_HAS_COLOR) || defined(SURFCAST_LIT)
   fixed_add(sums.red, weight * value.color.r);
   fixed_add(sums.green, weight * value.color.g);

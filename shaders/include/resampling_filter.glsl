@@ -50,6 +50,20 @@ float coverage_scale(float gain) {
   return SURFCAST_COVERAGE_MAGNIFIED / mix(SURFCAST_COVERAGE_MINIFIED, SURFCAST_COVERAGE_MAGNIFIED, gain);
 }
 
+// Radius on the surface beyond which neither the kernel nor the disc of a surfel reaches, world units.
+float surfel_extent(float radius) {
+  return max(sqrt(SURFCAST_KERNEL_CUTOFF) * float(SURFCAST_KERNEL_SIGMA), float(SURFCAST_VISIBILITY_RADIUS)) * radius;
+}
+
+// A surfel so near that its disc may reach the eye plane, where nothing projects.
+bool is_astride(float depth, float radius) { return depth <= 1.5 * surfel_extent(radius); }
+
+// How far visibility splatting pushes a surface back along the viewing rays, at the depth of its surfel: by the spacing
+// of the surfels (Ren 2002, section 5.1) and by the footprint of a pixel.
+float push_back(float radius, float depth) {
+  return float(SURFCAST_VISIBILITY_DEPTH) * radius + float(SURFCAST_VISIBILITY_FOOTPRINT) * max(depth, 0.0) / eta();
+}
+
 // Factors (l11, l21, l22) of v^T S^-1 v = (l11 v.x + l21 v.y)^2 + (l22 v.y)^2: half precision serves them where it
 // would not serve the elements of S^-1, which cancel for thin ellipses.
 vec3 inverse_factor(vec3 s, float det) {

@@ -27,11 +27,11 @@ Rows headlight(Rows nx, Rows ny, Rows nz, vec2 pixel) {
   return kAmbient + (1.0 - kAmbient) * min(along * inversesqrt(max(lengths, Rows(1e-12))), Rows(1.0));
 }
 
-// Blends one layer behind what is there already.
-void composite(inout Light light, PixelSums sums, vec2 pixel) {
+// Blends one layer behind what is there already. `one` is the weight of an integer unit of the sums.
+void composite(inout Light light, PixelSums sums, float one, vec2 pixel) {
   Rows weight = fixed_value(sums.weight);
-  Rows share = 1.0 / max(weight, Rows(1e-30));
-  Rows coverage = min(weight * (1.0 / float(SURFCAST_COVERAGE_MAGNIFIED)), Rows(1.0));
+  Rows share = 1.0 / max(weight, Rows(1.0));
+  Rows coverage = min(weight * (one / float(SURFCAST_COVERAGE_MAGNIFIED)), Rows(1.0));
   Rows seen = light.transmittance * coverage;
   light.transmittance *= 1.0 - coverage;
 #ifdef SURFCAST_HAS_COLOR

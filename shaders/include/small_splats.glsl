@@ -2,18 +2,20 @@
 #include "include/pixel_sums.glsl"
 #include "include/splat_record.glsl"
 
-// The inverse depth of a splat's plane in the rows below the displacement v.
+// The inverse depth of a splat's plane in the rows below the displacement v. The prefilter of a steep splat asks for
+// its plane far beyond the surfel: a fragment is never behind the surfel's far end, and a disc never in front of its
+// near end. So fragments of one plane never hide each other, whatever its slope.
 Rows plane_inverse_depth(float inverse_depth, vec2 slope, vec2 v) {
-  return inverse_depth * (1.0 + dot(slope, v)) + inverse_depth * slope.y * kRow;
+  float first = inverse_depth * (1.0 + dot(slope, v));
+  return first + inverse_depth * slope.y * kRow;
 }
 
-// A disc hides nothing that is nearer than its rim, and a fragment is never farther than its splat's rim: the plane is
-// extrapolated far beyond both by a prefilter wider than the splat (docs/kernel.md).
-Rows disc_inverse_depth(Rows plane, float inverse_depth, float depth_range) {
-  return min(plane, Rows(inverse_depth / (1.0 - depth_range)));
-}
 Rows fragment_inverse_depth(Rows plane, float inverse_depth, float depth_range) {
   return max(plane, Rows(inverse_depth / (1.0 + depth_range)));
+}
+
+Rows disc_inverse_depth(Rows plane, float inverse_depth, Disc disc) {
+  return min(plane, Rows(inverse_depth / (1.0 - disc.depth_range))) / (1.0 + disc.push);
 }
 
 // (l11 v.x + l21 v.y)^2 + (l22 v.y)^2 in the rows below the displacement v.
@@ -27,23 +29,25 @@ SmallSplat fetch_small(int slot) {
   return decode_small(texelFetch(splats, 2 * slot), texelFetch(splats, 2 * slot + 1));
 }
 
-// Finds the nearest surface behind `limit` (an inverse depth), pushed back.
-void see_small(uint first, uint count, vec2 pixel, Rows limit, inout Rows surface) {
+// Finds the nearest surface behind `limit` (an inverse depth), pushed back, and the largest weight of the list.
+void see_small(uint first, uint count, vec2 pixel, Rows limit, inout Rows surface, inout float peak) {
   for (uint k = 0u; k < count; ++k) {
     int slot = int(texelFetch(lists, int(first + k)).x);
     uvec4 a = texelFetch(splats, 2 * slot);
     Disc disc = decode_disc(texelFetch(discs, slot));
+    peak = max(peak, disc.weight);
     vec2 v = pixel - uintBitsToFloat(a.xy);
     float inverse_depth = uintBitsToFloat(a.z);
     Rows plane = plane_inverse_depth(inverse_depth, unpackHalf2x16(a.w), v);
-    Rows z = disc_inverse_depth(plane, inverse_depth, disc.depth_range);
+    Rows z = fragment_inverse_depth(plane, inverse_depth, disc.depth_range);
     BoolRows hit = both(at_most(factored_form(disc.factor, v), Rows(1.0)), less(z, limit));
-    surface = mix(surface, max(surface, z * disc.push), hit);
+    surface = mix(surface, max(surface, disc_inverse_depth(plane, inverse_depth, disc)), hit);
   }
 }
 
 // Accumulates the splats between `limit` and `surface`.
-void accumulate_small(uint first, uint count, vec2 pixel, Rows limit, Rows surface, inout PixelSums sums) {
+void accumulate_small(uint first, uint count, vec2 pixel, Rows limit, Rows surface, float unit,
+                      inout PixelSums sums) {
   for (uint begin = 0u; begin < count; begin += uint(SURFCAST_CARRY_INTERVAL)) {
     uint end = min(begin + uint(SURFCAST_CARRY_INTERVAL), count);
     for (uint k = begin; k < end; ++k) {
@@ -51,10 +55,9 @@ void accumulate_small(uint first, uint count, vec2 pixel, Rows limit, Rows surfa
       SmallSplat s = fetch_small(slot);
       vec2 v = pixel - s.centre;
       Rows form = factored_form(s.factor, v);
-      Rows plane = plane_inverse_depth(s.inverse_depth, s.slope, v);
-      Rows z = fragment_inverse_depth(plane, s.inverse_depth, s.depth_range);
+      Rows z = fragment_inverse_depth(plane_inverse_depth(s.inverse_depth, s.slope, v), s.inverse_depth, s.depth_range);
       BoolRows visible = both(at_most(form, Rows(s.cutoff)), both(at_most(surface, z), less(z, limit)));
-      sums_add(sums, splat_value(s.color, slot), mix(Rows(0.0), s.weight * exp2(-form), visible));
+      sums_add(sums, splat_value(s.color, slot, unit), mix(Rows(0.0), s.weight * exp2(-form), visible));
     }
     sums_carry(sums);
   }

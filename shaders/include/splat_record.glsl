@@ -5,13 +5,17 @@
 
 #define SURFCAST_SQRT_HALF_LOG2E 0.84932180
 
+// Weights are kept as roots, scaled so that half precision holds 1 and 1e-11 alike.
+const float kWeightRoot = 64.0;
+
 struct SmallSplat {
   vec2 centre;          // pixels
   float inverse_depth;  // 1 / z of the centre
   vec2 slope;           // change of the plane's inverse depth per pixel, relative to the centre's
   vec3 factor;          // inverse_factor(S) * SURFCAST_SQRT_HALF_LOG2E, so that the weight is exp2 of the form
   float cutoff;         // largest value of the form
-  float depth_range;    // how far the splat's rim lies before and behind its centre, relative to o.z
+  float depth_range;    // the disc's own depth range, relative to o.z: the plane of an edge-on surfel is not
+                        // extrapolated beyond it
   float weight;         // gain times normalisation
   uint color;
 };
@@ -19,30 +23,33 @@ struct SmallSplat {
 void encode_small(SmallSplat s, out uvec4 a, out uvec4 b) {
   a = uvec4(floatBitsToUint(s.centre), floatBitsToUint(s.inverse_depth), packHalf2x16(s.slope));
   b = uvec4(packHalf2x16(s.factor.xy), packHalf2x16(vec2(s.factor.z, s.cutoff)), s.color,
-            packHalf2x16(vec2(s.depth_range, s.weight)));
+            packHalf2x16(vec2(s.depth_range, kWeightRoot * sqrt(s.weight))));
 }
 
 SmallSplat decode_small(uvec4 a, uvec4 b) {
   vec2 c = unpackHalf2x16(b.y);
   vec2 d = unpackHalf2x16(b.w);
+  d.y *= 1.0 / kWeightRoot;
   return SmallSplat(uintBitsToFloat(a.xy), uintBitsToFloat(a.z), unpackHalf2x16(a.w), vec3(unpackHalf2x16(b.x), c.x),
-                    c.y, d.x, d.y, b.z);
+                    c.y, d.x, d.y * d.y, b.z);
 }
 
 // The opaque disc of a small splat for visibility splatting.
 struct Disc {
   vec3 factor;        // inverse_factor of its variance: the disc is where the form is at most 1
-  float push;         // factor of inverse depths that pushes the surface back along the viewing rays
+  float push;         // how far the surface is pushed back along the viewing rays, in units of its depth
   float depth_range;  // as in SmallSplat
+  float weight;       // of the splat: an upper bound of what it adds to a pixel
 };
 
 uvec4 encode_disc(Disc d) {
-  return uvec4(packHalf2x16(d.factor.xy), packHalf2x16(vec2(d.factor.z, d.push)), floatBitsToUint(d.depth_range), 0u);
+  return uvec4(packHalf2x16(d.factor.xy), packHalf2x16(vec2(d.factor.z, d.push)), floatBitsToUint(d.depth_range),
+               floatBitsToUint(d.weight));
 }
 
 Disc decode_disc(uvec4 a) {
   vec2 c = unpackHalf2x16(a.y);
-  return Disc(vec3(unpackHalf2x16(a.x), c.x), c.y, uintBitsToFloat(a.z));
+  return Disc(vec3(unpackHalf2x16(a.x), c.x), c.y, uintBitsToFloat(a.z), uintBitsToFloat(a.w));
 }
 
 struct LargeSplat {

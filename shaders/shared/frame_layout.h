@@ -21,6 +21,8 @@ namespace surfcast::layout {
 #define SURFCAST_TILE_HEIGHT 4
 // Surfels that one work group projects; runs of a block are cut into chunks of this many.
 #define SURFCAST_CHUNK 128
+// Splats that a tile may have before its splats are thinned out (see include/thinning.glsl).
+#define SURFCAST_CROWD 8192
 // Splats between two carries of the fixed-point sums (see splat.comp).
 #define SURFCAST_CARRY_INTERVAL 32
 
@@ -33,7 +35,7 @@ struct FrameConstants {
   SURFCAST_IVEC4 tiles;      // tiles across, tiles down, tiles in all, splats that the record buffer holds
   SURFCAST_VEC4 filter_;     // prefilter variance, visibility prefilter variance (pixels squared), unused, unused
   SURFCAST_VEC4 background;  // linear light
-  SURFCAST_IVEC4 flags;      // x: back faces are culled, y: per-surfel weights
+  SURFCAST_IVEC4 flags;      // x: back faces are culled, y: per-surfel weights, z: crowded tiles are thinned out
 };
 
 // One visible block: its origin relative to the eye, in camera coordinates, world units; w: unit of its radii.
@@ -46,7 +48,7 @@ struct Chunk {
   SURFCAST_UVEC4 run;
 };
 
-// What the projection counts: small splats, large splats, entries of all tile lists, unused.
+// What the projection counts: small splats, large splats, entries of all tile lists, entries of the longest.
 struct Counters {
   SURFCAST_UVEC4 counts;
 };
@@ -60,7 +62,8 @@ struct Counters {
 #define SURFCAST_BIND_COUNTERS 5
 #define SURFCAST_BIND_TILE_COUNT 6   // uint per tile and list: entries; small lists first, then large lists
 #define SURFCAST_BIND_TILE_OFFSET 7  // uint per tile and list: first entry
-#define SURFCAST_BIND_PICTURE 8
+#define SURFCAST_BIND_TILE_CROWD 8   // uint per tile: entries of both its lists, as counted before thinning
+#define SURFCAST_BIND_PICTURE 9
 // Uniform buffer:
 #define SURFCAST_BIND_FRAME 0
 // Image and texture units of the buffers that are larger than a storage block may be:

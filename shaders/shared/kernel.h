@@ -17,10 +17,12 @@
 #define SURFCAST_KERNEL_CUTOFF 9.0
 
 // A surfel's opaque disc: radius in units of r on the surface, widened by a Gaussian of so many pixels on the screen
-// so that discs smaller than a pixel still cover its centre, pushed back along the ray by so many r.
+// so that discs smaller than a pixel still cover its centre, pushed back along the ray by so many r, and by so many
+// pixel footprints (o.z / eta): what lies within a pixel's own depth is one surface, however fine its surfels.
 #define SURFCAST_VISIBILITY_RADIUS 1.0
 #define SURFCAST_VISIBILITY_PIXELS 0.6
 #define SURFCAST_VISIBILITY_DEPTH 1.0
+#define SURFCAST_VISIBILITY_FOOTPRINT 1.0
 
 // A pixel counts as covered when the sum of its normalised weights reaches a0 = mix(MINIFIED, MAGNIFIED, g): high
 // where the sum is the pixel's true coverage, low where it is a kernel's tail between samples.

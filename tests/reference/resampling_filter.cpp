@@ -28,7 +28,7 @@ std::optional<Splat> Splat::make(const glm::dvec3& o, const glm::dvec3& n, doubl
   splat.prefilter_ = prefilter;
   splat.sigma_ = kernel.sigma * radius;
   splat.disc_radius_ = kernel.visibility_radius * radius;
-  splat.push_ = kernel.visibility_depth * radius;
+  splat.push_ = kernel.visibility_depth * radius + kernel.visibility_footprint * std::max(o.z, 0.0) / eta;
   splat.disc_pixels_ = kernel.visibility_pixels;
   const double widest = std::sqrt(std::max(kernel.cutoff_magnified, kernel.cutoff_minified)) * splat.sigma_;
   splat.extent_ = std::max(widest, splat.disc_radius_);

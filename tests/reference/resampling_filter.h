@@ -17,6 +17,7 @@ struct KernelParameters {
   double visibility_radius = SURFCAST_VISIBILITY_RADIUS;
   double visibility_pixels = SURFCAST_VISIBILITY_PIXELS;
   double visibility_depth = SURFCAST_VISIBILITY_DEPTH;
+  double visibility_footprint = SURFCAST_VISIBILITY_FOOTPRINT;
   double coverage_minified = SURFCAST_COVERAGE_MINIFIED;
   double coverage_magnified = SURFCAST_COVERAGE_MAGNIFIED;
 };

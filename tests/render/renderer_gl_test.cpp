@@ -1,85 +1,249 @@
-#include <filesystem>
-#include <glm/vec4.hpp>
+// What a picture must be, on scenes simple enough to know.
 
-#include <gtest/gtest.h>
+#include <cmath>
+#include <numbers>
 
-#include "model/model_writer.h"
-#include "render/renderer.h"
+#include "render/gl_fixture.h"
+#include "shared/kernel.h"
 #include "support/clouds.h"
 
 namespace surfcast {
 namespace {
 
-namespace fs = std::filesystem;
+using RendererGLTest = testing::RendererFixture;
 
-/// One renderer for all cases: shaders compile once.
-class RendererGLTest : public ::testing::Test {
- protected:
-  static void SetUpTestSuite() {
-    Result<std::unique_ptr<Renderer>> created = Renderer::create({});
-    ASSERT_TRUE(created) << created.error().message;
-    renderer_ = std::move(*created);
-    folder_ = fs::path(::testing::TempDir()) / "surfcast_renderer_gl_test";
-    fs::create_directories(folder_);
-  }
-  static void TearDownTestSuite() {
-    renderer_.reset();
-    fs::remove_all(folder_);
-  }
-
-  static ModelFile model_of(const SurfelCloud& cloud, const char* name) {
-    const fs::path path = folder_ / name;
-    const Result<WriteReport> written = write_model(cloud, path, {});
-    EXPECT_TRUE(written) << (written ? "" : written.error().message);
-    Result<ModelFile> model = ModelFile::open(path);
-    EXPECT_TRUE(model) << (model ? "" : model.error().message);
-    return std::move(*model);
-  }
-
-  static Frame draw(const ModelFile& model, const PictureRequest& request) {
-    const std::atomic<bool> cancelled{false};
-    Result<Frame> frame = renderer_->draw(model, request, cancelled);
-    EXPECT_TRUE(frame) << (frame ? "" : frame.error().message);
-    return frame ? std::move(*frame) : Frame{};
-  }
-
-  static glm::u8vec4 pixel(const Image& image, int x, int y) {
-    const auto* p = reinterpret_cast<const uint8_t*>(image.pixels.data()) + 4 * (y * image.width + x);
-    return {p[0], p[1], p[2], p[3]};
-  }
-
-  static inline std::unique_ptr<Renderer> renderer_;
-  static inline fs::path folder_;
-};
-
-PictureRequest front_view(int width, int height) {
+PictureRequest front_view(int width, int height, double distance = 5) {
   PictureRequest request;
-  request.camera = Camera{{0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 30};
+  request.camera = Camera{{0, 0, distance}, {0, 0, 0}, {0, 1, 0}, 30};
   request.width = width;
   request.height = height;
   return request;
 }
 
-TEST_F(RendererGLTest, SphereOfOneColorIsThatColorInEveryCoveredPixel) {
-  const ModelFile model = model_of(testing::fibonacci_sphere(100000, 1, {0, 0, 0}, {200, 90, 20}), "sphere.surf");
+/// Pixels whose coverage is whole, each of which must be `color` within `levels`.
+int count_covered(const Image& image, const glm::u8vec3& color, int levels) {
+  int covered = 0;
+  int wrong = 0;
+  const auto* p = reinterpret_cast<const uint8_t*>(image.pixels.data());
+  for (int i = 0; i < image.width * image.height; ++i, p += 4) {
+    if (p[3] != 255) continue;
+    ++covered;
+    for (int c = 0; c < 3; ++c) wrong += std::abs(p[c] - color[c]) > levels ? 1 : 0;
+  }
+  EXPECT_EQ(wrong, 0);
+  return covered;
+}
+
+TEST_F(RendererGLTest, ASphereOfOneColorIsThatColorInEveryCoveredPixel) {
+  const glm::u8vec3 color(200, 90, 20);
+  const ModelFile& model = model_of(testing::fibonacci_sphere(100000, 1, {0, 0, 0}, color));
+  // The sphere subtends asin(1/5): a disc of eta tan(asin(1/5)) pixels.
+  const double radius = 512 / (2 * std::tan(std::numbers::pi / 12)) * std::tan(std::asin(0.2));
   for (const Normalization normalization : {Normalization::kPixel, Normalization::kSurfel}) {
     PictureRequest request = front_view(512, 512);
     request.normalization = normalization;
-    const Frame frame = draw(model, request);
-    int covered = 0;
-    for (int y = 0; y < 512; ++y) {
-      for (int x = 0; x < 512; ++x) {
-        const glm::u8vec4 p = pixel(frame.image, x, y);
-        if (p.a != 255) continue;
-        ++covered;
-        ASSERT_NEAR(p.r, 200, 1) << x << ' ' << y;
-        ASSERT_NEAR(p.g, 90, 1) << x << ' ' << y;
-        ASSERT_NEAR(p.b, 20, 1) << x << ' ' << y;
+    const int covered = count_covered(draw(model, request).image, color, 1);
+    EXPECT_NEAR(covered, std::numbers::pi * radius * radius, 2 * std::numbers::pi * radius * 2) << "2 pixels of edge";
+  }
+}
+
+TEST_F(RendererGLTest, WhereNothingIsTheBackgroundShowsExactly) {
+  const ModelFile& model = model_of(testing::fibonacci_sphere(1000, 1, {0, 0, 0}, {255, 255, 255}));
+  PictureRequest request = front_view(64, 64);
+  request.background = {12, 34, 56};
+  const Image image = draw(model, request).image;
+  EXPECT_EQ(pixel(image, 0, 0), glm::u8vec4(12, 34, 56, 0));
+  EXPECT_EQ(pixel(image, 63, 63), glm::u8vec4(12, 34, 56, 0));
+}
+
+TEST_F(RendererGLTest, TheSameRequestGivesTheSameBytes) {
+  SurfelCloud cloud = testing::fibonacci_sphere(50000, 1, {0, 0, 0}, {200, 90, 20});
+  for (size_t i = 0; i < cloud.size(); ++i) cloud.colors->values[i] = glm::u16vec3(i % 256, i * 7 % 256, i * 31 % 256);
+  const ModelFile& model = model_of(cloud);
+  const Frame first = draw(model, front_view(300, 200));
+  draw(model, front_view(100, 100, 2));
+  EXPECT_EQ(draw(model, front_view(300, 200)).image.pixels, first.image.pixels);
+  renderer_->forget(model);
+  EXPECT_EQ(draw(model, front_view(300, 200)).image.pixels, first.image.pixels) << "after loading it again";
+}
+
+TEST_F(RendererGLTest, OneSurfelMayFillTheScreen) {
+  const ModelFile& model = model_of(testing::single_surfel({0, 0, 0}, {0, 0, 1}, 1, {10, 200, 30}));
+  PictureRequest request = front_view(96, 64, 0.05);
+  EXPECT_EQ(count_covered(draw(model, request).image, {10, 200, 30}, 1), 96 * 64);
+}
+
+TEST_F(RendererGLTest, FromWithinAModelEveryPixelIsCovered) {
+  // Surfels in front of, beside, astride and behind the eye.
+  SurfelCloud cloud = testing::fibonacci_sphere(2000, 1, {0, 0, 0}, {90, 120, 150});
+  cloud.oriented = false;
+  const ModelFile& model = model_of(cloud);
+  for (const double offset : {0.0, 0.5, 0.9, 0.97}) {
+    PictureRequest request;
+    request.camera = Camera{{offset, 0, 0}, {offset + 0.3, 1, 0.2}, {0, 0, 1}, 100};
+    request.width = 160;
+    request.height = 120;
+    EXPECT_EQ(count_covered(draw(model, request).image, {90, 120, 150}, 1), 160 * 120) << offset;
+  }
+}
+
+TEST_F(RendererGLTest, BackFacesOfOrientedModelsAreNotDrawn) {
+  SurfelCloud cloud = testing::square(64, 1, {0, 0, 0}, {0, 0, -1}, {255, 255, 255});
+  PictureRequest request = front_view(64, 64);
+  EXPECT_EQ(draw(model_of(cloud), request).stats.surfels_drawn, 0u);
+  cloud.oriented = false;
+  EXPECT_GT(count_covered(draw(model_of(cloud), request).image, {255, 255, 255}, 1), 300);
+}
+
+TEST_F(RendererGLTest, AMillionSurfelsInOnePixelKeepTheirColor) {
+  SurfelCloud cloud = testing::fibonacci_sphere(1000000, 1e-3, {0, 0, 0}, {200, 90, 20});
+  const ModelFile& model = model_of(cloud);
+  PictureRequest request = front_view(33, 33, 1);
+  request.format = PixelFormat::kLinearFloat;
+  request.background = {0, 0, 0};
+  // The sphere's diameter is about a tenth of a pixel, so that the middle pixel is covered by a small, known part:
+  // area times the prefilter's peak, over the coverage that counts as whole.
+  const Image image = draw(model, request).image;
+  const glm::vec4 p = light(image, 16, 16);
+  const double eta = 33 / (2 * std::tan(std::numbers::pi / 12));
+  const double area = std::numbers::pi * std::pow(eta * 1e-3, 2);
+  // Kernels as small as these have no gain left; even_weight times their sum is the covered area.
+  EXPECT_NEAR(p.a / (area / (2 * std::numbers::pi) / SURFCAST_COVERAGE_MINIFIED), 1, 0.05)
+      << "a fair sample of the million";
+  // 200, 90, 20 in linear light, blended over black.
+  EXPECT_NEAR(p.r / p.a, 0.577580, 0.002);
+  EXPECT_NEAR(p.g / p.a, 0.102242, 0.001);
+  EXPECT_NEAR(p.b / p.a, 0.006995, 0.0005);
+}
+
+TEST_F(RendererGLTest, CoincidentSurfelsAreOne) {
+  SurfelCloud one = testing::single_surfel({0, 0, 0}, {0, 0, 1}, 0.5F, {10, 200, 30});
+  SurfelCloud many = one;
+  for (int i = 0; i < 9; ++i) testing::append(many, one);
+  const Image a = draw(model_of(one), front_view(64, 64)).image;
+  const Image b = draw(model_of(many), front_view(64, 64)).image;
+  EXPECT_EQ(pixel(a, 32, 32), pixel(b, 32, 32));
+}
+
+TEST_F(RendererGLTest, EdgeOnSurfelsStayFiniteAndSmall) {
+  // A surfel of 20 pixels radius in a sweep from 89 to 89.9999 degrees: a line at most a few pixels thick.
+  for (const double degrees : {89.0, 89.9, 89.99, 89.999, 89.9999, 90.0}) {
+    const double angle = degrees * std::numbers::pi / 180;
+    SurfelCloud cloud =
+        testing::single_surfel({0, 0, 0}, glm::vec3(0, std::sin(angle), std::cos(angle)), 0.1F, {255, 255, 255});
+    cloud.oriented = false;
+    PictureRequest request = front_view(128, 128, 1);
+    request.format = PixelFormat::kLinearFloat;
+    const Image image = draw(model_of(cloud), request).image;
+    for (int y = 0; y < 128; ++y) {
+      for (int x = 0; x < 128; ++x) {
+        const glm::vec4 p = light(image, x, y);
+        ASSERT_TRUE(std::isfinite(p.r) && p.a >= 0 && p.a <= 1) << degrees << ": " << x << ' ' << y;
+        if (std::abs(y + 0.5 - 64) > 6) {
+          ASSERT_EQ(p.a, 0) << degrees << ": " << x << ' ' << y;
+        }
       }
     }
-    // The sphere subtends asin(1/5): a disc of radius eta tan(asin(1/5)) = 195 pixels.
-    EXPECT_NEAR(covered, 3.14159 * 195 * 195, 3000);
   }
+}
+
+TEST_F(RendererGLTest, MapCoordinatesAndMillimetresDrawAsAtTheOrigin) {
+  const glm::dvec3 far_away(448262.31, 5411932.67, 312.45);
+  PictureRequest request = front_view(128, 128, 0.005);
+  const Image at_origin =
+      draw(model_of(testing::square(100, 0.001, {0, 0, 0}, {0, 0.3, 1}, {200, 90, 20})), request).image;
+  request.camera->position += far_away;
+  request.camera->focal_point += far_away;
+  const Image moved = draw(model_of(testing::square(100, 0.001, far_away, {0, 0.3, 1}, {200, 90, 20})), request).image;
+  // Coordinates of 5e6 keep nanometres in double precision: a ten thousandth of the spacing.
+  int differing = 0;
+  for (int y = 0; y < 128; ++y) {
+    for (int x = 0; x < 128; ++x) {
+      differing += std::abs(pixel(at_origin, x, y).r - pixel(moved, x, y).r) > 4 ? 1 : 0;
+    }
+  }
+  EXPECT_LT(differing, 20);
+  EXPECT_GT(count_covered(moved, {200, 90, 20}, 1), 1000);
+}
+
+TEST_F(RendererGLTest, ScaleDoesNotMatter) {
+  for (const double scale : {1e-4, 1.0, 1e5}) {
+    const ModelFile& model = model_of(testing::fibonacci_sphere(20000, scale, {0, 0, 0}, {200, 90, 20}));
+    EXPECT_NEAR(count_covered(draw(model, front_view(128, 128, 5 * scale)).image, {200, 90, 20}, 1), 7250, 250)
+        << scale;
+  }
+}
+
+TEST_F(RendererGLTest, OneSurfaceBeforeAnotherHasNoSeamInTheColorOfTheBackground) {
+  SurfelCloud cloud = testing::square(200, 4, {0, 0, -1}, {0, 0, 1}, {200, 200, 200});
+  testing::append(cloud, testing::square(60, 0.6, {0, 0, 0}, {0.2, 0.1, 1}, {200, 200, 200}));
+  const Image image = draw(model_of(cloud), front_view(256, 256)).image;
+  for (int y = 16; y < 240; ++y) {
+    for (int x = 16; x < 240; ++x) ASSERT_NEAR(pixel(image, x, y).r, 200, 2) << x << ' ' << y;
+  }
+}
+
+TEST_F(RendererGLTest, WithoutColorASurfaceIsLitFromTheEye) {
+  SurfelCloud cloud = testing::fibonacci_sphere(50000, 1, {0, 0, 0}, {0, 0, 0});
+  cloud.colors.reset();
+  PictureRequest request = front_view(256, 256);
+  request.format = PixelFormat::kLinearFloat;
+  const ModelFile& model = model_of(cloud);
+  const Image image = draw(model, request).image;
+  EXPECT_NEAR(light(image, 128, 128).r, 0.8, 0.005) << "albedo 0.8, seen from straight above";
+  // Half way out on the disc: the angle of incidence follows from the sphere's geometry.
+  const double eta = 256 / (2 * std::tan(std::numbers::pi / 12));
+  const double ray = 48.5 / eta;
+  const double cosine_view = 1 / std::sqrt(1 + ray * ray);
+  const double along = 5 * cosine_view - std::sqrt(1 - 25 * (1 - cosine_view * cosine_view));
+  const double incidence = (5 * cosine_view - along);  // cosine of the angle between normal and ray, unit radius
+  EXPECT_NEAR(light(image, 128 + 48, 128).r, 0.8 * (0.1 + 0.9 * incidence), 0.01);
+  request.shading = Shading::kUnlit;
+  EXPECT_NEAR(light(draw(model, request).image, 128 + 48, 128).r, 0.8, 0.005);
+}
+
+TEST_F(RendererGLTest, ColorsAreLitWhenAskedFor) {
+  const ModelFile& model = model_of(testing::square(200, 2, {0, 0, 0}, {0, 1, 1}, {255, 255, 255}));
+  PictureRequest request = front_view(64, 64);
+  request.format = PixelFormat::kLinearFloat;
+  EXPECT_NEAR(light(draw(model, request).image, 32, 32).g, 1, 0.005);
+  request.shading = Shading::kLit;
+  EXPECT_NEAR(light(draw(model, request).image, 32, 32).g, 0.1 + 0.9 * std::sqrt(0.5), 0.01);
+}
+
+TEST_F(RendererGLTest, PicturesOfOnePixelAndOfSeveralRegionsAreDrawn) {
+  const ModelFile& model = model_of(testing::square(100, 4, {0, 0, 0}, {0, 0, 1}, {200, 90, 20}));
+  EXPECT_EQ(count_covered(draw(model, front_view(1, 1, 1)).image, {200, 90, 20}, 1), 1);
+  PictureRequest wide = front_view(4100, 20, 20);
+  wide.camera->view_angle = 0.9;
+  const Image image = draw(model, wide).image;
+  // The plane spans 4 / (20 * 2 tan(0.45 degrees)) of the height: all of the rows, and 255 columns about the middle.
+  EXPECT_NEAR(count_covered(image, {200, 90, 20}, 1), 255 * 20, 3 * 20);
+  EXPECT_EQ(pixel(image, 2050, 10).a, 255) << "beyond the first region's edge at 2048";
+}
+
+TEST_F(RendererGLTest, WrongRequestsAreRefused) {
+  const ModelFile& model = model_of(testing::single_surfel({0, 0, 0}, {0, 0, 1}, 1, {1, 2, 3}));
+  const std::atomic<bool> no{false};
+  EXPECT_EQ(renderer_->draw(model, front_view(0, 10), no).error().kind, ErrorKind::kLimit);
+  EXPECT_EQ(renderer_->draw(model, front_view(10, 1 << 20), no).error().kind, ErrorKind::kLimit);
+  EXPECT_EQ(renderer_->draw(model, front_view(10, 10, 0), no).error().kind, ErrorKind::kInvalidInput);
+}
+
+TEST_F(RendererGLTest, ACancelledPictureStops) {
+  const ModelFile& model = model_of(testing::single_surfel({0, 0, 0}, {0, 0, 1}, 1, {1, 2, 3}));
+  const std::atomic<bool> yes{true};
+  EXPECT_EQ(renderer_->draw(model, front_view(10, 10), yes).error().kind, ErrorKind::kCancelled);
+}
+
+TEST_F(RendererGLTest, AViewOfAModelIsFoundWithoutACamera) {
+  const ModelFile& model = model_of(testing::fibonacci_sphere(20000, 3, {100, 200, 300}, {200, 90, 20}));
+  PictureRequest request;
+  request.width = 320;
+  request.height = 200;
+  const int covered = count_covered(draw(model, request).image, {200, 90, 20}, 1);
+  EXPECT_GT(covered, 320 * 200 / 8);
+  EXPECT_LT(covered, 320 * 200 / 2);
 }
 
 }  // namespace
