@@ -18,14 +18,18 @@
 namespace surfcast::reference {
 namespace {
 
-constexpr int kTile = 16;              ///< pixels
-constexpr double kMeanRadius = 1.08;   ///< stored radius of well spread samples over their spacing h
+constexpr int kTile = 16;             ///< pixels
+constexpr double kMeanRadius = 1.08;  ///< stored radius of well spread samples over their spacing h
+constexpr int kMaxLayers = 3;
+constexpr double kOpaque = 1.0 / 128;  ///< transmittance that is not worth another layer
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNoPrefilter = 0.01;  ///< pixels: no blur to speak of, yet r2 stays finite edge-on
 
 /// A surfel ready to be drawn: what it is seen as, and what it adds.
 struct DrawnSurfel {
   Splat splat;
-  glm::dvec3 value;  ///< linear colour, or the normal towards the eye where the picture is lit
+  glm::dvec3 color;   ///< linear light
+  glm::dvec3 normal;  ///< towards the eye
   double multiplier = 1;
 };
 
@@ -98,9 +102,9 @@ class TiledScene {
     const PixelRect bounds = pixel_bounds(*splat, frame_);
     if (bounds.x0 >= bounds.x1 || bounds.y0 >= bounds.y1) return;
     const glm::dvec3 facing = glm::dot(n, o) > 0 ? -n : n;
-    const glm::dvec3 value = lit_ ? facing : cloud.colors ? linear_color(*cloud.colors, i) : glm::dvec3(kAlbedo);
+    const glm::dvec3 color = cloud.colors ? linear_color(*cloud.colors, i) : glm::dvec3(kAlbedo);
     const bool per_surfel = request.normalization == Normalization::kSurfel;
-    surfels_.push_back({*splat, value, per_surfel ? cloud.weights[i] : weight_scale(kernel)});
+    surfels_.push_back({*splat, color, facing, per_surfel ? cloud.weights[i] : weight_scale(kernel)});
     bounds_.push_back(bounds);
     bin(static_cast<uint32_t>(surfels_.size() - 1), bounds);
   }
@@ -122,61 +126,94 @@ class TiledScene {
   std::vector<std::vector<uint32_t>> tiles_;
 };
 
-/// Both passes over one tile.
+/// One pixel while it is drawn: what the layer at hand has gathered, and the light of the layers in front of it.
+struct PixelState {
+  double limit = 0;  ///< depth of the layer in front: nothing nearer is drawn again
+  double surface = kInfinity;
+  double weight = 0;
+  glm::dvec3 color{0};
+  glm::dvec3 normal{0};
+  glm::dvec3 light{0};
+  double transmittance = 1;
+  double front_weight = 0;
+  bool done = false;
+};
+
+/// Visibility and accumulation over one tile, for up to kMaxLayers surfaces one behind the other: where a surface
+/// covers a pixel in part, what lies behind it shows through.
 class TilePass {
  public:
   TilePass(const TiledScene& scene, const CameraFrame& frame, const KernelParameters& kernel, int column, int row)
       : scene_(scene), frame_(frame), kernel_(kernel), column_(column), row_(row), rect_(scene.rect(column, row)) {}
 
   void draw() {
-    scene_.for_each_surfel(column_, row_, [&](const DrawnSurfel& s, const PixelRect& r) { draw_depth(s, r); });
-    scene_.for_each_surfel(column_, row_, [&](const DrawnSurfel& s, const PixelRect& r) { accumulate(s, r); });
+    for (int layer = 0; layer < kMaxLayers && !all_done(); ++layer) {
+      scene_.for_each_surfel(column_, row_, [&](const DrawnSurfel& s, const PixelRect& r) { see(s, r); });
+      scene_.for_each_surfel(column_, row_, [&](const DrawnSurfel& s, const PixelRect& r) { accumulate(s, r); });
+      for_each_pixel(rect_, [&](PixelState& p, const glm::dvec3& d, size_t) { composite(p, d, layer == 0); });
+    }
   }
-  void resolve(const PictureRequest& request, ReferencePicture& out) const {
+  void resolve(const PictureRequest& request, ReferencePicture& out) {
     const glm::dvec3 background = linear_from_srgb8(glm::dvec3(request.background));
-    for_each_pixel(rect_, [&](size_t local, const glm::dvec3& d, size_t global) {
-      const double a = weights_[local];
-      const double coverage = std::min(1.0, a);
-      out.weights[global] = a;
-      out.coverage[global] = coverage;
-      const glm::dvec3 color = a > 0 ? shade(values_[local] / a, d) : background;
-      out.picture.pixels[global] = coverage < 1 ? glm::mix(background, color, coverage) : color;
+    for_each_pixel(rect_, [&](const PixelState& p, const glm::dvec3&, size_t global) {
+      out.weights[global] = p.front_weight;
+      out.coverage[global] = 1 - p.transmittance;
+      out.picture.pixels[global] = p.light + p.transmittance * background;
     });
   }
   [[nodiscard]] uint64_t fragments() const { return fragments_; }
 
  private:
   template <typename Visit>
-  void for_each_pixel(const PixelRect& rect, const Visit& visit) const {
+  void for_each_pixel(const PixelRect& rect, const Visit& visit) {
     for (int y = rect.y0; y < rect.y1; ++y) {
       for (int x = rect.x0; x < rect.x1; ++x) {
-        const size_t local = static_cast<size_t>(y - rect_.y0) * kTile + (x - rect_.x0);
-        visit(local, frame_.ray({x + 0.5, y + 0.5}), static_cast<size_t>(y) * frame_.width + x);
+        PixelState& pixel = pixels_[static_cast<size_t>(y - rect_.y0) * kTile + (x - rect_.x0)];
+        visit(pixel, frame_.ray({x + 0.5, y + 0.5}), static_cast<size_t>(y) * frame_.width + x);
       }
     }
   }
 
-  void draw_depth(const DrawnSurfel& surfel, const PixelRect& rect) {
-    for_each_pixel(rect, [&](size_t local, const glm::dvec3& d, size_t) {
-      if (!surfel.splat.opaque(d)) return;
-      depths_[local] = std::min(depths_[local], surfel.splat.disc_depth(d));
+  [[nodiscard]] bool all_done() const {
+    return std::all_of(pixels_.begin(), pixels_.end(), [](const PixelState& p) { return p.done; });
+  }
+
+  void see(const DrawnSurfel& surfel, const PixelRect& rect) {
+    for_each_pixel(rect, [&](PixelState& p, const glm::dvec3& d, size_t) {
+      if (p.done || !surfel.splat.opaque(d)) return;
+      const Splat::DiscDepth depth = surfel.splat.disc_depth(d);
+      if (depth.unpushed > p.limit) p.surface = std::min(p.surface, depth.pushed);
     });
   }
 
   void accumulate(const DrawnSurfel& surfel, const PixelRect& rect) {
-    for_each_pixel(rect, [&](size_t local, const glm::dvec3& d, size_t) {
+    for_each_pixel(rect, [&](PixelState& p, const glm::dvec3& d, size_t) {
+      if (p.done) return;
       const Fragment f = surfel.splat.fragment(d);
       if (surfel.splat.cut(f.r2)) return;
       ++fragments_;
-      if (surfel.splat.fragment_depth(d) > depths_[local]) return;
+      const double depth = surfel.splat.fragment_depth(d);
+      if (depth > p.surface || depth <= p.limit) return;
       const double w = surfel.multiplier / saturation(f.gain, kernel_) * f.gain * std::exp(-0.5 * f.r2);
-      weights_[local] += w;
-      values_[local] += w * surfel.value;
+      p.weight += w;
+      p.color += w * surfel.color;
+      p.normal += w * surfel.normal;
     });
   }
 
-  [[nodiscard]] glm::dvec3 shade(const glm::dvec3& value, const glm::dvec3& d) const {
-    return scene_.lit() ? headlight(value, d) : value;
+  /// Adds the layer behind the light of those in front, and makes ready for the next.
+  void composite(PixelState& p, const glm::dvec3& d, bool front) const {
+    if (p.done) return;
+    if (front) p.front_weight = p.weight;
+    const double coverage = std::min(1.0, p.weight);
+    const double shade = scene_.lit() ? headlight(p.normal, d) : 1;
+    if (p.weight > 0) p.light += p.transmittance * coverage * shade / p.weight * p.color;
+    p.transmittance *= 1 - coverage;
+    p.done = !std::isfinite(p.surface) || p.transmittance <= kOpaque;
+    p.limit = p.surface;
+    p.surface = kInfinity;
+    p.weight = 0;
+    p.color = p.normal = glm::dvec3(0);
   }
 
   const TiledScene& scene_;
@@ -186,15 +223,7 @@ class TilePass {
   int row_;
   PixelRect rect_;
   uint64_t fragments_ = 0;
-  std::array<double, kTile* kTile> depths_ = filled(std::numeric_limits<double>::infinity());
-  std::array<double, kTile* kTile> weights_ = filled(0);
-  std::array<glm::dvec3, kTile * kTile> values_{};
-
-  static std::array<double, kTile * kTile> filled(double value) {
-    std::array<double, kTile * kTile> a{};
-    a.fill(value);
-    return a;
-  }
+  std::array<PixelState, kTile * kTile> pixels_{};
 };
 
 }  // namespace

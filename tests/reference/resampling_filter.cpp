@@ -86,9 +86,11 @@ double Splat::fragment_depth(const glm::dvec3& d) const {
   return astride_ ? plane_depth(d) : std::min(plane_depth(d), o_.z + depth_range_);
 }
 
-double Splat::disc_depth(const glm::dvec3& d) const {
-  if (astride_) return plane_depth(d) + push_;
-  return std::max(plane_depth(d), o_.z - depth_range_) * (1 + push_ / o_.z);
+Splat::DiscDepth Splat::disc_depth(const glm::dvec3& d) const {
+  const double depth = plane_depth(d);
+  if (astride_) return {depth, depth + push_};
+  const double limited = std::max(depth, o_.z - depth_range_);
+  return {limited, limited * (1 + push_ / o_.z)};
 }
 
 // A pixel of the splat sees a point d.xy = (o.xy + U.xy + b o.z / eta) / (o.z + U.z) with U on the disc and b within

@@ -48,7 +48,11 @@ class Splat {
   [[nodiscard]] double fragment_depth(const glm::dvec3& d) const;
   /// Depth of the opaque disc: the plane, never in front of the splat's near end, then pushed back along the ray
   /// (Ren 2002, section 5.1). Coplanar fragments are never behind it, whatever the slope.
-  [[nodiscard]] double disc_depth(const glm::dvec3& d) const;
+  struct DiscDepth {
+    double unpushed;
+    double pushed;
+  };
+  [[nodiscard]] DiscDepth disc_depth(const glm::dvec3& d) const;
 
   /// Bounds of d.xy over every pixel that the splat or its disc can touch.
   struct Bounds {

@@ -83,7 +83,7 @@ TEST(ResamplingFilter, StaysFiniteAndContinuousUpToEdgeOn) {
     EXPECT_LE(f.gain, 1);
     EXPECT_NEAR(f.r2 / edge_on.r2, 1, 2 * std::abs(90 - degrees)) << degrees;
     EXPECT_TRUE(std::isfinite(splat.fragment_depth(d))) << degrees;
-    EXPECT_GE(splat.disc_depth(d), splat.fragment_depth(d)) << degrees;
+    EXPECT_GE(splat.disc_depth(d).pushed, splat.fragment_depth(d)) << degrees;
   }
 }
 
@@ -95,7 +95,8 @@ TEST(ResamplingFilter, PutsCoplanarFragmentsInFrontOfEveryDiscOfTheirPlane) {
   for (int i = 0; i < 200; ++i) {
     const glm::dvec3 d = ray_beside(o, pixels(random), pixels(random));
     const glm::dvec3 other = o + glm::dvec3(0.002 * i, 0, 0) + glm::dvec3(0, 0.03, 1) * (0.002 * (i - 100));
-    EXPECT_LE(splat_at(o, n, 0.001, 1).fragment_depth(d), splat_at(other, n, 0.001, 1).disc_depth(d)) << "case " << i;
+    EXPECT_LE(splat_at(o, n, 0.001, 1).fragment_depth(d), splat_at(other, n, 0.001, 1).disc_depth(d).pushed)
+        << "case " << i;
   }
 }
 

@@ -74,6 +74,13 @@ Scene scene_of(const std::vector<SurfacePoint>& points, RaySurface surface, Text
   return scene;
 }
 
+/// The point on the lower of two sheets, told apart by u in [2, 3].
+SurfacePoint lowered(SurfacePoint point, double gap) {
+  point.position.z -= gap;
+  point.uv.x += 2;
+  return point;
+}
+
 Scene plane_scene(Texture texture, const Camera& camera) {
   return scene_of(jittered_square(kPlaneSide, 0.25, 1), square(), std::move(texture), camera);
 }
@@ -84,6 +91,32 @@ Scene random_plane_scene(Texture texture, const Camera& camera) {
 
 Scene sphere_scene(Texture texture, const Camera& camera) {
   return scene_of(jittered_sphere(kSphereCount, 0.5, 3), unit_sphere(), std::move(texture), camera);
+}
+
+/// A sheet above another of its own samples and colour, three spacings apart.
+Scene layers_scene(const Camera& camera) {
+  const double gap = 3 * 2.0 / kPlaneSide;
+  std::vector<SurfacePoint> points = jittered_square(kPlaneSide, 0.25, 1);
+  for (const SurfacePoint& p : jittered_square(kPlaneSide, 0.25, 4)) points.push_back(lowered(p, gap));
+  const Texture texture = [](const glm::dvec2& uv) {
+    return linear_from_srgb8(uv.x < 1.5 ? glm::dvec3(230, 150, 60) : glm::dvec3(40, 80, 160));
+  };
+  const RaySurface surface = [gap](const glm::dvec3& origin, const glm::dvec3& direction) {
+    const RaySurface sheet = square();
+    auto point = sheet(origin, direction);
+    if (point) return point;
+    point = sheet(origin + glm::dvec3(0, 0, gap), direction);
+    if (point) point = lowered(*point, gap);
+    return point;
+  };
+  return scene_of(points, surface, texture, camera);
+}
+
+/// A sphere that is not known to have an outside: its far half must stay hidden all the same.
+Scene two_sided_sphere_scene() {
+  Scene scene = sphere_scene(sphere_checker(), sphere_view());
+  scene.cloud.oriented = false;
+  return scene;
 }
 
 struct NamedScene {
@@ -106,6 +139,12 @@ constexpr NamedScene kScenes[] = {
     {"edge_oblique", [] { return plane_scene(edge(), oblique_view()); }},
     {"random_oblique", [] { return random_plane_scene(plane_checker(), oblique_view()); }},
     {"random_color_near", [] { return random_plane_scene(single_color(), near_view()); }},
+    {"layers_oblique", [] { return layers_scene(oblique_view()); }},
+    {"layers_grazing",
+     [] {
+       return layers_scene(view_down({0, 0, 0}, 1.6, 10, 35));
+     }},
+    {"two_sided_sphere", [] { return two_sided_sphere_scene(); }},
     {"lit_sphere", [] { return sphere_scene(nullptr, sphere_view()); }},
 };
 
@@ -147,7 +186,7 @@ LinearPicture ideal_picture(const Scene& scene) {
   const glm::dvec3 background = linear_from_srgb8(glm::dvec3(scene.request.background));
   return ray_cast(scene, background, [&](const SurfacePoint& point, const glm::dvec3& direction) {
     if (scene.texture) return scene.texture(point.uv);
-    return headlight(point.normal, direction);
+    return glm::dvec3(kAlbedo * headlight(point.normal, direction));
   });
 }
 
