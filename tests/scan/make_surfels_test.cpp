@@ -67,6 +67,18 @@ TEST(MakeSurfelsTest, RadiusIsTheMeanDistanceToTheSixNearest) {
   EXPECT_THAT(line.cloud.radii, ElementsAre(2.0F, 1.5F, 2.5F));
 }
 
+TEST(MakeSurfelsTest, PointsFloatingOffASurfaceDoNotHideIt) {
+  for (size_t floating = 1; floating <= 7; ++floating) {
+    std::vector<glm::dvec3> positions = testing::square_lattice(9, 0.5, {0, 0, 0});
+    const float surface = radius_at(Made(scan_of(positions)).cloud, {2, 2, 0});
+    for (size_t i = 0; i < floating; ++i) positions.emplace_back(2 + 0.2 * static_cast<double>(i), 2, 50);
+    const SurfelCloud cloud = Made(scan_of(positions)).cloud;
+    for (size_t i = 0; i < positions.size(); ++i) {
+      EXPECT_LE(radius_at(cloud, positions[i]), 3.1F * surface) << i << " of " << floating;
+    }
+  }
+}
+
 TEST(MakeSurfelsTest, MillimetresAtFiveMillionMetresKeepTheirSpacingAndPlane) {
   const Made made(scan_of(testing::square_lattice(9, 0.001, {500000, 5000000, 100})));
   EXPECT_NEAR(made.cloud.radii[4 * 9 + 4], (4 + 2 * std::numbers::sqrt2) / 6 * 0.001, 1e-8);
