@@ -1,8 +1,33 @@
-.PHONY: build test
+# The two commands of the README, on a bare Debian 12: make demo, make test. They install what is missing.
+.PHONY: build demo test asan tidy format-check configure packages lint-packages
 
-build:
-	cmake --preset release
-	cmake --build build
+build: configure
+	cmake --build --preset release
+
+demo: configure
+	cmake --build --preset release --target surfcastd surfcast
+	cmake/demo.sh build/bin demo
 
 test: build
-	ctest --test-dir build --output-on-failure -j2
+	ctest --preset release -j2
+
+# The tests that need no GL and little time, under the address and undefined behaviour sanitizers.
+asan: packages
+	cmake --preset asan-ubsan
+	cmake --build --preset asan-ubsan
+	ctest --preset asan-ubsan -j2 --label-exclude 'gl|slow'
+
+tidy: build lint-packages
+	run-clang-tidy -quiet -p build '^$(CURDIR)/(server|client|protocol|tests|bench)/'
+
+format-check: lint-packages
+	git ls-files '*.h' '*.cpp' | xargs clang-format --dry-run --Werror
+
+configure: packages
+	cmake --preset release
+
+packages:
+	@cmake/install_packages.sh build run test
+
+lint-packages:
+	@cmake/install_packages.sh lint

@@ -1,0 +1,40 @@
+#!/usr/bin/env bash
+# demo.sh PROGRAMS FOLDER: builds a model of the scan in tests/data, serves it, and has the thin client fetch a picture
+# of it over TCP into FOLDER. On a terminal it then serves until Ctrl-C.
+set -euo pipefail
+programs=$1
+folder=$2
+scan=$(dirname "$0")/../tests/data/lion.drc
+ready=$folder/ready.txt
+mkdir -p "$folder"
+
+"$programs/surfcastd" build "$scan" --output "$folder/lion.surf"
+
+port=7600
+if (: >"/dev/tcp/127.0.0.1/$port") 2>/dev/null; then
+  port=0 # taken by somebody: any free one
+fi
+"$programs/surfcastd" serve "$folder/lion.surf" --listen "127.0.0.1:$port" >"$ready" &
+server=$!
+trap 'kill "$server" 2>/dev/null || true' EXIT
+
+# Its one line on standard output ends with the URL and comes once it is ready. When it fails, stderr has said why.
+until grep --quiet http "$ready"; do
+  kill -0 "$server" 2>/dev/null || exit 1
+  sleep 0.1
+done
+url=$(grep --only-matching 'http://.*' "$ready")
+address=$(echo "$url" | cut --delimiter=/ --fields=3)
+
+"$programs/surfcast" render "$address/lion" --output "$folder/lion.png" --background 28,32,40 \
+  --camera-position=1.5,2.5,3 --camera-focal-point=-2.9,-1.3,-3.4 --camera-view-angle=40
+
+echo "picture: $PWD/$folder/lion.png"
+echo "server:  $url"
+if [ -t 1 ]; then
+  echo "serving until Ctrl-C"
+  trap : INT # the server hears Ctrl-C, too, and stops by itself
+else
+  kill "$server"
+fi
+wait "$server" || wait "$server" # the first ends early when a signal arrives
