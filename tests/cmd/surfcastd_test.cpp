@@ -1,0 +1,173 @@
+#include <array>
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <sstream>
+#include <string>
+
+#include <gtest/gtest.h>
+#include <sys/wait.h>
+
+namespace surfcast {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Answer {
+  int exit_code = -1;
+  std::string out;
+  std::string err;
+};
+
+std::string content(const fs::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+/// Runs the program in a folder of its own, with a small scan in it.
+class SurfcastdTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = fs::path(::testing::TempDir()) /
+              ("surfcastd_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+    fs::remove_all(folder_);
+    fs::create_directories(folder_);
+    std::ofstream scan(folder_ / "scan.ply");
+    scan << "ply\nformat ascii 1.0\nelement vertex 103\nproperty float x\nproperty float y\nproperty float z\n"
+            "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n";
+    for (int i = 0; i < 100; ++i) scan << i % 10 << ' ' << i / 10 << " 0 255 " << i << " 0\n";
+    scan << "3 3 0 255 33 0\n";  // a duplicate
+    scan << "nan 0 0 1 2 3\n0 0 inf 1 2 3\n";
+  }
+  void TearDown() override { fs::remove_all(folder_); }
+
+  [[nodiscard]] Answer run(const std::string& arguments) const {
+    const std::string command = "cd '" + folder_.string() + "' && '" SURFCASTD "' " + arguments + " >out 2>err";
+    Answer answer;
+    const int status = std::system(command.c_str());
+    answer.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
+    answer.out = content(folder_ / "out");
+    answer.err = content(folder_ / "err");
+    return answer;
+  }
+
+  fs::path folder_;
+};
+
+/// One line on stderr that begins with the program's name.
+void expect_one_line_error(const Answer& answer) {
+  EXPECT_TRUE(answer.err.starts_with("surfcastd: ")) << answer.err;
+  EXPECT_EQ(std::count(answer.err.begin(), answer.err.end(), '\n'), 1) << answer.err;
+}
+
+TEST_F(SurfcastdTest, BuildsAModelAndSaysWhatItTook) {
+  const Answer answer = run("build scan.ply --output model.surf --report report.json");
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  EXPECT_EQ(answer.err, "") << "no progress without a terminal";
+  EXPECT_NE(answer.out.find("103 points read, 100 surfels, "), std::string::npos) << answer.out;
+  const nlohmann::json report = nlohmann::json::parse(content(folder_ / "report.json"));
+  EXPECT_EQ(report["points_read"], 103);
+  EXPECT_EQ(report["surfels"], 100);
+  EXPECT_EQ(report["bytes"], fs::file_size(folder_ / "model.surf"));
+  EXPECT_EQ(report["dropped"]["not_finite"], 2);
+  EXPECT_EQ(report["dropped"]["duplicates"], 1);
+  EXPECT_GT(report["points_per_second"], 0);
+  EXPECT_GT(report["peak_memory_bytes"], 1000000);
+}
+
+TEST_F(SurfcastdTest, JoinsSeveralScansIntoOneModel) {
+  std::ofstream(folder_ / "more.xyz") << "0 0 5\n1 0 5\n0 1 5\n1 1 5\n";
+  ASSERT_EQ(run("build scan.ply more.xyz --output model.surf").exit_code, 0);
+  const nlohmann::json model = nlohmann::json::parse(run("inspect model.surf --json").out);
+  EXPECT_EQ(model["surfels"], 104);
+  EXPECT_EQ(model["sources"], (nlohmann::json{"scan.ply", "more.xyz"}));
+}
+
+TEST_F(SurfcastdTest, InspectsAModelForPeopleAndPrograms) {
+  ASSERT_EQ(run("build scan.ply --output model.surf").exit_code, 0);
+  const Answer text = run("inspect model.surf --verify");
+  EXPECT_EQ(text.exit_code, 0);
+  EXPECT_NE(text.out.find("surfels: 100\n"), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("verified"), std::string::npos);
+  const nlohmann::json model = nlohmann::json::parse(run("inspect model.surf --json --verify").out);
+  EXPECT_EQ(model["surfels"], 100);
+  EXPECT_EQ(model["color_bits"], 8);
+  EXPECT_EQ(model["levels"][0]["surfels"], 100);
+  EXPECT_NEAR(model["bounds"]["max"][0].get<double>(), 9, 0.01);
+}
+
+TEST_F(SurfcastdTest, VerifyFindsADamagedBlock) {
+  ASSERT_EQ(run("build scan.ply --output model.surf").exit_code, 0);
+  std::fstream model(folder_ / "model.surf", std::ios::in | std::ios::out | std::ios::binary);
+  model.seekp(100);
+  model.put('\x5a');
+  model.close();
+  EXPECT_EQ(run("inspect model.surf").exit_code, 0) << "the tables are whole";
+  const Answer answer = run("inspect model.surf --verify");
+  EXPECT_EQ(answer.exit_code, 1);
+  expect_one_line_error(answer);
+  EXPECT_NE(answer.err.find("model.surf: block 0: damaged"), std::string::npos) << answer.err;
+}
+
+TEST_F(SurfcastdTest, PrecisionBoundsThePositionError) {
+  const auto bytes = [&](const std::string& options) {
+    EXPECT_EQ(run("build scan.ply --output model.surf " + options).exit_code, 0);
+    return fs::file_size(folder_ / "model.surf");
+  };
+  EXPECT_LT(bytes("--precision 0.1"), bytes("--precision 0.000001"));
+}
+
+TEST_F(SurfcastdTest, FailuresNameTheFileAndLeaveNothingBehind) {
+  std::ofstream(folder_ / "broken.ply") << "ply\nformat ascii 1.0\nelement vertex 5\n";
+  std::ofstream(folder_ / "empty.ply").flush();
+  for (const std::string input : {"absent.ply", "broken.ply", "empty.ply"}) {
+    const Answer answer = run("build " + input + " --output model.surf");
+    EXPECT_EQ(answer.exit_code, 1) << input;
+    expect_one_line_error(answer);
+    EXPECT_NE(answer.err.find(input), std::string::npos) << answer.err;
+    EXPECT_FALSE(fs::exists(folder_ / "model.surf"));
+  }
+}
+
+TEST_F(SurfcastdTest, AFolderThatIsMissingIsFoundBeforeTheScanIsRead) {
+  const Answer answer = run("build absent.ply --output nowhere/model.surf");
+  EXPECT_EQ(answer.exit_code, 1);
+  EXPECT_NE(answer.err.find("nowhere/model.surf: no such folder"), std::string::npos) << answer.err;
+}
+
+TEST_F(SurfcastdTest, AFailedBuildKeepsTheOldModel) {
+  ASSERT_EQ(run("build scan.ply --output model.surf").exit_code, 0);
+  const std::string before = content(folder_ / "model.surf");
+  EXPECT_EQ(run("build absent.ply --output model.surf").exit_code, 1);
+  EXPECT_EQ(content(folder_ / "model.surf"), before);
+}
+
+TEST_F(SurfcastdTest, AWrongCommandLineIsTwo) {
+  for (const char* arguments :
+       {"", "nonsense", "build scan.ply", "build --output model.surf", "build scan.ply --output m.surf --precision 0",
+        "build scan.ply --output m.surf --precision few", "build scan.ply --output m.surf --nonsense", "inspect"}) {
+    const Answer answer = run(arguments);
+    EXPECT_EQ(answer.exit_code, 2) << arguments;
+    expect_one_line_error(answer);
+  }
+}
+
+TEST_F(SurfcastdTest, HelpIsNoFailure) {
+  for (const char* arguments : {"--help", "build --help", "inspect --help"}) {
+    const Answer answer = run(arguments);
+    EXPECT_EQ(answer.exit_code, 0) << arguments;
+    EXPECT_FALSE(answer.out.empty());
+  }
+}
+
+TEST_F(SurfcastdTest, TheSameScanGivesTheSameBytes) {
+  ASSERT_EQ(run("build scan.ply --output a.surf").exit_code, 0);
+  ASSERT_EQ(run("build scan.ply --output b.surf").exit_code, 0);
+  EXPECT_EQ(content(folder_ / "a.surf"), content(folder_ / "b.surf"));
+}
+
+}  // namespace
+}  // namespace surfcast
