@@ -1,6 +1,7 @@
 // The constants of shaders/shared/kernel.h against ideal pictures, in exact arithmetic. docs/kernel.md has the study.
 
 #include <algorithm>
+#include <ostream>
 
 #include <gtest/gtest.h>
 
@@ -15,6 +16,9 @@ struct Goal {
   double psnr;          // dB, at least
   double coverage = 1;  // of pixels inside the surface, at least
 };
+std::ostream& operator<<(std::ostream& out, const Goal& goal) {
+  return out << goal.psnr << " dB";
+}
 
 class Accuracy : public testing::TestWithParam<Goal> {};
 

@@ -1,0 +1,227 @@
+// The renderer against the double precision reference of the same model, and against ideal pictures of the surface
+// that was sampled. A failing case leaves its pictures in the folder `accuracy_failures` of the working directory.
+
+#include <algorithm>
+#include <filesystem>
+#include <glm/vec4.hpp>
+#include <ostream>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "model/model_writer.h"
+#include "reference/reference_renderer.h"
+#include "reference/scenes.h"
+#include "render/renderer.h"
+#include "surfel/normalization_weights.h"
+
+namespace surfcast {
+namespace {
+
+namespace fs = std::filesystem;
+using reference::Scene;
+using reference::SrgbPicture;
+
+/// What the renderer drew: colours, and the coverage of every pixel.
+struct DrawnPicture {
+  SrgbPicture colors;
+  std::vector<uint8_t> coverage;
+};
+
+DrawnPicture drawn_picture(const Image& image) {
+  DrawnPicture drawn{{image.width, image.height, {}}, {}};
+  const auto* bytes = reinterpret_cast<const glm::u8vec4*>(image.pixels.data());
+  for (int i = 0; i < image.width * image.height; ++i) {
+    drawn.colors.pixels.emplace_back(bytes[i]);
+    drawn.coverage.push_back(bytes[i].a);
+  }
+  return drawn;
+}
+
+/// The surfels of the finest level as they come out of the file: what the reference must draw.
+SurfelCloud decoded_cloud(const ModelFile& model) {
+  SurfelCloud cloud;
+  cloud.oriented = model.info().oriented;
+  if (model.info().color_bits > 0) cloud.colors = ColorAttribute{model.info().color_bits, {}};
+  for (size_t b = 0; b < model.blocks().size(); ++b) {
+    if (model.blocks()[b].level != 0) continue;
+    const Result<DecodedBlock> block = model.decode(b);
+    if (!block) ADD_FAILURE() << block.error().message;
+    for (size_t i = 0; i < block->size(); ++i) {
+      cloud.positions.push_back(block->position(i));
+      cloud.normals.push_back(block->normals[i]);
+      cloud.radii.push_back(block->radii[i]);
+      cloud.weights.push_back(block->weights[i]);
+      if (cloud.colors) cloud.colors->values.push_back(block->colors[i]);
+    }
+  }
+  return cloud;
+}
+
+Scene transformed(Scene scene, double scale, const glm::dvec3& offset) {
+  for (glm::dvec3& p : scene.cloud.positions) p = scale * p + offset;
+  for (float& r : scene.cloud.radii) r = static_cast<float>(scale * r);
+  Camera& camera = *scene.request.camera;
+  camera.position = scale * camera.position + offset;
+  camera.focal_point = scale * camera.focal_point + offset;
+  return scene;
+}
+
+class AccuracyGLTest : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    Result<std::unique_ptr<Renderer>> created = Renderer::create({});
+    ASSERT_TRUE(created) << created.error().message;
+    renderer_ = std::move(*created);
+    folder_ = fs::path(::testing::TempDir()) / "surfcast_accuracy_gl_test";
+    fs::create_directories(folder_);
+  }
+  static void TearDownTestSuite() {
+    renderer_.reset();
+    fs::remove_all(folder_);
+  }
+
+  static ModelFile model_of(const Scene& scene) {
+    SurfelCloud cloud = scene.cloud;
+    cloud.weights = normalization_weights(cloud);
+    const fs::path path = folder_ / (scene.name + ".surf");
+    const Result<WriteReport> written = write_model(cloud, path, {});
+    EXPECT_TRUE(written) << (written ? "" : written.error().message);
+    Result<ModelFile> model = ModelFile::open(path);
+    EXPECT_TRUE(model) << (model ? "" : model.error().message);
+    return std::move(*model);
+  }
+
+  static DrawnPicture draw(const ModelFile& model, const PictureRequest& request) {
+    const std::atomic<bool> cancelled{false};
+    const Result<Frame> frame = renderer_->draw(model, request, cancelled);
+    EXPECT_TRUE(frame) << (frame ? "" : frame.error().message);
+    return frame ? drawn_picture(frame->image) : DrawnPicture{};
+  }
+
+  /// Draws a scene from a model of its own.
+  static DrawnPicture draw(const Scene& scene) {
+    const ModelFile model = model_of(scene);
+    DrawnPicture drawn = draw(model, scene.request);
+    renderer_->forget(model);
+    return drawn;
+  }
+
+  static void keep_pictures(const std::string& name, const SrgbPicture& expected, const SrgbPicture& actual) {
+    const fs::path folder = fs::current_path() / "accuracy_failures";
+    fs::create_directories(folder);
+    reference::write_ppm(folder / (name + ".expected.ppm"), expected);
+    reference::write_ppm(folder / (name + ".actual.ppm"), actual);
+    reference::write_ppm(folder / (name + ".difference.ppm"), reference::difference(expected, actual, 8));
+  }
+
+  /// Pixels that the reference covers and the renderer leaves to the background.
+  static size_t holes(const reference::ReferencePicture& expected, const DrawnPicture& actual) {
+    size_t count = 0;
+    for (size_t i = 0; i < actual.coverage.size(); ++i) {
+      count += expected.coverage[i] >= 1 && actual.coverage[i] == 0 ? 1 : 0;
+    }
+    return count;
+  }
+
+  static void expect_reference(const std::string& name, const ModelFile& model, const PictureRequest& request,
+                               double least_psnr) {
+    const DrawnPicture actual = draw(model, request);
+    const reference::ReferencePicture expected = reference::render(decoded_cloud(model), request);
+    const SrgbPicture expected_colors = encode(expected.picture);
+    const double achieved = psnr(actual.colors, expected_colors);
+    EXPECT_GE(achieved, least_psnr) << name;
+    EXPECT_EQ(holes(expected, actual), 0) << name;
+    if (::testing::Test::HasFailure()) keep_pictures(name, expected_colors, actual.colors);
+  }
+
+  static inline std::unique_ptr<Renderer> renderer_;
+  static inline fs::path folder_;
+};
+
+class SceneGLTest : public AccuracyGLTest, public ::testing::WithParamInterface<std::string> {};
+
+TEST_P(SceneGLTest, AgreesWithTheReference) {
+  const Scene scene = reference::make_scene(GetParam());
+  const ModelFile model = model_of(scene);
+  for (const Normalization normalization : {Normalization::kPixel, Normalization::kSurfel}) {
+    PictureRequest request = scene.request;
+    request.normalization = normalization;
+    const bool per_surfel = normalization == Normalization::kSurfel;
+    expect_reference(scene.name + (per_surfel ? "_per_surfel" : ""), model, request, 45);
+  }
+  renderer_->forget(model);
+}
+
+INSTANTIATE_TEST_SUITE_P(EveryScene, SceneGLTest, ::testing::ValuesIn(reference::scene_names()),
+                         [](const auto& scene) { return scene.param; });
+
+struct Goal {
+  const char* scene;
+  double psnr;  // dB, at least
+};
+std::ostream& operator<<(std::ostream& out, const Goal& goal) {
+  return out << goal.psnr << " dB";
+}
+
+class IdealGLTest : public AccuracyGLTest, public ::testing::WithParamInterface<Goal> {};
+
+TEST_P(IdealGLTest, ComesNearTheIdealPicture) {
+  const Scene scene = reference::make_scene(GetParam().scene);
+  const SrgbPicture ideal = encode(reference::ideal_picture(scene));
+  const SrgbPicture actual = draw(scene).colors;
+  EXPECT_GE(psnr(actual, ideal), GetParam().psnr);
+  if (HasFailure()) keep_pictures(scene.name + "_ideal", ideal, actual);
+}
+
+INSTANTIATE_TEST_SUITE_P(Goals, IdealGLTest,
+                         ::testing::Values(Goal{"checker_oblique", 33.0}, Goal{"checker_grazing", 34.0},
+                                           Goal{"checker_close", 17.0}, Goal{"checker_far", 44.0},
+                                           Goal{"checker_sphere", 27.5}),
+                         [](const auto& goal) { return std::string(goal.param.scene); });
+
+TEST_F(AccuracyGLTest, DoesNotDependOnUnitsOrOrigin) {
+  const Scene scene = reference::make_scene("checker_oblique");
+  const SrgbPicture ideal = encode(reference::ideal_picture(scene));
+  const double expected = psnr(draw(scene).colors, ideal);
+  const Scene variants[] = {transformed(scene, 1e-4, glm::dvec3(0)), transformed(scene, 1e5, glm::dvec3(0)),
+                            transformed(scene, 1, {448262.31, 5411932.67, 312.45})};
+  for (const Scene& variant : variants) {
+    const SrgbPicture actual = draw(variant).colors;
+    const double achieved = psnr(actual, ideal);
+    EXPECT_NEAR(achieved, expected, 0.3) << "camera at x = " << variant.request.camera->position.x;
+    if (HasFailure()) keep_pictures("units_or_origin", ideal, actual);
+  }
+}
+
+TEST_F(AccuracyGLTest, WithoutPrefilterAgreesWithTheReference) {
+  Scene scene = reference::make_scene("checker_oblique");
+  scene.request.filter = Filter::kNone;
+  const ModelFile model = model_of(scene);
+  expect_reference("no_prefilter", model, scene.request, 45);
+  renderer_->forget(model);
+}
+
+TEST_F(AccuracyGLTest, OneColorIsThatColorWhereFullyCovered) {
+  for (const char* name : {"color_plane", "color_sphere"}) {
+    const Scene scene = reference::make_scene(name);
+    const ModelFile model = model_of(scene);
+    for (const Normalization normalization : {Normalization::kPixel, Normalization::kSurfel}) {
+      PictureRequest request = scene.request;
+      request.normalization = normalization;
+      const DrawnPicture drawn = draw(model, request);
+      const int tolerance = normalization == Normalization::kPixel ? 1 : 2;
+      int worst = 0;
+      for (size_t i = 0; i < drawn.coverage.size(); ++i) {
+        if (drawn.coverage[i] < 255) continue;
+        const glm::ivec3 d = glm::abs(glm::ivec3(drawn.colors.pixels[i]) - glm::ivec3(200, 120, 40));
+        worst = std::max({worst, d.x, d.y, d.z});
+      }
+      EXPECT_LE(worst, tolerance) << name;
+    }
+    renderer_->forget(model);
+  }
+}
+
+}  // namespace
+}  // namespace surfcast
