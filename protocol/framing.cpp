@@ -3,10 +3,20 @@
 #include <string>
 
 #include <google/protobuf/message_lite.h>
+#include <google/protobuf/stubs/logging.h>
 
 #include "protocol/little_endian.h"
 
 namespace surfcast {
+namespace {
+
+/// Protobuf writes a line to stderr for what it cannot decode. A peer must not be able to fill the log.
+void silence_protobuf() {
+  static const auto silenced = google::protobuf::SetLogHandler(nullptr);
+  static_cast<void>(silenced);
+}
+
+}  // namespace
 
 Result<size_t> frame_length(std::span<const std::byte, kFrameHeaderBytes> header, size_t limit) {
   const size_t length = load_u32(header.data());
@@ -28,6 +38,7 @@ Result<std::vector<std::byte>> encode_frame(const google::protobuf::MessageLite&
 }
 
 Status decode_message(std::span<const std::byte> bytes, google::protobuf::MessageLite& message) {
+  silence_protobuf();
   if (message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) return {};
   return fail(ErrorKind::kInvalidInput, "a message cannot be decoded");
 }

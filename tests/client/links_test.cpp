@@ -1,0 +1,29 @@
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "client/run_program.h"
+
+namespace surfcast {
+namespace {
+
+TEST(ThinClient, LinksNothingOfTheServer) {
+  const ProgramOutcome linked = run_program("readelf -d " SURFCAST_CLIENT);
+  ASSERT_EQ(linked.code, 0);
+  ASSERT_NE(linked.output.find("libprotobuf-lite"), std::string::npos);
+  for (const char* library : {"draco", "OpenImageIO", "EGL", "libGL", "epoxy", "OpenEXR", "tbb", "boost"}) {
+    EXPECT_EQ(linked.output.find(library), std::string::npos) << library;
+  }
+}
+
+TEST(ThinClient, CarriesNothingOfTheServer) {
+  const ProgramOutcome symbols = run_program("nm -C " SURFCAST_CLIENT);
+  ASSERT_EQ(symbols.code, 0);
+  ASSERT_NE(symbols.output.find("surfcast::ServerConnection::open"), std::string::npos);
+  for (const char* name : {"draco::", "surfcast::ModelFile", "surfcast::Renderer", "boost::"}) {
+    EXPECT_EQ(symbols.output.find(name), std::string::npos) << name;
+  }
+}
+
+}  // namespace
+}  // namespace surfcast

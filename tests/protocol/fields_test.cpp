@@ -1,0 +1,186 @@
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "protocol/endpoint.h"
+#include "protocol/errors.h"
+#include "protocol/parse.h"
+#include "protocol/picture_fields.h"
+#include "protocol/picture_query.h"
+#include "protocol/validate.h"
+
+namespace surfcast {
+namespace {
+
+TEST(Parse, NumbersAreReadWholeOrNotAtAll) {
+  EXPECT_EQ(parse_double("-1.5e3"), -1500);
+  EXPECT_EQ(parse_double("+2"), 2);
+  for (const char* text : {"", " 1", "1 ", "1x", "0x10", "nan", "inf", "-inf", "1e999", "--1", "+-1", "+", "1,5"}) {
+    EXPECT_EQ(parse_double(text), std::nullopt) << text;
+  }
+  EXPECT_EQ(parse_unsigned("4294967295"), 4294967295U);
+  for (const char* text : {"", "-1", "+1", "4294967296", "1.0", "1e3", " 1"}) {
+    EXPECT_EQ(parse_unsigned(text), std::nullopt) << text;
+  }
+}
+
+TEST(Parse, DoublesKeepEveryBit) {
+  EXPECT_EQ(parse_double("652000.12345678912"), 652000.12345678912);
+}
+
+TEST(Parse, ListsHaveExactlyAsManyPartsAsAskedFor) {
+  EXPECT_EQ(parse_doubles("1,-2,3.5", 3), (std::vector<double>{1, -2, 3.5}));
+  for (const char* text : {"", "1,2", "1,2,3,4", "1,2,3,", ",1,2", "1,,2", "1;2;3", "1, 2, 3"}) {
+    EXPECT_EQ(parse_doubles(text, 3), std::nullopt) << text;
+  }
+}
+
+TEST(PictureFields, EachFieldIsSetFromItsText) {
+  wire::DrawPicture picture;
+  const std::vector<std::pair<std::string, std::string>> texts = {
+      {"position", "1,2,3"}, {"focal_point", "4,5,6"}, {"view_up", "0,0,1"}, {"view_angle", "45"},
+      {"resolution", "8,9"}, {"format", "exr"},        {"quality", "33"},    {"normalization", "surfel"},
+      {"filter", "none"},    {"spacing", "1.5"},       {"shading", "lit"},   {"background", "1,2,255"}};
+  EXPECT_EQ(texts.size(), picture_fields().size());
+  for (const auto& [name, text] : texts) EXPECT_TRUE(set_picture_field(picture, name, text)) << name;
+  EXPECT_EQ(picture.camera().focal_point().y(), 5);
+  EXPECT_EQ(picture.camera().view_angle(), 45);
+  EXPECT_EQ(picture.resolution().height(), 9u);
+  EXPECT_EQ(picture.format(), wire::FILE_FORMAT_EXR);
+  EXPECT_EQ(picture.quality(), 33u);
+  EXPECT_EQ(picture.normalization(), wire::NORMALIZATION_SURFEL);
+  EXPECT_EQ(picture.filter(), wire::FILTER_NONE);
+  EXPECT_EQ(picture.spacing(), 1.5);
+  EXPECT_EQ(picture.shading(), wire::SHADING_LIT);
+  EXPECT_EQ(picture.background().blue(), 255u);
+}
+
+TEST(PictureFields, WrongTextsAreExplained) {
+  wire::DrawPicture picture;
+  for (const auto& [name, text] : std::vector<std::pair<std::string, std::string>>{{"position", "1,2"},
+                                                                                   {"view_angle", "0"},
+                                                                                   {"view_angle", "180"},
+                                                                                   {"resolution", "0,5"},
+                                                                                   {"resolution", "1e3,1"},
+                                                                                   {"format", "gif"},
+                                                                                   {"format", "PNG"},
+                                                                                   {"quality", "0"},
+                                                                                   {"quality", "101"},
+                                                                                   {"spacing", "-1"},
+                                                                                   {"shading", ""},
+                                                                                   {"background", "256,0,0"},
+                                                                                   {"background", "-1,0,0"},
+                                                                                   {"filter", "EWA"}}) {
+    const Status status = set_picture_field(picture, name, text);
+    ASSERT_FALSE(status) << name << '=' << text;
+    EXPECT_EQ(status.error().kind, ErrorKind::kInvalidInput);
+    EXPECT_EQ(status.error().message.find(name + ": "), 0u);
+  }
+  EXPECT_EQ(set_picture_field(picture, "colour", "red").error().kind, ErrorKind::kNotFound);
+}
+
+TEST(PictureQuery, AnEmptyQueryIsThePictureByDefault) {
+  const auto picture = parse_picture_query("cube", "");
+  ASSERT_TRUE(picture);
+  EXPECT_EQ(picture->model(), "cube");
+  EXPECT_FALSE(picture->has_camera());
+  EXPECT_FALSE(picture->has_resolution());
+}
+
+TEST(PictureQuery, EscapesBelongToNamesAndValues) {
+  const auto picture = parse_picture_query("cube", "view%5Fup=0%2C1%2c0&position=1,2,3&&focal_point=0,0,0&");
+  ASSERT_TRUE(picture);
+  EXPECT_EQ(picture->camera().view_up().y(), 1);
+}
+
+TEST(PictureQuery, MalformedQueriesAreErrors) {
+  for (const char* query :
+       {"=", "resolution", "resolution=", "=1,1", "a=b", "resolution=1,1&resolution=1,1", "position=1,2,3",
+        "view_angle=45", "resolution=%", "resolution=%4", "resolution=%00", "spacing=+1 "}) {
+    const auto picture = parse_picture_query("cube", query);
+    ASSERT_FALSE(picture) << query;
+    EXPECT_EQ(picture.error().kind, ErrorKind::kInvalidInput) << query;
+  }
+}
+
+wire::DrawPicture sound_picture() {
+  wire::DrawPicture picture;
+  picture.set_model("cube");
+  picture.mutable_camera()->mutable_position()->set_x(1);
+  picture.mutable_camera()->mutable_focal_point();
+  return picture;
+}
+
+TEST(CheckPicture, ASoundRequestPasses) {
+  EXPECT_TRUE(check_picture(sound_picture()));
+}
+
+TEST(CheckPicture, WhatNoFlagCouldSayIsCaughtInMessagesToo) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto refused = [](auto spoil) {
+    wire::DrawPicture picture = sound_picture();
+    spoil(picture);
+    const Status status = check_picture(picture);
+    return !status && status.error().kind == ErrorKind::kInvalidInput;
+  };
+  EXPECT_TRUE(refused([](auto& p) { p.clear_model(); }));
+  EXPECT_TRUE(refused([](auto& p) { p.set_model(std::string(600, 'x')); }));
+  EXPECT_TRUE(refused([](auto& p) { p.mutable_camera()->clear_position(); }));
+  EXPECT_TRUE(refused([](auto& p) { p.mutable_camera()->clear_focal_point(); }));
+  EXPECT_TRUE(refused([&](auto& p) { p.mutable_camera()->mutable_position()->set_y(nan); }));
+  EXPECT_TRUE(refused([&](auto& p) { p.mutable_camera()->mutable_view_up()->set_y(INFINITY); }));
+  EXPECT_TRUE(refused([&](auto& p) { p.mutable_camera()->set_view_angle(nan); }));
+  EXPECT_TRUE(refused([](auto& p) { p.mutable_camera()->set_view_angle(180); }));
+  EXPECT_TRUE(refused([](auto& p) { p.mutable_resolution()->set_width(5); }));
+  EXPECT_TRUE(refused([&](auto& p) { p.set_spacing(nan); }));
+  EXPECT_TRUE(refused([](auto& p) { p.set_spacing(-0.5); }));
+  EXPECT_TRUE(refused([](auto& p) { p.mutable_background()->set_green(256); }));
+  EXPECT_TRUE(refused([](auto& p) { p.set_quality(101); }));
+  EXPECT_TRUE(refused([](auto& p) { p.set_format(static_cast<wire::FileFormat>(9)); }));
+  EXPECT_TRUE(refused([](auto& p) { p.set_normalization(static_cast<wire::Normalization>(9)); }));
+  EXPECT_TRUE(refused([](auto& p) { p.set_filter(static_cast<wire::Filter>(-1)); }));
+  EXPECT_TRUE(refused([](auto& p) { p.set_shading(static_cast<wire::Shading>(9)); }));
+}
+
+TEST(Endpoint, HostsAndPortsAreToldApart) {
+  EXPECT_EQ(parse_endpoint("tcp://render.example:7600")->host, "render.example");
+  EXPECT_EQ(parse_endpoint("[::1]:80")->host, "::1");
+  EXPECT_EQ(to_string(*parse_endpoint("[::1]:80")), "[::1]:80");
+  EXPECT_EQ(parse_endpoint("127.0.0.1:0")->port, 0);
+  for (const char* text : {"", "host", ":7600", "host:", "host:65536", "host:-1", "host:x", "::1:80", "[]:80",
+                           "http://host:80", "host:80/", "[::1:80"}) {
+    EXPECT_FALSE(parse_endpoint(text)) << text;
+  }
+}
+
+TEST(Endpoint, AModelFollowsTheServer) {
+  const auto url = parse_model_url("tcp://host:7600/my model");
+  ASSERT_TRUE(url);
+  EXPECT_EQ(url->server.port, 7600);
+  EXPECT_EQ(url->model, "my model");
+  for (const char* text : {"host:7600", "host:7600/", "/model", "host/model", "tcp://"}) {
+    EXPECT_FALSE(parse_model_url(text)) << text;
+  }
+}
+
+TEST(Errors, EveryKindTravelsAndComesBack) {
+  for (const ErrorKind kind :
+       {ErrorKind::kInvalidInput, ErrorKind::kUnsupported, ErrorKind::kNotFound, ErrorKind::kIo, ErrorKind::kLimit,
+        ErrorKind::kCancelled, ErrorKind::kUnavailable, ErrorKind::kInternal}) {
+    wire::Error message;
+    to_wire(Error{kind, "why"}, message);
+    EXPECT_EQ(from_wire(message).kind, kind);
+    EXPECT_EQ(from_wire(message).message, "why");
+  }
+}
+
+TEST(Errors, ACodeOfALaterVersionIsAnInternalError) {
+  wire::Error message;
+  message.set_code(static_cast<wire::ErrorCode>(99));
+  EXPECT_EQ(from_wire(message).kind, ErrorKind::kInternal);
+}
+
+}  // namespace
+}  // namespace surfcast
