@@ -10,6 +10,7 @@
 
 #include <draco/compression/decode.h>
 
+#include "scan/draco_claims.h"
 #include "scan/point_table.h"
 #include "scan/text_tokens.h"
 #include "scan/up_axis.h"
@@ -116,6 +117,9 @@ Result<PointTable> table_of(const draco::PointCloud& cloud) {
 }
 
 Result<std::unique_ptr<draco::PointCloud>> decode(std::span<const std::byte> bytes) {
+  if (!draco_claims_are_plausible(bytes)) {
+    return fail(ErrorKind::kInvalidInput, "Draco data is damaged: it claims more points than so many bytes can hold");
+  }
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   // A mesh is a point cloud with faces: it decodes as one, too.

@@ -33,5 +33,17 @@ TEST(DracoReaderTest, PointsKeepTheirAttributesTogether) {
   }
 }
 
+TEST(DracoReaderTest, ClaimsOfBillionsOfPointsAreRefusedBeforeMemoryIsTaken) {
+  for (const bool kd_tree : {false, true}) {
+    std::string text = testing::draco_cloud(kd_tree);
+    const size_t count = text.find(std::string("\x2C\1\0\0", 4));  // 300
+    ASSERT_NE(count, std::string::npos);
+    text[count + 3] = 0x7F;
+    const Result<ScanPoints> points = read_draco(as_bytes(text));
+    ASSERT_FALSE(points);
+    EXPECT_THAT(points.error().message, ::testing::HasSubstr("claims more points"));
+  }
+}
+
 }  // namespace
 }  // namespace surfcast

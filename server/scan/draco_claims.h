@@ -1,0 +1,13 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+namespace surfcast {
+
+/// Draco reserves memory for as many points and faces as a file claims to have before it decodes them. This looks at
+/// the claims alone: whether decoding takes no more memory than a file of that many bytes warrants. True as well for
+/// bytes that are no Draco file, which the decoder refuses by itself.
+bool draco_claims_are_plausible(std::span<const std::byte> bytes);
+
+}  // namespace surfcast
