@@ -103,7 +103,10 @@ void parse_variable_records(Bytes bytes, LasHeader& header) {
     const auto length = load<uint16_t>(&bytes[at + 20]);
     at += kRecordHeaderSize;
     if (length > header.data_offset - at) return;
-    if (id == 4 && user.starts_with("LASF_Spec")) parse_extra_fields(bytes.subspan(at, length), header);
+    if (id == 4 && user.starts_with("LASF_Spec")) {
+      parse_extra_fields(bytes.subspan(at, length), header);
+      return;  // there is one such record; more of them would name the same bytes again
+    }
     at += length;
   }
 }

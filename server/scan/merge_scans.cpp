@@ -127,6 +127,7 @@ std::vector<ScalarAttribute> join_scalars(Scans& scans, size_t total, std::vecto
     }
   }
   std::vector<ScalarAttribute> joined;
+  joined.reserve(names.size());
   for (const std::string& name : names) joined.push_back(join_scalar(scans, name, total, notes));
   return joined;
 }

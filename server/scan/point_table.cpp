@@ -10,6 +10,9 @@
 namespace surfcast {
 namespace {
 
+/// More than any scan has; naming columns apart takes time quadratic in their number.
+constexpr size_t kMostColumns = 1024;
+
 /// Columns by canonical name; the second column of a name keeps a name of its own.
 using NamedColumns = std::map<std::string, const Column*>;
 using Triple = std::array<const Column*, 3>;
@@ -187,6 +190,9 @@ void add_column(PointTable& table, std::string name, ScalarValues values) {
 }
 
 Result<ScanPoints> points_from_table(const PointTable& table) {
+  if (table.columns.size() > kMostColumns) {
+    return fail(ErrorKind::kLimit, "has more than " + std::to_string(kMostColumns) + " values for each point");
+  }
   NamedColumns named = name_columns(table);
   const auto xyz = take_triple(named, "x", "y", "z");
   if (!xyz) return fail(ErrorKind::kInvalidInput, "has no x, y and z for its points");

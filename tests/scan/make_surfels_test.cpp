@@ -289,6 +289,7 @@ TEST(MakeSurfelsTest, StoredNormalsAreOrientedWhenNeighboursAgree) {
 
 TEST(MakeSurfelsTest, CollinearPointsGetUnitNormalsAcrossTheLine) {
   std::vector<glm::dvec3> line;
+  line.reserve(20);
   for (int i = 0; i < 20; ++i) line.push_back(static_cast<double>(i) * glm::dvec3(1, 2, -1));
   const Made made(scan_of(line));
   for (const glm::vec3& n : made.cloud.normals) {

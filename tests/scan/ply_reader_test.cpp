@@ -1,6 +1,7 @@
 #include "scan/ply_reader.h"
 
 #include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -91,6 +92,75 @@ TEST(PlyReaderTest, HugeCountsOfElementsAndListsFailAtOnce) {
   const std::string tail = "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
   EXPECT_FALSE(read_ply(as_bytes(head + "18446744073709551615" + tail + std::string(24, '\1'))));
   EXPECT_FALSE(read_ply(as_bytes(head + "1537228672809129302" + tail + std::string(24, '\1'))));  // times 12 wraps
+}
+
+/// One point with those properties beside x, y and z.
+Result<ScanPoints> ascii_point(const std::string& properties, const std::string& values) {
+  const std::string text = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n" +
+                           ("property float z\n" + properties) + "end_header\n1 2 3 " + values + "\n";
+  return read_ply(as_bytes(text));
+}
+
+/// A property of that type for each of the names.
+std::string properties(const std::string& type, const std::vector<std::string>& names) {
+  std::string text;
+  for (const std::string& name : names) text += "property " + type + " " + name + "\n";
+  return text;
+}
+
+TEST(PlyReaderTest, ColoursKeepTheDepthOfTheirType) {
+  const Result<ScanPoints> deep = ascii_point(properties("ushort", {"red", "green", "blue"}), "65535 256 0");
+  ASSERT_TRUE(deep && deep->colors);
+  EXPECT_EQ(deep->colors->bits, 16);
+  EXPECT_THAT(deep->colors->values, ElementsAre(glm::u16vec3(65535, 256, 0)));
+  const Result<ScanPoints> real = ascii_point(properties("float", {"r", "g", "b"}), "1 0.5 0");
+  ASSERT_TRUE(real && real->colors);
+  EXPECT_EQ(real->colors->bits, 16);
+  EXPECT_THAT(real->colors->values, ElementsAre(glm::u16vec3(65535, 32768, 0)));
+  const Result<ScanPoints> named =
+      ascii_point(properties("uchar", {"diffuse_red", "diffuse_green", "diffuse_blue"}), "1 0 0");
+  ASSERT_TRUE(named && named->colors);
+  EXPECT_EQ(named->colors->bits, 8);
+  EXPECT_THAT(named->colors->values, ElementsAre(glm::u16vec3(1, 0, 0)));
+}
+
+TEST(PlyReaderTest, NumbersThatAreNoColoursBecomeTheNearestColour) {
+  const Result<ScanPoints> points = ascii_point(properties("float", {"red", "green", "blue"}), "-1 nan 0.25");
+  ASSERT_TRUE(points && points->colors);
+  EXPECT_THAT(points->colors->values, ElementsAre(glm::u16vec3(0, 0, 16384)));
+}
+
+TEST(PlyReaderTest, PropertiesOfOneNameAreAllKept) {
+  const Result<ScanPoints> points =
+      ascii_point(properties("int", {"scalar_intensity", "Intensity", "q", "q"}), "5 6 7 8");
+  ASSERT_TRUE(points);
+  EXPECT_THAT(scalar_values<int32_t>(*points, "intensity"), ElementsAre(5));
+  EXPECT_THAT(scalar_values<int32_t>(*points, "Intensity"), ElementsAre(6));
+  EXPECT_THAT(scalar_values<int32_t>(*points, "q"), ElementsAre(7));
+  EXPECT_THAT(scalar_values<int32_t>(*points, "q_2"), ElementsAre(8));
+}
+
+TEST(PlyReaderTest, ThousandsOfPropertiesAreBeyondTheLimit) {
+  std::string values;
+  for (int i = 0; i < 20000; ++i) values += "0 ";
+  const Result<ScanPoints> points = ascii_point(properties("float", std::vector<std::string>(20000, "q")), values);
+  ASSERT_FALSE(points);
+  EXPECT_EQ(points.error().kind, ErrorKind::kLimit);
+}
+
+TEST(PlyReaderTest, BadHeadersAreNamed) {
+  const auto message = [](const std::string& text) {
+    const Result<ScanPoints> points = read_ply(as_bytes(text));
+    return points ? std::string() : points.error().message;
+  };
+  EXPECT_THAT(message("ply\nelement vertex 1\nend_header\n"), HasSubstr("no format line"));
+  EXPECT_THAT(message("ply\nformat ascii 1.0\nelement vertex 1\n"), HasSubstr("no end_header line"));
+  EXPECT_THAT(message("ply\nformat ebcdic 1.0\nend_header\n"), HasSubstr("format ebcdic"));
+  EXPECT_THAT(message("ply\nformat ascii 1.0\nelement vertex -1\nend_header\n"), HasSubstr("element vertex -1"));
+  EXPECT_THAT(message("ply\nformat ascii 1.0\nproperty float x\nend_header\n"), HasSubstr("property float x"));
+  EXPECT_THAT(message("ply\nformat ascii 1.0\nelement face 0\nend_header\n"), HasSubstr("without vertex"));
+  EXPECT_THAT(message("ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nend_header\n1\n"),
+              HasSubstr("no x, y and z"));
 }
 
 }  // namespace
