@@ -11,12 +11,19 @@
 namespace surfcast {
 namespace {
 
-/// Found wrong now, not after a long build.
-Status check_folder_of(const std::filesystem::path& target) {
+/// What would spoil the target is found now, not after a long build.
+Status check_target(const std::filesystem::path& target, std::span<const std::filesystem::path> inputs) {
   const std::filesystem::path folder = target.parent_path();
-  std::error_code ignored;
-  if (folder.empty() || std::filesystem::is_directory(folder, ignored)) return {};
-  return fail(ErrorKind::kIo, target.string() + ": no such folder: " + folder.string());
+  std::error_code ignored;  // of files that do not exist; reading them says so
+  if (!folder.empty() && !std::filesystem::is_directory(folder, ignored)) {
+    return fail(ErrorKind::kIo, target.string() + ": no such folder: " + folder.string());
+  }
+  for (const std::filesystem::path& input : inputs) {
+    if (std::filesystem::equivalent(input, target, ignored)) {
+      return fail(ErrorKind::kInvalidInput, target.string() + ": is an input too and would be overwritten");
+    }
+  }
+  return {};
 }
 
 Result<std::vector<ScanPoints>> read_scans(std::span<const std::filesystem::path> inputs,
@@ -36,7 +43,7 @@ Result<std::vector<ScanPoints>> read_scans(std::span<const std::filesystem::path
 Result<BuildReport> build_model(std::span<const std::filesystem::path> inputs, const std::filesystem::path& target,
                                 const BuildOptions& options, const BuildProgress& progress) {
   const Stopwatch stopwatch;
-  if (Status status = check_folder_of(target); !status) return fail(std::move(status.error()));
+  if (Status status = check_target(target, inputs); !status) return fail(std::move(status.error()));
   Result<std::vector<ScanPoints>> scans = read_scans(inputs, progress);
   if (!scans) return fail(std::move(scans.error()));
 

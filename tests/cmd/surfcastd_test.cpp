@@ -138,6 +138,14 @@ TEST_F(SurfcastdTest, AFolderThatIsMissingIsFoundBeforeTheScanIsRead) {
   EXPECT_NE(answer.err.find("nowhere/model.surf: no such folder"), std::string::npos) << answer.err;
 }
 
+TEST_F(SurfcastdTest, ABuildNeverOverwritesItsInput) {
+  const std::string before = content(folder_ / "scan.ply");
+  const Answer answer = run("build scan.ply --output ./scan.ply");
+  EXPECT_EQ(answer.exit_code, 1);
+  expect_one_line_error(answer);
+  EXPECT_EQ(content(folder_ / "scan.ply"), before);
+}
+
 TEST_F(SurfcastdTest, AFailedBuildKeepsTheOldModel) {
   ASSERT_EQ(run("build scan.ply --output model.surf").exit_code, 0);
   const std::string before = content(folder_ / "model.surf");
