@@ -151,7 +151,9 @@ asio::awaitable<bool> HttpSession::serve_one() {
   const bool head = !code && request.method() == http::verb::head;
   const bool written = co_await write(result, code ? 11 : request.version(), keep_alive, head);
   answering_ = false;
-  co_return written&& keep_alive;
+  // The server may have begun to stop during the write.
+  const bool going_on = written && keep_alive && !context_->draining;
+  co_return going_on;
 }
 
 asio::awaitable<HttpAnswer> HttpSession::answer(const Parser::value_type& request) {

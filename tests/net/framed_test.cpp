@@ -249,22 +249,24 @@ TEST_F(FramedSessionTest, FiftyClientsAtOnceAreAllServed) {
 }
 
 TEST_F(FramedSessionTest, AReaderThatNeverReadsCostsOnlyItself) {
+  constexpr int kWishes = 40;
   ServerConfig config;
-  config.requests.outgoing_bytes = 200'000;
-  config.stall = milliseconds(1500);
+  config.requests.outgoing_bytes = 2'000'000;
+  config.stall = milliseconds(400);
   start(config);
   RawSocket sleeper(port_, 4096);
   sleeper.send(hello_bytes());
-  for (uint64_t id = 1; id <= 60; ++id) {
-    // Linear light of 12 bytes per pixel, uncompressed by noise of its own: the socket's buffers are soon full.
-    wire::Request request = picture_request("cube", 1024, 512);
+  for (int id = 1; id <= kWishes; ++id) {
+    wire::Request request = picture_request("noise", 512, 512);
     request.set_id(id);
-    request.mutable_draw_picture()->set_format(wire::FILE_FORMAT_PNG);
     ASSERT_TRUE(sleeper.send(frame_of(request)));
   }
   auto connection = connect();
   ASSERT_TRUE(connection);
   EXPECT_TRUE(connection->ask(picture_request("teapot")));
+  // Nobody takes the sleeper's answers: its connection ends, and what it waited for is not drawn.
+  EXPECT_TRUE(eventually([&] { return metric("surfcast_connections_open") == 2; }));
+  EXPECT_LT(studio_->drawn, kWishes);
 }
 
 TEST_F(FramedSessionTest, AFrameBeyondTheLimitEndsTheConnectionWithAnError) {

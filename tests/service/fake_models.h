@@ -2,9 +2,8 @@
 
 #include <atomic>
 #include <chrono>
-#include <cstring>
 #include <memory>
-#include <semaphore>
+#include <random>
 #include <string>
 #include <thread>
 #include <utility>
@@ -43,7 +42,7 @@ struct FakeStudio {
   std::vector<std::string> order;  ///< models in the order they were drawn; read it when nothing is being drawn
 };
 
-/// Fills pictures with the background's colour.
+/// Fills pictures with the background's colour, or for the model "noise" with what no format makes smaller.
 class FakePainter : public Painter {
  public:
   explicit FakePainter(std::shared_ptr<FakeStudio> studio) : studio_(std::move(studio)) {}
@@ -57,9 +56,11 @@ class FakePainter : public Painter {
       ++studio_->cancelled;
       return fail(ErrorKind::kCancelled, "cancelled");
     }
-    if (model != "cube" && model != "teapot") return fail(ErrorKind::kNotFound, model + ": there is no such model");
+    const bool known = model == "cube" || model == "teapot" || model == "noise";
+    if (!known) return fail(ErrorKind::kNotFound, model + ": there is no such model");
     Frame frame;
     frame.image = plain_image(request);
+    if (model == "noise") add_noise(frame.image);
     if (request.camera) frame.camera = *request.camera;
     frame.stats = {.surfels_drawn = 99, .blocks_drawn = 5, .gl_renderer = "fake", .stages = {{"draw", 1.5}}};
     return frame;
@@ -80,6 +81,11 @@ class FakePainter : public Painter {
       image.pixels.push_back(std::byte{0});
     }
     return image;
+  }
+
+  static void add_noise(Image& image) {
+    std::mt19937 random(1);
+    for (std::byte& byte : image.pixels) byte = static_cast<std::byte>(random());
   }
 
   std::shared_ptr<FakeStudio> studio_;
