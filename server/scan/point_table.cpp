@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "scan/attribute_names.h"
+#include "scan/text_tokens.h"
 
 namespace surfcast {
 namespace {
@@ -36,8 +37,10 @@ std::string unused_name(const NamedColumns& taken, const std::string& wanted) {
 NamedColumns name_columns(const PointTable& table) {
   NamedColumns named;
   for (const Column& column : table.columns) {
-    std::string name = canonical_attribute_name(column.name);
-    if (named.contains(name)) name = unused_name(named, column.name);
+    // Names end up in messages and JSON, which take no arbitrary bytes.
+    const std::string given = printable(column.name);
+    std::string name = canonical_attribute_name(given);
+    if (named.contains(name)) name = unused_name(named, given);
     named.emplace(std::move(name), &column);
   }
   return named;

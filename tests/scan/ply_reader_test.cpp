@@ -140,6 +140,12 @@ TEST(PlyReaderTest, PropertiesOfOneNameAreAllKept) {
   EXPECT_THAT(scalar_values<int32_t>(*points, "q_2"), ElementsAre(8));
 }
 
+TEST(PlyReaderTest, NamesAreMadePrintable) {
+  const Result<ScanPoints> points = ascii_point(properties("int", {"q\xFF\1"}), "5");
+  ASSERT_TRUE(points);
+  EXPECT_EQ(points->scalars.at(0).name, "q??");
+}
+
 TEST(PlyReaderTest, ThousandsOfPropertiesAreBeyondTheLimit) {
   std::string values;
   for (int i = 0; i < 20000; ++i) values += "0 ";
