@@ -55,7 +55,7 @@ struct Counters {
 
 // Bindings. Storage buffers:
 #define SURFCAST_BIND_GEOMETRY 0  // uvec4 per surfel: position relative to its block (float x 3), octahedral normal
-#define SURFCAST_BIND_SIZE 1      // uint per surfel: radius in the block's unit and weight, both as 2^(-32 u), u 16 bit unorm
+#define SURFCAST_BIND_SIZE 1      // uint per surfel: radius in the block's unit, weight; both 2^(-32 u), u 16 bit unorm
 #define SURFCAST_BIND_COLOR 2     // uint per surfel: packed linear colour, see include/packing.glsl
 #define SURFCAST_BIND_BLOCKS 3
 #define SURFCAST_BIND_CHUNKS 4
