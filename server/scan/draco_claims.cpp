@@ -15,7 +15,7 @@ namespace {
 // The layouts below are those of the Draco bitstream specification; numbers that later versions write with as many
 // bytes as they need had four bytes before.
 constexpr uint16_t version(uint8_t major, uint8_t minor) {
-  return DRACO_BITSTREAM_VERSION(major, minor);
+  return static_cast<uint16_t>(DRACO_BITSTREAM_VERSION(major, minor));
 }
 
 template <typename T>
