@@ -14,6 +14,9 @@
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
 #include <deque>
+#include <functional>
+#include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -49,12 +52,43 @@ Bytes answer_frame(const wire::Answer& answer) {
   return frame ? std::move(*frame) : error_frame(answer.id(), frame.error());
 }
 
-Bytes picture_frame(uint64_t id, Result<EncodedPicture> picture) {
-  if (!picture) return error_frame(id, picture.error());
+/// What the service's threads hand over: an answer as bytes, and what is to be counted.
+struct Outcome {
+  Bytes frame;
+  bool failed = false;
+  size_t picture_bytes = 0;         ///< encoded
+  std::optional<FrameStats> stats;  ///< of a picture
+};
+
+Outcome failure(uint64_t id, const Error& error) {
+  return {.frame = error_frame(id, error), .failed = true, .picture_bytes = 0, .stats = {}};
+}
+
+Outcome outcome_of(uint64_t id, Result<EncodedPicture> picture) {
+  if (!picture) return failure(id, picture.error());
+  Outcome outcome;
+  outcome.picture_bytes = picture->bytes.size();
+  outcome.stats = picture->stats;
   wire::Answer answer;
   answer.set_id(id);
   to_wire(std::move(*picture), *answer.mutable_picture());
-  return answer_frame(answer);
+  outcome.frame = answer_frame(answer);
+  return outcome;
+}
+
+Outcome outcome_of(uint64_t id, const std::vector<std::string>& names) {
+  wire::Answer answer;
+  answer.set_id(id);
+  to_wire(names, *answer.mutable_model_list());
+  return {.frame = answer_frame(answer), .failed = false, .picture_bytes = 0, .stats = {}};
+}
+
+Outcome outcome_of(uint64_t id, const std::string& name, const Result<ModelDescription>& description) {
+  if (!description) return failure(id, description.error());
+  wire::Answer answer;
+  answer.set_id(id);
+  to_wire(name, *description, *answer.mutable_model_description());
+  return {.frame = answer_frame(answer), .failed = false, .picture_bytes = 0, .stats = {}};
 }
 
 /// A reader, one queue of answers with a writer, and a watchdog. Answers of the service are made into bytes on the
@@ -100,7 +134,8 @@ class FramedSession : public Session, public std::enable_shared_from_this<Framed
   void handle_other(const wire::Request& request);
   void handle_cancel(const wire::Request& request);
   void draw_next();
-  std::function<void(Bytes, std::optional<FrameStats>, size_t)> answer_later(uint64_t id);
+  std::function<void(Outcome)> answer_later(uint64_t id);
+  void hand_over(uint64_t id, Outcome outcome);
 
   void send(Bytes frame);
   void send_error(uint64_t id, const Error& error);
@@ -240,11 +275,8 @@ void FramedSession::draw_next() {
   while (auto next = window_.next(outgoing_bytes_)) {
     const uint64_t id = next->first;
     const JobId job = context_->service.draw(
-        id_, std::move(next->second), [later = answer_later(id), id](Result<EncodedPicture> picture) {
-          std::optional<FrameStats> stats = picture ? std::optional(picture->stats) : std::nullopt;
-          const size_t bytes = picture ? picture->bytes.size() : 0;
-          later(picture_frame(id, std::move(picture)), std::move(stats), bytes);
-        });
+        id_, std::move(next->second),
+        [later = answer_later(id), id](Result<EncodedPicture> picture) { later(outcome_of(id, std::move(picture))); });
     window_.set_job(id, job);
   }
 }
@@ -254,37 +286,32 @@ void FramedSession::handle_other(const wire::Request& request) {
   if (const Status admitted = window_.admit(id); !admitted) return send_error(id, admitted.error());
   window_.add_other(id);
   if (request.has_list_models()) {
-    return context_->service.list_models([later = answer_later(id), id](const std::vector<std::string>& names) {
-      wire::Answer answer;
-      answer.set_id(id);
-      to_wire(names, *answer.mutable_model_list());
-      later(answer_frame(answer), std::nullopt, 0);
-    });
+    return context_->service.list_models(
+        [later = answer_later(id), id](const std::vector<std::string>& names) { later(outcome_of(id, names)); });
   }
   const std::string& name = request.describe_model().model();
   context_->service.describe_model(name,
                                    [later = answer_later(id), id, name](const Result<ModelDescription>& description) {
-                                     if (!description)
-                                       return later(error_frame(id, description.error()), std::nullopt, 0);
-                                     wire::Answer answer;
-                                     answer.set_id(id);
-                                     to_wire(name, *description, *answer.mutable_model_description());
-                                     later(answer_frame(answer), std::nullopt, 0);
+                                     later(outcome_of(id, name, description));
                                    });
 }
 
 /// A function for any thread that hands an answer over to this session. The io_context runs on until it was called.
-std::function<void(Bytes, std::optional<FrameStats>, size_t)> FramedSession::answer_later(uint64_t id) {
-  return [self = shared_from_this(), id, work = asio::make_work_guard(socket_.get_executor())](
-             Bytes frame, std::optional<FrameStats> stats, size_t bytes) {
-    asio::post(work.get_executor(), [self, id, frame = std::move(frame), stats = std::move(stats), bytes]() mutable {
-      if (stats) self->context_->metrics.count_picture(bytes, *stats);
-      self->window_.finish(id);
-      self->send(std::move(frame));
-      self->draw_next();
-      self->end_if_drained();
-    });
+std::function<void(Outcome)> FramedSession::answer_later(uint64_t id) {
+  return [self = shared_from_this(), id, work = asio::make_work_guard(socket_.get_executor())](Outcome outcome) {
+    asio::post(work.get_executor(),
+               [self, id, outcome = std::move(outcome)]() mutable { self->hand_over(id, std::move(outcome)); });
   };
+}
+
+void FramedSession::hand_over(uint64_t id, Outcome outcome) {
+  Metrics& metrics = context_->metrics;
+  if (outcome.stats) metrics.count_picture(outcome.picture_bytes, *outcome.stats);
+  if (outcome.failed) ++metrics.errors;
+  window_.finish(id);
+  send(std::move(outcome.frame));
+  draw_next();
+  end_if_drained();
 }
 
 void FramedSession::handle_cancel(const wire::Request& request) {

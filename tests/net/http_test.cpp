@@ -159,8 +159,11 @@ TEST_F(HttpSessionTest, MetricsCountWhatHappened) {
   start();
   ASSERT_EQ(status_of(get("/api/models/cube/image?resolution=4,4")), "200");
   ASSERT_EQ(status_of(get("/nothing")), "404");
+  auto connection = connect();
+  ASSERT_TRUE(connection);
+  ASSERT_FALSE(connection->ask(picture_request("absent")));
   EXPECT_EQ(metric("surfcast_pictures_total"), 1);
-  EXPECT_EQ(metric("surfcast_errors_total"), 1);
+  EXPECT_EQ(metric("surfcast_errors_total"), 2);
   EXPECT_EQ(metric("surfcast_surfels_drawn_total"), 99);
   EXPECT_GT(metric("surfcast_picture_bytes_total"), 50);
   EXPECT_NE(get("/metrics").find("surfcast_stage_seconds_total{stage=\"draw\"} 0.0015"), std::string::npos);
