@@ -22,6 +22,7 @@ struct BuildCommand {
   std::vector<std::filesystem::path> inputs;
   std::filesystem::path output;
   std::optional<double> precision;
+  std::string up;
   std::filesystem::path report;
 };
 
@@ -78,7 +79,8 @@ Status build(const BuildCommand& command) {
   Result<BuildReport> report;
   {
     ProgressLine line;
-    report = build_model(command.inputs, command.output, {command.precision},
+    const std::optional<bool> z_up = command.up.empty() ? std::nullopt : std::optional(command.up == "z");
+    report = build_model(command.inputs, command.output, {command.precision, z_up},
                          [&line](std::string_view stage, double part) { line.show(stage, part); });
   }
   if (!report) return fail(std::move(report.error()));
@@ -98,6 +100,8 @@ void add_build_command(CLI::App& app, Status& outcome) {
   build_command
       ->add_option("--precision", command->precision, "Largest error of a stored position, in units of the scan")
       ->check(CLI::PositiveNumber);
+  build_command->add_option("--up", command->up, "The vertical axis, when the scan's format does not say it: y or z")
+      ->check(CLI::IsMember({"y", "z"}));
   build_command->add_option("--report", command->report, "Write the figures of the build as JSON");
   build_command->callback([command, &outcome] { outcome = build(*command); });
 }

@@ -26,13 +26,14 @@ Status check_target(const std::filesystem::path& target, std::span<const std::fi
   return {};
 }
 
-Result<std::vector<ScanPoints>> read_scans(std::span<const std::filesystem::path> inputs,
+Result<std::vector<ScanPoints>> read_scans(std::span<const std::filesystem::path> inputs, const BuildOptions& options,
                                            const BuildProgress& progress) {
   std::vector<ScanPoints> scans;
   for (const std::filesystem::path& input : inputs) {
     progress("reading", static_cast<double>(scans.size()) / static_cast<double>(inputs.size()));
     Result<ScanPoints> scan = read_scan(input);
     if (!scan) return fail(std::move(scan.error()));
+    scan->z_up = options.z_up.value_or(scan->z_up);
     scans.push_back(std::move(*scan));
   }
   return scans;
@@ -44,7 +45,7 @@ Result<BuildReport> build_model(std::span<const std::filesystem::path> inputs, c
                                 const BuildOptions& options, const BuildProgress& progress) {
   const Stopwatch stopwatch;
   if (Status status = check_target(target, inputs); !status) return fail(std::move(status.error()));
-  Result<std::vector<ScanPoints>> scans = read_scans(inputs, progress);
+  Result<std::vector<ScanPoints>> scans = read_scans(inputs, options, progress);
   if (!scans) return fail(std::move(scans.error()));
 
   BuildReport report;

@@ -14,6 +14,7 @@ namespace surfcast {
 
 struct BuildOptions {
   std::optional<double> precision;  ///< largest position error, world units; none: 1/256 of each radius
+  std::optional<bool> z_up;         ///< which axis is vertical, z or y; none: what each scan's format or look says
 };
 
 /// What a build did and what it took.

@@ -17,6 +17,7 @@ namespace {
 
 constexpr size_t kGpuBudgetBytes = size_t{4} << 30;
 constexpr int kMaxResolution = 16384;
+constexpr double kViewAngle = 30;  // degrees, of the view that is chosen when none is asked for
 
 size_t pixel_bytes(PixelFormat format) {
   return format == PixelFormat::kSrgb8 ? 4 : 4 * sizeof(float);
@@ -30,6 +31,15 @@ Variant variant_of(const ModelInfo& info, const PictureRequest& request) {
   return variant;
 }
 
+/// Mean normal of the whole model, from the cones of its blocks; zero where front and back are not known.
+glm::dvec3 mean_facing(const ModelFile& model) {
+  glm::dvec3 sum(0);
+  for (const BlockEntry& block : model.blocks()) {
+    if (block.normals) sum += glm::dvec3(block.normals->axis) * static_cast<double>(block.surfels);
+  }
+  return sum / static_cast<double>(std::max<uint64_t>(model.info().surfels, 1));
+}
+
 Camera camera_of(const ModelFile& model, const PictureRequest& request) {
   if (request.camera) return *request.camera;
   const glm::dvec3 up = model.info().z_up ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
@@ -38,7 +48,7 @@ Camera camera_of(const ModelFile& model, const PictureRequest& request) {
   for (const BlockEntry& block : model.blocks()) reach = std::max(reach, block.max_radius);
   box.min -= reach;
   box.max += reach;
-  return fit_camera(box, up, static_cast<double>(request.width) / request.height);
+  return fit_camera(box, up, static_cast<double>(request.width) / request.height, kViewAngle, mean_facing(model));
 }
 
 void copy_region(const Region& region, std::span<const std::byte> from, size_t bytes_per_pixel, Image& image) {

@@ -129,6 +129,12 @@ Result<std::unique_ptr<draco::PointCloud>> decode(std::span<const std::byte> byt
               "Draco data cannot be decoded: " + printable(cloud.status().error_msg_string()));
 }
 
+/// The geometry type follows "DRACO" and two bytes of version.
+bool is_mesh(std::span<const std::byte> bytes) {
+  constexpr size_t kGeometryType = 7;
+  return bytes.size() > kGeometryType && bytes[kGeometryType] == std::byte{1};
+}
+
 }  // namespace
 
 Result<ScanPoints> read_draco(std::span<const std::byte> bytes) try {
@@ -137,7 +143,8 @@ Result<ScanPoints> read_draco(std::span<const std::byte> bytes) try {
   const Result<PointTable> table = table_of(**cloud);
   if (!table) return fail(table.error());
   Result<ScanPoints> points = points_from_table(*table);
-  if (points) points->z_up = looks_like_survey(*points);
+  // Graphics write meshes, y-up; scanners write points, z-up.
+  if (points) points->z_up = !is_mesh(bytes) || looks_like_survey(*points);
   return points;
 } catch (const std::exception&) {
   // The library allocates what a damaged header asks for, and throws when that cannot be had.

@@ -209,6 +209,11 @@ Status check_vertices(const PlyHeader& header) {
   return {};
 }
 
+bool has_faces(const PlyHeader& header) {
+  return std::any_of(header.elements.begin(), header.elements.end(),
+                     [](const PlyElement& e) { return e.name == "face" && e.count > 0; });
+}
+
 }  // namespace
 
 Result<ScanPoints> read_ply(std::span<const std::byte> bytes) {
@@ -223,7 +228,8 @@ Result<ScanPoints> read_ply(std::span<const std::byte> bytes) {
           : read_vertices(*header, BinaryWalk(data, big != (std::endian::native == std::endian::big)));
   if (!table) return fail(table.error());
   Result<ScanPoints> points = points_from_table(*table);
-  if (points) points->z_up = looks_like_survey(*points);
+  // Graphics write meshes, y-up; scanners write points, z-up.
+  if (points) points->z_up = !has_faces(*header) || looks_like_survey(*points);
   return points;
 }
 

@@ -83,5 +83,35 @@ TEST(FitCamera, WholeBoxIsInView) {
   }
 }
 
+TEST(FitCamera, TheBoxNearlyFillsThePicture) {
+  Box box;
+  box.include({0, 0, 0});
+  box.include({30, 2, 1});
+  const Result<CameraFrame> frame = make_camera_frame(fit_camera(box, {0, 0, 1}, 2), 800, 400);
+  ASSERT_TRUE(frame);
+  Box seen;
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 p((corner & 1) ? 30 : 0, (corner & 2) ? 2 : 0, (corner & 4) ? 1 : 0);
+    seen.include(glm::dvec3(frame->project(frame->to_camera(p)), 0));
+  }
+  EXPECT_GT(std::max(seen.size().x / 800, seen.size().y / 400), 0.75);
+}
+
+TEST(FitCamera, TheEyeStandsWhereTheSurfaceShowsItsFront) {
+  Box box;
+  box.include({-1, -1, -1});
+  box.include({1, 1, 1});
+  for (const glm::dvec3 facing : {glm::dvec3(0, 0, -0.9), glm::dvec3(0, 0.9, 0), glm::dvec3(-0.9, 0, 0)}) {
+    const Camera camera = fit_camera(box, {0, 0, 1}, 1, 30, facing);
+    EXPECT_GT(glm::dot(glm::normalize(camera.position), facing), 0.1);
+  }
+}
+
+TEST(FitCamera, APointHasAViewToo) {
+  Box box;
+  box.include({5, 6, 7});
+  EXPECT_TRUE(make_camera_frame(fit_camera(box, {0, 1, 0}, 1), 10, 10));
+}
+
 }  // namespace
 }  // namespace surfcast
