@@ -47,7 +47,7 @@ float cutoff(float gain) {
 // What a splat's weight is multiplied with so that the sum of weights says how far a pixel is covered: a sum of
 // SURFCAST_COVERAGE_MAGNIFIED or more is full coverage.
 float coverage_scale(float gain) {
-  return SURFCAST_COVERAGE_MAGNIFIED / mix(SURFCAST_COVERAGE_MINIFIED, SURFCAST_COVERAGE_MAGNIFIED, gain);
+  return pow(float(SURFCAST_COVERAGE_MAGNIFIED) / float(SURFCAST_COVERAGE_MINIFIED), 1.0 - gain);
 }
 
 // Radius on the surface beyond which neither the kernel nor the disc of a surfel reaches, world units.

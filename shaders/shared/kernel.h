@@ -24,9 +24,9 @@
 #define SURFCAST_VISIBILITY_DEPTH 1.0
 #define SURFCAST_VISIBILITY_FOOTPRINT 1.0
 
-// A pixel counts as covered when the sum of its normalised weights reaches a0 = mix(MINIFIED, MAGNIFIED, g): high
+// A pixel counts as covered when the sum of its normalised weights reaches a0 = MINIFIED (MAGNIFIED / MINIFIED)^g: high
 // where the sum is the pixel's true coverage, low where it is a kernel's tail between samples.
-#define SURFCAST_COVERAGE_MINIFIED 0.75
-#define SURFCAST_COVERAGE_MAGNIFIED 0.05
+#define SURFCAST_COVERAGE_MINIFIED 0.9
+#define SURFCAST_COVERAGE_MAGNIFIED 0.1
 
 #endif

@@ -229,7 +229,7 @@ class TilePass {
 }  // namespace
 
 double saturation(double gain, const KernelParameters& kernel) {
-  return glm::mix(kernel.coverage_minified, kernel.coverage_magnified, gain);
+  return kernel.coverage_minified * std::pow(kernel.coverage_magnified / kernel.coverage_minified, gain);
 }
 
 ReferencePicture render(const SurfelCloud& cloud, const PictureRequest& request, const KernelParameters& kernel) {

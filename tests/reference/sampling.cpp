@@ -70,6 +70,19 @@ std::vector<SurfacePoint> random_square(int count, uint32_t seed) {
   return points;
 }
 
+std::vector<SurfacePoint> random_sphere(int count, uint32_t seed) {
+  std::mt19937 random(seed);
+  std::normal_distribution<double> coordinate(0, 1);
+  std::vector<SurfacePoint> points;
+  for (int i = 0; i < count; ++i) {
+    const double x = coordinate(random);
+    const double y = coordinate(random);
+    const double z = coordinate(random);
+    points.push_back(sphere_point({x, y, z}));
+  }
+  return points;
+}
+
 std::vector<SurfacePoint> jittered_sphere(int count, double jitter, uint32_t seed) {
   std::mt19937 random(seed);
   const double spacing = std::sqrt(4 * std::numbers::pi / count);

@@ -11,8 +11,9 @@ namespace surfcast::reference {
 
 /// A lattice of `side` x `side` samples on the square, every one moved by up to `jitter` cells along both axes.
 std::vector<SurfacePoint> jittered_square(int side, double jitter, uint32_t seed);
-/// As many samples of the square, each anywhere in it: a Poisson process, with holes and clusters.
+/// Samples anywhere, none heeding the others: a Poisson process, with holes and clusters.
 std::vector<SurfacePoint> random_square(int count, uint32_t seed);
+std::vector<SurfacePoint> random_sphere(int count, uint32_t seed);
 /// A Fibonacci lattice on the unit sphere, every sample moved by up to `jitter` spacings along both directions.
 std::vector<SurfacePoint> jittered_sphere(int count, double jitter, uint32_t seed);
 

@@ -89,6 +89,10 @@ Scene random_plane_scene(Texture texture, const Camera& camera) {
   return scene_of(random_square(kPlaneSide * kPlaneSide, 2), square(), std::move(texture), camera);
 }
 
+Scene random_sphere_scene(Texture texture, const Camera& camera) {
+  return scene_of(random_sphere(kSphereCount, 6), unit_sphere(), std::move(texture), camera);
+}
+
 Scene sphere_scene(Texture texture, const Camera& camera) {
   return scene_of(jittered_sphere(kSphereCount, 0.5, 3), unit_sphere(), std::move(texture), camera);
 }
@@ -139,6 +143,7 @@ constexpr NamedScene kScenes[] = {
     {"edge_oblique", [] { return plane_scene(edge(), oblique_view()); }},
     {"random_oblique", [] { return random_plane_scene(plane_checker(), oblique_view()); }},
     {"random_color_near", [] { return random_plane_scene(single_color(), near_view()); }},
+    {"random_sphere", [] { return random_sphere_scene(single_color(), sphere_view()); }},
     {"layers_oblique", [] { return layers_scene(oblique_view()); }},
     {"layers_grazing",
      [] {
