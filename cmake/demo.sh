@@ -27,7 +27,7 @@ url=$(grep --only-matching 'http://.*' "$ready")
 address=$(echo "$url" | cut --delimiter=/ --fields=3)
 
 "$programs/surfcast" render "$address/lion" --output "$folder/lion.png" --background 28,32,40 \
-  --camera-position 1.5,2.5,3 --camera-focal-point -2.85,-1.25,-3.4 --camera-view-angle 37
+  --camera-position 1.5,-3,2.5 --camera-focal-point -2.85,3.4,-1.25 --camera-view-angle 37
 
 echo "picture: $PWD/$folder/lion.png"
 echo "server:  $url"
