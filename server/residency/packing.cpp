@@ -69,10 +69,19 @@ uint32_t pack_linear_color(const glm::u16vec3& color, int bits) {
   return quantise(color.r, 2047) | (quantise(color.g, 2047) << 11) | (quantise(color.b, 1023) << 22);
 }
 
+float largest_drawn_radius(std::span<const float> radii) {
+  std::vector<float> sorted(radii.begin(), radii.end());
+  const auto ordinary = sorted.begin() + static_cast<std::ptrdiff_t>((sorted.size() - 1) * 19 / 20);
+  std::nth_element(sorted.begin(), ordinary, sorted.end());
+  constexpr float kFarFromOrdinary = 4;
+  return kFarFromOrdinary * *ordinary;
+}
+
 PackedBlock pack_block(const DecodedBlock& block, int color_bits) {
   PackedBlock packed;
   packed.origin = middle_of(block);
-  packed.radius_unit = *std::max_element(block.radii.begin(), block.radii.end());
+  const double largest_stored = *std::max_element(block.radii.begin(), block.radii.end());
+  packed.radius_unit = std::min<double>(largest_stored, largest_drawn_radius(block.radii));
   packed.geometry.reserve(block.size());
   packed.size_and_weight.reserve(block.size());
   for (size_t i = 0; i < block.size(); ++i) {

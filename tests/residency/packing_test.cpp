@@ -80,6 +80,14 @@ TEST(PackLogarithm, RatiosOfAnySizeKeepTheirRelativePrecision) {
   EXPECT_EQ(pack_logarithm(0), 65535);
 }
 
+TEST(LargestDrawnRadius, StraysAreHeldBackAndOrdinarySurfelsAreNot) {
+  std::vector<float> radii(100, 0.01F);
+  EXPECT_FLOAT_EQ(largest_drawn_radius(radii), 0.04F);
+  radii[7] = 1;
+  EXPECT_FLOAT_EQ(largest_drawn_radius(radii), 0.04F);
+  EXPECT_FLOAT_EQ(largest_drawn_radius(std::vector<float>{0.5F}), 2);
+}
+
 TEST(PackBlock, PositionsAreRelativeToTheMiddleSoThatMillimetresSurviveMapCoordinates) {
   DecodedBlock block;
   block.grid = {glm::dvec3(0.001), glm::dvec3(448262.31, 5411932.67, 312.45)};
