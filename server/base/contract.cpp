@@ -5,9 +5,8 @@
 
 namespace surfcast {
 
-void contract_broken(const char* condition, std::source_location where) {
-  std::fprintf(stderr, "surfcast: broken contract: %s (%s:%u, %s)\n", condition, where.file_name(), where.line(),
-               where.function_name());
+void contract_broken(const char* condition, const char* file, int line) {
+  std::fprintf(stderr, "surfcast: broken contract: %s (%s:%d)\n", condition, file, line);
   std::abort();
 }
 
