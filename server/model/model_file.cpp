@@ -1,5 +1,6 @@
 #include "model/model_file.h"
 
+#include <atomic>
 #include <utility>
 
 #include "base/contract.h"
@@ -9,6 +10,7 @@
 namespace surfcast {
 
 struct ModelFile::State {
+  uint64_t id = 0;
   std::filesystem::path path;
   MappedFile file;
   ModelInfo info;
@@ -36,6 +38,11 @@ BlockEntry make_entry(const BlockRecord& record, const Grid& grid) {
   entry.bytes = record.bytes;
   entry.checksum = record.checksum;
   return entry;
+}
+
+uint64_t next_id() {
+  static std::atomic<uint64_t> last{0};
+  return ++last;
 }
 
 ModelInfo make_info(const ModelHeader& header, const Directory& directory, std::span<const BlockEntry> entries) {
@@ -74,7 +81,11 @@ Result<ModelFile> ModelFile::open(const std::filesystem::path& path) {
   }
   ModelInfo info = make_info(*header, *directory, entries);
   return ModelFile(std::make_unique<State>(
-      State{path, std::move(*file), std::move(info), std::move(*directory), std::move(entries)}));
+      State{next_id(), path, std::move(*file), std::move(info), std::move(*directory), std::move(entries)}));
+}
+
+uint64_t ModelFile::id() const {
+  return state_->id;
 }
 
 const ModelInfo& ModelFile::info() const {

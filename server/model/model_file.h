@@ -74,6 +74,8 @@ class ModelFile {
   /// Checks the checksum of a block and decodes it.
   [[nodiscard]] Result<DecodedBlock> decode(size_t block) const;
   [[nodiscard]] const std::filesystem::path& path() const;
+  /// Tells this opening of a file from every other one in the life of the process, also after it has been closed.
+  [[nodiscard]] uint64_t id() const;
 
  private:
   struct State;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <list>
 
 #include "residency/resident_model.h"
@@ -19,7 +20,7 @@ class ResidentSet {
 
  private:
   struct Entry {
-    const ModelFile* model;
+    uint64_t model;  ///< ModelFile::id
     ResidentModel resident;
   };
 

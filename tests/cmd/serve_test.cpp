@@ -49,6 +49,7 @@ class ServeTest : public ::testing::Test {
   /// Starts a server and waits until it says that it is ready.
   void serve(const std::string& arguments) {
     const std::string ready = (folder_ / "ready").string();
+    fs::remove(ready);  // of a server before this one
     server_ = start_program({"/bin/sh", "-c",
                              "exec " SURFCAST_SERVER " serve --listen 127.0.0.1:0 --cache " + cache() + " " +
                                  arguments + " > " + ready + " 2> " + (folder_ / "log").string()});

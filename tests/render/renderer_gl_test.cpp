@@ -222,6 +222,21 @@ TEST_F(RendererGLTest, PicturesOfOnePixelAndOfSeveralRegionsAreDrawn) {
   EXPECT_EQ(pixel(image, 2050, 10).a, 255) << "beyond the first region's edge at 2048";
 }
 
+TEST_F(RendererGLTest, AModelThatTookThePlaceOfAnotherIsDrawnAsItself) {
+  const SurfelCloud red = testing::square(40, 2, {0, 0, 0}, {0, 0, 1}, {255, 0, 0});
+  const SurfelCloud blue = testing::square(40, 2, {0, 0, 0}, {0, 0, 1}, {0, 0, 255});
+  ASSERT_TRUE(write_model(red, folder_ / "red.surf", {}));
+  ASSERT_TRUE(write_model(blue, folder_ / "blue.surf", {}));
+  Result<ModelFile> model = ModelFile::open(folder_ / "red.surf");
+  ASSERT_TRUE(model);
+  EXPECT_EQ(pixel(draw(*model, front_view(64, 64)).image, 32, 32), glm::u8vec4(255, 0, 0, 255));
+  // The same object, at the same address, without a word to the renderer.
+  model = ModelFile::open(folder_ / "blue.surf");
+  ASSERT_TRUE(model);
+  EXPECT_EQ(pixel(draw(*model, front_view(64, 64)).image, 32, 32), glm::u8vec4(0, 0, 255, 255));
+  renderer_->forget(*model);
+}
+
 TEST_F(RendererGLTest, WrongRequestsAreRefused) {
   const ModelFile& model = model_of(testing::single_surfel({0, 0, 0}, {0, 0, 1}, 1, {1, 2, 3}));
   const std::atomic<bool> no{false};
