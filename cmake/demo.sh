@@ -14,6 +14,7 @@ port=7600
 if (: >"/dev/tcp/127.0.0.1/$port") 2>/dev/null; then
   port=0 # taken by somebody: any free one
 fi
+: >"$ready" # what an earlier run left must not be taken for this server's line
 "$programs/surfcastd" serve "$folder/lion.surf" --listen "127.0.0.1:$port" >"$ready" &
 server=$!
 trap 'kill "$server" 2>/dev/null || true' EXIT
