@@ -12,7 +12,7 @@
 #include "shared/frame_layout.h"
 #include "include/frame.glsl"
 
-const int kMaxLayers = 3;
+const int kMaxLayers = 8;
 const float kOpaque = 1.0 / 128.0;  // transmittance that is not worth another round
 
 layout(local_size_x = SURFCAST_TILE_WIDTH, local_size_y = SURFCAST_TILE_HEIGHT / SURFCAST_ROWS) in;

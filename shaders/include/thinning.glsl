@@ -1,7 +1,7 @@
 // Where more than SURFCAST_CROWD splats fall on one tile, hundreds of them share every pixel, and a fair sample of them
 // gives the same mean: one splat in m is kept, and weighs m times as much. Which ones follows from their place in the
 // model alone, so that the picture stays the same from run to run. (It also keeps loops short: llvmpipe ends a kernel's
-// loops after 65535 rounds in all, silently.)
+// loops after 65535 rounds in all, silently; eight layers go over a list twice each.)
 
 layout(std430, binding = SURFCAST_BIND_TILE_CROWD) readonly buffer TileCrowd { uint tile_crowd[]; };
 

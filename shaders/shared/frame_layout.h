@@ -22,7 +22,7 @@ namespace surfcast::layout {
 // Surfels that one work group projects; runs of a block are cut into chunks of this many.
 #define SURFCAST_CHUNK 128
 // Splats that a tile may have before its splats are thinned out (see include/thinning.glsl).
-#define SURFCAST_CROWD 8192
+#define SURFCAST_CROWD 3072
 // Splats between two carries of the fixed-point sums (see splat.comp).
 #define SURFCAST_CARRY_INTERVAL 32
 

@@ -20,7 +20,7 @@ namespace {
 
 constexpr int kTile = 16;             ///< pixels
 constexpr double kMeanRadius = 1.08;  ///< stored radius of well spread samples over their spacing h
-constexpr int kMaxLayers = 3;
+constexpr int kMaxLayers = 8;
 constexpr double kOpaque = 1.0 / 128;  ///< transmittance that is not worth another layer
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kNoPrefilter = 0.01;  ///< pixels: no blur to speak of, yet r2 stays finite edge-on

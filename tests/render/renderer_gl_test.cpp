@@ -212,7 +212,7 @@ TEST_F(RendererGLTest, ColorsAreLitWhenAskedFor) {
 }
 
 TEST_F(RendererGLTest, PicturesOfOnePixelAndOfSeveralRegionsAreDrawn) {
-  const ModelFile& model = model_of(testing::square(100, 4, {0, 0, 0}, {0, 0, 1}, {200, 90, 20}));
+  const ModelFile& model = model_of(testing::square(50, 4, {0, 0, 0}, {0, 0, 1}, {200, 90, 20}));
   EXPECT_EQ(count_covered(draw(model, front_view(1, 1, 1)).image, {200, 90, 20}, 1), 1);
   PictureRequest wide = front_view(4100, 20, 20);
   wide.camera->view_angle = 0.9;
