@@ -8,5 +8,4 @@ namespace surfcast {
 }  // namespace surfcast
 
 /// States what the caller promised. A false condition is a bug in this program, never bad input, and stops it.
-#define SURFCAST_EXPECTS(condition) \
-  ((condition) ? void() : ::surfcast::contract_broken(#condition, __FILE__, __LINE__))
+#define SURFCAST_EXPECTS(condition) ((condition) ? void() : ::surfcast::contract_broken(#condition, __FILE__, __LINE__))

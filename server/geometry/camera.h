@@ -49,8 +49,8 @@ struct CameraFrame {
 Result<CameraFrame> make_camera_frame(const Camera& camera, int width, int height);
 
 /// A view that just fits the whole box, from the front, slightly above and to the side, with the given up axis.
-/// `facing` is the mean of the surface's normals, shorter than 1 and zero when they are unknown or cancel: the eye moves
-/// to where the surface shows its front.
+/// `facing` is the mean of the surface's normals, shorter than 1 and zero when they are unknown or cancel: the eye
+/// moves to where the surface shows its front.
 Camera fit_camera(const Box& box, const glm::dvec3& up, double aspect, double view_angle = 30,
                   const glm::dvec3& facing = glm::dvec3(0));
 

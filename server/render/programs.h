@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <tuple>
 
 #include "base/result.h"
 #include "gl/objects.h"
@@ -13,7 +14,10 @@ struct Variant {
   bool colored = false;
   bool lit = false;
   bool float_picture = false;
-  auto operator<=>(const Variant&) const = default;
+
+  bool operator<(const Variant& other) const {
+    return std::tie(colored, lit, float_picture) < std::tie(other.colored, other.lit, other.float_picture);
+  }
 };
 
 struct SplatPrograms {

@@ -30,9 +30,9 @@ struct PackedBlock {
   std::vector<uint32_t> colors;  ///< empty without colour
 };
 
-/// Scans have points that float off the surface; the mean distance to their neighbours, their radius, is the way back to
-/// it, and discs as large as that would hide it. No surfel is drawn larger than this: four times the radius that all but
-/// a twentieth of its block stay below.
+/// Scans have points that float off the surface; the mean distance to their neighbours, their radius, is the way back
+/// to it, and discs as large as that would hide it. No surfel is drawn larger than this: four times the radius that all
+/// but a twentieth of its block stay below.
 float largest_drawn_radius(std::span<const float> radii);
 
 PackedBlock pack_block(const DecodedBlock& block, int color_bits);

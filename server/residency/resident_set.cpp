@@ -6,7 +6,8 @@
 namespace surfcast {
 
 Result<const ResidentModel*> ResidentSet::require(const ModelFile& model) {
-  const auto found = std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.model == model.id(); });
+  const auto found =
+      std::find_if(entries_.begin(), entries_.end(), [&](const Entry& e) { return e.model == model.id(); });
   if (found != entries_.end()) {
     entries_.splice(entries_.begin(), entries_, found);
     return &entries_.front().resident;
