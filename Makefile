@@ -11,11 +11,11 @@ demo: configure
 test: build
 	ctest --preset release -j2
 
-# The tests that need no GL and little time, under the address and undefined behaviour sanitizers.
+# The tests of the modules that need no GL and little time, under the address and undefined behaviour sanitizers.
 asan: packages
 	cmake --preset asan-ubsan
 	cmake --build --preset asan-ubsan
-	ctest --preset asan-ubsan -j2 --label-exclude 'gl|slow'
+	ctest --preset asan-ubsan -j2 --label-exclude 'gl|slow|programs'
 
 tidy: build lint-packages
 	run-clang-tidy -quiet -p build '^$(CURDIR)/(server|client|protocol|tests|bench)/'
