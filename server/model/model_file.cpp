@@ -15,7 +15,7 @@ struct ModelFile::State {
   MappedFile file;
   ModelInfo info;
   Directory directory;
-  std::vector<BlockEntry> entries;
+  BlockTree tree;
 };
 
 namespace {
@@ -81,7 +81,7 @@ Result<ModelFile> ModelFile::open(const std::filesystem::path& path) {
   }
   ModelInfo info = make_info(*header, *directory, entries);
   return ModelFile(std::make_unique<State>(
-      State{next_id(), path, std::move(*file), std::move(info), std::move(*directory), std::move(entries)}));
+      State{next_id(), path, std::move(*file), std::move(info), std::move(*directory), BlockTree(std::move(entries))}));
 }
 
 uint64_t ModelFile::id() const {
@@ -92,8 +92,8 @@ const ModelInfo& ModelFile::info() const {
   return state_->info;
 }
 
-std::span<const BlockEntry> ModelFile::blocks() const {
-  return state_->entries;
+const BlockTree& ModelFile::tree() const {
+  return state_->tree;
 }
 
 const std::filesystem::path& ModelFile::path() const {

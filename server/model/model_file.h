@@ -11,8 +11,7 @@
 
 #include "base/result.h"
 #include "geometry/box.h"
-#include "geometry/normal_cone.h"
-#include "ldc/octree_key.h"
+#include "ldc/block_tree.h"
 #include "surfel/grid.h"
 #include "surfel/scalar_attribute.h"
 #include "surfel/surfel_cloud.h"
@@ -28,20 +27,6 @@ struct ModelInfo {
   int color_bits = 0;                     ///< 8 or 16; 0: the scan has no colour and no block stores any
   std::vector<std::string> scalar_names;  ///< attributes that every block stores, in order
   std::vector<std::string> source_names;  ///< the input files
-};
-
-/// One entry of the table of blocks: enough to select with, without touching the block.
-struct BlockEntry {
-  int level = 0;                      ///< 0 is the finest
-  OctreeKey key;                      ///< the octree cell that holds it; parents and children follow from it
-  Box bounds;                         ///< of the surfel centres, world units
-  double spacing = 0;                 ///< median radius of its surfels, world units
-  double max_radius = 0;              ///< largest radius of its surfels: what `bounds` must grow by to hold the discs
-  std::optional<NormalCone> normals;  ///< holds all its normals; none when the model is not oriented
-  uint32_t surfels = 0;
-  uint64_t offset = 0;  ///< of its bytes in the file
-  uint32_t bytes = 0;
-  uint64_t checksum = 0;  ///< XXH3, 64 bit, of its bytes
 };
 
 /// A block as it comes out of Draco: structure of arrays of one length.
@@ -70,7 +55,8 @@ class ModelFile {
   ~ModelFile();
 
   [[nodiscard]] const ModelInfo& info() const;
-  [[nodiscard]] std::span<const BlockEntry> blocks() const;
+  [[nodiscard]] const BlockTree& tree() const;
+  [[nodiscard]] std::span<const BlockEntry> blocks() const { return tree().blocks(); }
   /// Checks the checksum of a block and decodes it.
   [[nodiscard]] Result<DecodedBlock> decode(size_t block) const;
   [[nodiscard]] const std::filesystem::path& path() const;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "geometry/camera.h"
-#include "model/model_file.h"
+#include "ldc/block_tree.h"
 
 namespace surfcast {
 
