@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstdint>
+#include <glm/vec3.hpp>
+
+namespace surfcast::bench {
+
+/// One echo of the generated scan.
+struct Echo {
+  glm::dvec3 position{0};  ///< metres from the corner of the scene
+  glm::u16vec3 color{0};   ///< sRGB, 16 bit
+  uint16_t intensity = 0;
+  uint8_t classification = 0;  ///< as LAS numbers them: 2 ground, 5 high vegetation, 6 building
+  uint8_t return_number = 1;
+  uint8_t returns = 1;
+};
+
+/// A square kilometre of town and parkland on rolling ground: blocks of 40 m with houses, trees or meadow between
+/// streets, seen from the air and, for the walls, from the street. Everything follows from hashes of places, so that
+/// any number of echoes is a denser or sparser scan of one and the same scene.
+inline constexpr double kSceneSide = 1000;
+
+/// Echo `index` of `count`. Echoes come in the order of a survey: row by row.
+Echo scan_echo(uint64_t index, uint64_t count);
+
+}  // namespace surfcast::bench
