@@ -14,7 +14,7 @@
 
 #include "base/stopwatch.h"
 #include "gl_points.h"
-#include "model/model_writer.h"
+#include "model/write_model.h"
 #include "render/renderer.h"
 #include "support/clouds.h"
 

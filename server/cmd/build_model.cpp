@@ -4,7 +4,7 @@
 #include <vector>
 
 #include "base/stopwatch.h"
-#include "model/model_writer.h"
+#include "model/write_model.h"
 #include "scan/read_scan.h"
 #include "surfel/normalization_weights.h"
 

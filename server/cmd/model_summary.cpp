@@ -64,6 +64,7 @@ std::string to_text(const ModelSummary& summary) {
   text += fmt::format("oriented: {}\n", info.oriented ? "yes" : "no");
   text += fmt::format("color bits: {}\n", info.color_bits);
   text += fmt::format("attributes: {}\n", joined(attribute_names(info)));
+  text += fmt::format("levels: {}\n", info.levels);
   for (const LevelSummary& level : summary.levels) {
     text += fmt::format("level {}: {} blocks, {} surfels, {} bytes, spacing {:.6g} .. {:.6g}\n", level.level,
                         level.blocks, level.surfels, level.bytes, level.smallest_spacing, level.largest_spacing);

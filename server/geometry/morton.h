@@ -18,6 +18,10 @@ struct RootCube {
 
 RootCube root_cube(const Box& box);
 
+/// The lowest kMortonDepth bits of x, y and z in turn: bit i of x becomes bit 3i, of y 3i + 1, of z 3i + 2.
+uint64_t interleave(const glm::u32vec3& cell);
+glm::u32vec3 deinterleave(uint64_t code);
+
 /// Interleaved cell coordinates at kMortonDepth of a point in the cube; three bits per depth, the root's first.
 uint64_t morton_code(const RootCube& root, const glm::dvec3& point);
 

@@ -1,24 +1,29 @@
 #include "ldc/octree_key.h"
 
+#include <bit>
+
 namespace surfcast {
-namespace {
-
-/// Moves bit 3i to bit i, for 21 bits.
-uint32_t gather(uint64_t v) {
-  v &= 0x1249249249249249ULL;
-  v = (v ^ v >> 2) & 0x10c30c30c30c30c3ULL;
-  v = (v ^ v >> 4) & 0x100f00f00f00f00fULL;
-  v = (v ^ v >> 8) & 0x001f0000ff0000ffULL;
-  v = (v ^ v >> 16) & 0x001f00000000ffffULL;
-  v = (v ^ v >> 32) & 0x00000000001fffffULL;
-  return static_cast<uint32_t>(v);
-}
-
-}  // namespace
 
 OctreeKey key_of_code(uint64_t code, int depth) {
-  const uint64_t prefix = code >> (3 * (kMortonDepth - depth));
-  return {static_cast<uint8_t>(depth), gather(prefix), gather(prefix >> 1), gather(prefix >> 2)};
+  const glm::u32vec3 cell = deinterleave(code >> (3 * (kMortonDepth - depth)));
+  return {static_cast<uint8_t>(depth), cell.x, cell.y, cell.z};
+}
+
+bool contains(const OctreeKey& outer, const OctreeKey& inner) {
+  if (inner.depth < outer.depth) return false;
+  const int deeper = inner.depth - outer.depth;
+  return inner.x >> deeper == outer.x && inner.y >> deeper == outer.y && inner.z >> deeper == outer.z;
+}
+
+uint64_t location_of(const OctreeKey& key) {
+  return uint64_t{1} << (3 * key.depth) | interleave({key.x, key.y, key.z});
+}
+
+std::optional<OctreeKey> key_at_location(uint64_t location) {
+  const int top = static_cast<int>(std::bit_width(location)) - 1;
+  if (top < 0 || top % 3 != 0) return std::nullopt;
+  const glm::u32vec3 cell = deinterleave(location & ~(uint64_t{1} << top));
+  return OctreeKey{static_cast<uint8_t>(top / 3), cell.x, cell.y, cell.z};
 }
 
 }  // namespace surfcast

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 
 #include "geometry/morton.h"
 
@@ -27,6 +28,14 @@ struct OctreeKey {
 
 /// The cell of the given depth that a Morton code lies in.
 OctreeKey key_of_code(uint64_t code, int depth);
+
+/// True if the cells are the same, or `inner` is one of those that `outer` is halved into.
+bool contains(const OctreeKey& outer, const OctreeKey& inner);
+
+/// Depth and cell in one number: the Morton code of the cell at its own depth behind a leading 1.
+uint64_t location_of(const OctreeKey& key);
+/// The cell of such a number; none for numbers that are no location.
+std::optional<OctreeKey> key_at_location(uint64_t location);
 
 /// Number of the child (0 to 7) that a Morton code lies in, of its cell at the given depth.
 inline uint32_t octant_of_code(uint64_t code, int depth) {

@@ -67,8 +67,9 @@ ScalarValues empty_values(ScalarType type, std::index_sequence<I...> /*types*/) 
   return values;
 }
 
-ScalarAttribute read_scalar(const std::string& name, ScalarType type, const Column& column) {
-  ScalarAttribute scalar{name, empty_values(type, std::make_index_sequence<std::variant_size_v<ScalarValues>>())};
+ScalarAttribute read_scalar(const ScalarColumn& attribute, const Column& column) {
+  ScalarAttribute scalar{attribute.name,
+                         empty_values(attribute.type, std::make_index_sequence<std::variant_size_v<ScalarValues>>())};
   std::visit(
       [&](auto& values) {
         using T = typename std::decay_t<decltype(values)>::value_type;
@@ -83,7 +84,7 @@ ScalarAttribute read_scalar(const std::string& name, ScalarType type, const Colu
 
 Result<DecodedBlock> decode_block(std::span<const std::byte> bytes, const BlockShape& shape) {
   const bool colored = shape.color_bits > 0;
-  const std::vector<size_t> columns = field_columns(colored, shape.scalar_names.size());
+  const std::vector<size_t> columns = field_columns(colored, shape.scalars.size());
   const Result<std::vector<Field>> fields = decode_fields(bytes, columns, shape.surfels);
   if (!fields) return fail(fields.error());
   if (!in_range(*fields, shape)) return fail(ErrorKind::kInvalidInput, "values out of range");
@@ -99,8 +100,8 @@ Result<DecodedBlock> decode_block(std::span<const std::byte> bytes, const BlockS
   read_surfaces(*fields, block);
   if (colored) read_colors(std::span(*fields).subspan(kFixedFields, 3), shape.color_bits, block);
   const size_t first_scalar = kFixedFields + (colored ? 3 : 0);
-  for (size_t i = 0; i < shape.scalar_names.size(); ++i) {
-    block.scalars.push_back(read_scalar(shape.scalar_names[i], shape.scalar_types[i], (*fields)[first_scalar + i][0]));
+  for (size_t i = 0; i < shape.scalars.size(); ++i) {
+    block.scalars.push_back(read_scalar(shape.scalars[i], (*fields)[first_scalar + i][0]));
   }
   return block;
 }

@@ -12,6 +12,13 @@ namespace surfcast {
 /// Type of a scalar attribute: its index in the variant ScalarValues.
 using ScalarType = uint8_t;
 
+/// A scalar attribute as the tables of a file state it.
+struct ScalarColumn {
+  std::string name;
+  ScalarType type = 0;
+  bool coarse = false;  ///< coarse blocks store it too
+};
+
 /// What a block's bytes must hold, known from the tables of the file.
 struct BlockShape {
   Grid grid;
@@ -19,8 +26,7 @@ struct BlockShape {
   glm::u32vec3 extent{0};  ///< largest index, counted from `origin`
   uint32_t surfels = 0;
   int color_bits = 0;
-  std::span<const std::string> scalar_names;
-  std::span<const ScalarType> scalar_types;  ///< as `scalar_names`
+  std::span<const ScalarColumn> scalars;
 };
 
 /// Decodes a block. Fails when the bytes do not hold what the shape says.

@@ -92,6 +92,7 @@ Field scalar_field(const ScalarAttribute& scalar, Members members) {
 EncodedBlock encode_block(const SurfelCloud& cloud, std::span<const uint32_t> members, const Grid& grid) {
   SURFCAST_EXPECTS(!members.empty());
   EncodedBlock block;
+  block.grid = grid;
   block.surfels = static_cast<uint32_t>(members.size());
   const std::vector<glm::ivec3> indices = make_indices(cloud, members, grid, block);
   const std::vector<uint32_t> path = path_order(indices);

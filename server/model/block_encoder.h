@@ -15,6 +15,7 @@ namespace surfcast {
 /// A block's bytes, and what the table of blocks says about it.
 struct EncodedBlock {
   std::vector<std::byte> bytes;
+  Grid grid;
   glm::i64vec3 origin{0};  ///< lowest lattice index of its surfels
   glm::u32vec3 extent{0};  ///< largest index, counted from `origin`
   uint32_t surfels = 0;

@@ -19,6 +19,8 @@ constexpr std::array<char, 8> kMagic{'S', 'U', 'R', 'F', 'C', 'A', 'S', 'T'};
 constexpr size_t kHeaderChecksumAt = kHeaderBytes - sizeof(uint64_t);
 constexpr uint16_t kOrientedFlag = 1;
 constexpr uint16_t kZUpFlag = 2;
+/// Added to the type of a scalar attribute that coarse blocks have, too.
+constexpr uint8_t kCoarseScalarFlag = 0x80;
 /// Half angle of a record without cone.
 constexpr float kNoCone = -1;
 /// More than an axis turns when it is quantised like a normal, radians.
@@ -60,10 +62,8 @@ void put_block(ByteWriter& writer, const BlockRecord& block) {
   writer.put(block.checksum);
   put_vector(writer, block.origin);
   put_vector(writer, block.extent);
-  put_vector(writer, block.key);
-  writer.put(block.key.depth);
-  writer.put(block.level);
-  writer.put(uint16_t{0});
+  writer.put(location_of(block.key));
+  writer.put(block.parent);
   writer.put(block.grid);
   writer.put(block.bytes);
   writer.put(block.surfels);
@@ -72,22 +72,23 @@ void put_block(ByteWriter& writer, const BlockRecord& block) {
   put_cone(writer, block.normals);
 }
 
-BlockRecord get_block(ByteReader& reader) {
+/// None when the cell is no cell.
+std::optional<BlockRecord> get_block(ByteReader& reader) {
   BlockRecord block;
   block.offset = reader.get<uint64_t>();
   block.checksum = reader.get<uint64_t>();
   block.origin = get_vector<glm::i64vec3>(reader);
   block.extent = get_vector<glm::u32vec3>(reader);
-  const auto cell = get_vector<glm::u32vec3>(reader);
-  block.key = {reader.get<uint8_t>(), cell.x, cell.y, cell.z};
-  block.level = reader.get<uint8_t>();
-  reader.get<uint16_t>();
+  const std::optional<OctreeKey> key = key_at_location(reader.get<uint64_t>());
+  block.parent = reader.get<uint32_t>();
   block.grid = reader.get<uint32_t>();
   block.bytes = reader.get<uint32_t>();
   block.surfels = reader.get<uint32_t>();
   block.spacing = reader.get<float>();
   block.max_radius = reader.get<float>();
   block.normals = get_cone(reader);
+  if (!key) return std::nullopt;
+  block.key = *key;
   return block;
 }
 
@@ -108,17 +109,12 @@ bool valid_lattice_box(const BlockRecord& block, const Grid& grid) {
   return finite(grid.position(block.origin)) && finite(grid.position(block.origin + glm::i64vec3(block.extent)));
 }
 
-bool valid_key(const OctreeKey& key) {
-  return key.depth <= OctreeKey::kMaxDepth && std::max({key.x, key.y, key.z}) >> key.depth == 0;
-}
-
 bool valid_block(const BlockRecord& block, const Directory& directory, const ModelHeader& header) {
   const bool bytes_inside = block.offset >= kHeaderBytes && block.offset <= header.directory_offset &&
                             block.bytes <= header.directory_offset - block.offset;
-  return bytes_inside && valid_key(block.key) && block.surfels >= 1 && block.surfels <= kMaxBlockSurfels &&
-         std::isfinite(block.spacing) && block.spacing > 0 && std::isfinite(block.max_radius) &&
-         block.max_radius >= block.spacing && block.grid < directory.grids.size() &&
-         valid_lattice_box(block, directory.grids[block.grid]);
+  return bytes_inside && block.surfels >= 1 && block.surfels <= kMaxBlockSurfels && std::isfinite(block.spacing) &&
+         block.spacing > 0 && std::isfinite(block.max_radius) && block.max_radius >= block.spacing &&
+         block.grid < directory.grids.size() && valid_lattice_box(block, directory.grids[block.grid]);
 }
 
 /// A count of things that take at least `bytes_each` in the rest of the buffer; zero (and a failed reader) when they
@@ -194,10 +190,10 @@ std::vector<std::byte> write_directory(const Directory& directory) {
   ByteWriter writer;
   writer.put(static_cast<uint32_t>(directory.source_names.size()));
   for (const std::string& name : directory.source_names) writer.put_string(name);
-  writer.put(static_cast<uint32_t>(directory.scalar_names.size()));
-  for (size_t i = 0; i < directory.scalar_names.size(); ++i) {
-    writer.put(directory.scalar_types[i]);
-    writer.put_string(directory.scalar_names[i]);
+  writer.put(static_cast<uint32_t>(directory.scalars.size()));
+  for (const ScalarColumn& scalar : directory.scalars) {
+    writer.put(static_cast<uint8_t>(scalar.type | (scalar.coarse ? kCoarseScalarFlag : 0)));
+    writer.put_string(scalar.name);
   }
   writer.put(static_cast<uint32_t>(directory.grids.size()));
   for (const Grid& grid : directory.grids) {
@@ -217,9 +213,10 @@ Result<Directory> read_directory(std::span<const std::byte> bytes, const ModelHe
   uint32_t scalars = get_count(reader, 5);
   if (scalars > kMaxScalars) return damaged("model has too many attributes");
   for (; scalars > 0; --scalars) {
-    directory.scalar_types.push_back(reader.get<ScalarType>());
-    directory.scalar_names.push_back(reader.get_string());
-    if (directory.scalar_types.back() >= std::variant_size_v<ScalarValues>) return damaged("unknown attribute type");
+    const auto type = reader.get<uint8_t>();
+    const auto plain_type = static_cast<ScalarType>(type & ~kCoarseScalarFlag);
+    if (plain_type >= std::variant_size_v<ScalarValues>) return damaged("unknown attribute type");
+    directory.scalars.push_back({reader.get_string(), plain_type, type != plain_type});
   }
   for (uint32_t n = get_count(reader, 48); n > 0; --n) {
     const auto scale = get_vector<glm::dvec3>(reader);
@@ -227,8 +224,9 @@ Result<Directory> read_directory(std::span<const std::byte> bytes, const ModelHe
     if (!valid_grid(directory.grids.back())) return damaged("model has a wrong grid");
   }
   for (uint32_t n = get_count(reader, kBlockRecordBytes); n > 0; --n) {
-    directory.blocks.push_back(get_block(reader));
-    if (!valid_block(directory.blocks.back(), directory, header)) return damaged("model has a wrong block record");
+    const std::optional<BlockRecord> block = get_block(reader);
+    if (!block || !valid_block(*block, directory, header)) return damaged("model has a wrong block record");
+    directory.blocks.push_back(*block);
   }
   if (!reader.ok() || !reader.rest().empty()) return damaged("model tables have a wrong length");
   if (directory.blocks.empty()) return damaged("model has no blocks");

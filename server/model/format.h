@@ -11,9 +11,9 @@
 namespace surfcast {
 
 /// Version of the format that is written, and the only one that is read.
-inline constexpr uint32_t kModelVersion = 1;
+inline constexpr uint32_t kModelVersion = 2;
 inline constexpr size_t kHeaderBytes = 64;
-inline constexpr size_t kBlockRecordBytes = 96;
+inline constexpr size_t kBlockRecordBytes = 92;
 /// Limits of the format: what a hostile table can make the reader allocate for one block is bounded by them.
 inline constexpr uint32_t kMaxBlockSurfels = 32768;
 inline constexpr uint32_t kMaxScalars = 128;
@@ -37,7 +37,7 @@ Result<ModelHeader> read_header(std::span<const std::byte> file);
 
 /// One record of the table of blocks.
 struct BlockRecord {
-  uint8_t level = 0;
+  uint32_t parent = BlockEntry::kNoParent;
   OctreeKey key;
   uint32_t grid = 0;  ///< index into Directory::grids
   glm::i64vec3 origin{0};
@@ -54,14 +54,14 @@ struct BlockRecord {
 /// The tables at the end of a file.
 struct Directory {
   std::vector<std::string> source_names;
-  std::vector<std::string> scalar_names;
-  std::vector<ScalarType> scalar_types;
+  std::vector<ScalarColumn> scalars;
   std::vector<Grid> grids;
-  std::vector<BlockRecord> blocks;
+  std::vector<BlockRecord> blocks;  ///< parents before children, siblings side by side
 };
 
 std::vector<std::byte> write_directory(const Directory& directory);
-/// Checks every field that later code relies on; blocks must lie between the header and the directory.
+/// Checks every field that later code relies on; blocks must lie between the header and the directory. Whether they
+/// make a tree is for the caller to check.
 Result<Directory> read_directory(std::span<const std::byte> bytes, const ModelHeader& header);
 
 }  // namespace surfcast

@@ -1,6 +1,8 @@
 #include "model/model_file.h"
 
+#include <algorithm>
 #include <atomic>
+#include <iterator>
 #include <utility>
 
 #include "base/contract.h"
@@ -15,6 +17,7 @@ struct ModelFile::State {
   MappedFile file;
   ModelInfo info;
   Directory directory;
+  std::vector<ScalarColumn> coarse_scalars;  ///< those that coarse blocks have
   BlockTree tree;
 };
 
@@ -26,7 +29,7 @@ tl::unexpected<Error> fail_naming(const std::filesystem::path& path, const Error
 
 BlockEntry make_entry(const BlockRecord& record, const Grid& grid) {
   BlockEntry entry;
-  entry.level = record.level;
+  entry.parent = record.parent;
   entry.key = record.key;
   entry.bounds.include(grid.position(record.origin));
   entry.bounds.include(grid.position(record.origin + glm::i64vec3(record.extent)));
@@ -40,6 +43,37 @@ BlockEntry make_entry(const BlockRecord& record, const Grid& grid) {
   return entry;
 }
 
+/// Blocks make a tree whose cells nest. A block with children is deeper than its parent, so that no path through a
+/// hostile tree is longer than the octree is deep.
+bool valid_tree(std::span<const BlockEntry> entries) {
+  if (!BlockTree::is_tree(entries)) return false;
+  return std::all_of(entries.begin(), entries.end(), [&](const BlockEntry& entry) {
+    if (entry.parent == BlockEntry::kNoParent) return true;
+    const BlockEntry& parent = entries[entry.parent];
+    const bool below_its_parent =
+        parent.parent == BlockEntry::kNoParent || parent.key.depth > entries[parent.parent].key.depth;
+    return contains(parent.key, entry.key) && below_its_parent;
+  });
+}
+
+/// A block is one level above the highest of its children, which come after it.
+void set_levels(std::span<BlockEntry> entries) {
+  for (size_t i = entries.size(); i-- > 0;) {
+    if (entries[i].parent == BlockEntry::kNoParent) continue;
+    BlockEntry& parent = entries[entries[i].parent];
+    parent.level = std::max(parent.level, entries[i].level + 1);
+  }
+}
+
+std::vector<BlockEntry> make_entries(const Directory& directory) {
+  std::vector<BlockEntry> entries;
+  entries.reserve(directory.blocks.size());
+  for (const BlockRecord& record : directory.blocks) {
+    entries.push_back(make_entry(record, directory.grids[record.grid]));
+  }
+  return entries;
+}
+
 uint64_t next_id() {
   static std::atomic<uint64_t> last{0};
   return ++last;
@@ -50,11 +84,12 @@ ModelInfo make_info(const ModelHeader& header, const Directory& directory, std::
   info.oriented = header.oriented;
   info.z_up = header.z_up;
   info.color_bits = header.color_bits;
-  info.scalar_names = directory.scalar_names;
+  for (const ScalarColumn& scalar : directory.scalars) info.scalar_names.push_back(scalar.name);
   info.source_names = directory.source_names;
   for (const BlockEntry& entry : entries) {
     info.bounds.include(entry.bounds);
-    info.surfels += entry.surfels;
+    if (entry.level == 0) info.surfels += entry.surfels;
+    info.levels = std::max(info.levels, entry.level + 1);
   }
   return info;
 }
@@ -74,14 +109,18 @@ Result<ModelFile> ModelFile::open(const std::filesystem::path& path) {
   Result<Directory> directory = read_directory(file->bytes().subspan(header->directory_offset), *header);
   if (!directory) return fail_naming(path, directory.error());
 
-  std::vector<BlockEntry> entries;
-  entries.reserve(directory->blocks.size());
-  for (const BlockRecord& record : directory->blocks) {
-    entries.push_back(make_entry(record, directory->grids[record.grid]));
+  std::vector<BlockEntry> entries = make_entries(*directory);
+  if (!valid_tree(entries)) {
+    return fail_naming(path, {ErrorKind::kInvalidInput, "the blocks of the model make no tree"});
   }
+  set_levels(entries);
   ModelInfo info = make_info(*header, *directory, entries);
-  return ModelFile(std::make_unique<State>(
-      State{next_id(), path, std::move(*file), std::move(info), std::move(*directory), BlockTree(std::move(entries))}));
+  std::vector<ScalarColumn> coarse_scalars;
+  std::copy_if(directory->scalars.begin(), directory->scalars.end(), std::back_inserter(coarse_scalars),
+               [](const ScalarColumn& scalar) { return scalar.coarse; });
+  return ModelFile(
+      std::make_unique<State>(State{next_id(), path, std::move(*file), std::move(info), std::move(*directory),
+                                    std::move(coarse_scalars), BlockTree(std::move(entries))}));
 }
 
 uint64_t ModelFile::id() const {
@@ -114,8 +153,7 @@ Result<DecodedBlock> ModelFile::decode(size_t block) const {
   shape.extent = record.extent;
   shape.surfels = record.surfels;
   shape.color_bits = state_->info.color_bits;
-  shape.scalar_names = state_->directory.scalar_names;
-  shape.scalar_types = state_->directory.scalar_types;
+  shape.scalars = blocks()[block].level == 0 ? state_->directory.scalars : state_->coarse_scalars;
   Result<DecodedBlock> decoded = decode_block(bytes, shape);
   if (!decoded) return named(decoded.error());
   return decoded;

@@ -20,25 +20,28 @@ namespace surfcast {
 
 /// What the header of a model says about all its blocks.
 struct ModelInfo {
-  uint64_t surfels = 0;
+  uint64_t surfels = 0;                   ///< of the source: those of the leaves of the tree
+  int levels = 0;                         ///< of detail; 1 without coarser ones
   Box bounds;                             ///< of the stored positions, world units
   bool oriented = false;                  ///< see SurfelCloud::oriented
   bool z_up = true;                       ///< see SurfelCloud::z_up
   int color_bits = 0;                     ///< 8 or 16; 0: the scan has no colour and no block stores any
-  std::vector<std::string> scalar_names;  ///< attributes that every block stores, in order
+  std::vector<std::string> scalar_names;  ///< attributes of the leaves, in order
   std::vector<std::string> source_names;  ///< the input files
 };
 
 /// A block as it comes out of Draco: structure of arrays of one length.
 struct DecodedBlock {
   Grid grid;
-  glm::i64vec3 origin{0};                ///< lattice index that `indices` count from
-  std::vector<glm::ivec3> indices;       ///< non-negative lattice steps from `origin`
-  std::vector<glm::vec3> normals;        ///< unit
-  std::vector<float> radii;              ///< world units
-  std::vector<float> weights;            ///< s_k
-  std::vector<glm::u16vec3> colors;      ///< in ModelInfo::color_bits; empty without colour
-  std::vector<ScalarAttribute> scalars;  ///< as ModelInfo::scalar_names
+  glm::i64vec3 origin{0};            ///< lattice index that `indices` count from
+  std::vector<glm::ivec3> indices;   ///< non-negative lattice steps from `origin`
+  std::vector<glm::vec3> normals;    ///< unit
+  std::vector<float> radii;          ///< world units
+  std::vector<float> weights;        ///< s_k
+  std::vector<glm::u16vec3> colors;  ///< in ModelInfo::color_bits; empty without colour
+  /// Of a leaf as ModelInfo::scalar_names. Coarse blocks have only those of them that can be averaged, intensity and
+  /// classification.
+  std::vector<ScalarAttribute> scalars;
 
   [[nodiscard]] size_t size() const { return indices.size(); }
   /// World coordinates of surfel i, exact for inputs on a grid.

@@ -1,64 +1,28 @@
 #include "model/model_writer.h"
 
 #include <algorithm>
-#include <atomic>
-#include <cmath>
 #include <utility>
-
-#include <oneapi/tbb/info.h>
-#include <oneapi/tbb/parallel_pipeline.h>
 
 #include "base/atomic_file.h"
 #include "base/contract.h"
-#include "ldc/partition.h"
-#include "model/block_encoder.h"
+#include "ldc/coarse_scalars.h"
 #include "model/format.h"
 
 namespace surfcast {
+
+struct ModelWriter::State {
+  State(AtomicFile output, ModelSchema model_schema) : file(std::move(output)), schema(std::move(model_schema)) {}
+
+  AtomicFile file;
+  ModelSchema schema;
+  std::vector<Grid> grids;
+  std::vector<BlockRecord> records;             ///< in the order of the file; parents are numbers of this order
+  std::vector<std::vector<uint32_t>> children;  ///< of each record
+};
+
 namespace {
 
-bool storable(float value) {
-  return std::isfinite(value) && value > 0;
-}
-
-bool storable(const glm::dvec3& p) {
-  // Far beyond any scan, and small enough that box sizes and squares stay finite.
-  constexpr double kLimit = 1e150;
-  return std::abs(p.x) < kLimit && std::abs(p.y) < kLimit && std::abs(p.z) < kLimit;
-}
-
-bool storable(const glm::vec3& normal) {
-  const float square = normal.x * normal.x + normal.y * normal.y + normal.z * normal.z;
-  return square > 0.5f && square < 2.0f;
-}
-
-void expect_one_length(const SurfelCloud& cloud) {
-  const size_t n = cloud.size();
-  SURFCAST_EXPECTS(cloud.normals.size() == n && cloud.radii.size() == n && cloud.weights.size() == n);
-  SURFCAST_EXPECTS(!cloud.colors || cloud.colors->values.size() == n);
-  for (const ScalarAttribute& scalar : cloud.scalars) SURFCAST_EXPECTS(value_count(scalar.values) == n);
-}
-
-Status check(const SurfelCloud& cloud, const WriteOptions& options) {
-  expect_one_length(cloud);
-  const auto refuse = [](size_t surfel, const char* what) {
-    return fail(ErrorKind::kInvalidInput, "surfel " + std::to_string(surfel) + " has " + what);
-  };
-  if (cloud.size() == 0) return fail(ErrorKind::kInvalidInput, "no surfels to write");
-  if (cloud.scalars.size() > kMaxScalars) return fail(ErrorKind::kLimit, "more attributes than a model holds");
-  if (options.precision && !storable(static_cast<float>(*options.precision))) {
-    return fail(ErrorKind::kInvalidInput, "the precision must be positive");
-  }
-  for (size_t i = 0; i < cloud.size(); ++i) {
-    if (!storable(cloud.positions[i])) return refuse(i, "a position that cannot be stored");
-    if (!storable(cloud.normals[i])) return refuse(i, "a normal that is not unit");
-    if (!storable(cloud.radii[i])) return refuse(i, "a radius that is not positive");
-    if (!storable(cloud.weights[i])) return refuse(i, "a weight that is not positive");
-  }
-  return {};
-}
-
-/// Index of a grid in the table, added when it is new.
+/// Index of a grid in the table, which grows by the ones it lacks.
 uint32_t index_of(const Grid& grid, std::vector<Grid>& grids) {
   const auto found = std::find(grids.begin(), grids.end(), grid);
   const auto index = static_cast<uint32_t>(found - grids.begin());
@@ -66,73 +30,48 @@ uint32_t index_of(const Grid& grid, std::vector<Grid>& grids) {
   return index;
 }
 
-Directory start_directory(const SurfelCloud& cloud) {
-  Directory directory;
-  for (const SourceRange& source : cloud.sources) directory.source_names.push_back(source.name);
-  for (const ScalarAttribute& scalar : cloud.scalars) {
-    directory.scalar_names.push_back(scalar.name);
-    directory.scalar_types.push_back(static_cast<ScalarType>(scalar.values.index()));
-  }
-  return directory;
-}
-
-BlockRecord make_record(const BlockPlan& plan, const EncodedBlock& block, uint64_t offset) {
+BlockRecord make_record(const EncodedBlock& block, const OctreeKey& key) {
   BlockRecord record;
-  record.key = plan.key;
+  record.key = key;
   record.origin = block.origin;
   record.extent = block.extent;
   record.surfels = block.surfels;
   record.spacing = block.spacing;
   record.max_radius = block.max_radius;
   record.normals = block.normals;
-  record.offset = offset;
   record.bytes = static_cast<uint32_t>(block.bytes.size());
   record.checksum = checksum_of(block.bytes);
   return record;
 }
 
-/// Encodes on all threads, appends in the order of the plan: the file does not depend on who finished first.
-Status append_blocks(const SurfelCloud& cloud, const Partition& partition, const WriteOptions& options,
-                     AtomicFile& file, Directory& directory) {
-  namespace tbb = oneapi::tbb;
-  using Encoded = std::pair<size_t, EncodedBlock>;
-  size_t next = 0;
-  size_t written = 0;
-  Status status;
-  std::atomic<bool> failed = false;  // the first filter and the last one run at the same time
-  const auto take = [&](tbb::flow_control& control) -> size_t {
-    if (next < partition.blocks.size() && !failed) return next++;
-    control.stop();
-    return 0;
-  };
-  const auto encode = [&](size_t index) -> Encoded {
-    const BlockPlan& plan = partition.blocks[index];
-    const std::span members = std::span(partition.order).subspan(plan.first, plan.count);
-    return {index, encode_block(cloud, members, plan.grid)};
-  };
-  const auto append = [&](const Encoded& encoded) {
-    const auto& [index, block] = encoded;
-    const BlockPlan& plan = partition.blocks[index];
-    BlockRecord record = make_record(plan, block, file.position());
-    record.grid = index_of(plan.grid, directory.grids);
-    directory.blocks.push_back(record);
-    if (status) status = file.append(block.bytes);
-    failed = !status.has_value();
-    if (options.progress)
-      options.progress(static_cast<double>(++written) / static_cast<double>(partition.blocks.size()));
-  };
-  const auto tokens = static_cast<size_t>(tbb::info::default_concurrency()) * 4;
-  tbb::parallel_pipeline(tokens, tbb::make_filter<void, size_t>(tbb::filter_mode::serial_in_order, take) &
-                                     tbb::make_filter<size_t, Encoded>(tbb::filter_mode::parallel, encode) &
-                                     tbb::make_filter<Encoded, void>(tbb::filter_mode::serial_in_order, append));
-  return status;
+/// The records level by level from the roots down: parents before children, siblings side by side.
+std::vector<BlockRecord> in_tree_order(std::span<const BlockRecord> records,
+                                       std::span<const std::vector<uint32_t>> children) {
+  std::vector<uint32_t> order;
+  order.reserve(records.size());
+  std::vector<BlockRecord> sorted;
+  sorted.reserve(records.size());
+  for (uint32_t i = 0; i < records.size(); ++i) {
+    if (records[i].parent != BlockEntry::kNoParent) continue;
+    order.push_back(i);
+    sorted.push_back(records[i]);
+  }
+  for (uint32_t parent = 0; parent < order.size(); ++parent) {
+    for (const uint32_t child : children[order[parent]]) {
+      order.push_back(child);
+      sorted.push_back(records[child]);
+      sorted.back().parent = parent;
+    }
+  }
+  SURFCAST_EXPECTS(sorted.size() == records.size());
+  return sorted;
 }
 
-ModelHeader make_header(const SurfelCloud& cloud, std::span<const std::byte> tables, uint64_t offset) {
+ModelHeader make_header(const ModelSchema& schema, std::span<const std::byte> tables, uint64_t offset) {
   ModelHeader header;
-  header.oriented = cloud.oriented;
-  header.z_up = cloud.z_up;
-  header.color_bits = cloud.colors ? cloud.colors->bits : 0;
+  header.oriented = schema.oriented;
+  header.z_up = schema.z_up;
+  header.color_bits = schema.color_bits;
   header.file_bytes = offset + tables.size();
   header.directory_offset = offset;
   header.directory_bytes = tables.size();
@@ -142,29 +81,63 @@ ModelHeader make_header(const SurfelCloud& cloud, std::span<const std::byte> tab
 
 }  // namespace
 
-Result<WriteReport> write_model(const SurfelCloud& cloud, const std::filesystem::path& target,
-                                const WriteOptions& options) {
-  if (const Status status = check(cloud, options); !status) {
-    return fail(status.error().kind, target.string() + ": " + status.error().message);
+ModelSchema schema_of(const SurfelCloud& cloud) {
+  ModelSchema schema{cloud.oriented, cloud.z_up, cloud.colors ? cloud.colors->bits : 0, {}, {}};
+  for (const SourceRange& source : cloud.sources) schema.source_names.push_back(source.name);
+  for (const ScalarAttribute& scalar : cloud.scalars) {
+    schema.scalars.push_back(
+        {scalar.name, static_cast<ScalarType>(scalar.values.index()), is_coarse_scalar(scalar.name)});
+  }
+  return schema;
+}
+
+ModelWriter::ModelWriter(std::unique_ptr<State> state) : state_(std::move(state)) {}
+ModelWriter::ModelWriter(ModelWriter&&) noexcept = default;
+ModelWriter& ModelWriter::operator=(ModelWriter&&) noexcept = default;
+ModelWriter::~ModelWriter() = default;
+
+Result<ModelWriter> ModelWriter::create(const std::filesystem::path& target, ModelSchema schema) {
+  if (schema.scalars.size() > kMaxScalars) {
+    return fail(ErrorKind::kLimit, target.string() + ": more attributes than a model holds");
   }
   Result<AtomicFile> file = AtomicFile::create(target);
   if (!file) return fail(std::move(file.error()));
   if (Status status = file->append(write_header({})); !status) return fail(std::move(status.error()));
+  return ModelWriter(std::make_unique<State>(std::move(*file), std::move(schema)));
+}
 
-  PartitionOptions partition_options;
-  partition_options.precision = options.precision;
-  const Partition partition = partition_cloud(cloud, partition_options);
-  Directory directory = start_directory(cloud);
-  if (Status status = append_blocks(cloud, partition, options, *file, directory); !status) {
-    return fail(std::move(status.error()));
+Result<uint32_t> ModelWriter::add(const EncodedBlock& block, const OctreeKey& key, std::span<const uint32_t> children) {
+  SURFCAST_EXPECTS(block.surfels >= 1 && block.surfels <= kMaxBlockSurfels);
+  const auto number = static_cast<uint32_t>(state_->records.size());
+  BlockRecord record = make_record(block, key);
+  record.offset = state_->file.position();
+  record.grid = index_of(block.grid, state_->grids);
+  if (Status status = state_->file.append(block.bytes); !status) return fail(std::move(status.error()));
+  for (const uint32_t child : children) {
+    SURFCAST_EXPECTS(child < number && state_->records[child].parent == BlockEntry::kNoParent);
+    state_->records[child].parent = number;
   }
+  state_->records.push_back(record);
+  state_->children.emplace_back(children.begin(), children.end());
+  return number;
+}
+
+Result<WriteReport> ModelWriter::finish() {
+  AtomicFile& file = state_->file;
+  if (state_->records.empty()) return fail(ErrorKind::kInvalidInput, "no surfels to write");
+  Directory directory{state_->schema.source_names, state_->schema.scalars, state_->grids,
+                      in_tree_order(state_->records, state_->children)};
   const std::vector<std::byte> tables = write_directory(directory);
-  const std::vector<std::byte> header = write_header(make_header(cloud, tables, file->position()));
-  Status status = file->append(tables);
-  if (status) status = file->overwrite(0, header);
-  if (status) status = file->commit();
+  const std::vector<std::byte> header = write_header(make_header(state_->schema, tables, file.position()));
+  Status status = file.append(tables);
+  if (status) status = file.overwrite(0, header);
+  if (status) status = file.commit();
   if (!status) return fail(std::move(status.error()));
-  return WriteReport{cloud.size(), partition.blocks.size(), file->position()};
+  WriteReport report{0, directory.blocks.size(), file.position()};
+  for (size_t i = 0; i < state_->records.size(); ++i) {
+    if (state_->children[i].empty()) report.surfels += state_->records[i].surfels;
+  }
+  return report;
 }
 
 }  // namespace surfcast

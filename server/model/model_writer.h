@@ -2,29 +2,58 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <functional>
-#include <optional>
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
 
 #include "base/result.h"
+#include "ldc/octree_key.h"
+#include "model/block_decoder.h"
+#include "model/block_encoder.h"
 #include "surfel/surfel_cloud.h"
 
 namespace surfcast {
 
-struct WriteOptions {
-  std::optional<double> precision{};       ///< largest position error, world units; none: 1/256 of each radius
-  std::function<void(double)> progress{};  ///< called with the part that is done, in [0, 1], from any one thread
+/// What all blocks of a model have in common.
+struct ModelSchema {
+  bool oriented = false;  ///< see SurfelCloud::oriented
+  bool z_up = true;       ///< see SurfelCloud::z_up
+  int color_bits = 0;     ///< 8 or 16; 0 without colour
+  std::vector<std::string> source_names;
+  std::vector<ScalarColumn> scalars;
 };
 
+/// The schema of a model of that cloud.
+ModelSchema schema_of(const SurfelCloud& cloud);
+
 struct WriteReport {
-  uint64_t surfels = 0;
-  uint64_t blocks = 0;
+  uint64_t surfels = 0;  ///< of the source
+  uint64_t blocks = 0;   ///< of all levels
   uint64_t bytes = 0;
 };
 
-/// Writes a cloud with weights as a model file, on all threads; the bytes do not depend on their number. The target
-/// appears when it is whole. Fails on an empty cloud, on values that no model holds (a radius or weight that is not
-/// positive and finite, coordinates beyond 1e150), and when the target cannot be written.
-Result<WriteReport> write_model(const SurfelCloud& cloud, const std::filesystem::path& target,
-                                const WriteOptions& options);
+/// Writes a model file block by block, children before their parents; only the table of blocks stays in memory. The
+/// target appears when it is whole. Order and content of the calls decide every byte of the file.
+class ModelWriter {
+ public:
+  static Result<ModelWriter> create(const std::filesystem::path& target, ModelSchema schema);
+
+  ModelWriter(ModelWriter&&) noexcept;
+  ModelWriter& operator=(ModelWriter&&) noexcept;
+  ~ModelWriter();
+
+  /// Appends a block that stands for the children, numbers of blocks added before, each in one call at most; none for
+  /// a block of the source's surfels. Returns its number.
+  Result<uint32_t> add(const EncodedBlock& block, const OctreeKey& key, std::span<const uint32_t> children);
+
+  /// Writes the tables and moves the file into its place. Fails when no block was added.
+  Result<WriteReport> finish();
+
+ private:
+  struct State;
+  explicit ModelWriter(std::unique_ptr<State> state);
+  std::unique_ptr<State> state_;
+};
 
 }  // namespace surfcast

@@ -5,7 +5,7 @@
 namespace surfcast {
 namespace {
 
-/// The cloud that `write_model` made tests/data/sphere-and-grid-v1.surf of, when version 1 of the format was new.
+/// The cloud that `write_model` made tests/data/sphere-and-grid-v2.surf of, when version 2 of the format was new.
 SurfelCloud fixture_cloud() {
   SurfelCloud cloud = sphere_cloud(200);
   const Grid grid{{0.01, 0.01, 0.01}, {5000000.3, -70.7, 12}};
@@ -25,8 +25,8 @@ SurfelCloud fixture_cloud() {
 }
 
 /// A file of the past must be read as it was meant, by every later reader.
-TEST(ModelFixture, OfVersionOneIsStillRead) {
-  const Result<ModelFile> model = ModelFile::open(std::string(SURFCAST_TEST_DATA) + "/sphere-and-grid-v1.surf");
+TEST(ModelFixture, OfVersionTwoIsStillRead) {
+  const Result<ModelFile> model = ModelFile::open(std::string(SURFCAST_TEST_DATA) + "/sphere-and-grid-v2.surf");
   ASSERT_TRUE(model) << model.error().message;
   const SurfelCloud cloud = fixture_cloud();
   EXPECT_EQ(model->info().source_names, (std::vector<std::string>{"sphere.ply", "grid.las"}));

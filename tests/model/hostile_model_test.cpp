@@ -141,12 +141,11 @@ TEST(HostileModel, WrongHeadersWithRightChecksumsFailOrDecode) {
 TEST(HostileModel, WrongBlocksWithRightChecksumsFailOrDecode) {
   SurfelCloud cloud = sphere_cloud(300);
   number_surfels(cloud);
-  const std::vector<std::string> names{"id"};
-  const std::vector<ScalarType> types{static_cast<ScalarType>(cloud.scalars[0].values.index())};
+  const std::vector<ScalarColumn> scalars{{"id", static_cast<ScalarType>(cloud.scalars[0].values.index())}};
   const std::vector<uint32_t>& members = std::get<std::vector<uint32_t>>(cloud.scalars[0].values);
   const Grid grid{glm::dvec3(1e-4), glm::dvec3(0)};
   const EncodedBlock block = encode_block(cloud, members, grid);
-  const BlockShape shape{grid, block.origin, block.extent, block.surfels, 8, names, types};
+  const BlockShape shape{grid, block.origin, block.extent, block.surfels, 8, scalars};
   ASSERT_TRUE(decode_block(block.bytes, shape));
 
   std::mt19937 random(4);
@@ -173,8 +172,8 @@ TEST(HostileModel, ABlockWithMoreSurfelsThanItsTableSaysIsRefused) {
   std::iota(members.begin(), members.end(), 0);
   const Grid grid{glm::dvec3(1e-4), glm::dvec3(0)};
   const EncodedBlock block = encode_block(cloud, members, grid);
-  EXPECT_FALSE(decode_block(block.bytes, {grid, block.origin, block.extent, 299, 8, {}, {}}));
-  EXPECT_FALSE(decode_block(block.bytes, {grid, block.origin, block.extent / 2u, 300, 8, {}, {}}));
+  EXPECT_FALSE(decode_block(block.bytes, {grid, block.origin, block.extent, 299, 8, {}}));
+  EXPECT_FALSE(decode_block(block.bytes, {grid, block.origin, block.extent / 2u, 300, 8, {}}));
 }
 
 TEST(HostileModel, AHugeCountInTheTablesAllocatesNothing) {
@@ -195,6 +194,57 @@ TEST(HostileModel, AHugeCountInTheTablesAllocatesNothing) {
   rusage after{};
   getrusage(RUSAGE_SELF, &after);
   EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 64 * 1024) << "KiB";
+}
+
+/// Parents and cells of a table of blocks, as a file with right checksums may state them.
+struct Claim {
+  uint32_t parent;
+  OctreeKey key;
+};
+
+Status read_tree(const TestFolder& folder, const std::vector<Claim>& claims) {
+  const std::vector<char> whole = small_model(folder);
+  const ModelHeader header = *read_header(std::as_bytes(std::span(whole)));
+  const auto tables = std::as_bytes(std::span(whole)).subspan(header.directory_offset);
+  Directory directory = *read_directory(tables, header);
+  const BlockRecord block = directory.blocks[0];
+  directory.blocks.clear();
+  for (const Claim& claim : claims) {
+    directory.blocks.push_back(block);
+    directory.blocks.back().parent = claim.parent;
+    directory.blocks.back().key = claim.key;
+  }
+  std::vector<char> bytes(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(header.directory_offset));
+  const std::vector<std::byte> written = write_directory(directory);
+  for (const std::byte byte : written) bytes.push_back(static_cast<char>(byte));
+  put_u64(bytes, 16, bytes.size());
+  put_u64(bytes, 32, written.size());
+  repair_checksums(bytes);
+  std::ofstream(folder / "tree.surf", std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  const Result<ModelFile> model = ModelFile::open(folder / "tree.surf");
+  return model ? Status() : fail(model.error());
+}
+
+TEST(HostileModel, BlocksThatMakeNoTreeAreRefused) {
+  const TestFolder folder;
+  const OctreeKey root;
+  const uint32_t none = BlockEntry::kNoParent;
+  EXPECT_TRUE(read_tree(folder, {{none, root}, {0, root.child(1)}, {0, root}}));
+  const std::vector<std::vector<Claim>> hostile{
+      {{0, root}},                                                    // its own parent
+      {{1, root}, {0, root.child(1)}},                                // a circle
+      {{none, root}, {7, root}},                                      // an absent parent
+      {{none, root}, {none, root}, {0, root}, {1, root}, {0, root}},  // siblings apart
+      {{none, root.child(1)}, {0, root.child(2)}},                    // a child outside its parent's cell
+      {{none, root.child(1)}, {0, root}},                             // a child larger than its parent
+      {{none, root}, {0, root}, {1, root}, {2, root}, {3, root}},     // a path that never gets smaller
+  };
+  for (const std::vector<Claim>& claims : hostile) {
+    const Status status = read_tree(folder, claims);
+    ASSERT_FALSE(status);
+    EXPECT_EQ(status.error().kind, ErrorKind::kInvalidInput);
+    EXPECT_NE(status.error().message.find("tree.surf: the blocks of the model make no tree"), std::string::npos);
+  }
 }
 
 TEST(HostileModel, AnotherVersionIsNamedWithTheOneThatIsRead) {

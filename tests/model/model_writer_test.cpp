@@ -1,107 +1,105 @@
 #include "model/model_writer.h"
 
-#include <cmath>
-#include <csignal>
-#include <limits>
-
-#include <sys/resource.h>
+#include <numeric>
 
 #include "model/round_trip.h"
 
 namespace surfcast {
 namespace {
 
-TEST(ModelWriter, RefusesAnEmptyCloud) {
+constexpr Grid kGrid{glm::dvec3(1e-4), glm::dvec3(0)};
+
+EncodedBlock encode(const SurfelCloud& cloud) {
+  std::vector<uint32_t> members(cloud.size());
+  std::iota(members.begin(), members.end(), 0);
+  return encode_block(cloud, members, kGrid);
+}
+
+/// A cloud with attributes of both kinds: those that coarse blocks have, and one that they do not have.
+SurfelCloud leaf_cloud(size_t count) {
+  SurfelCloud cloud = sphere_cloud(count);
+  cloud.scalars.push_back({"gps_time", std::vector<double>(count, 12.5)});
+  cloud.scalars.push_back({"intensity", std::vector<uint16_t>(count, 77)});
+  cloud.scalars.push_back({"classification", std::vector<uint8_t>(count, 6)});
+  return cloud;
+}
+
+SurfelCloud coarse_cloud(size_t count) {
+  SurfelCloud cloud = leaf_cloud(count);
+  cloud.scalars.erase(cloud.scalars.begin());
+  return cloud;
+}
+
+/// Adds two leaves under one coarse block and one leaf beside it, all under a root: children before parents.
+Result<ModelFile> write_two_levels(const std::filesystem::path& path) {
+  Result<ModelWriter> writer = ModelWriter::create(path, schema_of(leaf_cloud(1)));
+  if (!writer) return fail(writer.error());
+  const OctreeKey root;
+  const OctreeKey low = root.child(0);
+  const uint32_t a = *writer->add(encode(leaf_cloud(20)), low.child(1), {});
+  const uint32_t b = *writer->add(encode(leaf_cloud(30)), low.child(2), {});
+  const uint32_t c = *writer->add(encode(leaf_cloud(40)), root.child(7), {});
+  const uint32_t ab = *writer->add(encode(coarse_cloud(10)), low, std::vector{a, b});
+  EXPECT_TRUE(writer->add(encode(coarse_cloud(5)), root, std::vector{c, ab}));
+  const Result<WriteReport> report = writer->finish();
+  if (!report) return fail(report.error());
+  EXPECT_EQ(report->surfels, 90U);
+  EXPECT_EQ(report->blocks, 5U);
+  return ModelFile::open(path);
+}
+
+TEST(ModelWriter, StatesTheTreeWithParentsFirstAndSiblingsSideBySide) {
   const TestFolder folder;
-  const Result<WriteReport> report = write_model({}, folder / "model.surf", {});
-  ASSERT_FALSE(report);
-  EXPECT_EQ(report.error().kind, ErrorKind::kInvalidInput);
+  const Result<ModelFile> model = write_two_levels(folder / "tree.surf");
+  ASSERT_TRUE(model) << model.error().message;
+  EXPECT_EQ(model->info().surfels, 90U);
+  EXPECT_EQ(model->info().levels, 3);
+  const BlockTree& tree = model->tree();
+  ASSERT_EQ(tree.roots().size(), 1U);
+  EXPECT_EQ(tree.blocks()[0].surfels, 5U);
+  EXPECT_EQ(tree.blocks()[0].level, 2);
+  ASSERT_EQ(tree.children(0).count, 2U);
+  EXPECT_EQ(tree.blocks()[1].surfels, 40U);
+  EXPECT_EQ(tree.blocks()[1].level, 0);
+  EXPECT_EQ(tree.blocks()[1].key, OctreeKey{}.child(7));
+  EXPECT_EQ(tree.blocks()[2].surfels, 10U);
+  EXPECT_EQ(tree.blocks()[2].level, 1);
+  EXPECT_EQ(tree.children(2).first, 3U);
+  EXPECT_EQ(tree.children(2).count, 2U);
+}
+
+TEST(ModelWriter, GivesCoarseBlocksOnlyTheAttributesThatCanBeAveraged) {
+  const TestFolder folder;
+  const Result<ModelFile> model = write_two_levels(folder / "tree.surf");
+  ASSERT_TRUE(model) << model.error().message;
+  EXPECT_EQ(model->info().scalar_names, (std::vector<std::string>{"gps_time", "intensity", "classification"}));
+  const Result<DecodedBlock> coarse = model->decode(2);
+  ASSERT_TRUE(coarse) << coarse.error().message;
+  ASSERT_EQ(coarse->scalars.size(), 2U);
+  EXPECT_EQ(coarse->scalars[0].name, "intensity");
+  EXPECT_EQ(coarse->scalars[0].values, ScalarValues(std::vector<uint16_t>(10, 77)));
+  EXPECT_EQ(coarse->scalars[1].name, "classification");
+  const Result<DecodedBlock> leaf = model->decode(3);
+  ASSERT_TRUE(leaf) << leaf.error().message;
+  ASSERT_EQ(leaf->scalars.size(), 3U);
+  EXPECT_EQ(leaf->scalars[0].values, ScalarValues(std::vector<double>(20, 12.5)));
+}
+
+TEST(ModelWriter, RefusesAModelWithoutBlocks) {
+  const TestFolder folder;
+  Result<ModelWriter> writer = ModelWriter::create(folder / "empty.surf", {});
+  ASSERT_TRUE(writer);
+  EXPECT_FALSE(writer->finish());
+}
+
+TEST(ModelWriter, LeavesNothingBehindWhenItIsNotFinished) {
+  const TestFolder folder;
+  {
+    Result<ModelWriter> writer = ModelWriter::create(folder / "given_up.surf", {});
+    ASSERT_TRUE(writer);
+    EXPECT_TRUE(writer->add(encode(sphere_cloud(10)), {}, {}));
+  }
   EXPECT_TRUE(folder.empty());
-}
-
-TEST(ModelWriter, RefusesValuesThatNoModelHolds) {
-  const TestFolder folder;
-  const auto refused = [&](auto spoil) {
-    SurfelCloud cloud = sphere_cloud(10);
-    spoil(cloud);
-    const Result<WriteReport> report = write_model(cloud, folder / "model.surf", {});
-    return !report && report.error().kind == ErrorKind::kInvalidInput && folder.empty();
-  };
-  const float nan = std::numeric_limits<float>::quiet_NaN();
-  const float infinity = std::numeric_limits<float>::infinity();
-  EXPECT_TRUE(refused([&](SurfelCloud& cloud) { cloud.positions[3].y = nan; }));
-  EXPECT_TRUE(refused([&](SurfelCloud& cloud) { cloud.positions[3].z = 1e300; }));
-  EXPECT_TRUE(refused([&](SurfelCloud& cloud) { cloud.normals[3] = glm::vec3(0); }));
-  EXPECT_TRUE(refused([&](SurfelCloud& cloud) { cloud.normals[3].x = nan; }));
-  EXPECT_TRUE(refused([&](SurfelCloud& cloud) { cloud.radii[3] = 0; }));
-  EXPECT_TRUE(refused([&](SurfelCloud& cloud) { cloud.radii[3] = infinity; }));
-  EXPECT_TRUE(refused([&](SurfelCloud& cloud) { cloud.weights[3] = -1; }));
-}
-
-TEST(ModelWriter, NamesTheFolderThatIsMissing) {
-  const TestFolder folder;
-  const Result<WriteReport> report = write_model(sphere_cloud(10), folder / "absent/model.surf", {});
-  ASSERT_FALSE(report);
-  EXPECT_EQ(report.error().kind, ErrorKind::kIo);
-  EXPECT_NE(report.error().message.find("absent/model.surf"), std::string::npos);
-}
-
-/// Files of this process end at a size, like on a full disk, while this lives.
-class FileSizeLimit {
- public:
-  explicit FileSizeLimit(rlim_t bytes) : old_handler_(std::signal(SIGXFSZ, SIG_IGN)) {
-    getrlimit(RLIMIT_FSIZE, &old_limit_);
-    const rlimit limit{bytes, old_limit_.rlim_max};
-    setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  FileSizeLimit(const FileSizeLimit&) = delete;
-  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
-  ~FileSizeLimit() {
-    setrlimit(RLIMIT_FSIZE, &old_limit_);
-    std::signal(SIGXFSZ, old_handler_);
-  }
-
- private:
-  rlimit old_limit_{};
-  void (*old_handler_)(int);
-};
-
-TEST(ModelWriter, LeavesNothingBehindOnAFullDisk) {
-  const TestFolder folder;
-  const SurfelCloud cloud = sphere_cloud(40000);
-  for (const rlim_t limit : {rlim_t{10}, rlim_t{1000}, rlim_t{50000}}) {
-    const FileSizeLimit full_disk(limit);
-    const Result<WriteReport> report = write_model(cloud, folder / "model.surf", {});
-    ASSERT_FALSE(report);
-    EXPECT_EQ(report.error().kind, ErrorKind::kIo);
-    EXPECT_TRUE(folder.empty());
-  }
-}
-
-TEST(ModelWriter, ReportsWhatItWroteAndHowFarItIs) {
-  const TestFolder folder;
-  std::vector<double> parts;
-  const Result<WriteReport> report = write_model(sphere_cloud(40000), folder / "model.surf",
-                                                 {.progress = [&](double part) { parts.push_back(part); }});
-  ASSERT_TRUE(report);
-  EXPECT_EQ(report->surfels, 40000u);
-  EXPECT_EQ(report->bytes, std::filesystem::file_size(folder / "model.surf"));
-  ASSERT_EQ(parts.size(), report->blocks);
-  EXPECT_TRUE(std::is_sorted(parts.begin(), parts.end()));
-  EXPECT_EQ(parts.back(), 1);
-}
-
-TEST(ModelWriter, TakesFewBytesForGreyColorsAndConstantAttributes) {
-  const TestFolder folder;
-  SurfelCloud cloud = sphere_cloud(20000);
-  cloud.colors.reset();
-  write_and_open(cloud, folder / "plain.surf");
-  cloud.colors.emplace();
-  cloud.colors->values.assign(cloud.size(), glm::u16vec3(128, 128, 128));
-  cloud.scalars.push_back({"gps_time", std::vector<double>(cloud.size(), 123456.789)});
-  write_and_open(cloud, folder / "constant.surf");
-  EXPECT_LT(std::filesystem::file_size(folder / "constant.surf"),
-            std::filesystem::file_size(folder / "plain.surf") + 500);
 }
 
 }  // namespace

@@ -9,9 +9,9 @@
 #include <gtest/gtest.h>
 
 #include "model/model_file.h"
-#include "model/model_writer.h"
 #include "model/test_clouds.h"
 #include "model/test_folder.h"
+#include "model/write_model.h"
 
 namespace surfcast {
 

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-#include "model/model_writer.h"
+#include "model/write_model.h"
 #include "reference/reference_renderer.h"
 #include "reference/scenes.h"
 #include "render/renderer.h"

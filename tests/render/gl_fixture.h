@@ -10,7 +10,7 @@
 
 #include <gtest/gtest.h>
 
-#include "model/model_writer.h"
+#include "model/write_model.h"
 #include "render/renderer.h"
 
 namespace surfcast::testing {

@@ -6,7 +6,7 @@
 #include <gtest/gtest.h>
 
 #include "base/atomic_file.h"
-#include "model/model_writer.h"
+#include "model/write_model.h"
 
 namespace surfcast {
 namespace {
