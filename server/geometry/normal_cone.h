@@ -15,4 +15,7 @@ struct NormalCone {
 /// The cone about the mean direction; none when there are no normals or their mean vanishes.
 std::optional<NormalCone> normal_cone(std::span<const glm::vec3> normals);
 
+/// A cone that holds both; none when it would hold half of all directions, since it then rules nothing out.
+std::optional<NormalCone> united(const NormalCone& a, const NormalCone& b);
+
 }  // namespace surfcast

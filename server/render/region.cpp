@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "shared/kernel.h"
+#include "surfel/even_sampling.h"
 
 namespace surfcast {
 namespace {
@@ -13,9 +14,8 @@ namespace {
 constexpr double kNoPrefilter = 1e-4;
 
 /// Per-pixel normalisation weighs every surfel alike: by the inverse of the sum that its kernels have inside an evenly
-/// sampled surface, 2 pi sigma^2 / h^2, where the mean distance to six neighbours is r = 1.08 h.
+/// sampled surface, 2 pi sigma^2 / h^2, with r = 1.08 h.
 double even_sampling_weight() {
-  constexpr double kRadiusOverSpacing = 1.08;
   const double sigma = SURFCAST_KERNEL_SIGMA * kRadiusOverSpacing;
   return std::min(1.0, 1 / (2 * std::numbers::pi * sigma * sigma));
 }

@@ -15,7 +15,7 @@ struct ArenaWork {
 
 std::vector<ArenaWork> plan_work(const RegionTask& task) {
   std::vector<ArenaWork> work(task.model->arenas().size());
-  for (const size_t index : task.visible_blocks) {
+  for (const uint32_t index : task.visible_blocks) {
     const ResidentBlock& block = task.model->blocks()[index];
     ArenaWork& arena = work[block.arena];
     const auto view = static_cast<uint32_t>(arena.blocks.size());

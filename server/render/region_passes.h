@@ -16,7 +16,7 @@ namespace surfcast {
 /// One region to draw: what is seen, from where, how.
 struct RegionTask {
   const ResidentModel* model = nullptr;
-  std::vector<size_t> visible_blocks;
+  std::vector<uint32_t> visible_blocks;
   CameraFrame frame;
   Region region;
   layout::FrameConstants constants;

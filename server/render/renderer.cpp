@@ -10,7 +10,7 @@
 #include "render/region_passes.h"
 #include "render/splat_buffers.h"
 #include "residency/resident_set.h"
-#include "selection/visible_blocks.h"
+#include "selection/select_blocks.h"
 
 namespace surfcast {
 namespace {
@@ -117,18 +117,21 @@ Result<Frame> Renderer::draw(const ModelFile& model, const PictureRequest& reque
   result.image.pixels.resize(static_cast<size_t>(request.width) * static_cast<size_t>(request.height) * bytes);
   RegionStats total;
   double select_ms = 0;
-  std::vector<bool> drawn(model.blocks().size());
+  const Stopwatch cut_watch;
+  const SelectionTree tree(model.tree());
+  const std::vector<bool> all_resident(model.blocks().size(), true);
+  const BlockSelection selection = select_blocks(tree, *frame, {.spacing = request.spacing}, all_resident);
+  select_ms += cut_watch.milliseconds();
   std::vector<std::byte> pixels;
   for (const Region& region : cut_into_regions(request.width, request.height)) {
     const Stopwatch select_watch;
     RegionTask task{*resident,
-                    select_visible_blocks(model.blocks(), *frame, region.x, region.y, region.x + region.width,
-                                          region.y + region.height),
+                    blocks_in_rectangle(tree, selection.draw, *frame, region.x, region.y, region.x + region.width,
+                                        region.y + region.height),
                     *frame,
                     region,
                     frame_constants(*frame, region, request, model.info().oriented),
                     variant_of(model.info(), request)};
-    for (const size_t block : task.visible_blocks) drawn[block] = true;
     select_ms += select_watch.milliseconds();
     pixels.resize(static_cast<size_t>(region.width) * static_cast<size_t>(region.height) * bytes);
     Result<RegionStats> stats = draw_region(task, state_->programs, state_->buffers, cancelled, pixels);
@@ -141,7 +144,7 @@ Result<Frame> Renderer::draw(const ModelFile& model, const PictureRequest& reque
     total.read_ms += stats->read_ms;
   }
   result.stats.surfels_drawn = total.splats;
-  result.stats.blocks_drawn = static_cast<uint32_t>(std::count(drawn.begin(), drawn.end(), true));
+  result.stats.blocks_drawn = static_cast<uint32_t>(selection.draw.size());
   result.stats.gl_renderer = state_->device.renderer;
   result.stats.stages = {{"load", load_ms},     {"select", select_ms},     {"project", total.project_ms},
                          {"bin", total.bin_ms}, {"splat", total.splat_ms}, {"read", total.read_ms}};

@@ -1,0 +1,70 @@
+#include "selection/block_hull.h"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "surfel/even_sampling.h"
+
+namespace surfcast {
+namespace {
+
+/// Kernels are cut, and discs end, well within two radii.
+constexpr double kReachInRadii = 2;
+/// Stored normals are quantised after the cone was measured; this holds their error many times, radians.
+constexpr double kConeSlack = 0.005;
+
+void include(BlockHull& hull, const BlockHull& child) {
+  hull.centres.include(child.centres);
+  hull.reach = std::max(hull.reach, child.reach);
+  hull.normals = hull.normals && child.normals ? united(*hull.normals, *child.normals) : std::nullopt;
+}
+
+bool faces_away(const BlockHull& hull, const glm::dvec3& eye) {
+  if (!hull.normals) return false;
+  const glm::dvec3 to_block = hull.centres.centre() - eye;
+  const double distance = glm::length(to_block);
+  const double radius = 0.5 * hull.centres.diagonal();
+  if (distance <= radius) return false;
+  const double cosine = glm::dot(glm::dvec3(hull.normals->axis), to_block) / distance;
+  const double angle = std::acos(std::clamp(cosine, -1.0, 1.0));
+  return angle + std::asin(radius / distance) + double{hull.normals->half_angle} + kConeSlack < std::numbers::pi / 2;
+}
+
+/// Smallest cosine of the angle to the view direction that a point of the box has, and a pixel of the picture.
+double least_cosine(const Box& box, const CameraFrame& frame) {
+  const double corner = 1 / std::hypot(1, 0.5 * frame.width / frame.eta, 0.5 * frame.height / frame.eta);
+  const glm::dvec3 centre = frame.to_camera(box.centre());
+  const double distance = glm::length(centre);
+  const double radius = 0.5 * box.diagonal();
+  if (distance <= radius) return corner;
+  const double angle = std::acos(std::clamp(centre.z / distance, -1.0, 1.0)) + std::asin(radius / distance);
+  return std::max(corner, std::cos(std::min(angle, std::numbers::pi)));
+}
+
+}  // namespace
+
+std::vector<BlockHull> block_hulls(const BlockTree& tree) {
+  const auto blocks = tree.blocks();
+  std::vector<BlockHull> hulls;
+  hulls.reserve(blocks.size());
+  for (const BlockEntry& block : blocks) hulls.push_back({block.bounds, block.max_radius, block.normals});
+  for (size_t i = blocks.size(); i-- > 0;) {
+    if (blocks[i].parent != BlockEntry::kNoParent) include(hulls[blocks[i].parent], hulls[i]);
+  }
+  return hulls;
+}
+
+bool may_be_seen(const BlockHull& hull, const Frustum& frustum, const glm::dvec3& eye) {
+  return frustum.may_see(hull.centres, kReachInRadii * hull.reach) && !faces_away(hull, eye);
+}
+
+double projected_spacing(const BlockEntry& block, const CameraFrame& frame) {
+  const double h = block.spacing / kRadiusOverSpacing;
+  const glm::dvec3 nearest = glm::clamp(frame.eye, block.bounds.min, block.bounds.max);
+  const double distance = std::max(glm::length(nearest - frame.eye), h);
+  const double cosine = least_cosine(block.bounds, frame);
+  return distance > 0 ? frame.eta * h / (distance * cosine * cosine) : 0;
+}
+
+}  // namespace surfcast

@@ -1,0 +1,40 @@
+#pragma once
+
+#include <optional>
+#include <vector>
+
+#include "geometry/box.h"
+#include "geometry/normal_cone.h"
+#include "ldc/block_tree.h"
+#include "selection/frustum.h"
+
+namespace surfcast {
+
+/// What a block and everything below it lies in. A coarse block averages its children, so its own bounds and cone need
+/// not hold theirs; whoever leaves a whole subtree out must ask these.
+struct BlockHull {
+  Box centres;                        ///< of all surfel centres, world units
+  double reach = 0;                   ///< largest radius: what `centres` must grow by to hold the discs
+  std::optional<NormalCone> normals;  ///< of all normals; none when they may point anywhere
+};
+
+/// One hull for each block of the tree.
+std::vector<BlockHull> block_hulls(const BlockTree& tree);
+
+/// False only if nothing within the hull can touch a pixel of the frustum's rectangle or face the eye: it lies outside,
+/// or all its normals point away (Pfister 2000, visibility cones).
+bool may_be_seen(const BlockHull& hull, const Frustum& frustum, const glm::dvec3& eye);
+
+/// The largest distance between neighbouring samples of a block, in pixels.
+///
+/// Pfister 2000 warps the block's box to the screen and divides its longest diagonal by the number b of grid lines: the
+/// box is b samples wide. The boxes of leaves are as wide as their surfels happen to reach, so here the sampling
+/// distance h itself is projected: h = spacing / 1.08, the radius of an evenly sampled surface being 1.08 h. At the
+/// point p a length h covers at most eta h / (|p| cos(t)^2) pixels, where t is the angle between p and the view
+/// direction (the larger singular value of the projection's Jacobian). |p| is taken at the point of the box nearest to
+/// the eye and cos(t) at the most oblique ray of the picture that the box's sphere lets in, so every sample of the
+/// block stays below the result. Nearer than h to the eye, or around it, |p| = h: the result is finite and larger than
+/// for any box that the eye is outside of.
+double projected_spacing(const BlockEntry& block, const CameraFrame& frame);
+
+}  // namespace surfcast

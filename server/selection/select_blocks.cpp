@@ -1,0 +1,232 @@
+#include "selection/select_blocks.h"
+
+#include <algorithm>
+#include <queue>
+
+#include "base/contract.h"
+
+namespace surfcast {
+namespace {
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
+/// What was refined counts as so much coarser than it is.
+constexpr double kReluctance = 1.25;
+/// The prefilter spreads a surfel over a few pixels more than its disc covers.
+constexpr double kPrefilterPixels = 4;
+
+Frustum frustum_of(const CameraFrame& frame, double x0, double y0, double x1, double y1) {
+  return {frame, x0 - kPrefilterPixels, y0 - kPrefilterPixels, x1 + kPrefilterPixels, y1 + kPrefilterPixels};
+}
+
+class Selector {
+ public:
+  Selector(const SelectionTree& tree, const CameraFrame& frame, const SelectionGoal& goal,
+           const std::vector<bool>& resident, std::span<const uint32_t> was_refined)
+      : tree_(tree),
+        blocks_(tree.tree.blocks()),
+        frame_(frame),
+        frustum_(frustum_of(frame, 0, 0, frame.width, frame.height)),
+        goal_(goal),
+        resident_(resident),
+        was_refined_(was_refined),
+        states_(blocks_.size()) {}
+
+  BlockSelection select() {
+    refine();
+    std::sort(seen_.begin(), seen_.end());
+    find_stand_ins();
+    draw();
+    want();
+    return std::move(selection_);
+  }
+
+ private:
+  enum class Fate : uint8_t { kUnseen, kKept, kRefined };
+  struct State {
+    Fate fate = Fate::kUnseen;
+    bool available = false;  ///< resident blocks cover all of it that is in view
+    bool by_children = false;
+    double spacing = 0;          ///< projected, pixels
+    double urgency = kInfinity;  ///< least spacing of its ancestors
+  };
+  struct Candidate {
+    double spacing;
+    uint32_t block;
+    bool operator<(const Candidate& other) const {
+      return spacing != other.spacing ? spacing < other.spacing : block > other.block;
+    }
+  };
+
+  [[nodiscard]] uint64_t cost(uint32_t block) const {
+    const uint64_t page = goal_.page;
+    return (blocks_[block].surfels + page - 1) / page * page;
+  }
+  [[nodiscard]] bool in_view(uint32_t block) const { return may_be_seen(tree_.hulls[block], frustum_, frame_.eye); }
+
+  template <typename Action>
+  void for_children(uint32_t block, Action action) const {
+    const BlockTree::Children children = tree_.tree.children(block);
+    for (uint32_t i = 0; i < children.count; ++i) action(children.first + i);
+  }
+
+  /// Takes a block into the target.
+  void keep(uint32_t block) {
+    State& state = states_[block];
+    state.fate = Fate::kKept;
+    state.spacing = projected_spacing(blocks_[block], frame_);
+    if (const uint32_t parent = blocks_[block].parent; parent != BlockEntry::kNoParent) {
+      state.urgency = std::min(states_[parent].urgency, states_[parent].spacing);
+    }
+    seen_.push_back(block);
+    if (tree_.tree.children(block).count == 0) return;
+    const bool before = std::binary_search(was_refined_.begin(), was_refined_.end(), block);
+    candidates_.push({before ? kReluctance * state.spacing : state.spacing, block});
+  }
+
+  void refine() {
+    for (const uint32_t root : tree_.tree.roots()) {
+      if (!in_view(root)) continue;
+      keep(root);
+      used_ += cost(root);
+    }
+    while (!candidates_.empty() && candidates_.top().spacing > goal_.spacing) {
+      const uint32_t block = candidates_.top().block;
+      candidates_.pop();
+      replace_by_children(block);
+    }
+  }
+
+  void replace_by_children(uint32_t block) {
+    std::vector<uint32_t> seen;
+    uint64_t added = 0;
+    for_children(block, [&](uint32_t child) {
+      if (!in_view(child)) return;
+      seen.push_back(child);
+      added += cost(child);
+    });
+    const uint64_t left = used_ - cost(block);
+    if (left + added > goal_.surfels && added > cost(block)) {
+      selection_.budget_reached = true;
+      return;
+    }
+    used_ = left + added;
+    states_[block].fate = Fate::kRefined;
+    for (const uint32_t child : seen) keep(child);
+  }
+
+  /// From the leaves up: which blocks are covered by what is resident. Ends with the block's own, if it is.
+  void find_stand_ins() {
+    for (auto block = seen_.rbegin(); block != seen_.rend(); ++block) {
+      State& state = states_[*block];
+      if (state.fate == Fate::kRefined) {
+        state.by_children = true;
+        for_children(*block, [&](uint32_t child) {
+          if (states_[child].fate != Fate::kUnseen) state.by_children &= states_[child].available;
+        });
+        state.available = state.by_children || resident_[*block];
+      } else {
+        state.available = resident_[*block] || covered_by_finer(*block);
+      }
+    }
+  }
+
+  /// Looks for resident blocks below one that is not, and enters them as refinements if they cover it in the budget.
+  bool covered_by_finer(uint32_t block) {
+    std::vector<uint32_t> found;
+    std::vector<uint32_t> open{block};
+    uint64_t added = 0;
+    while (!open.empty()) {
+      const uint32_t next = open.back();
+      open.pop_back();
+      if (resident_[next]) {
+        found.push_back(next);
+        added += cost(next);
+      } else if (tree_.tree.children(next).count == 0) {
+        return false;
+      } else {
+        for_children(next, [&](uint32_t child) {
+          if (in_view(child)) open.push_back(child);
+        });
+      }
+      if (used_ - cost(block) + added > goal_.surfels) return false;
+    }
+    used_ += added - cost(block);
+    finer_.insert(finer_.end(), found.begin(), found.end());
+    return true;
+  }
+
+  /// From the roots down: the first blocks that can be drawn.
+  void draw() {
+    std::vector<bool> reached(blocks_.size());
+    for (const uint32_t root : tree_.tree.roots()) reached[root] = true;
+    for (const uint32_t block : seen_) {
+      const State& state = states_[block];
+      if (state.fate == Fate::kKept) selection_.target.push_back(block);
+      if (state.fate == Fate::kRefined) selection_.refined.push_back(block);
+      if (!reached[block]) continue;
+      const bool pass_on = state.fate == Fate::kRefined && (state.by_children || !resident_[block]);
+      if (pass_on) {
+        for_children(block, [&](uint32_t child) { reached[child] = true; });
+      } else if (resident_[block]) {
+        selection_.draw.push_back(block);
+      } else if (!state.available) {
+        ++selection_.holes;
+      }
+    }
+    add_finer(reached);
+  }
+
+  /// Descendants that stand in for a block that is reached.
+  void add_finer(const std::vector<bool>& reached) {
+    for (const uint32_t block : finer_) {
+      uint32_t above = block;
+      while (states_[above].fate == Fate::kUnseen) above = blocks_[above].parent;
+      if (reached[above]) selection_.draw.push_back(block);
+    }
+    std::sort(selection_.draw.begin(), selection_.draw.end());
+  }
+
+  void want() {
+    for (const uint32_t block : seen_) {
+      if (!resident_[block] && !states_[block].by_children) {
+        selection_.wanted.push_back({block, states_[block].urgency});
+      }
+    }
+    std::stable_sort(selection_.wanted.begin(), selection_.wanted.end(),
+                     [](const WantedBlock& a, const WantedBlock& b) { return a.urgency > b.urgency; });
+  }
+
+  const SelectionTree& tree_;
+  std::span<const BlockEntry> blocks_;
+  const CameraFrame& frame_;
+  Frustum frustum_;
+  SelectionGoal goal_;
+  const std::vector<bool>& resident_;
+  std::span<const uint32_t> was_refined_;
+
+  std::vector<State> states_;
+  std::vector<uint32_t> seen_;  ///< in view and reached by the refinement
+  std::priority_queue<Candidate> candidates_;
+  uint64_t used_ = 0;            ///< of the budget
+  std::vector<uint32_t> finer_;  ///< blocks below the target that stand in for some of it
+  BlockSelection selection_;
+};
+
+}  // namespace
+
+BlockSelection select_blocks(const SelectionTree& tree, const CameraFrame& frame, const SelectionGoal& goal,
+                             const std::vector<bool>& resident, std::span<const uint32_t> was_refined) {
+  SURFCAST_EXPECTS(resident.size() == tree.tree.blocks().size() && goal.page > 0);
+  return Selector(tree, frame, goal, resident, was_refined).select();
+}
+
+std::vector<uint32_t> blocks_in_rectangle(const SelectionTree& tree, std::span<const uint32_t> blocks,
+                                          const CameraFrame& frame, double x0, double y0, double x1, double y1) {
+  const Frustum frustum = frustum_of(frame, x0, y0, x1, y1);
+  std::vector<uint32_t> seen;
+  std::copy_if(blocks.begin(), blocks.end(), std::back_inserter(seen),
+               [&](uint32_t block) { return may_be_seen(tree.hulls[block], frustum, frame.eye); });
+  return seen;
+}
+
+}  // namespace surfcast
