@@ -43,6 +43,7 @@ Status check_sizes(Bytes bytes, const LasHeader& header) {
     return invalid("LAS point records of " + std::to_string(header.record_length) +
                    " bytes are too short for point format " + std::to_string(header.point_format));
   }
+  if (header.compressed) return {};
   const uint64_t there = (bytes.size() - header.data_offset) / header.record_length;
   if (header.count > there) {
     return invalid("truncated: the header states " + std::to_string(header.count) + " points, the file holds " +
@@ -93,22 +94,33 @@ void parse_extra_fields(Bytes body, LasHeader& header) {
   }
 }
 
-/// Looks through the variable length records. Their number is not to be trusted: the walk ends at the points.
-void parse_variable_records(Bytes bytes, LasHeader& header) {
+/// Calls `use` with the user, the number and the body of each variable length record. The count of the records is not
+/// to be trusted: the walk ends at the points.
+template <typename Use>
+void for_each_variable_record(Bytes bytes, size_t data_offset, const Use& use) {
   const auto count = load<uint32_t>(&bytes[100]);
   size_t at = load<uint16_t>(&bytes[94]);
-  for (uint32_t i = 0; i < count && at + kRecordHeaderSize <= header.data_offset; ++i) {
+  for (uint32_t i = 0; i < count && at + kRecordHeaderSize <= data_offset; ++i) {
     const std::string_view user = as_text(bytes.subspan(at + 2, 16));
     const auto id = load<uint16_t>(&bytes[at + 18]);
     const auto length = load<uint16_t>(&bytes[at + 20]);
     at += kRecordHeaderSize;
-    if (length > header.data_offset - at) return;
-    if (id == 4 && user.starts_with("LASF_Spec")) {
-      parse_extra_fields(bytes.subspan(at, length), header);
-      return;  // there is one such record; more of them would name the same bytes again
-    }
+    if (length > data_offset - at) return;
+    use(user, id, bytes.subspan(at, length));
     at += length;
   }
+}
+
+/// There is one record of each kind: of more of them the first counts.
+void parse_variable_records(Bytes bytes, LasHeader& header) {
+  bool has_extra_fields = false;
+  for_each_variable_record(bytes, header.data_offset, [&](std::string_view user, uint16_t id, Bytes body) {
+    if (id == 4 && user.starts_with("LASF_Spec") && !has_extra_fields) {
+      parse_extra_fields(body, header);
+      has_extra_fields = true;
+    }
+    if (id == 22204 && user.starts_with("laszip encoded") && header.laszip_record.empty()) header.laszip_record = body;
+  });
 }
 
 Status check_version(Bytes bytes) {
@@ -124,14 +136,9 @@ Status check_version(Bytes bytes) {
   return {};
 }
 
-Status check_point_format(uint8_t stated) {
-  if (stated & kCompressedBits) {
-    return fail(ErrorKind::kUnsupported, "LAZ compressed points are not supported; decompress the file to LAS");
-  }
-  if (stated > 10) {
-    return fail(ErrorKind::kUnsupported, "LAS point format " + std::to_string(stated) + " is not supported");
-  }
-  return {};
+Status check_point_format(int point_format) {
+  if (point_format <= 10) return {};
+  return fail(ErrorKind::kUnsupported, "LAS point format " + std::to_string(point_format) + " is not supported");
 }
 
 }  // namespace
@@ -145,10 +152,11 @@ Result<LasHeader> parse_las_header(Bytes bytes) {
   if (bytes.size() < kHeaderSize) return invalid("truncated: the file ends within its LAS header");
   if (Status status = check_version(bytes); !status) return fail(status.error());
   const auto stated_format = load<uint8_t>(&bytes[104]);
-  if (Status status = check_point_format(stated_format); !status) return fail(status.error());
   LasHeader header;
   header.minor_version = load<uint8_t>(&bytes[25]);
-  header.point_format = stated_format;
+  header.compressed = (stated_format & kCompressedBits) != 0;
+  header.point_format = stated_format & ~kCompressedBits;
+  if (Status status = check_point_format(header.point_format); !status) return fail(status.error());
   header.record_length = load<uint16_t>(&bytes[105]);
   header.data_offset = load<uint32_t>(&bytes[96]);
   header.count = point_count(bytes, header.minor_version);

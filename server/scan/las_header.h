@@ -25,6 +25,8 @@ struct LasExtraField {
 struct LasHeader {
   int minor_version = 2;
   int point_format = 0;  ///< 0 to 10
+  bool compressed = false;
+  std::span<const std::byte> laszip_record;  ///< within the file: how compressed points are coded
   size_t record_length = 0;
   size_t data_offset = 0;
   uint64_t count = 0;
@@ -32,7 +34,8 @@ struct LasHeader {
   std::vector<LasExtraField> extra_fields;
 };
 
-/// Checks the header against the bytes that are there: on success all `count` records lie within the file.
+/// Checks the header against the bytes that are there: on success all `count` records lie within the file, unless they
+/// are compressed.
 Result<LasHeader> parse_las_header(std::span<const std::byte> bytes);
 
 /// Bytes of a point record of that format without extra bytes.

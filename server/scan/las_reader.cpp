@@ -6,22 +6,18 @@
 #include <vector>
 
 #include "scan/las_header.h"
+#include "scan/las_records.h"
 
 namespace surfcast {
 namespace {
 
-/// The point records, one after another.
-struct Records {
-  const std::byte* first;
-  size_t count;
-  size_t stride;
-};
-
 template <typename T, typename Value>
-std::vector<T> gather(const Records& records, const Value& value_of) {
-  std::vector<T> values(records.count);
-  const std::byte* at = records.first;
-  for (size_t i = 0; i < records.count; ++i, at += records.stride) values[i] = value_of(at);
+std::vector<T> gather(const LasRecords& records, const Value& value_of) {
+  std::vector<T> values;
+  values.reserve(records.count);
+  for (const std::span<const std::byte> run : records.runs) {
+    for (size_t at = 0; at < run.size(); at += records.stride) values.push_back(value_of(&run[at]));
+  }
   return values;
 }
 
@@ -33,25 +29,25 @@ void keep_if_recorded(ScanPoints& points, std::string name, std::vector<T> value
 }
 
 template <typename T>
-void read_field(const Records& records, size_t offset, std::string name, ScanPoints& points) {
+void read_field(const LasRecords& records, size_t offset, std::string name, ScanPoints& points) {
   keep_if_recorded(points, std::move(name),
                    gather<T>(records, [offset](const std::byte* at) { return load<T>(at + offset); }));
 }
 
 /// Part of a byte: `(byte >> shift) & mask`.
-void read_bits(const Records& records, size_t offset, int shift, int mask, std::string name, ScanPoints& points) {
+void read_bits(const LasRecords& records, size_t offset, int shift, int mask, std::string name, ScanPoints& points) {
   keep_if_recorded(points, std::move(name), gather<uint8_t>(records, [=](const std::byte* at) {
                      return static_cast<uint8_t>((std::to_integer<int>(at[offset]) >> shift) & mask);
                    }));
 }
 
-std::vector<glm::dvec3> read_positions(const Records& records, const Grid& grid) {
+std::vector<glm::dvec3> read_positions(const LasRecords& records, const Grid& grid) {
   return gather<glm::dvec3>(records, [&grid](const std::byte* at) {
     return grid.position({load<int32_t>(at), load<int32_t>(at + 4), load<int32_t>(at + 8)});
   });
 }
 
-std::optional<ColorAttribute> read_colors(const Records& records, size_t offset) {
+std::optional<ColorAttribute> read_colors(const LasRecords& records, size_t offset) {
   ColorAttribute colors;
   colors.values = gather<glm::u16vec3>(records, [offset](const std::byte* at) {
     return glm::u16vec3(load<uint16_t>(at + offset), load<uint16_t>(at + offset + 2), load<uint16_t>(at + offset + 4));
@@ -64,7 +60,7 @@ std::optional<ColorAttribute> read_colors(const Records& records, size_t offset)
 }
 
 /// Point formats 0 to 5 (LAS 1.4, table 7).
-void read_legacy_core(const Records& records, ScanPoints& points) {
+void read_legacy_core(const LasRecords& records, ScanPoints& points) {
   read_field<uint16_t>(records, 12, "intensity", points);
   read_bits(records, 14, 0, 7, "return_number", points);
   read_bits(records, 14, 3, 7, "number_of_returns", points);
@@ -78,7 +74,7 @@ void read_legacy_core(const Records& records, ScanPoints& points) {
 }
 
 /// Point formats 6 to 10 (LAS 1.4, table 15).
-void read_core(const Records& records, ScanPoints& points) {
+void read_core(const LasRecords& records, ScanPoints& points) {
   read_field<uint16_t>(records, 12, "intensity", points);
   read_bits(records, 14, 0, 15, "return_number", points);
   read_bits(records, 14, 4, 15, "number_of_returns", points);
@@ -114,7 +110,7 @@ std::string unused_name(const ScanPoints& points, const std::string& wanted) {
   return name;
 }
 
-void read_extra_field(const Records& records, const LasExtraField& field, ScanPoints& points) {
+void read_extra_field(const LasRecords& records, const LasExtraField& field, ScanPoints& points) {
   const std::string name = unused_name(points, field.name);
   if (field.scale != 1 || field.shift != 0) {
     std::vector<double> values = with_type(field.type, [&](auto zero) {
@@ -137,7 +133,9 @@ void read_extra_field(const Records& records, const LasExtraField& field, ScanPo
 Result<ScanPoints> read_las(std::span<const std::byte> bytes) {
   const Result<LasHeader> header = parse_las_header(bytes);
   if (!header) return fail(header.error());
-  const Records records = {bytes.data() + header->data_offset, header->count, header->record_length};
+  const Result<LasRecords> found = las_records(bytes, *header);
+  if (!found) return fail(found.error());
+  const LasRecords& records = *found;
   ScanPoints points;
   points.positions = read_positions(records, header->grid);
   points.grid = header->grid;

@@ -1,0 +1,102 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+
+#include "laz/symbol_model.h"
+
+namespace surfcast::laz {
+
+/// Decodes the symbols that an arithmetic coder with 32 bit registers wrote (Said 2004, FastAC, as LASzip has it).
+/// Any bytes decode to something: whoever decodes asks `damaged` from time to time.
+class ArithmeticDecoder {
+ public:
+  ArithmeticDecoder() = default;
+  explicit ArithmeticDecoder(std::span<const std::byte> bytes)
+      : next_(bytes.data()), end_(bytes.data() + bytes.size()) {
+    for (int i = 0; i < 4; ++i) value_ = value_ << 8 | next_byte();
+    // The coder's interval is half open: no value is its upper end.
+    if (value_ >= length_) damaged_ = true, value_ = 0;
+  }
+
+  bool bit(BitModel& model) {
+    const uint32_t zeros = model.zero_probability() * (length_ >> kBitShift);
+    const bool one = value_ >= zeros;
+    if (one) {
+      value_ -= zeros;
+      length_ -= zeros;
+    } else {
+      length_ = zeros;
+    }
+    renormalise();
+    model.count(one);
+    return one;
+  }
+
+  template <uint32_t kSymbols>
+  uint32_t symbol(SymbolModel<kSymbols>& model) {
+    const uint32_t unit = length_ >> kSymbolShift;
+    const uint32_t symbol = model.find(value_ / unit);
+    const uint32_t lower = model.lower(symbol) * unit;
+    // What is left over by the division into units belongs to the last symbol.
+    const uint32_t upper = symbol + 1 < kSymbols ? model.lower(symbol + 1) * unit : length_;
+    value_ -= lower;
+    length_ = upper - lower;
+    renormalise();
+    model.count(symbol);
+    return symbol;
+  }
+
+  /// `count` bits, 32 at most, that are all equally probable.
+  uint32_t bits(int count) {
+    constexpr int kAtOnce = 19;
+    if (count <= kAtOnce) return few_bits(count);
+    const uint32_t low = few_bits(16);
+    return few_bits(count - 16) << 16 | low;
+  }
+
+  /// A value that no coder would have written.
+  void mark_damaged() { damaged_ = true; }
+  /// The bytes were not written by a coder, or there were too few of them.
+  [[nodiscard]] bool damaged() const { return damaged_ || missing_ > kSpareBytes; }
+
+ private:
+  /// How many bytes beyond the end a decoder may have in its registers before it has used up the last symbol.
+  static constexpr uint32_t kSpareBytes = 4;
+  /// Below this length the registers take in another byte.
+  static constexpr uint32_t kShortest = 1U << 24;
+
+  uint32_t next_byte() {
+    if (next_ != end_) [[likely]]
+      return std::to_integer<uint32_t>(*next_++);
+    ++missing_;
+    return 0;
+  }
+
+  void renormalise() {
+    while (length_ < kShortest) {
+      value_ = value_ << 8 | next_byte();
+      length_ <<= 8;
+    }
+  }
+
+  uint32_t few_bits(int count) {
+    length_ >>= count;
+    const uint32_t read = value_ / length_;
+    value_ -= read * length_;
+    renormalise();
+    if (read >> count != 0) [[unlikely]]
+      damaged_ = true;
+    return read & ((1U << count) - 1);
+  }
+
+  const std::byte* next_ = nullptr;
+  const std::byte* end_ = nullptr;
+  uint32_t value_ = 0;
+  uint32_t length_ = 0xFFFFFFFFU;
+  uint32_t missing_ = 0;
+  bool damaged_ = false;
+};
+
+}  // namespace surfcast::laz

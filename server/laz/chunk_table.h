@@ -1,0 +1,33 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "base/result.h"
+#include "laz/laszip_record.h"
+
+namespace surfcast::laz {
+
+/// A run of points that can be decoded without any other.
+struct Chunk {
+  uint64_t first = 0;  ///< number of its first point in the file
+  uint64_t count = 0;
+  size_t offset = 0;  ///< in the file
+  size_t size = 0;    ///< in bytes
+};
+
+/// What the table has to agree with.
+struct PointData {
+  size_t offset = 0;  ///< of the point data in the file
+  uint64_t count = 0;
+  size_t record_length = 0;
+};
+
+/// Reads the table behind the points. On success the chunks lie within the file, one behind the other, hold all
+/// points, and none is empty.
+Result<std::vector<Chunk>> read_chunk_table(std::span<const std::byte> file, const PointData& points,
+                                            uint32_t chunk_size);
+
+}  // namespace surfcast::laz

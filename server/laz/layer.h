@@ -1,0 +1,23 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "laz/arithmetic_decoder.h"
+
+namespace surfcast::laz {
+
+/// The bytes of a chunk that hold one field of its points. A field that never changes has none.
+struct Layer {
+  Layer() = default;
+  explicit Layer(std::span<const std::byte> bytes) : present(!bytes.empty()) {
+    if (present) in = ArithmeticDecoder(bytes);
+  }
+
+  [[nodiscard]] bool damaged() const { return present && in.damaged(); }
+
+  bool present = false;
+  ArithmeticDecoder in;
+};
+
+}  // namespace surfcast::laz

@@ -1,0 +1,107 @@
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+namespace surfcast::laz {
+
+/// Probabilities of symbols are fractions of 2^15.
+constexpr int kSymbolShift = 15;
+/// The probability of a zero bit is a fraction of 2^13.
+constexpr int kBitShift = 13;
+
+/// The adaptive probability that a bit is zero. Like all models of LASzip it is counted as symbols go by, and the
+/// probability in use is renewed in growing intervals (Said 2004, "Introduction to Arithmetic Coding", FastAC).
+class BitModel {
+ public:
+  [[nodiscard]] uint32_t zero_probability() const { return zero_probability_; }
+
+  void count(bool bit) {
+    if (!bit) ++zeros_;
+    if (--until_renewal_ == 0) renew();
+  }
+
+ private:
+  void renew() {
+    constexpr uint32_t kMostBits = 1U << kBitShift;
+    constexpr uint32_t kLongestInterval = 64;
+    bits_ += interval_;
+    if (bits_ > kMostBits) {
+      bits_ = (bits_ + 1) / 2;
+      zeros_ = (zeros_ + 1) / 2;
+      if (zeros_ == bits_) ++bits_;
+    }
+    zero_probability_ = (zeros_ * (0x80000000U / bits_)) >> (31 - kBitShift);
+    interval_ = std::min(interval_ * 5 / 4, kLongestInterval);
+    until_renewal_ = interval_;
+  }
+
+  uint32_t zeros_ = 1;
+  uint32_t bits_ = 2;
+  uint32_t zero_probability_ = 1U << (kBitShift - 1);
+  uint32_t interval_ = 4;
+  uint32_t until_renewal_ = 4;
+};
+
+/// The adaptive probabilities of `kSymbols` symbols, all equal at first.
+template <uint32_t kSymbols>
+class SymbolModel {
+ public:
+  SymbolModel() {
+    counts_.fill(1);
+    spread(kSymbols);
+    interval_ = until_renewal_ = (kSymbols + 6) / 2;
+  }
+
+  static constexpr uint32_t symbols() { return kSymbols; }
+  /// Sum of the probabilities of the symbols before this one.
+  [[nodiscard]] uint32_t lower(uint32_t symbol) const { return lower_[symbol]; }
+  /// The symbol in whose range `target` lies: the last one with `lower` not above it.
+  [[nodiscard]] uint32_t find(uint32_t target) const {
+    uint32_t first = 0;
+    uint32_t last = kSymbols;
+    while (last > first + 1) {
+      const uint32_t middle = (first + last) / 2;
+      (lower_[middle] > target ? last : first) = middle;
+    }
+    return first;
+  }
+
+  void count(uint32_t symbol) {
+    ++counts_[symbol];
+    if (--until_renewal_ == 0) renew();
+  }
+
+ private:
+  void renew() {
+    constexpr uint32_t kMostCounts = 1U << kSymbolShift;
+    constexpr uint32_t kLongestInterval = (kSymbols + 6) * 8;
+    total_ += interval_;
+    if (total_ > kMostCounts) {
+      total_ = 0;
+      for (uint16_t& n : counts_) total_ += n = static_cast<uint16_t>((n + 1) / 2);
+    }
+    spread(total_);
+    interval_ = std::min(interval_ * 5 / 4, kLongestInterval);
+    until_renewal_ = interval_;
+  }
+
+  void spread(uint32_t total) {
+    const uint32_t scale = 0x80000000U / total;
+    uint32_t sum = 0;
+    for (uint32_t i = 0; i < kSymbols; ++i) {
+      lower_[i] = static_cast<uint16_t>((scale * sum) >> (31 - kSymbolShift));
+      sum += counts_[i];
+    }
+  }
+
+  std::array<uint16_t, kSymbols> lower_;
+  std::array<uint16_t, kSymbols> counts_;
+  uint32_t total_ = kSymbols;
+  uint32_t interval_;
+  uint32_t until_renewal_;
+};
+
+}  // namespace surfcast::laz
