@@ -27,10 +27,10 @@ Grid choose_lattice(const Box& box, double max_error) {
   return {glm::dvec3(std::ldexp(1.0, std::max(wanted, finest_double))), glm::dvec3(0)};
 }
 
-bool indices_fit(const Grid& grid, const Box& box) {
+bool indices_fit(const Grid& grid, const Box& box, size_t count) {
   const glm::i64vec3 extent = grid.index(box.max) - grid.index(box.min);
-  constexpr int64_t kLimit = int64_t{1} << kMaxIndexBits;
-  return extent.x < kLimit && extent.y < kLimit && extent.z < kLimit;
+  const int64_t limit = int64_t{1} << (count < kCrowd ? kMaxIndexBits : kIndexBits);
+  return extent.x < limit && extent.y < limit && extent.z < limit;
 }
 
 }  // namespace surfcast

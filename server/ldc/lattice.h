@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <optional>
 
 #include "geometry/box.h"
@@ -9,6 +10,11 @@ namespace surfcast {
 
 /// Lattice indices within a block stay below 2^kMaxIndexBits, so that they fit a signed 32 bit integer with room.
 inline constexpr int kMaxIndexBits = 30;
+/// Those of a block with kCrowd surfels or more stay below 2^kIndexBits: a dense cluster far smaller than its block
+/// gets a block of its own, where a step of a compact vertex is small next to the distance of its surfels. Fewer
+/// surfels are not worth that.
+inline constexpr int kIndexBits = 20;
+inline constexpr size_t kCrowd = 256;
 /// Without a wanted precision a stored position is off by at most its surfel's radius over this.
 inline constexpr double kRadiusOverError = 256;
 
@@ -22,7 +28,7 @@ inline double position_tolerance(double radius, const std::optional<double>& pre
   return precision ? *precision : radius / kRadiusOverError;
 }
 
-/// True when all points in the box get indices below 2^kMaxIndexBits, counted from the box's lowest corner.
-bool indices_fit(const Grid& grid, const Box& box);
+/// True when so many points in the box get indices that a block may have, counted from the box's lowest corner.
+bool indices_fit(const Grid& grid, const Box& box, size_t count);
 
 }  // namespace surfcast

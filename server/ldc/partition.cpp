@@ -9,7 +9,6 @@
 #include <oneapi/tbb/parallel_sort.h>
 
 #include "base/contract.h"
-#include "geometry/morton.h"
 #include "ldc/lattice.h"
 
 namespace surfcast {
@@ -19,14 +18,11 @@ namespace {
 struct Member {
   uint64_t code;
   uint32_t surfel;
+  uint32_t group;  ///< surfels that may share blocks: of one grid, or of none
   bool operator<(const Member& other) const { return code != other.code ? code < other.code : surfel < other.surfel; }
 };
 
-/// Surfels that may share blocks: of one grid, or of none.
-struct Group {
-  std::optional<Grid> grid;
-  std::vector<Member> members;
-};
+using Run = std::span<Member>;
 
 bool grid_reproduces(const Grid& grid, const glm::dvec3& p) {
   // Beyond 2^52 steps from the offset the nearest index is no longer certain.
@@ -43,17 +39,20 @@ std::optional<Grid> usable_grid(const SurfelCloud& cloud, const SourceRange& sou
   return exact ? source.grid : std::nullopt;
 }
 
-std::vector<Group> group_by_grid(const SurfelCloud& cloud) {
-  std::vector<Group> groups;
+/// The members of the core in the order of their sources, and the grid of each group.
+std::vector<Member> collect_members(const SurfelCloud& cloud, size_t core, std::vector<std::optional<Grid>>& grids) {
+  std::vector<Member> members;
+  members.reserve(core);
   for (const SourceRange& source : cloud.sources) {
+    if (source.first >= core) break;
     const std::optional<Grid> grid = usable_grid(cloud, source);
-    auto group = std::find_if(groups.begin(), groups.end(), [&](const Group& g) { return g.grid == grid; });
-    if (group == groups.end()) group = groups.insert(groups.end(), Group{grid, {}});
-    for (size_t i = 0; i < source.count; ++i) {
-      group->members.push_back({0, static_cast<uint32_t>(source.first + i)});
-    }
+    const auto found = std::find(grids.begin(), grids.end(), grid);
+    const auto group = static_cast<uint32_t>(found - grids.begin());
+    if (found == grids.end()) grids.push_back(grid);
+    const size_t end = std::min(core, source.first + source.count);
+    for (size_t i = source.first; i < end; ++i) members.push_back({0, static_cast<uint32_t>(i), group});
   }
-  return groups;
+  return members;
 }
 
 void sort_by_code(const SurfelCloud& cloud, const RootCube& root, std::vector<Member>& members) {
@@ -62,75 +61,173 @@ void sort_by_code(const SurfelCloud& cloud, const RootCube& root, std::vector<Me
   oneapi::tbb::parallel_sort(members);
 }
 
-/// Cuts one group into blocks. Cells are runs of `members_`, so a cell is a span.
+/// Members of one group in one cell, and what their lattice depends on.
+struct Part {
+  uint32_t group = 0;
+  Run members;
+  Box box;
+  float smallest_radius = std::numeric_limits<float>::infinity();
+  size_t count = 0;
+};
+
+/// A leaf whose blocks are not yet planned.
+struct Cell {
+  OctreeKey key;
+  std::vector<Part> parts;  ///< by group, ascending
+  size_t count = 0;
+};
+
 class Splitter {
  public:
-  Splitter(const SurfelCloud& cloud, const PartitionOptions& options, Group& group)
-      : cloud_(cloud), options_(options), group_(group) {}
+  Splitter(const SurfelCloud& cloud, const Region& region, const PartitionOptions& options)
+      : cloud_(cloud), region_(region), options_(options) {}
 
-  std::vector<BlockPlan> blocks() && { return split({group_.members.data(), group_.members.size()}, 0); }
+  Partition partition() && {
+    members_ = collect_members(cloud_, region_.core, grids_);
+    SURFCAST_EXPECTS(members_.size() == region_.core);
+    sort_by_code(cloud_, region_.root, members_);
+    std::optional<Cell> cell;
+    if (region_.whole) cell = make_cell(members_, region_.cell);
+    if (cell) {
+      plan_blocks({&*cell, 1}, region_.cell);
+    } else {
+      split(members_, region_.cell);
+    }
+    return std::move(result_);
+  }
 
  private:
-  using Run = std::span<Member>;
-
-  [[nodiscard]] BlockPlan plan(Run run, const OctreeKey& key, const Grid& grid) const {
-    return {key, grid, static_cast<size_t>(run.data() - group_.members.data()), run.size()};
+  /// The lattice for a block of such members; none when they need more index bits than a block has.
+  [[nodiscard]] std::optional<Grid> lattice(const Part& part) const {
+    const Grid grid = grids_[part.group].value_or(
+        choose_lattice(part.box, position_tolerance(double{part.smallest_radius}, options_.precision)));
+    return indices_fit(grid, part.box, part.count) ? std::optional(grid) : std::nullopt;
   }
-  [[nodiscard]] Run run_of(const BlockPlan& block) const { return {group_.members.data() + block.first, block.count}; }
 
-  /// The lattice for a block of these surfels; none when they need more index bits than a block has.
-  [[nodiscard]] std::optional<Grid> lattice(Run run) const {
-    Box box;
-    float smallest = std::numeric_limits<float>::infinity();
+  [[nodiscard]] Part make_part(Run run) const {
+    Part part{run.front().group, run, {}, std::numeric_limits<float>::infinity(), run.size()};
     for (const Member& m : run) {
-      box.include(cloud_.positions[m.surfel]);
-      smallest = std::min(smallest, cloud_.radii[m.surfel]);
+      part.box.include(cloud_.positions[m.surfel]);
+      part.smallest_radius = std::min(part.smallest_radius, cloud_.radii[m.surfel]);
     }
-    const Grid grid =
-        group_.grid ? *group_.grid : choose_lattice(box, position_tolerance(smallest, options_.precision));
-    return indices_fit(grid, box) ? std::optional(grid) : std::nullopt;
+    return part;
   }
 
-  std::optional<BlockPlan> one_block(Run run, const OctreeKey& key) {
+  /// The run as a leaf; none when it has too many surfels or needs too many index bits. Leaves are sorted by group.
+  [[nodiscard]] std::optional<Cell> make_cell(Run run, const OctreeKey& key) const {
     if (run.size() > options_.max_surfels) return std::nullopt;
-    const std::optional<Grid> grid = lattice(run);
-    return grid ? std::optional(plan(run, key, *grid)) : std::nullopt;
-  }
-
-  std::vector<BlockPlan> split(Run run, int depth) {
-    const OctreeKey key = key_of_code(run.front().code, depth);
-    if (const auto block = one_block(run, key)) return {*block};
-    if (depth == OctreeKey::kMaxDepth) return halve(run, key);
-    std::vector<BlockPlan> blocks;
+    std::stable_sort(run.begin(), run.end(), [](const Member& a, const Member& b) { return a.group < b.group; });
+    Cell cell{key, {}, run.size()};
     for (auto first = run.begin(); first != run.end();) {
-      const uint32_t octant = octant_of_code(first->code, depth);
-      const auto last = std::partition_point(first, run.end(),
-                                             [&](const Member& m) { return octant_of_code(m.code, depth) == octant; });
-      for (const BlockPlan& block : split({first, last}, depth + 1)) append_or_merge(blocks, block, key);
+      const auto last = std::find_if(first, run.end(), [&](const Member& m) { return m.group != first->group; });
+      cell.parts.push_back(make_part({first, last}));
       first = last;
     }
-    return blocks;
+    if (std::all_of(cell.parts.begin(), cell.parts.end(), [&](const Part& part) { return lattice(part); })) return cell;
+    std::sort(run.begin(), run.end());
+    return std::nullopt;
   }
 
-  /// Appends a block of the cell `key`, or joins it to the block before when either is small and both fit together.
-  void append_or_merge(std::vector<BlockPlan>& blocks, const BlockPlan& block, const OctreeKey& key) {
-    if (!blocks.empty() && std::min(blocks.back().count, block.count) < options_.min_surfels) {
-      const BlockPlan& before = blocks.back();
-      const Run both{group_.members.data() + before.first, before.count + block.count};
-      if (const auto merged = one_block(both, key)) {
-        blocks.back() = *merged;
-        return;
+  /// Splits the run, which lies in the cell and is too much for a leaf.
+  void split(Run run, const OctreeKey& key) {
+    if (key.depth == OctreeKey::kMaxDepth) {
+      split_below(run, key);
+      return;
+    }
+    std::vector<Cell> small;
+    for (auto first = run.begin(); first != run.end();) {
+      const uint32_t octant = octant_of_code(first->code, key.depth);
+      const auto last = std::partition_point(
+          first, run.end(), [&](const Member& m) { return octant_of_code(m.code, key.depth) == octant; });
+      if (std::optional<Cell> cell = make_cell({first, last}, key.child(octant)); !cell) {
+        split({first, last}, key.child(octant));
+      } else if (cell->count < options_.min_surfels) {
+        small.push_back(std::move(*cell));
+      } else {
+        plan_blocks({&*cell, 1}, cell->key);
+      }
+      first = last;
+    }
+    join(small, key);
+  }
+
+  /// Plans blocks for small leaves of the cell `parent`, several for one block while they fit.
+  void join(std::span<const Cell> small, const OctreeKey& parent) {
+    for (auto first = small.begin(); first != small.end();) {
+      auto last = first + 1;
+      while (last != small.end() && fit_together({first, last + 1})) ++last;
+      plan_blocks({first, last}, last - first == 1 ? first->key : parent);
+      first = last;
+    }
+  }
+
+  [[nodiscard]] bool fit_together(std::span<const Cell> cells) const {
+    size_t count = 0;
+    for (const Cell& cell : cells) count += cell.count;
+    if (count > options_.max_surfels) return false;
+    const std::vector<Part> parts = join_parts(cells);
+    return std::all_of(parts.begin(), parts.end(), [&](const Part& part) { return lattice(part); });
+  }
+
+  /// What the parts of each group are together; without members.
+  static std::vector<Part> join_parts(std::span<const Cell> cells) {
+    std::vector<Part> joined;
+    for (const Cell& cell : cells) {
+      for (const Part& part : cell.parts) {
+        auto at = std::find_if(joined.begin(), joined.end(), [&](const Part& p) { return p.group >= part.group; });
+        if (at == joined.end() || at->group != part.group)
+          at = joined.insert(at, Part{part.group, {}, {}, part.smallest_radius, 0});
+        at->box.include(part.box);
+        at->smallest_radius = std::min(at->smallest_radius, part.smallest_radius);
+        at->count += part.count;
       }
     }
-    blocks.push_back(block);
+    return joined;
   }
 
-  /// Below the smallest cell: halves by the median along the longest side, down to coincident points and single ones.
-  std::vector<BlockPlan> halve(Run run, const OctreeKey& key) {
-    if (const auto block = one_block(run, key)) return {*block};
-    Box box;
-    for (const Member& m : run) box.include(cloud_.positions[m.surfel]);
-    const glm::dvec3 size = box.size();
+  /// A block for each group of the cells.
+  void plan_blocks(std::span<const Cell> cells, const OctreeKey& key) {
+    std::vector<Leaf> leaves;
+    for (const Cell& cell : cells) leaves.push_back({cell.key, {}});
+    for (const Part& all : join_parts(cells)) {
+      const auto block = static_cast<uint32_t>(result_.blocks.size());
+      result_.blocks.push_back({key, *lattice(all), result_.order.size(), all.count});
+      for (size_t i = 0; i < cells.size(); ++i) append_part(cells[i], all.group, block, leaves[i]);
+    }
+    result_.leaves.insert(result_.leaves.end(), leaves.begin(), leaves.end());
+  }
+
+  void append_part(const Cell& cell, uint32_t group, uint32_t block, Leaf& leaf) {
+    const auto part =
+        std::find_if(cell.parts.begin(), cell.parts.end(), [&](const Part& p) { return p.group == group; });
+    if (part == cell.parts.end()) return;
+    leaf.runs.push_back({block, result_.order.size(), part->count});
+    for (const Member& m : part->members) result_.order.push_back(m.surfel);
+  }
+
+  /// The smallest cell with too much in it.
+  void split_below(Run run, const OctreeKey& key) {
+    Leaf leaf{key.child(0), {}};
+    std::stable_sort(run.begin(), run.end(), [](const Member& a, const Member& b) { return a.group < b.group; });
+    for (auto first = run.begin(); first != run.end();) {
+      const auto last = std::find_if(first, run.end(), [&](const Member& m) { return m.group != first->group; });
+      halve({first, last}, key, leaf);
+      first = last;
+    }
+    result_.leaves.push_back(std::move(leaf));
+  }
+
+  /// Halves members of one group by the median along their longest side, down to coincident points and single ones.
+  void halve(Run run, const OctreeKey& key, Leaf& leaf) {
+    const Part part = make_part(run);
+    const std::optional<Grid> grid = lattice(part);
+    if (grid && run.size() <= options_.max_surfels) {
+      leaf.runs.push_back({static_cast<uint32_t>(result_.blocks.size()), result_.order.size(), run.size()});
+      result_.blocks.push_back({key, *grid, result_.order.size(), run.size()});
+      for (const Member& m : run) result_.order.push_back(m.surfel);
+      return;
+    }
+    const glm::dvec3 size = part.box.size();
     const int axis = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
     const auto middle = run.begin() + static_cast<std::ptrdiff_t>(run.size() / 2);
     std::nth_element(run.begin(), middle, run.end(), [&](const Member& a, const Member& b) {
@@ -138,34 +235,29 @@ class Splitter {
       const double pb = cloud_.positions[b.surfel][axis];
       return pa != pb ? pa < pb : a.surfel < b.surfel;
     });
-    std::vector<BlockPlan> blocks = halve({run.begin(), middle}, key);
-    const std::vector<BlockPlan> upper = halve({middle, run.end()}, key);
-    blocks.insert(blocks.end(), upper.begin(), upper.end());
-    return blocks;
+    halve({run.begin(), middle}, key, leaf);
+    halve({middle, run.end()}, key, leaf);
   }
 
   const SurfelCloud& cloud_;
+  const Region& region_;
   const PartitionOptions& options_;
-  Group& group_;
+  std::vector<std::optional<Grid>> grids_;
+  std::vector<Member> members_;
+  Partition result_;
 };
 
 }  // namespace
 
-Partition partition_cloud(const SurfelCloud& cloud, const PartitionOptions& options) {
-  SURFCAST_EXPECTS(cloud.size() <= std::numeric_limits<uint32_t>::max());
-  const RootCube root = root_cube(cloud.bounds());
-  Partition partition;
-  partition.order.reserve(cloud.size());
-  for (Group& group : group_by_grid(cloud)) {
-    if (group.members.empty()) continue;
-    sort_by_code(cloud, root, group.members);
-    for (BlockPlan block : Splitter(cloud, options, group).blocks()) {
-      block.first += partition.order.size();
-      partition.blocks.push_back(block);
-    }
-    for (const Member& m : group.members) partition.order.push_back(m.surfel);
-  }
-  SURFCAST_EXPECTS(partition.order.size() == cloud.size());
+Region whole_region(const SurfelCloud& cloud) {
+  return {root_cube(cloud.bounds()), {}, true, cloud.size()};
+}
+
+Partition partition_region(const SurfelCloud& cloud, const Region& region, const PartitionOptions& options) {
+  SURFCAST_EXPECTS(cloud.size() <= std::numeric_limits<uint32_t>::max() && region.core <= cloud.size());
+  if (region.core == 0) return {};
+  Partition partition = Splitter(cloud, region, options).partition();
+  SURFCAST_EXPECTS(partition.order.size() == region.core);
   return partition;
 }
 

@@ -1,16 +1,11 @@
 #include "model/write_model.h"
 
-#include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <utility>
 
-#include <oneapi/tbb/info.h>
-#include <oneapi/tbb/parallel_pipeline.h>
-
 #include "base/contract.h"
-#include "ldc/partition.h"
-#include "model/block_encoder.h"
+#include "ldc/subtree.h"
+#include "model/write_blocks.h"
 
 namespace surfcast {
 namespace {
@@ -55,41 +50,6 @@ Status check(const SurfelCloud& cloud, const WriteOptions& options) {
   return {};
 }
 
-/// Encodes on all threads, appends in the order of the plan: the file does not depend on who finished first.
-Status append_blocks(const SurfelCloud& cloud, const Partition& partition, const WriteOptions& options,
-                     ModelWriter& writer) {
-  namespace tbb = oneapi::tbb;
-  using Encoded = std::pair<size_t, EncodedBlock>;
-  size_t next = 0;
-  size_t written = 0;
-  Status status;
-  std::atomic<bool> failed = false;  // the first filter and the last one run at the same time
-  const auto take = [&](tbb::flow_control& control) -> size_t {
-    if (next < partition.blocks.size() && !failed) return next++;
-    control.stop();
-    return 0;
-  };
-  const auto encode = [&](size_t index) -> Encoded {
-    const BlockPlan& plan = partition.blocks[index];
-    const std::span members = std::span(partition.order).subspan(plan.first, plan.count);
-    return {index, encode_block(cloud, members, plan.grid)};
-  };
-  const auto append = [&](const Encoded& encoded) {
-    const auto& [index, block] = encoded;
-    if (!status) return;
-    if (Result<uint32_t> added = writer.add(block, partition.blocks[index].key, {}); !added)
-      status = fail(std::move(added.error()));
-    failed = !status.has_value();
-    if (options.progress)
-      options.progress(static_cast<double>(++written) / static_cast<double>(partition.blocks.size()));
-  };
-  const auto tokens = static_cast<size_t>(tbb::info::default_concurrency()) * 4;
-  tbb::parallel_pipeline(tokens, tbb::make_filter<void, size_t>(tbb::filter_mode::serial_in_order, take) &
-                                     tbb::make_filter<size_t, Encoded>(tbb::filter_mode::parallel, encode) &
-                                     tbb::make_filter<Encoded, void>(tbb::filter_mode::serial_in_order, append));
-  return status;
-}
-
 }  // namespace
 
 Result<WriteReport> write_model(const SurfelCloud& cloud, const std::filesystem::path& target,
@@ -99,10 +59,13 @@ Result<WriteReport> write_model(const SurfelCloud& cloud, const std::filesystem:
   }
   Result<ModelWriter> writer = ModelWriter::create(target, schema_of(cloud));
   if (!writer) return fail(std::move(writer.error()));
-  PartitionOptions partition_options;
-  partition_options.precision = options.precision;
-  const Partition partition = partition_cloud(cloud, partition_options);
-  if (Status status = append_blocks(cloud, partition, options, *writer); !status) {
+  PartitionOptions partition;
+  partition.precision = options.precision;
+  const Subtree tree = build_subtree(cloud, whole_region(cloud), partition, 0);
+  const auto progress = [&](size_t done) {
+    if (options.progress) options.progress(static_cast<double>(done) / static_cast<double>(tree.blocks.size()));
+  };
+  if (Status status = write_blocks(*writer, cloud, tree.blocks, progress); !status) {
     return fail(std::move(status.error()));
   }
   return writer->finish();

@@ -28,6 +28,10 @@ std::vector<glm::dvec3> random_points(size_t count, double size, unsigned seed =
   return points;
 }
 
+Partition partition_cloud(const SurfelCloud& cloud, const PartitionOptions& options) {
+  return partition_region(cloud, whole_region(cloud), options);
+}
+
 /// What every partition promises: each surfel once, blocks in a row, none too large, indices that fit.
 void expect_sound(const SurfelCloud& cloud, const Partition& partition, const PartitionOptions& options = {}) {
   std::vector<uint32_t> order = partition.order;
@@ -42,7 +46,7 @@ void expect_sound(const SurfelCloud& cloud, const Partition& partition, const Pa
     next += block.count;
     Box box;
     for (size_t i = block.first; i < next; ++i) box.include(cloud.positions[partition.order[i]]);
-    ASSERT_TRUE(indices_fit(block.grid, box));
+    ASSERT_TRUE(indices_fit(block.grid, box, block.count));
   }
   ASSERT_EQ(next, cloud.size());
 }

@@ -253,12 +253,13 @@ TEST(ModelFile, StatesBoundsRadiiSpacingAndNormalsOfEachBlock) {
     std::sort(radii.begin(), radii.end());
     EXPECT_EQ(entry.max_radius, double{radii.back()});
     EXPECT_EQ(entry.spacing, double{radii[radii.size() / 2]});
-    EXPECT_EQ(entry.level, 0);
     ASSERT_TRUE(entry.normals);
     for (const glm::vec3& n : block->normals) {
       ASSERT_LE(angle_between(n, entry.normals->axis), double{entry.normals->half_angle} + 1e-6);
     }
-    EXPECT_LT(entry.normals->half_angle, 2) << "a block of a sphere sees less than all of it";
+    if (entry.level == 0) {
+      EXPECT_LT(entry.normals->half_angle, 2) << "a leaf holds a part of the sphere only";
+    }
   }
 }
 

@@ -30,13 +30,14 @@ struct Found {
   size_t index = 0;
 };
 
-/// Every block of a model, and each surfel by its number.
+/// Every leaf of a model, and each surfel by its number.
 struct DecodedModel {
   std::vector<DecodedBlock> blocks;
   std::vector<Found> surfels;
 
   explicit DecodedModel(const ModelFile& model) : surfels(model.info().surfels) {
     for (size_t b = 0; b < model.blocks().size(); ++b) {
+      if (model.blocks()[b].level > 0) continue;
       Result<DecodedBlock> block = model.decode(b);
       if (!block) throw std::runtime_error(block.error().message);
       blocks.push_back(std::move(*block));

@@ -1,0 +1,93 @@
+#include "ldc/coarse_surfel.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+#include "ldc/coarse_scalars.h"
+#include "surfel/srgb.h"
+
+namespace surfcast {
+namespace {
+
+/// Where a coarse surfel keeps the scalar attribute of that name.
+double& slot(CoarseSurfel& surfel, std::string_view name) {
+  return name == "intensity" ? surfel.intensity : surfel.classification;
+}
+
+/// The nearest value of type T.
+template <typename T>
+T to_value(double mean) {
+  if constexpr (std::is_floating_point_v<T>) {
+    return static_cast<T>(mean);
+  } else {
+    constexpr auto kLargest = static_cast<double>(std::numeric_limits<T>::max());
+    const double rounded = std::round(mean);
+    if (!(rounded < kLargest)) return std::numeric_limits<T>::max();
+    return static_cast<T>(std::max(rounded, static_cast<double>(std::numeric_limits<T>::lowest())));
+  }
+}
+
+ScalarAttribute without_values(const ScalarAttribute& scalar) {
+  return {scalar.name,
+          std::visit([](const auto& values) { return ScalarValues(std::decay_t<decltype(values)>()); }, scalar.values)};
+}
+
+}  // namespace
+
+CoarseAttributes coarse_attributes(const SurfelCloud& cloud) {
+  CoarseAttributes attributes{cloud.oriented, cloud.z_up, cloud.colors ? cloud.colors->bits : 0, {}};
+  for (const ScalarAttribute& scalar : cloud.scalars) {
+    if (is_coarse_scalar(scalar.name)) attributes.scalars.push_back(without_values(scalar));
+  }
+  return attributes;
+}
+
+std::vector<CoarseSurfel> sample_surfels(const SurfelCloud& cloud, std::span<const uint32_t> members) {
+  std::vector<CoarseSurfel> surfels(members.size());
+  for (size_t i = 0; i < members.size(); ++i) {
+    const uint32_t member = members[i];
+    surfels[i].position = cloud.positions[member];
+    surfels[i].normal = cloud.normals[member];
+    surfels[i].radius = cloud.radii[member];
+    if (cloud.colors) surfels[i].light = to_linear(cloud.colors->values[member], cloud.colors->bits);
+  }
+  for (const ScalarAttribute& scalar : cloud.scalars) {
+    if (!is_coarse_scalar(scalar.name)) continue;
+    std::visit(
+        [&](const auto& values) {
+          for (size_t i = 0; i < members.size(); ++i) {
+            slot(surfels[i], scalar.name) = static_cast<double>(values[members[i]]);
+          }
+        },
+        scalar.values);
+  }
+  return surfels;
+}
+
+SurfelCloud make_coarse_cloud(std::span<const CoarseSurfel> surfels, const CoarseAttributes& attributes) {
+  SurfelCloud cloud;
+  cloud.oriented = attributes.oriented;
+  cloud.z_up = attributes.z_up;
+  cloud.scalars = attributes.scalars;
+  cloud.sources = {{"", 0, surfels.size(), std::nullopt}};
+  if (attributes.color_bits > 0) cloud.colors = ColorAttribute{attributes.color_bits, {}};
+  for (CoarseSurfel surfel : surfels) {
+    cloud.positions.push_back(surfel.position);
+    cloud.normals.push_back(surfel.normal);
+    cloud.radii.push_back(surfel.radius);
+    if (cloud.colors) cloud.colors->values.push_back(from_linear(surfel.light, attributes.color_bits));
+    for (ScalarAttribute& scalar : cloud.scalars) {
+      const double mean = slot(surfel, scalar.name);
+      std::visit(
+          [mean](auto& values) {
+            values.push_back(to_value<typename std::decay_t<decltype(values)>::value_type>(mean));
+          },
+          scalar.values);
+    }
+  }
+  return cloud;
+}
+
+}  // namespace surfcast

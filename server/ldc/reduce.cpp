@@ -1,0 +1,231 @@
+#include "ldc/reduce.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <numbers>
+#include <tuple>
+#include <utility>
+
+#include "base/contract.h"
+
+namespace surfcast {
+namespace {
+
+/// A coarser level is worth its bytes when it has at most this part of the surfels below it. A surface makes it 1/4.
+constexpr double kLargestPart = 0.4;
+/// Few enough to be worth keeping whatever part they are.
+constexpr size_t kFew = 1024;
+/// Coarse surfels lie on a lattice of this many steps between two rays: off by at most 1/18 of their spacing.
+constexpr int kStepsPerRay = 16;
+/// Mean distance to the six nearest neighbours on a square grid of spacing 1, the meaning of a radius.
+constexpr double kGridRadius = (4 + 2 * std::numbers::sqrt2) / 6;
+/// Surfaces at 45 degrees are common, so that the switch between images lies elsewhere: z and y win by some measure.
+constexpr glm::dvec3 kAxisBias{1, 1.1, 1.21};
+/// A surfel follows the image of its surroundings while its normal is within 60 degrees of the axis: the rays still
+/// sample its surface at half their density then.
+constexpr float kSmallestCosine = 0.5F;
+
+/// A cell and how its rays lie in it.
+struct Cube {
+  glm::dvec3 min{0};
+  double spacing = 1;  ///< of the rays
+  int lines = 1;       ///< rays along a side
+
+  [[nodiscard]] int line(double offset) const {
+    return std::clamp(static_cast<int>(std::floor(offset / spacing)), 0, lines - 1);
+  }
+  [[nodiscard]] double centre(int line) const { return (line + 0.5) * spacing; }
+};
+
+/// A surfel where it meets its ray.
+struct Crossing {
+  uint32_t ray = 0;  ///< image, side that faces the ray, and number within the image
+  uint32_t surfel = 0;
+  double depth = 0;  ///< along the ray, of the surfel's plane
+
+  bool operator<(const Crossing& other) const {
+    return std::tie(ray, depth, surfel) < std::tie(other.ray, other.depth, other.surfel);
+  }
+};
+
+glm::dvec3 squared(const glm::vec3& v) {
+  return glm::dvec3(v) * glm::dvec3(v);
+}
+
+int largest_axis(const glm::dvec3& v) {
+  if (v.x >= v.y && v.x >= v.z) return 0;
+  return v.y >= v.z ? 1 : 2;
+}
+
+/// For every cell of two rays' width the squares of the components of the normals in it, weighted by area.
+class Surroundings {
+ public:
+  Surroundings(std::span<const CoarseSurfel> surfels, const Cube& cube)
+      : cube_(cube), side_(static_cast<size_t>(cube.lines + 1) / 2), squares_(side_ * side_ * side_, glm::dvec3(0)) {
+    for (const CoarseSurfel& s : surfels)
+      squares_[index(s)] += squared(s.normal) * (double{s.radius} * double{s.radius});
+  }
+
+  /// The image that the surfel belongs to.
+  [[nodiscard]] int axis(const CoarseSurfel& s) const {
+    const int common = largest_axis(squares_[index(s)] * kAxisBias);
+    if (std::abs(s.normal[common]) >= kSmallestCosine) return common;
+    return largest_axis(squared(s.normal) * kAxisBias);
+  }
+
+ private:
+  [[nodiscard]] size_t index(const CoarseSurfel& s) const {
+    const glm::dvec3 offset = s.position - cube_.min;
+    const auto at = [&](double x) { return static_cast<size_t>(cube_.line(x) / 2); };
+    return (at(offset.z) * side_ + at(offset.y)) * side_ + at(offset.x);
+  }
+
+  const Cube& cube_;
+  size_t side_;
+  std::vector<glm::dvec3> squares_;
+};
+
+Crossing cross(const CoarseSurfel& s, uint32_t number, int axis, const Cube& cube, bool oriented) {
+  const int u = (axis + 1) % 3;
+  const int v = (axis + 2) % 3;
+  const glm::dvec3 offset = s.position - cube.min;
+  const int line_u = cube.line(offset[u]);
+  const int line_v = cube.line(offset[v]);
+  const glm::dvec3 n(s.normal);
+  const uint32_t away = oriented && n[axis] < 0 ? 1 : 0;
+  Crossing crossing;
+  crossing.surfel = number;
+  crossing.ray =
+      static_cast<uint32_t>(((axis * 2 + static_cast<int>(away)) * cube.lines + line_v) * cube.lines + line_u);
+  crossing.depth =
+      offset[axis] + (n[u] * (offset[u] - cube.centre(line_u)) + n[v] * (offset[v] - cube.centre(line_v))) / n[axis];
+  return crossing;
+}
+
+std::vector<Crossing> find_crossings(std::span<const CoarseSurfel> surfels, const Cube& cube, bool oriented) {
+  const Surroundings surroundings(surfels, cube);
+  std::vector<Crossing> crossings;
+  crossings.reserve(surfels.size());
+  for (uint32_t i = 0; i < surfels.size(); ++i) {
+    crossings.push_back(cross(surfels[i], i, surroundings.axis(surfels[i]), cube, oriented));
+  }
+  std::sort(crossings.begin(), crossings.end());
+  return crossings;
+}
+
+/// The class that the largest area of the surfels has; of equals the lowest.
+class ClassVotes {
+ public:
+  void add(double value, double area) {
+    const auto found =
+        std::find_if(areas_.begin(), areas_.end(), [&](const auto& vote) { return vote.first == value; });
+    if (found != areas_.end()) {
+      found->second += area;
+    } else {
+      areas_.emplace_back(value, area);
+    }
+  }
+  [[nodiscard]] double winner() const {
+    const auto better = [](const auto& a, const auto& b) {
+      return a.second != b.second ? a.second < b.second : a.first > b.first;
+    };
+    return std::max_element(areas_.begin(), areas_.end(), better)->first;
+  }
+
+ private:
+  std::vector<std::pair<double, double>> areas_;
+};
+
+/// The radius of an average: that of the area that its surfels cover together, but not more than what a surfel of a
+/// whole grid has; and where the surfels are farther apart than the rays, theirs.
+float radius_of(double squares, double cubes, double cosine, const Cube& cube) {
+  const double on_grid = kGridRadius * cube.spacing / std::sqrt(std::max(cosine, 0.5));
+  return static_cast<float>(std::max(std::min(std::sqrt(squares), on_grid), cubes / squares));
+}
+
+CoarseSurfel average(std::span<const CoarseSurfel> surfels, std::span<const Crossing> crossings, const Cube& cube) {
+  if (crossings.size() == 1) return surfels[crossings.front().surfel];
+  const CoarseSurfel& first = surfels[crossings.front().surfel];
+  glm::dvec3 position(0);
+  glm::dvec3 normal(0);
+  glm::dvec3 light(0);
+  double intensity = 0;
+  double squares = 0;
+  double cubes = 0;
+  ClassVotes classes;
+  for (const Crossing& crossing : crossings) {
+    const CoarseSurfel& s = surfels[crossing.surfel];
+    const double area = double{s.radius} * double{s.radius};
+    const glm::dvec3 n(s.normal);
+    position += area * (s.position - cube.min);
+    normal += glm::dot(n, glm::dvec3(first.normal)) < 0 ? -area * n : area * n;
+    light += area * glm::dvec3(s.light);
+    intensity += area * s.intensity;
+    classes.add(s.classification, area);
+    squares += area;
+    cubes += area * double{s.radius};
+  }
+  const double length = glm::length(normal);
+  CoarseSurfel result;
+  result.position = cube.min + position / squares;
+  result.normal = length > 0 ? glm::vec3(normal / length) : first.normal;
+  const glm::vec3 n = glm::abs(result.normal);
+  result.radius = radius_of(squares, cubes, std::max({n.x, n.y, n.z}), cube);
+  result.light = glm::vec3(light / squares);
+  result.intensity = intensity / squares;
+  result.classification = classes.winner();
+  return result;
+}
+
+std::vector<CoarseSurfel> resample(std::span<const CoarseSurfel> surfels, const Cube& cube, bool oriented) {
+  const std::vector<Crossing> crossings = find_crossings(surfels, cube, oriented);
+  std::vector<CoarseSurfel> averages;
+  for (auto first = crossings.begin(); first != crossings.end();) {
+    const auto last = std::find_if(first, crossings.end(), [&](const Crossing& c) {
+      return c.ray != first->ray || c.depth - first->depth > cube.spacing;
+    });
+    averages.push_back(average(surfels, {first, last}, cube));
+    first = last;
+  }
+  return averages;
+}
+
+/// Moves the surfels to the lattice, keeps them in their cell, and sorts them along a Morton curve.
+void snap(std::vector<CoarseSurfel>& surfels, const Grid& grid, const OctreeKey& cell, int64_t steps) {
+  const glm::i64vec3 lowest = glm::i64vec3(cell.x, cell.y, cell.z) * steps;
+  std::vector<std::pair<uint64_t, CoarseSurfel>> sorted;
+  sorted.reserve(surfels.size());
+  for (CoarseSurfel s : surfels) {
+    const glm::i64vec3 index = glm::clamp(grid.index(s.position), lowest, lowest + (steps - 1));
+    s.position = grid.position(index);
+    sorted.emplace_back(interleave(glm::u32vec3(index - lowest)), s);
+  }
+  std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  std::transform(sorted.begin(), sorted.end(), surfels.begin(), [](const auto& entry) { return entry.second; });
+}
+
+bool few_enough(size_t coarse, size_t fine) {
+  return coarse <= kFew ||
+         (coarse <= kMaxCoarseSurfels && static_cast<double>(coarse) <= kLargestPart * static_cast<double>(fine));
+}
+
+}  // namespace
+
+CoarseCell reduce(std::span<const CoarseSurfel> surfels, const RootCube& root, const OctreeKey& cell, bool oriented) {
+  SURFCAST_EXPECTS(!surfels.empty());
+  const double side = std::ldexp(root.side, -cell.depth);
+  const glm::dvec3 min = root.min + glm::dvec3(cell.x, cell.y, cell.z) * side;
+  for (int lines = kLdcLines;; lines /= 2) {
+    const Cube cube{min, side / lines, lines};
+    std::vector<CoarseSurfel> averages = resample(surfels, cube, oriented);
+    if (lines > 1 && !few_enough(averages.size(), surfels.size())) continue;
+    const Grid grid{glm::dvec3(cube.spacing / kStepsPerRay), root.min};
+    snap(averages, grid, cell, int64_t{lines} * kStepsPerRay);
+    return {grid, std::move(averages)};
+  }
+}
+
+}  // namespace surfcast

@@ -1,0 +1,53 @@
+#include "model/write_blocks.h"
+
+#include <atomic>
+#include <numeric>
+#include <utility>
+#include <vector>
+
+#include <oneapi/tbb/info.h>
+#include <oneapi/tbb/parallel_pipeline.h>
+
+#include "model/block_encoder.h"
+
+namespace surfcast {
+namespace {
+
+EncodedBlock encode(const SurfelCloud& cloud, const TreeBlock& block) {
+  if (!block.coarse) return encode_block(cloud, block.members, block.grid);
+  std::vector<uint32_t> all(block.coarse->size());
+  std::iota(all.begin(), all.end(), 0);
+  return encode_block(*block.coarse, all, block.grid);
+}
+
+}  // namespace
+
+Status write_blocks(ModelWriter& writer, const SurfelCloud& cloud, std::span<const TreeBlock> blocks,
+                    const std::function<void(size_t)>& progress) {
+  namespace tbb = oneapi::tbb;
+  using Encoded = std::pair<size_t, EncodedBlock>;
+  size_t next = 0;
+  Status status;
+  std::atomic<bool> failed = false;  // the first filter and the last one run at the same time
+  const auto take = [&](tbb::flow_control& control) -> size_t {
+    if (next < blocks.size() && !failed) return next++;
+    control.stop();
+    return 0;
+  };
+  const auto encode_next = [&](size_t i) -> Encoded { return {i, encode(cloud, blocks[i])}; };
+  const auto append = [&](const Encoded& encoded) {
+    const auto& [i, block] = encoded;
+    if (failed) return;
+    const Result<uint32_t> added = writer.add(block, blocks[i].key, blocks[i].children);
+    if (!added) status = fail(added.error());
+    failed = !added;
+    if (progress) progress(i + 1);
+  };
+  const auto tokens = static_cast<size_t>(tbb::info::default_concurrency()) * 4;
+  tbb::parallel_pipeline(tokens, tbb::make_filter<void, size_t>(tbb::filter_mode::serial_in_order, take) &
+                                     tbb::make_filter<size_t, Encoded>(tbb::filter_mode::parallel, encode_next) &
+                                     tbb::make_filter<Encoded, void>(tbb::filter_mode::serial_in_order, append));
+  return status;
+}
+
+}  // namespace surfcast
