@@ -31,11 +31,11 @@ Variant variant_of(const ModelInfo& info, const PictureRequest& request) {
   return variant;
 }
 
-/// Mean normal of the whole model, from the cones of its blocks; zero where front and back are not known.
+/// Mean normal of the whole model, from the cones of its leaves; zero where front and back are not known.
 glm::dvec3 mean_facing(const ModelFile& model) {
   glm::dvec3 sum(0);
   for (const BlockEntry& block : model.blocks()) {
-    if (block.normals) sum += glm::dvec3(block.normals->axis) * static_cast<double>(block.surfels);
+    if (block.level == 0 && block.normals) sum += glm::dvec3(block.normals->axis) * static_cast<double>(block.surfels);
   }
   return sum / static_cast<double>(std::max<uint64_t>(model.info().surfels, 1));
 }
@@ -45,7 +45,9 @@ Camera camera_of(const ModelFile& model, const PictureRequest& request) {
   const glm::dvec3 up = model.info().z_up ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
   Box box = model.info().bounds;
   double reach = 0;
-  for (const BlockEntry& block : model.blocks()) reach = std::max(reach, block.max_radius);
+  for (const BlockEntry& block : model.blocks()) {
+    if (block.level == 0) reach = std::max(reach, block.max_radius);
+  }
   box.min -= reach;
   box.max += reach;
   return fit_camera(box, up, static_cast<double>(request.width) / request.height, kViewAngle, mean_facing(model));
