@@ -1,7 +1,9 @@
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 
 #include "laz/symbol_model.h"
@@ -37,7 +39,8 @@ class ArithmeticDecoder {
   template <uint32_t kSymbols>
   uint32_t symbol(SymbolModel<kSymbols>& model) {
     const uint32_t unit = length_ >> kSymbolShift;
-    const uint32_t symbol = model.find(value_ / unit);
+    // The quotient is below 2^15 + 64, as the length is 2^24 at least.
+    const uint32_t symbol = model.find(static_cast<uint16_t>(value_ / unit));
     const uint32_t lower = model.lower(symbol) * unit;
     // What is left over by the division into units belongs to the last symbol.
     const uint32_t upper = symbol + 1 < kSymbols ? model.lower(symbol + 1) * unit : length_;
@@ -74,11 +77,28 @@ class ArithmeticDecoder {
     return 0;
   }
 
+  /// Takes in as many bytes as bring the length back above `kShortest`, without a branch on their number.
   void renormalise() {
+    if (end_ - next_ < 4) [[unlikely]]
+      return renormalise_at_end();
+    const uint32_t shift = static_cast<uint32_t>(std::countl_zero(length_)) & ~7U;
+    const uint64_t bytes = big_endian(next_);
+    value_ = static_cast<uint32_t>((uint64_t{value_} << 32 | bytes) << shift >> 32);
+    length_ <<= shift;
+    next_ += shift / 8;
+  }
+
+  void renormalise_at_end() {
     while (length_ < kShortest) {
       value_ = value_ << 8 | next_byte();
       length_ <<= 8;
     }
+  }
+
+  static uint32_t big_endian(const std::byte* at) {
+    uint32_t number;
+    std::memcpy(&number, at, sizeof(number));
+    return __builtin_bswap32(number);
   }
 
   uint32_t few_bits(int count) {

@@ -6,30 +6,32 @@
 
 namespace surfcast::laz {
 
-/// An estimate of the median of the last few values: five sorted values, of which each new one pushes out the largest
-/// and the smallest in turn. All are zero at first.
+/// An estimate of the median of the last few values: five sorted values, of which a new one replaces the largest or
+/// the smallest. All are zero at first.
 class RunningMedian {
  public:
   [[nodiscard]] int32_t get() const { return sorted_[2]; }
 
-  void add(int32_t value) { drop_largest_ ? add_from_below(value) : add_from_above(value); }
+  void add(int32_t value) {
+    const int32_t median = get();
+    sorted_ = inserted(drop_largest_ ? 0 : 1, value);
+    drop_largest_ = drop_largest_ ? value < median : value <= median;
+  }
 
  private:
-  void add_from_below(int32_t value) {
-    drop_largest_ = value < sorted_[2];
-    size_t at = 4;
-    for (; at > 0 && value < sorted_[at - 1]; --at) sorted_[at] = sorted_[at - 1];
-    sorted_[at] = value;
+  using Values = std::array<int32_t, 5>;
+
+  /// The four values from `kept` on, and `value`, sorted. Minima and maxima leave no branch to mispredict.
+  [[nodiscard]] Values inserted(size_t kept, int32_t value) const {
+    const int32_t* four = &sorted_[kept];
+    Values values;
+    values[0] = std::min(four[0], value);
+    for (size_t i = 1; i < 4; ++i) values[i] = std::max(four[i - 1], std::min(four[i], value));
+    values[4] = std::max(four[3], value);
+    return values;
   }
 
-  void add_from_above(int32_t value) {
-    drop_largest_ = value <= sorted_[2];
-    size_t at = 0;
-    for (; at < 4 && value > sorted_[at + 1]; ++at) sorted_[at] = sorted_[at + 1];
-    sorted_[at] = value;
-  }
-
-  std::array<int32_t, 5> sorted_{};
+  Values sorted_{};
   bool drop_largest_ = true;
 };
 

@@ -24,7 +24,7 @@ class BitModel {
   }
 
  private:
-  void renew() {
+  [[gnu::noinline]] void renew() {
     constexpr uint32_t kMostBits = 1U << kBitShift;
     constexpr uint32_t kLongestInterval = 64;
     bits_ += interval_;
@@ -45,28 +45,34 @@ class BitModel {
   uint32_t until_renewal_ = 4;
 };
 
+/// How many of `kCount` numbers in ascending order are not above `limit`. Looks at all of them, without a branch that
+/// would be mispredicted: compilers turn this into a few vector instructions.
+template <size_t kCount>
+uint32_t count_up_to(const uint16_t* numbers, uint16_t limit) {
+  uint16_t count = 0;
+  for (size_t i = 0; i < kCount; ++i) count = static_cast<uint16_t>(count + (numbers[i] <= limit ? 1 : 0));
+  return count;
+}
+
 /// The adaptive probabilities of `kSymbols` symbols, all equal at first.
 template <uint32_t kSymbols>
 class SymbolModel {
  public:
   SymbolModel() {
+    lower_.fill(kBeyond);
+    group_lower_.fill(kBeyond);
     counts_.fill(1);
     spread(kSymbols);
     interval_ = until_renewal_ = (kSymbols + 6) / 2;
   }
 
-  static constexpr uint32_t symbols() { return kSymbols; }
   /// Sum of the probabilities of the symbols before this one.
   [[nodiscard]] uint32_t lower(uint32_t symbol) const { return lower_[symbol]; }
   /// The symbol in whose range `target` lies: the last one with `lower` not above it.
-  [[nodiscard]] uint32_t find(uint32_t target) const {
-    uint32_t first = 0;
-    uint32_t last = kSymbols;
-    while (last > first + 1) {
-      const uint32_t middle = (first + last) / 2;
-      (lower_[middle] > target ? last : first) = middle;
-    }
-    return first;
+  [[nodiscard]] uint32_t find(uint16_t target) const {
+    if constexpr (kFlat) return count_up_to<kPadded>(lower_.data(), target) - 1;
+    const uint32_t group = count_up_to<kGroups>(group_lower_.data(), target) - 1;
+    return group * kGroup + count_up_to<kGroup>(&lower_[group * kGroup], target) - 1;
   }
 
   void count(uint32_t symbol) {
@@ -75,7 +81,15 @@ class SymbolModel {
   }
 
  private:
-  void renew() {
+  static constexpr uint32_t round_up(uint32_t number, uint32_t step) { return (number + step - 1) / step * step; }
+  static constexpr uint32_t kLane = 8;
+  static constexpr uint32_t kGroup = 16;
+  static constexpr bool kFlat = kSymbols <= 64;
+  static constexpr uint32_t kPadded = round_up(kSymbols, kFlat ? kLane : kGroup);
+  static constexpr uint32_t kGroups = round_up(kPadded / kGroup, kLane);
+  static constexpr uint16_t kBeyond = 0xFFFF;  ///< the padding: above any target
+
+  [[gnu::noinline]] void renew() {
     constexpr uint32_t kMostCounts = 1U << kSymbolShift;
     constexpr uint32_t kLongestInterval = (kSymbols + 6) * 8;
     total_ += interval_;
@@ -95,9 +109,12 @@ class SymbolModel {
       lower_[i] = static_cast<uint16_t>((scale * sum) >> (31 - kSymbolShift));
       sum += counts_[i];
     }
+    if constexpr (kFlat) return;
+    for (uint32_t i = 0; i < kPadded / kGroup; ++i) group_lower_[i] = lower_[i * kGroup];
   }
 
-  std::array<uint16_t, kSymbols> lower_;
+  std::array<uint16_t, kPadded> lower_;
+  std::array<uint16_t, kFlat ? 0 : kGroups> group_lower_;  ///< of the first symbol of each group
   std::array<uint16_t, kSymbols> counts_;
   uint32_t total_ = kSymbols;
   uint32_t interval_;
