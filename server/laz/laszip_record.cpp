@@ -32,12 +32,14 @@ struct Item {
   uint16_t version;
 };
 
+/// Nothing if the record ends before its last item.
 std::vector<Item> parse_items(std::span<const std::byte> body) {
-  std::vector<Item> items;
-  const size_t stated = load<uint16_t>(&body[kFixedBytes - 2]);
-  for (size_t i = 0; i < stated && body.size() >= kFixedBytes + (i + 1) * kItemBytes; ++i) {
-    const std::byte* at = &body[kFixedBytes + i * kItemBytes];
-    items.push_back({load<uint16_t>(at), load<uint16_t>(at + 2), load<uint16_t>(at + 4)});
+  std::vector<Item> items(load<uint16_t>(&body[kFixedBytes - 2]));
+  if (body.size() < kFixedBytes + items.size() * kItemBytes) return {};
+  const std::byte* at = &body[kFixedBytes - kItemBytes];
+  for (Item& item : items) {
+    at += kItemBytes;
+    item = {load<uint16_t>(at), load<uint16_t>(at + 2), load<uint16_t>(at + 4)};
   }
   return items;
 }

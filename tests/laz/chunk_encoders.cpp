@@ -1,0 +1,161 @@
+#include "laz/chunk_encoders.h"
+
+#include <optional>
+
+#include "laz/item_encoders.h"
+#include "laz/point14_encoder.h"
+
+namespace surfcast::laz::testing {
+namespace {
+
+using Bytes = std::vector<std::byte>;
+
+void append(Bytes& to, std::span<const std::byte> from) {
+  to.insert(to.end(), from.begin(), from.end());
+}
+
+template <typename T>
+void append_number(Bytes& to, T number) {
+  to.resize(to.size() + sizeof(T));
+  store(&to[to.size() - sizeof(T)], number);
+}
+
+uint32_t step(std::byte from, std::byte to) {
+  return (std::to_integer<uint32_t>(to) - std::to_integer<uint32_t>(from)) & 255;
+}
+
+/// Items behind the point in one scanner channel.
+struct ColorChannelEncoder {
+  explicit ColorChannelEncoder(const Bytes& first) : last(first) {}
+
+  void encode_infrared(ArithmeticEncoder& out, const std::byte* from, const std::byte* to) {
+    out.symbol(infrared_changes, (to[6] != from[6] ? 1U : 0U) + (to[7] != from[7] ? 2U : 0U));
+    if (to[6] != from[6]) out.symbol(infrared_steps[0], step(from[6], to[6]));
+    if (to[7] != from[7]) out.symbol(infrared_steps[1], step(from[7], to[7]));
+  }
+
+  Bytes last;
+  ColorEncoder color;
+  SymbolModel<4> infrared_changes;
+  std::array<SymbolModel<256>, 2> infrared_steps;
+};
+
+struct ExtraChannelEncoder {
+  explicit ExtraChannelEncoder(const Bytes& first) : last(first), models(first.size()) {}
+  Bytes last;
+  std::vector<SymbolModel<256>> models;
+};
+
+class LayeredEncoder {
+ public:
+  LayeredEncoder(const RecordLayout& layout, bool stale, const std::byte* first)
+      : layout_(layout),
+        stale_(stale),
+        points_(channel_of(first), Point14::from_record(first)),
+        colors_(channel_of(first), Bytes(first + 30, first + layout.extra_offset)),
+        extra_(channel_of(first), Bytes(first + layout.extra_offset, first + layout.length)),
+        extra_layers_(layout.extra_bytes()) {}
+
+  void encode(const std::byte* record) {
+    const Point14 point = Point14::from_record(record);
+    const uint32_t before = points_.channel(), now = channel_of(record);
+    Point14ChannelEncoder& old = points_.current();
+    points_.change(now);
+    const uint32_t changes = points_.current().changes_to(point);
+    old.encode_changes(layers_.returns_xy.out, changes | (now != before ? 64U : 0U), (now - before) & 3);
+    points_.current().encode(layers_, point, changes);
+    item_channel_ = stale_ && now == before ? 0 : now;
+    if (layout_.color) encode_color(record + 30);
+    encode_extra(record + layout_.extra_offset);
+  }
+
+  Bytes finish() {
+    std::vector<LayerOut*> all = {&layers_.returns_xy, &layers_.z,         &layers_.classification,
+                                  &layers_.flags,      &layers_.intensity, &layers_.angle,
+                                  &layers_.user,       &layers_.source,    &layers_.time};
+    if (layout_.color) all.push_back(&color_layer_);
+    if (layout_.infrared) all.push_back(&infrared_layer_);
+    for (LayerOut& layer : extra_layers_) all.push_back(&layer);
+    Bytes sizes, bytes;
+    for (LayerOut* layer : all) {
+      const Bytes content = layer->changed ? layer->out.finish() : Bytes();
+      append_number(sizes, static_cast<uint32_t>(content.size()));
+      append(bytes, content);
+    }
+    append(sizes, bytes);
+    return sizes;
+  }
+
+ private:
+  template <typename State>
+  Bytes& follow(ChannelStates<State>& states) {
+    if (states.channel() == item_channel_) return states.current().last;
+    Bytes& before = states.change(item_channel_).last;
+    return stale_ ? before : states.current().last;
+  }
+
+  void encode_color(const std::byte* color) {
+    Bytes& last = follow(colors_);
+    ColorChannelEncoder& channel = colors_.current();
+    color_layer_.changed |= !std::equal(color, color + 6, last.begin());
+    channel.color.encode(color_layer_.out, load_color(last.data()), load_color(color));
+    if (layout_.infrared) {
+      infrared_layer_.changed |= color[6] != last[6] || color[7] != last[7];
+      channel.encode_infrared(infrared_layer_.out, last.data(), color);
+    }
+    std::copy_n(color, last.size(), last.begin());
+  }
+
+  void encode_extra(const std::byte* bytes) {
+    Bytes& last = follow(extra_);
+    for (size_t i = 0; i < last.size(); ++i) {
+      extra_layers_[i].changed |= bytes[i] != last[i];
+      extra_layers_[i].out.symbol(extra_.current().models[i], step(last[i], bytes[i]));
+      last[i] = bytes[i];
+    }
+  }
+
+  RecordLayout layout_;
+  bool stale_;
+  uint32_t item_channel_ = 0;
+  ChannelStates<Point14ChannelEncoder> points_;
+  ChannelStates<ColorChannelEncoder> colors_;
+  ChannelStates<ExtraChannelEncoder> extra_;
+  Point14LayersOut layers_;
+  LayerOut color_layer_, infrared_layer_;
+  std::vector<LayerOut> extra_layers_;
+};
+
+}  // namespace
+
+std::vector<std::byte> encode_pointwise(const RecordLayout& layout, std::span<const std::byte> records) {
+  const std::byte* last = records.data();
+  ArithmeticEncoder out;
+  Point10Encoder point(last);
+  GpsTimeEncoder<true> time(layout.gps_time ? load<int64_t>(last + 20) : 0);
+  ColorEncoder color;
+  std::vector<SymbolModel<256>> extra(layout.extra_bytes());
+  for (const std::byte* now = last + layout.length; now != records.data() + records.size(); now += layout.length) {
+    point.encode(out, now);
+    if (layout.gps_time) time.encode(out, load<int64_t>(now + 20));
+    if (layout.color) color.encode(out, load_color(last + layout.color_offset), load_color(now + layout.color_offset));
+    for (size_t i = layout.extra_offset; i < layout.length; ++i) {
+      out.symbol(extra[i - layout.extra_offset], step(last[i], now[i]));
+    }
+    last = now;
+  }
+  Bytes chunk(records.begin(), records.begin() + static_cast<ptrdiff_t>(layout.length));
+  append(chunk, out.finish());
+  return chunk;
+}
+
+std::vector<std::byte> encode_layered(const RecordLayout& layout, std::span<const std::byte> records, bool stale) {
+  LayeredEncoder encoder(layout, stale, records.data());
+  for (size_t at = layout.length; at < records.size(); at += layout.length) encoder.encode(&records[at]);
+  Bytes chunk(records.begin(), records.begin() + static_cast<ptrdiff_t>(layout.length));
+  append_number(chunk, static_cast<uint32_t>(records.size() / layout.length));
+  append(chunk, encoder.finish());
+  return chunk;
+}
+
+}  // namespace surfcast::laz::testing
