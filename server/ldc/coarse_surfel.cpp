@@ -44,13 +44,13 @@ CoarseAttributes coarse_attributes(const SurfelCloud& cloud) {
   return attributes;
 }
 
-std::vector<CoarseSurfel> sample_surfels(const SurfelCloud& cloud, std::span<const uint32_t> members) {
+std::vector<CoarseSurfel> sample_surfels(const SurfelCloud& cloud, std::span<const uint32_t> members, float largest) {
   std::vector<CoarseSurfel> surfels(members.size());
   for (size_t i = 0; i < members.size(); ++i) {
     const uint32_t member = members[i];
     surfels[i].position = cloud.positions[member];
     surfels[i].normal = cloud.normals[member];
-    surfels[i].radius = cloud.radii[member];
+    surfels[i].radius = std::min(cloud.radii[member], largest);
     if (cloud.colors) surfels[i].light = to_linear(cloud.colors->values[member], cloud.colors->bits);
   }
   for (const ScalarAttribute& scalar : cloud.scalars) {

@@ -30,8 +30,8 @@ struct CoarseAttributes {
 
 CoarseAttributes coarse_attributes(const SurfelCloud& cloud);
 
-/// Some surfels of a cloud, as they are.
-std::vector<CoarseSurfel> sample_surfels(const SurfelCloud& cloud, std::span<const uint32_t> members);
+/// Some surfels of a cloud as they are, but none with a radius above `largest`.
+std::vector<CoarseSurfel> sample_surfels(const SurfelCloud& cloud, std::span<const uint32_t> members, float largest);
 
 /// Coarse surfels as a cloud, in their order. Weights are left to be found.
 SurfelCloud make_coarse_cloud(std::span<const CoarseSurfel> surfels, const CoarseAttributes& attributes);

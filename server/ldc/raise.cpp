@@ -44,7 +44,7 @@ void append(std::vector<CoarseSurfel>& to, std::span<const CoarseSurfel> more) {
 }
 
 std::vector<CoarseSurfel> surfels_of(const FrontCell& cell, const SurfelCloud* cloud) {
-  return cell.members.empty() ? cell.surfels : sample_surfels(*cloud, cell.members);
+  return cell.members.empty() ? cell.surfels : sample_surfels(*cloud, cell.members, cell.largest_radius);
 }
 
 std::vector<CoarseSurfel> surfels_of(std::span<const FrontCell> cells, const SurfelCloud* cloud) {

@@ -1,12 +1,17 @@
 #include "ldc/subtree.h"
 
+#include <algorithm>
 #include <iterator>
+#include <limits>
 #include <numeric>
 #include <span>
 #include <utility>
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include "base/contract.h"
 #include "ldc/raise.h"
+#include "surfel/drawn_radius.h"
 
 namespace surfcast {
 namespace {
@@ -20,13 +25,29 @@ std::vector<TreeBlock> leaf_blocks(const Partition& partition) {
   return blocks;
 }
 
-Front leaf_front(const Partition& partition, uint32_t first_number) {
+float largest_drawn_radius_of(const SurfelCloud& cloud, std::span<const uint32_t> members) {
+  std::vector<float> radii;
+  radii.reserve(members.size());
+  for (const uint32_t member : members) radii.push_back(cloud.radii[member]);
+  return largest_drawn_radius(radii);
+}
+
+/// For every block the largest radius that its surfels are drawn with.
+std::vector<float> largest_radii(const SurfelCloud& cloud, std::span<const TreeBlock> blocks) {
+  std::vector<float> largest(blocks.size());
+  oneapi::tbb::parallel_for(size_t{0}, blocks.size(),
+                            [&](size_t i) { largest[i] = largest_drawn_radius_of(cloud, blocks[i].members); });
+  return largest;
+}
+
+Front leaf_front(const Partition& partition, std::span<const float> largest, uint32_t first_number) {
   Front front;
   for (const Leaf& leaf : partition.leaves) {
     FrontCell cell{leaf.key, {}};
     for (const LeafRun& run : leaf.runs) {
       cell.blocks.push_back(first_number + run.block);
       const std::span members = std::span(partition.order).subspan(run.first, run.count);
+      cell.largest_radius = std::max(cell.largest_radius, largest[run.block]);
       cell.members.insert(cell.members.end(), members.begin(), members.end());
     }
     front.push_back(std::move(cell));
@@ -46,14 +67,14 @@ void add_levels(Front& front, int last, LevelSources& sources, uint32_t first_nu
 std::vector<CoarseSurfel> surfels_around(const SurfelCloud& cloud, size_t core) {
   std::vector<uint32_t> members(cloud.size() - core);
   std::iota(members.begin(), members.end(), static_cast<uint32_t>(core));
-  return sample_surfels(cloud, members);
+  return sample_surfels(cloud, members, std::numeric_limits<float>::max());
 }
 
 /// What is left of the front is sampled, so that it does not need the cloud any longer.
 void finish(Front& front, const SurfelCloud& cloud) {
   for (FrontCell& cell : front) {
     if (cell.members.empty()) continue;
-    cell.surfels = sample_surfels(cloud, cell.members);
+    cell.surfels = sample_surfels(cloud, cell.members, cell.largest_radius);
     cell.members.clear();
   }
 }
@@ -64,7 +85,8 @@ Subtree build_subtree(const SurfelCloud& cloud, const Region& region, const Part
                       uint32_t first_number) {
   SURFCAST_EXPECTS(cloud.weights.size() == cloud.size());
   const Partition partition = partition_region(cloud, region, options);
-  Subtree subtree{leaf_blocks(partition), leaf_front(partition, first_number)};
+  Subtree subtree{leaf_blocks(partition), {}};
+  subtree.front = leaf_front(partition, largest_radii(cloud, subtree.blocks), first_number);
   const CoarseAttributes attributes = coarse_attributes(cloud);
   LevelSources sources{region.root, attributes, &cloud, surfels_around(cloud, region.core)};
   const int top = region.cell.depth + (region.whole ? 0 : 1);

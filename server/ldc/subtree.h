@@ -26,6 +26,7 @@ struct FrontCell {
   std::vector<uint32_t> blocks;  ///< numbers of those that show it; small neighbours may share one
   std::vector<CoarseSurfel> surfels = {};
   std::vector<uint32_t> members = {};  ///< of a leaf whose surfels are not yet sampled: surfels of the cloud
+  float largest_radius = 0;            ///< of members as they are drawn
 };
 
 /// The upper end of a part of a model: what the levels above are made of. Fronts of different parts of a model are
