@@ -21,6 +21,10 @@ class MappedFile {
 
   [[nodiscard]] std::span<const std::byte> bytes() const { return {static_cast<const std::byte*>(data_), size_}; }
 
+  /// Gives the memory that holds pages of the file back; they are read again when they are looked at. Keeps what a
+  /// large file takes bounded. Any thread may call it, also while others read.
+  void forget() const;
+
  private:
   MappedFile(void* data, size_t size) : data_(data), size_(size) {}
 

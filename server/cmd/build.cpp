@@ -13,7 +13,9 @@
 
 #include "base/atomic_file.h"
 #include "base/log.h"
-#include "cmd/build_model.h"
+#include "base/stopwatch.h"
+#include "builder/build_model.h"
+#include "builder/memory_budget.h"
 
 namespace surfcast {
 namespace {
@@ -23,6 +25,7 @@ struct BuildCommand {
   std::filesystem::path output;
   std::optional<double> precision;
   std::string up;
+  std::string memory;
   std::filesystem::path report;
 };
 
@@ -32,16 +35,32 @@ class ProgressLine {
   ~ProgressLine() {
     if (!shown_.empty()) std::cerr << "\r\033[K" << std::flush;
   }
-  void show(std::string_view stage, double part) {
+  void show(const BuildStep& step) {
     if (!terminal_) return;
-    const std::string text = part > 0 ? fmt::format("{} {:.0f} %", stage, 100 * part) : std::string(stage);
+    if (step.stage != stage_ || step.done == 0) {
+      stage_ = step.stage;
+      since_ = {};
+    }
+    const std::string text = describe(step);
     if (text == shown_) return;
     shown_ = text;
     std::cerr << "\r\033[K" << text << std::flush;
   }
 
  private:
+  /// Rate and time left are those of the stage.
+  [[nodiscard]] std::string describe(const BuildStep& step) const {
+    if (step.done <= 0) return stage_;
+    const double seconds = since_.seconds();
+    std::string text = fmt::format("{} {:.0f} %", stage_, 100 * step.done);
+    if (step.points > 0)
+      text += fmt::format(", {:.0f} points/s", static_cast<double>(step.points) * step.done / seconds);
+    return text + fmt::format(", {:.0f} s left", seconds * (1 - step.done) / step.done);
+  }
+
   bool terminal_ = ::isatty(STDERR_FILENO) == 1;
+  std::string stage_;
+  Stopwatch since_;
   std::string shown_;
 };
 
@@ -60,7 +79,10 @@ std::string to_json(const BuildCommand& command, const BuildReport& report) {
       {"bytes", report.bytes},
       {"seconds", report.seconds},
       {"points_per_second", report.points_per_second()},
+      {"memory_budget_bytes", report.memory_budget},
       {"peak_memory_bytes", report.peak_memory},
+      {"parts", report.parts},
+      {"stage_seconds", nlohmann::ordered_json::object()},
       {"dropped",
        {{"not_finite", report.scan.not_finite},
         {"duplicates", report.scan.duplicates},
@@ -70,6 +92,10 @@ std::string to_json(const BuildCommand& command, const BuildReport& report) {
       {"notes", report.scan.notes},
       {"inputs", nlohmann::ordered_json::array()},
   };
+  for (const auto& [stage, seconds] : report.stages) {
+    nlohmann::ordered_json& total = json["stage_seconds"][stage];
+    total = seconds + (total.is_number() ? total.get<double>() : 0.0);
+  }
   for (const std::filesystem::path& input : command.inputs) json["inputs"].push_back(input.string());
   // File names need not be UTF-8.
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
@@ -80,8 +106,9 @@ Status build(const BuildCommand& command) {
   {
     ProgressLine line;
     const std::optional<bool> z_up = command.up.empty() ? std::nullopt : std::optional(command.up == "z");
-    report = build_model(command.inputs, command.output, {command.precision, z_up},
-                         [&line](std::string_view stage, double part) { line.show(stage, part); });
+    const std::optional<uint64_t> memory = parse_memory_size(command.memory);
+    report = build_model(command.inputs, command.output, {command.precision, z_up, memory, std::nullopt},
+                         [&line](const BuildStep& step) { line.show(step); });
   }
   if (!report) return fail(std::move(report.error()));
   for (const std::string& note : report->scan.notes) spdlog::warn("{}", note);
@@ -102,6 +129,12 @@ void add_build_command(CLI::App& app, Status& outcome) {
       ->check(CLI::PositiveNumber);
   build_command->add_option("--up", command->up, "The vertical axis, when the scan's format does not say it: y or z")
       ->check(CLI::IsMember({"y", "z"}));
+  build_command
+      ->add_option("--memory", command->memory,
+                   "Most memory to take, like 4G or 512M; a quarter of the machine's without it")
+      ->check([](const std::string& text) {
+        return parse_memory_size(text) ? std::string() : "not a size like 4G or 512M: " + text;
+      });
   build_command->add_option("--report", command->report, "Write the figures of the build as JSON");
   build_command->callback([command, &outcome] { outcome = build(*command); });
 }

@@ -6,7 +6,7 @@
 
 namespace surfcast {
 
-/// Adds `build INPUT... --output MODEL.surf [--precision METRES] [--report FILE.json]`: scans to a model. The command
+/// Adds `build INPUT... --output MODEL.surf [--memory SIZE] [--precision METRES] [--report FILE.json]`: scans to a model. The command
 /// leaves how it went in `outcome`.
 void add_build_command(CLI::App& app, Status& outcome);
 

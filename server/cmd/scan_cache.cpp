@@ -11,7 +11,7 @@
 
 #include "base/log.h"
 #include "base/mapped_file.h"
-#include "cmd/build_model.h"
+#include "builder/build_model.h"
 #include "model/model_file.h"
 
 namespace surfcast {
@@ -28,7 +28,7 @@ std::string key_of(std::span<const std::byte> content) {
 Status build_into(const fs::path& scan, const fs::path& target) {
   spdlog::info("{}: building a model of it", scan.string());
   const std::array inputs{scan};
-  const Result<BuildReport> report = build_model(inputs, target, {}, [](std::string_view, double) {});
+  const Result<BuildReport> report = build_model(inputs, target, {}, [](const BuildStep&) {});
   if (!report) return fail(report.error());
   for (const std::string& note : report->scan.notes) spdlog::warn("{}", note);
   spdlog::info("{}: {} surfels in {:.1f} s", scan.string(), report->surfels, report->seconds);

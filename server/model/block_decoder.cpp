@@ -61,7 +61,7 @@ void read_colors(std::span<const Field> fields, int bits, DecodedBlock& block) {
 }
 
 template <size_t... I>
-ScalarValues empty_values(ScalarType type, std::index_sequence<I...> /*types*/) {
+ScalarValues empty_values(ScalarCode type, std::index_sequence<I...> /*types*/) {
   ScalarValues values;
   ((type == I ? void(values.emplace<I>()) : void()), ...);
   return values;

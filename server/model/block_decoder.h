@@ -10,12 +10,12 @@
 namespace surfcast {
 
 /// Type of a scalar attribute: its index in the variant ScalarValues.
-using ScalarType = uint8_t;
+using ScalarCode = uint8_t;
 
 /// A scalar attribute as the tables of a file state it.
 struct ScalarColumn {
   std::string name;
-  ScalarType type = 0;
+  ScalarCode type = 0;
   bool coarse = false;  ///< coarse blocks store it too
 };
 

@@ -214,7 +214,7 @@ Result<Directory> read_directory(std::span<const std::byte> bytes, const ModelHe
   if (scalars > kMaxScalars) return damaged("model has too many attributes");
   for (; scalars > 0; --scalars) {
     const auto type = reader.get<uint8_t>();
-    const auto plain_type = static_cast<ScalarType>(type & ~kCoarseScalarFlag);
+    const auto plain_type = static_cast<ScalarCode>(type & ~kCoarseScalarFlag);
     if (plain_type >= std::variant_size_v<ScalarValues>) return damaged("unknown attribute type");
     directory.scalars.push_back({reader.get_string(), plain_type, type != plain_type});
   }

@@ -86,7 +86,7 @@ ModelSchema schema_of(const SurfelCloud& cloud) {
   for (const SourceRange& source : cloud.sources) schema.source_names.push_back(source.name);
   for (const ScalarAttribute& scalar : cloud.scalars) {
     schema.scalars.push_back(
-        {scalar.name, static_cast<ScalarType>(scalar.values.index()), is_coarse_scalar(scalar.name)});
+        {scalar.name, static_cast<ScalarCode>(scalar.values.index()), is_coarse_scalar(scalar.name)});
   }
   return schema;
 }

@@ -10,6 +10,7 @@
 #include <tbb/parallel_for.h>
 
 #include "scan/first_equals.h"
+#include "scan/unit_normal.h"
 
 namespace surfcast {
 namespace {
@@ -40,13 +41,6 @@ void compact_attributes(Points& points, const Keep& keep) {
   for (ScalarAttribute& scalar : points.scalars) {
     std::visit([&keep](auto& values) { compact(values, keep); }, scalar.values);
   }
-}
-
-/// Unit, computed in double so that neither very short nor very long normals are lost; zero when there is none.
-glm::vec3 unit_or_zero(const glm::vec3& normal) {
-  const glm::dvec3 n(normal);
-  const double length = glm::length(n);
-  return std::isfinite(length) && length > 0 ? glm::vec3(n / length) : glm::vec3(0);
 }
 
 // ---- duplicates
@@ -110,9 +104,6 @@ void shrink_sources(std::vector<SourceRange>& sources, const Keep& keep) {
 
 void drop_unusable_points(ScanPoints& points, SurfelReport& report) {
   for (glm::vec3& normal : points.normals) normal = unit_or_zero(normal);
-  const bool any_normal =
-      std::any_of(points.normals.begin(), points.normals.end(), [](const glm::vec3& n) { return n != glm::vec3(0); });
-  if (!any_normal) points.normals.clear();
   Keep keep(points.size(), true);
   uint64_t dropped = 0;
   for (size_t i = 0; i < points.size(); ++i) {
@@ -130,7 +121,7 @@ void drop_unusable_points(ScanPoints& points, SurfelReport& report) {
   if (dropped > 0) compact_attributes(points, keep);
 }
 
-void drop_duplicates(SurfelCloud& cloud, SurfelReport& report) {
+std::vector<bool> find_duplicates(const SurfelCloud& cloud) {
   const std::vector<Bytes> all = all_bytes(cloud);
   const std::vector<uint64_t> hashes = hash_surfels(all, cloud.size());
   const std::vector<uint32_t> first = first_equals(hashes, [&all](size_t a, size_t b) {
@@ -138,15 +129,15 @@ void drop_duplicates(SurfelCloud& cloud, SurfelReport& report) {
       return std::memcmp(bytes.first + a * bytes.stride, bytes.first + b * bytes.stride, bytes.stride) == 0;
     });
   });
-  Keep keep(cloud.size());
-  size_t kept = 0;
-  for (size_t i = 0; i < cloud.size(); ++i) {
-    keep[i] = first[i] == i;
-    kept += keep[i] ? 1 : 0;
-  }
-  if (kept == cloud.size()) return;
-  report.duplicates += cloud.size() - kept;
+  std::vector<bool> duplicate(cloud.size());
+  for (size_t i = 0; i < cloud.size(); ++i) duplicate[i] = first[i] != i;
+  return duplicate;
+}
+
+void keep_surfels(SurfelCloud& cloud, const std::vector<bool>& keep) {
+  if (std::find(keep.begin(), keep.end(), false) == keep.end()) return;
   shrink_sources(cloud.sources, keep);
+  compact(cloud.weights, keep);
   compact_attributes(cloud, keep);
 }
 

@@ -12,8 +12,8 @@
 
 #include "scan/draco_claims.h"
 #include "scan/point_table.h"
+#include "scan/sliced_rows.h"
 #include "scan/text_tokens.h"
-#include "scan/up_axis.h"
 
 namespace surfcast {
 namespace {
@@ -92,28 +92,20 @@ std::optional<std::vector<T>> component_values(const draco::PointCloud& cloud, c
   return values;
 }
 
-Status add_attribute(const draco::PointCloud& cloud, int id, PointTable& table) {
+Status add_attribute(const draco::PointCloud& cloud, int id, std::vector<ColumnInfo>& columns, PointTable& table) {
   const draco::PointAttribute& attribute = *cloud.attribute(id);
   const std::optional<ScalarType> type = scalar_type(attribute.data_type());
   if (!type) return fail(ErrorKind::kInvalidInput, "Draco attribute of an unknown type");
   for (size_t component = 0; component < static_cast<size_t>(attribute.num_components()); ++component) {
+    columns.push_back({component_name(cloud, id, component), *type, false});
     const bool whole = with_type(*type, [&](auto zero) {
       auto values = component_values<decltype(zero)>(cloud, attribute, component);
-      if (values) add_column(table, component_name(cloud, id, component), std::move(*values));
+      if (values) add_column(table, std::move(*values));
       return values.has_value();
     });
     if (!whole) return fail(ErrorKind::kInvalidInput, "Draco point without a value of its attributes");
   }
   return {};
-}
-
-Result<PointTable> table_of(const draco::PointCloud& cloud) {
-  PointTable table;
-  table.rows = cloud.num_points();
-  for (int id = 0; id < cloud.num_attributes(); ++id) {
-    if (Status status = add_attribute(cloud, id, table); !status) return fail(status.error());
-  }
-  return table;
 }
 
 Result<std::unique_ptr<draco::PointCloud>> decode(std::span<const std::byte> bytes) {
@@ -137,15 +129,18 @@ bool is_mesh(std::span<const std::byte> bytes) {
 
 }  // namespace
 
-Result<ScanPoints> read_draco(std::span<const std::byte> bytes) try {
+Result<std::unique_ptr<RowSource>> draco_rows(std::span<const std::byte> bytes) try {
   const Result<std::unique_ptr<draco::PointCloud>> cloud = decode(bytes);
   if (!cloud) return fail(cloud.error());
-  const Result<PointTable> table = table_of(**cloud);
-  if (!table) return fail(table.error());
-  Result<ScanPoints> points = points_from_table(*table);
-  // Graphics write meshes, y-up; scanners write points, z-up.
-  if (points) points->z_up = !is_mesh(bytes) || looks_like_survey(*points);
-  return points;
+  std::vector<ColumnInfo> columns;
+  PointTable table;
+  table.rows = (*cloud)->num_points();
+  for (int id = 0; id < (*cloud)->num_attributes(); ++id) {
+    if (Status status = add_attribute(**cloud, id, columns, table); !status) return fail(std::move(status.error()));
+  }
+  RowTraits traits;
+  traits.may_be_graphics = is_mesh(bytes);  // graphics write meshes, y-up; scanners write points, z-up
+  return std::make_unique<SlicedRows>(traits, std::move(columns), std::move(table));
 } catch (const std::exception&) {
   // The library allocates what a damaged header asks for, and throws when that cannot be had.
   return fail(ErrorKind::kInvalidInput, "Draco data is damaged");

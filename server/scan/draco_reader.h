@@ -1,15 +1,16 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
 
 #include "base/result.h"
-#include "scan/scan_points.h"
+#include "scan/row_source.h"
 
 namespace surfcast {
 
-/// Reads the points of a Draco file, point cloud or mesh: positions, normals, colours, and every other attribute as
+/// The points of a Draco file, point cloud or mesh: positions, normals, colours, and every other attribute as
 /// scalars, named as the file's metadata names them. As with PLY, `z_up` follows up_axis.h.
-Result<ScanPoints> read_draco(std::span<const std::byte> bytes);
+Result<std::unique_ptr<RowSource>> draco_rows(std::span<const std::byte> bytes);
 
 }  // namespace surfcast

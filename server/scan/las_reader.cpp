@@ -5,88 +5,47 @@
 #include <utility>
 #include <vector>
 
-#include "scan/las_header.h"
-#include "scan/las_records.h"
+#include "scan/laz_rows.h"
 
 namespace surfcast {
 namespace {
 
-template <typename T, typename Value>
-std::vector<T> gather(const LasRecords& records, const Value& value_of) {
-  std::vector<T> values;
-  values.reserve(records.count);
-  for (const std::span<const std::byte> run : records.runs) {
-    for (size_t at = 0; at < run.size(); at += records.stride) values.push_back(value_of(&run[at]));
-  }
-  return values;
-}
+/// A number of the record, or with a mask a part of one of its bytes: `(byte >> shift) & mask`.
+struct LasField {
+  const char* name;
+  size_t offset;
+  ScalarType type;
+  int shift = 0;
+  int mask = 0;
+};
 
-/// Keeps an attribute unless it is zero everywhere.
-template <typename T>
-void keep_if_recorded(ScanPoints& points, std::string name, std::vector<T> values) {
-  const bool recorded = std::any_of(values.begin(), values.end(), [](T v) { return v != T{0}; });
-  if (recorded) points.scalars.push_back({std::move(name), std::move(values)});
-}
-
-template <typename T>
-void read_field(const LasRecords& records, size_t offset, std::string name, ScanPoints& points) {
-  keep_if_recorded(points, std::move(name),
-                   gather<T>(records, [offset](const std::byte* at) { return load<T>(at + offset); }));
-}
-
-/// Part of a byte: `(byte >> shift) & mask`.
-void read_bits(const LasRecords& records, size_t offset, int shift, int mask, std::string name, ScanPoints& points) {
-  keep_if_recorded(points, std::move(name), gather<uint8_t>(records, [=](const std::byte* at) {
-                     return static_cast<uint8_t>((std::to_integer<int>(at[offset]) >> shift) & mask);
-                   }));
-}
-
-std::vector<glm::dvec3> read_positions(const LasRecords& records, const Grid& grid) {
-  return gather<glm::dvec3>(records, [&grid](const std::byte* at) {
-    return grid.position({load<int32_t>(at), load<int32_t>(at + 4), load<int32_t>(at + 8)});
-  });
-}
-
-std::optional<ColorAttribute> read_colors(const LasRecords& records, size_t offset) {
-  ColorAttribute colors;
-  colors.values = gather<glm::u16vec3>(records, [offset](const std::byte* at) {
-    return glm::u16vec3(load<uint16_t>(at + offset), load<uint16_t>(at + offset + 2), load<uint16_t>(at + offset + 4));
-  });
-  int largest = 0;
-  for (const glm::u16vec3& c : colors.values) largest = std::max<int>({largest, c.x, c.y, c.z});
-  if (largest == 0) return std::nullopt;
-  colors.bits = largest <= 255 ? 8 : 16;
-  return colors;
-}
+constexpr auto kU8 = ScalarType::kUint8;
+constexpr auto kU16 = ScalarType::kUint16;
 
 /// Point formats 0 to 5 (LAS 1.4, table 7).
-void read_legacy_core(const LasRecords& records, ScanPoints& points) {
-  read_field<uint16_t>(records, 12, "intensity", points);
-  read_bits(records, 14, 0, 7, "return_number", points);
-  read_bits(records, 14, 3, 7, "number_of_returns", points);
-  read_bits(records, 14, 6, 1, "scan_direction_flag", points);
-  read_bits(records, 14, 7, 1, "edge_of_flight_line", points);
-  read_bits(records, 15, 0, 31, "classification", points);
-  read_bits(records, 15, 5, 7, "classification_flags", points);
-  read_field<int8_t>(records, 16, "scan_angle_rank", points);
-  read_field<uint8_t>(records, 17, "user_data", points);
-  read_field<uint16_t>(records, 18, "point_source_id", points);
-}
+constexpr LasField kLegacyCore[] = {{"intensity", 12, kU16},
+                                    {"return_number", 14, kU8, 0, 7},
+                                    {"number_of_returns", 14, kU8, 3, 7},
+                                    {"scan_direction_flag", 14, kU8, 6, 1},
+                                    {"edge_of_flight_line", 14, kU8, 7, 1},
+                                    {"classification", 15, kU8, 0, 31},
+                                    {"classification_flags", 15, kU8, 5, 7},
+                                    {"scan_angle_rank", 16, ScalarType::kInt8},
+                                    {"user_data", 17, kU8},
+                                    {"point_source_id", 18, kU16}};
 
 /// Point formats 6 to 10 (LAS 1.4, table 15).
-void read_core(const LasRecords& records, ScanPoints& points) {
-  read_field<uint16_t>(records, 12, "intensity", points);
-  read_bits(records, 14, 0, 15, "return_number", points);
-  read_bits(records, 14, 4, 15, "number_of_returns", points);
-  read_bits(records, 15, 0, 15, "classification_flags", points);
-  read_bits(records, 15, 4, 3, "scanner_channel", points);
-  read_bits(records, 15, 6, 1, "scan_direction_flag", points);
-  read_bits(records, 15, 7, 1, "edge_of_flight_line", points);
-  read_field<uint8_t>(records, 16, "classification", points);
-  read_field<uint8_t>(records, 17, "user_data", points);
-  read_field<int16_t>(records, 18, "scan_angle", points);
-  read_field<uint16_t>(records, 20, "point_source_id", points);
-}
+constexpr LasField kCore[] = {{"intensity", 12, kU16},
+                              {"return_number", 14, kU8, 0, 15},
+                              {"number_of_returns", 14, kU8, 4, 15},
+                              {"classification_flags", 15, kU8, 0, 15},
+                              {"scanner_channel", 15, kU8, 4, 3},
+                              {"scan_direction_flag", 15, kU8, 6, 1},
+                              {"edge_of_flight_line", 15, kU8, 7, 1},
+                              {"classification", 16, kU8},
+                              {"user_data", 17, kU8},
+                              {"scan_angle", 18, ScalarType::kInt16},
+                              {"point_source_id", 20, kU16}};
 
 /// Where a point format holds what only some formats have; 0: not at all.
 struct OptionalOffsets {
@@ -99,53 +58,110 @@ constexpr OptionalOffsets kOptionalOffsets[] = {{0, 0, 0},    {20, 0, 0},  {0, 2
                                                 {20, 0, 0},   {20, 28, 0}, {22, 0, 0},  {22, 30, 0},
                                                 {22, 30, 36}, {22, 0, 0},  {22, 30, 36}};
 
-/// The name that the file gives, with a number behind it where another attribute has that name.
-std::string unused_name(const ScanPoints& points, const std::string& wanted) {
-  const auto taken = [&points](const std::string& name) {
-    return std::any_of(points.scalars.begin(), points.scalars.end(),
-                       [&name](const ScalarAttribute& scalar) { return scalar.name == name; });
-  };
-  std::string name = wanted;
-  for (int suffix = 2; name.empty() || taken(name); ++suffix) name = wanted + "_" + std::to_string(suffix);
-  return name;
+std::vector<LasField> fields_of(int point_format) {
+  std::vector<LasField> fields;
+  if (point_format < 6) fields.assign(std::begin(kLegacyCore), std::end(kLegacyCore));
+  if (point_format >= 6) fields.assign(std::begin(kCore), std::end(kCore));
+  const OptionalOffsets& offsets = kOptionalOffsets[point_format];
+  if (offsets.gps_time != 0) fields.push_back({"gps_time", offsets.gps_time, ScalarType::kFloat64});
+  if (offsets.color != 0) {
+    fields.push_back({"red", offsets.color, kU16});
+    fields.push_back({"green", offsets.color + 2, kU16});
+    fields.push_back({"blue", offsets.color + 4, kU16});
+  }
+  if (offsets.nir != 0) fields.push_back({"nir", offsets.nir, kU16});
+  return fields;
 }
 
-void read_extra_field(const LasRecords& records, const LasExtraField& field, ScanPoints& points) {
-  const std::string name = unused_name(points, field.name);
-  if (field.scale != 1 || field.shift != 0) {
-    std::vector<double> values = with_type(field.type, [&](auto zero) {
-      return gather<double>(records, [&](const std::byte* at) {
-        return static_cast<double>(load<decltype(zero)>(at + field.offset)) * field.scale + field.shift;
-      });
-    });
-    points.scalars.push_back({name, std::move(values)});
+/// Coordinates along one axis, as Grid::position computes them.
+std::vector<double> coordinates(const std::byte* at, size_t count, size_t stride, double scale, double offset) {
+  std::vector<double> values(count);
+  for (size_t i = 0; i < count; ++i, at += stride) values[i] = static_cast<double>(load<int32_t>(at)) * scale + offset;
+  return values;
+}
+
+void add_field(const LasField& field, const std::byte* records, size_t stride, PointTable& table) {
+  const std::byte* at = records + field.offset;
+  if (field.mask == 0) {
+    table.columns.push_back({field.type, at, stride, false});
     return;
   }
-  with_type(field.type, [&](auto zero) {
-    using T = decltype(zero);
-    points.scalars.push_back(
-        {name, gather<T>(records, [&](const std::byte* at) { return load<T>(at + field.offset); })});
-  });
+  std::vector<uint8_t> values(table.rows);
+  for (size_t i = 0; i < table.rows; ++i, at += stride) {
+    values[i] = static_cast<uint8_t>((std::to_integer<int>(*at) >> field.shift) & field.mask);
+  }
+  add_column(table, std::move(values));
 }
+
+bool is_scaled(const LasExtraField& field) {
+  return field.scale != 1 || field.shift != 0;
+}
+
+void add_extra_field(const LasExtraField& field, const std::byte* records, size_t stride, PointTable& table) {
+  const Column stored = {field.type, records + field.offset, stride, false};
+  if (!is_scaled(field)) {
+    table.columns.push_back(stored);
+    return;
+  }
+  std::vector<double> values(table.rows);
+  for_each_value(stored, table.rows,
+                 [&](size_t i, auto value) { values[i] = static_cast<double>(value) * field.scale + field.shift; });
+  add_column(table, std::move(values));
+}
+
+/// The records of an uncompressed file, in place.
+class LasRows : public RowSource {
+ public:
+  LasRows(std::span<const std::byte> bytes, LasHeader header)
+      : first_(bytes.data() + header.data_offset), header_(std::move(header)), columns_(las_columns(header_)) {
+    traits_.grid = header_.grid;
+  }
+
+  [[nodiscard]] const RowTraits& traits() const override { return traits_; }
+  [[nodiscard]] const std::vector<ColumnInfo>& columns() const override { return columns_; }
+  [[nodiscard]] size_t pieces() const override { return (header_.count + kPieceRows - 1) / kPieceRows; }
+  [[nodiscard]] Result<PointTable> read(size_t piece) const override {
+    const uint64_t first = piece * kPieceRows;
+    return las_table(first_ + first * header_.record_length, std::min(kPieceRows, header_.count - first), header_);
+  }
+
+ private:
+  const std::byte* first_;
+  LasHeader header_;
+  RowTraits traits_;
+  std::vector<ColumnInfo> columns_;
+};
 
 }  // namespace
 
-Result<ScanPoints> read_las(std::span<const std::byte> bytes) {
-  const Result<LasHeader> header = parse_las_header(bytes);
-  if (!header) return fail(header.error());
-  const Result<LasRecords> found = las_records(bytes, *header);
-  if (!found) return fail(found.error());
-  const LasRecords& records = *found;
-  ScanPoints points;
-  points.positions = read_positions(records, header->grid);
-  points.grid = header->grid;
-  header->point_format < 6 ? read_legacy_core(records, points) : read_core(records, points);
-  const OptionalOffsets& offsets = kOptionalOffsets[header->point_format];
-  if (offsets.gps_time != 0) read_field<double>(records, offsets.gps_time, "gps_time", points);
-  if (offsets.color != 0) points.colors = read_colors(records, offsets.color);
-  if (offsets.nir != 0) read_field<uint16_t>(records, offsets.nir, "nir", points);
-  for (const LasExtraField& field : header->extra_fields) read_extra_field(records, field, points);
-  return points;
+std::vector<ColumnInfo> las_columns(const LasHeader& header) {
+  std::vector<ColumnInfo> columns;
+  for (const char* axis : {"x", "y", "z"}) columns.push_back({axis, ScalarType::kFloat64, false});
+  for (const LasField& field : fields_of(header.point_format)) columns.push_back({field.name, field.type, true});
+  for (const LasExtraField& field : header.extra_fields) {
+    columns.push_back({field.name, is_scaled(field) ? ScalarType::kFloat64 : field.type, false});
+  }
+  return columns;
+}
+
+PointTable las_table(const std::byte* records, size_t count, const LasHeader& header) {
+  const size_t stride = header.record_length;
+  PointTable table;
+  table.rows = count;
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::byte* first = records + sizeof(int32_t) * static_cast<size_t>(axis);
+    add_column(table, coordinates(first, count, stride, header.grid.scale[axis], header.grid.offset[axis]));
+  }
+  for (const LasField& field : fields_of(header.point_format)) add_field(field, records, stride, table);
+  for (const LasExtraField& field : header.extra_fields) add_extra_field(field, records, stride, table);
+  return table;
+}
+
+Result<std::unique_ptr<RowSource>> las_rows(std::span<const std::byte> bytes) {
+  Result<LasHeader> header = parse_las_header(bytes);
+  if (!header) return fail(std::move(header.error()));
+  if (header->compressed) return laz_rows(bytes, std::move(*header));
+  return std::make_unique<LasRows>(bytes, std::move(*header));
 }
 
 }  // namespace surfcast

@@ -3,15 +3,10 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <limits>
-#include <optional>
 #include <utility>
 
-#include "scan/clean_points.h"
 #include "scan/estimate_normals.h"
-#include "scan/merge_scans.h"
 #include "scan/neighbours.h"
-#include "scan/orient_normals.h"
 #include "scan/spacing.h"
 
 namespace surfcast {
@@ -24,93 +19,113 @@ bool usable_radius(float radius) {
   return std::isfinite(radius) && radius > 0;
 }
 
-void fill_radii(const Sites& sites, const NeighbourGraph& graph, SurfelCloud& cloud, SurfelReport& report) {
+bool has_normal(const SurfelCloud& cloud, size_t i) {
+  return !cloud.normals.empty() && !std::isnan(cloud.normals[i].x);
+}
+
+/// What is known and wanted of each site.
+struct SiteFacts {
+  std::vector<SitePlace> places;
+  std::vector<SiteDirection> known;
+  std::vector<glm::vec3> towards;
+
+  explicit SiteFacts(size_t sites) : places(sites), known(sites), towards(sites, glm::vec3(0)) {}
+};
+
+/// The first point at a site speaks for it; one that brings a normal, before one that knows the scanner only.
+void learn_direction(const SurfelCloud& cloud, size_t point, size_t site, const std::optional<glm::dvec3>& sensor,
+                     SiteFacts& facts) {
+  if (has_normal(cloud, point)) {
+    if (facts.known[site] == SiteDirection::kStored) return;
+    facts.known[site] = SiteDirection::kStored;
+    facts.towards[site] = cloud.normals[point];
+  } else if (sensor && *sensor != cloud.positions[point] && facts.known[site] == SiteDirection::kUnknown) {
+    facts.known[site] = SiteDirection::kToScanner;
+    facts.towards[site] = glm::vec3(glm::normalize(*sensor - cloud.positions[point]));
+  }
+}
+
+SiteFacts find_site_facts(const SurfelCloud& cloud, const Sites& sites, const PartFrame& frame) {
+  SiteFacts facts(sites.size());
+  for (size_t s = 0; s < cloud.sources.size(); ++s) {
+    const SourceRange& source = cloud.sources[s];
+    for (size_t i = source.first; i < source.first + source.count; ++i) {
+      const uint32_t site = sites.of_point[i];
+      facts.places[site] = frame.place(cloud.positions[i]);
+      learn_direction(cloud, i, site, frame.sensors[s], facts);
+    }
+  }
+  return facts;
+}
+
+void fill_radii(const Sites& sites, const NeighbourGraph& graph, const SiteFacts& facts, SurfelCloud& cloud,
+                SurfelReport& report) {
   cloud.radii.resize(cloud.size(), 0.0F);
   if (std::all_of(cloud.radii.begin(), cloud.radii.end(), usable_radius)) return;
   const std::vector<float> estimated = estimate_radii(sites, graph);
   for (size_t i = 0; i < cloud.size(); ++i) {
     if (usable_radius(cloud.radii[i])) continue;
-    cloud.radii[i] = estimated[sites.of_point[i]];
-    ++report.radii_estimated;
+    const uint32_t site = sites.of_point[i];
+    cloud.radii[i] = estimated[site];
+    report.radii_estimated += facts.places[site].own ? 1 : 0;
   }
 }
 
-bool has_normal(const SurfelCloud& cloud, size_t i) {
-  return !cloud.normals.empty() && !std::isnan(cloud.normals[i].x);
-}
-
-/// For every site what is known about its normal's sign: a stored normal there, or the way to the scanner.
-std::vector<glm::vec3> known_directions(const Sites& sites, const SurfelCloud& cloud,
-                                        const std::vector<std::optional<glm::dvec3>>& sensors) {
-  std::vector<glm::vec3> towards(sites.size(), glm::vec3(0));
-  for (size_t s = 0; s < cloud.sources.size(); ++s) {
-    const SourceRange& source = cloud.sources[s];
-    for (size_t i = source.first; i < source.first + source.count; ++i) {
-      glm::vec3& direction = towards[sites.of_point[i]];
-      if (has_normal(cloud, i)) {
-        direction = cloud.normals[i];
-      } else if (sensors[s] && *sensors[s] != cloud.positions[i]) {
-        direction = glm::vec3(glm::normalize(*sensors[s] - cloud.positions[i]));
-      }
-    }
+/// Normals of the sites: the scan's own where it has one.
+std::vector<glm::vec3> site_normals(const Sites& sites, const NeighbourGraph& graph, const SiteFacts& facts) {
+  const bool all_stored = std::all_of(facts.known.begin(), facts.known.end(),
+                                      [](SiteDirection known) { return known == SiteDirection::kStored; });
+  if (all_stored) return facts.towards;
+  std::vector<glm::vec3> normals = estimate_normals(sites, graph);
+  for (size_t i = 0; i < normals.size(); ++i) {
+    if (facts.known[i] == SiteDirection::kStored) normals[i] = facts.towards[i];
   }
-  return towards;
-}
-
-/// The normal of the first point of each site.
-std::vector<glm::vec3> site_normals(const Sites& sites, const SurfelCloud& cloud) {
-  std::vector<glm::vec3> normals(sites.size());
-  for (size_t i = cloud.size(); i-- > 0;) normals[sites.of_point[i]] = cloud.normals[i];
   return normals;
 }
 
-void fill_normals(const Sites& sites, const NeighbourGraph& graph,
-                  const std::vector<std::optional<glm::dvec3>>& sensors, SurfelCloud& cloud, SurfelReport& report) {
-  size_t stored = 0;
-  for (size_t i = 0; i < cloud.size(); ++i) stored += has_normal(cloud, i) ? 1 : 0;
-  if (stored == cloud.size()) {
-    cloud.oriented = signs_agree(graph, site_normals(sites, cloud));
-    return;
-  }
-  std::vector<glm::vec3> estimated = estimate_normals(sites, graph);
-  cloud.oriented = orient_normals(sites, graph, known_directions(sites, cloud, sensors), cloud.z_up, estimated);
-  const bool none_stored = stored == 0;
-  cloud.normals.resize(cloud.size());
+/// Fills in the normals and says which tree each follows.
+std::vector<uint32_t> fill_normals(const Sites& sites, const NeighbourGraph& graph, const SiteFacts& facts,
+                                   SurfelCloud& cloud, PartSigns& signs, SurfelReport& report) {
+  std::vector<glm::vec3> normals = site_normals(sites, graph, facts);
+  const std::vector<uint32_t> tree_of =
+      orient_normals({sites, graph, facts.known, facts.towards, facts.places}, normals, signs);
+  std::vector<uint32_t> trees(cloud.size(), kNoTree);
+  cloud.normals.resize(cloud.size(), glm::vec3(std::nanf("")));
   for (size_t i = 0; i < cloud.size(); ++i) {
-    if (none_stored || !has_normal(cloud, i)) cloud.normals[i] = estimated[sites.of_point[i]];
+    if (has_normal(cloud, i)) continue;
+    const uint32_t site = sites.of_point[i];
+    cloud.normals[i] = normals[site];
+    trees[i] = tree_of[site];
+    report.normals_estimated += facts.places[site].own ? 1 : 0;
   }
-  // Scans with normals of their own may disagree among themselves.
-  if (!none_stored) cloud.oriented = cloud.oriented && signs_agree(graph, site_normals(sites, cloud));
-  report.normals_estimated = cloud.size() - stored;
-}
-
-Status check_size(const SurfelCloud& cloud) {
-  if (cloud.size() == 0) return fail(ErrorKind::kInvalidInput, "no usable point is left of the input");
-  if (cloud.size() >= std::numeric_limits<uint32_t>::max()) {
-    return fail(ErrorKind::kLimit, "more points than the 4294967294 that one model can have");
-  }
-  return {};
+  return trees;
 }
 
 }  // namespace
 
-Result<SurfelCloud> make_surfels(std::vector<ScanPoints> scans, SurfelReport& report) {
-  report = {};
-  std::vector<std::optional<glm::dvec3>> sensors;
-  for (ScanPoints& scan : scans) {
-    report.points_read += scan.size();
-    drop_unusable_points(scan, report);
-    sensors.push_back(scan.sensor);
-  }
-  SurfelCloud cloud = merge_scans(std::move(scans), report.notes);
-  if (Status status = check_size(cloud); !status) return fail(status.error());
-  drop_duplicates(cloud, report);
-  const Sites sites = find_sites(cloud.positions);
+void SurfelReport::add(const SurfelReport& part) {
+  points_read += part.points_read;
+  not_finite += part.not_finite;
+  duplicates += part.duplicates;
+  zero_normals += part.zero_normals;
+  normals_estimated += part.normals_estimated;
+  radii_estimated += part.radii_estimated;
+}
+
+PartSurfels make_surfels(SurfelCloud cloud, const PartFrame& frame, PartSigns& signs, SurfelReport& report) {
+  const Sites sites = find_sites(cloud.positions, frame.bounds);
   const NeighbourGraph graph = find_neighbours(sites, kDegree);
-  fill_radii(sites, graph, cloud, report);
-  fill_normals(sites, graph, sensors, cloud, report);
-  report.oriented = cloud.oriented;
-  return cloud;
+  const SiteFacts facts = find_site_facts(cloud, sites, frame);
+  fill_radii(sites, graph, facts, cloud, report);
+  std::vector<uint32_t> trees = fill_normals(sites, graph, facts, cloud, signs, report);
+  return {std::move(cloud), std::move(trees)};
+}
+
+void settle_normals(const SettledSigns& signs, size_t part, PartSurfels& surfels) {
+  for (size_t i = 0; i < surfels.cloud.size(); ++i) {
+    surfels.cloud.normals[i] = signs.settle(surfels.cloud.normals[i], part, surfels.trees[i]);
+  }
+  surfels.cloud.oriented = signs.oriented;
 }
 
 }  // namespace surfcast

@@ -1,29 +1,39 @@
 #pragma once
 
 #include <cstdint>
-#include <string>
+#include <functional>
+#include <glm/vec3.hpp>
+#include <optional>
 #include <vector>
 
-#include "base/result.h"
-#include "scan/scan_points.h"
+#include "scan/orient_normals.h"
+#include "scan/signed_trees.h"
+#include "scan/surfel_report.h"
 #include "surfel/surfel_cloud.h"
 
 namespace surfcast {
 
-/// What was dropped and estimated on the way from points to surfels.
-struct SurfelReport {
-  uint64_t points_read = 0;
-  uint64_t not_finite = 0;    ///< dropped: NaN or infinite coordinates
-  uint64_t duplicates = 0;    ///< dropped: same position and same attributes as an earlier point
-  uint64_t zero_normals = 0;  ///< dropped: a stored normal of zero or not finite, in a scan that has normals
-  uint64_t normals_estimated = 0;
-  uint64_t radii_estimated = 0;
-  bool oriented = false;
-  std::vector<std::string> notes;  ///< one line each: what was filled in for a scan that lacks an attribute of another
+/// Where a part of a cloud lies in the whole.
+struct PartFrame {
+  Box bounds;  ///< of the whole cloud
+  /// Tells the part's own points from its halo, and those near the border from others. Any thread may ask.
+  std::function<SitePlace(const glm::dvec3&)> place = [](const glm::dvec3&) { return SitePlace{}; };
+  std::vector<std::optional<glm::dvec3>> sensors;  ///< of each source
 };
 
-/// Cleans the scans, joins them into one cloud, and estimates the normals and radii that are missing. Everything but
-/// the weights of the cloud is filled in. Fails when no surfel is left.
-Result<SurfelCloud> make_surfels(std::vector<ScanPoints> scans, SurfelReport& report);
+/// Surfels of a part, halo included, before the signs of their normals are settled. Everything but the weights is
+/// there.
+struct PartSurfels {
+  SurfelCloud cloud;
+  std::vector<uint32_t> trees;  ///< of each surfel: the tree whose sign its normal follows, or kNoTree
+};
+
+/// Makes surfels of usable points: estimates the normals and radii that are missing, NaN or not positive. What has to
+/// be known of the part to settle the signs goes to `signs`, the numbers of its own points to `report`. The cloud has
+/// no duplicates. The result is the same for any number of threads.
+PartSurfels make_surfels(SurfelCloud cloud, const PartFrame& frame, PartSigns& signs, SurfelReport& report);
+
+/// Gives the normals of part number `part` their final signs.
+void settle_normals(const SettledSigns& signs, size_t part, PartSurfels& surfels);
 
 }  // namespace surfcast

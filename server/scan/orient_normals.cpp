@@ -2,11 +2,11 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <limits>
 
-#include "geometry/box.h"
+#include "scan/first_equals.h"
 #include "scan/signed_forest.h"
 
 namespace surfcast {
@@ -15,9 +15,9 @@ namespace {
 /// Neighbours of each site that signs spread to; more only costs time.
 constexpr size_t kLinks = 8;
 
-/// Share of disagreement between neighbours up to which signs count as consistent. Smooth and sharp-edged surfaces
-/// stay below 0.02, normals of foliage come out above 0.1.
-constexpr double kMostConflict = 0.05;
+/// One in so many sites near a border ties the trees of two parts together. The choice follows from the position, so
+/// that both parts make the same.
+constexpr uint64_t kBorderSample = 16;
 
 struct Link {
   uint32_t a;
@@ -61,159 +61,114 @@ SignedForest spread_signs(const NeighbourGraph& graph, std::span<const glm::vec3
 }
 
 /// The square of the distance to the farthest neighbour: in proportion to the area a site stands for.
-double area_of(const Sites& sites, const NeighbourGraph& graph, size_t site) {
-  const glm::dvec3 d = sites.positions[graph.of(site).back()] - sites.positions[site];
+double area_of(const SitesOfPart& part, size_t site) {
+  if (part.graph.degree == 0) return 0;
+  const glm::dvec3 d = part.sites.positions[part.graph.of(site).back()] - part.sites.positions[site];
   return glm::dot(d, d);
 }
 
-/// Sums over the sites of one tree, weighted by area.
-struct Tree {
-  double area = 0;
-  double towards = 0;      ///< agreement with the known directions
-  glm::dvec3 centroid{0};  ///< times area
-  glm::dvec3 normal{0};
-  double volume = 0;  ///< n . (p - centroid): three times the enclosed volume (divergence theorem)
-  double reach = 0;   ///< |p - centroid|: what `volume` would be on a sphere
-  bool flip = false;
-  bool trusted = false;
-};
-
-struct SignedTrees {
-  std::vector<Tree> trees;
-  std::vector<uint32_t> tree_of;  ///< index in `trees` for every site
-};
+/// Turns the normals whose direction is known, each by itself.
+void face_known(const SitesOfPart& part, std::vector<glm::vec3>& normals) {
+  for (size_t i = 0; i < normals.size(); ++i) {
+    if (glm::dot(normals[i], part.towards[i]) < 0) normals[i] = -normals[i];
+  }
+}
 
 /// Gives every site the sign it has relative to its tree's root, and numbers the trees.
-SignedTrees number_trees(SignedForest& forest, std::vector<glm::vec3>& normals) {
-  constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
-  SignedTrees signed_trees{{}, std::vector<uint32_t>(normals.size())};
-  std::vector<uint32_t> number_of_root(normals.size(), kNone);
+std::vector<uint32_t> number_trees(SignedForest& forest, std::vector<glm::vec3>& normals, PartSigns& signs) {
+  std::vector<uint32_t> tree_of(normals.size());
+  std::vector<uint32_t> number_of_root(normals.size(), kNoTree);
   for (uint32_t i = 0; i < normals.size(); ++i) {
     const auto [root, opposed] = forest.find(i);
     if (opposed) normals[i] = -normals[i];
     uint32_t& number = number_of_root[root];
-    if (number == kNone) {
-      number = static_cast<uint32_t>(signed_trees.trees.size());
-      signed_trees.trees.emplace_back();
+    if (number == kNoTree) {
+      number = static_cast<uint32_t>(signs.trees.size());
+      signs.trees.emplace_back();
     }
-    signed_trees.tree_of[i] = number;
+    tree_of[i] = number;
   }
-  return signed_trees;
+  return tree_of;
 }
 
-void measure_trees(const Sites& sites, const NeighbourGraph& graph, std::span<const glm::vec3> towards,
-                   std::span<const glm::vec3> normals, SignedTrees& signed_trees) {
-  for (size_t i = 0; i < sites.size(); ++i) {
-    Tree& tree = signed_trees.trees[signed_trees.tree_of[i]];
-    const double area = area_of(sites, graph, i);
+void vote(const SitesOfPart& part, std::span<const glm::vec3> normals, std::span<const uint32_t> tree_of,
+          PartSigns& signs) {
+  for (size_t i = 0; i < normals.size(); ++i) {
+    if (!part.places[i].own) continue;
+    TreeVotes& tree = signs.trees[tree_of[i]];
+    if (tree.area == 0) tree.origin = part.sites.positions[i];
+    const double area = area_of(part, i);
+    const glm::dvec3 p = part.sites.positions[i] - tree.origin;
+    const glm::dvec3 n(normals[i]);
     tree.area += area;
-    tree.towards += area * static_cast<double>(glm::dot(normals[i], towards[i]));
-    tree.centroid += area * sites.positions[i];
-    tree.normal += area * glm::dvec3(normals[i]);
-  }
-  for (size_t i = 0; i < sites.size(); ++i) {
-    Tree& tree = signed_trees.trees[signed_trees.tree_of[i]];
-    const glm::dvec3 from_centroid = sites.positions[i] - tree.centroid / tree.area;
-    const double area = area_of(sites, graph, i);
-    tree.volume += area * glm::dot(glm::dvec3(normals[i]), from_centroid);
-    tree.reach += area * glm::length(from_centroid);
+    tree.moment += area * p;
+    tree.spread += area * glm::dot(p, p);
+    tree.normal += area * n;
+    tree.flux += area * glm::dot(n, p);
+    tree.towards += area * static_cast<double>(glm::dot(normals[i], part.towards[i]));
   }
 }
 
-/// What is known of a scene as a whole when the sign of a tree is decided.
-struct Scene {
-  bool z_up = false;
-  bool may_be_room = false;  ///< at least twice as wide, both ways, as high: a closed surface may be seen from within
-};
-
-Scene describe_scene(const Sites& sites, bool z_up) {
-  Box box;
-  for (const glm::dvec3& p : sites.positions) box.include(p);
-  const glm::dvec3 size = box.size();
-  std::array<double, 3> sorted = {size.x, size.y, size.z};
-  std::sort(sorted.begin(), sorted.end());
-  return {z_up, z_up || 2 * sorted[0] <= sorted[1]};
+/// Counts how far linked sites agree. A link across the border counts half in either part. `tree_of` is empty when all
+/// directions are known.
+void count_agreement(const SitesOfPart& part, std::span<const glm::vec3> normals, std::span<const uint32_t> tree_of,
+                     PartSigns& signs) {
+  const auto is_known = [&part](uint32_t site) { return part.known[site] != SiteDirection::kUnknown; };
+  for_each_link(part.graph, normals.size(), [&](uint32_t a, uint32_t b) {
+    const double share = 0.5 * ((part.places[a].own ? 1 : 0) + (part.places[b].own ? 1 : 0));
+    const double similarity = share * static_cast<double>(glm::dot(normals[a], normals[b]));
+    const bool mixed = is_known(a) != is_known(b);
+    double& agreement = mixed ? signs.trees[tree_of[a]].agreement : signs.agreement;
+    double& conflict = mixed ? signs.trees[tree_of[a]].conflict : signs.conflict;
+    (similarity < 0 ? conflict : agreement) += std::abs(similarity);
+  });
 }
 
-/// Whether the tree is closed, or so nearly that its volume is sure. The normals of a closed surface sum to zero; what
-/// they do sum to is the area of the holes, and a lid over them takes away about that times its distance.
-bool encloses_volume(const Tree& tree) {
-  const double holes = glm::length(tree.normal) / tree.area;
-  const double fullness = std::abs(tree.volume) / tree.reach;
-  return fullness > 0.1 && fullness > 2 * holes;
+uint64_t hash_place(const glm::dvec3& p) {
+  uint64_t hash = mix_hash(std::bit_cast<uint64_t>(p.x));
+  hash = mix_hash(hash + std::bit_cast<uint64_t>(p.y));
+  return mix_hash(hash + std::bit_cast<uint64_t>(p.z));
 }
 
-/// Decides the sign of one tree and whether that is more than a guess.
-void decide(Tree& tree, const Scene& scene) {
-  constexpr double kTerrain = 0.25;  // of the vote when all of the area faces up
-  if (tree.towards != 0) {
-    tree.flip = tree.towards < 0;
-    tree.trusted = true;
-  } else if (scene.z_up && std::abs(tree.normal.z) > kTerrain * tree.area) {
-    tree.flip = tree.normal.z < 0;
-    tree.trusted = true;
-  } else if (tree.volume != 0) {
-    tree.flip = tree.volume < 0;
-    tree.trusted = !scene.may_be_room && encloses_volume(tree);
-  } else {
-    tree.flip = tree.normal.z < 0;
-  }
-}
-
-/// Turns the trees; whether most of the area was decided by more than a guess.
-bool apply_signs(SignedTrees& signed_trees, const Scene& scene, std::vector<glm::vec3>& normals) {
-  double area = 0;
-  double trusted = 0;
-  for (Tree& tree : signed_trees.trees) {
-    decide(tree, scene);
-    area += tree.area;
-    if (tree.trusted) trusted += tree.area;
-  }
+void sample_border(const SitesOfPart& part, std::span<const glm::vec3> normals, std::span<const uint32_t> tree_of,
+                   PartSigns& signs) {
   for (size_t i = 0; i < normals.size(); ++i) {
-    if (signed_trees.trees[signed_trees.tree_of[i]].flip) normals[i] = -normals[i];
+    if (!part.places[i].near_border || part.known[i] != SiteDirection::kUnknown) continue;
+    const uint64_t place = hash_place(part.sites.positions[i]);
+    if (place % kBorderSample == 0) signs.border.push_back({place, normals[i], tree_of[i]});
   }
-  return trusted >= 0.9 * area;
 }
 
-/// Turns the normals whose sign is known, each by itself. Whether that was all of them.
-bool face_known(std::span<const glm::vec3> towards, std::vector<glm::vec3>& normals) {
-  bool all = true;
-  for (size_t i = 0; i < normals.size(); ++i) {
-    if (glm::dot(normals[i], towards[i]) < 0) normals[i] = -normals[i];
-    all = all && towards[i] != glm::vec3(0);
+bool all_own_known(const SitesOfPart& part) {
+  for (size_t i = 0; i < part.known.size(); ++i) {
+    if (part.places[i].own && part.known[i] == SiteDirection::kUnknown) return false;
   }
-  return all;
+  return true;
 }
 
 }  // namespace
 
-bool signs_agree(const NeighbourGraph& graph, std::span<const glm::vec3> normals) {
-  if (graph.degree == 0) return true;
-  double agreement = 0;
-  double conflict = 0;
-  for_each_link(graph, normals.size(), [&](uint32_t a, uint32_t b) {
-    const auto similarity = static_cast<double>(glm::dot(normals[a], normals[b]));
-    (similarity < 0 ? conflict : agreement) += std::abs(similarity);
-  });
-  return conflict <= kMostConflict * (agreement + conflict);
-}
-
-bool orient_normals(const Sites& sites, const NeighbourGraph& graph, std::span<const glm::vec3> towards, bool z_up,
-                    std::vector<glm::vec3>& normals) {
-  if (face_known(towards, normals)) return true;
-  if (graph.degree == 0) return false;
-  SignedForest forest = spread_signs(graph, normals);
-  SignedTrees trees = number_trees(forest, normals);
-  measure_trees(sites, graph, towards, normals, trees);
-  const bool decided = apply_signs(trees, describe_scene(sites, z_up), normals);
-  face_known(towards, normals);
-  if (decided && signs_agree(graph, normals)) return true;
-  if (z_up) {
-    for (size_t i = 0; i < normals.size(); ++i) {
-      if (towards[i] == glm::vec3(0) && normals[i].z < 0) normals[i] = -normals[i];
-    }
+std::vector<uint32_t> orient_normals(const SitesOfPart& part, std::vector<glm::vec3>& normals, PartSigns& signs) {
+  face_known(part, normals);
+  signs.all_known = all_own_known(part);
+  const bool nothing_open =
+      std::find(part.known.begin(), part.known.end(), SiteDirection::kUnknown) == part.known.end();
+  std::vector<uint32_t> tree_of;
+  if (nothing_open) {
+    for (size_t i = 0; i < normals.size(); ++i) signs.settled_area += part.places[i].own ? area_of(part, i) : 0;
+  } else {
+    SignedForest forest = spread_signs(part.graph, normals);
+    tree_of = number_trees(forest, normals, signs);
+    vote(part, normals, tree_of, signs);
+    sample_border(part, normals, tree_of, signs);
+    face_known(part, normals);
   }
-  return false;
+  count_agreement(part, normals, tree_of, signs);
+  tree_of.resize(normals.size(), kNoTree);
+  for (size_t i = 0; i < normals.size(); ++i) {
+    if (part.known[i] != SiteDirection::kUnknown) tree_of[i] = kNoTree;
+  }
+  return tree_of;
 }
 
 }  // namespace surfcast

@@ -1,29 +1,41 @@
 #pragma once
 
+#include <cstdint>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <span>
 #include <vector>
 
 #include "scan/neighbours.h"
+#include "scan/signed_trees.h"
 
 namespace surfcast {
 
-/// Gives normals of unknown sign a consistent one. `towards` says for every site a direction that its normal must make
-/// an acute angle with (to the scanner), or zero where nothing is known.
-///
-/// Signs spread along the minimum spanning forest of the neighbour graph with edge weights 1 - |n . n'| (Hoppe et al.
-/// 1992, section 3.3). Each tree's own sign is then decided as a whole, by area-weighted votes: by `towards` where it
-/// speaks; upwards, when the scene is z-up and the tree is a terrain, most of whose area faces one way along z;
-/// otherwise such that the enclosed volume is positive.
-///
-/// Returns whether the signs can be trusted to tell front from back. They cannot when too many neighbours disagree
-/// (foliage, noise), nor when nothing decides between the two sides: an open surface that is no terrain, or a closed
-/// one in a scene that may be a room seen from within (z-up, or at least twice as wide, both ways, as high). To call
-/// such a cloud oriented would hide its front. A z-up scene without trust has its normals turned upwards one by one.
-bool orient_normals(const Sites& sites, const NeighbourGraph& graph, std::span<const glm::vec3> towards, bool z_up,
-                    std::vector<glm::vec3>& normals);
+/// What is known about the direction of a site's normal.
+enum class SiteDirection : uint8_t {
+  kUnknown,
+  kToScanner,  ///< `towards` leads to the scanner
+  kStored,     ///< `towards` is the scan's own normal
+};
 
-/// Whether neighbouring normals agree in sign often enough to tell front from back.
-bool signs_agree(const NeighbourGraph& graph, std::span<const glm::vec3> normals);
+/// Whether a site is the part's own, and whether it is near the part's border, halo included.
+struct SitePlace {
+  bool own = true;
+  bool near_border = false;
+};
+
+struct SitesOfPart {
+  const Sites& sites;
+  const NeighbourGraph& graph;
+  std::span<const SiteDirection> known;
+  std::span<const glm::vec3> towards;  ///< zero where nothing is known
+  std::span<const SitePlace> places;
+};
+
+/// Gives normals of unknown sign consistent ones: signs spread along the minimum spanning forest of the neighbour graph
+/// with edge weights 1 - |n . n'| (Hoppe et al. 1992, section 3.3). The sign of each tree of that forest stays open;
+/// what settles it goes to `signs`. Normals that are known get their final sign. Returns the tree of every site, or
+/// kNoTree.
+std::vector<uint32_t> orient_normals(const SitesOfPart& part, std::vector<glm::vec3>& normals, PartSigns& signs);
 
 }  // namespace surfcast

@@ -8,6 +8,7 @@
 #include "scan/lzf.h"
 #include "scan/pcd_header.h"
 #include "scan/point_table.h"
+#include "scan/sliced_rows.h"
 #include "scan/text_tokens.h"
 
 namespace surfcast {
@@ -24,11 +25,31 @@ std::string value_name(const PcdField& field, size_t value) {
   return field.count == 1 ? field.name : field.name + "_" + std::to_string(value);
 }
 
+bool is_padding(const PcdField& field) {
+  return field.name == "_";
+}
+
+std::vector<ColumnInfo> columns_of(const PcdHeader& header) {
+  std::vector<ColumnInfo> columns;
+  for (const PcdField& field : header.fields) {
+    for (size_t value = 0; !is_padding(field) && value < field.count; ++value) {
+      columns.push_back({value_name(field, value), field.type, false});
+    }
+  }
+  return columns;
+}
+
+RowTraits traits_of(const PcdHeader& header) {
+  RowTraits traits;
+  traits.sensor = header.sensor;
+  traits.z_up = !header.organised;
+  return traits;
+}
+
 /// Adds the columns of a field whose values for point 0 begin at `first`, and for every next point `stride` on.
 void add_field(const PcdField& field, const std::byte* first, size_t stride, PointTable& table) {
-  if (field.name == "_") return;
-  for (size_t value = 0; value < field.count; ++value) {
-    table.columns.push_back({value_name(field, value), field.type, first + value * size_of(field.type), stride, false});
+  for (size_t value = 0; !is_padding(field) && value < field.count; ++value) {
+    table.columns.push_back({field.type, first + value * size_of(field.type), stride, false});
   }
 }
 
@@ -69,56 +90,72 @@ Result<PointTable> read_compressed(const PcdHeader& header, Bytes data) {
   return table;
 }
 
-Result<PointTable> read_ascii(const PcdHeader& header, Bytes data) {
-  std::vector<ScalarValues> columns;
-  std::vector<std::string> names;
-  for (const PcdField& field : header.fields) {
-    for (size_t value = 0; value < field.count; ++value) {
-      columns.push_back(empty_values(field.type));
-      names.push_back(value_name(field, value));
-    }
-  }
-  Tokens tokens(as_text(data));
-  for (uint64_t point = 0; point < header.points; ++point) {
-    for (ScalarValues& column : columns) {
-      const std::string_view word = tokens.next();
-      if (word.empty()) return truncated(header);
-      if (append_number(column, word)) continue;
-      return fail(ErrorKind::kInvalidInput, "PCD value is not a number of its field's type: " + printable(word));
-    }
-  }
-  PointTable table;
-  table.rows = header.points;
-  for (size_t i = 0; i < columns.size(); ++i) {
-    if (!names[i].starts_with("_")) add_column(table, names[i], std::move(columns[i]));
-  }
-  return table;
-}
+/// Rows of words; each piece begins where a first pass has come by.
+class AsciiRows : public RowSource {
+ public:
+  AsciiRows(const PcdHeader& header, std::vector<Tokens> starts)
+      : header_(header), traits_(traits_of(header)), columns_(columns_of(header)), starts_(std::move(starts)) {}
 
-Result<PointTable> read_table(const PcdHeader& header, Bytes data) {
-  switch (header.encoding) {
-    case PcdEncoding::kAscii:
-      return read_ascii(header, data);
-    case PcdEncoding::kBinary:
-      return read_binary(header, data);
-    case PcdEncoding::kBinaryCompressed:
-      break;
+  [[nodiscard]] const RowTraits& traits() const override { return traits_; }
+  [[nodiscard]] const std::vector<ColumnInfo>& columns() const override { return columns_; }
+  [[nodiscard]] size_t pieces() const override { return starts_.size(); }
+  [[nodiscard]] Result<PointTable> read(size_t piece) const override {
+    std::vector<ScalarValues> values;
+    for (const ColumnInfo& column : columns_) values.push_back(empty_values(column.type));
+    PointTable table;
+    table.rows = std::min(kPieceRows, header_.points - piece * kPieceRows);
+    Tokens tokens = starts_[piece];
+    for (size_t row = 0; row < table.rows; ++row) {
+      if (Status status = read_row(tokens, values); !status) return fail(std::move(status.error()));
+    }
+    for (ScalarValues& column : values) add_column(table, std::move(column));
+    return table;
   }
-  return read_compressed(header, data);
+
+ private:
+  Status read_row(Tokens& tokens, std::vector<ScalarValues>& values) const {
+    size_t column = 0;
+    for (const PcdField& field : header_.fields) {
+      for (size_t value = 0; value < field.count; ++value) {
+        const std::string_view word = tokens.next();
+        if (is_padding(field) || append_number(values[column++], word)) continue;
+        return fail(ErrorKind::kInvalidInput, "PCD value is not a number of its field's type: " + printable(word));
+      }
+    }
+    return {};
+  }
+
+  PcdHeader header_;
+  RowTraits traits_;
+  std::vector<ColumnInfo> columns_;
+  std::vector<Tokens> starts_;
+};
+
+Result<std::unique_ptr<RowSource>> ascii_rows(const PcdHeader& header, Bytes data) {
+  size_t words = 0;
+  for (const PcdField& field : header.fields) words += field.count;
+  Tokens tokens(as_text(data));
+  std::vector<Tokens> starts;
+  for (uint64_t point = 0; point < header.points; ++point) {
+    if (point % kPieceRows == 0) starts.push_back(tokens);
+    for (size_t i = 0; i < words; ++i) {
+      if (tokens.next().empty()) return truncated(header);
+    }
+  }
+  return std::make_unique<AsciiRows>(header, std::move(starts));
 }
 
 }  // namespace
 
-Result<ScanPoints> read_pcd(Bytes bytes) {
+Result<std::unique_ptr<RowSource>> pcd_rows(Bytes bytes) {
   const Result<PcdHeader> header = parse_pcd_header(bytes);
   if (!header) return fail(header.error());
-  const Result<PointTable> table = read_table(*header, bytes.subspan(header->data_offset));
-  if (!table) return fail(table.error());
-  Result<ScanPoints> points = points_from_table(*table);
-  if (!points) return points;
-  points->sensor = header->sensor;
-  points->z_up = !header->organised;
-  return points;
+  const Bytes data = bytes.subspan(header->data_offset);
+  if (header->encoding == PcdEncoding::kAscii) return ascii_rows(*header, data);
+  Result<PointTable> table =
+      header->encoding == PcdEncoding::kBinary ? read_binary(*header, data) : read_compressed(*header, data);
+  if (!table) return fail(std::move(table.error()));
+  return std::make_unique<SlicedRows>(traits_of(*header), columns_of(*header), std::move(*table));
 }
 
 }  // namespace surfcast

@@ -1,15 +1,16 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <span>
 
 #include "base/result.h"
-#include "scan/scan_points.h"
+#include "scan/row_source.h"
 
 namespace surfcast {
 
-/// Reads a PCD file (Point Cloud Library): ascii, binary or binary_compressed. Organised clouds come from cameras,
-/// whose vertical axis is y; others count as z-up, as in robotics.
-Result<ScanPoints> read_pcd(std::span<const std::byte> bytes);
+/// The points of a PCD file (Point Cloud Library): ascii, binary or binary_compressed. Organised clouds come from
+/// cameras, whose vertical axis is y; others count as z-up, as in robotics.
+Result<std::unique_ptr<RowSource>> pcd_rows(std::span<const std::byte> bytes);
 
 }  // namespace surfcast

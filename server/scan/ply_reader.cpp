@@ -9,8 +9,8 @@
 
 #include "scan/ply_header.h"
 #include "scan/point_table.h"
+#include "scan/sliced_rows.h"
 #include "scan/text_tokens.h"
-#include "scan/up_axis.h"
 
 namespace surfcast {
 namespace {
@@ -31,53 +31,20 @@ size_t record_size(const PlyElement& element) {
   return size;
 }
 
-/// One typed vector for each property that is not a list.
-std::vector<ScalarValues> empty_columns(const PlyElement& element) {
-  std::vector<ScalarValues> columns;
-  for (const PlyProperty& property : element.properties) columns.push_back(empty_values(property.type));
+std::vector<ColumnInfo> columns_of(const PlyElement& element) {
+  std::vector<ColumnInfo> columns;
+  for (const PlyProperty& property : element.properties) {
+    if (!property.list_count) columns.push_back({property.name, property.type, false});
+  }
   return columns;
 }
 
-PointTable table_of(const PlyElement& element, std::vector<ScalarValues> columns) {
-  PointTable table;
-  table.rows = element.count;
-  table.storage.reserve(columns.size());
-  for (size_t i = 0; i < columns.size(); ++i) {
-    if (!element.properties[i].list_count) add_column(table, element.properties[i].name, std::move(columns[i]));
-  }
-  return table;
-}
-
-/// Walks the data of binary elements, whose bytes are `rest`.
+/// Reads the rows of binary elements that have lists, whose rows differ in size.
 class BinaryWalk {
  public:
   BinaryWalk(std::span<const std::byte> rest, bool swapped) : rest_(rest), swapped_(swapped) {}
 
-  /// Passes over the element; fails when the file ends within it.
-  Status skip(const PlyElement& element) {
-    if (!has_lists(element)) return take_records(element).map([](auto) {});
-    return walk_rows(element, nullptr);
-  }
-
-  Result<PointTable> read(const PlyElement& element) {
-    if (has_lists(element)) {
-      std::vector<ScalarValues> columns = empty_columns(element);
-      if (Status status = walk_rows(element, &columns); !status) return fail(status.error());
-      return table_of(element, std::move(columns));
-    }
-    const Result<const std::byte*> records = take_records(element);
-    if (!records) return fail(records.error());
-    PointTable table;
-    table.rows = element.count;
-    size_t offset = 0;
-    for (const PlyProperty& property : element.properties) {
-      table.columns.push_back({property.name, property.type, *records + offset, record_size(element), swapped_});
-      offset += size_of(property.type);
-    }
-    return table;
-  }
-
- private:
+  /// Passes over elements of one size; fails when the file ends within them.
   Result<const std::byte*> take_records(const PlyElement& element) {
     const size_t size = record_size(element);
     if (size > 0 && element.count > rest_.size() / size) return truncated(element);
@@ -86,20 +53,26 @@ class BinaryWalk {
     return first;
   }
 
-  /// For elements with lists, whose rows differ in size. Every row has at least the byte of a list's count, so the
+  /// Reads so many rows, into the columns when there are any. Every row has at least the byte of a list's count, so the
   /// end of the file bounds the walk whatever the header says.
-  Status walk_rows(const PlyElement& element, std::vector<ScalarValues>* columns) {
-    for (uint64_t row = 0; row < element.count; ++row) {
-      for (size_t i = 0; i < element.properties.size(); ++i) {
-        const PlyProperty& property = element.properties[i];
-        const bool whole =
-            property.list_count ? skip_list(property) : read_value(property.type, columns ? &(*columns)[i] : nullptr);
+  Status walk_rows(const PlyElement& element, uint64_t rows, std::vector<ScalarValues>* columns) {
+    for (uint64_t row = 0; row < rows; ++row) {
+      size_t column = 0;
+      for (const PlyProperty& property : element.properties) {
+        const bool whole = property.list_count ? skip_list(property)
+                                               : read_value(property.type, columns ? &(*columns)[column++] : nullptr);
         if (!whole) return truncated(element);
       }
     }
     return {};
   }
 
+  Status skip(const PlyElement& element) {
+    if (!has_lists(element)) return take_records(element).map([](auto) {});
+    return walk_rows(element, element.count, nullptr);
+  }
+
+ private:
   bool skip_list(const PlyProperty& property) {
     if (rest_.size() < size_of(*property.list_count)) return false;
     const auto count = with_type(*property.list_count, [&](auto zero) {
@@ -129,25 +102,17 @@ class BinaryWalk {
   bool swapped_;
 };
 
-/// Walks the data of ascii elements word by word.
+/// Reads the rows of ascii elements word by word.
 class AsciiWalk {
  public:
   explicit AsciiWalk(std::string_view text) : tokens_(text) {}
 
-  Status skip(const PlyElement& element) { return walk_rows(element, nullptr); }
-
-  Result<PointTable> read(const PlyElement& element) {
-    std::vector<ScalarValues> columns = empty_columns(element);
-    if (Status status = walk_rows(element, &columns); !status) return fail(status.error());
-    return table_of(element, std::move(columns));
-  }
-
- private:
-  Status walk_rows(const PlyElement& element, std::vector<ScalarValues>* columns) {
+  Status walk_rows(const PlyElement& element, uint64_t rows, std::vector<ScalarValues>* columns) {
     if (element.properties.empty()) return {};
-    for (uint64_t row = 0; row < element.count; ++row) {
-      for (size_t i = 0; i < element.properties.size(); ++i) {
-        if (element.properties[i].list_count ? !skip_list() : !read_value(columns ? &(*columns)[i] : nullptr)) {
+    for (uint64_t row = 0; row < rows; ++row) {
+      size_t column = 0;
+      for (const PlyProperty& property : element.properties) {
+        if (property.list_count ? !skip_list() : !read_value(columns ? &(*columns)[column++] : nullptr)) {
           return bad_word(element);
         }
       }
@@ -155,6 +120,9 @@ class AsciiWalk {
     return {};
   }
 
+  Status skip(const PlyElement& element) { return walk_rows(element, element.count, nullptr); }
+
+ private:
   bool skip_list() {
     word_ = tokens_.next();
     const std::optional<uint64_t> count = parse_number<uint64_t>(word_);
@@ -181,24 +149,102 @@ class AsciiWalk {
   std::string_view word_;
 };
 
+/// Vertices whose rows have to be read one after another: each piece begins where a walk has come by.
 template <typename Walk>
-Result<PointTable> read_vertices(const PlyHeader& header, Walk walk) {
-  std::optional<PointTable> vertices;
-  for (const PlyElement& element : header.elements) {
-    if (element.name == "vertex" && !vertices) {
-      Result<PointTable> table = walk.read(element);
-      if (!table) return table;
-      vertices = std::move(*table);
-    } else if (Status status = walk.skip(element); !status) {
-      return fail(status.error());
-    }
+class WalkedRows : public RowSource {
+ public:
+  WalkedRows(RowTraits traits, PlyElement element, std::vector<Walk> starts)
+      : traits_(traits), element_(std::move(element)), columns_(columns_of(element_)), starts_(std::move(starts)) {}
+
+  [[nodiscard]] const RowTraits& traits() const override { return traits_; }
+  [[nodiscard]] const std::vector<ColumnInfo>& columns() const override { return columns_; }
+  [[nodiscard]] size_t pieces() const override { return starts_.size(); }
+  [[nodiscard]] Result<PointTable> read(size_t piece) const override {
+    Walk walk = starts_[piece];
+    std::vector<ScalarValues> values;
+    for (const ColumnInfo& column : columns_) values.push_back(empty_values(column.type));
+    PointTable table;
+    table.rows = std::min(kPieceRows, element_.count - piece * kPieceRows);
+    if (Status status = walk.walk_rows(element_, table.rows, &values); !status) return fail(std::move(status.error()));
+    for (ScalarValues& column : values) add_column(table, std::move(column));
+    return table;
   }
-  return std::move(*vertices);
+
+ private:
+  RowTraits traits_;
+  PlyElement element_;
+  std::vector<ColumnInfo> columns_;
+  std::vector<Walk> starts_;
+};
+
+bool is_vertex(const PlyElement& element) {
+  return element.name == "vertex";
+}
+
+/// Passes over the elements before or behind the vertices.
+template <typename Walk>
+Status skip_all(std::span<const PlyElement> elements, Walk& walk) {
+  for (const PlyElement& element : elements) {
+    if (Status status = walk.skip(element); !status) return status;
+  }
+  return {};
+}
+
+template <typename Walk>
+Result<std::vector<Walk>> find_starts(const PlyElement& element, Walk& walk) {
+  std::vector<Walk> starts;
+  for (uint64_t first = 0; first < element.count; first += kPieceRows) {
+    starts.push_back(walk);
+    Status status = walk.walk_rows(element, std::min(kPieceRows, element.count - first), nullptr);
+    if (!status) return fail(std::move(status.error()));
+  }
+  return starts;
+}
+
+PointTable table_in_place(const PlyElement& element, const std::byte* records, bool swapped) {
+  PointTable table;
+  table.rows = element.count;
+  size_t offset = 0;
+  for (const PlyProperty& property : element.properties) {
+    table.columns.push_back({property.type, records + offset, record_size(element), swapped});
+    offset += size_of(property.type);
+  }
+  return table;
+}
+
+using Rows = std::unique_ptr<RowSource>;
+
+template <typename Walk>
+Result<Rows> walked_rows(const PlyElement& element, const RowTraits& traits, Walk& walk) {
+  Result<std::vector<Walk>> starts = find_starts(element, walk);
+  if (!starts) return fail(std::move(starts.error()));
+  return std::make_unique<WalkedRows<Walk>>(traits, element, std::move(*starts));
+}
+
+Result<Rows> vertices(const PlyElement& element, const RowTraits& traits, AsciiWalk& walk, bool /*swapped*/) {
+  return walked_rows(element, traits, walk);
+}
+
+Result<Rows> vertices(const PlyElement& element, const RowTraits& traits, BinaryWalk& walk, bool swapped) {
+  if (has_lists(element)) return walked_rows(element, traits, walk);
+  const Result<const std::byte*> records = walk.take_records(element);
+  if (!records) return fail(records.error());
+  return std::make_unique<SlicedRows>(traits, columns_of(element), table_in_place(element, *records, swapped));
+}
+
+template <typename Walk>
+Result<Rows> rows_of(const PlyHeader& header, const RowTraits& traits, Walk walk, bool swapped) {
+  const std::span elements(header.elements);
+  const auto vertex = static_cast<size_t>(std::find_if(elements.begin(), elements.end(), is_vertex) - elements.begin());
+  if (Status status = skip_all(elements.first(vertex), walk); !status) return fail(std::move(status.error()));
+  Result<Rows> rows = vertices(elements[vertex], traits, walk, swapped);
+  if (!rows) return rows;
+  if (Status status = skip_all(elements.subspan(vertex + 1), walk); !status) return fail(std::move(status.error()));
+  return rows;
 }
 
 Status check_vertices(const PlyHeader& header) {
-  const auto vertex = std::find_if(header.elements.begin(), header.elements.end(),
-                                   [](const PlyElement& e) { return e.name == "vertex"; });
+  const auto vertex = std::find_if(header.elements.begin(), header.elements.end(), is_vertex);
   if (vertex == header.elements.end()) return fail(ErrorKind::kInvalidInput, "PLY file without vertex elements");
   for (const PlyProperty& property : vertex->properties) {
     if (property.name == "f_dc_0" || property.name == "packed_position") {
@@ -216,21 +262,17 @@ bool has_faces(const PlyHeader& header) {
 
 }  // namespace
 
-Result<ScanPoints> read_ply(std::span<const std::byte> bytes) {
+Result<std::unique_ptr<RowSource>> ply_rows(std::span<const std::byte> bytes) {
   const Result<PlyHeader> header = parse_ply_header(bytes);
   if (!header) return fail(header.error());
   if (Status status = check_vertices(*header); !status) return fail(status.error());
+  RowTraits traits;
+  traits.may_be_graphics = has_faces(*header);  // graphics write meshes, y-up; scanners write points, z-up
   const std::span<const std::byte> data = bytes.subspan(header->data_offset);
+  if (header->encoding == PlyEncoding::kAscii) return rows_of(*header, traits, AsciiWalk(as_text(data)), false);
   const bool big = header->encoding == PlyEncoding::kBinaryBigEndian;
-  const Result<PointTable> table =
-      header->encoding == PlyEncoding::kAscii
-          ? read_vertices(*header, AsciiWalk(as_text(data)))
-          : read_vertices(*header, BinaryWalk(data, big != (std::endian::native == std::endian::big)));
-  if (!table) return fail(table.error());
-  Result<ScanPoints> points = points_from_table(*table);
-  // Graphics write meshes, y-up; scanners write points, z-up.
-  if (points) points->z_up = !has_faces(*header) || looks_like_survey(*points);
-  return points;
+  const bool swapped = big != (std::endian::native == std::endian::big);
+  return rows_of(*header, traits, BinaryWalk(data, swapped), swapped);
 }
 
 }  // namespace surfcast

@@ -8,7 +8,6 @@
 #include <utility>
 #include <vector>
 
-#include "scan/narrow_scalars.h"
 #include "scan/point_table.h"
 #include "scan/text_tokens.h"
 
@@ -77,49 +76,96 @@ size_t words_in_next_line(Tokens tokens) {
   return words;
 }
 
-/// Rows of 4 or 7 numbers: x y z intensity and perhaps r g b.
-struct Rows {
-  size_t columns = 0;
-  std::vector<double> values;
+/// Points of one station that are read together.
+struct Piece {
+  Tokens start;
+  uint64_t rows = 0;
+  Matrix matrix{};
 };
 
-Status read_points(Tokens& tokens, const Station& station, Rows& rows) {
+/// Where the points of all stations are, found by passing over them.
+struct Layout {
+  size_t columns = 0;  ///< numbers of each point: 4 (x y z intensity) or 7 (and r g b)
+  std::vector<Piece> pieces;
+  std::vector<Matrix> stations;
+};
+
+Status pass_points(Tokens& tokens, const Station& station, Layout& layout) {
   if (station.points == 0) return {};
   const size_t columns = words_in_next_line(tokens);
   if (columns != 4 && columns != 7) {
     return fail(ErrorKind::kInvalidInput, "PTX points have neither 4 nor 7 numbers");
   }
-  if (rows.columns != 0 && rows.columns != columns) {
+  if (layout.columns != 0 && layout.columns != columns) {
     return fail(ErrorKind::kInvalidInput, "PTX stations differ in the numbers of each point");
   }
-  rows.columns = columns;
+  layout.columns = columns;
   for (uint64_t i = 0; i < station.points; ++i) {
-    const size_t first = rows.values.size();
+    if (i % kPieceRows == 0)
+      layout.pieces.push_back({tokens, std::min(kPieceRows, station.points - i), station.matrix});
     for (size_t column = 0; column < columns; ++column) {
-      const Result<double> number = next_number(tokens, "the PTX points");
-      if (!number) return fail(number.error());
-      rows.values.push_back(*number);
+      if (tokens.next().empty()) return malformed("", "the PTX points");
     }
-    double* xyz = &rows.values[first];
-    glm::dvec3 p(xyz[0], xyz[1], xyz[2]);
-    p = p == glm::dvec3(0) ? glm::dvec3(std::numeric_limits<double>::quiet_NaN()) : transform(station.matrix, p);
-    for (int axis = 0; axis < 3; ++axis) xyz[axis] = p[axis];
   }
   return {};
 }
 
-PointTable table_of(Rows rows) {
-  constexpr std::array kNames = {"x", "y", "z", "intensity", "red", "green", "blue"};
-  PointTable table;
-  table.rows = rows.columns == 0 ? 0 : rows.values.size() / rows.columns;
-  const auto* first = reinterpret_cast<const std::byte*>(rows.values.data());
-  for (size_t i = 0; i < rows.columns; ++i) {
-    table.columns.push_back(
-        {kNames.at(i), ScalarType::kFloat64, first + i * sizeof(double), rows.columns * sizeof(double), false});
-  }
-  table.storage.emplace_back(std::move(rows.values));
-  return table;
+Result<Layout> find_layout(Tokens tokens) {
+  Layout layout;
+  do {
+    const Result<Station> station = read_station(tokens);
+    if (!station) return fail(station.error());
+    if (Status status = pass_points(tokens, *station, layout); !status) return fail(status.error());
+    layout.stations.push_back(station->matrix);
+  } while (!Tokens(tokens).next().empty());
+  if (layout.pieces.empty()) return fail(ErrorKind::kInvalidInput, "has no points");
+  return layout;
 }
+
+/// The point where the scanner's matrix takes it; a ray without an echo is nowhere.
+void place_point(double* xyz, const Matrix& matrix) {
+  glm::dvec3 p(xyz[0], xyz[1], xyz[2]);
+  p = p == glm::dvec3(0) ? glm::dvec3(std::numeric_limits<double>::quiet_NaN()) : transform(matrix, p);
+  for (int axis = 0; axis < 3; ++axis) xyz[axis] = p[axis];
+}
+
+class PtxRows : public RowSource {
+ public:
+  explicit PtxRows(Layout layout) : layout_(std::move(layout)) {
+    constexpr std::array kNames = {"x", "y", "z", "intensity", "red", "green", "blue"};
+    for (size_t i = 0; i < layout_.columns; ++i) columns_.push_back({kNames.at(i), ScalarType::kFloat64, false});
+    traits_.from_text = true;
+    if (layout_.stations.size() == 1) traits_.sensor = transform(layout_.stations[0], glm::dvec3(0));
+  }
+
+  [[nodiscard]] const RowTraits& traits() const override { return traits_; }
+  [[nodiscard]] const std::vector<ColumnInfo>& columns() const override { return columns_; }
+  [[nodiscard]] size_t pieces() const override { return layout_.pieces.size(); }
+  [[nodiscard]] Result<PointTable> read(size_t index) const override {
+    Piece piece = layout_.pieces[index];
+    std::vector<double> values(piece.rows * layout_.columns);
+    for (double& value : values) {
+      const Result<double> number = next_number(piece.start, "the PTX points");
+      if (!number) return fail(number.error());
+      value = *number;
+    }
+    for (size_t row = 0; row < piece.rows; ++row) place_point(&values[row * layout_.columns], piece.matrix);
+    PointTable table;
+    table.rows = piece.rows;
+    const auto* first = reinterpret_cast<const std::byte*>(values.data());
+    for (size_t i = 0; i < layout_.columns; ++i) {
+      table.columns.push_back(
+          {ScalarType::kFloat64, first + i * sizeof(double), layout_.columns * sizeof(double), false});
+    }
+    table.storage.emplace_back(std::move(values));
+    return table;
+  }
+
+ private:
+  Layout layout_;
+  RowTraits traits_;
+  std::vector<ColumnInfo> columns_;
+};
 
 }  // namespace
 
@@ -135,22 +181,10 @@ bool looks_like_ptx(std::string_view text) {
   return true;
 }
 
-Result<ScanPoints> read_ptx(std::span<const std::byte> bytes) {
-  Tokens tokens(as_text(bytes));
-  Rows rows;
-  std::vector<Station> stations;
-  do {
-    const Result<Station> station = read_station(tokens);
-    if (!station) return fail(station.error());
-    if (Status status = read_points(tokens, *station, rows); !status) return fail(status.error());
-    stations.push_back(*station);
-  } while (!Tokens(tokens).next().empty());
-  if (rows.values.empty()) return fail(ErrorKind::kInvalidInput, "has no points");
-  Result<ScanPoints> points = points_from_table(table_of(std::move(rows)));
-  if (!points) return points;
-  for (ScalarAttribute& scalar : points->scalars) scalar.values = narrow_scalars(std::move(scalar.values));
-  if (stations.size() == 1) points->sensor = transform(stations[0].matrix, glm::dvec3(0));
-  return points;
+Result<std::unique_ptr<RowSource>> ptx_rows(std::span<const std::byte> bytes) {
+  Result<Layout> layout = find_layout(Tokens(as_text(bytes)));
+  if (!layout) return fail(std::move(layout.error()));
+  return std::make_unique<PtxRows>(std::move(*layout));
 }
 
 }  // namespace surfcast

@@ -8,7 +8,7 @@
 #include <utility>
 
 #include "scan/ptx_reader.h"
-#include "scan/text_table.h"
+#include "scan/text_reader.h"
 #include "scan/text_tokens.h"
 
 namespace surfcast {

@@ -7,7 +7,6 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
-#include "geometry/box.h"
 #include "scan/first_equals.h"
 
 namespace surfcast {
@@ -29,9 +28,7 @@ struct LocalFrame {
   }
 };
 
-LocalFrame local_frame(std::span<const glm::dvec3> world) {
-  Box box;
-  for (const glm::dvec3& p : world) box.include(p);
+LocalFrame local_frame(const Box& box) {
   const glm::dvec3 half_size = 0.5 * box.max - 0.5 * box.min;
   const double half_unit = std::max({half_size.x, half_size.y, half_size.z});
   return {0.5 * box.min, half_unit > 0 ? half_unit : 0.5};
@@ -73,8 +70,8 @@ std::vector<uint32_t> ordered_firsts(const std::vector<uint32_t>& first, const s
 
 }  // namespace
 
-Sites find_sites(std::span<const glm::dvec3> world) {
-  const LocalFrame frame = local_frame(world);
+Sites find_sites(std::span<const glm::dvec3> world, const Box& box) {
+  const LocalFrame frame = local_frame(box);
   std::vector<glm::dvec3> local(world.size());
   std::vector<uint64_t> hashes(world.size());
   tbb::parallel_for(size_t{0}, world.size(), [&](size_t i) {

@@ -5,12 +5,15 @@
 #include <span>
 #include <vector>
 
+#include "geometry/box.h"
+
 namespace surfcast {
 
-/// The distinct positions of a cloud ("sites"), in coordinates local to it: from 0 to 1 along its longest axis. Points
-/// at one position share one site, so no two sites are at distance 0, and differences and squares of local
+/// The distinct positions of a cloud ("sites"), in coordinates local to a frame: from 0 to 1 along its longest axis.
+/// Points at one position share one site, so no two sites are at distance 0, and differences and squares of local
 /// coordinates are exact enough and far from overflow and underflow whatever the world coordinates are.
-/// Sites are numbered along a Morton curve: neighbours in space are mostly neighbours in memory.
+/// Sites are numbered along a Morton curve: neighbours in space are mostly neighbours in memory. Parts of one cloud
+/// that overlap have, in one frame, the same sites in the same order.
 struct Sites {
   std::vector<glm::dvec3> positions;  ///< local
   std::vector<uint32_t> of_point;     ///< the site of every point of the cloud
@@ -19,6 +22,7 @@ struct Sites {
   [[nodiscard]] size_t size() const { return positions.size(); }
 };
 
-Sites find_sites(std::span<const glm::dvec3> world);
+/// `frame` holds all positions.
+Sites find_sites(std::span<const glm::dvec3> world, const Box& frame);
 
 }  // namespace surfcast

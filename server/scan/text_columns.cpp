@@ -1,62 +1,31 @@
 #include "scan/text_columns.h"
 
+#include <algorithm>
 #include <array>
-#include <cmath>
 
 namespace surfcast {
 namespace {
 
-/// What is true of all values of a column.
-struct ColumnFacts {
-  bool integers = true;
-  double min = INFINITY;
-  double max = -INFINITY;
-
-  void include(double value) {
-    integers = integers && std::trunc(value) == value;
-    // NaN is below and above everything, and so no colour.
-    min = value >= min ? min : value;
-    max = value <= max ? max : value;
-  }
-  [[nodiscard]] bool may_be_color() const { return min >= 0 && ((integers && max <= 65535) || max <= 1); }
-  [[nodiscard]] bool is_opaque() const { return min == 255 && max == 255; }
-};
-
-std::vector<ColumnFacts> find_facts(const TextTable& table) {
-  std::vector<ColumnFacts> facts(table.columns);
-  for (size_t i = 0; i < table.values.size(); ++i) facts[i % table.columns].include(table.values[i]);
-  return facts;
+bool may_be_color(const ColumnFacts& facts) {
+  return facts.min >= 0 && ((facts.integers && facts.max <= 65535) || facts.max <= 1);
 }
 
-/// Unit vectors in every row, as well as decimals state them; or zero, but not everywhere.
-bool is_normal(const TextTable& table, size_t column) {
-  bool any = false;
-  for (size_t i = column; i < table.values.size(); i += table.columns) {
-    const double* n = &table.values[i];
-    const double squared = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
-    if (squared == 0) continue;
-    if (!(std::abs(squared - 1) < 0.02)) return false;
-    any = true;
-  }
-  return any;
-}
-
-bool is_color(const std::vector<ColumnFacts>& facts, size_t column) {
-  return facts[column].may_be_color() && facts[column + 1].may_be_color() && facts[column + 2].may_be_color();
+bool is_opaque(const ColumnFacts& facts) {
+  return facts.integers && facts.min == 255 && facts.max == 255;
 }
 
 /// Names columns from the fourth on, left to right.
 class Guess {
  public:
-  explicit Guess(const TextTable& table) : table_(table), facts_(find_facts(table)) {}
+  Guess(const TableFacts& facts, bool counted) : facts_(facts), counted_(counted) {}
 
   std::vector<std::string> run() {
-    while (names_.size() < table_.columns) {
-      const size_t left = table_.columns - names_.size();
+    while (names_.size() < facts_.columns.size()) {
+      const size_t left = facts_.columns.size() - names_.size();
       const bool single_first = left % 3 == 1 && !single_is_last();
-      if (!single_first && left >= 3 && !has_normal_ && is_normal(table_, names_.size())) {
+      if (!single_first && left >= 3 && !has_normal_ && is_normal(names_.size())) {
         add({"nx", "ny", "nz"}, has_normal_);
-      } else if (!single_first && left >= 3 && !has_color_ && is_color(facts_, names_.size())) {
+      } else if (!single_first && left >= 3 && !has_color_ && is_color(names_.size())) {
         add({"red", "green", "blue"}, has_color_);
       } else {
         names_.push_back(single_name());
@@ -66,18 +35,25 @@ class Guess {
   }
 
  private:
+  [[nodiscard]] bool is_normal(size_t column) const {
+    return facts_.units[column].unit_or_zero && facts_.units[column].any;
+  }
+  [[nodiscard]] bool is_color(size_t column) const {
+    return std::all_of(&facts_.columns[column], &facts_.columns[column] + 3, may_be_color);
+  }
+
   /// Whether the odd column stands behind a colour: see the header.
   [[nodiscard]] bool single_is_last() const {
     const size_t at = names_.size();
-    if (table_.counted || has_color_ || table_.columns - at != 4 || !is_color(facts_, at)) return false;
-    const ColumnFacts& last = facts_[at + 3];
-    return last.is_opaque() || !last.may_be_color();
+    if (counted_ || has_color_ || facts_.columns.size() - at != 4 || !is_color(at)) return false;
+    const ColumnFacts& last = facts_.columns[at + 3];
+    return is_opaque(last) || !may_be_color(last);
   }
 
   std::string single_name() {
     const size_t at = names_.size();
-    if (has_color_ && at + 1 == table_.columns && facts_[at].is_opaque()) return "alpha";
-    if (!has_intensity_ && !has_color_ && (table_.columns - at) % 3 == 1) {
+    if (has_color_ && at + 1 == facts_.columns.size() && is_opaque(facts_.columns[at])) return "alpha";
+    if (!has_intensity_ && !has_color_ && (facts_.columns.size() - at) % 3 == 1) {
       has_intensity_ = true;
       return "intensity";
     }
@@ -89,8 +65,8 @@ class Guess {
     has = true;
   }
 
-  const TextTable& table_;
-  std::vector<ColumnFacts> facts_;
+  const TableFacts& facts_;
+  bool counted_;
   std::vector<std::string> names_ = {"x", "y", "z"};
   bool has_normal_ = false;
   bool has_color_ = false;
@@ -99,8 +75,8 @@ class Guess {
 
 }  // namespace
 
-std::vector<std::string> guess_column_names(const TextTable& table) {
-  return Guess(table).run();
+std::vector<std::string> guess_column_names(const TableFacts& facts, bool counted) {
+  return Guess(facts, counted).run();
 }
 
 }  // namespace surfcast

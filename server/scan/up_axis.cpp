@@ -4,12 +4,10 @@
 #include <array>
 #include <string_view>
 
-#include "geometry/box.h"
-
 namespace surfcast {
 namespace {
 
-bool is_lidar_attribute(const ScalarAttribute& attribute) {
+bool is_lidar_attribute(const ScalarField& attribute) {
   constexpr std::array<std::string_view, 5> kNames = {"classification", "return_number", "number_of_returns",
                                                       "gps_time", "point_source_id"};
   return std::find(kNames.begin(), kNames.end(), attribute.name) != kNames.end();
@@ -17,15 +15,14 @@ bool is_lidar_attribute(const ScalarAttribute& attribute) {
 
 }  // namespace
 
-bool looks_like_survey(const ScanPoints& points) {
-  if (std::any_of(points.scalars.begin(), points.scalars.end(), is_lidar_attribute)) return true;
-  const Box box = finite_bounds(points.positions);
-  if (box.empty()) return false;
-  const glm::dvec3 size = box.size();
+bool looks_like_survey(std::span<const ScalarField> scalars, const Box& bounds) {
+  if (std::any_of(scalars.begin(), scalars.end(), is_lidar_attribute)) return true;
+  if (bounds.empty()) return false;
+  const glm::dvec3 size = bounds.size();
   // Projected coordinate systems put eastings and northings far from the origin, many times the size of the scene.
-  const glm::dvec3 centre = glm::abs(box.centre());
+  const glm::dvec3 centre = glm::abs(bounds.centre());
   const double away = std::max(centre.x, centre.y);
-  if (away > 1e4 && away > 10 * box.diagonal()) return true;
+  if (away > 1e4 && away > 10 * bounds.diagonal()) return true;
   return size.z > 0 && 2 * size.z <= std::min(size.x, size.y);
 }
 

@@ -141,7 +141,7 @@ TEST(HostileModel, WrongHeadersWithRightChecksumsFailOrDecode) {
 TEST(HostileModel, WrongBlocksWithRightChecksumsFailOrDecode) {
   SurfelCloud cloud = sphere_cloud(300);
   number_surfels(cloud);
-  const std::vector<ScalarColumn> scalars{{"id", static_cast<ScalarType>(cloud.scalars[0].values.index())}};
+  const std::vector<ScalarColumn> scalars{{"id", static_cast<ScalarCode>(cloud.scalars[0].values.index())}};
   const std::vector<uint32_t>& members = std::get<std::vector<uint32_t>>(cloud.scalars[0].values);
   const Grid grid{glm::dvec3(1e-4), glm::dvec3(0)};
   const EncodedBlock block = encode_block(cloud, members, grid);

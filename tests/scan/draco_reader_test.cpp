@@ -1,5 +1,3 @@
-#include "scan/draco_reader.h"
-
 #include <algorithm>
 #include <cmath>
 
@@ -8,6 +6,7 @@
 
 #include "scan/bytes.h"
 #include "scan/samples.h"
+#include "scan/whole_scan.h"
 
 namespace surfcast {
 namespace {
@@ -17,7 +16,7 @@ using testing::scalar_values;
 
 TEST(DracoReaderTest, PointsKeepTheirAttributesTogether) {
   for (const bool kd_tree : {false, true}) {
-    const Result<ScanPoints> points = read_draco(as_bytes(testing::draco_cloud(kd_tree)));
+    const Result<testing::WholeScan> points = testing::read_whole(as_bytes(testing::draco_cloud(kd_tree)), "scan.drc");
     ASSERT_TRUE(points) << points.error().message;
     ASSERT_EQ(points->size(), 300u);
     ASSERT_TRUE(points->colors);
@@ -39,7 +38,7 @@ TEST(DracoReaderTest, ClaimsOfBillionsOfPointsAreRefusedBeforeMemoryIsTaken) {
     const size_t count = text.find(std::string("\x2C\1\0\0", 4));  // 300
     ASSERT_NE(count, std::string::npos);
     text[count + 3] = 0x7F;
-    const Result<ScanPoints> points = read_draco(as_bytes(text));
+    const Result<testing::WholeScan> points = testing::read_whole(as_bytes(text), "scan.drc");
     ASSERT_FALSE(points);
     EXPECT_THAT(points.error().message, ::testing::HasSubstr("claims more points"));
   }

@@ -1,11 +1,10 @@
-#include "scan/las_reader.h"
-
 #include <limits>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "scan/las_file.h"
+#include "scan/whole_scan.h"
 
 namespace surfcast {
 namespace {
@@ -17,8 +16,8 @@ using ::testing::HasSubstr;
 using testing::LasFile;
 using testing::scalar_values;
 
-Result<ScanPoints> read(const LasFile& file) {
-  return read_las(as_bytes(file.text()));
+Result<testing::WholeScan> read(const LasFile& file) {
+  return testing::read_whole(as_bytes(file.text()), "scan.las");
 }
 
 std::vector<std::string> scalar_names(const ScanPoints& points) {
@@ -36,7 +35,7 @@ TEST(LasReaderTest, CoordinatesAreIndexTimesScalePlusOffsetToTheLastBit) {
   constexpr int32_t kMin = std::numeric_limits<int32_t>::min();
   constexpr int32_t kMax = std::numeric_limits<int32_t>::max();
   file.records = {file.record(kMin, -1, 3).text(), file.record(kMax, 7, kMin).text()};
-  const Result<ScanPoints> points = read(file);
+  const Result<testing::WholeScan> points = read(file);
   ASSERT_TRUE(points) << points.error().message;
   EXPECT_EQ(points->positions[0].x, kMin * scale[0] + offset[0]);
   EXPECT_EQ(points->positions[0].y, -1 * scale[1] + offset[1]);
@@ -75,7 +74,7 @@ TEST_P(LasFormatTest, ReadsEveryFieldOfTheFormat) {
   if (has_nir) record.set<uint16_t>(36, 5000);
   file.records = {record.text()};
 
-  const Result<ScanPoints> points = read(file);
+  const Result<testing::WholeScan> points = read(file);
   ASSERT_TRUE(points) << points.error().message;
   EXPECT_THAT(scalar_values<uint16_t>(*points, "intensity"), ElementsAre(40000));
   EXPECT_THAT(scalar_values<uint8_t>(*points, "return_number"), ElementsAre(2));
@@ -108,7 +107,7 @@ TEST(LasReaderTest, AllVersionsAreRead) {
     LasFile file;
     file.minor = minor;
     file.records = {file.record(100, 200, 300).text()};
-    const Result<ScanPoints> points = read(file);
+    const Result<testing::WholeScan> points = read(file);
     ASSERT_TRUE(points) << minor << points.error().message;
     EXPECT_THAT(points->positions, ElementsAre(glm::dvec3(1, 2, 3)));
   }
@@ -122,21 +121,21 @@ LasFile colored(std::vector<uint16_t> reds) {
 }
 
 TEST(LasReaderTest, ColoursUpTo255AreEightBit) {
-  const Result<ScanPoints> points = read(colored({0, 255}));
+  const Result<testing::WholeScan> points = read(colored({0, 255}));
   ASSERT_TRUE(points && points->colors);
   EXPECT_EQ(points->colors->bits, 8);
   EXPECT_THAT(points->colors->values, ElementsAre(glm::u16vec3(0), glm::u16vec3(255, 0, 0)));
 }
 
 TEST(LasReaderTest, ColoursAbove255AreSixteenBit) {
-  const Result<ScanPoints> points = read(colored({1, 256}));
+  const Result<testing::WholeScan> points = read(colored({1, 256}));
   ASSERT_TRUE(points && points->colors);
   EXPECT_EQ(points->colors->bits, 16);
   EXPECT_THAT(points->colors->values, ElementsAre(glm::u16vec3(1, 0, 0), glm::u16vec3(256, 0, 0)));
 }
 
 TEST(LasReaderTest, FieldsThatAreZeroEverywhereAreNotAttributes) {
-  const Result<ScanPoints> points = read(colored({0, 0}));
+  const Result<testing::WholeScan> points = read(colored({0, 0}));
   ASSERT_TRUE(points);
   EXPECT_FALSE(points->colors);
   EXPECT_THAT(points->scalars, ::testing::IsEmpty());
@@ -171,7 +170,7 @@ TEST(LasReaderTest, ExtraBytesBecomeAttributesOfTheirTypeScaledWhereStated) {
   testing::Bytes record = file.record(1, 1, 1);
   record.set<uint16_t>(12, 9).set<float>(30, 2.5F).set<int16_t>(37, -3).set<uint32_t>(39, 77);
   file.records = {record.text()};
-  const Result<ScanPoints> points = read(file);
+  const Result<testing::WholeScan> points = read(file);
   ASSERT_TRUE(points) << points.error().message;
   EXPECT_THAT(scalar_names(*points), ElementsAre("intensity", "range", "height", "intensity_2"));
   EXPECT_THAT(scalar_values<float>(*points, "range"), ElementsAre(2.5F));
@@ -184,7 +183,7 @@ TEST(LasReaderTest, WrongNumberOfVariableRecordsDoesNotHideThePoints) {
   file.variable_records = variable_record("someone", 1, "text");
   file.variable_record_count = 4000000000U;
   file.records = {file.record(100, 200, 300).text()};
-  const Result<ScanPoints> points = read(file);
+  const Result<testing::WholeScan> points = read(file);
   ASSERT_TRUE(points) << points.error().message;
   EXPECT_THAT(points->positions, ElementsAre(glm::dvec3(1, 2, 3)));
 }
@@ -195,7 +194,8 @@ std::string message_with(size_t offset, T value, int minor = 2) {
   LasFile file;
   file.minor = minor;
   file.records = {file.record(1, 2, 3).text(), file.record(4, 5, 6).text()};
-  const Result<ScanPoints> points = read_las(testing::Bytes(file.text()).set(offset, value).bytes());
+  const Result<testing::WholeScan> points =
+      testing::read_whole(testing::Bytes(file.text()).set(offset, value).bytes(), "scan.las");
   return points ? "" : points.error().message;
 }
 

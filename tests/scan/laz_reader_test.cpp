@@ -7,10 +7,9 @@
 #include <gtest/gtest.h>
 
 #include "scan/bytes.h"
-#include "scan/las_header.h"
 #include "scan/las_reader.h"
-#include "scan/las_records.h"
-#include "scan/read_scan.h"
+#include "scan/scan_stream.h"
+#include "scan/whole_scan.h"
 
 namespace surfcast {
 namespace {
@@ -29,13 +28,13 @@ std::string content_of(const std::string& name) {
 /// FNV-1a of all point records. The expected values are those of records that another decoder gave.
 uint64_t records_digest(const std::string& name) {
   const std::string content = content_of(name);
-  const Result<LasHeader> header = parse_las_header(testing::as_bytes(content));
-  if (!header) return 0;
-  const Result<LasRecords> records = las_records(testing::as_bytes(content), *header);
-  if (!records) return 0;
+  const Result<std::unique_ptr<RowSource>> rows = las_rows(testing::as_bytes(content));
+  if (!rows) return 0;
   uint64_t digest = 14695981039346656037U;
-  for (const auto run : records->runs) {
-    for (const std::byte byte : run) digest = (digest ^ std::to_integer<uint64_t>(byte)) * 1099511628211U;
+  for (size_t piece = 0; piece < (*rows)->pieces(); ++piece) {
+    const Result<PointTable> table = (*rows)->read(piece);
+    if (!table) return 0;
+    for (const std::byte byte : table->records) digest = (digest ^ std::to_integer<uint64_t>(byte)) * 1099511628211U;
   }
   return digest;
 }
@@ -47,7 +46,7 @@ TEST(LazReaderTest, RecordsOfOtherCodersAreDecodedToTheLastByte) {
 }
 
 TEST(LazReaderTest, CompressedFilesAreScansLikeAnyOther) {
-  const Result<ScanPoints> lion = read_scan(data_file("lion.laz"));
+  const Result<testing::WholeScan> lion = testing::whole(ScanStream::open(data_file("lion.laz")));
   ASSERT_TRUE(lion) << lion.error().message;
   EXPECT_EQ(lion->positions.size(), 300U);
   ASSERT_TRUE(lion->colors);
@@ -58,7 +57,7 @@ TEST(LazReaderTest, CompressedFilesAreScansLikeAnyOther) {
 TEST(LazReaderTest, EveryTruncationOfAFileIsOneLineThatNamesIt) {
   const std::string whole = content_of("indoor.laz");
   for (size_t size = 0; size + 4 < whole.size(); size += 7) {
-    const Result<ScanPoints> points = read_scan_content(testing::as_bytes(whole.substr(0, size)), "scan.laz");
+    const Result<testing::WholeScan> points = testing::read_whole(testing::as_bytes(whole.substr(0, size)), "scan.laz");
     ASSERT_FALSE(points) << size;
     ASSERT_THAT(points.error().message, HasSubstr("scan.laz: "));
     ASSERT_EQ(points.error().message.find('\n'), std::string::npos);
@@ -73,7 +72,7 @@ TEST(LazReaderTest, FilesWithChangedBytesAreReadOrRefused) {
       std::string damaged = whole;
       const size_t at = i % 3 == 0 ? random() % 500 : random() % damaged.size();
       damaged[at] = static_cast<char>(damaged[at] ^ 1 << random() % 8);
-      const Result<ScanPoints> points = read_las(testing::as_bytes(damaged));
+      const Result<testing::WholeScan> points = testing::read_whole(testing::as_bytes(damaged), "scan.laz");
       ASSERT_LE(points ? points->positions.size() : 0, 1000U);
     }
   }
@@ -82,7 +81,7 @@ TEST(LazReaderTest, FilesWithChangedBytesAreReadOrRefused) {
 TEST(LazReaderTest, ACompressedFileWithoutTheRecordOfLaszipIsRefused) {
   std::string content = content_of("indoor.laz");
   content[content.find("laszip encoded")] = 'L';
-  const Result<ScanPoints> points = read_las(testing::as_bytes(content));
+  const Result<testing::WholeScan> points = testing::read_whole(testing::as_bytes(content), "scan.laz");
   ASSERT_FALSE(points);
   EXPECT_THAT(points.error().message, HasSubstr("without a LASzip record"));
 }

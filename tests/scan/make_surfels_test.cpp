@@ -9,6 +9,7 @@
 #include <tbb/global_control.h>
 
 #include "scan/shapes.h"
+#include "scan/surfels_of.h"
 
 namespace surfcast {
 namespace {
@@ -17,26 +18,24 @@ using ::testing::Each;
 using ::testing::ElementsAre;
 using ::testing::FloatEq;
 using ::testing::HasSubstr;
+using testing::WholeScan;
 
 constexpr float kNan = std::numeric_limits<float>::quiet_NaN();
 
-ScanPoints scan_of(std::vector<glm::dvec3> positions, bool z_up = true) {
-  ScanPoints scan;
-  scan.name = "scan";
+WholeScan scan_of(std::vector<glm::dvec3> positions, bool z_up = true) {
+  WholeScan scan;
   scan.positions = std::move(positions);
   scan.z_up = z_up;
   return scan;
 }
 
-/// Turns scans, given one by one, into surfels, and keeps the report.
+/// Turns scans, given one by one, into surfels of a single part, and keeps the report.
 struct Made {
   template <typename... Scans>
   explicit Made(Scans... given) {
-    std::vector<ScanPoints> scans;
+    std::vector<WholeScan> scans;
     (scans.push_back(std::move(given)), ...);
-    Result<SurfelCloud> result = make_surfels(std::move(scans), report);
-    EXPECT_TRUE(result) << result.error().message;
-    if (result) cloud = std::move(*result);
+    cloud = testing::surfels_of(std::move(scans), report);
   }
   SurfelReport report;
   SurfelCloud cloud;
@@ -86,7 +85,7 @@ TEST(MakeSurfelsTest, MillimetresAtFiveMillionMetresKeepTheirSpacingAndPlane) {
 }
 
 TEST(MakeSurfelsTest, StoredRadiiStayAndUnusableOnesAreEstimated) {
-  ScanPoints scan = scan_of({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}});
+  WholeScan scan = scan_of({{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {3, 0, 0}});
   scan.radii = {0.125F, 0, -1, kNan};
   const Made made(std::move(scan));
   EXPECT_THAT(made.cloud.radii, ElementsAre(0.125F, FloatEq(4.0F / 3), FloatEq(4.0F / 3), 2.0F));
@@ -100,18 +99,18 @@ TEST(MakeSurfelsTest, SinglePointGetsADefinedSurfel) {
 }
 
 TEST(MakeSurfelsTest, CoincidentPointsThatDifferAllStayAndLookFurtherOutForTheirRadius) {
-  ScanPoints scan = scan_of({{0, 0, 0}, {0, 0, 0}, {2, 0, 0}});
+  WholeScan scan = scan_of({{0, 0, 0}, {0, 0, 0}, {2, 0, 0}});
   scan.scalars.push_back({"intensity", std::vector<uint16_t>{1, 2, 3}});
   const Made made(std::move(scan));
   EXPECT_EQ(made.cloud.size(), 3u);
   EXPECT_THAT(made.cloud.radii, Each(2.0F));
-  ScanPoints alone = scan_of({{5, 5, 5}, {5, 5, 5}});
+  WholeScan alone = scan_of({{5, 5, 5}, {5, 5, 5}});
   alone.scalars.push_back({"intensity", std::vector<uint16_t>{1, 2}});
   EXPECT_THAT(Made(std::move(alone)).cloud.radii, ElementsAre(1.0F, 1.0F));
 }
 
 TEST(MakeSurfelsTest, ManyCoincidentPointsTakeNoQuadraticTime) {
-  ScanPoints scan = scan_of(std::vector<glm::dvec3>(200000, glm::dvec3(7)));
+  WholeScan scan = scan_of(std::vector<glm::dvec3>(200000, glm::dvec3(7)));
   std::vector<uint32_t> numbers(scan.size());
   for (uint32_t i = 0; i < numbers.size(); ++i) numbers[i] = i;
   scan.scalars.push_back({"number", numbers});
@@ -139,7 +138,7 @@ TEST(MakeSurfelsTest, CoordinatesNearTheLimitsOfDoublesGiveFiniteSurfels) {
 
 TEST(MakeSurfelsTest, NotFinitePointsAndExactDuplicatesAreDroppedAndCounted) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
-  ScanPoints scan = scan_of({{0, 0, 0}, {nan, 0, 0}, {1, 0, 0}, {0, INFINITY, 0}, {1, 0, 0}, {1, 0, 0}, {-0.0, 0, 0}});
+  WholeScan scan = scan_of({{0, 0, 0}, {nan, 0, 0}, {1, 0, 0}, {0, INFINITY, 0}, {1, 0, 0}, {1, 0, 0}, {-0.0, 0, 0}});
   scan.scalars.push_back({"intensity", std::vector<uint16_t>{1, 2, 3, 4, 3, 9, 1}});
   const Made made(std::move(scan));
   EXPECT_THAT(made.cloud.positions, ElementsAre(glm::dvec3(0), glm::dvec3(1, 0, 0), glm::dvec3(1, 0, 0)));
@@ -150,7 +149,7 @@ TEST(MakeSurfelsTest, NotFinitePointsAndExactDuplicatesAreDroppedAndCounted) {
 }
 
 TEST(MakeSurfelsTest, ZeroNormalsAreDroppedUnlessAllAreZero) {
-  ScanPoints some = scan_of(testing::square_lattice(3, 1, {0, 0, 0}));
+  WholeScan some = scan_of(testing::square_lattice(3, 1, {0, 0, 0}));
   some.normals.assign(9, glm::vec3(0, 0, 5e-30F));
   some.normals[4] = glm::vec3(0);
   some.normals[5] = glm::vec3(kNan, 0, 0);
@@ -164,27 +163,19 @@ TEST(MakeSurfelsTest, ZeroNormalsAreDroppedUnlessAllAreZero) {
   EXPECT_EQ(all.report.normals_estimated, 9u);
 }
 
-TEST(MakeSurfelsTest, NothingUsableIsAFailure) {
-  SurfelReport report;
-  EXPECT_FALSE(make_surfels({}, report));
-  const Result<SurfelCloud> cloud = make_surfels({scan_of({{NAN, 0, 0}})}, report);
-  ASSERT_FALSE(cloud);
-  EXPECT_EQ(cloud.error().kind, ErrorKind::kInvalidInput);
-}
-
 // ---- merging
 
 TEST(MakeSurfelsTest, MergedScansFillWhatOneLacksAndSaySo) {
-  ScanPoints first = scan_of({{0, 0, 0}, {1, 0, 0}});
+  WholeScan first = scan_of({{0, 0, 0}, {1, 0, 0}});
   first.name = "first.las";
   first.grid = Grid{{0.01, 0.01, 0.01}, {0, 0, 0}};
   first.colors = ColorAttribute{8, {{255, 0, 0}, {0, 128, 0}}};
   first.scalars.push_back({"intensity", std::vector<uint8_t>{7, 8}});
-  ScanPoints second = scan_of({{0, 1, 0}, {0, 1, 0}, {NAN, 0, 0}, {1, 1, 0}});
+  WholeScan second = scan_of({{0, 1, 0}, {0, 1, 0}, {NAN, 0, 0}, {1, 1, 0}});
   second.name = "second.ply";
   second.scalars.push_back({"intensity", std::vector<int16_t>{-1, -1, 0, 3}});
   second.scalars.push_back({"gps_time", std::vector<double>{1, 1, 0, 2}});
-  ScanPoints third = scan_of({{2, 2, 2}});
+  WholeScan third = scan_of({{2, 2, 2}});
   third.name = "third.ply";
   third.colors = ColorAttribute{16, {{1000, 2000, 3000}}};
 
@@ -208,9 +199,9 @@ TEST(MakeSurfelsTest, MergedScansFillWhatOneLacksAndSaySo) {
 }
 
 TEST(MakeSurfelsTest, MergedScansOfNumbersWithoutACommonIntegerTypeBecomeDoubles) {
-  ScanPoints first = scan_of({{0, 0, 0}});
+  WholeScan first = scan_of({{0, 0, 0}});
   first.scalars.push_back({"time", std::vector<uint64_t>{5}});
-  ScanPoints second = scan_of({{1, 0, 0}});
+  WholeScan second = scan_of({{1, 0, 0}});
   second.scalars.push_back({"time", std::vector<int64_t>{-5}});
   EXPECT_THAT(values_of<double>(Made(first, second).cloud, 0), ElementsAre(5, -5));
   second.scalars[0].values = std::vector<uint8_t>{6};
@@ -218,7 +209,7 @@ TEST(MakeSurfelsTest, MergedScansOfNumbersWithoutACommonIntegerTypeBecomeDoubles
 }
 
 TEST(MakeSurfelsTest, NormalsMissingInOneScanAreEstimatedAndFollowTheStoredOnes) {
-  ScanPoints first = scan_of(testing::square_lattice(10, 1, {0, 0, 0}));
+  WholeScan first = scan_of(testing::square_lattice(10, 1, {0, 0, 0}));
   first.normals.assign(first.size(), glm::vec3(0, 0, -1));  // seen from below
   const Made made(first, scan_of(testing::square_lattice(10, 1, {10, 0, 0})));
   EXPECT_TRUE(made.cloud.oriented);
@@ -267,7 +258,7 @@ TEST(MakeSurfelsTest, RoomsAndNoiseAreNotCalledOriented) {
 }
 
 TEST(MakeSurfelsTest, NormalsFaceTheSensorWhereItIsKnown) {
-  ScanPoints room = scan_of(testing::box_surface({6, 8, 2.5}, 0.1, {100, 0, 0}));
+  WholeScan room = scan_of(testing::box_surface({6, 8, 2.5}, 0.1, {100, 0, 0}));
   room.sensor = glm::dvec3(101, 1, 0);
   const glm::dvec3 sensor = *room.sensor;
   const Made made(std::move(room));
@@ -278,7 +269,7 @@ TEST(MakeSurfelsTest, NormalsFaceTheSensorWhereItIsKnown) {
 }
 
 TEST(MakeSurfelsTest, StoredNormalsAreOrientedWhenNeighboursAgree) {
-  ScanPoints scan = scan_of(testing::sphere(1000, {0, 0, 0}, 2));
+  WholeScan scan = scan_of(testing::sphere(1000, {0, 0, 0}, 2));
   for (const glm::dvec3& p : scan.positions) scan.normals.emplace_back(p);  // not unit
   const Made agreeing(scan);
   EXPECT_TRUE(agreeing.cloud.oriented);

@@ -11,8 +11,14 @@
 namespace surfcast {
 namespace {
 
+Sites sites_of(const std::vector<glm::dvec3>& world) {
+  Box frame;
+  for (const glm::dvec3& p : world) frame.include(p);
+  return find_sites(world, frame);
+}
+
 TEST(NeighboursTest, AreThoseOfAnExhaustiveSearch) {
-  const Sites sites = find_sites(testing::noise(500, 3));
+  const Sites sites = sites_of(testing::noise(500, 3));
   constexpr size_t kDegree = 7;
   const NeighbourGraph graph = find_neighbours(sites, kDegree);
   for (size_t i = 0; i < sites.size(); ++i) {
@@ -32,7 +38,7 @@ TEST(NeighboursTest, AreThoseOfAnExhaustiveSearch) {
 TEST(NeighboursTest, SitesAreDistinctAndEveryPointHasItsOwn) {
   std::vector<glm::dvec3> world = testing::noise(100, 3);
   world.insert(world.end(), world.begin(), world.end());
-  const Sites sites = find_sites(world);
+  const Sites sites = sites_of(world);
   EXPECT_EQ(sites.size(), 100u);
   for (size_t i = 0; i < 100; ++i) EXPECT_EQ(sites.of_point[i], sites.of_point[i + 100]);
   const double local = glm::distance(sites.positions[sites.of_point[3]], sites.positions[sites.of_point[8]]);
@@ -40,8 +46,8 @@ TEST(NeighboursTest, SitesAreDistinctAndEveryPointHasItsOwn) {
 }
 
 TEST(NeighboursTest, FewSitesHaveFewerNeighbours) {
-  EXPECT_EQ(find_neighbours(find_sites(std::vector<glm::dvec3>{{1, 2, 3}}), 12).degree, 0u);
-  EXPECT_EQ(find_neighbours(find_sites(std::vector<glm::dvec3>{{1, 2, 3}, {1, 2, 4}}), 12).degree, 1u);
+  EXPECT_EQ(find_neighbours(sites_of(std::vector<glm::dvec3>{{1, 2, 3}}), 12).degree, 0u);
+  EXPECT_EQ(find_neighbours(sites_of(std::vector<glm::dvec3>{{1, 2, 3}, {1, 2, 4}}), 12).degree, 1u);
 }
 
 }  // namespace

@@ -1,5 +1,3 @@
-#include "scan/pcd_reader.h"
-
 #include <cmath>
 
 #include <gmock/gmock.h>
@@ -7,6 +5,7 @@
 
 #include "scan/bytes.h"
 #include "scan/samples.h"
+#include "scan/whole_scan.h"
 
 namespace surfcast {
 namespace {
@@ -22,7 +21,7 @@ const std::string kFields =
     "FIELDS _ z y x rgb normal_x normal_y normal_z label histogram\nSIZE 1 8 4 2 4 4 4 4 8 1\n"
     "TYPE U F F I F F F F U I\nCOUNT 3 1 1 1 1 1 1 1 1 2\n";
 
-void expect_two_points(const Result<ScanPoints>& points) {
+void expect_two_points(const Result<testing::WholeScan>& points) {
   ASSERT_TRUE(points) << points.error().message;
   EXPECT_THAT(points->positions, ElementsAre(glm::dvec3(-3, 2.5, 0.1), glm::dvec3(-2, 2.5, 0.2)));
   ASSERT_TRUE(points->colors);
@@ -46,7 +45,7 @@ TEST(PcdReaderTest, BinaryRecordsOfAnyFields) {
     file.add<uint32_t>(kColor).add<float>(0).add<float>(0).add<float>(1);
     file.add<uint64_t>(1ULL << 40).add<int8_t>(-1).add<int8_t>(5);
   }
-  expect_two_points(read_pcd(file.bytes()));
+  expect_two_points(testing::read_whole(file.bytes(), "scan.pcd"));
 }
 
 TEST(PcdReaderTest, CompressedFieldsStandOneAfterAnother) {
@@ -56,8 +55,8 @@ TEST(PcdReaderTest, CompressedFieldsStandOneAfterAnother) {
   for (const float v : {0.F, 0.F, 0.F, 0.F, 1.F, 1.F}) data.add<float>(v);
   data.add<uint64_t>(1ULL << 40).add<uint64_t>(1ULL << 40);
   data.add<int8_t>(-1).add<int8_t>(5).add<int8_t>(-1).add<int8_t>(5);
-  expect_two_points(
-      read_pcd(as_bytes(pcd_header(kFields, 2, 1, "binary_compressed") + testing::lzf_block(data.text()))));
+  expect_two_points(testing::read_whole(
+      as_bytes(pcd_header(kFields, 2, 1, "binary_compressed") + testing::lzf_block(data.text())), "scan.pcd"));
 }
 
 TEST(PcdReaderTest, AsciiNumbersTakeTheTypesOfTheFields) {
@@ -67,14 +66,15 @@ TEST(PcdReaderTest, AsciiNumbersTakeTheTypesOfTheFields) {
   for (int i = 0; i < 2; ++i) {
     rows << "0 0 0 " << (i == 0 ? 0.1 : 0.2) << " 2.5 " << i - 3 << " " << color << " 0 0 1 1099511627776 -1 5\n";
   }
-  expect_two_points(read_pcd(as_bytes(pcd_header(kFields, 2, 1, "ascii") + rows.str())));
+  expect_two_points(testing::read_whole(as_bytes(pcd_header(kFields, 2, 1, "ascii") + rows.str()), "scan.pcd"));
 }
 
 TEST(PcdReaderTest, NamesInTheSpellingOfPdalGetTheirMeaning) {
   const std::string fields =
       "FIELDS X Y Z Intensity ReturnNumber Red Green Blue\nSIZE 4 4 4 2 1 2 2 2\nTYPE F F F U U U U U\n"
       "COUNT 1 1 1 1 1 1 1 1\n";
-  const Result<ScanPoints> points = read_pcd(as_bytes(pcd_header(fields, 1, 1, "ascii") + "1 2 3 500 2 256 0 9\n"));
+  const Result<testing::WholeScan> points =
+      testing::read_whole(as_bytes(pcd_header(fields, 1, 1, "ascii") + "1 2 3 500 2 256 0 9\n"), "scan.pcd");
   ASSERT_TRUE(points) << points.error().message;
   EXPECT_THAT(points->positions, ElementsAre(glm::dvec3(1, 2, 3)));
   EXPECT_THAT(scalar_values<uint16_t>(*points, "intensity"), ElementsAre(500));
@@ -86,7 +86,8 @@ TEST(PcdReaderTest, NamesInTheSpellingOfPdalGetTheirMeaning) {
 const std::string kXyz = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n";
 
 TEST(PcdReaderTest, OrganisedCloudsComeFromASensorAndMayHoldNan) {
-  const Result<ScanPoints> points = read_pcd(as_bytes(pcd_header(kXyz, 1, 2, "ascii") + "nan nan nan\n0 0 1\n"));
+  const Result<testing::WholeScan> points =
+      testing::read_whole(as_bytes(pcd_header(kXyz, 1, 3, "ascii") + "nan nan nan\n0 0 1\n0 1 -1\n"), "scan.pcd");
   ASSERT_TRUE(points) << points.error().message;
   EXPECT_TRUE(std::isnan(points->positions[0].x));
   EXPECT_EQ(points->sensor, glm::dvec3(0));
@@ -96,13 +97,13 @@ TEST(PcdReaderTest, OrganisedCloudsComeFromASensorAndMayHoldNan) {
 TEST(PcdReaderTest, ViewpointIsTheSensor) {
   std::string header = pcd_header(kXyz, 1, 1, "ascii");
   header.replace(header.find("0 0 0 1 0 0 0"), 13, "10 -2 3 1 0 0 0");
-  const Result<ScanPoints> points = read_pcd(as_bytes(header + "1 2 3\n"));
+  const Result<testing::WholeScan> points = testing::read_whole(as_bytes(header + "1 2 3\n"), "scan.pcd");
   ASSERT_TRUE(points) << points.error().message;
   EXPECT_EQ(points->sensor, glm::dvec3(10, -2, 3));
 }
 
 std::string message_for(const std::string& text) {
-  const Result<ScanPoints> points = read_pcd(as_bytes(text));
+  const Result<testing::WholeScan> points = testing::read_whole(as_bytes(text), "scan.pcd");
   return points ? "" : points.error().message;
 }
 

@@ -1,5 +1,3 @@
-#include "scan/ply_reader.h"
-
 #include <string>
 #include <vector>
 
@@ -7,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "scan/bytes.h"
+#include "scan/whole_scan.h"
 
 namespace surfcast {
 namespace {
@@ -52,7 +51,7 @@ void expect_binary_content(const ScanPoints& points) {
 
 TEST(PlyReaderTest, BinaryOfBothByteOrdersReadsEveryProperty) {
   for (const bool big : {false, true}) {
-    const Result<ScanPoints> points = read_ply(as_bytes(binary_ply(big)));
+    const Result<testing::WholeScan> points = testing::read_whole(as_bytes(binary_ply(big)), "scan.ply");
     ASSERT_TRUE(points) << points.error().message;
     expect_binary_content(*points);
   }
@@ -62,7 +61,7 @@ TEST(PlyReaderTest, EveryTruncationFails) {
   for (const bool big : {false, true}) {
     const std::string whole = binary_ply(big);
     for (size_t size = 0; size < whole.size(); ++size) {
-      EXPECT_FALSE(read_ply(as_bytes(whole).first(size))) << size;
+      EXPECT_FALSE(testing::read_whole(as_bytes(whole).first(size), "scan.ply")) << size;
     }
   }
 }
@@ -71,7 +70,7 @@ TEST(PlyReaderTest, AsciiReadsAnyOrder) {
   const std::string text =
       "ply\r\nformat ascii 1.0\r\nelement vertex 2\r\nproperty float z\r\nproperty list uchar int parts\r\n"
       "property float x\r\nproperty double y\r\nend_header\r\n3 2 7 8 1 2e0\r\n-3 0 +1.5 -2\r\n";
-  const Result<ScanPoints> points = read_ply(as_bytes(text));
+  const Result<testing::WholeScan> points = testing::read_whole(as_bytes(text), "scan.ply");
   ASSERT_TRUE(points) << points.error().message;
   EXPECT_THAT(points->positions, ElementsAre(glm::dvec3(1, 2, 3), glm::dvec3(1.5, -2, -3)));
   EXPECT_FALSE(points->colors);
@@ -81,7 +80,7 @@ TEST(PlyReaderTest, GaussiansAreRefused) {
   const std::string text =
       "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
       "property float f_dc_0\nend_header\n1 2 3 4\n";
-  const Result<ScanPoints> points = read_ply(as_bytes(text));
+  const Result<testing::WholeScan> points = testing::read_whole(as_bytes(text), "scan.ply");
   ASSERT_FALSE(points);
   EXPECT_EQ(points.error().kind, ErrorKind::kUnsupported);
   EXPECT_THAT(points.error().message, HasSubstr("3D Gaussians"));
@@ -90,15 +89,16 @@ TEST(PlyReaderTest, GaussiansAreRefused) {
 TEST(PlyReaderTest, HugeCountsOfElementsAndListsFailAtOnce) {
   const std::string head = "ply\nformat binary_little_endian 1.0\nelement vertex ";
   const std::string tail = "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
-  EXPECT_FALSE(read_ply(as_bytes(head + "18446744073709551615" + tail + std::string(24, '\1'))));
-  EXPECT_FALSE(read_ply(as_bytes(head + "1537228672809129302" + tail + std::string(24, '\1'))));  // times 12 wraps
+  EXPECT_FALSE(testing::read_whole(as_bytes(head + "18446744073709551615" + tail + std::string(24, '\1')), "scan.ply"));
+  EXPECT_FALSE(testing::read_whole(as_bytes(head + "1537228672809129302" + tail + std::string(24, '\1')),
+                                   "scan.ply"));  // times 12 wraps
 }
 
 /// One point with those properties beside x, y and z.
-Result<ScanPoints> ascii_point(const std::string& properties, const std::string& values) {
+Result<testing::WholeScan> ascii_point(const std::string& properties, const std::string& values) {
   const std::string text = "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\n" +
                            ("property float z\n" + properties) + "end_header\n1 2 3 " + values + "\n";
-  return read_ply(as_bytes(text));
+  return testing::read_whole(as_bytes(text), "scan.ply");
 }
 
 /// A property of that type for each of the names.
@@ -109,15 +109,15 @@ std::string properties(const std::string& type, const std::vector<std::string>& 
 }
 
 TEST(PlyReaderTest, ColoursKeepTheDepthOfTheirType) {
-  const Result<ScanPoints> deep = ascii_point(properties("ushort", {"red", "green", "blue"}), "65535 256 0");
+  const Result<testing::WholeScan> deep = ascii_point(properties("ushort", {"red", "green", "blue"}), "65535 256 0");
   ASSERT_TRUE(deep && deep->colors);
   EXPECT_EQ(deep->colors->bits, 16);
   EXPECT_THAT(deep->colors->values, ElementsAre(glm::u16vec3(65535, 256, 0)));
-  const Result<ScanPoints> real = ascii_point(properties("float", {"r", "g", "b"}), "1 0.5 0");
+  const Result<testing::WholeScan> real = ascii_point(properties("float", {"r", "g", "b"}), "1 0.5 0");
   ASSERT_TRUE(real && real->colors);
   EXPECT_EQ(real->colors->bits, 16);
   EXPECT_THAT(real->colors->values, ElementsAre(glm::u16vec3(65535, 32768, 0)));
-  const Result<ScanPoints> named =
+  const Result<testing::WholeScan> named =
       ascii_point(properties("uchar", {"diffuse_red", "diffuse_green", "diffuse_blue"}), "1 0 0");
   ASSERT_TRUE(named && named->colors);
   EXPECT_EQ(named->colors->bits, 8);
@@ -125,13 +125,13 @@ TEST(PlyReaderTest, ColoursKeepTheDepthOfTheirType) {
 }
 
 TEST(PlyReaderTest, NumbersThatAreNoColoursBecomeTheNearestColour) {
-  const Result<ScanPoints> points = ascii_point(properties("float", {"red", "green", "blue"}), "-1 nan 0.25");
+  const Result<testing::WholeScan> points = ascii_point(properties("float", {"red", "green", "blue"}), "-1 nan 0.25");
   ASSERT_TRUE(points && points->colors);
   EXPECT_THAT(points->colors->values, ElementsAre(glm::u16vec3(0, 0, 16384)));
 }
 
 TEST(PlyReaderTest, PropertiesOfOneNameAreAllKept) {
-  const Result<ScanPoints> points =
+  const Result<testing::WholeScan> points =
       ascii_point(properties("int", {"scalar_intensity", "Intensity", "q", "q"}), "5 6 7 8");
   ASSERT_TRUE(points);
   EXPECT_THAT(scalar_values<int32_t>(*points, "intensity"), ElementsAre(5));
@@ -141,7 +141,7 @@ TEST(PlyReaderTest, PropertiesOfOneNameAreAllKept) {
 }
 
 TEST(PlyReaderTest, NamesAreMadePrintable) {
-  const Result<ScanPoints> points = ascii_point(properties("int", {"q\xFF\1"}), "5");
+  const Result<testing::WholeScan> points = ascii_point(properties("int", {"q\xFF\1"}), "5");
   ASSERT_TRUE(points);
   EXPECT_EQ(points->scalars.at(0).name, "q??");
 }
@@ -149,14 +149,15 @@ TEST(PlyReaderTest, NamesAreMadePrintable) {
 TEST(PlyReaderTest, ThousandsOfPropertiesAreBeyondTheLimit) {
   std::string values;
   for (int i = 0; i < 20000; ++i) values += "0 ";
-  const Result<ScanPoints> points = ascii_point(properties("float", std::vector<std::string>(20000, "q")), values);
+  const Result<testing::WholeScan> points =
+      ascii_point(properties("float", std::vector<std::string>(20000, "q")), values);
   ASSERT_FALSE(points);
   EXPECT_EQ(points.error().kind, ErrorKind::kLimit);
 }
 
 TEST(PlyReaderTest, BadHeadersAreNamed) {
   const auto message = [](const std::string& text) {
-    const Result<ScanPoints> points = read_ply(as_bytes(text));
+    const Result<testing::WholeScan> points = testing::read_whole(as_bytes(text), "scan.ply");
     return points ? std::string() : points.error().message;
   };
   EXPECT_THAT(message("ply\nelement vertex 1\nend_header\n"), HasSubstr("no format line"));

@@ -1,5 +1,3 @@
-#include "scan/ptx_reader.h"
-
 #include <cmath>
 #include <string>
 
@@ -7,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "scan/bytes.h"
+#include "scan/whole_scan.h"
 
 namespace surfcast {
 namespace {
@@ -20,7 +19,8 @@ using testing::scalar_values;
 const std::string kStation = "2\n1\n100 200 300\n0 1 0\n-1 0 0\n0 0 1\n0 1 0 0\n-1 0 0 0\n0 0 1 0\n100 200 300 1\n";
 
 TEST(PtxReaderTest, PointsAreTakenToTheWorldAndRaysWithoutEchoAreNan) {
-  const Result<ScanPoints> points = read_ptx(as_bytes(kStation + "1 2 3 0.25 10 20 30\n0 0 0 0.5 0 0 0\n"));
+  const Result<testing::WholeScan> points =
+      testing::read_whole(as_bytes(kStation + "1 2 3 0.25 10 20 30\n0 0 0 0.5 0 0 0\n"), "scan.ptx");
   ASSERT_TRUE(points) << points.error().message;
   EXPECT_EQ(points->positions[0], glm::dvec3(98, 201, 303));
   EXPECT_TRUE(std::isnan(points->positions[1].x));
@@ -32,20 +32,21 @@ TEST(PtxReaderTest, PointsAreTakenToTheWorldAndRaysWithoutEchoAreNan) {
 
 TEST(PtxReaderTest, SeveralStationsHaveNoSingleSensor) {
   const std::string station = kStation + "1 2 3 0.25\n4 5 6 0.5\n";
-  const Result<ScanPoints> points = read_ptx(as_bytes(station + station));
+  const Result<testing::WholeScan> points = testing::read_whole(as_bytes(station + station), "scan.ptx");
   ASSERT_TRUE(points) << points.error().message;
   EXPECT_EQ(points->size(), 4u);
   EXPECT_FALSE(points->sensor);
 }
 
 TEST(PtxReaderTest, MissingRowsAreATruncation) {
-  const Result<ScanPoints> points = read_ptx(as_bytes(kStation + "1 2 3 0.25\n"));
+  const Result<testing::WholeScan> points = testing::read_whole(as_bytes(kStation + "1 2 3 0.25\n"), "scan.ptx");
   ASSERT_FALSE(points);
   EXPECT_THAT(points.error().message, HasSubstr("truncated"));
 }
 
 TEST(PtxReaderTest, RowsOfFiveNumbersAreRefused) {
-  const Result<ScanPoints> points = read_ptx(as_bytes(kStation + "1 2 3 0.25 9\n1 2 3 0.25 9\n"));
+  const Result<testing::WholeScan> points =
+      testing::read_whole(as_bytes(kStation + "1 2 3 0.25 9\n1 2 3 0.25 9\n"), "scan.ptx");
   ASSERT_FALSE(points);
   EXPECT_THAT(points.error().message, HasSubstr("neither 4 nor 7"));
 }

@@ -1,11 +1,10 @@
-#include "scan/text_reader.h"
-
 #include <string>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "scan/bytes.h"
+#include "scan/whole_scan.h"
 
 namespace surfcast {
 namespace {
@@ -16,14 +15,14 @@ using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using testing::scalar_values;
 
-ScanPoints read(const std::string& text) {
-  const Result<ScanPoints> points = read_text(as_bytes(text));
+testing::WholeScan read(const std::string& text) {
+  const Result<testing::WholeScan> points = testing::read_whole(as_bytes(text), "scan.xyz");
   EXPECT_TRUE(points) << points.error().message;
-  return points ? *points : ScanPoints{};
+  return points ? *points : testing::WholeScan{};
 }
 
 std::string message_for(const std::string& text) {
-  const Result<ScanPoints> points = read_text(as_bytes(text));
+  const Result<testing::WholeScan> points = testing::read_whole(as_bytes(text), "scan.xyz");
   return points ? "" : points.error().message;
 }
 

@@ -1,4 +1,4 @@
-#include "scan/read_scan.h"
+#include "scan/scan_stream.h"
 
 #include <filesystem>
 #include <random>
@@ -10,6 +10,7 @@
 #include "base/atomic_file.h"
 #include "scan/bytes.h"
 #include "scan/samples.h"
+#include "scan/whole_scan.h"
 
 namespace surfcast {
 namespace {
@@ -19,8 +20,8 @@ using ::testing::HasSubstr;
 using testing::Sample;
 using ::testing::StartsWith;
 
-Result<ScanPoints> read(const std::string& name, std::string_view text) {
-  return read_scan_content(testing::as_bytes(text), fs::path("folder") / name);
+Result<testing::WholeScan> read(const std::string& name, std::string_view text) {
+  return testing::read_whole(testing::as_bytes(text), fs::path("folder") / name);
 }
 
 /// What holds for every scan that was read.
@@ -32,25 +33,25 @@ void expect_consistent(const ScanPoints& points) {
   for (const ScalarAttribute& scalar : points.scalars) EXPECT_EQ(value_count(scalar.values), points.size());
 }
 
-TEST(ReadScanTest, EverySampleIsReadAndKeepsItsName) {
+TEST(ScanStreamTest, EverySampleIsReadAndKeepsItsName) {
   for (const Sample& sample : testing::samples()) {
-    const Result<ScanPoints> points = read(sample.name, sample.text);
+    const Result<testing::WholeScan> points = read(sample.name, sample.text);
     ASSERT_TRUE(points) << points.error().message;
     EXPECT_EQ(points->name, sample.name);
     expect_consistent(*points);
   }
 }
 
-TEST(ReadScanTest, ContentDecidesBeforeTheExtension) {
+TEST(ScanStreamTest, ContentDecidesBeforeTheExtension) {
   for (const Sample& sample : testing::samples()) {
     EXPECT_TRUE(read(sample.name + ".bin", sample.text)) << sample.name;
   }
 }
 
-TEST(ReadScanTest, EveryTruncationFailsOrReadsFully) {
+TEST(ScanStreamTest, EveryTruncationFailsOrReadsFully) {
   for (const Sample& sample : testing::samples()) {
     for (size_t size = 0; size < sample.text.size(); ++size) {
-      const Result<ScanPoints> points = read(sample.name, std::string_view(sample.text).substr(0, size));
+      const Result<testing::WholeScan> points = read(sample.name, std::string_view(sample.text).substr(0, size));
       if (points) {
         expect_consistent(*points);
       } else {
@@ -60,7 +61,7 @@ TEST(ReadScanTest, EveryTruncationFailsOrReadsFully) {
   }
 }
 
-TEST(ReadScanTest, BinaryFormatsFailOnEveryTruncation) {
+TEST(ScanStreamTest, BinaryFormatsFailOnEveryTruncation) {
   for (const Sample& sample : testing::samples()) {
     const std::string extension = fs::path(sample.name).extension();
     const bool is_text = sample.name.starts_with("ascii") || extension == ".xyz" || extension == ".pts" ||
@@ -71,26 +72,26 @@ TEST(ReadScanTest, BinaryFormatsFailOnEveryTruncation) {
   }
 }
 
-TEST(ReadScanTest, RandomDamageNeverCrashes) {
+TEST(ScanStreamTest, RandomDamageNeverCrashes) {
   std::mt19937 random(20240611);
   for (const Sample& sample : testing::samples()) {
     for (int round = 0; round < 400; ++round) {
       std::string damaged = sample.text;
       for (int i = 0; i <= round % 4; ++i) damaged[random() % damaged.size()] = static_cast<char>(random());
-      const Result<ScanPoints> points = read(sample.name, damaged);
+      const Result<testing::WholeScan> points = read(sample.name, damaged);
       if (points) expect_consistent(*points);
     }
   }
 }
 
-TEST(ReadScanTest, OtherFilesGetOneLineThatSaysWhatTheyAre) {
+TEST(ScanStreamTest, OtherFilesGetOneLineThatSaysWhatTheyAre) {
   const std::pair<const char*, std::string> others[] = {
       {"a.e57", "ASTM-E57"}, {"a.pnts", "pnts"},      {"a.glb", "glTF"},
       {"a.spz", "\x1F\x8B"}, {"a.obj", "v 1 2 3\n"},  {"a.pts", "[Expe/PointSet/Binary/0.1]\n"},
       {"a.json", "{}"},      {"a.splat", "\1\2\3\4"}, {"a.unknown", "\1\2\3\4"},
   };
   for (const auto& [name, text] : others) {
-    const Result<ScanPoints> points = read(name, text);
+    const Result<testing::WholeScan> points = read(name, text);
     ASSERT_FALSE(points) << name;
     EXPECT_EQ(points.error().kind, ErrorKind::kUnsupported);
     EXPECT_THAT(points.error().message, StartsWith("folder/" + std::string(name) + ": "));
@@ -98,23 +99,23 @@ TEST(ReadScanTest, OtherFilesGetOneLineThatSaysWhatTheyAre) {
   }
 }
 
-TEST(ReadScanTest, FilesAreReadFromTheDisk) {
-  const fs::path path = fs::path(::testing::TempDir()) / "read_scan_test.xyz";
+TEST(ScanStreamTest, FilesAreReadFromTheDisk) {
+  const fs::path path = fs::path(::testing::TempDir()) / "scan_stream_test.xyz";
   ASSERT_TRUE(write_file_atomically(path, "1 2 3\n"));
-  const Result<ScanPoints> points = read_scan(path);
+  const Result<testing::WholeScan> points = testing::whole(ScanStream::open(path));
   fs::remove(path);
   ASSERT_TRUE(points) << points.error().message;
-  EXPECT_EQ(points->name, "read_scan_test.xyz");
-  EXPECT_EQ(read_scan(path).error().kind, ErrorKind::kNotFound);
+  EXPECT_EQ(points->name, "scan_stream_test.xyz");
+  EXPECT_EQ(testing::whole(ScanStream::open(path)).error().kind, ErrorKind::kNotFound);
 }
 
-TEST(ReadScanTest, FilesThatMissTheirHeaderAreRefused) {
+TEST(ScanStreamTest, FilesThatMissTheirHeaderAreRefused) {
   EXPECT_THAT(read("a.pcd", "1 2 3\n").error().message, HasSubstr("PCD header missing"));
   EXPECT_THAT(read("a.las", std::string(300, '\0')).error().message, HasSubstr("not a LAS file"));
   EXPECT_THAT(read("a.ply", "").error().message, HasSubstr("empty"));
 }
 
-TEST(ReadScanTest, DefaultViewpointFarFromThePointsIsNoSensor) {
+TEST(ScanStreamTest, DefaultViewpointFarFromThePointsIsNoSensor) {
   const std::string fields = "FIELDS x y z\nSIZE 4 4 4\nTYPE F F F\nCOUNT 1 1 1\n";
   const std::string header = testing::pcd_header(fields, 1, 2, "ascii");
   EXPECT_TRUE(read("near.pcd", header + "-1 0 1\n1 0 1\n")->sensor);

@@ -1,0 +1,62 @@
+#include "builder/build_inputs.h"
+
+#include <utility>
+
+#include "scan/clean_points.h"
+#include "scan/merge_schemas.h"
+
+namespace surfcast {
+namespace {
+
+std::vector<ScanSchema> schemas_of(const std::vector<ScanStream>& streams) {
+  std::vector<ScanSchema> schemas;
+  schemas.reserve(streams.size());
+  for (const ScanStream& stream : streams) schemas.push_back(stream.schema());
+  return schemas;
+}
+
+}  // namespace
+
+Result<BuildInputs> BuildInputs::open(std::span<const std::filesystem::path> paths, std::optional<bool> z_up,
+                                      const std::function<void(double)>& progress) {
+  BuildInputs inputs;
+  for (const std::filesystem::path& path : paths) {
+    progress(static_cast<double>(inputs.streams_.size()) / static_cast<double>(paths.size()));
+    Result<ScanStream> stream = ScanStream::open(path);
+    if (!stream) return fail(std::move(stream.error()));
+    for (size_t piece = 0; piece < stream->pieces(); ++piece) {
+      inputs.pieces_.push_back({inputs.streams_.size(), piece});
+    }
+    inputs.streams_.push_back(std::move(*stream));
+  }
+  inputs.schema_ = merge_schemas(schemas_of(inputs.streams_));
+  inputs.schema_.z_up = z_up.value_or(inputs.schema_.z_up);
+  return inputs;
+}
+
+uint64_t BuildInputs::size() const {
+  uint64_t size = 0;
+  for (const ScanStream& stream : streams_) size += stream.size();
+  return size;
+}
+
+Box BuildInputs::bounds() const {
+  Box box;
+  for (const ScanStream& stream : streams_) box.include(stream.bounds());
+  return box;
+}
+
+std::vector<std::string> BuildInputs::notes() const {
+  return describe_fillings(schemas_of(streams_), schema_);
+}
+
+Result<InputPiece> BuildInputs::read(size_t piece, SurfelReport& report) const {
+  const auto& [source, number] = pieces_[piece];
+  Result<ScanPoints> points = streams_[source].read(number);
+  if (!points) return fail(std::move(points.error()));
+  report.points_read += points->size();
+  drop_unusable_points(*points, report);
+  return InputPiece{source, conform(std::move(*points), schema_)};
+}
+
+}  // namespace surfcast

@@ -1,0 +1,185 @@
+#include "builder/build_model.h"
+
+#include <cmath>
+#include <memory>
+#include <numeric>
+#include <string>
+#include <utility>
+
+#include <unistd.h>
+
+#include "builder/build_inputs.h"
+#include "builder/build_parts.h"
+#include "builder/cloud_columns.h"
+#include "builder/memory_budget.h"
+#include "builder/ordered_work.h"
+#include "builder/stage_clock.h"
+#include "ldc/subtree.h"
+#include "model/model_writer.h"
+#include "model/write_blocks.h"
+#include "surfel/normalization_weights.h"
+
+namespace surfcast {
+namespace {
+
+/// What would spoil the target is found now, not after a long build.
+Status check_target(const std::filesystem::path& target, std::span<const std::filesystem::path> inputs) {
+  const std::filesystem::path folder = target.parent_path().empty() ? "." : target.parent_path();
+  std::error_code ignored;  // of files that do not exist; reading them says so
+  if (!std::filesystem::is_directory(folder, ignored)) {
+    return fail(ErrorKind::kIo, target.string() + ": no such folder: " + folder.string());
+  }
+  if (::access(folder.c_str(), W_OK) != 0) {
+    return fail(ErrorKind::kIo, target.string() + ": cannot write into the folder " + folder.string());
+  }
+  for (const std::filesystem::path& input : inputs) {
+    if (std::filesystem::equivalent(input, target, ignored)) {
+      return fail(ErrorKind::kInvalidInput, target.string() + ": is an input too and would be overwritten");
+    }
+  }
+  return {};
+}
+
+Status check_bounds(const Box& bounds, const std::filesystem::path& target) {
+  // Far beyond any scan, and small enough that box sizes and squares stay finite.
+  constexpr double kLimit = 1e150;
+  if (bounds.empty()) {
+    return fail(ErrorKind::kInvalidInput, target.string() + ": no usable point is left of the input");
+  }
+  const glm::dvec3 farthest = glm::max(glm::abs(bounds.min), glm::abs(bounds.max));
+  if (std::max({farthest.x, farthest.y, farthest.z}) < kLimit) return {};
+  return fail(ErrorKind::kInvalidInput, target.string() + ": a position of the input is too far away to be stored");
+}
+
+/// A cloud without surfels that has all that the model's clouds have in common.
+SurfelCloud common_cloud(const BuildInputs& inputs, bool oriented) {
+  SurfelCloud cloud = empty_cloud(inputs.schema(), 0);
+  cloud.oriented = oriented;
+  for (const ScanStream& stream : inputs.streams()) {
+    cloud.sources.push_back({stream.schema().name, 0, 0, stream.schema().grid});
+  }
+  return cloud;
+}
+
+/// The cell of a part; several cells are some of the eight of their parent.
+Region region_of(const Part& part, const RootCube& root, size_t own) {
+  const bool whole = part.cells.size() == 1;
+  return {root, whole ? part.cells[0] : part.cells[0].parent(), whole, own};
+}
+
+/// Numbers of blocks begin with 0 in every part; in the file they go on.
+void renumber(uint32_t first, Subtree& subtree) {
+  for (TreeBlock& block : subtree.blocks) {
+    for (uint32_t& child : block.children) child += first;
+  }
+  for (FrontCell& cell : subtree.front) {
+    for (uint32_t& block : cell.blocks) block += first;
+  }
+}
+
+/// Weighs the surfels of all parts, makes the blocks and writes them.
+class ModelPass {
+ public:
+  ModelPass(BuildParts& parts, ModelWriter& writer, const BuildOptions& options) : parts_(parts), writer_(writer) {
+    partition_.precision = options.precision;
+  }
+
+  Status write_parts(const MemoryPlan& memory, StageClock& clock) {
+    clock.begin("writing blocks", parts_.size());
+    return work_in_order(parts_.size(), parts_.parts_at_once(memory),
+                         [&](size_t part) -> Result<std::function<Status()>> {
+                           Result<Work> work = make_work(part);
+                           if (!work) return fail(std::move(work.error()));
+                           return [this, &clock, shared = std::make_shared<Work>(std::move(*work))] {
+                             clock.step();
+                             return write(*shared);
+                           };
+                         });
+  }
+
+  Status write_levels_above(const SurfelCloud& common) {
+    const auto first = static_cast<uint32_t>(blocks_);
+    const std::vector<TreeBlock> blocks =
+        build_levels_above(std::move(front_), parts_.root(), coarse_attributes(common), first);
+    return write_blocks(writer_, common, blocks, {});
+  }
+
+ private:
+  struct Work {
+    SurfelCloud cloud;
+    Subtree subtree;
+  };
+
+  Result<Work> make_work(size_t part) {
+    Result<BuildParts::Finished> surfels = parts_.take(part);
+    if (!surfels) return fail(std::move(surfels.error()));
+    Work work{std::move(surfels->cloud), {}};
+    work.cloud.weights = normalization_weights(work.cloud);
+    if (surfels->own > 0) {
+      const Region region = region_of(parts_.plan(part), parts_.root(), surfels->own);
+      work.subtree = build_subtree(work.cloud, region, partition_, 0);
+    }
+    return work;
+  }
+
+  Status write(Work& work) {
+    renumber(static_cast<uint32_t>(blocks_), work.subtree);
+    blocks_ += work.subtree.blocks.size();
+    for (FrontCell& cell : work.subtree.front) front_.push_back(std::move(cell));
+    return write_blocks(writer_, work.cloud, work.subtree.blocks, {});
+  }
+
+  BuildParts& parts_;
+  ModelWriter& writer_;
+  PartitionOptions partition_;
+  size_t blocks_ = 0;
+  Front front_;
+};
+
+Result<WriteReport> write(const BuildInputs& inputs, BuildParts& parts, const MemoryPlan& memory,
+                          const std::filesystem::path& target, const BuildOptions& options, StageClock& clock) {
+  const SurfelCloud common = common_cloud(inputs, parts.signs().oriented);
+  Result<ModelWriter> writer = ModelWriter::create(target, schema_of(common));
+  if (!writer) return fail(std::move(writer.error()));
+  ModelPass pass(parts, *writer, options);
+  if (Status status = pass.write_parts(memory, clock); !status) return fail(std::move(status.error()));
+  clock.begin("writing levels above", 1);
+  if (Status status = pass.write_levels_above(common); !status) return fail(std::move(status.error()));
+  return writer->finish();
+}
+
+}  // namespace
+
+Result<BuildReport> build_model(std::span<const std::filesystem::path> inputs, const std::filesystem::path& target,
+                                const BuildOptions& options, const BuildProgress& progress) {
+  const Stopwatch stopwatch;
+  BuildReport report;
+  if (Status status = check_target(target, inputs); !status) return fail(std::move(status.error()));
+  {
+    StageClock clock(progress, report);
+    clock.begin("reading", inputs.size());
+    const Result<BuildInputs> opened = BuildInputs::open(inputs, options.z_up, [&clock](double) { clock.step(); });
+    if (!opened) return fail(opened.error());
+    if (Status status = check_bounds(opened->bounds(), target); !status) return fail(std::move(status.error()));
+    Result<MemoryPlan> memory = plan_memory(options.memory, opened->schema());
+    if (!memory) return fail(memory.error().kind, target.string() + ": " + memory.error().message);
+    if (options.part_points) memory->split_into(*options.part_points);
+    report.memory_budget = memory->budget;
+    report.scan.notes = opened->notes();
+    Result<BuildParts> parts = BuildParts::gather(*opened, *memory, target, clock, report.scan);
+    if (!parts) return fail(std::move(parts.error()));
+    report.parts = parts->size();
+    Status made = parts->make_surfels(*memory, clock, report.scan);
+    if (!made) return fail(std::move(made.error()));
+    const Result<WriteReport> written = write(*opened, *parts, *memory, target, options, clock);
+    if (!written) return fail(written.error());
+    report.surfels = written->surfels;
+    report.blocks = written->blocks;
+    report.bytes = written->bytes;
+  }
+  report.seconds = stopwatch.seconds();
+  report.peak_memory = peak_resident_bytes();
+  return report;
+}
+
+}  // namespace surfcast

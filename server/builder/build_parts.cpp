@@ -1,0 +1,234 @@
+#include "builder/build_parts.h"
+
+#include <algorithm>
+#include <map>
+#include <memory>
+#include <numeric>
+#include <string>
+#include <utility>
+
+#include <oneapi/tbb/info.h>
+#include <oneapi/tbb/parallel_for.h>
+
+#include "builder/cell_counts.h"
+#include "builder/cloud_columns.h"
+#include "builder/ordered_work.h"
+#include "scan/clean_points.h"
+
+namespace surfcast {
+namespace {
+
+size_t threads() {
+  return static_cast<size_t>(oneapi::tbb::info::default_concurrency());
+}
+
+std::vector<uint64_t> codes_of(const ScanPoints& points, const RootCube& root) {
+  std::vector<uint64_t> codes(points.size());
+  std::transform(points.positions.begin(), points.positions.end(), codes.begin(),
+                 [&root](const glm::dvec3& p) { return morton_code(root, p); });
+  return codes;
+}
+
+Result<std::vector<Part>> find_plan(const BuildInputs& inputs, const RootCube& root, const MemoryPlan& memory,
+                                    StageClock& clock) {
+  if (memory.fits_whole(inputs.size())) {
+    const CountedCell all{0, 0, inputs.size()};
+    return plan_parts({&all, 1}, inputs.size());
+  }
+  const CodePass pass = [&](const std::function<void(std::span<const uint64_t>)>& count) {
+    clock.begin("counting", inputs.pieces());
+    return work_in_order(inputs.pieces(), threads(), [&](size_t i) -> Result<std::function<Status()>> {
+      SurfelReport unused;
+      const Result<InputPiece> piece = inputs.read(i, unused);
+      if (!piece) return fail(piece.error());
+      count(codes_of(piece->points, root));
+      clock.step();
+      return [] { return Status(); };
+    });
+  };
+  const Result<std::vector<CountedCell>> cells = count_cells(pass, memory.part_points);
+  if (!cells) return fail(cells.error());
+  return plan_parts(*cells, memory.part_points);
+}
+
+std::vector<PartRows> sort_out(const ScanPoints& points, const PartFinder& finder, const RootCube& root) {
+  std::map<std::pair<uint32_t, bool>, std::vector<uint32_t>> rows;
+  const std::vector<uint64_t> codes = codes_of(points, root);
+  for (uint32_t i = 0; i < points.size(); ++i) {
+    bool own = true;
+    finder.for_each_part(points.positions[i], codes[i], [&](uint32_t part) {
+      rows[{part, own}].push_back(i);
+      own = false;
+    });
+  }
+  std::vector<PartRows> parts;
+  for (auto& [key, list] : rows) parts.push_back({key.first, key.second, std::move(list)});
+  return parts;
+}
+
+/// Keeps the surfels of a part that are no duplicates. Returns for each of them before whether it was kept.
+std::vector<uint8_t> drop_duplicates(SurfelCloud& cloud, size_t& own, SurfelReport& report) {
+  const std::vector<bool> duplicate = find_duplicates(cloud);
+  const auto dropped = std::count(duplicate.begin(), duplicate.begin() + static_cast<std::ptrdiff_t>(own), true);
+  report.duplicates += static_cast<uint64_t>(dropped);
+  own -= static_cast<size_t>(dropped);
+  std::vector<bool> keep(duplicate.size());
+  std::transform(duplicate.begin(), duplicate.end(), keep.begin(), std::logical_not<>());
+  keep_surfels(cloud, keep);
+  return {keep.begin(), keep.end()};
+}
+
+/// Findings of the surfels that were kept, for all points of the part.
+PartFindings spread_findings(const PartSurfels& surfels, std::vector<uint8_t> kept) {
+  PartFindings findings;
+  findings.normals.resize(kept.size());
+  findings.radii.resize(kept.size());
+  findings.trees.resize(kept.size());
+  size_t next = 0;
+  for (size_t i = 0; i < kept.size(); ++i) {
+    if (kept[i] == 0) continue;
+    findings.normals[i] = surfels.cloud.normals[next];
+    findings.radii[i] = surfels.cloud.radii[next];
+    findings.trees[i] = surfels.trees[next];
+    ++next;
+  }
+  findings.kept = std::move(kept);
+  return findings;
+}
+
+}  // namespace
+
+BuildParts::BuildParts(const BuildInputs& inputs, std::vector<Part> plan, const RootCube& root)
+    : bounds_(inputs.bounds()), root_(root), plan_(std::move(plan)), finder_(plan_, root) {
+  scene_ = {bounds_, inputs.schema().z_up, inputs.schema().normals};
+  for (const ScanStream& stream : inputs.streams()) {
+    sensors_.push_back(stream.schema().sensor);
+    names_.push_back({stream.schema().name, stream.schema().grid});
+  }
+}
+
+Result<BuildParts> BuildParts::gather(const BuildInputs& inputs, const MemoryPlan& memory,
+                                      const std::filesystem::path& target, StageClock& clock, SurfelReport& report) {
+  const RootCube root = root_cube(inputs.bounds());
+  Result<std::vector<Part>> parts = find_plan(inputs, root, memory, clock);
+  if (!parts) return fail(std::move(parts.error()));
+  BuildParts build(inputs, std::move(*parts), root);
+  clock.begin("sorting points", inputs.pieces());
+  Status status =
+      build.size() == 1 ? build.collect(inputs, clock, report) : build.spool(inputs, memory, target, clock, report);
+  if (!status) return fail(std::move(status.error()));
+  return build;
+}
+
+Status BuildParts::collect(const BuildInputs& inputs, StageClock& clock, SurfelReport& report) {
+  PartPoints points;
+  points.cloud = empty_cloud(inputs.schema(), inputs.size());
+  for (size_t i = 0; i < names_.size(); ++i) {
+    points.cloud.sources.push_back({names_[i].name, 0, 0, names_[i].grid});
+    points.inputs.push_back(i);
+  }
+  Status status = work_in_order(inputs.pieces(), threads(), [&](size_t i) -> Result<std::function<Status()>> {
+    SurfelReport own;
+    Result<InputPiece> piece = inputs.read(i, own);
+    if (!piece) return fail(std::move(piece.error()));
+    return [&, own, shared = std::make_shared<InputPiece>(std::move(*piece))] {
+      report.add(own);
+      copy_points(shared->points, points.own, points.cloud);
+      points.own += shared->points.size();
+      points.cloud.sources[shared->source].count += shared->points.size();
+      clock.step();
+      return Status();
+    };
+  });
+  if (!status) return status;
+  size_t first = 0;
+  for (SourceRange& source : points.cloud.sources) source.first = std::exchange(first, first + source.count);
+  for_each_column(points.cloud, [&](auto& values) { values.resize(points.own); });
+  whole_ = std::move(points);
+  return {};
+}
+
+Status BuildParts::spool(const BuildInputs& inputs, const MemoryPlan& memory, const std::filesystem::path& target,
+                         StageClock& clock, SurfelReport& report) {
+  Result<SpoolFile> file = SpoolFile::create(target);
+  if (!file) return fail(std::move(file.error()));
+  store_.emplace(std::move(*file), inputs.schema(), names_, size());
+  Status status = work_in_order(inputs.pieces(), threads() + 1, [&](size_t i) -> Result<std::function<Status()>> {
+    SurfelReport own;
+    const Result<InputPiece> piece = inputs.read(i, own);
+    if (!piece) return fail(piece.error());
+    const std::vector<PartRows> parts = sort_out(piece->points, finder_, root_);
+    return [&, own, packed = std::make_shared<PackedPiece>(pack_piece(*piece, parts))] {
+      report.add(own);
+      clock.step();
+      return store_->add(*packed);
+    };
+  });
+  if (!status || parts_at_once(memory) > 0) return status;
+  return fail(ErrorKind::kLimit, target.string() + ": some points are too close together to be worked on in parts of " +
+                                     "this memory budget");
+}
+
+size_t BuildParts::parts_at_once(const MemoryPlan& memory) const {
+  if (!store_) return 1;
+  uint64_t most = 1;
+  for (size_t part = 0; part < size(); ++part) most = std::max(most, store_->points(part));
+  return std::min(memory.parts_at_once(most), threads());
+}
+
+BuildParts::Made BuildParts::make(PartPoints points, size_t part) const {
+  Made made;
+  made.own = points.own;
+  made.kept = drop_duplicates(points.cloud, made.own, made.report);
+  PartFrame frame;
+  frame.bounds = bounds_;
+  frame.place = [this, part](const glm::dvec3& p) { return finder_.place(static_cast<uint32_t>(part), p); };
+  for (const size_t input : points.inputs) frame.sensors.push_back(sensors_[input]);
+  made.surfels = surfcast::make_surfels(std::move(points.cloud), frame, made.signs, made.report);
+  return made;
+}
+
+Status BuildParts::make_surfels(const MemoryPlan& memory, StageClock& clock, SurfelReport& report) {
+  clock.begin("making surfels", size());
+  std::vector<PartSigns> signs;
+  Status status = work_in_order(size(), parts_at_once(memory), [&](size_t part) -> Result<std::function<Status()>> {
+    Result<PartPoints> points = store_ ? store_->load(part) : Result<PartPoints>(std::move(*whole_));
+    if (!points) return fail(std::move(points.error()));
+    const auto made = std::make_shared<Made>(make(std::move(*points), part));
+    return [&, part, made] {
+      signs.push_back(std::move(made->signs));
+      report.add(made->report);
+      clock.step();
+      if (store_) return store_->keep_findings(part, spread_findings(made->surfels, std::move(made->kept)));
+      surfels_ = std::move(made->surfels);
+      own_ = made->own;
+      return Status();
+    };
+  });
+  if (!status) return status;
+  signs_ = settle_signs(signs, scene_);
+  report.oriented = signs_.oriented;
+  return {};
+}
+
+Result<BuildParts::Finished> BuildParts::take(size_t part) {
+  if (!store_) {
+    settle_normals(signs_, part, surfels_);
+    return Finished{std::move(surfels_.cloud), own_};
+  }
+  Result<PartPoints> points = store_->load(part);
+  if (!points) return fail(std::move(points.error()));
+  Result<PartFindings> findings = store_->load_findings(part);
+  if (!findings) return fail(std::move(findings.error()));
+  store_->release(part);
+  PartSurfels surfels{std::move(points->cloud), std::move(findings->trees)};
+  surfels.cloud.normals = std::move(findings->normals);
+  surfels.cloud.radii = std::move(findings->radii);
+  settle_normals(signs_, part, surfels);
+  const auto end_own = findings->kept.begin() + static_cast<std::ptrdiff_t>(points->own);
+  const auto own = static_cast<size_t>(std::count(findings->kept.begin(), end_own, uint8_t{1}));
+  keep_surfels(surfels.cloud, {findings->kept.begin(), findings->kept.end()});
+  return Finished{std::move(surfels.cloud), own};
+}
+
+}  // namespace surfcast

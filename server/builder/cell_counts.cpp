@@ -1,0 +1,82 @@
+#include "builder/cell_counts.h"
+
+#include <algorithm>
+#include <atomic>
+#include <utility>
+
+namespace surfcast {
+namespace {
+
+/// 2^21 cells: enough for most scans in one pass, and 8 MiB.
+constexpr int kFirstDepth = 7;
+/// Levels that a crowded cell is looked into in one more pass.
+constexpr int kMoreDepth = 4;
+
+/// Counts the points of some cells of one depth in cells `levels` deeper.
+class CountingGrid {
+ public:
+  CountingGrid(std::vector<uint64_t> prefixes, int depth, int levels)
+      : prefixes_(std::move(prefixes)), levels_(levels), depth_(depth + levels) {
+    counts_ = std::vector<std::atomic<uint32_t>>(prefixes_.size() << (3 * levels));
+  }
+
+  void count(std::span<const uint64_t> codes) {
+    for (const uint64_t code : codes) {
+      const uint64_t cell = code >> (3 * (kMortonDepth - depth_));
+      const uint64_t prefix = cell >> (3 * levels_);
+      const auto found = std::lower_bound(prefixes_.begin(), prefixes_.end(), prefix);
+      if (found == prefixes_.end() || *found != prefix) continue;
+      const auto index = static_cast<uint64_t>(found - prefixes_.begin());
+      const uint64_t inside = cell & ((uint64_t{1} << (3 * levels_)) - 1);
+      counts_[index << (3 * levels_) | inside].fetch_add(1, std::memory_order_relaxed);
+    }
+  }
+
+  [[nodiscard]] std::vector<CountedCell> cells() const {
+    std::vector<CountedCell> cells;
+    for (uint64_t i = 0; i < counts_.size(); ++i) {
+      if (counts_[i] == 0) continue;
+      const uint64_t inside = i & ((uint64_t{1} << (3 * levels_)) - 1);
+      const uint64_t cell = prefixes_[i >> (3 * levels_)] << (3 * levels_) | inside;
+      cells.push_back({cell << (3 * (kMortonDepth - depth_)), depth_, counts_[i]});
+    }
+    return cells;
+  }
+
+ private:
+  std::vector<uint64_t> prefixes_;  ///< of the cells that are looked into, ascending
+  int levels_;
+  int depth_;
+  std::vector<std::atomic<uint32_t>> counts_;
+};
+
+bool is_crowded(const CountedCell& cell, uint64_t limit) {
+  return cell.count > limit && cell.depth < kMortonDepth;
+}
+
+}  // namespace
+
+Result<std::vector<CountedCell>> count_cells(const CodePass& pass, uint64_t limit) {
+  std::vector<CountedCell> done;
+  std::vector<uint64_t> crowded = {0};
+  for (int depth = 0; !crowded.empty();) {
+    const int levels = std::min(depth == 0 ? kFirstDepth : kMoreDepth, kMortonDepth - depth);
+    CountingGrid grid(std::exchange(crowded, {}), depth, levels);
+    if (Status status = pass([&grid](std::span<const uint64_t> codes) { grid.count(codes); }); !status) {
+      return fail(std::move(status.error()));
+    }
+    depth += levels;
+    for (const CountedCell& cell : grid.cells()) {
+      if (is_crowded(cell, limit)) {
+        crowded.push_back(cell.first_code >> (3 * (kMortonDepth - depth)));
+      } else {
+        done.push_back(cell);
+      }
+    }
+  }
+  std::sort(done.begin(), done.end(),
+            [](const CountedCell& a, const CountedCell& b) { return a.first_code < b.first_code; });
+  return done;
+}
+
+}  // namespace surfcast

@@ -1,0 +1,39 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <utility>
+#include <vector>
+
+#include "scan/scan_points.h"
+#include "scan/scan_schema.h"
+#include "surfel/surfel_cloud.h"
+
+namespace surfcast {
+
+/// Calls `use(vector)` with every array that points or surfels of a schema have, in one order. Points and clouds have
+/// them under the same names.
+template <typename Points, typename Use>
+void for_each_column(Points& points, const Use& use) {
+  use(points.positions);
+  if (!points.normals.empty()) use(points.normals);
+  if (!points.radii.empty()) use(points.radii);
+  if (points.colors) use(points.colors->values);
+  for (auto& scalar : points.scalars) std::visit(use, scalar.values);
+}
+
+/// A cloud of that schema with so many surfels, all zero.
+SurfelCloud empty_cloud(const ScanSchema& schema, size_t size);
+
+/// Copies all points to the cloud's surfels from `first` on; both are of one schema.
+void copy_points(const ScanPoints& points, size_t first, SurfelCloud& cloud);
+
+/// Appends the columns of some points to `bytes`, one after another.
+void append_columns(const ScanPoints& points, std::span<const uint32_t> rows, std::vector<std::byte>& bytes);
+
+/// Where bytes of the cloud's columns go that `append_columns` made of `count` points: for each column in turn the
+/// memory of its surfels from `first` on.
+std::vector<std::span<std::byte>> column_memory(SurfelCloud& cloud, size_t first, size_t count);
+
+}  // namespace surfcast

@@ -1,0 +1,81 @@
+#include "builder/memory_budget.h"
+
+#include <algorithm>
+#include <charconv>
+#include <fstream>
+#include <string>
+
+#include <unistd.h>
+
+namespace surfcast {
+namespace {
+
+constexpr uint64_t kMebibyte = uint64_t{1} << 20;
+/// What the program takes beside points: itself, pieces of the input on their way, blocks on theirs.
+constexpr uint64_t kReserve = 256 * kMebibyte;
+/// Parts smaller than this would be mostly halo.
+constexpr uint64_t kLeastPart = 250000;
+/// Points that a part may have for each one of its own, halo included, before fewer parts are worked on at once.
+constexpr double kWithHalo = 1.5;
+/// Parts that are to fit side by side, so that what one thread does alone in one leaves no core idle.
+constexpr uint64_t kPartsAtOnce = 3;
+/// Bytes that a point takes while it is worked on, beside its own attributes: sites, neighbours, links and hashes when
+/// surfels are made; a tree of points, a spatial order and coarse levels when they are weighed and written. Measured.
+constexpr uint64_t kWorkPerPoint = 260;
+
+uint64_t point_bytes(const ScanSchema& schema) {
+  // Position, normal, radius and weight are always there in the end.
+  uint64_t bytes = 24 + 12 + 4 + 4 + (schema.color_bits != 0 ? 6 : 0);
+  for (const ScalarField& field : schema.scalars) bytes += size_of(field.type);
+  return bytes;
+}
+
+std::string in_mebibytes(uint64_t bytes) {
+  return std::to_string((bytes + kMebibyte - 1) / kMebibyte) + "M";
+}
+
+uint64_t control_group_limit() {
+  std::ifstream stream("/sys/fs/cgroup/memory.max");
+  uint64_t limit = 0;
+  return stream >> limit ? limit : UINT64_MAX;
+}
+
+}  // namespace
+
+std::optional<uint64_t> parse_memory_size(std::string_view text) {
+  uint64_t number = 0;
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (code != std::errc() || number == 0) return std::nullopt;
+  const std::string_view unit = text.substr(static_cast<size_t>(end - text.data()));
+  const int shift = unit.empty() ? 0 : unit == "K" ? 10 : unit == "M" ? 20 : unit == "G" ? 30 : -1;
+  if (shift < 0 || number > (UINT64_MAX >> shift)) return std::nullopt;
+  return number << shift;
+}
+
+uint64_t machine_memory() {
+  const auto pages = static_cast<uint64_t>(::sysconf(_SC_PHYS_PAGES));
+  return std::min(pages * static_cast<uint64_t>(::sysconf(_SC_PAGE_SIZE)), control_group_limit());
+}
+
+Result<MemoryPlan> plan_memory(std::optional<uint64_t> budget, const ScanSchema& schema) {
+  MemoryPlan plan;
+  plan.per_point = point_bytes(schema) + kWorkPerPoint;
+  const uint64_t least = kReserve + static_cast<uint64_t>(kWithHalo * static_cast<double>(kLeastPart * plan.per_point));
+  const uint64_t machine = machine_memory();
+  if (budget && *budget > machine) {
+    return fail(ErrorKind::kLimit, "a memory budget of " + in_mebibytes(*budget) + " is more than the " +
+                                       in_mebibytes(machine) + " of this machine");
+  }
+  plan.budget = budget.value_or(std::max(machine / 4, least));
+  if (plan.budget < least) {
+    return fail(ErrorKind::kLimit, "a memory budget of " + in_mebibytes(plan.budget) +
+                                       " is too small for these points: it takes at least " + in_mebibytes(least));
+  }
+  plan.for_parts = plan.budget - kReserve;
+  plan.whole_points = std::min<uint64_t>(plan.for_parts / plan.per_point, UINT32_MAX - 1);
+  const double points = static_cast<double>(plan.for_parts) / (kWithHalo * static_cast<double>(plan.per_point));
+  plan.part_points = std::max(kLeastPart, static_cast<uint64_t>(points / kPartsAtOnce));
+  return plan;
+}
+
+}  // namespace surfcast

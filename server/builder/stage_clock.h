@@ -1,0 +1,49 @@
+#pragma once
+
+#include <mutex>
+
+#include "base/stopwatch.h"
+#include "builder/build_model.h"
+
+namespace surfcast {
+
+/// Tells the progress of stages that follow each other, and how long each took.
+class StageClock {
+ public:
+  StageClock(const BuildProgress& progress, BuildReport& report) : progress_(progress), report_(report) {}
+  StageClock(const StageClock&) = delete;
+  StageClock& operator=(const StageClock&) = delete;
+  ~StageClock() { end(); }
+
+  /// Ends the stage before, and begins one of so many steps.
+  void begin(const char* stage, size_t steps) {
+    end();
+    stage_ = stage;
+    steps_ = steps;
+    done_ = 0;
+    stopwatch_ = {};
+    progress_({stage_, 0, report_.scan.points_read});
+  }
+  /// Any thread, when a step is done.
+  void step() {
+    const std::lock_guard lock(mutex_);
+    ++done_;
+    progress_({stage_, static_cast<double>(done_) / static_cast<double>(steps_), report_.scan.points_read});
+  }
+
+ private:
+  void end() {
+    if (stage_ != nullptr) report_.stages.emplace_back(stage_, stopwatch_.seconds());
+    stage_ = nullptr;
+  }
+
+  const BuildProgress& progress_;
+  BuildReport& report_;
+  std::mutex mutex_;
+  const char* stage_ = nullptr;
+  size_t steps_ = 1;
+  size_t done_ = 0;
+  Stopwatch stopwatch_;
+};
+
+}  // namespace surfcast

@@ -1,0 +1,83 @@
+#include "scan/column_roles.h"
+
+#include <algorithm>
+#include <map>
+#include <utility>
+
+#include "scan/attribute_names.h"
+#include "scan/text_tokens.h"
+
+namespace surfcast {
+namespace {
+
+/// More than any scan has; naming columns apart takes time quadratic in their number.
+constexpr size_t kMostColumns = 1024;
+
+/// Columns by canonical name; the second column of a name keeps a name of its own.
+using NamedColumns = std::map<std::string, size_t>;
+
+std::string unused_name(const NamedColumns& taken, const std::string& wanted) {
+  std::string name = wanted;
+  for (int suffix = 2; name.empty() || taken.contains(name); ++suffix) name = wanted + "_" + std::to_string(suffix);
+  return name;
+}
+
+NamedColumns name_columns(std::span<const ColumnInfo> columns, const std::vector<bool>& absent) {
+  NamedColumns named;
+  for (size_t i = 0; i < columns.size(); ++i) {
+    if (!absent.empty() && absent[i]) continue;
+    // Names end up in messages and JSON, which take no arbitrary bytes.
+    const std::string given = printable(columns[i].name);
+    std::string name = canonical_attribute_name(given);
+    if (name.empty() || named.contains(name)) name = unused_name(named, given);
+    named.emplace(std::move(name), i);
+  }
+  return named;
+}
+
+std::optional<size_t> take(NamedColumns& named, const char* name) {
+  const auto it = named.find(name);
+  if (it == named.end()) return std::nullopt;
+  const size_t column = it->second;
+  named.erase(it);
+  return column;
+}
+
+/// Takes three columns out, when all three are there.
+std::optional<ColumnTriple> take_triple(NamedColumns& named, const char* a, const char* b, const char* c) {
+  if (!named.contains(a) || !named.contains(b) || !named.contains(c)) return std::nullopt;
+  return ColumnTriple{*take(named, a), *take(named, b), *take(named, c)};
+}
+
+void take_packed_color(std::span<const ColumnInfo> columns, NamedColumns& named, ColumnRoles& roles) {
+  for (const char* name : {"rgb", "rgba"}) {
+    const auto it = named.find(name);
+    if (it == named.end() || size_of(columns[it->second].type) != sizeof(uint32_t)) continue;
+    roles.packed_color = take(named, name);
+    roles.packed_alpha = columns[*roles.packed_color].name.size() == 4 && !named.contains("alpha");
+    return;
+  }
+}
+
+}  // namespace
+
+Result<ColumnRoles> assign_roles(std::span<const ColumnInfo> columns, const std::vector<bool>& absent) {
+  if (columns.size() > kMostColumns) {
+    return fail(ErrorKind::kLimit, "has more than " + std::to_string(kMostColumns) + " values for each point");
+  }
+  NamedColumns named = name_columns(columns, absent);
+  const auto position = take_triple(named, "x", "y", "z");
+  if (!position) return fail(ErrorKind::kInvalidInput, "has no x, y and z for its points");
+  ColumnRoles roles;
+  roles.position = *position;
+  roles.normal = take_triple(named, "nx", "ny", "nz");
+  roles.radius = take(named, "radius");
+  roles.color = take_triple(named, "red", "green", "blue");
+  if (!roles.color) take_packed_color(columns, named, roles);
+  for (auto& [name, column] : named) roles.scalars.push_back({column, name});
+  std::sort(roles.scalars.begin(), roles.scalars.end(),
+            [](const auto& a, const auto& b) { return a.column < b.column; });
+  return roles;
+}
+
+}  // namespace surfcast

@@ -1,0 +1,16 @@
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <span>
+
+#include "base/result.h"
+#include "scan/las_header.h"
+#include "scan/row_source.h"
+
+namespace surfcast {
+
+/// The points of a LAZ file whose header has been read: a piece for each chunk.
+Result<std::unique_ptr<RowSource>> laz_rows(std::span<const std::byte> bytes, LasHeader header);
+
+}  // namespace surfcast

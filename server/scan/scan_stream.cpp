@@ -1,0 +1,115 @@
+#include "scan/scan_stream.h"
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include "scan/draco_reader.h"
+#include "scan/las_reader.h"
+#include "scan/pcd_reader.h"
+#include "scan/ply_reader.h"
+#include "scan/ptx_reader.h"
+#include "scan/scan_format.h"
+#include "scan/text_reader.h"
+
+namespace surfcast {
+namespace {
+
+Result<std::unique_ptr<RowSource>> rows_of(ScanFormat format, std::span<const std::byte> bytes) {
+  switch (format) {
+    case ScanFormat::kPly:
+      return ply_rows(bytes);
+    case ScanFormat::kLas:
+      return las_rows(bytes);
+    case ScanFormat::kPcd:
+      return pcd_rows(bytes);
+    case ScanFormat::kPtx:
+      return ptx_rows(bytes);
+    case ScanFormat::kDraco:
+      return draco_rows(bytes);
+    case ScanFormat::kText:
+      break;
+  }
+  return text_rows(bytes);
+}
+
+/// The roles that facts are looked for by. Without names, x, y and z come first, and the others have none yet.
+Result<ColumnRoles> first_roles(const RowSource& rows) {
+  if (!rows.columns().empty() && rows.columns()[0].name.empty()) {
+    ColumnRoles roles;
+    roles.position = {0, 1, 2};
+    return roles;
+  }
+  return assign_roles(rows.columns(), {});
+}
+
+/// Reads all pieces on all threads. Of several failures the one of the first piece counts.
+Result<TableFacts> survey_rows(const RowSource& rows, const MappedFile* file) {
+  const Result<ColumnRoles> roles = first_roles(rows);
+  if (!roles) return fail(roles.error());
+  const bool unnamed = rows.columns()[0].name.empty();
+  std::vector<Result<TableFacts>> facts(rows.pieces());
+  oneapi::tbb::parallel_for(size_t{0}, rows.pieces(), [&](size_t i) {
+    const Result<PointTable> table = rows.read(i);
+    facts[i] = table ? Result<TableFacts>(find_facts(*table, *roles, unnamed)) : fail(table.error());
+    if (file != nullptr) file->forget();
+  });
+  TableFacts all;
+  for (const Result<TableFacts>& piece : facts) {
+    if (!piece) return fail(piece.error());
+    all.include(*piece);
+  }
+  const uint64_t announced = all.announced + rows.traits().announced;
+  if (all.rows < announced) {
+    return fail(ErrorKind::kInvalidInput, "truncated: the file states " + std::to_string(announced) +
+                                              " points and holds " + std::to_string(all.rows));
+  }
+  return all;
+}
+
+}  // namespace
+
+Status ScanStream::survey(std::span<const std::byte> bytes, const std::filesystem::path& path) {
+  path_ = path;
+  const auto named = [&path](const Error& error) { return fail(error.kind, path.string() + ": " + error.message); };
+  Result<std::unique_ptr<RowSource>> rows =
+      scan_format_of(bytes, path).and_then([bytes](ScanFormat format) { return rows_of(format, bytes); });
+  if (!rows) return named(rows.error());
+  rows_ = std::move(*rows);
+  const Result<TableFacts> facts = survey_rows(*rows_, file_ ? &*file_ : nullptr);
+  if (!facts) return named(facts.error());
+  Result<TableMeaning> meaning = decide_meaning(*rows_, *facts);
+  if (!meaning) return named(meaning.error());
+  meaning_ = std::move(*meaning);
+  meaning_.schema.name = path.filename().string();
+  size_ = facts->rows;
+  bounds_ = facts->bounds;
+  return {};
+}
+
+Result<ScanStream> ScanStream::open_content(std::span<const std::byte> bytes, const std::filesystem::path& path) {
+  ScanStream stream;
+  if (Status status = stream.survey(bytes, path); !status) return fail(std::move(status.error()));
+  return stream;
+}
+
+Result<ScanStream> ScanStream::open(const std::filesystem::path& path) {
+  Result<MappedFile> file = MappedFile::open(path);
+  if (!file) return fail(std::move(file.error()));
+  ScanStream stream;
+  stream.file_ = std::move(*file);
+  if (Status status = stream.survey(stream.file_->bytes(), path); !status) return fail(std::move(status.error()));
+  return stream;
+}
+
+Result<ScanPoints> ScanStream::read(size_t piece) const {
+  const Result<PointTable> table = rows_->read(piece);
+  if (!table) return fail(table.error().kind, path_.string() + ": " + table.error().message);
+  ScanPoints points = points_of(*table, meaning_);
+  if (file_) file_->forget();
+  return points;
+}
+
+}  // namespace surfcast

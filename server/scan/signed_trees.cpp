@@ -1,0 +1,194 @@
+#include "scan/signed_trees.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <utility>
+
+#include "scan/signed_forest.h"
+
+namespace surfcast {
+
+void TreeVotes::move_origin(const glm::dvec3& to) {
+  const glm::dvec3 d = to - origin;
+  spread += area * glm::dot(d, d) - 2 * glm::dot(d, moment);
+  moment -= area * d;
+  flux -= glm::dot(normal, d);
+  origin = to;
+}
+
+void TreeVotes::turn() {
+  normal = -normal;
+  flux = -flux;
+  towards = -towards;
+  std::swap(agreement, conflict);
+}
+
+void TreeVotes::add(TreeVotes other) {
+  other.move_origin(origin);
+  area += other.area;
+  moment += other.moment;
+  spread += other.spread;
+  normal += other.normal;
+  flux += other.flux;
+  towards += other.towards;
+  agreement += other.agreement;
+  conflict += other.conflict;
+}
+
+namespace {
+
+/// Share of disagreement between neighbours up to which signs count as consistent. Smooth and sharp-edged surfaces
+/// stay below 0.02, normals of foliage come out above 0.1.
+constexpr double kMostConflict = 0.05;
+
+/// How far two trees of different parts agree where both see the same sites.
+struct Bridge {
+  uint32_t a = 0;
+  uint32_t b = 0;
+  double agreement = 0;  ///< sum of n . n'
+};
+
+/// Trees of all parts are numbered through: this is the number of each part's first.
+std::vector<uint32_t> first_trees(std::span<const PartSigns> parts) {
+  std::vector<uint32_t> first = {0};
+  for (const PartSigns& part : parts) first.push_back(first.back() + static_cast<uint32_t>(part.trees.size()));
+  return first;
+}
+
+std::vector<Bridge> pairs_at_borders(std::span<const PartSigns> parts, const std::vector<uint32_t>& first) {
+  std::vector<BorderSite> sites;
+  for (size_t i = 0; i < parts.size(); ++i) {
+    for (BorderSite site : parts[i].border) {
+      site.tree += first[i];
+      sites.push_back(site);
+    }
+  }
+  std::sort(sites.begin(), sites.end(), [](const BorderSite& a, const BorderSite& b) {
+    return a.place != b.place ? a.place < b.place : a.tree < b.tree;
+  });
+  std::vector<Bridge> pairs;
+  for (size_t i = 0; i < sites.size(); ++i) {
+    for (size_t j = i + 1; j < sites.size() && sites[j].place == sites[i].place; ++j) {
+      pairs.push_back({sites[i].tree, sites[j].tree, static_cast<double>(glm::dot(sites[i].normal, sites[j].normal))});
+    }
+  }
+  return pairs;
+}
+
+/// One bridge for each two trees, the strongest first.
+std::vector<Bridge> find_bridges(std::span<const PartSigns> parts, const std::vector<uint32_t>& first) {
+  std::vector<Bridge> pairs = pairs_at_borders(parts, first);
+  const auto ends = [](const Bridge& bridge) { return std::pair(bridge.a, bridge.b); };
+  std::stable_sort(pairs.begin(), pairs.end(), [&](const Bridge& p, const Bridge& q) { return ends(p) < ends(q); });
+  std::vector<Bridge> bridges;
+  for (const Bridge& pair : pairs) {
+    if (bridges.empty() || ends(bridges.back()) != ends(pair)) {
+      bridges.push_back(pair);
+    } else {
+      bridges.back().agreement += pair.agreement;
+    }
+  }
+  std::stable_sort(bridges.begin(), bridges.end(),
+                   [](const Bridge& p, const Bridge& q) { return std::abs(p.agreement) > std::abs(q.agreement); });
+  return bridges;
+}
+
+bool may_be_room(const Scene& scene) {
+  const glm::dvec3 half_size = 0.5 * scene.bounds.max - 0.5 * scene.bounds.min;
+  std::array<double, 3> sorted = {half_size.x, half_size.y, half_size.z};
+  std::sort(sorted.begin(), sorted.end());
+  return scene.z_up || 2 * sorted[0] <= sorted[1];
+}
+
+/// The flux through the tree as seen from its centroid.
+double central_flux(const TreeVotes& tree) {
+  return tree.flux - glm::dot(tree.normal, tree.moment) / tree.area;
+}
+
+/// Whether the tree is closed, or so nearly that its volume is sure. The normals of a closed surface sum to zero; what
+/// they do sum to is the area of the holes, and a lid over them takes away about that times its distance.
+bool encloses_volume(const TreeVotes& tree) {
+  // What the flux would be on a sphere.
+  const double reach = std::sqrt(tree.area * tree.spread - glm::dot(tree.moment, tree.moment));
+  const double holes = glm::length(tree.normal) / tree.area;
+  const double fullness = std::abs(central_flux(tree)) / reach;
+  return fullness > 0.1 && fullness > 2 * holes;
+}
+
+struct Decision {
+  bool turn = false;
+  bool trusted = false;  ///< more than a guess
+};
+
+Decision decide(const TreeVotes& tree, const Scene& scene) {
+  constexpr double kTerrain = 0.25;  // of the vote when all of the area faces up
+  if (tree.towards != 0) return {tree.towards < 0, true};
+  if (scene.z_up && std::abs(tree.normal.z) > kTerrain * tree.area) return {tree.normal.z < 0, true};
+  if (tree.area > 0 && central_flux(tree) != 0) {
+    return {central_flux(tree) < 0, !may_be_room(scene) && encloses_volume(tree)};
+  }
+  return {tree.normal.z < 0, false};
+}
+
+/// Trees of all parts, those that are one surface joined.
+struct JoinedTrees {
+  SignedForest forest;
+  std::vector<TreeVotes> votes;  ///< at each forest's root those of all its members
+
+  JoinedTrees(std::span<const PartSigns> parts, const std::vector<uint32_t>& first) : forest(first.back()) {
+    for (const auto& [a, b, agreement] : find_bridges(parts, first)) forest.join(a, b, agreement < 0);
+    std::vector<TreeVotes> own;
+    for (const PartSigns& part : parts) own.insert(own.end(), part.trees.begin(), part.trees.end());
+    votes.resize(own.size());
+    for (uint32_t i = 0; i < own.size(); ++i) {
+      const auto [root, opposed] = forest.find(i);
+      if (opposed) own[i].turn();
+      if (votes[root].area == 0) votes[root].origin = own[i].origin;
+      votes[root].add(own[i]);
+    }
+  }
+};
+
+}  // namespace
+
+SettledSigns settle_signs(std::span<const PartSigns> parts, const Scene& scene) {
+  const std::vector<uint32_t> first = first_trees(parts);
+  JoinedTrees joined(parts, first);
+  std::vector<Decision> decisions(joined.votes.size());
+  TreeVotes settled;
+  double trusted = 0;
+  bool all_known = true;
+  for (const PartSigns& part : parts) {
+    settled.area += part.settled_area;
+    settled.agreement += part.agreement;
+    settled.conflict += part.conflict;
+    trusted += part.settled_area;
+    all_known = all_known && part.all_known;
+  }
+  for (size_t i = 0; i < decisions.size(); ++i) {
+    TreeVotes& tree = joined.votes[i];
+    decisions[i] = decide(tree, scene);
+    if (decisions[i].turn) tree.turn();
+    settled.area += tree.area;
+    settled.agreement += tree.agreement;
+    settled.conflict += tree.conflict;
+    if (decisions[i].trusted) trusted += tree.area;
+  }
+  const bool agree = settled.conflict <= kMostConflict * (settled.agreement + settled.conflict);
+  SettledSigns signs;
+  signs.oriented =
+      all_known ? !scene.normals_stored || agree : trusted >= 0.9 * settled.area && settled.area > 0 && agree;
+  signs.face_up = !signs.oriented && scene.z_up;
+  for (size_t i = 0; i < parts.size(); ++i) {
+    std::vector<uint8_t>& turned = signs.turned.emplace_back(parts[i].trees.size());
+    for (uint32_t tree = 0; tree < turned.size(); ++tree) {
+      const auto [root, opposed] = joined.forest.find(first[i] + tree);
+      turned[tree] = opposed != decisions[root].turn ? 1 : 0;
+    }
+  }
+  return signs;
+}
+
+}  // namespace surfcast

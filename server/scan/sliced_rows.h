@@ -1,0 +1,34 @@
+#pragma once
+
+#include <utility>
+#include <vector>
+
+#include "scan/row_source.h"
+
+namespace surfcast {
+
+/// A table that is there as a whole, in a mapped file or decoded in memory, handed out in pieces.
+class SlicedRows : public RowSource {
+ public:
+  SlicedRows(RowTraits traits, std::vector<ColumnInfo> columns, PointTable table)
+      : traits_(traits), columns_(std::move(columns)), table_(std::move(table)) {}
+
+  [[nodiscard]] const RowTraits& traits() const override { return traits_; }
+  [[nodiscard]] const std::vector<ColumnInfo>& columns() const override { return columns_; }
+  [[nodiscard]] size_t pieces() const override { return (table_.rows + kPieceRows - 1) / kPieceRows; }
+  [[nodiscard]] Result<PointTable> read(size_t piece) const override {
+    const size_t first = piece * kPieceRows;
+    PointTable slice;
+    slice.rows = std::min<size_t>(kPieceRows, table_.rows - first);
+    slice.columns = table_.columns;
+    for (Column& column : slice.columns) column.first += first * column.stride;
+    return slice;
+  }
+
+ private:
+  RowTraits traits_;
+  std::vector<ColumnInfo> columns_;
+  PointTable table_;
+};
+
+}  // namespace surfcast

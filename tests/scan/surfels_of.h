@@ -1,0 +1,14 @@
+#pragma once
+
+#include <vector>
+
+#include "scan/surfel_report.h"
+#include "scan/whole_scan.h"
+#include "surfel/surfel_cloud.h"
+
+namespace surfcast::testing {
+
+/// Surfels of scans, made as one part; everything but the weights is there.
+SurfelCloud surfels_of(std::vector<WholeScan> scans, SurfelReport& report);
+
+}  // namespace surfcast::testing
