@@ -1,4 +1,4 @@
-// frame_bench [SURFELS] [SIDE]: a per-pixel EWA frame beside a frame of plain sized GL points from the same buffers, on
+// frame_bench [SURFELS] [SIDE]: a per-pixel EWA frame beside a frame of plain sized GL points of the same model, on
 // a sphere that fills 80 % of the height, camera moving, picture read back. Medians of one run, interleaved.
 
 #include <algorithm>
@@ -9,6 +9,7 @@
 #include <ctime>
 #include <filesystem>
 #include <map>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -60,10 +61,9 @@ int main(int argc, char** argv) {
 
   const auto path = std::filesystem::temp_directory_path() / "surfcast_frame_bench.surf";
   value_or_exit(write_model(testing::fibonacci_sphere(surfels, 1, {0, 0, 0}, {200, 90, 20}), path, {}));
-  const ModelFile model = value_or_exit(ModelFile::open(path));
+  const auto model = std::make_shared<const ModelFile>(value_or_exit(ModelFile::open(path)));
   const std::unique_ptr<Renderer> renderer = value_or_exit(Renderer::create({}));
-  const ResidentModel resident = value_or_exit(ResidentModel::load(model));
-  bench::GlPoints points(side, side);
+  const bench::GlPoints points(*model, side, side);
   std::vector<std::byte> pixels;
 
   std::map<std::string, std::vector<double>> times;
@@ -76,7 +76,7 @@ int main(int argc, char** argv) {
     const CameraFrame frame = value_or_exit(make_camera_frame(*request.camera, side, side));
     const Stopwatch points_watch;
     const double points_start = processor_ms();
-    points.draw(resident, frame, pixels);
+    points.draw(frame, pixels);
     const double points_ms = points_watch.milliseconds();
     const double points_cpu_ms = processor_ms() - points_start;
     const std::atomic<bool> cancelled{false};

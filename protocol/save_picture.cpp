@@ -32,6 +32,12 @@ Status write_to_stdout(const std::string& data) {
 std::string picture_stats_json(const wire::Picture& picture) {
   json stages = json::object();
   for (const wire::Stage& stage : picture.stages()) stages[stage.name()] = stage.milliseconds();
+  json levels = json::array();
+  for (const wire::Level& level : picture.levels()) {
+    levels.push_back({{"level", level.level()},
+                      {"blocks_selected", level.blocks_selected()},
+                      {"blocks_drawn", level.blocks_drawn()}});
+  }
   const json document = {{"format", name_of(picture.format())},
                          {"bytes", picture.data().size()},
                          {"resolution", {picture.resolution().width(), picture.resolution().height()}},
@@ -41,6 +47,11 @@ std::string picture_stats_json(const wire::Picture& picture) {
                          {"converged", picture.converged()},
                          {"surfels_drawn", picture.surfels_drawn()},
                          {"blocks_drawn", picture.blocks_drawn()},
+                         {"blocks_selected", picture.blocks_selected()},
+                         {"blocks_waited_for", picture.blocks_waited_for()},
+                         {"blocks_resident", picture.blocks_resident()},
+                         {"bytes_resident", picture.bytes_resident()},
+                         {"levels", levels},
                          {"gl_renderer", picture.gl_renderer()},
                          {"milliseconds", stages}};
   return document.dump(2, ' ', false, json::error_handler_t::replace) + "\n";

@@ -11,7 +11,8 @@ layout(binding = SURFCAST_UNIT_BOUNDS) uniform usamplerBuffer bounds;
 layout(binding = SURFCAST_UNIT_LISTS, r32ui) writeonly uniform uimageBuffer lists;
 
 void main() {
-  uint i = gl_GlobalInvocationID.x;
+  // Splats are dispatched in rows, since one dimension may be too short for all of them.
+  uint i = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * uint(SURFCAST_CHUNK) + gl_LocalInvocationID.x;
   uint small = counters.counts.x;
   if (i >= small + counters.counts.y) return;
   bool large = i >= small;

@@ -6,15 +6,12 @@
 #include "include/packing.glsl"
 #include "include/resampling_filter.glsl"
 #include "include/splat_record.glsl"
+#include "include/surfel.glsl"
 #include "include/thinning.glsl"
 
 layout(local_size_x = SURFCAST_CHUNK) in;
 
-layout(std430, binding = SURFCAST_BIND_GEOMETRY) readonly buffer Geometry { uvec4 geometry[]; };
-layout(std430, binding = SURFCAST_BIND_SIZE) readonly buffer Size { uint size_and_weight[]; };
-#ifdef SURFCAST_HAS_COLOR
-layout(std430, binding = SURFCAST_BIND_COLOR) readonly buffer Color { uint color[]; };
-#endif
+layout(binding = SURFCAST_UNIT_SURFELS) uniform usamplerBuffer surfels;
 layout(std430, binding = SURFCAST_BIND_BLOCKS) readonly buffer Blocks { BlockView blocks[]; };
 layout(std430, binding = SURFCAST_BIND_CHUNKS) readonly buffer Chunks { Chunk chunks[]; };
 layout(std430, binding = SURFCAST_BIND_COUNTERS) buffer CountersBuffer { Counters counters; };
@@ -182,27 +179,28 @@ void project(Surfel s) {
 }
 
 void main() {
-  uvec4 run = chunks[gl_WorkGroupID.x].run;
+  // Chunks are dispatched in rows, since one dimension may be too short for all of them.
+  uint chunk = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
+  if (chunk >= uint(frame.flags.w)) return;
+  uvec4 run = chunks[chunk].run;
   if (gl_LocalInvocationID.x >= run.z) return;
-  uint i = run.y + gl_LocalInvocationID.x;
-  vec4 origin = blocks[run.x].origin;
-  uvec4 g = geometry[i];
+  BlockView block = blocks[run.x];
+  uvec4 texel = texelFetch(surfels, int(run.y + gl_LocalInvocationID.x));
   mat3 rotation = transpose(mat3(frame.right.xyz, frame.up.xyz, frame.forward.xyz));
-  // Both are kept as logarithms: 2^(-32 u), so that one block may hold radii of any ratio.
-  vec2 size = exp2(-32.0 * unpackUnorm2x16(size_and_weight[i]));
+  vec2 size = surfel_size(texel, block.scale);
 
   Surfel s;
-  s.id = i;
-  s.o = origin.xyz + rotation * uintBitsToFloat(g.xyz);
-  s.n = rotation * unpack_normal(g.w);
-  s.radius = size.x * origin.w;
+  s.id = run.w + gl_LocalInvocationID.x;
+  s.o = block.origin.xyz + rotation * (block.step.xyz * surfel_position(texel));
+  s.n = rotation * surfel_normal(texel);
+  s.radius = size.x;
   s.weight = frame.flags.y != 0 ? size.y : frame.filter_.z;
   if (s.o.z + s.radius * 2.0 <= 0.0) return;
   bool away = dot(s.n, s.o) >= 0.0;
   if (away && frame.flags.x != 0) return;
   if (away) s.n = -s.n;
 #if defined(SURFCAST_HAS_COLOR)
-  s.color = color[i];
+  s.color = surfel_color(texel);
 #elif defined(SURFCAST_LIT)
   s.color = pack_biased_normal(s.n);
 #else

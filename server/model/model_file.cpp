@@ -87,8 +87,9 @@ ModelInfo make_info(const ModelHeader& header, const Directory& directory, std::
   for (const ScalarColumn& scalar : directory.scalars) info.scalar_names.push_back(scalar.name);
   info.source_names = directory.source_names;
   for (const BlockEntry& entry : entries) {
+    if (entry.level > 0) continue;
     info.bounds.include(entry.bounds);
-    if (entry.level == 0) info.surfels += entry.surfels;
+    info.surfels += entry.surfels;
     info.levels = std::max(info.levels, entry.level + 1);
   }
   return info;

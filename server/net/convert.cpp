@@ -114,6 +114,16 @@ void to_wire(EncodedPicture picture, wire::Picture& message) {
   message.set_converged(picture.converged);
   message.set_surfels_drawn(picture.stats.surfels_drawn);
   message.set_blocks_drawn(picture.stats.blocks_drawn);
+  message.set_blocks_selected(picture.stats.blocks_selected);
+  message.set_blocks_waited_for(picture.stats.blocks_waited_for);
+  message.set_blocks_resident(picture.stats.blocks_resident);
+  message.set_bytes_resident(picture.stats.bytes_resident);
+  for (const LevelStats& stats : picture.stats.levels) {
+    wire::Level* level = message.add_levels();
+    level->set_level(static_cast<uint32_t>(stats.level));
+    level->set_blocks_selected(stats.selected);
+    level->set_blocks_drawn(stats.drawn);
+  }
   message.set_gl_renderer(clean_utf8(picture.stats.gl_renderer));
   for (const StageTime& time : picture.stats.stages) {
     wire::Stage* stage = message.add_stages();

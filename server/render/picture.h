@@ -15,6 +15,10 @@ enum class Normalization { kPixel, kSurfel };
 enum class Filter { kEwa, kNone };  ///< kNone leaves the prefilter out: the reconstruction kernel alone
 enum class Shading { kAuto, kUnlit, kLit };
 
+/// Whether a picture waits for the blocks that it should show. kNow draws what is there and leaves the rest to later
+/// pictures, for views in motion.
+enum class Loading { kWait, kNow };
+
 /// What a rendered pixel is: kSrgb8 for pictures, kLinearFloat for formats that hold measured light (EXR).
 enum class PixelFormat { kSrgb8, kLinearFloat };
 
@@ -29,6 +33,7 @@ struct PictureRequest {
   double spacing = 0;               ///< projected spacing of surfels to stop at, pixels; 0 is the finest level there is
   glm::u8vec3 background{0, 0, 0};  ///< sRGB
   PixelFormat format = PixelFormat::kSrgb8;
+  Loading loading = Loading::kWait;
 };
 
 /// A rendered picture, rows from top to bottom without padding. Four channels; the fourth is the coverage of the
@@ -45,10 +50,22 @@ struct StageTime {
   double milliseconds = 0;
 };
 
+/// Blocks of one level of detail.
+struct LevelStats {
+  int level = 0;          ///< 0 is the finest
+  uint32_t selected = 0;  ///< blocks of this level that the picture should show
+  uint32_t drawn = 0;     ///< blocks of this level that it does show
+};
+
 /// What drawing a frame took.
 struct FrameStats {
-  uint64_t surfels_drawn = 0;
+  uint64_t surfels_drawn = 0;  ///< splats, once what faces away or lies outside has been left out
   uint32_t blocks_drawn = 0;
+  uint32_t blocks_selected = 0;    ///< that the picture should show
+  uint32_t blocks_waited_for = 0;  ///< that were not resident when it was asked for
+  uint32_t blocks_resident = 0;    ///< on the GPU afterwards, of all models
+  uint64_t bytes_resident = 0;     ///< of GPU memory that they take
+  std::vector<LevelStats> levels;  ///< those with a block, finest first
   std::string gl_renderer;
   std::vector<StageTime> stages;
 };
@@ -56,6 +73,9 @@ struct FrameStats {
 struct Frame {
   Image image;
   Camera camera;  ///< the one that was used
+  /// True if no later picture of the same request would be better: every block that it should show is drawn, and the
+  /// budget of GPU memory left none of them coarser than was asked for.
+  bool converged = false;
   FrameStats stats;
 };
 

@@ -3,31 +3,46 @@
 #include <algorithm>
 
 #include "base/stopwatch.h"
+#include "shared/surfel_layout.h"
 
 namespace surfcast {
 namespace {
 
-/// Work of one arena: a dispatch each, since buffers are bound per arena.
-struct ArenaWork {
+/// What the projection works through.
+struct ProjectionWork {
   std::vector<layout::BlockView> blocks;
   std::vector<layout::Chunk> chunks;
 };
 
-std::vector<ArenaWork> plan_work(const RegionTask& task) {
-  std::vector<ArenaWork> work(task.model->arenas().size());
-  for (const uint32_t index : task.visible_blocks) {
-    const ResidentBlock& block = task.model->blocks()[index];
-    ArenaWork& arena = work[block.arena];
-    const auto view = static_cast<uint32_t>(arena.blocks.size());
-    // Relative to the eye in double precision: single precision never sees world coordinates.
-    arena.blocks.push_back(
-        {glm::vec4(glm::vec3(task.frame.to_camera(block.origin)), static_cast<float>(block.radius_unit))});
-    for (uint32_t first = 0; first < block.surfels; first += SURFCAST_CHUNK) {
-      const uint32_t count = std::min<uint32_t>(SURFCAST_CHUNK, block.surfels - first);
-      arena.chunks.push_back({glm::uvec4(view, block.first + first, count, 0)});
+layout::BlockView block_view(const ResidentBlock& block, const CameraFrame& frame) {
+  const auto scale = [](const LogScale& s) { return glm::vec2(s.log2_largest, s.octaves / SURFCAST_SIZE_STEPS); };
+  // Relative to the eye in double precision: single precision never sees world coordinates.
+  return {glm::vec4(glm::vec3(frame.to_camera(block.origin)), 0), glm::vec4(glm::vec3(block.step), 0),
+          glm::vec4(scale(block.radius), scale(block.weight))};
+}
+
+ProjectionWork plan_work(const RegionTask& task) {
+  static_assert(SurfelPool::kPageSurfels % SURFCAST_CHUNK == 0);
+  ProjectionWork work;
+  for (const VisibleBlock& block : task.blocks) {
+    const auto view = static_cast<uint32_t>(work.blocks.size());
+    work.blocks.push_back(block_view(block.resident, task.frame));
+    for (uint32_t first = 0; first < block.resident.surfels; first += SURFCAST_CHUNK) {
+      const uint32_t page = block.resident.pages[first / SurfelPool::kPageSurfels];
+      const uint32_t texel = page * SurfelPool::kPageSurfels + first % SurfelPool::kPageSurfels;
+      const uint32_t count = std::min<uint32_t>(SURFCAST_CHUNK, block.resident.surfels - first);
+      work.chunks.push_back({glm::uvec4(view, texel, count, block.first_surfel + first)});
     }
   }
   return work;
+}
+
+/// Dispatches work groups in rows: GL promises 65535 along each dimension.
+void dispatch_rows(size_t groups) {
+  constexpr size_t kRow = 32768;
+  const size_t rows = (groups + kRow - 1) / kRow;
+  glDispatchCompute(static_cast<GLuint>(std::min(groups, kRow)), static_cast<GLuint>(rows), 1);
+  glMemoryBarrier(GL_ALL_BARRIER_BITS);
 }
 
 template <typename T>
@@ -36,13 +51,21 @@ void upload(StorageBuffer& buffer, const std::vector<T>& values) {
   glNamedBufferSubData(buffer.name(), 0, static_cast<GLsizeiptr>(values.size() * sizeof(T)), values.data());
 }
 
-void upload_constants(const RegionTask& task, bool thinned, SplatBuffers& buffers) {
+void upload_constants(const RegionTask& task, const ProjectionWork& work, uint32_t thinned_to, SplatBuffers& buffers) {
   layout::FrameConstants constants = task.constants;
   constants.tiles.w = static_cast<int>(buffers.splat_capacity());
-  constants.flags.z = thinned ? 1 : 0;
+  constants.flags.z = static_cast<int>(thinned_to);
+  constants.flags.w = static_cast<int>(work.chunks.size());
   buffers.frame.reserve(sizeof constants);
   glNamedBufferSubData(buffers.frame.name(), 0, sizeof constants, &constants);
   glBindBufferBase(GL_UNIFORM_BUFFER, SURFCAST_BIND_FRAME, buffers.frame.name());
+}
+
+void upload_work(const ProjectionWork& work, SplatBuffers& buffers) {
+  upload(buffers.blocks, work.blocks);
+  upload(buffers.chunks, work.chunks);
+  buffers.blocks.bind(SURFCAST_BIND_BLOCKS);
+  buffers.chunks.bind(SURFCAST_BIND_CHUNKS);
 }
 
 void clear_counts(const RegionTask& task, SplatBuffers& buffers) {
@@ -64,20 +87,8 @@ void bind_for_projection(const RegionTask& task, const SplatBuffers& buffers) {
   buffers.discs.bind_for_writing(SURFCAST_UNIT_DISCS);
   buffers.bounds.bind_for_writing(SURFCAST_UNIT_BOUNDS);
   if (task.variant.colored && task.variant.lit) buffers.normals.bind_for_writing(SURFCAST_UNIT_NORMALS);
-}
-
-void dispatch_arena(const Arena& arena, const ArenaWork& work, SplatBuffers& buffers) {
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, SURFCAST_BIND_GEOMETRY, arena.geometry.name());
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, SURFCAST_BIND_SIZE, arena.size_and_weight.name());
-  if (arena.colors) glBindBufferBase(GL_SHADER_STORAGE_BUFFER, SURFCAST_BIND_COLOR, arena.colors.name());
-  upload(buffers.blocks, work.blocks);
-  upload(buffers.chunks, work.chunks);
-  buffers.blocks.bind(SURFCAST_BIND_BLOCKS);
-  buffers.chunks.bind(SURFCAST_BIND_CHUNKS);
-  constexpr size_t kMaxGroups = 65535;  // what GL promises along x: far above one arena's chunks
-  static_assert((size_t{4} << 20) / SURFCAST_CHUNK < kMaxGroups);
-  glDispatchCompute(static_cast<GLuint>(work.chunks.size()), 1, 1);
-  glMemoryBarrier(GL_ALL_BARRIER_BITS);
+  task.surfels->bind(SURFCAST_UNIT_SURFELS);
+  buffers.srgb.bind(SURFCAST_UNIT_SRGB);
 }
 
 layout::Counters read_counters(const SplatBuffers& buffers) {
@@ -86,48 +97,54 @@ layout::Counters read_counters(const SplatBuffers& buffers) {
   return counters;
 }
 
+/// Largest number of splats a tile may keep for the lists to fit, after `thinned_to` (0: all) did not do; the same if
+/// it did.
+uint32_t thinner(const layout::Counters& counters, uint32_t thinned_to, size_t list_limit) {
+  if (thinned_to == 0) return counters.counts.w > SURFCAST_CROWD ? SURFCAST_CROWD : 0;
+  return counters.counts.z > list_limit ? std::max(thinned_to / 2, 1U) : thinned_to;
+}
+
 /// Projects all visible surfels and sums up the tile counts; again if the records did not fit, or if a tile is so
 /// crowded that its splats are to be thinned out.
-layout::Counters project(const RegionTask& task, const std::vector<ArenaWork>& work, Programs& programs,
+layout::Counters project(const RegionTask& task, const ProjectionWork& work, Programs& programs,
                          const SplatPrograms& variant, SplatBuffers& buffers) {
   const gl::DebugGroup group("project");
   constexpr size_t kFirstCapacity = 1u << 18;
   const bool with_normals = task.variant.colored && task.variant.lit;
   buffers.reserve_splats(std::max(kFirstCapacity, buffers.splat_capacity()), with_normals);
-  bool thinned = false;
+  upload_work(work, buffers);
+  uint32_t thinned_to = 0;
   while (true) {
-    upload_constants(task, thinned, buffers);
+    upload_constants(task, work, thinned_to, buffers);
     clear_counts(task, buffers);
     bind_for_projection(task, buffers);
     glUseProgram(variant.project.name());
-    for (size_t i = 0; i < work.size(); ++i) {
-      if (!work[i].chunks.empty()) dispatch_arena(task.model->arenas()[i], work[i], buffers);
-    }
+    if (!work.chunks.empty()) dispatch_rows(work.chunks.size());
     glUseProgram(programs.bin_offsets().name());
     glDispatchCompute(1, 1, 1);
     glMemoryBarrier(GL_ALL_BARRIER_BITS);
     const layout::Counters counters = read_counters(buffers);
     const size_t needed = size_t{counters.counts.x} + counters.counts.y;
-    const bool fits = needed <= buffers.splat_capacity();
-    const bool crowded = counters.counts.w > SURFCAST_CROWD && !thinned;
-    if (fits && !crowded) return counters;
-    if (fits) {
-      thinned = true;
-    } else {
-      buffers.reserve_splats(needed + needed / 4, with_normals);
+    if (needed > buffers.splat_capacity()) {
+      // Two texels each; the pool holds no more surfels than that allows.
+      buffers.reserve_splats(std::min(needed + needed / 4, SurfelBuffer::device_limit() / 2), with_normals);
+      continue;
     }
+    const uint32_t thinned_more = thinner(counters, thinned_to, SurfelBuffer::device_limit());
+    if (thinned_more == thinned_to) return counters;
+    thinned_to = thinned_more;
   }
 }
 
 void bin(const layout::Counters& counters, Programs& programs, SplatBuffers& buffers) {
   const gl::DebugGroup group("bin");
-  buffers.lists.reserve(std::max<size_t>(counters.counts.z + counters.counts.z / 4, 1));
+  const size_t entries = counters.counts.z;
+  buffers.lists.reserve(std::clamp<size_t>(entries + entries / 4, 1, SurfelBuffer::device_limit()));
   buffers.bounds.bind_for_reading(SURFCAST_UNIT_BOUNDS);
   buffers.lists.bind_for_writing(SURFCAST_UNIT_LISTS);
   glUseProgram(programs.bin().name());
-  const uint32_t splats = counters.counts.x + counters.counts.y;
-  glDispatchCompute((splats + SURFCAST_CHUNK - 1) / SURFCAST_CHUNK, 1, 1);
-  glMemoryBarrier(GL_ALL_BARRIER_BITS);
+  const size_t splats = size_t{counters.counts.x} + counters.counts.y;
+  if (splats > 0) dispatch_rows((splats + SURFCAST_CHUNK - 1) / SURFCAST_CHUNK);
 }
 
 void splat(const RegionTask& task, const layout::Counters& counters, const SplatPrograms& variant,

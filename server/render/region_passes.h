@@ -9,14 +9,20 @@
 #include "render/programs.h"
 #include "render/region.h"
 #include "render/splat_buffers.h"
-#include "residency/resident_model.h"
+#include "residency/surfel_buffer.h"
 
 namespace surfcast {
 
+/// A block to draw.
+struct VisibleBlock {
+  ResidentBlock resident;
+  uint32_t first_surfel = 0;  ///< its place in the model, see Scene::first_surfel
+};
+
 /// One region to draw: what is seen, from where, how.
 struct RegionTask {
-  const ResidentModel* model = nullptr;
-  std::vector<uint32_t> visible_blocks;
+  const SurfelBuffer* surfels = nullptr;
+  std::vector<VisibleBlock> blocks;
   CameraFrame frame;
   Region region;
   layout::FrameConstants constants;

@@ -2,22 +2,19 @@
 
 #include <algorithm>
 #include <cstring>
+#include <map>
+#include <thread>
 
-#include "base/contract.h"
-#include "base/stopwatch.h"
 #include "gl/egl_context.h"
 #include "render/programs.h"
 #include "render/region_passes.h"
+#include "render/scene.h"
 #include "render/splat_buffers.h"
-#include "residency/resident_set.h"
-#include "selection/select_blocks.h"
 
 namespace surfcast {
 namespace {
 
-constexpr size_t kGpuBudgetBytes = size_t{4} << 30;
 constexpr int kMaxResolution = 16384;
-constexpr double kViewAngle = 30;  // degrees, of the view that is chosen when none is asked for
 
 size_t pixel_bytes(PixelFormat format) {
   return format == PixelFormat::kSrgb8 ? 4 : 4 * sizeof(float);
@@ -31,28 +28,6 @@ Variant variant_of(const ModelInfo& info, const PictureRequest& request) {
   return variant;
 }
 
-/// Mean normal of the whole model, from the cones of its leaves; zero where front and back are not known.
-glm::dvec3 mean_facing(const ModelFile& model) {
-  glm::dvec3 sum(0);
-  for (const BlockEntry& block : model.blocks()) {
-    if (block.level == 0 && block.normals) sum += glm::dvec3(block.normals->axis) * static_cast<double>(block.surfels);
-  }
-  return sum / static_cast<double>(std::max<uint64_t>(model.info().surfels, 1));
-}
-
-Camera camera_of(const ModelFile& model, const PictureRequest& request) {
-  if (request.camera) return *request.camera;
-  const glm::dvec3 up = model.info().z_up ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
-  Box box = model.info().bounds;
-  double reach = 0;
-  for (const BlockEntry& block : model.blocks()) {
-    if (block.level == 0) reach = std::max(reach, block.max_radius);
-  }
-  box.min -= reach;
-  box.max += reach;
-  return fit_camera(box, up, static_cast<double>(request.width) / request.height, kViewAngle, mean_facing(model));
-}
-
 void copy_region(const Region& region, std::span<const std::byte> from, size_t bytes_per_pixel, Image& image) {
   const size_t row = static_cast<size_t>(region.width) * bytes_per_pixel;
   for (int y = 0; y < region.height; ++y) {
@@ -63,15 +38,115 @@ void copy_region(const Region& region, std::span<const std::byte> from, size_t b
   }
 }
 
+void add(RegionStats& total, const RegionStats& stats) {
+  total.splats += stats.splats;
+  total.project_ms += stats.project_ms;
+  total.bin_ms += stats.bin_ms;
+  total.splat_ms += stats.splat_ms;
+  total.read_ms += stats.read_ms;
+}
+
+/// Blocks by level, finest first.
+std::vector<LevelStats> level_stats(const BlockTree& tree, const BlockSelection& selection) {
+  std::map<int, LevelStats> levels;
+  for (const uint32_t block : selection.target) ++levels[tree.blocks()[block].level].selected;
+  for (const uint32_t block : selection.draw) ++levels[tree.blocks()[block].level].drawn;
+  std::vector<LevelStats> stats;
+  for (auto& [level, counts] : levels) stats.push_back({level, counts.selected, counts.drawn});
+  return stats;
+}
+
 }  // namespace
 
 struct Renderer::State {
+  /// The pool is no larger than a buffer texture of splats, which take two texels each.
+  State(const RendererConfig& config, std::unique_ptr<EglContext> egl, Programs passes)
+      : context(std::move(egl)),
+        device{context->vendor(), context->renderer(), context->version(), context->software()},
+        programs(std::move(passes)),
+        most_surfels(std::min(config.gpu_bytes / sizeof(glm::uvec4), SurfelBuffer::device_limit() / 2)),
+        surfels(most_surfels),
+        residency(surfels, limits_of(config, most_surfels)) {
+    buffers.srgb = SrgbTable::make();
+  }
+
+  static ResidencyLimits limits_of(const RendererConfig& config, size_t surfels) {
+    constexpr size_t kReadyBytes = size_t{64} << 20;
+    return {.pages = static_cast<uint32_t>(surfels / SurfelPool::kPageSurfels),
+            .loader = {std::max(1U, std::thread::hardware_concurrency()), config.host_bytes, kReadyBytes}};
+  }
+
+  Scene& scene_of(const std::shared_ptr<const ModelFile>& model);
+  Result<PreparedView> prepare(Scene& scene, const PictureRequest& request, const Camera& camera,
+                               const CameraFrame& frame, const std::atomic<bool>& cancelled);
+  Result<RegionStats> draw_regions(const Scene& scene, const PictureRequest& request, const CameraFrame& frame,
+                                   const BlockSelection& selection, const std::atomic<bool>& cancelled, Image& image);
+  [[nodiscard]] FrameStats stats_of(const Scene& scene, const PreparedView& view, const RegionStats& drawn) const;
+
   std::unique_ptr<EglContext> context;
   DeviceInfo device;
   Programs programs;
   SplatBuffers buffers;
-  ResidentSet residents{kGpuBudgetBytes};
+  size_t most_surfels;
+  SurfelBuffer surfels;
+  Residency residency;
+  std::map<uint64_t, std::unique_ptr<Scene>> scenes;  ///< by ModelFile::id
 };
+
+Scene& Renderer::State::scene_of(const std::shared_ptr<const ModelFile>& model) {
+  std::unique_ptr<Scene>& scene = scenes[model->id()];
+  if (!scene) scene = std::make_unique<Scene>(model);
+  return *scene;
+}
+
+Result<PreparedView> Renderer::State::prepare(Scene& scene, const PictureRequest& request, const Camera& camera,
+                                              const CameraFrame& frame, const std::atomic<bool>& cancelled) {
+  const ViewGoal goal{frame, request.spacing};
+  if (request.loading == Loading::kWait) return residency.prepare_whole(scene.viewed(), goal, cancelled);
+  const std::optional<CameraFrame> ahead = scene.move_to(camera, request.width, request.height);
+  PreparedView view = residency.prepare_now(scene.viewed(), goal, scene.refined(), ahead);
+  scene.set_refined(view.selection.refined);
+  return view;
+}
+
+Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const PictureRequest& request,
+                                                  const CameraFrame& frame, const BlockSelection& selection,
+                                                  const std::atomic<bool>& cancelled, Image& image) {
+  const size_t bytes = pixel_bytes(request.format);
+  const ModelInfo& info = scene.model().info();
+  RegionStats total;
+  std::vector<std::byte> pixels;
+  for (const Region& region : cut_into_regions(request.width, request.height)) {
+    RegionTask task{
+        &surfels, {}, frame, region, frame_constants(frame, region, request, info.oriented), variant_of(info, request)};
+    for (const uint32_t block : blocks_in_rectangle(scene.viewed().tree, selection.draw, frame, region.x, region.y,
+                                                    region.x + region.width, region.y + region.height)) {
+      task.blocks.push_back({residency.pool().at({scene.model().id(), block}), scene.first_surfel(block)});
+    }
+    pixels.resize(static_cast<size_t>(region.width) * static_cast<size_t>(region.height) * bytes);
+    const Result<RegionStats> stats = draw_region(task, programs, buffers, cancelled, pixels);
+    if (!stats) return fail(stats.error());
+    copy_region(region, pixels, bytes, image);
+    add(total, *stats);
+  }
+  return total;
+}
+
+FrameStats Renderer::State::stats_of(const Scene& scene, const PreparedView& view, const RegionStats& drawn) const {
+  FrameStats stats;
+  stats.surfels_drawn = drawn.splats;
+  stats.blocks_drawn = static_cast<uint32_t>(view.selection.draw.size());
+  stats.blocks_selected = static_cast<uint32_t>(view.selection.target.size());
+  stats.blocks_waited_for = view.waited_for;
+  stats.blocks_resident = static_cast<uint32_t>(residency.pool().blocks());
+  stats.bytes_resident = residency.pool().bytes();
+  stats.levels = level_stats(scene.model().tree(), view.selection);
+  stats.gl_renderer = device.renderer;
+  stats.stages = {{"select", view.select_ms}, {"load", view.load_ms},        {"decode", view.decode_ms},
+                  {"upload", view.upload_ms}, {"project", drawn.project_ms}, {"bin", drawn.bin_ms},
+                  {"splat", drawn.splat_ms},  {"read", drawn.read_ms}};
+  return stats;
+}
 
 Result<std::unique_ptr<Renderer>> Renderer::create(const RendererConfig& config) {
   Result<std::unique_ptr<EglContext>> context = EglContext::create(config.gpu);
@@ -79,11 +154,8 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const RendererConfig& config)
   const int rows = (*context)->software() ? 4 : 1;  // see include/rows.glsl
   Result<Programs> programs = Programs::create(rows);
   if (!programs) return fail(std::move(programs.error()));
-  auto state = std::make_unique<State>();
-  state->device = {(*context)->vendor(), (*context)->renderer(), (*context)->version(), (*context)->software()};
-  state->context = std::move(*context);
-  state->programs = std::move(*programs);
-  return std::unique_ptr<Renderer>(new Renderer(std::move(state)));
+  return std::unique_ptr<Renderer>(
+      new Renderer(std::make_unique<State>(config, std::move(*context), std::move(*programs))));
 }
 
 Renderer::Renderer(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -96,60 +168,32 @@ int Renderer::max_resolution() const {
   return kMaxResolution;
 }
 void Renderer::forget(const ModelFile& model) {
-  state_->residents.forget(model);
+  const uint64_t id = model.id();
+  state_->residency.forget(id);
+  state_->scenes.erase(id);
 }
 
-Result<Frame> Renderer::draw(const ModelFile& model, const PictureRequest& request,
+Result<Frame> Renderer::draw(const std::shared_ptr<const ModelFile>& model, const PictureRequest& request,
                              const std::atomic<bool>& cancelled) {
   if (request.width < 1 || request.height < 1 || request.width > kMaxResolution || request.height > kMaxResolution) {
     return fail(ErrorKind::kLimit, "resolution: each side must lie between 1 and " + std::to_string(kMaxResolution));
   }
+  Scene& scene = state_->scene_of(model);
   Frame result;
-  result.camera = camera_of(model, request);
-  Result<CameraFrame> frame = make_camera_frame(result.camera, request.width, request.height);
-  if (!frame) return fail(std::move(frame.error()));
+  result.camera = scene.camera_of(request);
+  const Result<CameraFrame> frame = make_camera_frame(result.camera, request.width, request.height);
+  if (!frame) return fail(frame.error());
+  const Result<PreparedView> view = state_->prepare(scene, request, result.camera, *frame, cancelled);
+  if (!view) return fail(view.error());
 
-  const Stopwatch load_watch;
-  Result<const ResidentModel*> resident = state_->residents.require(model);
-  if (!resident) return fail(std::move(resident.error()));
-  const double load_ms = load_watch.milliseconds();
-
-  const size_t bytes = pixel_bytes(request.format);
+  const size_t pixels = static_cast<size_t>(request.width) * static_cast<size_t>(request.height);
   result.image = {request.width, request.height, request.format, {}};
-  result.image.pixels.resize(static_cast<size_t>(request.width) * static_cast<size_t>(request.height) * bytes);
-  RegionStats total;
-  double select_ms = 0;
-  const Stopwatch cut_watch;
-  const SelectionTree tree(model.tree());
-  const std::vector<bool> all_resident(model.blocks().size(), true);
-  const BlockSelection selection = select_blocks(tree, *frame, {.spacing = request.spacing}, all_resident);
-  select_ms += cut_watch.milliseconds();
-  std::vector<std::byte> pixels;
-  for (const Region& region : cut_into_regions(request.width, request.height)) {
-    const Stopwatch select_watch;
-    RegionTask task{*resident,
-                    blocks_in_rectangle(tree, selection.draw, *frame, region.x, region.y, region.x + region.width,
-                                        region.y + region.height),
-                    *frame,
-                    region,
-                    frame_constants(*frame, region, request, model.info().oriented),
-                    variant_of(model.info(), request)};
-    select_ms += select_watch.milliseconds();
-    pixels.resize(static_cast<size_t>(region.width) * static_cast<size_t>(region.height) * bytes);
-    Result<RegionStats> stats = draw_region(task, state_->programs, state_->buffers, cancelled, pixels);
-    if (!stats) return fail(std::move(stats.error()));
-    copy_region(region, pixels, bytes, result.image);
-    total.splats += stats->splats;
-    total.project_ms += stats->project_ms;
-    total.bin_ms += stats->bin_ms;
-    total.splat_ms += stats->splat_ms;
-    total.read_ms += stats->read_ms;
-  }
-  result.stats.surfels_drawn = total.splats;
-  result.stats.blocks_drawn = static_cast<uint32_t>(selection.draw.size());
-  result.stats.gl_renderer = state_->device.renderer;
-  result.stats.stages = {{"load", load_ms},     {"select", select_ms},     {"project", total.project_ms},
-                         {"bin", total.bin_ms}, {"splat", total.splat_ms}, {"read", total.read_ms}};
+  result.image.pixels.resize(pixels * pixel_bytes(request.format));
+  const Result<RegionStats> drawn =
+      state_->draw_regions(scene, request, *frame, view->selection, cancelled, result.image);
+  if (!drawn) return fail(drawn.error());
+  result.converged = view->selection.converged();
+  result.stats = state_->stats_of(scene, *view, *drawn);
   return result;
 }
 

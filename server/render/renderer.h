@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <memory>
 #include <string>
 
@@ -12,6 +13,8 @@ namespace surfcast {
 
 struct RendererConfig {
   int gpu = -1;  ///< index of the EGL device; -1 chooses: the first hardware device, else software
+  size_t gpu_bytes = size_t{1} << 30;     ///< for the surfels of all models
+  size_t host_bytes = size_t{256} << 20;  ///< for blocks that may come back to the GPU
 };
 
 struct DeviceInfo {
@@ -27,9 +30,10 @@ class Renderer {
   static Result<std::unique_ptr<Renderer>> create(const RendererConfig& config);
   ~Renderer();
 
-  /// Draws one picture. Blocks of the model stay resident for the next call. Fails on a wrong camera or resolution;
-  /// returns kCancelled soon after `cancelled` becomes true.
-  Result<Frame> draw(const ModelFile& model, const PictureRequest& request, const std::atomic<bool>& cancelled);
+  /// Draws one picture. Blocks of the model stay resident for later ones. Fails on a wrong camera or resolution, and
+  /// when it waits for a block that is damaged; returns kCancelled soon after `cancelled` becomes true.
+  Result<Frame> draw(const std::shared_ptr<const ModelFile>& model, const PictureRequest& request,
+                     const std::atomic<bool>& cancelled);
   /// Lets go of what is resident of a model that will not be drawn again.
   void forget(const ModelFile& model);
 

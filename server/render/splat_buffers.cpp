@@ -1,6 +1,10 @@
 #include "render/splat_buffers.h"
 
 #include <algorithm>
+#include <span>
+#include <vector>
+
+#include "residency/packing.h"
 
 namespace surfcast {
 
@@ -32,6 +36,18 @@ void StorageBuffer::clear() const {
 
 void StorageBuffer::bind(GLuint binding) const {
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer_.name());
+}
+
+SrgbTable SrgbTable::make() {
+  const std::vector<uint32_t> roots = linear_root_table();
+  SrgbTable table;
+  table.buffer_ = gl::make_buffer("linear roots of sRGB", std::as_bytes(std::span(roots)));
+  table.texture_ = gl::make_buffer_texture("linear roots of sRGB", GL_R32UI, table.buffer_);
+  return table;
+}
+
+void SrgbTable::bind(GLuint unit) const {
+  glBindTextureUnit(unit, texture_.name());
 }
 
 void SplatBuffers::reserve_splats(size_t count, bool with_normals) {

@@ -43,8 +43,21 @@ class StorageBuffer {
   gl::Buffer buffer_;
 };
 
+/// The linear light of 8 bit sRGB values, for the projection (see linear_root_table).
+class SrgbTable {
+ public:
+  /// Needs the current GL context.
+  static SrgbTable make();
+  void bind(GLuint unit) const;
+
+ private:
+  gl::Buffer buffer_;
+  gl::Texture texture_;
+};
+
 /// Everything between the passes of one region.
 struct SplatBuffers {
+  SrgbTable srgb;
   TexelBuffer splats{"splats", GL_RGBA32UI, 16};
   TexelBuffer discs{"discs", GL_RGBA32UI, 16};
   TexelBuffer bounds{"bounds", GL_RG32UI, 8};

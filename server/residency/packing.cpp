@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <glm/geometric.hpp>
-#include <glm/vec2.hpp>
+
+#include "base/contract.h"
+#include "model/quantize.h"
+#include "shared/surfel_layout.h"
 
 namespace surfcast {
 namespace {
@@ -14,59 +16,50 @@ double decode_srgb(double encoded) {
   return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
 }
 
-double sign_not_zero(double v) {
-  return v < 0 ? -1.0 : 1.0;
+/// How far lattice indices up to `extent` are shifted right, with rounding, to fit the position codes.
+int shift_for(int extent) {
+  const auto largest = static_cast<int64_t>(SURFCAST_POSITION_MASK);
+  int shift = std::max(0, static_cast<int>(std::bit_width(static_cast<unsigned>(extent))) - SURFCAST_POSITION_BITS);
+  while (((int64_t{extent} + ((int64_t{1} << shift) >> 1)) >> shift) > largest) ++shift;
+  return shift;
 }
 
-uint32_t snorm16(double v) {
-  return static_cast<uint16_t>(static_cast<int16_t>(std::lround(std::clamp(v, -1.0, 1.0) * 32767)));
+glm::ivec3 extent_of(const DecodedBlock& block) {
+  glm::ivec3 extent(0);
+  for (const glm::ivec3& index : block.indices) extent = glm::max(extent, index);
+  return extent;
 }
 
-/// Roots of all linear values of a colour depth; a table, since a power per surfel would cost more than decoding it.
-std::vector<float> linear_roots(int bits) {
-  const size_t count = size_t{1} << bits;
-  std::vector<float> roots(count);
-  for (size_t i = 0; i < count; ++i) {
-    roots[i] = static_cast<float>(std::sqrt(decode_srgb(static_cast<double>(i) / static_cast<double>(count - 1))));
-  }
-  return roots;
+glm::uvec3 position_code(const glm::ivec3& index, const glm::ivec3& shift) {
+  return glm::uvec3(index + ((glm::ivec3(1) << shift) >> 1)) >> glm::uvec3(shift);
 }
 
-const std::vector<float>& roots_of(int bits) {
-  static const std::vector<float> roots8 = linear_roots(8);
-  static const std::vector<float> roots16 = linear_roots(16);
-  return bits == 8 ? roots8 : roots16;
+uint32_t color_code(const glm::u16vec3& color, int bits) {
+  const auto level = [bits](uint32_t value) { return bits == 16 ? (value * 255 + 32767) / 65535 : value; };
+  return level(color.r) | (level(color.g) << 8) | (level(color.b) << 16);
 }
 
-glm::dvec3 middle_of(const DecodedBlock& block) {
-  Box box;
-  for (size_t i = 0; i < block.size(); ++i) box.include(block.position(i));
-  return box.centre();
+/// shaders/include/surfel.glsl takes it apart.
+glm::uvec4 pack_surfel(const glm::uvec3& position, const glm::u16vec2& normal, uint32_t radius, uint32_t weight,
+                       uint32_t color) {
+  return {position.x | (uint32_t{normal.x} << SURFCAST_POSITION_BITS),
+          position.y | (uint32_t{normal.y} << SURFCAST_POSITION_BITS),
+          position.z | (radius << SURFCAST_POSITION_BITS) | ((weight >> 8) << 30), color | (weight << 24)};
 }
 
 }  // namespace
 
-uint32_t pack_normal(const glm::vec3& normal) {
-  const glm::dvec3 n(normal);
-  const glm::dvec3 folded = n / (std::abs(n.x) + std::abs(n.y) + std::abs(n.z));
-  glm::dvec2 f(folded.x, folded.y);
-  if (folded.z < 0) {
-    f = {(1 - std::abs(folded.y)) * sign_not_zero(folded.x), (1 - std::abs(folded.x)) * sign_not_zero(folded.y)};
-  }
-  return snorm16(f.x) | (snorm16(f.y) << 16);
+LogScale LogScale::of(std::span<const float> values) {
+  constexpr double kMostOctaves = 32;
+  const auto [least, largest] = std::minmax_element(values.begin(), values.end());
+  const double top = std::log2(static_cast<double>(*largest));
+  return {top, std::min(kMostOctaves, top - std::log2(static_cast<double>(*least)))};
 }
 
-uint16_t pack_logarithm(double ratio) {
-  const double u = -std::log2(std::max(ratio, 0x1p-32)) / 32;
-  return static_cast<uint16_t>(std::lround(std::clamp(u, 0.0, 1.0) * 65535));
-}
-
-uint32_t pack_linear_color(const glm::u16vec3& color, int bits) {
-  const std::vector<float>& roots = roots_of(bits);
-  const auto quantise = [&roots](uint16_t value, float steps) {
-    return static_cast<uint32_t>(std::lround(roots[std::min<size_t>(value, roots.size() - 1)] * steps));
-  };
-  return quantise(color.r, 2047) | (quantise(color.g, 2047) << 11) | (quantise(color.b, 1023) << 22);
+uint32_t LogScale::code(double value) const {
+  if (octaves <= 0) return 0;
+  const double u = (log2_largest - std::log2(value)) / octaves;
+  return static_cast<uint32_t>(std::lround(std::clamp(u, 0.0, 1.0) * SURFCAST_SIZE_STEPS));
 }
 
 float largest_drawn_radius(std::span<const float> radii) {
@@ -78,22 +71,36 @@ float largest_drawn_radius(std::span<const float> radii) {
 }
 
 PackedBlock pack_block(const DecodedBlock& block, int color_bits) {
+  SURFCAST_EXPECTS(block.size() > 0);
+  const glm::ivec3 extent = extent_of(block);
+  const glm::ivec3 shift(shift_for(extent.x), shift_for(extent.y), shift_for(extent.z));
+  std::vector<float> radii = block.radii;
+  const float widest = largest_drawn_radius(radii);
+  for (float& radius : radii) radius = std::min(radius, widest);
+
   PackedBlock packed;
-  packed.origin = middle_of(block);
-  const double largest_stored = *std::max_element(block.radii.begin(), block.radii.end());
-  packed.radius_unit = std::min<double>(largest_stored, largest_drawn_radius(block.radii));
-  packed.geometry.reserve(block.size());
-  packed.size_and_weight.reserve(block.size());
+  packed.origin = block.grid.position(block.origin);
+  packed.step = block.grid.scale * glm::dvec3(glm::ivec3(1) << shift);
+  packed.radius = LogScale::of(radii);
+  packed.weight = LogScale::of(block.weights);
+  packed.surfels.reserve(block.size());
   for (size_t i = 0; i < block.size(); ++i) {
-    const glm::vec3 p(block.position(i) - packed.origin);
-    packed.geometry.emplace_back(std::bit_cast<uint32_t>(p.x), std::bit_cast<uint32_t>(p.y),
-                                 std::bit_cast<uint32_t>(p.z), pack_normal(block.normals[i]));
-    packed.size_and_weight.push_back(pack_logarithm(block.radii[i] / packed.radius_unit) |
-                                     (static_cast<uint32_t>(pack_logarithm(block.weights[i])) << 16));
+    packed.surfels.push_back(pack_surfel(position_code(block.indices[i], shift), encode_normal(block.normals[i]),
+                                         packed.radius.code(double{radii[i]}),
+                                         packed.weight.code(double{block.weights[i]}),
+                                         block.colors.empty() ? 0 : color_code(block.colors[i], color_bits)));
   }
-  packed.colors.reserve(block.colors.size());
-  for (const glm::u16vec3& color : block.colors) packed.colors.push_back(pack_linear_color(color, color_bits));
   return packed;
+}
+
+std::vector<uint32_t> linear_root_table() {
+  std::vector<uint32_t> table;
+  for (int level = 0; level < 256; ++level) {
+    const double root = std::sqrt(decode_srgb(level / 255.0));
+    table.push_back(static_cast<uint32_t>(std::lround(root * 2047)) |
+                    (static_cast<uint32_t>(std::lround(root * 1023)) << 16));
+  }
+  return table;
 }
 
 }  // namespace surfcast

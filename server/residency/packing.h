@@ -10,24 +10,26 @@
 
 namespace surfcast {
 
-/// Octahedral map of a unit vector in two 16 bit signed normalised numbers. GLSL twin: include/packing.glsl.
-uint32_t pack_normal(const glm::vec3& normal);
+/// Numbers of one block on a logarithmic scale of SURFCAST_SIZE_STEPS steps, from the largest down:
+/// 2^(log2_largest - octaves * code / steps).
+struct LogScale {
+  double log2_largest = 0;
+  double octaves = 0;  ///< between code 0 and the last
 
-/// A ratio in [2^-32, 1] as a 16 bit logarithm; smaller ones become 2^-32. Relative error below 2e-4.
-uint16_t pack_logarithm(double ratio);
+  /// The scale of positive numbers; what is below the largest by more than 2^-32 becomes that.
+  static LogScale of(std::span<const float> values);
+  [[nodiscard]] uint32_t code(double value) const;
+};
 
-/// sRGB of 8 or 16 bits to linear light, as 11, 11 and 10 bits of the square roots: near black its steps are finer
-/// than those of 8 bit sRGB. GLSL twin: unpack_linear_color.
-uint32_t pack_linear_color(const glm::u16vec3& color, int bits);
-
-/// A block in the form that the projection reads: 16 bytes of geometry, 4 of size and weight, and 4 of colour where
-/// there is one.
+/// A block in the form that the projection reads: 16 bytes a surfel (shaders/shared/surfel_layout.h).
 struct PackedBlock {
-  glm::dvec3 origin{0};    ///< world; positions are relative to it
-  double radius_unit = 0;  ///< world units of a packed radius of 1
-  std::vector<glm::uvec4> geometry;
-  std::vector<uint32_t> size_and_weight;
-  std::vector<uint32_t> colors;  ///< empty without colour
+  glm::dvec3 origin{0};  ///< world; where position code 0 lies
+  glm::dvec3 step{1};    ///< world units of a step of the position codes
+  LogScale radius;       ///< world units
+  LogScale weight;
+  std::vector<glm::uvec4> surfels;
+
+  [[nodiscard]] size_t bytes() const { return surfels.size() * sizeof(glm::uvec4); }
 };
 
 /// Scans have points that float off the surface; the mean distance to their neighbours, their radius, is the way back
@@ -36,5 +38,9 @@ struct PackedBlock {
 float largest_drawn_radius(std::span<const float> radii);
 
 PackedBlock pack_block(const DecodedBlock& block, int color_bits);
+
+/// For each 8 bit sRGB value the root of its linear light in the 11 bits, and from bit 16 on the 10 bits, of a splat's
+/// packed colour (unpack_linear_color in shaders/include/packing.glsl): near black as fine as 8 bit sRGB needs it.
+std::vector<uint32_t> linear_root_table();
 
 }  // namespace surfcast

@@ -17,23 +17,23 @@ class ModelPainter : public Painter {
                      const std::atomic<bool>& cancelled) override {
     Result<std::shared_ptr<const ModelFile>> model = models_.open(name);
     if (!model) return fail(model.error());
-    return renderer_->draw(resident(name, std::move(*model)), request, cancelled);
+    return renderer_->draw(current(name, std::move(*model)), request, cancelled);
   }
   [[nodiscard]] const DeviceInfo& device() const override { return renderer_->device(); }
   [[nodiscard]] int max_resolution() const override { return renderer_->max_resolution(); }
 
  private:
-  /// Keeps a model open while blocks of it may be resident, and lets those of a replaced file go.
-  const ModelFile& resident(const std::string& name, std::shared_ptr<const ModelFile> model) {
-    std::shared_ptr<const ModelFile>& held = held_[name];
-    if (held && held != model) renderer_->forget(*held);
-    held = std::move(model);
-    return *held;
+  /// Lets go of what is resident of a file that has been replaced.
+  const std::shared_ptr<const ModelFile>& current(const std::string& name, std::shared_ptr<const ModelFile> model) {
+    std::shared_ptr<const ModelFile>& drawn = drawn_[name];
+    if (drawn && drawn != model) renderer_->forget(*drawn);
+    drawn = std::move(model);
+    return drawn;
   }
 
   const ModelCatalogue& models_;
-  std::map<std::string, std::shared_ptr<const ModelFile>> held_;
-  std::unique_ptr<Renderer> renderer_;  // goes first: it may refer to what is held
+  std::map<std::string, std::shared_ptr<const ModelFile>> drawn_;  ///< by name
+  std::unique_ptr<Renderer> renderer_;
 };
 
 }  // namespace

@@ -133,6 +133,7 @@ void RenderService::State::encode_one(const JobPointer& job, Result<Frame> frame
     picture.camera = frame->camera;
     picture.normalization = job->wish.request.normalization;
     picture.spacing = job->wish.request.spacing;
+    picture.converged = frame->converged;
     picture.stats = std::move(frame->stats);
     picture.stats.stages.push_back({"encode", watch.milliseconds()});
     return picture;

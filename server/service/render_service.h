@@ -39,9 +39,9 @@ struct EncodedPicture {
   int height = 0;  ///< pixels
   Camera camera;   ///< the one that was used
   Normalization normalization = Normalization::kPixel;
-  double spacing = 0;     ///< as in PictureRequest
-  bool converged = true;  ///< the painter draws every picture to its end
-  FrameStats stats;       ///< its stages begin with "queue" and end with "encode"
+  double spacing = 0;      ///< as in PictureRequest
+  bool converged = false;  ///< as in Frame
+  FrameStats stats;        ///< its stages begin with "queue" and end with "encode"
 };
 
 /// Turns wishes into encoded pictures. One render thread owns the painter and takes jobs from a queue that is fair

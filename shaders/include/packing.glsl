@@ -1,17 +1,7 @@
 // Packed forms of unit vectors and colours.
 
-// Octahedral map of a unit vector (Meyer et al. 2010), two 16 bit signed normalised numbers.
-vec3 unpack_normal(uint packed_normal) {
-  vec2 f = unpackSnorm2x16(packed_normal);
-  vec3 n = vec3(f, 1.0 - abs(f.x) - abs(f.y));
-  float t = max(-n.z, 0.0);
-  n.x += n.x >= 0.0 ? -t : t;
-  n.y += n.y >= 0.0 ? -t : t;
-  return normalize(n);
-}
-
 // Three numbers in [0, 1] as 11, 11 and 10 bits of their square roots: steps near black are as fine as 8 bit sRGB
-// needs them. C++ twin: residency/packing.h.
+// needs them. linear_root_table in residency/packing.h makes them.
 vec3 unpack_linear_color(uint packed_color) {
   vec3 root = vec3(packed_color & 2047u, (packed_color >> 11) & 2047u, packed_color >> 22) *
               vec3(1.0 / 2047.0, 1.0 / 2047.0, 1.0 / 1023.0);

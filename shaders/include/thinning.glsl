@@ -1,7 +1,7 @@
-// Where more than SURFCAST_CROWD splats fall on one tile, hundreds of them share every pixel, and a fair sample of them
-// gives the same mean: one splat in m is kept, and weighs m times as much. Which ones follows from their place in the
-// model alone, so that the picture stays the same from run to run. (It also keeps loops short: llvmpipe ends a kernel's
-// loops after 65535 rounds in all, silently; eight layers go over a list twice each.)
+// Where more than frame.flags.z splats (SURFCAST_CROWD) fall on one tile, hundreds of them share every pixel, and a fair
+// sample of them gives the same mean: one splat in m is kept, and weighs m times as much. Which ones follows from their
+// place in the model alone, so that the picture stays the same from run to run. (It also keeps loops short: llvmpipe ends
+// a kernel's loops after 65535 rounds in all, silently; eight layers go over a list twice each.)
 
 layout(std430, binding = SURFCAST_BIND_TILE_CROWD) readonly buffer TileCrowd { uint tile_crowd[]; };
 
@@ -18,6 +18,7 @@ float thinned_share(uvec2 range, uint id) {
   uint column = ((range.x & 0xffffu) + (range.y & 0xffffu)) / 2u;
   uint row = ((range.x >> 16) + (range.y >> 16)) / 2u;
   uint crowd = tile_crowd[row * uint(frame.tiles.x) + column];
-  uint m = (crowd + uint(SURFCAST_CROWD) - 1u) / uint(SURFCAST_CROWD);
+  uint most = uint(frame.flags.z);
+  uint m = (crowd + most - 1u) / most;
   return m <= 1u ? 1.0 : hash(id) % m == 0u ? float(m) : 0.0;
 }

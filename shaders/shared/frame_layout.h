@@ -35,15 +35,19 @@ struct FrameConstants {
   SURFCAST_IVEC4 tiles;      // tiles across, tiles down, tiles in all, splats that the record buffer holds
   SURFCAST_VEC4 filter_;     // prefilter variance, visibility prefilter variance (pixels squared), unused, unused
   SURFCAST_VEC4 background;  // linear light
-  SURFCAST_IVEC4 flags;      // x: back faces are culled, y: per-surfel weights, z: crowded tiles are thinned out
+  SURFCAST_IVEC4 flags;      // x: back faces are culled, y: per-surfel weights, z: splats that a tile is thinned out to
+                             // (0: not at all), w: chunks to project
 };
 
-// One visible block: its origin relative to the eye, in camera coordinates, world units; w: unit of its radii.
+// One visible block (see shared/surfel_layout.h).
 struct BlockView {
-  SURFCAST_VEC4 origin;
+  SURFCAST_VEC4 origin;  // where position code 0 lies, relative to the eye, camera coordinates, world units
+  SURFCAST_VEC4 step;    // world units of a step of the position codes, along the world's axes
+  SURFCAST_VEC4 scale;   // log2 of the largest radius, octaves per step, the same of the weights
 };
 
-// A run of at most SURFCAST_CHUNK surfels of one block: block index, first surfel in the arena, surfels, unused.
+// A run of at most SURFCAST_CHUNK surfels of one block: block index, first texel, surfels, index in the model (modulo
+// 2^32) of the first.
 struct Chunk {
   SURFCAST_UVEC4 run;
 };
@@ -54,9 +58,6 @@ struct Counters {
 };
 
 // Bindings. Storage buffers:
-#define SURFCAST_BIND_GEOMETRY 0  // uvec4 per surfel: position relative to its block (float x 3), octahedral normal
-#define SURFCAST_BIND_SIZE 1      // uint per surfel: radius in the block's unit, weight; both 2^(-32 u), u 16 bit unorm
-#define SURFCAST_BIND_COLOR 2     // uint per surfel: packed linear colour, see include/packing.glsl
 #define SURFCAST_BIND_BLOCKS 3
 #define SURFCAST_BIND_CHUNKS 4
 #define SURFCAST_BIND_COUNTERS 5
@@ -72,10 +73,12 @@ struct Counters {
 #define SURFCAST_UNIT_BOUNDS 2   // uvec2 per splat: its tiles, for binning
 #define SURFCAST_UNIT_LISTS 3    // uint per entry: splat
 #define SURFCAST_UNIT_NORMALS 4  // uint per splat: packed camera space normal, when a lit scene has colour too
+#define SURFCAST_UNIT_SURFELS 5  // uvec4 per surfel, see shared/surfel_layout.h
+#define SURFCAST_UNIT_SRGB 6     // uint per 8 bit sRGB value: the root of its linear light in 11 and 10 bits
 
 #ifdef __cplusplus
 static_assert(sizeof(FrameConstants) == 128);
-static_assert(sizeof(BlockView) == 16);
+static_assert(sizeof(BlockView) == 48);
 static_assert(sizeof(Chunk) == 16);
 static_assert(sizeof(Counters) == 16);
 }  // namespace surfcast::layout

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <glm/vec4.hpp>
+#include <memory>
 #include <ostream>
 #include <string>
 
@@ -81,7 +82,7 @@ class AccuracyGLTest : public ::testing::Test {
     fs::remove_all(folder_);
   }
 
-  static ModelFile model_of(const Scene& scene) {
+  static std::shared_ptr<const ModelFile> model_of(const Scene& scene) {
     SurfelCloud cloud = scene.cloud;
     cloud.weights = normalization_weights(cloud);
     const fs::path path = folder_ / (scene.name + ".surf");
@@ -89,10 +90,10 @@ class AccuracyGLTest : public ::testing::Test {
     EXPECT_TRUE(written) << (written ? "" : written.error().message);
     Result<ModelFile> model = ModelFile::open(path);
     EXPECT_TRUE(model) << (model ? "" : model.error().message);
-    return std::move(*model);
+    return std::make_shared<const ModelFile>(std::move(*model));
   }
 
-  static DrawnPicture draw(const ModelFile& model, const PictureRequest& request) {
+  static DrawnPicture draw(const std::shared_ptr<const ModelFile>& model, const PictureRequest& request) {
     const std::atomic<bool> cancelled{false};
     const Result<Frame> frame = renderer_->draw(model, request, cancelled);
     EXPECT_TRUE(frame) << (frame ? "" : frame.error().message);
@@ -101,9 +102,9 @@ class AccuracyGLTest : public ::testing::Test {
 
   /// Draws a scene from a model of its own.
   static DrawnPicture draw(const Scene& scene) {
-    const ModelFile model = model_of(scene);
+    const auto model = model_of(scene);
     DrawnPicture drawn = draw(model, scene.request);
-    renderer_->forget(model);
+    renderer_->forget(*model);
     return drawn;
   }
 
@@ -124,10 +125,10 @@ class AccuracyGLTest : public ::testing::Test {
     return count;
   }
 
-  static void expect_reference(const std::string& name, const ModelFile& model, const PictureRequest& request,
-                               double least_psnr) {
+  static void expect_reference(const std::string& name, const std::shared_ptr<const ModelFile>& model,
+                               const PictureRequest& request, double least_psnr) {
     const DrawnPicture actual = draw(model, request);
-    const reference::ReferencePicture expected = reference::render(decoded_cloud(model), request);
+    const reference::ReferencePicture expected = reference::render(decoded_cloud(*model), request);
     const SrgbPicture expected_colors = encode(expected.picture);
     const double achieved = psnr(actual.colors, expected_colors);
     EXPECT_GE(achieved, least_psnr) << name;
@@ -143,14 +144,14 @@ class SceneGLTest : public AccuracyGLTest, public ::testing::WithParamInterface<
 
 TEST_P(SceneGLTest, AgreesWithTheReference) {
   const Scene scene = reference::make_scene(GetParam());
-  const ModelFile model = model_of(scene);
+  const auto model = model_of(scene);
   for (const Normalization normalization : {Normalization::kPixel, Normalization::kSurfel}) {
     PictureRequest request = scene.request;
     request.normalization = normalization;
     const bool per_surfel = normalization == Normalization::kSurfel;
     expect_reference(scene.name + (per_surfel ? "_per_surfel" : ""), model, request, 45);
   }
-  renderer_->forget(model);
+  renderer_->forget(*model);
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryScene, SceneGLTest, ::testing::ValuesIn(reference::scene_names()),
@@ -197,15 +198,15 @@ TEST_F(AccuracyGLTest, DoesNotDependOnUnitsOrOrigin) {
 TEST_F(AccuracyGLTest, WithoutPrefilterAgreesWithTheReference) {
   Scene scene = reference::make_scene("checker_oblique");
   scene.request.filter = Filter::kNone;
-  const ModelFile model = model_of(scene);
+  const auto model = model_of(scene);
   expect_reference("no_prefilter", model, scene.request, 45);
-  renderer_->forget(model);
+  renderer_->forget(*model);
 }
 
 TEST_F(AccuracyGLTest, OneColorIsThatColorWhereFullyCovered) {
   for (const char* name : {"color_plane", "color_sphere"}) {
     const Scene scene = reference::make_scene(name);
-    const ModelFile model = model_of(scene);
+    const auto model = model_of(scene);
     for (const Normalization normalization : {Normalization::kPixel, Normalization::kSurfel}) {
       PictureRequest request = scene.request;
       request.normalization = normalization;
@@ -219,7 +220,7 @@ TEST_F(AccuracyGLTest, OneColorIsThatColorWhereFullyCovered) {
       }
       EXPECT_LE(worst, tolerance) << name;
     }
-    renderer_->forget(model);
+    renderer_->forget(*model);
   }
 }
 

@@ -15,6 +15,8 @@
 
 namespace surfcast::testing {
 
+using ModelPointer = std::shared_ptr<const ModelFile>;
+
 /// One renderer for all cases of a program: shaders compile once. Models go through a file, as they do in use.
 class RendererFixture : public ::testing::Test {
  protected:
@@ -35,18 +37,18 @@ class RendererFixture : public ::testing::Test {
   }
 
   /// The model of a cloud, until the next call.
-  const ModelFile& model_of(const SurfelCloud& cloud) {
+  const ModelPointer& model_of(const SurfelCloud& cloud) {
     if (model_) renderer_->forget(*model_);
     const std::filesystem::path path = folder_ / "scene.surf";
     const Result<WriteReport> written = write_model(cloud, path, {});
     EXPECT_TRUE(written) << (written ? "" : written.error().message);
     Result<ModelFile> opened = ModelFile::open(path);
     EXPECT_TRUE(opened) << (opened ? "" : opened.error().message);
-    model_ = std::make_unique<ModelFile>(std::move(*opened));
-    return *model_;
+    model_ = std::make_shared<const ModelFile>(std::move(*opened));
+    return model_;
   }
 
-  static Frame draw(const ModelFile& model, const PictureRequest& request) {
+  static Frame draw(const ModelPointer& model, const PictureRequest& request) {
     const std::atomic<bool> cancelled{false};
     Result<Frame> frame = renderer_->draw(model, request, cancelled);
     EXPECT_TRUE(frame) << (frame ? "" : frame.error().message);
@@ -66,7 +68,7 @@ class RendererFixture : public ::testing::Test {
 
   static inline std::unique_ptr<Renderer> renderer_;
   static inline std::filesystem::path folder_;
-  std::unique_ptr<ModelFile> model_;
+  ModelPointer model_;
 };
 
 }  // namespace surfcast::testing

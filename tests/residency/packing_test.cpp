@@ -1,83 +1,142 @@
 #include "residency/packing.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <random>
 
 #include <gtest/gtest.h>
 
+#include "model/quantize.h"
+
 namespace surfcast {
 namespace {
 
-double snorm(uint32_t bits) {
-  return std::max(static_cast<int16_t>(bits) / 32767.0, -1.0);
+/// A surfel taken apart again, in double precision, from the layout as it is documented.
+struct Unpacked {
+  glm::dvec3 position;  // world
+  glm::u16vec2 normal;
+  double radius;
+  double weight;
+  glm::uvec3 color;
+};
+
+Unpacked unpacked(const PackedBlock& block, size_t i) {
+  const glm::uvec4 s = block.surfels[i];
+  const auto size = [](const LogScale& scale, uint32_t code) {
+    return std::exp2(scale.log2_largest - scale.octaves * code / 1023);
+  };
+  const glm::dvec3 steps(s.x & 0xfffff, s.y & 0xfffff, s.z & 0xfffff);
+  return {block.origin + block.step * steps, glm::u16vec2(s.x >> 20, s.y >> 20), size(block.radius, (s.z >> 20) & 1023),
+          size(block.weight, ((s.z >> 30) << 8) | (s.w >> 24)),
+          glm::uvec3(s.w & 255, (s.w >> 8) & 255, (s.w >> 16) & 255)};
 }
 
-/// Independent inverse of the octahedral map, in double precision.
-glm::dvec3 unpacked(uint32_t packed) {
-  glm::dvec3 n(snorm(packed & 0xffff), snorm(packed >> 16), 0);
-  n.z = 1 - std::abs(n.x) - std::abs(n.y);
-  if (n.z < 0) {
-    const double x = n.x;
-    n.x = (1 - std::abs(n.y)) * (x < 0 ? -1 : 1);
-    n.y = (1 - std::abs(x)) * (n.y < 0 ? -1 : 1);
+DecodedBlock block_of(size_t surfels, int32_t extent, std::mt19937& random) {
+  std::uniform_int_distribution<int32_t> index(0, extent);
+  std::uniform_int_distribution<uint16_t> code(0, 2 * kOctahedralHalf);
+  std::uniform_real_distribution<float> octaves(-8, 0);
+  DecodedBlock block;
+  block.grid = {glm::dvec3(0.001, 0.002, 0.004), glm::dvec3(448262.31, 5411932.67, 312.45)};
+  block.origin = {-5, 17, 1000000};
+  for (size_t i = 0; i < surfels; ++i) {
+    block.indices.emplace_back(index(random), index(random), index(random));
+    block.normals.push_back(decode_normal({code(random), code(random)}));
+    block.radii.push_back(std::exp2(octaves(random) / 8));
+    block.weights.push_back(std::exp2(octaves(random)));
+    block.colors.emplace_back(random() % 256, random() % 256, random() % 256);
   }
-  return glm::normalize(n);
+  block.indices.front() = glm::ivec3(extent);
+  return block;
 }
 
-/// What unpack_linear_color gives, encoded as sRGB in [0, 255].
-glm::dvec3 srgb_levels(uint32_t packed) {
-  const glm::dvec3 roots((packed & 2047) / 2047.0, ((packed >> 11) & 2047) / 2047.0, (packed >> 22) / 1023.0);
-  glm::dvec3 levels;
-  for (int c = 0; c < 3; ++c) {
-    const double l = roots[c] * roots[c];
-    levels[c] = 255 * (l <= 0.0031308 ? 12.92 * l : 1.055 * std::pow(l, 1 / 2.4) - 0.055);
-  }
-  return levels;
-}
-
-TEST(PackNormal, AxesAreExact) {
-  for (const glm::vec3 axis : {glm::vec3(1, 0, 0), glm::vec3(-1, 0, 0), glm::vec3(0, 1, 0), glm::vec3(0, -1, 0),
-                               glm::vec3(0, 0, 1), glm::vec3(0, 0, -1)}) {
-    EXPECT_NEAR(glm::distance(unpacked(pack_normal(axis)), glm::dvec3(axis)), 0, 1e-12);
-  }
-}
-
-TEST(PackNormal, ErrorIsBelowSixThousandthsOfADegree) {
+TEST(PackBlock, WhatFitsTwentyBitsIsExact) {
   std::mt19937 random(1);
-  std::normal_distribution<float> gauss;
-  double worst = 0;
-  for (int i = 0; i < 100000; ++i) {
-    const glm::vec3 n = glm::normalize(glm::vec3(gauss(random), gauss(random), gauss(random)));
-    worst = std::max(worst, glm::distance(unpacked(pack_normal(n)), glm::dvec3(n)));
-  }
-  EXPECT_LT(worst, 1e-4);  // radians
-}
-
-TEST(PackLinearColor, EveryLevelOf8BitsComesBackWithinAQuarterOfALevelOrSoInBlue) {
-  for (uint16_t level = 0; level < 256; ++level) {
-    const glm::dvec3 back = srgb_levels(pack_linear_color(glm::u16vec3(level), 8));
-    EXPECT_NEAR(back.r, level, 0.25) << level;
-    EXPECT_NEAR(back.g, level, 0.25) << level;
-    EXPECT_NEAR(back.b, level, 0.45) << level;
+  for (const int extent : {0, 1, 1000, (1 << 20) - 1}) {
+    const DecodedBlock block = block_of(200, extent, random);
+    const PackedBlock packed = pack_block(block, 8);
+    for (size_t i = 0; i < block.size(); ++i) {
+      EXPECT_LT(glm::distance(unpacked(packed, i).position, block.position(i)), 1e-8) << extent;
+    }
   }
 }
 
-TEST(PackLinearColor, SixteenBitsAreScaledToTheSameRange) {
-  const glm::dvec3 back = srgb_levels(pack_linear_color({65535, 257 * 128, 0}, 16));
-  EXPECT_NEAR(back.r, 255, 1e-9);
-  EXPECT_NEAR(back.g, 128, 0.25);
-  EXPECT_EQ(back.b, 0);
+TEST(PackBlock, LongerLatticesAreRoundedToAMillionthOfTheirExtent) {
+  std::mt19937 random(2);
+  for (const int extent : {1 << 20, (1 << 21) - 1, 12345678, (1 << 30) - 1}) {
+    const DecodedBlock block = block_of(200, extent, random);
+    const PackedBlock packed = pack_block(block, 8);
+    const glm::dvec3 tolerance = 1.01 * block.grid.scale * static_cast<double>(extent) / double{1 << 20};
+    for (size_t i = 0; i < block.size(); ++i) {
+      const glm::dvec3 d = glm::abs(unpacked(packed, i).position - block.position(i));
+      EXPECT_TRUE(d.x <= tolerance.x && d.y <= tolerance.y && d.z <= tolerance.z) << extent;
+    }
+  }
 }
 
-TEST(PackLogarithm, RatiosOfAnySizeKeepTheirRelativePrecision) {
-  for (double ratio = 1; ratio > 1e-9; ratio *= 0.37) {
-    const double back = std::exp2(-32.0 * pack_logarithm(ratio) / 65535);
-    EXPECT_NEAR(back / ratio, 1, 2e-4) << ratio;
+TEST(PackBlock, NormalsAndColorsOfEightBitsComeBackAsTheFileHasThem) {
+  std::mt19937 random(3);
+  const DecodedBlock block = block_of(2000, 1000, random);
+  const PackedBlock packed = pack_block(block, 8);
+  for (size_t i = 0; i < block.size(); ++i) {
+    const Unpacked s = unpacked(packed, i);
+    EXPECT_LT(glm::distance(decode_normal(s.normal), block.normals[i]), 1e-6F);
+    EXPECT_EQ(s.color, glm::uvec3(block.colors[i]));
   }
-  EXPECT_EQ(pack_logarithm(1), 0);
-  EXPECT_EQ(pack_logarithm(0), 65535);
+}
+
+TEST(PackBlock, ColorsOfSixteenBitsAreRounded) {
+  std::mt19937 random(4);
+  DecodedBlock block = block_of(3, 10, random);
+  block.colors = {{0, 65535, 257 * 128}, {128, 129, 257}, {65535 - 128, 65535 - 129, 300}};
+  const PackedBlock packed = pack_block(block, 16);
+  EXPECT_EQ(unpacked(packed, 0).color, glm::uvec3(0, 255, 128));
+  EXPECT_EQ(unpacked(packed, 1).color, glm::uvec3(0, 1, 1));
+  EXPECT_EQ(unpacked(packed, 2).color, glm::uvec3(255, 254, 1));
+}
+
+TEST(PackBlock, SizesAreWithinAHalfStepOfTheBlocksOwnScale) {
+  std::mt19937 random(5);
+  const DecodedBlock block = block_of(2000, 1000, random);
+  const PackedBlock packed = pack_block(block, 8);
+  for (size_t i = 0; i < block.size(); ++i) {
+    const Unpacked s = unpacked(packed, i);
+    EXPECT_NEAR(s.radius / static_cast<double>(block.radii[i]), 1, 0.0004) << "one octave in the block";
+    EXPECT_NEAR(s.weight / static_cast<double>(block.weights[i]), 1, 0.003) << "eight octaves in the block";
+  }
+}
+
+TEST(PackBlock, OneSizeIsExactAndAVanishingOneHoldsBackNoOther) {
+  std::mt19937 random(6);
+  DecodedBlock block = block_of(100, 1000, random);
+  block.radii.assign(100, 0.0123F);
+  block.weights.assign(100, 0.5F);
+  block.weights[7] = 1e-30F;
+  const PackedBlock packed = pack_block(block, 8);
+  EXPECT_NEAR(unpacked(packed, 3).radius, 0.0123, 1e-9);
+  EXPECT_NEAR(unpacked(packed, 3).weight, 0.5, 1e-9);
+  EXPECT_NEAR(unpacked(packed, 7).weight, 0.5 * std::exp2(-32), 1e-12);
+}
+
+TEST(PackBlock, WithoutColorsTheSurfelIsPackedAllTheSame) {
+  std::mt19937 random(7);
+  DecodedBlock block = block_of(10, 1000, random);
+  block.colors.clear();
+  const PackedBlock packed = pack_block(block, 0);
+  for (size_t i = 0; i < block.size(); ++i) EXPECT_EQ(unpacked(packed, i).color, glm::uvec3(0));
+  EXPECT_EQ(packed.bytes(), 160u);
+}
+
+TEST(LinearRootTable, EveryLevelComesBackWithinAQuarterOfALevelOrSoInTenBits) {
+  const std::vector<uint32_t> table = linear_root_table();
+  ASSERT_EQ(table.size(), 256u);
+  const auto level_of = [](double root) {
+    const double l = root * root;
+    return 255 * (l <= 0.0031308 ? 12.92 * l : 1.055 * std::pow(l, 1 / 2.4) - 0.055);
+  };
+  for (int level = 0; level < 256; ++level) {
+    EXPECT_NEAR(level_of((table[level] & 2047) / 2047.0), level, 0.25);
+    EXPECT_NEAR(level_of((table[level] >> 16) / 1023.0), level, 0.45);
+  }
 }
 
 TEST(LargestDrawnRadius, StraysAreHeldBackAndOrdinarySurfelsAreNot) {
@@ -88,21 +147,12 @@ TEST(LargestDrawnRadius, StraysAreHeldBackAndOrdinarySurfelsAreNot) {
   EXPECT_FLOAT_EQ(largest_drawn_radius(std::vector<float>{0.5F}), 2);
 }
 
-TEST(PackBlock, PositionsAreRelativeToTheMiddleSoThatMillimetresSurviveMapCoordinates) {
-  DecodedBlock block;
-  block.grid = {glm::dvec3(0.001), glm::dvec3(448262.31, 5411932.67, 312.45)};
-  block.indices = {{0, 0, 0}, {1, 2, 3}, {1000, 1000, 1000}};
-  block.normals.assign(3, {0, 0, 1});
-  block.radii = {0.001F, 0.002F, 0.004F};
-  block.weights = {1, 0.5F, 0.25F};
-  const PackedBlock packed = pack_block(block, 0);
-  for (size_t i = 0; i < 3; ++i) {
-    const glm::dvec3 p(std::bit_cast<float>(packed.geometry[i].x), std::bit_cast<float>(packed.geometry[i].y),
-                       std::bit_cast<float>(packed.geometry[i].z));
-    EXPECT_LT(glm::distance(packed.origin + p, block.position(i)), 1e-6);
-  }
-  EXPECT_FLOAT_EQ(static_cast<float>(packed.radius_unit), 0.004F);
-  EXPECT_TRUE(packed.colors.empty());
+TEST(PackBlock, StraysAreDrawnNoLargerThanThat) {
+  std::mt19937 random(8);
+  DecodedBlock block = block_of(100, 1000, random);
+  block.radii.assign(100, 0.01F);
+  block.radii[7] = 1;
+  EXPECT_NEAR(unpacked(pack_block(block, 8), 7).radius, 0.04, 1e-8);
 }
 
 }  // namespace

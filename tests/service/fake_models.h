@@ -62,7 +62,11 @@ class FakePainter : public Painter {
     frame.image = plain_image(request);
     if (model == "noise") add_noise(frame.image);
     if (request.camera) frame.camera = *request.camera;
-    frame.stats = {.surfels_drawn = 99, .blocks_drawn = 5, .gl_renderer = "fake", .stages = {{"draw", 1.5}}};
+    frame.converged = true;
+    frame.stats.surfels_drawn = 99;
+    frame.stats.blocks_drawn = 5;
+    frame.stats.gl_renderer = "fake";
+    frame.stats.stages = {{"draw", 1.5}};
     return frame;
   }
   [[nodiscard]] const DeviceInfo& device() const override { return device_; }

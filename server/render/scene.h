@@ -1,0 +1,39 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "model/model_file.h"
+#include "render/picture.h"
+#include "residency/residency.h"
+
+namespace surfcast {
+
+/// A model that is being looked at, and what is remembered from picture to picture.
+class Scene {
+ public:
+  explicit Scene(std::shared_ptr<const ModelFile> model);
+
+  [[nodiscard]] const ModelFile& model() const { return *model_; }
+  [[nodiscard]] const ViewedModel& viewed() const { return viewed_; }
+  /// Surfels of the blocks before this one: where its surfels begin among all of the model, modulo 2^32.
+  [[nodiscard]] uint32_t first_surfel(uint32_t block) const { return first_surfels_[block]; }
+  /// The camera asked for, or one that fits the model.
+  [[nodiscard]] Camera camera_of(const PictureRequest& request) const;
+
+  /// Notes a picture that did not wait. Where the camera will be some pictures later if it goes on as since the last
+  /// one; none if it does not move or nothing is known.
+  std::optional<CameraFrame> move_to(const Camera& camera, int width, int height);
+  [[nodiscard]] const std::vector<uint32_t>& refined() const { return refined_; }
+  void set_refined(std::vector<uint32_t> refined) { refined_ = std::move(refined); }
+
+ private:
+  std::shared_ptr<const ModelFile> model_;
+  ViewedModel viewed_;
+  std::vector<uint32_t> first_surfels_;
+  std::optional<Camera> last_camera_;
+  std::vector<uint32_t> refined_;
+};
+
+}  // namespace surfcast

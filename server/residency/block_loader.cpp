@@ -1,0 +1,129 @@
+#include "residency/block_loader.h"
+
+#include <algorithm>
+#include <exception>
+#include <utility>
+
+#include "base/stopwatch.h"
+
+namespace surfcast {
+namespace {
+
+size_t bytes_of(const LoadedBlock& loaded) {
+  return loaded.block ? (*loaded.block)->bytes() : 0;
+}
+
+/// What may throw (memory runs out) becomes a value, so that one block cannot end the server.
+Result<std::shared_ptr<const PackedBlock>> load(const BlockSource& source, uint32_t block) {
+  try {
+    Result<PackedBlock> packed = source.load(block);
+    if (!packed) return fail(std::move(packed.error()));
+    return std::make_shared<const PackedBlock>(std::move(*packed));
+  } catch (const std::exception& error) {
+    return fail(ErrorKind::kInternal, std::string("unexpected: ") + error.what());
+  }
+}
+
+}  // namespace
+
+BlockLoader::BlockLoader(const LoaderLimits& limits) : limits_(limits), cache_(limits.cache_bytes) {
+  for (unsigned i = 0; i < std::max(1U, limits.threads); ++i) {
+    threads_.emplace_back([this] { work(); });
+  }
+}
+
+BlockLoader::~BlockLoader() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  wake_workers_.notify_all();
+  threads_.clear();
+}
+
+void BlockLoader::want(const std::shared_ptr<const BlockSource>& source, std::span<const uint32_t> blocks) {
+  {
+    const std::lock_guard lock(mutex_);
+    wanted_.clear();
+    for (const uint32_t block : blocks) wanted_.insert({source->id(), block});
+    queue_.clear();
+    drop_unwanted();
+    std::set<BlockId> coming = busy_;
+    for (const LoadedBlock& loaded : ready_) coming.insert(loaded.id);
+    for (const uint32_t block : blocks) {
+      const BlockId id{source->id(), block};
+      if (!coming.insert(id).second) continue;
+      if (std::shared_ptr<const PackedBlock> cached = cache_.find(id)) {
+        make_ready({id, std::move(cached), 0});
+      } else {
+        queue_.push_back({source, block});
+      }
+    }
+  }
+  wake_workers_.notify_all();
+}
+
+void BlockLoader::drop_unwanted() {
+  std::deque<LoadedBlock> loaded = std::exchange(ready_, {});
+  ready_bytes_ = 0;
+  for (LoadedBlock& block : loaded) finish(std::move(block));
+}
+
+void BlockLoader::make_ready(LoadedBlock loaded) {
+  ready_bytes_ += bytes_of(loaded);
+  ready_.push_back(std::move(loaded));
+}
+
+void BlockLoader::finish(LoadedBlock loaded) {
+  if (wanted_.contains(loaded.id)) {
+    make_ready(std::move(loaded));
+  } else if (loaded.block) {
+    cache_.put(loaded.id, std::move(*loaded.block));
+  }
+}
+
+std::optional<LoadedBlock> BlockLoader::take() {
+  std::optional<LoadedBlock> loaded;
+  {
+    const std::lock_guard lock(mutex_);
+    if (ready_.empty()) return std::nullopt;
+    loaded = std::move(ready_.front());
+    ready_.pop_front();
+    ready_bytes_ -= bytes_of(*loaded);
+    wanted_.erase(loaded->id);
+    if (loaded->block) cache_.put(loaded->id, *loaded->block);
+  }
+  wake_workers_.notify_all();
+  return loaded;
+}
+
+void BlockLoader::wait(std::chrono::milliseconds most) {
+  std::unique_lock lock(mutex_);
+  wake_taker_.wait_for(lock, most, [this] { return !ready_.empty(); });
+}
+
+void BlockLoader::forget(uint64_t model) {
+  const std::lock_guard lock(mutex_);
+  cache_.forget(model);
+}
+
+void BlockLoader::work() {
+  std::unique_lock lock(mutex_);
+  while (true) {
+    wake_workers_.wait(lock, [this] { return stopping_ || (!queue_.empty() && ready_bytes_ < limits_.ready_bytes); });
+    if (stopping_) return;
+    const Request request = std::move(queue_.front());
+    queue_.pop_front();
+    const BlockId id{request.source->id(), request.block};
+    busy_.insert(id);
+    lock.unlock();
+    const Stopwatch watch;
+    LoadedBlock loaded{id, load(*request.source, request.block), watch.milliseconds()};
+    lock.lock();
+    busy_.erase(id);
+    finish(std::move(loaded));
+    wake_taker_.notify_one();
+  }
+}
+
+}  // namespace surfcast

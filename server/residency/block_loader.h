@@ -1,0 +1,74 @@
+#pragma once
+
+#include <chrono>
+#include <condition_variable>
+#include <deque>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <set>
+#include <span>
+#include <thread>
+#include <vector>
+
+#include "residency/packed_cache.h"
+
+namespace surfcast {
+
+/// A block that was wanted, or why it cannot be had.
+struct LoadedBlock {
+  BlockId id;
+  Result<std::shared_ptr<const PackedBlock>> block;
+  double milliseconds = 0;  ///< of a worker's time; 0 when it was still in host memory
+};
+
+struct LoaderLimits {
+  unsigned threads = 1;
+  size_t cache_bytes = 0;  ///< packed blocks kept in host memory, see PackedCache
+  size_t ready_bytes = 0;  ///< loaded blocks that wait to be taken before the workers wait, too
+};
+
+/// Worker threads that read, decode and pack blocks for one other thread, which alone calls the methods. They work on
+/// the newest list of wishes only: what is not on it any more is dropped before it is decoded.
+class BlockLoader {
+ public:
+  explicit BlockLoader(const LoaderLimits& limits);
+  ~BlockLoader();
+  BlockLoader(const BlockLoader&) = delete;
+  BlockLoader& operator=(const BlockLoader&) = delete;
+
+  /// Replaces the wishes, most urgent first. Blocks being decoded at the moment are finished and, if nobody wants them,
+  /// kept in host memory.
+  void want(const std::shared_ptr<const BlockSource>& source, std::span<const uint32_t> blocks);
+  /// The next wish that has come true; it is then no wish any more.
+  std::optional<LoadedBlock> take();
+  /// Waits until take() has something, at most so long.
+  void wait(std::chrono::milliseconds most);
+  void forget(uint64_t model);
+
+ private:
+  struct Request {
+    std::shared_ptr<const BlockSource> source;
+    uint32_t block = 0;
+  };
+
+  void work();
+  void finish(LoadedBlock loaded);
+  void make_ready(LoadedBlock loaded);
+  void drop_unwanted();
+
+  const LoaderLimits limits_;
+  std::mutex mutex_;  ///< guards what follows
+  std::condition_variable wake_workers_;
+  std::condition_variable wake_taker_;
+  std::deque<Request> queue_;
+  std::set<BlockId> wanted_;  ///< the wishes that have not been taken
+  std::set<BlockId> busy_;    ///< being decoded
+  std::deque<LoadedBlock> ready_;
+  size_t ready_bytes_ = 0;
+  PackedCache cache_;
+  bool stopping_ = false;
+  std::vector<std::jthread> threads_;
+};
+
+}  // namespace surfcast

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdint>
+#include <memory>
+
+#include "base/result.h"
+#include "ldc/block_tree.h"
+#include "residency/packing.h"
+
+namespace surfcast {
+
+/// Where the blocks of one model come from. All methods may be called from several threads at once.
+class BlockSource {
+ public:
+  virtual ~BlockSource() = default;
+
+  /// Tells this model from every other one in the life of the process.
+  [[nodiscard]] virtual uint64_t id() const = 0;
+  [[nodiscard]] virtual const BlockTree& tree() const = 0;
+  /// Reads, decodes and packs a block.
+  [[nodiscard]] virtual Result<PackedBlock> load(uint32_t block) const = 0;
+};
+
+/// The blocks of a model file.
+class FileBlocks : public BlockSource {
+ public:
+  explicit FileBlocks(std::shared_ptr<const ModelFile> model) : model_(std::move(model)) {}
+
+  [[nodiscard]] uint64_t id() const override { return model_->id(); }
+  [[nodiscard]] const BlockTree& tree() const override { return model_->tree(); }
+  [[nodiscard]] Result<PackedBlock> load(uint32_t block) const override {
+    const Result<DecodedBlock> decoded = model_->decode(block);
+    if (!decoded) return fail(decoded.error());
+    return pack_block(*decoded, model_->info().color_bits);
+  }
+
+ private:
+  std::shared_ptr<const ModelFile> model_;
+};
+
+/// A block of any model.
+struct BlockId {
+  uint64_t model = 0;  ///< BlockSource::id
+  uint32_t block = 0;
+
+  auto operator<=>(const BlockId&) const = default;
+};
+
+}  // namespace surfcast

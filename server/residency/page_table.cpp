@@ -1,0 +1,78 @@
+#include "residency/page_table.h"
+
+#include <limits>
+
+#include "base/contract.h"
+
+namespace surfcast {
+
+void PageTable::use(const BlockId& id) {
+  const auto found = entries_.find(id);
+  if (found == entries_.end()) return;
+  found->second.last_frame = frame_;
+  order_.splice(order_.begin(), order_, found->second.order);
+}
+
+void PageTable::pin(const BlockId& id) {
+  const auto found = entries_.find(id);
+  if (found == entries_.end() || found->second.pinned) return;
+  found->second.pinned = true;
+  pinned_ += static_cast<uint32_t>(found->second.pages.size());
+}
+
+std::span<const uint32_t> PageTable::find(const BlockId& id) const {
+  const auto found = entries_.find(id);
+  return found == entries_.end() ? std::span<const uint32_t>() : found->second.pages;
+}
+
+bool PageTable::can_free(uint32_t count) const {
+  uint32_t available = pages_ - used_;
+  for (auto id = order_.rbegin(); id != order_.rend() && available < count; ++id) {
+    const Entry& entry = entries_.at(*id);
+    if (entry.last_frame == frame_) break;  // all that follow are in use, too
+    if (evictable(entry)) available += static_cast<uint32_t>(entry.pages.size());
+  }
+  return available >= count;
+}
+
+PageTable::Entries::iterator PageTable::release(Entries::iterator entry) {
+  const auto count = static_cast<uint32_t>(entry->second.pages.size());
+  free_.insert(free_.end(), entry->second.pages.begin(), entry->second.pages.end());
+  used_ -= count;
+  if (entry->second.pinned) pinned_ -= count;
+  order_.erase(entry->second.order);
+  return entries_.erase(entry);
+}
+
+uint32_t PageTable::take_page() {
+  ++used_;
+  if (free_.empty()) return untouched_++;
+  const uint32_t page = free_.back();
+  free_.pop_back();
+  return page;
+}
+
+std::span<const uint32_t> PageTable::insert(const BlockId& id, uint32_t count,
+                                            const std::function<void(const BlockId&)>& evicted) {
+  SURFCAST_EXPECTS(count > 0 && !entries_.contains(id));
+  if (!can_free(count)) return {};
+  for (auto last = order_.end(); pages_ - used_ < count;) {
+    --last;
+    const auto entry = entries_.find(*last);
+    if (!evictable(entry->second)) continue;
+    evicted(*last);
+    ++last;  // release() takes the one before it out of the list
+    release(entry);
+  }
+  order_.push_front(id);
+  Entry entry{{}, frame_, false, order_.begin()};
+  for (uint32_t i = 0; i < count; ++i) entry.pages.push_back(take_page());
+  return entries_.emplace(id, std::move(entry)).first->second.pages;
+}
+
+void PageTable::forget(uint64_t model) {
+  auto entry = entries_.lower_bound({model, 0});
+  while (entry != entries_.end() && entry->first.model == model) entry = release(entry);
+}
+
+}  // namespace surfcast

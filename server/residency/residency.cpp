@@ -1,0 +1,165 @@
+#include "residency/residency.h"
+
+#include <algorithm>
+
+#include "base/stopwatch.h"
+
+namespace surfcast {
+
+Residency::Residency(SurfelSink& sink, const ResidencyLimits& limits)
+    : pool_(limits.pages, sink), loader_(limits.loader), upload_bytes_(limits.upload_bytes) {}
+
+void Residency::forget(uint64_t model) {
+  pool_.forget(model);
+  loader_.forget(model);
+  damaged_.erase(damaged_.lower_bound({model, 0}), damaged_.lower_bound({model + 1, 0}));
+}
+
+std::vector<bool> Residency::residents(const ViewedModel& model) const {
+  std::vector<bool> residents = pool_.residents(model.source->id());
+  residents.resize(model.tree.tree.blocks().size());
+  return residents;
+}
+
+BlockSelection Residency::select(const ViewedModel& model, const ViewGoal& goal,
+                                 std::span<const uint32_t> was_refined) const {
+  const SelectionGoal limits{goal.spacing, pool_.usable_surfels(), SurfelPool::kPageSurfels};
+  return select_blocks(model.tree, goal.frame, limits, residents(model), was_refined);
+}
+
+std::vector<uint32_t> Residency::missing(const ViewedModel& model, std::span<const uint32_t> blocks) const {
+  const std::vector<bool> here = residents(model);
+  std::vector<uint32_t> missing;
+  std::copy_if(blocks.begin(), blocks.end(), std::back_inserter(missing), [&](uint32_t block) { return !here[block]; });
+  return missing;
+}
+
+/// The blocks that stand in for everything when nothing else is there.
+std::vector<uint32_t> Residency::coarse_roots(const ViewedModel& model) const {
+  std::vector<uint32_t> coarse;
+  for (const uint32_t root : model.tree.tree.roots()) {
+    if (model.tree.tree.children(root).count > 0) coarse.push_back(root);
+  }
+  return coarse;
+}
+
+void Residency::use(const ViewedModel& model, std::span<const uint32_t> blocks) {
+  for (const uint32_t block : blocks) pool_.use({model.source->id(), block});
+}
+
+/// What is drawn, what will be, and what may have to stand in for it.
+void Residency::use(const ViewedModel& model, const BlockSelection& selection) {
+  use(model, selection.refined);
+  use(model, selection.target);
+  use(model, selection.draw);
+}
+
+bool Residency::store(const ViewedModel& model, const LoadedBlock& loaded, PreparedView& view) {
+  const Stopwatch watch;
+  const BlockTree& tree = model.tree.tree;
+  const bool stored = pool_.store(loaded.id, tree, **loaded.block);
+  const bool root = tree.blocks()[loaded.id.block].parent == BlockEntry::kNoParent;
+  if (stored && root && tree.children(loaded.id.block).count > 0) pool_.pin(loaded.id);
+  view.upload_ms += watch.milliseconds();
+  return stored;
+}
+
+/// Loads and stores blocks that are not resident; less of them when the pool is full of what is in use.
+Status Residency::load(const ViewedModel& model, std::span<const uint32_t> blocks, const std::atomic<bool>& cancelled,
+                       PreparedView& view) {
+  constexpr std::chrono::milliseconds kPatience{10};  // between two looks at `cancelled`
+  const Stopwatch watch;
+  const auto give_up = [&] { loader_.want(model.source, {}); };
+  loader_.want(model.source, blocks);
+  for (size_t left = blocks.size(); left > 0;) {
+    if (cancelled.load(std::memory_order_relaxed)) {
+      give_up();
+      return fail(ErrorKind::kCancelled, "cancelled");
+    }
+    const std::optional<LoadedBlock> loaded = loader_.take();
+    if (!loaded) {
+      loader_.wait(kPatience);
+      continue;
+    }
+    --left;
+    view.decode_ms += loaded->milliseconds;
+    if (!loaded->block || !store(model, *loaded, view)) {
+      give_up();
+      if (!loaded->block) return fail(loaded->block.error());
+      break;
+    }
+  }
+  view.load_ms += watch.milliseconds();
+  return {};
+}
+
+Result<PreparedView> Residency::prepare_whole(const ViewedModel& model, const ViewGoal& goal,
+                                              const std::atomic<bool>& cancelled) {
+  PreparedView view;
+  pool_.begin_frame();
+  const std::vector<uint32_t> roots = missing(model, coarse_roots(model));
+  if (Status status = load(model, roots, cancelled, view); !status) return fail(std::move(status.error()));
+
+  const Stopwatch select_watch;
+  view.selection = select(model, goal, {});
+  view.select_ms = select_watch.milliseconds();
+  use(model, view.selection.target);
+  const std::vector<uint32_t> wanted = missing(model, view.selection.target);
+  view.waited_for = static_cast<uint32_t>(roots.size() + wanted.size());
+  if (Status status = load(model, wanted, cancelled, view); !status) return fail(std::move(status.error()));
+
+  const Stopwatch draw_watch;
+  if (!wanted.empty()) view.selection = select(model, goal, {});
+  view.select_ms += draw_watch.milliseconds();
+  return view;
+}
+
+/// Stores what has been loaded, up to the limit. Returns how many blocks.
+size_t Residency::upload_some(const ViewedModel& model, PreparedView& view) {
+  size_t stored = 0;
+  for (size_t bytes = 0; bytes < upload_bytes_;) {
+    const std::optional<LoadedBlock> loaded = loader_.take();
+    if (!loaded) break;
+    view.decode_ms += loaded->milliseconds;
+    if (!loaded->block) {
+      damaged_.insert(loaded->id);
+    } else if (loaded->id.model == model.source->id() && store(model, *loaded, view)) {
+      bytes += (*loaded->block)->bytes();
+      ++stored;
+    }
+  }
+  return stored;
+}
+
+/// What to load next: the roots, what the view misses, then what it is going to.
+std::vector<uint32_t> Residency::wishes(const ViewedModel& model, const ViewGoal& goal, const BlockSelection& selection,
+                                        const std::optional<CameraFrame>& ahead) const {
+  std::vector<uint32_t> blocks = missing(model, coarse_roots(model));
+  for (const WantedBlock& wanted : selection.wanted) blocks.push_back(wanted.block);
+  if (ahead) {
+    for (const WantedBlock& wanted : select(model, {*ahead, goal.spacing}, selection.refined).wanted) {
+      blocks.push_back(wanted.block);
+    }
+  }
+  std::erase_if(blocks, [&](uint32_t block) { return damaged_.contains({model.source->id(), block}); });
+  return blocks;
+}
+
+PreparedView Residency::prepare_now(const ViewedModel& model, const ViewGoal& goal,
+                                    std::span<const uint32_t> was_refined, const std::optional<CameraFrame>& ahead) {
+  PreparedView view;
+  pool_.begin_frame();
+  const Stopwatch watch;
+  view.selection = select(model, goal, was_refined);
+  view.waited_for = static_cast<uint32_t>(view.selection.wanted.size());
+  use(model, view.selection);
+  if (upload_some(model, view) > 0) {
+    view.selection = select(model, goal, was_refined);
+    use(model, view.selection);
+  }
+  loader_.want(model.source, wishes(model, goal, view.selection, ahead));
+  view.select_ms = watch.milliseconds() - view.upload_ms;
+  return view;
+}
+
+}  // namespace surfcast

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <optional>
+#include <set>
+#include <vector>
+
+#include "residency/block_loader.h"
+#include "residency/surfel_pool.h"
+#include "selection/select_blocks.h"
+
+namespace surfcast {
+
+/// A model that can be looked at: its blocks and their tree.
+struct ViewedModel {
+  explicit ViewedModel(std::shared_ptr<const BlockSource> blocks) : source(std::move(blocks)), tree(source->tree()) {}
+
+  std::shared_ptr<const BlockSource> source;
+  SelectionTree tree;
+};
+
+/// What a picture shows of a model.
+struct ViewGoal {
+  CameraFrame frame;
+  double spacing = 0;  ///< see SelectionGoal
+};
+
+/// The blocks that a picture is drawn from, and what getting them took.
+struct PreparedView {
+  BlockSelection selection;
+  uint32_t waited_for = 0;  ///< blocks that were wanted and not resident at first
+  double select_ms = 0;
+  double load_ms = 0;    ///< until the blocks were there
+  double decode_ms = 0;  ///< time of the workers, all together, for blocks that arrived meanwhile
+  double upload_ms = 0;
+};
+
+struct ResidencyLimits {
+  uint32_t pages = 0;  ///< of SurfelPool::kPageSurfels, for all models together
+  LoaderLimits loader;
+  size_t upload_bytes = size_t{16} << 20;  ///< in a picture that does not wait: little enough not to be felt
+};
+
+/// Keeps the blocks of all models within their budgets, and decides what each picture is drawn from. The blocks that a
+/// view was prepared of stay resident until the next one is. Used by the render thread.
+class Residency {
+ public:
+  Residency(SurfelSink& sink, const ResidencyLimits& limits);
+
+  /// For a picture as good as it gets: waits for every block of the cut. Only the budget limits it. Fails when a block
+  /// is damaged, and with kCancelled soon after `cancelled` becomes true.
+  Result<PreparedView> prepare_whole(const ViewedModel& model, const ViewGoal& goal,
+                                     const std::atomic<bool>& cancelled);
+
+  /// For a picture at once: takes what is resident, and up to a limit what has been loaded since the last call; asks
+  /// for what is missing, and after that for what `ahead` (where the camera is going) would miss. Never waits for a
+  /// block. What is damaged is done without. `was_refined`: see select_blocks.
+  PreparedView prepare_now(const ViewedModel& model, const ViewGoal& goal, std::span<const uint32_t> was_refined,
+                           const std::optional<CameraFrame>& ahead);
+
+  [[nodiscard]] const SurfelPool& pool() const { return pool_; }
+  void forget(uint64_t model);
+
+ private:
+  [[nodiscard]] std::vector<bool> residents(const ViewedModel& model) const;
+  [[nodiscard]] BlockSelection select(const ViewedModel& model, const ViewGoal& goal,
+                                      std::span<const uint32_t> was_refined) const;
+  [[nodiscard]] std::vector<uint32_t> missing(const ViewedModel& model, std::span<const uint32_t> blocks) const;
+  [[nodiscard]] std::vector<uint32_t> coarse_roots(const ViewedModel& model) const;
+  [[nodiscard]] std::vector<uint32_t> wishes(const ViewedModel& model, const ViewGoal& goal,
+                                             const BlockSelection& selection,
+                                             const std::optional<CameraFrame>& ahead) const;
+  Status load(const ViewedModel& model, std::span<const uint32_t> blocks, const std::atomic<bool>& cancelled,
+              PreparedView& view);
+  bool store(const ViewedModel& model, const LoadedBlock& loaded, PreparedView& view);
+  size_t upload_some(const ViewedModel& model, PreparedView& view);
+  void use(const ViewedModel& model, std::span<const uint32_t> blocks);
+  void use(const ViewedModel& model, const BlockSelection& selection);
+
+  SurfelPool pool_;
+  BlockLoader loader_;
+  size_t upload_bytes_;
+  std::set<BlockId> damaged_;
+};
+
+}  // namespace surfcast

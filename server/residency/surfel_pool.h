@@ -1,0 +1,68 @@
+#pragma once
+
+#include <map>
+#include <span>
+#include <unordered_map>
+#include <vector>
+
+#include "residency/block_source.h"
+#include "residency/page_table.h"
+
+namespace surfcast {
+
+/// Where packed surfels go to: GPU memory, as an array of texels of one surfel each.
+class SurfelSink {
+ public:
+  virtual ~SurfelSink() = default;
+  /// Writes surfels from texel `first` on.
+  virtual void write(size_t first, std::span<const glm::uvec4> surfels) = 0;
+};
+
+/// A resident block: where its surfels lie, and how to read them.
+struct ResidentBlock {
+  glm::dvec3 origin{0};  ///< as in PackedBlock, like all but `pages`
+  glm::dvec3 step{1};
+  LogScale radius;
+  LogScale weight;
+  uint32_t surfels = 0;
+  std::span<const uint32_t> pages;  ///< each SurfelPool::kPageSurfels texels; good until the block is evicted
+};
+
+/// The resident blocks of all models in one memory with a fixed budget.
+class SurfelPool {
+ public:
+  /// 16 KiB: blocks of some thousand surfels leave half a page of it unused.
+  static constexpr uint32_t kPageSurfels = 1024;
+
+  SurfelPool(uint32_t pages, SurfelSink& sink) : table_(pages), sink_(sink) {}
+
+  /// See PageTable.
+  void begin_frame() { table_.begin_frame(); }
+  void use(const BlockId& id) { table_.use(id); }
+  /// Pins a block, unless pinned ones fill an eighth of the memory already.
+  void pin(const BlockId& id);
+
+  /// Writes a block, which is then in use. False when the blocks in use leave no room for it.
+  bool store(const BlockId& id, const BlockTree& tree, const PackedBlock& block);
+  /// Whether each block of a model is resident; empty for a model of which nothing ever was.
+  [[nodiscard]] const std::vector<bool>& residents(uint64_t model) const;
+  [[nodiscard]] ResidentBlock at(const BlockId& id) const;
+  void forget(uint64_t model);
+
+  /// Surfels that may be in use at once, counted in whole pages; what is pinned may not be.
+  [[nodiscard]] uint64_t usable_surfels() const {
+    return uint64_t{table_.pages() - table_.pinned_pages()} * kPageSurfels;
+  }
+  [[nodiscard]] size_t blocks() const { return table_.blocks(); }
+  [[nodiscard]] size_t bytes() const { return size_t{table_.used_pages()} * kPageSurfels * sizeof(glm::uvec4); }
+
+ private:
+  void write(std::span<const uint32_t> pages, std::span<const glm::uvec4> surfels);
+
+  PageTable table_;
+  SurfelSink& sink_;
+  std::map<BlockId, ResidentBlock> blocks_;
+  std::unordered_map<uint64_t, std::vector<bool>> residents_;
+};
+
+}  // namespace surfcast

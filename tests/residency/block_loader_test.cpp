@@ -1,0 +1,133 @@
+#include "residency/block_loader.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "residency/fake_blocks.h"
+
+namespace surfcast {
+namespace {
+
+using ::testing::ElementsAre;
+using testing::FakeBlocks;
+using ::testing::UnorderedElementsAre;
+
+std::vector<BlockEntry> many_blocks(size_t count) {
+  return std::vector<BlockEntry>(count, testing::block_at({0, 0, -10}, 1));
+}
+
+class BlockLoaderTest : public ::testing::Test {
+ protected:
+  void want(const std::vector<uint32_t>& blocks) { loader_.want(source_, blocks); }
+  std::vector<uint32_t> take(size_t count) {
+    std::vector<uint32_t> taken;
+    while (taken.size() < count) {
+      loader_.wait(std::chrono::seconds(10));
+      const std::optional<LoadedBlock> loaded = loader_.take();
+      if (!loaded) {
+        ADD_FAILURE() << "only " << taken.size() << " of " << count;
+        break;
+      }
+      taken.push_back(loaded->id.block);
+    }
+    return taken;
+  }
+
+  std::shared_ptr<FakeBlocks> source_ = std::make_shared<FakeBlocks>(1, many_blocks(100));
+  BlockLoader loader_{{.threads = 1, .cache_bytes = 3 * 16000, .ready_bytes = size_t{1} << 20}};
+};
+
+TEST_F(BlockLoaderTest, WishesComeTrueInTheirOrder) {
+  want({5, 3, 9});
+  EXPECT_THAT(take(3), ElementsAre(5, 3, 9));
+  EXPECT_FALSE(loader_.take());
+}
+
+TEST_F(BlockLoaderTest, WhatIsNotWantedAnyMoreIsDroppedBeforeItIsDecoded) {
+  source_->hold();
+  want({1, 2, 3, 4});
+  source_->wait_for_start(1);
+  want({50, 3});
+  source_->release();
+  EXPECT_THAT(take(2), ElementsAre(50, 3));
+  EXPECT_THAT(source_->started(), ElementsAre(1, 50, 3)) << "1 was being decoded already";
+}
+
+TEST_F(BlockLoaderTest, WhatWasDecodedForNobodyIsThereWhenItIsWantedAfterAll) {
+  source_->hold();
+  want({1});
+  source_->wait_for_start(1);
+  want({2});
+  source_->release();
+  EXPECT_THAT(take(1), ElementsAre(2));
+  want({1});
+  EXPECT_THAT(take(1), ElementsAre(1));
+  EXPECT_THAT(source_->started(), ElementsAre(1, 2));
+}
+
+TEST_F(BlockLoaderTest, ABlockThatIsBeingDecodedIsNotDecodedTwice) {
+  source_->hold();
+  want({1});
+  source_->wait_for_start(1);
+  want({1, 2});
+  source_->release();
+  EXPECT_THAT(take(2), ElementsAre(1, 2));
+  EXPECT_THAT(source_->started(), ElementsAre(1, 2));
+}
+
+TEST_F(BlockLoaderTest, OneWishStatedTwiceIsOne) {
+  want({4, 4, 4});
+  EXPECT_THAT(take(1), ElementsAre(4));
+  loader_.wait(std::chrono::milliseconds(5));
+  EXPECT_FALSE(loader_.take());
+}
+
+TEST_F(BlockLoaderTest, HostMemoryHoldsWhatWasTakenLastWithinItsBudget) {
+  want({1, 2, 3, 4});  // 16000 bytes each, of 48000
+  take(4);
+  want({2, 3, 4});
+  EXPECT_THAT(take(3), ElementsAre(2, 3, 4));
+  EXPECT_EQ(source_->started().size(), 4u);
+  want({1});
+  EXPECT_THAT(take(1), ElementsAre(1));
+  EXPECT_EQ(source_->started().size(), 5u);
+}
+
+TEST_F(BlockLoaderTest, DamagedBlocksAreToldOfAndOthersComeAllTheSame) {
+  source_->damage(2);
+  want({1, 2, 3});
+  int damaged = 0;
+  for (int i = 0; i < 3; ++i) {
+    loader_.wait(std::chrono::seconds(10));
+    const std::optional<LoadedBlock> loaded = loader_.take();
+    ASSERT_TRUE(loaded);
+    if (!loaded->block) {
+      ++damaged;
+      EXPECT_EQ(loaded->id.block, 2u);
+      EXPECT_THAT(loaded->block.error().message, ::testing::HasSubstr("damaged"));
+    }
+  }
+  EXPECT_EQ(damaged, 1);
+}
+
+TEST(BlockLoader, WorkersWaitWhenNobodyTakesWhatIsReady) {
+  const auto source = std::make_shared<FakeBlocks>(1, many_blocks(100));
+  BlockLoader loader({.threads = 1, .cache_bytes = 0, .ready_bytes = 3 * 16000});
+  std::vector<uint32_t> all(100);
+  for (uint32_t i = 0; i < 100; ++i) all[i] = i;
+  loader.want(source, all);
+  source->wait_for_start(3);
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_EQ(source->started().size(), 3u);
+  ASSERT_TRUE(loader.take());
+  source->wait_for_start(4);
+}
+
+TEST(BlockLoader, EndsWithWishesOutstanding) {
+  const auto source = std::make_shared<FakeBlocks>(1, many_blocks(100));
+  BlockLoader loader({.threads = 3, .cache_bytes = 0, .ready_bytes = 16000});
+  loader.want(source, std::vector<uint32_t>{1, 2, 3, 4, 5, 6, 7});
+}
+
+}  // namespace
+}  // namespace surfcast

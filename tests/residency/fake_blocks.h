@@ -1,0 +1,86 @@
+#pragma once
+
+#include <atomic>
+#include <chrono>
+#include <condition_variable>
+#include <map>
+#include <mutex>
+#include <set>
+#include <thread>
+#include <utility>
+#include <vector>
+
+#include "residency/residency.h"
+#include "selection/trees.h"
+
+namespace surfcast::testing {
+
+/// Blocks whose first surfel holds their number. Loading can be held up, and blocks can be damaged.
+class FakeBlocks : public BlockSource {
+ public:
+  FakeBlocks(uint64_t id, std::vector<BlockEntry> blocks) : id_(id), tree_(std::move(blocks)) {}
+
+  [[nodiscard]] uint64_t id() const override { return id_; }
+  [[nodiscard]] const BlockTree& tree() const override { return tree_; }
+  [[nodiscard]] Result<PackedBlock> load(uint32_t block) const override {
+    {
+      std::unique_lock lock(mutex_);
+      started_.push_back(block);
+      wake_.notify_all();
+      wake_.wait(lock, [this] { return !held_; });
+    }
+    if (damaged_.contains(block)) return fail(ErrorKind::kInvalidInput, "block " + std::to_string(block) + ": damaged");
+    PackedBlock packed;
+    packed.surfels.assign(tree_.blocks()[block].surfels, glm::uvec4(block));
+    return packed;
+  }
+
+  void damage(uint32_t block) { damaged_.insert(block); }
+  /// From now on load() does not return until release().
+  void hold() { set_held(true); }
+  void release() { set_held(false); }
+  /// Waits until so many blocks have been begun.
+  void wait_for_start(size_t blocks) const {
+    std::unique_lock lock(mutex_);
+    wake_.wait(lock, [&] { return started_.size() >= blocks; });
+  }
+  /// Blocks in the order in which they were begun.
+  [[nodiscard]] std::vector<uint32_t> started() const {
+    const std::lock_guard lock(mutex_);
+    return started_;
+  }
+
+ private:
+  void set_held(bool held) {
+    {
+      const std::lock_guard lock(mutex_);
+      held_ = held;
+    }
+    wake_.notify_all();
+  }
+
+  uint64_t id_;
+  BlockTree tree_;
+  std::set<uint32_t> damaged_;
+  mutable std::mutex mutex_;
+  mutable std::condition_variable wake_;
+  mutable std::vector<uint32_t> started_;
+  bool held_ = false;
+};
+
+/// Keeps what a pool writes.
+class FakeSink : public SurfelSink {
+ public:
+  void write(size_t first, std::span<const glm::uvec4> surfels) override {
+    for (size_t i = 0; i < surfels.size(); ++i) texels_[first + i] = surfels[i].x;
+    written_ += surfels.size_bytes();
+  }
+  [[nodiscard]] uint32_t at(size_t texel) const { return texels_.at(texel); }
+  [[nodiscard]] size_t written() const { return written_; }
+
+ private:
+  std::map<size_t, uint32_t> texels_;
+  size_t written_ = 0;
+};
+
+}  // namespace surfcast::testing

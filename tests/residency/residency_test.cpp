@@ -1,0 +1,216 @@
+#include "residency/residency.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "base/stopwatch.h"
+#include "residency/fake_blocks.h"
+
+namespace surfcast {
+namespace {
+
+using testing::block_at;
+using ::testing::ElementsAre;
+using testing::FakeBlocks;
+using testing::FakeSink;
+using ::testing::IsEmpty;
+using testing::split;
+using testing::view_from;
+
+/// A root, four children in a row, and their four children each; every block takes a page.
+std::shared_ptr<FakeBlocks> two_splits(uint64_t id) {
+  std::vector<BlockEntry> blocks{block_at({0, 0, -20}, 4, 1)};
+  const uint32_t first = split(blocks, 0, 4, 1000);
+  for (uint32_t i = 0; i < 4; ++i) split(blocks, first + i, 4, 1000);
+  return std::make_shared<FakeBlocks>(id, blocks);
+}
+
+class ResidencyTest : public ::testing::Test {
+ protected:
+  void start(uint32_t pages, size_t upload_bytes = size_t{1} << 20) {
+    residency_ = std::make_unique<Residency>(
+        sink_, ResidencyLimits{pages, {.threads = 1, .cache_bytes = 0, .ready_bytes = size_t{1} << 20}, upload_bytes});
+  }
+  Result<PreparedView> whole(const ViewedModel& model, double spacing = 0) {
+    return residency_->prepare_whole(model, {frame_, spacing}, never_);
+  }
+  PreparedView now(const ViewedModel& model, double spacing = 0) {
+    return residency_->prepare_now(model, {frame_, spacing}, {}, {});
+  }
+  /// Pictures at once until one converges.
+  PreparedView now_until_converged(const ViewedModel& model, double spacing = 0) {
+    for (int i = 0; i < 2000; ++i) {
+      PreparedView view = now(model, spacing);
+      if (view.selection.converged()) return view;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    ADD_FAILURE() << "never converged";
+    return {};
+  }
+  /// The memory holds each drawn block where the pool says.
+  void expect_in_memory(const FakeBlocks& source, const std::vector<uint32_t>& blocks) {
+    for (const uint32_t block : blocks) {
+      const ResidentBlock resident = residency_->pool().at({source.id(), block});
+      ASSERT_FALSE(resident.pages.empty());
+      EXPECT_EQ(sink_.at(size_t{resident.pages.front()} * SurfelPool::kPageSurfels), block);
+    }
+  }
+
+  const CameraFrame frame_ = view_from({0, 0, 0});
+  const std::atomic<bool> never_{false};
+  FakeSink sink_;
+  std::shared_ptr<FakeBlocks> source_ = two_splits(1);
+  ViewedModel model_{source_};
+  std::unique_ptr<Residency> residency_;
+};
+
+TEST_F(ResidencyTest, AWholePictureWaitsForEveryBlockOfTheFinestCut) {
+  start(100);
+  const Result<PreparedView> view = whole(model_);
+  ASSERT_TRUE(view);
+  EXPECT_TRUE(view->selection.converged());
+  EXPECT_EQ(view->selection.draw.size(), 16u);
+  EXPECT_EQ(view->waited_for, 17u) << "the cut and the root";
+  expect_in_memory(*source_, view->selection.draw);
+  const Result<PreparedView> again = whole(model_);
+  EXPECT_EQ(again->waited_for, 0u);
+  EXPECT_EQ(source_->started().size(), 17u);
+}
+
+TEST_F(ResidencyTest, AWholePictureLoadsWhatItShowsAndNoMore) {
+  start(100);
+  const double middle = projected_spacing(source_->tree().blocks()[2], frame_);
+  EXPECT_EQ(whole(model_, 1.2 * middle)->selection.draw.size(), 4u);
+  EXPECT_THAT(source_->started(), ElementsAre(0, 1, 2, 3, 4));
+}
+
+TEST_F(ResidencyTest, AModelLargerThanTheMemoryIsShownAsFineAsFits) {
+  start(12);  // the root is pinned and takes one
+  const Result<PreparedView> view = whole(model_);
+  ASSERT_TRUE(view);
+  EXPECT_FALSE(view->selection.converged());
+  EXPECT_TRUE(view->selection.budget_reached);
+  EXPECT_EQ(view->selection.draw, view->selection.target) << "all of what fits is there";
+  EXPECT_EQ(view->selection.draw.size(), 10u) << "two of the four are refined";
+  EXPECT_LE(residency_->pool().bytes(), 12u * 16384);
+}
+
+TEST_F(ResidencyTest, AForestLargerThanTheMemoryIsShownInPart) {
+  const auto forest = std::make_shared<FakeBlocks>(7, std::vector<BlockEntry>(20, block_at({0, 0, -10}, 1)));
+  start(8);
+  const Result<PreparedView> view = whole(ViewedModel(forest));
+  ASSERT_TRUE(view);
+  EXPECT_FALSE(view->selection.converged());
+  EXPECT_EQ(view->selection.draw.size(), 8u);
+}
+
+TEST_F(ResidencyTest, APictureAtOnceNeverWaitsForABlock) {
+  start(100);
+  source_->hold();
+  const Stopwatch watch;
+  PreparedView view;
+  for (int i = 0; i < 100; ++i) view = now(model_);
+  EXPECT_LT(watch.milliseconds(), 5000) << "a hundred pictures while no block arrives at all";
+  EXPECT_THAT(view.selection.draw, IsEmpty());
+  EXPECT_FALSE(view.selection.converged());
+  EXPECT_GT(view.waited_for, 0u);
+  source_->release();
+  EXPECT_EQ(now_until_converged(model_).selection.draw.size(), 16u);
+}
+
+TEST_F(ResidencyTest, PicturesAtOnceGetFinerAndAreNeverWithoutAPart) {
+  start(100, 1);  // a block a picture
+  size_t drawn = 0;
+  for (int i = 0; i < 5000 && drawn < 16; ++i) {
+    const PreparedView view = now(model_);
+    if (drawn > 0) {
+      ASSERT_EQ(view.selection.holes, 0u);
+      ASSERT_GE(view.selection.draw.size(), drawn);
+    }
+    drawn = view.selection.draw.size();
+    expect_in_memory(*source_, view.selection.draw);
+  }
+  EXPECT_EQ(drawn, 16u);
+  EXPECT_EQ(source_->started().front(), 0u) << "the root comes first";
+}
+
+TEST_F(ResidencyTest, ALimitedNumberOfBytesIsUploadedInAPictureAtOnce) {
+  start(100, 20000);  // two blocks of 16000 bytes: the limit is reached with the second
+  now(model_);
+  source_->wait_for_start(21);
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  const size_t before = sink_.written();
+  now(model_);
+  EXPECT_EQ(sink_.written() - before, 32000u);
+}
+
+TEST_F(ResidencyTest, WhatTheCameraGoesToIsLoadedAfterWhatItSees) {
+  start(100);
+  const double root = projected_spacing(source_->tree().blocks()[0], frame_);
+  residency_->prepare_now(model_, {frame_, 1.1 * root}, {}, view_from({0, 0, -10}));
+  source_->wait_for_start(5);
+  std::vector<uint32_t> begun = source_->started();
+  EXPECT_EQ(begun.front(), 0u) << "all that the view itself needs";
+}
+
+TEST_F(ResidencyTest, DamageFailsAWholePictureAndNamesTheBlock) {
+  start(100);
+  source_->damage(7);
+  const Result<PreparedView> view = whole(model_);
+  ASSERT_FALSE(view);
+  EXPECT_EQ(view.error().message, "block 7: damaged");
+}
+
+TEST_F(ResidencyTest, DamageLeavesAPictureAtOnceCoarserThere) {
+  start(100);
+  source_->damage(7);
+  PreparedView view;
+  for (int i = 0; i < 2000 && view.selection.draw.size() < 13; ++i) {
+    view = now(model_);
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  EXPECT_THAT(view.selection.draw, ElementsAre(1, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20));
+  EXPECT_FALSE(view.selection.converged());
+  EXPECT_EQ(std::ranges::count(source_->started(), 7u), 1) << "it is tried once";
+}
+
+TEST_F(ResidencyTest, ACancelledPictureIsGivenUp) {
+  start(100);
+  source_->hold();
+  std::atomic<bool> cancelled{false};
+  std::jthread canceller([&] {
+    source_->wait_for_start(1);
+    cancelled = true;
+  });
+  const Result<PreparedView> view = residency_->prepare_whole(model_, {frame_, 0}, cancelled);
+  ASSERT_FALSE(view);
+  EXPECT_EQ(view.error().kind, ErrorKind::kCancelled);
+  source_->release();
+}
+
+TEST_F(ResidencyTest, ModelsShareTheMemoryAndTheOneDrawnLeastRecentlyGivesWay) {
+  const std::shared_ptr<FakeBlocks> other = two_splits(2);
+  const ViewedModel second(other);
+  start(24);
+  ASSERT_TRUE(whole(model_)->selection.converged());
+  ASSERT_TRUE(whole(second)->selection.converged());
+  EXPECT_LE(residency_->pool().bytes(), 24u * 16384);
+  EXPECT_TRUE(residency_->pool().residents(1)[0]) << "the root stays, to stand in";
+  ASSERT_TRUE(whole(model_)->selection.converged());
+  residency_->forget(1);
+  residency_->forget(2);
+  EXPECT_EQ(residency_->pool().blocks(), 0u);
+}
+
+TEST_F(ResidencyTest, WhenTheViewBecomesCoarserNothingFallsBackToTheRoot) {
+  start(100);
+  ASSERT_TRUE(whole(model_)->selection.converged());
+  source_->hold();
+  const double middle = projected_spacing(source_->tree().blocks()[2], frame_);
+  const PreparedView view = now(model_, 1.2 * middle);
+  EXPECT_EQ(view.selection.draw.size(), 16u);
+  source_->release();
+}
+
+}  // namespace
+}  // namespace surfcast
