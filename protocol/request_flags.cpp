@@ -109,7 +109,7 @@ Result<wire::FileFormat> RequestFlags::format() const {
     return fail(ErrorKind::kInvalidInput, output_ + ": give it an extension (png, jpg, webp, exr), or --format");
   }
   for (char& c : extension) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  return parse_file_format(extension.substr(1)).map_error([this](Error error) {
+  return parse_file_format(extension.substr(1)).map_error([this](const Error& error) {
     return Error{error.kind, output_ + ": " + error.message};
   });
 }

@@ -58,7 +58,7 @@ std::string picture_stats_json(const wire::Picture& picture) {
 }
 
 Status save_picture(const wire::Picture& picture, const std::string& output, const std::string& stats) {
-  const Status written =
+  Status written =
       output == "-" ? write_to_stdout(picture.data()) : write_file_atomically(output, std::string_view(picture.data()));
   if (!written || stats.empty()) return written;
   return write_file_atomically(stats, picture_stats_json(picture));
