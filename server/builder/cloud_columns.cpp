@@ -9,6 +9,8 @@ namespace surfcast {
 SurfelCloud empty_cloud(const ScanSchema& schema, size_t size) {
   SurfelCloud cloud;
   cloud.z_up = schema.z_up;
+  cloud.estimated_normals = !schema.normals;
+  cloud.estimated_radii = !schema.radii;
   cloud.positions.resize(size);
   if (schema.normals) cloud.normals.resize(size);
   if (schema.radii) cloud.radii.resize(size);

@@ -16,6 +16,19 @@ double& slot(CoarseSurfel& surfel, std::string_view name) {
   return name == "intensity" ? surfel.intensity : surfel.classification;
 }
 
+/// Averages are kept to so many binary digits: what is seen has no more.
+constexpr int kDigits = 8;
+
+double round_to_digits(double mean) {
+  if (mean == 0 || !std::isfinite(mean)) return mean;
+  const int exponent = std::ilogb(mean) + 1 - kDigits;
+  return exponent > 0 ? std::ldexp(std::round(std::ldexp(mean, -exponent)), exponent) : mean;
+}
+
+glm::u16vec3 to_color(const glm::vec3& light, int bits) {
+  return from_linear(light, 8) * static_cast<uint16_t>(bits == 8 ? 1 : 257);
+}
+
 /// The nearest value of type T.
 template <typename T>
 T to_value(double mean) {
@@ -68,6 +81,8 @@ std::vector<CoarseSurfel> sample_surfels(const SurfelCloud& cloud, std::span<con
 
 SurfelCloud make_coarse_cloud(std::span<const CoarseSurfel> surfels, const CoarseAttributes& attributes) {
   SurfelCloud cloud;
+  cloud.estimated_normals = true;
+  cloud.estimated_radii = true;
   cloud.oriented = attributes.oriented;
   cloud.z_up = attributes.z_up;
   cloud.scalars = attributes.scalars;
@@ -77,9 +92,10 @@ SurfelCloud make_coarse_cloud(std::span<const CoarseSurfel> surfels, const Coars
     cloud.positions.push_back(surfel.position);
     cloud.normals.push_back(surfel.normal);
     cloud.radii.push_back(surfel.radius);
-    if (cloud.colors) cloud.colors->values.push_back(from_linear(surfel.light, attributes.color_bits));
+    if (cloud.colors) cloud.colors->values.push_back(to_color(surfel.light, attributes.color_bits));
     for (ScalarAttribute& scalar : cloud.scalars) {
-      const double mean = slot(surfel, scalar.name);
+      const double value = slot(surfel, scalar.name);
+      const double mean = scalar.name == "intensity" ? round_to_digits(value) : value;
       std::visit(
           [mean](auto& values) {
             values.push_back(to_value<typename std::decay_t<decltype(values)>::value_type>(mean));

@@ -15,7 +15,7 @@ namespace surfcast {
 namespace {
 
 /// A coarser level is worth its bytes when it has at most this part of the surfels below it. A surface makes it 1/4.
-constexpr double kLargestPart = 0.4;
+constexpr double kLargestPart = 0.3;
 /// Few enough to be worth keeping whatever part they are.
 constexpr size_t kFew = 1024;
 /// Coarse surfels lie on a lattice of this many steps between two rays: off by at most 1/18 of their spacing.

@@ -16,14 +16,15 @@ bool all_at_most(const Column& column, uint64_t limit) {
 }
 
 /// Values beyond what the shape allows would reach the renderer as wild numbers, so they are refused.
-bool in_range(const std::vector<Field>& fields, const BlockShape& shape) {
+bool in_range(const std::vector<Field>& fields, const Precision& codes, const BlockShape& shape) {
   for (int axis = 0; axis < 3; ++axis) {
     if (!all_at_most(fields[kPositionField][axis], shape.extent[axis])) return false;
   }
   for (const Column& column : fields[kNormalField]) {
-    if (!all_at_most(column, 2 * kOctahedralHalf)) return false;
+    if (!all_at_most(column, codes.max_normal_code())) return false;
   }
-  if (!all_at_most(fields[kRadiusField][0], kMaxRadiusCode) || !all_at_most(fields[kWeightField][0], kMaxWeightCode)) {
+  if (!all_at_most(fields[kRadiusField][0], codes.max_radius_code()) ||
+      !all_at_most(fields[kWeightField][0], kMaxWeightCode)) {
     return false;
   }
   const uint64_t brightest = (uint64_t{1} << shape.color_bits) - 1;
@@ -40,14 +41,14 @@ void read_positions(const Field& field, DecodedBlock& block) {
   }
 }
 
-void read_surfaces(const std::vector<Field>& fields, DecodedBlock& block) {
+void read_surfaces(const std::vector<Field>& fields, const Precision& codes, DecodedBlock& block) {
   const Field& normals = fields[kNormalField];
   const Column& radii = fields[kRadiusField][0];
   const Column& weights = fields[kWeightField][0];
   for (size_t i = 0; i < block.size(); ++i) {
-    block.normals[i] = decode_normal(glm::u16vec2(normals[0][i], normals[1][i]));
-    block.radii[i] = decode_radius(static_cast<uint32_t>(radii[i]));
-    block.weights[i] = decode_weight(static_cast<uint32_t>(weights[i]));
+    block.normals[i] = decode_normal(glm::u16vec2(normals[0][i], normals[1][i]), codes.octahedral_half);
+    block.radii[i] = decode_logarithm(static_cast<uint32_t>(radii[i]), codes.radius_steps);
+    block.weights[i] = decode_logarithm(static_cast<uint32_t>(weights[i]), kWeightSteps);
   }
 }
 
@@ -85,9 +86,11 @@ ScalarAttribute read_scalar(const ScalarColumn& attribute, const Column& column)
 Result<DecodedBlock> decode_block(std::span<const std::byte> bytes, const BlockShape& shape) {
   const bool colored = shape.color_bits > 0;
   const std::vector<size_t> columns = field_columns(colored, shape.scalars.size());
-  const Result<std::vector<Field>> fields = decode_fields(bytes, columns, shape.surfels);
+  if (bytes.empty()) return fail(ErrorKind::kInvalidInput, "cut off");
+  const Precision codes = BlockPrecision::of_flags(static_cast<uint8_t>(bytes.front())).codes();
+  const Result<std::vector<Field>> fields = decode_fields(bytes.subspan(1), columns, shape.surfels);
   if (!fields) return fail(fields.error());
-  if (!in_range(*fields, shape)) return fail(ErrorKind::kInvalidInput, "values out of range");
+  if (!in_range(*fields, codes, shape)) return fail(ErrorKind::kInvalidInput, "values out of range");
 
   DecodedBlock block;
   block.grid = shape.grid;
@@ -97,7 +100,7 @@ Result<DecodedBlock> decode_block(std::span<const std::byte> bytes, const BlockS
   block.radii.resize(shape.surfels);
   block.weights.resize(shape.surfels);
   read_positions((*fields)[kPositionField], block);
-  read_surfaces(*fields, block);
+  read_surfaces(*fields, codes, block);
   if (colored) read_colors(std::span(*fields).subspan(kFixedFields, 3), shape.color_bits, block);
   const size_t first_scalar = kFixedFields + (colored ? 3 : 0);
   for (size_t i = 0; i < shape.scalars.size(); ++i) {

@@ -49,26 +49,26 @@ Field position_field(std::span<const glm::ivec3> indices, std::span<const uint32
   return field;
 }
 
-Field normal_field(const SurfelCloud& cloud, Members members, EncodedBlock& block) {
+Field normal_field(const SurfelCloud& cloud, Members members, int octahedral_half, EncodedBlock& block) {
   Field field(2);
   std::vector<glm::vec3> decoded;
   for (const uint32_t surfel : members) {
-    const glm::u16vec2 code = encode_normal(cloud.normals[surfel]);
+    const glm::u16vec2 code = encode_normal(cloud.normals[surfel], octahedral_half);
     field[0].push_back(code.x);
     field[1].push_back(code.y);
-    decoded.push_back(decode_normal(code));
+    decoded.push_back(decode_normal(code, octahedral_half));
   }
   if (cloud.oriented) block.normals = normal_cone(decoded);
   return field;
 }
 
-Field radius_field(const SurfelCloud& cloud, Members members, EncodedBlock& block) {
-  Column codes = make_column(members, [&](uint32_t s) { return encode_radius(cloud.radii[s]); });
+Field radius_field(const SurfelCloud& cloud, Members members, int steps, EncodedBlock& block) {
+  Column codes = make_column(members, [&](uint32_t s) { return encode_logarithm(cloud.radii[s], steps); });
   Column sorted = codes;
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
   std::nth_element(sorted.begin(), middle, sorted.end());
-  block.spacing = decode_radius(static_cast<uint32_t>(*middle));
-  block.max_radius = decode_radius(static_cast<uint32_t>(*std::max_element(middle, sorted.end())));
+  block.spacing = decode_logarithm(static_cast<uint32_t>(*middle), steps);
+  block.max_radius = decode_logarithm(static_cast<uint32_t>(*std::max_element(middle, sorted.end())), steps);
   return {std::move(codes)};
 }
 
@@ -100,14 +100,18 @@ EncodedBlock encode_block(const SurfelCloud& cloud, std::span<const uint32_t> me
   ordered.reserve(path.size());
   for (const uint32_t i : path) ordered.push_back(members[i]);
 
+  const BlockPrecision precision{!cloud.estimated_normals, !cloud.estimated_radii};
   std::vector<Field> fields;
   fields.push_back(position_field(indices, path));
-  fields.push_back(normal_field(cloud, ordered, block));
-  fields.push_back(radius_field(cloud, ordered, block));
-  fields.push_back({make_column(ordered, [&](uint32_t s) { return encode_weight(cloud.weights[s]); })});
+  fields.push_back(normal_field(cloud, ordered, precision.codes().octahedral_half, block));
+  fields.push_back(radius_field(cloud, ordered, precision.codes().radius_steps, block));
+  fields.push_back(
+      {make_column(ordered, [&](uint32_t s) { return encode_logarithm(cloud.weights[s], kWeightSteps); })});
   if (cloud.colors) append_colors(*cloud.colors, ordered, fields);
   for (const ScalarAttribute& scalar : cloud.scalars) fields.push_back(scalar_field(scalar, ordered));
-  block.bytes = encode_fields(fields);
+  block.bytes = {static_cast<std::byte>(precision.flags())};
+  const std::vector<std::byte> packed = encode_fields(fields);
+  block.bytes.insert(block.bytes.end(), packed.begin(), packed.end());
   return block;
 }
 

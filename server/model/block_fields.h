@@ -4,11 +4,32 @@
 #include <cstdint>
 #include <vector>
 
+#include "model/quantize.h"
+
 namespace surfcast {
 
 /// The fields that every block has, in the order of the file. Green, red less green and blue less green follow when
 /// the model has colour (neighbouring channels differ by little), then one field for each scalar attribute.
 enum BlockField : size_t { kPositionField, kNormalField, kRadiusField, kWeightField, kFixedFields };
+
+/// The first byte of a block: which of its values are as fine as those of a source.
+struct BlockPrecision {
+  bool source_normals = false;
+  bool source_radii = false;
+
+  static constexpr uint8_t kNormalsFlag = 1;
+  static constexpr uint8_t kRadiiFlag = 2;
+
+  [[nodiscard]] uint8_t flags() const {
+    return static_cast<uint8_t>((source_normals ? kNormalsFlag : 0) | (source_radii ? kRadiiFlag : 0));
+  }
+  static BlockPrecision of_flags(uint8_t flags) { return {(flags & kNormalsFlag) != 0, (flags & kRadiiFlag) != 0}; }
+
+  [[nodiscard]] Precision codes() const {
+    return {(source_normals ? kSourcePrecision : kEstimatePrecision).octahedral_half,
+            (source_radii ? kSourcePrecision : kEstimatePrecision).radius_steps};
+  }
+};
 
 /// Number of columns of each field of a block.
 inline std::vector<size_t> field_columns(bool colored, size_t scalars) {

@@ -43,18 +43,19 @@ Vector get_vector(ByteReader& reader) {
 
 void put_cone(ByteWriter& writer, const std::optional<NormalCone>& cone) {
   const NormalCone stored = cone.value_or(NormalCone{{0, 0, 1}, kNoCone});
-  const glm::u16vec2 axis = encode_normal(stored.axis);
+  const glm::u16vec2 axis = encode_normal(stored.axis, kSourcePrecision.octahedral_half);
   writer.put(axis.x);
   writer.put(axis.y);
   writer.put(cone ? std::min(stored.half_angle + kAxisError, std::numbers::pi_v<float>) : kNoCone);
 }
 
 std::optional<NormalCone> get_cone(ByteReader& reader) {
-  const auto u = std::min<uint16_t>(reader.get<uint16_t>(), 2 * kOctahedralHalf);
-  const auto v = std::min<uint16_t>(reader.get<uint16_t>(), 2 * kOctahedralHalf);
+  const auto largest = static_cast<uint16_t>(kSourcePrecision.max_normal_code());
+  const auto u = std::min(reader.get<uint16_t>(), largest);
+  const auto v = std::min(reader.get<uint16_t>(), largest);
   const auto half_angle = reader.get<float>();
   if (!(half_angle >= 0 && half_angle <= std::numbers::pi_v<float>)) return std::nullopt;
-  return NormalCone{decode_normal({u, v}), half_angle};
+  return NormalCone{decode_normal({u, v}, kSourcePrecision.octahedral_half), half_angle};
 }
 
 void put_block(ByteWriter& writer, const BlockRecord& block) {

@@ -18,51 +18,35 @@ glm::dvec2 fold(const glm::dvec2& p) {
   return {(1 - std::abs(p.y)) * sign(p.x), (1 - std::abs(p.x)) * sign(p.y)};
 }
 
-glm::dvec3 unfold(const glm::u16vec2& code) {
-  const glm::dvec2 p = glm::dvec2(code) / double{kOctahedralHalf} - 1.0;
+glm::dvec3 unfold(const glm::u16vec2& code, int half) {
+  const glm::dvec2 p = glm::dvec2(code) / static_cast<double>(half) - 1.0;
   const double z = 1 - std::abs(p.x) - std::abs(p.y);
   return {z < 0 ? fold(p) : p, z};
 }
 
-uint32_t encode_log(float value, int steps) {
-  return static_cast<uint32_t>(std::lround((std::log2(static_cast<double>(value)) + kLogRange) * steps));
-}
-
-float decode_log(uint32_t code, int steps) {
-  const double value = std::exp2(static_cast<double>(code) / steps - kLogRange);
-  // Rounding up past the largest float, or below the smallest, must not make an infinity or a zero of it.
-  return static_cast<float>(
-      std::clamp(value, double{std::numeric_limits<float>::denorm_min()}, double{std::numeric_limits<float>::max()}));
-}
-
 }  // namespace
 
-glm::u16vec2 encode_normal(const glm::vec3& unit) {
+glm::u16vec2 encode_normal(const glm::vec3& unit, int octahedral_half) {
   const glm::dvec3 n(unit);
   const double norm = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
   const glm::dvec2 flat = glm::dvec2(n) / norm;
   const glm::dvec2 p = n.z < 0 ? fold(flat) : flat;
-  return glm::u16vec2(glm::round((p + 1.0) * double{kOctahedralHalf}));
+  return glm::u16vec2(glm::round((p + 1.0) * static_cast<double>(octahedral_half)));
 }
 
-glm::vec3 decode_normal(const glm::u16vec2& code) {
-  return glm::vec3(glm::normalize(unfold(code)));
+glm::vec3 decode_normal(const glm::u16vec2& code, int octahedral_half) {
+  return glm::vec3(glm::normalize(unfold(code, octahedral_half)));
 }
 
-uint32_t encode_radius(float radius) {
-  return encode_log(radius, kRadiusSteps);
+uint32_t encode_logarithm(float value, int steps) {
+  return static_cast<uint32_t>(std::lround((std::log2(static_cast<double>(value)) + kLogRange) * steps));
 }
 
-float decode_radius(uint32_t code) {
-  return decode_log(code, kRadiusSteps);
-}
-
-uint32_t encode_weight(float weight) {
-  return encode_log(weight, kWeightSteps);
-}
-
-float decode_weight(uint32_t code) {
-  return decode_log(code, kWeightSteps);
+float decode_logarithm(uint32_t code, int steps) {
+  const double value = std::exp2(static_cast<double>(code) / steps - kLogRange);
+  // Rounding up past the largest float, or below the smallest, must not make an infinity or a zero of it.
+  return static_cast<float>(
+      std::clamp(value, double{std::numeric_limits<float>::denorm_min()}, double{std::numeric_limits<float>::max()}));
 }
 
 }  // namespace surfcast

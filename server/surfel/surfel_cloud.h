@@ -36,6 +36,8 @@ struct SurfelCloud {
   std::optional<ColorAttribute> colors;
   std::vector<ScalarAttribute> scalars;
   std::vector<SourceRange> sources;  ///< in order, covering every surfel
+  bool estimated_normals = false;    ///< no source has normals: they are exact to some degrees
+  bool estimated_radii = false;      ///< no source has radii
   bool oriented = false;             ///< normals point out of the surface (or towards the sensor), so back faces exist
   bool z_up = true;                  ///< the vertical axis is z (surveying); otherwise y (graphics)
 
