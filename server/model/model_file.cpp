@@ -87,10 +87,10 @@ ModelInfo make_info(const ModelHeader& header, const Directory& directory, std::
   for (const ScalarColumn& scalar : directory.scalars) info.scalar_names.push_back(scalar.name);
   info.source_names = directory.source_names;
   for (const BlockEntry& entry : entries) {
+    info.levels = std::max(info.levels, entry.level + 1);
     if (entry.level > 0) continue;
     info.bounds.include(entry.bounds);
     info.surfels += entry.surfels;
-    info.levels = std::max(info.levels, entry.level + 1);
   }
   return info;
 }
