@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <glm/geometric.hpp>
 #include <map>
-#include <nanoflann.hpp>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -16,6 +15,7 @@
 
 #include "base/contract.h"
 #include "geometry/morton.h"
+#include "geometry/morton_tree.h"
 #include "shared/kernel.h"
 
 namespace surfcast {
@@ -30,9 +30,10 @@ struct Site {
   glm::vec3 normal;
   float radius;
   uint32_t surfel;  ///< its index in the cloud
+  uint64_t code;    ///< its place on the Morton curve
 };
 
-/// Indices into the list of sites.
+/// Indices into the list of sites, ascending.
 using Indices = std::vector<uint32_t>;
 
 /// The surfels along a Morton curve, so that neighbours in space are mostly neighbours in memory.
@@ -45,33 +46,25 @@ std::vector<Site> sort_sites(const SurfelCloud& cloud) {
   oneapi::tbb::parallel_sort(order);
   std::vector<Site> sites;
   sites.reserve(order.size());
-  for (const auto& [code, i] : order) sites.push_back({cloud.positions[i], cloud.normals[i], cloud.radii[i], i});
+  for (const auto& [code, i] : order) sites.push_back({cloud.positions[i], cloud.normals[i], cloud.radii[i], i, code});
   return sites;
 }
 
-/// Some of the sites as nanoflann wants to see them.
-struct PointSet {
-  std::span<const Site> sites;
-  std::span<const uint32_t> members;
-
-  [[nodiscard]] size_t kdtree_get_point_count() const { return members.size(); }
-  [[nodiscard]] double kdtree_get_pt(size_t i, size_t axis) const {
-    return sites[members[i]].position[static_cast<glm::length_t>(axis)];
-  }
-  template <typename Box>
-  bool kdtree_get_bbox(Box& /*box*/) const {
-    return false;
-  }
-};
-
-using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointSet>, PointSet, 3, uint32_t>;
+/// How far a kernel of that radius reaches: to the cutoff along its plane, a radius off it.
+float reach_of(float radius) {
+  constexpr double kReach = SURFCAST_KERNEL_CUTOFF * SURFCAST_KERNEL_SIGMA * SURFCAST_KERNEL_SIGMA + 1;
+  // Rounded up, so that no kernel is missed.
+  return static_cast<float>(std::sqrt(kReach) * 1.000001 * double{radius});
+}
 
 /// r_j(u_k - u_j), or 0 when j is of another surface.
 double kernel_at(const Site& k, const Site& j, bool oriented) {
+  const glm::dvec3 offset = k.position - j.position;
+  const double reach = double{reach_of(j.radius)};
+  if (glm::dot(offset, offset) > reach * reach) return 0;
   const glm::dvec3 normal(j.normal);
   const double agreement = glm::dot(glm::dvec3(k.normal), normal);
   if ((oriented ? agreement : std::abs(agreement)) <= 0.5) return 0;
-  const glm::dvec3 offset = k.position - j.position;
   const double height = glm::dot(normal, offset);
   const double radius = double{j.radius};
   if (std::abs(height) >= radius) return 0;
@@ -81,42 +74,6 @@ double kernel_at(const Site& k, const Site& j, bool oriented) {
   return squared <= SURFCAST_KERNEL_CUTOFF ? std::exp(-0.5 * squared) : 0;
 }
 
-/// nanoflann's result set: collects what it is shown, and stops the search at too many. Kernels are evaluated only when
-/// the search went through.
-class Neighbours {
- public:
-  Neighbours(std::vector<uint32_t>& found, double squared_range) : found_(found), squared_range_(squared_range) {
-    found_.clear();
-  }
-
-  [[nodiscard]] size_t size() const { return found_.size(); }
-  [[nodiscard]] bool full() const { return true; }
-  [[nodiscard]] double worstDist() const { return squared_range_; }
-  bool addPoint(double /*squared_distance*/, uint32_t index) {
-    found_.push_back(index);
-    return found_.size() < kMaxNeighbours;
-  }
-
- private:
-  std::vector<uint32_t>& found_;
-  double squared_range_;
-};
-
-/// Sum of the kernels around site k, its own left out; none when there are too many.
-std::optional<double> sum_around(const PointSet& points, const Tree& tree, double squared_range, uint32_t k,
-                                 bool oriented) {
-  thread_local std::vector<uint32_t> found;
-  Neighbours neighbours(found, squared_range);
-  tree.findNeighbors(neighbours, &points.sites[k].position.x, nanoflann::SearchParams());
-  if (found.size() >= kMaxNeighbours) return std::nullopt;
-  double sum = 0;
-  for (const uint32_t index : found) {
-    const uint32_t j = points.members[index];
-    if (j != k) sum += kernel_at(points.sites[k], points.sites[j], oriented);
-  }
-  return sum;
-}
-
 /// Sites by the octave of their radius: within a class the search range is right to a factor of two.
 std::map<int, Indices> radius_classes(std::span<const Site> sites) {
   std::map<int, Indices> classes;
@@ -124,17 +81,48 @@ std::map<int, Indices> radius_classes(std::span<const Site> sites) {
   return classes;
 }
 
-/// Square of how far a kernel of that radius reaches: to the cutoff along its plane, a radius off it.
-double squared_reach(double radius) {
-  const double sigma = SURFCAST_KERNEL_SIGMA * radius;
-  return SURFCAST_KERNEL_CUTOFF * sigma * sigma + radius * radius;
-}
+/// Some of the sites, and where their kernels reach.
+class Sources {
+ public:
+  Sources(std::span<const Site> sites, const Indices& members) : members_(members) {
+    positions_.reserve(members.size());
+    for (const uint32_t i : members) {
+      positions_.push_back(sites[i].position);
+      codes_.push_back(sites[i].code);
+      reaches_.push_back(reach_of(sites[i].radius));
+    }
+    tree_.emplace(positions_, codes_, reaches_);
+  }
+  Sources(const Sources&) = delete;
+  Sources& operator=(const Sources&) = delete;
+  ~Sources() = default;
 
-float largest_radius(const PointSet& points) {
-  float largest = 0;
-  for (const uint32_t i : points.members) largest = std::max(largest, points.sites[i].radius);
-  return largest;
-}
+  [[nodiscard]] const MortonTree& tree() const { return *tree_; }
+
+  /// The sources whose kernels reach into the box; false when there are `most` or more.
+  bool find(const Box& box, size_t most, std::vector<uint32_t>& found) const {
+    found.clear();
+    tree_->for_each_seen(box, [&](const MortonTree::Run& run) {
+      for (uint32_t i = run.first; i < run.last; ++i) {
+        const glm::dvec3 nearest = glm::clamp(positions_[i], box.min, box.max);
+        const glm::dvec3 d = positions_[i] - nearest;
+        const double reach = double{reaches_[i]};
+        if (glm::dot(d, d) <= reach * reach) found.push_back(i);
+      }
+      return found.size() < most;
+    });
+    return found.size() < most;
+  }
+  /// The site of a source that was found.
+  [[nodiscard]] uint32_t site(uint32_t found) const { return members_[found]; }
+
+ private:
+  const Indices& members_;
+  std::vector<glm::dvec3> positions_;
+  std::vector<uint64_t> codes_;
+  std::vector<float> reaches_;
+  std::optional<MortonTree> tree_;
+};
 
 Indices thin(const Indices& sources) {
   Indices thinned;
@@ -142,16 +130,51 @@ Indices thin(const Indices& sources) {
   return thinned;
 }
 
+/// Sum of the kernels of the sites that were found, at site k, its own left out.
+double sum_at(std::span<const Site> sites, const Sources& sources, std::span<const uint32_t> found, uint32_t k,
+              bool oriented) {
+  double sum = 0;
+  for (const uint32_t index : found) {
+    const uint32_t j = sources.site(index);
+    if (j != k) sum += kernel_at(sites[k], sites[j], oriented);
+  }
+  return sum;
+}
+
+/// Adds up the kernels of all sites at all sites, leaf by leaf. Returns the sites of leaves with too many around,
+/// untouched.
+Indices add_all_kernels(std::span<const Site> sites, const Indices& all, bool oriented, std::vector<double>& sums) {
+  const Sources sources(sites, all);
+  const std::vector<MortonTree::Run> leaves = sources.tree().leaves();
+  std::vector<uint8_t> crowded(leaves.size(), 0);
+  oneapi::tbb::parallel_for(size_t{0}, leaves.size(), [&](size_t leaf) {
+    thread_local std::vector<uint32_t> found;
+    if (!sources.find(sources.tree().box_of(leaves[leaf]), kMaxNeighbours, found)) {
+      crowded[leaf] = 1;
+      return;
+    }
+    for (uint32_t k = leaves[leaf].first; k < leaves[leaf].last; ++k) {
+      sums[k] += sum_at(sites, sources, found, k, oriented);
+    }
+  });
+  Indices rest;
+  for (size_t leaf = 0; leaf < leaves.size(); ++leaf) {
+    for (uint32_t k = leaves[leaf].first; k < leaves[leaf].last && crowded[leaf] != 0; ++k) rest.push_back(k);
+  }
+  return rest;
+}
+
 /// Adds to `sums` of the targets the kernels of the sources, each standing for `multiplicity` surfels. Returns the
 /// targets that had too many sources near them, untouched.
-Indices add_kernels(const PointSet& sources, const Indices& targets, double multiplicity, bool oriented,
-                    std::vector<double>& sums) {
-  const Tree tree(3, sources, nanoflann::KDTreeSingleIndexAdaptorParams(16));
-  const double squared_range = squared_reach(double{largest_radius(sources)});
+Indices add_kernels(std::span<const Site> sites, const Indices& members, const Indices& targets, double multiplicity,
+                    bool oriented, std::vector<double>& sums) {
+  const Sources sources(sites, members);
   std::vector<uint8_t> crowded(targets.size(), 0);
   oneapi::tbb::parallel_for(size_t{0}, targets.size(), [&](size_t i) {
-    if (const std::optional<double> sum = sum_around(sources, tree, squared_range, targets[i], oriented)) {
-      sums[targets[i]] += multiplicity * *sum;
+    thread_local std::vector<uint32_t> found;
+    const uint32_t k = targets[i];
+    if (sources.find({sites[k].position, sites[k].position}, kMaxNeighbours, found)) {
+      sums[k] += multiplicity * sum_at(sites, sources, found, k, oriented);
     } else {
       crowded[i] = 1;
     }
@@ -163,21 +186,29 @@ Indices add_kernels(const PointSet& sources, const Indices& targets, double mult
   return rest;
 }
 
+/// Adds up the kernels at crowded places, class by class, from samples of the sources where there are too many.
+void add_sampled_kernels(std::span<const Site> sites, const Indices& crowded, bool oriented,
+                         std::vector<double>& sums) {
+  for (auto& [octave, sources] : radius_classes(sites)) {
+    double multiplicity = 1;
+    for (Indices targets = crowded; !targets.empty(); multiplicity *= kThinning) {
+      targets = add_kernels(sites, sources, targets, multiplicity, oriented, sums);
+      if (!targets.empty()) sources = thin(sources);
+    }
+  }
+}
+
 }  // namespace
 
 std::vector<float> normalization_weights(const SurfelCloud& cloud) {
   SURFCAST_EXPECTS(cloud.normals.size() == cloud.size() && cloud.radii.size() == cloud.size());
+  if (cloud.size() == 0) return {};
   const std::vector<Site> sites = sort_sites(cloud);
   std::vector<double> sums(sites.size(), 1.0);  // the kernel of a surfel at its own centre
   Indices all(sites.size());
   std::iota(all.begin(), all.end(), 0);
-  for (auto& [octave, sources] : radius_classes(sites)) {
-    double multiplicity = 1;
-    for (Indices targets = all; !targets.empty(); multiplicity *= kThinning) {
-      targets = add_kernels({sites, sources}, targets, multiplicity, cloud.oriented, sums);
-      if (!targets.empty()) sources = thin(sources);
-    }
-  }
+  const Indices crowded = add_all_kernels(sites, all, cloud.oriented, sums);
+  if (!crowded.empty()) add_sampled_kernels(sites, crowded, cloud.oriented, sums);
   std::vector<float> weights(sites.size());
   for (size_t i = 0; i < sites.size(); ++i) weights[sites[i].surfel] = static_cast<float>(1 / sums[i]);
   return weights;
