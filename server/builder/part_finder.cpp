@@ -26,11 +26,6 @@ bool contains(const Box& box, const glm::dvec3& p) {
          p.z <= box.max.z;
 }
 
-bool touches(const Box& a, const Box& b) {
-  return a.min.x <= b.max.x && a.min.y <= b.max.y && a.min.z <= b.max.z && b.min.x <= a.max.x && b.min.y <= a.max.y &&
-         b.min.z <= a.max.z;
-}
-
 bool any_contains(const std::vector<Box>& boxes, const glm::dvec3& p) {
   return std::any_of(boxes.begin(), boxes.end(), [&p](const Box& box) { return contains(box, p); });
 }
@@ -47,15 +42,33 @@ PartFinder::PartFinder(std::span<const Part> parts, const RootCube& root) : root
       halos.push_back(grown(cells.back(), kHalo));
     }
   }
-  for (uint64_t bin = 0; bin < uint64_t{1} << (3 * kBinDepth); ++bin) {
-    first_of_bin_.push_back(static_cast<uint32_t>(near_bin_.size()));
-    const Box box = box_of(key_of_code(bin << kBinShift, kBinDepth), root);
-    for (uint32_t part = 0; parts.size() > 1 && part < parts.size(); ++part) {
-      const std::vector<Box>& halos = with_halo_[part];
-      if (std::any_of(halos.begin(), halos.end(), [&box](const Box& halo) { return touches(halo, box); })) {
-        near_bin_.push_back(part);
+  fill_bins();
+}
+
+void PartFinder::fill_bins() {
+  constexpr double kBins = 1 << kBinDepth;
+  std::vector<std::vector<uint32_t>> near(size_t{1} << (3 * kBinDepth));
+  const auto bin_at = [this](const glm::dvec3& p) {
+    return glm::ivec3(glm::clamp(glm::floor((p - root_.min) / root_.side * kBins), 0.0, kBins - 1));
+  };
+  for (uint32_t part = 0; ends_.size() > 1 && part < ends_.size(); ++part) {
+    for (const Box& halo : with_halo_[part]) {
+      const glm::ivec3 low = bin_at(halo.min);
+      const glm::ivec3 high = bin_at(halo.max);
+      for (int z = low.z; z <= high.z; ++z) {
+        for (int y = low.y; y <= high.y; ++y) {
+          for (int x = low.x; x <= high.x; ++x) {
+            const glm::dvec3 centre = (glm::dvec3(x, y, z) + 0.5) / kBins * root_.side + root_.min;
+            std::vector<uint32_t>& parts = near[morton_code(root_, centre) >> kBinShift];
+            if (parts.empty() || parts.back() != part) parts.push_back(part);
+          }
+        }
       }
     }
+  }
+  for (const std::vector<uint32_t>& parts : near) {
+    first_of_bin_.push_back(static_cast<uint32_t>(near_bin_.size()));
+    near_bin_.insert(near_bin_.end(), parts.begin(), parts.end());
   }
   first_of_bin_.push_back(static_cast<uint32_t>(near_bin_.size()));
 }

@@ -40,6 +40,7 @@ class PartFinder {
   static constexpr int kBinDepth = 6;
   static constexpr int kBinShift = 3 * (kMortonDepth - kBinDepth);
 
+  void fill_bins();
   [[nodiscard]] uint32_t part_of(uint64_t code) const;
   [[nodiscard]] bool is_near(uint32_t part, const glm::dvec3& point) const;
 

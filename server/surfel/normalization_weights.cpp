@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdint>
 #include <glm/geometric.hpp>
+#include <iterator>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -186,15 +187,31 @@ Indices add_kernels(std::span<const Site> sites, const Indices& members, const I
   return rest;
 }
 
+/// Of surfels one after another that are the same but for their attributes, the first; the others have its sum.
+Indices first_of_each(std::span<const Site> sites, const Indices& crowded) {
+  const auto same = [&sites](uint32_t a, uint32_t b) {
+    return sites[a].position == sites[b].position && sites[a].normal == sites[b].normal;
+  };
+  Indices firsts;
+  std::unique_copy(crowded.begin(), crowded.end(), std::back_inserter(firsts), same);
+  return firsts;
+}
+
 /// Adds up the kernels at crowded places, class by class, from samples of the sources where there are too many.
 void add_sampled_kernels(std::span<const Site> sites, const Indices& crowded, bool oriented,
                          std::vector<double>& sums) {
+  const Indices firsts = first_of_each(sites, crowded);
   for (auto& [octave, sources] : radius_classes(sites)) {
     double multiplicity = 1;
-    for (Indices targets = crowded; !targets.empty(); multiplicity *= kThinning) {
+    for (Indices targets = firsts; !targets.empty(); multiplicity *= kThinning) {
       targets = add_kernels(sites, sources, targets, multiplicity, oriented, sums);
       if (!targets.empty()) sources = thin(sources);
     }
+  }
+  size_t first = 0;
+  for (const uint32_t k : crowded) {
+    if (first + 1 < firsts.size() && firsts[first + 1] == k) ++first;
+    sums[k] = sums[firsts[first]];
   }
 }
 

@@ -1,0 +1,271 @@
+#include "builder/build_model.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstring>
+#include <fstream>
+#include <map>
+#include <random>
+#include <tuple>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include "model/model_file.h"
+#include "model/test_folder.h"
+#include "scan/shapes.h"
+
+namespace surfcast {
+namespace {
+
+namespace fs = std::filesystem;
+using ::testing::HasSubstr;
+
+/// A scan as text: columns x y z and more.
+struct TextScan {
+  std::string header = "x y z number intensity";
+  std::vector<std::string> rows;
+
+  void add(const glm::dvec3& p, const std::string& more) {
+    std::array<char, 160> row{};
+    std::snprintf(row.data(), row.size(), "%.17g %.17g %.17g %s", p.x, p.y, p.z, more.c_str());
+    rows.emplace_back(row.data());
+  }
+  void write(const fs::path& path) const {
+    std::ofstream stream(path);
+    stream << header << '\n';
+    for (const std::string& row : rows) stream << row << '\n';
+  }
+};
+
+/// Numbers the points from `first` on.
+TextScan numbered(const std::vector<glm::dvec3>& positions, size_t first = 0) {
+  TextScan scan;
+  for (size_t i = 0; i < positions.size(); ++i) {
+    scan.add(positions[i], std::to_string(first + i) + " " + std::to_string(i * 7 % 256));
+  }
+  return scan;
+}
+
+/// Hills under a dome, so that there are normals of all directions and two surfaces that come close to each other.
+std::vector<glm::dvec3> hills_and_dome(int side) {
+  std::vector<glm::dvec3> positions;
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> jitter(-0.3, 0.3);
+  for (int y = 0; y < side; ++y) {
+    for (int x = 0; x < side; ++x) {
+      const glm::dvec3 p(x + jitter(random), y + jitter(random), 0);
+      positions.push_back(p + glm::dvec3(0, 0, 4 * std::sin(p.x / 15) * std::cos(p.y / 19)));
+    }
+  }
+  const double radius = side / 4.0;
+  for (const glm::dvec3& p : testing::sphere(static_cast<int>(12.5 * radius * radius), glm::dvec3(0), radius)) {
+    positions.push_back(p + glm::dvec3(side / 2.0, side / 2.0, radius + 6));
+  }
+  return positions;
+}
+
+struct Surfel {
+  glm::dvec3 position;
+  glm::vec3 normal;
+  float radius;
+  float weight;
+  int intensity;
+};
+
+/// The leaves of a model, each surfel by its number.
+std::map<uint32_t, Surfel> surfels_of(const fs::path& path) {
+  std::map<uint32_t, Surfel> surfels;
+  const Result<ModelFile> model = ModelFile::open(path);
+  EXPECT_TRUE(model) << model.error().message;
+  for (size_t b = 0; b < model->blocks().size(); ++b) {
+    const Result<DecodedBlock> block = model->decode(b);
+    EXPECT_TRUE(block) << block.error().message;
+    if (model->blocks()[b].level > 0) continue;
+    for (size_t i = 0; i < block->size(); ++i) {
+      const auto value = [&](const std::string& name) {
+        const auto scalar = std::find_if(block->scalars.begin(), block->scalars.end(),
+                                         [&name](const ScalarAttribute& s) { return s.name == name; });
+        return std::visit([i](const auto& values) { return static_cast<uint32_t>(values[i]); }, scalar->values);
+      };
+      surfels[value("number")] = {block->position(i), block->normals[i], block->radii[i], block->weights[i],
+                                  static_cast<int>(value("intensity"))};
+    }
+  }
+  return surfels;
+}
+
+BuildReport build(const std::vector<fs::path>& inputs, const fs::path& target, const BuildOptions& options = {}) {
+  const Result<BuildReport> report = build_model(inputs, target, options, [](const BuildStep&) {});
+  EXPECT_TRUE(report) << report.error().message;
+  return report.value_or(BuildReport{});
+}
+
+BuildOptions in_parts_of(uint64_t points) {
+  BuildOptions options;
+  options.part_points = points;
+  return options;
+}
+
+class BuildModelTest : public ::testing::Test {
+ protected:
+  TestFolder folder_;
+  fs::path scan_ = folder_ / "scan.xyz";
+  fs::path model_ = folder_ / "model.surf";
+  fs::path other_ = folder_ / "other.surf";
+};
+
+TEST_F(BuildModelTest, ManyPartsGiveTheSurfelsOfOne) {
+  numbered(hills_and_dome(120)).write(scan_);
+  const BuildReport whole = build({scan_}, model_);
+  const BuildReport parts = build({scan_}, other_, in_parts_of(2500));
+  EXPECT_EQ(whole.parts, 1U);
+  EXPECT_GT(parts.parts, 6U);
+  EXPECT_EQ(parts.surfels, whole.surfels);
+  EXPECT_EQ(parts.scan.oriented, whole.scan.oriented);
+  EXPECT_EQ(parts.scan.normals_estimated, whole.scan.normals_estimated);
+  EXPECT_EQ(parts.scan.radii_estimated, whole.scan.radii_estimated);
+  const auto expected = surfels_of(model_);
+  const auto actual = surfels_of(other_);
+  ASSERT_EQ(actual.size(), expected.size());
+  size_t differing = 0;
+  for (const auto& [number, one] : expected) {
+    const Surfel& other = actual.at(number);
+    EXPECT_LT(glm::distance(other.position, one.position), 0.02) << number;
+    EXPECT_EQ(other.intensity, one.intensity) << number;
+    EXPECT_GT(glm::dot(other.normal, one.normal), 0.999F) << number;
+    EXPECT_NEAR(other.radius, one.radius, 0.001F * one.radius) << number;
+    differing += std::abs(other.weight - one.weight) > 0.01F * one.weight ? 1 : 0;
+  }
+  // Cells of so few points have halos of two or three points: kernels reach beyond.
+  EXPECT_LT(differing, expected.size() / 200);
+}
+
+TEST_F(BuildModelTest, SignsOfNormalsAgreeAcrossParts) {
+  // Each part alone sees a curved patch, which has no inside.
+  const glm::dvec3 centre(3, 4, 5);
+  numbered(testing::sphere(20000, centre, 10)).write(scan_);
+  BuildOptions options = in_parts_of(1500);
+  options.z_up = false;
+  const BuildReport report = build({scan_}, model_, options);
+  EXPECT_GT(report.parts, 8U);
+  EXPECT_TRUE(report.scan.oriented);
+  for (const auto& [number, surfel] : surfels_of(model_)) {
+    EXPECT_GT(glm::dot(glm::dvec3(surfel.normal), surfel.position - centre), 9.5) << number;
+  }
+}
+
+TEST_F(BuildModelTest, ThreadsDoNotChangeAByte) {
+  numbered(hills_and_dome(60)).write(scan_);
+  std::vector<std::vector<char>> whole;
+  std::vector<std::vector<char>> parts;
+  for (const size_t threads : {1, 2, 8}) {
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    build({scan_}, model_);
+    whole.push_back(read_bytes(model_));
+    build({scan_}, model_, in_parts_of(700));
+    parts.push_back(read_bytes(model_));
+  }
+  EXPECT_THAT(whole, ::testing::Each(whole[0]));
+  EXPECT_THAT(parts, ::testing::Each(parts[0]));
+}
+
+TEST_F(BuildModelTest, SeveralInputsWithDifferentAttributesAreOneModelInParts) {
+  numbered(testing::square_lattice(50, 1, {0, 0, 0})).write(scan_);
+  TextScan colored;
+  colored.header = "x y z number red green blue";
+  const std::vector<glm::dvec3> positions = testing::square_lattice(50, 1, {25, 25, 3});
+  for (size_t i = 0; i < positions.size(); ++i) colored.add(positions[i], std::to_string(2500 + i) + " 10 20 30");
+  colored.write(folder_ / "colored.xyz");
+  const BuildReport report = build({scan_, folder_ / "colored.xyz"}, model_, in_parts_of(900));
+  EXPECT_EQ(report.surfels, 5000U);
+  EXPECT_THAT(report.scan.notes,
+              ::testing::ElementsAre(HasSubstr("scan.xyz: no colour"), HasSubstr("colored.xyz: no intensity")));
+  const auto surfels = surfels_of(model_);
+  ASSERT_EQ(surfels.size(), 5000U);
+  EXPECT_EQ(surfels.at(10).intensity, 70);
+  EXPECT_EQ(surfels.at(2510).intensity, 0);
+  const Result<ModelFile> model = ModelFile::open(model_);
+  ASSERT_TRUE(model);
+  EXPECT_THAT(model->info().source_names, ::testing::ElementsAre("scan.xyz", "colored.xyz"));
+  EXPECT_EQ(model->info().color_bits, 8);
+}
+
+TEST_F(BuildModelTest, DuplicatesAreDroppedWhereverPartsEnd) {
+  TextScan scan = numbered(testing::square_lattice(60, 1, {0, 0, 0}));
+  const std::vector<std::string> once = scan.rows;
+  scan.rows.insert(scan.rows.end(), once.begin(), once.end());
+  scan.write(scan_);
+  const BuildReport report = build({scan_}, model_, in_parts_of(1000));
+  EXPECT_EQ(report.scan.points_read, 7200U);
+  EXPECT_EQ(report.scan.duplicates, 3600U);
+  EXPECT_EQ(report.surfels, 3600U);
+}
+
+TEST_F(BuildModelTest, OnePoint) {
+  numbered({{1, 2, 3}}).write(scan_);
+  EXPECT_EQ(build({scan_}, model_).surfels, 1U);
+  EXPECT_EQ(surfels_of(model_).at(0).position, glm::dvec3(1, 2, 3));
+}
+
+TEST_F(BuildModelTest, TwoCoincidentPointsThatDifferStay) {
+  numbered({{1, 2, 3}, {1, 2, 3}}).write(scan_);
+  EXPECT_EQ(build({scan_}, model_).surfels, 2U);
+  EXPECT_EQ(build({scan_}, model_, in_parts_of(1)).surfels, 2U);
+}
+
+TEST_F(BuildModelTest, AMillionPointsInOneSpotAreOnePart) {
+  std::ofstream stream(scan_);
+  stream << "x y z number intensity\n";
+  for (int i = 0; i < 1000000; ++i) stream << "5 5 5 " << i << " 0\n";
+  stream << "6 6 6 1000000 0\n";
+  stream.close();
+  const BuildReport report = build({scan_}, model_, in_parts_of(50000));
+  EXPECT_EQ(report.surfels, 1000001U);
+  EXPECT_EQ(report.parts, 2U);
+}
+
+TEST_F(BuildModelTest, OneFarOutlierLeavesTheRestInParts) {
+  std::vector<glm::dvec3> positions = testing::square_lattice(80, 1, {0, 0, 0});
+  positions.emplace_back(5e6, -7e6, 1e6);
+  numbered(positions).write(scan_);
+  const BuildReport report = build({scan_}, model_, in_parts_of(800));
+  EXPECT_EQ(report.surfels, 6401U);
+  EXPECT_GT(report.parts, 8U);
+  for (const auto& [number, surfel] : surfels_of(model_)) {
+    if (number == 6400) continue;
+    EXPECT_NEAR(std::abs(surfel.normal.z), 1, 1e-3) << number;
+  }
+}
+
+TEST_F(BuildModelTest, NothingUsableIsAFailureThatLeavesNothing) {
+  std::ofstream(scan_) << "x y z\nnan 0 0\n0 inf 0\n";
+  const std::vector<fs::path> inputs = {scan_};
+  const Result<BuildReport> report = build_model(inputs, model_, {}, [](const BuildStep&) {});
+  ASSERT_FALSE(report);
+  EXPECT_EQ(report.error().kind, ErrorKind::kInvalidInput);
+  EXPECT_FALSE(fs::exists(model_));
+}
+
+TEST_F(BuildModelTest, PositionsTooFarAwayToStoreAreRefused) {
+  std::ofstream(scan_) << "x y z\n1e200 0 0\n0 0 0\n";
+  const std::vector<fs::path> inputs = {scan_};
+  EXPECT_THAT(build_model(inputs, model_, {}, [](const BuildStep&) {}).error().message, HasSubstr("too far away"));
+}
+
+TEST_F(BuildModelTest, StagesAndBudgetAreReported) {
+  numbered(testing::square_lattice(20, 1, {0, 0, 0})).write(scan_);
+  BuildOptions options;
+  options.memory = uint64_t{1} << 30;
+  const BuildReport report = build({scan_}, model_, options);
+  EXPECT_EQ(report.memory_budget, uint64_t{1} << 30);
+  double seconds = 0;
+  for (const auto& [stage, took] : report.stages) seconds += took;
+  EXPECT_GT(seconds, 0);
+  EXPECT_LE(seconds, report.seconds);
+}
+
+}  // namespace
+}  // namespace surfcast
