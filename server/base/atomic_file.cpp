@@ -1,8 +1,9 @@
 #include "base/atomic_file.h"
 
+#include <atomic>
 #include <cerrno>
-#include <cstdlib>
 #include <cstring>
+#include <string>
 #include <utility>
 
 #include <fcntl.h>
@@ -41,22 +42,28 @@ void flush_directory_of(const std::filesystem::path& target) {
 }  // namespace
 
 Result<AtomicFile> AtomicFile::create(const std::filesystem::path& target) {
-  std::string name = target.string() + ".tmpXXXXXX";
-  const int descriptor = ::mkostemp(name.data(), O_CLOEXEC);
-  if (descriptor < 0) return io_error(target, "cannot create", errno);
-  // mkostemp creates private files; a result is readable like any other output, as the umask allows.
-  const mode_t mask = ::umask(0);
-  ::umask(mask);
-  ::fchmod(descriptor, 0666 & ~mask);
-  return AtomicFile(target, name, descriptor);
+  static std::atomic<int> number{0};
+  for (;;) {
+    std::string temporary = target.string() + ".tmp" + std::to_string(::getpid()) + "-" + std::to_string(++number);
+    // Marked before it exists, so that no signal can come in between.
+    UnfinishedFile unfinished(temporary);
+    const int descriptor = ::open(temporary.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
+    if (descriptor >= 0) return AtomicFile(target, std::move(temporary), std::move(unfinished), descriptor);
+    if (errno != EEXIST) return io_error(target, "cannot create", errno);
+  }
 }
 
-AtomicFile::AtomicFile(std::filesystem::path target, std::filesystem::path temporary, int descriptor)
-    : target_(std::move(target)), temporary_(std::move(temporary)), descriptor_(descriptor) {}
+AtomicFile::AtomicFile(std::filesystem::path target, std::filesystem::path temporary, UnfinishedFile unfinished,
+                       int descriptor)
+    : target_(std::move(target)),
+      temporary_(std::move(temporary)),
+      unfinished_(std::move(unfinished)),
+      descriptor_(descriptor) {}
 
 AtomicFile::AtomicFile(AtomicFile&& other) noexcept
     : target_(std::move(other.target_)),
       temporary_(std::move(other.temporary_)),
+      unfinished_(std::move(other.unfinished_)),
       descriptor_(std::exchange(other.descriptor_, -1)),
       position_(other.position_) {}
 
@@ -65,6 +72,7 @@ AtomicFile& AtomicFile::operator=(AtomicFile&& other) noexcept {
   discard();
   target_ = std::move(other.target_);
   temporary_ = std::move(other.temporary_);
+  unfinished_ = std::move(other.unfinished_);
   descriptor_ = std::exchange(other.descriptor_, -1);
   position_ = other.position_;
   return *this;

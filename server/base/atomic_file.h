@@ -6,11 +6,13 @@
 #include <string_view>
 
 #include "base/result.h"
+#include "base/unfinished_file.h"
 
 namespace surfcast {
 
 /// An output that appears under its name only when it is whole: bytes go to a temporary file beside the target, and
-/// `commit` flushes it to the disk and renames it. Destroyed without `commit`, it leaves nothing behind.
+/// `commit` flushes it to the disk and renames it. Destroyed without `commit`, it leaves nothing behind, nor do signals
+/// that end the process (see unfinished_file.h).
 class AtomicFile {
  public:
   static Result<AtomicFile> create(const std::filesystem::path& target);
@@ -30,11 +32,12 @@ class AtomicFile {
   Status commit();
 
  private:
-  AtomicFile(std::filesystem::path target, std::filesystem::path temporary, int descriptor);
+  AtomicFile(std::filesystem::path target, std::filesystem::path temporary, UnfinishedFile unfinished, int descriptor);
   void discard() noexcept;
 
   std::filesystem::path target_;
   std::filesystem::path temporary_;
+  UnfinishedFile unfinished_;
   int descriptor_ = -1;
   size_t position_ = 0;
 };

@@ -1,9 +1,11 @@
 #include <CLI/CLI.hpp>
+#include <csignal>
 #include <exception>
 #include <iostream>
 
 #include "base/log.h"
 #include "base/result.h"
+#include "base/unfinished_file.h"
 #include "cmd/build.h"
 #include "cmd/inspect.h"
 #include "cmd/render.h"
@@ -41,6 +43,8 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow any further is an error of the write
+  surfcast::remove_unfinished_files_on_signals();
   try {
     surfcast::start_logging("surfcastd");
     return run(argc, argv);

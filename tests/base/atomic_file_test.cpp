@@ -1,9 +1,12 @@
 #include "base/atomic_file.h"
 
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <utility>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -52,6 +55,30 @@ TEST_F(AtomicFileTest, WithoutCommitTheOldFileStaysAndNothingElse) {
     ASSERT_TRUE(file->append(std::as_bytes(std::span("half", 4))));
   }
   EXPECT_EQ(content(target), "old");
+  EXPECT_EQ(entries(), 1u);
+}
+
+TEST_F(AtomicFileTest, ASignalThatEndsTheProcessLeavesNothingButTheOldFile) {
+  const fs::path target = folder_ / "out";
+  ASSERT_TRUE(write_file_atomically(target, "old"));
+  const auto interrupted = [&target](int signal) {
+    remove_unfinished_files_on_signals();
+    Result<AtomicFile> moved = AtomicFile::create(target);
+    const AtomicFile file = std::move(*moved);
+    std::raise(signal);
+  };
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP}) {
+    EXPECT_EXIT(interrupted(signal), ::testing::KilledBySignal(signal), "");
+    EXPECT_EQ(content(target), "old");
+    EXPECT_EQ(entries(), 1u);
+  }
+}
+
+TEST_F(AtomicFileTest, ManyFilesMayBeWrittenAtOnce) {
+  std::vector<AtomicFile> files;
+  for (int i = 0; i < 40; ++i) files.push_back(std::move(*AtomicFile::create(folder_ / "out")));
+  EXPECT_EQ(entries(), 40u);
+  for (AtomicFile& file : files) ASSERT_TRUE(file.commit());
   EXPECT_EQ(entries(), 1u);
 }
 
