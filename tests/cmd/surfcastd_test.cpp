@@ -44,8 +44,10 @@ class SurfcastdTest : public ::testing::Test {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  [[nodiscard]] Answer run(const std::string& arguments) const {
-    const std::string command = "cd '" + folder_.string() + "' && '" SURFCASTD "' " + arguments + " >out 2>err";
+  /// `before` is a command of the shell for the same process.
+  [[nodiscard]] Answer run(const std::string& arguments, const std::string& before = ":") const {
+    const std::string program = "'" SURFCASTD "' " + arguments + " >out 2>err";
+    const std::string command = "cd '" + folder_.string() + "' && " + before + " && " + program;
     Answer answer;
     const int status = std::system(command.c_str());
     answer.exit_code = WIFEXITED(status) ? WEXITSTATUS(status) : -1;
@@ -151,6 +153,17 @@ TEST_F(SurfcastdTest, AFailedBuildKeepsTheOldModel) {
   const std::string before = content(folder_ / "model.surf");
   EXPECT_EQ(run("build absent.ply --output model.surf").exit_code, 1);
   EXPECT_EQ(content(folder_ / "model.surf"), before);
+}
+
+TEST_F(SurfcastdTest, ADiskThatIsFullIsOneLineAndKeepsTheOldModel) {
+  std::ofstream(folder_ / "model.surf") << "an old model";
+  const Answer answer = run("build scan.ply --output model.surf", "ulimit -f 1");  // files end at 512 or 1024 bytes
+  EXPECT_EQ(answer.exit_code, 1);
+  expect_one_line_error(answer);
+  EXPECT_NE(answer.err.find("model.surf: cannot write: File too large"), std::string::npos) << answer.err;
+  EXPECT_EQ(content(folder_ / "model.surf"), "an old model");
+  const auto files = std::distance(fs::directory_iterator(folder_), fs::directory_iterator());
+  EXPECT_EQ(files, 4) << "the scan, the model, and what the program said";
 }
 
 TEST_F(SurfcastdTest, AWrongCommandLineIsTwo) {

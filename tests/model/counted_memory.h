@@ -1,0 +1,13 @@
+#pragma once
+
+#include <cstddef>
+
+namespace surfcast {
+
+/// Bytes that `new` has given out and not got back. Programs that link counted_memory.cpp count them.
+size_t bytes_in_use();
+/// The most there have been at once since `start_peak`.
+size_t peak_bytes_in_use();
+void start_peak();
+
+}  // namespace surfcast
