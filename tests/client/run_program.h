@@ -37,6 +37,7 @@ inline ProgramOutcome run_program(const std::string& line) {
 /// Starts a program and leaves it running; the first argument is its path.
 inline pid_t start_program(std::vector<std::string> arguments) {
   std::vector<char*> pointers;
+  pointers.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) pointers.push_back(argument.data());
   pointers.push_back(nullptr);
   pid_t process = -1;

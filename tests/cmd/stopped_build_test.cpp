@@ -34,7 +34,8 @@ void write_scan(const fs::path& path, int side) {
   scan << "ply\nformat binary_little_endian 1.0\nelement vertex " << side * side
        << "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
   for (int i = 0; i < side * side; ++i) {
-    const auto x = static_cast<float>(i % side), y = static_cast<float>(i / side);
+    const int row = i / side;
+    const auto x = static_cast<float>(i % side), y = static_cast<float>(row);
     const float point[] = {x, y, std::sin(x / 9) * std::cos(y / 7)};
     scan.write(reinterpret_cast<const char*>(point), sizeof(point));
   }
