@@ -7,14 +7,11 @@
 #include "base/contract.h"
 #include "model/quantize.h"
 #include "shared/surfel_layout.h"
+#include "surfel/drawn_radius.h"
+#include "surfel/srgb.h"
 
 namespace surfcast {
 namespace {
-
-/// IEC 61966-2-1.
-double decode_srgb(double encoded) {
-  return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
-}
 
 /// How far lattice indices up to `extent` are shifted right, with rounding, to fit the position codes.
 int shift_for(int extent) {
@@ -32,6 +29,10 @@ glm::ivec3 extent_of(const DecodedBlock& block) {
 
 glm::uvec3 position_code(const glm::ivec3& index, const glm::ivec3& shift) {
   return glm::uvec3(index + ((glm::ivec3(1) << shift) >> 1)) >> glm::uvec3(shift);
+}
+
+glm::u16vec2 normal_code(const glm::vec3& normal) {
+  return encode_normal(normal, kSourcePrecision.octahedral_half);
 }
 
 uint32_t color_code(const glm::u16vec3& color, int bits) {
@@ -62,14 +63,6 @@ uint32_t LogScale::code(double value) const {
   return static_cast<uint32_t>(std::lround(std::clamp(u, 0.0, 1.0) * SURFCAST_SIZE_STEPS));
 }
 
-float largest_drawn_radius(std::span<const float> radii) {
-  std::vector<float> sorted(radii.begin(), radii.end());
-  const auto ordinary = sorted.begin() + static_cast<std::ptrdiff_t>((sorted.size() - 1) * 19 / 20);
-  std::nth_element(sorted.begin(), ordinary, sorted.end());
-  constexpr float kFarFromOrdinary = 4;
-  return kFarFromOrdinary * *ordinary;
-}
-
 PackedBlock pack_block(const DecodedBlock& block, int color_bits) {
   SURFCAST_EXPECTS(block.size() > 0);
   const glm::ivec3 extent = extent_of(block);
@@ -85,7 +78,7 @@ PackedBlock pack_block(const DecodedBlock& block, int color_bits) {
   packed.weight = LogScale::of(block.weights);
   packed.surfels.reserve(block.size());
   for (size_t i = 0; i < block.size(); ++i) {
-    packed.surfels.push_back(pack_surfel(position_code(block.indices[i], shift), encode_normal(block.normals[i]),
+    packed.surfels.push_back(pack_surfel(position_code(block.indices[i], shift), normal_code(block.normals[i]),
                                          packed.radius.code(double{radii[i]}),
                                          packed.weight.code(double{block.weights[i]}),
                                          block.colors.empty() ? 0 : color_code(block.colors[i], color_bits)));
@@ -95,8 +88,8 @@ PackedBlock pack_block(const DecodedBlock& block, int color_bits) {
 
 std::vector<uint32_t> linear_root_table() {
   std::vector<uint32_t> table;
-  for (int level = 0; level < 256; ++level) {
-    const double root = std::sqrt(decode_srgb(level / 255.0));
+  for (uint16_t level = 0; level < 256; ++level) {
+    const double root = std::sqrt(double{to_linear(glm::u16vec3(level), 8).r});
     table.push_back(static_cast<uint32_t>(std::lround(root * 2047)) |
                     (static_cast<uint32_t>(std::lround(root * 1023)) << 16));
   }

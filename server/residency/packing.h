@@ -32,11 +32,6 @@ struct PackedBlock {
   [[nodiscard]] size_t bytes() const { return surfels.size() * sizeof(glm::uvec4); }
 };
 
-/// Scans have points that float off the surface; the mean distance to their neighbours, their radius, is the way back
-/// to it, and discs as large as that would hide it. No surfel is drawn larger than this: four times the radius that all
-/// but a twentieth of its block stay below.
-float largest_drawn_radius(std::span<const float> radii);
-
 PackedBlock pack_block(const DecodedBlock& block, int color_bits);
 
 /// For each 8 bit sRGB value the root of its linear light in the 11 bits, and from bit 16 on the 10 bits, of a splat's

@@ -33,14 +33,14 @@ Unpacked unpacked(const PackedBlock& block, size_t i) {
 
 DecodedBlock block_of(size_t surfels, int32_t extent, std::mt19937& random) {
   std::uniform_int_distribution<int32_t> index(0, extent);
-  std::uniform_int_distribution<uint16_t> code(0, 2 * kOctahedralHalf);
+  std::uniform_int_distribution<uint16_t> code(0, static_cast<uint16_t>(kSourcePrecision.max_normal_code()));
   std::uniform_real_distribution<float> octaves(-8, 0);
   DecodedBlock block;
   block.grid = {glm::dvec3(0.001, 0.002, 0.004), glm::dvec3(448262.31, 5411932.67, 312.45)};
   block.origin = {-5, 17, 1000000};
   for (size_t i = 0; i < surfels; ++i) {
     block.indices.emplace_back(index(random), index(random), index(random));
-    block.normals.push_back(decode_normal({code(random), code(random)}));
+    block.normals.push_back(decode_normal({code(random), code(random)}, kSourcePrecision.octahedral_half));
     block.radii.push_back(std::exp2(octaves(random) / 8));
     block.weights.push_back(std::exp2(octaves(random)));
     block.colors.emplace_back(random() % 256, random() % 256, random() % 256);
@@ -79,7 +79,7 @@ TEST(PackBlock, NormalsAndColorsOfEightBitsComeBackAsTheFileHasThem) {
   const PackedBlock packed = pack_block(block, 8);
   for (size_t i = 0; i < block.size(); ++i) {
     const Unpacked s = unpacked(packed, i);
-    EXPECT_LT(glm::distance(decode_normal(s.normal), block.normals[i]), 1e-6F);
+    EXPECT_LT(glm::distance(decode_normal(s.normal, kSourcePrecision.octahedral_half), block.normals[i]), 1e-6F);
     EXPECT_EQ(s.color, glm::uvec3(block.colors[i]));
   }
 }
@@ -137,14 +137,6 @@ TEST(LinearRootTable, EveryLevelComesBackWithinAQuarterOfALevelOrSoInTenBits) {
     EXPECT_NEAR(level_of((table[level] & 2047) / 2047.0), level, 0.25);
     EXPECT_NEAR(level_of((table[level] >> 16) / 1023.0), level, 0.45);
   }
-}
-
-TEST(LargestDrawnRadius, StraysAreHeldBackAndOrdinarySurfelsAreNot) {
-  std::vector<float> radii(100, 0.01F);
-  EXPECT_FLOAT_EQ(largest_drawn_radius(radii), 0.04F);
-  radii[7] = 1;
-  EXPECT_FLOAT_EQ(largest_drawn_radius(radii), 0.04F);
-  EXPECT_FLOAT_EQ(largest_drawn_radius(std::vector<float>{0.5F}), 2);
 }
 
 TEST(PackBlock, StraysAreDrawnNoLargerThanThat) {
