@@ -37,9 +37,26 @@ std::unique_ptr<draco::PointAttribute> make_attribute(const TableAttribute& tabl
   return attribute;
 }
 
-/// Draco allocates by what its header states, so that is checked first. Layout of the header (Draco bitstream 2.3):
-/// "DRACO", version in 2 bytes, encoder type, method, flags in 2 bytes, number of points in 4.
-bool states_rows(std::span<const std::byte> bytes, uint32_t rows) {
+/// What Draco states about its attributes, of one group: of each its kind, type, components, whether it is normalized,
+/// and its number, then how each is coded.
+bool states_attributes(ByteReader& reader, std::span<const TableType> types) {
+  constexpr uint8_t kIntegers = 1;
+  if (reader.get<uint8_t>() != 1 || reader.get_varint() != types.size()) return false;
+  for (const TableType& type : types) {
+    reader.get<uint8_t>();
+    if (reader.get<uint8_t>() != data_type(type.bytes) || reader.get<uint8_t>() != type.components) return false;
+    reader.get<uint8_t>();
+    reader.get_varint();
+  }
+  for (size_t i = 0; i < types.size(); ++i) {
+    if (reader.get<uint8_t>() != kIntegers) return false;
+  }
+  return reader.ok();
+}
+
+/// Draco allocates by what it is told, so that is checked first. Layout of the beginning (Draco bitstream 2.3):
+/// "DRACO", version in 2 bytes, encoder type, method, flags in 2 bytes, number of points in 4, then the attributes.
+bool states_table(std::span<const std::byte> bytes, std::span<const TableType> types, uint32_t rows) {
   constexpr uint16_t kMetadataFlag = 0x8000;
   ByteReader reader(bytes);
   reader.get_bytes(7);
@@ -47,8 +64,17 @@ bool states_rows(std::span<const std::byte> bytes, uint32_t rows) {
   const auto method = reader.get<uint8_t>();
   const auto flags = reader.get<uint16_t>();
   const auto points = reader.get<uint32_t>();
-  return reader.ok() && type == draco::POINT_CLOUD && method == draco::POINT_CLOUD_SEQUENTIAL_ENCODING &&
-         (flags & kMetadataFlag) == 0 && points == rows;
+  return type == draco::POINT_CLOUD && method == draco::POINT_CLOUD_SEQUENTIAL_ENCODING &&
+         (flags & kMetadataFlag) == 0 && points == rows && states_attributes(reader, types);
+}
+
+/// Draco believes in 64 symbols for each byte that is left and takes memory for them, so there must not be many bytes.
+/// Its coder keeps to the size of the table: it stores values plainly where symbols would take more.
+bool plausible_size(std::span<const std::byte> bytes, std::span<const TableType> types, uint32_t rows) {
+  constexpr size_t kHeads = 65536;
+  size_t table = 0;
+  for (const TableType& type : types) table += size_t{rows} * type.bytes * type.components;
+  return bytes.size() <= 2 * table + kHeads;
 }
 
 bool holds(const draco::PointAttribute& attribute, const TableType& type, uint32_t rows) {
@@ -88,7 +114,8 @@ std::vector<std::byte> encode_table(std::span<const TableAttribute> attributes) 
 
 Result<std::vector<TableAttribute>> decode_table(std::span<const std::byte> bytes, std::span<const TableType> types,
                                                  uint32_t rows) {
-  if (!states_rows(bytes, rows)) return fail(ErrorKind::kInvalidInput, "its Draco data has another number of surfels");
+  if (!states_table(bytes, types, rows)) return fail(ErrorKind::kInvalidInput, "its Draco data states another shape");
+  if (!plausible_size(bytes, types, rows)) return fail(ErrorKind::kInvalidInput, "its Draco data is too long");
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   draco::Decoder decoder;

@@ -87,6 +87,46 @@ TEST(Field, AFieldThatRepeatsAWrongOneIsRefused) {
   EXPECT_FALSE(decode_fields(bytes, columns, 3));
 }
 
+TEST(Field, RandomValuesOfAnyWidthAreNotTooLongToBeRead) {
+  std::mt19937_64 random(3);
+  for (const size_t rows : {1, 2, 100, 3000, 32768}) {
+    std::vector<Field> fields;
+    for (const int bits : {3, 9, 16, 31, 64}) {
+      Field field(1 + static_cast<size_t>(bits) % 3, Column(rows));
+      for (Column& column : field) {
+        for (uint64_t& value : column) value = random() >> (64 - bits);
+      }
+      fields.push_back(field);
+    }
+    EXPECT_EQ(round_trip(fields), fields) << rows;
+  }
+}
+
+TEST(Field, DracoDataFarLongerThanItsTableIsRefused) {
+  const std::vector<Field> fields{{{1, 2, 3}}};
+  std::vector<std::byte> bytes = encode_fields(fields);
+  bytes.resize(bytes.size() + 70000);
+  const Result<std::vector<Field>> decoded = decode_fields(bytes, std::vector<size_t>{1}, 3);
+  ASSERT_FALSE(decoded);
+  EXPECT_NE(decoded.error().message.find("too long"), std::string::npos);
+}
+
+TEST(Field, DracoDataThatStatesOtherAttributesIsRefusedBeforeItIsDecoded) {
+  const std::vector<Field> fields{{{1, 2, 3}}, {{4, 9, 7000}}};
+  const std::vector<std::byte> whole = encode_fields(fields);
+  const auto text = std::search(whole.begin(), whole.end(), "DRACO", "DRACO" + 5,
+                                [](std::byte a, char b) { return a == static_cast<std::byte>(b); });
+  const auto draco = static_cast<size_t>(text - whole.begin());
+  // From byte 15 on: groups of attributes, attributes, and kind, type and components of the first.
+  for (const size_t at : {15, 16, 18, 19}) {
+    std::vector<std::byte> bytes = whole;
+    bytes.at(draco + at) = std::byte{100};
+    const Result<std::vector<Field>> decoded = decode_fields(bytes, std::vector<size_t>{1, 1}, 3);
+    ASSERT_FALSE(decoded) << at;
+    EXPECT_NE(decoded.error().message.find("states another shape"), std::string::npos) << at;
+  }
+}
+
 TEST(Field, BytesOfAnotherShapeAreRefused) {
   const std::vector<Field> fields{{{1, 2, 3}}, {{4, 9, 7000}}};
   const std::vector<std::byte> bytes = encode_fields(fields);
