@@ -1,0 +1,135 @@
+// Pictures of blocks of unlike levels: what is seen must not depend on where one block ends and another begins.
+
+#include <algorithm>
+#include <future>
+
+#include "render/gl_fixture.h"
+#include "support/clouds.h"
+
+namespace surfcast {
+namespace {
+
+constexpr glm::u8vec3 kColor{200, 120, 40};
+
+class LevelsGLTest : public testing::RendererFixture {
+ protected:
+  static uint32_t levels_drawn(const Frame& frame) {
+    return static_cast<uint32_t>(
+        std::ranges::count_if(frame.stats.levels, [](const LevelStats& level) { return level.drawn > 0; }));
+  }
+
+  /// Pixels that the finest level covers wholly, as do all pixels up to three away: not the model's border.
+  static std::vector<bool> interior(const Image& image) {
+    constexpr int kBorder = 3;
+    std::vector<bool> inside(static_cast<size_t>(image.width) * static_cast<size_t>(image.height));
+    for (int y = kBorder; y < image.height - kBorder; ++y) {
+      for (int x = kBorder; x < image.width - kBorder; ++x) {
+        bool covered = true;
+        for (int j = -kBorder; j <= kBorder; ++j) {
+          for (int i = -kBorder; i <= kBorder; ++i) covered = covered && pixel(image, x + i, y + j).a == 255;
+        }
+        inside[static_cast<size_t>(y) * static_cast<size_t>(image.width) + static_cast<size_t>(x)] = covered;
+      }
+    }
+    return inside;
+  }
+
+  /// Draws the one-coloured model at spacings at which its levels mix, under both normalisations: within the model
+  /// every pixel has that colour, as at the finest level.
+  static void expect_no_seams(const testing::ModelPointer& model, PictureRequest request,
+                              std::initializer_list<double> spacings) {
+    request.spacing = 0;
+    const std::vector<bool> inside = interior(draw(model, request).image);
+    ASSERT_GT(std::ranges::count(inside, true), 10000);
+    uint32_t most_levels = 0;
+    for (const double spacing : spacings) {
+      for (const Normalization normalization : {Normalization::kPixel, Normalization::kSurfel}) {
+        request.spacing = spacing;
+        request.normalization = normalization;
+        const Frame frame = draw(model, request);
+        EXPECT_TRUE(frame.converged);
+        most_levels = std::max(most_levels, levels_drawn(frame));
+        const int tolerance = normalization == Normalization::kPixel ? 1 : 2;
+        expect_color(frame.image, inside, tolerance, spacing);
+      }
+    }
+    EXPECT_GE(most_levels, 2u) << "the spacings mix levels";
+  }
+
+  static void expect_color(const Image& image, const std::vector<bool>& inside, int tolerance, double spacing) {
+    int wrong = 0;
+    int worst = 0;
+    for (size_t i = 0; i < inside.size(); ++i) {
+      if (!inside[i]) continue;
+      const int x = static_cast<int>(i) % image.width;
+      const int y = static_cast<int>(i) / image.width;
+      const glm::ivec3 off = glm::abs(glm::ivec3(pixel(image, x, y)) - glm::ivec3(kColor));
+      const int largest = std::max({off.x, off.y, off.z});
+      wrong += largest > tolerance ? 1 : 0;
+      worst = std::max(worst, largest);
+    }
+    EXPECT_EQ(wrong, 0) << "at spacing " << spacing << ", off by up to " << worst;
+  }
+};
+
+TEST_F(LevelsGLTest, APlaneSeenAlongItHasNoSeams) {
+  const auto& model = model_of(testing::square(400, 4, {0, 0, 0}, {0, 0, 1}, kColor));
+  PictureRequest request;
+  request.camera = Camera{{0, -3.2, 0.8}, {0, -0.6, 0}, {0, 0, 1}, 40};
+  request.width = 480;
+  request.height = 320;
+  expect_no_seams(model, request, {1.5, 2, 3, 4, 6});
+}
+
+TEST_F(LevelsGLTest, ASphereHasNoSeams) {
+  const auto& model = model_of(testing::fibonacci_sphere(300000, 1, {0, 0, 0}, kColor));
+  PictureRequest request;
+  request.camera = Camera{{0.3, 1.9, 0.4}, {0, 0, 0}, {0, 0, 1}, 50};
+  request.width = 400;
+  request.height = 400;
+  expect_no_seams(model, request, {1, 1.5, 2, 3, 4, 6});
+}
+
+/// Draws with a renderer of its own, on a thread of its own: a thread has one GL context.
+Result<Frame> draw_within(size_t gpu_bytes, const testing::ModelPointer& model, const PictureRequest& request) {
+  return std::async(std::launch::async,
+                    [&]() -> Result<Frame> {
+                      Result<std::unique_ptr<Renderer>> renderer = Renderer::create({.gpu_bytes = gpu_bytes});
+                      if (!renderer) return fail(renderer.error());
+                      const std::atomic<bool> never{false};
+                      return (*renderer)->draw(model, request, never);
+                    })
+      .get();
+}
+
+TEST_F(LevelsGLTest, ABudgetTooSmallForTheModelDrawsACoarserCutAndSaysSo) {
+  constexpr size_t kBudget = size_t{40} * 16384;
+  const auto& model = model_of(testing::square(300, 4, {0, 0, 0}, {0, 0, 1}, kColor));
+  PictureRequest request;
+  request.camera = Camera{{0, 0, 3}, {0, 0, 0}, {0, 1, 0}, 60};
+  request.width = request.height = 200;
+  const Result<Frame> frame = draw_within(kBudget, model, request);
+  ASSERT_TRUE(frame) << frame.error().message;
+  EXPECT_FALSE(frame->converged);
+  EXPECT_GT(frame->stats.levels.back().level, 0);
+  EXPECT_LE(frame->stats.bytes_resident, kBudget);
+  EXPECT_EQ(pixel(frame->image, 100, 100).a, 255);
+}
+
+TEST_F(LevelsGLTest, PicturesAtOnceEndAsTheWholePictureDoes) {
+  const auto& model = model_of(testing::fibonacci_sphere(200000, 1, {0, 0, 0}, kColor));
+  PictureRequest request;
+  request.camera = Camera{{0, 0, 3}, {0, 0, 0}, {0, 1, 0}, 50};
+  request.width = request.height = 200;
+  request.spacing = 2;
+  const Frame whole = draw(model, request);
+  renderer_->forget(*model);
+  request.loading = Loading::kNow;
+  Frame frame = draw(model, request);
+  EXPECT_FALSE(frame.converged) << "nothing is loaded yet";
+  for (int i = 0; i < 200 && !frame.converged; ++i) frame = draw(model, request);
+  EXPECT_EQ(frame.image.pixels, whole.image.pixels);
+}
+
+}  // namespace
+}  // namespace surfcast
