@@ -166,6 +166,19 @@ TEST_F(SurfcastdTest, ADiskThatIsFullIsOneLineAndKeepsTheOldModel) {
   EXPECT_EQ(files, 4) << "the scan, the model, and what the program said";
 }
 
+TEST_F(SurfcastdTest, AMemoryBudgetIsASizeThatSuffices) {
+  EXPECT_EQ(run("build scan.ply --output model.surf --memory lots").exit_code, 2);
+  const Answer answer = run("build scan.ply --output model.surf --memory 10M");
+  EXPECT_EQ(answer.exit_code, 1);
+  expect_one_line_error(answer);
+  EXPECT_NE(answer.err.find("at least "), std::string::npos) << answer.err;
+  EXPECT_EQ(run("build scan.ply --output model.surf --memory 1G --report report.json").exit_code, 0);
+  const nlohmann::json report = nlohmann::json::parse(content(folder_ / "report.json"));
+  EXPECT_EQ(report["memory_budget_bytes"], 1 << 30);
+  EXPECT_EQ(report["parts"], 1);
+  EXPECT_TRUE(report["stage_seconds"].contains("making surfels"));
+}
+
 TEST_F(SurfcastdTest, AWrongCommandLineIsTwo) {
   for (const char* arguments :
        {"", "nonsense", "build scan.ply", "build --output model.surf", "build scan.ply --output m.surf --precision 0",
