@@ -199,8 +199,8 @@ Result<std::unique_ptr<RecordDecoder>> decode_layered(const RecordLayout& layout
   if (chunk.size() < layout.length + count_bytes + size_bytes) {
     return fail(ErrorKind::kInvalidInput, "truncated: a LAZ chunk is too short");
   }
-  if (load<uint32_t>(&chunk[layout.length]) != count) {
-    return fail(ErrorKind::kInvalidInput, "a LAZ chunk has another number of points than the chunk table states");
+  if (load<uint32_t>(&chunk[layout.length]) < count) {
+    return fail(ErrorKind::kInvalidInput, "a LAZ chunk has fewer points than the chunk table states");
   }
   const std::span<const std::byte> sizes = chunk.subspan(layout.length + count_bytes, size_bytes);
   LayerBytes bytes(sizes, chunk.subspan(layout.length + count_bytes + size_bytes));

@@ -164,6 +164,22 @@ TEST(LazRoundTripTest, CoordinatesMayJumpFromOneEndOfTheirRangeToTheOther) {
   }
 }
 
+TEST_P(LazFormatTest, FilesWithMorePointsThanTheHeaderStatesAreReadAsFarAsItStates) {
+  for (const bool variable_chunks : {false, true}) {
+    LazWriter writer = writer_of(GetParam());
+    writer.variable_chunks = variable_chunks;
+    writer.chunk_sizes = {60, 30, 60};
+    const Records records = sample_records(writer.record_length, 150);
+    const Records data = writer.point_data(records);
+    LazPoints points = writer.points(records);
+    points.count = 70;
+    const Result<LazFile> file = LazFile::open(data, points, writer.laszip_record());
+    ASSERT_TRUE(file) << file.error().message;
+    const Records first(records.begin(), records.begin() + static_cast<ptrdiff_t>(70 * writer.record_length));
+    EXPECT_EQ(read_all(*file, 1000), first);
+  }
+}
+
 TEST(LazRoundTripTest, ChunksSayWhichPointsTheyHold) {
   const LazWriter writer = writer_of(0);
   const Records records = sample_records(20, 120);
