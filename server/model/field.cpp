@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <bit>
 #include <numeric>
-#include <optional>
 
 #include "model/byte_stream.h"
 #include "model/draco_table.h"
@@ -13,8 +12,6 @@ namespace {
 
 constexpr int kMaxWidth = 8;    ///< bytes of a stored integer
 constexpr int kPieceBytes = 2;  ///< of each piece but the last
-/// Added to the width of a field whose stored integers are those of an earlier one, whose number follows.
-constexpr uint8_t kRepeatFlag = 0x80;
 
 int width_of(uint64_t largest) {
   return (static_cast<int>(std::bit_width(largest)) + 7) / 8;
@@ -54,24 +51,12 @@ void add_piece(const TableAttribute& attribute, const std::vector<ColumnPacking>
 /// What precedes the Draco data of one field.
 struct FieldHead {
   int width = 0;
-  std::optional<size_t> repeats;  ///< an earlier field with the same stored integers
   std::vector<ColumnPacking> packings;
-
-  /// Pieces of its own in the Draco data.
-  [[nodiscard]] int pieces() const { return repeats ? 0 : piece_count(width); }
 };
 
-/// The head of the field that comes after those of `before`.
-Result<FieldHead> read_head(ByteReader& reader, size_t columns, std::span<const FieldHead> before) {
+Result<FieldHead> read_head(ByteReader& reader, size_t columns) {
   FieldHead head;
-  const auto width = reader.get<uint8_t>();
-  head.width = width & ~kRepeatFlag;
-  if ((width & kRepeatFlag) != 0) {
-    head.repeats = reader.get<uint8_t>();
-    const bool possible = *head.repeats < before.size() && before[*head.repeats].packings.size() == columns &&
-                          before[*head.repeats].width == head.width && !before[*head.repeats].repeats;
-    if (!possible) return fail(ErrorKind::kInvalidInput, "a column repeats a wrong one");
-  }
+  head.width = reader.get<uint8_t>();
   for (size_t c = 0; c < columns; ++c) {
     const uint64_t base = reader.get_varint();
     head.packings.push_back({base, reader.get_varint(), 0});
@@ -87,39 +72,6 @@ FieldHead make_head(const Field& field) {
     head.width = std::max(head.width, width_of(head.packings.back().largest));
   }
   return head;
-}
-
-bool same_stored(const Column& a, const ColumnPacking& pa, const Column& b, const ColumnPacking& pb) {
-  if (pa.largest != pb.largest) return false;
-  for (size_t i = 0; i < a.size(); ++i) {
-    if ((a[i] - pa.base) / pa.stride != (b[i] - pb.base) / pb.stride) return false;
-  }
-  return true;
-}
-
-/// The first field with the stored integers of the last one (scanners and converters store brightness twice); none
-/// for constants, which take no space.
-std::optional<size_t> find_repeated(std::span<const Field> fields, std::span<const FieldHead> heads) {
-  const size_t last = heads.size() - 1;
-  if (heads[last].width == 0) return std::nullopt;
-  for (size_t i = 0; i < std::min<size_t>(last, 256); ++i) {
-    if (heads[i].repeats || fields[i].size() != fields[last].size()) continue;
-    bool same = true;
-    for (size_t c = 0; c < fields[i].size() && same; ++c) {
-      same = same_stored(fields[i][c], heads[i].packings[c], fields[last][c], heads[last].packings[c]);
-    }
-    if (same) return i;
-  }
-  return std::nullopt;
-}
-
-void write_head(const FieldHead& head, ByteWriter& writer) {
-  writer.put(static_cast<uint8_t>(head.width | (head.repeats ? kRepeatFlag : 0)));
-  if (head.repeats) writer.put(static_cast<uint8_t>(*head.repeats));
-  for (const ColumnPacking& packing : head.packings) {
-    writer.put_varint(packing.base);
-    writer.put_varint(packing.stride);
-  }
 }
 
 Field constant_field(const FieldHead& head, uint32_t rows) {
@@ -145,12 +97,14 @@ ColumnPacking choose_packing(const Column& column) {
 std::vector<std::byte> encode_fields(std::span<const Field> fields) {
   ByteWriter writer;
   std::vector<TableAttribute> table;
-  std::vector<FieldHead> heads;
   for (const Field& field : fields) {
-    FieldHead& head = heads.emplace_back(make_head(field));
-    head.repeats = find_repeated(fields, heads);
-    write_head(head, writer);
-    for (int piece = 0; piece < head.pieces(); ++piece) {
+    const FieldHead head = make_head(field);
+    writer.put(static_cast<uint8_t>(head.width));
+    for (const ColumnPacking& packing : head.packings) {
+      writer.put_varint(packing.base);
+      writer.put_varint(packing.stride);
+    }
+    for (int piece = 0; piece < piece_count(head.width); ++piece) {
       table.push_back(make_piece(field, head.packings, head.width, piece));
     }
   }
@@ -164,9 +118,9 @@ Result<std::vector<Field>> decode_fields(std::span<const std::byte> bytes, std::
   std::vector<FieldHead> heads;
   std::vector<TableType> types;
   for (const size_t count : columns) {
-    Result<FieldHead> head = read_head(reader, count, heads);
+    Result<FieldHead> head = read_head(reader, count);
     if (!head) return fail(std::move(head.error()));
-    for (int piece = 0; piece < head->pieces(); ++piece) {
+    for (int piece = 0; piece < piece_count(head->width); ++piece) {
       types.push_back({piece_bytes(head->width, piece), static_cast<uint8_t>(count)});
     }
     heads.push_back(std::move(*head));
@@ -178,15 +132,10 @@ Result<std::vector<Field>> decode_fields(std::span<const std::byte> bytes, std::
     table = std::move(*decoded);
   }
   std::vector<Field> fields;
-  std::vector<size_t> first_pieces;
   size_t next = 0;
   for (const FieldHead& head : heads) {
-    first_pieces.push_back(head.repeats ? first_pieces[*head.repeats] : next);
-    next += static_cast<size_t>(head.pieces());
     Field field = constant_field(head, rows);
-    for (int piece = 0; piece < piece_count(head.width); ++piece) {
-      add_piece(table[first_pieces.back() + static_cast<size_t>(piece)], head.packings, piece, field);
-    }
+    for (int piece = 0; piece < piece_count(head.width); ++piece) add_piece(table[next++], head.packings, piece, field);
     fields.push_back(std::move(field));
   }
   return fields;

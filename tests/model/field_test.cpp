@@ -1,6 +1,5 @@
 #include "model/field.h"
 
-#include <algorithm>
 #include <limits>
 #include <random>
 
@@ -60,31 +59,6 @@ TEST(Field, AllConstantColumnsNeedNoDracoData) {
   const std::vector<Field> fields{{Column(1000, 5), Column(1000, kMax)}};
   EXPECT_LT(encode_fields(fields).size(), 20u);
   EXPECT_EQ(round_trip(fields), fields);
-}
-
-TEST(Field, AFieldLikeAnEarlierOneTakesNoSpace) {
-  std::mt19937_64 random(2);
-  Column brightness;
-  for (int i = 0; i < 1000; ++i) brightness.push_back(random() % 256);
-  Column scaled;
-  for (const uint64_t value : brightness) scaled.push_back(7 + 257 * value);
-  const std::vector<Field> one{{brightness}};
-  const std::vector<Field> repeated{{brightness}, {Column(1000, 5)}, {scaled}, {brightness}};
-  EXPECT_EQ(round_trip(repeated), repeated);
-  EXPECT_LT(encode_fields(repeated).size(), encode_fields(one).size() + 20);
-}
-
-TEST(Field, AFieldThatRepeatsAWrongOneIsRefused) {
-  const std::vector<Field> fields{{{1, 2, 3}}, {{1, 2, 3}}};
-  std::vector<std::byte> bytes = encode_fields(fields);
-  const std::vector<size_t> columns{1, 1};
-  ASSERT_TRUE(decode_fields(bytes, columns, 3));
-  const auto flag = std::find(bytes.begin(), bytes.end(), std::byte{0x81});
-  ASSERT_NE(flag, bytes.end());
-  *(flag + 1) = std::byte{1};  // itself
-  EXPECT_FALSE(decode_fields(bytes, columns, 3));
-  *(flag + 1) = std::byte{9};
-  EXPECT_FALSE(decode_fields(bytes, columns, 3));
 }
 
 TEST(Field, RandomValuesOfAnyWidthAreNotTooLongToBeRead) {
