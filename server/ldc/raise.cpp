@@ -88,9 +88,16 @@ OctreeKey cell_of(const CoarseSurfel& surfel, const RootCube& root, int depth) {
   return key_of_code(morton_code(root, surfel.position), depth);
 }
 
+std::vector<Raised*> pointers_to(RaisedCells& cells) {
+  std::vector<Raised*> list;
+  list.reserve(cells.size());
+  for (auto& [location, cell] : cells) list.push_back(&cell);
+  return list;
+}
+
 /// Makes those surfels around the part coarser that lie near raised cells, cell by cell.
 void raise_around(std::vector<CoarseSurfel>& around, const Nearby& nearby, const LevelSources& sources) {
-  std::map<uint64_t, Raised> cells;
+  RaisedCells cells;
   std::vector<CoarseSurfel> rest;
   for (const CoarseSurfel& s : around) {
     const OctreeKey key = cell_of(s, sources.root, nearby.depth());
@@ -103,8 +110,7 @@ void raise_around(std::vector<CoarseSurfel>& around, const Nearby& nearby, const
     if (cell.parts.empty()) cell.parts.emplace_back();
     cell.parts.front().surfels.push_back(s);
   }
-  std::vector<Raised*> list;
-  for (auto& [location, cell] : cells) list.push_back(&cell);
+  std::vector<Raised*> list = pointers_to(cells);
   for_each_value(list, [&](Raised* cell) {
     cell->coarse = reduce(cell->parts.front().surfels, sources.root, cell->key, sources.attributes.oriented);
   });
@@ -160,8 +166,7 @@ TreeBlock make_block(const Raised& cell, std::span<const float> weights, const C
 
 std::vector<TreeBlock> raise(Front& front, int depth, LevelSources& sources, uint32_t first_number) {
   RaisedCells raised = take_parts(front, depth);
-  std::vector<Raised*> list;
-  for (auto& [location, cell] : raised) list.push_back(&cell);
+  std::vector<Raised*> list = pointers_to(raised);
   for_each_value(list, [&](Raised* cell) {
     cell->coarse = reduce(surfels_of(cell->parts, sources.cloud), sources.root, cell->key, sources.attributes.oriented);
   });

@@ -270,6 +270,39 @@ TEST(ModelFile, StatesNoConeWithoutOrientation) {
   EXPECT_FALSE(write_and_open(cloud, folder / "model.surf").blocks()[0].normals);
 }
 
+TEST(ModelFile, CoarseBlocksOfAWallThatFacesAwayKeepItsCone) {
+  const TestFolder folder;
+  SurfelCloud cloud;
+  cloud.oriented = true;
+  for (int i = 0; i < 90000; ++i) cloud.positions.emplace_back(i % 300, i / 300, 0);
+  cloud.normals.assign(cloud.size(), glm::vec3(0, 0, -1));
+  const ModelFile model = write_and_open(finish_cloud(std::move(cloud)), folder / "model.surf");
+  EXPECT_EQ(model.info().surfels, 90000u);
+  EXPECT_EQ(model.info().levels, 3);
+  for (const BlockEntry& block : model.blocks()) {
+    ASSERT_TRUE(block.normals);
+    EXPECT_LT(block.normals->axis.z, -0.9999f);
+    EXPECT_LT(block.normals->half_angle, 0.01f);
+  }
+}
+
+TEST(ModelFile, ABlockSaysHowFineItsValuesAre) {
+  const TestFolder folder;
+  SurfelCloud cloud = sphere_cloud(40000);
+  cloud.estimated_normals = true;
+  cloud.estimated_radii = true;
+  const DecodedModel model = round_trip(cloud, folder / "model.surf");
+  double widest = 0;
+  for (size_t i = 0; i < cloud.size(); ++i) {
+    const auto [block, at] = model.surfels[i];
+    widest = std::max(widest, angle_between(block->normals[at], cloud.normals[i]));
+    ASSERT_NEAR(block->radii[at] / cloud.radii[i], 1, 0.022);
+    ASSERT_LE(glm::length(model.position(i) - cloud.positions[i]), cloud.radii[i] / 256);
+  }
+  EXPECT_LT(widest, 10 * kNormalError);
+  EXPECT_GT(widest, kNormalError) << "estimates take fewer bits";
+}
+
 TEST(ModelFile, HasTheSameBytesFromRunToRunAndForAnyNumberOfThreads) {
   const TestFolder folder;
   const SurfelCloud cloud = sphere_cloud(60000);
