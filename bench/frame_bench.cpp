@@ -6,7 +6,6 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
-#include <ctime>
 #include <filesystem>
 #include <map>
 #include <memory>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "base/stopwatch.h"
+#include "bench_support.h"
 #include "gl_points.h"
 #include "model/write_model.h"
 #include "render/renderer.h"
@@ -22,26 +22,9 @@
 namespace {
 
 using namespace surfcast;
-
-/// Processor time of all threads of this process, milliseconds: other load on the machine disturbs it less than wall
-/// time, and on software GL it is the cost of a frame.
-double processor_ms() {
-  timespec t{};
-  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
-  return static_cast<double>(t.tv_sec) * 1e3 + static_cast<double>(t.tv_nsec) * 1e-6;
-}
-
-double median(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  return values[values.size() / 2];
-}
-
-template <typename T>
-T value_or_exit(Result<T> result) {
-  if (result) return std::move(*result);
-  std::fprintf(stderr, "frame_bench: %s\n", result.error().message.c_str());
-  std::exit(1);
-}
+using bench::median;
+using bench::processor_ms;
+using bench::value_or_exit;
 
 /// A camera that sees a unit sphere at 80 % of the picture's height, `angle` radians around it.
 Camera orbit(double angle) {

@@ -1,6 +1,7 @@
 // Pictures of blocks of unlike levels: what is seen must not depend on where one block ends and another begins.
 
 #include <algorithm>
+#include <cmath>
 #include <future>
 
 #include "render/gl_fixture.h"
@@ -114,6 +115,51 @@ TEST_F(LevelsGLTest, ABudgetTooSmallForTheModelDrawsACoarserCutAndSaysSo) {
   EXPECT_GT(frame->stats.levels.back().level, 0);
   EXPECT_LE(frame->stats.bytes_resident, kBudget);
   EXPECT_EQ(pixel(frame->image, 100, 100).a, 255);
+}
+
+/// A plane with a texture of waves between 6 and 60 surfels long.
+SurfelCloud wavy_square(int side) {
+  SurfelCloud cloud = testing::square(side, 4, {0, 0, 0}, {0, 0, 1}, kColor);
+  for (size_t i = 0; i < cloud.size(); ++i) {
+    const glm::dvec3 p = cloud.positions[i] * (side / 4.0);
+    const double wave = std::sin(p.x / 1.0) + std::sin(p.y / 1.7 + 1) + std::sin((p.x + p.y) / 4) + std::sin(p.x / 9.5);
+    cloud.colors->values[i] = glm::u16vec3(128 + 25 * wave, 120 + 20 * wave, 100 - 15 * wave);
+  }
+  return cloud;
+}
+
+double rms(const Image& a, const Image& b) {
+  double sum = 0;
+  for (size_t i = 0; i < a.pixels.size(); ++i) {
+    sum += std::pow(std::to_integer<int>(a.pixels[i]) - std::to_integer<int>(b.pixels[i]), 2);
+  }
+  return std::sqrt(sum / static_cast<double>(a.pixels.size()));
+}
+
+TEST_F(LevelsGLTest, ASwitchOfLevelsIsNoMoreToSeeThanAStepOfTheCamera) {
+  const auto& model = model_of(wavy_square(360));
+  const auto at = [&](double distance) {
+    PictureRequest request;
+    request.camera = Camera{{0, 0, distance}, {0, 0, 0}, {0, 1, 0}, 30};
+    request.width = request.height = 256;
+    request.spacing = 1;
+    return draw(model, request);
+  };
+  // The distance at which the last block of the finest level goes.
+  double near = 2;
+  double far = 40;
+  ASSERT_EQ(at(near).stats.levels.front().level, 0);
+  ASSERT_GT(at(far).stats.levels.front().level, 0);
+  while (far - near > 1e-4) {
+    const double middle = 0.5 * (near + far);
+    (at(middle).stats.levels.front().level == 0 ? near : far) = middle;
+  }
+  // A frame of a slow movement: a seventh of the distance in a second, at 30 frames.
+  const double step = 0.005 * near;
+  const double across = rms(at(near - step / 2).image, at(far + step / 2).image);
+  const double before = rms(at(near - 1.5 * step).image, at(near - step / 2).image);
+  const double after = rms(at(far + step / 2).image, at(far + 1.5 * step).image);
+  EXPECT_LE(across, std::max(before, after));
 }
 
 TEST_F(LevelsGLTest, PicturesAtOnceEndAsTheWholePictureDoes) {

@@ -1,0 +1,57 @@
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <cstdio>
+#include <cstdlib>
+#include <ctime>
+#include <filesystem>
+#include <memory>
+#include <utility>
+#include <vector>
+
+#include "model/model_file.h"
+#include "render/renderer.h"
+
+namespace surfcast::bench {
+
+template <typename T>
+T value_or_exit(Result<T> result) {
+  if (result) return std::move(*result);
+  std::fprintf(stderr, "%s\n", result.error().message.c_str());
+  std::exit(1);
+}
+
+inline double median(std::vector<double> values) {
+  std::sort(values.begin(), values.end());
+  return values[values.size() / 2];
+}
+
+/// Processor time of all threads of this process, milliseconds: other load on the machine disturbs it less than wall
+/// time, and on software GL it is the cost of a frame.
+inline double processor_ms() {
+  timespec t{};
+  clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
+  return static_cast<double>(t.tv_sec) * 1e3 + static_cast<double>(t.tv_nsec) * 1e-6;
+}
+
+inline std::shared_ptr<const ModelFile> open_or_exit(const std::filesystem::path& path) {
+  return std::make_shared<const ModelFile>(value_or_exit(ModelFile::open(path)));
+}
+
+inline Frame draw_or_exit(Renderer& renderer, const std::shared_ptr<const ModelFile>& model,
+                          const PictureRequest& request) {
+  const std::atomic<bool> never{false};
+  return value_or_exit(renderer.draw(model, request, never));
+}
+
+/// Milliseconds of a frame without those that depend on what was resident before it.
+inline double drawing_ms(const Frame& frame) {
+  double sum = 0;
+  for (const StageTime& stage : frame.stats.stages) {
+    if (stage.name != "load" && stage.name != "decode" && stage.name != "upload") sum += stage.milliseconds;
+  }
+  return sum;
+}
+
+}  // namespace surfcast::bench
