@@ -100,6 +100,31 @@ TEST(Partition, SeparatesAClusterFarSmallerThanTheSmallestCell) {
   expect_sound(cloud, partition_cloud(cloud, {}));
 }
 
+TEST(Partition, GivesADenseClusterInALargeThinCellABlockOfItsOwn) {
+  std::vector<glm::dvec3> points = random_points(1000, 0.01);
+  const std::vector<glm::dvec3> thin = random_points(1000, 1000, 2);
+  points.insert(points.end(), thin.begin(), thin.end());
+  SurfelCloud cloud = cloud_of(std::move(points), 10);
+  std::fill(cloud.radii.begin(), cloud.radii.begin() + 1000, 0.001F);
+  const Partition partition = partition_cloud(cloud, {});
+  expect_sound(cloud, partition);
+  for (const BlockPlan& block : partition.blocks) {
+    Box box;
+    for (size_t i = block.first; i < block.first + block.count; ++i) {
+      box.include(cloud.positions[partition.order[i]]);
+    }
+    // A step of a compact vertex, 2^-20 of the block, is about one of the lattice or less.
+    if (block.count >= kCrowd) {
+      EXPECT_LT(box.diagonal() / std::exp2(20), 2 * block.grid.scale.x);
+    }
+  }
+}
+
+TEST(Partition, AFewSurfelsFarApartShareABlock) {
+  SurfelCloud cloud = cloud_of(random_points(200, 1e5), 1);
+  EXPECT_EQ(partition_cloud(cloud, {}).blocks.size(), 1u);
+}
+
 TEST(Partition, SplitsUntilIndicesFitForTinyRadii) {
   SurfelCloud cloud = cloud_of(random_points(300, 1e6), 1e-3f);
   const Partition partition = partition_cloud(cloud, {});
