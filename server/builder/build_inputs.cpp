@@ -18,11 +18,11 @@ std::vector<ScanSchema> schemas_of(const std::vector<ScanStream>& streams) {
 }  // namespace
 
 Result<BuildInputs> BuildInputs::open(std::span<const std::filesystem::path> paths, std::optional<bool> z_up,
-                                      const std::function<void(double)>& progress) {
+                                      uint64_t most_bytes, const std::function<void(double)>& progress) {
   BuildInputs inputs;
   for (const std::filesystem::path& path : paths) {
     progress(static_cast<double>(inputs.streams_.size()) / static_cast<double>(paths.size()));
-    Result<ScanStream> stream = ScanStream::open(path);
+    Result<ScanStream> stream = ScanStream::open(path, {most_bytes - inputs.held_bytes()});
     if (!stream) return fail(std::move(stream.error()));
     for (size_t piece = 0; piece < stream->pieces(); ++piece) {
       inputs.pieces_.push_back({inputs.streams_.size(), piece});
@@ -38,6 +38,12 @@ uint64_t BuildInputs::size() const {
   uint64_t size = 0;
   for (const ScanStream& stream : streams_) size += stream.size();
   return size;
+}
+
+uint64_t BuildInputs::held_bytes() const {
+  uint64_t bytes = 0;
+  for (const ScanStream& stream : streams_) bytes += stream.held_bytes();
+  return bytes;
 }
 
 Box BuildInputs::bounds() const {

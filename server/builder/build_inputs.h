@@ -23,14 +23,16 @@ struct InputPiece {
 /// All inputs of a build, as one stream of points of one schema.
 class BuildInputs {
  public:
-  /// Opens all inputs, which reads each of them once. `z_up` overrides what they say about the vertical axis.
+  /// Opens all inputs, which reads each of them once, holding no more decoded than `most_bytes`. `z_up` overrides what
+  /// they say about the vertical axis.
   static Result<BuildInputs> open(std::span<const std::filesystem::path> paths, std::optional<bool> z_up,
-                                  const std::function<void(double)>& progress);
+                                  uint64_t most_bytes, const std::function<void(double)>& progress);
 
   [[nodiscard]] const ScanSchema& schema() const { return schema_; }
   [[nodiscard]] const std::vector<ScanStream>& streams() const { return streams_; }
-  [[nodiscard]] uint64_t size() const;  ///< points, unusable ones included
-  [[nodiscard]] Box bounds() const;     ///< of the usable positions
+  [[nodiscard]] uint64_t size() const;        ///< points, unusable ones included
+  [[nodiscard]] Box bounds() const;           ///< of the usable positions
+  [[nodiscard]] uint64_t held_bytes() const;  ///< of memory, for inputs that are decoded whole
   [[nodiscard]] size_t pieces() const { return pieces_.size(); }
   [[nodiscard]] std::vector<std::string> notes() const;
 

@@ -154,15 +154,19 @@ Result<BuildReport> build_model(std::span<const std::filesystem::path> inputs, c
                                 const BuildOptions& options, const BuildProgress& progress) {
   const Stopwatch stopwatch;
   BuildReport report;
+  const auto named = [&target](const Error& error) { return fail(error.kind, target.string() + ": " + error.message); };
   if (Status status = check_target(target, inputs); !status) return fail(std::move(status.error()));
+  const Result<uint64_t> budget = memory_budget(options.memory);
+  if (!budget) return named(budget.error());
   {
     StageClock clock(progress, report);
     clock.begin("reading", inputs.size());
-    const Result<BuildInputs> opened = BuildInputs::open(inputs, options.z_up, [&clock](double) { clock.step(); });
+    const Result<BuildInputs> opened =
+        BuildInputs::open(inputs, options.z_up, *budget, [&clock](double) { clock.step(); });
     if (!opened) return fail(opened.error());
     if (Status status = check_bounds(opened->bounds(), target); !status) return fail(std::move(status.error()));
-    Result<MemoryPlan> memory = plan_memory(options.memory, opened->schema());
-    if (!memory) return fail(memory.error().kind, target.string() + ": " + memory.error().message);
+    Result<MemoryPlan> memory = plan_memory(*budget, opened->held_bytes(), opened->schema());
+    if (!memory) return named(memory.error());
     if (options.part_points) memory->split_into(*options.part_points);
     report.memory_budget = memory->budget;
     report.scan.notes = opened->notes();

@@ -57,21 +57,24 @@ uint64_t machine_memory() {
   return std::min(pages * static_cast<uint64_t>(::sysconf(_SC_PAGE_SIZE)), control_group_limit());
 }
 
-Result<MemoryPlan> plan_memory(std::optional<uint64_t> budget, const ScanSchema& schema) {
-  MemoryPlan plan;
-  plan.per_point = point_bytes(schema) + kWorkPerPoint;
-  const uint64_t least = kReserve + static_cast<uint64_t>(kWithHalo * static_cast<double>(kLeastPart * plan.per_point));
+Result<uint64_t> memory_budget(std::optional<uint64_t> wanted) {
   const uint64_t machine = machine_memory();
-  if (budget && *budget > machine) {
-    return fail(ErrorKind::kLimit, "a memory budget of " + in_mebibytes(*budget) + " is more than the " +
-                                       in_mebibytes(machine) + " of this machine");
-  }
-  plan.budget = budget.value_or(std::max(machine / 4, least));
-  if (plan.budget < least) {
-    return fail(ErrorKind::kLimit, "a memory budget of " + in_mebibytes(plan.budget) +
+  if (!wanted || *wanted <= machine) return wanted.value_or(machine / 4);
+  return fail(ErrorKind::kLimit, "a memory budget of " + in_mebibytes(*wanted) + " is more than the " +
+                                     in_mebibytes(machine) + " of this machine");
+}
+
+Result<MemoryPlan> plan_memory(uint64_t budget, uint64_t held, const ScanSchema& schema) {
+  MemoryPlan plan;
+  plan.budget = budget;
+  plan.per_point = point_bytes(schema) + kWorkPerPoint;
+  const uint64_t least =
+      held + kReserve + static_cast<uint64_t>(kWithHalo * static_cast<double>(kLeastPart * plan.per_point));
+  if (budget < least) {
+    return fail(ErrorKind::kLimit, "a memory budget of " + in_mebibytes(budget) +
                                        " is too small for these points: it takes at least " + in_mebibytes(least));
   }
-  plan.for_parts = plan.budget - kReserve;
+  plan.for_parts = budget - kReserve - held;
   plan.whole_points = std::min<uint64_t>(plan.for_parts / plan.per_point, UINT32_MAX - 1);
   const double points = static_cast<double>(plan.for_parts) / (kWithHalo * static_cast<double>(plan.per_point));
   plan.part_points = std::max(kLeastPart, static_cast<uint64_t>(points / kPartsAtOnce));

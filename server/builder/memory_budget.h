@@ -33,8 +33,11 @@ struct MemoryPlan {
   }
 };
 
-/// Divides a budget for points of that schema; without a budget, a quarter of the machine's memory. Fails when the
-/// budget is too small to work with, or more than the machine has. The plan does not depend on the number of threads.
-Result<MemoryPlan> plan_memory(std::optional<uint64_t> budget, const ScanSchema& schema);
+/// The budget, or without one a quarter of the machine's memory. Fails when it is more than the machine has.
+Result<uint64_t> memory_budget(std::optional<uint64_t> wanted);
+
+/// Divides a budget for points of that schema; `held` bytes of it are taken for good. Fails when the budget is too
+/// small to work with. The plan does not depend on the number of threads.
+Result<MemoryPlan> plan_memory(uint64_t budget, uint64_t held, const ScanSchema& schema);
 
 }  // namespace surfcast

@@ -95,16 +95,25 @@ std::optional<double> claimed_memory(draco::DecoderBuffer& buffer) {
   return mesh_memory(buffer, header.encoder_method == draco::MESH_SEQUENTIAL_ENCODING);
 }
 
+/// 0 for bytes that are no Draco file.
+double claimed_memory(std::span<const std::byte> bytes) {
+  draco::DecoderBuffer buffer;
+  buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
+  return claimed_memory(buffer).value_or(0);
+}
+
 }  // namespace
 
 bool draco_claims_are_plausible(std::span<const std::byte> bytes) {
   // Real scans take 2 to 20 times their coded size.
   constexpr double kAlwaysAllowed = 256.0 * 1024 * 1024;
   constexpr double kMostExpansion = 256;
-  draco::DecoderBuffer buffer;
-  buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   const double allowed = std::max(kAlwaysAllowed, kMostExpansion * static_cast<double>(bytes.size()));
-  return claimed_memory(buffer).value_or(0) <= allowed;
+  return claimed_memory(bytes) <= allowed;
+}
+
+uint64_t draco_decoded_bytes(std::span<const std::byte> bytes) {
+  return static_cast<uint64_t>(claimed_memory(bytes));
 }
 
 }  // namespace surfcast

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <span>
 
 namespace surfcast {
@@ -9,5 +10,8 @@ namespace surfcast {
 /// the claims alone: whether decoding takes no more memory than a file of that many bytes warrants. True as well for
 /// bytes that are no Draco file, which the decoder refuses by itself.
 bool draco_claims_are_plausible(std::span<const std::byte> bytes);
+
+/// Bytes of memory that the points take once they are decoded, as far as a file says so; 0 if it does not.
+uint64_t draco_decoded_bytes(std::span<const std::byte> bytes);
 
 }  // namespace surfcast

@@ -129,7 +129,9 @@ bool is_mesh(std::span<const std::byte> bytes) {
 
 }  // namespace
 
-Result<std::unique_ptr<RowSource>> draco_rows(std::span<const std::byte> bytes) try {
+Result<std::unique_ptr<RowSource>> draco_rows(std::span<const std::byte> bytes, const DecodingLimit& limit) try {
+  // Draco's own copy of the points is there until the table is complete.
+  if (Status status = limit.check(2 * draco_decoded_bytes(bytes)); !status) return fail(std::move(status.error()));
   const Result<std::unique_ptr<draco::PointCloud>> cloud = decode(bytes);
   if (!cloud) return fail(cloud.error());
   std::vector<ColumnInfo> columns;

@@ -67,7 +67,7 @@ Result<PointTable> read_binary(const PcdHeader& header, Bytes data) {
 }
 
 /// Two sizes, then LZF data that expands to all values of the first field, all of the second, and so on.
-Result<PointTable> read_compressed(const PcdHeader& header, Bytes data) {
+Result<PointTable> read_compressed(const PcdHeader& header, Bytes data, const DecodingLimit& limit) {
   if (data.size() < 2 * sizeof(uint32_t)) return truncated(header);
   const auto compressed = load<uint32_t>(data.data());
   const auto expanded = load<uint32_t>(data.data() + sizeof(uint32_t));
@@ -77,6 +77,7 @@ Result<PointTable> read_compressed(const PcdHeader& header, Bytes data) {
   if (expanded % length != 0 || expanded / length != header.points) {
     return fail(ErrorKind::kInvalidInput, "PCD compressed data is not of the size that the header states");
   }
+  if (Status status = limit.check(expanded); !status) return fail(std::move(status.error()));
   std::optional<std::vector<uint8_t>> values = decompress_lzf(data.first(compressed), expanded);
   if (!values) return fail(ErrorKind::kInvalidInput, "PCD compressed data is damaged");
   PointTable table;
@@ -147,13 +148,13 @@ Result<std::unique_ptr<RowSource>> ascii_rows(const PcdHeader& header, Bytes dat
 
 }  // namespace
 
-Result<std::unique_ptr<RowSource>> pcd_rows(Bytes bytes) {
+Result<std::unique_ptr<RowSource>> pcd_rows(Bytes bytes, const DecodingLimit& limit) {
   const Result<PcdHeader> header = parse_pcd_header(bytes);
   if (!header) return fail(header.error());
   const Bytes data = bytes.subspan(header->data_offset);
   if (header->encoding == PcdEncoding::kAscii) return ascii_rows(*header, data);
   Result<PointTable> table =
-      header->encoding == PcdEncoding::kBinary ? read_binary(*header, data) : read_compressed(*header, data);
+      header->encoding == PcdEncoding::kBinary ? read_binary(*header, data) : read_compressed(*header, data, limit);
   if (!table) return fail(std::move(table.error()));
   return std::make_unique<SlicedRows>(traits_of(*header), columns_of(*header), std::move(*table));
 }

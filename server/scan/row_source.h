@@ -26,6 +26,13 @@ struct RowTraits {
   uint64_t announced = 0;        ///< rows that it states before the first of them
 };
 
+/// A file of a format that can only be decoded whole must not take more memory for that than this.
+struct DecodingLimit {
+  uint64_t most_bytes = UINT64_MAX;
+
+  [[nodiscard]] Status check(uint64_t bytes) const;
+};
+
 /// The rows of a file in pieces that are read in any order and from any thread. All pieces have the same columns, and
 /// at least one of them a row.
 class RowSource {
@@ -40,6 +47,8 @@ class RowSource {
   [[nodiscard]] virtual const std::vector<ColumnInfo>& columns() const = 0;
   [[nodiscard]] virtual size_t pieces() const = 0;
   [[nodiscard]] virtual Result<PointTable> read(size_t piece) const = 0;
+  /// Memory that decoded rows take for as long as this lives.
+  [[nodiscard]] virtual uint64_t held_bytes() const { return 0; }
 };
 
 }  // namespace surfcast

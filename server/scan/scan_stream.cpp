@@ -17,18 +17,19 @@
 namespace surfcast {
 namespace {
 
-Result<std::unique_ptr<RowSource>> rows_of(ScanFormat format, std::span<const std::byte> bytes) {
+Result<std::unique_ptr<RowSource>> rows_of(ScanFormat format, std::span<const std::byte> bytes,
+                                           const DecodingLimit& limit) {
   switch (format) {
     case ScanFormat::kPly:
       return ply_rows(bytes);
     case ScanFormat::kLas:
       return las_rows(bytes);
     case ScanFormat::kPcd:
-      return pcd_rows(bytes);
+      return pcd_rows(bytes, limit);
     case ScanFormat::kPtx:
       return ptx_rows(bytes);
     case ScanFormat::kDraco:
-      return draco_rows(bytes);
+      return draco_rows(bytes, limit);
     case ScanFormat::kText:
       break;
   }
@@ -71,11 +72,12 @@ Result<TableFacts> survey_rows(const RowSource& rows, const MappedFile* file) {
 
 }  // namespace
 
-Status ScanStream::survey(std::span<const std::byte> bytes, const std::filesystem::path& path) {
+Status ScanStream::survey(std::span<const std::byte> bytes, const std::filesystem::path& path,
+                          const DecodingLimit& limit) {
   path_ = path;
   const auto named = [&path](const Error& error) { return fail(error.kind, path.string() + ": " + error.message); };
   Result<std::unique_ptr<RowSource>> rows =
-      scan_format_of(bytes, path).and_then([bytes](ScanFormat format) { return rows_of(format, bytes); });
+      scan_format_of(bytes, path).and_then([&](ScanFormat format) { return rows_of(format, bytes, limit); });
   if (!rows) return named(rows.error());
   rows_ = std::move(*rows);
   const Result<TableFacts> facts = survey_rows(*rows_, file_ ? &*file_ : nullptr);
@@ -91,16 +93,17 @@ Status ScanStream::survey(std::span<const std::byte> bytes, const std::filesyste
 
 Result<ScanStream> ScanStream::open_content(std::span<const std::byte> bytes, const std::filesystem::path& path) {
   ScanStream stream;
-  if (Status status = stream.survey(bytes, path); !status) return fail(std::move(status.error()));
+  if (Status status = stream.survey(bytes, path, {}); !status) return fail(std::move(status.error()));
   return stream;
 }
 
-Result<ScanStream> ScanStream::open(const std::filesystem::path& path) {
+Result<ScanStream> ScanStream::open(const std::filesystem::path& path, const DecodingLimit& limit) {
   Result<MappedFile> file = MappedFile::open(path);
   if (!file) return fail(std::move(file.error()));
   ScanStream stream;
   stream.file_ = std::move(*file);
-  if (Status status = stream.survey(stream.file_->bytes(), path); !status) return fail(std::move(status.error()));
+  if (Status status = stream.survey(stream.file_->bytes(), path, limit); !status)
+    return fail(std::move(status.error()));
   return stream;
 }
 

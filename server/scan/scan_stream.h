@@ -22,7 +22,7 @@ class ScanStream {
  public:
   /// A scan of any supported format, told apart by content first and extension second. Every failure names the file and
   /// the fault; a file without points is a failure.
-  static Result<ScanStream> open(const std::filesystem::path& path);
+  static Result<ScanStream> open(const std::filesystem::path& path, const DecodingLimit& limit = {});
   /// The same for a file's content in memory, which must outlive the stream; `path` only names it.
   static Result<ScanStream> open_content(std::span<const std::byte> bytes, const std::filesystem::path& path);
 
@@ -30,11 +30,12 @@ class ScanStream {
   [[nodiscard]] uint64_t size() const { return size_; }        ///< points, unusable ones included
   [[nodiscard]] const Box& bounds() const { return bounds_; }  ///< of the points with finite coordinates
   [[nodiscard]] size_t pieces() const { return rows_->pieces(); }
+  [[nodiscard]] uint64_t held_bytes() const { return rows_->held_bytes(); }  ///< of memory, for formats decoded whole
   /// Some of the points; all pieces in their order are all of them in theirs. Any thread may ask.
   [[nodiscard]] Result<ScanPoints> read(size_t piece) const;
 
  private:
-  Status survey(std::span<const std::byte> bytes, const std::filesystem::path& path);
+  Status survey(std::span<const std::byte> bytes, const std::filesystem::path& path, const DecodingLimit& limit);
 
   std::filesystem::path path_;
   std::optional<MappedFile> file_;  ///< none for content that others hold

@@ -24,6 +24,13 @@ class SlicedRows : public RowSource {
     for (Column& column : slice.columns) column.first += first * column.stride;
     return slice;
   }
+  [[nodiscard]] uint64_t held_bytes() const override {
+    uint64_t bytes = 0;
+    for (const ScalarValues& values : table_.storage) {
+      bytes += std::visit([](const auto& typed) { return typed.size() * sizeof(typed[0]); }, values);
+    }
+    return bytes;
+  }
 
  private:
   RowTraits traits_;

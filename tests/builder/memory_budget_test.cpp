@@ -19,34 +19,42 @@ TEST(MemoryBudgetTest, SizesAreBytesOrPowersOf1024) {
 }
 
 TEST(MemoryBudgetTest, ABudgetTooSmallSaysTheLeastThatWorks) {
-  const Result<MemoryPlan> plan = plan_memory(uint64_t{64} << 20, {});
+  const Result<MemoryPlan> plan = plan_memory(uint64_t{64} << 20, 0, {});
   ASSERT_FALSE(plan);
   const std::string message = plan.error().message;
   EXPECT_THAT(message, HasSubstr("64M is too small"));
   const size_t at = message.rfind(' ') + 1;
   const std::optional<uint64_t> least = parse_memory_size(message.substr(at));
   ASSERT_TRUE(least) << message;
-  EXPECT_TRUE(plan_memory(*least, {}));
+  EXPECT_TRUE(plan_memory(*least, 0, {}));
 }
 
 TEST(MemoryBudgetTest, NoMoreThanTheMachineHas) {
-  EXPECT_FALSE(plan_memory(machine_memory() + 1, {}));
-  const Result<MemoryPlan> plan = plan_memory(std::nullopt, {});
-  ASSERT_TRUE(plan);
-  EXPECT_LE(plan->budget, machine_memory());
+  EXPECT_FALSE(memory_budget(machine_memory() + 1));
+  EXPECT_EQ(*memory_budget(machine_memory()), machine_memory());
+  EXPECT_LE(*memory_budget(std::nullopt), machine_memory() / 4);
 }
 
 TEST(MemoryBudgetTest, AttributesAndPartsAreCounted) {
   ScanSchema rich;
   rich.color_bits = 16;
   for (int i = 0; i < 20; ++i) rich.scalars.push_back({"scalar", ScalarType::kFloat64});
-  const Result<MemoryPlan> plain = plan_memory(uint64_t{1} << 30, {});
-  const Result<MemoryPlan> full = plan_memory(uint64_t{1} << 30, rich);
+  const Result<MemoryPlan> plain = plan_memory(uint64_t{1} << 30, 0, {});
+  const Result<MemoryPlan> full = plan_memory(uint64_t{1} << 30, 0, rich);
   ASSERT_TRUE(plain && full);
   EXPECT_LT(full->part_points, plain->part_points);
   EXPECT_FALSE(full->fits_whole(plain->whole_points));
   EXPECT_GE(plain->parts_at_once(plain->part_points), 1U);
   EXPECT_EQ(plain->parts_at_once(uint64_t{1} << 40), 0U);
+}
+
+TEST(MemoryBudgetTest, WhatInputsHoldIsTakenFromTheParts) {
+  const uint64_t budget = uint64_t{1} << 30;
+  const Result<MemoryPlan> free = plan_memory(budget, 0, {});
+  const Result<MemoryPlan> held = plan_memory(budget, uint64_t{100} << 20, {});
+  ASSERT_TRUE(free && held);
+  EXPECT_EQ(free->for_parts - held->for_parts, uint64_t{100} << 20);
+  EXPECT_FALSE(plan_memory(budget, budget, {}));
 }
 
 }  // namespace

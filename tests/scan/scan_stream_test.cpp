@@ -1,6 +1,7 @@
 #include "scan/scan_stream.h"
 
 #include <filesystem>
+#include <fstream>
 #include <random>
 #include <string>
 
@@ -120,6 +121,20 @@ TEST(ScanStreamTest, DefaultViewpointFarFromThePointsIsNoSensor) {
   const std::string header = testing::pcd_header(fields, 1, 2, "ascii");
   EXPECT_TRUE(read("near.pcd", header + "-1 0 1\n1 0 1\n")->sensor);
   EXPECT_FALSE(read("far.pcd", header + "5000 0 0\n5001 0 0\n")->sensor);
+}
+
+TEST(ScanStreamTest, FormatsDecodedWholeAreRefusedWhereMemoryDoesNotSuffice) {
+  for (const Sample& sample : testing::samples()) {
+    const fs::path path = fs::path(::testing::TempDir()) / ("limited_" + sample.name);
+    std::ofstream(path, std::ios::binary) << sample.text;
+    const Result<ScanStream> stream = ScanStream::open(path, {16});
+    const bool whole = sample.text.starts_with("DRACO") || sample.text.find("binary_compressed") != std::string::npos;
+    EXPECT_EQ(stream.has_value(), !whole) << sample.name;
+    if (whole) {
+      EXPECT_THAT(stream.error().message, HasSubstr("can only be decoded whole")) << sample.name;
+    }
+    fs::remove(path);
+  }
 }
 
 }  // namespace
