@@ -5,10 +5,11 @@
 namespace surfcast {
 namespace {
 
-/// The cloud that `write_model` made tests/data/sphere-and-grid-v2.surf of, when version 2 of the format was new.
+/// The cloud of tests/data/sphere-and-grid-v2.surf, made when version 2 of the format was new: `build_subtree` with
+/// leaves of at most 64 surfels, so that a small file has coarser levels.
 SurfelCloud fixture_cloud() {
   SurfelCloud cloud = sphere_cloud(200);
-  const Grid grid{{0.01, 0.01, 0.01}, {5000000.3, -70.7, 12}};
+  const Grid grid{{0.01, 0.01, 0.01}, {500.3, -70.7, 12}};
   for (int i = 0; i < 50; ++i) cloud.positions.push_back(grid.position({i * i, 5 * i, -i}));
   cloud.sources = {{"sphere.ply", 0, 200, std::nullopt}, {"grid.las", 200, 50, grid}};
   cloud.colors->bits = 16;
@@ -32,6 +33,7 @@ TEST(ModelFixture, OfVersionTwoIsStillRead) {
   EXPECT_EQ(model->info().source_names, (std::vector<std::string>{"sphere.ply", "grid.las"}));
   EXPECT_EQ(model->info().scalar_names, (std::vector<std::string>{"gps_time", "id"}));
   ASSERT_EQ(model->info().surfels, cloud.size());
+  EXPECT_GT(model->info().levels, 1);
   const DecodedModel decoded(*model);
   for (size_t i = 0; i < cloud.size(); ++i) {
     const auto [block, at] = decoded.surfels[i];
@@ -45,6 +47,26 @@ TEST(ModelFixture, OfVersionTwoIsStillRead) {
     ASSERT_EQ(std::get<std::vector<double>>(block->scalars[0].values)[at],
               std::get<std::vector<double>>(cloud.scalars[0].values)[i]);
   }
+}
+
+TEST(ModelFixture, HasCoarseBlocksThatDecode) {
+  const Result<ModelFile> model = ModelFile::open(std::string(SURFCAST_TEST_DATA) + "/sphere-and-grid-v2.surf");
+  ASSERT_TRUE(model) << model.error().message;
+  size_t coarse = 0;
+  for (size_t b = 0; b < model->blocks().size(); ++b) {
+    if (model->blocks()[b].level == 0) continue;
+    const Result<DecodedBlock> block = model->decode(b);
+    ASSERT_TRUE(block) << block.error().message;
+    EXPECT_TRUE(block->scalars.empty());
+    for (size_t i = 0; i < block->size() && model->blocks()[b].spacing < 0.5; ++i) {
+      const glm::dvec3 p = block->position(i);
+      if (glm::length(p) > 2) continue;  // of the grid
+      EXPECT_NEAR(glm::length(p), 1, 0.05);
+      EXPECT_GT(glm::dot(glm::normalize(p), glm::dvec3(block->normals[i])), 0.99);
+      ++coarse;
+    }
+  }
+  EXPECT_GT(coarse, 100U);
 }
 
 }  // namespace
