@@ -62,6 +62,7 @@ std::vector<PartRows> sort_out(const ScanPoints& points, const PartFinder& finde
     });
   }
   std::vector<PartRows> parts;
+  parts.reserve(rows.size());
   for (auto& [key, list] : rows) parts.push_back({key.first, key.second, std::move(list)});
   return parts;
 }
