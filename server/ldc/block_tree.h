@@ -16,11 +16,12 @@ namespace surfcast {
 struct BlockEntry {
   static constexpr uint32_t kNoParent = UINT32_MAX;
 
-  uint32_t parent = kNoParent;        ///< index of the block that stands for it and its siblings; below its own index
-  int level = 0;                      ///< 0: surfels of the source; else one more than its highest child's
-  OctreeKey key;                      ///< the octree cell that holds it
-  Box bounds;                         ///< of the surfel centres, world units
-  double spacing = 0;                 ///< median radius of its surfels, world units
+  uint32_t parent = kNoParent;  ///< index of the block that stands for it and its siblings; below its own index
+  int level = 0;                ///< 0: surfels of the source; else one more than its highest child's
+  OctreeKey key;                ///< the octree cell that holds it
+  Box bounds;                   ///< of the surfel centres, world units
+  /// Median radius of its surfels, world units; of a coarse block at least that of a full grid of its rays.
+  double spacing = 0;
   double max_radius = 0;              ///< largest radius of its surfels: what `bounds` must grow by to hold the discs
   std::optional<NormalCone> normals;  ///< holds all its normals; none when the model is not oriented
   uint32_t surfels = 0;

@@ -158,6 +158,7 @@ std::vector<uint32_t> blocks_of(std::span<const FrontCell> cells) {
 TreeBlock make_block(const Raised& cell, std::span<const float> weights, const CoarseAttributes& attributes) {
   TreeBlock block{
       cell.key, cell.coarse.grid, {}, make_coarse_cloud(cell.coarse.surfels, attributes), blocks_of(cell.parts)};
+  block.ray_spacing = cell.coarse.spacing;
   block.coarse->weights.assign(weights.begin(), weights.end());
   return block;
 }

@@ -224,7 +224,7 @@ CoarseCell reduce(std::span<const CoarseSurfel> surfels, const RootCube& root, c
     if (lines > 1 && !few_enough(averages.size(), surfels.size())) continue;
     const Grid grid{glm::dvec3(cube.spacing / kStepsPerRay), root.min};
     snap(averages, grid, cell, int64_t{lines} * kStepsPerRay);
-    return {grid, std::move(averages)};
+    return {grid, static_cast<float>(kGridRadius * cube.spacing), std::move(averages)};
   }
 }
 

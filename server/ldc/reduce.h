@@ -17,7 +17,8 @@ inline constexpr size_t kMaxCoarseSurfels = 16384;
 
 /// The coarse surfels of one octree cell.
 struct CoarseCell {
-  Grid grid;  ///< the lattice their positions lie on
+  Grid grid;          ///< the lattice their positions lie on
+  float spacing = 0;  ///< radius of a surfel of a surface that all rays meet, world units
   std::vector<CoarseSurfel> surfels;
 };
 

@@ -18,6 +18,7 @@ struct TreeBlock {
   std::vector<uint32_t> members;        ///< of a leaf: surfels of the cloud it was made from
   std::optional<SurfelCloud> coarse;    ///< of a coarse block: its surfels, with weights
   std::vector<uint32_t> children = {};  ///< numbers of blocks before this one
+  float ray_spacing = 0;                ///< of a coarse block: see CoarseCell::spacing
 };
 
 /// A cell as coarse as the levels made so far show it.

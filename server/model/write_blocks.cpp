@@ -1,5 +1,6 @@
 #include "model/write_blocks.h"
 
+#include <algorithm>
 #include <atomic>
 #include <numeric>
 #include <utility>
@@ -17,7 +18,10 @@ EncodedBlock encode(const SurfelCloud& cloud, const TreeBlock& block) {
   if (!block.coarse) return encode_block(cloud, block.members, block.grid);
   std::vector<uint32_t> all(block.coarse->size());
   std::iota(all.begin(), all.end(), 0);
-  return encode_block(*block.coarse, all, block.grid);
+  EncodedBlock encoded = encode_block(*block.coarse, all, block.grid);
+  // Where rays meet many small pieces of surface, radii are small and yet nothing finer than the rays is shown.
+  encoded.spacing = std::min(std::max(encoded.spacing, block.ray_spacing), encoded.max_radius);
+  return encoded;
 }
 
 }  // namespace

@@ -151,6 +151,7 @@ TEST(Reduce, AVolumeFullOfPointsIsSampledFartherApart) {
   EXPECT_LE(coarse.surfels.size(), kMaxCoarseSurfels);
   EXPECT_LT(coarse.surfels.size(), leaves.size() / 2);
   EXPECT_GT(coarse.surfels.size(), 1000U);
+  EXPECT_GT(coarse.spacing, 2 * kRay) << "and says so";
 }
 
 TEST(Reduce, TheClassOfTheLargestAreaWins) {
