@@ -2,6 +2,8 @@
 
 #include <cstdint>
 #include <memory>
+#include <tuple>
+#include <utility>
 
 #include "base/result.h"
 #include "ldc/block_tree.h"
@@ -43,7 +45,8 @@ struct BlockId {
   uint64_t model = 0;  ///< BlockSource::id
   uint32_t block = 0;
 
-  auto operator<=>(const BlockId&) const = default;
+  bool operator==(const BlockId&) const = default;
+  bool operator<(const BlockId& other) const { return std::tie(model, block) < std::tie(other.model, other.block); }
 };
 
 }  // namespace surfcast
