@@ -1,64 +1,20 @@
 #include "scan/orient_normals.h"
 
 #include <algorithm>
-#include <array>
 #include <bit>
 #include <cmath>
 #include <glm/geometric.hpp>
 
 #include "scan/first_equals.h"
-#include "scan/signed_forest.h"
+#include "scan/links.h"
+#include "scan/spread_signs.h"
 
 namespace surfcast {
 namespace {
 
-/// Neighbours of each site that signs spread to; more only costs time.
-constexpr size_t kLinks = 8;
-
 /// One in so many sites near a border ties the trees of two parts together. The choice follows from the position, so
 /// that both parts make the same.
 constexpr uint64_t kBorderSample = 16;
-
-struct Link {
-  uint32_t a;
-  uint32_t b;
-};
-
-std::span<const uint32_t> links_of(const NeighbourGraph& graph, size_t site) {
-  return graph.of(site).first(std::min(kLinks, graph.degree));
-}
-
-/// Calls `use(a, b)` once for every pair of linked sites.
-template <typename Use>
-void for_each_link(const NeighbourGraph& graph, size_t sites, const Use& use) {
-  for (uint32_t a = 0; a < sites; ++a) {
-    for (const uint32_t b : links_of(graph, a)) {
-      const auto back = links_of(graph, b);
-      if (a < b || std::find(back.begin(), back.end(), a) == back.end()) use(a, b);
-    }
-  }
-}
-
-/// Links by falling |n . n'|, in steps of 1/4095: a counting sort, and stable, so that the order is always the same.
-std::vector<Link> sorted_links(const NeighbourGraph& graph, std::span<const glm::vec3> normals) {
-  constexpr size_t kSteps = 4096;
-  const auto step_of = [&normals](uint32_t a, uint32_t b) {
-    const float similarity = std::min(std::abs(glm::dot(normals[a], normals[b])), 1.0F);
-    return static_cast<size_t>((1.0F - similarity) * (kSteps - 1));
-  };
-  std::array<size_t, kSteps + 1> starts{};
-  for_each_link(graph, normals.size(), [&](uint32_t a, uint32_t b) { ++starts[step_of(a, b) + 1]; });
-  for (size_t i = 0; i < kSteps; ++i) starts[i + 1] += starts[i];
-  std::vector<Link> links(starts[kSteps]);
-  for_each_link(graph, normals.size(), [&](uint32_t a, uint32_t b) { links[starts[step_of(a, b)]++] = {a, b}; });
-  return links;
-}
-
-SignedForest spread_signs(const NeighbourGraph& graph, std::span<const glm::vec3> normals) {
-  SignedForest forest(normals.size());
-  for (const auto& [a, b] : sorted_links(graph, normals)) forest.join(a, b, glm::dot(normals[a], normals[b]) < 0);
-  return forest;
-}
 
 /// The square of the distance to the farthest neighbour: in proportion to the area a site stands for.
 double area_of(const SitesOfPart& part, size_t site) {
@@ -157,7 +113,7 @@ std::vector<uint32_t> orient_normals(const SitesOfPart& part, std::vector<glm::v
   if (nothing_open) {
     for (size_t i = 0; i < normals.size(); ++i) signs.settled_area += part.places[i].own ? area_of(part, i) : 0;
   } else {
-    SignedForest forest = spread_signs(part.graph, normals);
+    SignedForest forest = spread_signs(part.sites, part.graph, normals);
     tree_of = number_trees(forest, normals, signs);
     vote(part, normals, tree_of, signs);
     sample_border(part, normals, tree_of, signs);

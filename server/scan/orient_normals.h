@@ -32,8 +32,7 @@ struct SitesOfPart {
   std::span<const SitePlace> places;
 };
 
-/// Gives normals of unknown sign consistent ones: signs spread along the minimum spanning forest of the neighbour graph
-/// with edge weights 1 - |n . n'| (Hoppe et al. 1992, section 3.3). The sign of each tree of that forest stays open;
+/// Gives normals of unknown sign consistent ones (see spread_signs.h). The sign of each tree of that forest stays open;
 /// what settles it goes to `signs`. Normals that are known get their final sign. Returns the tree of every site, or
 /// kNoTree.
 std::vector<uint32_t> orient_normals(const SitesOfPart& part, std::vector<glm::vec3>& normals, PartSigns& signs);

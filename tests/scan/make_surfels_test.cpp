@@ -3,6 +3,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <random>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -225,6 +226,45 @@ TEST(MakeSurfelsTest, TerrainFacesUp) {
   const Made made(scan_of(hills));
   EXPECT_TRUE(made.cloud.oriented);
   for (const glm::vec3& n : made.cloud.normals) EXPECT_GT(n.z, 0.5F);
+}
+
+/// A house of 8 x 6 x 5 metres at the origin, with a flat roof, on a lawn; scanned at random places with noise, nothing
+/// beneath the house.
+std::vector<glm::dvec3> house_on_lawn(uint32_t seed) {
+  std::mt19937 random(seed);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::normal_distribution<double> noise(0, 0.03);
+  std::vector<glm::dvec3> points;
+  const auto add = [&](double x, double y, double z) {
+    points.emplace_back(x + noise(random), y + noise(random), z + noise(random));
+  };
+  while (points.size() < 14'000) {
+    const double x = 8 * unit(random);
+    const double y = 8 * unit(random);
+    if (std::abs(x) > 4 || std::abs(y) > 3) add(x, y, 0);
+  }
+  for (int i = 0; i < 3'000; ++i) add(4 * unit(random), 3 * unit(random), 5);
+  for (int i = 0; i < 2'500; ++i) {
+    const double side = i % 2 == 0 ? 1 : -1;
+    add(4 * side, 3 * unit(random), 2.5 + 2.5 * unit(random));
+    add(4 * unit(random), 3 * side, 2.5 + 2.5 * unit(random));
+  }
+  return points;
+}
+
+TEST(MakeSurfelsTest, HousesAreNotInsideOutOnTheirGround) {
+  for (uint32_t seed = 1; seed <= 6; ++seed) {
+    const Made made(scan_of(house_on_lawn(seed)));
+    size_t inwards = 0;
+    for (size_t i = 0; i < made.cloud.size(); ++i) {
+      const glm::dvec3& p = made.cloud.positions[i];
+      // Towards the middle of the house, or of the earth.
+      const glm::dvec3 inside = p.z > 0.2 ? glm::dvec3(0, 0, 2.5) - p : glm::dvec3(0, 0, -1);
+      inwards += glm::dot(glm::dvec3(made.cloud.normals[i]), inside) > 0 ? 1 : 0;
+    }
+    EXPECT_TRUE(made.cloud.oriented) << seed;
+    EXPECT_LT(inwards, made.cloud.size() / 500) << seed;
+  }
 }
 
 TEST(MakeSurfelsTest, SphereNormalsPointOutwards) {
