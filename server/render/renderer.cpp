@@ -52,6 +52,7 @@ std::vector<LevelStats> level_stats(const BlockTree& tree, const BlockSelection&
   for (const uint32_t block : selection.target) ++levels[tree.blocks()[block].level].selected;
   for (const uint32_t block : selection.draw) ++levels[tree.blocks()[block].level].drawn;
   std::vector<LevelStats> stats;
+  stats.reserve(levels.size());
   for (auto& [level, counts] : levels) stats.push_back({level, counts.selected, counts.drawn});
   return stats;
 }
