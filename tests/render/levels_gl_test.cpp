@@ -79,7 +79,7 @@ TEST_F(LevelsGLTest, APlaneSeenAlongItHasNoSeams) {
   request.camera = Camera{{0, -3.2, 0.8}, {0, -0.6, 0}, {0, 0, 1}, 40};
   request.width = 480;
   request.height = 320;
-  expect_no_seams(model, request, {1.5, 2, 3, 4, 6});
+  expect_no_seams(model, request, {2, 4, 6, 8, 12, 16});
 }
 
 TEST_F(LevelsGLTest, ASphereHasNoSeams) {
