@@ -270,7 +270,7 @@ void FramedSession::handle_picture(const wire::Request& request) {
   draw_next();
 }
 
-/// Gives the service what it may have of this session's wishes.
+/// Gives the service what it may have of this client's wishes.
 void FramedSession::draw_next() {
   while (auto next = window_.next(outgoing_bytes_)) {
     const uint64_t id = next->first;
@@ -296,7 +296,7 @@ void FramedSession::handle_other(const wire::Request& request) {
                                    });
 }
 
-/// A function for any thread that hands an answer over to this session. The io_context runs on until it was called.
+/// A function for any thread that hands an answer over to this object. The io_context runs on until it was called.
 std::function<void(Outcome)> FramedSession::answer_later(uint64_t id) {
   return [self = shared_from_this(), id, work = asio::make_work_guard(socket_.get_executor())](Outcome outcome) {
     asio::post(work.get_executor(),

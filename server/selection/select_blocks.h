@@ -53,8 +53,7 @@ struct BlockSelection {
 ///   the wanted spacing or the budget is used up: the cut is the one of smallest error that fits. A block whose
 ///   children do not fit stays; others may still be refined. The roots are taken even if they alone exceed the budget.
 /// - `was_refined` is `refined` of the picture before, or empty. What was refined stays so until its projected spacing
-/// is a
-///   fifth below the wanted one, so that small movements do not switch levels back and forth. The spacing asked for
+///   is a fifth below the wanted one, so that small movements do not switch levels back and forth. The wanted spacing
 ///   is reached all the same: switching is only ever late on the way to coarser blocks.
 /// - Where a block of the target is not resident, its nearest resident ancestor stands in for it and all its siblings,
 ///   or, where the view just became coarser and the budget allows, its resident descendants.
