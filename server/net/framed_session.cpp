@@ -254,6 +254,11 @@ void FramedSession::handle(const wire::Request& request) {
       answer.mutable_pong();
       return send(answer_frame(answer));
     }
+    case wire::Request::kPickSurfel:
+    case wire::Request::kOpenView:
+    case wire::Request::kUpdateView:
+    case wire::Request::kFramePainted:
+    case wire::Request::kCloseView:
     case wire::Request::KIND_NOT_SET:
       break;
   }
