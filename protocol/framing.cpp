@@ -25,15 +25,28 @@ Result<size_t> frame_length(std::span<const std::byte, kFrameHeaderBytes> header
               "a message of " + std::to_string(length) + " bytes is larger than the limit of " + std::to_string(limit));
 }
 
-Result<std::vector<std::byte>> encode_frame(const google::protobuf::MessageLite& message, size_t limit) {
+std::array<std::byte, kFrameHeaderBytes> frame_header(size_t length) {
+  std::array<std::byte, kFrameHeaderBytes> header{};
+  store_u32(header.data(), static_cast<uint32_t>(length));
+  return header;
+}
+
+Result<std::vector<std::byte>> encode_message(const google::protobuf::MessageLite& message, size_t limit) {
   const size_t length = message.ByteSizeLong();
   if (length > limit) {
     return fail(ErrorKind::kLimit, "the answer of " + std::to_string(length) + " bytes is larger than the limit of " +
                                        std::to_string(limit));
   }
-  std::vector<std::byte> frame(kFrameHeaderBytes + length);
-  store_u32(frame.data(), static_cast<uint32_t>(length));
-  message.SerializeWithCachedSizesToArray(reinterpret_cast<uint8_t*>(frame.data() + kFrameHeaderBytes));
+  std::vector<std::byte> bytes(length);
+  message.SerializeWithCachedSizesToArray(reinterpret_cast<uint8_t*>(bytes.data()));
+  return bytes;
+}
+
+Result<std::vector<std::byte>> encode_frame(const google::protobuf::MessageLite& message, size_t limit) {
+  Result<std::vector<std::byte>> frame = encode_message(message, limit);
+  if (!frame) return frame;
+  const auto header = frame_header(frame->size());
+  frame->insert(frame->begin(), header.begin(), header.end());
   return frame;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <optional>
@@ -24,7 +25,12 @@ inline constexpr size_t kMaxAnswerBytes = size_t{512} << 20;
 /// The length announced by a frame's header, checked against the limit before anyone allocates for it.
 Result<size_t> frame_length(std::span<const std::byte, kFrameHeaderBytes> header, size_t limit);
 
-/// A message with its length before it, ready to be sent. Fails when it is larger than `limit`.
+/// What goes before a message of that length, which is within a limit.
+std::array<std::byte, kFrameHeaderBytes> frame_header(size_t length);
+
+/// A message alone. Fails when it is larger than `limit`.
+Result<std::vector<std::byte>> encode_message(const google::protobuf::MessageLite& message, size_t limit);
+/// A message with its length before it. Fails when it is larger than `limit`.
 Result<std::vector<std::byte>> encode_frame(const google::protobuf::MessageLite& message, size_t limit);
 
 /// Fills `message` from the bytes of one frame, header left out.

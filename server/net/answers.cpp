@@ -1,0 +1,61 @@
+#include "net/answers.h"
+
+#include <utility>
+
+#include "net/convert.h"
+#include "protocol/errors.h"
+#include "protocol/framing.h"
+
+namespace surfcast {
+namespace {
+
+Outcome failure(uint64_t id, const Error& error) {
+  return {.answer = encode_error(id, error), .failed = true, .picture_bytes = 0, .stats = {}};
+}
+
+Outcome plain(const wire::Answer& answer) {
+  return {.answer = encode_answer(answer), .failed = false, .picture_bytes = 0, .stats = {}};
+}
+
+}  // namespace
+
+Bytes encode_error(uint64_t id, const Error& error) {
+  wire::Answer answer;
+  answer.set_id(id);
+  to_wire(error, *answer.mutable_error());
+  return *encode_message(answer, kMaxAnswerBytes);
+}
+
+Bytes encode_answer(const wire::Answer& answer) {
+  Result<Bytes> bytes = encode_message(answer, kMaxAnswerBytes);
+  return bytes ? std::move(*bytes) : encode_error(answer.id(), bytes.error());
+}
+
+Outcome outcome_of(uint64_t id, Result<EncodedPicture> picture) {
+  if (!picture) return failure(id, picture.error());
+  Outcome outcome;
+  outcome.picture_bytes = picture->bytes.size();
+  outcome.stats = picture->stats;
+  wire::Answer answer;
+  answer.set_id(id);
+  to_wire(std::move(*picture), *answer.mutable_picture());
+  outcome.answer = encode_answer(answer);
+  return outcome;
+}
+
+Outcome outcome_of(uint64_t id, const std::vector<std::string>& names) {
+  wire::Answer answer;
+  answer.set_id(id);
+  to_wire(names, *answer.mutable_model_list());
+  return plain(answer);
+}
+
+Outcome outcome_of(uint64_t id, const std::string& name, const Result<ModelDescription>& description) {
+  if (!description) return failure(id, description.error());
+  wire::Answer answer;
+  answer.set_id(id);
+  to_wire(name, *description, *answer.mutable_model_description());
+  return plain(answer);
+}
+
+}  // namespace surfcast

@@ -1,0 +1,35 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/result.h"
+#include "service/model_source.h"
+#include "service/render_service.h"
+#include "surfcast.pb.h"
+
+namespace surfcast {
+
+/// One encoded message, without a length before it.
+using Bytes = std::vector<std::byte>;
+
+/// An answer as bytes, and what is to be counted. Made on the service's threads.
+struct Outcome {
+  Bytes answer;
+  bool failed = false;
+  size_t picture_bytes = 0;         ///< encoded
+  std::optional<FrameStats> stats;  ///< of a picture
+};
+
+/// The bytes of an answer, or of the error that it is too large.
+Bytes encode_answer(const wire::Answer& answer);
+Bytes encode_error(uint64_t id, const Error& error);
+
+Outcome outcome_of(uint64_t id, Result<EncodedPicture> picture);
+Outcome outcome_of(uint64_t id, const std::vector<std::string>& names);
+Outcome outcome_of(uint64_t id, const std::string& name, const Result<ModelDescription>& description);
+
+}  // namespace surfcast
