@@ -22,11 +22,36 @@ struct ServeCommand {
   std::vector<std::filesystem::path> paths;
   std::string listen = "127.0.0.1:7600";
   std::filesystem::path cache;
+  std::filesystem::path viewer;
   RendererConfig renderer;
   ServerConfig server;
 };
 
-Status serve(const ServeCommand& command) {
+/// Where the viewer is when nobody says: where it is built, or where it is installed. Empty: nowhere.
+std::filesystem::path find_viewer() {
+  namespace fs = std::filesystem;
+  std::error_code code;
+  const fs::path programs = fs::read_symlink("/proc/self/exe", code).parent_path();
+  for (const char* place : {"../client/web/dist", "../share/surfcast/viewer"}) {
+    const fs::path folder = (programs / place).lexically_normal();
+    if (fs::is_regular_file(folder / "index.html", code)) return folder;
+  }
+  return {};
+}
+
+/// Null when there is no viewer and none was asked for.
+Result<std::shared_ptr<const SiteFiles>> read_viewer(const std::filesystem::path& wanted) {
+  const std::filesystem::path folder = wanted.empty() ? find_viewer() : wanted;
+  if (folder.empty()) return nullptr;
+  Result<SiteFiles> files = SiteFiles::read(folder);
+  if (!files) return fail(files.error());
+  return std::make_shared<const SiteFiles>(std::move(*files));
+}
+
+Status serve(ServeCommand command) {
+  Result<std::shared_ptr<const SiteFiles>> viewer = read_viewer(command.viewer);
+  if (!viewer) return fail(viewer.error());
+  command.server.viewer = std::move(*viewer);
   Result<std::unique_ptr<ModelCatalogue>> models = find_models(command.paths, command.cache);
   if (!models) return fail(models.error());
   const auto service = RenderService::start(**models, model_painters(**models, command.renderer), {});
@@ -60,6 +85,11 @@ void add_serve_command(CLI::App& app, Status& outcome) {
   sub->add_option("--connections", command->server.connections, "Most connections at once (default 256)")
       ->envname(environment_name("connections"))
       ->check(CLI::PositiveNumber);
+  sub->add_option("--viewer", command->viewer, "Folder of the viewer for browsers (default: beside the program)")
+      ->envname(environment_name("viewer"));
+  sub->add_option("--allow-origin", command->server.allowed_origins,
+                  "Origin of other pages that may connect (https://example.org); may be given again")
+      ->envname(environment_name("allow-origin"));
   sub->callback([command, &outcome] {
     const Result<Endpoint> endpoint = parse_endpoint(command->listen);
     if (!endpoint) throw CLI::ValidationError("--listen", endpoint.error().message);

@@ -14,6 +14,11 @@ using nlohmann::json;
 
 constexpr std::string_view kJson = "application/json";
 
+/// What a page of the viewer may load and talk to: its own server, and pictures that it made itself.
+constexpr std::string_view kPolicy =
+    "default-src 'self'; img-src 'self' blob: data:; connect-src 'self' ws: wss:; style-src 'self' 'unsafe-inline'; "
+    "worker-src 'self' blob:; base-uri 'none'; form-action 'none'; frame-ancestors 'self'";
+
 unsigned status_of(ErrorKind kind) {
   switch (kind) {
     case ErrorKind::kInvalidInput:
@@ -152,6 +157,20 @@ HttpAnswer picture_answer(EncodedPicture picture) {
                     {"X-Surfcast-Converged", picture.converged ? "true" : "false"},
                     {"Cache-Control", "no-cache"}};
   answer.body = std::move(picture.bytes);
+  return answer;
+}
+
+HttpAnswer file_answer(const SiteFile& file, std::string_view if_none_match) {
+  HttpAnswer answer;
+  answer.content_type = file.media_type;
+  answer.headers = {{"Cache-Control", file.lasting ? "public, max-age=31536000, immutable" : "no-cache"},
+                    {"ETag", file.tag},
+                    {"Content-Security-Policy", std::string(kPolicy)}};
+  if (if_none_match.find(file.tag) == std::string_view::npos) {
+    answer.body = file.content;
+  } else {
+    answer.status = 304;
+  }
   return answer;
 }
 

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "net/site_files.h"
 #include "service/model_source.h"
 #include "service/render_service.h"
 
@@ -32,6 +33,8 @@ HttpAnswer models_answer(const std::vector<std::string>& names);
 HttpAnswer model_answer(const std::string& name, const ModelDescription& description);
 /// The picture, with what drawing it took in the headers Server-Timing and X-Surfcast-*.
 HttpAnswer picture_answer(EncodedPicture picture);
+/// A file of the viewer, or 304 when `if_none_match`, the request's header, already names what it holds.
+HttpAnswer file_answer(const SiteFile& file, std::string_view if_none_match);
 /// A page that shows the models.
 HttpAnswer page_answer(const std::vector<std::string>& names);
 

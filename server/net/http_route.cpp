@@ -12,9 +12,10 @@ using Kind = HttpRoute::Kind;
 
 constexpr std::string_view kModels = "/api/models";
 constexpr std::string_view kImage = "/image";
-constexpr std::array<std::pair<std::string_view, Kind>, 5> kPlaces{{
+constexpr std::array<std::pair<std::string_view, Kind>, 6> kPlaces{{
     {"/", Kind::kPage},
     {kModels, Kind::kModels},
+    {"/ws", Kind::kWebSocket},
     {"/healthz", Kind::kHealth},
     {"/readyz", Kind::kReady},
     {"/metrics", Kind::kMetrics},

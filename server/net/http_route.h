@@ -9,7 +9,7 @@ namespace surfcast {
 
 /// What an HTTP request asks for.
 struct HttpRoute {
-  enum class Kind { kPage, kModels, kModel, kPicture, kHealth, kReady, kMetrics };
+  enum class Kind { kPage, kModels, kModel, kPicture, kWebSocket, kHealth, kReady, kMetrics };
   Kind kind = Kind::kPage;
   std::string model;  ///< of kModel and kPicture
   std::string query;  ///< of kPicture, still escaped

@@ -16,12 +16,16 @@
 #include <boost/beast/http/read.hpp>
 #include <boost/beast/http/span_body.hpp>
 #include <boost/beast/http/write.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
 #include <optional>
 #include <utility>
 
 #include "net/convert.h"
 #include "net/http_answer.h"
 #include "net/http_route.h"
+#include "net/message_session.h"
+#include "net/upgrade.h"
+#include "net/websocket_transport.h"
 #include "protocol/picture_query.h"
 
 namespace surfcast {
@@ -30,6 +34,7 @@ namespace {
 namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace http = boost::beast::http;
+namespace websocket = boost::beast::websocket;
 using asio::ip::tcp;
 using boost::system::error_code;
 
@@ -60,14 +65,29 @@ unsigned status_of(const error_code& code) {
   return code == http::error::body_limit ? 413 : 400;
 }
 
+std::string_view view_of(beast::string_view text) {
+  return {text.data(), text.size()};
+}
+
+UpgradeRequest upgrade_of(const UpgradeHead& request) {
+  return {view_of(request[http::field::host]), view_of(request[http::field::origin]),
+          view_of(request[http::field::sec_websocket_protocol])};
+}
+
+/// The file of the viewer that a target names, query left out.
+const SiteFile* find_file(const ServerConfig& config, std::string_view target) {
+  return config.viewer ? config.viewer->find(target.substr(0, target.find('?'))) : nullptr;
+}
+
 class HttpSession : public Session, public std::enable_shared_from_this<HttpSession> {
  public:
-  explicit HttpSession(Connection connection)
+  HttpSession(Connection connection, AdoptSession adopt)
       : stream_(std::move(connection.socket)),
-        context_(std::move(connection.context)),
-        open_(std::move(connection.open)),
-        id_(connection.id),
-        busy_(connection.busy) {}
+        context_(std::move(connection.peer.context)),
+        open_(std::move(connection.peer.open)),
+        id_(connection.peer.id),
+        busy_(connection.peer.busy),
+        adopt_(std::move(adopt)) {}
 
   void start() {
     asio::co_spawn(
@@ -87,8 +107,11 @@ class HttpSession : public Session, public std::enable_shared_from_this<HttpSess
   using Parser = http::request_parser<http::empty_body>;
 
   asio::awaitable<void> serve();
+  asio::awaitable<void> linger();
   asio::awaitable<bool> serve_one();
   asio::awaitable<HttpAnswer> answer(const Parser::value_type& request);
+  bool become_websocket(const Parser::value_type& request);
+  [[nodiscard]] HttpAnswer refuse_websocket(const Parser::value_type& request) const;
   asio::awaitable<HttpAnswer> answer_place(HttpRoute route);
   asio::awaitable<HttpAnswer> answer_model(std::string name);
   asio::awaitable<HttpAnswer> answer_picture(HttpRoute route);
@@ -103,6 +126,7 @@ class HttpSession : public Session, public std::enable_shared_from_this<HttpSess
   OpenConnection open_;
   SessionId id_;
   bool busy_;
+  AdoptSession adopt_;
   bool answering_ = false;
   bool first_ = true;
   std::optional<JobId> job_;  ///< being drawn for this client
@@ -113,9 +137,13 @@ asio::awaitable<void> HttpSession::serve() {
   while (going_on) {
     going_on = co_await serve_one();
   }
+  if (stream_.socket().is_open()) co_await linger();
+}
+
+/// Closing with bytes of the client unread resets the connection, and the answer may be lost on its way.
+asio::awaitable<void> HttpSession::linger() {
   error_code ignored;
   stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
-  // Closing with bytes of the client unread resets the connection, and the answer may be lost on its way.
   stream_.expires_after(std::min(context_->config.hello, context_->config.stall));
   std::array<char, 4096> scratch{};
   while (!ignored && !context_->draining) {
@@ -136,8 +164,9 @@ asio::awaitable<bool> HttpSession::serve_one() {
   if (code == http::error::end_of_stream || !stream_.socket().is_open()) co_return false;
   if (code && code.category() != http::make_error_code(http::error::bad_method).category()) co_return false;
   ++context_->metrics.requests;
-  answering_ = true;
   const Parser::value_type& request = parser.get();
+  if (!code && parser.is_done() && become_websocket(request)) co_return false;
+  answering_ = true;
   HttpAnswer result;
   if (code) {
     result = error_answer({ErrorKind::kInvalidInput, "not a request of HTTP/1.1: " + code.message()}, status_of(code));
@@ -156,16 +185,46 @@ asio::awaitable<bool> HttpSession::serve_one() {
   co_return going_on;
 }
 
+/// Passes the connection on when the request is for a WebSocket and there is nothing wrong with it.
+bool HttpSession::become_websocket(const Parser::value_type& request) {
+  const Result<HttpRoute> route = route_http(view_of(request.target()));
+  if (!route || route->kind != HttpRoute::Kind::kWebSocket || !websocket::is_upgrade(request)) return false;
+  if (context_->draining || buffer_.size() > 0 ||
+      !check_upgrade(upgrade_of(request), context_->config.allowed_origins)) {
+    return false;
+  }
+  stream_.expires_never();
+  auto transport = make_websocket_transport(stream_.release_socket(), request, context_->config.ping);
+  adopt_(start_message_session(std::move(transport), {context_, std::move(open_), id_, busy_}));
+  return true;
+}
+
+/// Says what is wrong with a request for a WebSocket that was not granted.
+HttpAnswer HttpSession::refuse_websocket(const Parser::value_type& request) const {
+  if (!websocket::is_upgrade(request)) {
+    HttpAnswer refusal = error_answer({ErrorKind::kUnsupported, "this is the place of a WebSocket"}, 426);
+    refusal.headers = {{"Upgrade", "websocket"}, {"Sec-WebSocket-Version", "13"}};
+    return refusal;
+  }
+  if (context_->draining) return error_answer({ErrorKind::kUnavailable, "the server is stopping"});
+  const Status checked = check_upgrade(upgrade_of(request), context_->config.allowed_origins);
+  if (!checked) return error_answer(checked.error(), checked.error().kind == ErrorKind::kUnsupported ? 400 : 403);
+  return error_answer({ErrorKind::kInvalidInput, "nothing may be sent before the WebSocket is granted"}, 400);
+}
+
 asio::awaitable<HttpAnswer> HttpSession::answer(const Parser::value_type& request) {
   if (busy_) co_return error_answer({ErrorKind::kUnavailable, "the server is busy: too many connections"});
-  const std::string_view target(request.target().data(), request.target().size());
+  const std::string_view target = view_of(request.target());
+  const SiteFile* file = find_file(context_->config, target);
   Result<HttpRoute> route = route_http(target);
-  if (!route) co_return error_answer(route.error());
+  if (!route && file == nullptr) co_return error_answer(route.error());
   if (request.method() != http::verb::get && request.method() != http::verb::head) {
     HttpAnswer refusal = error_answer({ErrorKind::kUnsupported, "only GET and HEAD are answered"}, 405);
     refusal.headers.emplace_back("Allow", "GET, HEAD");
     co_return refusal;
   }
+  if (file != nullptr) co_return file_answer(*file, view_of(request[http::field::if_none_match]));
+  if (route->kind == HttpRoute::Kind::kWebSocket) co_return refuse_websocket(request);
   co_return co_await answer_place(std::move(*route));
 }
 
@@ -185,6 +244,7 @@ asio::awaitable<HttpAnswer> HttpSession::answer_place(HttpRoute route) {
       if (context_->draining) co_return error_answer({ErrorKind::kUnavailable, "the server is stopping"});
       co_return text_answer("ready\n", "text/plain");
     case HttpRoute::Kind::kMetrics:
+    case HttpRoute::Kind::kWebSocket:  // answered already
       break;
   }
   co_return text_answer(to_prometheus(context_->metrics, context_->service.queued()), "text/plain; version=0.0.4");
@@ -248,7 +308,7 @@ asio::awaitable<bool> HttpSession::write(const HttpAnswer& answer, unsigned vers
   response.set(http::field::content_type, answer.content_type);
   response.set("X-Content-Type-Options", "nosniff");
   for (const auto& [name, value] : answer.headers) response.set(name, value);
-  response.content_length(answer.body.size());
+  if (answer.status != 304) response.content_length(answer.body.size());
   response.keep_alive(keep_alive);
   if (!head) response.body() = {reinterpret_cast<const char*>(answer.body.data()), answer.body.size()};
   http::response_serializer<Body> serializer{response};
@@ -262,8 +322,8 @@ asio::awaitable<bool> HttpSession::write(const HttpAnswer& answer, unsigned vers
 
 }  // namespace
 
-std::shared_ptr<Session> start_http_session(Connection connection) {
-  const auto session = std::make_shared<HttpSession>(std::move(connection));
+std::shared_ptr<Session> start_http_session(Connection connection, AdoptSession adopt) {
+  const auto session = std::make_shared<HttpSession>(std::move(connection), std::move(adopt));
   session->start();
   return session;
 }

@@ -1,12 +1,17 @@
 #pragma once
 
+#include <functional>
 #include <memory>
 
 #include "net/session.h"
 
 namespace surfcast {
 
-/// A connection that speaks HTTP/1.1. A busy server answers 503 once and closes.
-std::shared_ptr<Session> start_http_session(Connection connection);
+/// Takes a session into the server's list of those that it drains when it stops.
+using AdoptSession = std::function<void(const std::shared_ptr<Session>&)>;
+
+/// A connection that speaks HTTP/1.1. A busy server answers 503 once and closes. A WebSocket is a new session, which
+/// `adopt` gets.
+std::shared_ptr<Session> start_http_session(Connection connection, AdoptSession adopt);
 
 }  // namespace surfcast

@@ -18,8 +18,9 @@
 #include <vector>
 
 #include "base/log.h"
-#include "net/framed_session.h"
+#include "net/framed_transport.h"
 #include "net/http_session.h"
+#include "net/message_session.h"
 #include "net/session.h"
 #include "protocol/endpoint.h"
 #include "protocol/hello.h"
@@ -44,7 +45,7 @@ class Doorman : public Session, public std::enable_shared_from_this<Doorman> {
   using PassOn = std::function<void(Connection, bool framed)>;
 
   Doorman(Connection connection, PassOn pass_on)
-      : timeout_(connection.socket.get_executor(), connection.context->config.hello),
+      : timeout_(connection.socket.get_executor(), connection.peer.context->config.hello),
         connection_(std::move(connection)),
         pass_on_(std::move(pass_on)) {}
 
@@ -135,9 +136,14 @@ void Server::State::admit(tcp::socket socket) {
   if (metrics.connections_open >= context->config.connections + kRefusalsAtOnce) return;
   error_code ignored;
   socket.set_option(tcp::no_delay(true), ignored);
-  Connection connection{std::move(socket), context, OpenConnection(context), ++last_session, busy};
+  socket.set_option(asio::socket_base::keep_alive(true), ignored);
+  Connection connection{std::move(socket), {context, OpenConnection(context), ++last_session, busy}};
   const auto doorman = std::make_shared<Doorman>(std::move(connection), [this](Connection passed, bool framed) {
-    add(framed ? start_framed_session(std::move(passed)) : start_http_session(std::move(passed)));
+    if (framed) {
+      add(start_message_session(make_framed_transport(std::move(passed.socket)), std::move(passed.peer)));
+    } else {
+      add(start_http_session(std::move(passed), [this](const std::shared_ptr<Session>& session) { add(session); }));
+    }
   });
   add(doorman);
   doorman->start();

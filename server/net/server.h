@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "base/result.h"
 #include "net/request_window.h"
+#include "net/site_files.h"
 #include "service/render_service.h"
 
 namespace surfcast {
@@ -16,16 +18,19 @@ struct ServerConfig {
   std::string host = "127.0.0.1";
   uint16_t port = 7600;  ///< 0: any free one
   size_t connections = 256;
-  RequestWindow::Limits requests;           ///< of one connection of the framed protocol
-  size_t unread_bytes = size_t{64} << 20;   ///< of answers; beyond it the connection is not read from
-  std::chrono::milliseconds hello{10'000};  ///< for the first words of a connection
-  std::chrono::milliseconds idle{300'000};  ///< without a whole request and with nothing outstanding
-  std::chrono::milliseconds stall{30'000};  ///< without any byte of an answer being taken
-  std::chrono::milliseconds drain{5'000};   ///< for what is outstanding when the server stops
+  RequestWindow::Limits requests;            ///< of one connection of the framed protocol
+  size_t unread_bytes = size_t{64} << 20;    ///< of answers; beyond it the connection is not read from
+  std::chrono::milliseconds hello{10'000};   ///< for the first words of a connection
+  std::chrono::milliseconds idle{300'000};   ///< without a whole request and with nothing outstanding
+  std::chrono::milliseconds stall{30'000};   ///< without any byte of an answer being taken
+  std::chrono::milliseconds ping{30'000};    ///< without a word on a WebSocket, before the client is asked for one
+  std::chrono::milliseconds drain{5'000};    ///< for what is outstanding when the server stops
+  std::shared_ptr<const SiteFiles> viewer;   ///< served at "/"; null: a page that shows the models
+  std::vector<std::string> allowed_origins;  ///< of pages that may open a WebSocket beside the viewer's own
 };
 
-/// The listener and its connections: framed protocol and HTTP on one port. Everything happens on the thread that calls
-/// `run`, and none of it waits for a picture or for a slow client.
+/// The listener and its connections: framed protocol, HTTP and WebSocket on one port. Everything happens on the thread
+/// that calls `run`, and none of it waits for a picture or for a slow client.
 class Server {
  public:
   /// Binds the port. `service` must outlive the server.

@@ -34,13 +34,18 @@ class OpenConnection {
   std::shared_ptr<NetContext> context_;
 };
 
-/// An accepted connection. One that is `busy` came when there were too many, and is only told so.
-struct Connection {
-  boost::asio::ip::tcp::socket socket;
+/// Who is at the other end. One that is `busy` came when there were too many, and is only told so.
+struct Peer {
   std::shared_ptr<NetContext> context;
   OpenConnection open;
   SessionId id = 0;
   bool busy = false;
+};
+
+/// An accepted connection.
+struct Connection {
+  boost::asio::ip::tcp::socket socket;
+  Peer peer;
 };
 
 /// Somebody who looks after a connection.

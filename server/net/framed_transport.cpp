@@ -1,0 +1,114 @@
+#include "net/framed_transport.h"
+
+#include <algorithm>
+#include <array>
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/read.hpp>
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/asio/write.hpp>
+#include <span>
+#include <utility>
+
+#include "protocol/framing.h"
+#include "protocol/hello.h"
+
+namespace surfcast {
+namespace {
+
+namespace asio = boost::asio;
+using asio::ip::tcp;
+using boost::system::error_code;
+
+auto into(error_code& code) {
+  return asio::redirect_error(asio::use_awaitable, code);
+}
+
+class FramedTransport : public Transport {
+ public:
+  explicit FramedTransport(tcp::socket socket) : socket_(std::move(socket)) {}
+
+  Awaitable<Result<Bytes>> read_hello() override;
+  Awaitable<Result<std::optional<Bytes>>> read() override;
+  Awaitable<bool> write_hello(const Bytes& hello) override;
+  Awaitable<bool> write(const Bytes& message, const std::function<void()>& progress) override;
+  Awaitable<void> linger() override;
+  Awaitable<void> say_goodbye() override { co_return; }
+  bool keep_alive(Clock::time_point /*now*/) override { return true; }  // TCP sees to it
+  void close() override;
+  [[nodiscard]] bool is_open() const override { return socket_.is_open(); }
+  [[nodiscard]] asio::any_io_executor executor() override { return socket_.get_executor(); }
+
+ private:
+  tcp::socket socket_;
+  FrameSplitter splitter_{kMaxRequestBytes};
+  std::array<std::byte, 4096> buffer_{};
+};
+
+asio::awaitable<Result<Bytes>> FramedTransport::read_hello() {
+  error_code code;
+  Bytes bytes(kHelloHeaderBytes);
+  co_await asio::async_read(socket_, asio::buffer(bytes), into(code));
+  if (code) co_return fail(ErrorKind::kIo, code.message());
+  const Result<size_t> text = hello_text_bytes(std::span(bytes).first<kHelloHeaderBytes>());
+  if (!text) co_return fail(text.error());
+  bytes.resize(kHelloHeaderBytes + *text);
+  co_await asio::async_read(socket_, asio::buffer(bytes.data() + kHelloHeaderBytes, *text), into(code));
+  if (code) co_return fail(ErrorKind::kIo, code.message());
+  co_return bytes;
+}
+
+asio::awaitable<Result<std::optional<Bytes>>> FramedTransport::read() {
+  for (;;) {
+    Result<std::optional<Bytes>> frame = splitter_.next();
+    if (!frame || frame->has_value()) co_return frame;
+    error_code code;
+    const size_t count = co_await socket_.async_read_some(asio::buffer(buffer_), into(code));
+    if (code) co_return std::nullopt;
+    splitter_.append(std::span(buffer_).first(count));
+  }
+}
+
+asio::awaitable<bool> FramedTransport::write_hello(const Bytes& hello) {
+  error_code code;
+  co_await asio::async_write(socket_, asio::buffer(hello), into(code));
+  co_return !code;
+}
+
+asio::awaitable<bool> FramedTransport::write(const Bytes& message, const std::function<void()>& progress) {
+  const auto header = frame_header(message.size());
+  std::array<asio::const_buffer, 2> rest{asio::buffer(header), asio::buffer(message)};
+  error_code code;
+  while (asio::buffer_size(rest) > 0 && !code) {
+    const size_t sent = co_await socket_.async_write_some(rest, into(code));
+    const size_t of_header = std::min(sent, rest[0].size());
+    rest[0] += of_header;
+    rest[1] += sent - of_header;
+    progress();
+  }
+  co_return !code;
+}
+
+/// Closing at once would reset the connection if bytes of the client are unread, and a reset may throw away what is
+/// still on its way to it.
+asio::awaitable<void> FramedTransport::linger() {
+  error_code code;
+  socket_.shutdown(tcp::socket::shutdown_send, code);
+  while (!code) {
+    co_await socket_.async_read_some(asio::buffer(buffer_), into(code));
+  }
+}
+
+void FramedTransport::close() {
+  error_code ignored;
+  socket_.shutdown(tcp::socket::shutdown_both, ignored);
+  socket_.close(ignored);
+}
+
+}  // namespace
+
+std::shared_ptr<Transport> make_framed_transport(tcp::socket socket) {
+  return std::make_shared<FramedTransport>(std::move(socket));
+}
+
+}  // namespace surfcast

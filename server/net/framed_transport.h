@@ -1,0 +1,13 @@
+#pragma once
+
+#include <boost/asio/ip/tcp.hpp>
+#include <memory>
+
+#include "net/transport.h"
+
+namespace surfcast {
+
+/// The framed protocol, on a connection whose first byte has been seen but not read.
+std::shared_ptr<Transport> make_framed_transport(boost::asio::ip::tcp::socket socket);
+
+}  // namespace surfcast

@@ -1,0 +1,50 @@
+#include "net/upgrade.h"
+
+#include <algorithm>
+#include <cctype>
+
+namespace surfcast {
+namespace {
+
+bool equal_in_any_case(std::string_view a, std::string_view b) {
+  return std::ranges::equal(a, b, [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
+}
+
+/// "https://example.org:8443" without its scheme; empty when there is none, as in "null".
+std::string_view authority_of(std::string_view origin) {
+  const size_t mark = origin.find("://");
+  return mark == std::string_view::npos ? std::string_view() : origin.substr(mark + 3);
+}
+
+bool offers(std::string_view list, std::string_view protocol) {
+  while (!list.empty()) {
+    const size_t comma = std::min(list.find(','), list.size());
+    std::string_view item = list.substr(0, comma);
+    list.remove_prefix(std::min(comma + 1, list.size()));
+    item.remove_prefix(std::min(item.find_first_not_of(" \t"), item.size()));
+    if (item.substr(0, item.find_last_not_of(" \t") + 1) == protocol) return true;
+  }
+  return false;
+}
+
+bool allows(const UpgradeRequest& request, std::span<const std::string> allowed) {
+  if (request.origin.empty()) return true;
+  const std::string_view authority = authority_of(request.origin);
+  if (!authority.empty() && equal_in_any_case(authority, request.host)) return true;
+  return std::ranges::any_of(allowed, [&](const auto& origin) { return equal_in_any_case(origin, request.origin); });
+}
+
+}  // namespace
+
+Status check_upgrade(const UpgradeRequest& request, std::span<const std::string> allowed) {
+  if (!allows(request, allowed)) {
+    return fail(ErrorKind::kInvalidInput, "pages of another origin may not connect; --allow-origin lets them");
+  }
+  if (!offers(request.protocols, kWebSocketProtocol)) {
+    return fail(ErrorKind::kUnsupported,
+                "a WebSocket here speaks the subprotocol " + std::string(kWebSocketProtocol) + " alone");
+  }
+  return {};
+}
+
+}  // namespace surfcast

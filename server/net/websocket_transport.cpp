@@ -1,0 +1,147 @@
+#include "net/websocket_transport.h"
+
+#include <algorithm>
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/redirect_error.hpp>
+#include <boost/asio/use_awaitable.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/websocket/stream.hpp>
+#include <string>
+#include <utility>
+
+#include "net/upgrade.h"
+#include "protocol/framing.h"
+
+namespace surfcast {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = boost::beast::http;
+namespace websocket = boost::beast::websocket;
+using asio::ip::tcp;
+using boost::system::error_code;
+
+/// Bytes of one frame of a message: small enough that the client's progress is seen, and that an answer to a ping is
+/// not held up by a picture.
+constexpr size_t kFragmentBytes = size_t{64} << 10;
+
+auto into(error_code& code) {
+  return asio::redirect_error(asio::use_awaitable, code);
+}
+
+class WebSocketTransport : public Transport, public std::enable_shared_from_this<WebSocketTransport> {
+ public:
+  WebSocketTransport(tcp::socket socket, UpgradeHead head, std::chrono::milliseconds ping);
+
+  Awaitable<Result<Bytes>> read_hello() override;
+  Awaitable<Result<std::optional<Bytes>>> read() override;
+  Awaitable<bool> write_hello(const Bytes& hello) override;
+  Awaitable<bool> write(const Bytes& message, const std::function<void()>& progress) override;
+  Awaitable<void> linger() override { return part(websocket::close_code::normal); }
+  Awaitable<void> say_goodbye() override { return part(websocket::close_code::going_away); }
+  bool keep_alive(Clock::time_point now) override;
+  void close() override;
+  [[nodiscard]] bool is_open() const override { return stream_.next_layer().is_open(); }
+  [[nodiscard]] asio::any_io_executor executor() override { return stream_.get_executor(); }
+
+ private:
+  Awaitable<void> part(websocket::close_code reason);
+
+  websocket::stream<tcp::socket> stream_;
+  UpgradeHead head_;
+  std::chrono::milliseconds ping_;
+  Clock::time_point last_heard_ = Clock::now();
+  bool granted_ = false;
+  bool reading_ = false;
+  bool asked_ = false;  ///< a ping is being sent or not answered yet
+};
+
+WebSocketTransport::WebSocketTransport(tcp::socket socket, UpgradeHead head, std::chrono::milliseconds ping)
+    : stream_(std::move(socket)), head_(std::move(head)), ping_(ping) {
+  stream_.auto_fragment(false);
+  stream_.binary(true);
+  stream_.read_message_max(kMaxRequestBytes);
+  stream_.set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
+    response.set(http::field::server, "surfcastd");
+    response.set(http::field::sec_websocket_protocol, beast::string_view(kWebSocketProtocol.data(),  //
+                                                                         kWebSocketProtocol.size()));
+  }));
+  stream_.control_callback([this](websocket::frame_type, beast::string_view) {
+    last_heard_ = Clock::now();
+    asked_ = false;
+  });
+}
+
+asio::awaitable<Result<Bytes>> WebSocketTransport::read_hello() {
+  error_code code;
+  co_await stream_.async_accept(head_, into(code));
+  if (code) co_return fail(ErrorKind::kIo, code.message());
+  head_ = {};
+  granted_ = true;
+  Result<std::optional<Bytes>> hello = co_await read();
+  if (!hello) co_return fail(hello.error());
+  if (!hello->has_value()) co_return fail(ErrorKind::kIo, "the client is gone");
+  co_return std::move(**hello);
+}
+
+asio::awaitable<Result<std::optional<Bytes>>> WebSocketTransport::read() {
+  error_code code;
+  beast::flat_buffer buffer;  // of its own: a connection that is silent holds no memory for messages
+  reading_ = true;
+  co_await stream_.async_read(buffer, into(code));
+  reading_ = false;
+  if (code) co_return std::nullopt;
+  last_heard_ = Clock::now();
+  if (!stream_.got_binary()) co_return fail(ErrorKind::kInvalidInput, "a message of text is not understood");
+  const auto* first = static_cast<const std::byte*>(buffer.cdata().data());
+  co_return Bytes(first, first + buffer.size());
+}
+
+asio::awaitable<bool> WebSocketTransport::write_hello(const Bytes& hello) {
+  error_code code;
+  co_await stream_.async_write(asio::buffer(hello), into(code));
+  co_return !code;
+}
+
+asio::awaitable<bool> WebSocketTransport::write(const Bytes& message, const std::function<void()>& progress) {
+  error_code code;
+  for (size_t sent = 0; sent < message.size() && !code;) {
+    const size_t count = std::min(kFragmentBytes, message.size() - sent);
+    const bool last = sent + count == message.size();
+    co_await stream_.async_write_some(last, asio::buffer(message.data() + sent, count), into(code));
+    sent += count;
+    progress();
+  }
+  co_return !code;
+}
+
+/// Returns when the client has said goodbye, too.
+asio::awaitable<void> WebSocketTransport::part(websocket::close_code reason) {
+  error_code ignored;
+  if (granted_) co_await stream_.async_close(reason, into(ignored));
+}
+
+bool WebSocketTransport::keep_alive(Clock::time_point now) {
+  if (!reading_ || !granted_) return true;  // nothing would be heard
+  if (now - last_heard_ >= 2 * ping_) return false;
+  if (asked_ || now - last_heard_ < ping_) return true;
+  asked_ = true;
+  stream_.async_ping({}, [self = shared_from_this()](error_code) {});
+  return true;
+}
+
+void WebSocketTransport::close() {
+  error_code ignored;
+  stream_.next_layer().shutdown(tcp::socket::shutdown_both, ignored);
+  stream_.next_layer().close(ignored);
+}
+
+}  // namespace
+
+std::shared_ptr<Transport> make_websocket_transport(tcp::socket socket, UpgradeHead head,
+                                                    std::chrono::milliseconds ping) {
+  return std::make_shared<WebSocketTransport>(std::move(socket), std::move(head), ping);
+}
+
+}  // namespace surfcast

@@ -1,0 +1,21 @@
+#pragma once
+
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/beast/http/empty_body.hpp>
+#include <boost/beast/http/message.hpp>
+#include <chrono>
+#include <memory>
+
+#include "net/transport.h"
+
+namespace surfcast {
+
+/// The header of a request for a WebSocket.
+using UpgradeHead = boost::beast::http::request<boost::beast::http::empty_body>;
+
+/// A WebSocket, on a connection whose request for one has been read and is to be granted. The client is asked for a
+/// sign of life when it gave none for `ping`, and is taken for gone when none came for twice that.
+std::shared_ptr<Transport> make_websocket_transport(boost::asio::ip::tcp::socket socket, UpgradeHead head,
+                                                    std::chrono::milliseconds ping);
+
+}  // namespace surfcast
