@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <boost/asio/buffer.hpp>
+#include <boost/asio/post.hpp>
 #include <boost/asio/redirect_error.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
@@ -42,16 +43,19 @@ class WebSocketTransport : public Transport, public std::enable_shared_from_this
   Awaitable<void> say_goodbye() override { return part(websocket::close_code::going_away); }
   bool keep_alive(Clock::time_point now) override;
   void close() override;
-  [[nodiscard]] bool is_open() const override { return stream_.next_layer().is_open(); }
+  [[nodiscard]] bool is_open() const override { return open_; }
   [[nodiscard]] asio::any_io_executor executor() override { return stream_.get_executor(); }
 
  private:
+  void hear(websocket::frame_type type);
+  void close_socket();
   Awaitable<void> part(websocket::close_code reason);
 
   websocket::stream<tcp::socket> stream_;
   UpgradeHead head_;
   std::chrono::milliseconds ping_;
   Clock::time_point last_heard_ = Clock::now();
+  bool open_ = true;  ///< until close(): the stream closes its socket by itself when the client says goodbye
   bool granted_ = false;
   bool reading_ = false;
   bool asked_ = false;  ///< a ping is being sent or not answered yet
@@ -67,10 +71,15 @@ WebSocketTransport::WebSocketTransport(tcp::socket socket, UpgradeHead head, std
     response.set(http::field::sec_websocket_protocol, beast::string_view(kWebSocketProtocol.data(),  //
                                                                          kWebSocketProtocol.size()));
   }));
-  stream_.control_callback([this](websocket::frame_type, beast::string_view) {
-    last_heard_ = Clock::now();
-    asked_ = false;
-  });
+  stream_.control_callback([this](websocket::frame_type type, beast::string_view) { hear(type); });
+}
+
+void WebSocketTransport::hear(websocket::frame_type type) {
+  last_heard_ = Clock::now();
+  asked_ = false;
+  if (type != websocket::frame_type::close) return;
+  // The stream answers now, but would then wait for as long as the client likes before it reports the end.
+  asio::post(stream_.get_executor(), [self = shared_from_this()] { self->close_socket(); });
 }
 
 asio::awaitable<Result<Bytes>> WebSocketTransport::read_hello() {
@@ -132,6 +141,11 @@ bool WebSocketTransport::keep_alive(Clock::time_point now) {
 }
 
 void WebSocketTransport::close() {
+  open_ = false;
+  close_socket();
+}
+
+void WebSocketTransport::close_socket() {
   error_code ignored;
   stream_.next_layer().shutdown(tcp::socket::shutdown_both, ignored);
   stream_.next_layer().close(ignored);

@@ -8,6 +8,7 @@
 #include <span>
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include <arpa/inet.h>
@@ -30,8 +31,9 @@ class RawSocket {
     connected_ = ::connect(descriptor_, reinterpret_cast<sockaddr*>(&address), sizeof address) == 0;
   }
   ~RawSocket() { close(); }
-  RawSocket(const RawSocket&) = delete;
-  RawSocket& operator=(const RawSocket&) = delete;
+  RawSocket(RawSocket&& other) noexcept
+      : descriptor_(std::exchange(other.descriptor_, -1)), connected_(other.connected_), ended_(other.ended_) {}
+  RawSocket& operator=(RawSocket&&) = delete;
 
   [[nodiscard]] bool connected() const { return connected_; }
 
@@ -77,6 +79,8 @@ class RawSocket {
     read_to_end(patience);
     return ended_;
   }
+  /// Sends nothing more, but goes on reading.
+  void shut_down() { ::shutdown(descriptor_, SHUT_WR); }
   /// Closes without a word, as a process does that is killed.
   void close() {
     if (descriptor_ >= 0) ::close(descriptor_);
