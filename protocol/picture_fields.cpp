@@ -4,6 +4,7 @@
 #include <optional>
 #include <string>
 
+#include "protocol/look_fields.h"
 #include "protocol/parse.h"
 
 namespace surfcast {
@@ -24,6 +25,18 @@ constexpr std::array kFields{
                  "projected spacing of surfels to stop at; 0 is the finest (default 0)"},
     PictureField{"shading", "shading", "auto|unlit|lit", "whether surfels are lit (default auto)"},
     PictureField{"background", "background", "R,G,B", "colour behind the model, 0 to 255 each (default 0,0,0)"},
+    PictureField{"color_by", "color-by", "rgb|intensity|elevation|classification|normal",
+                 "what the colour of a surfel shows (default rgb: as scanned)"},
+    PictureField{"color_map", "color-map", "viridis|turbo|gray|terrain",
+                 "colours of intensity and elevation (default viridis)"},
+    PictureField{"color_range", "color-range", "FIRST,LAST",
+                 "values that take the first and the last colour of the map (default: the model's range)"},
+    PictureField{"hide_classes", "hide-classes", "CODE,CODE,...", "classes that are not drawn, 0 to 255 each"},
+    PictureField{"clip_box", "clip-box", "X0,Y0,Z0,X1,Y1,Z1;...",
+                 "show what is inside a box (any of several) alone, world coordinates", true},
+    PictureField{"clip_out", "clip-out", "X0,Y0,Z0,X1,Y1,Z1;...", "hide what is inside a box (any of several)", true},
+    PictureField{"eye_dome", "eye-dome", "STRENGTH[,RADIUS]",
+                 "darken what lies behind edges of depth; 0 to 100, 1 is usual; pixels up to 8 (default 0,1.5)"},
 };
 
 template <typename Enum>
@@ -130,7 +143,8 @@ bool set_by_name(wire::DrawPicture& picture, std::string_view name, std::string_
   if (name == "filter") return set_choice(kFilters, text, [&](auto value) { picture.set_filter(value); });
   if (name == "spacing") return set_spacing(picture, text);
   if (name == "shading") return set_choice(kShadings, text, [&](auto value) { picture.set_shading(value); });
-  return name == "background" && set_background(picture, text);
+  if (name == "background") return set_background(picture, text);
+  return set_look_field(picture, name, text);
 }
 
 }  // namespace

@@ -15,6 +15,7 @@ struct PictureField {
   std::string_view flag;  ///< as on the command line, without dashes
   std::string_view form;  ///< what a value looks like
   std::string_view help;
+  bool several = false;  ///< a value may be several, joined by ';'; the flag may then be given several times
 };
 
 /// All of them, in the order of the help text.

@@ -91,10 +91,12 @@ void RequestFlags::add_to(CLI::App& command) {
       ->envname(environment_name("camera"))
       ->type_name("FILE");
   for (const PictureField& field : picture_fields()) {
-    command.add_option("--" + std::string(field.flag), values_[std::string(field.name)], std::string(field.help))
-        ->envname(environment_name(field.flag))
-        ->type_name(std::string(field.form))
-        ->check([name = field.name](const std::string& text) { return check_flag(name, text); });
+    CLI::Option* option =
+        command.add_option("--" + std::string(field.flag), values_[std::string(field.name)], std::string(field.help))
+            ->envname(environment_name(field.flag))
+            ->type_name(std::string(field.form))
+            ->check([name = field.name](const std::string& text) { return check_flag(name, text); });
+    if (field.several) option->join(';');
   }
   command.add_option("--stats", stats_, "write what drawing took as JSON")
       ->envname(environment_name("stats"))

@@ -51,6 +51,47 @@ Status check_numbers(const wire::DrawPicture& picture) {
   return {};
 }
 
+Status check_coloring(const wire::Coloring& coloring) {
+  if (!wire::ColorSource_IsValid(coloring.source())) return invalid("color_by: unknown");
+  if (!wire::ColorMap_IsValid(coloring.map())) return invalid("color_map: unknown");
+  if (!std::isfinite(coloring.first()) || !std::isfinite(coloring.last())) {
+    return invalid("color_range: must be finite numbers");
+  }
+  if (coloring.has_first() && coloring.has_last() && !(coloring.first() < coloring.last())) {
+    return invalid("color_range: the first value must be below the last");
+  }
+  return {};
+}
+
+Status check_clip_boxes(const wire::DrawPicture& picture) {
+  if (picture.clip_boxes_size() > kMaxClipBoxes) return invalid("clip boxes: too many");
+  for (const wire::ClipBox& clip : picture.clip_boxes()) {
+    const wire::Vector3& low = clip.box().min();
+    const wire::Vector3& high = clip.box().max();
+    if (!finite(low) || !finite(high)) return invalid("clip boxes: coordinates must be finite numbers");
+    if (low.x() > high.x() || low.y() > high.y() || low.z() > high.z()) {
+      return invalid("clip boxes: the lower corner must come first");
+    }
+  }
+  return {};
+}
+
+Status check_look(const wire::DrawPicture& picture) {
+  if (Status status = check_coloring(picture.coloring()); !status) return status;
+  for (const uint32_t code : picture.hidden_classes()) {
+    if (code > kMaxClassCode) return invalid("hide_classes: codes must be at most 255");
+  }
+  if (Status status = check_clip_boxes(picture); !status) return status;
+  const wire::EyeDomeLighting& eye_dome = picture.eye_dome();
+  if (!(eye_dome.strength() >= 0 && eye_dome.strength() <= kMaxEyeDomeStrength)) {
+    return invalid("eye_dome: the strength must lie between 0 and 100");
+  }
+  if (!(eye_dome.radius() >= 0 && eye_dome.radius() <= kMaxEyeDomeRadius)) {
+    return invalid("eye_dome: the radius must be at most 8 pixels");
+  }
+  return {};
+}
+
 }  // namespace
 
 Status check_picture(const wire::DrawPicture& picture) {
@@ -60,7 +101,8 @@ Status check_picture(const wire::DrawPicture& picture) {
     if (Status status = check_camera(picture.camera()); !status) return status;
   }
   if (Status status = check_choices(picture); !status) return status;
-  return check_numbers(picture);
+  if (Status status = check_numbers(picture); !status) return status;
+  return check_look(picture);
 }
 
 }  // namespace surfcast

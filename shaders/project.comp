@@ -3,6 +3,7 @@
 #include "shared/kernel.h"
 #include "shared/frame_layout.h"
 #include "include/frame.glsl"
+#include "include/look.glsl"
 #include "include/packing.glsl"
 #include "include/resampling_filter.glsl"
 #include "include/splat_record.glsl"
@@ -185,7 +186,14 @@ void main() {
   uvec4 run = chunks[chunk].run;
   if (gl_LocalInvocationID.x >= run.z) return;
   BlockView block = blocks[run.x];
-  uvec4 texel = texelFetch(surfels, int(run.y + gl_LocalInvocationID.x));
+  int place = int(run.y + gl_LocalInvocationID.x);
+  uvec4 texel = texelFetch(surfels, place);
+#ifdef SURFCAST_CLIPPED
+  if (clipped_away(run.x, texel)) return;
+#endif
+#ifdef SURFCAST_HIDES_CLASSES
+  if (class_hidden(place)) return;
+#endif
   mat3 rotation = transpose(mat3(frame.right.xyz, frame.up.xyz, frame.forward.xyz));
   vec2 size = surfel_size(texel, block.scale);
 
@@ -199,7 +207,11 @@ void main() {
   bool away = dot(s.n, s.o) >= 0.0;
   if (away && frame.flags.x != 0) return;
   if (away) s.n = -s.n;
-#if defined(SURFCAST_HAS_COLOR)
+#if defined(SURFCAST_COLOR_TABLE)
+  s.color = table_color(run.x, place, texel);
+#elif defined(SURFCAST_COLOR_NORMAL)
+  s.color = normal_color(away ? -surfel_normal(texel) : surfel_normal(texel));
+#elif defined(SURFCAST_HAS_COLOR)
   s.color = surfel_color(texel);
 #elif defined(SURFCAST_LIT)
   s.color = pack_biased_normal(s.n);

@@ -22,7 +22,10 @@ layout(std430, binding = SURFCAST_BIND_TILE_OFFSET) readonly buffer TileOffset {
 layout(binding = SURFCAST_UNIT_SPLATS) uniform usamplerBuffer splats;
 layout(binding = SURFCAST_UNIT_DISCS) uniform usamplerBuffer discs;
 layout(binding = SURFCAST_UNIT_LISTS) uniform usamplerBuffer lists;
-#ifdef SURFCAST_FLOAT_PICTURE
+#if defined(SURFCAST_EYE_DOME)
+layout(std430, binding = SURFCAST_BIND_LIGHT) writeonly buffer LightBuffer { vec4 lights[]; };
+layout(std430, binding = SURFCAST_BIND_DEPTH) writeonly buffer Depth { vec2 depths[]; };
+#elif defined(SURFCAST_FLOAT_PICTURE)
 layout(std430, binding = SURFCAST_BIND_PICTURE) writeonly buffer Picture { vec4 picture[]; };
 #else
 layout(std430, binding = SURFCAST_BIND_PICTURE) writeonly buffer Picture { uint picture[]; };
@@ -33,7 +36,15 @@ layout(std430, binding = SURFCAST_BIND_PICTURE) writeonly buffer Picture { uint 
 #include "include/large_splats.glsl"
 #endif
 #include "include/resolve.glsl"
+#include "include/srgb.glsl"
 
+#ifdef SURFCAST_EYE_DOME
+void write_lit_pixel(ivec2 at, vec3 light, float transmittance, float depth, float opaque) {
+  if (any(greaterThanEqual(at, frame.region.zw))) return;
+  lights[at.y * frame.region.z + at.x] = vec4(light, 1.0 - transmittance);
+  depths[at.y * frame.region.z + at.x] = vec2(opaque > 0.0 ? depth / opaque : 0.0, opaque);
+}
+#else
 void write_pixel(ivec2 at, vec3 light, float transmittance) {
   if (any(greaterThanEqual(at, frame.region.zw))) return;
   vec4 color = vec4(light + transmittance * frame.background.rgb, 1.0 - transmittance);
@@ -43,6 +54,7 @@ void write_pixel(ivec2 at, vec3 light, float transmittance) {
   picture[at.y * frame.region.z + at.x] = packUnorm4x8(vec4(encode_srgb(color.rgb), color.a));
 #endif
 }
+#endif
 
 void main() {
   uint tile = gl_WorkGroupID.y * uint(frame.tiles.x) + gl_WorkGroupID.x;
@@ -59,7 +71,11 @@ void main() {
   ivec2 local = ivec2(gl_WorkGroupID.xy) * ivec2(SURFCAST_TILE_WIDTH, SURFCAST_TILE_HEIGHT) +
                 ivec2(gl_LocalInvocationID.xy) * ivec2(1, SURFCAST_ROWS);
   vec2 pixel = vec2(frame.region.xy + local) + 0.5;
+#ifdef SURFCAST_EYE_DOME
+  Light light = Light(Rows(0.0), Rows(0.0), Rows(0.0), Rows(1.0), Rows(0.0), Rows(0.0));
+#else
   Light light = Light(Rows(0.0), Rows(0.0), Rows(0.0), Rows(1.0));
+#endif
   Rows limit = Rows(3e38);  // inverse depth: nothing is nearer
   for (int layer = 0; layer < kMaxLayers; ++layer) {
     Rows surface = Rows(0.0);  // infinitely far
@@ -74,12 +90,17 @@ void main() {
 #ifdef SURFCAST_LARGE
     accumulate_large(first_large, larges, pixel, limit, surface, unit, sums);
 #endif
-    composite(light, sums, 1.0 / unit, pixel);
+    composite(light, sums, surface, 1.0 / unit, pixel);
     limit = surface;
     if (!any_of(both(less(Rows(0.0), surface), less(Rows(kOpaque), light.transmittance)))) break;
   }
   for (int i = 0; i < SURFCAST_ROWS; ++i) {
-    write_pixel(local + ivec2(0, i), vec3(ROW(light.red, i), ROW(light.green, i), ROW(light.blue, i)),
-                ROW(light.transmittance, i));
+    vec3 linear = vec3(ROW(light.red, i), ROW(light.green, i), ROW(light.blue, i));
+#ifdef SURFCAST_EYE_DOME
+    write_lit_pixel(local + ivec2(0, i), linear, ROW(light.transmittance, i), ROW(light.depth, i),
+                    ROW(light.opaque, i));
+#else
+    write_pixel(local + ivec2(0, i), linear, ROW(light.transmittance, i));
+#endif
   }
 }

@@ -7,6 +7,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/result.h"
@@ -18,6 +19,21 @@
 
 namespace surfcast {
 
+/// The values of a scalar attribute over the source's surfels; what is no number is left out.
+struct AttributeRange {
+  std::string attribute;
+  double smallest = 0;
+  double largest = 0;
+  double low = 0;   ///< two surfels in a hundred are below; of intensity alone, otherwise `smallest`
+  double high = 0;  ///< two surfels in a hundred are above; likewise
+};
+
+/// Surfels of the source of one class.
+struct ClassCount {
+  uint32_t code = 0;
+  uint64_t surfels = 0;
+};
+
 /// What the header of a model says about all its blocks.
 struct ModelInfo {
   uint64_t surfels = 0;                   ///< of the source: those of the leaves of the tree
@@ -28,6 +44,16 @@ struct ModelInfo {
   int color_bits = 0;                     ///< 8 or 16; 0: the scan has no colour and no block stores any
   std::vector<std::string> scalar_names;  ///< attributes of the leaves, in order
   std::vector<std::string> source_names;  ///< the input files
+  std::vector<AttributeRange> ranges;     ///< of the attributes that have numbers; empty: the file does not state them
+  std::vector<ClassCount> classes;        ///< by code, those that occur; likewise
+
+  /// Null if it is not stated.
+  [[nodiscard]] const AttributeRange* range_of(std::string_view attribute) const {
+    for (const AttributeRange& range : ranges) {
+      if (range.attribute == attribute) return &range;
+    }
+    return nullptr;
+  }
 };
 
 /// A block as it comes out of Draco: structure of arrays of one length.

@@ -66,6 +66,54 @@ wire::FileFormat to_wire(FileFormat value) {
   return wire::FILE_FORMAT_PNG;
 }
 
+SurfelColor from_wire(wire::ColorSource source) {
+  switch (source) {
+    case wire::COLOR_SOURCE_INTENSITY:
+      return SurfelColor::kIntensity;
+    case wire::COLOR_SOURCE_ELEVATION:
+      return SurfelColor::kElevation;
+    case wire::COLOR_SOURCE_CLASSIFICATION:
+      return SurfelColor::kClassification;
+    case wire::COLOR_SOURCE_NORMAL:
+      return SurfelColor::kNormal;
+    default:
+      return SurfelColor::kScanned;
+  }
+}
+
+ColorMap from_wire(wire::ColorMap map) {
+  switch (map) {
+    case wire::COLOR_MAP_TURBO:
+      return ColorMap::kTurbo;
+    case wire::COLOR_MAP_GRAY:
+      return ColorMap::kGray;
+    case wire::COLOR_MAP_TERRAIN:
+      return ColorMap::kTerrain;
+    default:
+      return ColorMap::kViridis;
+  }
+}
+
+Coloring from_wire(const wire::Coloring& coloring) {
+  Coloring result{from_wire(coloring.source()), from_wire(coloring.map())};
+  if (coloring.has_first()) result.first = coloring.first();
+  if (coloring.has_last()) result.last = coloring.last();
+  return result;
+}
+
+/// What is shown of the model, and in which colours.
+void set_look(const wire::DrawPicture& request, PictureRequest& picture) {
+  picture.coloring = from_wire(request.coloring());
+  for (const uint32_t code : request.hidden_classes()) picture.hidden_classes.set(code);
+  for (const wire::ClipBox& clip : request.clip_boxes()) {
+    const Box box{from_wire(clip.box().min()), from_wire(clip.box().max())};
+    (clip.inverted() ? picture.clip.outside : picture.clip.inside).push_back(box);
+  }
+  picture.eye_dome.strength = request.eye_dome().strength();
+  const double radius = request.eye_dome().radius();
+  picture.eye_dome.radius = radius > 0 ? radius : kDefaultEyeDomeRadius;
+}
+
 Camera from_wire(const wire::Camera& camera) {
   return {.position = from_wire(camera.position()),
           .focal_point = from_wire(camera.focal_point()),
@@ -97,6 +145,7 @@ Result<PictureJob> to_job(const wire::DrawPicture& request) {
   job.request.shading = from_wire(request.shading());
   job.request.spacing = request.spacing();
   job.request.background = {background.red(), background.green(), background.blue()};
+  set_look(request, job.request);
   job.format = from_wire(request.format());
   job.quality = static_cast<int>(request.quality() == 0 ? kDefaultQuality : request.quality());
   return job;

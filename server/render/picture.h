@@ -1,5 +1,6 @@
 #pragma once
 
+#include <bitset>
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "geometry/camera.h"
+#include "geometry/clip.h"
 
 namespace surfcast {
 
@@ -22,6 +24,23 @@ enum class Loading { kWait, kNow };
 /// What a rendered pixel is: kSrgb8 for pictures, kLinearFloat for formats that hold measured light (EXR).
 enum class PixelFormat { kSrgb8, kLinearFloat };
 
+/// What the colour of a surfel shows.
+enum class SurfelColor { kScanned, kIntensity, kElevation, kClassification, kNormal };
+enum class ColorMap { kViridis, kTurbo, kGray, kTerrain };
+
+struct Coloring {
+  SurfelColor source = SurfelColor::kScanned;
+  ColorMap map = ColorMap::kViridis;  ///< of intensity and elevation
+  std::optional<double> first{};      ///< the value that takes the first colour of the map; none: the model's low
+  std::optional<double> last{};       ///< the value that takes the last one; none: the model's high
+};
+
+/// Eye-dome lighting (Boucheny 2009): what lies behind an edge of depth is darkened.
+struct EyeDome {
+  double strength = 0;  ///< 0: none; 1: usual
+  double radius = 1.5;  ///< pixels, at most 8
+};
+
 /// Everything that a picture of a model depends on.
 struct PictureRequest {
   std::optional<Camera> camera;  ///< none: a view that fits the whole model
@@ -34,6 +53,10 @@ struct PictureRequest {
   glm::u8vec3 background{0, 0, 0};  ///< sRGB
   PixelFormat format = PixelFormat::kSrgb8;
   Loading loading = Loading::kWait;
+  Coloring coloring;
+  std::bitset<256> hidden_classes;  ///< by code: surfels that are not drawn; models without classes have none
+  Clip clip;
+  EyeDome eye_dome;
 };
 
 /// A rendered picture, rows from top to bottom without padding. Four channels; the fourth is the coverage of the

@@ -14,13 +14,45 @@ Result<gl::Program> compute_program(const char* name, const std::string& defines
   return gl::make_program(name, {{GL_COMPUTE_SHADER, name, *text}}, defines);
 }
 
-std::string defines_of(const Variant& variant) {
+/// What both passes over surfels depend on.
+std::string common_defines(const Variant& variant) {
   std::string defines;
   if (variant.colored) defines += "#define SURFCAST_HAS_COLOR\n";
   if (variant.lit) defines += "#define SURFCAST_LIT\n";
   if (variant.colored && variant.lit) defines += "#define SURFCAST_LIT_COLOR\n";
-  if (variant.float_picture) defines += "#define SURFCAST_FLOAT_PICTURE\n";
   return defines;
+}
+
+std::string color_defines(SurfelColor color) {
+  switch (color) {
+    case SurfelColor::kIntensity:
+      return "#define SURFCAST_COLOR_TABLE\n#define SURFCAST_BY_INTENSITY\n";
+    case SurfelColor::kElevation:
+      return "#define SURFCAST_COLOR_TABLE\n#define SURFCAST_BY_HEIGHT\n";
+    case SurfelColor::kClassification:
+      return "#define SURFCAST_COLOR_TABLE\n#define SURFCAST_BY_CLASS\n";
+    case SurfelColor::kNormal:
+      return "#define SURFCAST_COLOR_NORMAL\n";
+    case SurfelColor::kScanned:
+      break;
+  }
+  return {};
+}
+
+std::string project_defines(const Variant& variant) {
+  std::string defines = common_defines(variant) + color_defines(variant.color);
+  if (variant.hides_classes) defines += "#define SURFCAST_HIDES_CLASSES\n";
+  if (variant.clipped) defines += "#define SURFCAST_CLIPPED\n";
+  return defines;
+}
+
+std::string float_define(const Variant& variant) {
+  return variant.float_picture ? "#define SURFCAST_FLOAT_PICTURE\n" : "";
+}
+
+std::string splat_defines(const Variant& variant) {
+  const std::string output = variant.eye_dome ? "#define SURFCAST_EYE_DOME\n" : float_define(variant);
+  return common_defines(variant) + output;
 }
 
 std::string rows_define(int rows) {
@@ -41,17 +73,31 @@ Result<Programs> Programs::create(int rows) {
   return programs;
 }
 
-Result<const SplatPrograms*> Programs::variant(const Variant& variant) {
-  if (const auto found = variants_.find(variant); found != variants_.end()) return &found->second;
-  const std::string defines = defines_of(variant);
-  Result<gl::Program> project = compute_program("project.comp", defines);
-  if (!project) return fail(std::move(project.error()));
-  Result<gl::Program> splat = compute_program("splat.comp", defines + rows_define(rows_));
-  if (!splat) return fail(std::move(splat.error()));
-  Result<gl::Program> large = compute_program("splat.comp", defines + rows_define(1) + "#define SURFCAST_LARGE\n");
-  if (!large) return fail(std::move(large.error()));
-  SplatPrograms programs{std::move(*project), std::move(*splat), std::move(*large)};
-  return &variants_.emplace(variant, std::move(programs)).first->second;
+Result<const gl::Program*> Programs::program(const char* name, const std::string& defines) {
+  const std::string key = name + ("\n" + defines);
+  if (const auto found = compiled_.find(key); found != compiled_.end()) return &found->second;
+  Result<gl::Program> program = compute_program(name, defines);
+  if (!program) return fail(std::move(program.error()));
+  return &compiled_.emplace(key, std::move(*program)).first->second;
+}
+
+Result<SplatPrograms> Programs::variant(const Variant& variant) {
+  const std::string splat = splat_defines(variant);
+  SplatPrograms programs;
+  const auto compile = [this](const gl::Program*& target, const char* name, const std::string& defines) -> Status {
+    const Result<const gl::Program*> compiled = program(name, defines);
+    if (!compiled) return fail(compiled.error());
+    target = *compiled;
+    return {};
+  };
+  Status status = compile(programs.project, "project.comp", project_defines(variant));
+  if (status) status = compile(programs.splat, "splat.comp", splat + rows_define(rows_));
+  if (status) {
+    status = compile(programs.splat_large, "splat.comp", splat + rows_define(1) + "#define SURFCAST_LARGE\n");
+  }
+  if (status && variant.eye_dome) status = compile(programs.eye_dome, "eye_dome.comp", float_define(variant));
+  if (!status) return fail(std::move(status.error()));
+  return programs;
 }
 
 }  // namespace surfcast

@@ -1,29 +1,32 @@
 #pragma once
 
 #include <map>
-#include <tuple>
+#include <string>
 
 #include "base/result.h"
 #include "gl/objects.h"
+#include "render/picture.h"
 
 namespace surfcast {
 
-/// What a scene has and needs: each combination is a program of its own, so that a scene without a feature does not
-/// pay for it.
+/// What a picture has and needs: each combination is a program of its own, so that a picture without a feature does
+/// not pay for it.
 struct Variant {
-  bool colored = false;
+  bool colored = false;  ///< surfels have a colour of some kind
   bool lit = false;
   bool float_picture = false;
-
-  bool operator<(const Variant& other) const {
-    return std::tie(colored, lit, float_picture) < std::tie(other.colored, other.lit, other.float_picture);
-  }
+  SurfelColor color = SurfelColor::kScanned;
+  bool hides_classes = false;
+  bool clipped = false;
+  bool eye_dome = false;
 };
 
+/// The programs of a variant; they live as long as Programs.
 struct SplatPrograms {
-  gl::Program project;
-  gl::Program splat;        ///< tiles without large splats
-  gl::Program splat_large;  ///< tiles with large splats
+  const gl::Program* project = nullptr;
+  const gl::Program* splat = nullptr;        ///< tiles without large splats
+  const gl::Program* splat_large = nullptr;  ///< tiles with large splats
+  const gl::Program* eye_dome = nullptr;     ///< null without eye-dome lighting
 };
 
 /// Compiles the passes when they are first needed.
@@ -32,15 +35,17 @@ class Programs {
   /// `rows` is the number of pixels that a lane of the splat kernel holds, 1 or 4 (see include/rows.glsl).
   static Result<Programs> create(int rows);
 
-  Result<const SplatPrograms*> variant(const Variant& variant);
+  Result<SplatPrograms> variant(const Variant& variant);
   [[nodiscard]] const gl::Program& bin_offsets() const { return bin_offsets_; }
   [[nodiscard]] const gl::Program& bin() const { return bin_; }
 
  private:
+  Result<const gl::Program*> program(const char* name, const std::string& defines);
+
   int rows_ = 1;
   gl::Program bin_offsets_;
   gl::Program bin_;
-  std::map<Variant, SplatPrograms> variants_;
+  std::map<std::string, gl::Program> compiled_;  ///< by name and defines
 };
 
 }  // namespace surfcast

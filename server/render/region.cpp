@@ -27,14 +27,24 @@ float decode_srgb(uint8_t value) {
 
 }  // namespace
 
-std::vector<Region> cut_into_regions(int width, int height) {
+std::vector<Region> cut_into_regions(int width, int height, int margin) {
+  const auto side_of = [margin](int size) { return size <= kMaxRegionSide ? size : kMaxRegionSide - 2 * margin; };
+  const int across = side_of(width);
+  const int down = side_of(height);
   std::vector<Region> regions;
-  for (int y = 0; y < height; y += kMaxRegionSide) {
-    for (int x = 0; x < width; x += kMaxRegionSide) {
-      regions.push_back({x, y, std::min(kMaxRegionSide, width - x), std::min(kMaxRegionSide, height - y)});
+  for (int y = 0; y < height; y += down) {
+    for (int x = 0; x < width; x += across) {
+      regions.push_back({x, y, std::min(across, width - x), std::min(down, height - y)});
     }
   }
   return regions;
+}
+
+Region with_margin(const Region& region, int margin, int width, int height) {
+  const int x = std::max(region.x - margin, 0);
+  const int y = std::max(region.y - margin, 0);
+  return {x, y, std::min(region.x + region.width + margin, width) - x,
+          std::min(region.y + region.height + margin, height) - y};
 }
 
 int tiles_across(const Region& region) {

@@ -19,8 +19,15 @@ struct Region {
 /// Largest side of a region: its picture and its tile lists fit in the smallest storage blocks that GL promises.
 inline constexpr int kMaxRegionSide = 2048;
 
-/// Cuts a picture into regions, row by row.
-std::vector<Region> cut_into_regions(int width, int height);
+/// Pixels around a region that are drawn with it where eye-dome lighting looks at neighbours: its largest radius, and
+/// whole tiles, so that tiles lie as they would in a picture of one region.
+inline constexpr int kEyeDomeMargin = 8;
+
+/// Cuts a picture into regions, row by row, each of which may be drawn with a margin (see with_margin).
+std::vector<Region> cut_into_regions(int width, int height, int margin);
+
+/// The region and so many pixels around it, as far as the picture reaches.
+Region with_margin(const Region& region, int margin, int width, int height);
 
 [[nodiscard]] int tiles_across(const Region& region);
 [[nodiscard]] int tiles_down(const Region& region);

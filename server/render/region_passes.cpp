@@ -12,13 +12,19 @@ namespace {
 struct ProjectionWork {
   std::vector<layout::BlockView> blocks;
   std::vector<layout::Chunk> chunks;
+  std::vector<layout::BlockLook> looks;  ///< of each block, for looks that need them
+  std::vector<layout::ClipRange> clips;
 };
 
 layout::BlockView block_view(const ResidentBlock& block, const CameraFrame& frame) {
   const auto scale = [](const LogScale& s) { return glm::vec2(s.log2_largest, s.octaves / SURFCAST_SIZE_STEPS); };
   // Relative to the eye in double precision: single precision never sees world coordinates.
-  return {glm::vec4(glm::vec3(frame.to_camera(block.origin)), 0), glm::vec4(glm::vec3(block.step), 0),
-          glm::vec4(scale(block.radius), scale(block.weight))};
+  return {glm::vec4(glm::vec3(frame.to_camera(block.lattice.position(glm::uvec3(0)))), 0),
+          glm::vec4(glm::vec3(block.lattice.step()), 0), glm::vec4(scale(block.radius), scale(block.weight))};
+}
+
+bool needs_looks(const Look& look) {
+  return look.clipped || look.mapped();
 }
 
 ProjectionWork plan_work(const RegionTask& task) {
@@ -27,6 +33,9 @@ ProjectionWork plan_work(const RegionTask& task) {
   for (const VisibleBlock& block : task.blocks) {
     const auto view = static_cast<uint32_t>(work.blocks.size());
     work.blocks.push_back(block_view(block.resident, task.frame));
+    if (needs_looks(task.look)) {
+      work.looks.push_back(block_look(task.look, task.request->clip, block.resident, work.clips));
+    }
     for (uint32_t first = 0; first < block.resident.surfels; first += SURFCAST_CHUNK) {
       const uint32_t page = block.resident.pages[first / SurfelPool::kPageSurfels];
       const uint32_t texel = page * SurfelPool::kPageSurfels + first % SurfelPool::kPageSurfels;
@@ -51,14 +60,37 @@ void upload(StorageBuffer& buffer, const std::vector<T>& values) {
   glNamedBufferSubData(buffer.name(), 0, static_cast<GLsizeiptr>(values.size() * sizeof(T)), values.data());
 }
 
+void bind_uniforms(StorageBuffer& buffer, GLuint binding, const void* constants, size_t bytes) {
+  buffer.reserve(bytes);
+  glNamedBufferSubData(buffer.name(), 0, static_cast<GLsizeiptr>(bytes), constants);
+  glBindBufferBase(GL_UNIFORM_BUFFER, binding, buffer.name());
+}
+
 void upload_constants(const RegionTask& task, const ProjectionWork& work, uint32_t thinned_to, SplatBuffers& buffers) {
   layout::FrameConstants constants = task.constants;
   constants.tiles.w = static_cast<int>(buffers.splat_capacity());
   constants.flags.z = static_cast<int>(thinned_to);
   constants.flags.w = static_cast<int>(work.chunks.size());
-  buffers.frame.reserve(sizeof constants);
-  glNamedBufferSubData(buffers.frame.name(), 0, sizeof constants, &constants);
-  glBindBufferBase(GL_UNIFORM_BUFFER, SURFCAST_BIND_FRAME, buffers.frame.name());
+  bind_uniforms(buffers.frame, SURFCAST_BIND_FRAME, &constants, sizeof constants);
+}
+
+/// What the options of the picture need, and nothing without any.
+void upload_look(const RegionTask& task, const ProjectionWork& work, SplatBuffers& buffers) {
+  const Look& look = task.look;
+  if (needs_looks(look)) {
+    upload(buffers.looks, work.looks);
+    buffers.looks.bind(SURFCAST_BIND_LOOKS);
+  }
+  if (look.clipped) {
+    upload(buffers.clips, work.clips.empty() ? std::vector<layout::ClipRange>(1) : work.clips);
+    buffers.clips.bind(SURFCAST_BIND_CLIPS);
+  }
+  if (look.mapped() || look.hides_classes) {
+    const layout::LookConstants constants = look_constants(look, *task.request);
+    bind_uniforms(buffers.look, SURFCAST_BIND_LOOK, &constants, sizeof constants);
+  }
+  if (look.mapped()) task.colors->bind(SURFCAST_UNIT_COLORS);
+  if (look.attributes) task.surfels->bind_attributes(SURFCAST_UNIT_ATTRIBUTES);
 }
 
 void upload_work(const ProjectionWork& work, SplatBuffers& buffers) {
@@ -113,12 +145,13 @@ layout::Counters project(const RegionTask& task, const ProjectionWork& work, Pro
   const bool with_normals = task.variant.colored && task.variant.lit;
   buffers.reserve_splats(std::max(kFirstCapacity, buffers.splat_capacity()), with_normals);
   upload_work(work, buffers);
+  upload_look(task, work, buffers);
   uint32_t thinned_to = 0;
   while (true) {
     upload_constants(task, work, thinned_to, buffers);
     clear_counts(task, buffers);
     bind_for_projection(task, buffers);
-    glUseProgram(variant.project.name());
+    glUseProgram(variant.project->name());
     if (!work.chunks.empty()) dispatch_rows(work.chunks.size());
     glUseProgram(programs.bin_offsets().name());
     glDispatchCompute(1, 1, 1);
@@ -148,10 +181,15 @@ void bin(const layout::Counters& counters, Programs& programs, SplatBuffers& buf
 }
 
 void splat(const RegionTask& task, const layout::Counters& counters, const SplatPrograms& variant,
-           SplatBuffers& buffers, size_t picture_bytes) {
+           SplatBuffers& buffers) {
   const gl::DebugGroup group("splat");
-  buffers.picture.reserve(picture_bytes);
-  buffers.picture.bind(SURFCAST_BIND_PICTURE);
+  if (task.variant.eye_dome) {
+    const size_t pixels = static_cast<size_t>(task.drawn.width) * static_cast<size_t>(task.drawn.height);
+    buffers.light.reserve(pixels * sizeof(glm::vec4));
+    buffers.depth.reserve(pixels * sizeof(glm::vec2));
+    buffers.light.bind(SURFCAST_BIND_LIGHT);
+    buffers.depth.bind(SURFCAST_BIND_DEPTH);
+  }
   buffers.splats.bind_for_reading(SURFCAST_UNIT_SPLATS);
   buffers.discs.bind_for_reading(SURFCAST_UNIT_DISCS);
   buffers.lists.bind_for_reading(SURFCAST_UNIT_LISTS);
@@ -160,8 +198,21 @@ void splat(const RegionTask& task, const layout::Counters& counters, const Splat
     glUseProgram(program.name());
     glDispatchCompute(static_cast<GLuint>(task.constants.tiles.x), static_cast<GLuint>(task.constants.tiles.y), 1);
   };
-  dispatch(variant.splat);
-  if (counters.counts.y > 0) dispatch(variant.splat_large);
+  dispatch(*variant.splat);
+  if (counters.counts.y > 0) dispatch(*variant.splat_large);
+  glMemoryBarrier(GL_ALL_BARRIER_BITS);
+}
+
+/// From light and depth of all that was drawn to the pixels that are wanted.
+void shade_by_depth(const RegionTask& task, const gl::Program& program, SplatBuffers& buffers) {
+  const gl::DebugGroup group("eye_dome");
+  const EyeDome& eye_dome = task.request->eye_dome;
+  const layout::EyeDomeConstants constants{
+      glm::vec4(eye_dome.strength, eye_dome.radius, 0, 0),
+      glm::ivec4(task.region.x - task.drawn.x, task.region.y - task.drawn.y, task.region.width, task.region.height)};
+  bind_uniforms(buffers.eye_dome, SURFCAST_BIND_EYE_DOME, &constants, sizeof constants);
+  glUseProgram(program.name());
+  glDispatchCompute(static_cast<GLuint>(tiles_across(task.region)), static_cast<GLuint>(tiles_down(task.region)), 1);
   glMemoryBarrier(GL_ALL_BARRIER_BITS);
 }
 
@@ -174,12 +225,12 @@ Status check(const std::atomic<bool>& cancelled) {
 
 Result<RegionStats> draw_region(const RegionTask& task, Programs& programs, SplatBuffers& buffers,
                                 const std::atomic<bool>& cancelled, std::span<std::byte> pixels) {
-  Result<const SplatPrograms*> variant = programs.variant(task.variant);
-  if (!variant) return fail(std::move(variant.error()));
+  const Result<SplatPrograms> variant = programs.variant(task.variant);
+  if (!variant) return fail(variant.error());
 
   RegionStats stats;
   Stopwatch project_watch;
-  const layout::Counters counters = project(task, plan_work(task), programs, **variant, buffers);
+  const layout::Counters counters = project(task, plan_work(task), programs, *variant, buffers);
   stats.splats = uint64_t{counters.counts.x} + counters.counts.y;
   stats.project_ms = project_watch.milliseconds();
   if (Status status = check(cancelled); !status) return fail(std::move(status.error()));
@@ -191,7 +242,10 @@ Result<RegionStats> draw_region(const RegionTask& task, Programs& programs, Spla
   if (Status status = check(cancelled); !status) return fail(std::move(status.error()));
 
   Stopwatch splat_watch;
-  splat(task, counters, **variant, buffers, pixels.size());
+  buffers.picture.reserve(pixels.size());
+  buffers.picture.bind(SURFCAST_BIND_PICTURE);
+  splat(task, counters, *variant, buffers);
+  if (task.variant.eye_dome) shade_by_depth(task, *variant->eye_dome, buffers);
   glFinish();
   stats.splat_ms = splat_watch.milliseconds();
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "render/look.h"
 #include "render/programs.h"
 #include "render/region.h"
 #include "render/splat_buffers.h"
@@ -24,9 +25,13 @@ struct RegionTask {
   const SurfelBuffer* surfels = nullptr;
   std::vector<VisibleBlock> blocks;
   CameraFrame frame;
-  Region region;
-  layout::FrameConstants constants;
+  Region region;                     ///< that is wanted
+  Region drawn;                      ///< the same, or with the margin that eye-dome lighting needs
+  layout::FrameConstants constants;  ///< of `drawn`
   Variant variant;
+  const PictureRequest* request = nullptr;
+  Look look;
+  const ConstantTexels* colors = nullptr;  ///< color_table of a look that is mapped
 };
 
 /// Milliseconds and counts of one region.
@@ -34,12 +39,12 @@ struct RegionStats {
   uint64_t splats = 0;
   double project_ms = 0;  ///< projection, culling, counting
   double bin_ms = 0;
-  double splat_ms = 0;  ///< visibility, accumulation, normalisation, shading
+  double splat_ms = 0;  ///< visibility, accumulation, normalisation, shading, eye-dome lighting
   double read_ms = 0;
 };
 
-/// Draws a region with the four passes: project, bin_offsets, bin, splat; reads its pixels into `pixels` (4 bytes or 4
-/// floats per pixel, rows from the top).
+/// Draws a region with the passes project, bin_offsets, bin, splat and perhaps eye_dome; reads its pixels into `pixels`
+/// (4 bytes or 4 floats per pixel, rows from the top).
 Result<RegionStats> draw_region(const RegionTask& task, Programs& programs, SplatBuffers& buffers,
                                 const std::atomic<bool>& cancelled, std::span<std::byte> pixels);
 

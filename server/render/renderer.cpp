@@ -20,11 +20,21 @@ size_t pixel_bytes(PixelFormat format) {
   return format == PixelFormat::kSrgb8 ? 4 : 4 * sizeof(float);
 }
 
-Variant variant_of(const ModelInfo& info, const PictureRequest& request) {
+/// Colours that say nothing of the shape need light to show it.
+bool lit_by_default(const ModelInfo& info, const Look& look) {
+  if (look.color == SurfelColor::kScanned) return info.color_bits == 0;
+  return look.color == SurfelColor::kElevation || look.color == SurfelColor::kClassification;
+}
+
+Variant variant_of(const ModelInfo& info, const Look& look, const PictureRequest& request) {
   Variant variant;
-  variant.colored = info.color_bits > 0;
-  variant.lit = request.shading == Shading::kLit || (request.shading == Shading::kAuto && !variant.colored);
+  variant.colored = info.color_bits > 0 || look.color != SurfelColor::kScanned;
+  variant.lit = request.shading == Shading::kLit || (request.shading == Shading::kAuto && lit_by_default(info, look));
   variant.float_picture = request.format == PixelFormat::kLinearFloat;
+  variant.color = look.color;
+  variant.hides_classes = look.hides_classes;
+  variant.clipped = look.clipped;
+  variant.eye_dome = request.eye_dome.strength > 0;
   return variant;
 }
 
@@ -68,7 +78,7 @@ struct Renderer::State {
         most_surfels(std::min(config.gpu_bytes / sizeof(glm::uvec4), SurfelBuffer::device_limit() / 2)),
         surfels(most_surfels),
         residency(surfels, limits_of(config, most_surfels)) {
-    buffers.srgb = SrgbTable::make();
+    buffers.srgb = ConstantTexels::make("linear roots of sRGB", linear_root_table());
   }
 
   static ResidencyLimits limits_of(const RendererConfig& config, size_t surfels) {
@@ -78,16 +88,19 @@ struct Renderer::State {
   }
 
   Scene& scene_of(const std::shared_ptr<const ModelFile>& model);
-  Result<PreparedView> prepare(Scene& scene, const PictureRequest& request, const Camera& camera,
+  Result<PreparedView> prepare(Scene& scene, const PictureRequest& request, const Look& look, const Camera& camera,
                                const CameraFrame& frame, const std::atomic<bool>& cancelled);
-  Result<RegionStats> draw_regions(const Scene& scene, const PictureRequest& request, const CameraFrame& frame,
-                                   const BlockSelection& selection, const std::atomic<bool>& cancelled, Image& image);
+  Result<RegionStats> draw_regions(const Scene& scene, const PictureRequest& request, const Look& look,
+                                   const CameraFrame& frame, const BlockSelection& selection,
+                                   const std::atomic<bool>& cancelled, Image& image);
+  const ConstantTexels* colors_of(const Look& look);
   [[nodiscard]] FrameStats stats_of(const Scene& scene, const PreparedView& view, const RegionStats& drawn) const;
 
   std::unique_ptr<EglContext> context;
   DeviceInfo device;
   Programs programs;
   SplatBuffers buffers;
+  std::map<std::pair<SurfelColor, ColorMap>, ConstantTexels> color_tables;  ///< made when they are first needed
   size_t most_surfels;
   SurfelBuffer surfels;
   Residency residency;
@@ -100,9 +113,10 @@ Scene& Renderer::State::scene_of(const std::shared_ptr<const ModelFile>& model) 
   return *scene;
 }
 
-Result<PreparedView> Renderer::State::prepare(Scene& scene, const PictureRequest& request, const Camera& camera,
-                                              const CameraFrame& frame, const std::atomic<bool>& cancelled) {
-  const ViewGoal goal{frame, request.spacing};
+Result<PreparedView> Renderer::State::prepare(Scene& scene, const PictureRequest& request, const Look& look,
+                                              const Camera& camera, const CameraFrame& frame,
+                                              const std::atomic<bool>& cancelled) {
+  const ViewGoal goal{frame, request.spacing, look.clipped ? &request.clip : nullptr, look.attributes};
   if (request.loading == Loading::kWait) return residency.prepare_whole(scene.viewed(), goal, cancelled);
   const std::optional<CameraFrame> ahead = scene.move_to(camera, request.width, request.height);
   PreparedView view = residency.prepare_now(scene.viewed(), goal, scene.refined(), ahead);
@@ -110,18 +124,30 @@ Result<PreparedView> Renderer::State::prepare(Scene& scene, const PictureRequest
   return view;
 }
 
-Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const PictureRequest& request,
+const ConstantTexels* Renderer::State::colors_of(const Look& look) {
+  if (!look.mapped()) return nullptr;
+  const auto key = std::pair(look.color, look.map);
+  const auto found = color_tables.find(key);
+  if (found != color_tables.end()) return &found->second;
+  return &color_tables.emplace(key, ConstantTexels::make("colours", color_table(look))).first->second;
+}
+
+Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const PictureRequest& request, const Look& look,
                                                   const CameraFrame& frame, const BlockSelection& selection,
                                                   const std::atomic<bool>& cancelled, Image& image) {
+  const Variant variant = variant_of(scene.model().info(), look, request);
+  const int margin = variant.eye_dome ? kEyeDomeMargin : 0;
   const size_t bytes = pixel_bytes(request.format);
   const ModelInfo& info = scene.model().info();
   RegionStats total;
   std::vector<std::byte> pixels;
-  for (const Region& region : cut_into_regions(request.width, request.height)) {
+  for (const Region& region : cut_into_regions(request.width, request.height, margin)) {
+    const Region drawn = with_margin(region, margin, request.width, request.height);
     RegionTask task{
-        &surfels, {}, frame, region, frame_constants(frame, region, request, info.oriented), variant_of(info, request)};
-    for (const uint32_t block : blocks_in_rectangle(scene.viewed().tree, selection.draw, frame, region.x, region.y,
-                                                    region.x + region.width, region.y + region.height)) {
+        &surfels, {},       frame, region,         drawn, frame_constants(frame, drawn, request, info.oriented),
+        variant,  &request, look,  colors_of(look)};
+    for (const uint32_t block : blocks_in_rectangle(scene.viewed().tree, selection.draw, frame, drawn.x, drawn.y,
+                                                    drawn.x + drawn.width, drawn.y + drawn.height)) {
       task.blocks.push_back({residency.pool().at({scene.model().id(), block}), scene.first_surfel(block)});
     }
     pixels.resize(static_cast<size_t>(region.width) * static_cast<size_t>(region.height) * bytes);
@@ -179,19 +205,21 @@ Result<Frame> Renderer::draw(const std::shared_ptr<const ModelFile>& model, cons
   if (request.width < 1 || request.height < 1 || request.width > kMaxResolution || request.height > kMaxResolution) {
     return fail(ErrorKind::kLimit, "resolution: each side must lie between 1 and " + std::to_string(kMaxResolution));
   }
+  const Result<Look> look = look_of(model->info(), request);
+  if (!look) return fail(look.error());
   Scene& scene = state_->scene_of(model);
   Frame result;
   result.camera = scene.camera_of(request);
   const Result<CameraFrame> frame = make_camera_frame(result.camera, request.width, request.height);
   if (!frame) return fail(frame.error());
-  const Result<PreparedView> view = state_->prepare(scene, request, result.camera, *frame, cancelled);
+  const Result<PreparedView> view = state_->prepare(scene, request, *look, result.camera, *frame, cancelled);
   if (!view) return fail(view.error());
 
   const size_t pixels = static_cast<size_t>(request.width) * static_cast<size_t>(request.height);
   result.image = {request.width, request.height, request.format, {}};
   result.image.pixels.resize(pixels * pixel_bytes(request.format));
   const Result<RegionStats> drawn =
-      state_->draw_regions(scene, request, *frame, view->selection, cancelled, result.image);
+      state_->draw_regions(scene, request, *look, *frame, view->selection, cancelled, result.image);
   if (!drawn) return fail(drawn.error());
   result.converged = view->selection.converged();
   result.stats = state_->stats_of(scene, *view, *drawn);

@@ -1,10 +1,6 @@
 #include "render/splat_buffers.h"
 
 #include <algorithm>
-#include <span>
-#include <vector>
-
-#include "residency/packing.h"
 
 namespace surfcast {
 
@@ -38,15 +34,14 @@ void StorageBuffer::bind(GLuint binding) const {
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer_.name());
 }
 
-SrgbTable SrgbTable::make() {
-  const std::vector<uint32_t> roots = linear_root_table();
-  SrgbTable table;
-  table.buffer_ = gl::make_buffer("linear roots of sRGB", std::as_bytes(std::span(roots)));
-  table.texture_ = gl::make_buffer_texture("linear roots of sRGB", GL_R32UI, table.buffer_);
+ConstantTexels ConstantTexels::make(const char* label, std::span<const uint32_t> values) {
+  ConstantTexels table;
+  table.buffer_ = gl::make_buffer(label, std::as_bytes(values));
+  table.texture_ = gl::make_buffer_texture(label, GL_R32UI, table.buffer_);
   return table;
 }
 
-void SrgbTable::bind(GLuint unit) const {
+void ConstantTexels::bind(GLuint unit) const {
   glBindTextureUnit(unit, texture_.name());
 }
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <span>
 
 #include "gl/objects.h"
 
@@ -43,11 +45,11 @@ class StorageBuffer {
   gl::Buffer buffer_;
 };
 
-/// The linear light of 8 bit sRGB values, for the projection (see linear_root_table).
-class SrgbTable {
+/// A table of numbers that shaders look up.
+class ConstantTexels {
  public:
   /// Needs the current GL context.
-  static SrgbTable make();
+  static ConstantTexels make(const char* label, std::span<const uint32_t> values);
   void bind(GLuint unit) const;
 
  private:
@@ -57,7 +59,7 @@ class SrgbTable {
 
 /// Everything between the passes of one region.
 struct SplatBuffers {
-  SrgbTable srgb;
+  ConstantTexels srgb;  ///< linear_root_table
   TexelBuffer splats{"splats", GL_RGBA32UI, 16};
   TexelBuffer discs{"discs", GL_RGBA32UI, 16};
   TexelBuffer bounds{"bounds", GL_RG32UI, 8};
@@ -71,6 +73,12 @@ struct SplatBuffers {
   StorageBuffer blocks{"blocks"};
   StorageBuffer chunks{"chunks"};
   StorageBuffer frame{"frame constants"};
+  StorageBuffer looks{"looks of blocks"};
+  StorageBuffer clips{"clip ranges"};
+  StorageBuffer look{"look constants"};
+  StorageBuffer light{"light before eye-dome lighting"};
+  StorageBuffer depth{"depth"};
+  StorageBuffer eye_dome{"eye-dome constants"};
 
   /// Room for so many splat records; normals only for scenes that are lit and coloured.
   void reserve_splats(size_t count, bool with_normals);

@@ -14,9 +14,9 @@ size_t bytes_of(const LoadedBlock& loaded) {
 }
 
 /// What may throw (memory runs out) becomes a value, so that one block cannot end the server.
-Result<std::shared_ptr<const PackedBlock>> load(const BlockSource& source, uint32_t block) {
+Result<std::shared_ptr<const PackedBlock>> load(const BlockSource& source, const BlockId& id) {
   try {
-    Result<PackedBlock> packed = source.load(block);
+    Result<PackedBlock> packed = source.load(id.block, id.attributes);
     if (!packed) return fail(std::move(packed.error()));
     return std::make_shared<const PackedBlock>(std::move(*packed));
   } catch (const std::exception& error) {
@@ -41,22 +41,23 @@ BlockLoader::~BlockLoader() {
   threads_.clear();
 }
 
-void BlockLoader::want(const std::shared_ptr<const BlockSource>& source, std::span<const uint32_t> blocks) {
+void BlockLoader::want(const std::shared_ptr<const BlockSource>& source, std::span<const uint32_t> blocks,
+                       bool attributes) {
   {
     const std::lock_guard lock(mutex_);
     wanted_.clear();
-    for (const uint32_t block : blocks) wanted_.insert({source->id(), block});
+    for (const uint32_t block : blocks) wanted_.insert({source->id(), block, attributes});
     queue_.clear();
     drop_unwanted();
     std::set<BlockId> coming = busy_;
     for (const LoadedBlock& loaded : ready_) coming.insert(loaded.id);
     for (const uint32_t block : blocks) {
-      const BlockId id{source->id(), block};
+      const BlockId id{source->id(), block, attributes};
       if (!coming.insert(id).second) continue;
       if (std::shared_ptr<const PackedBlock> cached = cache_.find(id)) {
         make_ready({id, std::move(cached), 0});
       } else {
-        queue_.push_back({source, block});
+        queue_.push_back({source, id});
       }
     }
   }
@@ -114,11 +115,11 @@ void BlockLoader::work() {
     if (stopping_) return;
     const Request request = std::move(queue_.front());
     queue_.pop_front();
-    const BlockId id{request.source->id(), request.block};
+    const BlockId& id = request.id;
     busy_.insert(id);
     lock.unlock();
     const Stopwatch watch;
-    LoadedBlock loaded{id, load(*request.source, request.block), watch.milliseconds()};
+    LoadedBlock loaded{id, load(*request.source, id), watch.milliseconds()};
     lock.lock();
     busy_.erase(id);
     finish(std::move(loaded));

@@ -37,9 +37,10 @@ class BlockLoader {
   BlockLoader(const BlockLoader&) = delete;
   BlockLoader& operator=(const BlockLoader&) = delete;
 
-  /// Replaces the wishes, most urgent first. Blocks being decoded at the moment are finished and, if nobody wants them,
-  /// kept in host memory.
-  void want(const std::shared_ptr<const BlockSource>& source, std::span<const uint32_t> blocks);
+  /// Replaces the wishes, most urgent first, all with attributes or all without. Blocks being decoded at the moment are
+  /// finished and, if nobody wants them, kept in host memory.
+  void want(const std::shared_ptr<const BlockSource>& source, std::span<const uint32_t> blocks,
+            bool attributes = false);
   /// The next wish that has come true; it is then no wish any more.
   std::optional<LoadedBlock> take();
   /// Waits until take() has something, at most so long.
@@ -49,7 +50,7 @@ class BlockLoader {
  private:
   struct Request {
     std::shared_ptr<const BlockSource> source;
-    uint32_t block = 0;
+    BlockId id;
   };
 
   void work();

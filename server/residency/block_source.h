@@ -19,8 +19,8 @@ class BlockSource {
   /// Tells this model from every other one in the life of the process.
   [[nodiscard]] virtual uint64_t id() const = 0;
   [[nodiscard]] virtual const BlockTree& tree() const = 0;
-  /// Reads, decodes and packs a block.
-  [[nodiscard]] virtual Result<PackedBlock> load(uint32_t block) const = 0;
+  /// Reads, decodes and packs a block, with PackedBlock::attributes or without.
+  [[nodiscard]] virtual Result<PackedBlock> load(uint32_t block, bool attributes) const = 0;
 };
 
 /// The blocks of a model file.
@@ -30,10 +30,12 @@ class FileBlocks : public BlockSource {
 
   [[nodiscard]] uint64_t id() const override { return model_->id(); }
   [[nodiscard]] const BlockTree& tree() const override { return model_->tree(); }
-  [[nodiscard]] Result<PackedBlock> load(uint32_t block) const override {
+  [[nodiscard]] Result<PackedBlock> load(uint32_t block, bool attributes) const override {
     const Result<DecodedBlock> decoded = model_->decode(block);
     if (!decoded) return fail(decoded.error());
-    return pack_block(*decoded, model_->info().color_bits);
+    PackedBlock packed = pack_block(*decoded, model_->info().color_bits);
+    if (attributes) pack_attributes(*decoded, packed);
+    return packed;
   }
 
  private:
@@ -44,9 +46,13 @@ class FileBlocks : public BlockSource {
 struct BlockId {
   uint64_t model = 0;  ///< BlockSource::id
   uint32_t block = 0;
+  bool attributes = false;  ///< with them: what is loaded; where a block lies in memory does not depend on it
 
+  [[nodiscard]] BlockId without_attributes() const { return {model, block, false}; }
   bool operator==(const BlockId&) const = default;
-  bool operator<(const BlockId& other) const { return std::tie(model, block) < std::tie(other.model, other.block); }
+  bool operator<(const BlockId& other) const {
+    return std::tie(model, block, attributes) < std::tie(other.model, other.block, other.attributes);
+  }
 };
 
 }  // namespace surfcast

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <limits>
+#include <string_view>
 
 #include "base/contract.h"
 #include "model/quantize.h"
@@ -72,8 +74,7 @@ PackedBlock pack_block(const DecodedBlock& block, int color_bits) {
   for (float& radius : radii) radius = std::min(radius, widest);
 
   PackedBlock packed;
-  packed.origin = block.grid.position(block.origin);
-  packed.step = block.grid.scale * glm::dvec3(glm::ivec3(1) << shift);
+  packed.lattice = {block.grid, block.origin, shift, position_code(extent, shift)};
   packed.radius = LogScale::of(radii);
   packed.weight = LogScale::of(block.weights);
   packed.surfels.reserve(block.size());
@@ -84,6 +85,53 @@ PackedBlock pack_block(const DecodedBlock& block, int color_bits) {
                                          block.colors.empty() ? 0 : color_code(block.colors[i], color_bits)));
   }
   return packed;
+}
+
+namespace {
+
+/// The values of a scalar attribute as doubles; nothing if the block has none of that name.
+std::vector<double> scalar_values(const DecodedBlock& block, std::string_view name) {
+  std::vector<double> doubles;
+  for (const ScalarAttribute& scalar : block.scalars) {
+    if (scalar.name != name) continue;
+    std::visit([&doubles](const auto& values) { doubles.assign(values.begin(), values.end()); }, scalar.values);
+  }
+  return doubles;
+}
+
+LinearScale scale_of(std::span<const double> values) {
+  constexpr double kSteps = 65535;
+  double least = std::numeric_limits<double>::infinity();
+  double largest = -least;
+  for (const double value : values) {
+    if (!std::isfinite(value)) continue;
+    least = std::min(least, value);
+    largest = std::max(largest, value);
+  }
+  return least <= largest ? LinearScale{least, largest / kSteps - least / kSteps} : LinearScale{};
+}
+
+/// What is no number is the smallest.
+uint32_t intensity_code(double value, const LinearScale& scale) {
+  if (!(scale.step > 0) || std::isnan(value)) return 0;
+  return static_cast<uint32_t>(std::lround(std::clamp((value - scale.first) / scale.step, 0.0, 65535.0)));
+}
+
+uint32_t class_code(double value) {
+  return std::isnan(value) ? 0 : static_cast<uint32_t>(std::lround(std::clamp(value, 0.0, 255.0)));
+}
+
+}  // namespace
+
+void pack_attributes(const DecodedBlock& block, PackedBlock& packed) {
+  const std::vector<double> intensities = scalar_values(block, "intensity");
+  const std::vector<double> classes = scalar_values(block, "classification");
+  packed.intensity = scale_of(intensities);
+  packed.attributes.resize(block.size());
+  for (size_t i = 0; i < intensities.size(); ++i) {
+    packed.attributes[i] = intensity_code(intensities[i], packed.intensity);
+  }
+  for (size_t i = 0; i < classes.size(); ++i) packed.attributes[i] |= class_code(classes[i]) << 16;
 }
 
 std::vector<uint32_t> linear_root_table() {

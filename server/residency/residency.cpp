@@ -15,20 +15,21 @@ void Residency::forget(uint64_t model) {
   damaged_.erase(damaged_.lower_bound({model, 0}), damaged_.lower_bound({model + 1, 0}));
 }
 
-std::vector<bool> Residency::residents(const ViewedModel& model) const {
-  std::vector<bool> residents = pool_.residents(model.source->id());
+std::vector<bool> Residency::residents(const ViewedModel& model, bool attributes) const {
+  std::vector<bool> residents = pool_.residents(model.source->id(), attributes);
   residents.resize(model.tree.tree.blocks().size());
   return residents;
 }
 
 BlockSelection Residency::select(const ViewedModel& model, const ViewGoal& goal,
                                  std::span<const uint32_t> was_refined) const {
-  const SelectionGoal limits{goal.spacing, pool_.usable_surfels(), SurfelPool::kPageSurfels};
-  return select_blocks(model.tree, goal.frame, limits, residents(model), was_refined);
+  const SelectionGoal limits{goal.spacing, pool_.usable_surfels(), SurfelPool::kPageSurfels, goal.clip};
+  return select_blocks(model.tree, goal.frame, limits, residents(model, goal.attributes), was_refined);
 }
 
-std::vector<uint32_t> Residency::missing(const ViewedModel& model, std::span<const uint32_t> blocks) const {
-  const std::vector<bool> here = residents(model);
+std::vector<uint32_t> Residency::missing(const ViewedModel& model, std::span<const uint32_t> blocks,
+                                         bool attributes) const {
+  const std::vector<bool> here = residents(model, attributes);
   std::vector<uint32_t> missing;
   std::copy_if(blocks.begin(), blocks.end(), std::back_inserter(missing), [&](uint32_t block) { return !here[block]; });
   return missing;
@@ -59,18 +60,18 @@ bool Residency::store(const ViewedModel& model, const LoadedBlock& loaded, Prepa
   const BlockTree& tree = model.tree.tree;
   const bool stored = pool_.store(loaded.id, tree, **loaded.block);
   const bool root = tree.blocks()[loaded.id.block].parent == BlockEntry::kNoParent;
-  if (stored && root && tree.children(loaded.id.block).count > 0) pool_.pin(loaded.id);
+  if (stored && root && tree.children(loaded.id.block).count > 0) pool_.pin(loaded.id.without_attributes());
   view.upload_ms += watch.milliseconds();
   return stored;
 }
 
 /// Loads and stores blocks that are not resident; less of them when the pool is full of what is in use.
-Status Residency::load(const ViewedModel& model, std::span<const uint32_t> blocks, const std::atomic<bool>& cancelled,
-                       PreparedView& view) {
+Status Residency::load(const ViewedModel& model, std::span<const uint32_t> blocks, bool attributes,
+                       const std::atomic<bool>& cancelled, PreparedView& view) {
   constexpr std::chrono::milliseconds kPatience{10};  // between two looks at `cancelled`
   const Stopwatch watch;
   const auto give_up = [&] { loader_.want(model.source, {}); };
-  loader_.want(model.source, blocks);
+  loader_.want(model.source, blocks, attributes);
   for (size_t left = blocks.size(); left > 0;) {
     if (cancelled.load(std::memory_order_relaxed)) {
       give_up();
@@ -97,16 +98,18 @@ Result<PreparedView> Residency::prepare_whole(const ViewedModel& model, const Vi
                                               const std::atomic<bool>& cancelled) {
   PreparedView view;
   pool_.begin_frame();
-  const std::vector<uint32_t> roots = missing(model, coarse_roots(model));
-  if (Status status = load(model, roots, cancelled, view); !status) return fail(std::move(status.error()));
+  const std::vector<uint32_t> roots = missing(model, coarse_roots(model), goal.attributes);
+  if (Status status = load(model, roots, goal.attributes, cancelled, view); !status)
+    return fail(std::move(status.error()));
 
   const Stopwatch select_watch;
   view.selection = select(model, goal, {});
   view.select_ms = select_watch.milliseconds();
   use(model, view.selection.target);
-  const std::vector<uint32_t> wanted = missing(model, view.selection.target);
+  const std::vector<uint32_t> wanted = missing(model, view.selection.target, goal.attributes);
   view.waited_for = static_cast<uint32_t>(roots.size() + wanted.size());
-  if (Status status = load(model, wanted, cancelled, view); !status) return fail(std::move(status.error()));
+  if (Status status = load(model, wanted, goal.attributes, cancelled, view); !status)
+    return fail(std::move(status.error()));
 
   const Stopwatch draw_watch;
   if (!wanted.empty()) view.selection = select(model, goal, {});
@@ -122,7 +125,7 @@ size_t Residency::upload_some(const ViewedModel& model, PreparedView& view) {
     if (!loaded) break;
     view.decode_ms += loaded->milliseconds;
     if (!loaded->block) {
-      damaged_.insert(loaded->id);
+      damaged_.insert(loaded->id.without_attributes());
     } else if (loaded->id.model == model.source->id() && store(model, *loaded, view)) {
       bytes += (*loaded->block)->bytes();
       ++stored;
@@ -134,10 +137,12 @@ size_t Residency::upload_some(const ViewedModel& model, PreparedView& view) {
 /// What to load next: the roots, what the view misses, then what it is going to.
 std::vector<uint32_t> Residency::wishes(const ViewedModel& model, const ViewGoal& goal, const BlockSelection& selection,
                                         const std::optional<CameraFrame>& ahead) const {
-  std::vector<uint32_t> blocks = missing(model, coarse_roots(model));
+  std::vector<uint32_t> blocks = missing(model, coarse_roots(model), goal.attributes);
   for (const WantedBlock& wanted : selection.wanted) blocks.push_back(wanted.block);
   if (ahead) {
-    for (const WantedBlock& wanted : select(model, {*ahead, goal.spacing}, selection.refined).wanted) {
+    ViewGoal ahead_goal = goal;
+    ahead_goal.frame = *ahead;
+    for (const WantedBlock& wanted : select(model, ahead_goal, selection.refined).wanted) {
       blocks.push_back(wanted.block);
     }
   }
@@ -157,7 +162,7 @@ PreparedView Residency::prepare_now(const ViewedModel& model, const ViewGoal& go
     view.selection = select(model, goal, was_refined);
     use(model, view.selection);
   }
-  loader_.want(model.source, wishes(model, goal, view.selection, ahead));
+  loader_.want(model.source, wishes(model, goal, view.selection, ahead), goal.attributes);
   view.select_ms = watch.milliseconds() - view.upload_ms;
   return view;
 }

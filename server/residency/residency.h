@@ -23,7 +23,9 @@ struct ViewedModel {
 /// What a picture shows of a model.
 struct ViewGoal {
   CameraFrame frame;
-  double spacing = 0;  ///< see SelectionGoal
+  double spacing = 0;          ///< see SelectionGoal
+  const Clip* clip = nullptr;  ///< likewise; outlives the preparation
+  bool attributes = false;     ///< blocks are wanted with theirs
 };
 
 /// The blocks that a picture is drawn from, and what getting them took.
@@ -63,16 +65,17 @@ class Residency {
   void forget(uint64_t model);
 
  private:
-  [[nodiscard]] std::vector<bool> residents(const ViewedModel& model) const;
+  [[nodiscard]] std::vector<bool> residents(const ViewedModel& model, bool attributes) const;
   [[nodiscard]] BlockSelection select(const ViewedModel& model, const ViewGoal& goal,
                                       std::span<const uint32_t> was_refined) const;
-  [[nodiscard]] std::vector<uint32_t> missing(const ViewedModel& model, std::span<const uint32_t> blocks) const;
+  [[nodiscard]] std::vector<uint32_t> missing(const ViewedModel& model, std::span<const uint32_t> blocks,
+                                              bool attributes) const;
   [[nodiscard]] std::vector<uint32_t> coarse_roots(const ViewedModel& model) const;
   [[nodiscard]] std::vector<uint32_t> wishes(const ViewedModel& model, const ViewGoal& goal,
                                              const BlockSelection& selection,
                                              const std::optional<CameraFrame>& ahead) const;
-  Status load(const ViewedModel& model, std::span<const uint32_t> blocks, const std::atomic<bool>& cancelled,
-              PreparedView& view);
+  Status load(const ViewedModel& model, std::span<const uint32_t> blocks, bool attributes,
+              const std::atomic<bool>& cancelled, PreparedView& view);
   bool store(const ViewedModel& model, const LoadedBlock& loaded, PreparedView& view);
   size_t upload_some(const ViewedModel& model, PreparedView& view);
   void use(const ViewedModel& model, std::span<const uint32_t> blocks);

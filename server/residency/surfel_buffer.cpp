@@ -7,7 +7,7 @@
 namespace surfcast {
 namespace {
 
-constexpr size_t kFirstCapacity = size_t{1} << 20;  // surfels: 16 MiB
+constexpr size_t kFirstCapacity = size_t{1} << 20;  // texels: 16 MiB of surfels
 
 }  // namespace
 
@@ -17,27 +17,31 @@ size_t SurfelBuffer::device_limit() {
   return static_cast<size_t>(texels);
 }
 
-void SurfelBuffer::grow(size_t surfels) {
-  SURFCAST_EXPECTS(surfels <= most_);
-  const size_t capacity = std::clamp(std::max(2 * capacity_, surfels), std::min(kFirstCapacity, most_), most_);
-  gl::Buffer larger = gl::make_buffer("surfels", capacity * sizeof(glm::uvec4), GL_DYNAMIC_STORAGE_BIT);
+void SurfelBuffer::Texels::grow(size_t texels, size_t most) {
+  SURFCAST_EXPECTS(texels <= most);
+  const size_t capacity = std::clamp(std::max(2 * capacity_, texels), std::min(kFirstCapacity, most), most);
+  gl::Buffer larger = gl::make_buffer(label_, capacity * texel_bytes_, GL_DYNAMIC_STORAGE_BIT);
   if (capacity_ > 0) {
-    glCopyNamedBufferSubData(buffer_.name(), larger.name(), 0, 0,
-                             static_cast<GLsizeiptr>(capacity_ * sizeof(glm::uvec4)));
+    glCopyNamedBufferSubData(buffer_.name(), larger.name(), 0, 0, static_cast<GLsizeiptr>(capacity_ * texel_bytes_));
   }
-  texture_ = gl::make_buffer_texture("surfels", GL_RGBA32UI, larger);
+  texture_ = gl::make_buffer_texture(label_, format_, larger);
   buffer_ = std::move(larger);
   capacity_ = capacity;
 }
 
-void SurfelBuffer::write(size_t first, std::span<const glm::uvec4> surfels) {
-  if (first + surfels.size() > capacity_) grow(first + surfels.size());
-  glNamedBufferSubData(buffer_.name(), static_cast<GLintptr>(first * sizeof(glm::uvec4)),
-                       static_cast<GLsizeiptr>(surfels.size_bytes()), surfels.data());
+void SurfelBuffer::Texels::write(size_t first, std::span<const std::byte> bytes, size_t most) {
+  const size_t end = first + bytes.size() / texel_bytes_;
+  if (end > capacity_) grow(end, most);
+  glNamedBufferSubData(buffer_.name(), static_cast<GLintptr>(first * texel_bytes_),
+                       static_cast<GLsizeiptr>(bytes.size()), bytes.data());
 }
 
-void SurfelBuffer::bind(GLuint unit) const {
-  glBindTextureUnit(unit, texture_.name());
+void SurfelBuffer::write(size_t first, std::span<const glm::uvec4> surfels) {
+  surfels_.write(first, std::as_bytes(surfels), most_);
+}
+
+void SurfelBuffer::write_attributes(size_t first, std::span<const uint32_t> attributes) {
+  attributes_.write(first, std::as_bytes(attributes), most_);
 }
 
 }  // namespace surfcast

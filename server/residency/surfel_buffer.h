@@ -16,15 +16,34 @@ class SurfelBuffer : public SurfelSink {
   explicit SurfelBuffer(size_t most) : most_(most) {}
 
   void write(size_t first, std::span<const glm::uvec4> surfels) override;
-  void bind(GLuint unit) const;
+  void write_attributes(size_t first, std::span<const uint32_t> attributes) override;
+  void bind(GLuint unit) const { surfels_.bind(unit); }
+  /// The attributes, once any were written.
+  void bind_attributes(GLuint unit) const { attributes_.bind(unit); }
 
  private:
-  void grow(size_t surfels);
+  /// A buffer texture that grows and keeps its content.
+  class Texels {
+   public:
+    Texels(const char* label, GLenum format, size_t texel_bytes)
+        : label_(label), format_(format), texel_bytes_(texel_bytes) {}
+    void write(size_t first, std::span<const std::byte> bytes, size_t most);
+    void bind(GLuint unit) const { glBindTextureUnit(unit, texture_.name()); }
+
+   private:
+    void grow(size_t texels, size_t most);
+
+    const char* label_;
+    GLenum format_;
+    size_t texel_bytes_;
+    size_t capacity_ = 0;
+    gl::Buffer buffer_;
+    gl::Texture texture_;
+  };
 
   size_t most_;
-  size_t capacity_ = 0;
-  gl::Buffer buffer_;
-  gl::Texture texture_;
+  Texels surfels_{"surfels", GL_RGBA32UI, sizeof(glm::uvec4)};
+  Texels attributes_{"attributes", GL_R32UI, sizeof(uint32_t)};
 };
 
 }  // namespace surfcast

@@ -12,38 +12,73 @@ void SurfelPool::pin(const BlockId& id) {
   if (table_.pinned_pages() + more <= table_.pages() / kPinnedShare) table_.pin(id);
 }
 
-bool SurfelPool::store(const BlockId& id, const BlockTree& tree, const PackedBlock& block) {
-  const auto surfels = static_cast<uint32_t>(block.surfels.size());
-  const uint32_t count = (surfels + kPageSurfels - 1) / kPageSurfels;
-  const std::span<const uint32_t> pages = table_.insert(id, count, [this](const BlockId& evicted) {
-    blocks_.erase(evicted);
-    residents_[evicted.model][evicted.block] = false;
-  });
-  if (pages.empty()) return false;
-  write(pages, block.surfels);
-  blocks_[id] = {block.origin, block.step, block.radius, block.weight, surfels, pages};
-  std::vector<bool>& residents = residents_[id.model];
-  residents.resize(tree.blocks().size());
-  residents[id.block] = true;
-  return true;
-}
+namespace {
 
-/// Pages that follow each other are written at once.
-void SurfelPool::write(std::span<const uint32_t> pages, std::span<const glm::uvec4> surfels) {
+/// Calls `write(first texel, first surfel, surfels)` for each run of pages that follow each other.
+template <typename Write>
+void for_each_run(std::span<const uint32_t> pages, size_t surfels, const Write& write) {
   for (size_t i = 0; i < pages.size();) {
     size_t end = i + 1;
     while (end < pages.size() && pages[end] == pages[end - 1] + 1) ++end;
-    const size_t first = i * kPageSurfels;
-    const size_t last = std::min(end * kPageSurfels, surfels.size());
-    sink_.write(size_t{pages[i]} * kPageSurfels, surfels.subspan(first, last - first));
+    const size_t first = i * SurfelPool::kPageSurfels;
+    const size_t last = std::min(end * SurfelPool::kPageSurfels, surfels);
+    write(size_t{pages[i]} * SurfelPool::kPageSurfels, first, last - first);
     i = end;
   }
 }
 
-const std::vector<bool>& SurfelPool::residents(uint64_t model) const {
+}  // namespace
+
+/// Forgets a block that loses its pages.
+void SurfelPool::drop(const BlockId& id) {
+  const auto found = blocks_.find(id);
+  if (found->second.intensity) attribute_pages_ -= found->second.pages.size();
+  blocks_.erase(found);
+  Residents& residents = residents_[id.model];
+  residents.surfels[id.block] = false;
+  residents.attributes[id.block] = false;
+}
+
+/// Gives a block pages and writes its surfels; null without room.
+ResidentBlock* SurfelPool::place(const BlockId& id, const BlockTree& tree, const PackedBlock& block) {
+  const auto surfels = static_cast<uint32_t>(block.surfels.size());
+  const uint32_t count = (surfels + kPageSurfels - 1) / kPageSurfels;
+  const std::span<const uint32_t> pages = table_.insert(id, count, [this](const BlockId& evicted) { drop(evicted); });
+  if (pages.empty()) return nullptr;
+  for_each_run(pages, surfels, [&](size_t texel, size_t first, size_t run) {
+    sink_.write(texel, std::span(block.surfels).subspan(first, run));
+  });
+  Residents& residents = residents_[id.model];
+  residents.surfels.resize(tree.blocks().size());
+  residents.attributes.resize(tree.blocks().size());
+  residents.surfels[id.block] = true;
+  return &(blocks_[id] = {block.lattice, block.radius, block.weight, surfels, std::nullopt, pages});
+}
+
+void SurfelPool::add_attributes(const BlockId& id, const PackedBlock& block, ResidentBlock& resident) {
+  for_each_run(resident.pages, block.attributes.size(), [&](size_t texel, size_t first, size_t run) {
+    sink_.write_attributes(texel, std::span(block.attributes).subspan(first, run));
+  });
+  if (!resident.intensity) attribute_pages_ += resident.pages.size();
+  resident.intensity = block.intensity;
+  residents_[id.model].attributes[id.block] = true;
+}
+
+bool SurfelPool::store(const BlockId& loaded, const BlockTree& tree, const PackedBlock& block) {
+  const BlockId id = loaded.without_attributes();
+  const auto found = blocks_.find(id);
+  ResidentBlock* resident = found == blocks_.end() ? place(id, tree, block) : &found->second;
+  if (resident == nullptr) return false;
+  table_.use(id);
+  if (loaded.attributes) add_attributes(id, block, *resident);
+  return true;
+}
+
+const std::vector<bool>& SurfelPool::residents(uint64_t model, bool attributes) const {
   static const std::vector<bool> kNone;
   const auto found = residents_.find(model);
-  return found == residents_.end() ? kNone : found->second;
+  if (found == residents_.end()) return kNone;
+  return attributes ? found->second.attributes : found->second.surfels;
 }
 
 ResidentBlock SurfelPool::at(const BlockId& id) const {
@@ -54,7 +89,10 @@ ResidentBlock SurfelPool::at(const BlockId& id) const {
 
 void SurfelPool::forget(uint64_t model) {
   table_.forget(model);
-  blocks_.erase(blocks_.lower_bound({model, 0}), blocks_.lower_bound({model + 1, 0}));
+  const auto end = blocks_.lower_bound({model + 1, 0});
+  for (auto block = blocks_.lower_bound({model, 0}); block != end; block = blocks_.erase(block)) {
+    if (block->second.intensity) attribute_pages_ -= block->second.pages.size();
+  }
   residents_.erase(model);
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <optional>
 #include <span>
 #include <unordered_map>
 #include <vector>
@@ -16,16 +17,18 @@ class SurfelSink {
   virtual ~SurfelSink() = default;
   /// Writes surfels from texel `first` on.
   virtual void write(size_t first, std::span<const glm::uvec4> surfels) = 0;
+  /// Writes attributes of the surfels from texel `first` on.
+  virtual void write_attributes(size_t first, std::span<const uint32_t> attributes) = 0;
 };
 
 /// A resident block: where its surfels lie, and how to read them.
 struct ResidentBlock {
-  glm::dvec3 origin{0};  ///< as in PackedBlock, like all but `pages`
-  glm::dvec3 step{1};
+  PackedLattice lattice;  ///< as in PackedBlock, like all but `pages`
   LogScale radius;
   LogScale weight;
   uint32_t surfels = 0;
-  std::span<const uint32_t> pages;  ///< each SurfelPool::kPageSurfels texels; good until the block is evicted
+  std::optional<LinearScale> intensity{};  ///< none: without attributes
+  std::span<const uint32_t> pages;         ///< each SurfelPool::kPageSurfels texels; good until the block is evicted
 };
 
 /// The resident blocks of all models in one memory with a fixed budget.
@@ -42,10 +45,11 @@ class SurfelPool {
   /// Pins a block, unless pinned ones fill an eighth of the memory already.
   void pin(const BlockId& id);
 
-  /// Writes a block, which is then in use. False when the blocks in use leave no room for it.
+  /// Writes a block, or the attributes of one that is here without them; it is then in use. False when the blocks in
+  /// use leave no room for it.
   bool store(const BlockId& id, const BlockTree& tree, const PackedBlock& block);
-  /// Whether each block of a model is resident; empty for a model of which nothing ever was.
-  [[nodiscard]] const std::vector<bool>& residents(uint64_t model) const;
+  /// Whether each block of a model is resident (with its attributes); empty for a model of which nothing ever was.
+  [[nodiscard]] const std::vector<bool>& residents(uint64_t model, bool attributes = false) const;
   [[nodiscard]] ResidentBlock at(const BlockId& id) const;
   void forget(uint64_t model);
 
@@ -54,15 +58,25 @@ class SurfelPool {
     return uint64_t{table_.pages() - table_.pinned_pages()} * kPageSurfels;
   }
   [[nodiscard]] size_t blocks() const { return table_.blocks(); }
-  [[nodiscard]] size_t bytes() const { return size_t{table_.used_pages()} * kPageSurfels * sizeof(glm::uvec4); }
+  [[nodiscard]] size_t bytes() const {
+    return kPageSurfels * (size_t{table_.used_pages()} * sizeof(glm::uvec4) + attribute_pages_ * sizeof(uint32_t));
+  }
 
  private:
-  void write(std::span<const uint32_t> pages, std::span<const glm::uvec4> surfels);
+  struct Residents {
+    std::vector<bool> surfels;
+    std::vector<bool> attributes;
+  };
+
+  ResidentBlock* place(const BlockId& id, const BlockTree& tree, const PackedBlock& block);
+  void add_attributes(const BlockId& id, const PackedBlock& block, ResidentBlock& resident);
+  void drop(const BlockId& id);
 
   PageTable table_;
   SurfelSink& sink_;
   std::map<BlockId, ResidentBlock> blocks_;
-  std::unordered_map<uint64_t, std::vector<bool>> residents_;
+  std::unordered_map<uint64_t, Residents> residents_;
+  size_t attribute_pages_ = 0;
 };
 
 }  // namespace surfcast

@@ -61,7 +61,10 @@ class Selector {
     const uint64_t page = goal_.page;
     return (blocks_[block].surfels + page - 1) / page * page;
   }
-  [[nodiscard]] bool in_view(uint32_t block) const { return may_be_seen(tree_.hulls[block], frustum_, frame_.eye); }
+  [[nodiscard]] bool in_view(uint32_t block) const {
+    const BlockHull& hull = tree_.hulls[block];
+    return may_be_seen(hull, frustum_, frame_.eye) && (goal_.clip == nullptr || goal_.clip->may_show(hull.centres));
+  }
 
   template <typename Action>
   void for_children(uint32_t block, Action action) const {

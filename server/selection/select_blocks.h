@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "geometry/camera.h"
+#include "geometry/clip.h"
 #include "ldc/block_tree.h"
 #include "selection/block_hull.h"
 
@@ -24,6 +25,7 @@ struct SelectionGoal {
   double spacing = 0;  ///< projected spacing to reach, pixels; 0 is the finest level there is
   uint64_t surfels = std::numeric_limits<uint64_t>::max();  ///< most that may be drawn
   uint32_t page = 1;                                        ///< blocks count in multiples of so many surfels
+  const Clip* clip = nullptr;  ///< subtrees without a surfel that it shows are left out; none: nothing is cut away
 };
 
 /// A block that would make the picture better, were it resident.

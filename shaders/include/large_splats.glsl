@@ -77,6 +77,9 @@ void accumulate_large(uint first, uint count, vec2 pixel, float limit, float sur
       bool visible = form_gain.x <= large_cutoff(s, sigma * sigma) && z > 0.0 && z >= surface && z < limit;
       float weight = s.weight * form_gain.y * coverage_scale(form_gain.y) * exp(-0.5 * form_gain.x);
       sums_add(sums, splat_value(s.color, slot, unit), visible ? weight : 0.0);
+#ifdef SURFCAST_EYE_DOME
+      sums_add_depth(sums, unit, visible ? weight : 0.0, visible ? z : surface, surface);
+#endif
     }
     sums_carry(sums);
   }

@@ -6,6 +6,9 @@
 layout(binding = SURFCAST_UNIT_NORMALS) uniform usamplerBuffer normals;
 #endif
 
+// Fragments lie in front of the pushed back surface by less than so many times its inverse depth.
+const float kReliefRange = 4.0;
+
 struct PixelSums {
   FixedSum weight;
   FixedSum red;  // colour, or the biased normal where the scene has no colour
@@ -15,6 +18,9 @@ struct PixelSums {
   FixedSum normal_x;
   FixedSum normal_y;
   FixedSum normal_z;
+#endif
+#ifdef SURFCAST_EYE_DOME
+  FixedSum relief;  // inverse depth over the surface's, less 1, in units of kReliefRange
 #endif
 };
 
@@ -37,6 +43,9 @@ PixelSums sums_zero() {
   sums.normal_x = fixed_zero();
   sums.normal_y = fixed_zero();
   sums.normal_z = fixed_zero();
+#endif
+#ifdef SURFCAST_EYE_DOME
+  sums.relief = fixed_zero();
 #endif
   return sums;
 }
@@ -81,4 +90,14 @@ void sums_carry(inout PixelSums sums) {
   fixed_carry(sums.normal_y);
   fixed_carry(sums.normal_z);
 #endif
+#ifdef SURFCAST_EYE_DOME
+  fixed_carry(sums.relief);
+#endif
 }
+
+#ifdef SURFCAST_EYE_DOME
+void sums_add_depth(inout PixelSums sums, float unit, Rows weight, Rows inverse_depth, Rows surface) {
+  Rows relief = clamp((inverse_depth / max(surface, Rows(1e-37)) - 1.0) * (1.0 / kReliefRange), Rows(0.0), Rows(1.0));
+  fixed_add(sums.relief, weight * unit * relief);
+}
+#endif

@@ -1,12 +1,6 @@
 // From sums to light: normalisation, deferred shading, coverage.
 #include "include/pixel_sums.glsl"
 
-// IEC 61966-2-1.
-vec3 encode_srgb(vec3 linear) {
-  vec3 l = clamp(linear, 0.0, 1.0);
-  return mix(12.92 * l, 1.055 * pow(l, vec3(1.0 / 2.4)) - 0.055, greaterThan(l, vec3(0.0031308)));
-}
-
 const float kGrey = 0.8;     // albedo of scans without colour
 const float kAmbient = 0.1;  // light that does not come from the eye
 
@@ -16,6 +10,10 @@ struct Light {
   Rows green;
   Rows blue;
   Rows transmittance;
+#ifdef SURFCAST_EYE_DOME
+  Rows depth;   // sum of log2(z) of the layers, weighted by what is seen of them
+  Rows opaque;  // sum of these weights
+#endif
 };
 
 // A headlight: light falls along the viewing rays. The normal is the normalised mean of what covers the pixel.
@@ -27,13 +25,21 @@ Rows headlight(Rows nx, Rows ny, Rows nz, vec2 pixel) {
   return kAmbient + (1.0 - kAmbient) * min(along * inversesqrt(max(lengths, Rows(1e-12))), Rows(1.0));
 }
 
-// Blends one layer behind what is there already. `one` is the weight of an integer unit of the sums.
-void composite(inout Light light, PixelSums sums, float one, vec2 pixel) {
+// Blends one layer behind what is there already. `surface` is the inverse depth of its opaque discs, pushed back; `one`
+// the weight of an integer unit of the sums.
+void composite(inout Light light, PixelSums sums, Rows surface, float one, vec2 pixel) {
   Rows weight = fixed_value(sums.weight);
   Rows share = 1.0 / max(weight, Rows(1.0));
   Rows coverage = min(weight * (one / float(SURFCAST_COVERAGE_MAGNIFIED)), Rows(1.0));
   Rows seen = light.transmittance * coverage;
   light.transmittance *= 1.0 - coverage;
+#ifdef SURFCAST_EYE_DOME
+  // The mean inverse depth of what the layer shows is affine on the screen where the surface is plane.
+  Rows inverse_depth = surface * (1.0 + kReliefRange * fixed_value(sums.relief) * share);
+  Rows part = mix(Rows(0.0), seen, less(Rows(0.0), surface));
+  light.depth -= part * log2(max(inverse_depth, Rows(1e-37)));
+  light.opaque += part;
+#endif
 #ifdef SURFCAST_HAS_COLOR
   Rows red = fixed_value(sums.red) * share;
   Rows green = fixed_value(sums.green) * share;

@@ -57,7 +57,11 @@ void accumulate_small(uint first, uint count, vec2 pixel, Rows limit, Rows surfa
       Rows form = factored_form(s.factor, v);
       Rows z = fragment_inverse_depth(plane_inverse_depth(s.inverse_depth, s.slope, v), s.inverse_depth, s.depth_range);
       BoolRows visible = both(at_most(form, Rows(s.cutoff)), both(at_most(surface, z), less(z, limit)));
-      sums_add(sums, splat_value(s.color, slot, unit), mix(Rows(0.0), s.weight * exp2(-form), visible));
+      Rows weight = mix(Rows(0.0), s.weight * exp2(-form), visible);
+      sums_add(sums, splat_value(s.color, slot, unit), weight);
+#ifdef SURFCAST_EYE_DOME
+      sums_add_depth(sums, unit, weight, z, surface);
+#endif
     }
     sums_carry(sums);
   }

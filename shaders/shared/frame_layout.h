@@ -46,6 +46,31 @@ struct BlockView {
   SURFCAST_VEC4 scale;   // log2 of the largest radius, octaves per step, the same of the weights
 };
 
+// What the options of a picture ask of one block, for builds of the projection that have them; as many as BlockViews.
+struct BlockLook {
+  SURFCAST_VEC4 ramp;    // x: place on the colour map (0 to 1) of code 0 of the attribute or height, y: of a step
+  SURFCAST_IVEC4 clips;  // x: first of its clip ranges, y: so many of which a surfel must be in any (0: it need not),
+                         // z: and so many that follow of which it must be in none
+};
+
+// The position codes of a block that lie in a clip box, from `low` to `high`.
+struct ClipRange {
+  SURFCAST_UVEC4 low;
+  SURFCAST_UVEC4 high;
+};
+
+// What the options of a picture ask of all blocks.
+struct LookConstants {
+  SURFCAST_UVEC4 hidden[2];  // 256 bits, by code of the classification: 1 where it is not drawn
+  SURFCAST_IVEC4 axis;       // x: the vertical one, 0 to 2; y: last entry of the colour table
+};
+
+// What eye-dome lighting asks for.
+struct EyeDomeConstants {
+  SURFCAST_VEC4 shade;    // strength, radius in pixels, unused, unused
+  SURFCAST_IVEC4 region;  // the pixels that are wanted: first x and y counted from the drawn region's, width, height
+};
+
 // A run of at most SURFCAST_CHUNK surfels of one block: block index, first texel, surfels, index in the model (modulo
 // 2^32) of the first.
 struct Chunk {
@@ -58,6 +83,8 @@ struct Counters {
 };
 
 // Bindings. Storage buffers:
+#define SURFCAST_BIND_LOOKS 0  // BlockLook per block
+#define SURFCAST_BIND_CLIPS 1  // ClipRange, those of each block side by side
 #define SURFCAST_BIND_BLOCKS 3
 #define SURFCAST_BIND_CHUNKS 4
 #define SURFCAST_BIND_COUNTERS 5
@@ -65,20 +92,29 @@ struct Counters {
 #define SURFCAST_BIND_TILE_OFFSET 7  // uint per tile and list: first entry
 #define SURFCAST_BIND_TILE_CROWD 8   // uint per tile: entries of both its lists, as counted before thinning
 #define SURFCAST_BIND_PICTURE 9
-// Uniform buffer:
+#define SURFCAST_BIND_LIGHT 2   // vec4 per pixel: linear light and coverage before eye-dome lighting
+#define SURFCAST_BIND_DEPTH 10  // vec2 per pixel: log2 of the visible surface's depth, coverage that it is the mean of
+// Uniform buffers:
 #define SURFCAST_BIND_FRAME 0
+#define SURFCAST_BIND_LOOK 1
+#define SURFCAST_BIND_EYE_DOME 2
 // Image and texture units of the buffers that are larger than a storage block may be:
-#define SURFCAST_UNIT_SPLATS 0   // two uvec4 per splat
-#define SURFCAST_UNIT_DISCS 1    // uvec4 per small splat: the opaque disc of visibility splatting
-#define SURFCAST_UNIT_BOUNDS 2   // uvec2 per splat: its tiles, for binning
-#define SURFCAST_UNIT_LISTS 3    // uint per entry: splat
-#define SURFCAST_UNIT_NORMALS 4  // uint per splat: packed camera space normal, when a lit scene has colour too
-#define SURFCAST_UNIT_SURFELS 5  // uvec4 per surfel, see shared/surfel_layout.h
-#define SURFCAST_UNIT_SRGB 6     // uint per 8 bit sRGB value: the root of its linear light in 11 and 10 bits
+#define SURFCAST_UNIT_SPLATS 0      // two uvec4 per splat
+#define SURFCAST_UNIT_DISCS 1       // uvec4 per small splat: the opaque disc of visibility splatting
+#define SURFCAST_UNIT_BOUNDS 2      // uvec2 per splat: its tiles, for binning
+#define SURFCAST_UNIT_LISTS 3       // uint per entry: splat
+#define SURFCAST_UNIT_NORMALS 4     // uint per splat: packed camera space normal, when a lit scene has colour too
+#define SURFCAST_UNIT_SURFELS 5     // uvec4 per surfel, see shared/surfel_layout.h
+#define SURFCAST_UNIT_SRGB 6        // uint per 8 bit sRGB value: the root of its linear light in 11 and 10 bits
+#define SURFCAST_UNIT_ATTRIBUTES 7  // uint per surfel: 16 bits of intensity, 8 of classification
+#define SURFCAST_UNIT_COLORS 8      // uint per entry of a colour table: linear light as in a splat's record
 
 #ifdef __cplusplus
 static_assert(sizeof(FrameConstants) == 128);
 static_assert(sizeof(BlockView) == 48);
+static_assert(sizeof(BlockLook) == 32);
+static_assert(sizeof(ClipRange) == 32);
+static_assert(sizeof(LookConstants) == 48);
 static_assert(sizeof(Chunk) == 16);
 static_assert(sizeof(Counters) == 16);
 }  // namespace surfcast::layout

@@ -39,10 +39,25 @@ TEST(Parse, ListsHaveExactlyAsManyPartsAsAskedFor) {
 
 TEST(PictureFields, EachFieldIsSetFromItsText) {
   wire::DrawPicture picture;
-  const std::vector<std::pair<std::string, std::string>> texts = {
-      {"position", "1,2,3"}, {"focal_point", "4,5,6"}, {"view_up", "0,0,1"}, {"view_angle", "45"},
-      {"resolution", "8,9"}, {"format", "exr"},        {"quality", "33"},    {"normalization", "surfel"},
-      {"filter", "none"},    {"spacing", "1.5"},       {"shading", "lit"},   {"background", "1,2,255"}};
+  const std::vector<std::pair<std::string, std::string>> texts = {{"position", "1,2,3"},
+                                                                  {"focal_point", "4,5,6"},
+                                                                  {"view_up", "0,0,1"},
+                                                                  {"view_angle", "45"},
+                                                                  {"resolution", "8,9"},
+                                                                  {"format", "exr"},
+                                                                  {"quality", "33"},
+                                                                  {"normalization", "surfel"},
+                                                                  {"filter", "none"},
+                                                                  {"spacing", "1.5"},
+                                                                  {"shading", "lit"},
+                                                                  {"background", "1,2,255"},
+                                                                  {"color_by", "normal"},
+                                                                  {"color_map", "terrain"},
+                                                                  {"color_range", "-2,7.5"},
+                                                                  {"hide_classes", "2,255"},
+                                                                  {"clip_box", "0,0,0,1,1,1;2,2,2,3,3,3"},
+                                                                  {"clip_out", "4,4,4,5,5,5"},
+                                                                  {"eye_dome", "1.5,2"}};
   EXPECT_EQ(texts.size(), picture_fields().size());
   for (const auto& [name, text] : texts) EXPECT_TRUE(set_picture_field(picture, name, text)) << name;
   EXPECT_EQ(picture.camera().focal_point().y(), 5);
@@ -55,6 +70,29 @@ TEST(PictureFields, EachFieldIsSetFromItsText) {
   EXPECT_EQ(picture.spacing(), 1.5);
   EXPECT_EQ(picture.shading(), wire::SHADING_LIT);
   EXPECT_EQ(picture.background().blue(), 255u);
+  EXPECT_EQ(picture.coloring().source(), wire::COLOR_SOURCE_NORMAL);
+  EXPECT_EQ(picture.coloring().map(), wire::COLOR_MAP_TERRAIN);
+  EXPECT_EQ(picture.coloring().first(), -2);
+  EXPECT_EQ(picture.coloring().last(), 7.5);
+  ASSERT_EQ(picture.hidden_classes_size(), 2);
+  EXPECT_EQ(picture.hidden_classes(1), 255u);
+  ASSERT_EQ(picture.clip_boxes_size(), 3);
+  EXPECT_EQ(picture.clip_boxes(1).box().max().z(), 3);
+  EXPECT_FALSE(picture.clip_boxes(1).inverted());
+  EXPECT_TRUE(picture.clip_boxes(2).inverted());
+  EXPECT_EQ(picture.eye_dome().strength(), 1.5);
+  EXPECT_EQ(picture.eye_dome().radius(), 2);
+  EXPECT_TRUE(check_picture(parse_picture_query("m", "eye_dome=1").value()));
+}
+
+TEST(PictureFields, BoxesOfOneKindReplaceEachOtherAndLeaveTheOtherKind) {
+  wire::DrawPicture picture;
+  ASSERT_TRUE(set_picture_field(picture, "clip_box", "0,0,0,1,1,1"));
+  ASSERT_TRUE(set_picture_field(picture, "clip_out", "2,2,2,3,3,3"));
+  ASSERT_TRUE(set_picture_field(picture, "clip_box", "7,7,7,8,8,8"));
+  ASSERT_EQ(picture.clip_boxes_size(), 2);
+  EXPECT_TRUE(picture.clip_boxes(0).inverted());
+  EXPECT_EQ(picture.clip_boxes(1).box().min().x(), 7);
 }
 
 TEST(PictureFields, WrongTextsAreExplained) {
@@ -72,6 +110,22 @@ TEST(PictureFields, WrongTextsAreExplained) {
                                                                                    {"shading", ""},
                                                                                    {"background", "256,0,0"},
                                                                                    {"background", "-1,0,0"},
+                                                                                   {"color_by", "red"},
+                                                                                   {"color_map", ""},
+                                                                                   {"color_range", "1"},
+                                                                                   {"color_range", "nan,1"},
+                                                                                   {"color_range", "2,2"},
+                                                                                   {"color_range", "2,1"},
+                                                                                   {"hide_classes", "256"},
+                                                                                   {"hide_classes", "1,,2"},
+                                                                                   {"hide_classes", "-1"},
+                                                                                   {"clip_box", "1,0,0,0,1,1"},
+                                                                                   {"clip_box", "0,0,0,1,1,1;"},
+                                                                                   {"clip_out", "0,0,0,1,1"},
+                                                                                   {"eye_dome", "-1"},
+                                                                                   {"eye_dome", "101"},
+                                                                                   {"eye_dome", "1,9"},
+                                                                                   {"eye_dome", "1,"},
                                                                                    {"filter", "EWA"}}) {
     const Status status = set_picture_field(picture, name, text);
     ASSERT_FALSE(status) << name << '=' << text;
@@ -142,6 +196,23 @@ TEST(CheckPicture, WhatNoFlagCouldSayIsCaughtInMessagesToo) {
   EXPECT_TRUE(refused([](auto& p) { p.set_normalization(static_cast<wire::Normalization>(9)); }));
   EXPECT_TRUE(refused([](auto& p) { p.set_filter(static_cast<wire::Filter>(-1)); }));
   EXPECT_TRUE(refused([](auto& p) { p.set_shading(static_cast<wire::Shading>(9)); }));
+  EXPECT_TRUE(refused([](auto& p) { p.mutable_coloring()->set_source(static_cast<wire::ColorSource>(9)); }));
+  EXPECT_TRUE(refused([](auto& p) { p.mutable_coloring()->set_map(static_cast<wire::ColorMap>(9)); }));
+  EXPECT_TRUE(refused([&](auto& p) { p.mutable_coloring()->set_first(nan); }));
+  EXPECT_TRUE(refused([](auto& p) { p.mutable_coloring()->set_last(-INFINITY); }));
+  EXPECT_TRUE(refused([](auto& p) {
+    p.mutable_coloring()->set_first(3);
+    p.mutable_coloring()->set_last(3);
+  }));
+  EXPECT_TRUE(refused([](auto& p) { p.add_hidden_classes(256); }));
+  EXPECT_TRUE(refused([&](auto& p) { p.add_clip_boxes()->mutable_box()->mutable_max()->set_x(nan); }));
+  EXPECT_TRUE(refused([](auto& p) { p.add_clip_boxes()->mutable_box()->mutable_max()->set_x(-1); }));
+  EXPECT_TRUE(refused([](auto& p) {
+    for (int i = 0; i < 33; ++i) p.add_clip_boxes();
+  }));
+  EXPECT_TRUE(refused([&](auto& p) { p.mutable_eye_dome()->set_strength(nan); }));
+  EXPECT_TRUE(refused([](auto& p) { p.mutable_eye_dome()->set_strength(-1); }));
+  EXPECT_TRUE(refused([](auto& p) { p.mutable_eye_dome()->set_radius(8.5); }));
 }
 
 TEST(Endpoint, HostsAndPortsAreToldApart) {

@@ -22,7 +22,7 @@ class FakeBlocks : public BlockSource {
 
   [[nodiscard]] uint64_t id() const override { return id_; }
   [[nodiscard]] const BlockTree& tree() const override { return tree_; }
-  [[nodiscard]] Result<PackedBlock> load(uint32_t block) const override {
+  [[nodiscard]] Result<PackedBlock> load(uint32_t block, bool attributes) const override {
     {
       std::unique_lock lock(mutex_);
       started_.push_back(block);
@@ -32,6 +32,7 @@ class FakeBlocks : public BlockSource {
     if (damaged_.contains(block)) return fail(ErrorKind::kInvalidInput, "block " + std::to_string(block) + ": damaged");
     PackedBlock packed;
     packed.surfels.assign(tree_.blocks()[block].surfels, glm::uvec4(block));
+    if (attributes) packed.attributes.assign(packed.surfels.size(), block);
     return packed;
   }
 
@@ -75,11 +76,16 @@ class FakeSink : public SurfelSink {
     for (size_t i = 0; i < surfels.size(); ++i) texels_[first + i] = surfels[i].x;
     written_ += surfels.size_bytes();
   }
+  void write_attributes(size_t first, std::span<const uint32_t> attributes) override {
+    for (size_t i = 0; i < attributes.size(); ++i) attributes_[first + i] = attributes[i];
+  }
   [[nodiscard]] uint32_t at(size_t texel) const { return texels_.at(texel); }
+  [[nodiscard]] uint32_t attribute_at(size_t texel) const { return attributes_.at(texel); }
   [[nodiscard]] size_t written() const { return written_; }
 
  private:
   std::map<size_t, uint32_t> texels_;
+  std::map<size_t, uint32_t> attributes_;
   size_t written_ = 0;
 };
 

@@ -26,8 +26,8 @@ Unpacked unpacked(const PackedBlock& block, size_t i) {
     return std::exp2(scale.log2_largest - scale.octaves * code / 1023);
   };
   const glm::dvec3 steps(s.x & 0xfffff, s.y & 0xfffff, s.z & 0xfffff);
-  return {block.origin + block.step * steps, glm::u16vec2(s.x >> 20, s.y >> 20), size(block.radius, (s.z >> 20) & 1023),
-          size(block.weight, ((s.z >> 30) << 8) | (s.w >> 24)),
+  return {block.lattice.position(glm::uvec3(steps)), glm::u16vec2(s.x >> 20, s.y >> 20),
+          size(block.radius, (s.z >> 20) & 1023), size(block.weight, ((s.z >> 30) << 8) | (s.w >> 24)),
           glm::uvec3(s.w & 255, (s.w >> 8) & 255, (s.w >> 16) & 255)};
 }
 

@@ -1,0 +1,24 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec3.hpp>
+#include <vector>
+
+#include "render/picture.h"
+
+namespace surfcast {
+
+inline constexpr size_t kMapEntries = 1024;
+
+/// A map's colour at t in [0, 1], sRGB in [0, 1].
+glm::dvec3 map_color(ColorMap map, double t);
+/// The colour of a class of LAS, sRGB.
+glm::u8vec3 class_color(uint8_t code);
+
+/// kMapEntries colours of a map, as a splat's record has them (include/packing.glsl).
+std::vector<uint32_t> map_color_table(ColorMap map);
+/// The colours of the 256 classes in the same form.
+std::vector<uint32_t> class_color_table();
+
+}  // namespace surfcast

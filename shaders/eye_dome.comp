@@ -1,0 +1,62 @@
+// Eye-dome lighting (Boucheny 2009): a pixel is darkened by what stands before its neighbours' surface. It needs no
+// normals, shows edges and cavities, and works on any colours.
+//
+//   slope_i = ln(z / z_i) eta / |d_i|     of the neighbour at the displacement d_i, pixels; z its depth
+//   light  *= exp(-k strength mean_i(a_i max(slope_i, 0)))
+//
+// ln z changes by slope / eta from pixel to pixel on a surface of that slope (change of depth over change across), so
+// the same scene is shaded alike at every resolution and view angle. a_i is how far the neighbour is covered: what is
+// seen in part shades in part, and the background does not shade.
+#include "shared/frame_layout.h"
+#include "include/frame.glsl"
+#include "include/srgb.glsl"
+
+layout(local_size_x = SURFCAST_TILE_WIDTH, local_size_y = SURFCAST_TILE_HEIGHT) in;
+
+layout(std140, binding = SURFCAST_BIND_EYE_DOME) uniform EyeDome { EyeDomeConstants eye_dome; };
+layout(std430, binding = SURFCAST_BIND_LIGHT) readonly buffer LightBuffer { vec4 lights[]; };
+layout(std430, binding = SURFCAST_BIND_DEPTH) readonly buffer Depth { vec2 depths[]; };
+#ifdef SURFCAST_FLOAT_PICTURE
+layout(std430, binding = SURFCAST_BIND_PICTURE) writeonly buffer Picture { vec4 picture[]; };
+#else
+layout(std430, binding = SURFCAST_BIND_PICTURE) writeonly buffer Picture { uint picture[]; };
+#endif
+
+// Makes strength 1 a matter of a tenth of the light on a surface seen at 45 degrees, and of nearly all of it behind a
+// step of a twentieth of the depth.
+const float kShade = 0.25;
+const float kDiagonal = 0.70710678;
+const float kLn2 = 0.69314718;
+
+// Positive slope towards the neighbour at the displacement d, times its coverage. Beyond the picture there is none.
+float rise(ivec2 at, float depth, ivec2 d) {
+  ivec2 neighbour = at + d;
+  if (any(lessThan(neighbour, ivec2(0))) || any(greaterThanEqual(neighbour, frame.region.zw))) return 0.0;
+  vec2 other = depths[neighbour.y * frame.region.z + neighbour.x];
+  float slope = (depth - other.x) * kLn2 * eta() / length(vec2(d));
+  return min(other.y, 1.0) * max(slope, 0.0);
+}
+
+float shade(ivec2 at) {
+  vec2 own = depths[at.y * frame.region.z + at.x];
+  if (own.y <= 0.0) return 1.0;
+  int r = max(int(eye_dome.shade.y + 0.5), 1);
+  int q = max(int(eye_dome.shade.y * kDiagonal + 0.5), 1);
+  float sum = rise(at, own.x, ivec2(r, 0)) + rise(at, own.x, ivec2(-r, 0)) + rise(at, own.x, ivec2(0, r)) +
+              rise(at, own.x, ivec2(0, -r)) + rise(at, own.x, ivec2(q, q)) + rise(at, own.x, ivec2(-q, q)) +
+              rise(at, own.x, ivec2(q, -q)) + rise(at, own.x, ivec2(-q, -q));
+  return exp(-kShade * eye_dome.shade.x * sum / 8.0);
+}
+
+void main() {
+  ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+  if (any(greaterThanEqual(at, eye_dome.region.zw))) return;
+  ivec2 drawn = at + eye_dome.region.xy;
+  vec4 light = lights[drawn.y * frame.region.z + drawn.x];
+  vec4 color = vec4(light.rgb * shade(drawn) + (1.0 - light.a) * frame.background.rgb, light.a);
+#ifdef SURFCAST_FLOAT_PICTURE
+  picture[at.y * eye_dome.region.z + at.x] = color;
+#else
+  picture[at.y * eye_dome.region.z + at.x] = packUnorm4x8(vec4(encode_srgb(color.rgb), color.a));
+#endif
+}

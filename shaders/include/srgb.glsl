@@ -1,0 +1,5 @@
+// IEC 61966-2-1.
+vec3 encode_srgb(vec3 linear) {
+  vec3 l = clamp(linear, 0.0, 1.0);
+  return mix(12.92 * l, 1.055 * pow(l, vec3(1.0 / 2.4)) - 0.055, greaterThan(l, vec3(0.0031308)));
+}
