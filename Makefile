@@ -5,7 +5,7 @@ build: configure
 	cmake --build --preset release
 
 demo: configure
-	cmake --build --preset release --target surfcastd surfcast
+	cmake --build --preset release --target surfcastd surfcast viewer
 	cmake/demo.sh build/bin demo
 
 test: build

@@ -11,7 +11,10 @@ fi
 
 missing=
 for purpose in "$@"; do
-  for package in $(awk -v purpose="$purpose" '$1 == purpose { print $2 }' "$list"); do
+  for entry in $(awk -v purpose="$purpose" '$1 == purpose { print $2 ":" $3 }' "$list"); do
+    package=${entry%:*}
+    program=${entry#*:}
+    [ -z "$program" ] || ! command -v "$program" >/dev/null || continue
     status=$(dpkg-query --show --showformat '${db:Status-Status}' "$package" 2>/dev/null || true)
     [ "$status" = installed ] || missing="$missing $package"
   done

@@ -1,0 +1,67 @@
+import { axesOf, poseAxes, type Pose, type UpAxis } from './pose';
+import { addScaled, dot, length, mix, subtract, vector, type Vector } from './vector';
+
+export interface Box {
+  readonly min: Vector;
+  readonly max: Vector;
+}
+
+export const center = (box: Box): Vector => mix(box.min, box.max, 0.5);
+export const diagonal = (box: Box): number => length(subtract(box.max, box.min));
+
+export function corners(box: Box): Vector[] {
+  const { min, max } = box;
+  const points: Vector[] = [];
+  for (const z of [min.z, max.z]) {
+    for (const y of [min.y, max.y]) for (const x of [min.x, max.x]) points.push(vector(x, y, z));
+  }
+  return points;
+}
+
+export type ViewName = 'front' | 'back' | 'left' | 'right' | 'top' | 'bottom' | 'iso';
+
+const quarter = Math.PI / 2;
+/** Yaw and pitch of each; the front looks along y of a z-up model and along -z of a y-up one. */
+const directions: Readonly<Record<ViewName, readonly [number, number]>> = {
+  front: [0, 0],
+  back: [2 * quarter, 0],
+  left: [quarter, 0],
+  right: [-quarter, 0],
+  top: [0, -quarter],
+  bottom: [0, quarter],
+  iso: [-quarter / 2, -Math.atan(Math.SQRT1_2)],
+};
+
+export const viewNames = Object.keys(directions) as readonly ViewName[];
+
+/**
+ * Moves the eye along its view so that the whole box is seen, as near as that allows. Each corner bounds the distance:
+ * at depth d it must be within d tan(angle / 2) of the axis, in both directions of the picture.
+ */
+export function fit(pose: Pose, up: UpAxis, box: Box, aspect: number): Pose {
+  const axes = poseAxes(pose, up);
+  const middle = center(box);
+  const tangentY = Math.tan((pose.viewAngle * Math.PI) / 360) * 0.95; // a little air around it
+  const tangentX = tangentY * aspect;
+  let far = diagonal(box) * 1e-3;
+  for (const corner of corners(box)) {
+    const offset = subtract(corner, middle);
+    const depth = dot(offset, axes.forward);
+    far = Math.max(far, Math.abs(dot(offset, axes.right)) / tangentX - depth);
+    far = Math.max(far, Math.abs(dot(offset, axes.up)) / tangentY - depth);
+  }
+  return { ...pose, distance: far, position: addScaled(middle, axes.forward, -far) };
+}
+
+/** The box from one of the usual sides. */
+export function standardView(name: ViewName, pose: Pose, up: UpAxis, box: Box, aspect: number): Pose {
+  const [yaw, pitch] = directions[name];
+  return fit({ ...pose, yaw, pitch }, up, box, aspect);
+}
+
+/** The usual side that looks most nearly along a direction, for the axes of the gizmo. */
+export function viewAlong(direction: Vector, up: UpAxis): ViewName {
+  const sides = viewNames.filter((name) => name !== 'iso');
+  const agreement = (name: ViewName): number => dot(axesOf(...directions[name], up).forward, direction);
+  return sides.reduce((best, name) => (agreement(name) > agreement(best) ? name : best));
+}

@@ -1,0 +1,53 @@
+import type { Pixel } from '../camera/vector';
+
+/** What two fingers did between two moments. */
+export interface Pinch {
+  readonly center: Pixel; // where the fingers are now
+  readonly moved: Pixel; // of the centre
+  readonly spread: number; // ratio of their distance, above 1: apart
+  readonly twist: number; // radians, clockwise on the screen
+}
+
+const middle = (a: Pixel, b: Pixel): Pixel => ({ x: (a.x + b.x) / 2, y: (a.y + b.y) / 2 });
+const closest = 8; // pixels: fingers nearer than this say nothing about spread and twist
+
+export function pinchBetween(before: readonly [Pixel, Pixel], after: readonly [Pixel, Pixel]): Pinch {
+  const center = middle(...after);
+  const from = middle(...before);
+  const span = ([a, b]: readonly [Pixel, Pixel]): Pixel => ({ x: b.x - a.x, y: b.y - a.y });
+  const [u, v] = [span(before), span(after)];
+  const [sizeU, sizeV] = [Math.hypot(u.x, u.y), Math.hypot(v.x, v.y)];
+  const apart = sizeU >= closest && sizeV >= closest;
+  return {
+    center,
+    moved: { x: center.x - from.x, y: center.y - from.y },
+    spread: apart ? sizeV / sizeU : 1,
+    twist: apart ? Math.atan2(u.x * v.y - u.y * v.x, u.x * v.x + u.y * v.y) : 0,
+  };
+}
+
+/** Pixels that a wheel event scrolls: browsers count in pixels, lines or pages. */
+export function wheelPixels(event: Pick<WheelEvent, 'deltaY' | 'deltaMode' | 'ctrlKey'>): number {
+  const unit = event.deltaMode === 1 ? 33 : event.deltaMode === 2 ? 400 : 1;
+  // Trackpads send pinches as small wheel movements with ctrl.
+  const pinch = event.ctrlKey && event.deltaMode === 0 && Math.abs(event.deltaY) < 50 ? 7 : 1;
+  return Math.max(-400, Math.min(400, event.deltaY * unit * pinch));
+}
+
+const clickReach = 5; // CSS pixels that a hand may tremble
+const clickTime = 500; // ms
+const doubleTime = 350;
+const doubleReach = 16;
+
+export interface Press {
+  readonly at: Pixel;
+  readonly time: number;
+}
+
+export const isClick = (down: Press, up: Press): boolean =>
+  up.time - down.time < clickTime && Math.hypot(up.at.x - down.at.x, up.at.y - down.at.y) < clickReach;
+
+export const isDouble = (first: Press | undefined, second: Press): boolean =>
+  first !== undefined &&
+  second.time - first.time < doubleTime &&
+  Math.hypot(second.at.x - first.at.x, second.at.y - first.at.y) < doubleReach;

@@ -1,0 +1,233 @@
+import { releaseVelocity, recent, type Sample } from '../camera/inertia';
+import type { Pixel } from '../camera/vector';
+import { handleAt, pulled, pullOf, type Handle } from '../overlay/clip_handles';
+import { diagonal } from '../camera/standard_views';
+import * as store from '../state/store';
+import { type Anchor, type Probe } from '../view/probe';
+import type { Drag } from '../view/motor';
+import type { Navigator } from '../view/navigator';
+import { isClick, isDouble, pinchBetween, wheelPixels, type Press } from './gestures';
+import type { Tools } from './tools';
+
+const handleReach = 18; // CSS pixels
+const wheelPause = 300; // ms after which another turn of the wheel may mean another point
+const wheelReach = 12; // CSS pixels
+
+/** What one hand is doing, from the press to the release. Positions are device pixels of the picture. */
+interface Stroke {
+  readonly down: Press; // in CSS pixels, as clicks are judged
+  readonly anchor: Anchor;
+  readonly drag: Drag;
+  samples: Sample[];
+  moved: boolean;
+  coasts: boolean;
+}
+
+/** Pointers, wheels and touches on the picture. */
+export class StageInput {
+  private readonly pointers = new Map<number, Pixel>();
+  private stroke: Stroke | undefined;
+  private pinch: Anchor | undefined;
+  private pull: { handle: Handle; value: number; index: number } | undefined;
+  private wheelAnchor: { anchor: Anchor; time: number } | undefined;
+  private lastClick: Press | undefined;
+
+  constructor(
+    private readonly element: HTMLElement,
+    private readonly navigator: Navigator,
+    private readonly probe: Probe,
+    private readonly tools: Tools,
+  ) {
+    element.addEventListener('pointerdown', (event) => this.down(event));
+    element.addEventListener('pointermove', (event) => this.move(event));
+    element.addEventListener('pointerup', (event) => this.up(event));
+    element.addEventListener('pointercancel', (event) => this.up(event, true));
+    element.addEventListener('wheel', (event) => this.wheel(event), { passive: false });
+    element.addEventListener('contextmenu', (event) => event.preventDefault());
+  }
+
+  private get ratio(): number {
+    const { width } = this.element.getBoundingClientRect();
+    return width > 0 ? store.stageSize.peek().width / width : 1;
+  }
+
+  private pixelOf(event: MouseEvent): Pixel {
+    const box = this.element.getBoundingClientRect();
+    return { x: (event.clientX - box.left) * this.ratio, y: (event.clientY - box.top) * this.ratio };
+  }
+
+  private down(event: PointerEvent): void {
+    event.preventDefault();
+    this.element.focus({ preventScroll: true });
+    this.element.setPointerCapture(event.pointerId);
+    const at = this.pixelOf(event);
+    this.pointers.set(event.pointerId, at);
+    this.navigator.hold(true);
+    if (this.pointers.size === 1) this.begin(event, at);
+    else this.beginPinch();
+  }
+
+  private begin(event: PointerEvent, at: Pixel): void {
+    if (this.grab(at)) return;
+    const anchor = this.probe.anchor(at, (point) => {
+      if (this.stroke?.anchor === anchor) this.navigator.interestIn(point);
+    });
+    const drag = this.dragFor(event, anchor);
+    const down = { at: { x: event.clientX, y: event.clientY }, time: event.timeStamp };
+    this.stroke = { down, anchor, drag, samples: [{ time: event.timeStamp, at }], moved: false, coasts: true };
+  }
+
+  private dragFor(event: PointerEvent, anchor: Anchor): Drag {
+    const pans = event.button === 2 || event.button === 1 || event.shiftKey;
+    if (pans) return this.navigator.panning(() => anchor.hit);
+    return store.flying.peek() ? this.navigator.looking : this.navigator.orbiting(() => anchor.hit);
+  }
+
+  private move(event: PointerEvent): void {
+    const before = this.pointers.get(event.pointerId);
+    if (!before) {
+      this.hover(event);
+      return;
+    }
+    const at = this.pixelOf(event);
+    if (this.pointers.size === 2) this.movePinch(event.pointerId, at);
+    else if (this.pull) this.movePull({ x: at.x - before.x, y: at.y - before.y });
+    else if (this.stroke) this.moveStroke(this.stroke, event, before, at);
+    this.pointers.set(event.pointerId, at);
+  }
+
+  /** A trembling hand that means to click does not turn the picture. */
+  private moveStroke(stroke: Stroke, event: PointerEvent, before: Pixel, at: Pixel): void {
+    const here = { at: { x: event.clientX, y: event.clientY }, time: event.timeStamp };
+    if (!stroke.moved && isClick(stroke.down, here)) return;
+    const from = stroke.moved ? before : stroke.samples[0]!.at;
+    stroke.moved = true;
+    stroke.samples = [...recent(stroke.samples, event.timeStamp), { time: event.timeStamp, at }];
+    this.navigator.drag(stroke.drag, { x: at.x - from.x, y: at.y - from.y });
+  }
+
+  private up(event: PointerEvent, cancelled = false): void {
+    if (!this.pointers.delete(event.pointerId)) return;
+    if (this.pointers.size > 0) {
+      this.endPinch();
+      return;
+    }
+    const stroke = this.stroke;
+    this.stroke = undefined;
+    this.navigator.hold(false);
+    if (this.pull) {
+      this.pull = undefined;
+      this.navigator.adjust(false);
+    } else if (stroke && !cancelled) {
+      this.release(stroke, event);
+    }
+  }
+
+  private release(stroke: Stroke, event: PointerEvent): void {
+    if (stroke.moved) {
+      if (stroke.coasts) this.navigator.coast(stroke.drag, releaseVelocity(stroke.samples, event.timeStamp));
+      return;
+    }
+    const press = { at: { x: event.clientX, y: event.clientY }, time: event.timeStamp };
+    if (event.button !== 0 || !isClick(stroke.down, press)) return;
+    const double = isDouble(this.lastClick, press);
+    this.lastClick = double ? undefined : press;
+    const pixel = this.pixelOf(event);
+    if (double) void this.tools.doubleClick(pixel);
+    else void this.tools.click(pixel);
+  }
+
+  // ---- two fingers ----
+
+  private two(): [Pixel, Pixel] {
+    const [a, b] = [...this.pointers.values()];
+    return [a ?? { x: 0, y: 0 }, b ?? { x: 0, y: 0 }];
+  }
+
+  private beginPinch(): void {
+    this.stroke = undefined;
+    const [a, b] = this.two();
+    this.pinch = this.probe.anchor({ x: (a.x + b.x) / 2, y: (a.y + b.y) / 2 });
+  }
+
+  private movePinch(moved: number, at: Pixel): void {
+    const { pinch } = this;
+    if (!pinch) return;
+    const before = this.two();
+    this.pointers.set(moved, at);
+    const step = pinchBetween(before, this.two());
+    this.navigator.drag(this.navigator.panning(() => pinch.hit), step.moved);
+    if (step.spread !== 1) this.navigator.zoomBy(1 / step.spread, pinch.point);
+    if (step.twist !== 0) this.navigator.twistBy(-step.twist, pinch.point);
+  }
+
+  /** One finger stays: it goes on as if it had just come down, but is no click and does not coast. */
+  private endPinch(): void {
+    this.pinch = undefined;
+    const [at] = [...this.pointers.values()];
+    if (!at || this.pointers.size !== 1) return;
+    const anchor = this.probe.anchor(at);
+    const drag = store.flying.peek() ? this.navigator.looking : this.navigator.orbiting(() => anchor.hit);
+    const down = { at: { x: -1e9, y: -1e9 }, time: 0 };
+    this.stroke = { down, anchor, drag, samples: [], moved: true, coasts: false };
+  }
+
+  // ---- the wheel ----
+
+  private wheel(event: WheelEvent): void {
+    event.preventDefault();
+    const pixels = wheelPixels(event);
+    if (store.flying.peek()) {
+      this.navigator.changeFlightSpeed(Math.exp(-pixels * 0.002));
+      return;
+    }
+    const { anchor } = this.wheelAt(this.pixelOf(event), event.timeStamp);
+    this.navigator.wheel(pixels, () => anchor.point);
+  }
+
+  private wheelAt(pixel: Pixel, time: number): { anchor: Anchor } {
+    const last = this.wheelAnchor;
+    const near =
+      last && Math.hypot(last.anchor.pixel.x - pixel.x, last.anchor.pixel.y - pixel.y) < wheelReach * this.ratio;
+    const anchor = near && time - last.time < wheelPause ? last.anchor : this.probe.anchor(pixel);
+    this.wheelAnchor = { anchor, time };
+    return this.wheelAnchor;
+  }
+
+  // ---- handles of clip boxes ----
+
+  private handleUnder(at: Pixel): { handle: Handle; index: number } | undefined {
+    const index = store.editedClip.peek();
+    const view = store.shownProjection.peek();
+    const clip = index === undefined ? undefined : store.look.peek().clips[index];
+    const visible = store.panel.peek() === 'clip' || store.tool.peek() === 'clip';
+    if (!clip || !view || index === undefined || !visible) return undefined;
+    const handle = handleAt(clip.box, view, at, handleReach * this.ratio);
+    return handle && { handle, index };
+  }
+
+  private grab(at: Pixel): boolean {
+    const found = this.handleUnder(at);
+    if (!found) return false;
+    this.pull = { ...found, value: found.handle.at[found.handle.axis] };
+    this.navigator.hold(false);
+    this.navigator.adjust(true);
+    return true;
+  }
+
+  private movePull(moved: Pixel): void {
+    const { pull } = this;
+    const view = store.shownProjection.peek();
+    const look = store.look.peek();
+    const clip = pull && look.clips[pull.index];
+    if (!pull || !view || !clip) return;
+    const at = { ...pull.handle.at, [pull.handle.axis]: pull.value };
+    pull.value += pullOf({ ...pull.handle, at }, view, moved, diagonal(store.bounds.peek()));
+    const changed = { ...clip, box: pulled(clip.box, pull.handle, pull.value) };
+    store.look.value = { ...look, clips: look.clips.map((other, i) => (i === pull.index ? changed : other)) };
+  }
+
+  private hover(event: PointerEvent): void {
+    this.element.style.cursor = this.handleUnder(this.pixelOf(event)) ? 'grab' : '';
+  }
+}

@@ -1,0 +1,55 @@
+import type { Pixel } from '../camera/vector';
+import { addPoint, finish, measuring } from '../measure/desk';
+import { vectorFrom } from '../protocol/pictures';
+import * as store from '../state/store';
+import type { Navigator } from '../view/navigator';
+import type { Probe } from '../view/probe';
+import { addClipAround } from '../overlay/clip_list';
+
+/** What a click on the picture does, by the tool in hand. */
+export class Tools {
+  constructor(
+    private readonly navigator: Navigator,
+    private readonly probe: Probe,
+  ) {}
+
+  async click(pixel: Pixel): Promise<void> {
+    const kind = measuring();
+    const tool = store.tool.peek();
+    if (tool === 'navigate') {
+      store.inspection.value = undefined;
+      return;
+    }
+    const picked = await this.pick(pixel);
+    if (!picked) {
+      if (tool === 'inspect') store.inspection.value = undefined;
+      return;
+    }
+    if (tool === 'inspect') store.inspection.value = picked;
+    else if (tool === 'clip') addClipAround(picked.at);
+    else if (kind) addPoint(kind, picked.at);
+  }
+
+  async doubleClick(pixel: Pixel): Promise<void> {
+    if (measuring()) {
+      finish();
+      return;
+    }
+    const picked = await this.pick(pixel);
+    if (picked) this.navigator.focus(picked.at);
+  }
+
+  private async pick(pixel: Pixel): Promise<store.Inspection | undefined> {
+    store.picking.value = true;
+    try {
+      const result = await this.probe.pick(pixel);
+      if (result?.hit && result.position) return { result, at: vectorFrom(result.position) };
+      store.say('Nothing of the scan is there.');
+    } catch (error) {
+      store.say(error instanceof Error ? error.message : String(error));
+    } finally {
+      store.picking.value = false;
+    }
+    return undefined;
+  }
+}

@@ -1,0 +1,90 @@
+import '@fontsource-variable/inter/wght.css';
+import './styles/base.css';
+import './styles/layout.css';
+import './styles/controls.css';
+import './styles/cards.css';
+import { render } from 'preact';
+import { Keyboard } from './input/keyboard';
+import { StageInput } from './input/stage_input';
+import { Tools } from './input/tools';
+import { startOverlay } from './overlay/overlay';
+import { currentLink, openModel, startRoutes } from './state/routes';
+import * as store from './state/store';
+import { ActionsContext, type Actions } from './ui/actions';
+import { App } from './ui/app';
+import { Director } from './view/director';
+import { Navigator } from './view/navigator';
+import { Probe } from './view/probe';
+import { followSize } from './view/stage_size';
+
+function canvas(className: string): HTMLCanvasElement {
+  const element = document.createElement('canvas');
+  element.className = className;
+  return element;
+}
+
+/** The picture, what is drawn over it, and the place that takes pointers and keys. */
+function makeStage(): { stage: HTMLDivElement; picture: HTMLCanvasElement; overlay: HTMLCanvasElement } {
+  const stage = document.createElement('div');
+  stage.className = 'canvases';
+  stage.tabIndex = 0;
+  stage.setAttribute('role', 'application');
+  stage.setAttribute('aria-label', 'The model. Arrow keys turn it, plus and minus zoom.');
+  const picture = canvas('picture');
+  const overlay = canvas('overlay');
+  stage.append(picture, overlay);
+  return { stage, picture, overlay };
+}
+
+function socketUrl(): string {
+  const url = new URL('ws', location.href.replace(/[?#].*$/, ''));
+  url.protocol = url.protocol === 'https:' ? 'wss:' : 'ws:';
+  return url.href;
+}
+
+async function copyLink(): Promise<void> {
+  try {
+    await navigator.clipboard.writeText(currentLink());
+    store.say('Link copied.');
+  } catch {
+    store.say('The browser does not let this page copy. The address shows the view, too.');
+  }
+}
+
+function start(): void {
+  const { stage, picture, overlay } = makeStage();
+  const eye = new Navigator();
+  const director = new Director(socketUrl(), picture, (now) => eye.step(now));
+  const probe = new Probe(director);
+  const actions: Actions = { director, navigator: eye, stage, copyLink: () => void copyLink() };
+  new StageInput(stage, eye, probe, new Tools(eye, probe));
+  new Keyboard(stage, eye, {
+    toggleFlight: () => (store.flying.value = !store.flying.peek()),
+    copyLink: actions.copyLink,
+  });
+  followSize(stage);
+  startOverlay(overlay);
+  startRoutes();
+  openTheOnly();
+  const root = document.getElementById('root');
+  if (root) {
+    render(
+      <ActionsContext.Provider value={actions}>
+        <App />
+      </ActionsContext.Provider>,
+      root,
+    );
+  }
+}
+
+/** A server with one model shows it at once. */
+function openTheOnly(): void {
+  const stop = store.models.subscribe((models) => {
+    if (!models) return;
+    queueMicrotask(() => stop());
+    const [only] = models;
+    if (models.length === 1 && only !== undefined && store.model.peek() === undefined) openModel(only);
+  });
+}
+
+start();

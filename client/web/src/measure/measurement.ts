@@ -1,0 +1,107 @@
+import { heightOf, skyOf, type UpAxis } from '../camera/pose';
+import { addScaled, cross, distance, dot, length, normalize, scale, subtract, vector, type Vector } from '../camera/vector';
+
+export const measureKinds = ['distance', 'height', 'angle', 'area', 'profile'] as const;
+export type MeasureKind = (typeof measureKinds)[number];
+
+/** Points of the scan, in source coordinates, in the order in which they were picked. */
+export interface Measurement {
+  readonly id: number;
+  readonly kind: MeasureKind;
+  readonly points: readonly Vector[];
+}
+
+/** A measurement with this many points takes no more. */
+export const mostPoints: Readonly<Record<MeasureKind, number>> = {
+  distance: 64,
+  height: 2,
+  angle: 3,
+  area: 64,
+  profile: 64,
+};
+
+/** With fewer it says nothing yet. */
+export const fewestPoints: Readonly<Record<MeasureKind, number>> = {
+  distance: 2,
+  height: 2,
+  angle: 3,
+  area: 3,
+  profile: 2,
+};
+
+export const isWhole = (m: Measurement): boolean => m.points.length >= fewestPoints[m.kind];
+export const isFull = (m: Measurement): boolean => m.points.length >= mostPoints[m.kind];
+
+const pairs = (points: readonly Vector[]): [Vector, Vector][] =>
+  points.slice(1).map((point, i) => [points[i]!, point] as [Vector, Vector]);
+
+/** Along the line from point to point. */
+export const pathLength = (points: readonly Vector[]): number =>
+  pairs(points).reduce((sum, [a, b]) => sum + distance(a, b), 0);
+
+/** Of a vector's part that is level. */
+export function levelLength(v: Vector, up: UpAxis): number {
+  return length(addScaled(v, skyOf(up), -heightOf(v, up)));
+}
+
+/** How much higher b is than a. */
+export const rise = (a: Vector, b: Vector, up: UpAxis): number => heightOf(subtract(b, a), up);
+
+/** At the middle one of three points, radians. */
+export function angleAt(a: Vector, middle: Vector, b: Vector): number {
+  const [u, v] = [subtract(a, middle), subtract(b, middle)];
+  // atan2 stays exact where acos loses its digits: for angles near 0 and near pi.
+  return Math.atan2(length(cross(u, v)), dot(u, v));
+}
+
+/** Newell's sum over a closed polygon: twice its area, along its normal. Exact for plane polygons. */
+function newell(points: readonly Vector[]): Vector {
+  let sum = vector(0, 0, 0);
+  const origin = points[0];
+  if (!origin) return sum;
+  // Relative to one of its points, so that large coordinates do not eat the digits.
+  const local = points.map((point) => subtract(point, origin));
+  local.forEach((point, i) => {
+    sum = addScaled(sum, cross(point, local[(i + 1) % local.length]!), 1);
+  });
+  return sum;
+}
+
+/** Of the polygon in the plane that fits it. */
+export const area = (points: readonly Vector[]): number => length(newell(points)) / 2;
+
+/** Of its shadow under a vertical light. */
+export const levelArea = (points: readonly Vector[], up: UpAxis): number => Math.abs(heightOf(newell(points), up)) / 2;
+
+export const perimeter = (points: readonly Vector[]): number =>
+  points.length < 2 ? 0 : pathLength([...points, points[0]!]);
+
+/** One point of a profile: how far along the level course, and how high. */
+export interface ProfilePoint {
+  readonly along: number;
+  readonly height: number;
+}
+
+export function profileOf(points: readonly Vector[], up: UpAxis): ProfilePoint[] {
+  let along = 0;
+  return points.map((point, i) => {
+    const previous = points[i - 1];
+    if (previous) along += levelLength(subtract(point, previous), up);
+    return { along, height: heightOf(point, up) };
+  });
+}
+
+/** Where a height is read off: below or above `a`, as high as `b`. */
+export const cornerBelow = (a: Vector, b: Vector, up: UpAxis): Vector => addScaled(a, skyOf(up), rise(a, b, up));
+
+/** Points on the arc that marks an angle, at `radius` from its vertex. */
+export function arc(a: Vector, middle: Vector, b: Vector, radius: number, steps: number): Vector[] {
+  const u = normalize(subtract(a, middle));
+  const toB = subtract(b, middle);
+  const v = normalize(addScaled(toB, u, -dot(toB, u)));
+  const angle = angleAt(a, middle, b);
+  return Array.from({ length: steps + 1 }, (_, i) => {
+    const turned = addScaled(scale(u, Math.cos((angle * i) / steps)), v, Math.sin((angle * i) / steps));
+    return addScaled(middle, turned, radius);
+  });
+}

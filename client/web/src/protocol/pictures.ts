@@ -1,0 +1,82 @@
+import { create, type MessageInitShape } from '@bufbuild/protobuf';
+import type { Camera } from '../camera/pose';
+import type { Box } from '../camera/standard_views';
+import { vector, type Vector } from '../camera/vector';
+import {
+  ColorMap,
+  ColorSource,
+  DrawPictureSchema,
+  FileFormat,
+  type Box as WireBox,
+  type Camera as WireCamera,
+  type DrawPicture,
+  type Vector3,
+} from '../generated/surfcast_pb';
+import type { ColorMapName, ColorSourceName, Look } from '../state/look';
+
+export interface Size {
+  readonly width: number;
+  readonly height: number;
+}
+
+const sources: Readonly<Record<ColorSourceName, ColorSource>> = {
+  rgb: ColorSource.RGB,
+  intensity: ColorSource.INTENSITY,
+  elevation: ColorSource.ELEVATION,
+  classification: ColorSource.CLASSIFICATION,
+  normal: ColorSource.NORMAL,
+};
+
+const maps: Readonly<Record<ColorMapName, ColorMap>> = {
+  viridis: ColorMap.VIRIDIS,
+  turbo: ColorMap.TURBO,
+  gray: ColorMap.GRAY,
+  terrain: ColorMap.TERRAIN,
+};
+
+/** Asks for a picture; without a camera the server chooses a view of the whole model. */
+export function pictureOf(
+  model: string,
+  camera: Camera | undefined,
+  look: Look,
+  resolution: Size,
+  format: FileFormat = FileFormat.PNG,
+): DrawPicture {
+  const [first, last] = look.range ?? [];
+  const coloring = {
+    source: sources[look.source],
+    map: maps[look.map],
+    ...(first !== undefined && last !== undefined ? { first, last } : {}),
+  };
+  const picture: MessageInitShape<typeof DrawPictureSchema> = {
+    model,
+    resolution,
+    format,
+    coloring,
+    background: look.background,
+    spacing: look.spacing,
+    hiddenClasses: [...look.hiddenClasses],
+    clipBoxes: look.clips.map(({ box, inverted }) => ({ box, inverted })),
+    ...(camera ? { camera: wireCamera(camera) } : {}),
+    ...(look.eyeDome.strength > 0 ? { eyeDome: look.eyeDome } : {}),
+  };
+  return create(DrawPictureSchema, picture);
+}
+
+const wireCamera = ({ viewUp, ...camera }: Camera): Omit<Camera, 'viewUp'> & { viewUp?: Vector } =>
+  viewUp ? { ...camera, viewUp } : camera;
+
+export const vectorFrom = (v: Vector3 | undefined): Vector => vector(v?.x ?? 0, v?.y ?? 0, v?.z ?? 0);
+
+export const boxFrom = (box: WireBox | undefined): Box => ({ min: vectorFrom(box?.min), max: vectorFrom(box?.max) });
+
+/** The camera that a picture was drawn with. */
+export function cameraFrom(camera: WireCamera | undefined): Camera | undefined {
+  if (!camera?.position || !camera.focalPoint) return undefined;
+  return {
+    position: vectorFrom(camera.position),
+    focalPoint: vectorFrom(camera.focalPoint),
+    viewUp: camera.viewUp && vectorFrom(camera.viewUp),
+    viewAngle: camera.viewAngle ?? 30,
+  };
+}

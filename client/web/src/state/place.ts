@@ -1,0 +1,125 @@
+import type { Camera } from '../camera/pose';
+import { vector, type Vector } from '../camera/vector';
+import { colorMaps, colorSources, usualBackground, usualLook, type Clip, type Look } from './look';
+
+/** What a link says: the model, where it is seen from, and how. Names and forms are those of `GET /api/models/..`. */
+export interface Place {
+  readonly model: string | undefined;
+  readonly camera: Camera | undefined;
+  readonly look: Look;
+}
+
+const numbersIn = (text: string | null, count: number): number[] | undefined => {
+  const numbers = text?.split(',').map((part) => (part.trim() === '' ? Number.NaN : Number(part)));
+  return numbers?.length === count && numbers.every(Number.isFinite) ? numbers : undefined;
+};
+
+function vectorIn(text: string | null): Vector | undefined {
+  const parts = numbersIn(text, 3);
+  return parts && vector(parts[0]!, parts[1]!, parts[2]!);
+}
+
+function cameraIn(values: URLSearchParams): Camera | undefined {
+  const position = vectorIn(values.get('position'));
+  const focalPoint = vectorIn(values.get('focal_point'));
+  if (!position || !focalPoint) return undefined;
+  const angle = numbersIn(values.get('view_angle'), 1)?.[0] ?? 30;
+  const viewAngle = angle > 0 && angle < 180 ? angle : 30;
+  return { position, focalPoint, viewAngle, viewUp: vectorIn(values.get('view_up')) };
+}
+
+function clipsIn(text: string | null, inverted: boolean): Clip[] {
+  const boxes = (text ?? '').split(';').map((part) => numbersIn(part, 6));
+  return boxes.flatMap((b) => {
+    if (!b) return [];
+    const box = { min: vector(b[0]!, b[1]!, b[2]!), max: vector(b[3]!, b[4]!, b[5]!) };
+    return [{ box, inverted }];
+  });
+}
+
+function eyeDomeIn(text: string | null): Look['eyeDome'] {
+  const both = numbersIn(text, 2) ?? numbersIn(text, 1);
+  const [strength = 0, radius = usualLook.eyeDome.radius] = both ?? [];
+  return strength >= 0 && radius > 0 ? { strength, radius } : usualLook.eyeDome;
+}
+
+function classesIn(text: string | null): number[] {
+  const codes = (text ?? '').split(',').filter((part) => /^\d+$/.test(part));
+  return codes.map(Number).filter((code) => code < 65536);
+}
+
+function lookIn(values: URLSearchParams): Look {
+  const range = numbersIn(values.get('color_range'), 2);
+  const spacing = numbersIn(values.get('spacing'), 1)?.[0];
+  const background = numbersIn(values.get('background'), 3);
+  const inByte = background?.every((part) => Number.isInteger(part) && part >= 0 && part <= 255);
+  return {
+    source: colorSources.find((name) => name === values.get('color_by')) ?? usualLook.source,
+    map: colorMaps.find((name) => name === values.get('color_map')) ?? usualLook.map,
+    range: range && range[0]! < range[1]! ? [range[0]!, range[1]!] : undefined,
+    hiddenClasses: classesIn(values.get('hide_classes')),
+    clips: [...clipsIn(values.get('clip_box'), false), ...clipsIn(values.get('clip_out'), true)],
+    eyeDome: eyeDomeIn(values.get('eye_dome')),
+    background:
+      background && inByte ? { red: background[0]!, green: background[1]!, blue: background[2]! } : usualBackground,
+    spacing: spacing !== undefined && spacing >= 0 ? spacing : usualLook.spacing,
+  };
+}
+
+/** From a location's hash. What it does not say, or says wrongly, is as usual. */
+export function parsePlace(hash: string): Place {
+  const [path = '', query = ''] = hash.replace(/^#?\/?/, '').split('?', 2);
+  const values = new URLSearchParams(query);
+  return { model: decoded(path), camera: cameraIn(values), look: lookIn(values) };
+}
+
+function decoded(path: string): string | undefined {
+  try {
+    return path === '' ? undefined : decodeURIComponent(path);
+  } catch {
+    return path;
+  }
+}
+
+const list = (v: Vector): string => `${v.x},${v.y},${v.z}`;
+
+const clipList = (clips: readonly Clip[], inverted: boolean): string | undefined => {
+  const boxes = clips.filter((clip) => clip.inverted === inverted).map(({ box }) => `${list(box.min)},${list(box.max)}`);
+  return boxes.length > 0 ? boxes.join(';') : undefined;
+};
+
+/** Only what differs from the usual. */
+function lookParameters(look: Look): Record<string, string | undefined> {
+  const { background, eyeDome } = look;
+  const usual = background.red === usualBackground.red && background.green === usualBackground.green;
+  return {
+    color_by: look.source === usualLook.source ? undefined : look.source,
+    color_map: look.map === usualLook.map ? undefined : look.map,
+    color_range: look.range?.join(','),
+    hide_classes: look.hiddenClasses.length > 0 ? look.hiddenClasses.join(',') : undefined,
+    clip_box: clipList(look.clips, false),
+    clip_out: clipList(look.clips, true),
+    eye_dome: eyeDome.strength > 0 ? `${eyeDome.strength},${eyeDome.radius}` : undefined,
+    background:
+      usual && background.blue === usualBackground.blue
+        ? undefined
+        : `${background.red},${background.green},${background.blue}`,
+    spacing: look.spacing === usualLook.spacing ? undefined : String(look.spacing),
+  };
+}
+
+/** A hash that `parsePlace` reads back as it was. */
+export function formatPlace(place: Place): string {
+  if (place.model === undefined) return '#/';
+  const { camera } = place;
+  const values: Record<string, string | undefined> = {
+    position: camera && list(camera.position),
+    focal_point: camera && list(camera.focalPoint),
+    view_up: camera?.viewUp && list(camera.viewUp),
+    view_angle: camera && camera.viewAngle !== 30 ? String(camera.viewAngle) : undefined,
+    ...lookParameters(place.look),
+  };
+  const said = Object.entries(values).flatMap(([name, value]) => (value === undefined ? [] : [`${name}=${value}`]));
+  const path = `#/${encodeURIComponent(place.model)}`;
+  return said.length > 0 ? `${path}?${said.join('&')}` : path;
+}

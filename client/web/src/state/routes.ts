@@ -1,0 +1,66 @@
+import { batch, effect } from '@preact/signals';
+import { cameraOf, poseOf } from '../camera/pose';
+import { formatPlace, parsePlace, type Place } from './place';
+import { usualLook } from './look';
+import * as store from './store';
+
+const settled = 250; // ms without a change before the address follows
+
+/** Opens a model, seen as a link says or as the server chooses. */
+export function openModel(name: string | undefined): void {
+  show(formatPlace({ model: name, camera: undefined, look: usualLook }));
+  history.pushState(null, '', location.href.replace(/#.*$/, '') + currentHash());
+}
+
+function show(hash: string): void {
+  const place = parsePlace(hash);
+  const here = place.model === store.model.peek() && store.pose.peek() !== undefined;
+  batch(() => {
+    store.look.value = place.look;
+    if (here && place.camera) store.pose.value = poseOf(place.camera, store.upAxis.peek());
+  });
+  if (!here || !place.camera) reopen(place);
+}
+
+/** Closes what is shown, so that the first view is chosen anew. */
+function reopen(place: Place): void {
+  if (place.model !== store.model.peek()) forgetModel();
+  store.model.value = undefined;
+  batch(() => {
+    store.pose.value = undefined;
+    store.firstCamera.value = place.camera;
+    store.model.value = place.model;
+  });
+}
+
+function forgetModel(): void {
+  store.measurements.value = [];
+  store.growing.value = undefined;
+  store.inspection.value = undefined;
+  store.editedClip.value = undefined;
+  store.tool.value = 'navigate';
+}
+
+/** What a link to the present view says. */
+export function currentHash(): string {
+  const pose = store.pose.peek();
+  const camera = pose ? cameraOf(pose, store.upAxis.peek()) : store.firstCamera.peek();
+  return formatPlace({ model: store.model.peek(), camera, look: store.look.peek() });
+}
+
+export const currentLink = (): string => location.href.replace(/#.*$/, '') + currentHash();
+
+/** Keeps the address and the store saying the same. */
+export function startRoutes(): void {
+  show(location.hash);
+  // Typed by hand, or back and forward.
+  addEventListener('hashchange', () => {
+    if (location.hash !== currentHash()) show(location.hash);
+  });
+  let timer: ReturnType<typeof setTimeout> | undefined;
+  effect(() => {
+    void [store.model.value, store.pose.value, store.look.value];
+    clearTimeout(timer);
+    timer = setTimeout(() => history.replaceState(null, '', currentLink()), settled);
+  });
+}

@@ -1,0 +1,136 @@
+import type { JSX } from 'preact';
+import { useEffect, useRef } from 'preact/hooks';
+import { chooseTool, togglePanel } from '../input/keyboard';
+import { formatNumber } from '../measure/format';
+import { gradientOf } from '../state/palette';
+import * as store from '../state/store';
+import { useActions } from './actions';
+import { ClipPanel } from './clip_panel';
+import { IconButton } from './controls';
+import { Gallery } from './gallery';
+import { Gizmo } from './gizmo';
+import { HelpDialog } from './help_dialog';
+import { InspectCard } from './inspect_card';
+import { LookPanel, mapped, shownRange } from './look_panel';
+import { MeasurePanel } from './measure_panel';
+import { ModelPanel } from './model_panel';
+import { ScreenshotDialog } from './screenshot_dialog';
+import { StateCards } from './state_cards';
+import { FiguresCard, Status } from './status';
+import { hintFor } from './hints';
+import { PhoneBar, ToolRail, panelNames } from './tool_rail';
+import { TopBar } from './top_bar';
+
+/** Takes the canvases in, which live outside of the components. */
+function Canvases(): JSX.Element {
+  const { stage } = useActions();
+  const host = useRef<HTMLDivElement>(null);
+  useEffect(() => host.current?.append(stage), []);
+  return <div class="canvas-host" ref={host} />;
+}
+
+function Legend(): JSX.Element | null {
+  const { source, map } = store.look.value;
+  if (!mapped(source) || !store.shownFrame.value) return null;
+  const [first, last] = shownRange();
+  const decimals = Math.max(0, 2 - Math.floor(Math.log10(Math.max(1e-9, last - first))));
+  return (
+    <figure class="legend" aria-label={`Colours of ${source}`}>
+      <figcaption>{source}</figcaption>
+      <span class="ramp" style={{ background: gradientOf(map) }} />
+      <span class="ends">
+        <span>{formatNumber(first, decimals)}</span>
+        <span>{formatNumber(last, decimals)}</span>
+      </span>
+    </figure>
+  );
+}
+
+function Hint(): JSX.Element | null {
+  const text = store.notice.value ?? hintFor(store.tool.value, store.flying.value, store.growing.value !== undefined);
+  if (!text || !store.shownFrame.value) return null;
+  return (
+    <p class={store.notice.value ? 'hint said' : 'hint'} role="status">
+      {text}
+    </p>
+  );
+}
+
+function Stage(): JSX.Element {
+  return (
+    <main class="stage" hidden={store.model.value === undefined || store.galleryOpen.value}>
+      <Canvases />
+      <Gizmo />
+      <Hint />
+      <div class="foot">
+        <div class="foot-left">
+          <InspectCard />
+          <FiguresCard />
+          <Status />
+        </div>
+        <Legend />
+      </div>
+    </main>
+  );
+}
+
+const panels: Readonly<Record<store.Panel, () => JSX.Element | null>> = {
+  look: LookPanel,
+  measure: MeasurePanel,
+  clip: ClipPanel,
+  model: ModelPanel,
+};
+
+function SidePanel(): JSX.Element | null {
+  const open = store.panel.value;
+  if (!open || !store.description.value) return null;
+  const Content = panels[open];
+  return (
+    <aside class="panel" aria-label={panelNames[open].label}>
+      <nav class="tabs">
+        {(Object.keys(panels) as store.Panel[]).map((name) => (
+          <button
+            key={name}
+            type="button"
+            aria-pressed={name === open}
+            onClick={() => (store.panel.value = name)}
+          >
+            {panelNames[name].label}
+          </button>
+        ))}
+        <IconButton icon="close" label="Close the panel" onPress={() => togglePanel(open)} />
+      </nav>
+      <div class="panel-content">
+        <Content />
+      </div>
+    </aside>
+  );
+}
+
+export function App(): JSX.Element {
+  // Choosing to measure shows the results where there is room beside the picture.
+  useEffect(
+    () =>
+      store.growing.subscribe((id) => {
+        if (id !== undefined && innerWidth >= 860) store.panel.value = 'measure';
+      }),
+    [],
+  );
+  useEffect(() => {
+    if (store.panel.value !== 'clip' && store.tool.peek() === 'clip') chooseTool('navigate');
+  }, [store.panel.value]);
+  const shown = store.model.value !== undefined && !store.galleryOpen.value;
+  return (
+    <div class={shown && store.panel.value && store.description.value ? 'page with-panel' : 'page'}>
+      <TopBar />
+      {shown && <ToolRail />}
+      <Stage />
+      {shown && <SidePanel />}
+      {shown && <PhoneBar />}
+      <Gallery />
+      <StateCards />
+      {store.dialog.value === 'screenshot' && <ScreenshotDialog />}
+      {store.dialog.value === 'help' && <HelpDialog />}
+    </div>
+  );
+}

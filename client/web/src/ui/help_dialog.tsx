@@ -1,0 +1,61 @@
+import type { JSX } from 'preact';
+import { dialog } from '../state/store';
+import { Dialog } from './controls';
+
+type Rows = readonly (readonly [string, string])[];
+
+const mouse: Rows = [
+  ['Drag', 'turn around what is under the cursor'],
+  ['Right drag, Shift drag', 'move sideways'],
+  ['Wheel', 'zoom towards the cursor'],
+  ['Double click', 'focus on a point'],
+];
+
+const touch: Rows = [
+  ['One finger', 'turn'],
+  ['Two fingers', 'move, pinch to zoom, twist to rotate'],
+  ['Double tap', 'focus on a point'],
+];
+
+const keys: Rows = [
+  ['Arrows', 'turn; with Shift move'],
+  ['+ −', 'zoom'],
+  ['F', 'fit the model'],
+  ['1 … 7', 'front, right, back, left, top, bottom, iso'],
+  ['G', 'fly: W A S D, Q E down and up, Shift faster, wheel sets the speed'],
+  ['N, I', 'navigate, inspect points'],
+  ['M, H, K, B, P', 'distance, height, angle, area, profile'],
+  ['O, C', 'look, clip boxes'],
+  ['X', 'save a picture'],
+  ['L', 'copy a link to this view'],
+  ['`', 'figures'],
+  ['Esc', 'let go'],
+];
+
+function Table({ title, rows }: { title: string; rows: Rows }): JSX.Element {
+  return (
+    <section>
+      <h3>{title}</h3>
+      <dl>
+        {rows.map(([name, text]) => (
+          <div key={name}>
+            <dt>{name}</dt>
+            <dd>{text}</dd>
+          </div>
+        ))}
+      </dl>
+    </section>
+  );
+}
+
+export function HelpDialog(): JSX.Element {
+  return (
+    <Dialog title="How to move" onClose={() => (dialog.value = undefined)}>
+      <div class="help">
+        <Table title="Mouse" rows={mouse} />
+        <Table title="Touch" rows={touch} />
+        <Table title="Keyboard" rows={keys} />
+      </div>
+    </Dialog>
+  );
+}

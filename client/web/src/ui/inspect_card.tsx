@@ -1,0 +1,71 @@
+import type { JSX } from 'preact';
+import { formatExact } from '../measure/format';
+import { className } from '../state/palette';
+import { inspection, say } from '../state/store';
+import { vectorFrom } from '../protocol/pictures';
+import type { Vector } from '../camera/vector';
+import { IconButton } from './controls';
+
+const coordinates = (v: Vector): string => [v.x, v.y, v.z].map(formatExact).join(' ');
+
+async function copy(text: string): Promise<void> {
+  await navigator.clipboard.writeText(text);
+  say('Coordinates copied.');
+}
+
+function valueOf(attribute: string, value: number): string {
+  return attribute === 'classification' ? `${value} · ${className(value)}` : formatExact(value);
+}
+
+/** Everything that the scan knows about the point that was clicked. */
+export function InspectCard(): JSX.Element | null {
+  const shown = inspection.value;
+  if (!shown) return null;
+  const { result, at } = shown;
+  const { color, normal } = result;
+  const rows: [string, JSX.Element | string][] = result.attributes.map(({ attribute, value }) => [
+    attribute,
+    valueOf(attribute, value),
+  ]);
+  if (color) {
+    const css = `rgb(${color.red}, ${color.green}, ${color.blue})`;
+    rows.unshift([
+      'colour',
+      <>
+        <i class="chip" style={{ background: css }} /> {color.red} {color.green} {color.blue}
+      </>,
+    ]);
+  }
+  if (normal) {
+    const n = vectorFrom(normal);
+    rows.push(['normal', [n.x, n.y, n.z].map((part) => part.toFixed(3)).join('  ')]);
+  }
+  rows.push(['distance', result.distance.toPrecision(6)]);
+  return (
+    <section class="inspect-card" aria-label="Point">
+      <header>
+        <h2>Point</h2>
+        <IconButton icon="copy" label="Copy coordinates" onPress={() => void copy(coordinates(at))} />
+        <IconButton icon="close" label="Close" onPress={() => (inspection.value = undefined)} />
+      </header>
+      <dl class="coordinates">
+        {(['x', 'y', 'z'] as const).map((axis) => (
+          <div key={axis}>
+            <dt>
+              <b class={`axis ${axis}`}>{axis.toUpperCase()}</b>
+            </dt>
+            <dd data-axis={axis}>{formatExact(at[axis])}</dd>
+          </div>
+        ))}
+      </dl>
+      <dl class="facts">
+        {rows.map(([name, value]) => (
+          <div key={name}>
+            <dt>{name}</dt>
+            <dd>{value}</dd>
+          </div>
+        ))}
+      </dl>
+    </section>
+  );
+}

@@ -1,0 +1,86 @@
+import type { JSX } from 'preact';
+import { useEffect, useState } from 'preact/hooks';
+import { galleryOpen, link, model, models, shownFrame, viewProblem } from '../state/store';
+import { useActions } from './actions';
+
+/** What is shown instead of, or over, the picture while something is missing. */
+
+function useSecondsUntil(time: number): number {
+  const [now, setNow] = useState(Date.now());
+  useEffect(() => {
+    const timer = setInterval(() => setNow(Date.now()), 250);
+    return () => clearInterval(timer);
+  }, []);
+  return Math.max(0, Math.ceil((time - now) / 1000));
+}
+
+function Waiting({ until, message }: { until: number; message: string }): JSX.Element {
+  const { director } = useActions();
+  const seconds = useSecondsUntil(until);
+  return (
+    <div class="banner" role="status">
+      <span class="lamp offline" />
+      <p>
+        <b>{message}</b> Trying again {seconds > 0 ? `in ${seconds} s` : 'now'}.
+      </p>
+      <button type="button" onClick={() => director.retry()}>
+        Try now
+      </button>
+    </div>
+  );
+}
+
+function Refused({ message }: { message: string }): JSX.Element {
+  return (
+    <div class="state-card" role="alert">
+      <h2>This page and the server do not understand each other</h2>
+      <p>{message}</p>
+      <p class="faint">Reload the page to get the one that belongs to the server.</p>
+      <button type="button" class="primary" onClick={() => location.reload()}>
+        Reload the page
+      </button>
+    </div>
+  );
+}
+
+function Problem({ message, again }: { message: string; again: boolean }): JSX.Element {
+  const { director } = useActions();
+  const missing = model.value !== undefined && models.value !== undefined && !models.value.includes(model.value);
+  const title = again ? 'The server is busy' : missing ? 'No such model' : 'This view cannot be shown';
+  return (
+    <div class="state-card" role="alert">
+      <h2>{title}</h2>
+      <p>{message}</p>
+      {again && <p class="faint">It is being tried again.</p>}
+      <div class="button-row">
+        <button type="button" onClick={() => director.retry()}>
+          Try again
+        </button>
+        <button type="button" class="primary" onClick={() => (galleryOpen.value = true)}>
+          Show all models
+        </button>
+      </div>
+    </div>
+  );
+}
+
+function Loading({ text }: { text: string }): JSX.Element {
+  return (
+    <div class="loading" role="status">
+      <span class="spinner" />
+      <p>{text}</p>
+    </div>
+  );
+}
+
+export function StateCards(): JSX.Element | null {
+  const state = link.value;
+  if (state.kind === 'refused') return <Refused message={state.message} />;
+  if (state.kind === 'waiting') return <Waiting until={state.until} message={state.message} />;
+  if (model.value === undefined || galleryOpen.value) {
+    return state.kind === 'connecting' && !models.value ? <Loading text="Connecting" /> : null;
+  }
+  if (viewProblem.value) return <Problem {...viewProblem.value} />;
+  if (shownFrame.value) return state.kind === 'connecting' ? <Loading text="Connecting" /> : null;
+  return <Loading text={state.kind === 'connecting' ? 'Connecting' : `Opening ${model.value}`} />;
+}

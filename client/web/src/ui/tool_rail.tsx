@@ -1,0 +1,121 @@
+import type { JSX } from 'preact';
+import { chooseTool, togglePanel } from '../input/keyboard';
+import { measureKinds, type MeasureKind } from '../measure/measurement';
+import * as store from '../state/store';
+import { IconButton } from './controls';
+import { Icon, type IconName } from './icons';
+import { measureLabels } from './measure_panel';
+
+export const panelNames: Readonly<Record<store.Panel, { label: string; icon: IconName; hint: string }>> = {
+  look: { label: 'Look', icon: 'look', hint: 'O' },
+  measure: { label: 'Measure', icon: 'measure', hint: '' },
+  clip: { label: 'Clip', icon: 'clip', hint: 'C' },
+  model: { label: 'Model', icon: 'model', hint: '' },
+};
+
+const measureKeys: Readonly<Record<MeasureKind, string>> = {
+  distance: 'M',
+  height: 'H',
+  angle: 'K',
+  area: 'B',
+  profile: 'P',
+};
+
+function setFlying(flying: boolean): void {
+  store.flying.value = flying;
+  chooseTool('navigate');
+}
+
+/** The tools, at the left edge where there is room. */
+export function ToolRail(): JSX.Element {
+  const { value: tool } = store.tool;
+  const flying = store.flying.value;
+  return (
+    <nav class="rail" aria-label="Tools">
+      <IconButton
+        icon="orbit"
+        label="Orbit"
+        hint="N"
+        pressed={tool === 'navigate' && !flying}
+        onPress={() => setFlying(false)}
+      />
+      <IconButton icon="fly" label="Fly" hint="G" pressed={flying} onPress={() => setFlying(!flying)} />
+      <hr />
+      <IconButton
+        icon="inspect"
+        label="Inspect points"
+        hint="I"
+        pressed={tool === 'inspect'}
+        onPress={() => chooseTool('inspect')}
+      />
+      {measureKinds.map((kind) => (
+        <IconButton
+          key={kind}
+          icon={kind}
+          label={measureLabels[kind]}
+          hint={measureKeys[kind]}
+          pressed={tool === kind}
+          onPress={() => chooseTool(kind)}
+        />
+      ))}
+      <hr />
+      {(['look', 'clip', 'model'] as const).map((name) => (
+        <IconButton
+          key={name}
+          icon={panelNames[name].icon}
+          label={panelNames[name].label}
+          hint={panelNames[name].hint}
+          pressed={store.panel.value === name}
+          onPress={() => togglePanel(name)}
+        />
+      ))}
+    </nav>
+  );
+}
+
+function PhoneButton(props: { icon: IconName; label: string; pressed: boolean; onPress: () => void }): JSX.Element {
+  return (
+    <button type="button" aria-pressed={props.pressed} onClick={props.onPress}>
+      <Icon name={props.icon} size={22} />
+      <span>{props.label}</span>
+    </button>
+  );
+}
+
+/** The same at the lower edge of a phone, within the thumb's reach. */
+export function PhoneBar(): JSX.Element {
+  const { value: tool } = store.tool;
+  const panel = store.panel.value;
+  return (
+    <nav class="phone-bar" aria-label="Tools">
+      <PhoneButton
+        icon={store.flying.value ? 'fly' : 'orbit'}
+        label={store.flying.value ? 'Fly' : 'Orbit'}
+        pressed={tool === 'navigate' && !panel}
+        onPress={() => {
+          if (tool === 'navigate' && !panel) store.flying.value = !store.flying.value;
+          chooseTool('navigate');
+          store.panel.value = undefined;
+        }}
+      />
+      <PhoneButton
+        icon="inspect"
+        label="Inspect"
+        pressed={tool === 'inspect'}
+        onPress={() => {
+          chooseTool('inspect');
+          store.panel.value = undefined;
+        }}
+      />
+      {(['measure', 'look', 'clip', 'model'] as const).map((name) => (
+        <PhoneButton
+          key={name}
+          icon={panelNames[name].icon}
+          label={panelNames[name].label}
+          pressed={panel === name}
+          onPress={() => togglePanel(name)}
+        />
+      ))}
+    </nav>
+  );
+}

@@ -1,0 +1,42 @@
+import { create } from '@bufbuild/protobuf';
+import { ViewFrameSchema, type ViewFrame } from '../generated/surfcast_pb';
+import type { ArrivedFrame } from './painter';
+
+/**
+ * Puts the pieces of large pictures together. A piece says that more follow; one of another frame means that the rest
+ * of the former will not come.
+ */
+export class FrameAssembler {
+  private pieces: ViewFrame[] = [];
+  private bytes = 0;
+
+  /** The whole frame, once its last piece is there. */
+  take(piece: ViewFrame, bytes: number, arrived: number): ArrivedFrame | undefined {
+    if (this.pieces[0] && this.pieces[0].frame !== piece.frame) this.drop();
+    this.pieces.push(piece);
+    this.bytes += bytes;
+    if (piece.more) return undefined;
+    const frame = { frame: joined(this.pieces), bytes: this.bytes, arrived };
+    this.drop();
+    return frame;
+  }
+
+  private drop(): void {
+    this.pieces = [];
+    this.bytes = 0;
+  }
+}
+
+/** The first piece has all fields, the others only further data. */
+function joined(pieces: readonly ViewFrame[]): ViewFrame {
+  const [first] = pieces;
+  if (!first?.picture || pieces.length === 1) return first ?? create(ViewFrameSchema);
+  const parts = pieces.map((piece) => piece.picture?.data ?? new Uint8Array());
+  const data = new Uint8Array(parts.reduce((sum, part) => sum + part.length, 0));
+  let at = 0;
+  for (const part of parts) {
+    data.set(part, at);
+    at += part.length;
+  }
+  return { ...first, more: false, picture: { ...first.picture, data } };
+}

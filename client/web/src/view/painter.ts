@@ -1,0 +1,111 @@
+import { FileFormat, type ViewFrame } from '../generated/surfcast_pb';
+
+const types: Readonly<Record<FileFormat, string>> = {
+  [FileFormat.PNG]: 'image/png',
+  [FileFormat.JPEG]: 'image/jpeg',
+  [FileFormat.WEBP]: 'image/webp',
+  [FileFormat.EXR]: 'image/x-exr',
+};
+
+export const mediaType = (format: FileFormat): string => types[format];
+
+/** A frame on its way to the screen, with the times at which it got there (performance.now()). */
+export interface ArrivedFrame {
+  readonly frame: ViewFrame;
+  readonly bytes: number;
+  readonly arrived: number;
+}
+
+export interface PaintedFrame extends ArrivedFrame {
+  readonly decoded: number;
+  readonly painted: number;
+}
+
+interface DecodedFrame extends ArrivedFrame {
+  readonly bitmap: ImageBitmap;
+  readonly decoded: number;
+}
+
+export interface PainterEvents {
+  painted(frame: PaintedFrame): void;
+  /** A newer frame was ready before this one could be painted; the server waits for word of it all the same. */
+  skipped(frame: ArrivedFrame): void;
+  broken(frame: ArrivedFrame): void;
+}
+
+/**
+ * Takes frames to a canvas. Pictures are decoded off the main thread, and only the newest one that is ready is painted,
+ * in the browser's own rhythm.
+ */
+export class Painter {
+  private readonly context: CanvasRenderingContext2D;
+  private ready: DecodedFrame | undefined;
+  private newest = 0n;
+  private scheduled = false;
+  private generation = 0;
+
+  constructor(
+    private readonly canvas: HTMLCanvasElement,
+    private readonly events: PainterEvents,
+  ) {
+    const context = canvas.getContext('2d', { alpha: false });
+    if (!context) throw new Error('This browser gives no 2D canvas.');
+    this.context = context;
+  }
+
+  /** Forgets the frames of a view that has ended; the picture stays until another comes. */
+  reset(): void {
+    this.generation += 1;
+    this.newest = 0n;
+    this.ready?.bitmap.close();
+    this.ready = undefined;
+  }
+
+  async take(arrived: ArrivedFrame): Promise<void> {
+    const { generation } = this;
+    const { picture } = arrived.frame;
+    try {
+      if (!picture) throw new Error('a frame without a picture');
+      const file = new Blob([picture.data as Uint8Array<ArrayBuffer>], { type: mediaType(picture.format) });
+      const bitmap = await createImageBitmap(file, { colorSpaceConversion: 'none', premultiplyAlpha: 'none' });
+      if (generation === this.generation) this.queue({ ...arrived, bitmap, decoded: performance.now() });
+      else bitmap.close();
+    } catch {
+      if (generation === this.generation) this.events.broken(arrived);
+    }
+  }
+
+  private queue(decoded: DecodedFrame): void {
+    if (decoded.frame.frame < this.newest) {
+      this.skip(decoded);
+      return;
+    }
+    if (this.ready) this.skip(this.ready);
+    this.newest = decoded.frame.frame;
+    this.ready = decoded;
+    if (this.scheduled) return;
+    this.scheduled = true;
+    requestAnimationFrame(() => this.paint());
+  }
+
+  private skip(decoded: DecodedFrame): void {
+    decoded.bitmap.close();
+    this.events.skipped(decoded);
+  }
+
+  private paint(): void {
+    this.scheduled = false;
+    const decoded = this.ready;
+    if (!decoded) return;
+    this.ready = undefined;
+    const { bitmap, frame } = decoded;
+    // The view's own size, to which a smaller picture is scaled: a picture of that size is copied pixel by pixel.
+    const { width, height } = frame.resolution ?? bitmap;
+    if (this.canvas.width !== width) this.canvas.width = width;
+    if (this.canvas.height !== height) this.canvas.height = height;
+    this.context.imageSmoothingQuality = 'medium';
+    this.context.drawImage(bitmap, 0, 0, width, height);
+    bitmap.close();
+    this.events.painted({ ...decoded, painted: performance.now() });
+  }
+}

@@ -1,0 +1,58 @@
+import type { DrawPicture } from '../generated/surfcast_pb';
+import { errorOf, type AnswerKind, type Connection, type RequestError } from '../protocol/connection';
+import { FrameAssembler } from './assembler';
+import type { ArrivedFrame } from './painter';
+
+export interface ViewEvents {
+  frame(frame: ArrivedFrame): void;
+  /** The view has ended; nothing follows. */
+  failed(error: RequestError): void;
+}
+
+/** One view of a model over one connection: what to show goes out, frames come back. */
+export class ViewSession {
+  private readonly id: bigint;
+  private readonly assembler = new FrameAssembler();
+  private lastUpdate = 0n;
+  private ended = false;
+
+  constructor(
+    private readonly connection: Connection,
+    picture: DrawPicture,
+    private readonly events: ViewEvents,
+  ) {
+    this.id = connection.listen({ case: 'openView', value: { picture } }, (answer, bytes) => this.take(answer, bytes));
+  }
+
+  /** The number that frames which show this will repeat. */
+  update(picture: DrawPicture, moving: boolean): bigint {
+    const update = ++this.lastUpdate;
+    if (!this.ended) this.connection.send(this.id, { case: 'updateView', value: { update, picture, moving } });
+    return update;
+  }
+
+  /** Owed to the server once for every message of a frame, or it sends no more. */
+  acknowledge(frame: bigint, clientMs: number): void {
+    if (!this.ended) this.connection.send(this.id, { case: 'framePainted', value: { frame, clientMs } });
+  }
+
+  close(): void {
+    if (this.ended) return;
+    this.ended = true;
+    this.connection.forget(this.id);
+    void this.connection.ask({ case: 'closeView', value: { view: this.id } }, 'viewClosed').catch(() => undefined);
+  }
+
+  private take(answer: AnswerKind, bytes: number): void {
+    if (answer.case === 'viewFrame') {
+      const piece = answer.value;
+      const frame = this.assembler.take(piece, bytes, performance.now());
+      if (frame) this.events.frame(frame);
+      else this.acknowledge(piece.frame, 0);
+      return;
+    }
+    this.ended = true;
+    this.connection.forget(this.id);
+    if (answer.case !== 'viewClosed') this.events.failed(errorOf(answer));
+  }
+}
