@@ -34,7 +34,7 @@ Status render(const RenderCommand& command, int interrupt) {
 void add_render_command(CLI::App& app, int interrupt, Status& outcome) {
   const auto command = std::make_shared<RenderCommand>();
   CLI::App* sub = app.add_subcommand("render", "Draw a picture of a model on a server");
-  sub->add_option("url", command->url, "HOST:PORT/MODEL")->required();
+  sub->add_option("url", command->url, "HOST:PORT/MODEL or ws://HOST:PORT/MODEL")->required();
   command->flags.add_to(*sub);
   command->limits.add_to(*sub);
   sub->callback([command, interrupt, &outcome] { outcome = render(*command, interrupt); });

@@ -2,6 +2,8 @@
 
 #include <cerrno>
 #include <cstring>
+#include <random>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -10,19 +12,34 @@
 #include <unistd.h>
 
 #include "client/connect.h"
+#include "client/websocket_stream.h"
 #include "protocol/errors.h"
+#include "protocol/framing.h"
 
 namespace surfcast {
 
+namespace {
+
+constexpr size_t kReadBytes = size_t{256} << 10;          // at a time
+constexpr size_t kMaxHttpHeaderBytes = size_t{16} << 10;  // of the answer that grants a WebSocket
+
+}  // namespace
+
 ServerConnection::ServerConnection(int descriptor, const Endpoint& server, const ClientConfig& config)
-    : descriptor_(descriptor), endpoint_(server), config_(config) {}
+    : descriptor_(descriptor),
+      endpoint_(server),
+      config_(config),
+      stream_(server.websocket ? make_websocket_stream() : make_framed_stream()),
+      buffer_(kReadBytes) {}
 
 ServerConnection::ServerConnection(ServerConnection&& other) noexcept
     : descriptor_(std::exchange(other.descriptor_, -1)),
       endpoint_(std::move(other.endpoint_)),
       config_(other.config_),
       server_(std::move(other.server_)),
-      splitter_(std::move(other.splitter_)),
+      stream_(std::move(other.stream_)),
+      buffer_(std::move(other.buffer_)),
+      bytes_received_(other.bytes_received_),
       last_id_(other.last_id_) {}
 
 ServerConnection::~ServerConnection() {
@@ -44,15 +61,57 @@ tl::unexpected<Error> ServerConnection::failed(ErrorKind kind, const std::string
   return fail(kind, to_string(endpoint_) + ": " + what);
 }
 
-Status ServerConnection::exchange_hellos(Clock::time_point deadline) {
-  if (Status status = write_all(encode_hello(make_hello("surfcast")), deadline); !status) return status;
+Result<std::vector<std::byte>> ServerConnection::greet_framed(Clock::time_point deadline) {
+  if (Status status = write_all(encode_hello(make_hello("surfcast")), deadline); !status) return fail(status.error());
   std::vector<std::byte> bytes(kHelloHeaderBytes);
-  if (Status status = read_all(bytes, deadline); !status) return status;
+  if (Status status = read_all(bytes, deadline); !status) return fail(status.error());
   const Result<size_t> text = hello_text_bytes(std::span(bytes).first<kHelloHeaderBytes>());
   if (!text) return failed(text.error().kind, text.error().message);
   bytes.resize(kHelloHeaderBytes + *text);
-  if (Status status = read_all(std::span(bytes).subspan(kHelloHeaderBytes), deadline); !status) return status;
-  Result<Hello> hello = decode_hello(bytes);
+  if (Status status = read_all(std::span(bytes).subspan(kHelloHeaderBytes), deadline); !status) {
+    return fail(status.error());
+  }
+  return bytes;
+}
+
+/// Turns the connection into a WebSocket.
+Status ServerConnection::upgrade(Clock::time_point deadline) {
+  std::random_device random;
+  std::string key(16, '\0');
+  for (char& c : key) c = static_cast<char>(random() & 0xff);
+  const auto handshake = WebSocketHandshake::make(to_string(endpoint_), key);
+  if (Status status = write_all(std::as_bytes(std::span(handshake.request)), deadline); !status) return status;
+  std::string answer;
+  while (!answer.ends_with("\r\n\r\n") && answer.size() < kMaxHttpHeaderBytes) {
+    std::byte next{};  // one at a time: what follows the header is not HTTP any more
+    const Result<size_t> count = read_some({&next, 1}, deadline);
+    if (!count) return fail(count.error());
+    answer += static_cast<char>(next);
+  }
+  if (const Status granted = handshake.check(answer); !granted) {
+    return failed(granted.error().kind, clean_utf8(granted.error().message));
+  }
+  return {};
+}
+
+Result<std::vector<std::byte>> ServerConnection::greet_websocket(Clock::time_point deadline) {
+  if (Status status = upgrade(deadline); !status) return fail(status.error());
+  const std::vector<std::byte> hello = stream_->encode(encode_hello(make_hello("surfcast")));
+  if (Status status = write_all(hello, deadline); !status) return fail(status.error());
+  for (;;) {
+    Result<std::optional<std::vector<std::byte>>> message = stream_->next();
+    if (!message) return failed(message.error().kind, message.error().message);
+    if (*message) return std::move(**message);
+    const Result<size_t> count = read_some(buffer_, deadline);
+    if (!count) return fail(count.error());
+    stream_->append(std::span(buffer_).first(*count));
+  }
+}
+
+Status ServerConnection::exchange_hellos(Clock::time_point deadline) {
+  const Result<std::vector<std::byte>> bytes = endpoint_.websocket ? greet_websocket(deadline) : greet_framed(deadline);
+  if (!bytes) return fail(bytes.error());
+  Result<Hello> hello = decode_hello(*bytes);
   if (!hello) return failed(hello.error().kind, hello.error().message);
   if (Status status = check_server_hello(*hello); !status) return failed(status.error().kind, status.error().message);
   server_ = std::move(*hello);
@@ -83,6 +142,7 @@ Result<size_t> ServerConnection::read_some(std::span<std::byte> bytes, Clock::ti
   for (;;) {
     if (Status status = wait(POLLIN, deadline); !status) return fail(status.error());
     const ssize_t count = ::recv(descriptor_, bytes.data(), bytes.size(), 0);
+    if (count > 0) bytes_received_ += static_cast<uint64_t>(count);
     if (count > 0) return static_cast<size_t>(count);
     if (count == 0) return failed(ErrorKind::kIo, "the server closed the connection");
     if (errno != EAGAIN && errno != EINTR) return failed(ErrorKind::kIo, std::strerror(errno));
@@ -98,31 +158,49 @@ Status ServerConnection::read_all(std::span<std::byte> bytes, Clock::time_point 
   return {};
 }
 
+Status ServerConnection::send_as(uint64_t id, wire::Request request) {
+  request.set_id(id);
+  const std::string message = request.SerializeAsString();
+  if (message.size() > kMaxRequestBytes) return fail(ErrorKind::kLimit, "the request is larger than a server reads");
+  return write_all(stream_->encode(std::as_bytes(std::span(message))), Clock::now() + config_.answer);
+}
+
 Result<uint64_t> ServerConnection::send(wire::Request request) {
-  request.set_id(++last_id_);
-  const Result<std::vector<std::byte>> frame = encode_frame(request, kMaxRequestBytes);
-  if (!frame) return fail(frame.error());
-  if (Status status = write_all(*frame, Clock::now() + config_.answer); !status) return fail(status.error());
+  if (Status status = send_as(++last_id_, std::move(request)); !status) return fail(status.error());
   return last_id_;
 }
 
-Result<wire::Answer> ServerConnection::receive() {
-  const Clock::time_point deadline = Clock::now() + config_.answer;
-  std::vector<std::byte> buffer(size_t{256} << 10);
-  for (;;) {
-    const Result<std::optional<std::vector<std::byte>>> frame = splitter_.next();
-    if (!frame) return failed(frame.error().kind, frame.error().message);
-    if (*frame) {
-      wire::Answer answer;
-      if (Status status = decode_message(**frame, answer); !status) {
-        return failed(status.error().kind, status.error().message);
-      }
-      return answer;
-    }
-    const Result<size_t> count = read_some(buffer, deadline);
-    if (!count) return fail(count.error());
-    splitter_.append(std::span(buffer).first(*count));
+/// The next answer among the bytes that have arrived.
+Result<std::optional<wire::Answer>> ServerConnection::next_answer() {
+  const Result<std::optional<std::vector<std::byte>>> message = stream_->next();
+  if (const std::vector<std::byte> replies = stream_->take_replies(); !replies.empty()) {
+    if (Status status = write_all(replies, Clock::now() + config_.answer); !status) return fail(status.error());
   }
+  if (!message) return failed(message.error().kind, message.error().message);
+  if (!*message) return std::nullopt;
+  wire::Answer answer;
+  if (Status status = decode_message(**message, answer); !status) {
+    return failed(status.error().kind, status.error().message);
+  }
+  return answer;
+}
+
+Result<std::optional<wire::Answer>> ServerConnection::receive_until(Clock::time_point deadline) {
+  for (;;) {
+    Result<std::optional<wire::Answer>> answer = next_answer();
+    if (!answer || answer->has_value()) return answer;
+    const Result<size_t> count = read_some(buffer_, deadline);
+    if (!count && count.error().kind == ErrorKind::kUnavailable) return std::nullopt;
+    if (!count) return fail(count.error());
+    stream_->append(std::span(buffer_).first(*count));
+  }
+}
+
+Result<wire::Answer> ServerConnection::receive() {
+  Result<std::optional<wire::Answer>> answer = receive_until(Clock::now() + config_.answer);
+  if (!answer) return fail(answer.error());
+  if (!*answer) return failed(ErrorKind::kUnavailable, "timed out");
+  return std::move(**answer);
 }
 
 Result<wire::Answer> ServerConnection::ask(wire::Request request) {

@@ -3,11 +3,15 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "base/result.h"
+#include "client/message_stream.h"
 #include "protocol/endpoint.h"
-#include "protocol/framing.h"
 #include "protocol/hello.h"
 #include "surfcast.pb.h"
 
@@ -19,7 +23,8 @@ struct ClientConfig {
   int interrupt = -1;                         ///< descriptor that becomes readable when waiting should end; -1: none
 };
 
-/// A connection to a server, hellos exchanged. Blocking, with a limit on every wait. Errors name the server.
+/// A connection to a server, framed or by WebSocket as the endpoint says, hellos exchanged. Blocking, with a limit on
+/// every wait. Errors name the server.
 class ServerConnection {
  public:
   static Result<ServerConnection> open(const Endpoint& server, const ClientConfig& config);
@@ -30,12 +35,20 @@ class ServerConnection {
 
   /// Sends a request under a fresh id, which it returns.
   Result<uint64_t> send(wire::Request request);
+  /// Sends a request under an id that is in use: a message to a view.
+  Status send_as(uint64_t id, wire::Request request);
   /// The next answer, whatever its id. kCancelled when interrupted.
   Result<wire::Answer> receive();
+  /// The same, but nothing when no answer is whole before `deadline`.
+  Result<std::optional<wire::Answer>> receive_until(std::chrono::steady_clock::time_point deadline);
   /// Sends a request and waits for its answer; an answer that is an error is the error. When interrupted, the server is
   /// told to give the request up.
   Result<wire::Answer> ask(wire::Request request);
 
+  /// Bytes that have arrived since the connection was opened.
+  [[nodiscard]] uint64_t bytes_received() const { return bytes_received_; }
+  /// An error that names the server.
+  [[nodiscard]] tl::unexpected<Error> failed(ErrorKind kind, const std::string& what) const;
   /// What the server said of itself.
   [[nodiscard]] const Hello& server() const { return server_; }
 
@@ -44,17 +57,22 @@ class ServerConnection {
 
   ServerConnection(int descriptor, const Endpoint& server, const ClientConfig& config);
   Status exchange_hellos(Clock::time_point deadline);
+  Result<std::vector<std::byte>> greet_framed(Clock::time_point deadline);
+  Result<std::vector<std::byte>> greet_websocket(Clock::time_point deadline);
+  Status upgrade(Clock::time_point deadline);
+  Result<std::optional<wire::Answer>> next_answer();
   Status wait(short events, Clock::time_point deadline) const;
   Status write_all(std::span<const std::byte> bytes, Clock::time_point deadline);
   Result<size_t> read_some(std::span<std::byte> bytes, Clock::time_point deadline);
   Status read_all(std::span<std::byte> bytes, Clock::time_point deadline);
-  [[nodiscard]] tl::unexpected<Error> failed(ErrorKind kind, const std::string& what) const;
 
   int descriptor_;
   Endpoint endpoint_;
   ClientConfig config_;
   Hello server_;
-  FrameSplitter splitter_{kMaxAnswerBytes};
+  std::unique_ptr<MessageStream> stream_;
+  std::vector<std::byte> buffer_;
+  uint64_t bytes_received_ = 0;
   uint64_t last_id_ = 0;
 };
 

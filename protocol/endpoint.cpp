@@ -7,11 +7,14 @@
 namespace surfcast {
 namespace {
 
-constexpr std::string_view kScheme = "tcp://";
+constexpr std::string_view kFramed = "tcp://";
+constexpr std::string_view kWebSocket = "ws://";
 
-std::string_view without_scheme(std::string_view text) {
-  if (text.starts_with(kScheme)) text.remove_prefix(kScheme.size());
-  return text;
+std::string_view scheme_of(std::string_view text) {
+  for (const std::string_view scheme : {kFramed, kWebSocket}) {
+    if (text.starts_with(scheme)) return scheme;
+  }
+  return {};
 }
 
 }  // namespace
@@ -20,7 +23,8 @@ Result<Endpoint> parse_endpoint(std::string_view text) {
   const auto wrong = [text] {
     return fail(ErrorKind::kInvalidInput, "'" + std::string(text) + "': HOST:PORT is wanted");
   };
-  const std::string_view address = without_scheme(text);
+  const std::string_view scheme = scheme_of(text);
+  const std::string_view address = text.substr(scheme.size());
   const size_t colon = address.rfind(':');
   if (colon == std::string_view::npos) return wrong();
   std::string_view host = address.substr(0, colon);
@@ -31,7 +35,7 @@ Result<Endpoint> parse_endpoint(std::string_view text) {
     return wrong();
   }
   if (host.empty() || host.find('/') != std::string_view::npos || !port || *port > 65535) return wrong();
-  return Endpoint{std::string(host), static_cast<uint16_t>(*port)};
+  return Endpoint{std::string(host), static_cast<uint16_t>(*port), scheme == kWebSocket};
 }
 
 std::string to_string(const Endpoint& endpoint) {
@@ -40,14 +44,13 @@ std::string to_string(const Endpoint& endpoint) {
 }
 
 Result<ModelUrl> parse_model_url(std::string_view text) {
-  const std::string_view address = without_scheme(text);
-  const size_t slash = address.find('/');
-  if (slash == std::string_view::npos || slash + 1 == address.size()) {
+  const size_t slash = text.find('/', scheme_of(text).size());
+  if (slash == std::string_view::npos || slash + 1 == text.size()) {
     return fail(ErrorKind::kInvalidInput, "'" + std::string(text) + "': HOST:PORT/MODEL is wanted");
   }
-  const Result<Endpoint> server = parse_endpoint(address.substr(0, slash));
+  const Result<Endpoint> server = parse_endpoint(text.substr(0, slash));
   if (!server) return fail(server.error());
-  return ModelUrl{*server, std::string(address.substr(slash + 1))};
+  return ModelUrl{*server, std::string(text.substr(slash + 1))};
 }
 
 }  // namespace surfcast

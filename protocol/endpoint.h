@@ -12,11 +12,12 @@ namespace surfcast {
 struct Endpoint {
   std::string host;  ///< name or address; without the brackets of IPv6
   uint16_t port = 0;
+  bool websocket = false;  ///< a client talks to it by WebSocket; otherwise by the framed protocol
 };
 
-/// "HOST:PORT", perhaps after "tcp://"; an IPv6 address stands in brackets.
+/// "HOST:PORT", perhaps after "tcp://" or "ws://"; an IPv6 address stands in brackets.
 Result<Endpoint> parse_endpoint(std::string_view text);
-/// The same way around; addresses of IPv6 get their brackets.
+/// The same way around, without a scheme; addresses of IPv6 get their brackets.
 std::string to_string(const Endpoint& endpoint);
 
 /// A server and a model of it.

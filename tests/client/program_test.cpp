@@ -53,6 +53,12 @@ TEST_F(ProgramTest, ModelsAreListed) {
   EXPECT_EQ(outcome.output, "cube\nteapot\n");
 }
 
+TEST_F(ProgramTest, ModelsAreListedByWebSocket) {
+  const ProgramOutcome outcome = run("models ws://" + url());
+  EXPECT_EQ(outcome.code, 0);
+  EXPECT_EQ(outcome.output, "cube\nteapot\n");
+}
+
 TEST_F(ProgramTest, ModelsAreListedAsJson) {
   const ProgramOutcome outcome = run("models tcp://" + url() + " --json");
   EXPECT_EQ(outcome.code, 0);

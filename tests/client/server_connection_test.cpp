@@ -1,60 +1,18 @@
 #include "client/server_connection.h"
 
-#include <array>
+#include <chrono>
 #include <span>
 #include <string>
-#include <thread>
 
-#include <arpa/inet.h>
 #include <gtest/gtest.h>
-#include <netinet/in.h>
-#include <sys/socket.h>
-#include <unistd.h>
 
+#include "client/scripted_server.h"
 #include "protocol/hello.h"
 
 namespace surfcast {
 namespace {
 
 using std::chrono::milliseconds;
-
-/// Accepts one connection and says what it is told, whatever the client sends.
-class ScriptedServer {
- public:
-  explicit ScriptedServer(std::string words, bool stays = false) : listener_(::socket(AF_INET, SOCK_STREAM, 0)) {
-    sockaddr_in address{};
-    address.sin_family = AF_INET;
-    address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
-    ::bind(listener_, reinterpret_cast<sockaddr*>(&address), sizeof address);
-    ::listen(listener_, 1);
-    socklen_t size = sizeof address;
-    ::getsockname(listener_, reinterpret_cast<sockaddr*>(&address), &size);
-    port_ = ntohs(address.sin_port);
-    thread_ = std::jthread([this, said = std::move(words), stays] { speak(said, stays); });
-  }
-  ~ScriptedServer() {
-    ::shutdown(listener_, SHUT_RDWR);
-    if (thread_.joinable()) thread_.join();
-    ::close(listener_);
-  }
-  [[nodiscard]] Endpoint endpoint() const { return {"127.0.0.1", port_}; }
-
- private:
-  void speak(const std::string& words, bool stays) const {
-    const int peer = ::accept(listener_, nullptr, nullptr);
-    if (peer < 0) return;
-    ::send(peer, words.data(), words.size(), MSG_NOSIGNAL);
-    std::array<char, 4096> ignored{};
-    if (!stays) ::shutdown(peer, SHUT_WR);
-    while (::recv(peer, ignored.data(), ignored.size(), 0) > 0) {
-    }
-    ::close(peer);
-  }
-
-  int listener_;
-  uint16_t port_ = 0;
-  std::jthread thread_;
-};
 
 std::string bytes_of(const Hello& hello) {
   const std::vector<std::byte> bytes = encode_hello(hello);

@@ -1,0 +1,88 @@
+#include "client/view.h"
+
+#include <utility>
+
+#include "protocol/errors.h"
+
+namespace surfcast {
+
+Result<View> View::open(ServerConnection& connection, const wire::DrawPicture& picture, double target_fps) {
+  wire::Request request;
+  *request.mutable_open_view()->mutable_picture() = picture;
+  request.mutable_open_view()->set_target_fps(target_fps);
+  const Result<uint64_t> id = connection.send(std::move(request));
+  if (!id) return fail(id.error());
+  View view(connection, *id);
+  view.bytes_before_ = connection.bytes_received();
+  return view;
+}
+
+Result<uint64_t> View::show(const wire::DrawPicture& picture, bool moving) {
+  wire::Request request;
+  wire::UpdateView& update = *request.mutable_update_view();
+  update.set_update(++updates_);
+  *update.mutable_picture() = picture;
+  update.set_moving(moving);
+  if (Status status = connection_->send_as(id_, std::move(request)); !status) return fail(status.error());
+  return updates_;
+}
+
+Status View::acknowledge(uint64_t frame, double client_ms) {
+  wire::Request request;
+  request.mutable_frame_painted()->set_frame(frame);
+  request.mutable_frame_painted()->set_client_ms(client_ms);
+  return connection_->send_as(id_, std::move(request));
+}
+
+/// Puts the pieces of a frame together.
+Result<std::optional<View::Frame>> View::take(wire::ViewFrame piece) {
+  if (incomplete_ && incomplete_->frame() != piece.frame()) {
+    incomplete_.reset();
+    ++abandoned_;
+  }
+  if (incomplete_) {
+    incomplete_->mutable_picture()->mutable_data()->append(piece.picture().data());
+  } else {
+    incomplete_ = std::move(piece);
+    piece.set_more(incomplete_->more());
+  }
+  if (piece.more()) {
+    if (Status status = acknowledge(incomplete_->frame(), 0); !status) return fail(status.error());
+    return std::nullopt;
+  }
+  incomplete_->set_more(false);
+  const uint64_t total = connection_->bytes_received();
+  const uint64_t bytes = total - std::exchange(bytes_before_, total);
+  return Frame{*std::exchange(incomplete_, std::nullopt), Clock::now(), bytes};
+}
+
+Result<std::optional<View::Frame>> View::next_until(Clock::time_point deadline) {
+  for (;;) {
+    Result<std::optional<wire::Answer>> answer = connection_->receive_until(deadline);
+    if (!answer) return fail(answer.error());
+    if (!*answer) return std::nullopt;
+    wire::Answer& message = **answer;
+    if (message.has_error() && (message.id() == id_ || message.id() == 0)) {
+      const Error error = from_wire(message.error());
+      return connection_->failed(error.kind, error.message);
+    }
+    if (!message.has_view_frame() || message.id() != id_) continue;
+    Result<std::optional<Frame>> frame = take(std::move(*message.mutable_view_frame()));
+    if (!frame || frame->has_value()) return frame;
+  }
+}
+
+Status View::painted(const Frame& frame) {
+  const std::chrono::duration<double, std::milli> took = Clock::now() - frame.arrived;
+  return acknowledge(frame.frame.frame(), took.count());
+}
+
+Status View::close() {
+  wire::Request request;
+  request.mutable_close_view()->set_view(id_);
+  const Result<wire::Answer> answer = connection_->ask(std::move(request));
+  if (!answer) return fail(answer.error());
+  return {};
+}
+
+}  // namespace surfcast

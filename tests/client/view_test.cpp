@@ -1,0 +1,154 @@
+#include "client/view.h"
+
+#include <chrono>
+#include <memory>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "client/scripted_server.h"
+#include "protocol/framing.h"
+#include "protocol/hello.h"
+
+namespace surfcast {
+namespace {
+
+using std::chrono::milliseconds;
+
+std::string text_of(const std::vector<std::byte>& bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+std::string hello() {
+  return text_of(encode_hello(make_hello("test")));
+}
+
+std::string said(const wire::Answer& answer) {
+  return text_of(*encode_frame(answer, kMaxAnswerBytes));
+}
+
+/// One message of the view that is opened first.
+std::string piece(uint64_t frame, uint64_t update, const std::string& data, bool more) {
+  wire::Answer answer;
+  answer.set_id(1);
+  wire::ViewFrame& view = *answer.mutable_view_frame();
+  view.set_frame(frame);
+  view.set_update(update);
+  view.mutable_picture()->set_data(data);
+  view.set_more(more);
+  return said(answer);
+}
+
+std::string failure(uint64_t id) {
+  wire::Answer answer;
+  answer.set_id(id);
+  answer.mutable_error()->set_code(wire::ERROR_CODE_NOT_FOUND);
+  answer.mutable_error()->set_message("no such model");
+  return said(answer);
+}
+
+/// The requests that a client sent after its hello.
+std::vector<wire::Request> requests_in(const std::string& heard) {
+  const size_t greeting = encode_hello(make_hello("surfcast")).size();
+  FrameSplitter splitter(kMaxRequestBytes);
+  splitter.append(std::as_bytes(std::span(heard).subspan(greeting)));
+  std::vector<wire::Request> requests;
+  for (auto next = splitter.next(); next && next->has_value(); next = splitter.next()) {
+    EXPECT_TRUE(decode_message(**next, requests.emplace_back()));
+  }
+  return requests;
+}
+
+wire::DrawPicture picture() {
+  wire::DrawPicture picture;
+  picture.set_model("cube");
+  return picture;
+}
+
+View::Clock::time_point soon() {
+  return View::Clock::now() + milliseconds(5000);
+}
+
+/// A view of a server that says all of this at once.
+class ViewTest : public ::testing::Test {
+ protected:
+  void open(const std::string& words) {
+    server_ = std::make_unique<ScriptedServer>(hello() + words, /*stays=*/true);
+    auto connection = ServerConnection::open(server_->endpoint(), {});
+    ASSERT_TRUE(connection);
+    connection_ = std::make_unique<ServerConnection>(std::move(*connection));
+    auto view = View::open(*connection_, picture(), 25);
+    ASSERT_TRUE(view);
+    view_ = std::make_unique<View>(*view);
+  }
+  /// What the client said in all, hello left out.
+  std::vector<wire::Request> said_by_client() {
+    connection_.reset();
+    return requests_in(server_->heard());
+  }
+
+  std::unique_ptr<ScriptedServer> server_;
+  std::unique_ptr<ServerConnection> connection_;
+  std::unique_ptr<View> view_;
+};
+
+TEST_F(ViewTest, AFrameIsPutTogetherAndEachPieceAcknowledgedOnce) {
+  open(piece(1, 0, "lo", true) + piece(1, 0, "ssl", true) + piece(1, 0, "ess", false));
+  const auto frame = view_->next_until(soon());
+  ASSERT_TRUE(frame && *frame);
+  EXPECT_EQ((*frame)->frame.picture().data(), "lossless");
+  EXPECT_FALSE((*frame)->frame.more());
+  ASSERT_TRUE(view_->painted(**frame));
+  const auto requests = said_by_client();
+  ASSERT_EQ(requests.size(), 4u);
+  EXPECT_EQ(requests[0].open_view().target_fps(), 25);
+  for (size_t i = 1; i < 4; ++i) {
+    EXPECT_EQ(requests[i].id(), requests[0].id());
+    EXPECT_EQ(requests[i].frame_painted().frame(), 1u);
+  }
+}
+
+TEST_F(ViewTest, AFrameWhoseRestWasGivenUpIsDropped) {
+  open(piece(1, 0, "half", true) + piece(2, 0, "newer", false));
+  const auto frame = view_->next_until(soon());
+  ASSERT_TRUE(frame && *frame);
+  EXPECT_EQ((*frame)->frame.frame(), 2u);
+  EXPECT_EQ((*frame)->frame.picture().data(), "newer");
+  EXPECT_EQ(view_->abandoned(), 1u);
+}
+
+TEST_F(ViewTest, UpdatesCarryTheViewsIdAndGrowingNumbers) {
+  open("");
+  EXPECT_EQ(*view_->show(picture(), true), 1u);
+  EXPECT_EQ(*view_->show(picture(), false), 2u);
+  const auto requests = said_by_client();
+  ASSERT_EQ(requests.size(), 3u);
+  EXPECT_EQ(requests[1].id(), requests[0].id());
+  EXPECT_EQ(requests[1].update_view().update(), 1u);
+  EXPECT_TRUE(requests[1].update_view().moving());
+  EXPECT_EQ(requests[2].update_view().update(), 2u);
+  EXPECT_FALSE(requests[2].update_view().moving());
+}
+
+TEST_F(ViewTest, SilenceIsNoFrame) {
+  open("");
+  const auto frame = view_->next_until(View::Clock::now() + milliseconds(20));
+  ASSERT_TRUE(frame);
+  EXPECT_FALSE(frame->has_value());
+}
+
+TEST_F(ViewTest, AnErrorOfTheViewEndsItAndNoOther) {
+  open(failure(77) + piece(1, 0, "one", false) + failure(1));
+  const auto frame = view_->next_until(soon());
+  ASSERT_TRUE(frame && *frame);
+  const auto end = view_->next_until(soon());
+  ASSERT_FALSE(end);
+  EXPECT_EQ(end.error().kind, ErrorKind::kNotFound);
+  EXPECT_NE(end.error().message.find("no such model"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace surfcast
