@@ -6,6 +6,7 @@
 #include "include/look.glsl"
 #include "include/packing.glsl"
 #include "include/resampling_filter.glsl"
+#include "include/spacing.glsl"
 #include "include/splat_record.glsl"
 #include "include/surfel.glsl"
 #include "include/thinning.glsl"
@@ -184,31 +185,38 @@ void main() {
   uint chunk = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
   if (chunk >= uint(frame.flags.w)) return;
   uvec4 run = chunks[chunk].run;
-  if (gl_LocalInvocationID.x >= run.z) return;
+  uint place = gl_LocalInvocationID.x;
+  if (place >= (run.z & SURFCAST_RUN_COUNT)) return;
   BlockView block = blocks[run.x];
-  int place = int(run.y + gl_LocalInvocationID.x);
-  uvec4 texel = texelFetch(surfels, place);
+  int at = int(run.y + place);
+  uvec4 texel = texelFetch(surfels, at);
 #ifdef SURFCAST_CLIPPED
   if (clipped_away(run.x, texel)) return;
 #endif
 #ifdef SURFCAST_HIDES_CLASSES
-  if (class_hidden(place)) return;
+  if (class_hidden(at)) return;
 #endif
   mat3 rotation = transpose(mat3(frame.right.xyz, frame.up.xyz, frame.forward.xyz));
   vec2 size = surfel_size(texel, block.scale);
 
   Surfel s;
-  s.id = run.w + gl_LocalInvocationID.x;
+  s.id = run.w + place;
   s.o = block.origin.xyz + rotation * (block.step.xyz * surfel_position(texel));
-  s.n = rotation * surfel_normal(texel);
   s.radius = size.x;
+  float merged = s.radius;
+  if ((run.z & SURFCAST_RUN_PAIRS) != 0u) {
+    float other = surfel_size(texelFetch(surfels, int(run.y + (place ^ 1u))), block.scale).x;
+    merged = sqrt(s.radius * s.radius + other * other);
+  }
+  if (!fits_spacing(run.z, s.radius, merged, wanted_radius(s.o))) return;
+  s.n = rotation * surfel_normal(texel);
   s.weight = frame.flags.y != 0 ? size.y : frame.filter_.z;
   if (s.o.z + s.radius * 2.0 <= 0.0) return;
   bool away = dot(s.n, s.o) >= 0.0;
   if (away && frame.flags.x != 0) return;
   if (away) s.n = -s.n;
 #if defined(SURFCAST_COLOR_TABLE)
-  s.color = table_color(run.x, place, texel);
+  s.color = table_color(run.x, at, texel);
 #elif defined(SURFCAST_COLOR_NORMAL)
   s.color = normal_color(away ? -surfel_normal(texel) : surfel_normal(texel));
 #elif defined(SURFCAST_HAS_COLOR)

@@ -63,7 +63,8 @@ layout::FrameConstants frame_constants(const CameraFrame& frame, const Region& r
   c.region = {region.x, region.y, region.width, region.height};
   c.tiles = {tiles_across(region), tiles_down(region), tiles_across(region) * tiles_down(region), 0};
   const double prefilter = request.filter == Filter::kEwa ? 1.0 : kNoPrefilter;
-  c.filter_ = {prefilter, SURFCAST_VISIBILITY_PIXELS * SURFCAST_VISIBILITY_PIXELS, even_sampling_weight(), 0};
+  c.filter_ = {prefilter, SURFCAST_VISIBILITY_PIXELS * SURFCAST_VISIBILITY_PIXELS, even_sampling_weight(),
+               static_cast<float>(kRadiusOverSpacing * request.spacing / frame.eta)};
   c.background = {decode_srgb(request.background.r), decode_srgb(request.background.g),
                   decode_srgb(request.background.b), 0};
   c.flags = {oriented ? 1 : 0, request.normalization == Normalization::kSurfel ? 1 : 0, 0, 0};

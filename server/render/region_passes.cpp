@@ -27,20 +27,46 @@ bool needs_looks(const Look& look) {
   return look.clipped || look.mapped();
 }
 
+uint32_t kinds_of(const PackedRun& run) {
+  return (run.finest ? SURFCAST_RUN_FINEST : 0) | (run.coarsest ? SURFCAST_RUN_COARSEST : 0) |
+         (run.pairs ? SURFCAST_RUN_PAIRS : 0);
+}
+
+/// Whether the projection may draw any of a chunk (shaders/include/spacing.glsl), with room for what rounding radii to
+/// codes changes.
+bool may_be_drawn(const PackedRun& run, const PackedRun::Radii& radii, const RadiusRange& wanted) {
+  constexpr double kRounding = 1.02;
+  return (run.finest || radii.least <= kRounding * wanted.largest) &&
+         (run.coarsest || kRounding * radii.largest_merged > SURFCAST_SPACING_SLACK * wanted.least);
+}
+
+/// Chunks of a run from `first` to `end`, cut where pages end.
+void add_chunks(const VisibleBlock& block, uint32_t view, const PackedRun& run, uint32_t first, uint32_t end,
+                std::vector<layout::Chunk>& chunks) {
+  while (first < end) {
+    const uint32_t in_page = first % SurfelPool::kPageSurfels;
+    const uint32_t texel = block.resident->pages[first / SurfelPool::kPageSurfels] * SurfelPool::kPageSurfels + in_page;
+    const uint32_t count = std::min(end - first, SurfelPool::kPageSurfels - in_page);
+    chunks.push_back(
+        {glm::uvec4(view, texel, count | kinds_of(run), kMostPackedPerSurfel * block.first_surfel + first)});
+    first += count;
+  }
+}
+
 ProjectionWork plan_work(const RegionTask& task) {
-  static_assert(SurfelPool::kPageSurfels % SURFCAST_CHUNK == 0);
   ProjectionWork work;
   for (const VisibleBlock& block : task.blocks) {
     const auto view = static_cast<uint32_t>(work.blocks.size());
-    work.blocks.push_back(block_view(block.resident, task.frame));
+    work.blocks.push_back(block_view(*block.resident, task.frame));
     if (needs_looks(task.look)) {
-      work.looks.push_back(block_look(task.look, task.request->clip, block.resident, work.clips));
+      work.looks.push_back(block_look(task.look, task.request->clip, *block.resident, work.clips));
     }
-    for (uint32_t first = 0; first < block.resident.surfels; first += SURFCAST_CHUNK) {
-      const uint32_t page = block.resident.pages[first / SurfelPool::kPageSurfels];
-      const uint32_t texel = page * SurfelPool::kPageSurfels + first % SurfelPool::kPageSurfels;
-      const uint32_t count = std::min<uint32_t>(SURFCAST_CHUNK, block.resident.surfels - first);
-      work.chunks.push_back({glm::uvec4(view, texel, count, block.first_surfel + first)});
+    for (const PackedRun& run : block.resident->runs) {
+      for (uint32_t i = 0; i < run.count; i += SURFCAST_CHUNK) {
+        if (!may_be_drawn(run, run.chunks[i / SURFCAST_CHUNK], block.radii)) continue;
+        add_chunks(block, view, run, run.first + i, run.first + std::min<uint32_t>(run.count, i + SURFCAST_CHUNK),
+                   work.chunks);
+      }
     }
   }
   return work;
@@ -56,7 +82,7 @@ void dispatch_rows(size_t groups) {
 
 template <typename T>
 void upload(StorageBuffer& buffer, const std::vector<T>& values) {
-  buffer.reserve(values.size() * sizeof(T));
+  buffer.reserve(std::max<size_t>(values.size(), 1) * sizeof(T));  // also a view of nothing binds a buffer
   glNamedBufferSubData(buffer.name(), 0, static_cast<GLsizeiptr>(values.size() * sizeof(T)), values.data());
 }
 

@@ -11,12 +11,15 @@
 #include "render/region.h"
 #include "render/splat_buffers.h"
 #include "residency/surfel_buffer.h"
+#include "residency/surfel_pool.h"
+#include "selection/block_hull.h"
 
 namespace surfcast {
 
 /// A block to draw.
 struct VisibleBlock {
-  ResidentBlock resident;
+  const ResidentBlock* resident = nullptr;
+  RadiusRange radii;          ///< of the wanted spacing within the block
   uint32_t first_surfel = 0;  ///< its place in the model, see Scene::first_surfel
 };
 

@@ -148,7 +148,9 @@ Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const Pict
         variant,  &request, look,  colors_of(look)};
     for (const uint32_t block : blocks_in_rectangle(scene.viewed().tree, selection.draw, frame, drawn.x, drawn.y,
                                                     drawn.x + drawn.width, drawn.y + drawn.height)) {
-      task.blocks.push_back({residency.pool().at({scene.model().id(), block}), scene.first_surfel(block)});
+      const Box& bounds = scene.model().tree().blocks()[block].bounds;
+      task.blocks.push_back({&residency.pool().at({scene.model().id(), block}),
+                             radii_at_spacing(bounds, frame, request.spacing), scene.first_surfel(block)});
     }
     pixels.resize(static_cast<size_t>(region.width) * static_cast<size_t>(region.height) * bytes);
     const Result<RegionStats> stats = draw_region(task, programs, buffers, cancelled, pixels);

@@ -33,7 +33,7 @@ class FileBlocks : public BlockSource {
   [[nodiscard]] Result<PackedBlock> load(uint32_t block, bool attributes) const override {
     const Result<DecodedBlock> decoded = model_->decode(block);
     if (!decoded) return fail(decoded.error());
-    PackedBlock packed = pack_block(*decoded, model_->info().color_bits);
+    PackedBlock packed = pack_block(*decoded, model_->info().color_bits, model_->info().oriented);
     if (attributes) pack_attributes(*decoded, packed);
     return packed;
   }

@@ -1,12 +1,15 @@
 #include "residency/packing.h"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <limits>
 #include <string_view>
+#include <utility>
 
 #include "base/contract.h"
+#include "geometry/morton.h"
 #include "model/quantize.h"
 #include "shared/surfel_layout.h"
 #include "surfel/drawn_radius.h"
@@ -42,6 +45,32 @@ uint32_t color_code(const glm::u16vec3& color, int bits) {
   return level(color.r) | (level(color.g) << 8) | (level(color.b) << 16);
 }
 
+/// Linear light of each 8 bit sRGB value.
+const std::array<float, 256>& linear_levels() {
+  static const std::array<float, 256> kLevels = [] {
+    std::array<float, 256> levels{};
+    for (uint16_t i = 0; i < 256; ++i) levels[i] = to_linear(glm::u16vec3(i), 8).r;
+    return levels;
+  }();
+  return kLevels;
+}
+
+glm::vec3 linear_of_code(uint32_t color) {
+  const std::array<float, 256>& levels = linear_levels();
+  return {levels[color & 255], levels[(color >> 8) & 255], levels[color >> 16]};
+}
+
+uint32_t nearest_level(float light) {
+  const std::array<float, 256>& levels = linear_levels();
+  const auto above = std::upper_bound(levels.begin() + 1, levels.end() - 1, light);
+  const auto level = static_cast<uint32_t>(above - levels.begin());
+  return light - levels[level - 1] < levels[level] - light ? level - 1 : level;
+}
+
+uint32_t code_of_linear(const glm::vec3& light) {
+  return nearest_level(light.r) | (nearest_level(light.g) << 8) | (nearest_level(light.b) << 16);
+}
+
 /// shaders/include/surfel.glsl takes it apart.
 glm::uvec4 pack_surfel(const glm::uvec3& position, const glm::u16vec2& normal, uint32_t radius, uint32_t weight,
                        uint32_t color) {
@@ -65,25 +94,70 @@ uint32_t LogScale::code(double value) const {
   return static_cast<uint32_t>(std::lround(std::clamp(u, 0.0, 1.0) * SURFCAST_SIZE_STEPS));
 }
 
-PackedBlock pack_block(const DecodedBlock& block, int color_bits) {
-  SURFCAST_EXPECTS(block.size() > 0);
+namespace {
+
+PackedLattice packed_lattice(const DecodedBlock& block) {
   const glm::ivec3 extent = extent_of(block);
   const glm::ivec3 shift(shift_for(extent.x), shift_for(extent.y), shift_for(extent.z));
-  std::vector<float> radii = block.radii;
-  const float widest = largest_drawn_radius(radii);
-  for (float& radius : radii) radius = std::min(radius, widest);
+  return {block.grid, block.origin, shift, position_code(extent, shift)};
+}
 
-  PackedBlock packed;
-  packed.lattice = {block.grid, block.origin, shift, position_code(extent, shift)};
-  packed.radius = LogScale::of(radii);
-  packed.weight = LogScale::of(block.weights);
-  packed.surfels.reserve(block.size());
-  for (size_t i = 0; i < block.size(); ++i) {
-    packed.surfels.push_back(pack_surfel(position_code(block.indices[i], shift), normal_code(block.normals[i]),
-                                         packed.radius.code(double{radii[i]}),
-                                         packed.weight.code(double{block.weights[i]}),
-                                         block.colors.empty() ? 0 : color_code(block.colors[i], color_bits)));
+glm::uvec3 nearest_code(const glm::dvec3& offset, const PackedLattice& lattice) {
+  return glm::uvec3(glm::clamp(offset / lattice.step() + 0.5, glm::dvec3(0), glm::dvec3(lattice.largest)));
+}
+
+std::vector<uint32_t> along_curve(const DecodedBlock& block, const glm::ivec3& shift) {
+  std::vector<std::pair<uint64_t, uint32_t>> codes;
+  codes.reserve(block.size());
+  for (uint32_t i = 0; i < block.size(); ++i) codes.emplace_back(interleave(position_code(block.indices[i], shift)), i);
+  std::sort(codes.begin(), codes.end());
+  std::vector<uint32_t> order;
+  order.reserve(codes.size());
+  for (const auto& [code, i] : codes) order.push_back(i);
+  return order;
+}
+
+/// The surfels of a block along a Morton curve, positions from code 0 on.
+std::vector<MergedSurfel> surfels_of(const DecodedBlock& block, int color_bits, const PackedLattice& lattice) {
+  const float widest = largest_drawn_radius(block.radii);
+  std::vector<MergedSurfel> surfels;
+  surfels.reserve(block.size());
+  const glm::dvec3 step = lattice.step();
+  for (const uint32_t i : along_curve(block, lattice.shift)) {
+    const glm::vec3 light =
+        block.colors.empty() ? glm::vec3(0) : linear_of_code(color_code(block.colors[i], color_bits));
+    surfels.push_back({step * glm::dvec3(position_code(block.indices[i], lattice.shift)), block.normals[i],
+                       std::min(block.radii[i], widest), block.weights[i], light, i});
   }
+  return surfels;
+}
+
+template <typename Get>
+LogScale log_scale_of(std::span<const MergedSurfel> surfels, Get get) {
+  std::vector<float> values;
+  values.reserve(surfels.size());
+  for (const MergedSurfel& surfel : surfels) values.push_back(get(surfel));
+  return LogScale::of(values);
+}
+
+}  // namespace
+
+PackedBlock pack_block(const DecodedBlock& block, int color_bits, bool oriented) {
+  SURFCAST_EXPECTS(block.size() > 0);
+  PackedBlock packed;
+  packed.lattice = packed_lattice(block);
+  SurfelSequence sequence = merge_levels(surfels_of(block, color_bits, packed.lattice), oriented);
+  packed.radius = log_scale_of(sequence.surfels, [](const MergedSurfel& s) { return s.radius; });
+  packed.weight = log_scale_of(sequence.surfels, [](const MergedSurfel& s) { return s.weight; });
+  packed.surfels.reserve(sequence.surfels.size());
+  packed.representatives.reserve(sequence.surfels.size());
+  for (const MergedSurfel& s : sequence.surfels) {
+    packed.representatives.push_back(s.representative);
+    packed.surfels.push_back(pack_surfel(nearest_code(s.position, packed.lattice), normal_code(s.normal),
+                                         packed.radius.code(double{s.radius}), packed.weight.code(double{s.weight}),
+                                         block.colors.empty() ? 0 : code_of_linear(s.light)));
+  }
+  packed.runs = std::move(sequence.runs);
   return packed;
 }
 
@@ -127,11 +201,11 @@ void pack_attributes(const DecodedBlock& block, PackedBlock& packed) {
   const std::vector<double> intensities = scalar_values(block, "intensity");
   const std::vector<double> classes = scalar_values(block, "classification");
   packed.intensity = scale_of(intensities);
-  packed.attributes.resize(block.size());
-  for (size_t i = 0; i < intensities.size(); ++i) {
-    packed.attributes[i] = intensity_code(intensities[i], packed.intensity);
+  packed.attributes.reserve(packed.surfels.size());
+  for (const uint32_t i : packed.representatives) {
+    const uint32_t intensity = intensities.empty() ? 0 : intensity_code(intensities[i], packed.intensity);
+    packed.attributes.push_back(intensity | (classes.empty() ? 0 : class_code(classes[i]) << 16));
   }
-  for (size_t i = 0; i < classes.size(); ++i) packed.attributes[i] |= class_code(classes[i]) << 16;
 }
 
 std::vector<uint32_t> linear_root_table() {

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "model/model_file.h"
+#include "residency/merge_levels.h"
 
 namespace surfcast {
 
@@ -42,11 +43,17 @@ struct LinearScale {
 };
 
 /// A block in the form that the projection reads: 16 bytes a surfel (shaders/shared/surfel_layout.h).
+///
+/// Behind the surfels of the block follow some levels of merged ones, each about half as many as the one before, so
+/// that any spacing can be drawn at a cost that follows from it alone: of a surfel and what it is merged to, the one is
+/// drawn that is just fine enough where it stands (shaders/include/spacing.glsl).
 struct PackedBlock {
   PackedLattice lattice;
   LogScale radius;  ///< world units
   LogScale weight;
   std::vector<glm::uvec4> surfels;
+  std::vector<uint32_t> representatives;  ///< for each of `surfels`, one of the block's whose attributes it shows
+  std::vector<PackedRun> runs;
 
   /// 16 bits of intensity, then 8 of classification, zeros of what the block lacks; none unless asked for.
   std::vector<uint32_t> attributes;
@@ -57,7 +64,7 @@ struct PackedBlock {
   }
 };
 
-PackedBlock pack_block(const DecodedBlock& block, int color_bits);
+PackedBlock pack_block(const DecodedBlock& block, int color_bits, bool oriented);
 /// Adds the attributes of the same block.
 void pack_attributes(const DecodedBlock& block, PackedBlock& packed);
 

@@ -52,7 +52,7 @@ ResidentBlock* SurfelPool::place(const BlockId& id, const BlockTree& tree, const
   residents.surfels.resize(tree.blocks().size());
   residents.attributes.resize(tree.blocks().size());
   residents.surfels[id.block] = true;
-  return &(blocks_[id] = {block.lattice, block.radius, block.weight, surfels, std::nullopt, pages});
+  return &(blocks_[id] = {block.lattice, block.radius, block.weight, block.runs, std::nullopt, pages});
 }
 
 void SurfelPool::add_attributes(const BlockId& id, const PackedBlock& block, ResidentBlock& resident) {
@@ -81,7 +81,7 @@ const std::vector<bool>& SurfelPool::residents(uint64_t model, bool attributes) 
   return attributes ? found->second.attributes : found->second.surfels;
 }
 
-ResidentBlock SurfelPool::at(const BlockId& id) const {
+const ResidentBlock& SurfelPool::at(const BlockId& id) const {
   const auto found = blocks_.find(id);
   SURFCAST_EXPECTS(found != blocks_.end());
   return found->second;

@@ -26,7 +26,7 @@ struct ResidentBlock {
   PackedLattice lattice;  ///< as in PackedBlock, like all but `pages`
   LogScale radius;
   LogScale weight;
-  uint32_t surfels = 0;
+  std::vector<PackedRun> runs;
   std::optional<LinearScale> intensity{};  ///< none: without attributes
   std::span<const uint32_t> pages;         ///< each SurfelPool::kPageSurfels texels; good until the block is evicted
 };
@@ -50,12 +50,13 @@ class SurfelPool {
   bool store(const BlockId& id, const BlockTree& tree, const PackedBlock& block);
   /// Whether each block of a model is resident (with its attributes); empty for a model of which nothing ever was.
   [[nodiscard]] const std::vector<bool>& residents(uint64_t model, bool attributes = false) const;
-  [[nodiscard]] ResidentBlock at(const BlockId& id) const;
+  /// Good until the block is evicted.
+  [[nodiscard]] const ResidentBlock& at(const BlockId& id) const;
   void forget(uint64_t model);
 
-  /// Surfels that may be in use at once, counted in whole pages; what is pinned may not be.
+  /// Surfels of blocks that may be in use at once, counted in whole pages; what is pinned may not be.
   [[nodiscard]] uint64_t usable_surfels() const {
-    return uint64_t{table_.pages() - table_.pinned_pages()} * kPageSurfels;
+    return uint64_t{table_.pages() - table_.pinned_pages()} * kPageSurfels / kMostPackedPerSurfel;
   }
   [[nodiscard]] size_t blocks() const { return table_.blocks(); }
   [[nodiscard]] size_t bytes() const {

@@ -67,4 +67,12 @@ double projected_spacing(const BlockEntry& block, const CameraFrame& frame) {
   return distance > 0 ? frame.eta * h / (distance * cosine * cosine) : 0;
 }
 
+RadiusRange radii_at_spacing(const Box& box, const CameraFrame& frame, double spacing) {
+  const double radius_at_1 = kRadiusOverSpacing * spacing / frame.eta;
+  const glm::dvec3 nearest = glm::clamp(frame.eye, box.min, box.max) - frame.eye;
+  const double cosine = least_cosine(box, frame);
+  const double farthest = glm::length(box.centre() - frame.eye) + 0.5 * box.diagonal();
+  return {radius_at_1 * glm::length(nearest) * cosine * cosine, radius_at_1 * farthest};
+}
+
 }  // namespace surfcast

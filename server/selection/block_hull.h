@@ -37,4 +37,14 @@ bool may_be_seen(const BlockHull& hull, const Frustum& frustum, const glm::dvec3
 /// for any box that the eye is outside of.
 double projected_spacing(const BlockEntry& block, const CameraFrame& frame);
 
+/// Radii of evenly sampled surfaces, world units.
+struct RadiusRange {
+  double least = 0;
+  double largest = 0;
+};
+
+/// What radius a surface in the box has whose samples are `spacing` pixels apart, by the same measure: at p it is
+/// 1.08 spacing |p| cos(t)^2 / eta. No point of the box in front of the eye lies outside the range.
+RadiusRange radii_at_spacing(const Box& box, const CameraFrame& frame, double spacing);
+
 }  // namespace surfcast

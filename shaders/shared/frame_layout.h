@@ -33,7 +33,8 @@ struct FrameConstants {
   SURFCAST_VEC4 forward;     // row z; w: half the picture's height, pixels
   SURFCAST_IVEC4 region;     // first pixel x, y and size of the region, pixels from the top left of the picture
   SURFCAST_IVEC4 tiles;      // tiles across, tiles down, tiles in all, splats that the record buffer holds
-  SURFCAST_VEC4 filter_;     // prefilter variance, visibility prefilter variance (pixels squared), unused, unused
+  SURFCAST_VEC4 filter_;     // prefilter variance, visibility prefilter variance (pixels squared), weight of every surfel
+                             // under per-pixel normalisation, radius of the wanted spacing at distance 1 straight ahead
   SURFCAST_VEC4 background;  // linear light
   SURFCAST_IVEC4 flags;      // x: back faces are culled, y: per-surfel weights, z: splats that a tile is thinned out to
                              // (0: not at all), w: chunks to project
@@ -71,11 +72,17 @@ struct EyeDomeConstants {
   SURFCAST_IVEC4 region;  // the pixels that are wanted: first x and y counted from the drawn region's, width, height
 };
 
-// A run of at most SURFCAST_CHUNK surfels of one block: block index, first texel, surfels, index in the model (modulo
-// 2^32) of the first.
+// A run of at most SURFCAST_CHUNK surfels of one block: block index, first texel, surfels and what they are, a number
+// that no other run of the model shares (modulo 2^32).
 struct Chunk {
   SURFCAST_UVEC4 run;
 };
+#define SURFCAST_RUN_COUNT 0xffffu
+#define SURFCAST_RUN_FINEST 0x10000u    // surfels of the block itself, not merged ones
+#define SURFCAST_RUN_COARSEST 0x20000u  // not merged any further
+#define SURFCAST_RUN_PAIRS 0x40000u     // each two, from the first texel on, are merged to one of another run
+// A merged surfel takes over from its pair a little early, so that rounding never leaves both of them out.
+#define SURFCAST_SPACING_SLACK 0.99
 
 // What the projection counts: small splats, large splats, entries of all tile lists, entries of the longest.
 struct Counters {

@@ -56,6 +56,14 @@ TEST_F(RendererGLTest, WhereNothingIsTheBackgroundShowsExactly) {
   EXPECT_EQ(pixel(image, 63, 63), glm::u8vec4(12, 34, 56, 0));
 }
 
+TEST_F(RendererGLTest, TheFirstPictureMayShowNothing) {
+  const testing::ModelPointer& model = model_of(testing::fibonacci_sphere(1000, 1, {0, 0, 0}, {255, 255, 255}));
+  PictureRequest request = front_view(64, 64);
+  request.camera->focal_point = {0, 0, 10};
+  request.background = {12, 34, 56};
+  EXPECT_EQ(pixel(draw(model, request).image, 31, 31), glm::u8vec4(12, 34, 56, 0));
+}
+
 TEST_F(RendererGLTest, TheSameRequestGivesTheSameBytes) {
   SurfelCloud cloud = testing::fibonacci_sphere(50000, 1, {0, 0, 0}, {200, 90, 20});
   for (size_t i = 0; i < cloud.size(); ++i) cloud.colors->values[i] = glm::u16vec3(i % 256, i * 7 % 256, i * 31 % 256);
