@@ -101,6 +101,31 @@ TEST(ProjectedSpacing, HoldsForEverySampleOfTheBlock) {
   }
 }
 
+TEST(RadiiAtSpacing, HoldThatOfEveryPointOfTheBoxInThePicture) {
+  const CameraFrame frame = view_from({0, 0, 0});
+  std::mt19937 random(8);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (int k = 0; k < 200; ++k) {
+    const glm::dvec3 centre(8 * unit(random), 8 * unit(random), -6);
+    const Box box{centre - 4.0, centre + 4.0};
+    const RadiusRange range = radii_at_spacing(box, frame, 3);
+    for (int i = 0; i < 200; ++i) {
+      const glm::dvec3 p = frame.to_camera(centre + 4.0 * glm::dvec3(unit(random), unit(random), unit(random)));
+      const glm::dvec2 pixel = frame.project(p);
+      if (p.z <= 0 || pixel.x < 0 || pixel.y < 0 || pixel.x > frame.width || pixel.y > frame.height) continue;
+      const double radius = 1.08 * 3 / frame.eta * p.z * p.z / glm::length(p);
+      ASSERT_GE(radius, 0.999 * range.least);
+      ASSERT_LE(radius, 1.001 * range.largest);
+    }
+  }
+}
+
+TEST(RadiiAtSpacing, AreZeroForEverySurfelAndAroundTheEye) {
+  const CameraFrame frame = view_from({0, 0, 0});
+  EXPECT_EQ(radii_at_spacing({{1, 1, -9}, {2, 2, -8}}, frame, 0).largest, 0);
+  EXPECT_EQ(radii_at_spacing({glm::dvec3(-1), glm::dvec3(1)}, frame, 2).least, 0);
+}
+
 TEST(ProjectedSpacing, IsFiniteAndLargestAroundTheEyeAndBehindIt) {
   const CameraFrame frame = view_from({0, 0, 0});
   const double around = projected_spacing(block_at({0, 0, 0}, 1), frame);
