@@ -18,8 +18,8 @@ float turned(const MergedSurfel& a, const MergedSurfel& b, bool oriented) {
 
 /// Neighbours on a square grid of spacing h are h apart and have radii of 1.08 h.
 bool mergeable(const MergedSurfel& a, const MergedSurfel& b, bool oriented) {
-  const glm::dvec3 d = b.position - a.position;
-  const double reach = double{a.radius} + double{b.radius};
+  const glm::vec3 d = b.position - a.position;
+  const float reach = a.radius + b.radius;
   return glm::dot(d, d) <= reach * reach && turned(a, b, oriented) * glm::dot(a.normal, b.normal) >= kLeastCosine;
 }
 
@@ -29,7 +29,7 @@ MergedSurfel mean(const MergedSurfel& a, const MergedSurfel& b, bool oriented) {
   const float share = area_b / (area_a + area_b);
   const auto mix = [share](const auto& x, const auto& y) { return x + (y - x) * share; };
   MergedSurfel m;
-  m.position = a.position + (b.position - a.position) * double{share};
+  m.position = mix(a.position, b.position);
   m.normal = glm::normalize(mix(a.normal, turned(a, b, oriented) * b.normal));
   m.radius = std::sqrt(area_a + area_b);
   m.weight = mix(a.weight, b.weight);

@@ -9,7 +9,7 @@ namespace surfcast {
 
 /// A surfel of a block, or the mean of several.
 struct MergedSurfel {
-  glm::dvec3 position{0};       ///< world units, from anywhere
+  glm::vec3 position{0};        ///< world units, from the corner of the block
   glm::vec3 normal{0, 0, 1};    ///< unit
   float radius = 1;             ///< world units; its square is in proportion to the area it stands for
   float weight = 0;             ///< normalisation weight s_k

@@ -60,11 +60,25 @@ glm::vec3 linear_of_code(uint32_t color) {
   return {levels[color & 255], levels[(color >> 8) & 255], levels[color >> 16]};
 }
 
+/// For light in steps of 1/4095 the darkest level it may be nearest to.
+const std::array<uint8_t, 4096>& first_levels() {
+  static const std::array<uint8_t, 4096> kFirst = [] {
+    const std::array<float, 256>& levels = linear_levels();
+    std::array<uint8_t, 4096> first{};
+    for (size_t i = 0; i < first.size(); ++i) {
+      const auto above = std::upper_bound(levels.begin() + 1, levels.end(), static_cast<float>(i) / 4095.0F);
+      first[i] = static_cast<uint8_t>(above - levels.begin() - 1);
+    }
+    return first;
+  }();
+  return kFirst;
+}
+
 uint32_t nearest_level(float light) {
   const std::array<float, 256>& levels = linear_levels();
-  const auto above = std::upper_bound(levels.begin() + 1, levels.end() - 1, light);
-  const auto level = static_cast<uint32_t>(above - levels.begin());
-  return light - levels[level - 1] < levels[level] - light ? level - 1 : level;
+  uint32_t level = first_levels()[static_cast<size_t>(std::clamp(light, 0.0F, 1.0F) * 4095.0F)];
+  while (level < 255 && levels[level + 1] - light < light - levels[level]) ++level;
+  return level;
 }
 
 uint32_t code_of_linear(const glm::vec3& light) {
@@ -91,7 +105,7 @@ LogScale LogScale::of(std::span<const float> values) {
 uint32_t LogScale::code(double value) const {
   if (octaves <= 0) return 0;
   const double u = (log2_largest - std::log2(value)) / octaves;
-  return static_cast<uint32_t>(std::lround(std::clamp(u, 0.0, 1.0) * SURFCAST_SIZE_STEPS));
+  return static_cast<uint32_t>(std::clamp(u, 0.0, 1.0) * SURFCAST_SIZE_STEPS + 0.5);
 }
 
 namespace {
@@ -102,9 +116,18 @@ PackedLattice packed_lattice(const DecodedBlock& block) {
   return {block.grid, block.origin, shift, position_code(extent, shift)};
 }
 
-glm::uvec3 nearest_code(const glm::dvec3& offset, const PackedLattice& lattice) {
-  return glm::uvec3(glm::clamp(offset / lattice.step() + 0.5, glm::dvec3(0), glm::dvec3(lattice.largest)));
-}
+/// Finds the position code of an offset from the corner. Single precision is fine enough: codes have 20 bits.
+class CodeFinder {
+ public:
+  explicit CodeFinder(const PackedLattice& lattice) : inverse_(1.0 / lattice.step()), largest_(lattice.largest) {}
+  [[nodiscard]] glm::uvec3 operator()(const glm::vec3& offset) const {
+    return glm::uvec3(glm::clamp(offset * inverse_ + 0.5F, glm::vec3(0), largest_));
+  }
+
+ private:
+  glm::vec3 inverse_;
+  glm::vec3 largest_;
+};
 
 std::vector<uint32_t> along_curve(const DecodedBlock& block, const glm::ivec3& shift) {
   std::vector<std::pair<uint64_t, uint32_t>> codes;
@@ -126,7 +149,7 @@ std::vector<MergedSurfel> surfels_of(const DecodedBlock& block, int color_bits, 
   for (const uint32_t i : along_curve(block, lattice.shift)) {
     const glm::vec3 light =
         block.colors.empty() ? glm::vec3(0) : linear_of_code(color_code(block.colors[i], color_bits));
-    surfels.push_back({step * glm::dvec3(position_code(block.indices[i], lattice.shift)), block.normals[i],
+    surfels.push_back({glm::vec3(step * glm::dvec3(position_code(block.indices[i], lattice.shift))), block.normals[i],
                        std::min(block.radii[i], widest), block.weights[i], light, i});
   }
   return surfels;
@@ -149,11 +172,12 @@ PackedBlock pack_block(const DecodedBlock& block, int color_bits, bool oriented)
   SurfelSequence sequence = merge_levels(surfels_of(block, color_bits, packed.lattice), oriented);
   packed.radius = log_scale_of(sequence.surfels, [](const MergedSurfel& s) { return s.radius; });
   packed.weight = log_scale_of(sequence.surfels, [](const MergedSurfel& s) { return s.weight; });
+  const CodeFinder code_of(packed.lattice);
   packed.surfels.reserve(sequence.surfels.size());
   packed.representatives.reserve(sequence.surfels.size());
   for (const MergedSurfel& s : sequence.surfels) {
     packed.representatives.push_back(s.representative);
-    packed.surfels.push_back(pack_surfel(nearest_code(s.position, packed.lattice), normal_code(s.normal),
+    packed.surfels.push_back(pack_surfel(code_of(s.position), normal_code(s.normal),
                                          packed.radius.code(double{s.radius}), packed.weight.code(double{s.weight}),
                                          block.colors.empty() ? 0 : code_of_linear(s.light)));
   }
