@@ -1,6 +1,7 @@
 #include "render/region_passes.h"
 
 #include <algorithm>
+#include <cmath>
 
 #include "base/stopwatch.h"
 #include "shared/surfel_layout.h"
@@ -16,11 +17,31 @@ struct ProjectionWork {
   std::vector<layout::ClipRange> clips;
 };
 
-layout::BlockView block_view(const ResidentBlock& block, const CameraFrame& frame) {
-  const auto scale = [](const LogScale& s) { return glm::vec2(s.log2_largest, s.octaves / SURFCAST_SIZE_STEPS); };
-  // Relative to the eye in double precision: single precision never sees world coordinates.
-  return {glm::vec4(glm::vec3(frame.to_camera(block.lattice.position(glm::uvec3(0)))), 0),
-          glm::vec4(glm::vec3(block.lattice.step()), 0), glm::vec4(scale(block.radius), scale(block.weight))};
+/// Distance from the eye that no surfel of the block is beyond, world units.
+double farthest_of(const PackedLattice& lattice, const CameraFrame& frame) {
+  return glm::length(frame.to_camera(lattice.position(glm::uvec3(0)))) +
+         glm::length(lattice.step() * glm::dvec3(lattice.largest));
+}
+
+/// The binary exponent of the unit that a region is drawn in: pictures do not depend on units, but fourth powers of
+/// lengths must stay within single precision. The farthest surfel comes to lie at about 2^24, so that it and what is a
+/// billion times nearer do. A power of two rounds nothing.
+int drawing_unit(const RegionTask& task) {
+  constexpr int kFarthest = 24;
+  double farthest = 0;
+  for (const VisibleBlock& block : task.blocks) {
+    farthest = std::max(farthest, farthest_of(block.resident->lattice, task.frame));
+  }
+  return farthest > 0 ? kFarthest - std::ilogb(farthest) : 0;
+}
+
+/// Relative to the eye in double precision: single precision never sees world coordinates.
+layout::BlockView block_view(const ResidentBlock& block, const CameraFrame& frame, int unit) {
+  const auto scale = [](const LogScale& s) { return glm::dvec2(s.log2_largest, s.octaves / SURFCAST_SIZE_STEPS); };
+  const double size = std::ldexp(1.0, unit);
+  return {glm::vec4(glm::vec3(frame.to_camera(block.lattice.position(glm::uvec3(0))) * size), 0),
+          glm::vec4(glm::vec3(block.lattice.step() * size), 0),
+          glm::vec4(glm::vec2(scale(block.radius) + glm::dvec2(unit, 0)), glm::vec2(scale(block.weight)))};
 }
 
 bool needs_looks(const Look& look) {
@@ -55,9 +76,10 @@ void add_chunks(const VisibleBlock& block, uint32_t view, const PackedRun& run, 
 
 ProjectionWork plan_work(const RegionTask& task) {
   ProjectionWork work;
+  const int unit = drawing_unit(task);
   for (const VisibleBlock& block : task.blocks) {
     const auto view = static_cast<uint32_t>(work.blocks.size());
-    work.blocks.push_back(block_view(*block.resident, task.frame));
+    work.blocks.push_back(block_view(*block.resident, task.frame, unit));
     if (needs_looks(task.look)) {
       work.looks.push_back(block_look(task.look, task.request->clip, *block.resident, work.clips));
     }

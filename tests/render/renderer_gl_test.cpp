@@ -175,7 +175,7 @@ TEST_F(RendererGLTest, MapCoordinatesAndMillimetresDrawAsAtTheOrigin) {
 }
 
 TEST_F(RendererGLTest, ScaleDoesNotMatter) {
-  for (const double scale : {1e-4, 1.0, 1e5}) {
+  for (const double scale : {1e-12, 1e-4, 1.0, 1e5, 1e12}) {
     const testing::ModelPointer& model = model_of(testing::fibonacci_sphere(20000, scale, {0, 0, 0}, {200, 90, 20}));
     EXPECT_NEAR(count_covered(draw(model, front_view(128, 128, 5 * scale)).image, {200, 90, 20}, 1), 7250, 250)
         << scale;
