@@ -12,6 +12,8 @@ namespace surfcast {
 void add_models_command(CLI::App& app, int interrupt, Status& outcome);
 /// `render URL/MODEL --output OUT ...`: one picture.
 void add_render_command(CLI::App& app, int interrupt, Status& outcome);
+/// `bench URL/MODEL ...`: frame rates, latencies and bytes of views that move and rest.
+void add_bench_command(CLI::App& app, int interrupt, Status& outcome);
 /// `ping URL [--count N]`: round trip times.
 void add_ping_command(CLI::App& app, int interrupt, Status& outcome);
 

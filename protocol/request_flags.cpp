@@ -87,6 +87,13 @@ void RequestFlags::add_to(CLI::App& command) {
       ->required()
       ->envname(environment_name("output"))
       ->type_name("FILE");
+  add_sight_to(command);
+  command.add_option("--stats", stats_, "write what drawing took as JSON")
+      ->envname(environment_name("stats"))
+      ->type_name("FILE");
+}
+
+void RequestFlags::add_sight_to(CLI::App& command) {
   command.add_option("--camera", camera_file_, "a camera as JSON: position, focal_point, view_up, view_angle")
       ->envname(environment_name("camera"))
       ->type_name("FILE");
@@ -98,9 +105,6 @@ void RequestFlags::add_to(CLI::App& command) {
             ->check([name = field.name](const std::string& text) { return check_flag(name, text); });
     if (field.several) option->join(';');
   }
-  command.add_option("--stats", stats_, "write what drawing took as JSON")
-      ->envname(environment_name("stats"))
-      ->type_name("FILE");
 }
 
 Result<wire::FileFormat> RequestFlags::format() const {
@@ -118,6 +122,10 @@ Result<wire::FileFormat> RequestFlags::format() const {
 
 Status RequestFlags::check() const {
   if (const Result<wire::FileFormat> chosen = format(); !chosen) return fail(chosen.error());
+  return check_sight();
+}
+
+Status RequestFlags::check_sight() const {
   const bool position = !values_.at("position").empty();
   const bool focal_point = !values_.at("focal_point").empty();
   const bool rest = !values_.at("view_up").empty() || !values_.at("view_angle").empty();
@@ -128,6 +136,14 @@ Status RequestFlags::check() const {
 }
 
 Result<wire::DrawPicture> RequestFlags::request(std::string_view model) const {
+  Result<wire::DrawPicture> picture = sight(model);
+  const Result<wire::FileFormat> chosen = format();
+  SURFCAST_EXPECTS(chosen.has_value());
+  if (picture) picture->set_format(*chosen);
+  return picture;
+}
+
+Result<wire::DrawPicture> RequestFlags::sight(std::string_view model) const {
   wire::DrawPicture picture;
   picture.set_model(std::string(model));
   if (!camera_file_.empty()) {
@@ -139,9 +155,6 @@ Result<wire::DrawPicture> RequestFlags::request(std::string_view model) const {
     if (text.empty()) continue;
     if (Status status = set_picture_field(picture, name, text); !status) return fail(status.error());
   }
-  const Result<wire::FileFormat> chosen = format();
-  SURFCAST_EXPECTS(chosen.has_value());
-  picture.set_format(*chosen);
   if (Status status = check_picture(picture); !status) return fail(status.error());
   return picture;
 }

@@ -21,12 +21,17 @@ class RequestFlags {
  public:
   /// Adds the flags to a command. The object must outlive the parsing.
   void add_to(CLI::App& command);
+  /// Only those that say what is to be seen, for programs that keep no file.
+  void add_sight_to(CLI::App& command);
 
   /// Whether the flags make sense together; what they get wrong is a wrong command line.
   [[nodiscard]] Status check() const;
+  [[nodiscard]] Status check_sight() const;
   /// The request for `model`, once `check` is content; reads the camera's file if one is given. Flags win over the
   /// file's fields.
   [[nodiscard]] Result<wire::DrawPicture> request(std::string_view model) const;
+  /// The same for `check_sight`; the format is that of --format, else PNG.
+  [[nodiscard]] Result<wire::DrawPicture> sight(std::string_view model) const;
   /// Where the picture goes; "-" is standard output.
   [[nodiscard]] const std::string& output() const { return output_; }
   /// Where the figures go, empty for nowhere.

@@ -1,0 +1,103 @@
+#include <chrono>
+#include <iostream>
+#include <memory>
+#include <mutex>
+#include <thread>
+#include <vector>
+
+#include "base/atomic_file.h"
+#include "client/bench_report.h"
+#include "client/bench_run.h"
+#include "client/commands.h"
+#include "client/time_limits.h"
+#include "protocol/request_flags.h"
+
+namespace surfcast {
+namespace {
+
+struct BenchCommand {
+  std::string url;
+  RequestFlags flags;
+  TimeLimits limits;
+  BenchPlan plan;
+  unsigned clients = 1;
+  unsigned silent = 0;
+  std::string json;
+};
+
+/// What the clients that run at the same time come to.
+struct BenchResults {
+  std::mutex mutex;
+  std::vector<BenchRecord> records;
+  Status status;  ///< the first failure
+
+  void add(Result<BenchRecord> record) {
+    const std::scoped_lock lock(mutex);
+    if (record) {
+      records.push_back(std::move(*record));
+    } else if (status) {
+      status = fail(record.error());
+    }
+  }
+};
+
+Result<std::vector<BenchRecord>> run_clients(const BenchCommand& command, const BenchPlan& plan, int interrupt) {
+  BenchResults results;
+  const ClientConfig config = command.limits.config(interrupt);
+  BenchPlan silent = plan;
+  silent.reads = false;
+  {
+    std::vector<std::jthread> threads;
+    for (unsigned i = 0; i < command.silent; ++i) {
+      // Being cut off for reading nothing is what may happen to such a client.
+      threads.emplace_back([&, i] { static_cast<void>(run_bench_client(silent, config, 0.5 + i)); });
+    }
+    for (unsigned i = 0; i < command.clients; ++i) {
+      threads.emplace_back(
+          [&, i] { results.add(run_bench_client(plan, config, static_cast<double>(i) / command.clients)); });
+    }
+  }
+  if (!results.status) return fail(results.status.error());
+  return std::move(results.records);
+}
+
+Status bench(const BenchCommand& command, int interrupt) {
+  const Result<ModelUrl> url = parse_model_url(command.url);
+  if (!url) throw CLI::ValidationError(url.error().message);
+  if (Status status = command.flags.check_sight(); !status) throw CLI::ValidationError(status.error().message);
+  Result<wire::DrawPicture> picture = command.flags.sight(url->model);
+  if (!picture) return fail(picture.error());
+  BenchPlan plan = command.plan;
+  plan.server = url->server;
+  plan.picture = std::move(*picture);
+  const Result<std::vector<BenchRecord>> records = run_clients(command, plan, interrupt);
+  if (!records) return fail(records.error());
+  const BenchReport report = make_report(*records);
+  std::cout << to_text(report) << std::flush;
+  if (command.json.empty()) return {};
+  const std::string text = to_json(report, command.url);
+  return write_file_atomically(command.json, std::string_view(text));
+}
+
+}  // namespace
+
+void add_bench_command(CLI::App& app, int interrupt, Status& outcome) {
+  const auto command = std::make_shared<BenchCommand>();
+  BenchPlan& plan = command->plan;
+  CLI::App* sub = app.add_subcommand("bench", "Move and rest in views of a model, and measure what comes");
+  sub->add_option("url", command->url, "HOST:PORT/MODEL or ws://HOST:PORT/MODEL")->required();
+  sub->add_option("--clients", command->clients, "at the same time (default 1)")->check(CLI::Range(1U, 1000U));
+  sub->add_option("--silent", command->silent, "more clients, which read nothing (default 0)")
+      ->check(CLI::Range(0U, 1000U));
+  sub->add_option("--seconds", plan.seconds, "of the whole run (default 20)")->check(CLI::Range(0.1, 86400.0));
+  sub->add_option("--move", plan.move_seconds, "seconds of one movement (default 4)")->check(CLI::Range(0.1, 3600.0));
+  sub->add_option("--rest", plan.rest_seconds, "most seconds of one rest (default 5)")->check(CLI::Range(0.0, 3600.0));
+  sub->add_option("--target-fps", plan.target_fps, "frames per second to hold while moving (default: the server's)")
+      ->check(CLI::Range(0.0, 1000.0));
+  sub->add_option("--json", command->json, "write the figures to this file")->type_name("FILE");
+  command->flags.add_sight_to(*sub);
+  command->limits.add_to(*sub);
+  sub->callback([command, interrupt, &outcome] { outcome = bench(*command, interrupt); });
+}
+
+}  // namespace surfcast

@@ -1,0 +1,176 @@
+#include "client/bench_run.h"
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <map>
+#include <numbers>
+#include <optional>
+
+#include "client/connect.h"
+#include "client/navigation.h"
+#include "client/view.h"
+
+namespace surfcast {
+namespace {
+
+using Clock = View::Clock;
+using Seconds = std::chrono::duration<double>;
+
+Clock::time_point after(Clock::time_point start, double seconds) {
+  return start + std::chrono::duration_cast<Clock::duration>(Seconds(seconds));
+}
+
+double milliseconds_since(Clock::time_point start, Clock::time_point end) {
+  return std::chrono::duration<double, std::milli>(end - start).count();
+}
+
+/// Where the hand has moved the camera after so many seconds of moving: around the model once in 12 seconds, nearer and
+/// farther, as smooth as a hand is.
+Pose pose_on_path(const Pose& start, double seconds) {
+  const double turn = 2 * std::numbers::pi * seconds / 12;
+  const Pose around = orbit(start, {2 * seconds / 12, 0.03 * std::sin(3 * turn)});
+  return zoom(around, 1 - 0.35 * std::sin(turn) * std::sin(turn), {0, 0});
+}
+
+class BenchClient {
+ public:
+  BenchClient(const BenchPlan& plan, View& view, int interrupt, double phase)
+      : plan_(plan), view_(view), interrupt_(interrupt), path_seconds_(12 * phase) {}
+
+  Status run();
+  BenchRecord take_record() { return std::move(record_); }
+
+ private:
+  Status begin();
+  Status move();
+  Status rest();
+  Status send_update(double path_seconds, bool moving);
+  Result<std::optional<BenchFrame>> receive(Clock::time_point deadline);
+  [[nodiscard]] bool over() const { return Clock::now() >= end_; }
+
+  const BenchPlan& plan_;
+  View& view_;
+  int interrupt_;
+  double path_seconds_;
+  Clock::time_point end_ = after(Clock::now(), plan_.seconds);
+  Pose start_;
+  uint64_t last_update_ = 0;
+  std::map<uint64_t, Clock::time_point> sent_;  ///< updates that no frame has shown yet
+  Clock::time_point shown_sent_;                ///< when the newest update that was shown was sent
+  BenchRecord record_;
+};
+
+/// The first frame tells the camera.
+Status BenchClient::begin() {
+  const Result<std::optional<View::Frame>> first = view_.next_until(after(Clock::now(), 60));
+  if (!first) return fail(first.error());
+  if (!*first) return fail(ErrorKind::kUnavailable, "no frame came within a minute");
+  start_ = to_pose((*first)->frame.picture().camera());
+  end_ = after(Clock::now(), plan_.seconds);
+  return view_.painted(**first);
+}
+
+Status BenchClient::send_update(double path_seconds, bool moving) {
+  wire::DrawPicture picture = plan_.picture;
+  *picture.mutable_camera() = to_camera(pose_on_path(start_, path_seconds));
+  const Clock::time_point now = Clock::now();
+  const Result<uint64_t> update = view_.show(picture, moving);
+  if (!update) return fail(update.error());
+  last_update_ = *update;
+  sent_[*update] = now;
+  if (moving) ++record_.updates;
+  return {};
+}
+
+Result<std::optional<BenchFrame>> BenchClient::receive(Clock::time_point deadline) {
+  if (!plan_.reads) {
+    const Status waited = wait_for(-1, 0, deadline, interrupt_);
+    if (!waited && waited.error().kind != ErrorKind::kUnavailable) return fail(waited.error());
+    return std::nullopt;
+  }
+  const Result<std::optional<View::Frame>> received = view_.next_until(deadline);
+  if (!received) return fail(received.error());
+  if (!*received) return std::nullopt;
+  const wire::ViewFrame& message = (*received)->frame;
+  const wire::Picture& picture = message.picture();
+  if (Status status = view_.painted(**received); !status) return fail(status.error());
+  if (const auto found = sent_.find(message.update()); found != sent_.end()) {
+    shown_sent_ = found->second;
+    sent_.erase(sent_.begin(), std::next(found));
+  }
+  BenchFrame frame;
+  frame.moving = message.moving();
+  frame.converged = picture.converged() && message.update() == last_update_;
+  frame.latency_ms = milliseconds_since(shown_sent_, (*received)->arrived);
+  frame.bytes = (*received)->bytes;
+  frame.width = picture.resolution().width();
+  frame.spacing = picture.spacing();
+  for (const wire::Stage& stage : picture.stages()) frame.stages.emplace_back(stage.name(), stage.milliseconds());
+  return frame;
+}
+
+Status BenchClient::move() {
+  const Clock::time_point start = Clock::now();
+  const Clock::time_point stop = std::min(after(start, plan_.move_seconds), end_);
+  Clock::time_point next_update = start;
+  const double path_start = path_seconds_;
+  while (Clock::now() < stop) {
+    if (Clock::now() >= next_update) {
+      path_seconds_ = path_start + Seconds(Clock::now() - start).count();
+      if (Status status = send_update(path_seconds_, true); !status) return status;
+      next_update = std::max(after(next_update, 1 / plan_.updates_per_second), Clock::now());
+    }
+    Result<std::optional<BenchFrame>> frame = receive(std::min(next_update, stop));
+    if (!frame) return fail(frame.error());
+    if (*frame) record_.frames.push_back(std::move(**frame));
+  }
+  record_.moving_seconds += Seconds(Clock::now() - start).count();
+  return {};
+}
+
+Status BenchClient::rest() {
+  if (Status status = send_update(path_seconds_, false); !status) return status;
+  const Clock::time_point stop = after(Clock::now(), plan_.rest_seconds);
+  bool converged = false;
+  Clock::time_point quiet_until = stop;
+  while (Clock::now() < quiet_until) {
+    Result<std::optional<BenchFrame>> frame = receive(quiet_until);
+    if (!frame) return fail(frame.error());
+    if (!*frame) continue;
+    if (converged) ++record_.late;
+    if (!converged && (*frame)->converged) {
+      converged = true;
+      quiet_until = std::min(stop, after(Clock::now(), 0.5));
+    }
+    record_.frames.push_back(std::move(**frame));
+  }
+  if (!converged && plan_.reads) ++record_.unconverged;
+  return {};
+}
+
+Status BenchClient::run() {
+  if (Status status = begin(); !status) return status;
+  while (!over()) {
+    if (Status status = move(); !status) return status;
+    if (Status status = rest(); !status) return status;
+  }
+  record_.abandoned = view_.abandoned();
+  return {};
+}
+
+}  // namespace
+
+Result<BenchRecord> run_bench_client(const BenchPlan& plan, const ClientConfig& config, double phase) {
+  Result<ServerConnection> connection = ServerConnection::open(plan.server, config);
+  if (!connection) return fail(connection.error());
+  Result<View> view = View::open(*connection, plan.picture, plan.target_fps);
+  if (!view) return fail(view.error());
+  BenchClient client(plan, *view, config.interrupt, phase);
+  if (Status status = client.run(); !status) return fail(status.error());
+  BenchRecord record = client.take_record();
+  record.bytes = connection->bytes_received();
+  return record;
+}
+
+}  // namespace surfcast
