@@ -15,7 +15,7 @@ namespace surfcast {
 /// Version of the framed protocol. Peers of one major version understand each other.
 struct ProtocolVersion {
   uint16_t major = 1;
-  uint16_t minor = 0;
+  uint16_t minor = 1;
   bool operator==(const ProtocolVersion&) const = default;
 };
 

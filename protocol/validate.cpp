@@ -105,4 +105,11 @@ Status check_picture(const wire::DrawPicture& picture) {
   return check_look(picture);
 }
 
+Status check_view(const wire::OpenView& view) {
+  if (!(view.target_fps() >= 0 && view.target_fps() <= kMostFramesPerSecond)) {
+    return invalid("target_fps: must lie between 0 and 1000");
+  }
+  return check_picture(view.picture());
+}
+
 }  // namespace surfcast

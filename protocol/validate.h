@@ -20,4 +20,9 @@ inline constexpr double kDefaultEyeDomeRadius = 1.5;  ///< pixels
 /// choices known, the camera whole. Limits of the server (resolution) are not looked at here.
 Status check_picture(const wire::DrawPicture& picture);
 
+inline constexpr double kMostFramesPerSecond = 1000;  ///< that a view may ask for
+
+/// The same for a view to be opened.
+Status check_view(const wire::OpenView& view);
+
 }  // namespace surfcast

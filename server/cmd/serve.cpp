@@ -12,6 +12,7 @@
 #include "net/server.h"
 #include "protocol/endpoint.h"
 #include "protocol/request_flags.h"
+#include "protocol/validate.h"
 #include "service/model_painter.h"
 #include "service/render_service.h"
 
@@ -90,6 +91,10 @@ void add_serve_command(CLI::App& app, Status& outcome) {
   sub->add_option("--allow-origin", command->server.allowed_origins,
                   "Origin of other pages that may connect (https://example.org); may be given again")
       ->envname(environment_name("allow-origin"));
+  sub->add_option("--target-fps", command->server.target_fps,
+                  "Frames per second that views in motion adapt their quality to (default 30)")
+      ->envname(environment_name("target-fps"))
+      ->check(CLI::Range(1.0, kMostFramesPerSecond));
   sub->callback([command, &outcome] {
     const Result<Endpoint> endpoint = parse_endpoint(command->listen);
     if (!endpoint) throw CLI::ValidationError("--listen", endpoint.error().message);

@@ -20,7 +20,8 @@ Conversation::Conversation(std::shared_ptr<NetContext> context, SessionId sessio
       session_(session),
       executor_(std::move(executor)),
       writer_(std::move(writer)),
-      window_(context_->config.requests) {}
+      window_(context_->config.requests),
+      view_timer_(executor_) {}
 
 Status Conversation::receive(std::span<const std::byte> message) {
   wire::Request request;
@@ -40,6 +41,14 @@ void Conversation::handle(const wire::Request& request) {
       return handle_other(request);
     case wire::Request::kCancel:
       return handle_cancel(request);
+    case wire::Request::kOpenView:
+      return handle_open_view(request);
+    case wire::Request::kUpdateView:
+      return handle_update_view(request);
+    case wire::Request::kFramePainted:
+      return handle_painted(request);
+    case wire::Request::kCloseView:
+      return handle_close_view(request);
     case wire::Request::kPing: {
       wire::Answer answer;
       answer.set_id(request.id());
@@ -128,9 +137,17 @@ void Conversation::send(Bytes answer) {
   if (writer_) writer_->send(std::move(answer));
 }
 
+void Conversation::more_room() {
+  draw_next();
+  advance_views();
+}
+
 void Conversation::abandon() {
   writer_.reset();
   for (const JobId job : window_.abandon()) context_->service.cancel(job);
+  for (const auto& [id, opened] : views_) opened.view->close();
+  views_.clear();
+  view_timer_.cancel();
 }
 
 }  // namespace surfcast

@@ -1,16 +1,20 @@
 #pragma once
 
 #include <boost/asio/any_io_executor.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <cstddef>
 #include <functional>
+#include <map>
 #include <memory>
 #include <span>
+#include <string>
 
 #include "base/result.h"
 #include "net/answers.h"
 #include "net/request_window.h"
 #include "net/session.h"
 #include "surfcast.pb.h"
+#include "view/view_session.h"
 
 namespace surfcast {
 
@@ -39,7 +43,7 @@ class Conversation : public std::enable_shared_from_this<Conversation> {
   /// Handles one encoded Request. Fails when it is none: the stream is of no use any more then.
   Status receive(std::span<const std::byte> message);
   /// The client has taken answers: what waited for that goes on.
-  void more_room() { draw_next(); }
+  void more_room();
   /// Cancels what is outstanding; nothing is sent from here on.
   void abandon();
 
@@ -50,7 +54,15 @@ class Conversation : public std::enable_shared_from_this<Conversation> {
   void handle_picture(const wire::Request& request);
   void handle_other(const wire::Request& request);
   void handle_cancel(const wire::Request& request);
+  void handle_open_view(const wire::Request& request);
+  void handle_update_view(const wire::Request& request);
+  void handle_painted(const wire::Request& request);
+  void handle_close_view(const wire::Request& request);
   void draw_next();
+  ViewPort port_of(uint64_t view);
+  void send_frame(uint64_t view, ViewMessage message);
+  void end_view(uint64_t view, const Error& error);
+  void advance_views();
   std::function<void(Outcome)> answer_later(uint64_t id);
   void hand_over(uint64_t id, Outcome outcome);
   void send(Bytes answer);
@@ -61,6 +73,13 @@ class Conversation : public std::enable_shared_from_this<Conversation> {
   boost::asio::any_io_executor executor_;
   std::shared_ptr<AnswerWriter> writer_;  ///< null once abandoned
   RequestWindow window_;
+  struct OpenedView {
+    std::shared_ptr<ViewSession> view;
+    std::string picture;  ///< encoded, what was asked for last
+    std::string model;
+  };
+  std::map<uint64_t, OpenedView> views_;  ///< by the id of their OpenView
+  boost::asio::steady_timer view_timer_;  ///< when a view is to be looked at again
 };
 
 }  // namespace surfcast

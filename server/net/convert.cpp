@@ -181,6 +181,21 @@ void to_wire(EncodedPicture picture, wire::Picture& message) {
   }
 }
 
+void to_wire(ViewMessage message, wire::ViewFrame& frame) {
+  frame.set_frame(message.frame);
+  frame.set_more(message.more);
+  if (!message.first) {
+    const std::vector<std::byte>& piece = message.picture.bytes;
+    frame.mutable_picture()->set_data(piece.data(), piece.size());
+    return;
+  }
+  frame.set_update(message.update);
+  frame.mutable_resolution()->set_width(static_cast<uint32_t>(message.width));
+  frame.mutable_resolution()->set_height(static_cast<uint32_t>(message.height));
+  frame.set_moving(message.moving);
+  to_wire(std::move(message.picture), *frame.mutable_picture());
+}
+
 void to_wire(const std::vector<std::string>& names, wire::ModelList& message) {
   for (const std::string& name : names) message.add_models(clean_utf8(name));
 }

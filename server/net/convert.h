@@ -6,6 +6,7 @@
 #include "service/model_source.h"
 #include "service/render_service.h"
 #include "surfcast.pb.h"
+#include "view/view_session.h"
 
 namespace surfcast {
 
@@ -16,6 +17,8 @@ Result<PictureJob> to_job(const wire::DrawPicture& request);
 
 /// Takes the bytes out of the picture.
 void to_wire(EncodedPicture picture, wire::Picture& message);
+/// Takes the bytes out of the message.
+void to_wire(ViewMessage message, wire::ViewFrame& frame);
 void to_wire(const std::vector<std::string>& names, wire::ModelList& message);
 void to_wire(const std::string& name, const ModelDescription& description, wire::ModelDescription& message);
 

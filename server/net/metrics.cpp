@@ -26,6 +26,10 @@ std::string escape_label(std::string_view text) {
 void Metrics::count_picture(size_t bytes, const FrameStats& stats) {
   ++pictures;
   picture_bytes += bytes;
+  count_stages(stats);
+}
+
+void Metrics::count_stages(const FrameStats& stats) {
   surfels_drawn += stats.surfels_drawn;
   for (const StageTime& stage : stats.stages) stage_seconds[stage.name] += stage.milliseconds / 1e3;
 }
@@ -41,6 +45,13 @@ std::string to_prometheus(const Metrics& m, size_t queued) {
   write_value(out, "surfcast_pictures_total", "counter", "Pictures drawn and delivered.", m.pictures);
   write_value(out, "surfcast_picture_bytes_total", "counter", "Encoded bytes of pictures.", m.picture_bytes);
   write_value(out, "surfcast_surfels_drawn_total", "counter", "Surfels drawn.", m.surfels_drawn);
+  write_value(out, "surfcast_views_open", "gauge", "Views open now.", m.views.open);
+  write_value(out, "surfcast_view_frames_total", "counter", "Frames of views sent.", m.views.frames);
+  write_value(out, "surfcast_view_frames_dropped_total", "counter",
+              "Frames of views given up while they were drawn, encoded or sent.", m.views.dropped);
+  write_value(out, "surfcast_view_updates_replaced_total", "counter",
+              "Updates of views overtaken by a newer one before they were drawn.", m.views.replaced);
+  write_value(out, "surfcast_view_bytes_total", "counter", "Encoded bytes of frames of views.", m.views.bytes);
   write_value(out, "surfcast_queued_pictures", "gauge", "Pictures that wait for the render thread.", queued);
   out << "# HELP surfcast_stage_seconds_total Time spent on pictures, by stage.\n"
          "# TYPE surfcast_stage_seconds_total counter\n";

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "render/picture.h"
+#include "view/view_session.h"
 
 namespace surfcast {
 
@@ -20,9 +21,11 @@ struct Metrics {
   uint64_t pictures = 0;             ///< delivered to a session
   uint64_t picture_bytes = 0;        ///< encoded
   uint64_t surfels_drawn = 0;
-  std::map<std::string, double> stage_seconds;  ///< by the name of the stage, summed over pictures
+  ViewCounts views;
+  std::map<std::string, double> stage_seconds;  ///< by the name of the stage, summed over pictures and frames of views
 
   void count_picture(size_t bytes, const FrameStats& stats);
+  void count_stages(const FrameStats& stats);
 };
 
 /// The text that Prometheus reads. `queued` is the number of pictures that wait now.

@@ -78,7 +78,7 @@ class Doorman : public Session, public std::enable_shared_from_this<Doorman> {
 
 struct Server::State {
   State(RenderService& service, const ServerConfig& config)
-      : context(std::make_shared<NetContext>(NetContext{service, config, {}, false})) {}
+      : context(std::make_shared<NetContext>(NetContext{service, config, {}, 0, false})) {}
 
   Status listen();
   asio::awaitable<void> accept_all();

@@ -19,6 +19,8 @@ struct ServerConfig {
   uint16_t port = 7600;  ///< 0: any free one
   size_t connections = 256;
   RequestWindow::Limits requests;            ///< of one connection of the framed protocol
+  size_t views = 8;                          ///< open at a time on one connection
+  double target_fps = 30;                    ///< of views in motion whose client does not say
   size_t unread_bytes = size_t{64} << 20;    ///< of answers; beyond it the connection is not read from
   std::chrono::milliseconds hello{10'000};   ///< for the first words of a connection
   std::chrono::milliseconds idle{300'000};   ///< without a whole request and with nothing outstanding

@@ -15,7 +15,8 @@ struct NetContext {
   RenderService& service;
   ServerConfig config;
   Metrics metrics;
-  bool draining = false;  ///< no new requests; what is outstanding is finished
+  uint64_t last_viewer = 0;  ///< see PictureRequest::viewer
+  bool draining = false;     ///< no new requests; what is outstanding is finished
 };
 
 /// Counts a connection as open for as long as it lives.

@@ -53,6 +53,8 @@ struct PictureRequest {
   glm::u8vec3 background{0, 0, 0};  ///< sRGB
   PixelFormat format = PixelFormat::kSrgb8;
   Loading loading = Loading::kWait;
+  uint64_t viewer = 0;     ///< with kNow: whose motion this is, or 0; things are remembered from picture to picture
+  uint64_t known_cut = 0;  ///< with kNow: Frame::cut of a picture that needs no repeating; 0: none
   Coloring coloring;
   std::bitset<256> hidden_classes;  ///< by code: surfels that are not drawn; models without classes have none
   Clip clip;
@@ -94,11 +96,13 @@ struct FrameStats {
 };
 
 struct Frame {
-  Image image;
+  Image image;    ///< without pixels where it would show what PictureRequest::known_cut stands for
   Camera camera;  ///< the one that was used
   /// True if no later picture of the same request would be better: every block that it should show is drawn, and the
   /// budget of GPU memory left none of them coarser than was asked for.
   bool converged = false;
+  bool settled = false;  ///< nothing that it misses is about to come: drawing it again would not make it better
+  uint64_t cut = 0;      ///< stands for the blocks that it shows
   FrameStats stats;
 };
 

@@ -67,6 +67,13 @@ std::vector<LevelStats> level_stats(const BlockTree& tree, const BlockSelection&
   return stats;
 }
 
+/// A number that stands for the blocks that are drawn, never 0 (FNV-1a).
+uint64_t cut_of(const BlockSelection& selection) {
+  uint64_t hash = 0xcbf29ce484222325U;
+  for (const uint32_t block : selection.draw) hash = (hash ^ block) * 0x100000001b3U;
+  return hash | 1;
+}
+
 }  // namespace
 
 struct Renderer::State {
@@ -118,9 +125,11 @@ Result<PreparedView> Renderer::State::prepare(Scene& scene, const PictureRequest
                                               const std::atomic<bool>& cancelled) {
   const ViewGoal goal{frame, request.spacing, look.clipped ? &request.clip : nullptr, look.attributes};
   if (request.loading == Loading::kWait) return residency.prepare_whole(scene.viewed(), goal, cancelled);
-  const std::optional<CameraFrame> ahead = scene.move_to(camera, request.width, request.height);
-  PreparedView view = residency.prepare_now(scene.viewed(), goal, scene.refined(), ahead);
-  scene.set_refined(view.selection.refined);
+  if (request.viewer == 0) return residency.prepare_now(scene.viewed(), goal, {}, {});
+  ViewerMemory& memory = scene.memory_of(request.viewer);
+  const std::optional<CameraFrame> ahead = move_to(memory, camera, request.width, request.height);
+  PreparedView view = residency.prepare_now(scene.viewed(), goal, memory.refined, ahead);
+  memory.refined = view.selection.refined;
   return view;
 }
 
@@ -217,14 +226,20 @@ Result<Frame> Renderer::draw(const std::shared_ptr<const ModelFile>& model, cons
   const Result<PreparedView> view = state_->prepare(scene, request, *look, result.camera, *frame, cancelled);
   if (!view) return fail(view.error());
 
-  const size_t pixels = static_cast<size_t>(request.width) * static_cast<size_t>(request.height);
-  result.image = {request.width, request.height, request.format, {}};
-  result.image.pixels.resize(pixels * pixel_bytes(request.format));
-  const Result<RegionStats> drawn =
-      state_->draw_regions(scene, request, *look, *frame, view->selection, cancelled, result.image);
-  if (!drawn) return fail(drawn.error());
   result.converged = view->selection.converged();
-  result.stats = state_->stats_of(scene, *view, *drawn);
+  result.settled = view->settled;
+  result.cut = cut_of(view->selection);
+  result.image = {request.width, request.height, request.format, {}};
+  RegionStats drawn;
+  if (request.known_cut == 0 || request.known_cut != result.cut) {
+    const size_t pixels = static_cast<size_t>(request.width) * static_cast<size_t>(request.height);
+    result.image.pixels.resize(pixels * pixel_bytes(request.format));
+    const Result<RegionStats> regions =
+        state_->draw_regions(scene, request, *look, *frame, view->selection, cancelled, result.image);
+    if (!regions) return fail(regions.error());
+    drawn = *regions;
+  }
+  result.stats = state_->stats_of(scene, *view, drawn);
   return result;
 }
 

@@ -47,9 +47,20 @@ Camera Scene::camera_of(const PictureRequest& request) const {
                     mean_facing(*model_));
 }
 
-std::optional<CameraFrame> Scene::move_to(const Camera& camera, int width, int height) {
+ViewerMemory& Scene::memory_of(uint64_t viewer) {
+  constexpr size_t kViewers = 64;
+  auto found = std::ranges::find(viewers_, viewer, &ViewerMemory::viewer);
+  if (found == viewers_.end()) {
+    if (viewers_.size() == kViewers) viewers_.pop_back();
+    found = viewers_.insert(viewers_.end(), {viewer, {}, {}});
+  }
+  viewers_.splice(viewers_.begin(), viewers_, found);
+  return viewers_.front();
+}
+
+std::optional<CameraFrame> move_to(ViewerMemory& memory, const Camera& camera, int width, int height) {
   constexpr double kPicturesAhead = 4;  // about as long as a block takes from being wished for to being drawn
-  const std::optional<Camera> last = std::exchange(last_camera_, camera);
+  const std::optional<Camera> last = std::exchange(memory.camera, camera);
   if (!last || (last->position == camera.position && last->focal_point == camera.focal_point)) return std::nullopt;
   Camera ahead = camera;
   ahead.position += kPicturesAhead * (camera.position - last->position);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <cstdint>
+#include <list>
 #include <memory>
 #include <optional>
 #include <vector>
@@ -10,7 +12,18 @@
 
 namespace surfcast {
 
-/// A model that is being looked at, and what is remembered from picture to picture.
+/// What is remembered of somebody's motion from picture to picture.
+struct ViewerMemory {
+  uint64_t viewer = 0;
+  std::optional<Camera> camera;
+  std::vector<uint32_t> refined;  ///< see select_blocks
+};
+
+/// Notes a picture that did not wait. Where the camera will be some pictures later if it goes on as since the last one;
+/// none if it does not move or nothing is known.
+std::optional<CameraFrame> move_to(ViewerMemory& memory, const Camera& camera, int width, int height);
+
+/// A model that is being looked at.
 class Scene {
  public:
   explicit Scene(std::shared_ptr<const ModelFile> model);
@@ -22,18 +35,14 @@ class Scene {
   /// The camera asked for, or one that fits the model.
   [[nodiscard]] Camera camera_of(const PictureRequest& request) const;
 
-  /// Notes a picture that did not wait. Where the camera will be some pictures later if it goes on as since the last
-  /// one; none if it does not move or nothing is known.
-  std::optional<CameraFrame> move_to(const Camera& camera, int width, int height);
-  [[nodiscard]] const std::vector<uint32_t>& refined() const { return refined_; }
-  void set_refined(std::vector<uint32_t> refined) { refined_ = std::move(refined); }
+  /// Memory of that viewer, new if it has not been seen for long.
+  ViewerMemory& memory_of(uint64_t viewer);
 
  private:
   std::shared_ptr<const ModelFile> model_;
   ViewedModel viewed_;
   std::vector<uint32_t> first_surfels_;
-  std::optional<Camera> last_camera_;
-  std::vector<uint32_t> refined_;
+  std::list<ViewerMemory> viewers_;  ///< most recent first
 };
 
 }  // namespace surfcast

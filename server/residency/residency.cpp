@@ -162,6 +162,7 @@ PreparedView Residency::prepare_now(const ViewedModel& model, const ViewGoal& go
     view.selection = select(model, goal, was_refined);
     use(model, view.selection);
   }
+  view.settled = wishes(model, goal, view.selection, {}).empty();
   loader_.want(model.source, wishes(model, goal, view.selection, ahead), goal.attributes);
   view.select_ms = watch.milliseconds() - view.upload_ms;
   return view;

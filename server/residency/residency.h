@@ -32,6 +32,7 @@ struct ViewGoal {
 struct PreparedView {
   BlockSelection selection;
   uint32_t waited_for = 0;  ///< blocks that were wanted and not resident at first
+  bool settled = true;      ///< no block that it misses is about to come
   double select_ms = 0;
   double load_ms = 0;    ///< until the blocks were there
   double decode_ms = 0;  ///< time of the workers, all together, for blocks that arrived meanwhile

@@ -37,4 +37,9 @@ bool JobQueue::remove(JobId job) {
   return false;
 }
 
+bool JobQueue::contains(JobId job) const {
+  return std::ranges::any_of(lines_,
+                             [job](const Line& line) { return std::ranges::find(line.jobs, job) != line.jobs.end(); });
+}
+
 }  // namespace surfcast

@@ -23,6 +23,7 @@ class JobQueue {
   std::optional<JobId> pop();
   /// False when the job does not wait here.
   bool remove(JobId job);
+  [[nodiscard]] bool contains(JobId job) const;
   [[nodiscard]] size_t size() const { return size_; }
 
  private:

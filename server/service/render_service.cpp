@@ -39,6 +39,9 @@ struct RenderService::State {
     PictureDone done;
     std::atomic<bool> cancelled = false;
     Stopwatch since_submission;
+    double waited_ms = 0;  ///< for the render thread
+    double draw_ms = 0;
+    std::atomic<bool> encoding = false;  ///< has begun
   };
   using JobPointer = std::shared_ptr<Job>;
 
@@ -50,8 +53,11 @@ struct RenderService::State {
   JobPointer next_job();
   Result<Frame> paint(Painter& painter, Job& job);
   void draw_one(Painter& painter, const JobPointer& job);
+  void give_up(JobId id);
 
   // Pool.
+  static EncodedPicture describe(const Job& job, const Frame& frame);
+  static Result<EncodedPicture> encode(Job& job, const Result<Frame>& frame);
   void encode_one(const JobPointer& job, Result<Frame> frame);
 
   // Any thread.
@@ -90,13 +96,23 @@ void RenderService::State::run(const PainterFactory& make_painter, std::promise<
   while (const JobPointer job = next_job()) draw_one(**painter, job);
 }
 
-/// Waits for a job and for room behind the painter; null when the service stops.
+/// Waits for a job and for room behind the painter; null when the service stops. Jobs that have waited too long are
+/// refused: whoever sent them has given up by now, and drawing them would make others wait too long in turn.
 RenderService::State::JobPointer RenderService::State::next_job() {
-  std::unique_lock lock(mutex);
-  wake.wait(lock, [this] { return stopping || (queue.size() > 0 && frames_in_encoding < limits.frames_in_encoding); });
-  if (stopping) return nullptr;
-  ++frames_in_encoding;
-  return jobs.at(*queue.pop());
+  for (;;) {
+    std::unique_lock lock(mutex);
+    wake.wait(lock,
+              [this] { return stopping || (queue.size() > 0 && frames_in_encoding < limits.frames_in_encoding); });
+    if (stopping) return nullptr;
+    JobPointer job = jobs.at(*queue.pop());
+    job->waited_ms = job->since_submission.milliseconds();
+    if (job->waited_ms <= static_cast<double>(limits.patience.count())) {
+      ++frames_in_encoding;
+      return job;
+    }
+    lock.unlock();
+    finish(job, fail(ErrorKind::kUnavailable, "the server is busy: the picture waited too long"));
+  }
 }
 
 Result<Frame> RenderService::State::paint(Painter& painter, Job& job) {
@@ -111,34 +127,60 @@ Result<Frame> RenderService::State::paint(Painter& painter, Job& job) {
 }
 
 void RenderService::State::draw_one(Painter& painter, const JobPointer& job) {
-  const double waited = job->since_submission.milliseconds();
+  const Stopwatch watch;
   Result<Frame> frame = guarded([&] { return paint(painter, *job); });
-  if (frame) frame->stats.stages.insert(frame->stats.stages.begin(), StageTime{"queue", waited});
+  job->draw_ms = watch.milliseconds();
+  if (frame) {
+    frame->stats.stages.insert(frame->stats.stages.begin(), StageTime{"queue", job->waited_ms});
+    give_up(job->wish.supersedes);
+  }
   pool->post([this, job, frame = std::move(frame)]() mutable { encode_one(job, std::move(frame)); });
 }
 
-void RenderService::State::encode_one(const JobPointer& job, Result<Frame> frame) {
-  const auto encode = [&]() -> Result<EncodedPicture> {
-    if (!frame) return fail(frame.error());
-    if (job->cancelled) return cancelled_error();
-    const Stopwatch watch;
-    Result<std::vector<std::byte>> bytes = encode_picture(frame->image, job->wish.format, job->wish.quality);
+/// Spares the encoders a picture that is overtaken by a newer one.
+void RenderService::State::give_up(JobId id) {
+  const std::lock_guard lock(mutex);
+  const auto found = jobs.find(id);
+  if (found != jobs.end() && !found->second->encoding) found->second->cancelled = true;
+}
+
+/// What a picture shows and what drawing it took; without its bytes.
+EncodedPicture RenderService::State::describe(const Job& job, const Frame& frame) {
+  EncodedPicture picture;
+  picture.format = job.wish.format;
+  picture.width = frame.image.width;
+  picture.height = frame.image.height;
+  picture.camera = frame.camera;
+  picture.normalization = job.wish.request.normalization;
+  picture.spacing = job.wish.request.spacing;
+  picture.converged = frame.converged;
+  picture.settled = frame.settled;
+  picture.cut = frame.cut;
+  picture.waited_ms = job.waited_ms;
+  picture.draw_ms = job.draw_ms;
+  picture.stats = frame.stats;
+  return picture;
+}
+
+Result<EncodedPicture> RenderService::State::encode(Job& job, const Result<Frame>& frame) {
+  if (!frame) return fail(frame.error());
+  job.encoding = true;
+  if (job.cancelled) return cancelled_error();
+  const Stopwatch watch;
+  EncodedPicture picture = describe(job, *frame);
+  if (!frame->image.pixels.empty()) {
+    Result<std::vector<std::byte>> bytes = encode_picture(frame->image, job.wish.format, job.wish.quality);
     if (!bytes) return fail(bytes.error());
-    if (job->cancelled) return cancelled_error();
-    EncodedPicture picture;
     picture.bytes = std::move(*bytes);
-    picture.format = job->wish.format;
-    picture.width = frame->image.width;
-    picture.height = frame->image.height;
-    picture.camera = frame->camera;
-    picture.normalization = job->wish.request.normalization;
-    picture.spacing = job->wish.request.spacing;
-    picture.converged = frame->converged;
-    picture.stats = std::move(frame->stats);
-    picture.stats.stages.push_back({"encode", watch.milliseconds()});
-    return picture;
-  };
-  Result<EncodedPicture> result = guarded(encode);
+  }
+  if (job.cancelled) return cancelled_error();
+  picture.encode_ms = watch.milliseconds();
+  picture.stats.stages.push_back({"encode", picture.encode_ms});
+  return picture;
+}
+
+void RenderService::State::encode_one(const JobPointer& job, Result<Frame> frame) {
+  Result<EncodedPicture> result = guarded([&] { return encode(*job, frame); });
   frame = cancelled_error();  // lets go of the pixels before the render thread may make more
   {
     const std::lock_guard lock(mutex);
@@ -238,6 +280,14 @@ bool RenderService::cancel(JobId id) {
     if (state_->queue.remove(id)) waiting = found->second;
   }
   if (waiting) state_->finish(waiting, cancelled_error());
+  return true;
+}
+
+bool RenderService::replace(JobId id, PictureJob wish) {
+  if (!state_->check(wish)) return false;
+  const std::lock_guard lock(state_->mutex);
+  if (!state_->queue.contains(id)) return false;
+  state_->jobs.at(id)->wish = std::move(wish);
   return true;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <chrono>
 #include <cstddef>
 #include <functional>
 #include <memory>
@@ -16,10 +17,11 @@
 namespace surfcast {
 
 struct ServiceLimits {
-  size_t queued_jobs = 256;         ///< pictures that may wait for the render thread, over all sessions
-  size_t pixels = size_t{1} << 25;  ///< of one picture (8192 x 4096)
-  unsigned encoders = 2;            ///< threads that encode pictures and look up models
-  size_t frames_in_encoding = 3;    ///< drawn pictures held in memory before the render thread waits
+  size_t queued_jobs = 256;                    ///< pictures that may wait for the render thread, over all sessions
+  size_t pixels = size_t{1} << 25;             ///< of one picture (8192 x 4096)
+  unsigned encoders = 2;                       ///< threads that encode pictures and look up models
+  size_t frames_in_encoding = 3;               ///< drawn pictures held in memory before the render thread waits
+  std::chrono::milliseconds patience{20'000};  ///< of a picture that waits for the render thread
 };
 
 /// A picture somebody wants, as a file.
@@ -28,12 +30,13 @@ struct PictureJob {
   PictureRequest request;      ///< its pixel format follows from `format`
   bool up_from_model = false;  ///< take the model's vertical axis as the camera's view_up
   FileFormat format = FileFormat::kPng;
-  int quality = 90;  ///< of JPEG and WebP, 1 to 100
+  int quality = 90;      ///< of JPEG and WebP, 1 to 100
+  JobId supersedes = 0;  ///< a job that nobody wants to see any more once this one is drawn; 0: none
 };
 
 /// A picture as a file, and what it shows.
 struct EncodedPicture {
-  std::vector<std::byte> bytes;
+  std::vector<std::byte> bytes;  ///< none where the frame has no pixels, see Frame
   FileFormat format = FileFormat::kPng;
   int width = 0;   ///< pixels
   int height = 0;  ///< pixels
@@ -41,7 +44,12 @@ struct EncodedPicture {
   Normalization normalization = Normalization::kPixel;
   double spacing = 0;      ///< as in PictureRequest
   bool converged = false;  ///< as in Frame
-  FrameStats stats;        ///< its stages begin with "queue" and end with "encode"
+  bool settled = false;    ///< as in Frame
+  uint64_t cut = 0;        ///< as in Frame
+  double waited_ms = 0;    ///< for the render thread
+  double draw_ms = 0;
+  double encode_ms = 0;
+  FrameStats stats;  ///< its stages begin with "queue" and end with "encode"
 };
 
 /// Turns wishes into encoded pictures. One render thread owns the painter and takes jobs from a queue that is fair
@@ -62,6 +70,9 @@ class RenderService {
   ~RenderService();
 
   JobId draw(SessionId session, PictureJob job, PictureDone done);
+  /// Lets a job that still waits for the render thread draw something else in its place. False if it does not wait any
+  /// more, or if there can be no such picture.
+  bool replace(JobId job, PictureJob wish);
   /// True when the job was outstanding; its callback then gets kCancelled, unless the picture is just being handed
   /// over.
   bool cancel(JobId job);

@@ -97,7 +97,7 @@ TEST(Hello, AServerWelcomesAnyMinorVersion) {
 
 TEST(Hello, AClientExplainsAServerOfAnotherMajorVersion) {
   Hello server = make_hello("surfcastd");
-  server.version.major = 2;
+  server.version = {2, 0};
   server.status = HelloStatus::kVersionRefused;
   const Status status = check_server_hello(server);
   ASSERT_FALSE(status);

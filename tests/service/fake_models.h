@@ -36,10 +36,11 @@ class FakeModels : public ModelSource {
 
 /// What a fake painter is told to do, shared with the test that watches it.
 struct FakeStudio {
-  std::atomic<int> drawn = 0;      ///< pictures begun
-  std::atomic<int> cancelled = 0;  ///< pictures given up half-way
-  std::atomic<bool> slow = false;  ///< every picture goes on until it is cancelled or `slow` is taken back
-  std::vector<std::string> order;  ///< models in the order they were drawn; read it when nothing is being drawn
+  std::atomic<int> drawn = 0;           ///< pictures begun
+  std::atomic<int> cancelled = 0;       ///< pictures given up half-way
+  std::atomic<bool> slow = false;       ///< every picture goes on until it is cancelled or `slow` is taken back
+  std::atomic<bool> slow_quick = true;  ///< pictures for motion are as slow as others
+  std::vector<std::string> order;       ///< models in the order they were drawn; read it when nothing is being drawn
 };
 
 /// Fills pictures with the background's colour, or for the model "noise" with what no format makes smaller.
@@ -51,7 +52,8 @@ class FakePainter : public Painter {
                      const std::atomic<bool>& cancelled) override {
     studio_->order.push_back(model);
     ++studio_->drawn;
-    while (studio_->slow && !cancelled) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    const bool slow_too = request.viewer == 0 || studio_->slow_quick;
+    while (studio_->slow && slow_too && !cancelled) std::this_thread::sleep_for(std::chrono::milliseconds(1));
     if (cancelled) {
       ++studio_->cancelled;
       return fail(ErrorKind::kCancelled, "cancelled");
@@ -62,7 +64,9 @@ class FakePainter : public Painter {
     frame.image = plain_image(request);
     if (model == "noise") add_noise(frame.image);
     if (request.camera) frame.camera = *request.camera;
-    frame.converged = true;
+    frame.converged = request.loading == Loading::kWait;
+    frame.settled = true;
+    frame.cut = 7;
     frame.stats.surfels_drawn = 99;
     frame.stats.blocks_drawn = 5;
     frame.stats.gl_renderer = "fake";

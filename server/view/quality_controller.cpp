@@ -1,0 +1,131 @@
+#include "view/quality_controller.h"
+
+#include <algorithm>
+#include <array>
+#include <span>
+
+namespace surfcast {
+namespace {
+
+/// A setting and what it costs in relation to others of its ladder.
+struct DrawRung {
+  double scale = 1;
+  double spacing = 1;
+  double cost = 1;
+};
+struct LinkRung {
+  double scale = 1;
+  int jpeg_quality = 80;
+  double cost = 1;
+};
+
+// Splats weigh by their number, which falls with the square of the spacing, and pixels by theirs.
+constexpr double draw_cost(double scale, double spacing) {
+  constexpr double kSplats = 2.0;
+  return scale * scale * (1 + kSplats / (spacing * spacing));
+}
+
+constexpr DrawRung draw_rung(double scale, double spacing) {
+  return {scale, spacing, draw_cost(scale, spacing)};
+}
+
+// A smaller picture with its surfels as dense looks better than a large one with few, until it is half as large.
+constexpr std::array kDrawRungs{draw_rung(1, 1),     draw_rung(1, 1.5),   draw_rung(1, 2),    draw_rung(0.75, 1.5),
+                                draw_rung(0.75, 2),  draw_rung(0.5, 1.5), draw_rung(0.5, 2),  draw_rung(0.5, 3),
+                                draw_rung(0.375, 2), draw_rung(0.375, 3), draw_rung(0.25, 2), draw_rung(0.25, 3)};
+
+// Bytes of a JPEG in relation to those at quality 85, times the share of the pixels.
+constexpr std::array<LinkRung, 9> kLinkRungs{{{1, 85, 1.0},
+                                              {1, 75, 0.75},
+                                              {1, 65, 0.62},
+                                              {0.75, 65, 0.38},
+                                              {0.75, 50, 0.3},
+                                              {0.5, 60, 0.17},
+                                              {0.5, 45, 0.13},
+                                              {0.375, 45, 0.08},
+                                              {0.25, 45, 0.04}}};
+
+constexpr double kFull = 0.9;   // of the time of a frame may be used up
+constexpr double kRoom = 0.75;  // and a better rung is tried if it is expected to take this much of that
+constexpr int kSlowFrames = 2;
+constexpr int kPatience = 6;
+constexpr int kMostPatience = 192;
+
+template <typename Rung>
+double predicted(std::span<const Rung> rungs, size_t from, size_t to, double ms) {
+  return ms * rungs[to].cost / rungs[from].cost;
+}
+
+/// The best rung that is expected to keep within the time, or the last.
+template <typename Rung>
+size_t affordable(std::span<const Rung> rungs, size_t from, double ms, double budget) {
+  size_t rung = 0;
+  while (rung + 1 < rungs.size() && predicted(rungs, from, rung, ms) > budget) ++rung;
+  return rung;
+}
+
+template <typename Rung>
+LadderState descend(LadderState state, std::span<const Rung> rungs, double ms, double budget) {
+  state.least_ms = state.slow == 0 ? ms : std::min(state.least_ms, ms);
+  state.fast = 0;
+  if (++state.slow < kSlowFrames) return state;
+  const size_t next = std::min(state.rung + 1, rungs.size() - 1);
+  const size_t fits = std::max(next, affordable(rungs, state.rung, state.least_ms, budget));
+  const bool climbed_in_vain = state.since_climb < state.patience;
+  return {.rung = fits,
+          .slow = 0,
+          .fast = 0,
+          .least_ms = 0,
+          .patience = climbed_in_vain ? std::min(2 * state.patience, kMostPatience) : state.patience,
+          .since_climb = kMostPatience};
+}
+
+template <typename Rung>
+LadderState climb(LadderState state, std::span<const Rung> rungs, double ms, double budget) {
+  state.slow = 0;
+  if (state.rung == 0 || predicted(rungs, state.rung, state.rung - 1, ms) > kRoom * budget) {
+    state.fast = 0;
+    return state;
+  }
+  state.least_ms = state.fast == 0 ? ms : std::max(state.least_ms, ms);
+  if (++state.fast < state.patience) return state;
+  const size_t fits = affordable(rungs, state.rung, state.least_ms, kRoom * budget);
+  return {.rung = std::min(fits, state.rung - 1),
+          .slow = 0,
+          .fast = 0,
+          .least_ms = 0,
+          .patience = state.patience,
+          .since_climb = 0};
+}
+
+template <typename Rung>
+LadderState step(LadderState state, std::span<const Rung> rungs, double ms, double budget) {
+  // A rung that has been kept for long was no mistake: the next climb is as easy as the first.
+  if (++state.since_climb > 2 * kMostPatience) state.patience = kPatience;
+  return ms > budget ? descend(state, rungs, ms, budget) : climb(state, rungs, ms, budget);
+}
+
+}  // namespace
+
+QualityState first_quality() {
+  constexpr size_t kMiddle = 6;
+  QualityState state;
+  state.draw = {.rung = kMiddle, .patience = kPatience, .since_climb = kMostPatience};
+  state.link = {.rung = 2, .patience = kPatience, .since_climb = kMostPatience};
+  return state;
+}
+
+QualityState adapt(const QualityState& state, const MotionCost& cost, double target_fps) {
+  const double budget = kFull * 1000 / target_fps;
+  const double work = std::max({cost.draw, cost.encode, cost.client});
+  return {step(state.draw, std::span<const DrawRung>(kDrawRungs), work, budget),
+          step(state.link, std::span<const LinkRung>(kLinkRungs), cost.transfer, budget)};
+}
+
+MotionQuality quality_of(const QualityState& state) {
+  const DrawRung& draw = kDrawRungs[state.draw.rung];
+  const LinkRung& link = kLinkRungs[state.link.rung];
+  return {std::min(draw.scale, link.scale), draw.spacing, link.jpeg_quality};
+}
+
+}  // namespace surfcast

@@ -1,0 +1,126 @@
+#include "view/view_plan.h"
+
+#include <algorithm>
+
+namespace surfcast {
+
+void ViewPlan::update(bool changed, bool moving, ViewTime now) {
+  if (changed) {
+    ++picture_;
+    progress_ = Progress::kNone;
+    changed_at_ = now;
+    look_again_at_ = now;
+    improved_at_ = now;
+  }
+  // A hand that stops without a word rests some time after its last update, one that says so from its last movement.
+  rest_at_ = moving ? now + timing_.grace : changed_at_;
+}
+
+const ViewPlan::Job* ViewPlan::find(uint64_t frame) const {
+  const auto found = std::ranges::find(jobs_, frame, &Job::frame);
+  return found == jobs_.end() ? nullptr : &*found;
+}
+
+/// One frame may be drawn while another is encoded or on its way: more would only show older pictures. What is on its
+/// way of a frame at rest delays the sending but not the drawing.
+bool ViewPlan::room_for_quick() const {
+  return jobs_.size() + quick_unacknowledged_ < kMostUnacknowledged;
+}
+
+FrameKind ViewPlan::wanted() const {
+  if (progress_ == Progress::kNone) return FrameKind::kQuick;
+  return progress_ == Progress::kFineComplete ? FrameKind::kFinal : FrameKind::kFine;
+}
+
+/// When the next frame of a picture at rest is to be drawn.
+std::optional<ViewTime> ViewPlan::due(ViewTime rest) const {
+  switch (progress_) {
+    case Progress::kNone:
+      return look_again_at_;
+    case Progress::kQuick:
+      return rest + timing_.fine;
+    case Progress::kFine:
+      return std::max(rest + timing_.fine, look_again_at_);
+    case Progress::kFineComplete:
+      return rest + timing_.final;
+    case Progress::kFinal:
+      break;
+  }
+  return std::nullopt;
+}
+
+ViewStep ViewPlan::next(ViewTime now) const {
+  const bool under_way = std::ranges::any_of(jobs_, [this](const Job& job) { return job.picture == picture_; });
+  if (under_way || sending_) return {};
+  const FrameKind kind = wanted();
+  if (kind == FrameKind::kQuick ? !room_for_quick() : !jobs_.empty() || !may_send()) return {};
+  const std::optional<ViewTime> at = due(rest_at_);
+  if (!at) return {};
+  return *at <= now ? ViewStep{kind, {}} : ViewStep{{}, at};
+}
+
+void ViewPlan::begin(uint64_t frame, FrameKind kind) {
+  jobs_.push_back({frame, kind, picture_});
+}
+
+void ViewPlan::renew(uint64_t frame) {
+  for (Job& job : jobs_) {
+    if (job.frame == frame) job.picture = picture_;
+  }
+}
+
+std::optional<uint64_t> ViewPlan::renewable() const {
+  if (jobs_.empty()) return std::nullopt;
+  const Job& last = jobs_.back();
+  return last.kind == FrameKind::kQuick && last.picture != picture_ ? std::optional(last.frame) : std::nullopt;
+}
+
+std::vector<uint64_t> ViewPlan::outdated() const {
+  std::vector<uint64_t> frames;
+  for (const Job& job : jobs_) {
+    if (job.kind != FrameKind::kQuick && job.picture != picture_) frames.push_back(job.frame);
+  }
+  return frames;
+}
+
+void ViewPlan::drop(uint64_t frame) {
+  std::erase_if(jobs_, [frame](const Job& job) { return job.frame == frame; });
+}
+
+bool ViewPlan::expects(uint64_t frame) const {
+  return find(frame) != nullptr;
+}
+
+void ViewPlan::finish(uint64_t frame, FrameNews news, ViewTime now) {
+  const Job* found = find(frame);
+  if (found == nullptr) return;
+  const Job job = *found;
+  drop(frame);
+  if (job.picture != picture_) return;
+  look_again_at_ = now + timing_.look_again;
+  if (news == FrameNews::kImproves) improved_at_ = now;
+  switch (job.kind) {
+    case FrameKind::kQuick:
+      if (news != FrameNews::kNothing) progress_ = std::max(progress_, Progress::kQuick);
+      break;
+    case FrameKind::kFine:
+      progress_ = news == FrameNews::kComplete || now - improved_at_ > timing_.despair ? Progress::kFineComplete
+                                                                                       : Progress::kFine;
+      break;
+    case FrameKind::kFinal:
+      progress_ = Progress::kFinal;
+      break;
+  }
+}
+
+void ViewPlan::send(FrameKind kind, bool last) {
+  ++(kind == FrameKind::kQuick ? quick_unacknowledged_ : other_unacknowledged_);
+  sending_ = !last;
+}
+
+void ViewPlan::acknowledge(FrameKind kind) {
+  size_t& count = kind == FrameKind::kQuick ? quick_unacknowledged_ : other_unacknowledged_;
+  count -= std::min<size_t>(count, 1);
+}
+
+}  // namespace surfcast

@@ -1,0 +1,101 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+namespace surfcast {
+
+using ViewTime = std::chrono::steady_clock::time_point;
+
+/// How a frame of a view is drawn.
+enum class FrameKind {
+  kQuick,  ///< for motion: small, coarse, per-surfel weights, JPEG
+  kFine,   ///< at rest: all that was asked for, of the blocks that are there, JPEG
+  kFinal,  ///< at rest: the very answer to the request for that picture
+};
+
+struct ViewTiming {
+  std::chrono::milliseconds grace{250};      ///< after the last update of a motion that was not said to have ended
+  std::chrono::milliseconds fine{150};       ///< from the beginning of rest to kFine
+  std::chrono::milliseconds final{500};      ///< from the beginning of rest to kFinal
+  std::chrono::milliseconds look_again{50};  ///< between two looks at whether missing blocks have come
+  std::chrono::milliseconds despair{5000};   ///< without any block: those that are missing will not come
+};
+
+/// Frames, or pieces of one, that may be on their way without having been acknowledged.
+inline constexpr size_t kMostUnacknowledged = 2;
+
+/// What came of drawing a frame.
+enum class FrameNews {
+  kNothing,   ///< nothing to show yet: no block was there, or none that the frame before did not have
+  kImproves,  ///< blocks are missing that are still to come
+  kComplete,  ///< nothing better will come of drawing it again in this way
+};
+
+/// What a view does next: draw, or nothing before that time or an event.
+struct ViewStep {
+  std::optional<FrameKind> draw;
+  std::optional<ViewTime> look_again;
+};
+
+/// Decides when a view draws what, from the times of its updates, drawings and acknowledgements. It knows pictures only
+/// by their number: what is to be seen now is the newest one.
+class ViewPlan {
+ public:
+  explicit ViewPlan(const ViewTiming& timing) : timing_(timing) {}
+
+  /// An update has come; `changed`: it shows another picture than the one before.
+  void update(bool changed, bool moving, ViewTime now);
+  [[nodiscard]] ViewStep next(ViewTime now) const;
+
+  /// Drawing a frame of the newest picture begins.
+  void begin(uint64_t frame, FrameKind kind);
+  /// A frame whose drawing had not begun in truth will show the newest picture instead.
+  void renew(uint64_t frame);
+  /// The youngest frame for motion that is being drawn or waits for it, if it shows an older picture than the newest.
+  [[nodiscard]] std::optional<uint64_t> renewable() const;
+  /// Frames at rest that are being drawn for a picture which is not the newest any more.
+  [[nodiscard]] std::vector<uint64_t> outdated() const;
+  /// A frame will not come.
+  void drop(uint64_t frame);
+  void finish(uint64_t frame, FrameNews news, ViewTime now);
+  [[nodiscard]] bool expects(uint64_t frame) const;
+
+  /// A message has been sent; `last` of its frame.
+  void send(FrameKind kind, bool last);
+  void acknowledge(FrameKind kind);
+  /// The rest of a frame will not be sent.
+  void stop_sending() { sending_ = false; }
+  [[nodiscard]] bool may_send() const { return quick_unacknowledged_ + other_unacknowledged_ < kMostUnacknowledged; }
+
+ private:
+  struct Job {
+    uint64_t frame = 0;
+    FrameKind kind = FrameKind::kQuick;
+    uint64_t picture = 0;
+  };
+  /// The best that has been drawn of the newest picture.
+  enum class Progress { kNone, kQuick, kFine, kFineComplete, kFinal };
+
+  [[nodiscard]] const Job* find(uint64_t frame) const;
+  [[nodiscard]] bool room_for_quick() const;
+  [[nodiscard]] std::optional<ViewTime> due(ViewTime rest) const;
+  [[nodiscard]] FrameKind wanted() const;
+
+  ViewTiming timing_;
+  uint64_t picture_ = 0;  ///< the newest
+  Progress progress_ = Progress::kNone;
+  ViewTime changed_at_;
+  ViewTime rest_at_;
+  ViewTime look_again_at_;
+  ViewTime improved_at_;
+  std::vector<Job> jobs_;  ///< oldest first
+  size_t quick_unacknowledged_ = 0;
+  size_t other_unacknowledged_ = 0;
+  bool sending_ = false;  ///< pieces of a frame remain to be sent
+};
+
+}  // namespace surfcast

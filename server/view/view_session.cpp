@@ -1,0 +1,253 @@
+#include "view/view_session.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+#include <vector>
+
+namespace surfcast {
+namespace {
+
+constexpr int kFineQuality = 90;  // of the JPEG at rest
+// A piece should be through before it can be felt in a motion that begins behind it.
+constexpr double kPieceMs = 60;
+constexpr size_t kFirstPiece = size_t{64} << 10;
+constexpr size_t kLeastPiece = size_t{24} << 10;
+constexpr size_t kMostPiece = size_t{16} << 20;
+
+int scaled(int pixels, double scale) {
+  return std::max(1, static_cast<int>(std::lround(pixels * scale)));
+}
+
+/// What the picture says about going on: blocks that are still to come may make it better.
+FrameNews news_of(FrameKind kind, const EncodedPicture& picture) {
+  if (kind == FrameKind::kFinal || picture.settled) return FrameNews::kComplete;
+  return picture.bytes.empty() || picture.stats.blocks_drawn == 0 ? FrameNews::kNothing : FrameNews::kImproves;
+}
+
+}  // namespace
+
+ViewSession::ViewSession(RenderService& service, SessionId session, uint64_t viewer, double target_fps,
+                         ViewCounts& counts, ViewPort port)
+    : service_(service),
+      session_(session),
+      viewer_(viewer),
+      target_fps_(target_fps),
+      counts_(counts),
+      port_(std::move(port)) {
+  ++counts_.open;
+}
+
+ViewSession::~ViewSession() {
+  --counts_.open;
+}
+
+PictureJob ViewSession::wish(FrameKind kind) const {
+  PictureJob job = newest_.picture;
+  if (kind == FrameKind::kFinal) return job;
+  PictureRequest& request = job.request;
+  request.loading = Loading::kNow;
+  job.format = FileFormat::kJpeg;
+  job.quality = kFineQuality;
+  if (kind == FrameKind::kFine) {
+    request.known_cut = shown_cut_;
+    return job;
+  }
+  const MotionQuality quality = quality_of(quality_);
+  request.width = scaled(request.width, quality.scale);
+  request.height = scaled(request.height, quality.scale);
+  request.spacing = std::max(request.spacing * quality.scale, quality.spacing);
+  request.normalization = Normalization::kSurfel;
+  request.viewer = viewer_;
+  job.quality = quality.jpeg_quality;
+  job.supersedes = last_quick_job_;
+  return job;
+}
+
+void ViewSession::update(ViewUpdate update, ViewTime now) {
+  const bool changed = update.changed;
+  if (changed && !newest_begun_) ++counts_.replaced;
+  newest_ = std::move(update);
+  plan_.update(changed, newest_.moving, now);
+  if (!changed) return;
+  newest_begun_ = false;
+  shown_cut_ = 0;
+  for (const uint64_t frame : plan_.outdated()) drop(frame);
+  if (outgoing_ && outgoing_->kind != FrameKind::kQuick) give_up_sending();
+  renew();
+}
+
+/// Lets a frame that still waits for the render thread show the newest picture.
+void ViewSession::renew() {
+  const std::optional<uint64_t> frame = plan_.renewable();
+  if (!frame) return;
+  Job& job = frames_.at(*frame);
+  if (!service_.replace(job.job, wish(FrameKind::kQuick))) return;
+  plan_.renew(*frame);
+  job.update = newest_.update;
+  job.quality = quality_;
+  newest_begun_ = true;
+  ++counts_.replaced;
+}
+
+/// Gives up a frame that is being drawn or encoded.
+void ViewSession::drop(uint64_t frame) {
+  const auto found = frames_.find(frame);
+  service_.cancel(found->second.job);
+  plan_.drop(frame);
+  frames_.erase(found);
+  ++counts_.dropped;
+}
+
+std::optional<ViewTime> ViewSession::advance(ViewTime now) {
+  if (closed_) return std::nullopt;
+  send_pieces(now);
+  const ViewStep step = plan_.next(now);
+  if (!step.draw) return step.look_again;
+  if (port_.may_draw()) draw(*step.draw);
+  return std::nullopt;
+}
+
+void ViewSession::draw(FrameKind kind) {
+  const uint64_t frame = ++last_frame_;
+  Job& job = frames_[frame];
+  job.kind = kind;
+  job.update = newest_.update;
+  job.quality = quality_;
+  plan_.begin(frame, kind);
+  newest_begun_ = true;
+  job.job = service_.draw(session_, wish(kind),
+                          [weak = weak_from_this(), post = port_.post, frame](Result<EncodedPicture> picture) {
+                            post([weak, frame, picture = std::move(picture)]() mutable {
+                              if (const auto self = weak.lock()) self->finish(frame, std::move(picture));
+                            });
+                          });
+  if (kind == FrameKind::kQuick) last_quick_job_ = job.job;
+}
+
+void ViewSession::finish(uint64_t frame, Result<EncodedPicture> picture) {
+  if (closed_ || !plan_.expects(frame)) return;
+  Job& job = frames_.at(frame);
+  if (!picture) {
+    plan_.drop(frame);
+    frames_.erase(frame);
+    ++counts_.dropped;
+    if (picture.error().kind == ErrorKind::kCancelled) return;
+    close();
+    return port_.fail(picture.error());
+  }
+  const ViewTime now = std::chrono::steady_clock::now();
+  const FrameNews news = news_of(job.kind, *picture);
+  plan_.finish(frame, news, now);
+  if (job.kind == FrameKind::kFine) shown_cut_ = picture->cut;
+  if (picture->bytes.empty() || (news == FrameNews::kNothing)) {
+    frames_.erase(frame);
+    return;
+  }
+  // The wait for the frame before this one is not a cost: it was drawn meanwhile.
+  job.cost.draw = picture->draw_ms + std::max(picture->waited_ms - last_draw_ms_, 0.0);
+  job.cost.encode = picture->encode_ms;
+  last_draw_ms_ = picture->draw_ms;
+  show(frame, job.kind, std::move(*picture));
+  send_pieces(now);
+}
+
+void ViewSession::show(uint64_t frame, FrameKind kind, EncodedPicture picture) {
+  if (outgoing_) give_up_sending();
+  picture.stats.stages.push_back({"transfer", last_cost_.transfer});
+  picture.stats.stages.push_back({"paint", last_cost_.client});
+  ViewMessage message;
+  message.frame = frame;
+  message.update = frames_.at(frame).update;
+  message.width = newest_.picture.request.width;
+  message.height = newest_.picture.request.height;
+  message.moving = kind == FrameKind::kQuick;
+  std::vector<std::byte> bytes = std::move(picture.bytes);
+  message.picture = std::move(picture);
+  outgoing_ = Outgoing{frame, kind, std::move(message), std::move(bytes), 0};
+}
+
+void ViewSession::give_up_sending() {
+  const uint64_t frame = outgoing_->frame;
+  outgoing_.reset();
+  plan_.stop_sending();
+  frames_.at(frame).sent = true;
+  forget_if_done(frame);
+  ++counts_.dropped;
+}
+
+void ViewSession::forget_if_done(uint64_t frame) {
+  const auto found = frames_.find(frame);
+  if (found->second.sent && found->second.unacknowledged == 0) frames_.erase(found);
+}
+
+/// Sends what may be sent: a frame for motion whole, others in pieces that a motion need not wait for long.
+void ViewSession::send_pieces(ViewTime now) {
+  while (outgoing_ && plan_.may_send()) {
+    const size_t rest = outgoing_->bytes.size() - outgoing_->sent;
+    const size_t piece = std::clamp(link_.bytes_in(kPieceMs).value_or(kFirstPiece), kLeastPiece, kMostPiece);
+    const bool whole = outgoing_->kind == FrameKind::kQuick || rest < piece + piece / 2;
+    send_piece(whole ? rest : piece, now);
+  }
+}
+
+void ViewSession::send_piece(size_t bytes, ViewTime now) {
+  Outgoing& out = *outgoing_;
+  const bool first = out.sent == 0;
+  const bool last = out.sent + bytes == out.bytes.size();
+  ViewMessage message;
+  if (first) message = std::move(out.message);
+  message.frame = out.frame;
+  if (first && last) {
+    message.picture.bytes = std::move(out.bytes);
+  } else {
+    const auto begin = out.bytes.begin() + static_cast<std::ptrdiff_t>(out.sent);
+    message.picture.bytes.assign(begin, begin + static_cast<std::ptrdiff_t>(bytes));
+  }
+  out.sent += bytes;
+  message.first = first;
+  message.more = !last;
+
+  Job& job = frames_.at(out.frame);
+  ++job.unacknowledged;
+  job.sent = last;
+  plan_.send(out.kind, last);
+  link_.send(out.frame, bytes, now);
+  counts_.bytes += bytes;
+  if (last) {
+    ++counts_.frames;
+    outgoing_.reset();
+  }
+  port_.send(std::move(message));
+}
+
+void ViewSession::acknowledge(uint64_t frame, double client_ms, ViewTime now) {
+  const auto found = frames_.find(frame);
+  if (closed_ || found == frames_.end() || found->second.unacknowledged == 0) return;
+  Job& job = found->second;
+  --job.unacknowledged;
+  plan_.acknowledge(job.kind);
+  const std::optional<double> transfer = link_.acknowledge(frame, client_ms, now);
+  if (job.kind == FrameKind::kQuick && transfer) learn(job, *transfer, client_ms);
+  forget_if_done(frame);
+}
+
+void ViewSession::learn(Job& job, double transfer_ms, double client_ms) {
+  job.cost.transfer = transfer_ms;
+  job.cost.client = client_ms;
+  last_cost_ = job.cost;
+  // A frame from before the last change says nothing of the quality since.
+  const bool current = job.quality.draw.rung == quality_.draw.rung && job.quality.link.rung == quality_.link.rung;
+  if (current) quality_ = adapt(quality_, job.cost, target_fps_);
+}
+
+void ViewSession::close() {
+  if (closed_) return;
+  closed_ = true;
+  outgoing_.reset();
+  for (const auto& [frame, job] : frames_) {
+    if (plan_.expects(frame)) service_.cancel(job.job);
+  }
+}
+
+}  // namespace surfcast

@@ -1,0 +1,243 @@
+#include <limits>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "net/net_fixture.h"
+
+namespace surfcast {
+namespace {
+
+/// A client with one view open, which answers every message of it at once unless it is told not to.
+class ViewSessionTest : public NetFixture {
+ protected:
+  void open_view(const std::string& model = "cube", uint32_t width = 64, uint32_t height = 32) {
+    auto connection = connect();
+    ASSERT_TRUE(connection);
+    connection_.emplace(std::move(*connection));
+    wire::Request request;
+    *request.mutable_open_view()->mutable_picture() = picture(model, 0, width, height);
+    const auto id = connection_->send(request);
+    ASSERT_TRUE(id);
+    view_ = *id;
+  }
+
+  static wire::DrawPicture picture(const std::string& model, double x, uint32_t width = 64, uint32_t height = 32) {
+    wire::DrawPicture picture = picture_request(model, width, height).draw_picture();
+    picture.mutable_camera()->mutable_position()->set_x(x);
+    picture.mutable_camera()->mutable_position()->set_z(5);
+    picture.mutable_camera()->mutable_focal_point();
+    picture.mutable_camera()->mutable_view_up()->set_y(1);
+    return picture;
+  }
+
+  void update(uint64_t number, const wire::DrawPicture& picture, bool moving) {
+    wire::Request request;
+    request.mutable_update_view()->set_update(number);
+    *request.mutable_update_view()->mutable_picture() = picture;
+    request.mutable_update_view()->set_moving(moving);
+    ASSERT_TRUE(connection_->send_as(view_, request));
+  }
+
+  void acknowledge(uint64_t frame) {
+    wire::Request request;
+    request.mutable_frame_painted()->set_frame(frame);
+    ASSERT_TRUE(connection_->send_as(view_, request));
+  }
+
+  /// The next whole frame, its pieces answered.
+  wire::ViewFrame next_frame() {
+    wire::ViewFrame frame;
+    for (;;) {
+      const auto answer = connection_->receive();
+      if (!answer || !answer->has_view_frame()) {
+        ADD_FAILURE() << (answer ? answer->error().message() : answer.error().message);
+        return frame;
+      }
+      EXPECT_EQ(answer->id(), view_);
+      const wire::ViewFrame& piece = answer->view_frame();
+      acknowledge(piece.frame());
+      if (piece.frame() == frame.frame()) {
+        frame.mutable_picture()->mutable_data()->append(piece.picture().data());
+      } else {
+        frame = piece;
+      }
+      if (!piece.more()) return frame;
+    }
+  }
+
+  wire::ViewFrame converged_frame() {
+    wire::ViewFrame frame = next_frame();
+    while (!frame.picture().converged() && !HasFailure()) frame = next_frame();
+    return frame;
+  }
+
+  std::optional<ServerConnection> connection_;
+  uint64_t view_ = 0;
+};
+
+TEST_F(ViewSessionTest, AViewAtRestEndsWithTheAnswerToItsPictureAndThenFallsSilent) {
+  start();
+  open_view("noise", 320, 200);
+  std::vector<wire::ViewFrame> frames;
+  do {
+    frames.push_back(next_frame());
+  } while (!frames.back().picture().converged() && !HasFailure());
+  ASSERT_EQ(frames.size(), 3u);
+  EXPECT_TRUE(frames[0].moving());
+  EXPECT_EQ(frames[0].picture().format(), wire::FILE_FORMAT_JPEG);
+  EXPECT_EQ(frames[0].picture().normalization(), wire::NORMALIZATION_SURFEL);
+  EXPECT_LT(frames[0].picture().resolution().width(), 320u);
+  EXPECT_EQ(frames[0].resolution().width(), 320u);
+  EXPECT_FALSE(frames[1].moving());
+  EXPECT_EQ(frames[1].picture().format(), wire::FILE_FORMAT_JPEG);
+  EXPECT_EQ(frames[1].picture().resolution().width(), 320u);
+  EXPECT_EQ(frames[2].picture().format(), wire::FILE_FORMAT_PNG);
+
+  wire::Request request;
+  *request.mutable_draw_picture() = picture("noise", 0, 320, 200);
+  const auto answer = connection_->ask(request);
+  ASSERT_TRUE(answer) << "what comes next is this picture and no frame";
+  EXPECT_EQ(answer->picture().data(), frames[2].picture().data());
+}
+
+TEST_F(ViewSessionTest, FramesRepeatTheNewestUpdateAndItsCamera) {
+  start();
+  open_view();
+  converged_frame();
+  update(7, picture("cube", 3), /*moving=*/false);
+  const wire::ViewFrame frame = next_frame();
+  EXPECT_EQ(frame.update(), 7u);
+  EXPECT_EQ(frame.picture().camera().position().x(), 3);
+  EXPECT_EQ(converged_frame().update(), 7u);
+}
+
+TEST_F(ViewSessionTest, AClientThatAnswersNothingGetsTwoFramesAndHoldsUpNobody) {
+  start();
+  open_view();
+  for (uint64_t i = 1; i <= 50; ++i) {
+    update(i, picture("cube", static_cast<double>(i)), /*moving=*/true);
+    std::this_thread::sleep_for(milliseconds(2));
+  }
+  std::this_thread::sleep_for(milliseconds(50));
+  EXPECT_EQ(metric("surfcast_view_frames_total"), 2);
+  EXPECT_GE(metric("surfcast_view_updates_replaced_total"), 45);
+  auto other = connect();
+  ASSERT_TRUE(other);
+  EXPECT_TRUE(other->ask(picture_request("teapot")));
+}
+
+TEST_F(ViewSessionTest, AnUpdateInterruptsWhatIsBeingRefined) {
+  start();
+  open_view();
+  next_frame();
+  studio_->slow = true;
+  ASSERT_TRUE(eventually([&] { return studio_->drawn == 2; })) << "the finer frame";
+  studio_->slow_quick = false;
+  update(1, picture("cube", 1), /*moving=*/false);
+  EXPECT_EQ(next_frame().update(), 1u);
+  EXPECT_EQ(studio_->cancelled, 1);
+  studio_->slow = false;
+  EXPECT_EQ(converged_frame().update(), 1u);
+}
+
+TEST_F(ViewSessionTest, AnUpdateThatShowsTheSamePictureIsNotDrawnAgain) {
+  start();
+  open_view();
+  converged_frame();
+  const int drawn = studio_->drawn;
+  update(1, picture("cube", 0), /*moving=*/false);
+  wire::Request ping = ping_request();
+  ASSERT_TRUE(connection_->ask(ping)) << "what comes next is no frame";
+  std::this_thread::sleep_for(milliseconds(20));
+  EXPECT_EQ(studio_->drawn, drawn);
+}
+
+TEST_F(ViewSessionTest, AClosedViewSendsNothingMore) {
+  start();
+  open_view();
+  wire::Request close;
+  close.mutable_close_view()->set_view(view_);
+  const auto id = connection_->send(close);
+  ASSERT_TRUE(id);
+  for (;;) {
+    const auto answer = connection_->receive();
+    ASSERT_TRUE(answer);
+    if (answer->id() != *id) continue;
+    EXPECT_TRUE(answer->has_view_closed());
+    break;
+  }
+  EXPECT_TRUE(connection_->ask(ping_request()));
+  EXPECT_EQ(metric("surfcast_views_open"), 0);
+  const auto again = connection_->ask(close);
+  ASSERT_FALSE(again);
+  EXPECT_EQ(again.error().kind, ErrorKind::kNotFound);
+}
+
+TEST_F(ViewSessionTest, AViewOfNoModelEndsWithTheReason) {
+  start();
+  open_view("nothing");
+  const auto answer = connection_->receive();
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->id(), view_);
+  EXPECT_EQ(from_wire(answer->error()).kind, ErrorKind::kNotFound);
+  EXPECT_TRUE(eventually([&] { return metric("surfcast_views_open") == 0; }));
+}
+
+TEST_F(ViewSessionTest, AWrongUpdateEndsTheView) {
+  start();
+  open_view();
+  converged_frame();
+  update(1, picture("teapot", 1), /*moving=*/false);
+  const auto answer = connection_->receive();
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(from_wire(answer->error()).kind, ErrorKind::kInvalidInput);
+  update(2, picture("cube", 1), /*moving=*/false);
+  EXPECT_TRUE(connection_->ask(ping_request())) << "messages of a view that is no more do not matter";
+}
+
+TEST_F(ViewSessionTest, ViewsBeyondTheLimitAreRefused) {
+  ServerConfig config;
+  config.views = 1;
+  start(config);
+  open_view();
+  converged_frame();
+  wire::Request request;
+  *request.mutable_open_view()->mutable_picture() = picture("cube", 0);
+  const auto second = connection_->ask(request);
+  ASSERT_FALSE(second);
+  EXPECT_EQ(second.error().kind, ErrorKind::kUnavailable);
+}
+
+TEST_F(ViewSessionTest, AFrameRateThatIsNoneIsRefused) {
+  start();
+  auto connection = connect();
+  ASSERT_TRUE(connection);
+  for (const double fps : {-1.0, 1e9, std::numeric_limits<double>::quiet_NaN()}) {
+    wire::Request request;
+    *request.mutable_open_view()->mutable_picture() = picture("cube", 0);
+    request.mutable_open_view()->set_target_fps(fps);
+    const auto answer = connection->ask(request);
+    ASSERT_FALSE(answer);
+    EXPECT_EQ(answer.error().kind, ErrorKind::kInvalidInput);
+  }
+}
+
+TEST_F(ViewSessionTest, AViewWhoseClientVanishesIsForgotten) {
+  start();
+  open_view();
+  next_frame();
+  connection_.reset();
+  EXPECT_TRUE(eventually([&] { return metric("surfcast_views_open") == 0; }));
+}
+
+TEST_F(ViewSessionTest, AServerThatStopsDoesNotWaitForViewsAtRest) {
+  start();
+  open_view();
+  converged_frame();
+  stop();
+  EXPECT_FALSE(connection_->receive());
+}
+
+}  // namespace
+}  // namespace surfcast
