@@ -9,6 +9,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "base/contract.h"
+
 namespace surfcast {
 
 Result<MappedFile> MappedFile::open(const std::filesystem::path& path) {
@@ -49,6 +51,13 @@ MappedFile& MappedFile::operator=(MappedFile&& other) noexcept {
 
 MappedFile::~MappedFile() {
   if (data_ != nullptr) ::munmap(data_, size_);
+}
+
+void MappedFile::expect(size_t offset, size_t size) const {
+  static const auto kPage = static_cast<size_t>(::sysconf(_SC_PAGESIZE));
+  SURFCAST_EXPECTS(offset <= size_ && size <= size_ - offset);
+  const size_t first = offset / kPage * kPage;
+  if (size > 0) ::madvise(static_cast<std::byte*>(data_) + first, offset + size - first, MADV_WILLNEED);
 }
 
 void MappedFile::forget() const {

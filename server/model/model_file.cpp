@@ -140,6 +140,12 @@ const std::filesystem::path& ModelFile::path() const {
   return state_->path;
 }
 
+void ModelFile::expect(size_t block) const {
+  SURFCAST_EXPECTS(block < state_->directory.blocks.size());
+  const BlockRecord& record = state_->directory.blocks[block];
+  state_->file.expect(record.offset, record.bytes);
+}
+
 Result<DecodedBlock> ModelFile::decode(size_t block) const {
   SURFCAST_EXPECTS(block < state_->directory.blocks.size());
   const auto named = [&](const Error& error) {

@@ -86,6 +86,8 @@ class ModelFile {
   [[nodiscard]] const ModelInfo& info() const;
   [[nodiscard]] const BlockTree& tree() const;
   [[nodiscard]] std::span<const BlockEntry> blocks() const { return tree().blocks(); }
+  /// Says that a block is about to be decoded, so that reading its bytes begins. Returns at once.
+  void expect(size_t block) const;
   /// Checks the checksum of a block and decodes it.
   [[nodiscard]] Result<DecodedBlock> decode(size_t block) const;
   [[nodiscard]] const std::filesystem::path& path() const;

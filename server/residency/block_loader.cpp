@@ -45,7 +45,7 @@ void BlockLoader::want(const std::shared_ptr<const BlockSource>& source, std::sp
                        bool attributes) {
   {
     const std::lock_guard lock(mutex_);
-    wanted_.clear();
+    const std::set<BlockId> known = std::exchange(wanted_, {});
     for (const uint32_t block : blocks) wanted_.insert({source->id(), block, attributes});
     queue_.clear();
     drop_unwanted();
@@ -58,6 +58,8 @@ void BlockLoader::want(const std::shared_ptr<const BlockSource>& source, std::sp
         make_ready({id, std::move(cached), 0});
       } else {
         queue_.push_back({source, id});
+        // While the first blocks are decoded the disk reads the others.
+        if (!known.contains(id)) source->expect(block);
       }
     }
   }

@@ -19,6 +19,8 @@ class BlockSource {
   /// Tells this model from every other one in the life of the process.
   [[nodiscard]] virtual uint64_t id() const = 0;
   [[nodiscard]] virtual const BlockTree& tree() const = 0;
+  /// Says that a block is about to be loaded. Returns at once.
+  virtual void expect(uint32_t block) const = 0;
   /// Reads, decodes and packs a block, with PackedBlock::attributes or without.
   [[nodiscard]] virtual Result<PackedBlock> load(uint32_t block, bool attributes) const = 0;
 };
@@ -30,6 +32,7 @@ class FileBlocks : public BlockSource {
 
   [[nodiscard]] uint64_t id() const override { return model_->id(); }
   [[nodiscard]] const BlockTree& tree() const override { return model_->tree(); }
+  void expect(uint32_t block) const override { model_->expect(block); }
   [[nodiscard]] Result<PackedBlock> load(uint32_t block, bool attributes) const override {
     const Result<DecodedBlock> decoded = model_->decode(block);
     if (!decoded) return fail(decoded.error());

@@ -43,6 +43,16 @@ TEST_F(BlockLoaderTest, WishesComeTrueInTheirOrder) {
   EXPECT_FALSE(loader_.take());
 }
 
+TEST_F(BlockLoaderTest, WishesAreAnnouncedOnceSoThatTheDiskIsAheadOfTheDecoders) {
+  source_->hold();
+  want({1, 2, 3});
+  want({2, 3, 4});
+  source_->release();
+  EXPECT_THAT(take(3), ElementsAre(2, 3, 4));
+  want({2, 7});
+  EXPECT_THAT(source_->expected(), ElementsAre(1, 2, 3, 4, 7)) << "2 is in host memory";
+}
+
 TEST_F(BlockLoaderTest, WhatIsNotWantedAnyMoreIsDroppedBeforeItIsDecoded) {
   source_->hold();
   want({1, 2, 3, 4});

@@ -22,6 +22,7 @@ class FakeBlocks : public BlockSource {
 
   [[nodiscard]] uint64_t id() const override { return id_; }
   [[nodiscard]] const BlockTree& tree() const override { return tree_; }
+  void expect(uint32_t block) const override { expected_.push_back(block); }
   [[nodiscard]] Result<PackedBlock> load(uint32_t block, bool attributes) const override {
     {
       std::unique_lock lock(mutex_);
@@ -50,6 +51,8 @@ class FakeBlocks : public BlockSource {
     const std::lock_guard lock(mutex_);
     return started_;
   }
+  /// Blocks that were announced, in that order. The caller of the loader and of this must be one.
+  [[nodiscard]] const std::vector<uint32_t>& expected() const { return expected_; }
 
  private:
   void set_held(bool held) {
@@ -66,6 +69,7 @@ class FakeBlocks : public BlockSource {
   mutable std::mutex mutex_;
   mutable std::condition_variable wake_;
   mutable std::vector<uint32_t> started_;
+  mutable std::vector<uint32_t> expected_;
   bool held_ = false;
 };
 
