@@ -1,0 +1,73 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "surfcast.pb.h"
+
+namespace surfcast {
+
+inline void fill(wire::Vector3* vector, double x, double y, double z) {
+  vector->set_x(x);
+  vector->set_y(y);
+  vector->set_z(z);
+}
+
+/// A picture with every field set.
+inline wire::DrawPicture sample_picture() {
+  wire::DrawPicture picture;
+  picture.set_model("cube");
+  fill(picture.mutable_camera()->mutable_position(), 500'000.25, 4e6, 12);
+  fill(picture.mutable_camera()->mutable_focal_point(), 500'010, 4e6, -3);
+  fill(picture.mutable_camera()->mutable_view_up(), 0, 0.1, 1);
+  picture.mutable_camera()->set_view_angle(45);
+  picture.mutable_resolution()->set_width(16);
+  picture.mutable_resolution()->set_height(9);
+  picture.set_format(wire::FILE_FORMAT_JPEG);
+  picture.set_normalization(wire::NORMALIZATION_SURFEL);
+  picture.set_filter(wire::FILTER_NONE);
+  picture.set_shading(wire::SHADING_LIT);
+  picture.set_spacing(1.5);
+  picture.mutable_background()->set_green(200);
+  picture.set_quality(80);
+  picture.mutable_coloring()->set_source(wire::COLOR_SOURCE_INTENSITY);
+  picture.mutable_coloring()->set_map(wire::COLOR_MAP_TURBO);
+  picture.mutable_coloring()->set_first(-1);
+  picture.mutable_coloring()->set_last(1);
+  picture.add_hidden_classes(7);
+  picture.add_hidden_classes(300);
+  wire::ClipBox* clip = picture.add_clip_boxes();
+  fill(clip->mutable_box()->mutable_min(), -1, -1, -1);
+  fill(clip->mutable_box()->mutable_max(), 1, 2, 3);
+  clip->set_inverted(true);
+  picture.mutable_eye_dome()->set_strength(1);
+  picture.mutable_eye_dome()->set_radius(2);
+  return picture;
+}
+
+/// A request of every kind, each with every field set, by the name of its kind. Ids are small and different.
+inline std::vector<wire::Request> sample_requests() {
+  std::vector<wire::Request> requests(10);
+  requests[0].mutable_list_models();
+  requests[1].mutable_describe_model()->set_model("teapot");
+  *requests[2].mutable_draw_picture() = sample_picture();
+  requests[3].mutable_cancel()->set_request_id(3);
+  requests[4].mutable_ping();
+  *requests[5].mutable_pick_surfel()->mutable_picture() = sample_picture();
+  requests[5].mutable_pick_surfel()->set_x(3);
+  requests[5].mutable_pick_surfel()->set_y(5);
+  *requests[6].mutable_open_view()->mutable_picture() = sample_picture();
+  requests[6].mutable_open_view()->set_target_fps(25);
+  requests[7].mutable_update_view()->set_update(12);
+  requests[7].mutable_update_view()->set_moving(true);
+  *requests[7].mutable_update_view()->mutable_picture() = sample_picture();
+  requests[8].mutable_frame_painted()->set_frame(1);
+  requests[8].mutable_frame_painted()->set_client_ms(4.5);
+  requests[9].mutable_close_view()->set_view(7);
+  for (size_t i = 0; i < requests.size(); ++i) requests[i].set_id(i + 1);
+  requests[7].set_id(7);  // the view's
+  requests[8].set_id(7);
+  return requests;
+}
+
+}  // namespace surfcast
