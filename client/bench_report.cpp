@@ -12,14 +12,14 @@ namespace {
 
 using nlohmann::json;
 
-/// Parts of another stage: the sum of the stages must not count them twice.
-bool is_part_of_another(const std::string& stage) {
-  return stage == "decode" || stage == "upload";
+/// What the sum of a frame's stages leaves out: parts of `load`, and what belongs to the frame before.
+bool is_no_part_of_sum(const std::string& stage) {
+  return stage == "decode" || stage == "upload" || stage == "transfer" || stage == "paint";
 }
 
 double time_in_stages(const BenchFrame& frame) {
   double sum = 0;
-  for (const auto& [name, milliseconds] : frame.stages) sum += is_part_of_another(name) ? 0 : milliseconds;
+  for (const auto& [name, milliseconds] : frame.stages) sum += is_no_part_of_sum(name) ? 0 : milliseconds;
   return sum;
 }
 
@@ -136,7 +136,7 @@ std::string to_text(const BenchReport& report) {
   text += line("frames/s while moving", report.frames_per_second);
   text += line("motion latency, ms", report.latency);
   for (const auto& [name, values] : report.moving_stages) text += line("  " + name, values);
-  text += line("  outside the server", report.outside);
+  text += line("  outside all stages", report.outside);
   text += line("bytes of a moving frame", report.moving_bytes);
   text += line("width of it, pixels", report.moving_width);
   text += line("spacing of it, pixels", report.moving_spacing);

@@ -101,7 +101,8 @@ Result<std::optional<BenchFrame>> BenchClient::receive(Clock::time_point deadlin
   }
   BenchFrame frame;
   frame.moving = message.moving();
-  frame.converged = picture.converged() && message.update() == last_update_;
+  frame.converged = !message.moving() && picture.converged() && picture.format() == plan_.picture.format() &&
+                    message.update() == last_update_;
   frame.latency_ms = milliseconds_since(shown_sent_, (*received)->arrived);
   frame.bytes = (*received)->bytes;
   frame.width = picture.resolution().width();

@@ -75,7 +75,8 @@ TEST(BenchReport, GrowthOfLatencyShowsInItsThirds) {
 
 TEST(BenchReport, WhatNoStageAccountsForIsOutsideAndPartsAreNotCountedTwice) {
   BenchRecord record;
-  record.frames = {moving_frame(100, {{"queue", 5}, {"load", 20}, {"decode", 18}, {"upload", 2}, {"splat", 30}})};
+  record.frames = {
+      moving_frame(100, {{"queue", 5}, {"load", 20}, {"decode", 18}, {"upload", 2}, {"splat", 30}, {"transfer", 9}})};
   const BenchReport report = make_report({record});
   EXPECT_EQ(report.outside.p50, 45);
   EXPECT_EQ(report.moving_stages.at("splat").p50, 30);
