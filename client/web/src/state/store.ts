@@ -23,6 +23,8 @@ export const descriptions = signal<ReadonlyMap<string, ModelDescription>>(new Ma
 export const viewProblem = signal<{ readonly message: string; readonly again: boolean } | undefined>(undefined);
 /** The frame on the screen, without its data. */
 export const shownFrame = signal<ViewFrame | undefined>(undefined);
+/** The newest update that was asked for: a frame that shows an older one is not what is wanted. */
+export const askedUpdate = signal(0n);
 export const figures = signal<Figures>({ framesPerSecond: 0, bytesPerSecond: 0, latency: undefined, stages: undefined });
 /** Where the newest picture is to be seen from; nothing until the server has chosen a first view. */
 export const pose = signal<Pose | undefined>(undefined);

@@ -74,16 +74,20 @@ function ClipCard({ clip, index }: { clip: Clip; index: number }): JSX.Element {
 export function ClipPanel(): JSX.Element {
   const { clips } = look.value;
   return (
-    <Section title="Clip boxes">
-      <div class="button-row">
+    <Section title="Add a clip box">
+      <div class="button-pair">
         <button type="button" onClick={addClipInTheMiddle}>
-          <Icon name="plus" size={16} /> Add in the middle
+          <Icon name="plus" size={16} /> In the middle
         </button>
         <button type="button" aria-pressed={tool.value === 'clip'} onClick={() => (tool.value = 'clip')}>
           <Icon name="inspect" size={16} /> Around a point
         </button>
       </div>
-      {clips.length === 0 && <p class="faint">A box shows or hides the part of the scan inside it. Drag the dots on its sides to fit it.</p>}
+      {clips.length === 0 && (
+        <p class="faint">
+          A box shows or hides the part of the scan inside it. Drag the dots on its sides to fit it.
+        </p>
+      )}
       <ul class="cards">
         {clips.map((clip, index) => (
           <ClipCard key={index} {...{ clip, index }} />

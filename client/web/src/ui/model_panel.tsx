@@ -2,6 +2,7 @@ import type { ComponentChildren, JSX } from 'preact';
 import { formatNumber } from '../measure/format';
 import { bounds, description, lengthDecimals } from '../state/store';
 import { Section } from './controls';
+import { Views } from './views';
 
 function Row({ name, children }: { name: string; children: ComponentChildren }): JSX.Element {
   return (
@@ -47,6 +48,7 @@ export function ModelPanel(): JSX.Element | null {
   const color = model.colorBits > 0 ? `${model.colorBits} bits a channel` : 'none';
   return (
     <>
+      <Views where="in-panel" />
       <Section title={model.model}>
         <dl class="facts">
           <Row name="Points">{count(model.surfels)}</Row>

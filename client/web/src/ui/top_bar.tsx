@@ -1,9 +1,9 @@
 import type { JSX } from 'preact';
-import { viewNames, type ViewName } from '../camera/standard_views';
 import * as store from '../state/store';
 import { useActions } from './actions';
 import { IconButton } from './controls';
 import { Icon, Logo } from './icons';
+import { Views } from './views';
 
 const compact = new Intl.NumberFormat('en', { notation: 'compact', maximumFractionDigits: 1 });
 
@@ -26,29 +26,6 @@ function ModelButton(): JSX.Element | null {
   );
 }
 
-const viewLabels: Readonly<Record<ViewName, string>> = {
-  front: 'Front',
-  back: 'Back',
-  left: 'Left',
-  right: 'Right',
-  top: 'Top',
-  bottom: 'Bottom',
-  iso: 'Iso',
-};
-
-function Views(): JSX.Element {
-  const { navigator } = useActions();
-  return (
-    <div class="views" role="group" aria-label="Standard views">
-      {viewNames.map((name) => (
-        <button key={name} type="button" onClick={() => navigator.standard(name)}>
-          {viewLabels[name]}
-        </button>
-      ))}
-    </div>
-  );
-}
-
 export function TopBar(): JSX.Element {
   const { copyLink } = useActions();
   const shown = store.model.value !== undefined && !store.galleryOpen.value;
@@ -59,7 +36,7 @@ export function TopBar(): JSX.Element {
         <span>surfcast</span>
       </div>
       <ModelButton />
-      {shown && <Views />}
+      {shown && <Views where="in-bar" />}
       <div class="top-actions">
         {shown && (
           <>

@@ -161,6 +161,7 @@ export class Director {
     store.viewProblem.value = undefined;
     this.painter.reset();
     this.askedAt.clear();
+    store.askedUpdate.value = 0n;
     this.sent = { ...wish, moving: false };
     this.session = new ViewSession(connection, wish.picture, {
       frame: (frame) => void this.painter.take(frame),
@@ -204,7 +205,8 @@ export class Director {
     }
     if (sameWish(this.sent, wish)) return;
     this.sent = wish;
-    this.askedAt.set(this.session.update(wish.picture, wish.moving), performance.now());
+    store.askedUpdate.value = this.session.update(wish.picture, wish.moving);
+    this.askedAt.set(store.askedUpdate.peek(), performance.now());
   }
 
   private painted(painted: PaintedFrame): void {
@@ -214,7 +216,7 @@ export class Director {
     this.keeper.painted(painted, this.askedAt.get(frame.update));
     for (const update of this.askedAt.keys()) if (update < frame.update) this.askedAt.delete(update);
     store.shownFrame.value = withoutData(painted);
-    if (!store.pose.peek()) this.adopt(painted);
+    if (!store.pose.peek() && frame.update === store.askedUpdate.peek()) this.adopt(painted);
   }
 
   /** Goes on from the view that the server chose, without asking for it again. */

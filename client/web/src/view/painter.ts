@@ -51,6 +51,7 @@ export class Painter {
     const context = canvas.getContext('2d', { alpha: false });
     if (!context) throw new Error('This browser gives no 2D canvas.');
     this.context = context;
+    canvas.hidden = true; // until there is something on it
   }
 
   /** Forgets the frames of a view that has ended; the picture stays until another comes. */
@@ -103,6 +104,7 @@ export class Painter {
     const { width, height } = frame.resolution ?? bitmap;
     if (this.canvas.width !== width) this.canvas.width = width;
     if (this.canvas.height !== height) this.canvas.height = height;
+    this.canvas.hidden = false;
     this.context.imageSmoothingQuality = 'medium';
     this.context.drawImage(bitmap, 0, 0, width, height);
     bitmap.close();

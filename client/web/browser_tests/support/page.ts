@@ -1,0 +1,89 @@
+import { chromium, type Browser, type BrowserContextOptions, type Page } from 'playwright-core';
+import { expect } from 'vitest';
+
+/** What a person sees and does, as short words. */
+
+const flags = [
+  '--no-sandbox',
+  '--disable-gpu',
+  '--disable-quic',
+  '--no-first-run',
+  '--disable-background-networking',
+  '--disable-component-update',
+  '--disable-sync',
+];
+
+export const launch = (): Promise<Browser> =>
+  chromium.launch({ executablePath: process.env['CHROMIUM'] ?? '/usr/bin/chromium', args: flags });
+
+export const desktop: BrowserContextOptions = { viewport: { width: 900, height: 640 } };
+export const phone: BrowserContextOptions = { viewport: { width: 360, height: 740 }, hasTouch: true, isMobile: true };
+
+/** A page whose errors fail the test that uses it. */
+export async function open(browser: Browser, options: BrowserContextOptions): Promise<{ page: Page; errors: string[] }> {
+  const page = await (await browser.newContext(options)).newPage();
+  const errors: string[] = [];
+  page.on('pageerror', (error) => errors.push(error.message));
+  return { page, errors };
+}
+
+/** The picture on the screen is the best one there is of the newest view. */
+export const sharp = (page: Page): Promise<unknown> =>
+  page.locator('.status .lamp.sharp').waitFor({ state: 'attached', timeout: 90_000 });
+
+/** A number that differs when a pixel of the picture does. */
+export const pictureSum = (page: Page): Promise<number> =>
+  page.evaluate(() => {
+    const canvas = document.querySelector<HTMLCanvasElement>('canvas.picture')!;
+    const { data } = canvas.getContext('2d')!.getImageData(0, 0, canvas.width, canvas.height);
+    let sum = 0;
+    for (const byte of data) sum = (Math.imul(sum, 31) + byte) | 0;
+    return sum;
+  });
+
+/** How many bytes of the picture on the screen differ from those of a PNG file. */
+export const differenceFrom = (page: Page, png: Buffer): Promise<number> =>
+  page.evaluate(async (base64) => {
+    const canvas = document.querySelector<HTMLCanvasElement>('canvas.picture')!;
+    const file = await (await fetch(`data:image/png;base64,${base64}`)).blob();
+    const bitmap = await createImageBitmap(file, { colorSpaceConversion: 'none', premultiplyAlpha: 'none' });
+    if (bitmap.width !== canvas.width || bitmap.height !== canvas.height) return Infinity;
+    const other = document.createElement('canvas');
+    other.width = bitmap.width;
+    other.height = bitmap.height;
+    const context = other.getContext('2d', { alpha: false })!;
+    context.drawImage(bitmap, 0, 0);
+    const bytes = (of: CanvasRenderingContext2D): Uint8ClampedArray =>
+      of.getImageData(0, 0, canvas.width, canvas.height).data;
+    const [a, b] = [bytes(canvas.getContext('2d')!), bytes(context)];
+    return a.reduce((count, byte, i) => count + (byte === b[i] ? 0 : 1), 0);
+  }, png.toString('base64'));
+
+export const pictureSize = (page: Page): Promise<{ width: number; height: number }> =>
+  page.evaluate(() => {
+    const { width, height } = document.querySelector<HTMLCanvasElement>('canvas.picture')!;
+    return { width, height };
+  });
+
+/** The middle of the picture, moved by some pixels, on the page. */
+export async function middle(page: Page, dx = 0, dy = 0): Promise<{ x: number; y: number }> {
+  const box = await page.locator('.canvases').boundingBox();
+  expect(box).not.toBeNull();
+  return { x: box!.x + Math.floor(box!.width / 2) + dx, y: box!.y + Math.floor(box!.height / 2) + dy };
+}
+
+export async function drag(page: Page, dx: number, dy: number): Promise<void> {
+  const from = await middle(page);
+  await page.mouse.move(from.x, from.y);
+  await page.mouse.down();
+  for (let i = 1; i <= 6; ++i) await page.mouse.move(from.x + (dx * i) / 6, from.y + (dy * i) / 6);
+  await page.waitForTimeout(100); // the hand stops before it lets go, so nothing coasts
+  await page.mouse.up();
+}
+
+/** What the address says once it has followed the view. */
+export async function placeNow(page: Page): Promise<URLSearchParams> {
+  await page.waitForFunction(() => location.hash.includes('position='), undefined, { timeout: 20_000 });
+  await page.waitForTimeout(400);
+  return new URLSearchParams(new URL(page.url()).hash.split('?')[1]);
+}

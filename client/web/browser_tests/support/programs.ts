@@ -1,0 +1,42 @@
+import { execFile, spawn, type ChildProcess } from 'node:child_process';
+import { createInterface } from 'node:readline';
+import { promisify } from 'node:util';
+
+const run = promisify(execFile);
+
+/** Where CMake says the programs are; a plain `npm run browser-test` takes the release build's. */
+const surfcastd = process.env['SURFCASTD'] ?? '../../build/bin/surfcastd';
+
+export async function surfcastdRun(...args: string[]): Promise<void> {
+  await run(surfcastd, args);
+}
+
+export class Server {
+  private constructor(
+    private readonly process: ChildProcess,
+    readonly url: string, // ends with a slash
+  ) {}
+
+  static async start(model: string, port = 0): Promise<Server> {
+    const process = spawn(surfcastd, ['serve', model, '--listen', `127.0.0.1:${port}`], {
+      stdio: ['ignore', 'pipe', 'ignore'],
+    });
+    for await (const line of createInterface({ input: process.stdout! })) {
+      const url = /http:\S+/.exec(line)?.[0];
+      if (url) return new Server(process, url);
+    }
+    throw new Error('surfcastd ended before it was ready');
+  }
+
+  get port(): number {
+    return Number(new URL(this.url).port);
+  }
+
+  /** Like a crash or a power failure. */
+  async kill(): Promise<void> {
+    const ended = new Promise((resolve) => this.process.once('exit', resolve));
+    if (this.process.exitCode !== null || this.process.signalCode !== null) return;
+    this.process.kill('SIGKILL');
+    await ended;
+  }
+}

@@ -1,0 +1,239 @@
+import { mkdtemp, readFile, rm, writeFile } from 'node:fs/promises';
+import { tmpdir } from 'node:os';
+import { join } from 'node:path';
+import type { Browser, Page } from 'playwright-core';
+import { afterAll, afterEach, beforeAll, beforeEach, describe, expect, it } from 'vitest';
+import { serverHello } from '../tests/support/fake_server';
+import { encodeLas, makeScene, worldOf, type LasPoint } from './support/las';
+import * as look from './support/page';
+import { Server, surfcastdRun } from './support/programs';
+
+let folder: string;
+let model: string;
+let scene: LasPoint[];
+let server: Server;
+let browser: Browser;
+let page: Page;
+let errors: string[];
+
+beforeAll(async () => {
+  folder = await mkdtemp(join(tmpdir(), 'surfcast-viewer-'));
+  scene = makeScene();
+  await writeFile(join(folder, 'yard.las'), encodeLas(scene));
+  model = join(folder, 'yard.surf');
+  await surfcastdRun('build', join(folder, 'yard.las'), '--output', model);
+  server = await Server.start(model);
+  browser = await look.launch();
+});
+
+afterAll(async () => {
+  await browser?.close();
+  await server?.kill();
+  if (folder) await rm(folder, { recursive: true });
+});
+
+beforeEach(async () => {
+  ({ page, errors } = await look.open(browser, look.desktop));
+});
+
+afterEach(async () => {
+  await page.context().close();
+  expect(errors).toEqual([]);
+});
+
+async function openYard(): Promise<void> {
+  await page.goto(`${server.url}#/yard`);
+  await look.sharp(page);
+}
+
+/** The same picture, drawn without a server from what the address says. */
+async function renderedFromAddress(): Promise<Buffer> {
+  const place = await look.placeNow(page);
+  const { width, height } = await look.pictureSize(page);
+  const output = join(folder, 'rendered.png');
+  const up = place.get('view_up');
+  await surfcastdRun(
+    ...['render', model, '--output', output, '--resolution', `${width},${height}`],
+    ...['--camera-position', place.get('position')!, '--camera-focal-point', place.get('focal_point')!],
+    ...(up ? ['--camera-view-up', up] : []),
+    ...['--background', '14,18,22', '--spacing', '1'],
+  );
+  return readFile(output);
+}
+
+/** Reads the point under a pixel by the tool for that. */
+async function inspect(dx: number, dy: number): Promise<{ at: number[]; rows: Map<string, string> }> {
+  await page.keyboard.press('i');
+  const pixel = await look.middle(page, dx, dy);
+  await page.mouse.click(pixel.x, pixel.y);
+  const card = page.locator('.inspect-card');
+  await card.waitFor();
+  const at = await card.locator('dd[data-axis]').allTextContents();
+  const names = await card.locator('.facts dt').allTextContents();
+  const values = await card.locator('.facts dd').allTextContents();
+  await page.keyboard.press('Escape');
+  await page.waitForTimeout(400); // not half of a double click
+  return { at: at.map(Number), rows: new Map(names.map((name, i) => [name, values[i]!.trim()])) };
+}
+
+describe('the viewer', () => {
+  it('opens the only model, and frames arrive until the picture is sharp', async () => {
+    await page.goto(server.url);
+    await look.sharp(page);
+    expect(page.url()).toContain('#/yard');
+    const sizes = await look.pictureSize(page);
+    expect(sizes.width).toBeGreaterThan(600);
+  });
+
+  it('changes the picture while the hand still drags, about as soon as it says', async () => {
+    await openYard();
+    const before = await look.pictureSum(page);
+    const from = await look.middle(page);
+    await page.mouse.move(from.x, from.y);
+    await page.mouse.down();
+    const started = performance.now();
+    await page.mouse.move(from.x + 40, from.y + 10);
+    await expect.poll(() => look.pictureSum(page), { timeout: 30_000, interval: 10 }).not.toBe(before);
+    const seen = performance.now() - started;
+    for (let i = 0; i < 20; ++i) {
+      await page.mouse.move(from.x + 40 + 4 * i, from.y + 10);
+      await page.waitForTimeout(40);
+    }
+    await page.waitForTimeout(700); // the figures follow twice a second
+    const stated = Number.parseFloat((await page.locator('.status .figure').nth(1).textContent()) ?? '');
+    await page.mouse.up();
+    expect(stated).toBeGreaterThan(0);
+    // Reading pixels out of the browser takes its own time, and so does the first frame's shader: hence the room.
+    expect(seen).toBeLessThan(5 * stated + 1500);
+  });
+
+  it('shows at rest, pixel by pixel, what `surfcastd render` draws', async () => {
+    await openYard();
+    await look.drag(page, 140, -60);
+    await look.sharp(page);
+    expect(await look.differenceFrom(page, await renderedFromAddress())).toBe(0);
+  });
+
+  it('looks straight down and still agrees with `surfcastd render`', async () => {
+    await openYard();
+    await page.keyboard.press('5');
+    await page.waitForTimeout(600);
+    await look.sharp(page);
+    expect(await look.differenceFrom(page, await renderedFromAddress())).toBe(0);
+  });
+
+  it('reads the source point with all its attributes', async () => {
+    await openYard();
+    const { at, rows } = await inspect(0, 0);
+    const source = scene.filter((p) => worldOf(p).every((value, i) => value === at[i]));
+    expect(source.length).toBeGreaterThan(0); // to the last bit
+    const matching = source.find((p) => String(p.intensity) === rows.get('intensity'));
+    expect(matching).toBeDefined();
+    expect(rows.get('classification')).toContain(String(matching!.classification));
+  });
+
+  it('measures a distance to the precision of the scan', async () => {
+    await openYard();
+    const [a, b] = [(await inspect(-60, 20)).at, (await inspect(70, -10)).at];
+    await page.keyboard.press('m');
+    for (const [dx, dy] of [[-60, 20], [70, -10]] as const) {
+      const pixel = await look.middle(page, dx, dy);
+      await page.mouse.click(pixel.x, pixel.y);
+      await page.waitForTimeout(600);
+    }
+    await page.keyboard.press('Enter');
+    const shown = (await page.locator('.card[data-kind=distance] .main dd').textContent()) ?? '';
+    const exact = Math.hypot(...a.map((value, i) => value - b[i]!));
+    expect(Math.abs(Number(shown.replaceAll('\u202f', '')) - exact)).toBeLessThanOrEqual(0.0005);
+  });
+
+  it('keeps the view over a reload', async () => {
+    await openYard();
+    await look.drag(page, -90, 30);
+    await look.sharp(page);
+    await look.placeNow(page);
+    const [url, sum] = [page.url(), await look.pictureSum(page)];
+    await page.reload();
+    await look.sharp(page);
+    expect(page.url()).toBe(url);
+    expect(await look.pictureSum(page)).toBe(sum);
+  });
+
+  it('comes back with its view after the server was killed', async () => {
+    await openYard();
+    await look.drag(page, 60, 60);
+    await look.sharp(page);
+    await look.placeNow(page);
+    const [url, sum, { port }] = [page.url(), await look.pictureSum(page), server];
+    await server.kill();
+    await page.locator('.banner').waitFor({ timeout: 20_000 });
+    expect(await page.locator('.banner').textContent()).toContain('cannot be reached');
+    server = await Server.start(model, port);
+    await look.sharp(page);
+    expect(await page.locator('.banner').count()).toBe(0);
+    expect(page.url()).toBe(url);
+    expect(await look.pictureSum(page)).toBe(sum);
+  });
+
+  it('says clearly that the server speaks another version', async () => {
+    await page.routeWebSocket(/\/ws$/, (socket) => {
+      socket.onMessage(() => socket.send(serverHello(9, 1, 'this server speaks version 9.0')));
+    });
+    await page.goto(`${server.url}#/yard`);
+    const card = page.getByRole('alert');
+    await card.waitFor();
+    const text = await card.textContent();
+    expect(text).toContain('This page speaks version 1 of the protocol');
+    expect(text).toContain('version 9');
+  });
+
+  it('says that there is no such model, and shows those there are', async () => {
+    await page.goto(`${server.url}#/nowhere`);
+    const card = page.getByRole('alert');
+    await card.waitFor();
+    expect(await card.textContent()).toContain('No such model');
+    await card.getByRole('button', { name: 'Show all models' }).click();
+    await page.locator('.model-card', { hasText: 'yard' }).click();
+    await look.sharp(page);
+  });
+
+  it('hides a class, colours by another attribute, and says so in its address', async () => {
+    await openYard();
+    const before = await look.pictureSum(page);
+    await page.keyboard.press('o');
+    await page.getByText('Elevation', { exact: true }).click();
+    await page.locator('.classes label', { hasText: 'Building' }).click();
+    await page.waitForTimeout(600);
+    await look.sharp(page);
+    expect(await look.pictureSum(page)).not.toBe(before);
+    const place = await look.placeNow(page);
+    expect(place.get('color_by')).toBe('elevation');
+    expect(place.get('hide_classes')).toBe('6');
+  });
+
+  it('saves a picture of another size, drawn by the server', async () => {
+    await openYard();
+    await page.keyboard.press('x');
+    await page.getByRole('button', { name: 'Full HD' }).click();
+    const download = page.waitForEvent('download', { timeout: 60_000 });
+    await page.getByRole('button', { name: 'Save picture' }).click();
+    const file = await readFile(await (await download).path());
+    expect(file.subarray(1, 4).toString()).toBe('PNG');
+    expect([file.readUInt32BE(16), file.readUInt32BE(20)]).toEqual([1920, 1080]);
+  });
+});
+
+describe('on a phone', () => {
+  it('fits 360 pixels, and its panels are sheets over the picture', async () => {
+    await page.context().close();
+    ({ page, errors } = await look.open(browser, look.phone));
+    await openYard();
+    expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBe(360);
+    await page.locator('.phone-bar').getByText('Look').tap();
+    const sheet = await page.locator('.panel').boundingBox();
+    const bar = await page.locator('.phone-bar').boundingBox();
+    expect(sheet!.width).toBe(360);
+    expect(sheet!.y).toBeGreaterThan(200);
+    expect(sheet!.y + sheet!.height).toBeLessThanOrEqual(bar!.y + 1);
+  });
+});
