@@ -45,7 +45,7 @@ export const pictureSum = (page: Page): Promise<number> =>
 export const differenceFrom = (page: Page, png: Buffer): Promise<number> =>
   page.evaluate(async (base64) => {
     const canvas = document.querySelector<HTMLCanvasElement>('canvas.picture')!;
-    const file = await (await fetch(`data:image/png;base64,${base64}`)).blob();
+    const file = new Blob([Uint8Array.from(atob(base64), (c) => c.charCodeAt(0))], { type: 'image/png' });
     const bitmap = await createImageBitmap(file, { colorSpaceConversion: 'none', premultiplyAlpha: 'none' });
     if (bitmap.width !== canvas.width || bitmap.height !== canvas.height) return Infinity;
     const other = document.createElement('canvas');

@@ -25,6 +25,8 @@ export const viewProblem = signal<{ readonly message: string; readonly again: bo
 export const shownFrame = signal<ViewFrame | undefined>(undefined);
 /** The newest update that was asked for: a frame that shows an older one is not what is wanted. */
 export const askedUpdate = signal(0n);
+/** Something changed that has not been asked for yet. */
+export const unasked = signal(false);
 export const figures = signal<Figures>({ framesPerSecond: 0, bytesPerSecond: 0, latency: undefined, stages: undefined });
 /** Where the newest picture is to be seen from; nothing until the server has chosen a first view. */
 export const pose = signal<Pose | undefined>(undefined);

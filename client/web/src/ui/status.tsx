@@ -1,6 +1,6 @@
 import type { JSX } from 'preact';
 import { FileFormat, type Picture } from '../generated/surfcast_pb';
-import { askedUpdate, figures, figuresOpen, link, moving, picking, shownFrame } from '../state/store';
+import { askedUpdate, figures, figuresOpen, link, moving, picking, shownFrame, unasked } from '../state/store';
 import { stageNames, type StageName, type StageTimes } from '../view/figures';
 import { IconButton } from './controls';
 
@@ -22,7 +22,7 @@ function stateNow(): State {
   if (!frame) return { kind: 'working', text: 'Loading' };
   if (picking.value) return { kind: 'working', text: 'Looking' };
   if (moving.value || frame.moving) return { kind: 'working', text: 'Moving' };
-  const wanted = frame.update === askedUpdate.value;
+  const wanted = !unasked.value && frame.update === askedUpdate.value;
   return wanted && frame.picture?.converged ? { kind: 'sharp', text: 'Sharp' } : { kind: 'working', text: 'Refining' };
 }
 

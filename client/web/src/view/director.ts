@@ -78,10 +78,12 @@ export class Director {
   schedule(): void {
     if (this.scheduled) return;
     this.scheduled = true;
+    store.unasked.value = true;
     requestAnimationFrame((now) => {
       this.scheduled = false;
       if (this.step(now)) this.schedule();
       this.send();
+      store.unasked.value = this.scheduled;
     });
   }
 
