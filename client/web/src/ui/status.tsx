@@ -21,9 +21,9 @@ function stateNow(): State {
   const frame = shownFrame.value;
   if (!frame) return { kind: 'working', text: 'Loading' };
   if (picking.value) return { kind: 'working', text: 'Looking' };
-  if (moving.value || frame.moving) return { kind: 'working', text: 'Moving' };
+  if (moving.value) return { kind: 'working', text: 'Moving' };
   const wanted = !unasked.value && frame.update === askedUpdate.value;
-  return wanted && frame.picture?.converged ? { kind: 'sharp', text: 'Sharp' } : { kind: 'working', text: 'Refining' };
+  return wanted && !frame.moving && frame.picture?.converged ? { kind: 'sharp', text: 'Sharp' } : { kind: 'working', text: 'Refining' };
 }
 
 export function Status(): JSX.Element {

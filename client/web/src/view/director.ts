@@ -216,7 +216,8 @@ export class Director {
     this.failures = 0;
     this.session?.acknowledge(frame.frame, painted.painted - painted.arrived);
     this.keeper.painted(painted, this.askedAt.get(frame.update));
-    for (const update of this.askedAt.keys()) if (update < frame.update) this.askedAt.delete(update);
+    // Later frames of the same update are refinements: they come when they are ready, not when they were asked for.
+    for (const update of this.askedAt.keys()) if (update <= frame.update) this.askedAt.delete(update);
     store.shownFrame.value = withoutData(painted);
     if (!store.pose.peek() && frame.update === store.askedUpdate.peek()) this.adopt(painted);
   }
