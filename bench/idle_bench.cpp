@@ -1,0 +1,57 @@
+// What connections cost that are greeted and then say nothing:
+//   surfcastd serve ... --connections 3000 &
+//   idle_bench SERVERS_PROCESS_ID HOST:PORT [COUNT]
+// once framed, once by WebSocket.
+
+#include <cstdio>
+#include <cstdlib>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "base/stopwatch.h"
+#include "client/server_connection.h"
+#include "process_figures.h"
+
+namespace surfcast {
+namespace {
+
+Status measure(int process, const Endpoint& server, size_t count) {
+  std::vector<ServerConnection> connections;
+  connections.reserve(count);
+  const uint64_t before = resident_bytes(process);
+  for (size_t i = 0; i < count; ++i) {
+    Result<ServerConnection> connection = ServerConnection::open(server, {});
+    if (!connection) return fail(connection.error());
+    connections.push_back(std::move(*connection));
+  }
+  std::this_thread::sleep_for(std::chrono::seconds(2));
+  const uint64_t after = resident_bytes(process);
+  const auto growth = static_cast<double>(after) - static_cast<double>(before);
+  std::printf("%s: %zu connections, %.1f MiB before, %.1f MiB with them, %.1f KiB each\n",
+              server.websocket ? "WebSocket" : "framed", count, static_cast<double>(before) / 1048576,
+              static_cast<double>(after) / 1048576, growth / 1024 / static_cast<double>(count));
+  return {};
+}
+
+int run(int process, const std::string& address, size_t count) {
+  for (const char* scheme : {"tcp://", "ws://"}) {
+    const Result<Endpoint> server = parse_endpoint(scheme + address);
+    const Status status = server ? measure(process, *server, count) : fail(server.error());
+    if (status) continue;
+    std::fprintf(stderr, "idle_bench: %s\n", status.error().message.c_str());
+    return 1;
+  }
+  return 0;
+}
+
+}  // namespace
+}  // namespace surfcast
+
+int main(int argc, char** argv) {
+  if (argc < 3) {
+    std::fputs("idle_bench SERVERS_PROCESS_ID HOST:PORT [COUNT]\n", stderr);
+    return 2;
+  }
+  return surfcast::run(std::atoi(argv[1]), argv[2], argc > 3 ? std::strtoul(argv[3], nullptr, 10) : 1000);
+}

@@ -1,0 +1,42 @@
+#pragma once
+
+#include <chrono>
+#include <cstdint>
+#include <stop_token>
+#include <thread>
+#include <vector>
+
+namespace surfcast::testing {
+
+/// What a link between two places does to bytes, each way.
+struct LinkShape {
+  double bits_per_second = 4e6;
+  std::chrono::microseconds delay{40'000};  ///< one way
+  std::chrono::microseconds queue{20'000};  ///< what the line holds back before it takes no more
+};
+
+/// A TCP relay on the loopback that carries connections to a port as such a link would. Of its own: no privileges and
+/// no kernel's traffic control are needed.
+class LinkRelay {
+ public:
+  /// Listens on `port` (0: any) and connects to `target`.
+  LinkRelay(uint16_t target, const LinkShape& shape, uint16_t port = 0);
+  ~LinkRelay();
+  LinkRelay(const LinkRelay&) = delete;
+  LinkRelay& operator=(const LinkRelay&) = delete;
+
+  [[nodiscard]] uint16_t port() const { return port_; }
+
+ private:
+  void accept_all(const std::stop_token& stop);
+  void carry(int client);
+
+  uint16_t target_;
+  LinkShape shape_;
+  int listener_;
+  uint16_t port_ = 0;
+  std::vector<std::jthread> lines_;
+  std::jthread acceptor_;  ///< the only one to touch lines_ while it runs
+};
+
+}  // namespace surfcast::testing
