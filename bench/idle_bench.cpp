@@ -1,7 +1,7 @@
 // What connections cost that are greeted and then say nothing:
 //   surfcastd serve ... --connections 3000 &
-//   idle_bench SERVERS_PROCESS_ID HOST:PORT [COUNT]
-// once framed, once by WebSocket.
+//   idle_bench SERVERS_PROCESS_ID HOST:PORT|ws://HOST:PORT [COUNT]
+// A second run on the same server finds the memory of the first one free again: start the server anew.
 
 #include <cstdio>
 #include <cstdlib>
@@ -35,14 +35,11 @@ Status measure(int process, const Endpoint& server, size_t count) {
 }
 
 int run(int process, const std::string& address, size_t count) {
-  for (const char* scheme : {"tcp://", "ws://"}) {
-    const Result<Endpoint> server = parse_endpoint(scheme + address);
-    const Status status = server ? measure(process, *server, count) : fail(server.error());
-    if (status) continue;
-    std::fprintf(stderr, "idle_bench: %s\n", status.error().message.c_str());
-    return 1;
-  }
-  return 0;
+  const Result<Endpoint> server = parse_endpoint(address);
+  const Status status = server ? measure(process, *server, count) : fail(server.error());
+  if (status) return 0;
+  std::fprintf(stderr, "idle_bench: %s\n", status.error().message.c_str());
+  return 1;
 }
 
 }  // namespace
@@ -50,7 +47,7 @@ int run(int process, const std::string& address, size_t count) {
 
 int main(int argc, char** argv) {
   if (argc < 3) {
-    std::fputs("idle_bench SERVERS_PROCESS_ID HOST:PORT [COUNT]\n", stderr);
+    std::fputs("idle_bench SERVERS_PROCESS_ID HOST:PORT|ws://HOST:PORT [COUNT]\n", stderr);
     return 2;
   }
   return surfcast::run(std::atoi(argv[1]), argv[2], argc > 3 ? std::strtoul(argv[3], nullptr, 10) : 1000);

@@ -20,7 +20,8 @@ struct WebSocketHandshake {
 };
 
 /// The messages of a WebSocket, seen from the client: each one is binary. Pings are answered; the server's goodbye is
-/// an error.
+/// an error. Beast could do it as well, but would bring Asio into a client that waits for one socket with poll(2), and
+/// many times its size.
 std::unique_ptr<MessageStream> make_websocket_stream();
 
 }  // namespace surfcast
