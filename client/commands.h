@@ -14,6 +14,8 @@ void add_models_command(CLI::App& app, int interrupt, Status& outcome);
 void add_render_command(CLI::App& app, int interrupt, Status& outcome);
 /// `bench URL/MODEL ...`: frame rates, latencies and bytes of views that move and rest.
 void add_bench_command(CLI::App& app, int interrupt, Status& outcome);
+/// `pick URL/MODEL --pixel X,Y ...`: what a pixel shows.
+void add_pick_command(CLI::App& app, int interrupt, Status& outcome);
 /// `ping URL [--count N]`: round trip times.
 void add_ping_command(CLI::App& app, int interrupt, Status& outcome);
 

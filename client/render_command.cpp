@@ -18,15 +18,17 @@ Status render(const RenderCommand& command, int interrupt) {
   const Result<ModelUrl> url = parse_model_url(command.url);
   if (!url) throw CLI::ValidationError(url.error().message);
   if (Status status = command.flags.check(); !status) throw CLI::ValidationError(status.error().message);
-  Result<wire::DrawPicture> picture = command.flags.request(url->model);
+  const Result<wire::DrawPicture> picture = command.flags.request(url->model);
   if (!picture) return fail(picture.error());
   Result<ServerConnection> connection = ServerConnection::open(url->server, command.limits.config(interrupt));
   if (!connection) return fail(connection.error());
-  wire::Request request;
-  *request.mutable_draw_picture() = std::move(*picture);
-  const Result<wire::Answer> answer = connection->ask(std::move(request));
-  if (!answer) return fail(answer.error());
-  return save_picture(answer->picture(), command.flags.output(), command.flags.stats());
+  return draw_and_save(command.flags, *picture, [&](const wire::DrawPicture& wish) -> Result<wire::Picture> {
+    wire::Request request;
+    *request.mutable_draw_picture() = wish;
+    Result<wire::Answer> answer = connection->ask(std::move(request));
+    if (!answer) return fail(answer.error());
+    return std::move(*answer->mutable_picture());
+  });
 }
 
 }  // namespace

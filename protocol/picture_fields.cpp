@@ -163,6 +163,14 @@ Status set_picture_field(wire::DrawPicture& picture, std::string_view name, std:
   return fail(ErrorKind::kNotFound, "there is no parameter '" + std::string(name) + "'");
 }
 
+Status set_pixel(wire::PickSurfel& pick, std::string_view text) {
+  const auto values = parse_unsigneds(text, 2);
+  if (!values) return fail(ErrorKind::kInvalidInput, "pixel: X,Y is wanted, not '" + std::string(text) + "'");
+  pick.set_x((*values)[0]);
+  pick.set_y((*values)[1]);
+  return {};
+}
+
 Result<wire::FileFormat> parse_file_format(std::string_view text) {
   if (const auto format = choose(kFormats, text)) return *format;
   return fail(ErrorKind::kUnsupported, "'" + std::string(text) + "' is not a picture format: png, jpg, webp, exr");

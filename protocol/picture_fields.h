@@ -24,6 +24,9 @@ std::span<const PictureField> picture_fields();
 /// Sets one field from its text. The error says what the value should look like; an unknown name is kNotFound.
 Status set_picture_field(wire::DrawPicture& picture, std::string_view name, std::string_view text);
 
+/// Sets the pixel of a pick from "X,Y".
+Status set_pixel(wire::PickSurfel& pick, std::string_view text);
+
 /// "png", "jpg" and so on, as in the extension of a file's name.
 Result<wire::FileFormat> parse_file_format(std::string_view text);
 /// Name of a file format in lower case: "jpeg".

@@ -48,9 +48,11 @@ Result<std::string> decode_escapes(std::string_view text) {
   return decoded;
 }
 
-Result<wire::DrawPicture> parse_picture_query(std::string_view model, std::string_view query) {
-  wire::DrawPicture picture;
-  picture.set_model(std::string(model));
+namespace {
+
+/// Calls `set(name, text)` for each parameter of a query.
+template <typename Set>
+Status for_each_parameter(std::string_view query, const Set& set) {
   std::set<std::string> seen;
   while (!query.empty()) {
     const std::string_view part = query.substr(0, query.find('&'));
@@ -62,12 +64,37 @@ Result<wire::DrawPicture> parse_picture_query(std::string_view model, std::strin
     if (!name) return fail(name.error());
     if (!text) return fail(text.error());
     if (!seen.insert(*name).second) return fail(ErrorKind::kInvalidInput, *name + ": given twice");
-    if (Status status = set_picture_field(picture, *name, *text); !status) {
-      return fail(ErrorKind::kInvalidInput, status.error().message);
-    }
+    if (Status status = set(*name, *text); !status) return fail(ErrorKind::kInvalidInput, status.error().message);
   }
-  if (Status status = check_picture(picture); !status) return fail(status.error());
+  return {};
+}
+
+}  // namespace
+
+Result<wire::DrawPicture> parse_picture_query(std::string_view model, std::string_view query) {
+  wire::DrawPicture picture;
+  picture.set_model(std::string(model));
+  Status status = for_each_parameter(query, [&picture](const std::string& name, const std::string& text) {
+    return set_picture_field(picture, name, text);
+  });
+  if (status) status = check_picture(picture);
+  if (!status) return fail(std::move(status.error()));
   return picture;
+}
+
+Result<wire::PickSurfel> parse_pick_query(std::string_view model, std::string_view query) {
+  wire::PickSurfel pick;
+  pick.mutable_picture()->set_model(std::string(model));
+  bool pixel_given = false;
+  Status status = for_each_parameter(query, [&](const std::string& name, const std::string& text) {
+    if (name != "pixel") return set_picture_field(*pick.mutable_picture(), name, text);
+    pixel_given = true;
+    return set_pixel(pick, text);
+  });
+  if (status && !pixel_given) status = fail(ErrorKind::kInvalidInput, "pixel: is missing");
+  if (status) status = check_picture(pick.picture());
+  if (!status) return fail(std::move(status.error()));
+  return pick;
 }
 
 }  // namespace surfcast

@@ -15,4 +15,7 @@ Result<std::string> decode_escapes(std::string_view text);
 /// unknown, given twice or malformed is an error.
 Result<wire::DrawPicture> parse_picture_query(std::string_view model, std::string_view query);
 
+/// The same with the parameter `pixel` ("X,Y"), which must be there.
+Result<wire::PickSurfel> parse_pick_query(std::string_view model, std::string_view query);
+
 }  // namespace surfcast

@@ -4,10 +4,13 @@
 #include <cctype>
 #include <cmath>
 #include <filesystem>
+#include <iostream>
 #include <nlohmann/json.hpp>
 
 #include "base/contract.h"
 #include "base/mapped_file.h"
+#include "protocol/camera_path.h"
+#include "protocol/pick_result_text.h"
 #include "protocol/picture_fields.h"
 #include "protocol/validate.h"
 
@@ -83,7 +86,9 @@ Status parse_camera_json(std::string_view text, wire::Camera& camera) {
 }
 
 void RequestFlags::add_to(CLI::App& command) {
-  command.add_option("--output", output_, "the picture's file; - is standard output, and needs --format")
+  command
+      .add_option("--output", output_,
+                  "the picture's file; - is standard output, and needs --format; with --path a name with %d or %05d")
       ->required()
       ->envname(environment_name("output"))
       ->type_name("FILE");
@@ -91,6 +96,13 @@ void RequestFlags::add_to(CLI::App& command) {
   command.add_option("--stats", stats_, "write what drawing took as JSON")
       ->envname(environment_name("stats"))
       ->type_name("FILE");
+  command.add_option("--path", path_, "a camera path as JSON: draw its frames")
+      ->envname(environment_name("path"))
+      ->type_name("FILE");
+  command.add_option("--fps", fps_, "frames for each second of the path (default 30)")
+      ->envname(environment_name("fps"))
+      ->type_name("NUMBER")
+      ->check(CLI::Range(0.001, 1000.0));
 }
 
 void RequestFlags::add_sight_to(CLI::App& command) {
@@ -122,6 +134,10 @@ Result<wire::FileFormat> RequestFlags::format() const {
 
 Status RequestFlags::check() const {
   if (const Result<wire::FileFormat> chosen = format(); !chosen) return fail(chosen.error());
+  if (!path_.empty()) {
+    if (!stats_.empty()) return fail(ErrorKind::kInvalidInput, "--stats is of one picture, and --path draws many");
+    if (const Result<std::string> name = frame_name(output_, 0); !name) return fail(name.error());
+  }
   return check_sight();
 }
 
@@ -157,6 +173,35 @@ Result<wire::DrawPicture> RequestFlags::sight(std::string_view model) const {
   }
   if (Status status = check_picture(picture); !status) return fail(status.error());
   return picture;
+}
+
+void PickFlags::add_to(CLI::App& command) {
+  command.add_option("--pixel", pixel_, "the pixel, from the upper left corner")
+      ->required()
+      ->envname(environment_name("pixel"))
+      ->type_name("X,Y")
+      ->check([](const std::string& text) {
+        wire::PickSurfel scratch;
+        const Status status = set_pixel(scratch, text);
+        return status ? std::string() : status.error().message;
+      });
+  sight_.add_sight_to(command);
+  command.add_flag("--json", json_, "as JSON");
+}
+
+Result<wire::PickSurfel> PickFlags::request(std::string_view model) const {
+  Result<wire::DrawPicture> picture = sight_.sight(model);
+  if (!picture) return fail(picture.error());
+  wire::PickSurfel pick;
+  *pick.mutable_picture() = std::move(*picture);
+  if (Status status = set_pixel(pick, pixel_); !status) return fail(status.error());
+  return pick;
+}
+
+Status PickFlags::print(const wire::PickResult& result) const {
+  std::cout << (json_ ? pick_result_json(result) : pick_result_text(result));
+  if (!std::cout.flush()) return fail(ErrorKind::kIo, "cannot write to standard output");
+  return {};
 }
 
 }  // namespace surfcast

@@ -36,6 +36,9 @@ class RequestFlags {
   [[nodiscard]] const std::string& output() const { return output_; }
   /// Where the figures go, empty for nowhere.
   [[nodiscard]] const std::string& stats() const { return stats_; }
+  /// The file of a camera path, of which every frame is drawn; empty for a single picture.
+  [[nodiscard]] const std::string& path() const { return path_; }
+  [[nodiscard]] double frames_per_second() const { return fps_; }
 
  private:
   [[nodiscard]] Result<wire::FileFormat> format() const;
@@ -44,6 +47,24 @@ class RequestFlags {
   std::string camera_file_;
   std::string output_;
   std::string stats_;
+  std::string path_;
+  double fps_ = 30;
+};
+
+/// The flags of `pick`.
+class PickFlags {
+ public:
+  /// As in RequestFlags, like the next two.
+  void add_to(CLI::App& command);
+  [[nodiscard]] Status check() const { return sight_.check_sight(); }
+  [[nodiscard]] Result<wire::PickSurfel> request(std::string_view model) const;
+  /// The result as the flags want it, to standard output.
+  [[nodiscard]] Status print(const wire::PickResult& result) const;
+
+ private:
+  RequestFlags sight_;
+  std::string pixel_;
+  bool json_ = false;
 };
 
 /// The name of the environment variable that mirrors a flag: "camera-view-up" is SURFCAST_CAMERA_VIEW_UP.

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/atomic_file.h"
+#include "protocol/camera_path.h"
 #include "protocol/picture_fields.h"
 
 namespace surfcast {
@@ -62,6 +63,28 @@ Status save_picture(const wire::Picture& picture, const std::string& output, con
       output == "-" ? write_to_stdout(picture.data()) : write_file_atomically(output, std::string_view(picture.data()));
   if (!written || stats.empty()) return written;
   return write_file_atomically(stats, picture_stats_json(picture));
+}
+
+Status draw_and_save(const RequestFlags& flags, const wire::DrawPicture& picture,
+                     const std::function<Result<wire::Picture>(const wire::DrawPicture&)>& draw) {
+  if (flags.path().empty()) {
+    const Result<wire::Picture> drawn = draw(picture);
+    return drawn ? save_picture(*drawn, flags.output(), flags.stats()) : fail(drawn.error());
+  }
+  const Result<CameraPath> path = CameraPath::read(flags.path());
+  if (!path) return fail(path.error());
+  const Result<int> frames = path->frames(flags.frames_per_second());
+  if (!frames) return fail(frames.error());
+  for (int number = 0; number < *frames; ++number) {
+    wire::DrawPicture frame = picture;
+    *frame.mutable_camera() = path->camera_of(number, flags.frames_per_second());
+    const Result<std::string> name = frame_name(flags.output(), number);
+    if (!name) return fail(name.error());
+    const Result<wire::Picture> drawn = draw(frame);
+    if (!drawn) return fail(drawn.error());
+    if (Status saved = save_picture(*drawn, *name, {}); !saved) return saved;
+  }
+  return {};
 }
 
 }  // namespace surfcast

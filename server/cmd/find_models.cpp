@@ -50,4 +50,12 @@ Result<std::unique_ptr<ModelCatalogue>> find_models(std::span<const fs::path> pa
   return std::make_unique<ModelCatalogue>(std::move(files), std::move(folders));
 }
 
+Result<std::unique_ptr<ModelCatalogue>> find_one_model(const fs::path& path, const fs::path& cache) {
+  std::error_code ignored;
+  if (fs::is_directory(path, ignored)) {
+    return fail(ErrorKind::kInvalidInput, path.string() + ": is a folder, and one model is wanted");
+  }
+  return find_models({&path, 1}, cache);
+}
+
 }  // namespace surfcast

@@ -14,4 +14,8 @@ namespace surfcast {
 Result<std::unique_ptr<ModelCatalogue>> find_models(std::span<const std::filesystem::path> paths,
                                                     const std::filesystem::path& cache);
 
+/// The catalogue of one model, named by a model file or a scan.
+Result<std::unique_ptr<ModelCatalogue>> find_one_model(const std::filesystem::path& path,
+                                                       const std::filesystem::path& cache);
+
 }  // namespace surfcast

@@ -8,6 +8,7 @@
 #include "base/unfinished_file.h"
 #include "cmd/build.h"
 #include "cmd/inspect.h"
+#include "cmd/pick.h"
 #include "cmd/render.h"
 #include "cmd/serve.h"
 
@@ -30,6 +31,7 @@ int run(int argc, char** argv) {
   surfcast::add_inspect_command(app, outcome);
   surfcast::add_serve_command(app, outcome);
   surfcast::add_render_command(app, outcome);
+  surfcast::add_pick_command(app, outcome);
   surfcast::add_healthcheck_command(app, outcome);
   try {
     app.parse(argc, argv);

@@ -35,6 +35,14 @@ nlohmann::ordered_json json_of(const LevelSummary& level) {
           {"spacing", {level.smallest_spacing, level.largest_spacing}}};
 }
 
+nlohmann::ordered_json json_of(const AttributeRange& range) {
+  return {{"attribute", range.attribute},
+          {"smallest", range.smallest},
+          {"largest", range.largest},
+          {"low", range.low},
+          {"high", range.high}};
+}
+
 }  // namespace
 
 ModelSummary summarize(const ModelFile& model, uint64_t file_bytes) {
@@ -64,6 +72,12 @@ std::string to_text(const ModelSummary& summary) {
   text += fmt::format("oriented: {}\n", info.oriented ? "yes" : "no");
   text += fmt::format("color bits: {}\n", info.color_bits);
   text += fmt::format("attributes: {}\n", joined(attribute_names(info)));
+  for (const AttributeRange& range : info.ranges) {
+    text += fmt::format("{}: {} .. {}", range.attribute, range.smallest, range.largest);
+    const bool tails = range.low > range.smallest || range.high < range.largest;
+    text += tails ? fmt::format(" (all but 2 % below {}, all but 2 % above {})\n", range.high, range.low) : "\n";
+  }
+  for (const ClassCount& count : info.classes) text += fmt::format("class {}: {} surfels\n", count.code, count.surfels);
   text += fmt::format("levels: {}\n", info.levels);
   for (const LevelSummary& level : summary.levels) {
     text += fmt::format("level {}: {} blocks, {} surfels, {} bytes, spacing {:.6g} .. {:.6g}\n", level.level,
@@ -86,8 +100,14 @@ std::string to_json(const ModelSummary& summary) {
       {"oriented", info.oriented},
       {"color_bits", info.color_bits},
       {"attributes", attribute_names(info)},
+      {"ranges", nlohmann::ordered_json::array()},
+      {"classes", nlohmann::ordered_json::array()},
       {"levels", nlohmann::ordered_json::array()},
   };
+  for (const AttributeRange& range : info.ranges) json["ranges"].push_back(json_of(range));
+  for (const ClassCount& count : info.classes) {
+    json["classes"].push_back({{"code", count.code}, {"surfels", count.surfels}});
+  }
   for (const LevelSummary& level : summary.levels) json["levels"].push_back(json_of(level));
   // Names come from files and need not be UTF-8.
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";

@@ -1,6 +1,5 @@
 #include "cmd/render.h"
 
-#include <array>
 #include <filesystem>
 #include <future>
 #include <memory>
@@ -24,44 +23,36 @@ struct RenderCommand {
   RendererConfig renderer;
 };
 
-Result<EncodedPicture> draw_and_wait(RenderService& service, PictureJob job) {
-  std::promise<Result<EncodedPicture>> promise;
-  service.draw(0, std::move(job),
-               [&promise](Result<EncodedPicture> picture) { promise.set_value(std::move(picture)); });
-  return promise.get_future().get();
-}
-
-Result<EncodedPicture> draw(const RenderCommand& command) {
-  const std::array paths{command.model};
-  const Result<std::unique_ptr<ModelCatalogue>> models = find_models(paths, command.cache);
-  if (!models) return fail(models.error());
-  const Result<wire::DrawPicture> request = command.flags.request((*models)->names().front());
-  if (!request) return fail(request.error());
-  Result<PictureJob> job = to_job(*request);
+Result<wire::Picture> draw_and_wait(RenderService& service, const wire::DrawPicture& request) {
+  Result<PictureJob> job = to_job(request);
   if (!job) return fail(job.error());
-  const auto service = RenderService::start(**models, model_painters(**models, command.renderer), {});
-  if (!service) return fail(service.error());
-  log_device((*service)->device());
-  return draw_and_wait(**service, std::move(*job));
-}
-
-Status render(const RenderCommand& command) {
-  std::error_code ignored;
-  if (std::filesystem::is_directory(command.model, ignored)) {
-    return fail(ErrorKind::kInvalidInput, command.model.string() + ": is a folder, and one model is wanted");
-  }
-  Result<EncodedPicture> picture = draw(command);
+  std::promise<Result<EncodedPicture>> promise;
+  service.draw(0, std::move(*job),
+               [&promise](Result<EncodedPicture> picture) { promise.set_value(std::move(picture)); });
+  Result<EncodedPicture> picture = promise.get_future().get();
   if (!picture) return fail(picture.error());
   wire::Picture message;
   to_wire(std::move(*picture), message);
-  return save_picture(message, command.flags.output(), command.flags.stats());
+  return message;
+}
+
+Status render(const RenderCommand& command) {
+  const Result<std::unique_ptr<ModelCatalogue>> models = find_one_model(command.model, command.cache);
+  if (!models) return fail(models.error());
+  const Result<wire::DrawPicture> request = command.flags.request((*models)->names().front());
+  if (!request) return fail(request.error());
+  const auto service = RenderService::start(**models, model_painters(**models, command.renderer), {});
+  if (!service) return fail(service.error());
+  log_device((*service)->device());
+  return draw_and_save(command.flags, *request,
+                       [&](const wire::DrawPicture& wish) { return draw_and_wait(**service, wish); });
 }
 
 }  // namespace
 
 void add_render_command(CLI::App& app, Status& outcome) {
   auto command = std::make_shared<RenderCommand>();
-  CLI::App* sub = app.add_subcommand("render", "Draw one picture of a model or a scan");
+  CLI::App* sub = app.add_subcommand("render", "Draw a picture of a model or a scan, or the frames of a camera path");
   sub->add_option("MODEL", command->model, "A model file or a scan")->required();
   command->flags.add_to(*sub);
   sub->add_option("--gpu", command->renderer.gpu, "Index of the EGL device (default: the first hardware device)")

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "geometry/normal_cone.h"
+#include "model/statistics.h"
 #include "surfel/grid.h"
 #include "surfel/surfel_cloud.h"
 
@@ -22,6 +23,7 @@ struct EncodedBlock {
   float spacing = 0;     ///< median radius
   float max_radius = 0;  ///< of the radii as they decode
   std::optional<NormalCone> normals;
+  AttributeStatistics statistics{};  ///< of a block of the source's surfels, if wanted in the file
 };
 
 /// Encodes some surfels of a cloud, given in a spatial order, as one block on the given lattice. A cone is stated for

@@ -118,6 +118,19 @@ bool valid_block(const BlockRecord& block, const Directory& directory, const Mod
          block.grid < directory.grids.size() && valid_lattice_box(block, directory.grids[block.grid]);
 }
 
+void put_statistics(ByteWriter& writer, const Directory& directory) {
+  writer.put(static_cast<uint32_t>(directory.ranges.size()));
+  for (const AttributeRange& range : directory.ranges) {
+    writer.put_string(range.attribute);
+    for (const double value : {range.smallest, range.largest, range.low, range.high}) writer.put(value);
+  }
+  writer.put(static_cast<uint32_t>(directory.classes.size()));
+  for (const ClassCount& count : directory.classes) {
+    writer.put(count.code);
+    writer.put(count.surfels);
+  }
+}
+
 /// A count of things that take at least `bytes_each` in the rest of the buffer; zero (and a failed reader) when they
 /// cannot be there, so that nothing is allocated for them.
 uint32_t get_count(ByteReader& reader, size_t bytes_each) {
@@ -129,6 +142,35 @@ uint32_t get_count(ByteReader& reader, size_t bytes_each) {
 
 tl::unexpected<Error> damaged(const char* what) {
   return fail(ErrorKind::kInvalidInput, what);
+}
+
+bool valid_range(const AttributeRange& range, const Directory& directory) {
+  const bool known = std::any_of(directory.scalars.begin(), directory.scalars.end(),
+                                 [&](const ScalarColumn& scalar) { return scalar.name == range.attribute; });
+  return known && std::isfinite(range.smallest) && std::isfinite(range.largest) && range.smallest <= range.low &&
+         range.low <= range.high && range.high <= range.largest;
+}
+
+Status get_statistics(ByteReader& reader, Directory& directory) {
+  constexpr uint32_t kClasses = 256;
+  const uint32_t ranges = get_count(reader, 36);
+  if (ranges > directory.scalars.size()) return damaged("model has ranges of more attributes than it has");
+  for (uint32_t n = ranges; n > 0; --n) {
+    AttributeRange range;
+    range.attribute = reader.get_string();
+    for (double* value : {&range.smallest, &range.largest, &range.low, &range.high}) *value = reader.get<double>();
+    if (!valid_range(range, directory)) return damaged("model has a wrong range of an attribute");
+    directory.ranges.push_back(std::move(range));
+  }
+  for (uint32_t n = get_count(reader, 12); n > 0; --n) {
+    ClassCount count;
+    count.code = reader.get<uint32_t>();
+    count.surfels = reader.get<uint64_t>();
+    const bool ascending = directory.classes.empty() || directory.classes.back().code < count.code;
+    if (count.code >= kClasses || !ascending) return damaged("model has wrong counts of classes");
+    directory.classes.push_back(count);
+  }
+  return {};
 }
 
 }  // namespace
@@ -203,6 +245,7 @@ std::vector<std::byte> write_directory(const Directory& directory) {
   }
   writer.put(static_cast<uint32_t>(directory.blocks.size()));
   for (const BlockRecord& block : directory.blocks) put_block(writer, block);
+  put_statistics(writer, directory);
   return std::move(writer).take();
 }
 
@@ -228,6 +271,10 @@ Result<Directory> read_directory(std::span<const std::byte> bytes, const ModelHe
     const std::optional<BlockRecord> block = get_block(reader);
     if (!block || !valid_block(*block, directory, header)) return damaged("model has a wrong block record");
     directory.blocks.push_back(*block);
+  }
+  // Files written before there were statistics end here.
+  if (reader.ok() && !reader.rest().empty()) {
+    if (Status status = get_statistics(reader, directory); !status) return fail(std::move(status.error()));
   }
   if (!reader.ok() || !reader.rest().empty()) return damaged("model tables have a wrong length");
   if (directory.blocks.empty()) return damaged("model has no blocks");

@@ -57,6 +57,8 @@ struct Directory {
   std::vector<ScalarColumn> scalars;
   std::vector<Grid> grids;
   std::vector<BlockRecord> blocks;  ///< parents before children, siblings side by side
+  std::vector<AttributeRange> ranges;
+  std::vector<ClassCount> classes;  ///< by code
 };
 
 std::vector<std::byte> write_directory(const Directory& directory);

@@ -86,6 +86,8 @@ ModelInfo make_info(const ModelHeader& header, const Directory& directory, std::
   info.color_bits = header.color_bits;
   for (const ScalarColumn& scalar : directory.scalars) info.scalar_names.push_back(scalar.name);
   info.source_names = directory.source_names;
+  info.ranges = directory.ranges;
+  info.classes = directory.classes;
   for (const BlockEntry& entry : entries) {
     info.levels = std::max(info.levels, entry.level + 1);
     if (entry.level > 0) continue;

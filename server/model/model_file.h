@@ -13,26 +13,12 @@
 #include "base/result.h"
 #include "geometry/box.h"
 #include "ldc/block_tree.h"
+#include "model/statistics.h"
 #include "surfel/grid.h"
 #include "surfel/scalar_attribute.h"
 #include "surfel/surfel_cloud.h"
 
 namespace surfcast {
-
-/// The values of a scalar attribute over the source's surfels; what is no number is left out.
-struct AttributeRange {
-  std::string attribute;
-  double smallest = 0;
-  double largest = 0;
-  double low = 0;   ///< two surfels in a hundred are below; of intensity alone, otherwise `smallest`
-  double high = 0;  ///< two surfels in a hundred are above; likewise
-};
-
-/// Surfels of the source of one class.
-struct ClassCount {
-  uint32_t code = 0;
-  uint64_t surfels = 0;
-};
 
 /// What the header of a model says about all its blocks.
 struct ModelInfo {

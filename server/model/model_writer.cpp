@@ -18,6 +18,7 @@ struct ModelWriter::State {
   std::vector<Grid> grids;
   std::vector<BlockRecord> records;             ///< in the order of the file; parents are numbers of this order
   std::vector<std::vector<uint32_t>> children;  ///< of each record
+  AttributeStatistics statistics;
 };
 
 namespace {
@@ -118,6 +119,7 @@ Result<uint32_t> ModelWriter::add(const EncodedBlock& block, const OctreeKey& ke
     state_->records[child].parent = number;
   }
   state_->records.push_back(record);
+  state_->statistics.add(block.statistics);
   state_->children.emplace_back(children.begin(), children.end());
   return number;
 }
@@ -125,8 +127,16 @@ Result<uint32_t> ModelWriter::add(const EncodedBlock& block, const OctreeKey& ke
 Result<WriteReport> ModelWriter::finish() {
   AtomicFile& file = state_->file;
   if (state_->records.empty()) return fail(ErrorKind::kInvalidInput, "no surfels to write");
-  Directory directory{state_->schema.source_names, state_->schema.scalars, state_->grids,
-                      in_tree_order(state_->records, state_->children)};
+  Directory directory{state_->schema.source_names,
+                      state_->schema.scalars,
+                      state_->grids,
+                      in_tree_order(state_->records, state_->children),
+                      {},
+                      {}};
+  std::vector<std::string> names;
+  for (const ScalarColumn& scalar : state_->schema.scalars) names.push_back(scalar.name);
+  directory.ranges = state_->statistics.ranges(names);
+  directory.classes = state_->statistics.classes();
   const std::vector<std::byte> tables = write_directory(directory);
   const std::vector<std::byte> header = write_header(make_header(state_->schema, tables, file.position()));
   Status status = file.append(tables);

@@ -15,7 +15,11 @@ namespace surfcast {
 namespace {
 
 EncodedBlock encode(const SurfelCloud& cloud, const TreeBlock& block) {
-  if (!block.coarse) return encode_block(cloud, block.members, block.grid);
+  if (!block.coarse) {
+    EncodedBlock encoded = encode_block(cloud, block.members, block.grid);
+    encoded.statistics = AttributeStatistics(cloud, block.members);
+    return encoded;
+  }
   std::vector<uint32_t> all(block.coarse->size());
   std::iota(all.begin(), all.end(), 0);
   EncodedBlock encoded = encode_block(*block.coarse, all, block.grid);

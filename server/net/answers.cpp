@@ -50,6 +50,14 @@ Outcome outcome_of(uint64_t id, const std::vector<std::string>& names) {
   return plain(answer);
 }
 
+Outcome outcome_of(uint64_t id, const Result<std::optional<PickedSurfel>>& picked) {
+  if (!picked) return failure(id, picked.error());
+  wire::Answer answer;
+  answer.set_id(id);
+  to_wire(*picked, *answer.mutable_pick_result());
+  return plain(answer);
+}
+
 Outcome outcome_of(uint64_t id, const std::string& name, const Result<ModelDescription>& description) {
   if (!description) return failure(id, description.error());
   wire::Answer answer;

@@ -30,6 +30,7 @@ Bytes encode_error(uint64_t id, const Error& error);
 
 Outcome outcome_of(uint64_t id, Result<EncodedPicture> picture);
 Outcome outcome_of(uint64_t id, const std::vector<std::string>& names);
+Outcome outcome_of(uint64_t id, const Result<std::optional<PickedSurfel>>& picked);
 Outcome outcome_of(uint64_t id, const std::string& name, const Result<ModelDescription>& description);
 
 }  // namespace surfcast

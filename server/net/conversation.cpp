@@ -39,6 +39,8 @@ void Conversation::handle(const wire::Request& request) {
     case wire::Request::kListModels:
     case wire::Request::kDescribeModel:
       return handle_other(request);
+    case wire::Request::kPickSurfel:
+      return handle_pick(request);
     case wire::Request::kCancel:
       return handle_cancel(request);
     case wire::Request::kOpenView:
@@ -97,6 +99,18 @@ void Conversation::handle_other(const wire::Request& request) {
                                    [later = answer_later(id), id, name](const Result<ModelDescription>& description) {
                                      later(outcome_of(id, name, description));
                                    });
+}
+
+void Conversation::handle_pick(const wire::Request& request) {
+  const uint64_t id = request.id();
+  if (const Status admitted = window_.admit(id); !admitted) return send_error(id, admitted.error());
+  Result<PickJob> job = to_job(request.pick_surfel());
+  if (!job) return send_error(id, job.error());
+  window_.add_other(id);
+  context_->service.pick(std::move(*job),
+                         [later = answer_later(id), id](const Result<std::optional<PickedSurfel>>& picked) {
+                           later(outcome_of(id, picked));
+                         });
 }
 
 /// A function for any thread that hands an answer over to this object. The io_context runs on until it was called.

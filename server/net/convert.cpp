@@ -151,6 +151,32 @@ Result<PictureJob> to_job(const wire::DrawPicture& request) {
   return job;
 }
 
+Result<PickJob> to_job(const wire::PickSurfel& request) {
+  Result<PictureJob> picture = to_job(request.picture());
+  if (!picture) return fail(picture.error());
+  return PickJob{std::move(picture->model), std::move(picture->request), picture->up_from_model,
+                 clamp_to_int(request.x()), clamp_to_int(request.y())};
+}
+
+void to_wire(const std::optional<PickedSurfel>& picked, wire::PickResult& message) {
+  message.set_hit(picked.has_value());
+  if (!picked) return;
+  to_wire(picked->position, message.mutable_position());
+  to_wire(picked->normal, message.mutable_normal());
+  if (picked->color) {
+    message.mutable_color()->set_red(picked->color->r);
+    message.mutable_color()->set_green(picked->color->g);
+    message.mutable_color()->set_blue(picked->color->b);
+  }
+  message.set_radius(picked->radius);
+  message.set_distance(picked->distance);
+  for (const PickedValue& value : picked->values) {
+    wire::AttributeValue* attribute = message.add_attributes();
+    attribute->set_attribute(clean_utf8(value.attribute));
+    attribute->set_value(value.value);
+  }
+}
+
 void to_wire(EncodedPicture picture, wire::Picture& message) {
   message.set_data(picture.bytes.data(), picture.bytes.size());
   message.set_format(to_wire(picture.format));
@@ -213,6 +239,20 @@ void to_wire(const std::string& name, const ModelDescription& description, wire:
   for (const std::string& source : info.source_names) message.add_sources(clean_utf8(source));
   message.set_levels(description.levels);
   message.set_blocks(description.blocks);
+  message.set_spacing(description.spacing);
+  for (const AttributeRange& range : info.ranges) {
+    wire::AttributeRange* to = message.add_ranges();
+    to->set_attribute(clean_utf8(range.attribute));
+    to->set_smallest(range.smallest);
+    to->set_largest(range.largest);
+    to->set_low(range.low);
+    to->set_high(range.high);
+  }
+  for (const ClassCount& count : info.classes) {
+    wire::ClassCount* to = message.add_classes();
+    to->set_code(count.code);
+    to->set_surfels(count.surfels);
+  }
 }
 
 std::string media_type(FileFormat format) {

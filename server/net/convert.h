@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -15,6 +16,9 @@ namespace surfcast {
 /// The job that a request asks for, once it has been checked; what it leaves out gets its default.
 Result<PictureJob> to_job(const wire::DrawPicture& request);
 
+Result<PickJob> to_job(const wire::PickSurfel& request);
+
+void to_wire(const std::optional<PickedSurfel>& picked, wire::PickResult& message);
 /// Takes the bytes out of the picture.
 void to_wire(EncodedPicture picture, wire::Picture& message);
 /// Takes the bytes out of the message.

@@ -6,6 +6,7 @@
 
 #include "net/convert.h"
 #include "protocol/errors.h"
+#include "protocol/pick_result_text.h"
 
 namespace surfcast {
 namespace {
@@ -133,6 +134,25 @@ HttpAnswer models_answer(const std::vector<std::string>& names) {
   return json_answer({{"models", names}});
 }
 
+namespace {
+
+json to_json(const AttributeRange& range) {
+  return {{"attribute", range.attribute},
+          {"smallest", range.smallest},
+          {"largest", range.largest},
+          {"low", range.low},
+          {"high", range.high}};
+}
+
+template <typename Values, typename Convert>
+json array_of(const Values& values, const Convert& convert) {
+  json array = json::array();
+  for (const auto& value : values) array.push_back(convert(value));
+  return array;
+}
+
+}  // namespace
+
 HttpAnswer model_answer(const std::string& name, const ModelDescription& description) {
   const ModelInfo& info = description.info;
   return json_answer({{"model", name},
@@ -144,7 +164,12 @@ HttpAnswer model_answer(const std::string& name, const ModelDescription& descrip
                       {"attributes", info.scalar_names},
                       {"sources", info.source_names},
                       {"levels", description.levels},
-                      {"blocks", description.blocks}});
+                      {"blocks", description.blocks},
+                      {"spacing", description.spacing},
+                      {"ranges", array_of(info.ranges, [](const AttributeRange& range) { return to_json(range); })},
+                      {"classes", array_of(info.classes, [](const ClassCount& count) {
+                         return json{{"code", count.code}, {"surfels", count.surfels}};
+                       })}});
 }
 
 HttpAnswer picture_answer(EncodedPicture picture) {
@@ -172,6 +197,12 @@ HttpAnswer file_answer(const SiteFile& file, std::string_view if_none_match) {
     answer.status = 304;
   }
   return answer;
+}
+
+HttpAnswer pick_answer(const std::optional<PickedSurfel>& picked) {
+  wire::PickResult result;
+  to_wire(picked, result);
+  return text_answer(pick_result_json(result), kJson);
 }
 
 HttpAnswer page_answer(const std::vector<std::string>& names) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <utility>
@@ -35,6 +36,8 @@ HttpAnswer model_answer(const std::string& name, const ModelDescription& descrip
 HttpAnswer picture_answer(EncodedPicture picture);
 /// A file of the viewer, or 304 when `if_none_match`, the request's header, already names what it holds.
 HttpAnswer file_answer(const SiteFile& file, std::string_view if_none_match);
+/// What a pixel shows, as pick_result_json writes it.
+HttpAnswer pick_answer(const std::optional<PickedSurfel>& picked);
 /// A page that shows the models.
 HttpAnswer page_answer(const std::vector<std::string>& names);
 

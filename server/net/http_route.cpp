@@ -12,6 +12,7 @@ using Kind = HttpRoute::Kind;
 
 constexpr std::string_view kModels = "/api/models";
 constexpr std::string_view kImage = "/image";
+constexpr std::string_view kPick = "/pick";
 constexpr std::array<std::pair<std::string_view, Kind>, 6> kPlaces{{
     {"/", Kind::kPage},
     {kModels, Kind::kModels},
@@ -25,12 +26,15 @@ tl::unexpected<Error> no_such_place(std::string_view path) {
   return fail(ErrorKind::kNotFound, "there is nothing at " + std::string(path));
 }
 
-/// "NAME" or "NAME/image", what follows "/api/models/".
+/// "NAME", "NAME/image" or "NAME/pick", what follows "/api/models/".
 Result<HttpRoute> route_model(std::string_view rest, std::string_view query) {
   HttpRoute route{Kind::kModel, {}, std::string(query)};
   if (rest.ends_with(kImage)) {
     route.kind = Kind::kPicture;
     rest.remove_suffix(kImage.size());
+  } else if (rest.ends_with(kPick)) {
+    route.kind = Kind::kPick;
+    rest.remove_suffix(kPick.size());
   }
   if (rest.empty() || rest.find('/') != std::string_view::npos) return no_such_place(kModels);
   Result<std::string> name = decode_escapes(rest);

@@ -9,10 +9,10 @@ namespace surfcast {
 
 /// What an HTTP request asks for.
 struct HttpRoute {
-  enum class Kind { kPage, kModels, kModel, kPicture, kWebSocket, kHealth, kReady, kMetrics };
+  enum class Kind { kPage, kModels, kModel, kPicture, kPick, kWebSocket, kHealth, kReady, kMetrics };
   Kind kind = Kind::kPage;
-  std::string model;  ///< of kModel and kPicture
-  std::string query;  ///< of kPicture, still escaped
+  std::string model;  ///< of kModel, kPicture and kPick
+  std::string query;  ///< of kPicture and kPick, still escaped
 };
 
 /// Where the target of a GET leads: kNotFound for no such place, kInvalidInput for a malformed one.

@@ -115,6 +115,7 @@ class HttpSession : public Session, public std::enable_shared_from_this<HttpSess
   asio::awaitable<HttpAnswer> answer_place(HttpRoute route);
   asio::awaitable<HttpAnswer> answer_model(std::string name);
   asio::awaitable<HttpAnswer> answer_picture(HttpRoute route);
+  asio::awaitable<HttpAnswer> answer_pick(HttpRoute route);
   asio::awaitable<HttpAnswer> answer_models(HttpAnswer (*present)(const std::vector<std::string>&));
   asio::awaitable<Result<EncodedPicture>> draw(PictureJob job);
   asio::awaitable<void> cancel_when_client_leaves(JobId job);
@@ -238,6 +239,8 @@ asio::awaitable<HttpAnswer> HttpSession::answer_place(HttpRoute route) {
       co_return co_await answer_model(std::move(route.model));
     case HttpRoute::Kind::kPicture:
       co_return co_await answer_picture(std::move(route));
+    case HttpRoute::Kind::kPick:
+      co_return co_await answer_pick(std::move(route));
     case HttpRoute::Kind::kHealth:
       co_return text_answer("ok\n", "text/plain");
     case HttpRoute::Kind::kReady:
@@ -260,6 +263,16 @@ asio::awaitable<HttpAnswer> HttpSession::answer_model(std::string name) {
   const auto description = co_await answer_of<Result<ModelDescription>>(
       [&](auto done) { context_->service.describe_model(name, std::move(done)); });
   co_return description ? model_answer(name, *description) : error_answer(description.error());
+}
+
+asio::awaitable<HttpAnswer> HttpSession::answer_pick(HttpRoute route) {
+  const Result<wire::PickSurfel> request = parse_pick_query(route.model, route.query);
+  if (!request) co_return error_answer(request.error());
+  const Result<PickJob> job = to_job(*request);
+  if (!job) co_return error_answer(job.error());
+  const auto picked = co_await answer_of<Result<std::optional<PickedSurfel>>>(
+      [&](auto done) { context_->service.pick(*job, std::move(done)); });
+  co_return picked ? pick_answer(*picked) : error_answer(picked.error());
 }
 
 asio::awaitable<HttpAnswer> HttpSession::answer_picture(HttpRoute route) {

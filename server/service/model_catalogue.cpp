@@ -4,6 +4,8 @@
 #include <system_error>
 #include <utility>
 
+#include "surfel/even_sampling.h"
+
 namespace surfcast {
 namespace {
 
@@ -20,6 +22,24 @@ void add_folder(const fs::path& folder, std::map<std::string, fs::path>& models)
       models.emplace(entry->path().stem().string(), entry->path());
     }
   }
+}
+
+/// The median over the surfels, as far as the leaves state it.
+double typical_spacing(std::span<const BlockEntry> blocks) {
+  std::vector<std::pair<double, uint64_t>> leaves;
+  uint64_t surfels = 0;
+  for (const BlockEntry& block : blocks) {
+    if (block.level > 0) continue;
+    leaves.emplace_back(block.spacing, block.surfels);
+    surfels += block.surfels;
+  }
+  std::sort(leaves.begin(), leaves.end());
+  uint64_t below = 0;
+  for (const auto& [radius, count] : leaves) {
+    below += count;
+    if (2 * below >= surfels) return radius / kRadiusOverSpacing;
+  }
+  return 0;
 }
 
 }  // namespace
@@ -62,6 +82,7 @@ Result<ModelDescription> ModelCatalogue::describe(const std::string& name) const
   if (!model) return fail(model.error());
   ModelDescription description;
   description.info = (*model)->info();
+  description.spacing = typical_spacing((*model)->blocks());
   description.blocks = static_cast<uint32_t>((*model)->blocks().size());
   for (const BlockEntry& block : (*model)->blocks()) {
     description.levels = std::max(description.levels, static_cast<uint32_t>(block.level + 1));

@@ -29,8 +29,7 @@ class ModelCatalogue : public ModelSource {
 
   [[nodiscard]] std::vector<std::string> names() const override;
   [[nodiscard]] Result<ModelDescription> describe(const std::string& name) const override;
-  /// The model of that name; the pointer changes when the file does.
-  [[nodiscard]] Result<std::shared_ptr<const ModelFile>> open(const std::string& name) const;
+  [[nodiscard]] Result<std::shared_ptr<const ModelFile>> open(const std::string& name) const override;
 
  private:
   struct Opened {

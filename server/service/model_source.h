@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -14,6 +15,7 @@ struct ModelDescription {
   ModelInfo info;
   uint32_t levels = 0;
   uint32_t blocks = 0;
+  double spacing = 0;  ///< typical distance of neighbouring surfels of the source, world units
 };
 
 /// The models that are served, by name. Safe to call from several threads at once; may touch the disk.
@@ -24,6 +26,8 @@ class ModelSource {
   /// Sorted.
   [[nodiscard]] virtual std::vector<std::string> names() const = 0;
   [[nodiscard]] virtual Result<ModelDescription> describe(const std::string& name) const = 0;
+  /// The model of that name; the pointer changes when its file does.
+  [[nodiscard]] virtual Result<std::shared_ptr<const ModelFile>> open(const std::string& name) const = 0;
 };
 
 }  // namespace surfcast

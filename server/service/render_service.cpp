@@ -80,6 +80,7 @@ struct RenderService::State {
   bool stopping = false;
 
   // Declared last, so that the threads end before what they use.
+  std::unique_ptr<PickService> picks;
   std::unique_ptr<WorkerPool> pool;
   std::jthread render_thread;
 };
@@ -245,6 +246,7 @@ void RenderService::State::stop() {
   wake.notify_all();
   for (const JobPointer& job : waiting) finish(job, cancelled_error());
   if (render_thread.joinable()) render_thread.join();
+  picks.reset();
   pool.reset();
 }
 
@@ -254,6 +256,7 @@ Result<std::unique_ptr<RenderService>> RenderService::start(const ModelSource& m
                                                             const ServiceLimits& limits) {
   auto state = std::make_unique<State>(models, limits);
   state->pool = std::make_unique<WorkerPool>(limits.encoders);
+  state->picks = std::make_unique<PickService>(models);
   std::promise<Status> promise;
   std::future<Status> started = promise.get_future();
   state->render_thread = std::jthread([raw = state.get(), make = std::move(make_painter),
@@ -299,6 +302,10 @@ void RenderService::describe_model(const std::string& name, DescriptionDone done
   state_->pool->post([state = state_.get(), name, done = std::move(done)] {
     done(guarded([&] { return state->models.describe(name); }));
   });
+}
+
+void RenderService::pick(PickJob job, PickService::Done done) {
+  state_->picks->pick(std::move(job), std::move(done));
 }
 
 const DeviceInfo& RenderService::device() const {

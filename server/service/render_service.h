@@ -13,6 +13,7 @@
 #include "service/job_queue.h"
 #include "service/model_source.h"
 #include "service/painter.h"
+#include "service/pick_service.h"
 
 namespace surfcast {
 
@@ -79,6 +80,8 @@ class RenderService {
 
   void list_models(NamesDone done);
   void describe_model(const std::string& name, DescriptionDone done);
+  /// What a pixel shows; see PickService.
+  void pick(PickJob job, PickService::Done done);
 
   [[nodiscard]] const DeviceInfo& device() const;
   /// Jobs that wait for the render thread.

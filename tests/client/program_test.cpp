@@ -143,5 +143,25 @@ TEST_F(ProgramTest, AnInterruptGivesThePictureUpAtTheServer) {
   EXPECT_EQ(entries(), 0u);
 }
 
+TEST_F(ProgramTest, APathIsDrawnFrameByFrame) {
+  std::ofstream(folder_ / "path.json") << R"({"keyframes": [
+      {"time": 0, "position": [0, 0, 9], "focal_point": [0, 0, 0]},
+      {"time": 0.2, "position": [0, 9, 0], "focal_point": [0, 0, 0]}]})";
+  const std::string frames = " --path " + (folder_ / "path.json").string() + " --fps 10 --resolution 8,8 --output ";
+  const ProgramOutcome outcome = run("render " + url() + "/cube" + frames + (folder_ / "f_%03d.png").string());
+  EXPECT_EQ(outcome.code, 0) << outcome.output;
+  EXPECT_EQ(entries(), 4u);
+  EXPECT_TRUE(fs::exists(folder_ / "f_000.png") && fs::exists(folder_ / "f_002.png"));
+  EXPECT_EQ(run("render " + url() + "/cube" + frames + (folder_ / "one.png").string()).code, 2);
+  EXPECT_EQ(run("render " + url() + "/cube --path nowhere.json --output f_%d.png").code, 1);
+}
+
+TEST_F(ProgramTest, APickAnswersOrSaysWhyNot) {
+  EXPECT_EQ(run("pick " + url() + "/cube").code, 2);
+  const ProgramOutcome missing = run("pick " + url() + "/cube --pixel 1,2");
+  EXPECT_EQ(missing.code, 1);
+  EXPECT_NE(missing.output.find("there is no file of this model"), std::string::npos) << missing.output;
+}
+
 }  // namespace
 }  // namespace surfcast

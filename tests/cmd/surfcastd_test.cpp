@@ -203,5 +203,46 @@ TEST_F(SurfcastdTest, TheSameScanGivesTheSameBytes) {
   EXPECT_EQ(content(folder_ / "a.surf"), content(folder_ / "b.surf"));
 }
 
+TEST_F(SurfcastdTest, PicksThePointOfTheScanUnderAPixel) {
+  std::ofstream scan(folder_ / "survey.xyz");
+  scan << "x y z intensity classification\n";
+  for (int i = 0; i < 400; ++i) scan << 448262.25 + i % 20 << ' ' << 5411932.5 + i / 20 << " 7 " << i << " 2\n";
+  scan.close();
+  const std::string above =
+      " --pixel 50,50 --resolution 100,100 --camera-position 448271.25,5411941.5,40 --camera-focal-point "
+      "448271.25,5411941.5,0 --camera-view-up 0,1,0 ";
+  const Answer answer = run("pick survey.xyz --cache cache --json" + above);
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  const nlohmann::json pick = nlohmann::json::parse(answer.out);
+  EXPECT_TRUE(pick["hit"]);
+  EXPECT_EQ(pick["position"], (nlohmann::json{448271.25, 5411941.5, 7.0}));
+  EXPECT_EQ(pick["attributes"]["intensity"], 189);
+  EXPECT_EQ(pick["attributes"]["classification"], 2);
+  EXPECT_EQ(pick["distance"], 33);
+  const Answer hidden = run("pick survey.xyz --cache cache --hide-classes 2" + above);
+  EXPECT_EQ(hidden.out, "hit: no\n");
+  EXPECT_EQ(run("pick survey.xyz --cache cache --clip-out 448271,5411941,0,448272,5411942,9" + above).exit_code, 0);
+}
+
+TEST_F(SurfcastdTest, PicksThatMeanNothingAreRefused) {
+  ASSERT_EQ(run("build scan.ply --output model.surf").exit_code, 0);
+  EXPECT_EQ(run("pick model.surf").exit_code, 2);
+  EXPECT_EQ(run("pick model.surf --pixel 3").exit_code, 2);
+  const Answer outside = run("pick model.surf --pixel 64,3 --resolution 64,64");
+  EXPECT_EQ(outside.exit_code, 1);
+  expect_one_line_error(outside);
+}
+
+TEST_F(SurfcastdTest, InspectStatesRangesAndClasses) {
+  std::ofstream(folder_ / "survey.xyz") << "x y z intensity classification\n0 0 0 5 2\n1 0 0 7 2\n0 1 0 9 6\n";
+  ASSERT_EQ(run("build survey.xyz --output model.surf").exit_code, 0);
+  const nlohmann::json model = nlohmann::json::parse(run("inspect model.surf --json").out);
+  EXPECT_EQ(model["ranges"][0]["attribute"], "intensity");
+  EXPECT_EQ(model["ranges"][0]["smallest"], 5);
+  EXPECT_EQ(model["ranges"][0]["largest"], 9);
+  EXPECT_EQ(model["classes"], nlohmann::json::parse(R"([{"code": 2, "surfels": 2}, {"code": 6, "surfels": 1}])"));
+  EXPECT_NE(run("inspect model.surf").out.find("class 6: 1 surfels\n"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace surfcast

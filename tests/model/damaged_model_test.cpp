@@ -51,6 +51,9 @@ Bytes small_model(const TestFolder& folder) {
   return {bytes.begin(), bytes.end()};
 }
 
+/// The tables of figures at the end of the small model: two counts of zero, without which a file is as good.
+constexpr size_t kStatisticsBytes = 8;
+
 /// Where the parts of a model file begin, and the end.
 std::vector<size_t> boundaries_of(const Bytes& whole) {
   const ModelHeader header = *read_header(whole);
@@ -62,8 +65,9 @@ std::vector<size_t> boundaries_of(const Bytes& whole) {
   }
   // Tables without the last ones are shorter by those and have a count of zero, of four bytes, in their place.
   const auto table_end = [&](size_t tables_left) {
-    return header.directory_offset + write_directory(directory).size() - 4 * tables_left;
+    return header.directory_offset + write_directory(directory).size() - kStatisticsBytes - 4 * tables_left;
   };
+  boundaries.push_back(whole.size() - kStatisticsBytes / 2);
   for (size_t left = directory.blocks.size(); left > 0; --left) {
     boundaries.push_back(table_end(0));
     directory.blocks.pop_back();
@@ -94,7 +98,7 @@ void repair_tables(Bytes& bytes, size_t directory) {
 
 /// Makes the checksum of each block right; the tables are those of the undamaged file.
 void repair_blocks(Bytes& bytes, const std::vector<BlockRecord>& blocks) {
-  const size_t first_record = bytes.size() - blocks.size() * kBlockRecordBytes;
+  const size_t first_record = bytes.size() - kStatisticsBytes - blocks.size() * kBlockRecordBytes;
   for (size_t i = 0; i < blocks.size(); ++i) {
     const auto content = std::span(bytes).subspan(blocks[i].offset, blocks[i].bytes);
     put(bytes, first_record + i * kBlockRecordBytes + 8, checksum_of(content));
@@ -169,7 +173,9 @@ TEST(DamagedModel, TruncationAtAnyBoundaryIsRefused) {
       Bytes bytes(whole.begin(), whole.begin() + static_cast<ptrdiff_t>(size));
       ASSERT_FALSE(read_within_bounds(folder, bytes)) << size;
       repair_tables(bytes, directory);
-      ASSERT_FALSE(read_within_bounds(folder, bytes)) << size << " with right checksums";
+      const bool figures_alone_are_gone = size == whole.size() - kStatisticsBytes;
+      ASSERT_EQ(read_within_bounds(folder, bytes).has_value(), figures_alone_are_gone)
+          << size << " with right checksums";
     }
   }
 }

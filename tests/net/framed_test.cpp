@@ -49,6 +49,22 @@ TEST_F(FramedSessionTest, AModelIsDescribed) {
   EXPECT_EQ(model.bounds().max().y(), 5);
   EXPECT_FALSE(model.z_up());
   EXPECT_EQ(model.attributes(0), "intensity");
+  EXPECT_EQ(model.spacing(), 0.25);
+  EXPECT_EQ(model.ranges(0).low(), 2);
+  EXPECT_EQ(model.classes(0).code(), 2u);
+}
+
+TEST_F(FramedSessionTest, PicksAreAnsweredOrSayWhyNot) {
+  start();
+  auto connection = connect();
+  ASSERT_TRUE(connection);
+  wire::Request request;
+  request.mutable_pick_surfel()->mutable_picture()->set_model("cube");
+  EXPECT_EQ(connection->ask(request).error().kind, ErrorKind::kNotFound) << "fake models have no surfels";
+  request.mutable_pick_surfel()->set_x(100000);
+  EXPECT_EQ(connection->ask(request).error().kind, ErrorKind::kInvalidInput);
+  request.mutable_pick_surfel()->mutable_picture()->add_hidden_classes(256);
+  EXPECT_EQ(connection->ask(request).error().kind, ErrorKind::kInvalidInput);
 }
 
 TEST_F(FramedSessionTest, APictureComesWithWhatItShows) {

@@ -31,6 +31,20 @@ TEST_F(HttpSessionTest, AModelIsDescribed) {
   EXPECT_EQ(model["surfels"], 1234);
   EXPECT_EQ(model["up_axis"], "y");
   EXPECT_EQ(model["bounds"]["min"], json({-1.0, -2.0, -3.0}));
+  EXPECT_EQ(model["spacing"], 0.25);
+  EXPECT_EQ(model["ranges"][0]["attribute"], "intensity");
+  EXPECT_EQ(model["ranges"][0]["high"], 8);
+  EXPECT_EQ(model["classes"][1]["surfels"], 34);
+}
+
+TEST_F(HttpSessionTest, PicksNeedAPixelAndAModel) {
+  start();
+  for (const std::string query : {"", "pixel=3", "pixel=3,4,5", "pixel=-1,2", "pixel=1,2&pixel=1,2", "pixel=1,2&a=b",
+                                  "pixel=1,2&color_range=2,1", "pixel=1,2&clip_box=0,0,0,nan,1,1"}) {
+    EXPECT_EQ(status_of(get("/api/models/cube/pick?" + query)), "400") << query;
+  }
+  EXPECT_EQ(status_of(get("/api/models/cube/pick?pixel=9999,2")), "400") << "outside the picture";
+  EXPECT_EQ(status_of(get("/api/models/cube/pick?pixel=1,2&resolution=8,8&hide_classes=2")), "404");
 }
 
 TEST_F(HttpSessionTest, AnImageHasItsTypeAndItsFigures) {

@@ -34,6 +34,9 @@ class ResidencyTest : public ::testing::Test {
   Result<PreparedView> whole(const ViewedModel& model, double spacing = 0) {
     return residency_->prepare_whole(model, {frame_, spacing}, never_);
   }
+  Result<PreparedView> whole_with_attributes(const ViewedModel& model) {
+    return residency_->prepare_whole(model, {frame_, 0, nullptr, true}, never_);
+  }
   PreparedView now(const ViewedModel& model, double spacing = 0) {
     return residency_->prepare_now(model, {frame_, spacing}, {}, {});
   }
@@ -210,6 +213,49 @@ TEST_F(ResidencyTest, WhenTheViewBecomesCoarserNothingFallsBackToTheRoot) {
   const PreparedView view = now(model_, 1.2 * middle);
   EXPECT_EQ(view.selection.draw.size(), 16u);
   source_->release();
+}
+
+TEST_F(ResidencyTest, AttributesOfResidentBlocksAreAddedInPlace) {
+  start(64);
+  const auto source = two_splits(1);
+  const ViewedModel model(source);
+  const PreparedView plain = *whole(model);
+  const size_t bytes = residency_->pool().bytes();
+  const size_t written = sink_.written();
+  const Result<PreparedView> view = whole_with_attributes(model);
+  ASSERT_TRUE(view);
+  EXPECT_EQ(view->selection.draw, plain.selection.draw);
+  EXPECT_TRUE(view->selection.converged());
+  EXPECT_EQ(sink_.written(), written) << "surfels are where they were";
+  EXPECT_GT(residency_->pool().bytes(), bytes);
+  EXPECT_LE(residency_->pool().bytes(), bytes / 4 * 5);
+  for (const uint32_t block : view->selection.draw) {
+    const ResidentBlock resident = residency_->pool().at({1, block});
+    ASSERT_TRUE(resident.intensity);
+    EXPECT_EQ(sink_.attribute_at(size_t{resident.pages.front()} * SurfelPool::kPageSurfels), block);
+  }
+}
+
+TEST_F(ResidencyTest, BlocksWithAttributesServePicturesWithoutAndAreLoadedOnce) {
+  start(64);
+  const auto source = two_splits(1);
+  const ViewedModel model(source);
+  ASSERT_TRUE(whole_with_attributes(model));
+  const size_t begun = source->started().size();
+  EXPECT_EQ(whole(model)->waited_for, 0u);
+  EXPECT_EQ(whole_with_attributes(model)->waited_for, 0u);
+  EXPECT_EQ(source->started().size(), begun);
+}
+
+TEST_F(ResidencyTest, EvictedBlocksLoseTheirAttributes) {
+  start(64);
+  const auto source = two_splits(1);
+  const ViewedModel model(source);
+  ASSERT_TRUE(whole_with_attributes(model));
+  residency_->forget(1);
+  EXPECT_EQ(residency_->pool().bytes(), 0u);
+  ASSERT_TRUE(whole(model));
+  EXPECT_GT(whole_with_attributes(model)->waited_for, 0u);
 }
 
 }  // namespace

@@ -28,9 +28,15 @@ class FakeModels : public ModelSource {
     description.info.color_bits = 8;
     description.info.scalar_names = {"intensity"};
     description.info.source_names = {name + ".las"};
+    description.info.ranges = {{"intensity", 1, 9, 2, 8}};
+    description.info.classes = {{2, 1200}, {6, 34}};
+    description.spacing = 0.25;
     description.levels = 3;
     description.blocks = 7;
     return description;
+  }
+  [[nodiscard]] Result<std::shared_ptr<const ModelFile>> open(const std::string& name) const override {
+    return fail(ErrorKind::kNotFound, name + ": there is no file of this model");
   }
 };
 

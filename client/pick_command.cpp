@@ -1,0 +1,42 @@
+#include <memory>
+
+#include "client/commands.h"
+#include "client/time_limits.h"
+#include "protocol/request_flags.h"
+
+namespace surfcast {
+namespace {
+
+struct PickCommand {
+  std::string url;
+  PickFlags flags;
+  TimeLimits limits;
+};
+
+Status pick(const PickCommand& command, int interrupt) {
+  const Result<ModelUrl> url = parse_model_url(command.url);
+  if (!url) throw CLI::ValidationError(url.error().message);
+  if (Status status = command.flags.check(); !status) throw CLI::ValidationError(status.error().message);
+  Result<wire::PickSurfel> pick = command.flags.request(url->model);
+  if (!pick) return fail(pick.error());
+  Result<ServerConnection> connection = ServerConnection::open(url->server, command.limits.config(interrupt));
+  if (!connection) return fail(connection.error());
+  wire::Request request;
+  *request.mutable_pick_surfel() = std::move(*pick);
+  const Result<wire::Answer> answer = connection->ask(std::move(request));
+  if (!answer) return fail(answer.error());
+  return command.flags.print(answer->pick_result());
+}
+
+}  // namespace
+
+void add_pick_command(CLI::App& app, int interrupt, Status& outcome) {
+  const auto command = std::make_shared<PickCommand>();
+  CLI::App* sub = app.add_subcommand("pick", "Say what a pixel of a picture shows");
+  sub->add_option("url", command->url, "HOST:PORT/MODEL")->required();
+  command->flags.add_to(*sub);
+  command->limits.add_to(*sub);
+  sub->callback([command, interrupt, &outcome] { outcome = pick(*command, interrupt); });
+}
+
+}  // namespace surfcast

@@ -1,0 +1,224 @@
+#include "protocol/camera_path.h"
+
+#include <algorithm>
+#include <array>
+#include <charconv>
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "base/mapped_file.h"
+#include "protocol/request_flags.h"
+#include "protocol/validate.h"
+
+namespace surfcast {
+namespace {
+
+using nlohmann::json;
+using Vector = std::array<double, 3>;
+
+Vector from_wire(const wire::Vector3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+void to_wire(const Vector& v, wire::Vector3* message) {
+  message->set_x(v[0]);
+  message->set_y(v[1]);
+  message->set_z(v[2]);
+}
+
+Vector scaled_sum(double a, const Vector& u, double b, const Vector& v) {
+  return {a * u[0] + b * v[0], a * u[1] + b * v[1], a * u[2] + b * v[2]};
+}
+
+double dot(const Vector& u, const Vector& v) {
+  return u[0] * v[0] + u[1] * v[1] + u[2] * v[2];
+}
+
+double length(const Vector& v) {
+  return std::sqrt(dot(v, v));
+}
+
+Vector unit(const Vector& v) {
+  const double size = length(v);
+  return size > 0 ? scaled_sum(1 / size, v, 0, v) : v;
+}
+
+/// Velocity at the middle one of three values: of the parabola through them, within three times the slower of the mean
+/// velocities on both sides.
+Vector velocity(const Vector& before, double time_before, const Vector& after, double time_after) {
+  const double share = time_before / (time_before + time_after);
+  const Vector mean = scaled_sum(1 - share, before, share, after);
+  const double most = 3 * std::min(length(before), length(after));
+  const double size = length(mean);
+  return size > most ? scaled_sum(most / size, mean, 0, mean) : mean;
+}
+
+/// Values of keyframes between which a cubic runs, at a time.
+template <typename Value>
+Vector interpolate(const std::vector<Keyframe>& keys, size_t first, double time, const Value& value) {
+  const auto step = [&](size_t i) { return keys[i + 1].time - keys[i].time; };
+  const auto slope = [&](size_t i) {
+    return scaled_sum(1 / step(i), value(keys[i + 1]), -1 / step(i), value(keys[i]));
+  };
+  const auto velocity_at = [&](size_t i) {
+    if (i == 0 || i + 1 == keys.size()) return Vector{};
+    return velocity(slope(i - 1), step(i - 1), slope(i), step(i));
+  };
+  const double h = step(first);
+  const double t = std::clamp((time - keys[first].time) / h, 0.0, 1.0);
+  const double s = 1 - t;
+  // Cubic Hermite polynomials.
+  const Vector places =
+      scaled_sum(s * s * (1 + 2 * t), value(keys[first]), t * t * (1 + 2 * s), value(keys[first + 1]));
+  const Vector pulls = scaled_sum(h * s * s * t, velocity_at(first), -h * t * t * s, velocity_at(first + 1));
+  return scaled_sum(1, places, 1, pulls);
+}
+
+/// Turns from `a` to `b`, unit vectors, on the great circle; between opposite ones over any third.
+Vector turn(const Vector& a, const Vector& b, double t) {
+  const double angle = std::acos(std::clamp(dot(a, b), -1.0, 1.0));
+  if (angle < 1e-6) return a;
+  if (std::sin(angle) < 1e-6) {
+    const Vector aside = std::abs(a[0]) < 0.7 ? Vector{1, 0, 0} : Vector{0, 1, 0};
+    const Vector across = unit(scaled_sum(1, aside, -dot(aside, a), a));
+    return scaled_sum(std::cos(angle * t), a, std::sin(angle * t), across);
+  }
+  return scaled_sum(std::sin((1 - t) * angle) / std::sin(angle), a, std::sin(t * angle) / std::sin(angle), b);
+}
+
+/// The part of `up` that is perpendicular to the view; `up` itself where nothing is.
+Vector upright(const Vector& up, const Vector& view) {
+  const Vector along = unit(view);
+  const Vector part = scaled_sum(1, up, -dot(up, along), along);
+  return length(part) > 1e-9 ? unit(part) : up;
+}
+
+tl::unexpected<Error> invalid(const std::string& what) {
+  return fail(ErrorKind::kInvalidInput, what);
+}
+
+Result<Keyframe> read_keyframe(json document, size_t number) {
+  const std::string name = "keyframe " + std::to_string(number) + ": ";
+  if (!document.is_object() || !document.contains("time") || !document["time"].is_number()) {
+    return invalid(name + "an object with a time is wanted");
+  }
+  Keyframe keyframe;
+  keyframe.time = document["time"].get<double>();
+  document.erase("time");
+  if (!std::isfinite(keyframe.time)) return invalid(name + "the time must be finite");
+  Status status = parse_camera_json(document.dump(), keyframe.camera);
+  if (status) {
+    wire::DrawPicture picture;
+    picture.set_model("any");
+    *picture.mutable_camera() = keyframe.camera;
+    status = check_picture(picture);
+  }
+  if (!status) return invalid(name + status.error().message);
+  return keyframe;
+}
+
+/// Keyframes must have the same fields, and follow each other.
+Status check_order(const std::vector<Keyframe>& keyframes) {
+  if (keyframes.size() < 2) return invalid("a path needs two keyframes");
+  for (size_t i = 1; i < keyframes.size(); ++i) {
+    const wire::Camera& first = keyframes[0].camera;
+    const wire::Camera& camera = keyframes[i].camera;
+    if (!(keyframes[i - 1].time < keyframes[i].time)) return invalid("times of keyframes must ascend");
+    if (first.has_view_up() != camera.has_view_up() || first.has_view_angle() != camera.has_view_angle()) {
+      return invalid("view_up and view_angle belong to all keyframes or to none");
+    }
+  }
+  return {};
+}
+
+}  // namespace
+
+Result<CameraPath> CameraPath::parse(std::string_view text) {
+  const json document = json::parse(text, nullptr, /*allow_exceptions=*/false);
+  if (!document.is_object() || !document.contains("keyframes") || !document["keyframes"].is_array()) {
+    return invalid("not a camera path: an object with an array of keyframes is wanted");
+  }
+  std::vector<Keyframe> keyframes;
+  for (const json& entry : document["keyframes"]) {
+    Result<Keyframe> keyframe = read_keyframe(entry, keyframes.size());
+    if (!keyframe) return fail(keyframe.error());
+    keyframes.push_back(std::move(*keyframe));
+  }
+  if (Status status = check_order(keyframes); !status) return fail(status.error());
+  return CameraPath(std::move(keyframes));
+}
+
+Result<CameraPath> CameraPath::read(const std::string& file) {
+  const Result<MappedFile> mapped = MappedFile::open(file);
+  if (!mapped) return fail(mapped.error());
+  Result<CameraPath> path = parse({reinterpret_cast<const char*>(mapped->bytes().data()), mapped->bytes().size()});
+  if (!path) return fail(path.error().kind, file + ": " + path.error().message);
+  return path;
+}
+
+Result<int> CameraPath::frames(double per_second) const {
+  // A path of a whole number of frames has its last one, whatever the rounding of times.
+  const double count = (keyframes_.back().time - keyframes_.front().time) * per_second + 1e-6;
+  if (count >= kMaxFrames) return fail(ErrorKind::kLimit, "the path has too many frames");
+  return static_cast<int>(count) + 1;
+}
+
+wire::Camera CameraPath::camera_of(int number, double per_second) const {
+  return camera_at(keyframes_.front().time + number / per_second);
+}
+
+wire::Camera CameraPath::camera_at(double time) const {
+  size_t first = 0;
+  while (first + 2 < keyframes_.size() && time >= keyframes_[first + 1].time) ++first;
+  const auto at = [&](const auto& value) { return interpolate(keyframes_, first, time, value); };
+  const Vector position = at([](const Keyframe& k) { return from_wire(k.camera.position()); });
+  const Vector focal_point = at([](const Keyframe& k) { return from_wire(k.camera.focal_point()); });
+  const Keyframe& a = keyframes_[first];
+  const Keyframe& b = keyframes_[first + 1];
+  wire::Camera camera;
+  to_wire(position, camera.mutable_position());
+  to_wire(focal_point, camera.mutable_focal_point());
+  if (a.camera.has_view_up()) {
+    const double t = std::clamp((time - a.time) / (b.time - a.time), 0.0, 1.0);
+    const Vector up = turn(unit(from_wire(a.camera.view_up())), unit(from_wire(b.camera.view_up())), t);
+    to_wire(upright(up, scaled_sum(1, focal_point, -1, position)), camera.mutable_view_up());
+  }
+  if (a.camera.has_view_angle()) {
+    camera.set_view_angle(at([](const Keyframe& k) { return Vector{k.camera.view_angle(), 0, 0}; })[0]);
+  }
+  return camera;
+}
+
+Result<std::string> frame_name(std::string_view pattern, int number) {
+  constexpr int kWidest = 20;
+  std::string name;
+  int numbers = 0;
+  for (size_t i = 0; i < pattern.size(); ++i) {
+    if (pattern[i] != '%') {
+      name += pattern[i];
+      continue;
+    }
+    if (i + 1 < pattern.size() && pattern[i + 1] == '%') {
+      name += pattern[++i];
+      continue;
+    }
+    size_t end = i + 1;
+    while (end < pattern.size() && pattern[end] >= '0' && pattern[end] <= '9') ++end;
+    int width = 0;
+    const auto read = std::from_chars(pattern.data() + i + 1, pattern.data() + end, width);
+    const bool padded = end == i + 1 || pattern[i + 1] == '0';
+    if (end == pattern.size() || pattern[end] != 'd' || !padded || width > kWidest ||
+        read.ec == std::errc::result_out_of_range) {
+      return invalid(std::string(pattern) + ": %d or %05d is wanted for the number of a frame");
+    }
+    const std::string digits = std::to_string(number);
+    name.append(static_cast<size_t>(std::max(0, width - static_cast<int>(digits.size()))), '0');
+    name += digits;
+    ++numbers;
+    i = end;
+  }
+  if (numbers != 1) return invalid(std::string(pattern) + ": the names of frames need one %d or %05d");
+  return name;
+}
+
+}  // namespace surfcast

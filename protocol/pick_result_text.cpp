@@ -1,0 +1,61 @@
+#include "protocol/pick_result_text.h"
+
+#include <nlohmann/json.hpp>
+
+namespace surfcast {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json to_json(const wire::Vector3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+Json document_of(const wire::PickResult& result) {
+  Json document{{"hit", result.hit()}};
+  if (!result.hit()) return document;
+  document["position"] = to_json(result.position());
+  if (result.has_normal()) document["normal"] = to_json(result.normal());
+  if (result.has_color()) document["color"] = {result.color().red(), result.color().green(), result.color().blue()};
+  document["radius"] = result.radius();
+  document["distance"] = result.distance();
+  document["attributes"] = Json::object();
+  for (const wire::AttributeValue& value : result.attributes()) {
+    document["attributes"][value.attribute()] = value.value();
+  }
+  return document;
+}
+
+std::string dump(const Json& value, int indent = -1) {
+  return value.dump(indent, ' ', false, Json::error_handler_t::replace);
+}
+
+/// The numbers of a vector with blanks between them.
+std::string plain(const Json& value) {
+  if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
+  if (!value.is_array()) return dump(value);
+  std::string text;
+  for (const Json& part : value) text += (text.empty() ? "" : " ") + dump(part);
+  return text;
+}
+
+}  // namespace
+
+std::string pick_result_text(const wire::PickResult& result) {
+  const Json document = document_of(result);  // items() refers to it
+  std::string text;
+  for (const auto& [name, value] : document.items()) {
+    if (!value.is_object()) {
+      text += name + ": " + plain(value) + "\n";
+      continue;
+    }
+    for (const auto& [attribute, number] : value.items()) text += attribute + ": " + plain(number) + "\n";
+  }
+  return text;
+}
+
+std::string pick_result_json(const wire::PickResult& result) {
+  return dump(document_of(result), 2) + "\n";
+}
+
+}  // namespace surfcast

@@ -1,0 +1,12 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "base/result.h"
+
+namespace surfcast {
+
+/// `pick MODEL --pixel X,Y ...`: what a pixel of a picture shows, without a server.
+void add_pick_command(CLI::App& app, Status& outcome);
+
+}  // namespace surfcast

@@ -1,0 +1,99 @@
+#include "model/statistics.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "model/scalar_bits.h"
+
+namespace surfcast {
+namespace {
+
+/// Share of the surfels that are left below `low` and above `high`: so few that outliers set no range, and so many that
+/// a few bright reflectors do not.
+constexpr double kTail = 0.02;
+
+/// Calls `use` with the members' values that are finite numbers.
+template <typename Use>
+void for_each_number(const ScalarValues& values, std::span<const uint32_t> members, const Use& use) {
+  std::visit(
+      [&](const auto& column) {
+        for (const uint32_t member : members) {
+          const auto value = static_cast<double>(column[member]);
+          if (std::isfinite(value)) use(value);
+        }
+      },
+      values);
+}
+
+uint16_t bucket_of(double value) {
+  return static_cast<uint16_t>(to_ordered_bits(static_cast<float>(value)) >> 16);
+}
+
+}  // namespace
+
+AttributeStatistics::AttributeStatistics(const SurfelCloud& cloud, std::span<const uint32_t> members) {
+  for (const ScalarAttribute& scalar : cloud.scalars) {
+    Extremes& extremes = extremes_.emplace_back();
+    for_each_number(scalar.values, members, [&extremes](double value) {
+      extremes.smallest = std::min(extremes.smallest, value);
+      extremes.largest = std::max(extremes.largest, value);
+    });
+    if (scalar.name == "intensity") {
+      for_each_number(scalar.values, members, [this](double value) { ++intensities_[bucket_of(value)]; });
+    } else if (scalar.name == "classification") {
+      for_each_number(scalar.values, members, [this](double value) {
+        ++classes_[static_cast<size_t>(std::lround(std::clamp(value, 0.0, 255.0)))];
+      });
+    }
+  }
+}
+
+void AttributeStatistics::add(const AttributeStatistics& other) {
+  extremes_.resize(std::max(extremes_.size(), other.extremes_.size()));
+  for (size_t i = 0; i < other.extremes_.size(); ++i) {
+    extremes_[i].smallest = std::min(extremes_[i].smallest, other.extremes_[i].smallest);
+    extremes_[i].largest = std::max(extremes_[i].largest, other.extremes_[i].largest);
+  }
+  for (const auto& [bucket, count] : other.intensities_) intensities_[bucket] += count;
+  for (size_t code = 0; code < classes_.size(); ++code) classes_[code] += other.classes_[code];
+}
+
+/// The value below which that share of the intensities lies, within the width of a bucket.
+double AttributeStatistics::percentile(double share, const Extremes& bounds) const {
+  uint64_t total = 0;
+  for (const auto& [bucket, count] : intensities_) total += count;
+  const double wanted = share * static_cast<double>(total);
+  uint64_t below = 0;
+  for (const auto& [bucket, count] : intensities_) {
+    below += count;
+    if (static_cast<double>(below) < wanted) continue;
+    const double value = double{from_ordered_bits<float>(static_cast<uint32_t>(bucket) << 16)};
+    return std::clamp(value, bounds.smallest, bounds.largest);
+  }
+  return bounds.largest;
+}
+
+std::vector<AttributeRange> AttributeStatistics::ranges(std::span<const std::string> names) const {
+  std::vector<AttributeRange> ranges;
+  for (size_t i = 0; i < std::min(names.size(), extremes_.size()); ++i) {
+    const Extremes& extremes = extremes_[i];
+    if (!(extremes.smallest <= extremes.largest)) continue;
+    AttributeRange range{names[i], extremes.smallest, extremes.largest, extremes.smallest, extremes.largest};
+    if (names[i] == "intensity") {
+      range.low = percentile(kTail, extremes);
+      range.high = percentile(1 - kTail, extremes);
+    }
+    ranges.push_back(std::move(range));
+  }
+  return ranges;
+}
+
+std::vector<ClassCount> AttributeStatistics::classes() const {
+  std::vector<ClassCount> counts;
+  for (uint32_t code = 0; code < classes_.size(); ++code) {
+    if (classes_[code] > 0) counts.push_back({code, classes_[code]});
+  }
+  return counts;
+}
+
+}  // namespace surfcast

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <atomic>
+#include <functional>
+#include <optional>
+#include <string>
+
+#include "base/result.h"
+#include "pick/pick_surfel.h"
+#include "render/picture.h"
+#include "service/model_source.h"
+#include "service/worker_pool.h"
+
+namespace surfcast {
+
+/// A pixel of a picture: somebody wants to know what it shows.
+struct PickJob {
+  std::string model;
+  PictureRequest request;      ///< camera, resolution, clip and hidden classes matter
+  bool up_from_model = false;  ///< take the model's vertical axis as the camera's view_up
+  int x = 0;                   ///< pixels from the left edge
+  int y = 0;                   ///< pixels from the upper edge
+};
+
+/// Finds what is under pixels, on threads of its own, so that no picture waits for it. Methods may be called from any
+/// thread.
+class PickService {
+ public:
+  using Done = std::function<void(Result<std::optional<PickedSurfel>>)>;
+
+  /// `models` must outlive the service.
+  explicit PickService(const ModelSource& models);
+  /// Gives up what is outstanding.
+  ~PickService();
+
+  /// `done` is called once, on a thread of the service, or before the call returns when too many wait already. It must
+  /// not throw or block.
+  void pick(PickJob job, Done done);
+
+ private:
+  [[nodiscard]] Result<std::optional<PickedSurfel>> run(const PickJob& job) const;
+
+  const ModelSource& models_;
+  std::atomic<bool> stopping_ = false;
+  std::atomic<int> waiting_ = 0;
+  WorkerPool pool_;  ///< last, so that its threads end first
+};
+
+}  // namespace surfcast

@@ -1,0 +1,227 @@
+#include "pick/pick_surfel.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <glm/geometric.hpp>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "model/write_model.h"
+#include "reference/resampling_filter.h"
+#include "support/clouds.h"
+#include "surfel/drawn_radius.h"
+
+namespace surfcast {
+namespace {
+
+const Grid kUtm{{0.01, 0.01, 0.001}, {448262, 5411932, 312}};
+
+/// Moves the cloud's points to a lattice in UTM coordinates, where they all have classes, intensities and times.
+void make_survey(SurfelCloud& cloud) {
+  std::vector<uint8_t> classes;
+  std::vector<uint16_t> intensities;
+  std::vector<double> times;
+  for (size_t i = 0; i < cloud.size(); ++i) {
+    cloud.positions[i] = kUtm.position(kUtm.index(cloud.positions[i] + kUtm.offset));
+    classes.push_back(static_cast<uint8_t>(i % 3 + 2));
+    intensities.push_back(static_cast<uint16_t>(i));
+    times.push_back(1e5 + 0.125 * static_cast<double>(i));
+  }
+  cloud.sources[0].grid = kUtm;
+  cloud.scalars = {{"intensity", intensities}, {"classification", classes}, {"gps_time", times}};
+}
+
+SurfelCloud survey() {
+  SurfelCloud cloud = testing::fibonacci_sphere(60000, 40, {0, 0, 0}, {200, 90, 20});
+  testing::append(cloud, testing::square(200, 200, {0, 0, -60}, {0, 0, 1}, {20, 90, 200}));
+  make_survey(cloud);
+  return cloud;
+}
+
+class PickSurfel : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    path_ = std::filesystem::path(::testing::TempDir()) /
+            ("pick_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) + ".surf");
+  }
+  void TearDown() override { std::filesystem::remove(path_); }
+
+  ModelFile model_of(const SurfelCloud& cloud) {
+    EXPECT_TRUE(write_model(cloud, path_, {}));
+    Result<ModelFile> model = ModelFile::open(path_);
+    EXPECT_TRUE(model);
+    return std::move(*model);
+  }
+
+  static PickQuery query_at(double x, double y, const Camera& camera, int width = 320, int height = 240) {
+    return {*make_camera_frame(camera, width, height), {x, y}, {}, {}};
+  }
+
+  static std::optional<PickedSurfel> pick(const ModelFile& model, const PickQuery& query) {
+    const std::atomic<bool> no{false};
+    Result<std::optional<PickedSurfel>> picked = pick_surfel(model, query, no);
+    EXPECT_TRUE(picked) << (picked ? "" : picked.error().message);
+    return picked ? *picked : std::nullopt;
+  }
+
+  std::filesystem::path path_;
+};
+
+Camera oblique() {
+  return {kUtm.offset + glm::dvec3(150, -260, 120), kUtm.offset, {0, 0, 1}, 35};
+}
+
+/// The blocks of the finest level.
+std::vector<DecodedBlock> leaves_of(const ModelFile& model) {
+  std::vector<DecodedBlock> leaves;
+  for (size_t b = 0; b < model.blocks().size(); ++b) {
+    if (model.blocks()[b].level == 0) leaves.push_back(*model.decode(b));
+  }
+  return leaves;
+}
+
+/// All surfels of the finest level, seen by the reference's discs: the position that is to be picked, if any is.
+std::optional<glm::dvec3> brute_force(const std::vector<DecodedBlock>& leaves, const PickQuery& query) {
+  const glm::dvec3 ray = query.frame.ray(query.pixel);
+  struct Seen {
+    double form;
+    double depth;
+    glm::dvec3 position;
+  };
+  std::vector<Seen> seen;
+  double surface = std::numeric_limits<double>::infinity();
+  for (const DecodedBlock& block : leaves) {
+    const auto& classes = std::get<std::vector<uint8_t>>(block.scalars[1].values);
+    const float widest = largest_drawn_radius(block.radii);
+    for (size_t i = 0; i < block.size(); ++i) {
+      const glm::dvec3 o = query.frame.to_camera(block.position(i));
+      const glm::dvec3 n = query.frame.rotate(glm::dvec3(block.normals[i]));
+      if (glm::dot(n, o) >= 0 || query.hidden_classes[classes[i]] || !query.clip.shows(block.position(i))) continue;
+      const double radius = std::min(block.radii[i], widest);
+      // With the visibility prefilter the filter's own form is that of the disc.
+      reference::KernelParameters disc;
+      disc.sigma = disc.visibility_radius;
+      const auto splat = reference::Splat::make(o, n, radius, query.frame.eta, disc.visibility_pixels, disc);
+      const auto opaque = reference::Splat::make(o, n, radius, query.frame.eta, 1, {});
+      if (!opaque || !splat || !opaque->opaque(ray)) continue;
+      surface = std::min(surface, opaque->disc_depth(ray).pushed);
+      seen.push_back({splat->fragment(ray).r2, opaque->fragment_depth(ray), block.position(i)});
+    }
+  }
+  const Seen* best = nullptr;
+  for (const Seen& s : seen) {
+    if (s.depth <= surface && (best == nullptr || s.form < best->form)) best = &s;
+  }
+  return best == nullptr ? std::nullopt : std::optional(best->position);
+}
+
+/// Picks over the whole picture and counts hits.
+int compare(const ModelFile& model, const Clip& clip, const std::bitset<256>& hidden, const Camera& camera) {
+  const std::vector<DecodedBlock> leaves = leaves_of(model);
+  int hits = 0;
+  for (int y = 5; y < 240; y += 23) {
+    for (int x = 3; x < 320; x += 29) {
+      PickQuery query{*make_camera_frame(camera, 320, 240), {x + 0.5, y + 0.5}, clip, hidden};
+      const std::atomic<bool> no{false};
+      const auto picked = pick_surfel(model, query, no);
+      const auto expected = brute_force(leaves, query);
+      EXPECT_TRUE(picked);
+      EXPECT_EQ((*picked).has_value(), expected.has_value()) << x << ' ' << y;
+      if (!expected || !*picked) continue;
+      EXPECT_EQ((*picked)->position, *expected) << x << ' ' << y;
+      ++hits;
+    }
+  }
+  return hits;
+}
+
+TEST_F(PickSurfel, FindsWhatASearchOverAllSurfelsFinds) {
+  const ModelFile model = model_of(survey());
+  ASSERT_GT(model.blocks().size(), 4u);
+  EXPECT_GT(compare(model, {}, {}, oblique()), 40);
+}
+
+TEST_F(PickSurfel, FindsTheSameWithinTheScene) {
+  SurfelCloud cloud = survey();
+  cloud.oriented = true;
+  const ModelFile model = model_of(cloud);
+  const Camera low{kUtm.offset + glm::dvec3(60, 60, -58), kUtm.offset + glm::dvec3(0, 0, -50), {0, 0, 1}, 80};
+  EXPECT_GT(compare(model, {}, {}, low), 30);
+}
+
+TEST_F(PickSurfel, ClipsAndHiddenClassesAreLookedThrough) {
+  const ModelFile model = model_of(survey());
+  Clip clip;
+  clip.inside.push_back({kUtm.offset - glm::dvec3(90, 90, 70), kUtm.offset + glm::dvec3(90, 90, 20)});
+  clip.outside.push_back({kUtm.offset - glm::dvec3(15, 50, 50), kUtm.offset + glm::dvec3(15, 50, 50)});
+  std::bitset<256> hidden;
+  hidden.set(2);
+  EXPECT_GT(compare(model, clip, hidden, oblique()), 20);
+}
+
+TEST_F(PickSurfel, TheAnswerIsTheSourcePointWithAllItsAttributes) {
+  const SurfelCloud cloud = survey();
+  const ModelFile model = model_of(cloud);
+  const auto picked = pick(model, query_at(160.5, 120.5, oblique()));
+  ASSERT_TRUE(picked);
+  ASSERT_EQ(picked->values.size(), 3u);
+  EXPECT_EQ(picked->values[0].attribute, "intensity");
+  EXPECT_EQ(picked->values[2].attribute, "gps_time");
+  const auto i = static_cast<size_t>((picked->values[2].value - 1e5) / 0.125);
+  ASSERT_LT(i, cloud.size());
+  EXPECT_EQ(picked->position, cloud.positions[i]) << "to the last bit";
+  EXPECT_EQ(picked->values[0].value, static_cast<double>(i));
+  EXPECT_EQ(picked->values[1].value, static_cast<double>(i % 3 + 2));
+  EXPECT_EQ(picked->color, glm::u8vec3(200, 90, 20));
+  EXPECT_NEAR(picked->radius, double{cloud.radii[i]}, 1e-3 * double{cloud.radii[i]});
+  EXPECT_GT(glm::dot(picked->normal, glm::dvec3(cloud.normals[i])), 0.9999);
+  EXPECT_NEAR(picked->distance, glm::length(cloud.positions[i] - oblique().position), 1e-9);
+}
+
+TEST_F(PickSurfel, TheBackgroundIsNoSurfel) {
+  const ModelFile model = model_of(survey());
+  EXPECT_FALSE(pick(model, query_at(0.5, 0.5, oblique())));
+  PickQuery hidden = query_at(160.5, 120.5, oblique());
+  hidden.hidden_classes.set();
+  EXPECT_FALSE(pick(model, hidden)) << "every class is hidden";
+  PickQuery clipped = query_at(160.5, 120.5, oblique());
+  clipped.clip.inside.push_back({kUtm.offset + 1000.0, kUtm.offset + 1001.0});
+  EXPECT_FALSE(pick(model, clipped));
+}
+
+TEST_F(PickSurfel, BackFacesOfOrientedModelsAreNotPickedAndOthersFaceTheEye) {
+  SurfelCloud cloud = testing::square(50, 2, {0, 0, 0}, {0, 0, -1}, {1, 2, 3});
+  const PickQuery query = query_at(160.5, 120.5, {{0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 30});
+  EXPECT_FALSE(pick(model_of(cloud), query));
+  cloud.oriented = false;
+  const auto picked = pick(model_of(cloud), query);
+  ASSERT_TRUE(picked);
+  EXPECT_GT(picked->normal.z, 0.99);
+}
+
+TEST_F(PickSurfel, OfCoincidentSurfacesTheNearerIsPicked) {
+  SurfelCloud cloud = testing::square(100, 2, {0, 0, -0.5}, {0, 0, 1}, {9, 9, 9});
+  testing::append(cloud, testing::square(100, 2, {0, 0, 0}, {0, 0, 1}, {1, 2, 3}));
+  const auto picked = pick(model_of(cloud), query_at(150.5, 130.5, {{0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 30}));
+  ASSERT_TRUE(picked);
+  EXPECT_EQ(picked->color, glm::u8vec3(1, 2, 3));
+}
+
+TEST_F(PickSurfel, ColorsOfSixteenBitsAreRounded) {
+  SurfelCloud cloud = testing::square(50, 2, {0, 0, 0}, {0, 0, 1}, {0, 0, 0});
+  cloud.colors->bits = 16;
+  for (glm::u16vec3& color : cloud.colors->values) color = {65535, 257 * 7, 128};
+  const auto picked = pick(model_of(cloud), query_at(160.5, 120.5, {{0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 30}));
+  ASSERT_TRUE(picked);
+  EXPECT_EQ(picked->color, glm::u8vec3(255, 7, 0));
+}
+
+TEST_F(PickSurfel, ACancelledPickStops) {
+  const ModelFile model = model_of(survey());
+  const std::atomic<bool> yes{true};
+  EXPECT_EQ(pick_surfel(model, query_at(160.5, 120.5, oblique()), yes).error().kind, ErrorKind::kCancelled);
+}
+
+}  // namespace
+}  // namespace surfcast
