@@ -10,9 +10,10 @@ layout(std430, binding = SURFCAST_BIND_TILE_OFFSET) readonly buffer TileOffset {
 layout(binding = SURFCAST_UNIT_BOUNDS) uniform usamplerBuffer bounds;
 layout(binding = SURFCAST_UNIT_LISTS, r32ui) writeonly uniform uimageBuffer lists;
 
+layout(location = SURFCAST_UNIFORM_FIRST_GROUP) uniform uint first_group;
+
 void main() {
-  // Splats are dispatched in rows, since one dimension may be too short for all of them.
-  uint i = (gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x) * uint(SURFCAST_CHUNK) + gl_LocalInvocationID.x;
+  uint i = (first_group + gl_WorkGroupID.x) * uint(SURFCAST_CHUNK) + gl_LocalInvocationID.x;
   uint small = counters.counts.x;
   if (i >= small + counters.counts.y) return;
   bool large = i >= small;

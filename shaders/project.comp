@@ -11,6 +11,7 @@
 #include "include/surfel.glsl"
 #include "include/thinning.glsl"
 
+layout(location = SURFCAST_UNIFORM_FIRST_GROUP) uniform uint first_group;
 layout(local_size_x = SURFCAST_CHUNK) in;
 
 layout(binding = SURFCAST_UNIT_SURFELS) uniform usamplerBuffer surfels;
@@ -181,10 +182,7 @@ void project(Surfel s) {
 }
 
 void main() {
-  // Chunks are dispatched in rows, since one dimension may be too short for all of them.
-  uint chunk = gl_WorkGroupID.y * gl_NumWorkGroups.x + gl_WorkGroupID.x;
-  if (chunk >= uint(frame.flags.w)) return;
-  uvec4 run = chunks[chunk].run;
+  uvec4 run = chunks[first_group + gl_WorkGroupID.x].run;
   uint place = gl_LocalInvocationID.x;
   if (place >= (run.z & SURFCAST_RUN_COUNT)) return;
   BlockView block = blocks[run.x];

@@ -15,6 +15,7 @@
 const int kMaxLayers = 8;
 const float kOpaque = 1.0 / 128.0;  // transmittance that is not worth another round
 
+layout(location = SURFCAST_UNIFORM_FIRST_GROUP) uniform uint first_group;
 layout(local_size_x = SURFCAST_TILE_WIDTH, local_size_y = SURFCAST_TILE_HEIGHT / SURFCAST_ROWS) in;
 
 layout(std430, binding = SURFCAST_BIND_TILE_COUNT) readonly buffer TileCount { uint tile_count[]; };
@@ -57,7 +58,8 @@ void write_pixel(ivec2 at, vec3 light, float transmittance) {
 #endif
 
 void main() {
-  uint tile = gl_WorkGroupID.y * uint(frame.tiles.x) + gl_WorkGroupID.x;
+  uvec2 place = uvec2(gl_WorkGroupID.x, first_group + gl_WorkGroupID.y);
+  uint tile = place.y * uint(frame.tiles.x) + place.x;
   uint large_list = tile + uint(frame.tiles.z);
   uint larges = tile_count[large_list];
 #ifdef SURFCAST_LARGE
@@ -68,7 +70,7 @@ void main() {
   uint smalls = tile_count[tile];
   uint first_small = tile_offset[tile];
   uint first_large = tile_offset[large_list];
-  ivec2 local = ivec2(gl_WorkGroupID.xy) * ivec2(SURFCAST_TILE_WIDTH, SURFCAST_TILE_HEIGHT) +
+  ivec2 local = ivec2(place) * ivec2(SURFCAST_TILE_WIDTH, SURFCAST_TILE_HEIGHT) +
                 ivec2(gl_LocalInvocationID.xy) * ivec2(1, SURFCAST_ROWS);
   vec2 pixel = vec2(frame.region.xy + local) + 0.5;
 #ifdef SURFCAST_EYE_DOME

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 #include "base/stopwatch.h"
 #include "shared/surfel_layout.h"
@@ -94,12 +95,35 @@ ProjectionWork plan_work(const RegionTask& task) {
   return work;
 }
 
-/// Dispatches work groups in rows: GL promises 65535 along each dimension.
-void dispatch_rows(size_t groups) {
-  constexpr size_t kRow = 32768;
-  const size_t rows = (groups + kRow - 1) / kRow;
-  glDispatchCompute(static_cast<GLuint>(std::min(groups, kRow)), static_cast<GLuint>(rows), 1);
-  glMemoryBarrier(GL_ALL_BARRIER_BITS);
+Status check(const std::atomic<bool>& cancelled) {
+  if (cancelled.load(std::memory_order_relaxed)) return fail(ErrorKind::kCancelled, "cancelled");
+  return {};
+}
+
+/// Work groups of a pass: rows of a width, or, without one, a line of `count`.
+struct Groups {
+  size_t count = 0;
+  std::optional<size_t> width;
+};
+
+/// Dispatches them in batches between which the picture can be given up. The current program finds the first row or
+/// group of a batch in its uniform `first_group`.
+Status dispatch_in_batches(const Groups& groups, BatchPace& pace, const std::atomic<bool>& cancelled) {
+  const size_t width = groups.width.value_or(1);
+  for (size_t first = 0; first < groups.count;) {
+    const size_t count = std::clamp<size_t>(pace.groups() / width, 1, groups.count - first);
+    const auto x = static_cast<GLuint>(groups.width ? width : count);
+    const auto y = static_cast<GLuint>(groups.width ? count : 1);
+    const Stopwatch watch;
+    glUniform1ui(SURFCAST_UNIFORM_FIRST_GROUP, static_cast<GLuint>(first));
+    glDispatchCompute(x, y, 1);
+    glMemoryBarrier(GL_ALL_BARRIER_BITS);
+    glFinish();
+    pace.took(count * width, watch.milliseconds());
+    first += count;
+    if (Status status = check(cancelled); !status) return status;
+  }
+  return {};
 }
 
 template <typename T>
@@ -114,11 +138,10 @@ void bind_uniforms(StorageBuffer& buffer, GLuint binding, const void* constants,
   glBindBufferBase(GL_UNIFORM_BUFFER, binding, buffer.name());
 }
 
-void upload_constants(const RegionTask& task, const ProjectionWork& work, uint32_t thinned_to, SplatBuffers& buffers) {
+void upload_constants(const RegionTask& task, uint32_t thinned_to, SplatBuffers& buffers) {
   layout::FrameConstants constants = task.constants;
   constants.tiles.w = static_cast<int>(buffers.splat_capacity());
   constants.flags.z = static_cast<int>(thinned_to);
-  constants.flags.w = static_cast<int>(work.chunks.size());
   bind_uniforms(buffers.frame, SURFCAST_BIND_FRAME, &constants, sizeof constants);
 }
 
@@ -186,8 +209,9 @@ uint32_t thinner(const layout::Counters& counters, uint32_t thinned_to, size_t l
 
 /// Projects all visible surfels and sums up the tile counts; again if the records did not fit, or if a tile is so
 /// crowded that its splats are to be thinned out.
-layout::Counters project(const RegionTask& task, const ProjectionWork& work, Programs& programs,
-                         const SplatPrograms& variant, SplatBuffers& buffers) {
+Result<layout::Counters> project(const RegionTask& task, const ProjectionWork& work, Programs& programs,
+                                 const SplatPrograms& variant, SplatBuffers& buffers,
+                                 const std::atomic<bool>& cancelled) {
   const gl::DebugGroup group("project");
   constexpr size_t kFirstCapacity = 1u << 18;
   const bool with_normals = task.variant.colored && task.variant.lit;
@@ -196,11 +220,12 @@ layout::Counters project(const RegionTask& task, const ProjectionWork& work, Pro
   upload_look(task, work, buffers);
   uint32_t thinned_to = 0;
   while (true) {
-    upload_constants(task, work, thinned_to, buffers);
+    upload_constants(task, thinned_to, buffers);
     clear_counts(task, buffers);
     bind_for_projection(task, buffers);
     glUseProgram(variant.project->name());
-    if (!work.chunks.empty()) dispatch_rows(work.chunks.size());
+    Status projected = dispatch_in_batches({work.chunks.size(), {}}, buffers.project_pace, cancelled);
+    if (!projected) return fail(std::move(projected.error()));
     glUseProgram(programs.bin_offsets().name());
     glDispatchCompute(1, 1, 1);
     glMemoryBarrier(GL_ALL_BARRIER_BITS);
@@ -217,7 +242,8 @@ layout::Counters project(const RegionTask& task, const ProjectionWork& work, Pro
   }
 }
 
-void bin(const layout::Counters& counters, Programs& programs, SplatBuffers& buffers) {
+Status bin(const layout::Counters& counters, Programs& programs, SplatBuffers& buffers,
+           const std::atomic<bool>& cancelled) {
   const gl::DebugGroup group("bin");
   const size_t entries = counters.counts.z;
   buffers.lists.reserve(std::clamp<size_t>(entries + entries / 4, 1, SurfelBuffer::device_limit()));
@@ -225,11 +251,11 @@ void bin(const layout::Counters& counters, Programs& programs, SplatBuffers& buf
   buffers.lists.bind_for_writing(SURFCAST_UNIT_LISTS);
   glUseProgram(programs.bin().name());
   const size_t splats = size_t{counters.counts.x} + counters.counts.y;
-  if (splats > 0) dispatch_rows((splats + SURFCAST_CHUNK - 1) / SURFCAST_CHUNK);
+  return dispatch_in_batches({(splats + SURFCAST_CHUNK - 1) / SURFCAST_CHUNK, {}}, buffers.bin_pace, cancelled);
 }
 
-void splat(const RegionTask& task, const layout::Counters& counters, const SplatPrograms& variant,
-           SplatBuffers& buffers) {
+Status splat(const RegionTask& task, const layout::Counters& counters, const SplatPrograms& variant,
+             SplatBuffers& buffers, const std::atomic<bool>& cancelled) {
   const gl::DebugGroup group("splat");
   if (task.variant.eye_dome) {
     const size_t pixels = static_cast<size_t>(task.drawn.width) * static_cast<size_t>(task.drawn.height);
@@ -242,13 +268,14 @@ void splat(const RegionTask& task, const layout::Counters& counters, const Splat
   buffers.discs.bind_for_reading(SURFCAST_UNIT_DISCS);
   buffers.lists.bind_for_reading(SURFCAST_UNIT_LISTS);
   if (task.variant.colored && task.variant.lit) buffers.normals.bind_for_reading(SURFCAST_UNIT_NORMALS);
-  const auto dispatch = [&task](const gl::Program& program) {
+  const auto dispatch = [&](const gl::Program& program) {
     glUseProgram(program.name());
-    glDispatchCompute(static_cast<GLuint>(task.constants.tiles.x), static_cast<GLuint>(task.constants.tiles.y), 1);
+    const glm::ivec4& tiles = task.constants.tiles;
+    return dispatch_in_batches({static_cast<size_t>(tiles.y), static_cast<size_t>(tiles.x)}, buffers.splat_pace,
+                               cancelled);
   };
-  dispatch(*variant.splat);
-  if (counters.counts.y > 0) dispatch(*variant.splat_large);
-  glMemoryBarrier(GL_ALL_BARRIER_BITS);
+  if (Status status = dispatch(*variant.splat); !status) return status;
+  return counters.counts.y > 0 ? dispatch(*variant.splat_large) : Status();
 }
 
 /// From light and depth of all that was drawn to the pixels that are wanted.
@@ -264,11 +291,6 @@ void shade_by_depth(const RegionTask& task, const gl::Program& program, SplatBuf
   glMemoryBarrier(GL_ALL_BARRIER_BITS);
 }
 
-Status check(const std::atomic<bool>& cancelled) {
-  if (cancelled.load(std::memory_order_relaxed)) return fail(ErrorKind::kCancelled, "cancelled");
-  return {};
-}
-
 }  // namespace
 
 Result<RegionStats> draw_region(const RegionTask& task, Programs& programs, SplatBuffers& buffers,
@@ -277,24 +299,26 @@ Result<RegionStats> draw_region(const RegionTask& task, Programs& programs, Spla
   if (!variant) return fail(variant.error());
 
   RegionStats stats;
-  Stopwatch project_watch;
-  const layout::Counters counters = project(task, plan_work(task), programs, *variant, buffers);
-  stats.splats = uint64_t{counters.counts.x} + counters.counts.y;
+  const Stopwatch project_watch;
+  const Result<layout::Counters> counters = project(task, plan_work(task), programs, *variant, buffers, cancelled);
+  if (!counters) return fail(counters.error());
+  stats.splats = uint64_t{counters->counts.x} + counters->counts.y;
   stats.project_ms = project_watch.milliseconds();
-  if (Status status = check(cancelled); !status) return fail(std::move(status.error()));
 
-  Stopwatch bin_watch;
-  bin(counters, programs, buffers);
-  glFinish();
+  const Stopwatch bin_watch;
+  if (Status status = bin(*counters, programs, buffers, cancelled); !status) return fail(std::move(status.error()));
   stats.bin_ms = bin_watch.milliseconds();
-  if (Status status = check(cancelled); !status) return fail(std::move(status.error()));
 
-  Stopwatch splat_watch;
+  const Stopwatch splat_watch;
   buffers.picture.reserve(pixels.size());
   buffers.picture.bind(SURFCAST_BIND_PICTURE);
-  splat(task, counters, *variant, buffers);
-  if (task.variant.eye_dome) shade_by_depth(task, *variant->eye_dome, buffers);
-  glFinish();
+  if (Status status = splat(task, *counters, *variant, buffers, cancelled); !status) {
+    return fail(std::move(status.error()));
+  }
+  if (task.variant.eye_dome) {
+    shade_by_depth(task, *variant->eye_dome, buffers);
+    glFinish();
+  }
   stats.splat_ms = splat_watch.milliseconds();
 
   Stopwatch read_watch;

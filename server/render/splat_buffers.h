@@ -5,6 +5,7 @@
 #include <span>
 
 #include "gl/objects.h"
+#include "render/batch_pace.h"
 
 namespace surfcast {
 
@@ -57,8 +58,11 @@ class ConstantTexels {
   gl::Texture texture_;
 };
 
-/// Everything between the passes of one region.
+/// Everything between the passes of one region, and how fast they are.
 struct SplatBuffers {
+  BatchPace project_pace;
+  BatchPace bin_pace;
+  BatchPace splat_pace;
   ConstantTexels srgb;  ///< linear_root_table
   TexelBuffer splats{"splats", GL_RGBA32UI, 16};
   TexelBuffer discs{"discs", GL_RGBA32UI, 16};

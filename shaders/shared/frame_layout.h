@@ -37,7 +37,7 @@ struct FrameConstants {
                              // under per-pixel normalisation, radius of the wanted spacing at distance 1 straight ahead
   SURFCAST_VEC4 background;  // linear light
   SURFCAST_IVEC4 flags;      // x: back faces are culled, y: per-surfel weights, z: splats that a tile is thinned out to
-                             // (0: not at all), w: chunks to project
+                             // (0: not at all), w: unused
 };
 
 // One visible block (see shared/surfel_layout.h).
@@ -88,6 +88,10 @@ struct Chunk {
 struct Counters {
   SURFCAST_UVEC4 counts;
 };
+
+// Location of the uniform `first_group` of passes that are dispatched in batches: work groups, or rows of them, before
+// the batch.
+#define SURFCAST_UNIFORM_FIRST_GROUP 0
 
 // Bindings. Storage buffers:
 #define SURFCAST_BIND_LOOKS 0  // BlockLook per block
