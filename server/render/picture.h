@@ -87,6 +87,7 @@ struct FrameStats {
   uint64_t surfels_drawn = 0;  ///< splats, once what faces away or lies outside has been left out
   uint32_t blocks_drawn = 0;
   uint32_t blocks_selected = 0;    ///< that the picture should show
+  uint32_t holes = 0;              ///< parts of the view for which no block is there
   uint32_t blocks_waited_for = 0;  ///< that were not resident when it was asked for
   uint32_t blocks_resident = 0;    ///< on the GPU afterwards, of all models
   uint64_t bytes_resident = 0;     ///< of GPU memory that they take

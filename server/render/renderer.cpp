@@ -175,6 +175,7 @@ FrameStats Renderer::State::stats_of(const Scene& scene, const PreparedView& vie
   stats.surfels_drawn = drawn.splats;
   stats.blocks_drawn = static_cast<uint32_t>(view.selection.draw.size());
   stats.blocks_selected = static_cast<uint32_t>(view.selection.target.size());
+  stats.holes = view.selection.holes;
   stats.blocks_waited_for = view.waited_for;
   stats.blocks_resident = static_cast<uint32_t>(residency.pool().blocks());
   stats.bytes_resident = residency.pool().bytes();

@@ -10,6 +10,7 @@
 #include <thread>
 #include <utility>
 
+#include "base/contract.h"
 #include "base/stopwatch.h"
 #include "service/worker_pool.h"
 
@@ -44,6 +45,7 @@ struct RenderService::State {
     std::atomic<bool> encoding = false;  ///< has begun
   };
   using JobPointer = std::shared_ptr<Job>;
+  using SharedFrame = std::shared_ptr<const Frame>;
 
   State(const ModelSource& source, const ServiceLimits& service_limits)
       : models(source), limits(service_limits), queue(service_limits.queued_jobs) {}
@@ -57,8 +59,8 @@ struct RenderService::State {
 
   // Pool.
   static EncodedPicture describe(const Job& job, const Frame& frame);
-  static Result<EncodedPicture> encode(Job& job, const Result<Frame>& frame);
-  void encode_one(const JobPointer& job, Result<Frame> frame);
+  static Result<EncodedPicture> encode(Job& job, const Result<SharedFrame>& shared);
+  void encode_one(const JobPointer& job, Result<SharedFrame> frame);
 
   // Any thread.
   [[nodiscard]] Status check(const PictureJob& wish) const;
@@ -131,11 +133,15 @@ void RenderService::State::draw_one(Painter& painter, const JobPointer& job) {
   const Stopwatch watch;
   Result<Frame> frame = guarded([&] { return paint(painter, *job); });
   job->draw_ms = watch.milliseconds();
+  Result<SharedFrame> shared = SharedFrame();
   if (frame) {
     frame->stats.stages.insert(frame->stats.stages.begin(), StageTime{"queue", job->waited_ms});
     give_up(job->wish.supersedes);
+    shared = std::make_shared<const Frame>(std::move(*frame));
+  } else {
+    shared = fail(frame.error());
   }
-  pool->post([this, job, frame = std::move(frame)]() mutable { encode_one(job, std::move(frame)); });
+  pool->post([this, job, shared = std::move(shared)]() mutable { encode_one(job, std::move(shared)); });
 }
 
 /// Spares the encoders a picture that is overtaken by a newer one.
@@ -163,14 +169,16 @@ EncodedPicture RenderService::State::describe(const Job& job, const Frame& frame
   return picture;
 }
 
-Result<EncodedPicture> RenderService::State::encode(Job& job, const Result<Frame>& frame) {
-  if (!frame) return fail(frame.error());
+Result<EncodedPicture> RenderService::State::encode(Job& job, const Result<SharedFrame>& shared) {
+  if (!shared) return fail(shared.error());
   job.encoding = true;
   if (job.cancelled) return cancelled_error();
   const Stopwatch watch;
-  EncodedPicture picture = describe(job, *frame);
-  if (!frame->image.pixels.empty()) {
-    Result<std::vector<std::byte>> bytes = encode_picture(frame->image, job.wish.format, job.wish.quality);
+  const Frame& frame = **shared;
+  EncodedPicture picture = describe(job, frame);
+  if (job.wish.keep_frame) picture.frame = *shared;
+  if (!frame.image.pixels.empty()) {
+    Result<std::vector<std::byte>> bytes = encode_picture(frame.image, job.wish.format, job.wish.quality);
     if (!bytes) return fail(bytes.error());
     picture.bytes = std::move(*bytes);
   }
@@ -180,7 +188,7 @@ Result<EncodedPicture> RenderService::State::encode(Job& job, const Result<Frame
   return picture;
 }
 
-void RenderService::State::encode_one(const JobPointer& job, Result<Frame> frame) {
+void RenderService::State::encode_one(const JobPointer& job, Result<SharedFrame> frame) {
   Result<EncodedPicture> result = guarded([&] { return encode(*job, frame); });
   frame = cancelled_error();  // lets go of the pixels before the render thread may make more
   {
@@ -284,6 +292,23 @@ bool RenderService::cancel(JobId id) {
   }
   if (waiting) state_->finish(waiting, cancelled_error());
   return true;
+}
+
+JobId RenderService::encode(std::shared_ptr<const Frame> frame, PictureJob wish, PictureDone done) {
+  SURFCAST_EXPECTS(frame->image.format == pixel_format_of(wish.format));
+  const auto job = std::make_shared<State::Job>();
+  job->wish = std::move(wish);
+  job->done = std::move(done);
+  {
+    const std::lock_guard lock(state_->mutex);
+    job->id = ++state_->last_id;
+    state_->jobs.emplace(job->id, job);
+    ++state_->frames_in_encoding;
+  }
+  state_->pool->post([state = state_.get(), job, frame = std::move(frame)]() mutable {
+    state->encode_one(job, State::SharedFrame(std::move(frame)));
+  });
+  return job->id;
 }
 
 bool RenderService::replace(JobId id, PictureJob wish) {

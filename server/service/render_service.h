@@ -31,8 +31,9 @@ struct PictureJob {
   PictureRequest request;      ///< its pixel format follows from `format`
   bool up_from_model = false;  ///< take the model's vertical axis as the camera's view_up
   FileFormat format = FileFormat::kPng;
-  int quality = 90;      ///< of JPEG and WebP, 1 to 100
-  JobId supersedes = 0;  ///< a job that nobody wants to see any more once this one is drawn; 0: none
+  int quality = 90;         ///< of JPEG and WebP, 1 to 100
+  JobId supersedes = 0;     ///< a job that nobody wants to see any more once this one is drawn; 0: none
+  bool keep_frame = false;  ///< hand the frame over with the picture
 };
 
 /// A picture as a file, and what it shows.
@@ -50,7 +51,8 @@ struct EncodedPicture {
   double waited_ms = 0;    ///< for the render thread
   double draw_ms = 0;
   double encode_ms = 0;
-  FrameStats stats;  ///< its stages begin with "queue" and end with "encode"
+  std::shared_ptr<const Frame> frame;  ///< see PictureJob::keep_frame
+  FrameStats stats;                    ///< its stages begin with "queue" and end with "encode"
 };
 
 /// Turns wishes into encoded pictures. One render thread owns the painter and takes jobs from a queue that is fair
@@ -74,6 +76,8 @@ class RenderService {
   /// Lets a job that still waits for the render thread draw something else in its place. False if it does not wait any
   /// more, or if there can be no such picture.
   bool replace(JobId job, PictureJob wish);
+  /// The picture that `wish` asks for, from a frame that has been drawn for that very request.
+  JobId encode(std::shared_ptr<const Frame> frame, PictureJob wish, PictureDone done);
   /// True when the job was outstanding; its callback then gets kCancelled, unless the picture is just being handed
   /// over.
   bool cancel(JobId job);

@@ -19,10 +19,18 @@ int scaled(int pixels, double scale) {
   return std::max(1, static_cast<int>(std::lround(pixels * scale)));
 }
 
-/// What the picture says about going on: blocks that are still to come may make it better.
+/// Whether the final frame can be made of the one before it, which has the same pixels.
+bool may_be_kept(const PictureJob& job) {
+  constexpr size_t kMostPixels = size_t{1} << 23;
+  return static_cast<size_t>(job.request.width) * static_cast<size_t>(job.request.height) <= kMostPixels &&
+         pixel_format_of(job.format) == pixel_format_of(FileFormat::kJpeg);
+}
+
+/// What the picture says about going on: blocks that are still to come may make it better. A picture with holes that
+/// they will fill soon is not worth showing.
 FrameNews news_of(FrameKind kind, const EncodedPicture& picture) {
   if (kind == FrameKind::kFinal || picture.settled) return FrameNews::kComplete;
-  return picture.bytes.empty() || picture.stats.blocks_drawn == 0 ? FrameNews::kNothing : FrameNews::kImproves;
+  return picture.bytes.empty() || picture.stats.holes > 0 ? FrameNews::kNothing : FrameNews::kImproves;
 }
 
 }  // namespace
@@ -42,7 +50,7 @@ ViewSession::~ViewSession() {
   --counts_.open;
 }
 
-PictureJob ViewSession::wish(FrameKind kind) const {
+PictureJob ViewSession::wish(FrameKind kind, JobId supersedes) const {
   PictureJob job = newest_.picture;
   if (kind == FrameKind::kFinal) return job;
   PictureRequest& request = job.request;
@@ -51,6 +59,7 @@ PictureJob ViewSession::wish(FrameKind kind) const {
   job.quality = kFineQuality;
   if (kind == FrameKind::kFine) {
     request.known_cut = shown_cut_;
+    job.keep_frame = may_be_kept(newest_.picture);
     return job;
   }
   const MotionQuality quality = quality_of(quality_);
@@ -60,7 +69,7 @@ PictureJob ViewSession::wish(FrameKind kind) const {
   request.normalization = Normalization::kSurfel;
   request.viewer = viewer_;
   job.quality = quality.jpeg_quality;
-  job.supersedes = last_quick_job_;
+  job.supersedes = supersedes;
   return job;
 }
 
@@ -72,6 +81,7 @@ void ViewSession::update(ViewUpdate update, ViewTime now) {
   if (!changed) return;
   newest_begun_ = false;
   shown_cut_ = 0;
+  whole_.reset();
   for (const uint64_t frame : plan_.outdated()) drop(frame);
   if (outgoing_ && outgoing_->kind != FrameKind::kQuick) give_up_sending();
   renew();
@@ -82,7 +92,7 @@ void ViewSession::renew() {
   const std::optional<uint64_t> frame = plan_.renewable();
   if (!frame) return;
   Job& job = frames_.at(*frame);
-  if (!service_.replace(job.job, wish(FrameKind::kQuick))) return;
+  if (!service_.replace(job.job, wish(FrameKind::kQuick, job.supersedes))) return;
   plan_.renew(*frame);
   job.update = newest_.update;
   job.quality = quality_;
@@ -114,14 +124,19 @@ void ViewSession::draw(FrameKind kind) {
   job.kind = kind;
   job.update = newest_.update;
   job.quality = quality_;
+  job.supersedes = last_quick_job_;
   plan_.begin(frame, kind);
   newest_begun_ = true;
-  job.job = service_.draw(session_, wish(kind),
-                          [weak = weak_from_this(), post = port_.post, frame](Result<EncodedPicture> picture) {
-                            post([weak, frame, picture = std::move(picture)]() mutable {
-                              if (const auto self = weak.lock()) self->finish(frame, std::move(picture));
-                            });
-                          });
+  auto done = [weak = weak_from_this(), post = port_.post, frame](Result<EncodedPicture> picture) {
+    post([weak, frame, picture = std::move(picture)]() mutable {
+      if (const auto self = weak.lock()) self->finish(frame, std::move(picture));
+    });
+  };
+  if (kind == FrameKind::kFinal && whole_) {
+    job.job = service_.encode(std::exchange(whole_, {}), wish(kind, 0), std::move(done));
+  } else {
+    job.job = service_.draw(session_, wish(kind, last_quick_job_), std::move(done));
+  }
   if (kind == FrameKind::kQuick) last_quick_job_ = job.job;
 }
 
@@ -139,7 +154,11 @@ void ViewSession::finish(uint64_t frame, Result<EncodedPicture> picture) {
   const ViewTime now = std::chrono::steady_clock::now();
   const FrameNews news = news_of(job.kind, *picture);
   plan_.finish(frame, news, now);
-  if (job.kind == FrameKind::kFine) shown_cut_ = picture->cut;
+  if (job.kind == FrameKind::kFine) {
+    shown_cut_ = picture->cut;
+    if (picture->converged && !picture->bytes.empty()) whole_ = std::move(picture->frame);
+    picture->frame.reset();
+  }
   if (picture->bytes.empty() || (news == FrameNews::kNothing)) {
     frames_.erase(frame);
     return;
@@ -162,6 +181,8 @@ void ViewSession::show(uint64_t frame, FrameKind kind, EncodedPicture picture) {
   message.width = newest_.picture.request.width;
   message.height = newest_.picture.request.height;
   message.moving = kind == FrameKind::kQuick;
+  // What the renderer calls converged is so for the request of this frame, not for the one of the view.
+  picture.converged = picture.converged && kind == FrameKind::kFinal;
   std::vector<std::byte> bytes = std::move(picture.bytes);
   message.picture = std::move(picture);
   outgoing_ = Outgoing{frame, kind, std::move(message), std::move(bytes), 0};

@@ -79,6 +79,7 @@ class ViewSession : public std::enable_shared_from_this<ViewSession> {
     FrameKind kind = FrameKind::kQuick;
     uint64_t update = 0;
     JobId job = 0;
+    JobId supersedes = 0;  ///< the frame for motion before it
     QualityState quality;
     MotionCost cost;
     size_t unacknowledged = 0;  ///< messages
@@ -94,7 +95,7 @@ class ViewSession : public std::enable_shared_from_this<ViewSession> {
   };
 
   void draw(FrameKind kind);
-  [[nodiscard]] PictureJob wish(FrameKind kind) const;
+  [[nodiscard]] PictureJob wish(FrameKind kind, JobId supersedes) const;
   void renew();
   void drop(uint64_t frame);
   void forget_if_done(uint64_t frame);
@@ -122,7 +123,9 @@ class ViewSession : public std::enable_shared_from_this<ViewSession> {
   JobId last_quick_job_ = 0;
   double last_draw_ms_ = 0;  ///< of the last frame that was drawn
   MotionCost last_cost_;     ///< of the last frame for motion that was acknowledged
-  uint64_t shown_cut_ = 0;   ///< blocks of the last frame at rest of the newest picture, see PictureRequest::known_cut
+  /// The newest picture, if the last frame at rest was all that it will be.
+  std::shared_ptr<const Frame> whole_;
+  uint64_t shown_cut_ = 0;  ///< blocks of the last frame at rest of the newest picture, see PictureRequest::known_cut
   std::map<uint64_t, Job> frames_;
   std::optional<Outgoing> outgoing_;
 };

@@ -84,6 +84,7 @@ TEST_F(ViewSessionTest, AViewAtRestEndsWithTheAnswerToItsPictureAndThenFallsSile
     frames.push_back(next_frame());
   } while (!frames.back().picture().converged() && !HasFailure());
   ASSERT_EQ(frames.size(), 3u);
+  EXPECT_EQ(studio_->drawn, 2) << "the last frame has the pixels of the one before";
   EXPECT_TRUE(frames[0].moving());
   EXPECT_EQ(frames[0].picture().format(), wire::FILE_FORMAT_JPEG);
   EXPECT_EQ(frames[0].picture().normalization(), wire::NORMALIZATION_SURFEL);

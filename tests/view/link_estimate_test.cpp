@@ -1,0 +1,124 @@
+#include "view/link_estimate.h"
+
+#include <algorithm>
+#include <deque>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include <gtest/gtest.h>
+
+namespace surfcast {
+namespace {
+
+/// A line of a rate and a round trip, with messages in the order they are sent.
+class Line {
+ public:
+  Line(double bytes_per_ms, double round_trip_ms) : bytes_per_ms_(bytes_per_ms), round_trip_ms_(round_trip_ms) {}
+
+  void send(LinkEstimate& estimate, size_t bytes) {
+    estimate.send(++frame_, bytes, at(now_ms_));
+    free_ms_ = std::max(free_ms_, now_ms_) + static_cast<double>(bytes) / bytes_per_ms_;
+    arrivals_.push_back(free_ms_ + round_trip_ms_);
+  }
+  /// The oldest message is acknowledged.
+  std::optional<double> acknowledge(LinkEstimate& estimate, double client_ms = 0) {
+    now_ms_ = std::max(now_ms_, arrivals_.front() + client_ms);
+    arrivals_.pop_front();
+    return estimate.acknowledge(++acknowledged_, client_ms, at(now_ms_));
+  }
+
+ private:
+  static ViewTime at(double ms) {
+    return ViewTime{} + std::chrono::duration_cast<ViewTime::duration>(std::chrono::duration<double, std::milli>(ms));
+  }
+  double bytes_per_ms_;
+  double round_trip_ms_;
+  double now_ms_ = 1e6;
+  double free_ms_ = 0;
+  std::deque<double> arrivals_;
+  uint64_t frame_ = 0;
+  uint64_t acknowledged_ = 0;
+};
+
+TEST(LinkEstimate, KnowsNothingAtFirst) {
+  const LinkEstimate estimate;
+  EXPECT_EQ(estimate.transfer_ms(1'000'000), 0);
+  EXPECT_FALSE(estimate.bytes_in(10));
+}
+
+TEST(LinkEstimate, OneMessageMakesTheLineTooSlowRatherThanTooFast) {
+  LinkEstimate estimate;
+  Line line(500, 80);
+  line.send(estimate, 20'000);
+  line.acknowledge(estimate);
+  EXPECT_NEAR(estimate.transfer_ms(20'000), 120, 0.1);
+}
+
+TEST(LinkEstimate, MessagesOfTwoSizesTellTheRateFromTheRoundTrip) {
+  LinkEstimate estimate;
+  Line line(500, 80);
+  for (const size_t bytes : {20'000, 8'000, 30'000}) {
+    line.send(estimate, bytes);
+    line.acknowledge(estimate);
+  }
+  EXPECT_NEAR(estimate.transfer_ms(50'000), 100, 1);
+  EXPECT_NEAR(static_cast<double>(*estimate.bytes_in(100)), 50'000, 500);
+}
+
+TEST(LinkEstimate, WhatAMessageWaitsForTheOneBeforeItIsNotItsOwn) {
+  LinkEstimate estimate;
+  Line line(500, 80);
+  for (const size_t bytes : {10'000, 40'000}) {
+    line.send(estimate, bytes);
+    line.acknowledge(estimate);
+  }
+  line.send(estimate, 30'000);
+  for (int i = 0; i < 50; ++i) {
+    line.send(estimate, i % 2 == 0 ? 10'000 : 30'000);
+    line.acknowledge(estimate);
+  }
+  EXPECT_NEAR(estimate.transfer_ms(50'000), 100, 10);
+}
+
+TEST(LinkEstimate, TheClientsOwnTimeIsNotTheLines) {
+  LinkEstimate estimate;
+  Line line(500, 10);
+  for (const size_t bytes : {8'000, 30'000}) {
+    line.send(estimate, bytes);
+    line.acknowledge(estimate, 25);
+  }
+  EXPECT_NEAR(estimate.transfer_ms(50'000), 100, 1);
+}
+
+TEST(LinkEstimate, LongMotionAtOneSizeForgetsNothing) {
+  LinkEstimate estimate;
+  Line line(500, 80);
+  line.send(estimate, 100'000);
+  line.acknowledge(estimate);
+  for (int i = 0; i < 200; ++i) {
+    line.send(estimate, 8'000);
+    line.acknowledge(estimate);
+  }
+  EXPECT_NEAR(estimate.transfer_ms(50'000), 100, 5);
+}
+
+TEST(LinkEstimate, AcknowledgementsOfNothingAreIgnored) {
+  LinkEstimate estimate;
+  EXPECT_FALSE(estimate.acknowledge(3, 0, ViewTime{}));
+}
+
+TEST(LinkEstimate, ClaimsOfAClientThatCannotBeDoNoHarm) {
+  LinkEstimate estimate;
+  Line line(500, 80);
+  for (const double ms :
+       {std::numeric_limits<double>::quiet_NaN(), -5.0, 1e300, std::numeric_limits<double>::infinity()}) {
+    line.send(estimate, 10'000);
+    estimate.acknowledge(line.acknowledge(estimate) ? 0 : 1, ms, ViewTime{});
+  }
+  EXPECT_GT(estimate.transfer_ms(10'000), 0);
+  EXPECT_LT(estimate.transfer_ms(10'000), 200);
+}
+
+}  // namespace
+}  // namespace surfcast
