@@ -33,7 +33,7 @@ class Agreement {
  public:
   void add(const glm::u8vec4& pixel, const std::optional<PickedSurfel>& picked) {
     // Where edges are blended, both answers are right.
-    if (pixel.a == 0) EXPECT_FALSE(picked && ++wrong_ > 3) << "the background is picked";
+    if (pixel.a == 0 && picked) ++wrong_;
     if (pixel.a != 255 || !(near(pixel, kSphere) || near(pixel, kFloor))) return;
     ++compared_;
     if (!picked || !near(pixel, *picked->color)) ++wrong_;
