@@ -40,7 +40,7 @@ class Agreement {
   }
   void expect_good(int least) const {
     EXPECT_GT(compared_, least);
-    EXPECT_LE(wrong_, compared_ / 200);
+    EXPECT_LE(wrong_, 1);
   }
 
  private:
@@ -65,13 +65,13 @@ TEST_F(PickGLTest, PicksAgreeWithPicturesAlsoWhereSomethingIsHidden) {
       const CameraFrame frame = *make_camera_frame(camera, request.width, request.height);
       Agreement agreement;
       const std::atomic<bool> no{false};
-      for (int y = 0; y < request.height; y += 5) {
-        for (int x = 0; x < request.width; x += 5) {
+      for (int y = 3; y < request.height; y += 15) {
+        for (int x = 3; x < request.width; x += 15) {
           const PickQuery query{frame, {x + 0.5, y + 0.5}, request.clip, request.hidden_classes};
           agreement.add(pixel(image, x, y), *pick_surfel(*model, query, no));
         }
       }
-      agreement.expect_good(300);
+      agreement.expect_good(40);
     }
   }
 }
