@@ -3,6 +3,7 @@ import './styles/base.css';
 import './styles/layout.css';
 import './styles/controls.css';
 import './styles/cards.css';
+import './styles/pages.css';
 import { render } from 'preact';
 import { Keyboard } from './input/keyboard';
 import { StageInput } from './input/stage_input';
@@ -62,7 +63,7 @@ function start(): void {
     toggleFlight: () => (store.flying.value = !store.flying.peek()),
     copyLink: actions.copyLink,
   });
-  followSize(stage);
+  followSize(stage, (before, after) => eye.resized(before, after));
   startOverlay(overlay);
   startRoutes();
   openTheOnly();

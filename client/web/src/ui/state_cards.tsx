@@ -34,7 +34,7 @@ function Refused({ message }: { message: string }): JSX.Element {
   return (
     <div class="state-card" role="alert">
       <h2>This page and the server do not understand each other</h2>
-      <p>{message}</p>
+      <p class="message">{message}</p>
       <p class="faint">Reload the page to get the one that belongs to the server.</p>
       <button type="button" class="primary" onClick={() => location.reload()}>
         Reload the page
@@ -50,7 +50,7 @@ function Problem({ message, again }: { message: string; again: boolean }): JSX.E
   return (
     <div class="state-card" role="alert">
       <h2>{title}</h2>
-      <p>{message}</p>
+      <p class="message">{message}</p>
       {again && <p class="faint">It is being tried again.</p>}
       <div class="button-row">
         <button type="button" onClick={() => director.retry()}>

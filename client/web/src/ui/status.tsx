@@ -1,6 +1,6 @@
 import type { JSX } from 'preact';
 import { FileFormat, type Picture } from '../generated/surfcast_pb';
-import { askedUpdate, figures, figuresOpen, link, moving, picking, shownFrame, unasked } from '../state/store';
+import { askedUpdate, figures, figuresOpen, link, moving, picking, shownFrame, unasked, viewProblem } from '../state/store';
 import { stageNames, type StageName, type StageTimes } from '../view/figures';
 import { IconButton } from './controls';
 
@@ -18,6 +18,7 @@ interface State {
 
 function stateNow(): State {
   if (link.value.kind !== 'open') return { kind: 'offline', text: 'Offline' };
+  if (viewProblem.value) return { kind: 'offline', text: 'No picture' };
   const frame = shownFrame.value;
   if (!frame) return { kind: 'working', text: 'Loading' };
   if (picking.value) return { kind: 'working', text: 'Looking' };

@@ -4,6 +4,7 @@ import { diagonal, fit, standardView, type ViewName } from '../camera/standard_v
 import { depthOf } from '../camera/projection';
 import { distance, subtract, dot, type Pixel, type Vector } from '../camera/vector';
 import { poseAxes } from '../camera/pose';
+import type { Size } from '../protocol/pictures';
 import * as store from '../state/store';
 import { Motor, type Drag } from './motor';
 
@@ -123,6 +124,16 @@ export class Navigator {
     const velocity = { x: (left.x + right * pixels) / decay, y: (left.y + down * pixels) / decay };
     this.motor.coastOn(velocity, drag, decay);
     this.tellMoving();
+  }
+
+  /**
+   * The picture's shape changed. The view angle is vertical, so a picture that is higher than wide shows less from side
+   * to side: the eye goes as far back, or as much nearer, as keeps what the shorter side shows.
+   */
+  resized(before: Size, after: Size): void {
+    const slender = ({ width, height }: Size): number => Math.max(1, height / Math.max(1, width));
+    const factor = slender(after) / slender(before);
+    if (factor !== 1) this.change((pose) => this.zoomed(pose, focalPoint(pose, store.upAxis.peek()), factor));
   }
 
   // ---- flying ----

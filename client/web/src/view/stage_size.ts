@@ -1,23 +1,29 @@
+import { batch } from '@preact/signals';
+import type { Size } from '../protocol/pictures';
 import * as store from '../state/store';
 
 const mostPixels = 2560 * 1600; // beyond this sharpness is not worth the wait
 const settle = 120; // ms: a window that is being resized would ask for a new picture at every step
 
 /** Device pixels of an element, fewer where the screen has very many. */
-export function pixelsOf(width: number, height: number, ratio: number): { width: number; height: number } {
+export function pixelsOf(width: number, height: number, ratio: number): Size {
   const used = Math.min(ratio, 2, Math.sqrt(mostPixels / Math.max(1, width * height)));
   return { width: Math.round(width * used), height: Math.round(height * used) };
 }
 
 /** Keeps the store's size of the picture that of the element. */
-export function followSize(element: HTMLElement): void {
+export function followSize(element: HTMLElement, changed: (before: Size, after: Size) => void): void {
   let timer: ReturnType<typeof setTimeout> | undefined;
   const take = (): void => {
     const { clientWidth, clientHeight } = element;
     if (clientWidth === 0 || clientHeight === 0) return;
     const size = pixelsOf(clientWidth, clientHeight, devicePixelRatio);
     const now = store.stageSize.peek();
-    if (size.width !== now.width || size.height !== now.height) store.stageSize.value = size;
+    if (size.width === now.width && size.height === now.height) return;
+    batch(() => {
+      if (now.width > 0) changed(now, size);
+      store.stageSize.value = size;
+    });
   };
   new ResizeObserver(() => {
     clearTimeout(timer);
