@@ -1,5 +1,6 @@
 import '@fontsource-variable/inter/wght.css';
 import './styles/base.css';
+import './styles/stage.css';
 import './styles/layout.css';
 import './styles/controls.css';
 import './styles/cards.css';
