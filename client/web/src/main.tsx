@@ -14,6 +14,7 @@ import { currentLink, openModel, startRoutes } from './state/routes';
 import * as store from './state/store';
 import { ActionsContext, type Actions } from './ui/actions';
 import { App } from './ui/app';
+import { copyText } from './ui/clipboard';
 import { Director } from './view/director';
 import { Navigator } from './view/navigator';
 import { Probe } from './view/probe';
@@ -44,14 +45,8 @@ function socketUrl(): string {
   return url.href;
 }
 
-async function copyLink(): Promise<void> {
-  try {
-    await navigator.clipboard.writeText(currentLink());
-    store.say('Link copied.');
-  } catch {
-    store.say('The browser does not let this page copy. The address shows the view, too.');
-  }
-}
+const copyLink = (): Promise<void> =>
+  copyText(currentLink(), 'Link copied.', 'The browser does not let this page copy. The address shows the view, too.');
 
 function start(): void {
   const { stage, picture, overlay } = makeStage();

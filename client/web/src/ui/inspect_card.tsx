@@ -1,17 +1,13 @@
 import type { JSX } from 'preact';
 import { formatExact } from '../measure/format';
 import { className } from '../state/palette';
-import { inspection, say } from '../state/store';
+import { inspection } from '../state/store';
 import { vectorFrom } from '../protocol/pictures';
 import type { Vector } from '../camera/vector';
+import { copyText, notAllowed } from './clipboard';
 import { IconButton } from './controls';
 
 const coordinates = (v: Vector): string => [v.x, v.y, v.z].map(formatExact).join(' ');
-
-async function copy(text: string): Promise<void> {
-  await navigator.clipboard.writeText(text);
-  say('Coordinates copied.');
-}
 
 function valueOf(attribute: string, value: number): string {
   return attribute === 'classification' ? `${value} · ${className(value)}` : formatExact(value);
@@ -45,7 +41,7 @@ export function InspectCard(): JSX.Element | null {
     <section class="inspect-card" aria-label="Point">
       <header>
         <h2>Point</h2>
-        <IconButton icon="copy" label="Copy coordinates" onPress={() => void copy(coordinates(at))} />
+        <IconButton icon="copy" label="Copy coordinates" onPress={() => void copyText(coordinates(at), 'Coordinates copied.', notAllowed)} />
         <IconButton icon="close" label="Close" onPress={() => (inspection.value = undefined)} />
       </header>
       <dl class="coordinates">

@@ -3,7 +3,8 @@ import { clear, finish, remove, undoPoint } from '../measure/desk';
 import { formatExact, linesOf } from '../measure/format';
 import { measureKinds, type MeasureKind, type Measurement } from '../measure/measurement';
 import { chooseTool } from '../input/keyboard';
-import { growing, lengthDecimals, measurements, say, tool, upAxis } from '../state/store';
+import { growing, lengthDecimals, measurements, tool, upAxis } from '../state/store';
+import { copyText, notAllowed } from './clipboard';
 import { IconButton, Section } from './controls';
 import { Icon } from './icons';
 import { ProfileChart } from './profile_chart';
@@ -29,11 +30,11 @@ function Kinds(): JSX.Element {
   );
 }
 
-async function copy(m: Measurement): Promise<void> {
+function copy(m: Measurement): Promise<void> {
   const points = m.points.map((p) => [p.x, p.y, p.z].map(formatExact).join('\t'));
   const lines = linesOf(m, upAxis.value, lengthDecimals.value).map(({ name, value }) => `${name}\t${value}`);
-  await navigator.clipboard.writeText([measureLabels[m.kind], ...lines, ...points].join('\n'));
-  say('Measurement copied.');
+  const text = [measureLabels[m.kind], ...lines, ...points].join('\n');
+  return copyText(text, 'Measurement copied.', notAllowed);
 }
 
 function Card({ m, number }: { m: Measurement; number: number }): JSX.Element {
