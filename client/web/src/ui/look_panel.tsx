@@ -37,7 +37,7 @@ function usualRange(source: ColorSourceName): readonly [number, number] {
     return [heightOf(min, upAxis.value), heightOf(max, upAxis.value)];
   }
   const range = description.value?.ranges.find((each) => each.attribute === source);
-  return range ? [range.smallest, range.largest] : [0, 1];
+  return range ? [range.low, range.high] : [0, 1];
 }
 
 export const mapped = (source: ColorSourceName): boolean => source === 'intensity' || source === 'elevation';

@@ -1,0 +1,49 @@
+# cmake -D NPM=.. -D SOURCE=.. -D SCHEMA=.. -D BINARY=.. -P build_viewer.cmake: brings BINARY/dist up to date.
+# What npm's registry does not give must not take the rest of the build down: without it there is no viewer, a warning
+# says so, and the next build tries again. Errors in the viewer's own code are errors.
+cmake_minimum_required(VERSION 3.25)
+set(installed ${BINARY}/installed)
+set(page ${BINARY}/dist/index.html)
+
+function(install_packages)
+  file(REMOVE ${installed})
+  message(NOTICE "Installing what the viewer is built with")
+  execute_process(
+    COMMAND ${NPM} ci --no-audit --no-fund --loglevel=error --fetch-retries=1
+    WORKING_DIRECTORY ${SOURCE} RESULT_VARIABLE failed OUTPUT_QUIET ERROR_VARIABLE errors)
+  if(failed)
+    string(REGEX MATCH "npm (error|ERR!)( code)? [^\n]*" reason "${errors}")
+    message(NOTICE "warning: the viewer is not built: `npm ci` failed (${reason}); "
+      "run `cmake --build build --target viewer` again once npm's registry is reachable")
+    return()
+  endif()
+  file(TOUCH ${installed})
+endfunction()
+
+function(build_page)
+  message(NOTICE "Building the viewer")
+  execute_process(
+    COMMAND ${CMAKE_COMMAND} -E env SURFCAST_VIEWER_OUT=${BINARY}/dist ${NPM} run --silent build
+    WORKING_DIRECTORY ${SOURCE} RESULT_VARIABLE failed OUTPUT_VARIABLE output ERROR_VARIABLE output)
+  if(failed)
+    file(REMOVE ${page})
+    message(FATAL_ERROR "${output}")
+  endif()
+endfunction()
+
+if(NOT EXISTS ${installed} OR NOT EXISTS ${SOURCE}/node_modules OR ${SOURCE}/package-lock.json IS_NEWER_THAN ${installed})
+  install_packages()
+endif()
+if(NOT EXISTS ${installed})
+  return()
+endif()
+
+file(GLOB_RECURSE inputs ${SOURCE}/src/* ${SOURCE}/public/*)
+list(FILTER inputs EXCLUDE REGEX /generated/)
+list(APPEND inputs ${installed} ${SCHEMA} ${SOURCE}/index.html ${SOURCE}/tsconfig.json ${SOURCE}/vite.config.ts)
+foreach(input IN LISTS inputs)
+  if(NOT EXISTS ${page} OR ${input} IS_NEWER_THAN ${page})
+    build_page()
+    break()
+  endif()
+endforeach()
