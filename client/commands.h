@@ -16,6 +16,8 @@ void add_render_command(CLI::App& app, int interrupt, Status& outcome);
 void add_bench_command(CLI::App& app, int interrupt, Status& outcome);
 /// `pick URL/MODEL --pixel X,Y ...`: what a pixel shows.
 void add_pick_command(CLI::App& app, int interrupt, Status& outcome);
+/// `view URL/MODEL ...`: a window, by a program of its own.
+void add_view_command(CLI::App& app, Status& outcome);
 /// `ping URL [--count N]`: round trip times.
 void add_ping_command(CLI::App& app, int interrupt, Status& outcome);
 

@@ -28,6 +28,7 @@ int run(int argc, char** argv) {
   surfcast::add_render_command(app, interrupt, outcome);
   surfcast::add_bench_command(app, interrupt, outcome);
   surfcast::add_pick_command(app, interrupt, outcome);
+  surfcast::add_view_command(app, outcome);
   surfcast::add_ping_command(app, interrupt, outcome);
   try {
     app.parse(argc, argv);

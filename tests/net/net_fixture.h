@@ -24,11 +24,12 @@ class NetFixture : public ::testing::Test {
  protected:
   void TearDown() override { stop(); }
 
-  void start(ServerConfig config = {}, const ServiceLimits& limits = {}) {
+  /// `port` 0: any free one.
+  void start(ServerConfig config = {}, const ServiceLimits& limits = {}, uint16_t port = 0) {
     auto service = RenderService::start(models_, fake_painters(studio_), limits);
     ASSERT_TRUE(service);
     service_ = std::move(*service);
-    config.port = 0;
+    config.port = port;
     auto server = Server::create(*service_, config);
     ASSERT_TRUE(server);
     server_ = std::move(*server);

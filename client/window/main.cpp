@@ -1,0 +1,80 @@
+#include <CLI/CLI.hpp>
+#include <csignal>
+#include <exception>
+#include <iostream>
+
+#include "client/time_limits.h"
+#include "client/window/view_loop.h"
+#include "protocol/request_flags.h"
+#include "protocol/validate.h"
+
+namespace surfcast {
+namespace {
+
+constexpr int kFailed = 1;
+constexpr int kWrongCommandLine = 2;
+constexpr double kUsualSpacing = 1;  // pixels
+
+int report(const std::string& message, int code) {
+  std::cerr << "surfcast: " << message << '\n';
+  return code;
+}
+
+Result<ViewWish> wish_of(const std::string& address, const RequestFlags& flags) {
+  const Result<ModelUrl> url = parse_model_url(address);
+  if (!url) return fail(url.error());
+  if (Status status = flags.check_sight(); !status) return fail(status.error());
+  Result<wire::DrawPicture> picture = flags.sight(url->model);
+  if (!picture) return fail(picture.error());
+  if (!picture->has_resolution()) {
+    picture->mutable_resolution()->set_width(kDefaultWidth);
+    picture->mutable_resolution()->set_height(kDefaultHeight);
+  }
+  if (picture->spacing() == 0) picture->set_spacing(kUsualSpacing);
+  return ViewWish{*url, std::move(*picture), 0};
+}
+
+int run(int argc, char** argv) {
+  CLI::App app{
+      "Look at a model in a window: drag to turn, right button or Shift to move, wheel to come nearer, middle "
+      "button or Ctrl to look around, W A S D Q E to fly, arrows to turn, F for the first view, Esc to end",
+      "surfcast view"};
+  std::string address;
+  RequestFlags flags;
+  TimeLimits limits;
+  double target_fps = 0;
+  app.add_option("url", address, "HOST:PORT/MODEL or ws://HOST:PORT/MODEL")->required();
+  app.add_option("--target-fps", target_fps, "frames per second to hold while moving (default: the server's)")
+      ->check(CLI::Range(0.0, 1000.0));
+  flags.add_sight_to(app);
+  limits.add_to(app);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);  // --help
+    return report(error.what(), kWrongCommandLine);
+  }
+  Result<ViewWish> wish = wish_of(address, flags);
+  if (!wish) return report(wish.error().message, kWrongCommandLine);
+  wish->target_fps = target_fps;
+  const Status outcome = view_in_window(*wish, limits.config(-1));
+  return outcome ? 0 : report(outcome.error().message, kFailed);
+}
+
+}  // namespace
+}  // namespace surfcast
+
+int main(int argc, char** argv) {
+  std::signal(SIGPIPE, SIG_IGN);
+  // `surfcast view` starts this program with the signals blocked by which it would end.
+  sigset_t signals;
+  sigemptyset(&signals);
+  sigaddset(&signals, SIGINT);
+  sigaddset(&signals, SIGTERM);
+  sigprocmask(SIG_UNBLOCK, &signals, nullptr);
+  try {
+    return surfcast::run(argc, argv);
+  } catch (const std::exception& error) {
+    return surfcast::report(error.what(), surfcast::kFailed);
+  }
+}

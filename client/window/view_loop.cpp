@@ -1,0 +1,192 @@
+#include "client/window/view_loop.h"
+
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <string>
+#include <thread>
+
+#include "client/view.h"
+#include "client/window/window.h"
+
+namespace surfcast {
+namespace {
+
+using Clock = View::Clock;
+using std::chrono::milliseconds;
+
+constexpr milliseconds kTick{8};          // between looks at what the hand does
+constexpr milliseconds kUpdateEvery{16};  // at most so many cameras are sent
+constexpr milliseconds kRetryEvery{1000};
+constexpr double kFlightPart = 0.06;  // of the model's diagonal, per second
+
+/// World units per second.
+double flight_speed(const wire::Box& bounds) {
+  return kFlightPart * std::hypot(bounds.max().x() - bounds.min().x(), bounds.max().y() - bounds.min().y(),
+                                  bounds.max().z() - bounds.min().z());
+}
+
+/// Frames of the last second.
+class FrameRate {
+ public:
+  void count(Clock::time_point now) {
+    if (now - since_ > milliseconds(1000)) {
+      last_ = frames_;
+      frames_ = 0;
+      since_ = now;
+    }
+    ++frames_;
+  }
+  [[nodiscard]] int last() const { return last_; }
+
+ private:
+  Clock::time_point since_ = Clock::now();
+  int frames_ = 0;
+  int last_ = 0;
+};
+
+class ViewLoop {
+ public:
+  ViewLoop(const ViewWish& wish, const ClientConfig& config, Window& window)
+      : wish_(wish), config_(config), window_(window) {}
+
+  /// Looks until the window is closed; an error when the server goes away.
+  Status look();
+  /// Lets the window live while there is no server. False when it is closed.
+  bool wait_for_server(const std::string& why);
+  [[nodiscard]] bool was_connected() const { return controls_.has_value(); }
+
+ private:
+  Status turn(View& view);
+  Status send_update(View& view, bool moving);
+  Status receive(View& view);
+  Status paint(View& view, const View::Frame& frame);
+  [[nodiscard]] wire::DrawPicture picture() const;
+  [[nodiscard]] bool resized() const { return sent_width_ != window_.width() || sent_height_ != window_.height(); }
+
+  const ViewWish& wish_;
+  const ClientConfig& config_;
+  Window& window_;
+  std::optional<Controls> controls_;  ///< once a frame has told the camera
+  double speed_ = 0;
+  bool open_ = true;
+  bool sent_moving_ = false;
+  wire::Camera sent_camera_;
+  int sent_width_ = 0;
+  int sent_height_ = 0;
+  Clock::time_point last_update_ = Clock::now();
+  Clock::time_point last_turn_ = Clock::now();
+  FrameRate rate_;
+};
+
+wire::DrawPicture ViewLoop::picture() const {
+  wire::DrawPicture picture = wish_.picture;
+  picture.mutable_resolution()->set_width(static_cast<uint32_t>(window_.width()));
+  picture.mutable_resolution()->set_height(static_cast<uint32_t>(window_.height()));
+  if (controls_) *picture.mutable_camera() = to_camera(controls_->pose());
+  return picture;
+}
+
+Status ViewLoop::look() {
+  Result<ServerConnection> connection = ServerConnection::open(wish_.url.server, config_);
+  if (!connection) return fail(connection.error());
+  wire::Request describe;
+  describe.mutable_describe_model()->set_model(wish_.url.model);
+  const Result<wire::Answer> answer = connection->ask(std::move(describe));
+  if (!answer) return fail(answer.error());
+  speed_ = flight_speed(answer->model_description().bounds());
+  sent_width_ = window_.width();
+  sent_height_ = window_.height();
+  Result<View> view = View::open(*connection, picture(), wish_.target_fps);
+  if (!view) return fail(view.error());
+  while (open_) {
+    if (Status status = turn(*view); !status) return status;
+  }
+  return {};
+}
+
+Status ViewLoop::turn(View& view) {
+  const Clock::time_point now = Clock::now();
+  const std::chrono::duration<double> passed = now - std::exchange(last_turn_, now);
+  if (controls_) {
+    open_ = window_.take_events(*controls_);
+    controls_->advance(passed.count(), speed_);
+    const bool moving = controls_->moving();
+    const bool changed = to_camera(controls_->pose()).SerializeAsString() != sent_camera_.SerializeAsString();
+    const bool due = now - last_update_ >= kUpdateEvery;
+    if (due && (changed || moving != sent_moving_ || resized())) {
+      if (Status status = send_update(view, moving); !status) return status;
+    }
+  } else {
+    Controls nobody{Pose{}};
+    open_ = window_.take_events(nobody);
+  }
+  return receive(view);
+}
+
+Status ViewLoop::send_update(View& view, bool moving) {
+  const wire::DrawPicture wanted = picture();
+  sent_camera_ = wanted.camera();
+  sent_width_ = static_cast<int>(wanted.resolution().width());
+  sent_height_ = static_cast<int>(wanted.resolution().height());
+  sent_moving_ = moving;
+  last_update_ = Clock::now();
+  const Result<uint64_t> update = view.show(wanted, moving);
+  return update ? Status() : fail(update.error());
+}
+
+Status ViewLoop::receive(View& view) {
+  const Result<std::optional<View::Frame>> frame = view.next_until(Clock::now() + kTick);
+  if (!frame) return fail(frame.error());
+  return *frame ? paint(view, **frame) : Status();
+}
+
+Status ViewLoop::paint(View& view, const View::Frame& frame) {
+  const wire::Picture& picture = frame.frame.picture();
+  const Result<PixelImage> image = decode_picture(picture);
+  if (!image) return fail(image.error());
+  if (Status status = window_.show(*image); !status) return status;
+  if (Status status = view.painted(frame); !status) return status;
+  if (!controls_) {
+    controls_.emplace(to_pose(picture.camera()));
+    sent_camera_ = to_camera(controls_->pose());
+  }
+  rate_.count(frame.arrived);
+  const std::string state = frame.frame.moving()  ? std::to_string(rate_.last()) + " frames/s"
+                            : picture.converged() ? "sharp"
+                                                  : "getting sharper";
+  window_.set_title(wish_.url.model + " - " + state + ", " + std::to_string(picture.surfels_drawn()) + " surfels, " +
+                    std::to_string(image->width) + " x " + std::to_string(image->height));
+  return {};
+}
+
+bool ViewLoop::wait_for_server(const std::string& why) {
+  window_.set_title(wish_.url.model + " - " + why + "; trying again");
+  Controls nobody{Pose{}};
+  const Clock::time_point until = Clock::now() + kRetryEvery;
+  while (open_ && Clock::now() < until) {
+    open_ = window_.take_events(controls_ ? *controls_ : nobody);
+    std::this_thread::sleep_for(kTick);
+  }
+  return open_;
+}
+
+bool worth_trying_again(const Error& error) {
+  return error.kind == ErrorKind::kIo || error.kind == ErrorKind::kUnavailable;
+}
+
+}  // namespace
+
+Status view_in_window(const ViewWish& wish, const ClientConfig& config) {
+  const wire::Resolution& size = wish.picture.resolution();
+  Result<Window> window = Window::open(wish.url.model, static_cast<int>(size.width()), static_cast<int>(size.height()));
+  if (!window) return fail(window.error());
+  ViewLoop loop(wish, config, *window);
+  for (;;) {
+    const Status status = loop.look();
+    if (status || !loop.was_connected() || !worth_trying_again(status.error())) return status;
+    if (!loop.wait_for_server(status.error().message)) return {};
+  }
+}
+
+}  // namespace surfcast

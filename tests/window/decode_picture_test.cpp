@@ -1,0 +1,76 @@
+#include "client/window/decode_picture.h"
+
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "encode/encode_picture.h"
+
+namespace surfcast {
+namespace {
+
+wire::Picture encoded(FileFormat format, wire::FileFormat name) {
+  Image image{3, 2, PixelFormat::kSrgb8, {}};
+  for (int i = 0; i < 6; ++i) {
+    for (const int value : {200, 100, 50, 255}) image.pixels.push_back(static_cast<std::byte>(value));
+  }
+  const auto bytes = encode_picture(image, format, 95);
+  EXPECT_TRUE(bytes);
+  wire::Picture picture;
+  picture.set_format(name);
+  picture.set_data(bytes->data(), bytes->size());
+  return picture;
+}
+
+TEST(DecodePicture, LosslessPixelsAreThoseThatWereEncoded) {
+  const auto image = decode_picture(encoded(FileFormat::kPng, wire::FILE_FORMAT_PNG));
+  ASSERT_TRUE(image);
+  EXPECT_EQ(image->width, 3);
+  EXPECT_EQ(image->height, 2);
+  ASSERT_EQ(image->pixels.size(), 24u);
+  EXPECT_EQ(image->pixels[0], 50);
+  EXPECT_EQ(image->pixels[1], 100);
+  EXPECT_EQ(image->pixels[22], 200);
+}
+
+TEST(DecodePicture, JpegIsNearThem) {
+  const auto image = decode_picture(encoded(FileFormat::kJpeg, wire::FILE_FORMAT_JPEG));
+  ASSERT_TRUE(image);
+  EXPECT_EQ(image->width, 3);
+  EXPECT_NEAR(image->pixels[0], 50, 8);
+  EXPECT_NEAR(image->pixels[2], 200, 8);
+}
+
+TEST(DecodePicture, EveryTruncationOfAPngIsAnError) {
+  const wire::Picture whole = encoded(FileFormat::kPng, wire::FILE_FORMAT_PNG);
+  for (size_t length = 0; length + 13 < whole.data().size(); ++length) {  // what may be missing is the closing chunk
+    wire::Picture cut = whole;
+    cut.mutable_data()->resize(length);
+    EXPECT_FALSE(decode_picture(cut)) << length;
+  }
+}
+
+TEST(DecodePicture, ATruncatedJpegDoesNoHarm) {
+  const wire::Picture whole = encoded(FileFormat::kJpeg, wire::FILE_FORMAT_JPEG);
+  for (size_t length = 0; length < whole.data().size(); ++length) {
+    wire::Picture cut = whole;
+    cut.mutable_data()->resize(length);
+    const auto image = decode_picture(cut);  // the decoder may fill in what is missing
+    if (image) EXPECT_EQ(image->pixels.size(), 24u);
+  }
+}
+
+TEST(DecodePicture, ASizeBeyondReasonIsRefusedBeforeMemoryIsSetAside) {
+  wire::Picture picture = encoded(FileFormat::kPng, wire::FILE_FORMAT_PNG);
+  picture.mutable_data()->replace(16, 4, "\x7f\xff\xff\xff");  // the width in the first chunk
+  EXPECT_FALSE(decode_picture(picture));
+}
+
+TEST(DecodePicture, OtherFormatsAreRefused) {
+  wire::Picture picture;
+  picture.set_format(wire::FILE_FORMAT_EXR);
+  EXPECT_FALSE(decode_picture(picture));
+}
+
+}  // namespace
+}  // namespace surfcast
