@@ -40,8 +40,13 @@ inline pid_t start_program(std::vector<std::string> arguments) {
   pointers.reserve(arguments.size() + 1);
   for (std::string& argument : arguments) pointers.push_back(argument.data());
   pointers.push_back(nullptr);
+  // The sockets of a server in this process would live on in the program.
+  posix_spawn_file_actions_t actions;
+  ::posix_spawn_file_actions_init(&actions);
+  ::posix_spawn_file_actions_addclosefrom_np(&actions, 3);
   pid_t process = -1;
-  ::posix_spawn(&process, pointers[0], nullptr, nullptr, pointers.data(), environ);
+  ::posix_spawn(&process, pointers[0], &actions, nullptr, pointers.data(), environ);
+  ::posix_spawn_file_actions_destroy(&actions);
   return process;
 }
 

@@ -56,7 +56,7 @@ TEST(DecodePicture, ATruncatedJpegDoesNoHarm) {
     wire::Picture cut = whole;
     cut.mutable_data()->resize(length);
     const auto image = decode_picture(cut);  // the decoder may fill in what is missing
-    if (image) EXPECT_EQ(image->pixels.size(), 24u);
+    EXPECT_TRUE(!image || image->pixels.size() == 24) << length;
   }
 }
 
