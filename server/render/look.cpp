@@ -8,8 +8,8 @@
 namespace surfcast {
 namespace {
 
-/// Of intensities in a model that does not state any: what LAS allows.
-constexpr AttributeRange kLasIntensity{{}, 0, 65535, 0, 65535};
+/// The largest intensity of LAS, for models that do not state theirs.
+constexpr double kLasIntensity = 65535;
 
 bool has_scalar(const ModelInfo& info, const char* name) {
   return std::find(info.scalar_names.begin(), info.scalar_names.end(), name) != info.scalar_names.end();
@@ -101,8 +101,7 @@ Result<Look> look_of(const ModelInfo& info, const PictureRequest& request) {
   } else if (look.color == SurfelColor::kIntensity) {
     if (!has_scalar(info, "intensity")) return lacks("intensity");
     const AttributeRange* stated = info.range_of("intensity");
-    const AttributeRange& range = stated == nullptr ? kLasIntensity : *stated;
-    set_range(coloring, range.low, range.high, look);
+    set_range(coloring, stated == nullptr ? 0 : stated->low, stated == nullptr ? kLasIntensity : stated->high, look);
     look.attributes = true;
   } else if (look.color == SurfelColor::kClassification) {
     if (!classified) return lacks("classification");

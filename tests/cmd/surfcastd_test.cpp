@@ -205,6 +205,7 @@ TEST_F(SurfcastdTest, TheSameScanGivesTheSameBytes) {
 
 TEST_F(SurfcastdTest, PicksThePointOfTheScanUnderAPixel) {
   std::ofstream scan(folder_ / "survey.xyz");
+  scan.precision(12);
   scan << "x y z intensity classification\n";
   for (int i = 0; i < 400; ++i) scan << 448262.25 + i % 20 << ' ' << 5411932.5 + i / 20 << " 7 " << i << " 2\n";
   scan.close();
