@@ -152,6 +152,60 @@ TEST_F(RenderServiceTest, ASecondSessionDoesNotWaitBehindAllOfTheFirst) {
   EXPECT_EQ(studio_->order[2], "teapot");
 }
 
+TEST_F(RenderServiceTest, AJobThatWaitsMayDrawSomethingElseInItsPlace) {
+  start();
+  studio_->slow = true;
+  auto first = draw(1, job_for("cube"));
+  wait_for_drawing(1);
+  auto second = draw(1, job_for("cube"));
+  auto third = draw(2, job_for("cube"));
+  PictureJob other = job_for("teapot");
+  other.request.width = 16;
+  EXPECT_TRUE(service_->replace(second.first, other));
+  EXPECT_FALSE(service_->replace(first.first, other)) << "it is being drawn";
+  PictureJob none = job_for("cube");
+  none.request.width = 0;
+  EXPECT_FALSE(service_->replace(second.first, none));
+  studio_->slow = false;
+  EXPECT_EQ(second.second.get()->width, 16);
+  EXPECT_TRUE(third.second.get());
+  EXPECT_TRUE(first.second.get());
+  EXPECT_EQ(studio_->order, (std::vector<std::string>{"cube", "teapot", "cube"})) << "it keeps its turn";
+  EXPECT_FALSE(service_->replace(second.first, other)) << "it is done";
+}
+
+TEST_F(RenderServiceTest, AJobThatWaitsTooLongIsRefusedAndNotDrawn) {
+  start({.patience = std::chrono::milliseconds(0)});
+  studio_->slow = true;
+  auto first = draw(1, job_for("cube"));
+  auto second = draw(1, job_for("cube"));
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  studio_->slow = false;
+  const Result<EncodedPicture> late = second.second.get();
+  ASSERT_FALSE(late);
+  EXPECT_EQ(late.error().kind, ErrorKind::kUnavailable);
+  first.second.wait();
+  EXPECT_LE(studio_->drawn, 1);
+}
+
+TEST_F(RenderServiceTest, AFrameThatIsKeptIsEncodedAgainWithoutBeingDrawn) {
+  start();
+  PictureJob job = job_for("noise");
+  job.format = FileFormat::kJpeg;
+  job.keep_frame = true;
+  const Result<EncodedPicture> jpeg = draw(1, job).second.get();
+  ASSERT_TRUE(jpeg);
+  ASSERT_TRUE(jpeg->frame);
+  const Result<EncodedPicture> direct = draw(1, job_for("noise")).second.get();
+  std::promise<Result<EncodedPicture>> promise;
+  service_->encode(jpeg->frame, job_for("noise"), [&](auto result) { promise.set_value(std::move(result)); });
+  const Result<EncodedPicture> again = promise.get_future().get();
+  ASSERT_TRUE(again);
+  EXPECT_EQ(again->bytes, direct->bytes);
+  EXPECT_FALSE(again->frame);
+  EXPECT_EQ(studio_->drawn, 2);
+}
+
 TEST_F(RenderServiceTest, StoppingCancelsWhatIsDrawnAndWhatWaits) {
   studio_->slow = true;
   start();
