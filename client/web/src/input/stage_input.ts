@@ -20,6 +20,7 @@ interface Stroke {
   readonly drag: Drag;
   samples: Sample[];
   moved: boolean;
+  interested: boolean; // the eye knows how far away what it drags is
   coasts: boolean;
 }
 
@@ -62,19 +63,17 @@ export class StageInput {
     this.element.setPointerCapture(event.pointerId);
     const at = this.pixelOf(event);
     this.pointers.set(event.pointerId, at);
-    this.navigator.hold(true);
+    this.navigator.stop();
     if (this.pointers.size === 1) this.begin(event, at);
     else this.beginPinch();
   }
 
   private begin(event: PointerEvent, at: Pixel): void {
     if (this.grab(at)) return;
-    const anchor = this.probe.anchor(at, (point) => {
-      if (this.stroke?.anchor === anchor) this.navigator.interestIn(point);
-    });
+    const anchor = this.probe.anchor(at);
     const drag = this.dragFor(event, anchor);
     const down = { at: { x: event.clientX, y: event.clientY }, time: event.timeStamp };
-    this.stroke = { down, anchor, drag, samples: [{ time: event.timeStamp, at }], moved: false, coasts: true };
+    this.stroke = { down, anchor, drag, samples: [{ time: event.timeStamp, at }], moved: false, interested: false, coasts: true };
   }
 
   private dragFor(event: PointerEvent, anchor: Anchor): Drag {
@@ -102,6 +101,11 @@ export class StageInput {
     if (!stroke.moved && isClick(stroke.down, here)) return;
     const from = stroke.moved ? before : stroke.samples[0]!.at;
     stroke.moved = true;
+    this.navigator.hold(true);
+    if (stroke.anchor.hit && !stroke.interested) {
+      stroke.interested = true;
+      this.navigator.interestIn(stroke.anchor.hit);
+    }
     stroke.samples = [...recent(stroke.samples, event.timeStamp), { time: event.timeStamp, at }];
     this.navigator.drag(stroke.drag, { x: at.x - from.x, y: at.y - from.y });
   }
@@ -146,6 +150,7 @@ export class StageInput {
 
   private beginPinch(): void {
     this.stroke = undefined;
+    this.navigator.hold(true);
     const [a, b] = this.two();
     this.pinch = this.probe.anchor({ x: (a.x + b.x) / 2, y: (a.y + b.y) / 2 });
   }
@@ -169,7 +174,7 @@ export class StageInput {
     const anchor = this.probe.anchor(at);
     const drag = store.flying.peek() ? this.navigator.looking : this.navigator.orbiting(() => anchor.hit);
     const down = { at: { x: -1e9, y: -1e9 }, time: 0 };
-    this.stroke = { down, anchor, drag, samples: [], moved: true, coasts: false };
+    this.stroke = { down, anchor, drag, samples: [], moved: true, interested: true, coasts: false };
   }
 
   // ---- the wheel ----

@@ -23,7 +23,7 @@ export const descriptions = signal<ReadonlyMap<string, ModelDescription>>(new Ma
 export const viewProblem = signal<{ readonly message: string; readonly again: boolean } | undefined>(undefined);
 /** The frame on the screen, without its data. */
 export const shownFrame = signal<ViewFrame | undefined>(undefined);
-/** The newest update that was asked for: a frame that shows an older one is not what is wanted. */
+/** The first update that asked for what is wanted now: a frame that shows an older one does not show it. */
 export const askedUpdate = signal(0n);
 /** Something changed that has not been asked for yet. */
 export const unasked = signal(false);

@@ -23,7 +23,7 @@ function stateNow(): State {
   if (!frame) return { kind: 'working', text: 'Loading' };
   if (picking.value) return { kind: 'working', text: 'Looking' };
   if (moving.value) return { kind: 'working', text: 'Moving' };
-  const wanted = !unasked.value && frame.update === askedUpdate.value;
+  const wanted = !unasked.value && frame.update >= askedUpdate.value;
   return wanted && !frame.moving && frame.picture?.converged ? { kind: 'sharp', text: 'Sharp' } : { kind: 'working', text: 'Refining' };
 }
 

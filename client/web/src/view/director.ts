@@ -206,9 +206,11 @@ export class Director {
       return;
     }
     if (sameWish(this.sent, wish)) return;
+    const same = this.sent !== undefined && equals(DrawPictureSchema, this.sent.picture, wish.picture);
     this.sent = wish;
-    store.askedUpdate.value = this.session.update(wish.picture, wish.moving);
-    this.askedAt.set(store.askedUpdate.peek(), performance.now());
+    const update = this.session.update(wish.picture, wish.moving);
+    this.askedAt.set(update, performance.now());
+    if (!same) store.askedUpdate.value = update;
   }
 
   private painted(painted: PaintedFrame): void {
@@ -219,7 +221,7 @@ export class Director {
     // Later frames of the same update are refinements: they come when they are ready, not when they were asked for.
     for (const update of this.askedAt.keys()) if (update <= frame.update) this.askedAt.delete(update);
     store.shownFrame.value = withoutData(painted);
-    if (!store.pose.peek() && frame.update === store.askedUpdate.peek()) this.adopt(painted);
+    if (!store.pose.peek() && frame.update >= store.askedUpdate.peek()) this.adopt(painted);
   }
 
   /** Goes on from the view that the server chose, without asking for it again. */

@@ -33,10 +33,15 @@ export class Navigator {
     return this.motor.moving;
   }
 
-  /** The hand is on the picture, or off it again. */
-  hold(down: boolean): void {
-    this.handDown = down;
-    if (down) this.motor.stop();
+  /** A hand on the picture ends what moves by itself. */
+  stop(): void {
+    this.motor.stop();
+    this.tellMoving();
+  }
+
+  /** The hand drags the picture, or has let go. */
+  hold(dragging: boolean): void {
+    this.handDown = dragging;
     this.tellMoving();
   }
 

@@ -22,13 +22,11 @@ export class Probe {
   }
 
   /** The point under a pixel as well as it is known: the scan's own once the server has answered. */
-  anchor(pixel: Pixel, found?: (point: Vector) => void): Anchor {
+  anchor(pixel: Pixel): Anchor {
     const anchor = new Anchor(pixel);
     this.pick(pixel).then(
       (result) => {
-        if (!result?.hit || !result.position) return;
-        anchor.hit = vectorFrom(result.position);
-        found?.(anchor.hit);
+        if (result?.hit && result.position) anchor.hit = vectorFrom(result.position);
       },
       () => undefined, // without an answer the plane of interest will do
     );
