@@ -111,7 +111,8 @@ TEST(PackBlock, SizesAreWithinAHalfStepOfTheBlocksOwnScale) {
   const PackedBlock packed = pack_block(block, 8, true);
   for (size_t i = 0; i < block.size(); ++i) {
     const Unpacked s = unpacked(packed, i);
-    EXPECT_NEAR(s.radius / static_cast<double>(block.radii[i]), 1, 0.0009) << "at most two and a half octaves, with what is merged";
+    EXPECT_NEAR(s.radius / static_cast<double>(block.radii[i]), 1, 0.0009)
+        << "at most two and a half octaves, with what is merged";
     EXPECT_NEAR(s.weight / static_cast<double>(block.weights[i]), 1, 0.003) << "eight octaves in the block";
   }
 }
