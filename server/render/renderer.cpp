@@ -123,7 +123,8 @@ Scene& Renderer::State::scene_of(const std::shared_ptr<const ModelFile>& model) 
 Result<PreparedView> Renderer::State::prepare(Scene& scene, const PictureRequest& request, const Look& look,
                                               const Camera& camera, const CameraFrame& frame,
                                               const std::atomic<bool>& cancelled) {
-  const ViewGoal goal{frame, request.spacing, look.clipped ? &request.clip : nullptr, look.attributes};
+  const ViewGoal goal{frame, request.spacing, look.clipped ? &request.clip : nullptr, look.attributes,
+                      request.viewer != 0};
   if (request.loading == Loading::kWait) return residency.prepare_whole(scene.viewed(), goal, cancelled);
   if (request.viewer == 0) return residency.prepare_now(scene.viewed(), goal, {}, {});
   ViewerMemory& memory = scene.memory_of(request.viewer);

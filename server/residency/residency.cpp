@@ -118,9 +118,11 @@ Result<PreparedView> Residency::prepare_whole(const ViewedModel& model, const Vi
 }
 
 /// Stores what has been loaded, up to the limit. Returns how many blocks.
-size_t Residency::upload_some(const ViewedModel& model, PreparedView& view) {
+size_t Residency::upload_some(const ViewedModel& model, const ViewGoal& goal, PreparedView& view) {
+  constexpr double kMotionMs = 8;  // a block may take more, but is stored all the same
   size_t stored = 0;
   for (size_t bytes = 0; bytes < upload_bytes_;) {
+    if (goal.moving && view.upload_ms > kMotionMs) break;
     const std::optional<LoadedBlock> loaded = loader_.take();
     if (!loaded) break;
     view.decode_ms += loaded->milliseconds;
@@ -158,7 +160,7 @@ PreparedView Residency::prepare_now(const ViewedModel& model, const ViewGoal& go
   view.selection = select(model, goal, was_refined);
   view.waited_for = static_cast<uint32_t>(view.selection.wanted.size());
   use(model, view.selection);
-  if (upload_some(model, view) > 0) {
+  if (upload_some(model, goal, view) > 0) {
     view.selection = select(model, goal, was_refined);
     use(model, view.selection);
   }

@@ -26,6 +26,7 @@ struct ViewGoal {
   double spacing = 0;          ///< see SelectionGoal
   const Clip* clip = nullptr;  ///< likewise; outlives the preparation
   bool attributes = false;     ///< blocks are wanted with theirs
+  bool moving = false;         ///< the next picture is soon to follow: storing blocks must not hold this one up
 };
 
 /// The blocks that a picture is drawn from, and what getting them took.
@@ -78,7 +79,7 @@ class Residency {
   Status load(const ViewedModel& model, std::span<const uint32_t> blocks, bool attributes,
               const std::atomic<bool>& cancelled, PreparedView& view);
   bool store(const ViewedModel& model, const LoadedBlock& loaded, PreparedView& view);
-  size_t upload_some(const ViewedModel& model, PreparedView& view);
+  size_t upload_some(const ViewedModel& model, const ViewGoal& goal, PreparedView& view);
   void use(const ViewedModel& model, std::span<const uint32_t> blocks);
   void use(const ViewedModel& model, const BlockSelection& selection);
 
