@@ -38,6 +38,8 @@ OIIO::ImageSpec make_spec(const Image& image, FileFormat format, int quality) {
     spec.attribute("png:compressionLevel", 1);
   } else if (format == FileFormat::kExr) {
     spec.attribute("compression", "zip:1");  // lossless; level 1 for the same reason
+    // The writer puts in the time of day otherwise, and the same request would not give the same bytes.
+    spec.attribute("DateTime", "1970:01:01 00:00:00");
   } else {
     spec.attribute("Compression", std::string(writer_of(format)) + ":" + std::to_string(quality));
   }
