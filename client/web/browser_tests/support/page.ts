@@ -16,7 +16,7 @@ const flags = [
 export const launch = (): Promise<Browser> =>
   chromium.launch({ executablePath: process.env['CHROMIUM'] ?? '/usr/bin/chromium', args: flags });
 
-export const desktop: BrowserContextOptions = { viewport: { width: 900, height: 640 } };
+export const desktop: BrowserContextOptions = { viewport: { width: 1200, height: 640 } };
 export const phone: BrowserContextOptions = { viewport: { width: 360, height: 740 }, hasTouch: true, isMobile: true };
 
 /** A page whose errors fail the test that uses it. */

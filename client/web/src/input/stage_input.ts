@@ -52,9 +52,15 @@ export class StageInput {
     return width > 0 ? store.stageSize.peek().width / width : 1;
   }
 
+  /** Of the frame on the screen, which is as high as the element and in its middle, also while another shape is awaited. */
   private pixelOf(event: MouseEvent): Pixel {
     const box = this.element.getBoundingClientRect();
-    return { x: (event.clientX - box.left) * this.ratio, y: (event.clientY - box.top) * this.ratio };
+    const { width, height } = store.shownProjection.peek() ?? store.stageSize.peek();
+    const ratio = height / Math.max(1, box.height);
+    return {
+      x: width / 2 + (event.clientX - box.left - box.width / 2) * ratio,
+      y: (event.clientY - box.top) * ratio,
+    };
   }
 
   private down(event: PointerEvent): void {
