@@ -121,7 +121,7 @@ Result<PreparedView> Residency::prepare_whole(const ViewedModel& model, const Vi
 size_t Residency::upload_some(const ViewedModel& model, const ViewGoal& goal, PreparedView& view) {
   constexpr double kMotionMs = 8;  // a block may take more, but is stored all the same
   size_t stored = 0;
-  for (size_t bytes = 0; bytes < upload_bytes_;) {
+  for (size_t bytes = 0; !goal.moving || bytes < upload_bytes_;) {
     if (goal.moving && view.upload_ms > kMotionMs) break;
     const std::optional<LoadedBlock> loaded = loader_.take();
     if (!loaded) break;

@@ -43,7 +43,7 @@ struct PreparedView {
 struct ResidencyLimits {
   uint32_t pages = 0;  ///< of SurfelPool::kPageSurfels, for all models together
   LoaderLimits loader;
-  size_t upload_bytes = size_t{16} << 20;  ///< in a picture that does not wait: little enough not to be felt
+  size_t upload_bytes = size_t{16} << 20;  ///< in a picture in motion: little enough not to be felt
 };
 
 /// Keeps the blocks of all models within their budgets, and decides what each picture is drawn from. The blocks that a
