@@ -38,6 +38,7 @@ class FileBlocks : public BlockSource {
     if (!decoded) return fail(decoded.error());
     PackedBlock packed = pack_block(*decoded, model_->info().color_bits, model_->info().oriented);
     if (attributes) pack_attributes(*decoded, packed);
+    packed.representatives = {};  // host memory keeps packed blocks, and nobody asks for these again
     return packed;
   }
 

@@ -52,7 +52,8 @@ struct PackedBlock {
   LogScale radius;  ///< world units
   LogScale weight;
   std::vector<glm::uvec4> surfels;
-  std::vector<uint32_t> representatives;  ///< for each of `surfels`, one of the block's whose attributes it shows
+  /// For each of `surfels`, one of the block's whose attributes it shows. A source drops them once those are packed.
+  std::vector<uint32_t> representatives;
   std::vector<PackedRun> runs;
 
   /// 16 bits of intensity, then 8 of classification, zeros of what the block lacks; none unless asked for.
