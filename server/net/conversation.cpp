@@ -1,6 +1,5 @@
 #include "net/conversation.h"
 
-#include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/post.hpp>
 #include <optional>
 #include <string>
@@ -8,6 +7,7 @@
 #include <vector>
 
 #include "net/convert.h"
+#include "net/lend.h"
 #include "protocol/framing.h"
 
 namespace surfcast {
@@ -113,10 +113,10 @@ void Conversation::handle_pick(const wire::Request& request) {
                          });
 }
 
-/// A function for any thread that hands an answer over to this object. The io_context runs on until it was called.
+/// A function for any thread that hands an answer over to this object.
 std::function<void(Outcome)> Conversation::answer_later(uint64_t id) {
-  return [self = shared_from_this(), id, work = asio::make_work_guard(executor_)](Outcome outcome) {
-    asio::post(work.get_executor(),
+  return [self = lend(shared_from_this(), executor_), id](Outcome outcome) {
+    asio::post(self->executor_,
                [self, id, outcome = std::move(outcome)]() mutable { self->hand_over(id, std::move(outcome)); });
   };
 }

@@ -1,6 +1,5 @@
 // The part of a conversation that is about views.
 #include <algorithm>
-#include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/post.hpp>
 #include <cmath>
 #include <optional>
@@ -9,6 +8,7 @@
 
 #include "net/conversation.h"
 #include "net/convert.h"
+#include "net/lend.h"
 #include "protocol/validate.h"
 
 namespace surfcast {
@@ -80,7 +80,6 @@ void Conversation::handle_close_view(const wire::Request& request) {
   send(encode_answer(answer));
 }
 
-/// The io_context runs on for as long as the view may have something to post.
 ViewPort Conversation::port_of(uint64_t view) {
   const auto self = shared_from_this();
   ViewPort port;
@@ -89,8 +88,8 @@ ViewPort Conversation::port_of(uint64_t view) {
   port.may_draw = [self] {
     return self->writer_ && self->writer_->unread_bytes() <= self->context_->config.requests.outgoing_bytes;
   };
-  port.post = [self, work = asio::make_work_guard(executor_)](std::function<void()> task) {
-    asio::post(work.get_executor(), [self, task = std::move(task)] {
+  port.post = [self = lend(self, executor_)](std::function<void()> task) {
+    asio::post(self->executor_, [self, task = std::move(task)] {
       task();
       self->advance_views();
     });

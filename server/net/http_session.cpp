@@ -5,7 +5,6 @@
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
-#include <boost/asio/executor_work_guard.hpp>
 #include <boost/asio/post.hpp>
 #include <boost/asio/redirect_error.hpp>
 #include <boost/asio/use_awaitable.hpp>
@@ -23,6 +22,7 @@
 #include "net/convert.h"
 #include "net/http_answer.h"
 #include "net/http_route.h"
+#include "net/lend.h"
 #include "net/message_session.h"
 #include "net/upgrade.h"
 #include "net/websocket_transport.h"
@@ -45,15 +45,14 @@ auto into(error_code& code) {
   return asio::redirect_error(asio::use_awaitable, code);
 }
 
-/// Waits in a coroutine for something that calls back from another thread. `start` gets the callback. The io_context
-/// runs on until it was called.
+/// Waits in a coroutine for something that calls back from another thread. `start` gets the callback.
 template <typename Value, typename Start>
 asio::awaitable<Value> answer_of(Start start) {
   const auto initiate = [&start](auto handler) {
     const auto executor = asio::get_associated_executor(handler);
-    const auto shared = std::make_shared<decltype(handler)>(std::move(handler));
-    start([shared, work = asio::make_work_guard(executor)](Value value) {
-      asio::post(work.get_executor(),
+    const auto shared = lend(std::make_shared<decltype(handler)>(std::move(handler)), executor);
+    start([shared, executor](Value value) {
+      asio::post(executor,
                  [shared, value = std::make_shared<Value>(std::move(value))] { (*shared)(std::move(*value)); });
     });
   };
