@@ -4,12 +4,11 @@
 #include <array>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/read.hpp>
-#include <boost/asio/redirect_error.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <boost/asio/write.hpp>
 #include <span>
 #include <utility>
 
+#include "net/into.h"
 #include "protocol/framing.h"
 #include "protocol/hello.h"
 
@@ -19,10 +18,6 @@ namespace {
 namespace asio = boost::asio;
 using asio::ip::tcp;
 using boost::system::error_code;
-
-auto into(error_code& code) {
-  return asio::redirect_error(asio::use_awaitable, code);
-}
 
 class FramedTransport : public Transport {
  public:

@@ -6,7 +6,6 @@
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/asio/redirect_error.hpp>
 #include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
@@ -22,6 +21,7 @@
 #include "net/convert.h"
 #include "net/http_answer.h"
 #include "net/http_route.h"
+#include "net/into.h"
 #include "net/lend.h"
 #include "net/message_session.h"
 #include "net/upgrade.h"
@@ -40,10 +40,6 @@ using boost::system::error_code;
 
 constexpr uint32_t kHeaderLimit = 16384;  // bytes of a request's header
 constexpr uint64_t kBodyLimit = 4096;     // bytes of a body, which no request needs
-
-auto into(error_code& code) {
-  return asio::redirect_error(asio::use_awaitable, code);
-}
 
 /// Waits in a coroutine for something that calls back from another thread. `start` gets the callback.
 template <typename Value, typename Start>

@@ -3,15 +3,14 @@
 #include <algorithm>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
-#include <boost/asio/redirect_error.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <deque>
 #include <optional>
 #include <utility>
 
 #include "base/log.h"
 #include "net/conversation.h"
+#include "net/into.h"
 #include "protocol/hello.h"
 
 namespace surfcast {
@@ -20,10 +19,6 @@ namespace {
 namespace asio = boost::asio;
 using boost::system::error_code;
 using Clock = std::chrono::steady_clock;
-
-auto into(error_code& code) {
-  return asio::redirect_error(asio::use_awaitable, code);
-}
 
 /// A reader, one queue of answers with a writer, and a watchdog, all on the thread of the sockets. What is said is the
 /// conversation's affair, how it travels the transport's.

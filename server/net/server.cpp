@@ -8,10 +8,8 @@
 #include <boost/asio/io_context.hpp>
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/asio/redirect_error.hpp>
 #include <boost/asio/signal_set.hpp>
 #include <boost/asio/steady_timer.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <csignal>
 #include <functional>
 #include <utility>
@@ -20,6 +18,7 @@
 #include "base/log.h"
 #include "net/framed_transport.h"
 #include "net/http_session.h"
+#include "net/into.h"
 #include "net/message_session.h"
 #include "net/session.h"
 #include "protocol/endpoint.h"
@@ -31,10 +30,6 @@ namespace {
 namespace asio = boost::asio;
 using asio::ip::tcp;
 using boost::system::error_code;
-
-auto into(error_code& code) {
-  return asio::redirect_error(asio::use_awaitable, code);
-}
 
 /// Connections beyond the limit that are told why they are refused; those beyond are closed without a word.
 constexpr size_t kRefusalsAtOnce = 32;

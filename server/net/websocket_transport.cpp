@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/post.hpp>
-#include <boost/asio/redirect_error.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/websocket/stream.hpp>
 #include <string>
 #include <utility>
 
+#include "net/into.h"
 #include "net/upgrade.h"
 #include "protocol/framing.h"
 
@@ -26,10 +25,6 @@ using boost::system::error_code;
 /// Bytes of one frame of a message: small enough that the client's progress is seen, and that an answer to a ping is
 /// not held up by a picture.
 constexpr size_t kFragmentBytes = size_t{64} << 10;
-
-auto into(error_code& code) {
-  return asio::redirect_error(asio::use_awaitable, code);
-}
 
 class WebSocketTransport : public Transport, public std::enable_shared_from_this<WebSocketTransport> {
  public:
