@@ -68,8 +68,11 @@ double weight_scale(const KernelParameters& kernel) {
 class TiledScene {
  public:
   TiledScene(const SurfelCloud& cloud, const PictureRequest& request, const CameraFrame& frame,
-             const KernelParameters& kernel)
-      : frame_(frame), columns_((frame.width + kTile - 1) / kTile), rows_((frame.height + kTile - 1) / kTile) {
+             const KernelParameters& kernel, const PixelRect& window)
+      : frame_(frame),
+        window_(window),
+        columns_((window.x1 - window.x0 + kTile - 1) / kTile),
+        rows_((window.y1 - window.y0 + kTile - 1) / kTile) {
     tiles_.resize(static_cast<size_t>(columns_) * rows_);
     lit_ = request.shading == Shading::kLit || (request.shading == Shading::kAuto && !cloud.colors);
     for (size_t i = 0; i < cloud.size(); ++i) add(cloud, i, request, kernel);
@@ -78,9 +81,11 @@ class TiledScene {
   [[nodiscard]] bool lit() const { return lit_; }
   [[nodiscard]] int columns() const { return columns_; }
   [[nodiscard]] int rows() const { return rows_; }
+  [[nodiscard]] const PixelRect& window() const { return window_; }
   [[nodiscard]] PixelRect rect(int column, int row) const {
-    return intersect({column * kTile, row * kTile, (column + 1) * kTile, (row + 1) * kTile},
-                     {0, 0, frame_.width, frame_.height});
+    const int x = window_.x0 + column * kTile;
+    const int y = window_.y0 + row * kTile;
+    return intersect({x, y, x + kTile, y + kTile}, window_);
   }
   /// Calls visit(surfel, pixels) for every surfel of a tile, with the pixels of the tile it may touch.
   template <typename Visit>
@@ -99,7 +104,7 @@ class TiledScene {
     const double prefilter = request.filter == Filter::kEwa ? 1.0 : kNoPrefilter;
     const auto splat = Splat::make(o, n, cloud.radii[i], frame_.eta, prefilter, kernel);
     if (!splat) return;
-    const PixelRect bounds = pixel_bounds(*splat, frame_);
+    const PixelRect bounds = intersect(pixel_bounds(*splat, frame_), window_);
     if (bounds.x0 >= bounds.x1 || bounds.y0 >= bounds.y1) return;
     const glm::dvec3 facing = glm::dot(n, o) > 0 ? -n : n;
     const glm::dvec3 color = cloud.colors ? linear_color(*cloud.colors, i) : glm::dvec3(kAlbedo);
@@ -110,14 +115,17 @@ class TiledScene {
   }
 
   void bin(uint32_t surfel, const PixelRect& bounds) {
-    for (int row = bounds.y0 / kTile; row <= (bounds.y1 - 1) / kTile; ++row) {
-      for (int column = bounds.x0 / kTile; column <= (bounds.x1 - 1) / kTile; ++column) {
+    const auto row_of = [this](int y) { return (y - window_.y0) / kTile; };
+    const auto column_of = [this](int x) { return (x - window_.x0) / kTile; };
+    for (int row = row_of(bounds.y0); row <= row_of(bounds.y1 - 1); ++row) {
+      for (int column = column_of(bounds.x0); column <= column_of(bounds.x1 - 1); ++column) {
         tiles_[static_cast<size_t>(row) * columns_ + column].push_back(surfel);
       }
     }
   }
 
   const CameraFrame& frame_;
+  PixelRect window_;
   int columns_;
   int rows_;
   bool lit_ = false;
@@ -155,10 +163,10 @@ class TilePass {
   }
   void resolve(const PictureRequest& request, ReferencePicture& out) {
     const glm::dvec3 background = linear_from_srgb8(glm::dvec3(request.background));
-    for_each_pixel(rect_, [&](const PixelState& p, const glm::dvec3&, size_t global) {
-      out.weights[global] = p.front_weight;
-      out.coverage[global] = 1 - p.transmittance;
-      out.picture.pixels[global] = p.light + p.transmittance * background;
+    for_each_pixel(rect_, [&](const PixelState& p, const glm::dvec3&, size_t place) {
+      out.weights[place] = p.front_weight;
+      out.coverage[place] = 1 - p.transmittance;
+      out.picture.pixels[place] = p.light + p.transmittance * background;
     });
   }
   [[nodiscard]] uint64_t fragments() const { return fragments_; }
@@ -169,7 +177,9 @@ class TilePass {
     for (int y = rect.y0; y < rect.y1; ++y) {
       for (int x = rect.x0; x < rect.x1; ++x) {
         PixelState& pixel = pixels_[static_cast<size_t>(y - rect_.y0) * kTile + (x - rect_.x0)];
-        visit(pixel, frame_.ray({x + 0.5, y + 0.5}), static_cast<size_t>(y) * frame_.width + x);
+        const PixelRect& window = scene_.window();
+        const size_t place = static_cast<size_t>(y - window.y0) * (window.x1 - window.x0) + (x - window.x0);
+        visit(pixel, frame_.ray({x + 0.5, y + 0.5}), place);
       }
     }
   }
@@ -232,13 +242,16 @@ double saturation(double gain, const KernelParameters& kernel) {
   return kernel.coverage_minified * std::pow(kernel.coverage_magnified / kernel.coverage_minified, gain);
 }
 
-ReferencePicture render(const SurfelCloud& cloud, const PictureRequest& request, const KernelParameters& kernel) {
+ReferencePicture render(const SurfelCloud& cloud, const PictureRequest& request, const KernelParameters& kernel,
+                        const std::optional<Window>& window) {
   SURFCAST_EXPECTS(request.camera.has_value());
   const auto frame = make_camera_frame(*request.camera, request.width, request.height);
   SURFCAST_EXPECTS(frame.has_value());
-  const TiledScene scene(cloud, request, *frame, kernel);
-  const size_t pixels = static_cast<size_t>(request.width) * request.height;
-  ReferencePicture out{{request.width, request.height}, std::vector<double>(pixels), std::vector<double>(pixels), 0};
+  const Window part = window.value_or(Window{0, 0, request.width, request.height});
+  const PixelRect rect{part.x, part.y, part.x + part.width, part.y + part.height};
+  const TiledScene scene(cloud, request, *frame, kernel, rect);
+  const size_t pixels = static_cast<size_t>(part.width) * part.height;
+  ReferencePicture out{{part.width, part.height}, std::vector<double>(pixels), std::vector<double>(pixels), 0};
   std::atomic<uint64_t> fragments = 0;
   tbb::parallel_for(tbb::blocked_range2d<int>(0, scene.rows(), 0, scene.columns()), [&](const auto& range) {
     for (int row = range.rows().begin(); row < range.rows().end(); ++row) {

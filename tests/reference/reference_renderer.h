@@ -1,5 +1,6 @@
 #pragma once
 
+#include <optional>
 #include <vector>
 
 #include "reference/linear_picture.h"
@@ -17,9 +18,19 @@ struct ReferencePicture {
   uint64_t fragments = 0;        ///< fragments within the cutoff, hidden ones included: what drawing costs
 };
 
+/// Pixels of a picture, counted from its top left corner.
+struct Window {
+  int x = 0;
+  int y = 0;
+  int width = 0;
+  int height = 0;
+};
+
 /// Draws the finest level of the cloud in double precision, deterministically. The request states its camera; pixels
-/// are never quantised. Weights of the cloud are used for Normalization::kSurfel alone.
-ReferencePicture render(const SurfelCloud& cloud, const PictureRequest& request, const KernelParameters& kernel = {});
+/// are never quantised. Weights of the cloud are used for Normalization::kSurfel alone. With a window, only the part
+/// of the picture that lies in it.
+ReferencePicture render(const SurfelCloud& cloud, const PictureRequest& request, const KernelParameters& kernel = {},
+                        const std::optional<Window>& window = {});
 
 /// The accumulated weight at which a pixel counts as fully covered, for fragments of the given gain.
 double saturation(double gain, const KernelParameters& kernel);
