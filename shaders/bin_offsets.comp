@@ -29,7 +29,7 @@ void main() {
     sum += tile_count[i];
     uint tile = i % uint(frame.tiles.z);
     uint crowd = tile_count[tile] + tile_count[tile + uint(frame.tiles.z)];
-    if (i == tile) tile_crowd[tile] = crowd;
+    if (i == tile && frame.flags.z == 0) tile_crowd[tile] = crowd;  // as counted before thinning
     most = max(most, crowd);
   }
   sums[lane] = sum;

@@ -86,40 +86,28 @@ void project_small(Surfel s, vec2 ray, vec2 centre, ScreenVariance v, float c) {
   bool outside;
   uvec2 range = tile_range(centre - extent, centre + extent, outside);
   if (outside) return;
-  float share = thinned_share(range, s.id);
+  float share = thinned_share(range, s.id, v.gain);
   if (share == 0.0) return;
 
-  // 1/z of the plane is affine on the screen: 1/z = (n.ray) / (n.o). The bound only keeps edge-on surfels finite.
-  float facing = min(dot(s.n, s.o), -1e-30);
-  float relief = s.o.z / (eta() * facing);
+  // 1/z of the plane is affine on the screen: 1/z = (n.ray) / (n.o). The bounds only keep edge-on surfels finite.
+  float relief = s.o.z / min(dot(s.n, s.o), -1e-30);
+  float footprints = eta() / s.o.z;  // per world unit
   SmallSplat splat;
   splat.centre = centre;
   splat.inverse_depth = 1.0 / s.o.z;
-  splat.slope = clamp(vec2(s.n.x, -s.n.y) * relief, vec2(-3e4), vec2(3e4));
+  splat.slope = clamp(vec2(s.n.x, -s.n.y) * relief, vec2(-6e4), vec2(6e4));
   splat.factor = inverse_factor(v.s, v.det) * SURFCAST_SQRT_HALF_LOG2E;
   splat.cutoff = c * SURFCAST_SQRT_HALF_LOG2E * SURFCAST_SQRT_HALF_LOG2E;
-  splat.depth_range = min(depth_extent(s, surfel_extent(s.radius)) / s.o.z, 0.9);
+  splat.depth_range = depth_extent(s, surfel_extent(s.radius)) * footprints;
   splat.weight = share * s.weight * v.gain * coverage_scale(v.gain);
   splat.color = s.color;
   uvec4 a, b;
   encode_small(splat, a, b);
 
   float disc_radius = float(SURFCAST_VISIBILITY_RADIUS) * s.radius;
-  ScreenVariance d = screen_variance(s.o, s.n, ray, disc_radius * disc_radius, frame.filter_.y);
-  vec3 f = inverse_factor(d.s, d.det);
-  append(false, range, a, b, encode_disc(Disc(f, push_back(s.radius, s.o.z) / s.o.z, splat.depth_range, splat.weight)), s.n);
-}
-
-// Bounds of the projected disc of radius `extent`, from the dual conic D = extent^2 (I - n n^T) - o o^T of its outline:
-// the line x = t z touches it where D_xx - 2 t D_xz + t^2 D_zz = 0. Needs the whole disc in front of the eye.
-void projected_disc_bounds(Surfel s, float extent, out vec2 low, out vec2 high) {
-  float e2 = extent * extent;
-  float dzz = e2 * (1.0 - s.n.z * s.n.z) - s.o.z * s.o.z;
-  vec2 dxz = -e2 * s.n.xy * s.n.z - s.o.xy * s.o.z;
-  vec2 dxx = e2 * (1.0 - s.n.xy * s.n.xy) - s.o.xy * s.o.xy;
-  vec2 root = sqrt(max(dxz * dxz - dxx * dzz, vec2(0.0)));
-  low = (dxz + root) / dzz;
-  high = (dxz - root) / dzz;
+  ScreenVariance d = screen_variance(s.n, ray, frontal_deviation(disc_radius, s.o.z), frame.filter_.y);
+  Disc disc = Disc(inverse_factor(d.s, d.det), push_back(s.radius, s.o.z) * footprints, splat.depth_range, splat.weight);
+  append(false, range, a, b, encode_disc(disc), s.n);
 }
 
 // True when a disc that is cut by the eye plane lies wholly behind it or beyond a side of the picture.
@@ -146,7 +134,7 @@ void project_large(Surfel s, bool astride) {
     if (astride_outside(s, extent)) return;
   } else {
     vec2 ray_low, ray_high;
-    projected_disc_bounds(s, extent, ray_low, ray_high);
+    projected_disc_bounds(s.o, s.n, extent, ray_low, ray_high);
     // The prefilter widens the projection of each point p of the disc by sqrt(c) o.z / p.z pixels.
     float dilation = sqrt(SURFCAST_KERNEL_CUTOFF * frame.filter_.x) * s.o.z /
                      (s.o.z - depth_extent(s, extent));
@@ -156,7 +144,7 @@ void project_large(Surfel s, bool astride) {
   bool outside;
   uvec2 range = tile_range(low, high, outside);
   if (outside) return;
-  float share = thinned_share(range, s.id);
+  float share = thinned_share(range, s.id, 1.0);
   if (share == 0.0) return;
   uvec4 a, b;
   encode_large(LargeSplat(s.o, s.radius, s.n, share * s.weight, s.color), a, b);
@@ -170,7 +158,7 @@ void project(Surfel s) {
     return;
   }
   vec2 ray = s.o.xy / s.o.z;
-  ScreenVariance v = screen_variance(s.o, s.n, ray, sigma * sigma, frame.filter_.x);
+  ScreenVariance v = screen_variance(s.n, ray, frontal_deviation(sigma, s.o.z), frame.filter_.x);
   float c = cutoff(v.gain);
   vec2 extent = sqrt(c * v.s.xz);
   float largest = max(extent.x, extent.y);

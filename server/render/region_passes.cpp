@@ -138,10 +138,18 @@ void bind_uniforms(StorageBuffer& buffer, GLuint binding, const void* constants,
   glBindBufferBase(GL_UNIFORM_BUFFER, binding, buffer.name());
 }
 
-void upload_constants(const RegionTask& task, uint32_t thinned_to, SplatBuffers& buffers) {
+/// How the splats of crowded tiles are sampled (shaders/include/thinning.glsl).
+struct Thinning {
+  uint32_t most = 0;   ///< splats of a tile; 0: all
+  bool alike = false;  ///< also those that cover much
+  bool operator==(const Thinning&) const = default;
+};
+
+void upload_constants(const RegionTask& task, const Thinning& thinning, SplatBuffers& buffers) {
   layout::FrameConstants constants = task.constants;
   constants.tiles.w = static_cast<int>(buffers.splat_capacity());
-  constants.flags.z = static_cast<int>(thinned_to);
+  constants.flags.z = static_cast<int>(thinning.most);
+  constants.flags.w = thinning.alike ? 1 : 0;
   bind_uniforms(buffers.frame, SURFCAST_BIND_FRAME, &constants, sizeof constants);
 }
 
@@ -200,11 +208,12 @@ layout::Counters read_counters(const SplatBuffers& buffers) {
   return counters;
 }
 
-/// Largest number of splats a tile may keep for the lists to fit, after `thinned_to` (0: all) did not do; the same if
-/// it did.
-uint32_t thinner(const layout::Counters& counters, uint32_t thinned_to, size_t list_limit) {
-  if (thinned_to == 0) return counters.counts.w > SURFCAST_CROWD ? SURFCAST_CROWD : 0;
-  return counters.counts.z > list_limit ? std::max(thinned_to / 2, 1U) : thinned_to;
+/// What to try next when `tried` left such counts; the same if it did.
+Thinning thinner(const layout::Counters& counters, const Thinning& tried, size_t list_limit) {
+  if (tried.most == 0) return {counters.counts.w > SURFCAST_CROWD ? SURFCAST_CROWD : 0U, false};
+  const bool lists_fit = counters.counts.z <= list_limit;
+  if (!tried.alike) return {tried.most, counters.counts.w > SURFCAST_CROWD_LIMIT || !lists_fit};
+  return {lists_fit ? tried.most : std::max(tried.most / 2, 1U), true};
 }
 
 /// Projects all visible surfels and sums up the tile counts; again if the records did not fit, or if a tile is so
@@ -218,9 +227,9 @@ Result<layout::Counters> project(const RegionTask& task, const ProjectionWork& w
   buffers.reserve_splats(std::max(kFirstCapacity, buffers.splat_capacity()), with_normals);
   upload_work(work, buffers);
   upload_look(task, work, buffers);
-  uint32_t thinned_to = 0;
+  Thinning thinning;
   while (true) {
-    upload_constants(task, thinned_to, buffers);
+    upload_constants(task, thinning, buffers);
     clear_counts(task, buffers);
     bind_for_projection(task, buffers);
     glUseProgram(variant.project->name());
@@ -236,9 +245,9 @@ Result<layout::Counters> project(const RegionTask& task, const ProjectionWork& w
       buffers.reserve_splats(std::min(needed + needed / 4, SurfelBuffer::device_limit() / 2), with_normals);
       continue;
     }
-    const uint32_t thinned_more = thinner(counters, thinned_to, SurfelBuffer::device_limit());
-    if (thinned_more == thinned_to) return counters;
-    thinned_to = thinned_more;
+    const Thinning next = thinner(counters, thinning, SurfelBuffer::device_limit());
+    if (next == thinning) return counters;
+    thinning = next;
   }
 }
 

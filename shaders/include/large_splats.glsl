@@ -28,27 +28,24 @@ float large_disc_inverse_depth(LargeSplat s, vec2 ray) {
   return min(plane, 1.0 / (s.o.z - depth_range(s))) / (1.0 + push_back(s.radius, s.o.z) / s.o.z);
 }
 
-// Squared radius of a pixel in the filter of a kernel of variance `kernel_variance`, and the gain.
-vec2 large_form(LargeSplat s, vec2 pixel, vec2 ray, float kernel_variance, float prefilter_variance) {
+// Squared radius of a pixel in the filter of a kernel of that deviation, world units, and the gain.
+vec2 large_form(LargeSplat s, vec2 ray, float deviation, float prefilter_variance) {
   if (astride(s)) {
     // Cut by the eye plane, the surfel is so near that the prefilter is nothing beside its kernel: measure on the
     // surface itself.
     float inverse_depth = large_plane_inverse_depth(s, ray);
-    vec3 u = vec3(ray, 1.0) / inverse_depth - s.o;
-    return vec2(inverse_depth > 0.0 ? dot(u, u) / kernel_variance : 1e30, 1.0);
+    vec3 u = (vec3(ray, 1.0) / inverse_depth - s.o) / deviation;
+    return vec2(inverse_depth > 0.0 ? dot(u, u) : 1e30, 1.0);
   }
-  ScreenVariance v = screen_variance(s.o, s.n, ray, kernel_variance, prefilter_variance);
-  vec3 l = inverse_factor(v.s, v.det);
-  vec2 d = pixel - pixel_of_ray(s.o.xy / s.o.z);
-  float p = l.x * d.x + l.y * d.y;
-  float q = l.z * d.y;
-  return vec2(p * p + q * q, v.gain);
+  vec2 v = eta() * (ray - s.o.xy / s.o.z);
+  return filter_at(s.n, ray, v, frontal_deviation(deviation, s.o.z), prefilter_variance);
 }
 
 // Squared radius at which the splat is cut: a property of the splat, from the gain at its centre.
-float large_cutoff(LargeSplat s, float kernel_variance) {
+float large_cutoff(LargeSplat s) {
   if (astride(s)) return SURFCAST_KERNEL_CUTOFF;
-  return cutoff(screen_variance(s.o, s.n, s.o.xy / s.o.z, kernel_variance, frame.filter_.x).gain);
+  float deviation = frontal_deviation(kernel_deviation(s), s.o.z);
+  return cutoff(screen_variance(s.n, s.o.xy / s.o.z, deviation, frame.filter_.x).gain);
 }
 
 void see_large(uint first, uint count, vec2 pixel, float limit, inout float surface, inout float peak) {
@@ -57,7 +54,7 @@ void see_large(uint first, uint count, vec2 pixel, float limit, inout float surf
     LargeSplat s = fetch_large(int(texelFetch(lists, int(first + k)).x));
     peak = max(peak, s.weight);
     float disc_radius = float(SURFCAST_VISIBILITY_RADIUS) * s.radius;
-    float form = large_form(s, pixel, ray, disc_radius * disc_radius, frame.filter_.y).x;
+    float form = large_form(s, ray, disc_radius, frame.filter_.y).x;
     float z = large_fragment_inverse_depth(s, ray);
     surface = form <= 1.0 && z < limit ? max(surface, large_disc_inverse_depth(s, ray)) : surface;
   }
@@ -71,10 +68,9 @@ void accumulate_large(uint first, uint count, vec2 pixel, float limit, float sur
     for (uint k = begin; k < end; ++k) {
       int slot = int(texelFetch(lists, int(first + k)).x);
       LargeSplat s = fetch_large(slot);
-      float sigma = kernel_deviation(s);
-      vec2 form_gain = large_form(s, pixel, ray, sigma * sigma, frame.filter_.x);
+      vec2 form_gain = large_form(s, ray, kernel_deviation(s), frame.filter_.x);
       float z = large_fragment_inverse_depth(s, ray);
-      bool visible = form_gain.x <= large_cutoff(s, sigma * sigma) && z > 0.0 && z >= surface && z < limit;
+      bool visible = form_gain.x <= large_cutoff(s) && z > 0.0 && z >= surface && z < limit;
       float weight = s.weight * form_gain.y * coverage_scale(form_gain.y) * exp(-0.5 * form_gain.x);
       sums_add(sums, splat_value(s.color, slot, unit), visible ? weight : 0.0);
 #ifdef SURFCAST_EYE_DOME

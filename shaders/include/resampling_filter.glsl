@@ -5,23 +5,21 @@
 // maps the point u in which the ray meets the surfel's plane exactly to the pixel displacement v from the projected
 // centre. So the quadratic form of Ren's object space filter, u^T (V + J^-1 J^-T)^-1 u, equals v^T S^-1 v with
 //     S = V_r J J^T + V_h I,
-// which stays finite at grazing angles, and neither tangents nor the plane's intersection are needed:
-//     J J^T = (eta / o.z)^2 (A A^T - (A n)(A n)^T),   A = [1 0 -ray.x; 0 1 -ray.y].
+// which stays finite at grazing angles, and neither tangents nor the plane's intersection are needed. With
+// a_0 = (1, 0, -ray.x) and a_1 = (0, 1, -ray.y),
+//     (J J^T)_ij = (eta / o.z)^2 (a_i x n) . (a_j x n),
+// sums of products of what is small when the result is: single precision serves at every angle.
 // Pixel rows run downwards, camera y upwards: the off-diagonal changes sign for pixel displacements.
 
-// J J^T as (xx, xy, yy), for pixel displacements.
-vec3 projected_variance(vec3 o, vec3 n, vec2 ray) {
-  float k = eta() / o.z;
-  vec2 an = n.xy - ray * n.z;
-  return k * k * vec3(1.0 + ray.x * ray.x - an.x * an.x, an.x * an.y - ray.x * ray.y, 1.0 + ray.y * ray.y - an.y * an.y);
+// J J^T as (xx, xy, yy) in units of (eta / o.z)^2, for pixel displacements.
+vec3 projected_variance(vec3 n, vec2 ray) {
+  vec3 p = vec3(ray.x * n.y, -n.z - ray.x * n.x, n.y);
+  vec3 q = vec3(n.z + ray.y * n.y, -ray.y * n.x, -n.x);
+  return vec3(dot(p, p), -dot(p, q), dot(q, q));
 }
 
-// det(J J^T) = ((eta / o.z)^2 n.ray)^2, from its factors, since the difference of products cancels at grazing angles.
-float projected_determinant(vec3 o, vec3 n, vec2 ray) {
-  float k = eta() / o.z;
-  float area = k * k * (dot(n.xy, ray) + n.z);
-  return area * area;
-}
+// The kernel's standard deviation in pixels, were it seen from the front.
+float frontal_deviation(float deviation, float depth) { return deviation * eta() / depth; }
 
 struct ScreenVariance {
   vec3 s;      // S as (xx, xy, yy), pixels squared
@@ -29,14 +27,43 @@ struct ScreenVariance {
   float gain;  // sqrt(det(V_r J J^T) / det S): what the prefilter leaves of the kernel's peak, in [0, 1]
 };
 
-ScreenVariance screen_variance(vec3 o, vec3 n, vec2 ray, float kernel_variance, float prefilter_variance) {
-  vec3 j = projected_variance(o, n, ray);
-  float dj = kernel_variance * kernel_variance * projected_determinant(o, n, ray);
+// `s` is the kernel's frontal_deviation. det(J J^T) = ((eta / o.z)^2 n.ray)^2, since the difference of products cancels.
+ScreenVariance screen_variance(vec3 n, vec2 ray, float s, float prefilter_variance) {
+  vec3 j = projected_variance(n, ray);
+  float s2 = s * s;
+  float area = s2 * abs(dot(n.xy, ray) + n.z);
   ScreenVariance v;
-  v.s = kernel_variance * j + vec3(prefilter_variance, 0.0, prefilter_variance);
-  v.det = dj + prefilter_variance * (kernel_variance * (j.x + j.z) + prefilter_variance);
-  v.gain = sqrt(dj / v.det);
+  v.s = s2 * j + vec3(prefilter_variance, 0.0, prefilter_variance);
+  v.det = area * area + prefilter_variance * (s2 * (j.x + j.z) + prefilter_variance);
+  v.gain = area * inversesqrt(v.det);
   return v;
+}
+
+// r^2 = v^T S^-1 v as the sum of squares of docs/kernel.md, exact for a pixel at the displacement v from the projected
+// centre (y upwards), and the gain.
+vec2 filter_at(vec3 n, vec2 ray, vec2 v, float s, float prefilter_variance) {
+  vec3 m = vec3(v.y, -v.x, ray.y * v.x - ray.x * v.y);
+  vec3 mn = cross(m, n);
+  vec3 j = projected_variance(n, ray);
+  float s2 = s * s;
+  float area = s2 * abs(dot(n.xy, ray) + n.z);
+  float det = area * area + prefilter_variance * (s2 * (j.x + j.z) + prefilter_variance);
+  return vec2((s2 * dot(mn, mn) + prefilter_variance * dot(v, v)) / det, area * inversesqrt(det));
+}
+
+// Bounds of the projected disc of radius `extent`, on rays, from the dual conic e^2 (I - n n^T) - o o^T of its outline,
+// in units of o.z: the line x = t z touches it where D_xx - 2 t D_xz + t^2 D_zz = 0. The discriminant, a difference of
+// fourth powers, is e^2 (n_y^2 (x^2 + 1 - e^2) + (n_x x + n_z)^2) and likewise along y. Needs the whole disc in front
+// of the eye.
+void projected_disc_bounds(vec3 o, vec3 n, float extent, out vec2 low, out vec2 high) {
+  vec2 centre = o.xy / o.z;
+  float e = extent / o.z;
+  float dzz = e * e * (1.0 - n.z * n.z) - 1.0;
+  vec2 dxz = -e * e * n.xy * n.z - centre;
+  vec2 slant = n.xy * centre + n.z;
+  vec2 root = e * sqrt(n.yx * n.yx * (centre * centre + (1.0 - e * e)) + slant * slant);
+  low = (dxz + root) / dzz;
+  high = (dxz - root) / dzz;
 }
 
 // The squared radius at which the filter is cut: less of the Gaussian prefilter is worth its fragments.

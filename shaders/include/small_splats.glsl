@@ -6,16 +6,17 @@
 // its plane far beyond the surfel: a fragment is never behind the surfel's far end, and a disc never in front of its
 // near end. So fragments of one plane never hide each other, whatever its slope.
 Rows plane_inverse_depth(float inverse_depth, vec2 slope, vec2 v) {
-  float first = inverse_depth * (1.0 + dot(slope, v));
-  return first + inverse_depth * slope.y * kRow;
+  vec2 per_pixel = slope * (inverse_depth / eta());
+  float first = inverse_depth + dot(per_pixel, v);
+  return first + per_pixel.y * kRow;
 }
 
 Rows fragment_inverse_depth(Rows plane, float inverse_depth, float depth_range) {
-  return max(plane, Rows(inverse_depth / (1.0 + depth_range)));
+  return max(plane, Rows(inverse_depth / (1.0 + depth_range / eta())));
 }
 
 Rows disc_inverse_depth(Rows plane, float inverse_depth, Disc disc) {
-  return min(plane, Rows(inverse_depth / (1.0 - disc.depth_range))) / (1.0 + disc.push);
+  return min(plane, Rows(inverse_depth / (1.0 - disc.depth_range / eta()))) / (1.0 + disc.push / eta());
 }
 
 // (l11 v.x + l21 v.y)^2 + (l22 v.y)^2 in the rows below the displacement v.

@@ -11,11 +11,12 @@ const float kWeightRoot = 64.0;
 struct SmallSplat {
   vec2 centre;          // pixels
   float inverse_depth;  // 1 / z of the centre
-  vec2 slope;           // change of the plane's inverse depth per pixel, relative to the centre's
+  vec2 slope;           // change of the plane's inverse depth per unit of tangent, relative to the centre's: unlike
+                        // that per pixel, half precision holds it in narrow views, too
   vec3 factor;          // inverse_factor(S) * SURFCAST_SQRT_HALF_LOG2E, so that the weight is exp2 of the form
   float cutoff;         // largest value of the form
-  float depth_range;    // the disc's own depth range, relative to o.z: the plane of an edge-on surfel is not
-                        // extrapolated beyond it
+  float depth_range;    // the disc's own depth range, pixel footprints (o.z / eta): the plane of an edge-on surfel is
+                        // not extrapolated beyond it
   float weight;         // gain times normalisation
   uint color;
 };
@@ -37,7 +38,7 @@ SmallSplat decode_small(uvec4 a, uvec4 b) {
 // The opaque disc of a small splat for visibility splatting.
 struct Disc {
   vec3 factor;        // inverse_factor of its variance: the disc is where the form is at most 1
-  float push;         // how far the surface is pushed back along the viewing rays, in units of its depth
+  float push;         // how far the surface is pushed back along the viewing rays, pixel footprints
   float depth_range;  // as in SmallSplat
   float weight;       // of the splat: an upper bound of what it adds to a pixel
 };

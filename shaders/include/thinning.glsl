@@ -2,6 +2,11 @@
 // sample of them gives the same mean: one splat in m is kept, and weighs m times as much. Which ones follows from their
 // place in the model alone, so that the picture stays the same from run to run. (It also keeps loops short: llvmpipe ends
 // a kernel's loops after 65535 rounds in all, silently; eight layers go over a list twice each.)
+//
+// A sample of what few splats cover would have holes. So a splat of the gain g is kept with a probability of g / KEPT
+// where that is more than 1 / m: a surface that stands before a crowd, or beside it in the same tile, is drawn whole.
+// A surface of any spacing has less than 700 such splats on a tile; only where so many of them lie behind each other
+// that the lists stay too long (frame.flags.w) are all splats sampled alike.
 
 layout(std430, binding = SURFCAST_BIND_TILE_CROWD) readonly buffer TileCrowd { uint tile_crowd[]; };
 
@@ -12,13 +17,17 @@ uint hash(uint value) {
   return (word >> 22u) ^ word;
 }
 
+const float kGainKept = 1.0 / 32.0;
+
 // What a splat's weight is multiplied with; 0 drops it. `range` is the splat's tiles, `id` its surfel.
-float thinned_share(uvec2 range, uint id) {
+float thinned_share(uvec2 range, uint id, float gain) {
   if (frame.flags.z == 0) return 1.0;
   uint column = ((range.x & 0xffffu) + (range.y & 0xffffu)) / 2u;
   uint row = ((range.x >> 16) + (range.y >> 16)) / 2u;
   uint crowd = tile_crowd[row * uint(frame.tiles.x) + column];
   uint most = uint(frame.flags.z);
   uint m = (crowd + most - 1u) / most;
-  return m <= 1u ? 1.0 : hash(id) % m == 0u ? float(m) : 0.0;
+  float share = float(max(m, 1u));
+  if (frame.flags.w == 0) share = clamp(kGainKept / gain, 1.0, share);
+  return float(hash(id) >> 8) * share < 16777216.0 ? share : 0.0;
 }

@@ -23,6 +23,8 @@ namespace surfcast::layout {
 #define SURFCAST_CHUNK 128
 // Splats that a tile may have before its splats are thinned out (see include/thinning.glsl).
 #define SURFCAST_CROWD 3072
+// Splats that a tile may have after that, before all its splats are sampled alike.
+#define SURFCAST_CROWD_LIMIT 4000
 // Splats between two carries of the fixed-point sums (see splat.comp).
 #define SURFCAST_CARRY_INTERVAL 32
 
@@ -37,7 +39,7 @@ struct FrameConstants {
                              // under per-pixel normalisation, radius of the wanted spacing at distance 1 straight ahead
   SURFCAST_VEC4 background;  // linear light
   SURFCAST_IVEC4 flags;      // x: back faces are culled, y: per-surfel weights, z: splats that a tile is thinned out to
-                             // (0: not at all), w: unused
+                             // (0: not at all), w: those that cover much, too
 };
 
 // One visible block (see shared/surfel_layout.h).
