@@ -47,7 +47,8 @@ endfunction()
 
 # surfcast_test(NAME [WHOLE] SOURCES file... [LIBS lib...] [LABELS label...])
 # One GoogleTest program of one module. Every case becomes a ctest case of its own; WHOLE keeps them together, for
-# programs whose start costs more than their cases (a GL context and its shaders).
+# programs whose start costs more than their cases (a GL context and its shaders). A label is one word, of parts that
+# ctest tells apart (-L gl, -LE slow): what decides where a test runs, then suites of its own, as in gl-slow-numerics.
 function(surfcast_test name)
   cmake_parse_arguments(ARG "WHOLE" "" "SOURCES;LIBS;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})

@@ -13,6 +13,7 @@
 #include "model/write_model.h"
 #include "reference/reference_renderer.h"
 #include "reference/scenes.h"
+#include "render/decoded_cloud.h"
 #include "render/renderer.h"
 #include "surfel/normalization_weights.h"
 
@@ -22,6 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 using reference::Scene;
 using reference::SrgbPicture;
+using testing::decoded_cloud;
 
 /// What the renderer drew: colours, and the coverage of every pixel.
 struct DrawnPicture {
@@ -37,26 +39,6 @@ DrawnPicture drawn_picture(const Image& image) {
     drawn.coverage.push_back(bytes[i].a);
   }
   return drawn;
-}
-
-/// The surfels of the finest level as they come out of the file: what the reference must draw.
-SurfelCloud decoded_cloud(const ModelFile& model) {
-  SurfelCloud cloud;
-  cloud.oriented = model.info().oriented;
-  if (model.info().color_bits > 0) cloud.colors = ColorAttribute{model.info().color_bits, {}};
-  for (size_t b = 0; b < model.blocks().size(); ++b) {
-    if (model.blocks()[b].level != 0) continue;
-    const Result<DecodedBlock> block = model.decode(b);
-    if (!block) ADD_FAILURE() << block.error().message;
-    for (size_t i = 0; i < block->size(); ++i) {
-      cloud.positions.push_back(block->position(i));
-      cloud.normals.push_back(block->normals[i]);
-      cloud.radii.push_back(block->radii[i]);
-      cloud.weights.push_back(block->weights[i]);
-      if (cloud.colors) cloud.colors->values.push_back(block->colors[i]);
-    }
-  }
-  return cloud;
 }
 
 Scene transformed(Scene scene, double scale, const glm::dvec3& offset) {

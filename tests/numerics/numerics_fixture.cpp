@@ -1,0 +1,65 @@
+#include "numerics/numerics_fixture.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+#include <iostream>
+
+#include "render/decoded_cloud.h"
+
+namespace surfcast::testing {
+namespace {
+
+glm::dvec4 drawn_light(const Image& image, const reference::Window& window, int x, int y) {
+  const size_t at = static_cast<size_t>(window.y + y) * static_cast<size_t>(image.width) + window.x + x;
+  glm::vec4 light;
+  std::memcpy(&light, image.pixels.data() + sizeof light * at, sizeof light);
+  return light;
+}
+
+}  // namespace
+
+std::ostream& operator<<(std::ostream& out, const Difference& difference) {
+  return out << "rms " << difference.rms << ", worst " << difference.worst << ", coverage " << difference.coverage;
+}
+
+Difference NumericsGLTest::difference(const std::string& what, const ModelPointer& model, PictureRequest request,
+                                      const std::optional<reference::Window>& window) {
+  request.format = PixelFormat::kLinearFloat;
+  const Image image = draw(model, request).image;
+  const reference::ReferencePicture expected = reference::render(decoded_cloud(*model), request, {}, window);
+  const reference::Window part = window.value_or(reference::Window{0, 0, request.width, request.height});
+  Difference found;
+  double squares = 0;
+  for (int y = 0; y < part.height; ++y) {
+    for (int x = 0; x < part.width; ++x) {
+      const size_t place = expected.picture.index(x, y);
+      const glm::dvec4 actual = drawn_light(image, part, x, y);
+      const glm::dvec3 d = glm::abs(glm::dvec3(actual) - expected.picture.pixels[place]);
+      const double largest = std::max({d.x, d.y, d.z});
+      // Written so that what is no number stays none.
+      found.worst = largest <= found.worst ? found.worst : largest;
+      const double coverage = std::abs(actual.a - expected.coverage[place]);
+      found.coverage = coverage <= found.coverage ? found.coverage : coverage;
+      squares += glm::dot(d, d) / 3;
+    }
+  }
+  found.rms = std::sqrt(squares / (static_cast<double>(part.width) * part.height));
+  std::cout << "[ measured ] " << what << ": " << found << '\n';
+  return found;
+}
+
+void NumericsGLTest::expect_within(const Difference& difference, const Difference& bound) {
+  EXPECT_LE(difference.rms, bound.rms);
+  EXPECT_LE(difference.worst, bound.worst);
+  EXPECT_LE(difference.coverage, bound.coverage);
+}
+
+void paint_motley(SurfelCloud& cloud) {
+  for (size_t i = 0; i < cloud.size(); ++i) {
+    const auto hash = static_cast<uint32_t>(i) * 2654435761U;
+    cloud.colors->values[i] = glm::u16vec3(hash >> 24, (hash >> 16) & 255U, (hash >> 8) & 255U);
+  }
+}
+
+}  // namespace surfcast::testing

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <ostream>
+#include <string>
+
+#include "reference/reference_renderer.h"
+#include "render/gl_fixture.h"
+
+namespace surfcast::testing {
+
+/// How far a picture is from the double precision reference of the same model, in linear light (1 is white).
+struct Difference {
+  double rms = 0;       ///< over all channels of all pixels
+  double worst = 0;     ///< of any channel of any pixel
+  double coverage = 0;  ///< largest difference of any pixel's coverage
+};
+std::ostream& operator<<(std::ostream& out, const Difference& difference);
+
+// What keeps a picture from its reference, largest first:
+// - small splats have one ellipse, taken at their centre, and its factors in half precision;
+// - a fragment that lies at the cutoff (weight e^-2.5 of the peak where the prefilter rules, e^-4.5 where the kernel
+//   does) or at the depth limit may fall on either side, which shows where few fragments cover a pixel;
+// - colours are rounded to roots in 11, 11 and 10 bits: at most 2 / 1023 / 2 of linear light, at white;
+// - single precision itself.
+
+/// Rounded colours and single precision alone: where neither small splats nor cutoffs decide.
+inline constexpr Difference kRounding{2e-4, 1e-3, 1e-5};
+/// The weight of a fragment at the kernel's cutoff, e^-4.5, on one pixel or another.
+inline constexpr Difference kMagnified{1e-3, 1.5e-2, 1.5e-2};
+/// The weight of a fragment at the prefilter's cutoff at the border of a surface, where its share is largest: e^-2.5
+/// over the sum that counts as covered.
+inline constexpr Difference kSplats{1e-3, 0.1, 0.1};
+
+/// Every case draws a model twice, by the renderer and by the reference, and states how far apart they may be.
+class NumericsGLTest : public RendererFixture {
+ protected:
+  /// Draws the picture both ways; with a window, the reference draws and both are compared in that part alone. Prints
+  /// what it finds.
+  static Difference difference(const std::string& what, const ModelPointer& model, PictureRequest request,
+                               const std::optional<reference::Window>& window = {});
+
+  /// Fails where the difference is larger in any respect, or is no number.
+  static void expect_within(const Difference& difference, const Difference& bound);
+};
+
+/// A colour of its own for every surfel, so that a wrong weight shows as a wrong colour.
+void paint_motley(SurfelCloud& cloud);
+
+}  // namespace surfcast::testing

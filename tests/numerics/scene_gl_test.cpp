@@ -1,0 +1,114 @@
+// Scenes of unlike scales, far origins, wide and narrow views, against the double precision reference.
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "numerics/numerics_fixture.h"
+#include "support/clouds.h"
+
+namespace surfcast::testing {
+namespace {
+
+constexpr double kDegree = std::numbers::pi / 180;
+
+PictureRequest view_from(const glm::dvec3& eye, const glm::dvec3& target, double angle, int width, int height) {
+  PictureRequest request;
+  request.camera = Camera{eye, target, {0.1, 1, 0.2}, angle};
+  request.width = width;
+  request.height = height;
+  return request;
+}
+
+SurfelCloud motley_square(int side, double extent, const glm::dvec3& centre, const glm::dvec3& normal) {
+  SurfelCloud cloud = square(side, extent, centre, normal, {0, 0, 0});
+  paint_motley(cloud);
+  return cloud;
+}
+
+TEST_F(NumericsGLTest, AMillionSurfelsInOnePixel) {
+  // The sphere's diameter is 0.6 pixels, of which 5 % are covered. Some 3000 of the million are drawn, each standing
+  // for 330: their sum has a standard deviation of 2 % of that.
+  const ModelPointer& model = model_of(fibonacci_sphere(1000000, 1e-3, {0, 0, 0}, {200, 90, 20}));
+  expect_within(difference("a million in a pixel", model, view_from({0, 0, 0.2}, {0, 0, 0}, 30, 33, 33)),
+                {5e-4, 3e-3, 3e-3});
+}
+
+/// A square of `side` spacings of 1, and before it one of `fine` spacings of a millionth.
+SurfelCloud spacings_a_million_times_apart(int side, int fine, const glm::dvec3& at) {
+  SurfelCloud cloud = motley_square(side, side, {0, 0, 0}, {0, 0, 1});
+  append(cloud, motley_square(fine, 1e-6 * fine, at, {0, 0, 1}));
+  return cloud;
+}
+
+TEST_F(NumericsGLTest, SpacingsAMillionTimesApart) {
+  const glm::dvec3 at(0.31, 0.17, 3);
+  const ModelPointer& model = model_of(spacings_a_million_times_apart(100, 100, at));
+  for (const double distance : {120.0, 1.0, 1e-2, 1.2e-4}) {
+    const PictureRequest request = view_from(at + distance * glm::dvec3(0, -0.4, 1), at, 40, 160, 120);
+    expect_within(difference("spacings 1 and 1e-6 from " + std::to_string(distance), model, request), kSplats);
+  }
+}
+
+TEST_F(NumericsGLTest, AFewFineSurfelsAmongCoarseOnes) {
+  // So few that nothing but their spacing asks for a block of their own.
+  const glm::dvec3 at(0.31, 0.17, 3);
+  const ModelPointer& model = model_of(spacings_a_million_times_apart(40, 30, at));
+  const PictureRequest request = view_from(at + glm::dvec3(0, 0, 4e-5), at, 40, 160, 120);
+  expect_within(difference("few fine surfels", model, request), kSplats);
+}
+
+TEST_F(NumericsGLTest, MillimetresAtMapCoordinates) {
+  const glm::dvec3 far_away(448262.31, 5411932.67, 312.45);
+  const ModelPointer& model = model_of(motley_square(100, 0.1, far_away, {0, 0.3, 1}));
+  for (const double distance : {1.0, 0.1, 0.01}) {
+    const PictureRequest request = view_from(far_away + glm::dvec3(0, 0, distance), far_away, 30, 160, 120);
+    expect_within(difference("map coordinates from " + std::to_string(distance), model, request), kSplats);
+  }
+}
+
+TEST_F(NumericsGLTest, FieldsOfViewFromATenthOfADegreeTo170) {
+  const ModelPointer& model = model_of(motley_square(100, 1, {0, 0, 0}, {0.5, 0.2, 1}));
+  for (const double angle : {0.1, 1.0, 30.0, 90.0, 150.0, 170.0}) {
+    // So far away that the square spans two thirds of the picture, yet never within its own plane.
+    const double distance = std::max(0.75 / std::tan(0.5 * angle * kDegree), 0.3);
+    const PictureRequest request = view_from({0, 0, distance}, {0, 0, 0}, angle, 320, 240);
+    expect_within(difference("field of view " + std::to_string(angle), model, request), kSplats);
+  }
+}
+
+TEST_F(NumericsGLTest, AFieldOfViewOfATenthOfADegreeInAHighPicture) {
+  const ModelPointer& model = model_of(motley_square(200, 1, {0, 0, 0}, {0.5, 0.2, 1}));
+  const double distance = 0.75 / std::tan(0.05 * kDegree);
+  const PictureRequest request = view_from({0, 0, distance}, {0, 0, 0}, 0.1, 64, 2000);
+  expect_within(difference("narrow and high", model, request), kSplats);
+}
+
+TEST_F(NumericsGLTest, DepthsABillionTimesApart) {
+  // Squares that look alike from the eye, the last a billion times as far away as the first, each to one side.
+  SurfelCloud cloud = motley_square(30, 0.3, {-0.5, 0, -1}, {0, 0, 1});
+  for (const double depth : {1e3, 1e6, 1e9}) {
+    const double side = 0.25 * (std::log10(depth) / 3 - 1);
+    append(cloud, motley_square(30, 0.2 * depth, depth * glm::dvec3(side, 0, -1), {0, 0, 1}));
+  }
+  const ModelPointer& model = model_of(cloud);
+  expect_within(difference("depths of 1 to 1e9", model, view_from({0, 0, 0}, {0, 0, -1}, 60, 320, 240)), kSplats);
+}
+
+TEST_F(NumericsGLTest, NearSurfacesHideWhatIsABillionTimesAsFar) {
+  SurfelCloud cloud = motley_square(40, 0.5, {0, 0, -1}, {0.1, 0.2, 1});
+  append(cloud, motley_square(40, 1e9, {0, 0, -1e9}, {0, 0.1, 1}));
+  const ModelPointer& model = model_of(cloud);
+  expect_within(difference("near before far", model, view_from({0, 0, 0}, {0, 0, -1}, 60, 320, 240)), kSplats);
+}
+
+TEST_F(NumericsGLTest, PicturesOfOnePixel) {
+  const ModelPointer& model = model_of(motley_square(50, 4, {0, 0, 0}, {0.2, 0.1, 1}));
+  for (const double angle : {0.1, 30.0, 170.0}) {
+    const PictureRequest request = view_from({0, 0, 3}, {0, 0, 0}, angle, 1, 1);
+    expect_within(difference("one pixel of " + std::to_string(angle), model, request), kSplats);
+  }
+}
+
+}  // namespace
+}  // namespace surfcast::testing
