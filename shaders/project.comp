@@ -1,5 +1,9 @@
 // Projects, culls and bounds every surfel of the visible blocks once; what survives becomes a splat record, and the
 // tiles it touches are counted. The order of the records does not matter to the picture (see splat.comp).
+//
+// A work group goes over its chunk twice: first all lanes look for the surfels that are drawn, then they share those.
+// Lanes that only accompany others cost as much as these do, most of all in software, and where a scene has back faces
+// or levels of detail most surfels are not drawn. Those whose splats may be large are few, and come last.
 #include "shared/kernel.h"
 #include "shared/frame_layout.h"
 #include "include/frame.glsl"
@@ -12,7 +16,12 @@
 #include "include/thinning.glsl"
 
 layout(location = SURFCAST_UNIFORM_FIRST_GROUP) uniform uint first_group;
-layout(local_size_x = SURFCAST_CHUNK) in;
+layout(local_size_x = SURFCAST_PROJECT_LANES) in;
+
+// Places in the chunk: of surfels with small splats from the front, of others from the back.
+shared uint drawn[SURFCAST_CHUNK];
+shared uint small_count;
+shared uint other_count;
 
 layout(binding = SURFCAST_UNIT_SURFELS) uniform usamplerBuffer surfels;
 layout(std430, binding = SURFCAST_BIND_BLOCKS) readonly buffer Blocks { BlockView blocks[]; };
@@ -151,6 +160,26 @@ void project_large(Surfel s, bool astride) {
   append(true, range, a, b, uvec4(0u), s.n);
 }
 
+bool is_small(float sigma, float extent, float depth) {
+  return extent <= kSmallExtent && sigma * extent <= kSmallPerspective * depth;
+}
+
+// Whether the splat is small in whatever way the surfel is turned.
+bool is_surely_small(Surfel s) {
+  float sigma = float(SURFCAST_KERNEL_SIGMA) * s.radius;
+  vec2 ray = s.o.xy / s.o.z;
+  float spread = frontal_deviation(sigma, s.o.z);
+  float variance = spread * spread * (1.0 + max(ray.x * ray.x, ray.y * ray.y)) + frame.filter_.x;
+  return !is_astride(s.o.z, s.radius) && is_small(sigma, sqrt(SURFCAST_KERNEL_CUTOFF * variance), s.o.z);
+}
+
+void project_surely_small(Surfel s) {
+  vec2 ray = s.o.xy / s.o.z;
+  float deviation = frontal_deviation(float(SURFCAST_KERNEL_SIGMA) * s.radius, s.o.z);
+  ScreenVariance v = screen_variance(s.n, ray, deviation, frame.filter_.x);
+  project_small(s, ray, pixel_of_ray(ray), v, cutoff(v.gain));
+}
+
 void project(Surfel s) {
   float sigma = float(SURFCAST_KERNEL_SIGMA) * s.radius;
   if (is_astride(s.o.z, s.radius)) {
@@ -161,19 +190,36 @@ void project(Surfel s) {
   ScreenVariance v = screen_variance(s.n, ray, frontal_deviation(sigma, s.o.z), frame.filter_.x);
   float c = cutoff(v.gain);
   vec2 extent = sqrt(c * v.s.xz);
-  float largest = max(extent.x, extent.y);
-  if (largest <= kSmallExtent && sigma * largest <= kSmallPerspective * s.o.z) {
+  if (is_small(sigma, max(extent.x, extent.y), s.o.z)) {
     project_small(s, ray, pixel_of_ray(ray), v, c);
   } else {
     project_large(s, false);
   }
 }
 
-void main() {
-  uvec4 run = chunks[first_group + gl_WorkGroupID.x].run;
-  uint place = gl_LocalInvocationID.x;
-  if (place >= (run.z & SURFCAST_RUN_COUNT)) return;
-  BlockView block = blocks[run.x];
+// Where a surfel lies, how large it is, and where it faces: towards the eye. `away`: it had to be turned.
+Surfel placed_surfel(BlockView block, uvec4 texel, out bool away) {
+  mat3 rotation = transpose(mat3(frame.right.xyz, frame.up.xyz, frame.forward.xyz));
+  Surfel s;
+  s.o = block.origin.xyz + rotation * (block.step.xyz * surfel_position(texel));
+  s.radius = surfel_size(texel, block.scale).x;
+  s.n = rotation * surfel_normal(texel);
+  away = dot(s.n, s.o) >= 0.0;
+  if (away) s.n = -s.n;
+  return s;
+}
+
+bool has_wanted_spacing(uvec4 run, BlockView block, uint place, Surfel s) {
+  float merged = s.radius;
+  if ((run.z & SURFCAST_RUN_PAIRS) != 0u) {
+    float other = surfel_size(texelFetch(surfels, int(run.y + (place ^ 1u))), block.scale).x;
+    merged = sqrt(s.radius * s.radius + other * other);
+  }
+  return fits_spacing(run.z, s.radius, merged, wanted_radius(s.o));
+}
+
+// Enters a surfel in the list of those that are drawn, if it is one.
+void look_at(uvec4 run, BlockView block, uint place) {
   int at = int(run.y + place);
   uvec4 texel = texelFetch(surfels, at);
 #ifdef SURFCAST_CLIPPED
@@ -182,25 +228,24 @@ void main() {
 #ifdef SURFCAST_HIDES_CLASSES
   if (class_hidden(at)) return;
 #endif
-  mat3 rotation = transpose(mat3(frame.right.xyz, frame.up.xyz, frame.forward.xyz));
-  vec2 size = surfel_size(texel, block.scale);
-
-  Surfel s;
-  s.id = run.w + place;
-  s.o = block.origin.xyz + rotation * (block.step.xyz * surfel_position(texel));
-  s.radius = size.x;
-  float merged = s.radius;
-  if ((run.z & SURFCAST_RUN_PAIRS) != 0u) {
-    float other = surfel_size(texelFetch(surfels, int(run.y + (place ^ 1u))), block.scale).x;
-    merged = sqrt(s.radius * s.radius + other * other);
-  }
-  if (!fits_spacing(run.z, s.radius, merged, wanted_radius(s.o))) return;
-  s.n = rotation * surfel_normal(texel);
-  s.weight = frame.flags.y != 0 ? size.y : frame.filter_.z;
-  if (s.o.z + s.radius * 2.0 <= 0.0) return;
-  bool away = dot(s.n, s.o) >= 0.0;
+  bool away;
+  Surfel s = placed_surfel(block, texel, away);
   if (away && frame.flags.x != 0) return;
-  if (away) s.n = -s.n;
+  if (s.o.z + s.radius * 2.0 <= 0.0 || !has_wanted_spacing(run, block, place, s)) return;
+  if (is_surely_small(s)) {
+    drawn[atomicAdd(small_count, 1u)] = place;
+  } else {
+    drawn[uint(SURFCAST_CHUNK - 1) - atomicAdd(other_count, 1u)] = place;
+  }
+}
+
+Surfel drawn_surfel(uvec4 run, BlockView block, uint place) {
+  int at = int(run.y + place);
+  uvec4 texel = texelFetch(surfels, at);
+  bool away;
+  Surfel s = placed_surfel(block, texel, away);
+  s.id = run.w + place;
+  s.weight = frame.flags.y != 0 ? surfel_size(texel, block.scale).y : frame.filter_.z;
 #if defined(SURFCAST_COLOR_TABLE)
   s.color = table_color(run.x, at, texel);
 #elif defined(SURFCAST_COLOR_NORMAL)
@@ -212,5 +257,24 @@ void main() {
 #else
   s.color = 0u;
 #endif
-  project(s);
+  return s;
+}
+
+void main() {
+  const uint lanes = uint(SURFCAST_PROJECT_LANES);
+  uint lane = gl_LocalInvocationID.x;
+  uvec4 run = chunks[first_group + gl_WorkGroupID.x].run;
+  BlockView block = blocks[run.x];
+  if (lane == 0u) {
+    small_count = 0u;
+    other_count = 0u;
+  }
+  barrier();
+  uint count = run.z & SURFCAST_RUN_COUNT;
+  for (uint place = lane; place < count; place += lanes) look_at(run, block, place);
+  barrier();
+  for (uint i = lane; i < small_count; i += lanes) project_surely_small(drawn_surfel(run, block, drawn[i]));
+  for (uint i = lane; i < other_count; i += lanes) {
+    project(drawn_surfel(run, block, drawn[uint(SURFCAST_CHUNK - 1) - i]));
+  }
 }

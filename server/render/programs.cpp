@@ -55,15 +55,15 @@ std::string splat_defines(const Variant& variant) {
   return common_defines(variant) + output;
 }
 
-std::string rows_define(int rows) {
-  return "#define SURFCAST_ROWS " + std::to_string(rows) + "\n";
+std::string define(const std::string& name, int value) {
+  return "#define " + name + " " + std::to_string(value) + "\n";
 }
 
 }  // namespace
 
-Result<Programs> Programs::create(int rows) {
+Result<Programs> Programs::create(const KernelShape& shape) {
   Programs programs;
-  programs.rows_ = rows;
+  programs.shape_ = shape;
   Result<gl::Program> offsets = compute_program("bin_offsets.comp", {});
   if (!offsets) return fail(std::move(offsets.error()));
   Result<gl::Program> bin = compute_program("bin.comp", {});
@@ -90,10 +90,12 @@ Result<SplatPrograms> Programs::variant(const Variant& variant) {
     target = *compiled;
     return {};
   };
-  Status status = compile(programs.project, "project.comp", project_defines(variant));
-  if (status) status = compile(programs.splat, "splat.comp", splat + rows_define(rows_));
+  const std::string lanes = define("SURFCAST_PROJECT_LANES", shape_.project_lanes);
+  Status status = compile(programs.project, "project.comp", project_defines(variant) + lanes);
+  if (status) status = compile(programs.splat, "splat.comp", splat + define("SURFCAST_ROWS", shape_.rows));
   if (status) {
-    status = compile(programs.splat_large, "splat.comp", splat + rows_define(1) + "#define SURFCAST_LARGE\n");
+    status =
+        compile(programs.splat_large, "splat.comp", splat + define("SURFCAST_ROWS", 1) + "#define SURFCAST_LARGE\n");
   }
   if (status && variant.eye_dome) status = compile(programs.eye_dome, "eye_dome.comp", float_define(variant));
   if (!status) return fail(std::move(status.error()));

@@ -29,11 +29,16 @@ struct SplatPrograms {
   const gl::Program* eye_dome = nullptr;     ///< null without eye-dome lighting
 };
 
+/// How the passes fit the device's vectors. No picture depends on it.
+struct KernelShape {
+  int rows = 1;            ///< pixels that a lane of the splat kernel holds, 1 or 4 (see include/rows.glsl)
+  int project_lanes = 64;  ///< lanes that share a chunk of surfels: one vector, or as many as hide waiting
+};
+
 /// Compiles the passes when they are first needed.
 class Programs {
  public:
-  /// `rows` is the number of pixels that a lane of the splat kernel holds, 1 or 4 (see include/rows.glsl).
-  static Result<Programs> create(int rows);
+  static Result<Programs> create(const KernelShape& shape);
 
   Result<SplatPrograms> variant(const Variant& variant);
   [[nodiscard]] const gl::Program& bin_offsets() const { return bin_offsets_; }
@@ -42,7 +47,7 @@ class Programs {
  private:
   Result<const gl::Program*> program(const char* name, const std::string& defines);
 
-  int rows_ = 1;
+  KernelShape shape_;
   gl::Program bin_offsets_;
   gl::Program bin_;
   std::map<std::string, gl::Program> compiled_;  ///< by name and defines

@@ -191,8 +191,8 @@ FrameStats Renderer::State::stats_of(const Scene& scene, const PreparedView& vie
 Result<std::unique_ptr<Renderer>> Renderer::create(const RendererConfig& config) {
   Result<std::unique_ptr<EglContext>> context = EglContext::create(config.gpu);
   if (!context) return fail(std::move(context.error()));
-  const int rows = (*context)->software() ? 4 : 1;  // see include/rows.glsl
-  Result<Programs> programs = Programs::create(rows);
+  constexpr KernelShape kSoftware = {.rows = 4, .project_lanes = 8};
+  Result<Programs> programs = Programs::create((*context)->software() ? kSoftware : KernelShape());
   if (!programs) return fail(std::move(programs.error()));
   return std::unique_ptr<Renderer>(
       new Renderer(std::make_unique<State>(config, std::move(*context), std::move(*programs))));
