@@ -1,5 +1,5 @@
 # The two commands of the README, on a bare Debian 12: make demo, make test. They install what is missing.
-.PHONY: build demo test asan tidy format-check configure packages lint-packages
+.PHONY: build demo test bench asan tidy format-check configure packages lint-packages
 
 build: configure
 	cmake --build --preset release
@@ -10,6 +10,12 @@ demo: configure
 
 test: build
 	ctest --preset release -j2
+
+# Time against error of every way to draw, written into docs/. SCANS are more scans or models to measure, BENCH_FLAGS
+# what `laboratory --help` lists.
+bench: configure
+	cmake --build --preset release --target laboratory
+	build/bin/laboratory --docs docs $(BENCH_FLAGS) tests/data/lion.drc $(SCANS)
 
 # The tests of the modules that need no GL and little time, under the address and undefined behaviour sanitizers.
 asan: packages

@@ -61,12 +61,13 @@ std::string define(const std::string& name, int value) {
 
 }  // namespace
 
-Result<Programs> Programs::create(const KernelShape& shape) {
+Result<Programs> Programs::create(const KernelShape& shape, const std::string& defines) {
   Programs programs;
   programs.shape_ = shape;
-  Result<gl::Program> offsets = compute_program("bin_offsets.comp", {});
+  programs.defines_ = defines;
+  Result<gl::Program> offsets = compute_program("bin_offsets.comp", defines);
   if (!offsets) return fail(std::move(offsets.error()));
-  Result<gl::Program> bin = compute_program("bin.comp", {});
+  Result<gl::Program> bin = compute_program("bin.comp", defines);
   if (!bin) return fail(std::move(bin.error()));
   programs.bin_offsets_ = std::move(*offsets);
   programs.bin_ = std::move(*bin);
@@ -76,7 +77,7 @@ Result<Programs> Programs::create(const KernelShape& shape) {
 Result<const gl::Program*> Programs::program(const char* name, const std::string& defines) {
   const std::string key = name + ("\n" + defines);
   if (const auto found = compiled_.find(key); found != compiled_.end()) return &found->second;
-  Result<gl::Program> program = compute_program(name, defines);
+  Result<gl::Program> program = compute_program(name, defines_ + defines);
   if (!program) return fail(std::move(program.error()));
   return &compiled_.emplace(key, std::move(*program)).first->second;
 }

@@ -38,7 +38,8 @@ struct KernelShape {
 /// Compiles the passes when they are first needed.
 class Programs {
  public:
-  static Result<Programs> create(const KernelShape& shape);
+  /// `defines` stands before every shader.
+  static Result<Programs> create(const KernelShape& shape, const std::string& defines);
 
   Result<SplatPrograms> variant(const Variant& variant);
   [[nodiscard]] const gl::Program& bin_offsets() const { return bin_offsets_; }
@@ -48,6 +49,7 @@ class Programs {
   Result<const gl::Program*> program(const char* name, const std::string& defines);
 
   KernelShape shape_;
+  std::string defines_;
   gl::Program bin_offsets_;
   gl::Program bin_;
   std::map<std::string, gl::Program> compiled_;  ///< by name and defines

@@ -192,7 +192,8 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const RendererConfig& config)
   Result<std::unique_ptr<EglContext>> context = EglContext::create(config.gpu);
   if (!context) return fail(std::move(context.error()));
   constexpr KernelShape kSoftware = {.rows = 4, .project_lanes = 8};
-  Result<Programs> programs = Programs::create((*context)->software() ? kSoftware : KernelShape());
+  Result<Programs> programs =
+      Programs::create((*context)->software() ? kSoftware : KernelShape(), config.shader_defines);
   if (!programs) return fail(std::move(programs.error()));
   return std::unique_ptr<Renderer>(
       new Renderer(std::make_unique<State>(config, std::move(*context), std::move(*programs))));

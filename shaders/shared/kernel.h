@@ -8,6 +8,10 @@
 #ifndef SURFCAST_SHARED_KERNEL_H
 #define SURFCAST_SHARED_KERNEL_H
 
+// A measuring program may bring constants of its own to the shaders: then it defines SURFCAST_OTHER_KERNEL and those from
+// here to the corresponding #endif.
+#ifndef SURFCAST_OTHER_KERNEL
+
 // Standard deviation of the Gaussian reconstruction kernel, in units of r.
 #define SURFCAST_KERNEL_SIGMA 0.38
 
@@ -16,6 +20,13 @@
 #define SURFCAST_KERNEL_CUTOFF_MINIFIED 5.0
 #define SURFCAST_KERNEL_CUTOFF 9.0
 
+// A pixel counts as covered when the sum of its normalised weights reaches a0 = MINIFIED (MAGNIFIED / MINIFIED)^g: high
+// where the sum is the pixel's true coverage, low where it is a kernel's tail between samples.
+#define SURFCAST_COVERAGE_MINIFIED 0.9
+#define SURFCAST_COVERAGE_MAGNIFIED 0.1
+
+#endif
+
 // A surfel's opaque disc: radius in units of r on the surface, widened by a Gaussian of so many pixels on the screen
 // so that discs smaller than a pixel still cover its centre, pushed back along the ray by so many r, and by so many
 // pixel footprints (o.z / eta): what lies within a pixel's own depth is one surface, however fine its surfels.
@@ -23,10 +34,5 @@
 #define SURFCAST_VISIBILITY_PIXELS 0.6
 #define SURFCAST_VISIBILITY_DEPTH 1.0
 #define SURFCAST_VISIBILITY_FOOTPRINT 1.0
-
-// A pixel counts as covered when the sum of its normalised weights reaches a0 = MINIFIED (MAGNIFIED / MINIFIED)^g: high
-// where the sum is the pixel's true coverage, low where it is a kernel's tail between samples.
-#define SURFCAST_COVERAGE_MINIFIED 0.9
-#define SURFCAST_COVERAGE_MAGNIFIED 0.1
 
 #endif

@@ -1,0 +1,45 @@
+#include <cmath>
+#include <nlohmann/json.hpp>
+
+#include "lab/report.h"
+
+namespace surfcast::lab {
+namespace {
+
+using nlohmann::ordered_json;
+
+ordered_json rounded(double value) {
+  if (!std::isfinite(value)) return nullptr;  // PSNR of equal pictures
+  return std::round(value * 1e4) / 1e4;
+}
+
+ordered_json json_of(const Measurement& m) {
+  ordered_json stages = ordered_json::object();
+  for (const StageTime& stage : m.stages) stages[stage.name] = rounded(stage.milliseconds);
+  return {{"method", m.method},
+          {"milliseconds", rounded(m.milliseconds)},
+          {"processor_milliseconds", rounded(m.processor_milliseconds)},
+          {"surfels_per_second", std::round(m.surfels_per_second)},
+          {"splats", m.splats},
+          {"psnr", rounded(m.errors.psnr)},
+          {"ssim", rounded(m.errors.ssim)},
+          {"worst_tile", rounded(m.errors.worst_tile)},
+          {"flicker", rounded(m.flicker)},
+          {"stages", stages}};
+}
+
+ordered_json json_of(const SceneResult& scene) {
+  ordered_json measurements = ordered_json::array();
+  for (const Measurement& m : scene.measurements) measurements.push_back(json_of(m));
+  return {{"scene", scene.name}, {"surfels", scene.surfels}, {"measurements", measurements}};
+}
+
+}  // namespace
+
+std::string json_of(const LabResults& results) {
+  ordered_json scenes = ordered_json::array();
+  for (const SceneResult& scene : results.scenes) scenes.push_back(json_of(scene));
+  return ordered_json{{"device", results.device}, {"frames", results.frames}, {"scenes", scenes}}.dump(1) + "\n";
+}
+
+}  // namespace surfcast::lab

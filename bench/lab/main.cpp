@@ -1,0 +1,96 @@
+// laboratory: draws a set of scenes with every method and measures time against error; see --help.
+
+#include <CLI/CLI.hpp>
+#include <fstream>
+#include <sstream>
+
+#include "bench_support.h"
+#include "lab/measure.h"
+#include "lab/plots.h"
+#include "lab/report.h"
+
+namespace surfcast::lab {
+namespace {
+
+namespace fs = std::filesystem;
+
+struct Options {
+  int frames = 7;
+  int path_frames = 6;
+  std::vector<std::string> scenes;
+  std::vector<fs::path> scans;
+  fs::path docs;
+  fs::path pictures;
+};
+
+std::string content_of(const fs::path& path) {
+  std::ostringstream text;
+  text << std::ifstream(path).rdbuf();
+  return text.str();
+}
+
+void write(const fs::path& path, const std::string& content) {
+  if (std::ofstream(path) << content) return;
+  std::fprintf(stderr, "%s: cannot be written\n", path.c_str());
+  std::exit(1);
+}
+
+/// Replaces the results in the documentation: performance.md between its markers, laboratory.json, the plot.
+void write_docs(const LabResults& results, const fs::path& docs) {
+  const fs::path page = docs / "performance.md";
+  const std::string text = bench::value_or_exit(
+      with_section(content_of(page), "<!-- laboratory: begin -->", "<!-- laboratory: end -->", markdown_of(results)));
+  write(page, text);
+  write(docs / "laboratory.json", json_of(results));
+  write(docs / "images" / "laboratory.svg", svg_of(results));
+}
+
+LabResults run(const Options& options) {
+  const fs::path folder = fs::temp_directory_path() / ("surfcast_laboratory_" + std::to_string(getpid()));
+  fs::create_directories(folder);
+  if (!options.pictures.empty()) fs::create_directories(options.pictures);
+  Methods methods;
+  LabResults results{methods.device(), options.frames, Methods::all(), {}};
+  std::vector<LabScene> scenes;
+  for (const std::string& name : options.scenes) scenes.push_back(make_lab_scene(name));
+  for (const fs::path& scan : options.scans) scenes.push_back(scan_scene(scan));
+  for (const LabScene& scene : scenes) {
+    const Subject subject = prepare(scene, folder, options.path_frames, methods);
+    results.scenes.push_back(measure(subject, options.frames, options.pictures, methods));
+    for (const Measurement& m : results.scenes.back().measurements) {
+      std::printf("%-18s %-15s %8.1f ms, processor %8.1f ms %6.2f dB  ssim %.4f  worst %5.1f dB  flicker %5.2f\n",
+                  scene.name.c_str(), m.method.c_str(), m.milliseconds, m.processor_milliseconds, m.errors.psnr,
+                  m.errors.ssim, m.errors.worst_tile, m.flicker);
+    }
+    std::fflush(stdout);
+  }
+  fs::remove_all(folder);
+  return results;
+}
+
+int main_of(int argc, char** argv) {
+  Options options;
+  CLI::App app{"Draws scenes with every method: milliseconds against error, as tables, plots and JSON."};
+  app.add_option("scans", options.scans, "scans or models, each measured against its own supersampled picture")
+      ->check(CLI::ExistingFile);
+  app.add_option("--frames", options.frames, "frames that a time is the median of")->check(CLI::Range(1, 1000));
+  app.add_option("--path-frames", options.path_frames, "length of the slow camera path")->check(CLI::Range(2, 1000));
+  app.add_option("--scenes", options.scenes, "names of the scenes, all without it")
+      ->delimiter(',')
+      ->check(CLI::IsMember(lab_scene_names()));
+  app.add_option("--docs", options.docs, "folder whose performance.md, laboratory.json and plot are to be replaced")
+      ->check(CLI::ExistingDirectory);
+  app.add_option("--pictures", options.pictures, "folder to keep all pictures in, as PPM");
+  CLI11_PARSE(app, argc, argv);
+  if (options.scenes.empty()) options.scenes = lab_scene_names();
+  const LabResults results = run(options);
+  if (!options.docs.empty()) write_docs(results, options.docs);
+  return 0;
+}
+
+}  // namespace
+}  // namespace surfcast::lab
+
+int main(int argc, char** argv) {
+  return surfcast::lab::main_of(argc, argv);
+}

@@ -1,0 +1,71 @@
+#include "lab/measure.h"
+
+#include <map>
+
+#include "bench_support.h"
+
+namespace surfcast::lab {
+namespace {
+
+/// What the frames of one method took.
+struct Times {
+  std::vector<double> frames;
+  std::vector<double> processor;
+  std::map<std::string, std::vector<double>> stages;
+
+  void add(const DrawnPicture& drawn) {
+    frames.push_back(drawn.milliseconds);
+    processor.push_back(drawn.processor_milliseconds);
+    for (const StageTime& stage : drawn.stages) stages[stage.name].push_back(stage.milliseconds);
+  }
+  [[nodiscard]] std::vector<StageTime> stage_medians(const std::vector<StageTime>& order) const {
+    std::vector<StageTime> medians;
+    for (const StageTime& stage : order) medians.push_back({stage.name, bench::median(stages.at(stage.name))});
+    return medians;
+  }
+};
+
+double flicker_of(const std::string& method, const Subject& subject, Methods& methods) {
+  std::vector<SrgbPicture> drawn;
+  for (const PictureRequest& request : subject.path) drawn.push_back(methods.draw(method, request).picture);
+  return flicker(drawn, subject.ideal_path);
+}
+
+Measurement summary(const std::string& method, const DrawnPicture& drawn, const Times& times, const Subject& subject) {
+  Measurement m;
+  m.method = method;
+  m.milliseconds = bench::median(times.frames);
+  m.processor_milliseconds = bench::median(times.processor);
+  m.stages = times.stage_medians(drawn.stages);
+  m.surfels_per_second = 1e3 * static_cast<double>(subject.model->info().surfels) / m.milliseconds;
+  m.splats = drawn.splats;
+  m.errors = picture_errors(drawn.picture, subject.ideal);
+  return m;
+}
+
+}  // namespace
+
+SceneResult measure(const Subject& subject, int frames, const std::filesystem::path& pictures, Methods& methods) {
+  const std::vector<MethodFacts> facts = Methods::all();
+  std::vector<Times> times(facts.size());
+  std::vector<DrawnPicture> last(facts.size());
+  for (int frame = -1; frame < frames; ++frame) {  // the first one loads blocks and compiles shaders
+    for (size_t i = 0; i < facts.size(); ++i) {
+      last[i] = methods.draw(facts[i].name, subject.request);
+      if (frame >= 0) times[i].add(last[i]);
+    }
+  }
+  const auto keep = [&](const std::string& name, const SrgbPicture& picture) {
+    if (!pictures.empty()) write_ppm(pictures / (subject.name + "." + name + ".ppm"), picture);
+  };
+  keep("ideal", subject.ideal);
+  SceneResult result{subject.name, subject.about, subject.model->info().surfels, {}};
+  for (size_t i = 0; i < facts.size(); ++i) {
+    result.measurements.push_back(summary(facts[i].name, last[i], times[i], subject));
+    result.measurements.back().flicker = flicker_of(facts[i].name, subject, methods);
+    keep(std::to_string(i), last[i].picture);
+  }
+  return result;
+}
+
+}  // namespace surfcast::lab

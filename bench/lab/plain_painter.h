@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "geometry/camera.h"
+#include "gl/objects.h"
+#include "model/model_file.h"
+
+namespace surfcast::lab {
+
+/// What splats are measured against: the surfels of the finest level drawn by the raster pipeline, the nearest one of
+/// every pixel as it is.
+enum class PlainShape {
+  kPoint,  ///< GL points, squares as wide as the surfel's disc seen from the front
+  kDisc,   ///< opaque discs of the surfel's radius in its plane, depth exact in every pixel
+};
+
+/// Draws a coloured model plainly. Needs the current GL context.
+class PlainPainter {
+ public:
+  PlainPainter(const ModelFile& model, int width, int height);
+
+  /// Draws all surfels that face the eye and reads the picture, RGBA8, rows from bottom to top.
+  void draw(PlainShape shape, const CameraFrame& frame, std::vector<std::byte>& pixels) const;
+
+ private:
+  struct Block {
+    gl::Buffer surfels;
+    GLsizei count = 0;
+    glm::dvec3 origin{0};  ///< world
+  };
+
+  void add_block(const ModelFile& model, uint32_t index);
+
+  int width_;
+  int height_;
+  bool oriented_;
+  gl::VertexArray vertices_;
+  gl::Texture color_;
+  gl::Texture depth_;
+  gl::Framebuffer target_;
+  gl::Program points_;
+  gl::Program discs_;
+  std::vector<Block> blocks_;
+};
+
+}  // namespace surfcast::lab

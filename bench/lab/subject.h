@@ -1,0 +1,26 @@
+#pragma once
+
+#include <filesystem>
+#include <memory>
+
+#include "lab/methods.h"
+#include "lab/scenes.h"
+
+namespace surfcast::lab {
+
+/// A scene ready to be measured: its model, and what its pictures ought to be.
+struct Subject {
+  std::string name;
+  std::string about;
+  std::shared_ptr<const ModelFile> model;
+  PictureRequest request;
+  SrgbPicture ideal;
+  std::vector<PictureRequest> path;
+  std::vector<SrgbPicture> ideal_path;
+};
+
+/// Builds the scene's model in `folder`, as the builder makes it of a scan, opens it with the methods, and computes its
+/// ideal pictures. `path_frames` is the length of the slow camera path.
+Subject prepare(const LabScene& scene, const std::filesystem::path& folder, int path_frames, Methods& methods);
+
+}  // namespace surfcast::lab
