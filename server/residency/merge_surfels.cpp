@@ -16,25 +16,24 @@ float turned(const MergedSurfel& a, const MergedSurfel& b, bool oriented) {
   return !oriented && glm::dot(a.normal, b.normal) < 0 ? -1.0F : 1.0F;
 }
 
-/// Neighbours on a square grid of spacing h are h apart and have radii of 1.08 h.
+/// Neighbours on a square grid of spacing h are h apart and have radii of 1.08 h. No squares of lengths are taken here or
+/// below: single precision holds them only from 1e-19 to 1e19.
 bool mergeable(const MergedSurfel& a, const MergedSurfel& b, bool oriented) {
-  const glm::vec3 d = b.position - a.position;
-  const float reach = a.radius + b.radius;
-  return glm::dot(d, d) <= reach * reach && turned(a, b, oriented) * glm::dot(a.normal, b.normal) >= kLeastCosine;
+  const glm::vec3 d = (b.position - a.position) / (a.radius + b.radius);
+  return glm::dot(d, d) <= 1 && turned(a, b, oriented) * glm::dot(a.normal, b.normal) >= kLeastCosine;
 }
 
 MergedSurfel mean(const MergedSurfel& a, const MergedSurfel& b, bool oriented) {
-  const float area_a = a.radius * a.radius;
-  const float area_b = b.radius * b.radius;
-  const float share = area_b / (area_a + area_b);
+  const float ratio = b.radius / a.radius;
+  const float share = ratio * ratio / (1 + ratio * ratio);  // of b in the area
   const auto mix = [share](const auto& x, const auto& y) { return x + (y - x) * share; };
   MergedSurfel m;
   m.position = mix(a.position, b.position);
   m.normal = glm::normalize(mix(a.normal, turned(a, b, oriented) * b.normal));
-  m.radius = std::sqrt(area_a + area_b);
+  m.radius = std::hypot(a.radius, b.radius);
   m.weight = mix(a.weight, b.weight);
   m.light = mix(a.light, b.light);
-  m.representative = area_b > area_a ? b.representative : a.representative;
+  m.representative = ratio > 1 ? b.representative : a.representative;
   return m;
 }
 

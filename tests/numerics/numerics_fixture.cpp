@@ -23,18 +23,20 @@ std::ostream& operator<<(std::ostream& out, const Difference& difference) {
   return out << "rms " << difference.rms << ", worst " << difference.worst << ", coverage " << difference.coverage;
 }
 
-Difference NumericsGLTest::difference(const std::string& what, const ModelPointer& model, PictureRequest request,
-                                      const std::optional<reference::Window>& window) {
+Difference NumericsGLTest::difference(const std::string& what, const ModelPointer& model, PictureRequest request) {
   request.format = PixelFormat::kLinearFloat;
-  const Image image = draw(model, request).image;
+  return difference(what, draw(model, request).image, model, request, {0, 0, request.width, request.height});
+}
+
+Difference NumericsGLTest::difference(const std::string& what, const Image& image, const ModelPointer& model,
+                                      const PictureRequest& request, const reference::Window& window) {
   const reference::ReferencePicture expected = reference::render(decoded_cloud(*model), request, {}, window);
-  const reference::Window part = window.value_or(reference::Window{0, 0, request.width, request.height});
   Difference found;
   double squares = 0;
-  for (int y = 0; y < part.height; ++y) {
-    for (int x = 0; x < part.width; ++x) {
+  for (int y = 0; y < window.height; ++y) {
+    for (int x = 0; x < window.width; ++x) {
       const size_t place = expected.picture.index(x, y);
-      const glm::dvec4 actual = drawn_light(image, part, x, y);
+      const glm::dvec4 actual = drawn_light(image, window, x, y);
       const glm::dvec3 d = glm::abs(glm::dvec3(actual) - expected.picture.pixels[place]);
       const double largest = std::max({d.x, d.y, d.z});
       // Written so that what is no number stays none.
@@ -44,7 +46,7 @@ Difference NumericsGLTest::difference(const std::string& what, const ModelPointe
       squares += glm::dot(d, d) / 3;
     }
   }
-  found.rms = std::sqrt(squares / (static_cast<double>(part.width) * part.height));
+  found.rms = std::sqrt(squares / (static_cast<double>(window.width) * window.height));
   std::cout << "[ measured ] " << what << ": " << found << '\n';
   return found;
 }

@@ -34,10 +34,11 @@ inline constexpr Difference kSplats{1e-3, 0.1, 0.1};
 /// Every case draws a model twice, by the renderer and by the reference, and states how far apart they may be.
 class NumericsGLTest : public RendererFixture {
  protected:
-  /// Draws the picture both ways; with a window, the reference draws and both are compared in that part alone. Prints
-  /// what it finds.
-  static Difference difference(const std::string& what, const ModelPointer& model, PictureRequest request,
-                               const std::optional<reference::Window>& window = {});
+  /// Draws the picture both ways. Prints what it finds.
+  static Difference difference(const std::string& what, const ModelPointer& model, PictureRequest request);
+  /// Compares a part of a picture in linear light, drawn already, with the reference.
+  static Difference difference(const std::string& what, const Image& image, const ModelPointer& model,
+                               const PictureRequest& request, const reference::Window& window);
 
   /// Fails where the difference is larger in any respect, or is no number.
   static void expect_within(const Difference& difference, const Difference& bound);

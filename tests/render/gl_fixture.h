@@ -1,5 +1,7 @@
 #pragma once
 
+#include <unistd.h>
+
 #include <atomic>
 #include <bit>
 #include <cstring>
@@ -25,7 +27,8 @@ class RendererFixture : public ::testing::Test {
     ASSERT_TRUE(created) << created.error().message;
     renderer_ = std::move(*created);
     folder_ = std::filesystem::path(::testing::TempDir()) /
-              ("surfcast_" + std::string(::testing::UnitTest::GetInstance()->current_test_suite()->name()));
+              ("surfcast_" + std::string(::testing::UnitTest::GetInstance()->current_test_suite()->name()) + "_" +
+               std::to_string(getpid()));
     std::filesystem::create_directories(folder_);
   }
   static void TearDownTestSuite() {
