@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <optional>
 
 #include "base/stopwatch.h"
@@ -95,20 +96,17 @@ ProjectionWork plan_work(const RegionTask& task) {
   return work;
 }
 
-Status check(const std::atomic<bool>& cancelled) {
-  if (cancelled.load(std::memory_order_relaxed)) return fail(ErrorKind::kCancelled, "cancelled");
-  return {};
-}
-
 /// Work groups of a pass: rows of a width, or, without one, a line of `count`.
 struct Groups {
   size_t count = 0;
   std::optional<size_t> width;
 };
 
-/// Dispatches them in batches between which the picture can be given up. The current program finds the first row or
-/// group of a batch in its uniform `first_group`.
-Status dispatch_in_batches(const Groups& groups, BatchPace& pace, const std::atomic<bool>& cancelled) {
+/// Dispatches them in batches between which the picture can be given up, or another one be drawn: then what the pass
+/// works with is bound again. The current program finds the first row or group of a batch in its uniform `first_group`.
+Status dispatch_in_batches(const Groups& groups, BatchPace& pace, const Interruption& interruption,
+                           const std::function<void()>& bind) {
+  bind();
   const size_t width = groups.width.value_or(1);
   for (size_t first = 0; first < groups.count;) {
     const size_t count = std::clamp<size_t>(pace.groups() / width, 1, groups.count - first);
@@ -121,7 +119,8 @@ Status dispatch_in_batches(const Groups& groups, BatchPace& pace, const std::ato
     glFinish();
     pace.took(count * width, watch.milliseconds());
     first += count;
-    if (Status status = check(cancelled); !status) return status;
+    if (interruption.cancelled()) return fail(ErrorKind::kCancelled, "cancelled");
+    if (interruption.step_aside()) bind();
   }
   return {};
 }
@@ -132,10 +131,10 @@ void upload(StorageBuffer& buffer, const std::vector<T>& values) {
   glNamedBufferSubData(buffer.name(), 0, static_cast<GLsizeiptr>(values.size() * sizeof(T)), values.data());
 }
 
-void bind_uniforms(StorageBuffer& buffer, GLuint binding, const void* constants, size_t bytes) {
-  buffer.reserve(bytes);
-  glNamedBufferSubData(buffer.name(), 0, static_cast<GLsizeiptr>(bytes), constants);
-  glBindBufferBase(GL_UNIFORM_BUFFER, binding, buffer.name());
+template <typename T>
+void upload_uniforms(StorageBuffer& buffer, const T& constants) {
+  buffer.reserve(sizeof constants);
+  glNamedBufferSubData(buffer.name(), 0, static_cast<GLsizeiptr>(sizeof constants), &constants);
 }
 
 /// How the splats of crowded tiles are sampled (shaders/include/thinning.glsl).
@@ -150,33 +149,24 @@ void upload_constants(const RegionTask& task, const Thinning& thinning, SplatBuf
   constants.tiles.w = static_cast<int>(buffers.splat_capacity());
   constants.flags.z = static_cast<int>(thinning.most);
   constants.flags.w = thinning.alike ? 1 : 0;
-  bind_uniforms(buffers.frame, SURFCAST_BIND_FRAME, &constants, sizeof constants);
+  upload_uniforms(buffers.frame, constants);
 }
 
 /// What the options of the picture need, and nothing without any.
 void upload_look(const RegionTask& task, const ProjectionWork& work, SplatBuffers& buffers) {
   const Look& look = task.look;
-  if (needs_looks(look)) {
-    upload(buffers.looks, work.looks);
-    buffers.looks.bind(SURFCAST_BIND_LOOKS);
-  }
-  if (look.clipped) {
-    upload(buffers.clips, work.clips.empty() ? std::vector<layout::ClipRange>(1) : work.clips);
-    buffers.clips.bind(SURFCAST_BIND_CLIPS);
-  }
-  if (look.mapped() || look.hides_classes) {
-    const layout::LookConstants constants = look_constants(look, *task.request);
-    bind_uniforms(buffers.look, SURFCAST_BIND_LOOK, &constants, sizeof constants);
-  }
-  if (look.mapped()) task.colors->bind(SURFCAST_UNIT_COLORS);
-  if (look.attributes) task.surfels->bind_attributes(SURFCAST_UNIT_ATTRIBUTES);
+  if (needs_looks(look)) upload(buffers.looks, work.looks);
+  if (look.clipped) upload(buffers.clips, work.clips.empty() ? std::vector<layout::ClipRange>(1) : work.clips);
+  if (look.mapped() || look.hides_classes) upload_uniforms(buffers.look, look_constants(look, *task.request));
 }
 
-void upload_work(const ProjectionWork& work, SplatBuffers& buffers) {
-  upload(buffers.blocks, work.blocks);
-  upload(buffers.chunks, work.chunks);
-  buffers.blocks.bind(SURFCAST_BIND_BLOCKS);
-  buffers.chunks.bind(SURFCAST_BIND_CHUNKS);
+void bind_look(const RegionTask& task, const SplatBuffers& buffers) {
+  const Look& look = task.look;
+  if (needs_looks(look)) buffers.looks.bind(SURFCAST_BIND_LOOKS);
+  if (look.clipped) buffers.clips.bind(SURFCAST_BIND_CLIPS);
+  if (look.mapped() || look.hides_classes) buffers.look.bind_uniforms(SURFCAST_BIND_LOOK);
+  if (look.mapped()) task.colors->bind(SURFCAST_UNIT_COLORS);
+  if (look.attributes) task.surfels->bind_attributes(SURFCAST_UNIT_ATTRIBUTES);
 }
 
 void clear_counts(const RegionTask& task, SplatBuffers& buffers) {
@@ -189,17 +179,45 @@ void clear_counts(const RegionTask& task, SplatBuffers& buffers) {
   buffers.tile_crowd.reserve(lists * 2);
 }
 
-void bind_for_projection(const RegionTask& task, const SplatBuffers& buffers) {
+/// What every pass works with.
+void bind_frame(const SplatBuffers& buffers) {
+  buffers.frame.bind_uniforms(SURFCAST_BIND_FRAME);
   buffers.counters.bind(SURFCAST_BIND_COUNTERS);
   buffers.tile_count.bind(SURFCAST_BIND_TILE_COUNT);
   buffers.tile_offset.bind(SURFCAST_BIND_TILE_OFFSET);
   buffers.tile_crowd.bind(SURFCAST_BIND_TILE_CROWD);
+}
+
+void bind_for_projection(const RegionTask& task, const SplatBuffers& buffers) {
+  bind_frame(buffers);
+  bind_look(task, buffers);
+  buffers.blocks.bind(SURFCAST_BIND_BLOCKS);
+  buffers.chunks.bind(SURFCAST_BIND_CHUNKS);
   buffers.splats.bind_for_writing(SURFCAST_UNIT_SPLATS);
   buffers.discs.bind_for_writing(SURFCAST_UNIT_DISCS);
   buffers.bounds.bind_for_writing(SURFCAST_UNIT_BOUNDS);
   if (task.variant.colored && task.variant.lit) buffers.normals.bind_for_writing(SURFCAST_UNIT_NORMALS);
   task.surfels->bind(SURFCAST_UNIT_SURFELS);
   buffers.srgb.bind(SURFCAST_UNIT_SRGB);
+}
+
+void bind_for_binning(const SplatBuffers& buffers) {
+  bind_frame(buffers);
+  buffers.bounds.bind_for_reading(SURFCAST_UNIT_BOUNDS);
+  buffers.lists.bind_for_writing(SURFCAST_UNIT_LISTS);
+}
+
+void bind_for_splatting(const RegionTask& task, const SplatBuffers& buffers) {
+  bind_frame(buffers);
+  buffers.picture.bind(SURFCAST_BIND_PICTURE);
+  if (task.variant.eye_dome) {
+    buffers.light.bind(SURFCAST_BIND_LIGHT);
+    buffers.depth.bind(SURFCAST_BIND_DEPTH);
+  }
+  buffers.splats.bind_for_reading(SURFCAST_UNIT_SPLATS);
+  buffers.discs.bind_for_reading(SURFCAST_UNIT_DISCS);
+  buffers.lists.bind_for_reading(SURFCAST_UNIT_LISTS);
+  if (task.variant.colored && task.variant.lit) buffers.normals.bind_for_reading(SURFCAST_UNIT_NORMALS);
 }
 
 layout::Counters read_counters(const SplatBuffers& buffers) {
@@ -220,20 +238,23 @@ Thinning thinner(const layout::Counters& counters, const Thinning& tried, size_t
 /// crowded that its splats are to be thinned out.
 Result<layout::Counters> project(const RegionTask& task, const ProjectionWork& work, Programs& programs,
                                  const SplatPrograms& variant, SplatBuffers& buffers,
-                                 const std::atomic<bool>& cancelled) {
+                                 const Interruption& interruption) {
   const gl::DebugGroup group("project");
   constexpr size_t kFirstCapacity = 1u << 18;
   const bool with_normals = task.variant.colored && task.variant.lit;
   buffers.reserve_splats(std::max(kFirstCapacity, buffers.splat_capacity()), with_normals);
-  upload_work(work, buffers);
+  upload(buffers.blocks, work.blocks);
+  upload(buffers.chunks, work.chunks);
   upload_look(task, work, buffers);
+  const auto bind = [&] {
+    bind_for_projection(task, buffers);
+    glUseProgram(variant.project->name());
+  };
   Thinning thinning;
   while (true) {
     upload_constants(task, thinning, buffers);
     clear_counts(task, buffers);
-    bind_for_projection(task, buffers);
-    glUseProgram(variant.project->name());
-    Status projected = dispatch_in_batches({work.chunks.size(), {}}, buffers.project_pace, cancelled);
+    Status projected = dispatch_in_batches({work.chunks.size(), {}}, buffers.project_pace, interruption, bind);
     if (!projected) return fail(std::move(projected.error()));
     glUseProgram(programs.bin_offsets().name());
     glDispatchCompute(1, 1, 1);
@@ -252,36 +273,32 @@ Result<layout::Counters> project(const RegionTask& task, const ProjectionWork& w
 }
 
 Status bin(const layout::Counters& counters, Programs& programs, SplatBuffers& buffers,
-           const std::atomic<bool>& cancelled) {
+           const Interruption& interruption) {
   const gl::DebugGroup group("bin");
   const size_t entries = counters.counts.z;
   buffers.lists.reserve(std::clamp<size_t>(entries + entries / 4, 1, SurfelBuffer::device_limit()));
-  buffers.bounds.bind_for_reading(SURFCAST_UNIT_BOUNDS);
-  buffers.lists.bind_for_writing(SURFCAST_UNIT_LISTS);
-  glUseProgram(programs.bin().name());
   const size_t splats = size_t{counters.counts.x} + counters.counts.y;
-  return dispatch_in_batches({(splats + SURFCAST_CHUNK - 1) / SURFCAST_CHUNK, {}}, buffers.bin_pace, cancelled);
+  return dispatch_in_batches({(splats + SURFCAST_CHUNK - 1) / SURFCAST_CHUNK, {}}, buffers.bin_pace, interruption, [&] {
+    bind_for_binning(buffers);
+    glUseProgram(programs.bin().name());
+  });
 }
 
 Status splat(const RegionTask& task, const layout::Counters& counters, const SplatPrograms& variant,
-             SplatBuffers& buffers, const std::atomic<bool>& cancelled) {
+             SplatBuffers& buffers, const Interruption& interruption) {
   const gl::DebugGroup group("splat");
   if (task.variant.eye_dome) {
     const size_t pixels = static_cast<size_t>(task.drawn.width) * static_cast<size_t>(task.drawn.height);
     buffers.light.reserve(pixels * sizeof(glm::vec4));
     buffers.depth.reserve(pixels * sizeof(glm::vec2));
-    buffers.light.bind(SURFCAST_BIND_LIGHT);
-    buffers.depth.bind(SURFCAST_BIND_DEPTH);
   }
-  buffers.splats.bind_for_reading(SURFCAST_UNIT_SPLATS);
-  buffers.discs.bind_for_reading(SURFCAST_UNIT_DISCS);
-  buffers.lists.bind_for_reading(SURFCAST_UNIT_LISTS);
-  if (task.variant.colored && task.variant.lit) buffers.normals.bind_for_reading(SURFCAST_UNIT_NORMALS);
   const auto dispatch = [&](const gl::Program& program) {
-    glUseProgram(program.name());
     const glm::ivec4& tiles = task.constants.tiles;
     return dispatch_in_batches({static_cast<size_t>(tiles.y), static_cast<size_t>(tiles.x)}, buffers.splat_pace,
-                               cancelled);
+                               interruption, [&] {
+                                 bind_for_splatting(task, buffers);
+                                 glUseProgram(program.name());
+                               });
   };
   if (Status status = dispatch(*variant.splat); !status) return status;
   return counters.counts.y > 0 ? dispatch(*variant.splat_large) : Status();
@@ -294,7 +311,8 @@ void shade_by_depth(const RegionTask& task, const gl::Program& program, SplatBuf
   const layout::EyeDomeConstants constants{
       glm::vec4(eye_dome.strength, eye_dome.radius, 0, 0),
       glm::ivec4(task.region.x - task.drawn.x, task.region.y - task.drawn.y, task.region.width, task.region.height)};
-  bind_uniforms(buffers.eye_dome, SURFCAST_BIND_EYE_DOME, &constants, sizeof constants);
+  upload_uniforms(buffers.eye_dome, constants);
+  buffers.eye_dome.bind_uniforms(SURFCAST_BIND_EYE_DOME);
   glUseProgram(program.name());
   glDispatchCompute(static_cast<GLuint>(tiles_across(task.region)), static_cast<GLuint>(tiles_down(task.region)), 1);
   glMemoryBarrier(GL_ALL_BARRIER_BITS);
@@ -303,25 +321,24 @@ void shade_by_depth(const RegionTask& task, const gl::Program& program, SplatBuf
 }  // namespace
 
 Result<RegionStats> draw_region(const RegionTask& task, Programs& programs, SplatBuffers& buffers,
-                                const std::atomic<bool>& cancelled, std::span<std::byte> pixels) {
+                                const Interruption& interruption, std::span<std::byte> pixels) {
   const Result<SplatPrograms> variant = programs.variant(task.variant);
   if (!variant) return fail(variant.error());
 
   RegionStats stats;
-  const Stopwatch project_watch;
-  const Result<layout::Counters> counters = project(task, plan_work(task), programs, *variant, buffers, cancelled);
+  const WorkStopwatch project_watch(interruption);
+  const Result<layout::Counters> counters = project(task, plan_work(task), programs, *variant, buffers, interruption);
   if (!counters) return fail(counters.error());
   stats.splats = uint64_t{counters->counts.x} + counters->counts.y;
   stats.project_ms = project_watch.milliseconds();
 
-  const Stopwatch bin_watch;
-  if (Status status = bin(*counters, programs, buffers, cancelled); !status) return fail(std::move(status.error()));
+  const WorkStopwatch bin_watch(interruption);
+  if (Status status = bin(*counters, programs, buffers, interruption); !status) return fail(std::move(status.error()));
   stats.bin_ms = bin_watch.milliseconds();
 
-  const Stopwatch splat_watch;
+  const WorkStopwatch splat_watch(interruption);
   buffers.picture.reserve(pixels.size());
-  buffers.picture.bind(SURFCAST_BIND_PICTURE);
-  if (Status status = splat(task, *counters, *variant, buffers, cancelled); !status) {
+  if (Status status = splat(task, *counters, *variant, buffers, interruption); !status) {
     return fail(std::move(status.error()));
   }
   if (task.variant.eye_dome) {

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <atomic>
 #include <cstddef>
 #include <span>
 #include <vector>
 
+#include "base/interruption.h"
 #include "base/result.h"
 #include "render/look.h"
 #include "render/programs.h"
@@ -49,6 +49,6 @@ struct RegionStats {
 /// Draws a region with the passes project, bin_offsets, bin, splat and perhaps eye_dome; reads its pixels into `pixels`
 /// (4 bytes or 4 floats per pixel, rows from the top).
 Result<RegionStats> draw_region(const RegionTask& task, Programs& programs, SplatBuffers& buffers,
-                                const std::atomic<bool>& cancelled, std::span<std::byte> pixels);
+                                const Interruption& interruption, std::span<std::byte> pixels);
 
 }  // namespace surfcast

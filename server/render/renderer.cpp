@@ -1,10 +1,13 @@
 #include "render/renderer.h"
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <map>
 #include <thread>
+#include <utility>
 
+#include "base/contract.h"
 #include "gl/egl_context.h"
 #include "render/programs.h"
 #include "render/region_passes.h"
@@ -85,7 +88,7 @@ struct Renderer::State {
         most_surfels(std::min(config.gpu_bytes / sizeof(glm::uvec4), SurfelBuffer::device_limit() / 2)),
         surfels(most_surfels),
         residency(surfels, limits_of(config, most_surfels)) {
-    buffers.srgb = ConstantTexels::make("linear roots of sRGB", linear_root_table());
+    for (SplatBuffers& set : buffers) set.srgb = ConstantTexels::make("linear roots of sRGB", linear_root_table());
   }
 
   static ResidencyLimits limits_of(const RendererConfig& config, size_t surfels) {
@@ -94,25 +97,57 @@ struct Renderer::State {
             .loader = {std::max(1U, std::thread::hardware_concurrency()), config.host_bytes, kReadyBytes}};
   }
 
+  /// A picture is being drawn as long as one of these is there.
+  struct PictureScope {
+    explicit PictureScope(State& owner) : state(owner) { state.begin_picture(); }
+    ~PictureScope() { state.end_picture(); }
+    PictureScope(const PictureScope&) = delete;
+    PictureScope& operator=(const PictureScope&) = delete;
+    State& state;
+  };
+  void begin_picture();
+  void end_picture();
+  void forget_models();
   Scene& scene_of(const std::shared_ptr<const ModelFile>& model);
   Result<PreparedView> prepare(Scene& scene, const PictureRequest& request, const Look& look, const Camera& camera,
-                               const CameraFrame& frame, const std::atomic<bool>& cancelled);
+                               const CameraFrame& frame, const Interruption& interruption);
   Result<RegionStats> draw_regions(const Scene& scene, const PictureRequest& request, const Look& look,
                                    const CameraFrame& frame, const BlockSelection& selection,
-                                   const std::atomic<bool>& cancelled, Image& image);
+                                   const Interruption& interruption, Image& image);
   const ConstantTexels* colors_of(const Look& look);
   [[nodiscard]] FrameStats stats_of(const Scene& scene, const PreparedView& view, const RegionStats& drawn) const;
+  Result<Frame> draw(const std::shared_ptr<const ModelFile>& model, const PictureRequest& request,
+                     const Interruption& interruption);
 
   std::unique_ptr<EglContext> context;
   DeviceInfo device;
   Programs programs;
-  SplatBuffers buffers;
+  std::array<SplatBuffers, 2> buffers;  ///< of the picture that is being drawn, and of one that interrupts it
+  size_t depth = 0;                     ///< pictures that are being drawn: 2 when one interrupts another
   std::map<std::pair<SurfelColor, ColorMap>, ConstantTexels> color_tables;  ///< made when they are first needed
   size_t most_surfels;
   SurfelBuffer surfels;
   Residency residency;
   std::map<uint64_t, std::unique_ptr<Scene>> scenes;  ///< by ModelFile::id
+  std::vector<uint64_t> to_forget;                    ///< models, once nothing is being drawn
 };
+
+void Renderer::State::begin_picture() {
+  SURFCAST_EXPECTS(depth < buffers.size());
+  if (++depth == 2) residency.begin_interlude();
+}
+
+void Renderer::State::end_picture() {
+  if (--depth == 0) return forget_models();
+  residency.end_interlude();
+}
+
+void Renderer::State::forget_models() {
+  for (const uint64_t id : std::exchange(to_forget, {})) {
+    residency.forget(id);
+    scenes.erase(id);
+  }
+}
 
 Scene& Renderer::State::scene_of(const std::shared_ptr<const ModelFile>& model) {
   std::unique_ptr<Scene>& scene = scenes[model->id()];
@@ -122,10 +157,10 @@ Scene& Renderer::State::scene_of(const std::shared_ptr<const ModelFile>& model) 
 
 Result<PreparedView> Renderer::State::prepare(Scene& scene, const PictureRequest& request, const Look& look,
                                               const Camera& camera, const CameraFrame& frame,
-                                              const std::atomic<bool>& cancelled) {
+                                              const Interruption& interruption) {
   const ViewGoal goal{frame, request.spacing, look.clipped ? &request.clip : nullptr, look.attributes,
                       request.viewer != 0};
-  if (request.loading == Loading::kWait) return residency.prepare_whole(scene.viewed(), goal, cancelled);
+  if (request.loading == Loading::kWait) return residency.prepare_whole(scene.viewed(), goal, interruption);
   if (request.viewer == 0) return residency.prepare_now(scene.viewed(), goal, {}, {});
   ViewerMemory& memory = scene.memory_of(request.viewer);
   const std::optional<CameraFrame> ahead = move_to(memory, camera, request.width, request.height);
@@ -144,7 +179,7 @@ const ConstantTexels* Renderer::State::colors_of(const Look& look) {
 
 Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const PictureRequest& request, const Look& look,
                                                   const CameraFrame& frame, const BlockSelection& selection,
-                                                  const std::atomic<bool>& cancelled, Image& image) {
+                                                  const Interruption& interruption, Image& image) {
   const Variant variant = variant_of(scene.model().info(), look, request);
   const int margin = variant.eye_dome ? kEyeDomeMargin : 0;
   const size_t bytes = pixel_bytes(request.format);
@@ -163,7 +198,7 @@ Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const Pict
                              radii_at_spacing(bounds, frame, request.spacing), scene.first_surfel(block)});
     }
     pixels.resize(static_cast<size_t>(region.width) * static_cast<size_t>(region.height) * bytes);
-    const Result<RegionStats> stats = draw_region(task, programs, buffers, cancelled, pixels);
+    const Result<RegionStats> stats = draw_region(task, programs, buffers[depth - 1], interruption, pixels);
     if (!stats) return fail(stats.error());
     copy_region(region, pixels, bytes, image);
     add(total, *stats);
@@ -188,6 +223,38 @@ FrameStats Renderer::State::stats_of(const Scene& scene, const PreparedView& vie
   return stats;
 }
 
+Result<Frame> Renderer::State::draw(const std::shared_ptr<const ModelFile>& model, const PictureRequest& request,
+                                    const Interruption& interruption) {
+  if (request.width < 1 || request.height < 1 || request.width > kMaxResolution || request.height > kMaxResolution) {
+    return fail(ErrorKind::kLimit, "resolution: each side must lie between 1 and " + std::to_string(kMaxResolution));
+  }
+  const Result<Look> look = look_of(model->info(), request);
+  if (!look) return fail(look.error());
+  Scene& scene = scene_of(model);
+  Frame result;
+  result.camera = scene.camera_of(request);
+  const Result<CameraFrame> frame = make_camera_frame(result.camera, request.width, request.height);
+  if (!frame) return fail(frame.error());
+  const Result<PreparedView> view = prepare(scene, request, *look, result.camera, *frame, interruption);
+  if (!view) return fail(view.error());
+
+  result.converged = view->selection.converged();
+  result.settled = view->settled;
+  result.cut = cut_of(view->selection);
+  result.image = {request.width, request.height, request.format, {}};
+  RegionStats drawn;
+  if (request.known_cut == 0 || request.known_cut != result.cut) {
+    const size_t pixels = static_cast<size_t>(request.width) * static_cast<size_t>(request.height);
+    result.image.pixels.resize(pixels * pixel_bytes(request.format));
+    const Result<RegionStats> regions =
+        draw_regions(scene, request, *look, *frame, view->selection, interruption, result.image);
+    if (!regions) return fail(regions.error());
+    drawn = *regions;
+  }
+  result.stats = stats_of(scene, *view, drawn);
+  return result;
+}
+
 Result<std::unique_ptr<Renderer>> Renderer::create(const RendererConfig& config) {
   Result<std::unique_ptr<EglContext>> context = EglContext::create(config.gpu);
   if (!context) return fail(std::move(context.error()));
@@ -209,41 +276,14 @@ int Renderer::max_resolution() const {
   return kMaxResolution;
 }
 void Renderer::forget(const ModelFile& model) {
-  const uint64_t id = model.id();
-  state_->residency.forget(id);
-  state_->scenes.erase(id);
+  state_->to_forget.push_back(model.id());
+  if (state_->depth == 0) state_->forget_models();
 }
 
 Result<Frame> Renderer::draw(const std::shared_ptr<const ModelFile>& model, const PictureRequest& request,
-                             const std::atomic<bool>& cancelled) {
-  if (request.width < 1 || request.height < 1 || request.width > kMaxResolution || request.height > kMaxResolution) {
-    return fail(ErrorKind::kLimit, "resolution: each side must lie between 1 and " + std::to_string(kMaxResolution));
-  }
-  const Result<Look> look = look_of(model->info(), request);
-  if (!look) return fail(look.error());
-  Scene& scene = state_->scene_of(model);
-  Frame result;
-  result.camera = scene.camera_of(request);
-  const Result<CameraFrame> frame = make_camera_frame(result.camera, request.width, request.height);
-  if (!frame) return fail(frame.error());
-  const Result<PreparedView> view = state_->prepare(scene, request, *look, result.camera, *frame, cancelled);
-  if (!view) return fail(view.error());
-
-  result.converged = view->selection.converged();
-  result.settled = view->settled;
-  result.cut = cut_of(view->selection);
-  result.image = {request.width, request.height, request.format, {}};
-  RegionStats drawn;
-  if (request.known_cut == 0 || request.known_cut != result.cut) {
-    const size_t pixels = static_cast<size_t>(request.width) * static_cast<size_t>(request.height);
-    result.image.pixels.resize(pixels * pixel_bytes(request.format));
-    const Result<RegionStats> regions =
-        state_->draw_regions(scene, request, *look, *frame, view->selection, cancelled, result.image);
-    if (!regions) return fail(regions.error());
-    drawn = *regions;
-  }
-  result.stats = state_->stats_of(scene, *view, drawn);
-  return result;
+                             const Interruption& interruption) {
+  const State::PictureScope scope(*state_);
+  return state_->draw(model, request, interruption);
 }
 
 }  // namespace surfcast

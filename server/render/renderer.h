@@ -1,10 +1,10 @@
 #pragma once
 
-#include <atomic>
 #include <cstddef>
 #include <memory>
 #include <string>
 
+#include "base/interruption.h"
 #include "base/result.h"
 #include "model/model_file.h"
 #include "render/picture.h"
@@ -32,10 +32,12 @@ class Renderer {
   ~Renderer();
 
   /// Draws one picture. Blocks of the model stay resident for later ones. Fails on a wrong camera or resolution, and
-  /// when it waits for a block that is damaged; returns kCancelled soon after `cancelled` becomes true.
+  /// when it waits for a block that is damaged; returns kCancelled soon after it is interrupted for good. What is more
+  /// urgent may draw one other picture at a time meanwhile: it has memory of its own for what is between the passes,
+  /// and leaves alone the blocks that this one shows.
   Result<Frame> draw(const std::shared_ptr<const ModelFile>& model, const PictureRequest& request,
-                     const std::atomic<bool>& cancelled);
-  /// Lets go of what is resident of a model that will not be drawn again.
+                     const Interruption& interruption);
+  /// Lets go of what is resident of a model that will not be drawn again, after the picture that is being drawn.
   void forget(const ModelFile& model);
 
   [[nodiscard]] const DeviceInfo& device() const;

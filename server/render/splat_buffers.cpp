@@ -34,6 +34,10 @@ void StorageBuffer::bind(GLuint binding) const {
   glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer_.name());
 }
 
+void StorageBuffer::bind_uniforms(GLuint binding) const {
+  glBindBufferBase(GL_UNIFORM_BUFFER, binding, buffer_.name());
+}
+
 ConstantTexels ConstantTexels::make(const char* label, std::span<const uint32_t> values) {
   ConstantTexels table;
   table.buffer_ = gl::make_buffer(label, std::as_bytes(values));

@@ -39,6 +39,7 @@ class StorageBuffer {
   void clear() const;
   [[nodiscard]] GLuint name() const { return buffer_.name(); }
   void bind(GLuint binding) const;
+  void bind_uniforms(GLuint binding) const;
 
  private:
   const char* label_;

@@ -6,10 +6,25 @@
 
 namespace surfcast {
 
+void PageTable::begin_frame() {
+  ++frame_;
+  if (!in_interlude_) main_frame_ = frame_;
+}
+
+void PageTable::end_interlude() {
+  in_interlude_ = false;
+  ++frame_;  // nothing of the interlude is in use any more
+}
+
+void PageTable::touch(Entry& entry) const {
+  entry.last_frame = frame_;
+  if (!in_interlude_) entry.last_main = main_frame_;
+}
+
 void PageTable::use(const BlockId& id) {
   const auto found = entries_.find(id);
   if (found == entries_.end()) return;
-  found->second.last_frame = frame_;
+  touch(found->second);
   order_.splice(order_.begin(), order_, found->second.order);
 }
 
@@ -65,7 +80,8 @@ std::span<const uint32_t> PageTable::insert(const BlockId& id, uint32_t count,
     release(entry);
   }
   order_.push_front(id);
-  Entry entry{{}, frame_, false, order_.begin()};
+  Entry entry{.pages = {}, .order = order_.begin()};
+  touch(entry);
   for (uint32_t i = 0; i < count; ++i) entry.pages.push_back(take_page());
   return entries_.emplace(id, std::move(entry)).first->second.pages;
 }

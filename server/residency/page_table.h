@@ -12,13 +12,17 @@
 namespace surfcast {
 
 /// Who has which pages of a memory of equal pages. A block takes as many as it needs, wherever they are; the blocks
-/// used least recently give theirs up. What has been used since the last begin_frame() and what is pinned stays.
+/// used least recently give theirs up. What has been used since the last begin_frame() and what is pinned stays. A
+/// frame may be interrupted by an interlude, with frames of its own: what it used before and uses after it stays
+/// through all of them.
 class PageTable {
  public:
   explicit PageTable(uint32_t pages) : pages_(pages) {}
 
   /// Forgets which blocks are in use.
-  void begin_frame() { ++frame_; }
+  void begin_frame();
+  void begin_interlude() { in_interlude_ = true; }
+  void end_interlude();
   /// The block is in use until the next frame.
   void use(const BlockId& id);
   /// The block stays until its model is forgotten.
@@ -41,18 +45,24 @@ class PageTable {
   struct Entry {
     std::vector<uint32_t> pages;
     uint64_t last_frame = 0;
+    uint64_t last_main = 0;  ///< frame that was no interlude
     bool pinned = false;
     std::list<BlockId>::iterator order;
   };
   using Entries = std::map<BlockId, Entry>;
 
-  [[nodiscard]] bool evictable(const Entry& entry) const { return !entry.pinned && entry.last_frame < frame_; }
+  void touch(Entry& entry) const;
+  [[nodiscard]] bool evictable(const Entry& entry) const {
+    return !entry.pinned && entry.last_frame < frame_ && entry.last_main < main_frame_;
+  }
   [[nodiscard]] bool can_free(uint32_t count) const;
   Entries::iterator release(Entries::iterator entry);
   uint32_t take_page();
 
   uint32_t pages_;
-  uint64_t frame_ = 1;
+  uint64_t frame_ = 1;       ///< the newest
+  uint64_t main_frame_ = 1;  ///< the newest that is no interlude
+  bool in_interlude_ = false;
   uint32_t used_ = 0;
   uint32_t pinned_ = 0;
   uint32_t untouched_ = 0;      ///< pages from here on have never been used

@@ -67,15 +67,22 @@ bool Residency::store(const ViewedModel& model, const LoadedBlock& loaded, Prepa
 
 /// Loads and stores blocks that are not resident; less of them when the pool is full of what is in use.
 Status Residency::load(const ViewedModel& model, std::span<const uint32_t> blocks, bool attributes,
-                       const std::atomic<bool>& cancelled, PreparedView& view) {
-  constexpr std::chrono::milliseconds kPatience{10};  // between two looks at `cancelled`
-  const Stopwatch watch;
+                       const Interruption& interruption, PreparedView& view) {
+  constexpr std::chrono::milliseconds kPatience{4};  // between two looks at what is more urgent
+  const WorkStopwatch watch(interruption);
   const auto give_up = [&] { loader_.want(model.source, {}); };
   loader_.want(model.source, blocks, attributes);
   for (size_t left = blocks.size(); left > 0;) {
-    if (cancelled.load(std::memory_order_relaxed)) {
+    if (interruption.cancelled()) {
       give_up();
       return fail(ErrorKind::kCancelled, "cancelled");
+    }
+    if (interruption.step_aside()) {
+      // Meanwhile other blocks were wished for, and perhaps some of these stored.
+      const std::vector<uint32_t> still = missing(model, blocks, attributes);
+      loader_.want(model.source, still, attributes);
+      left = still.size();
+      continue;
     }
     const std::optional<LoadedBlock> loaded = loader_.take();
     if (!loaded) {
@@ -95,11 +102,11 @@ Status Residency::load(const ViewedModel& model, std::span<const uint32_t> block
 }
 
 Result<PreparedView> Residency::prepare_whole(const ViewedModel& model, const ViewGoal& goal,
-                                              const std::atomic<bool>& cancelled) {
+                                              const Interruption& interruption) {
   PreparedView view;
   pool_.begin_frame();
   const std::vector<uint32_t> roots = missing(model, coarse_roots(model), goal.attributes);
-  if (Status status = load(model, roots, goal.attributes, cancelled, view); !status)
+  if (Status status = load(model, roots, goal.attributes, interruption, view); !status)
     return fail(std::move(status.error()));
 
   const Stopwatch select_watch;
@@ -108,7 +115,7 @@ Result<PreparedView> Residency::prepare_whole(const ViewedModel& model, const Vi
   use(model, view.selection.target);
   const std::vector<uint32_t> wanted = missing(model, view.selection.target, goal.attributes);
   view.waited_for = static_cast<uint32_t>(roots.size() + wanted.size());
-  if (Status status = load(model, wanted, goal.attributes, cancelled, view); !status)
+  if (Status status = load(model, wanted, goal.attributes, interruption, view); !status)
     return fail(std::move(status.error()));
 
   const Stopwatch draw_watch;

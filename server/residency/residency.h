@@ -1,11 +1,11 @@
 #pragma once
 
-#include <atomic>
 #include <memory>
 #include <optional>
 #include <set>
 #include <vector>
 
+#include "base/interruption.h"
 #include "residency/block_loader.h"
 #include "residency/surfel_pool.h"
 #include "selection/select_blocks.h"
@@ -53,15 +53,18 @@ class Residency {
   Residency(SurfelSink& sink, const ResidencyLimits& limits);
 
   /// For a picture as good as it gets: waits for every block of the cut. Only the budget limits it. Fails when a block
-  /// is damaged, and with kCancelled soon after `cancelled` becomes true.
-  Result<PreparedView> prepare_whole(const ViewedModel& model, const ViewGoal& goal,
-                                     const std::atomic<bool>& cancelled);
+  /// is damaged, and with kCancelled soon after it is interrupted for good.
+  Result<PreparedView> prepare_whole(const ViewedModel& model, const ViewGoal& goal, const Interruption& interruption);
 
   /// For a picture at once: takes what is resident, and up to a limit what has been loaded since the last call; asks
   /// for what is missing, and after that for what `ahead` (where the camera is going) would miss. Never waits for a
   /// block. What is damaged is done without. `was_refined`: see select_blocks.
   PreparedView prepare_now(const ViewedModel& model, const ViewGoal& goal, std::span<const uint32_t> was_refined,
                            const std::optional<CameraFrame>& ahead);
+
+  /// Between the two, views are prepared for pictures that interrupt another one, whose blocks stay resident, too.
+  void begin_interlude() { pool_.begin_interlude(); }
+  void end_interlude() { pool_.end_interlude(); }
 
   [[nodiscard]] const SurfelPool& pool() const { return pool_; }
   void forget(uint64_t model);
@@ -77,7 +80,7 @@ class Residency {
                                              const BlockSelection& selection,
                                              const std::optional<CameraFrame>& ahead) const;
   Status load(const ViewedModel& model, std::span<const uint32_t> blocks, bool attributes,
-              const std::atomic<bool>& cancelled, PreparedView& view);
+              const Interruption& interruption, PreparedView& view);
   bool store(const ViewedModel& model, const LoadedBlock& loaded, PreparedView& view);
   size_t upload_some(const ViewedModel& model, const ViewGoal& goal, PreparedView& view);
   void use(const ViewedModel& model, std::span<const uint32_t> blocks);

@@ -41,6 +41,8 @@ class SurfelPool {
 
   /// See PageTable.
   void begin_frame() { table_.begin_frame(); }
+  void begin_interlude() { table_.begin_interlude(); }
+  void end_interlude() { table_.end_interlude(); }
   void use(const BlockId& id) { table_.use(id); }
   /// Pins a block, unless pinned ones fill an eighth of the memory already.
   void pin(const BlockId& id);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -11,16 +12,20 @@ namespace surfcast {
 using SessionId = uint64_t;
 using JobId = uint64_t;
 
+/// Whether somebody's hand waits for a picture.
+enum class Urgency { kMotion, kPatient };
+
 /// What the render thread does next. Sessions take turns, one job each, so that one that asks for a thousand pictures
-/// delays another by one picture at most; the jobs of one session keep their order. Not thread-safe.
+/// delays another by one picture at most; the jobs of one session and urgency keep their order. Not thread-safe.
 class JobQueue {
  public:
-  /// `limit`: jobs that may wait at a time, over all sessions.
+  /// `limit`: jobs that may wait at a time, over all sessions and of either urgency.
   explicit JobQueue(size_t limit) : limit_(limit) {}
 
   /// False when the queue is full; the job has not been taken then.
-  [[nodiscard]] bool push(SessionId session, JobId job);
-  std::optional<JobId> pop();
+  [[nodiscard]] bool push(SessionId session, JobId job, Urgency urgency);
+  std::optional<JobId> pop(Urgency urgency);
+  [[nodiscard]] bool waits(Urgency urgency) const { return !lines_[static_cast<size_t>(urgency)].empty(); }
   /// False when the job does not wait here.
   bool remove(JobId job);
   [[nodiscard]] bool contains(JobId job) const;
@@ -32,9 +37,11 @@ class JobQueue {
     std::deque<JobId> jobs;  ///< never empty between calls
   };
 
+  using Lines = std::deque<Line>;  ///< in the order of their turns
+
   size_t limit_;
   size_t size_ = 0;
-  std::deque<Line> lines_;  ///< in the order of their turns
+  std::array<Lines, 2> lines_;  ///< by urgency
 };
 
 }  // namespace surfcast

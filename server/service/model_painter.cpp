@@ -14,17 +14,17 @@ class ModelPainter : public Painter {
       : models_(models), renderer_(std::move(renderer)) {}
 
   Result<Frame> draw(const std::string& name, const PictureRequest& request,
-                     const std::atomic<bool>& cancelled) override {
+                     const Interruption& interruption) override {
     Result<std::shared_ptr<const ModelFile>> model = models_.open(name);
     if (!model) return fail(model.error());
-    return renderer_->draw(current(name, std::move(*model)), request, cancelled);
+    return renderer_->draw(current(name, std::move(*model)), request, interruption);
   }
   [[nodiscard]] const DeviceInfo& device() const override { return renderer_->device(); }
   [[nodiscard]] int max_resolution() const override { return renderer_->max_resolution(); }
 
  private:
   /// Lets go of what is resident of a file that has been replaced.
-  const std::shared_ptr<const ModelFile>& current(const std::string& name, std::shared_ptr<const ModelFile> model) {
+  std::shared_ptr<const ModelFile> current(const std::string& name, std::shared_ptr<const ModelFile> model) {
     std::shared_ptr<const ModelFile>& drawn = drawn_[name];
     if (drawn && drawn != model) renderer_->forget(*drawn);
     drawn = std::move(model);

@@ -1,10 +1,10 @@
 #pragma once
 
-#include <atomic>
 #include <functional>
 #include <memory>
 #include <string>
 
+#include "base/interruption.h"
 #include "base/result.h"
 #include "render/picture.h"
 #include "render/renderer.h"
@@ -16,9 +16,10 @@ class Painter {
  public:
   virtual ~Painter() = default;
 
-  /// Returns kCancelled soon after `cancelled` becomes true.
+  /// Returns kCancelled soon after it is interrupted for good. What is more urgent may draw one other picture at a time
+  /// meanwhile.
   virtual Result<Frame> draw(const std::string& model, const PictureRequest& request,
-                             const std::atomic<bool>& cancelled) = 0;
+                             const Interruption& interruption) = 0;
   [[nodiscard]] virtual const DeviceInfo& device() const = 0;
   /// Largest side of a picture, pixels.
   [[nodiscard]] virtual int max_resolution() const = 0;

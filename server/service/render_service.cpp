@@ -1,6 +1,7 @@
 #include "service/render_service.h"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <condition_variable>
 #include <exception>
@@ -11,7 +12,9 @@
 #include <utility>
 
 #include "base/contract.h"
+#include "base/interruption.h"
 #include "base/stopwatch.h"
+#include "service/draw_shares.h"
 #include "service/worker_pool.h"
 
 namespace surfcast {
@@ -52,9 +55,16 @@ struct RenderService::State {
 
   // Render thread.
   void run(const PainterFactory& make_painter, std::promise<Status> started);
+  [[nodiscard]] bool waits(Urgency urgency) const;
+  [[nodiscard]] bool may_draw(Urgency urgency) const;
+  [[nodiscard]] std::optional<Urgency> turn() const;
+  JobPointer take(Urgency urgency, std::unique_lock<std::mutex>& lock);
   JobPointer next_job();
-  Result<Frame> paint(Painter& painter, Job& job);
-  void draw_one(Painter& painter, const JobPointer& job);
+  JobPointer next_motion();
+  Result<Frame> paint(Painter& painter, Job& job, const Interruption& interruption);
+  void draw_one(Painter& painter, const JobPointer& job, const Interruption& interruption);
+  void draw_motion(Painter& painter, const JobPointer& job, bool others_wait);
+  void draw_patient(Painter& painter, const JobPointer& job);
   void give_up(JobId id);
 
   // Pool.
@@ -70,6 +80,7 @@ struct RenderService::State {
 
   const ModelSource& models;
   const ServiceLimits limits;
+  DrawShares shares;       ///< of the render thread
   DeviceInfo device;       ///< set before start() returns, constant afterwards
   int max_resolution = 0;  ///< likewise
 
@@ -78,12 +89,13 @@ struct RenderService::State {
   JobQueue queue;
   std::map<JobId, JobPointer> jobs;  ///< outstanding: waiting, being drawn or being encoded
   JobId last_id = 0;
-  size_t frames_in_encoding = 0;
+  std::array<size_t, 2> in_encoding{};  ///< drawn pictures and those being drawn, by urgency
   bool stopping = false;
 
   // Declared last, so that the threads end before what they use.
   std::unique_ptr<PickService> picks;
   std::unique_ptr<WorkerPool> pool;
+  std::unique_ptr<WorkerPool> motion_pool;  ///< one thread
   std::jthread render_thread;
 };
 
@@ -96,29 +108,66 @@ void RenderService::State::run(const PainterFactory& make_painter, std::promise<
   device = (*painter)->device();
   max_resolution = (*painter)->max_resolution();
   started.set_value({});
-  while (const JobPointer job = next_job()) draw_one(**painter, job);
-}
-
-/// Waits for a job and for room behind the painter; null when the service stops. Jobs that have waited too long are
-/// refused: whoever sent them has given up by now, and drawing them would make others wait too long in turn.
-RenderService::State::JobPointer RenderService::State::next_job() {
-  for (;;) {
-    std::unique_lock lock(mutex);
-    wake.wait(lock,
-              [this] { return stopping || (queue.size() > 0 && frames_in_encoding < limits.frames_in_encoding); });
-    if (stopping) return nullptr;
-    JobPointer job = jobs.at(*queue.pop());
-    job->waited_ms = job->since_submission.milliseconds();
-    if (job->waited_ms <= static_cast<double>(limits.patience.count())) {
-      ++frames_in_encoding;
-      return job;
+  while (const JobPointer job = next_job()) {
+    if (job->wish.urgency == Urgency::kMotion) {
+      draw_motion(**painter, job, waits(Urgency::kPatient));
+    } else {
+      draw_patient(**painter, job);
     }
-    lock.unlock();
-    finish(job, fail(ErrorKind::kUnavailable, "the server is busy: the picture waited too long"));
   }
 }
 
-Result<Frame> RenderService::State::paint(Painter& painter, Job& job) {
+bool RenderService::State::waits(Urgency urgency) const {
+  const std::lock_guard lock(mutex);
+  return queue.waits(urgency);
+}
+
+/// Whether a job of that urgency waits and has room behind the painter.
+bool RenderService::State::may_draw(Urgency urgency) const {
+  return queue.waits(urgency) && in_encoding[static_cast<size_t>(urgency)] < limits.frames_in_encoding;
+}
+
+std::optional<Urgency> RenderService::State::turn() const {
+  const bool patient = may_draw(Urgency::kPatient);
+  if (may_draw(Urgency::kMotion) && (shares.motion_first() || !patient)) return Urgency::kMotion;
+  return patient ? std::optional(Urgency::kPatient) : std::nullopt;
+}
+
+/// The next job of that urgency. Null if it has waited too long: it is refused, because whoever sent it has given up by
+/// now, and drawing it would make others wait too long in turn.
+RenderService::State::JobPointer RenderService::State::take(Urgency urgency, std::unique_lock<std::mutex>& lock) {
+  JobPointer job = jobs.at(*queue.pop(urgency));
+  job->waited_ms = job->since_submission.milliseconds();
+  if (job->waited_ms <= static_cast<double>(limits.patience.count())) {
+    ++in_encoding[static_cast<size_t>(urgency)];
+    return job;
+  }
+  lock.unlock();
+  finish(job, fail(ErrorKind::kUnavailable, "the server is busy: the picture waited too long"));
+  lock.lock();
+  return nullptr;
+}
+
+/// Waits for a job that may be drawn; null when the service stops.
+RenderService::State::JobPointer RenderService::State::next_job() {
+  std::unique_lock lock(mutex);
+  for (;;) {
+    wake.wait(lock, [this] { return stopping || turn(); });
+    if (stopping) return nullptr;
+    if (JobPointer job = take(*turn(), lock)) return job;
+  }
+}
+
+/// What is to be drawn in the middle of a patient picture; null if nothing is.
+RenderService::State::JobPointer RenderService::State::next_motion() {
+  std::unique_lock lock(mutex);
+  while (!stopping && may_draw(Urgency::kMotion) && shares.motion_first()) {
+    if (JobPointer job = take(Urgency::kMotion, lock)) return job;
+  }
+  return nullptr;
+}
+
+Result<Frame> RenderService::State::paint(Painter& painter, Job& job, const Interruption& interruption) {
   PictureRequest request = job.wish.request;
   request.format = pixel_format_of(job.wish.format);
   if (request.camera && job.wish.up_from_model) {
@@ -126,12 +175,34 @@ Result<Frame> RenderService::State::paint(Painter& painter, Job& job) {
     if (!description) return fail(description.error());
     request.camera->view_up = description->info.z_up ? glm::dvec3{0, 0, 1} : glm::dvec3{0, 1, 0};
   }
-  return painter.draw(job.wish.model, request, job.cancelled);
+  return painter.draw(job.wish.model, request, interruption);
 }
 
-void RenderService::State::draw_one(Painter& painter, const JobPointer& job) {
-  const Stopwatch watch;
-  Result<Frame> frame = guarded([&] { return paint(painter, *job); });
+void RenderService::State::draw_motion(Painter& painter, const JobPointer& job, bool others_wait) {
+  draw_one(painter, job, job->cancelled);
+  shares.drew_motion(job->draw_ms, others_wait);
+}
+
+/// Draws a picture, and what motions wait for between its batches.
+void RenderService::State::draw_patient(Painter& painter, const JobPointer& job) {
+  Stopwatch since_motion;
+  const Interruption interruption(job->cancelled, [&] {
+    shares.drew_other(since_motion.milliseconds());
+    bool disturbed = false;
+    while (const JobPointer motion = next_motion()) {
+      draw_motion(painter, motion, /*others_wait=*/true);
+      disturbed = true;
+    }
+    since_motion = Stopwatch();
+    return disturbed;
+  });
+  draw_one(painter, job, interruption);
+  shares.drew_other(since_motion.milliseconds());
+}
+
+void RenderService::State::draw_one(Painter& painter, const JobPointer& job, const Interruption& interruption) {
+  const WorkStopwatch watch(interruption);
+  Result<Frame> frame = guarded([&] { return paint(painter, *job, interruption); });
   job->draw_ms = watch.milliseconds();
   Result<SharedFrame> shared = SharedFrame();
   if (frame) {
@@ -141,7 +212,8 @@ void RenderService::State::draw_one(Painter& painter, const JobPointer& job) {
   } else {
     shared = fail(frame.error());
   }
-  pool->post([this, job, shared = std::move(shared)]() mutable { encode_one(job, std::move(shared)); });
+  WorkerPool& encoder = job->wish.urgency == Urgency::kMotion ? *motion_pool : *pool;
+  encoder.post([this, job, shared = std::move(shared)]() mutable { encode_one(job, std::move(shared)); });
 }
 
 /// Spares the encoders a picture that is overtaken by a newer one.
@@ -193,7 +265,7 @@ void RenderService::State::encode_one(const JobPointer& job, Result<SharedFrame>
   frame = cancelled_error();  // lets go of the pixels before the render thread may make more
   {
     const std::lock_guard lock(mutex);
-    --frames_in_encoding;
+    --in_encoding[static_cast<size_t>(job->wish.urgency)];
   }
   wake.notify_one();
   finish(job, std::move(result));
@@ -219,7 +291,7 @@ JobId RenderService::State::add(SessionId session, PictureJob wish, PictureDone 
   const Status checked = check(wish);
   std::unique_lock lock(mutex);
   const JobId id = ++last_id;
-  const bool room = checked && !stopping && queue.push(session, id);
+  const bool room = checked && !stopping && queue.push(session, id, wish.urgency);
   if (room) {
     const auto job = std::make_shared<Job>();
     job->id = id;
@@ -249,13 +321,16 @@ void RenderService::State::stop() {
     const std::lock_guard lock(mutex);
     stopping = true;
     for (const auto& [id, job] : jobs) job->cancelled = true;
-    while (const std::optional<JobId> id = queue.pop()) waiting.push_back(jobs.at(*id));
+    for (const Urgency urgency : {Urgency::kMotion, Urgency::kPatient}) {
+      while (const std::optional<JobId> id = queue.pop(urgency)) waiting.push_back(jobs.at(*id));
+    }
   }
   wake.notify_all();
   for (const JobPointer& job : waiting) finish(job, cancelled_error());
   if (render_thread.joinable()) render_thread.join();
   picks.reset();
   pool.reset();
+  motion_pool.reset();
 }
 
 RenderService::RenderService(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -264,6 +339,7 @@ Result<std::unique_ptr<RenderService>> RenderService::start(const ModelSource& m
                                                             const ServiceLimits& limits) {
   auto state = std::make_unique<State>(models, limits);
   state->pool = std::make_unique<WorkerPool>(limits.encoders);
+  state->motion_pool = std::make_unique<WorkerPool>(1);
   state->picks = std::make_unique<PickService>(models);
   std::promise<Status> promise;
   std::future<Status> started = promise.get_future();
@@ -298,12 +374,13 @@ JobId RenderService::encode(std::shared_ptr<const Frame> frame, PictureJob wish,
   SURFCAST_EXPECTS(frame->image.format == pixel_format_of(wish.format));
   const auto job = std::make_shared<State::Job>();
   job->wish = std::move(wish);
+  job->wish.urgency = Urgency::kPatient;
   job->done = std::move(done);
   {
     const std::lock_guard lock(state_->mutex);
     job->id = ++state_->last_id;
     state_->jobs.emplace(job->id, job);
-    ++state_->frames_in_encoding;
+    ++state_->in_encoding[static_cast<size_t>(Urgency::kPatient)];
   }
   state_->pool->post([state = state_.get(), job, frame = std::move(frame)]() mutable {
     state->encode_one(job, State::SharedFrame(std::move(frame)));
@@ -315,6 +392,7 @@ bool RenderService::replace(JobId id, PictureJob wish) {
   if (!state_->check(wish)) return false;
   const std::lock_guard lock(state_->mutex);
   if (!state_->queue.contains(id)) return false;
+  SURFCAST_EXPECTS(state_->jobs.at(id)->wish.urgency == wish.urgency);
   state_->jobs.at(id)->wish = std::move(wish);
   return true;
 }

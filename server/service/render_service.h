@@ -20,8 +20,8 @@ namespace surfcast {
 struct ServiceLimits {
   size_t queued_jobs = 256;                    ///< pictures that may wait for the render thread, over all sessions
   size_t pixels = size_t{1} << 25;             ///< of one picture (8192 x 4096)
-  unsigned encoders = 2;                       ///< threads that encode pictures and look up models
-  size_t frames_in_encoding = 3;               ///< drawn pictures held in memory before the render thread waits
+  unsigned encoders = 2;                       ///< threads that encode patient pictures and look up models
+  size_t frames_in_encoding = 3;               ///< drawn pictures of either urgency in memory before no more are drawn
   std::chrono::milliseconds patience{20'000};  ///< of a picture that waits for the render thread
 };
 
@@ -31,7 +31,8 @@ struct PictureJob {
   PictureRequest request;      ///< its pixel format follows from `format`
   bool up_from_model = false;  ///< take the model's vertical axis as the camera's view_up
   FileFormat format = FileFormat::kPng;
-  int quality = 90;         ///< of JPEG and WebP, 1 to 100
+  int quality = 90;  ///< of JPEG and WebP, 1 to 100
+  Urgency urgency = Urgency::kPatient;
   JobId supersedes = 0;     ///< a job that nobody wants to see any more once this one is drawn; 0: none
   bool keep_frame = false;  ///< hand the frame over with the picture
 };
@@ -56,7 +57,8 @@ struct EncodedPicture {
 };
 
 /// Turns wishes into encoded pictures. One render thread owns the painter and takes jobs from a queue that is fair
-/// between sessions; a small pool encodes. Every method may be called from any thread.
+/// between sessions; a small pool encodes, and a thread of its own what motions wait for. These are also drawn in the
+/// middle of patient pictures (see DrawShares). Every method may be called from any thread.
 ///
 /// Callbacks run on a thread of the service or, for a job that is refused or cancelled while it waits, on the caller's
 /// own before the call returns. They must not throw or block. Each is called exactly once.

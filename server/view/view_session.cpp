@@ -68,6 +68,7 @@ PictureJob ViewSession::wish(FrameKind kind, JobId supersedes) const {
   request.spacing = std::max(request.spacing * quality.scale, quality.spacing);
   request.normalization = Normalization::kSurfel;
   request.viewer = viewer_;
+  job.urgency = Urgency::kMotion;
   job.quality = quality.jpeg_quality;
   job.supersedes = supersedes;
   return job;

@@ -75,6 +75,55 @@ TEST_F(RendererGLTest, TheSameRequestGivesTheSameBytes) {
   EXPECT_EQ(draw(model, front_view(300, 200)).image.pixels, first.image.pixels) << "after loading it again";
 }
 
+/// A cloud in many colours, with attributes and normals in all directions.
+SurfelCloud motley_sphere() {
+  SurfelCloud cloud = testing::fibonacci_sphere(60000, 1, {0, 0, 0}, {200, 90, 20});
+  for (size_t i = 0; i < cloud.size(); ++i) cloud.colors->values[i] = glm::u16vec3(i % 256, i * 7 % 256, i * 31 % 256);
+  return cloud;
+}
+
+TEST_F(RendererGLTest, APictureThatOthersInterruptHasTheBytesOfOneThatNobodyDoes) {
+  const testing::ModelPointer& model = model_of(motley_sphere());
+  std::vector<PictureRequest> requests(4, front_view(400, 300, 3));
+  requests[1].coloring.source = SurfelColor::kElevation;
+  requests[1].shading = Shading::kLit;
+  requests[1].camera->position = {0, 0, 1.02};  // large splats
+  requests[2].clip.inside = {Box{{-2, -2, -2}, {0.3, 2, 2}}};
+  requests[2].eye_dome.strength = 1;
+  requests[3].width = 2100;  // two regions
+  requests[3].height = 40;
+  std::vector<Frame> expected;
+  for (const PictureRequest& request : requests) expected.push_back(draw(model, request));
+
+  const std::atomic<bool> never{false};
+  for (size_t outer = 0; outer < requests.size(); ++outer) {
+    size_t interludes = 0;
+    const Interruption interruption(never, [&] {
+      const size_t inner = ++interludes % requests.size();
+      EXPECT_EQ(draw(model, requests[inner]).image.pixels, expected[inner].image.pixels) << inner << " in " << outer;
+      return true;
+    });
+    const Result<Frame> frame = renderer_->draw(model, requests[outer], interruption);
+    ASSERT_TRUE(frame);
+    EXPECT_EQ(frame->image.pixels, expected[outer].image.pixels) << outer;
+    EXPECT_GE(interludes, 3u) << "one in each pass at least";
+  }
+}
+
+TEST_F(RendererGLTest, AModelThatIsForgottenWhileItIsDrawnIsDrawnToItsEnd) {
+  const testing::ModelPointer& model = model_of(motley_sphere());
+  const Frame expected = draw(model, front_view(200, 150));
+  const std::atomic<bool> never{false};
+  const Interruption interruption(never, [&] {
+    renderer_->forget(*model);
+    return true;
+  });
+  const Result<Frame> frame = renderer_->draw(model, front_view(200, 150), interruption);
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->image.pixels, expected.image.pixels);
+  EXPECT_EQ(draw(model, front_view(200, 150)).stats.blocks_waited_for, expected.stats.blocks_waited_for);
+}
+
 TEST_F(RendererGLTest, OneSurfelMayFillTheScreen) {
   const testing::ModelPointer& model = model_of(testing::single_surfel({0, 0, 0}, {0, 0, 1}, 1, {10, 200, 30}));
   PictureRequest request = front_view(96, 64, 0.05);

@@ -85,6 +85,25 @@ TEST_F(PageTableTest, ForgettingAModelFreesItsPagesPinnedOrNotAndNoOthers) {
   EXPECT_THAT(evicted_, IsEmpty());
 }
 
+TEST_F(PageTableTest, WhatAFrameUsesStaysThroughTheInterludesThatInterruptIt) {
+  insert(0, 4);
+  insert(1, 4);
+  table_.begin_frame();
+  table_.use({1, 0});
+  for (int i = 0; i < 3; ++i) {
+    table_.begin_interlude();
+    table_.begin_frame();
+    EXPECT_THAT(insert(10 + i, 6), SizeIs(6)) << "of the other block, or of the interlude before";
+    EXPECT_THAT(insert(20 + i, 1), IsEmpty()) << "both are in use";
+    table_.end_interlude();
+  }
+  EXPECT_THAT(evicted_, ElementsAre(1, 10, 11));
+  EXPECT_THAT(insert(2, 6), SizeIs(6)) << "what an interlude used is not in use after it";
+  EXPECT_THAT(insert(3, 1), IsEmpty());
+  table_.begin_frame();
+  EXPECT_THAT(insert(3, 4), SizeIs(4)) << "nor what the frame used, after that";
+}
+
 TEST_F(PageTableTest, ManyInsertionsKeepTheBooks) {
   for (uint32_t i = 0; i < 1000; ++i) {
     table_.begin_frame();

@@ -193,6 +193,27 @@ TEST_F(ResidencyTest, ACancelledPictureIsGivenUp) {
   source_->release();
 }
 
+TEST_F(ResidencyTest, AWholePictureLosesNothingToThoseThatInterruptItWhileItWaits) {
+  const std::shared_ptr<FakeBlocks> other = two_splits(2);
+  const ViewedModel second(other);
+  for (const ViewedModel* interrupting : std::initializer_list<const ViewedModel*>{&second, &model_}) {
+    start(34);
+    int interludes = 0;
+    const Interruption interruption(never_, [&] {
+      if (++interludes % 2 == 0) return false;
+      residency_->begin_interlude();
+      now(*interrupting, 0.5, /*moving=*/true);
+      residency_->end_interlude();
+      return true;
+    });
+    const Result<PreparedView> view = residency_->prepare_whole(model_, {frame_, 0}, interruption);
+    ASSERT_TRUE(view);
+    EXPECT_TRUE(view->selection.converged());
+    EXPECT_GT(interludes, 0);
+    expect_in_memory(*source_, view->selection.draw);
+  }
+}
+
 TEST_F(ResidencyTest, ModelsShareTheMemoryAndTheOneDrawnLeastRecentlyGivesWay) {
   const std::shared_ptr<FakeBlocks> other = two_splits(2);
   const ViewedModel second(other);

@@ -44,6 +44,8 @@ class FakeModels : public ModelSource {
 struct FakeStudio {
   std::atomic<int> drawn = 0;           ///< pictures begun
   std::atomic<int> cancelled = 0;       ///< pictures given up half-way
+  std::atomic<int> interludes = 0;      ///< others were drawn in the middle of a slow picture
+  std::atomic<int> frame_ms = 0;        ///< that a picture takes at least
   std::atomic<bool> slow = false;       ///< every picture goes on until it is cancelled or `slow` is taken back
   std::atomic<bool> slow_quick = true;  ///< pictures for motion are as slow as others
   std::vector<std::string> order;       ///< models in the order they were drawn; read it when nothing is being drawn
@@ -55,12 +57,19 @@ class FakePainter : public Painter {
   explicit FakePainter(std::shared_ptr<FakeStudio> studio) : studio_(std::move(studio)) {}
 
   Result<Frame> draw(const std::string& model, const PictureRequest& request,
-                     const std::atomic<bool>& cancelled) override {
+                     const Interruption& interruption) override {
     studio_->order.push_back(model);
     ++studio_->drawn;
     const bool slow_too = request.viewer == 0 || studio_->slow_quick;
-    while (studio_->slow && slow_too && !cancelled) std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    if (cancelled) {
+    for (int ms = 0; ms < studio_->frame_ms; ++ms) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      if (interruption.step_aside()) ++studio_->interludes;
+    }
+    while (studio_->slow && slow_too && !interruption.cancelled()) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      if (interruption.step_aside()) ++studio_->interludes;
+    }
+    if (interruption.cancelled()) {
       ++studio_->cancelled;
       return fail(ErrorKind::kCancelled, "cancelled");
     }

@@ -1,5 +1,6 @@
 #include "service/render_service.h"
 
+#include <algorithm>
 #include <future>
 #include <thread>
 
@@ -30,6 +31,12 @@ class RenderServiceTest : public ::testing::Test {
     job.model = model;
     job.request.width = 8;
     job.request.height = 4;
+    return job;
+  }
+  static PictureJob motion_of(const std::string& model) {
+    PictureJob job = job_for(model);
+    job.request.viewer = 1;
+    job.urgency = Urgency::kMotion;
     return job;
   }
 
@@ -150,6 +157,88 @@ TEST_F(RenderServiceTest, ASecondSessionDoesNotWaitBehindAllOfTheFirst) {
   for (auto& future : futures) EXPECT_TRUE(future.get());
   ASSERT_EQ(studio_->order.size(), 6u);
   EXPECT_EQ(studio_->order[2], "teapot");
+}
+
+TEST_F(RenderServiceTest, AMotionIsDrawnInTheMiddleOfAPictureThatTakesLong) {
+  studio_->slow = true;
+  studio_->slow_quick = false;
+  start();
+  auto [long_one, patient] = draw(1, job_for("cube"));
+  wait_for_drawing(1);
+  auto [waits, second] = draw(2, job_for("cube"));
+  for (int i = 1; i <= 20; ++i) EXPECT_TRUE(draw(3, motion_of("teapot")).second.get());
+  EXPECT_EQ(studio_->drawn, 21) << "and no other picture that can wait";
+  EXPECT_GT(studio_->interludes, 0);
+  studio_->slow = false;
+  EXPECT_TRUE(patient.get());
+  EXPECT_TRUE(second.get());
+}
+
+TEST_F(RenderServiceTest, AMotionIsInterruptedByNothing) {
+  studio_->slow = true;
+  start();
+  auto [id, first] = draw(1, motion_of("cube"));
+  wait_for_drawing(1);
+  auto [other, second] = draw(2, motion_of("teapot"));
+  auto [patient, third] = draw(3, job_for("cube"));
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_EQ(studio_->drawn, 1);
+  studio_->slow = false;
+  EXPECT_TRUE(first.get());
+  EXPECT_TRUE(second.get());
+  EXPECT_TRUE(third.get());
+  EXPECT_EQ(studio_->interludes, 0);
+}
+
+TEST_F(RenderServiceTest, APictureIsDrawnBesideOneWhoNeverStopsMoving) {
+  studio_->frame_ms = 4;
+  start();
+  std::atomic<bool> moving = true;
+  std::atomic<int> frames = 0;
+  std::jthread mover([&] {
+    // Two wishes at a time, so that one always waits.
+    std::future<Result<EncodedPicture>> last = draw(1, motion_of("cube")).second;
+    for (; moving; ++frames) std::exchange(last, draw(1, motion_of("cube")).second).wait();
+    last.wait();
+  });
+  for (int i = 0; i < 20; ++i) EXPECT_TRUE(draw(2, job_for("teapot")).second.get());
+  moving = false;
+  mover.join();
+  EXPECT_GT(frames, 10) << "and the motion went on meanwhile";
+}
+
+TEST_F(RenderServiceTest, AMotionInTheMiddleOfAPictureCanBeReplacedAndCancelledWhileItWaits) {
+  studio_->slow = true;
+  start();
+  auto [first, drawing] = draw(1, job_for("cube"));
+  wait_for_drawing(1);
+  auto [second, moving] = draw(2, motion_of("cube"));
+  wait_for_drawing(2);
+  auto [third, waiting] = draw(3, motion_of("cube"));
+  PictureJob other = motion_of("cube");
+  other.request.width = 16;
+  EXPECT_TRUE(service_->replace(third, other));
+  auto [fourth, unwanted] = draw(4, motion_of("teapot"));
+  EXPECT_TRUE(service_->cancel(fourth));
+  EXPECT_TRUE(service_->cancel(first)) << "it stands still while the motion is drawn";
+  studio_->slow = false;
+  EXPECT_EQ(waiting.get()->width, 16);
+  EXPECT_TRUE(moving.get());
+  EXPECT_FALSE(unwanted.get());
+  EXPECT_FALSE(drawing.get());
+  EXPECT_EQ(std::ranges::count(studio_->order, "teapot"), 0);
+}
+
+TEST_F(RenderServiceTest, StoppingEndsAMotionInTheMiddleOfAPicture) {
+  studio_->slow = true;
+  start();
+  auto [first, drawing] = draw(1, job_for("cube"));
+  wait_for_drawing(1);
+  auto [second, moving] = draw(2, motion_of("cube"));
+  wait_for_drawing(2);
+  auto [third, waiting] = draw(3, motion_of("cube"));
+  service_.reset();
+  for (auto* future : {&drawing, &moving, &waiting}) EXPECT_EQ(future->get().error().kind, ErrorKind::kCancelled);
 }
 
 TEST_F(RenderServiceTest, AJobThatWaitsMayDrawSomethingElseInItsPlace) {

@@ -1,0 +1,109 @@
+#include "service/draw_shares.h"
+
+#include <algorithm>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace surfcast {
+namespace {
+
+/// A render thread with a clock of its own, a picture at rest in batches, and hands that move.
+class RenderThread {
+ public:
+  struct Mover {
+    double draw_ms = 20;      ///< of a frame
+    double pause_ms = 0;      ///< from a frame to the wish for the next
+    double wanted_since = 0;  ///< the frame that is wished for now
+    double longest_wait = 0;  ///< of its frames
+    int frames = 0;
+  };
+
+  explicit RenderThread(std::vector<Mover> hands) : movers(std::move(hands)) {}
+
+  /// Draws for so long while nobody rests.
+  void move(double ms) {
+    for (const double end = now + ms; now < end;) {
+      if (!draw_motion(/*others_wait=*/false)) now += 1;
+    }
+  }
+  /// Draws a picture at rest of that length; what it took.
+  double rest(double work_ms) {
+    const double begin = now;
+    while (work_ms > 0) {
+      const double batch = std::min(kBatchMs, work_ms);
+      now += batch;
+      work_ms -= batch;
+      shares.drew_other(batch);
+      while (shares.motion_first() && draw_motion(/*others_wait=*/true)) {
+      }
+    }
+    return now - begin;
+  }
+
+  static constexpr double kBatchMs = 8;
+  DrawShares shares;
+  std::vector<Mover> movers;
+  double now = 0;
+
+ private:
+  /// The frame that has been wished for longest.
+  bool draw_motion(bool others_wait) {
+    Mover& mover = *std::ranges::min_element(movers, {}, &Mover::wanted_since);
+    if (mover.wanted_since > now) return false;
+    mover.longest_wait = std::max(mover.longest_wait, now - mover.wanted_since);
+    now += mover.draw_ms;
+    ++mover.frames;
+    mover.wanted_since = now + mover.pause_ms;
+    shares.drew_motion(mover.draw_ms, others_wait);
+    return true;
+  }
+};
+
+TEST(DrawShares, AMotionGoesFirstWhenNobodyIsOwedAnything) {
+  const DrawShares shares;
+  EXPECT_TRUE(shares.motion_first());
+}
+
+TEST(DrawShares, WhoMovesAloneOwesNobody) {
+  DrawShares shares;
+  for (int i = 0; i < 1000; ++i) shares.drew_motion(20, /*others_wait=*/false);
+  EXPECT_TRUE(shares.motion_first());
+}
+
+TEST(DrawShares, AMotionWaitsForABatchAndNotForThePictureThatTakesSeconds) {
+  RenderThread thread({{.draw_ms = 15, .pause_ms = 18}});
+  thread.rest(5000);
+  EXPECT_LE(thread.movers[0].longest_wait, 2 * RenderThread::kBatchMs);
+  EXPECT_GE(thread.movers[0].frames, 150);
+}
+
+TEST(DrawShares, APictureAtRestBesideOneThatNeverStopsTakesFourTimesItsLength) {
+  RenderThread thread({{.draw_ms = 20, .pause_ms = 0}});
+  thread.move(60'000);
+  const double took = thread.rest(3000);
+  EXPECT_GE(took, 3.5 * 3000);
+  EXPECT_LE(took, 4.2 * 3000);
+}
+
+TEST(DrawShares, ManyWhoMoveLeaveAsMuchToOneWhoRests) {
+  RenderThread thread(std::vector<RenderThread::Mover>(12, {.draw_ms = 25, .pause_ms = 5}));
+  EXPECT_LE(thread.rest(1000), 4.2 * 1000);
+  const auto [least, most] = std::ranges::minmax_element(thread.movers, {}, &RenderThread::Mover::frames);
+  EXPECT_LE(most->frames - least->frames, 1);
+}
+
+TEST(DrawShares, ALongRestDoesNotHoldUpTheMotionThatFollows) {
+  RenderThread thread({{.draw_ms = 20, .pause_ms = 15, .wanted_since = 30'000}});
+  thread.rest(60'000);
+  EXPECT_LE(thread.movers[0].longest_wait, 2 * RenderThread::kBatchMs);
+}
+
+TEST(DrawShares, AnExpensiveFrameDoesNotStopTheMotionForLong) {
+  RenderThread thread({{.draw_ms = 2000, .pause_ms = 1}});
+  thread.rest(1000);
+  EXPECT_LE(thread.movers[0].longest_wait, 100);
+}
+
+}  // namespace
+}  // namespace surfcast
