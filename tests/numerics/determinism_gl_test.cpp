@@ -1,0 +1,171 @@
+// The same request gives the same bytes on one device, whatever was drawn before, in which order blocks arrived, and
+// how many threads there are. Sums are sums of integers and the nearest of several depths is a maximum: neither depends
+// on an order. Nothing else that a picture is made of is a race.
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdio>
+#include <random>
+#include <thread>
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "client/run_program.h"
+#include "model/write_model.h"
+#include "numerics/sample_pictures.h"
+#include "render/renderer.h"
+#include "support/clouds.h"
+
+namespace surfcast::testing {
+namespace {
+
+using ModelPointer = std::shared_ptr<const ModelFile>;
+
+class DeterminismGLTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::path(::testing::TempDir()) / ("surfcast_determinism_" + std::to_string(getpid()));
+    std::filesystem::create_directories(folder_);
+    start({});
+  }
+  void TearDown() override {
+    renderer_.reset();
+    std::filesystem::remove_all(folder_);
+  }
+
+  /// A fresh renderer in place of the last one.
+  void start(const RendererConfig& config) {
+    renderer_.reset();
+    Result<std::unique_ptr<Renderer>> created = Renderer::create(config);
+    ASSERT_TRUE(created) << created.error().message;
+    renderer_ = std::move(*created);
+  }
+  ModelPointer model_of(const std::string& name, const SurfelCloud& cloud) {
+    const std::filesystem::path path = folder_ / (name + ".surf");
+    if (!std::filesystem::exists(path)) {
+      EXPECT_TRUE(write_model(cloud, path, {}));
+    }
+    Result<ModelFile> opened = ModelFile::open(path);
+    EXPECT_TRUE(opened);
+    return std::make_shared<const ModelFile>(std::move(*opened));
+  }
+  Frame draw(const ModelPointer& model, const PictureRequest& request) {
+    const std::atomic<bool> cancelled{false};
+    Result<Frame> frame = renderer_->draw(model, request, cancelled);
+    EXPECT_TRUE(frame) << (frame ? "" : frame.error().message);
+    return frame ? std::move(*frame) : Frame{};
+  }
+  std::vector<uint64_t> draw_all(const std::vector<SamplePicture>& samples) {
+    std::vector<uint64_t> hashes;
+    for (const SamplePicture& sample : samples) {
+      hashes.push_back(hash_of(draw(model_of(sample.name, sample.cloud), sample.request).image));
+    }
+    return hashes;
+  }
+
+  std::filesystem::path folder_;
+  std::unique_ptr<Renderer> renderer_;
+};
+
+/// A model of many blocks on several levels, and views of it.
+SurfelCloud large_globe() {
+  SurfelCloud cloud = fibonacci_sphere(150000, 1, {0, 0, 0}, {0, 0, 0});
+  for (size_t i = 0; i < cloud.size(); ++i) cloud.colors->values[i] = glm::u16vec3(i % 256, i * 7 % 256, i * 31 % 256);
+  return cloud;
+}
+
+PictureRequest globe_view(double angle, double spacing) {
+  PictureRequest request;
+  request.camera = Camera{{2.2 * std::cos(angle), 2.2 * std::sin(angle), 0.7}, {0, 0, 0}, {0, 0, 1}, 40};
+  request.width = 200;
+  request.height = 150;
+  request.spacing = spacing;
+  return request;
+}
+
+TEST_F(DeterminismGLTest, PicturesInAnotherOrderAreTheSame) {
+  std::vector<SamplePicture> samples = sample_pictures();
+  const std::vector<uint64_t> first = draw_all(samples);
+  EXPECT_EQ(draw_all(samples), first) << "again";
+  std::reverse(samples.begin(), samples.end());
+  std::vector<uint64_t> backwards = draw_all(samples);
+  std::reverse(backwards.begin(), backwards.end());
+  EXPECT_EQ(backwards, first) << "backwards";
+}
+
+TEST_F(DeterminismGLTest, AFreshRendererDrawsTheSame) {
+  const std::vector<SamplePicture> samples = sample_pictures();
+  const std::vector<uint64_t> first = draw_all(samples);
+  start({});
+  EXPECT_EQ(draw_all(samples), first);
+}
+
+TEST_F(DeterminismGLTest, OtherProcessesAndNumbersOfThreadsDrawTheSame) {
+  std::string expected;
+  for (const SamplePicture& sample : sample_pictures()) {
+    std::array<char, 100> line{};
+    const uint64_t hash = hash_of(draw(model_of(sample.name, sample.cloud), sample.request).image);
+    std::snprintf(line.data(), line.size(), "%s %016llx\n", sample.name.c_str(), static_cast<unsigned long long>(hash));
+    expected += line.data();
+  }
+  renderer_.reset();
+  for (const char* threads : {"0", "1", "3"}) {  // of llvmpipe; other devices have their own
+    const ProgramOutcome other = run_program("LP_NUM_THREADS=" + std::string(threads) +
+                                             " '" SURFCAST_PRINT_HASHES "' '" + folder_.string() + "'");
+    EXPECT_EQ(other.code, 0);
+    EXPECT_EQ(other.output, expected) << threads << " threads";
+  }
+}
+
+TEST_F(DeterminismGLTest, BlocksThatCameInAnotherOrderOrBackAgainMakeNoDifference) {
+  const SurfelCloud cloud = large_globe();
+  const PictureRequest request = globe_view(0.3, 1);
+  const uint64_t expected = hash_of(draw(model_of("large", cloud), request).image);
+  const SurfelCloud other = fibonacci_sphere(150000, 1, {0, 0, 0}, {9, 9, 9});
+  std::mt19937 random(5);
+  std::uniform_real_distribution<double> angle(0, 6.28);
+  // Room for a part of either model alone, and none in host memory: every picture evicts blocks of the last ones.
+  RendererConfig small;
+  small.gpu_bytes = size_t{6} << 20;
+  small.host_bytes = 0;
+  start(small);
+  const ModelPointer large = model_of("large", cloud);
+  const ModelPointer evicting = model_of("other", other);
+  for (int round = 0; round < 4; ++round) {
+    for (int i = 0; i < 3; ++i) draw(large, globe_view(angle(random), 1.5));
+    draw(evicting, globe_view(angle(random), 1));
+    const Frame frame = draw(large, request);
+    ASSERT_TRUE(frame.converged);
+    EXPECT_EQ(hash_of(frame.image), expected) << "round " << round;
+  }
+}
+
+TEST_F(DeterminismGLTest, AViewThatComesToRestShowsWhatASinglePictureDoes) {
+  const SurfelCloud cloud = large_globe();
+  const uint64_t expected = hash_of(draw(model_of("large", cloud), globe_view(0.3, 1)).image);
+  for (const uint64_t viewer : {1, 2}) {
+    start({});
+    const ModelPointer model = model_of("large", cloud);
+    PictureRequest request = globe_view(0, 1);
+    request.loading = Loading::kNow;
+    request.viewer = viewer;
+    // Turns towards the view, some ways off more for the second, then waits for what is still to come.
+    for (int k = 10; k > 0; --k) {
+      request.camera = globe_view(0.3 + 0.1 * k * static_cast<double>(viewer), 1).camera;
+      draw(model, request);
+    }
+    request.camera = globe_view(0.3, 1).camera;
+    Frame frame = draw(model, request);
+    for (int k = 0; k < 2000 && !frame.converged; ++k) {
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      frame = draw(model, request);
+    }
+    ASSERT_TRUE(frame.converged);
+    EXPECT_EQ(hash_of(frame.image), expected) << "viewer " << viewer;
+  }
+}
+
+}  // namespace
+}  // namespace surfcast::testing

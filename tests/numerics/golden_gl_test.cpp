@@ -1,0 +1,128 @@
+// Pictures that were looked at once and kept in tests/data/golden, so that a change of what is drawn is seen and
+// wanted.
+//
+// On the device that DEVICE.txt there names (renderer and version strings of GL: another Mesa, or another width of the
+// processor's vectors, is another device) they must come out to the bit; on any other within a tolerance.
+//
+// What was drawn is left in the folder `golden` of the working directory. After a change that is wanted, look at it and
+// take it over, on software GL of the Debian release that the project is built on:
+//     ctest --test-dir build -R golden_gl_test; cp build/tests/numerics/golden/* tests/data/golden/
+
+#include <cmath>
+#include <fstream>
+#include <iostream>
+#include <limits>
+#include <sstream>
+
+#include <OpenImageIO/imageio.h>
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include "encode/encode_picture.h"
+#include "model/write_model.h"
+#include "numerics/sample_pictures.h"
+#include "render/renderer.h"
+
+namespace surfcast::testing {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// A device rounds as it likes, and a fragment at its cutoff may fall on either side: the worst picture of llvmpipe
+/// with half as wide vectors is 60 dB away, of a shader with a wrong term less than 35.
+constexpr double kTolerance = 50;  // dB
+
+std::string text_of(const fs::path& path) {
+  std::ifstream stream(path);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+/// The picture, and to its right its coverage in grey: PNG files here have no alpha.
+Image with_coverage(const Image& image) {
+  Image both{2 * image.width, image.height, image.format, {}};
+  both.pixels.resize(2 * image.pixels.size());
+  for (int y = 0; y < image.height; ++y) {
+    for (int x = 0; x < image.width; ++x) {
+      const std::byte* from = image.pixels.data() + 4 * (static_cast<size_t>(y) * image.width + x);
+      std::byte* left = both.pixels.data() + 4 * (static_cast<size_t>(2 * y) * image.width + x);
+      std::byte* right = left + static_cast<size_t>(4) * image.width;
+      for (int c = 0; c < 3; ++c) {
+        left[c] = from[c];
+        right[c] = from[3];
+      }
+    }
+  }
+  return both;
+}
+
+/// Levels of red, green and blue of a PNG file; none if it cannot be read.
+std::vector<uint8_t> levels_of(const fs::path& path) {
+  const auto input = OIIO::ImageInput::open(path.string());
+  if (!input) return {};
+  const OIIO::ImageSpec& spec = input->spec();
+  std::vector<uint8_t> levels(static_cast<size_t>(3) * spec.width * spec.height);
+  if (!input->read_image(0, 0, 0, 3, OIIO::TypeDesc::UINT8, levels.data())) return {};
+  return levels;
+}
+
+double psnr(const std::vector<uint8_t>& a, const std::vector<uint8_t>& b) {
+  if (a.size() != b.size() || a.empty()) return 0;
+  double squares = 0;
+  for (size_t i = 0; i < a.size(); ++i) squares += std::pow(int{a[i]} - int{b[i]}, 2);
+  return -10 * std::log10(squares / (255.0 * 255.0 * static_cast<double>(a.size())));
+}
+
+class GoldenGLTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    Result<std::unique_ptr<Renderer>> created = Renderer::create({});
+    ASSERT_TRUE(created) << created.error().message;
+    renderer_ = std::move(*created);
+    fs::create_directories(drawn_);
+    models_ = fs::path(::testing::TempDir()) / ("surfcast_golden_" + std::to_string(getpid()));
+    fs::create_directories(models_);
+  }
+  void TearDown() override {
+    renderer_.reset();
+    fs::remove_all(models_);
+  }
+
+  void draw(const SamplePicture& sample, const fs::path& file) {
+    ASSERT_TRUE(write_model(sample.cloud, models_ / "model.surf", {}));
+    Result<ModelFile> opened = ModelFile::open(models_ / "model.surf");
+    ASSERT_TRUE(opened);
+    const auto model = std::make_shared<const ModelFile>(std::move(*opened));
+    const std::atomic<bool> cancelled{false};
+    const Result<Frame> frame = renderer_->draw(model, sample.request, cancelled);
+    ASSERT_TRUE(frame) << frame.error().message;
+    const Result<std::vector<std::byte>> png = encode_picture(with_coverage(frame->image), FileFormat::kPng, 100);
+    ASSERT_TRUE(png);
+    std::ofstream(file, std::ios::binary).write(reinterpret_cast<const char*>(png->data()), std::ssize(*png));
+    renderer_->forget(*model);
+  }
+
+  std::unique_ptr<Renderer> renderer_;
+  fs::path models_;
+  const fs::path golden_ = fs::path(SURFCAST_TEST_DATA) / "golden";
+  const fs::path drawn_ = fs::current_path() / "golden";
+};
+
+TEST_F(GoldenGLTest, PicturesAreAsTheyWereLookedAt) {
+  const std::string device = renderer_->device().renderer + "\n" + renderer_->device().version + "\n";
+  std::ofstream(drawn_ / "DEVICE.txt") << device;
+  const bool same_device = text_of(golden_ / "DEVICE.txt") == device;
+  std::cout << "[ measured ] compared " << (same_device ? "to the bit" : "within a tolerance") << '\n';
+  for (const SamplePicture& sample : sample_pictures()) {
+    const std::string file = sample.name + ".png";
+    draw(sample, drawn_ / file);
+    const double achieved = psnr(levels_of(golden_ / file), levels_of(drawn_ / file));
+    EXPECT_GE(achieved, same_device ? std::numeric_limits<double>::infinity() : kTolerance)
+        << file << ": see " << drawn_;
+    if (!same_device) std::cout << "[ measured ] " << file << ": " << achieved << " dB\n";
+  }
+}
+
+}  // namespace
+}  // namespace surfcast::testing

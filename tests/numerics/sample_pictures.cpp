@@ -1,0 +1,89 @@
+#include "numerics/sample_pictures.h"
+
+#include <cmath>
+
+#include "support/clouds.h"
+
+namespace surfcast::testing {
+namespace {
+
+PictureRequest view_from(const glm::dvec3& eye, const glm::dvec3& target, double angle) {
+  PictureRequest request;
+  request.camera = Camera{eye, target, {0.1, 0.2, 0.97}, angle};
+  request.width = 96;
+  request.height = 72;
+  request.background = {30, 40, 60};
+  return request;
+}
+
+/// Coloured by longitude and latitude, so that pictures compress and faults show.
+SurfelCloud globe(size_t surfels) {
+  SurfelCloud cloud = fibonacci_sphere(surfels, 1, {0, 0, 0}, {0, 0, 0});
+  for (size_t i = 0; i < cloud.size(); ++i) {
+    const glm::dvec3& p = cloud.positions[i];
+    const bool dark = (p.z * 6 - std::floor(p.z * 6) < 0.5) != (p.x * p.y > 0);
+    cloud.colors->values[i] = dark ? glm::u16vec3(40, 90, 160) : glm::u16vec3(240, 200, 120);
+  }
+  return cloud;
+}
+
+SurfelCloud without_colors(SurfelCloud cloud) {
+  cloud.colors.reset();
+  return cloud;
+}
+
+SurfelCloud two_sided(SurfelCloud cloud) {
+  cloud.oriented = false;
+  return cloud;
+}
+
+SurfelCloud checkered_square(int side, double extent, const glm::dvec3& centre) {
+  SurfelCloud cloud = square(side, extent, centre, {0, 0, 1}, {255, 255, 255});
+  for (int i = 0; i < side * side; ++i) {
+    const bool dark = (i % side * 8 / side + i / side * 8 / side) % 2 == 0;
+    if (dark) cloud.colors->values[static_cast<size_t>(i)] = glm::u16vec3(60, 20, 20);
+  }
+  return cloud;
+}
+
+SurfelCloud square_before_globe() {
+  SurfelCloud cloud = globe(8000);
+  append(cloud, checkered_square(40, 0.8, {1.2, 0, 0.4}));
+  return cloud;
+}
+
+}  // namespace
+
+std::vector<SamplePicture> sample_pictures() {
+  const PictureRequest outside = view_from({3, -2, 1.5}, {0, 0, 0}, 35);
+  PictureRequest per_surfel = outside;
+  per_surfel.normalization = Normalization::kSurfel;
+  PictureRequest unfiltered = outside;
+  unfiltered.filter = Filter::kNone;
+  PictureRequest lit = outside;
+  lit.shading = Shading::kLit;
+  PictureRequest coarse = outside;
+  coarse.spacing = 3;
+  PictureRequest eye_dome = outside;
+  eye_dome.eye_dome.strength = 1;
+  return {{"globe", globe(20000), outside},
+          {"globe_per_surfel", globe(20000), per_surfel},
+          {"globe_unfiltered", globe(3000), unfiltered},
+          {"globe_lit", globe(8000), lit},
+          {"globe_grey", without_colors(globe(8000)), outside},
+          {"globe_coarse", globe(60000), coarse},
+          {"globe_far", globe(60000), view_from({90, -60, 45}, {0, 0, 0}, 35)},
+          {"globe_inside", two_sided(globe(1500)), view_from({0.9, 0, 0}, {1.1, 1, 0.2}, 100)},
+          {"square_close", checkered_square(40, 1, {0, 0, 0}), view_from({0.1, -0.3, 0.05}, {0, 0.1, 0}, 50)},
+          {"square_grazing", checkered_square(100, 1, {0, 0, 0}), view_from({0.1, -1.2, 0.04}, {0, 0, 0}, 40)},
+          {"square_before_globe", square_before_globe(), outside},
+          {"globe_eye_dome", square_before_globe(), eye_dome}};
+}
+
+uint64_t hash_of(const Image& image) {
+  uint64_t hash = 0xcbf29ce484222325U;
+  for (const std::byte byte : image.pixels) hash = (hash ^ static_cast<uint64_t>(byte)) * 0x100000001b3U;
+  return hash;
+}
+
+}  // namespace surfcast::testing
