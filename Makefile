@@ -17,11 +17,13 @@ bench: configure
 	cmake --build --preset release --target laboratory
 	build/bin/laboratory --docs docs $(BENCH_FLAGS) tests/data/lion.drc $(SCANS)
 
-# The tests of the modules that need no GL and little time, under the address and undefined behaviour sanitizers.
+# The tests of the modules that need no GL and little time, and the hard cases of numerics, under the address and
+# undefined behaviour sanitizers.
 asan: packages
 	cmake --preset asan-ubsan
 	cmake --build --preset asan-ubsan
 	ctest --preset asan-ubsan -j2 --label-exclude 'gl|slow|programs'
+	ctest --preset asan-ubsan -j2 --label-regex numerics --label-exclude slow
 
 tidy: build lint-packages
 	run-clang-tidy -quiet -p build '^$(CURDIR)/(server|client|protocol|tests|bench)/'

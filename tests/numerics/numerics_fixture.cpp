@@ -20,7 +20,8 @@ glm::dvec4 drawn_light(const Image& image, const reference::Window& window, int 
 }  // namespace
 
 std::ostream& operator<<(std::ostream& out, const Difference& difference) {
-  return out << "rms " << difference.rms << ", worst " << difference.worst << ", coverage " << difference.coverage;
+  return out << "rms " << difference.rms << ", worst " << difference.worst << ", coverage " << difference.coverage
+             << " of " << difference.peak;
 }
 
 Difference NumericsGLTest::difference(const std::string& what, const ModelPointer& model, PictureRequest request) {
@@ -43,6 +44,7 @@ Difference NumericsGLTest::difference(const std::string& what, const Image& imag
       found.worst = largest <= found.worst ? found.worst : largest;
       const double coverage = std::abs(actual.a - expected.coverage[place]);
       found.coverage = coverage <= found.coverage ? found.coverage : coverage;
+      found.peak = std::max(found.peak, expected.coverage[place]);
       squares += glm::dot(d, d) / 3;
     }
   }

@@ -13,6 +13,7 @@ struct Difference {
   double rms = 0;       ///< over all channels of all pixels
   double worst = 0;     ///< of any channel of any pixel
   double coverage = 0;  ///< largest difference of any pixel's coverage
+  double peak = 0;      ///< largest coverage that the reference has: no difference, and no part of a bound
 };
 std::ostream& operator<<(std::ostream& out, const Difference& difference);
 
