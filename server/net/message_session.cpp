@@ -88,7 +88,7 @@ asio::awaitable<void> MessageSession::read_all() {
 asio::awaitable<bool> MessageSession::exchange_hellos() {
   const Result<Bytes> bytes = co_await transport_->read_hello();
   const Result<Hello> client = bytes ? decode_hello(*bytes) : fail(bytes.error());
-  if (!client) co_return false;
+  if (!client || last_words_) co_return false;
   Hello answer = answer_hello(*client, "surfcastd");
   if (peer_.busy && answer.status == HelloStatus::kWelcome) {
     answer.status = HelloStatus::kBusy;
@@ -97,6 +97,7 @@ asio::awaitable<bool> MessageSession::exchange_hellos() {
   const Bytes words = encode_hello(answer);
   greeted_ = co_await transport_->write_hello(words);
   last_request_ = last_write_ = Clock::now();
+  if (last_words_) co_return false;  // the server stops meanwhile, and leave() has the last word
   if (answer.status == HelloStatus::kWelcome) co_return greeted_;
   spdlog::info("connection {} refused: {}", peer_.id, answer.message);
   last_words_ = true;
