@@ -22,26 +22,6 @@ double safe_length(const glm::dvec3& v) {
   return std::hypot(v.x, v.y, v.z);
 }
 
-/// Distance from the middle of the box at which all its corners are in view with a margin.
-double fitting_distance(const Box& box, const glm::dvec3& towards_eye, const glm::dvec3& up, double half_angle,
-                        double aspect) {
-  constexpr double kFilled = 0.92;  // of the picture
-  const glm::dvec3 right = glm::normalize(glm::cross(up, towards_eye));
-  const glm::dvec3 upward = glm::cross(towards_eye, right);
-  const double tangent_y = kFilled * std::tan(half_angle);
-  const double tangent_x = tangent_y * aspect;
-  const glm::dvec3 half = 0.5 * box.size();
-  double distance = 0;
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::dvec3 p((corner & 1) ? half.x : -half.x, (corner & 2) ? half.y : -half.y,
-                       (corner & 4) ? half.z : -half.z);
-    const double nearer = glm::dot(p, towards_eye);
-    distance = std::max({distance, nearer + std::abs(glm::dot(p, right)) / tangent_x,
-                         nearer + std::abs(glm::dot(p, upward)) / tangent_y, 1.05 * nearer});
-  }
-  return std::max(distance, 1e-12 + 1e-9 * glm::length(box.centre()));
-}
-
 }  // namespace
 
 Result<CameraFrame> make_camera_frame(const Camera& camera, int width, int height) {
@@ -70,23 +50,6 @@ Result<CameraFrame> make_camera_frame(const Camera& camera, int width, int heigh
   frame.width = width;
   frame.height = height;
   return frame;
-}
-
-Camera fit_camera(const Box& box, const glm::dvec3& up, double aspect, double view_angle, const glm::dvec3& facing) {
-  const glm::dvec3 vertical = glm::normalize(up);
-  // Front is -y for models that are z-up and +z for models that are y-up: the customs of surveying and of graphics.
-  const glm::dvec3 front = std::abs(vertical.z) > 0.5 ? glm::dvec3{0, -1, 0} : glm::dvec3{0, 0, 1};
-  const glm::dvec3 side = glm::cross(vertical, front);
-  const glm::dvec3 customary = glm::normalize(front + 0.35 * side + 0.35 * vertical);
-  constexpr double kPullOfNormals = 1.2;
-  const glm::dvec3 towards_eye = glm::normalize(customary + kPullOfNormals * facing);
-  Camera camera;
-  camera.focal_point = box.centre();
-  camera.view_up = vertical;
-  camera.view_angle = view_angle;
-  camera.position =
-      box.centre() + towards_eye * fitting_distance(box, towards_eye, vertical, glm::radians(view_angle) / 2, aspect);
-  return camera;
 }
 
 }  // namespace surfcast

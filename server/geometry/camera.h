@@ -5,7 +5,6 @@
 #include <glm/vec3.hpp>
 
 #include "base/result.h"
-#include "geometry/box.h"
 
 namespace surfcast {
 
@@ -47,11 +46,5 @@ struct CameraFrame {
 /// Checks the camera and derives its frame. Fails on non-finite values, a view angle outside (0, 180), or a focal point
 /// at the eye. A view_up along the view direction is replaced by the axis least aligned with it.
 Result<CameraFrame> make_camera_frame(const Camera& camera, int width, int height);
-
-/// A view that just fits the whole box, from the front, slightly above and to the side, with the given up axis.
-/// `facing` is the mean of the surface's normals, shorter than 1 and zero when they are unknown or cancel: the eye
-/// moves to where the surface shows its front.
-Camera fit_camera(const Box& box, const glm::dvec3& up, double aspect, double view_angle = 30,
-                  const glm::dvec3& facing = glm::dvec3(0));
 
 }  // namespace surfcast

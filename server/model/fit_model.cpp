@@ -1,6 +1,9 @@
 #include "model/fit_model.h"
 
 #include <algorithm>
+#include <vector>
+
+#include "geometry/fit_camera.h"
 
 namespace surfcast {
 namespace {
@@ -16,23 +19,22 @@ glm::dvec3 mean_facing(const ModelFile& model) {
   return sum / static_cast<double>(std::max<uint64_t>(model.info().surfels, 1));
 }
 
-/// The finest level with its discs.
-Box box_of_discs(const ModelFile& model) {
-  Box box = model.info().bounds;
-  double reach = 0;
+/// Of the finest level, each with its discs. Together they follow the surface more closely than the model's own box,
+/// the corners of which are mostly empty.
+std::vector<Box> boxes_of_discs(const ModelFile& model) {
+  std::vector<Box> boxes;
   for (const BlockEntry& block : model.blocks()) {
-    if (block.level == 0) reach = std::max(reach, block.max_radius);
+    if (block.level > 0) continue;
+    boxes.push_back({block.bounds.min - block.max_radius, block.bounds.max + block.max_radius});
   }
-  box.min -= reach;
-  box.max += reach;
-  return box;
+  return boxes;
 }
 
 }  // namespace
 
 Camera fit_model(const ModelFile& model, double aspect) {
   const glm::dvec3 up = model.info().z_up ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
-  return fit_camera(box_of_discs(model), up, aspect, kViewAngle, mean_facing(model));
+  return fit_camera(boxes_of_discs(model), up, aspect, kViewAngle, mean_facing(model));
 }
 
 }  // namespace surfcast

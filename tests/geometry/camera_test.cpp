@@ -61,57 +61,5 @@ TEST(CameraFrame, WrongCamerasAreRefused) {
   EXPECT_FALSE(make_camera_frame({{0, 0, 1}, {0, 0, 0}, {0, 1, 0}, 30}, 0, 10));
 }
 
-TEST(FitCamera, WholeBoxIsInView) {
-  Box box;
-  box.include({100, 200, 300});
-  box.include({104, 207, 301});
-  for (const double aspect : {0.3, 1.0, 2.5}) {
-    for (const glm::dvec3 up : {glm::dvec3(0, 0, 1), glm::dvec3(0, 1, 0)}) {
-      const int height = 400;
-      const int width = static_cast<int>(height * aspect);
-      const Result<CameraFrame> frame = make_camera_frame(fit_camera(box, up, aspect), width, height);
-      ASSERT_TRUE(frame);
-      for (int corner = 0; corner < 8; ++corner) {
-        const glm::dvec3 p((corner & 1) ? box.max.x : box.min.x, (corner & 2) ? box.max.y : box.min.y,
-                           (corner & 4) ? box.max.z : box.min.z);
-        const glm::dvec3 q = frame->to_camera(p);
-        ASSERT_GT(q.z, 0);
-        const glm::dvec2 pixel = frame->project(q);
-        EXPECT_TRUE(pixel.x >= 0 && pixel.x <= width && pixel.y >= 0 && pixel.y <= height);
-      }
-    }
-  }
-}
-
-TEST(FitCamera, TheBoxNearlyFillsThePicture) {
-  Box box;
-  box.include({0, 0, 0});
-  box.include({30, 2, 1});
-  const Result<CameraFrame> frame = make_camera_frame(fit_camera(box, {0, 0, 1}, 2), 800, 400);
-  ASSERT_TRUE(frame);
-  Box seen;
-  for (int corner = 0; corner < 8; ++corner) {
-    const glm::dvec3 p((corner & 1) ? 30 : 0, (corner & 2) ? 2 : 0, (corner & 4) ? 1 : 0);
-    seen.include(glm::dvec3(frame->project(frame->to_camera(p)), 0));
-  }
-  EXPECT_GT(std::max(seen.size().x / 800, seen.size().y / 400), 0.75);
-}
-
-TEST(FitCamera, TheEyeStandsWhereTheSurfaceShowsItsFront) {
-  Box box;
-  box.include({-1, -1, -1});
-  box.include({1, 1, 1});
-  for (const glm::dvec3 facing : {glm::dvec3(0, 0, -0.9), glm::dvec3(0, 0.9, 0), glm::dvec3(-0.9, 0, 0)}) {
-    const Camera camera = fit_camera(box, {0, 0, 1}, 1, 30, facing);
-    EXPECT_GT(glm::dot(glm::normalize(camera.position), facing), 0.1);
-  }
-}
-
-TEST(FitCamera, APointHasAViewToo) {
-  Box box;
-  box.include({5, 6, 7});
-  EXPECT_TRUE(make_camera_frame(fit_camera(box, {0, 1, 0}, 1), 10, 10));
-}
-
 }  // namespace
 }  // namespace surfcast
