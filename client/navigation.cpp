@@ -115,4 +115,12 @@ Pose fly(const Pose& pose, const glm::dvec3& steps) {
   return moved;
 }
 
+Pose focus(const Pose& pose, const glm::dvec3& point) {
+  const glm::dvec3 sight = glm::normalize(pose.focal_point - pose.position);
+  Pose moved = pose;
+  moved.focal_point = point;
+  moved.position = point - sight * (glm::length(point - pose.position) / 3);
+  return moved;
+}
+
 }  // namespace surfcast

@@ -31,4 +31,7 @@ Pose look(const Pose& pose, const glm::dvec2& drag);
 /// Moves the eye to the right, up along the vertical axis, and forwards; world units.
 Pose fly(const Pose& pose, const glm::dvec3& steps);
 
+/// Puts a point into the middle and comes closer, to a third of the way.
+Pose focus(const Pose& pose, const glm::dvec3& point);
+
 }  // namespace surfcast

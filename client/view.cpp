@@ -66,6 +66,7 @@ Result<std::optional<View::Frame>> View::next_until(Clock::time_point deadline) 
       const Error error = from_wire(message.error());
       return connection_->failed(error.kind, error.message);
     }
+    if (message.has_pick_result() && message.id() == pick_) picked_ = message.pick_result();
     if (!message.has_view_frame() || message.id() != id_) continue;
     Result<std::optional<Frame>> frame = take(std::move(*message.mutable_view_frame()));
     if (!frame || frame->has_value()) return frame;
@@ -75,6 +76,17 @@ Result<std::optional<View::Frame>> View::next_until(Clock::time_point deadline) 
 Status View::painted(const Frame& frame) {
   const std::chrono::duration<double, std::milli> took = Clock::now() - frame.arrived;
   return acknowledge(frame.frame.frame(), took.count());
+}
+
+Status View::pick(const wire::DrawPicture& picture, uint32_t x, uint32_t y) {
+  wire::Request request;
+  *request.mutable_pick_surfel()->mutable_picture() = picture;
+  request.mutable_pick_surfel()->set_x(x);
+  request.mutable_pick_surfel()->set_y(y);
+  const Result<uint64_t> id = connection_->send(std::move(request));
+  if (!id) return fail(id.error());
+  pick_ = *id;
+  return {};
 }
 
 Status View::close() {

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdint>
 #include <optional>
+#include <utility>
 
 #include "client/server_connection.h"
 #include "surfcast.pb.h"
@@ -30,6 +31,10 @@ class View {
   Result<std::optional<Frame>> next_until(Clock::time_point deadline);
   /// The frame is to be seen now: the server may send another one.
   Status painted(const Frame& frame);
+  /// Asks what a picture shows at a pixel. A newer question takes the place of one that has no answer yet.
+  Status pick(const wire::DrawPicture& picture, uint32_t x, uint32_t y);
+  /// The answer, once; it arrives while frames are waited for. A question that failed has none.
+  std::optional<wire::PickResult> take_picked() { return std::exchange(picked_, std::nullopt); }
   /// Ends the view; what comes until the server has heard of it is thrown away.
   Status close();
 
@@ -47,6 +52,8 @@ class View {
   std::optional<wire::ViewFrame> incomplete_;
   uint64_t bytes_before_ = 0;
   uint64_t abandoned_ = 0;
+  std::optional<uint64_t> pick_;  ///< the question that waits for an answer
+  std::optional<wire::PickResult> picked_;
 };
 
 }  // namespace surfcast

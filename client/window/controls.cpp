@@ -10,20 +10,22 @@ constexpr double kNudge = 1.0 / 24;  // of the picture's height
 
 }  // namespace
 
-void Controls::move(const glm::dvec2& pixels) {
-  if (!drag_) return;
-  const glm::dvec2 drag = glm::dvec2(pixels.x, -pixels.y) / size_.y;
-  switch (*drag_) {
+void Controls::drag(Drag drag, const glm::dvec2& by) {
+  switch (drag) {
     case Drag::kOrbit:
-      pose_ = orbit(pose_, drag);
+      pose_ = orbit(pose_, by);
       break;
     case Drag::kPan:
-      pose_ = pan(pose_, drag);
+      pose_ = pan(pose_, by);
       break;
     case Drag::kLook:
-      pose_ = look(pose_, drag);
+      pose_ = look(pose_, by);
       break;
   }
+}
+
+void Controls::move(const glm::dvec2& pixels) {
+  if (drag_) drag(*drag_, glm::dvec2(pixels.x, -pixels.y) / size_.y);
 }
 
 void Controls::wheel(double clicks, const glm::dvec2& pointer) {
@@ -31,8 +33,8 @@ void Controls::wheel(double clicks, const glm::dvec2& pointer) {
   pose_ = zoom(pose_, std::pow(kFactorPerClick, clicks), cursor);
 }
 
-void Controls::nudge(const glm::dvec2& by) {
-  pose_ = orbit(pose_, by * kNudge);
+void Controls::nudge(Drag kind, const glm::dvec2& by) {
+  drag(kind, by * kNudge);
 }
 
 void Controls::advance(double seconds, double speed) {

@@ -3,8 +3,10 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <utility>
 
 #include "client/navigation.h"
+#include "client/window/standard_views.h"
 
 namespace surfcast {
 
@@ -13,7 +15,7 @@ class Controls {
  public:
   enum class Drag { kOrbit, kPan, kLook };
 
-  explicit Controls(const Pose& start) : home_(start), pose_(start) {}
+  Controls(const Pose& start, const Subject& subject) : subject_(subject), home_(start), pose_(start) {}
 
   void resize(int width, int height) { size_ = {width, height}; }
   void press(Drag drag) { drag_ = drag; }
@@ -24,9 +26,19 @@ class Controls {
   void wheel(double clicks, const glm::dvec2& pointer);
   /// Directions of flight as long as keys are held: to the right, up, forwards, each -1, 0 or 1.
   void fly(const glm::dvec3& course, bool fast) { course_ = course * (fast ? 4.0 : 1.0); }
-  /// One press of an arrow key: to the right and up.
-  void nudge(const glm::dvec2& by);
+  /// One press of an arrow key, to the right and up: a small drag of that kind.
+  void nudge(Drag drag, const glm::dvec2& by);
+  /// Clicks of the wheel, towards the middle.
+  void step(double clicks) { wheel(clicks, size_ / 2.0); }
   void go_home() { pose_ = home_; }
+  void fit() { pose_ = fit_pose(pose_, subject_, aspect()); }
+  void stand(StandardView view) { pose_ = standard_pose(view, pose_, subject_, aspect()); }
+
+  /// What is under the pointer shall come into the middle.
+  void double_click(const glm::dvec2& pointer) { wish_ = pointer / size_; }
+  /// Where that is, once: in parts of the picture's width and height from its upper left corner.
+  std::optional<glm::dvec2> take_focus_wish() { return std::exchange(wish_, std::nullopt); }
+  void focus_on(const glm::dvec3& point) { pose_ = focus(pose_, point); }
 
   /// Lets time pass. `speed` is that of flight, world units per second.
   void advance(double seconds, double speed);
@@ -36,11 +48,16 @@ class Controls {
   [[nodiscard]] bool moving() const { return drag_.has_value() || course_ != glm::dvec3(0); }
 
  private:
+  [[nodiscard]] double aspect() const { return size_.x / size_.y; }
+  void drag(Drag drag, const glm::dvec2& by);
+
+  Subject subject_;
   Pose home_;
   Pose pose_;
   glm::dvec2 size_{1280, 720};
   std::optional<Drag> drag_;
   glm::dvec3 course_{0};
+  std::optional<glm::dvec2> wish_;
 };
 
 }  // namespace surfcast

@@ -5,6 +5,7 @@
 
 #include "client/time_limits.h"
 #include "client/window/view_loop.h"
+#include "client/window/window.h"
 #include "protocol/request_flags.h"
 #include "protocol/validate.h"
 
@@ -35,10 +36,7 @@ Result<ViewWish> wish_of(const std::string& address, const RequestFlags& flags) 
 }
 
 int run(int argc, char** argv) {
-  CLI::App app{
-      "Look at a model in a window: drag to turn, right button or Shift to move, wheel to come nearer, middle "
-      "button or Ctrl to look around, W A S D Q E to fly, arrows to turn, F for the first view, Esc to end",
-      "surfcast view"};
+  CLI::App app{std::string("Look at a model in a window: ") + kWindowHelp, "surfcast view"};
   std::string address;
   RequestFlags flags;
   TimeLimits limits;

@@ -1,7 +1,7 @@
 #include "client/window/view_loop.h"
 
 #include <chrono>
-#include <cmath>
+#include <glm/common.hpp>
 #include <optional>
 #include <string>
 #include <thread>
@@ -20,10 +20,12 @@ constexpr milliseconds kUpdateEvery{16};  // at most so many cameras are sent
 constexpr milliseconds kRetryEvery{1000};
 constexpr double kFlightPart = 0.06;  // of the model's diagonal, per second
 
-/// World units per second.
-double flight_speed(const wire::Box& bounds) {
-  return kFlightPart * std::hypot(bounds.max().x() - bounds.min().x(), bounds.max().y() - bounds.min().y(),
-                                  bounds.max().z() - bounds.min().z());
+glm::dvec3 vector_of(const wire::Vector3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+Subject subject_of(const wire::ModelDescription& model) {
+  return {{vector_of(model.bounds().min()), vector_of(model.bounds().max())}, model.z_up()};
 }
 
 /// Frames of the last second.
@@ -59,6 +61,7 @@ class ViewLoop {
  private:
   Status turn(View& view);
   Status send_update(View& view, bool moving);
+  Status focus(View& view);
   Status receive(View& view);
   Status paint(View& view, const View::Frame& frame);
   [[nodiscard]] wire::DrawPicture picture() const;
@@ -68,7 +71,7 @@ class ViewLoop {
   const ClientConfig& config_;
   Window& window_;
   std::optional<Controls> controls_;  ///< once a frame has told the camera
-  double speed_ = 0;
+  Subject subject_;
   bool open_ = true;
   bool sent_moving_ = false;
   wire::Camera sent_camera_;
@@ -94,7 +97,7 @@ Status ViewLoop::look() {
   describe.mutable_describe_model()->set_model(wish_.url.model);
   const Result<wire::Answer> answer = connection->ask(std::move(describe));
   if (!answer) return fail(answer.error());
-  speed_ = flight_speed(answer->model_description().bounds());
+  subject_ = subject_of(answer->model_description());
   sent_width_ = window_.width();
   sent_height_ = window_.height();
   Result<View> view = View::open(*connection, picture(), wish_.target_fps);
@@ -110,7 +113,7 @@ Status ViewLoop::turn(View& view) {
   const std::chrono::duration<double> passed = now - std::exchange(last_turn_, now);
   if (controls_) {
     open_ = window_.take_events(*controls_);
-    controls_->advance(passed.count(), speed_);
+    controls_->advance(passed.count(), kFlightPart * subject_.bounds.diagonal());
     const bool moving = controls_->moving();
     const bool changed = to_camera(controls_->pose()).SerializeAsString() != sent_camera_.SerializeAsString();
     const bool due = now - last_update_ >= kUpdateEvery;
@@ -118,10 +121,24 @@ Status ViewLoop::turn(View& view) {
       if (Status status = send_update(view, moving); !status) return status;
     }
   } else {
-    Controls nobody{Pose{}};
+    Controls nobody{Pose{}, subject_};
     open_ = window_.take_events(nobody);
   }
+  if (Status status = focus(view); !status) return status;
   return receive(view);
+}
+
+/// Asks what was clicked, and goes there once that is known.
+Status ViewLoop::focus(View& view) {
+  if (!controls_) return {};
+  if (const auto picked = view.take_picked(); picked && picked->hit()) {
+    controls_->focus_on(vector_of(picked->position()));
+  }
+  const std::optional<glm::dvec2> wish = controls_->take_focus_wish();
+  if (!wish) return {};
+  const glm::dvec2 size(window_.width(), window_.height());
+  const glm::dvec2 pixel = glm::clamp(*wish * size, glm::dvec2(0), size - 1.0);
+  return view.pick(picture(), static_cast<uint32_t>(pixel.x), static_cast<uint32_t>(pixel.y));
 }
 
 Status ViewLoop::send_update(View& view, bool moving) {
@@ -148,7 +165,7 @@ Status ViewLoop::paint(View& view, const View::Frame& frame) {
   if (Status status = window_.show(*image); !status) return status;
   if (Status status = view.painted(frame); !status) return status;
   if (!controls_) {
-    controls_.emplace(to_pose(picture.camera()));
+    controls_.emplace(to_pose(picture.camera()), subject_);
     sent_camera_ = to_camera(controls_->pose());
   }
   rate_.count(frame.arrived);
@@ -162,7 +179,7 @@ Status ViewLoop::paint(View& view, const View::Frame& frame) {
 
 bool ViewLoop::wait_for_server(const std::string& why) {
   window_.set_title(wish_.url.model + " - " + why + "; trying again");
-  Controls nobody{Pose{}};
+  Controls nobody{Pose{}, subject_};
   const Clock::time_point until = Clock::now() + kRetryEvery;
   while (open_ && Clock::now() < until) {
     open_ = window_.take_events(controls_ ? *controls_ : nobody);

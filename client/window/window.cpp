@@ -1,5 +1,7 @@
 #include "client/window/window.h"
 
+#include <optional>
+
 #include <SDL.h>
 
 namespace surfcast {
@@ -34,38 +36,57 @@ glm::dvec3 course_of_keys() {
           held(SDL_SCANCODE_W) - held(SDL_SCANCODE_S)};
 }
 
-Controls::Drag drag_of(uint8_t button) {
-  const bool shift = (SDL_GetModState() & KMOD_SHIFT) != 0;
-  const bool control = (SDL_GetModState() & KMOD_CTRL) != 0;
-  if (button == SDL_BUTTON_MIDDLE || control) return Controls::Drag::kLook;
-  return button == SDL_BUTTON_RIGHT || shift ? Controls::Drag::kPan : Controls::Drag::kOrbit;
+bool shift_held() {
+  return (SDL_GetModState() & KMOD_SHIFT) != 0;
 }
 
-/// False when the key closes the window.
-bool press_key(SDL_Keycode key, Controls& controls) {
+Controls::Drag drag_of(uint8_t button) {
+  const bool control = (SDL_GetModState() & KMOD_CTRL) != 0;
+  if (button == SDL_BUTTON_MIDDLE || control) return Controls::Drag::kLook;
+  return button == SDL_BUTTON_RIGHT || shift_held() ? Controls::Drag::kPan : Controls::Drag::kOrbit;
+}
+
+/// The arrow's direction: to the right and up.
+std::optional<glm::dvec2> arrow(SDL_Keycode key) {
   switch (key) {
-    case SDLK_ESCAPE:
-      return false;
-    case SDLK_f:
-    case SDLK_HOME:
-      controls.go_home();
-      break;
     case SDLK_LEFT:
-      controls.nudge({-1, 0});
-      break;
+      return glm::dvec2(-1, 0);
     case SDLK_RIGHT:
-      controls.nudge({1, 0});
-      break;
+      return glm::dvec2(1, 0);
     case SDLK_UP:
-      controls.nudge({0, 1});
-      break;
+      return glm::dvec2(0, 1);
     case SDLK_DOWN:
-      controls.nudge({0, -1});
-      break;
+      return glm::dvec2(0, -1);
     default:
-      break;
+      return std::nullopt;
   }
-  return true;
+}
+
+void press(const SDL_MouseButtonEvent& event, Controls& controls) {
+  if (event.button == SDL_BUTTON_LEFT && event.clicks == 2) return controls.double_click({event.x, event.y});
+  controls.press(drag_of(event.button));
+}
+
+void press_key(SDL_Keycode key, Controls& controls) {
+  if (key >= SDLK_1 && key <= SDLK_7) return controls.stand(static_cast<StandardView>(key - SDLK_1));
+  if (const auto by = arrow(key)) {
+    return controls.nudge(shift_held() ? Controls::Drag::kPan : Controls::Drag::kOrbit, *by);
+  }
+  switch (key) {
+    case SDLK_f:
+      return controls.fit();
+    case SDLK_HOME:
+      return controls.go_home();
+    case SDLK_PLUS:
+    case SDLK_EQUALS:
+    case SDLK_KP_PLUS:
+      return controls.step(1);
+    case SDLK_MINUS:
+    case SDLK_KP_MINUS:
+      return controls.step(-1);
+    default:
+      return;
+  }
 }
 
 }  // namespace
@@ -80,6 +101,7 @@ struct Window::State {
 
   void wheel(const SDL_MouseWheelEvent& event, Controls& controls) const;
   bool take(const SDL_Event& event, Controls& controls);
+  void show_help() const;
   void present() const;
 };
 
@@ -99,6 +121,10 @@ Result<Window> Window::open(const std::string& title, int width, int height) {
   return Window(std::move(state));
 }
 
+void Window::State::show_help() const {
+  SDL_ShowSimpleMessageBox(SDL_MESSAGEBOX_INFORMATION, "Keys", kWindowHelp, window.get());
+}
+
 void Window::State::wheel(const SDL_MouseWheelEvent& event, Controls& controls) const {
   int x = 0;
   int y = 0;
@@ -111,9 +137,12 @@ bool Window::State::take(const SDL_Event& event, Controls& controls) {
     case SDL_QUIT:
       return false;
     case SDL_KEYDOWN:
-      return press_key(event.key.keysym.sym, controls);
+      if (event.key.keysym.sym == SDLK_ESCAPE) return false;
+      if (event.key.keysym.sym == SDLK_F1) show_help();
+      press_key(event.key.keysym.sym, controls);
+      break;
     case SDL_MOUSEBUTTONDOWN:
-      controls.press(drag_of(event.button.button));
+      press(event.button, controls);
       break;
     case SDL_MOUSEBUTTONUP:
       controls.release();
@@ -148,7 +177,7 @@ bool Window::take_events(Controls& controls) {
   while (SDL_PollEvent(&event) != 0) {
     if (!state_->take(event, controls)) return false;
   }
-  controls.fly(course_of_keys(), (SDL_GetModState() & KMOD_SHIFT) != 0);
+  controls.fly(course_of_keys(), shift_held());
   return true;
 }
 

@@ -9,6 +9,13 @@
 
 namespace surfcast {
 
+/// What the hand can do, for a person.
+constexpr const char* kWindowHelp =
+    "drag to turn, right button or Shift to move, wheel or + and - to come nearer, double click to focus, middle "
+    "button "
+    "or Ctrl to look around, W A S D Q E to fly (Shift: faster), arrows to turn, 1 to 7 for front, right, back, left, "
+    "top, bottom and iso, F to fit the model, Home for the first view, F1 for this, Esc to end";
+
 /// A window that shows pictures and passes on what the hand does.
 class Window {
  public:

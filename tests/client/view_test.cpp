@@ -42,6 +42,14 @@ std::string piece(uint64_t frame, uint64_t update, const std::string& data, bool
   return said(answer);
 }
 
+std::string picked(uint64_t id, double x) {
+  wire::Answer answer;
+  answer.set_id(id);
+  answer.mutable_pick_result()->set_hit(true);
+  answer.mutable_pick_result()->mutable_position()->set_x(x);
+  return said(answer);
+}
+
 std::string failure(uint64_t id) {
   wire::Answer answer;
   answer.set_id(id);
@@ -131,6 +139,24 @@ TEST_F(ViewTest, UpdatesCarryTheViewsIdAndGrowingNumbers) {
   EXPECT_TRUE(requests[1].update_view().moving());
   EXPECT_EQ(requests[2].update_view().update(), 2u);
   EXPECT_FALSE(requests[2].update_view().moving());
+}
+
+TEST_F(ViewTest, OfSeveralPicksTheLastIsAnsweredOnceBesideTheFrames) {
+  open(picked(2, 20) + picked(3, 30) + piece(1, 0, "one", false) + failure(3));
+  ASSERT_TRUE(view_->pick(picture(), 7, 8));
+  ASSERT_TRUE(view_->pick(picture(), 9, 10));
+  EXPECT_FALSE(view_->take_picked());
+  const auto frame = view_->next_until(soon());
+  ASSERT_TRUE(frame && *frame);
+  const auto result = view_->take_picked();
+  ASSERT_TRUE(result);
+  EXPECT_EQ(result->position().x(), 30);
+  EXPECT_FALSE(view_->take_picked());
+  EXPECT_TRUE(view_->next_until(View::Clock::now() + milliseconds(20)));  // a pick that fails ends nothing
+  const auto requests = said_by_client();
+  ASSERT_EQ(requests.size(), 3u);
+  EXPECT_EQ(requests[2].pick_surfel().x(), 9u);
+  EXPECT_EQ(requests[2].pick_surfel().y(), 10u);
 }
 
 TEST_F(ViewTest, SilenceIsNoFrame) {

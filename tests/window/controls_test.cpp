@@ -11,19 +11,26 @@ Pose start() {
   return {.position = {0, -10, 3}, .focal_point = {0, 0, 0}, .up = {0, 0, 1}, .view_angle = 30};
 }
 
+Subject street() {
+  Subject subject;
+  subject.bounds.include({-20, -4, -1});
+  subject.bounds.include({20, 4, 9});
+  return subject;
+}
+
 double distance(const Pose& pose) {
   return glm::length(pose.focal_point - pose.position);
 }
 
 TEST(Controls, APointerThatHoldsNothingMovesNothing) {
-  Controls controls(start());
+  Controls controls(start(), street());
   controls.move({100, 50});
   EXPECT_FALSE(controls.moving());
   EXPECT_EQ(controls.pose().position, start().position);
 }
 
 TEST(Controls, ADragTurnsUntilTheButtonIsReleased) {
-  Controls controls(start());
+  Controls controls(start(), street());
   controls.press(Controls::Drag::kOrbit);
   EXPECT_TRUE(controls.moving());
   controls.move({100, 0});
@@ -37,12 +44,12 @@ TEST(Controls, ADragTurnsUntilTheButtonIsReleased) {
 }
 
 TEST(Controls, OtherButtonsMoveAndLook) {
-  Controls panning(start());
+  Controls panning(start(), street());
   panning.press(Controls::Drag::kPan);
   panning.move({0, 72});
   EXPECT_NE(panning.pose().focal_point, start().focal_point);
   EXPECT_NEAR(distance(panning.pose()), distance(start()), 1e-9);
-  Controls looking(start());
+  Controls looking(start(), street());
   looking.press(Controls::Drag::kLook);
   looking.move({50, 0});
   EXPECT_EQ(looking.pose().position, start().position);
@@ -50,7 +57,7 @@ TEST(Controls, OtherButtonsMoveAndLook) {
 }
 
 TEST(Controls, TheWheelComesNearerToWhatIsUnderThePointer) {
-  Controls controls(start());
+  Controls controls(start(), street());
   controls.resize(1000, 500);
   controls.wheel(1, {500, 250});
   EXPECT_LT(distance(controls.pose()), distance(start()));
@@ -60,7 +67,7 @@ TEST(Controls, TheWheelComesNearerToWhatIsUnderThePointer) {
 }
 
 TEST(Controls, FlightGoesOnAsLongAsAKeyIsHeld) {
-  Controls controls(start());
+  Controls controls(start(), street());
   controls.fly({0, 0, 1}, /*fast=*/false);
   EXPECT_TRUE(controls.moving());
   controls.advance(0.5, 4);
@@ -72,11 +79,63 @@ TEST(Controls, FlightGoesOnAsLongAsAKeyIsHeld) {
 }
 
 TEST(Controls, HomeIsTheFirstView) {
-  Controls controls(start());
-  controls.nudge({1, 1});
+  Controls controls(start(), street());
+  controls.nudge(Controls::Drag::kOrbit, {1, 1});
   EXPECT_NE(controls.pose().position, start().position);
   controls.go_home();
   EXPECT_EQ(controls.pose().position, start().position);
+}
+
+TEST(Controls, UsualSidesShowTheWholeModel) {
+  Controls controls(start(), street());
+  controls.resize(1000, 500);
+  controls.stand(StandardView::kFront);
+  EXPECT_LT(controls.pose().position.y, -4);
+  EXPECT_NEAR(controls.pose().position.x, 0, 1e-9);
+  controls.stand(StandardView::kRight);
+  EXPECT_GT(controls.pose().position.x, 20);
+  controls.stand(StandardView::kTop);
+  EXPECT_GT(controls.pose().position.z, 9);
+  EXPECT_EQ(controls.pose().up, glm::dvec3(0, 0, 1));
+  const double from_above = distance(controls.pose());
+  controls.stand(StandardView::kLeft);
+  EXPECT_LT(distance(controls.pose()), from_above);  // its narrow side
+}
+
+TEST(Controls, TheFrontOfAModelThatStandsOnItsYAxisFacesZ) {
+  Subject subject = street();
+  subject.z_up = false;
+  Controls controls(start(), subject);
+  controls.stand(StandardView::kFront);
+  EXPECT_GT(controls.pose().position.z, 9);
+  EXPECT_EQ(controls.pose().up, glm::dvec3(0, 1, 0));
+}
+
+TEST(Controls, FittingKeepsTheDirectionAndShowsAll) {
+  Controls controls(start(), street());
+  controls.nudge(Controls::Drag::kPan, {5, 5});
+  const glm::dvec3 before = glm::normalize(controls.pose().focal_point - controls.pose().position);
+  controls.fit();
+  const glm::dvec3 after = glm::normalize(controls.pose().focal_point - controls.pose().position);
+  EXPECT_LT(glm::length(after - before), 1e-9);
+  EXPECT_GT(distance(controls.pose()), 20);
+  Controls nearer = controls;
+  nearer.step(3);
+  nearer.fit();
+  EXPECT_NEAR(distance(nearer.pose()), distance(controls.pose()), 1e-9);
+}
+
+TEST(Controls, ADoubleClickAsksOnceAndWhatItFindsComesIntoTheMiddle) {
+  Controls controls(start(), street());
+  controls.resize(1000, 500);
+  EXPECT_FALSE(controls.take_focus_wish());
+  controls.double_click({250, 100});
+  EXPECT_FALSE(controls.moving());
+  EXPECT_EQ(controls.take_focus_wish(), glm::dvec2(0.25, 0.2));
+  EXPECT_FALSE(controls.take_focus_wish());
+  controls.focus_on({3, -1, 2});
+  EXPECT_EQ(controls.pose().focal_point, glm::dvec3(3, -1, 2));
+  EXPECT_NEAR(distance(controls.pose()), glm::length(glm::dvec3(3, -1, 2) - start().position) / 3, 1e-9);
 }
 
 }  // namespace

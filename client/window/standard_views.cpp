@@ -1,0 +1,45 @@
+#include "client/window/standard_views.h"
+
+#include <array>
+#include <cstddef>
+#include <span>
+
+#include "geometry/fit_camera.h"
+
+namespace surfcast {
+namespace {
+
+// Straight up and down have no horizon: they are left by as little as a drag leaves them.
+constexpr double kOffPole = 0.01;
+
+/// Towards the eye: parts to the right, to the back and to the sky, in the order of StandardView.
+constexpr std::array<glm::dvec3, 7> kTowardsEye{{
+    {0, -1, 0},
+    {1, 0, 0},
+    {0, 1, 0},
+    {-1, 0, 0},
+    {0, -kOffPole, 1},
+    {0, -kOffPole, -1},
+    {1, -1, 1},
+}};
+
+Pose fit_from(const glm::dvec3& towards_eye, const Pose& pose, const Subject& subject, double aspect) {
+  const Camera camera = fit_along(std::span(&subject.bounds, 1), towards_eye, pose.up, aspect, pose.view_angle);
+  return {camera.position, camera.focal_point, pose.up, pose.view_angle};
+}
+
+}  // namespace
+
+Pose fit_pose(const Pose& pose, const Subject& subject, double aspect) {
+  return fit_from(pose.position - pose.focal_point, pose, subject, aspect);
+}
+
+Pose standard_pose(StandardView view, const Pose& pose, const Subject& subject, double aspect) {
+  const glm::dvec3 side = kTowardsEye[static_cast<size_t>(view)];
+  Pose level = pose;
+  level.up = subject.z_up ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
+  const glm::dvec3 back = subject.z_up ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, -1);
+  return fit_from(glm::dvec3(side.x, 0, 0) + side.y * back + side.z * level.up, level, subject, aspect);
+}
+
+}  // namespace surfcast
