@@ -8,6 +8,7 @@
 #include <string>
 #include <utility>
 
+#include "net/heartbeat.h"
 #include "net/into.h"
 #include "net/upgrade.h"
 #include "protocol/framing.h"
@@ -48,16 +49,14 @@ class WebSocketTransport : public Transport, public std::enable_shared_from_this
 
   websocket::stream<tcp::socket> stream_;
   UpgradeHead head_;
-  std::chrono::milliseconds ping_;
-  Clock::time_point last_heard_ = Clock::now();
+  Heartbeat heartbeat_;
   bool open_ = true;  ///< until close(): the stream closes its socket by itself when the client says goodbye
   bool granted_ = false;
   bool reading_ = false;
-  bool asked_ = false;  ///< a ping is being sent or not answered yet
 };
 
 WebSocketTransport::WebSocketTransport(tcp::socket socket, UpgradeHead head, std::chrono::milliseconds ping)
-    : stream_(std::move(socket)), head_(std::move(head)), ping_(ping) {
+    : stream_(std::move(socket)), head_(std::move(head)), heartbeat_(ping, Clock::now()) {
   stream_.auto_fragment(false);
   stream_.binary(true);
   stream_.read_message_max(kMaxRequestBytes);
@@ -70,8 +69,7 @@ WebSocketTransport::WebSocketTransport(tcp::socket socket, UpgradeHead head, std
 }
 
 void WebSocketTransport::hear(websocket::frame_type type) {
-  last_heard_ = Clock::now();
-  asked_ = false;
+  heartbeat_.hear(Clock::now());
   if (type != websocket::frame_type::close) return;
   // The stream answers now, but would then wait for as long as the client likes before it reports the end.
   asio::post(stream_.get_executor(), [self = shared_from_this()] { self->close_socket(); });
@@ -96,7 +94,7 @@ asio::awaitable<Result<std::optional<Bytes>>> WebSocketTransport::read() {
   co_await stream_.async_read(buffer, into(code));
   reading_ = false;
   if (code) co_return std::nullopt;
-  last_heard_ = Clock::now();
+  heartbeat_.hear(Clock::now());
   if (!stream_.got_binary()) co_return fail(ErrorKind::kInvalidInput, "a message of text is not understood");
   const auto* first = static_cast<const std::byte*>(buffer.cdata().data());
   co_return Bytes(first, first + buffer.size());
@@ -127,12 +125,13 @@ asio::awaitable<void> WebSocketTransport::part(websocket::close_code reason) {
 }
 
 bool WebSocketTransport::keep_alive(Clock::time_point now) {
-  if (!reading_ || !granted_) return true;  // nothing would be heard
-  if (now - last_heard_ >= 2 * ping_) return false;
-  if (asked_ || now - last_heard_ < ping_) return true;
-  asked_ = true;
-  stream_.async_ping({}, [self = shared_from_this()](error_code) {});
-  return true;
+  if (!reading_ || !granted_) {  // nothing would be heard: this time does not count
+    heartbeat_.hear(now);
+    return true;
+  }
+  const Heartbeat::Step step = heartbeat_.look(now);
+  if (step == Heartbeat::Step::kAsk) stream_.async_ping({}, [self = shared_from_this()](error_code) {});
+  return step != Heartbeat::Step::kGone;
 }
 
 void WebSocketTransport::close() {
