@@ -100,7 +100,7 @@ describe('the viewer', () => {
       await page.waitForTimeout(40);
     }
     await page.waitForTimeout(700); // the figures follow twice a second
-    const stated = Number.parseFloat((await page.locator('.status .figure').nth(1).textContent()) ?? '');
+    const stated = Number.parseFloat((await page.locator('.status .latency').textContent()) ?? '');
     await page.mouse.up();
     expect(stated).toBeGreaterThan(0);
     // Reading pixels out of the browser takes its own time, and so does the first frame's shader: hence the room.

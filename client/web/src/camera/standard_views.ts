@@ -34,23 +34,47 @@ const directions: Readonly<Record<ViewName, readonly [number, number]>> = {
 
 export const viewNames = Object.keys(directions) as readonly ViewName[];
 
+/** Where the eye stands along one axis of the picture, and how far back it must be to see all that was included. */
+class AxisFit {
+  private lowest = Infinity;
+  private highest = -Infinity;
+
+  constructor(private readonly tangent: number) {}
+
+  /** A point's place on the axis and its depth towards the eye, both from the middle of what is fitted. */
+  include(extent: number, nearer: number): void {
+    this.lowest = Math.min(this.lowest, extent - this.tangent * nearer);
+    this.highest = Math.max(this.highest, extent + this.tangent * nearer);
+  }
+
+  get offset(): number {
+    return (this.lowest + this.highest) / 2;
+  }
+
+  get distance(): number {
+    return (this.highest - this.lowest) / (2 * this.tangent);
+  }
+}
+
 /**
- * Moves the eye along its view so that the whole box is seen, as near as that allows. Each corner bounds the distance:
- * at depth d it must be within d tan(angle / 2) of the axis, in both directions of the picture.
+ * The nearest pose that looks the same way and sees the whole box. Each corner bounds the eye on both sides of both
+ * axes of the picture: |extent - offset| <= tangent * (distance - nearer).
  */
 export function fit(pose: Pose, up: UpAxis, box: Box, aspect: number): Pose {
   const axes = poseAxes(pose, up);
   const middle = center(box);
-  const tangentY = Math.tan((pose.viewAngle * Math.PI) / 360) * 0.95; // a little air around it
-  const tangentX = tangentY * aspect;
-  let far = diagonal(box) * 1e-3;
+  const tangent = Math.tan((pose.viewAngle * Math.PI) / 360) * 0.95; // a little air around it
+  const across = new AxisFit(tangent * aspect);
+  const along = new AxisFit(tangent);
   for (const corner of corners(box)) {
     const offset = subtract(corner, middle);
-    const depth = dot(offset, axes.forward);
-    far = Math.max(far, Math.abs(dot(offset, axes.right)) / tangentX - depth);
-    far = Math.max(far, Math.abs(dot(offset, axes.up)) / tangentY - depth);
+    const nearer = -dot(offset, axes.forward);
+    across.include(dot(offset, axes.right), nearer);
+    along.include(dot(offset, axes.up), nearer);
   }
-  return { ...pose, distance: far, position: addScaled(middle, axes.forward, -far) };
+  const distance = Math.max(diagonal(box) * 1e-3, across.distance, along.distance);
+  const target = addScaled(addScaled(middle, axes.right, across.offset), axes.up, along.offset);
+  return { ...pose, distance, position: addScaled(target, axes.forward, -distance) };
 }
 
 /** The box from one of the usual sides. */
