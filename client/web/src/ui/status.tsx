@@ -42,9 +42,13 @@ export function Status(): JSX.Element {
       <span class="word" aria-live="polite">
         {state.text}
       </span>
-      {state.kind === 'working' && <span class="figure">{Math.round(framesPerSecond)} fps</span>}
-      {latency !== undefined && <span class="figure latency">{Math.round(latency)} ms</span>}
-      {state.kind === 'working' && <span class="figure rate">{formatRate(bytesPerSecond)}</span>}
+      {state.kind === 'working' && (
+        <>
+          <span class="figure">{Math.round(framesPerSecond)} fps</span>
+          {latency !== undefined && <span class="figure latency">{Math.round(latency)} ms</span>}
+          <span class="figure rate">{formatRate(bytesPerSecond)}</span>
+        </>
+      )}
     </button>
   );
 }
