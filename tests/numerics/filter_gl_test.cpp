@@ -49,13 +49,20 @@ struct View {
 /// From 170 degrees to a tenth of one in a picture 8192 pixels high.
 constexpr View kViews[] = {{20, 15}, {250, 1.5}, {2000, 0.5}, {3e5, 2e-3}, {5e6, 2e-3}};
 
+/// From `least` up to `most`, each the root of ten times the one before.
+std::vector<double> half_decades(double least, double most) {
+  std::vector<double> values{least};
+  while (values.back() * std::sqrt(10.0) <= most) values.push_back(values.back() * std::sqrt(10.0));
+  return values;
+}
+
 /// Surfels of s up to `most` pixels at every incidence, anywhere in the view.
 std::vector<Sighting> sweep(const View& view, double most) {
   std::mt19937 random(17);
   std::uniform_real_distribution<double> uniform(-1, 1);
   std::vector<Sighting> all;
   for (const double degrees : {0.0, 1e-4, 1.0, 30.0, 60.0, 85.0, 89.0, 89.9, 89.99, 89.999, 89.9999, 90.0}) {
-    for (double s = 1e-5; s <= most; s *= std::sqrt(10.0)) {
+    for (const double s : half_decades(1e-5, most)) {
       for (int k = 0; k < 40; ++k) {
         const double z = std::exp2(12 * uniform(random));
         const glm::dvec3 o = z * glm::dvec3(view.widest * uniform(random), view.widest * uniform(random), 1);
@@ -197,7 +204,7 @@ struct DiscBounds {
   glm::dvec2 low{1e300};
   glm::dvec2 high{-1e300};
 };
-constexpr int kRimPoints = 2048;
+constexpr int kRimPoints = 1024;
 
 DiscBounds rim_bounds(const Sighting& at, double extent) {
   const glm::dvec3 n = glm::normalize(glm::dvec3(at.n));

@@ -62,10 +62,10 @@ TEST_F(NumericsGLTest, ALargeSurfelEdgeOn) {
   }
 }
 
-/// A small splat has the gain of its centre, s^2 |n.d| / rho^2 where the prefilter rules. Edge-on, |n.d| is smaller than
-/// 1 / eta, what it changes by from one row of pixels to the next: the rows beside the plane's line get up to a quarter
-/// less coverage than from the gain of each pixel, which sees a surface where there is only its edge. Nothing but these
-/// rows differs, so the mean stays small.
+/// A small splat has the gain of its centre, s^2 |n.d| / rho^2 where the prefilter rules. Edge-on, |n.d| is smaller
+/// than 1 / eta, what it changes by from one row of pixels to the next: the rows beside the plane's line get up to a
+/// quarter less coverage than from the gain of each pixel, which sees a surface where there is only its edge. Nothing
+/// but these rows differs, so the mean stays small.
 constexpr Difference kSmallEdgeOn{1e-2, 0.1, 0.3};
 
 TEST_F(NumericsGLTest, APlaneEdgeOn) {
