@@ -18,19 +18,18 @@ struct Difference {
 std::ostream& operator<<(std::ostream& out, const Difference& difference);
 
 // What keeps a picture from its reference, largest first:
+// - a fragment that lies at the cutoff or at the depth limit may fall on either side: with the coverage of a pixel at
+//   a border where there is no other, kappa g exp(-c / 2) / a0(g) (docs/kernel.md), at most 0.105, at the gain g = 1;
 // - small splats have one ellipse, taken at their centre, and its factors in half precision;
-// - a fragment that lies at the cutoff (weight e^-2.5 of the peak where the prefilter rules, e^-4.5 where the kernel
-//   does) or at the depth limit may fall on either side, which shows where few fragments cover a pixel;
-// - colours are rounded to roots in 11, 11 and 10 bits: at most 2 / 1023 / 2 of linear light, at white;
+// - colours are rounded to roots in 11, 11 and 10 bits: at most 1 / 1023 of linear light, at white;
 // - single precision itself.
 
 /// Rounded colours and single precision alone: where neither small splats nor cutoffs decide.
 inline constexpr Difference kRounding{2e-4, 1e-3, 1e-5};
-/// The weight of a fragment at the kernel's cutoff, e^-4.5, on one pixel or another.
+/// Also, within a magnified surface, the weight of a fragment at the cutoff: e^-4.5 of the largest there.
 inline constexpr Difference kMagnified{1e-3, 1.5e-2, 1.5e-2};
-/// The weight of a fragment at the prefilter's cutoff at the border of a surface, where its share is largest: e^-2.5
-/// over the sum that counts as covered.
-inline constexpr Difference kSplats{1e-3, 0.1, 0.1};
+/// Also, at the border of a surface, a fragment at the cutoff, and what little half precision adds.
+inline constexpr Difference kSplats{1e-3, 0.12, 0.12};
 
 /// Every case draws a model twice, by the renderer and by the reference, and states how far apart they may be.
 class NumericsGLTest : public RendererFixture {
