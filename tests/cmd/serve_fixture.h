@@ -1,0 +1,76 @@
+#pragma once
+
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+#include <string>
+
+#include <gtest/gtest.h>
+
+#include "base/atomic_file.h"
+#include "client/run_program.h"
+
+namespace surfcast {
+
+inline std::string content(const std::filesystem::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+/// A coloured square of points in the plane z = 0.
+inline std::string square_of_points() {
+  std::ostringstream ply;
+  ply << "ply\nformat ascii 1.0\nelement vertex 400\nproperty float x\nproperty float y\nproperty float z\n"
+         "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n";
+  for (int i = 0; i < 400; ++i) ply << i % 20 << ' ' << i / 20 << " 0 200 100 50\n";
+  return ply.str();
+}
+
+/// The programs themselves: a server of one scan, and what is asked of it.
+class ServeTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::path(::testing::TempDir()) /
+              ("serve_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directories(folder_);
+    scan_ = folder_ / "square.ply";
+    ASSERT_TRUE(write_file_atomically(scan_, square_of_points()));
+  }
+  void TearDown() override {
+    if (server_ > 0) end(SIGKILL);
+    std::filesystem::remove_all(folder_);
+  }
+
+  /// Starts a server and waits until it says that it is ready.
+  void serve(const std::string& arguments) {
+    const std::string ready = (folder_ / "ready").string();
+    std::filesystem::remove(ready);  // of a server before this one
+    server_ = start_program({"/bin/sh", "-c",
+                             "exec " SURFCAST_SERVER " serve --listen 127.0.0.1:0 --cache " + cache() + " " +
+                                 arguments + " > " + ready + " 2> " + (folder_ / "log").string()});
+    for (int i = 0; i < 3000 && content(ready).find('\n') == std::string::npos; ++i) ::usleep(10'000);
+    const std::string line = content(ready);
+    const size_t url = line.find("http://");
+    ASSERT_NE(url, std::string::npos) << line << content(folder_ / "log");
+    url_ = line.substr(url + 7, line.find('/', url + 7) - url - 7);
+  }
+  int end(int signal) {
+    ::kill(server_, signal);
+    const int code = wait_for_program(server_);
+    server_ = -1;
+    return code;
+  }
+  [[nodiscard]] std::string cache() const { return (folder_ / "cache").string(); }
+  [[nodiscard]] std::string file(const std::string& name) const { return (folder_ / name).string(); }
+
+  std::filesystem::path folder_;
+  std::filesystem::path scan_;
+  pid_t server_ = -1;
+  std::string url_;
+};
+
+}  // namespace surfcast
