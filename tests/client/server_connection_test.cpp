@@ -19,19 +19,18 @@ std::string bytes_of(const Hello& hello) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-ClientConfig impatient() {
-  return {.connect = milliseconds(200), .answer = milliseconds(200), .interrupt = -1};
-}
+constexpr milliseconds kLong{20'000};  // for what does come, however busy the machine
+constexpr milliseconds kShort{200};    // for what never comes
 
-Error error_of_connecting(const std::string& words, bool stays = false) {
+Error error_of_connecting(const std::string& words, bool stays = false, milliseconds patience = kLong) {
   const ScriptedServer server(words, stays);
-  const auto connection = ServerConnection::open(server.endpoint(), impatient());
+  const auto connection = ServerConnection::open(server.endpoint(), {.connect = patience, .answer = patience});
   return connection ? Error{ErrorKind::kInternal, "connected"} : connection.error();
 }
 
-Error error_of_asking(const std::string& words, bool stays = false) {
+Error error_of_asking(const std::string& words, bool stays = false, milliseconds patience = kLong) {
   const ScriptedServer server(bytes_of(make_hello("surfcastd")) + words, stays);
-  auto connection = ServerConnection::open(server.endpoint(), impatient());
+  auto connection = ServerConnection::open(server.endpoint(), {.connect = kLong, .answer = patience});
   if (!connection) return connection.error();
   wire::Request request;
   request.mutable_ping();
@@ -67,9 +66,9 @@ TEST(ServerConnection, EveryTruncatedHelloIsAnError) {
 }
 
 TEST(ServerConnection, ASilentServerIsGivenUp) {
-  EXPECT_NE(error_of_connecting("", /*stays=*/true).message.find("timed out"), std::string::npos);
-  EXPECT_NE(error_of_asking("", /*stays=*/true).message.find("timed out"), std::string::npos);
-  EXPECT_NE(error_of_asking(std::string("\x40\0\0\0half", 8), /*stays=*/true).message.find("timed out"),
+  EXPECT_NE(error_of_connecting("", /*stays=*/true, kShort).message.find("timed out"), std::string::npos);
+  EXPECT_NE(error_of_asking("", /*stays=*/true, kShort).message.find("timed out"), std::string::npos);
+  EXPECT_NE(error_of_asking(std::string("\x40\0\0\0half", 8), /*stays=*/true, kShort).message.find("timed out"),
             std::string::npos);
 }
 

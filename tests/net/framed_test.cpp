@@ -367,7 +367,7 @@ TEST_F(FramedSessionTest, ASlowLorisIsClosedThoughItSendsAByteNowAndThen) {
   RawSocket socket(port_);
   socket.send(hello_bytes() + std::string("\x40\0\0\0", 4));
   bool open = true;
-  for (int i = 0; i < 60 && open; ++i) {
+  for (int i = 0; i < 500 && open; ++i) {
     std::this_thread::sleep_for(milliseconds(20));
     open = socket.send("x");
   }
@@ -377,12 +377,12 @@ TEST_F(FramedSessionTest, ASlowLorisIsClosedThoughItSendsAByteNowAndThen) {
 TEST_F(FramedSessionTest, AConnectionThatWaitsForAPictureIsNotIdle) {
   studio_->slow = true;
   ServerConfig config;
-  config.idle = milliseconds(100);
+  config.idle = milliseconds(300);
   start(config);
   auto connection = connect();
   ASSERT_TRUE(connection);
   const auto id = connection->send(picture_request("cube"));
-  std::this_thread::sleep_for(milliseconds(400));
+  std::this_thread::sleep_for(milliseconds(900));
   studio_->slow = false;
   const auto answer = connection->receive();
   ASSERT_TRUE(answer);

@@ -162,7 +162,7 @@ TEST_F(HttpSessionTest, ARequestThatIsNeverFinishedIsClosed) {
   RawSocket socket(port_);
   socket.send("GET / HTT");
   bool open = true;
-  for (int i = 0; i < 60 && open; ++i) {
+  for (int i = 0; i < 500 && open; ++i) {
     std::this_thread::sleep_for(milliseconds(20));
     open = socket.send("x");
   }
