@@ -36,7 +36,7 @@ Result<ViewWish> wish_of(const std::string& address, const RequestFlags& flags) 
 }
 
 int run(int argc, char** argv) {
-  CLI::App app{std::string("Look at a model in a window: ") + kWindowHelp, "surfcast view"};
+  CLI::App app{std::string("Look at a model in a window\n") + kWindowHelp, "surfcast view"};
   std::string address;
   RequestFlags flags;
   TimeLimits limits;

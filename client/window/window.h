@@ -9,12 +9,20 @@
 
 namespace surfcast {
 
-/// What the hand can do, for a person.
+/// What the hand can do, for a person: lines.
 constexpr const char* kWindowHelp =
-    "drag to turn, right button or Shift to move, wheel or + and - to come nearer, double click to focus, middle "
-    "button "
-    "or Ctrl to look around, W A S D Q E to fly (Shift: faster), arrows to turn, 1 to 7 for front, right, back, left, "
-    "top, bottom and iso, F to fit the model, Home for the first view, F1 for this, Esc to end";
+    "drag: turn\n"
+    "right button, Shift: move\n"
+    "middle button, Ctrl: look around\n"
+    "wheel, + and -: come nearer, go away\n"
+    "double click: focus\n"
+    "arrows: turn, with Shift move\n"
+    "W A S D Q E: fly, with Shift faster\n"
+    "1 to 7: front, right, back, left, top, bottom, iso\n"
+    "F: fit the model\n"
+    "Home: the first view\n"
+    "F1: this help\n"
+    "Esc: end";
 
 /// A window that shows pictures and passes on what the hand does.
 class Window {
