@@ -12,11 +12,12 @@ namespace {
 /// A machine: what a frame of a quality costs on it.
 using Machine = std::function<MotionCost(const MotionQuality&)>;
 
-/// Drawing takes `full_ms` for a whole picture at a spacing of one pixel, and some time in any case.
+/// Drawing takes `full_ms` for a whole picture at a spacing of one pixel, most of it for splats, and some time in any
+/// case.
 Machine renderer(double full_ms, double least_ms = 1) {
   return [=](const MotionQuality& q) {
     const double pixels = q.scale * q.scale;
-    return MotionCost{least_ms + full_ms * pixels * (0.4 + 0.6 / (q.spacing * q.spacing)), 1, 0.1, 1};
+    return MotionCost{least_ms + full_ms * pixels * (1 + 10 / (q.spacing * q.spacing)) / 11, 1, 0.1, 1};
   };
 }
 
@@ -61,6 +62,18 @@ TEST(QualityController, ASlowRendererGetsSmallerAndCoarserPicturesThatKeepTheRat
   run.frames(slow, 100);
   EXPECT_LT(run.shown.back().scale, 0.6);
   EXPECT_LE(slow(run.shown.back()).draw, 1000.0 / 30);
+}
+
+TEST(QualityController, LittleOfTheTimeOfAFrameIsLeftOver) {
+  // Machines between those that draw all in time and those for which even the cheapest rung is too much.
+  for (double full = 40; full < 1500; full *= 1.07) {
+    const Machine machine = renderer(full);
+    Ride run;
+    run.frames(machine, 1000);
+    const double ms = machine(run.shown.back()).draw;
+    EXPECT_LE(ms, 1000.0 / 30) << full;
+    EXPECT_GE(ms, 0.5 * 1000.0 / 30) << full;
+  }
 }
 
 TEST(QualityController, ItTakesFewFramesToGetThere) {
