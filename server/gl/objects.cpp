@@ -25,6 +25,21 @@ Buffer make_buffer(const char* label, size_t bytes, GLbitfield flags) {
   return make_storage(label, nullptr, bytes, flags);
 }
 
+bool can_adopt_memory() {
+  return epoxy_has_gl_extension("GL_AMD_pinned_memory");
+}
+
+Buffer adopt_memory(const char* label, std::span<std::byte> memory) {
+  constexpr GLenum kTarget = GL_EXTERNAL_VIRTUAL_MEMORY_BUFFER_AMD;
+  GLuint name = 0;
+  glGenBuffers(1, &name);
+  glBindBuffer(kTarget, name);
+  glBufferData(kTarget, static_cast<GLsizeiptr>(memory.size()), memory.data(), GL_DYNAMIC_DRAW);
+  glBindBuffer(kTarget, 0);
+  glObjectLabel(GL_BUFFER, name, -1, label);
+  return Buffer(name);
+}
+
 Texture make_texture_2d(const char* label, GLenum internal_format, int width, int height) {
   GLuint name = 0;
   glCreateTextures(GL_TEXTURE_2D, 1, &name);

@@ -62,6 +62,10 @@ using Query = Object<QueryTraits>;
 Buffer make_buffer(const char* label, std::span<const std::byte> content, GLbitfield flags = 0);
 /// Immutable storage with undefined content.
 Buffer make_buffer(const char* label, size_t bytes, GLbitfield flags = 0);
+/// Whether buffers can be made of the program's own memory without a copy.
+bool can_adopt_memory();
+/// A buffer of that very memory, which outlives it. Needs can_adopt_memory().
+Buffer adopt_memory(const char* label, std::span<std::byte> memory);
 Texture make_texture_2d(const char* label, GLenum internal_format, int width, int height);
 /// A buffer seen as a one-dimensional array of texels.
 Texture make_buffer_texture(const char* label, GLenum internal_format, const Buffer& buffer);

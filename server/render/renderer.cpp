@@ -86,7 +86,7 @@ struct Renderer::State {
         device{context->vendor(), context->renderer(), context->version(), context->software()},
         programs(std::move(passes)),
         most_surfels(std::min(config.gpu_bytes / sizeof(glm::uvec4), SurfelBuffer::device_limit() / 2)),
-        surfels(most_surfels),
+        surfels(most_surfels, device.software),
         residency(surfels, limits_of(config, most_surfels)) {
     for (SplatBuffers& set : buffers) set.srgb = ConstantTexels::make("linear roots of sRGB", linear_root_table());
   }

@@ -143,20 +143,29 @@ size_t Residency::upload_some(const ViewedModel& model, const ViewGoal& goal, Pr
   return stored;
 }
 
-/// What to load next: the roots, what the view misses, then what it is going to.
-std::vector<uint32_t> Residency::wishes(const ViewedModel& model, const ViewGoal& goal, const BlockSelection& selection,
-                                        const std::optional<CameraFrame>& ahead) const {
-  std::vector<uint32_t> blocks = missing(model, coarse_roots(model), goal.attributes);
-  for (const WantedBlock& wanted : selection.wanted) blocks.push_back(wanted.block);
-  if (ahead) {
-    ViewGoal ahead_goal = goal;
-    ahead_goal.frame = *ahead;
-    for (const WantedBlock& wanted : select(model, ahead_goal, selection.refined).wanted) {
-      blocks.push_back(wanted.block);
-    }
+/// Adds those that are wanted and can be had.
+void Residency::add(const ViewedModel& model, std::span<const WantedBlock> wanted,
+                    std::vector<uint32_t>& blocks) const {
+  for (const WantedBlock& one : wanted) {
+    if (!damaged_.contains({model.source->id(), one.block})) blocks.push_back(one.block);
   }
+}
+
+/// What to load next: the roots, then what the view misses.
+std::vector<uint32_t> Residency::wishes(const ViewedModel& model, const ViewGoal& goal,
+                                        const BlockSelection& selection) const {
+  std::vector<uint32_t> blocks = missing(model, coarse_roots(model), goal.attributes);
   std::erase_if(blocks, [&](uint32_t block) { return damaged_.contains({model.source->id(), block}); });
+  add(model, selection.wanted, blocks);
   return blocks;
+}
+
+/// And what it is going to miss.
+void Residency::add_wishes_ahead(const ViewedModel& model, const ViewGoal& goal, const BlockSelection& selection,
+                                 const CameraFrame& ahead, std::vector<uint32_t>& blocks) const {
+  ViewGoal ahead_goal = goal;
+  ahead_goal.frame = ahead;
+  add(model, select(model, ahead_goal, selection.refined).wanted, blocks);
 }
 
 PreparedView Residency::prepare_now(const ViewedModel& model, const ViewGoal& goal,
@@ -171,8 +180,10 @@ PreparedView Residency::prepare_now(const ViewedModel& model, const ViewGoal& go
     view.selection = select(model, goal, was_refined);
     use(model, view.selection);
   }
-  view.settled = wishes(model, goal, view.selection, {}).empty();
-  loader_.want(model.source, wishes(model, goal, view.selection, ahead), goal.attributes);
+  std::vector<uint32_t> blocks = wishes(model, goal, view.selection);
+  view.settled = blocks.empty();
+  if (ahead) add_wishes_ahead(model, goal, view.selection, *ahead, blocks);
+  loader_.want(model.source, blocks, goal.attributes);
   view.select_ms = watch.milliseconds() - view.upload_ms;
   return view;
 }

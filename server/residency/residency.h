@@ -76,9 +76,11 @@ class Residency {
   [[nodiscard]] std::vector<uint32_t> missing(const ViewedModel& model, std::span<const uint32_t> blocks,
                                               bool attributes) const;
   [[nodiscard]] std::vector<uint32_t> coarse_roots(const ViewedModel& model) const;
+  void add(const ViewedModel& model, std::span<const WantedBlock> wanted, std::vector<uint32_t>& blocks) const;
   [[nodiscard]] std::vector<uint32_t> wishes(const ViewedModel& model, const ViewGoal& goal,
-                                             const BlockSelection& selection,
-                                             const std::optional<CameraFrame>& ahead) const;
+                                             const BlockSelection& selection) const;
+  void add_wishes_ahead(const ViewedModel& model, const ViewGoal& goal, const BlockSelection& selection,
+                        const CameraFrame& ahead, std::vector<uint32_t>& blocks) const;
   Status load(const ViewedModel& model, std::span<const uint32_t> blocks, bool attributes,
               const Interruption& interruption, PreparedView& view);
   bool store(const ViewedModel& model, const LoadedBlock& loaded, PreparedView& view);

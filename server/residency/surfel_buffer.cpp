@@ -17,6 +17,15 @@ size_t SurfelBuffer::device_limit() {
   return static_cast<size_t>(texels);
 }
 
+/// Makes the buffer as large as it may get, if there is so much memory.
+void SurfelBuffer::Texels::take_all(size_t most) {
+  memory_ = LazyMemory(most * texel_bytes_);
+  if (memory_.bytes().empty()) return;
+  buffer_ = gl::adopt_memory(label_, memory_.bytes());
+  texture_ = gl::make_buffer_texture(label_, format_, buffer_);
+  capacity_ = most;
+}
+
 void SurfelBuffer::Texels::grow(size_t texels, size_t most) {
   SURFCAST_EXPECTS(texels <= most);
   const size_t capacity = std::clamp(std::max(2 * capacity_, texels), std::min(kFirstCapacity, most), most);
@@ -29,19 +38,20 @@ void SurfelBuffer::Texels::grow(size_t texels, size_t most) {
   capacity_ = capacity;
 }
 
-void SurfelBuffer::Texels::write(size_t first, std::span<const std::byte> bytes, size_t most) {
+void SurfelBuffer::Texels::write(size_t first, std::span<const std::byte> bytes, size_t most, bool lazy) {
   const size_t end = first + bytes.size() / texel_bytes_;
+  if (capacity_ == 0 && lazy) take_all(most);
   if (end > capacity_) grow(end, most);
   glNamedBufferSubData(buffer_.name(), static_cast<GLintptr>(first * texel_bytes_),
                        static_cast<GLsizeiptr>(bytes.size()), bytes.data());
 }
 
 void SurfelBuffer::write(size_t first, std::span<const glm::uvec4> surfels) {
-  surfels_.write(first, std::as_bytes(surfels), most_);
+  surfels_.write(first, std::as_bytes(surfels), most_, lazy_);
 }
 
 void SurfelBuffer::write_attributes(size_t first, std::span<const uint32_t> attributes) {
-  attributes_.write(first, std::as_bytes(attributes), most_);
+  attributes_.write(first, std::as_bytes(attributes), most_, lazy_);
 }
 
 }  // namespace surfcast
