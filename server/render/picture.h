@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -55,6 +56,8 @@ struct PictureRequest {
   Loading loading = Loading::kWait;
   uint64_t viewer = 0;     ///< with kNow: whose motion this is, or 0; things are remembered from picture to picture
   uint64_t known_cut = 0;  ///< with kNow: Frame::cut of a picture that needs no repeating; 0: none
+  /// With `known_cut`: another picture is not worth drawing while it would miss more blocks that are still to come.
+  uint32_t most_missing = std::numeric_limits<uint32_t>::max();
   Coloring coloring;
   std::bitset<256> hidden_classes;  ///< by code: surfels that are not drawn; models without classes have none
   Clip clip;
@@ -89,6 +92,7 @@ struct FrameStats {
   uint32_t blocks_selected = 0;    ///< that the picture should show
   uint32_t holes = 0;              ///< parts of the view for which no block is there
   uint32_t blocks_waited_for = 0;  ///< that were not resident when it was asked for
+  uint32_t blocks_missing = 0;     ///< that would make it better and are not there
   uint32_t blocks_resident = 0;    ///< on the GPU afterwards, of all models
   uint64_t bytes_resident = 0;     ///< of GPU memory that they take
   std::vector<LevelStats> levels;  ///< those with a block, finest first
@@ -97,7 +101,7 @@ struct FrameStats {
 };
 
 struct Frame {
-  Image image;    ///< without pixels where it would show what PictureRequest::known_cut stands for
+  Image image;    ///< without pixels where PictureRequest::known_cut or most_missing say that it is not worth drawing
   Camera camera;  ///< the one that was used
   /// True if no later picture of the same request would be better: every block that it should show is drawn, and the
   /// budget of GPU memory left none of them coarser than was asked for.

@@ -77,6 +77,12 @@ uint64_t cut_of(const BlockSelection& selection) {
   return hash | 1;
 }
 
+/// Whether a view shows more than what whoever asks for it has already, and enough of it.
+bool worth_drawing(const PictureRequest& request, const PreparedView& view, uint64_t cut) {
+  if (request.known_cut == 0) return true;
+  return cut != request.known_cut && (view.settled || view.selection.wanted.size() <= request.most_missing);
+}
+
 }  // namespace
 
 struct Renderer::State {
@@ -213,6 +219,7 @@ FrameStats Renderer::State::stats_of(const Scene& scene, const PreparedView& vie
   stats.blocks_selected = static_cast<uint32_t>(view.selection.target.size());
   stats.holes = view.selection.holes;
   stats.blocks_waited_for = view.waited_for;
+  stats.blocks_missing = static_cast<uint32_t>(view.selection.wanted.size());
   stats.blocks_resident = static_cast<uint32_t>(residency.pool().blocks());
   stats.bytes_resident = residency.pool().bytes();
   stats.levels = level_stats(scene.model().tree(), view.selection);
@@ -243,7 +250,7 @@ Result<Frame> Renderer::State::draw(const std::shared_ptr<const ModelFile>& mode
   result.cut = cut_of(view->selection);
   result.image = {request.width, request.height, request.format, {}};
   RegionStats drawn;
-  if (request.known_cut == 0 || request.known_cut != result.cut) {
+  if (worth_drawing(request, *view, result.cut)) {
     const size_t pixels = static_cast<size_t>(request.width) * static_cast<size_t>(request.height);
     result.image.pixels.resize(pixels * pixel_bytes(request.format));
     const Result<RegionStats> regions =

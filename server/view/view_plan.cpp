@@ -54,9 +54,10 @@ ViewStep ViewPlan::next(ViewTime now) const {
   if (under_way || sending_) return {};
   const FrameKind kind = wanted();
   if (kind == FrameKind::kQuick ? !room_for_quick() : !jobs_.empty() || !may_send()) return {};
-  const std::optional<ViewTime> at = due(rest_at_);
-  if (!at) return {};
-  return *at <= now ? ViewStep{kind, {}} : ViewStep{{}, at};
+  const std::optional<ViewTime> wanted_at = due(rest_at_);
+  if (!wanted_at) return {};
+  const ViewTime at = std::max(*wanted_at, not_before_);
+  return at <= now ? ViewStep{kind, {}} : ViewStep{{}, at};
 }
 
 void ViewPlan::begin(uint64_t frame, FrameKind kind) {
@@ -87,6 +88,11 @@ void ViewPlan::drop(uint64_t frame) {
   std::erase_if(jobs_, [frame](const Job& job) { return job.frame == frame; });
 }
 
+void ViewPlan::refuse(uint64_t frame, ViewTime now) {
+  drop(frame);
+  not_before_ = now + timing_.busy;
+}
+
 bool ViewPlan::expects(uint64_t frame) const {
   return find(frame) != nullptr;
 }
@@ -111,6 +117,17 @@ void ViewPlan::finish(uint64_t frame, FrameNews news, ViewTime now) {
       progress_ = Progress::kFinal;
       break;
   }
+}
+
+void ViewPlan::drew(double draw_ms, uint32_t missing, ViewTime now) {
+  constexpr double kPauses = 2;  // of that length between two frames: two thirds of the time are for what blocks need
+  redraw_at_ = now + std::chrono::duration_cast<ViewTime::duration>(
+                         std::chrono::duration<double, std::milli>(kPauses * draw_ms));
+  drawn_missing_ = missing;
+}
+
+uint32_t ViewPlan::most_missing(ViewTime now) const {
+  return now < redraw_at_ ? 0 : drawn_missing_ - drawn_missing_ / 4;
 }
 
 void ViewPlan::send(FrameKind kind, bool last) {

@@ -22,6 +22,7 @@ struct ViewTiming {
   std::chrono::milliseconds fine{150};       ///< from the beginning of rest to kFine
   std::chrono::milliseconds final{500};      ///< from the beginning of rest to kFinal
   std::chrono::milliseconds look_again{50};  ///< between two looks at whether missing blocks have come
+  std::chrono::milliseconds busy{500};       ///< after a frame that the server was too busy to draw
   std::chrono::milliseconds despair{5000};   ///< without any block: those that are missing will not come
 };
 
@@ -61,7 +62,16 @@ class ViewPlan {
   [[nodiscard]] std::vector<uint64_t> outdated() const;
   /// A frame will not come.
   void drop(uint64_t frame);
+  /// A frame will not come because the server is busy: the view gives it some time.
+  void refuse(uint64_t frame, ViewTime now);
   void finish(uint64_t frame, FrameNews news, ViewTime now);
+  /// A frame at rest of the newest picture was drawn in that time, and so many blocks would make it better.
+  void drew(double draw_ms, uint32_t missing, ViewTime now);
+  /// Blocks have come that the newest picture wants.
+  void arrived(ViewTime now) { improved_at_ = now; }
+  /// How many blocks may be missing for a frame at rest to be worth drawing although more are still to come: a frame of
+  /// a large model takes seconds, and one for each few blocks would only delay the one that shows them all.
+  [[nodiscard]] uint32_t most_missing(ViewTime now) const;
   [[nodiscard]] bool expects(uint64_t frame) const;
 
   /// A message has been sent; `last` of its frame.
@@ -92,7 +102,10 @@ class ViewPlan {
   ViewTime rest_at_;
   ViewTime look_again_at_;
   ViewTime improved_at_;
-  std::vector<Job> jobs_;  ///< oldest first
+  ViewTime not_before_;         ///< nothing is drawn: the server is busy
+  ViewTime redraw_at_;          ///< no frame at rest before, unless it shows all that is to come
+  uint32_t drawn_missing_ = 0;  ///< blocks, by the last frame at rest
+  std::vector<Job> jobs_;       ///< oldest first
   size_t quick_unacknowledged_ = 0;
   size_t other_unacknowledged_ = 0;
   bool sending_ = false;  ///< pieces of a frame remain to be sent

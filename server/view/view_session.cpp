@@ -59,6 +59,7 @@ PictureJob ViewSession::wish(FrameKind kind, JobId supersedes) const {
   job.quality = kFineQuality;
   if (kind == FrameKind::kFine) {
     request.known_cut = shown_cut_;
+    request.most_missing = plan_.most_missing(std::chrono::steady_clock::now());
     job.keep_frame = may_be_kept(newest_.picture);
     return job;
   }
@@ -144,22 +145,11 @@ void ViewSession::draw(FrameKind kind) {
 void ViewSession::finish(uint64_t frame, Result<EncodedPicture> picture) {
   if (closed_ || !plan_.expects(frame)) return;
   Job& job = frames_.at(frame);
-  if (!picture) {
-    plan_.drop(frame);
-    frames_.erase(frame);
-    ++counts_.dropped;
-    if (picture.error().kind == ErrorKind::kCancelled) return;
-    close();
-    return port_.fail(picture.error());
-  }
+  if (!picture) return miss(frame, picture.error());
   const ViewTime now = std::chrono::steady_clock::now();
   const FrameNews news = news_of(job.kind, *picture);
   plan_.finish(frame, news, now);
-  if (job.kind == FrameKind::kFine) {
-    shown_cut_ = picture->cut;
-    if (picture->converged && !picture->bytes.empty()) whole_ = std::move(picture->frame);
-    picture->frame.reset();
-  }
+  if (job.kind == FrameKind::kFine) look_at(*picture, now);
   if (picture->bytes.empty() || (news == FrameNews::kNothing)) {
     frames_.erase(frame);
     return;
@@ -170,6 +160,30 @@ void ViewSession::finish(uint64_t frame, Result<EncodedPicture> picture) {
   last_draw_ms_ = picture->draw_ms;
   show(frame, job.kind, std::move(*picture));
   send_pieces(now);
+}
+
+/// A frame did not come. A view lasts longer than the rush that keeps the server from drawing it; anything else ends
+/// it.
+void ViewSession::miss(uint64_t frame, const Error& error) {
+  frames_.erase(frame);
+  ++counts_.dropped;
+  if (error.kind == ErrorKind::kUnavailable) return plan_.refuse(frame, std::chrono::steady_clock::now());
+  plan_.drop(frame);
+  if (error.kind == ErrorKind::kCancelled) return;
+  close();
+  port_.fail(error);
+}
+
+/// Remembers how far the newest picture is.
+void ViewSession::look_at(EncodedPicture& picture, ViewTime now) {
+  const uint32_t missing = picture.stats.blocks_missing;
+  if (missing < std::exchange(missing_, missing)) plan_.arrived(now);
+  if (!picture.bytes.empty()) {
+    shown_cut_ = picture.cut;
+    plan_.drew(picture.draw_ms, missing, now);
+    if (picture.converged) whole_ = std::move(picture.frame);
+  }
+  picture.frame.reset();
 }
 
 void ViewSession::show(uint64_t frame, FrameKind kind, EncodedPicture picture) {

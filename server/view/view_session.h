@@ -100,6 +100,8 @@ class ViewSession : public std::enable_shared_from_this<ViewSession> {
   void drop(uint64_t frame);
   void forget_if_done(uint64_t frame);
   void finish(uint64_t frame, Result<EncodedPicture> picture);
+  void miss(uint64_t frame, const Error& error);
+  void look_at(EncodedPicture& picture, ViewTime now);
   void show(uint64_t frame, FrameKind kind, EncodedPicture picture);
   void give_up_sending();
   void send_pieces(ViewTime now);
@@ -125,7 +127,8 @@ class ViewSession : public std::enable_shared_from_this<ViewSession> {
   MotionCost last_cost_;     ///< of the last frame for motion that was acknowledged
   /// The newest picture, if the last frame at rest was all that it will be.
   std::shared_ptr<const Frame> whole_;
-  uint64_t shown_cut_ = 0;  ///< blocks of the last frame at rest of the newest picture, see PictureRequest::known_cut
+  uint64_t shown_cut_ = 0;  ///< of the last frame at rest that was drawn of the newest picture; 0: none
+  uint32_t missing_ = 0;    ///< blocks when that picture was last looked at
   std::map<uint64_t, Job> frames_;
   std::optional<Outgoing> outgoing_;
 };

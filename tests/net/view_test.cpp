@@ -225,6 +225,22 @@ TEST_F(ViewSessionTest, AFrameRateThatIsNoneIsRefused) {
   }
 }
 
+TEST_F(ViewSessionTest, AViewOutlivesARushInWhichTheServerRefusesItsFrames) {
+  studio_->slow = true;
+  start({}, {.queued_jobs = 1});
+  auto crowd = connect();
+  ASSERT_TRUE(crowd);
+  ASSERT_TRUE(crowd->send(picture_request("cube")));
+  ASSERT_TRUE(eventually([&] { return studio_->drawn == 1; }));
+  ASSERT_TRUE(crowd->send(picture_request("cube")));
+  ASSERT_TRUE(eventually([&] { return service_->queued() == 1; }));
+  open_view();
+  ASSERT_TRUE(eventually([&] { return metric("surfcast_view_frames_dropped_total") > 0; })) << "it is refused";
+  EXPECT_EQ(metric("surfcast_views_open"), 1);
+  studio_->slow = false;
+  converged_frame();
+}
+
 TEST_F(ViewSessionTest, AViewWhoseClientVanishesIsForgotten) {
   start();
   open_view();

@@ -158,6 +158,85 @@ TEST_F(ViewPlanTest, BlocksThatNeverComeDoNotKeepItFromTheFinalFrame) {
   EXPECT_EQ(drawn(), FrameKind::kFinal);
 }
 
+/// A picture at rest of a large model: blocks arrive at a rate, drawing takes longer the more are there.
+struct LargeModel {
+  uint32_t blocks = 1000;
+  double blocks_per_ms = 0.1;
+  double draw_ms = 4000;  ///< of all blocks
+};
+
+TEST_F(ViewPlanTest, FewFramesAreDrawnWhileBlocksArrive) {
+  const LargeModel model;
+  update(/*moving=*/false);
+  show(FrameKind::kQuick, FrameNews::kImproves);
+  const ViewTime rest = now_;
+  pass(150);
+  double work_ms = 0;
+  int drawn_frames = 0;
+  for (;;) {
+    const double ms = std::chrono::duration<double, std::milli>(now_ - rest).count();
+    const auto come = std::min(model.blocks, static_cast<uint32_t>(ms * model.blocks_per_ms));
+    const uint32_t missing = model.blocks - come;
+    const uint64_t frame = begin(FrameKind::kFine);
+    const bool worth = drawn_frames == 0 || missing == 0 || missing <= plan_.most_missing(now_);
+    if (worth) {
+      const double draw_ms = model.draw_ms * come / model.blocks;
+      now_ += std::chrono::microseconds(static_cast<long>(1000 * draw_ms));
+      plan_.drew(draw_ms, missing, now_);
+      work_ms += draw_ms;
+      ++drawn_frames;
+    }
+    plan_.arrived(now_);
+    plan_.finish(frame, missing == 0 ? FrameNews::kComplete : FrameNews::kNothing, now_);
+    if (missing == 0) break;
+    pass(50);
+  }
+  const double took = std::chrono::duration<double, std::milli>(now_ - rest).count();
+  EXPECT_LE(took, model.blocks / model.blocks_per_ms + 2 * model.draw_ms);
+  EXPECT_LE(work_ms - model.draw_ms, 0.4 * took) << "without the last frame";
+  EXPECT_GE(drawn_frames, 3) << "something is to be seen meanwhile";
+  EXPECT_EQ(drawn(), FrameKind::kFinal);
+}
+
+TEST_F(ViewPlanTest, AFrameThatShowsLittleMoreIsNotDrawn) {
+  update(/*moving=*/false);
+  plan_.drew(/*draw_ms=*/100, /*missing=*/40, now_);
+  pass(199);
+  EXPECT_EQ(plan_.most_missing(now_), 0u) << "only with all that are to come";
+  pass(1);
+  EXPECT_EQ(plan_.most_missing(now_), 30u);
+  plan_.drew(100, 1, now_);
+  pass(200);
+  EXPECT_EQ(plan_.most_missing(now_), 1u);
+}
+
+TEST_F(ViewPlanTest, BlocksThatArriveSlowlyAreNotGivenUp) {
+  update(/*moving=*/false);
+  show(FrameKind::kQuick, FrameNews::kImproves);
+  pass(150);
+  show(FrameKind::kFine, FrameNews::kImproves);
+  for (int i = 0; i < 20; ++i) {
+    pass(3000);
+    plan_.arrived(now_);
+    show(FrameKind::kFine, FrameNews::kNothing);
+  }
+  pass(50);
+  EXPECT_EQ(drawn(), FrameKind::kFine);
+}
+
+TEST_F(ViewPlanTest, ABusyServerIsGivenTimeBetweenTwoTries) {
+  update(/*moving=*/true);
+  for (int i = 0; i < 3; ++i) {
+    plan_.refuse(begin(FrameKind::kQuick), now_);
+    EXPECT_EQ(asked_in(), 500);
+    pass(400);
+    update(/*moving=*/true);
+    EXPECT_EQ(asked_in(), 100) << "however often the hand moves";
+    pass(100);
+  }
+  show(FrameKind::kQuick);
+}
+
 TEST_F(ViewPlanTest, AFirstFrameWithNothingOnItIsTriedAgain) {
   update(/*moving=*/false);
   draw_and_send(FrameKind::kQuick, FrameNews::kNothing);
