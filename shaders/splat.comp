@@ -6,6 +6,9 @@
 // passes draw the next surface, for as long as a pixel of the lane is not opaque. So one surface in front of another
 // has an antialiased edge instead of a seam in the colour of the background; elsewhere the loop ends after one round.
 //
+// Silhouettes are drawn twice: SURFCAST_FINDS_SILHOUETTES writes what silhouettes.comp finds them by, and a build with
+// SURFCAST_SHARPENED draws the pixels at them once more, with narrower prefilters.
+//
 // Tiles with large splats and tiles without are drawn by two builds of this kernel (SURFCAST_LARGE): what large splats
 // need is paid where there are any.
 #include "shared/kernel.h"
@@ -23,6 +26,16 @@ layout(std430, binding = SURFCAST_BIND_TILE_OFFSET) readonly buffer TileOffset {
 layout(binding = SURFCAST_UNIT_SPLATS) uniform usamplerBuffer splats;
 layout(binding = SURFCAST_UNIT_DISCS) uniform usamplerBuffer discs;
 layout(binding = SURFCAST_UNIT_LISTS) uniform usamplerBuffer lists;
+#ifdef SURFCAST_FINDS_SILHOUETTES
+layout(std430, binding = SURFCAST_BIND_FRONTS) writeonly buffer Fronts { float fronts[]; };
+#endif
+#ifdef SURFCAST_SHARPENED
+layout(std430, binding = SURFCAST_BIND_SILHOUETTE_MASK) readonly buffer SilhouetteMask { uint silhouette_mask[]; };
+layout(std430, binding = SURFCAST_BIND_SILHOUETTES) readonly buffer Silhouettes {
+  uint silhouette_count;
+  uint silhouette_tiles[];
+};
+#endif
 #if defined(SURFCAST_EYE_DOME)
 layout(std430, binding = SURFCAST_BIND_LIGHT) writeonly buffer LightBuffer { vec4 lights[]; };
 layout(std430, binding = SURFCAST_BIND_DEPTH) writeonly buffer Depth { vec2 depths[]; };
@@ -41,13 +54,11 @@ layout(std430, binding = SURFCAST_BIND_PICTURE) writeonly buffer Picture { uint 
 
 #ifdef SURFCAST_EYE_DOME
 void write_lit_pixel(ivec2 at, vec3 light, float transmittance, float depth, float opaque) {
-  if (any(greaterThanEqual(at, frame.region.zw))) return;
   lights[at.y * frame.region.z + at.x] = vec4(light, 1.0 - transmittance);
   depths[at.y * frame.region.z + at.x] = vec2(opaque > 0.0 ? depth / opaque : 0.0, opaque);
 }
 #else
 void write_pixel(ivec2 at, vec3 light, float transmittance) {
-  if (any(greaterThanEqual(at, frame.region.zw))) return;
   vec4 color = vec4(light + transmittance * frame.background.rgb, 1.0 - transmittance);
 #ifdef SURFCAST_FLOAT_PICTURE
   picture[at.y * frame.region.z + at.x] = color;
@@ -57,52 +68,91 @@ void write_pixel(ivec2 at, vec3 light, float transmittance) {
 }
 #endif
 
-void main() {
-  uvec2 place = uvec2(gl_WorkGroupID.x, first_group + gl_WorkGroupID.y);
-  uint tile = place.y * uint(frame.tiles.x) + place.x;
-  uint large_list = tile + uint(frame.tiles.z);
-  uint larges = tile_count[large_list];
-#ifdef SURFCAST_LARGE
-  if (larges == 0u) return;
-#else
-  if (larges != 0u) return;
-#endif
-  uint smalls = tile_count[tile];
-  uint first_small = tile_offset[tile];
-  uint first_large = tile_offset[large_list];
-  ivec2 local = ivec2(place) * ivec2(SURFCAST_TILE_WIDTH, SURFCAST_TILE_HEIGHT) +
-                ivec2(gl_LocalInvocationID.xy) * ivec2(1, SURFCAST_ROWS);
-  vec2 pixel = vec2(frame.region.xy + local) + 0.5;
+struct TileLists {
+  uint first_small;
+  uint smalls;
+  uint first_large;
+  uint larges;
+};
+
+// Draws the wanted pixels of a lane. `front`: inverse depth of the first surface, see silhouettes.comp.
+Light draw(TileLists tile, BoolRows wanted, vec2 pixel, out Rows front) {
+  Rows transmittance = mix(Rows(0.0), Rows(1.0), wanted);
 #ifdef SURFCAST_EYE_DOME
-  Light light = Light(Rows(0.0), Rows(0.0), Rows(0.0), Rows(1.0), Rows(0.0), Rows(0.0));
+  Light light = Light(Rows(0.0), Rows(0.0), Rows(0.0), transmittance, Rows(0.0), Rows(0.0));
 #else
-  Light light = Light(Rows(0.0), Rows(0.0), Rows(0.0), Rows(1.0));
+  Light light = Light(Rows(0.0), Rows(0.0), Rows(0.0), transmittance);
 #endif
   Rows limit = Rows(3e38);  // inverse depth: nothing is nearer
   for (int layer = 0; layer < kMaxLayers; ++layer) {
     Rows surface = Rows(0.0);  // infinitely far
     float peak = 0.0;
     PixelSums sums = sums_zero();
-    see_small(first_small, smalls, pixel, limit, surface, peak);
+    see_small(tile.first_small, tile.smalls, pixel, limit, surface, peak);
 #ifdef SURFCAST_LARGE
-    see_large(first_large, larges, pixel, limit, surface, peak);
+    see_large(tile.first_large, tile.larges, pixel, limit, surface, peak);
 #endif
     float unit = fixed_unit(peak);
-    accumulate_small(first_small, smalls, pixel, limit, surface, unit, sums);
+    accumulate_small(tile.first_small, tile.smalls, pixel, limit, surface, unit, sums);
 #ifdef SURFCAST_LARGE
-    accumulate_large(first_large, larges, pixel, limit, surface, unit, sums);
+    accumulate_large(tile.first_large, tile.larges, pixel, limit, surface, unit, sums);
 #endif
     composite(light, sums, surface, 1.0 / unit, pixel);
+    if (layer == 0) front = surface;
     limit = surface;
     if (!any_of(both(less(Rows(0.0), surface), less(Rows(kOpaque), light.transmittance)))) break;
   }
+  return light;
+}
+
+// The pixels of a lane that are drawn: all of them, or, the second time, those at silhouettes.
+BoolRows wanted_rows(uint tile) {
+  Rows wanted = Rows(1.0);
+#ifdef SURFCAST_SHARPENED
+  uint mask = silhouette_mask[tile] >> (gl_LocalInvocationID.y * uint(SURFCAST_ROWS * SURFCAST_TILE_WIDTH) +
+                                        gl_LocalInvocationID.x);
+  for (int i = 0; i < SURFCAST_ROWS; ++i) ROW(wanted, i) = float((mask >> (i * SURFCAST_TILE_WIDTH)) & 1u);
+#endif
+  return less(Rows(0.0), wanted);
+}
+
+void draw_lane(TileLists tile, BoolRows wanted, ivec2 local) {
+  Rows front;
+  Light light = draw(tile, wanted, vec2(frame.region.xy + local) + 0.5, front);
   for (int i = 0; i < SURFCAST_ROWS; ++i) {
+    ivec2 at = local + ivec2(0, i);
+    if (!ROW(wanted, i) || any(greaterThanEqual(at, frame.region.zw))) continue;
     vec3 linear = vec3(ROW(light.red, i), ROW(light.green, i), ROW(light.blue, i));
 #ifdef SURFCAST_EYE_DOME
-    write_lit_pixel(local + ivec2(0, i), linear, ROW(light.transmittance, i), ROW(light.depth, i),
-                    ROW(light.opaque, i));
+    write_lit_pixel(at, linear, ROW(light.transmittance, i), ROW(light.depth, i), ROW(light.opaque, i));
 #else
-    write_pixel(local + ivec2(0, i), linear, ROW(light.transmittance, i));
+    write_pixel(at, linear, ROW(light.transmittance, i));
+#endif
+#ifdef SURFCAST_FINDS_SILHOUETTES
+    fronts[at.y * frame.region.z + at.x] = ROW(front, i);
 #endif
   }
+}
+
+void main() {
+#ifdef SURFCAST_SHARPENED
+  uint index = silhouette_tiles[first_group + gl_WorkGroupID.x];
+  uvec2 place = uvec2(index % uint(frame.tiles.x), index / uint(frame.tiles.x));
+#else
+  uvec2 place = uvec2(gl_WorkGroupID.x, first_group + gl_WorkGroupID.y);
+  uint index = place.y * uint(frame.tiles.x) + place.x;
+#endif
+  uint large_list = index + uint(frame.tiles.z);
+  TileLists tile =
+      TileLists(tile_offset[index], tile_count[index], tile_offset[large_list], tile_count[large_list]);
+#ifdef SURFCAST_LARGE
+  if (tile.larges == 0u) return;
+#else
+  if (tile.larges != 0u) return;
+#endif
+  BoolRows wanted = wanted_rows(index);
+  if (!any_of(wanted)) return;
+  draw_lane(tile, wanted,
+            ivec2(place) * ivec2(SURFCAST_TILE_WIDTH, SURFCAST_TILE_HEIGHT) +
+                ivec2(gl_LocalInvocationID.xy) * ivec2(1, SURFCAST_ROWS));
 }

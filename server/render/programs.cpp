@@ -92,11 +92,17 @@ Result<SplatPrograms> Programs::variant(const Variant& variant) {
     return {};
   };
   const std::string lanes = define("SURFCAST_PROJECT_LANES", shape_.project_lanes);
+  const std::string small = splat + define("SURFCAST_ROWS", shape_.rows);
+  const std::string large = splat + define("SURFCAST_ROWS", 1) + "#define SURFCAST_LARGE\n";
+  const std::string finding = variant.silhouettes ? "#define SURFCAST_FINDS_SILHOUETTES\n" : "";
   Status status = compile(programs.project, "project.comp", project_defines(variant) + lanes);
-  if (status) status = compile(programs.splat, "splat.comp", splat + define("SURFCAST_ROWS", shape_.rows));
-  if (status) {
-    status =
-        compile(programs.splat_large, "splat.comp", splat + define("SURFCAST_ROWS", 1) + "#define SURFCAST_LARGE\n");
+  if (status) status = compile(programs.splat, "splat.comp", small + finding);
+  if (status) status = compile(programs.splat_large, "splat.comp", large + finding);
+  if (variant.silhouettes) {
+    const std::string sharpened = "#define SURFCAST_SHARPENED\n";
+    if (status) status = compile(programs.silhouettes, "silhouettes.comp", {});
+    if (status) status = compile(programs.sharpened, "splat.comp", small + sharpened);
+    if (status) status = compile(programs.sharpened_large, "splat.comp", large + sharpened);
   }
   if (status && variant.eye_dome) status = compile(programs.eye_dome, "eye_dome.comp", float_define(variant));
   if (!status) return fail(std::move(status.error()));

@@ -19,6 +19,7 @@ struct Variant {
   bool hides_classes = false;
   bool clipped = false;
   bool eye_dome = false;
+  bool silhouettes = false;  ///< drawn again, with narrower prefilters
 };
 
 /// The programs of a variant; they live as long as Programs.
@@ -26,7 +27,12 @@ struct SplatPrograms {
   const gl::Program* project = nullptr;
   const gl::Program* splat = nullptr;        ///< tiles without large splats
   const gl::Program* splat_large = nullptr;  ///< tiles with large splats
-  const gl::Program* eye_dome = nullptr;     ///< null without eye-dome lighting
+  /// Null unless silhouettes are drawn again: what finds them, and what draws them in tiles without and with large
+  /// splats.
+  const gl::Program* silhouettes = nullptr;
+  const gl::Program* sharpened = nullptr;
+  const gl::Program* sharpened_large = nullptr;
+  const gl::Program* eye_dome = nullptr;  ///< null without eye-dome lighting
 };
 
 /// How the passes fit the device's vectors. No picture depends on it.

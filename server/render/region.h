@@ -19,9 +19,10 @@ struct Region {
 /// Largest side of a region: its picture and its tile lists fit in the smallest storage blocks that GL promises.
 inline constexpr int kMaxRegionSide = 2048;
 
-/// Pixels around a region that are drawn with it where eye-dome lighting looks at neighbours: its largest radius, and
+/// Pixels around a region that are drawn with it where eye-dome lighting (its largest radius) or silhouettes look at
+/// neighbours:
 /// whole tiles, so that tiles lie as they would in a picture of one region.
-inline constexpr int kEyeDomeMargin = 8;
+inline constexpr int kNeighbourMargin = 8;
 
 /// Cuts a picture into regions, row by row, each of which may be drawn with a margin (see with_margin).
 std::vector<Region> cut_into_regions(int width, int height, int margin);

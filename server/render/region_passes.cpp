@@ -218,6 +218,11 @@ void bind_for_splatting(const RegionTask& task, const SplatBuffers& buffers) {
   buffers.discs.bind_for_reading(SURFCAST_UNIT_DISCS);
   buffers.lists.bind_for_reading(SURFCAST_UNIT_LISTS);
   if (task.variant.colored && task.variant.lit) buffers.normals.bind_for_reading(SURFCAST_UNIT_NORMALS);
+  if (task.variant.silhouettes) {
+    buffers.fronts.bind(SURFCAST_BIND_FRONTS);
+    buffers.silhouette_mask.bind(SURFCAST_BIND_SILHOUETTE_MASK);
+    buffers.silhouettes.bind(SURFCAST_BIND_SILHOUETTES);
+  }
 }
 
 layout::Counters read_counters(const SplatBuffers& buffers) {
@@ -284,6 +289,20 @@ Status bin(const layout::Counters& counters, Programs& programs, SplatBuffers& b
   });
 }
 
+Groups all_tiles(const RegionTask& task) {
+  const glm::ivec4& tiles = task.constants.tiles;
+  return {static_cast<size_t>(tiles.y), static_cast<size_t>(tiles.x)};
+}
+
+void clear_silhouettes(const RegionTask& task, SplatBuffers& buffers) {
+  const size_t tiles = static_cast<size_t>(task.constants.tiles.z);
+  buffers.fronts.reserve(tiles * SURFCAST_TILE_WIDTH * SURFCAST_TILE_HEIGHT * sizeof(float));
+  buffers.silhouette_mask.reserve(tiles * sizeof(GLuint));
+  buffers.silhouettes.reserve((1 + tiles) * sizeof(GLuint));
+  buffers.silhouette_mask.clear();
+  buffers.silhouettes.clear();
+}
+
 Status splat(const RegionTask& task, const layout::Counters& counters, const SplatPrograms& variant,
              SplatBuffers& buffers, const Interruption& interruption) {
   const gl::DebugGroup group("splat");
@@ -292,16 +311,34 @@ Status splat(const RegionTask& task, const layout::Counters& counters, const Spl
     buffers.light.reserve(pixels * sizeof(glm::vec4));
     buffers.depth.reserve(pixels * sizeof(glm::vec2));
   }
+  if (task.variant.silhouettes) clear_silhouettes(task, buffers);
   const auto dispatch = [&](const gl::Program& program) {
-    const glm::ivec4& tiles = task.constants.tiles;
-    return dispatch_in_batches({static_cast<size_t>(tiles.y), static_cast<size_t>(tiles.x)}, buffers.splat_pace,
-                               interruption, [&] {
-                                 bind_for_splatting(task, buffers);
-                                 glUseProgram(program.name());
-                               });
+    return dispatch_in_batches(all_tiles(task), buffers.splat_pace, interruption, [&] {
+      bind_for_splatting(task, buffers);
+      glUseProgram(program.name());
+    });
   };
   if (Status status = dispatch(*variant.splat); !status) return status;
   return counters.counts.y > 0 ? dispatch(*variant.splat_large) : Status();
+}
+
+/// Finds the pixels at silhouettes and draws them again, with narrower prefilters.
+Status sharpen_silhouettes(const RegionTask& task, const layout::Counters& counters, const SplatPrograms& variant,
+                           SplatBuffers& buffers, const Interruption& interruption) {
+  const gl::DebugGroup group("silhouettes");
+  const auto dispatch = [&](const gl::Program& program, const Groups& groups, BatchPace& pace) {
+    return dispatch_in_batches(groups, pace, interruption, [&] {
+      bind_for_splatting(task, buffers);
+      glUseProgram(program.name());
+    });
+  };
+  Status status = dispatch(*variant.silhouettes, all_tiles(task), buffers.find_pace);
+  if (!status) return status;
+  GLuint tiles = 0;
+  glGetNamedBufferSubData(buffers.silhouettes.name(), 0, sizeof tiles, &tiles);
+  status = dispatch(*variant.sharpened, {tiles, {}}, buffers.sharpen_pace);
+  if (!status || counters.counts.y == 0) return status;
+  return dispatch(*variant.sharpened_large, {tiles, {}}, buffers.sharpen_pace);
 }
 
 /// From light and depth of all that was drawn to the pixels that are wanted.
@@ -340,6 +377,10 @@ Result<RegionStats> draw_region(const RegionTask& task, Programs& programs, Spla
   buffers.picture.reserve(pixels.size());
   if (Status status = splat(task, *counters, *variant, buffers, interruption); !status) {
     return fail(std::move(status.error()));
+  }
+  if (task.variant.silhouettes) {
+    Status status = sharpen_silhouettes(task, *counters, *variant, buffers, interruption);
+    if (!status) return fail(std::move(status.error()));
   }
   if (task.variant.eye_dome) {
     shade_by_depth(task, *variant->eye_dome, buffers);

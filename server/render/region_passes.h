@@ -29,7 +29,7 @@ struct RegionTask {
   std::vector<VisibleBlock> blocks;
   CameraFrame frame;
   Region region;                     ///< that is wanted
-  Region drawn;                      ///< the same, or with the margin that eye-dome lighting needs
+  Region drawn;                      ///< the same, or with a margin of neighbours
   layout::FrameConstants constants;  ///< of `drawn`
   Variant variant;
   const PictureRequest* request = nullptr;
@@ -46,8 +46,9 @@ struct RegionStats {
   double read_ms = 0;
 };
 
-/// Draws a region with the passes project, bin_offsets, bin, splat and perhaps eye_dome; reads its pixels into `pixels`
-/// (4 bytes or 4 floats per pixel, rows from the top).
+/// Draws a region with the passes project, bin_offsets, bin, splat and perhaps silhouettes, splat once more, and
+/// eye_dome. Reads the pixels of `drawn`, or, after eye_dome, of `region` into `pixels` (4 bytes or 4 floats per pixel,
+/// rows from the top).
 Result<RegionStats> draw_region(const RegionTask& task, Programs& programs, SplatBuffers& buffers,
                                 const Interruption& interruption, std::span<std::byte> pixels);
 

@@ -38,16 +38,20 @@ Variant variant_of(const ModelInfo& info, const Look& look, const PictureRequest
   variant.hides_classes = look.hides_classes;
   variant.clipped = look.clipped;
   variant.eye_dome = request.eye_dome.strength > 0;
+  variant.silhouettes = request.normalization == Normalization::kPixel;
   return variant;
 }
 
-void copy_region(const Region& region, std::span<const std::byte> from, size_t bytes_per_pixel, Image& image) {
+/// Copies a region out of the pixels of `written`, which holds it.
+void copy_region(const Region& region, const Region& written, std::span<const std::byte> from, size_t bytes_per_pixel,
+                 Image& image) {
   const size_t row = static_cast<size_t>(region.width) * bytes_per_pixel;
-  for (int y = 0; y < region.height; ++y) {
-    const size_t target =
-        (static_cast<size_t>(region.y + y) * static_cast<size_t>(image.width) + static_cast<size_t>(region.x)) *
-        bytes_per_pixel;
-    std::memcpy(image.pixels.data() + target, from.data() + static_cast<size_t>(y) * row, row);
+  const auto place = [&](int x, int y, int width) {
+    return (static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)) * bytes_per_pixel;
+  };
+  for (int y = region.y; y < region.y + region.height; ++y) {
+    std::memcpy(image.pixels.data() + place(region.x, y, image.width),
+                from.data() + place(region.x - written.x, y - written.y, written.width), row);
   }
 }
 
@@ -187,7 +191,7 @@ Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const Pict
                                                   const CameraFrame& frame, const BlockSelection& selection,
                                                   const Interruption& interruption, Image& image) {
   const Variant variant = variant_of(scene.model().info(), look, request);
-  const int margin = variant.eye_dome ? kEyeDomeMargin : 0;
+  const int margin = variant.eye_dome || variant.silhouettes ? kNeighbourMargin : 0;
   const size_t bytes = pixel_bytes(request.format);
   const ModelInfo& info = scene.model().info();
   RegionStats total;
@@ -203,10 +207,11 @@ Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const Pict
       task.blocks.push_back({&residency.pool().at({scene.model().id(), block}),
                              radii_at_spacing(bounds, frame, request.spacing), scene.first_surfel(block)});
     }
-    pixels.resize(static_cast<size_t>(region.width) * static_cast<size_t>(region.height) * bytes);
+    const Region& written = variant.eye_dome ? region : drawn;
+    pixels.resize(static_cast<size_t>(written.width) * static_cast<size_t>(written.height) * bytes);
     const Result<RegionStats> stats = draw_region(task, programs, buffers[depth - 1], interruption, pixels);
     if (!stats) return fail(stats.error());
-    copy_region(region, pixels, bytes, image);
+    copy_region(region, written, pixels, bytes, image);
     add(total, *stats);
   }
   return total;

@@ -15,7 +15,7 @@ struct RendererConfig {
   int gpu = -1;  ///< index of the EGL device; -1 chooses: the first hardware device, else software
   size_t gpu_bytes = size_t{1} << 30;     ///< for the surfels of all models
   size_t host_bytes = size_t{256} << 20;  ///< for blocks that may come back to the GPU
-  std::string shader_defines;  ///< text before every shader, of programs that measure other kernels than our own
+  std::string shader_defines{};  ///< text before every shader, of programs that measure other kernels than our own
 };
 
 struct DeviceInfo {

@@ -64,6 +64,8 @@ struct SplatBuffers {
   BatchPace project_pace;
   BatchPace bin_pace;
   BatchPace splat_pace;
+  BatchPace find_pace;
+  BatchPace sharpen_pace;
   ConstantTexels srgb;  ///< linear_root_table
   TexelBuffer splats{"splats", GL_RGBA32UI, 16};
   TexelBuffer discs{"discs", GL_RGBA32UI, 16};
@@ -84,6 +86,9 @@ struct SplatBuffers {
   StorageBuffer light{"light before eye-dome lighting"};
   StorageBuffer depth{"depth"};
   StorageBuffer eye_dome{"eye-dome constants"};
+  StorageBuffer fronts{"fronts"};
+  StorageBuffer silhouette_mask{"silhouette mask"};
+  StorageBuffer silhouettes{"silhouettes"};
 
   /// Room for so many splat records; normals only for scenes that are lit and coloured.
   void reserve_splats(size_t count, bool with_normals);

@@ -3,6 +3,14 @@
 #include "include/resampling_filter.glsl"
 #include "include/splat_record.glsl"
 
+#ifdef SURFCAST_SHARPENED
+float prefilter_variance() { return kNarrowed * frame.filter_.x; }
+float disc_prefilter_variance() { return kNarrowed * frame.filter_.y; }
+#else
+float prefilter_variance() { return frame.filter_.x; }
+float disc_prefilter_variance() { return frame.filter_.y; }
+#endif
+
 LargeSplat fetch_large(int slot) {
   return decode_large(texelFetch(splats, 2 * slot), texelFetch(splats, 2 * slot + 1));
 }
@@ -45,7 +53,7 @@ vec2 large_form(LargeSplat s, vec2 ray, float deviation, float prefilter_varianc
 float large_cutoff(LargeSplat s) {
   if (astride(s)) return SURFCAST_KERNEL_CUTOFF;
   float deviation = frontal_deviation(kernel_deviation(s), s.o.z);
-  return cutoff(screen_variance(s.n, s.o.xy / s.o.z, deviation, frame.filter_.x).gain);
+  return cutoff(screen_variance(s.n, s.o.xy / s.o.z, deviation, prefilter_variance()).gain);
 }
 
 void see_large(uint first, uint count, vec2 pixel, float limit, inout float surface, inout float peak) {
@@ -54,7 +62,7 @@ void see_large(uint first, uint count, vec2 pixel, float limit, inout float surf
     LargeSplat s = fetch_large(int(texelFetch(lists, int(first + k)).x));
     peak = max(peak, s.weight);
     float disc_radius = float(SURFCAST_VISIBILITY_RADIUS) * s.radius;
-    float form = large_form(s, ray, disc_radius, frame.filter_.y).x;
+    float form = large_form(s, ray, disc_radius, disc_prefilter_variance()).x;
     float z = large_fragment_inverse_depth(s, ray);
     surface = form <= 1.0 && z < limit ? max(surface, large_disc_inverse_depth(s, ray)) : surface;
   }
@@ -68,7 +76,7 @@ void accumulate_large(uint first, uint count, vec2 pixel, float limit, float sur
     for (uint k = begin; k < end; ++k) {
       int slot = int(texelFetch(lists, int(first + k)).x);
       LargeSplat s = fetch_large(slot);
-      vec2 form_gain = large_form(s, ray, kernel_deviation(s), frame.filter_.x);
+      vec2 form_gain = large_form(s, ray, kernel_deviation(s), prefilter_variance());
       float z = large_fragment_inverse_depth(s, ray);
       bool visible = form_gain.x <= large_cutoff(s) && z > 0.0 && z >= surface && z < limit;
       float weight = s.weight * form_gain.y * coverage_scale(form_gain.y) * exp(-0.5 * form_gain.x);

@@ -1,5 +1,6 @@
 // Small splats: one ellipse each. Forms are evaluated for all rows of a lane at once.
 #include "include/pixel_sums.glsl"
+#include "include/resampling_filter.glsl"
 #include "include/splat_record.glsl"
 
 // The inverse depth of a splat's plane in the rows below the displacement v. The prefilter of a steep splat asks for
@@ -26,8 +27,24 @@ Rows factored_form(vec3 factor, vec2 v) {
   return p * p + q * q;
 }
 
+#ifdef SURFCAST_SHARPENED
+#include "include/narrow.glsl"
+#endif
+
 SmallSplat fetch_small(int slot) {
-  return decode_small(texelFetch(splats, 2 * slot), texelFetch(splats, 2 * slot + 1));
+  SmallSplat splat = decode_small(texelFetch(splats, 2 * slot), texelFetch(splats, 2 * slot + 1));
+#ifdef SURFCAST_SHARPENED
+  narrow(splat);
+#endif
+  return splat;
+}
+
+Disc fetch_disc(int slot) {
+  Disc disc = decode_disc(texelFetch(discs, slot));
+#ifdef SURFCAST_SHARPENED
+  narrow(disc);
+#endif
+  return disc;
 }
 
 // Finds the nearest surface behind `limit` (an inverse depth), pushed back, and the largest weight of the list.
@@ -35,7 +52,7 @@ void see_small(uint first, uint count, vec2 pixel, Rows limit, inout Rows surfac
   for (uint k = 0u; k < count; ++k) {
     int slot = int(texelFetch(lists, int(first + k)).x);
     uvec4 a = texelFetch(splats, 2 * slot);
-    Disc disc = decode_disc(texelFetch(discs, slot));
+    Disc disc = fetch_disc(slot);
     peak = max(peak, disc.weight);
     vec2 v = pixel - uintBitsToFloat(a.xy);
     float inverse_depth = uintBitsToFloat(a.z);

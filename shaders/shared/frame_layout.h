@@ -107,6 +107,9 @@ struct Counters {
 #define SURFCAST_BIND_PICTURE 9
 #define SURFCAST_BIND_LIGHT 2   // vec4 per pixel: linear light and coverage before eye-dome lighting
 #define SURFCAST_BIND_DEPTH 10  // vec2 per pixel: log2 of the visible surface's depth, coverage that it is the mean of
+#define SURFCAST_BIND_FRONTS 11           // float per pixel: what silhouettes are found by, see silhouettes.comp
+#define SURFCAST_BIND_SILHOUETTE_MASK 12  // uint per tile: its pixels at silhouettes, bit 8 row + column
+#define SURFCAST_BIND_SILHOUETTES 13      // count, then the tiles whose mask is not 0, in any order
 // Uniform buffers:
 #define SURFCAST_BIND_FRAME 0
 #define SURFCAST_BIND_LOOK 1

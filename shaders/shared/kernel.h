@@ -35,4 +35,11 @@
 #define SURFCAST_VISIBILITY_DEPTH 1.0
 #define SURFCAST_VISIBILITY_FOOTPRINT 1.0
 
+// Pixels at silhouettes are drawn with prefilters narrowed by the factor FILTER, under per-pixel normalisation. At a
+// silhouette is what lies within REACH pixels of where the front surface's inverse depth bends by more than JUMP pixel
+// footprints of depth.
+#define SURFCAST_SILHOUETTE_FILTER 0.75
+#define SURFCAST_SILHOUETTE_JUMP 16.0
+#define SURFCAST_SILHOUETTE_REACH 1
+
 #endif

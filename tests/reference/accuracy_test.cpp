@@ -37,9 +37,9 @@ TEST_P(Accuracy, IsAtLeastTheGoalAndLeavesNoHole) {
 INSTANTIATE_TEST_SUITE_P(Scenes, Accuracy,
                          testing::Values(Goal{"checker_oblique", 33.0}, Goal{"checker_grazing", 34.0},
                                          Goal{"checker_close", 17.0}, Goal{"checker_far", 44.0},
-                                         Goal{"checker_sphere", 27.5, 0.6}, Goal{"smooth_oblique", 36.0},
+                                         Goal{"checker_sphere", 27.5, 0.5}, Goal{"smooth_oblique", 36.0},
                                          Goal{"noise_oblique", 34.5}, Goal{"edge_oblique", 33.0},
-                                         Goal{"lit_sphere", 43.5, 0.6}),
+                                         Goal{"lit_sphere", 43.5, 0.5}),
                          [](const auto& goal) { return std::string(goal.param.scene); });
 
 }  // namespace

@@ -14,6 +14,7 @@
 
 #include "base/contract.h"
 #include "reference/headlight.h"
+#include "reference/silhouettes.h"
 
 namespace surfcast::reference {
 namespace {
@@ -68,14 +69,14 @@ double weight_scale(const KernelParameters& kernel) {
 class TiledScene {
  public:
   TiledScene(const SurfelCloud& cloud, const PictureRequest& request, const CameraFrame& frame,
-             const KernelParameters& kernel, const PixelRect& window)
+             const KernelParameters& kernel, const PixelRect& window, double prefilter)
       : frame_(frame),
         window_(window),
         columns_((window.x1 - window.x0 + kTile - 1) / kTile),
         rows_((window.y1 - window.y0 + kTile - 1) / kTile) {
     tiles_.resize(static_cast<size_t>(columns_) * rows_);
     lit_ = request.shading == Shading::kLit || (request.shading == Shading::kAuto && !cloud.colors);
-    for (size_t i = 0; i < cloud.size(); ++i) add(cloud, i, request, kernel);
+    for (size_t i = 0; i < cloud.size(); ++i) add(cloud, i, request, kernel, prefilter);
   }
 
   [[nodiscard]] bool lit() const { return lit_; }
@@ -97,11 +98,11 @@ class TiledScene {
   }
 
  private:
-  void add(const SurfelCloud& cloud, size_t i, const PictureRequest& request, const KernelParameters& kernel) {
+  void add(const SurfelCloud& cloud, size_t i, const PictureRequest& request, const KernelParameters& kernel,
+           double prefilter) {
     const glm::dvec3 o = frame_.to_camera(cloud.positions[i]);
     const glm::dvec3 n = frame_.rotate(glm::dvec3(cloud.normals[i]));
     if (cloud.oriented && glm::dot(n, o) > 0) return;
-    const double prefilter = request.filter == Filter::kEwa ? 1.0 : kNoPrefilter;
     const auto splat = Splat::make(o, n, cloud.radii[i], frame_.eta, prefilter, kernel);
     if (!splat) return;
     const PixelRect bounds = intersect(pixel_bounds(*splat, frame_), window_);
@@ -134,6 +135,11 @@ class TiledScene {
   std::vector<std::vector<uint32_t>> tiles_;
 };
 
+/// A picture, and the inverse depths of its front surfaces.
+struct Drawing : ReferencePicture {
+  std::vector<double> fronts;
+};
+
 /// One pixel while it is drawn: what the layer at hand has gathered, and the light of the layers in front of it.
 struct PixelState {
   double limit = 0;  ///< depth of the layer in front: nothing nearer is drawn again
@@ -144,7 +150,9 @@ struct PixelState {
   glm::dvec3 light{0};
   double transmittance = 1;
   double front_weight = 0;
+  double front = kInfinity;  ///< depth of the first surface
   bool done = false;
+  bool left_out = false;  ///< is not drawn at all
 };
 
 /// Visibility and accumulation over one tile, for up to kMaxLayers surfaces one behind the other: where a surface
@@ -154,6 +162,11 @@ class TilePass {
   TilePass(const TiledScene& scene, const CameraFrame& frame, const KernelParameters& kernel, int column, int row)
       : scene_(scene), frame_(frame), kernel_(kernel), column_(column), row_(row), rect_(scene.rect(column, row)) {}
 
+  /// Draws only the pixels that `mask` marks, rows of the window.
+  void leave_out_unless(const std::vector<bool>& mask) {
+    for_each_pixel(rect_, [&](PixelState& p, const glm::dvec3&, size_t place) { p.left_out = p.done = !mask[place]; });
+  }
+
   void draw() {
     for (int layer = 0; layer < kMaxLayers && !all_done(); ++layer) {
       scene_.for_each_surfel(column_, row_, [&](const DrawnSurfel& s, const PixelRect& r) { see(s, r); });
@@ -161,9 +174,11 @@ class TilePass {
       for_each_pixel(rect_, [&](PixelState& p, const glm::dvec3& d, size_t) { composite(p, d, layer == 0); });
     }
   }
-  void resolve(const PictureRequest& request, ReferencePicture& out) {
+  void resolve(const PictureRequest& request, Drawing& out) {
     const glm::dvec3 background = linear_from_srgb8(glm::dvec3(request.background));
     for_each_pixel(rect_, [&](const PixelState& p, const glm::dvec3&, size_t place) {
+      if (p.left_out) return;
+      out.fronts[place] = 1 / p.front;
       out.weights[place] = p.front_weight;
       out.coverage[place] = 1 - p.transmittance;
       out.picture.pixels[place] = p.light + p.transmittance * background;
@@ -214,7 +229,10 @@ class TilePass {
   /// Adds the layer behind the light of those in front, and makes ready for the next.
   void composite(PixelState& p, const glm::dvec3& d, bool front) const {
     if (p.done) return;
-    if (front) p.front_weight = p.weight;
+    if (front) {
+      p.front_weight = p.weight;
+      p.front = p.surface;
+    }
     const double coverage = std::min(1.0, p.weight);
     const double shade = scene_.lit() ? headlight(p.normal, d) : 1;
     if (p.weight > 0) p.light += p.transmittance * coverage * shade / p.weight * p.color;
@@ -236,6 +254,62 @@ class TilePass {
   std::array<PixelState, kTile * kTile> pixels_{};
 };
 
+/// Draws the pixels of the scene's window that `mask` marks, or all.
+void draw_tiles(const TiledScene& scene, const CameraFrame& frame, const KernelParameters& kernel,
+                const PictureRequest& request, const std::vector<bool>* mask, Drawing& out) {
+  std::atomic<uint64_t> fragments = 0;
+  tbb::parallel_for(tbb::blocked_range2d<int>(0, scene.rows(), 0, scene.columns()), [&](const auto& range) {
+    for (int row = range.rows().begin(); row < range.rows().end(); ++row) {
+      for (int column = range.cols().begin(); column < range.cols().end(); ++column) {
+        TilePass pass(scene, frame, kernel, column, row);
+        if (mask != nullptr) pass.leave_out_unless(*mask);
+        pass.draw();
+        pass.resolve(request, out);
+        fragments += pass.fragments();
+      }
+    }
+  });
+  out.fragments += fragments;
+}
+
+KernelParameters narrowed(KernelParameters kernel) {
+  kernel.visibility_pixels *= kernel.silhouette_filter;
+  return kernel;
+}
+
+Drawing draw(const SurfelCloud& cloud, const PictureRequest& request, const KernelParameters& kernel,
+             const CameraFrame& frame, const PixelRect& rect) {
+  const int width = rect.x1 - rect.x0;
+  const int height = rect.y1 - rect.y0;
+  const size_t pixels = static_cast<size_t>(width) * height;
+  Drawing out{{{width, height}, std::vector<double>(pixels), std::vector<double>(pixels), 0},
+              std::vector<double>(pixels)};
+  const double prefilter = request.filter == Filter::kEwa ? 1.0 : kNoPrefilter;
+  draw_tiles(TiledScene(cloud, request, frame, kernel, rect, prefilter), frame, kernel, request, nullptr, out);
+  if (request.normalization == Normalization::kPixel) {
+    const std::vector<bool> mask = silhouettes(out.fronts, width, frame.eta, kernel);
+    const KernelParameters narrow = narrowed(kernel);
+    draw_tiles(TiledScene(cloud, request, frame, narrow, rect, prefilter * kernel.silhouette_filter), frame, narrow,
+               request, &mask, out);
+  }
+  return out;
+}
+
+/// The part `to` of what was drawn of `from`.
+ReferencePicture cut_out(const Drawing& drawn, const PixelRect& from, const PixelRect& to) {
+  ReferencePicture out{{to.x1 - to.x0, to.y1 - to.y0}, {}, {}, drawn.fragments};
+  out.picture.pixels.clear();
+  for (int y = to.y0; y < to.y1; ++y) {
+    for (int x = to.x0; x < to.x1; ++x) {
+      const size_t place = drawn.picture.index(x - from.x0, y - from.y0);
+      out.picture.pixels.push_back(drawn.picture.pixels[place]);
+      out.weights.push_back(drawn.weights[place]);
+      out.coverage.push_back(drawn.coverage[place]);
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 double saturation(double gain, const KernelParameters& kernel) {
@@ -247,24 +321,13 @@ ReferencePicture render(const SurfelCloud& cloud, const PictureRequest& request,
   SURFCAST_EXPECTS(request.camera.has_value());
   const auto frame = make_camera_frame(*request.camera, request.width, request.height);
   SURFCAST_EXPECTS(frame.has_value());
+  const PixelRect picture{0, 0, request.width, request.height};
   const Window part = window.value_or(Window{0, 0, request.width, request.height});
   const PixelRect rect{part.x, part.y, part.x + part.width, part.y + part.height};
-  const TiledScene scene(cloud, request, *frame, kernel, rect);
-  const size_t pixels = static_cast<size_t>(part.width) * part.height;
-  ReferencePicture out{{part.width, part.height}, std::vector<double>(pixels), std::vector<double>(pixels), 0};
-  std::atomic<uint64_t> fragments = 0;
-  tbb::parallel_for(tbb::blocked_range2d<int>(0, scene.rows(), 0, scene.columns()), [&](const auto& range) {
-    for (int row = range.rows().begin(); row < range.rows().end(); ++row) {
-      for (int column = range.cols().begin(); column < range.cols().end(); ++column) {
-        TilePass pass(scene, *frame, kernel, column, row);
-        pass.draw();
-        pass.resolve(request, out);
-        fragments += pass.fragments();
-      }
-    }
-  });
-  out.fragments = fragments;
-  return out;
+  // What is at a silhouette follows from neighbours.
+  const int margin = kernel.silhouette_reach + 1;
+  const PixelRect drawn = intersect({rect.x0 - margin, rect.y0 - margin, rect.x1 + margin, rect.y1 + margin}, picture);
+  return cut_out(draw(cloud, request, kernel, *frame, drawn), drawn, rect);
 }
 
 }  // namespace surfcast::reference

@@ -20,6 +20,9 @@ struct KernelParameters {
   double visibility_footprint = SURFCAST_VISIBILITY_FOOTPRINT;
   double coverage_minified = SURFCAST_COVERAGE_MINIFIED;
   double coverage_magnified = SURFCAST_COVERAGE_MAGNIFIED;
+  double silhouette_filter = SURFCAST_SILHOUETTE_FILTER;
+  double silhouette_jump = SURFCAST_SILHOUETTE_JUMP;
+  int silhouette_reach = SURFCAST_SILHOUETTE_REACH;
 };
 
 /// What a surfel contributes to one pixel, before its weight.

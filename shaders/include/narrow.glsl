@@ -1,0 +1,43 @@
+// Splats under a narrower prefilter, from their records: what silhouettes are drawn with. The record of a splat holds
+// the factor of the inverse of S = V + rho^2 I; the same surfel under the prefilter q rho has S' = S - (1 - q^2) rho^2 I.
+#include "include/resampling_filter.glsl"
+
+// log2 of what the coverage of a whole splat of gain 1 is multiplied with beyond one of gain 0, see coverage_scale.
+const float kCoverageOctaves = log2(float(SURFCAST_COVERAGE_MINIFIED) / float(SURFCAST_COVERAGE_MAGNIFIED));
+const float kNarrowed = SURFCAST_SILHOUETTE_FILTER * SURFCAST_SILHOUETTE_FILTER;  // q^2, of a prefilter's variance
+
+// No splat's weight grows by more: by at most 1 / q^2 of the gain, which grows itself by at most (1 - q) / (1 + q).
+const float kHeavier = pow(float(SURFCAST_COVERAGE_MINIFIED) / float(SURFCAST_COVERAGE_MAGNIFIED),
+                           (1.0 - SURFCAST_SILHOUETTE_FILTER) / (1.0 + SURFCAST_SILHOUETTE_FILTER)) / kNarrowed;
+
+// Narrows a factor whose variance holds the given prefilter variance; returns sqrt(det S / det S'). The factor is in
+// half precision: the limits keep S' positive, as a sum of the prefilter and what is not negative.
+float narrow_factor(inout vec3 factor, float prefilter) {
+  float yy = 1.0 / (factor.z * factor.z);
+  float a = 1.0 / (factor.x * factor.x);  // xx - xy^2 / yy
+  float b = -factor.y / factor.x;         // xy / yy
+  float removed = (1.0 - kNarrowed) * prefilter;
+  float left = kNarrowed * prefilter;
+  float xx = a + b * b * yy;
+  vec3 s = vec3(max(xx - removed, left), b * yy, max(yy - removed, left));
+  float det = max(a * yy - removed * (xx + yy - removed), left * (s.x + s.z - left));
+  factor = inverse_factor(s, det);
+  return sqrt(a * yy / det);
+}
+
+void narrow(inout SmallSplat splat) {
+  const float unit = SURFCAST_SQRT_HALF_LOG2E * SURFCAST_SQRT_HALF_LOG2E;
+  // The cutoff says the gain, but for kernels with one cutoff.
+  float gain = clamp((splat.cutoff / unit - SURFCAST_KERNEL_CUTOFF_MINIFIED) /
+                         max(SURFCAST_KERNEL_CUTOFF - SURFCAST_KERNEL_CUTOFF_MINIFIED, 0.1),
+                     0.0, 1.0);
+  float gained = narrow_factor(splat.factor, frame.filter_.x / unit);
+  float narrow_gain = min(gain * gained, 1.0);
+  splat.cutoff = cutoff(narrow_gain) * unit;
+  splat.weight *= gained * exp2(kCoverageOctaves * (narrow_gain - gain));
+}
+
+void narrow(inout Disc disc) {
+  narrow_factor(disc.factor, frame.filter_.y);
+  disc.weight *= kHeavier;
+}

@@ -1,0 +1,60 @@
+#include "reference/silhouettes.h"
+
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+namespace surfcast::reference {
+namespace {
+
+constexpr int kSide = 16;
+constexpr double kEta = 1000;  // pixels per unit of tangent
+
+/// Inverse depths of a picture of kSide x kSide pixels.
+template <typename InverseDepth>
+std::vector<double> picture(const InverseDepth& inverse_depth) {
+  std::vector<double> fronts;
+  for (int y = 0; y < kSide; ++y) {
+    for (int x = 0; x < kSide; ++x) fronts.push_back(inverse_depth(x, y));
+  }
+  return fronts;
+}
+
+/// Columns with a pixel at a silhouette, in order.
+std::vector<int> columns_found(const std::vector<double>& fronts) {
+  const std::vector<bool> found = silhouettes(fronts, kSide, kEta, {});
+  std::vector<int> columns;
+  for (int x = 0; x < kSide; ++x) {
+    for (int y = 0; y < kSide; ++y) {
+      if (!found[static_cast<size_t>(y) * kSide + x]) continue;
+      columns.push_back(x);
+      break;
+    }
+  }
+  return columns;
+}
+
+TEST(Silhouettes, LieBesideAStepInDepth) {
+  EXPECT_EQ(columns_found(picture([](int x, int) { return x < 8 ? 0.2 : 0.1; })), (std::vector{6, 7, 8, 9}));
+}
+
+TEST(Silhouettes, LieAtTheBorderToTheBackground) {
+  EXPECT_EQ(columns_found(picture([](int x, int) { return x < 8 ? 0.2 : 0.0; })), (std::vector{6, 7, 8, 9}));
+}
+
+TEST(Silhouettes, AreNotOnPlanesHoweverSteep) {
+  EXPECT_TRUE(columns_found(picture([](int x, int y) { return 0.2 + 0.1 * x + 0.01 * y; })).empty());
+}
+
+TEST(Silhouettes, AreNotAtStepsOfAFewPixelFootprints) {
+  const double footprints = 0.5 * SURFCAST_SILHOUETTE_JUMP / kEta;
+  EXPECT_TRUE(columns_found(picture([&](int x, int) { return x < 8 ? 0.2 : 0.2 * (1 - footprints); })).empty());
+  EXPECT_FALSE(columns_found(picture([&](int x, int) { return x < 8 ? 0.2 : 0.2 * (1 - 4 * footprints); })).empty());
+}
+
+TEST(Silhouettes, AreNotWhereNothingIs) {
+  EXPECT_TRUE(columns_found(picture([](int, int) { return 0.0; })).empty());
+}
+
+}  // namespace
+}  // namespace surfcast::reference
