@@ -1,7 +1,9 @@
 // What a picture must be, on scenes simple enough to know.
 
+#include <chrono>
 #include <cmath>
 #include <numbers>
+#include <thread>
 
 #include "render/gl_fixture.h"
 #include "shared/kernel.h"
@@ -108,6 +110,25 @@ TEST_F(RendererGLTest, APictureThatOthersInterruptHasTheBytesOfOneThatNobodyDoes
     EXPECT_EQ(frame->image.pixels, expected[outer].image.pixels) << outer;
     EXPECT_GE(interludes, 3u) << "one in each pass at least";
   }
+}
+
+TEST_F(RendererGLTest, APictureThatMissesTooMuchIsNotDrawnUntilAllIsThere) {
+  const testing::ModelPointer& model = model_of(motley_sphere());
+  PictureRequest request = front_view(64, 64);
+  request.loading = Loading::kNow;
+  request.known_cut = 1;
+  request.most_missing = 0;
+  Frame frame = draw(model, request);
+  EXPECT_GT(frame.stats.blocks_missing, 0u);
+  EXPECT_TRUE(frame.image.pixels.empty());
+  while (!frame.settled && !HasFailure()) {
+    EXPECT_TRUE(frame.image.pixels.empty());
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    frame = draw(model, request);
+  }
+  EXPECT_EQ(frame.image.pixels, draw(model, front_view(64, 64)).image.pixels);
+  request.known_cut = frame.cut;
+  EXPECT_TRUE(draw(model, request).image.pixels.empty()) << "nothing else would be seen";
 }
 
 TEST_F(RendererGLTest, AModelThatIsForgottenWhileItIsDrawnIsDrawnToItsEnd) {
