@@ -36,6 +36,7 @@ Status View::acknowledge(uint64_t frame, double client_ms) {
 
 /// Puts the pieces of a frame together.
 Result<std::optional<View::Frame>> View::take(wire::ViewFrame piece) {
+  const bool more = piece.more();
   if (incomplete_ && incomplete_->frame() != piece.frame()) {
     incomplete_.reset();
     ++abandoned_;
@@ -44,9 +45,8 @@ Result<std::optional<View::Frame>> View::take(wire::ViewFrame piece) {
     incomplete_->mutable_picture()->mutable_data()->append(piece.picture().data());
   } else {
     incomplete_ = std::move(piece);
-    piece.set_more(incomplete_->more());
   }
-  if (piece.more()) {
+  if (more) {
     if (Status status = acknowledge(incomplete_->frame(), 0); !status) return fail(status.error());
     return std::nullopt;
   }

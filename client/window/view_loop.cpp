@@ -200,7 +200,7 @@ Status view_in_window(const ViewWish& wish, const ClientConfig& config) {
   if (!window) return fail(window.error());
   ViewLoop loop(wish, config, *window);
   for (;;) {
-    const Status status = loop.look();
+    Status status = loop.look();
     if (status || !loop.was_connected() || !worth_trying_again(status.error())) return status;
     if (!loop.wait_for_server(status.error().message)) return {};
   }
