@@ -11,7 +11,7 @@ TEST_F(NumericsGLTest, APictureOf8192PixelsSquare) {
   paint_motley(cloud);
   const ModelPointer& model = model_of(cloud);
   PictureRequest request;
-  request.camera = Camera{{0.1, -0.2, 1.6}, {0, 0, 0}, {0, 1, 0}, 40};
+  request.camera = Camera{{0.1, -0.2, 1.6}, {0, 0, 0}, {0, 1, 0}, 25};
   request.width = request.height = 8192;
   request.format = PixelFormat::kLinearFloat;
   const Image image = draw(model, request).image;

@@ -27,8 +27,8 @@ SurfelCloud motley_square(int side, double extent, const glm::dvec3& centre, con
 }
 
 TEST_F(NumericsGLTest, AMillionSurfelsInOnePixel) {
-  // The sphere's diameter is 0.6 pixels, of which 5 % are covered. Some 3000 of the million are drawn, each standing
-  // for 330: their sum has a standard deviation of 2 % of that.
+  // The sphere's diameter is 0.6 pixels, of which up to 9 % are covered. Some 3000 of the million are drawn, each
+  // standing for 330: their sum has a standard deviation of 2 % of that.
   const ModelPointer& model = model_of(fibonacci_sphere(1000000, 1e-3, {0, 0, 0}, {200, 90, 20}));
   expect_within(difference("a million in a pixel", model, view_from({0, 0, 0.2}, {0, 0, 0}, 30, 33, 33)),
                 {5e-4, 3e-3, 3e-3});
