@@ -56,7 +56,7 @@ struct PictureRequest {
   Loading loading = Loading::kWait;
   uint64_t viewer = 0;     ///< with kNow: whose motion this is, or 0; things are remembered from picture to picture
   uint64_t known_cut = 0;  ///< with kNow: Frame::cut of a picture that needs no repeating; 0: none
-  /// With `known_cut`: another picture is not worth drawing while it would miss more blocks that are still to come.
+  /// With kNow: the picture is not worth drawing while it would miss more blocks that are still to come.
   uint32_t most_missing = std::numeric_limits<uint32_t>::max();
   Coloring coloring;
   std::bitset<256> hidden_classes;  ///< by code: surfels that are not drawn; models without classes have none

@@ -83,8 +83,8 @@ uint64_t cut_of(const BlockSelection& selection) {
 
 /// Whether a view shows more than what whoever asks for it has already, and enough of it.
 bool worth_drawing(const PictureRequest& request, const PreparedView& view, uint64_t cut) {
-  if (request.known_cut == 0) return true;
-  return cut != request.known_cut && (view.settled || view.selection.wanted.size() <= request.most_missing);
+  if (request.known_cut != 0 && cut == request.known_cut) return false;
+  return view.settled || view.selection.wanted.size() <= request.most_missing;
 }
 
 }  // namespace
@@ -122,8 +122,8 @@ struct Renderer::State {
   Result<PreparedView> prepare(Scene& scene, const PictureRequest& request, const Look& look, const Camera& camera,
                                const CameraFrame& frame, const Interruption& interruption);
   Result<RegionStats> draw_regions(const Scene& scene, const PictureRequest& request, const Look& look,
-                                   const CameraFrame& frame, const BlockSelection& selection,
-                                   const Interruption& interruption, Image& image);
+                                   const CameraFrame& frame, const PreparedView& view, const Interruption& interruption,
+                                   Image& image);
   const ConstantTexels* colors_of(const Look& look);
   [[nodiscard]] FrameStats stats_of(const Scene& scene, const PreparedView& view, const RegionStats& drawn) const;
   Result<Frame> draw(const std::shared_ptr<const ModelFile>& model, const PictureRequest& request,
@@ -188,9 +188,10 @@ const ConstantTexels* Renderer::State::colors_of(const Look& look) {
 }
 
 Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const PictureRequest& request, const Look& look,
-                                                  const CameraFrame& frame, const BlockSelection& selection,
+                                                  const CameraFrame& frame, const PreparedView& view,
                                                   const Interruption& interruption, Image& image) {
-  const Variant variant = variant_of(scene.model().info(), look, request);
+  Variant variant = variant_of(scene.model().info(), look, request);
+  variant.silhouettes &= view.settled;  // what will be drawn again soon need not have its edges drawn twice
   const int margin = variant.eye_dome || variant.silhouettes ? kNeighbourMargin : 0;
   const size_t bytes = pixel_bytes(request.format);
   const ModelInfo& info = scene.model().info();
@@ -201,7 +202,7 @@ Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const Pict
     RegionTask task{
         &surfels, {},       frame, region,         drawn, frame_constants(frame, drawn, request, info.oriented),
         variant,  &request, look,  colors_of(look)};
-    for (const uint32_t block : blocks_in_rectangle(scene.viewed().tree, selection.draw, frame, drawn.x, drawn.y,
+    for (const uint32_t block : blocks_in_rectangle(scene.viewed().tree, view.selection.draw, frame, drawn.x, drawn.y,
                                                     drawn.x + drawn.width, drawn.y + drawn.height)) {
       const Box& bounds = scene.model().tree().blocks()[block].bounds;
       task.blocks.push_back({&residency.pool().at({scene.model().id(), block}),
@@ -258,8 +259,7 @@ Result<Frame> Renderer::State::draw(const std::shared_ptr<const ModelFile>& mode
   if (worth_drawing(request, *view, result.cut)) {
     const size_t pixels = static_cast<size_t>(request.width) * static_cast<size_t>(request.height);
     result.image.pixels.resize(pixels * pixel_bytes(request.format));
-    const Result<RegionStats> regions =
-        draw_regions(scene, request, *look, *frame, view->selection, interruption, result.image);
+    const Result<RegionStats> regions = draw_regions(scene, request, *look, *frame, *view, interruption, result.image);
     if (!regions) return fail(regions.error());
     drawn = *regions;
   }

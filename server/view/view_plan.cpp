@@ -1,6 +1,7 @@
 #include "view/view_plan.h"
 
 #include <algorithm>
+#include <limits>
 
 namespace surfcast {
 
@@ -121,13 +122,25 @@ void ViewPlan::finish(uint64_t frame, FrameNews news, ViewTime now) {
 
 void ViewPlan::drew(double draw_ms, uint32_t missing, ViewTime now) {
   constexpr double kPauses = 2;  // of that length between two frames: two thirds of the time are for what blocks need
+  drawn_at_ = now;
+  draw_ms_ = draw_ms;
   redraw_at_ = now + std::chrono::duration_cast<ViewTime::duration>(
                          std::chrono::duration<double, std::milli>(kPauses * draw_ms));
   drawn_missing_ = missing;
 }
 
-uint32_t ViewPlan::most_missing(ViewTime now) const {
-  return now < redraw_at_ ? 0 : drawn_missing_ - drawn_missing_ / 4;
+uint32_t ViewPlan::most_missing_at_first(ViewTime now) const {
+  return now < rest_at_ + timing_.final ? 0 : std::numeric_limits<uint32_t>::max();
+}
+
+uint32_t ViewPlan::most_missing(uint32_t missing, ViewTime now) const {
+  constexpr double kPatience = 2;  // draws last longer the more they show, and hold up blocks
+  if (now < redraw_at_) return 0;
+  const double since_ms = std::chrono::duration<double, std::milli>(now - drawn_at_).count();
+  const double come = missing < drawn_missing_ ? drawn_missing_ - missing : 0;
+  if (since_ms * missing < kPatience * draw_ms_ * come)
+    return 0;  // the rest comes sooner than a frame of what is there
+  return drawn_missing_ - drawn_missing_ / 4;
 }
 
 void ViewPlan::send(FrameKind kind, bool last) {

@@ -71,7 +71,10 @@ class ViewPlan {
   void arrived(ViewTime now) { improved_at_ = now; }
   /// How many blocks may be missing for a frame at rest to be worth drawing although more are still to come: a frame of
   /// a large model takes seconds, and one for each few blocks would only delay the one that shows them all.
-  [[nodiscard]] uint32_t most_missing(ViewTime now) const;
+  /// `missing`: blocks at the last look.
+  [[nodiscard]] uint32_t most_missing(uint32_t missing, ViewTime now) const;
+  /// The same before any frame of a rest: a few blocks are waited for a moment rather than drawn without.
+  [[nodiscard]] uint32_t most_missing_at_first(ViewTime now) const;
   [[nodiscard]] bool expects(uint64_t frame) const;
 
   /// A message has been sent; `last` of its frame.
@@ -102,8 +105,10 @@ class ViewPlan {
   ViewTime rest_at_;
   ViewTime look_again_at_;
   ViewTime improved_at_;
-  ViewTime not_before_;         ///< nothing is drawn: the server is busy
-  ViewTime redraw_at_;          ///< no frame at rest before, unless it shows all that is to come
+  ViewTime not_before_;  ///< nothing is drawn: the server is busy
+  ViewTime redraw_at_;   ///< no frame at rest before, unless it shows all that is to come
+  ViewTime drawn_at_;    ///< the last frame at rest, in the time below
+  double draw_ms_ = 0;
   uint32_t drawn_missing_ = 0;  ///< blocks, by the last frame at rest
   std::vector<Job> jobs_;       ///< oldest first
   size_t quick_unacknowledged_ = 0;

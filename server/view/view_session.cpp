@@ -59,7 +59,8 @@ PictureJob ViewSession::wish(FrameKind kind, JobId supersedes) const {
   job.quality = kFineQuality;
   if (kind == FrameKind::kFine) {
     request.known_cut = shown_cut_;
-    request.most_missing = plan_.most_missing(std::chrono::steady_clock::now());
+    const ViewTime now = std::chrono::steady_clock::now();
+    request.most_missing = shown_cut_ == 0 ? plan_.most_missing_at_first(now) : plan_.most_missing(missing_, now);
     job.keep_frame = may_be_kept(newest_.picture);
     return job;
   }
@@ -181,7 +182,7 @@ void ViewSession::look_at(EncodedPicture& picture, ViewTime now) {
   if (!picture.bytes.empty()) {
     shown_cut_ = picture.cut;
     plan_.drew(picture.draw_ms, missing, now);
-    if (picture.converged) whole_ = std::move(picture.frame);
+    if (picture.converged && picture.settled) whole_ = std::move(picture.frame);
   }
   picture.frame.reset();
 }

@@ -178,7 +178,7 @@ TEST_F(ViewPlanTest, FewFramesAreDrawnWhileBlocksArrive) {
     const auto come = std::min(model.blocks, static_cast<uint32_t>(ms * model.blocks_per_ms));
     const uint32_t missing = model.blocks - come;
     const uint64_t frame = begin(FrameKind::kFine);
-    const bool worth = drawn_frames == 0 || missing == 0 || missing <= plan_.most_missing(now_);
+    const bool worth = drawn_frames == 0 || missing == 0 || missing <= plan_.most_missing(missing, now_);
     if (worth) {
       const double draw_ms = model.draw_ms * come / model.blocks;
       now_ += std::chrono::microseconds(static_cast<long>(1000 * draw_ms));
@@ -202,12 +202,29 @@ TEST_F(ViewPlanTest, AFrameThatShowsLittleMoreIsNotDrawn) {
   update(/*moving=*/false);
   plan_.drew(/*draw_ms=*/100, /*missing=*/40, now_);
   pass(199);
-  EXPECT_EQ(plan_.most_missing(now_), 0u) << "only with all that are to come";
+  EXPECT_EQ(plan_.most_missing(30, now_), 0u) << "only with all that are to come";
   pass(1);
-  EXPECT_EQ(plan_.most_missing(now_), 30u);
+  EXPECT_EQ(plan_.most_missing(30, now_), 30u);
   plan_.drew(100, 1, now_);
   pass(200);
-  EXPECT_EQ(plan_.most_missing(now_), 1u);
+  EXPECT_EQ(plan_.most_missing(1, now_), 1u);
+}
+
+TEST_F(ViewPlanTest, TheFirstFrameAtRestWaitsAMomentForItsBlocks) {
+  update(/*moving=*/false);
+  pass(499);
+  EXPECT_EQ(plan_.most_missing_at_first(now_), 0u);
+  pass(1);
+  EXPECT_GT(plan_.most_missing_at_first(now_), 1'000'000u);
+}
+
+TEST_F(ViewPlanTest, BlocksThatComeSoonerThanAFrameIsDrawnAreWaitedFor) {
+  update(/*moving=*/false);
+  plan_.drew(/*draw_ms=*/500, /*missing=*/700, now_);
+  pass(1200);
+  EXPECT_EQ(plan_.most_missing(100, now_), 0u) << "600 in 1200 ms: the last 100 take 200 ms";
+  EXPECT_EQ(plan_.most_missing(400, now_), 525u) << "300 in 1200 ms: 400 more take 1600 ms";
+  EXPECT_EQ(plan_.most_missing(700, now_), 525u) << "none came";
 }
 
 TEST_F(ViewPlanTest, BlocksThatArriveSlowlyAreNotGivenUp) {
