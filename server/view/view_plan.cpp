@@ -121,11 +121,8 @@ void ViewPlan::finish(uint64_t frame, FrameNews news, ViewTime now) {
 }
 
 void ViewPlan::drew(double draw_ms, uint32_t missing, ViewTime now) {
-  constexpr double kPauses = 2;  // of that length between two frames: two thirds of the time are for what blocks need
   drawn_at_ = now;
   draw_ms_ = draw_ms;
-  redraw_at_ = now + std::chrono::duration_cast<ViewTime::duration>(
-                         std::chrono::duration<double, std::milli>(kPauses * draw_ms));
   drawn_missing_ = missing;
 }
 
@@ -134,13 +131,14 @@ uint32_t ViewPlan::most_missing_at_first(ViewTime now) const {
 }
 
 uint32_t ViewPlan::most_missing(uint32_t missing, ViewTime now) const {
-  constexpr double kPatience = 2;  // draws last longer the more they show, and hold up blocks
-  if (now < redraw_at_) return 0;
+  // Two frames are so many drawing times apart, since two thirds of the time are for what blocks need. As long a wait
+  // for the rest of the blocks is worth it: drawing holds them up, and takes longer the more there is to show.
+  constexpr double kPauses = 2;
   const double since_ms = std::chrono::duration<double, std::milli>(now - drawn_at_).count();
+  if (since_ms < kPauses * draw_ms_) return 0;
   const double come = missing < drawn_missing_ ? drawn_missing_ - missing : 0;
-  if (since_ms * missing < kPatience * draw_ms_ * come)
-    return 0;  // the rest comes sooner than a frame of what is there
-  return drawn_missing_ - drawn_missing_ / 4;
+  const bool rest_comes_soon = since_ms * missing < kPauses * draw_ms_ * come;
+  return rest_comes_soon ? 0 : drawn_missing_ - drawn_missing_ / 4;
 }
 
 void ViewPlan::send(FrameKind kind, bool last) {

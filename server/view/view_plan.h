@@ -106,7 +106,6 @@ class ViewPlan {
   ViewTime look_again_at_;
   ViewTime improved_at_;
   ViewTime not_before_;  ///< nothing is drawn: the server is busy
-  ViewTime redraw_at_;   ///< no frame at rest before, unless it shows all that is to come
   ViewTime drawn_at_;    ///< the last frame at rest, in the time below
   double draw_ms_ = 0;
   uint32_t drawn_missing_ = 0;  ///< blocks, by the last frame at rest
