@@ -107,7 +107,8 @@ void project_small(Surfel s, vec2 ray, vec2 centre, ScreenVariance v, float c) {
   splat.slope = clamp(vec2(s.n.x, -s.n.y) * relief, vec2(-6e4), vec2(6e4));
   splat.factor = inverse_factor(v.s, v.det) * SURFCAST_SQRT_HALF_LOG2E;
   splat.cutoff = c * SURFCAST_SQRT_HALF_LOG2E * SURFCAST_SQRT_HALF_LOG2E;
-  splat.depth_range = depth_extent(s, surfel_extent(s.radius)) * footprints;
+  float depth_range = depth_extent(s, surfel_extent(s.radius)) * footprints;
+  splat.fall = depth_range / (1.0 + depth_range / eta());
   splat.weight = share * s.weight * v.gain * coverage_scale(v.gain);
   splat.color = s.color;
   uvec4 a, b;
@@ -115,7 +116,9 @@ void project_small(Surfel s, vec2 ray, vec2 centre, ScreenVariance v, float c) {
 
   float disc_radius = float(SURFCAST_VISIBILITY_RADIUS) * s.radius;
   ScreenVariance d = screen_variance(s.n, ray, frontal_deviation(disc_radius, s.o.z), frame.filter_.y);
-  Disc disc = Disc(inverse_factor(d.s, d.det), push_back(s.radius, s.o.z) * footprints, splat.depth_range, splat.weight);
+  float push = push_back(s.radius, s.o.z) * footprints;
+  Disc disc = Disc(inverse_factor(d.s, d.det), push / (1.0 + push / eta()), splat.fall,
+                   depth_range / (1.0 - depth_range / eta()), splat.weight);
   append(false, range, a, b, encode_disc(disc), s.n);
 }
 

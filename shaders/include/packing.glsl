@@ -1,4 +1,22 @@
-// Packed forms of unit vectors and colours.
+// Packed forms of numbers, unit vectors and colours.
+
+// Two numbers in half precision, as packHalf2x16 but for what is below 2^-14, which may become 0. Shifted into the place
+// of a float's bits, a half is that number times 2^-112. (What the language has costs software GL some 26 instructions
+// a number, most of them for numbers that no splat has.)
+uvec2 half_bits(vec2 x) {
+  uvec2 u = floatBitsToUint(x * 1.92592994e-34);
+  return (((u + 0x1000u) >> 13) & 0x7fffu) | ((u >> 16) & 0x8000u);
+}
+
+uint pack_halves(vec2 x) {
+  uvec2 h = half_bits(x);
+  return h.x | (h.y << 16);
+}
+
+vec2 unpack_halves(uint packed_halves) {
+  ivec2 u = ivec2(int(packed_halves << 16), int(packed_halves)) >> 3;  // copies the sign
+  return intBitsToFloat(u & int(0x8fffe000u)) * 5.19229686e33;
+}
 
 // Three numbers in [0, 1] as 11, 11 and 10 bits of their square roots: steps near black are as fine as 8 bit sRGB
 // needs them. linear_root_table in residency/packing.h makes them.

@@ -23,3 +23,8 @@ bool any_of(BoolRows a) { return a; }
 BoolRows both(BoolRows a, BoolRows b) { return a && b; }
 #define ROW(v, i) v
 #endif
+
+// The larger and the smaller one of two numbers of which one is not negative: so ordered, too, are their bits as
+// integers. The language's own are three instructions in software, for the sake of what is not a number.
+Rows larger(Rows a, Rows b) { return intBitsToFloat(max(floatBitsToInt(a), floatBitsToInt(b))); }
+Rows smaller(Rows a, Rows b) { return intBitsToFloat(min(floatBitsToInt(a), floatBitsToInt(b))); }

@@ -3,21 +3,21 @@
 #include "include/resampling_filter.glsl"
 #include "include/splat_record.glsl"
 
-// The inverse depth of a splat's plane in the rows below the displacement v. The prefilter of a steep splat asks for
-// its plane far beyond the surfel: a fragment is never behind the surfel's far end, and a disc never in front of its
-// near end. So fragments of one plane never hide each other, whatever its slope.
-Rows plane_inverse_depth(float inverse_depth, vec2 slope, vec2 v) {
-  vec2 per_pixel = slope * (inverse_depth / eta());
+// The inverse depth of a splat's plane in the rows below the displacement v; `unit` is the centre's over eta. The
+// prefilter of a steep splat asks for its plane far beyond the surfel: a fragment is never behind the surfel's far end,
+// and a disc never in front of its near end. So fragments of one plane never hide each other, whatever its slope.
+Rows plane_inverse_depth(float inverse_depth, float unit, vec2 slope, vec2 v) {
+  vec2 per_pixel = slope * unit;
   float first = inverse_depth + dot(per_pixel, v);
   return first + per_pixel.y * kRow;
 }
 
-Rows fragment_inverse_depth(Rows plane, float inverse_depth, float depth_range) {
-  return max(plane, Rows(inverse_depth / (1.0 + depth_range / eta())));
+Rows fragment_inverse_depth(Rows plane, float inverse_depth, float unit, float fall) {
+  return larger(plane, Rows(inverse_depth - unit * fall));
 }
 
-Rows disc_inverse_depth(Rows plane, float inverse_depth, Disc disc) {
-  return min(plane, Rows(inverse_depth / (1.0 - disc.depth_range / eta()))) / (1.0 + disc.push / eta());
+Rows disc_inverse_depth(Rows plane, float inverse_depth, float unit, Disc disc, float footprint) {
+  return smaller(plane, Rows(inverse_depth + unit * disc.rise)) * (1.0 - disc.push * footprint);
 }
 
 // (l11 v.x + l21 v.y)^2 + (l22 v.y)^2 in the rows below the displacement v.
@@ -49,6 +49,7 @@ Disc fetch_disc(int slot) {
 
 // Finds the nearest surface behind `limit` (an inverse depth), pushed back, and the largest weight of the list.
 void see_small(uint first, uint count, vec2 pixel, Rows limit, inout Rows surface, inout float peak) {
+  float footprint = 1.0 / eta();
   for (uint k = 0u; k < count; ++k) {
     int slot = int(texelFetch(lists, int(first + k)).x);
     uvec4 a = texelFetch(splats, 2 * slot);
@@ -56,16 +57,19 @@ void see_small(uint first, uint count, vec2 pixel, Rows limit, inout Rows surfac
     peak = max(peak, disc.weight);
     vec2 v = pixel - uintBitsToFloat(a.xy);
     float inverse_depth = uintBitsToFloat(a.z);
-    Rows plane = plane_inverse_depth(inverse_depth, unpackHalf2x16(a.w), v);
-    Rows z = fragment_inverse_depth(plane, inverse_depth, disc.depth_range);
+    float unit = inverse_depth * footprint;
+    Rows plane = plane_inverse_depth(inverse_depth, unit, unpack_halves(a.w), v);
+    Rows z = fragment_inverse_depth(plane, inverse_depth, unit, disc.fall);
     BoolRows hit = both(at_most(factored_form(disc.factor, v), Rows(1.0)), less(z, limit));
-    surface = mix(surface, max(surface, disc_inverse_depth(plane, inverse_depth, disc)), hit);
+    Rows disc_z = disc_inverse_depth(plane, inverse_depth, unit, disc, footprint);
+    surface = larger(surface, mix(Rows(0.0), disc_z, hit));
   }
 }
 
 // Accumulates the splats between `limit` and `surface`.
 void accumulate_small(uint first, uint count, vec2 pixel, Rows limit, Rows surface, float unit,
                       inout PixelSums sums) {
+  float footprint = 1.0 / eta();
   for (uint begin = 0u; begin < count; begin += uint(SURFCAST_CARRY_INTERVAL)) {
     uint end = min(begin + uint(SURFCAST_CARRY_INTERVAL), count);
     for (uint k = begin; k < end; ++k) {
@@ -73,7 +77,9 @@ void accumulate_small(uint first, uint count, vec2 pixel, Rows limit, Rows surfa
       SmallSplat s = fetch_small(slot);
       vec2 v = pixel - s.centre;
       Rows form = factored_form(s.factor, v);
-      Rows z = fragment_inverse_depth(plane_inverse_depth(s.inverse_depth, s.slope, v), s.inverse_depth, s.depth_range);
+      float depth_unit = s.inverse_depth * footprint;
+      Rows plane = plane_inverse_depth(s.inverse_depth, depth_unit, s.slope, v);
+      Rows z = fragment_inverse_depth(plane, s.inverse_depth, depth_unit, s.fall);
       BoolRows visible = both(at_most(form, Rows(s.cutoff)), both(at_most(surface, z), less(z, limit)));
       Rows weight = mix(Rows(0.0), s.weight * exp2(-form), visible);
       sums_add(sums, splat_value(s.color, slot, unit), weight);

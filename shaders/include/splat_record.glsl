@@ -15,42 +15,45 @@ struct SmallSplat {
                         // that per pixel, half precision holds it in narrow views, too
   vec3 factor;          // inverse_factor(S) * SURFCAST_SQRT_HALF_LOG2E, so that the weight is exp2 of the form
   float cutoff;         // largest value of the form
-  float depth_range;    // the disc's own depth range, pixel footprints (o.z / eta): the plane of an edge-on surfel is
-                        // not extrapolated beyond it
+  float fall;           // how much smaller the inverse depth of the surfel's far end is than that of its centre: the
+                        // plane of an edge-on surfel is not extrapolated beyond it. Units of the centre's over eta
   float weight;         // gain times normalisation
   uint color;
 };
 
 void encode_small(SmallSplat s, out uvec4 a, out uvec4 b) {
-  a = uvec4(floatBitsToUint(s.centre), floatBitsToUint(s.inverse_depth), packHalf2x16(s.slope));
-  b = uvec4(packHalf2x16(s.factor.xy), packHalf2x16(vec2(s.factor.z, s.cutoff)), s.color,
-            packHalf2x16(vec2(s.depth_range, kWeightRoot * sqrt(s.weight))));
+  a = uvec4(floatBitsToUint(s.centre), floatBitsToUint(s.inverse_depth), pack_halves(s.slope));
+  b = uvec4(pack_halves(s.factor.xy), pack_halves(vec2(s.factor.z, s.cutoff)), s.color,
+            pack_halves(vec2(s.fall, kWeightRoot * sqrt(s.weight))));
 }
 
 SmallSplat decode_small(uvec4 a, uvec4 b) {
-  vec2 c = unpackHalf2x16(b.y);
-  vec2 d = unpackHalf2x16(b.w);
+  vec2 c = unpack_halves(b.y);
+  vec2 d = unpack_halves(b.w);
   d.y *= 1.0 / kWeightRoot;
-  return SmallSplat(uintBitsToFloat(a.xy), uintBitsToFloat(a.z), unpackHalf2x16(a.w), vec3(unpackHalf2x16(b.x), c.x),
+  return SmallSplat(uintBitsToFloat(a.xy), uintBitsToFloat(a.z), unpack_halves(a.w), vec3(unpack_halves(b.x), c.x),
                     c.y, d.x, d.y * d.y, b.z);
 }
 
-// The opaque disc of a small splat for visibility splatting.
+// The opaque disc of a small splat for visibility splatting. `fall`, `rise` and `push` are differences of inverse depths
+// in units of the centre's over eta: numbers of pixel footprints that half precision holds in narrow views, too.
 struct Disc {
-  vec3 factor;        // inverse_factor of its variance: the disc is where the form is at most 1
-  float push;         // how far the surface is pushed back along the viewing rays, pixel footprints
-  float depth_range;  // as in SmallSplat
-  float weight;       // of the splat: an upper bound of what it adds to a pixel
+  vec3 factor;   // inverse_factor of its variance: the disc is where the form is at most 1
+  float push;    // how far the surface is pushed back along the viewing rays, of every inverse depth's own over eta
+  float fall;    // as in SmallSplat
+  float rise;    // how much larger the inverse depth of the near end is than that of the centre
+  float weight;  // of the splat: an upper bound of what it adds to a pixel
 };
 
 uvec4 encode_disc(Disc d) {
-  return uvec4(packHalf2x16(d.factor.xy), packHalf2x16(vec2(d.factor.z, d.push)), floatBitsToUint(d.depth_range),
+  return uvec4(pack_halves(d.factor.xy), pack_halves(vec2(d.factor.z, d.push)), pack_halves(vec2(d.fall, d.rise)),
                floatBitsToUint(d.weight));
 }
 
 Disc decode_disc(uvec4 a) {
-  vec2 c = unpackHalf2x16(a.y);
-  return Disc(vec3(unpackHalf2x16(a.x), c.x), c.y, uintBitsToFloat(a.z), uintBitsToFloat(a.w));
+  vec2 c = unpack_halves(a.y);
+  vec2 d = unpack_halves(a.z);
+  return Disc(vec3(unpack_halves(a.x), c.x), c.y, d.x, d.y, uintBitsToFloat(a.w));
 }
 
 struct LargeSplat {
