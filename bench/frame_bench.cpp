@@ -1,5 +1,6 @@
-// frame_bench [SURFELS] [SIDE]: a per-pixel EWA frame beside a frame of plain sized GL points of the same model, on
-// a sphere that fills 80 % of the height, camera moving, picture read back. Medians of one run, interleaved.
+// frame_bench [SURFELS] [SIDE] [silhouettes]: a per-pixel EWA frame, with its silhouettes drawn as at rest if so said,
+// beside a frame of plain sized GL points of the same model, on a sphere that fills 80 % of the height, camera moving,
+// picture read back. Medians of one run, interleaved.
 
 #include <algorithm>
 #include <atomic>
@@ -39,6 +40,7 @@ Camera orbit(double angle) {
 int main(int argc, char** argv) {
   const size_t surfels = argc > 1 ? std::strtoull(argv[1], nullptr, 10) : 1000000;
   const int side = argc > 2 ? std::atoi(argv[2]) : 1024;
+  const bool silhouettes = argc > 3 && std::string(argv[3]) == "silhouettes";
   constexpr int kFrames = 15;
   constexpr int kWarmUp = 2;
 
@@ -56,6 +58,7 @@ int main(int argc, char** argv) {
     request.camera = orbit(0.03 * k);
     request.width = side;
     request.height = side;
+    request.silhouettes = silhouettes;
     const CameraFrame frame = value_or_exit(make_camera_frame(*request.camera, side, side));
     const Stopwatch points_watch;
     const double points_start = processor_ms();

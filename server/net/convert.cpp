@@ -143,6 +143,7 @@ Result<PictureJob> to_job(const wire::DrawPicture& request) {
   job.request.normalization = from_wire(request.normalization());
   job.request.filter = from_wire(request.filter());
   job.request.shading = from_wire(request.shading());
+  job.request.silhouettes = true;
   job.request.spacing = request.spacing();
   job.request.background = {background.red(), background.green(), background.blue()};
   set_look(request, job.request);

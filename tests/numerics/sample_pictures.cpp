@@ -66,6 +66,8 @@ std::vector<SamplePicture> sample_pictures() {
   coarse.spacing = 3;
   PictureRequest eye_dome = outside;
   eye_dome.eye_dome.strength = 1;
+  PictureRequest silhouettes = outside;
+  silhouettes.silhouettes = true;
   return {{"globe", globe(20000), outside},
           {"globe_per_surfel", globe(20000), per_surfel},
           {"globe_unfiltered", globe(3000), unfiltered},
@@ -77,6 +79,7 @@ std::vector<SamplePicture> sample_pictures() {
           {"square_close", checkered_square(40, 1, {0, 0, 0}), view_from({0.1, -0.3, 0.05}, {0, 0.1, 0}, 50)},
           {"square_grazing", checkered_square(100, 1, {0, 0, 0}), view_from({0.1, -1.2, 0.04}, {0, 0, 0}, 40)},
           {"square_before_globe", square_before_globe(), outside},
+          {"square_silhouettes", square_before_globe(), silhouettes},
           {"globe_eye_dome", square_before_globe(), eye_dome}};
 }
 

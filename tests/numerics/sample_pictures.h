@@ -16,7 +16,7 @@ struct SamplePicture {
 };
 
 /// One for every way of drawing: small and large splats, astride the eye's plane, crowded tiles, merged levels, several
-/// layers, normalisations, light, eye-dome lighting.
+/// layers, normalisations, light, silhouettes, eye-dome lighting.
 std::vector<SamplePicture> sample_pictures();
 
 /// A number that stands for the bytes of a picture (FNV-1a).

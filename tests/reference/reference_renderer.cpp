@@ -286,7 +286,7 @@ Drawing draw(const SurfelCloud& cloud, const PictureRequest& request, const Kern
               std::vector<double>(pixels)};
   const double prefilter = request.filter == Filter::kEwa ? 1.0 : kNoPrefilter;
   draw_tiles(TiledScene(cloud, request, frame, kernel, rect, prefilter), frame, kernel, request, nullptr, out);
-  if (request.normalization == Normalization::kPixel) {
+  if (request.silhouettes && request.normalization == Normalization::kPixel) {
     const std::vector<bool> mask = silhouettes(out.fronts, width, frame.eta, kernel);
     const KernelParameters narrow = narrowed(kernel);
     draw_tiles(TiledScene(cloud, request, frame, narrow, rect, prefilter * kernel.silhouette_filter), frame, narrow,

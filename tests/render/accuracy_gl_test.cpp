@@ -185,6 +185,16 @@ TEST_F(AccuracyGLTest, WithoutPrefilterAgreesWithTheReference) {
   renderer_->forget(*model);
 }
 
+TEST_F(AccuracyGLTest, SilhouettesAgreeWithTheReference) {
+  for (const char* name : {"checker_sphere", "layers_oblique"}) {
+    Scene scene = reference::make_scene(name);
+    scene.request.silhouettes = true;
+    const auto model = model_of(scene);
+    expect_reference(scene.name + "_silhouettes", model, scene.request, 45);
+    renderer_->forget(*model);
+  }
+}
+
 TEST_F(AccuracyGLTest, OneColorIsThatColorWhereFullyCovered) {
   for (const char* name : {"color_plane", "color_sphere"}) {
     const Scene scene = reference::make_scene(name);

@@ -180,13 +180,13 @@ TEST_F(RendererGLTest, AMillionSurfelsInOnePixelKeepTheirColor) {
   request.format = PixelFormat::kLinearFloat;
   request.background = {0, 0, 0};
   // The sphere's diameter is about a tenth of a pixel, so that the middle pixel is covered by a small, known part:
-  // area times the peak of the prefilter, that of silhouettes, over the coverage that counts as whole.
+  // area times the peak of the prefilter over the coverage that counts as whole.
   const Image image = draw(model, request).image;
   const glm::vec4 p = light(image, 16, 16);
   const double eta = 33 / (2 * std::tan(std::numbers::pi / 12));
   const double area = std::numbers::pi * std::pow(eta * 1e-3, 2);
   // Kernels as small as these have no gain left; even_weight times their sum is the covered area.
-  const double peak = 1 / (2 * std::numbers::pi * SURFCAST_SILHOUETTE_FILTER * SURFCAST_SILHOUETTE_FILTER);
+  const double peak = 1 / (2 * std::numbers::pi);
   EXPECT_NEAR(p.a / (area * peak / SURFCAST_COVERAGE_MINIFIED), 1, 0.05) << "a fair sample of the million";
   // 200, 90, 20 in linear light, blended over black.
   EXPECT_NEAR(p.r / p.a, 0.577580, 0.002);
@@ -194,14 +194,14 @@ TEST_F(RendererGLTest, AMillionSurfelsInOnePixelKeepTheirColor) {
   EXPECT_NEAR(p.b / p.a, 0.006995, 0.0005);
 }
 
-TEST_F(RendererGLTest, SilhouettesAreSharperUnderPerPixelNormalisation) {
+TEST_F(RendererGLTest, SilhouettesAreSharperWhereTheyAreAskedFor) {
   SurfelCloud cloud = testing::fibonacci_sphere(100000, 1, {0, 0, 0}, {255, 255, 255});
   cloud.weights.assign(cloud.size(), 1);
   const testing::ModelPointer& model = model_of(cloud);
   // Pixels of a row across the sphere that are neither whole nor empty.
-  const auto soft_pixels = [&](Normalization normalization) {
+  const auto soft_pixels = [&](bool silhouettes) {
     PictureRequest request = front_view(256, 256);
-    request.normalization = normalization;
+    request.silhouettes = silhouettes;
     const Image image = draw(model, request).image;
     int soft = 0;
     for (int y = 120; y < 136; ++y) {
@@ -212,7 +212,7 @@ TEST_F(RendererGLTest, SilhouettesAreSharperUnderPerPixelNormalisation) {
     }
     return soft;
   };
-  EXPECT_LT(soft_pixels(Normalization::kPixel), soft_pixels(Normalization::kSurfel));
+  EXPECT_LT(soft_pixels(true), soft_pixels(false));
 }
 
 TEST_F(RendererGLTest, CoincidentSurfelsAreOne) {
