@@ -83,12 +83,14 @@ ScalarAttribute read_scalar(const ScalarColumn& attribute, const Column& column)
 
 }  // namespace
 
-Result<DecodedBlock> decode_block(std::span<const std::byte> bytes, const BlockShape& shape) {
+Result<DecodedBlock> decode_block(std::span<const std::byte> bytes, const BlockShape& shape, size_t scalars) {
   const bool colored = shape.color_bits > 0;
   const std::vector<size_t> columns = field_columns(colored, shape.scalars.size());
   if (bytes.empty()) return fail(ErrorKind::kInvalidInput, "cut off");
   const Precision codes = BlockPrecision::of_flags(static_cast<uint8_t>(bytes.front())).codes();
-  const Result<std::vector<Field>> fields = decode_fields(bytes.subspan(1), columns, shape.surfels);
+  const size_t first_scalar = kFixedFields + (colored ? 3 : 0);
+  const Result<std::vector<Field>> fields =
+      decode_fields(bytes.subspan(1), columns, shape.surfels, first_scalar + scalars);
   if (!fields) return fail(fields.error());
   if (!in_range(*fields, codes, shape)) return fail(ErrorKind::kInvalidInput, "values out of range");
 
@@ -102,8 +104,7 @@ Result<DecodedBlock> decode_block(std::span<const std::byte> bytes, const BlockS
   read_positions((*fields)[kPositionField], block);
   read_surfaces(*fields, codes, block);
   if (colored) read_colors(std::span(*fields).subspan(kFixedFields, 3), shape.color_bits, block);
-  const size_t first_scalar = kFixedFields + (colored ? 3 : 0);
-  for (size_t i = 0; i < shape.scalars.size(); ++i) {
+  for (size_t i = 0; i < scalars; ++i) {
     block.scalars.push_back(read_scalar(shape.scalars[i], (*fields)[first_scalar + i][0]));
   }
   return block;

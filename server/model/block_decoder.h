@@ -29,7 +29,8 @@ struct BlockShape {
   std::span<const ScalarColumn> scalars;
 };
 
-/// Decodes a block. Fails when the bytes do not hold what the shape says.
-Result<DecodedBlock> decode_block(std::span<const std::byte> bytes, const BlockShape& shape);
+/// Decodes a block, with the first `scalars` of its scalar attributes. Fails when the bytes do not hold what the shape
+/// says.
+Result<DecodedBlock> decode_block(std::span<const std::byte> bytes, const BlockShape& shape, size_t scalars);
 
 }  // namespace surfcast

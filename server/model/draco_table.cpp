@@ -54,8 +54,10 @@ bool states_attributes(ByteReader& reader, std::span<const TableType> types) {
   return reader.ok();
 }
 
-/// Draco allocates by what it is told, so that is checked first. Layout of the beginning (Draco bitstream 2.3):
-/// "DRACO", version in 2 bytes, encoder type, method, flags in 2 bytes, number of points in 4, then the attributes.
+/// "DRACO", version in 2 bytes, encoder type, method, flags in 2 bytes, number of points in 4 (Draco bitstream 2.3).
+constexpr size_t kDracoHeadBytes = 15;
+
+/// Draco allocates by what it is told, so that is checked first. The attributes follow its head.
 bool states_table(std::span<const std::byte> bytes, std::span<const TableType> types, uint32_t rows) {
   constexpr uint16_t kMetadataFlag = 0x8000;
   ByteReader reader(bytes);
@@ -66,6 +68,26 @@ bool states_table(std::span<const std::byte> bytes, std::span<const TableType> t
   const auto points = reader.get<uint32_t>();
   return type == draco::POINT_CLOUD && method == draco::POINT_CLOUD_SEQUENTIAL_ENCODING &&
          (flags & kMetadataFlag) == 0 && points == rows && states_attributes(reader, types);
+}
+
+/// The bytes of a table of the first attributes alone. Those lie one behind another, each coded for itself, so it is
+/// enough to state fewer: what is left over behind the last one is not read.
+std::vector<std::byte> first_attributes(std::span<const std::byte> bytes, size_t wanted) {
+  ByteReader reader(bytes);
+  ByteWriter writer;
+  writer.put_bytes(reader.get_bytes(kDracoHeadBytes));
+  writer.put(reader.get<uint8_t>());
+  const uint64_t all = reader.get_varint();
+  writer.put_varint(wanted);
+  for (size_t i = 0; i < all; ++i) {
+    ByteWriter attribute;
+    attribute.put_bytes(reader.get_bytes(4));
+    attribute.put_varint(reader.get_varint());
+    if (i < wanted) writer.put_bytes(attribute.bytes());
+  }
+  writer.put_bytes(reader.get_bytes(all).first(wanted));
+  writer.put_bytes(reader.rest());
+  return std::move(writer).take();
 }
 
 /// Draco believes in 64 symbols for each byte that is left and takes memory for them, so there must not be many bytes.
@@ -113,9 +135,15 @@ std::vector<std::byte> encode_table(std::span<const TableAttribute> attributes) 
 }
 
 Result<std::vector<TableAttribute>> decode_table(std::span<const std::byte> bytes, std::span<const TableType> types,
-                                                 uint32_t rows) {
+                                                 uint32_t rows, size_t wanted) {
+  SURFCAST_EXPECTS(wanted <= types.size());
   if (!states_table(bytes, types, rows)) return fail(ErrorKind::kInvalidInput, "its Draco data states another shape");
   if (!plausible_size(bytes, types, rows)) return fail(ErrorKind::kInvalidInput, "its Draco data is too long");
+  if (wanted == 0) return std::vector<TableAttribute>();
+  const std::vector<std::byte> shortened =
+      wanted < types.size() ? first_attributes(bytes, wanted) : std::vector<std::byte>();
+  if (!shortened.empty()) bytes = shortened;
+  types = types.first(wanted);
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
   draco::Decoder decoder;

@@ -27,8 +27,9 @@ struct TableAttribute {
 /// Packs attributes of one length as a Draco point cloud. Rows keep their order.
 std::vector<std::byte> encode_table(std::span<const TableAttribute> attributes);
 
-/// Unpacks a table that must have `rows` rows and attributes of just these types.
+/// Unpacks the first `wanted` attributes of a table, which must have `rows` rows and attributes of just these types.
+/// The time for others is saved.
 Result<std::vector<TableAttribute>> decode_table(std::span<const std::byte> bytes, std::span<const TableType> types,
-                                                 uint32_t rows);
+                                                 uint32_t rows, size_t wanted);
 
 }  // namespace surfcast

@@ -113,26 +113,29 @@ std::vector<std::byte> encode_fields(std::span<const Field> fields) {
 }
 
 Result<std::vector<Field>> decode_fields(std::span<const std::byte> bytes, std::span<const size_t> columns,
-                                         uint32_t rows) {
+                                         uint32_t rows, size_t wanted) {
   ByteReader reader(bytes);
   std::vector<FieldHead> heads;
   std::vector<TableType> types;
+  size_t wanted_pieces = 0;
   for (const size_t count : columns) {
     Result<FieldHead> head = read_head(reader, count);
     if (!head) return fail(std::move(head.error()));
     for (int piece = 0; piece < piece_count(head->width); ++piece) {
       types.push_back({piece_bytes(head->width, piece), static_cast<uint8_t>(count)});
     }
+    if (heads.size() < wanted) wanted_pieces = types.size();
     heads.push_back(std::move(*head));
   }
   std::vector<TableAttribute> table;
   if (!types.empty()) {
-    auto decoded = decode_table(reader.rest(), types, rows);
+    auto decoded = decode_table(reader.rest(), types, rows, wanted_pieces);
     if (!decoded) return fail(std::move(decoded.error()));
     table = std::move(*decoded);
   }
   std::vector<Field> fields;
   size_t next = 0;
+  heads.resize(std::min(wanted, heads.size()));
   for (const FieldHead& head : heads) {
     Field field = constant_field(head, rows);
     for (int piece = 0; piece < piece_count(head.width); ++piece) add_piece(table[next++], head.packings, piece, field);

@@ -148,7 +148,22 @@ void ModelFile::expect(size_t block) const {
   state_->file.expect(record.offset, record.bytes);
 }
 
-Result<DecodedBlock> ModelFile::decode(size_t block) const {
+namespace {
+
+/// How many of the scalars must be decoded, counted from the first.
+size_t count_of(WantedScalars wanted, std::span<const ScalarColumn> scalars) {
+  if (wanted == WantedScalars::kNone) return 0;
+  if (wanted == WantedScalars::kAll) return scalars.size();
+  size_t count = 0;
+  for (size_t i = 0; i < scalars.size(); ++i) {
+    if (scalars[i].coarse) count = i + 1;
+  }
+  return count;
+}
+
+}  // namespace
+
+Result<DecodedBlock> ModelFile::decode(size_t block, WantedScalars scalars) const {
   SURFCAST_EXPECTS(block < state_->directory.blocks.size());
   const auto named = [&](const Error& error) {
     return fail(error.kind, state_->path.string() + ": block " + std::to_string(block) + ": " + error.message);
@@ -163,7 +178,7 @@ Result<DecodedBlock> ModelFile::decode(size_t block) const {
   shape.surfels = record.surfels;
   shape.color_bits = state_->info.color_bits;
   shape.scalars = blocks()[block].level == 0 ? state_->directory.scalars : state_->coarse_scalars;
-  Result<DecodedBlock> decoded = decode_block(bytes, shape);
+  Result<DecodedBlock> decoded = decode_block(bytes, shape, count_of(scalars, shape.scalars));
   if (!decoded) return named(decoded.error());
   return decoded;
 }

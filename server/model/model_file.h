@@ -52,12 +52,19 @@ struct DecodedBlock {
   std::vector<float> weights;        ///< s_k
   std::vector<glm::u16vec3> colors;  ///< in ModelInfo::color_bits; empty without colour
   /// Of a leaf as ModelInfo::scalar_names. Coarse blocks have only those of them that can be averaged, intensity and
-  /// classification.
+  /// classification. The first of these, if not all were wanted.
   std::vector<ScalarAttribute> scalars;
 
   [[nodiscard]] size_t size() const { return indices.size(); }
   /// World coordinates of surfel i, exact for inputs on a grid.
   [[nodiscard]] glm::dvec3 position(size_t i) const { return grid.position(origin + glm::i64vec3(indices[i])); }
+};
+
+/// The scalar attributes that somebody needs of a block. Decoding others takes as long as all that is drawn.
+enum class WantedScalars {
+  kNone,
+  kDrawn,  ///< at least those by which surfels are coloured or hidden, which coarse blocks have, too
+  kAll,
 };
 
 /// An open model file. All methods are const and safe to call from several threads at once.
@@ -74,8 +81,8 @@ class ModelFile {
   [[nodiscard]] std::span<const BlockEntry> blocks() const { return tree().blocks(); }
   /// Says that a block is about to be decoded, so that reading its bytes begins. Returns at once.
   void expect(size_t block) const;
-  /// Checks the checksum of a block and decodes it.
-  [[nodiscard]] Result<DecodedBlock> decode(size_t block) const;
+  /// Checks the checksum of a block and decodes it. `scalars`: of the others only those that come before these.
+  [[nodiscard]] Result<DecodedBlock> decode(size_t block, WantedScalars scalars = WantedScalars::kAll) const;
   [[nodiscard]] const std::filesystem::path& path() const;
   /// Tells this opening of a file from every other one in the life of the process, also after it has been closed.
   [[nodiscard]] uint64_t id() const;

@@ -47,6 +47,7 @@ void add_run(SurfelSequence& sequence, PackedRun run, Fill fill) {
 /// that they begin at even places.
 SurfelSequence sequence_of(std::span<const MergedLevel> levels) {
   SurfelSequence sequence;
+  sequence.surfels.reserve(kMostPackedPerSurfel * levels.front().surfels.size());
   const auto put = [&](size_t level, uint32_t i) { sequence.surfels.push_back(levels[level].surfels[i]); };
   for (size_t level = 0; level + 1 < levels.size(); ++level) {
     add_run(sequence, {.finest = level == 0, .coarsest = false, .pairs = true}, [&] {

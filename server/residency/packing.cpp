@@ -4,13 +4,13 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <glm/vec2.hpp>
 #include <limits>
 #include <string_view>
 #include <utility>
 
 #include "base/contract.h"
 #include "geometry/morton.h"
-#include "model/quantize.h"
 #include "shared/surfel_layout.h"
 #include "surfel/drawn_radius.h"
 #include "surfel/srgb.h"
@@ -36,8 +36,15 @@ glm::uvec3 position_code(const glm::ivec3& index, const glm::ivec3& shift) {
   return glm::uvec3(index + ((glm::ivec3(1) << shift) >> 1)) >> glm::uvec3(shift);
 }
 
-glm::u16vec2 normal_code(const glm::vec3& normal) {
-  return encode_normal(normal, kSourcePrecision.octahedral_half);
+/// As encode_normal, but in single precision, which is off by a thousandth of a step.
+glm::u16vec2 normal_code(const glm::vec3& n) {
+  const float norm = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
+  const float x = n.x / norm;
+  const float y = n.y / norm;
+  const float folded_x = n.z < 0 ? std::copysign(1 - std::abs(y), x) : x;
+  const float folded_y = n.z < 0 ? std::copysign(1 - std::abs(x), y) : y;
+  constexpr auto kHalf = static_cast<float>(SURFCAST_NORMAL_HALF);
+  return glm::u16vec2((folded_x + 1) * kHalf + 0.5F, (folded_y + 1) * kHalf + 0.5F);
 }
 
 uint32_t color_code(const glm::u16vec3& color, int bits) {
@@ -60,25 +67,24 @@ glm::vec3 linear_of_code(uint32_t color) {
   return {levels[color & 255], levels[(color >> 8) & 255], levels[color >> 16]};
 }
 
-/// For light in steps of 1/4095 the darkest level it may be nearest to.
-const std::array<uint8_t, 4096>& first_levels() {
-  static const std::array<uint8_t, 4096> kFirst = [] {
+/// For light in steps of 1/65535, a twentieth of the finest step of sRGB, the level nearest to it.
+const std::array<uint8_t, 65536>& nearest_levels() {
+  static const std::array<uint8_t, 65536> kNearest = [] {
     const std::array<float, 256>& levels = linear_levels();
-    std::array<uint8_t, 4096> first{};
-    for (size_t i = 0; i < first.size(); ++i) {
-      const auto above = std::upper_bound(levels.begin() + 1, levels.end(), static_cast<float>(i) / 4095.0F);
-      first[i] = static_cast<uint8_t>(above - levels.begin() - 1);
+    std::array<uint8_t, 65536> nearest{};
+    uint8_t level = 0;
+    for (size_t i = 0; i < nearest.size(); ++i) {
+      const float light = static_cast<float>(i) / 65535.0F;
+      while (level < 255 && levels[level + 1] - light < light - levels[level]) ++level;
+      nearest[i] = level;
     }
-    return first;
+    return nearest;
   }();
-  return kFirst;
+  return kNearest;
 }
 
 uint32_t nearest_level(float light) {
-  const std::array<float, 256>& levels = linear_levels();
-  uint32_t level = first_levels()[static_cast<size_t>(std::clamp(light, 0.0F, 1.0F) * 4095.0F)];
-  while (level < 255 && levels[level + 1] - light < light - levels[level]) ++level;
-  return level;
+  return nearest_levels()[static_cast<size_t>(std::clamp(light, 0.0F, 1.0F) * 65535.0F + 0.5F)];
 }
 
 uint32_t code_of_linear(const glm::vec3& light) {
@@ -95,17 +101,16 @@ glm::uvec4 pack_surfel(const glm::uvec3& position, const glm::u16vec2& normal, u
 
 }  // namespace
 
-LogScale LogScale::of(std::span<const float> values) {
+LogScale LogScale::between(float least, float largest) {
   constexpr double kMostOctaves = 32;
-  const auto [least, largest] = std::minmax_element(values.begin(), values.end());
-  const double top = std::log2(static_cast<double>(*largest));
-  return {top, std::min(kMostOctaves, top - std::log2(static_cast<double>(*least)))};
+  const double top = std::log2(double{largest});
+  return {top, std::min(kMostOctaves, top - std::log2(double{least}))};
 }
 
-uint32_t LogScale::code(double value) const {
+uint32_t LogScale::code(float value) const {
   if (octaves <= 0) return 0;
-  const double u = (log2_largest - std::log2(value)) / octaves;
-  return static_cast<uint32_t>(std::clamp(u, 0.0, 1.0) * SURFCAST_SIZE_STEPS + 0.5);
+  const float u = (static_cast<float>(log2_largest) - std::log2(value)) / static_cast<float>(octaves);
+  return static_cast<uint32_t>(std::clamp(u, 0.0F, 1.0F) * SURFCAST_SIZE_STEPS + 0.5F);
 }
 
 namespace {
@@ -129,15 +134,42 @@ class CodeFinder {
   glm::vec3 largest_;
 };
 
-std::vector<uint32_t> along_curve(const DecodedBlock& block, const glm::ivec3& shift) {
-  std::vector<std::pair<uint64_t, uint32_t>> codes;
-  codes.reserve(block.size());
-  for (uint32_t i = 0; i < block.size(); ++i) codes.emplace_back(interleave(position_code(block.indices[i], shift)), i);
-  std::sort(codes.begin(), codes.end());
-  std::vector<uint32_t> order;
-  order.reserve(codes.size());
-  for (const auto& [code, i] : codes) order.push_back(i);
-  return order;
+/// A surfel and where it stands on the curve.
+struct OnCurve {
+  uint64_t code = 0;
+  uint32_t surfel = 0;
+};
+
+/// Sorts by `bits` bits of the codes from `shift` on; what is equal keeps its order.
+void sort_by_digit(std::span<const OnCurve> from, int shift, int bits, std::span<OnCurve> to) {
+  const uint64_t mask = (uint64_t{1} << bits) - 1;
+  std::vector<uint32_t> next(mask + 1);
+  for (const OnCurve& one : from) ++next[(one.code >> shift) & mask];
+  uint32_t before = 0;
+  for (uint32_t& count : next) before += std::exchange(count, before);
+  for (const OnCurve& one : from) to[next[(one.code >> shift) & mask]++] = one;
+}
+
+/// Digit by digit, which takes a quarter of the time of comparing.
+void sort_along_curve(std::vector<OnCurve>& surfels, uint64_t largest) {
+  constexpr int kDigitBits = 11;
+  std::vector<OnCurve> other(surfels.size());
+  for (int shift = 0; shift < static_cast<int>(std::bit_width(largest)); shift += kDigitBits) {
+    sort_by_digit(surfels, shift, kDigitBits, other);
+    std::swap(surfels, other);
+  }
+}
+
+std::vector<OnCurve> along_curve(const DecodedBlock& block, const glm::ivec3& shift) {
+  std::vector<OnCurve> surfels;
+  surfels.reserve(block.size());
+  uint64_t largest = 0;
+  for (uint32_t i = 0; i < block.size(); ++i) {
+    surfels.push_back({interleave(position_code(block.indices[i], shift)), i});
+    largest = std::max(largest, surfels.back().code);
+  }
+  sort_along_curve(surfels, largest);
+  return surfels;
 }
 
 /// The surfels of a block along a Morton curve, positions from code 0 on.
@@ -146,7 +178,7 @@ std::vector<MergedSurfel> surfels_of(const DecodedBlock& block, int color_bits, 
   std::vector<MergedSurfel> surfels;
   surfels.reserve(block.size());
   const glm::dvec3 step = lattice.step();
-  for (const uint32_t i : along_curve(block, lattice.shift)) {
+  for (const auto& [code, i] : along_curve(block, lattice.shift)) {
     const glm::vec3 light =
         block.colors.empty() ? glm::vec3(0) : linear_of_code(color_code(block.colors[i], color_bits));
     surfels.push_back({glm::vec3(step * glm::dvec3(position_code(block.indices[i], lattice.shift))), block.normals[i],
@@ -155,12 +187,14 @@ std::vector<MergedSurfel> surfels_of(const DecodedBlock& block, int color_bits, 
   return surfels;
 }
 
-template <typename Get>
-LogScale log_scale_of(std::span<const MergedSurfel> surfels, Get get) {
-  std::vector<float> values;
-  values.reserve(surfels.size());
-  for (const MergedSurfel& surfel : surfels) values.push_back(get(surfel));
-  return LogScale::of(values);
+LogScale log_scale_of(std::span<const MergedSurfel> surfels, float MergedSurfel::*size) {
+  float least = surfels.front().*size;
+  float largest = least;
+  for (const MergedSurfel& surfel : surfels) {
+    least = std::min(least, surfel.*size);
+    largest = std::max(largest, surfel.*size);
+  }
+  return LogScale::between(least, largest);
 }
 
 }  // namespace
@@ -170,15 +204,15 @@ PackedBlock pack_block(const DecodedBlock& block, int color_bits, bool oriented)
   PackedBlock packed;
   packed.lattice = packed_lattice(block);
   SurfelSequence sequence = merge_levels(surfels_of(block, color_bits, packed.lattice), oriented);
-  packed.radius = log_scale_of(sequence.surfels, [](const MergedSurfel& s) { return s.radius; });
-  packed.weight = log_scale_of(sequence.surfels, [](const MergedSurfel& s) { return s.weight; });
+  packed.radius = log_scale_of(sequence.surfels, &MergedSurfel::radius);
+  packed.weight = log_scale_of(sequence.surfels, &MergedSurfel::weight);
   const CodeFinder code_of(packed.lattice);
   packed.surfels.reserve(sequence.surfels.size());
   packed.representatives.reserve(sequence.surfels.size());
   for (const MergedSurfel& s : sequence.surfels) {
     packed.representatives.push_back(s.representative);
-    packed.surfels.push_back(pack_surfel(code_of(s.position), normal_code(s.normal),
-                                         packed.radius.code(double{s.radius}), packed.weight.code(double{s.weight}),
+    packed.surfels.push_back(pack_surfel(code_of(s.position), normal_code(s.normal), packed.radius.code(s.radius),
+                                         packed.weight.code(s.weight),
                                          block.colors.empty() ? 0 : code_of_linear(s.light)));
   }
   packed.runs = std::move(sequence.runs);

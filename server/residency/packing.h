@@ -17,9 +17,9 @@ struct LogScale {
   double log2_largest = 0;
   double octaves = 0;  ///< between code 0 and the last
 
-  /// The scale of positive numbers; what is below the largest by more than 2^-32 becomes that.
-  static LogScale of(std::span<const float> values);
-  [[nodiscard]] uint32_t code(double value) const;
+  /// The scale of positive numbers between these; what is below the largest by more than 2^-32 becomes that.
+  static LogScale between(float least, float largest);
+  [[nodiscard]] uint32_t code(float value) const;
 };
 
 /// Where the position codes of a block lie.

@@ -16,7 +16,7 @@ std::vector<Field> round_trip(const std::vector<Field>& fields) {
   std::vector<size_t> columns;
   for (const Field& field : fields) columns.push_back(field.size());
   const auto rows = static_cast<uint32_t>(fields.front().front().size());
-  Result<std::vector<Field>> decoded = decode_fields(encode_fields(fields), columns, rows);
+  Result<std::vector<Field>> decoded = decode_fields(encode_fields(fields), columns, rows, fields.size());
   EXPECT_TRUE(decoded);
   return decoded ? std::move(*decoded) : std::vector<Field>();
 }
@@ -80,7 +80,7 @@ TEST(Field, DracoDataFarLongerThanItsTableIsRefused) {
   const std::vector<Field> fields{{{1, 2, 3}}};
   std::vector<std::byte> bytes = encode_fields(fields);
   bytes.resize(bytes.size() + 70000);
-  const Result<std::vector<Field>> decoded = decode_fields(bytes, std::vector<size_t>{1}, 3);
+  const Result<std::vector<Field>> decoded = decode_fields(bytes, std::vector<size_t>{1}, 3, 1);
   ASSERT_FALSE(decoded);
   EXPECT_NE(decoded.error().message.find("too long"), std::string::npos);
 }
@@ -95,7 +95,7 @@ TEST(Field, DracoDataThatStatesOtherAttributesIsRefusedBeforeItIsDecoded) {
   for (const size_t at : {15, 16, 18, 19}) {
     std::vector<std::byte> bytes = whole;
     bytes.at(draco + at) = std::byte{100};
-    const Result<std::vector<Field>> decoded = decode_fields(bytes, std::vector<size_t>{1, 1}, 3);
+    const Result<std::vector<Field>> decoded = decode_fields(bytes, std::vector<size_t>{1, 1}, 3, 2);
     ASSERT_FALSE(decoded) << at;
     EXPECT_NE(decoded.error().message.find("states another shape"), std::string::npos) << at;
   }
@@ -107,11 +107,30 @@ TEST(Field, BytesOfAnotherShapeAreRefused) {
   const std::vector<size_t> right{1, 1};
   const std::vector<size_t> joined{2};
   const std::vector<size_t> more{1, 1, 1};
-  EXPECT_TRUE(decode_fields(bytes, right, 3));
-  EXPECT_FALSE(decode_fields(bytes, right, 4));
-  EXPECT_FALSE(decode_fields(bytes, joined, 3));
-  EXPECT_FALSE(decode_fields(bytes, more, 3));
-  EXPECT_FALSE(decode_fields({}, right, 3));
+  EXPECT_TRUE(decode_fields(bytes, right, 3, right.size()));
+  EXPECT_FALSE(decode_fields(bytes, right, 4, right.size()));
+  EXPECT_FALSE(decode_fields(bytes, joined, 3, joined.size()));
+  EXPECT_FALSE(decode_fields(bytes, more, 3, more.size()));
+  EXPECT_FALSE(decode_fields({}, right, 3, right.size()));
+}
+
+TEST(Field, TheFirstFieldsAloneAreTheSame) {
+  std::mt19937_64 random(3);
+  std::vector<Field> fields;
+  for (const int bits : {8, 0, 40, 64, 0, 16}) {
+    Field field(bits == 8 ? 3 : 1);
+    for (Column& column : field) {
+      for (int i = 0; i < 500; ++i) column.push_back(bits == 0 ? 7 : random() >> (64 - bits));
+    }
+    fields.push_back(field);
+  }
+  const std::vector<size_t> columns{3, 1, 1, 1, 1, 1};
+  const std::vector<std::byte> bytes = encode_fields(fields);
+  for (size_t wanted = 0; wanted <= fields.size(); ++wanted) {
+    const Result<std::vector<Field>> decoded = decode_fields(bytes, columns, 500, wanted);
+    ASSERT_TRUE(decoded) << wanted;
+    EXPECT_EQ(*decoded, std::vector<Field>(fields.begin(), fields.begin() + static_cast<std::ptrdiff_t>(wanted)));
+  }
 }
 
 TEST(PathOrder, VisitsEveryPointOnce) {

@@ -146,20 +146,20 @@ TEST(HostileModel, WrongBlocksWithRightChecksumsFailOrDecode) {
   const Grid grid{glm::dvec3(1e-4), glm::dvec3(0)};
   const EncodedBlock block = encode_block(cloud, members, grid);
   const BlockShape shape{grid, block.origin, block.extent, block.surfels, 8, scalars};
-  ASSERT_TRUE(decode_block(block.bytes, shape));
+  ASSERT_TRUE(decode_block(block.bytes, shape, 1));
 
   std::mt19937 random(4);
   for (int round = 0; round < 3000; ++round) {
     std::vector<std::byte> bytes = block.bytes;
     for (int flips = 0; flips < 2; ++flips)
       bytes[random() % bytes.size()] ^= static_cast<std::byte>(1u << random() % 8);
-    const Result<DecodedBlock> decoded = decode_block(bytes, shape);
+    const Result<DecodedBlock> decoded = decode_block(bytes, shape, random() % 2);
     if (decoded) {
       ASSERT_EQ(decoded->size(), block.surfels);
     }
   }
   for (size_t length = 0; length < block.bytes.size(); ++length) {
-    const Result<DecodedBlock> decoded = decode_block(std::span(block.bytes).first(length), shape);
+    const Result<DecodedBlock> decoded = decode_block(std::span(block.bytes).first(length), shape, length % 2);
     if (decoded) {
       ASSERT_EQ(decoded->size(), block.surfels);
     }
@@ -172,8 +172,8 @@ TEST(HostileModel, ABlockWithMoreSurfelsThanItsTableSaysIsRefused) {
   std::iota(members.begin(), members.end(), 0);
   const Grid grid{glm::dvec3(1e-4), glm::dvec3(0)};
   const EncodedBlock block = encode_block(cloud, members, grid);
-  EXPECT_FALSE(decode_block(block.bytes, {grid, block.origin, block.extent, 299, 8, {}}));
-  EXPECT_FALSE(decode_block(block.bytes, {grid, block.origin, block.extent / 2u, 300, 8, {}}));
+  EXPECT_FALSE(decode_block(block.bytes, {grid, block.origin, block.extent, 299, 8, {}}, 0));
+  EXPECT_FALSE(decode_block(block.bytes, {grid, block.origin, block.extent / 2u, 300, 8, {}}, 0));
 }
 
 TEST(HostileModel, AHugeCountInTheTablesAllocatesNothing) {

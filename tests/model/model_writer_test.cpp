@@ -21,12 +21,14 @@ SurfelCloud leaf_cloud(size_t count) {
   cloud.scalars.push_back({"gps_time", std::vector<double>(count, 12.5)});
   cloud.scalars.push_back({"intensity", std::vector<uint16_t>(count, 77)});
   cloud.scalars.push_back({"classification", std::vector<uint8_t>(count, 6)});
+  cloud.scalars.push_back({"point_source_id", std::vector<uint16_t>(count, 3)});
   return cloud;
 }
 
 SurfelCloud coarse_cloud(size_t count) {
   SurfelCloud cloud = leaf_cloud(count);
   cloud.scalars.erase(cloud.scalars.begin());
+  cloud.scalars.pop_back();
   return cloud;
 }
 
@@ -72,7 +74,7 @@ TEST(ModelWriter, GivesCoarseBlocksOnlyTheAttributesThatCanBeAveraged) {
   const TestFolder folder;
   const Result<ModelFile> model = write_two_levels(folder / "tree.surf");
   ASSERT_TRUE(model) << model.error().message;
-  EXPECT_EQ(model->info().scalar_names, (std::vector<std::string>{"gps_time", "intensity", "classification"}));
+  EXPECT_EQ(model->info().scalar_names, (std::vector<std::string>{"gps_time", "intensity", "classification", "point_source_id"}));
   const Result<DecodedBlock> coarse = model->decode(2);
   ASSERT_TRUE(coarse) << coarse.error().message;
   ASSERT_EQ(coarse->scalars.size(), 2U);
@@ -81,8 +83,20 @@ TEST(ModelWriter, GivesCoarseBlocksOnlyTheAttributesThatCanBeAveraged) {
   EXPECT_EQ(coarse->scalars[1].name, "classification");
   const Result<DecodedBlock> leaf = model->decode(3);
   ASSERT_TRUE(leaf) << leaf.error().message;
-  ASSERT_EQ(leaf->scalars.size(), 3U);
+  ASSERT_EQ(leaf->scalars.size(), 4U);
   EXPECT_EQ(leaf->scalars[0].values, ScalarValues(std::vector<double>(20, 12.5)));
+}
+
+TEST(ModelWriter, ScalarsThatAreNotWantedAreLeftOut) {
+  const TestFolder folder;
+  const Result<ModelFile> model = write_two_levels(folder / "tree.surf");
+  ASSERT_TRUE(model) << model.error().message;
+  const auto count = [&](size_t block, WantedScalars wanted) { return model->decode(block, wanted)->scalars.size(); };
+  EXPECT_EQ(count(2, WantedScalars::kNone), 0U);
+  EXPECT_EQ(count(2, WantedScalars::kDrawn), 2U);
+  EXPECT_EQ(count(3, WantedScalars::kNone), 0U);
+  EXPECT_EQ(count(3, WantedScalars::kDrawn), 3U) << "up to the class";
+  EXPECT_EQ(model->decode(3, WantedScalars::kNone)->size(), 20U);
 }
 
 TEST(ModelWriter, RefusesAModelWithoutBlocks) {
