@@ -11,7 +11,7 @@
 #include "include/frame.glsl"
 #include "include/srgb.glsl"
 
-layout(local_size_x = SURFCAST_TILE_WIDTH, local_size_y = SURFCAST_TILE_HEIGHT) in;
+layout(local_size_x = SURFCAST_BLOCK_WIDTH, local_size_y = SURFCAST_BLOCK_HEIGHT) in;
 
 layout(std140, binding = SURFCAST_BIND_EYE_DOME) uniform EyeDome { EyeDomeConstants eye_dome; };
 layout(std430, binding = SURFCAST_BIND_LIGHT) readonly buffer LightBuffer { vec4 lights[]; };

@@ -8,7 +8,7 @@
 #include "include/frame.glsl"
 
 layout(location = SURFCAST_UNIFORM_FIRST_GROUP) uniform uint first_group;
-layout(local_size_x = SURFCAST_TILE_WIDTH, local_size_y = SURFCAST_TILE_HEIGHT) in;
+layout(local_size_x = SURFCAST_BLOCK_WIDTH, local_size_y = SURFCAST_BLOCK_HEIGHT) in;
 
 // Inverse depth of the front surface, 0 where none is.
 layout(std430, binding = SURFCAST_BIND_FRONTS) readonly buffer Fronts { float fronts[]; };
@@ -45,7 +45,8 @@ void mark(ivec2 tile, ivec2 low, ivec2 high) {
 }
 
 void main() {
-  ivec2 at = ivec2(gl_WorkGroupID.x, first_group + gl_WorkGroupID.y) * kTile + ivec2(gl_LocalInvocationID.xy);
+  ivec2 block = ivec2(gl_WorkGroupID.x, first_group + gl_WorkGroupID.y);
+  ivec2 at = block * ivec2(SURFCAST_BLOCK_WIDTH, SURFCAST_BLOCK_HEIGHT) + ivec2(gl_LocalInvocationID.xy);
   if (any(greaterThanEqual(at, frame.region.zw)) || !(bends(at, ivec2(1, 0)) || bends(at, ivec2(0, 1)))) return;
   ivec2 low = max(at - SURFCAST_SILHOUETTE_REACH, ivec2(0));
   ivec2 high = min(at + SURFCAST_SILHOUETTE_REACH, frame.region.zw - 1);

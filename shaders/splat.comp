@@ -19,7 +19,10 @@ const int kMaxLayers = 8;
 const float kOpaque = 1.0 / 128.0;  // transmittance that is not worth another round
 
 layout(location = SURFCAST_UNIFORM_FIRST_GROUP) uniform uint first_group;
-layout(local_size_x = SURFCAST_TILE_WIDTH, local_size_y = SURFCAST_TILE_HEIGHT / SURFCAST_ROWS) in;
+// A work group draws SURFCAST_TILES tiles.
+const int kLanesAcross = SURFCAST_TILE_WIDTH / SURFCAST_COLUMNS;  // of a tile
+layout(local_size_x = SURFCAST_TILES * SURFCAST_TILE_WIDTH / SURFCAST_COLUMNS,
+       local_size_y = SURFCAST_TILE_HEIGHT / SURFCAST_ROWS) in;
 
 layout(std430, binding = SURFCAST_BIND_TILE_COUNT) readonly buffer TileCount { uint tile_count[]; };
 layout(std430, binding = SURFCAST_BIND_TILE_OFFSET) readonly buffer TileOffset { uint tile_offset[]; };
@@ -76,18 +79,21 @@ struct TileLists {
 };
 
 // Draws the wanted pixels of a lane. `front`: inverse depth of the first surface, see silhouettes.comp.
-Light draw(TileLists tile, BoolRows wanted, vec2 pixel, out Rows front) {
-  Rows transmittance = mix(Rows(0.0), Rows(1.0), wanted);
-#ifdef SURFCAST_EYE_DOME
-  Light light = Light(Rows(0.0), Rows(0.0), Rows(0.0), transmittance, Rows(0.0), Rows(0.0));
-#else
-  Light light = Light(Rows(0.0), Rows(0.0), Rows(0.0), transmittance);
-#endif
-  Rows limit = Rows(3e38);  // inverse depth: nothing is nearer
+void draw(TileLists tile, BoolColumns wanted, vec2 pixel, out LightColumns light, out Columns front) {
+  Columns limit;
+  for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
+    light[c] = light_zero();
+    light[c].transmittance = mix(Rows(0.0), Rows(1.0), wanted[c]);
+    limit[c] = Rows(3e38);  // inverse depth: nothing is nearer
+  }
   for (int layer = 0; layer < kMaxLayers; ++layer) {
-    Rows surface = Rows(0.0);  // infinitely far
+    Columns surface;
+    ColumnSums sums;
+    for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
+      surface[c] = Rows(0.0);  // infinitely far
+      sums[c] = sums_zero();
+    }
     float peak = 0.0;
-    PixelSums sums = sums_zero();
     see_small(tile.first_small, tile.smalls, pixel, limit, surface, peak);
 #ifdef SURFCAST_LARGE
     see_large(tile.first_large, tile.larges, pixel, limit, surface, peak);
@@ -97,30 +103,34 @@ Light draw(TileLists tile, BoolRows wanted, vec2 pixel, out Rows front) {
 #ifdef SURFCAST_LARGE
     accumulate_large(tile.first_large, tile.larges, pixel, limit, surface, unit, sums);
 #endif
-    composite(light, sums, surface, 1.0 / unit, pixel);
+    bool more = false;
+    for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
+      composite(light[c], sums[c], surface[c], 1.0 / unit, column(pixel, c));
+      more = more || any_of(both(less(Rows(0.0), surface[c]), less(Rows(kOpaque), light[c].transmittance)));
+    }
     if (layer == 0) front = surface;
     limit = surface;
-    if (!any_of(both(less(Rows(0.0), surface), less(Rows(kOpaque), light.transmittance)))) break;
+    if (!more) break;
   }
-  return light;
 }
 
 // The pixels of a lane that are drawn: all of them, or, the second time, those at silhouettes.
-BoolRows wanted_rows(uint tile) {
-  Rows wanted = Rows(1.0);
+BoolColumns wanted_pixels(uint tile, ivec2 first) {
+  BoolColumns wanted;
+  for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
+    Rows wants = Rows(1.0);
 #ifdef SURFCAST_SHARPENED
-  uint mask = silhouette_mask[tile] >> (gl_LocalInvocationID.y * uint(SURFCAST_ROWS * SURFCAST_TILE_WIDTH) +
-                                        gl_LocalInvocationID.x);
-  for (int i = 0; i < SURFCAST_ROWS; ++i) ROW(wanted, i) = float((mask >> (i * SURFCAST_TILE_WIDTH)) & 1u);
+    uint mask = silhouette_mask[tile] >> (first.y * SURFCAST_TILE_WIDTH + first.x + c);
+    for (int i = 0; i < SURFCAST_ROWS; ++i) ROW(wants, i) = float((mask >> (i * SURFCAST_TILE_WIDTH)) & 1u);
 #endif
-  return less(Rows(0.0), wanted);
+    wanted[c] = less(Rows(0.0), wants);
+  }
+  return wanted;
 }
 
-void draw_lane(TileLists tile, BoolRows wanted, ivec2 local) {
-  Rows front;
-  Light light = draw(tile, wanted, vec2(frame.region.xy + local) + 0.5, front);
+void write_column(Light light, Rows front, BoolRows wanted, ivec2 first) {
   for (int i = 0; i < SURFCAST_ROWS; ++i) {
-    ivec2 at = local + ivec2(0, i);
+    ivec2 at = first + ivec2(0, i);
     if (!ROW(wanted, i) || any(greaterThanEqual(at, frame.region.zw))) continue;
     vec3 linear = vec3(ROW(light.red, i), ROW(light.green, i), ROW(light.blue, i));
 #ifdef SURFCAST_EYE_DOME
@@ -134,14 +144,25 @@ void draw_lane(TileLists tile, BoolRows wanted, ivec2 local) {
   }
 }
 
-void main() {
+// Place of the lane's tile, and whether there is one.
+bool find_tile(out uvec2 place) {
+  uint tile = gl_LocalInvocationID.x / uint(kLanesAcross);
 #ifdef SURFCAST_SHARPENED
-  uint index = silhouette_tiles[first_group + gl_WorkGroupID.x];
-  uvec2 place = uvec2(index % uint(frame.tiles.x), index / uint(frame.tiles.x));
+  uint at = (first_group + gl_WorkGroupID.x) * uint(SURFCAST_TILES) + tile;
+  if (at >= silhouette_count) return false;
+  uint index = silhouette_tiles[at];
+  place = uvec2(index % uint(frame.tiles.x), index / uint(frame.tiles.x));
+  return true;
 #else
-  uvec2 place = uvec2(gl_WorkGroupID.x, first_group + gl_WorkGroupID.y);
-  uint index = place.y * uint(frame.tiles.x) + place.x;
+  place = uvec2(gl_WorkGroupID.x * uint(SURFCAST_TILES) + tile, first_group + gl_WorkGroupID.y);
+  return place.x < uint(frame.tiles.x);
 #endif
+}
+
+void main() {
+  uvec2 place;
+  if (!find_tile(place)) return;
+  uint index = place.y * uint(frame.tiles.x) + place.x;
   uint large_list = index + uint(frame.tiles.z);
   TileLists tile =
       TileLists(tile_offset[index], tile_count[index], tile_offset[large_list], tile_count[large_list]);
@@ -150,9 +171,12 @@ void main() {
 #else
   if (tile.larges != 0u) return;
 #endif
-  BoolRows wanted = wanted_rows(index);
-  if (!any_of(wanted)) return;
-  draw_lane(tile, wanted,
-            ivec2(place) * ivec2(SURFCAST_TILE_WIDTH, SURFCAST_TILE_HEIGHT) +
-                ivec2(gl_LocalInvocationID.xy) * ivec2(1, SURFCAST_ROWS));
+  ivec2 first = ivec2(gl_LocalInvocationID.x % uint(kLanesAcross), gl_LocalInvocationID.y) *
+                ivec2(SURFCAST_COLUMNS, SURFCAST_ROWS);
+  ivec2 local = ivec2(place) * ivec2(SURFCAST_TILE_WIDTH, SURFCAST_TILE_HEIGHT) + first;
+  BoolColumns wanted = wanted_pixels(index, first);
+  LightColumns light;
+  Columns front;
+  draw(tile, wanted, vec2(frame.region.xy + local) + 0.5, light, front);
+  for (int c = 0; c < SURFCAST_COLUMNS; ++c) write_column(light[c], front[c], wanted[c], local + ivec2(c, 0));
 }

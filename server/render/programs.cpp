@@ -4,6 +4,7 @@
 
 #include "gl/program.h"
 #include "render/shader_library.h"
+#include "shared/frame_layout.h"
 
 namespace surfcast {
 namespace {
@@ -59,6 +60,11 @@ std::string define(const std::string& name, int value) {
   return "#define " + name + " " + std::to_string(value) + "\n";
 }
 
+std::string lane_defines(bool whole_tiles) {
+  return define("SURFCAST_COLUMNS", whole_tiles ? SURFCAST_TILE_WIDTH : 1) +
+         define("SURFCAST_ROWS", whole_tiles ? SURFCAST_TILE_HEIGHT : 1);
+}
+
 }  // namespace
 
 Result<Programs> Programs::create(const KernelShape& shape, const std::string& defines) {
@@ -92,8 +98,9 @@ Result<SplatPrograms> Programs::variant(const Variant& variant) {
     return {};
   };
   const std::string lanes = define("SURFCAST_PROJECT_LANES", shape_.project_lanes);
-  const std::string small = splat + define("SURFCAST_ROWS", shape_.rows);
-  const std::string large = splat + define("SURFCAST_ROWS", 1) + "#define SURFCAST_LARGE\n";
+  const std::string group = splat + define("SURFCAST_TILES", shape_.tiles);
+  const std::string small = group + lane_defines(shape_.whole_tiles);
+  const std::string large = group + lane_defines(false) + "#define SURFCAST_LARGE\n";
   const std::string finding = variant.silhouettes ? "#define SURFCAST_FINDS_SILHOUETTES\n" : "";
   Status status = compile(programs.project, "project.comp", project_defines(variant) + lanes);
   if (status) status = compile(programs.splat, "splat.comp", small + finding);

@@ -37,8 +37,9 @@ struct SplatPrograms {
 
 /// How the passes fit the device's vectors. No picture depends on it.
 struct KernelShape {
-  int rows = 1;            ///< pixels that a lane of the splat kernel holds, 1 or 4 (see include/rows.glsl)
-  int project_lanes = 64;  ///< lanes that share a chunk of surfels: one vector, or as many as hide waiting
+  bool whole_tiles = false;  ///< a lane of the splat kernel holds a tile instead of a pixel (see include/rows.glsl)
+  int tiles = 2;             ///< that a work group of the splat kernel draws
+  int project_lanes = 64;    ///< lanes that share a chunk of surfels: one vector, or as many as hide waiting
 };
 
 /// Compiles the passes when they are first needed.
@@ -50,6 +51,7 @@ class Programs {
   Result<SplatPrograms> variant(const Variant& variant);
   [[nodiscard]] const gl::Program& bin_offsets() const { return bin_offsets_; }
   [[nodiscard]] const gl::Program& bin() const { return bin_; }
+  [[nodiscard]] const KernelShape& shape() const { return shape_; }
 
  private:
   Result<const gl::Program*> program(const char* name, const std::string& defines);

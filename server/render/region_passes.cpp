@@ -289,9 +289,17 @@ Status bin(const layout::Counters& counters, Programs& programs, SplatBuffers& b
   });
 }
 
-Groups all_tiles(const RegionTask& task) {
+size_t ceil_divide(int total, int part) {
+  return static_cast<size_t>((total + part - 1) / part);
+}
+
+Groups all_tiles(const RegionTask& task, const KernelShape& shape) {
   const glm::ivec4& tiles = task.constants.tiles;
-  return {static_cast<size_t>(tiles.y), static_cast<size_t>(tiles.x)};
+  return {static_cast<size_t>(tiles.y), ceil_divide(tiles.x, shape.tiles)};
+}
+
+Groups all_pixels(const Region& region) {
+  return {ceil_divide(region.height, SURFCAST_BLOCK_HEIGHT), ceil_divide(region.width, SURFCAST_BLOCK_WIDTH)};
 }
 
 void clear_silhouettes(const RegionTask& task, SplatBuffers& buffers) {
@@ -304,7 +312,7 @@ void clear_silhouettes(const RegionTask& task, SplatBuffers& buffers) {
 }
 
 Status splat(const RegionTask& task, const layout::Counters& counters, const SplatPrograms& variant,
-             SplatBuffers& buffers, const Interruption& interruption) {
+             const KernelShape& shape, SplatBuffers& buffers, const Interruption& interruption) {
   const gl::DebugGroup group("splat");
   if (task.variant.eye_dome) {
     const size_t pixels = static_cast<size_t>(task.drawn.width) * static_cast<size_t>(task.drawn.height);
@@ -313,7 +321,7 @@ Status splat(const RegionTask& task, const layout::Counters& counters, const Spl
   }
   if (task.variant.silhouettes) clear_silhouettes(task, buffers);
   const auto dispatch = [&](const gl::Program& program) {
-    return dispatch_in_batches(all_tiles(task), buffers.splat_pace, interruption, [&] {
+    return dispatch_in_batches(all_tiles(task, shape), buffers.splat_pace, interruption, [&] {
       bind_for_splatting(task, buffers);
       glUseProgram(program.name());
     });
@@ -324,7 +332,7 @@ Status splat(const RegionTask& task, const layout::Counters& counters, const Spl
 
 /// Finds the pixels at silhouettes and draws them again, with narrower prefilters.
 Status sharpen_silhouettes(const RegionTask& task, const layout::Counters& counters, const SplatPrograms& variant,
-                           SplatBuffers& buffers, const Interruption& interruption) {
+                           const KernelShape& shape, SplatBuffers& buffers, const Interruption& interruption) {
   const gl::DebugGroup group("silhouettes");
   const auto dispatch = [&](const gl::Program& program, const Groups& groups, BatchPace& pace) {
     return dispatch_in_batches(groups, pace, interruption, [&] {
@@ -332,13 +340,14 @@ Status sharpen_silhouettes(const RegionTask& task, const layout::Counters& count
       glUseProgram(program.name());
     });
   };
-  Status status = dispatch(*variant.silhouettes, all_tiles(task), buffers.find_pace);
+  Status status = dispatch(*variant.silhouettes, all_pixels(task.drawn), buffers.find_pace);
   if (!status) return status;
   GLuint tiles = 0;
   glGetNamedBufferSubData(buffers.silhouettes.name(), 0, sizeof tiles, &tiles);
-  status = dispatch(*variant.sharpened, {tiles, {}}, buffers.sharpen_pace);
+  const Groups groups{ceil_divide(static_cast<int>(tiles), shape.tiles), {}};
+  status = dispatch(*variant.sharpened, groups, buffers.sharpen_pace);
   if (!status || counters.counts.y == 0) return status;
-  return dispatch(*variant.sharpened_large, {tiles, {}}, buffers.sharpen_pace);
+  return dispatch(*variant.sharpened_large, groups, buffers.sharpen_pace);
 }
 
 /// From light and depth of all that was drawn to the pixels that are wanted.
@@ -351,7 +360,8 @@ void shade_by_depth(const RegionTask& task, const gl::Program& program, SplatBuf
   upload_uniforms(buffers.eye_dome, constants);
   buffers.eye_dome.bind_uniforms(SURFCAST_BIND_EYE_DOME);
   glUseProgram(program.name());
-  glDispatchCompute(static_cast<GLuint>(tiles_across(task.region)), static_cast<GLuint>(tiles_down(task.region)), 1);
+  const Groups groups = all_pixels(task.region);
+  glDispatchCompute(static_cast<GLuint>(*groups.width), static_cast<GLuint>(groups.count), 1);
   glMemoryBarrier(GL_ALL_BARRIER_BITS);
 }
 
@@ -375,11 +385,11 @@ Result<RegionStats> draw_region(const RegionTask& task, Programs& programs, Spla
 
   const WorkStopwatch splat_watch(interruption);
   buffers.picture.reserve(pixels.size());
-  if (Status status = splat(task, *counters, *variant, buffers, interruption); !status) {
+  if (Status status = splat(task, *counters, *variant, programs.shape(), buffers, interruption); !status) {
     return fail(std::move(status.error()));
   }
   if (task.variant.silhouettes) {
-    Status status = sharpen_silhouettes(task, *counters, *variant, buffers, interruption);
+    Status status = sharpen_silhouettes(task, *counters, *variant, programs.shape(), buffers, interruption);
     if (!status) return fail(std::move(status.error()));
   }
   if (task.variant.eye_dome) {

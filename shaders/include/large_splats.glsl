@@ -1,4 +1,4 @@
-// Large splats: the exact filter in every pixel. Only where SURFCAST_ROWS is 1.
+// Large splats: the exact filter in every pixel. Only where a lane holds one pixel.
 #include "include/pixel_sums.glsl"
 #include "include/resampling_filter.glsl"
 #include "include/splat_record.glsl"
@@ -56,7 +56,7 @@ float large_cutoff(LargeSplat s) {
   return cutoff(screen_variance(s.n, s.o.xy / s.o.z, deviation, prefilter_variance()).gain);
 }
 
-void see_large(uint first, uint count, vec2 pixel, float limit, inout float surface, inout float peak) {
+void see_large(uint first, uint count, vec2 pixel, Columns limit, inout Columns surface, inout float peak) {
   vec2 ray = ray_of_pixel(pixel);
   for (uint k = 0u; k < count; ++k) {
     LargeSplat s = fetch_large(int(texelFetch(lists, int(first + k)).x));
@@ -64,12 +64,12 @@ void see_large(uint first, uint count, vec2 pixel, float limit, inout float surf
     float disc_radius = float(SURFCAST_VISIBILITY_RADIUS) * s.radius;
     float form = large_form(s, ray, disc_radius, disc_prefilter_variance()).x;
     float z = large_fragment_inverse_depth(s, ray);
-    surface = form <= 1.0 && z < limit ? max(surface, large_disc_inverse_depth(s, ray)) : surface;
+    surface[0] = form <= 1.0 && z < limit[0] ? max(surface[0], large_disc_inverse_depth(s, ray)) : surface[0];
   }
 }
 
-void accumulate_large(uint first, uint count, vec2 pixel, float limit, float surface, float unit,
-                      inout PixelSums sums) {
+void accumulate_large(uint first, uint count, vec2 pixel, Columns limit, Columns surface, float unit,
+                      inout ColumnSums sums) {
   vec2 ray = ray_of_pixel(pixel);
   for (uint begin = 0u; begin < count; begin += uint(SURFCAST_CARRY_INTERVAL)) {
     uint end = min(begin + uint(SURFCAST_CARRY_INTERVAL), count);
@@ -78,13 +78,13 @@ void accumulate_large(uint first, uint count, vec2 pixel, float limit, float sur
       LargeSplat s = fetch_large(slot);
       vec2 form_gain = large_form(s, ray, kernel_deviation(s), prefilter_variance());
       float z = large_fragment_inverse_depth(s, ray);
-      bool visible = form_gain.x <= large_cutoff(s) && z > 0.0 && z >= surface && z < limit;
+      bool visible = form_gain.x <= large_cutoff(s) && z > 0.0 && z >= surface[0] && z < limit[0];
       float weight = s.weight * form_gain.y * coverage_scale(form_gain.y) * exp(-0.5 * form_gain.x);
-      sums_add(sums, splat_value(s.color, slot, unit), visible ? weight : 0.0);
+      sums_add(sums[0], splat_value(s.color, slot, unit), visible ? weight : 0.0);
 #ifdef SURFCAST_EYE_DOME
-      sums_add_depth(sums, unit, visible ? weight : 0.0, visible ? z : surface, surface);
+      sums_add_depth(sums[0], unit, visible ? weight : 0.0, visible ? z : surface[0], surface[0]);
 #endif
     }
-    sums_carry(sums);
+    sums_carry(sums[0]);
   }
 }

@@ -24,6 +24,9 @@ struct PixelSums {
 #endif
 };
 
+// Those of every column of a lane.
+#define ColumnSums PixelSums[SURFCAST_COLUMNS]
+
 // What one splat adds per unit of weight, in integer units of the sums.
 struct SplatValue {
   float one;

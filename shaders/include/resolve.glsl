@@ -4,7 +4,7 @@
 const float kGrey = 0.8;     // albedo of scans without colour
 const float kAmbient = 0.1;  // light that does not come from the eye
 
-// The pixels of a lane, in linear light, not yet blended with what lies behind.
+// The pixels of a column, in linear light, not yet blended with what lies behind.
 struct Light {
   Rows red;
   Rows green;
@@ -15,6 +15,17 @@ struct Light {
   Rows opaque;  // sum of these weights
 #endif
 };
+
+// Those of every column of a lane.
+#define LightColumns Light[SURFCAST_COLUMNS]
+
+Light light_zero() {
+#ifdef SURFCAST_EYE_DOME
+  return Light(Rows(0.0), Rows(0.0), Rows(0.0), Rows(1.0), Rows(0.0), Rows(0.0));
+#else
+  return Light(Rows(0.0), Rows(0.0), Rows(0.0), Rows(1.0));
+#endif
+}
 
 // A headlight: light falls along the viewing rays. The normal is the normalised mean of what covers the pixel.
 Rows headlight(Rows nx, Rows ny, Rows nz, vec2 pixel) {

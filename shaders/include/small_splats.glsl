@@ -48,45 +48,51 @@ Disc fetch_disc(int slot) {
 }
 
 // Finds the nearest surface behind `limit` (an inverse depth), pushed back, and the largest weight of the list.
-void see_small(uint first, uint count, vec2 pixel, Rows limit, inout Rows surface, inout float peak) {
+void see_small(uint first, uint count, vec2 pixel, Columns limit, inout Columns surface, inout float peak) {
   float footprint = 1.0 / eta();
   for (uint k = 0u; k < count; ++k) {
     int slot = int(texelFetch(lists, int(first + k)).x);
     uvec4 a = texelFetch(splats, 2 * slot);
     Disc disc = fetch_disc(slot);
     peak = max(peak, disc.weight);
-    vec2 v = pixel - uintBitsToFloat(a.xy);
     float inverse_depth = uintBitsToFloat(a.z);
     float unit = inverse_depth * footprint;
-    Rows plane = plane_inverse_depth(inverse_depth, unit, unpack_halves(a.w), v);
-    Rows z = fragment_inverse_depth(plane, inverse_depth, unit, disc.fall);
-    BoolRows hit = both(at_most(factored_form(disc.factor, v), Rows(1.0)), less(z, limit));
-    Rows disc_z = disc_inverse_depth(plane, inverse_depth, unit, disc, footprint);
-    surface = larger(surface, mix(Rows(0.0), disc_z, hit));
+    vec2 slope = unpack_halves(a.w);
+    for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
+      vec2 v = column(pixel, c) - uintBitsToFloat(a.xy);
+      Rows plane = plane_inverse_depth(inverse_depth, unit, slope, v);
+      Rows z = fragment_inverse_depth(plane, inverse_depth, unit, disc.fall);
+      BoolRows hit = both(at_most(factored_form(disc.factor, v), Rows(1.0)), less(z, limit[c]));
+      Rows disc_z = disc_inverse_depth(plane, inverse_depth, unit, disc, footprint);
+      surface[c] = larger(surface[c], mix(Rows(0.0), disc_z, hit));
+    }
   }
 }
 
 // Accumulates the splats between `limit` and `surface`.
-void accumulate_small(uint first, uint count, vec2 pixel, Rows limit, Rows surface, float unit,
-                      inout PixelSums sums) {
+void accumulate_small(uint first, uint count, vec2 pixel, Columns limit, Columns surface, float unit,
+                      inout ColumnSums sums) {
   float footprint = 1.0 / eta();
   for (uint begin = 0u; begin < count; begin += uint(SURFCAST_CARRY_INTERVAL)) {
     uint end = min(begin + uint(SURFCAST_CARRY_INTERVAL), count);
     for (uint k = begin; k < end; ++k) {
       int slot = int(texelFetch(lists, int(first + k)).x);
       SmallSplat s = fetch_small(slot);
-      vec2 v = pixel - s.centre;
-      Rows form = factored_form(s.factor, v);
+      SplatValue value = splat_value(s.color, slot, unit);
       float depth_unit = s.inverse_depth * footprint;
-      Rows plane = plane_inverse_depth(s.inverse_depth, depth_unit, s.slope, v);
-      Rows z = fragment_inverse_depth(plane, s.inverse_depth, depth_unit, s.fall);
-      BoolRows visible = both(at_most(form, Rows(s.cutoff)), both(at_most(surface, z), less(z, limit)));
-      Rows weight = mix(Rows(0.0), s.weight * exp2(-form), visible);
-      sums_add(sums, splat_value(s.color, slot, unit), weight);
+      for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
+        vec2 v = column(pixel, c) - s.centre;
+        Rows form = factored_form(s.factor, v);
+        Rows plane = plane_inverse_depth(s.inverse_depth, depth_unit, s.slope, v);
+        Rows z = fragment_inverse_depth(plane, s.inverse_depth, depth_unit, s.fall);
+        BoolRows visible = both(at_most(form, Rows(s.cutoff)), both(at_most(surface[c], z), less(z, limit[c])));
+        Rows weight = mix(Rows(0.0), s.weight * exp2(-form), visible);
+        sums_add(sums[c], value, weight);
 #ifdef SURFCAST_EYE_DOME
-      sums_add_depth(sums, unit, weight, z, surface);
+        sums_add_depth(sums[c], unit, weight, z, surface[c]);
 #endif
+      }
     }
-    sums_carry(sums);
+    for (int c = 0; c < SURFCAST_COLUMNS; ++c) sums_carry(sums[c]);
   }
 }

@@ -15,10 +15,13 @@ namespace surfcast::layout {
 #define SURFCAST_UVEC4 uvec4
 #endif
 
-// Size of a screen tile in pixels: the unit of binning and of the splat kernel. 32 pixels are one warp on hardware and
-// one vector of columns on software GL, where taller tiles cost more in the kernel than they save in binning.
-#define SURFCAST_TILE_WIDTH 8
+// Size of a screen tile in pixels: the unit of binning and of the splat kernel. Smaller ones hold less that lies beside a
+// splat, larger ones are entered in fewer lists.
+#define SURFCAST_TILE_WIDTH 4
 #define SURFCAST_TILE_HEIGHT 4
+// Size in pixels of a work group of passes that go over pixels alone: a warp on hardware.
+#define SURFCAST_BLOCK_WIDTH 8
+#define SURFCAST_BLOCK_HEIGHT 4
 // Surfels that one work group projects; runs of a block are cut into chunks of this many.
 #define SURFCAST_CHUNK 128
 // Splats that a tile may have before its splats are thinned out (see include/thinning.glsl).
@@ -108,7 +111,7 @@ struct Counters {
 #define SURFCAST_BIND_LIGHT 2   // vec4 per pixel: linear light and coverage before eye-dome lighting
 #define SURFCAST_BIND_DEPTH 10  // vec2 per pixel: log2 of the visible surface's depth, coverage that it is the mean of
 #define SURFCAST_BIND_FRONTS 11           // float per pixel: what silhouettes are found by, see silhouettes.comp
-#define SURFCAST_BIND_SILHOUETTE_MASK 12  // uint per tile: its pixels at silhouettes, bit 8 row + column
+#define SURFCAST_BIND_SILHOUETTE_MASK 12  // uint per tile: its pixels at silhouettes, by rows from bit 0 on
 #define SURFCAST_BIND_SILHOUETTES 13      // count, then the tiles whose mask is not 0, in any order
 // Uniform buffers:
 #define SURFCAST_BIND_FRAME 0
