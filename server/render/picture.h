@@ -57,7 +57,9 @@ struct PictureRequest {
   glm::u8vec3 background{0, 0, 0};  ///< sRGB
   PixelFormat format = PixelFormat::kSrgb8;
   Loading loading = Loading::kWait;
-  uint64_t viewer = 0;     ///< with kNow: whose motion this is, or 0; things are remembered from picture to picture
+  uint64_t viewer = 0;  ///< with kNow: whose motion this is, or 0; things are remembered from picture to picture
+  /// With a viewer: what `spacing` will be, in pixels of this picture, of the one that follows when the movement ends.
+  std::optional<double> rest_spacing{};
   uint64_t known_cut = 0;  ///< with kNow: Frame::cut of a picture that needs no repeating; 0: none
   /// With kNow: the picture is not worth drawing while it would miss more blocks that are still to come.
   uint32_t most_missing = std::numeric_limits<uint32_t>::max();

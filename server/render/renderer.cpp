@@ -84,7 +84,7 @@ uint64_t cut_of(const BlockSelection& selection) {
 /// Whether a view shows more than what whoever asks for it has already, and enough of it.
 bool worth_drawing(const PictureRequest& request, const PreparedView& view, uint64_t cut) {
   if (request.known_cut != 0 && cut == request.known_cut) return false;
-  return view.settled || view.selection.wanted.size() <= request.most_missing;
+  return view.settled || view.missing <= request.most_missing;
 }
 
 }  // namespace
@@ -103,8 +103,9 @@ struct Renderer::State {
 
   static ResidencyLimits limits_of(const RendererConfig& config, size_t surfels) {
     constexpr size_t kReadyBytes = size_t{64} << 20;
+    const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
     return {.pages = static_cast<uint32_t>(surfels / SurfelPool::kPageSurfels),
-            .loader = {std::max(1U, std::thread::hardware_concurrency()), config.host_bytes, kReadyBytes}};
+            .loader = {cores, cores, config.host_bytes, kReadyBytes}};
   }
 
   /// A picture is being drawn as long as one of these is there.
@@ -168,8 +169,8 @@ Scene& Renderer::State::scene_of(const std::shared_ptr<const ModelFile>& model) 
 Result<PreparedView> Renderer::State::prepare(Scene& scene, const PictureRequest& request, const Look& look,
                                               const Camera& camera, const CameraFrame& frame,
                                               const Interruption& interruption) {
-  const ViewGoal goal{frame, request.spacing, look.clipped ? &request.clip : nullptr, look.attributes,
-                      request.viewer != 0};
+  const ViewGoal goal{frame,           request.spacing,     look.clipped ? &request.clip : nullptr,
+                      look.attributes, request.viewer != 0, request.rest_spacing};
   if (request.loading == Loading::kWait) return residency.prepare_whole(scene.viewed(), goal, interruption);
   if (request.viewer == 0) return residency.prepare_now(scene.viewed(), goal, {}, {});
   ViewerMemory& memory = scene.memory_of(request.viewer);
@@ -225,7 +226,7 @@ FrameStats Renderer::State::stats_of(const Scene& scene, const PreparedView& vie
   stats.blocks_selected = static_cast<uint32_t>(view.selection.target.size());
   stats.holes = view.selection.holes;
   stats.blocks_waited_for = view.waited_for;
-  stats.blocks_missing = static_cast<uint32_t>(view.selection.wanted.size());
+  stats.blocks_missing = view.missing;
   stats.blocks_resident = static_cast<uint32_t>(residency.pool().blocks());
   stats.bytes_resident = residency.pool().bytes();
   stats.levels = level_stats(scene.model().tree(), view.selection);

@@ -4,6 +4,7 @@
 #include <exception>
 #include <utility>
 
+#include "base/idle_thread.h"
 #include "base/stopwatch.h"
 
 namespace surfcast {
@@ -14,7 +15,7 @@ size_t bytes_of(const LoadedBlock& loaded) {
 }
 
 /// What may throw (memory runs out) becomes a value, so that one block cannot end the server.
-Result<std::shared_ptr<const PackedBlock>> load(const BlockSource& source, const BlockId& id) {
+Result<std::shared_ptr<const PackedBlock>> load_block(const BlockSource& source, const BlockId& id) {
   try {
     Result<PackedBlock> packed = source.load(id.block, id.attributes);
     if (!packed) return fail(std::move(packed.error()));
@@ -24,12 +25,17 @@ Result<std::shared_ptr<const PackedBlock>> load(const BlockSource& source, const
   }
 }
 
+size_t most_packed_bytes(uint32_t surfels) {
+  return size_t{kMostPackedPerSurfel} * surfels * sizeof(glm::uvec4);
+}
+
 }  // namespace
 
 BlockLoader::BlockLoader(const LoaderLimits& limits) : limits_(limits), cache_(limits.cache_bytes) {
   for (unsigned i = 0; i < std::max(1U, limits.threads); ++i) {
     threads_.emplace_back([this] { work(); });
   }
+  for (unsigned i = 0; i < limits.idle_threads; ++i) threads_.emplace_back([this] { work_ahead(); });
 }
 
 BlockLoader::~BlockLoader() {
@@ -38,6 +44,7 @@ BlockLoader::~BlockLoader() {
     stopping_ = true;
   }
   wake_workers_.notify_all();
+  wake_ahead_.notify_all();
   threads_.clear();
 }
 
@@ -66,6 +73,24 @@ void BlockLoader::want(const std::shared_ptr<const BlockSource>& source, std::sp
   wake_workers_.notify_all();
 }
 
+void BlockLoader::prefetch(const std::shared_ptr<const BlockSource>& source, std::span<const uint32_t> blocks,
+                           bool attributes) {
+  {
+    const std::lock_guard lock(mutex_);
+    ahead_.clear();
+    size_t bytes = 0;
+    for (const uint32_t block : blocks) {
+      const BlockId id{source->id(), block, attributes};
+      bytes += most_packed_bytes(source->tree().blocks()[block].surfels);
+      if (bytes > limits_.cache_bytes / 2) break;
+      if (!busy_.contains(id) && !busy_ahead_.contains(id) && !damaged_ahead_.contains(id) && !cache_.find(id)) {
+        ahead_.push_back({source, id});
+      }
+    }
+  }
+  wake_ahead_.notify_all();
+}
+
 void BlockLoader::drop_unwanted() {
   std::deque<LoadedBlock> loaded = std::exchange(ready_, {});
   ready_bytes_ = 0;
@@ -78,7 +103,9 @@ void BlockLoader::make_ready(LoadedBlock loaded) {
 }
 
 void BlockLoader::finish(LoadedBlock loaded) {
-  if (wanted_.contains(loaded.id)) {
+  // A wish is not left to a thread that may have no time, so it can come true twice.
+  const bool again = std::ranges::find(ready_, loaded.id, &LoadedBlock::id) != ready_.end();
+  if (wanted_.contains(loaded.id) && !again) {
     make_ready(std::move(loaded));
   } else if (loaded.block) {
     cache_.put(loaded.id, std::move(*loaded.block));
@@ -108,6 +135,16 @@ void BlockLoader::wait(std::chrono::milliseconds most) {
 void BlockLoader::forget(uint64_t model) {
   const std::lock_guard lock(mutex_);
   cache_.forget(model);
+  damaged_ahead_.erase(damaged_ahead_.lower_bound({model, 0}), damaged_ahead_.lower_bound({model + 1, 0}));
+}
+
+/// Decodes a block without holding the lock.
+LoadedBlock BlockLoader::load(const Request& request, std::unique_lock<std::mutex>& lock) {
+  lock.unlock();
+  const Stopwatch watch;
+  LoadedBlock loaded{request.id, load_block(*request.source, request.id), watch.milliseconds()};
+  lock.lock();
+  return loaded;
 }
 
 void BlockLoader::work() {
@@ -117,13 +154,27 @@ void BlockLoader::work() {
     if (stopping_) return;
     const Request request = std::move(queue_.front());
     queue_.pop_front();
-    const BlockId& id = request.id;
-    busy_.insert(id);
-    lock.unlock();
-    const Stopwatch watch;
-    LoadedBlock loaded{id, load(*request.source, id), watch.milliseconds()};
-    lock.lock();
-    busy_.erase(id);
+    busy_.insert(request.id);
+    LoadedBlock loaded = load(request, lock);
+    busy_.erase(request.id);
+    finish(std::move(loaded));
+    wake_taker_.notify_one();
+  }
+}
+
+void BlockLoader::work_ahead() {
+  work_in_idle_time();
+  std::unique_lock lock(mutex_);
+  while (true) {
+    wake_ahead_.wait(lock, [this] { return stopping_ || !ahead_.empty(); });
+    if (stopping_) return;
+    const Request request = std::move(ahead_.front());
+    ahead_.pop_front();
+    if (busy_.contains(request.id) || cache_.find(request.id)) continue;  // wanted meanwhile
+    busy_ahead_.insert(request.id);
+    LoadedBlock loaded = load(request, lock);
+    busy_ahead_.erase(request.id);
+    if (!loaded.block) damaged_ahead_.insert(request.id);
     finish(std::move(loaded));
     wake_taker_.notify_one();
   }

@@ -24,12 +24,14 @@ struct LoadedBlock {
 
 struct LoaderLimits {
   unsigned threads = 1;
-  size_t cache_bytes = 0;  ///< packed blocks kept in host memory, see PackedCache
-  size_t ready_bytes = 0;  ///< loaded blocks that wait to be taken before the workers wait, too
+  unsigned idle_threads = 0;  ///< besides, for what is not wanted yet, in time that the processor is idle
+  size_t cache_bytes = 0;     ///< packed blocks kept in host memory, see PackedCache
+  size_t ready_bytes = 0;     ///< loaded blocks that wait to be taken before the workers wait, too
 };
 
 /// Worker threads that read, decode and pack blocks for one other thread, which alone calls the methods. They work on
-/// the newest list of wishes only: what is not on it any more is dropped before it is decoded.
+/// the newest list of wishes only: what is not on it any more is dropped before it is decoded. Some work only when the
+/// processor has nothing else to do, on what may be wanted soon, and leave it in host memory.
 class BlockLoader {
  public:
   explicit BlockLoader(const LoaderLimits& limits);
@@ -41,6 +43,8 @@ class BlockLoader {
   /// finished and, if nobody wants them, kept in host memory.
   void want(const std::shared_ptr<const BlockSource>& source, std::span<const uint32_t> blocks,
             bool attributes = false);
+  /// Replaces what may be wanted soon, most urgent first; of it as much as half of the host memory for blocks holds.
+  void prefetch(const std::shared_ptr<const BlockSource>& source, std::span<const uint32_t> blocks, bool attributes);
   /// The next wish that has come true; it is then no wish any more.
   std::optional<LoadedBlock> take();
   /// Waits until take() has something, at most so long.
@@ -54,6 +58,8 @@ class BlockLoader {
   };
 
   void work();
+  void work_ahead();
+  [[nodiscard]] LoadedBlock load(const Request& request, std::unique_lock<std::mutex>& lock);
   void finish(LoadedBlock loaded);
   void make_ready(LoadedBlock loaded);
   void drop_unwanted();
@@ -61,8 +67,12 @@ class BlockLoader {
   const LoaderLimits limits_;
   std::mutex mutex_;  ///< guards what follows
   std::condition_variable wake_workers_;
+  std::condition_variable wake_ahead_;
   std::condition_variable wake_taker_;
   std::deque<Request> queue_;
+  std::deque<Request> ahead_;     ///< what may be wanted soon
+  std::set<BlockId> busy_ahead_;  ///< of it, being decoded
+  std::set<BlockId> damaged_ahead_;
   std::set<BlockId> wanted_;  ///< the wishes that have not been taken
   std::set<BlockId> busy_;    ///< being decoded
   std::deque<LoadedBlock> ready_;

@@ -34,7 +34,8 @@ class FileBlocks : public BlockSource {
   [[nodiscard]] const BlockTree& tree() const override { return model_->tree(); }
   void expect(uint32_t block) const override { model_->expect(block); }
   [[nodiscard]] Result<PackedBlock> load(uint32_t block, bool attributes) const override {
-    const Result<DecodedBlock> decoded = model_->decode(block, attributes ? WantedScalars::kDrawn : WantedScalars::kNone);
+    const Result<DecodedBlock> decoded =
+        model_->decode(block, attributes ? WantedScalars::kDrawn : WantedScalars::kNone);
     if (!decoded) return fail(decoded.error());
     PackedBlock packed = pack_block(*decoded, model_->info().color_bits, model_->info().oriented);
     if (attributes) pack_attributes(*decoded, packed);

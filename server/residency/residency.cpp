@@ -2,8 +2,6 @@
 
 #include <algorithm>
 
-#include "base/stopwatch.h"
-
 namespace surfcast {
 
 Residency::Residency(SurfelSink& sink, const ResidencyLimits& limits)
@@ -151,12 +149,23 @@ void Residency::add(const ViewedModel& model, std::span<const WantedBlock> wante
   }
 }
 
+/// What the view misses. A picture at rest is to show its target: what would only stand in until it is there delays it,
+/// unless nothing else stands in.
+std::vector<WantedBlock> Residency::lacks(const ViewGoal& goal, const BlockSelection& selection) {
+  std::vector<WantedBlock> wanted = selection.wanted;
+  if (goal.moving || selection.holes > 0) return wanted;
+  std::erase_if(wanted,
+                [&](const WantedBlock& one) { return !std::ranges::binary_search(selection.target, one.block); });
+  return wanted;
+}
+
 /// What to load next: the roots, then what the view misses.
 std::vector<uint32_t> Residency::wishes(const ViewedModel& model, const ViewGoal& goal,
                                         const BlockSelection& selection) const {
   std::vector<uint32_t> blocks = missing(model, coarse_roots(model), goal.attributes);
   std::erase_if(blocks, [&](uint32_t block) { return damaged_.contains({model.source->id(), block}); });
-  add(model, selection.wanted, blocks);
+  add(model, lacks(goal, selection), blocks);
+  if (blocks.empty()) add(model, selection.wanted, blocks);  // what stands in for damaged ones
   return blocks;
 }
 
@@ -166,6 +175,20 @@ void Residency::add_wishes_ahead(const ViewedModel& model, const ViewGoal& goal,
   ViewGoal ahead_goal = goal;
   ahead_goal.frame = ahead;
   add(model, select(model, ahead_goal, selection.refined).wanted, blocks);
+}
+
+/// Somebody who moves may stop any time, and would then wait for many more blocks than the movement shows.
+void Residency::prefetch_rest(const ViewedModel& model, const ViewGoal& goal) {
+  constexpr double kEveryMs = 150;  // choosing them takes as long as drawing some pictures in motion may not
+  if (!goal.rest_spacing) return loader_.prefetch(model.source, {}, goal.attributes);
+  if (since_prefetch_ && since_prefetch_->milliseconds() < kEveryMs) return;
+  since_prefetch_ = Stopwatch();
+  ViewGoal rest = goal;
+  rest.spacing = *goal.rest_spacing;
+  rest.moving = false;
+  std::vector<uint32_t> blocks;
+  add(model, lacks(rest, select(model, rest, {})), blocks);
+  loader_.prefetch(model.source, blocks, goal.attributes);
 }
 
 PreparedView Residency::prepare_now(const ViewedModel& model, const ViewGoal& goal,
@@ -182,8 +205,10 @@ PreparedView Residency::prepare_now(const ViewedModel& model, const ViewGoal& go
   }
   std::vector<uint32_t> blocks = wishes(model, goal, view.selection);
   view.settled = blocks.empty();
+  view.missing = static_cast<uint32_t>(blocks.size());
   if (ahead) add_wishes_ahead(model, goal, view.selection, *ahead, blocks);
   loader_.want(model.source, blocks, goal.attributes);
+  prefetch_rest(model, goal);
   view.select_ms = watch.milliseconds() - view.upload_ms;
   return view;
 }

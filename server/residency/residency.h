@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "base/interruption.h"
+#include "base/stopwatch.h"
 #include "residency/block_loader.h"
 #include "residency/surfel_pool.h"
 #include "selection/select_blocks.h"
@@ -27,12 +28,14 @@ struct ViewGoal {
   const Clip* clip = nullptr;  ///< likewise; outlives the preparation
   bool attributes = false;     ///< blocks are wanted with theirs
   bool moving = false;         ///< the next picture is soon to follow: storing blocks must not hold this one up
+  std::optional<double> rest_spacing{};  ///< what `spacing` will be once the movement ends, if it does so here
 };
 
 /// The blocks that a picture is drawn from, and what getting them took.
 struct PreparedView {
   BlockSelection selection;
   uint32_t waited_for = 0;  ///< blocks that were wanted and not resident at first
+  uint32_t missing = 0;     ///< blocks that are about to come
   bool settled = true;      ///< no block that it misses is about to come
   double select_ms = 0;
   double load_ms = 0;    ///< until the blocks were there
@@ -58,7 +61,8 @@ class Residency {
 
   /// For a picture at once: takes what is resident, and up to a limit what has been loaded since the last call; asks
   /// for what is missing, and after that for what `ahead` (where the camera is going) would miss. Never waits for a
-  /// block. What is damaged is done without. `was_refined`: see select_blocks.
+  /// block. What is damaged is done without. What is missing of ViewGoal::rest_spacing is loaded in idle time.
+  /// `was_refined`: see select_blocks.
   PreparedView prepare_now(const ViewedModel& model, const ViewGoal& goal, std::span<const uint32_t> was_refined,
                            const std::optional<CameraFrame>& ahead);
 
@@ -77,10 +81,12 @@ class Residency {
                                               bool attributes) const;
   [[nodiscard]] std::vector<uint32_t> coarse_roots(const ViewedModel& model) const;
   void add(const ViewedModel& model, std::span<const WantedBlock> wanted, std::vector<uint32_t>& blocks) const;
+  [[nodiscard]] static std::vector<WantedBlock> lacks(const ViewGoal& goal, const BlockSelection& selection);
   [[nodiscard]] std::vector<uint32_t> wishes(const ViewedModel& model, const ViewGoal& goal,
                                              const BlockSelection& selection) const;
   void add_wishes_ahead(const ViewedModel& model, const ViewGoal& goal, const BlockSelection& selection,
                         const CameraFrame& ahead, std::vector<uint32_t>& blocks) const;
+  void prefetch_rest(const ViewedModel& model, const ViewGoal& goal);
   Status load(const ViewedModel& model, std::span<const uint32_t> blocks, bool attributes,
               const Interruption& interruption, PreparedView& view);
   bool store(const ViewedModel& model, const LoadedBlock& loaded, PreparedView& view);
@@ -92,6 +98,7 @@ class Residency {
   BlockLoader loader_;
   size_t upload_bytes_;
   std::set<BlockId> damaged_;
+  std::optional<Stopwatch> since_prefetch_;  ///< since what a rest would miss was last looked for
 };
 
 }  // namespace surfcast

@@ -12,6 +12,8 @@ void ViewPlan::update(bool changed, bool moving, ViewTime now) {
     changed_at_ = now;
     look_again_at_ = now;
     improved_at_ = now;
+    first_look_.reset();
+    drawn_ = false;
   }
   // A hand that stops without a word rests some time after its last update, one that says so from its last movement.
   rest_at_ = moving ? now + timing_.grace : changed_at_;
@@ -121,16 +123,33 @@ void ViewPlan::finish(uint64_t frame, FrameNews news, ViewTime now) {
 }
 
 void ViewPlan::drew(double draw_ms, uint32_t missing, ViewTime now) {
+  drawn_ = true;
   drawn_at_ = now;
   draw_ms_ = draw_ms;
   drawn_missing_ = missing;
 }
 
-uint32_t ViewPlan::most_missing_at_first(ViewTime now) const {
-  return now < rest_at_ + timing_.final ? 0 : std::numeric_limits<uint32_t>::max();
+void ViewPlan::look(uint32_t missing, ViewTime now) {
+  if (!first_look_) first_look_ = last_look_ = Look{missing, now};
+  if (missing < last_look_.missing) improved_at_ = now;
+  last_look_ = {missing, now};
 }
 
-uint32_t ViewPlan::most_missing(uint32_t missing, ViewTime now) const {
+/// Before any frame of a rest blocks are waited for a moment rather than drawn without; and longer, if at the pace so
+/// far all will be there soon: to draw what is there would take the processor from them.
+uint32_t ViewPlan::most_missing_at_first(ViewTime now) const {
+  constexpr uint32_t kAny = std::numeric_limits<uint32_t>::max();
+  if (now < rest_at_ + timing_.final) return 0;
+  if (!first_look_ || last_look_.missing >= first_look_->missing) return kAny;
+  const auto passed = last_look_.at - first_look_->at;
+  const double to_come = static_cast<double>(last_look_.missing) / (first_look_->missing - last_look_.missing);
+  const auto whole_at = last_look_.at + std::chrono::duration_cast<ViewTime::duration>(to_come * passed);
+  return whole_at <= rest_at_ + timing_.whole && now < rest_at_ + timing_.whole ? 0 : kAny;
+}
+
+uint32_t ViewPlan::most_missing(ViewTime now) const {
+  if (!drawn_) return most_missing_at_first(now);
+  const uint32_t missing = last_look_.missing;
   // Two frames are so many drawing times apart, since two thirds of the time are for what blocks need. As long a wait
   // for the rest of the blocks is worth it: drawing holds them up, and takes longer the more there is to show.
   constexpr double kPauses = 2;

@@ -21,6 +21,7 @@ struct ViewTiming {
   std::chrono::milliseconds grace{250};      ///< after the last update of a motion that was not said to have ended
   std::chrono::milliseconds fine{150};       ///< from the beginning of rest to kFine
   std::chrono::milliseconds final{500};      ///< from the beginning of rest to kFinal
+  std::chrono::milliseconds whole{1500};     ///< from the beginning of rest to the last block, if waiting is worth it
   std::chrono::milliseconds look_again{50};  ///< between two looks at whether missing blocks have come
   std::chrono::milliseconds busy{500};       ///< after a frame that the server was too busy to draw
   std::chrono::milliseconds despair{5000};   ///< without any block: those that are missing will not come
@@ -67,14 +68,11 @@ class ViewPlan {
   void finish(uint64_t frame, FrameNews news, ViewTime now);
   /// A frame at rest of the newest picture was drawn in that time, and so many blocks would make it better.
   void drew(double draw_ms, uint32_t missing, ViewTime now);
-  /// Blocks have come that the newest picture wants.
-  void arrived(ViewTime now) { improved_at_ = now; }
+  /// So many blocks would make the newest picture better.
+  void look(uint32_t missing, ViewTime now);
   /// How many blocks may be missing for a frame at rest to be worth drawing although more are still to come: a frame of
   /// a large model takes seconds, and one for each few blocks would only delay the one that shows them all.
-  /// `missing`: blocks at the last look.
-  [[nodiscard]] uint32_t most_missing(uint32_t missing, ViewTime now) const;
-  /// The same before any frame of a rest: a few blocks are waited for a moment rather than drawn without.
-  [[nodiscard]] uint32_t most_missing_at_first(ViewTime now) const;
+  [[nodiscard]] uint32_t most_missing(ViewTime now) const;
   [[nodiscard]] bool expects(uint64_t frame) const;
 
   /// A message has been sent; `last` of its frame.
@@ -95,6 +93,7 @@ class ViewPlan {
 
   [[nodiscard]] const Job* find(uint64_t frame) const;
   [[nodiscard]] bool room_for_quick() const;
+  [[nodiscard]] uint32_t most_missing_at_first(ViewTime now) const;
   [[nodiscard]] std::optional<ViewTime> due(ViewTime rest) const;
   [[nodiscard]] FrameKind wanted() const;
 
@@ -106,7 +105,15 @@ class ViewPlan {
   ViewTime look_again_at_;
   ViewTime improved_at_;
   ViewTime not_before_;  ///< nothing is drawn: the server is busy
-  ViewTime drawn_at_;    ///< the last frame at rest, in the time below
+  /// Blocks at a look at the newest picture.
+  struct Look {
+    uint32_t missing = 0;
+    ViewTime at;
+  };
+  std::optional<Look> first_look_;
+  Look last_look_;
+  bool drawn_ = false;  ///< a frame at rest of the newest picture
+  ViewTime drawn_at_;   ///< the last one, in the time below
   double draw_ms_ = 0;
   uint32_t drawn_missing_ = 0;  ///< blocks, by the last frame at rest
   std::vector<Job> jobs_;       ///< oldest first

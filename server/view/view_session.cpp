@@ -59,12 +59,12 @@ PictureJob ViewSession::wish(FrameKind kind, JobId supersedes) const {
   job.quality = kFineQuality;
   if (kind == FrameKind::kFine) {
     request.known_cut = shown_cut_;
-    const ViewTime now = std::chrono::steady_clock::now();
-    request.most_missing = shown_cut_ == 0 ? plan_.most_missing_at_first(now) : plan_.most_missing(missing_, now);
+    request.most_missing = plan_.most_missing(std::chrono::steady_clock::now());
     job.keep_frame = may_be_kept(newest_.picture);
     return job;
   }
   const MotionQuality quality = quality_of(quality_);
+  request.rest_spacing = request.spacing * quality.scale;
   request.width = scaled(request.width, quality.scale);
   request.height = scaled(request.height, quality.scale);
   request.spacing = std::max(request.spacing * quality.scale, quality.spacing);
@@ -178,7 +178,7 @@ void ViewSession::miss(uint64_t frame, const Error& error) {
 /// Remembers how far the newest picture is.
 void ViewSession::look_at(EncodedPicture& picture, ViewTime now) {
   const uint32_t missing = picture.stats.blocks_missing;
-  if (missing < std::exchange(missing_, missing)) plan_.arrived(now);
+  plan_.look(missing, now);
   if (!picture.bytes.empty()) {
     shown_cut_ = picture.cut;
     plan_.drew(picture.draw_ms, missing, now);

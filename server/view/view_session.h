@@ -128,7 +128,6 @@ class ViewSession : public std::enable_shared_from_this<ViewSession> {
   /// The newest picture, if the last frame at rest was all that it will be.
   std::shared_ptr<const Frame> whole_;
   uint64_t shown_cut_ = 0;  ///< of the last frame at rest that was drawn of the newest picture; 0: none
-  uint32_t missing_ = 0;    ///< blocks when that picture was last looked at
   std::map<uint64_t, Job> frames_;
   std::optional<Outgoing> outgoing_;
 };

@@ -103,6 +103,60 @@ TEST_F(BlockLoaderTest, HostMemoryHoldsWhatWasTakenLastWithinItsBudget) {
   EXPECT_EQ(source_->started().size(), 5u);
 }
 
+/// A loader with one thread of each kind, which keeps eight of the blocks and prefetches up to half of them.
+class PrefetchTest : public BlockLoaderTest {
+ protected:
+  PrefetchTest() : loader_({.threads = 1, .idle_threads = 1, .cache_bytes = 8 * 32000, .ready_bytes = 1 << 20}) {}
+  void prefetch(const std::vector<uint32_t>& blocks) { loader_.prefetch(source_, blocks, false); }
+  uint32_t wanted(uint32_t block) {
+    loader_.want(source_, std::vector{block});
+    loader_.wait(std::chrono::seconds(60));
+    const std::optional<LoadedBlock> loaded = loader_.take();
+    return loaded ? loaded->id.block : ~0U;
+  }
+
+  BlockLoader loader_;
+};
+
+TEST_F(PrefetchTest, WhatMayBeWantedSoonIsInHostMemoryWhenItIs) {
+  prefetch({7, 8});
+  source_->wait_for_start(2);  // so that 7 is done
+  EXPECT_FALSE(loader_.take()) << "nobody wants it yet";
+  EXPECT_EQ(wanted(7), 7U);
+  EXPECT_THAT(source_->started(), ElementsAre(7, 8));
+}
+
+TEST_F(PrefetchTest, NoMoreIsPrefetchedThanHalfOfTheHostMemoryHolds) {
+  prefetch({1, 2, 3, 4, 5, 6, 7});
+  source_->wait_for_start(4);
+  prefetch({1, 2, 3, 4, 5, 6, 7});
+  prefetch({9});
+  source_->wait_for_start(5);
+  EXPECT_THAT(source_->started(), ElementsAre(1, 2, 3, 4, 9));
+}
+
+TEST_F(PrefetchTest, AWishDoesNotWaitForTheIdleThreadThatHasTheBlock) {
+  source_->hold();
+  prefetch({1});
+  source_->wait_for_start(1);
+  loader_.want(source_, std::vector<uint32_t>{1});
+  source_->wait_for_start(2);
+  source_->release();
+  EXPECT_EQ(wanted(1), 1U);
+  loader_.wait(std::chrono::milliseconds(20));
+  EXPECT_FALSE(loader_.take()) << "it comes true once";
+}
+
+TEST_F(PrefetchTest, DamagedBlocksArePrefetchedOnceAndToldOfWhenTheyAreWanted) {
+  source_->damage(1);
+  prefetch({1, 2});
+  source_->wait_for_start(2);
+  prefetch({1, 3});
+  source_->wait_for_start(3);
+  EXPECT_THAT(source_->started(), ElementsAre(1, 2, 3));
+  EXPECT_EQ(wanted(1), 1U);
+}
+
 TEST_F(BlockLoaderTest, DamagedBlocksAreToldOfAndOthersComeAllTheSame) {
   source_->damage(2);
   want({1, 2, 3});

@@ -121,6 +121,19 @@ TEST_F(ResidencyTest, APictureAtOnceNeverWaitsForABlock) {
   EXPECT_EQ(now_until_converged(model_).selection.draw.size(), 16u);
 }
 
+TEST_F(ResidencyTest, WhatARestWouldMissIsLoadedWhileTheViewMoves) {
+  residency_ = std::make_unique<Residency>(
+      sink_,
+      ResidencyLimits{
+          100, {.threads = 1, .idle_threads = 1, .cache_bytes = 4 << 20, .ready_bytes = 1 << 20}, size_t{1} << 20});
+  const double coarse = 2 * projected_spacing(source_->tree().blocks()[0], frame_);
+  const ViewGoal moving{.frame = frame_, .spacing = coarse, .moving = true, .rest_spacing = 0};
+  PreparedView view = residency_->prepare_now(model_, moving, {}, {});
+  EXPECT_EQ(view.selection.target.size(), 1U) << "the root is fine enough for a motion";
+  source_->wait_for_start(21);
+  EXPECT_EQ(now_until_converged(model_).selection.draw.size(), 16U);
+}
+
 TEST_F(ResidencyTest, PicturesAtOnceGetFinerAndAreNeverWithoutAPart) {
   start(100, 1);  // a block a picture
   size_t drawn = 0;
@@ -180,6 +193,14 @@ TEST_F(ResidencyTest, DamageLeavesAPictureAtOnceCoarserThere) {
   EXPECT_THAT(view.selection.draw, ElementsAre(1, 9, 10, 11, 12, 13, 14, 15, 16, 17, 18, 19, 20));
   EXPECT_FALSE(view.selection.converged());
   EXPECT_EQ(std::ranges::count(source_->started(), 7u), 1) << "it is tried once";
+}
+
+TEST_F(ResidencyTest, ARestLoadsNothingThatWouldOnlyStandInForAMoment) {
+  start(100);
+  EXPECT_EQ(now_until_converged(model_, 2 * projected_spacing(source_->tree().blocks()[0], frame_)).missing, 0U);
+  EXPECT_EQ(now(model_).missing, 16U) << "the leaves alone";
+  EXPECT_EQ(now_until_converged(model_).selection.draw.size(), 16U);
+  EXPECT_EQ(source_->started().size(), 17U) << "and before them the root";
 }
 
 TEST_F(ResidencyTest, ACancelledPictureIsGivenUp) {

@@ -1,5 +1,7 @@
 #include "view/view_plan.h"
 
+#include <limits>
+
 #include <gtest/gtest.h>
 
 namespace surfcast {
@@ -34,6 +36,13 @@ class ViewPlanTest : public ::testing::Test {
   void show(FrameKind kind, FrameNews news = FrameNews::kComplete) {
     draw_and_send(kind, news);
     if (news != FrameNews::kNothing) plan_.acknowledge(kind);
+  }
+
+  static constexpr uint32_t kAny = std::numeric_limits<uint32_t>::max();
+  /// The most blocks that a frame at rest may miss to be drawn, after a look that missed so many.
+  uint32_t most_missing(uint32_t missing) {
+    plan_.look(missing, now_);
+    return plan_.most_missing(now_);
   }
 
   ViewPlan plan_{ViewTiming{}};
@@ -178,7 +187,8 @@ TEST_F(ViewPlanTest, FewFramesAreDrawnWhileBlocksArrive) {
     const auto come = std::min(model.blocks, static_cast<uint32_t>(ms * model.blocks_per_ms));
     const uint32_t missing = model.blocks - come;
     const uint64_t frame = begin(FrameKind::kFine);
-    const bool worth = drawn_frames == 0 || missing == 0 || missing <= plan_.most_missing(missing, now_);
+    plan_.look(missing, now_);
+    const bool worth = drawn_frames == 0 || missing == 0 || missing <= plan_.most_missing(now_);
     if (worth) {
       const double draw_ms = model.draw_ms * come / model.blocks;
       now_ += std::chrono::microseconds(static_cast<long>(1000 * draw_ms));
@@ -186,7 +196,6 @@ TEST_F(ViewPlanTest, FewFramesAreDrawnWhileBlocksArrive) {
       work_ms += draw_ms;
       ++drawn_frames;
     }
-    plan_.arrived(now_);
     plan_.finish(frame, missing == 0 ? FrameNews::kComplete : FrameNews::kNothing, now_);
     if (missing == 0) break;
     pass(50);
@@ -202,29 +211,47 @@ TEST_F(ViewPlanTest, AFrameThatShowsLittleMoreIsNotDrawn) {
   update(/*moving=*/false);
   plan_.drew(/*draw_ms=*/100, /*missing=*/40, now_);
   pass(199);
-  EXPECT_EQ(plan_.most_missing(30, now_), 0u) << "only with all that are to come";
+  EXPECT_EQ(most_missing(30), 0u) << "only with all that are to come";
   pass(1);
-  EXPECT_EQ(plan_.most_missing(30, now_), 30u);
+  EXPECT_EQ(most_missing(30), 30u);
   plan_.drew(100, 1, now_);
   pass(200);
-  EXPECT_EQ(plan_.most_missing(1, now_), 1u);
+  EXPECT_EQ(most_missing(1), 1u);
 }
 
 TEST_F(ViewPlanTest, TheFirstFrameAtRestWaitsAMomentForItsBlocks) {
   update(/*moving=*/false);
+  EXPECT_EQ(most_missing(10), 0u);
   pass(499);
-  EXPECT_EQ(plan_.most_missing_at_first(now_), 0u);
+  EXPECT_EQ(most_missing(10), 0u);
   pass(1);
-  EXPECT_GT(plan_.most_missing_at_first(now_), 1'000'000u);
+  EXPECT_EQ(most_missing(10), kAny) << "none came: what is there is shown";
+}
+
+TEST_F(ViewPlanTest, TheFirstFrameAtRestWaitsForAllBlocksThatComeSoon) {
+  update(/*moving=*/false);
+  EXPECT_EQ(most_missing(700), 0u);
+  pass(600);
+  EXPECT_EQ(most_missing(400), 0u) << "300 in 600 ms: 400 more take 800 ms";
+  pass(300);
+  EXPECT_EQ(most_missing(350), kAny) << "350 in 900 ms: 350 more take too long";
+  pass(300);
+  EXPECT_EQ(most_missing(100), 0u) << "600 in 1200 ms: the last 100 take 200 ms";
+  pass(300);
+  EXPECT_EQ(most_missing(1), kAny) << "it has waited long enough";
+  update(/*moving=*/false);
+  EXPECT_EQ(most_missing(500), 0u) << "another picture";
+  pass(500);
+  EXPECT_EQ(most_missing(500), kAny);
 }
 
 TEST_F(ViewPlanTest, BlocksThatComeSoonerThanAFrameIsDrawnAreWaitedFor) {
   update(/*moving=*/false);
   plan_.drew(/*draw_ms=*/500, /*missing=*/700, now_);
   pass(1200);
-  EXPECT_EQ(plan_.most_missing(100, now_), 0u) << "600 in 1200 ms: the last 100 take 200 ms";
-  EXPECT_EQ(plan_.most_missing(400, now_), 525u) << "300 in 1200 ms: 400 more take 1600 ms";
-  EXPECT_EQ(plan_.most_missing(700, now_), 525u) << "none came";
+  EXPECT_EQ(most_missing(100), 0u) << "600 in 1200 ms: the last 100 take 200 ms";
+  EXPECT_EQ(most_missing(400), 525u) << "300 in 1200 ms: 400 more take 1600 ms";
+  EXPECT_EQ(most_missing(700), 525u) << "none came";
 }
 
 TEST_F(ViewPlanTest, BlocksThatArriveSlowlyAreNotGivenUp) {
@@ -232,9 +259,9 @@ TEST_F(ViewPlanTest, BlocksThatArriveSlowlyAreNotGivenUp) {
   show(FrameKind::kQuick, FrameNews::kImproves);
   pass(150);
   show(FrameKind::kFine, FrameNews::kImproves);
-  for (int i = 0; i < 20; ++i) {
+  for (uint32_t i = 0; i < 20; ++i) {
     pass(3000);
-    plan_.arrived(now_);
+    plan_.look(100 - i, now_);
     show(FrameKind::kFine, FrameNews::kNothing);
   }
   pass(50);
