@@ -50,8 +50,8 @@ struct PictureRequest {
   Normalization normalization = Normalization::kPixel;
   Filter filter = Filter::kEwa;
   Shading shading = Shading::kAuto;
-  /// Under per-pixel normalisation, draws the pixels at silhouettes once more (docs/kernel.md), in pictures that will
-  /// not soon be drawn again: for looking at, not for measuring the kernel.
+  /// Draws the pixels at silhouettes as means of samples (docs/kernel.md), under per-pixel normalisation and in
+  /// pictures that will not soon be drawn again.
   bool silhouettes = false;
   double spacing = 0;               ///< projected spacing of surfels to stop at, pixels; 0 is the finest level there is
   glm::u8vec3 background{0, 0, 0};  ///< sRGB

@@ -5,6 +5,7 @@
 #include "gl/program.h"
 #include "render/shader_library.h"
 #include "shared/frame_layout.h"
+#include "shared/kernel.h"
 
 namespace surfcast {
 namespace {
@@ -88,6 +89,10 @@ Result<const gl::Program*> Programs::program(const char* name, const std::string
   return &compiled_.emplace(key, std::move(*program)).first->second;
 }
 
+int Programs::pixels_at_once() const {
+  return shape_.whole_tiles ? SURFCAST_TILE_WIDTH : 1;
+}
+
 Result<SplatPrograms> Programs::variant(const Variant& variant) {
   const std::string splat = splat_defines(variant);
   SplatPrograms programs;
@@ -106,10 +111,11 @@ Result<SplatPrograms> Programs::variant(const Variant& variant) {
   if (status) status = compile(programs.splat, "splat.comp", small + finding);
   if (status) status = compile(programs.splat_large, "splat.comp", large + finding);
   if (variant.silhouettes) {
-    const std::string sharpened = "#define SURFCAST_SHARPENED\n";
-    if (status) status = compile(programs.silhouettes, "silhouettes.comp", {});
-    if (status) status = compile(programs.sharpened, "splat.comp", small + sharpened);
-    if (status) status = compile(programs.sharpened_large, "splat.comp", large + sharpened);
+    const std::string columns = define("SURFCAST_COLUMNS", pixels_at_once());
+    const std::string rows = define("SURFCAST_ROWS", SURFCAST_SILHOUETTE_SAMPLES);
+    if (status) status = compile(programs.silhouettes, "silhouettes.comp", columns);
+    if (status) status = compile(programs.supersample, "supersample.comp", splat + columns + rows);
+    if (status) status = compile(programs.supersample_large, "supersample.comp", large);
   }
   if (status && variant.eye_dome) status = compile(programs.eye_dome, "eye_dome.comp", float_define(variant));
   if (!status) return fail(std::move(status.error()));

@@ -19,7 +19,7 @@ struct Variant {
   bool hides_classes = false;
   bool clipped = false;
   bool eye_dome = false;
-  bool silhouettes = false;  ///< drawn again, with narrower prefilters
+  bool silhouettes = false;  ///< drawn again, as means of samples
 };
 
 /// The programs of a variant; they live as long as Programs.
@@ -30,8 +30,8 @@ struct SplatPrograms {
   /// Null unless silhouettes are drawn again: what finds them, and what draws them in tiles without and with large
   /// splats.
   const gl::Program* silhouettes = nullptr;
-  const gl::Program* sharpened = nullptr;
-  const gl::Program* sharpened_large = nullptr;
+  const gl::Program* supersample = nullptr;
+  const gl::Program* supersample_large = nullptr;
   const gl::Program* eye_dome = nullptr;  ///< null without eye-dome lighting
 };
 
@@ -51,6 +51,8 @@ class Programs {
   Result<SplatPrograms> variant(const Variant& variant);
   [[nodiscard]] const gl::Program& bin_offsets() const { return bin_offsets_; }
   [[nodiscard]] const gl::Program& bin() const { return bin_; }
+  /// Pixels of a tile that a lane of supersample.comp draws at once.
+  [[nodiscard]] int pixels_at_once() const;
   [[nodiscard]] const KernelShape& shape() const { return shape_; }
 
  private:

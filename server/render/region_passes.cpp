@@ -220,7 +220,6 @@ void bind_for_splatting(const RegionTask& task, const SplatBuffers& buffers) {
   if (task.variant.colored && task.variant.lit) buffers.normals.bind_for_reading(SURFCAST_UNIT_NORMALS);
   if (task.variant.silhouettes) {
     buffers.fronts.bind(SURFCAST_BIND_FRONTS);
-    buffers.silhouette_mask.bind(SURFCAST_BIND_SILHOUETTE_MASK);
     buffers.silhouettes.bind(SURFCAST_BIND_SILHOUETTES);
   }
 }
@@ -303,12 +302,12 @@ Groups all_pixels(const Region& region) {
 }
 
 void clear_silhouettes(const RegionTask& task, SplatBuffers& buffers) {
-  const size_t tiles = static_cast<size_t>(task.constants.tiles.z);
-  buffers.fronts.reserve(tiles * SURFCAST_TILE_WIDTH * SURFCAST_TILE_HEIGHT * sizeof(float));
-  buffers.silhouette_mask.reserve(tiles * sizeof(GLuint));
-  buffers.silhouettes.reserve((1 + tiles) * sizeof(GLuint));
-  buffers.silhouette_mask.clear();
-  buffers.silhouettes.clear();
+  constexpr size_t kPixels = size_t{SURFCAST_TILE_WIDTH} * SURFCAST_TILE_HEIGHT;
+  const size_t pixels = kPixels * static_cast<size_t>(task.constants.tiles.z);
+  buffers.fronts.reserve(pixels * sizeof(float));
+  buffers.silhouettes.reserve((1 + pixels) * sizeof(glm::uvec2));
+  constexpr GLuint kNone = 0;
+  glNamedBufferSubData(buffers.silhouettes.name(), 0, sizeof kNone, &kNone);
 }
 
 Status splat(const RegionTask& task, const layout::Counters& counters, const SplatPrograms& variant,
@@ -330,24 +329,23 @@ Status splat(const RegionTask& task, const layout::Counters& counters, const Spl
   return counters.counts.y > 0 ? dispatch(*variant.splat_large) : Status();
 }
 
-/// Finds the pixels at silhouettes and draws them again, with narrower prefilters.
-Status sharpen_silhouettes(const RegionTask& task, const layout::Counters& counters, const SplatPrograms& variant,
-                           const KernelShape& shape, SplatBuffers& buffers, const Interruption& interruption) {
+/// Finds the pixels at silhouettes and draws them again.
+Status supersample_silhouettes(const RegionTask& task, const layout::Counters& counters, const SplatPrograms& variant,
+                               SplatBuffers& buffers, const Interruption& interruption) {
   const gl::DebugGroup group("silhouettes");
-  const auto dispatch = [&](const gl::Program& program, const Groups& groups, BatchPace& pace) {
-    return dispatch_in_batches(groups, pace, interruption, [&] {
+  const auto dispatch = [&](const gl::Program& program, int lanes, BatchPace& pace) {
+    return dispatch_in_batches({ceil_divide(lanes, SURFCAST_SILHOUETTE_LANES), {}}, pace, interruption, [&] {
       bind_for_splatting(task, buffers);
       glUseProgram(program.name());
     });
   };
-  Status status = dispatch(*variant.silhouettes, all_pixels(task.drawn), buffers.find_pace);
+  Status status = dispatch(*variant.silhouettes, task.constants.tiles.z, buffers.find_pace);
   if (!status) return status;
-  GLuint tiles = 0;
-  glGetNamedBufferSubData(buffers.silhouettes.name(), 0, sizeof tiles, &tiles);
-  const Groups groups{ceil_divide(static_cast<int>(tiles), shape.tiles), {}};
-  status = dispatch(*variant.sharpened, groups, buffers.sharpen_pace);
+  GLint parts = 0;
+  glGetNamedBufferSubData(buffers.silhouettes.name(), 0, sizeof parts, &parts);
+  status = dispatch(*variant.supersample, parts, buffers.supersample_pace);
   if (!status || counters.counts.y == 0) return status;
-  return dispatch(*variant.sharpened_large, groups, buffers.sharpen_pace);
+  return dispatch(*variant.supersample_large, parts, buffers.supersample_pace);
 }
 
 /// From light and depth of all that was drawn to the pixels that are wanted.
@@ -389,7 +387,7 @@ Result<RegionStats> draw_region(const RegionTask& task, Programs& programs, Spla
     return fail(std::move(status.error()));
   }
   if (task.variant.silhouettes) {
-    Status status = sharpen_silhouettes(task, *counters, *variant, programs.shape(), buffers, interruption);
+    Status status = supersample_silhouettes(task, *counters, *variant, buffers, interruption);
     if (!status) return fail(std::move(status.error()));
   }
   if (task.variant.eye_dome) {

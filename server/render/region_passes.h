@@ -46,7 +46,7 @@ struct RegionStats {
   double read_ms = 0;
 };
 
-/// Draws a region with the passes project, bin_offsets, bin, splat and perhaps silhouettes, splat once more, and
+/// Draws a region with the passes project, bin_offsets, bin, splat and perhaps silhouettes, supersample, and
 /// eye_dome. Reads the pixels of `drawn`, or, after eye_dome, of `region` into `pixels` (4 bytes or 4 floats per pixel,
 /// rows from the top).
 Result<RegionStats> draw_region(const RegionTask& task, Programs& programs, SplatBuffers& buffers,

@@ -38,7 +38,8 @@ Variant variant_of(const ModelInfo& info, const Look& look, const PictureRequest
   variant.hides_classes = look.hides_classes;
   variant.clipped = look.clipped;
   variant.eye_dome = request.eye_dome.strength > 0;
-  variant.silhouettes = request.silhouettes && request.normalization == Normalization::kPixel;
+  variant.silhouettes =
+      request.silhouettes && request.normalization == Normalization::kPixel && request.filter == Filter::kEwa;
   return variant;
 }
 

@@ -65,7 +65,7 @@ struct SplatBuffers {
   BatchPace bin_pace;
   BatchPace splat_pace;
   BatchPace find_pace;
-  BatchPace sharpen_pace;
+  BatchPace supersample_pace;
   ConstantTexels srgb;  ///< linear_root_table
   TexelBuffer splats{"splats", GL_RGBA32UI, 16};
   TexelBuffer discs{"discs", GL_RGBA32UI, 16};
@@ -87,7 +87,6 @@ struct SplatBuffers {
   StorageBuffer depth{"depth"};
   StorageBuffer eye_dome{"eye-dome constants"};
   StorageBuffer fronts{"fronts"};
-  StorageBuffer silhouette_mask{"silhouette mask"};
   StorageBuffer silhouettes{"silhouettes"};
 
   /// Room for so many splat records; normals only for scenes that are lit and coloured.

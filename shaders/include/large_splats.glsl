@@ -3,7 +3,7 @@
 #include "include/resampling_filter.glsl"
 #include "include/splat_record.glsl"
 
-#ifdef SURFCAST_SHARPENED
+#ifdef SURFCAST_SUPERSAMPLED
 float prefilter_variance() { return kNarrowed * frame.filter_.x; }
 float disc_prefilter_variance() { return kNarrowed * frame.filter_.y; }
 #else
@@ -49,6 +49,16 @@ vec2 large_form(LargeSplat s, vec2 ray, float deviation, float prefilter_varianc
   return filter_at(s.n, ray, v, frontal_deviation(deviation, s.o.z), prefilter_variance);
 }
 
+// The gain by which a fragment's coverage counts: that of the whole prefilter has a share.
+float coverage_gain(LargeSplat s, vec2 ray, float gain) {
+#ifdef SURFCAST_SUPERSAMPLED
+  float whole = large_form(s, ray, kernel_deviation(s), frame.filter_.x).y;
+  return mix(gain, whole, SURFCAST_SILHOUETTE_COVERAGE);
+#else
+  return gain;
+#endif
+}
+
 // Squared radius at which the splat is cut: a property of the splat, from the gain at its centre.
 float large_cutoff(LargeSplat s) {
   if (astride(s)) return SURFCAST_KERNEL_CUTOFF;
@@ -79,7 +89,8 @@ void accumulate_large(uint first, uint count, vec2 pixel, Columns limit, Columns
       vec2 form_gain = large_form(s, ray, kernel_deviation(s), prefilter_variance());
       float z = large_fragment_inverse_depth(s, ray);
       bool visible = form_gain.x <= large_cutoff(s) && z > 0.0 && z >= surface[0] && z < limit[0];
-      float weight = s.weight * form_gain.y * coverage_scale(form_gain.y) * exp(-0.5 * form_gain.x);
+      float counted = coverage_gain(s, ray, form_gain.y);
+      float weight = s.weight * form_gain.y * coverage_scale(counted) * exp(-0.5 * form_gain.x);
       sums_add(sums[0], splat_value(s.color, slot, unit), visible ? weight : 0.0);
 #ifdef SURFCAST_EYE_DOME
       sums_add_depth(sums[0], unit, visible ? weight : 0.0, visible ? z : surface[0], surface[0]);

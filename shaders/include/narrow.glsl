@@ -4,11 +4,13 @@
 
 // log2 of what the coverage of a whole splat of gain 1 is multiplied with beyond one of gain 0, see coverage_scale.
 const float kCoverageOctaves = log2(float(SURFCAST_COVERAGE_MINIFIED) / float(SURFCAST_COVERAGE_MAGNIFIED));
-const float kNarrowed = SURFCAST_SILHOUETTE_FILTER * SURFCAST_SILHOUETTE_FILTER;  // q^2, of a prefilter's variance
+const float kNarrowed = 1.0 - SURFCAST_SILHOUETTE_VARIANCE;  // q^2, of a prefilter's variance
+
+// Of that, what counts of a gain that grows.
+const float kNarrowedOctaves = (1.0 - SURFCAST_SILHOUETTE_COVERAGE) * kCoverageOctaves;
 
 // No splat's weight grows by more: by at most 1 / q^2 of the gain, which grows itself by at most (1 - q) / (1 + q).
-const float kHeavier = pow(float(SURFCAST_COVERAGE_MINIFIED) / float(SURFCAST_COVERAGE_MAGNIFIED),
-                           (1.0 - SURFCAST_SILHOUETTE_FILTER) / (1.0 + SURFCAST_SILHOUETTE_FILTER)) / kNarrowed;
+const float kHeavier = exp2(kNarrowedOctaves * (1.0 - sqrt(kNarrowed)) / (1.0 + sqrt(kNarrowed))) / kNarrowed;
 
 // Narrows a factor whose variance holds the given prefilter variance; returns sqrt(det S / det S'). The factor is in
 // half precision: the limits keep S' positive, as a sum of the prefilter and what is not negative.
@@ -34,7 +36,7 @@ void narrow(inout SmallSplat splat) {
   float gained = narrow_factor(splat.factor, frame.filter_.x / unit);
   float narrow_gain = min(gain * gained, 1.0);
   splat.cutoff = cutoff(narrow_gain) * unit;
-  splat.weight *= gained * exp2(kCoverageOctaves * (narrow_gain - gain));
+  splat.weight *= gained * exp2(kNarrowedOctaves * (narrow_gain - gain));
 }
 
 void narrow(inout Disc disc) {

@@ -30,9 +30,10 @@ Light light_zero() {
 // A headlight: light falls along the viewing rays. The normal is the normalised mean of what covers the pixel.
 Rows headlight(Rows nx, Rows ny, Rows nz, vec2 pixel) {
   vec2 first = ray_of_pixel(pixel);
-  Rows ray_y = first.y - kRow / eta();
-  Rows along = abs(nx * first.x + ny * ray_y + nz);
-  Rows lengths = (nx * nx + ny * ny + nz * nz) * (first.x * first.x + ray_y * ray_y + 1.0);
+  Rows ray_x = first.x + over_rows(vec2(1.0, 0.0)) / eta();
+  Rows ray_y = first.y - over_rows(vec2(0.0, 1.0)) / eta();
+  Rows along = abs(nx * ray_x + ny * ray_y + nz);
+  Rows lengths = (nx * nx + ny * ny + nz * nz) * (ray_x * ray_x + ray_y * ray_y + 1.0);
   return kAmbient + (1.0 - kAmbient) * min(along * inversesqrt(max(lengths, Rows(1e-12))), Rows(1.0));
 }
 

@@ -6,7 +6,6 @@
 #define IntRows ivec4
 #define UintRows uvec4
 #define BoolRows bvec4
-const vec4 kRow = vec4(0.0, 1.0, 2.0, 3.0);
 BoolRows at_most(Rows a, Rows b) { return lessThanEqual(a, b); }
 BoolRows less(Rows a, Rows b) { return lessThan(a, b); }
 bool any_of(BoolRows a) { return any(a); }
@@ -17,7 +16,6 @@ BoolRows both(BoolRows a, BoolRows b) { return bvec4(uvec4(a) & uvec4(b)); }
 #define IntRows int
 #define UintRows uint
 #define BoolRows bool
-const float kRow = 0.0;
 BoolRows at_most(Rows a, Rows b) { return a <= b; }
 BoolRows less(Rows a, Rows b) { return a < b; }
 bool any_of(BoolRows a) { return a; }
@@ -29,8 +27,30 @@ BoolRows both(BoolRows a, BoolRows b) { return a && b; }
 #define Columns Rows[SURFCAST_COLUMNS]
 #define BoolColumns BoolRows[SURFCAST_COLUMNS]
 
+#ifdef SURFCAST_SUPERSAMPLED
+// A column is a pixel, and its rows are samples: a rotated grid, see SURFCAST_SILHOUETTE_VARIANCE. -3, -1, 1 and 3 have a
+// variance of 5.
+const float kSampleStep = sqrt(SURFCAST_SILHOUETTE_VARIANCE / 5.0);
+const float kSampleX[4] = float[4](-kSampleStep, 3.0 * kSampleStep, kSampleStep, -3.0 * kSampleStep);
+const float kSampleY[4] = float[4](-3.0 * kSampleStep, -kSampleStep, 3.0 * kSampleStep, kSampleStep);
+vec2 column_places[SURFCAST_COLUMNS];  // pixels from the lane's first pixel
+vec2 column(vec2 pixel, int c) { return pixel + column_places[c]; }
+#else
 // The first pixel of a column of the lane whose first pixel is given.
 vec2 column(vec2 pixel, int c) { return pixel + vec2(float(c), 0.0); }
+#endif
+
+// How an affine function of such a gradient changes from the first row to each of them.
+Rows over_rows(vec2 gradient) {
+#if SURFCAST_ROWS == 1
+  return 0.0;
+#elif defined(SURFCAST_SUPERSAMPLED)
+  return gradient.x * vec4(kSampleX[0], kSampleX[1], kSampleX[2], kSampleX[3]) +
+         gradient.y * vec4(kSampleY[0], kSampleY[1], kSampleY[2], kSampleY[3]);
+#else
+  return gradient.y * vec4(0.0, 1.0, 2.0, 3.0);
+#endif
+}
 
 // The larger and the smaller one of two numbers of which one is not negative: so ordered, too, are their bits as
 // integers. The language's own are three instructions in software, for the sake of what is not a number.

@@ -9,7 +9,7 @@
 Rows plane_inverse_depth(float inverse_depth, float unit, vec2 slope, vec2 v) {
   vec2 per_pixel = slope * unit;
   float first = inverse_depth + dot(per_pixel, v);
-  return first + per_pixel.y * kRow;
+  return first + over_rows(per_pixel);
 }
 
 Rows fragment_inverse_depth(Rows plane, float inverse_depth, float unit, float fall) {
@@ -22,18 +22,18 @@ Rows disc_inverse_depth(Rows plane, float inverse_depth, float unit, Disc disc, 
 
 // (l11 v.x + l21 v.y)^2 + (l22 v.y)^2 in the rows below the displacement v.
 Rows factored_form(vec3 factor, vec2 v) {
-  Rows p = (factor.x * v.x + factor.y * v.y) + factor.y * kRow;
-  Rows q = factor.z * v.y + factor.z * kRow;
+  Rows p = (factor.x * v.x + factor.y * v.y) + over_rows(factor.xy);
+  Rows q = factor.z * v.y + over_rows(vec2(0.0, factor.z));
   return p * p + q * q;
 }
 
-#ifdef SURFCAST_SHARPENED
+#ifdef SURFCAST_SUPERSAMPLED
 #include "include/narrow.glsl"
 #endif
 
 SmallSplat fetch_small(int slot) {
   SmallSplat splat = decode_small(texelFetch(splats, 2 * slot), texelFetch(splats, 2 * slot + 1));
-#ifdef SURFCAST_SHARPENED
+#ifdef SURFCAST_SUPERSAMPLED
   narrow(splat);
 #endif
   return splat;
@@ -41,7 +41,7 @@ SmallSplat fetch_small(int slot) {
 
 Disc fetch_disc(int slot) {
   Disc disc = decode_disc(texelFetch(discs, slot));
-#ifdef SURFCAST_SHARPENED
+#ifdef SURFCAST_SUPERSAMPLED
   narrow(disc);
 #endif
   return disc;

@@ -22,6 +22,8 @@ namespace surfcast::layout {
 // Size in pixels of a work group of passes that go over pixels alone: a warp on hardware.
 #define SURFCAST_BLOCK_WIDTH 8
 #define SURFCAST_BLOCK_HEIGHT 4
+// Lanes of a work group of the passes over silhouettes.
+#define SURFCAST_SILHOUETTE_LANES 32
 // Surfels that one work group projects; runs of a block are cut into chunks of this many.
 #define SURFCAST_CHUNK 128
 // Splats that a tile may have before its splats are thinned out (see include/thinning.glsl).
@@ -111,8 +113,7 @@ struct Counters {
 #define SURFCAST_BIND_LIGHT 2   // vec4 per pixel: linear light and coverage before eye-dome lighting
 #define SURFCAST_BIND_DEPTH 10  // vec2 per pixel: log2 of the visible surface's depth, coverage that it is the mean of
 #define SURFCAST_BIND_FRONTS 11           // float per pixel: what silhouettes are found by, see silhouettes.comp
-#define SURFCAST_BIND_SILHOUETTE_MASK 12  // uint per tile: its pixels at silhouettes, by rows from bit 0 on
-#define SURFCAST_BIND_SILHOUETTES 13      // count, then the tiles whose mask is not 0, in any order
+#define SURFCAST_BIND_SILHOUETTES 12      // count, then parts of tiles, in any order: tile, its pixels by rows from bit 0 on
 // Uniform buffers:
 #define SURFCAST_BIND_FRAME 0
 #define SURFCAST_BIND_LOOK 1

@@ -35,10 +35,14 @@
 #define SURFCAST_VISIBILITY_DEPTH 1.0
 #define SURFCAST_VISIBILITY_FOOTPRINT 1.0
 
-// Pixels at silhouettes are drawn with prefilters narrowed by the factor FILTER, under per-pixel normalisation. At a
-// silhouette is what lies within REACH pixels of where the front surface's inverse depth bends by more than JUMP pixel
-// footprints of depth.
-#define SURFCAST_SILHOUETTE_FILTER 0.75
+// Pixels at silhouettes are the mean of four samples, under per-pixel normalisation: a rotated grid whose places have
+// VARIANCE (pixels squared) along each axis, each drawn with what the prefilter's variance has left, so that the filter is
+// that of all other pixels. The coverage of a sample counts by a0 at mix(g', g, COVERAGE), with its own gain g' and the
+// gain g of the whole prefilter. At a silhouette is what lies within REACH pixels of where the front surface's inverse
+// depth bends by more than JUMP pixel footprints of depth.
+#define SURFCAST_SILHOUETTE_SAMPLES 4
+#define SURFCAST_SILHOUETTE_VARIANCE 0.5
+#define SURFCAST_SILHOUETTE_COVERAGE 0.6
 #define SURFCAST_SILHOUETTE_JUMP 16.0
 #define SURFCAST_SILHOUETTE_REACH 1
 

@@ -66,6 +66,7 @@ std::vector<SamplePicture> sample_pictures() {
   coarse.spacing = 3;
   PictureRequest eye_dome = outside;
   eye_dome.eye_dome.strength = 1;
+  eye_dome.silhouettes = true;
   PictureRequest silhouettes = outside;
   silhouettes.silhouettes = true;
   return {{"globe", globe(20000), outside},

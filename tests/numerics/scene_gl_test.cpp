@@ -102,6 +102,18 @@ TEST_F(NumericsGLTest, NearSurfacesHideWhatIsABillionTimesAsFar) {
   expect_within(difference("near before far", model, view_from({0, 0, 0}, {0, 0, -1}, 60, 320, 240)), kSplats);
 }
 
+TEST_F(NumericsGLTest, SilhouettesOfSmallAndLargeSplatsInOnePicture) {
+  // Of one spacing; the first square is so near that each of its surfels spans many pixels.
+  SurfelCloud cloud = motley_square(5, 0.1, {0.02, 0, 1}, {0.3, 0.2, 1});
+  append(cloud, motley_square(100, 2, {0, 0, 0}, {0, 0.1, 1}));
+  const ModelPointer& model = model_of(cloud);
+  for (const double distance : {1.15, 1.4, 4.0}) {
+    PictureRequest request = view_from({0, 0, distance}, {0, 0, 0}, 40, 160, 120);
+    request.silhouettes = true;
+    expect_within(difference("silhouettes from " + std::to_string(distance), model, request), kSplats);
+  }
+}
+
 TEST_F(NumericsGLTest, PicturesOfOnePixel) {
   const ModelPointer& model = model_of(motley_square(50, 4, {0, 0, 0}, {0.2, 0.1, 1}));
   for (const double angle : {0.1, 30.0, 170.0}) {

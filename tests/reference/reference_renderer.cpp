@@ -46,6 +46,10 @@ PixelRect intersect(const PixelRect& a, const PixelRect& b) {
   return {std::max(a.x0, b.x0), std::max(a.y0, b.y0), std::min(a.x1, b.x1), std::min(a.y1, b.y1)};
 }
 
+PixelRect grown(const PixelRect& rect, int pixels) {
+  return {rect.x0 - pixels, rect.y0 - pixels, rect.x1 + pixels, rect.y1 + pixels};
+}
+
 PixelRect pixel_bounds(const Splat& splat, const CameraFrame& frame) {
   const Splat::Bounds b = splat.bounds();
   const auto column = [&](double x) { return std::clamp(0.5 * frame.width + frame.eta * x, -1.0, frame.width + 1.0); };
@@ -65,21 +69,30 @@ double weight_scale(const KernelParameters& kernel) {
   return 1 / (2 * std::numbers::pi * deviation * deviation);
 }
 
+/// What pixels are drawn with.
+struct Sampling {
+  double whole_prefilter = 1;  ///< of a pixel
+  double prefilter = 1;        ///< of a sample of it
+  int reach = 0;               ///< how far samples lie from the centre of their pixel, at most, pixels
+};
+
 /// The scene in camera coordinates, with the surfels that touch each tile in their order in the cloud.
 class TiledScene {
  public:
   TiledScene(const SurfelCloud& cloud, const PictureRequest& request, const CameraFrame& frame,
-             const KernelParameters& kernel, const PixelRect& window, double prefilter)
+             const KernelParameters& kernel, const PixelRect& window, const Sampling& sampling)
       : frame_(frame),
+        sampling_(sampling),
         window_(window),
         columns_((window.x1 - window.x0 + kTile - 1) / kTile),
         rows_((window.y1 - window.y0 + kTile - 1) / kTile) {
     tiles_.resize(static_cast<size_t>(columns_) * rows_);
     lit_ = request.shading == Shading::kLit || (request.shading == Shading::kAuto && !cloud.colors);
-    for (size_t i = 0; i < cloud.size(); ++i) add(cloud, i, request, kernel, prefilter);
+    for (size_t i = 0; i < cloud.size(); ++i) add(cloud, i, request, kernel);
   }
 
   [[nodiscard]] bool lit() const { return lit_; }
+  [[nodiscard]] const Sampling& sampling() const { return sampling_; }
   [[nodiscard]] int columns() const { return columns_; }
   [[nodiscard]] int rows() const { return rows_; }
   [[nodiscard]] const PixelRect& window() const { return window_; }
@@ -98,14 +111,13 @@ class TiledScene {
   }
 
  private:
-  void add(const SurfelCloud& cloud, size_t i, const PictureRequest& request, const KernelParameters& kernel,
-           double prefilter) {
+  void add(const SurfelCloud& cloud, size_t i, const PictureRequest& request, const KernelParameters& kernel) {
     const glm::dvec3 o = frame_.to_camera(cloud.positions[i]);
     const glm::dvec3 n = frame_.rotate(glm::dvec3(cloud.normals[i]));
     if (cloud.oriented && glm::dot(n, o) > 0) return;
-    const auto splat = Splat::make(o, n, cloud.radii[i], frame_.eta, prefilter, kernel);
+    const auto splat = Splat::make(o, n, cloud.radii[i], frame_.eta, sampling_.prefilter, kernel);
     if (!splat) return;
-    const PixelRect bounds = intersect(pixel_bounds(*splat, frame_), window_);
+    const PixelRect bounds = intersect(grown(pixel_bounds(*splat, frame_), sampling_.reach), window_);
     if (bounds.x0 >= bounds.x1 || bounds.y0 >= bounds.y1) return;
     const glm::dvec3 facing = glm::dot(n, o) > 0 ? -n : n;
     const glm::dvec3 color = cloud.colors ? linear_color(*cloud.colors, i) : glm::dvec3(kAlbedo);
@@ -126,6 +138,7 @@ class TiledScene {
   }
 
   const CameraFrame& frame_;
+  Sampling sampling_;
   PixelRect window_;
   int columns_;
   int rows_;
@@ -159,8 +172,15 @@ struct PixelState {
 /// covers a pixel in part, what lies behind it shows through.
 class TilePass {
  public:
-  TilePass(const TiledScene& scene, const CameraFrame& frame, const KernelParameters& kernel, int column, int row)
-      : scene_(scene), frame_(frame), kernel_(kernel), column_(column), row_(row), rect_(scene.rect(column, row)) {}
+  TilePass(const TiledScene& scene, const CameraFrame& frame, const KernelParameters& kernel, const glm::dvec2& sample,
+           int column, int row)
+      : scene_(scene),
+        frame_(frame),
+        kernel_(kernel),
+        sample_(sample),
+        column_(column),
+        row_(row),
+        rect_(scene.rect(column, row)) {}
 
   /// Draws only the pixels that `mask` marks, rows of the window.
   void leave_out_unless(const std::vector<bool>& mask) {
@@ -194,7 +214,7 @@ class TilePass {
         PixelState& pixel = pixels_[static_cast<size_t>(y - rect_.y0) * kTile + (x - rect_.x0)];
         const PixelRect& window = scene_.window();
         const size_t place = static_cast<size_t>(y - window.y0) * (window.x1 - window.x0) + (x - window.x0);
-        visit(pixel, frame_.ray({x + 0.5, y + 0.5}), place);
+        visit(pixel, frame_.ray(glm::dvec2(x + 0.5, y + 0.5) + sample_), place);
       }
     }
   }
@@ -219,11 +239,19 @@ class TilePass {
       ++fragments_;
       const double depth = surfel.splat.fragment_depth(d);
       if (depth > p.surface || depth <= p.limit) return;
-      const double w = surfel.multiplier / saturation(f.gain, kernel_) * f.gain * std::exp(-0.5 * f.r2);
+      const double saturated = saturation(coverage_gain(surfel.splat, f, d), kernel_);
+      const double w = surfel.multiplier / saturated * f.gain * std::exp(-0.5 * f.r2);
       p.weight += w;
       p.color += w * surfel.color;
       p.normal += w * surfel.normal;
     });
+  }
+
+  /// The gain by which a fragment's coverage counts.
+  [[nodiscard]] double coverage_gain(const Splat& splat, const Fragment& f, const glm::dvec3& d) const {
+    const Sampling& sampling = scene_.sampling();
+    if (sampling.prefilter == sampling.whole_prefilter) return f.gain;
+    return glm::mix(f.gain, splat.gain(d, sampling.whole_prefilter), kernel_.silhouette_coverage);
   }
 
   /// Adds the layer behind the light of those in front, and makes ready for the next.
@@ -247,6 +275,7 @@ class TilePass {
   const TiledScene& scene_;
   const CameraFrame& frame_;
   const KernelParameters& kernel_;
+  glm::dvec2 sample_;  ///< pixels from a pixel's centre
   int column_;
   int row_;
   PixelRect rect_;
@@ -254,14 +283,14 @@ class TilePass {
   std::array<PixelState, kTile * kTile> pixels_{};
 };
 
-/// Draws the pixels of the scene's window that `mask` marks, or all.
+/// Draws the pixels of the scene's window that `mask` marks, or all, each at a place so far from its centre.
 void draw_tiles(const TiledScene& scene, const CameraFrame& frame, const KernelParameters& kernel,
-                const PictureRequest& request, const std::vector<bool>* mask, Drawing& out) {
+                const PictureRequest& request, const glm::dvec2& sample, const std::vector<bool>* mask, Drawing& out) {
   std::atomic<uint64_t> fragments = 0;
   tbb::parallel_for(tbb::blocked_range2d<int>(0, scene.rows(), 0, scene.columns()), [&](const auto& range) {
     for (int row = range.rows().begin(); row < range.rows().end(); ++row) {
       for (int column = range.cols().begin(); column < range.cols().end(); ++column) {
-        TilePass pass(scene, frame, kernel, column, row);
+        TilePass pass(scene, frame, kernel, sample, column, row);
         if (mask != nullptr) pass.leave_out_unless(*mask);
         pass.draw();
         pass.resolve(request, out);
@@ -272,9 +301,36 @@ void draw_tiles(const TiledScene& scene, const CameraFrame& frame, const KernelP
   out.fragments += fragments;
 }
 
-KernelParameters narrowed(KernelParameters kernel) {
-  kernel.visibility_pixels *= kernel.silhouette_filter;
-  return kernel;
+/// Adds what the marked pixels of a sample show, times `share`.
+void add_marked(const Drawing& sample, const std::vector<bool>& mask, double share, Drawing& sum) {
+  for (size_t i = 0; i < mask.size(); ++i) {
+    if (!mask[i]) continue;
+    sum.picture.pixels[i] += share * sample.picture.pixels[i];
+    sum.coverage[i] += share * sample.coverage[i];
+    sum.weights[i] += share * sample.weights[i];
+  }
+}
+
+/// Draws the marked pixels again, as the mean of several samples.
+void supersample(const SurfelCloud& cloud, const PictureRequest& request, const KernelParameters& kernel,
+                 const CameraFrame& frame, const PixelRect& rect, const std::vector<bool>& mask, Drawing& out) {
+  const double narrowed = std::sqrt(1 - kernel.silhouette_variance);
+  KernelParameters narrow = kernel;
+  narrow.visibility_pixels *= narrowed;
+  const TiledScene scene(cloud, request, frame, narrow, rect, {1, narrowed, 1});
+  Drawing sample = out;
+  for (size_t i = 0; i < mask.size(); ++i) {
+    if (!mask[i]) continue;
+    out.picture.pixels[i] = glm::dvec3(0);
+    out.coverage[i] = out.weights[i] = 0;
+  }
+  const auto places = silhouette_samples(kernel);
+  for (const glm::dvec2& place : places) {
+    sample.fragments = 0;
+    draw_tiles(scene, frame, narrow, request, place, &mask, sample);
+    add_marked(sample, mask, 1.0 / places.size(), out);
+    out.fragments += sample.fragments;
+  }
 }
 
 Drawing draw(const SurfelCloud& cloud, const PictureRequest& request, const KernelParameters& kernel,
@@ -285,12 +341,10 @@ Drawing draw(const SurfelCloud& cloud, const PictureRequest& request, const Kern
   Drawing out{{{width, height}, std::vector<double>(pixels), std::vector<double>(pixels), 0},
               std::vector<double>(pixels)};
   const double prefilter = request.filter == Filter::kEwa ? 1.0 : kNoPrefilter;
-  draw_tiles(TiledScene(cloud, request, frame, kernel, rect, prefilter), frame, kernel, request, nullptr, out);
-  if (request.silhouettes && request.normalization == Normalization::kPixel) {
-    const std::vector<bool> mask = silhouettes(out.fronts, width, frame.eta, kernel);
-    const KernelParameters narrow = narrowed(kernel);
-    draw_tiles(TiledScene(cloud, request, frame, narrow, rect, prefilter * kernel.silhouette_filter), frame, narrow,
-               request, &mask, out);
+  const TiledScene scene(cloud, request, frame, kernel, rect, {prefilter, prefilter, 0});
+  draw_tiles(scene, frame, kernel, request, glm::dvec2(0), nullptr, out);
+  if (request.silhouettes && request.filter == Filter::kEwa && request.normalization == Normalization::kPixel) {
+    supersample(cloud, request, kernel, frame, rect, silhouettes(out.fronts, width, frame.eta, kernel), out);
   }
   return out;
 }

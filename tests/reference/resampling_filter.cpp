@@ -72,6 +72,10 @@ Fragment Splat::fragment(const glm::dvec3& d) const {
   return quadratic(d, sigma_ * eta_ / o_.z, prefilter_);
 }
 
+double Splat::gain(const glm::dvec3& d, double prefilter) const {
+  return astride_ ? 1 : quadratic(d, sigma_ * eta_ / o_.z, prefilter).gain;
+}
+
 bool Splat::opaque(const glm::dvec3& d) const {
   const Fragment f = astride_ ? object_space(d, disc_radius_) : quadratic(d, disc_radius_ * eta_ / o_.z, disc_pixels_);
   return f.r2 <= 1;

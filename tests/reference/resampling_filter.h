@@ -20,7 +20,8 @@ struct KernelParameters {
   double visibility_footprint = SURFCAST_VISIBILITY_FOOTPRINT;
   double coverage_minified = SURFCAST_COVERAGE_MINIFIED;
   double coverage_magnified = SURFCAST_COVERAGE_MAGNIFIED;
-  double silhouette_filter = SURFCAST_SILHOUETTE_FILTER;
+  double silhouette_variance = SURFCAST_SILHOUETTE_VARIANCE;
+  double silhouette_coverage = SURFCAST_SILHOUETTE_COVERAGE;
   double silhouette_jump = SURFCAST_SILHOUETTE_JUMP;
   int silhouette_reach = SURFCAST_SILHOUETTE_REACH;
 };
@@ -43,6 +44,8 @@ class Splat {
                                    double prefilter, const KernelParameters& kernel);
 
   [[nodiscard]] Fragment fragment(const glm::dvec3& d) const;
+  /// The gain that a fragment would have under another prefilter, pixels.
+  [[nodiscard]] double gain(const glm::dvec3& d, double prefilter) const;
   [[nodiscard]] bool cut(double r2) const { return !(r2 <= cutoff_); }
   /// Whether the surfel's opaque disc covers the pixel.
   [[nodiscard]] bool opaque(const glm::dvec3& d) const;

@@ -37,4 +37,9 @@ std::vector<bool> silhouettes(const std::vector<double>& fronts, int width, doub
   return found;
 }
 
+std::array<glm::dvec2, SURFCAST_SILHOUETTE_SAMPLES> silhouette_samples(const KernelParameters& kernel) {
+  const double step = std::sqrt(kernel.silhouette_variance / 5);  // -3, -1, 1 and 3 have a variance of 5
+  return {step * glm::dvec2(-1, -3), step * glm::dvec2(3, -1), step * glm::dvec2(1, 3), step * glm::dvec2(-3, 1)};
+}
+
 }  // namespace surfcast::reference

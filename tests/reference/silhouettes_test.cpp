@@ -56,5 +56,21 @@ TEST(Silhouettes, AreNotWhereNothingIs) {
   EXPECT_TRUE(columns_found(picture([](int, int) { return 0.0; })).empty());
 }
 
+TEST(Silhouettes, HaveSamplesAboutThePixelCentreWithTheVarianceThatIsTakenFromThePrefilter) {
+  glm::dvec2 sum(0);
+  glm::dvec2 squares(0);
+  double mixed = 0;
+  for (const glm::dvec2& place : silhouette_samples({})) {
+    sum += place;
+    squares += place * place;
+    mixed += place.x * place.y;
+  }
+  EXPECT_NEAR(sum.x, 0, 1e-12);
+  EXPECT_NEAR(sum.y, 0, 1e-12);
+  EXPECT_NEAR(squares.x / SURFCAST_SILHOUETTE_SAMPLES, SURFCAST_SILHOUETTE_VARIANCE, 1e-12);
+  EXPECT_NEAR(squares.y / SURFCAST_SILHOUETTE_SAMPLES, SURFCAST_SILHOUETTE_VARIANCE, 1e-12);
+  EXPECT_NEAR(mixed, 0, 1e-12);
+}
+
 }  // namespace
 }  // namespace surfcast::reference

@@ -195,6 +195,16 @@ TEST_F(AccuracyGLTest, SilhouettesAgreeWithTheReference) {
   }
 }
 
+TEST_F(AccuracyGLTest, SilhouettesComeNearerToTheIdealPictureWhereTheyAreAskedFor) {
+  for (const char* name : {"lit_sphere", "layers_oblique"}) {
+    Scene scene = reference::make_scene(name);
+    const SrgbPicture ideal = encode(reference::ideal_picture(scene));
+    const double without = psnr(draw(scene).colors, ideal);
+    scene.request.silhouettes = true;
+    EXPECT_GT(psnr(draw(scene).colors, ideal), without + 0.3) << name;
+  }
+}
+
 TEST_F(AccuracyGLTest, OneColorIsThatColorWhereFullyCovered) {
   for (const char* name : {"color_plane", "color_sphere"}) {
     const Scene scene = reference::make_scene(name);

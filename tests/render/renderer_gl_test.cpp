@@ -194,27 +194,6 @@ TEST_F(RendererGLTest, AMillionSurfelsInOnePixelKeepTheirColor) {
   EXPECT_NEAR(p.b / p.a, 0.006995, 0.0005);
 }
 
-TEST_F(RendererGLTest, SilhouettesAreSharperWhereTheyAreAskedFor) {
-  SurfelCloud cloud = testing::fibonacci_sphere(100000, 1, {0, 0, 0}, {255, 255, 255});
-  cloud.weights.assign(cloud.size(), 1);
-  const testing::ModelPointer& model = model_of(cloud);
-  // Pixels of a row across the sphere that are neither whole nor empty.
-  const auto soft_pixels = [&](bool silhouettes) {
-    PictureRequest request = front_view(256, 256);
-    request.silhouettes = silhouettes;
-    const Image image = draw(model, request).image;
-    int soft = 0;
-    for (int y = 120; y < 136; ++y) {
-      for (int x = 0; x < image.width; ++x) {
-        const int coverage = pixel(image, x, y).a;
-        soft += coverage > 5 && coverage < 250 ? 1 : 0;
-      }
-    }
-    return soft;
-  };
-  EXPECT_LT(soft_pixels(true), soft_pixels(false));
-}
-
 TEST_F(RendererGLTest, CoincidentSurfelsAreOne) {
   SurfelCloud one = testing::single_surfel({0, 0, 0}, {0, 0, 1}, 0.5F, {10, 200, 30});
   SurfelCloud many = one;

@@ -1,0 +1,75 @@
+// The two passes of surface splatting for the pixels of a lane (see splat.comp): visibility, then accumulation,
+// normalisation and shading, surface after surface.
+#include "include/rows.glsl"
+
+const int kMaxLayers = 8;
+const float kOpaque = 1.0 / 128.0;  // transmittance that is not worth another round
+
+layout(std430, binding = SURFCAST_BIND_TILE_COUNT) readonly buffer TileCount { uint tile_count[]; };
+layout(std430, binding = SURFCAST_BIND_TILE_OFFSET) readonly buffer TileOffset { uint tile_offset[]; };
+layout(binding = SURFCAST_UNIT_SPLATS) uniform usamplerBuffer splats;
+layout(binding = SURFCAST_UNIT_DISCS) uniform usamplerBuffer discs;
+layout(binding = SURFCAST_UNIT_LISTS) uniform usamplerBuffer lists;
+
+#include "include/small_splats.glsl"
+#ifdef SURFCAST_LARGE
+#include "include/large_splats.glsl"
+#endif
+#include "include/resolve.glsl"
+
+struct TileLists {
+  uint first_small;
+  uint smalls;
+  uint first_large;
+  uint larges;
+};
+
+TileLists lists_of_tile(uint index) {
+  uint large = index + uint(frame.tiles.z);
+  return TileLists(tile_offset[index], tile_count[index], tile_offset[large], tile_count[large]);
+}
+
+// Whether this build draws the tile.
+bool is_ours(TileLists tile) {
+#ifdef SURFCAST_LARGE
+  return tile.larges != 0u;
+#else
+  return tile.larges == 0u;
+#endif
+}
+
+// Draws the first `wanted` columns of a lane. `front`: inverse depth of the first surface, see silhouettes.comp.
+void draw(TileLists tile, int wanted, vec2 pixel, out LightColumns light, out Columns front) {
+  Columns limit;
+  for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
+    light[c] = light_zero();
+    if (c >= wanted) light[c].transmittance = Rows(0.0);
+    limit[c] = Rows(3e38);  // inverse depth: nothing is nearer
+  }
+  for (int layer = 0; layer < kMaxLayers; ++layer) {
+    Columns surface;
+    ColumnSums sums;
+    for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
+      surface[c] = Rows(0.0);  // infinitely far
+      sums[c] = sums_zero();
+    }
+    float peak = 0.0;
+    see_small(tile.first_small, tile.smalls, pixel, limit, surface, peak);
+#ifdef SURFCAST_LARGE
+    see_large(tile.first_large, tile.larges, pixel, limit, surface, peak);
+#endif
+    float unit = fixed_unit(peak);
+    accumulate_small(tile.first_small, tile.smalls, pixel, limit, surface, unit, sums);
+#ifdef SURFCAST_LARGE
+    accumulate_large(tile.first_large, tile.larges, pixel, limit, surface, unit, sums);
+#endif
+    bool more = false;
+    for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
+      composite(light[c], sums[c], surface[c], 1.0 / unit, column(pixel, c));
+      more = more || any_of(both(less(Rows(0.0), surface[c]), less(Rows(kOpaque), light[c].transmittance)));
+    }
+    if (layer == 0) front = surface;
+    limit = surface;
+    if (!more) break;
+  }
+}
