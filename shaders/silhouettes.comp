@@ -19,20 +19,17 @@ layout(std430, binding = SURFCAST_BIND_SILHOUETTES) buffer Silhouettes {
 
 const ivec2 kTile = ivec2(SURFCAST_TILE_WIDTH, SURFCAST_TILE_HEIGHT);
 
-float front(ivec2 at) { return fronts[at.y * frame.region.z + at.x]; }
+const int kReach = SURFCAST_SILHOUETTE_REACH;
+const ivec2 kSeen = kTile + 2 * kReach + 2;  // pixels that decide over a tile
 
-// Whether the front surface bends from one neighbour of a pixel to the opposite one.
-bool bends(ivec2 at, ivec2 step) {
-  if (any(lessThan(at, step)) || any(greaterThanEqual(at + step, frame.region.zw))) return false;
-  float before = front(at - step);
-  float here = front(at);
-  float after = front(at + step);
-  return abs(before - 2.0 * here + after) * eta() > SURFCAST_SILHOUETTE_JUMP * max(here, max(before, after));
+float front(ivec2 at) {
+  ivec2 inside = clamp(at, ivec2(0), frame.region.zw - 1);
+  return fronts[inside.y * frame.region.z + inside.x];
 }
 
-bool is_jump(ivec2 at) {
-  return all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, frame.region.zw)) &&
-         (bends(at, ivec2(1, 0)) || bends(at, ivec2(0, 1)));
+// Whether the front surface bends from one neighbour of a pixel to the opposite one.
+bool bends(float before, float here, float after) {
+  return abs(before - 2.0 * here + after) * eta() > SURFCAST_SILHOUETTE_JUMP * max(here, max(before, after));
 }
 
 // The pixels from `low` to `high`, counted from the tile's first, that lie in the tile and in a picture of such a size,
@@ -48,12 +45,20 @@ uint pixels_between(ivec2 low, ivec2 high, ivec2 size) {
 
 // The tile's pixels at silhouettes.
 uint find(ivec2 corner) {
-  const int reach = SURFCAST_SILHOUETTE_REACH;
+  ivec2 first = corner - kReach - 1;
+  float seen[kSeen.y][kSeen.x];
+  for (int y = 0; y < kSeen.y; ++y) {
+    for (int x = 0; x < kSeen.x; ++x) seen[y][x] = front(first + ivec2(x, y));
+  }
+  ivec2 size = frame.region.zw;
   uint found = 0u;
-  for (int y = -reach; y < kTile.y + reach; ++y) {
-    for (int x = -reach; x < kTile.x + reach; ++x) {
-      ivec2 at = ivec2(x, y);
-      if (is_jump(corner + at)) found |= pixels_between(at - reach, at + reach, frame.region.zw - corner);
+  for (int y = 1; y < kSeen.y - 1; ++y) {
+    for (int x = 1; x < kSeen.x - 1; ++x) {
+      ivec2 at = first + ivec2(x, y);
+      bool across = at.x > 0 && at.x < size.x - 1 && bends(seen[y][x - 1], seen[y][x], seen[y][x + 1]);
+      bool down = at.y > 0 && at.y < size.y - 1 && bends(seen[y - 1][x], seen[y][x], seen[y + 1][x]);
+      bool inside = all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, size));
+      if (inside && (across || down)) found |= pixels_between(at - corner - kReach, at - corner + kReach, size - corner);
     }
   }
   return found;
