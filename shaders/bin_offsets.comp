@@ -1,5 +1,6 @@
 // Turns the counts of the tile lists into the places where the lists begin (an exclusive prefix sum), and clears the
-// counts for the binning that follows. One work group: the counts are few.
+// counts for the binning that follows. Puts the tiles in order, those with the longest lists first: lanes that draw side
+// by side then have about as much to do. One work group: the counts are few.
 #include "shared/frame_layout.h"
 #include "include/frame.glsl"
 
@@ -11,12 +12,49 @@ layout(std430, binding = SURFCAST_BIND_TILE_COUNT) buffer TileCount { uint tile_
 layout(std430, binding = SURFCAST_BIND_TILE_OFFSET) writeonly buffer TileOffset { uint tile_offset[]; };
 
 layout(std430, binding = SURFCAST_BIND_TILE_CROWD) writeonly buffer TileCrowd { uint tile_crowd[]; };
+layout(std430, binding = SURFCAST_BIND_TILE_ORDER) writeonly buffer TileOrder { uint tile_order[]; };
 
 shared uint sums[LANES];
 shared uint longest;
 
+// Classes of lengths: none, then a quarter of an octave each.
+#define CLASSES 72
+shared uint class_places[CLASSES];
+
+uint length_class(uint crowd) {
+  if (crowd == 0u) return 0u;
+  return min((floatBitsToUint(float(crowd)) >> 21) - (127u << 2) + 1u, uint(CLASSES - 1));
+}
+
+uint crowd_of(uint tile) { return tile_count[tile] + tile_count[tile + uint(frame.tiles.z)]; }
+
+const uint kLengths[8] = uint[8](SURFCAST_LIST_LENGTHS);
+
+// The tiles of the lane; counts are still there.
+void order_tiles(uint lane) {
+  uint share = (uint(frame.tiles.z) + uint(LANES) - 1u) / uint(LANES);
+  uint first = min(lane * share, uint(frame.tiles.z));
+  uint last = min(first + share, uint(frame.tiles.z));
+  if (lane < uint(CLASSES)) class_places[lane] = 0u;
+  barrier();
+  for (uint i = first; i < last; ++i) atomicAdd(class_places[length_class(crowd_of(i))], 1u);
+  barrier();
+  if (lane == 0u) {
+    uint place = 0u;
+    for (int i = CLASSES - 1; i >= 0; --i) {
+      uint count = class_places[i];
+      class_places[i] = place;
+      place += count;
+    }
+    for (int i = 0; i < 8; ++i) counters.lengths[i / 4][i % 4] = class_places[length_class(kLengths[i]) - 1u];
+  }
+  barrier();
+  for (uint i = first; i < last; ++i) tile_order[atomicAdd(class_places[length_class(crowd_of(i))], 1u)] = i;
+}
+
 void main() {
   uint lane = gl_LocalInvocationID.x;
+  order_tiles(lane);
   uint lists = 2u * uint(frame.tiles.z);
   uint share = (lists + uint(LANES) - 1u) / uint(LANES);
   uint first = min(lane * share, lists);

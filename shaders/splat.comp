@@ -16,10 +16,16 @@
 #include "include/frame.glsl"
 
 layout(location = SURFCAST_UNIFORM_FIRST_GROUP) uniform uint first_group;
-// A work group draws SURFCAST_TILES tiles.
+layout(location = SURFCAST_UNIFORM_SPAN) uniform uvec3 span;
+// A work group draws SURFCAST_TILES_AT_ONCE tiles side by side, and span.z in all.
 const int kLanesAcross = SURFCAST_TILE_WIDTH / SURFCAST_COLUMNS;  // of a tile
-layout(local_size_x = SURFCAST_TILES * SURFCAST_TILE_WIDTH / SURFCAST_COLUMNS,
+layout(local_size_x = SURFCAST_TILES_AT_ONCE * SURFCAST_TILE_WIDTH / SURFCAST_COLUMNS,
        local_size_y = SURFCAST_TILE_HEIGHT / SURFCAST_ROWS) in;
+
+layout(std430, binding = SURFCAST_BIND_TILE_ORDER) readonly buffer TileOrder { uint tile_order[]; };
+#ifdef SURFCAST_TAKES_TURNS
+layout(std430, binding = SURFCAST_BIND_TURNS) buffer Turns { uint turns[]; };
+#endif
 #ifdef SURFCAST_FINDS_SILHOUETTES
 layout(std430, binding = SURFCAST_BIND_FRONTS) writeonly buffer Fronts { float fronts[]; };
 #endif
@@ -43,17 +49,56 @@ void write_column(Light light, Rows front, ivec2 first) {
   }
 }
 
-void main() {
-  uvec2 place = uvec2(gl_WorkGroupID.x * uint(SURFCAST_TILES) + gl_LocalInvocationID.x / uint(kLanesAcross),
-                      first_group + gl_WorkGroupID.y);
-  if (place.x >= uint(frame.tiles.x)) return;
-  TileLists tile = lists_of_tile(place.y * uint(frame.tiles.x) + place.x);
-  if (!is_ours(tile)) return;
-  ivec2 first = ivec2(gl_LocalInvocationID.x % uint(kLanesAcross), gl_LocalInvocationID.y) *
-                ivec2(SURFCAST_COLUMNS, SURFCAST_ROWS);
-  ivec2 local = ivec2(place) * ivec2(SURFCAST_TILE_WIDTH, SURFCAST_TILE_HEIGHT) + first;
+// What a lane is drawing.
+struct Work {
+  TileLists tile;
+  ivec2 local;  // first pixel of the lane
+  int columns;  // 0 in a tile that the other build draws
+  int layer;
+  Columns limit;
   LightColumns light;
   Columns front;
-  draw(tile, SURFCAST_COLUMNS, vec2(frame.region.xy + local) + 0.5, light, front);
-  for (int c = 0; c < SURFCAST_COLUMNS; ++c) write_column(light[c], front[c], local + ivec2(c, 0));
+};
+
+// The lane's next tile of its work group; span.z or more when there is none.
+uint next_turn(bool first) {
+#ifdef SURFCAST_TAKES_TURNS
+  return atomicAdd(turns[first_group + gl_WorkGroupID.x], 1u);
+#else
+  return first ? gl_LocalInvocationID.x / uint(kLanesAcross) : span.z;
+#endif
+}
+
+// Begins another tile, if there is one.
+bool begin(inout Work work, bool first) {
+  uint turn = next_turn(first);
+  uint at = span.x + (first_group + gl_WorkGroupID.x) * span.z + turn;
+  if (turn >= span.z || at >= span.y) return false;
+  uint index = tile_order[at];
+  work.tile = lists_of_tile(index);
+  work.columns = is_ours(work.tile) ? SURFCAST_COLUMNS : 0;
+  if (work.columns == 0) work.tile = TileLists(0u, 0u, 0u, 0u);
+  ivec2 place = ivec2(index % uint(frame.tiles.x), index / uint(frame.tiles.x));
+  work.local = place * ivec2(SURFCAST_TILE_WIDTH, SURFCAST_TILE_HEIGHT) +
+               ivec2(gl_LocalInvocationID.x % uint(kLanesAcross), gl_LocalInvocationID.y) *
+                   ivec2(SURFCAST_COLUMNS, SURFCAST_ROWS);
+  work.layer = 0;
+  begin_drawing(work.columns, work.limit, work.light);
+  return true;
+}
+
+// Lanes begin another tile when they have finished one, whatever the others do: tiles differ in their surfaces.
+void main() {
+  Work work;
+  bool drawing = begin(work, true);
+  while (drawing) {
+    bool more = draw_layer(work.tile, vec2(frame.region.xy + work.local) + 0.5, work.limit, work.light);
+    if (work.layer == 0) work.front = work.limit;
+    ++work.layer;
+    if (more && work.layer < kMaxLayers) continue;
+    for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
+      if (c < work.columns) write_column(work.light[c], work.front[c], work.local + ivec2(c, 0));
+    }
+    drawing = begin(work, false);
+  }
 }

@@ -70,8 +70,7 @@ void draw_some(TileLists tile, ivec2 corner, inout uint mask) {
   }
   for (int i = 0; i < kRounds; ++i) {
     LightColumns light;
-    Columns front;
-    draw(tile, count, vec2(frame.region.xy + places[0]) + 0.5 + place_in_round(i), light, front);
+    draw(tile, count, vec2(frame.region.xy + places[0]) + 0.5 + place_in_round(i), light);
     for (int c = 0; c < SURFCAST_COLUMNS; ++c) add(pixels[c], light[c]);
   }
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {

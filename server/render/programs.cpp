@@ -63,7 +63,8 @@ std::string define(const std::string& name, int value) {
 
 std::string lane_defines(bool whole_tiles) {
   return define("SURFCAST_COLUMNS", whole_tiles ? SURFCAST_TILE_WIDTH : 1) +
-         define("SURFCAST_ROWS", whole_tiles ? SURFCAST_TILE_HEIGHT : 1);
+         define("SURFCAST_ROWS", whole_tiles ? SURFCAST_TILE_HEIGHT : 1) +
+         (whole_tiles ? "#define SURFCAST_TAKES_TURNS\n" : "");
 }
 
 }  // namespace
@@ -103,9 +104,9 @@ Result<SplatPrograms> Programs::variant(const Variant& variant) {
     return {};
   };
   const std::string lanes = define("SURFCAST_PROJECT_LANES", shape_.project_lanes);
-  const std::string group = splat + define("SURFCAST_TILES", shape_.tiles);
-  const std::string small = group + lane_defines(shape_.whole_tiles);
-  const std::string large = group + lane_defines(false) + "#define SURFCAST_LARGE\n";
+  const std::string at_once = splat + define("SURFCAST_TILES_AT_ONCE", shape_.tiles_at_once);
+  const std::string small = at_once + lane_defines(shape_.whole_tiles);
+  const std::string large = at_once + lane_defines(false) + "#define SURFCAST_LARGE\n";
   const std::string finding = variant.silhouettes ? "#define SURFCAST_FINDS_SILHOUETTES\n" : "";
   Status status = compile(programs.project, "project.comp", project_defines(variant) + lanes);
   if (status) status = compile(programs.splat, "splat.comp", small + finding);

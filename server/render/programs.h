@@ -37,9 +37,10 @@ struct SplatPrograms {
 
 /// How the passes fit the device's vectors. No picture depends on it.
 struct KernelShape {
-  bool whole_tiles = false;  ///< a lane of the splat kernel holds a tile instead of a pixel (see include/rows.glsl)
-  int tiles = 2;             ///< that a work group of the splat kernel draws
-  int project_lanes = 64;    ///< lanes that share a chunk of surfels: one vector, or as many as hide waiting
+  bool whole_tiles = false;  ///< a lane of the splat kernel holds a tile instead of a pixel (see include/rows.glsl),
+                             ///< and then another one
+  int tiles_at_once = 2;   ///< that a work group of the splat kernel draws side by side
+  int project_lanes = 64;  ///< lanes that share a chunk of surfels: one vector, or as many as hide waiting
 };
 
 /// Compiles the passes when they are first needed.

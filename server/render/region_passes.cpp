@@ -6,6 +6,7 @@
 #include <optional>
 
 #include "base/stopwatch.h"
+#include "render/tile_spans.h"
 #include "shared/surfel_layout.h"
 
 namespace surfcast {
@@ -177,6 +178,7 @@ void clear_counts(const RegionTask& task, SplatBuffers& buffers) {
   buffers.tile_count.clear();
   buffers.tile_offset.reserve(lists * 4);
   buffers.tile_crowd.reserve(lists * 2);
+  buffers.tile_order.reserve(lists * 2);
 }
 
 /// What every pass works with.
@@ -186,6 +188,7 @@ void bind_frame(const SplatBuffers& buffers) {
   buffers.tile_count.bind(SURFCAST_BIND_TILE_COUNT);
   buffers.tile_offset.bind(SURFCAST_BIND_TILE_OFFSET);
   buffers.tile_crowd.bind(SURFCAST_BIND_TILE_CROWD);
+  buffers.tile_order.bind(SURFCAST_BIND_TILE_ORDER);
 }
 
 void bind_for_projection(const RegionTask& task, const SplatBuffers& buffers) {
@@ -209,6 +212,7 @@ void bind_for_binning(const SplatBuffers& buffers) {
 
 void bind_for_splatting(const RegionTask& task, const SplatBuffers& buffers) {
   bind_frame(buffers);
+  buffers.turns.bind(SURFCAST_BIND_TURNS);
   buffers.picture.bind(SURFCAST_BIND_PICTURE);
   if (task.variant.eye_dome) {
     buffers.light.bind(SURFCAST_BIND_LIGHT);
@@ -292,9 +296,18 @@ size_t ceil_divide(int total, int part) {
   return static_cast<size_t>((total + part - 1) / part);
 }
 
-Groups all_tiles(const RegionTask& task, const KernelShape& shape) {
-  const glm::ivec4& tiles = task.constants.tiles;
-  return {static_cast<size_t>(tiles.y), ceil_divide(tiles.x, shape.tiles)};
+/// Draws a span of tiles with a build of the splat kernel.
+Status draw_tiles(const RegionTask& task, const TileSpan& span, const gl::Program& program, BatchPace& pace,
+                  SplatBuffers& buffers, const Interruption& interruption) {
+  if (span.first == span.end) return {};
+  const Groups groups{(span.end - span.first + span.of_group - 1) / span.of_group, {}};
+  buffers.turns.reserve(groups.count * sizeof(GLuint));
+  buffers.turns.clear();
+  return dispatch_in_batches(groups, pace, interruption, [&] {
+    bind_for_splatting(task, buffers);
+    glUseProgram(program.name());
+    glUniform3ui(SURFCAST_UNIFORM_SPAN, span.first, span.end, span.of_group);
+  });
 }
 
 Groups all_pixels(const Region& region) {
@@ -319,14 +332,15 @@ Status splat(const RegionTask& task, const layout::Counters& counters, const Spl
     buffers.depth.reserve(pixels * sizeof(glm::vec2));
   }
   if (task.variant.silhouettes) clear_silhouettes(task, buffers);
-  const auto dispatch = [&](const gl::Program& program) {
-    return dispatch_in_batches(all_tiles(task, shape), buffers.splat_pace, interruption, [&] {
-      bind_for_splatting(task, buffers);
-      glUseProgram(program.name());
-    });
-  };
-  if (Status status = dispatch(*variant.splat); !status) return status;
-  return counters.counts.y > 0 ? dispatch(*variant.splat_large) : Status();
+  const auto tiles = static_cast<uint32_t>(task.constants.tiles.z);
+  const std::vector<TileSpan> spans = spans_of_tiles(counters, tiles, shape);
+  for (size_t i = 0; i < spans.size(); ++i) {
+    Status status = draw_tiles(task, spans[i], *variant.splat, buffers.splat_paces.at(i), buffers, interruption);
+    if (!status) return status;
+  }
+  if (counters.counts.y == 0) return {};
+  const TileSpan all{0, tiles, static_cast<uint32_t>(shape.tiles_at_once)};
+  return draw_tiles(task, all, *variant.splat_large, buffers.splat_large_pace, buffers, interruption);
 }
 
 /// Finds the pixels at silhouettes and draws them again.

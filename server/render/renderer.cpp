@@ -272,7 +272,7 @@ Result<Frame> Renderer::State::draw(const std::shared_ptr<const ModelFile>& mode
 Result<std::unique_ptr<Renderer>> Renderer::create(const RendererConfig& config) {
   Result<std::unique_ptr<EglContext>> context = EglContext::create(config.gpu);
   if (!context) return fail(std::move(context.error()));
-  constexpr KernelShape kSoftware = {.whole_tiles = true, .tiles = 8, .project_lanes = 8};
+  constexpr KernelShape kSoftware = {.whole_tiles = true, .tiles_at_once = 8, .project_lanes = 8};
   Result<Programs> programs =
       Programs::create((*context)->software() ? kSoftware : KernelShape(), config.shader_defines);
   if (!programs) return fail(std::move(programs.error()));

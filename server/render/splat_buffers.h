@@ -1,11 +1,13 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
 
 #include "gl/objects.h"
 #include "render/batch_pace.h"
+#include "render/tile_spans.h"
 
 namespace surfcast {
 
@@ -63,7 +65,8 @@ class ConstantTexels {
 struct SplatBuffers {
   BatchPace project_pace;
   BatchPace bin_pace;
-  BatchPace splat_pace;
+  std::array<BatchPace, kTileSpans> splat_paces;
+  BatchPace splat_large_pace;
   BatchPace find_pace;
   BatchPace supersample_pace;
   ConstantTexels srgb;  ///< linear_root_table
@@ -76,6 +79,8 @@ struct SplatBuffers {
   StorageBuffer tile_count{"tile count"};
   StorageBuffer tile_offset{"tile offset"};
   StorageBuffer tile_crowd{"tile crowd"};
+  StorageBuffer tile_order{"tile order"};
+  StorageBuffer turns{"turns"};
   StorageBuffer picture{"picture"};
   StorageBuffer blocks{"blocks"};
   StorageBuffer chunks{"chunks"};

@@ -38,38 +38,47 @@ bool is_ours(TileLists tile) {
 #endif
 }
 
-// Draws the first `wanted` columns of a lane. `front`: inverse depth of the first surface, see silhouettes.comp.
-void draw(TileLists tile, int wanted, vec2 pixel, out LightColumns light, out Columns front) {
-  Columns limit;
+// Before the first layer: nothing is nearer than `limit`, an inverse depth. Only the first `wanted` columns are drawn.
+void begin_drawing(int wanted, out Columns limit, out LightColumns light) {
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
     light[c] = light_zero();
     if (c >= wanted) light[c].transmittance = Rows(0.0);
-    limit[c] = Rows(3e38);  // inverse depth: nothing is nearer
+    limit[c] = Rows(3e38);
   }
+}
+
+// Draws the nearest surface behind `limit`, which becomes the limit. False when nothing behind that is seen.
+bool draw_layer(TileLists tile, vec2 pixel, inout Columns limit, inout LightColumns light) {
+  Columns surface;
+  ColumnSums sums;
+  for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
+    surface[c] = Rows(0.0);  // infinitely far
+    sums[c] = sums_zero();
+  }
+  float peak = 0.0;
+  see_small(tile.first_small, tile.smalls, pixel, limit, surface, peak);
+#ifdef SURFCAST_LARGE
+  see_large(tile.first_large, tile.larges, pixel, limit, surface, peak);
+#endif
+  float unit = fixed_unit(peak);
+  accumulate_small(tile.first_small, tile.smalls, pixel, limit, surface, unit, sums);
+#ifdef SURFCAST_LARGE
+  accumulate_large(tile.first_large, tile.larges, pixel, limit, surface, unit, sums);
+#endif
+  bool more = false;
+  for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
+    composite(light[c], sums[c], surface[c], 1.0 / unit, column(pixel, c));
+    more = more || any_of(both(less(Rows(0.0), surface[c]), less(Rows(kOpaque), light[c].transmittance)));
+  }
+  limit = surface;
+  return more;
+}
+
+// Draws the first `wanted` columns of a lane.
+void draw(TileLists tile, int wanted, vec2 pixel, out LightColumns light) {
+  Columns limit;
+  begin_drawing(wanted, limit, light);
   for (int layer = 0; layer < kMaxLayers; ++layer) {
-    Columns surface;
-    ColumnSums sums;
-    for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
-      surface[c] = Rows(0.0);  // infinitely far
-      sums[c] = sums_zero();
-    }
-    float peak = 0.0;
-    see_small(tile.first_small, tile.smalls, pixel, limit, surface, peak);
-#ifdef SURFCAST_LARGE
-    see_large(tile.first_large, tile.larges, pixel, limit, surface, peak);
-#endif
-    float unit = fixed_unit(peak);
-    accumulate_small(tile.first_small, tile.smalls, pixel, limit, surface, unit, sums);
-#ifdef SURFCAST_LARGE
-    accumulate_large(tile.first_large, tile.larges, pixel, limit, surface, unit, sums);
-#endif
-    bool more = false;
-    for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
-      composite(light[c], sums[c], surface[c], 1.0 / unit, column(pixel, c));
-      more = more || any_of(both(less(Rows(0.0), surface[c]), less(Rows(kOpaque), light[c].transmittance)));
-    }
-    if (layer == 0) front = surface;
-    limit = surface;
-    if (!more) break;
+    if (!draw_layer(tile, pixel, limit, light)) break;
   }
 }

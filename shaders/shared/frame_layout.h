@@ -91,14 +91,19 @@ struct Chunk {
 // A merged surfel takes over from its pair a little early, so that rounding never leaves both of them out.
 #define SURFCAST_SPACING_SLACK 0.99
 
-// What the projection counts: small splats, large splats, entries of all tile lists, entries of the longest.
+// What the projection counts.
 struct Counters {
-  SURFCAST_UVEC4 counts;
+  SURFCAST_UVEC4 counts;      // small splats, large splats, entries of all tile lists, of the longest (both lists of a tile)
+  SURFCAST_UVEC4 lengths[2];  // tiles with at least so many entries, for each of SURFCAST_LIST_LENGTHS
 };
+// Powers of two, which set tiles apart by what they cost (see render/tile_spans.h).
+#define SURFCAST_LIST_LENGTHS 1, 4, 16, 64, 256, 512, 1024, 2048
 
 // Location of the uniform `first_group` of passes that are dispatched in batches: work groups, or rows of them, before
 // the batch.
 #define SURFCAST_UNIFORM_FIRST_GROUP 0
+// Of the splat kernel's `span`: first tile, end and tiles of a work group, in the order of tiles.
+#define SURFCAST_UNIFORM_SPAN 1
 
 // Bindings. Storage buffers:
 #define SURFCAST_BIND_LOOKS 0  // BlockLook per block
@@ -110,6 +115,8 @@ struct Counters {
 #define SURFCAST_BIND_TILE_OFFSET 7  // uint per tile and list: first entry
 #define SURFCAST_BIND_TILE_CROWD 8   // uint per tile: entries of both its lists, as counted before thinning
 #define SURFCAST_BIND_PICTURE 9
+#define SURFCAST_BIND_TILE_ORDER 14  // uint per tile: the tiles, those with the longest lists first
+#define SURFCAST_BIND_TURNS 15       // uint per work group of the splat kernel: tiles that its lanes have begun
 #define SURFCAST_BIND_LIGHT 2   // vec4 per pixel: linear light and coverage before eye-dome lighting
 #define SURFCAST_BIND_DEPTH 10  // vec2 per pixel: log2 of the visible surface's depth, coverage that it is the mean of
 #define SURFCAST_BIND_FRONTS 11           // float per pixel: what silhouettes are found by, see silhouettes.comp
@@ -136,7 +143,7 @@ static_assert(sizeof(BlockLook) == 32);
 static_assert(sizeof(ClipRange) == 32);
 static_assert(sizeof(LookConstants) == 48);
 static_assert(sizeof(Chunk) == 16);
-static_assert(sizeof(Counters) == 16);
+static_assert(sizeof(Counters) == 48);
 }  // namespace surfcast::layout
 #endif
 #undef SURFCAST_VEC4

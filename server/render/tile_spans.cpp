@@ -1,0 +1,35 @@
+#include "render/tile_spans.h"
+
+#include <algorithm>
+#include <iterator>
+
+namespace surfcast {
+namespace {
+
+constexpr uint32_t kLengths[] = {SURFCAST_LIST_LENGTHS};
+static_assert(std::size(kLengths) + 1 == kTileSpans);
+
+/// Turns that a lane may take in the mean where lists are shorter than `longest`. Eight lanes that share n tiles of up
+/// to eight surfaces draw at most n + 7 surfaces after each other, unless there is one turn each: then eight.
+uint32_t turns_of(uint32_t longest) {
+  if (longest <= 512) return 6;
+  return longest <= 1024 ? 2 : 1;
+}
+
+}  // namespace
+
+std::vector<TileSpan> spans_of_tiles(const layout::Counters& counters, uint32_t tiles, const KernelShape& shape) {
+  const auto at_once = static_cast<uint32_t>(shape.tiles_at_once);
+  std::vector<TileSpan> spans;
+  uint32_t first = 0;
+  for (size_t i = kTileSpans; i-- > 0;) {
+    const auto at = static_cast<glm::length_t>(i);
+    const uint32_t end = i == 0 ? tiles : std::clamp(counters.lengths[(at - 1) / 4][(at - 1) % 4], first, tiles);
+    const uint32_t longest = i < std::size(kLengths) ? kLengths[i] : SURFCAST_CROWD_LIMIT;
+    spans.push_back({first, end, shape.whole_tiles ? at_once * turns_of(longest) : at_once});
+    first = end;
+  }
+  return spans;
+}
+
+}  // namespace surfcast

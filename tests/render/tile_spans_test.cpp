@@ -1,0 +1,67 @@
+#include "render/tile_spans.h"
+
+#include <algorithm>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+namespace surfcast {
+namespace {
+
+constexpr uint32_t kLengths[] = {SURFCAST_LIST_LENGTHS};
+constexpr KernelShape kSoftware{.whole_tiles = true, .tiles_at_once = 8};
+
+layout::Counters counters_of(const std::vector<uint32_t>& lists) {
+  layout::Counters counters{};
+  for (int i = 0; i < 8; ++i) {
+    counters.lengths[i / 4][i % 4] =
+        static_cast<uint32_t>(std::ranges::count_if(lists, [&](uint32_t list) { return list >= kLengths[i]; }));
+  }
+  return counters;
+}
+
+TEST(TileSpans, HaveEveryTileOnce) {
+  const std::vector<uint32_t> lists{3000, 1500, 1024, 700, 511, 300, 64, 63, 20, 4, 3, 1, 0, 0};
+  for (const KernelShape& shape : {kSoftware, KernelShape()}) {
+    const auto spans = spans_of_tiles(counters_of(lists), static_cast<uint32_t>(lists.size()), shape);
+    ASSERT_EQ(spans.size(), kTileSpans);
+    uint32_t end = 0;
+    for (const TileSpan& span : spans) {
+      EXPECT_EQ(span.first, end);
+      EXPECT_GE(span.end, span.first);
+      end = span.end;
+    }
+    EXPECT_EQ(end, lists.size());
+  }
+}
+
+TEST(TileSpans, SetTilesApartByTheirLists) {
+  const std::vector<uint32_t> lists{1024, 1023, 5, 0};
+  const auto spans = spans_of_tiles(counters_of(lists), 4, kSoftware);
+  EXPECT_EQ(spans[1].end, 1);  // 1024 to 2047
+  EXPECT_EQ(spans[2].end, 2);  // 512 to 1023
+  EXPECT_EQ(spans[7].end - spans[7].first, 0);
+  EXPECT_EQ(spans[8].end - spans[8].first, 1);
+}
+
+TEST(TileSpans, KeepLoopsWithinWhatSoftwareGLAllows) {
+  constexpr uint32_t kRounds = 65535;
+  constexpr uint32_t kSurfaces = 8;
+  for (uint32_t list = 0; list <= SURFCAST_CROWD_LIMIT; ++list) {
+    for (const TileSpan& span : spans_of_tiles(counters_of({list}), 1, kSoftware)) {
+      if (span.first == span.end) continue;
+      const uint32_t drawn = span.of_group == 8 ? kSurfaces : span.of_group + kSurfaces - 1;
+      const uint32_t one = 2 * list + (list + SURFCAST_CARRY_INTERVAL - 1) / SURFCAST_CARRY_INTERVAL + 1;
+      EXPECT_LE(drawn * one, kRounds) << list;
+    }
+  }
+}
+
+TEST(TileSpans, AreAllOfOneGroupSizeOnHardware) {
+  for (const TileSpan& span : spans_of_tiles(counters_of({3000, 30, 3}), 3, KernelShape())) {
+    EXPECT_EQ(span.of_group, 2);
+  }
+}
+
+}  // namespace
+}  // namespace surfcast
