@@ -53,7 +53,8 @@ double entry_depth(const Box& box, double margin, const glm::dvec3& eye, const g
 
 class Picker {
  public:
-  Picker(const ModelFile& model, const PickQuery& query) : model_(model), query_(query), frame_(query.frame) {
+  Picker(const ModelFile& model, const PickQuery& query, SourceBlocks& source)
+      : model_(model), query_(query), source_(source), frame_(query.frame) {
     ray_ = frame_.ray(query.pixel);
     direction_ = frame_.right * ray_.x + frame_.up * ray_.y + frame_.forward;
   }
@@ -62,9 +63,9 @@ class Picker {
     for (const LeafOnRay& leaf : leaves_on_ray()) {
       if (leaf.nearest > occluder_) break;
       if (cancelled.load(std::memory_order_relaxed)) return fail(ErrorKind::kCancelled, "cancelled");
-      Result<DecodedBlock> block = model_.decode(leaf.block);
+      Result<std::shared_ptr<const DecodedBlock>> block = source_.get(model_, leaf.block);
       if (!block) return fail(std::move(block.error()));
-      collect(*block);
+      collect(**block);
       if (!candidates_.empty() && candidates_.back().block == blocks_.size()) blocks_.push_back(std::move(*block));
     }
     return best();
@@ -129,7 +130,7 @@ class Picker {
       if (best == nullptr || candidate.hit.form < best->hit.form) best = &candidate;
     }
     if (best == nullptr) return std::nullopt;
-    return describe(blocks_[best->block], best->surfel);
+    return describe(*blocks_[best->block], best->surfel);
   }
 
   [[nodiscard]] PickedSurfel describe(const DecodedBlock& block, size_t i) const {
@@ -159,19 +160,20 @@ class Picker {
 
   const ModelFile& model_;
   const PickQuery& query_;
+  SourceBlocks& source_;
   const CameraFrame& frame_;
-  glm::dvec3 ray_{0};                 ///< camera frame, z = 1
-  glm::dvec3 direction_{0};           ///< the same in the world
-  std::vector<DecodedBlock> blocks_;  ///< those with candidates
+  glm::dvec3 ray_{0};                                        ///< camera frame, z = 1
+  glm::dvec3 direction_{0};                                  ///< the same in the world
+  std::vector<std::shared_ptr<const DecodedBlock>> blocks_;  ///< those with candidates
   std::vector<Candidate> candidates_;
   double occluder_ = kInfinity;  ///< camera z behind which everything is hidden
 };
 
 }  // namespace
 
-Result<std::optional<PickedSurfel>> pick_surfel(const ModelFile& model, const PickQuery& query,
+Result<std::optional<PickedSurfel>> pick_surfel(const ModelFile& model, const PickQuery& query, SourceBlocks& blocks,
                                                 const std::atomic<bool>& cancelled) {
-  return Picker(model, query).pick(cancelled);
+  return Picker(model, query, blocks).pick(cancelled);
 }
 
 }  // namespace surfcast

@@ -13,6 +13,7 @@
 #include "geometry/camera.h"
 #include "geometry/clip.h"
 #include "model/model_file.h"
+#include "pick/source_blocks.h"
 
 namespace surfcast {
 
@@ -43,7 +44,7 @@ struct PickedSurfel {
 /// not hidden behind a nearer surface, the one whose centre is nearest, measured in its disc as it is seen. None where
 /// the background shows. Looks at the blocks along the ray from the eye on and no farther than it sees. Fails when one
 /// is damaged, and with kCancelled soon after `cancelled` becomes true.
-Result<std::optional<PickedSurfel>> pick_surfel(const ModelFile& model, const PickQuery& query,
+Result<std::optional<PickedSurfel>> pick_surfel(const ModelFile& model, const PickQuery& query, SourceBlocks& blocks,
                                                 const std::atomic<bool>& cancelled);
 
 }  // namespace surfcast

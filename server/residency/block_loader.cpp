@@ -102,13 +102,17 @@ void BlockLoader::make_ready(LoadedBlock loaded) {
   ready_.push_back(std::move(loaded));
 }
 
+void BlockLoader::keep(const LoadedBlock& loaded) {
+  cache_.put(loaded.id, *loaded.block, bytes_of(loaded));
+}
+
 void BlockLoader::finish(LoadedBlock loaded) {
   // A wish is not left to a thread that may have no time, so it can come true twice.
   const bool again = std::ranges::find(ready_, loaded.id, &LoadedBlock::id) != ready_.end();
   if (wanted_.contains(loaded.id) && !again) {
     make_ready(std::move(loaded));
   } else if (loaded.block) {
-    cache_.put(loaded.id, std::move(*loaded.block));
+    keep(loaded);
   }
 }
 
@@ -121,7 +125,7 @@ std::optional<LoadedBlock> BlockLoader::take() {
     ready_.pop_front();
     ready_bytes_ -= bytes_of(*loaded);
     wanted_.erase(loaded->id);
-    if (loaded->block) cache_.put(loaded->id, *loaded->block);
+    if (loaded->block) keep(*loaded);
   }
   wake_workers_.notify_all();
   return loaded;
@@ -134,7 +138,7 @@ void BlockLoader::wait(std::chrono::milliseconds most) {
 
 void BlockLoader::forget(uint64_t model) {
   const std::lock_guard lock(mutex_);
-  cache_.forget(model);
+  cache_.forget({model, 0}, {model + 1, 0});
   damaged_ahead_.erase(damaged_ahead_.lower_bound({model, 0}), damaged_ahead_.lower_bound({model + 1, 0}));
 }
 

@@ -11,7 +11,8 @@
 #include <thread>
 #include <vector>
 
-#include "residency/packed_cache.h"
+#include "base/recent_cache.h"
+#include "residency/block_source.h"
 
 namespace surfcast {
 
@@ -25,8 +26,9 @@ struct LoadedBlock {
 struct LoaderLimits {
   unsigned threads = 1;
   unsigned idle_threads = 0;  ///< besides, for what is not wanted yet, in time that the processor is idle
-  size_t cache_bytes = 0;     ///< packed blocks kept in host memory, see PackedCache
-  size_t ready_bytes = 0;     ///< loaded blocks that wait to be taken before the workers wait, too
+  size_t cache_bytes =
+      0;  ///< packed blocks kept in host memory, those that left the GPU come back without being decoded again
+  size_t ready_bytes = 0;  ///< loaded blocks that wait to be taken before the workers wait, too
 };
 
 /// Worker threads that read, decode and pack blocks for one other thread, which alone calls the methods. They work on
@@ -60,6 +62,7 @@ class BlockLoader {
   void work();
   void work_ahead();
   [[nodiscard]] LoadedBlock load(const Request& request, std::unique_lock<std::mutex>& lock);
+  void keep(const LoadedBlock& loaded);
   void finish(LoadedBlock loaded);
   void make_ready(LoadedBlock loaded);
   void drop_unwanted();
@@ -77,7 +80,7 @@ class BlockLoader {
   std::set<BlockId> busy_;    ///< being decoded
   std::deque<LoadedBlock> ready_;
   size_t ready_bytes_ = 0;
-  PackedCache cache_;
+  RecentCache<BlockId, PackedBlock> cache_;
   bool stopping_ = false;
   std::vector<std::jthread> threads_;
 };

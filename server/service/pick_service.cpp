@@ -11,6 +11,7 @@ namespace {
 
 constexpr unsigned kThreads = 2;
 constexpr int kMostWaiting = 64;
+constexpr size_t kBlockBytes = size_t{64} << 20;
 
 Camera camera_of(const ModelFile& model, const PickJob& job) {
   if (!job.request.camera) return fit_model(model, static_cast<double>(job.request.width) / job.request.height);
@@ -21,7 +22,7 @@ Camera camera_of(const ModelFile& model, const PickJob& job) {
 
 }  // namespace
 
-PickService::PickService(const ModelSource& models) : models_(models), pool_(kThreads) {}
+PickService::PickService(const ModelSource& models) : models_(models), blocks_(kBlockBytes), pool_(kThreads) {}
 
 PickService::~PickService() {
   stopping_ = true;
@@ -40,7 +41,7 @@ void PickService::pick(PickJob job, Done done) {
 }
 
 /// What may throw (memory runs out) becomes a value, so that one pick cannot end the server.
-Result<std::optional<PickedSurfel>> PickService::run(const PickJob& job) const {
+Result<std::optional<PickedSurfel>> PickService::run(const PickJob& job) {
   try {
     const PictureRequest& request = job.request;
     if (job.x < 0 || job.y < 0 || job.x >= request.width || job.y >= request.height) {
@@ -50,7 +51,8 @@ Result<std::optional<PickedSurfel>> PickService::run(const PickJob& job) const {
     if (!model) return fail(model.error());
     const Result<CameraFrame> frame = make_camera_frame(camera_of(**model, job), request.width, request.height);
     if (!frame) return fail(frame.error());
-    return pick_surfel(**model, {*frame, {job.x + 0.5, job.y + 0.5}, request.clip, request.hidden_classes}, stopping_);
+    return pick_surfel(**model, {*frame, {job.x + 0.5, job.y + 0.5}, request.clip, request.hidden_classes}, blocks_,
+                       stopping_);
   } catch (const std::exception& error) {
     return fail(ErrorKind::kInternal, std::string("unexpected: ") + error.what());
   }

@@ -38,11 +38,12 @@ class PickService {
   void pick(PickJob job, Done done);
 
  private:
-  [[nodiscard]] Result<std::optional<PickedSurfel>> run(const PickJob& job) const;
+  [[nodiscard]] Result<std::optional<PickedSurfel>> run(const PickJob& job);
 
   const ModelSource& models_;
   std::atomic<bool> stopping_ = false;
   std::atomic<int> waiting_ = 0;
+  SourceBlocks blocks_;
   WorkerPool pool_;  ///< last, so that its threads end first
 };
 

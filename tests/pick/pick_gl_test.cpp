@@ -65,10 +65,11 @@ TEST_F(PickGLTest, PicksAgreeWithPicturesAlsoWhereSomethingIsHidden) {
       const CameraFrame frame = *make_camera_frame(camera, request.width, request.height);
       Agreement agreement;
       const std::atomic<bool> no{false};
+      SourceBlocks blocks(size_t{1} << 20);
       for (int y = 3; y < request.height; y += 15) {
         for (int x = 3; x < request.width; x += 15) {
           const PickQuery query{frame, {x + 0.5, y + 0.5}, request.clip, request.hidden_classes};
-          agreement.add(pixel(image, x, y), *pick_surfel(*model, query, no));
+          agreement.add(pixel(image, x, y), *pick_surfel(*model, query, blocks, no));
         }
       }
       agreement.expect_good(25);

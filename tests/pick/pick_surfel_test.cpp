@@ -60,7 +60,8 @@ class PickSurfel : public ::testing::Test {
 
   static std::optional<PickedSurfel> pick(const ModelFile& model, const PickQuery& query) {
     const std::atomic<bool> no{false};
-    Result<std::optional<PickedSurfel>> picked = pick_surfel(model, query, no);
+    SourceBlocks blocks(0);
+    Result<std::optional<PickedSurfel>> picked = pick_surfel(model, query, blocks, no);
     EXPECT_TRUE(picked) << (picked ? "" : picked.error().message);
     return picked ? *picked : std::nullopt;
   }
@@ -120,11 +121,12 @@ std::optional<glm::dvec3> brute_force(const std::vector<DecodedBlock>& leaves, c
 int compare(const ModelFile& model, const Clip& clip, const std::bitset<256>& hidden, const Camera& camera) {
   const std::vector<DecodedBlock> leaves = leaves_of(model);
   int hits = 0;
+  SourceBlocks blocks(size_t{1} << 20);  // some blocks
   for (int y = 5; y < 240; y += 23) {
     for (int x = 3; x < 320; x += 29) {
       PickQuery query{*make_camera_frame(camera, 320, 240), {x + 0.5, y + 0.5}, clip, hidden};
       const std::atomic<bool> no{false};
-      const auto picked = pick_surfel(model, query, no);
+      const auto picked = pick_surfel(model, query, blocks, no);
       const auto expected = brute_force(leaves, query);
       EXPECT_TRUE(picked);
       EXPECT_EQ((*picked).has_value(), expected.has_value()) << x << ' ' << y;
@@ -220,7 +222,19 @@ TEST_F(PickSurfel, ColorsOfSixteenBitsAreRounded) {
 TEST_F(PickSurfel, ACancelledPickStops) {
   const ModelFile model = model_of(survey());
   const std::atomic<bool> yes{true};
-  EXPECT_EQ(pick_surfel(model, query_at(160.5, 120.5, oblique()), yes).error().kind, ErrorKind::kCancelled);
+  SourceBlocks blocks(0);
+  EXPECT_EQ(pick_surfel(model, query_at(160.5, 120.5, oblique()), blocks, yes).error().kind, ErrorKind::kCancelled);
+}
+
+TEST_F(PickSurfel, BlocksAreDecodedOnceWithinTheBudget) {
+  const ModelFile model = model_of(survey());
+  ASSERT_GT(model.blocks().size(), 1U);
+  SourceBlocks blocks(size_t{1} << 30);
+  const auto first = *blocks.get(model, 1);
+  EXPECT_EQ(*blocks.get(model, 1), first);
+  EXPECT_EQ(first->size(), model.blocks()[1].surfels);
+  SourceBlocks none(1000);
+  EXPECT_NE(*none.get(model, 1), *none.get(model, 1)) << "a block of some hundred kilobytes";
 }
 
 }  // namespace
