@@ -83,8 +83,14 @@ const std::array<uint8_t, 65536>& nearest_levels() {
   return kNearest;
 }
 
+/// To the nearest; for numbers that are not negative.
+uint32_t rounded(float value) {
+  const float above = value + 0.5F;
+  return static_cast<uint32_t>(above);
+}
+
 uint32_t nearest_level(float light) {
-  return nearest_levels()[static_cast<size_t>(std::clamp(light, 0.0F, 1.0F) * 65535.0F + 0.5F)];
+  return nearest_levels()[rounded(std::clamp(light, 0.0F, 1.0F) * 65535.0F)];
 }
 
 uint32_t code_of_linear(const glm::vec3& light) {
@@ -110,7 +116,7 @@ LogScale LogScale::between(float least, float largest) {
 uint32_t LogScale::code(float value) const {
   if (octaves <= 0) return 0;
   const float u = (static_cast<float>(log2_largest) - std::log2(value)) / static_cast<float>(octaves);
-  return static_cast<uint32_t>(std::clamp(u, 0.0F, 1.0F) * SURFCAST_SIZE_STEPS + 0.5F);
+  return rounded(std::clamp(u, 0.0F, 1.0F) * SURFCAST_SIZE_STEPS);
 }
 
 namespace {

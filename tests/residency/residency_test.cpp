@@ -294,6 +294,70 @@ TEST_F(ResidencyTest, BlocksWithAttributesServePicturesWithoutAndAreLoadedOnce) 
   EXPECT_EQ(source->started().size(), begun);
 }
 
+/// A view that is switched between colours by attribute and the scanned ones while blocks arrive.
+class SwitchedColorsTest : public ResidencyTest {
+ protected:
+  PreparedView now_by(bool attributes, bool moving) {
+    return residency_->prepare_now(model_, {.frame = frame_, .attributes = attributes, .moving = moving}, {}, {});
+  }
+  /// What is drawn has what it is coloured by, and nothing is taken for finished that is not.
+  void expect_honest(const PreparedView& view, bool attributes) {
+    const std::vector<bool>& here = residency_->pool().residents(1, attributes);
+    for (const uint32_t block : view.selection.draw) {
+      ASSERT_LT(block, here.size());
+      ASSERT_TRUE(here[block]) << "block " << block << (attributes ? " by attribute" : " as scanned");
+      ASSERT_EQ(residency_->pool().at({1, block}).intensity.has_value() || !attributes, true);
+    }
+    const bool all = view.selection.draw == view.selection.target;
+    ASSERT_EQ(view.selection.converged(), all);
+    ASSERT_EQ(view.settled, all && view.selection.holes == 0);
+    ASSERT_EQ(view.missing == 0, view.settled);
+  }
+  void expect_converging(bool attributes) {
+    for (int i = 0; i < 20'000; ++i) {
+      const PreparedView view = now_by(attributes, false);
+      expect_honest(view, attributes);
+      if (HasFatalFailure() || view.selection.converged()) return;
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+    ADD_FAILURE() << "never converged";
+  }
+};
+
+TEST_F(SwitchedColorsTest, WhatIsShownByAttributeHasTheAttribute) {
+  start(64);
+  expect_converging(false);
+  const PreparedView first = now_by(true, false);
+  expect_honest(first, true);
+  EXPECT_FALSE(first.selection.converged());
+  EXPECT_THAT(first.selection.draw, IsEmpty()) << "no block has its attributes";
+  EXPECT_GT(first.selection.holes, 0U) << "so that a view does not show it";
+  expect_converging(true);
+}
+
+TEST_F(SwitchedColorsTest, SwitchingBackIsThereAtOnce) {
+  start(64);
+  expect_converging(false);
+  source_->hold();
+  now_by(true, false);
+  const PreparedView back = now_by(false, false);
+  expect_honest(back, false);
+  EXPECT_TRUE(back.selection.converged());
+  source_->release();
+}
+
+TEST_F(SwitchedColorsTest, BlocksThatArriveAfterASwitchAreNotTakenForOthers) {
+  start(64, 1);
+  for (int round = 0; round < 40; ++round) {
+    const bool attributes = round / 3 % 2 == 1;
+    for (int i = 0; i < 4; ++i) expect_honest(now_by(attributes, round % 2 == 0), attributes);
+    std::this_thread::sleep_for(std::chrono::microseconds(200 * (round % 5)));
+    if (HasFatalFailure()) return;
+  }
+  expect_converging(true);
+  expect_converging(false);
+}
+
 TEST_F(ResidencyTest, EvictedBlocksLoseTheirAttributes) {
   start(64);
   const auto source = two_splits(1);
