@@ -8,10 +8,11 @@
 #include "include/frame.glsl"
 
 layout(location = SURFCAST_UNIFORM_FIRST_GROUP) uniform uint first_group;
-layout(local_size_x = SURFCAST_SILHOUETTE_LANES) in;  // each takes a tile
+layout(local_size_x = SURFCAST_SILHOUETTE_LANES) in;  // each takes a tile, so that parts with long lists lie side by side
 
 // Inverse depth of the front surface, 0 where none is.
 layout(std430, binding = SURFCAST_BIND_FRONTS) readonly buffer Fronts { float fronts[]; };
+layout(std430, binding = SURFCAST_BIND_TILE_ORDER) readonly buffer TileOrder { uint tile_order[]; };
 layout(std430, binding = SURFCAST_BIND_SILHOUETTES) buffer Silhouettes {
   uint silhouette_count;
   uvec2 silhouette_parts[];
@@ -77,8 +78,9 @@ void list(uint tile, uint found) {
 }
 
 void main() {
-  int tile = int((first_group + gl_WorkGroupID.x) * uint(SURFCAST_SILHOUETTE_LANES) + gl_LocalInvocationID.x);
-  if (tile >= frame.tiles.z) return;
+  uint index = (first_group + gl_WorkGroupID.x) * uint(SURFCAST_SILHOUETTE_LANES) + gl_LocalInvocationID.x;
+  if (index >= uint(frame.tiles.z)) return;
+  int tile = int(tile_order[index]);
   uint found = find(ivec2(tile % frame.tiles.x, tile / frame.tiles.x) * kTile);
   if (found != 0u) list(uint(tile), found);
 }
