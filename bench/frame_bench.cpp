@@ -1,9 +1,8 @@
 // frame_bench [SURFELS] [SIDE] [silhouettes]: a per-pixel EWA frame, with its silhouettes drawn as at rest if so said,
-// beside a frame of plain sized GL points of the same model, on a sphere that fills 80 % of the height, camera moving,
-// picture read back. Medians of one run, interleaved.
+// beside frames of plain sized GL points of the same model, of all of them and of those that face the eye alone, on a
+// sphere that fills 80 % of the height, camera moving, picture read back. Medians of one run, interleaved.
 
 #include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -15,7 +14,7 @@
 
 #include "base/stopwatch.h"
 #include "bench_support.h"
-#include "gl_points.h"
+#include "lab/plain_painter.h"
 #include "model/write_model.h"
 #include "render/renderer.h"
 #include "support/clouds.h"
@@ -35,6 +34,25 @@ Camera orbit(double angle) {
   return {{distance * std::sin(angle), 0, distance * std::cos(angle)}, {0, 0, 0}, {0, 1, 0}, kViewAngle};
 }
 
+/// What something took, milliseconds, or a ratio of that.
+struct Taken {
+  double wall = 0;
+  double processor = 0;
+};
+
+template <typename Do>
+Taken taken(const Do& something) {
+  const Stopwatch watch;
+  const double start = processor_ms();
+  something();
+  return {watch.milliseconds(), processor_ms() - start};
+}
+
+void add(const std::string& name, const Taken& figure, std::map<std::string, std::vector<double>>& figures) {
+  figures[name].push_back(figure.wall);
+  figures[name + ", processor"].push_back(figure.processor);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -48,7 +66,7 @@ int main(int argc, char** argv) {
   value_or_exit(write_model(testing::fibonacci_sphere(surfels, 1, {0, 0, 0}, {200, 90, 20}), path, {}));
   const auto model = std::make_shared<const ModelFile>(value_or_exit(ModelFile::open(path)));
   const std::unique_ptr<Renderer> renderer = value_or_exit(Renderer::create({}));
-  const bench::GlPoints points(*model, side, side);
+  const lab::PlainPainter points(*model, side, side);
   std::vector<std::byte> pixels;
 
   std::map<std::string, std::vector<double>> times;
@@ -60,30 +78,22 @@ int main(int argc, char** argv) {
     request.height = side;
     request.silhouettes = silhouettes;
     const CameraFrame frame = value_or_exit(make_camera_frame(*request.camera, side, side));
-    const Stopwatch points_watch;
-    const double points_start = processor_ms();
-    points.draw(frame, pixels);
-    const double points_ms = points_watch.milliseconds();
-    const double points_cpu_ms = processor_ms() - points_start;
-    const std::atomic<bool> cancelled{false};
-    const Stopwatch ewa_watch;
-    const double ewa_start = processor_ms();
-    const Frame drawn = value_or_exit(renderer->draw(model, request, cancelled));
-    const double ewa_ms = ewa_watch.milliseconds();
-    const double ewa_cpu_ms = processor_ms() - ewa_start;
+    const Taken all = taken([&] { points.draw(lab::PlainShape::kPoint, lab::PlainFaces::kAll, frame, pixels); });
+    const Taken front = taken([&] { points.draw(lab::PlainShape::kPoint, lab::PlainFaces::kFront, frame, pixels); });
+    Frame drawn;
+    const Taken ewa = taken([&] { drawn = bench::draw_or_exit(*renderer, model, request); });
     if (k < kWarmUp) continue;
     splats = drawn.stats.surfels_drawn;
-    times["points"].push_back(points_ms);
-    times["ewa"].push_back(ewa_ms);
-    times["ratio"].push_back(ewa_ms / points_ms);
-    times["points.cpu"].push_back(points_cpu_ms);
-    times["ewa.cpu"].push_back(ewa_cpu_ms);
-    times["ratio.cpu"].push_back(ewa_cpu_ms / points_cpu_ms);
-    for (const StageTime& stage : drawn.stats.stages) times["ewa." + stage.name].push_back(stage.milliseconds);
+    add("points", all, times);
+    add("front points", front, times);
+    add("ewa", ewa, times);
+    add("ewa / points", {ewa.wall / all.wall, ewa.processor / all.processor}, times);
+    add("ewa / front points", {ewa.wall / front.wall, ewa.processor / front.processor}, times);
+    for (const StageTime& stage : drawn.stats.stages) times["ewa: " + stage.name].push_back(stage.milliseconds);
   }
   std::printf("%s, %zu surfels, %d x %d, %llu splats; medians of %d frames\n", renderer->device().renderer.c_str(),
               surfels, side, side, static_cast<unsigned long long>(splats), kFrames);
-  for (const auto& [name, values] : times) std::printf("%-12s %8.2f\n", name.c_str(), median(values));
+  for (const auto& [name, values] : times) std::printf("%-30s %8.2f\n", name.c_str(), median(values));
   std::filesystem::remove(path);
   return 0;
 }

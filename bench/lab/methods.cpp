@@ -167,7 +167,7 @@ DrawnPicture Methods::draw_plain(PlainShape shape, const PictureRequest& request
     std::vector<std::byte> pixels;
     const Stopwatch watch;
     const double start = bench::processor_ms();
-    painter_->draw(shape, frame, pixels);
+    painter_->draw(shape, PlainFaces::kFront, frame, pixels);
     drawn.milliseconds = watch.milliseconds();
     drawn.processor_milliseconds = bench::processor_ms() - start;
     drawn.picture = flipped_picture(pixels, request.width, request.height);

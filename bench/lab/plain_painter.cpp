@@ -130,7 +130,8 @@ void PlainPainter::add_block(const ModelFile& model, uint32_t index) {
                      static_cast<GLsizei>(vertices.size()), block.grid.position(block.origin)});
 }
 
-void PlainPainter::draw(PlainShape shape, const CameraFrame& frame, std::vector<std::byte>& pixels) const {
+void PlainPainter::draw(PlainShape shape, PlainFaces faces, const CameraFrame& frame,
+                        std::vector<std::byte>& pixels) const {
   glBindFramebuffer(GL_FRAMEBUFFER, target_.name());
   glViewport(0, 0, width_, height_);
   glEnable(GL_PROGRAM_POINT_SIZE);
@@ -147,7 +148,7 @@ void PlainPainter::draw(PlainShape shape, const CameraFrame& frame, std::vector<
   const auto eta = static_cast<float>(frame.eta);
   const float half_width = 0.5F * static_cast<float>(width_);
   const float half_height = 0.5F * static_cast<float>(height_);
-  glUniform4f(1, eta / half_width, eta / half_height, eta, oriented_ ? 1.0F : 0.0F);
+  glUniform4f(1, eta / half_width, eta / half_height, eta, oriented_ && faces == PlainFaces::kFront ? 1.0F : 0.0F);
   if (shape == PlainShape::kDisc) glUniform3f(2, half_width, half_height, eta);
   for (const Block& block : blocks_) {
     const glm::mat4 view = view_of(frame, block.origin);

@@ -16,13 +16,19 @@ enum class PlainShape {
   kDisc,   ///< opaque discs of the surfel's radius in its plane, depth exact in every pixel
 };
 
+/// Which surfels of a scan whose normals tell front from back. Others are drawn all.
+enum class PlainFaces {
+  kFront,  ///< those that face the eye, as splats do
+  kAll,    ///< as points without normals would be
+};
+
 /// Draws a coloured model plainly. Needs the current GL context.
 class PlainPainter {
  public:
   PlainPainter(const ModelFile& model, int width, int height);
 
-  /// Draws all surfels that face the eye and reads the picture, RGBA8, rows from bottom to top.
-  void draw(PlainShape shape, const CameraFrame& frame, std::vector<std::byte>& pixels) const;
+  /// Draws surfels and reads the picture, RGBA8, rows from bottom to top.
+  void draw(PlainShape shape, PlainFaces faces, const CameraFrame& frame, std::vector<std::byte>& pixels) const;
 
  private:
   struct Block {
