@@ -20,6 +20,8 @@ class Painter {
   /// meanwhile.
   virtual Result<Frame> draw(const std::string& model, const PictureRequest& request,
                              const Interruption& interruption) = 0;
+  /// Called while nobody waits: does something that would hold up a later picture. False when nothing is left to do.
+  virtual bool rehearse() = 0;
   [[nodiscard]] virtual const DeviceInfo& device() const = 0;
   /// Largest side of a picture, pixels.
   [[nodiscard]] virtual int max_resolution() const = 0;

@@ -55,6 +55,7 @@ struct RenderService::State {
 
   // Render thread.
   void run(const PainterFactory& make_painter, std::promise<Status> started);
+  [[nodiscard]] bool nobody_waits();
   [[nodiscard]] bool waits(Urgency urgency) const;
   [[nodiscard]] bool may_draw(Urgency urgency) const;
   [[nodiscard]] std::optional<Urgency> turn() const;
@@ -108,13 +109,28 @@ void RenderService::State::run(const PainterFactory& make_painter, std::promise<
   device = (*painter)->device();
   max_resolution = (*painter)->max_resolution();
   started.set_value({});
-  while (const JobPointer job = next_job()) {
+  bool more_to_rehearse = true;
+  for (;;) {
+    if (more_to_rehearse && nobody_waits()) {
+      more_to_rehearse = guarded([&]() -> Result<bool> { return (*painter)->rehearse(); }).value_or(false);
+      continue;
+    }
+    const JobPointer job = next_job();
+    if (!job) return;
+    more_to_rehearse = true;  // there may be another model
     if (job->wish.urgency == Urgency::kMotion) {
       draw_motion(**painter, job, waits(Urgency::kPatient));
     } else {
       draw_patient(**painter, job);
     }
   }
+}
+
+/// True once nothing has been to do for a moment.
+bool RenderService::State::nobody_waits() {
+  constexpr std::chrono::milliseconds kMoment{300};
+  std::unique_lock lock(mutex);
+  return !wake.wait_for(lock, kMoment, [this] { return stopping || turn(); });
 }
 
 bool RenderService::State::waits(Urgency urgency) const {

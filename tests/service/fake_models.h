@@ -42,9 +42,11 @@ class FakeModels : public ModelSource {
 
 /// What a fake painter is told to do, shared with the test that watches it.
 struct FakeStudio {
-  std::atomic<int> drawn = 0;           ///< pictures begun
-  std::atomic<int> cancelled = 0;       ///< pictures given up half-way
-  std::atomic<int> interludes = 0;      ///< others were drawn in the middle of a slow picture
+  std::atomic<int> drawn = 0;       ///< pictures begun
+  std::atomic<int> cancelled = 0;   ///< pictures given up half-way
+  std::atomic<int> interludes = 0;  ///< others were drawn in the middle of a slow picture
+  static constexpr int kRehearsals = 3;
+  std::atomic<int> rehearsed = 0;       ///< times
   std::atomic<int> frame_ms = 0;        ///< that a picture takes at least
   std::atomic<bool> slow = false;       ///< every picture goes on until it is cancelled or `slow` is taken back
   std::atomic<bool> slow_quick = true;  ///< pictures for motion are as slow as others
@@ -88,6 +90,7 @@ class FakePainter : public Painter {
     frame.stats.stages = {{"draw", 1.5}};
     return frame;
   }
+  bool rehearse() override { return ++studio_->rehearsed < FakeStudio::kRehearsals; }
   [[nodiscard]] const DeviceInfo& device() const override { return device_; }
   [[nodiscard]] int max_resolution() const override { return 8192; }
 

@@ -306,6 +306,16 @@ TEST_F(RenderServiceTest, StoppingCancelsWhatIsDrawnAndWhatWaits) {
   EXPECT_EQ(waiting.get().error().kind, ErrorKind::kCancelled);
 }
 
+TEST_F(RenderServiceTest, ThePainterRehearsesWhileNobodyWaitsAndAgainAfterAPicture) {
+  start();
+  const auto wait_for_rehearsals = [&](int times) {
+    while (studio_->rehearsed < times) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  };
+  wait_for_rehearsals(FakeStudio::kRehearsals);
+  EXPECT_TRUE(draw(1, job_for("cube")).second.get());
+  wait_for_rehearsals(FakeStudio::kRehearsals + 1);
+}
+
 TEST_F(RenderServiceTest, AServiceWithoutAPainterDoesNotStart) {
   const auto started = RenderService::start(
       models_,
