@@ -36,8 +36,10 @@ layout(binding = SURFCAST_UNIT_NORMALS, r32ui) writeonly uniform uimageBuffer no
 #endif
 
 // A splat is small when its ellipse hardly changes over its own extent: the exact variance differs from the one at the
-// centre by the kernel's tilt seen under the splat's own angle.
+// centre by the kernel's tilt seen under the splat's own angle, and its gain by that angle itself: a pixel of a wide and
+// coarse picture spans a good part of it.
 const float kSmallExtent = 24.0;        // pixels
+const float kSmallAngle = 0.25;         // tangent
 const float kSmallPerspective = 0.02;  // relative change of the variance's root
 
 struct Surfel {
@@ -164,7 +166,7 @@ void project_large(Surfel s, bool astride) {
 }
 
 bool is_small(float sigma, float extent, float depth) {
-  return extent <= kSmallExtent && sigma * extent <= kSmallPerspective * depth;
+  return extent <= min(kSmallExtent, kSmallAngle * eta()) && sigma * extent <= kSmallPerspective * depth;
 }
 
 // Whether the splat is small in whatever way the surfel is turned.
@@ -248,7 +250,7 @@ Surfel drawn_surfel(uvec4 run, BlockView block, uint place) {
   bool away;
   Surfel s = placed_surfel(block, texel, away);
   s.id = run.w + place;
-  s.weight = frame.flags.y != 0 ? surfel_size(texel, block.scale).y : frame.filter_.z;
+  s.weight = frame.filter_.z * (frame.flags.y != 0 ? surfel_size(texel, block.scale).y : 1.0);
 #if defined(SURFCAST_COLOR_TABLE)
   s.color = table_color(run.x, at, texel);
 #elif defined(SURFCAST_COLOR_NORMAL)

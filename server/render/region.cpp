@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "shared/kernel.h"
 #include "surfel/even_sampling.h"
@@ -12,13 +11,6 @@ namespace {
 
 /// Without the prefilter the kernel alone is drawn; this much variance, pixels squared, keeps its inverse finite.
 constexpr double kNoPrefilter = 1e-4;
-
-/// Per-pixel normalisation weighs every surfel alike: by the inverse of the sum that its kernels have inside an evenly
-/// sampled surface, 2 pi sigma^2 / h^2, with r = 1.08 h.
-double even_sampling_weight() {
-  const double sigma = SURFCAST_KERNEL_SIGMA * kRadiusOverSpacing;
-  return std::min(1.0, 1 / (2 * std::numbers::pi * sigma * sigma));
-}
 
 float decode_srgb(uint8_t value) {
   const double encoded = value / 255.0;
@@ -63,11 +55,14 @@ layout::FrameConstants frame_constants(const CameraFrame& frame, const Region& r
   c.region = {region.x, region.y, region.width, region.height};
   c.tiles = {tiles_across(region), tiles_down(region), tiles_across(region) * tiles_down(region), 0};
   const double prefilter = request.filter == Filter::kEwa ? 1.0 : kNoPrefilter;
-  c.filter_ = {prefilter, SURFCAST_VISIBILITY_PIXELS * SURFCAST_VISIBILITY_PIXELS, even_sampling_weight(),
+  const bool per_surfel = request.normalization == Normalization::kSurfel;
+  const double weight_scale =
+      per_surfel ? per_surfel_scale(SURFCAST_KERNEL_SIGMA) : even_sampling_weight(SURFCAST_KERNEL_SIGMA);
+  c.filter_ = {prefilter, SURFCAST_VISIBILITY_PIXELS * SURFCAST_VISIBILITY_PIXELS, weight_scale,
                static_cast<float>(kRadiusOverSpacing * request.spacing / frame.eta)};
   c.background = {decode_srgb(request.background.r), decode_srgb(request.background.g),
                   decode_srgb(request.background.b), 0};
-  c.flags = {oriented ? 1 : 0, request.normalization == Normalization::kSurfel ? 1 : 0, 0, 0};
+  c.flags = {oriented ? 1 : 0, per_surfel ? 1 : 0, 0, 0};
   return c;
 }
 

@@ -58,11 +58,11 @@ SiteFacts find_site_facts(const SurfelCloud& cloud, const Sites& sites, const Pa
   return facts;
 }
 
-void fill_radii(const Sites& sites, const NeighbourGraph& graph, const SiteFacts& facts, SurfelCloud& cloud,
-                SurfelReport& report) {
+void fill_radii(const Sites& sites, const NeighbourGraph& graph, const SiteFacts& facts,
+                const std::vector<glm::vec3>& normals, SurfelCloud& cloud, SurfelReport& report) {
   cloud.radii.resize(cloud.size(), 0.0F);
   if (std::all_of(cloud.radii.begin(), cloud.radii.end(), usable_radius)) return;
-  const std::vector<float> estimated = estimate_radii(sites, graph);
+  const std::vector<float> estimated = estimate_radii(sites, graph, normals);
   for (size_t i = 0; i < cloud.size(); ++i) {
     if (usable_radius(cloud.radii[i])) continue;
     const uint32_t site = sites.of_point[i];
@@ -83,10 +83,10 @@ std::vector<glm::vec3> site_normals(const Sites& sites, const NeighbourGraph& gr
   return normals;
 }
 
-/// Fills in the normals and says which tree each follows.
+/// Fills in the normals, from those of the sites, and says which tree each follows.
 std::vector<uint32_t> fill_normals(const Sites& sites, const NeighbourGraph& graph, const SiteFacts& facts,
-                                   SurfelCloud& cloud, PartSigns& signs, SurfelReport& report) {
-  std::vector<glm::vec3> normals = site_normals(sites, graph, facts);
+                                   std::vector<glm::vec3> normals, SurfelCloud& cloud, PartSigns& signs,
+                                   SurfelReport& report) {
   const std::vector<uint32_t> tree_of =
       orient_normals({sites, graph, facts.known, facts.towards, facts.places}, normals, signs);
   std::vector<uint32_t> trees(cloud.size(), kNoTree);
@@ -116,8 +116,9 @@ PartSurfels make_surfels(SurfelCloud cloud, const PartFrame& frame, PartSigns& s
   const Sites sites = find_sites(cloud.positions, frame.bounds);
   const NeighbourGraph graph = find_neighbours(sites, kDegree);
   const SiteFacts facts = find_site_facts(cloud, sites, frame);
-  fill_radii(sites, graph, facts, cloud, report);
-  std::vector<uint32_t> trees = fill_normals(sites, graph, facts, cloud, signs, report);
+  std::vector<glm::vec3> normals = site_normals(sites, graph, facts);
+  fill_radii(sites, graph, facts, normals, cloud, report);
+  std::vector<uint32_t> trees = fill_normals(sites, graph, facts, std::move(normals), cloud, signs, report);
   return {std::move(cloud), std::move(trees)};
 }
 

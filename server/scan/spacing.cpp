@@ -8,6 +8,8 @@
 
 #include <tbb/parallel_for.h>
 
+#include "scan/surroundings.h"
+
 namespace surfcast {
 namespace {
 
@@ -20,16 +22,27 @@ constexpr size_t kNearest = 6;
 constexpr double kLargestRatio = 3;
 constexpr size_t kOrdinary = 2;  ///< index of the third nearest
 
+/// Of the distance to the far side of the widest gap: an evenly spread site keeps its mean distance.
+constexpr double kReachShare = 0.6;
+/// Of the mean distance, which is larger on a border, where half of the neighbours are missing: the kernel then ends
+/// half a spacing beyond the last samples, as the surface does.
+constexpr double kBorderShare = 0.5;
+/// With fewer neighbours there is no telling a border from the rest.
+constexpr size_t kEnoughNeighbours = 8;
+
 std::span<const uint32_t> nearest_of(const NeighbourGraph& graph, size_t site) {
   return graph.of(site).first(std::min(kNearest, graph.degree));
 }
 
-double mean_distance(const Sites& sites, size_t i, std::span<const uint32_t> nearest) {
+/// What a site's kernel is to reach, as far as its own neighbours tell.
+double own_radius(const Sites& sites, size_t i, std::span<const uint32_t> nearest, const Surroundings& around) {
   const auto distance_to = [&](uint32_t j) { return glm::distance(sites.positions[i], sites.positions[j]); };
   const double limit = kLargestRatio * distance_to(nearest[std::min(kOrdinary, nearest.size() - 1)]);
   double sum = 0;
   for (const uint32_t j : nearest) sum += std::min<double>(distance_to(j), limit);
-  return sum / static_cast<double>(nearest.size());
+  const double mean = sum / static_cast<double>(nearest.size());
+  if (around.outwards != glm::dvec3(0)) return kBorderShare * mean;
+  return std::max(mean, kReachShare * std::min(around.reach, limit));
 }
 
 double median_radius(std::span<const uint32_t> sites, const std::vector<float>& radii) {
@@ -47,15 +60,19 @@ float to_radius(double length) {
 
 }  // namespace
 
-std::vector<float> estimate_radii(const Sites& sites, const NeighbourGraph& graph) {
+std::vector<float> estimate_radii(const Sites& sites, const NeighbourGraph& graph,
+                                  const std::vector<glm::vec3>& normals) {
   if (graph.degree == 0) return std::vector<float>(sites.size(), 1.0F);
-  std::vector<float> means(sites.size());
+  const std::vector<Surroundings> surroundings = graph.degree >= kEnoughNeighbours
+                                                     ? find_surroundings(sites, graph, normals)
+                                                     : std::vector<Surroundings>(sites.size());
+  std::vector<float> own(sites.size());
   tbb::parallel_for(size_t{0}, sites.size(), [&](size_t i) {
-    means[i] = to_radius(mean_distance(sites, i, nearest_of(graph, i)) * sites.unit);
+    own[i] = to_radius(own_radius(sites, i, nearest_of(graph, i), surroundings[i]) * sites.unit);
   });
   std::vector<float> radii(sites.size());
   tbb::parallel_for(size_t{0}, sites.size(), [&](size_t i) {
-    radii[i] = to_radius(std::min<double>(means[i], kLargestRatio * median_radius(nearest_of(graph, i), means)));
+    radii[i] = to_radius(std::min<double>(own[i], kLargestRatio * median_radius(nearest_of(graph, i), own)));
   });
   return radii;
 }

@@ -66,11 +66,18 @@ float large_cutoff(LargeSplat s) {
   return cutoff(screen_variance(s.n, s.o.xy / s.o.z, deviation, prefilter_variance()).gain);
 }
 
+// An upper bound of what the splat adds to a pixel: det S >= prefilter variance^2 bounds the gain.
+float large_peak(LargeSplat s, vec2 ray) {
+  float deviation = astride(s) ? 1e9 : frontal_deviation(kernel_deviation(s), s.o.z);
+  float gain = min(deviation * deviation * length(vec3(ray, 1.0)) / prefilter_variance(), 1.0);
+  return s.weight * gain * coverage_scale(gain);
+}
+
 void see_large(uint first, uint count, vec2 pixel, Columns limit, inout Columns surface, inout float peak) {
   vec2 ray = ray_of_pixel(pixel);
   for (uint k = 0u; k < count; ++k) {
     LargeSplat s = fetch_large(int(texelFetch(lists, int(first + k)).x));
-    peak = max(peak, s.weight);
+    peak = max(peak, large_peak(s, ray));
     float disc_radius = float(SURFCAST_VISIBILITY_RADIUS) * s.radius;
     float form = large_form(s, ray, disc_radius, disc_prefilter_variance()).x;
     float z = large_fragment_inverse_depth(s, ray);
@@ -86,11 +93,12 @@ void accumulate_large(uint first, uint count, vec2 pixel, Columns limit, Columns
     for (uint k = begin; k < end; ++k) {
       int slot = int(texelFetch(lists, int(first + k)).x);
       LargeSplat s = fetch_large(slot);
+      float end = large_cutoff(s);
       vec2 form_gain = large_form(s, ray, kernel_deviation(s), prefilter_variance());
       float z = large_fragment_inverse_depth(s, ray);
-      bool visible = form_gain.x <= large_cutoff(s) && z > 0.0 && z >= surface[0] && z < limit[0];
+      bool visible = form_gain.x <= end && z > 0.0 && z >= surface[0] && z < limit[0];
       float counted = coverage_gain(s, ray, form_gain.y);
-      float weight = s.weight * form_gain.y * coverage_scale(counted) * exp(-0.5 * form_gain.x);
+      float weight = s.weight * form_gain.y * coverage_scale(counted) * max(exp(-0.5 * form_gain.x) - rim(end), 0.0);
       sums_add(sums[0], splat_value(s.color, slot, unit), visible ? weight : 0.0);
 #ifdef SURFCAST_EYE_DOME
       sums_add_depth(sums[0], unit, visible ? weight : 0.0, visible ? z : surface[0], surface[0]);

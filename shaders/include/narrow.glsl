@@ -29,10 +29,7 @@ float narrow_factor(inout vec3 factor, float prefilter) {
 
 void narrow(inout SmallSplat splat) {
   const float unit = SURFCAST_SQRT_HALF_LOG2E * SURFCAST_SQRT_HALF_LOG2E;
-  // The cutoff says the gain, but for kernels with one cutoff.
-  float gain = clamp((splat.cutoff / unit - SURFCAST_KERNEL_CUTOFF_MINIFIED) /
-                         max(SURFCAST_KERNEL_CUTOFF - SURFCAST_KERNEL_CUTOFF_MINIFIED, 0.1),
-                     0.0, 1.0);
+  float gain = gain_of_cutoff(splat.cutoff / unit);
   float gained = narrow_factor(splat.factor, frame.filter_.x / unit);
   float narrow_gain = min(gain * gained, 1.0);
   splat.cutoff = cutoff(narrow_gain) * unit;

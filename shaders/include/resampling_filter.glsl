@@ -71,6 +71,16 @@ float cutoff(float gain) {
   return mix(SURFCAST_KERNEL_CUTOFF_MINIFIED, SURFCAST_KERNEL_CUTOFF, gain);
 }
 
+// The gain that a cutoff was chosen by; 0 of kernels with one cutoff for all.
+float gain_of_cutoff(float cutoff) {
+  const float range = float(SURFCAST_KERNEL_CUTOFF) - float(SURFCAST_KERNEL_CUTOFF_MINIFIED);
+  return clamp((cutoff - float(SURFCAST_KERNEL_CUTOFF_MINIFIED)) / max(range, 0.1), 0.0, 1.0);
+}
+
+// What is taken off the kernel, whose peak is 1, so that magnified surfels end without a step: nothing where the prefilter
+// rules, whose sum would suffer.
+float rim(float cutoff) { return gain_of_cutoff(cutoff) * exp(-0.5 * cutoff); }
+
 // What a splat's weight is multiplied with so that the sum of weights says how far a pixel is covered: a sum of
 // SURFCAST_COVERAGE_MAGNIFIED or more is full coverage.
 float coverage_scale(float gain) {

@@ -80,13 +80,14 @@ void accumulate_small(uint first, uint count, vec2 pixel, Columns limit, Columns
       SmallSplat s = fetch_small(slot);
       SplatValue value = splat_value(s.color, slot, unit);
       float depth_unit = s.inverse_depth * footprint;
+      float end = rim(s.cutoff / (SURFCAST_SQRT_HALF_LOG2E * SURFCAST_SQRT_HALF_LOG2E));
       for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
         vec2 v = column(pixel, c) - s.centre;
         Rows form = factored_form(s.factor, v);
         Rows plane = plane_inverse_depth(s.inverse_depth, depth_unit, s.slope, v);
         Rows z = fragment_inverse_depth(plane, s.inverse_depth, depth_unit, s.fall);
         BoolRows visible = both(at_most(form, Rows(s.cutoff)), both(at_most(surface[c], z), less(z, limit[c])));
-        Rows weight = mix(Rows(0.0), s.weight * exp2(-form), visible);
+        Rows weight = mix(Rows(0.0), s.weight * larger(exp2(-form) - end, Rows(0.0)), visible);
         sums_add(sums[c], value, weight);
 #ifdef SURFCAST_EYE_DOME
         sums_add_depth(sums[c], unit, weight, z, surface[c]);

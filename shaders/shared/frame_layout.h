@@ -40,8 +40,8 @@ struct FrameConstants {
   SURFCAST_VEC4 forward;     // row z; w: half the picture's height, pixels
   SURFCAST_IVEC4 region;     // first pixel x, y and size of the region, pixels from the top left of the picture
   SURFCAST_IVEC4 tiles;      // tiles across, tiles down, tiles in all, splats that the record buffer holds
-  SURFCAST_VEC4 filter_;     // prefilter variance, visibility prefilter variance (pixels squared), weight of every surfel
-                             // under per-pixel normalisation, radius of the wanted spacing at distance 1 straight ahead
+  SURFCAST_VEC4 filter_;     // prefilter variance, visibility prefilter variance (pixels squared), factor of every
+                             // surfel's weight, radius of the wanted spacing at distance 1 straight ahead
   SURFCAST_VEC4 background;  // linear light
   SURFCAST_IVEC4 flags;      // x: back faces are culled, y: per-surfel weights, z: splats that a tile is thinned out to
                              // (0: not at all), w: those that cover much, too

@@ -51,8 +51,9 @@ ShaderBench::ShaderBench() {
 
 std::vector<glm::vec4> ShaderBench::run(const std::string& body, const layout::FrameConstants& frame, int ins, int outs,
                                         std::span<const glm::vec4> inputs) {
-  const Result<gl::Program> program = gl::make_program(
-      "bench", {{GL_COMPUTE_SHADER, "bench", source_of(body, ins, outs)}}, "#define SURFCAST_COLUMNS 1\n#define SURFCAST_ROWS 1\n");
+  const Result<gl::Program> program =
+      gl::make_program("bench", {{GL_COMPUTE_SHADER, "bench", source_of(body, ins, outs)}},
+                       "#define SURFCAST_COLUMNS 1\n#define SURFCAST_ROWS 1\n");
   if (!program) {
     ADD_FAILURE() << program.error().message;
     return {};

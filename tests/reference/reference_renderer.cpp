@@ -15,12 +15,12 @@
 #include "base/contract.h"
 #include "reference/headlight.h"
 #include "reference/silhouettes.h"
+#include "surfel/even_sampling.h"
 
 namespace surfcast::reference {
 namespace {
 
-constexpr int kTile = 16;             ///< pixels
-constexpr double kMeanRadius = 1.08;  ///< stored radius of well spread samples over their spacing h
+constexpr int kTile = 16;  ///< pixels
 constexpr int kMaxLayers = 8;
 constexpr double kOpaque = 1.0 / 128;  ///< transmittance that is not worth another layer
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -62,11 +62,6 @@ PixelRect pixel_bounds(const Splat& splat, const CameraFrame& frame) {
 glm::dvec3 linear_color(const ColorAttribute& colors, size_t i) {
   const double top = colors.bits == 16 ? 65535.0 : 255.0;
   return linear_from_srgb8(glm::dvec3(colors.values[i]) * (255.0 / top));
-}
-
-double weight_scale(const KernelParameters& kernel) {
-  const double deviation = kernel.sigma * kMeanRadius;
-  return 1 / (2 * std::numbers::pi * deviation * deviation);
 }
 
 /// What pixels are drawn with.
@@ -122,7 +117,9 @@ class TiledScene {
     const glm::dvec3 facing = glm::dot(n, o) > 0 ? -n : n;
     const glm::dvec3 color = cloud.colors ? linear_color(*cloud.colors, i) : glm::dvec3(kAlbedo);
     const bool per_surfel = request.normalization == Normalization::kSurfel;
-    surfels_.push_back({*splat, color, facing, per_surfel ? cloud.weights[i] : weight_scale(kernel)});
+    surfels_.push_back(
+        {*splat, color, facing,
+         per_surfel ? per_surfel_scale(kernel.sigma) * cloud.weights[i] : even_sampling_weight(kernel.sigma)});
     bounds_.push_back(bounds);
     bin(static_cast<uint32_t>(surfels_.size() - 1), bounds);
   }
@@ -240,7 +237,7 @@ class TilePass {
       const double depth = surfel.splat.fragment_depth(d);
       if (depth > p.surface || depth <= p.limit) return;
       const double saturated = saturation(coverage_gain(surfel.splat, f, d), kernel_);
-      const double w = surfel.multiplier / saturated * f.gain * std::exp(-0.5 * f.r2);
+      const double w = surfel.multiplier / saturated * f.gain * surfel.splat.kernel(f.r2);
       p.weight += w;
       p.color += w * surfel.color;
       p.normal += w * surfel.normal;

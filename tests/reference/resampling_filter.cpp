@@ -35,11 +35,10 @@ std::optional<Splat> Splat::make(const glm::dvec3& o, const glm::dvec3& n, doubl
   splat.depth_range_ = splat.extent_ * std::sqrt(std::max(0.0, 1 - splat.n_.z * splat.n_.z));
   if (o.z + splat.depth_range_ <= 0) return std::nullopt;
   splat.astride_ = o.z <= 1.5 * splat.extent_;
-  splat.cutoff_ = kernel.cutoff_magnified;
-  if (!splat.astride_) {
-    const double gain = splat.fragment(o / o.z).gain;
-    splat.cutoff_ = glm::mix(kernel.cutoff_minified, kernel.cutoff_magnified, gain);
-  }
+  const double gain = splat.astride_ ? 1 : splat.fragment(o / o.z).gain;
+  splat.cutoff_ = glm::mix(kernel.cutoff_minified, kernel.cutoff_magnified, gain);
+  const bool one_cutoff = kernel.cutoff_minified == kernel.cutoff_magnified;
+  splat.rim_ = one_cutoff ? 0 : gain * std::exp(-0.5 * splat.cutoff_);
   return splat;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cmath>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
@@ -47,6 +48,8 @@ class Splat {
   /// The gain that a fragment would have under another prefilter, pixels.
   [[nodiscard]] double gain(const glm::dvec3& d, double prefilter) const;
   [[nodiscard]] bool cut(double r2) const { return !(r2 <= cutoff_); }
+  /// What the kernel is worth there, of its peak: exp(-r2 / 2), lowered so that a magnified one ends at 0.
+  [[nodiscard]] double kernel(double r2) const { return std::exp(-0.5 * r2) - rim_; }
   /// Whether the surfel's opaque disc covers the pixel.
   [[nodiscard]] bool opaque(const glm::dvec3& d) const;
   /// Depth (camera z) at which a fragment is tested: the surfel's plane along the ray, yet never behind the splat's far
@@ -78,6 +81,7 @@ class Splat {
   double sigma_ = 0;
   double prefilter_ = 0;
   double cutoff_ = 0;
+  double rim_ = 0;
   double extent_ = 0;       ///< radius of the splat in the tangent plane, world units
   double depth_range_ = 0;  ///< how far the splat's rim lies before and behind its centre, camera z
   double disc_radius_ = 0;

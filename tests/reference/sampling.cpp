@@ -1,46 +1,18 @@
 #include "reference/sampling.h"
 
-#include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
-#include <nanoflann.hpp>
 #include <numbers>
 #include <random>
 
-#include <tbb/parallel_for.h>
-
 #include "base/contract.h"
 #include "reference/linear_picture.h"
+#include "scan/spacing.h"
 
 namespace surfcast::reference {
 namespace {
 
-constexpr size_t kNeighbours = 6;
-
-/// What nanoflann asks of a point set.
-struct PointSet {
-  const std::vector<SurfacePoint>& points;
-
-  [[nodiscard]] size_t kdtree_get_point_count() const { return points.size(); }
-  [[nodiscard]] double kdtree_get_pt(size_t i, size_t axis) const { return points[i].position[static_cast<int>(axis)]; }
-  template <typename Bounds>
-  bool kdtree_get_bbox(Bounds&) const {
-    return false;
-  }
-};
-
-using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, PointSet>, PointSet, 3, uint32_t>;
-
-double mean_neighbour_distance(const Tree& tree, const glm::dvec3& position) {
-  std::array<uint32_t, kNeighbours + 1> indices{};
-  std::array<double, kNeighbours + 1> squares{};
-  const std::array<double, 3> query{position.x, position.y, position.z};
-  const size_t found = tree.knnSearch(query.data(), kNeighbours + 1, indices.data(), squares.data());
-  double sum = 0;
-  for (size_t i = 1; i < found; ++i) sum += std::sqrt(squares[i]);
-  return sum / static_cast<double>(found - 1);
-}
+constexpr size_t kNeighbours = 12;  ///< as the builder looks at
 
 }  // namespace
 
@@ -104,18 +76,17 @@ std::vector<SurfacePoint> jittered_sphere(int count, double jitter, uint32_t see
 
 SurfelCloud surfels_at(const std::vector<SurfacePoint>& points) {
   SURFCAST_EXPECTS(points.size() > 1);
-  const PointSet set{points};
-  const Tree tree(3, set);
   SurfelCloud cloud;
   cloud.oriented = true;
-  cloud.radii.resize(points.size());
   for (const SurfacePoint& p : points) {
     cloud.positions.push_back(p.position);
     cloud.normals.emplace_back(p.normal);
   }
-  tbb::parallel_for(size_t{0}, points.size(), [&](size_t i) {
-    cloud.radii[i] = static_cast<float>(mean_neighbour_distance(tree, points[i].position));
-  });
+  const Sites sites = find_sites(cloud.positions, cloud.bounds());
+  std::vector<glm::vec3> normals(sites.size());
+  for (size_t i = 0; i < points.size(); ++i) normals[sites.of_point[i]] = cloud.normals[i];
+  const std::vector<float> radii = estimate_radii(sites, find_neighbours(sites, kNeighbours), normals);
+  for (const uint32_t site : sites.of_point) cloud.radii.push_back(radii[site]);
   cloud.sources = {{"scene", 0, points.size(), std::nullopt}};
   return cloud;
 }

@@ -17,7 +17,7 @@ std::vector<SurfacePoint> random_sphere(int count, uint32_t seed);
 /// A Fibonacci lattice on the unit sphere, every sample moved by up to `jitter` spacings along both directions.
 std::vector<SurfacePoint> jittered_sphere(int count, double jitter, uint32_t seed);
 
-/// Surfels at the points: radius the mean distance to the six nearest neighbours, oriented, without colour.
+/// Surfels at the points: radii as the builder estimates them, oriented, without colour.
 SurfelCloud surfels_at(const std::vector<SurfacePoint>& points);
 /// The texture's 8 bit sRGB colour at every point.
 ColorAttribute sampled_colors(const std::vector<SurfacePoint>& points, const Texture& texture);

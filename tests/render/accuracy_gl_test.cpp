@@ -150,16 +150,19 @@ std::ostream& operator<<(std::ostream& out, const Goal& goal) {
 class IdealGLTest : public AccuracyGLTest, public ::testing::WithParamInterface<Goal> {};
 
 TEST_P(IdealGLTest, ComesNearTheIdealPicture) {
-  const Scene scene = reference::make_scene(GetParam().scene);
+  Scene scene = reference::make_scene(GetParam().scene);
+  scene.request.silhouettes = true;  // as a picture at rest
   const SrgbPicture ideal = encode(reference::ideal_picture(scene));
   const SrgbPicture actual = draw(scene).colors;
-  EXPECT_GE(psnr(actual, ideal), GetParam().psnr);
+  const double reached = psnr(actual, ideal);
+  std::printf("[ measured ] %.2f dB\n", reached);
+  EXPECT_GE(reached, GetParam().psnr);
   if (HasFailure()) keep_pictures(scene.name + "_ideal", ideal, actual);
 }
 
 INSTANTIATE_TEST_SUITE_P(Goals, IdealGLTest,
-                         ::testing::Values(Goal{"checker_oblique", 33.0}, Goal{"checker_grazing", 34.0},
-                                           Goal{"checker_close", 17.0}, Goal{"checker_far", 44.0},
+                         ::testing::Values(Goal{"checker_oblique", 35.8}, Goal{"checker_grazing", 41.9},
+                                           Goal{"checker_close", 20.3}, Goal{"checker_far", 52.0},
                                            Goal{"checker_sphere", 27.5}),
                          [](const auto& goal) { return std::string(goal.param.scene); });
 

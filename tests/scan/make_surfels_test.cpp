@@ -67,6 +67,46 @@ TEST(MakeSurfelsTest, RadiusIsTheMeanDistanceToTheSixNearest) {
   EXPECT_THAT(line.cloud.radii, ElementsAre(2.0F, 1.5F, 2.5F));
 }
 
+TEST(MakeSurfelsTest, RadiusOnABorderEndsTheKernelWhereTheSurfaceEnds) {
+  const SurfelCloud cloud = Made(scan_of(testing::square_lattice(9, 1, {0, 0, 0}))).cloud;
+  const float inside = radius_at(cloud, {4, 4, 0});
+  for (const glm::dvec3& p : {glm::dvec3(0, 4, 0), glm::dvec3(8, 3, 0), glm::dvec3(5, 8, 0)}) {
+    EXPECT_LT(radius_at(cloud, p), 0.75F * inside);
+    EXPECT_GT(radius_at(cloud, p), 0.55F * inside);
+  }
+  EXPECT_FLOAT_EQ(radius_at(cloud, {1, 4, 0}), inside) << "the second row is no border";
+}
+
+TEST(MakeSurfelsTest, RadiusBesideAGapReachesAcrossIt) {
+  std::vector<glm::dvec3> positions = testing::square_lattice(13, 1, {0, 0, 0});
+  std::erase_if(positions, [](const glm::dvec3& p) { return p.x == 6; });  // a missing line
+  const SurfelCloud cloud = Made(scan_of(std::move(positions))).cloud;
+  for (const glm::dvec3& p : {glm::dvec3(5, 6, 0), glm::dvec3(7, 5, 0)}) {
+    EXPECT_GE(radius_at(cloud, p), 0.6F * 2) << "two kernels close the gap";
+    EXPECT_LE(radius_at(cloud, p), 0.6F * 2.5F);
+  }
+}
+
+TEST(MakeSurfelsTest, AHoleOfOneSampleIsNoBorder) {
+  std::vector<glm::dvec3> positions = testing::square_lattice(9, 1, {0, 0, 0});
+  const float inside = radius_at(Made(scan_of(positions)).cloud, {2, 2, 0});
+  std::erase(positions, glm::dvec3(4, 4, 0));
+  const SurfelCloud cloud = Made(scan_of(positions)).cloud;
+  for (const glm::dvec3& p : {glm::dvec3(3, 4, 0), glm::dvec3(4, 3, 0), glm::dvec3(5, 5, 0)}) {
+    EXPECT_GE(radius_at(cloud, p), inside) << p.x << ' ' << p.y;
+  }
+}
+
+TEST(MakeSurfelsTest, LinesOfAScannerAreNoBorders) {
+  // Samples four times as dense along lines as across them: the nearest neighbours lie on the line.
+  std::vector<glm::dvec3> positions;
+  for (int y = 0; y < 9; ++y) {
+    for (int x = 0; x < 60; ++x) positions.emplace_back(0.25 * x, y, 0);
+  }
+  const SurfelCloud cloud = Made(scan_of(std::move(positions))).cloud;
+  EXPECT_GE(radius_at(cloud, {7.5, 4, 0}), 0.5F);
+}
+
 TEST(MakeSurfelsTest, PointsFloatingOffASurfaceDoNotHideIt) {
   for (size_t floating = 1; floating <= 7; ++floating) {
     std::vector<glm::dvec3> positions = testing::square_lattice(9, 0.5, {0, 0, 0});
