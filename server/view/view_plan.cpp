@@ -135,8 +135,16 @@ void ViewPlan::look(uint32_t missing, ViewTime now) {
   last_look_ = {missing, now};
 }
 
+namespace {
+
+/// Two frames at rest are so many drawing times apart, since two thirds of the time are for what blocks need. As long a
+/// wait for the rest of the blocks is worth it: drawing holds them up, and takes longer the more there is to show.
+constexpr double kPauses = 2;
+
+}  // namespace
+
 /// Before any frame of a rest blocks are waited for a moment rather than drawn without; and longer, if at the pace so
-/// far all will be there soon: to draw what is there would take the processor from them.
+/// far all will be there soon.
 uint32_t ViewPlan::most_missing_at_first(ViewTime now) const {
   constexpr uint32_t kAny = std::numeric_limits<uint32_t>::max();
   if (now < rest_at_ + timing_.final) return 0;
@@ -144,15 +152,14 @@ uint32_t ViewPlan::most_missing_at_first(ViewTime now) const {
   const auto passed = last_look_.at - first_look_->at;
   const double to_come = static_cast<double>(last_look_.missing) / (first_look_->missing - last_look_.missing);
   const auto whole_at = last_look_.at + std::chrono::duration_cast<ViewTime::duration>(to_come * passed);
-  return whole_at <= rest_at_ + timing_.whole && now < rest_at_ + timing_.whole ? 0 : kAny;
+  const std::chrono::duration<double, std::milli> to_wait = whole_at - now;
+  const double worth_ms = draw_ms_ > 0 ? kPauses * draw_ms_ : static_cast<double>(timing_.whole.count());
+  return to_wait.count() <= worth_ms ? 0 : kAny;
 }
 
 uint32_t ViewPlan::most_missing(ViewTime now) const {
   if (!drawn_) return most_missing_at_first(now);
   const uint32_t missing = last_look_.missing;
-  // Two frames are so many drawing times apart, since two thirds of the time are for what blocks need. As long a wait
-  // for the rest of the blocks is worth it: drawing holds them up, and takes longer the more there is to show.
-  constexpr double kPauses = 2;
   const double since_ms = std::chrono::duration<double, std::milli>(now - drawn_at_).count();
   if (since_ms < kPauses * draw_ms_) return 0;
   const double come = missing < drawn_missing_ ? drawn_missing_ - missing : 0;

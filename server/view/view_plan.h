@@ -21,7 +21,7 @@ struct ViewTiming {
   std::chrono::milliseconds grace{250};      ///< after the last update of a motion that was not said to have ended
   std::chrono::milliseconds fine{150};       ///< from the beginning of rest to kFine
   std::chrono::milliseconds final{500};      ///< from the beginning of rest to kFinal
-  std::chrono::milliseconds whole{1500};     ///< from the beginning of rest to the last block, if waiting is worth it
+  std::chrono::milliseconds whole{2500};     ///< for blocks, before it is known how long drawing takes
   std::chrono::milliseconds look_again{50};  ///< between two looks at whether missing blocks have come
   std::chrono::milliseconds busy{500};       ///< after a frame that the server was too busy to draw
   std::chrono::milliseconds despair{5000};   ///< without any block: those that are missing will not come
