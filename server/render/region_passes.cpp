@@ -1,6 +1,7 @@
 #include "render/region_passes.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <functional>
 #include <optional>
@@ -242,15 +243,22 @@ Thinning thinner(const layout::Counters& counters, const Thinning& tried, size_t
   return {lists_fit ? tried.most : std::max(tried.most / 2, 1U), true};
 }
 
+/// Room for splats to begin with. Where what is not written costs nothing there is room for every surfel, and nothing
+/// is ever projected twice for want of it.
+size_t first_capacity(const ProjectionWork& work, const SplatBuffers& buffers) {
+  constexpr size_t kFirst = 1u << 18;
+  if (!buffers.lazy) return kFirst;
+  return std::clamp(std::bit_ceil(work.chunks.size() * SURFCAST_CHUNK), kFirst, SurfelBuffer::device_limit() / 2);
+}
+
 /// Projects all visible surfels and sums up the tile counts; again if the records did not fit, or if a tile is so
 /// crowded that its splats are to be thinned out.
 Result<layout::Counters> project(const RegionTask& task, const ProjectionWork& work, Programs& programs,
                                  const SplatPrograms& variant, SplatBuffers& buffers,
                                  const Interruption& interruption) {
   const gl::DebugGroup group("project");
-  constexpr size_t kFirstCapacity = 1u << 18;
   const bool with_normals = task.variant.colored && task.variant.lit;
-  buffers.reserve_splats(std::max(kFirstCapacity, buffers.splat_capacity()), with_normals);
+  buffers.reserve_splats(std::max(first_capacity(work, buffers), buffers.splat_capacity()), with_normals);
   upload(buffers.blocks, work.blocks);
   upload(buffers.chunks, work.chunks);
   upload_look(task, work, buffers);
@@ -284,7 +292,7 @@ Status bin(const layout::Counters& counters, Programs& programs, SplatBuffers& b
            const Interruption& interruption) {
   const gl::DebugGroup group("bin");
   const size_t entries = counters.counts.z;
-  buffers.lists.reserve(std::clamp<size_t>(entries + entries / 4, 1, SurfelBuffer::device_limit()));
+  buffers.lists.reserve(std::clamp<size_t>(entries + entries / 4, 1, SurfelBuffer::device_limit()), buffers.lazy);
   const size_t splats = size_t{counters.counts.x} + counters.counts.y;
   return dispatch_in_batches({(splats + SURFCAST_CHUNK - 1) / SURFCAST_CHUNK, {}}, buffers.bin_pace, interruption, [&] {
     bind_for_binning(buffers);

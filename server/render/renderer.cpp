@@ -99,7 +99,10 @@ struct Renderer::State {
         most_surfels(std::min(config.gpu_bytes / sizeof(glm::uvec4), SurfelBuffer::device_limit() / 2)),
         surfels(most_surfels, device.software),
         residency(surfels, limits_of(config, most_surfels)) {
-    for (SplatBuffers& set : buffers) set.srgb = ConstantTexels::make("linear roots of sRGB", linear_root_table());
+    for (SplatBuffers& set : buffers) {
+      set.srgb = ConstantTexels::make("linear roots of sRGB", linear_root_table());
+      set.lazy = device.software && gl::can_adopt_memory();
+    }
   }
 
   static ResidencyLimits limits_of(const RendererConfig& config, size_t surfels) {

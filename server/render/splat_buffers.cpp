@@ -4,11 +4,15 @@
 
 namespace surfcast {
 
-void TexelBuffer::reserve(size_t texels) {
+void TexelBuffer::reserve(size_t texels, bool lazily) {
   if (texels <= texels_) return;
   texels_ = texels;
   texture_ = gl::Texture();
-  buffer_ = gl::make_buffer(label_, texels * texel_bytes_);
+  buffer_ = gl::Buffer();
+  glFinish();  // nothing may write into memory that is given back
+  memory_ = lazily ? LazyMemory(texels * texel_bytes_) : LazyMemory();
+  buffer_ = memory_.bytes().empty() ? gl::make_buffer(label_, texels * texel_bytes_)
+                                    : gl::adopt_memory(label_, memory_.bytes());
   texture_ = gl::make_buffer_texture(label_, format_, buffer_);
 }
 
@@ -50,10 +54,10 @@ void ConstantTexels::bind(GLuint unit) const {
 }
 
 void SplatBuffers::reserve_splats(size_t count, bool with_normals) {
-  splats.reserve(2 * count);
-  discs.reserve(count);
-  bounds.reserve(count);
-  if (with_normals) normals.reserve(std::max(count, discs.texels()));
+  splats.reserve(2 * count, lazy);
+  discs.reserve(count, lazy);
+  bounds.reserve(count, lazy);
+  if (with_normals) normals.reserve(std::max(count, discs.texels()), lazy);
 }
 
 }  // namespace surfcast

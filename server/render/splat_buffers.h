@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <span>
 
+#include "base/lazy_memory.h"
 #include "gl/objects.h"
 #include "render/batch_pace.h"
 #include "render/tile_spans.h"
@@ -17,8 +18,8 @@ class TexelBuffer {
   TexelBuffer(const char* label, GLenum format, size_t texel_bytes)
       : label_(label), format_(format), texel_bytes_(texel_bytes) {}
 
-  /// Room for `texels`, content undefined.
-  void reserve(size_t texels);
+  /// Room for `texels`, content undefined. `lazily`: of memory of which only what is written counts (software alone).
+  void reserve(size_t texels, bool lazily = false);
   void bind_for_writing(GLuint unit) const;
   void bind_for_reading(GLuint unit) const;
   [[nodiscard]] size_t texels() const { return texels_; }
@@ -28,6 +29,7 @@ class TexelBuffer {
   GLenum format_;
   size_t texel_bytes_;
   size_t texels_ = 0;
+  LazyMemory memory_;  ///< of the buffer, if it was reserved lazily
   gl::Buffer buffer_;
   gl::Texture texture_;
 };
@@ -93,6 +95,8 @@ struct SplatBuffers {
   StorageBuffer eye_dome{"eye-dome constants"};
   StorageBuffer fronts{"fronts"};
   StorageBuffer silhouettes{"silhouettes"};
+  /// Records cost what is written of them: there may be room for all surfels of a view from the beginning.
+  bool lazy = false;
 
   /// Room for so many splat records; normals only for scenes that are lit and coloured.
   void reserve_splats(size_t count, bool with_normals);
