@@ -10,6 +10,8 @@
 
 #include "reference/reference_renderer.h"
 #include "reference/sampling.h"
+#include "shared/kernel.h"
+#include "surfel/even_sampling.h"
 #include "surfel/normalization_weights.h"
 
 namespace surfcast {
@@ -20,9 +22,11 @@ using reference::KernelParameters;
 constexpr int kViews = 40;
 constexpr int kResolution = 512;  // pixels; a spacing of samples is some 25 of them
 
-/// The renderer's sums of kernels: with a coverage that leaves every sum as it is.
+/// The renderer's sums of kernels: with a coverage that leaves every sum as it is, and one cutoff, of which nothing is
+/// taken off the kernel.
 KernelParameters plain_sums() {
   KernelParameters kernel;
+  kernel.cutoff_minified = kernel.cutoff_magnified;
   kernel.coverage_minified = kernel.coverage_magnified = 1;
   return kernel;
 }
@@ -49,7 +53,8 @@ std::vector<std::vector<double>> capture(SurfelCloud cloud) {
       const glm::dvec3 n = frame.rotate(glm::dvec3(cloud.normals[i]));
       if (-glm::dot(n, glm::normalize(o)) < 0.6) continue;
       const glm::dvec2 pixel = glm::floor(frame.project(o));
-      captured[i].push_back(1 / view.weights[view.picture.index(static_cast<int>(pixel.x), static_cast<int>(pixel.y))]);
+      const size_t place = view.picture.index(static_cast<int>(pixel.x), static_cast<int>(pixel.y));
+      captured[i].push_back(per_surfel_scale(SURFCAST_KERNEL_SIGMA) / view.weights[place]);
     }
   }
   return captured;
