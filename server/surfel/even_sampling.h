@@ -5,7 +5,7 @@
 
 namespace surfcast {
 
-/// A surfel's radius is the mean distance to its six nearest neighbours: 1.08 h on an even sampling of spacing h.
+/// A surfel's radius on an even sampling of spacing h: there it is the mean distance to its six nearest neighbours.
 inline constexpr double kRadiusOverSpacing = 1.08;
 
 /// What every kernel of an even sampling is to be multiplied with for the mean of their sum over the surface to be 1.

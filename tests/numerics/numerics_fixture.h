@@ -27,7 +27,7 @@ std::ostream& operator<<(std::ostream& out, const Difference& difference);
 
 /// Rounded colours and single precision alone: where neither small splats nor cutoffs decide.
 inline constexpr Difference kRounding{2e-4, 1e-3, 1e-5};
-/// Also, within a magnified surface, the weight of a fragment at the cutoff: e^-4.5 of the largest there.
+/// Also, within a magnified surface, the weight of a fragment at the cutoff: (1 - g) e^(-c / 2) of the peak.
 inline constexpr Difference kMagnified{1e-3, 1.5e-2, 1.5e-2};
 /// Also, at the border of a surface, a fragment at the cutoff, and what little half precision adds.
 inline constexpr Difference kSplats{1.2e-3, 0.16, 0.07};
