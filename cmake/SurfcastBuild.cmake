@@ -45,6 +45,12 @@ function(surfcast_module name)
   target_link_libraries(surfcast_${name} PUBLIC ${ARG_PUBLIC} PRIVATE surfcast_warnings ${ARG_PRIVATE})
 endfunction()
 
+# surfcast_test_data(FILE...): lets these sources of tests find tests/data. Only these: a compiler cache then serves the
+# others in every checkout.
+function(surfcast_test_data)
+  set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_DEFINITIONS SURFCAST_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data")
+endfunction()
+
 # surfcast_test(NAME [WHOLE] SOURCES file... [LIBS lib...] [LABELS label...])
 # One GoogleTest program of one module. Every case becomes a ctest case of its own; WHOLE keeps them together, for
 # programs whose start costs more than their cases (a GL context and its shaders). A label is one word, of parts that
@@ -54,7 +60,6 @@ function(surfcast_test name)
   add_executable(${name} ${ARG_SOURCES})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_link_libraries(${name} PRIVATE surfcast_warnings ${ARG_LIBS} GTest::gtest_main GTest::gmock)
-  target_compile_definitions(${name} PRIVATE SURFCAST_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data")
   # What runs once is not worth a long look of the compiler; what it tests is built as ever.
   target_compile_options(${name} PRIVATE $<$<CONFIG:Debug>:-O0> $<$<CONFIG:Release>:-O1>)
   if(NOT ARG_LABELS)
