@@ -35,20 +35,20 @@ inline double processor_ms() {
   return static_cast<double>(t.tv_sec) * 1e3 + static_cast<double>(t.tv_nsec) * 1e-6;
 }
 
-inline std::shared_ptr<const ModelFile> open_or_exit(const std::filesystem::path& path) {
-  return std::make_shared<const ModelFile>(value_or_exit(ModelFile::open(path)));
+inline std::shared_ptr<const model::ModelFile> open_or_exit(const std::filesystem::path& path) {
+  return std::make_shared<const model::ModelFile>(value_or_exit(model::ModelFile::open(path)));
 }
 
-inline Frame draw_or_exit(Renderer& renderer, const std::shared_ptr<const ModelFile>& model,
-                          const PictureRequest& request) {
+inline picture::Frame draw_or_exit(render::Renderer& renderer, const std::shared_ptr<const model::ModelFile>& model,
+                                   const picture::PictureRequest& request) {
   const std::atomic<bool> never{false};
   return value_or_exit(renderer.draw(model, request, never));
 }
 
 /// Milliseconds of a frame without those that depend on what was resident before it.
-inline double drawing_ms(const Frame& frame) {
+inline double drawing_ms(const picture::Frame& frame) {
   double sum = 0;
-  for (const StageTime& stage : frame.stats.stages) {
+  for (const picture::StageTime& stage : frame.stats.stages) {
     if (stage.name != "load" && stage.name != "decode" && stage.name != "upload") sum += stage.milliseconds;
   }
   return sum;

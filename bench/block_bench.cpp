@@ -1,5 +1,5 @@
-// block_bench MODEL [BLOCKS]: what it takes of one core to decode blocks of a model, evenly spread over the file, and to
-// pack them for the GPU: milliseconds of the processor per block, means, with nothing read from the disk.
+// block_bench MODEL [BLOCKS]: what it takes of one core to decode blocks of a model, evenly spread over the file, and
+// to pack them for the GPU: milliseconds of the processor per block, means, with nothing read from the disk.
 
 #include <algorithm>
 #include <cstdio>
@@ -18,14 +18,14 @@ struct BlockCost {
   size_t surfels = 0;
 };
 
-void measure(const ModelFile& model, size_t block, BlockCost& cost) {
+void measure(const model::ModelFile& model, size_t block, BlockCost& cost) {
   value_or_exit(model.decode(block));  // brings the bytes into memory
   const double start = processor_ms();
-  const DecodedBlock decoded = value_or_exit(model.decode(block, WantedScalars::kNone));
+  const model::DecodedBlock decoded = value_or_exit(model.decode(block, model::WantedScalars::kNone));
   const double before_packing = processor_ms();
-  PackedBlock packed = pack_block(decoded, model.info().color_bits, model.info().oriented);
+  residency::PackedBlock packed = residency::pack_block(decoded, model.info().color_bits, model.info().oriented);
   const double before_attributes = processor_ms();
-  pack_attributes(decoded, packed);
+  residency::pack_attributes(decoded, packed);
   cost.attributes_ms += processor_ms() - before_attributes;
   cost.decode_ms += before_packing - start;
   cost.pack_ms += before_attributes - before_packing;

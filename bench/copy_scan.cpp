@@ -24,7 +24,7 @@ Status copy(const MappedFile& input, const char* output) {
   for (size_t at = 0; at < input.bytes().size(); at += kPiece) {
     const size_t size = std::min(kPiece, input.bytes().size() - at);
     if (Status status = file->append(input.bytes().subspan(at, size)); !status) return status;
-    input.forget();
+    input.release_pages();
   }
   return file->commit();
 }
@@ -33,7 +33,7 @@ Status run(const char* input, const char* output) {
   const surfcast::Stopwatch stopwatch;
   const Result<MappedFile> file = MappedFile::open(input);
   if (!file) return surfcast::fail(file.error());
-  const Result<surfcast::LasHeader> header = surfcast::parse_las_header(file->bytes());
+  const Result<surfcast::scan::LasHeader> header = surfcast::scan::parse_las_header(file->bytes());
   if (!header) return surfcast::fail(header.error());
   if (Status status = copy(*file, output); !status) return status;
   std::cout << static_cast<double>(header->count) / stopwatch.seconds() << " points/s\n";

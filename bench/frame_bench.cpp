@@ -14,7 +14,7 @@
 
 #include "base/stopwatch.h"
 #include "bench_support.h"
-#include "lab/plain_painter.h"
+#include "lab/plain_rasterizer.h"
 #include "model/write_model.h"
 #include "render/renderer.h"
 #include "support/clouds.h"
@@ -27,7 +27,7 @@ using bench::processor_ms;
 using bench::value_or_exit;
 
 /// A camera that sees a unit sphere at 80 % of the picture's height, `angle` radians around it.
-Camera orbit(double angle) {
+geometry::Camera orbit(double angle) {
   constexpr double kViewAngle = 30;
   const double eta_per_height = 1 / (2 * std::tan(kViewAngle / 2 * 3.14159265358979 / 180));
   const double distance = std::sqrt(1 + std::pow(2 * eta_per_height / 0.8, 2));
@@ -63,24 +63,24 @@ int main(int argc, char** argv) {
   constexpr int kWarmUp = 2;
 
   const auto path = std::filesystem::temp_directory_path() / "surfcast_frame_bench.surf";
-  value_or_exit(write_model(testing::fibonacci_sphere(surfels, 1, {0, 0, 0}, {200, 90, 20}), path, {}));
-  const auto model = std::make_shared<const ModelFile>(value_or_exit(ModelFile::open(path)));
-  const std::unique_ptr<Renderer> renderer = value_or_exit(Renderer::create({}));
-  const lab::PlainPainter points(*model, side, side);
+  value_or_exit(model::write_model(testing::fibonacci_sphere(surfels, 1, {0, 0, 0}, {200, 90, 20}), path, {}));
+  const auto model = std::make_shared<const model::ModelFile>(value_or_exit(model::ModelFile::open(path)));
+  const std::unique_ptr<render::Renderer> renderer = value_or_exit(render::Renderer::create({}));
+  const lab::PlainRasterizer points(*model, side, side);
   std::vector<std::byte> pixels;
 
   std::map<std::string, std::vector<double>> times;
   uint64_t splats = 0;
   for (int k = 0; k < kFrames + kWarmUp; ++k) {
-    PictureRequest request;
+    picture::PictureRequest request;
     request.camera = orbit(0.03 * k);
     request.width = side;
     request.height = side;
     request.silhouettes = silhouettes;
-    const CameraFrame frame = value_or_exit(make_camera_frame(*request.camera, side, side));
+    const geometry::CameraFrame frame = value_or_exit(geometry::make_camera_frame(*request.camera, side, side));
     const Taken all = taken([&] { points.draw(lab::PlainShape::kPoint, lab::PlainFaces::kAll, frame, pixels); });
     const Taken front = taken([&] { points.draw(lab::PlainShape::kPoint, lab::PlainFaces::kFront, frame, pixels); });
-    Frame drawn;
+    picture::Frame drawn;
     const Taken ewa = taken([&] { drawn = bench::draw_or_exit(*renderer, model, request); });
     if (k < kWarmUp) continue;
     splats = drawn.stats.surfels_drawn;
@@ -89,7 +89,8 @@ int main(int argc, char** argv) {
     add("ewa", ewa, times);
     add("ewa / points", {ewa.wall / all.wall, ewa.processor / all.processor}, times);
     add("ewa / front points", {ewa.wall / front.wall, ewa.processor / front.processor}, times);
-    for (const StageTime& stage : drawn.stats.stages) times["ewa: " + stage.name].push_back(stage.milliseconds);
+    for (const picture::StageTime& stage : drawn.stats.stages)
+      times["ewa: " + stage.name].push_back(stage.milliseconds);
   }
   std::printf("%s, %zu surfels, %d x %d, %llu splats; medians of %d frames\n", renderer->device().renderer.c_str(),
               surfels, side, side, static_cast<unsigned long long>(splats), kFrames);

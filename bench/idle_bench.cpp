@@ -13,15 +13,15 @@
 #include "client/server_connection.h"
 #include "process_figures.h"
 
-namespace surfcast {
+namespace surfcast::bench {
 namespace {
 
-Status measure(int process, const Endpoint& server, size_t count) {
-  std::vector<ServerConnection> connections;
+Status measure(int process, const protocol::Endpoint& server, size_t count) {
+  std::vector<client::ServerConnection> connections;
   connections.reserve(count);
   const uint64_t before = resident_bytes(process);
   for (size_t i = 0; i < count; ++i) {
-    Result<ServerConnection> connection = ServerConnection::open(server, {});
+    Result<client::ServerConnection> connection = client::ServerConnection::open(server, {});
     if (!connection) return fail(connection.error());
     connections.push_back(std::move(*connection));
   }
@@ -35,7 +35,7 @@ Status measure(int process, const Endpoint& server, size_t count) {
 }
 
 int run(int process, const std::string& address, size_t count) {
-  const Result<Endpoint> server = parse_endpoint(address);
+  const Result<protocol::Endpoint> server = protocol::parse_endpoint(address);
   const Status status = server ? measure(process, *server, count) : fail(server.error());
   if (status) return 0;
   std::fprintf(stderr, "idle_bench: %s\n", status.error().message.c_str());
@@ -43,12 +43,12 @@ int run(int process, const std::string& address, size_t count) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::bench
 
 int main(int argc, char** argv) {
   if (argc < 3) {
     std::fputs("idle_bench SERVERS_PROCESS_ID HOST:PORT|ws://HOST:PORT [COUNT]\n", stderr);
     return 2;
   }
-  return surfcast::run(std::atoi(argv[1]), argv[2], argc > 3 ? std::strtoul(argv[3], nullptr, 10) : 1000);
+  return surfcast::bench::run(std::atoi(argv[1]), argv[2], argc > 3 ? std::strtoul(argv[3], nullptr, 10) : 1000);
 }

@@ -111,8 +111,8 @@ std::vector<Choice> variations(double KernelParameters::*constant, const char* n
 }
 
 /// What magnified kernels reconstruct at the sites, from a coefficient for each.
-std::vector<glm::dvec3> reconstructed(const Sites& sites, const NeighbourGraph& graph, const std::vector<double>& radii,
-                                      const std::vector<glm::dvec3>& coefficients) {
+std::vector<glm::dvec3> reconstructed(const scan::Sites& sites, const scan::NeighbourGraph& graph,
+                                      const std::vector<double>& radii, const std::vector<glm::dvec3>& coefficients) {
   const KernelParameters kernel;
   const double rim = std::exp(-0.5 * kernel.cutoff_magnified);
   std::vector<glm::dvec3> result = coefficients;
@@ -133,10 +133,10 @@ std::vector<glm::dvec3> reconstructed(const Sites& sites, const NeighbourGraph& 
 
 /// With colours whose reconstruction comes nearer to the samples: w += sample - reconstruction ("Surface Splatting",
 /// Zwicker et al. 2001, section 4). They are kept as samples are, in 8 bits.
-void correct_colors(SurfelCloud& cloud, int times) {
+void correct_colors(surfel::SurfelCloud& cloud, int times) {
   constexpr size_t kNeighbours = 24;
-  const Sites sites = find_sites(cloud.positions, cloud.bounds());
-  const NeighbourGraph graph = find_neighbours(sites, kNeighbours);
+  const scan::Sites sites = scan::find_sites(cloud.positions, cloud.bounds());
+  const scan::NeighbourGraph graph = scan::find_neighbours(sites, kNeighbours);
   std::vector<double> radii(sites.size());
   std::vector<glm::dvec3> samples(sites.size());
   for (size_t i = 0; i < cloud.size(); ++i) {

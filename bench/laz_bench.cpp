@@ -19,17 +19,17 @@ double processor_seconds() {
   return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec) * 1e-9;
 }
 
-Status decode_all(const LazFile& file, std::vector<std::byte>& records) {
+Status decode_all(const laz::LazFile& file, std::vector<std::byte>& records) {
   for (const laz::Chunk& chunk : file.chunks()) {
     records.resize(chunk.count * file.record_length());
-    Result<LazChunkReader> reader = file.read_chunk(chunk);
+    Result<laz::LazChunkReader> reader = file.read_chunk(chunk);
     if (!reader) return fail(reader.error());
     if (Status status = reader->read(records); !status) return status;
   }
   return {};
 }
 
-Result<double> median_seconds(const LazFile& file) {
+Result<double> median_seconds(const laz::LazFile& file) {
   std::vector<double> seconds;
   std::vector<std::byte> records;
   for (int run = 0; run < 5; ++run) {
@@ -44,10 +44,10 @@ Result<double> median_seconds(const LazFile& file) {
 Status measure(const char* path) {
   const Result<MappedFile> mapped = MappedFile::open(path);
   if (!mapped) return fail(mapped.error());
-  const Result<LasHeader> header = parse_las_header(mapped->bytes());
+  const Result<scan::LasHeader> header = scan::parse_las_header(mapped->bytes());
   if (!header) return fail(header.error());
-  const LazPoints points = {header->point_format, header->record_length, header->count, header->data_offset};
-  const Result<LazFile> file = LazFile::open(mapped->bytes(), points, header->laszip_record);
+  const laz::LazPoints points = {header->point_format, header->record_length, header->count, header->data_offset};
+  const Result<laz::LazFile> file = laz::LazFile::open(mapped->bytes(), points, header->laszip_record);
   if (!file) return fail(file.error());
   const Result<double> seconds = median_seconds(*file);
   if (!seconds) return fail(seconds.error());

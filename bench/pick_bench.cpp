@@ -16,10 +16,11 @@ constexpr int kWidth = 1280;
 constexpr int kHeight = 720;
 constexpr int kStep = 80;  // pixels
 
-double pick_ms(const ModelFile& model, const CameraFrame& frame, int x, int y, SourceBlocks& blocks, bool& hit) {
+double pick_ms(const model::ModelFile& model, const geometry::CameraFrame& frame, int x, int y,
+               pick::SourceBlocks& blocks, bool& hit) {
   const std::atomic<bool> never{false};
   const double start = processor_ms();
-  hit = value_or_exit(pick_surfel(model, {frame, {x + 0.5, y + 0.5}, {}, {}}, blocks, never)).has_value();
+  hit = value_or_exit(pick::pick_surfel(model, {frame, {x + 0.5, y + 0.5}, {}, {}}, blocks, never)).has_value();
   return processor_ms() - start;
 }
 
@@ -30,8 +31,8 @@ void print(const char* name, std::vector<double> times) {
               times[times.size() * 95 / 100]);
 }
 
-void measure(const ModelFile& model, const CameraFrame& frame) {
-  SourceBlocks blocks(size_t{64} << 20);
+void measure(const model::ModelFile& model, const geometry::CameraFrame& frame) {
+  pick::SourceBlocks blocks(size_t{64} << 20);
   std::vector<double> first;
   std::vector<double> beside;
   for (int y = kStep / 2; y < kHeight; y += kStep) {
@@ -58,8 +59,8 @@ int main(int argc, char** argv) {
     return 2;
   }
   const auto model = open_or_exit(argv[1]);
-  const CameraFrame frame =
-      value_or_exit(make_camera_frame(fit_model(*model, double{kWidth} / kHeight), kWidth, kHeight));
+  const geometry::CameraFrame frame =
+      value_or_exit(geometry::make_camera_frame(model::fit_model(*model, double{kWidth} / kHeight), kWidth, kHeight));
   measure(*model, frame);
   return 0;
 }

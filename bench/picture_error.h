@@ -3,13 +3,13 @@
 #include <cmath>
 #include <limits>
 
-#include "render/picture.h"
+#include "picture/picture.h"
 
 namespace surfcast::bench {
 
 /// Peak signal to noise ratio of two 8 bit pictures of one size, in dB, over all channels of the pixels that either of
 /// them covers; infinite when they are equal.
-inline double psnr(const Image& a, const Image& b) {
+inline double psnr(const picture::Image& a, const picture::Image& b) {
   double sum = 0;
   size_t count = 0;
   for (size_t i = 0; i + 3 < a.pixels.size(); i += 4) {

@@ -6,7 +6,7 @@
 #include <iterator>
 #include <string>
 
-namespace surfcast {
+namespace surfcast::bench {
 
 /// Memory that another process of this machine has resident, bytes; 0 when there is no such process.
 inline uint64_t resident_bytes(int process) {
@@ -27,4 +27,4 @@ inline int64_t open_descriptors(int process) {
   return code ? 0 : std::distance(begin(entries), end(entries));
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::bench

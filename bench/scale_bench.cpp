@@ -17,7 +17,7 @@ struct View {
 };
 constexpr std::array kViews{View{"whole", 1.2, 1.2}, View{"slanted", 0.4, 1.1}};
 
-Camera camera_of(const Box& box, const View& view) {
+geometry::Camera camera_of(const geometry::Box& box, const View& view) {
   const double width = box.size().x;
   const glm::dvec3 middle = box.centre();
   return {middle + width * glm::dvec3(0, -view.back, view.height), middle, {0, 0, 1}, 40};
@@ -28,17 +28,17 @@ struct Timing {
   double first_ms = 0;  ///< from before opening to the first picture
   double later_ms = 0;
   double later_processor_ms = 0;
-  Frame frame;
+  picture::Frame frame;
 };
 
-Timing measure(Renderer& renderer, const char* path, const Camera& camera, double spacing) {
+Timing measure(render::Renderer& renderer, const char* path, const geometry::Camera& camera, double spacing) {
   constexpr int kFrames = 5;
-  PictureRequest request;
+  picture::PictureRequest request;
   request.camera = camera;
   request.spacing = spacing;
   Timing timing;
   const Stopwatch first;
-  const std::shared_ptr<const ModelFile> model = open_or_exit(path);
+  const std::shared_ptr<const model::ModelFile> model = open_or_exit(path);
   timing.open_ms = first.milliseconds();
   timing.frame = draw_or_exit(renderer, model, request);
   timing.first_ms = first.milliseconds();
@@ -53,7 +53,7 @@ Timing measure(Renderer& renderer, const char* path, const Camera& camera, doubl
   }
   timing.later_ms = median(later);
   timing.later_processor_ms = median(later_processor);
-  renderer.forget(*model);
+  renderer.release_model(*model);
   return timing;
 }
 
@@ -68,8 +68,8 @@ int main(int argc, char** argv) {
     return 2;
   }
   const double spacing = std::atof(argv[1]);
-  const std::unique_ptr<Renderer> renderer = value_or_exit(Renderer::create({}));
-  const Box box = open_or_exit(argv[2])->info().bounds;
+  const std::unique_ptr<render::Renderer> renderer = value_or_exit(render::Renderer::create({}));
+  const geometry::Box box = open_or_exit(argv[2])->info().bounds;
   std::printf("%s, 1280 x 720, spacing %g px\n\n", renderer->device().renderer.c_str(), spacing);
   std::printf(
       "| view | model | blocks drawn | surfels drawn | resident MiB | open ms | first ms | frame ms | processor ms "

@@ -16,12 +16,12 @@
 #include "client/bench_run.h"
 #include "process_figures.h"
 
-namespace surfcast {
+namespace surfcast::bench {
 namespace {
 
 struct SoakPlan {
   int process = 0;
-  ModelUrl model;
+  protocol::ModelUrl model;
   double seconds = 900;
   unsigned clients = 4;
   double percent = 2;  ///< that memory may grow
@@ -44,19 +44,20 @@ wire::DrawPicture small_picture(const std::string& model) {
 
 /// One visit: a view that moves and rests for some seconds, or a picture that is not waited for.
 Status visit(const SoakPlan& plan, std::mt19937& random) {
-  Endpoint server = plan.model.server;
+  protocol::Endpoint server = plan.model.server;
   server.websocket = random() % 2 == 0;
-  BenchPlan view;
+  client::BenchPlan view;
   view.server = server;
   view.picture = small_picture(plan.model.model);
   view.seconds = 0.2 + static_cast<double>(random() % 3000) / 1000;
   view.move_seconds = 0.7;
   view.rest_seconds = 1.2;
   if (random() % 4 != 0) {
-    const Result<BenchRecord> record = run_bench_client(view, {}, static_cast<double>(random() % 100) / 100);
+    const Result<client::BenchRecord> record =
+        client::run_bench_client(view, {}, static_cast<double>(random() % 100) / 100);
     return record ? Status() : fail(record.error());
   }
-  Result<ServerConnection> connection = ServerConnection::open(server, {});
+  Result<client::ServerConnection> connection = client::ServerConnection::open(server, {});
   if (!connection) return fail(connection.error());
   wire::Request request;
   *request.mutable_draw_picture() = view.picture;
@@ -114,21 +115,21 @@ int soak(const SoakPlan& plan) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::bench
 
 int main(int argc, char** argv) {
   if (argc < 3) {
     std::fputs("soak SERVERS_PROCESS_ID HOST:PORT/MODEL [SECONDS [CLIENTS_AT_ONCE [PERCENT]]]\n", stderr);
     return 2;
   }
-  const auto model = surfcast::parse_model_url(argv[2]);
+  const auto model = surfcast::protocol::parse_model_url(argv[2]);
   if (!model) {
     std::fprintf(stderr, "soak: %s\n", model.error().message.c_str());
     return 2;
   }
-  surfcast::SoakPlan plan{std::atoi(argv[1]), *model};
+  surfcast::bench::SoakPlan plan{std::atoi(argv[1]), *model};
   if (argc > 3) plan.seconds = std::strtod(argv[3], nullptr);
   if (argc > 4) plan.clients = static_cast<unsigned>(std::strtoul(argv[4], nullptr, 10));
   if (argc > 5) plan.percent = std::strtod(argv[5], nullptr);
-  return surfcast::soak(plan);
+  return surfcast::bench::soak(plan);
 }

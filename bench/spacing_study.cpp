@@ -32,35 +32,36 @@ glm::dvec3 turned(const glm::dvec3& v, const glm::dvec3& axis, double angle) {
   return v * std::cos(angle) + glm::cross(axis, v) * std::sin(angle) + axis * glm::dot(axis, v) * (1 - std::cos(angle));
 }
 
-Camera camera_of(const Camera& fit, const View& view) {
-  Camera camera = fit;
+geometry::Camera camera_of(const geometry::Camera& fit, const View& view) {
+  geometry::Camera camera = fit;
   camera.position =
       fit.focal_point + view.distance * turned(fit.position - fit.focal_point, glm::normalize(fit.view_up), view.angle);
   return camera;
 }
 
-void print_row(const std::string& name, double spacing, const Frame& frame, double error) {
+void print_row(const std::string& name, double spacing, const picture::Frame& frame, double error) {
   std::printf("| %s | %g | %s | %llu | %u | %.0f |\n", name.c_str(), spacing,
               std::isinf(error) ? (spacing == 0 ? "" : "equal") : std::to_string(error).substr(0, 4).c_str(),
               static_cast<unsigned long long>(frame.stats.surfels_drawn), frame.stats.blocks_drawn, drawing_ms(frame));
 }
 
 /// The second of two pictures, whose blocks and buffers are all there.
-Frame draw_warm(Renderer& renderer, const std::shared_ptr<const ModelFile>& model, const PictureRequest& request) {
+picture::Frame draw_warm(render::Renderer& renderer, const std::shared_ptr<const model::ModelFile>& model,
+                         const picture::PictureRequest& request) {
   draw_or_exit(renderer, model, request);
   return draw_or_exit(renderer, model, request);
 }
 
-Curve study(Renderer& renderer, const std::shared_ptr<const ModelFile>& model, const View& view, PictureRequest request,
-            const Camera& fit) {
+Curve study(render::Renderer& renderer, const std::shared_ptr<const model::ModelFile>& model, const View& view,
+            picture::PictureRequest request, const geometry::Camera& fit) {
   Curve curve{model->path().stem().string() + ", " + view.name, {}};
   request.camera = camera_of(fit, view);
   request.spacing = 0;
-  const Frame finest = draw_warm(renderer, model, request);
+  const picture::Frame finest = draw_warm(renderer, model, request);
   print_row(curve.name, 0, finest, std::numeric_limits<double>::infinity());
   for (size_t i = 0; i < kSpacings.size(); ++i) {
     request.spacing = kSpacings[i];
-    const Frame frame = draw_warm(renderer, model, request);
+    const picture::Frame frame = draw_warm(renderer, model, request);
     const double error = psnr(frame.image, finest.image);
     print_row(curve.name, kSpacings[i], frame, error);
     curve.psnr[i] = std::min(error, kPlottedAsEqual);
@@ -123,17 +124,17 @@ int main(int argc, char** argv) {
     std::fprintf(stderr, "usage: spacing_study PLOT.svg MODEL...\n");
     return 2;
   }
-  const std::unique_ptr<Renderer> renderer = value_or_exit(Renderer::create({}));
+  const std::unique_ptr<render::Renderer> renderer = value_or_exit(render::Renderer::create({}));
   Plot plot(argv[1]);
   std::printf("%s, 1280 x 720\n\n| view | spacing | PSNR | surfels | blocks | ms |\n|---|---|---|---|---|---|\n",
               renderer->device().renderer.c_str());
   for (int i = 2; i < argc; ++i) {
-    const std::shared_ptr<const ModelFile> model = open_or_exit(argv[i]);
-    PictureRequest request;
+    const std::shared_ptr<const model::ModelFile> model = open_or_exit(argv[i]);
+    picture::PictureRequest request;
     request.spacing = 8;
-    const Camera fit = draw_or_exit(*renderer, model, request).camera;
+    const geometry::Camera fit = draw_or_exit(*renderer, model, request).camera;
     for (const View& view : kViews) plot.add(study(*renderer, model, view, request, fit));
-    renderer->forget(*model);
+    renderer->release_model(*model);
   }
   return 0;
 }

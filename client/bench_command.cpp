@@ -12,12 +12,12 @@
 #include "client/time_limits.h"
 #include "protocol/request_flags.h"
 
-namespace surfcast {
+namespace surfcast::client {
 namespace {
 
 struct BenchCommand {
   std::string url;
-  RequestFlags flags;
+  protocol::RequestFlags flags;
   TimeLimits limits;
   BenchPlan plan;
   unsigned clients = 1;
@@ -62,10 +62,10 @@ Result<std::vector<BenchRecord>> run_clients(const BenchCommand& command, const 
 }
 
 Status bench(const BenchCommand& command, int interrupt) {
-  const Result<ModelUrl> url = parse_model_url(command.url);
+  const Result<protocol::ModelUrl> url = protocol::parse_model_url(command.url);
   if (!url) throw CLI::ValidationError(url.error().message);
-  if (Status status = command.flags.check_sight(); !status) throw CLI::ValidationError(status.error().message);
-  Result<wire::DrawPicture> picture = command.flags.sight(url->model);
+  if (Status status = command.flags.check_view_flags(); !status) throw CLI::ValidationError(status.error().message);
+  Result<wire::DrawPicture> picture = command.flags.view_request(url->model);
   if (!picture) return fail(picture.error());
   BenchPlan plan = command.plan;
   plan.server = url->server;
@@ -95,9 +95,9 @@ void add_bench_command(CLI::App& app, int interrupt, Status& outcome) {
   sub->add_option("--target-fps", plan.target_fps, "frames per second to hold while moving (default: the server's)")
       ->check(CLI::Range(0.0, 1000.0));
   sub->add_option("--json", command->json, "write the figures to this file")->type_name("FILE");
-  command->flags.add_sight_to(*sub);
+  command->flags.add_view_flags_to(*sub);
   command->limits.add_to(*sub);
   sub->callback([command, interrupt, &outcome] { outcome = bench(*command, interrupt); });
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::client

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 #include <numeric>
 
-namespace surfcast {
+namespace surfcast::client {
 namespace {
 
 using nlohmann::json;
@@ -176,4 +176,4 @@ std::string to_json(const BenchReport& report, const std::string& url) {
   return document.dump(2) + "\n";
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::client

@@ -6,7 +6,7 @@
 
 #include "client/bench_run.h"
 
-namespace surfcast {
+namespace surfcast::client {
 
 /// What is left of many values. Nearest rank: a value that occurred.
 struct Percentiles {
@@ -49,4 +49,4 @@ std::string to_text(const BenchReport& report);
 /// The same and more for a program.
 std::string to_json(const BenchReport& report, const std::string& url);
 
-}  // namespace surfcast
+}  // namespace surfcast::client

@@ -11,7 +11,7 @@
 #include "client/navigation.h"
 #include "client/view.h"
 
-namespace surfcast {
+namespace surfcast::client {
 namespace {
 
 using Clock = View::Clock;
@@ -174,4 +174,4 @@ Result<BenchRecord> run_bench_client(const BenchPlan& plan, const ClientConfig& 
   return record;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::client

@@ -7,11 +7,11 @@
 
 #include "client/server_connection.h"
 
-namespace surfcast {
+namespace surfcast::client {
 
 /// What a client of the benchmark does: it moves the camera around the model as a hand would, rests, and so on.
 struct BenchPlan {
-  Endpoint server;
+  protocol::Endpoint server;
   wire::DrawPicture picture;       ///< its camera, if any, is where the path begins
   double target_fps = 0;           ///< as in OpenView
   double seconds = 20;             ///< of the whole run
@@ -47,4 +47,4 @@ struct BenchRecord {
 /// for the same pictures.
 Result<BenchRecord> run_bench_client(const BenchPlan& plan, const ClientConfig& config, double phase);
 
-}  // namespace surfcast
+}  // namespace surfcast::client

@@ -4,7 +4,7 @@
 
 #include "base/result.h"
 
-namespace surfcast {
+namespace surfcast::client {
 
 // Each adds one command, which leaves how it went in `outcome`. `interrupt` is as in ClientConfig.
 
@@ -21,4 +21,4 @@ void add_view_command(CLI::App& app, Status& outcome);
 /// `ping URL [--count N]`: round trip times.
 void add_ping_command(CLI::App& app, int interrupt, Status& outcome);
 
-}  // namespace surfcast
+}  // namespace surfcast::client

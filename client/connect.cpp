@@ -13,7 +13,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-namespace surfcast {
+namespace surfcast::client {
 namespace {
 
 using Clock = std::chrono::steady_clock;
@@ -61,7 +61,7 @@ Status wait_for(int descriptor, short events, Clock::time_point deadline, int in
   }
 }
 
-Result<int> connect_to(const Endpoint& server, Clock::time_point deadline, int interrupt) {
+Result<int> connect_to(const protocol::Endpoint& server, Clock::time_point deadline, int interrupt) {
   addrinfo hints{};
   hints.ai_socktype = SOCK_STREAM;
   addrinfo* list = nullptr;
@@ -76,4 +76,4 @@ Result<int> connect_to(const Endpoint& server, Clock::time_point deadline, int i
   return connected;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::client

@@ -3,13 +3,13 @@
 #include "client/message_stream.h"
 #include "protocol/framing.h"
 
-namespace surfcast {
+namespace surfcast::client {
 namespace {
 
 class FramedStream : public MessageStream {
  public:
   Bytes encode(std::span<const std::byte> message) override {
-    const auto header = frame_header(message.size());
+    const auto header = protocol::frame_header(message.size());
     Bytes bytes(header.size() + message.size());
     std::ranges::copy(message, std::ranges::copy(header, bytes.begin()).out);
     return bytes;
@@ -19,7 +19,7 @@ class FramedStream : public MessageStream {
   Bytes take_replies() override { return {}; }
 
  private:
-  FrameSplitter splitter_{kMaxAnswerBytes};
+  protocol::FrameSplitter splitter_{protocol::kMaxAnswerBytes};
 };
 
 }  // namespace
@@ -28,4 +28,4 @@ std::unique_ptr<MessageStream> make_framed_stream() {
   return std::make_unique<FramedStream>();
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::client

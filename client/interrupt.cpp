@@ -4,7 +4,7 @@
 
 #include <sys/signalfd.h>
 
-namespace surfcast {
+namespace surfcast::client {
 
 int interrupt_descriptor() {
   sigset_t signals;
@@ -15,4 +15,4 @@ int interrupt_descriptor() {
   return signalfd(-1, &signals, SFD_CLOEXEC | SFD_NONBLOCK);
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::client

@@ -22,14 +22,14 @@ int run(int argc, char** argv) {
   CLI::App app{"Pictures of large scans, drawn by a server", "surfcast"};
   app.set_version_flag("--version", "surfcast " SURFCAST_VERSION);
   app.require_subcommand(1);
-  const int interrupt = surfcast::interrupt_descriptor();
+  const int interrupt = surfcast::client::interrupt_descriptor();
   surfcast::Status outcome;
-  surfcast::add_models_command(app, interrupt, outcome);
-  surfcast::add_render_command(app, interrupt, outcome);
-  surfcast::add_bench_command(app, interrupt, outcome);
-  surfcast::add_pick_command(app, interrupt, outcome);
-  surfcast::add_view_command(app, outcome);
-  surfcast::add_ping_command(app, interrupt, outcome);
+  surfcast::client::add_models_command(app, interrupt, outcome);
+  surfcast::client::add_render_command(app, interrupt, outcome);
+  surfcast::client::add_bench_command(app, interrupt, outcome);
+  surfcast::client::add_pick_command(app, interrupt, outcome);
+  surfcast::client::add_view_command(app, outcome);
+  surfcast::client::add_ping_command(app, interrupt, outcome);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -8,7 +8,7 @@
 
 #include "base/result.h"
 
-namespace surfcast {
+namespace surfcast::client {
 
 /// How messages lie in the stream of bytes of a connection. Sends and receives nothing itself.
 class MessageStream {
@@ -30,4 +30,4 @@ class MessageStream {
 /// Each message after its length.
 std::unique_ptr<MessageStream> make_framed_stream();
 
-}  // namespace surfcast
+}  // namespace surfcast::client

@@ -5,7 +5,7 @@
 #include "client/commands.h"
 #include "client/time_limits.h"
 
-namespace surfcast {
+namespace surfcast::client {
 namespace {
 
 struct ModelsCommand {
@@ -14,7 +14,7 @@ struct ModelsCommand {
   TimeLimits limits;
 };
 
-Result<wire::ModelList> ask_for_models(const Endpoint& server, const ClientConfig& config) {
+Result<wire::ModelList> ask_for_models(const protocol::Endpoint& server, const ClientConfig& config) {
   Result<ServerConnection> connection = ServerConnection::open(server, config);
   if (!connection) return fail(connection.error());
   wire::Request request;
@@ -25,7 +25,7 @@ Result<wire::ModelList> ask_for_models(const Endpoint& server, const ClientConfi
 }
 
 Status list_models(const ModelsCommand& command, int interrupt) {
-  const Result<Endpoint> server = parse_endpoint(command.url);
+  const Result<protocol::Endpoint> server = protocol::parse_endpoint(command.url);
   if (!server) throw CLI::ValidationError(server.error().message);
   const Result<wire::ModelList> list = ask_for_models(*server, command.limits.config(interrupt));
   if (!list) return fail(list.error());
@@ -50,4 +50,4 @@ void add_models_command(CLI::App& app, int interrupt, Status& outcome) {
   sub->callback([command, interrupt, &outcome] { outcome = list_models(*command, interrupt); });
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::client

@@ -6,7 +6,7 @@
 #include <glm/trigonometric.hpp>
 #include <numbers>
 
-namespace surfcast {
+namespace surfcast::client {
 namespace {
 
 constexpr double kHalfTurn = std::numbers::pi;  // a drag over the whole height of the picture
@@ -123,4 +123,4 @@ Pose focus(const Pose& pose, const glm::dvec3& point) {
   return moved;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::client

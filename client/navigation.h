@@ -5,7 +5,7 @@
 
 #include "surfcast.pb.h"
 
-namespace surfcast {
+namespace surfcast::client {
 
 /// Where somebody looks from and what at, in world coordinates.
 struct Pose {
@@ -34,4 +34,4 @@ Pose fly(const Pose& pose, const glm::dvec3& steps);
 /// Puts a point into the middle and comes closer, to a third of the way.
 Pose focus(const Pose& pose, const glm::dvec3& point);
 
-}  // namespace surfcast
+}  // namespace surfcast::client

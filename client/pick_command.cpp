@@ -4,17 +4,17 @@
 #include "client/time_limits.h"
 #include "protocol/request_flags.h"
 
-namespace surfcast {
+namespace surfcast::client {
 namespace {
 
 struct PickCommand {
   std::string url;
-  PickFlags flags;
+  protocol::PickFlags flags;
   TimeLimits limits;
 };
 
 Status pick(const PickCommand& command, int interrupt) {
-  const Result<ModelUrl> url = parse_model_url(command.url);
+  const Result<protocol::ModelUrl> url = protocol::parse_model_url(command.url);
   if (!url) throw CLI::ValidationError(url.error().message);
   if (Status status = command.flags.check(); !status) throw CLI::ValidationError(status.error().message);
   Result<wire::PickSurfel> pick = command.flags.request(url->model);
@@ -39,4 +39,4 @@ void add_pick_command(CLI::App& app, int interrupt, Status& outcome) {
   sub->callback([command, interrupt, &outcome] { outcome = pick(*command, interrupt); });
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::client

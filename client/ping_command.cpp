@@ -9,7 +9,7 @@
 #include "client/commands.h"
 #include "client/time_limits.h"
 
-namespace surfcast {
+namespace surfcast::client {
 namespace {
 
 struct PingCommand {
@@ -25,7 +25,7 @@ void print_summary(const std::vector<double>& times) {
 }
 
 Status ping(const PingCommand& command, int interrupt) {
-  const Result<Endpoint> server = parse_endpoint(command.url);
+  const Result<protocol::Endpoint> server = protocol::parse_endpoint(command.url);
   if (!server) throw CLI::ValidationError(server.error().message);
   Result<ServerConnection> connection = ServerConnection::open(*server, command.limits.config(interrupt));
   if (!connection) return fail(connection.error());
@@ -55,4 +55,4 @@ void add_ping_command(CLI::App& app, int interrupt, Status& outcome) {
   sub->callback([command, interrupt, &outcome] { outcome = ping(*command, interrupt); });
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::client

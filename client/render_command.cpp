@@ -5,30 +5,31 @@
 #include "protocol/request_flags.h"
 #include "protocol/save_picture.h"
 
-namespace surfcast {
+namespace surfcast::client {
 namespace {
 
 struct RenderCommand {
   std::string url;
-  RequestFlags flags;
+  protocol::RequestFlags flags;
   TimeLimits limits;
 };
 
 Status render(const RenderCommand& command, int interrupt) {
-  const Result<ModelUrl> url = parse_model_url(command.url);
+  const Result<protocol::ModelUrl> url = protocol::parse_model_url(command.url);
   if (!url) throw CLI::ValidationError(url.error().message);
   if (Status status = command.flags.check(); !status) throw CLI::ValidationError(status.error().message);
   const Result<wire::DrawPicture> picture = command.flags.request(url->model);
   if (!picture) return fail(picture.error());
   Result<ServerConnection> connection = ServerConnection::open(url->server, command.limits.config(interrupt));
   if (!connection) return fail(connection.error());
-  return draw_and_save(command.flags, *picture, [&](const wire::DrawPicture& wish) -> Result<wire::Picture> {
-    wire::Request request;
-    *request.mutable_draw_picture() = wish;
-    Result<wire::Answer> answer = connection->ask(std::move(request));
-    if (!answer) return fail(answer.error());
-    return std::move(*answer->mutable_picture());
-  });
+  return protocol::draw_and_save(command.flags, *picture,
+                                 [&](const wire::DrawPicture& wanted) -> Result<wire::Picture> {
+                                   wire::Request request;
+                                   *request.mutable_draw_picture() = wanted;
+                                   Result<wire::Answer> answer = connection->ask(std::move(request));
+                                   if (!answer) return fail(answer.error());
+                                   return std::move(*answer->mutable_picture());
+                                 });
 }
 
 }  // namespace
@@ -42,4 +43,4 @@ void add_render_command(CLI::App& app, int interrupt, Status& outcome) {
   sub->callback([command, interrupt, &outcome] { outcome = render(*command, interrupt); });
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::client

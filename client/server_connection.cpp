@@ -16,7 +16,7 @@
 #include "protocol/errors.h"
 #include "protocol/framing.h"
 
-namespace surfcast {
+namespace surfcast::client {
 
 namespace {
 
@@ -25,7 +25,7 @@ constexpr size_t kMaxHttpHeaderBytes = size_t{16} << 10;  // of the answer that 
 
 }  // namespace
 
-ServerConnection::ServerConnection(int descriptor, const Endpoint& server, const ClientConfig& config)
+ServerConnection::ServerConnection(int descriptor, const protocol::Endpoint& server, const ClientConfig& config)
     : descriptor_(descriptor),
       endpoint_(server),
       config_(config),
@@ -46,11 +46,12 @@ ServerConnection::~ServerConnection() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-Result<ServerConnection> ServerConnection::open(const Endpoint& server, const ClientConfig& config) {
+Result<ServerConnection> ServerConnection::open(const protocol::Endpoint& server, const ClientConfig& config) {
   const Clock::time_point deadline = Clock::now() + config.connect;
   const Result<int> descriptor = connect_to(server, deadline, config.interrupt);
   if (!descriptor) {
-    return fail(descriptor.error().kind, to_string(server) + ": cannot connect: " + descriptor.error().message);
+    return fail(descriptor.error().kind,
+                protocol::to_string(server) + ": cannot connect: " + descriptor.error().message);
   }
   ServerConnection connection(*descriptor, server, config);
   if (Status status = connection.exchange_hellos(deadline); !status) return fail(status.error());
@@ -58,17 +59,18 @@ Result<ServerConnection> ServerConnection::open(const Endpoint& server, const Cl
 }
 
 tl::unexpected<Error> ServerConnection::failed(ErrorKind kind, const std::string& what) const {
-  return fail(kind, to_string(endpoint_) + ": " + what);
+  return fail(kind, protocol::to_string(endpoint_) + ": " + what);
 }
 
 Result<std::vector<std::byte>> ServerConnection::greet_framed(Clock::time_point deadline) {
-  if (Status status = write_all(encode_hello(make_hello("surfcast")), deadline); !status) return fail(status.error());
-  std::vector<std::byte> bytes(kHelloHeaderBytes);
+  if (Status status = write_all(protocol::encode_hello(protocol::make_hello("surfcast")), deadline); !status)
+    return fail(status.error());
+  std::vector<std::byte> bytes(protocol::kHelloHeaderBytes);
   if (Status status = read_all(bytes, deadline); !status) return fail(status.error());
-  const Result<size_t> text = hello_text_bytes(std::span(bytes).first<kHelloHeaderBytes>());
+  const Result<size_t> text = protocol::hello_text_bytes(std::span(bytes).first<protocol::kHelloHeaderBytes>());
   if (!text) return failed(text.error().kind, text.error().message);
-  bytes.resize(kHelloHeaderBytes + *text);
-  if (Status status = read_all(std::span(bytes).subspan(kHelloHeaderBytes), deadline); !status) {
+  bytes.resize(protocol::kHelloHeaderBytes + *text);
+  if (Status status = read_all(std::span(bytes).subspan(protocol::kHelloHeaderBytes), deadline); !status) {
     return fail(status.error());
   }
   return bytes;
@@ -79,7 +81,7 @@ Status ServerConnection::upgrade(Clock::time_point deadline) {
   std::random_device random;
   std::string key(16, '\0');
   for (char& c : key) c = static_cast<char>(random() & 0xff);
-  const auto handshake = WebSocketHandshake::make(to_string(endpoint_), key);
+  const auto handshake = WebSocketHandshake::make(protocol::to_string(endpoint_), key);
   if (Status status = write_all(std::as_bytes(std::span(handshake.request)), deadline); !status) return status;
   std::string answer;
   while (!answer.ends_with("\r\n\r\n") && answer.size() < kMaxHttpHeaderBytes) {
@@ -89,14 +91,14 @@ Status ServerConnection::upgrade(Clock::time_point deadline) {
     answer += static_cast<char>(next);
   }
   if (const Status granted = handshake.check(answer); !granted) {
-    return failed(granted.error().kind, clean_utf8(granted.error().message));
+    return failed(granted.error().kind, protocol::clean_utf8(granted.error().message));
   }
   return {};
 }
 
 Result<std::vector<std::byte>> ServerConnection::greet_websocket(Clock::time_point deadline) {
   if (Status status = upgrade(deadline); !status) return fail(status.error());
-  const std::vector<std::byte> hello = stream_->encode(encode_hello(make_hello("surfcast")));
+  const std::vector<std::byte> hello = stream_->encode(protocol::encode_hello(protocol::make_hello("surfcast")));
   if (Status status = write_all(hello, deadline); !status) return fail(status.error());
   for (;;) {
     Result<std::optional<std::vector<std::byte>>> message = stream_->next();
@@ -111,9 +113,10 @@ Result<std::vector<std::byte>> ServerConnection::greet_websocket(Clock::time_poi
 Status ServerConnection::exchange_hellos(Clock::time_point deadline) {
   const Result<std::vector<std::byte>> bytes = endpoint_.websocket ? greet_websocket(deadline) : greet_framed(deadline);
   if (!bytes) return fail(bytes.error());
-  Result<Hello> hello = decode_hello(*bytes);
+  Result<protocol::Hello> hello = protocol::decode_hello(*bytes);
   if (!hello) return failed(hello.error().kind, hello.error().message);
-  if (Status status = check_server_hello(*hello); !status) return failed(status.error().kind, status.error().message);
+  if (Status status = protocol::check_server_hello(*hello); !status)
+    return failed(status.error().kind, status.error().message);
   server_ = std::move(*hello);
   return {};
 }
@@ -161,7 +164,8 @@ Status ServerConnection::read_all(std::span<std::byte> bytes, Clock::time_point 
 Status ServerConnection::send_as(uint64_t id, wire::Request request) {
   request.set_id(id);
   const std::string message = request.SerializeAsString();
-  if (message.size() > kMaxRequestBytes) return fail(ErrorKind::kLimit, "the request is larger than a server reads");
+  if (message.size() > protocol::kMaxRequestBytes)
+    return fail(ErrorKind::kLimit, "the request is larger than a server reads");
   return write_all(stream_->encode(std::as_bytes(std::span(message))), Clock::now() + config_.answer);
 }
 
@@ -179,7 +183,7 @@ Result<std::optional<wire::Answer>> ServerConnection::next_answer() {
   if (!message) return failed(message.error().kind, message.error().message);
   if (!*message) return std::nullopt;
   wire::Answer answer;
-  if (Status status = decode_message(**message, answer); !status) {
+  if (Status status = protocol::decode_message(**message, answer); !status) {
     return failed(status.error().kind, status.error().message);
   }
   return answer;
@@ -216,9 +220,9 @@ Result<wire::Answer> ServerConnection::ask(wire::Request request) {
     if (!answer) return answer;
     if (answer->id() != *id && answer->id() != 0) continue;
     if (!answer->has_error()) return answer;
-    const Error error = from_wire(answer->error());
+    const Error error = protocol::from_wire(answer->error());
     return failed(error.kind, error.message);
   }
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::client

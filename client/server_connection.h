@@ -15,7 +15,7 @@
 #include "protocol/hello.h"
 #include "surfcast.pb.h"
 
-namespace surfcast {
+namespace surfcast::client {
 
 struct ClientConfig {
   std::chrono::milliseconds connect{10'000};  ///< for the connection and both hellos
@@ -27,7 +27,7 @@ struct ClientConfig {
 /// every wait. Errors name the server.
 class ServerConnection {
  public:
-  static Result<ServerConnection> open(const Endpoint& server, const ClientConfig& config);
+  static Result<ServerConnection> open(const protocol::Endpoint& server, const ClientConfig& config);
 
   ServerConnection(ServerConnection&& other) noexcept;
   ServerConnection& operator=(ServerConnection&&) = delete;
@@ -50,12 +50,12 @@ class ServerConnection {
   /// An error that names the server.
   [[nodiscard]] tl::unexpected<Error> failed(ErrorKind kind, const std::string& what) const;
   /// What the server said of itself.
-  [[nodiscard]] const Hello& server() const { return server_; }
+  [[nodiscard]] const protocol::Hello& server() const { return server_; }
 
  private:
   using Clock = std::chrono::steady_clock;
 
-  ServerConnection(int descriptor, const Endpoint& server, const ClientConfig& config);
+  ServerConnection(int descriptor, const protocol::Endpoint& server, const ClientConfig& config);
   Status exchange_hellos(Clock::time_point deadline);
   Result<std::vector<std::byte>> greet_framed(Clock::time_point deadline);
   Result<std::vector<std::byte>> greet_websocket(Clock::time_point deadline);
@@ -67,13 +67,13 @@ class ServerConnection {
   Status read_all(std::span<std::byte> bytes, Clock::time_point deadline);
 
   int descriptor_;
-  Endpoint endpoint_;
+  protocol::Endpoint endpoint_;
   ClientConfig config_;
-  Hello server_;
+  protocol::Hello server_;
   std::unique_ptr<MessageStream> stream_;
   std::vector<std::byte> buffer_;
   uint64_t bytes_received_ = 0;
   uint64_t last_id_ = 0;
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::client

@@ -2,7 +2,7 @@
 
 #include <bit>
 
-namespace surfcast {
+namespace surfcast::client {
 namespace {
 
 using State = std::array<uint32_t, 5>;
@@ -63,4 +63,4 @@ std::string base64(std::string_view bytes) {
   return text;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::client

@@ -2,7 +2,7 @@
 
 #include "protocol/request_flags.h"
 
-namespace surfcast {
+namespace surfcast::client {
 namespace {
 
 std::chrono::milliseconds milliseconds(double seconds) {
@@ -13,10 +13,10 @@ std::chrono::milliseconds milliseconds(double seconds) {
 
 void TimeLimits::add_to(CLI::App& command) {
   command.add_option("--connect-timeout", connect, "seconds to wait for the connection (default 10)")
-      ->envname(environment_name("connect-timeout"))
+      ->envname(protocol::environment_name("connect-timeout"))
       ->check(CLI::Range(0.001, 86400.0));
   command.add_option("--timeout", answer, "seconds to wait for an answer (default 120)")
-      ->envname(environment_name("timeout"))
+      ->envname(protocol::environment_name("timeout"))
       ->check(CLI::Range(0.001, 86400.0));
 }
 
@@ -24,4 +24,4 @@ ClientConfig TimeLimits::config(int interrupt) const {
   return {.connect = milliseconds(connect), .answer = milliseconds(answer), .interrupt = interrupt};
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::client

@@ -4,7 +4,7 @@
 
 #include "client/server_connection.h"
 
-namespace surfcast {
+namespace surfcast::client {
 
 /// The flags `--connect-timeout` and `--timeout` that every command has. Must outlive the parsing.
 struct TimeLimits {
@@ -15,4 +15,4 @@ struct TimeLimits {
   [[nodiscard]] ClientConfig config(int interrupt) const;
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::client

@@ -4,7 +4,7 @@
 
 #include "protocol/errors.h"
 
-namespace surfcast {
+namespace surfcast::client {
 
 Result<View> View::open(ServerConnection& connection, const wire::DrawPicture& picture, double target_fps) {
   wire::Request request;
@@ -63,7 +63,7 @@ Result<std::optional<View::Frame>> View::next_until(Clock::time_point deadline) 
     if (!*answer) return std::nullopt;
     wire::Answer& message = **answer;
     if (message.has_error() && (message.id() == id_ || message.id() == 0)) {
-      const Error error = from_wire(message.error());
+      const Error error = protocol::from_wire(message.error());
       return connection_->failed(error.kind, error.message);
     }
     if (message.has_pick_result() && message.id() == pick_) picked_ = message.pick_result();
@@ -97,4 +97,4 @@ Status View::close() {
   return {};
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::client

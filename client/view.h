@@ -8,7 +8,7 @@
 #include "client/server_connection.h"
 #include "surfcast.pb.h"
 
-namespace surfcast {
+namespace surfcast::client {
 
 /// A view of one model: what a server shows of it while the camera moves and rests. The connection must outlive it, and
 /// nothing else may be asked on the connection meanwhile.
@@ -56,4 +56,4 @@ class View {
   std::optional<wire::PickResult> picked_;
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::client

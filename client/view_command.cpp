@@ -8,7 +8,7 @@
 
 #include "client/commands.h"
 
-namespace surfcast {
+namespace surfcast::client {
 namespace {
 
 /// Becomes the program that has a window, which lies beside this one: what it links stays out of this one.
@@ -33,4 +33,4 @@ void add_view_command(CLI::App& app, Status& outcome) {
   sub->callback([sub, &outcome] { outcome = become_window(sub->remaining()); });
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::client

@@ -9,7 +9,7 @@
 #include "client/sha1.h"
 #include "protocol/framing.h"
 
-namespace surfcast {
+namespace surfcast::client {
 namespace {
 
 enum Opcode : uint8_t { kContinuation = 0, kBinary = 2, kClose = 8, kPing = 9, kPong = 10 };
@@ -79,7 +79,8 @@ Result<std::optional<Frame>> WebSocketStream::next_frame() {
   if (rest.size() < header) return std::nullopt;
   if (more > 0) length = 0;
   for (size_t i = 2; i < header; ++i) length = length << 8 | std::to_integer<uint8_t>(rest[i]);
-  if (length > kMaxAnswerBytes) return fail(ErrorKind::kLimit, "the server sends more than a message may hold");
+  if (length > protocol::kMaxAnswerBytes)
+    return fail(ErrorKind::kLimit, "the server sends more than a message may hold");
   if (rest.size() - header < length) return std::nullopt;
   start_ += header + length;
   return Frame{std::to_integer<uint8_t>(rest[0]), rest.subspan(header, length)};
@@ -88,7 +89,7 @@ Result<std::optional<Frame>> WebSocketStream::next_frame() {
 Status WebSocketStream::take_piece(const Frame& frame) {
   const bool continues = (frame.first & 15) == kContinuation;
   if (continues != inside_message_) return fail(ErrorKind::kInvalidInput, "the server mixes up its messages");
-  if (message_.size() + frame.content.size() > kMaxAnswerBytes) {
+  if (message_.size() + frame.content.size() > protocol::kMaxAnswerBytes) {
     return fail(ErrorKind::kLimit, "the server sends more than a message may hold");
   }
   message_.insert(message_.end(), frame.content.begin(), frame.content.end());
@@ -163,4 +164,4 @@ std::unique_ptr<MessageStream> make_websocket_stream() {
   return std::make_unique<WebSocketStream>();
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::client

@@ -6,7 +6,7 @@
 
 #include "client/message_stream.h"
 
-namespace surfcast {
+namespace surfcast::client {
 
 /// The request by which a connection becomes a WebSocket, and what its answer must hold (RFC 6455, section 4).
 struct WebSocketHandshake {
@@ -24,4 +24,4 @@ struct WebSocketHandshake {
 /// many times its size.
 std::unique_ptr<MessageStream> make_websocket_stream();
 
-}  // namespace surfcast
+}  // namespace surfcast::client

@@ -1,9 +1,9 @@
 # surfcast_embed_shaders(TARGET): puts every file of shaders/ into TARGET as text, so that a program needs no files
-# beside it. Defines surfcast::embedded_shaders() (see render/shader_library.cpp).
+# beside it. Defines surfcast::render::embedded_shaders() (see render/shader_library.cpp).
 function(surfcast_embed_shaders target)
   file(GLOB_RECURSE files CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/shaders ${PROJECT_SOURCE_DIR}/shaders/*)
   set(output ${CMAKE_CURRENT_BINARY_DIR}/embedded_shaders.cpp)
-  set(text "#include \"render/embedded_shaders.h\"\n\nnamespace surfcast {\n\n")
+  set(text "#include \"render/embedded_shaders.h\"\n\nnamespace surfcast::render {\n\n")
   string(APPEND text "std::span<const EmbeddedShader> embedded_shaders() {\n")
   string(APPEND text "  static constexpr EmbeddedShader kShaders[] = {\n")
   foreach(file ${files})
@@ -11,7 +11,7 @@ function(surfcast_embed_shaders target)
     file(READ ${PROJECT_SOURCE_DIR}/shaders/${file} content)
     string(APPEND text "      {\"${file}\", R\"GLSL(${content})GLSL\"},\n")
   endforeach()
-  string(APPEND text "  };\n  return kShaders;\n}\n\n}  // namespace surfcast\n")
+  string(APPEND text "  };\n  return kShaders;\n}\n\n}  // namespace surfcast::render\n")
   file(CONFIGURE OUTPUT ${output} CONTENT "${text}" @ONLY)
   target_sources(${target} PRIVATE ${output})
 endfunction()

@@ -36,14 +36,38 @@ if(SURFCAST_SANITIZE)
   add_link_options(-fsanitize=${SURFCAST_SANITIZE})
 endif()
 
-# surfcast_module(NAME SOURCES file... [PUBLIC lib...] [PRIVATE lib...])
-# One folder of server/ is one static library `surfcast_NAME`, included as "NAME/header.h".
+# surfcast_headers(TARGET PUBLIC|INTERFACE NAME FOLDER)
+# Lets TARGET and what links it include the headers of FOLDER as "NAME/header.h", and nothing beside FOLDER: the include
+# path is a folder of the build tree that holds a link to FOLDER alone. A target therefore sees only the headers of the
+# libraries that it links, and an include that docs/architecture.md does not allow fails to compile.
+function(surfcast_headers target scope name folder)
+  set(path ${CMAKE_BINARY_DIR}/include/${name})
+  file(MAKE_DIRECTORY ${path})
+  file(CREATE_LINK ${folder} ${path}/${name} SYMBOLIC)
+  target_include_directories(${target} ${scope} ${path})
+endfunction()
+
+# surfcast_module(NAME [SOURCES file...] [PUBLIC lib...] [PRIVATE lib...])
+# One folder of server/ is one static library `surfcast_NAME` with the namespace surfcast::NAME, included as
+# "NAME/header.h". Without sources it is a library of headers.
 function(surfcast_module name)
   cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
-  add_library(surfcast_${name} STATIC ${ARG_SOURCES})
-  target_include_directories(surfcast_${name} PUBLIC ${PROJECT_SOURCE_DIR}/server ${PROJECT_SOURCE_DIR}/shaders)
-  target_link_libraries(surfcast_${name} PUBLIC ${ARG_PUBLIC} PRIVATE surfcast_warnings ${ARG_PRIVATE})
+  if(ARG_SOURCES)
+    add_library(surfcast_${name} STATIC ${ARG_SOURCES})
+    surfcast_headers(surfcast_${name} PUBLIC ${name} ${CMAKE_CURRENT_SOURCE_DIR})
+    target_link_libraries(surfcast_${name} PUBLIC ${ARG_PUBLIC} PRIVATE surfcast_warnings ${ARG_PRIVATE})
+  else()
+    add_library(surfcast_${name} INTERFACE)
+    surfcast_headers(surfcast_${name} INTERFACE ${name} ${CMAKE_CURRENT_SOURCE_DIR})
+    target_link_libraries(surfcast_${name} INTERFACE ${ARG_PUBLIC})
+  endif()
 endfunction()
+
+# The buffer layouts and constants that C++ and GLSL share.
+add_library(surfcast_shared INTERFACE)
+surfcast_headers(surfcast_shared INTERFACE shared ${PROJECT_SOURCE_DIR}/shaders/shared)
+find_package(glm REQUIRED)
+target_link_libraries(surfcast_shared INTERFACE glm::glm)
 
 # surfcast_test_data(FILE...): lets these sources of tests find tests/data. Only these: a compiler cache then serves the
 # others in every checkout.

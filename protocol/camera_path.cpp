@@ -10,7 +10,7 @@
 #include "protocol/request_flags.h"
 #include "protocol/validate.h"
 
-namespace surfcast {
+namespace surfcast::protocol {
 namespace {
 
 using nlohmann::json;
@@ -221,4 +221,4 @@ Result<std::string> frame_name(std::string_view pattern, int number) {
   return name;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::protocol

@@ -7,7 +7,7 @@
 #include "base/result.h"
 #include "surfcast.pb.h"
 
-namespace surfcast {
+namespace surfcast::protocol {
 
 /// A camera at a time.
 struct Keyframe {
@@ -47,4 +47,4 @@ class CameraPath {
 /// there is just one number.
 Result<std::string> frame_name(std::string_view pattern, int number);
 
-}  // namespace surfcast
+}  // namespace surfcast::protocol

@@ -4,7 +4,7 @@
 
 #include "protocol/parse.h"
 
-namespace surfcast {
+namespace surfcast::protocol {
 namespace {
 
 constexpr std::string_view kFramed = "tcp://";
@@ -53,4 +53,4 @@ Result<ModelUrl> parse_model_url(std::string_view text) {
   return ModelUrl{*server, std::string(text.substr(slash + 1))};
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::protocol

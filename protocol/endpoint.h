@@ -6,7 +6,7 @@
 
 #include "base/result.h"
 
-namespace surfcast {
+namespace surfcast::protocol {
 
 /// Where a server listens.
 struct Endpoint {
@@ -29,4 +29,4 @@ struct ModelUrl {
 /// "HOST:PORT/MODEL".
 Result<ModelUrl> parse_model_url(std::string_view text);
 
-}  // namespace surfcast
+}  // namespace surfcast::protocol

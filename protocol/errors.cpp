@@ -5,7 +5,7 @@
 
 #include "surfcast.pb.h"
 
-namespace surfcast {
+namespace surfcast::protocol {
 namespace {
 
 struct KindNames {
@@ -92,4 +92,4 @@ std::string clean_utf8(std::string_view text) {
   return clean;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::protocol

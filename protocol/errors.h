@@ -9,7 +9,7 @@ namespace surfcast::wire {
 class Error;
 }
 
-namespace surfcast {
+namespace surfcast::protocol {
 
 /// How an error travels; the message is made one line of valid UTF-8, as protobuf demands of its strings.
 void to_wire(const Error& error, wire::Error& message);
@@ -22,4 +22,4 @@ std::string_view name_of(ErrorKind kind);
 /// `text` with every control character as a space and every byte that is not valid UTF-8 as a question mark.
 std::string clean_utf8(std::string_view text);
 
-}  // namespace surfcast
+}  // namespace surfcast::protocol

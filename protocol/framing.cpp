@@ -7,7 +7,7 @@
 
 #include "protocol/little_endian.h"
 
-namespace surfcast {
+namespace surfcast::protocol {
 namespace {
 
 /// Protobuf writes a line to stderr for what it cannot decode. A peer must not be able to fill the log.
@@ -73,4 +73,4 @@ Result<std::optional<std::vector<std::byte>>> FrameSplitter::next() {
   return std::vector<std::byte>(content.begin(), content.end());
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::protocol

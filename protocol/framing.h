@@ -13,7 +13,7 @@ namespace google::protobuf {
 class MessageLite;
 }
 
-namespace surfcast {
+namespace surfcast::protocol {
 
 /// Bytes of the length that goes before every message.
 inline constexpr size_t kFrameHeaderBytes = 4;
@@ -54,4 +54,4 @@ class FrameSplitter {
   size_t start_ = 0;  ///< bytes of buffer_ that have been handed out
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::protocol

@@ -6,7 +6,7 @@
 #include "protocol/errors.h"
 #include "protocol/little_endian.h"
 
-namespace surfcast {
+namespace surfcast::protocol {
 namespace {
 
 // Offsets of the header's fields.
@@ -101,4 +101,4 @@ Status check_server_hello(const Hello& server) {
   return fail(ErrorKind::kUnsupported, "the server refuses: " + server.message);
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::protocol

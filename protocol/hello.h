@@ -10,7 +10,7 @@
 
 #include "base/result.h"
 
-namespace surfcast {
+namespace surfcast::protocol {
 
 /// Version of the framed protocol. Peers of one major version understand each other.
 struct ProtocolVersion {
@@ -55,4 +55,4 @@ Hello answer_hello(const Hello& client, const std::string& program);
 /// Whether a client can go on after this answer; the error names both versions or repeats the server's reason.
 Status check_server_hello(const Hello& server);
 
-}  // namespace surfcast
+}  // namespace surfcast::protocol

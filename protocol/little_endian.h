@@ -3,7 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 
-namespace surfcast {
+namespace surfcast::protocol {
 
 // Integers of the wire, least significant byte first, on any host.
 
@@ -26,4 +26,4 @@ inline uint32_t load_u32(const std::byte* bytes) {
   return value;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::protocol

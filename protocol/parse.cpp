@@ -3,7 +3,7 @@
 #include <charconv>
 #include <cmath>
 
-namespace surfcast {
+namespace surfcast::protocol {
 namespace {
 
 /// Applies `parse` to each part between commas; nothing unless there are `count` parts that all parse.
@@ -49,4 +49,4 @@ std::optional<std::vector<uint32_t>> parse_unsigneds(std::string_view text, size
   return parse_list<uint32_t>(text, count, parse_unsigned);
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::protocol

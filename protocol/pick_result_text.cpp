@@ -2,7 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace surfcast {
+namespace surfcast::protocol {
 namespace {
 
 using Json = nlohmann::ordered_json;
@@ -58,4 +58,4 @@ std::string pick_result_json(const wire::PickResult& result) {
   return dump(document_of(result), 2) + "\n";
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::protocol

@@ -4,10 +4,10 @@
 #include <optional>
 #include <string>
 
-#include "protocol/look_fields.h"
+#include "protocol/display_fields.h"
 #include "protocol/parse.h"
 
-namespace surfcast {
+namespace surfcast::protocol {
 namespace {
 
 constexpr std::array kFields{
@@ -144,7 +144,7 @@ bool set_by_name(wire::DrawPicture& picture, std::string_view name, std::string_
   if (name == "spacing") return set_spacing(picture, text);
   if (name == "shading") return set_choice(kShadings, text, [&](auto value) { picture.set_shading(value); });
   if (name == "background") return set_background(picture, text);
-  return set_look_field(picture, name, text);
+  return set_display_field(picture, name, text);
 }
 
 }  // namespace
@@ -202,4 +202,4 @@ std::string_view media_type(wire::FileFormat format) {
   }
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::protocol

@@ -6,7 +6,7 @@
 #include "base/result.h"
 #include "surfcast.pb.h"
 
-namespace surfcast {
+namespace surfcast::protocol {
 
 /// A part of a picture request as people name and write it. The same table serves flags of the command line
 /// (`--camera-view-up` is "view_up", `--resolution` is "resolution"), environment variables and queries of HTTP.
@@ -34,4 +34,4 @@ std::string_view name_of(wire::FileFormat format);
 /// MIME type of a file format: "image/jpeg".
 std::string_view media_type(wire::FileFormat format);
 
-}  // namespace surfcast
+}  // namespace surfcast::protocol

@@ -6,7 +6,7 @@
 #include "protocol/picture_fields.h"
 #include "protocol/validate.h"
 
-namespace surfcast {
+namespace surfcast::protocol {
 namespace {
 
 int hex_digit(char c) {
@@ -97,4 +97,4 @@ Result<wire::PickSurfel> parse_pick_query(std::string_view model, std::string_vi
   return pick;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::protocol

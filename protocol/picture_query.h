@@ -6,7 +6,7 @@
 #include "base/result.h"
 #include "surfcast.pb.h"
 
-namespace surfcast {
+namespace surfcast::protocol {
 
 /// The escapes of a part of a URL ("%2C") as the characters they stand for; a malformed escape or a NUL is an error.
 Result<std::string> decode_escapes(std::string_view text);
@@ -18,4 +18,4 @@ Result<wire::DrawPicture> parse_picture_query(std::string_view model, std::strin
 /// The same with the parameter `pixel` ("X,Y"), which must be there.
 Result<wire::PickSurfel> parse_pick_query(std::string_view model, std::string_view query);
 
-}  // namespace surfcast
+}  // namespace surfcast::protocol

@@ -14,7 +14,7 @@
 #include "protocol/picture_fields.h"
 #include "protocol/validate.h"
 
-namespace surfcast {
+namespace surfcast::protocol {
 namespace {
 
 using nlohmann::json;
@@ -92,7 +92,7 @@ void RequestFlags::add_to(CLI::App& command) {
       ->required()
       ->envname(environment_name("output"))
       ->type_name("FILE");
-  add_sight_to(command);
+  add_view_flags_to(command);
   command.add_option("--stats", stats_, "write what drawing took as JSON")
       ->envname(environment_name("stats"))
       ->type_name("FILE");
@@ -105,7 +105,7 @@ void RequestFlags::add_to(CLI::App& command) {
       ->check(CLI::Range(0.001, 1000.0));
 }
 
-void RequestFlags::add_sight_to(CLI::App& command) {
+void RequestFlags::add_view_flags_to(CLI::App& command) {
   command.add_option("--camera", camera_file_, "a camera as JSON: position, focal_point, view_up, view_angle")
       ->envname(environment_name("camera"))
       ->type_name("FILE");
@@ -138,10 +138,10 @@ Status RequestFlags::check() const {
     if (!stats_.empty()) return fail(ErrorKind::kInvalidInput, "--stats is of one picture, and --path draws many");
     if (const Result<std::string> name = frame_name(output_, 0); !name) return fail(name.error());
   }
-  return check_sight();
+  return check_view_flags();
 }
 
-Status RequestFlags::check_sight() const {
+Status RequestFlags::check_view_flags() const {
   const bool position = !values_.at("position").empty();
   const bool focal_point = !values_.at("focal_point").empty();
   const bool rest = !values_.at("view_up").empty() || !values_.at("view_angle").empty();
@@ -152,14 +152,14 @@ Status RequestFlags::check_sight() const {
 }
 
 Result<wire::DrawPicture> RequestFlags::request(std::string_view model) const {
-  Result<wire::DrawPicture> picture = sight(model);
+  Result<wire::DrawPicture> picture = view_request(model);
   const Result<wire::FileFormat> chosen = format();
   SURFCAST_EXPECTS(chosen.has_value());
   if (picture) picture->set_format(*chosen);
   return picture;
 }
 
-Result<wire::DrawPicture> RequestFlags::sight(std::string_view model) const {
+Result<wire::DrawPicture> RequestFlags::view_request(std::string_view model) const {
   wire::DrawPicture picture;
   picture.set_model(std::string(model));
   if (!camera_file_.empty()) {
@@ -185,12 +185,12 @@ void PickFlags::add_to(CLI::App& command) {
         const Status status = set_pixel(scratch, text);
         return status ? std::string() : status.error().message;
       });
-  sight_.add_sight_to(command);
+  view_flags_.add_view_flags_to(command);
   command.add_flag("--json", json_, "as JSON");
 }
 
 Result<wire::PickSurfel> PickFlags::request(std::string_view model) const {
-  Result<wire::DrawPicture> picture = sight_.sight(model);
+  Result<wire::DrawPicture> picture = view_flags_.view_request(model);
   if (!picture) return fail(picture.error());
   wire::PickSurfel pick;
   *pick.mutable_picture() = std::move(*picture);
@@ -204,4 +204,4 @@ Status PickFlags::print(const wire::PickResult& result) const {
   return {};
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::protocol

@@ -12,7 +12,7 @@ namespace CLI {
 class App;
 }
 
-namespace surfcast {
+namespace surfcast::protocol {
 
 /// The flags that every program which asks for a picture shares. Each is also read from the environment:
 /// `--resolution` is SURFCAST_RESOLUTION; the command line wins. Wrong values are reported by CLI11 as a wrong command
@@ -22,16 +22,16 @@ class RequestFlags {
   /// Adds the flags to a command. The object must outlive the parsing.
   void add_to(CLI::App& command);
   /// Only those that say what is to be seen, for programs that keep no file.
-  void add_sight_to(CLI::App& command);
+  void add_view_flags_to(CLI::App& command);
 
   /// Whether the flags make sense together; what they get wrong is a wrong command line.
   [[nodiscard]] Status check() const;
-  [[nodiscard]] Status check_sight() const;
+  [[nodiscard]] Status check_view_flags() const;
   /// The request for `model`, once `check` is content; reads the camera's file if one is given. Flags win over the
   /// file's fields.
   [[nodiscard]] Result<wire::DrawPicture> request(std::string_view model) const;
-  /// The same for `check_sight`; the format is that of --format, else PNG.
-  [[nodiscard]] Result<wire::DrawPicture> sight(std::string_view model) const;
+  /// The same for `check_view_flags`; the format is that of --format, else PNG.
+  [[nodiscard]] Result<wire::DrawPicture> view_request(std::string_view model) const;
   /// Where the picture goes; "-" is standard output.
   [[nodiscard]] const std::string& output() const { return output_; }
   /// Where the figures go, empty for nowhere.
@@ -56,13 +56,13 @@ class PickFlags {
  public:
   /// As in RequestFlags, like the next two.
   void add_to(CLI::App& command);
-  [[nodiscard]] Status check() const { return sight_.check_sight(); }
+  [[nodiscard]] Status check() const { return view_flags_.check_view_flags(); }
   [[nodiscard]] Result<wire::PickSurfel> request(std::string_view model) const;
   /// The result as the flags want it, to standard output.
   [[nodiscard]] Status print(const wire::PickResult& result) const;
 
  private:
-  RequestFlags sight_;
+  RequestFlags view_flags_;
   std::string pixel_;
   bool json_ = false;
 };
@@ -74,4 +74,4 @@ std::string environment_name(std::string_view flag);
 /// "view_angle": degrees}).
 Status parse_camera_json(std::string_view text, wire::Camera& camera);
 
-}  // namespace surfcast
+}  // namespace surfcast::protocol

@@ -7,7 +7,7 @@
 #include "protocol/camera_path.h"
 #include "protocol/picture_fields.h"
 
-namespace surfcast {
+namespace surfcast::protocol {
 namespace {
 
 using nlohmann::json;
@@ -87,4 +87,4 @@ Status draw_and_save(const RequestFlags& flags, const wire::DrawPicture& picture
   return {};
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::protocol

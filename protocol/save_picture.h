@@ -7,7 +7,7 @@
 #include "protocol/request_flags.h"
 #include "surfcast.pb.h"
 
-namespace surfcast {
+namespace surfcast::protocol {
 
 /// What an answered picture shows and took, as JSON. Its "camera" is what --camera reads.
 std::string picture_stats_json(const wire::Picture& picture);
@@ -20,4 +20,4 @@ Status save_picture(const wire::Picture& picture, const std::string& output, con
 Status draw_and_save(const RequestFlags& flags, const wire::DrawPicture& picture,
                      const std::function<Result<wire::Picture>(const wire::DrawPicture&)>& draw);
 
-}  // namespace surfcast
+}  // namespace surfcast::protocol

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <string>
 
-namespace surfcast {
+namespace surfcast::protocol {
 namespace {
 
 tl::unexpected<Error> invalid(const char* message) {
@@ -76,7 +76,7 @@ Status check_clip_boxes(const wire::DrawPicture& picture) {
   return {};
 }
 
-Status check_look(const wire::DrawPicture& picture) {
+Status check_display_options(const wire::DrawPicture& picture) {
   if (Status status = check_coloring(picture.coloring()); !status) return status;
   for (const uint32_t code : picture.hidden_classes()) {
     if (code > kMaxClassCode) return invalid("hide_classes: codes must be at most 255");
@@ -102,14 +102,14 @@ Status check_picture(const wire::DrawPicture& picture) {
   }
   if (Status status = check_choices(picture); !status) return status;
   if (Status status = check_numbers(picture); !status) return status;
-  return check_look(picture);
+  return check_display_options(picture);
 }
 
 Status check_view(const wire::OpenView& view) {
-  if (!(view.target_fps() >= 0 && view.target_fps() <= kMostFramesPerSecond)) {
+  if (!(view.target_fps() >= 0 && view.target_fps() <= kMaxFramesPerSecond)) {
     return invalid("target_fps: must lie between 0 and 1000");
   }
   return check_picture(view.picture());
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::protocol

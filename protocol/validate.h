@@ -3,7 +3,7 @@
 #include "base/result.h"
 #include "surfcast.pb.h"
 
-namespace surfcast {
+namespace surfcast::protocol {
 
 inline constexpr uint32_t kDefaultWidth = 1280;  ///< pixels
 inline constexpr uint32_t kDefaultHeight = 720;  ///< pixels
@@ -20,9 +20,9 @@ inline constexpr double kDefaultEyeDomeRadius = 1.5;  ///< pixels
 /// choices known, the camera whole. Limits of the server (resolution) are not looked at here.
 Status check_picture(const wire::DrawPicture& picture);
 
-inline constexpr double kMostFramesPerSecond = 1000;  ///< that a view may ask for
+inline constexpr double kMaxFramesPerSecond = 1000;  ///< that a view may ask for
 
 /// The same for a view to be opened.
 Status check_view(const wire::OpenView& view);
 
-}  // namespace surfcast
+}  // namespace surfcast::protocol

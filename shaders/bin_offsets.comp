@@ -11,7 +11,7 @@ layout(std430, binding = SURFCAST_BIND_COUNTERS) buffer CountersBuffer { Counter
 layout(std430, binding = SURFCAST_BIND_TILE_COUNT) buffer TileCount { uint tile_count[]; };
 layout(std430, binding = SURFCAST_BIND_TILE_OFFSET) writeonly buffer TileOffset { uint tile_offset[]; };
 
-layout(std430, binding = SURFCAST_BIND_TILE_CROWD) writeonly buffer TileCrowd { uint tile_crowd[]; };
+layout(std430, binding = SURFCAST_BIND_TILE_DEMAND) writeonly buffer TileDemand { uint tile_demand[]; };
 layout(std430, binding = SURFCAST_BIND_TILE_ORDER) writeonly buffer TileOrder { uint tile_order[]; };
 
 shared uint sums[LANES];
@@ -21,12 +21,12 @@ shared uint longest;
 #define CLASSES 72
 shared uint class_places[CLASSES];
 
-uint length_class(uint crowd) {
-  if (crowd == 0u) return 0u;
-  return min((floatBitsToUint(float(crowd)) >> 21) - (127u << 2) + 1u, uint(CLASSES - 1));
+uint length_class(uint demand) {
+  if (demand == 0u) return 0u;
+  return min((floatBitsToUint(float(demand)) >> 21) - (127u << 2) + 1u, uint(CLASSES - 1));
 }
 
-uint crowd_of(uint tile) { return tile_count[tile] + tile_count[tile + uint(frame.tiles.z)]; }
+uint demand_of(uint tile) { return tile_count[tile] + tile_count[tile + uint(frame.tiles.z)]; }
 
 const uint kLengths[8] = uint[8](SURFCAST_LIST_LENGTHS);
 
@@ -37,7 +37,7 @@ void order_tiles(uint lane) {
   uint last = min(first + share, uint(frame.tiles.z));
   if (lane < uint(CLASSES)) class_places[lane] = 0u;
   barrier();
-  for (uint i = first; i < last; ++i) atomicAdd(class_places[length_class(crowd_of(i))], 1u);
+  for (uint i = first; i < last; ++i) atomicAdd(class_places[length_class(demand_of(i))], 1u);
   barrier();
   if (lane == 0u) {
     uint place = 0u;
@@ -49,7 +49,7 @@ void order_tiles(uint lane) {
     for (int i = 0; i < 8; ++i) counters.lengths[i / 4][i % 4] = class_places[length_class(kLengths[i]) - 1u];
   }
   barrier();
-  for (uint i = first; i < last; ++i) tile_order[atomicAdd(class_places[length_class(crowd_of(i))], 1u)] = i;
+  for (uint i = first; i < last; ++i) tile_order[atomicAdd(class_places[length_class(demand_of(i))], 1u)] = i;
 }
 
 void main() {
@@ -66,9 +66,9 @@ void main() {
   for (uint i = first; i < last; ++i) {
     sum += tile_count[i];
     uint tile = i % uint(frame.tiles.z);
-    uint crowd = tile_count[tile] + tile_count[tile + uint(frame.tiles.z)];
-    if (i == tile && frame.flags.z == 0) tile_crowd[tile] = crowd;  // as counted before thinning
-    most = max(most, crowd);
+    uint demand = tile_count[tile] + tile_count[tile + uint(frame.tiles.z)];
+    if (i == tile && frame.flags.z == 0) tile_demand[tile] = demand;  // as counted before thinning
+    most = max(most, demand);
   }
   sums[lane] = sum;
   atomicMax(longest, most);

@@ -7,7 +7,7 @@
 #include "shared/kernel.h"
 #include "shared/frame_layout.h"
 #include "include/frame.glsl"
-#include "include/look.glsl"
+#include "include/display_options.glsl"
 #include "include/packing.glsl"
 #include "include/resampling_filter.glsl"
 #include "include/spacing.glsl"
@@ -140,11 +140,11 @@ bool astride_outside(Surfel s, float extent) {
   return false;
 }
 
-void project_large(Surfel s, bool astride) {
+void project_large(Surfel s, bool reaches_eye_plane) {
   float extent = surfel_extent(s.radius);
   vec2 low = vec2(frame.region.xy);
   vec2 high = vec2(frame.region.xy + frame.region.zw);
-  if (astride) {
+  if (reaches_eye_plane) {
     if (astride_outside(s, extent)) return;
   } else {
     vec2 ray_low, ray_high;
@@ -175,7 +175,7 @@ bool is_surely_small(Surfel s) {
   vec2 ray = s.o.xy / s.o.z;
   float spread = frontal_deviation(sigma, s.o.z);
   float variance = spread * spread * (1.0 + max(ray.x * ray.x, ray.y * ray.y)) + frame.filter_.x;
-  return !is_astride(s.o.z, s.radius) && is_small(sigma, sqrt(SURFCAST_KERNEL_CUTOFF * variance), s.o.z);
+  return !reaches_eye_plane(s.o.z, s.radius) && is_small(sigma, sqrt(SURFCAST_KERNEL_CUTOFF * variance), s.o.z);
 }
 
 void project_surely_small(Surfel s) {
@@ -187,7 +187,7 @@ void project_surely_small(Surfel s) {
 
 void project(Surfel s) {
   float sigma = float(SURFCAST_KERNEL_SIGMA) * s.radius;
-  if (is_astride(s.o.z, s.radius)) {
+  if (reaches_eye_plane(s.o.z, s.radius)) {
     project_large(s, true);
     return;
   }
@@ -224,7 +224,7 @@ bool has_wanted_spacing(uvec4 run, BlockView block, uint place, Surfel s) {
 }
 
 // Enters a surfel in the list of those that are drawn, if it is one.
-void look_at(uvec4 run, BlockView block, uint place) {
+void collect_if_drawn(uvec4 run, BlockView block, uint place) {
   int at = int(run.y + place);
   uvec4 texel = texelFetch(surfels, at);
 #ifdef SURFCAST_CLIPPED
@@ -276,7 +276,7 @@ void main() {
   }
   barrier();
   uint count = run.z & SURFCAST_RUN_COUNT;
-  for (uint place = lane; place < count; place += lanes) look_at(run, block, place);
+  for (uint place = lane; place < count; place += lanes) collect_if_drawn(run, block, place);
   barrier();
   for (uint i = lane; i < small_count; i += lanes) project_surely_small(drawn_surfel(run, block, drawn[i]));
   for (uint i = lane; i < other_count; i += lanes) {

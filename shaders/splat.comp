@@ -23,8 +23,8 @@ layout(local_size_x = SURFCAST_TILES_AT_ONCE * SURFCAST_TILE_WIDTH / SURFCAST_CO
        local_size_y = SURFCAST_TILE_HEIGHT / SURFCAST_ROWS) in;
 
 layout(std430, binding = SURFCAST_BIND_TILE_ORDER) readonly buffer TileOrder { uint tile_order[]; };
-#ifdef SURFCAST_TAKES_TURNS
-layout(std430, binding = SURFCAST_BIND_TURNS) buffer Turns { uint turns[]; };
+#ifdef SURFCAST_DYNAMIC_TILES
+layout(std430, binding = SURFCAST_BIND_NEXT_TILES) buffer NextTiles { uint next_tiles[]; };
 #endif
 #ifdef SURFCAST_FINDS_SILHOUETTES
 layout(std430, binding = SURFCAST_BIND_FRONTS) writeonly buffer Fronts { float fronts[]; };
@@ -50,7 +50,7 @@ void write_column(Light light, Rows front, ivec2 first) {
 }
 
 // What a lane is drawing.
-struct Work {
+struct LaneState {
   TileLists tile;
   ivec2 local;  // first pixel of the lane
   int columns;  // 0 in a tile that the other build draws
@@ -61,44 +61,44 @@ struct Work {
 };
 
 // The lane's next tile of its work group; span.z or more when there is none.
-uint next_turn(bool first) {
-#ifdef SURFCAST_TAKES_TURNS
-  return atomicAdd(turns[first_group + gl_WorkGroupID.x], 1u);
+uint next_tile_slot(bool first) {
+#ifdef SURFCAST_DYNAMIC_TILES
+  return atomicAdd(next_tiles[first_group + gl_WorkGroupID.x], 1u);
 #else
   return first ? gl_LocalInvocationID.x / uint(kLanesAcross) : span.z;
 #endif
 }
 
 // Begins another tile, if there is one.
-bool begin(inout Work work, bool first) {
-  uint turn = next_turn(first);
-  uint at = span.x + (first_group + gl_WorkGroupID.x) * span.z + turn;
-  if (turn >= span.z || at >= span.y) return false;
+bool begin(inout LaneState state, bool first) {
+  uint slot = next_tile_slot(first);
+  uint at = span.x + (first_group + gl_WorkGroupID.x) * span.z + slot;
+  if (slot >= span.z || at >= span.y) return false;
   uint index = tile_order[at];
-  work.tile = lists_of_tile(index);
-  work.columns = is_ours(work.tile) ? SURFCAST_COLUMNS : 0;
-  if (work.columns == 0) work.tile = TileLists(0u, 0u, 0u, 0u);
+  state.tile = lists_of_tile(index);
+  state.columns = belongs_to_this_build(state.tile) ? SURFCAST_COLUMNS : 0;
+  if (state.columns == 0) state.tile = TileLists(0u, 0u, 0u, 0u);
   ivec2 place = ivec2(index % uint(frame.tiles.x), index / uint(frame.tiles.x));
-  work.local = place * ivec2(SURFCAST_TILE_WIDTH, SURFCAST_TILE_HEIGHT) +
+  state.local = place * ivec2(SURFCAST_TILE_WIDTH, SURFCAST_TILE_HEIGHT) +
                ivec2(gl_LocalInvocationID.x % uint(kLanesAcross), gl_LocalInvocationID.y) *
                    ivec2(SURFCAST_COLUMNS, SURFCAST_ROWS);
-  work.layer = 0;
-  begin_drawing(work.columns, work.limit, work.light);
+  state.layer = 0;
+  begin_drawing(state.columns, state.limit, state.light);
   return true;
 }
 
 // Lanes begin another tile when they have finished one, whatever the others do: tiles differ in their surfaces.
 void main() {
-  Work work;
-  bool drawing = begin(work, true);
+  LaneState state;
+  bool drawing = begin(state, true);
   while (drawing) {
-    bool more = draw_layer(work.tile, vec2(frame.region.xy + work.local) + 0.5, work.limit, work.light);
-    if (work.layer == 0) work.front = work.limit;
-    ++work.layer;
-    if (more && work.layer < kMaxLayers) continue;
+    bool more = draw_layer(state.tile, vec2(frame.region.xy + state.local) + 0.5, state.limit, state.light);
+    if (state.layer == 0) state.front = state.limit;
+    ++state.layer;
+    if (more && state.layer < kMaxLayers) continue;
     for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
-      if (c < work.columns) write_column(work.light[c], work.front[c], work.local + ivec2(c, 0));
+      if (c < state.columns) write_column(state.light[c], state.front[c], state.local + ivec2(c, 0));
     }
-    drawing = begin(work, false);
+    drawing = begin(state, false);
   }
 }

@@ -83,7 +83,7 @@ void main() {
   if (index >= silhouette_count) return;
   uvec2 part = silhouette_parts[index];
   TileLists tile = lists_of_tile(part.x);
-  if (!is_ours(tile)) return;
+  if (!belongs_to_this_build(tile)) return;
   ivec2 corner = ivec2(part.x % uint(frame.tiles.x), part.x / uint(frame.tiles.x)) *
                  ivec2(SURFCAST_TILE_WIDTH, SURFCAST_TILE_HEIGHT);
   uint mask = part.y;

@@ -15,7 +15,7 @@ ordered_json rounded(double value) {
 
 ordered_json json_of(const Measurement& m) {
   ordered_json stages = ordered_json::object();
-  for (const StageTime& stage : m.stages) stages[stage.name] = rounded(stage.milliseconds);
+  for (const picture::StageTime& stage : m.stages) stages[stage.name] = rounded(stage.milliseconds);
   return {{"method", m.method},
           {"milliseconds", rounded(m.milliseconds)},
           {"processor_milliseconds", rounded(m.processor_milliseconds)},

@@ -128,7 +128,7 @@ std::string stages(const LabResults& results) {
     if (m == nullptr) continue;
     std::vector<std::string> cells{scene.name, std::to_string(m->splats)};
     for (const char* name : kStages) {
-      for (const StageTime& stage : m->stages) {
+      for (const picture::StageTime& stage : m->stages) {
         if (stage.name == name) cells.push_back(number(stage.milliseconds, 1));
       }
     }

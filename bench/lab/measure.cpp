@@ -16,18 +16,18 @@ struct Times {
   void add(const DrawnPicture& drawn) {
     frames.push_back(drawn.milliseconds);
     processor.push_back(drawn.processor_milliseconds);
-    for (const StageTime& stage : drawn.stages) stages[stage.name].push_back(stage.milliseconds);
+    for (const picture::StageTime& stage : drawn.stages) stages[stage.name].push_back(stage.milliseconds);
   }
-  [[nodiscard]] std::vector<StageTime> stage_medians(const std::vector<StageTime>& order) const {
-    std::vector<StageTime> medians;
-    for (const StageTime& stage : order) medians.push_back({stage.name, bench::median(stages.at(stage.name))});
+  [[nodiscard]] std::vector<picture::StageTime> stage_medians(const std::vector<picture::StageTime>& order) const {
+    std::vector<picture::StageTime> medians;
+    for (const picture::StageTime& stage : order) medians.push_back({stage.name, bench::median(stages.at(stage.name))});
     return medians;
   }
 };
 
 double flicker_of(const std::string& method, const Subject& subject, Methods& methods) {
   std::vector<SrgbPicture> drawn;
-  for (const PictureRequest& request : subject.path) drawn.push_back(methods.draw(method, request).picture);
+  for (const picture::PictureRequest& request : subject.path) drawn.push_back(methods.draw(method, request).picture);
   return flicker(drawn, subject.ideal_path);
 }
 

@@ -26,7 +26,7 @@ struct Method {
   MethodFacts facts;
   std::optional<PlainShape> plain{};
   bool papers = false;
-  void (*adapt)(PictureRequest&) = [](PictureRequest&) {};
+  void (*adapt)(picture::PictureRequest&) = [](picture::PictureRequest&) {};
 };
 
 const std::vector<Method>& methods() {
@@ -36,21 +36,24 @@ const std::vector<Method>& methods() {
       {{"no prefilter", "`--filter none`: splats without prefilter", true},
        {},
        false,
-       [](PictureRequest& r) { r.filter = Filter::kNone; }},
+       [](picture::PictureRequest& r) { r.filter = picture::Filter::kNone; }},
       {{"papers' kernel", "per-pixel EWA with sigma = h, cutoff 2, as in Ren 2002", false}, {}, true},
       {{"per surfel", "`--normalization surfel`", false},
        {},
        false,
-       [](PictureRequest& r) { r.normalization = Normalization::kSurfel; }},
+       [](picture::PictureRequest& r) { r.normalization = picture::Normalization::kSurfel; }},
       {{"per pixel", "EWA as it is by default", false}},
       {{"at rest", "the same with silhouettes as means of four samples, as `render` and the last picture of a rest",
         false},
        {},
        false,
-       [](PictureRequest& r) { r.silhouettes = true; }},
-      {{"1/2 px", "the same at `--spacing 0.5`", false}, {}, false, [](PictureRequest& r) { r.spacing = 0.5; }},
-      {{"1 px", "`--spacing 1`", false}, {}, false, [](PictureRequest& r) { r.spacing = 1; }},
-      {{"2 px", "`--spacing 2`", false}, {}, false, [](PictureRequest& r) { r.spacing = 2; }},
+       [](picture::PictureRequest& r) { r.silhouettes = true; }},
+      {{"1/2 px", "the same at `--spacing 0.5`", false},
+       {},
+       false,
+       [](picture::PictureRequest& r) { r.spacing = 0.5; }},
+      {{"1 px", "`--spacing 1`", false}, {}, false, [](picture::PictureRequest& r) { r.spacing = 1; }},
+      {{"2 px", "`--spacing 2`", false}, {}, false, [](picture::PictureRequest& r) { r.spacing = 2; }},
   };
   return list;
 }
@@ -61,7 +64,7 @@ const Method& method_named(const std::string& name) {
   return *found;
 }
 
-SrgbPicture picture_of(const Image& image) {
+SrgbPicture picture_of(const picture::Image& image) {
   SrgbPicture picture{image.width, image.height, {}};
   const auto* pixels = reinterpret_cast<const glm::u8vec4*>(image.pixels.data());
   for (int i = 0; i < image.width * image.height; ++i) picture.pixels.emplace_back(pixels[i]);
@@ -114,7 +117,7 @@ reference::LinearPicture filtered_along_x(const reference::LinearPicture& sample
   return result;
 }
 
-reference::LinearPicture linear_picture_of(const Image& image) {
+reference::LinearPicture linear_picture_of(const picture::Image& image) {
   reference::LinearPicture picture(image.width, image.height);
   for (size_t i = 0; i < picture.pixels.size(); ++i) {
     glm::vec4 pixel;
@@ -127,11 +130,11 @@ reference::LinearPicture linear_picture_of(const Image& image) {
 }  // namespace
 
 Methods::Methods() : ours_({}), papers_({.shader_defines = kPapersKernel}) {
-  ours_.run([this](Renderer& renderer) { device_ = renderer.device().renderer; });
+  ours_.run([this](render::Renderer& renderer) { device_ = renderer.device().renderer; });
 }
 
 Methods::~Methods() {
-  ours_.run([this](Renderer&) { painter_.reset(); });
+  ours_.run([this](render::Renderer&) { rasterizer_.reset(); });
 }
 
 std::vector<MethodFacts> Methods::all() {
@@ -140,39 +143,40 @@ std::vector<MethodFacts> Methods::all() {
   return facts;
 }
 
-void Methods::open(std::shared_ptr<const ModelFile> model) {
-  const std::shared_ptr<const ModelFile> last = std::exchange(model_, std::move(model));
-  ours_.run([&](Renderer& renderer) {
-    painter_.reset();
-    if (last) renderer.forget(*last);
+void Methods::open(std::shared_ptr<const model::ModelFile> model) {
+  const std::shared_ptr<const model::ModelFile> last = std::exchange(model_, std::move(model));
+  ours_.run([&](render::Renderer& renderer) {
+    rasterizer_.reset();
+    if (last) renderer.release_model(*last);
   });
-  if (last) papers_.run([&](Renderer& renderer) { renderer.forget(*last); });
+  if (last) papers_.run([&](render::Renderer& renderer) { renderer.release_model(*last); });
 }
 
-Frame Methods::draw_frame(RendererThread& thread, const PictureRequest& request) {
-  Frame frame;
-  thread.run([&](Renderer& renderer) { frame = bench::draw_or_exit(renderer, model_, request); });
+picture::Frame Methods::draw_frame(RendererThread& thread, const picture::PictureRequest& request) {
+  picture::Frame frame;
+  thread.run([&](render::Renderer& renderer) { frame = bench::draw_or_exit(renderer, model_, request); });
   return frame;
 }
 
-Camera Methods::camera_of(const PictureRequest& request) {
-  PictureRequest coarse = request;
+geometry::Camera Methods::camera_of(const picture::PictureRequest& request) {
+  picture::PictureRequest coarse = request;
   coarse.spacing = 8;
   return draw_frame(ours_, coarse).camera;
 }
 
-DrawnPicture Methods::draw_plain(PlainShape shape, const PictureRequest& request) {
-  const CameraFrame frame = bench::value_or_exit(make_camera_frame(*request.camera, request.width, request.height));
+DrawnPicture Methods::draw_plain(PlainShape shape, const picture::PictureRequest& request) {
+  const geometry::CameraFrame frame =
+      bench::value_or_exit(geometry::make_camera_frame(*request.camera, request.width, request.height));
   DrawnPicture drawn;
-  ours_.run([&](Renderer&) {
-    if (!painter_ || painted_ != glm::ivec2(request.width, request.height)) {
-      painter_ = std::make_unique<PlainPainter>(*model_, request.width, request.height);
+  ours_.run([&](render::Renderer&) {
+    if (!rasterizer_ || painted_ != glm::ivec2(request.width, request.height)) {
+      rasterizer_ = std::make_unique<PlainRasterizer>(*model_, request.width, request.height);
       painted_ = {request.width, request.height};
     }
     std::vector<std::byte> pixels;
     const Stopwatch watch;
     const double start = bench::processor_ms();
-    painter_->draw(shape, PlainFaces::kFront, frame, pixels);
+    rasterizer_->draw(shape, PlainFaces::kFront, frame, pixels);
     drawn.milliseconds = watch.milliseconds();
     drawn.processor_milliseconds = bench::processor_ms() - start;
     drawn.picture = flipped_picture(pixels, request.width, request.height);
@@ -181,25 +185,25 @@ DrawnPicture Methods::draw_plain(PlainShape shape, const PictureRequest& request
   return drawn;
 }
 
-DrawnPicture Methods::draw(const std::string& name, const PictureRequest& request) {
+DrawnPicture Methods::draw(const std::string& name, const picture::PictureRequest& request) {
   const Method& method = method_named(name);
   if (method.plain) return draw_plain(*method.plain, request);
-  PictureRequest adapted = request;
+  picture::PictureRequest adapted = request;
   method.adapt(adapted);
   const Stopwatch watch;
   const double start = bench::processor_ms();
-  const Frame frame = draw_frame(method.papers ? papers_ : ours_, adapted);
+  const picture::Frame frame = draw_frame(method.papers ? papers_ : ours_, adapted);
   const double milliseconds = watch.milliseconds();
   const double processor = bench::processor_ms() - start;
   return {picture_of(frame.image), milliseconds, processor, frame.stats.stages, frame.stats.surfels_drawn};
 }
 
-SrgbPicture Methods::supersampled(const PictureRequest& request) {
-  PictureRequest larger = request;
+SrgbPicture Methods::supersampled(const picture::PictureRequest& request) {
+  picture::PictureRequest larger = request;
   larger.width *= kSamples;
   larger.height *= kSamples;
-  larger.format = PixelFormat::kLinearFloat;
-  const Frame frame = draw_frame(ours_, larger);
+  larger.format = picture::PixelFormat::kLinearFloat;
+  const picture::Frame frame = draw_frame(ours_, larger);
   return encode(filtered_along_x(filtered_along_x(linear_picture_of(frame.image))));
 }
 

@@ -4,7 +4,7 @@
 
 namespace surfcast::lab {
 
-RendererThread::RendererThread(const RendererConfig& config) : thread_([this, config] { loop(config); }) {}
+RendererThread::RendererThread(const render::RendererConfig& config) : thread_([this, config] { loop(config); }) {}
 
 RendererThread::~RendererThread() {
   {
@@ -22,8 +22,8 @@ void RendererThread::run(const Work& work) {
   changed_.wait(lock, [this] { return work_ == nullptr; });
 }
 
-void RendererThread::loop(const RendererConfig& config) {
-  const std::unique_ptr<Renderer> renderer = bench::value_or_exit(Renderer::create(config));
+void RendererThread::loop(const render::RendererConfig& config) {
+  const std::unique_ptr<render::Renderer> renderer = bench::value_or_exit(render::Renderer::create(config));
   std::unique_lock lock(mutex_);
   while (true) {
     changed_.wait(lock, [this] { return work_ != nullptr || ending_; });

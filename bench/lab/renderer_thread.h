@@ -13,17 +13,17 @@ namespace surfcast::lab {
 class RendererThread {
  public:
   /// Ends the program where no renderer can be made.
-  explicit RendererThread(const RendererConfig& config);
+  explicit RendererThread(const render::RendererConfig& config);
   ~RendererThread();
   RendererThread(const RendererThread&) = delete;
   RendererThread& operator=(const RendererThread&) = delete;
 
-  using Work = std::function<void(Renderer&)>;
+  using Work = std::function<void(render::Renderer&)>;
   /// Does the work on the thread, and returns when it is done.
   void run(const Work& work);
 
  private:
-  void loop(const RendererConfig& config);
+  void loop(const render::RendererConfig& config);
 
   std::mutex mutex_;
   std::condition_variable changed_;

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "lab/errors.h"
-#include "render/picture.h"
+#include "picture/picture.h"
 
 namespace surfcast::lab {
 
@@ -22,9 +22,9 @@ struct Measurement {
   double milliseconds = 0;  ///< median of a frame, from the request to its pixels in memory
   double processor_milliseconds =
       0;  ///< the same in processor time: the cost on software GL, which other load hardly changes
-  std::vector<StageTime> stages;  ///< medians
-  double surfels_per_second = 0;  ///< of the scan, whether or not a coarser level stands for them
-  uint64_t splats = 0;            ///< drawn, once what faces away or lies outside has been left out
+  std::vector<picture::StageTime> stages;  ///< medians
+  double surfels_per_second = 0;           ///< of the scan, whether or not a coarser level stands for them
+  uint64_t splats = 0;                     ///< drawn, once what faces away or lies outside has been left out
   PictureErrors errors;
   double flicker = 0;  ///< levels of 255
 };

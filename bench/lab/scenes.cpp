@@ -17,7 +17,7 @@ using reference::SurfacePoint;
 constexpr int kSize = 512;  ///< pixels
 
 Scene scene_of(const std::vector<SurfacePoint>& points, reference::RaySurface surface, reference::Texture texture,
-               const Camera& camera) {
+               const geometry::Camera& camera) {
   Scene scene;
   scene.cloud = reference::surfels_at(points);
   scene.cloud.colors = reference::sampled_colors(points, texture);
@@ -32,14 +32,14 @@ Scene scene_of(const std::vector<SurfacePoint>& points, reference::RaySurface su
 /// The checker plane from 2 degrees above its nearer border, so that it fills the picture up to its horizon.
 Scene checker_horizon() {
   Scene scene = reference::make_scene("checker_oblique");
-  scene.request.camera = Camera{{0, -1, 0.035}, {0, 0, 0}, {0, 0, 1}, 35};
+  scene.request.camera = geometry::Camera{{0, -1, 0.035}, {0, 0, 0}, {0, 0, 1}, 35};
   return scene;
 }
 
 Scene noise_torus() {
   const Torus torus;
   return scene_of(uneven_samples(torus, 600, 200, 7), ray_surface(torus), reference::value_noise(96),
-                  Camera{{0, -2.6, 1.9}, {0, 0, 0}, {0, 0, 1}, 35});
+                  geometry::Camera{{0, -2.6, 1.9}, {0, 0, 0}, {0, 0, 1}, 35});
 }
 
 /// What a scanner sees of the square within `columns` of x: samples off the plane and off their colour.
@@ -115,15 +115,15 @@ LabScene scan_scene(const std::filesystem::path& scan) {
   return {scan.stem().string(), "a scan against its own supersampled picture", std::nullopt, scan};
 }
 
-std::vector<PictureRequest> slow_path(const PictureRequest& request, int side, int frames) {
+std::vector<picture::PictureRequest> slow_path(const picture::PictureRequest& request, int side, int frames) {
   constexpr glm::dvec2 kStep{0.37, 0.21};  // pixels at the focal point
   SURFCAST_EXPECTS(request.camera.has_value());
-  const auto frame = make_camera_frame(*request.camera, side, side);
+  const auto frame = geometry::make_camera_frame(*request.camera, side, side);
   SURFCAST_EXPECTS(frame.has_value());
   const double pixel = glm::distance(request.camera->position, request.camera->focal_point) / frame->eta;
-  std::vector<PictureRequest> path;
+  std::vector<picture::PictureRequest> path;
   for (int k = 0; k < frames; ++k) {
-    PictureRequest step = request;
+    picture::PictureRequest step = request;
     step.width = step.height = side;
     const glm::dvec3 moved = k * pixel * (kStep.x * frame->right + kStep.y * frame->up);
     step.camera->position += moved;

@@ -25,6 +25,6 @@ LabScene make_lab_scene(const std::string& name);
 LabScene scan_scene(const std::filesystem::path& scan);
 
 /// The requests of a slow camera path: the view moves sideways and up by a fraction of a pixel from frame to frame.
-std::vector<PictureRequest> slow_path(const PictureRequest& request, int side, int frames);
+std::vector<picture::PictureRequest> slow_path(const picture::PictureRequest& request, int side, int frames);
 
 }  // namespace surfcast::lab

@@ -12,7 +12,7 @@ namespace {
 constexpr int kPathSide = 256;  ///< pixels
 
 /// A cloud as a scan: binary PLY with positions in double precision, normals and colours, and without radii.
-void write_scan(const SurfelCloud& cloud, const std::filesystem::path& path) {
+void write_scan(const surfel::SurfelCloud& cloud, const std::filesystem::path& path) {
   std::ofstream file(path, std::ios::binary);
   file << "ply\nformat binary_little_endian 1.0\nelement vertex " << cloud.size()
        << "\nproperty double x\nproperty double y\nproperty double z\nproperty float nx\nproperty float ny\n"
@@ -25,14 +25,15 @@ void write_scan(const SurfelCloud& cloud, const std::filesystem::path& path) {
   }
 }
 
-std::shared_ptr<const ModelFile> built_model(const std::filesystem::path& scan, const std::filesystem::path& folder) {
+std::shared_ptr<const model::ModelFile> built_model(const std::filesystem::path& scan,
+                                                    const std::filesystem::path& folder) {
   const std::filesystem::path target = folder / (scan.stem().string() + ".surf");
   const std::array inputs{scan};
-  bench::value_or_exit(build_model(inputs, target, {}, [](const BuildStep&) {}));
+  bench::value_or_exit(builder::build_model(inputs, target, {}, [](const builder::BuildStep&) {}));
   return bench::open_or_exit(target);
 }
 
-std::shared_ptr<const ModelFile> model_of(const LabScene& scene, const std::filesystem::path& folder) {
+std::shared_ptr<const model::ModelFile> model_of(const LabScene& scene, const std::filesystem::path& folder) {
   if (!scene.analytic) {
     return scene.scan.extension() == ".surf" ? bench::open_or_exit(scene.scan) : built_model(scene.scan, folder);
   }
@@ -41,7 +42,7 @@ std::shared_ptr<const ModelFile> model_of(const LabScene& scene, const std::file
   return built_model(scan, folder);
 }
 
-SrgbPicture ideal_of(const LabScene& scene, const PictureRequest& request, Methods& methods) {
+SrgbPicture ideal_of(const LabScene& scene, const picture::PictureRequest& request, Methods& methods) {
   if (!scene.analytic) return methods.supersampled(request);
   reference::Scene posed = *scene.analytic;
   posed.request = request;
@@ -57,12 +58,13 @@ Subject prepare(const LabScene& scene, const std::filesystem::path& folder, int 
     subject.request = scene.analytic->request;
   } else {
     subject.request.width = subject.request.height = 512;
-    subject.request.shading = Shading::kUnlit;  // as the plain methods
+    subject.request.shading = picture::Shading::kUnlit;  // as the plain methods
     subject.request.camera = methods.camera_of(subject.request);
   }
   subject.ideal = ideal_of(scene, subject.request, methods);
   subject.path = slow_path(subject.request, kPathSide, path_frames);
-  for (const PictureRequest& request : subject.path) subject.ideal_path.push_back(ideal_of(scene, request, methods));
+  for (const picture::PictureRequest& request : subject.path)
+    subject.ideal_path.push_back(ideal_of(scene, request, methods));
   return subject;
 }
 

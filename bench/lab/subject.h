@@ -12,10 +12,10 @@ namespace surfcast::lab {
 struct Subject {
   std::string name;
   std::string about;
-  std::shared_ptr<const ModelFile> model;
-  PictureRequest request;
+  std::shared_ptr<const model::ModelFile> model;
+  picture::PictureRequest request;
   SrgbPicture ideal;
-  std::vector<PictureRequest> path;
+  std::vector<picture::PictureRequest> path;
   std::vector<SrgbPicture> ideal_path;
 };
 

@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace surfcast {
+namespace surfcast::window {
 namespace {
 
 constexpr double kFactorPerClick = 0.85;
@@ -13,13 +13,13 @@ constexpr double kNudge = 1.0 / 24;  // of the picture's height
 void Controls::drag(Drag drag, const glm::dvec2& by) {
   switch (drag) {
     case Drag::kOrbit:
-      pose_ = orbit(pose_, by);
+      pose_ = client::orbit(pose_, by);
       break;
     case Drag::kPan:
-      pose_ = pan(pose_, by);
+      pose_ = client::pan(pose_, by);
       break;
     case Drag::kLook:
-      pose_ = look(pose_, by);
+      pose_ = client::look(pose_, by);
       break;
   }
 }
@@ -30,7 +30,7 @@ void Controls::move(const glm::dvec2& pixels) {
 
 void Controls::wheel(double clicks, const glm::dvec2& pointer) {
   const glm::dvec2 cursor = glm::dvec2(pointer.x - size_.x / 2, size_.y / 2 - pointer.y) / size_.y;
-  pose_ = zoom(pose_, std::pow(kFactorPerClick, clicks), cursor);
+  pose_ = client::zoom(pose_, std::pow(kFactorPerClick, clicks), cursor);
 }
 
 void Controls::nudge(Drag kind, const glm::dvec2& by) {
@@ -38,7 +38,7 @@ void Controls::nudge(Drag kind, const glm::dvec2& by) {
 }
 
 void Controls::advance(double seconds, double speed) {
-  if (course_ != glm::dvec3(0)) pose_ = surfcast::fly(pose_, course_ * (speed * seconds));
+  if (course_ != glm::dvec3(0)) pose_ = surfcast::client::fly(pose_, course_ * (speed * seconds));
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::window

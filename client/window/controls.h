@@ -8,14 +8,14 @@
 #include "client/navigation.h"
 #include "client/window/standard_views.h"
 
-namespace surfcast {
+namespace surfcast::window {
 
 /// What the hand does to a pose. Positions are pixels of the window from its upper left corner.
 class Controls {
  public:
   enum class Drag { kOrbit, kPan, kLook };
 
-  Controls(const Pose& start, const Subject& subject) : subject_(subject), home_(start), pose_(start) {}
+  Controls(const client::Pose& start, const Subject& subject) : subject_(subject), home_(start), pose_(start) {}
 
   void resize(int width, int height) { size_ = {width, height}; }
   void press(Drag drag) { drag_ = drag; }
@@ -32,18 +32,18 @@ class Controls {
   void step(double clicks) { wheel(clicks, size_ / 2.0); }
   void go_home() { pose_ = home_; }
   void fit() { pose_ = fit_pose(pose_, subject_, aspect()); }
-  void stand(StandardView view) { pose_ = standard_pose(view, pose_, subject_, aspect()); }
+  void set_standard_view(StandardView view) { pose_ = standard_pose(view, pose_, subject_, aspect()); }
 
   /// What is under the pointer shall come into the middle.
-  void double_click(const glm::dvec2& pointer) { wish_ = pointer / size_; }
+  void double_click(const glm::dvec2& pointer) { focus_request_ = pointer / size_; }
   /// Where that is, once: in parts of the picture's width and height from its upper left corner.
-  std::optional<glm::dvec2> take_focus_wish() { return std::exchange(wish_, std::nullopt); }
-  void focus_on(const glm::dvec3& point) { pose_ = focus(pose_, point); }
+  std::optional<glm::dvec2> take_focus_request() { return std::exchange(focus_request_, std::nullopt); }
+  void focus_on(const glm::dvec3& point) { pose_ = client::focus(pose_, point); }
 
   /// Lets time pass. `speed` is that of flight, world units per second.
   void advance(double seconds, double speed);
 
-  [[nodiscard]] const Pose& pose() const { return pose_; }
+  [[nodiscard]] const client::Pose& pose() const { return pose_; }
   /// The pose is about to change further.
   [[nodiscard]] bool moving() const { return drag_.has_value() || course_ != glm::dvec3(0); }
 
@@ -52,12 +52,12 @@ class Controls {
   void drag(Drag drag, const glm::dvec2& by);
 
   Subject subject_;
-  Pose home_;
-  Pose pose_;
+  client::Pose home_;
+  client::Pose pose_;
   glm::dvec2 size_{1280, 720};
   std::optional<Drag> drag_;
   glm::dvec3 course_{0};
-  std::optional<glm::dvec2> wish_;
+  std::optional<glm::dvec2> focus_request_;
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::window

@@ -6,7 +6,7 @@
 #include <png.h>
 #include <turbojpeg.h>
 
-namespace surfcast {
+namespace surfcast::window {
 namespace {
 
 constexpr int kMaxSide = 16384;  // pixels
@@ -68,4 +68,4 @@ Result<PixelImage> decode_picture(const wire::Picture& picture) {
   }
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::window

@@ -9,7 +9,7 @@
 #include "protocol/request_flags.h"
 #include "protocol/validate.h"
 
-namespace surfcast {
+namespace surfcast::window {
 namespace {
 
 constexpr int kFailed = 1;
@@ -21,30 +21,30 @@ int report(const std::string& message, int code) {
   return code;
 }
 
-Result<ViewWish> wish_of(const std::string& address, const RequestFlags& flags) {
-  const Result<ModelUrl> url = parse_model_url(address);
+Result<ViewRequest> view_request_of(const std::string& address, const protocol::RequestFlags& flags) {
+  const Result<protocol::ModelUrl> url = protocol::parse_model_url(address);
   if (!url) return fail(url.error());
-  if (Status status = flags.check_sight(); !status) return fail(status.error());
-  Result<wire::DrawPicture> picture = flags.sight(url->model);
+  if (Status status = flags.check_view_flags(); !status) return fail(status.error());
+  Result<wire::DrawPicture> picture = flags.view_request(url->model);
   if (!picture) return fail(picture.error());
   if (!picture->has_resolution()) {
-    picture->mutable_resolution()->set_width(kDefaultWidth);
-    picture->mutable_resolution()->set_height(kDefaultHeight);
+    picture->mutable_resolution()->set_width(protocol::kDefaultWidth);
+    picture->mutable_resolution()->set_height(protocol::kDefaultHeight);
   }
   if (picture->spacing() == 0) picture->set_spacing(kUsualSpacing);
-  return ViewWish{*url, std::move(*picture), 0};
+  return ViewRequest{*url, std::move(*picture), 0};
 }
 
 int run(int argc, char** argv) {
   CLI::App app{std::string("Look at a model in a window\n") + kWindowHelp, "surfcast view"};
   std::string address;
-  RequestFlags flags;
-  TimeLimits limits;
+  protocol::RequestFlags flags;
+  client::TimeLimits limits;
   double target_fps = 0;
   app.add_option("url", address, "HOST:PORT/MODEL or ws://HOST:PORT/MODEL")->required();
   app.add_option("--target-fps", target_fps, "frames per second to hold while moving (default: the server's)")
       ->check(CLI::Range(0.0, 1000.0));
-  flags.add_sight_to(app);
+  flags.add_view_flags_to(app);
   limits.add_to(app);
   try {
     app.parse(argc, argv);
@@ -52,15 +52,15 @@ int run(int argc, char** argv) {
     if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);  // --help
     return report(error.what(), kWrongCommandLine);
   }
-  Result<ViewWish> wish = wish_of(address, flags);
-  if (!wish) return report(wish.error().message, kWrongCommandLine);
-  wish->target_fps = target_fps;
-  const Status outcome = view_in_window(*wish, limits.config(-1));
+  Result<ViewRequest> request = view_request_of(address, flags);
+  if (!request) return report(request.error().message, kWrongCommandLine);
+  request->target_fps = target_fps;
+  const Status outcome = view_in_window(*request, limits.config(-1));
   return outcome ? 0 : report(outcome.error().message, kFailed);
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::window
 
 int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);
@@ -71,8 +71,8 @@ int main(int argc, char** argv) {
   sigaddset(&signals, SIGTERM);
   sigprocmask(SIG_UNBLOCK, &signals, nullptr);
   try {
-    return surfcast::run(argc, argv);
+    return surfcast::window::run(argc, argv);
   } catch (const std::exception& error) {
-    return surfcast::report(error.what(), surfcast::kFailed);
+    return surfcast::window::report(error.what(), surfcast::window::kFailed);
   }
 }

@@ -6,7 +6,7 @@
 
 #include "geometry/fit_camera.h"
 
-namespace surfcast {
+namespace surfcast::window {
 namespace {
 
 // Straight up and down have no horizon: they are left by as little as a drag leaves them.
@@ -23,23 +23,24 @@ constexpr std::array<glm::dvec3, 7> kTowardsEye{{
     {1, -1, 1},
 }};
 
-Pose fit_from(const glm::dvec3& towards_eye, const Pose& pose, const Subject& subject, double aspect) {
-  const Camera camera = fit_along(std::span(&subject.bounds, 1), towards_eye, pose.up, aspect, pose.view_angle);
+client::Pose fit_from(const glm::dvec3& towards_eye, const client::Pose& pose, const Subject& subject, double aspect) {
+  const geometry::Camera camera =
+      geometry::fit_along(std::span(&subject.bounds, 1), towards_eye, pose.up, aspect, pose.view_angle);
   return {camera.position, camera.focal_point, pose.up, pose.view_angle};
 }
 
 }  // namespace
 
-Pose fit_pose(const Pose& pose, const Subject& subject, double aspect) {
+client::Pose fit_pose(const client::Pose& pose, const Subject& subject, double aspect) {
   return fit_from(pose.position - pose.focal_point, pose, subject, aspect);
 }
 
-Pose standard_pose(StandardView view, const Pose& pose, const Subject& subject, double aspect) {
+client::Pose standard_pose(StandardView view, const client::Pose& pose, const Subject& subject, double aspect) {
   const glm::dvec3 side = kTowardsEye[static_cast<size_t>(view)];
-  Pose level = pose;
+  client::Pose level = pose;
   level.up = subject.z_up ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
   const glm::dvec3 back = subject.z_up ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, -1);
   return fit_from(glm::dvec3(side.x, 0, 0) + side.y * back + side.z * level.up, level, subject, aspect);
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::window

@@ -3,11 +3,11 @@
 #include "client/navigation.h"
 #include "geometry/box.h"
 
-namespace surfcast {
+namespace surfcast::window {
 
 /// What is looked at, as far as views of all of it ask.
 struct Subject {
-  Box bounds;
+  geometry::Box bounds;
   bool z_up = true;  ///< otherwise y points to the sky
 };
 
@@ -15,8 +15,8 @@ struct Subject {
 enum class StandardView { kFront, kRight, kBack, kLeft, kTop, kBottom, kIso };
 
 /// The nearest pose that looks the same way and sees all of the subject; `aspect` is width over height.
-Pose fit_pose(const Pose& pose, const Subject& subject, double aspect);
+client::Pose fit_pose(const client::Pose& pose, const Subject& subject, double aspect);
 /// All of the subject from one of the usual sides.
-Pose standard_pose(StandardView view, const Pose& pose, const Subject& subject, double aspect);
+client::Pose standard_pose(StandardView view, const client::Pose& pose, const Subject& subject, double aspect);
 
-}  // namespace surfcast
+}  // namespace surfcast::window

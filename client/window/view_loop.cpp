@@ -9,10 +9,10 @@
 #include "client/view.h"
 #include "client/window/window.h"
 
-namespace surfcast {
+namespace surfcast::window {
 namespace {
 
-using Clock = View::Clock;
+using Clock = client::View::Clock;
 using std::chrono::milliseconds;
 
 constexpr milliseconds kTick{8};          // between looks at what the hand does
@@ -49,26 +49,26 @@ class FrameRate {
 
 class ViewLoop {
  public:
-  ViewLoop(const ViewWish& wish, const ClientConfig& config, Window& window)
-      : wish_(wish), config_(config), window_(window) {}
+  ViewLoop(const ViewRequest& request, const client::ClientConfig& config, Window& window)
+      : request_(request), config_(config), window_(window) {}
 
   /// Looks until the window is closed; an error when the server goes away.
-  Status look();
+  Status poll_input();
   /// Lets the window live while there is no server. False when it is closed.
   bool wait_for_server(const std::string& why);
   [[nodiscard]] bool was_connected() const { return controls_.has_value(); }
 
  private:
-  Status turn(View& view);
-  Status send_update(View& view, bool moving);
-  Status focus(View& view);
-  Status receive(View& view);
-  Status paint(View& view, const View::Frame& frame);
+  Status step(client::View& view);
+  Status send_update(client::View& view, bool moving);
+  Status focus(client::View& view);
+  Status receive(client::View& view);
+  Status paint(client::View& view, const client::View::Frame& frame);
   [[nodiscard]] wire::DrawPicture picture() const;
   [[nodiscard]] bool resized() const { return sent_width_ != window_.width() || sent_height_ != window_.height(); }
 
-  const ViewWish& wish_;
-  const ClientConfig& config_;
+  const ViewRequest& request_;
+  const client::ClientConfig& config_;
   Window& window_;
   std::optional<Controls> controls_;  ///< once a frame has told the camera
   Subject subject_;
@@ -83,45 +83,45 @@ class ViewLoop {
 };
 
 wire::DrawPicture ViewLoop::picture() const {
-  wire::DrawPicture picture = wish_.picture;
+  wire::DrawPicture picture = request_.picture;
   picture.mutable_resolution()->set_width(static_cast<uint32_t>(window_.width()));
   picture.mutable_resolution()->set_height(static_cast<uint32_t>(window_.height()));
-  if (controls_) *picture.mutable_camera() = to_camera(controls_->pose());
+  if (controls_) *picture.mutable_camera() = client::to_camera(controls_->pose());
   return picture;
 }
 
-Status ViewLoop::look() {
-  Result<ServerConnection> connection = ServerConnection::open(wish_.url.server, config_);
+Status ViewLoop::poll_input() {
+  Result<client::ServerConnection> connection = client::ServerConnection::open(request_.url.server, config_);
   if (!connection) return fail(connection.error());
   wire::Request describe;
-  describe.mutable_describe_model()->set_model(wish_.url.model);
+  describe.mutable_describe_model()->set_model(request_.url.model);
   const Result<wire::Answer> answer = connection->ask(std::move(describe));
   if (!answer) return fail(answer.error());
   subject_ = subject_of(answer->model_description());
   sent_width_ = window_.width();
   sent_height_ = window_.height();
-  Result<View> view = View::open(*connection, picture(), wish_.target_fps);
+  Result<client::View> view = client::View::open(*connection, picture(), request_.target_fps);
   if (!view) return fail(view.error());
   while (open_) {
-    if (Status status = turn(*view); !status) return status;
+    if (Status status = step(*view); !status) return status;
   }
   return {};
 }
 
-Status ViewLoop::turn(View& view) {
+Status ViewLoop::step(client::View& view) {
   const Clock::time_point now = Clock::now();
   const std::chrono::duration<double> passed = now - std::exchange(last_turn_, now);
   if (controls_) {
     open_ = window_.take_events(*controls_);
     controls_->advance(passed.count(), kFlightPart * subject_.bounds.diagonal());
     const bool moving = controls_->moving();
-    const bool changed = to_camera(controls_->pose()).SerializeAsString() != sent_camera_.SerializeAsString();
+    const bool changed = client::to_camera(controls_->pose()).SerializeAsString() != sent_camera_.SerializeAsString();
     const bool due = now - last_update_ >= kUpdateEvery;
     if (due && (changed || moving != sent_moving_ || resized())) {
       if (Status status = send_update(view, moving); !status) return status;
     }
   } else {
-    Controls nobody{Pose{}, subject_};
+    Controls nobody{client::Pose{}, subject_};
     open_ = window_.take_events(nobody);
   }
   if (Status status = focus(view); !status) return status;
@@ -129,19 +129,19 @@ Status ViewLoop::turn(View& view) {
 }
 
 /// Asks what was clicked, and goes there once that is known.
-Status ViewLoop::focus(View& view) {
+Status ViewLoop::focus(client::View& view) {
   if (!controls_) return {};
   if (const auto picked = view.take_picked(); picked && picked->hit()) {
     controls_->focus_on(vector_of(picked->position()));
   }
-  const std::optional<glm::dvec2> wish = controls_->take_focus_wish();
-  if (!wish) return {};
+  const std::optional<glm::dvec2> request = controls_->take_focus_request();
+  if (!request) return {};
   const glm::dvec2 size(window_.width(), window_.height());
-  const glm::dvec2 pixel = glm::clamp(*wish * size, glm::dvec2(0), size - 1.0);
+  const glm::dvec2 pixel = glm::clamp(*request * size, glm::dvec2(0), size - 1.0);
   return view.pick(picture(), static_cast<uint32_t>(pixel.x), static_cast<uint32_t>(pixel.y));
 }
 
-Status ViewLoop::send_update(View& view, bool moving) {
+Status ViewLoop::send_update(client::View& view, bool moving) {
   const wire::DrawPicture wanted = picture();
   sent_camera_ = wanted.camera();
   sent_width_ = static_cast<int>(wanted.resolution().width());
@@ -152,34 +152,34 @@ Status ViewLoop::send_update(View& view, bool moving) {
   return update ? Status() : fail(update.error());
 }
 
-Status ViewLoop::receive(View& view) {
-  const Result<std::optional<View::Frame>> frame = view.next_until(Clock::now() + kTick);
+Status ViewLoop::receive(client::View& view) {
+  const Result<std::optional<client::View::Frame>> frame = view.next_until(Clock::now() + kTick);
   if (!frame) return fail(frame.error());
   return *frame ? paint(view, **frame) : Status();
 }
 
-Status ViewLoop::paint(View& view, const View::Frame& frame) {
+Status ViewLoop::paint(client::View& view, const client::View::Frame& frame) {
   const wire::Picture& picture = frame.frame.picture();
   const Result<PixelImage> image = decode_picture(picture);
   if (!image) return fail(image.error());
   if (Status status = window_.show(*image); !status) return status;
   if (Status status = view.painted(frame); !status) return status;
   if (!controls_) {
-    controls_.emplace(to_pose(picture.camera()), subject_);
-    sent_camera_ = to_camera(controls_->pose());
+    controls_.emplace(client::to_pose(picture.camera()), subject_);
+    sent_camera_ = client::to_camera(controls_->pose());
   }
   rate_.count(frame.arrived);
   const std::string state = frame.frame.moving()  ? std::to_string(rate_.last()) + " frames/s"
                             : picture.converged() ? "sharp"
                                                   : "getting sharper";
-  window_.set_title(wish_.url.model + " - " + state + ", " + std::to_string(picture.surfels_drawn()) + " surfels, " +
+  window_.set_title(request_.url.model + " - " + state + ", " + std::to_string(picture.surfels_drawn()) + " surfels, " +
                     std::to_string(image->width) + " x " + std::to_string(image->height));
   return {};
 }
 
 bool ViewLoop::wait_for_server(const std::string& why) {
-  window_.set_title(wish_.url.model + " - " + why + "; trying again");
-  Controls nobody{Pose{}, subject_};
+  window_.set_title(request_.url.model + " - " + why + "; trying again");
+  Controls nobody{client::Pose{}, subject_};
   const Clock::time_point until = Clock::now() + kRetryEvery;
   while (open_ && Clock::now() < until) {
     open_ = window_.take_events(controls_ ? *controls_ : nobody);
@@ -194,16 +194,17 @@ bool worth_trying_again(const Error& error) {
 
 }  // namespace
 
-Status view_in_window(const ViewWish& wish, const ClientConfig& config) {
-  const wire::Resolution& size = wish.picture.resolution();
-  Result<Window> window = Window::open(wish.url.model, static_cast<int>(size.width()), static_cast<int>(size.height()));
+Status view_in_window(const ViewRequest& request, const client::ClientConfig& config) {
+  const wire::Resolution& size = request.picture.resolution();
+  Result<Window> window =
+      Window::open(request.url.model, static_cast<int>(size.width()), static_cast<int>(size.height()));
   if (!window) return fail(window.error());
-  ViewLoop loop(wish, config, *window);
+  ViewLoop loop(request, config, *window);
   for (;;) {
-    Status status = loop.look();
+    Status status = loop.poll_input();
     if (status || !loop.was_connected() || !worth_trying_again(status.error())) return status;
     if (!loop.wait_for_server(status.error().message)) return {};
   }
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::window

@@ -4,7 +4,7 @@
 
 #include <SDL.h>
 
-namespace surfcast {
+namespace surfcast::window {
 namespace {
 
 template <typename Handle, void (*destroy)(Handle*)>
@@ -68,7 +68,7 @@ void press(const SDL_MouseButtonEvent& event, Controls& controls) {
 }
 
 void press_key(SDL_Keycode key, Controls& controls) {
-  if (key >= SDLK_1 && key <= SDLK_7) return controls.stand(static_cast<StandardView>(key - SDLK_1));
+  if (key >= SDLK_1 && key <= SDLK_7) return controls.set_standard_view(static_cast<StandardView>(key - SDLK_1));
   if (const auto by = arrow(key)) {
     return controls.nudge(shift_held() ? Controls::Drag::kPan : Controls::Drag::kOrbit, *by);
   }
@@ -211,4 +211,4 @@ int Window::height() const {
   return height;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::window

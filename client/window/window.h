@@ -7,7 +7,7 @@
 #include "client/window/controls.h"
 #include "client/window/decode_picture.h"
 
-namespace surfcast {
+namespace surfcast::window {
 
 /// What the hand can do, for a person: lines.
 constexpr const char* kWindowHelp =
@@ -48,4 +48,4 @@ class Window {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::window

@@ -53,14 +53,14 @@ MappedFile::~MappedFile() {
   if (data_ != nullptr) ::munmap(data_, size_);
 }
 
-void MappedFile::expect(size_t offset, size_t size) const {
+void MappedFile::prefetch(size_t offset, size_t size) const {
   static const auto kPage = static_cast<size_t>(::sysconf(_SC_PAGESIZE));
   SURFCAST_EXPECTS(offset <= size_ && size <= size_ - offset);
   const size_t first = offset / kPage * kPage;
   if (size > 0) ::madvise(static_cast<std::byte*>(data_) + first, offset + size - first, MADV_WILLNEED);
 }
 
-void MappedFile::forget() const {
+void MappedFile::release_pages() const {
   if (data_ != nullptr) ::madvise(data_, size_, MADV_DONTNEED);
 }
 

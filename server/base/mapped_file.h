@@ -22,11 +22,11 @@ class MappedFile {
   [[nodiscard]] std::span<const std::byte> bytes() const { return {static_cast<const std::byte*>(data_), size_}; }
 
   /// Says that a part of the file is about to be looked at, so that reading it begins. Returns at once.
-  void expect(size_t offset, size_t size) const;
+  void prefetch(size_t offset, size_t size) const;
 
   /// Gives the memory that holds pages of the file back; they are read again when they are looked at. Keeps what a
   /// large file takes bounded. Any thread may call it, also while others read.
-  void forget() const;
+  void release_pages() const;
 
  private:
   MappedFile(void* data, size_t size) : data_(data), size_(size) {}

@@ -5,64 +5,64 @@
 #include "scan/clean_points.h"
 #include "scan/merge_schemas.h"
 
-namespace surfcast {
+namespace surfcast::builder {
 namespace {
 
-std::vector<ScanSchema> schemas_of(const std::vector<ScanStream>& streams) {
-  std::vector<ScanSchema> schemas;
+std::vector<scan::ScanSchema> schemas_of(const std::vector<scan::ScanStream>& streams) {
+  std::vector<scan::ScanSchema> schemas;
   schemas.reserve(streams.size());
-  for (const ScanStream& stream : streams) schemas.push_back(stream.schema());
+  for (const scan::ScanStream& stream : streams) schemas.push_back(stream.schema());
   return schemas;
 }
 
 }  // namespace
 
 Result<BuildInputs> BuildInputs::open(std::span<const std::filesystem::path> paths, std::optional<bool> z_up,
-                                      uint64_t most_bytes, const std::function<void(double)>& progress) {
+                                      uint64_t max_bytes, const std::function<void(double)>& progress) {
   BuildInputs inputs;
   for (const std::filesystem::path& path : paths) {
     progress(static_cast<double>(inputs.streams_.size()) / static_cast<double>(paths.size()));
-    Result<ScanStream> stream = ScanStream::open(path, {most_bytes - inputs.held_bytes()});
+    Result<scan::ScanStream> stream = scan::ScanStream::open(path, {max_bytes - inputs.held_bytes()});
     if (!stream) return fail(std::move(stream.error()));
     for (size_t piece = 0; piece < stream->pieces(); ++piece) {
       inputs.pieces_.push_back({inputs.streams_.size(), piece});
     }
     inputs.streams_.push_back(std::move(*stream));
   }
-  inputs.schema_ = merge_schemas(schemas_of(inputs.streams_));
+  inputs.schema_ = scan::merge_schemas(schemas_of(inputs.streams_));
   inputs.schema_.z_up = z_up.value_or(inputs.schema_.z_up);
   return inputs;
 }
 
 uint64_t BuildInputs::size() const {
   uint64_t size = 0;
-  for (const ScanStream& stream : streams_) size += stream.size();
+  for (const scan::ScanStream& stream : streams_) size += stream.size();
   return size;
 }
 
 uint64_t BuildInputs::held_bytes() const {
   uint64_t bytes = 0;
-  for (const ScanStream& stream : streams_) bytes += stream.held_bytes();
+  for (const scan::ScanStream& stream : streams_) bytes += stream.held_bytes();
   return bytes;
 }
 
-Box BuildInputs::bounds() const {
-  Box box;
-  for (const ScanStream& stream : streams_) box.include(stream.bounds());
+geometry::Box BuildInputs::bounds() const {
+  geometry::Box box;
+  for (const scan::ScanStream& stream : streams_) box.include(stream.bounds());
   return box;
 }
 
 std::vector<std::string> BuildInputs::notes() const {
-  return describe_fillings(schemas_of(streams_), schema_);
+  return scan::describe_fillings(schemas_of(streams_), schema_);
 }
 
-Result<InputPiece> BuildInputs::read(size_t piece, SurfelReport& report) const {
+Result<InputPiece> BuildInputs::read(size_t piece, scan::SurfelReport& report) const {
   const auto& [source, number] = pieces_[piece];
-  Result<ScanPoints> points = streams_[source].read(number);
+  Result<scan::ScanPoints> points = streams_[source].read(number);
   if (!points) return fail(std::move(points.error()));
   report.points_read += points->size();
-  drop_unusable_points(*points, report);
-  return InputPiece{source, conform(std::move(*points), schema_)};
+  scan::drop_unusable_points(*points, report);
+  return InputPiece{source, scan::conform(std::move(*points), schema_)};
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::builder

@@ -19,7 +19,7 @@
 #include "model/write_blocks.h"
 #include "surfel/normalization_weights.h"
 
-namespace surfcast {
+namespace surfcast::builder {
 namespace {
 
 /// What would spoil the target is found now, not after a long build.
@@ -40,7 +40,7 @@ Status check_target(const std::filesystem::path& target, std::span<const std::fi
   return {};
 }
 
-Status check_bounds(const Box& bounds, const std::filesystem::path& target) {
+Status check_bounds(const geometry::Box& bounds, const std::filesystem::path& target) {
   // Far beyond any scan, and small enough that box sizes and squares stay finite.
   constexpr double kLimit = 1e150;
   if (bounds.empty()) {
@@ -52,27 +52,27 @@ Status check_bounds(const Box& bounds, const std::filesystem::path& target) {
 }
 
 /// A cloud without surfels that has all that the model's clouds have in common.
-SurfelCloud common_cloud(const BuildInputs& inputs, bool oriented) {
-  SurfelCloud cloud = empty_cloud(inputs.schema(), 0);
+surfel::SurfelCloud common_cloud(const BuildInputs& inputs, bool oriented) {
+  surfel::SurfelCloud cloud = empty_cloud(inputs.schema(), 0);
   cloud.oriented = oriented;
-  for (const ScanStream& stream : inputs.streams()) {
+  for (const scan::ScanStream& stream : inputs.streams()) {
     cloud.sources.push_back({stream.schema().name, 0, 0, stream.schema().grid});
   }
   return cloud;
 }
 
 /// The cell of a part; several cells are some of the eight of their parent.
-Region region_of(const Part& part, const RootCube& root, size_t own) {
+ldc::Region region_of(const Part& part, const geometry::RootCube& root, size_t own) {
   const bool whole = part.cells.size() == 1;
   return {root, whole ? part.cells[0] : part.cells[0].parent(), whole, own};
 }
 
 /// Numbers of blocks begin with 0 in every part; in the file they go on.
-void renumber(uint32_t first, Subtree& subtree) {
-  for (TreeBlock& block : subtree.blocks) {
+void renumber(uint32_t first, ldc::Subtree& subtree) {
+  for (ldc::TreeBlock& block : subtree.blocks) {
     for (uint32_t& child : block.children) child += first;
   }
-  for (FrontCell& cell : subtree.front) {
+  for (ldc::FrontCell& cell : subtree.front) {
     for (uint32_t& block : cell.blocks) block += first;
   }
 }
@@ -80,7 +80,8 @@ void renumber(uint32_t first, Subtree& subtree) {
 /// Weighs the surfels of all parts, makes the blocks and writes them.
 class ModelPass {
  public:
-  ModelPass(BuildParts& parts, ModelWriter& writer, const BuildOptions& options) : parts_(parts), writer_(writer) {
+  ModelPass(BuildParts& parts, model::ModelWriter& writer, const BuildOptions& options)
+      : parts_(parts), writer_(writer) {
     partition_.precision = options.precision;
   }
 
@@ -97,27 +98,27 @@ class ModelPass {
                          });
   }
 
-  Status write_levels_above(const SurfelCloud& common) {
+  Status write_levels_above(const surfel::SurfelCloud& common) {
     const auto first = static_cast<uint32_t>(blocks_);
-    const std::vector<TreeBlock> blocks =
-        build_levels_above(std::move(front_), parts_.root(), coarse_attributes(common), first);
-    return write_blocks(writer_, common, blocks, {});
+    const std::vector<ldc::TreeBlock> blocks =
+        ldc::build_levels_above(std::move(front_), parts_.root(), ldc::coarse_attributes(common), first);
+    return model::write_blocks(writer_, common, blocks, {});
   }
 
  private:
   struct Work {
-    SurfelCloud cloud;
-    Subtree subtree;
+    surfel::SurfelCloud cloud;
+    ldc::Subtree subtree;
   };
 
   Result<Work> make_work(size_t part) {
     Result<BuildParts::Finished> surfels = parts_.take(part);
     if (!surfels) return fail(std::move(surfels.error()));
     Work work{std::move(surfels->cloud), {}};
-    work.cloud.weights = normalization_weights(work.cloud);
+    work.cloud.weights = surfel::normalization_weights(work.cloud);
     if (surfels->own > 0) {
-      const Region region = region_of(parts_.plan(part), parts_.root(), surfels->own);
-      work.subtree = build_subtree(work.cloud, region, partition_, 0);
+      const ldc::Region region = region_of(parts_.plan(part), parts_.root(), surfels->own);
+      work.subtree = ldc::build_subtree(work.cloud, region, partition_, 0);
     }
     return work;
   }
@@ -125,21 +126,21 @@ class ModelPass {
   Status write(Work& work) {
     renumber(static_cast<uint32_t>(blocks_), work.subtree);
     blocks_ += work.subtree.blocks.size();
-    for (FrontCell& cell : work.subtree.front) front_.push_back(std::move(cell));
-    return write_blocks(writer_, work.cloud, work.subtree.blocks, {});
+    for (ldc::FrontCell& cell : work.subtree.front) front_.push_back(std::move(cell));
+    return model::write_blocks(writer_, work.cloud, work.subtree.blocks, {});
   }
 
   BuildParts& parts_;
-  ModelWriter& writer_;
-  PartitionOptions partition_;
+  model::ModelWriter& writer_;
+  ldc::PartitionOptions partition_;
   size_t blocks_ = 0;
-  Front front_;
+  ldc::Front front_;
 };
 
-Result<WriteReport> write(const BuildInputs& inputs, BuildParts& parts, const MemoryPlan& memory,
-                          const std::filesystem::path& target, const BuildOptions& options, StageClock& clock) {
-  const SurfelCloud common = common_cloud(inputs, parts.signs().oriented);
-  Result<ModelWriter> writer = ModelWriter::create(target, schema_of(common));
+Result<model::WriteReport> write(const BuildInputs& inputs, BuildParts& parts, const MemoryPlan& memory,
+                                 const std::filesystem::path& target, const BuildOptions& options, StageClock& clock) {
+  const surfel::SurfelCloud common = common_cloud(inputs, parts.signs().oriented);
+  Result<model::ModelWriter> writer = model::ModelWriter::create(target, model::schema_of(common));
   if (!writer) return fail(std::move(writer.error()));
   ModelPass pass(parts, *writer, options);
   if (Status status = pass.write_parts(memory, clock); !status) return fail(std::move(status.error()));
@@ -175,7 +176,7 @@ Result<BuildReport> build_model(std::span<const std::filesystem::path> inputs, c
     report.parts = parts->size();
     Status made = parts->make_surfels(*memory, clock, report.scan);
     if (!made) return fail(std::move(made.error()));
-    const Result<WriteReport> written = write(*opened, *parts, *memory, target, options, clock);
+    const Result<model::WriteReport> written = write(*opened, *parts, *memory, target, options, clock);
     if (!written) return fail(written.error());
     report.surfels = written->surfels;
     report.blocks = written->blocks;
@@ -186,4 +187,4 @@ Result<BuildReport> build_model(std::span<const std::filesystem::path> inputs, c
   return report;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::builder

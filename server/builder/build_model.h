@@ -12,7 +12,7 @@
 #include "base/result.h"
 #include "scan/surfel_report.h"
 
-namespace surfcast {
+namespace surfcast::builder {
 
 struct BuildOptions {
   std::optional<double> precision;      ///< largest position error, world units; none: 1/256 of each radius
@@ -23,7 +23,7 @@ struct BuildOptions {
 
 /// What a build did and what it took.
 struct BuildReport {
-  SurfelReport scan;
+  scan::SurfelReport scan;
   uint64_t surfels = 0;
   uint64_t blocks = 0;
   uint64_t bytes = 0;                                  ///< of the model file
@@ -52,4 +52,4 @@ using BuildProgress = std::function<void(const BuildStep&)>;
 Result<BuildReport> build_model(std::span<const std::filesystem::path> inputs, const std::filesystem::path& target,
                                 const BuildOptions& options, const BuildProgress& progress);
 
-}  // namespace surfcast
+}  // namespace surfcast::builder

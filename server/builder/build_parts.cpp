@@ -15,21 +15,21 @@
 #include "builder/ordered_work.h"
 #include "scan/clean_points.h"
 
-namespace surfcast {
+namespace surfcast::builder {
 namespace {
 
 size_t threads() {
   return static_cast<size_t>(oneapi::tbb::info::default_concurrency());
 }
 
-std::vector<uint64_t> codes_of(const ScanPoints& points, const RootCube& root) {
+std::vector<uint64_t> codes_of(const scan::ScanPoints& points, const geometry::RootCube& root) {
   std::vector<uint64_t> codes(points.size());
   std::transform(points.positions.begin(), points.positions.end(), codes.begin(),
-                 [&root](const glm::dvec3& p) { return morton_code(root, p); });
+                 [&root](const glm::dvec3& p) { return geometry::morton_code(root, p); });
   return codes;
 }
 
-Result<std::vector<Part>> find_plan(const BuildInputs& inputs, const RootCube& root, const MemoryPlan& memory,
+Result<std::vector<Part>> find_plan(const BuildInputs& inputs, const geometry::RootCube& root, const MemoryPlan& memory,
                                     StageClock& clock) {
   if (memory.fits_whole(inputs.size())) {
     const CountedCell all{0, 0, inputs.size()};
@@ -38,7 +38,7 @@ Result<std::vector<Part>> find_plan(const BuildInputs& inputs, const RootCube& r
   const CodePass pass = [&](const std::function<void(std::span<const uint64_t>)>& count) {
     clock.begin("counting", inputs.pieces());
     return work_in_order(inputs.pieces(), threads(), [&](size_t i) -> Result<std::function<Status()>> {
-      SurfelReport unused;
+      scan::SurfelReport unused;
       const Result<InputPiece> piece = inputs.read(i, unused);
       if (!piece) return fail(piece.error());
       count(codes_of(piece->points, root));
@@ -51,7 +51,8 @@ Result<std::vector<Part>> find_plan(const BuildInputs& inputs, const RootCube& r
   return plan_parts(*cells, memory.part_points);
 }
 
-std::vector<PartRows> sort_out(const ScanPoints& points, const PartFinder& finder, const RootCube& root) {
+std::vector<PartRows> sort_out(const scan::ScanPoints& points, const PartFinder& finder,
+                               const geometry::RootCube& root) {
   std::map<std::pair<uint32_t, bool>, std::vector<uint32_t>> rows;
   const std::vector<uint64_t> codes = codes_of(points, root);
   for (uint32_t i = 0; i < points.size(); ++i) {
@@ -68,19 +69,19 @@ std::vector<PartRows> sort_out(const ScanPoints& points, const PartFinder& finde
 }
 
 /// Keeps the surfels of a part that are no duplicates. Returns for each of them before whether it was kept.
-std::vector<uint8_t> drop_duplicates(SurfelCloud& cloud, size_t& own, SurfelReport& report) {
-  const std::vector<bool> duplicate = find_duplicates(cloud);
+std::vector<uint8_t> drop_duplicates(surfel::SurfelCloud& cloud, size_t& own, scan::SurfelReport& report) {
+  const std::vector<bool> duplicate = scan::find_duplicates(cloud);
   const auto dropped = std::count(duplicate.begin(), duplicate.begin() + static_cast<std::ptrdiff_t>(own), true);
   report.duplicates += static_cast<uint64_t>(dropped);
   own -= static_cast<size_t>(dropped);
   std::vector<bool> keep(duplicate.size());
   std::transform(duplicate.begin(), duplicate.end(), keep.begin(), std::logical_not<>());
-  keep_surfels(cloud, keep);
+  scan::keep_surfels(cloud, keep);
   return {keep.begin(), keep.end()};
 }
 
 /// Findings of the surfels that were kept, for all points of the part.
-PartFindings spread_findings(const PartSurfels& surfels, std::vector<uint8_t> kept) {
+PartFindings spread_findings(const scan::PartSurfels& surfels, std::vector<uint8_t> kept) {
   PartFindings findings;
   findings.normals.resize(kept.size());
   findings.radii.resize(kept.size());
@@ -99,18 +100,19 @@ PartFindings spread_findings(const PartSurfels& surfels, std::vector<uint8_t> ke
 
 }  // namespace
 
-BuildParts::BuildParts(const BuildInputs& inputs, std::vector<Part> plan, const RootCube& root)
+BuildParts::BuildParts(const BuildInputs& inputs, std::vector<Part> plan, const geometry::RootCube& root)
     : bounds_(inputs.bounds()), root_(root), plan_(std::move(plan)), finder_(plan_, root) {
   scene_ = {bounds_, inputs.schema().z_up, inputs.schema().normals};
-  for (const ScanStream& stream : inputs.streams()) {
+  for (const scan::ScanStream& stream : inputs.streams()) {
     sensors_.push_back(stream.schema().sensor);
     names_.push_back({stream.schema().name, stream.schema().grid});
   }
 }
 
 Result<BuildParts> BuildParts::gather(const BuildInputs& inputs, const MemoryPlan& memory,
-                                      const std::filesystem::path& target, StageClock& clock, SurfelReport& report) {
-  const RootCube root = root_cube(inputs.bounds());
+                                      const std::filesystem::path& target, StageClock& clock,
+                                      scan::SurfelReport& report) {
+  const geometry::RootCube root = geometry::root_cube(inputs.bounds());
   Result<std::vector<Part>> parts = find_plan(inputs, root, memory, clock);
   if (!parts) return fail(std::move(parts.error()));
   BuildParts build(inputs, std::move(*parts), root);
@@ -121,7 +123,7 @@ Result<BuildParts> BuildParts::gather(const BuildInputs& inputs, const MemoryPla
   return build;
 }
 
-Status BuildParts::collect(const BuildInputs& inputs, StageClock& clock, SurfelReport& report) {
+Status BuildParts::collect(const BuildInputs& inputs, StageClock& clock, scan::SurfelReport& report) {
   PartPoints points;
   points.cloud = empty_cloud(inputs.schema(), inputs.size());
   for (size_t i = 0; i < names_.size(); ++i) {
@@ -129,7 +131,7 @@ Status BuildParts::collect(const BuildInputs& inputs, StageClock& clock, SurfelR
     points.inputs.push_back(i);
   }
   Status status = work_in_order(inputs.pieces(), threads(), [&](size_t i) -> Result<std::function<Status()>> {
-    SurfelReport own;
+    scan::SurfelReport own;
     Result<InputPiece> piece = inputs.read(i, own);
     if (!piece) return fail(std::move(piece.error()));
     return [&, own, shared = std::make_shared<InputPiece>(std::move(*piece))] {
@@ -143,19 +145,19 @@ Status BuildParts::collect(const BuildInputs& inputs, StageClock& clock, SurfelR
   });
   if (!status) return status;
   size_t first = 0;
-  for (SourceRange& source : points.cloud.sources) source.first = std::exchange(first, first + source.count);
+  for (surfel::SourceRange& source : points.cloud.sources) source.first = std::exchange(first, first + source.count);
   for_each_column(points.cloud, [&](auto& values) { values.resize(points.own); });
   whole_ = std::move(points);
   return {};
 }
 
 Status BuildParts::spool(const BuildInputs& inputs, const MemoryPlan& memory, const std::filesystem::path& target,
-                         StageClock& clock, SurfelReport& report) {
+                         StageClock& clock, scan::SurfelReport& report) {
   Result<SpoolFile> file = SpoolFile::create(target);
   if (!file) return fail(std::move(file.error()));
   store_.emplace(std::move(*file), inputs.schema(), names_, size());
   Status status = work_in_order(inputs.pieces(), threads() + 1, [&](size_t i) -> Result<std::function<Status()>> {
-    SurfelReport own;
+    scan::SurfelReport own;
     const Result<InputPiece> piece = inputs.read(i, own);
     if (!piece) return fail(piece.error());
     const std::vector<PartRows> parts = sort_out(piece->points, finder_, root_);
@@ -181,17 +183,17 @@ BuildParts::Made BuildParts::make(PartPoints points, size_t part) const {
   Made made;
   made.own = points.own;
   made.kept = drop_duplicates(points.cloud, made.own, made.report);
-  PartFrame frame;
+  scan::PartFrame frame;
   frame.bounds = bounds_;
   frame.place = [this, part](const glm::dvec3& p) { return finder_.place(static_cast<uint32_t>(part), p); };
   for (const size_t input : points.inputs) frame.sensors.push_back(sensors_[input]);
-  made.surfels = surfcast::make_surfels(std::move(points.cloud), frame, made.signs, made.report);
+  made.surfels = surfcast::scan::make_surfels(std::move(points.cloud), frame, made.signs, made.report);
   return made;
 }
 
-Status BuildParts::make_surfels(const MemoryPlan& memory, StageClock& clock, SurfelReport& report) {
+Status BuildParts::make_surfels(const MemoryPlan& memory, StageClock& clock, scan::SurfelReport& report) {
   clock.begin("making surfels", size());
-  std::vector<PartSigns> signs;
+  std::vector<scan::PartSigns> signs;
   Status status = work_in_order(size(), parts_at_once(memory), [&](size_t part) -> Result<std::function<Status()>> {
     Result<PartPoints> points = store_ ? store_->load(part) : Result<PartPoints>(std::move(*whole_));
     if (!points) return fail(std::move(points.error()));
@@ -207,14 +209,14 @@ Status BuildParts::make_surfels(const MemoryPlan& memory, StageClock& clock, Sur
     };
   });
   if (!status) return status;
-  signs_ = settle_signs(signs, scene_);
+  signs_ = scan::resolve_signs(signs, scene_);
   report.oriented = signs_.oriented;
   return {};
 }
 
 Result<BuildParts::Finished> BuildParts::take(size_t part) {
   if (!store_) {
-    settle_normals(signs_, part, surfels_);
+    scan::apply_signs(signs_, part, surfels_);
     return Finished{std::move(surfels_.cloud), own_};
   }
   Result<PartPoints> points = store_->load(part);
@@ -222,14 +224,14 @@ Result<BuildParts::Finished> BuildParts::take(size_t part) {
   Result<PartFindings> findings = store_->load_findings(part);
   if (!findings) return fail(std::move(findings.error()));
   store_->release(part);
-  PartSurfels surfels{std::move(points->cloud), std::move(findings->trees)};
+  scan::PartSurfels surfels{std::move(points->cloud), std::move(findings->trees)};
   surfels.cloud.normals = std::move(findings->normals);
   surfels.cloud.radii = std::move(findings->radii);
-  settle_normals(signs_, part, surfels);
+  scan::apply_signs(signs_, part, surfels);
   const auto end_own = findings->kept.begin() + static_cast<std::ptrdiff_t>(points->own);
   const auto own = static_cast<size_t>(std::count(findings->kept.begin(), end_own, uint8_t{1}));
-  keep_surfels(surfels.cloud, {findings->kept.begin(), findings->kept.end()});
+  scan::keep_surfels(surfels.cloud, {findings->kept.begin(), findings->kept.end()});
   return Finished{std::move(surfels.cloud), own};
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::builder

@@ -15,59 +15,59 @@
 #include "geometry/morton.h"
 #include "scan/make_surfels.h"
 
-namespace surfcast {
+namespace surfcast::builder {
 
 /// The points of a build, cut into parts that fit into memory. One part stays there; several wait on disk.
 class BuildParts {
  public:
   /// Counts the points in octree cells, plans the parts, and sorts the points into them.
   static Result<BuildParts> gather(const BuildInputs& inputs, const MemoryPlan& memory,
-                                   const std::filesystem::path& target, StageClock& clock, SurfelReport& report);
+                                   const std::filesystem::path& target, StageClock& clock, scan::SurfelReport& report);
 
   [[nodiscard]] size_t size() const { return plan_.size(); }
   [[nodiscard]] const Part& plan(size_t part) const { return plan_[part]; }
-  [[nodiscard]] const RootCube& root() const { return root_; }
+  [[nodiscard]] const geometry::RootCube& root() const { return root_; }
   [[nodiscard]] size_t parts_at_once(const MemoryPlan& memory) const;
 
   /// First half: makes surfels of every part and settles the signs of all normals together.
-  Status make_surfels(const MemoryPlan& memory, StageClock& clock, SurfelReport& report);
+  Status make_surfels(const MemoryPlan& memory, StageClock& clock, scan::SurfelReport& report);
   /// Second half: the surfels of a part with their final normals, its own first. Each part is taken once, from any
   /// thread.
   struct Finished {
-    SurfelCloud cloud;
+    surfel::SurfelCloud cloud;
     size_t own = 0;
   };
   Result<Finished> take(size_t part);
 
-  [[nodiscard]] const SettledSigns& signs() const { return signs_; }
+  [[nodiscard]] const scan::ResolvedSigns& signs() const { return signs_; }
 
  private:
   struct Made {
-    PartSurfels surfels;
+    scan::PartSurfels surfels;
     size_t own = 0;
     std::vector<uint8_t> kept;
-    PartSigns signs;
-    SurfelReport report;
+    scan::PartSigns signs;
+    scan::SurfelReport report;
   };
 
-  BuildParts(const BuildInputs& inputs, std::vector<Part> plan, const RootCube& root);
+  BuildParts(const BuildInputs& inputs, std::vector<Part> plan, const geometry::RootCube& root);
   Status spool(const BuildInputs& inputs, const MemoryPlan& memory, const std::filesystem::path& target,
-               StageClock& clock, SurfelReport& report);
-  Status collect(const BuildInputs& inputs, StageClock& clock, SurfelReport& report);
+               StageClock& clock, scan::SurfelReport& report);
+  Status collect(const BuildInputs& inputs, StageClock& clock, scan::SurfelReport& report);
   [[nodiscard]] Made make(PartPoints points, size_t part) const;
 
-  Scene scene_;
-  Box bounds_;
-  RootCube root_;
+  scan::Scene scene_;
+  geometry::Box bounds_;
+  geometry::RootCube root_;
   std::vector<std::optional<glm::dvec3>> sensors_;  ///< of each input
   std::vector<InputName> names_;
   std::vector<Part> plan_;
   PartFinder finder_;
   std::optional<PartStore> store_;   ///< of several parts
   std::optional<PartPoints> whole_;  ///< the only part, before its surfels are made
-  PartSurfels surfels_;              ///< the only part, after that
+  scan::PartSurfels surfels_;        ///< the only part, after that
   size_t own_ = 0;
-  SettledSigns signs_;
+  scan::ResolvedSigns signs_;
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::builder

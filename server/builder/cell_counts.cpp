@@ -4,12 +4,12 @@
 #include <atomic>
 #include <utility>
 
-namespace surfcast {
+namespace surfcast::builder {
 namespace {
 
 /// 2^21 cells: enough for most scans in one pass, and 8 MiB.
 constexpr int kFirstDepth = 7;
-/// Levels that a crowded cell is looked into in one more pass.
+/// Levels that an overfull cell is looked into in one more pass.
 constexpr int kMoreDepth = 4;
 
 /// Counts the points of some cells of one depth in cells `levels` deeper.
@@ -22,7 +22,7 @@ class CountingGrid {
 
   void count(std::span<const uint64_t> codes) {
     for (const uint64_t code : codes) {
-      const uint64_t cell = code >> (3 * (kMortonDepth - depth_));
+      const uint64_t cell = code >> (3 * (geometry::kMortonDepth - depth_));
       const uint64_t prefix = cell >> (3 * levels_);
       const auto found = std::lower_bound(prefixes_.begin(), prefixes_.end(), prefix);
       if (found == prefixes_.end() || *found != prefix) continue;
@@ -38,7 +38,7 @@ class CountingGrid {
       if (counts_[i] == 0) continue;
       const uint64_t inside = i & ((uint64_t{1} << (3 * levels_)) - 1);
       const uint64_t cell = prefixes_[i >> (3 * levels_)] << (3 * levels_) | inside;
-      cells.push_back({cell << (3 * (kMortonDepth - depth_)), depth_, counts_[i]});
+      cells.push_back({cell << (3 * (geometry::kMortonDepth - depth_)), depth_, counts_[i]});
     }
     return cells;
   }
@@ -50,25 +50,25 @@ class CountingGrid {
   std::vector<std::atomic<uint32_t>> counts_;
 };
 
-bool is_crowded(const CountedCell& cell, uint64_t limit) {
-  return cell.count > limit && cell.depth < kMortonDepth;
+bool is_overfull(const CountedCell& cell, uint64_t limit) {
+  return cell.count > limit && cell.depth < geometry::kMortonDepth;
 }
 
 }  // namespace
 
 Result<std::vector<CountedCell>> count_cells(const CodePass& pass, uint64_t limit) {
   std::vector<CountedCell> done;
-  std::vector<uint64_t> crowded = {0};
-  for (int depth = 0; !crowded.empty();) {
-    const int levels = std::min(depth == 0 ? kFirstDepth : kMoreDepth, kMortonDepth - depth);
-    CountingGrid grid(std::exchange(crowded, {}), depth, levels);
+  std::vector<uint64_t> overfull = {0};
+  for (int depth = 0; !overfull.empty();) {
+    const int levels = std::min(depth == 0 ? kFirstDepth : kMoreDepth, geometry::kMortonDepth - depth);
+    CountingGrid grid(std::exchange(overfull, {}), depth, levels);
     if (Status status = pass([&grid](std::span<const uint64_t> codes) { grid.count(codes); }); !status) {
       return fail(std::move(status.error()));
     }
     depth += levels;
     for (const CountedCell& cell : grid.cells()) {
-      if (is_crowded(cell, limit)) {
-        crowded.push_back(cell.first_code >> (3 * (kMortonDepth - depth)));
+      if (is_overfull(cell, limit)) {
+        overfull.push_back(cell.first_code >> (3 * (geometry::kMortonDepth - depth)));
       } else {
         done.push_back(cell);
       }
@@ -79,4 +79,4 @@ Result<std::vector<CountedCell>> count_cells(const CodePass& pass, uint64_t limi
   return done;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::builder

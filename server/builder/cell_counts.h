@@ -8,7 +8,7 @@
 #include "base/result.h"
 #include "geometry/morton.h"
 
-namespace surfcast {
+namespace surfcast::builder {
 
 /// An octree cell and the points in it.
 struct CountedCell {
@@ -17,7 +17,9 @@ struct CountedCell {
   uint64_t count = 0;
 
   /// One above the highest Morton code of the cell.
-  [[nodiscard]] uint64_t end_code() const { return first_code + (uint64_t{1} << (3 * (kMortonDepth - depth))); }
+  [[nodiscard]] uint64_t end_code() const {
+    return first_code + (uint64_t{1} << (3 * (geometry::kMortonDepth - depth)));
+  }
 };
 
 /// Shows every point's Morton code to `count`, from any thread.
@@ -27,4 +29,4 @@ using CodePass = std::function<Status(const std::function<void(std::span<const u
 /// smallest there are; each time takes a pass over all points. Returns the cells that hold points, in Morton order.
 Result<std::vector<CountedCell>> count_cells(const CodePass& pass, uint64_t limit);
 
-}  // namespace surfcast
+}  // namespace surfcast::builder

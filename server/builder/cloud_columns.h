@@ -10,7 +10,7 @@
 #include "scan/scan_schema.h"
 #include "surfel/surfel_cloud.h"
 
-namespace surfcast {
+namespace surfcast::builder {
 
 /// Calls `use(vector)` with every array that points or surfels of a schema have, in one order. Points and clouds have
 /// them under the same names.
@@ -24,16 +24,16 @@ void for_each_column(Points& points, const Use& use) {
 }
 
 /// A cloud of that schema with so many surfels, all zero.
-SurfelCloud empty_cloud(const ScanSchema& schema, size_t size);
+surfel::SurfelCloud empty_cloud(const scan::ScanSchema& schema, size_t size);
 
 /// Copies all points to the cloud's surfels from `first` on; both are of one schema.
-void copy_points(const ScanPoints& points, size_t first, SurfelCloud& cloud);
+void copy_points(const scan::ScanPoints& points, size_t first, surfel::SurfelCloud& cloud);
 
 /// Appends the columns of some points to `bytes`, one after another.
-void append_columns(const ScanPoints& points, std::span<const uint32_t> rows, std::vector<std::byte>& bytes);
+void append_columns(const scan::ScanPoints& points, std::span<const uint32_t> rows, std::vector<std::byte>& bytes);
 
 /// Where bytes of the cloud's columns go that `append_columns` made of `count` points: for each column in turn the
 /// memory of its surfels from `first` on.
-std::vector<std::span<std::byte>> column_memory(SurfelCloud& cloud, size_t first, size_t count);
+std::vector<std::span<std::byte>> column_memory(surfel::SurfelCloud& cloud, size_t first, size_t count);
 
-}  // namespace surfcast
+}  // namespace surfcast::builder

@@ -7,14 +7,14 @@
 
 #include <unistd.h>
 
-namespace surfcast {
+namespace surfcast::builder {
 namespace {
 
 constexpr uint64_t kMebibyte = uint64_t{1} << 20;
 /// What the program takes beside points: itself, pieces of the input on their way, blocks on theirs.
 constexpr uint64_t kReserve = 256 * kMebibyte;
 /// Parts smaller than this would be mostly halo.
-constexpr uint64_t kLeastPart = 250000;
+constexpr uint64_t kMinPart = 250000;
 /// Points that a part may have for each one of its own, halo included, before fewer parts are worked on at once.
 constexpr double kWithHalo = 1.5;
 /// Parts that are to fit side by side, so that what one thread does alone in one leaves no core idle.
@@ -23,10 +23,10 @@ constexpr uint64_t kPartsAtOnce = 3;
 /// surfels are made; a tree of points, a spatial order and coarse levels when they are weighed and written. Measured.
 constexpr uint64_t kWorkPerPoint = 260;
 
-uint64_t point_bytes(const ScanSchema& schema) {
+uint64_t point_bytes(const scan::ScanSchema& schema) {
   // Position, normal, radius and weight are always there in the end.
   uint64_t bytes = 24 + 12 + 4 + 4 + (schema.color_bits != 0 ? 6 : 0);
-  for (const ScalarField& field : schema.scalars) bytes += size_of(field.type);
+  for (const scan::ScalarField& field : schema.scalars) bytes += scan::size_of(field.type);
   return bytes;
 }
 
@@ -64,12 +64,12 @@ Result<uint64_t> memory_budget(std::optional<uint64_t> wanted) {
                                      in_mebibytes(machine) + " of this machine");
 }
 
-Result<MemoryPlan> plan_memory(uint64_t budget, uint64_t held, const ScanSchema& schema) {
+Result<MemoryPlan> plan_memory(uint64_t budget, uint64_t held, const scan::ScanSchema& schema) {
   MemoryPlan plan;
   plan.budget = budget;
   plan.per_point = point_bytes(schema) + kWorkPerPoint;
   const uint64_t least =
-      held + kReserve + static_cast<uint64_t>(kWithHalo * static_cast<double>(kLeastPart * plan.per_point));
+      held + kReserve + static_cast<uint64_t>(kWithHalo * static_cast<double>(kMinPart * plan.per_point));
   if (budget < least) {
     return fail(ErrorKind::kLimit, "a memory budget of " + in_mebibytes(budget) +
                                        " is too small for these points: it takes at least " + in_mebibytes(least));
@@ -77,8 +77,8 @@ Result<MemoryPlan> plan_memory(uint64_t budget, uint64_t held, const ScanSchema&
   plan.for_parts = budget - kReserve - held;
   plan.whole_points = std::min<uint64_t>(plan.for_parts / plan.per_point, UINT32_MAX - 1);
   const double points = static_cast<double>(plan.for_parts) / (kWithHalo * static_cast<double>(plan.per_point));
-  plan.part_points = std::max(kLeastPart, static_cast<uint64_t>(points / kPartsAtOnce));
+  plan.part_points = std::max(kMinPart, static_cast<uint64_t>(points / kPartsAtOnce));
   return plan;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::builder

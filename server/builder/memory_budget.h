@@ -8,7 +8,7 @@
 #include "base/result.h"
 #include "scan/scan_schema.h"
 
-namespace surfcast {
+namespace surfcast::builder {
 
 /// Bytes from a size like "4G", "512M" or "4294967296"; K, M and G are powers of 1024.
 std::optional<uint64_t> parse_memory_size(std::string_view text);
@@ -38,6 +38,6 @@ Result<uint64_t> memory_budget(std::optional<uint64_t> wanted);
 
 /// Divides a budget for points of that schema; `held` bytes of it are taken for good. Fails when the budget is too
 /// small to work with. The plan does not depend on the number of threads.
-Result<MemoryPlan> plan_memory(uint64_t budget, uint64_t held, const ScanSchema& schema);
+Result<MemoryPlan> plan_memory(uint64_t budget, uint64_t held, const scan::ScanSchema& schema);
 
-}  // namespace surfcast
+}  // namespace surfcast::builder

@@ -5,7 +5,7 @@
 
 #include <oneapi/tbb/parallel_pipeline.h>
 
-namespace surfcast {
+namespace surfcast::builder {
 
 Status work_in_order(size_t count, size_t at_once, const std::function<Result<std::function<Status()>>(size_t)>& work) {
   namespace tbb = oneapi::tbb;
@@ -35,4 +35,4 @@ Status work_in_order(size_t count, size_t at_once, const std::function<Result<st
   return status;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::builder

@@ -2,42 +2,42 @@
 
 #include <algorithm>
 
-namespace surfcast {
+namespace surfcast::builder {
 namespace {
 
-Box box_of(const OctreeKey& key, const RootCube& root) {
+geometry::Box box_of(const ldc::OctreeKey& key, const geometry::RootCube& root) {
   const double side = std::ldexp(root.side, -int{key.depth});
-  Box box;
+  geometry::Box box;
   box.min = root.min + side * glm::dvec3(key.x, key.y, key.z);
   box.max = box.min + side;
   return box;
 }
 
-Box grown(const Box& box, double factor) {
+geometry::Box grown(const geometry::Box& box, double factor) {
   const glm::dvec3 margin = factor * box.size();
-  Box larger;
+  geometry::Box larger;
   larger.min = box.min - margin;
   larger.max = box.max + margin;
   return larger;
 }
 
-bool contains(const Box& box, const glm::dvec3& p) {
+bool contains(const geometry::Box& box, const glm::dvec3& p) {
   return p.x >= box.min.x && p.y >= box.min.y && p.z >= box.min.z && p.x <= box.max.x && p.y <= box.max.y &&
          p.z <= box.max.z;
 }
 
-bool any_contains(const std::vector<Box>& boxes, const glm::dvec3& p) {
-  return std::any_of(boxes.begin(), boxes.end(), [&p](const Box& box) { return contains(box, p); });
+bool any_contains(const std::vector<geometry::Box>& boxes, const glm::dvec3& p) {
+  return std::any_of(boxes.begin(), boxes.end(), [&p](const geometry::Box& box) { return contains(box, p); });
 }
 
 }  // namespace
 
-PartFinder::PartFinder(std::span<const Part> parts, const RootCube& root) : root_(root) {
+PartFinder::PartFinder(std::span<const Part> parts, const geometry::RootCube& root) : root_(root) {
   for (const Part& part : parts) {
     ends_.push_back(part.end_code);
-    std::vector<Box>& cells = cells_.emplace_back();
-    std::vector<Box>& halos = with_halo_.emplace_back();
-    for (const OctreeKey& key : part.cells) {
+    std::vector<geometry::Box>& cells = cells_.emplace_back();
+    std::vector<geometry::Box>& halos = with_halo_.emplace_back();
+    for (const ldc::OctreeKey& key : part.cells) {
       cells.push_back(box_of(key, root));
       halos.push_back(grown(cells.back(), kHalo));
     }
@@ -52,14 +52,14 @@ void PartFinder::fill_bins() {
     return glm::ivec3(glm::clamp(glm::floor((p - root_.min) / root_.side * kBins), 0.0, kBins - 1));
   };
   for (uint32_t part = 0; ends_.size() > 1 && part < ends_.size(); ++part) {
-    for (const Box& halo : with_halo_[part]) {
+    for (const geometry::Box& halo : with_halo_[part]) {
       const glm::ivec3 low = bin_at(halo.min);
       const glm::ivec3 high = bin_at(halo.max);
       for (int z = low.z; z <= high.z; ++z) {
         for (int y = low.y; y <= high.y; ++y) {
           for (int x = low.x; x <= high.x; ++x) {
             const glm::dvec3 centre = (glm::dvec3(x, y, z) + 0.5) / kBins * root_.side + root_.min;
-            std::vector<uint32_t>& parts = near[morton_code(root_, centre) >> kBinShift];
+            std::vector<uint32_t>& parts = near[geometry::morton_code(root_, centre) >> kBinShift];
             if (parts.empty() || parts.back() != part) parts.push_back(part);
           }
         }
@@ -81,19 +81,19 @@ bool PartFinder::is_near(uint32_t part, const glm::dvec3& point) const {
   return any_contains(with_halo_[part], point);
 }
 
-SitePlace PartFinder::place(uint32_t part, const glm::dvec3& point) const {
+scan::SitePlace PartFinder::place(uint32_t part, const glm::dvec3& point) const {
   if (ends_.size() == 1) return {};
-  SitePlace place;
-  place.own = part_of(morton_code(root_, point)) == part;
+  scan::SitePlace place;
+  place.own = part_of(geometry::morton_code(root_, point)) == part;
   // Neighbours look as far into this part as their halo reaches, and the outer half of a halo has too few neighbours to
   // say much.
-  const auto near_side = [&](const Box& cell) {
-    const Box inner = grown(cell, -kHalo / 2);
-    const Box outer = grown(cell, kHalo / 2);
+  const auto near_side = [&](const geometry::Box& cell) {
+    const geometry::Box inner = grown(cell, -kHalo / 2);
+    const geometry::Box outer = grown(cell, kHalo / 2);
     return contains(outer, point) && !contains(inner, point);
   };
   place.near_border = std::any_of(cells_[part].begin(), cells_[part].end(), near_side);
   return place;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::builder

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <numeric>
 
-namespace surfcast {
+namespace surfcast::builder {
 namespace {
 
 using Cells = std::span<const CountedCell>;
@@ -14,9 +14,9 @@ uint64_t total_count(Cells cells) {
 }
 
 Part part_of(uint64_t code, int depth, uint64_t count) {
-  const int shift = 3 * (kMortonDepth - depth);
+  const int shift = 3 * (geometry::kMortonDepth - depth);
   const uint64_t first = code >> shift << shift;
-  return {{key_of_code(code, depth)}, first, first + (uint64_t{1} << shift), count};
+  return {{ldc::key_of_code(code, depth)}, first, first + (uint64_t{1} << shift), count};
 }
 
 /// Adds a cell to the last part if both are children of one cell and fit together; `first_sibling` is the number of the
@@ -37,14 +37,14 @@ void add_cell(const Part& cell, uint64_t limit, size_t first_sibling, std::vecto
 void cut(Cells cells, int depth, uint64_t limit, std::vector<Part>& parts) {
   size_t first_sibling = parts.size();
   while (!cells.empty()) {
-    const uint32_t octant = octant_of_code(cells[0].first_code, depth);
+    const uint32_t octant = ldc::octant_of_code(cells[0].first_code, depth);
     const auto end = std::partition_point(cells.begin(), cells.end(), [&](const CountedCell& cell) {
-      return octant_of_code(cell.first_code, depth) == octant;
+      return ldc::octant_of_code(cell.first_code, depth) == octant;
     });
     const Cells child = cells.first(static_cast<size_t>(end - cells.begin()));
     cells = cells.subspan(child.size());
     const uint64_t count = total_count(child);
-    if (count <= limit || depth + 1 == kMortonDepth) {
+    if (count <= limit || depth + 1 == geometry::kMortonDepth) {
       add_cell(part_of(child[0].first_code, depth + 1, count), limit, first_sibling, parts);
     } else {
       cut(child, depth + 1, limit, parts);
@@ -63,4 +63,4 @@ std::vector<Part> plan_parts(std::span<const CountedCell> cells, uint64_t limit)
   return parts;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::builder

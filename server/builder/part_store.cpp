@@ -5,11 +5,11 @@
 
 #include "builder/cloud_columns.h"
 
-namespace surfcast {
+namespace surfcast::builder {
 namespace {
 
-uint64_t bytes_of_row(const ScanSchema& schema) {
-  SurfelCloud one = empty_cloud(schema, 1);
+uint64_t bytes_of_row(const scan::ScanSchema& schema) {
+  surfel::SurfelCloud one = empty_cloud(schema, 1);
   uint64_t bytes = 0;
   for (const std::span<std::byte> column : column_memory(one, 0, 1)) bytes += column.size();
   return bytes;
@@ -37,7 +37,7 @@ PackedPiece pack_piece(const InputPiece& piece, std::span<const PartRows> parts)
   return packed;
 }
 
-PartStore::PartStore(SpoolFile file, const ScanSchema& schema, std::vector<InputName> inputs, size_t parts)
+PartStore::PartStore(SpoolFile file, const scan::ScanSchema& schema, std::vector<InputName> inputs, size_t parts)
     : file_(std::move(file)),
       schema_(schema),
       inputs_(std::move(inputs)),
@@ -73,7 +73,7 @@ Result<PartPoints> PartStore::load(size_t part) const {
       if (Status status = file_.read(offset, column); !status) return fail(std::move(status.error()));
       offset += column.size();
     }
-    std::vector<SourceRange>& sources = points.cloud.sources;
+    std::vector<surfel::SourceRange>& sources = points.cloud.sources;
     if (points.inputs.empty() || points.inputs.back() != extent.source || (!extent.own && points.own == first)) {
       sources.push_back({inputs_[extent.source].name, first, 0, inputs_[extent.source].grid});
       points.inputs.push_back(extent.source);
@@ -112,4 +112,4 @@ void PartStore::release(size_t part) const {
   for (const Extent& extent : parts_[part].extents) file_.release(extent.offset, extent.rows * row_bytes_);
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::builder

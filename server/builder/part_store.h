@@ -13,11 +13,11 @@
 #include "scan/scan_schema.h"
 #include "surfel/surfel_cloud.h"
 
-namespace surfcast {
+namespace surfcast::builder {
 
 /// Points of a part, its own before those of its halo, each in the order of the input.
 struct PartPoints {
-  SurfelCloud cloud;
+  surfel::SurfelCloud cloud;
   size_t own = 0;
   std::vector<size_t> inputs;  ///< of each of the cloud's sources: the number of the input
 };
@@ -33,7 +33,7 @@ struct PartFindings {
 /// A name and a lattice for each input.
 struct InputName {
   std::string name;
-  std::optional<Grid> grid;
+  std::optional<surfel::Grid> grid;
 };
 
 /// Rows of a piece of the input that belong to a part.
@@ -61,7 +61,7 @@ PackedPiece pack_piece(const InputPiece& piece, std::span<const PartRows> parts)
 /// Keeps the points of all parts on disk while others are worked on.
 class PartStore {
  public:
-  PartStore(SpoolFile file, const ScanSchema& schema, std::vector<InputName> inputs, size_t parts);
+  PartStore(SpoolFile file, const scan::ScanSchema& schema, std::vector<InputName> inputs, size_t parts);
 
   /// One thread at a time; the order of the calls is the order of the points.
   Status add(const PackedPiece& piece);
@@ -89,10 +89,10 @@ class PartStore {
   };
 
   SpoolFile file_;
-  ScanSchema schema_;
+  scan::ScanSchema schema_;
   std::vector<InputName> inputs_;
   uint64_t row_bytes_;
   std::vector<Stored> parts_;
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::builder

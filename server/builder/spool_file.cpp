@@ -9,7 +9,7 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-namespace surfcast {
+namespace surfcast::builder {
 namespace {
 
 tl::unexpected<Error> io_error(const std::filesystem::path& target, const char* what, int code) {
@@ -77,4 +77,4 @@ void SpoolFile::release(uint64_t offset, uint64_t size) const {
               static_cast<off_t>(size));
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::builder

@@ -7,7 +7,7 @@
 
 #include "base/result.h"
 
-namespace surfcast {
+namespace surfcast::builder {
 
 /// A temporary file without a name, in the folder of a target: it takes no room any more once it is closed, however the
 /// program ends. Failures name the target.
@@ -37,4 +37,4 @@ class SpoolFile {
   uint64_t size_ = 0;
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::builder

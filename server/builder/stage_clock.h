@@ -5,7 +5,7 @@
 #include "base/stopwatch.h"
 #include "builder/build_model.h"
 
-namespace surfcast {
+namespace surfcast::builder {
 
 /// Tells the progress of stages that follow each other, and how long each took.
 class StageClock {
@@ -46,4 +46,4 @@ class StageClock {
   Stopwatch stopwatch_;
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::builder

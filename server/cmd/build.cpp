@@ -17,7 +17,7 @@
 #include "builder/build_model.h"
 #include "builder/memory_budget.h"
 
-namespace surfcast {
+namespace surfcast::cmd {
 namespace {
 
 struct BuildCommand {
@@ -35,7 +35,7 @@ class ProgressLine {
   ~ProgressLine() {
     if (!shown_.empty()) std::cerr << "\r\033[K" << std::flush;
   }
-  void show(const BuildStep& step) {
+  void show(const builder::BuildStep& step) {
     if (!terminal_) return;
     if (step.stage != stage_ || step.done == 0) {
       stage_ = step.stage;
@@ -49,7 +49,7 @@ class ProgressLine {
 
  private:
   /// Rate and time left are those of the stage.
-  [[nodiscard]] std::string describe(const BuildStep& step) const {
+  [[nodiscard]] std::string describe(const builder::BuildStep& step) const {
     if (step.done <= 0) return stage_;
     const double seconds = since_.seconds();
     std::string text = fmt::format("{} {:.0f} %", stage_, 100 * step.done);
@@ -64,13 +64,13 @@ class ProgressLine {
   std::string shown_;
 };
 
-std::string figures(const BuildReport& report) {
+std::string figures(const builder::BuildReport& report) {
   return fmt::format("{} points read, {} surfels, {} bytes, {:.2f} s, {:.0f} points/s, {:.0f} MiB peak memory\n",
                      report.scan.points_read, report.surfels, report.bytes, report.seconds, report.points_per_second(),
                      static_cast<double>(report.peak_memory) / (1024.0 * 1024.0));
 }
 
-std::string to_json(const BuildCommand& command, const BuildReport& report) {
+std::string to_json(const BuildCommand& command, const builder::BuildReport& report) {
   nlohmann::ordered_json json{
       {"output", command.output.string()},
       {"points_read", report.scan.points_read},
@@ -102,13 +102,13 @@ std::string to_json(const BuildCommand& command, const BuildReport& report) {
 }
 
 Status build(const BuildCommand& command) {
-  Result<BuildReport> report;
+  Result<builder::BuildReport> report;
   {
     ProgressLine line;
     const std::optional<bool> z_up = command.up.empty() ? std::nullopt : std::optional(command.up == "z");
-    const std::optional<uint64_t> memory = parse_memory_size(command.memory);
-    report = build_model(command.inputs, command.output, {command.precision, z_up, memory, std::nullopt},
-                         [&line](const BuildStep& step) { line.show(step); });
+    const std::optional<uint64_t> memory = builder::parse_memory_size(command.memory);
+    report = builder::build_model(command.inputs, command.output, {command.precision, z_up, memory, std::nullopt},
+                                  [&line](const builder::BuildStep& step) { line.show(step); });
   }
   if (!report) return fail(std::move(report.error()));
   for (const std::string& note : report->scan.notes) spdlog::warn("{}", note);
@@ -133,10 +133,10 @@ void add_build_command(CLI::App& app, Status& outcome) {
       ->add_option("--memory", command->memory,
                    "Most memory to take, like 4G or 512M; a quarter of the machine's without it")
       ->check([](const std::string& text) {
-        return parse_memory_size(text) ? std::string() : "not a size like 4G or 512M: " + text;
+        return builder::parse_memory_size(text) ? std::string() : "not a size like 4G or 512M: " + text;
       });
   build_command->add_option("--report", command->report, "Write the figures of the build as JSON");
   build_command->callback([command, &outcome] { outcome = build(*command); });
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::cmd

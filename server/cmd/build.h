@@ -4,10 +4,10 @@
 
 #include "base/result.h"
 
-namespace surfcast {
+namespace surfcast::cmd {
 
 /// Adds `build INPUT... --output MODEL.surf [--memory SIZE] [--precision METRES] [--report FILE.json]`: scans to a
 /// model. The command leaves how it went in `outcome`.
 void add_build_command(CLI::App& app, Status& outcome);
 
-}  // namespace surfcast
+}  // namespace surfcast::cmd

@@ -7,7 +7,7 @@
 
 #include "cmd/scan_cache.h"
 
-namespace surfcast {
+namespace surfcast::cmd {
 namespace {
 
 namespace fs = std::filesystem;
@@ -20,20 +20,20 @@ Result<fs::path> build_in_cache(const fs::path& scan, const fs::path& cache) {
 }
 
 /// The model file behind a path that is no folder; it must open.
-Result<NamedModel> find_model(const fs::path& path, const fs::path& cache) {
+Result<service::NamedModel> find_model(const fs::path& path, const fs::path& cache) {
   if (path.extension() != ".surf") {
     const Result<fs::path> built = build_in_cache(path, cache);
     if (!built) return fail(built.error());
-    return NamedModel{path.stem().string(), *built};
+    return service::NamedModel{path.stem().string(), *built};
   }
-  if (const Result<ModelFile> model = ModelFile::open(path); !model) return fail(model.error());
-  return NamedModel{path.stem().string(), path};
+  if (const Result<model::ModelFile> model = model::ModelFile::open(path); !model) return fail(model.error());
+  return service::NamedModel{path.stem().string(), path};
 }
 
 }  // namespace
 
-Result<std::unique_ptr<ModelCatalogue>> find_models(std::span<const fs::path> paths, const fs::path& cache) {
-  std::vector<NamedModel> files;
+Result<std::unique_ptr<service::ModelCatalogue>> find_models(std::span<const fs::path> paths, const fs::path& cache) {
+  std::vector<service::NamedModel> files;
   std::vector<fs::path> folders;
   for (const fs::path& path : paths) {
     std::error_code ignored;
@@ -41,16 +41,17 @@ Result<std::unique_ptr<ModelCatalogue>> find_models(std::span<const fs::path> pa
       folders.push_back(path);
       continue;
     }
-    Result<NamedModel> model = find_model(path, cache);
+    Result<service::NamedModel> model = find_model(path, cache);
     if (!model) return fail(model.error());
-    const bool taken = std::ranges::any_of(files, [&](const NamedModel& other) { return other.name == model->name; });
+    const bool taken =
+        std::ranges::any_of(files, [&](const service::NamedModel& other) { return other.name == model->name; });
     if (taken) return fail(ErrorKind::kInvalidInput, path.string() + ": another model is served under that name");
     files.push_back(std::move(*model));
   }
-  return std::make_unique<ModelCatalogue>(std::move(files), std::move(folders));
+  return std::make_unique<service::ModelCatalogue>(std::move(files), std::move(folders));
 }
 
-Result<std::unique_ptr<ModelCatalogue>> find_one_model(const fs::path& path, const fs::path& cache) {
+Result<std::unique_ptr<service::ModelCatalogue>> find_one_model(const fs::path& path, const fs::path& cache) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) {
     return fail(ErrorKind::kInvalidInput, path.string() + ": is a folder, and one model is wanted");
@@ -58,4 +59,4 @@ Result<std::unique_ptr<ModelCatalogue>> find_one_model(const fs::path& path, con
   return find_models({&path, 1}, cache);
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::cmd

@@ -5,13 +5,14 @@
 #include "cmd/serve.h"
 #include "protocol/request_flags.h"
 
-namespace surfcast {
+namespace surfcast::cmd {
 namespace {
 
-constexpr std::chrono::milliseconds kPatience{5000};
+constexpr std::chrono::milliseconds kTimeout{5000};
 
-Status check_health(const Endpoint& server) {
-  Result<ServerConnection> connection = ServerConnection::open(server, {.connect = kPatience, .answer = kPatience});
+Status check_health(const protocol::Endpoint& server) {
+  Result<client::ServerConnection> connection =
+      client::ServerConnection::open(server, {.connect = kTimeout, .answer = kTimeout});
   if (!connection) return fail(connection.error());
   wire::Request request;
   request.mutable_ping();
@@ -26,12 +27,12 @@ void add_healthcheck_command(CLI::App& app, Status& outcome) {
   auto url = std::make_shared<std::string>("127.0.0.1:7600");
   CLI::App* sub = app.add_subcommand("healthcheck", "Tell whether a server answers, by the exit code");
   sub->add_option("--url", *url, "HOST:PORT of the server (default 127.0.0.1:7600)")
-      ->envname(environment_name("listen"));
+      ->envname(protocol::environment_name("listen"));
   sub->callback([url, &outcome] {
-    const Result<Endpoint> server = parse_endpoint(*url);
+    const Result<protocol::Endpoint> server = protocol::parse_endpoint(*url);
     if (!server) throw CLI::ValidationError("--url", server.error().message);
     outcome = check_health(*server);
   });
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::cmd

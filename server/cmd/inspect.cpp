@@ -9,7 +9,7 @@
 #include "cmd/verify_model.h"
 #include "model/model_file.h"
 
-namespace surfcast {
+namespace surfcast::cmd {
 namespace {
 
 struct InspectOptions {
@@ -19,7 +19,7 @@ struct InspectOptions {
 };
 
 Status inspect(const InspectOptions& options) {
-  const Result<ModelFile> model = ModelFile::open(options.model);
+  const Result<model::ModelFile> model = model::ModelFile::open(options.model);
   if (!model) return fail(model.error());
   if (options.verify) {
     if (Status status = verify_model(*model); !status) return status;
@@ -41,4 +41,4 @@ void add_inspect_command(CLI::App& app, Status& outcome) {
   command->callback([options, &outcome] { outcome = inspect(*options); });
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::cmd

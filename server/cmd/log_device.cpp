@@ -2,11 +2,11 @@
 
 #include "base/log.h"
 
-namespace surfcast {
+namespace surfcast::cmd {
 
-void log_device(const DeviceInfo& device) {
+void log_device(const picture::DeviceInfo& device) {
   spdlog::info("OpenGL {} by {}: {}", device.version, device.vendor, device.renderer);
   if (device.software) spdlog::warn("no GPU: pictures are drawn in software, which is slow");
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::cmd

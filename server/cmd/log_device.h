@@ -1,10 +1,10 @@
 #pragma once
 
-#include "render/renderer.h"
+#include "picture/device_info.h"
 
-namespace surfcast {
+namespace surfcast::cmd {
 
 /// Says what draws. Software rendering is announced, never silent.
-void log_device(const DeviceInfo& device);
+void log_device(const picture::DeviceInfo& device);
 
-}  // namespace surfcast
+}  // namespace surfcast::cmd

@@ -27,12 +27,12 @@ int run(int argc, char** argv) {
   CLI::App app{"Server of large scans: builds, inspects, serves and draws models", "surfcastd"};
   app.require_subcommand(1);
   surfcast::Status outcome;
-  surfcast::add_build_command(app, outcome);
-  surfcast::add_inspect_command(app, outcome);
-  surfcast::add_serve_command(app, outcome);
-  surfcast::add_render_command(app, outcome);
-  surfcast::add_pick_command(app, outcome);
-  surfcast::add_healthcheck_command(app, outcome);
+  surfcast::cmd::add_build_command(app, outcome);
+  surfcast::cmd::add_inspect_command(app, outcome);
+  surfcast::cmd::add_serve_command(app, outcome);
+  surfcast::cmd::add_render_command(app, outcome);
+  surfcast::cmd::add_pick_command(app, outcome);
+  surfcast::cmd::add_healthcheck_command(app, outcome);
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {

@@ -6,7 +6,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
-namespace surfcast {
+namespace surfcast::cmd {
 namespace {
 
 std::string joined(const std::vector<std::string>& names) {
@@ -16,7 +16,7 @@ std::string joined(const std::vector<std::string>& names) {
 }
 
 /// Names of everything a surfel of the model has.
-std::vector<std::string> attribute_names(const ModelInfo& info) {
+std::vector<std::string> attribute_names(const model::ModelInfo& info) {
   std::vector<std::string> names{"position", "normal", "radius", "weight"};
   if (info.color_bits > 0) names.push_back("color");
   names.insert(names.end(), info.scalar_names.begin(), info.scalar_names.end());
@@ -35,7 +35,7 @@ nlohmann::ordered_json json_of(const LevelSummary& level) {
           {"spacing", {level.smallest_spacing, level.largest_spacing}}};
 }
 
-nlohmann::ordered_json json_of(const AttributeRange& range) {
+nlohmann::ordered_json json_of(const model::AttributeRange& range) {
   return {{"attribute", range.attribute},
           {"smallest", range.smallest},
           {"largest", range.largest},
@@ -45,9 +45,9 @@ nlohmann::ordered_json json_of(const AttributeRange& range) {
 
 }  // namespace
 
-ModelSummary summarize(const ModelFile& model, uint64_t file_bytes) {
+ModelSummary summarize(const model::ModelFile& model, uint64_t file_bytes) {
   std::map<int, LevelSummary> levels;
-  for (const BlockEntry& block : model.blocks()) {
+  for (const ldc::BlockEntry& block : model.blocks()) {
     LevelSummary& level = levels[block.level];
     level.level = block.level;
     level.smallest_spacing = level.blocks == 0 ? block.spacing : std::min(level.smallest_spacing, block.spacing);
@@ -62,7 +62,7 @@ ModelSummary summarize(const ModelFile& model, uint64_t file_bytes) {
 }
 
 std::string to_text(const ModelSummary& summary) {
-  const ModelInfo& info = summary.info;
+  const model::ModelInfo& info = summary.info;
   std::string text = fmt::format("model: {}\n", summary.path.string());
   text += fmt::format("sources: {}\n", joined(info.source_names));
   text += fmt::format("surfels: {}\n", info.surfels);
@@ -72,12 +72,13 @@ std::string to_text(const ModelSummary& summary) {
   text += fmt::format("oriented: {}\n", info.oriented ? "yes" : "no");
   text += fmt::format("color bits: {}\n", info.color_bits);
   text += fmt::format("attributes: {}\n", joined(attribute_names(info)));
-  for (const AttributeRange& range : info.ranges) {
+  for (const model::AttributeRange& range : info.ranges) {
     text += fmt::format("{}: {} .. {}", range.attribute, range.smallest, range.largest);
     const bool tails = range.low > range.smallest || range.high < range.largest;
     text += tails ? fmt::format(" (all but 2 % below {}, all but 2 % above {})\n", range.high, range.low) : "\n";
   }
-  for (const ClassCount& count : info.classes) text += fmt::format("class {}: {} surfels\n", count.code, count.surfels);
+  for (const model::ClassCount& count : info.classes)
+    text += fmt::format("class {}: {} surfels\n", count.code, count.surfels);
   text += fmt::format("levels: {}\n", info.levels);
   for (const LevelSummary& level : summary.levels) {
     text += fmt::format("level {}: {} blocks, {} surfels, {} bytes, spacing {:.6g} .. {:.6g}\n", level.level,
@@ -87,7 +88,7 @@ std::string to_text(const ModelSummary& summary) {
 }
 
 std::string to_json(const ModelSummary& summary) {
-  const ModelInfo& info = summary.info;
+  const model::ModelInfo& info = summary.info;
   const auto array_of = [](const glm::dvec3& v) { return nlohmann::ordered_json{v.x, v.y, v.z}; };
   nlohmann::ordered_json json{
       {"model", summary.path.string()},
@@ -104,8 +105,8 @@ std::string to_json(const ModelSummary& summary) {
       {"classes", nlohmann::ordered_json::array()},
       {"levels", nlohmann::ordered_json::array()},
   };
-  for (const AttributeRange& range : info.ranges) json["ranges"].push_back(json_of(range));
-  for (const ClassCount& count : info.classes) {
+  for (const model::AttributeRange& range : info.ranges) json["ranges"].push_back(json_of(range));
+  for (const model::ClassCount& count : info.classes) {
     json["classes"].push_back({{"code", count.code}, {"surfels", count.surfels}});
   }
   for (const LevelSummary& level : summary.levels) json["levels"].push_back(json_of(level));
@@ -113,4 +114,4 @@ std::string to_json(const ModelSummary& summary) {
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::cmd

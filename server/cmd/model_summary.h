@@ -7,7 +7,7 @@
 
 #include "model/model_file.h"
 
-namespace surfcast {
+namespace surfcast::cmd {
 
 /// The blocks of one level together.
 struct LevelSummary {
@@ -23,7 +23,7 @@ struct LevelSummary {
 struct ModelSummary {
   std::filesystem::path path;
   uint64_t file_bytes = 0;
-  ModelInfo info;
+  model::ModelInfo info;
   std::vector<LevelSummary> levels;  ///< finest first
 
   [[nodiscard]] double bytes_per_surfel() const {
@@ -31,10 +31,10 @@ struct ModelSummary {
   }
 };
 
-ModelSummary summarize(const ModelFile& model, uint64_t file_bytes);
+ModelSummary summarize(const model::ModelFile& model, uint64_t file_bytes);
 
 /// Lines of `name: value` for a person.
 std::string to_text(const ModelSummary& summary);
 std::string to_json(const ModelSummary& summary);
 
-}  // namespace surfcast
+}  // namespace surfcast::cmd

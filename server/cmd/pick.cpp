@@ -10,29 +10,29 @@
 #include "protocol/request_flags.h"
 #include "service/pick_service.h"
 
-namespace surfcast {
+namespace surfcast::cmd {
 namespace {
 
 struct PickCommand {
   std::filesystem::path model;
-  PickFlags flags;
+  protocol::PickFlags flags;
   std::filesystem::path cache;
 };
 
 Status pick(const PickCommand& command) {
-  const Result<std::unique_ptr<ModelCatalogue>> models = find_one_model(command.model, command.cache);
+  const Result<std::unique_ptr<service::ModelCatalogue>> models = find_one_model(command.model, command.cache);
   if (!models) return fail(models.error());
   const Result<wire::PickSurfel> request = command.flags.request((*models)->names().front());
   if (!request) return fail(request.error());
-  Result<PickJob> job = to_job(*request);
+  Result<service::PickJob> job = net::to_job(*request);
   if (!job) return fail(job.error());
-  std::promise<Result<std::optional<PickedSurfel>>> promise;
-  PickService service(**models);
+  std::promise<Result<std::optional<pick::PickedSurfel>>> promise;
+  service::PickService service(**models);
   service.pick(std::move(*job), [&promise](auto picked) { promise.set_value(std::move(picked)); });
-  const Result<std::optional<PickedSurfel>> picked = promise.get_future().get();
+  const Result<std::optional<pick::PickedSurfel>> picked = promise.get_future().get();
   if (!picked) return fail(picked.error());
   wire::PickResult result;
-  to_wire(*picked, result);
+  net::to_wire(*picked, result);
   return command.flags.print(result);
 }
 
@@ -44,11 +44,11 @@ void add_pick_command(CLI::App& app, Status& outcome) {
   sub->add_option("MODEL", command->model, "A model file or a scan")->required();
   command->flags.add_to(*sub);
   sub->add_option("--cache", command->cache, "Folder for the models of scans (default ~/.cache/surfcast)")
-      ->envname(environment_name("cache"));
+      ->envname(protocol::environment_name("cache"));
   sub->callback([command, &outcome] {
     if (Status status = command->flags.check(); !status) throw CLI::ValidationError(status.error().message);
     outcome = pick(*command);
   });
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::cmd

@@ -4,9 +4,9 @@
 
 #include "base/result.h"
 
-namespace surfcast {
+namespace surfcast::cmd {
 
 /// `pick MODEL --pixel X,Y ...`: what a pixel of a picture shows, without a server.
 void add_pick_command(CLI::App& app, Status& outcome);
 
-}  // namespace surfcast
+}  // namespace surfcast::cmd

@@ -10,42 +10,43 @@
 #include "net/convert.h"
 #include "protocol/request_flags.h"
 #include "protocol/save_picture.h"
-#include "service/model_painter.h"
+#include "service/catalogue_renderer.h"
 #include "service/render_service.h"
 
-namespace surfcast {
+namespace surfcast::cmd {
 namespace {
 
 struct RenderCommand {
   std::filesystem::path model;
-  RequestFlags flags;
+  protocol::RequestFlags flags;
   std::filesystem::path cache;
-  RendererConfig renderer;
+  render::RendererConfig renderer;
 };
 
-Result<wire::Picture> draw_and_wait(RenderService& service, const wire::DrawPicture& request) {
-  Result<PictureJob> job = to_job(request);
+Result<wire::Picture> draw_and_wait(service::RenderService& service, const wire::DrawPicture& request) {
+  Result<service::PictureJob> job = net::to_job(request);
   if (!job) return fail(job.error());
-  std::promise<Result<EncodedPicture>> promise;
+  std::promise<Result<service::EncodedPicture>> promise;
   service.draw(0, std::move(*job),
-               [&promise](Result<EncodedPicture> picture) { promise.set_value(std::move(picture)); });
-  Result<EncodedPicture> picture = promise.get_future().get();
+               [&promise](Result<service::EncodedPicture> picture) { promise.set_value(std::move(picture)); });
+  Result<service::EncodedPicture> picture = promise.get_future().get();
   if (!picture) return fail(picture.error());
   wire::Picture message;
-  to_wire(std::move(*picture), message);
+  net::to_wire(std::move(*picture), message);
   return message;
 }
 
 Status render(const RenderCommand& command) {
-  const Result<std::unique_ptr<ModelCatalogue>> models = find_one_model(command.model, command.cache);
+  const Result<std::unique_ptr<service::ModelCatalogue>> models = find_one_model(command.model, command.cache);
   if (!models) return fail(models.error());
   const Result<wire::DrawPicture> request = command.flags.request((*models)->names().front());
   if (!request) return fail(request.error());
-  const auto service = RenderService::start(**models, model_painters(**models, command.renderer), {});
+  const auto service =
+      service::RenderService::start(**models, service::catalogue_renderers(**models, command.renderer), {});
   if (!service) return fail(service.error());
   log_device((*service)->device());
-  return draw_and_save(command.flags, *request,
-                       [&](const wire::DrawPicture& wish) { return draw_and_wait(**service, wish); });
+  return protocol::draw_and_save(command.flags, *request,
+                                 [&](const wire::DrawPicture& draw) { return draw_and_wait(**service, draw); });
 }
 
 }  // namespace
@@ -56,14 +57,14 @@ void add_render_command(CLI::App& app, Status& outcome) {
   sub->add_option("MODEL", command->model, "A model file or a scan")->required();
   command->flags.add_to(*sub);
   sub->add_option("--gpu", command->renderer.gpu, "Index of the EGL device (default: the first hardware device)")
-      ->envname(environment_name("gpu"))
+      ->envname(protocol::environment_name("gpu"))
       ->check(CLI::NonNegativeNumber);
   sub->add_option("--cache", command->cache, "Folder for the models of scans (default ~/.cache/surfcast)")
-      ->envname(environment_name("cache"));
+      ->envname(protocol::environment_name("cache"));
   sub->callback([command, &outcome] {
     if (Status status = command->flags.check(); !status) throw CLI::ValidationError(status.error().message);
     outcome = render(*command);
   });
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::cmd

@@ -14,7 +14,7 @@
 #include "builder/build_model.h"
 #include "model/model_file.h"
 
-namespace surfcast {
+namespace surfcast::cmd {
 namespace {
 
 namespace fs = std::filesystem;
@@ -28,7 +28,8 @@ std::string key_of(std::span<const std::byte> content) {
 Status build_into(const fs::path& scan, const fs::path& target) {
   spdlog::info("{}: building a model of it", scan.string());
   const std::array inputs{scan};
-  const Result<BuildReport> report = build_model(inputs, target, {}, [](const BuildStep&) {});
+  const Result<builder::BuildReport> report =
+      builder::build_model(inputs, target, {}, [](const builder::BuildStep&) {});
   if (!report) return fail(report.error());
   for (const std::string& note : report->scan.notes) spdlog::warn("{}", note);
   spdlog::info("{}: {} surfels in {:.1f} s", scan.string(), report->surfels, report->seconds);
@@ -51,7 +52,7 @@ Result<fs::path> model_of_scan(const fs::path& scan, const fs::path& cache) {
   const Result<MappedFile> content = MappedFile::open(scan);
   if (!content) return fail(content.error());
   const fs::path target = cache / key_of(content->bytes());
-  if (ModelFile::open(target)) return target;
+  if (model::ModelFile::open(target)) return target;
   std::error_code code;
   fs::create_directories(cache, code);
   if (code) return fail(ErrorKind::kIo, cache.string() + ": cannot make the folder: " + code.message());
@@ -59,4 +60,4 @@ Result<fs::path> model_of_scan(const fs::path& scan, const fs::path& cache) {
   return target;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::cmd

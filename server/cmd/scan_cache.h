@@ -4,7 +4,7 @@
 
 #include "base/result.h"
 
-namespace surfcast {
+namespace surfcast::cmd {
 
 /// Where models that were made of scans are kept: $XDG_CACHE_HOME/surfcast, else ~/.cache/surfcast.
 Result<std::filesystem::path> default_cache_folder();
@@ -13,4 +13,4 @@ Result<std::filesystem::path> default_cache_folder();
 /// cached files say nothing of the scan's own.
 Result<std::filesystem::path> model_of_scan(const std::filesystem::path& scan, const std::filesystem::path& cache);
 
-}  // namespace surfcast
+}  // namespace surfcast::cmd

@@ -13,10 +13,10 @@
 #include "protocol/endpoint.h"
 #include "protocol/request_flags.h"
 #include "protocol/validate.h"
-#include "service/model_painter.h"
+#include "service/catalogue_renderer.h"
 #include "service/render_service.h"
 
-namespace surfcast {
+namespace surfcast::cmd {
 namespace {
 
 struct ServeCommand {
@@ -24,8 +24,8 @@ struct ServeCommand {
   std::string listen = "127.0.0.1:7600";
   std::filesystem::path cache;
   std::filesystem::path viewer;
-  RendererConfig renderer;
-  ServerConfig server;
+  render::RendererConfig renderer;
+  net::ServerConfig server;
 };
 
 /// Where the viewer is when nobody says: where it is built, or where it is installed. Empty: nowhere.
@@ -41,30 +41,31 @@ std::filesystem::path find_viewer() {
 }
 
 /// Null when there is no viewer and none was asked for.
-Result<std::shared_ptr<const SiteFiles>> read_viewer(const std::filesystem::path& wanted) {
+Result<std::shared_ptr<const net::StaticFiles>> read_viewer(const std::filesystem::path& wanted) {
   const std::filesystem::path folder = wanted.empty() ? find_viewer() : wanted;
   if (folder.empty()) return nullptr;
-  Result<SiteFiles> files = SiteFiles::read(folder);
+  Result<net::StaticFiles> files = net::StaticFiles::read(folder);
   if (!files) return fail(files.error());
-  return std::make_shared<const SiteFiles>(std::move(*files));
+  return std::make_shared<const net::StaticFiles>(std::move(*files));
 }
 
 Status serve(ServeCommand command) {
-  Result<std::shared_ptr<const SiteFiles>> viewer = read_viewer(command.viewer);
+  Result<std::shared_ptr<const net::StaticFiles>> viewer = read_viewer(command.viewer);
   if (!viewer) return fail(viewer.error());
   command.server.viewer = std::move(*viewer);
-  Result<std::unique_ptr<ModelCatalogue>> models = find_models(command.paths, command.cache);
+  Result<std::unique_ptr<service::ModelCatalogue>> models = find_models(command.paths, command.cache);
   if (!models) return fail(models.error());
-  const auto service = RenderService::start(**models, model_painters(**models, command.renderer), {});
+  const auto service =
+      service::RenderService::start(**models, service::catalogue_renderers(**models, command.renderer), {});
   if (!service) return fail(service.error());
   log_device((*service)->device());
-  const auto server = Server::create(**service, command.server);
+  const auto server = net::Server::create(**service, command.server);
   if (!server) return fail(server.error());
   const size_t count = (*models)->names().size();
   if (count == 0) spdlog::warn("there are no models yet; those that appear in the folders will be served");
-  const Endpoint bound{command.server.host, (*server)->port()};
+  const protocol::Endpoint bound{command.server.host, (*server)->port()};
   std::cout << "surfcastd: serving " << count << (count == 1 ? " model" : " models") << " at http://"
-            << to_string(bound) << '/' << std::endl;
+            << protocol::to_string(bound) << '/' << std::endl;
   (*server)->run(/*until_signal=*/true);
   spdlog::info("stopped");
   return {};
@@ -77,26 +78,26 @@ void add_serve_command(CLI::App& app, Status& outcome) {
   CLI::App* sub = app.add_subcommand("serve", "Serve models over TCP and HTTP");
   sub->add_option("PATH", command->paths, "Models, folders of models, and scans (default: the current folder)");
   sub->add_option("--listen", command->listen, "HOST:PORT; port 0 takes a free one (default 127.0.0.1:7600)")
-      ->envname(environment_name("listen"));
+      ->envname(protocol::environment_name("listen"));
   sub->add_option("--gpu", command->renderer.gpu, "Index of the EGL device (default: the first hardware device)")
-      ->envname(environment_name("gpu"))
+      ->envname(protocol::environment_name("gpu"))
       ->check(CLI::NonNegativeNumber);
   sub->add_option("--cache", command->cache, "Folder for the models of scans (default ~/.cache/surfcast)")
-      ->envname(environment_name("cache"));
+      ->envname(protocol::environment_name("cache"));
   sub->add_option("--connections", command->server.connections, "Most connections at once (default 256)")
-      ->envname(environment_name("connections"))
+      ->envname(protocol::environment_name("connections"))
       ->check(CLI::PositiveNumber);
   sub->add_option("--viewer", command->viewer, "Folder of the viewer for browsers (default: beside the program)")
-      ->envname(environment_name("viewer"));
+      ->envname(protocol::environment_name("viewer"));
   sub->add_option("--allow-origin", command->server.allowed_origins,
                   "Origin of other pages that may connect (https://example.org); may be given again")
-      ->envname(environment_name("allow-origin"));
+      ->envname(protocol::environment_name("allow-origin"));
   sub->add_option("--target-fps", command->server.target_fps,
                   "Frames per second that views in motion adapt their quality to (default 30)")
-      ->envname(environment_name("target-fps"))
-      ->check(CLI::Range(1.0, kMostFramesPerSecond));
+      ->envname(protocol::environment_name("target-fps"))
+      ->check(CLI::Range(1.0, protocol::kMaxFramesPerSecond));
   sub->callback([command, &outcome] {
-    const Result<Endpoint> endpoint = parse_endpoint(command->listen);
+    const Result<protocol::Endpoint> endpoint = protocol::parse_endpoint(command->listen);
     if (!endpoint) throw CLI::ValidationError("--listen", endpoint.error().message);
     command->server.host = endpoint->host;
     command->server.port = endpoint->port;
@@ -105,4 +106,4 @@ void add_serve_command(CLI::App& app, Status& outcome) {
   });
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::cmd

@@ -4,9 +4,9 @@
 
 #include <oneapi/tbb/parallel_for.h>
 
-namespace surfcast {
+namespace surfcast::cmd {
 
-Status verify_model(const ModelFile& model) {
+Status verify_model(const model::ModelFile& model) {
   std::atomic<size_t> first_bad = model.blocks().size();
   oneapi::tbb::parallel_for(size_t{0}, model.blocks().size(), [&](size_t block) {
     if (block > first_bad || model.decode(block)) return;
@@ -18,4 +18,4 @@ Status verify_model(const ModelFile& model) {
   return fail(model.decode(first_bad).error());
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::cmd

@@ -8,35 +8,35 @@
 
 #include "base/contract.h"
 
-namespace surfcast {
+namespace surfcast::encode {
 namespace {
 
 constexpr int kChannels = 3;       // written
 constexpr int kImageChannels = 4;  // of an Image in memory
 
 /// How OpenImageIO names a writer.
-const char* writer_of(FileFormat format) {
+const char* writer_of(picture::FileFormat format) {
   switch (format) {
-    case FileFormat::kJpeg:
+    case picture::FileFormat::kJpeg:
       return "jpeg";
-    case FileFormat::kWebp:
+    case picture::FileFormat::kWebp:
       return "webp";
-    case FileFormat::kExr:
+    case picture::FileFormat::kExr:
       return "openexr";
-    case FileFormat::kPng:
+    case picture::FileFormat::kPng:
       break;
   }
   return "png";
 }
 
-OIIO::ImageSpec make_spec(const Image& image, FileFormat format, int quality) {
-  const bool is_float = image.format == PixelFormat::kLinearFloat;
+OIIO::ImageSpec make_spec(const picture::Image& image, picture::FileFormat format, int quality) {
+  const bool is_float = image.format == picture::PixelFormat::kLinearFloat;
   OIIO::ImageSpec spec(image.width, image.height, kChannels, is_float ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
   spec.attribute("oiio:ColorSpace", is_float ? "Linear" : "sRGB");
-  if (format == FileFormat::kPng) {
+  if (format == picture::FileFormat::kPng) {
     // Level 1 of zlib takes a third of the time of the default for files a half larger.
     spec.attribute("png:compressionLevel", 1);
-  } else if (format == FileFormat::kExr) {
+  } else if (format == picture::FileFormat::kExr) {
     spec.attribute("compression", "zip:1");  // lossless; level 1 for the same reason
     // The writer puts in the time of day otherwise, and the same request would not give the same bytes.
     spec.attribute("DateTime", "1970:01:01 00:00:00");
@@ -52,10 +52,10 @@ tl::unexpected<Error> writer_failed(OIIO::ImageOutput& writer) {
 
 }  // namespace
 
-Result<std::vector<std::byte>> encode_picture(const Image& image, FileFormat format, int quality) {
-  const size_t channel_bytes = image.format == PixelFormat::kLinearFloat ? sizeof(float) : 1;
+Result<std::vector<std::byte>> encode_picture(const picture::Image& image, picture::FileFormat format, int quality) {
+  const size_t channel_bytes = image.format == picture::PixelFormat::kLinearFloat ? sizeof(float) : 1;
   const size_t pixel_bytes = kImageChannels * channel_bytes;
-  SURFCAST_EXPECTS(image.width > 0 && image.height > 0 && image.format == pixel_format_of(format));
+  SURFCAST_EXPECTS(image.width > 0 && image.height > 0 && image.format == picture::pixel_format_of(format));
   SURFCAST_EXPECTS(image.pixels.size() == pixel_bytes * static_cast<size_t>(image.width) * image.height);
 
   const std::unique_ptr<OIIO::ImageOutput> writer = OIIO::ImageOutput::create(writer_of(format));
@@ -74,4 +74,4 @@ Result<std::vector<std::byte>> encode_picture(const Image& image, FileFormat for
   return std::vector<std::byte>(first, first + bytes.size());
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::encode

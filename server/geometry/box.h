@@ -5,7 +5,7 @@
 #include <glm/vec3.hpp>
 #include <limits>
 
-namespace surfcast {
+namespace surfcast::geometry {
 
 /// An axis-aligned box in world coordinates (units of the source file). Empty until something is included.
 struct Box {
@@ -27,4 +27,4 @@ struct Box {
   [[nodiscard]] double diagonal() const { return glm::length(size()); }
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::geometry

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <glm/trigonometric.hpp>
 
-namespace surfcast {
+namespace surfcast::geometry {
 namespace {
 
 bool finite(const glm::dvec3& v) {
@@ -52,4 +52,4 @@ Result<CameraFrame> make_camera_frame(const Camera& camera, int width, int heigh
   return frame;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::geometry

@@ -6,7 +6,7 @@
 
 #include "base/result.h"
 
-namespace surfcast {
+namespace surfcast::geometry {
 
 /// A perspective view as users state it: world coordinates of the source file in double precision.
 struct Camera {
@@ -47,4 +47,4 @@ struct CameraFrame {
 /// at the eye. A view_up along the view direction is replaced by the axis least aligned with it.
 Result<CameraFrame> make_camera_frame(const Camera& camera, int width, int height);
 
-}  // namespace surfcast
+}  // namespace surfcast::geometry

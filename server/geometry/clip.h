@@ -6,7 +6,7 @@
 
 #include "geometry/box.h"
 
-namespace surfcast {
+namespace surfcast::geometry {
 
 /// What a picture shows of the world: points in any of `inside` (everywhere, if there are none) and in none of
 /// `outside`. Faces belong to their box.
@@ -41,4 +41,4 @@ struct Clip {
   }
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::geometry

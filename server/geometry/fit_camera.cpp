@@ -6,7 +6,7 @@
 #include <glm/trigonometric.hpp>
 #include <limits>
 
-namespace surfcast {
+namespace surfcast::geometry {
 namespace {
 
 /// Where the eye stands along one axis of the picture, and how far back it must be: with `extent` the points' places on
@@ -80,4 +80,4 @@ Camera fit_camera(std::span<const Box> boxes, const glm::dvec3& up, double aspec
   return fit_along(boxes, fitting_direction(vertical, facing), vertical, aspect, view_angle);
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::geometry

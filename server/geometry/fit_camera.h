@@ -6,7 +6,7 @@
 #include "geometry/box.h"
 #include "geometry/camera.h"
 
-namespace surfcast {
+namespace surfcast::geometry {
 
 /// The nearest view that shows all of the boxes (at least one, none empty) from a direction; `up` is unit.
 Camera fit_along(std::span<const Box> boxes, const glm::dvec3& towards_eye, const glm::dvec3& up, double aspect,
@@ -18,4 +18,4 @@ Camera fit_along(std::span<const Box> boxes, const glm::dvec3& towards_eye, cons
 Camera fit_camera(std::span<const Box> boxes, const glm::dvec3& up, double aspect, double view_angle = 30,
                   const glm::dvec3& facing = glm::dvec3(0));
 
-}  // namespace surfcast
+}  // namespace surfcast::geometry

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace surfcast {
+namespace surfcast::geometry {
 namespace {
 
 constexpr uint32_t kCells = uint32_t{1} << kMortonDepth;
@@ -56,4 +56,4 @@ uint64_t morton_code(const RootCube& root, const glm::dvec3& point) {
   return interleave({cell(offset.x, root.side), cell(offset.y, root.side), cell(offset.z, root.side)});
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::geometry

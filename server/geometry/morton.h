@@ -5,7 +5,7 @@
 
 #include "geometry/box.h"
 
-namespace surfcast {
+namespace surfcast::geometry {
 
 /// Times that the cube is halved along each axis: three coordinates interleave into 63 bits.
 inline constexpr int kMortonDepth = 21;
@@ -25,4 +25,4 @@ glm::u32vec3 deinterleave(uint64_t code);
 /// Interleaved cell coordinates at kMortonDepth of a point in the cube; three bits per depth, the root's first.
 uint64_t morton_code(const RootCube& root, const glm::dvec3& point);
 
-}  // namespace surfcast
+}  // namespace surfcast::geometry

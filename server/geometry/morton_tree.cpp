@@ -4,7 +4,7 @@
 
 #include "base/contract.h"
 
-namespace surfcast {
+namespace surfcast::geometry {
 namespace {
 
 /// Where a run is halved: at the first code with the highest bit in which the run's codes differ; equal codes in the
@@ -69,4 +69,4 @@ void MortonTree::build(std::span<const uint64_t> codes, Run run) {
   nodes_[index] = node;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::geometry

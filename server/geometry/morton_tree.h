@@ -11,7 +11,7 @@
 
 #include "geometry/box.h"
 
-namespace surfcast {
+namespace surfcast::geometry {
 
 /// A binary tree of boxes over points in Morton order: each node is a run of points, halved where the highest bit that
 /// their codes differ in changes, so that its halves lie in different halves of an octree cell. Leaves are short runs.
@@ -36,7 +36,7 @@ class MortonTree {
   /// Calls `use(run)` for leaves with points within the reach of one of them of the box, and perhaps for others, until
   /// it returns false.
   template <typename Use>
-  void for_each_seen(const Box& box, const Use& use) const {
+  void for_each_in_reach(const Box& box, const Use& use) const {
     for_each_leaf([&box](const Node& node) { return squared_gap(node.box, box) <= node.squared_reach; }, use);
   }
 
@@ -72,4 +72,4 @@ class MortonTree {
   std::vector<Node> nodes_;
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::geometry

@@ -5,7 +5,7 @@
 #include <glm/geometric.hpp>
 #include <numbers>
 
-namespace surfcast {
+namespace surfcast::geometry {
 namespace {
 
 /// atan2 keeps small angles exact where acos loses them.
@@ -46,4 +46,4 @@ std::optional<NormalCone> united(const NormalCone& a, const NormalCone& b) {
   return NormalCone{glm::vec3(axis), static_cast<float>(half + kRounding)};
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::geometry

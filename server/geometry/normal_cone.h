@@ -4,7 +4,7 @@
 #include <optional>
 #include <span>
 
-namespace surfcast {
+namespace surfcast::geometry {
 
 /// Holds a set of unit normals: all are within `half_angle` of the axis.
 struct NormalCone {
@@ -18,4 +18,4 @@ std::optional<NormalCone> normal_cone(std::span<const glm::vec3> normals);
 /// A cone that holds both; none when it would hold half of all directions, since it then rules nothing out.
 std::optional<NormalCone> united(const NormalCone& a, const NormalCone& b);
 
-}  // namespace surfcast
+}  // namespace surfcast::geometry

@@ -7,7 +7,7 @@
 #include <epoxy/egl.h>
 #include <epoxy/gl.h>
 
-namespace surfcast {
+namespace surfcast::gl {
 namespace {
 
 constexpr EGLint kNoAttributes[] = {EGL_NONE};
@@ -120,4 +120,4 @@ EglContext::~EglContext() {
   eglTerminate(display_);
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::gl

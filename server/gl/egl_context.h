@@ -5,7 +5,7 @@
 
 #include "base/result.h"
 
-namespace surfcast {
+namespace surfcast::gl {
 
 /// A current OpenGL 4.5 core context without a window. Belongs to the thread that created it.
 ///
@@ -36,4 +36,4 @@ class EglContext {
   bool software_ = false;
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::gl

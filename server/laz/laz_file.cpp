@@ -4,7 +4,7 @@
 
 #include "base/contract.h"
 
-namespace surfcast {
+namespace surfcast::laz {
 
 Status LazChunkReader::read(std::span<std::byte> records) {
   SURFCAST_EXPECTS(records.size() <= left_);
@@ -35,4 +35,4 @@ Result<LazChunkReader> LazFile::read_chunk(const laz::Chunk& chunk) const {
   return LazChunkReader(std::move(*decoder), chunk.count * layout_.length);
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::laz

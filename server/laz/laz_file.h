@@ -11,7 +11,7 @@
 #include "laz/record_decoder.h"
 #include "laz/record_layout.h"
 
-namespace surfcast {
+namespace surfcast::laz {
 
 /// What the header of a LAZ file says about its points.
 struct LazPoints {
@@ -63,4 +63,4 @@ class LazFile {
   std::vector<laz::Chunk> chunks_;
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::laz

@@ -25,10 +25,10 @@ class BitModel {
 
  private:
   [[gnu::noinline]] void renew() {
-    constexpr uint32_t kMostBits = 1U << kBitShift;
+    constexpr uint32_t kMaxBits = 1U << kBitShift;
     constexpr uint32_t kLongestInterval = 64;
     bits_ += interval_;
-    if (bits_ > kMostBits) {
+    if (bits_ > kMaxBits) {
       bits_ = (bits_ + 1) / 2;
       zeros_ = (zeros_ + 1) / 2;
       if (zeros_ == bits_) ++bits_;
@@ -90,10 +90,10 @@ class SymbolModel {
   static constexpr uint16_t kBeyond = 0xFFFF;  ///< the padding: above any target
 
   [[gnu::noinline]] void renew() {
-    constexpr uint32_t kMostCounts = 1U << kSymbolShift;
+    constexpr uint32_t kMaxCounts = 1U << kSymbolShift;
     constexpr uint32_t kLongestInterval = (kSymbols + 6) * 8;
     total_ += interval_;
-    if (total_ > kMostCounts) {
+    if (total_ > kMaxCounts) {
       total_ = 0;
       for (uint16_t& n : counts_) total_ += n = static_cast<uint16_t>((n + 1) / 2);
     }

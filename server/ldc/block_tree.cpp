@@ -4,7 +4,7 @@
 
 #include "base/contract.h"
 
-namespace surfcast {
+namespace surfcast::ldc {
 namespace {
 
 /// Adds block `index` to the children of its parent. False when they would not lie side by side.
@@ -37,4 +37,4 @@ BlockTree::BlockTree(std::vector<BlockEntry> blocks) : blocks_(std::move(blocks)
   }
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::ldc

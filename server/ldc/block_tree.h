@@ -10,7 +10,7 @@
 #include "geometry/normal_cone.h"
 #include "ldc/octree_key.h"
 
-namespace surfcast {
+namespace surfcast::ldc {
 
 /// What is known of a block without touching its bytes: enough to select with.
 struct BlockEntry {
@@ -19,11 +19,11 @@ struct BlockEntry {
   uint32_t parent = kNoParent;  ///< index of the block that stands for it and its siblings; below its own index
   int level = 0;                ///< 0: surfels of the source; else one more than its highest child's
   OctreeKey key;                ///< the octree cell that holds it
-  Box bounds;                   ///< of the surfel centres, world units
+  geometry::Box bounds;         ///< of the surfel centres, world units
   /// Median radius of its surfels, world units; of a coarse block at least that of a full grid of its rays.
   double spacing = 0;
-  double max_radius = 0;              ///< largest radius of its surfels: what `bounds` must grow by to hold the discs
-  std::optional<NormalCone> normals;  ///< holds all its normals; none when the model is not oriented
+  double max_radius = 0;  ///< largest radius of its surfels: what `bounds` must grow by to hold the discs
+  std::optional<geometry::NormalCone> normals;  ///< holds all its normals; none when the model is not oriented
   uint32_t surfels = 0;
   uint64_t offset = 0;  ///< of its bytes in the file
   uint32_t bytes = 0;
@@ -57,4 +57,4 @@ class BlockTree {
   std::vector<uint32_t> roots_;
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::ldc

@@ -2,7 +2,7 @@
 
 #include <string_view>
 
-namespace surfcast {
+namespace surfcast::ldc {
 
 /// True for the scalar attributes that coarse surfels have: intensity, which is averaged, and classification, of which
 /// the class of the largest area is kept. Of others (times, numbers of returns) no average means anything.
@@ -10,4 +10,4 @@ inline bool is_coarse_scalar(std::string_view name) {
   return name == "intensity" || name == "classification";
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::ldc

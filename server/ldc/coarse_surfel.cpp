@@ -8,7 +8,7 @@
 #include "ldc/coarse_scalars.h"
 #include "surfel/srgb.h"
 
-namespace surfcast {
+namespace surfcast::ldc {
 namespace {
 
 /// Where a coarse surfel keeps the scalar attribute of that name.
@@ -26,7 +26,7 @@ double round_to_digits(double mean) {
 }
 
 glm::u16vec3 to_color(const glm::vec3& light, int bits) {
-  return from_linear(light, 8) * static_cast<uint16_t>(bits == 8 ? 1 : 257);
+  return surfel::from_linear(light, 8) * static_cast<uint16_t>(bits == 8 ? 1 : 257);
 }
 
 /// The nearest value of type T.
@@ -42,31 +42,33 @@ T to_value(double mean) {
   }
 }
 
-ScalarAttribute without_values(const ScalarAttribute& scalar) {
+surfel::ScalarAttribute without_values(const surfel::ScalarAttribute& scalar) {
   return {scalar.name,
-          std::visit([](const auto& values) { return ScalarValues(std::decay_t<decltype(values)>()); }, scalar.values)};
+          std::visit([](const auto& values) { return surfel::ScalarValues(std::decay_t<decltype(values)>()); },
+                     scalar.values)};
 }
 
 }  // namespace
 
-CoarseAttributes coarse_attributes(const SurfelCloud& cloud) {
+CoarseAttributes coarse_attributes(const surfel::SurfelCloud& cloud) {
   CoarseAttributes attributes{cloud.oriented, cloud.z_up, cloud.colors ? cloud.colors->bits : 0, {}};
-  for (const ScalarAttribute& scalar : cloud.scalars) {
+  for (const surfel::ScalarAttribute& scalar : cloud.scalars) {
     if (is_coarse_scalar(scalar.name)) attributes.scalars.push_back(without_values(scalar));
   }
   return attributes;
 }
 
-std::vector<CoarseSurfel> sample_surfels(const SurfelCloud& cloud, std::span<const uint32_t> members, float largest) {
+std::vector<CoarseSurfel> sample_surfels(const surfel::SurfelCloud& cloud, std::span<const uint32_t> members,
+                                         float largest) {
   std::vector<CoarseSurfel> surfels(members.size());
   for (size_t i = 0; i < members.size(); ++i) {
     const uint32_t member = members[i];
     surfels[i].position = cloud.positions[member];
     surfels[i].normal = cloud.normals[member];
     surfels[i].radius = std::min(cloud.radii[member], largest);
-    if (cloud.colors) surfels[i].light = to_linear(cloud.colors->values[member], cloud.colors->bits);
+    if (cloud.colors) surfels[i].light = surfel::to_linear(cloud.colors->values[member], cloud.colors->bits);
   }
-  for (const ScalarAttribute& scalar : cloud.scalars) {
+  for (const surfel::ScalarAttribute& scalar : cloud.scalars) {
     if (!is_coarse_scalar(scalar.name)) continue;
     std::visit(
         [&](const auto& values) {
@@ -79,21 +81,21 @@ std::vector<CoarseSurfel> sample_surfels(const SurfelCloud& cloud, std::span<con
   return surfels;
 }
 
-SurfelCloud make_coarse_cloud(std::span<const CoarseSurfel> surfels, const CoarseAttributes& attributes) {
-  SurfelCloud cloud;
+surfel::SurfelCloud make_coarse_cloud(std::span<const CoarseSurfel> surfels, const CoarseAttributes& attributes) {
+  surfel::SurfelCloud cloud;
   cloud.estimated_normals = true;
   cloud.estimated_radii = true;
   cloud.oriented = attributes.oriented;
   cloud.z_up = attributes.z_up;
   cloud.scalars = attributes.scalars;
   cloud.sources = {{"", 0, surfels.size(), std::nullopt}};
-  if (attributes.color_bits > 0) cloud.colors = ColorAttribute{attributes.color_bits, {}};
+  if (attributes.color_bits > 0) cloud.colors = surfel::ColorAttribute{attributes.color_bits, {}};
   for (CoarseSurfel surfel : surfels) {
     cloud.positions.push_back(surfel.position);
     cloud.normals.push_back(surfel.normal);
     cloud.radii.push_back(surfel.radius);
     if (cloud.colors) cloud.colors->values.push_back(to_color(surfel.light, attributes.color_bits));
-    for (ScalarAttribute& scalar : cloud.scalars) {
+    for (surfel::ScalarAttribute& scalar : cloud.scalars) {
       const double value = slot(surfel, scalar.name);
       const double mean = scalar.name == "intensity" ? round_to_digits(value) : value;
       std::visit(
@@ -106,4 +108,4 @@ SurfelCloud make_coarse_cloud(std::span<const CoarseSurfel> surfels, const Coars
   return cloud;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::ldc

@@ -7,7 +7,7 @@
 
 #include "surfel/surfel_cloud.h"
 
-namespace surfcast {
+namespace surfcast::ldc {
 
 /// A surfel on its way through the levels: of the source, or an average of several. Colour stays linear and intensity
 /// unrounded until a level is stored, so that no level adds its rounding to the next.
@@ -24,16 +24,17 @@ struct CoarseSurfel {
 struct CoarseAttributes {
   bool oriented = false;
   bool z_up = true;
-  int color_bits = 0;                    ///< 0 without colour
-  std::vector<ScalarAttribute> scalars;  ///< names and types in the order of the model, without values
+  int color_bits = 0;                            ///< 0 without colour
+  std::vector<surfel::ScalarAttribute> scalars;  ///< names and types in the order of the model, without values
 };
 
-CoarseAttributes coarse_attributes(const SurfelCloud& cloud);
+CoarseAttributes coarse_attributes(const surfel::SurfelCloud& cloud);
 
 /// Some surfels of a cloud as they are, but none with a radius above `largest`.
-std::vector<CoarseSurfel> sample_surfels(const SurfelCloud& cloud, std::span<const uint32_t> members, float largest);
+std::vector<CoarseSurfel> sample_surfels(const surfel::SurfelCloud& cloud, std::span<const uint32_t> members,
+                                         float largest);
 
 /// Coarse surfels as a cloud, in their order. Weights are left to be found.
-SurfelCloud make_coarse_cloud(std::span<const CoarseSurfel> surfels, const CoarseAttributes& attributes);
+surfel::SurfelCloud make_coarse_cloud(std::span<const CoarseSurfel> surfels, const CoarseAttributes& attributes);
 
-}  // namespace surfcast
+}  // namespace surfcast::ldc

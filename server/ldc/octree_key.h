@@ -5,12 +5,12 @@
 
 #include "geometry/morton.h"
 
-namespace surfcast {
+namespace surfcast::ldc {
 
 /// A cell of the octree over a model: the root cube, halved `depth` times along each axis. Parent and children follow
 /// from the coordinates, so no links are stored.
 struct OctreeKey {
-  static constexpr int kMaxDepth = kMortonDepth;
+  static constexpr int kMaxDepth = geometry::kMortonDepth;
 
   uint8_t depth = 0;  ///< 0 is the root
   uint32_t x = 0;     ///< counted in cells of this depth
@@ -42,4 +42,4 @@ inline uint32_t octant_of_code(uint64_t code, int depth) {
   return static_cast<uint32_t>(code >> (3 * (OctreeKey::kMaxDepth - 1 - depth))) & 7u;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::ldc

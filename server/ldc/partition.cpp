@@ -11,7 +11,7 @@
 #include "base/contract.h"
 #include "ldc/lattice.h"
 
-namespace surfcast {
+namespace surfcast::ldc {
 namespace {
 
 /// A surfel on its way into a block. Sorting by code lines the cells of every depth up as runs.
@@ -24,14 +24,14 @@ struct Member {
 
 using Run = std::span<Member>;
 
-bool grid_reproduces(const Grid& grid, const glm::dvec3& p) {
+bool grid_reproduces(const surfel::Grid& grid, const glm::dvec3& p) {
   // Beyond 2^52 steps from the offset the nearest index is no longer certain.
   const glm::dvec3 steps = glm::abs((p - grid.offset) / grid.scale);
   constexpr double kLimit = 4503599627370496.0;
   return steps.x < kLimit && steps.y < kLimit && steps.z < kLimit && grid.position(grid.index(p)) == p;
 }
 
-std::optional<Grid> usable_grid(const SurfelCloud& cloud, const SourceRange& source) {
+std::optional<surfel::Grid> usable_grid(const surfel::SurfelCloud& cloud, const surfel::SourceRange& source) {
   if (!source.grid) return std::nullopt;
   const std::span positions = std::span(cloud.positions).subspan(source.first, source.count);
   const bool exact = std::all_of(positions.begin(), positions.end(),
@@ -40,12 +40,13 @@ std::optional<Grid> usable_grid(const SurfelCloud& cloud, const SourceRange& sou
 }
 
 /// The members of the core in the order of their sources, and the grid of each group.
-std::vector<Member> collect_members(const SurfelCloud& cloud, size_t core, std::vector<std::optional<Grid>>& grids) {
+std::vector<Member> collect_members(const surfel::SurfelCloud& cloud, size_t core,
+                                    std::vector<std::optional<surfel::Grid>>& grids) {
   std::vector<Member> members;
   members.reserve(core);
-  for (const SourceRange& source : cloud.sources) {
+  for (const surfel::SourceRange& source : cloud.sources) {
     if (source.first >= core) break;
-    const std::optional<Grid> grid = usable_grid(cloud, source);
+    const std::optional<surfel::Grid> grid = usable_grid(cloud, source);
     const auto found = std::find(grids.begin(), grids.end(), grid);
     const auto group = static_cast<uint32_t>(found - grids.begin());
     if (found == grids.end()) grids.push_back(grid);
@@ -55,9 +56,10 @@ std::vector<Member> collect_members(const SurfelCloud& cloud, size_t core, std::
   return members;
 }
 
-void sort_by_code(const SurfelCloud& cloud, const RootCube& root, std::vector<Member>& members) {
-  oneapi::tbb::parallel_for(size_t{0}, members.size(),
-                            [&](size_t i) { members[i].code = morton_code(root, cloud.positions[members[i].surfel]); });
+void sort_by_code(const surfel::SurfelCloud& cloud, const geometry::RootCube& root, std::vector<Member>& members) {
+  oneapi::tbb::parallel_for(size_t{0}, members.size(), [&](size_t i) {
+    members[i].code = geometry::morton_code(root, cloud.positions[members[i].surfel]);
+  });
   oneapi::tbb::parallel_sort(members);
 }
 
@@ -65,7 +67,7 @@ void sort_by_code(const SurfelCloud& cloud, const RootCube& root, std::vector<Me
 struct Part {
   uint32_t group = 0;
   Run members;
-  Box box;
+  geometry::Box box;
   float smallest_radius = std::numeric_limits<float>::infinity();
   size_t count = 0;
 };
@@ -79,7 +81,7 @@ struct Cell {
 
 class Splitter {
  public:
-  Splitter(const SurfelCloud& cloud, const Region& region, const PartitionOptions& options)
+  Splitter(const surfel::SurfelCloud& cloud, const Region& region, const PartitionOptions& options)
       : cloud_(cloud), region_(region), options_(options) {}
 
   Partition partition() && {
@@ -98,8 +100,8 @@ class Splitter {
 
  private:
   /// The lattice for a block of such members; none when they need more index bits than a block has.
-  [[nodiscard]] std::optional<Grid> lattice(const Part& part) const {
-    const Grid grid = grids_[part.group].value_or(
+  [[nodiscard]] std::optional<surfel::Grid> lattice(const Part& part) const {
+    const surfel::Grid grid = grids_[part.group].value_or(
         choose_lattice(part.box, position_tolerance(double{part.smallest_radius}, options_.precision)));
     return indices_fit(grid, part.box, part.count) ? std::optional(grid) : std::nullopt;
   }
@@ -220,7 +222,7 @@ class Splitter {
   /// Halves members of one group by the median along their longest side, down to coincident points and single ones.
   void halve(Run run, const OctreeKey& key, Leaf& leaf) {
     const Part part = make_part(run);
-    const std::optional<Grid> grid = lattice(part);
+    const std::optional<surfel::Grid> grid = lattice(part);
     if (grid && run.size() <= options_.max_surfels) {
       leaf.runs.push_back({static_cast<uint32_t>(result_.blocks.size()), result_.order.size(), run.size()});
       result_.blocks.push_back({key, *grid, result_.order.size(), run.size()});
@@ -239,21 +241,21 @@ class Splitter {
     halve({middle, run.end()}, key, leaf);
   }
 
-  const SurfelCloud& cloud_;
+  const surfel::SurfelCloud& cloud_;
   const Region& region_;
   const PartitionOptions& options_;
-  std::vector<std::optional<Grid>> grids_;
+  std::vector<std::optional<surfel::Grid>> grids_;
   std::vector<Member> members_;
   Partition result_;
 };
 
 }  // namespace
 
-Region whole_region(const SurfelCloud& cloud) {
-  return {root_cube(cloud.bounds()), {}, true, cloud.size()};
+Region whole_region(const surfel::SurfelCloud& cloud) {
+  return {geometry::root_cube(cloud.bounds()), {}, true, cloud.size()};
 }
 
-Partition partition_region(const SurfelCloud& cloud, const Region& region, const PartitionOptions& options) {
+Partition partition_region(const surfel::SurfelCloud& cloud, const Region& region, const PartitionOptions& options) {
   SURFCAST_EXPECTS(cloud.size() <= std::numeric_limits<uint32_t>::max() && region.core <= cloud.size());
   if (region.core == 0) return {};
   Partition partition = Splitter(cloud, region, options).partition();
@@ -261,4 +263,4 @@ Partition partition_region(const SurfelCloud& cloud, const Region& region, const
   return partition;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::ldc

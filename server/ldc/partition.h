@@ -8,7 +8,7 @@
 #include "ldc/octree_key.h"
 #include "surfel/surfel_cloud.h"
 
-namespace surfcast {
+namespace surfcast::ldc {
 
 struct PartitionOptions {
   uint32_t max_surfels = 16384;     ///< a cell with at most this many is a leaf
@@ -18,19 +18,19 @@ struct PartitionOptions {
 
 /// Which part of a model a cloud is: its first `core` surfels are what lies in the cell, others lie around it.
 struct Region {
-  RootCube root;      ///< of the whole model
-  OctreeKey cell;     ///< holds the core
-  bool whole = true;  ///< all surfels of the cell are here; otherwise those of some of its eight parts
+  geometry::RootCube root;  ///< of the whole model
+  OctreeKey cell;           ///< holds the core
+  bool whole = true;        ///< all surfels of the cell are here; otherwise those of some of its eight parts
   size_t core = 0;
 };
 
 /// The region of a cloud that is a whole model.
-Region whole_region(const SurfelCloud& cloud);
+Region whole_region(const surfel::SurfelCloud& cloud);
 
 /// One block of the finest level: a run of Partition::order.
 struct BlockPlan {
-  OctreeKey key;  ///< the cell that holds all its surfels; several blocks may name the same cell
-  Grid grid;      ///< the lattice that its positions are stored on
+  OctreeKey key;      ///< the cell that holds all its surfels; several blocks may name the same cell
+  surfel::Grid grid;  ///< the lattice that its positions are stored on
   size_t first = 0;
   size_t count = 0;
 };
@@ -58,6 +58,6 @@ struct Partition {
 /// Cuts the core of a region into leaves of the octree, and these into blocks. Sources on different grids never share a
 /// block; a source whose positions its grid does not give back exactly is treated as one without grid. A leaf depends
 /// on the surfels in its parent cell alone, not on how a model is cut into regions. Deterministic.
-Partition partition_region(const SurfelCloud& cloud, const Region& region, const PartitionOptions& options);
+Partition partition_region(const surfel::SurfelCloud& cloud, const Region& region, const PartitionOptions& options);
 
-}  // namespace surfcast
+}  // namespace surfcast::ldc

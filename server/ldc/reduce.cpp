@@ -11,7 +11,7 @@
 
 #include "base/contract.h"
 
-namespace surfcast {
+namespace surfcast::ldc {
 namespace {
 
 /// A coarser level is worth its bytes when it has at most this part of the surfels below it. A surface makes it 1/4.
@@ -194,14 +194,14 @@ std::vector<CoarseSurfel> resample(std::span<const CoarseSurfel> surfels, const 
 }
 
 /// Moves the surfels to the lattice, keeps them in their cell, and sorts them along a Morton curve.
-void snap(std::vector<CoarseSurfel>& surfels, const Grid& grid, const OctreeKey& cell, int64_t steps) {
+void snap(std::vector<CoarseSurfel>& surfels, const surfel::Grid& grid, const OctreeKey& cell, int64_t steps) {
   const glm::i64vec3 lowest = glm::i64vec3(cell.x, cell.y, cell.z) * steps;
   std::vector<std::pair<uint64_t, CoarseSurfel>> sorted;
   sorted.reserve(surfels.size());
   for (CoarseSurfel s : surfels) {
     const glm::i64vec3 index = glm::clamp(grid.index(s.position), lowest, lowest + (steps - 1));
     s.position = grid.position(index);
-    sorted.emplace_back(interleave(glm::u32vec3(index - lowest)), s);
+    sorted.emplace_back(geometry::interleave(glm::u32vec3(index - lowest)), s);
   }
   std::stable_sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::transform(sorted.begin(), sorted.end(), surfels.begin(), [](const auto& entry) { return entry.second; });
@@ -214,7 +214,8 @@ bool few_enough(size_t coarse, size_t fine) {
 
 }  // namespace
 
-CoarseCell reduce(std::span<const CoarseSurfel> surfels, const RootCube& root, const OctreeKey& cell, bool oriented) {
+CoarseCell reduce(std::span<const CoarseSurfel> surfels, const geometry::RootCube& root, const OctreeKey& cell,
+                  bool oriented) {
   SURFCAST_EXPECTS(!surfels.empty());
   const double side = std::ldexp(root.side, -cell.depth);
   const glm::dvec3 min = root.min + glm::dvec3(cell.x, cell.y, cell.z) * side;
@@ -222,10 +223,10 @@ CoarseCell reduce(std::span<const CoarseSurfel> surfels, const RootCube& root, c
     const Cube cube{min, side / lines, lines};
     std::vector<CoarseSurfel> averages = resample(surfels, cube, oriented);
     if (lines > 1 && !few_enough(averages.size(), surfels.size())) continue;
-    const Grid grid{glm::dvec3(cube.spacing / kStepsPerRay), root.min};
+    const surfel::Grid grid{glm::dvec3(cube.spacing / kStepsPerRay), root.min};
     snap(averages, grid, cell, int64_t{lines} * kStepsPerRay);
     return {grid, static_cast<float>(kGridRadius * cube.spacing), std::move(averages)};
   }
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::ldc

@@ -8,7 +8,7 @@
 #include "ldc/octree_key.h"
 #include "surfel/grid.h"
 
-namespace surfcast {
+namespace surfcast::ldc {
 
 /// Grid lines of a layered depth cube along each side of its cell.
 inline constexpr int kLdcLines = 64;
@@ -17,7 +17,7 @@ inline constexpr size_t kMaxCoarseSurfels = 16384;
 
 /// The coarse surfels of one octree cell.
 struct CoarseCell {
-  Grid grid;          ///< the lattice their positions lie on
+  surfel::Grid grid;  ///< the lattice their positions lie on
   float spacing = 0;  ///< radius of a surfel of a surface that all rays meet, world units
   std::vector<CoarseSurfel> surfels;
 };
@@ -29,6 +29,7 @@ struct CoarseCell {
 ///
 /// Where that leaves too many (vegetation, layers of surface closer than the rays), rays twice as far apart are taken
 /// for the cell, again and again. A surfel alone on its ray stays as it is. Deterministic.
-CoarseCell reduce(std::span<const CoarseSurfel> surfels, const RootCube& root, const OctreeKey& cell, bool oriented);
+CoarseCell reduce(std::span<const CoarseSurfel> surfels, const geometry::RootCube& root, const OctreeKey& cell,
+                  bool oriented);
 
-}  // namespace surfcast
+}  // namespace surfcast::ldc

@@ -10,10 +10,10 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include "base/contract.h"
-#include "ldc/raise.h"
+#include "ldc/coarsen.h"
 #include "surfel/drawn_radius.h"
 
-namespace surfcast {
+namespace surfcast::ldc {
 namespace {
 
 std::vector<TreeBlock> leaf_blocks(const Partition& partition) {
@@ -25,15 +25,15 @@ std::vector<TreeBlock> leaf_blocks(const Partition& partition) {
   return blocks;
 }
 
-float largest_drawn_radius_of(const SurfelCloud& cloud, std::span<const uint32_t> members) {
+float largest_drawn_radius_of(const surfel::SurfelCloud& cloud, std::span<const uint32_t> members) {
   std::vector<float> radii;
   radii.reserve(members.size());
   for (const uint32_t member : members) radii.push_back(cloud.radii[member]);
-  return largest_drawn_radius(radii);
+  return surfel::largest_drawn_radius(radii);
 }
 
 /// For every block the largest radius that its surfels are drawn with.
-std::vector<float> largest_radii(const SurfelCloud& cloud, std::span<const TreeBlock> blocks) {
+std::vector<float> largest_radii(const surfel::SurfelCloud& cloud, std::span<const TreeBlock> blocks) {
   std::vector<float> largest(blocks.size());
   oneapi::tbb::parallel_for(size_t{0}, blocks.size(),
                             [&](size_t i) { largest[i] = largest_drawn_radius_of(cloud, blocks[i].members); });
@@ -59,19 +59,19 @@ Front leaf_front(const Partition& partition, std::span<const float> largest, uin
 void add_levels(Front& front, int last, LevelSources& sources, uint32_t first_number, std::vector<TreeBlock>& blocks) {
   for (int depth = deepest(front) - 1; depth >= last; --depth) {
     const auto number = static_cast<uint32_t>(first_number + blocks.size());
-    std::vector<TreeBlock> level = raise(front, depth, sources, number);
+    std::vector<TreeBlock> level = coarsen(front, depth, sources, number);
     blocks.insert(blocks.end(), std::make_move_iterator(level.begin()), std::make_move_iterator(level.end()));
   }
 }
 
-std::vector<CoarseSurfel> surfels_around(const SurfelCloud& cloud, size_t core) {
+std::vector<CoarseSurfel> surfels_around(const surfel::SurfelCloud& cloud, size_t core) {
   std::vector<uint32_t> members(cloud.size() - core);
   std::iota(members.begin(), members.end(), static_cast<uint32_t>(core));
   return sample_surfels(cloud, members, std::numeric_limits<float>::max());
 }
 
 /// What is left of the front is sampled, so that it does not need the cloud any longer.
-void finish(Front& front, const SurfelCloud& cloud) {
+void finish(Front& front, const surfel::SurfelCloud& cloud) {
   for (FrontCell& cell : front) {
     if (cell.members.empty()) continue;
     cell.surfels = sample_surfels(cloud, cell.members, cell.largest_radius);
@@ -81,7 +81,7 @@ void finish(Front& front, const SurfelCloud& cloud) {
 
 }  // namespace
 
-Subtree build_subtree(const SurfelCloud& cloud, const Region& region, const PartitionOptions& options,
+Subtree build_subtree(const surfel::SurfelCloud& cloud, const Region& region, const PartitionOptions& options,
                       uint32_t first_number) {
   SURFCAST_EXPECTS(cloud.weights.size() == cloud.size());
   const Partition partition = partition_region(cloud, region, options);
@@ -95,12 +95,12 @@ Subtree build_subtree(const SurfelCloud& cloud, const Region& region, const Part
   return subtree;
 }
 
-std::vector<TreeBlock> build_levels_above(Front front, const RootCube& root, const CoarseAttributes& attributes,
-                                          uint32_t first_number) {
+std::vector<TreeBlock> build_levels_above(Front front, const geometry::RootCube& root,
+                                          const CoarseAttributes& attributes, uint32_t first_number) {
   std::vector<TreeBlock> blocks;
   LevelSources sources{root, attributes};
   add_levels(front, 0, sources, first_number, blocks);
   return blocks;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::ldc

@@ -9,16 +9,16 @@
 #include "ldc/partition.h"
 #include "surfel/surfel_cloud.h"
 
-namespace surfcast {
+namespace surfcast::ldc {
 
 /// A block of a model before it is encoded.
 struct TreeBlock {
   OctreeKey key;
-  Grid grid;                            ///< the lattice that its positions are stored on
-  std::vector<uint32_t> members;        ///< of a leaf: surfels of the cloud it was made from
-  std::optional<SurfelCloud> coarse;    ///< of a coarse block: its surfels, with weights
-  std::vector<uint32_t> children = {};  ///< numbers of blocks before this one
-  float ray_spacing = 0;                ///< of a coarse block: see CoarseCell::spacing
+  surfel::Grid grid;                          ///< the lattice that its positions are stored on
+  std::vector<uint32_t> members;              ///< of a leaf: surfels of the cloud it was made from
+  std::optional<surfel::SurfelCloud> coarse;  ///< of a coarse block: its surfels, with weights
+  std::vector<uint32_t> children = {};        ///< numbers of blocks before this one
+  float ray_spacing = 0;                      ///< of a coarse block: see CoarseCell::spacing
 };
 
 /// A cell as coarse as the levels made so far show it.
@@ -42,11 +42,11 @@ struct Subtree {
 /// Makes the blocks of a region: leaves, and coarse blocks for all cells above them up to the region's own cell. A
 /// region that is not whole ends with the eight parts of its cell. The cloud has weights; what lies around the core
 /// makes the coarse levels right at its border, and should reach 1/16 of the cell's side.
-Subtree build_subtree(const SurfelCloud& cloud, const Region& region, const PartitionOptions& options,
+Subtree build_subtree(const surfel::SurfelCloud& cloud, const Region& region, const PartitionOptions& options,
                       uint32_t first_number);
 
 /// Makes the coarse blocks above the fronts of all regions of a model, up to the root.
-std::vector<TreeBlock> build_levels_above(Front front, const RootCube& root, const CoarseAttributes& attributes,
-                                          uint32_t first_number);
+std::vector<TreeBlock> build_levels_above(Front front, const geometry::RootCube& root,
+                                          const CoarseAttributes& attributes, uint32_t first_number);
 
-}  // namespace surfcast
+}  // namespace surfcast::ldc

@@ -8,7 +8,7 @@
 #include "model/quantize.h"
 #include "model/scalar_bits.h"
 
-namespace surfcast {
+namespace surfcast::model {
 namespace {
 
 bool all_at_most(const Column& column, uint64_t limit) {
@@ -62,15 +62,16 @@ void read_colors(std::span<const Field> fields, int bits, DecodedBlock& block) {
 }
 
 template <size_t... I>
-ScalarValues empty_values(ScalarCode type, std::index_sequence<I...> /*types*/) {
-  ScalarValues values;
+surfel::ScalarValues empty_values(ScalarCode type, std::index_sequence<I...> /*types*/) {
+  surfel::ScalarValues values;
   ((type == I ? void(values.emplace<I>()) : void()), ...);
   return values;
 }
 
-ScalarAttribute read_scalar(const ScalarColumn& attribute, const Column& column) {
-  ScalarAttribute scalar{attribute.name,
-                         empty_values(attribute.type, std::make_index_sequence<std::variant_size_v<ScalarValues>>())};
+surfel::ScalarAttribute read_scalar(const ScalarColumn& attribute, const Column& column) {
+  surfel::ScalarAttribute scalar{
+      attribute.name,
+      empty_values(attribute.type, std::make_index_sequence<std::variant_size_v<surfel::ScalarValues>>())};
   std::visit(
       [&](auto& values) {
         using T = typename std::decay_t<decltype(values)>::value_type;
@@ -110,4 +111,4 @@ Result<DecodedBlock> decode_block(std::span<const std::byte> bytes, const BlockS
   return block;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::model

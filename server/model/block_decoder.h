@@ -7,7 +7,7 @@
 #include "base/result.h"
 #include "model/model_file.h"
 
-namespace surfcast {
+namespace surfcast::model {
 
 /// Type of a scalar attribute: its index in the variant ScalarValues.
 using ScalarCode = uint8_t;
@@ -21,7 +21,7 @@ struct ScalarColumn {
 
 /// What a block's bytes must hold, known from the tables of the file.
 struct BlockShape {
-  Grid grid;
+  surfel::Grid grid;
   glm::i64vec3 origin{0};  ///< lowest lattice index of its surfels
   glm::u32vec3 extent{0};  ///< largest index, counted from `origin`
   uint32_t surfels = 0;
@@ -33,4 +33,4 @@ struct BlockShape {
 /// says.
 Result<DecodedBlock> decode_block(std::span<const std::byte> bytes, const BlockShape& shape, size_t scalars);
 
-}  // namespace surfcast
+}  // namespace surfcast::model

@@ -9,7 +9,7 @@
 #include "model/quantize.h"
 #include "model/scalar_bits.h"
 
-namespace surfcast {
+namespace surfcast::model {
 namespace {
 
 using Members = std::span<const uint32_t>;
@@ -23,7 +23,8 @@ Column make_column(Members members, Value value) {
 }
 
 /// Lattice indices of the members, counted from the lowest, which becomes the block's origin.
-std::vector<glm::ivec3> make_indices(const SurfelCloud& cloud, Members members, const Grid& grid, EncodedBlock& block) {
+std::vector<glm::ivec3> make_indices(const surfel::SurfelCloud& cloud, Members members, const surfel::Grid& grid,
+                                     EncodedBlock& block) {
   std::vector<glm::i64vec3> absolute;
   absolute.reserve(members.size());
   for (const uint32_t surfel : members) absolute.push_back(grid.index(cloud.positions[surfel]));
@@ -49,7 +50,7 @@ Field position_field(std::span<const glm::ivec3> indices, std::span<const uint32
   return field;
 }
 
-Field normal_field(const SurfelCloud& cloud, Members members, int octahedral_half, EncodedBlock& block) {
+Field normal_field(const surfel::SurfelCloud& cloud, Members members, int octahedral_half, EncodedBlock& block) {
   Field field(2);
   std::vector<glm::vec3> decoded;
   for (const uint32_t surfel : members) {
@@ -58,11 +59,11 @@ Field normal_field(const SurfelCloud& cloud, Members members, int octahedral_hal
     field[1].push_back(code.y);
     decoded.push_back(decode_normal(code, octahedral_half));
   }
-  if (cloud.oriented) block.normals = normal_cone(decoded);
+  if (cloud.oriented) block.normals = geometry::normal_cone(decoded);
   return field;
 }
 
-Field radius_field(const SurfelCloud& cloud, Members members, int steps, EncodedBlock& block) {
+Field radius_field(const surfel::SurfelCloud& cloud, Members members, int steps, EncodedBlock& block) {
   Column codes = make_column(members, [&](uint32_t s) { return encode_logarithm(cloud.radii[s], steps); });
   Column sorted = codes;
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
@@ -72,7 +73,7 @@ Field radius_field(const SurfelCloud& cloud, Members members, int steps, Encoded
   return {std::move(codes)};
 }
 
-void append_colors(const ColorAttribute& colors, Members members, std::vector<Field>& fields) {
+void append_colors(const surfel::ColorAttribute& colors, Members members, std::vector<Field>& fields) {
   const auto& values = colors.values;
   fields.push_back({make_column(members, [&](uint32_t s) { return values[s].y; })});
   for (const int channel : {0, 2}) {
@@ -81,7 +82,7 @@ void append_colors(const ColorAttribute& colors, Members members, std::vector<Fi
   }
 }
 
-Field scalar_field(const ScalarAttribute& scalar, Members members) {
+Field scalar_field(const surfel::ScalarAttribute& scalar, Members members) {
   return {std::visit(
       [&](const auto& values) { return make_column(members, [&](uint32_t s) { return to_ordered_bits(values[s]); }); },
       scalar.values)};
@@ -89,7 +90,8 @@ Field scalar_field(const ScalarAttribute& scalar, Members members) {
 
 }  // namespace
 
-EncodedBlock encode_block(const SurfelCloud& cloud, std::span<const uint32_t> members, const Grid& grid) {
+EncodedBlock encode_block(const surfel::SurfelCloud& cloud, std::span<const uint32_t> members,
+                          const surfel::Grid& grid) {
   SURFCAST_EXPECTS(!members.empty());
   EncodedBlock block;
   block.grid = grid;
@@ -108,11 +110,11 @@ EncodedBlock encode_block(const SurfelCloud& cloud, std::span<const uint32_t> me
   fields.push_back(
       {make_column(ordered, [&](uint32_t s) { return encode_logarithm(cloud.weights[s], kWeightSteps); })});
   if (cloud.colors) append_colors(*cloud.colors, ordered, fields);
-  for (const ScalarAttribute& scalar : cloud.scalars) fields.push_back(scalar_field(scalar, ordered));
+  for (const surfel::ScalarAttribute& scalar : cloud.scalars) fields.push_back(scalar_field(scalar, ordered));
   block.bytes = {static_cast<std::byte>(precision.flags())};
   const std::vector<std::byte> packed = encode_fields(fields);
   block.bytes.insert(block.bytes.end(), packed.begin(), packed.end());
   return block;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::model

@@ -11,23 +11,24 @@
 #include "surfel/grid.h"
 #include "surfel/surfel_cloud.h"
 
-namespace surfcast {
+namespace surfcast::model {
 
 /// A block's bytes, and what the table of blocks says about it.
 struct EncodedBlock {
   std::vector<std::byte> bytes;
-  Grid grid;
+  surfel::Grid grid;
   glm::i64vec3 origin{0};  ///< lowest lattice index of its surfels
   glm::u32vec3 extent{0};  ///< largest index, counted from `origin`
   uint32_t surfels = 0;
   float spacing = 0;     ///< median radius
   float max_radius = 0;  ///< of the radii as they decode
-  std::optional<NormalCone> normals;
+  std::optional<geometry::NormalCone> normals;
   AttributeStatistics statistics{};  ///< of a block of the source's surfels, if wanted in the file
 };
 
 /// Encodes some surfels of a cloud, given in a spatial order, as one block on the given lattice. A cone is stated for
 /// oriented clouds.
-EncodedBlock encode_block(const SurfelCloud& cloud, std::span<const uint32_t> members, const Grid& grid);
+EncodedBlock encode_block(const surfel::SurfelCloud& cloud, std::span<const uint32_t> members,
+                          const surfel::Grid& grid);
 
-}  // namespace surfcast
+}  // namespace surfcast::model

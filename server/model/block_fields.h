@@ -6,7 +6,7 @@
 
 #include "model/quantize.h"
 
-namespace surfcast {
+namespace surfcast::model {
 
 /// The fields that every block has, in the order of the file. Green, red less green and blue less green follow when
 /// the model has colour (neighbouring channels differ by little), then one field for each scalar attribute.
@@ -48,4 +48,4 @@ inline uint64_t color_from_difference(uint64_t difference, uint64_t green, int b
   return (difference + green + range / 2) % range;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::model

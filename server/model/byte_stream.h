@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <vector>
 
-namespace surfcast {
+namespace surfcast::model {
 
 static_assert(std::endian::native == std::endian::little, "model files are little endian and read in place");
 
@@ -86,4 +86,4 @@ class ByteReader {
   bool ok_ = true;
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::model

@@ -10,7 +10,7 @@
 #include "base/contract.h"
 #include "model/byte_stream.h"
 
-namespace surfcast {
+namespace surfcast::model {
 namespace {
 
 /// Draco's 0 is the smallest and slowest, 10 the largest and fastest; docs/model-format.md has the measurement.
@@ -162,4 +162,4 @@ Result<std::vector<TableAttribute>> decode_table(std::span<const std::byte> byte
   return attributes;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::model

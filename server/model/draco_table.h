@@ -7,7 +7,7 @@
 
 #include "base/result.h"
 
-namespace surfcast {
+namespace surfcast::model {
 
 /// The type of an attribute of a table. Wider values would be coded with tables as large as their range.
 struct TableType {
@@ -32,4 +32,4 @@ std::vector<std::byte> encode_table(std::span<const TableAttribute> attributes);
 Result<std::vector<TableAttribute>> decode_table(std::span<const std::byte> bytes, std::span<const TableType> types,
                                                  uint32_t rows, size_t wanted);
 
-}  // namespace surfcast
+}  // namespace surfcast::model

@@ -7,7 +7,7 @@
 #include "model/byte_stream.h"
 #include "model/draco_table.h"
 
-namespace surfcast {
+namespace surfcast::model {
 namespace {
 
 constexpr int kMaxWidth = 8;    ///< bytes of a stored integer
@@ -144,4 +144,4 @@ Result<std::vector<Field>> decode_fields(std::span<const std::byte> bytes, std::
   return fields;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::model

@@ -7,7 +7,7 @@
 
 #include "base/result.h"
 
-namespace surfcast {
+namespace surfcast::model {
 
 /// One integer per surfel of a block.
 using Column = std::vector<uint64_t>;
@@ -28,9 +28,9 @@ ColumnPacking choose_packing(const Column& column);
 /// 16 bits, as one Draco point cloud (none when every column is constant).
 std::vector<std::byte> encode_fields(std::span<const Field> fields);
 
-/// Reads the first `wanted` fields of bytes that hold fields of that many columns each, with `rows` rows. Fails on bytes
-/// that do not hold just that.
+/// Reads the first `wanted` fields of bytes that hold fields of that many columns each, with `rows` rows. Fails on
+/// bytes that do not hold just that.
 Result<std::vector<Field>> decode_fields(std::span<const std::byte> bytes, std::span<const size_t> columns,
                                          uint32_t rows, size_t wanted);
 
-}  // namespace surfcast
+}  // namespace surfcast::model

@@ -5,7 +5,7 @@
 
 #include "geometry/fit_camera.h"
 
-namespace surfcast {
+namespace surfcast::model {
 namespace {
 
 constexpr double kViewAngle = 30;  // degrees, of the view that is chosen when none is asked for
@@ -13,7 +13,7 @@ constexpr double kViewAngle = 30;  // degrees, of the view that is chosen when n
 /// Mean normal of the whole model, from the cones of its leaves; zero where front and back are not known.
 glm::dvec3 mean_facing(const ModelFile& model) {
   glm::dvec3 sum(0);
-  for (const BlockEntry& block : model.blocks()) {
+  for (const ldc::BlockEntry& block : model.blocks()) {
     if (block.level == 0 && block.normals) sum += glm::dvec3(block.normals->axis) * static_cast<double>(block.surfels);
   }
   return sum / static_cast<double>(std::max<uint64_t>(model.info().surfels, 1));
@@ -21,9 +21,9 @@ glm::dvec3 mean_facing(const ModelFile& model) {
 
 /// Of the finest level, each with its discs. Together they follow the surface more closely than the model's own box,
 /// the corners of which are mostly empty.
-std::vector<Box> boxes_of_discs(const ModelFile& model) {
-  std::vector<Box> boxes;
-  for (const BlockEntry& block : model.blocks()) {
+std::vector<geometry::Box> boxes_of_discs(const ModelFile& model) {
+  std::vector<geometry::Box> boxes;
+  for (const ldc::BlockEntry& block : model.blocks()) {
     if (block.level > 0) continue;
     boxes.push_back({block.bounds.min - block.max_radius, block.bounds.max + block.max_radius});
   }
@@ -32,9 +32,9 @@ std::vector<Box> boxes_of_discs(const ModelFile& model) {
 
 }  // namespace
 
-Camera fit_model(const ModelFile& model, double aspect) {
+geometry::Camera fit_model(const ModelFile& model, double aspect) {
   const glm::dvec3 up = model.info().z_up ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
-  return fit_camera(boxes_of_discs(model), up, aspect, kViewAngle, mean_facing(model));
+  return geometry::fit_camera(boxes_of_discs(model), up, aspect, kViewAngle, mean_facing(model));
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::model

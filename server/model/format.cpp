@@ -12,7 +12,7 @@
 #include "model/byte_stream.h"
 #include "model/quantize.h"
 
-namespace surfcast {
+namespace surfcast::model {
 namespace {
 
 constexpr std::array<char, 8> kMagic{'S', 'U', 'R', 'F', 'C', 'A', 'S', 'T'};
@@ -41,21 +41,21 @@ Vector get_vector(ByteReader& reader) {
   return {x, y, z};
 }
 
-void put_cone(ByteWriter& writer, const std::optional<NormalCone>& cone) {
-  const NormalCone stored = cone.value_or(NormalCone{{0, 0, 1}, kNoCone});
+void put_cone(ByteWriter& writer, const std::optional<geometry::NormalCone>& cone) {
+  const geometry::NormalCone stored = cone.value_or(geometry::NormalCone{{0, 0, 1}, kNoCone});
   const glm::u16vec2 axis = encode_normal(stored.axis, kSourcePrecision.octahedral_half);
   writer.put(axis.x);
   writer.put(axis.y);
   writer.put(cone ? std::min(stored.half_angle + kAxisError, std::numbers::pi_v<float>) : kNoCone);
 }
 
-std::optional<NormalCone> get_cone(ByteReader& reader) {
+std::optional<geometry::NormalCone> get_cone(ByteReader& reader) {
   const auto largest = static_cast<uint16_t>(kSourcePrecision.max_normal_code());
   const auto u = std::min(reader.get<uint16_t>(), largest);
   const auto v = std::min(reader.get<uint16_t>(), largest);
   const auto half_angle = reader.get<float>();
   if (!(half_angle >= 0 && half_angle <= std::numbers::pi_v<float>)) return std::nullopt;
-  return NormalCone{decode_normal({u, v}, kSourcePrecision.octahedral_half), half_angle};
+  return geometry::NormalCone{decode_normal({u, v}, kSourcePrecision.octahedral_half), half_angle};
 }
 
 void put_block(ByteWriter& writer, const BlockRecord& block) {
@@ -63,7 +63,7 @@ void put_block(ByteWriter& writer, const BlockRecord& block) {
   writer.put(block.checksum);
   put_vector(writer, block.origin);
   put_vector(writer, block.extent);
-  writer.put(location_of(block.key));
+  writer.put(ldc::location_of(block.key));
   writer.put(block.parent);
   writer.put(block.grid);
   writer.put(block.bytes);
@@ -80,7 +80,7 @@ std::optional<BlockRecord> get_block(ByteReader& reader) {
   block.checksum = reader.get<uint64_t>();
   block.origin = get_vector<glm::i64vec3>(reader);
   block.extent = get_vector<glm::u32vec3>(reader);
-  const std::optional<OctreeKey> key = key_at_location(reader.get<uint64_t>());
+  const std::optional<ldc::OctreeKey> key = ldc::key_at_location(reader.get<uint64_t>());
   block.parent = reader.get<uint32_t>();
   block.grid = reader.get<uint32_t>();
   block.bytes = reader.get<uint32_t>();
@@ -97,12 +97,12 @@ bool finite(const glm::dvec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
 }
 
-bool valid_grid(const Grid& grid) {
+bool valid_grid(const surfel::Grid& grid) {
   return finite(grid.scale) && finite(grid.offset) && grid.scale.x > 0 && grid.scale.y > 0 && grid.scale.z > 0;
 }
 
-bool valid_lattice_box(const BlockRecord& block, const Grid& grid) {
-  constexpr uint32_t kExtent = uint32_t{1} << kMaxIndexBits;
+bool valid_lattice_box(const BlockRecord& block, const surfel::Grid& grid) {
+  constexpr uint32_t kExtent = uint32_t{1} << ldc::kMaxIndexBits;
   constexpr int64_t kOrigin = int64_t{1} << 62;
   for (int axis = 0; axis < 3; ++axis) {
     if (block.extent[axis] >= kExtent || block.origin[axis] > kOrigin || block.origin[axis] < -kOrigin) return false;
@@ -239,7 +239,7 @@ std::vector<std::byte> write_directory(const Directory& directory) {
     writer.put_string(scalar.name);
   }
   writer.put(static_cast<uint32_t>(directory.grids.size()));
-  for (const Grid& grid : directory.grids) {
+  for (const surfel::Grid& grid : directory.grids) {
     put_vector(writer, grid.scale);
     put_vector(writer, grid.offset);
   }
@@ -259,7 +259,7 @@ Result<Directory> read_directory(std::span<const std::byte> bytes, const ModelHe
   for (; scalars > 0; --scalars) {
     const auto type = reader.get<uint8_t>();
     const auto plain_type = static_cast<ScalarCode>(type & ~kCoarseScalarFlag);
-    if (plain_type >= std::variant_size_v<ScalarValues>) return damaged("unknown attribute type");
+    if (plain_type >= std::variant_size_v<surfel::ScalarValues>) return damaged("unknown attribute type");
     directory.scalars.push_back({reader.get_string(), plain_type, type != plain_type});
   }
   for (uint32_t n = get_count(reader, 48); n > 0; --n) {
@@ -281,4 +281,4 @@ Result<Directory> read_directory(std::span<const std::byte> bytes, const ModelHe
   return directory;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::model

@@ -8,7 +8,7 @@
 #include "base/result.h"
 #include "model/block_decoder.h"
 
-namespace surfcast {
+namespace surfcast::model {
 
 /// Version of the format that is written, and the only one that is read.
 inline constexpr uint32_t kModelVersion = 2;
@@ -37,15 +37,15 @@ Result<ModelHeader> read_header(std::span<const std::byte> file);
 
 /// One record of the table of blocks.
 struct BlockRecord {
-  uint32_t parent = BlockEntry::kNoParent;
-  OctreeKey key;
+  uint32_t parent = ldc::BlockEntry::kNoParent;
+  ldc::OctreeKey key;
   uint32_t grid = 0;  ///< index into Directory::grids
   glm::i64vec3 origin{0};
   glm::u32vec3 extent{0};
   uint32_t surfels = 0;
   float spacing = 0;
   float max_radius = 0;
-  std::optional<NormalCone> normals;
+  std::optional<geometry::NormalCone> normals;
   uint64_t offset = 0;
   uint32_t bytes = 0;
   uint64_t checksum = 0;
@@ -55,7 +55,7 @@ struct BlockRecord {
 struct Directory {
   std::vector<std::string> source_names;
   std::vector<ScalarColumn> scalars;
-  std::vector<Grid> grids;
+  std::vector<surfel::Grid> grids;
   std::vector<BlockRecord> blocks;  ///< parents before children, siblings side by side
   std::vector<AttributeRange> ranges;
   std::vector<ClassCount> classes;  ///< by code
@@ -66,4 +66,4 @@ std::vector<std::byte> write_directory(const Directory& directory);
 /// make a tree is for the caller to check.
 Result<Directory> read_directory(std::span<const std::byte> bytes, const ModelHeader& header);
 
-}  // namespace surfcast
+}  // namespace surfcast::model

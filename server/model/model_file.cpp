@@ -9,7 +9,7 @@
 #include "base/mapped_file.h"
 #include "model/format.h"
 
-namespace surfcast {
+namespace surfcast::model {
 
 struct ModelFile::State {
   uint64_t id = 0;
@@ -18,7 +18,7 @@ struct ModelFile::State {
   ModelInfo info;
   Directory directory;
   std::vector<ScalarColumn> coarse_scalars;  ///< those that coarse blocks have
-  BlockTree tree;
+  ldc::BlockTree tree;
 };
 
 namespace {
@@ -27,8 +27,8 @@ tl::unexpected<Error> fail_naming(const std::filesystem::path& path, const Error
   return fail(error.kind, path.string() + ": " + error.message);
 }
 
-BlockEntry make_entry(const BlockRecord& record, const Grid& grid) {
-  BlockEntry entry;
+ldc::BlockEntry make_entry(const BlockRecord& record, const surfel::Grid& grid) {
+  ldc::BlockEntry entry;
   entry.parent = record.parent;
   entry.key = record.key;
   entry.bounds.include(grid.position(record.origin));
@@ -45,28 +45,28 @@ BlockEntry make_entry(const BlockRecord& record, const Grid& grid) {
 
 /// Blocks make a tree whose cells nest. A block with children is deeper than its parent, so that no path through a
 /// hostile tree is longer than the octree is deep.
-bool valid_tree(std::span<const BlockEntry> entries) {
-  if (!BlockTree::is_tree(entries)) return false;
-  return std::all_of(entries.begin(), entries.end(), [&](const BlockEntry& entry) {
-    if (entry.parent == BlockEntry::kNoParent) return true;
-    const BlockEntry& parent = entries[entry.parent];
+bool valid_tree(std::span<const ldc::BlockEntry> entries) {
+  if (!ldc::BlockTree::is_tree(entries)) return false;
+  return std::all_of(entries.begin(), entries.end(), [&](const ldc::BlockEntry& entry) {
+    if (entry.parent == ldc::BlockEntry::kNoParent) return true;
+    const ldc::BlockEntry& parent = entries[entry.parent];
     const bool below_its_parent =
-        parent.parent == BlockEntry::kNoParent || parent.key.depth > entries[parent.parent].key.depth;
-    return contains(parent.key, entry.key) && below_its_parent;
+        parent.parent == ldc::BlockEntry::kNoParent || parent.key.depth > entries[parent.parent].key.depth;
+    return ldc::contains(parent.key, entry.key) && below_its_parent;
   });
 }
 
 /// A block is one level above the highest of its children, which come after it.
-void set_levels(std::span<BlockEntry> entries) {
+void set_levels(std::span<ldc::BlockEntry> entries) {
   for (size_t i = entries.size(); i-- > 0;) {
-    if (entries[i].parent == BlockEntry::kNoParent) continue;
-    BlockEntry& parent = entries[entries[i].parent];
+    if (entries[i].parent == ldc::BlockEntry::kNoParent) continue;
+    ldc::BlockEntry& parent = entries[entries[i].parent];
     parent.level = std::max(parent.level, entries[i].level + 1);
   }
 }
 
-std::vector<BlockEntry> make_entries(const Directory& directory) {
-  std::vector<BlockEntry> entries;
+std::vector<ldc::BlockEntry> make_entries(const Directory& directory) {
+  std::vector<ldc::BlockEntry> entries;
   entries.reserve(directory.blocks.size());
   for (const BlockRecord& record : directory.blocks) {
     entries.push_back(make_entry(record, directory.grids[record.grid]));
@@ -79,7 +79,7 @@ uint64_t next_id() {
   return ++last;
 }
 
-ModelInfo make_info(const ModelHeader& header, const Directory& directory, std::span<const BlockEntry> entries) {
+ModelInfo make_info(const ModelHeader& header, const Directory& directory, std::span<const ldc::BlockEntry> entries) {
   ModelInfo info;
   info.oriented = header.oriented;
   info.z_up = header.z_up;
@@ -88,7 +88,7 @@ ModelInfo make_info(const ModelHeader& header, const Directory& directory, std::
   info.source_names = directory.source_names;
   info.ranges = directory.ranges;
   info.classes = directory.classes;
-  for (const BlockEntry& entry : entries) {
+  for (const ldc::BlockEntry& entry : entries) {
     info.levels = std::max(info.levels, entry.level + 1);
     if (entry.level > 0) continue;
     info.bounds.include(entry.bounds);
@@ -112,7 +112,7 @@ Result<ModelFile> ModelFile::open(const std::filesystem::path& path) {
   Result<Directory> directory = read_directory(file->bytes().subspan(header->directory_offset), *header);
   if (!directory) return fail_naming(path, directory.error());
 
-  std::vector<BlockEntry> entries = make_entries(*directory);
+  std::vector<ldc::BlockEntry> entries = make_entries(*directory);
   if (!valid_tree(entries)) {
     return fail_naming(path, {ErrorKind::kInvalidInput, "the blocks of the model make no tree"});
   }
@@ -123,7 +123,7 @@ Result<ModelFile> ModelFile::open(const std::filesystem::path& path) {
                [](const ScalarColumn& scalar) { return scalar.coarse; });
   return ModelFile(
       std::make_unique<State>(State{next_id(), path, std::move(*file), std::move(info), std::move(*directory),
-                                    std::move(coarse_scalars), BlockTree(std::move(entries))}));
+                                    std::move(coarse_scalars), ldc::BlockTree(std::move(entries))}));
 }
 
 uint64_t ModelFile::id() const {
@@ -134,7 +134,7 @@ const ModelInfo& ModelFile::info() const {
   return state_->info;
 }
 
-const BlockTree& ModelFile::tree() const {
+const ldc::BlockTree& ModelFile::tree() const {
   return state_->tree;
 }
 
@@ -142,10 +142,10 @@ const std::filesystem::path& ModelFile::path() const {
   return state_->path;
 }
 
-void ModelFile::expect(size_t block) const {
+void ModelFile::prefetch(size_t block) const {
   SURFCAST_EXPECTS(block < state_->directory.blocks.size());
   const BlockRecord& record = state_->directory.blocks[block];
-  state_->file.expect(record.offset, record.bytes);
+  state_->file.prefetch(record.offset, record.bytes);
 }
 
 namespace {
@@ -183,4 +183,4 @@ Result<DecodedBlock> ModelFile::decode(size_t block, WantedScalars scalars) cons
   return decoded;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::model

@@ -18,13 +18,13 @@
 #include "surfel/scalar_attribute.h"
 #include "surfel/surfel_cloud.h"
 
-namespace surfcast {
+namespace surfcast::model {
 
 /// What the header of a model says about all its blocks.
 struct ModelInfo {
   uint64_t surfels = 0;                   ///< of the source: those of the leaves of the tree
   int levels = 0;                         ///< of detail; 1 without coarser ones
-  Box bounds;                             ///< of the stored positions, world units
+  geometry::Box bounds;                   ///< of the stored positions, world units
   bool oriented = false;                  ///< see SurfelCloud::oriented
   bool z_up = true;                       ///< see SurfelCloud::z_up
   int color_bits = 0;                     ///< 8 or 16; 0: the scan has no colour and no block stores any
@@ -44,7 +44,7 @@ struct ModelInfo {
 
 /// A block as it comes out of Draco: structure of arrays of one length.
 struct DecodedBlock {
-  Grid grid;
+  surfel::Grid grid;
   glm::i64vec3 origin{0};            ///< lattice index that `indices` count from
   std::vector<glm::ivec3> indices;   ///< non-negative lattice steps from `origin`
   std::vector<glm::vec3> normals;    ///< unit
@@ -53,7 +53,7 @@ struct DecodedBlock {
   std::vector<glm::u16vec3> colors;  ///< in ModelInfo::color_bits; empty without colour
   /// Of a leaf as ModelInfo::scalar_names. Coarse blocks have only those of them that can be averaged, intensity and
   /// classification. The first of these, if not all were wanted.
-  std::vector<ScalarAttribute> scalars;
+  std::vector<surfel::ScalarAttribute> scalars;
 
   [[nodiscard]] size_t size() const { return indices.size(); }
   /// World coordinates of surfel i, exact for inputs on a grid.
@@ -77,10 +77,10 @@ class ModelFile {
   ~ModelFile();
 
   [[nodiscard]] const ModelInfo& info() const;
-  [[nodiscard]] const BlockTree& tree() const;
-  [[nodiscard]] std::span<const BlockEntry> blocks() const { return tree().blocks(); }
+  [[nodiscard]] const ldc::BlockTree& tree() const;
+  [[nodiscard]] std::span<const ldc::BlockEntry> blocks() const { return tree().blocks(); }
   /// Says that a block is about to be decoded, so that reading its bytes begins. Returns at once.
-  void expect(size_t block) const;
+  void prefetch(size_t block) const;
   /// Checks the checksum of a block and decodes it. `scalars`: of the others only those that come before these.
   [[nodiscard]] Result<DecodedBlock> decode(size_t block, WantedScalars scalars = WantedScalars::kAll) const;
   [[nodiscard]] const std::filesystem::path& path() const;
@@ -93,4 +93,4 @@ class ModelFile {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::model

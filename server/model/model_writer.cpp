@@ -8,14 +8,14 @@
 #include "ldc/coarse_scalars.h"
 #include "model/format.h"
 
-namespace surfcast {
+namespace surfcast::model {
 
 struct ModelWriter::State {
   State(AtomicFile output, ModelSchema model_schema) : file(std::move(output)), schema(std::move(model_schema)) {}
 
   AtomicFile file;
   ModelSchema schema;
-  std::vector<Grid> grids;
+  std::vector<surfel::Grid> grids;
   std::vector<BlockRecord> records;             ///< in the order of the file; parents are numbers of this order
   std::vector<std::vector<uint32_t>> children;  ///< of each record
   AttributeStatistics statistics;
@@ -24,14 +24,14 @@ struct ModelWriter::State {
 namespace {
 
 /// Index of a grid in the table, which grows by the ones it lacks.
-uint32_t index_of(const Grid& grid, std::vector<Grid>& grids) {
+uint32_t index_of(const surfel::Grid& grid, std::vector<surfel::Grid>& grids) {
   const auto found = std::find(grids.begin(), grids.end(), grid);
   const auto index = static_cast<uint32_t>(found - grids.begin());
   if (found == grids.end()) grids.push_back(grid);
   return index;
 }
 
-BlockRecord make_record(const EncodedBlock& block, const OctreeKey& key) {
+BlockRecord make_record(const EncodedBlock& block, const ldc::OctreeKey& key) {
   BlockRecord record;
   record.key = key;
   record.origin = block.origin;
@@ -53,7 +53,7 @@ std::vector<BlockRecord> in_tree_order(std::span<const BlockRecord> records,
   std::vector<BlockRecord> sorted;
   sorted.reserve(records.size());
   for (uint32_t i = 0; i < records.size(); ++i) {
-    if (records[i].parent != BlockEntry::kNoParent) continue;
+    if (records[i].parent != ldc::BlockEntry::kNoParent) continue;
     order.push_back(i);
     sorted.push_back(records[i]);
   }
@@ -82,12 +82,12 @@ ModelHeader make_header(const ModelSchema& schema, std::span<const std::byte> ta
 
 }  // namespace
 
-ModelSchema schema_of(const SurfelCloud& cloud) {
+ModelSchema schema_of(const surfel::SurfelCloud& cloud) {
   ModelSchema schema{cloud.oriented, cloud.z_up, cloud.colors ? cloud.colors->bits : 0, {}, {}};
-  for (const SourceRange& source : cloud.sources) schema.source_names.push_back(source.name);
-  for (const ScalarAttribute& scalar : cloud.scalars) {
+  for (const surfel::SourceRange& source : cloud.sources) schema.source_names.push_back(source.name);
+  for (const surfel::ScalarAttribute& scalar : cloud.scalars) {
     schema.scalars.push_back(
-        {scalar.name, static_cast<ScalarCode>(scalar.values.index()), is_coarse_scalar(scalar.name)});
+        {scalar.name, static_cast<ScalarCode>(scalar.values.index()), ldc::is_coarse_scalar(scalar.name)});
   }
   return schema;
 }
@@ -107,7 +107,8 @@ Result<ModelWriter> ModelWriter::create(const std::filesystem::path& target, Mod
   return ModelWriter(std::make_unique<State>(std::move(*file), std::move(schema)));
 }
 
-Result<uint32_t> ModelWriter::add(const EncodedBlock& block, const OctreeKey& key, std::span<const uint32_t> children) {
+Result<uint32_t> ModelWriter::add(const EncodedBlock& block, const ldc::OctreeKey& key,
+                                  std::span<const uint32_t> children) {
   SURFCAST_EXPECTS(block.surfels >= 1 && block.surfels <= kMaxBlockSurfels);
   const auto number = static_cast<uint32_t>(state_->records.size());
   BlockRecord record = make_record(block, key);
@@ -115,7 +116,7 @@ Result<uint32_t> ModelWriter::add(const EncodedBlock& block, const OctreeKey& ke
   record.grid = index_of(block.grid, state_->grids);
   if (Status status = state_->file.append(block.bytes); !status) return fail(std::move(status.error()));
   for (const uint32_t child : children) {
-    SURFCAST_EXPECTS(child < number && state_->records[child].parent == BlockEntry::kNoParent);
+    SURFCAST_EXPECTS(child < number && state_->records[child].parent == ldc::BlockEntry::kNoParent);
     state_->records[child].parent = number;
   }
   state_->records.push_back(record);
@@ -150,4 +151,4 @@ Result<WriteReport> ModelWriter::finish() {
   return report;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::model

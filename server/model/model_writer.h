@@ -13,7 +13,7 @@
 #include "model/block_encoder.h"
 #include "surfel/surfel_cloud.h"
 
-namespace surfcast {
+namespace surfcast::model {
 
 /// What all blocks of a model have in common.
 struct ModelSchema {
@@ -25,7 +25,7 @@ struct ModelSchema {
 };
 
 /// The schema of a model of that cloud.
-ModelSchema schema_of(const SurfelCloud& cloud);
+ModelSchema schema_of(const surfel::SurfelCloud& cloud);
 
 struct WriteReport {
   uint64_t surfels = 0;  ///< of the source
@@ -45,7 +45,7 @@ class ModelWriter {
 
   /// Appends a block that stands for the children, numbers of blocks added before, each in one call at most; none for
   /// a block of the source's surfels. Returns its number.
-  Result<uint32_t> add(const EncodedBlock& block, const OctreeKey& key, std::span<const uint32_t> children);
+  Result<uint32_t> add(const EncodedBlock& block, const ldc::OctreeKey& key, std::span<const uint32_t> children);
 
   /// Writes the tables and moves the file into its place. Fails when no block was added.
   Result<WriteReport> finish();
@@ -56,4 +56,4 @@ class ModelWriter {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::model

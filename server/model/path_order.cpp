@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-namespace surfcast {
+namespace surfcast::model {
 namespace {
 
 /// Points to choose the next one from. More give a shorter path and cost time in proportion.
@@ -69,4 +69,4 @@ std::vector<uint32_t> path_order(std::span<const glm::ivec3> points) {
   return order;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::model

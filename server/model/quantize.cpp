@@ -6,7 +6,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 
-namespace surfcast {
+namespace surfcast::model {
 namespace {
 
 double sign(double x) {
@@ -49,4 +49,4 @@ float decode_logarithm(uint32_t code, int steps) {
       std::clamp(value, double{std::numeric_limits<float>::denorm_min()}, double{std::numeric_limits<float>::max()}));
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::model

@@ -4,7 +4,7 @@
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
 
-namespace surfcast {
+namespace surfcast::model {
 
 /// How fine the codes of a block are. Estimates are off by more than a coarse code is, so that bits for them would be
 /// wasted; what a source states comes back nearly as it was.
@@ -40,4 +40,4 @@ glm::vec3 decode_normal(const glm::u16vec2& code, int octahedral_half);
 uint32_t encode_logarithm(float value, int steps);
 float decode_logarithm(uint32_t code, int steps);
 
-}  // namespace surfcast
+}  // namespace surfcast::model

@@ -5,7 +5,7 @@
 #include <limits>
 #include <type_traits>
 
-namespace surfcast {
+namespace surfcast::model {
 
 /// The unsigned integer as wide as T.
 template <typename T>
@@ -42,4 +42,4 @@ T from_ordered_bits(BitsOf<T> ordered) {
   }
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::model

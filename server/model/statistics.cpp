@@ -5,7 +5,7 @@
 
 #include "model/scalar_bits.h"
 
-namespace surfcast {
+namespace surfcast::model {
 namespace {
 
 /// Share of the surfels that are left below `low` and above `high`: so few that outliers set no range, and so many that
@@ -14,7 +14,7 @@ constexpr double kTail = 0.02;
 
 /// Calls `use` with the members' values that are finite numbers.
 template <typename Use>
-void for_each_number(const ScalarValues& values, std::span<const uint32_t> members, const Use& use) {
+void for_each_number(const surfel::ScalarValues& values, std::span<const uint32_t> members, const Use& use) {
   std::visit(
       [&](const auto& column) {
         for (const uint32_t member : members) {
@@ -31,8 +31,8 @@ uint16_t bucket_of(double value) {
 
 }  // namespace
 
-AttributeStatistics::AttributeStatistics(const SurfelCloud& cloud, std::span<const uint32_t> members) {
-  for (const ScalarAttribute& scalar : cloud.scalars) {
+AttributeStatistics::AttributeStatistics(const surfel::SurfelCloud& cloud, std::span<const uint32_t> members) {
+  for (const surfel::ScalarAttribute& scalar : cloud.scalars) {
     Extremes& extremes = extremes_.emplace_back();
     for_each_number(scalar.values, members, [&extremes](double value) {
       extremes.smallest = std::min(extremes.smallest, value);
@@ -96,4 +96,4 @@ std::vector<ClassCount> AttributeStatistics::classes() const {
   return counts;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::model

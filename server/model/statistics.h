@@ -10,7 +10,7 @@
 
 #include "surfel/surfel_cloud.h"
 
-namespace surfcast {
+namespace surfcast::model {
 
 /// The values of a scalar attribute over the source's surfels; what is no number is left out.
 struct AttributeRange {
@@ -31,7 +31,7 @@ struct ClassCount {
 class AttributeStatistics {
  public:
   AttributeStatistics() = default;
-  AttributeStatistics(const SurfelCloud& cloud, std::span<const uint32_t> members);
+  AttributeStatistics(const surfel::SurfelCloud& cloud, std::span<const uint32_t> members);
 
   /// Adds those of other surfels with the same attributes.
   void add(const AttributeStatistics& other);
@@ -54,4 +54,4 @@ class AttributeStatistics {
   std::array<uint64_t, 256> classes_{};
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::model

@@ -11,10 +11,10 @@
 
 #include "model/block_encoder.h"
 
-namespace surfcast {
+namespace surfcast::model {
 namespace {
 
-EncodedBlock encode(const SurfelCloud& cloud, const TreeBlock& block) {
+EncodedBlock encode(const surfel::SurfelCloud& cloud, const ldc::TreeBlock& block) {
   if (!block.coarse) {
     EncodedBlock encoded = encode_block(cloud, block.members, block.grid);
     encoded.statistics = AttributeStatistics(cloud, block.members);
@@ -30,7 +30,7 @@ EncodedBlock encode(const SurfelCloud& cloud, const TreeBlock& block) {
 
 }  // namespace
 
-Status write_blocks(ModelWriter& writer, const SurfelCloud& cloud, std::span<const TreeBlock> blocks,
+Status write_blocks(ModelWriter& writer, const surfel::SurfelCloud& cloud, std::span<const ldc::TreeBlock> blocks,
                     const std::function<void(size_t)>& progress) {
   namespace tbb = oneapi::tbb;
   using Encoded = std::pair<size_t, EncodedBlock>;
@@ -58,4 +58,4 @@ Status write_blocks(ModelWriter& writer, const SurfelCloud& cloud, std::span<con
   return status;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::model

@@ -7,7 +7,7 @@
 #include "ldc/subtree.h"
 #include "model/write_blocks.h"
 
-namespace surfcast {
+namespace surfcast::model {
 namespace {
 
 bool storable(float value) {
@@ -25,14 +25,14 @@ bool storable(const glm::vec3& normal) {
   return square > 0.5f && square < 2.0f;
 }
 
-void expect_one_length(const SurfelCloud& cloud) {
+void expect_one_length(const surfel::SurfelCloud& cloud) {
   const size_t n = cloud.size();
   SURFCAST_EXPECTS(cloud.normals.size() == n && cloud.radii.size() == n && cloud.weights.size() == n);
   SURFCAST_EXPECTS(!cloud.colors || cloud.colors->values.size() == n);
-  for (const ScalarAttribute& scalar : cloud.scalars) SURFCAST_EXPECTS(value_count(scalar.values) == n);
+  for (const surfel::ScalarAttribute& scalar : cloud.scalars) SURFCAST_EXPECTS(surfel::value_count(scalar.values) == n);
 }
 
-Status check(const SurfelCloud& cloud, const WriteOptions& options) {
+Status check(const surfel::SurfelCloud& cloud, const WriteOptions& options) {
   expect_one_length(cloud);
   const auto refuse = [](size_t surfel, const char* what) {
     return fail(ErrorKind::kInvalidInput, "surfel " + std::to_string(surfel) + " has " + what);
@@ -52,16 +52,16 @@ Status check(const SurfelCloud& cloud, const WriteOptions& options) {
 
 }  // namespace
 
-Result<WriteReport> write_model(const SurfelCloud& cloud, const std::filesystem::path& target,
+Result<WriteReport> write_model(const surfel::SurfelCloud& cloud, const std::filesystem::path& target,
                                 const WriteOptions& options) {
   if (const Status status = check(cloud, options); !status) {
     return fail(status.error().kind, target.string() + ": " + status.error().message);
   }
   Result<ModelWriter> writer = ModelWriter::create(target, schema_of(cloud));
   if (!writer) return fail(std::move(writer.error()));
-  PartitionOptions partition;
+  ldc::PartitionOptions partition;
   partition.precision = options.precision;
-  const Subtree tree = build_subtree(cloud, whole_region(cloud), partition, 0);
+  const ldc::Subtree tree = ldc::build_subtree(cloud, ldc::whole_region(cloud), partition, 0);
   const auto progress = [&](size_t done) {
     if (options.progress) options.progress(static_cast<double>(done) / static_cast<double>(tree.blocks.size()));
   };
@@ -71,4 +71,4 @@ Result<WriteReport> write_model(const SurfelCloud& cloud, const std::filesystem:
   return writer->finish();
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::model

@@ -6,7 +6,7 @@
 #include "protocol/errors.h"
 #include "protocol/framing.h"
 
-namespace surfcast {
+namespace surfcast::net {
 namespace {
 
 Outcome failure(uint64_t id, const Error& error) {
@@ -22,16 +22,16 @@ Outcome plain(const wire::Answer& answer) {
 Bytes encode_error(uint64_t id, const Error& error) {
   wire::Answer answer;
   answer.set_id(id);
-  to_wire(error, *answer.mutable_error());
-  return *encode_message(answer, kMaxAnswerBytes);
+  protocol::to_wire(error, *answer.mutable_error());
+  return *protocol::encode_message(answer, protocol::kMaxAnswerBytes);
 }
 
 Bytes encode_answer(const wire::Answer& answer) {
-  Result<Bytes> bytes = encode_message(answer, kMaxAnswerBytes);
+  Result<Bytes> bytes = protocol::encode_message(answer, protocol::kMaxAnswerBytes);
   return bytes ? std::move(*bytes) : encode_error(answer.id(), bytes.error());
 }
 
-Outcome outcome_of(uint64_t id, Result<EncodedPicture> picture) {
+Outcome outcome_of(uint64_t id, Result<service::EncodedPicture> picture) {
   if (!picture) return failure(id, picture.error());
   Outcome outcome;
   outcome.picture_bytes = picture->bytes.size();
@@ -50,7 +50,7 @@ Outcome outcome_of(uint64_t id, const std::vector<std::string>& names) {
   return plain(answer);
 }
 
-Outcome outcome_of(uint64_t id, const Result<std::optional<PickedSurfel>>& picked) {
+Outcome outcome_of(uint64_t id, const Result<std::optional<pick::PickedSurfel>>& picked) {
   if (!picked) return failure(id, picked.error());
   wire::Answer answer;
   answer.set_id(id);
@@ -58,7 +58,7 @@ Outcome outcome_of(uint64_t id, const Result<std::optional<PickedSurfel>>& picke
   return plain(answer);
 }
 
-Outcome outcome_of(uint64_t id, const std::string& name, const Result<ModelDescription>& description) {
+Outcome outcome_of(uint64_t id, const std::string& name, const Result<service::ModelDescription>& description) {
   if (!description) return failure(id, description.error());
   wire::Answer answer;
   answer.set_id(id);
@@ -66,4 +66,4 @@ Outcome outcome_of(uint64_t id, const std::string& name, const Result<ModelDescr
   return plain(answer);
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::net

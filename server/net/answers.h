@@ -11,7 +11,7 @@
 #include "service/render_service.h"
 #include "surfcast.pb.h"
 
-namespace surfcast {
+namespace surfcast::net {
 
 /// One encoded message, without a length before it.
 using Bytes = std::vector<std::byte>;
@@ -20,17 +20,17 @@ using Bytes = std::vector<std::byte>;
 struct Outcome {
   Bytes answer;
   bool failed = false;
-  size_t picture_bytes = 0;         ///< encoded
-  std::optional<FrameStats> stats;  ///< of a picture
+  size_t picture_bytes = 0;                  ///< encoded
+  std::optional<picture::FrameStats> stats;  ///< of a picture
 };
 
 /// The bytes of an answer, or of the error that it is too large.
 Bytes encode_answer(const wire::Answer& answer);
 Bytes encode_error(uint64_t id, const Error& error);
 
-Outcome outcome_of(uint64_t id, Result<EncodedPicture> picture);
+Outcome outcome_of(uint64_t id, Result<service::EncodedPicture> picture);
 Outcome outcome_of(uint64_t id, const std::vector<std::string>& names);
-Outcome outcome_of(uint64_t id, const Result<std::optional<PickedSurfel>>& picked);
-Outcome outcome_of(uint64_t id, const std::string& name, const Result<ModelDescription>& description);
+Outcome outcome_of(uint64_t id, const Result<std::optional<pick::PickedSurfel>>& picked);
+Outcome outcome_of(uint64_t id, const std::string& name, const Result<service::ModelDescription>& description);
 
-}  // namespace surfcast
+}  // namespace surfcast::net

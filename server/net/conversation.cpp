@@ -7,15 +7,15 @@
 #include <vector>
 
 #include "net/convert.h"
-#include "net/lend.h"
+#include "net/share_across_threads.h"
 #include "protocol/framing.h"
 
-namespace surfcast {
+namespace surfcast::net {
 
 namespace asio = boost::asio;
 
-Conversation::Conversation(std::shared_ptr<NetContext> context, SessionId session, asio::any_io_executor executor,
-                           std::shared_ptr<AnswerWriter> writer)
+Conversation::Conversation(std::shared_ptr<NetContext> context, service::SessionId session,
+                           asio::any_io_executor executor, std::shared_ptr<AnswerWriter> writer)
     : context_(std::move(context)),
       session_(session),
       executor_(std::move(executor)),
@@ -25,7 +25,7 @@ Conversation::Conversation(std::shared_ptr<NetContext> context, SessionId sessio
 
 Status Conversation::receive(std::span<const std::byte> message) {
   wire::Request request;
-  if (Status decoded = decode_message(message, request); !decoded) return decoded;
+  if (Status decoded = protocol::decode_message(message, request); !decoded) return decoded;
   handle(request);
   return {};
 }
@@ -67,21 +67,22 @@ void Conversation::handle_picture(const wire::Request& request) {
   if (const Status admitted = window_.admit(request.id()); !admitted) {
     return send_error(request.id(), admitted.error());
   }
-  Result<PictureJob> job = to_job(request.draw_picture());
+  Result<service::PictureJob> job = to_job(request.draw_picture());
   if (!job) return send_error(request.id(), job.error());
   window_.add_picture(request.id(), std::move(*job));
   draw_next();
 }
 
-/// Gives the service what it may have of this client's wishes.
+/// Gives the service what it may have of this client's requests.
 void Conversation::draw_next() {
   while (writer_) {
     auto next = window_.next(writer_->unread_bytes());
     if (!next) return;
     const uint64_t id = next->first;
-    const JobId job = context_->service.draw(
-        session_, std::move(next->second),
-        [later = answer_later(id), id](Result<EncodedPicture> picture) { later(outcome_of(id, std::move(picture))); });
+    const service::JobId job = context_->service.draw(
+        session_, std::move(next->second), [later = answer_later(id), id](Result<service::EncodedPicture> picture) {
+          later(outcome_of(id, std::move(picture)));
+        });
     window_.set_job(id, job);
   }
 }
@@ -95,27 +96,27 @@ void Conversation::handle_other(const wire::Request& request) {
         [later = answer_later(id), id](const std::vector<std::string>& names) { later(outcome_of(id, names)); });
   }
   const std::string& name = request.describe_model().model();
-  context_->service.describe_model(name,
-                                   [later = answer_later(id), id, name](const Result<ModelDescription>& description) {
-                                     later(outcome_of(id, name, description));
-                                   });
+  context_->service.describe_model(
+      name, [later = answer_later(id), id, name](const Result<service::ModelDescription>& description) {
+        later(outcome_of(id, name, description));
+      });
 }
 
 void Conversation::handle_pick(const wire::Request& request) {
   const uint64_t id = request.id();
   if (const Status admitted = window_.admit(id); !admitted) return send_error(id, admitted.error());
-  Result<PickJob> job = to_job(request.pick_surfel());
+  Result<service::PickJob> job = to_job(request.pick_surfel());
   if (!job) return send_error(id, job.error());
   window_.add_other(id);
   context_->service.pick(std::move(*job),
-                         [later = answer_later(id), id](const Result<std::optional<PickedSurfel>>& picked) {
+                         [later = answer_later(id), id](const Result<std::optional<pick::PickedSurfel>>& picked) {
                            later(outcome_of(id, picked));
                          });
 }
 
 /// A function for any thread that hands an answer over to this object.
 std::function<void(Outcome)> Conversation::answer_later(uint64_t id) {
-  return [self = lend(shared_from_this(), executor_), id](Outcome outcome) {
+  return [self = share_across_threads(shared_from_this(), executor_), id](Outcome outcome) {
     asio::post(self->executor_,
                [self, id, outcome = std::move(outcome)]() mutable { self->hand_over(id, std::move(outcome)); });
   };
@@ -128,14 +129,14 @@ void Conversation::hand_over(uint64_t id, Outcome outcome) {
   window_.finish(id);
   send(std::move(outcome.answer));
   draw_next();
-  if (writer_) writer_->settled();
+  if (writer_) writer_->answer_sent();
 }
 
 void Conversation::handle_cancel(const wire::Request& request) {
   const uint64_t target = request.cancel().request_id();
   const bool waited = window_.remove_waiting(target);
   if (waited) send_error(target, {ErrorKind::kCancelled, "the request was cancelled"});
-  const std::optional<JobId> job = window_.job(target);
+  const std::optional<service::JobId> job = window_.job(target);
   wire::Answer answer;
   answer.set_id(request.id());
   answer.mutable_cancel_result()->set_was_outstanding(waited || (job && context_->service.cancel(*job)));
@@ -151,17 +152,17 @@ void Conversation::send(Bytes answer) {
   if (writer_) writer_->send(std::move(answer));
 }
 
-void Conversation::more_room() {
+void Conversation::resume_sending() {
   draw_next();
   advance_views();
 }
 
 void Conversation::abandon() {
   writer_.reset();
-  for (const JobId job : window_.abandon()) context_->service.cancel(job);
+  for (const service::JobId job : window_.abandon()) context_->service.cancel(job);
   for (const auto& [id, opened] : views_) opened.view->close();
   views_.clear();
   view_timer_.cancel();
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::net

@@ -16,7 +16,7 @@
 #include "surfcast.pb.h"
 #include "view/view_session.h"
 
-namespace surfcast {
+namespace surfcast::net {
 
 /// The connection beneath a conversation: where its answers go. Used on the thread of the sockets.
 class AnswerWriter {
@@ -28,7 +28,7 @@ class AnswerWriter {
   /// Bytes of answers that the client has not taken.
   [[nodiscard]] virtual size_t unread_bytes() const = 0;
   /// An answer that was outstanding has been sent: the connection may end now if it waits for that.
-  virtual void settled() = 0;
+  virtual void answer_sent() = 0;
 };
 
 /// What a client and the server say to each other after their hellos, whatever carries it: takes encoded requests,
@@ -37,13 +37,13 @@ class AnswerWriter {
 class Conversation : public std::enable_shared_from_this<Conversation> {
  public:
   /// `writer` is kept until abandon() and while an answer is outstanding.
-  Conversation(std::shared_ptr<NetContext> context, SessionId session, boost::asio::any_io_executor executor,
+  Conversation(std::shared_ptr<NetContext> context, service::SessionId session, boost::asio::any_io_executor executor,
                std::shared_ptr<AnswerWriter> writer);
 
   /// Handles one encoded Request. Fails when it is none: the stream is of no use any more then.
   Status receive(std::span<const std::byte> message);
   /// The client has taken answers: what waited for that goes on.
-  void more_room();
+  void resume_sending();
   /// Cancels what is outstanding; nothing is sent from here on.
   void abandon();
 
@@ -60,8 +60,8 @@ class Conversation : public std::enable_shared_from_this<Conversation> {
   void handle_painted(const wire::Request& request);
   void handle_close_view(const wire::Request& request);
   void draw_next();
-  ViewPort port_of(uint64_t view);
-  void send_frame(uint64_t view, ViewMessage message);
+  view::ViewPort port_of(uint64_t view);
+  void send_frame(uint64_t view, view::ViewMessage message);
   void end_view(uint64_t view, const Error& error);
   void advance_views();
   std::function<void(Outcome)> answer_later(uint64_t id);
@@ -70,12 +70,12 @@ class Conversation : public std::enable_shared_from_this<Conversation> {
   void send_error(uint64_t id, const Error& error);
 
   std::shared_ptr<NetContext> context_;
-  SessionId session_;
+  service::SessionId session_;
   boost::asio::any_io_executor executor_;
   std::shared_ptr<AnswerWriter> writer_;  ///< null once abandoned
   RequestWindow window_;
   struct OpenedView {
-    std::shared_ptr<ViewSession> view;
+    std::shared_ptr<view::ViewSession> view;
     std::string picture;  ///< encoded, what was asked for last
     std::string model;
   };
@@ -83,4 +83,4 @@ class Conversation : public std::enable_shared_from_this<Conversation> {
   boost::asio::steady_timer view_timer_;  ///< when a view is to be looked at again
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::net

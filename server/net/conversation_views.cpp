@@ -8,10 +8,10 @@
 
 #include "net/conversation.h"
 #include "net/convert.h"
-#include "net/lend.h"
+#include "net/share_across_threads.h"
 #include "protocol/validate.h"
 
-namespace surfcast {
+namespace surfcast::net {
 namespace {
 
 namespace asio = boost::asio;
@@ -21,7 +21,7 @@ using Clock = std::chrono::steady_clock;
 
 void Conversation::handle_open_view(const wire::Request& request) {
   const uint64_t id = request.id();
-  const wire::OpenView& wish = request.open_view();
+  const wire::OpenView& open_view = request.open_view();
   if (views_.contains(id)) {
     return send_error(id, {ErrorKind::kInvalidInput, "view " + std::to_string(id) + " is open already"});
   }
@@ -29,13 +29,13 @@ void Conversation::handle_open_view(const wire::Request& request) {
   if (views_.size() >= context_->config.views) {
     return send_error(id, {ErrorKind::kUnavailable, "busy: too many views are open on this connection"});
   }
-  if (const Status checked = check_view(wish); !checked) return send_error(id, checked.error());
-  Result<PictureJob> job = to_job(wish.picture());
+  if (const Status checked = protocol::check_view(open_view); !checked) return send_error(id, checked.error());
+  Result<service::PictureJob> job = to_job(open_view.picture());
   if (!job) return send_error(id, job.error());
-  const double fps = wish.target_fps() > 0 ? wish.target_fps() : context_->config.target_fps;
-  const auto view = std::make_shared<ViewSession>(context_->service, session_, ++context_->last_viewer, fps,
-                                                  context_->metrics.views, port_of(id));
-  views_[id] = {view, wish.picture().SerializeAsString(), wish.picture().model()};
+  const double fps = open_view.target_fps() > 0 ? open_view.target_fps() : context_->config.target_fps;
+  const auto view = std::make_shared<view::ViewSession>(context_->service, session_, ++context_->last_viewer, fps,
+                                                        context_->metrics.views, port_of(id));
+  views_[id] = {view, open_view.picture().SerializeAsString(), open_view.picture().model()};
   view->update({0, std::move(*job), /*changed=*/true, /*moving=*/false}, Clock::now());
   advance_views();
 }
@@ -47,7 +47,7 @@ void Conversation::handle_update_view(const wire::Request& request) {
   if (update.picture().model() != found->second.model) {
     return end_view(request.id(), {ErrorKind::kInvalidInput, "a view stays with its model"});
   }
-  Result<PictureJob> job = to_job(update.picture());
+  Result<service::PictureJob> job = to_job(update.picture());
   if (!job) return end_view(request.id(), job.error());
   std::string picture = update.picture().SerializeAsString();
   const bool changed = picture != found->second.picture;
@@ -80,15 +80,15 @@ void Conversation::handle_close_view(const wire::Request& request) {
   send(encode_answer(answer));
 }
 
-ViewPort Conversation::port_of(uint64_t view) {
+view::ViewPort Conversation::port_of(uint64_t view) {
   const auto self = shared_from_this();
-  ViewPort port;
-  port.send = [self, view](ViewMessage message) { self->send_frame(view, std::move(message)); };
+  view::ViewPort port;
+  port.send = [self, view](view::ViewMessage message) { self->send_frame(view, std::move(message)); };
   port.fail = [self, view](const Error& error) { self->end_view(view, error); };
   port.may_draw = [self] {
     return self->writer_ && self->writer_->unread_bytes() <= self->context_->config.requests.outgoing_bytes;
   };
-  port.post = [self = lend(self, executor_)](std::function<void()> task) {
+  port.post = [self = share_across_threads(self, executor_)](std::function<void()> task) {
     asio::post(self->executor_, [self, task = std::move(task)] {
       task();
       self->advance_views();
@@ -97,7 +97,7 @@ ViewPort Conversation::port_of(uint64_t view) {
   return port;
 }
 
-void Conversation::send_frame(uint64_t view, ViewMessage message) {
+void Conversation::send_frame(uint64_t view, view::ViewMessage message) {
   if (message.first) context_->metrics.count_stages(message.picture.stats);
   wire::Answer answer;
   answer.set_id(view);
@@ -115,12 +115,12 @@ void Conversation::end_view(uint64_t view, const Error& error) {
 
 /// Lets every view do what is due, and waits for what is due later.
 void Conversation::advance_views() {
-  std::vector<std::shared_ptr<ViewSession>> views;
+  std::vector<std::shared_ptr<view::ViewSession>> views;
   views.reserve(views_.size());
   for (const auto& [id, opened] : views_) views.push_back(opened.view);
-  std::optional<ViewTime> first;
+  std::optional<view::ViewTime> first;
   for (const auto& view : views) {
-    const std::optional<ViewTime> next = view->advance(Clock::now());
+    const std::optional<view::ViewTime> next = view->advance(Clock::now());
     if (next) first = first ? std::min(*first, *next) : *next;
   }
   view_timer_.cancel();
@@ -132,4 +132,4 @@ void Conversation::advance_views() {
   });
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::net

@@ -7,7 +7,7 @@
 #include "protocol/picture_fields.h"
 #include "protocol/validate.h"
 
-namespace surfcast {
+namespace surfcast::net {
 namespace {
 
 glm::dvec3 from_wire(const wire::Vector3& v) {
@@ -26,102 +26,102 @@ int clamp_to_int(uint32_t value) {
   return static_cast<int>(value < kLargest ? value : kLargest);
 }
 
-Normalization from_wire(wire::Normalization value) {
-  return value == wire::NORMALIZATION_SURFEL ? Normalization::kSurfel : Normalization::kPixel;
+picture::Normalization from_wire(wire::Normalization value) {
+  return value == wire::NORMALIZATION_SURFEL ? picture::Normalization::kSurfel : picture::Normalization::kPixel;
 }
 
-Filter from_wire(wire::Filter value) {
-  return value == wire::FILTER_NONE ? Filter::kNone : Filter::kEwa;
+picture::Filter from_wire(wire::Filter value) {
+  return value == wire::FILTER_NONE ? picture::Filter::kNone : picture::Filter::kEwa;
 }
 
-Shading from_wire(wire::Shading value) {
-  if (value == wire::SHADING_UNLIT) return Shading::kUnlit;
-  return value == wire::SHADING_LIT ? Shading::kLit : Shading::kAuto;
+picture::Shading from_wire(wire::Shading value) {
+  if (value == wire::SHADING_UNLIT) return picture::Shading::kUnlit;
+  return value == wire::SHADING_LIT ? picture::Shading::kLit : picture::Shading::kAuto;
 }
 
-FileFormat from_wire(wire::FileFormat value) {
+picture::FileFormat from_wire(wire::FileFormat value) {
   switch (value) {
     case wire::FILE_FORMAT_JPEG:
-      return FileFormat::kJpeg;
+      return picture::FileFormat::kJpeg;
     case wire::FILE_FORMAT_WEBP:
-      return FileFormat::kWebp;
+      return picture::FileFormat::kWebp;
     case wire::FILE_FORMAT_EXR:
-      return FileFormat::kExr;
+      return picture::FileFormat::kExr;
     default:
-      return FileFormat::kPng;
+      return picture::FileFormat::kPng;
   }
 }
 
-wire::FileFormat to_wire(FileFormat value) {
+wire::FileFormat to_wire(picture::FileFormat value) {
   switch (value) {
-    case FileFormat::kJpeg:
+    case picture::FileFormat::kJpeg:
       return wire::FILE_FORMAT_JPEG;
-    case FileFormat::kWebp:
+    case picture::FileFormat::kWebp:
       return wire::FILE_FORMAT_WEBP;
-    case FileFormat::kExr:
+    case picture::FileFormat::kExr:
       return wire::FILE_FORMAT_EXR;
-    case FileFormat::kPng:
+    case picture::FileFormat::kPng:
       break;
   }
   return wire::FILE_FORMAT_PNG;
 }
 
-SurfelColor from_wire(wire::ColorSource source) {
+picture::SurfelColor from_wire(wire::ColorSource source) {
   switch (source) {
     case wire::COLOR_SOURCE_INTENSITY:
-      return SurfelColor::kIntensity;
+      return picture::SurfelColor::kIntensity;
     case wire::COLOR_SOURCE_ELEVATION:
-      return SurfelColor::kElevation;
+      return picture::SurfelColor::kElevation;
     case wire::COLOR_SOURCE_CLASSIFICATION:
-      return SurfelColor::kClassification;
+      return picture::SurfelColor::kClassification;
     case wire::COLOR_SOURCE_NORMAL:
-      return SurfelColor::kNormal;
+      return picture::SurfelColor::kNormal;
     default:
-      return SurfelColor::kScanned;
+      return picture::SurfelColor::kStored;
   }
 }
 
-ColorMap from_wire(wire::ColorMap map) {
+picture::ColorMap from_wire(wire::ColorMap map) {
   switch (map) {
     case wire::COLOR_MAP_TURBO:
-      return ColorMap::kTurbo;
+      return picture::ColorMap::kTurbo;
     case wire::COLOR_MAP_GRAY:
-      return ColorMap::kGray;
+      return picture::ColorMap::kGray;
     case wire::COLOR_MAP_TERRAIN:
-      return ColorMap::kTerrain;
+      return picture::ColorMap::kTerrain;
     default:
-      return ColorMap::kViridis;
+      return picture::ColorMap::kViridis;
   }
 }
 
-Coloring from_wire(const wire::Coloring& coloring) {
-  Coloring result{from_wire(coloring.source()), from_wire(coloring.map())};
+picture::Coloring from_wire(const wire::Coloring& coloring) {
+  picture::Coloring result{from_wire(coloring.source()), from_wire(coloring.map())};
   if (coloring.has_first()) result.first = coloring.first();
   if (coloring.has_last()) result.last = coloring.last();
   return result;
 }
 
 /// What is shown of the model, and in which colours.
-void set_look(const wire::DrawPicture& request, PictureRequest& picture) {
+void set_display_options(const wire::DrawPicture& request, picture::PictureRequest& picture) {
   picture.coloring = from_wire(request.coloring());
   for (const uint32_t code : request.hidden_classes()) picture.hidden_classes.set(code);
   for (const wire::ClipBox& clip : request.clip_boxes()) {
-    const Box box{from_wire(clip.box().min()), from_wire(clip.box().max())};
+    const geometry::Box box{from_wire(clip.box().min()), from_wire(clip.box().max())};
     (clip.inverted() ? picture.clip.outside : picture.clip.inside).push_back(box);
   }
   picture.eye_dome.strength = request.eye_dome().strength();
   const double radius = request.eye_dome().radius();
-  picture.eye_dome.radius = radius > 0 ? radius : kDefaultEyeDomeRadius;
+  picture.eye_dome.radius = radius > 0 ? radius : protocol::kDefaultEyeDomeRadius;
 }
 
-Camera from_wire(const wire::Camera& camera) {
+geometry::Camera from_wire(const wire::Camera& camera) {
   return {.position = from_wire(camera.position()),
           .focal_point = from_wire(camera.focal_point()),
           .view_up = from_wire(camera.view_up()),
-          .view_angle = camera.has_view_angle() ? camera.view_angle() : kDefaultViewAngle};
+          .view_angle = camera.has_view_angle() ? camera.view_angle() : protocol::kDefaultViewAngle};
 }
 
-void to_wire(const Camera& camera, wire::Camera* message) {
+void to_wire(const geometry::Camera& camera, wire::Camera* message) {
   to_wire(camera.position, message->mutable_position());
   to_wire(camera.focal_point, message->mutable_focal_point());
   to_wire(camera.view_up, message->mutable_view_up());
@@ -130,36 +130,36 @@ void to_wire(const Camera& camera, wire::Camera* message) {
 
 }  // namespace
 
-Result<PictureJob> to_job(const wire::DrawPicture& request) {
-  if (Status status = check_picture(request); !status) return fail(status.error());
+Result<service::PictureJob> to_job(const wire::DrawPicture& request) {
+  if (Status status = protocol::check_picture(request); !status) return fail(status.error());
   const wire::Resolution& resolution = request.resolution();
   const wire::Color& background = request.background();
-  PictureJob job;
+  service::PictureJob job;
   job.model = request.model();
   if (request.has_camera()) job.request.camera = from_wire(request.camera());
   job.up_from_model = request.has_camera() && !request.camera().has_view_up();
-  job.request.width = clamp_to_int(request.has_resolution() ? resolution.width() : kDefaultWidth);
-  job.request.height = clamp_to_int(request.has_resolution() ? resolution.height() : kDefaultHeight);
+  job.request.width = clamp_to_int(request.has_resolution() ? resolution.width() : protocol::kDefaultWidth);
+  job.request.height = clamp_to_int(request.has_resolution() ? resolution.height() : protocol::kDefaultHeight);
   job.request.normalization = from_wire(request.normalization());
   job.request.filter = from_wire(request.filter());
   job.request.shading = from_wire(request.shading());
   job.request.silhouettes = true;
   job.request.spacing = request.spacing();
   job.request.background = {background.red(), background.green(), background.blue()};
-  set_look(request, job.request);
+  set_display_options(request, job.request);
   job.format = from_wire(request.format());
-  job.quality = static_cast<int>(request.quality() == 0 ? kDefaultQuality : request.quality());
+  job.quality = static_cast<int>(request.quality() == 0 ? protocol::kDefaultQuality : request.quality());
   return job;
 }
 
-Result<PickJob> to_job(const wire::PickSurfel& request) {
-  Result<PictureJob> picture = to_job(request.picture());
+Result<service::PickJob> to_job(const wire::PickSurfel& request) {
+  Result<service::PictureJob> picture = to_job(request.picture());
   if (!picture) return fail(picture.error());
-  return PickJob{std::move(picture->model), std::move(picture->request), picture->up_from_model,
-                 clamp_to_int(request.x()), clamp_to_int(request.y())};
+  return service::PickJob{std::move(picture->model), std::move(picture->request), picture->up_from_model,
+                          clamp_to_int(request.x()), clamp_to_int(request.y())};
 }
 
-void to_wire(const std::optional<PickedSurfel>& picked, wire::PickResult& message) {
+void to_wire(const std::optional<pick::PickedSurfel>& picked, wire::PickResult& message) {
   message.set_hit(picked.has_value());
   if (!picked) return;
   to_wire(picked->position, message.mutable_position());
@@ -171,21 +171,21 @@ void to_wire(const std::optional<PickedSurfel>& picked, wire::PickResult& messag
   }
   message.set_radius(picked->radius);
   message.set_distance(picked->distance);
-  for (const PickedValue& value : picked->values) {
+  for (const pick::PickedValue& value : picked->values) {
     wire::AttributeValue* attribute = message.add_attributes();
-    attribute->set_attribute(clean_utf8(value.attribute));
+    attribute->set_attribute(protocol::clean_utf8(value.attribute));
     attribute->set_value(value.value);
   }
 }
 
-void to_wire(EncodedPicture picture, wire::Picture& message) {
+void to_wire(service::EncodedPicture picture, wire::Picture& message) {
   message.set_data(picture.bytes.data(), picture.bytes.size());
   message.set_format(to_wire(picture.format));
   to_wire(picture.camera, message.mutable_camera());
   message.mutable_resolution()->set_width(static_cast<uint32_t>(picture.width));
   message.mutable_resolution()->set_height(static_cast<uint32_t>(picture.height));
-  message.set_normalization(picture.normalization == Normalization::kSurfel ? wire::NORMALIZATION_SURFEL
-                                                                            : wire::NORMALIZATION_PIXEL);
+  message.set_normalization(picture.normalization == picture::Normalization::kSurfel ? wire::NORMALIZATION_SURFEL
+                                                                                     : wire::NORMALIZATION_PIXEL);
   message.set_spacing(picture.spacing);
   message.set_converged(picture.converged);
   message.set_surfels_drawn(picture.stats.surfels_drawn);
@@ -194,21 +194,21 @@ void to_wire(EncodedPicture picture, wire::Picture& message) {
   message.set_blocks_waited_for(picture.stats.blocks_waited_for);
   message.set_blocks_resident(picture.stats.blocks_resident);
   message.set_bytes_resident(picture.stats.bytes_resident);
-  for (const LevelStats& stats : picture.stats.levels) {
+  for (const picture::LevelStats& stats : picture.stats.levels) {
     wire::Level* level = message.add_levels();
     level->set_level(static_cast<uint32_t>(stats.level));
     level->set_blocks_selected(stats.selected);
     level->set_blocks_drawn(stats.drawn);
   }
-  message.set_gl_renderer(clean_utf8(picture.stats.gl_renderer));
-  for (const StageTime& time : picture.stats.stages) {
+  message.set_gl_renderer(protocol::clean_utf8(picture.stats.gl_renderer));
+  for (const picture::StageTime& time : picture.stats.stages) {
     wire::Stage* stage = message.add_stages();
-    stage->set_name(clean_utf8(time.name));
+    stage->set_name(protocol::clean_utf8(time.name));
     stage->set_milliseconds(time.milliseconds);
   }
 }
 
-void to_wire(ViewMessage message, wire::ViewFrame& frame) {
+void to_wire(view::ViewMessage message, wire::ViewFrame& frame) {
   frame.set_frame(message.frame);
   frame.set_more(message.more);
   if (!message.first) {
@@ -224,11 +224,11 @@ void to_wire(ViewMessage message, wire::ViewFrame& frame) {
 }
 
 void to_wire(const std::vector<std::string>& names, wire::ModelList& message) {
-  for (const std::string& name : names) message.add_models(clean_utf8(name));
+  for (const std::string& name : names) message.add_models(protocol::clean_utf8(name));
 }
 
-void to_wire(const std::string& name, const ModelDescription& description, wire::ModelDescription& message) {
-  const ModelInfo& info = description.info;
+void to_wire(const std::string& name, const service::ModelDescription& description, wire::ModelDescription& message) {
+  const model::ModelInfo& info = description.info;
   message.set_model(name);
   message.set_surfels(info.surfels);
   to_wire(info.bounds.min, message.mutable_bounds()->mutable_min());
@@ -236,28 +236,28 @@ void to_wire(const std::string& name, const ModelDescription& description, wire:
   message.set_oriented(info.oriented);
   message.set_z_up(info.z_up);
   message.set_color_bits(static_cast<uint32_t>(info.color_bits));
-  for (const std::string& attribute : info.scalar_names) message.add_attributes(clean_utf8(attribute));
-  for (const std::string& source : info.source_names) message.add_sources(clean_utf8(source));
+  for (const std::string& attribute : info.scalar_names) message.add_attributes(protocol::clean_utf8(attribute));
+  for (const std::string& source : info.source_names) message.add_sources(protocol::clean_utf8(source));
   message.set_levels(description.levels);
   message.set_blocks(description.blocks);
   message.set_spacing(description.spacing);
-  for (const AttributeRange& range : info.ranges) {
+  for (const model::AttributeRange& range : info.ranges) {
     wire::AttributeRange* to = message.add_ranges();
-    to->set_attribute(clean_utf8(range.attribute));
+    to->set_attribute(protocol::clean_utf8(range.attribute));
     to->set_smallest(range.smallest);
     to->set_largest(range.largest);
     to->set_low(range.low);
     to->set_high(range.high);
   }
-  for (const ClassCount& count : info.classes) {
+  for (const model::ClassCount& count : info.classes) {
     wire::ClassCount* to = message.add_classes();
     to->set_code(count.code);
     to->set_surfels(count.surfels);
   }
 }
 
-std::string media_type(FileFormat format) {
-  return std::string(media_type(to_wire(format)));
+std::string media_type(picture::FileFormat format) {
+  return std::string(protocol::media_type(to_wire(format)));
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::net

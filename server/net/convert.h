@@ -9,24 +9,24 @@
 #include "surfcast.pb.h"
 #include "view/view_session.h"
 
-namespace surfcast {
+namespace surfcast::net {
 
 // Messages of the wire and values of the service, both ways.
 
 /// The job that a request asks for, once it has been checked; what it leaves out gets its default.
-Result<PictureJob> to_job(const wire::DrawPicture& request);
+Result<service::PictureJob> to_job(const wire::DrawPicture& request);
 
-Result<PickJob> to_job(const wire::PickSurfel& request);
+Result<service::PickJob> to_job(const wire::PickSurfel& request);
 
-void to_wire(const std::optional<PickedSurfel>& picked, wire::PickResult& message);
+void to_wire(const std::optional<pick::PickedSurfel>& picked, wire::PickResult& message);
 /// Takes the bytes out of the picture.
-void to_wire(EncodedPicture picture, wire::Picture& message);
+void to_wire(service::EncodedPicture picture, wire::Picture& message);
 /// Takes the bytes out of the message.
-void to_wire(ViewMessage message, wire::ViewFrame& frame);
+void to_wire(view::ViewMessage message, wire::ViewFrame& frame);
 void to_wire(const std::vector<std::string>& names, wire::ModelList& message);
-void to_wire(const std::string& name, const ModelDescription& description, wire::ModelDescription& message);
+void to_wire(const std::string& name, const service::ModelDescription& description, wire::ModelDescription& message);
 
 /// MIME type of a file format.
-std::string media_type(FileFormat format);
+std::string media_type(picture::FileFormat format);
 
-}  // namespace surfcast
+}  // namespace surfcast::net

@@ -8,11 +8,11 @@
 #include <span>
 #include <utility>
 
-#include "net/into.h"
+#include "net/redirect_error_to.h"
 #include "protocol/framing.h"
 #include "protocol/hello.h"
 
-namespace surfcast {
+namespace surfcast::net {
 namespace {
 
 namespace asio = boost::asio;
@@ -28,7 +28,7 @@ class FramedTransport : public Transport {
   Awaitable<bool> write_hello(const Bytes& hello) override;
   Awaitable<bool> write(const Bytes& message, const std::function<void()>& progress) override;
   Awaitable<void> linger() override;
-  Awaitable<void> say_goodbye() override { co_return; }
+  Awaitable<void> send_close() override { co_return; }
   bool keep_alive(Clock::time_point /*now*/) override { return true; }  // TCP sees to it
   void close() override;
   [[nodiscard]] bool is_open() const override { return socket_.is_open(); }
@@ -36,19 +36,20 @@ class FramedTransport : public Transport {
 
  private:
   tcp::socket socket_;
-  FrameSplitter splitter_{kMaxRequestBytes};
+  protocol::FrameSplitter splitter_{protocol::kMaxRequestBytes};
   std::array<std::byte, 4096> buffer_{};
 };
 
 asio::awaitable<Result<Bytes>> FramedTransport::read_hello() {
   error_code code;
-  Bytes bytes(kHelloHeaderBytes);
-  co_await asio::async_read(socket_, asio::buffer(bytes), into(code));
+  Bytes bytes(protocol::kHelloHeaderBytes);
+  co_await asio::async_read(socket_, asio::buffer(bytes), redirect_error_to(code));
   if (code) co_return fail(ErrorKind::kIo, code.message());
-  const Result<size_t> text = hello_text_bytes(std::span(bytes).first<kHelloHeaderBytes>());
+  const Result<size_t> text = protocol::hello_text_bytes(std::span(bytes).first<protocol::kHelloHeaderBytes>());
   if (!text) co_return fail(text.error());
-  bytes.resize(kHelloHeaderBytes + *text);
-  co_await asio::async_read(socket_, asio::buffer(bytes.data() + kHelloHeaderBytes, *text), into(code));
+  bytes.resize(protocol::kHelloHeaderBytes + *text);
+  co_await asio::async_read(socket_, asio::buffer(bytes.data() + protocol::kHelloHeaderBytes, *text),
+                            redirect_error_to(code));
   if (code) co_return fail(ErrorKind::kIo, code.message());
   co_return bytes;
 }
@@ -58,7 +59,7 @@ asio::awaitable<Result<std::optional<Bytes>>> FramedTransport::read() {
     Result<std::optional<Bytes>> frame = splitter_.next();
     if (!frame || frame->has_value()) co_return frame;
     error_code code;
-    const size_t count = co_await socket_.async_read_some(asio::buffer(buffer_), into(code));
+    const size_t count = co_await socket_.async_read_some(asio::buffer(buffer_), redirect_error_to(code));
     if (code) co_return std::nullopt;
     splitter_.append(std::span(buffer_).first(count));
   }
@@ -66,16 +67,16 @@ asio::awaitable<Result<std::optional<Bytes>>> FramedTransport::read() {
 
 asio::awaitable<bool> FramedTransport::write_hello(const Bytes& hello) {
   error_code code;
-  co_await asio::async_write(socket_, asio::buffer(hello), into(code));
+  co_await asio::async_write(socket_, asio::buffer(hello), redirect_error_to(code));
   co_return !code;
 }
 
 asio::awaitable<bool> FramedTransport::write(const Bytes& message, const std::function<void()>& progress) {
-  const auto header = frame_header(message.size());
+  const auto header = protocol::frame_header(message.size());
   std::array<asio::const_buffer, 2> rest{asio::buffer(header), asio::buffer(message)};
   error_code code;
   while (asio::buffer_size(rest) > 0 && !code) {
-    const size_t sent = co_await socket_.async_write_some(rest, into(code));
+    const size_t sent = co_await socket_.async_write_some(rest, redirect_error_to(code));
     const size_t of_header = std::min(sent, rest[0].size());
     rest[0] += of_header;
     rest[1] += sent - of_header;
@@ -90,7 +91,7 @@ asio::awaitable<void> FramedTransport::linger() {
   error_code code;
   socket_.shutdown(tcp::socket::shutdown_send, code);
   while (!code) {
-    co_await socket_.async_read_some(asio::buffer(buffer_), into(code));
+    co_await socket_.async_read_some(asio::buffer(buffer_), redirect_error_to(code));
   }
 }
 
@@ -106,4 +107,4 @@ std::shared_ptr<Transport> make_framed_transport(tcp::socket socket) {
   return std::make_shared<FramedTransport>(std::move(socket));
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::net

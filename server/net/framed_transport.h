@@ -5,9 +5,9 @@
 
 #include "net/transport.h"
 
-namespace surfcast {
+namespace surfcast::net {
 
 /// The framed protocol, on a connection whose first byte has been seen but not read.
 std::shared_ptr<Transport> make_framed_transport(boost::asio::ip::tcp::socket socket);
 
-}  // namespace surfcast
+}  // namespace surfcast::net

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <optional>
 
-namespace surfcast {
+namespace surfcast::net {
 
 /// When to ask a silent client whether it is still there, and when to take it for gone. It has as long for its answer
 /// as it may be silent, from when it was asked: time in which nobody looked, as on a machine that slept, does not count
@@ -13,7 +13,7 @@ class Heartbeat {
   using Clock = std::chrono::steady_clock;
   enum class Step { kWait, kAsk, kGone };
 
-  Heartbeat(std::chrono::milliseconds patience, Clock::time_point now) : patience_(patience), heard_(now) {}
+  Heartbeat(std::chrono::milliseconds timeout, Clock::time_point now) : timeout_(timeout), heard_(now) {}
 
   /// Something has come from the client.
   void hear(Clock::time_point now) {
@@ -21,17 +21,17 @@ class Heartbeat {
     asked_.reset();
   }
   /// What is to be done; kAsk is said once.
-  Step look(Clock::time_point now) {
-    if (asked_) return now - *asked_ >= patience_ ? Step::kGone : Step::kWait;
-    if (now - heard_ < patience_) return Step::kWait;
+  Step poll(Clock::time_point now) {
+    if (asked_) return now - *asked_ >= timeout_ ? Step::kGone : Step::kWait;
+    if (now - heard_ < timeout_) return Step::kWait;
     asked_ = now;
     return Step::kAsk;
   }
 
  private:
-  std::chrono::milliseconds patience_;
+  std::chrono::milliseconds timeout_;
   Clock::time_point heard_;
   std::optional<Clock::time_point> asked_;
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::net

@@ -8,7 +8,7 @@
 #include "protocol/errors.h"
 #include "protocol/pick_result_text.h"
 
-namespace surfcast {
+namespace surfcast::net {
 namespace {
 
 using nlohmann::json;
@@ -48,7 +48,7 @@ json to_json(const glm::dvec3& v) {
   return {v.x, v.y, v.z};
 }
 
-json to_json(const Camera& camera) {
+json to_json(const geometry::Camera& camera) {
   return {{"position", to_json(camera.position)},
           {"focal_point", to_json(camera.focal_point)},
           {"view_up", to_json(camera.view_up)},
@@ -65,9 +65,9 @@ std::string token(std::string_view text) {
   return clean;
 }
 
-std::string server_timing(const std::vector<StageTime>& stages) {
+std::string server_timing(const std::vector<picture::StageTime>& stages) {
   std::ostringstream out;
-  for (const StageTime& stage : stages) {
+  for (const picture::StageTime& stage : stages) {
     if (out.tellp() > 0) out << ", ";
     out << token(stage.name) << ";dur=" << stage.milliseconds;
   }
@@ -120,7 +120,8 @@ HttpAnswer text_answer(std::string_view text, std::string_view content_type) {
 }
 
 HttpAnswer error_answer(const Error& error, unsigned status) {
-  HttpAnswer answer = json_answer({{"error", {{"kind", name_of(error.kind)}, {"message", clean_utf8(error.message)}}}});
+  HttpAnswer answer = json_answer(
+      {{"error", {{"kind", protocol::name_of(error.kind)}, {"message", protocol::clean_utf8(error.message)}}}});
   answer.status = status;
   if (status == 503) answer.headers.emplace_back("Retry-After", "1");
   return answer;
@@ -136,7 +137,7 @@ HttpAnswer models_answer(const std::vector<std::string>& names) {
 
 namespace {
 
-json to_json(const AttributeRange& range) {
+json to_json(const model::AttributeRange& range) {
   return {{"attribute", range.attribute},
           {"smallest", range.smallest},
           {"largest", range.largest},
@@ -153,26 +154,27 @@ json array_of(const Values& values, const Convert& convert) {
 
 }  // namespace
 
-HttpAnswer model_answer(const std::string& name, const ModelDescription& description) {
-  const ModelInfo& info = description.info;
-  return json_answer({{"model", name},
-                      {"surfels", info.surfels},
-                      {"bounds", {{"min", to_json(info.bounds.min)}, {"max", to_json(info.bounds.max)}}},
-                      {"oriented", info.oriented},
-                      {"up_axis", info.z_up ? "z" : "y"},
-                      {"color_bits", info.color_bits},
-                      {"attributes", info.scalar_names},
-                      {"sources", info.source_names},
-                      {"levels", description.levels},
-                      {"blocks", description.blocks},
-                      {"spacing", description.spacing},
-                      {"ranges", array_of(info.ranges, [](const AttributeRange& range) { return to_json(range); })},
-                      {"classes", array_of(info.classes, [](const ClassCount& count) {
-                         return json{{"code", count.code}, {"surfels", count.surfels}};
-                       })}});
+HttpAnswer model_answer(const std::string& name, const service::ModelDescription& description) {
+  const model::ModelInfo& info = description.info;
+  return json_answer(
+      {{"model", name},
+       {"surfels", info.surfels},
+       {"bounds", {{"min", to_json(info.bounds.min)}, {"max", to_json(info.bounds.max)}}},
+       {"oriented", info.oriented},
+       {"up_axis", info.z_up ? "z" : "y"},
+       {"color_bits", info.color_bits},
+       {"attributes", info.scalar_names},
+       {"sources", info.source_names},
+       {"levels", description.levels},
+       {"blocks", description.blocks},
+       {"spacing", description.spacing},
+       {"ranges", array_of(info.ranges, [](const model::AttributeRange& range) { return to_json(range); })},
+       {"classes", array_of(info.classes, [](const model::ClassCount& count) {
+          return json{{"code", count.code}, {"surfels", count.surfels}};
+        })}});
 }
 
-HttpAnswer picture_answer(EncodedPicture picture) {
+HttpAnswer picture_answer(service::EncodedPicture picture) {
   HttpAnswer answer;
   answer.content_type = media_type(picture.format);
   answer.headers = {{"Server-Timing", server_timing(picture.stats.stages)},
@@ -185,10 +187,10 @@ HttpAnswer picture_answer(EncodedPicture picture) {
   return answer;
 }
 
-HttpAnswer file_answer(const SiteFile& file, std::string_view if_none_match) {
+HttpAnswer file_answer(const StaticFile& file, std::string_view if_none_match) {
   HttpAnswer answer;
   answer.content_type = file.media_type;
-  answer.headers = {{"Cache-Control", file.lasting ? "public, max-age=31536000, immutable" : "no-cache"},
+  answer.headers = {{"Cache-Control", file.immutable ? "public, max-age=31536000, immutable" : "no-cache"},
                     {"ETag", file.tag},
                     {"Content-Security-Policy", std::string(kPolicy)}};
   if (if_none_match.find(file.tag) == std::string_view::npos) {
@@ -199,10 +201,10 @@ HttpAnswer file_answer(const SiteFile& file, std::string_view if_none_match) {
   return answer;
 }
 
-HttpAnswer pick_answer(const std::optional<PickedSurfel>& picked) {
+HttpAnswer pick_answer(const std::optional<pick::PickedSurfel>& picked) {
   wire::PickResult result;
   to_wire(picked, result);
-  return text_answer(pick_result_json(result), kJson);
+  return text_answer(protocol::pick_result_json(result), kJson);
 }
 
 HttpAnswer page_answer(const std::vector<std::string>& names) {
@@ -214,11 +216,11 @@ HttpAnswer page_answer(const std::vector<std::string>& names) {
     const std::string place = "/api/models/" + escape_path(name);
     page << "<figure><a href=\"" << place << "/image?resolution=1920,1080\"><img src=\"" << place
          << "/image?resolution=480,270&amp;format=jpg\" width=\"480\" height=\"270\" loading=\"lazy\" alt=\"\"></a>"
-         << "<figcaption><a href=\"" << place << "\">" << escape_html(clean_utf8(name))
+         << "<figcaption><a href=\"" << place << "\">" << escape_html(protocol::clean_utf8(name))
          << "</a></figcaption></figure>\n";
   }
   page << "</body>\n</html>\n";
   return text_answer(page.str(), "text/html; charset=utf-8");
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::net

@@ -8,11 +8,11 @@
 #include <vector>
 
 #include "base/result.h"
-#include "net/site_files.h"
+#include "net/static_files.h"
 #include "service/model_source.h"
 #include "service/render_service.h"
 
-namespace surfcast {
+namespace surfcast::net {
 
 /// An answer of HTTP before it is written.
 struct HttpAnswer {
@@ -31,14 +31,14 @@ HttpAnswer error_answer(const Error& error, unsigned status);
 
 /// {"models": ["a", "b"]}
 HttpAnswer models_answer(const std::vector<std::string>& names);
-HttpAnswer model_answer(const std::string& name, const ModelDescription& description);
+HttpAnswer model_answer(const std::string& name, const service::ModelDescription& description);
 /// The picture, with what drawing it took in the headers Server-Timing and X-Surfcast-*.
-HttpAnswer picture_answer(EncodedPicture picture);
+HttpAnswer picture_answer(service::EncodedPicture picture);
 /// A file of the viewer, or 304 when `if_none_match`, the request's header, already names what it holds.
-HttpAnswer file_answer(const SiteFile& file, std::string_view if_none_match);
+HttpAnswer file_answer(const StaticFile& file, std::string_view if_none_match);
 /// What a pixel shows, as pick_result_json writes it.
-HttpAnswer pick_answer(const std::optional<PickedSurfel>& picked);
+HttpAnswer pick_answer(const std::optional<pick::PickedSurfel>& picked);
 /// A page that shows the models.
 HttpAnswer page_answer(const std::vector<std::string>& names);
 
-}  // namespace surfcast
+}  // namespace surfcast::net

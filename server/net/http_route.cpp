@@ -5,7 +5,7 @@
 
 #include "protocol/picture_query.h"
 
-namespace surfcast {
+namespace surfcast::net {
 namespace {
 
 using Kind = HttpRoute::Kind;
@@ -37,7 +37,7 @@ Result<HttpRoute> route_model(std::string_view rest, std::string_view query) {
     rest.remove_suffix(kPick.size());
   }
   if (rest.empty() || rest.find('/') != std::string_view::npos) return no_such_place(kModels);
-  Result<std::string> name = decode_escapes(rest);
+  Result<std::string> name = protocol::decode_escapes(rest);
   if (!name) return fail(name.error());
   route.model = std::move(*name);
   return route;
@@ -57,4 +57,4 @@ Result<HttpRoute> route_http(std::string_view target) {
   return no_such_place(path);
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::net

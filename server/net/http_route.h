@@ -5,7 +5,7 @@
 
 #include "base/result.h"
 
-namespace surfcast {
+namespace surfcast::net {
 
 /// What an HTTP request asks for.
 struct HttpRoute {
@@ -18,4 +18,4 @@ struct HttpRoute {
 /// Where the target of a GET leads: kNotFound for no such place, kInvalidInput for a malformed one.
 Result<HttpRoute> route_http(std::string_view target);
 
-}  // namespace surfcast
+}  // namespace surfcast::net

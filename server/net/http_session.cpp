@@ -21,14 +21,14 @@
 #include "net/convert.h"
 #include "net/http_answer.h"
 #include "net/http_route.h"
-#include "net/into.h"
-#include "net/lend.h"
 #include "net/message_session.h"
+#include "net/redirect_error_to.h"
+#include "net/share_across_threads.h"
 #include "net/upgrade.h"
 #include "net/websocket_transport.h"
 #include "protocol/picture_query.h"
 
-namespace surfcast {
+namespace surfcast::net {
 namespace {
 
 namespace asio = boost::asio;
@@ -46,7 +46,7 @@ template <typename Value, typename Start>
 asio::awaitable<Value> answer_of(Start start) {
   const auto initiate = [&start](auto handler) {
     const auto executor = asio::get_associated_executor(handler);
-    const auto shared = lend(std::make_shared<decltype(handler)>(std::move(handler)), executor);
+    const auto shared = share_across_threads(std::make_shared<decltype(handler)>(std::move(handler)), executor);
     start([shared, executor](Value value) {
       asio::post(executor,
                  [shared, value = std::make_shared<Value>(std::move(value))] { (*shared)(std::move(*value)); });
@@ -70,7 +70,7 @@ UpgradeRequest upgrade_of(const UpgradeHead& request) {
 }
 
 /// The file of the viewer that a target names, query left out.
-const SiteFile* find_file(const ServerConfig& config, std::string_view target) {
+const StaticFile* find_file(const ServerConfig& config, std::string_view target) {
   return config.viewer ? config.viewer->find(target.substr(0, target.find('?'))) : nullptr;
 }
 
@@ -112,20 +112,20 @@ class HttpSession : public Session, public std::enable_shared_from_this<HttpSess
   asio::awaitable<HttpAnswer> answer_picture(HttpRoute route);
   asio::awaitable<HttpAnswer> answer_pick(HttpRoute route);
   asio::awaitable<HttpAnswer> answer_models(HttpAnswer (*present)(const std::vector<std::string>&));
-  asio::awaitable<Result<EncodedPicture>> draw(PictureJob job);
-  asio::awaitable<void> cancel_when_client_leaves(JobId job);
+  asio::awaitable<Result<service::EncodedPicture>> draw(service::PictureJob job);
+  asio::awaitable<void> cancel_when_client_leaves(service::JobId job);
   asio::awaitable<bool> write(const HttpAnswer& answer, unsigned version, bool keep_alive, bool head);
 
   beast::tcp_stream stream_;
   beast::flat_buffer buffer_{kHeaderLimit + kBodyLimit};
   std::shared_ptr<NetContext> context_;
   OpenConnection open_;
-  SessionId id_;
+  service::SessionId id_;
   bool busy_;
   AdoptSession adopt_;
   bool answering_ = false;
   bool first_ = true;
-  std::optional<JobId> job_;  ///< being drawn for this client
+  std::optional<service::JobId> job_;  ///< being drawn for this client
 };
 
 asio::awaitable<void> HttpSession::serve() {
@@ -143,7 +143,7 @@ asio::awaitable<void> HttpSession::linger() {
   stream_.expires_after(std::min(context_->config.hello, context_->config.stall));
   std::array<char, 4096> scratch{};
   while (!ignored && !context_->draining) {
-    co_await stream_.async_read_some(asio::buffer(scratch), into(ignored));
+    co_await stream_.async_read_some(asio::buffer(scratch), redirect_error_to(ignored));
   }
   stream_.close();
 }
@@ -156,7 +156,7 @@ asio::awaitable<bool> HttpSession::serve_one() {
   parser.body_limit(kBodyLimit);
   stream_.expires_after(first_ ? context_->config.hello : context_->config.idle);
   first_ = false;
-  co_await http::async_read_header(stream_, buffer_, parser, into(code));
+  co_await http::async_read_header(stream_, buffer_, parser, redirect_error_to(code));
   if (code == http::error::end_of_stream || !stream_.socket().is_open()) co_return false;
   if (code && code.category() != http::make_error_code(http::error::bad_method).category()) co_return false;
   ++context_->metrics.requests;
@@ -211,7 +211,7 @@ HttpAnswer HttpSession::refuse_websocket(const Parser::value_type& request) cons
 asio::awaitable<HttpAnswer> HttpSession::answer(const Parser::value_type& request) {
   if (busy_) co_return error_answer({ErrorKind::kUnavailable, "the server is busy: too many connections"});
   const std::string_view target = view_of(request.target());
-  const SiteFile* file = find_file(context_->config, target);
+  const StaticFile* file = find_file(context_->config, target);
   Result<HttpRoute> route = route_http(target);
   if (!route && file == nullptr) co_return error_answer(route.error());
   if (request.method() != http::verb::get && request.method() != http::verb::head) {
@@ -255,39 +255,39 @@ asio::awaitable<HttpAnswer> HttpSession::answer_models(HttpAnswer (*present)(con
 }
 
 asio::awaitable<HttpAnswer> HttpSession::answer_model(std::string name) {
-  const auto description = co_await answer_of<Result<ModelDescription>>(
+  const auto description = co_await answer_of<Result<service::ModelDescription>>(
       [&](auto done) { context_->service.describe_model(name, std::move(done)); });
   co_return description ? model_answer(name, *description) : error_answer(description.error());
 }
 
 asio::awaitable<HttpAnswer> HttpSession::answer_pick(HttpRoute route) {
-  const Result<wire::PickSurfel> request = parse_pick_query(route.model, route.query);
+  const Result<wire::PickSurfel> request = protocol::parse_pick_query(route.model, route.query);
   if (!request) co_return error_answer(request.error());
-  const Result<PickJob> job = to_job(*request);
+  const Result<service::PickJob> job = to_job(*request);
   if (!job) co_return error_answer(job.error());
-  const auto picked = co_await answer_of<Result<std::optional<PickedSurfel>>>(
+  const auto picked = co_await answer_of<Result<std::optional<pick::PickedSurfel>>>(
       [&](auto done) { context_->service.pick(*job, std::move(done)); });
   co_return picked ? pick_answer(*picked) : error_answer(picked.error());
 }
 
 asio::awaitable<HttpAnswer> HttpSession::answer_picture(HttpRoute route) {
-  const Result<wire::DrawPicture> request = parse_picture_query(route.model, route.query);
+  const Result<wire::DrawPicture> request = protocol::parse_picture_query(route.model, route.query);
   if (!request) co_return error_answer(request.error());
-  Result<PictureJob> job = to_job(*request);
+  Result<service::PictureJob> job = to_job(*request);
   if (!job) co_return error_answer(job.error());
-  Result<EncodedPicture> picture = co_await draw(std::move(*job));
+  Result<service::EncodedPicture> picture = co_await draw(std::move(*job));
   if (!picture) co_return error_answer(picture.error());
   context_->metrics.count_picture(picture->bytes.size(), picture->stats);
   co_return picture_answer(std::move(*picture));
 }
 
-asio::awaitable<Result<EncodedPicture>> HttpSession::draw(PictureJob job) {
+asio::awaitable<Result<service::EncodedPicture>> HttpSession::draw(service::PictureJob job) {
   stream_.expires_never();
-  Result<EncodedPicture> picture = co_await answer_of<Result<EncodedPicture>>([&](auto done) {
+  Result<service::EncodedPicture> picture = co_await answer_of<Result<service::EncodedPicture>>([&](auto done) {
     job_ = context_->service.draw(id_, std::move(job), std::move(done));
     asio::co_spawn(
         stream_.get_executor(),
-        [](std::shared_ptr<HttpSession> self, JobId id) -> asio::awaitable<void> {
+        [](std::shared_ptr<HttpSession> self, service::JobId id) -> asio::awaitable<void> {
           co_await self->cancel_when_client_leaves(id);
         }(shared_from_this(), *job_),
         asio::detached);
@@ -299,9 +299,9 @@ asio::awaitable<Result<EncodedPicture>> HttpSession::draw(PictureJob job) {
 }
 
 /// Looks at what arrives while a picture is drawn: the end of the stream means that nobody waits for it any more.
-asio::awaitable<void> HttpSession::cancel_when_client_leaves(JobId job) {
+asio::awaitable<void> HttpSession::cancel_when_client_leaves(service::JobId job) {
   error_code code;
-  co_await stream_.socket().async_wait(tcp::socket::wait_read, into(code));
+  co_await stream_.socket().async_wait(tcp::socket::wait_read, redirect_error_to(code));
   if (code || job_ != job) co_return;
   char byte = 0;
   stream_.socket().non_blocking(true, code);
@@ -323,7 +323,7 @@ asio::awaitable<bool> HttpSession::write(const HttpAnswer& answer, unsigned vers
   error_code code;
   while (!serializer.is_done() && !code) {
     stream_.expires_after(context_->config.stall);  // for some bytes, not for all of them
-    co_await http::async_write_some(stream_, serializer, into(code));
+    co_await http::async_write_some(stream_, serializer, redirect_error_to(code));
   }
   co_return !code;
 }
@@ -336,4 +336,4 @@ std::shared_ptr<Session> start_http_session(Connection connection, AdoptSession 
   return session;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::net

@@ -5,7 +5,7 @@
 
 #include "net/session.h"
 
-namespace surfcast {
+namespace surfcast::net {
 
 /// Takes a session into the server's list of those that it drains when it stops.
 using AdoptSession = std::function<void(const std::shared_ptr<Session>&)>;
@@ -14,4 +14,4 @@ using AdoptSession = std::function<void(const std::shared_ptr<Session>&)>;
 /// `adopt` gets.
 std::shared_ptr<Session> start_http_session(Connection connection, AdoptSession adopt);
 
-}  // namespace surfcast
+}  // namespace surfcast::net

@@ -10,10 +10,10 @@
 
 #include "base/log.h"
 #include "net/conversation.h"
-#include "net/into.h"
+#include "net/redirect_error_to.h"
 #include "protocol/hello.h"
 
-namespace surfcast {
+namespace surfcast::net {
 namespace {
 
 namespace asio = boost::asio;
@@ -35,12 +35,12 @@ class MessageSession : public Session, public AnswerWriter, public std::enable_s
     spawn([](auto self) -> asio::awaitable<void> { co_await self->read_all(); });
     spawn([](auto self) -> asio::awaitable<void> { co_await self->watch(); });
   }
-  void drain() override { settled(); }
+  void drain() override { answer_sent(); }
   void abort() override { close(); }
 
   void send(Bytes answer) override;
   [[nodiscard]] size_t unread_bytes() const override { return outgoing_bytes_; }
-  void settled() override;
+  void answer_sent() override;
 
  private:
   /// Runs a coroutine that keeps the session alive.
@@ -67,7 +67,7 @@ class MessageSession : public Session, public AnswerWriter, public std::enable_s
 
   std::deque<Bytes> outgoing_;
   size_t outgoing_bytes_ = 0;
-  bool last_words_ = false;  ///< nothing more is said after what is in the queue
+  bool closing_ = false;  ///< nothing more is said after what is in the queue
 
   asio::steady_timer watchdog_;
   asio::steady_timer room_;  ///< cancelled when the reader should look again whether it may go on
@@ -82,25 +82,25 @@ asio::awaitable<void> MessageSession::read_all() {
     // GCC 12 makes wrong code of a co_await inside a condition: it stands by itself here and below.
     going_on = co_await read_one();
   }
-  if (!last_words_) close();
+  if (!closing_) close();
 }
 
 asio::awaitable<bool> MessageSession::exchange_hellos() {
   const Result<Bytes> bytes = co_await transport_->read_hello();
-  const Result<Hello> client = bytes ? decode_hello(*bytes) : fail(bytes.error());
-  if (!client || last_words_) co_return false;
-  Hello answer = answer_hello(*client, "surfcastd");
-  if (peer_.busy && answer.status == HelloStatus::kWelcome) {
-    answer.status = HelloStatus::kBusy;
+  const Result<protocol::Hello> client = bytes ? protocol::decode_hello(*bytes) : fail(bytes.error());
+  if (!client || closing_) co_return false;
+  protocol::Hello answer = protocol::answer_hello(*client, "surfcastd");
+  if (peer_.busy && answer.status == protocol::HelloStatus::kWelcome) {
+    answer.status = protocol::HelloStatus::kBusy;
     answer.message = "the server is busy: too many connections";
   }
-  const Bytes words = encode_hello(answer);
+  const Bytes words = protocol::encode_hello(answer);
   greeted_ = co_await transport_->write_hello(words);
   last_request_ = last_write_ = Clock::now();
-  if (last_words_) co_return false;  // the server stops meanwhile, and leave() has the last word
-  if (answer.status == HelloStatus::kWelcome) co_return greeted_;
+  if (closing_) co_return false;  // the server stops meanwhile, and leave() has the last word
+  if (answer.status == protocol::HelloStatus::kWelcome) co_return greeted_;
   spdlog::info("connection {} refused: {}", peer_.id, answer.message);
-  last_words_ = true;
+  closing_ = true;
   co_await transport_->linger();
   close();
   co_return false;
@@ -110,7 +110,7 @@ asio::awaitable<bool> MessageSession::exchange_hellos() {
 asio::awaitable<bool> MessageSession::read_one() {
   error_code code;
   while (outgoing_bytes_ > config().unread_bytes && transport_->is_open()) {
-    co_await room_.async_wait(into(code));
+    co_await room_.async_wait(redirect_error_to(code));
   }
   const Result<std::optional<Bytes>> message = co_await transport_->read();
   if (message && !message->has_value()) co_return false;
@@ -125,7 +125,7 @@ asio::awaitable<bool> MessageSession::read_one() {
 }
 
 void MessageSession::send(Bytes answer) {
-  if (!transport_->is_open() || last_words_) return;
+  if (!transport_->is_open() || closing_) return;
   outgoing_bytes_ += answer.size();
   outgoing_.push_back(std::move(answer));
   if (outgoing_.size() > 1) return;  // the writer is at work
@@ -136,7 +136,7 @@ void MessageSession::send(Bytes answer) {
 /// Sends, then closes.
 void MessageSession::send_last(Bytes answer) {
   send(std::move(answer));
-  last_words_ = true;
+  closing_ = true;
 }
 
 asio::awaitable<void> MessageSession::write_all() {
@@ -147,20 +147,20 @@ asio::awaitable<void> MessageSession::write_all() {
     outgoing_bytes_ -= outgoing_.front().size();
     outgoing_.pop_front();
     room_.cancel();
-    conversation_->more_room();
+    conversation_->resume_sending();
   }
   if (!written) close();
-  if (last_words_ && transport_->is_open()) {
+  if (closing_ && transport_->is_open()) {
     co_await transport_->linger();
     close();
   }
-  settled();
+  answer_sent();
 }
 
 /// When the session is to be closed if nothing happens until then.
 Clock::time_point MessageSession::deadline() const {
   if (!outgoing_.empty()) return last_write_ + config().stall;
-  if (last_words_) return last_write_ + std::min(config().hello, config().stall);
+  if (closing_) return last_write_ + std::min(config().hello, config().stall);
   if (!greeted_) return last_request_ + config().hello;
   if (conversation_->outstanding() > 0) return Clock::now() + config().idle;
   return last_request_ + config().idle;
@@ -171,7 +171,7 @@ asio::awaitable<void> MessageSession::watch() {
   while (transport_->is_open()) {
     // What counts can change while it waits; looking four times per limit finds out soon enough.
     watchdog_.expires_after(std::min({config().hello, config().idle, config().stall, config().ping}) / 4);
-    co_await watchdog_.async_wait(into(code));
+    co_await watchdog_.async_wait(redirect_error_to(code));
     const Clock::time_point now = Clock::now();
     if (now >= deadline() || !transport_->keep_alive(now)) close();
   }
@@ -187,15 +187,15 @@ void MessageSession::close() {
 
 /// The server stops, and the client has got all that it waited for.
 asio::awaitable<void> MessageSession::leave() {
-  last_words_ = true;
+  closing_ = true;
   last_write_ = Clock::now();
-  co_await transport_->say_goodbye();
+  co_await transport_->send_close();
   close();
 }
 
-void MessageSession::settled() {
+void MessageSession::answer_sent() {
   const bool waiting = conversation_->outstanding() > 0 || !outgoing_.empty();
-  if (!peer_.context->draining || waiting || last_words_ || !transport_->is_open()) return;
+  if (!peer_.context->draining || waiting || closing_ || !transport_->is_open()) return;
   spawn([](auto self) -> asio::awaitable<void> { co_await self->leave(); });
 }
 
@@ -207,4 +207,4 @@ std::shared_ptr<Session> start_message_session(std::shared_ptr<Transport> transp
   return session;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::net

@@ -3,7 +3,7 @@
 #include <sstream>
 #include <string_view>
 
-namespace surfcast {
+namespace surfcast::net {
 namespace {
 
 void write_value(std::ostream& out, std::string_view name, std::string_view type, std::string_view help,
@@ -23,15 +23,15 @@ std::string escape_label(std::string_view text) {
 
 }  // namespace
 
-void Metrics::count_picture(size_t bytes, const FrameStats& stats) {
+void Metrics::count_picture(size_t bytes, const picture::FrameStats& stats) {
   ++pictures;
   picture_bytes += bytes;
   count_stages(stats);
 }
 
-void Metrics::count_stages(const FrameStats& stats) {
+void Metrics::count_stages(const picture::FrameStats& stats) {
   surfels_drawn += stats.surfels_drawn;
-  for (const StageTime& stage : stats.stages) stage_seconds[stage.name] += stage.milliseconds / 1e3;
+  for (const picture::StageTime& stage : stats.stages) stage_seconds[stage.name] += stage.milliseconds / 1e3;
 }
 
 std::string to_prometheus(const Metrics& m, size_t queued) {
@@ -61,4 +61,4 @@ std::string to_prometheus(const Metrics& m, size_t queued) {
   return out.str();
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::net

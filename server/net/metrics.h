@@ -6,10 +6,10 @@
 #include <string>
 #include <vector>
 
-#include "render/picture.h"
+#include "picture/picture.h"
 #include "view/view_session.h"
 
-namespace surfcast {
+namespace surfcast::net {
 
 /// What the server counts while it runs. Lives on the thread of the sockets.
 struct Metrics {
@@ -21,14 +21,14 @@ struct Metrics {
   uint64_t pictures = 0;             ///< delivered to a session
   uint64_t picture_bytes = 0;        ///< encoded
   uint64_t surfels_drawn = 0;
-  ViewCounts views;
+  view::ViewCounts views;
   std::map<std::string, double> stage_seconds;  ///< by the name of the stage, summed over pictures and frames of views
 
-  void count_picture(size_t bytes, const FrameStats& stats);
-  void count_stages(const FrameStats& stats);
+  void count_picture(size_t bytes, const picture::FrameStats& stats);
+  void count_stages(const picture::FrameStats& stats);
 };
 
 /// The text that Prometheus reads. `queued` is the number of pictures that wait now.
 std::string to_prometheus(const Metrics& metrics, size_t queued);
 
-}  // namespace surfcast
+}  // namespace surfcast::net

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <string>
 
-namespace surfcast {
+namespace surfcast::net {
 namespace {
 
 auto find_request(auto& waiting, RequestWindow::RequestId id) {
@@ -21,7 +21,7 @@ Status RequestWindow::admit(RequestId id) const {
               "busy: " + std::to_string(limits_.outstanding) + " requests are outstanding on this connection");
 }
 
-std::optional<std::pair<RequestWindow::RequestId, PictureJob>> RequestWindow::next(size_t outgoing_bytes) {
+std::optional<std::pair<RequestWindow::RequestId, service::PictureJob>> RequestWindow::next(size_t outgoing_bytes) {
   if (waiting_.empty() || drawing_ >= limits_.drawing || outgoing_bytes > limits_.outgoing_bytes) return std::nullopt;
   auto entry = std::move(waiting_.front());
   waiting_.pop_front();
@@ -30,7 +30,7 @@ std::optional<std::pair<RequestWindow::RequestId, PictureJob>> RequestWindow::ne
   return entry;
 }
 
-void RequestWindow::set_job(RequestId id, JobId job) {
+void RequestWindow::set_job(RequestId id, service::JobId job) {
   if (const auto found = active_.find(id); found != active_.end()) found->second.job = job;
 }
 
@@ -41,7 +41,7 @@ bool RequestWindow::remove_waiting(RequestId id) {
   return true;
 }
 
-std::optional<JobId> RequestWindow::job(RequestId id) const {
+std::optional<service::JobId> RequestWindow::job(RequestId id) const {
   const auto found = active_.find(id);
   return found == active_.end() ? std::nullopt : found->second.job;
 }
@@ -53,13 +53,13 @@ void RequestWindow::finish(RequestId id) {
   active_.erase(found);
 }
 
-std::vector<JobId> RequestWindow::abandon() {
+std::vector<service::JobId> RequestWindow::abandon() {
   waiting_.clear();
-  std::vector<JobId> jobs;
+  std::vector<service::JobId> jobs;
   for (const auto& [id, active] : active_) {
     if (active.job) jobs.push_back(*active.job);
   }
   return jobs;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::net

@@ -18,13 +18,13 @@
 #include "base/log.h"
 #include "net/framed_transport.h"
 #include "net/http_session.h"
-#include "net/into.h"
 #include "net/message_session.h"
+#include "net/redirect_error_to.h"
 #include "net/session.h"
 #include "protocol/endpoint.h"
 #include "protocol/hello.h"
 
-namespace surfcast {
+namespace surfcast::net {
 namespace {
 
 namespace asio = boost::asio;
@@ -35,11 +35,11 @@ using boost::system::error_code;
 constexpr size_t kRefusalsAtOnce = 32;
 
 /// Looks at the first byte of a connection and passes it on to the session of its protocol.
-class Doorman : public Session, public std::enable_shared_from_this<Doorman> {
+class ProtocolDetector : public Session, public std::enable_shared_from_this<ProtocolDetector> {
  public:
   using PassOn = std::function<void(Connection, bool framed)>;
 
-  Doorman(Connection connection, PassOn pass_on)
+  ProtocolDetector(Connection connection, PassOn pass_on)
       : timeout_(connection.socket.get_executor(), connection.peer.context->config.hello),
         connection_(std::move(connection)),
         pass_on_(std::move(pass_on)) {}
@@ -52,7 +52,7 @@ class Doorman : public Session, public std::enable_shared_from_this<Doorman> {
                                      [self = shared_from_this()](error_code code, size_t count) {
                                        self->timeout_.cancel();
                                        if (code || count == 0) return;
-                                       const bool framed = self->first_ == kHelloMagic[0];
+                                       const bool framed = self->first_ == protocol::kHelloMagic[0];
                                        self->pass_on_(std::move(self->connection_), framed);
                                      });
   }
@@ -72,7 +72,7 @@ class Doorman : public Session, public std::enable_shared_from_this<Doorman> {
 }  // namespace
 
 struct Server::State {
-  State(RenderService& service, const ServerConfig& config)
+  State(service::RenderService& service, const ServerConfig& config)
       : context(std::make_shared<NetContext>(NetContext{service, config, {}, 0, false})) {}
 
   Status listen();
@@ -88,7 +88,7 @@ struct Server::State {
   tcp::acceptor acceptor{io};
   asio::signal_set signals{io};
   std::vector<std::weak_ptr<Session>> sessions;
-  SessionId last_session = 0;
+  service::SessionId last_session = 0;
 };
 
 Status Server::State::listen() {
@@ -96,7 +96,7 @@ Status Server::State::listen() {
   error_code code;
   tcp::resolver resolver{io};
   const auto found = resolver.resolve(config.host, std::to_string(config.port), tcp::resolver::passive, code);
-  const std::string name = to_string(Endpoint{config.host, config.port});
+  const std::string name = protocol::to_string(protocol::Endpoint{config.host, config.port});
   if (code || found.empty()) return fail(ErrorKind::kIo, name + ": cannot listen: " + code.message());
   const tcp::endpoint endpoint = found.begin()->endpoint();
   acceptor.open(endpoint.protocol(), code);
@@ -110,7 +110,7 @@ Status Server::State::listen() {
 asio::awaitable<void> Server::State::accept_all() {
   error_code code;
   while (acceptor.is_open()) {
-    tcp::socket socket = co_await acceptor.async_accept(into(code));
+    tcp::socket socket = co_await acceptor.async_accept(redirect_error_to(code));
     if (!code) {
       admit(std::move(socket));
       continue;
@@ -119,7 +119,7 @@ asio::awaitable<void> Server::State::accept_all() {
     // Out of descriptors, most likely: they come back as connections end.
     spdlog::warn("cannot accept a connection: {}", code.message());
     asio::steady_timer pause{io, std::chrono::milliseconds(100)};
-    co_await pause.async_wait(into(code));
+    co_await pause.async_wait(redirect_error_to(code));
   }
 }
 
@@ -133,15 +133,16 @@ void Server::State::admit(tcp::socket socket) {
   socket.set_option(tcp::no_delay(true), ignored);
   socket.set_option(asio::socket_base::keep_alive(true), ignored);
   Connection connection{std::move(socket), {context, OpenConnection(context), ++last_session, busy}};
-  const auto doorman = std::make_shared<Doorman>(std::move(connection), [this](Connection passed, bool framed) {
-    if (framed) {
-      add(start_message_session(make_framed_transport(std::move(passed.socket)), std::move(passed.peer)));
-    } else {
-      add(start_http_session(std::move(passed), [this](const std::shared_ptr<Session>& session) { add(session); }));
-    }
-  });
-  add(doorman);
-  doorman->start();
+  const auto detector =
+      std::make_shared<ProtocolDetector>(std::move(connection), [this](Connection passed, bool framed) {
+        if (framed) {
+          add(start_message_session(make_framed_transport(std::move(passed.socket)), std::move(passed.peer)));
+        } else {
+          add(start_http_session(std::move(passed), [this](const std::shared_ptr<Session>& session) { add(session); }));
+        }
+      });
+  add(detector);
+  detector->start();
 }
 
 void Server::State::add(const std::shared_ptr<Session>& session) {
@@ -175,7 +176,7 @@ asio::awaitable<void> Server::State::drain() {
   asio::steady_timer pause{io};
   while (any_session() && Clock::now() < end) {
     pause.expires_after(std::chrono::milliseconds(5));
-    co_await pause.async_wait(into(code));
+    co_await pause.async_wait(redirect_error_to(code));
   }
   each(&Session::abort);
 }
@@ -184,7 +185,7 @@ Server::Server(std::unique_ptr<State> state) : state_(std::move(state)) {}
 
 Server::~Server() = default;
 
-Result<std::unique_ptr<Server>> Server::create(RenderService& service, const ServerConfig& config) {
+Result<std::unique_ptr<Server>> Server::create(service::RenderService& service, const ServerConfig& config) {
   auto state = std::make_unique<State>(service, config);
   if (Status status = state->listen(); !status) return fail(status.error());
   return std::unique_ptr<Server>(new Server(std::move(state)));
@@ -211,4 +212,4 @@ void Server::stop() {
   asio::post(state_->io, [this] { state_->begin_drain(); });
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::net

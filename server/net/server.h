@@ -9,26 +9,26 @@
 
 #include "base/result.h"
 #include "net/request_window.h"
-#include "net/site_files.h"
+#include "net/static_files.h"
 #include "service/render_service.h"
 
-namespace surfcast {
+namespace surfcast::net {
 
 struct ServerConfig {
   std::string host = "127.0.0.1";
   uint16_t port = 7600;  ///< 0: any free one
   size_t connections = 256;
-  RequestWindow::Limits requests;            ///< of one connection of the framed protocol
-  size_t views = 8;                          ///< open at a time on one connection
-  double target_fps = 30;                    ///< of views in motion whose client does not say
-  size_t unread_bytes = size_t{64} << 20;    ///< of answers; beyond it the connection is not read from
-  std::chrono::milliseconds hello{10'000};   ///< for the first words of a connection
-  std::chrono::milliseconds idle{300'000};   ///< without a whole request and with nothing outstanding
-  std::chrono::milliseconds stall{30'000};   ///< without any byte of an answer being taken
-  std::chrono::milliseconds ping{30'000};    ///< without a word on a WebSocket, before the client is asked for one
-  std::chrono::milliseconds drain{5'000};    ///< for what is outstanding when the server stops
-  std::shared_ptr<const SiteFiles> viewer;   ///< served at "/"; null: a page that shows the models
-  std::vector<std::string> allowed_origins;  ///< of pages that may open a WebSocket beside the viewer's own
+  RequestWindow::Limits requests;             ///< of one connection of the framed protocol
+  size_t views = 8;                           ///< open at a time on one connection
+  double target_fps = 30;                     ///< of views in motion whose client does not say
+  size_t unread_bytes = size_t{64} << 20;     ///< of answers; beyond it the connection is not read from
+  std::chrono::milliseconds hello{10'000};    ///< for the first words of a connection
+  std::chrono::milliseconds idle{300'000};    ///< without a whole request and with nothing outstanding
+  std::chrono::milliseconds stall{30'000};    ///< without any byte of an answer being taken
+  std::chrono::milliseconds ping{30'000};     ///< without a word on a WebSocket, before the client is asked for one
+  std::chrono::milliseconds drain{5'000};     ///< for what is outstanding when the server stops
+  std::shared_ptr<const StaticFiles> viewer;  ///< served at "/"; null: a page that shows the models
+  std::vector<std::string> allowed_origins;   ///< of pages that may open a WebSocket beside the viewer's own
 };
 
 /// The listener and its connections: framed protocol, HTTP and WebSocket on one port. Everything happens on the thread
@@ -36,7 +36,7 @@ struct ServerConfig {
 class Server {
  public:
   /// Binds the port. `service` must outlive the server.
-  static Result<std::unique_ptr<Server>> create(RenderService& service, const ServerConfig& config);
+  static Result<std::unique_ptr<Server>> create(service::RenderService& service, const ServerConfig& config);
   ~Server();
 
   [[nodiscard]] uint16_t port() const;
@@ -52,4 +52,4 @@ class Server {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::net

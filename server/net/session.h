@@ -8,11 +8,11 @@
 #include "net/server.h"
 #include "service/render_service.h"
 
-namespace surfcast {
+namespace surfcast::net {
 
 /// What the sessions of a server share. Used on the thread of the sockets alone, but for the service.
 struct NetContext {
-  RenderService& service;
+  service::RenderService& service;
   ServerConfig config;
   Metrics metrics;
   uint64_t last_viewer = 0;  ///< see PictureRequest::viewer
@@ -39,7 +39,7 @@ class OpenConnection {
 struct Peer {
   std::shared_ptr<NetContext> context;
   OpenConnection open;
-  SessionId id = 0;
+  service::SessionId id = 0;
   bool busy = false;
 };
 
@@ -59,4 +59,4 @@ class Session {
   virtual void abort() = 0;
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::net

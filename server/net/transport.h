@@ -9,7 +9,7 @@
 #include "base/result.h"
 #include "net/answers.h"
 
-namespace surfcast {
+namespace surfcast::net {
 
 /// Carries whole messages over one socket. One reader and one writer may be at work at a time; both on the thread of
 /// the sockets.
@@ -34,7 +34,7 @@ class Transport {
   /// Lets the client read the last words before the connection is closed.
   virtual Awaitable<void> linger() = 0;
   /// Tells the client that the server stops, if there is a way to say so.
-  virtual Awaitable<void> say_goodbye() = 0;
+  virtual Awaitable<void> send_close() = 0;
   /// Looks whether the client is still there; to be called now and then. False when it is not.
   virtual bool keep_alive(Clock::time_point now) = 0;
 
@@ -43,4 +43,4 @@ class Transport {
   [[nodiscard]] virtual boost::asio::any_io_executor executor() = 0;
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::net

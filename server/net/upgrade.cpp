@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cctype>
 
-namespace surfcast {
+namespace surfcast::net {
 namespace {
 
 bool equal_in_any_case(std::string_view a, std::string_view b) {
@@ -47,4 +47,4 @@ Status check_upgrade(const UpgradeRequest& request, std::span<const std::string>
   return {};
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::net

@@ -6,7 +6,7 @@
 
 #include "base/result.h"
 
-namespace surfcast {
+namespace surfcast::net {
 
 /// The subprotocol of WebSocket that carries this program's messages.
 inline constexpr std::string_view kWebSocketProtocol = "surfcast.v1";
@@ -23,4 +23,4 @@ struct UpgradeRequest {
 /// kInvalidInput: not allowed.
 Status check_upgrade(const UpgradeRequest& request, std::span<const std::string> allowed);
 
-}  // namespace surfcast
+}  // namespace surfcast::net

@@ -9,11 +9,11 @@
 #include <utility>
 
 #include "net/heartbeat.h"
-#include "net/into.h"
+#include "net/redirect_error_to.h"
 #include "net/upgrade.h"
 #include "protocol/framing.h"
 
-namespace surfcast {
+namespace surfcast::net {
 namespace {
 
 namespace asio = boost::asio;
@@ -36,7 +36,7 @@ class WebSocketTransport : public Transport, public std::enable_shared_from_this
   Awaitable<bool> write_hello(const Bytes& hello) override;
   Awaitable<bool> write(const Bytes& message, const std::function<void()>& progress) override;
   Awaitable<void> linger() override { return part(websocket::close_code::normal); }
-  Awaitable<void> say_goodbye() override { return part(websocket::close_code::going_away); }
+  Awaitable<void> send_close() override { return part(websocket::close_code::going_away); }
   bool keep_alive(Clock::time_point now) override;
   void close() override;
   [[nodiscard]] bool is_open() const override { return open_; }
@@ -59,7 +59,7 @@ WebSocketTransport::WebSocketTransport(tcp::socket socket, UpgradeHead head, std
     : stream_(std::move(socket)), head_(std::move(head)), heartbeat_(ping, Clock::now()) {
   stream_.auto_fragment(false);
   stream_.binary(true);
-  stream_.read_message_max(kMaxRequestBytes);
+  stream_.read_message_max(protocol::kMaxRequestBytes);
   stream_.set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
     response.set(http::field::server, "surfcastd");
     response.set(http::field::sec_websocket_protocol, beast::string_view(kWebSocketProtocol.data(),  //
@@ -77,7 +77,7 @@ void WebSocketTransport::hear(websocket::frame_type type) {
 
 asio::awaitable<Result<Bytes>> WebSocketTransport::read_hello() {
   error_code code;
-  co_await stream_.async_accept(head_, into(code));
+  co_await stream_.async_accept(head_, redirect_error_to(code));
   if (code) co_return fail(ErrorKind::kIo, code.message());
   head_ = {};
   granted_ = true;
@@ -91,7 +91,7 @@ asio::awaitable<Result<std::optional<Bytes>>> WebSocketTransport::read() {
   error_code code;
   beast::flat_buffer buffer;  // of its own: a connection that is silent holds no memory for messages
   reading_ = true;
-  co_await stream_.async_read(buffer, into(code));
+  co_await stream_.async_read(buffer, redirect_error_to(code));
   reading_ = false;
   if (code) co_return std::nullopt;
   heartbeat_.hear(Clock::now());
@@ -102,7 +102,7 @@ asio::awaitable<Result<std::optional<Bytes>>> WebSocketTransport::read() {
 
 asio::awaitable<bool> WebSocketTransport::write_hello(const Bytes& hello) {
   error_code code;
-  co_await stream_.async_write(asio::buffer(hello), into(code));
+  co_await stream_.async_write(asio::buffer(hello), redirect_error_to(code));
   co_return !code;
 }
 
@@ -111,7 +111,7 @@ asio::awaitable<bool> WebSocketTransport::write(const Bytes& message, const std:
   for (size_t sent = 0; sent < message.size() && !code;) {
     const size_t count = std::min(kFragmentBytes, message.size() - sent);
     const bool last = sent + count == message.size();
-    co_await stream_.async_write_some(last, asio::buffer(message.data() + sent, count), into(code));
+    co_await stream_.async_write_some(last, asio::buffer(message.data() + sent, count), redirect_error_to(code));
     sent += count;
     progress();
   }
@@ -121,7 +121,7 @@ asio::awaitable<bool> WebSocketTransport::write(const Bytes& message, const std:
 /// Returns when the client has said goodbye, too.
 asio::awaitable<void> WebSocketTransport::part(websocket::close_code reason) {
   error_code ignored;
-  if (granted_) co_await stream_.async_close(reason, into(ignored));
+  if (granted_) co_await stream_.async_close(reason, redirect_error_to(ignored));
 }
 
 bool WebSocketTransport::keep_alive(Clock::time_point now) {
@@ -129,7 +129,7 @@ bool WebSocketTransport::keep_alive(Clock::time_point now) {
     heartbeat_.hear(now);
     return true;
   }
-  const Heartbeat::Step step = heartbeat_.look(now);
+  const Heartbeat::Step step = heartbeat_.poll(now);
   if (step == Heartbeat::Step::kAsk) stream_.async_ping({}, [self = shared_from_this()](error_code) {});
   return step != Heartbeat::Step::kGone;
 }
@@ -152,4 +152,4 @@ std::shared_ptr<Transport> make_websocket_transport(tcp::socket socket, UpgradeH
   return std::make_shared<WebSocketTransport>(std::move(socket), std::move(head), ping);
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::net

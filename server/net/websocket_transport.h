@@ -8,7 +8,7 @@
 
 #include "net/transport.h"
 
-namespace surfcast {
+namespace surfcast::net {
 
 /// The header of a request for a WebSocket.
 using UpgradeHead = boost::beast::http::request<boost::beast::http::empty_body>;
@@ -18,4 +18,4 @@ using UpgradeHead = boost::beast::http::request<boost::beast::http::empty_body>;
 std::shared_ptr<Transport> make_websocket_transport(boost::asio::ip::tcp::socket socket, UpgradeHead head,
                                                     std::chrono::milliseconds ping);
 
-}  // namespace surfcast
+}  // namespace surfcast::net

@@ -10,7 +10,7 @@
 #include "selection/frustum.h"
 #include "surfel/drawn_radius.h"
 
-namespace surfcast {
+namespace surfcast::pick {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -33,7 +33,7 @@ struct Candidate {
 };
 
 /// Camera z at which the ray enters a box, centred about the eye, grown by `margin`; infinite if it misses.
-double entry_depth(const Box& box, double margin, const glm::dvec3& eye, const glm::dvec3& direction) {
+double entry_depth(const geometry::Box& box, double margin, const glm::dvec3& eye, const glm::dvec3& direction) {
   double first = 0;
   double last = kInfinity;
   for (int axis = 0; axis < 3; ++axis) {
@@ -53,7 +53,7 @@ double entry_depth(const Box& box, double margin, const glm::dvec3& eye, const g
 
 class Picker {
  public:
-  Picker(const ModelFile& model, const PickQuery& query, SourceBlocks& source)
+  Picker(const model::ModelFile& model, const PickQuery& query, SourceBlocks& source)
       : model_(model), query_(query), source_(source), frame_(query.frame) {
     ray_ = frame_.ray(query.pixel);
     direction_ = frame_.right * ray_.x + frame_.up * ray_.y + frame_.forward;
@@ -63,7 +63,7 @@ class Picker {
     for (const LeafOnRay& leaf : leaves_on_ray()) {
       if (leaf.nearest > occluder_) break;
       if (cancelled.load(std::memory_order_relaxed)) return fail(ErrorKind::kCancelled, "cancelled");
-      Result<std::shared_ptr<const DecodedBlock>> block = source_.get(model_, leaf.block);
+      Result<std::shared_ptr<const model::DecodedBlock>> block = source_.get(model_, leaf.block);
       if (!block) return fail(std::move(block.error()));
       collect(**block);
       if (!candidates_.empty() && candidates_.back().block == blocks_.size()) blocks_.push_back(std::move(*block));
@@ -74,17 +74,17 @@ class Picker {
  private:
   /// By the depth from which they may be seen.
   [[nodiscard]] std::vector<LeafOnRay> leaves_on_ray() const {
-    const std::vector<BlockHull> hulls = block_hulls(model_.tree());
-    const Frustum frustum(frame_, query_.pixel.x - kReachInPixels, query_.pixel.y - kReachInPixels,
-                          query_.pixel.x + kReachInPixels, query_.pixel.y + kReachInPixels);
+    const std::vector<selection::BlockHull> hulls = selection::block_hulls(model_.tree());
+    const selection::Frustum frustum(frame_, query_.pixel.x - kReachInPixels, query_.pixel.y - kReachInPixels,
+                                     query_.pixel.x + kReachInPixels, query_.pixel.y + kReachInPixels);
     std::vector<LeafOnRay> leaves;
     std::vector<uint32_t> open(model_.tree().roots().begin(), model_.tree().roots().end());
     while (!open.empty()) {
       const uint32_t block = open.back();
       open.pop_back();
-      const BlockHull& hull = hulls[block];
-      if (!may_be_seen(hull, frustum, frame_.eye) || !query_.clip.may_show(hull.centres)) continue;
-      const BlockTree::Children children = model_.tree().children(block);
+      const selection::BlockHull& hull = hulls[block];
+      if (!selection::may_be_visible(hull, frustum, frame_.eye) || !query_.clip.may_show(hull.centres)) continue;
+      const ldc::BlockTree::Children children = model_.tree().children(block);
       for (uint32_t i = 0; i < children.count; ++i) open.push_back(children.first + i);
       if (children.count > 0) continue;
       const double reach = kReachInRadii * hull.reach;
@@ -98,10 +98,10 @@ class Picker {
     return leaves;
   }
 
-  [[nodiscard]] bool hidden(const DecodedBlock& block, size_t surfel) const {
+  [[nodiscard]] bool hidden(const model::DecodedBlock& block, size_t surfel) const {
     if (!query_.clip.shows(block.position(surfel))) return true;
     if (query_.hidden_classes.none()) return false;
-    for (const ScalarAttribute& scalar : block.scalars) {
+    for (const surfel::ScalarAttribute& scalar : block.scalars) {
       if (scalar.name != "classification") continue;
       const double code = value_at(scalar.values, surfel);
       return query_
@@ -110,8 +110,8 @@ class Picker {
     return false;
   }
 
-  void collect(const DecodedBlock& block) {
-    const float widest = largest_drawn_radius(block.radii);
+  void collect(const model::DecodedBlock& block) {
+    const float widest = surfel::largest_drawn_radius(block.radii);
     for (size_t i = 0; i < block.size(); ++i) {
       const glm::dvec3 o = frame_.to_camera(block.position(i));
       const glm::dvec3 n = frame_.rotate(glm::dvec3(block.normals[i]));
@@ -133,7 +133,7 @@ class Picker {
     return describe(*blocks_[best->block], best->surfel);
   }
 
-  [[nodiscard]] PickedSurfel describe(const DecodedBlock& block, size_t i) const {
+  [[nodiscard]] PickedSurfel describe(const model::DecodedBlock& block, size_t i) const {
     PickedSurfel picked;
     picked.position = block.position(i);
     picked.normal = glm::normalize(glm::dvec3(block.normals[i]));
@@ -142,7 +142,7 @@ class Picker {
     if (!block.colors.empty()) picked.color = color_of(block.colors[i]);
     picked.radius = double{block.radii[i]};
     picked.distance = glm::length(from_eye);
-    for (const ScalarAttribute& scalar : block.scalars) {
+    for (const surfel::ScalarAttribute& scalar : block.scalars) {
       picked.values.push_back({scalar.name, value_at(scalar.values, i)});
     }
     return picked;
@@ -154,26 +154,26 @@ class Picker {
     return {level(color.r), level(color.g), level(color.b)};
   }
 
-  static double value_at(const ScalarValues& values, size_t i) {
+  static double value_at(const surfel::ScalarValues& values, size_t i) {
     return std::visit([i](const auto& column) { return static_cast<double>(column[i]); }, values);
   }
 
-  const ModelFile& model_;
+  const model::ModelFile& model_;
   const PickQuery& query_;
   SourceBlocks& source_;
-  const CameraFrame& frame_;
-  glm::dvec3 ray_{0};                                        ///< camera frame, z = 1
-  glm::dvec3 direction_{0};                                  ///< the same in the world
-  std::vector<std::shared_ptr<const DecodedBlock>> blocks_;  ///< those with candidates
+  const geometry::CameraFrame& frame_;
+  glm::dvec3 ray_{0};                                               ///< camera frame, z = 1
+  glm::dvec3 direction_{0};                                         ///< the same in the world
+  std::vector<std::shared_ptr<const model::DecodedBlock>> blocks_;  ///< those with candidates
   std::vector<Candidate> candidates_;
   double occluder_ = kInfinity;  ///< camera z behind which everything is hidden
 };
 
 }  // namespace
 
-Result<std::optional<PickedSurfel>> pick_surfel(const ModelFile& model, const PickQuery& query, SourceBlocks& blocks,
-                                                const std::atomic<bool>& cancelled) {
+Result<std::optional<PickedSurfel>> pick_surfel(const model::ModelFile& model, const PickQuery& query,
+                                                SourceBlocks& blocks, const std::atomic<bool>& cancelled) {
   return Picker(model, query, blocks).pick(cancelled);
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::pick

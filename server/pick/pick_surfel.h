@@ -15,13 +15,13 @@
 #include "model/model_file.h"
 #include "pick/source_blocks.h"
 
-namespace surfcast {
+namespace surfcast::pick {
 
 /// A position in a picture, and what the picture shows.
 struct PickQuery {
-  CameraFrame frame;
+  geometry::CameraFrame frame;
   glm::dvec2 pixel{0};  ///< from the upper left corner; a pixel's centre is at +0.5
-  Clip clip;
+  geometry::Clip clip;
   std::bitset<256> hidden_classes;
 };
 
@@ -44,7 +44,7 @@ struct PickedSurfel {
 /// not hidden behind a nearer surface, the one whose centre is nearest, measured in its disc as it is seen. None where
 /// the background shows. Looks at the blocks along the ray from the eye on and no farther than it sees. Fails when one
 /// is damaged, and with kCancelled soon after `cancelled` becomes true.
-Result<std::optional<PickedSurfel>> pick_surfel(const ModelFile& model, const PickQuery& query, SourceBlocks& blocks,
-                                                const std::atomic<bool>& cancelled);
+Result<std::optional<PickedSurfel>> pick_surfel(const model::ModelFile& model, const PickQuery& query,
+                                                SourceBlocks& blocks, const std::atomic<bool>& cancelled);
 
-}  // namespace surfcast
+}  // namespace surfcast::pick

@@ -3,7 +3,7 @@
 #include <variant>
 #include <vector>
 
-namespace surfcast {
+namespace surfcast::pick {
 namespace {
 
 template <typename T>
@@ -11,10 +11,10 @@ size_t bytes_of(const std::vector<T>& values) {
   return values.size() * sizeof(T);
 }
 
-size_t bytes_of(const DecodedBlock& block) {
+size_t bytes_of(const model::DecodedBlock& block) {
   size_t bytes = bytes_of(block.indices) + bytes_of(block.normals) + bytes_of(block.radii) + bytes_of(block.weights) +
                  bytes_of(block.colors);
-  for (const ScalarAttribute& scalar : block.scalars) {
+  for (const surfel::ScalarAttribute& scalar : block.scalars) {
     bytes += std::visit([](const auto& values) { return bytes_of(values); }, scalar.values);
   }
   return bytes;
@@ -22,18 +22,18 @@ size_t bytes_of(const DecodedBlock& block) {
 
 }  // namespace
 
-Result<std::shared_ptr<const DecodedBlock>> SourceBlocks::get(const ModelFile& model, uint32_t block) {
+Result<std::shared_ptr<const model::DecodedBlock>> SourceBlocks::get(const model::ModelFile& model, uint32_t block) {
   const std::pair key(model.id(), block);
   {
     const std::lock_guard lock(mutex_);
     if (auto found = cache_.find(key)) return found;
   }
-  Result<DecodedBlock> decoded = model.decode(block);
+  Result<model::DecodedBlock> decoded = model.decode(block);
   if (!decoded) return fail(std::move(decoded.error()));
-  auto shared = std::make_shared<const DecodedBlock>(std::move(*decoded));
+  auto shared = std::make_shared<const model::DecodedBlock>(std::move(*decoded));
   const std::lock_guard lock(mutex_);
   cache_.put(key, shared, bytes_of(*shared));
   return shared;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::pick

@@ -6,7 +6,7 @@
 #include <glm/common.hpp>
 #include <span>
 
-namespace surfcast {
+namespace surfcast::render {
 namespace {
 
 // Colours at even steps of each map, sRGB as 0xrrggbb; between them sRGB values are interpolated, which is how the maps
@@ -24,15 +24,15 @@ constexpr std::array<uint32_t, 2> kGray{0x000000, 0xffffff};
 constexpr std::array<uint32_t, 9> kTerrain{0x1d5b4f, 0x3f8a55, 0x86b061, 0xcfcf7d, 0xdcb873,
                                            0xb98a58, 0x8e6a52, 0xb3a69d, 0xfafafa};
 
-std::span<const uint32_t> steps_of(ColorMap map) {
+std::span<const uint32_t> steps_of(picture::ColorMap map) {
   switch (map) {
-    case ColorMap::kTurbo:
+    case picture::ColorMap::kTurbo:
       return kTurbo;
-    case ColorMap::kGray:
+    case picture::ColorMap::kGray:
       return kGray;
-    case ColorMap::kTerrain:
+    case picture::ColorMap::kTerrain:
       return kTerrain;
-    case ColorMap::kViridis:
+    case picture::ColorMap::kViridis:
       break;
   }
   return kViridis;
@@ -89,7 +89,7 @@ uint32_t packed(const glm::dvec3& srgb) {
 
 }  // namespace
 
-glm::dvec3 map_color(ColorMap map, double t) {
+glm::dvec3 map_color(picture::ColorMap map, double t) {
   const std::span<const uint32_t> steps = steps_of(map);
   const double place = std::clamp(t, 0.0, 1.0) * static_cast<double>(steps.size() - 1);
   const size_t first = std::min(static_cast<size_t>(place), steps.size() - 2);
@@ -102,7 +102,7 @@ glm::u8vec3 class_color(uint8_t code) {
   return code < kNamedClasses.size() ? channels(kNamedClasses[code]) : unnamed_class_color(code);
 }
 
-std::vector<uint32_t> map_color_table(ColorMap map) {
+std::vector<uint32_t> map_color_table(picture::ColorMap map) {
   std::vector<uint32_t> table;
   table.reserve(kMapEntries);
   for (size_t i = 0; i < kMapEntries; ++i) {
@@ -120,4 +120,4 @@ std::vector<uint32_t> class_color_table() {
   return table;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::render

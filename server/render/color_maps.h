@@ -5,20 +5,20 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
-#include "render/picture.h"
+#include "picture/picture.h"
 
-namespace surfcast {
+namespace surfcast::render {
 
 inline constexpr size_t kMapEntries = 1024;
 
 /// A map's colour at t in [0, 1], sRGB in [0, 1].
-glm::dvec3 map_color(ColorMap map, double t);
+glm::dvec3 map_color(picture::ColorMap map, double t);
 /// The colour of a class of LAS, sRGB.
 glm::u8vec3 class_color(uint8_t code);
 
 /// kMapEntries colours of a map, as a splat's record has them (include/packing.glsl).
-std::vector<uint32_t> map_color_table(ColorMap map);
+std::vector<uint32_t> map_color_table(picture::ColorMap map);
 /// The colours of the 256 classes in the same form.
 std::vector<uint32_t> class_color_table();
 
-}  // namespace surfcast
+}  // namespace surfcast::render

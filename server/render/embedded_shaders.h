@@ -3,7 +3,7 @@
 #include <span>
 #include <string_view>
 
-namespace surfcast {
+namespace surfcast::render {
 
 struct EmbeddedShader {
   std::string_view name;  ///< path below shaders/
@@ -13,4 +13,4 @@ struct EmbeddedShader {
 /// Every file of shaders/, generated at build time.
 std::span<const EmbeddedShader> embedded_shaders();
 
-}  // namespace surfcast
+}  // namespace surfcast::render

@@ -7,7 +7,7 @@
 #include "shared/frame_layout.h"
 #include "shared/kernel.h"
 
-namespace surfcast {
+namespace surfcast::render {
 namespace {
 
 Result<gl::Program> compute_program(const char* name, const std::string& defines) {
@@ -25,17 +25,17 @@ std::string common_defines(const Variant& variant) {
   return defines;
 }
 
-std::string color_defines(SurfelColor color) {
+std::string color_defines(picture::SurfelColor color) {
   switch (color) {
-    case SurfelColor::kIntensity:
+    case picture::SurfelColor::kIntensity:
       return "#define SURFCAST_COLOR_TABLE\n#define SURFCAST_BY_INTENSITY\n";
-    case SurfelColor::kElevation:
+    case picture::SurfelColor::kElevation:
       return "#define SURFCAST_COLOR_TABLE\n#define SURFCAST_BY_HEIGHT\n";
-    case SurfelColor::kClassification:
+    case picture::SurfelColor::kClassification:
       return "#define SURFCAST_COLOR_TABLE\n#define SURFCAST_BY_CLASS\n";
-    case SurfelColor::kNormal:
+    case picture::SurfelColor::kNormal:
       return "#define SURFCAST_COLOR_NORMAL\n";
-    case SurfelColor::kScanned:
+    case picture::SurfelColor::kStored:
       break;
   }
   return {};
@@ -64,7 +64,7 @@ std::string define(const std::string& name, int value) {
 std::string lane_defines(bool whole_tiles) {
   return define("SURFCAST_COLUMNS", whole_tiles ? SURFCAST_TILE_WIDTH : 1) +
          define("SURFCAST_ROWS", whole_tiles ? SURFCAST_TILE_HEIGHT : 1) +
-         (whole_tiles ? "#define SURFCAST_TAKES_TURNS\n" : "");
+         (whole_tiles ? "#define SURFCAST_DYNAMIC_TILES\n" : "");
 }
 
 }  // namespace
@@ -123,4 +123,4 @@ Result<SplatPrograms> Programs::variant(const Variant& variant) {
   return programs;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::render

@@ -5,9 +5,9 @@
 
 #include "base/result.h"
 #include "gl/objects.h"
-#include "render/picture.h"
+#include "picture/picture.h"
 
-namespace surfcast {
+namespace surfcast::render {
 
 /// What a picture has and needs: each combination is a program of its own, so that a picture without a feature does
 /// not pay for it.
@@ -15,7 +15,7 @@ struct Variant {
   bool colored = false;  ///< surfels have a colour of some kind
   bool lit = false;
   bool float_picture = false;
-  SurfelColor color = SurfelColor::kScanned;
+  picture::SurfelColor color = picture::SurfelColor::kStored;
   bool hides_classes = false;
   bool clipped = false;
   bool eye_dome = false;
@@ -39,8 +39,8 @@ struct SplatPrograms {
 struct KernelShape {
   bool whole_tiles = false;  ///< a lane of the splat kernel holds a tile instead of a pixel (see include/rows.glsl),
                              ///< and then another one
-  int tiles_at_once = 2;   ///< that a work group of the splat kernel draws side by side
-  int project_lanes = 64;  ///< lanes that share a chunk of surfels: one vector, or as many as hide waiting
+  int tiles_at_once = 2;     ///< that a work group of the splat kernel draws side by side
+  int project_lanes = 64;    ///< lanes that share a chunk of surfels: one vector, or as many as hide waiting
 };
 
 /// Compiles the passes when they are first needed.
@@ -66,4 +66,4 @@ class Programs {
   std::map<std::string, gl::Program> compiled_;  ///< by name and defines
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::render

@@ -6,7 +6,7 @@
 #include "shared/kernel.h"
 #include "surfel/even_sampling.h"
 
-namespace surfcast {
+namespace surfcast::render {
 namespace {
 
 /// Without the prefilter the kernel alone is drawn; this much variance, pixels squared, keeps its inverse finite.
@@ -46,24 +46,24 @@ int tiles_down(const Region& region) {
   return (region.height + SURFCAST_TILE_HEIGHT - 1) / SURFCAST_TILE_HEIGHT;
 }
 
-layout::FrameConstants frame_constants(const CameraFrame& frame, const Region& region, const PictureRequest& request,
-                                       bool oriented) {
+layout::FrameConstants frame_constants(const geometry::CameraFrame& frame, const Region& region,
+                                       const picture::PictureRequest& request, bool oriented) {
   layout::FrameConstants c;
   c.right = glm::vec4(glm::vec3(frame.right), static_cast<float>(frame.eta));
   c.up = glm::vec4(glm::vec3(frame.up), 0.5F * static_cast<float>(frame.width));
   c.forward = glm::vec4(glm::vec3(frame.forward), 0.5F * static_cast<float>(frame.height));
   c.region = {region.x, region.y, region.width, region.height};
   c.tiles = {tiles_across(region), tiles_down(region), tiles_across(region) * tiles_down(region), 0};
-  const double prefilter = request.filter == Filter::kEwa ? 1.0 : kNoPrefilter;
-  const bool per_surfel = request.normalization == Normalization::kSurfel;
-  const double weight_scale =
-      per_surfel ? per_surfel_scale(SURFCAST_KERNEL_SIGMA) : even_sampling_weight(SURFCAST_KERNEL_SIGMA);
+  const double prefilter = request.filter == picture::Filter::kEwa ? 1.0 : kNoPrefilter;
+  const bool per_surfel = request.normalization == picture::Normalization::kSurfel;
+  const double weight_scale = per_surfel ? surfel::per_surfel_scale(SURFCAST_KERNEL_SIGMA)
+                                         : surfel::even_sampling_weight(SURFCAST_KERNEL_SIGMA);
   c.filter_ = {prefilter, SURFCAST_VISIBILITY_PIXELS * SURFCAST_VISIBILITY_PIXELS, weight_scale,
-               static_cast<float>(kRadiusOverSpacing * request.spacing / frame.eta)};
+               static_cast<float>(surfel::kRadiusOverSpacing * request.spacing / frame.eta)};
   c.background = {decode_srgb(request.background.r), decode_srgb(request.background.g),
                   decode_srgb(request.background.b), 0};
   c.flags = {oriented ? 1 : 0, per_surfel ? 1 : 0, 0, 0};
   return c;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::render

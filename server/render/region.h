@@ -3,10 +3,10 @@
 #include <vector>
 
 #include "geometry/camera.h"
-#include "render/picture.h"
+#include "picture/picture.h"
 #include "shared/frame_layout.h"
 
-namespace surfcast {
+namespace surfcast::render {
 
 /// A rectangle of a picture that is drawn at once, pixels from the top left.
 struct Region {
@@ -34,7 +34,7 @@ Region with_margin(const Region& region, int margin, int width, int height);
 [[nodiscard]] int tiles_down(const Region& region);
 
 /// What the passes need to know of one region. `oriented` says whether normals tell front from back.
-layout::FrameConstants frame_constants(const CameraFrame& frame, const Region& region, const PictureRequest& request,
-                                       bool oriented);
+layout::FrameConstants frame_constants(const geometry::CameraFrame& frame, const Region& region,
+                                       const picture::PictureRequest& request, bool oriented);
 
-}  // namespace surfcast
+}  // namespace surfcast::render

@@ -10,19 +10,19 @@
 #include "render/tile_spans.h"
 #include "shared/surfel_layout.h"
 
-namespace surfcast {
+namespace surfcast::render {
 namespace {
 
 /// What the projection works through.
 struct ProjectionWork {
   std::vector<layout::BlockView> blocks;
   std::vector<layout::Chunk> chunks;
-  std::vector<layout::BlockLook> looks;  ///< of each block, for looks that need them
+  std::vector<layout::BlockDisplay> block_displays;  ///< of each block, for display options that need them
   std::vector<layout::ClipRange> clips;
 };
 
 /// Distance from the eye that no surfel of the block is beyond, world units.
-double farthest_of(const PackedLattice& lattice, const CameraFrame& frame) {
+double farthest_of(const residency::PackedLattice& lattice, const geometry::CameraFrame& frame) {
   return glm::length(frame.to_camera(lattice.position(glm::uvec3(0)))) +
          glm::length(lattice.step() * glm::dvec3(lattice.largest));
 }
@@ -40,40 +40,45 @@ int drawing_unit(const RegionTask& task) {
 }
 
 /// Relative to the eye in double precision: single precision never sees world coordinates.
-layout::BlockView block_view(const ResidentBlock& block, const CameraFrame& frame, int unit) {
-  const auto scale = [](const LogScale& s) { return glm::dvec2(s.log2_largest, s.octaves / SURFCAST_SIZE_STEPS); };
+layout::BlockView block_view(const residency::ResidentBlock& block, const geometry::CameraFrame& frame, int unit) {
+  const auto scale = [](const residency::LogScale& s) {
+    return glm::dvec2(s.log2_largest, s.octaves / SURFCAST_SIZE_STEPS);
+  };
   const double size = std::ldexp(1.0, unit);
   return {glm::vec4(glm::vec3(frame.to_camera(block.lattice.position(glm::uvec3(0))) * size), 0),
           glm::vec4(glm::vec3(block.lattice.step() * size), 0),
           glm::vec4(glm::vec2(scale(block.radius) + glm::dvec2(unit, 0)), glm::vec2(scale(block.weight)))};
 }
 
-bool needs_looks(const Look& look) {
-  return look.clipped || look.mapped();
+bool needs_block_displays(const DisplayOptions& display) {
+  return display.clipped || display.mapped();
 }
 
-uint32_t kinds_of(const PackedRun& run) {
+uint32_t kinds_of(const residency::PackedRun& run) {
   return (run.finest ? SURFCAST_RUN_FINEST : 0) | (run.coarsest ? SURFCAST_RUN_COARSEST : 0) |
          (run.pairs ? SURFCAST_RUN_PAIRS : 0);
 }
 
 /// Whether the projection may draw any of a chunk (shaders/include/spacing.glsl), with room for what rounding radii to
 /// codes changes.
-bool may_be_drawn(const PackedRun& run, const PackedRun::Radii& radii, const RadiusRange& wanted) {
+bool may_be_drawn(const residency::PackedRun& run, const residency::PackedRun::Radii& radii,
+                  const selection::RadiusRange& wanted) {
   constexpr double kRounding = 1.02;
   return (run.finest || radii.least <= kRounding * wanted.largest) &&
          (run.coarsest || kRounding * radii.largest_merged > SURFCAST_SPACING_SLACK * wanted.least);
 }
 
 /// Chunks of a run from `first` to `end`, cut where pages end.
-void add_chunks(const VisibleBlock& block, uint32_t view, const PackedRun& run, uint32_t first, uint32_t end,
+void add_chunks(const VisibleBlock& block, uint32_t view, const residency::PackedRun& run, uint32_t first, uint32_t end,
                 std::vector<layout::Chunk>& chunks) {
   while (first < end) {
-    const uint32_t in_page = first % SurfelPool::kPageSurfels;
-    const uint32_t texel = block.resident->pages[first / SurfelPool::kPageSurfels] * SurfelPool::kPageSurfels + in_page;
-    const uint32_t count = std::min(end - first, SurfelPool::kPageSurfels - in_page);
+    const uint32_t in_page = first % residency::SurfelPool::kPageSurfels;
+    const uint32_t texel =
+        block.resident->pages[first / residency::SurfelPool::kPageSurfels] * residency::SurfelPool::kPageSurfels +
+        in_page;
+    const uint32_t count = std::min(end - first, residency::SurfelPool::kPageSurfels - in_page);
     chunks.push_back(
-        {glm::uvec4(view, texel, count | kinds_of(run), kMostPackedPerSurfel * block.first_surfel + first)});
+        {glm::uvec4(view, texel, count | kinds_of(run), residency::kMaxPackedPerSurfel * block.first_surfel + first)});
     first += count;
   }
 }
@@ -84,10 +89,10 @@ ProjectionWork plan_work(const RegionTask& task) {
   for (const VisibleBlock& block : task.blocks) {
     const auto view = static_cast<uint32_t>(work.blocks.size());
     work.blocks.push_back(block_view(*block.resident, task.frame, unit));
-    if (needs_looks(task.look)) {
-      work.looks.push_back(block_look(task.look, task.request->clip, *block.resident, work.clips));
+    if (needs_block_displays(task.display)) {
+      work.block_displays.push_back(block_display(task.display, task.request->clip, *block.resident, work.clips));
     }
-    for (const PackedRun& run : block.resident->runs) {
+    for (const residency::PackedRun& run : block.resident->runs) {
       for (uint32_t i = 0; i < run.count; i += SURFCAST_CHUNK) {
         if (!may_be_drawn(run, run.chunks[i / SURFCAST_CHUNK], block.radii)) continue;
         add_chunks(block, view, run, run.first + i, run.first + std::min<uint32_t>(run.count, i + SURFCAST_CHUNK),
@@ -106,12 +111,12 @@ struct Groups {
 
 /// Dispatches them in batches between which the picture can be given up, or another one be drawn: then what the pass
 /// works with is bound again. The current program finds the first row or group of a batch in its uniform `first_group`.
-Status dispatch_in_batches(const Groups& groups, BatchPace& pace, const Interruption& interruption,
+Status dispatch_in_batches(const Groups& groups, BatchSizer& sizer, const Preemption& preemption,
                            const std::function<void()>& bind) {
   bind();
   const size_t width = groups.width.value_or(1);
   for (size_t first = 0; first < groups.count;) {
-    const size_t count = std::clamp<size_t>(pace.groups() / width, 1, groups.count - first);
+    const size_t count = std::clamp<size_t>(sizer.groups() / width, 1, groups.count - first);
     const auto x = static_cast<GLuint>(groups.width ? width : count);
     const auto y = static_cast<GLuint>(groups.width ? count : 1);
     const Stopwatch watch;
@@ -119,10 +124,10 @@ Status dispatch_in_batches(const Groups& groups, BatchPace& pace, const Interrup
     glDispatchCompute(x, y, 1);
     glMemoryBarrier(GL_ALL_BARRIER_BITS);
     glFinish();
-    pace.took(count * width, watch.milliseconds());
+    sizer.record(count * width, watch.milliseconds());
     first += count;
-    if (interruption.cancelled()) return fail(ErrorKind::kCancelled, "cancelled");
-    if (interruption.step_aside()) bind();
+    if (preemption.cancelled()) return fail(ErrorKind::kCancelled, "cancelled");
+    if (preemption.yield_to_urgent()) bind();
   }
   return {};
 }
@@ -139,7 +144,7 @@ void upload_uniforms(StorageBuffer& buffer, const T& constants) {
   glNamedBufferSubData(buffer.name(), 0, static_cast<GLsizeiptr>(sizeof constants), &constants);
 }
 
-/// How the splats of crowded tiles are sampled (shaders/include/thinning.glsl).
+/// How the splats of overfull tiles are sampled (shaders/include/thinning.glsl).
 struct Thinning {
   uint32_t most = 0;   ///< splats of a tile; 0: all
   bool alike = false;  ///< also those that cover much
@@ -155,20 +160,21 @@ void upload_constants(const RegionTask& task, const Thinning& thinning, SplatBuf
 }
 
 /// What the options of the picture need, and nothing without any.
-void upload_look(const RegionTask& task, const ProjectionWork& work, SplatBuffers& buffers) {
-  const Look& look = task.look;
-  if (needs_looks(look)) upload(buffers.looks, work.looks);
-  if (look.clipped) upload(buffers.clips, work.clips.empty() ? std::vector<layout::ClipRange>(1) : work.clips);
-  if (look.mapped() || look.hides_classes) upload_uniforms(buffers.look, look_constants(look, *task.request));
+void upload_display_options(const RegionTask& task, const ProjectionWork& work, SplatBuffers& buffers) {
+  const DisplayOptions& display = task.display;
+  if (needs_block_displays(display)) upload(buffers.block_displays, work.block_displays);
+  if (display.clipped) upload(buffers.clips, work.clips.empty() ? std::vector<layout::ClipRange>(1) : work.clips);
+  if (display.mapped() || display.hides_classes)
+    upload_uniforms(buffers.display, display_constants(display, *task.request));
 }
 
-void bind_look(const RegionTask& task, const SplatBuffers& buffers) {
-  const Look& look = task.look;
-  if (needs_looks(look)) buffers.looks.bind(SURFCAST_BIND_LOOKS);
-  if (look.clipped) buffers.clips.bind(SURFCAST_BIND_CLIPS);
-  if (look.mapped() || look.hides_classes) buffers.look.bind_uniforms(SURFCAST_BIND_LOOK);
-  if (look.mapped()) task.colors->bind(SURFCAST_UNIT_COLORS);
-  if (look.attributes) task.surfels->bind_attributes(SURFCAST_UNIT_ATTRIBUTES);
+void bind_display_options(const RegionTask& task, const SplatBuffers& buffers) {
+  const DisplayOptions& display = task.display;
+  if (needs_block_displays(display)) buffers.block_displays.bind(SURFCAST_BIND_BLOCK_DISPLAYS);
+  if (display.clipped) buffers.clips.bind(SURFCAST_BIND_CLIPS);
+  if (display.mapped() || display.hides_classes) buffers.display.bind_uniforms(SURFCAST_BIND_DISPLAY);
+  if (display.mapped()) task.colors->bind(SURFCAST_UNIT_COLORS);
+  if (display.attributes) task.surfels->bind_attributes(SURFCAST_UNIT_ATTRIBUTES);
 }
 
 void clear_counts(const RegionTask& task, SplatBuffers& buffers) {
@@ -178,7 +184,7 @@ void clear_counts(const RegionTask& task, SplatBuffers& buffers) {
   buffers.tile_count.reserve(lists * 4);
   buffers.tile_count.clear();
   buffers.tile_offset.reserve(lists * 4);
-  buffers.tile_crowd.reserve(lists * 2);
+  buffers.tile_demand.reserve(lists * 2);
   buffers.tile_order.reserve(lists * 2);
 }
 
@@ -188,13 +194,13 @@ void bind_frame(const SplatBuffers& buffers) {
   buffers.counters.bind(SURFCAST_BIND_COUNTERS);
   buffers.tile_count.bind(SURFCAST_BIND_TILE_COUNT);
   buffers.tile_offset.bind(SURFCAST_BIND_TILE_OFFSET);
-  buffers.tile_crowd.bind(SURFCAST_BIND_TILE_CROWD);
+  buffers.tile_demand.bind(SURFCAST_BIND_TILE_DEMAND);
   buffers.tile_order.bind(SURFCAST_BIND_TILE_ORDER);
 }
 
 void bind_for_projection(const RegionTask& task, const SplatBuffers& buffers) {
   bind_frame(buffers);
-  bind_look(task, buffers);
+  bind_display_options(task, buffers);
   buffers.blocks.bind(SURFCAST_BIND_BLOCKS);
   buffers.chunks.bind(SURFCAST_BIND_CHUNKS);
   buffers.splats.bind_for_writing(SURFCAST_UNIT_SPLATS);
@@ -213,7 +219,7 @@ void bind_for_binning(const SplatBuffers& buffers) {
 
 void bind_for_splatting(const RegionTask& task, const SplatBuffers& buffers) {
   bind_frame(buffers);
-  buffers.turns.bind(SURFCAST_BIND_TURNS);
+  buffers.next_tiles.bind(SURFCAST_BIND_NEXT_TILES);
   buffers.picture.bind(SURFCAST_BIND_PICTURE);
   if (task.variant.eye_dome) {
     buffers.light.bind(SURFCAST_BIND_LIGHT);
@@ -237,9 +243,9 @@ layout::Counters read_counters(const SplatBuffers& buffers) {
 
 /// What to try next when `tried` left such counts; the same if it did.
 Thinning thinner(const layout::Counters& counters, const Thinning& tried, size_t list_limit) {
-  if (tried.most == 0) return {counters.counts.w > SURFCAST_CROWD ? SURFCAST_CROWD : 0U, false};
+  if (tried.most == 0) return {counters.counts.w > SURFCAST_TILE_CAPACITY ? SURFCAST_TILE_CAPACITY : 0U, false};
   const bool lists_fit = counters.counts.z <= list_limit;
-  if (!tried.alike) return {tried.most, counters.counts.w > SURFCAST_CROWD_LIMIT || !lists_fit};
+  if (!tried.alike) return {tried.most, counters.counts.w > SURFCAST_TILE_CAPACITY_LIMIT || !lists_fit};
   return {lists_fit ? tried.most : std::max(tried.most / 2, 1U), true};
 }
 
@@ -248,20 +254,20 @@ Thinning thinner(const layout::Counters& counters, const Thinning& tried, size_t
 size_t first_capacity(const ProjectionWork& work, const SplatBuffers& buffers) {
   constexpr size_t kFirst = 1u << 18;
   if (!buffers.lazy) return kFirst;
-  return std::clamp(std::bit_ceil(work.chunks.size() * SURFCAST_CHUNK), kFirst, SurfelBuffer::device_limit() / 2);
+  return std::clamp(std::bit_ceil(work.chunks.size() * SURFCAST_CHUNK), kFirst,
+                    residency::SurfelBuffer::device_limit() / 2);
 }
 
 /// Projects all visible surfels and sums up the tile counts; again if the records did not fit, or if a tile is so
 /// crowded that its splats are to be thinned out.
 Result<layout::Counters> project(const RegionTask& task, const ProjectionWork& work, Programs& programs,
-                                 const SplatPrograms& variant, SplatBuffers& buffers,
-                                 const Interruption& interruption) {
+                                 const SplatPrograms& variant, SplatBuffers& buffers, const Preemption& preemption) {
   const gl::DebugGroup group("project");
   const bool with_normals = task.variant.colored && task.variant.lit;
   buffers.reserve_splats(std::max(first_capacity(work, buffers), buffers.splat_capacity()), with_normals);
   upload(buffers.blocks, work.blocks);
   upload(buffers.chunks, work.chunks);
-  upload_look(task, work, buffers);
+  upload_display_options(task, work, buffers);
   const auto bind = [&] {
     bind_for_projection(task, buffers);
     glUseProgram(variant.project->name());
@@ -270,7 +276,7 @@ Result<layout::Counters> project(const RegionTask& task, const ProjectionWork& w
   while (true) {
     upload_constants(task, thinning, buffers);
     clear_counts(task, buffers);
-    Status projected = dispatch_in_batches({work.chunks.size(), {}}, buffers.project_pace, interruption, bind);
+    Status projected = dispatch_in_batches({work.chunks.size(), {}}, buffers.project_batches, preemption, bind);
     if (!projected) return fail(std::move(projected.error()));
     glUseProgram(programs.bin_offsets().name());
     glDispatchCompute(1, 1, 1);
@@ -279,25 +285,26 @@ Result<layout::Counters> project(const RegionTask& task, const ProjectionWork& w
     const size_t needed = size_t{counters.counts.x} + counters.counts.y;
     if (needed > buffers.splat_capacity()) {
       // Two texels each; the pool holds no more surfels than that allows.
-      buffers.reserve_splats(std::min(needed + needed / 4, SurfelBuffer::device_limit() / 2), with_normals);
+      buffers.reserve_splats(std::min(needed + needed / 4, residency::SurfelBuffer::device_limit() / 2), with_normals);
       continue;
     }
-    const Thinning next = thinner(counters, thinning, SurfelBuffer::device_limit());
+    const Thinning next = thinner(counters, thinning, residency::SurfelBuffer::device_limit());
     if (next == thinning) return counters;
     thinning = next;
   }
 }
 
-Status bin(const layout::Counters& counters, Programs& programs, SplatBuffers& buffers,
-           const Interruption& interruption) {
+Status bin(const layout::Counters& counters, Programs& programs, SplatBuffers& buffers, const Preemption& preemption) {
   const gl::DebugGroup group("bin");
   const size_t entries = counters.counts.z;
-  buffers.lists.reserve(std::clamp<size_t>(entries + entries / 4, 1, SurfelBuffer::device_limit()), buffers.lazy);
+  buffers.lists.reserve(std::clamp<size_t>(entries + entries / 4, 1, residency::SurfelBuffer::device_limit()),
+                        buffers.lazy);
   const size_t splats = size_t{counters.counts.x} + counters.counts.y;
-  return dispatch_in_batches({(splats + SURFCAST_CHUNK - 1) / SURFCAST_CHUNK, {}}, buffers.bin_pace, interruption, [&] {
-    bind_for_binning(buffers);
-    glUseProgram(programs.bin().name());
-  });
+  return dispatch_in_batches({(splats + SURFCAST_CHUNK - 1) / SURFCAST_CHUNK, {}}, buffers.bin_batches, preemption,
+                             [&] {
+                               bind_for_binning(buffers);
+                               glUseProgram(programs.bin().name());
+                             });
 }
 
 size_t ceil_divide(int total, int part) {
@@ -305,16 +312,16 @@ size_t ceil_divide(int total, int part) {
 }
 
 /// Draws a span of tiles with a build of the splat kernel.
-Status draw_tiles(const RegionTask& task, const TileSpan& span, const gl::Program& program, BatchPace& pace,
-                  SplatBuffers& buffers, const Interruption& interruption) {
+Status draw_tiles(const RegionTask& task, const TileSpan& span, const gl::Program& program, BatchSizer& sizer,
+                  SplatBuffers& buffers, const Preemption& preemption) {
   if (span.first == span.end) return {};
-  const Groups groups{(span.end - span.first + span.of_group - 1) / span.of_group, {}};
-  buffers.turns.reserve(groups.count * sizeof(GLuint));
-  buffers.turns.clear();
-  return dispatch_in_batches(groups, pace, interruption, [&] {
+  const Groups groups{(span.end - span.first + span.tiles_per_group - 1) / span.tiles_per_group, {}};
+  buffers.next_tiles.reserve(groups.count * sizeof(GLuint));
+  buffers.next_tiles.clear();
+  return dispatch_in_batches(groups, sizer, preemption, [&] {
     bind_for_splatting(task, buffers);
     glUseProgram(program.name());
-    glUniform3ui(SURFCAST_UNIFORM_SPAN, span.first, span.end, span.of_group);
+    glUniform3ui(SURFCAST_UNIFORM_SPAN, span.first, span.end, span.tiles_per_group);
   });
 }
 
@@ -332,7 +339,7 @@ void clear_silhouettes(const RegionTask& task, SplatBuffers& buffers) {
 }
 
 Status splat(const RegionTask& task, const layout::Counters& counters, const SplatPrograms& variant,
-             const KernelShape& shape, SplatBuffers& buffers, const Interruption& interruption) {
+             const KernelShape& shape, SplatBuffers& buffers, const Preemption& preemption) {
   const gl::DebugGroup group("splat");
   if (task.variant.eye_dome) {
     const size_t pixels = static_cast<size_t>(task.drawn.width) * static_cast<size_t>(task.drawn.height);
@@ -343,37 +350,37 @@ Status splat(const RegionTask& task, const layout::Counters& counters, const Spl
   const auto tiles = static_cast<uint32_t>(task.constants.tiles.z);
   const std::vector<TileSpan> spans = spans_of_tiles(counters, tiles, shape);
   for (size_t i = 0; i < spans.size(); ++i) {
-    Status status = draw_tiles(task, spans[i], *variant.splat, buffers.splat_paces.at(i), buffers, interruption);
+    Status status = draw_tiles(task, spans[i], *variant.splat, buffers.splat_batches.at(i), buffers, preemption);
     if (!status) return status;
   }
   if (counters.counts.y == 0) return {};
   const TileSpan all{0, tiles, static_cast<uint32_t>(shape.tiles_at_once)};
-  return draw_tiles(task, all, *variant.splat_large, buffers.splat_large_pace, buffers, interruption);
+  return draw_tiles(task, all, *variant.splat_large, buffers.splat_large_batches, buffers, preemption);
 }
 
 /// Finds the pixels at silhouettes and draws them again.
 Status supersample_silhouettes(const RegionTask& task, const layout::Counters& counters, const SplatPrograms& variant,
-                               SplatBuffers& buffers, const Interruption& interruption) {
+                               SplatBuffers& buffers, const Preemption& preemption) {
   const gl::DebugGroup group("silhouettes");
-  const auto dispatch = [&](const gl::Program& program, int lanes, BatchPace& pace) {
-    return dispatch_in_batches({ceil_divide(lanes, SURFCAST_SILHOUETTE_LANES), {}}, pace, interruption, [&] {
+  const auto dispatch = [&](const gl::Program& program, int lanes, BatchSizer& sizer) {
+    return dispatch_in_batches({ceil_divide(lanes, SURFCAST_SILHOUETTE_LANES), {}}, sizer, preemption, [&] {
       bind_for_splatting(task, buffers);
       glUseProgram(program.name());
     });
   };
-  Status status = dispatch(*variant.silhouettes, task.constants.tiles.z, buffers.find_pace);
+  Status status = dispatch(*variant.silhouettes, task.constants.tiles.z, buffers.find_batches);
   if (!status) return status;
   GLint parts = 0;
   glGetNamedBufferSubData(buffers.silhouettes.name(), 0, sizeof parts, &parts);
-  status = dispatch(*variant.supersample, parts, buffers.supersample_pace);
+  status = dispatch(*variant.supersample, parts, buffers.supersample_batches);
   if (!status || counters.counts.y == 0) return status;
-  return dispatch(*variant.supersample_large, parts, buffers.supersample_pace);
+  return dispatch(*variant.supersample_large, parts, buffers.supersample_batches);
 }
 
 /// From light and depth of all that was drawn to the pixels that are wanted.
 void shade_by_depth(const RegionTask& task, const gl::Program& program, SplatBuffers& buffers) {
   const gl::DebugGroup group("eye_dome");
-  const EyeDome& eye_dome = task.request->eye_dome;
+  const picture::EyeDome& eye_dome = task.request->eye_dome;
   const layout::EyeDomeConstants constants{
       glm::vec4(eye_dome.strength, eye_dome.radius, 0, 0),
       glm::ivec4(task.region.x - task.drawn.x, task.region.y - task.drawn.y, task.region.width, task.region.height)};
@@ -388,28 +395,28 @@ void shade_by_depth(const RegionTask& task, const gl::Program& program, SplatBuf
 }  // namespace
 
 Result<RegionStats> draw_region(const RegionTask& task, Programs& programs, SplatBuffers& buffers,
-                                const Interruption& interruption, std::span<std::byte> pixels) {
+                                const Preemption& preemption, std::span<std::byte> pixels) {
   const Result<SplatPrograms> variant = programs.variant(task.variant);
   if (!variant) return fail(variant.error());
 
   RegionStats stats;
-  const WorkStopwatch project_watch(interruption);
-  const Result<layout::Counters> counters = project(task, plan_work(task), programs, *variant, buffers, interruption);
+  const WorkStopwatch project_watch(preemption);
+  const Result<layout::Counters> counters = project(task, plan_work(task), programs, *variant, buffers, preemption);
   if (!counters) return fail(counters.error());
   stats.splats = uint64_t{counters->counts.x} + counters->counts.y;
   stats.project_ms = project_watch.milliseconds();
 
-  const WorkStopwatch bin_watch(interruption);
-  if (Status status = bin(*counters, programs, buffers, interruption); !status) return fail(std::move(status.error()));
+  const WorkStopwatch bin_watch(preemption);
+  if (Status status = bin(*counters, programs, buffers, preemption); !status) return fail(std::move(status.error()));
   stats.bin_ms = bin_watch.milliseconds();
 
-  const WorkStopwatch splat_watch(interruption);
+  const WorkStopwatch splat_watch(preemption);
   buffers.picture.reserve(pixels.size());
-  if (Status status = splat(task, *counters, *variant, programs.shape(), buffers, interruption); !status) {
+  if (Status status = splat(task, *counters, *variant, programs.shape(), buffers, preemption); !status) {
     return fail(std::move(status.error()));
   }
   if (task.variant.silhouettes) {
-    Status status = supersample_silhouettes(task, *counters, *variant, buffers, interruption);
+    Status status = supersample_silhouettes(task, *counters, *variant, buffers, preemption);
     if (!status) return fail(std::move(status.error()));
   }
   if (task.variant.eye_dome) {
@@ -429,4 +436,4 @@ Result<RegionStats> draw_region(const RegionTask& task, Programs& programs, Spla
   return stats;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::render

@@ -4,9 +4,9 @@
 #include <span>
 #include <vector>
 
-#include "base/interruption.h"
+#include "base/preemption.h"
 #include "base/result.h"
-#include "render/look.h"
+#include "render/display_options.h"
 #include "render/programs.h"
 #include "render/region.h"
 #include "render/splat_buffers.h"
@@ -14,26 +14,26 @@
 #include "residency/surfel_pool.h"
 #include "selection/block_hull.h"
 
-namespace surfcast {
+namespace surfcast::render {
 
 /// A block to draw.
 struct VisibleBlock {
-  const ResidentBlock* resident = nullptr;
-  RadiusRange radii;          ///< of the wanted spacing within the block
-  uint32_t first_surfel = 0;  ///< its place in the model, see Scene::first_surfel
+  const residency::ResidentBlock* resident = nullptr;
+  selection::RadiusRange radii;  ///< of the wanted spacing within the block
+  uint32_t first_surfel = 0;     ///< its place in the model, see Scene::first_surfel
 };
 
 /// One region to draw: what is seen, from where, how.
 struct RegionTask {
-  const SurfelBuffer* surfels = nullptr;
+  const residency::SurfelBuffer* surfels = nullptr;
   std::vector<VisibleBlock> blocks;
-  CameraFrame frame;
+  geometry::CameraFrame frame;
   Region region;                     ///< that is wanted
   Region drawn;                      ///< the same, or with a margin of neighbours
   layout::FrameConstants constants;  ///< of `drawn`
   Variant variant;
-  const PictureRequest* request = nullptr;
-  Look look;
+  const picture::PictureRequest* request = nullptr;
+  DisplayOptions display;
   const ConstantTexels* colors = nullptr;  ///< color_table of a look that is mapped
 };
 
@@ -50,6 +50,6 @@ struct RegionStats {
 /// eye_dome. Reads the pixels of `drawn`, or, after eye_dome, of `region` into `pixels` (4 bytes or 4 floats per pixel,
 /// rows from the top).
 Result<RegionStats> draw_region(const RegionTask& task, Programs& programs, SplatBuffers& buffers,
-                                const Interruption& interruption, std::span<std::byte> pixels);
+                                const Preemption& preemption, std::span<std::byte> pixels);
 
-}  // namespace surfcast
+}  // namespace surfcast::render

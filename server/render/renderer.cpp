@@ -14,38 +14,40 @@
 #include "render/scene.h"
 #include "render/splat_buffers.h"
 
-namespace surfcast {
+namespace surfcast::render {
 namespace {
 
 constexpr int kMaxResolution = 16384;
 
-size_t pixel_bytes(PixelFormat format) {
-  return format == PixelFormat::kSrgb8 ? 4 : 4 * sizeof(float);
+size_t pixel_bytes(picture::PixelFormat format) {
+  return format == picture::PixelFormat::kSrgb8 ? 4 : 4 * sizeof(float);
 }
 
 /// Colours that say nothing of the shape need light to show it.
-bool lit_by_default(const ModelInfo& info, const Look& look) {
-  if (look.color == SurfelColor::kScanned) return info.color_bits == 0;
-  return look.color == SurfelColor::kElevation || look.color == SurfelColor::kClassification;
+bool lit_by_default(const model::ModelInfo& info, const DisplayOptions& display) {
+  if (display.color == picture::SurfelColor::kStored) return info.color_bits == 0;
+  return display.color == picture::SurfelColor::kElevation || display.color == picture::SurfelColor::kClassification;
 }
 
-Variant variant_of(const ModelInfo& info, const Look& look, const PictureRequest& request) {
+Variant variant_of(const model::ModelInfo& info, const DisplayOptions& display,
+                   const picture::PictureRequest& request) {
   Variant variant;
-  variant.colored = info.color_bits > 0 || look.color != SurfelColor::kScanned;
-  variant.lit = request.shading == Shading::kLit || (request.shading == Shading::kAuto && lit_by_default(info, look));
-  variant.float_picture = request.format == PixelFormat::kLinearFloat;
-  variant.color = look.color;
-  variant.hides_classes = look.hides_classes;
-  variant.clipped = look.clipped;
+  variant.colored = info.color_bits > 0 || display.color != picture::SurfelColor::kStored;
+  variant.lit = request.shading == picture::Shading::kLit ||
+                (request.shading == picture::Shading::kAuto && lit_by_default(info, display));
+  variant.float_picture = request.format == picture::PixelFormat::kLinearFloat;
+  variant.color = display.color;
+  variant.hides_classes = display.hides_classes;
+  variant.clipped = display.clipped;
   variant.eye_dome = request.eye_dome.strength > 0;
-  variant.silhouettes =
-      request.silhouettes && request.normalization == Normalization::kPixel && request.filter == Filter::kEwa;
+  variant.silhouettes = request.silhouettes && request.normalization == picture::Normalization::kPixel &&
+                        request.filter == picture::Filter::kEwa;
   return variant;
 }
 
 /// Copies a region out of the pixels of `written`, which holds it.
 void copy_region(const Region& region, const Region& written, std::span<const std::byte> from, size_t bytes_per_pixel,
-                 Image& image) {
+                 picture::Image& image) {
   const size_t row = static_cast<size_t>(region.width) * bytes_per_pixel;
   const auto place = [&](int x, int y, int width) {
     return (static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)) * bytes_per_pixel;
@@ -65,50 +67,50 @@ void add(RegionStats& total, const RegionStats& stats) {
 }
 
 /// Blocks by level, finest first.
-std::vector<LevelStats> level_stats(const BlockTree& tree, const BlockSelection& selection) {
-  std::map<int, LevelStats> levels;
+std::vector<picture::LevelStats> level_stats(const ldc::BlockTree& tree, const selection::BlockSelection& selection) {
+  std::map<int, picture::LevelStats> levels;
   for (const uint32_t block : selection.target) ++levels[tree.blocks()[block].level].selected;
   for (const uint32_t block : selection.draw) ++levels[tree.blocks()[block].level].drawn;
-  std::vector<LevelStats> stats;
+  std::vector<picture::LevelStats> stats;
   stats.reserve(levels.size());
   for (auto& [level, counts] : levels) stats.push_back({level, counts.selected, counts.drawn});
   return stats;
 }
 
 /// A number that stands for the blocks that are drawn, never 0 (FNV-1a).
-uint64_t cut_of(const BlockSelection& selection) {
+uint64_t cut_of(const selection::BlockSelection& selection) {
   uint64_t hash = 0xcbf29ce484222325U;
   for (const uint32_t block : selection.draw) hash = (hash ^ block) * 0x100000001b3U;
   return hash | 1;
 }
 
 /// Whether a view shows more than what whoever asks for it has already, and enough of it.
-bool worth_drawing(const PictureRequest& request, const PreparedView& view, uint64_t cut) {
-  if (request.known_cut != 0 && cut == request.known_cut) return false;
-  return view.settled || view.missing <= request.most_missing;
+bool worth_drawing(const picture::PictureRequest& request, const residency::PreparedView& view, uint64_t cut) {
+  if (request.displayed_cut != 0 && cut == request.displayed_cut) return false;
+  return view.nothing_pending || view.missing <= request.max_missing_blocks;
 }
 
 }  // namespace
 
 struct Renderer::State {
   /// The pool is no larger than a buffer texture of splats, which take two texels each.
-  State(const RendererConfig& config, std::unique_ptr<EglContext> egl, Programs passes)
+  State(const RendererConfig& config, std::unique_ptr<gl::EglContext> egl, Programs passes)
       : context(std::move(egl)),
         device{context->vendor(), context->renderer(), context->version(), context->software()},
         programs(std::move(passes)),
-        most_surfels(std::min(config.gpu_bytes / sizeof(glm::uvec4), SurfelBuffer::device_limit() / 2)),
-        surfels(most_surfels, device.software),
-        residency(surfels, limits_of(config, most_surfels)) {
+        max_surfels(std::min(config.gpu_bytes / sizeof(glm::uvec4), residency::SurfelBuffer::device_limit() / 2)),
+        surfels(max_surfels, device.software),
+        residency(surfels, limits_of(config, max_surfels)) {
     for (SplatBuffers& set : buffers) {
-      set.srgb = ConstantTexels::make("linear roots of sRGB", linear_root_table());
+      set.srgb = ConstantTexels::make("linear roots of sRGB", residency::linear_root_table());
       set.lazy = device.software && gl::can_adopt_memory();
     }
   }
 
-  static ResidencyLimits limits_of(const RendererConfig& config, size_t surfels) {
+  static residency::ResidencyLimits limits_of(const RendererConfig& config, size_t surfels) {
     constexpr size_t kReadyBytes = size_t{64} << 20;
     const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
-    return {.pages = static_cast<uint32_t>(surfels / SurfelPool::kPageSurfels),
+    return {.pages = static_cast<uint32_t>(surfels / residency::SurfelPool::kPageSurfels),
             .loader = {cores, cores, config.host_bytes, kReadyBytes}};
   }
 
@@ -122,100 +124,115 @@ struct Renderer::State {
   };
   void begin_picture();
   void end_picture();
-  void forget_models();
-  Scene& scene_of(const std::shared_ptr<const ModelFile>& model);
-  Result<PreparedView> prepare(Scene& scene, const PictureRequest& request, const Look& look, const Camera& camera,
-                               const CameraFrame& frame, const Interruption& interruption);
-  Result<RegionStats> draw_regions(const Scene& scene, const PictureRequest& request, const Look& look,
-                                   const CameraFrame& frame, const PreparedView& view, const Interruption& interruption,
-                                   Image& image);
-  const ConstantTexels* colors_of(const Look& look);
-  [[nodiscard]] FrameStats stats_of(const Scene& scene, const PreparedView& view, const RegionStats& drawn) const;
-  Result<Frame> draw(const std::shared_ptr<const ModelFile>& model, const PictureRequest& request,
-                     const Interruption& interruption);
+  void release_models();
+  Scene& scene_of(const std::shared_ptr<const model::ModelFile>& model);
+  Result<residency::PreparedView> prepare(Scene& scene, const picture::PictureRequest& request,
+                                          const DisplayOptions& display, const geometry::Camera& camera,
+                                          const geometry::CameraFrame& frame, const Preemption& preemption);
+  Result<RegionStats> draw_regions(const Scene& scene, const picture::PictureRequest& request,
+                                   const DisplayOptions& display, const geometry::CameraFrame& frame,
+                                   const residency::PreparedView& view, const Preemption& preemption,
+                                   picture::Image& image);
+  const ConstantTexels* colors_of(const DisplayOptions& display);
+  [[nodiscard]] picture::FrameStats stats_of(const Scene& scene, const residency::PreparedView& view,
+                                             const RegionStats& drawn) const;
+  Result<picture::Frame> draw(const std::shared_ptr<const model::ModelFile>& model,
+                              const picture::PictureRequest& request, const Preemption& preemption);
 
-  std::unique_ptr<EglContext> context;
-  DeviceInfo device;
+  std::unique_ptr<gl::EglContext> context;
+  picture::DeviceInfo device;
   Programs programs;
   std::array<SplatBuffers, 2> buffers;  ///< of the picture that is being drawn, and of one that interrupts it
   size_t depth = 0;                     ///< pictures that are being drawn: 2 when one interrupts another
-  std::map<std::pair<SurfelColor, ColorMap>, ConstantTexels> color_tables;  ///< made when they are first needed
-  size_t most_surfels;
-  SurfelBuffer surfels;
-  Residency residency;
+  std::map<std::pair<picture::SurfelColor, picture::ColorMap>, ConstantTexels>
+      color_tables;  ///< made when they are first needed
+  size_t max_surfels;
+  residency::SurfelBuffer surfels;
+  residency::Residency residency;
   std::map<uint64_t, std::unique_ptr<Scene>> scenes;  ///< by ModelFile::id
-  std::vector<uint64_t> to_forget;                    ///< models, once nothing is being drawn
+  std::vector<uint64_t> to_release;                   ///< models, once nothing is being drawn
 };
 
 void Renderer::State::begin_picture() {
   SURFCAST_EXPECTS(depth < buffers.size());
-  if (++depth == 2) residency.begin_interlude();
+  if (++depth == 2) residency.begin_nested_frame();
 }
 
 void Renderer::State::end_picture() {
-  if (--depth == 0) return forget_models();
-  residency.end_interlude();
+  if (--depth == 0) return release_models();
+  residency.end_nested_frame();
 }
 
-void Renderer::State::forget_models() {
-  for (const uint64_t id : std::exchange(to_forget, {})) {
-    residency.forget(id);
+void Renderer::State::release_models() {
+  for (const uint64_t id : std::exchange(to_release, {})) {
+    residency.release_model(id);
     scenes.erase(id);
   }
 }
 
-Scene& Renderer::State::scene_of(const std::shared_ptr<const ModelFile>& model) {
+Scene& Renderer::State::scene_of(const std::shared_ptr<const model::ModelFile>& model) {
   std::unique_ptr<Scene>& scene = scenes[model->id()];
   if (!scene) scene = std::make_unique<Scene>(model);
   return *scene;
 }
 
-Result<PreparedView> Renderer::State::prepare(Scene& scene, const PictureRequest& request, const Look& look,
-                                              const Camera& camera, const CameraFrame& frame,
-                                              const Interruption& interruption) {
-  const ViewGoal goal{frame,           request.spacing,     look.clipped ? &request.clip : nullptr,
-                      look.attributes, request.viewer != 0, request.rest_spacing};
-  if (request.loading == Loading::kWait) return residency.prepare_whole(scene.viewed(), goal, interruption);
-  if (request.viewer == 0) return residency.prepare_now(scene.viewed(), goal, {}, {});
-  ViewerMemory& memory = scene.memory_of(request.viewer);
-  const std::optional<CameraFrame> ahead = move_to(memory, camera, request.width, request.height);
-  PreparedView view = residency.prepare_now(scene.viewed(), goal, memory.refined, ahead);
-  memory.refined = view.selection.refined;
+Result<residency::PreparedView> Renderer::State::prepare(Scene& scene, const picture::PictureRequest& request,
+                                                         const DisplayOptions& display, const geometry::Camera& camera,
+                                                         const geometry::CameraFrame& frame,
+                                                         const Preemption& preemption) {
+  const residency::ViewParameters parameters{frame,
+                                             request.spacing,
+                                             display.clipped ? &request.clip : nullptr,
+                                             display.attributes,
+                                             request.viewer != 0,
+                                             request.rest_spacing};
+  if (request.loading == picture::Loading::kWait)
+    return residency.prepare_complete(scene.viewed(), parameters, preemption);
+  if (request.viewer == 0) return residency.prepare_resident(scene.viewed(), parameters, {}, {});
+  ViewerHistory& history = scene.history_of(request.viewer);
+  const std::optional<geometry::CameraFrame> ahead =
+      update_and_extrapolate(history, camera, request.width, request.height);
+  residency::PreparedView view = residency.prepare_resident(scene.viewed(), parameters, history.refined, ahead);
+  history.refined = view.selection.refined;
   return view;
 }
 
-const ConstantTexels* Renderer::State::colors_of(const Look& look) {
-  if (!look.mapped()) return nullptr;
-  const auto key = std::pair(look.color, look.map);
+const ConstantTexels* Renderer::State::colors_of(const DisplayOptions& display) {
+  if (!display.mapped()) return nullptr;
+  const auto key = std::pair(display.color, display.map);
   const auto found = color_tables.find(key);
   if (found != color_tables.end()) return &found->second;
-  return &color_tables.emplace(key, ConstantTexels::make("colours", color_table(look))).first->second;
+  return &color_tables.emplace(key, ConstantTexels::make("colours", color_table(display))).first->second;
 }
 
-Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const PictureRequest& request, const Look& look,
-                                                  const CameraFrame& frame, const PreparedView& view,
-                                                  const Interruption& interruption, Image& image) {
-  Variant variant = variant_of(scene.model().info(), look, request);
-  variant.silhouettes &= view.settled;  // what will be drawn again soon need not have its edges drawn twice
+Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const picture::PictureRequest& request,
+                                                  const DisplayOptions& display, const geometry::CameraFrame& frame,
+                                                  const residency::PreparedView& view, const Preemption& preemption,
+                                                  picture::Image& image) {
+  Variant variant = variant_of(scene.model().info(), display, request);
+  variant.silhouettes &= view.nothing_pending;  // what will be drawn again soon need not have its edges drawn twice
   const int margin = variant.eye_dome || variant.silhouettes ? kNeighbourMargin : 0;
   const size_t bytes = pixel_bytes(request.format);
-  const ModelInfo& info = scene.model().info();
+  const model::ModelInfo& info = scene.model().info();
   RegionStats total;
   std::vector<std::byte> pixels;
   for (const Region& region : cut_into_regions(request.width, request.height, margin)) {
     const Region drawn = with_margin(region, margin, request.width, request.height);
-    RegionTask task{
-        &surfels, {},       frame, region,         drawn, frame_constants(frame, drawn, request, info.oriented),
-        variant,  &request, look,  colors_of(look)};
-    for (const uint32_t block : blocks_in_rectangle(scene.viewed().tree, view.selection.draw, frame, drawn.x, drawn.y,
-                                                    drawn.x + drawn.width, drawn.y + drawn.height)) {
-      const Box& bounds = scene.model().tree().blocks()[block].bounds;
+    RegionTask task{&surfels, {},
+                    frame,    region,
+                    drawn,    frame_constants(frame, drawn, request, info.oriented),
+                    variant,  &request,
+                    display,  colors_of(display)};
+    for (const uint32_t block :
+         selection::blocks_in_rectangle(scene.viewed().tree, view.selection.draw, frame, drawn.x, drawn.y,
+                                        drawn.x + drawn.width, drawn.y + drawn.height)) {
+      const geometry::Box& bounds = scene.model().tree().blocks()[block].bounds;
       task.blocks.push_back({&residency.pool().at({scene.model().id(), block}),
-                             radii_at_spacing(bounds, frame, request.spacing), scene.first_surfel(block)});
+                             selection::radii_at_spacing(bounds, frame, request.spacing), scene.first_surfel(block)});
     }
     const Region& written = variant.eye_dome ? region : drawn;
     pixels.resize(static_cast<size_t>(written.width) * static_cast<size_t>(written.height) * bytes);
-    const Result<RegionStats> stats = draw_region(task, programs, buffers[depth - 1], interruption, pixels);
+    const Result<RegionStats> stats = draw_region(task, programs, buffers[depth - 1], preemption, pixels);
     if (!stats) return fail(stats.error());
     copy_region(region, written, pixels, bytes, image);
     add(total, *stats);
@@ -223,8 +240,9 @@ Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const Pict
   return total;
 }
 
-FrameStats Renderer::State::stats_of(const Scene& scene, const PreparedView& view, const RegionStats& drawn) const {
-  FrameStats stats;
+picture::FrameStats Renderer::State::stats_of(const Scene& scene, const residency::PreparedView& view,
+                                              const RegionStats& drawn) const {
+  picture::FrameStats stats;
   stats.surfels_drawn = drawn.splats;
   stats.blocks_drawn = static_cast<uint32_t>(view.selection.draw.size());
   stats.blocks_selected = static_cast<uint32_t>(view.selection.target.size());
@@ -241,30 +259,30 @@ FrameStats Renderer::State::stats_of(const Scene& scene, const PreparedView& vie
   return stats;
 }
 
-Result<Frame> Renderer::State::draw(const std::shared_ptr<const ModelFile>& model, const PictureRequest& request,
-                                    const Interruption& interruption) {
+Result<picture::Frame> Renderer::State::draw(const std::shared_ptr<const model::ModelFile>& model,
+                                             const picture::PictureRequest& request, const Preemption& preemption) {
   if (request.width < 1 || request.height < 1 || request.width > kMaxResolution || request.height > kMaxResolution) {
     return fail(ErrorKind::kLimit, "resolution: each side must lie between 1 and " + std::to_string(kMaxResolution));
   }
-  const Result<Look> look = look_of(model->info(), request);
-  if (!look) return fail(look.error());
+  const Result<DisplayOptions> display = resolve_display_options(model->info(), request);
+  if (!display) return fail(display.error());
   Scene& scene = scene_of(model);
-  Frame result;
+  picture::Frame result;
   result.camera = scene.camera_of(request);
-  const Result<CameraFrame> frame = make_camera_frame(result.camera, request.width, request.height);
+  const Result<geometry::CameraFrame> frame = geometry::make_camera_frame(result.camera, request.width, request.height);
   if (!frame) return fail(frame.error());
-  const Result<PreparedView> view = prepare(scene, request, *look, result.camera, *frame, interruption);
+  const Result<residency::PreparedView> view = prepare(scene, request, *display, result.camera, *frame, preemption);
   if (!view) return fail(view.error());
 
   result.converged = view->selection.converged();
-  result.settled = view->settled;
+  result.nothing_pending = view->nothing_pending;
   result.cut = cut_of(view->selection);
   result.image = {request.width, request.height, request.format, {}};
   RegionStats drawn;
   if (worth_drawing(request, *view, result.cut)) {
     const size_t pixels = static_cast<size_t>(request.width) * static_cast<size_t>(request.height);
     result.image.pixels.resize(pixels * pixel_bytes(request.format));
-    const Result<RegionStats> regions = draw_regions(scene, request, *look, *frame, *view, interruption, result.image);
+    const Result<RegionStats> regions = draw_regions(scene, request, *display, *frame, *view, preemption, result.image);
     if (!regions) return fail(regions.error());
     drawn = *regions;
   }
@@ -273,7 +291,7 @@ Result<Frame> Renderer::State::draw(const std::shared_ptr<const ModelFile>& mode
 }
 
 Result<std::unique_ptr<Renderer>> Renderer::create(const RendererConfig& config) {
-  Result<std::unique_ptr<EglContext>> context = EglContext::create(config.gpu);
+  Result<std::unique_ptr<gl::EglContext>> context = gl::EglContext::create(config.gpu);
   if (!context) return fail(std::move(context.error()));
   constexpr KernelShape kSoftware = {.whole_tiles = true, .tiles_at_once = 8, .project_lanes = 8};
   Result<Programs> programs =
@@ -286,21 +304,21 @@ Result<std::unique_ptr<Renderer>> Renderer::create(const RendererConfig& config)
 Renderer::Renderer(std::unique_ptr<State> state) : state_(std::move(state)) {}
 Renderer::~Renderer() = default;
 
-const DeviceInfo& Renderer::device() const {
+const picture::DeviceInfo& Renderer::device() const {
   return state_->device;
 }
 int Renderer::max_resolution() const {
   return kMaxResolution;
 }
-void Renderer::forget(const ModelFile& model) {
-  state_->to_forget.push_back(model.id());
-  if (state_->depth == 0) state_->forget_models();
+void Renderer::release_model(const model::ModelFile& model) {
+  state_->to_release.push_back(model.id());
+  if (state_->depth == 0) state_->release_models();
 }
 
-Result<Frame> Renderer::draw(const std::shared_ptr<const ModelFile>& model, const PictureRequest& request,
-                             const Interruption& interruption) {
+Result<picture::Frame> Renderer::draw(const std::shared_ptr<const model::ModelFile>& model,
+                                      const picture::PictureRequest& request, const Preemption& preemption) {
   const State::PictureScope scope(*state_);
-  return state_->draw(model, request, interruption);
+  return state_->draw(model, request, preemption);
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::render

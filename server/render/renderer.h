@@ -4,25 +4,19 @@
 #include <memory>
 #include <string>
 
-#include "base/interruption.h"
+#include "base/preemption.h"
 #include "base/result.h"
 #include "model/model_file.h"
-#include "render/picture.h"
+#include "picture/device_info.h"
+#include "picture/picture.h"
 
-namespace surfcast {
+namespace surfcast::render {
 
 struct RendererConfig {
   int gpu = -1;  ///< index of the EGL device; -1 chooses: the first hardware device, else software
   size_t gpu_bytes = size_t{1} << 30;     ///< for the surfels of all models
   size_t host_bytes = size_t{256} << 20;  ///< for blocks that may come back to the GPU
   std::string shader_defines{};  ///< text before every shader, of programs that measure other kernels than our own
-};
-
-struct DeviceInfo {
-  std::string vendor;
-  std::string renderer;
-  std::string version;
-  bool software = false;  ///< pixels are computed by the CPU
 };
 
 /// Draws pictures of models. Owns a GL context: create, use and destroy it on one thread.
@@ -35,12 +29,12 @@ class Renderer {
   /// when it waits for a block that is damaged; returns kCancelled soon after it is interrupted for good. What is more
   /// urgent may draw one other picture at a time meanwhile: it has memory of its own for what is between the passes,
   /// and leaves alone the blocks that this one shows.
-  Result<Frame> draw(const std::shared_ptr<const ModelFile>& model, const PictureRequest& request,
-                     const Interruption& interruption);
+  Result<picture::Frame> draw(const std::shared_ptr<const model::ModelFile>& model,
+                              const picture::PictureRequest& request, const Preemption& preemption);
   /// Lets go of what is resident of a model that will not be drawn again, after the picture that is being drawn.
-  void forget(const ModelFile& model);
+  void release_model(const model::ModelFile& model);
 
-  [[nodiscard]] const DeviceInfo& device() const;
+  [[nodiscard]] const picture::DeviceInfo& device() const;
   /// Largest picture side in pixels that the device can draw.
   [[nodiscard]] int max_resolution() const;
 
@@ -50,4 +44,4 @@ class Renderer {
   std::unique_ptr<State> state_;
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::render

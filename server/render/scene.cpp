@@ -4,24 +4,24 @@
 
 #include "model/fit_model.h"
 
-namespace surfcast {
-Scene::Scene(std::shared_ptr<const ModelFile> model)
-    : model_(std::move(model)), viewed_(std::make_shared<const FileBlocks>(model_)) {
+namespace surfcast::render {
+Scene::Scene(std::shared_ptr<const model::ModelFile> model)
+    : model_(std::move(model)), viewed_(std::make_shared<const residency::FileBlocks>(model_)) {
   uint32_t first = 0;
-  for (const BlockEntry& block : model_->blocks()) {
+  for (const ldc::BlockEntry& block : model_->blocks()) {
     first_surfels_.push_back(first);
     first += block.surfels;
   }
 }
 
-Camera Scene::camera_of(const PictureRequest& request) const {
+geometry::Camera Scene::camera_of(const picture::PictureRequest& request) const {
   if (request.camera) return *request.camera;
-  return fit_model(*model_, static_cast<double>(request.width) / request.height);
+  return model::fit_model(*model_, static_cast<double>(request.width) / request.height);
 }
 
-ViewerMemory& Scene::memory_of(uint64_t viewer) {
+ViewerHistory& Scene::history_of(uint64_t viewer) {
   constexpr size_t kViewers = 64;
-  auto found = std::ranges::find(viewers_, viewer, &ViewerMemory::viewer);
+  auto found = std::ranges::find(viewers_, viewer, &ViewerHistory::viewer);
   if (found == viewers_.end()) {
     if (viewers_.size() == kViewers) viewers_.pop_back();
     found = viewers_.insert(viewers_.end(), {viewer, {}, {}});
@@ -30,15 +30,16 @@ ViewerMemory& Scene::memory_of(uint64_t viewer) {
   return viewers_.front();
 }
 
-std::optional<CameraFrame> move_to(ViewerMemory& memory, const Camera& camera, int width, int height) {
+std::optional<geometry::CameraFrame> update_and_extrapolate(ViewerHistory& history, const geometry::Camera& camera,
+                                                            int width, int height) {
   constexpr double kPicturesAhead = 4;  // about as long as a block takes from being wished for to being drawn
-  const std::optional<Camera> last = std::exchange(memory.camera, camera);
+  const std::optional<geometry::Camera> last = std::exchange(history.camera, camera);
   if (!last || (last->position == camera.position && last->focal_point == camera.focal_point)) return std::nullopt;
-  Camera ahead = camera;
+  geometry::Camera ahead = camera;
   ahead.position += kPicturesAhead * (camera.position - last->position);
   ahead.focal_point += kPicturesAhead * (camera.focal_point - last->focal_point);
-  const Result<CameraFrame> frame = make_camera_frame(ahead, width, height);
+  const Result<geometry::CameraFrame> frame = geometry::make_camera_frame(ahead, width, height);
   return frame ? std::optional(*frame) : std::nullopt;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::render

@@ -1,48 +1,49 @@
 #pragma once
 
 #include <cstdint>
-#include <list>
 #include <memory>
+#include <list>
 #include <optional>
 #include <vector>
 
 #include "model/model_file.h"
-#include "render/picture.h"
+#include "picture/picture.h"
 #include "residency/residency.h"
 
-namespace surfcast {
+namespace surfcast::render {
 
 /// What is remembered of somebody's motion from picture to picture.
-struct ViewerMemory {
+struct ViewerHistory {
   uint64_t viewer = 0;
-  std::optional<Camera> camera;
+  std::optional<geometry::Camera> camera;
   std::vector<uint32_t> refined;  ///< see select_blocks
 };
 
 /// Notes a picture that did not wait. Where the camera will be some pictures later if it goes on as since the last one;
 /// none if it does not move or nothing is known.
-std::optional<CameraFrame> move_to(ViewerMemory& memory, const Camera& camera, int width, int height);
+std::optional<geometry::CameraFrame> update_and_extrapolate(ViewerHistory& history, const geometry::Camera& camera,
+                                                            int width, int height);
 
 /// A model that is being looked at.
 class Scene {
  public:
-  explicit Scene(std::shared_ptr<const ModelFile> model);
+  explicit Scene(std::shared_ptr<const model::ModelFile> model);
 
-  [[nodiscard]] const ModelFile& model() const { return *model_; }
-  [[nodiscard]] const ViewedModel& viewed() const { return viewed_; }
+  [[nodiscard]] const model::ModelFile& model() const { return *model_; }
+  [[nodiscard]] const residency::ViewedModel& viewed() const { return viewed_; }
   /// Surfels of the blocks before this one: where its surfels begin among all of the model, modulo 2^32.
   [[nodiscard]] uint32_t first_surfel(uint32_t block) const { return first_surfels_[block]; }
   /// The camera asked for, or one that fits the model.
-  [[nodiscard]] Camera camera_of(const PictureRequest& request) const;
+  [[nodiscard]] geometry::Camera camera_of(const picture::PictureRequest& request) const;
 
   /// Memory of that viewer, new if it has not been seen for long.
-  ViewerMemory& memory_of(uint64_t viewer);
+  ViewerHistory& history_of(uint64_t viewer);
 
  private:
-  std::shared_ptr<const ModelFile> model_;
-  ViewedModel viewed_;
+  std::shared_ptr<const model::ModelFile> model_;
+  residency::ViewedModel viewed_;
   std::vector<uint32_t> first_surfels_;
-  std::list<ViewerMemory> viewers_;  ///< most recent first
+  std::list<ViewerHistory> viewers_;  ///< most recent first
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::render

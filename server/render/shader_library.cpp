@@ -6,7 +6,7 @@
 
 #include "render/embedded_shaders.h"
 
-namespace surfcast {
+namespace surfcast::render {
 namespace {
 
 Status append_file(std::string_view name, std::set<std::string, std::less<>>& seen, std::string& text) {
@@ -37,4 +37,4 @@ Result<std::string> shader_text(std::string_view name) {
   return text;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::render

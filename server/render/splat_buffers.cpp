@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace surfcast {
+namespace surfcast::render {
 
 void TexelBuffer::reserve(size_t texels, bool lazily) {
   if (texels <= texels_) return;
@@ -60,4 +60,4 @@ void SplatBuffers::reserve_splats(size_t count, bool with_normals) {
   if (with_normals) normals.reserve(std::max(count, discs.texels()), lazy);
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::render

@@ -7,10 +7,10 @@
 
 #include "base/lazy_memory.h"
 #include "gl/objects.h"
-#include "render/batch_pace.h"
+#include "render/batch_sizer.h"
 #include "render/tile_spans.h"
 
-namespace surfcast {
+namespace surfcast::render {
 
 /// A buffer that grows, seen as texels: records of splats may outgrow a storage block, texel buffers may not.
 class TexelBuffer {
@@ -65,12 +65,12 @@ class ConstantTexels {
 
 /// Everything between the passes of one region, and how fast they are.
 struct SplatBuffers {
-  BatchPace project_pace;
-  BatchPace bin_pace;
-  std::array<BatchPace, kTileSpans> splat_paces;
-  BatchPace splat_large_pace;
-  BatchPace find_pace;
-  BatchPace supersample_pace;
+  BatchSizer project_batches;
+  BatchSizer bin_batches;
+  std::array<BatchSizer, kTileSpans> splat_batches;
+  BatchSizer splat_large_batches;
+  BatchSizer find_batches;
+  BatchSizer supersample_batches;
   ConstantTexels srgb;  ///< linear_root_table
   TexelBuffer splats{"splats", GL_RGBA32UI, 16};
   TexelBuffer discs{"discs", GL_RGBA32UI, 16};
@@ -80,16 +80,16 @@ struct SplatBuffers {
   StorageBuffer counters{"counters"};
   StorageBuffer tile_count{"tile count"};
   StorageBuffer tile_offset{"tile offset"};
-  StorageBuffer tile_crowd{"tile crowd"};
+  StorageBuffer tile_demand{"tile demand"};
   StorageBuffer tile_order{"tile order"};
-  StorageBuffer turns{"turns"};
+  StorageBuffer next_tiles{"next tiles"};
   StorageBuffer picture{"picture"};
   StorageBuffer blocks{"blocks"};
   StorageBuffer chunks{"chunks"};
   StorageBuffer frame{"frame constants"};
-  StorageBuffer looks{"looks of blocks"};
+  StorageBuffer block_displays{"display options of blocks"};
   StorageBuffer clips{"clip ranges"};
-  StorageBuffer look{"look constants"};
+  StorageBuffer display{"display constants"};
   StorageBuffer light{"light before eye-dome lighting"};
   StorageBuffer depth{"depth"};
   StorageBuffer eye_dome{"eye-dome constants"};
@@ -103,4 +103,4 @@ struct SplatBuffers {
   [[nodiscard]] size_t splat_capacity() const { return discs.texels(); }
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::render

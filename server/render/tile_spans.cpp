@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <iterator>
 
-namespace surfcast {
+namespace surfcast::render {
 namespace {
 
 constexpr uint32_t kLengths[] = {SURFCAST_LIST_LENGTHS};
@@ -25,11 +25,11 @@ std::vector<TileSpan> spans_of_tiles(const layout::Counters& counters, uint32_t 
   for (size_t i = kTileSpans; i-- > 0;) {
     const auto at = static_cast<glm::length_t>(i);
     const uint32_t end = i == 0 ? tiles : std::clamp(counters.lengths[(at - 1) / 4][(at - 1) % 4], first, tiles);
-    const uint32_t longest = i < std::size(kLengths) ? kLengths[i] : SURFCAST_CROWD_LIMIT;
+    const uint32_t longest = i < std::size(kLengths) ? kLengths[i] : SURFCAST_TILE_CAPACITY_LIMIT;
     spans.push_back({first, end, shape.whole_tiles ? at_once * turns_of(longest) : at_once});
     first = end;
   }
   return spans;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::render

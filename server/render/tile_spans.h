@@ -6,13 +6,13 @@
 #include "render/programs.h"
 #include "shared/frame_layout.h"
 
-namespace surfcast {
+namespace surfcast::render {
 
 /// Tiles with lists of about one length: places in the order of tiles, from the longest lists to the shortest.
 struct TileSpan {
   uint32_t first = 0;
   uint32_t end = 0;
-  uint32_t of_group = 1;  ///< tiles of a work group of the splat kernel
+  uint32_t tiles_per_group = 1;  ///< tiles of a work group of the splat kernel
   bool operator==(const TileSpan&) const = default;
 };
 
@@ -27,4 +27,4 @@ inline constexpr size_t kTileSpans = 9;
 /// work: tiles with long lists get small groups.
 std::vector<TileSpan> spans_of_tiles(const layout::Counters& counters, uint32_t tiles, const KernelShape& shape);
 
-}  // namespace surfcast
+}  // namespace surfcast::render

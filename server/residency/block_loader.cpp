@@ -4,10 +4,10 @@
 #include <exception>
 #include <utility>
 
-#include "base/idle_thread.h"
+#include "base/idle_priority.h"
 #include "base/stopwatch.h"
 
-namespace surfcast {
+namespace surfcast::residency {
 namespace {
 
 size_t bytes_of(const LoadedBlock& loaded) {
@@ -25,8 +25,8 @@ Result<std::shared_ptr<const PackedBlock>> load_block(const BlockSource& source,
   }
 }
 
-size_t most_packed_bytes(uint32_t surfels) {
-  return size_t{kMostPackedPerSurfel} * surfels * sizeof(glm::uvec4);
+size_t max_packed_bytes(uint32_t surfels) {
+  return size_t{kMaxPackedPerSurfel} * surfels * sizeof(glm::uvec4);
 }
 
 }  // namespace
@@ -35,7 +35,7 @@ BlockLoader::BlockLoader(const LoaderLimits& limits) : limits_(limits), cache_(l
   for (unsigned i = 0; i < std::max(1U, limits.threads); ++i) {
     threads_.emplace_back([this] { work(); });
   }
-  for (unsigned i = 0; i < limits.idle_threads; ++i) threads_.emplace_back([this] { work_ahead(); });
+  for (unsigned i = 0; i < limits.idle_threads; ++i) threads_.emplace_back([this] { work_on_prefetches(); });
 }
 
 BlockLoader::~BlockLoader() {
@@ -44,16 +44,16 @@ BlockLoader::~BlockLoader() {
     stopping_ = true;
   }
   wake_workers_.notify_all();
-  wake_ahead_.notify_all();
+  wake_prefetchers_.notify_all();
   threads_.clear();
 }
 
-void BlockLoader::want(const std::shared_ptr<const BlockSource>& source, std::span<const uint32_t> blocks,
-                       bool attributes) {
+void BlockLoader::set_requests(const std::shared_ptr<const BlockSource>& source, std::span<const uint32_t> blocks,
+                               bool attributes) {
   {
     const std::lock_guard lock(mutex_);
-    const std::set<BlockId> known = std::exchange(wanted_, {});
-    for (const uint32_t block : blocks) wanted_.insert({source->id(), block, attributes});
+    const std::set<BlockId> known = std::exchange(requested_, {});
+    for (const uint32_t block : blocks) requested_.insert({source->id(), block, attributes});
     queue_.clear();
     drop_unwanted();
     std::set<BlockId> coming = busy_;
@@ -66,7 +66,7 @@ void BlockLoader::want(const std::shared_ptr<const BlockSource>& source, std::sp
       } else {
         queue_.push_back({source, id});
         // While the first blocks are decoded the disk reads the others.
-        if (!known.contains(id)) source->expect(block);
+        if (!known.contains(id)) source->prefetch(block);
       }
     }
   }
@@ -77,18 +77,18 @@ void BlockLoader::prefetch(const std::shared_ptr<const BlockSource>& source, std
                            bool attributes) {
   {
     const std::lock_guard lock(mutex_);
-    ahead_.clear();
+    prefetch_queue_.clear();
     size_t bytes = 0;
     for (const uint32_t block : blocks) {
       const BlockId id{source->id(), block, attributes};
-      bytes += most_packed_bytes(source->tree().blocks()[block].surfels);
+      bytes += max_packed_bytes(source->tree().blocks()[block].surfels);
       if (bytes > limits_.cache_bytes / 2) break;
-      if (!busy_.contains(id) && !busy_ahead_.contains(id) && !damaged_ahead_.contains(id) && !cache_.find(id)) {
-        ahead_.push_back({source, id});
+      if (!busy_.contains(id) && !prefetching_.contains(id) && !damaged_prefetches_.contains(id) && !cache_.find(id)) {
+        prefetch_queue_.push_back({source, id});
       }
     }
   }
-  wake_ahead_.notify_all();
+  wake_prefetchers_.notify_all();
 }
 
 void BlockLoader::drop_unwanted() {
@@ -107,9 +107,9 @@ void BlockLoader::keep(const LoadedBlock& loaded) {
 }
 
 void BlockLoader::finish(LoadedBlock loaded) {
-  // A wish is not left to a thread that may have no time, so it can come true twice.
+  // A request is not left to a thread that may have no time, so it can be answered twice.
   const bool again = std::ranges::find(ready_, loaded.id, &LoadedBlock::id) != ready_.end();
-  if (wanted_.contains(loaded.id) && !again) {
+  if (requested_.contains(loaded.id) && !again) {
     make_ready(std::move(loaded));
   } else if (loaded.block) {
     keep(loaded);
@@ -124,7 +124,7 @@ std::optional<LoadedBlock> BlockLoader::take() {
     loaded = std::move(ready_.front());
     ready_.pop_front();
     ready_bytes_ -= bytes_of(*loaded);
-    wanted_.erase(loaded->id);
+    requested_.erase(loaded->id);
     if (loaded->block) keep(*loaded);
   }
   wake_workers_.notify_all();
@@ -136,10 +136,11 @@ void BlockLoader::wait(std::chrono::milliseconds most) {
   wake_taker_.wait_for(lock, most, [this] { return !ready_.empty(); });
 }
 
-void BlockLoader::forget(uint64_t model) {
+void BlockLoader::release_model(uint64_t model) {
   const std::lock_guard lock(mutex_);
-  cache_.forget({model, 0}, {model + 1, 0});
-  damaged_ahead_.erase(damaged_ahead_.lower_bound({model, 0}), damaged_ahead_.lower_bound({model + 1, 0}));
+  cache_.erase_range({model, 0}, {model + 1, 0});
+  damaged_prefetches_.erase(damaged_prefetches_.lower_bound({model, 0}),
+                            damaged_prefetches_.lower_bound({model + 1, 0}));
 }
 
 /// Decodes a block without holding the lock.
@@ -166,22 +167,22 @@ void BlockLoader::work() {
   }
 }
 
-void BlockLoader::work_ahead() {
-  work_in_idle_time();
+void BlockLoader::work_on_prefetches() {
+  use_idle_priority();
   std::unique_lock lock(mutex_);
   while (true) {
-    wake_ahead_.wait(lock, [this] { return stopping_ || !ahead_.empty(); });
+    wake_prefetchers_.wait(lock, [this] { return stopping_ || !prefetch_queue_.empty(); });
     if (stopping_) return;
-    const Request request = std::move(ahead_.front());
-    ahead_.pop_front();
+    const Request request = std::move(prefetch_queue_.front());
+    prefetch_queue_.pop_front();
     if (busy_.contains(request.id) || cache_.find(request.id)) continue;  // wanted meanwhile
-    busy_ahead_.insert(request.id);
+    prefetching_.insert(request.id);
     LoadedBlock loaded = load(request, lock);
-    busy_ahead_.erase(request.id);
-    if (!loaded.block) damaged_ahead_.insert(request.id);
+    prefetching_.erase(request.id);
+    if (!loaded.block) damaged_prefetches_.insert(request.id);
     finish(std::move(loaded));
     wake_taker_.notify_one();
   }
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::residency

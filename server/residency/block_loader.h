@@ -11,10 +11,10 @@
 #include <thread>
 #include <vector>
 
-#include "base/recent_cache.h"
+#include "base/lru_cache.h"
 #include "residency/block_source.h"
 
-namespace surfcast {
+namespace surfcast::residency {
 
 /// A block that was wanted, or why it cannot be had.
 struct LoadedBlock {
@@ -32,8 +32,8 @@ struct LoaderLimits {
 };
 
 /// Worker threads that read, decode and pack blocks for one other thread, which alone calls the methods. They work on
-/// the newest list of wishes only: what is not on it any more is dropped before it is decoded. Some work only when the
-/// processor has nothing else to do, on what may be wanted soon, and leave it in host memory.
+/// the newest list of requests only: what is not on it any more is dropped before it is decoded. Some work only when
+/// the processor has nothing else to do, on what may be wanted soon, and leave it in host memory.
 class BlockLoader {
  public:
   explicit BlockLoader(const LoaderLimits& limits);
@@ -41,17 +41,17 @@ class BlockLoader {
   BlockLoader(const BlockLoader&) = delete;
   BlockLoader& operator=(const BlockLoader&) = delete;
 
-  /// Replaces the wishes, most urgent first, all with attributes or all without. Blocks being decoded at the moment are
-  /// finished and, if nobody wants them, kept in host memory.
-  void want(const std::shared_ptr<const BlockSource>& source, std::span<const uint32_t> blocks,
-            bool attributes = false);
+  /// Replaces the requests, most urgent first, all with attributes or all without. Blocks being decoded at the moment
+  /// are finished and, if nobody wants them, kept in host memory.
+  void set_requests(const std::shared_ptr<const BlockSource>& source, std::span<const uint32_t> blocks,
+                    bool attributes = false);
   /// Replaces what may be wanted soon, most urgent first; of it as much as half of the host memory for blocks holds.
   void prefetch(const std::shared_ptr<const BlockSource>& source, std::span<const uint32_t> blocks, bool attributes);
-  /// The next wish that has come true; it is then no wish any more.
+  /// The next requested block that has been loaded; its request is then done.
   std::optional<LoadedBlock> take();
   /// Waits until take() has something, at most so long.
   void wait(std::chrono::milliseconds most);
-  void forget(uint64_t model);
+  void release_model(uint64_t model);
 
  private:
   struct Request {
@@ -60,7 +60,7 @@ class BlockLoader {
   };
 
   void work();
-  void work_ahead();
+  void work_on_prefetches();
   [[nodiscard]] LoadedBlock load(const Request& request, std::unique_lock<std::mutex>& lock);
   void keep(const LoadedBlock& loaded);
   void finish(LoadedBlock loaded);
@@ -70,19 +70,19 @@ class BlockLoader {
   const LoaderLimits limits_;
   std::mutex mutex_;  ///< guards what follows
   std::condition_variable wake_workers_;
-  std::condition_variable wake_ahead_;
+  std::condition_variable wake_prefetchers_;
   std::condition_variable wake_taker_;
   std::deque<Request> queue_;
-  std::deque<Request> ahead_;     ///< what may be wanted soon
-  std::set<BlockId> busy_ahead_;  ///< of it, being decoded
-  std::set<BlockId> damaged_ahead_;
-  std::set<BlockId> wanted_;  ///< the wishes that have not been taken
-  std::set<BlockId> busy_;    ///< being decoded
+  std::deque<Request> prefetch_queue_;  ///< what may be wanted soon
+  std::set<BlockId> prefetching_;       ///< of it, being decoded
+  std::set<BlockId> damaged_prefetches_;
+  std::set<BlockId> requested_;  ///< the requests that have not been taken
+  std::set<BlockId> busy_;       ///< being decoded
   std::deque<LoadedBlock> ready_;
   size_t ready_bytes_ = 0;
-  RecentCache<BlockId, PackedBlock> cache_;
+  LruCache<BlockId, PackedBlock> cache_;
   bool stopping_ = false;
   std::vector<std::jthread> threads_;
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::residency

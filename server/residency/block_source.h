@@ -9,7 +9,7 @@
 #include "ldc/block_tree.h"
 #include "residency/packing.h"
 
-namespace surfcast {
+namespace surfcast::residency {
 
 /// Where the blocks of one model come from. All methods may be called from several threads at once.
 class BlockSource {
@@ -18,9 +18,9 @@ class BlockSource {
 
   /// Tells this model from every other one in the life of the process.
   [[nodiscard]] virtual uint64_t id() const = 0;
-  [[nodiscard]] virtual const BlockTree& tree() const = 0;
+  [[nodiscard]] virtual const ldc::BlockTree& tree() const = 0;
   /// Says that a block is about to be loaded. Returns at once.
-  virtual void expect(uint32_t block) const = 0;
+  virtual void prefetch(uint32_t block) const = 0;
   /// Reads, decodes and packs a block, with PackedBlock::attributes or without.
   [[nodiscard]] virtual Result<PackedBlock> load(uint32_t block, bool attributes) const = 0;
 };
@@ -28,14 +28,14 @@ class BlockSource {
 /// The blocks of a model file.
 class FileBlocks : public BlockSource {
  public:
-  explicit FileBlocks(std::shared_ptr<const ModelFile> model) : model_(std::move(model)) {}
+  explicit FileBlocks(std::shared_ptr<const model::ModelFile> model) : model_(std::move(model)) {}
 
   [[nodiscard]] uint64_t id() const override { return model_->id(); }
-  [[nodiscard]] const BlockTree& tree() const override { return model_->tree(); }
-  void expect(uint32_t block) const override { model_->expect(block); }
+  [[nodiscard]] const ldc::BlockTree& tree() const override { return model_->tree(); }
+  void prefetch(uint32_t block) const override { model_->prefetch(block); }
   [[nodiscard]] Result<PackedBlock> load(uint32_t block, bool attributes) const override {
-    const Result<DecodedBlock> decoded =
-        model_->decode(block, attributes ? WantedScalars::kDrawn : WantedScalars::kNone);
+    const Result<model::DecodedBlock> decoded =
+        model_->decode(block, attributes ? model::WantedScalars::kDrawn : model::WantedScalars::kNone);
     if (!decoded) return fail(decoded.error());
     PackedBlock packed = pack_block(*decoded, model_->info().color_bits, model_->info().oriented);
     if (attributes) pack_attributes(*decoded, packed);
@@ -44,7 +44,7 @@ class FileBlocks : public BlockSource {
   }
 
  private:
-  std::shared_ptr<const ModelFile> model_;
+  std::shared_ptr<const model::ModelFile> model_;
 };
 
 /// A block of any model.
@@ -60,4 +60,4 @@ struct BlockId {
   }
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::residency

@@ -8,23 +8,23 @@
 
 #include "shared/frame_layout.h"
 
-namespace surfcast {
+namespace surfcast::residency {
 namespace {
 
 /// Blocks of fewer surfels cost too little to be merged.
 constexpr size_t kFewest = 256;
 /// A level of the LDC tree is at most four times as far apart as the next finer, in blocks of source surfels.
-constexpr size_t kMostMerges = 3;
+constexpr size_t kMaxMerges = 3;
 /// A merged level is worth its memory when it has at most this part of the surfels below it.
 constexpr double kLargestPart = 0.75;
 
 /// The block itself, then coarser and coarser.
 std::vector<MergedLevel> merged_levels(std::vector<MergedSurfel> surfels, bool oriented) {
-  const size_t most = kMostPackedPerSurfel * surfels.size();
+  const size_t most = kMaxPackedPerSurfel * surfels.size();
   size_t total = surfels.size();
   std::vector<MergedLevel> levels;
   levels.push_back({std::move(surfels), {}});
-  while (levels.back().surfels.size() >= kFewest && levels.size() <= kMostMerges) {
+  while (levels.back().surfels.size() >= kFewest && levels.size() <= kMaxMerges) {
     const size_t finer = levels.back().surfels.size();
     MergedLevel next = merge_surfels(levels.back().surfels, oriented);
     total += next.surfels.size();
@@ -47,7 +47,7 @@ void add_run(SurfelSequence& sequence, PackedRun run, Fill fill) {
 /// that they begin at even places.
 SurfelSequence sequence_of(std::span<const MergedLevel> levels) {
   SurfelSequence sequence;
-  sequence.surfels.reserve(kMostPackedPerSurfel * levels.front().surfels.size());
+  sequence.surfels.reserve(kMaxPackedPerSurfel * levels.front().surfels.size());
   const auto put = [&](size_t level, uint32_t i) { sequence.surfels.push_back(levels[level].surfels[i]); };
   for (size_t level = 0; level + 1 < levels.size(); ++level) {
     add_run(sequence, {.finest = level == 0, .coarsest = false, .pairs = true}, [&] {
@@ -100,4 +100,4 @@ SurfelSequence merge_levels(std::vector<MergedSurfel> surfels, bool oriented) {
   return sequence;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::residency

@@ -5,7 +5,7 @@
 
 #include "residency/merge_surfels.h"
 
-namespace surfcast {
+namespace surfcast::residency {
 
 /// Surfels of a packed block that are drawn or left out for the same reason (see SurfelSequence).
 struct PackedRun {
@@ -33,9 +33,9 @@ struct SurfelSequence {
 };
 
 /// A sequence has at most so many times the surfels of the block.
-inline constexpr uint32_t kMostPackedPerSurfel = 2;
+inline constexpr uint32_t kMaxPackedPerSurfel = 2;
 
 /// `surfels` lie along a space filling curve; see merge_surfels.
 SurfelSequence merge_levels(std::vector<MergedSurfel> surfels, bool oriented);
 
-}  // namespace surfcast
+}  // namespace surfcast::residency

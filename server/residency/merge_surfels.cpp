@@ -4,13 +4,13 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-namespace surfcast {
+namespace surfcast::residency {
 namespace {
 
 /// How far along the curve a surfel looks for one to merge with.
 constexpr size_t kWindow = 8;
 /// Least cosine between normals that may be merged: leaves become one, two sides of a sheet stay apart.
-constexpr float kLeastCosine = 0.0F;
+constexpr float kMinCosine = 0.0F;
 
 float turned(const MergedSurfel& a, const MergedSurfel& b, bool oriented) {
   return !oriented && glm::dot(a.normal, b.normal) < 0 ? -1.0F : 1.0F;
@@ -20,7 +20,7 @@ float turned(const MergedSurfel& a, const MergedSurfel& b, bool oriented) {
 /// or below: single precision holds them only from 1e-19 to 1e19.
 bool mergeable(const MergedSurfel& a, const MergedSurfel& b, bool oriented) {
   const glm::vec3 d = (b.position - a.position) / (a.radius + b.radius);
-  return glm::dot(d, d) <= 1 && turned(a, b, oriented) * glm::dot(a.normal, b.normal) >= kLeastCosine;
+  return glm::dot(d, d) <= 1 && turned(a, b, oriented) * glm::dot(a.normal, b.normal) >= kMinCosine;
 }
 
 MergedSurfel mean(const MergedSurfel& a, const MergedSurfel& b, bool oriented) {
@@ -57,4 +57,4 @@ MergedLevel merge_surfels(std::span<const MergedSurfel> surfels, bool oriented) 
   return level;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::residency

@@ -5,7 +5,7 @@
 #include <span>
 #include <vector>
 
-namespace surfcast {
+namespace surfcast::residency {
 
 /// A surfel of a block, or the mean of several.
 struct MergedSurfel {
@@ -35,4 +35,4 @@ struct MergedLevel {
 /// `surfels` lie along a space filling curve. Without a front and a back (`oriented`) normals may be turned around.
 MergedLevel merge_surfels(std::span<const MergedSurfel> surfels, bool oriented);
 
-}  // namespace surfcast
+}  // namespace surfcast::residency

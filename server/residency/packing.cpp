@@ -15,7 +15,7 @@
 #include "surfel/drawn_radius.h"
 #include "surfel/srgb.h"
 
-namespace surfcast {
+namespace surfcast::residency {
 namespace {
 
 /// How far lattice indices up to `extent` are shifted right, with rounding, to fit the position codes.
@@ -26,7 +26,7 @@ int shift_for(int extent) {
   return shift;
 }
 
-glm::ivec3 extent_of(const DecodedBlock& block) {
+glm::ivec3 extent_of(const model::DecodedBlock& block) {
   glm::ivec3 extent(0);
   for (const glm::ivec3& index : block.indices) extent = glm::max(extent, index);
   return extent;
@@ -56,7 +56,7 @@ uint32_t color_code(const glm::u16vec3& color, int bits) {
 const std::array<float, 256>& linear_levels() {
   static const std::array<float, 256> kLevels = [] {
     std::array<float, 256> levels{};
-    for (uint16_t i = 0; i < 256; ++i) levels[i] = to_linear(glm::u16vec3(i), 8).r;
+    for (uint16_t i = 0; i < 256; ++i) levels[i] = surfel::to_linear(glm::u16vec3(i), 8).r;
     return levels;
   }();
   return kLevels;
@@ -108,9 +108,9 @@ glm::uvec4 pack_surfel(const glm::uvec3& position, const glm::u16vec2& normal, u
 }  // namespace
 
 LogScale LogScale::between(float least, float largest) {
-  constexpr double kMostOctaves = 32;
+  constexpr double kMaxOctaves = 32;
   const double top = std::log2(double{largest});
-  return {top, std::min(kMostOctaves, top - std::log2(double{least}))};
+  return {top, std::min(kMaxOctaves, top - std::log2(double{least}))};
 }
 
 uint32_t LogScale::code(float value) const {
@@ -121,7 +121,7 @@ uint32_t LogScale::code(float value) const {
 
 namespace {
 
-PackedLattice packed_lattice(const DecodedBlock& block) {
+PackedLattice packed_lattice(const model::DecodedBlock& block) {
   const glm::ivec3 extent = extent_of(block);
   const glm::ivec3 shift(shift_for(extent.x), shift_for(extent.y), shift_for(extent.z));
   return {block.grid, block.origin, shift, position_code(extent, shift)};
@@ -166,12 +166,12 @@ void sort_along_curve(std::vector<OnCurve>& surfels, uint64_t largest) {
   }
 }
 
-std::vector<OnCurve> along_curve(const DecodedBlock& block, const glm::ivec3& shift) {
+std::vector<OnCurve> along_curve(const model::DecodedBlock& block, const glm::ivec3& shift) {
   std::vector<OnCurve> surfels;
   surfels.reserve(block.size());
   uint64_t largest = 0;
   for (uint32_t i = 0; i < block.size(); ++i) {
-    surfels.push_back({interleave(position_code(block.indices[i], shift)), i});
+    surfels.push_back({geometry::interleave(position_code(block.indices[i], shift)), i});
     largest = std::max(largest, surfels.back().code);
   }
   sort_along_curve(surfels, largest);
@@ -179,8 +179,8 @@ std::vector<OnCurve> along_curve(const DecodedBlock& block, const glm::ivec3& sh
 }
 
 /// The surfels of a block along a Morton curve, positions from code 0 on.
-std::vector<MergedSurfel> surfels_of(const DecodedBlock& block, int color_bits, const PackedLattice& lattice) {
-  const float widest = largest_drawn_radius(block.radii);
+std::vector<MergedSurfel> surfels_of(const model::DecodedBlock& block, int color_bits, const PackedLattice& lattice) {
+  const float widest = surfel::largest_drawn_radius(block.radii);
   std::vector<MergedSurfel> surfels;
   surfels.reserve(block.size());
   const glm::dvec3 step = lattice.step();
@@ -205,7 +205,7 @@ LogScale log_scale_of(std::span<const MergedSurfel> surfels, float MergedSurfel:
 
 }  // namespace
 
-PackedBlock pack_block(const DecodedBlock& block, int color_bits, bool oriented) {
+PackedBlock pack_block(const model::DecodedBlock& block, int color_bits, bool oriented) {
   SURFCAST_EXPECTS(block.size() > 0);
   PackedBlock packed;
   packed.lattice = packed_lattice(block);
@@ -228,9 +228,9 @@ PackedBlock pack_block(const DecodedBlock& block, int color_bits, bool oriented)
 namespace {
 
 /// The values of a scalar attribute as doubles; nothing if the block has none of that name.
-std::vector<double> scalar_values(const DecodedBlock& block, std::string_view name) {
+std::vector<double> scalar_values(const model::DecodedBlock& block, std::string_view name) {
   std::vector<double> doubles;
-  for (const ScalarAttribute& scalar : block.scalars) {
+  for (const surfel::ScalarAttribute& scalar : block.scalars) {
     if (scalar.name != name) continue;
     std::visit([&doubles](const auto& values) { doubles.assign(values.begin(), values.end()); }, scalar.values);
   }
@@ -261,7 +261,7 @@ uint32_t class_code(double value) {
 
 }  // namespace
 
-void pack_attributes(const DecodedBlock& block, PackedBlock& packed) {
+void pack_attributes(const model::DecodedBlock& block, PackedBlock& packed) {
   const std::vector<double> intensities = scalar_values(block, "intensity");
   const std::vector<double> classes = scalar_values(block, "classification");
   packed.intensity = scale_of(intensities);
@@ -275,11 +275,11 @@ void pack_attributes(const DecodedBlock& block, PackedBlock& packed) {
 std::vector<uint32_t> linear_root_table() {
   std::vector<uint32_t> table;
   for (uint16_t level = 0; level < 256; ++level) {
-    const double root = std::sqrt(double{to_linear(glm::u16vec3(level), 8).r});
+    const double root = std::sqrt(double{surfel::to_linear(glm::u16vec3(level), 8).r});
     table.push_back(static_cast<uint32_t>(std::lround(root * 2047)) |
                     (static_cast<uint32_t>(std::lround(root * 1023)) << 16));
   }
   return table;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::residency

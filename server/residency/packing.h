@@ -9,7 +9,7 @@
 #include "model/model_file.h"
 #include "residency/merge_levels.h"
 
-namespace surfcast {
+namespace surfcast::residency {
 
 /// Numbers of one block on a logarithmic scale of SURFCAST_SIZE_STEPS steps, from the largest down:
 /// 2^(log2_largest - octaves * code / steps).
@@ -24,7 +24,7 @@ struct LogScale {
 
 /// Where the position codes of a block lie.
 struct PackedLattice {
-  Grid grid;              ///< of the model
+  surfel::Grid grid;      ///< of the model
   glm::i64vec3 first{0};  ///< index of code 0 on it
   glm::ivec3 shift{0};    ///< a step of the codes is 2^shift steps of the grid
   glm::uvec3 largest{0};  ///< code
@@ -65,12 +65,12 @@ struct PackedBlock {
   }
 };
 
-PackedBlock pack_block(const DecodedBlock& block, int color_bits, bool oriented);
+PackedBlock pack_block(const model::DecodedBlock& block, int color_bits, bool oriented);
 /// Adds the attributes of the same block.
-void pack_attributes(const DecodedBlock& block, PackedBlock& packed);
+void pack_attributes(const model::DecodedBlock& block, PackedBlock& packed);
 
 /// For each 8 bit sRGB value the root of its linear light in the 11 bits, and from bit 16 on the 10 bits, of a splat's
 /// packed colour (unpack_linear_color in shaders/include/packing.glsl): near black as fine as 8 bit sRGB needs it.
 std::vector<uint32_t> linear_root_table();
 
-}  // namespace surfcast
+}  // namespace surfcast::residency

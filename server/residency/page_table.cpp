@@ -4,21 +4,21 @@
 
 #include "base/contract.h"
 
-namespace surfcast {
+namespace surfcast::residency {
 
 void PageTable::begin_frame() {
   ++frame_;
-  if (!in_interlude_) main_frame_ = frame_;
+  if (!in_nested_frame_) outer_frame_ = frame_;
 }
 
-void PageTable::end_interlude() {
-  in_interlude_ = false;
-  ++frame_;  // nothing of the interlude is in use any more
+void PageTable::end_nested_frame() {
+  in_nested_frame_ = false;
+  ++frame_;  // nothing of the nested frame is in use any more
 }
 
 void PageTable::touch(Entry& entry) const {
   entry.last_frame = frame_;
-  if (!in_interlude_) entry.last_main = main_frame_;
+  if (!in_nested_frame_) entry.last_outer = outer_frame_;
 }
 
 void PageTable::use(const BlockId& id) {
@@ -86,9 +86,9 @@ std::span<const uint32_t> PageTable::insert(const BlockId& id, uint32_t count,
   return entries_.emplace(id, std::move(entry)).first->second.pages;
 }
 
-void PageTable::forget(uint64_t model) {
+void PageTable::release_model(uint64_t model) {
   auto entry = entries_.lower_bound({model, 0});
   while (entry != entries_.end() && entry->first.model == model) entry = release(entry);
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::residency

@@ -9,11 +9,11 @@
 
 #include "residency/block_source.h"
 
-namespace surfcast {
+namespace surfcast::residency {
 
 /// Who has which pages of a memory of equal pages. A block takes as many as it needs, wherever they are; the blocks
 /// used least recently give theirs up. What has been used since the last begin_frame() and what is pinned stays. A
-/// frame may be interrupted by an interlude, with frames of its own: what it used before and uses after it stays
+/// frame may be interrupted by a nested frame, with frames of its own: what it used before and uses after it stays
 /// through all of them.
 class PageTable {
  public:
@@ -21,8 +21,8 @@ class PageTable {
 
   /// Forgets which blocks are in use.
   void begin_frame();
-  void begin_interlude() { in_interlude_ = true; }
-  void end_interlude();
+  void begin_nested_frame() { in_nested_frame_ = true; }
+  void end_nested_frame();
   /// The block is in use until the next frame.
   void use(const BlockId& id);
   /// The block stays until its model is forgotten.
@@ -34,7 +34,7 @@ class PageTable {
   /// lose theirs. Empty, and nothing changes, when blocks in use leave too few.
   std::span<const uint32_t> insert(const BlockId& id, uint32_t count,
                                    const std::function<void(const BlockId&)>& evicted);
-  void forget(uint64_t model);
+  void release_model(uint64_t model);
 
   [[nodiscard]] uint32_t pages() const { return pages_; }
   [[nodiscard]] uint32_t pinned_pages() const { return pinned_; }
@@ -45,7 +45,7 @@ class PageTable {
   struct Entry {
     std::vector<uint32_t> pages;
     uint64_t last_frame = 0;
-    uint64_t last_main = 0;  ///< frame that was no interlude
+    uint64_t last_outer = 0;  ///< frame that was no nested frame
     bool pinned = false;
     std::list<BlockId>::iterator order;
   };
@@ -53,16 +53,16 @@ class PageTable {
 
   void touch(Entry& entry) const;
   [[nodiscard]] bool evictable(const Entry& entry) const {
-    return !entry.pinned && entry.last_frame < frame_ && entry.last_main < main_frame_;
+    return !entry.pinned && entry.last_frame < frame_ && entry.last_outer < outer_frame_;
   }
   [[nodiscard]] bool can_free(uint32_t count) const;
   Entries::iterator release(Entries::iterator entry);
   uint32_t take_page();
 
   uint32_t pages_;
-  uint64_t frame_ = 1;       ///< the newest
-  uint64_t main_frame_ = 1;  ///< the newest that is no interlude
-  bool in_interlude_ = false;
+  uint64_t frame_ = 1;        ///< the newest
+  uint64_t outer_frame_ = 1;  ///< the newest that is no nested frame
+  bool in_nested_frame_ = false;
   uint32_t used_ = 0;
   uint32_t pinned_ = 0;
   uint32_t untouched_ = 0;      ///< pages from here on have never been used
@@ -71,4 +71,4 @@ class PageTable {
   std::list<BlockId> order_;  ///< most recently used first
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::residency

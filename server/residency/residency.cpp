@@ -2,14 +2,14 @@
 
 #include <algorithm>
 
-namespace surfcast {
+namespace surfcast::residency {
 
 Residency::Residency(SurfelSink& sink, const ResidencyLimits& limits)
     : pool_(limits.pages, sink), loader_(limits.loader), upload_bytes_(limits.upload_bytes) {}
 
-void Residency::forget(uint64_t model) {
-  pool_.forget(model);
-  loader_.forget(model);
+void Residency::release_model(uint64_t model) {
+  pool_.release_model(model);
+  loader_.release_model(model);
   damaged_.erase(damaged_.lower_bound({model, 0}), damaged_.lower_bound({model + 1, 0}));
 }
 
@@ -19,10 +19,12 @@ std::vector<bool> Residency::residents(const ViewedModel& model, bool attributes
   return residents;
 }
 
-BlockSelection Residency::select(const ViewedModel& model, const ViewGoal& goal,
-                                 std::span<const uint32_t> was_refined) const {
-  const SelectionGoal limits{goal.spacing, pool_.usable_surfels(), SurfelPool::kPageSurfels, goal.clip};
-  return select_blocks(model.tree, goal.frame, limits, residents(model, goal.attributes), was_refined);
+selection::BlockSelection Residency::select(const ViewedModel& model, const ViewParameters& parameters,
+                                            std::span<const uint32_t> was_refined) const {
+  const selection::SelectionCriteria limits{parameters.spacing, pool_.usable_surfels(), SurfelPool::kPageSurfels,
+                                            parameters.clip};
+  return selection::select_blocks(model.tree, parameters.frame, limits, residents(model, parameters.attributes),
+                                  was_refined);
 }
 
 std::vector<uint32_t> Residency::missing(const ViewedModel& model, std::span<const uint32_t> blocks,
@@ -47,7 +49,7 @@ void Residency::use(const ViewedModel& model, std::span<const uint32_t> blocks) 
 }
 
 /// What is drawn, what will be, and what may have to stand in for it.
-void Residency::use(const ViewedModel& model, const BlockSelection& selection) {
+void Residency::use(const ViewedModel& model, const selection::BlockSelection& selection) {
   use(model, selection.refined);
   use(model, selection.target);
   use(model, selection.draw);
@@ -55,9 +57,9 @@ void Residency::use(const ViewedModel& model, const BlockSelection& selection) {
 
 bool Residency::store(const ViewedModel& model, const LoadedBlock& loaded, PreparedView& view) {
   const Stopwatch watch;
-  const BlockTree& tree = model.tree.tree;
+  const ldc::BlockTree& tree = model.tree.tree;
   const bool stored = pool_.store(loaded.id, tree, **loaded.block);
-  const bool root = tree.blocks()[loaded.id.block].parent == BlockEntry::kNoParent;
+  const bool root = tree.blocks()[loaded.id.block].parent == ldc::BlockEntry::kNoParent;
   if (stored && root && tree.children(loaded.id.block).count > 0) pool_.pin(loaded.id.without_attributes());
   view.upload_ms += watch.milliseconds();
   return stored;
@@ -65,26 +67,26 @@ bool Residency::store(const ViewedModel& model, const LoadedBlock& loaded, Prepa
 
 /// Loads and stores blocks that are not resident; less of them when the pool is full of what is in use.
 Status Residency::load(const ViewedModel& model, std::span<const uint32_t> blocks, bool attributes,
-                       const Interruption& interruption, PreparedView& view) {
-  constexpr std::chrono::milliseconds kPatience{4};  // between two looks at what is more urgent
-  const WorkStopwatch watch(interruption);
-  const auto give_up = [&] { loader_.want(model.source, {}); };
-  loader_.want(model.source, blocks, attributes);
+                       const Preemption& preemption, PreparedView& view) {
+  constexpr std::chrono::milliseconds kPollInterval{4};  // between two looks at what is more urgent
+  const WorkStopwatch watch(preemption);
+  const auto give_up = [&] { loader_.set_requests(model.source, {}); };
+  loader_.set_requests(model.source, blocks, attributes);
   for (size_t left = blocks.size(); left > 0;) {
-    if (interruption.cancelled()) {
+    if (preemption.cancelled()) {
       give_up();
       return fail(ErrorKind::kCancelled, "cancelled");
     }
-    if (interruption.step_aside()) {
+    if (preemption.yield_to_urgent()) {
       // Meanwhile other blocks were wished for, and perhaps some of these stored.
       const std::vector<uint32_t> still = missing(model, blocks, attributes);
-      loader_.want(model.source, still, attributes);
+      loader_.set_requests(model.source, still, attributes);
       left = still.size();
       continue;
     }
     const std::optional<LoadedBlock> loaded = loader_.take();
     if (!loaded) {
-      loader_.wait(kPatience);
+      loader_.wait(kPollInterval);
       continue;
     }
     --left;
@@ -99,35 +101,35 @@ Status Residency::load(const ViewedModel& model, std::span<const uint32_t> block
   return {};
 }
 
-Result<PreparedView> Residency::prepare_whole(const ViewedModel& model, const ViewGoal& goal,
-                                              const Interruption& interruption) {
+Result<PreparedView> Residency::prepare_complete(const ViewedModel& model, const ViewParameters& parameters,
+                                                 const Preemption& preemption) {
   PreparedView view;
   pool_.begin_frame();
-  const std::vector<uint32_t> roots = missing(model, coarse_roots(model), goal.attributes);
-  if (Status status = load(model, roots, goal.attributes, interruption, view); !status)
+  const std::vector<uint32_t> roots = missing(model, coarse_roots(model), parameters.attributes);
+  if (Status status = load(model, roots, parameters.attributes, preemption, view); !status)
     return fail(std::move(status.error()));
 
   const Stopwatch select_watch;
-  view.selection = select(model, goal, {});
+  view.selection = select(model, parameters, {});
   view.select_ms = select_watch.milliseconds();
   use(model, view.selection.target);
-  const std::vector<uint32_t> wanted = missing(model, view.selection.target, goal.attributes);
+  const std::vector<uint32_t> wanted = missing(model, view.selection.target, parameters.attributes);
   view.waited_for = static_cast<uint32_t>(roots.size() + wanted.size());
-  if (Status status = load(model, wanted, goal.attributes, interruption, view); !status)
+  if (Status status = load(model, wanted, parameters.attributes, preemption, view); !status)
     return fail(std::move(status.error()));
 
   const Stopwatch draw_watch;
-  if (!wanted.empty()) view.selection = select(model, goal, {});
+  if (!wanted.empty()) view.selection = select(model, parameters, {});
   view.select_ms += draw_watch.milliseconds();
   return view;
 }
 
 /// Stores what has been loaded, up to the limit. Returns how many blocks.
-size_t Residency::upload_some(const ViewedModel& model, const ViewGoal& goal, PreparedView& view) {
+size_t Residency::upload_some(const ViewedModel& model, const ViewParameters& parameters, PreparedView& view) {
   constexpr double kMotionMs = 8;  // a block may take more, but is stored all the same
   size_t stored = 0;
-  for (size_t bytes = 0; !goal.moving || bytes < upload_bytes_;) {
-    if (goal.moving && view.upload_ms > kMotionMs) break;
+  for (size_t bytes = 0; !parameters.moving || bytes < upload_bytes_;) {
+    if (parameters.moving && view.upload_ms > kMotionMs) break;
     const std::optional<LoadedBlock> loaded = loader_.take();
     if (!loaded) break;
     view.decode_ms += loaded->milliseconds;
@@ -142,75 +144,79 @@ size_t Residency::upload_some(const ViewedModel& model, const ViewGoal& goal, Pr
 }
 
 /// Adds those that are wanted and can be had.
-void Residency::add(const ViewedModel& model, std::span<const WantedBlock> wanted,
+void Residency::add(const ViewedModel& model, std::span<const selection::WantedBlock> wanted,
                     std::vector<uint32_t>& blocks) const {
-  for (const WantedBlock& one : wanted) {
+  for (const selection::WantedBlock& one : wanted) {
     if (!damaged_.contains({model.source->id(), one.block})) blocks.push_back(one.block);
   }
 }
 
 /// What the view misses. A picture at rest is to show its target: what would only stand in until it is there delays it,
 /// unless nothing else stands in.
-std::vector<WantedBlock> Residency::lacks(const ViewGoal& goal, const BlockSelection& selection) {
-  std::vector<WantedBlock> wanted = selection.wanted;
-  if (goal.moving || selection.holes > 0) return wanted;
-  std::erase_if(wanted,
-                [&](const WantedBlock& one) { return !std::ranges::binary_search(selection.target, one.block); });
+std::vector<selection::WantedBlock> Residency::blocks_to_load(const ViewParameters& parameters,
+                                                              const selection::BlockSelection& selection) {
+  std::vector<selection::WantedBlock> wanted = selection.wanted;
+  if (parameters.moving || selection.holes > 0) return wanted;
+  std::erase_if(wanted, [&](const selection::WantedBlock& one) {
+    return !std::ranges::binary_search(selection.target, one.block);
+  });
   return wanted;
 }
 
 /// What to load next: the roots, then what the view misses.
-std::vector<uint32_t> Residency::wishes(const ViewedModel& model, const ViewGoal& goal,
-                                        const BlockSelection& selection) const {
-  std::vector<uint32_t> blocks = missing(model, coarse_roots(model), goal.attributes);
+std::vector<uint32_t> Residency::load_requests(const ViewedModel& model, const ViewParameters& parameters,
+                                               const selection::BlockSelection& selection) const {
+  std::vector<uint32_t> blocks = missing(model, coarse_roots(model), parameters.attributes);
   std::erase_if(blocks, [&](uint32_t block) { return damaged_.contains({model.source->id(), block}); });
-  add(model, lacks(goal, selection), blocks);
+  add(model, blocks_to_load(parameters, selection), blocks);
   if (blocks.empty()) add(model, selection.wanted, blocks);  // what stands in for damaged ones
   return blocks;
 }
 
 /// And what it is going to miss.
-void Residency::add_wishes_ahead(const ViewedModel& model, const ViewGoal& goal, const BlockSelection& selection,
-                                 const CameraFrame& ahead, std::vector<uint32_t>& blocks) const {
-  ViewGoal ahead_goal = goal;
-  ahead_goal.frame = ahead;
-  add(model, select(model, ahead_goal, selection.refined).wanted, blocks);
+void Residency::add_requests_ahead(const ViewedModel& model, const ViewParameters& parameters,
+                                   const selection::BlockSelection& selection, const geometry::CameraFrame& ahead,
+                                   std::vector<uint32_t>& blocks) const {
+  ViewParameters ahead_parameters = parameters;
+  ahead_parameters.frame = ahead;
+  add(model, select(model, ahead_parameters, selection.refined).wanted, blocks);
 }
 
 /// Somebody who moves may stop any time, and would then wait for many more blocks than the movement shows.
-void Residency::prefetch_rest(const ViewedModel& model, const ViewGoal& goal) {
+void Residency::prefetch_rest(const ViewedModel& model, const ViewParameters& parameters) {
   constexpr double kEveryMs = 150;  // choosing them takes as long as drawing some pictures in motion may not
-  if (!goal.rest_spacing) return loader_.prefetch(model.source, {}, goal.attributes);
+  if (!parameters.rest_spacing) return loader_.prefetch(model.source, {}, parameters.attributes);
   if (since_prefetch_ && since_prefetch_->milliseconds() < kEveryMs) return;
   since_prefetch_ = Stopwatch();
-  ViewGoal rest = goal;
-  rest.spacing = *goal.rest_spacing;
+  ViewParameters rest = parameters;
+  rest.spacing = *parameters.rest_spacing;
   rest.moving = false;
   std::vector<uint32_t> blocks;
-  add(model, lacks(rest, select(model, rest, {})), blocks);
-  loader_.prefetch(model.source, blocks, goal.attributes);
+  add(model, blocks_to_load(rest, select(model, rest, {})), blocks);
+  loader_.prefetch(model.source, blocks, parameters.attributes);
 }
 
-PreparedView Residency::prepare_now(const ViewedModel& model, const ViewGoal& goal,
-                                    std::span<const uint32_t> was_refined, const std::optional<CameraFrame>& ahead) {
+PreparedView Residency::prepare_resident(const ViewedModel& model, const ViewParameters& parameters,
+                                         std::span<const uint32_t> was_refined,
+                                         const std::optional<geometry::CameraFrame>& ahead) {
   PreparedView view;
   pool_.begin_frame();
   const Stopwatch watch;
-  view.selection = select(model, goal, was_refined);
+  view.selection = select(model, parameters, was_refined);
   view.waited_for = static_cast<uint32_t>(view.selection.wanted.size());
   use(model, view.selection);
-  if (upload_some(model, goal, view) > 0) {
-    view.selection = select(model, goal, was_refined);
+  if (upload_some(model, parameters, view) > 0) {
+    view.selection = select(model, parameters, was_refined);
     use(model, view.selection);
   }
-  std::vector<uint32_t> blocks = wishes(model, goal, view.selection);
-  view.settled = blocks.empty();
+  std::vector<uint32_t> blocks = load_requests(model, parameters, view.selection);
+  view.nothing_pending = blocks.empty();
   view.missing = static_cast<uint32_t>(blocks.size());
-  if (ahead) add_wishes_ahead(model, goal, view.selection, *ahead, blocks);
-  loader_.want(model.source, blocks, goal.attributes);
-  prefetch_rest(model, goal);
+  if (ahead) add_requests_ahead(model, parameters, view.selection, *ahead, blocks);
+  loader_.set_requests(model.source, blocks, parameters.attributes);
+  prefetch_rest(model, parameters);
   view.select_ms = watch.milliseconds() - view.upload_ms;
   return view;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::residency

@@ -4,7 +4,7 @@
 
 #include "base/contract.h"
 
-namespace surfcast {
+namespace surfcast::residency {
 namespace {
 
 constexpr size_t kFirstCapacity = size_t{1} << 20;  // texels: 16 MiB of surfels
@@ -54,4 +54,4 @@ void SurfelBuffer::write_attributes(size_t first, std::span<const uint32_t> attr
   attributes_.write(first, std::as_bytes(attributes), most_, lazy_);
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::residency

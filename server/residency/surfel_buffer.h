@@ -4,7 +4,7 @@
 #include "gl/objects.h"
 #include "residency/surfel_pool.h"
 
-namespace surfcast {
+namespace surfcast::residency {
 
 /// The GPU memory of a surfel pool: one buffer, read through one buffer texture, so that a frame binds it once however
 /// many blocks it draws. Needs the current GL context.
@@ -54,4 +54,4 @@ class SurfelBuffer : public SurfelSink {
   Texels attributes_{"attributes", GL_R32UI, sizeof(uint32_t)};
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::residency

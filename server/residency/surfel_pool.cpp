@@ -4,7 +4,7 @@
 
 #include "base/contract.h"
 
-namespace surfcast {
+namespace surfcast::residency {
 
 void SurfelPool::pin(const BlockId& id) {
   constexpr uint32_t kPinnedShare = 8;
@@ -40,7 +40,7 @@ void SurfelPool::drop(const BlockId& id) {
 }
 
 /// Gives a block pages and writes its surfels; null without room.
-ResidentBlock* SurfelPool::place(const BlockId& id, const BlockTree& tree, const PackedBlock& block) {
+ResidentBlock* SurfelPool::place(const BlockId& id, const ldc::BlockTree& tree, const PackedBlock& block) {
   const auto surfels = static_cast<uint32_t>(block.surfels.size());
   const uint32_t count = (surfels + kPageSurfels - 1) / kPageSurfels;
   const std::span<const uint32_t> pages = table_.insert(id, count, [this](const BlockId& evicted) { drop(evicted); });
@@ -64,7 +64,7 @@ void SurfelPool::add_attributes(const BlockId& id, const PackedBlock& block, Res
   residents_[id.model].attributes[id.block] = true;
 }
 
-bool SurfelPool::store(const BlockId& loaded, const BlockTree& tree, const PackedBlock& block) {
+bool SurfelPool::store(const BlockId& loaded, const ldc::BlockTree& tree, const PackedBlock& block) {
   const BlockId id = loaded.without_attributes();
   const auto found = blocks_.find(id);
   ResidentBlock* resident = found == blocks_.end() ? place(id, tree, block) : &found->second;
@@ -87,8 +87,8 @@ const ResidentBlock& SurfelPool::at(const BlockId& id) const {
   return found->second;
 }
 
-void SurfelPool::forget(uint64_t model) {
-  table_.forget(model);
+void SurfelPool::release_model(uint64_t model) {
+  table_.release_model(model);
   const auto end = blocks_.lower_bound({model + 1, 0});
   for (auto block = blocks_.lower_bound({model, 0}); block != end; block = blocks_.erase(block)) {
     if (block->second.intensity) attribute_pages_ -= block->second.pages.size();
@@ -96,4 +96,4 @@ void SurfelPool::forget(uint64_t model) {
   residents_.erase(model);
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::residency

@@ -9,7 +9,7 @@
 #include "residency/block_source.h"
 #include "residency/page_table.h"
 
-namespace surfcast {
+namespace surfcast::residency {
 
 /// Where packed surfels go to: GPU memory, as an array of texels of one surfel each.
 class SurfelSink {
@@ -41,24 +41,24 @@ class SurfelPool {
 
   /// See PageTable.
   void begin_frame() { table_.begin_frame(); }
-  void begin_interlude() { table_.begin_interlude(); }
-  void end_interlude() { table_.end_interlude(); }
+  void begin_nested_frame() { table_.begin_nested_frame(); }
+  void end_nested_frame() { table_.end_nested_frame(); }
   void use(const BlockId& id) { table_.use(id); }
   /// Pins a block, unless pinned ones fill an eighth of the memory already.
   void pin(const BlockId& id);
 
   /// Writes a block, or the attributes of one that is here without them; it is then in use. False when the blocks in
   /// use leave no room for it.
-  bool store(const BlockId& id, const BlockTree& tree, const PackedBlock& block);
+  bool store(const BlockId& id, const ldc::BlockTree& tree, const PackedBlock& block);
   /// Whether each block of a model is resident (with its attributes); empty for a model of which nothing ever was.
   [[nodiscard]] const std::vector<bool>& residents(uint64_t model, bool attributes = false) const;
   /// Good until the block is evicted.
   [[nodiscard]] const ResidentBlock& at(const BlockId& id) const;
-  void forget(uint64_t model);
+  void release_model(uint64_t model);
 
   /// Surfels of blocks that may be in use at once, counted in whole pages; what is pinned may not be.
   [[nodiscard]] uint64_t usable_surfels() const {
-    return uint64_t{table_.pages() - table_.pinned_pages()} * kPageSurfels / kMostPackedPerSurfel;
+    return uint64_t{table_.pages() - table_.pinned_pages()} * kPageSurfels / kMaxPackedPerSurfel;
   }
   [[nodiscard]] size_t blocks() const { return table_.blocks(); }
   [[nodiscard]] size_t bytes() const {
@@ -71,7 +71,7 @@ class SurfelPool {
     std::vector<bool> attributes;
   };
 
-  ResidentBlock* place(const BlockId& id, const BlockTree& tree, const PackedBlock& block);
+  ResidentBlock* place(const BlockId& id, const ldc::BlockTree& tree, const PackedBlock& block);
   void add_attributes(const BlockId& id, const PackedBlock& block, ResidentBlock& resident);
   void drop(const BlockId& id);
 
@@ -82,4 +82,4 @@ class SurfelPool {
   size_t attribute_pages_ = 0;
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::residency

@@ -4,7 +4,7 @@
 #include <cctype>
 #include <utility>
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 using Alias = std::pair<std::string_view, std::string_view>;
@@ -72,4 +72,4 @@ std::string canonical_attribute_name(std::string_view name) {
   return std::string(name);
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -12,7 +12,7 @@
 #include "scan/first_equals.h"
 #include "scan/unit_normal.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 using Keep = std::vector<bool>;
@@ -38,7 +38,7 @@ void compact_attributes(Points& points, const Keep& keep) {
   compact(points.normals, keep);
   compact(points.radii, keep);
   if (points.colors) compact(points.colors->values, keep);
-  for (ScalarAttribute& scalar : points.scalars) {
+  for (surfel::ScalarAttribute& scalar : points.scalars) {
     std::visit([&keep](auto& values) { compact(values, keep); }, scalar.values);
   }
 }
@@ -56,13 +56,13 @@ void add_bytes(std::vector<Bytes>& all, const std::vector<T>& values) {
   if (!values.empty()) all.push_back({reinterpret_cast<const std::byte*>(values.data()), sizeof(T)});
 }
 
-std::vector<Bytes> all_bytes(const SurfelCloud& cloud) {
+std::vector<Bytes> all_bytes(const surfel::SurfelCloud& cloud) {
   std::vector<Bytes> all;
   add_bytes(all, cloud.positions);
   add_bytes(all, cloud.normals);
   add_bytes(all, cloud.radii);
   if (cloud.colors) add_bytes(all, cloud.colors->values);
-  for (const ScalarAttribute& scalar : cloud.scalars) {
+  for (const surfel::ScalarAttribute& scalar : cloud.scalars) {
     std::visit([&all](const auto& values) { add_bytes(all, values); }, scalar.values);
   }
   return all;
@@ -90,9 +90,9 @@ std::vector<uint64_t> hash_surfels(const std::vector<Bytes>& all, size_t count) 
   return hashes;
 }
 
-void shrink_sources(std::vector<SourceRange>& sources, const Keep& keep) {
+void shrink_sources(std::vector<surfel::SourceRange>& sources, const Keep& keep) {
   size_t first = 0;
-  for (SourceRange& source : sources) {
+  for (surfel::SourceRange& source : sources) {
     const auto begin = keep.begin() + static_cast<std::ptrdiff_t>(source.first);
     source.count = static_cast<size_t>(std::count(begin, begin + static_cast<std::ptrdiff_t>(source.count), true));
     source.first = first;
@@ -121,7 +121,7 @@ void drop_unusable_points(ScanPoints& points, SurfelReport& report) {
   if (dropped > 0) compact_attributes(points, keep);
 }
 
-std::vector<bool> find_duplicates(const SurfelCloud& cloud) {
+std::vector<bool> find_duplicates(const surfel::SurfelCloud& cloud) {
   const std::vector<Bytes> all = all_bytes(cloud);
   const std::vector<uint64_t> hashes = hash_surfels(all, cloud.size());
   const std::vector<uint32_t> first = first_equals(hashes, [&all](size_t a, size_t b) {
@@ -134,11 +134,11 @@ std::vector<bool> find_duplicates(const SurfelCloud& cloud) {
   return duplicate;
 }
 
-void keep_surfels(SurfelCloud& cloud, const std::vector<bool>& keep) {
+void keep_surfels(surfel::SurfelCloud& cloud, const std::vector<bool>& keep) {
   if (std::find(keep.begin(), keep.end(), false) == keep.end()) return;
   shrink_sources(cloud.sources, keep);
   compact(cloud.weights, keep);
   compact_attributes(cloud, keep);
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -8,7 +8,7 @@
 #include "scan/surfel_report.h"
 #include "surfel/surfel_cloud.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 
 /// Drops points with coordinates that are not finite and, in a scan with normals, points whose normal is zero or not
 /// finite; makes the remaining normals unit. Counts in `report` what was dropped.
@@ -17,9 +17,9 @@ void drop_unusable_points(ScanPoints& points, SurfelReport& report);
 /// For each surfel whether an earlier one equals it in position and every attribute, to the bit. Surfels that share a
 /// position but differ in an attribute are no duplicates: the finest level keeps every source point with all its
 /// attributes.
-std::vector<bool> find_duplicates(const SurfelCloud& cloud);
+std::vector<bool> find_duplicates(const surfel::SurfelCloud& cloud);
 
 /// Keeps some of the surfels, with all their attributes.
-void keep_surfels(SurfelCloud& cloud, const std::vector<bool>& keep);
+void keep_surfels(surfel::SurfelCloud& cloud, const std::vector<bool>& keep);
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

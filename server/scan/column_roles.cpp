@@ -7,11 +7,11 @@
 #include "scan/attribute_names.h"
 #include "scan/text_tokens.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 /// More than any scan has; naming columns apart takes time quadratic in their number.
-constexpr size_t kMostColumns = 1024;
+constexpr size_t kMaxColumns = 1024;
 
 /// Columns by canonical name; the second column of a name keeps a name of its own.
 using NamedColumns = std::map<std::string, size_t>;
@@ -62,8 +62,8 @@ void take_packed_color(std::span<const ColumnInfo> columns, NamedColumns& named,
 }  // namespace
 
 Result<ColumnRoles> assign_roles(std::span<const ColumnInfo> columns, const std::vector<bool>& absent) {
-  if (columns.size() > kMostColumns) {
-    return fail(ErrorKind::kLimit, "has more than " + std::to_string(kMostColumns) + " values for each point");
+  if (columns.size() > kMaxColumns) {
+    return fail(ErrorKind::kLimit, "has more than " + std::to_string(kMaxColumns) + " values for each point");
   }
   NamedColumns named = name_columns(columns, absent);
   const auto position = take_triple(named, "x", "y", "z");
@@ -80,4 +80,4 @@ Result<ColumnRoles> assign_roles(std::span<const ColumnInfo> columns, const std:
   return roles;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

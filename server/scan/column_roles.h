@@ -10,7 +10,7 @@
 #include "base/result.h"
 #include "scan/point_table.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 
 using ColumnTriple = std::array<size_t, 3>;
 
@@ -40,4 +40,4 @@ Result<ColumnRoles> assign_roles(std::span<const ColumnInfo> columns, const std:
   return load<uint32_t>(column.first + row * column.stride, column.swapped);
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -9,7 +9,7 @@
 #include <draco/metadata/geometry_metadata.h>
 #include <draco/metadata/metadata_decoder.h>
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 // The layouts below are those of the Draco bitstream specification; numbers that later versions write with as many
@@ -107,8 +107,8 @@ double claimed_memory(std::span<const std::byte> bytes) {
 bool draco_claims_are_plausible(std::span<const std::byte> bytes) {
   // Real scans take 2 to 20 times their coded size.
   constexpr double kAlwaysAllowed = 256.0 * 1024 * 1024;
-  constexpr double kMostExpansion = 256;
-  const double allowed = std::max(kAlwaysAllowed, kMostExpansion * static_cast<double>(bytes.size()));
+  constexpr double kMaxExpansion = 256;
+  const double allowed = std::max(kAlwaysAllowed, kMaxExpansion * static_cast<double>(bytes.size()));
   return claimed_memory(bytes) <= allowed;
 }
 
@@ -116,4 +116,4 @@ uint64_t draco_decoded_bytes(std::span<const std::byte> bytes) {
   return static_cast<uint64_t>(claimed_memory(bytes));
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

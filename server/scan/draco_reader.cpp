@@ -15,7 +15,7 @@
 #include "scan/sliced_rows.h"
 #include "scan/text_tokens.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 std::optional<ScalarType> scalar_type(draco::DataType type) {
@@ -148,4 +148,4 @@ Result<std::unique_ptr<RowSource>> draco_rows(std::span<const std::byte> bytes, 
   return fail(ErrorKind::kInvalidInput, "Draco data is damaged");
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

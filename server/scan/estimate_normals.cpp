@@ -6,7 +6,7 @@
 
 #include <tbb/parallel_for.h>
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 /// Covariance of the site and its neighbours, scaled to a trace of 1.
@@ -54,4 +54,4 @@ std::vector<glm::vec3> estimate_normals(const Sites& sites, const NeighbourGraph
   return normals;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -6,7 +6,7 @@
 #include <span>
 #include <vector>
 
-namespace surfcast {
+namespace surfcast::scan {
 
 /// Stirs all bits of a hash into all others (the finaliser of SplitMix64, Steele et al. 2014).
 [[nodiscard]] constexpr uint64_t mix_hash(uint64_t h) {
@@ -33,4 +33,4 @@ std::vector<uint32_t> first_equals(std::span<const uint64_t> hashes, const Equal
   return first;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

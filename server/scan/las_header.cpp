@@ -7,7 +7,7 @@
 
 #include "scan/text_tokens.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 using Bytes = std::span<const std::byte>;
@@ -29,7 +29,7 @@ uint64_t point_count(Bytes bytes, int minor_version) {
   return count != 0 ? count : legacy;
 }
 
-bool usable_grid(const Grid& grid) {
+bool usable_grid(const surfel::Grid& grid) {
   for (int axis = 0; axis < 3; ++axis) {
     if (!std::isfinite(grid.scale[axis]) || grid.scale[axis] == 0 || !std::isfinite(grid.offset[axis])) return false;
   }
@@ -171,4 +171,4 @@ Result<LasHeader> parse_las_header(Bytes bytes) {
   return header;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -10,7 +10,7 @@
 #include "scan/scalar_type.h"
 #include "surfel/grid.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 
 /// A per-point value that a LAS file declares beyond its point format (LAS 1.4, table 24 "extra bytes").
 struct LasExtraField {
@@ -30,7 +30,7 @@ struct LasHeader {
   size_t record_length = 0;
   size_t data_offset = 0;
   uint64_t count = 0;
-  Grid grid;
+  surfel::Grid grid;
   std::vector<LasExtraField> extra_fields;
 };
 
@@ -41,4 +41,4 @@ Result<LasHeader> parse_las_header(std::span<const std::byte> bytes);
 /// Bytes of a point record of that format without extra bytes.
 size_t las_record_length(int point_format);
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -7,7 +7,7 @@
 
 #include "scan/laz_rows.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 /// A number of the record, or with a mask a part of one of its bytes: `(byte >> shift) & mask`.
@@ -164,4 +164,4 @@ Result<std::unique_ptr<RowSource>> las_rows(std::span<const std::byte> bytes) {
   return std::make_unique<LasRows>(bytes, std::move(*header));
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

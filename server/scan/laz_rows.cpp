@@ -7,13 +7,13 @@
 #include "laz/laz_file.h"
 #include "scan/las_reader.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 /// The count of a chunk is a claim until it is decoded, so memory is taken as the points turn up.
-Result<std::vector<std::byte>> decode_chunk(const LazFile& file, const laz::Chunk& chunk) {
+Result<std::vector<std::byte>> decode_chunk(const laz::LazFile& file, const laz::Chunk& chunk) {
   constexpr uint64_t kPointsAtOnce = 1 << 16;
-  Result<LazChunkReader> reader = file.read_chunk(chunk);
+  Result<laz::LazChunkReader> reader = file.read_chunk(chunk);
   if (!reader) return fail(reader.error());
   std::vector<std::byte> records;
   for (uint64_t done = 0; done < chunk.count;) {
@@ -28,7 +28,7 @@ Result<std::vector<std::byte>> decode_chunk(const LazFile& file, const laz::Chun
 
 class LazRows : public RowSource {
  public:
-  LazRows(LazFile file, LasHeader header)
+  LazRows(laz::LazFile file, LasHeader header)
       : file_(std::move(file)), header_(std::move(header)), columns_(las_columns(header_)) {
     traits_.grid = header_.grid;
   }
@@ -46,7 +46,7 @@ class LazRows : public RowSource {
   }
 
  private:
-  LazFile file_;
+  laz::LazFile file_;
   LasHeader header_;
   RowTraits traits_;
   std::vector<ColumnInfo> columns_;
@@ -58,10 +58,10 @@ Result<std::unique_ptr<RowSource>> laz_rows(std::span<const std::byte> bytes, La
   if (header.laszip_record.empty()) {
     return fail(ErrorKind::kInvalidInput, "LAZ compressed, but without a LASzip record");
   }
-  const LazPoints points = {header.point_format, header.record_length, header.count, header.data_offset};
-  Result<LazFile> file = LazFile::open(bytes, points, header.laszip_record);
+  const laz::LazPoints points = {header.point_format, header.record_length, header.count, header.data_offset};
+  Result<laz::LazFile> file = laz::LazFile::open(bytes, points, header.laszip_record);
   if (!file) return fail(std::move(file.error()));
   return std::make_unique<LazRows>(std::move(*file), std::move(header));
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -8,9 +8,9 @@
 #include "scan/las_header.h"
 #include "scan/row_source.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 
 /// The points of a LAZ file whose header has been read: a piece for each chunk.
 Result<std::unique_ptr<RowSource>> laz_rows(std::span<const std::byte> bytes, LasHeader header);
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -7,7 +7,7 @@
 
 #include "scan/neighbours.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 
 /// Neighbours of each site that signs spread to; more only costs time.
 inline constexpr size_t kLinks = 8;
@@ -27,4 +27,4 @@ void for_each_link(const NeighbourGraph& graph, size_t sites, const Use& use) {
   }
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

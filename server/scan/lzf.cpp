@@ -2,7 +2,7 @@
 
 #include <cstring>
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 // A control byte below 32 starts a run of that many bytes and one, copied as they are. Any other one refers back to
@@ -10,7 +10,7 @@ namespace {
 // bits of the distance less 1, whose lower eight follow.
 constexpr unsigned kLiteral = 32;
 constexpr unsigned kLongLength = 7;
-constexpr size_t kMostExpansion = 132;  // 3 bytes can stand for at most 264 others
+constexpr size_t kMaxExpansion = 132;  // 3 bytes can stand for at most 264 others
 
 class Decoder {
  public:
@@ -60,10 +60,10 @@ class Decoder {
 }  // namespace
 
 std::optional<std::vector<uint8_t>> decompress_lzf(std::span<const std::byte> compressed, size_t size) {
-  if (size / kMostExpansion > compressed.size()) return std::nullopt;
+  if (size / kMaxExpansion > compressed.size()) return std::nullopt;
   std::vector<uint8_t> out(size);
   if (!Decoder(compressed, out).run()) return std::nullopt;
   return out;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -9,7 +9,7 @@
 #include "scan/neighbours.h"
 #include "scan/spacing.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 /// Neighbours of each site that its normal is estimated from.
@@ -19,7 +19,7 @@ bool usable_radius(float radius) {
   return std::isfinite(radius) && radius > 0;
 }
 
-bool has_normal(const SurfelCloud& cloud, size_t i) {
+bool has_normal(const surfel::SurfelCloud& cloud, size_t i) {
   return !cloud.normals.empty() && !std::isnan(cloud.normals[i].x);
 }
 
@@ -33,8 +33,8 @@ struct SiteFacts {
 };
 
 /// The first point at a site speaks for it; one that brings a normal, before one that knows the scanner only.
-void learn_direction(const SurfelCloud& cloud, size_t point, size_t site, const std::optional<glm::dvec3>& sensor,
-                     SiteFacts& facts) {
+void learn_direction(const surfel::SurfelCloud& cloud, size_t point, size_t site,
+                     const std::optional<glm::dvec3>& sensor, SiteFacts& facts) {
   if (has_normal(cloud, point)) {
     if (facts.known[site] == SiteDirection::kStored) return;
     facts.known[site] = SiteDirection::kStored;
@@ -45,10 +45,10 @@ void learn_direction(const SurfelCloud& cloud, size_t point, size_t site, const 
   }
 }
 
-SiteFacts find_site_facts(const SurfelCloud& cloud, const Sites& sites, const PartFrame& frame) {
+SiteFacts find_site_facts(const surfel::SurfelCloud& cloud, const Sites& sites, const PartFrame& frame) {
   SiteFacts facts(sites.size());
   for (size_t s = 0; s < cloud.sources.size(); ++s) {
-    const SourceRange& source = cloud.sources[s];
+    const surfel::SourceRange& source = cloud.sources[s];
     for (size_t i = source.first; i < source.first + source.count; ++i) {
       const uint32_t site = sites.of_point[i];
       facts.places[site] = frame.place(cloud.positions[i]);
@@ -59,7 +59,7 @@ SiteFacts find_site_facts(const SurfelCloud& cloud, const Sites& sites, const Pa
 }
 
 void fill_radii(const Sites& sites, const NeighbourGraph& graph, const SiteFacts& facts,
-                const std::vector<glm::vec3>& normals, SurfelCloud& cloud, SurfelReport& report) {
+                const std::vector<glm::vec3>& normals, surfel::SurfelCloud& cloud, SurfelReport& report) {
   cloud.radii.resize(cloud.size(), 0.0F);
   if (std::all_of(cloud.radii.begin(), cloud.radii.end(), usable_radius)) return;
   const std::vector<float> estimated = estimate_radii(sites, graph, normals);
@@ -85,7 +85,7 @@ std::vector<glm::vec3> site_normals(const Sites& sites, const NeighbourGraph& gr
 
 /// Fills in the normals, from those of the sites, and says which tree each follows.
 std::vector<uint32_t> fill_normals(const Sites& sites, const NeighbourGraph& graph, const SiteFacts& facts,
-                                   std::vector<glm::vec3> normals, SurfelCloud& cloud, PartSigns& signs,
+                                   std::vector<glm::vec3> normals, surfel::SurfelCloud& cloud, PartSigns& signs,
                                    SurfelReport& report) {
   const std::vector<uint32_t> tree_of =
       orient_normals({sites, graph, facts.known, facts.towards, facts.places}, normals, signs);
@@ -112,7 +112,7 @@ void SurfelReport::add(const SurfelReport& part) {
   radii_estimated += part.radii_estimated;
 }
 
-PartSurfels make_surfels(SurfelCloud cloud, const PartFrame& frame, PartSigns& signs, SurfelReport& report) {
+PartSurfels make_surfels(surfel::SurfelCloud cloud, const PartFrame& frame, PartSigns& signs, SurfelReport& report) {
   const Sites sites = find_sites(cloud.positions, frame.bounds);
   const NeighbourGraph graph = find_neighbours(sites, kDegree);
   const SiteFacts facts = find_site_facts(cloud, sites, frame);
@@ -122,11 +122,11 @@ PartSurfels make_surfels(SurfelCloud cloud, const PartFrame& frame, PartSigns& s
   return {std::move(cloud), std::move(trees)};
 }
 
-void settle_normals(const SettledSigns& signs, size_t part, PartSurfels& surfels) {
+void apply_signs(const ResolvedSigns& signs, size_t part, PartSurfels& surfels) {
   for (size_t i = 0; i < surfels.cloud.size(); ++i) {
-    surfels.cloud.normals[i] = signs.settle(surfels.cloud.normals[i], part, surfels.trees[i]);
+    surfels.cloud.normals[i] = signs.apply(surfels.cloud.normals[i], part, surfels.trees[i]);
   }
   surfels.cloud.oriented = signs.oriented;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

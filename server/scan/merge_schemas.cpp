@@ -6,7 +6,7 @@
 
 #include "scan/scalar_type.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
@@ -52,14 +52,14 @@ void conform_colors(int bits, ScanPoints& points) {
   if (bits == 0) return;
   if (!points.colors) {
     const auto grey = static_cast<uint16_t>(1 << (bits - 1));
-    points.colors = ColorAttribute{bits, std::vector<glm::u16vec3>(points.size(), glm::u16vec3(grey))};
+    points.colors = surfel::ColorAttribute{bits, std::vector<glm::u16vec3>(points.size(), glm::u16vec3(grey))};
   }
   if (points.colors->bits == bits) return;
   for (glm::u16vec3& color : points.colors->values) color *= uint16_t{257};
   points.colors->bits = bits;
 }
 
-ScalarValues convert(ScalarValues values, ScalarType type) {
+surfel::ScalarValues convert(surfel::ScalarValues values, ScalarType type) {
   if (type_of(values) == type) return values;
   return with_type(type, [&](auto zero) {
     using T = decltype(zero);
@@ -67,18 +67,18 @@ ScalarValues convert(ScalarValues values, ScalarType type) {
         [](const auto& from) {
           std::vector<T> to(from.size());
           std::transform(from.begin(), from.end(), to.begin(), [](auto v) { return static_cast<T>(v); });
-          return ScalarValues(std::move(to));
+          return surfel::ScalarValues(std::move(to));
         },
         values);
   });
 }
 
-ScalarValues zeros(ScalarType type, size_t count) {
-  return with_type(type, [count](auto zero) { return ScalarValues(std::vector<decltype(zero)>(count, zero)); });
+surfel::ScalarValues zeros(ScalarType type, size_t count) {
+  return with_type(type, [count](auto zero) { return surfel::ScalarValues(std::vector<decltype(zero)>(count, zero)); });
 }
 
 void conform_scalars(const std::vector<ScalarField>& fields, ScanPoints& points) {
-  std::vector<ScalarAttribute> conformed;
+  std::vector<surfel::ScalarAttribute> conformed;
   for (const ScalarField& field : fields) {
     const auto own = find_named(points.scalars, field.name);
     if (own == points.scalars.end()) {
@@ -129,4 +129,4 @@ ScanPoints conform(ScanPoints points, const ScanSchema& cloud) {
   return points;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -7,7 +7,7 @@
 #include "scan/scan_points.h"
 #include "scan/scan_schema.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 
 /// What a cloud of all the scans has: every attribute of any of them. Scalars of one name but several types get the
 /// smallest type that holds all their values; colours of 8 and 16 bit together become 16 bit. The cloud is z-up unless
@@ -21,4 +21,4 @@ std::vector<std::string> describe_fillings(std::span<const ScanSchema> scans, co
 /// scalars with 0, and normals and radii with NaN, to be estimated.
 ScanPoints conform(ScanPoints points, const ScanSchema& cloud);
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

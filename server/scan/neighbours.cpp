@@ -7,7 +7,7 @@
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 /// How nanoflann sees the sites.
@@ -58,4 +58,4 @@ NeighbourGraph find_neighbours(const Sites& sites, size_t degree) {
   return graph;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -6,7 +6,7 @@
 
 #include "scan/sites.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 
 /// For every site its nearest other sites, nearest first.
 struct NeighbourGraph {
@@ -19,4 +19,4 @@ struct NeighbourGraph {
 /// The result is the same for any number of threads.
 NeighbourGraph find_neighbours(const Sites& sites, size_t degree);
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -7,9 +7,9 @@
 
 #include "scan/first_equals.h"
 #include "scan/links.h"
-#include "scan/spread_signs.h"
+#include "scan/propagate_signs.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 /// One in so many sites near a border ties the trees of two parts together. The choice follows from the position, so
@@ -111,9 +111,9 @@ std::vector<uint32_t> orient_normals(const SitesOfPart& part, std::vector<glm::v
       std::find(part.known.begin(), part.known.end(), SiteDirection::kUnknown) == part.known.end();
   std::vector<uint32_t> tree_of;
   if (nothing_open) {
-    for (size_t i = 0; i < normals.size(); ++i) signs.settled_area += part.places[i].own ? area_of(part, i) : 0;
+    for (size_t i = 0; i < normals.size(); ++i) signs.resolved_area += part.places[i].own ? area_of(part, i) : 0;
   } else {
-    SignedForest forest = spread_signs(part.sites, part.graph, normals);
+    SignedForest forest = propagate_signs(part.sites, part.graph, normals);
     tree_of = number_trees(forest, normals, signs);
     vote(part, normals, tree_of, signs);
     sample_border(part, normals, tree_of, signs);
@@ -127,4 +127,4 @@ std::vector<uint32_t> orient_normals(const SitesOfPart& part, std::vector<glm::v
   return tree_of;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -9,7 +9,7 @@
 #include "scan/neighbours.h"
 #include "scan/signed_trees.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 
 /// What is known about the direction of a site's normal.
 enum class SiteDirection : uint8_t {
@@ -32,9 +32,9 @@ struct SitesOfPart {
   std::span<const SitePlace> places;
 };
 
-/// Gives normals of unknown sign consistent ones (see spread_signs.h). The sign of each tree of that forest stays open;
-/// what settles it goes to `signs`. Normals that are known get their final sign. Returns the tree of every site, or
-/// kNoTree.
+/// Gives normals of unknown sign consistent ones (see propagate_signs.h). The sign of each tree of that forest stays
+/// open; what settles it goes to `signs`. Normals that are known get their final sign. Returns the tree of every site,
+/// or kNoTree.
 std::vector<uint32_t> orient_normals(const SitesOfPart& part, std::vector<glm::vec3>& normals, PartSigns& signs);
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -6,11 +6,11 @@
 
 #include "scan/text_tokens.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 /// More values in one point than any file has; bounds what a hostile header can ask for.
-constexpr size_t kMostValues = 4096;
+constexpr size_t kMaxValues = 4096;
 
 using Words = std::vector<std::string_view>;
 
@@ -86,13 +86,13 @@ Status parse_fields(const RawHeader& raw, PcdHeader& header) {
   for (size_t i = 0; i < count; ++i) {
     const auto type = type_of(raw.types[i], raw.sizes[i]);
     const auto repeat = raw.counts.empty() ? std::optional<uint32_t>(1) : parse_number<uint32_t>(raw.counts[i]);
-    if (!type || !repeat || *repeat > kMostValues) {
+    if (!type || !repeat || *repeat > kMaxValues) {
       return invalid("PCD field " + printable(raw.fields[i]) + " has a type, size or count that is not known");
     }
     values += *repeat;
     header.fields.push_back({std::string(raw.fields[i]), *type, *repeat});
   }
-  if (values > kMostValues) return invalid("PCD header states too many values for each point");
+  if (values > kMaxValues) return invalid("PCD header states too many values for each point");
   return {};
 }
 
@@ -159,4 +159,4 @@ Result<PcdHeader> parse_pcd_header(std::span<const std::byte> bytes) {
   return header;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -11,7 +11,7 @@
 #include "base/result.h"
 #include "scan/scalar_type.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 
 struct PcdField {
   std::string name;  ///< "_" is padding
@@ -38,4 +38,4 @@ struct PcdHeader {
 /// cloud is organised, because writers put the default viewpoint into clouds of any origin.
 Result<PcdHeader> parse_pcd_header(std::span<const std::byte> bytes);
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -11,7 +11,7 @@
 #include "scan/sliced_rows.h"
 #include "scan/text_tokens.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 using Bytes = std::span<const std::byte>;
@@ -101,7 +101,7 @@ class AsciiRows : public RowSource {
   [[nodiscard]] const std::vector<ColumnInfo>& columns() const override { return columns_; }
   [[nodiscard]] size_t pieces() const override { return starts_.size(); }
   [[nodiscard]] Result<PointTable> read(size_t piece) const override {
-    std::vector<ScalarValues> values;
+    std::vector<surfel::ScalarValues> values;
     for (const ColumnInfo& column : columns_) values.push_back(empty_values(column.type));
     PointTable table;
     table.rows = std::min(kPieceRows, header_.points - piece * kPieceRows);
@@ -109,12 +109,12 @@ class AsciiRows : public RowSource {
     for (size_t row = 0; row < table.rows; ++row) {
       if (Status status = read_row(tokens, values); !status) return fail(std::move(status.error()));
     }
-    for (ScalarValues& column : values) add_column(table, std::move(column));
+    for (surfel::ScalarValues& column : values) add_column(table, std::move(column));
     return table;
   }
 
  private:
-  Status read_row(Tokens& tokens, std::vector<ScalarValues>& values) const {
+  Status read_row(Tokens& tokens, std::vector<surfel::ScalarValues>& values) const {
     size_t column = 0;
     for (const PcdField& field : header_.fields) {
       for (size_t value = 0; value < field.count; ++value) {
@@ -159,4 +159,4 @@ Result<std::unique_ptr<RowSource>> pcd_rows(Bytes bytes, const DecodingLimit& li
   return std::make_unique<SlicedRows>(traits_of(*header), columns_of(*header), std::move(*table));
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

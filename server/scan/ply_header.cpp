@@ -6,7 +6,7 @@
 
 #include "scan/text_tokens.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 constexpr std::pair<std::string_view, ScalarType> kTypeNames[] = {
@@ -124,4 +124,4 @@ Result<PlyHeader> parse_ply_header(std::span<const std::byte> bytes) {
   return fail(ErrorKind::kInvalidInput, "PLY header has no end_header line");
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

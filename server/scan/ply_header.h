@@ -10,7 +10,7 @@
 #include "base/result.h"
 #include "scan/scalar_type.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 
 struct PlyProperty {
   std::string name;
@@ -34,4 +34,4 @@ struct PlyHeader {
 
 Result<PlyHeader> parse_ply_header(std::span<const std::byte> bytes);
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -12,7 +12,7 @@
 #include "scan/sliced_rows.h"
 #include "scan/text_tokens.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 tl::unexpected<Error> truncated(const PlyElement& element) {
@@ -55,7 +55,7 @@ class BinaryWalk {
 
   /// Reads so many rows, into the columns when there are any. Every row has at least the byte of a list's count, so the
   /// end of the file bounds the walk whatever the header says.
-  Status walk_rows(const PlyElement& element, uint64_t rows, std::vector<ScalarValues>* columns) {
+  Status walk_rows(const PlyElement& element, uint64_t rows, std::vector<surfel::ScalarValues>* columns) {
     for (uint64_t row = 0; row < rows; ++row) {
       size_t column = 0;
       for (const PlyProperty& property : element.properties) {
@@ -85,7 +85,7 @@ class BinaryWalk {
     return true;
   }
 
-  bool read_value(ScalarType type, ScalarValues* into) {
+  bool read_value(ScalarType type, surfel::ScalarValues* into) {
     if (rest_.size() < size_of(type)) return false;
     if (into != nullptr) {
       std::visit(
@@ -107,7 +107,7 @@ class AsciiWalk {
  public:
   explicit AsciiWalk(std::string_view text) : tokens_(text) {}
 
-  Status walk_rows(const PlyElement& element, uint64_t rows, std::vector<ScalarValues>* columns) {
+  Status walk_rows(const PlyElement& element, uint64_t rows, std::vector<surfel::ScalarValues>* columns) {
     if (element.properties.empty()) return {};
     for (uint64_t row = 0; row < rows; ++row) {
       size_t column = 0;
@@ -134,7 +134,7 @@ class AsciiWalk {
     return true;
   }
 
-  bool read_value(ScalarValues* into) {
+  bool read_value(surfel::ScalarValues* into) {
     word_ = tokens_.next();
     return into == nullptr ? !word_.empty() : append_number(*into, word_);
   }
@@ -161,12 +161,12 @@ class WalkedRows : public RowSource {
   [[nodiscard]] size_t pieces() const override { return starts_.size(); }
   [[nodiscard]] Result<PointTable> read(size_t piece) const override {
     Walk walk = starts_[piece];
-    std::vector<ScalarValues> values;
+    std::vector<surfel::ScalarValues> values;
     for (const ColumnInfo& column : columns_) values.push_back(empty_values(column.type));
     PointTable table;
     table.rows = std::min(kPieceRows, element_.count - piece * kPieceRows);
     if (Status status = walk.walk_rows(element_, table.rows, &values); !status) return fail(std::move(status.error()));
-    for (ScalarValues& column : values) add_column(table, std::move(column));
+    for (surfel::ScalarValues& column : values) add_column(table, std::move(column));
     return table;
   }
 
@@ -275,4 +275,4 @@ Result<std::unique_ptr<RowSource>> ply_rows(std::span<const std::byte> bytes) {
   return rows_of(*header, traits, BinaryWalk(data, swapped), swapped);
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

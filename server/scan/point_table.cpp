@@ -2,9 +2,9 @@
 
 #include <utility>
 
-namespace surfcast {
+namespace surfcast::scan {
 
-void add_column(PointTable& table, ScalarValues values) {
+void add_column(PointTable& table, surfel::ScalarValues values) {
   table.storage.push_back(std::move(values));
   std::visit(
       [&](const auto& stored) {
@@ -14,4 +14,4 @@ void add_column(PointTable& table, ScalarValues values) {
       table.storage.back());
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

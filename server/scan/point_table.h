@@ -7,7 +7,7 @@
 
 #include "scan/scalar_type.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 
 /// One named number of every point.
 struct ColumnInfo {
@@ -32,12 +32,12 @@ struct PointTable {
   size_t rows = 0;
   uint64_t announced = 0;  ///< rows that count lines within this part of a PTS file speak of
   std::vector<Column> columns;
-  std::vector<ScalarValues> storage;
+  std::vector<surfel::ScalarValues> storage;
   std::vector<std::byte> records;  ///< decoded records that columns point into
 };
 
 /// Adds a column that holds `values`, of `table.rows` values.
-void add_column(PointTable& table, ScalarValues values);
+void add_column(PointTable& table, surfel::ScalarValues values);
 
 /// Calls `use(i, value)` with every value of the column in its own type.
 template <typename Use>
@@ -53,4 +53,4 @@ void for_each_value(const Column& column, size_t rows, Use&& use) {
   });
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

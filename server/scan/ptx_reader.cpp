@@ -11,7 +11,7 @@
 #include "scan/point_table.h"
 #include "scan/text_tokens.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 /// Takes row vectors from the scanner to the world: p' = (p, 1) M. The fourth column of M is not used.
@@ -187,4 +187,4 @@ Result<std::unique_ptr<RowSource>> ptx_rows(std::span<const std::byte> bytes) {
   return std::make_unique<PtxRows>(std::move(*layout));
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

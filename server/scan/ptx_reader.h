@@ -8,7 +8,7 @@
 #include "base/result.h"
 #include "scan/row_source.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 
 /// Whether text has the beginning of a PTX file: two lines with one integer each.
 bool looks_like_ptx(std::string_view text);
@@ -18,4 +18,4 @@ bool looks_like_ptx(std::string_view text);
 /// when there is one station. Intensities are 0 to 1.
 Result<std::unique_ptr<RowSource>> ptx_rows(std::span<const std::byte> bytes);
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

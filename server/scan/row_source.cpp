@@ -2,13 +2,13 @@
 
 #include <string>
 
-namespace surfcast {
+namespace surfcast::scan {
 
 Status DecodingLimit::check(uint64_t bytes) const {
-  if (bytes <= most_bytes) return {};
+  if (bytes <= max_bytes) return {};
   const auto mebibytes = [](uint64_t size) { return std::to_string((size >> 20) + 1) + "M"; };
   return fail(ErrorKind::kLimit, "can only be decoded whole, which takes " + mebibytes(bytes) + " of memory; " +
-                                     mebibytes(most_bytes) + " are left for it");
+                                     mebibytes(max_bytes) + " are left for it");
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

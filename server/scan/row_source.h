@@ -10,14 +10,14 @@
 #include "scan/point_table.h"
 #include "surfel/grid.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 
 /// Rows of one piece: enough to keep a core busy, few enough that every core can have one in memory.
 inline constexpr uint64_t kPieceRows = uint64_t{1} << 18;
 
 /// What a file says beside its rows, and how its format is to be understood.
 struct RowTraits {
-  std::optional<Grid> grid;          ///< the lattice of all positions
+  std::optional<surfel::Grid> grid;  ///< the lattice of all positions
   std::optional<glm::dvec3> sensor;  ///< where the scanner stood
   bool z_up = true;
   bool may_be_graphics = false;  ///< z-up only if the points look like a survey (up_axis.h); else y-up
@@ -28,7 +28,7 @@ struct RowTraits {
 
 /// A file of a format that can only be decoded whole must not take more memory for that than this.
 struct DecodingLimit {
-  uint64_t most_bytes = UINT64_MAX;
+  uint64_t max_bytes = UINT64_MAX;
 
   [[nodiscard]] Status check(uint64_t bytes) const;
 };
@@ -51,4 +51,4 @@ class RowSource {
   [[nodiscard]] virtual uint64_t held_bytes() const { return 0; }
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

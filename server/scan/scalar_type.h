@@ -10,7 +10,7 @@
 
 #include "surfel/scalar_attribute.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 
 /// The number types of scan files, in the order of the alternatives of ScalarValues.
 enum class ScalarType { kUint8, kInt8, kUint16, kInt16, kUint32, kInt32, kUint64, kInt64, kFloat32, kFloat64 };
@@ -51,13 +51,13 @@ decltype(auto) with_type(ScalarType type, Use&& use) {
   return type == ScalarType::kFloat32 || type == ScalarType::kFloat64;
 }
 
-[[nodiscard]] inline ScalarType type_of(const ScalarValues& values) {
+[[nodiscard]] inline ScalarType type_of(const surfel::ScalarValues& values) {
   return static_cast<ScalarType>(values.index());
 }
 
 /// An empty vector of that type.
-[[nodiscard]] inline ScalarValues empty_values(ScalarType type) {
-  return with_type(type, [](auto zero) { return ScalarValues(std::vector<decltype(zero)>()); });
+[[nodiscard]] inline surfel::ScalarValues empty_values(ScalarType type) {
+  return with_type(type, [](auto zero) { return surfel::ScalarValues(std::vector<decltype(zero)>()); });
 }
 
 /// The number at `at`, aligned or not; `swapped` when its byte order is not this machine's.
@@ -69,4 +69,4 @@ template <typename T>
   return std::bit_cast<T>(raw);
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -11,7 +11,7 @@
 #include "scan/text_reader.h"
 #include "scan/text_tokens.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 using Known = std::pair<std::string_view, std::string_view>;
@@ -144,4 +144,4 @@ Result<ScanFormat> scan_format_of(std::span<const std::byte> bytes, const std::f
   return fail(ErrorKind::kInvalidInput, "not a " + std::string(format_name(named->second)) + " file");
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -6,7 +6,7 @@
 
 #include "base/result.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 
 enum class ScanFormat { kPly, kLas, kPcd, kPtx, kText, kDraco };
 
@@ -14,4 +14,4 @@ enum class ScanFormat { kPly, kLas, kPcd, kPtx, kText, kDraco };
 /// for files that are empty, of a known format that is no readable scan, or not recognised.
 Result<ScanFormat> scan_format_of(std::span<const std::byte> bytes, const std::filesystem::path& path);
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -10,7 +10,7 @@
 #include "surfel/scalar_attribute.h"
 #include "surfel/surfel_cloud.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 
 /// Some points of one input file as its format states them, nothing dropped or estimated yet. Structure of arrays;
 /// attributes that the file does not have are empty.
@@ -18,10 +18,10 @@ struct ScanPoints {
   std::vector<glm::dvec3> positions;  ///< world coordinates; may hold NaN and infinities
   std::vector<glm::vec3> normals;     ///< as stored: any length, perhaps zero
   std::vector<float> radii;           ///< world units
-  std::optional<ColorAttribute> colors;
-  std::vector<ScalarAttribute> scalars;
+  std::optional<surfel::ColorAttribute> colors;
+  std::vector<surfel::ScalarAttribute> scalars;
 
   [[nodiscard]] size_t size() const { return positions.size(); }
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -8,7 +8,7 @@
 #include "scan/scalar_type.h"
 #include "surfel/grid.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 
 struct ScalarField {
   std::string name;
@@ -18,8 +18,8 @@ struct ScalarField {
 
 /// What the points of a scan have, known before any of them is delivered.
 struct ScanSchema {
-  std::string name;          ///< file name without its folders
-  std::optional<Grid> grid;  ///< the lattice all positions lie on, where the format has one (LAS)
+  std::string name;                  ///< file name without its folders
+  std::optional<surfel::Grid> grid;  ///< the lattice all positions lie on, where the format has one (LAS)
   bool normals = false;
   bool radii = false;
   int color_bits = 0;  ///< of each channel: 8 or 16; 0 without colour
@@ -28,4 +28,4 @@ struct ScanSchema {
   bool z_up = true;                  ///< LAS and text surveys are z-up; see each reader
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

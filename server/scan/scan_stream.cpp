@@ -14,7 +14,7 @@
 #include "scan/scan_format.h"
 #include "scan/text_reader.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 Result<std::unique_ptr<RowSource>> rows_of(ScanFormat format, std::span<const std::byte> bytes,
@@ -55,7 +55,7 @@ Result<TableFacts> survey_rows(const RowSource& rows, const MappedFile* file) {
   oneapi::tbb::parallel_for(size_t{0}, rows.pieces(), [&](size_t i) {
     const Result<PointTable> table = rows.read(i);
     facts[i] = table ? Result<TableFacts>(find_facts(*table, *roles, unnamed)) : fail(table.error());
-    if (file != nullptr) file->forget();
+    if (file != nullptr) file->release_pages();
   });
   TableFacts all;
   for (const Result<TableFacts>& piece : facts) {
@@ -72,8 +72,8 @@ Result<TableFacts> survey_rows(const RowSource& rows, const MappedFile* file) {
 
 }  // namespace
 
-Status ScanStream::survey(std::span<const std::byte> bytes, const std::filesystem::path& path,
-                          const DecodingLimit& limit) {
+Status ScanStream::examine(std::span<const std::byte> bytes, const std::filesystem::path& path,
+                           const DecodingLimit& limit) {
   path_ = path;
   const auto named = [&path](const Error& error) { return fail(error.kind, path.string() + ": " + error.message); };
   Result<std::unique_ptr<RowSource>> rows =
@@ -93,7 +93,7 @@ Status ScanStream::survey(std::span<const std::byte> bytes, const std::filesyste
 
 Result<ScanStream> ScanStream::open_content(std::span<const std::byte> bytes, const std::filesystem::path& path) {
   ScanStream stream;
-  if (Status status = stream.survey(bytes, path, {}); !status) return fail(std::move(status.error()));
+  if (Status status = stream.examine(bytes, path, {}); !status) return fail(std::move(status.error()));
   return stream;
 }
 
@@ -102,7 +102,7 @@ Result<ScanStream> ScanStream::open(const std::filesystem::path& path, const Dec
   if (!file) return fail(std::move(file.error()));
   ScanStream stream;
   stream.file_ = std::move(*file);
-  if (Status status = stream.survey(stream.file_->bytes(), path, limit); !status)
+  if (Status status = stream.examine(stream.file_->bytes(), path, limit); !status)
     return fail(std::move(status.error()));
   return stream;
 }
@@ -111,8 +111,8 @@ Result<ScanPoints> ScanStream::read(size_t piece) const {
   const Result<PointTable> table = rows_->read(piece);
   if (!table) return fail(table.error().kind, path_.string() + ": " + table.error().message);
   ScanPoints points = points_of(*table, meaning_);
-  if (file_) file_->forget();
+  if (file_) file_->release_pages();
   return points;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -14,7 +14,7 @@
 #include "scan/scan_points.h"
 #include "scan/table_meaning.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 
 /// A scan whose points are delivered in pieces of bounded size, as often as wanted. Opening it reads the whole file
 /// once (on all threads), so that everything about it is known beforehand and damage is found before work is done.
@@ -27,22 +27,22 @@ class ScanStream {
   static Result<ScanStream> open_content(std::span<const std::byte> bytes, const std::filesystem::path& path);
 
   [[nodiscard]] const ScanSchema& schema() const { return meaning_.schema; }
-  [[nodiscard]] uint64_t size() const { return size_; }        ///< points, unusable ones included
-  [[nodiscard]] const Box& bounds() const { return bounds_; }  ///< of the points with finite coordinates
+  [[nodiscard]] uint64_t size() const { return size_; }                  ///< points, unusable ones included
+  [[nodiscard]] const geometry::Box& bounds() const { return bounds_; }  ///< of the points with finite coordinates
   [[nodiscard]] size_t pieces() const { return rows_->pieces(); }
   [[nodiscard]] uint64_t held_bytes() const { return rows_->held_bytes(); }  ///< of memory, for formats decoded whole
   /// Some of the points; all pieces in their order are all of them in theirs. Any thread may ask.
   [[nodiscard]] Result<ScanPoints> read(size_t piece) const;
 
  private:
-  Status survey(std::span<const std::byte> bytes, const std::filesystem::path& path, const DecodingLimit& limit);
+  Status examine(std::span<const std::byte> bytes, const std::filesystem::path& path, const DecodingLimit& limit);
 
   std::filesystem::path path_;
   std::optional<MappedFile> file_;  ///< none for content that others hold
   std::unique_ptr<RowSource> rows_;
   TableMeaning meaning_;
   uint64_t size_ = 0;
-  Box bounds_;
+  geometry::Box bounds_;
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

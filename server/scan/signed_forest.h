@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace surfcast {
+namespace surfcast::scan {
 
 /// Disjoint sets whose members have a sign relative to each other: joining two members states whether they agree or
 /// oppose, and that settles the sign of every member of one set against every member of the other.
@@ -51,4 +51,4 @@ class SignedForest {
   std::vector<uint8_t> opposed_;  ///< against the parent
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -8,7 +8,7 @@
 
 #include "scan/signed_forest.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 
 void TreeVotes::move_origin(const glm::dvec3& to) {
   const glm::dvec3 d = to - origin;
@@ -18,7 +18,7 @@ void TreeVotes::move_origin(const glm::dvec3& to) {
   origin = to;
 }
 
-void TreeVotes::turn() {
+void TreeVotes::flip() {
   normal = -normal;
   flux = -flux;
   towards = -towards;
@@ -41,7 +41,7 @@ namespace {
 
 /// Share of disagreement between neighbours up to which signs count as consistent. Smooth and sharp-edged surfaces
 /// stay below 0.02, normals of foliage come out above 0.1.
-constexpr double kMostConflict = 0.05;
+constexpr double kMaxConflict = 0.05;
 
 /// How far two trees of different parts agree where both see the same sites.
 struct Bridge {
@@ -118,7 +118,7 @@ bool encloses_volume(const TreeVotes& tree) {
 }
 
 struct Decision {
-  bool turn = false;
+  bool flip = false;
   bool trusted = false;  ///< more than a guess
 };
 
@@ -144,7 +144,7 @@ struct JoinedTrees {
     votes.resize(own.size());
     for (uint32_t i = 0; i < own.size(); ++i) {
       const auto [root, opposed] = forest.find(i);
-      if (opposed) own[i].turn();
+      if (opposed) own[i].flip();
       if (votes[root].area == 0) votes[root].origin = own[i].origin;
       votes[root].add(own[i]);
     }
@@ -153,42 +153,41 @@ struct JoinedTrees {
 
 }  // namespace
 
-SettledSigns settle_signs(std::span<const PartSigns> parts, const Scene& scene) {
+ResolvedSigns resolve_signs(std::span<const PartSigns> parts, const Scene& scene) {
   const std::vector<uint32_t> first = first_trees(parts);
   JoinedTrees joined(parts, first);
   std::vector<Decision> decisions(joined.votes.size());
-  TreeVotes settled;
+  TreeVotes total;
   double trusted = 0;
   bool all_known = true;
   for (const PartSigns& part : parts) {
-    settled.area += part.settled_area;
-    settled.agreement += part.agreement;
-    settled.conflict += part.conflict;
-    trusted += part.settled_area;
+    total.area += part.resolved_area;
+    total.agreement += part.agreement;
+    total.conflict += part.conflict;
+    trusted += part.resolved_area;
     all_known = all_known && part.all_known;
   }
   for (size_t i = 0; i < decisions.size(); ++i) {
     TreeVotes& tree = joined.votes[i];
     decisions[i] = decide(tree, scene);
-    if (decisions[i].turn) tree.turn();
-    settled.area += tree.area;
-    settled.agreement += tree.agreement;
-    settled.conflict += tree.conflict;
+    if (decisions[i].flip) tree.flip();
+    total.area += tree.area;
+    total.agreement += tree.agreement;
+    total.conflict += tree.conflict;
     if (decisions[i].trusted) trusted += tree.area;
   }
-  const bool agree = settled.conflict <= kMostConflict * (settled.agreement + settled.conflict);
-  SettledSigns signs;
-  signs.oriented =
-      all_known ? !scene.normals_stored || agree : trusted >= 0.9 * settled.area && settled.area > 0 && agree;
+  const bool agree = total.conflict <= kMaxConflict * (total.agreement + total.conflict);
+  ResolvedSigns signs;
+  signs.oriented = all_known ? !scene.normals_stored || agree : trusted >= 0.9 * total.area && total.area > 0 && agree;
   signs.face_up = !signs.oriented && scene.z_up;
   for (size_t i = 0; i < parts.size(); ++i) {
-    std::vector<uint8_t>& turned = signs.turned.emplace_back(parts[i].trees.size());
-    for (uint32_t tree = 0; tree < turned.size(); ++tree) {
+    std::vector<uint8_t>& flipped = signs.flipped.emplace_back(parts[i].trees.size());
+    for (uint32_t tree = 0; tree < flipped.size(); ++tree) {
       const auto [root, opposed] = joined.forest.find(first[i] + tree);
-      turned[tree] = opposed != decisions[root].turn ? 1 : 0;
+      flipped[tree] = opposed != decisions[root].flip ? 1 : 0;
     }
   }
   return signs;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

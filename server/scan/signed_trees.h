@@ -9,7 +9,7 @@
 #include "geometry/box.h"
 #include "scan/neighbours.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 
 /// What speaks for one sign or the other of a tree of sites whose normals have signs relative to each other. Sums over
 /// sites are weighted by area: the square of the distance to the farthest neighbour, which is in proportion to the area
@@ -27,7 +27,7 @@ struct TreeVotes {
   double conflict = 0;
 
   void move_origin(const glm::dvec3& to);
-  void turn();
+  void flip();
   void add(TreeVotes other);
 };
 
@@ -41,7 +41,7 @@ struct BorderSite {
 /// How the normals of one part of a cloud (all of it, if it fits) depend on signs that are still to be settled.
 struct PartSigns {
   std::vector<TreeVotes> trees;  ///< of the part's own sites; those of its halo count in the part that owns them
-  double settled_area = 0;       ///< of sites without a tree
+  double resolved_area = 0;      ///< of sites without a tree
   double agreement = 0;          ///< of links whose agreement does not depend on signs of trees
   double conflict = 0;
   bool all_known = true;           ///< every site's direction is known by itself
@@ -53,21 +53,21 @@ inline constexpr uint32_t kNoTree = std::numeric_limits<uint32_t>::max();
 
 /// What decides about a scene as a whole.
 struct Scene {
-  Box bounds;
+  geometry::Box bounds;
   bool z_up = false;
   bool normals_stored = false;  ///< some normals are the scan's own, which may disagree among themselves
 };
 
 /// The signs of all trees of all parts.
-struct SettledSigns {
+struct ResolvedSigns {
   bool oriented = false;  ///< the signs can be trusted to tell front from back
   bool face_up = false;   ///< they cannot, and normals that are not known are turned upwards one by one
-  std::vector<std::vector<uint8_t>> turned;  ///< for each part and tree
+  std::vector<std::vector<uint8_t>> flipped;  ///< for each part and tree
 
-  [[nodiscard]] glm::vec3 settle(const glm::vec3& normal, size_t part, uint32_t tree) const {
+  [[nodiscard]] glm::vec3 apply(const glm::vec3& normal, size_t part, uint32_t tree) const {
     if (tree == kNoTree) return normal;
-    const bool turn = face_up ? normal.z < 0 : turned[part][tree] != 0;
-    return turn ? -normal : normal;
+    const bool flip = face_up ? normal.z < 0 : flipped[part][tree] != 0;
+    return flip ? -normal : normal;
   }
 };
 
@@ -79,6 +79,6 @@ struct SettledSigns {
 /// sides: an open surface that is no terrain, or a closed one in a scene that may be a room seen from within (z-up, or
 /// at least twice as wide, both ways, as high). To call such a cloud oriented would hide its front. Normals of a z-up
 /// scene without trust are turned upwards one by one.
-SettledSigns settle_signs(std::span<const PartSigns> parts, const Scene& scene);
+ResolvedSigns resolve_signs(std::span<const PartSigns> parts, const Scene& scene);
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -9,7 +9,7 @@
 
 #include "scan/first_equals.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 /// World to local coordinates. Halves keep the differences of the largest doubles finite.
@@ -28,7 +28,7 @@ struct LocalFrame {
   }
 };
 
-LocalFrame local_frame(const Box& box) {
+LocalFrame local_frame(const geometry::Box& box) {
   const glm::dvec3 half_size = 0.5 * box.max - 0.5 * box.min;
   const double half_unit = std::max({half_size.x, half_size.y, half_size.z});
   return {0.5 * box.min, half_unit > 0 ? half_unit : 0.5};
@@ -70,7 +70,7 @@ std::vector<uint32_t> ordered_firsts(const std::vector<uint32_t>& first, const s
 
 }  // namespace
 
-Sites find_sites(std::span<const glm::dvec3> world, const Box& box) {
+Sites find_sites(std::span<const glm::dvec3> world, const geometry::Box& box) {
   const LocalFrame frame = local_frame(box);
   std::vector<glm::dvec3> local(world.size());
   std::vector<uint64_t> hashes(world.size());
@@ -91,4 +91,4 @@ Sites find_sites(std::span<const glm::dvec3> world, const Box& box) {
   return sites;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

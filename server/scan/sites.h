@@ -7,7 +7,7 @@
 
 #include "geometry/box.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 
 /// The distinct positions of a cloud ("sites"), in coordinates local to a frame: from 0 to 1 along its longest axis.
 /// Points at one position share one site, so no two sites are at distance 0, and differences and squares of local
@@ -23,6 +23,6 @@ struct Sites {
 };
 
 /// `frame` holds all positions.
-Sites find_sites(std::span<const glm::dvec3> world, const Box& frame);
+Sites find_sites(std::span<const glm::dvec3> world, const geometry::Box& frame);
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

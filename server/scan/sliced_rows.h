@@ -5,7 +5,7 @@
 
 #include "scan/row_source.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 
 /// A table that is there as a whole, in a mapped file or decoded in memory, handed out in pieces.
 class SlicedRows : public RowSource {
@@ -26,7 +26,7 @@ class SlicedRows : public RowSource {
   }
   [[nodiscard]] uint64_t held_bytes() const override {
     uint64_t bytes = 0;
-    for (const ScalarValues& values : table_.storage) {
+    for (const surfel::ScalarValues& values : table_.storage) {
       bytes += std::visit([](const auto& typed) { return typed.size() * sizeof(typed[0]); }, values);
     }
     return bytes;
@@ -38,4 +38,4 @@ class SlicedRows : public RowSource {
   PointTable table_;
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -10,7 +10,7 @@
 
 #include "scan/surroundings.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 constexpr size_t kNearest = 6;
@@ -77,4 +77,4 @@ std::vector<float> estimate_radii(const Sites& sites, const NeighbourGraph& grap
   return radii;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -5,7 +5,7 @@
 
 #include "scan/neighbours.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 
 /// What the kernel of a site is to reach, in world units: the mean distance to its six nearest neighbours, or to as
 /// many as there are when there are fewer; more where the sampling is uneven, so that no gap opens to any side; less on
@@ -15,4 +15,4 @@ namespace surfcast {
 std::vector<float> estimate_radii(const Sites& sites, const NeighbourGraph& graph,
                                   const std::vector<glm::vec3>& normals);
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace surfcast {
+namespace surfcast::scan {
 
 /// What was dropped and estimated on the way from points to surfels.
 struct SurfelReport {
@@ -21,4 +21,4 @@ struct SurfelReport {
   void add(const SurfelReport& part);
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

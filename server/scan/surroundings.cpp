@@ -10,7 +10,7 @@
 
 #include <tbb/parallel_for.h>
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 constexpr size_t kMostNeighbours = 16;
@@ -116,4 +116,4 @@ std::vector<Surroundings> find_surroundings(const Sites& sites, const NeighbourG
   return surroundings;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -5,7 +5,7 @@
 
 #include "scan/neighbours.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 
 /// How its neighbours lie around a site, seen along its normal.
 struct Surroundings {
@@ -23,4 +23,4 @@ struct Surroundings {
 std::vector<Surroundings> find_surroundings(const Sites& sites, const NeighbourGraph& graph,
                                             const std::vector<glm::vec3>& normals);
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

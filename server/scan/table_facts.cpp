@@ -4,7 +4,7 @@
 
 #include "scan/unit_normal.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 ColumnFacts facts_of(const Column& column, size_t rows) {
@@ -34,13 +34,13 @@ UnitFacts unit_facts(const PointTable& table, size_t column) {
   return facts;
 }
 
-Box bounds_of(const PointTable& table, const ColumnTriple& position) {
+geometry::Box bounds_of(const PointTable& table, const ColumnTriple& position) {
   std::vector<glm::dvec3> points(table.rows);
   for (int axis = 0; axis < 3; ++axis) {
     for_each_value(table.columns[position[static_cast<size_t>(axis)]], table.rows,
                    [&](size_t i, auto value) { points[i][axis] = static_cast<double>(value); });
   }
-  Box box;
+  geometry::Box box;
   for (const glm::dvec3& p : points) {
     if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z)) box.include(p);
   }
@@ -79,8 +79,8 @@ void TableFacts::include(const TableFacts& other) {
     units[i].any = units[i].any || other.units[i].any;
   }
   any_normal = any_normal || other.any_normal;
-  least_alpha = std::min(least_alpha, other.least_alpha);
-  greatest_alpha = std::max(greatest_alpha, other.greatest_alpha);
+  min_alpha = std::min(min_alpha, other.min_alpha);
+  max_alpha = std::max(max_alpha, other.max_alpha);
 }
 
 TableFacts find_facts(const PointTable& table, const ColumnRoles& roles, bool unnamed) {
@@ -95,11 +95,11 @@ TableFacts find_facts(const PointTable& table, const ColumnRoles& roles, bool un
     const Column& packed = table.columns[*roles.packed_color];
     for (size_t i = 0; i < table.rows; ++i) {
       const auto alpha = static_cast<uint8_t>(packed_color_bits(packed, i) >> 24);
-      facts.least_alpha = std::min(facts.least_alpha, alpha);
-      facts.greatest_alpha = std::max(facts.greatest_alpha, alpha);
+      facts.min_alpha = std::min(facts.min_alpha, alpha);
+      facts.max_alpha = std::max(facts.max_alpha, alpha);
     }
   }
   return facts;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -9,7 +9,7 @@
 #include "scan/column_roles.h"
 #include "scan/point_table.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 
 /// What is true of all values of a column.
 struct ColumnFacts {
@@ -40,16 +40,16 @@ struct UnitFacts {
 struct TableFacts {
   uint64_t rows = 0;
   uint64_t announced = 0;
-  Box bounds;  ///< of the positions whose coordinates are all finite
+  geometry::Box bounds;  ///< of the positions whose coordinates are all finite
   std::vector<ColumnFacts> columns;
   std::vector<UnitFacts> units;  ///< of the columns from each one on; only where columns have no names
   bool any_normal = false;       ///< one of the normals has a direction
-  uint8_t least_alpha = 255;     ///< of a packed colour
-  uint8_t greatest_alpha = 0;
+  uint8_t min_alpha = 255;       ///< of a packed colour
+  uint8_t max_alpha = 0;
 
   void include(const TableFacts& other);
 };
 
 TableFacts find_facts(const PointTable& table, const ColumnRoles& roles, bool unnamed);
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -10,7 +10,7 @@
 #include "scan/text_columns.h"
 #include "scan/up_axis.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 // ---- deciding
@@ -75,7 +75,7 @@ void decide_colors(std::span<const ColumnInfo> columns, const TableFacts& facts,
 void decide_scalars(std::span<const ColumnInfo> columns, const RowSource& rows, const TableFacts& facts,
                     TableMeaning& meaning) {
   // An alpha that is the same everywhere says nothing.
-  meaning.alpha = meaning.roles.packed_alpha && facts.least_alpha != facts.greatest_alpha;
+  meaning.alpha = meaning.roles.packed_alpha && facts.min_alpha != facts.max_alpha;
   if (meaning.alpha) meaning.schema.scalars.push_back({"alpha", ScalarType::kUint8});
   for (const auto& [column, name] : meaning.roles.scalars) {
     const ScalarType type = columns[column].type;
@@ -85,7 +85,7 @@ void decide_scalars(std::span<const ColumnInfo> columns, const RowSource& rows, 
 }
 
 /// A scanner at the origin, farther from all points than they spread, is a default of the writer's and no scanner.
-bool is_default_sensor(const glm::dvec3& sensor, const Box& box) {
+bool is_default_sensor(const glm::dvec3& sensor, const geometry::Box& box) {
   if (sensor != glm::dvec3(0)) return false;
   const glm::dvec3 nearest = glm::clamp(glm::dvec3(0), box.min, box.max);
   return box.empty() || glm::length(nearest) > box.diagonal();
@@ -118,7 +118,7 @@ std::vector<glm::u16vec3> read_colors(const PointTable& table, const ColumnTripl
 
 void read_packed_colors(const PointTable& table, const TableMeaning& meaning, ScanPoints& points) {
   const Column& column = table.columns[*meaning.roles.packed_color];
-  points.colors = ColorAttribute{8, std::vector<glm::u16vec3>(table.rows)};
+  points.colors = surfel::ColorAttribute{8, std::vector<glm::u16vec3>(table.rows)};
   std::vector<uint8_t> alpha(meaning.alpha ? table.rows : 0);
   for (size_t i = 0; i < table.rows; ++i) {
     const uint32_t bits = packed_color_bits(column, i);
@@ -128,12 +128,12 @@ void read_packed_colors(const PointTable& table, const TableMeaning& meaning, Sc
   if (meaning.alpha) points.scalars.push_back({"alpha", std::move(alpha)});
 }
 
-ScalarValues read_scalars(const Column& column, size_t rows, ScalarType type) {
+surfel::ScalarValues read_scalars(const Column& column, size_t rows, ScalarType type) {
   return with_type(type, [&](auto zero) {
     using T = decltype(zero);
     std::vector<T> values(rows);
     for_each_value(column, rows, [&](size_t i, auto value) { values[i] = static_cast<T>(value); });
-    return ScalarValues(std::move(values));
+    return surfel::ScalarValues(std::move(values));
   });
 }
 
@@ -172,7 +172,7 @@ ScanPoints points_of(const PointTable& table, const TableMeaning& meaning) {
   }
   if (roles.color) {
     const int bits = meaning.schema.color_bits;
-    points.colors = ColorAttribute{bits, read_colors(table, *roles.color, bits, meaning.color_factor)};
+    points.colors = surfel::ColorAttribute{bits, read_colors(table, *roles.color, bits, meaning.color_factor)};
   } else if (roles.packed_color) {
     read_packed_colors(table, meaning, points);
   }
@@ -183,4 +183,4 @@ ScanPoints points_of(const PointTable& table, const TableMeaning& meaning) {
   return points;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

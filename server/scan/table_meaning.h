@@ -7,7 +7,7 @@
 #include "scan/scan_schema.h"
 #include "scan/table_facts.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 
 /// How rows become points: what their columns are, and what their values decided for the scan as a whole.
 struct TableMeaning {
@@ -27,4 +27,4 @@ Result<TableMeaning> decide_meaning(const RowSource& rows, const TableFacts& fac
 /// The points of some rows, under the schema of `meaning`; nothing is dropped or cleaned.
 ScanPoints points_of(const PointTable& table, const TableMeaning& meaning);
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 bool may_be_color(const ColumnFacts& facts) {
@@ -79,4 +79,4 @@ std::vector<std::string> guess_column_names(const TableFacts& facts, bool counte
   return Guess(facts, counted).run();
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -5,7 +5,7 @@
 
 #include "scan/table_facts.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 
 /// What the columns of a text file without a header are, by how many there are and the values they hold:
 ///   - the first three are x, y and z;
@@ -17,4 +17,4 @@ namespace surfcast {
 ///   - every other column is called "column_N", N counting from 1.
 std::vector<std::string> guess_column_names(const TableFacts& facts, bool counted);
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -9,14 +9,14 @@
 #include "scan/attribute_names.h"
 #include "scan/text_tokens.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 /// Text of one piece.
 constexpr size_t kPieceBytes = size_t{1} << 23;
 
 /// More columns than any scan has; bounds what a line of a hostile file can ask for.
-constexpr size_t kMostColumns = 1024;
+constexpr size_t kMaxColumns = 1024;
 
 struct Format {
   bool comma_separates = true;
@@ -38,7 +38,7 @@ std::string_view next_line(std::string_view text, size_t& at) {
 
 std::vector<std::string_view> split(std::string_view line, const Format& format) {
   std::vector<std::string_view> words;
-  for (size_t at = 0; at < line.size() && words.size() <= kMostColumns;) {
+  for (size_t at = 0; at < line.size() && words.size() <= kMaxColumns;) {
     size_t end = at;
     while (end < line.size() && !separates(line[end], format)) ++end;
     if (end > at) words.push_back(line.substr(at, end - at));
@@ -118,7 +118,7 @@ Result<bool> take_line(std::string_view line, std::string_view& header, Prologue
 Status check_columns(const Prologue& prologue, std::string_view header) {
   const size_t columns = prologue.format.columns;
   if (columns < 3) return fail(ErrorKind::kInvalidInput, "text rows have fewer than three numbers");
-  if (columns > kMostColumns) return fail(ErrorKind::kInvalidInput, "text rows have too many numbers");
+  if (columns > kMaxColumns) return fail(ErrorKind::kInvalidInput, "text rows have too many numbers");
   if (!header.empty() && prologue.names.size() != columns) {
     return fail(ErrorKind::kInvalidInput, "text header names " + std::to_string(prologue.names.size()) +
                                               " columns, the first row has " + std::to_string(columns));
@@ -270,4 +270,4 @@ Result<std::unique_ptr<RowSource>> text_rows(std::span<const std::byte> bytes) {
   return std::make_unique<TextRows>(text, *prologue);
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -8,7 +8,7 @@
 #include "base/result.h"
 #include "scan/row_source.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 
 /// Points written as text: XYZ, PTS, CSV. Numbers are separated by spaces, tabs, commas or semicolons. In a file with
 /// semicolons a comma does not separate, so that decimal commas are an error and not two numbers. Lines that begin with
@@ -21,4 +21,4 @@ Result<std::unique_ptr<RowSource>> text_rows(std::span<const std::byte> bytes);
 /// Whether everything before the rows, and the first row, is as text_rows takes it.
 bool begins_like_text_table(std::string_view text);
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

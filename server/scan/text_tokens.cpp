@@ -4,7 +4,7 @@
 #include <limits>
 #include <type_traits>
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 /// from_chars leaves its value alone where a double is out of range; what was meant is zero or infinity.
@@ -55,7 +55,7 @@ std::optional<T> parse_number(std::string_view word) {
   }
 }
 
-bool append_number(ScalarValues& values, std::string_view word) {
+bool append_number(surfel::ScalarValues& values, std::string_view word) {
   return std::visit(
       [word](auto& typed) {
         const auto value = parse_number<typename std::decay_t<decltype(typed)>::value_type>(word);
@@ -76,4 +76,4 @@ template std::optional<int64_t> parse_number(std::string_view);
 template std::optional<float> parse_number(std::string_view);
 template std::optional<double> parse_number(std::string_view);
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -9,7 +9,7 @@
 
 #include "scan/scalar_type.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 
 [[nodiscard]] inline std::string_view as_text(std::span<const std::byte> bytes) {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
@@ -48,6 +48,6 @@ template <typename T>
 std::optional<T> parse_number(std::string_view word);
 
 /// Appends the number to values of any type; false when the word is no number of that type.
-bool append_number(ScalarValues& values, std::string_view word);
+bool append_number(surfel::ScalarValues& values, std::string_view word);
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -4,7 +4,7 @@
 #include <glm/geometric.hpp>
 #include <glm/vec3.hpp>
 
-namespace surfcast {
+namespace surfcast::scan {
 
 /// Unit, computed in double so that neither very short nor very long normals are lost; zero when there is none.
 inline glm::vec3 unit_or_zero(const glm::vec3& normal) {
@@ -13,4 +13,4 @@ inline glm::vec3 unit_or_zero(const glm::vec3& normal) {
   return std::isfinite(length) && length > 0 ? glm::vec3(n / length) : glm::vec3(0);
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -4,7 +4,7 @@
 #include <array>
 #include <string_view>
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 bool is_lidar_attribute(const ScalarField& attribute) {
@@ -15,7 +15,7 @@ bool is_lidar_attribute(const ScalarField& attribute) {
 
 }  // namespace
 
-bool looks_like_survey(std::span<const ScalarField> scalars, const Box& bounds) {
+bool looks_like_survey(std::span<const ScalarField> scalars, const geometry::Box& bounds) {
   if (std::any_of(scalars.begin(), scalars.end(), is_lidar_attribute)) return true;
   if (bounds.empty()) return false;
   const glm::dvec3 size = bounds.size();
@@ -26,4 +26,4 @@ bool looks_like_survey(std::span<const ScalarField> scalars, const Box& bounds) 
   return size.z > 0 && 2 * size.z <= std::min(size.x, size.y);
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -6,7 +6,7 @@
 
 #include "surfel/even_sampling.h"
 
-namespace surfcast {
+namespace surfcast::selection {
 namespace {
 
 /// Kernels are cut, and discs end, well within two radii.
@@ -17,7 +17,7 @@ constexpr double kConeSlack = 0.005;
 void include(BlockHull& hull, const BlockHull& child) {
   hull.centres.include(child.centres);
   hull.reach = std::max(hull.reach, child.reach);
-  hull.normals = hull.normals && child.normals ? united(*hull.normals, *child.normals) : std::nullopt;
+  hull.normals = hull.normals && child.normals ? geometry::united(*hull.normals, *child.normals) : std::nullopt;
 }
 
 bool faces_away(const BlockHull& hull, const glm::dvec3& eye) {
@@ -32,7 +32,7 @@ bool faces_away(const BlockHull& hull, const glm::dvec3& eye) {
 }
 
 /// Smallest cosine of the angle to the view direction that a point of the box has, and a pixel of the picture.
-double least_cosine(const Box& box, const CameraFrame& frame) {
+double min_cosine(const geometry::Box& box, const geometry::CameraFrame& frame) {
   const double corner = 1 / std::hypot(1, 0.5 * frame.width / frame.eta, 0.5 * frame.height / frame.eta);
   const glm::dvec3 centre = frame.to_camera(box.centre());
   const double distance = glm::length(centre);
@@ -44,35 +44,35 @@ double least_cosine(const Box& box, const CameraFrame& frame) {
 
 }  // namespace
 
-std::vector<BlockHull> block_hulls(const BlockTree& tree) {
+std::vector<BlockHull> block_hulls(const ldc::BlockTree& tree) {
   const auto blocks = tree.blocks();
   std::vector<BlockHull> hulls;
   hulls.reserve(blocks.size());
-  for (const BlockEntry& block : blocks) hulls.push_back({block.bounds, block.max_radius, block.normals});
+  for (const ldc::BlockEntry& block : blocks) hulls.push_back({block.bounds, block.max_radius, block.normals});
   for (size_t i = blocks.size(); i-- > 0;) {
-    if (blocks[i].parent != BlockEntry::kNoParent) include(hulls[blocks[i].parent], hulls[i]);
+    if (blocks[i].parent != ldc::BlockEntry::kNoParent) include(hulls[blocks[i].parent], hulls[i]);
   }
   return hulls;
 }
 
-bool may_be_seen(const BlockHull& hull, const Frustum& frustum, const glm::dvec3& eye) {
+bool may_be_visible(const BlockHull& hull, const Frustum& frustum, const glm::dvec3& eye) {
   return frustum.may_see(hull.centres, kReachInRadii * hull.reach) && !faces_away(hull, eye);
 }
 
-double projected_spacing(const BlockEntry& block, const CameraFrame& frame) {
-  const double h = block.spacing / kRadiusOverSpacing;
+double projected_spacing(const ldc::BlockEntry& block, const geometry::CameraFrame& frame) {
+  const double h = block.spacing / surfel::kRadiusOverSpacing;
   const glm::dvec3 nearest = glm::clamp(frame.eye, block.bounds.min, block.bounds.max);
   const double distance = std::max(glm::length(nearest - frame.eye), h);
-  const double cosine = least_cosine(block.bounds, frame);
+  const double cosine = min_cosine(block.bounds, frame);
   return distance > 0 ? frame.eta * h / (distance * cosine * cosine) : 0;
 }
 
-RadiusRange radii_at_spacing(const Box& box, const CameraFrame& frame, double spacing) {
-  const double radius_at_1 = kRadiusOverSpacing * spacing / frame.eta;
+RadiusRange radii_at_spacing(const geometry::Box& box, const geometry::CameraFrame& frame, double spacing) {
+  const double radius_at_1 = surfel::kRadiusOverSpacing * spacing / frame.eta;
   const glm::dvec3 nearest = glm::clamp(frame.eye, box.min, box.max) - frame.eye;
-  const double cosine = least_cosine(box, frame);
+  const double cosine = min_cosine(box, frame);
   const double farthest = glm::length(box.centre() - frame.eye) + 0.5 * box.diagonal();
   return {radius_at_1 * glm::length(nearest) * cosine * cosine, radius_at_1 * farthest};
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::selection

@@ -8,22 +8,22 @@
 #include "ldc/block_tree.h"
 #include "selection/frustum.h"
 
-namespace surfcast {
+namespace surfcast::selection {
 
 /// What a block and everything below it lies in. A coarse block averages its children, so its own bounds and cone need
 /// not hold theirs; whoever leaves a whole subtree out must ask these.
 struct BlockHull {
-  Box centres;                        ///< of all surfel centres, world units
-  double reach = 0;                   ///< largest radius: what `centres` must grow by to hold the discs
-  std::optional<NormalCone> normals;  ///< of all normals; none when they may point anywhere
+  geometry::Box centres;                        ///< of all surfel centres, world units
+  double reach = 0;                             ///< largest radius: what `centres` must grow by to hold the discs
+  std::optional<geometry::NormalCone> normals;  ///< of all normals; none when they may point anywhere
 };
 
 /// One hull for each block of the tree.
-std::vector<BlockHull> block_hulls(const BlockTree& tree);
+std::vector<BlockHull> block_hulls(const ldc::BlockTree& tree);
 
 /// False only if nothing within the hull can touch a pixel of the frustum's rectangle or face the eye: it lies outside,
 /// or all its normals point away (Pfister 2000, visibility cones).
-bool may_be_seen(const BlockHull& hull, const Frustum& frustum, const glm::dvec3& eye);
+bool may_be_visible(const BlockHull& hull, const Frustum& frustum, const glm::dvec3& eye);
 
 /// The largest distance between neighbouring samples of a block, in pixels.
 ///
@@ -35,7 +35,7 @@ bool may_be_seen(const BlockHull& hull, const Frustum& frustum, const glm::dvec3
 /// the eye and cos(t) at the most oblique ray of the picture that the box's sphere lets in, so every sample of the
 /// block stays below the result. Nearer than h to the eye, or around it, |p| = h: the result is finite and larger than
 /// for any box that the eye is outside of.
-double projected_spacing(const BlockEntry& block, const CameraFrame& frame);
+double projected_spacing(const ldc::BlockEntry& block, const geometry::CameraFrame& frame);
 
 /// Radii of evenly sampled surfaces, world units.
 struct RadiusRange {
@@ -45,6 +45,6 @@ struct RadiusRange {
 
 /// What radius a surface in the box has whose samples are `spacing` pixels apart, by the same measure: at p it is
 /// 1.08 spacing |p| cos(t)^2 / eta. No point of the box in front of the eye lies outside the range.
-RadiusRange radii_at_spacing(const Box& box, const CameraFrame& frame, double spacing);
+RadiusRange radii_at_spacing(const geometry::Box& box, const geometry::CameraFrame& frame, double spacing);
 
-}  // namespace surfcast
+}  // namespace surfcast::selection

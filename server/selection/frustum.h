@@ -6,21 +6,21 @@
 #include "geometry/box.h"
 #include "geometry/camera.h"
 
-namespace surfcast {
+namespace surfcast::selection {
 
 /// What a rectangle of pixels sees: the four planes through the eye and the sides of the rectangle, and the eye plane.
 /// Planes are stated relative to the eye, so that world coordinates of any size keep their precision.
 class Frustum {
  public:
   /// The rectangle [x0, x1] x [y0, y1], pixels from the top left corner.
-  Frustum(const CameraFrame& frame, double x0, double y0, double x1, double y1);
+  Frustum(const geometry::CameraFrame& frame, double x0, double y0, double x1, double y1);
 
   /// False only if the box, grown by `margin` world units on all sides, is surely outside.
-  [[nodiscard]] bool may_see(const Box& box, double margin) const;
+  [[nodiscard]] bool may_see(const geometry::Box& box, double margin) const;
 
  private:
   glm::dvec3 eye_;
   std::array<glm::dvec3, 5> inward_;  ///< unit normals
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::selection

@@ -5,7 +5,7 @@
 
 #include "base/contract.h"
 
-namespace surfcast {
+namespace surfcast::selection {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
@@ -14,19 +14,19 @@ constexpr double kReluctance = 1.25;
 /// The prefilter spreads a surfel over a few pixels more than its disc covers.
 constexpr double kPrefilterPixels = 4;
 
-Frustum frustum_of(const CameraFrame& frame, double x0, double y0, double x1, double y1) {
+Frustum frustum_of(const geometry::CameraFrame& frame, double x0, double y0, double x1, double y1) {
   return {frame, x0 - kPrefilterPixels, y0 - kPrefilterPixels, x1 + kPrefilterPixels, y1 + kPrefilterPixels};
 }
 
 class Selector {
  public:
-  Selector(const SelectionTree& tree, const CameraFrame& frame, const SelectionGoal& goal,
+  Selector(const SelectionTree& tree, const geometry::CameraFrame& frame, const SelectionCriteria& criteria,
            const std::vector<bool>& resident, std::span<const uint32_t> was_refined)
       : tree_(tree),
         blocks_(tree.tree.blocks()),
         frame_(frame),
         frustum_(frustum_of(frame, 0, 0, frame.width, frame.height)),
-        goal_(goal),
+        criteria_(criteria),
         resident_(resident),
         was_refined_(was_refined),
         states_(blocks_.size()) {}
@@ -58,17 +58,18 @@ class Selector {
   };
 
   [[nodiscard]] uint64_t cost(uint32_t block) const {
-    const uint64_t page = goal_.page;
+    const uint64_t page = criteria_.page;
     return (blocks_[block].surfels + page - 1) / page * page;
   }
   [[nodiscard]] bool in_view(uint32_t block) const {
     const BlockHull& hull = tree_.hulls[block];
-    return may_be_seen(hull, frustum_, frame_.eye) && (goal_.clip == nullptr || goal_.clip->may_show(hull.centres));
+    return may_be_visible(hull, frustum_, frame_.eye) &&
+           (criteria_.clip == nullptr || criteria_.clip->may_show(hull.centres));
   }
 
   template <typename Action>
   void for_children(uint32_t block, Action action) const {
-    const BlockTree::Children children = tree_.tree.children(block);
+    const ldc::BlockTree::Children children = tree_.tree.children(block);
     for (uint32_t i = 0; i < children.count; ++i) action(children.first + i);
   }
 
@@ -77,7 +78,7 @@ class Selector {
     State& state = states_[block];
     state.fate = Fate::kKept;
     state.spacing = projected_spacing(blocks_[block], frame_);
-    if (const uint32_t parent = blocks_[block].parent; parent != BlockEntry::kNoParent) {
+    if (const uint32_t parent = blocks_[block].parent; parent != ldc::BlockEntry::kNoParent) {
       state.urgency = std::min(states_[parent].urgency, states_[parent].spacing);
     }
     seen_.push_back(block);
@@ -92,7 +93,7 @@ class Selector {
       keep(root);
       used_ += cost(root);
     }
-    while (!candidates_.empty() && candidates_.top().spacing > goal_.spacing) {
+    while (!candidates_.empty() && candidates_.top().spacing > criteria_.spacing) {
       const uint32_t block = candidates_.top().block;
       candidates_.pop();
       replace_by_children(block);
@@ -108,7 +109,7 @@ class Selector {
       added += cost(child);
     });
     const uint64_t left = used_ - cost(block);
-    if (left + added > goal_.surfels && added > cost(block)) {
+    if (left + added > criteria_.surfels && added > cost(block)) {
       selection_.budget_reached = true;
       return;
     }
@@ -151,7 +152,7 @@ class Selector {
           if (in_view(child)) open.push_back(child);
         });
       }
-      if (used_ - cost(block) + added > goal_.surfels) return false;
+      if (used_ - cost(block) + added > criteria_.surfels) return false;
     }
     used_ += added - cost(block);
     finer_.insert(finer_.end(), found.begin(), found.end());
@@ -200,10 +201,10 @@ class Selector {
   }
 
   const SelectionTree& tree_;
-  std::span<const BlockEntry> blocks_;
-  const CameraFrame& frame_;
+  std::span<const ldc::BlockEntry> blocks_;
+  const geometry::CameraFrame& frame_;
   Frustum frustum_;
-  SelectionGoal goal_;
+  SelectionCriteria criteria_;
   const std::vector<bool>& resident_;
   std::span<const uint32_t> was_refined_;
 
@@ -217,19 +218,21 @@ class Selector {
 
 }  // namespace
 
-BlockSelection select_blocks(const SelectionTree& tree, const CameraFrame& frame, const SelectionGoal& goal,
-                             const std::vector<bool>& resident, std::span<const uint32_t> was_refined) {
-  SURFCAST_EXPECTS(resident.size() == tree.tree.blocks().size() && goal.page > 0);
-  return Selector(tree, frame, goal, resident, was_refined).select();
+BlockSelection select_blocks(const SelectionTree& tree, const geometry::CameraFrame& frame,
+                             const SelectionCriteria& criteria, const std::vector<bool>& resident,
+                             std::span<const uint32_t> was_refined) {
+  SURFCAST_EXPECTS(resident.size() == tree.tree.blocks().size() && criteria.page > 0);
+  return Selector(tree, frame, criteria, resident, was_refined).select();
 }
 
 std::vector<uint32_t> blocks_in_rectangle(const SelectionTree& tree, std::span<const uint32_t> blocks,
-                                          const CameraFrame& frame, double x0, double y0, double x1, double y1) {
+                                          const geometry::CameraFrame& frame, double x0, double y0, double x1,
+                                          double y1) {
   const Frustum frustum = frustum_of(frame, x0, y0, x1, y1);
   std::vector<uint32_t> seen;
   std::copy_if(blocks.begin(), blocks.end(), std::back_inserter(seen),
-               [&](uint32_t block) { return may_be_seen(tree.hulls[block], frustum, frame.eye); });
+               [&](uint32_t block) { return may_be_visible(tree.hulls[block], frustum, frame.eye); });
   return seen;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::selection

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace surfcast {
+namespace surfcast::service {
 
 /// Shares the render thread's time between pictures of motions and all others. A motion's picture goes first, also
 /// between two batches of another one, until the others are owed: they have a quarter of the time as long as they wait.
@@ -19,4 +19,4 @@ class DrawShares {
   double owed_ms_ = 0;  ///< to pictures that are of no motion; negative: they had more than their share
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::service

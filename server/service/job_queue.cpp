@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <utility>
 
-namespace surfcast {
+namespace surfcast::service {
 
-bool JobQueue::push(SessionId session, JobId job, Urgency urgency) {
+bool JobQueue::push(SessionId session, JobId job, Priority priority) {
   if (size_ >= limit_) return false;
-  Lines& lines = lines_[static_cast<size_t>(urgency)];
+  Lines& lines = lines_[static_cast<size_t>(priority)];
   auto line = std::ranges::find(lines, session, &Line::session);
   if (line == lines.end()) line = lines.insert(lines.end(), Line{session, {}});
   line->jobs.push_back(job);
@@ -15,8 +15,8 @@ bool JobQueue::push(SessionId session, JobId job, Urgency urgency) {
   return true;
 }
 
-std::optional<JobId> JobQueue::pop(Urgency urgency) {
-  Lines& lines = lines_[static_cast<size_t>(urgency)];
+std::optional<JobId> JobQueue::pop(Priority priority) {
+  Lines& lines = lines_[static_cast<size_t>(priority)];
   if (lines.empty()) return std::nullopt;
   Line line = std::move(lines.front());
   lines.pop_front();
@@ -46,4 +46,4 @@ bool JobQueue::contains(JobId job) const {
   });
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::service

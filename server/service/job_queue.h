@@ -6,26 +6,26 @@
 #include <deque>
 #include <optional>
 
-namespace surfcast {
+namespace surfcast::service {
 
 /// Who asks: all jobs of one connection share one.
 using SessionId = uint64_t;
 using JobId = uint64_t;
 
 /// Whether somebody's hand waits for a picture.
-enum class Urgency { kMotion, kPatient };
+enum class Priority { kMotion, kStill };
 
 /// What the render thread does next. Sessions take turns, one job each, so that one that asks for a thousand pictures
-/// delays another by one picture at most; the jobs of one session and urgency keep their order. Not thread-safe.
+/// delays another by one picture at most; the jobs of one session and priority keep their order. Not thread-safe.
 class JobQueue {
  public:
-  /// `limit`: jobs that may wait at a time, over all sessions and of either urgency.
+  /// `limit`: jobs that may wait at a time, over all sessions and of either priority.
   explicit JobQueue(size_t limit) : limit_(limit) {}
 
   /// False when the queue is full; the job has not been taken then.
-  [[nodiscard]] bool push(SessionId session, JobId job, Urgency urgency);
-  std::optional<JobId> pop(Urgency urgency);
-  [[nodiscard]] bool waits(Urgency urgency) const { return !lines_[static_cast<size_t>(urgency)].empty(); }
+  [[nodiscard]] bool push(SessionId session, JobId job, Priority priority);
+  std::optional<JobId> pop(Priority priority);
+  [[nodiscard]] bool has_waiting(Priority priority) const { return !lines_[static_cast<size_t>(priority)].empty(); }
   /// False when the job does not wait here.
   bool remove(JobId job);
   [[nodiscard]] bool contains(JobId job) const;
@@ -41,7 +41,7 @@ class JobQueue {
 
   size_t limit_;
   size_t size_ = 0;
-  std::array<Lines, 2> lines_;  ///< by urgency
+  std::array<Lines, 2> lines_;  ///< by priority
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::service

@@ -6,7 +6,7 @@
 
 #include "surfel/even_sampling.h"
 
-namespace surfcast {
+namespace surfcast::service {
 namespace {
 
 namespace fs = std::filesystem;
@@ -25,10 +25,10 @@ void add_folder(const fs::path& folder, std::map<std::string, fs::path>& models)
 }
 
 /// The median over the surfels, as far as the leaves state it.
-double typical_spacing(std::span<const BlockEntry> blocks) {
+double typical_spacing(std::span<const ldc::BlockEntry> blocks) {
   std::vector<std::pair<double, uint64_t>> leaves;
   uint64_t surfels = 0;
-  for (const BlockEntry& block : blocks) {
+  for (const ldc::BlockEntry& block : blocks) {
     if (block.level > 0) continue;
     leaves.emplace_back(block.spacing, block.surfels);
     surfels += block.surfels;
@@ -37,7 +37,7 @@ double typical_spacing(std::span<const BlockEntry> blocks) {
   uint64_t below = 0;
   for (const auto& [radius, count] : leaves) {
     below += count;
-    if (2 * below >= surfels) return radius / kRadiusOverSpacing;
+    if (2 * below >= surfels) return radius / surfel::kRadiusOverSpacing;
   }
   return 0;
 }
@@ -57,7 +57,7 @@ std::vector<std::string> ModelCatalogue::names() const {
   return names;
 }
 
-Result<std::shared_ptr<const ModelFile>> ModelCatalogue::open(const std::string& name) const {
+Result<std::shared_ptr<const model::ModelFile>> ModelCatalogue::open(const std::string& name) const {
   const auto models = find_all();
   const auto found = models.find(name);
   if (found == models.end()) return fail(ErrorKind::kNotFound, "there is no model '" + name + "'");
@@ -68,26 +68,26 @@ Result<std::shared_ptr<const ModelFile>> ModelCatalogue::open(const std::string&
   const std::lock_guard lock(mutex_);
   Opened& opened = opened_[name];
   if (opened.model && opened.path == path && opened.written == written && !code) return opened.model;
-  Result<ModelFile> model = ModelFile::open(path);
+  Result<model::ModelFile> model = model::ModelFile::open(path);
   if (!model) {
     opened_.erase(name);
     return fail(model.error());
   }
-  opened = {path, written, std::make_shared<const ModelFile>(std::move(*model))};
+  opened = {path, written, std::make_shared<const model::ModelFile>(std::move(*model))};
   return opened.model;
 }
 
 Result<ModelDescription> ModelCatalogue::describe(const std::string& name) const {
-  const Result<std::shared_ptr<const ModelFile>> model = open(name);
+  const Result<std::shared_ptr<const model::ModelFile>> model = open(name);
   if (!model) return fail(model.error());
   ModelDescription description;
   description.info = (*model)->info();
   description.spacing = typical_spacing((*model)->blocks());
   description.blocks = static_cast<uint32_t>((*model)->blocks().size());
-  for (const BlockEntry& block : (*model)->blocks()) {
+  for (const ldc::BlockEntry& block : (*model)->blocks()) {
     description.levels = std::max(description.levels, static_cast<uint32_t>(block.level + 1));
   }
   return description;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::service

@@ -11,7 +11,7 @@
 #include "model/model_file.h"
 #include "service/model_source.h"
 
-namespace surfcast {
+namespace surfcast::service {
 
 /// A model file and the name it is served under.
 struct NamedModel {
@@ -29,13 +29,13 @@ class ModelCatalogue : public ModelSource {
 
   [[nodiscard]] std::vector<std::string> names() const override;
   [[nodiscard]] Result<ModelDescription> describe(const std::string& name) const override;
-  [[nodiscard]] Result<std::shared_ptr<const ModelFile>> open(const std::string& name) const override;
+  [[nodiscard]] Result<std::shared_ptr<const model::ModelFile>> open(const std::string& name) const override;
 
  private:
   struct Opened {
     std::filesystem::path path;
     std::filesystem::file_time_type written;
-    std::shared_ptr<const ModelFile> model;
+    std::shared_ptr<const model::ModelFile> model;
   };
 
   [[nodiscard]] std::map<std::string, std::filesystem::path> find_all() const;
@@ -46,4 +46,4 @@ class ModelCatalogue : public ModelSource {
   mutable std::map<std::string, Opened> opened_;  ///< by name
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::service

@@ -8,11 +8,11 @@
 #include "base/result.h"
 #include "model/model_file.h"
 
-namespace surfcast {
+namespace surfcast::service {
 
 /// What a user is told about a model.
 struct ModelDescription {
-  ModelInfo info;
+  model::ModelInfo info;
   uint32_t levels = 0;
   uint32_t blocks = 0;
   double spacing = 0;  ///< typical distance of neighbouring surfels of the source, world units
@@ -27,7 +27,7 @@ class ModelSource {
   [[nodiscard]] virtual std::vector<std::string> names() const = 0;
   [[nodiscard]] virtual Result<ModelDescription> describe(const std::string& name) const = 0;
   /// The model of that name; the pointer changes when its file does.
-  [[nodiscard]] virtual Result<std::shared_ptr<const ModelFile>> open(const std::string& name) const = 0;
+  [[nodiscard]] virtual Result<std::shared_ptr<const model::ModelFile>> open(const std::string& name) const = 0;
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::service

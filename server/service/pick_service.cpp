@@ -6,16 +6,16 @@
 
 #include "model/fit_model.h"
 
-namespace surfcast {
+namespace surfcast::service {
 namespace {
 
 constexpr unsigned kThreads = 2;
-constexpr int kMostWaiting = 64;
+constexpr int kMaxWaiting = 64;
 constexpr size_t kBlockBytes = size_t{64} << 20;
 
-Camera camera_of(const ModelFile& model, const PickJob& job) {
-  if (!job.request.camera) return fit_model(model, static_cast<double>(job.request.width) / job.request.height);
-  Camera camera = *job.request.camera;
+geometry::Camera camera_of(const model::ModelFile& model, const PickJob& job) {
+  if (!job.request.camera) return model::fit_model(model, static_cast<double>(job.request.width) / job.request.height);
+  geometry::Camera camera = *job.request.camera;
   if (job.up_from_model) camera.view_up = model.info().z_up ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
   return camera;
 }
@@ -29,33 +29,34 @@ PickService::~PickService() {
 }
 
 void PickService::pick(PickJob job, Done done) {
-  if (++waiting_ > kMostWaiting) {
+  if (++waiting_ > kMaxWaiting) {
     --waiting_;
     return done(fail(ErrorKind::kUnavailable, "the server is busy: too many picks wait"));
   }
   pool_.post([this, job = std::move(job), done = std::move(done)] {
-    Result<std::optional<PickedSurfel>> picked = run(job);
+    Result<std::optional<pick::PickedSurfel>> picked = run(job);
     --waiting_;
     done(std::move(picked));
   });
 }
 
 /// What may throw (memory runs out) becomes a value, so that one pick cannot end the server.
-Result<std::optional<PickedSurfel>> PickService::run(const PickJob& job) {
+Result<std::optional<pick::PickedSurfel>> PickService::run(const PickJob& job) {
   try {
-    const PictureRequest& request = job.request;
+    const picture::PictureRequest& request = job.request;
     if (job.x < 0 || job.y < 0 || job.x >= request.width || job.y >= request.height) {
       return fail(ErrorKind::kInvalidInput, "pixel: outside the picture");
     }
-    const Result<std::shared_ptr<const ModelFile>> model = models_.open(job.model);
+    const Result<std::shared_ptr<const model::ModelFile>> model = models_.open(job.model);
     if (!model) return fail(model.error());
-    const Result<CameraFrame> frame = make_camera_frame(camera_of(**model, job), request.width, request.height);
+    const Result<geometry::CameraFrame> frame =
+        geometry::make_camera_frame(camera_of(**model, job), request.width, request.height);
     if (!frame) return fail(frame.error());
-    return pick_surfel(**model, {*frame, {job.x + 0.5, job.y + 0.5}, request.clip, request.hidden_classes}, blocks_,
-                       stopping_);
+    return pick::pick_surfel(**model, {*frame, {job.x + 0.5, job.y + 0.5}, request.clip, request.hidden_classes},
+                             blocks_, stopping_);
   } catch (const std::exception& error) {
     return fail(ErrorKind::kInternal, std::string("unexpected: ") + error.what());
   }
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::service

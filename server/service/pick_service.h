@@ -7,26 +7,26 @@
 
 #include "base/result.h"
 #include "pick/pick_surfel.h"
-#include "render/picture.h"
+#include "picture/picture.h"
 #include "service/model_source.h"
 #include "service/worker_pool.h"
 
-namespace surfcast {
+namespace surfcast::service {
 
 /// A pixel of a picture: somebody wants to know what it shows.
 struct PickJob {
   std::string model;
-  PictureRequest request;      ///< camera, resolution, clip and hidden classes matter
-  bool up_from_model = false;  ///< take the model's vertical axis as the camera's view_up
-  int x = 0;                   ///< pixels from the left edge
-  int y = 0;                   ///< pixels from the upper edge
+  picture::PictureRequest request;  ///< camera, resolution, clip and hidden classes matter
+  bool up_from_model = false;       ///< take the model's vertical axis as the camera's view_up
+  int x = 0;                        ///< pixels from the left edge
+  int y = 0;                        ///< pixels from the upper edge
 };
 
 /// Finds what is under pixels, on threads of its own, so that no picture waits for it. Methods may be called from any
 /// thread.
 class PickService {
  public:
-  using Done = std::function<void(Result<std::optional<PickedSurfel>>)>;
+  using Done = std::function<void(Result<std::optional<pick::PickedSurfel>>)>;
 
   /// `models` must outlive the service.
   explicit PickService(const ModelSource& models);
@@ -38,13 +38,13 @@ class PickService {
   void pick(PickJob job, Done done);
 
  private:
-  [[nodiscard]] Result<std::optional<PickedSurfel>> run(const PickJob& job);
+  [[nodiscard]] Result<std::optional<pick::PickedSurfel>> run(const PickJob& job);
 
   const ModelSource& models_;
   std::atomic<bool> stopping_ = false;
   std::atomic<int> waiting_ = 0;
-  SourceBlocks blocks_;
+  pick::SourceBlocks blocks_;
   WorkerPool pool_;  ///< last, so that its threads end first
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::service

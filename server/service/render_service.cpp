@@ -12,12 +12,13 @@
 #include <utility>
 
 #include "base/contract.h"
-#include "base/interruption.h"
+#include "base/preemption.h"
 #include "base/stopwatch.h"
+#include "encode/encode_picture.h"
 #include "service/draw_shares.h"
 #include "service/worker_pool.h"
 
-namespace surfcast {
+namespace surfcast::service {
 namespace {
 
 tl::unexpected<Error> cancelled_error() {
@@ -39,7 +40,7 @@ auto guarded(Function function) -> decltype(function()) {
 struct RenderService::State {
   struct Job {
     JobId id = 0;
-    PictureJob wish;
+    PictureJob picture;
     PictureDone done;
     std::atomic<bool> cancelled = false;
     Stopwatch since_submission;
@@ -48,49 +49,49 @@ struct RenderService::State {
     std::atomic<bool> encoding = false;  ///< has begun
   };
   using JobPointer = std::shared_ptr<Job>;
-  using SharedFrame = std::shared_ptr<const Frame>;
+  using SharedFrame = std::shared_ptr<const picture::Frame>;
 
   State(const ModelSource& source, const ServiceLimits& service_limits)
       : models(source), limits(service_limits), queue(service_limits.queued_jobs) {}
 
   // Render thread.
-  void run(const PainterFactory& make_painter, std::promise<Status> started);
-  [[nodiscard]] bool nobody_waits();
-  [[nodiscard]] bool waits(Urgency urgency) const;
-  [[nodiscard]] bool may_draw(Urgency urgency) const;
-  [[nodiscard]] std::optional<Urgency> turn() const;
-  JobPointer take(Urgency urgency, std::unique_lock<std::mutex>& lock);
+  void run(const FrameRendererFactory& make_renderer, std::promise<Status> started);
+  [[nodiscard]] bool idle_for_a_moment();
+  [[nodiscard]] bool has_waiting(Priority priority) const;
+  [[nodiscard]] bool may_draw(Priority priority) const;
+  [[nodiscard]] std::optional<Priority> next_priority() const;
+  JobPointer take(Priority priority, std::unique_lock<std::mutex>& lock);
   JobPointer next_job();
   JobPointer next_motion();
-  Result<Frame> paint(Painter& painter, Job& job, const Interruption& interruption);
-  void draw_one(Painter& painter, const JobPointer& job, const Interruption& interruption);
-  void draw_motion(Painter& painter, const JobPointer& job, bool others_wait);
-  void draw_patient(Painter& painter, const JobPointer& job);
-  void give_up(JobId id);
+  Result<picture::Frame> render_frame(FrameRenderer& renderer, Job& job, const Preemption& preemption);
+  void draw_one(FrameRenderer& renderer, const JobPointer& job, const Preemption& preemption);
+  void draw_motion(FrameRenderer& renderer, const JobPointer& job, bool others_wait);
+  void draw_still(FrameRenderer& renderer, const JobPointer& job);
+  void cancel_superseded(JobId id);
 
   // Pool.
-  static EncodedPicture describe(const Job& job, const Frame& frame);
+  static EncodedPicture describe(const Job& job, const picture::Frame& frame);
   static Result<EncodedPicture> encode(Job& job, const Result<SharedFrame>& shared);
   void encode_one(const JobPointer& job, Result<SharedFrame> frame);
 
   // Any thread.
-  [[nodiscard]] Status check(const PictureJob& wish) const;
-  JobId add(SessionId session, PictureJob wish, PictureDone done);
+  [[nodiscard]] Status check(const PictureJob& picture) const;
+  JobId add(SessionId session, PictureJob picture, PictureDone done);
   void finish(const JobPointer& job, Result<EncodedPicture> result);
   void stop();
 
   const ModelSource& models;
   const ServiceLimits limits;
-  DrawShares shares;       ///< of the render thread
-  DeviceInfo device;       ///< set before start() returns, constant afterwards
-  int max_resolution = 0;  ///< likewise
+  DrawShares shares;           ///< of the render thread
+  picture::DeviceInfo device;  ///< set before start() returns, constant afterwards
+  int max_resolution = 0;      ///< likewise
 
   mutable std::mutex mutex;  ///< guards what follows
   std::condition_variable wake;
   JobQueue queue;
   std::map<JobId, JobPointer> jobs;  ///< outstanding: waiting, being drawn or being encoded
   JobId last_id = 0;
-  std::array<size_t, 2> in_encoding{};  ///< drawn pictures and those being drawn, by urgency
+  std::array<size_t, 2> in_encoding{};  ///< drawn pictures and those being drawn, by priority
   bool stopping = false;
 
   // Declared last, so that the threads end before what they use.
@@ -100,62 +101,62 @@ struct RenderService::State {
   std::jthread render_thread;
 };
 
-void RenderService::State::run(const PainterFactory& make_painter, std::promise<Status> started) {
-  Result<std::unique_ptr<Painter>> painter = guarded([&] { return make_painter(); });
-  if (!painter) {
-    started.set_value(fail(painter.error()));
+void RenderService::State::run(const FrameRendererFactory& make_renderer, std::promise<Status> started) {
+  Result<std::unique_ptr<FrameRenderer>> renderer = guarded([&] { return make_renderer(); });
+  if (!renderer) {
+    started.set_value(fail(renderer.error()));
     return;
   }
-  device = (*painter)->device();
-  max_resolution = (*painter)->max_resolution();
+  device = (*renderer)->device();
+  max_resolution = (*renderer)->max_resolution();
   started.set_value({});
-  bool more_to_rehearse = true;
+  bool more_to_warm_up = true;
   for (;;) {
-    if (more_to_rehearse && nobody_waits()) {
-      more_to_rehearse = guarded([&]() -> Result<bool> { return (*painter)->rehearse(); }).value_or(false);
+    if (more_to_warm_up && idle_for_a_moment()) {
+      more_to_warm_up = guarded([&]() -> Result<bool> { return (*renderer)->warm_up(); }).value_or(false);
       continue;
     }
     const JobPointer job = next_job();
     if (!job) return;
-    more_to_rehearse = true;  // there may be another model
-    if (job->wish.urgency == Urgency::kMotion) {
-      draw_motion(**painter, job, waits(Urgency::kPatient));
+    more_to_warm_up = true;  // there may be another model
+    if (job->picture.priority == Priority::kMotion) {
+      draw_motion(**renderer, job, has_waiting(Priority::kStill));
     } else {
-      draw_patient(**painter, job);
+      draw_still(**renderer, job);
     }
   }
 }
 
 /// True once nothing has been to do for a moment.
-bool RenderService::State::nobody_waits() {
+bool RenderService::State::idle_for_a_moment() {
   constexpr std::chrono::milliseconds kMoment{300};
   std::unique_lock lock(mutex);
-  return !wake.wait_for(lock, kMoment, [this] { return stopping || turn(); });
+  return !wake.wait_for(lock, kMoment, [this] { return stopping || next_priority(); });
 }
 
-bool RenderService::State::waits(Urgency urgency) const {
+bool RenderService::State::has_waiting(Priority priority) const {
   const std::lock_guard lock(mutex);
-  return queue.waits(urgency);
+  return queue.has_waiting(priority);
 }
 
-/// Whether a job of that urgency waits and has room behind the painter.
-bool RenderService::State::may_draw(Urgency urgency) const {
-  return queue.waits(urgency) && in_encoding[static_cast<size_t>(urgency)] < limits.frames_in_encoding;
+/// Whether a job of that priority waits and has room behind the renderer.
+bool RenderService::State::may_draw(Priority priority) const {
+  return queue.has_waiting(priority) && in_encoding[static_cast<size_t>(priority)] < limits.frames_in_encoding;
 }
 
-std::optional<Urgency> RenderService::State::turn() const {
-  const bool patient = may_draw(Urgency::kPatient);
-  if (may_draw(Urgency::kMotion) && (shares.motion_first() || !patient)) return Urgency::kMotion;
-  return patient ? std::optional(Urgency::kPatient) : std::nullopt;
+std::optional<Priority> RenderService::State::next_priority() const {
+  const bool still = may_draw(Priority::kStill);
+  if (may_draw(Priority::kMotion) && (shares.motion_first() || !still)) return Priority::kMotion;
+  return still ? std::optional(Priority::kStill) : std::nullopt;
 }
 
-/// The next job of that urgency. Null if it has waited too long: it is refused, because whoever sent it has given up by
-/// now, and drawing it would make others wait too long in turn.
-RenderService::State::JobPointer RenderService::State::take(Urgency urgency, std::unique_lock<std::mutex>& lock) {
-  JobPointer job = jobs.at(*queue.pop(urgency));
+/// The next job of that priority. Null if it has waited too long: it is refused, because whoever sent it has given up
+/// by now, and drawing it would make others wait too long in turn.
+RenderService::State::JobPointer RenderService::State::take(Priority priority, std::unique_lock<std::mutex>& lock) {
+  JobPointer job = jobs.at(*queue.pop(priority));
   job->waited_ms = job->since_submission.milliseconds();
-  if (job->waited_ms <= static_cast<double>(limits.patience.count())) {
-    ++in_encoding[static_cast<size_t>(urgency)];
+  if (job->waited_ms <= static_cast<double>(limits.queue_timeout.count())) {
+    ++in_encoding[static_cast<size_t>(priority)];
     return job;
   }
   lock.unlock();
@@ -168,88 +169,89 @@ RenderService::State::JobPointer RenderService::State::take(Urgency urgency, std
 RenderService::State::JobPointer RenderService::State::next_job() {
   std::unique_lock lock(mutex);
   for (;;) {
-    wake.wait(lock, [this] { return stopping || turn(); });
+    wake.wait(lock, [this] { return stopping || next_priority(); });
     if (stopping) return nullptr;
-    if (JobPointer job = take(*turn(), lock)) return job;
+    if (JobPointer job = take(*next_priority(), lock)) return job;
   }
 }
 
-/// What is to be drawn in the middle of a patient picture; null if nothing is.
+/// What is to be drawn in the middle of a still picture; null if nothing is.
 RenderService::State::JobPointer RenderService::State::next_motion() {
   std::unique_lock lock(mutex);
-  while (!stopping && may_draw(Urgency::kMotion) && shares.motion_first()) {
-    if (JobPointer job = take(Urgency::kMotion, lock)) return job;
+  while (!stopping && may_draw(Priority::kMotion) && shares.motion_first()) {
+    if (JobPointer job = take(Priority::kMotion, lock)) return job;
   }
   return nullptr;
 }
 
-Result<Frame> RenderService::State::paint(Painter& painter, Job& job, const Interruption& interruption) {
-  PictureRequest request = job.wish.request;
-  request.format = pixel_format_of(job.wish.format);
-  if (request.camera && job.wish.up_from_model) {
-    const Result<ModelDescription> description = models.describe(job.wish.model);
+Result<picture::Frame> RenderService::State::render_frame(FrameRenderer& renderer, Job& job,
+                                                          const Preemption& preemption) {
+  picture::PictureRequest request = job.picture.request;
+  request.format = picture::pixel_format_of(job.picture.format);
+  if (request.camera && job.picture.up_from_model) {
+    const Result<ModelDescription> description = models.describe(job.picture.model);
     if (!description) return fail(description.error());
     request.camera->view_up = description->info.z_up ? glm::dvec3{0, 0, 1} : glm::dvec3{0, 1, 0};
   }
-  return painter.draw(job.wish.model, request, interruption);
+  return renderer.draw(job.picture.model, request, preemption);
 }
 
-void RenderService::State::draw_motion(Painter& painter, const JobPointer& job, bool others_wait) {
-  draw_one(painter, job, job->cancelled);
+void RenderService::State::draw_motion(FrameRenderer& renderer, const JobPointer& job, bool others_wait) {
+  draw_one(renderer, job, job->cancelled);
   shares.drew_motion(job->draw_ms, others_wait);
 }
 
 /// Draws a picture, and what motions wait for between its batches.
-void RenderService::State::draw_patient(Painter& painter, const JobPointer& job) {
+void RenderService::State::draw_still(FrameRenderer& renderer, const JobPointer& job) {
   Stopwatch since_motion;
-  const Interruption interruption(job->cancelled, [&] {
+  const Preemption preemption(job->cancelled, [&] {
     shares.drew_other(since_motion.milliseconds());
-    bool disturbed = false;
+    bool preempted = false;
     while (const JobPointer motion = next_motion()) {
-      draw_motion(painter, motion, /*others_wait=*/true);
-      disturbed = true;
+      draw_motion(renderer, motion, /*others_wait=*/true);
+      preempted = true;
     }
     since_motion = Stopwatch();
-    return disturbed;
+    return preempted;
   });
-  draw_one(painter, job, interruption);
+  draw_one(renderer, job, preemption);
   shares.drew_other(since_motion.milliseconds());
 }
 
-void RenderService::State::draw_one(Painter& painter, const JobPointer& job, const Interruption& interruption) {
-  const WorkStopwatch watch(interruption);
-  Result<Frame> frame = guarded([&] { return paint(painter, *job, interruption); });
+void RenderService::State::draw_one(FrameRenderer& renderer, const JobPointer& job, const Preemption& preemption) {
+  const WorkStopwatch watch(preemption);
+  Result<picture::Frame> frame = guarded([&] { return render_frame(renderer, *job, preemption); });
   job->draw_ms = watch.milliseconds();
   Result<SharedFrame> shared = SharedFrame();
   if (frame) {
-    frame->stats.stages.insert(frame->stats.stages.begin(), StageTime{"queue", job->waited_ms});
-    give_up(job->wish.supersedes);
-    shared = std::make_shared<const Frame>(std::move(*frame));
+    frame->stats.stages.insert(frame->stats.stages.begin(), picture::StageTime{"queue", job->waited_ms});
+    cancel_superseded(job->picture.supersedes);
+    shared = std::make_shared<const picture::Frame>(std::move(*frame));
   } else {
     shared = fail(frame.error());
   }
-  WorkerPool& encoder = job->wish.urgency == Urgency::kMotion ? *motion_pool : *pool;
+  WorkerPool& encoder = job->picture.priority == Priority::kMotion ? *motion_pool : *pool;
   encoder.post([this, job, shared = std::move(shared)]() mutable { encode_one(job, std::move(shared)); });
 }
 
 /// Spares the encoders a picture that is overtaken by a newer one.
-void RenderService::State::give_up(JobId id) {
+void RenderService::State::cancel_superseded(JobId id) {
   const std::lock_guard lock(mutex);
   const auto found = jobs.find(id);
   if (found != jobs.end() && !found->second->encoding) found->second->cancelled = true;
 }
 
 /// What a picture shows and what drawing it took; without its bytes.
-EncodedPicture RenderService::State::describe(const Job& job, const Frame& frame) {
+EncodedPicture RenderService::State::describe(const Job& job, const picture::Frame& frame) {
   EncodedPicture picture;
-  picture.format = job.wish.format;
+  picture.format = job.picture.format;
   picture.width = frame.image.width;
   picture.height = frame.image.height;
   picture.camera = frame.camera;
-  picture.normalization = job.wish.request.normalization;
-  picture.spacing = job.wish.request.spacing;
+  picture.normalization = job.picture.request.normalization;
+  picture.spacing = job.picture.request.spacing;
   picture.converged = frame.converged;
-  picture.settled = frame.settled;
+  picture.nothing_pending = frame.nothing_pending;
   picture.cut = frame.cut;
   picture.waited_ms = job.waited_ms;
   picture.draw_ms = job.draw_ms;
@@ -262,11 +264,12 @@ Result<EncodedPicture> RenderService::State::encode(Job& job, const Result<Share
   job.encoding = true;
   if (job.cancelled) return cancelled_error();
   const Stopwatch watch;
-  const Frame& frame = **shared;
+  const picture::Frame& frame = **shared;
   EncodedPicture picture = describe(job, frame);
-  if (job.wish.keep_frame) picture.frame = *shared;
+  if (job.picture.keep_frame) picture.frame = *shared;
   if (!frame.image.pixels.empty()) {
-    Result<std::vector<std::byte>> bytes = encode_picture(frame.image, job.wish.format, job.wish.quality);
+    Result<std::vector<std::byte>> bytes =
+        surfcast::encode::encode_picture(frame.image, job.picture.format, job.picture.quality);
     if (!bytes) return fail(bytes.error());
     picture.bytes = std::move(*bytes);
   }
@@ -281,15 +284,15 @@ void RenderService::State::encode_one(const JobPointer& job, Result<SharedFrame>
   frame = cancelled_error();  // lets go of the pixels before the render thread may make more
   {
     const std::lock_guard lock(mutex);
-    --in_encoding[static_cast<size_t>(job->wish.urgency)];
+    --in_encoding[static_cast<size_t>(job->picture.priority)];
   }
   wake.notify_one();
   finish(job, std::move(result));
 }
 
-Status RenderService::State::check(const PictureJob& wish) const {
-  const int width = wish.request.width;
-  const int height = wish.request.height;
+Status RenderService::State::check(const PictureJob& picture) const {
+  const int width = picture.request.width;
+  const int height = picture.request.height;
   const std::string size = std::to_string(width) + "," + std::to_string(height);
   if (width < 1 || height < 1) return fail(ErrorKind::kInvalidInput, "resolution: must be at least 1,1");
   if (width > max_resolution || height > max_resolution) {
@@ -303,15 +306,15 @@ Status RenderService::State::check(const PictureJob& wish) const {
   return {};
 }
 
-JobId RenderService::State::add(SessionId session, PictureJob wish, PictureDone done) {
-  const Status checked = check(wish);
+JobId RenderService::State::add(SessionId session, PictureJob picture, PictureDone done) {
+  const Status checked = check(picture);
   std::unique_lock lock(mutex);
   const JobId id = ++last_id;
-  const bool room = checked && !stopping && queue.push(session, id, wish.urgency);
+  const bool room = checked && !stopping && queue.push(session, id, picture.priority);
   if (room) {
     const auto job = std::make_shared<Job>();
     job->id = id;
-    job->wish = std::move(wish);
+    job->picture = std::move(picture);
     job->done = std::move(done);
     jobs.emplace(id, job);
     lock.unlock();
@@ -337,8 +340,8 @@ void RenderService::State::stop() {
     const std::lock_guard lock(mutex);
     stopping = true;
     for (const auto& [id, job] : jobs) job->cancelled = true;
-    for (const Urgency urgency : {Urgency::kMotion, Urgency::kPatient}) {
-      while (const std::optional<JobId> id = queue.pop(urgency)) waiting.push_back(jobs.at(*id));
+    for (const Priority priority : {Priority::kMotion, Priority::kStill}) {
+      while (const std::optional<JobId> id = queue.pop(priority)) waiting.push_back(jobs.at(*id));
     }
   }
   wake.notify_all();
@@ -351,7 +354,8 @@ void RenderService::State::stop() {
 
 RenderService::RenderService(std::unique_ptr<State> state) : state_(std::move(state)) {}
 
-Result<std::unique_ptr<RenderService>> RenderService::start(const ModelSource& models, PainterFactory make_painter,
+Result<std::unique_ptr<RenderService>> RenderService::start(const ModelSource& models,
+                                                            FrameRendererFactory make_renderer,
                                                             const ServiceLimits& limits) {
   auto state = std::make_unique<State>(models, limits);
   state->pool = std::make_unique<WorkerPool>(limits.encoders);
@@ -359,7 +363,7 @@ Result<std::unique_ptr<RenderService>> RenderService::start(const ModelSource& m
   state->picks = std::make_unique<PickService>(models);
   std::promise<Status> promise;
   std::future<Status> started = promise.get_future();
-  state->render_thread = std::jthread([raw = state.get(), make = std::move(make_painter),
+  state->render_thread = std::jthread([raw = state.get(), make = std::move(make_renderer),
                                        made = std::move(promise)]() mutable { raw->run(make, std::move(made)); });
   if (Status status = started.get(); !status) return fail(status.error());
   return std::unique_ptr<RenderService>(new RenderService(std::move(state)));
@@ -386,17 +390,17 @@ bool RenderService::cancel(JobId id) {
   return true;
 }
 
-JobId RenderService::encode(std::shared_ptr<const Frame> frame, PictureJob wish, PictureDone done) {
-  SURFCAST_EXPECTS(frame->image.format == pixel_format_of(wish.format));
+JobId RenderService::encode(std::shared_ptr<const picture::Frame> frame, PictureJob picture, PictureDone done) {
+  SURFCAST_EXPECTS(frame->image.format == picture::pixel_format_of(picture.format));
   const auto job = std::make_shared<State::Job>();
-  job->wish = std::move(wish);
-  job->wish.urgency = Urgency::kPatient;
+  job->picture = std::move(picture);
+  job->picture.priority = Priority::kStill;
   job->done = std::move(done);
   {
     const std::lock_guard lock(state_->mutex);
     job->id = ++state_->last_id;
     state_->jobs.emplace(job->id, job);
-    ++state_->in_encoding[static_cast<size_t>(Urgency::kPatient)];
+    ++state_->in_encoding[static_cast<size_t>(Priority::kStill)];
   }
   state_->pool->post([state = state_.get(), job, frame = std::move(frame)]() mutable {
     state->encode_one(job, State::SharedFrame(std::move(frame)));
@@ -404,12 +408,12 @@ JobId RenderService::encode(std::shared_ptr<const Frame> frame, PictureJob wish,
   return job->id;
 }
 
-bool RenderService::replace(JobId id, PictureJob wish) {
-  if (!state_->check(wish)) return false;
+bool RenderService::replace(JobId id, PictureJob picture) {
+  if (!state_->check(picture)) return false;
   const std::lock_guard lock(state_->mutex);
   if (!state_->queue.contains(id)) return false;
-  SURFCAST_EXPECTS(state_->jobs.at(id)->wish.urgency == wish.urgency);
-  state_->jobs.at(id)->wish = std::move(wish);
+  SURFCAST_EXPECTS(state_->jobs.at(id)->picture.priority == picture.priority);
+  state_->jobs.at(id)->picture = std::move(picture);
   return true;
 }
 
@@ -427,7 +431,7 @@ void RenderService::pick(PickJob job, PickService::Done done) {
   state_->picks->pick(std::move(job), std::move(done));
 }
 
-const DeviceInfo& RenderService::device() const {
+const picture::DeviceInfo& RenderService::device() const {
   return state_->device;
 }
 
@@ -436,4 +440,4 @@ size_t RenderService::queued() const {
   return state_->queue.size();
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::service

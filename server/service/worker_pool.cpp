@@ -2,7 +2,7 @@
 
 #include <utility>
 
-namespace surfcast {
+namespace surfcast::service {
 
 WorkerPool::WorkerPool(unsigned threads) {
   for (unsigned i = 0; i < threads; ++i) threads_.emplace_back([this] { work(); });
@@ -38,4 +38,4 @@ void WorkerPool::work() {
   }
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::service

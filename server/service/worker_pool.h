@@ -7,7 +7,7 @@
 #include <thread>
 #include <vector>
 
-namespace surfcast {
+namespace surfcast::service {
 
 /// A few threads that run tasks in the order they were posted. The destructor runs what is left, then joins.
 class WorkerPool {
@@ -30,4 +30,4 @@ class WorkerPool {
   std::vector<std::jthread> threads_;
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::service

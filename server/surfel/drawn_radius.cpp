@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace surfcast {
+namespace surfcast::surfel {
 
 float largest_drawn_radius(std::span<const float> radii) {
   std::vector<float> sorted(radii.begin(), radii.end());
@@ -13,4 +13,4 @@ float largest_drawn_radius(std::span<const float> radii) {
   return kFarFromOrdinary * *ordinary;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::surfel

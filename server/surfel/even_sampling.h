@@ -3,7 +3,7 @@
 #include <cmath>
 #include <numbers>
 
-namespace surfcast {
+namespace surfcast::surfel {
 
 /// A surfel's radius on an even sampling of spacing h: there it is the mean distance to its six nearest neighbours.
 inline constexpr double kRadiusOverSpacing = 1.08;
@@ -23,4 +23,4 @@ inline double per_surfel_scale(double sigma) {
   return line * line * even_sampling_weight(sigma);  // the sum at a point of a square lattice is a product of two lines
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::surfel

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <glm/vec3.hpp>
 
-namespace surfcast {
+namespace surfcast::surfel {
 
 /// A lattice of exact coordinates: axis i of a stored point is `index[i] * scale[i] + offset[i]`, evaluated in double
 /// precision in just that way (the formula of LAS), so that coordinates come back to the last bit.
@@ -23,4 +23,4 @@ struct Grid {
   bool operator==(const Grid&) const = default;
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::surfel

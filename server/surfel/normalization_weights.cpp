@@ -19,7 +19,7 @@
 #include "geometry/morton_tree.h"
 #include "shared/kernel.h"
 
-namespace surfcast {
+namespace surfcast::surfel {
 namespace {
 
 /// A place that is too crowded is tried again with one in this many surfels.
@@ -39,10 +39,10 @@ using Indices = std::vector<uint32_t>;
 
 /// The surfels along a Morton curve, so that neighbours in space are mostly neighbours in memory.
 std::vector<Site> sort_sites(const SurfelCloud& cloud) {
-  const RootCube root = root_cube(cloud.bounds());
+  const geometry::RootCube root = geometry::root_cube(cloud.bounds());
   std::vector<std::pair<uint64_t, uint32_t>> order(cloud.size());
   oneapi::tbb::parallel_for(uint32_t{0}, static_cast<uint32_t>(order.size()), [&](uint32_t i) {
-    order[i] = {morton_code(root, cloud.positions[i]), i};
+    order[i] = {geometry::morton_code(root, cloud.positions[i]), i};
   });
   oneapi::tbb::parallel_sort(order);
   std::vector<Site> sites;
@@ -98,12 +98,12 @@ class Sources {
   Sources& operator=(const Sources&) = delete;
   ~Sources() = default;
 
-  [[nodiscard]] const MortonTree& tree() const { return *tree_; }
+  [[nodiscard]] const geometry::MortonTree& tree() const { return *tree_; }
 
   /// The sources whose kernels reach into the box; false when there are `most` or more.
-  bool find(const Box& box, size_t most, std::vector<uint32_t>& found) const {
+  bool find(const geometry::Box& box, size_t most, std::vector<uint32_t>& found) const {
     found.clear();
-    tree_->for_each_seen(box, [&](const MortonTree::Run& run) {
+    tree_->for_each_in_reach(box, [&](const geometry::MortonTree::Run& run) {
       for (uint32_t i = run.first; i < run.last; ++i) {
         const glm::dvec3 nearest = glm::clamp(positions_[i], box.min, box.max);
         const glm::dvec3 d = positions_[i] - nearest;
@@ -122,7 +122,7 @@ class Sources {
   std::vector<glm::dvec3> positions_;
   std::vector<uint64_t> codes_;
   std::vector<float> reaches_;
-  std::optional<MortonTree> tree_;
+  std::optional<geometry::MortonTree> tree_;
 };
 
 Indices thin(const Indices& sources) {
@@ -146,12 +146,12 @@ double sum_at(std::span<const Site> sites, const Sources& sources, std::span<con
 /// untouched.
 Indices add_all_kernels(std::span<const Site> sites, const Indices& all, bool oriented, std::vector<double>& sums) {
   const Sources sources(sites, all);
-  const std::vector<MortonTree::Run> leaves = sources.tree().leaves();
-  std::vector<uint8_t> crowded(leaves.size(), 0);
+  const std::vector<geometry::MortonTree::Run> leaves = sources.tree().leaves();
+  std::vector<uint8_t> dense(leaves.size(), 0);
   oneapi::tbb::parallel_for(size_t{0}, leaves.size(), [&](size_t leaf) {
     thread_local std::vector<uint32_t> found;
     if (!sources.find(sources.tree().box_of(leaves[leaf]), kMaxNeighbours, found)) {
-      crowded[leaf] = 1;
+      dense[leaf] = 1;
       return;
     }
     for (uint32_t k = leaves[leaf].first; k < leaves[leaf].last; ++k) {
@@ -160,7 +160,7 @@ Indices add_all_kernels(std::span<const Site> sites, const Indices& all, bool or
   });
   Indices rest;
   for (size_t leaf = 0; leaf < leaves.size(); ++leaf) {
-    for (uint32_t k = leaves[leaf].first; k < leaves[leaf].last && crowded[leaf] != 0; ++k) rest.push_back(k);
+    for (uint32_t k = leaves[leaf].first; k < leaves[leaf].last && dense[leaf] != 0; ++k) rest.push_back(k);
   }
   return rest;
 }
@@ -170,37 +170,36 @@ Indices add_all_kernels(std::span<const Site> sites, const Indices& all, bool or
 Indices add_kernels(std::span<const Site> sites, const Indices& members, const Indices& targets, double multiplicity,
                     bool oriented, std::vector<double>& sums) {
   const Sources sources(sites, members);
-  std::vector<uint8_t> crowded(targets.size(), 0);
+  std::vector<uint8_t> dense(targets.size(), 0);
   oneapi::tbb::parallel_for(size_t{0}, targets.size(), [&](size_t i) {
     thread_local std::vector<uint32_t> found;
     const uint32_t k = targets[i];
     if (sources.find({sites[k].position, sites[k].position}, kMaxNeighbours, found)) {
       sums[k] += multiplicity * sum_at(sites, sources, found, k, oriented);
     } else {
-      crowded[i] = 1;
+      dense[i] = 1;
     }
   });
   Indices rest;
   for (size_t i = 0; i < targets.size(); ++i) {
-    if (crowded[i] != 0) rest.push_back(targets[i]);
+    if (dense[i] != 0) rest.push_back(targets[i]);
   }
   return rest;
 }
 
 /// Of surfels one after another that are the same but for their attributes, the first; the others have its sum.
-Indices first_of_each(std::span<const Site> sites, const Indices& crowded) {
+Indices first_of_each(std::span<const Site> sites, const Indices& dense) {
   const auto same = [&sites](uint32_t a, uint32_t b) {
     return sites[a].position == sites[b].position && sites[a].normal == sites[b].normal;
   };
   Indices firsts;
-  std::unique_copy(crowded.begin(), crowded.end(), std::back_inserter(firsts), same);
+  std::unique_copy(dense.begin(), dense.end(), std::back_inserter(firsts), same);
   return firsts;
 }
 
 /// Adds up the kernels at crowded places, class by class, from samples of the sources where there are too many.
-void add_sampled_kernels(std::span<const Site> sites, const Indices& crowded, bool oriented,
-                         std::vector<double>& sums) {
-  const Indices firsts = first_of_each(sites, crowded);
+void add_sampled_kernels(std::span<const Site> sites, const Indices& dense, bool oriented, std::vector<double>& sums) {
+  const Indices firsts = first_of_each(sites, dense);
   for (auto& [octave, sources] : radius_classes(sites)) {
     double multiplicity = 1;
     for (Indices targets = firsts; !targets.empty(); multiplicity *= kThinning) {
@@ -209,7 +208,7 @@ void add_sampled_kernels(std::span<const Site> sites, const Indices& crowded, bo
     }
   }
   size_t first = 0;
-  for (const uint32_t k : crowded) {
+  for (const uint32_t k : dense) {
     if (first + 1 < firsts.size() && firsts[first + 1] == k) ++first;
     sums[k] = sums[firsts[first]];
   }
@@ -224,11 +223,11 @@ std::vector<float> normalization_weights(const SurfelCloud& cloud) {
   std::vector<double> sums(sites.size(), 1.0);  // the kernel of a surfel at its own centre
   Indices all(sites.size());
   std::iota(all.begin(), all.end(), 0);
-  const Indices crowded = add_all_kernels(sites, all, cloud.oriented, sums);
-  if (!crowded.empty()) add_sampled_kernels(sites, crowded, cloud.oriented, sums);
+  const Indices dense = add_all_kernels(sites, all, cloud.oriented, sums);
+  if (!dense.empty()) add_sampled_kernels(sites, dense, cloud.oriented, sums);
   std::vector<float> weights(sites.size());
   for (size_t i = 0; i < sites.size(); ++i) weights[sites[i].surfel] = static_cast<float>(1 / sums[i]);
   return weights;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::surfel

@@ -5,7 +5,7 @@
 
 #include "surfel/surfel_cloud.h"
 
-namespace surfcast {
+namespace surfcast::surfel {
 
 /// The normalisation weight s_k = 1 / sum_j r_j(u_k - u_j) of every surfel (Ren 2002, section 7.1), in (0, 1]. The sum
 /// runs over the surfels j of the same surface around k, k itself included: normals within 60 degrees (of either sign
@@ -20,4 +20,4 @@ std::vector<float> normalization_weights(const SurfelCloud& cloud);
 /// Bounds the work per surfel, or coincident points and wrong radii would take quadratic time.
 inline constexpr size_t kMaxNeighbours = 1024;
 
-}  // namespace surfcast
+}  // namespace surfcast::surfel

@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-namespace surfcast {
+namespace surfcast::surfel {
 
 /// The values of one per-point attribute in the type of its source, so that they come back exactly.
 using ScalarValues = std::variant<std::vector<uint8_t>, std::vector<int8_t>, std::vector<uint16_t>,
@@ -23,4 +23,4 @@ struct ScalarAttribute {
   return std::visit([](const auto& v) { return v.size(); }, values);
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::surfel

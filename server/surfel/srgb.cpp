@@ -4,7 +4,7 @@
 #include <cmath>
 #include <vector>
 
-namespace surfcast {
+namespace surfcast::surfel {
 namespace {
 
 double decode(double encoded) {
@@ -49,4 +49,4 @@ glm::u16vec3 from_linear(const glm::vec3& light, int bits) {
   return {quantise(light.r), quantise(light.g), quantise(light.b)};
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::surfel

@@ -3,7 +3,7 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 
-namespace surfcast {
+namespace surfcast::surfel {
 
 /// Linear light in [0, 1] of an sRGB colour (IEC 61966-2-1) of 8 or 16 bits per channel.
 glm::vec3 to_linear(const glm::u16vec3& color, int bits);
@@ -11,4 +11,4 @@ glm::vec3 to_linear(const glm::u16vec3& color, int bits);
 /// The nearest colour of that depth. Light outside [0, 1] is clamped.
 glm::u16vec3 from_linear(const glm::vec3& light, int bits);
 
-}  // namespace surfcast
+}  // namespace surfcast::surfel

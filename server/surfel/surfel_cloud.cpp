@@ -1,11 +1,11 @@
 #include "surfel/surfel_cloud.h"
 
-namespace surfcast {
+namespace surfcast::surfel {
 
-Box SurfelCloud::bounds() const {
-  Box box;
+geometry::Box SurfelCloud::bounds() const {
+  geometry::Box box;
   for (const glm::dvec3& p : positions) box.include(p);
   return box;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::surfel

@@ -10,7 +10,7 @@
 #include "surfel/grid.h"
 #include "surfel/scalar_attribute.h"
 
-namespace surfcast {
+namespace surfcast::surfel {
 
 /// Per-point colours in the depth of their source, sRGB encoded; `bits` is 8 (0 to 255) or 16 (0 to 65535).
 struct ColorAttribute {
@@ -42,7 +42,7 @@ struct SurfelCloud {
   bool z_up = true;                  ///< the vertical axis is z (surveying); otherwise y (graphics)
 
   [[nodiscard]] size_t size() const { return positions.size(); }
-  [[nodiscard]] Box bounds() const;
+  [[nodiscard]] geometry::Box bounds() const;
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::surfel

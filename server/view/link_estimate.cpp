@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace surfcast {
+namespace surfcast::view {
 namespace {
 
 constexpr size_t kSamples = 24;
@@ -76,4 +76,4 @@ std::optional<size_t> LinkEstimate::bytes_in(double milliseconds) const {
   return static_cast<size_t>(std::min(milliseconds / ms_per_byte_, kMost));
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::view

@@ -7,7 +7,7 @@
 
 #include "view/view_plan.h"
 
-namespace surfcast {
+namespace surfcast::view {
 
 /// What is known of the way to a client from messages of different sizes and the times of their acknowledgements: a
 /// message of b bytes takes round_trip + b / rate. The smallest message seen fixes one end of that line and larger ones
@@ -46,4 +46,4 @@ class LinkEstimate {
   bool slope_known_ = false;
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::view

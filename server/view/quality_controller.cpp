@@ -4,7 +4,7 @@
 #include <array>
 #include <span>
 
-namespace surfcast {
+namespace surfcast::view {
 namespace {
 
 /// A setting and what it costs in relation to others of its ladder.
@@ -61,8 +61,8 @@ constexpr std::array<LinkRung, 9> kLinkRungs{{{1, 85, 1.0},
 constexpr double kFull = 0.9;   // of the time of a frame may be used up
 constexpr double kRoom = 0.85;  // and a better rung is tried if it is expected to take this much of that
 constexpr int kSlowFrames = 2;
-constexpr int kPatience = 6;
-constexpr int kMostPatience = 192;
+constexpr int kFramesBeforeClimb = 6;
+constexpr int kMaxFramesBeforeClimb = 192;
 
 template <typename Rung>
 double predicted(std::span<const Rung> rungs, size_t from, size_t to, double ms) {
@@ -84,13 +84,14 @@ LadderState descend(LadderState state, std::span<const Rung> rungs, double ms, d
   if (++state.slow < kSlowFrames) return state;
   const size_t next = std::min(state.rung + 1, rungs.size() - 1);
   const size_t fits = std::max(next, affordable(rungs, state.rung, state.least_ms, budget));
-  const bool climbed_in_vain = state.since_climb < state.patience;
+  const bool climbed_in_vain = state.since_climb < state.frames_before_climb;
   return {.rung = fits,
           .slow = 0,
           .fast = 0,
           .least_ms = 0,
-          .patience = climbed_in_vain ? std::min(2 * state.patience, kMostPatience) : state.patience,
-          .since_climb = kMostPatience};
+          .frames_before_climb = climbed_in_vain ? std::min(2 * state.frames_before_climb, kMaxFramesBeforeClimb)
+                                                 : state.frames_before_climb,
+          .since_climb = kMaxFramesBeforeClimb};
 }
 
 template <typename Rung>
@@ -101,20 +102,20 @@ LadderState climb(LadderState state, std::span<const Rung> rungs, double ms, dou
     return state;
   }
   state.least_ms = state.fast == 0 ? ms : std::max(state.least_ms, ms);
-  if (++state.fast < state.patience) return state;
+  if (++state.fast < state.frames_before_climb) return state;
   const size_t fits = affordable(rungs, state.rung, state.least_ms, kRoom * budget);
   return {.rung = std::min(fits, state.rung - 1),
           .slow = 0,
           .fast = 0,
           .least_ms = 0,
-          .patience = state.patience,
+          .frames_before_climb = state.frames_before_climb,
           .since_climb = 0};
 }
 
 template <typename Rung>
 LadderState step(LadderState state, std::span<const Rung> rungs, double ms, double budget) {
   // A rung that has been kept for long was no mistake: the next climb is as easy as the first.
-  if (++state.since_climb > 2 * kMostPatience) state.patience = kPatience;
+  if (++state.since_climb > 2 * kMaxFramesBeforeClimb) state.frames_before_climb = kFramesBeforeClimb;
   return ms > budget ? descend(state, rungs, ms, budget) : climb(state, rungs, ms, budget);
 }
 
@@ -123,8 +124,8 @@ LadderState step(LadderState state, std::span<const Rung> rungs, double ms, doub
 QualityState first_quality() {
   constexpr size_t kMiddle = 10;
   QualityState state;
-  state.draw = {.rung = kMiddle, .patience = kPatience, .since_climb = kMostPatience};
-  state.link = {.rung = 2, .patience = kPatience, .since_climb = kMostPatience};
+  state.draw = {.rung = kMiddle, .frames_before_climb = kFramesBeforeClimb, .since_climb = kMaxFramesBeforeClimb};
+  state.link = {.rung = 2, .frames_before_climb = kFramesBeforeClimb, .since_climb = kMaxFramesBeforeClimb};
   return state;
 }
 
@@ -141,4 +142,4 @@ MotionQuality quality_of(const QualityState& state) {
   return {std::min(draw.scale, link.scale), draw.spacing, link.jpeg_quality};
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::view

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-namespace surfcast {
+namespace surfcast::view {
 
 /// How a frame for motion is drawn and encoded.
 struct MotionQuality {
@@ -23,11 +23,11 @@ struct MotionCost {
 /// than it need be.
 struct LadderState {
   size_t rung = 0;
-  int slow = 0;         ///< frames in a row that took too long
-  int fast = 0;         ///< frames in a row after which a better rung could be afforded
-  double least_ms = 0;  ///< of the frames counted in `slow` or the most of those in `fast`
-  int patience = 6;     ///< frames in `fast` before a better rung is tried
-  int since_climb = 0;  ///< frames since a better rung was tried
+  int slow = 0;                 ///< frames in a row that took too long
+  int fast = 0;                 ///< frames in a row after which a better rung could be afforded
+  double least_ms = 0;          ///< of the frames counted in `slow` or the most of those in `fast`
+  int frames_before_climb = 6;  ///< frames in `fast` before a better rung is tried
+  int since_climb = 0;          ///< frames since a better rung was tried
 };
 
 /// Drawing and the line are adapted each by itself; the smaller of the two scales is drawn.
@@ -47,4 +47,4 @@ QualityState adapt(const QualityState& state, const MotionCost& cost, double tar
 
 MotionQuality quality_of(const QualityState& state);
 
-}  // namespace surfcast
+}  // namespace surfcast::view

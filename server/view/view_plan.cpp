@@ -3,16 +3,16 @@
 #include <algorithm>
 #include <limits>
 
-namespace surfcast {
+namespace surfcast::view {
 
 void ViewPlan::update(bool changed, bool moving, ViewTime now) {
   if (changed) {
     ++picture_;
     progress_ = Progress::kNone;
     changed_at_ = now;
-    look_again_at_ = now;
+    next_poll_at_ = now;
     improved_at_ = now;
-    first_look_.reset();
+    first_sample_.reset();
     drawn_ = false;
   }
   // A hand that stops without a word rests some time after its last update, one that says so from its last movement.
@@ -26,25 +26,25 @@ const ViewPlan::Job* ViewPlan::find(uint64_t frame) const {
 
 /// One frame may be drawn while another is encoded or on its way: more would only show older pictures. What is on its
 /// way of a frame at rest delays the sending but not the drawing.
-bool ViewPlan::room_for_quick() const {
-  return jobs_.size() + quick_unacknowledged_ < kMostUnacknowledged;
+bool ViewPlan::room_for_motion() const {
+  return jobs_.size() + motion_unacknowledged_ < kMaxUnacknowledged;
 }
 
 FrameKind ViewPlan::wanted() const {
-  if (progress_ == Progress::kNone) return FrameKind::kQuick;
-  return progress_ == Progress::kFineComplete ? FrameKind::kFinal : FrameKind::kFine;
+  if (progress_ == Progress::kNone) return FrameKind::kMotion;
+  return progress_ == Progress::kRefinedComplete ? FrameKind::kFinal : FrameKind::kRefined;
 }
 
 /// When the next frame of a picture at rest is to be drawn.
 std::optional<ViewTime> ViewPlan::due(ViewTime rest) const {
   switch (progress_) {
     case Progress::kNone:
-      return look_again_at_;
-    case Progress::kQuick:
-      return rest + timing_.fine;
-    case Progress::kFine:
-      return std::max(rest + timing_.fine, look_again_at_);
-    case Progress::kFineComplete:
+      return next_poll_at_;
+    case Progress::kMotion:
+      return rest + timing_.refined;
+    case Progress::kRefined:
+      return std::max(rest + timing_.refined, next_poll_at_);
+    case Progress::kRefinedComplete:
       return rest + timing_.final;
     case Progress::kFinal:
       break;
@@ -56,7 +56,7 @@ ViewStep ViewPlan::next(ViewTime now) const {
   const bool under_way = std::ranges::any_of(jobs_, [this](const Job& job) { return job.picture == picture_; });
   if (under_way || sending_) return {};
   const FrameKind kind = wanted();
-  if (kind == FrameKind::kQuick ? !room_for_quick() : !jobs_.empty() || !may_send()) return {};
+  if (kind == FrameKind::kMotion ? !room_for_motion() : !jobs_.empty() || !may_send()) return {};
   const std::optional<ViewTime> wanted_at = due(rest_at_);
   if (!wanted_at) return {};
   const ViewTime at = std::max(*wanted_at, not_before_);
@@ -67,22 +67,22 @@ void ViewPlan::begin(uint64_t frame, FrameKind kind) {
   jobs_.push_back({frame, kind, picture_});
 }
 
-void ViewPlan::renew(uint64_t frame) {
+void ViewPlan::retarget(uint64_t frame) {
   for (Job& job : jobs_) {
     if (job.frame == frame) job.picture = picture_;
   }
 }
 
-std::optional<uint64_t> ViewPlan::renewable() const {
+std::optional<uint64_t> ViewPlan::retargetable() const {
   if (jobs_.empty()) return std::nullopt;
   const Job& last = jobs_.back();
-  return last.kind == FrameKind::kQuick && last.picture != picture_ ? std::optional(last.frame) : std::nullopt;
+  return last.kind == FrameKind::kMotion && last.picture != picture_ ? std::optional(last.frame) : std::nullopt;
 }
 
 std::vector<uint64_t> ViewPlan::outdated() const {
   std::vector<uint64_t> frames;
   for (const Job& job : jobs_) {
-    if (job.kind != FrameKind::kQuick && job.picture != picture_) frames.push_back(job.frame);
+    if (job.kind != FrameKind::kMotion && job.picture != picture_) frames.push_back(job.frame);
   }
   return frames;
 }
@@ -93,28 +93,29 @@ void ViewPlan::drop(uint64_t frame) {
 
 void ViewPlan::refuse(uint64_t frame, ViewTime now) {
   drop(frame);
-  not_before_ = now + timing_.busy;
+  not_before_ = now + timing_.busy_retry;
 }
 
-bool ViewPlan::expects(uint64_t frame) const {
+bool ViewPlan::is_pending(uint64_t frame) const {
   return find(frame) != nullptr;
 }
 
-void ViewPlan::finish(uint64_t frame, FrameNews news, ViewTime now) {
+void ViewPlan::finish(uint64_t frame, FrameResult result, ViewTime now) {
   const Job* found = find(frame);
   if (found == nullptr) return;
   const Job job = *found;
   drop(frame);
   if (job.picture != picture_) return;
-  look_again_at_ = now + timing_.look_again;
-  if (news == FrameNews::kImproves) improved_at_ = now;
+  next_poll_at_ = now + timing_.poll_interval;
+  if (result == FrameResult::kImprovable) improved_at_ = now;
   switch (job.kind) {
-    case FrameKind::kQuick:
-      if (news != FrameNews::kNothing) progress_ = std::max(progress_, Progress::kQuick);
+    case FrameKind::kMotion:
+      if (result != FrameResult::kNothing) progress_ = std::max(progress_, Progress::kMotion);
       break;
-    case FrameKind::kFine:
-      progress_ = news == FrameNews::kComplete || now - improved_at_ > timing_.despair ? Progress::kFineComplete
-                                                                                       : Progress::kFine;
+    case FrameKind::kRefined:
+      progress_ = result == FrameResult::kComplete || now - improved_at_ > timing_.missing_block_timeout
+                      ? Progress::kRefinedComplete
+                      : Progress::kRefined;
       break;
     case FrameKind::kFinal:
       progress_ = Progress::kFinal;
@@ -122,17 +123,17 @@ void ViewPlan::finish(uint64_t frame, FrameNews news, ViewTime now) {
   }
 }
 
-void ViewPlan::drew(double draw_ms, uint32_t missing, ViewTime now) {
+void ViewPlan::record_draw(double draw_ms, uint32_t missing, ViewTime now) {
   drawn_ = true;
   drawn_at_ = now;
   draw_ms_ = draw_ms;
   drawn_missing_ = missing;
 }
 
-void ViewPlan::look(uint32_t missing, ViewTime now) {
-  if (!first_look_) first_look_ = last_look_ = Look{missing, now};
-  if (missing < last_look_.missing) improved_at_ = now;
-  last_look_ = {missing, now};
+void ViewPlan::record_missing(uint32_t missing, ViewTime now) {
+  if (!first_sample_) first_sample_ = last_sample_ = MissingSample{missing, now};
+  if (missing < last_sample_.missing) improved_at_ = now;
+  last_sample_ = {missing, now};
 }
 
 namespace {
@@ -145,21 +146,21 @@ constexpr double kPauses = 2;
 
 /// Before any frame of a rest blocks are waited for a moment rather than drawn without; and longer, if at the pace so
 /// far all will be there soon.
-uint32_t ViewPlan::most_missing_at_first(ViewTime now) const {
+uint32_t ViewPlan::max_missing_before_first_draw(ViewTime now) const {
   constexpr uint32_t kAny = std::numeric_limits<uint32_t>::max();
   if (now < rest_at_ + timing_.final) return 0;
-  if (!first_look_ || last_look_.missing >= first_look_->missing) return kAny;
-  const auto passed = last_look_.at - first_look_->at;
-  const double to_come = static_cast<double>(last_look_.missing) / (first_look_->missing - last_look_.missing);
-  const auto whole_at = last_look_.at + std::chrono::duration_cast<ViewTime::duration>(to_come * passed);
+  if (!first_sample_ || last_sample_.missing >= first_sample_->missing) return kAny;
+  const auto passed = last_sample_.at - first_sample_->at;
+  const double to_come = static_cast<double>(last_sample_.missing) / (first_sample_->missing - last_sample_.missing);
+  const auto whole_at = last_sample_.at + std::chrono::duration_cast<ViewTime::duration>(to_come * passed);
   const std::chrono::duration<double, std::milli> to_wait = whole_at - now;
-  const double worth_ms = draw_ms_ > 0 ? kPauses * draw_ms_ : static_cast<double>(timing_.whole.count());
+  const double worth_ms = draw_ms_ > 0 ? kPauses * draw_ms_ : static_cast<double>(timing_.block_wait.count());
   return to_wait.count() <= worth_ms ? 0 : kAny;
 }
 
-uint32_t ViewPlan::most_missing(ViewTime now) const {
-  if (!drawn_) return most_missing_at_first(now);
-  const uint32_t missing = last_look_.missing;
+uint32_t ViewPlan::max_missing_blocks(ViewTime now) const {
+  if (!drawn_) return max_missing_before_first_draw(now);
+  const uint32_t missing = last_sample_.missing;
   const double since_ms = std::chrono::duration<double, std::milli>(now - drawn_at_).count();
   if (since_ms < kPauses * draw_ms_) return 0;
   const double come = missing < drawn_missing_ ? drawn_missing_ - missing : 0;
@@ -168,13 +169,13 @@ uint32_t ViewPlan::most_missing(ViewTime now) const {
 }
 
 void ViewPlan::send(FrameKind kind, bool last) {
-  ++(kind == FrameKind::kQuick ? quick_unacknowledged_ : other_unacknowledged_);
+  ++(kind == FrameKind::kMotion ? motion_unacknowledged_ : still_unacknowledged_);
   sending_ = !last;
 }
 
 void ViewPlan::acknowledge(FrameKind kind) {
-  size_t& count = kind == FrameKind::kQuick ? quick_unacknowledged_ : other_unacknowledged_;
+  size_t& count = kind == FrameKind::kMotion ? motion_unacknowledged_ : still_unacknowledged_;
   count -= std::min<size_t>(count, 1);
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::view

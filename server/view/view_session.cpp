@@ -5,38 +5,38 @@
 #include <utility>
 #include <vector>
 
-namespace surfcast {
+namespace surfcast::view {
 namespace {
 
-constexpr int kFineQuality = 90;  // of the JPEG at rest
+constexpr int kRefinedQuality = 90;  // of the JPEG at rest
 // A piece should be through before it can be felt in a motion that begins behind it.
 constexpr double kPieceMs = 60;
 constexpr size_t kFirstPiece = size_t{64} << 10;
-constexpr size_t kLeastPiece = size_t{24} << 10;
-constexpr size_t kMostPiece = size_t{16} << 20;
+constexpr size_t kMinPiece = size_t{24} << 10;
+constexpr size_t kMaxPiece = size_t{16} << 20;
 
 int scaled(int pixels, double scale) {
   return std::max(1, static_cast<int>(std::lround(pixels * scale)));
 }
 
 /// Whether the final frame can be made of the one before it, which has the same pixels.
-bool may_be_kept(const PictureJob& job) {
-  constexpr size_t kMostPixels = size_t{1} << 23;
-  return static_cast<size_t>(job.request.width) * static_cast<size_t>(job.request.height) <= kMostPixels &&
-         pixel_format_of(job.format) == pixel_format_of(FileFormat::kJpeg);
+bool may_be_kept(const service::PictureJob& job) {
+  constexpr size_t kMaxPixels = size_t{1} << 23;
+  return static_cast<size_t>(job.request.width) * static_cast<size_t>(job.request.height) <= kMaxPixels &&
+         picture::pixel_format_of(job.format) == picture::pixel_format_of(picture::FileFormat::kJpeg);
 }
 
 /// What the picture says about going on: blocks that are still to come may make it better. A picture with holes that
 /// they will fill soon is not worth showing.
-FrameNews news_of(FrameKind kind, const EncodedPicture& picture) {
-  if (kind == FrameKind::kFinal || picture.settled) return FrameNews::kComplete;
-  return picture.bytes.empty() || picture.stats.holes > 0 ? FrameNews::kNothing : FrameNews::kImproves;
+FrameResult result_of(FrameKind kind, const service::EncodedPicture& picture) {
+  if (kind == FrameKind::kFinal || picture.nothing_pending) return FrameResult::kComplete;
+  return picture.bytes.empty() || picture.stats.holes > 0 ? FrameResult::kNothing : FrameResult::kImprovable;
 }
 
 }  // namespace
 
-ViewSession::ViewSession(RenderService& service, SessionId session, uint64_t viewer, double target_fps,
-                         ViewCounts& counts, ViewPort port)
+ViewSession::ViewSession(service::RenderService& service, service::SessionId session, uint64_t viewer,
+                         double target_fps, ViewCounts& counts, ViewPort port)
     : service_(service),
       session_(session),
       viewer_(viewer),
@@ -50,16 +50,16 @@ ViewSession::~ViewSession() {
   --counts_.open;
 }
 
-PictureJob ViewSession::wish(FrameKind kind, JobId supersedes) const {
-  PictureJob job = newest_.picture;
+service::PictureJob ViewSession::picture_job(FrameKind kind, service::JobId supersedes) const {
+  service::PictureJob job = newest_.picture;
   if (kind == FrameKind::kFinal) return job;
-  PictureRequest& request = job.request;
-  request.loading = Loading::kNow;
-  job.format = FileFormat::kJpeg;
-  job.quality = kFineQuality;
-  if (kind == FrameKind::kFine) {
-    request.known_cut = shown_cut_;
-    request.most_missing = plan_.most_missing(std::chrono::steady_clock::now());
+  picture::PictureRequest& request = job.request;
+  request.loading = picture::Loading::kNow;
+  job.format = picture::FileFormat::kJpeg;
+  job.quality = kRefinedQuality;
+  if (kind == FrameKind::kRefined) {
+    request.displayed_cut = displayed_cut_;
+    request.max_missing_blocks = plan_.max_missing_blocks(std::chrono::steady_clock::now());
     job.keep_frame = may_be_kept(newest_.picture);
     return job;
   }
@@ -68,9 +68,9 @@ PictureJob ViewSession::wish(FrameKind kind, JobId supersedes) const {
   request.width = scaled(request.width, quality.scale);
   request.height = scaled(request.height, quality.scale);
   request.spacing = std::max(request.spacing * quality.scale, quality.spacing);
-  request.normalization = Normalization::kSurfel;
+  request.normalization = picture::Normalization::kSurfel;
   request.viewer = viewer_;
-  job.urgency = Urgency::kMotion;
+  job.priority = service::Priority::kMotion;
   job.quality = quality.jpeg_quality;
   job.supersedes = supersedes;
   return job;
@@ -83,20 +83,20 @@ void ViewSession::update(ViewUpdate update, ViewTime now) {
   plan_.update(changed, newest_.moving, now);
   if (!changed) return;
   newest_begun_ = false;
-  shown_cut_ = 0;
-  whole_.reset();
+  displayed_cut_ = 0;
+  finished_frame_.reset();
   for (const uint64_t frame : plan_.outdated()) drop(frame);
-  if (outgoing_ && outgoing_->kind != FrameKind::kQuick) give_up_sending();
-  renew();
+  if (outgoing_ && outgoing_->kind != FrameKind::kMotion) give_up_sending();
+  retarget();
 }
 
 /// Lets a frame that still waits for the render thread show the newest picture.
-void ViewSession::renew() {
-  const std::optional<uint64_t> frame = plan_.renewable();
+void ViewSession::retarget() {
+  const std::optional<uint64_t> frame = plan_.retargetable();
   if (!frame) return;
   Job& job = frames_.at(*frame);
-  if (!service_.replace(job.job, wish(FrameKind::kQuick, job.supersedes))) return;
-  plan_.renew(*frame);
+  if (!service_.replace(job.job, picture_job(FrameKind::kMotion, job.supersedes))) return;
+  plan_.retarget(*frame);
   job.update = newest_.update;
   job.quality = quality_;
   newest_begun_ = true;
@@ -116,7 +116,7 @@ std::optional<ViewTime> ViewSession::advance(ViewTime now) {
   if (closed_) return std::nullopt;
   send_pieces(now);
   const ViewStep step = plan_.next(now);
-  if (!step.draw) return step.look_again;
+  if (!step.draw) return step.wake_at;
   if (port_.may_draw()) draw(*step.draw);
   return std::nullopt;
 }
@@ -127,31 +127,31 @@ void ViewSession::draw(FrameKind kind) {
   job.kind = kind;
   job.update = newest_.update;
   job.quality = quality_;
-  job.supersedes = last_quick_job_;
+  job.supersedes = last_motion_job_;
   plan_.begin(frame, kind);
   newest_begun_ = true;
-  auto done = [weak = weak_from_this(), post = port_.post, frame](Result<EncodedPicture> picture) {
+  auto done = [weak = weak_from_this(), post = port_.post, frame](Result<service::EncodedPicture> picture) {
     post([weak, frame, picture = std::move(picture)]() mutable {
       if (const auto self = weak.lock()) self->finish(frame, std::move(picture));
     });
   };
-  if (kind == FrameKind::kFinal && whole_) {
-    job.job = service_.encode(std::exchange(whole_, {}), wish(kind, 0), std::move(done));
+  if (kind == FrameKind::kFinal && finished_frame_) {
+    job.job = service_.encode(std::exchange(finished_frame_, {}), picture_job(kind, 0), std::move(done));
   } else {
-    job.job = service_.draw(session_, wish(kind, last_quick_job_), std::move(done));
+    job.job = service_.draw(session_, picture_job(kind, last_motion_job_), std::move(done));
   }
-  if (kind == FrameKind::kQuick) last_quick_job_ = job.job;
+  if (kind == FrameKind::kMotion) last_motion_job_ = job.job;
 }
 
-void ViewSession::finish(uint64_t frame, Result<EncodedPicture> picture) {
-  if (closed_ || !plan_.expects(frame)) return;
+void ViewSession::finish(uint64_t frame, Result<service::EncodedPicture> picture) {
+  if (closed_ || !plan_.is_pending(frame)) return;
   Job& job = frames_.at(frame);
-  if (!picture) return miss(frame, picture.error());
+  if (!picture) return frame_failed(frame, picture.error());
   const ViewTime now = std::chrono::steady_clock::now();
-  const FrameNews news = news_of(job.kind, *picture);
-  plan_.finish(frame, news, now);
-  if (job.kind == FrameKind::kFine) look_at(*picture, now);
-  if (picture->bytes.empty() || (news == FrameNews::kNothing)) {
+  const FrameResult result = result_of(job.kind, *picture);
+  plan_.finish(frame, result, now);
+  if (job.kind == FrameKind::kRefined) record_progress(*picture, now);
+  if (picture->bytes.empty() || (result == FrameResult::kNothing)) {
     frames_.erase(frame);
     return;
   }
@@ -165,7 +165,7 @@ void ViewSession::finish(uint64_t frame, Result<EncodedPicture> picture) {
 
 /// A frame did not come. A view lasts longer than the rush that keeps the server from drawing it; anything else ends
 /// it.
-void ViewSession::miss(uint64_t frame, const Error& error) {
+void ViewSession::frame_failed(uint64_t frame, const Error& error) {
   frames_.erase(frame);
   ++counts_.dropped;
   if (error.kind == ErrorKind::kUnavailable) return plan_.refuse(frame, std::chrono::steady_clock::now());
@@ -176,18 +176,18 @@ void ViewSession::miss(uint64_t frame, const Error& error) {
 }
 
 /// Remembers how far the newest picture is.
-void ViewSession::look_at(EncodedPicture& picture, ViewTime now) {
+void ViewSession::record_progress(service::EncodedPicture& picture, ViewTime now) {
   const uint32_t missing = picture.stats.blocks_missing;
-  plan_.look(missing, now);
+  plan_.record_missing(missing, now);
   if (!picture.bytes.empty()) {
-    shown_cut_ = picture.cut;
-    plan_.drew(picture.draw_ms, missing, now);
-    if (picture.converged && picture.settled) whole_ = std::move(picture.frame);
+    displayed_cut_ = picture.cut;
+    plan_.record_draw(picture.draw_ms, missing, now);
+    if (picture.converged && picture.nothing_pending) finished_frame_ = std::move(picture.frame);
   }
   picture.frame.reset();
 }
 
-void ViewSession::show(uint64_t frame, FrameKind kind, EncodedPicture picture) {
+void ViewSession::show(uint64_t frame, FrameKind kind, service::EncodedPicture picture) {
   if (outgoing_) give_up_sending();
   picture.stats.stages.push_back({"transfer", last_cost_.transfer});
   picture.stats.stages.push_back({"paint", last_cost_.client});
@@ -196,7 +196,7 @@ void ViewSession::show(uint64_t frame, FrameKind kind, EncodedPicture picture) {
   message.update = frames_.at(frame).update;
   message.width = newest_.picture.request.width;
   message.height = newest_.picture.request.height;
-  message.moving = kind == FrameKind::kQuick;
+  message.moving = kind == FrameKind::kMotion;
   // What the renderer calls converged is so for the request of this frame, not for the one of the view.
   picture.converged = picture.converged && kind == FrameKind::kFinal;
   std::vector<std::byte> bytes = std::move(picture.bytes);
@@ -209,11 +209,11 @@ void ViewSession::give_up_sending() {
   outgoing_.reset();
   plan_.stop_sending();
   frames_.at(frame).sent = true;
-  forget_if_done(frame);
+  erase_if_done(frame);
   ++counts_.dropped;
 }
 
-void ViewSession::forget_if_done(uint64_t frame) {
+void ViewSession::erase_if_done(uint64_t frame) {
   const auto found = frames_.find(frame);
   if (found->second.sent && found->second.unacknowledged == 0) frames_.erase(found);
 }
@@ -222,8 +222,8 @@ void ViewSession::forget_if_done(uint64_t frame) {
 void ViewSession::send_pieces(ViewTime now) {
   while (outgoing_ && plan_.may_send()) {
     const size_t rest = outgoing_->bytes.size() - outgoing_->sent;
-    const size_t piece = std::clamp(link_.bytes_in(kPieceMs).value_or(kFirstPiece), kLeastPiece, kMostPiece);
-    const bool whole = outgoing_->kind == FrameKind::kQuick || rest < piece + piece / 2;
+    const size_t piece = std::clamp(link_.bytes_in(kPieceMs).value_or(kFirstPiece), kMinPiece, kMaxPiece);
+    const bool whole = outgoing_->kind == FrameKind::kMotion || rest < piece + piece / 2;
     send_piece(whole ? rest : piece, now);
   }
 }
@@ -265,11 +265,11 @@ void ViewSession::acknowledge(uint64_t frame, double client_ms, ViewTime now) {
   --job.unacknowledged;
   plan_.acknowledge(job.kind);
   const std::optional<double> transfer = link_.acknowledge(frame, client_ms, now);
-  if (job.kind == FrameKind::kQuick && transfer) learn(job, *transfer, client_ms);
-  forget_if_done(frame);
+  if (job.kind == FrameKind::kMotion && transfer) adapt_quality(job, *transfer, client_ms);
+  erase_if_done(frame);
 }
 
-void ViewSession::learn(Job& job, double transfer_ms, double client_ms) {
+void ViewSession::adapt_quality(Job& job, double transfer_ms, double client_ms) {
   job.cost.transfer = transfer_ms;
   job.cost.client = client_ms;
   last_cost_ = job.cost;
@@ -283,8 +283,8 @@ void ViewSession::close() {
   closed_ = true;
   outgoing_.reset();
   for (const auto& [frame, job] : frames_) {
-    if (plan_.expects(frame)) service_.cancel(job.job);
+    if (plan_.is_pending(frame)) service_.cancel(job.job);
   }
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::view

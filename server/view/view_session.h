@@ -14,7 +14,7 @@
 #include "view/quality_controller.h"
 #include "view/view_plan.h"
 
-namespace surfcast {
+namespace surfcast::view {
 
 /// What all views of a server have done.
 struct ViewCounts {
@@ -35,13 +35,13 @@ struct ViewMessage {
   bool moving = false;
   bool first = true;  ///< piece of the frame
   bool more = false;  ///< pieces follow
-  EncodedPicture picture;
+  service::EncodedPicture picture;
 };
 
 /// What is to be seen from now on.
 struct ViewUpdate {
   uint64_t update = 0;
-  PictureJob picture;
+  service::PictureJob picture;
   bool changed = true;  ///< not the same picture as before
   bool moving = false;
 };
@@ -59,8 +59,8 @@ struct ViewPort {
 /// methods are called on one thread, the view's; drawing and encoding happen on the service's threads.
 class ViewSession : public std::enable_shared_from_this<ViewSession> {
  public:
-  ViewSession(RenderService& service, SessionId session, uint64_t viewer, double target_fps, ViewCounts& counts,
-              ViewPort port);
+  ViewSession(service::RenderService& service, service::SessionId session, uint64_t viewer, double target_fps,
+              ViewCounts& counts, ViewPort port);
   ~ViewSession();
   ViewSession(const ViewSession&) = delete;
   ViewSession& operator=(const ViewSession&) = delete;
@@ -76,10 +76,10 @@ class ViewSession : public std::enable_shared_from_this<ViewSession> {
  private:
   /// A frame from its beginning to its last acknowledgement.
   struct Job {
-    FrameKind kind = FrameKind::kQuick;
+    FrameKind kind = FrameKind::kMotion;
     uint64_t update = 0;
-    JobId job = 0;
-    JobId supersedes = 0;  ///< the frame for motion before it
+    service::JobId job = 0;
+    service::JobId supersedes = 0;  ///< the frame for motion before it
     QualityState quality;
     MotionCost cost;
     size_t unacknowledged = 0;  ///< messages
@@ -88,28 +88,28 @@ class ViewSession : public std::enable_shared_from_this<ViewSession> {
   /// A frame that is being sent or waits for it.
   struct Outgoing {
     uint64_t frame = 0;
-    FrameKind kind = FrameKind::kQuick;
+    FrameKind kind = FrameKind::kMotion;
     ViewMessage message;           ///< without its bytes
     std::vector<std::byte> bytes;  ///< of the whole frame
     size_t sent = 0;               ///< bytes
   };
 
   void draw(FrameKind kind);
-  [[nodiscard]] PictureJob wish(FrameKind kind, JobId supersedes) const;
-  void renew();
+  [[nodiscard]] service::PictureJob picture_job(FrameKind kind, service::JobId supersedes) const;
+  void retarget();
   void drop(uint64_t frame);
-  void forget_if_done(uint64_t frame);
-  void finish(uint64_t frame, Result<EncodedPicture> picture);
-  void miss(uint64_t frame, const Error& error);
-  void look_at(EncodedPicture& picture, ViewTime now);
-  void show(uint64_t frame, FrameKind kind, EncodedPicture picture);
+  void erase_if_done(uint64_t frame);
+  void finish(uint64_t frame, Result<service::EncodedPicture> picture);
+  void frame_failed(uint64_t frame, const Error& error);
+  void record_progress(service::EncodedPicture& picture, ViewTime now);
+  void show(uint64_t frame, FrameKind kind, service::EncodedPicture picture);
   void give_up_sending();
   void send_pieces(ViewTime now);
   void send_piece(size_t bytes, ViewTime now);
-  void learn(Job& job, double transfer_ms, double client_ms);
+  void adapt_quality(Job& job, double transfer_ms, double client_ms);
 
-  RenderService& service_;
-  SessionId session_;
+  service::RenderService& service_;
+  service::SessionId session_;
   uint64_t viewer_;
   double target_fps_;
   ViewCounts& counts_;
@@ -122,14 +122,14 @@ class ViewSession : public std::enable_shared_from_this<ViewSession> {
   QualityState quality_ = first_quality();
   uint64_t last_frame_ = 0;
   bool newest_begun_ = true;  ///< a frame of the newest picture has been begun
-  JobId last_quick_job_ = 0;
+  service::JobId last_motion_job_ = 0;
   double last_draw_ms_ = 0;  ///< of the last frame that was drawn
   MotionCost last_cost_;     ///< of the last frame for motion that was acknowledged
   /// The newest picture, if the last frame at rest was all that it will be.
-  std::shared_ptr<const Frame> whole_;
-  uint64_t shown_cut_ = 0;  ///< of the last frame at rest that was drawn of the newest picture; 0: none
+  std::shared_ptr<const picture::Frame> finished_frame_;
+  uint64_t displayed_cut_ = 0;  ///< of the last frame at rest that was drawn of the newest picture; 0: none
   std::map<uint64_t, Job> frames_;
   std::optional<Outgoing> outgoing_;
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::view

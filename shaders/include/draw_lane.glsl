@@ -30,7 +30,7 @@ TileLists lists_of_tile(uint index) {
 }
 
 // Whether this build draws the tile.
-bool is_ours(TileLists tile) {
+bool belongs_to_this_build(TileLists tile) {
 #ifdef SURFCAST_LARGE
   return tile.larges != 0u;
 #else
@@ -56,9 +56,9 @@ bool draw_layer(TileLists tile, vec2 pixel, inout Columns limit, inout LightColu
     sums[c] = sums_zero();
   }
   float peak = 0.0;
-  see_small(tile.first_small, tile.smalls, pixel, limit, surface, peak);
+  find_surface_small(tile.first_small, tile.smalls, pixel, limit, surface, peak);
 #ifdef SURFCAST_LARGE
-  see_large(tile.first_large, tile.larges, pixel, limit, surface, peak);
+  find_surface_large(tile.first_large, tile.larges, pixel, limit, surface, peak);
 #endif
   float unit = fixed_unit(peak);
   accumulate_small(tile.first_small, tile.smalls, pixel, limit, surface, unit, sums);

@@ -17,7 +17,7 @@ LargeSplat fetch_large(int slot) {
 
 float kernel_deviation(LargeSplat s) { return float(SURFCAST_KERNEL_SIGMA) * s.radius; }
 float depth_range(LargeSplat s) { return surfel_extent(s.radius) * sqrt(max(1.0 - s.n.z * s.n.z, 0.0)); }
-bool astride(LargeSplat s) { return is_astride(s.o.z, s.radius); }
+bool reaches_eye_plane(LargeSplat s) { return reaches_eye_plane(s.o.z, s.radius); }
 
 // Inverse depth at which a ray meets the plane of the surfel; the bound only keeps edge-on surfels finite.
 float large_plane_inverse_depth(LargeSplat s, vec2 ray) {
@@ -27,18 +27,18 @@ float large_plane_inverse_depth(LargeSplat s, vec2 ray) {
 // As for small splats; 0 or less where the ray misses.
 float large_fragment_inverse_depth(LargeSplat s, vec2 ray) {
   float plane = large_plane_inverse_depth(s, ray);
-  return astride(s) ? plane : max(plane, 1.0 / (s.o.z + depth_range(s)));
+  return reaches_eye_plane(s) ? plane : max(plane, 1.0 / (s.o.z + depth_range(s)));
 }
 
 float large_disc_inverse_depth(LargeSplat s, vec2 ray) {
   float plane = large_plane_inverse_depth(s, ray);
-  if (astride(s)) return 1.0 / (1.0 / plane + push_back(s.radius, s.o.z));
+  if (reaches_eye_plane(s)) return 1.0 / (1.0 / plane + push_back(s.radius, s.o.z));
   return min(plane, 1.0 / (s.o.z - depth_range(s))) / (1.0 + push_back(s.radius, s.o.z) / s.o.z);
 }
 
 // Squared radius of a pixel in the filter of a kernel of that deviation, world units, and the gain.
 vec2 large_form(LargeSplat s, vec2 ray, float deviation, float prefilter_variance) {
-  if (astride(s)) {
+  if (reaches_eye_plane(s)) {
     // Cut by the eye plane, the surfel is so near that the prefilter is nothing beside its kernel: measure on the
     // surface itself.
     float inverse_depth = large_plane_inverse_depth(s, ray);
@@ -61,19 +61,19 @@ float coverage_gain(LargeSplat s, vec2 ray, float gain) {
 
 // Squared radius at which the splat is cut: a property of the splat, from the gain at its centre.
 float large_cutoff(LargeSplat s) {
-  if (astride(s)) return SURFCAST_KERNEL_CUTOFF;
+  if (reaches_eye_plane(s)) return SURFCAST_KERNEL_CUTOFF;
   float deviation = frontal_deviation(kernel_deviation(s), s.o.z);
   return cutoff(screen_variance(s.n, s.o.xy / s.o.z, deviation, prefilter_variance()).gain);
 }
 
 // An upper bound of what the splat adds to a pixel: det S >= prefilter variance^2 bounds the gain.
 float large_peak(LargeSplat s, vec2 ray) {
-  float deviation = astride(s) ? 1e9 : frontal_deviation(kernel_deviation(s), s.o.z);
+  float deviation = reaches_eye_plane(s) ? 1e9 : frontal_deviation(kernel_deviation(s), s.o.z);
   float gain = min(deviation * deviation * length(vec3(ray, 1.0)) / prefilter_variance(), 1.0);
   return s.weight * gain * coverage_scale(gain);
 }
 
-void see_large(uint first, uint count, vec2 pixel, Columns limit, inout Columns surface, inout float peak) {
+void find_surface_large(uint first, uint count, vec2 pixel, Columns limit, inout Columns surface, inout float peak) {
   vec2 ray = ray_of_pixel(pixel);
   for (uint k = 0u; k < count; ++k) {
     LargeSplat s = fetch_large(int(texelFetch(lists, int(first + k)).x));

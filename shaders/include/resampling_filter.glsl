@@ -93,7 +93,7 @@ float surfel_extent(float radius) {
 }
 
 // A surfel so near that its disc may reach the eye plane, where nothing projects.
-bool is_astride(float depth, float radius) { return depth <= 1.5 * surfel_extent(radius); }
+bool reaches_eye_plane(float depth, float radius) { return depth <= 1.5 * surfel_extent(radius); }
 
 // How far visibility splatting pushes a surface back along the viewing rays, at the depth of its surfel: by the spacing
 // of the surfels (Ren 2002, section 5.1) and by the footprint of a pixel.

@@ -48,7 +48,7 @@ Disc fetch_disc(int slot) {
 }
 
 // Finds the nearest surface behind `limit` (an inverse depth), pushed back, and the largest weight of the list.
-void see_small(uint first, uint count, vec2 pixel, Columns limit, inout Columns surface, inout float peak) {
+void find_surface_small(uint first, uint count, vec2 pixel, Columns limit, inout Columns surface, inout float peak) {
   float footprint = 1.0 / eta();
   for (uint k = 0u; k < count; ++k) {
     int slot = int(texelFetch(lists, int(first + k)).x);

@@ -27,9 +27,9 @@ namespace surfcast::layout {
 // Surfels that one work group projects; runs of a block are cut into chunks of this many.
 #define SURFCAST_CHUNK 128
 // Splats that a tile may have before its splats are thinned out (see include/thinning.glsl).
-#define SURFCAST_CROWD 3072
+#define SURFCAST_TILE_CAPACITY 3072
 // Splats that a tile may have after that, before all its splats are sampled alike.
-#define SURFCAST_CROWD_LIMIT 4000
+#define SURFCAST_TILE_CAPACITY_LIMIT 4000
 // Splats between two carries of the fixed-point sums (see splat.comp).
 #define SURFCAST_CARRY_INTERVAL 32
 
@@ -55,7 +55,7 @@ struct BlockView {
 };
 
 // What the options of a picture ask of one block, for builds of the projection that have them; as many as BlockViews.
-struct BlockLook {
+struct BlockDisplay {
   SURFCAST_VEC4 ramp;    // x: place on the colour map (0 to 1) of code 0 of the attribute or height, y: of a step
   SURFCAST_IVEC4 clips;  // x: first of its clip ranges, y: so many of which a surfel must be in any (0: it need not),
                          // z: and so many that follow of which it must be in none
@@ -68,7 +68,7 @@ struct ClipRange {
 };
 
 // What the options of a picture ask of all blocks.
-struct LookConstants {
+struct DisplayConstants {
   SURFCAST_UVEC4 hidden[2];  // 256 bits, by code of the classification: 1 where it is not drawn
   SURFCAST_IVEC4 axis;       // x: the vertical one, 0 to 2; y: last entry of the colour table
 };
@@ -106,24 +106,24 @@ struct Counters {
 #define SURFCAST_UNIFORM_SPAN 1
 
 // Bindings. Storage buffers:
-#define SURFCAST_BIND_LOOKS 0  // BlockLook per block
+#define SURFCAST_BIND_BLOCK_DISPLAYS 0  // BlockDisplay per block
 #define SURFCAST_BIND_CLIPS 1  // ClipRange, those of each block side by side
 #define SURFCAST_BIND_BLOCKS 3
 #define SURFCAST_BIND_CHUNKS 4
 #define SURFCAST_BIND_COUNTERS 5
 #define SURFCAST_BIND_TILE_COUNT 6   // uint per tile and list: entries; small lists first, then large lists
 #define SURFCAST_BIND_TILE_OFFSET 7  // uint per tile and list: first entry
-#define SURFCAST_BIND_TILE_CROWD 8   // uint per tile: entries of both its lists, as counted before thinning
+#define SURFCAST_BIND_TILE_DEMAND 8   // uint per tile: entries of both its lists, as counted before thinning
 #define SURFCAST_BIND_PICTURE 9
 #define SURFCAST_BIND_TILE_ORDER 14  // uint per tile: the tiles, those with the longest lists first
-#define SURFCAST_BIND_TURNS 15       // uint per work group of the splat kernel: tiles that its lanes have begun
+#define SURFCAST_BIND_NEXT_TILES 15       // uint per work group of the splat kernel: tiles that its lanes have begun
 #define SURFCAST_BIND_LIGHT 2   // vec4 per pixel: linear light and coverage before eye-dome lighting
 #define SURFCAST_BIND_DEPTH 10  // vec2 per pixel: log2 of the visible surface's depth, coverage that it is the mean of
 #define SURFCAST_BIND_FRONTS 11           // float per pixel: what silhouettes are found by, see silhouettes.comp
 #define SURFCAST_BIND_SILHOUETTES 12      // count, then parts of tiles, in any order: tile, its pixels by rows from bit 0 on
 // Uniform buffers:
 #define SURFCAST_BIND_FRAME 0
-#define SURFCAST_BIND_LOOK 1
+#define SURFCAST_BIND_DISPLAY 1
 #define SURFCAST_BIND_EYE_DOME 2
 // Image and texture units of the buffers that are larger than a storage block may be:
 #define SURFCAST_UNIT_SPLATS 0      // two uvec4 per splat
@@ -139,9 +139,9 @@ struct Counters {
 #ifdef __cplusplus
 static_assert(sizeof(FrameConstants) == 128);
 static_assert(sizeof(BlockView) == 48);
-static_assert(sizeof(BlockLook) == 32);
+static_assert(sizeof(BlockDisplay) == 32);
 static_assert(sizeof(ClipRange) == 32);
-static_assert(sizeof(LookConstants) == 48);
+static_assert(sizeof(DisplayConstants) == 48);
 static_assert(sizeof(Chunk) == 16);
 static_assert(sizeof(Counters) == 48);
 }  // namespace surfcast::layout

@@ -17,7 +17,7 @@
 #include "model/test_folder.h"
 #include "scan/shapes.h"
 
-namespace surfcast {
+namespace surfcast::builder {
 namespace {
 
 namespace fs = std::filesystem;
@@ -78,16 +78,16 @@ struct Surfel {
 /// The leaves of a model, each surfel by its number.
 std::map<uint32_t, Surfel> surfels_of(const fs::path& path) {
   std::map<uint32_t, Surfel> surfels;
-  const Result<ModelFile> model = ModelFile::open(path);
+  const Result<model::ModelFile> model = model::ModelFile::open(path);
   EXPECT_TRUE(model) << model.error().message;
   for (size_t b = 0; b < model->blocks().size(); ++b) {
-    const Result<DecodedBlock> block = model->decode(b);
+    const Result<model::DecodedBlock> block = model->decode(b);
     EXPECT_TRUE(block) << block.error().message;
     if (model->blocks()[b].level > 0) continue;
     for (size_t i = 0; i < block->size(); ++i) {
       const auto value = [&](const std::string& name) {
         const auto scalar = std::find_if(block->scalars.begin(), block->scalars.end(),
-                                         [&name](const ScalarAttribute& s) { return s.name == name; });
+                                         [&name](const surfel::ScalarAttribute& s) { return s.name == name; });
         return std::visit([i](const auto& values) { return static_cast<uint32_t>(values[i]); }, scalar->values);
       };
       surfels[value("number")] = {block->position(i), block->normals[i], block->radii[i], block->weights[i],
@@ -111,7 +111,7 @@ BuildOptions in_parts_of(uint64_t points) {
 
 class BuildModelTest : public ::testing::Test {
  protected:
-  TestFolder folder_;
+  model::TestFolder folder_;
   fs::path scan_ = folder_ / "scan.xyz";
   fs::path model_ = folder_ / "model.surf";
   fs::path other_ = folder_ / "other.surf";
@@ -164,9 +164,9 @@ TEST_F(BuildModelTest, ThreadsDoNotChangeAByte) {
   for (const size_t threads : {1, 2, 8}) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
     build({scan_}, model_);
-    whole.push_back(read_bytes(model_));
+    whole.push_back(model::read_bytes(model_));
     build({scan_}, model_, in_parts_of(700));
-    parts.push_back(read_bytes(model_));
+    parts.push_back(model::read_bytes(model_));
   }
   EXPECT_THAT(whole, ::testing::Each(whole[0]));
   EXPECT_THAT(parts, ::testing::Each(parts[0]));
@@ -187,7 +187,7 @@ TEST_F(BuildModelTest, SeveralInputsWithDifferentAttributesAreOneModelInParts) {
   ASSERT_EQ(surfels.size(), 5000U);
   EXPECT_EQ(surfels.at(10).intensity, 70);
   EXPECT_EQ(surfels.at(2510).intensity, 0);
-  const Result<ModelFile> model = ModelFile::open(model_);
+  const Result<model::ModelFile> model = model::ModelFile::open(model_);
   ASSERT_TRUE(model);
   EXPECT_THAT(model->info().source_names, ::testing::ElementsAre("scan.xyz", "colored.xyz"));
   EXPECT_EQ(model->info().color_bits, 8);
@@ -268,4 +268,4 @@ TEST_F(BuildModelTest, StagesAndBudgetAreReported) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::builder

@@ -4,10 +4,10 @@
 
 #include <gtest/gtest.h>
 
-namespace surfcast {
+namespace surfcast::builder {
 namespace {
 
-constexpr uint64_t kLastCode = (uint64_t{1} << (3 * kMortonDepth)) - 1;
+constexpr uint64_t kLastCode = (uint64_t{1} << (3 * geometry::kMortonDepth)) - 1;
 
 struct Counted {
   std::vector<CountedCell> cells;
@@ -48,7 +48,7 @@ TEST(CellCountsTest, APointFarFromAllOthersMakesTheCountingGoDeeper) {
 TEST(CellCountsTest, PointsInOneSmallestCellEndTheCounting) {
   const Counted counted(std::vector<uint64_t>(5000, 42), 100);
   ASSERT_EQ(counted.cells.size(), 1U);
-  EXPECT_EQ(counted.cells[0].depth, kMortonDepth);
+  EXPECT_EQ(counted.cells[0].depth, geometry::kMortonDepth);
   EXPECT_EQ(counted.cells[0].count, 5000U);
   EXPECT_EQ(counted.cells[0].first_code, 42U);
 }
@@ -59,4 +59,4 @@ TEST(CellCountsTest, AFailedPassIsTheAnswer) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::builder

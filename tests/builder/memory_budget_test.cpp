@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace surfcast {
+namespace surfcast::builder {
 namespace {
 
 using ::testing::HasSubstr;
@@ -36,9 +36,9 @@ TEST(MemoryBudgetTest, NoMoreThanTheMachineHas) {
 }
 
 TEST(MemoryBudgetTest, AttributesAndPartsAreCounted) {
-  ScanSchema rich;
+  scan::ScanSchema rich;
   rich.color_bits = 16;
-  for (int i = 0; i < 20; ++i) rich.scalars.push_back({"scalar", ScalarType::kFloat64});
+  for (int i = 0; i < 20; ++i) rich.scalars.push_back({"scalar", scan::ScalarType::kFloat64});
   const Result<MemoryPlan> plain = plan_memory(uint64_t{1} << 30, 0, {});
   const Result<MemoryPlan> full = plan_memory(uint64_t{1} << 30, 0, rich);
   ASSERT_TRUE(plain && full);
@@ -58,4 +58,4 @@ TEST(MemoryBudgetTest, WhatInputsHoldIsTakenFromTheParts) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::builder

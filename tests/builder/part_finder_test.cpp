@@ -7,27 +7,27 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace surfcast {
+namespace surfcast::builder {
 namespace {
 
 using ::testing::ElementsAre;
 
 /// The root cube of side 16 in eight parts: its children.
 struct EightParts {
-  RootCube root{glm::dvec3(0), 16};
+  geometry::RootCube root{glm::dvec3(0), 16};
   PartFinder finder{children(), root};
 
   static std::vector<Part> children() {
     std::vector<Part> parts;
     for (uint32_t i = 0; i < 8; ++i) {
-      const uint64_t side = uint64_t{1} << (3 * (kMortonDepth - 1));
-      parts.push_back({{OctreeKey{}.child(i)}, i * side, (i + 1) * side, 1});
+      const uint64_t side = uint64_t{1} << (3 * (geometry::kMortonDepth - 1));
+      parts.push_back({{ldc::OctreeKey{}.child(i)}, i * side, (i + 1) * side, 1});
     }
     return parts;
   }
   [[nodiscard]] std::vector<uint32_t> parts_of(const glm::dvec3& p) const {
     std::vector<uint32_t> found;
-    finder.for_each_part(p, morton_code(root, p), [&found](uint32_t part) { found.push_back(part); });
+    finder.for_each_part(p, geometry::morton_code(root, p), [&found](uint32_t part) { found.push_back(part); });
     return found;
   }
 };
@@ -72,4 +72,4 @@ TEST(PartFinderTest, PlacesSayWhatIsAPartsOwnAndWhatBothSidesSee) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::builder

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace surfcast {
+namespace surfcast::builder {
 namespace {
 
 constexpr int kDepth = 3;
@@ -10,7 +10,8 @@ constexpr int kDepth = 3;
 /// Cells of depth 3 by their number along the Morton curve.
 std::vector<CountedCell> cells(const std::vector<std::pair<uint64_t, uint64_t>>& counts) {
   std::vector<CountedCell> cells;
-  for (const auto& [number, count] : counts) cells.push_back({number << (3 * (kMortonDepth - kDepth)), kDepth, count});
+  for (const auto& [number, count] : counts)
+    cells.push_back({number << (3 * (geometry::kMortonDepth - kDepth)), kDepth, count});
   return cells;
 }
 
@@ -22,7 +23,7 @@ void expect_sound(const std::vector<Part>& parts, uint64_t points) {
     EXPECT_GT(part.end_code, part.first_code);
     end = part.end_code;
     total += part.count;
-    for (const OctreeKey& cell : part.cells) EXPECT_EQ(cell.parent(), part.cells[0].parent());
+    for (const ldc::OctreeKey& cell : part.cells) EXPECT_EQ(cell.parent(), part.cells[0].parent());
   }
   EXPECT_EQ(total, points);
 }
@@ -30,7 +31,7 @@ void expect_sound(const std::vector<Part>& parts, uint64_t points) {
 TEST(PartPlanTest, WhatFitsIsOnePartOfTheWholeRoot) {
   const std::vector<Part> parts = plan_parts(cells({{0, 40}, {100, 60}}), 100);
   ASSERT_EQ(parts.size(), 1U);
-  EXPECT_EQ(parts[0].cells, (std::vector<OctreeKey>{OctreeKey{}}));
+  EXPECT_EQ(parts[0].cells, (std::vector<ldc::OctreeKey>{ldc::OctreeKey{}}));
   EXPECT_EQ(parts[0].count, 100U);
 }
 
@@ -59,11 +60,11 @@ TEST(PartPlanTest, NoPartIsLargerThanTheLimit) {
 }
 
 TEST(PartPlanTest, ASmallestCellIsAPartHoweverManyPointsItHas) {
-  const std::vector<CountedCell> full = {{5, kMortonDepth, 1000}, {6, kMortonDepth, 10}};
+  const std::vector<CountedCell> full = {{5, geometry::kMortonDepth, 1000}, {6, geometry::kMortonDepth, 10}};
   const std::vector<Part> parts = plan_parts(full, 100);
   expect_sound(parts, 1010);
   EXPECT_EQ(parts.size(), 2U);
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::builder

@@ -7,7 +7,7 @@
 
 #include "model/test_folder.h"
 
-namespace surfcast {
+namespace surfcast::builder {
 namespace {
 
 std::vector<std::byte> numbers(size_t count, int first) {
@@ -17,7 +17,7 @@ std::vector<std::byte> numbers(size_t count, int first) {
 }
 
 TEST(SpoolFileTest, GivesBackWhatWasAppended) {
-  const TestFolder folder;
+  const model::TestFolder folder;
   Result<SpoolFile> file = SpoolFile::create(folder / "model.surf");
   ASSERT_TRUE(file) << file.error().message;
   EXPECT_EQ(*file->append(numbers(1000, 1)), 0U);
@@ -29,7 +29,7 @@ TEST(SpoolFileTest, GivesBackWhatWasAppended) {
 }
 
 TEST(SpoolFileTest, HasNoNameInTheFolder) {
-  const TestFolder folder;
+  const model::TestFolder folder;
   Result<SpoolFile> file = SpoolFile::create(folder / "model.surf");
   ASSERT_TRUE(file);
   ASSERT_TRUE(file->append(numbers(10, 0)));
@@ -37,7 +37,7 @@ TEST(SpoolFileTest, HasNoNameInTheFolder) {
 }
 
 TEST(SpoolFileTest, KeepsOtherBytesWhenSomeAreReleased) {
-  const TestFolder folder;
+  const model::TestFolder folder;
   Result<SpoolFile> file = SpoolFile::create(folder / "model.surf");
   ASSERT_TRUE(file);
   ASSERT_TRUE(file->append(numbers(100000, 0)));
@@ -49,7 +49,7 @@ TEST(SpoolFileTest, KeepsOtherBytesWhenSomeAreReleased) {
 }
 
 TEST(SpoolFileTest, FailuresNameTheTarget) {
-  const TestFolder folder;
+  const model::TestFolder folder;
   const Result<SpoolFile> file = SpoolFile::create((folder / "absent") / "model.surf");
   ASSERT_FALSE(file);
   EXPECT_THAT(file.error().message, ::testing::HasSubstr("model.surf: "));
@@ -60,4 +60,4 @@ TEST(SpoolFileTest, FailuresNameTheTarget) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::builder

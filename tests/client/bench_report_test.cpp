@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace surfcast {
+namespace surfcast::client {
 namespace {
 
 BenchFrame moving_frame(double latency, std::vector<std::pair<std::string, double>> stages = {}) {
@@ -100,4 +100,4 @@ TEST(BenchReport, JsonHoldsTheFigures) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::client

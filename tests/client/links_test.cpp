@@ -4,7 +4,7 @@
 
 #include "client/run_program.h"
 
-namespace surfcast {
+namespace surfcast::client {
 namespace {
 
 TEST(ThinClient, LinksNothingOfTheServer) {
@@ -26,4 +26,4 @@ TEST(ThinClient, CarriesNothingOfTheServer) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::client

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace surfcast {
+namespace surfcast::client {
 namespace {
 
 constexpr double kTiny = 1e-9;
@@ -109,4 +109,4 @@ TEST(Navigation, CamerasComeBackAsTheyWere) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::client

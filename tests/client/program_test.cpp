@@ -9,13 +9,13 @@
 #include "client/run_program.h"
 #include "net/net_fixture.h"
 
-namespace surfcast {
+namespace surfcast::client {
 namespace {
 
 namespace fs = std::filesystem;
 
 /// The program itself against a server of fake models.
-class ProgramTest : public NetFixture {
+class ProgramTest : public net::NetFixture {
  protected:
   void SetUp() override {
     folder_ = fs::path(::testing::TempDir()) /
@@ -33,7 +33,7 @@ class ProgramTest : public NetFixture {
   [[nodiscard]] static ProgramOutcome run(const std::string& arguments) {
     return run_program(SURFCAST_CLIENT " " + arguments + " 2>&1");
   }
-  [[nodiscard]] std::string url() const { return to_string(endpoint()); }
+  [[nodiscard]] std::string url() const { return protocol::to_string(endpoint()); }
   [[nodiscard]] size_t entries() const {
     return static_cast<size_t>(std::distance(fs::directory_iterator(folder_), fs::directory_iterator()));
   }
@@ -133,13 +133,13 @@ TEST_F(ProgramTest, HelpAndVersionEndWithZero) {
 }
 
 TEST_F(ProgramTest, AnInterruptGivesThePictureUpAtTheServer) {
-  studio_->slow = true;
+  control_->slow = true;
   const pid_t client =
       start_program({SURFCAST_CLIENT, "render", url() + "/cube", "--output", (folder_ / "out.png").string()});
-  ASSERT_TRUE(eventually([&] { return studio_->drawn == 1; }));
+  ASSERT_TRUE(eventually([&] { return control_->drawn == 1; }));
   ASSERT_EQ(::kill(client, SIGINT), 0);
   EXPECT_EQ(wait_for_program(client), 1);
-  EXPECT_TRUE(eventually([&] { return studio_->cancelled == 1; }));
+  EXPECT_TRUE(eventually([&] { return control_->cancelled == 1; }));
   EXPECT_EQ(entries(), 0u);
 }
 
@@ -164,4 +164,4 @@ TEST_F(ProgramTest, APickAnswersOrSaysWhyNot) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::client

@@ -9,7 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-namespace surfcast {
+namespace surfcast::client {
 
 struct ProgramOutcome {
   int code = -1;
@@ -57,4 +57,4 @@ inline int wait_for_program(pid_t process) {
   return exit_code(status);
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::client

@@ -14,7 +14,7 @@
 
 #include "protocol/endpoint.h"
 
-namespace surfcast {
+namespace surfcast::client {
 
 /// Accepts one connection and says what it is told, whatever the client sends.
 class ScriptedServer {
@@ -38,7 +38,7 @@ class ScriptedServer {
   ScriptedServer(const ScriptedServer&) = delete;
   ScriptedServer& operator=(const ScriptedServer&) = delete;
 
-  [[nodiscard]] Endpoint endpoint() const { return {"127.0.0.1", port_}; }
+  [[nodiscard]] protocol::Endpoint endpoint() const { return {"127.0.0.1", port_}; }
   /// What the client sent; ask when it has closed its connection.
   const std::string& heard() {
     thread_.join();
@@ -65,4 +65,4 @@ class ScriptedServer {
   std::jthread thread_;
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::client

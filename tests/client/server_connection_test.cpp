@@ -9,28 +9,28 @@
 #include "client/scripted_server.h"
 #include "protocol/hello.h"
 
-namespace surfcast {
+namespace surfcast::client {
 namespace {
 
 using std::chrono::milliseconds;
 
-std::string bytes_of(const Hello& hello) {
-  const std::vector<std::byte> bytes = encode_hello(hello);
+std::string bytes_of(const protocol::Hello& hello) {
+  const std::vector<std::byte> bytes = protocol::encode_hello(hello);
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 constexpr milliseconds kLong{20'000};  // for what does come, however busy the machine
 constexpr milliseconds kShort{200};    // for what never comes
 
-Error error_of_connecting(const std::string& words, bool stays = false, milliseconds patience = kLong) {
+Error error_of_connecting(const std::string& words, bool stays = false, milliseconds timeout = kLong) {
   const ScriptedServer server(words, stays);
-  const auto connection = ServerConnection::open(server.endpoint(), {.connect = patience, .answer = patience});
+  const auto connection = ServerConnection::open(server.endpoint(), {.connect = timeout, .answer = timeout});
   return connection ? Error{ErrorKind::kInternal, "connected"} : connection.error();
 }
 
-Error error_of_asking(const std::string& words, bool stays = false, milliseconds patience = kLong) {
-  const ScriptedServer server(bytes_of(make_hello("surfcastd")) + words, stays);
-  auto connection = ServerConnection::open(server.endpoint(), {.connect = kLong, .answer = patience});
+Error error_of_asking(const std::string& words, bool stays = false, milliseconds timeout = kLong) {
+  const ScriptedServer server(bytes_of(protocol::make_hello("surfcastd")) + words, stays);
+  auto connection = ServerConnection::open(server.endpoint(), {.connect = kLong, .answer = timeout});
   if (!connection) return connection.error();
   wire::Request request;
   request.mutable_ping();
@@ -39,7 +39,7 @@ Error error_of_asking(const std::string& words, bool stays = false, milliseconds
 }
 
 TEST(ServerConnection, AServerOfAnotherMajorVersionIsExplained) {
-  Hello hello = make_hello("surfcastd");
+  protocol::Hello hello = protocol::make_hello("surfcastd");
   hello.version = {7, 3};
   const Error error = error_of_connecting(bytes_of(hello));
   EXPECT_EQ(error.kind, ErrorKind::kUnsupported);
@@ -47,8 +47,8 @@ TEST(ServerConnection, AServerOfAnotherMajorVersionIsExplained) {
 }
 
 TEST(ServerConnection, ARefusalIsRepeated) {
-  Hello hello = make_hello("surfcastd");
-  hello.status = HelloStatus::kVersionRefused;
+  protocol::Hello hello = protocol::make_hello("surfcastd");
+  hello.status = protocol::HelloStatus::kVersionRefused;
   hello.message = "I am too old for you";
   EXPECT_NE(error_of_connecting(bytes_of(hello)).message.find("I am too old for you"), std::string::npos);
 }
@@ -59,7 +59,7 @@ TEST(ServerConnection, AServerOfAnotherProtocolIsExplained) {
 }
 
 TEST(ServerConnection, EveryTruncatedHelloIsAnError) {
-  const std::string hello = bytes_of(make_hello("surfcastd"));
+  const std::string hello = bytes_of(protocol::make_hello("surfcastd"));
   for (size_t length = 0; length < hello.size(); length += 5) {
     EXPECT_EQ(error_of_connecting(hello.substr(0, length)).kind, ErrorKind::kIo) << length;
   }
@@ -85,7 +85,7 @@ TEST(ServerConnection, AnAnswerThatIsNotOneIsAnError) {
 }
 
 TEST(ServerConnection, AnInterruptEndsTheWait) {
-  const ScriptedServer server(bytes_of(make_hello("surfcastd")), /*stays=*/true);
+  const ScriptedServer server(bytes_of(protocol::make_hello("surfcastd")), /*stays=*/true);
   std::array<int, 2> ends{};
   ASSERT_EQ(::pipe(ends.data()), 0);
   auto connection = ServerConnection::open(
@@ -100,4 +100,4 @@ TEST(ServerConnection, AnInterruptEndsTheWait) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::client

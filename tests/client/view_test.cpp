@@ -13,7 +13,7 @@
 #include "protocol/framing.h"
 #include "protocol/hello.h"
 
-namespace surfcast {
+namespace surfcast::client {
 namespace {
 
 using std::chrono::milliseconds;
@@ -23,11 +23,11 @@ std::string text_of(const std::vector<std::byte>& bytes) {
 }
 
 std::string hello() {
-  return text_of(encode_hello(make_hello("test")));
+  return text_of(protocol::encode_hello(protocol::make_hello("test")));
 }
 
 std::string said(const wire::Answer& answer) {
-  return text_of(*encode_frame(answer, kMaxAnswerBytes));
+  return text_of(*protocol::encode_frame(answer, protocol::kMaxAnswerBytes));
 }
 
 /// One message of the view that is opened first.
@@ -60,12 +60,12 @@ std::string failure(uint64_t id) {
 
 /// The requests that a client sent after its hello.
 std::vector<wire::Request> requests_in(const std::string& heard) {
-  const size_t greeting = encode_hello(make_hello("surfcast")).size();
-  FrameSplitter splitter(kMaxRequestBytes);
+  const size_t greeting = protocol::encode_hello(protocol::make_hello("surfcast")).size();
+  protocol::FrameSplitter splitter(protocol::kMaxRequestBytes);
   splitter.append(std::as_bytes(std::span(heard).subspan(greeting)));
   std::vector<wire::Request> requests;
   for (auto next = splitter.next(); next && next->has_value(); next = splitter.next()) {
-    EXPECT_TRUE(decode_message(**next, requests.emplace_back()));
+    EXPECT_TRUE(protocol::decode_message(**next, requests.emplace_back()));
   }
   return requests;
 }
@@ -177,4 +177,4 @@ TEST_F(ViewTest, AnErrorOfTheViewEndsItAndNoOther) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::client

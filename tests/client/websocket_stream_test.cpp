@@ -6,7 +6,7 @@
 
 #include "client/sha1.h"
 
-namespace surfcast {
+namespace surfcast::client {
 namespace {
 
 std::string hex(const std::array<uint8_t, 20>& digest) {
@@ -104,4 +104,4 @@ TEST(WebSocketStream, WhatAServerMustNotSendIsAnError) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::client

@@ -11,7 +11,7 @@
 #include "base/atomic_file.h"
 #include "client/run_program.h"
 
-namespace surfcast {
+namespace surfcast::cmd {
 
 inline std::string content(const std::filesystem::path& path) {
   std::ifstream stream(path, std::ios::binary);
@@ -49,9 +49,9 @@ class ServeTest : public ::testing::Test {
   void serve(const std::string& arguments) {
     const std::string ready = (folder_ / "ready").string();
     std::filesystem::remove(ready);  // of a server before this one
-    server_ = start_program({"/bin/sh", "-c",
-                             "exec " SURFCAST_SERVER " serve --listen 127.0.0.1:0 --cache " + cache() + " " +
-                                 arguments + " > " + ready + " 2> " + (folder_ / "log").string()});
+    server_ = client::start_program({"/bin/sh", "-c",
+                                     "exec " SURFCAST_SERVER " serve --listen 127.0.0.1:0 --cache " + cache() + " " +
+                                         arguments + " > " + ready + " 2> " + (folder_ / "log").string()});
     for (int i = 0; i < 3000 && content(ready).find('\n') == std::string::npos; ++i) ::usleep(10'000);
     const std::string line = content(ready);
     const size_t url = line.find("http://");
@@ -60,7 +60,7 @@ class ServeTest : public ::testing::Test {
   }
   int end(int signal) {
     ::kill(server_, signal);
-    const int code = wait_for_program(server_);
+    const int code = client::wait_for_program(server_);
     server_ = -1;
     return code;
   }
@@ -73,4 +73,4 @@ class ServeTest : public ::testing::Test {
   std::string url_;
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::cmd

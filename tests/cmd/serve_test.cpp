@@ -1,18 +1,18 @@
 #include "cmd/serve_fixture.h"
 
-namespace surfcast {
+namespace surfcast::cmd {
 namespace {
 
 namespace fs = std::filesystem;
 
 TEST_F(ServeTest, AScanIsBuiltServedDrawnAndTheServerEndsWhenTold) {
   serve(scan_.string());
-  EXPECT_EQ(run_program(SURFCAST_CLIENT " models " + url_).output, "square\n");
-  EXPECT_EQ(run_program(SURFCAST_SERVER " healthcheck --url " + url_).code, 0);
+  EXPECT_EQ(client::run_program(SURFCAST_CLIENT " models " + url_).output, "square\n");
+  EXPECT_EQ(client::run_program(SURFCAST_SERVER " healthcheck --url " + url_).code, 0);
   const std::string flags = " --resolution 64,48 --output ";
-  ASSERT_EQ(run_program(SURFCAST_CLIENT " render " + url_ + "/square" + flags + file("served.png")).code, 0);
-  ASSERT_EQ(run_program(SURFCAST_SERVER " render --cache " + cache() + " " + scan_.string() + flags +
-                        file("drawn.png") + " --stats " + file("drawn.json") + " 2>&1")
+  ASSERT_EQ(client::run_program(SURFCAST_CLIENT " render " + url_ + "/square" + flags + file("served.png")).code, 0);
+  ASSERT_EQ(client::run_program(SURFCAST_SERVER " render --cache " + cache() + " " + scan_.string() + flags +
+                                file("drawn.png") + " --stats " + file("drawn.json") + " 2>&1")
                 .code,
             0);
   EXPECT_FALSE(content(file("served.png")).empty());
@@ -20,7 +20,7 @@ TEST_F(ServeTest, AScanIsBuiltServedDrawnAndTheServerEndsWhenTold) {
   EXPECT_NE(content(file("drawn.json")).find("\"gl_renderer\""), std::string::npos);
   EXPECT_NE(content(file("log")).find("OpenGL"), std::string::npos);
   EXPECT_EQ(end(SIGTERM), 0);
-  EXPECT_EQ(run_program(SURFCAST_SERVER " healthcheck --url " + url_ + " 2>&1").code, 1);
+  EXPECT_EQ(client::run_program(SURFCAST_SERVER " healthcheck --url " + url_ + " 2>&1").code, 1);
 }
 
 TEST_F(ServeTest, AScanIsBuiltOnceHoweverItIsNamed) {
@@ -29,7 +29,7 @@ TEST_F(ServeTest, AScanIsBuiltOnceHoweverItIsNamed) {
   const fs::path copy = folder_ / "renamed.ply";
   fs::copy_file(scan_, copy);
   serve(copy.string());
-  EXPECT_EQ(run_program(SURFCAST_CLIENT " models " + url_).output, "renamed\n");
+  EXPECT_EQ(client::run_program(SURFCAST_CLIENT " models " + url_).output, "renamed\n");
   EXPECT_EQ(content(file("log")).find("building"), std::string::npos);
   EXPECT_EQ(std::distance(fs::directory_iterator(cache()), fs::directory_iterator()), 1);
 }
@@ -37,8 +37,8 @@ TEST_F(ServeTest, AScanIsBuiltOnceHoweverItIsNamed) {
 TEST_F(ServeTest, WhatCannotBeServedIsAFailureThatNamesIt) {
   ASSERT_TRUE(write_file_atomically(folder_ / "broken.ply", "ply\nformat ascii 1.0\n"));
   for (const std::string name : {"absent.surf", "absent.ply", "broken.ply"}) {
-    const ProgramOutcome outcome =
-        run_program(SURFCAST_SERVER " serve --listen 127.0.0.1:0 --cache " + cache() + " " + file(name) + " 2>&1");
+    const client::ProgramOutcome outcome = client::run_program(SURFCAST_SERVER " serve --listen 127.0.0.1:0 --cache " +
+                                                               cache() + " " + file(name) + " 2>&1");
     EXPECT_EQ(outcome.code, 1) << name;
     EXPECT_NE(outcome.output.find("surfcastd: "), std::string::npos);
     EXPECT_NE(outcome.output.find(name), std::string::npos) << outcome.output;
@@ -48,9 +48,9 @@ TEST_F(ServeTest, WhatCannotBeServedIsAFailureThatNamesIt) {
 TEST_F(ServeTest, WrongCommandLinesEndWithTwo) {
   for (const std::string arguments : {"serve --listen nowhere", "serve --gpu -1", "render a.surf",
                                       "render a.surf --output a.gif", "healthcheck --url x"}) {
-    EXPECT_EQ(run_program(SURFCAST_SERVER " " + arguments + " 2>&1").code, 2) << arguments;
+    EXPECT_EQ(client::run_program(SURFCAST_SERVER " " + arguments + " 2>&1").code, 2) << arguments;
   }
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::cmd

@@ -13,7 +13,7 @@
 #include "base/stopwatch.h"
 #include "client/run_program.h"
 
-namespace surfcast {
+namespace surfcast::cmd {
 namespace {
 
 namespace fs = std::filesystem;
@@ -52,7 +52,7 @@ class StoppedBuildTest : public ::testing::Test {
     std::signal(SIGINT, SIG_DFL);  // may be ignored, which programs inherit
     write_scan(folder_ / "scan.ply", 150);
     const Stopwatch stopwatch;
-    ASSERT_EQ(wait_for_program(start_build()), 0);
+    ASSERT_EQ(client::wait_for_program(start_build()), 0);
     seconds_ = stopwatch.seconds();
     whole_ = content(target());
     fs::remove(target());
@@ -61,7 +61,7 @@ class StoppedBuildTest : public ::testing::Test {
 
   [[nodiscard]] fs::path target() const { return folder_ / "model.surf"; }
   [[nodiscard]] pid_t start_build() const {
-    return start_program({SURFCASTD, "build", folder_ / "scan.ply", "--output", target()});
+    return client::start_program({SURFCASTD, "build", folder_ / "scan.ply", "--output", target()});
   }
 
   /// Sends the signal at a random moment of the build. Returns whether the build was still going on.
@@ -70,7 +70,7 @@ class StoppedBuildTest : public ::testing::Test {
     const double moment = std::uniform_real_distribution<>(0, 1.1 * seconds_)(random_);
     std::this_thread::sleep_for(std::chrono::duration<double>(moment));
     ::kill(build, signal);
-    return wait_for_program(build) == 128 + signal;
+    return client::wait_for_program(build) == 128 + signal;
   }
 
   /// What is in the folder beside the scan and the model.
@@ -132,4 +132,4 @@ TEST_F(StoppedBuildTest, AnOldModelStaysUntilTheNewOneIsWhole) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::cmd

@@ -9,7 +9,7 @@
 #include <gtest/gtest.h>
 #include <sys/wait.h>
 
-namespace surfcast {
+namespace surfcast::cmd {
 namespace {
 
 namespace fs = std::filesystem;
@@ -246,4 +246,4 @@ TEST_F(SurfcastdTest, InspectStatesRangesAndClasses) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::cmd

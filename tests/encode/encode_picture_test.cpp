@@ -9,12 +9,12 @@
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
 
-namespace surfcast {
+namespace surfcast::encode {
 namespace {
 
 /// Smooth colours with a black corner, as a rendered picture has.
-Image make_picture(int width, int height) {
-  Image image{width, height, PixelFormat::kSrgb8, {}};
+picture::Image make_picture(int width, int height) {
+  picture::Image image{width, height, picture::PixelFormat::kSrgb8, {}};
   for (int y = 0; y < height; ++y) {
     for (int x = 0; x < width; ++x) {
       const bool background = x < width / 4 && y < height / 4;
@@ -28,8 +28,8 @@ Image make_picture(int width, int height) {
   return image;
 }
 
-Image make_light(int width, int height) {
-  Image image{width, height, PixelFormat::kLinearFloat, {}};
+picture::Image make_light(int width, int height) {
+  picture::Image image{width, height, picture::PixelFormat::kLinearFloat, {}};
   std::vector<float> values;
   for (int i = 0; i < width * height; ++i) {
     values.insert(values.end(), {0.001F * static_cast<float>(i), 12345.678F, -1e-6F, 1.0F});
@@ -60,7 +60,7 @@ Decoded<T> decode(const std::vector<std::byte>& bytes, const char* reader, OIIO:
 }
 
 /// Largest difference of a colour between the picture and what was decoded.
-int largest_error(const Image& image, const Decoded<uint8_t>& decoded) {
+int largest_error(const picture::Image& image, const Decoded<uint8_t>& decoded) {
   int largest = 0;
   for (size_t pixel = 0; pixel < decoded.values.size() / 3; ++pixel) {
     for (size_t c = 0; c < 3; ++c) {
@@ -72,8 +72,8 @@ int largest_error(const Image& image, const Decoded<uint8_t>& decoded) {
 }
 
 TEST(EncodePicture, PngComesBackToTheLastBit) {
-  const Image image = make_picture(301, 77);
-  const auto bytes = encode_picture(image, FileFormat::kPng, 90);
+  const picture::Image image = make_picture(301, 77);
+  const auto bytes = encode_picture(image, picture::FileFormat::kPng, 90);
   ASSERT_TRUE(bytes);
   const auto decoded = decode<uint8_t>(*bytes, "png", OIIO::TypeDesc::UINT8);
   ASSERT_EQ(decoded.width, 301);
@@ -83,8 +83,8 @@ TEST(EncodePicture, PngComesBackToTheLastBit) {
 }
 
 TEST(EncodePicture, JpegComesBackClose) {
-  const Image image = make_picture(301, 77);
-  const auto bytes = encode_picture(image, FileFormat::kJpeg, 95);
+  const picture::Image image = make_picture(301, 77);
+  const auto bytes = encode_picture(image, picture::FileFormat::kJpeg, 95);
   ASSERT_TRUE(bytes);
   const auto decoded = decode<uint8_t>(*bytes, "jpg", OIIO::TypeDesc::UINT8);
   ASSERT_EQ(decoded.width, 301);
@@ -93,8 +93,8 @@ TEST(EncodePicture, JpegComesBackClose) {
 }
 
 TEST(EncodePicture, WebpComesBackClose) {
-  const Image image = make_picture(301, 77);
-  const auto bytes = encode_picture(image, FileFormat::kWebp, 95);
+  const picture::Image image = make_picture(301, 77);
+  const auto bytes = encode_picture(image, picture::FileFormat::kWebp, 95);
   ASSERT_TRUE(bytes);
   const auto decoded = decode<uint8_t>(*bytes, "webp", OIIO::TypeDesc::UINT8);
   ASSERT_EQ(decoded.width, 301);
@@ -103,8 +103,8 @@ TEST(EncodePicture, WebpComesBackClose) {
 }
 
 TEST(EncodePicture, LowerQualityGivesSmallerFiles) {
-  const Image image = make_picture(640, 480);
-  for (const FileFormat format : {FileFormat::kJpeg, FileFormat::kWebp}) {
+  const picture::Image image = make_picture(640, 480);
+  for (const picture::FileFormat format : {picture::FileFormat::kJpeg, picture::FileFormat::kWebp}) {
     const auto low = encode_picture(image, format, 20);
     const auto high = encode_picture(image, format, 95);
     ASSERT_TRUE(low && high);
@@ -113,8 +113,8 @@ TEST(EncodePicture, LowerQualityGivesSmallerFiles) {
 }
 
 TEST(EncodePicture, ExrKeepsLinearFloatsToTheLastBit) {
-  const Image image = make_light(40, 30);
-  const auto bytes = encode_picture(image, FileFormat::kExr, 90);
+  const picture::Image image = make_light(40, 30);
+  const auto bytes = encode_picture(image, picture::FileFormat::kExr, 90);
   ASSERT_TRUE(bytes);
   const auto decoded = decode<float>(*bytes, "exr", OIIO::TypeDesc::FLOAT);
   ASSERT_EQ(decoded.channels, 3);
@@ -125,8 +125,9 @@ TEST(EncodePicture, ExrKeepsLinearFloatsToTheLastBit) {
 }
 
 TEST(EncodePicture, TheSameImageGivesTheSameBytes) {
-  for (const FileFormat format : {FileFormat::kPng, FileFormat::kJpeg, FileFormat::kWebp, FileFormat::kExr}) {
-    const Image image = format == FileFormat::kExr ? make_light(40, 30) : make_picture(200, 100);
+  for (const picture::FileFormat format :
+       {picture::FileFormat::kPng, picture::FileFormat::kJpeg, picture::FileFormat::kWebp, picture::FileFormat::kExr}) {
+    const picture::Image image = format == picture::FileFormat::kExr ? make_light(40, 30) : make_picture(200, 100);
     const auto first = encode_picture(image, format, 90);
     const auto second = encode_picture(image, format, 90);
     ASSERT_TRUE(first && second);
@@ -135,17 +136,18 @@ TEST(EncodePicture, TheSameImageGivesTheSameBytes) {
 }
 
 TEST(EncodePicture, OnePixelIsAPicture) {
-  for (const FileFormat format : {FileFormat::kPng, FileFormat::kJpeg, FileFormat::kWebp}) {
+  for (const picture::FileFormat format :
+       {picture::FileFormat::kPng, picture::FileFormat::kJpeg, picture::FileFormat::kWebp}) {
     EXPECT_TRUE(encode_picture(make_picture(1, 1), format, 90));
   }
-  EXPECT_TRUE(encode_picture(make_light(1, 1), FileFormat::kExr, 90));
+  EXPECT_TRUE(encode_picture(make_light(1, 1), picture::FileFormat::kExr, 90));
 }
 
 TEST(EncodePicture, ASideBeyondTheFormatIsAnErrorAndNotACrash) {
   // WebP ends at 16383 pixels.
-  const Result<std::vector<std::byte>> bytes = encode_picture(make_picture(16384, 1), FileFormat::kWebp, 90);
+  const Result<std::vector<std::byte>> bytes = encode_picture(make_picture(16384, 1), picture::FileFormat::kWebp, 90);
   EXPECT_FALSE(bytes);
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::encode

@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace surfcast {
+namespace surfcast::geometry {
 namespace {
 
 TEST(CameraFrame, AxesAreRightUpForward) {
@@ -62,4 +62,4 @@ TEST(CameraFrame, WrongCamerasAreRefused) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::geometry

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace surfcast {
+namespace surfcast::geometry {
 namespace {
 
 const Box kUnit{{0, 0, 0}, {1, 1, 1}};
@@ -36,4 +36,4 @@ TEST(Clip, BoxesOfPointsAreLeftOutOnlyWhenNothingOfThemIsShown) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::geometry

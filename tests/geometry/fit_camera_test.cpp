@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace surfcast {
+namespace surfcast::geometry {
 namespace {
 
 Box box_between(const glm::dvec3& first, const glm::dvec3& second) {
@@ -80,4 +80,4 @@ TEST(FitCamera, APointHasAViewToo) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::geometry

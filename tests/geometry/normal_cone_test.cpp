@@ -7,7 +7,7 @@
 
 #include <gtest/gtest.h>
 
-namespace surfcast {
+namespace surfcast::geometry {
 namespace {
 
 TEST(NormalCone, OfOneNormalIsThatNormal) {
@@ -44,4 +44,4 @@ TEST(NormalCone, OfOppositeNormalsOrNoneIsNone) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::geometry

@@ -98,11 +98,11 @@ TEST(PlotTest, HasAMarkForEveryMeasurement) {
 }
 
 TEST(SlowPathTest, MovesTheFocalPointByAFractionOfAPixel) {
-  PictureRequest request;
-  request.camera = Camera{{0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 40};
+  picture::PictureRequest request;
+  request.camera = geometry::Camera{{0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 40};
   const auto path = slow_path(request, 256, 3);
   ASSERT_EQ(path.size(), 3);
-  const CameraFrame frame = *make_camera_frame(*path[2].camera, 256, 256);
+  const geometry::CameraFrame frame = *geometry::make_camera_frame(*path[2].camera, 256, 256);
   const glm::dvec2 origin = frame.project(frame.to_camera({0, 0, 0}));
   EXPECT_NEAR(origin.x, 128 - 2 * 0.37, 1e-9);
   EXPECT_NEAR(origin.y, 128 + 2 * 0.21, 1e-9);

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace surfcast {
+namespace surfcast::ldc {
 namespace {
 
 constexpr uint32_t kRoot = BlockEntry::kNoParent;
@@ -46,4 +46,4 @@ TEST(BlockTree, RefusesSiblingsThatDoNotLieSideBySide) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::ldc

@@ -7,7 +7,7 @@
 
 #include "ldc/coarse_surfel.h"
 
-namespace surfcast {
+namespace surfcast::ldc {
 
 inline CoarseSurfel surfel_at(const glm::dvec3& position, const glm::vec3& normal = {0, 0, 1}, float radius = 0.01F) {
   CoarseSurfel surfel;
@@ -31,4 +31,4 @@ inline std::vector<CoarseSurfel> sheet(int side, const glm::dvec3& centre, const
   return surfels;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::ldc

@@ -9,11 +9,11 @@
 #include "geometry/morton.h"
 #include "ldc/lattice.h"
 
-namespace surfcast {
+namespace surfcast::ldc {
 namespace {
 
-SurfelCloud cloud_of(std::vector<glm::dvec3> positions, float radius = 1) {
-  SurfelCloud cloud;
+surfel::SurfelCloud cloud_of(std::vector<glm::dvec3> positions, float radius = 1) {
+  surfel::SurfelCloud cloud;
   cloud.radii.assign(positions.size(), radius);
   cloud.sources.push_back({"generated", 0, positions.size(), std::nullopt});
   cloud.positions = std::move(positions);
@@ -28,12 +28,12 @@ std::vector<glm::dvec3> random_points(size_t count, double size, unsigned seed =
   return points;
 }
 
-Partition partition_cloud(const SurfelCloud& cloud, const PartitionOptions& options) {
+Partition partition_cloud(const surfel::SurfelCloud& cloud, const PartitionOptions& options) {
   return partition_region(cloud, whole_region(cloud), options);
 }
 
 /// What every partition promises: each surfel once, blocks in a row, none too large, indices that fit.
-void expect_sound(const SurfelCloud& cloud, const Partition& partition, const PartitionOptions& options = {}) {
+void expect_sound(const surfel::SurfelCloud& cloud, const Partition& partition, const PartitionOptions& options = {}) {
   std::vector<uint32_t> order = partition.order;
   std::sort(order.begin(), order.end());
   ASSERT_EQ(order.size(), cloud.size());
@@ -44,7 +44,7 @@ void expect_sound(const SurfelCloud& cloud, const Partition& partition, const Pa
     ASSERT_GT(block.count, 0u);
     ASSERT_LE(block.count, options.max_surfels);
     next += block.count;
-    Box box;
+    geometry::Box box;
     for (size_t i = block.first; i < next; ++i) box.include(cloud.positions[partition.order[i]]);
     ASSERT_TRUE(indices_fit(block.grid, box, block.count));
   }
@@ -52,7 +52,7 @@ void expect_sound(const SurfelCloud& cloud, const Partition& partition, const Pa
 }
 
 TEST(Partition, OfFewSurfelsIsOneBlockOfTheRoot) {
-  const SurfelCloud cloud = cloud_of(random_points(1000, 50));
+  const surfel::SurfelCloud cloud = cloud_of(random_points(1000, 50));
   const Partition partition = partition_cloud(cloud, {});
   expect_sound(cloud, partition);
   ASSERT_EQ(partition.blocks.size(), 1u);
@@ -60,14 +60,14 @@ TEST(Partition, OfFewSurfelsIsOneBlockOfTheRoot) {
 }
 
 TEST(Partition, SplitsManySurfelsIntoTheCellsThatHoldThem) {
-  const SurfelCloud cloud = cloud_of(random_points(100000, 64));
+  const surfel::SurfelCloud cloud = cloud_of(random_points(100000, 64));
   const Partition partition = partition_cloud(cloud, {});
   expect_sound(cloud, partition);
   EXPECT_GT(partition.blocks.size(), 6u);
-  const RootCube root = root_cube(cloud.bounds());
+  const geometry::RootCube root = geometry::root_cube(cloud.bounds());
   for (const BlockPlan& block : partition.blocks) {
     for (size_t i = block.first; i < block.first + block.count; ++i) {
-      const uint64_t code = morton_code(root, cloud.positions[partition.order[i]]);
+      const uint64_t code = geometry::morton_code(root, cloud.positions[partition.order[i]]);
       ASSERT_EQ(key_of_code(code, block.key.depth), block.key);
     }
   }
@@ -78,7 +78,7 @@ TEST(Partition, MergesSmallNeighbours) {
   std::vector<glm::dvec3> points = random_points(40000, 1);
   const std::vector<glm::dvec3> thin = random_points(500, 1024, 2);
   points.insert(points.end(), thin.begin(), thin.end());
-  const SurfelCloud cloud = cloud_of(std::move(points));
+  const surfel::SurfelCloud cloud = cloud_of(std::move(points));
   PartitionOptions unmerged;
   unmerged.min_surfels = 0;
   const Partition merged = partition_cloud(cloud, {});
@@ -87,7 +87,7 @@ TEST(Partition, MergesSmallNeighbours) {
 }
 
 TEST(Partition, OfCoincidentSurfelsEndsWithFullBlocks) {
-  const SurfelCloud cloud = cloud_of(std::vector<glm::dvec3>(100000, glm::dvec3(1, 2, 3)));
+  const surfel::SurfelCloud cloud = cloud_of(std::vector<glm::dvec3>(100000, glm::dvec3(1, 2, 3)));
   const Partition partition = partition_cloud(cloud, {});
   expect_sound(cloud, partition);
   EXPECT_LE(partition.blocks.size(), 8u);
@@ -96,7 +96,7 @@ TEST(Partition, OfCoincidentSurfelsEndsWithFullBlocks) {
 TEST(Partition, SeparatesAClusterFarSmallerThanTheSmallestCell) {
   std::vector<glm::dvec3> points = random_points(40000, 1e-9);
   points.emplace_back(1e6, 1e6, 1e6);
-  const SurfelCloud cloud = cloud_of(std::move(points), 1e-11f);
+  const surfel::SurfelCloud cloud = cloud_of(std::move(points), 1e-11f);
   expect_sound(cloud, partition_cloud(cloud, {}));
 }
 
@@ -104,29 +104,29 @@ TEST(Partition, GivesADenseClusterInALargeThinCellABlockOfItsOwn) {
   std::vector<glm::dvec3> points = random_points(1000, 0.01);
   const std::vector<glm::dvec3> thin = random_points(1000, 1000, 2);
   points.insert(points.end(), thin.begin(), thin.end());
-  SurfelCloud cloud = cloud_of(std::move(points), 10);
+  surfel::SurfelCloud cloud = cloud_of(std::move(points), 10);
   std::fill(cloud.radii.begin(), cloud.radii.begin() + 1000, 0.001F);
   const Partition partition = partition_cloud(cloud, {});
   expect_sound(cloud, partition);
   for (const BlockPlan& block : partition.blocks) {
-    Box box;
+    geometry::Box box;
     for (size_t i = block.first; i < block.first + block.count; ++i) {
       box.include(cloud.positions[partition.order[i]]);
     }
     // A step of a compact vertex, 2^-20 of the block, is about one of the lattice or less.
-    if (block.count >= kCrowd) {
+    if (block.count >= kDenseBlockSurfels) {
       EXPECT_LT(box.diagonal() / std::exp2(20), 2 * block.grid.scale.x);
     }
   }
 }
 
 TEST(Partition, AFewSurfelsFarApartShareABlock) {
-  SurfelCloud cloud = cloud_of(random_points(200, 1e5), 1);
+  surfel::SurfelCloud cloud = cloud_of(random_points(200, 1e5), 1);
   EXPECT_EQ(partition_cloud(cloud, {}).blocks.size(), 1u);
 }
 
 TEST(Partition, SplitsUntilIndicesFitForTinyRadii) {
-  SurfelCloud cloud = cloud_of(random_points(300, 1e6), 1e-3f);
+  surfel::SurfelCloud cloud = cloud_of(random_points(300, 1e6), 1e-3f);
   const Partition partition = partition_cloud(cloud, {});
   expect_sound(cloud, partition);
   EXPECT_GT(partition.blocks.size(), 1u);
@@ -135,10 +135,10 @@ TEST(Partition, SplitsUntilIndicesFitForTinyRadii) {
 }
 
 TEST(Partition, SplitsGridsWhoseIndicesSpanTheWholeIntegerRange) {
-  const Grid grid{glm::dvec3(1), glm::dvec3(0)};
+  const surfel::Grid grid{glm::dvec3(1), glm::dvec3(0)};
   std::mt19937 random(4);
   std::uniform_int_distribution<int64_t> wide(-2147483648, 2147483647);
-  SurfelCloud cloud;
+  surfel::SurfelCloud cloud;
   for (int i = 0; i < 1000; ++i) cloud.positions.push_back(grid.position({wide(random), wide(random), wide(random)}));
   cloud.radii.assign(cloud.size(), 1e8f);
   cloud.sources.push_back({"random.las", 0, cloud.size(), grid});
@@ -148,9 +148,9 @@ TEST(Partition, SplitsGridsWhoseIndicesSpanTheWholeIntegerRange) {
 }
 
 TEST(Partition, NeverMixesGrids) {
-  const Grid a{glm::dvec3(0.01), glm::dvec3(0)};
-  const Grid b{glm::dvec3(0.01), glm::dvec3(0.005)};
-  SurfelCloud cloud;
+  const surfel::Grid a{glm::dvec3(0.01), glm::dvec3(0)};
+  const surfel::Grid b{glm::dvec3(0.01), glm::dvec3(0.005)};
+  surfel::SurfelCloud cloud;
   for (int i = 0; i < 100; ++i) cloud.positions.push_back((i < 50 ? a : b).position({i, i % 7, i % 5}));
   cloud.radii.assign(100, 1);
   cloud.sources = {{"a.las", 0, 50, a}, {"b.las", 50, 50, b}};
@@ -162,8 +162,8 @@ TEST(Partition, NeverMixesGrids) {
 }
 
 TEST(Partition, JoinsSourcesOfOneGrid) {
-  const Grid grid{glm::dvec3(0.01), glm::dvec3(0)};
-  SurfelCloud cloud;
+  const surfel::Grid grid{glm::dvec3(0.01), glm::dvec3(0)};
+  surfel::SurfelCloud cloud;
   for (int i = 0; i < 100; ++i) cloud.positions.push_back(grid.position({i, i % 7, i % 5}));
   cloud.radii.assign(100, 1);
   cloud.sources = {{"a.las", 0, 50, grid}, {"b.las", 50, 50, grid}};
@@ -171,7 +171,7 @@ TEST(Partition, JoinsSourcesOfOneGrid) {
 }
 
 TEST(Lattice, StepIsThePowerOfTwoThatKeepsTheError) {
-  Box box;
+  geometry::Box box;
   box.include({0, 0, 0});
   box.include({100, 100, 100});
   for (const double error : {1e-6, 0.01, 0.3, 1.0}) {
@@ -183,26 +183,26 @@ TEST(Lattice, StepIsThePowerOfTwoThatKeepsTheError) {
 }
 
 TEST(Lattice, IsNeverFinerThanTheDoublesOfTheBox) {
-  Box box;
+  geometry::Box box;
   box.include({5e6, 0, 0});
-  const Grid grid = choose_lattice(box, 1e-30);
+  const surfel::Grid grid = choose_lattice(box, 1e-30);
   EXPECT_EQ(grid.scale.x, std::nextafter(5e6, 1e9) - 5e6);
   const glm::dvec3 p(5e6 + 1.0 / 3, 1.0 / 3, -2.0 / 3);
   EXPECT_EQ(grid.position(grid.index(p)).x, p.x);
 }
 
 TEST(Lattice, LatticesOfDifferentStepsNest) {
-  Box box;
+  geometry::Box box;
   box.include({1000, 1000, 1000});
-  const Grid coarse = choose_lattice(box, 1);
-  const Grid fine = choose_lattice(box, 0.01);
+  const surfel::Grid coarse = choose_lattice(box, 1);
+  const surfel::Grid fine = choose_lattice(box, 0.01);
   const glm::dvec3 p = coarse.position({17, -5, 900});
   EXPECT_EQ(fine.position(fine.index(p)), p);
 }
 
 TEST(Morton, CodesAndKeysNest) {
-  const RootCube root{{0, 0, 0}, 16};
-  const uint64_t code = morton_code(root, {9.5, 3.25, 15.999});
+  const geometry::RootCube root{{0, 0, 0}, 16};
+  const uint64_t code = geometry::morton_code(root, {9.5, 3.25, 15.999});
   EXPECT_EQ(key_of_code(code, 0), OctreeKey{});
   EXPECT_EQ(key_of_code(code, 4), (OctreeKey{4, 9, 3, 15}));
   for (int depth = 1; depth <= OctreeKey::kMaxDepth; ++depth) {
@@ -213,15 +213,15 @@ TEST(Morton, CodesAndKeysNest) {
 }
 
 TEST(Morton, PointsOnTheFarFacesAreInsideTheRoot) {
-  Box box;
+  geometry::Box box;
   box.include({-1, -1, -1});
   box.include({3, 3, 3});
-  const RootCube root = root_cube(box);
+  const geometry::RootCube root = geometry::root_cube(box);
   EXPECT_EQ(root.side, 8);
-  EXPECT_EQ(key_of_code(morton_code(root, {3, 3, 3}), 1), (OctreeKey{1, 1, 1, 1}));
-  const RootCube point = root_cube({{5, 5, 5}, {5, 5, 5}});
-  EXPECT_EQ(key_of_code(morton_code(point, {5, 5, 5}), 3), (OctreeKey{3, 0, 0, 0}));
+  EXPECT_EQ(key_of_code(geometry::morton_code(root, {3, 3, 3}), 1), (OctreeKey{1, 1, 1, 1}));
+  const geometry::RootCube point = geometry::root_cube({{5, 5, 5}, {5, 5, 5}});
+  EXPECT_EQ(key_of_code(geometry::morton_code(point, {5, 5, 5}), 3), (OctreeKey{3, 0, 0, 0}));
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::ldc

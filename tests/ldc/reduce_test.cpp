@@ -9,10 +9,10 @@
 
 #include "ldc/coarse_samples.h"
 
-namespace surfcast {
+namespace surfcast::ldc {
 namespace {
 
-constexpr RootCube kUnitCube{{0, 0, 0}, 1};
+constexpr geometry::RootCube kUnitCube{{0, 0, 0}, 1};
 constexpr double kRay = 1.0 / kLdcLines;  ///< distance of the rays in the unit cube
 constexpr double kStep = kRay / 16;       ///< of the lattice of coarse surfels
 
@@ -185,7 +185,7 @@ TEST(Reduce, AnyNumberOfCoincidentSurfelsIsOneSurfel) {
 TEST(Reduce, SurfelsStayInTheirCellOnItsLattice) {
   std::mt19937 random(5);
   std::uniform_real_distribution<double> uniform(0, 1);
-  const RootCube root{{500000, 4e6, -20}, 1024};
+  const geometry::RootCube root{{500000, 4e6, -20}, 1024};
   const OctreeKey cell{3, 5, 2, 7};
   const glm::dvec3 low = root.min + glm::dvec3(cell.x, cell.y, cell.z) * 128.0;
   std::vector<CoarseSurfel> surfels;
@@ -196,10 +196,10 @@ TEST(Reduce, SurfelsStayInTheirCellOnItsLattice) {
   }
   const CoarseCell coarse = reduce(surfels, root, cell, true);
   for (const CoarseSurfel& s : coarse.surfels) {
-    ASSERT_EQ(key_of_code(morton_code(root, s.position), 3), cell);
+    ASSERT_EQ(key_of_code(geometry::morton_code(root, s.position), 3), cell);
     ASSERT_EQ(coarse.grid.position(coarse.grid.index(s.position)), s.position);
   }
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::ldc

@@ -13,25 +13,25 @@
 #include "shared/kernel.h"
 #include "surfel/normalization_weights.h"
 
-namespace surfcast {
+namespace surfcast::ldc {
 namespace {
 
 constexpr size_t kLeaf = 16384;
 
-SurfelCloud cloud_of(const std::vector<CoarseSurfel>& surfels) {
-  SurfelCloud cloud = make_coarse_cloud(surfels, {true, true, 8, {{"classification", std::vector<uint8_t>()}}});
-  cloud.weights = normalization_weights(cloud);
+surfel::SurfelCloud cloud_of(const std::vector<CoarseSurfel>& surfels) {
+  surfel::SurfelCloud cloud = make_coarse_cloud(surfels, {true, true, 8, {{"classification", std::vector<uint8_t>()}}});
+  cloud.weights = surfel::normalization_weights(cloud);
   return cloud;
 }
 
-SurfelCloud cloud_at(const std::vector<glm::dvec3>& positions) {
+surfel::SurfelCloud cloud_at(const std::vector<glm::dvec3>& positions) {
   std::vector<CoarseSurfel> surfels;
   for (const glm::dvec3& p : positions) surfels.push_back(surfel_at(p));
   return cloud_of(surfels);
 }
 
 /// A wall of 8 x 8 squares, of 16384 or of 1024 surfels by turns, so that dense and thin cells are side by side.
-SurfelCloud wall() {
+surfel::SurfelCloud wall() {
   std::vector<CoarseSurfel> surfels;
   for (int i = 0; i < 64; ++i) {
     const std::vector<CoarseSurfel> square = sheet((i + i / 8) % 2 == 0 ? 128 : 32, {i % 8 + 0.5, i / 8 + 0.5, 0.4});
@@ -41,7 +41,7 @@ SurfelCloud wall() {
   return cloud_of(surfels);
 }
 
-Subtree build(const SurfelCloud& cloud) {
+Subtree build(const surfel::SurfelCloud& cloud) {
   return build_subtree(cloud, whole_region(cloud), {}, 0);
 }
 
@@ -76,13 +76,14 @@ TEST(Subtree, OfFewSurfelsIsOneLeaf) {
 }
 
 TEST(Subtree, HasOneCoarseBlockForEveryCellThatIsTooLargeForALeaf) {
-  const SurfelCloud cloud = wall();
+  const surfel::SurfelCloud cloud = wall();
   const Subtree tree = build(cloud);
   expect_sound(tree, cloud.size());
-  const RootCube root = root_cube(cloud.bounds());
+  const geometry::RootCube root = geometry::root_cube(cloud.bounds());
   std::map<std::pair<int, uint64_t>, size_t> counts;
   for (const glm::dvec3& p : cloud.positions) {
-    for (int depth = 0; depth < 8; ++depth) ++counts[{depth, location_of(key_of_code(morton_code(root, p), depth))}];
+    for (int depth = 0; depth < 8; ++depth)
+      ++counts[{depth, location_of(key_of_code(geometry::morton_code(root, p), depth))}];
   }
   std::multiset<uint64_t> expected;
   for (const auto& [cell, count] : counts) {
@@ -96,7 +97,7 @@ TEST(Subtree, HasOneCoarseBlockForEveryCellThatIsTooLargeForALeaf) {
 }
 
 TEST(Subtree, KeepsAConstantColorOnEveryLevel) {
-  const SurfelCloud cloud = wall();
+  const surfel::SurfelCloud cloud = wall();
   for (const TreeBlock& block : build(cloud).blocks) {
     if (!block.coarse) continue;
     for (const glm::u16vec3& color : block.coarse->colors->values) ASSERT_EQ(color, cloud.colors->values[0]);
@@ -123,12 +124,12 @@ double weight_at(const std::vector<Splat>& splats, double x, double y) {
 }
 
 TEST(Subtree, WeightsAddUpToOneAcrossTheBordersOfBlocks) {
-  const SurfelCloud cloud = cloud_of(sheet(512, {0.5, 0.5, 0.3}));
+  const surfel::SurfelCloud cloud = cloud_of(sheet(512, {0.5, 0.5, 0.3}));
   const Subtree tree = build(cloud);
   std::map<int, std::vector<Splat>> levels;  // of full levels, by depth
   for (const TreeBlock& block : tree.blocks) {
     if (!block.coarse) continue;
-    const SurfelCloud& c = *block.coarse;
+    const surfel::SurfelCloud& c = *block.coarse;
     for (size_t i = 0; i < c.size(); ++i) {
       levels[block.key.depth].push_back({c.positions[i].x, c.positions[i].y, c.radii[i], c.weights[i]});
     }
@@ -157,11 +158,11 @@ TEST(Subtree, CoincidentSurfelsAreSeveralLeavesUnderOneCoarseSurfel) {
 }
 
 TEST(Subtree, SourcesOfDifferentGridsShareTheirCoarseBlocks) {
-  const Grid a{glm::dvec3(0.01), glm::dvec3(0)};
-  const Grid b{glm::dvec3(0.01), glm::dvec3(0.005)};
+  const surfel::Grid a{glm::dvec3(0.01), glm::dvec3(0)};
+  const surfel::Grid b{glm::dvec3(0.01), glm::dvec3(0.005)};
   std::vector<glm::dvec3> positions;
   for (int i = 0; i < 30000; ++i) positions.push_back((i < 15000 ? a : b).position({i % 173, i % 171, 7}));
-  SurfelCloud cloud = cloud_at(positions);
+  surfel::SurfelCloud cloud = cloud_at(positions);
   cloud.sources = {{"a.las", 0, 15000, a}, {"b.las", 15000, 15000, b}};
   const Subtree tree = build(cloud);
   expect_sound(tree, cloud.size());
@@ -180,7 +181,7 @@ std::multiset<std::pair<uint64_t, size_t>> shape_of(const std::vector<TreeBlock>
 }
 
 /// The part of a cloud within a cell, followed by what is around it.
-SurfelCloud part_of(const SurfelCloud& cloud, const Region& region, size_t& core) {
+surfel::SurfelCloud part_of(const surfel::SurfelCloud& cloud, const Region& region, size_t& core) {
   const double side = std::ldexp(region.root.side, -region.cell.depth);
   const glm::dvec3 low = region.root.min + glm::dvec3(region.cell.x, region.cell.y, region.cell.z) * side;
   std::vector<uint32_t> inside;
@@ -188,7 +189,7 @@ SurfelCloud part_of(const SurfelCloud& cloud, const Region& region, size_t& core
   for (uint32_t i = 0; i < cloud.size(); ++i) {
     const glm::dvec3& p = cloud.positions[i];
     const glm::dvec3 outside = glm::max(glm::max(low - p, p - (low + side)), glm::dvec3(0));
-    if (key_of_code(morton_code(region.root, p), region.cell.depth) == region.cell) {
+    if (key_of_code(geometry::morton_code(region.root, p), region.cell.depth) == region.cell) {
       inside.push_back(i);
     } else if (glm::length(outside) < side / 16) {
       around.push_back(i);
@@ -196,21 +197,21 @@ SurfelCloud part_of(const SurfelCloud& cloud, const Region& region, size_t& core
   }
   core = inside.size();
   inside.insert(inside.end(), around.begin(), around.end());
-  SurfelCloud part = make_coarse_cloud(sample_surfels(cloud, inside, 1),
-                                       {true, true, 8, {{"classification", std::vector<uint8_t>()}}});
+  surfel::SurfelCloud part = make_coarse_cloud(sample_surfels(cloud, inside, 1),
+                                               {true, true, 8, {{"classification", std::vector<uint8_t>()}}});
   for (size_t i = 0; i < inside.size(); ++i) part.weights.push_back(cloud.weights[inside[i]]);
   return part;
 }
 
 TEST(Subtree, RegionsWithWhatIsAroundThemMakeTheTreeOfTheWholeModel) {
-  const SurfelCloud cloud = wall();
+  const surfel::SurfelCloud cloud = wall();
   const Subtree whole = build(cloud);
-  const RootCube root = root_cube(cloud.bounds());
+  const geometry::RootCube root = geometry::root_cube(cloud.bounds());
   std::vector<TreeBlock> blocks;
   Front front;
   for (uint32_t octant = 0; octant < 8; ++octant) {
     Region region{root, OctreeKey{}.child(octant), true, 0};
-    const SurfelCloud part = part_of(cloud, region, region.core);
+    const surfel::SurfelCloud part = part_of(cloud, region, region.core);
     if (region.core == 0) continue;
     Subtree subtree = build_subtree(part, region, {}, static_cast<uint32_t>(blocks.size()));
     blocks.insert(blocks.end(), subtree.blocks.begin(), subtree.blocks.end());
@@ -234,7 +235,7 @@ TEST(Subtree, RegionsWithWhatIsAroundThemMakeTheTreeOfTheWholeModel) {
 }
 
 TEST(Subtree, PartsOfACellLeaveItsBlockToTheLevelsAbove) {
-  const SurfelCloud cloud = wall();
+  const surfel::SurfelCloud cloud = wall();
   Region region = whole_region(cloud);
   region.whole = false;
   const Subtree tree = build_subtree(cloud, region, {}, 100);
@@ -249,4 +250,4 @@ TEST(Subtree, PartsOfACellLeaveItsBlockToTheLevelsAbove) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::ldc

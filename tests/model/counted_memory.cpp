@@ -6,7 +6,7 @@
 
 #include <malloc.h>
 
-namespace surfcast {
+namespace surfcast::model {
 namespace {
 
 std::atomic<size_t> in_use{0};
@@ -45,57 +45,57 @@ void start_peak() {
   peak = in_use.load();
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::model
 
 // All forms that programs and libraries call. The ones that do not throw may end the process instead: there is always
 // memory for what these tests take.
 
 void* operator new(size_t size) {
-  return surfcast::count(std::malloc(size));
+  return surfcast::model::count(std::malloc(size));
 }
 void* operator new[](size_t size) {
-  return surfcast::count(std::malloc(size));
+  return surfcast::model::count(std::malloc(size));
 }
 void* operator new(size_t size, const std::nothrow_t& /*unused*/) noexcept {
-  return surfcast::count(std::malloc(size));
+  return surfcast::model::count(std::malloc(size));
 }
 void* operator new[](size_t size, const std::nothrow_t& /*unused*/) noexcept {
-  return surfcast::count(std::malloc(size));
+  return surfcast::model::count(std::malloc(size));
 }
 void* operator new(size_t size, std::align_val_t alignment) {
-  return surfcast::count_aligned(size, alignment);
+  return surfcast::model::count_aligned(size, alignment);
 }
 void* operator new[](size_t size, std::align_val_t alignment) {
-  return surfcast::count_aligned(size, alignment);
+  return surfcast::model::count_aligned(size, alignment);
 }
 
 void operator delete(void* memory) noexcept {
-  surfcast::release(memory);
+  surfcast::model::release(memory);
 }
 void operator delete[](void* memory) noexcept {
-  surfcast::release(memory);
+  surfcast::model::release(memory);
 }
 void operator delete(void* memory, size_t /*size*/) noexcept {
-  surfcast::release(memory);
+  surfcast::model::release(memory);
 }
 void operator delete[](void* memory, size_t /*size*/) noexcept {
-  surfcast::release(memory);
+  surfcast::model::release(memory);
 }
 void operator delete(void* memory, const std::nothrow_t& /*unused*/) noexcept {
-  surfcast::release(memory);
+  surfcast::model::release(memory);
 }
 void operator delete[](void* memory, const std::nothrow_t& /*unused*/) noexcept {
-  surfcast::release(memory);
+  surfcast::model::release(memory);
 }
 void operator delete(void* memory, std::align_val_t /*alignment*/) noexcept {
-  surfcast::release(memory);
+  surfcast::model::release(memory);
 }
 void operator delete[](void* memory, std::align_val_t /*alignment*/) noexcept {
-  surfcast::release(memory);
+  surfcast::model::release(memory);
 }
 void operator delete(void* memory, size_t /*size*/, std::align_val_t /*alignment*/) noexcept {
-  surfcast::release(memory);
+  surfcast::model::release(memory);
 }
 void operator delete[](void* memory, size_t /*size*/, std::align_val_t /*alignment*/) noexcept {
-  surfcast::release(memory);
+  surfcast::model::release(memory);
 }

@@ -2,7 +2,7 @@
 
 #include <cstddef>
 
-namespace surfcast {
+namespace surfcast::model {
 
 /// Bytes that `new` has given out and not got back. Programs that link counted_memory.cpp count them.
 size_t bytes_in_use();
@@ -10,4 +10,4 @@ size_t bytes_in_use();
 size_t peak_bytes_in_use();
 void start_peak();
 
-}  // namespace surfcast
+}  // namespace surfcast::model

@@ -14,13 +14,13 @@
 #include "model/model_writer.h"
 #include "model/round_trip.h"
 
-namespace surfcast {
+namespace surfcast::model {
 namespace {
 
 using Bytes = std::vector<std::byte>;
 
-SurfelCloud part_of_a_model(size_t count, bool leaf) {
-  SurfelCloud cloud = sphere_cloud(count);
+surfel::SurfelCloud part_of_a_model(size_t count, bool leaf) {
+  surfel::SurfelCloud cloud = sphere_cloud(count);
   std::mt19937 random(static_cast<uint32_t>(count));
   std::vector<uint16_t> intensity(count);
   for (uint16_t& value : intensity) value = static_cast<uint16_t>(random());
@@ -31,15 +31,15 @@ SurfelCloud part_of_a_model(size_t count, bool leaf) {
 
 /// A model of three levels, with all that a block may have.
 Bytes small_model(const TestFolder& folder) {
-  const auto encode = [](const SurfelCloud& cloud) {
+  const auto encode = [](const surfel::SurfelCloud& cloud) {
     std::vector<uint32_t> members(cloud.size());
     std::iota(members.begin(), members.end(), 0);
     return encode_block(cloud, members, {glm::dvec3(1e-4), glm::dvec3(0)});
   };
   const std::filesystem::path path = folder / "whole.surf";
   Result<ModelWriter> writer = ModelWriter::create(path, schema_of(part_of_a_model(1, true)));
-  const OctreeKey root;
-  const OctreeKey low = root.child(0);
+  const ldc::OctreeKey root;
+  const ldc::OctreeKey low = root.child(0);
   const uint32_t a = *writer->add(encode(part_of_a_model(200, true)), low.child(1), {});
   const uint32_t b = *writer->add(encode(part_of_a_model(300, true)), low.child(2), {});
   const uint32_t c = *writer->add(encode(part_of_a_model(100, true)), root.child(7), {});
@@ -223,4 +223,4 @@ TEST(DamagedModel, ChangedBlocksWithRightChecksumsAreRefusedOrDecode) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::model

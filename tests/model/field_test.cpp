@@ -7,7 +7,7 @@
 
 #include "model/path_order.h"
 
-namespace surfcast {
+namespace surfcast::model {
 namespace {
 
 constexpr uint64_t kMax = std::numeric_limits<uint64_t>::max();
@@ -152,4 +152,4 @@ TEST(PathOrder, OfNothingIsNothing) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::model

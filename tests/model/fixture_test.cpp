@@ -2,14 +2,14 @@
 
 #include "model/round_trip.h"
 
-namespace surfcast {
+namespace surfcast::model {
 namespace {
 
 /// The cloud of tests/data/sphere-and-grid-v2.surf, made when version 2 of the format was new: `build_subtree` with
 /// leaves of at most 64 surfels, so that a small file has coarser levels.
-SurfelCloud fixture_cloud() {
-  SurfelCloud cloud = sphere_cloud(200);
-  const Grid grid{{0.01, 0.01, 0.01}, {500.3, -70.7, 12}};
+surfel::SurfelCloud fixture_cloud() {
+  surfel::SurfelCloud cloud = sphere_cloud(200);
+  const surfel::Grid grid{{0.01, 0.01, 0.01}, {500.3, -70.7, 12}};
   for (int i = 0; i < 50; ++i) cloud.positions.push_back(grid.position({i * i, 5 * i, -i}));
   cloud.sources = {{"sphere.ply", 0, 200, std::nullopt}, {"grid.las", 200, 50, grid}};
   cloud.colors->bits = 16;
@@ -29,7 +29,7 @@ SurfelCloud fixture_cloud() {
 TEST(ModelFixture, OfVersionTwoIsStillRead) {
   const Result<ModelFile> model = ModelFile::open(std::string(SURFCAST_TEST_DATA) + "/sphere-and-grid-v2.surf");
   ASSERT_TRUE(model) << model.error().message;
-  const SurfelCloud cloud = fixture_cloud();
+  const surfel::SurfelCloud cloud = fixture_cloud();
   EXPECT_EQ(model->info().source_names, (std::vector<std::string>{"sphere.ply", "grid.las"}));
   EXPECT_EQ(model->info().scalar_names, (std::vector<std::string>{"gps_time", "id"}));
   ASSERT_EQ(model->info().surfels, cloud.size());
@@ -70,4 +70,4 @@ TEST(ModelFixture, HasCoarseBlocksThatDecode) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::model

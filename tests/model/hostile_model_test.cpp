@@ -7,13 +7,13 @@
 #include "model/format.h"
 #include "model/round_trip.h"
 
-namespace surfcast {
+namespace surfcast::model {
 namespace {
 
 /// A small model with every kind of content: colours, attributes, a grid, two sources, several blocks.
-SurfelCloud small_cloud() {
-  SurfelCloud cloud = sphere_cloud(150);
-  const Grid grid{{0.01, 0.01, 0.01}, {10, 20, 30}};
+surfel::SurfelCloud small_cloud() {
+  surfel::SurfelCloud cloud = sphere_cloud(150);
+  const surfel::Grid grid{{0.01, 0.01, 0.01}, {10, 20, 30}};
   for (int i = 0; i < 30; ++i) cloud.positions.push_back(grid.position({i * i, 5 * i, -i}));
   cloud.colors->values.resize(cloud.positions.size());
   cloud.sources = {{"a.ply", 0, 150, std::nullopt}, {"b.las", 150, 30, grid}};
@@ -139,11 +139,11 @@ TEST(HostileModel, WrongHeadersWithRightChecksumsFailOrDecode) {
 }
 
 TEST(HostileModel, WrongBlocksWithRightChecksumsFailOrDecode) {
-  SurfelCloud cloud = sphere_cloud(300);
+  surfel::SurfelCloud cloud = sphere_cloud(300);
   number_surfels(cloud);
   const std::vector<ScalarColumn> scalars{{"id", static_cast<ScalarCode>(cloud.scalars[0].values.index())}};
   const std::vector<uint32_t>& members = std::get<std::vector<uint32_t>>(cloud.scalars[0].values);
-  const Grid grid{glm::dvec3(1e-4), glm::dvec3(0)};
+  const surfel::Grid grid{glm::dvec3(1e-4), glm::dvec3(0)};
   const EncodedBlock block = encode_block(cloud, members, grid);
   const BlockShape shape{grid, block.origin, block.extent, block.surfels, 8, scalars};
   ASSERT_TRUE(decode_block(block.bytes, shape, 1));
@@ -167,10 +167,10 @@ TEST(HostileModel, WrongBlocksWithRightChecksumsFailOrDecode) {
 }
 
 TEST(HostileModel, ABlockWithMoreSurfelsThanItsTableSaysIsRefused) {
-  const SurfelCloud cloud = sphere_cloud(300);
+  const surfel::SurfelCloud cloud = sphere_cloud(300);
   std::vector<uint32_t> members(300);
   std::iota(members.begin(), members.end(), 0);
-  const Grid grid{glm::dvec3(1e-4), glm::dvec3(0)};
+  const surfel::Grid grid{glm::dvec3(1e-4), glm::dvec3(0)};
   const EncodedBlock block = encode_block(cloud, members, grid);
   EXPECT_FALSE(decode_block(block.bytes, {grid, block.origin, block.extent, 299, 8, {}}, 0));
   EXPECT_FALSE(decode_block(block.bytes, {grid, block.origin, block.extent / 2u, 300, 8, {}}, 0));
@@ -199,7 +199,7 @@ TEST(HostileModel, AHugeCountInTheTablesAllocatesNothing) {
 /// Parents and cells of a table of blocks, as a file with right checksums may state them.
 struct Claim {
   uint32_t parent;
-  OctreeKey key;
+  ldc::OctreeKey key;
 };
 
 Status read_tree(const TestFolder& folder, const std::vector<Claim>& claims) {
@@ -227,8 +227,8 @@ Status read_tree(const TestFolder& folder, const std::vector<Claim>& claims) {
 
 TEST(HostileModel, BlocksThatMakeNoTreeAreRefused) {
   const TestFolder folder;
-  const OctreeKey root;
-  const uint32_t none = BlockEntry::kNoParent;
+  const ldc::OctreeKey root;
+  const uint32_t none = ldc::BlockEntry::kNoParent;
   EXPECT_TRUE(read_tree(folder, {{none, root}, {0, root.child(1)}, {0, root}}));
   const std::vector<std::vector<Claim>> hostile{
       {{0, root}},                                                    // its own parent
@@ -269,4 +269,4 @@ TEST(HostileModel, OtherFilesAreNotModels) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::model

@@ -11,7 +11,7 @@
 #include "model/round_trip.h"
 #include "model/scalar_bits.h"
 
-namespace surfcast {
+namespace surfcast::model {
 namespace {
 
 constexpr double kNormalError = 0.1 * std::numbers::pi / 180;
@@ -23,7 +23,7 @@ double angle_between(const glm::dvec3& a, const glm::dvec3& b) {
 
 TEST(ModelFile, GivesEverySurfelOfASphereBack) {
   const TestFolder folder;
-  SurfelCloud cloud = sphere_cloud(50000);
+  surfel::SurfelCloud cloud = sphere_cloud(50000);
   for (size_t i = 0; i < cloud.size(); ++i) cloud.weights[i] = 1 / (1 + static_cast<float>(i));
   const DecodedModel model = round_trip(cloud, folder / "model.surf");
   EXPECT_GT(model.blocks.size(), 1u);
@@ -39,7 +39,7 @@ TEST(ModelFile, GivesEverySurfelOfASphereBack) {
 
 TEST(ModelFile, DescribesTheModelInItsHeader) {
   const TestFolder folder;
-  SurfelCloud cloud = sphere_cloud(1000);
+  surfel::SurfelCloud cloud = sphere_cloud(1000);
   cloud.z_up = false;
   cloud.scalars.push_back({"intensity", std::vector<uint16_t>(1000, 7)});
   cloud.sources = {{"a.ply", 0, 400, std::nullopt}, {"b.ply", 400, 600, std::nullopt}};
@@ -51,14 +51,14 @@ TEST(ModelFile, DescribesTheModelInItsHeader) {
   EXPECT_EQ(info.color_bits, 8);
   EXPECT_EQ(info.scalar_names, (std::vector<std::string>{"intensity"}));
   EXPECT_EQ(info.source_names, (std::vector<std::string>{"a.ply", "b.ply"}));
-  const Box bounds = cloud.bounds();
+  const geometry::Box bounds = cloud.bounds();
   EXPECT_LT(glm::length(info.bounds.min - bounds.min), cloud.radii[0] / 128);
   EXPECT_LT(glm::length(info.bounds.max - bounds.max), cloud.radii[0] / 128);
 }
 
 TEST(ModelFile, StoresNeitherColorNorAttributesThatAScanDoesNotHave) {
   const TestFolder folder;
-  SurfelCloud cloud = sphere_cloud(100);
+  surfel::SurfelCloud cloud = sphere_cloud(100);
   cloud.colors.reset();
   const ModelFile model = write_and_open(cloud, folder / "model.surf");
   EXPECT_EQ(model.info().color_bits, 0);
@@ -98,7 +98,7 @@ void expect_exact(const DecodedModel& model, const std::vector<T>& values, size_
 
 TEST(ModelFile, GivesScalarAttributesOfEveryTypeBackExactly) {
   const TestFolder folder;
-  SurfelCloud cloud = sphere_cloud(3000);
+  surfel::SurfelCloud cloud = sphere_cloud(3000);
   const auto add = [&](const char* name, auto example) {
     cloud.scalars.push_back({name, awkward_values<decltype(example)>(cloud.size())});
   };
@@ -121,7 +121,7 @@ TEST(ModelFile, GivesScalarAttributesOfEveryTypeBackExactly) {
 
 TEST(ModelFile, GivesSixteenBitColorsBackExactly) {
   const TestFolder folder;
-  SurfelCloud cloud = sphere_cloud(2000);
+  surfel::SurfelCloud cloud = sphere_cloud(2000);
   cloud.colors->bits = 16;
   std::mt19937 random(3);
   for (glm::u16vec3& color : cloud.colors->values) color = glm::u16vec3(random(), random(), random());
@@ -136,8 +136,8 @@ TEST(ModelFile, GivesSixteenBitColorsBackExactly) {
 TEST(ModelFile, GivesCoordinatesOnAGridBackToTheLastBit) {
   const TestFolder folder;
   // Eastings and northings of 5e6 m in millimetres, as LAS computes them; neither scale nor sum is a binary fraction.
-  const Grid grid{{0.001, 0.001, 0.001}, {500000.123, 4999999.987, -12.5}};
-  SurfelCloud cloud;
+  const surfel::Grid grid{{0.001, 0.001, 0.001}, {500000.123, 4999999.987, -12.5}};
+  surfel::SurfelCloud cloud;
   std::mt19937 random(5);
   std::uniform_int_distribution<int64_t> wide(-2000000000, 2000000000);
   for (int i = 0; i < 20000; ++i) {
@@ -150,9 +150,9 @@ TEST(ModelFile, GivesCoordinatesOnAGridBackToTheLastBit) {
 
 TEST(ModelFile, KeepsSourcesOfDifferentGridsExactSideBySide) {
   const TestFolder folder;
-  const Grid millimetres{{0.001, 0.001, 0.001}, {0.3, 0.7, 0.1}};
-  const Grid degrees{{1e-7, 1e-7, 0.01}, {0, 0, 100.05}};
-  SurfelCloud cloud;
+  const surfel::Grid millimetres{{0.001, 0.001, 0.001}, {0.3, 0.7, 0.1}};
+  const surfel::Grid degrees{{1e-7, 1e-7, 0.01}, {0, 0, 100.05}};
+  surfel::SurfelCloud cloud;
   for (int i = 0; i < 500; ++i) cloud.positions.push_back(millimetres.position({i * 7, i * 3, i}));
   for (int i = 0; i < 500; ++i) cloud.positions.push_back(degrees.position({i * 70000, i * 30000, -9000 - i}));
   for (int i = 0; i < 500; ++i) cloud.positions.emplace_back(i * 0.37, i * 0.11, 0);
@@ -166,9 +166,9 @@ TEST(ModelFile, KeepsSourcesOfDifferentGridsExactSideBySide) {
 
 TEST(ModelFile, TreatsAGridThatDoesNotHoldItsPointsAsNone) {
   const TestFolder folder;
-  SurfelCloud cloud = sphere_cloud(1000);
+  surfel::SurfelCloud cloud = sphere_cloud(1000);
   for (const double scale : {0.25, 1e-300}) {
-    cloud.sources[0].grid = Grid{glm::dvec3(scale), glm::dvec3(0)};
+    cloud.sources[0].grid = surfel::Grid{glm::dvec3(scale), glm::dvec3(0)};
     const DecodedModel model = round_trip(cloud, folder / "model.surf");
     for (size_t i = 0; i < cloud.size(); ++i) {
       ASSERT_LE(glm::length(model.position(i) - cloud.positions[i]), cloud.radii[i] / 256);
@@ -178,7 +178,7 @@ TEST(ModelFile, TreatsAGridThatDoesNotHoldItsPointsAsNone) {
 
 TEST(ModelFile, BoundsEachPositionErrorByItsOwnRadiusOverSpacingsOfOneToAMillion) {
   const TestFolder folder;
-  SurfelCloud cloud;
+  surfel::SurfelCloud cloud;
   std::mt19937 random(9);
   std::uniform_real_distribution<double> uniform(-1, 1);
   for (int i = 0; i < 20000; ++i) {
@@ -196,7 +196,7 @@ TEST(ModelFile, KeepsItsPrecisionFarFromTheOriginAndAtAnyScale) {
   const TestFolder folder;
   for (const double scale : {1e-30, 1e-4, 1.0, 1e5, 1e30}) {
     const glm::dvec3 offset = glm::dvec3(5e6, -3e6, 100) * scale;
-    SurfelCloud cloud = sphere_cloud(5000, 10 * scale);
+    surfel::SurfelCloud cloud = sphere_cloud(5000, 10 * scale);
     for (glm::dvec3& p : cloud.positions) p += offset;
     const DecodedModel model = round_trip(cloud, folder / "model.surf");
     for (size_t i = 0; i < cloud.size(); ++i) {
@@ -208,7 +208,7 @@ TEST(ModelFile, KeepsItsPrecisionFarFromTheOriginAndAtAnyScale) {
 
 TEST(ModelFile, KeepsAWantedPrecision) {
   const TestFolder folder;
-  const SurfelCloud cloud = sphere_cloud(5000);
+  const surfel::SurfelCloud cloud = sphere_cloud(5000);
   const DecodedModel model = round_trip(cloud, folder / "model.surf", {.precision = 1e-9});
   for (size_t i = 0; i < cloud.size(); ++i) {
     ASSERT_LE(glm::length(model.position(i) - cloud.positions[i]), 1e-9);
@@ -217,7 +217,7 @@ TEST(ModelFile, KeepsAWantedPrecision) {
 
 TEST(ModelFile, HoldsASingleSurfel) {
   const TestFolder folder;
-  SurfelCloud cloud = sphere_cloud(1);
+  surfel::SurfelCloud cloud = sphere_cloud(1);
   cloud.positions[0] = {5e6, 1e-3, -7};
   const ModelFile model = write_and_open(cloud, folder / "model.surf");
   ASSERT_EQ(model.blocks().size(), 1u);
@@ -229,7 +229,7 @@ TEST(ModelFile, HoldsASingleSurfel) {
 
 TEST(ModelFile, HoldsManyCoincidentSurfels) {
   const TestFolder folder;
-  SurfelCloud cloud;
+  surfel::SurfelCloud cloud;
   cloud.positions.assign(50000, {0.1, 0.2, 0.3});
   const DecodedModel model = round_trip(finish_cloud(cloud), folder / "model.surf");
   for (size_t i = 0; i < cloud.size(); ++i) ASSERT_LE(glm::length(model.position(i) - cloud.positions[i]), 1.0 / 256);
@@ -237,15 +237,15 @@ TEST(ModelFile, HoldsManyCoincidentSurfels) {
 
 TEST(ModelFile, StatesBoundsRadiiSpacingAndNormalsOfEachBlock) {
   const TestFolder folder;
-  SurfelCloud cloud = sphere_cloud(60000);
+  surfel::SurfelCloud cloud = sphere_cloud(60000);
   for (size_t i = 0; i < cloud.size(); i += 7) cloud.radii[i] *= 1.5f;
   const ModelFile model = write_and_open(cloud, folder / "model.surf");
   for (size_t b = 0; b < model.blocks().size(); ++b) {
-    const BlockEntry& entry = model.blocks()[b];
+    const ldc::BlockEntry& entry = model.blocks()[b];
     const Result<DecodedBlock> block = model.decode(b);
     ASSERT_TRUE(block);
     ASSERT_EQ(block->size(), entry.surfels);
-    Box box;
+    geometry::Box box;
     for (size_t i = 0; i < block->size(); ++i) box.include(block->position(i));
     EXPECT_EQ(box.min, entry.bounds.min);
     EXPECT_EQ(box.max, entry.bounds.max);
@@ -269,21 +269,21 @@ TEST(ModelFile, StatesBoundsRadiiSpacingAndNormalsOfEachBlock) {
 
 TEST(ModelFile, StatesNoConeWithoutOrientation) {
   const TestFolder folder;
-  SurfelCloud cloud = sphere_cloud(1000);
+  surfel::SurfelCloud cloud = sphere_cloud(1000);
   cloud.oriented = false;
   EXPECT_FALSE(write_and_open(cloud, folder / "model.surf").blocks()[0].normals);
 }
 
 TEST(ModelFile, CoarseBlocksOfAWallThatFacesAwayKeepItsCone) {
   const TestFolder folder;
-  SurfelCloud cloud;
+  surfel::SurfelCloud cloud;
   cloud.oriented = true;
   for (int i = 0; i < 90000; ++i) cloud.positions.emplace_back(i % 300, i / 300, 0);
   cloud.normals.assign(cloud.size(), glm::vec3(0, 0, -1));
   const ModelFile model = write_and_open(finish_cloud(std::move(cloud)), folder / "model.surf");
   EXPECT_EQ(model.info().surfels, 90000u);
   EXPECT_EQ(model.info().levels, 3);
-  for (const BlockEntry& block : model.blocks()) {
+  for (const ldc::BlockEntry& block : model.blocks()) {
     ASSERT_TRUE(block.normals);
     EXPECT_LT(block.normals->axis.z, -0.9999f);
     EXPECT_LT(block.normals->half_angle, 0.01f);
@@ -292,7 +292,7 @@ TEST(ModelFile, CoarseBlocksOfAWallThatFacesAwayKeepItsCone) {
 
 TEST(ModelFile, ABlockSaysHowFineItsValuesAre) {
   const TestFolder folder;
-  SurfelCloud cloud = sphere_cloud(40000);
+  surfel::SurfelCloud cloud = sphere_cloud(40000);
   cloud.estimated_normals = true;
   cloud.estimated_radii = true;
   const DecodedModel model = round_trip(cloud, folder / "model.surf");
@@ -309,7 +309,7 @@ TEST(ModelFile, ABlockSaysHowFineItsValuesAre) {
 
 TEST(ModelFile, HasTheSameBytesFromRunToRunAndForAnyNumberOfThreads) {
   const TestFolder folder;
-  const SurfelCloud cloud = sphere_cloud(60000);
+  const surfel::SurfelCloud cloud = sphere_cloud(60000);
   write_and_open(cloud, folder / "default.surf");
   const std::vector<char> expected = read_bytes(folder / "default.surf");
   for (const size_t threads : {1u, 2u, 3u}) {
@@ -320,4 +320,4 @@ TEST(ModelFile, HasTheSameBytesFromRunToRunAndForAnyNumberOfThreads) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::model

@@ -4,20 +4,20 @@
 
 #include "model/round_trip.h"
 
-namespace surfcast {
+namespace surfcast::model {
 namespace {
 
-constexpr Grid kGrid{glm::dvec3(1e-4), glm::dvec3(0)};
+constexpr surfel::Grid kGrid{glm::dvec3(1e-4), glm::dvec3(0)};
 
-EncodedBlock encode(const SurfelCloud& cloud) {
+EncodedBlock encode(const surfel::SurfelCloud& cloud) {
   std::vector<uint32_t> members(cloud.size());
   std::iota(members.begin(), members.end(), 0);
   return encode_block(cloud, members, kGrid);
 }
 
 /// A cloud with attributes of both kinds: those that coarse blocks have, and one that they do not have.
-SurfelCloud leaf_cloud(size_t count) {
-  SurfelCloud cloud = sphere_cloud(count);
+surfel::SurfelCloud leaf_cloud(size_t count) {
+  surfel::SurfelCloud cloud = sphere_cloud(count);
   cloud.scalars.push_back({"gps_time", std::vector<double>(count, 12.5)});
   cloud.scalars.push_back({"intensity", std::vector<uint16_t>(count, 77)});
   cloud.scalars.push_back({"classification", std::vector<uint8_t>(count, 6)});
@@ -25,8 +25,8 @@ SurfelCloud leaf_cloud(size_t count) {
   return cloud;
 }
 
-SurfelCloud coarse_cloud(size_t count) {
-  SurfelCloud cloud = leaf_cloud(count);
+surfel::SurfelCloud coarse_cloud(size_t count) {
+  surfel::SurfelCloud cloud = leaf_cloud(count);
   cloud.scalars.erase(cloud.scalars.begin());
   cloud.scalars.pop_back();
   return cloud;
@@ -36,8 +36,8 @@ SurfelCloud coarse_cloud(size_t count) {
 Result<ModelFile> write_two_levels(const std::filesystem::path& path) {
   Result<ModelWriter> writer = ModelWriter::create(path, schema_of(leaf_cloud(1)));
   if (!writer) return fail(writer.error());
-  const OctreeKey root;
-  const OctreeKey low = root.child(0);
+  const ldc::OctreeKey root;
+  const ldc::OctreeKey low = root.child(0);
   const uint32_t a = *writer->add(encode(leaf_cloud(20)), low.child(1), {});
   const uint32_t b = *writer->add(encode(leaf_cloud(30)), low.child(2), {});
   const uint32_t c = *writer->add(encode(leaf_cloud(40)), root.child(7), {});
@@ -56,14 +56,14 @@ TEST(ModelWriter, StatesTheTreeWithParentsFirstAndSiblingsSideBySide) {
   ASSERT_TRUE(model) << model.error().message;
   EXPECT_EQ(model->info().surfels, 90U);
   EXPECT_EQ(model->info().levels, 3);
-  const BlockTree& tree = model->tree();
+  const ldc::BlockTree& tree = model->tree();
   ASSERT_EQ(tree.roots().size(), 1U);
   EXPECT_EQ(tree.blocks()[0].surfels, 5U);
   EXPECT_EQ(tree.blocks()[0].level, 2);
   ASSERT_EQ(tree.children(0).count, 2U);
   EXPECT_EQ(tree.blocks()[1].surfels, 40U);
   EXPECT_EQ(tree.blocks()[1].level, 0);
-  EXPECT_EQ(tree.blocks()[1].key, OctreeKey{}.child(7));
+  EXPECT_EQ(tree.blocks()[1].key, ldc::OctreeKey{}.child(7));
   EXPECT_EQ(tree.blocks()[2].surfels, 10U);
   EXPECT_EQ(tree.blocks()[2].level, 1);
   EXPECT_EQ(tree.children(2).first, 3U);
@@ -74,17 +74,18 @@ TEST(ModelWriter, GivesCoarseBlocksOnlyTheAttributesThatCanBeAveraged) {
   const TestFolder folder;
   const Result<ModelFile> model = write_two_levels(folder / "tree.surf");
   ASSERT_TRUE(model) << model.error().message;
-  EXPECT_EQ(model->info().scalar_names, (std::vector<std::string>{"gps_time", "intensity", "classification", "point_source_id"}));
+  EXPECT_EQ(model->info().scalar_names,
+            (std::vector<std::string>{"gps_time", "intensity", "classification", "point_source_id"}));
   const Result<DecodedBlock> coarse = model->decode(2);
   ASSERT_TRUE(coarse) << coarse.error().message;
   ASSERT_EQ(coarse->scalars.size(), 2U);
   EXPECT_EQ(coarse->scalars[0].name, "intensity");
-  EXPECT_EQ(coarse->scalars[0].values, ScalarValues(std::vector<uint16_t>(10, 77)));
+  EXPECT_EQ(coarse->scalars[0].values, surfel::ScalarValues(std::vector<uint16_t>(10, 77)));
   EXPECT_EQ(coarse->scalars[1].name, "classification");
   const Result<DecodedBlock> leaf = model->decode(3);
   ASSERT_TRUE(leaf) << leaf.error().message;
   ASSERT_EQ(leaf->scalars.size(), 4U);
-  EXPECT_EQ(leaf->scalars[0].values, ScalarValues(std::vector<double>(20, 12.5)));
+  EXPECT_EQ(leaf->scalars[0].values, surfel::ScalarValues(std::vector<double>(20, 12.5)));
 }
 
 TEST(ModelWriter, ScalarsThatAreNotWantedAreLeftOut) {
@@ -117,4 +118,4 @@ TEST(ModelWriter, LeavesNothingBehindWhenItIsNotFinished) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::model

@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace surfcast {
+namespace surfcast::model {
 namespace {
 
 double error_of(const glm::dvec3& normal, int half = kSourcePrecision.octahedral_half) {
@@ -101,4 +101,4 @@ TEST(Quantize, PowersOfTwoComeBackExactly) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::model

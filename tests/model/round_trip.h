@@ -13,9 +13,9 @@
 #include "model/test_folder.h"
 #include "model/write_model.h"
 
-namespace surfcast {
+namespace surfcast::model {
 
-inline ModelFile write_and_open(const SurfelCloud& cloud, const std::filesystem::path& path,
+inline ModelFile write_and_open(const surfel::SurfelCloud& cloud, const std::filesystem::path& path,
                                 const WriteOptions& options = {}) {
   const Result<WriteReport> report = write_model(cloud, path, options);
   if (!report) throw std::runtime_error(report.error().message);
@@ -54,11 +54,12 @@ struct DecodedModel {
 };
 
 /// Writes a cloud, to which numbers are added, and decodes the whole model.
-inline DecodedModel round_trip(SurfelCloud cloud, const std::filesystem::path& path, const WriteOptions& options = {}) {
+inline DecodedModel round_trip(surfel::SurfelCloud cloud, const std::filesystem::path& path,
+                               const WriteOptions& options = {}) {
   number_surfels(cloud);
   DecodedModel decoded(write_and_open(cloud, path, options));
   for (const Found& found : decoded.surfels) EXPECT_NE(found.block, nullptr);
   return decoded;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::model

@@ -10,24 +10,24 @@
 #include "model/format.h"
 #include "model/model_file.h"
 
-namespace surfcast {
+namespace surfcast::model {
 namespace {
 
-SurfelCloud with_scalars(std::vector<ScalarAttribute> scalars) {
-  SurfelCloud cloud;
+surfel::SurfelCloud with_scalars(std::vector<surfel::ScalarAttribute> scalars) {
+  surfel::SurfelCloud cloud;
   cloud.scalars = std::move(scalars);
   return cloud;
 }
 
-AttributeStatistics all_of(const SurfelCloud& cloud) {
-  std::vector<uint32_t> members(value_count(cloud.scalars[0].values));
+AttributeStatistics all_of(const surfel::SurfelCloud& cloud) {
+  std::vector<uint32_t> members(surfel::value_count(cloud.scalars[0].values));
   std::iota(members.begin(), members.end(), 0);
   return {cloud, members};
 }
 
 const std::vector<std::string> kNames{"intensity", "classification", "time"};
 
-SurfelCloud survey() {
+surfel::SurfelCloud survey() {
   std::vector<uint16_t> intensities;
   std::vector<uint8_t> classes;
   std::vector<double> times;
@@ -57,7 +57,7 @@ TEST(Statistics, RangesAndCountsAreThoseOfTheValues) {
 }
 
 TEST(Statistics, TheOrderOfBlocksDoesNotMatter) {
-  const SurfelCloud cloud = survey();
+  const surfel::SurfelCloud cloud = survey();
   std::vector<uint32_t> odd;
   std::vector<uint32_t> even;
   for (uint32_t i = 0; i < 10000; ++i) (i % 2 == 0 ? even : odd).push_back(i);
@@ -76,9 +76,9 @@ TEST(Statistics, TheOrderOfBlocksDoesNotMatter) {
 
 TEST(Statistics, WhatIsNoNumberIsLeftOut) {
   const float nan = std::numeric_limits<float>::quiet_NaN();
-  const SurfelCloud cloud = with_scalars({{"intensity", std::vector<float>{nan, -2, INFINITY, 5}},
-                                          {"classification", std::vector<float>{nan, nan, 3, 999}},
-                                          {"time", std::vector<float>(4, nan)}});
+  const surfel::SurfelCloud cloud = with_scalars({{"intensity", std::vector<float>{nan, -2, INFINITY, 5}},
+                                                  {"classification", std::vector<float>{nan, nan, 3, 999}},
+                                                  {"time", std::vector<float>(4, nan)}});
   const AttributeStatistics statistics = all_of(cloud);
   const std::vector<AttributeRange> ranges = statistics.ranges(kNames);
   ASSERT_EQ(ranges.size(), 2u);
@@ -102,7 +102,7 @@ TEST(Statistics, OneValueIsItsOwnRange) {
 Directory tables() {
   Directory directory;
   directory.scalars = {{"intensity", 2, true}, {"time", 9, false}};
-  directory.grids = {Grid{}};
+  directory.grids = {surfel::Grid{}};
   BlockRecord block;
   block.surfels = 1;
   block.spacing = block.max_radius = 1;
@@ -167,4 +167,4 @@ TEST(StatisticsInFiles, HostileOnesAreRefused) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::model

@@ -10,10 +10,10 @@
 
 #include "surfel/surfel_cloud.h"
 
-namespace surfcast {
+namespace surfcast::model {
 
 /// Says that one source without a grid covers the whole cloud, and fills what is still missing with plain values.
-inline SurfelCloud finish_cloud(SurfelCloud cloud) {
+inline surfel::SurfelCloud finish_cloud(surfel::SurfelCloud cloud) {
   cloud.normals.resize(cloud.size(), glm::vec3(0, 0, 1));
   cloud.radii.resize(cloud.size(), 1.0f);
   cloud.weights.resize(cloud.size(), 1.0f);
@@ -22,8 +22,8 @@ inline SurfelCloud finish_cloud(SurfelCloud cloud) {
 }
 
 /// Points spread evenly over a sphere about the origin (a golden angle spiral), with outward normals and colours.
-inline SurfelCloud sphere_cloud(size_t count, double radius = 1) {
-  SurfelCloud cloud;
+inline surfel::SurfelCloud sphere_cloud(size_t count, double radius = 1) {
+  surfel::SurfelCloud cloud;
   cloud.oriented = true;
   cloud.colors.emplace();
   const double golden = std::numbers::pi * (3 - std::sqrt(5.0));
@@ -42,10 +42,10 @@ inline SurfelCloud sphere_cloud(size_t count, double radius = 1) {
 }
 
 /// Adds the attribute "id": the number of each surfel in the cloud, by which tests find it again.
-inline void number_surfels(SurfelCloud& cloud) {
+inline void number_surfels(surfel::SurfelCloud& cloud) {
   std::vector<uint32_t> ids(cloud.size());
   std::iota(ids.begin(), ids.end(), 0);
   cloud.scalars.push_back({"id", std::move(ids)});
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::model

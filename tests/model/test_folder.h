@@ -9,7 +9,7 @@
 
 #include <gtest/gtest.h>
 
-namespace surfcast {
+namespace surfcast::model {
 
 /// An empty folder for the running test, removed afterwards.
 class TestFolder {
@@ -42,4 +42,4 @@ inline void write_bytes(const std::filesystem::path& path, const std::vector<cha
   stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::model

@@ -8,7 +8,7 @@
 
 #include "model/round_trip.h"
 
-namespace surfcast {
+namespace surfcast::model {
 namespace {
 
 TEST(WriteModel, RefusesAnEmptyCloud) {
@@ -22,20 +22,20 @@ TEST(WriteModel, RefusesAnEmptyCloud) {
 TEST(WriteModel, RefusesValuesThatNoModelHolds) {
   const TestFolder folder;
   const auto refused = [&](auto spoil) {
-    SurfelCloud cloud = sphere_cloud(10);
+    surfel::SurfelCloud cloud = sphere_cloud(10);
     spoil(cloud);
     const Result<WriteReport> report = write_model(cloud, folder / "model.surf", {});
     return !report && report.error().kind == ErrorKind::kInvalidInput && folder.empty();
   };
   const float nan = std::numeric_limits<float>::quiet_NaN();
   const float infinity = std::numeric_limits<float>::infinity();
-  EXPECT_TRUE(refused([&](SurfelCloud& cloud) { cloud.positions[3].y = nan; }));
-  EXPECT_TRUE(refused([&](SurfelCloud& cloud) { cloud.positions[3].z = 1e300; }));
-  EXPECT_TRUE(refused([&](SurfelCloud& cloud) { cloud.normals[3] = glm::vec3(0); }));
-  EXPECT_TRUE(refused([&](SurfelCloud& cloud) { cloud.normals[3].x = nan; }));
-  EXPECT_TRUE(refused([&](SurfelCloud& cloud) { cloud.radii[3] = 0; }));
-  EXPECT_TRUE(refused([&](SurfelCloud& cloud) { cloud.radii[3] = infinity; }));
-  EXPECT_TRUE(refused([&](SurfelCloud& cloud) { cloud.weights[3] = -1; }));
+  EXPECT_TRUE(refused([&](surfel::SurfelCloud& cloud) { cloud.positions[3].y = nan; }));
+  EXPECT_TRUE(refused([&](surfel::SurfelCloud& cloud) { cloud.positions[3].z = 1e300; }));
+  EXPECT_TRUE(refused([&](surfel::SurfelCloud& cloud) { cloud.normals[3] = glm::vec3(0); }));
+  EXPECT_TRUE(refused([&](surfel::SurfelCloud& cloud) { cloud.normals[3].x = nan; }));
+  EXPECT_TRUE(refused([&](surfel::SurfelCloud& cloud) { cloud.radii[3] = 0; }));
+  EXPECT_TRUE(refused([&](surfel::SurfelCloud& cloud) { cloud.radii[3] = infinity; }));
+  EXPECT_TRUE(refused([&](surfel::SurfelCloud& cloud) { cloud.weights[3] = -1; }));
 }
 
 TEST(WriteModel, NamesTheFolderThatIsMissing) {
@@ -68,7 +68,7 @@ class FileSizeLimit {
 
 TEST(WriteModel, LeavesNothingBehindOnAFullDisk) {
   const TestFolder folder;
-  const SurfelCloud cloud = sphere_cloud(40000);
+  const surfel::SurfelCloud cloud = sphere_cloud(40000);
   for (const rlim_t limit : {rlim_t{10}, rlim_t{1000}, rlim_t{50000}}) {
     const FileSizeLimit full_disk(limit);
     const Result<WriteReport> report = write_model(cloud, folder / "model.surf", {});
@@ -93,7 +93,7 @@ TEST(WriteModel, ReportsWhatItWroteAndHowFarItIs) {
 
 TEST(WriteModel, TakesFewBytesForGreyColorsAndConstantAttributes) {
   const TestFolder folder;
-  SurfelCloud cloud = sphere_cloud(20000);
+  surfel::SurfelCloud cloud = sphere_cloud(20000);
   cloud.colors.reset();
   write_and_open(cloud, folder / "plain.surf");
   cloud.colors.emplace();
@@ -105,4 +105,4 @@ TEST(WriteModel, TakesFewBytesForGreyColorsAndConstantAttributes) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::model

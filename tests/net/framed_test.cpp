@@ -6,7 +6,7 @@
 #include "protocol/framing.h"
 #include "protocol/hello.h"
 
-namespace surfcast {
+namespace surfcast::net {
 namespace {
 
 class FramedSessionTest : public NetFixture {};
@@ -16,11 +16,11 @@ std::string bytes_of(const std::vector<std::byte>& bytes) {
 }
 
 std::string hello_bytes() {
-  return bytes_of(encode_hello(make_hello("test")));
+  return bytes_of(protocol::encode_hello(protocol::make_hello("test")));
 }
 
 std::string frame_of(const google::protobuf::MessageLite& message) {
-  return bytes_of(*encode_frame(message, kMaxRequestBytes));
+  return bytes_of(*protocol::encode_frame(message, protocol::kMaxRequestBytes));
 }
 
 TEST_F(FramedSessionTest, ModelsAreListed) {
@@ -130,22 +130,22 @@ TEST_F(FramedSessionTest, PipelinedRequestsAreAllAnswered) {
 }
 
 TEST_F(FramedSessionTest, APingIsAnsweredWhileAPictureIsDrawn) {
-  studio_->slow = true;
+  control_->slow = true;
   start();
   auto connection = connect();
   ASSERT_TRUE(connection);
   ASSERT_TRUE(connection->send(picture_request("cube")));
   EXPECT_TRUE(connection->ask(ping_request()));
-  studio_->slow = false;
+  control_->slow = false;
 }
 
 TEST_F(FramedSessionTest, ACancelledPictureIsGivenUpAndAnswered) {
-  studio_->slow = true;
+  control_->slow = true;
   start();
   auto connection = connect();
   ASSERT_TRUE(connection);
   const auto drawn = connection->send(picture_request("cube"));
-  ASSERT_TRUE(drawn && eventually([&] { return studio_->drawn == 1; }));
+  ASSERT_TRUE(drawn && eventually([&] { return control_->drawn == 1; }));
   wire::Request cancel;
   cancel.mutable_cancel()->set_request_id(*drawn);
   const auto cancelled = connection->send(cancel);
@@ -154,17 +154,17 @@ TEST_F(FramedSessionTest, ACancelledPictureIsGivenUpAndAnswered) {
     const auto answer = connection->receive();
     ASSERT_TRUE(answer);
     if (answer->id() == *drawn) {
-      EXPECT_EQ(from_wire(answer->error()).kind, ErrorKind::kCancelled);
+      EXPECT_EQ(protocol::from_wire(answer->error()).kind, ErrorKind::kCancelled);
     } else {
       EXPECT_EQ(answer->id(), *cancelled);
       EXPECT_TRUE(answer->cancel_result().was_outstanding());
     }
   }
-  EXPECT_EQ(studio_->cancelled, 1);
+  EXPECT_EQ(control_->cancelled, 1);
 }
 
 TEST_F(FramedSessionTest, APictureThatStillWaitsIsCancelledWithoutBeingDrawn) {
-  studio_->slow = true;
+  control_->slow = true;
   ServerConfig config;
   config.requests.drawing = 1;
   start(config);
@@ -178,11 +178,11 @@ TEST_F(FramedSessionTest, APictureThatStillWaitsIsCancelledWithoutBeingDrawn) {
   const auto answer = connection->receive();
   ASSERT_TRUE(answer);
   EXPECT_EQ(answer->id(), *second);
-  EXPECT_EQ(from_wire(answer->error()).kind, ErrorKind::kCancelled);
-  studio_->slow = false;
+  EXPECT_EQ(protocol::from_wire(answer->error()).kind, ErrorKind::kCancelled);
+  control_->slow = false;
   ASSERT_TRUE(connection->receive());
   ASSERT_TRUE(connection->receive());
-  EXPECT_EQ(studio_->order, std::vector<std::string>{"cube"});
+  EXPECT_EQ(control_->order, std::vector<std::string>{"cube"});
 }
 
 TEST_F(FramedSessionTest, CancellingWhatIsNotOutstandingSaysSo) {
@@ -197,7 +197,7 @@ TEST_F(FramedSessionTest, CancellingWhatIsNotOutstandingSaysSo) {
 }
 
 TEST_F(FramedSessionTest, TooManyOutstandingRequestsAreRefusedAsBusy) {
-  studio_->slow = true;
+  control_->slow = true;
   ServerConfig config;
   config.requests.outstanding = 3;
   start(config);
@@ -207,40 +207,40 @@ TEST_F(FramedSessionTest, TooManyOutstandingRequestsAreRefusedAsBusy) {
   const auto refusal = connection->receive();
   ASSERT_TRUE(refusal);
   EXPECT_EQ(refusal->id(), 4u);
-  EXPECT_EQ(from_wire(refusal->error()).kind, ErrorKind::kUnavailable);
-  studio_->slow = false;
+  EXPECT_EQ(protocol::from_wire(refusal->error()).kind, ErrorKind::kUnavailable);
+  control_->slow = false;
   for (int i = 0; i < 3; ++i) EXPECT_TRUE(connection->receive()->has_picture());
 }
 
 TEST_F(FramedSessionTest, AnIdThatIsStillOutstandingIsRefused) {
-  studio_->slow = true;
+  control_->slow = true;
   start();
   RawSocket socket(port_);
   wire::Request request = picture_request("cube");
   request.set_id(9);
   socket.send(hello_bytes() + frame_of(request) + frame_of(request));
-  FrameSplitter splitter(kMaxAnswerBytes);
-  socket.read_exactly(encode_hello(make_hello("surfcastd")).size());
-  const std::string header = socket.read_exactly(kFrameHeaderBytes);
+  protocol::FrameSplitter splitter(protocol::kMaxAnswerBytes);
+  socket.read_exactly(protocol::encode_hello(protocol::make_hello("surfcastd")).size());
+  const std::string header = socket.read_exactly(protocol::kFrameHeaderBytes);
   const std::string content = socket.read_exactly(static_cast<unsigned char>(header.at(0)));
   wire::Answer answer;
   ASSERT_TRUE(answer.ParseFromString(content));
   EXPECT_EQ(answer.id(), 9u);
-  EXPECT_EQ(from_wire(answer.error()).kind, ErrorKind::kInvalidInput);
-  studio_->slow = false;
+  EXPECT_EQ(protocol::from_wire(answer.error()).kind, ErrorKind::kInvalidInput);
+  control_->slow = false;
 }
 
 TEST_F(FramedSessionTest, AClientThatVanishesHasItsPicturesCancelled) {
   for (const bool reset : {false, true}) {
-    studio_->slow = true;
-    const int cancelled = studio_->cancelled;
-    const int drawn = studio_->drawn;
+    control_->slow = true;
+    const int cancelled = control_->cancelled;
+    const int drawn = control_->drawn;
     start();
     RawSocket socket(port_);
     socket.send(hello_bytes() + frame_of(picture_request("cube")));
-    ASSERT_TRUE(eventually([&] { return studio_->drawn == drawn + 1; }));
+    ASSERT_TRUE(eventually([&] { return control_->drawn == drawn + 1; }));
     reset ? socket.reset() : socket.close();
-    EXPECT_TRUE(eventually([&] { return studio_->cancelled == cancelled + 1; }));
+    EXPECT_TRUE(eventually([&] { return control_->cancelled == cancelled + 1; }));
     stop();
   }
 }
@@ -265,14 +265,14 @@ TEST_F(FramedSessionTest, FiftyClientsAtOnceAreAllServed) {
 }
 
 TEST_F(FramedSessionTest, AReaderThatNeverReadsCostsOnlyItself) {
-  constexpr int kWishes = 40;
+  constexpr int kRequests = 40;
   ServerConfig config;
   config.requests.outgoing_bytes = 2'000'000;
   config.stall = milliseconds(400);
   start(config);
   RawSocket sleeper(port_, 4096);
   sleeper.send(hello_bytes());
-  for (int id = 1; id <= kWishes; ++id) {
+  for (int id = 1; id <= kRequests; ++id) {
     wire::Request request = picture_request("noise", 512, 512);
     request.set_id(id);
     ASSERT_TRUE(sleeper.send(frame_of(request)));
@@ -282,7 +282,7 @@ TEST_F(FramedSessionTest, AReaderThatNeverReadsCostsOnlyItself) {
   EXPECT_TRUE(connection->ask(picture_request("teapot")));
   // Nobody takes the sleeper's answers: its connection ends, and what it waited for is not drawn.
   EXPECT_TRUE(eventually([&] { return metric("surfcast_connections_open") == 2; }));
-  EXPECT_LT(studio_->drawn, kWishes);
+  EXPECT_LT(control_->drawn, kRequests);
 }
 
 TEST_F(FramedSessionTest, AFrameBeyondTheLimitEndsTheConnectionWithAnError) {
@@ -317,26 +317,26 @@ TEST_F(FramedSessionTest, GarbageAfterTheHelloNeverHurtsTheServer) {
 
 TEST_F(FramedSessionTest, ClientsOfAnotherMajorVersionAreToldWhy) {
   start();
-  Hello old = make_hello("ancient");
+  protocol::Hello old = protocol::make_hello("ancient");
   old.version = {0, 9};
   RawSocket socket(port_);
   // What an old client sends right behind its hello must not keep it from reading the refusal.
-  socket.send(bytes_of(encode_hello(old)) + frame_of(picture_request("cube")));
+  socket.send(bytes_of(protocol::encode_hello(old)) + frame_of(picture_request("cube")));
   const std::string bytes = socket.read_to_end();
-  const Result<Hello> refusal = decode_hello(std::as_bytes(std::span(bytes)));
+  const Result<protocol::Hello> refusal = protocol::decode_hello(std::as_bytes(std::span(bytes)));
   ASSERT_TRUE(refusal);
-  EXPECT_EQ(refusal->status, HelloStatus::kVersionRefused);
+  EXPECT_EQ(refusal->status, protocol::HelloStatus::kVersionRefused);
   EXPECT_NE(refusal->message.find("0.9"), std::string::npos);
   EXPECT_NE(refusal->message.find(" 1.1"), std::string::npos);
 }
 
 TEST_F(FramedSessionTest, AClientOfALaterMinorVersionIsWelcome) {
   start();
-  Hello later = make_hello("later");
+  protocol::Hello later = protocol::make_hello("later");
   later.version.minor = 77;
   RawSocket socket(port_);
-  socket.send(encode_hello(later));
-  const std::string bytes = socket.read_exactly(kHelloHeaderBytes);
+  socket.send(protocol::encode_hello(later));
+  const std::string bytes = socket.read_exactly(protocol::kHelloHeaderBytes);
   EXPECT_EQ(bytes[12], 0);
 }
 
@@ -375,7 +375,7 @@ TEST_F(FramedSessionTest, ASlowLorisIsClosedThoughItSendsAByteNowAndThen) {
 }
 
 TEST_F(FramedSessionTest, AConnectionThatWaitsForAPictureIsNotIdle) {
-  studio_->slow = true;
+  control_->slow = true;
   ServerConfig config;
   config.idle = milliseconds(300);
   start(config);
@@ -383,7 +383,7 @@ TEST_F(FramedSessionTest, AConnectionThatWaitsForAPictureIsNotIdle) {
   ASSERT_TRUE(connection);
   const auto id = connection->send(picture_request("cube"));
   std::this_thread::sleep_for(milliseconds(900));
-  studio_->slow = false;
+  control_->slow = false;
   const auto answer = connection->receive();
   ASSERT_TRUE(answer);
   EXPECT_TRUE(answer->has_picture());
@@ -404,4 +404,4 @@ TEST_F(FramedSessionTest, ConnectionsBeyondTheLimitAreToldThatTheServerIsBusy) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::net

@@ -13,7 +13,7 @@
 #include "net/sample_requests.h"
 #include "service/fake_models.h"
 
-namespace surfcast {
+namespace surfcast::net {
 namespace {
 
 /// Takes answers as a connection would and looks whether they are answers.
@@ -26,7 +26,7 @@ class Listener : public AnswerWriter {
     if (message.has_pong()) pongs.insert(message.id());
   }
   [[nodiscard]] size_t unread_bytes() const override { return 0; }
-  void settled() override {}
+  void answer_sent() override {}
 
   std::set<uint64_t> pongs;
 };
@@ -35,9 +35,10 @@ class Listener : public AnswerWriter {
 class HostileMessagesTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    ServiceLimits limits;
+    service::ServiceLimits limits;
     limits.pixels = 1024;
-    auto service = RenderService::start(models_, fake_painters(std::make_shared<FakeStudio>()), limits);
+    auto service = service::RenderService::start(
+        models_, service::fake_renderers(std::make_shared<service::FakeRendererControl>()), limits);
     ASSERT_TRUE(service);
     service_ = std::move(*service);
     context_ = std::make_shared<NetContext>(NetContext{*service_, ServerConfig{}, {}, false});
@@ -76,13 +77,13 @@ class HostileMessagesTest : public ::testing::Test {
     return listener_->pongs.contains(kId);
   }
 
-  FakeModels models_;
-  std::unique_ptr<RenderService> service_;
+  service::FakeModels models_;
+  std::unique_ptr<service::RenderService> service_;
   std::shared_ptr<NetContext> context_;
   boost::asio::io_context io_{1};
   std::shared_ptr<Listener> listener_;
   std::shared_ptr<Conversation> conversation_;
-  SessionId session_ = 0;
+  service::SessionId session_ = 0;
 };
 
 /// Changes a message in one of the ways that find bugs: bits, bytes, numbers at their limits, pieces that are missing,
@@ -190,4 +191,4 @@ TEST_F(HostileMessagesTest, MutatedMessagesAreSurvived) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::net

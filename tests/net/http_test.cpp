@@ -3,7 +3,7 @@
 
 #include "net/net_fixture.h"
 
-namespace surfcast {
+namespace surfcast::net {
 namespace {
 
 using nlohmann::json;
@@ -146,13 +146,13 @@ TEST_F(HttpSessionTest, ABodyIsRefused) {
 }
 
 TEST_F(HttpSessionTest, AClientThatVanishesHasItsPictureCancelled) {
-  studio_->slow = true;
+  control_->slow = true;
   start();
   RawSocket socket(port_);
   socket.send("GET /api/models/cube/image HTTP/1.1\r\nHost: here\r\n\r\n");
-  ASSERT_TRUE(eventually([&] { return studio_->drawn == 1; }));
+  ASSERT_TRUE(eventually([&] { return control_->drawn == 1; }));
   socket.close();
-  EXPECT_TRUE(eventually([&] { return studio_->cancelled == 1; }));
+  EXPECT_TRUE(eventually([&] { return control_->cancelled == 1; }));
 }
 
 TEST_F(HttpSessionTest, ARequestThatIsNeverFinishedIsClosed) {
@@ -197,4 +197,4 @@ TEST_F(HttpSessionTest, ReadyAndHealthyAnswer) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::net

@@ -15,7 +15,7 @@
 #include "service/fake_models.h"
 #include "service/render_service.h"
 
-namespace surfcast {
+namespace surfcast::net {
 
 using std::chrono::milliseconds;
 
@@ -25,8 +25,8 @@ class NetFixture : public ::testing::Test {
   void TearDown() override { stop(); }
 
   /// `port` 0: any free one.
-  void start(ServerConfig config = {}, const ServiceLimits& limits = {}, uint16_t port = 0) {
-    auto service = RenderService::start(models_, fake_painters(studio_), limits);
+  void start(ServerConfig config = {}, const service::ServiceLimits& limits = {}, uint16_t port = 0) {
+    auto service = service::RenderService::start(models_, service::fake_renderers(control_), limits);
     ASSERT_TRUE(service);
     service_ = std::move(*service);
     config.port = port;
@@ -44,9 +44,10 @@ class NetFixture : public ::testing::Test {
     service_.reset();
   }
 
-  [[nodiscard]] Endpoint endpoint() const { return {"127.0.0.1", port_}; }
-  [[nodiscard]] Result<ServerConnection> connect() const {
-    return ServerConnection::open(endpoint(), {.connect = milliseconds(10'000), .answer = milliseconds(20'000)});
+  [[nodiscard]] protocol::Endpoint endpoint() const { return {"127.0.0.1", port_}; }
+  [[nodiscard]] Result<client::ServerConnection> connect() const {
+    return client::ServerConnection::open(endpoint(),
+                                          {.connect = milliseconds(10'000), .answer = milliseconds(20'000)});
   }
   /// Polls until `condition` holds; false after ten seconds.
   template <typename Condition>
@@ -82,12 +83,12 @@ class NetFixture : public ::testing::Test {
     return request;
   }
 
-  FakeModels models_;
-  std::shared_ptr<FakeStudio> studio_ = std::make_shared<FakeStudio>();
-  std::unique_ptr<RenderService> service_;
+  service::FakeModels models_;
+  std::shared_ptr<service::FakeRendererControl> control_ = std::make_shared<service::FakeRendererControl>();
+  std::unique_ptr<service::RenderService> service_;
   std::unique_ptr<Server> server_;
   uint16_t port_ = 0;
   std::jthread thread_;
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::net

@@ -17,7 +17,7 @@
 #include <sys/socket.h>
 #include <unistd.h>
 
-namespace surfcast {
+namespace surfcast::net {
 
 /// A plain loopback socket for tests that say what no well-behaved client says.
 class RawSocket {
@@ -50,10 +50,10 @@ class RawSocket {
     return send(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
   }
 
-  /// What arrives until the server closes, or nothing more comes for `patience`.
-  std::string read_to_end(std::chrono::milliseconds patience = std::chrono::seconds(10)) {
+  /// What arrives until the server closes, or nothing more comes for `timeout`.
+  std::string read_to_end(std::chrono::milliseconds timeout = std::chrono::seconds(10)) {
     std::string all;
-    while (read_some(all, patience)) {
+    while (read_some(all, timeout)) {
     }
     return all;
   }
@@ -74,9 +74,9 @@ class RawSocket {
     const size_t length = field == std::string::npos ? 0 : std::stoul(all.substr(field + 16));
     return all + read_exactly(length);
   }
-  /// Whether the server has closed the connection, as seen within `patience`.
-  bool closed_within(std::chrono::milliseconds patience) {
-    read_to_end(patience);
+  /// Whether the server has closed the connection, as seen within `timeout`.
+  bool closed_within(std::chrono::milliseconds timeout) {
+    read_to_end(timeout);
     return ended_;
   }
   /// Sends nothing more, but goes on reading.
@@ -93,9 +93,9 @@ class RawSocket {
   }
 
  private:
-  bool read_some(std::string& all, std::chrono::milliseconds patience, size_t most = 65536) {
+  bool read_some(std::string& all, std::chrono::milliseconds timeout, size_t most = 65536) {
     pollfd watched{descriptor_, POLLIN, 0};
-    if (::poll(&watched, 1, static_cast<int>(patience.count())) <= 0) return false;
+    if (::poll(&watched, 1, static_cast<int>(timeout.count())) <= 0) return false;
     std::array<char, 65536> buffer{};
     const ssize_t count = ::recv(descriptor_, buffer.data(), std::min(most, buffer.size()), 0);
     ended_ = count <= 0;
@@ -108,4 +108,4 @@ class RawSocket {
   bool ended_ = false;
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::net

@@ -7,7 +7,7 @@
 #include "net/raw_socket.h"
 #include "protocol/hello.h"
 
-namespace surfcast {
+namespace surfcast::net {
 
 /// What a test says over a WebSocket, byte by byte, right or wrong.
 class RawWebSocket {
@@ -46,8 +46,8 @@ class RawWebSocket {
   bool send(Opcode opcode, std::string_view content, bool last = true) {
     return socket.send(frame(static_cast<uint8_t>(opcode | (last ? 0x80 : 0)), content));
   }
-  bool send_hello(Hello hello = make_hello("test")) {
-    const auto bytes = encode_hello(hello);
+  bool send_hello(protocol::Hello hello = protocol::make_hello("test")) {
+    const auto bytes = protocol::encode_hello(hello);
     return send(kBinary, {reinterpret_cast<const char*>(bytes.data()), bytes.size()});
   }
 
@@ -81,4 +81,4 @@ class RawWebSocket {
   std::string answer;  ///< of HTTP to the request
 };
 
-}  // namespace surfcast
+}  // namespace surfcast::net

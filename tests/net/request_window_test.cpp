@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace surfcast {
+namespace surfcast::net {
 namespace {
 
 constexpr RequestWindow::Limits kLimits{.outstanding = 4, .drawing = 2, .outgoing_bytes = 1000};
@@ -62,7 +62,7 @@ TEST(RequestWindow, AbandoningForgetsWhatWaitsAndNamesWhatIsUnderWay) {
   ASSERT_TRUE(window.next(0));
   window.set_job(1, 77);
   ASSERT_TRUE(window.next(0));
-  EXPECT_EQ(window.abandon(), std::vector<JobId>{77});
+  EXPECT_EQ(window.abandon(), std::vector<service::JobId>{77});
   EXPECT_EQ(window.outstanding(), 2u);
 }
 
@@ -82,4 +82,4 @@ TEST(RequestWindow, OnlyWhatWaitsCanBeTakenOut) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::net

@@ -5,7 +5,7 @@
 
 #include "surfcast.pb.h"
 
-namespace surfcast {
+namespace surfcast::net {
 
 inline void fill(wire::Vector3* vector, double x, double y, double z) {
   vector->set_x(x);
@@ -70,4 +70,4 @@ inline std::vector<wire::Request> sample_requests() {
   return requests;
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::net

@@ -1,21 +1,21 @@
 #include "base/stopwatch.h"
 #include "net/net_fixture.h"
 
-namespace surfcast {
+namespace surfcast::net {
 namespace {
 
 class ShutdownTest : public NetFixture {};
 
 TEST_F(ShutdownTest, APictureThatIsBeingDrawnIsFinishedAndDelivered) {
-  studio_->slow = true;
+  control_->slow = true;
   start();
   auto connection = connect();
   ASSERT_TRUE(connection);
   ASSERT_TRUE(connection->send(picture_request("cube")));
-  ASSERT_TRUE(eventually([&] { return studio_->drawn == 1; }));
+  ASSERT_TRUE(eventually([&] { return control_->drawn == 1; }));
   server_->stop();
   std::this_thread::sleep_for(milliseconds(50));
-  studio_->slow = false;
+  control_->slow = false;
   const auto answer = connection->receive();
   ASSERT_TRUE(answer);
   EXPECT_TRUE(answer->has_picture());
@@ -23,20 +23,20 @@ TEST_F(ShutdownTest, APictureThatIsBeingDrawnIsFinishedAndDelivered) {
 }
 
 TEST_F(ShutdownTest, APictureOfHttpIsFinishedAndDelivered) {
-  studio_->slow = true;
+  control_->slow = true;
   start();
   RawSocket socket(port_);
   socket.send("GET /api/models/cube/image?resolution=4,4 HTTP/1.1\r\nHost: here\r\n\r\n");
-  ASSERT_TRUE(eventually([&] { return studio_->drawn == 1; }));
+  ASSERT_TRUE(eventually([&] { return control_->drawn == 1; }));
   server_->stop();
   std::this_thread::sleep_for(milliseconds(50));
-  studio_->slow = false;
+  control_->slow = false;
   EXPECT_NE(socket.read_to_end().find("PNG"), std::string::npos);
   stop();
 }
 
 TEST_F(ShutdownTest, APictureThatTakesTooLongIsCancelled) {
-  studio_->slow = true;
+  control_->slow = true;
   ServerConfig config;
   config.drain = milliseconds(100);
   start(config);
@@ -45,11 +45,11 @@ TEST_F(ShutdownTest, APictureThatTakesTooLongIsCancelled) {
   ASSERT_TRUE(connection->send(picture_request("cube")));
   RawSocket http(port_);
   http.send("GET /api/models/cube/image HTTP/1.1\r\nHost: here\r\n\r\n");
-  ASSERT_TRUE(eventually([&] { return studio_->drawn == 1 && service_->queued() == 1; }));
+  ASSERT_TRUE(eventually([&] { return control_->drawn == 1 && service_->queued() == 1; }));
   const Stopwatch watch;
   stop();
   EXPECT_LT(watch.seconds(), 10);
-  EXPECT_EQ(studio_->cancelled, 1);
+  EXPECT_EQ(control_->cancelled, 1);
   EXPECT_FALSE(connection->receive());
 }
 
@@ -79,4 +79,4 @@ TEST_F(ShutdownTest, APortInUseIsAnErrorThatNamesIt) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::net

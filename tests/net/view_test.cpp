@@ -5,7 +5,7 @@
 
 #include "net/net_fixture.h"
 
-namespace surfcast {
+namespace surfcast::net {
 namespace {
 
 /// A client with one view open, which answers every message of it at once unless it is told not to.
@@ -72,7 +72,7 @@ class ViewSessionTest : public NetFixture {
     return frame;
   }
 
-  std::optional<ServerConnection> connection_;
+  std::optional<client::ServerConnection> connection_;
   uint64_t view_ = 0;
 };
 
@@ -84,7 +84,7 @@ TEST_F(ViewSessionTest, AViewAtRestEndsWithTheAnswerToItsPictureAndThenFallsSile
     frames.push_back(next_frame());
   } while (!frames.back().picture().converged() && !HasFailure());
   ASSERT_EQ(frames.size(), 3u);
-  EXPECT_EQ(studio_->drawn, 2) << "the last frame has the pixels of the one before";
+  EXPECT_EQ(control_->drawn, 2) << "the last frame has the pixels of the one before";
   EXPECT_TRUE(frames[0].moving());
   EXPECT_EQ(frames[0].picture().format(), wire::FILE_FORMAT_JPEG);
   EXPECT_EQ(frames[0].picture().normalization(), wire::NORMALIZATION_SURFEL);
@@ -133,13 +133,13 @@ TEST_F(ViewSessionTest, AnUpdateInterruptsWhatIsBeingRefined) {
   start();
   open_view();
   next_frame();
-  studio_->slow = true;
-  ASSERT_TRUE(eventually([&] { return studio_->drawn == 2; })) << "the finer frame";
-  studio_->slow_quick = false;
+  control_->slow = true;
+  ASSERT_TRUE(eventually([&] { return control_->drawn == 2; })) << "the finer frame";
+  control_->slow_motion = false;
   update(1, picture("cube", 1), /*moving=*/false);
   EXPECT_EQ(next_frame().update(), 1u);
-  EXPECT_EQ(studio_->cancelled, 1);
-  studio_->slow = false;
+  EXPECT_EQ(control_->cancelled, 1);
+  control_->slow = false;
   EXPECT_EQ(converged_frame().update(), 1u);
 }
 
@@ -147,12 +147,12 @@ TEST_F(ViewSessionTest, AnUpdateThatShowsTheSamePictureIsNotDrawnAgain) {
   start();
   open_view();
   converged_frame();
-  const int drawn = studio_->drawn;
+  const int drawn = control_->drawn;
   update(1, picture("cube", 0), /*moving=*/false);
   wire::Request ping = ping_request();
   ASSERT_TRUE(connection_->ask(ping)) << "what comes next is no frame";
   std::this_thread::sleep_for(milliseconds(20));
-  EXPECT_EQ(studio_->drawn, drawn);
+  EXPECT_EQ(control_->drawn, drawn);
 }
 
 TEST_F(ViewSessionTest, AClosedViewSendsNothingMore) {
@@ -182,7 +182,7 @@ TEST_F(ViewSessionTest, AViewOfNoModelEndsWithTheReason) {
   const auto answer = connection_->receive();
   ASSERT_TRUE(answer);
   EXPECT_EQ(answer->id(), view_);
-  EXPECT_EQ(from_wire(answer->error()).kind, ErrorKind::kNotFound);
+  EXPECT_EQ(protocol::from_wire(answer->error()).kind, ErrorKind::kNotFound);
   EXPECT_TRUE(eventually([&] { return metric("surfcast_views_open") == 0; }));
 }
 
@@ -193,7 +193,7 @@ TEST_F(ViewSessionTest, AWrongUpdateEndsTheView) {
   update(1, picture("teapot", 1), /*moving=*/false);
   const auto answer = connection_->receive();
   ASSERT_TRUE(answer);
-  EXPECT_EQ(from_wire(answer->error()).kind, ErrorKind::kInvalidInput);
+  EXPECT_EQ(protocol::from_wire(answer->error()).kind, ErrorKind::kInvalidInput);
   update(2, picture("cube", 1), /*moving=*/false);
   EXPECT_TRUE(connection_->ask(ping_request())) << "messages of a view that is no more do not matter";
 }
@@ -226,18 +226,18 @@ TEST_F(ViewSessionTest, AFrameRateThatIsNoneIsRefused) {
 }
 
 TEST_F(ViewSessionTest, AViewOutlivesARushInWhichTheServerRefusesItsFrames) {
-  studio_->slow = true;
+  control_->slow = true;
   start({}, {.queued_jobs = 1});
   auto crowd = connect();
   ASSERT_TRUE(crowd);
   ASSERT_TRUE(crowd->send(picture_request("cube")));
-  ASSERT_TRUE(eventually([&] { return studio_->drawn == 1; }));
+  ASSERT_TRUE(eventually([&] { return control_->drawn == 1; }));
   ASSERT_TRUE(crowd->send(picture_request("cube")));
   ASSERT_TRUE(eventually([&] { return service_->queued() == 1; }));
   open_view();
   ASSERT_TRUE(eventually([&] { return metric("surfcast_view_frames_dropped_total") > 0; })) << "it is refused";
   EXPECT_EQ(metric("surfcast_views_open"), 1);
-  studio_->slow = false;
+  control_->slow = false;
   converged_frame();
 }
 
@@ -258,4 +258,4 @@ TEST_F(ViewSessionTest, AServerThatStopsDoesNotWaitForViewsAtRest) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::net

@@ -2,9 +2,9 @@
 #include <fstream>
 
 #include "net/net_fixture.h"
-#include "net/site_files.h"
+#include "net/static_files.h"
 
-namespace surfcast {
+namespace surfcast::net {
 namespace {
 
 namespace fs = std::filesystem;
@@ -30,10 +30,10 @@ class ViewerFilesTest : public NetFixture {
   }
   void write(const std::string& name, const std::string& text) const { std::ofstream(folder_ / name) << text; }
   void start_with_viewer() {
-    auto files = SiteFiles::read(folder_ / "dist");
+    auto files = StaticFiles::read(folder_ / "dist");
     ASSERT_TRUE(files);
     ServerConfig config;
-    config.viewer = std::make_shared<const SiteFiles>(std::move(*files));
+    config.viewer = std::make_shared<const StaticFiles>(std::move(*files));
     start(config);
   }
 
@@ -97,14 +97,14 @@ TEST_F(ViewerFilesTest, WhatTheServerAnswersItselfIsNotHidden) {
 
 TEST_F(ViewerFilesTest, AFolderWithoutAPageIsNoViewer) {
   fs::remove(folder_ / "dist/index.html");
-  EXPECT_FALSE(SiteFiles::read(folder_ / "dist"));
-  EXPECT_FALSE(SiteFiles::read(folder_ / "absent"));
+  EXPECT_FALSE(StaticFiles::read(folder_ / "dist"));
+  EXPECT_FALSE(StaticFiles::read(folder_ / "absent"));
 }
 
 TEST_F(ViewerFilesTest, AFolderLargerThanAViewerIsRefused) {
   fs::resize_file(folder_ / "dist/index.html", uintmax_t{65} << 20);
-  EXPECT_FALSE(SiteFiles::read(folder_ / "dist"));
+  EXPECT_FALSE(StaticFiles::read(folder_ / "dist"));
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::net

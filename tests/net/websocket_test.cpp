@@ -5,7 +5,7 @@
 #include "net/raw_websocket.h"
 #include "protocol/framing.h"
 
-namespace surfcast {
+namespace surfcast::net {
 namespace {
 
 class WebSocketTest : public NetFixture {
@@ -19,15 +19,16 @@ class WebSocketTest : public NetFixture {
     EXPECT_TRUE(answer.ParseFromString(message));
     return answer;
   }
-  static Hello hello_of(const std::string& message) {
-    const auto hello = decode_hello(std::as_bytes(std::span(message)));
-    return hello ? *hello : Hello{.version = {}, .status = HelloStatus{99}, .program = {}, .message = {}};
+  static protocol::Hello hello_of(const std::string& message) {
+    const auto hello = protocol::decode_hello(std::as_bytes(std::span(message)));
+    return hello ? *hello
+                 : protocol::Hello{.version = {}, .status = protocol::HelloStatus{99}, .program = {}, .message = {}};
   }
   /// A WebSocket that has exchanged hellos.
   RawWebSocket greeted(int receive_buffer = 0) const {
     RawWebSocket socket(port_, "", receive_buffer);
     socket.send_hello();
-    EXPECT_EQ(hello_of(socket.read_message()).status, HelloStatus::kWelcome);
+    EXPECT_EQ(hello_of(socket.read_message()).status, protocol::HelloStatus::kWelcome);
     return socket;
   }
 };
@@ -79,11 +80,11 @@ TEST_F(WebSocketTest, RequestsMayComeInFragmentsWithPingsBetween) {
 TEST_F(WebSocketTest, AWrongVersionIsToldWhichOneIsRight) {
   start();
   RawWebSocket socket(port_);
-  Hello old = make_hello("test");
+  protocol::Hello old = protocol::make_hello("test");
   old.version = {9, 0};
   socket.send_hello(old);
-  const Hello answer = hello_of(socket.read_message());
-  EXPECT_EQ(answer.status, HelloStatus::kVersionRefused);
+  const protocol::Hello answer = hello_of(socket.read_message());
+  EXPECT_EQ(answer.status, protocol::HelloStatus::kVersionRefused);
   EXPECT_NE(answer.message.find("9.0"), std::string::npos);
   EXPECT_EQ(socket.read_close(), 1000u);
 }
@@ -95,7 +96,7 @@ TEST_F(WebSocketTest, ABusyServerSaysSoInItsHello) {
   RawWebSocket first = greeted();
   RawWebSocket second(port_);
   second.send_hello();
-  EXPECT_EQ(hello_of(second.read_message()).status, HelloStatus::kBusy);
+  EXPECT_EQ(hello_of(second.read_message()).status, protocol::HelloStatus::kBusy);
 }
 
 TEST_F(WebSocketTest, PagesOfOtherOriginsAreRefusedUnlessAllowed) {
@@ -165,7 +166,7 @@ TEST_F(WebSocketTest, AMessageBeyondTheLimitEndsItBeforeItIsRead) {
 TEST_F(WebSocketTest, FragmentsThatTogetherExceedTheLimitEndIt) {
   start();
   RawWebSocket socket = greeted();
-  const std::string piece(kMaxRequestBytes / 2 + 1, 'x');
+  const std::string piece(protocol::kMaxRequestBytes / 2 + 1, 'x');
   socket.send(RawWebSocket::kBinary, piece, /*last=*/false);
   socket.send(RawWebSocket::kContinuation, piece);
   EXPECT_EQ(socket.read_close(), 1009u);
@@ -199,12 +200,12 @@ TEST_F(WebSocketTest, AHalfClosedOrVanishedClientIsForgotten) {
 
 TEST_F(WebSocketTest, ALeavingClientHasItsPicturesCancelled) {
   start();
-  studio_->slow = true;
+  control_->slow = true;
   RawWebSocket socket = greeted();
   socket.send(RawWebSocket::kBinary, encoded(1, picture_request("cube")));
-  ASSERT_TRUE(eventually([this] { return studio_->drawn == 1; }));
+  ASSERT_TRUE(eventually([this] { return control_->drawn == 1; }));
   socket.send(RawWebSocket::kClose, "\x03\xe8");
-  EXPECT_TRUE(eventually([this] { return studio_->cancelled == 1; }));
+  EXPECT_TRUE(eventually([this] { return control_->cancelled == 1; }));
 }
 
 TEST_F(WebSocketTest, ASilentClientIsAskedAndThenTakenForGone) {
@@ -236,7 +237,7 @@ TEST_F(WebSocketTest, AClientThatReadsNothingHasNothingMoreDrawn) {
     socket.send(RawWebSocket::kBinary, encoded(id, picture_request("noise", 500, 500)));
   }
   EXPECT_TRUE(eventually([this] { return metric("surfcast_connections_open") == 1; }));
-  EXPECT_LT(studio_->drawn, 30);
+  EXPECT_LT(control_->drawn, 30);
 }
 
 TEST_F(WebSocketTest, AStoppingServerSaysGoodbye) {
@@ -250,15 +251,15 @@ TEST_F(WebSocketTest, AStoppingServerSaysGoodbye) {
 
 TEST_F(WebSocketTest, AStoppingServerFinishesWhatIsOutstanding) {
   start();
-  studio_->slow = true;
+  control_->slow = true;
   RawWebSocket socket = greeted();
   socket.send(RawWebSocket::kBinary, encoded(1, picture_request("cube")));
-  ASSERT_TRUE(eventually([this] { return studio_->drawn == 1; }));
+  ASSERT_TRUE(eventually([this] { return control_->drawn == 1; }));
   server_->stop();
-  studio_->slow = false;
+  control_->slow = false;
   EXPECT_TRUE(decoded(socket.read_message()).has_picture());
   EXPECT_EQ(socket.read_close(), 1001u);
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::net

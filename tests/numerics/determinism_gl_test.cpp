@@ -21,7 +21,7 @@
 namespace surfcast::testing {
 namespace {
 
-using ModelPointer = std::shared_ptr<const ModelFile>;
+using ModelPointer = std::shared_ptr<const model::ModelFile>;
 
 class DeterminismGLTest : public ::testing::Test {
  protected:
@@ -36,26 +36,26 @@ class DeterminismGLTest : public ::testing::Test {
   }
 
   /// A fresh renderer in place of the last one.
-  void start(const RendererConfig& config) {
+  void start(const render::RendererConfig& config) {
     renderer_.reset();
-    Result<std::unique_ptr<Renderer>> created = Renderer::create(config);
+    Result<std::unique_ptr<render::Renderer>> created = render::Renderer::create(config);
     ASSERT_TRUE(created) << created.error().message;
     renderer_ = std::move(*created);
   }
-  ModelPointer model_of(const std::string& name, const SurfelCloud& cloud) {
+  ModelPointer model_of(const std::string& name, const surfel::SurfelCloud& cloud) {
     const std::filesystem::path path = folder_ / (name + ".surf");
     if (!std::filesystem::exists(path)) {
-      EXPECT_TRUE(write_model(cloud, path, {}));
+      EXPECT_TRUE(model::write_model(cloud, path, {}));
     }
-    Result<ModelFile> opened = ModelFile::open(path);
+    Result<model::ModelFile> opened = model::ModelFile::open(path);
     EXPECT_TRUE(opened);
-    return std::make_shared<const ModelFile>(std::move(*opened));
+    return std::make_shared<const model::ModelFile>(std::move(*opened));
   }
-  Frame draw(const ModelPointer& model, const PictureRequest& request) {
+  picture::Frame draw(const ModelPointer& model, const picture::PictureRequest& request) {
     const std::atomic<bool> cancelled{false};
-    Result<Frame> frame = renderer_->draw(model, request, cancelled);
+    Result<picture::Frame> frame = renderer_->draw(model, request, cancelled);
     EXPECT_TRUE(frame) << (frame ? "" : frame.error().message);
-    return frame ? std::move(*frame) : Frame{};
+    return frame ? std::move(*frame) : picture::Frame{};
   }
   std::vector<uint64_t> draw_all(const std::vector<SamplePicture>& samples) {
     std::vector<uint64_t> hashes;
@@ -66,19 +66,19 @@ class DeterminismGLTest : public ::testing::Test {
   }
 
   std::filesystem::path folder_;
-  std::unique_ptr<Renderer> renderer_;
+  std::unique_ptr<render::Renderer> renderer_;
 };
 
 /// A model of many blocks on several levels, and views of it.
-SurfelCloud large_globe() {
-  SurfelCloud cloud = fibonacci_sphere(150000, 1, {0, 0, 0}, {0, 0, 0});
+surfel::SurfelCloud large_globe() {
+  surfel::SurfelCloud cloud = fibonacci_sphere(150000, 1, {0, 0, 0}, {0, 0, 0});
   for (size_t i = 0; i < cloud.size(); ++i) cloud.colors->values[i] = glm::u16vec3(i % 256, i * 7 % 256, i * 31 % 256);
   return cloud;
 }
 
-PictureRequest globe_view(double angle, double spacing) {
-  PictureRequest request;
-  request.camera = Camera{{2.2 * std::cos(angle), 2.2 * std::sin(angle), 0.7}, {0, 0, 0}, {0, 0, 1}, 40};
+picture::PictureRequest globe_view(double angle, double spacing) {
+  picture::PictureRequest request;
+  request.camera = geometry::Camera{{2.2 * std::cos(angle), 2.2 * std::sin(angle), 0.7}, {0, 0, 0}, {0, 0, 1}, 40};
   request.width = 200;
   request.height = 150;
   request.spacing = spacing;
@@ -112,22 +112,22 @@ TEST_F(DeterminismGLTest, OtherProcessesAndNumbersOfThreadsDrawTheSame) {
   }
   renderer_.reset();
   for (const char* threads : {"0", "1", "3"}) {  // of llvmpipe; other devices have their own
-    const ProgramOutcome other = run_program("LP_NUM_THREADS=" + std::string(threads) +
-                                             " '" SURFCAST_PRINT_HASHES "' '" + folder_.string() + "'");
+    const client::ProgramOutcome other = client::run_program("LP_NUM_THREADS=" + std::string(threads) +
+                                                             " '" SURFCAST_PRINT_HASHES "' '" + folder_.string() + "'");
     EXPECT_EQ(other.code, 0);
     EXPECT_EQ(other.output, expected) << threads << " threads";
   }
 }
 
 TEST_F(DeterminismGLTest, BlocksThatCameInAnotherOrderOrBackAgainMakeNoDifference) {
-  const SurfelCloud cloud = large_globe();
-  const PictureRequest request = globe_view(0.3, 1);
+  const surfel::SurfelCloud cloud = large_globe();
+  const picture::PictureRequest request = globe_view(0.3, 1);
   const uint64_t expected = hash_of(draw(model_of("large", cloud), request).image);
-  const SurfelCloud other = fibonacci_sphere(150000, 1, {0, 0, 0}, {9, 9, 9});
+  const surfel::SurfelCloud other = fibonacci_sphere(150000, 1, {0, 0, 0}, {9, 9, 9});
   std::mt19937 random(5);
   std::uniform_real_distribution<double> angle(0, 6.28);
   // Room for a part of either model alone, and none in host memory: every picture evicts blocks of the last ones.
-  RendererConfig small;
+  render::RendererConfig small;
   small.gpu_bytes = size_t{6} << 20;
   small.host_bytes = 0;
   start(small);
@@ -136,20 +136,20 @@ TEST_F(DeterminismGLTest, BlocksThatCameInAnotherOrderOrBackAgainMakeNoDifferenc
   for (int round = 0; round < 4; ++round) {
     for (int i = 0; i < 3; ++i) draw(large, globe_view(angle(random), 1.5));
     draw(evicting, globe_view(angle(random), 1));
-    const Frame frame = draw(large, request);
+    const picture::Frame frame = draw(large, request);
     ASSERT_TRUE(frame.converged);
     EXPECT_EQ(hash_of(frame.image), expected) << "round " << round;
   }
 }
 
 TEST_F(DeterminismGLTest, AViewThatComesToRestShowsWhatASinglePictureDoes) {
-  const SurfelCloud cloud = large_globe();
+  const surfel::SurfelCloud cloud = large_globe();
   const uint64_t expected = hash_of(draw(model_of("large", cloud), globe_view(0.3, 1)).image);
   for (const uint64_t viewer : {1, 2}) {
     start({});
     const ModelPointer model = model_of("large", cloud);
-    PictureRequest request = globe_view(0, 1);
-    request.loading = Loading::kNow;
+    picture::PictureRequest request = globe_view(0, 1);
+    request.loading = picture::Loading::kNow;
     request.viewer = viewer;
     // Turns towards the view, some ways off more for the second, then waits for what is still to come.
     for (int k = 10; k > 0; --k) {
@@ -157,7 +157,7 @@ TEST_F(DeterminismGLTest, AViewThatComesToRestShowsWhatASinglePictureDoes) {
       draw(model, request);
     }
     request.camera = globe_view(0.3, 1).camera;
-    Frame frame = draw(model, request);
+    picture::Frame frame = draw(model, request);
     for (int k = 0; k < 2000 && !frame.converged; ++k) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
       frame = draw(model, request);

@@ -41,8 +41,8 @@ std::string text_of(const fs::path& path) {
 }
 
 /// The picture, and to its right its coverage in grey: PNG files here have no alpha.
-Image with_coverage(const Image& image) {
-  Image both{2 * image.width, image.height, image.format, {}};
+picture::Image with_coverage(const picture::Image& image) {
+  picture::Image both{2 * image.width, image.height, image.format, {}};
   both.pixels.resize(2 * image.pixels.size());
   for (int y = 0; y < image.height; ++y) {
     for (int x = 0; x < image.width; ++x) {
@@ -78,7 +78,7 @@ double psnr(const std::vector<uint8_t>& a, const std::vector<uint8_t>& b) {
 class GoldenGLTest : public ::testing::Test {
  protected:
   void SetUp() override {
-    Result<std::unique_ptr<Renderer>> created = Renderer::create({});
+    Result<std::unique_ptr<render::Renderer>> created = render::Renderer::create({});
     ASSERT_TRUE(created) << created.error().message;
     renderer_ = std::move(*created);
     fs::create_directories(drawn_);
@@ -91,20 +91,21 @@ class GoldenGLTest : public ::testing::Test {
   }
 
   void draw(const SamplePicture& sample, const fs::path& file) {
-    ASSERT_TRUE(write_model(sample.cloud, models_ / "model.surf", {}));
-    Result<ModelFile> opened = ModelFile::open(models_ / "model.surf");
+    ASSERT_TRUE(model::write_model(sample.cloud, models_ / "model.surf", {}));
+    Result<model::ModelFile> opened = model::ModelFile::open(models_ / "model.surf");
     ASSERT_TRUE(opened);
-    const auto model = std::make_shared<const ModelFile>(std::move(*opened));
+    const auto model = std::make_shared<const model::ModelFile>(std::move(*opened));
     const std::atomic<bool> cancelled{false};
-    const Result<Frame> frame = renderer_->draw(model, sample.request, cancelled);
+    const Result<picture::Frame> frame = renderer_->draw(model, sample.request, cancelled);
     ASSERT_TRUE(frame) << frame.error().message;
-    const Result<std::vector<std::byte>> png = encode_picture(with_coverage(frame->image), FileFormat::kPng, 100);
+    const Result<std::vector<std::byte>> png =
+        encode::encode_picture(with_coverage(frame->image), picture::FileFormat::kPng, 100);
     ASSERT_TRUE(png);
     std::ofstream(file, std::ios::binary).write(reinterpret_cast<const char*>(png->data()), std::ssize(*png));
-    renderer_->forget(*model);
+    renderer_->release_model(*model);
   }
 
-  std::unique_ptr<Renderer> renderer_;
+  std::unique_ptr<render::Renderer> renderer_;
   fs::path models_;
   const fs::path golden_ = fs::path(SURFCAST_TEST_DATA) / "golden";
   const fs::path drawn_ = fs::current_path() / "golden";

@@ -7,14 +7,14 @@ namespace surfcast::testing {
 namespace {
 
 TEST_F(NumericsGLTest, APictureOf8192PixelsSquare) {
-  SurfelCloud cloud = square(400, 1, {0, 0, 0}, {0.4, 0.2, 1}, {0, 0, 0});
+  surfel::SurfelCloud cloud = square(400, 1, {0, 0, 0}, {0.4, 0.2, 1}, {0, 0, 0});
   paint_motley(cloud);
   const ModelPointer& model = model_of(cloud);
-  PictureRequest request;
-  request.camera = Camera{{0.1, -0.2, 1.6}, {0, 0, 0}, {0, 1, 0}, 25};
+  picture::PictureRequest request;
+  request.camera = geometry::Camera{{0.1, -0.2, 1.6}, {0, 0, 0}, {0, 1, 0}, 25};
   request.width = request.height = 8192;
-  request.format = PixelFormat::kLinearFloat;
-  const Image image = draw(model, request).image;
+  request.format = picture::PixelFormat::kLinearFloat;
+  const picture::Image image = draw(model, request).image;
   // Corners, borders of regions, and the middle.
   const reference::Window windows[] = {
       {0, 0, 64, 64}, {8128, 8128, 64, 64}, {2016, 2016, 64, 64}, {4064, 4064, 64, 64}, {6112, 3000, 64, 64}};

@@ -10,7 +10,7 @@
 namespace surfcast::testing {
 namespace {
 
-glm::dvec4 drawn_light(const Image& image, const reference::Window& window, int x, int y) {
+glm::dvec4 drawn_light(const picture::Image& image, const reference::Window& window, int x, int y) {
   const size_t at = static_cast<size_t>(window.y + y) * static_cast<size_t>(image.width) + window.x + x;
   glm::vec4 light;
   std::memcpy(&light, image.pixels.data() + sizeof light * at, sizeof light);
@@ -24,13 +24,14 @@ std::ostream& operator<<(std::ostream& out, const Difference& difference) {
              << " of " << difference.peak;
 }
 
-Difference NumericsGLTest::difference(const std::string& what, const ModelPointer& model, PictureRequest request) {
-  request.format = PixelFormat::kLinearFloat;
+Difference NumericsGLTest::difference(const std::string& what, const ModelPointer& model,
+                                      picture::PictureRequest request) {
+  request.format = picture::PixelFormat::kLinearFloat;
   return difference(what, draw(model, request).image, model, request, {0, 0, request.width, request.height});
 }
 
-Difference NumericsGLTest::difference(const std::string& what, const Image& image, const ModelPointer& model,
-                                      const PictureRequest& request, const reference::Window& window) {
+Difference NumericsGLTest::difference(const std::string& what, const picture::Image& image, const ModelPointer& model,
+                                      const picture::PictureRequest& request, const reference::Window& window) {
   const reference::ReferencePicture expected = reference::render(decoded_cloud(*model), request, {}, window);
   Difference found;
   double squares = 0;
@@ -59,7 +60,7 @@ void NumericsGLTest::expect_within(const Difference& difference, const Differenc
   EXPECT_LE(difference.coverage, bound.coverage);
 }
 
-void paint_motley(SurfelCloud& cloud) {
+void paint_motley(surfel::SurfelCloud& cloud) {
   for (size_t i = 0; i < cloud.size(); ++i) {
     const auto hash = static_cast<uint32_t>(i) * 2654435761U;
     cloud.colors->values[i] = glm::u16vec3(hash >> 24, (hash >> 16) & 255U, (hash >> 8) & 255U);

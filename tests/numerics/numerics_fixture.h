@@ -36,16 +36,16 @@ inline constexpr Difference kSplats{1.2e-3, 0.16, 0.07};
 class NumericsGLTest : public RendererFixture {
  protected:
   /// Draws the picture both ways. Prints what it finds.
-  static Difference difference(const std::string& what, const ModelPointer& model, PictureRequest request);
+  static Difference difference(const std::string& what, const ModelPointer& model, picture::PictureRequest request);
   /// Compares a part of a picture in linear light, drawn already, with the reference.
-  static Difference difference(const std::string& what, const Image& image, const ModelPointer& model,
-                               const PictureRequest& request, const reference::Window& window);
+  static Difference difference(const std::string& what, const picture::Image& image, const ModelPointer& model,
+                               const picture::PictureRequest& request, const reference::Window& window);
 
   /// Fails where the difference is larger in any respect, or is no number.
   static void expect_within(const Difference& difference, const Difference& bound);
 };
 
 /// A colour of its own for every surfel, so that a wrong weight shows as a wrong colour.
-void paint_motley(SurfelCloud& cloud);
+void paint_motley(surfel::SurfelCloud& cloud);
 
 }  // namespace surfcast::testing

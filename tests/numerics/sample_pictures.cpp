@@ -7,9 +7,9 @@
 namespace surfcast::testing {
 namespace {
 
-PictureRequest view_from(const glm::dvec3& eye, const glm::dvec3& target, double angle) {
-  PictureRequest request;
-  request.camera = Camera{eye, target, {0.1, 0.2, 0.97}, angle};
+picture::PictureRequest view_from(const glm::dvec3& eye, const glm::dvec3& target, double angle) {
+  picture::PictureRequest request;
+  request.camera = geometry::Camera{eye, target, {0.1, 0.2, 0.97}, angle};
   request.width = 96;
   request.height = 72;
   request.background = {30, 40, 60};
@@ -17,8 +17,8 @@ PictureRequest view_from(const glm::dvec3& eye, const glm::dvec3& target, double
 }
 
 /// Coloured by longitude and latitude, so that pictures compress and faults show.
-SurfelCloud globe(size_t surfels) {
-  SurfelCloud cloud = fibonacci_sphere(surfels, 1, {0, 0, 0}, {0, 0, 0});
+surfel::SurfelCloud globe(size_t surfels) {
+  surfel::SurfelCloud cloud = fibonacci_sphere(surfels, 1, {0, 0, 0}, {0, 0, 0});
   for (size_t i = 0; i < cloud.size(); ++i) {
     const glm::dvec3& p = cloud.positions[i];
     const bool dark = (p.z * 6 - std::floor(p.z * 6) < 0.5) != (p.x * p.y > 0);
@@ -27,18 +27,18 @@ SurfelCloud globe(size_t surfels) {
   return cloud;
 }
 
-SurfelCloud without_colors(SurfelCloud cloud) {
+surfel::SurfelCloud without_colors(surfel::SurfelCloud cloud) {
   cloud.colors.reset();
   return cloud;
 }
 
-SurfelCloud two_sided(SurfelCloud cloud) {
+surfel::SurfelCloud two_sided(surfel::SurfelCloud cloud) {
   cloud.oriented = false;
   return cloud;
 }
 
-SurfelCloud checkered_square(int side, double extent, const glm::dvec3& centre) {
-  SurfelCloud cloud = square(side, extent, centre, {0, 0, 1}, {255, 255, 255});
+surfel::SurfelCloud checkered_square(int side, double extent, const glm::dvec3& centre) {
+  surfel::SurfelCloud cloud = square(side, extent, centre, {0, 0, 1}, {255, 255, 255});
   for (int i = 0; i < side * side; ++i) {
     const bool dark = (i % side * 8 / side + i / side * 8 / side) % 2 == 0;
     if (dark) cloud.colors->values[static_cast<size_t>(i)] = glm::u16vec3(60, 20, 20);
@@ -46,8 +46,8 @@ SurfelCloud checkered_square(int side, double extent, const glm::dvec3& centre) 
   return cloud;
 }
 
-SurfelCloud square_before_globe() {
-  SurfelCloud cloud = globe(8000);
+surfel::SurfelCloud square_before_globe() {
+  surfel::SurfelCloud cloud = globe(8000);
   append(cloud, checkered_square(40, 0.8, {1.2, 0, 0.4}));
   return cloud;
 }
@@ -55,19 +55,19 @@ SurfelCloud square_before_globe() {
 }  // namespace
 
 std::vector<SamplePicture> sample_pictures() {
-  const PictureRequest outside = view_from({3, -2, 1.5}, {0, 0, 0}, 35);
-  PictureRequest per_surfel = outside;
-  per_surfel.normalization = Normalization::kSurfel;
-  PictureRequest unfiltered = outside;
-  unfiltered.filter = Filter::kNone;
-  PictureRequest lit = outside;
-  lit.shading = Shading::kLit;
-  PictureRequest coarse = outside;
+  const picture::PictureRequest outside = view_from({3, -2, 1.5}, {0, 0, 0}, 35);
+  picture::PictureRequest per_surfel = outside;
+  per_surfel.normalization = picture::Normalization::kSurfel;
+  picture::PictureRequest unfiltered = outside;
+  unfiltered.filter = picture::Filter::kNone;
+  picture::PictureRequest lit = outside;
+  lit.shading = picture::Shading::kLit;
+  picture::PictureRequest coarse = outside;
   coarse.spacing = 3;
-  PictureRequest eye_dome = outside;
+  picture::PictureRequest eye_dome = outside;
   eye_dome.eye_dome.strength = 1;
   eye_dome.silhouettes = true;
-  PictureRequest silhouettes = outside;
+  picture::PictureRequest silhouettes = outside;
   silhouettes.silhouettes = true;
   return {{"globe", globe(20000), outside},
           {"globe_per_surfel", globe(20000), per_surfel},
@@ -84,7 +84,7 @@ std::vector<SamplePicture> sample_pictures() {
           {"globe_eye_dome", square_before_globe(), eye_dome}};
 }
 
-uint64_t hash_of(const Image& image) {
+uint64_t hash_of(const picture::Image& image) {
   uint64_t hash = 0xcbf29ce484222325U;
   for (const std::byte byte : image.pixels) hash = (hash ^ static_cast<uint64_t>(byte)) * 0x100000001b3U;
   return hash;

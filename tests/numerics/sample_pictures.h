@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-#include "render/picture.h"
+#include "picture/picture.h"
 #include "surfel/surfel_cloud.h"
 
 namespace surfcast::testing {
@@ -11,8 +11,8 @@ namespace surfcast::testing {
 /// A small picture of a small scene.
 struct SamplePicture {
   std::string name;
-  SurfelCloud cloud;
-  PictureRequest request;
+  surfel::SurfelCloud cloud;
+  picture::PictureRequest request;
 };
 
 /// One for every way of drawing: small and large splats, astride the eye's plane, crowded tiles, merged levels, several
@@ -20,6 +20,6 @@ struct SamplePicture {
 std::vector<SamplePicture> sample_pictures();
 
 /// A number that stands for the bytes of a picture (FNV-1a).
-uint64_t hash_of(const Image& image);
+uint64_t hash_of(const picture::Image& image);
 
 }  // namespace surfcast::testing

@@ -31,22 +31,22 @@ struct TextScan {
 
 class ScanGLTest : public NumericsGLTest {
  protected:
-  Result<BuildReport> build(const TextScan& scan) {
+  Result<builder::BuildReport> build(const TextScan& scan) {
     const std::filesystem::path path = folder_ / "scan.txt";
     std::ofstream(path) << scan.text;
-    return build_model(std::span(&path, 1), folder_ / "scan.surf", {}, [](const BuildStep&) {});
+    return builder::build_model(std::span(&path, 1), folder_ / "scan.surf", {}, [](const builder::BuildStep&) {});
   }
 
   /// Builds the scan, draws all of it and compares with the reference; the points that are left.
   uint64_t surfels_of(const std::string& what, const TextScan& scan, const Difference& bound = kSplats) {
-    const Result<BuildReport> built = build(scan);
+    const Result<builder::BuildReport> built = build(scan);
     EXPECT_TRUE(built) << (built ? "" : built.error().message);
-    Result<ModelFile> opened = ModelFile::open(folder_ / "scan.surf");
+    Result<model::ModelFile> opened = model::ModelFile::open(folder_ / "scan.surf");
     EXPECT_TRUE(opened) << (opened ? "" : opened.error().message);
     if (!built || !opened) return 0;
-    if (model_) renderer_->forget(*model_);
-    model_ = std::make_shared<const ModelFile>(std::move(*opened));
-    PictureRequest request;
+    if (model_) renderer_->release_model(*model_);
+    model_ = std::make_shared<const model::ModelFile>(std::move(*opened));
+    picture::PictureRequest request;
     request.width = 160;
     request.height = 120;
     request.camera = draw(model_, request).camera;
@@ -135,7 +135,7 @@ TEST_F(ScanGLTest, CoordinatesOfAnyMagnitudeAreDrawn) {
 TEST_F(ScanGLTest, AScanOfNothingUsableIsRefusedInOneLine) {
   TextScan nothing;
   for (int i = 0; i < 5; ++i) nothing.add("nan inf -inf" + kNormal + kRest);
-  const Result<BuildReport> built = build(nothing);
+  const Result<builder::BuildReport> built = build(nothing);
   ASSERT_FALSE(built);
   EXPECT_THAT(built.error().message, Not(HasSubstr("\n")));
 }

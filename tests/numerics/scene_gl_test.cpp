@@ -12,16 +12,17 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-PictureRequest view_from(const glm::dvec3& eye, const glm::dvec3& target, double angle, int width, int height) {
-  PictureRequest request;
-  request.camera = Camera{eye, target, {0.1, 1, 0.2}, angle};
+picture::PictureRequest view_from(const glm::dvec3& eye, const glm::dvec3& target, double angle, int width,
+                                  int height) {
+  picture::PictureRequest request;
+  request.camera = geometry::Camera{eye, target, {0.1, 1, 0.2}, angle};
   request.width = width;
   request.height = height;
   return request;
 }
 
-SurfelCloud motley_square(int side, double extent, const glm::dvec3& centre, const glm::dvec3& normal) {
-  SurfelCloud cloud = square(side, extent, centre, normal, {0, 0, 0});
+surfel::SurfelCloud motley_square(int side, double extent, const glm::dvec3& centre, const glm::dvec3& normal) {
+  surfel::SurfelCloud cloud = square(side, extent, centre, normal, {0, 0, 0});
   paint_motley(cloud);
   return cloud;
 }
@@ -35,8 +36,8 @@ TEST_F(NumericsGLTest, AMillionSurfelsInOnePixel) {
 }
 
 /// A square of `side` spacings of 1, and before it one of `fine` spacings of a millionth.
-SurfelCloud spacings_a_million_times_apart(int side, int fine, const glm::dvec3& at) {
-  SurfelCloud cloud = motley_square(side, side, {0, 0, 0}, {0, 0, 1});
+surfel::SurfelCloud spacings_a_million_times_apart(int side, int fine, const glm::dvec3& at) {
+  surfel::SurfelCloud cloud = motley_square(side, side, {0, 0, 0}, {0, 0, 1});
   append(cloud, motley_square(fine, 1e-6 * fine, at, {0, 0, 1}));
   return cloud;
 }
@@ -45,7 +46,7 @@ TEST_F(NumericsGLTest, SpacingsAMillionTimesApart) {
   const glm::dvec3 at(0.31, 0.17, 3);
   const ModelPointer& model = model_of(spacings_a_million_times_apart(100, 100, at));
   for (const double distance : {120.0, 1.0, 1e-2, 1.2e-4}) {
-    const PictureRequest request = view_from(at + distance * glm::dvec3(0, -0.4, 1), at, 40, 160, 120);
+    const picture::PictureRequest request = view_from(at + distance * glm::dvec3(0, -0.4, 1), at, 40, 160, 120);
     expect_within(difference("spacings 1 and 1e-6 from " + std::to_string(distance), model, request), kSplats);
   }
 }
@@ -54,7 +55,7 @@ TEST_F(NumericsGLTest, AFewFineSurfelsAmongCoarseOnes) {
   // So few that nothing but their spacing asks for a block of their own.
   const glm::dvec3 at(0.31, 0.17, 3);
   const ModelPointer& model = model_of(spacings_a_million_times_apart(40, 30, at));
-  const PictureRequest request = view_from(at + glm::dvec3(0, 0, 4e-5), at, 40, 160, 120);
+  const picture::PictureRequest request = view_from(at + glm::dvec3(0, 0, 4e-5), at, 40, 160, 120);
   expect_within(difference("few fine surfels", model, request), kSplats);
 }
 
@@ -62,7 +63,7 @@ TEST_F(NumericsGLTest, MillimetresAtMapCoordinates) {
   const glm::dvec3 far_away(448262.31, 5411932.67, 312.45);
   const ModelPointer& model = model_of(motley_square(100, 0.1, far_away, {0, 0.3, 1}));
   for (const double distance : {1.0, 0.1, 0.01}) {
-    const PictureRequest request = view_from(far_away + glm::dvec3(0, 0, distance), far_away, 30, 160, 120);
+    const picture::PictureRequest request = view_from(far_away + glm::dvec3(0, 0, distance), far_away, 30, 160, 120);
     expect_within(difference("map coordinates from " + std::to_string(distance), model, request), kSplats);
   }
 }
@@ -72,7 +73,7 @@ TEST_F(NumericsGLTest, FieldsOfViewFromATenthOfADegreeTo170) {
   for (const double angle : {0.1, 1.0, 30.0, 90.0, 150.0, 170.0}) {
     // So far away that the square spans two thirds of the picture, yet never within its own plane.
     const double distance = std::max(0.75 / std::tan(0.5 * angle * kDegree), 0.3);
-    const PictureRequest request = view_from({0, 0, distance}, {0, 0, 0}, angle, 320, 240);
+    const picture::PictureRequest request = view_from({0, 0, distance}, {0, 0, 0}, angle, 320, 240);
     expect_within(difference("field of view " + std::to_string(angle), model, request), kSplats);
   }
 }
@@ -80,13 +81,13 @@ TEST_F(NumericsGLTest, FieldsOfViewFromATenthOfADegreeTo170) {
 TEST_F(NumericsGLTest, AFieldOfViewOfATenthOfADegreeInAHighPicture) {
   const ModelPointer& model = model_of(motley_square(200, 1, {0, 0, 0}, {0.5, 0.2, 1}));
   const double distance = 0.75 / std::tan(0.05 * kDegree);
-  const PictureRequest request = view_from({0, 0, distance}, {0, 0, 0}, 0.1, 64, 2000);
+  const picture::PictureRequest request = view_from({0, 0, distance}, {0, 0, 0}, 0.1, 64, 2000);
   expect_within(difference("narrow and high", model, request), kSplats);
 }
 
 TEST_F(NumericsGLTest, DepthsABillionTimesApart) {
   // Squares that look alike from the eye, the last a billion times as far away as the first, each to one side.
-  SurfelCloud cloud = motley_square(30, 0.3, {-0.5, 0, -1}, {0, 0, 1});
+  surfel::SurfelCloud cloud = motley_square(30, 0.3, {-0.5, 0, -1}, {0, 0, 1});
   for (const double depth : {1e3, 1e6, 1e9}) {
     const double side = 0.25 * (std::log10(depth) / 3 - 1);
     append(cloud, motley_square(30, 0.2 * depth, depth * glm::dvec3(side, 0, -1), {0, 0, 1}));
@@ -96,7 +97,7 @@ TEST_F(NumericsGLTest, DepthsABillionTimesApart) {
 }
 
 TEST_F(NumericsGLTest, NearSurfacesHideWhatIsABillionTimesAsFar) {
-  SurfelCloud cloud = motley_square(40, 0.5, {0, 0, -1}, {0.1, 0.2, 1});
+  surfel::SurfelCloud cloud = motley_square(40, 0.5, {0, 0, -1}, {0.1, 0.2, 1});
   append(cloud, motley_square(40, 1e9, {0, 0, -1e9}, {0, 0.1, 1}));
   const ModelPointer& model = model_of(cloud);
   expect_within(difference("near before far", model, view_from({0, 0, 0}, {0, 0, -1}, 60, 320, 240)), kSplats);
@@ -104,11 +105,11 @@ TEST_F(NumericsGLTest, NearSurfacesHideWhatIsABillionTimesAsFar) {
 
 TEST_F(NumericsGLTest, SilhouettesOfSmallAndLargeSplatsInOnePicture) {
   // Of one spacing; the first square is so near that each of its surfels spans many pixels.
-  SurfelCloud cloud = motley_square(5, 0.1, {0.02, 0, 1}, {0.3, 0.2, 1});
+  surfel::SurfelCloud cloud = motley_square(5, 0.1, {0.02, 0, 1}, {0.3, 0.2, 1});
   append(cloud, motley_square(100, 2, {0, 0, 0}, {0, 0.1, 1}));
   const ModelPointer& model = model_of(cloud);
   for (const double distance : {1.15, 1.4, 4.0}) {
-    PictureRequest request = view_from({0, 0, distance}, {0, 0, 0}, 40, 160, 120);
+    picture::PictureRequest request = view_from({0, 0, distance}, {0, 0, 0}, 40, 160, 120);
     request.silhouettes = true;
     expect_within(difference("silhouettes from " + std::to_string(distance), model, request), kSplats);
   }
@@ -117,7 +118,7 @@ TEST_F(NumericsGLTest, SilhouettesOfSmallAndLargeSplatsInOnePicture) {
 TEST_F(NumericsGLTest, PicturesOfOnePixel) {
   const ModelPointer& model = model_of(motley_square(50, 4, {0, 0, 0}, {0.2, 0.1, 1}));
   for (const double angle : {0.1, 30.0, 170.0}) {
-    const PictureRequest request = view_from({0, 0, 3}, {0, 0, 0}, angle, 1, 1);
+    const picture::PictureRequest request = view_from({0, 0, 3}, {0, 0, 0}, angle, 1, 1);
     expect_within(difference("one pixel of " + std::to_string(angle), model, request), kSplats);
   }
 }

@@ -12,7 +12,7 @@ std::string library() {
   std::string text;
   for (const char* file : {"shared/kernel.h", "shared/frame_layout.h", "include/frame.glsl", "include/packing.glsl",
                            "include/resampling_filter.glsl", "include/splat_record.glsl", "include/fixed_sum.glsl"}) {
-    const Result<std::string> part = shader_text(file);
+    const Result<std::string> part = render::shader_text(file);
     if (!part) throw std::runtime_error(part.error().message);
     text += *part;
   }
@@ -44,7 +44,7 @@ std::string source_of(const std::string& body, int ins, int outs) {
 }  // namespace
 
 ShaderBench::ShaderBench() {
-  Result<std::unique_ptr<EglContext>> context = EglContext::create(-1);
+  Result<std::unique_ptr<gl::EglContext>> context = gl::EglContext::create(-1);
   if (!context) throw std::runtime_error(context.error().message);
   context_ = std::move(*context);
 }

@@ -25,7 +25,7 @@ class ShaderBench {
                              std::span<const glm::vec4> inputs);
 
  private:
-  std::unique_ptr<EglContext> context_;
+  std::unique_ptr<gl::EglContext> context_;
 };
 
 /// Constants of a frame of that eta and size; all else is zero.

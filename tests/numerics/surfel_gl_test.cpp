@@ -11,16 +11,17 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-PictureRequest view_from(const glm::dvec3& eye, const glm::dvec3& target, double angle, int width, int height) {
-  PictureRequest request;
-  request.camera = Camera{eye, target, {0.1, 0.2, 0.97}, angle};
+picture::PictureRequest view_from(const glm::dvec3& eye, const glm::dvec3& target, double angle, int width,
+                                  int height) {
+  picture::PictureRequest request;
+  request.camera = geometry::Camera{eye, target, {0.1, 0.2, 0.97}, angle};
   request.width = width;
   request.height = height;
   return request;
 }
 
 /// The eye sees the plane z = 0 under so many degrees from its normal.
-PictureRequest view_at_incidence(double degrees, double distance) {
+picture::PictureRequest view_at_incidence(double degrees, double distance) {
   const double angle = degrees * kDegree;
   return view_from(distance * glm::dvec3(std::sin(angle) * 0.6, std::sin(angle) * 0.8, std::cos(angle)), {0, 0, 0}, 30,
                    160, 120);
@@ -69,27 +70,28 @@ TEST_F(NumericsGLTest, ALargeSurfelEdgeOn) {
 constexpr Difference kSmallEdgeOn{1e-2, 0.1, 0.3};
 
 TEST_F(NumericsGLTest, APlaneEdgeOn) {
-  SurfelCloud cloud = square(100, 1, {0, 0, 0}, {0, 0, 1}, {0, 0, 0});
+  surfel::SurfelCloud cloud = square(100, 1, {0, 0, 0}, {0, 0, 1}, {0, 0, 0});
   paint_motley(cloud);
   const ModelPointer& model = model_of(cloud);
   for (const double degrees : {89.0, 89.9, 89.99, 89.999, 89.9999}) {
-    for (const Filter filter : {Filter::kEwa, Filter::kNone}) {
-      PictureRequest request = view_at_incidence(degrees, 1.5);
+    for (const picture::Filter filter : {picture::Filter::kEwa, picture::Filter::kNone}) {
+      picture::PictureRequest request = view_at_incidence(degrees, 1.5);
       request.filter = filter;
-      expect_within(difference("plane at " + std::to_string(degrees) + (filter == Filter::kNone ? " unfiltered" : ""),
-                               model, request),
-                    kSmallEdgeOn);
+      expect_within(
+          difference("plane at " + std::to_string(degrees) + (filter == picture::Filter::kNone ? " unfiltered" : ""),
+                     model, request),
+          kSmallEdgeOn);
     }
   }
 }
 
 TEST_F(NumericsGLTest, SurfelsAstrideAndBehindTheEyesPlane) {
-  SurfelCloud cloud = fibonacci_sphere(2000, 1, {0, 0, 0}, {0, 0, 0});
+  surfel::SurfelCloud cloud = fibonacci_sphere(2000, 1, {0, 0, 0}, {0, 0, 0});
   cloud.oriented = false;
   paint_motley(cloud);
   const ModelPointer& model = model_of(cloud);
   for (const double offset : {0.0, 0.5, 0.9, 0.97, 0.99, 0.999}) {
-    const PictureRequest request = view_from({offset, 0, 0}, {offset + 0.3, 1, 0.2}, 100, 160, 120);
+    const picture::PictureRequest request = view_from({offset, 0, 0}, {offset + 0.3, 1, 0.2}, 100, 160, 120);
     expect_within(difference("within a sphere at " + std::to_string(offset), model, request), kMagnified);
   }
 }
@@ -97,7 +99,7 @@ TEST_F(NumericsGLTest, SurfelsAstrideAndBehindTheEyesPlane) {
 TEST_F(NumericsGLTest, OneSurfelOverTheWholeScreen) {
   const ModelPointer& model = model_of(single_surfel({0, 0, 0}, {0.3, -0.2, 1}, 1, {10, 200, 30}));
   for (const double distance : {3.0, 1.0, 0.3, 0.05, 1e-3, 1e-6}) {
-    const PictureRequest request = view_from({0, 0, distance}, {0, 0, 0}, 60, 160, 120);
+    const picture::PictureRequest request = view_from({0, 0, distance}, {0, 0, 0}, 60, 160, 120);
     expect_within(difference("one surfel from " + std::to_string(distance), model, request), kRounding);
   }
 }

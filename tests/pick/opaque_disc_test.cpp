@@ -8,7 +8,7 @@
 
 #include "reference/resampling_filter.h"
 
-namespace surfcast {
+namespace surfcast::pick {
 namespace {
 
 constexpr double kEta = 1300;
@@ -54,4 +54,4 @@ TEST(OpaqueDisc, EdgeOnItIsAsThinAsThePrefilterAndNeverBeyondItsOwnDepth) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::pick

@@ -6,7 +6,7 @@
 #include "render/gl_fixture.h"
 #include "support/clouds.h"
 
-namespace surfcast {
+namespace surfcast::pick {
 namespace {
 
 using PickGLTest = testing::RendererFixture;
@@ -15,8 +15,8 @@ const glm::u8vec3 kSphere(220, 40, 30);
 const glm::u8vec3 kFloor(20, 60, 230);
 
 /// A sphere of class 6 above a floor of class 2.
-SurfelCloud scene() {
-  SurfelCloud cloud = testing::fibonacci_sphere(8000, 1, {0, 0, 0.2}, kSphere);
+surfel::SurfelCloud scene() {
+  surfel::SurfelCloud cloud = testing::fibonacci_sphere(8000, 1, {0, 0, 0.2}, kSphere);
   const size_t sphere = cloud.size();
   testing::append(cloud, testing::square(120, 5, {0, 0, -1}, {0, 0, 1}, kFloor));
   std::vector<uint8_t> classes(cloud.size(), 2);
@@ -50,19 +50,19 @@ class Agreement {
 
 TEST_F(PickGLTest, PicksAgreeWithPicturesAlsoWhereSomethingIsHidden) {
   const testing::ModelPointer& model = model_of(scene());
-  PictureRequest request;
+  picture::PictureRequest request;
   request.width = 200;
   request.height = 150;
-  for (const Camera& camera :
-       {Camera{{4, -6, 5}, {0, 0, 0}, {0, 0, 1}, 40}, Camera{{1.4, 0, 0}, {0, 0, 0}, {0, 0, 1}, 70}}) {
+  for (const geometry::Camera& camera : {geometry::Camera{{4, -6, 5}, {0, 0, 0}, {0, 0, 1}, 40},
+                                         geometry::Camera{{1.4, 0, 0}, {0, 0, 0}, {0, 0, 1}, 70}}) {
     for (const int option : {0, 1, 2}) {
       request.camera = camera;
       request.hidden_classes.reset();
       request.clip = {};
       if (option == 1) request.hidden_classes.set(6);
       if (option == 2) request.clip.outside.push_back({{-3, -3, 0}, {0.3, 3, 3}});
-      const Image image = draw(model, request).image;
-      const CameraFrame frame = *make_camera_frame(camera, request.width, request.height);
+      const picture::Image image = draw(model, request).image;
+      const geometry::CameraFrame frame = *geometry::make_camera_frame(camera, request.width, request.height);
       Agreement agreement;
       const std::atomic<bool> no{false};
       SourceBlocks blocks(size_t{1} << 20);
@@ -78,4 +78,4 @@ TEST_F(PickGLTest, PicksAgreeWithPicturesAlsoWhereSomethingIsHidden) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::pick

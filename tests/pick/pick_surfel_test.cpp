@@ -12,13 +12,13 @@
 #include "support/clouds.h"
 #include "surfel/drawn_radius.h"
 
-namespace surfcast {
+namespace surfcast::pick {
 namespace {
 
-const Grid kUtm{{0.01, 0.01, 0.001}, {448262, 5411932, 312}};
+const surfel::Grid kUtm{{0.01, 0.01, 0.001}, {448262, 5411932, 312}};
 
 /// Moves the cloud's points to a lattice in UTM coordinates, where they all have classes, intensities and times.
-void make_survey(SurfelCloud& cloud) {
+void make_survey(surfel::SurfelCloud& cloud) {
   std::vector<uint8_t> classes;
   std::vector<uint16_t> intensities;
   std::vector<double> times;
@@ -32,8 +32,8 @@ void make_survey(SurfelCloud& cloud) {
   cloud.scalars = {{"intensity", intensities}, {"classification", classes}, {"gps_time", times}};
 }
 
-SurfelCloud survey() {
-  SurfelCloud cloud = testing::fibonacci_sphere(20000, 40, {0, 0, 0}, {200, 90, 20});
+surfel::SurfelCloud survey() {
+  surfel::SurfelCloud cloud = testing::fibonacci_sphere(20000, 40, {0, 0, 0}, {200, 90, 20});
   testing::append(cloud, testing::square(110, 200, {0, 0, -60}, {0, 0, 1}, {20, 90, 200}));
   make_survey(cloud);
   return cloud;
@@ -47,18 +47,18 @@ class PickSurfel : public ::testing::Test {
   }
   void TearDown() override { std::filesystem::remove(path_); }
 
-  ModelFile model_of(const SurfelCloud& cloud) {
-    EXPECT_TRUE(write_model(cloud, path_, {}));
-    Result<ModelFile> model = ModelFile::open(path_);
+  model::ModelFile model_of(const surfel::SurfelCloud& cloud) {
+    EXPECT_TRUE(model::write_model(cloud, path_, {}));
+    Result<model::ModelFile> model = model::ModelFile::open(path_);
     EXPECT_TRUE(model);
     return std::move(*model);
   }
 
-  static PickQuery query_at(double x, double y, const Camera& camera, int width = 320, int height = 240) {
-    return {*make_camera_frame(camera, width, height), {x, y}, {}, {}};
+  static PickQuery query_at(double x, double y, const geometry::Camera& camera, int width = 320, int height = 240) {
+    return {*geometry::make_camera_frame(camera, width, height), {x, y}, {}, {}};
   }
 
-  static std::optional<PickedSurfel> pick(const ModelFile& model, const PickQuery& query) {
+  static std::optional<PickedSurfel> pick(const model::ModelFile& model, const PickQuery& query) {
     const std::atomic<bool> no{false};
     SourceBlocks blocks(0);
     Result<std::optional<PickedSurfel>> picked = pick_surfel(model, query, blocks, no);
@@ -69,13 +69,13 @@ class PickSurfel : public ::testing::Test {
   std::filesystem::path path_;
 };
 
-Camera oblique() {
+geometry::Camera oblique() {
   return {kUtm.offset + glm::dvec3(150, -260, 120), kUtm.offset, {0, 0, 1}, 35};
 }
 
 /// The blocks of the finest level.
-std::vector<DecodedBlock> leaves_of(const ModelFile& model) {
-  std::vector<DecodedBlock> leaves;
+std::vector<model::DecodedBlock> leaves_of(const model::ModelFile& model) {
+  std::vector<model::DecodedBlock> leaves;
   for (size_t b = 0; b < model.blocks().size(); ++b) {
     if (model.blocks()[b].level == 0) leaves.push_back(*model.decode(b));
   }
@@ -83,7 +83,7 @@ std::vector<DecodedBlock> leaves_of(const ModelFile& model) {
 }
 
 /// All surfels of the finest level, seen by the reference's discs: the position that is to be picked, if any is.
-std::optional<glm::dvec3> brute_force(const std::vector<DecodedBlock>& leaves, const PickQuery& query) {
+std::optional<glm::dvec3> brute_force(const std::vector<model::DecodedBlock>& leaves, const PickQuery& query) {
   const glm::dvec3 ray = query.frame.ray(query.pixel);
   struct Seen {
     double form;
@@ -92,9 +92,9 @@ std::optional<glm::dvec3> brute_force(const std::vector<DecodedBlock>& leaves, c
   };
   std::vector<Seen> seen;
   double surface = std::numeric_limits<double>::infinity();
-  for (const DecodedBlock& block : leaves) {
+  for (const model::DecodedBlock& block : leaves) {
     const auto& classes = std::get<std::vector<uint8_t>>(block.scalars[1].values);
-    const float widest = largest_drawn_radius(block.radii);
+    const float widest = surfel::largest_drawn_radius(block.radii);
     for (size_t i = 0; i < block.size(); ++i) {
       const glm::dvec3 o = query.frame.to_camera(block.position(i));
       const glm::dvec3 n = query.frame.rotate(glm::dvec3(block.normals[i]));
@@ -118,13 +118,14 @@ std::optional<glm::dvec3> brute_force(const std::vector<DecodedBlock>& leaves, c
 }
 
 /// Picks over the whole picture and counts hits.
-int compare(const ModelFile& model, const Clip& clip, const std::bitset<256>& hidden, const Camera& camera) {
-  const std::vector<DecodedBlock> leaves = leaves_of(model);
+int compare(const model::ModelFile& model, const geometry::Clip& clip, const std::bitset<256>& hidden,
+            const geometry::Camera& camera) {
+  const std::vector<model::DecodedBlock> leaves = leaves_of(model);
   int hits = 0;
   SourceBlocks blocks(size_t{1} << 20);  // some blocks
   for (int y = 5; y < 240; y += 23) {
     for (int x = 3; x < 320; x += 29) {
-      PickQuery query{*make_camera_frame(camera, 320, 240), {x + 0.5, y + 0.5}, clip, hidden};
+      PickQuery query{*geometry::make_camera_frame(camera, 320, 240), {x + 0.5, y + 0.5}, clip, hidden};
       const std::atomic<bool> no{false};
       const auto picked = pick_surfel(model, query, blocks, no);
       const auto expected = brute_force(leaves, query);
@@ -139,22 +140,22 @@ int compare(const ModelFile& model, const Clip& clip, const std::bitset<256>& hi
 }
 
 TEST_F(PickSurfel, FindsWhatASearchOverAllSurfelsFinds) {
-  const ModelFile model = model_of(survey());
+  const model::ModelFile model = model_of(survey());
   ASSERT_GT(model.blocks().size(), 2u);
   EXPECT_GT(compare(model, {}, {}, oblique()), 40);
 }
 
 TEST_F(PickSurfel, FindsTheSameWithinTheScene) {
-  SurfelCloud cloud = survey();
+  surfel::SurfelCloud cloud = survey();
   cloud.oriented = true;
-  const ModelFile model = model_of(cloud);
-  const Camera low{kUtm.offset + glm::dvec3(60, 60, -58), kUtm.offset + glm::dvec3(0, 0, -50), {0, 0, 1}, 80};
+  const model::ModelFile model = model_of(cloud);
+  const geometry::Camera low{kUtm.offset + glm::dvec3(60, 60, -58), kUtm.offset + glm::dvec3(0, 0, -50), {0, 0, 1}, 80};
   EXPECT_GT(compare(model, {}, {}, low), 30);
 }
 
 TEST_F(PickSurfel, ClipsAndHiddenClassesAreLookedThrough) {
-  const ModelFile model = model_of(survey());
-  Clip clip;
+  const model::ModelFile model = model_of(survey());
+  geometry::Clip clip;
   clip.inside.push_back({kUtm.offset - glm::dvec3(90, 90, 70), kUtm.offset + glm::dvec3(90, 90, 20)});
   clip.outside.push_back({kUtm.offset - glm::dvec3(15, 50, 50), kUtm.offset + glm::dvec3(15, 50, 50)});
   std::bitset<256> hidden;
@@ -163,8 +164,8 @@ TEST_F(PickSurfel, ClipsAndHiddenClassesAreLookedThrough) {
 }
 
 TEST_F(PickSurfel, TheAnswerIsTheSourcePointWithAllItsAttributes) {
-  const SurfelCloud cloud = survey();
-  const ModelFile model = model_of(cloud);
+  const surfel::SurfelCloud cloud = survey();
+  const model::ModelFile model = model_of(cloud);
   const auto picked = pick(model, query_at(160.5, 120.5, oblique()));
   ASSERT_TRUE(picked);
   ASSERT_EQ(picked->values.size(), 3u);
@@ -182,7 +183,7 @@ TEST_F(PickSurfel, TheAnswerIsTheSourcePointWithAllItsAttributes) {
 }
 
 TEST_F(PickSurfel, TheBackgroundIsNoSurfel) {
-  const ModelFile model = model_of(survey());
+  const model::ModelFile model = model_of(survey());
   EXPECT_FALSE(pick(model, query_at(0.5, 0.5, oblique())));
   PickQuery hidden = query_at(160.5, 120.5, oblique());
   hidden.hidden_classes.set();
@@ -193,7 +194,7 @@ TEST_F(PickSurfel, TheBackgroundIsNoSurfel) {
 }
 
 TEST_F(PickSurfel, BackFacesOfOrientedModelsAreNotPickedAndOthersFaceTheEye) {
-  SurfelCloud cloud = testing::square(50, 2, {0, 0, 0}, {0, 0, -1}, {1, 2, 3});
+  surfel::SurfelCloud cloud = testing::square(50, 2, {0, 0, 0}, {0, 0, -1}, {1, 2, 3});
   const PickQuery query = query_at(160.5, 120.5, {{0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 30});
   EXPECT_FALSE(pick(model_of(cloud), query));
   cloud.oriented = false;
@@ -203,7 +204,7 @@ TEST_F(PickSurfel, BackFacesOfOrientedModelsAreNotPickedAndOthersFaceTheEye) {
 }
 
 TEST_F(PickSurfel, OfCoincidentSurfacesTheNearerIsPicked) {
-  SurfelCloud cloud = testing::square(100, 2, {0, 0, -0.5}, {0, 0, 1}, {9, 9, 9});
+  surfel::SurfelCloud cloud = testing::square(100, 2, {0, 0, -0.5}, {0, 0, 1}, {9, 9, 9});
   testing::append(cloud, testing::square(100, 2, {0, 0, 0}, {0, 0, 1}, {1, 2, 3}));
   const auto picked = pick(model_of(cloud), query_at(150.5, 130.5, {{0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 30}));
   ASSERT_TRUE(picked);
@@ -211,7 +212,7 @@ TEST_F(PickSurfel, OfCoincidentSurfacesTheNearerIsPicked) {
 }
 
 TEST_F(PickSurfel, ColorsOfSixteenBitsAreRounded) {
-  SurfelCloud cloud = testing::square(50, 2, {0, 0, 0}, {0, 0, 1}, {0, 0, 0});
+  surfel::SurfelCloud cloud = testing::square(50, 2, {0, 0, 0}, {0, 0, 1}, {0, 0, 0});
   cloud.colors->bits = 16;
   for (glm::u16vec3& color : cloud.colors->values) color = {65535, 257 * 7, 128};
   const auto picked = pick(model_of(cloud), query_at(160.5, 120.5, {{0, 0, 5}, {0, 0, 0}, {0, 1, 0}, 30}));
@@ -220,14 +221,14 @@ TEST_F(PickSurfel, ColorsOfSixteenBitsAreRounded) {
 }
 
 TEST_F(PickSurfel, ACancelledPickStops) {
-  const ModelFile model = model_of(survey());
+  const model::ModelFile model = model_of(survey());
   const std::atomic<bool> yes{true};
   SourceBlocks blocks(0);
   EXPECT_EQ(pick_surfel(model, query_at(160.5, 120.5, oblique()), blocks, yes).error().kind, ErrorKind::kCancelled);
 }
 
 TEST_F(PickSurfel, BlocksAreDecodedOnceWithinTheBudget) {
-  const ModelFile model = model_of(survey());
+  const model::ModelFile model = model_of(survey());
   ASSERT_GT(model.blocks().size(), 1U);
   SourceBlocks blocks(size_t{1} << 30);
   const auto first = *blocks.get(model, 1);
@@ -238,4 +239,4 @@ TEST_F(PickSurfel, BlocksAreDecodedOnceWithinTheBudget) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::pick

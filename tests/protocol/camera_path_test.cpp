@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace surfcast {
+namespace surfcast::protocol {
 namespace {
 
 CameraPath path_of(const std::string& keyframes) {
@@ -115,4 +115,4 @@ TEST(FrameName, PatternsWithoutJustOneNumberAreRefused) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::protocol

@@ -11,7 +11,7 @@
 #include "protocol/picture_query.h"
 #include "protocol/validate.h"
 
-namespace surfcast {
+namespace surfcast::protocol {
 namespace {
 
 TEST(Parse, NumbersAreReadWholeOrNotAtAll) {
@@ -254,4 +254,4 @@ TEST(Errors, ACodeOfALaterVersionIsAnInternalError) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::protocol

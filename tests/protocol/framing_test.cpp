@@ -8,7 +8,7 @@
 #include "protocol/little_endian.h"
 #include "surfcast.pb.h"
 
-namespace surfcast {
+namespace surfcast::protocol {
 namespace {
 
 using Bytes = std::vector<std::byte>;
@@ -158,4 +158,4 @@ TEST(Framing, RandomStreamsEndInAnErrorOrWaitAndNeverCrash) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::protocol

@@ -7,7 +7,7 @@
 #include "protocol/errors.h"
 #include "protocol/little_endian.h"
 
-namespace surfcast {
+namespace surfcast::protocol {
 namespace {
 
 TEST(Hello, ComesBackAsItWasSent) {
@@ -125,4 +125,4 @@ TEST(CleanUtf8, KeepsWhatIsWellFormedAndMarksTheRest) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::protocol

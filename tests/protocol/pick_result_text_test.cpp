@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace surfcast {
+namespace surfcast::protocol {
 namespace {
 
 wire::PickResult hit() {
@@ -46,4 +46,4 @@ TEST(PickResultText, WhatIsNoNumberIsNull) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::protocol

@@ -11,7 +11,7 @@
 #include "protocol/picture_fields.h"
 #include "protocol/save_picture.h"
 
-namespace surfcast {
+namespace surfcast::protocol {
 namespace {
 
 namespace fs = std::filesystem;
@@ -160,4 +160,4 @@ TEST_F(RequestFlagsTest, APictureThatCannotBeWrittenLeavesNothingBehind) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::protocol

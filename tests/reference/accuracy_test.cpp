@@ -22,7 +22,7 @@ std::ostream& operator<<(std::ostream& out, const Goal& goal) {
 
 class Accuracy : public testing::TestWithParam<Goal> {};
 
-TEST_P(Accuracy, IsAtLeastTheGoalAndLeavesNoHole) {
+TEST_P(Accuracy, IsAtLeastTheLimitAndLeavesNoHole) {
   Scene scene = make_scene(GetParam().scene);
   scene.request.silhouettes = true;  // as a picture at rest
   const ReferencePicture result = render(scene.cloud, scene.request);

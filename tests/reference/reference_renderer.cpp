@@ -50,7 +50,7 @@ PixelRect grown(const PixelRect& rect, int pixels) {
   return {rect.x0 - pixels, rect.y0 - pixels, rect.x1 + pixels, rect.y1 + pixels};
 }
 
-PixelRect pixel_bounds(const Splat& splat, const CameraFrame& frame) {
+PixelRect pixel_bounds(const Splat& splat, const geometry::CameraFrame& frame) {
   const Splat::Bounds b = splat.bounds();
   const auto column = [&](double x) { return std::clamp(0.5 * frame.width + frame.eta * x, -1.0, frame.width + 1.0); };
   const auto row = [&](double y) { return std::clamp(0.5 * frame.height - frame.eta * y, -1.0, frame.height + 1.0); };
@@ -59,7 +59,7 @@ PixelRect pixel_bounds(const Splat& splat, const CameraFrame& frame) {
                    {0, 0, frame.width, frame.height});
 }
 
-glm::dvec3 linear_color(const ColorAttribute& colors, size_t i) {
+glm::dvec3 linear_color(const surfel::ColorAttribute& colors, size_t i) {
   const double top = colors.bits == 16 ? 65535.0 : 255.0;
   return linear_from_srgb8(glm::dvec3(colors.values[i]) * (255.0 / top));
 }
@@ -74,15 +74,16 @@ struct Sampling {
 /// The scene in camera coordinates, with the surfels that touch each tile in their order in the cloud.
 class TiledScene {
  public:
-  TiledScene(const SurfelCloud& cloud, const PictureRequest& request, const CameraFrame& frame,
-             const KernelParameters& kernel, const PixelRect& window, const Sampling& sampling)
+  TiledScene(const surfel::SurfelCloud& cloud, const picture::PictureRequest& request,
+             const geometry::CameraFrame& frame, const KernelParameters& kernel, const PixelRect& window,
+             const Sampling& sampling)
       : frame_(frame),
         sampling_(sampling),
         window_(window),
         columns_((window.x1 - window.x0 + kTile - 1) / kTile),
         rows_((window.y1 - window.y0 + kTile - 1) / kTile) {
     tiles_.resize(static_cast<size_t>(columns_) * rows_);
-    lit_ = request.shading == Shading::kLit || (request.shading == Shading::kAuto && !cloud.colors);
+    lit_ = request.shading == picture::Shading::kLit || (request.shading == picture::Shading::kAuto && !cloud.colors);
     for (size_t i = 0; i < cloud.size(); ++i) add(cloud, i, request, kernel);
   }
 
@@ -106,7 +107,8 @@ class TiledScene {
   }
 
  private:
-  void add(const SurfelCloud& cloud, size_t i, const PictureRequest& request, const KernelParameters& kernel) {
+  void add(const surfel::SurfelCloud& cloud, size_t i, const picture::PictureRequest& request,
+           const KernelParameters& kernel) {
     const glm::dvec3 o = frame_.to_camera(cloud.positions[i]);
     const glm::dvec3 n = frame_.rotate(glm::dvec3(cloud.normals[i]));
     if (cloud.oriented && glm::dot(n, o) > 0) return;
@@ -116,10 +118,10 @@ class TiledScene {
     if (bounds.x0 >= bounds.x1 || bounds.y0 >= bounds.y1) return;
     const glm::dvec3 facing = glm::dot(n, o) > 0 ? -n : n;
     const glm::dvec3 color = cloud.colors ? linear_color(*cloud.colors, i) : glm::dvec3(kAlbedo);
-    const bool per_surfel = request.normalization == Normalization::kSurfel;
-    surfels_.push_back(
-        {*splat, color, facing,
-         per_surfel ? per_surfel_scale(kernel.sigma) * cloud.weights[i] : even_sampling_weight(kernel.sigma)});
+    const bool per_surfel = request.normalization == picture::Normalization::kSurfel;
+    surfels_.push_back({*splat, color, facing,
+                        per_surfel ? surfel::per_surfel_scale(kernel.sigma) * cloud.weights[i]
+                                   : surfel::even_sampling_weight(kernel.sigma)});
     bounds_.push_back(bounds);
     bin(static_cast<uint32_t>(surfels_.size() - 1), bounds);
   }
@@ -134,7 +136,7 @@ class TiledScene {
     }
   }
 
-  const CameraFrame& frame_;
+  const geometry::CameraFrame& frame_;
   Sampling sampling_;
   PixelRect window_;
   int columns_;
@@ -169,8 +171,8 @@ struct PixelState {
 /// covers a pixel in part, what lies behind it shows through.
 class TilePass {
  public:
-  TilePass(const TiledScene& scene, const CameraFrame& frame, const KernelParameters& kernel, const glm::dvec2& sample,
-           int column, int row)
+  TilePass(const TiledScene& scene, const geometry::CameraFrame& frame, const KernelParameters& kernel,
+           const glm::dvec2& sample, int column, int row)
       : scene_(scene),
         frame_(frame),
         kernel_(kernel),
@@ -191,7 +193,7 @@ class TilePass {
       for_each_pixel(rect_, [&](PixelState& p, const glm::dvec3& d, size_t) { composite(p, d, layer == 0); });
     }
   }
-  void resolve(const PictureRequest& request, Drawing& out) {
+  void resolve(const picture::PictureRequest& request, Drawing& out) {
     const glm::dvec3 background = linear_from_srgb8(glm::dvec3(request.background));
     for_each_pixel(rect_, [&](const PixelState& p, const glm::dvec3&, size_t place) {
       if (p.left_out) return;
@@ -270,7 +272,7 @@ class TilePass {
   }
 
   const TiledScene& scene_;
-  const CameraFrame& frame_;
+  const geometry::CameraFrame& frame_;
   const KernelParameters& kernel_;
   glm::dvec2 sample_;  ///< pixels from a pixel's centre
   int column_;
@@ -281,8 +283,9 @@ class TilePass {
 };
 
 /// Draws the pixels of the scene's window that `mask` marks, or all, each at a place so far from its centre.
-void draw_tiles(const TiledScene& scene, const CameraFrame& frame, const KernelParameters& kernel,
-                const PictureRequest& request, const glm::dvec2& sample, const std::vector<bool>* mask, Drawing& out) {
+void draw_tiles(const TiledScene& scene, const geometry::CameraFrame& frame, const KernelParameters& kernel,
+                const picture::PictureRequest& request, const glm::dvec2& sample, const std::vector<bool>* mask,
+                Drawing& out) {
   std::atomic<uint64_t> fragments = 0;
   tbb::parallel_for(tbb::blocked_range2d<int>(0, scene.rows(), 0, scene.columns()), [&](const auto& range) {
     for (int row = range.rows().begin(); row < range.rows().end(); ++row) {
@@ -309,8 +312,9 @@ void add_marked(const Drawing& sample, const std::vector<bool>& mask, double sha
 }
 
 /// Draws the marked pixels again, as the mean of several samples.
-void supersample(const SurfelCloud& cloud, const PictureRequest& request, const KernelParameters& kernel,
-                 const CameraFrame& frame, const PixelRect& rect, const std::vector<bool>& mask, Drawing& out) {
+void supersample(const surfel::SurfelCloud& cloud, const picture::PictureRequest& request,
+                 const KernelParameters& kernel, const geometry::CameraFrame& frame, const PixelRect& rect,
+                 const std::vector<bool>& mask, Drawing& out) {
   const double narrowed = std::sqrt(1 - kernel.silhouette_variance);
   KernelParameters narrow = kernel;
   narrow.visibility_pixels *= narrowed;
@@ -330,17 +334,18 @@ void supersample(const SurfelCloud& cloud, const PictureRequest& request, const 
   }
 }
 
-Drawing draw(const SurfelCloud& cloud, const PictureRequest& request, const KernelParameters& kernel,
-             const CameraFrame& frame, const PixelRect& rect) {
+Drawing draw(const surfel::SurfelCloud& cloud, const picture::PictureRequest& request, const KernelParameters& kernel,
+             const geometry::CameraFrame& frame, const PixelRect& rect) {
   const int width = rect.x1 - rect.x0;
   const int height = rect.y1 - rect.y0;
   const size_t pixels = static_cast<size_t>(width) * height;
   Drawing out{{{width, height}, std::vector<double>(pixels), std::vector<double>(pixels), 0},
               std::vector<double>(pixels)};
-  const double prefilter = request.filter == Filter::kEwa ? 1.0 : kNoPrefilter;
+  const double prefilter = request.filter == picture::Filter::kEwa ? 1.0 : kNoPrefilter;
   const TiledScene scene(cloud, request, frame, kernel, rect, {prefilter, prefilter, 0});
   draw_tiles(scene, frame, kernel, request, glm::dvec2(0), nullptr, out);
-  if (request.silhouettes && request.filter == Filter::kEwa && request.normalization == Normalization::kPixel) {
+  if (request.silhouettes && request.filter == picture::Filter::kEwa &&
+      request.normalization == picture::Normalization::kPixel) {
     supersample(cloud, request, kernel, frame, rect, silhouettes(out.fronts, width, frame.eta, kernel), out);
   }
   return out;
@@ -367,10 +372,10 @@ double saturation(double gain, const KernelParameters& kernel) {
   return kernel.coverage_minified * std::pow(kernel.coverage_magnified / kernel.coverage_minified, gain);
 }
 
-ReferencePicture render(const SurfelCloud& cloud, const PictureRequest& request, const KernelParameters& kernel,
-                        const std::optional<Window>& window) {
+ReferencePicture render(const surfel::SurfelCloud& cloud, const picture::PictureRequest& request,
+                        const KernelParameters& kernel, const std::optional<Window>& window) {
   SURFCAST_EXPECTS(request.camera.has_value());
-  const auto frame = make_camera_frame(*request.camera, request.width, request.height);
+  const auto frame = geometry::make_camera_frame(*request.camera, request.width, request.height);
   SURFCAST_EXPECTS(frame.has_value());
   const PixelRect picture{0, 0, request.width, request.height};
   const Window part = window.value_or(Window{0, 0, request.width, request.height});

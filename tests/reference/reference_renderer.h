@@ -3,9 +3,9 @@
 #include <optional>
 #include <vector>
 
+#include "picture/picture.h"
 #include "reference/linear_picture.h"
 #include "reference/resampling_filter.h"
-#include "render/picture.h"
 #include "surfel/surfel_cloud.h"
 
 namespace surfcast::reference {
@@ -29,8 +29,8 @@ struct Window {
 /// Draws the finest level of the cloud in double precision, deterministically. The request states its camera; pixels
 /// are never quantised. Weights of the cloud are used for Normalization::kSurfel alone. With a window, only the part
 /// of the picture that lies in it.
-ReferencePicture render(const SurfelCloud& cloud, const PictureRequest& request, const KernelParameters& kernel = {},
-                        const std::optional<Window>& window = {});
+ReferencePicture render(const surfel::SurfelCloud& cloud, const picture::PictureRequest& request,
+                        const KernelParameters& kernel = {}, const std::optional<Window>& window = {});
 
 /// The accumulated weight at which a pixel counts as fully covered, for fragments of the given gain.
 double saturation(double gain, const KernelParameters& kernel);

@@ -22,7 +22,7 @@ Scene small_scene(const std::string& name) {
 Scene transformed(Scene scene, double scale, const glm::dvec3& offset) {
   for (glm::dvec3& p : scene.cloud.positions) p = scale * p + offset;
   for (float& r : scene.cloud.radii) r = static_cast<float>(scale * r);
-  Camera& camera = *scene.request.camera;
+  geometry::Camera& camera = *scene.request.camera;
   camera.position = scale * camera.position + offset;
   camera.focal_point = scale * camera.focal_point + offset;
   return scene;
@@ -80,7 +80,7 @@ TEST(ReferenceRenderer, ShowsTheBackgroundWhereNothingIs) {
 TEST(ReferenceRenderer, HidesWhatLiesBehindASurface) {
   // A red sheet one spacing's push in front of a green one, and a view that meets both everywhere.
   Scene scene = small_scene("color_plane");
-  SurfelCloud& cloud = scene.cloud;
+  surfel::SurfelCloud& cloud = scene.cloud;
   const size_t count = cloud.size();
   cloud.colors->values.assign(count, {255, 0, 0});
   for (size_t i = 0; i < count; ++i) {

@@ -34,8 +34,8 @@ std::optional<Splat> Splat::make(const glm::dvec3& o, const glm::dvec3& n, doubl
   splat.extent_ = std::max(widest, splat.disc_radius_);
   splat.depth_range_ = splat.extent_ * std::sqrt(std::max(0.0, 1 - splat.n_.z * splat.n_.z));
   if (o.z + splat.depth_range_ <= 0) return std::nullopt;
-  splat.astride_ = o.z <= 1.5 * splat.extent_;
-  const double gain = splat.astride_ ? 1 : splat.fragment(o / o.z).gain;
+  splat.reaches_eye_plane_ = o.z <= 1.5 * splat.extent_;
+  const double gain = splat.reaches_eye_plane_ ? 1 : splat.fragment(o / o.z).gain;
   splat.cutoff_ = glm::mix(kernel.cutoff_minified, kernel.cutoff_magnified, gain);
   const bool one_cutoff = kernel.cutoff_minified == kernel.cutoff_magnified;
   splat.rim_ = one_cutoff ? 0 : gain * std::exp(-0.5 * splat.cutoff_);
@@ -67,16 +67,17 @@ Fragment Splat::object_space(const glm::dvec3& d, double deviation) const {
 }
 
 Fragment Splat::fragment(const glm::dvec3& d) const {
-  if (astride_) return object_space(d, sigma_);
+  if (reaches_eye_plane_) return object_space(d, sigma_);
   return quadratic(d, sigma_ * eta_ / o_.z, prefilter_);
 }
 
 double Splat::gain(const glm::dvec3& d, double prefilter) const {
-  return astride_ ? 1 : quadratic(d, sigma_ * eta_ / o_.z, prefilter).gain;
+  return reaches_eye_plane_ ? 1 : quadratic(d, sigma_ * eta_ / o_.z, prefilter).gain;
 }
 
 bool Splat::opaque(const glm::dvec3& d) const {
-  const Fragment f = astride_ ? object_space(d, disc_radius_) : quadratic(d, disc_radius_ * eta_ / o_.z, disc_pixels_);
+  const Fragment f =
+      reaches_eye_plane_ ? object_space(d, disc_radius_) : quadratic(d, disc_radius_ * eta_ / o_.z, disc_pixels_);
   return f.r2 <= 1;
 }
 
@@ -86,12 +87,12 @@ double Splat::plane_depth(const glm::dvec3& d) const {
 }
 
 double Splat::fragment_depth(const glm::dvec3& d) const {
-  return astride_ ? plane_depth(d) : std::min(plane_depth(d), o_.z + depth_range_);
+  return reaches_eye_plane_ ? plane_depth(d) : std::min(plane_depth(d), o_.z + depth_range_);
 }
 
 Splat::DiscDepth Splat::disc_depth(const glm::dvec3& d) const {
   const double depth = plane_depth(d);
-  if (astride_) return {depth, depth + push_};
+  if (reaches_eye_plane_) return {depth, depth + push_};
   const double limited = std::max(depth, o_.z - depth_range_);
   return {limited, limited * (1 + push_ / o_.z)};
 }
@@ -100,9 +101,9 @@ Splat::DiscDepth Splat::disc_depth(const glm::dvec3& d) const {
 // the prefilter's reach: v^T (A + B)^-1 v is the least a^T A^-1 a + b^T B^-1 b over v = a + b.
 Splat::Bounds Splat::bounds() const {
   const glm::dvec3 reach = extent_ * glm::sqrt(glm::max(glm::dvec3(0), 1.0 - n_ * n_));
-  const double pixels = astride_ ? 0 : std::max(prefilter_ * std::sqrt(cutoff_), disc_pixels_);
+  const double pixels = reaches_eye_plane_ ? 0 : std::max(prefilter_ * std::sqrt(cutoff_), disc_pixels_);
   const double pad = pixels * o_.z / eta_;
-  const double near = astride_ ? 0 : o_.z - reach.z;  // x / 0 with its sign is the bound at the eye's plane
+  const double near = reaches_eye_plane_ ? 0 : o_.z - reach.z;  // x / 0 with its sign is the bound at the eye's plane
   const double far = o_.z + reach.z;
   const auto low = [&](double x) { return x < 0 ? x / near : x / far; };
   const auto high = [&](double x) { return x > 0 ? x / near : x / far; };

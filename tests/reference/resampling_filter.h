@@ -88,7 +88,7 @@ class Splat {
   double disc_pixels_ = 0;
   double push_ = 0;  ///< of the opaque disc along the ray, at the centre's depth, camera z
 
-  bool astride_ = false;  ///< the disc reaches the eye's plane, where nothing projects
+  bool reaches_eye_plane_ = false;  ///< the disc reaches the eye's plane, where nothing projects
 };
 
 }  // namespace surfcast::reference

@@ -74,25 +74,25 @@ std::vector<SurfacePoint> jittered_sphere(int count, double jitter, uint32_t see
   return points;
 }
 
-SurfelCloud surfels_at(const std::vector<SurfacePoint>& points) {
+surfel::SurfelCloud surfels_at(const std::vector<SurfacePoint>& points) {
   SURFCAST_EXPECTS(points.size() > 1);
-  SurfelCloud cloud;
+  surfel::SurfelCloud cloud;
   cloud.oriented = true;
   for (const SurfacePoint& p : points) {
     cloud.positions.push_back(p.position);
     cloud.normals.emplace_back(p.normal);
   }
-  const Sites sites = find_sites(cloud.positions, cloud.bounds());
+  const scan::Sites sites = scan::find_sites(cloud.positions, cloud.bounds());
   std::vector<glm::vec3> normals(sites.size());
   for (size_t i = 0; i < points.size(); ++i) normals[sites.of_point[i]] = cloud.normals[i];
-  const std::vector<float> radii = estimate_radii(sites, find_neighbours(sites, kNeighbours), normals);
+  const std::vector<float> radii = scan::estimate_radii(sites, scan::find_neighbours(sites, kNeighbours), normals);
   for (const uint32_t site : sites.of_point) cloud.radii.push_back(radii[site]);
   cloud.sources = {{"scene", 0, points.size(), std::nullopt}};
   return cloud;
 }
 
-ColorAttribute sampled_colors(const std::vector<SurfacePoint>& points, const Texture& texture) {
-  ColorAttribute colors;
+surfel::ColorAttribute sampled_colors(const std::vector<SurfacePoint>& points, const Texture& texture) {
+  surfel::ColorAttribute colors;
   for (const SurfacePoint& p : points) colors.values.emplace_back(srgb8_from_linear(texture(p.uv)));
   return colors;
 }

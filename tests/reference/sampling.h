@@ -18,8 +18,8 @@ std::vector<SurfacePoint> random_sphere(int count, uint32_t seed);
 std::vector<SurfacePoint> jittered_sphere(int count, double jitter, uint32_t seed);
 
 /// Surfels at the points: radii as the builder estimates them, oriented, without colour.
-SurfelCloud surfels_at(const std::vector<SurfacePoint>& points);
+surfel::SurfelCloud surfels_at(const std::vector<SurfacePoint>& points);
 /// The texture's 8 bit sRGB colour at every point.
-ColorAttribute sampled_colors(const std::vector<SurfacePoint>& points, const Texture& texture);
+surfel::ColorAttribute sampled_colors(const std::vector<SurfacePoint>& points, const Texture& texture);
 
 }  // namespace surfcast::reference

@@ -19,9 +19,9 @@ constexpr int kPlaneSide = 256;  ///< surfels along a side of the square
 constexpr int kSphereCount = 100'000;
 
 /// A view of the point `focal` from `distance` away, `elevation` degrees above the plane z = 0, along +y.
-Camera view_down(const glm::dvec3& focal, double distance, double elevation, double view_angle) {
+geometry::Camera view_down(const glm::dvec3& focal, double distance, double elevation, double view_angle) {
   const double angle = glm::radians(elevation);
-  Camera camera;
+  geometry::Camera camera;
   camera.focal_point = focal;
   camera.position = focal + distance * glm::dvec3(0, -std::cos(angle), std::sin(angle));
   camera.view_up = {0, 0, 1};
@@ -29,22 +29,22 @@ Camera view_down(const glm::dvec3& focal, double distance, double elevation, dou
   return camera;
 }
 
-Camera oblique_view() {
+geometry::Camera oblique_view() {
   return view_down({0, 0, 0}, 2, 40, 35);
 }
-Camera grazing_view() {
+geometry::Camera grazing_view() {
   return view_down({0, 0, 0}, 1.6, 2, 35);
 }
-Camera close_view() {
+geometry::Camera close_view() {
   return view_down({0, 0.25, 0}, 0.02, 40, 50);
 }
-Camera near_view() {
+geometry::Camera near_view() {
   return view_down({0, 0.25, 0}, 0.1, 25, 50);
 }
-Camera far_view() {
+geometry::Camera far_view() {
   return view_down({0, 0, 0}, 24, 50, 35);
 }
-Camera sphere_view() {
+geometry::Camera sphere_view() {
   return view_down({0, 0, 0}, 3.6, 25, 35);
 }
 
@@ -61,7 +61,8 @@ Texture edge() {
   return step_edge(linear_from_srgb8({20, 20, 20}), linear_from_srgb8({240, 240, 240}));
 }
 
-Scene scene_of(const std::vector<SurfacePoint>& points, RaySurface surface, Texture texture, const Camera& camera) {
+Scene scene_of(const std::vector<SurfacePoint>& points, RaySurface surface, Texture texture,
+               const geometry::Camera& camera) {
   Scene scene;
   scene.cloud = surfels_at(points);
   if (texture) scene.cloud.colors = sampled_colors(points, texture);
@@ -81,24 +82,24 @@ SurfacePoint lowered(SurfacePoint point, double gap) {
   return point;
 }
 
-Scene plane_scene(Texture texture, const Camera& camera) {
+Scene plane_scene(Texture texture, const geometry::Camera& camera) {
   return scene_of(jittered_square(kPlaneSide, 0.25, 1), square(), std::move(texture), camera);
 }
 
-Scene random_plane_scene(Texture texture, const Camera& camera) {
+Scene random_plane_scene(Texture texture, const geometry::Camera& camera) {
   return scene_of(random_square(kPlaneSide * kPlaneSide, 2), square(), std::move(texture), camera);
 }
 
-Scene random_sphere_scene(Texture texture, const Camera& camera) {
+Scene random_sphere_scene(Texture texture, const geometry::Camera& camera) {
   return scene_of(random_sphere(kSphereCount, 6), unit_sphere(), std::move(texture), camera);
 }
 
-Scene sphere_scene(Texture texture, const Camera& camera) {
+Scene sphere_scene(Texture texture, const geometry::Camera& camera) {
   return scene_of(jittered_sphere(kSphereCount, 0.5, 3), unit_sphere(), std::move(texture), camera);
 }
 
 /// A sheet above another of its own samples and colour, three spacings apart.
-Scene layers_scene(const Camera& camera) {
+Scene layers_scene(const geometry::Camera& camera) {
   const double gap = 3 * 2.0 / kPlaneSide;
   std::vector<SurfacePoint> points = jittered_square(kPlaneSide, 0.25, 1);
   for (const SurfacePoint& p : jittered_square(kPlaneSide, 0.25, 4)) points.push_back(lowered(p, gap));
@@ -175,7 +176,7 @@ namespace {
 /// Filters what the analytic surface shows: `color` of the points it is hit in, `background` elsewhere.
 template <typename Color>
 LinearPicture ray_cast(const Scene& scene, const glm::dvec3& background, const Color& color) {
-  const auto frame = make_camera_frame(*scene.request.camera, scene.request.width, scene.request.height);
+  const auto frame = geometry::make_camera_frame(*scene.request.camera, scene.request.width, scene.request.height);
   SURFCAST_EXPECTS(frame.has_value());
   return filtered_picture(frame->width, frame->height, [&](const glm::dvec2& pixel) {
     const glm::dvec3 ray = frame->ray(pixel);

@@ -3,10 +3,10 @@
 #include <string>
 #include <vector>
 
+#include "picture/picture.h"
 #include "reference/linear_picture.h"
 #include "reference/ray_surface.h"
 #include "reference/texture.h"
-#include "render/picture.h"
 #include "surfel/surfel_cloud.h"
 
 namespace surfcast::reference {
@@ -14,8 +14,8 @@ namespace surfcast::reference {
 /// A sampled surface, a view of it, and what it samples, so that the ideal picture can be computed.
 struct Scene {
   std::string name;
-  SurfelCloud cloud;
-  PictureRequest request;  ///< 512 x 512, per pixel normalisation, EWA
+  surfel::SurfelCloud cloud;
+  picture::PictureRequest request;  ///< 512 x 512, per pixel normalisation, EWA
   RaySurface surface;
   Texture texture;  ///< empty where the cloud has no colours: the surface is lit
 };

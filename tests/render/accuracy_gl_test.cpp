@@ -17,7 +17,7 @@
 #include "render/renderer.h"
 #include "surfel/normalization_weights.h"
 
-namespace surfcast {
+namespace surfcast::render {
 namespace {
 
 namespace fs = std::filesystem;
@@ -31,7 +31,7 @@ struct DrawnPicture {
   std::vector<uint8_t> coverage;
 };
 
-DrawnPicture drawn_picture(const Image& image) {
+DrawnPicture drawn_picture(const picture::Image& image) {
   DrawnPicture drawn{{image.width, image.height, {}}, {}};
   const auto* bytes = reinterpret_cast<const glm::u8vec4*>(image.pixels.data());
   for (int i = 0; i < image.width * image.height; ++i) {
@@ -44,7 +44,7 @@ DrawnPicture drawn_picture(const Image& image) {
 Scene transformed(Scene scene, double scale, const glm::dvec3& offset) {
   for (glm::dvec3& p : scene.cloud.positions) p = scale * p + offset;
   for (float& r : scene.cloud.radii) r = static_cast<float>(scale * r);
-  Camera& camera = *scene.request.camera;
+  geometry::Camera& camera = *scene.request.camera;
   camera.position = scale * camera.position + offset;
   camera.focal_point = scale * camera.focal_point + offset;
   return scene;
@@ -64,20 +64,21 @@ class AccuracyGLTest : public ::testing::Test {
     fs::remove_all(folder_);
   }
 
-  static std::shared_ptr<const ModelFile> model_of(const Scene& scene) {
-    SurfelCloud cloud = scene.cloud;
-    cloud.weights = normalization_weights(cloud);
+  static std::shared_ptr<const model::ModelFile> model_of(const Scene& scene) {
+    surfel::SurfelCloud cloud = scene.cloud;
+    cloud.weights = surfel::normalization_weights(cloud);
     const fs::path path = folder_ / (scene.name + ".surf");
-    const Result<WriteReport> written = write_model(cloud, path, {});
+    const Result<model::WriteReport> written = model::write_model(cloud, path, {});
     EXPECT_TRUE(written) << (written ? "" : written.error().message);
-    Result<ModelFile> model = ModelFile::open(path);
+    Result<model::ModelFile> model = model::ModelFile::open(path);
     EXPECT_TRUE(model) << (model ? "" : model.error().message);
-    return std::make_shared<const ModelFile>(std::move(*model));
+    return std::make_shared<const model::ModelFile>(std::move(*model));
   }
 
-  static DrawnPicture draw(const std::shared_ptr<const ModelFile>& model, const PictureRequest& request) {
+  static DrawnPicture draw(const std::shared_ptr<const model::ModelFile>& model,
+                           const picture::PictureRequest& request) {
     const std::atomic<bool> cancelled{false};
-    const Result<Frame> frame = renderer_->draw(model, request, cancelled);
+    const Result<picture::Frame> frame = renderer_->draw(model, request, cancelled);
     EXPECT_TRUE(frame) << (frame ? "" : frame.error().message);
     return frame ? drawn_picture(frame->image) : DrawnPicture{};
   }
@@ -86,7 +87,7 @@ class AccuracyGLTest : public ::testing::Test {
   static DrawnPicture draw(const Scene& scene) {
     const auto model = model_of(scene);
     DrawnPicture drawn = draw(model, scene.request);
-    renderer_->forget(*model);
+    renderer_->release_model(*model);
     return drawn;
   }
 
@@ -107,8 +108,8 @@ class AccuracyGLTest : public ::testing::Test {
     return count;
   }
 
-  static void expect_reference(const std::string& name, const std::shared_ptr<const ModelFile>& model,
-                               const PictureRequest& request, double least_psnr) {
+  static void expect_reference(const std::string& name, const std::shared_ptr<const model::ModelFile>& model,
+                               const picture::PictureRequest& request, double least_psnr) {
     const DrawnPicture actual = draw(model, request);
     const reference::ReferencePicture expected = reference::render(decoded_cloud(*model), request);
     const SrgbPicture expected_colors = encode(expected.picture);
@@ -127,13 +128,13 @@ class SceneGLTest : public AccuracyGLTest, public ::testing::WithParamInterface<
 TEST_P(SceneGLTest, AgreesWithTheReference) {
   const Scene scene = reference::make_scene(GetParam());
   const auto model = model_of(scene);
-  for (const Normalization normalization : {Normalization::kPixel, Normalization::kSurfel}) {
-    PictureRequest request = scene.request;
+  for (const picture::Normalization normalization : {picture::Normalization::kPixel, picture::Normalization::kSurfel}) {
+    picture::PictureRequest request = scene.request;
     request.normalization = normalization;
-    const bool per_surfel = normalization == Normalization::kSurfel;
+    const bool per_surfel = normalization == picture::Normalization::kSurfel;
     expect_reference(scene.name + (per_surfel ? "_per_surfel" : ""), model, request, 45);
   }
-  renderer_->forget(*model);
+  renderer_->release_model(*model);
 }
 
 INSTANTIATE_TEST_SUITE_P(EveryScene, SceneGLTest, ::testing::ValuesIn(reference::scene_names()),
@@ -182,10 +183,10 @@ TEST_F(AccuracyGLTest, DoesNotDependOnUnitsOrOrigin) {
 
 TEST_F(AccuracyGLTest, WithoutPrefilterAgreesWithTheReference) {
   Scene scene = reference::make_scene("checker_oblique");
-  scene.request.filter = Filter::kNone;
+  scene.request.filter = picture::Filter::kNone;
   const auto model = model_of(scene);
   expect_reference("no_prefilter", model, scene.request, 45);
-  renderer_->forget(*model);
+  renderer_->release_model(*model);
 }
 
 TEST_F(AccuracyGLTest, SilhouettesAgreeWithTheReference) {
@@ -194,7 +195,7 @@ TEST_F(AccuracyGLTest, SilhouettesAgreeWithTheReference) {
     scene.request.silhouettes = true;
     const auto model = model_of(scene);
     expect_reference(scene.name + "_silhouettes", model, scene.request, 45);
-    renderer_->forget(*model);
+    renderer_->release_model(*model);
   }
 }
 
@@ -212,11 +213,12 @@ TEST_F(AccuracyGLTest, OneColorIsThatColorWhereFullyCovered) {
   for (const char* name : {"color_plane", "color_sphere"}) {
     const Scene scene = reference::make_scene(name);
     const auto model = model_of(scene);
-    for (const Normalization normalization : {Normalization::kPixel, Normalization::kSurfel}) {
-      PictureRequest request = scene.request;
+    for (const picture::Normalization normalization :
+         {picture::Normalization::kPixel, picture::Normalization::kSurfel}) {
+      picture::PictureRequest request = scene.request;
       request.normalization = normalization;
       const DrawnPicture drawn = draw(model, request);
-      const int tolerance = normalization == Normalization::kPixel ? 1 : 2;
+      const int tolerance = normalization == picture::Normalization::kPixel ? 1 : 2;
       int worst = 0;
       for (size_t i = 0; i < drawn.coverage.size(); ++i) {
         if (drawn.coverage[i] < 255) continue;
@@ -225,9 +227,9 @@ TEST_F(AccuracyGLTest, OneColorIsThatColorWhereFullyCovered) {
       }
       EXPECT_LE(worst, tolerance) << name;
     }
-    renderer_->forget(*model);
+    renderer_->release_model(*model);
   }
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::render

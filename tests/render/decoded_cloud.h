@@ -8,13 +8,13 @@
 namespace surfcast::testing {
 
 /// The surfels of the finest level as they come out of the file: what the reference must draw.
-inline SurfelCloud decoded_cloud(const ModelFile& model) {
-  SurfelCloud cloud;
+inline surfel::SurfelCloud decoded_cloud(const model::ModelFile& model) {
+  surfel::SurfelCloud cloud;
   cloud.oriented = model.info().oriented;
-  if (model.info().color_bits > 0) cloud.colors = ColorAttribute{model.info().color_bits, {}};
+  if (model.info().color_bits > 0) cloud.colors = surfel::ColorAttribute{model.info().color_bits, {}};
   for (size_t b = 0; b < model.blocks().size(); ++b) {
     if (model.blocks()[b].level != 0) continue;
-    const Result<DecodedBlock> block = model.decode(b);
+    const Result<model::DecodedBlock> block = model.decode(b);
     if (!block) ADD_FAILURE() << block.error().message;
     for (size_t i = 0; i < block->size(); ++i) {
       cloud.positions.push_back(block->position(i));

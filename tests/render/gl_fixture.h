@@ -16,13 +16,13 @@
 
 namespace surfcast::testing {
 
-using ModelPointer = std::shared_ptr<const ModelFile>;
+using ModelPointer = std::shared_ptr<const model::ModelFile>;
 
 /// One renderer for all cases of a program: shaders compile once. Models go through a file, as they do in use.
 class RendererFixture : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
-    Result<std::unique_ptr<Renderer>> created = Renderer::create({});
+    Result<std::unique_ptr<render::Renderer>> created = render::Renderer::create({});
     ASSERT_TRUE(created) << created.error().message;
     renderer_ = std::move(*created);
     folder_ = std::filesystem::path(::testing::TempDir()) /
@@ -35,40 +35,40 @@ class RendererFixture : public ::testing::Test {
     std::filesystem::remove_all(folder_);
   }
   void TearDown() override {
-    if (model_) renderer_->forget(*model_);
+    if (model_) renderer_->release_model(*model_);
   }
 
   /// The model of a cloud, until the next call.
-  const ModelPointer& model_of(const SurfelCloud& cloud) {
-    if (model_) renderer_->forget(*model_);
+  const ModelPointer& model_of(const surfel::SurfelCloud& cloud) {
+    if (model_) renderer_->release_model(*model_);
     const std::filesystem::path path = folder_ / "scene.surf";
-    const Result<WriteReport> written = write_model(cloud, path, {});
+    const Result<model::WriteReport> written = model::write_model(cloud, path, {});
     EXPECT_TRUE(written) << (written ? "" : written.error().message);
-    Result<ModelFile> opened = ModelFile::open(path);
+    Result<model::ModelFile> opened = model::ModelFile::open(path);
     EXPECT_TRUE(opened) << (opened ? "" : opened.error().message);
-    model_ = std::make_shared<const ModelFile>(std::move(*opened));
+    model_ = std::make_shared<const model::ModelFile>(std::move(*opened));
     return model_;
   }
 
-  static Frame draw(const ModelPointer& model, const PictureRequest& request) {
+  static picture::Frame draw(const ModelPointer& model, const picture::PictureRequest& request) {
     const std::atomic<bool> cancelled{false};
-    Result<Frame> frame = renderer_->draw(model, request, cancelled);
+    Result<picture::Frame> frame = renderer_->draw(model, request, cancelled);
     EXPECT_TRUE(frame) << (frame ? "" : frame.error().message);
-    return frame ? std::move(*frame) : Frame{};
+    return frame ? std::move(*frame) : picture::Frame{};
   }
 
-  static glm::u8vec4 pixel(const Image& image, int x, int y) {
+  static glm::u8vec4 pixel(const picture::Image& image, int x, int y) {
     glm::u8vec4 p;
     std::memcpy(&p, image.pixels.data() + 4 * (static_cast<size_t>(y) * static_cast<size_t>(image.width) + x), 4);
     return p;
   }
-  static glm::vec4 light(const Image& image, int x, int y) {
+  static glm::vec4 light(const picture::Image& image, int x, int y) {
     glm::vec4 p;
     std::memcpy(&p, image.pixels.data() + 16 * (static_cast<size_t>(y) * static_cast<size_t>(image.width) + x), 16);
     return p;
   }
 
-  static inline std::unique_ptr<Renderer> renderer_;
+  static inline std::unique_ptr<render::Renderer> renderer_;
   static inline std::filesystem::path folder_;
   ModelPointer model_;
 };

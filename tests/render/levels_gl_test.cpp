@@ -7,20 +7,20 @@
 #include "render/gl_fixture.h"
 #include "support/clouds.h"
 
-namespace surfcast {
+namespace surfcast::render {
 namespace {
 
 constexpr glm::u8vec3 kColor{200, 120, 40};
 
 class LevelsGLTest : public testing::RendererFixture {
  protected:
-  static uint32_t levels_drawn(const Frame& frame) {
+  static uint32_t levels_drawn(const picture::Frame& frame) {
     return static_cast<uint32_t>(
-        std::ranges::count_if(frame.stats.levels, [](const LevelStats& level) { return level.drawn > 0; }));
+        std::ranges::count_if(frame.stats.levels, [](const picture::LevelStats& level) { return level.drawn > 0; }));
   }
 
   /// Pixels that the finest level covers wholly, as do all pixels up to three away: not the model's border.
-  static std::vector<bool> interior(const Image& image) {
+  static std::vector<bool> interior(const picture::Image& image) {
     constexpr int kBorder = 3;
     std::vector<bool> inside(static_cast<size_t>(image.width) * static_cast<size_t>(image.height));
     for (int y = kBorder; y < image.height - kBorder; ++y) {
@@ -37,27 +37,29 @@ class LevelsGLTest : public testing::RendererFixture {
 
   /// Draws the one-coloured model at spacings at which its levels mix, under both normalisations: within the model
   /// every pixel has that colour, as at the finest level.
-  static void expect_no_seams(const testing::ModelPointer& model, PictureRequest request,
+  static void expect_no_seams(const testing::ModelPointer& model, picture::PictureRequest request,
                               std::initializer_list<double> spacings) {
     request.spacing = 0;
     const std::vector<bool> inside = interior(draw(model, request).image);
     ASSERT_GT(std::ranges::count(inside, true), 10000);
-    uint32_t most_levels = 0;
+    uint32_t max_levels = 0;
     for (const double spacing : spacings) {
-      for (const Normalization normalization : {Normalization::kPixel, Normalization::kSurfel}) {
+      for (const picture::Normalization normalization :
+           {picture::Normalization::kPixel, picture::Normalization::kSurfel}) {
         request.spacing = spacing;
         request.normalization = normalization;
-        const Frame frame = draw(model, request);
+        const picture::Frame frame = draw(model, request);
         EXPECT_TRUE(frame.converged);
-        most_levels = std::max(most_levels, levels_drawn(frame));
-        const int tolerance = normalization == Normalization::kPixel ? 1 : 2;
+        max_levels = std::max(max_levels, levels_drawn(frame));
+        const int tolerance = normalization == picture::Normalization::kPixel ? 1 : 2;
         expect_color(frame.image, inside, tolerance, spacing);
       }
     }
-    EXPECT_GE(most_levels, 2u) << "the spacings mix levels";
+    EXPECT_GE(max_levels, 2u) << "the spacings mix levels";
   }
 
-  static void expect_color(const Image& image, const std::vector<bool>& inside, int tolerance, double spacing) {
+  static void expect_color(const picture::Image& image, const std::vector<bool>& inside, int tolerance,
+                           double spacing) {
     int wrong = 0;
     int worst = 0;
     for (size_t i = 0; i < inside.size(); ++i) {
@@ -75,8 +77,8 @@ class LevelsGLTest : public testing::RendererFixture {
 
 TEST_F(LevelsGLTest, APlaneSeenAlongItHasNoSeams) {
   const auto& model = model_of(testing::square(400, 4, {0, 0, 0}, {0, 0, 1}, kColor));
-  PictureRequest request;
-  request.camera = Camera{{0, -3.2, 0.8}, {0, -0.6, 0}, {0, 0, 1}, 40};
+  picture::PictureRequest request;
+  request.camera = geometry::Camera{{0, -3.2, 0.8}, {0, -0.6, 0}, {0, 0, 1}, 40};
   request.width = 480;
   request.height = 320;
   expect_no_seams(model, request, {2, 4, 6, 8, 12, 16});
@@ -84,17 +86,18 @@ TEST_F(LevelsGLTest, APlaneSeenAlongItHasNoSeams) {
 
 TEST_F(LevelsGLTest, ASphereHasNoSeams) {
   const auto& model = model_of(testing::fibonacci_sphere(300000, 1, {0, 0, 0}, kColor));
-  PictureRequest request;
-  request.camera = Camera{{0.3, 1.9, 0.4}, {0, 0, 0}, {0, 0, 1}, 50};
+  picture::PictureRequest request;
+  request.camera = geometry::Camera{{0.3, 1.9, 0.4}, {0, 0, 0}, {0, 0, 1}, 50};
   request.width = 400;
   request.height = 400;
   expect_no_seams(model, request, {1, 1.5, 2, 3, 4, 6});
 }
 
 /// Draws with a renderer of its own, on a thread of its own: a thread has one GL context.
-Result<Frame> draw_within(size_t gpu_bytes, const testing::ModelPointer& model, const PictureRequest& request) {
+Result<picture::Frame> draw_within(size_t gpu_bytes, const testing::ModelPointer& model,
+                                   const picture::PictureRequest& request) {
   return std::async(std::launch::async,
-                    [&]() -> Result<Frame> {
+                    [&]() -> Result<picture::Frame> {
                       Result<std::unique_ptr<Renderer>> renderer = Renderer::create({.gpu_bytes = gpu_bytes});
                       if (!renderer) return fail(renderer.error());
                       const std::atomic<bool> never{false};
@@ -106,10 +109,10 @@ Result<Frame> draw_within(size_t gpu_bytes, const testing::ModelPointer& model, 
 TEST_F(LevelsGLTest, ABudgetTooSmallForTheModelDrawsACoarserCutAndSaysSo) {
   constexpr size_t kBudget = size_t{40} * 16384;
   const auto& model = model_of(testing::square(300, 4, {0, 0, 0}, {0, 0, 1}, kColor));
-  PictureRequest request;
-  request.camera = Camera{{0, 0, 3}, {0, 0, 0}, {0, 1, 0}, 60};
+  picture::PictureRequest request;
+  request.camera = geometry::Camera{{0, 0, 3}, {0, 0, 0}, {0, 1, 0}, 60};
   request.width = request.height = 200;
-  const Result<Frame> frame = draw_within(kBudget, model, request);
+  const Result<picture::Frame> frame = draw_within(kBudget, model, request);
   ASSERT_TRUE(frame) << frame.error().message;
   EXPECT_FALSE(frame->converged);
   EXPECT_GT(frame->stats.levels.back().level, 0);
@@ -118,8 +121,8 @@ TEST_F(LevelsGLTest, ABudgetTooSmallForTheModelDrawsACoarserCutAndSaysSo) {
 }
 
 /// A plane with a texture of waves between 6 and 60 surfels long.
-SurfelCloud wavy_square(int side) {
-  SurfelCloud cloud = testing::square(side, 4, {0, 0, 0}, {0, 0, 1}, kColor);
+surfel::SurfelCloud wavy_square(int side) {
+  surfel::SurfelCloud cloud = testing::square(side, 4, {0, 0, 0}, {0, 0, 1}, kColor);
   for (size_t i = 0; i < cloud.size(); ++i) {
     const glm::dvec3 p = cloud.positions[i] * (side / 4.0);
     const double wave = std::sin(p.x / 1.0) + std::sin(p.y / 1.7 + 1) + std::sin((p.x + p.y) / 4) + std::sin(p.x / 9.5);
@@ -128,7 +131,7 @@ SurfelCloud wavy_square(int side) {
   return cloud;
 }
 
-double rms(const Image& a, const Image& b) {
+double rms(const picture::Image& a, const picture::Image& b) {
   double sum = 0;
   for (size_t i = 0; i < a.pixels.size(); ++i) {
     sum += std::pow(std::to_integer<int>(a.pixels[i]) - std::to_integer<int>(b.pixels[i]), 2);
@@ -139,8 +142,8 @@ double rms(const Image& a, const Image& b) {
 TEST_F(LevelsGLTest, ASwitchOfLevelsIsNoMoreToSeeThanAStepOfTheCamera) {
   const auto& model = model_of(wavy_square(360));
   const auto at = [&](double distance) {
-    PictureRequest request;
-    request.camera = Camera{{0, 0, distance}, {0, 0, 0}, {0, 1, 0}, 30};
+    picture::PictureRequest request;
+    request.camera = geometry::Camera{{0, 0, distance}, {0, 0, 0}, {0, 1, 0}, 30};
     request.width = request.height = 256;
     request.spacing = 1;
     return draw(model, request);
@@ -164,18 +167,18 @@ TEST_F(LevelsGLTest, ASwitchOfLevelsIsNoMoreToSeeThanAStepOfTheCamera) {
 
 TEST_F(LevelsGLTest, PicturesAtOnceEndAsTheWholePictureDoes) {
   const auto& model = model_of(testing::fibonacci_sphere(200000, 1, {0, 0, 0}, kColor));
-  PictureRequest request;
-  request.camera = Camera{{0, 0, 3}, {0, 0, 0}, {0, 1, 0}, 50};
+  picture::PictureRequest request;
+  request.camera = geometry::Camera{{0, 0, 3}, {0, 0, 0}, {0, 1, 0}, 50};
   request.width = request.height = 200;
   request.spacing = 2;
-  const Frame whole = draw(model, request);
-  renderer_->forget(*model);
-  request.loading = Loading::kNow;
-  Frame frame = draw(model, request);
+  const picture::Frame whole = draw(model, request);
+  renderer_->release_model(*model);
+  request.loading = picture::Loading::kNow;
+  picture::Frame frame = draw(model, request);
   EXPECT_FALSE(frame.converged) << "nothing is loaded yet";
   for (int i = 0; i < 200 && !frame.converged; ++i) frame = draw(model, request);
   EXPECT_EQ(frame.image.pixels, whole.image.pixels);
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::render

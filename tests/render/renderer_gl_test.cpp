@@ -9,21 +9,21 @@
 #include "shared/kernel.h"
 #include "support/clouds.h"
 
-namespace surfcast {
+namespace surfcast::render {
 namespace {
 
 using RendererGLTest = testing::RendererFixture;
 
-PictureRequest front_view(int width, int height, double distance = 5) {
-  PictureRequest request;
-  request.camera = Camera{{0, 0, distance}, {0, 0, 0}, {0, 1, 0}, 30};
+picture::PictureRequest front_view(int width, int height, double distance = 5) {
+  picture::PictureRequest request;
+  request.camera = geometry::Camera{{0, 0, distance}, {0, 0, 0}, {0, 1, 0}, 30};
   request.width = width;
   request.height = height;
   return request;
 }
 
 /// Pixels whose coverage is whole, each of which must be `color` within `levels`.
-int count_covered(const Image& image, const glm::u8vec3& color, int levels) {
+int count_covered(const picture::Image& image, const glm::u8vec3& color, int levels) {
   int covered = 0;
   int wrong = 0;
   const auto* p = reinterpret_cast<const uint8_t*>(image.pixels.data());
@@ -41,8 +41,8 @@ TEST_F(RendererGLTest, ASphereOfOneColorIsThatColorInEveryCoveredPixel) {
   const testing::ModelPointer& model = model_of(testing::fibonacci_sphere(100000, 1, {0, 0, 0}, color));
   // The sphere subtends asin(1/5): a disc of eta tan(asin(1/5)) pixels.
   const double radius = 512 / (2 * std::tan(std::numbers::pi / 12)) * std::tan(std::asin(0.2));
-  for (const Normalization normalization : {Normalization::kPixel, Normalization::kSurfel}) {
-    PictureRequest request = front_view(512, 512);
+  for (const picture::Normalization normalization : {picture::Normalization::kPixel, picture::Normalization::kSurfel}) {
+    picture::PictureRequest request = front_view(512, 512);
     request.normalization = normalization;
     const int covered = count_covered(draw(model, request).image, color, 1);
     EXPECT_NEAR(covered, std::numbers::pi * radius * radius, 2 * std::numbers::pi * radius * 2) << "2 pixels of edge";
@@ -51,95 +51,95 @@ TEST_F(RendererGLTest, ASphereOfOneColorIsThatColorInEveryCoveredPixel) {
 
 TEST_F(RendererGLTest, WhereNothingIsTheBackgroundShowsExactly) {
   const testing::ModelPointer& model = model_of(testing::fibonacci_sphere(1000, 1, {0, 0, 0}, {255, 255, 255}));
-  PictureRequest request = front_view(64, 64);
+  picture::PictureRequest request = front_view(64, 64);
   request.background = {12, 34, 56};
-  const Image image = draw(model, request).image;
+  const picture::Image image = draw(model, request).image;
   EXPECT_EQ(pixel(image, 0, 0), glm::u8vec4(12, 34, 56, 0));
   EXPECT_EQ(pixel(image, 63, 63), glm::u8vec4(12, 34, 56, 0));
 }
 
 TEST_F(RendererGLTest, TheFirstPictureMayShowNothing) {
   const testing::ModelPointer& model = model_of(testing::fibonacci_sphere(1000, 1, {0, 0, 0}, {255, 255, 255}));
-  PictureRequest request = front_view(64, 64);
+  picture::PictureRequest request = front_view(64, 64);
   request.camera->focal_point = {0, 0, 10};
   request.background = {12, 34, 56};
   EXPECT_EQ(pixel(draw(model, request).image, 31, 31), glm::u8vec4(12, 34, 56, 0));
 }
 
 TEST_F(RendererGLTest, TheSameRequestGivesTheSameBytes) {
-  SurfelCloud cloud = testing::fibonacci_sphere(50000, 1, {0, 0, 0}, {200, 90, 20});
+  surfel::SurfelCloud cloud = testing::fibonacci_sphere(50000, 1, {0, 0, 0}, {200, 90, 20});
   for (size_t i = 0; i < cloud.size(); ++i) cloud.colors->values[i] = glm::u16vec3(i % 256, i * 7 % 256, i * 31 % 256);
   const testing::ModelPointer& model = model_of(cloud);
-  const Frame first = draw(model, front_view(300, 200));
+  const picture::Frame first = draw(model, front_view(300, 200));
   draw(model, front_view(100, 100, 2));
   EXPECT_EQ(draw(model, front_view(300, 200)).image.pixels, first.image.pixels);
-  renderer_->forget(*model);
+  renderer_->release_model(*model);
   EXPECT_EQ(draw(model, front_view(300, 200)).image.pixels, first.image.pixels) << "after loading it again";
 }
 
 /// A cloud in many colours, with attributes and normals in all directions.
-SurfelCloud motley_sphere() {
-  SurfelCloud cloud = testing::fibonacci_sphere(60000, 1, {0, 0, 0}, {200, 90, 20});
+surfel::SurfelCloud motley_sphere() {
+  surfel::SurfelCloud cloud = testing::fibonacci_sphere(60000, 1, {0, 0, 0}, {200, 90, 20});
   for (size_t i = 0; i < cloud.size(); ++i) cloud.colors->values[i] = glm::u16vec3(i % 256, i * 7 % 256, i * 31 % 256);
   return cloud;
 }
 
 TEST_F(RendererGLTest, APictureThatOthersInterruptHasTheBytesOfOneThatNobodyDoes) {
   const testing::ModelPointer& model = model_of(motley_sphere());
-  std::vector<PictureRequest> requests(4, front_view(400, 300, 3));
-  requests[1].coloring.source = SurfelColor::kElevation;
-  requests[1].shading = Shading::kLit;
+  std::vector<picture::PictureRequest> requests(4, front_view(400, 300, 3));
+  requests[1].coloring.source = picture::SurfelColor::kElevation;
+  requests[1].shading = picture::Shading::kLit;
   requests[1].camera->position = {0, 0, 1.02};  // large splats
-  requests[2].clip.inside = {Box{{-2, -2, -2}, {0.3, 2, 2}}};
+  requests[2].clip.inside = {geometry::Box{{-2, -2, -2}, {0.3, 2, 2}}};
   requests[2].eye_dome.strength = 1;
   requests[3].width = 2100;  // two regions
   requests[3].height = 40;
-  std::vector<Frame> expected;
-  for (const PictureRequest& request : requests) expected.push_back(draw(model, request));
+  std::vector<picture::Frame> expected;
+  for (const picture::PictureRequest& request : requests) expected.push_back(draw(model, request));
 
   const std::atomic<bool> never{false};
   for (size_t outer = 0; outer < requests.size(); ++outer) {
-    size_t interludes = 0;
-    const Interruption interruption(never, [&] {
-      const size_t inner = ++interludes % requests.size();
+    size_t nested_frames = 0;
+    const Preemption preemption(never, [&] {
+      const size_t inner = ++nested_frames % requests.size();
       EXPECT_EQ(draw(model, requests[inner]).image.pixels, expected[inner].image.pixels) << inner << " in " << outer;
       return true;
     });
-    const Result<Frame> frame = renderer_->draw(model, requests[outer], interruption);
+    const Result<picture::Frame> frame = renderer_->draw(model, requests[outer], preemption);
     ASSERT_TRUE(frame);
     EXPECT_EQ(frame->image.pixels, expected[outer].image.pixels) << outer;
-    EXPECT_GE(interludes, 3u) << "one in each pass at least";
+    EXPECT_GE(nested_frames, 3u) << "one in each pass at least";
   }
 }
 
 TEST_F(RendererGLTest, APictureThatMissesTooMuchIsNotDrawnUntilAllIsThere) {
   const testing::ModelPointer& model = model_of(motley_sphere());
-  PictureRequest request = front_view(64, 64);
-  request.loading = Loading::kNow;
-  request.known_cut = 1;
-  request.most_missing = 0;
-  Frame frame = draw(model, request);
+  picture::PictureRequest request = front_view(64, 64);
+  request.loading = picture::Loading::kNow;
+  request.displayed_cut = 1;
+  request.max_missing_blocks = 0;
+  picture::Frame frame = draw(model, request);
   EXPECT_GT(frame.stats.blocks_missing, 0u);
   EXPECT_TRUE(frame.image.pixels.empty());
-  while (!frame.settled && !HasFailure()) {
+  while (!frame.nothing_pending && !HasFailure()) {
     EXPECT_TRUE(frame.image.pixels.empty());
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
     frame = draw(model, request);
   }
   EXPECT_EQ(frame.image.pixels, draw(model, front_view(64, 64)).image.pixels);
-  request.known_cut = frame.cut;
+  request.displayed_cut = frame.cut;
   EXPECT_TRUE(draw(model, request).image.pixels.empty()) << "nothing else would be seen";
 }
 
 TEST_F(RendererGLTest, AModelThatIsForgottenWhileItIsDrawnIsDrawnToItsEnd) {
   const testing::ModelPointer& model = model_of(motley_sphere());
-  const Frame expected = draw(model, front_view(200, 150));
+  const picture::Frame expected = draw(model, front_view(200, 150));
   const std::atomic<bool> never{false};
-  const Interruption interruption(never, [&] {
-    renderer_->forget(*model);
+  const Preemption preemption(never, [&] {
+    renderer_->release_model(*model);
     return true;
   });
-  const Result<Frame> frame = renderer_->draw(model, front_view(200, 150), interruption);
+  const Result<picture::Frame> frame = renderer_->draw(model, front_view(200, 150), preemption);
   ASSERT_TRUE(frame);
   EXPECT_EQ(frame->image.pixels, expected.image.pixels);
   EXPECT_EQ(draw(model, front_view(200, 150)).stats.blocks_waited_for, expected.stats.blocks_waited_for);
@@ -147,18 +147,18 @@ TEST_F(RendererGLTest, AModelThatIsForgottenWhileItIsDrawnIsDrawnToItsEnd) {
 
 TEST_F(RendererGLTest, OneSurfelMayFillTheScreen) {
   const testing::ModelPointer& model = model_of(testing::single_surfel({0, 0, 0}, {0, 0, 1}, 1, {10, 200, 30}));
-  PictureRequest request = front_view(96, 64, 0.05);
+  picture::PictureRequest request = front_view(96, 64, 0.05);
   EXPECT_EQ(count_covered(draw(model, request).image, {10, 200, 30}, 1), 96 * 64);
 }
 
 TEST_F(RendererGLTest, FromWithinAModelEveryPixelIsCovered) {
   // Surfels in front of, beside, astride and behind the eye.
-  SurfelCloud cloud = testing::fibonacci_sphere(2000, 1, {0, 0, 0}, {90, 120, 150});
+  surfel::SurfelCloud cloud = testing::fibonacci_sphere(2000, 1, {0, 0, 0}, {90, 120, 150});
   cloud.oriented = false;
   const testing::ModelPointer& model = model_of(cloud);
   for (const double offset : {0.0, 0.5, 0.9, 0.97}) {
-    PictureRequest request;
-    request.camera = Camera{{offset, 0, 0}, {offset + 0.3, 1, 0.2}, {0, 0, 1}, 100};
+    picture::PictureRequest request;
+    request.camera = geometry::Camera{{offset, 0, 0}, {offset + 0.3, 1, 0.2}, {0, 0, 1}, 100};
     request.width = 160;
     request.height = 120;
     EXPECT_EQ(count_covered(draw(model, request).image, {90, 120, 150}, 1), 160 * 120) << offset;
@@ -166,22 +166,22 @@ TEST_F(RendererGLTest, FromWithinAModelEveryPixelIsCovered) {
 }
 
 TEST_F(RendererGLTest, BackFacesOfOrientedModelsAreNotDrawn) {
-  SurfelCloud cloud = testing::square(64, 1, {0, 0, 0}, {0, 0, -1}, {255, 255, 255});
-  PictureRequest request = front_view(64, 64);
+  surfel::SurfelCloud cloud = testing::square(64, 1, {0, 0, 0}, {0, 0, -1}, {255, 255, 255});
+  picture::PictureRequest request = front_view(64, 64);
   EXPECT_EQ(draw(model_of(cloud), request).stats.surfels_drawn, 0u);
   cloud.oriented = false;
   EXPECT_GT(count_covered(draw(model_of(cloud), request).image, {255, 255, 255}, 1), 300);
 }
 
 TEST_F(RendererGLTest, AMillionSurfelsInOnePixelKeepTheirColor) {
-  SurfelCloud cloud = testing::fibonacci_sphere(1000000, 1e-3, {0, 0, 0}, {200, 90, 20});
+  surfel::SurfelCloud cloud = testing::fibonacci_sphere(1000000, 1e-3, {0, 0, 0}, {200, 90, 20});
   const testing::ModelPointer& model = model_of(cloud);
-  PictureRequest request = front_view(33, 33, 1);
-  request.format = PixelFormat::kLinearFloat;
+  picture::PictureRequest request = front_view(33, 33, 1);
+  request.format = picture::PixelFormat::kLinearFloat;
   request.background = {0, 0, 0};
   // The sphere's diameter is about a tenth of a pixel, so that the middle pixel is covered by a small, known part:
   // area times the peak of the prefilter over the coverage that counts as whole.
-  const Image image = draw(model, request).image;
+  const picture::Image image = draw(model, request).image;
   const glm::vec4 p = light(image, 16, 16);
   const double eta = 33 / (2 * std::tan(std::numbers::pi / 12));
   const double area = std::numbers::pi * std::pow(eta * 1e-3, 2);
@@ -195,11 +195,11 @@ TEST_F(RendererGLTest, AMillionSurfelsInOnePixelKeepTheirColor) {
 }
 
 TEST_F(RendererGLTest, CoincidentSurfelsAreOne) {
-  SurfelCloud one = testing::single_surfel({0, 0, 0}, {0, 0, 1}, 0.5F, {10, 200, 30});
-  SurfelCloud many = one;
+  surfel::SurfelCloud one = testing::single_surfel({0, 0, 0}, {0, 0, 1}, 0.5F, {10, 200, 30});
+  surfel::SurfelCloud many = one;
   for (int i = 0; i < 9; ++i) testing::append(many, one);
-  const Image a = draw(model_of(one), front_view(64, 64)).image;
-  const Image b = draw(model_of(many), front_view(64, 64)).image;
+  const picture::Image a = draw(model_of(one), front_view(64, 64)).image;
+  const picture::Image b = draw(model_of(many), front_view(64, 64)).image;
   EXPECT_EQ(pixel(a, 32, 32), pixel(b, 32, 32));
 }
 
@@ -207,12 +207,12 @@ TEST_F(RendererGLTest, EdgeOnSurfelsStayFiniteAndSmall) {
   // A surfel of 20 pixels radius in a sweep from 89 to 89.9999 degrees: a line at most a few pixels thick.
   for (const double degrees : {89.0, 89.9, 89.99, 89.999, 89.9999, 90.0}) {
     const double angle = degrees * std::numbers::pi / 180;
-    SurfelCloud cloud =
+    surfel::SurfelCloud cloud =
         testing::single_surfel({0, 0, 0}, glm::vec3(0, std::sin(angle), std::cos(angle)), 0.1F, {255, 255, 255});
     cloud.oriented = false;
-    PictureRequest request = front_view(128, 128, 1);
-    request.format = PixelFormat::kLinearFloat;
-    const Image image = draw(model_of(cloud), request).image;
+    picture::PictureRequest request = front_view(128, 128, 1);
+    request.format = picture::PixelFormat::kLinearFloat;
+    const picture::Image image = draw(model_of(cloud), request).image;
     for (int y = 0; y < 128; ++y) {
       for (int x = 0; x < 128; ++x) {
         const glm::vec4 p = light(image, x, y);
@@ -227,12 +227,13 @@ TEST_F(RendererGLTest, EdgeOnSurfelsStayFiniteAndSmall) {
 
 TEST_F(RendererGLTest, MapCoordinatesAndMillimetresDrawAsAtTheOrigin) {
   const glm::dvec3 far_away(448262.31, 5411932.67, 312.45);
-  PictureRequest request = front_view(128, 128, 0.005);
-  const Image at_origin =
+  picture::PictureRequest request = front_view(128, 128, 0.005);
+  const picture::Image at_origin =
       draw(model_of(testing::square(100, 0.001, {0, 0, 0}, {0, 0.3, 1}, {200, 90, 20})), request).image;
   request.camera->position += far_away;
   request.camera->focal_point += far_away;
-  const Image moved = draw(model_of(testing::square(100, 0.001, far_away, {0, 0.3, 1}, {200, 90, 20})), request).image;
+  const picture::Image moved =
+      draw(model_of(testing::square(100, 0.001, far_away, {0, 0.3, 1}, {200, 90, 20})), request).image;
   // Coordinates of 5e6 keep nanometres in double precision: a ten thousandth of the spacing.
   int differing = 0;
   for (int y = 0; y < 128; ++y) {
@@ -253,21 +254,21 @@ TEST_F(RendererGLTest, ScaleDoesNotMatter) {
 }
 
 TEST_F(RendererGLTest, OneSurfaceBeforeAnotherHasNoSeamInTheColorOfTheBackground) {
-  SurfelCloud cloud = testing::square(200, 4, {0, 0, -1}, {0, 0, 1}, {200, 200, 200});
+  surfel::SurfelCloud cloud = testing::square(200, 4, {0, 0, -1}, {0, 0, 1}, {200, 200, 200});
   testing::append(cloud, testing::square(60, 0.6, {0, 0, 0}, {0.2, 0.1, 1}, {200, 200, 200}));
-  const Image image = draw(model_of(cloud), front_view(256, 256)).image;
+  const picture::Image image = draw(model_of(cloud), front_view(256, 256)).image;
   for (int y = 16; y < 240; ++y) {
     for (int x = 16; x < 240; ++x) ASSERT_NEAR(pixel(image, x, y).r, 200, 2) << x << ' ' << y;
   }
 }
 
 TEST_F(RendererGLTest, WithoutColorASurfaceIsLitFromTheEye) {
-  SurfelCloud cloud = testing::fibonacci_sphere(50000, 1, {0, 0, 0}, {0, 0, 0});
+  surfel::SurfelCloud cloud = testing::fibonacci_sphere(50000, 1, {0, 0, 0}, {0, 0, 0});
   cloud.colors.reset();
-  PictureRequest request = front_view(256, 256);
-  request.format = PixelFormat::kLinearFloat;
+  picture::PictureRequest request = front_view(256, 256);
+  request.format = picture::PixelFormat::kLinearFloat;
   const testing::ModelPointer& model = model_of(cloud);
-  const Image image = draw(model, request).image;
+  const picture::Image image = draw(model, request).image;
   EXPECT_NEAR(light(image, 128, 128).r, 0.8, 0.005) << "albedo 0.8, seen from straight above";
   // Half way out on the disc: the angle of incidence follows from the sphere's geometry.
   const double eta = 256 / (2 * std::tan(std::numbers::pi / 12));
@@ -276,27 +277,28 @@ TEST_F(RendererGLTest, WithoutColorASurfaceIsLitFromTheEye) {
   const double along = 5 * cosine_view - std::sqrt(1 - 25 * (1 - cosine_view * cosine_view));
   const double incidence = (5 * cosine_view - along);  // cosine of the angle between normal and ray, unit radius
   EXPECT_NEAR(light(image, 128 + 48, 128).r, 0.8 * (0.1 + 0.9 * incidence), 0.01);
-  request.shading = Shading::kUnlit;
+  request.shading = picture::Shading::kUnlit;
   EXPECT_NEAR(light(draw(model, request).image, 128 + 48, 128).r, 0.8, 0.005);
 }
 
 TEST_F(RendererGLTest, ColorsAreLitWhenAskedFor) {
   const testing::ModelPointer& model = model_of(testing::square(200, 2, {0, 0, 0}, {0, 1, 1}, {255, 255, 255}));
-  PictureRequest request = front_view(64, 64);
-  request.format = PixelFormat::kLinearFloat;
+  picture::PictureRequest request = front_view(64, 64);
+  request.format = picture::PixelFormat::kLinearFloat;
   EXPECT_NEAR(light(draw(model, request).image, 32, 32).g, 1, 0.005);
-  request.shading = Shading::kLit;
+  request.shading = picture::Shading::kLit;
   EXPECT_NEAR(light(draw(model, request).image, 32, 32).g, 0.1 + 0.9 * std::sqrt(0.5), 0.01);
 }
 
 TEST_F(RendererGLTest, PicturesOfOnePixelAndOfSeveralRegionsAreDrawn) {
   const testing::ModelPointer& model = model_of(testing::square(50, 4, {0, 0, 0}, {0, 0, 1}, {200, 90, 20}));
   EXPECT_EQ(count_covered(draw(model, front_view(1, 1, 1)).image, {200, 90, 20}, 1), 1);
-  PictureRequest wide = front_view(4100, 20, 20);
+  picture::PictureRequest wide = front_view(4100, 20, 20);
   wide.camera->view_angle = 0.9;
-  const Image image = draw(model, wide).image;
+  const picture::Image image = draw(model, wide).image;
   // The plane spans 4 / (20 * 2 tan(0.45 degrees)) of the height: all of the rows, and 255 columns about the middle.
-  // Radii that a scan states are kept at its borders, too, where kernels then reach up to half a spacing of 5 columns beyond.
+  // Radii that a scan states are kept at its borders, too, where kernels then reach up to half a spacing of 5 columns
+  // beyond.
   EXPECT_NEAR(count_covered(image, {200, 90, 20}, 1), 255 * 20, 5 * 20);
   EXPECT_EQ(pixel(image, 2050, 10).a, 255) << "beyond the first region's edge at 2048";
 }
@@ -305,12 +307,12 @@ TEST_F(RendererGLTest, AModelThatTookThePlaceOfAnotherIsDrawnAsItself) {
   const glm::u8vec3 colors[] = {{255, 0, 0}, {0, 0, 255}};
   for (const glm::u8vec3& color : colors) {
     // The same file, without a word to the renderer.
-    ASSERT_TRUE(write_model(testing::square(40, 2, {0, 0, 0}, {0, 0, 1}, color), folder_ / "one.surf", {}));
-    Result<ModelFile> opened = ModelFile::open(folder_ / "one.surf");
+    ASSERT_TRUE(model::write_model(testing::square(40, 2, {0, 0, 0}, {0, 0, 1}, color), folder_ / "one.surf", {}));
+    Result<model::ModelFile> opened = model::ModelFile::open(folder_ / "one.surf");
     ASSERT_TRUE(opened);
-    const auto model = std::make_shared<const ModelFile>(std::move(*opened));
+    const auto model = std::make_shared<const model::ModelFile>(std::move(*opened));
     EXPECT_EQ(pixel(draw(model, front_view(64, 64)).image, 32, 32), glm::u8vec4(color, 255));
-    renderer_->forget(*model);
+    renderer_->release_model(*model);
   }
 }
 
@@ -330,7 +332,7 @@ TEST_F(RendererGLTest, ACancelledPictureStops) {
 
 TEST_F(RendererGLTest, AViewOfAModelIsFoundWithoutACamera) {
   const testing::ModelPointer& model = model_of(testing::fibonacci_sphere(20000, 3, {100, 200, 300}, {200, 90, 20}));
-  PictureRequest request;
+  picture::PictureRequest request;
   request.width = 320;
   request.height = 200;
   const int covered = count_covered(draw(model, request).image, {200, 90, 20}, 1);
@@ -339,4 +341,4 @@ TEST_F(RendererGLTest, AViewOfAModelIsFoundWithoutACamera) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::render

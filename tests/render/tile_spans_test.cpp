@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace surfcast {
+namespace surfcast::render {
 namespace {
 
 constexpr uint32_t kLengths[] = {SURFCAST_LIST_LENGTHS};
@@ -47,10 +47,10 @@ TEST(TileSpans, SetTilesApartByTheirLists) {
 TEST(TileSpans, KeepLoopsWithinWhatSoftwareGLAllows) {
   constexpr uint32_t kRounds = 65535;
   constexpr uint32_t kSurfaces = 8;
-  for (uint32_t list = 0; list <= SURFCAST_CROWD_LIMIT; ++list) {
+  for (uint32_t list = 0; list <= SURFCAST_TILE_CAPACITY_LIMIT; ++list) {
     for (const TileSpan& span : spans_of_tiles(counters_of({list}), 1, kSoftware)) {
       if (span.first == span.end) continue;
-      const uint32_t drawn = span.of_group == 8 ? kSurfaces : span.of_group + kSurfaces - 1;
+      const uint32_t drawn = span.tiles_per_group == 8 ? kSurfaces : span.tiles_per_group + kSurfaces - 1;
       const uint32_t one = 2 * list + (list + SURFCAST_CARRY_INTERVAL - 1) / SURFCAST_CARRY_INTERVAL + 1;
       EXPECT_LE(drawn * one, kRounds) << list;
     }
@@ -59,9 +59,9 @@ TEST(TileSpans, KeepLoopsWithinWhatSoftwareGLAllows) {
 
 TEST(TileSpans, AreAllOfOneGroupSizeOnHardware) {
   for (const TileSpan& span : spans_of_tiles(counters_of({3000, 30, 3}), 3, KernelShape())) {
-    EXPECT_EQ(span.of_group, 2);
+    EXPECT_EQ(span.tiles_per_group, 2);
   }
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::render

@@ -5,20 +5,20 @@
 
 #include "residency/fake_blocks.h"
 
-namespace surfcast {
+namespace surfcast::residency {
 namespace {
 
 using ::testing::ElementsAre;
 using testing::FakeBlocks;
 using ::testing::UnorderedElementsAre;
 
-std::vector<BlockEntry> many_blocks(size_t count) {
-  return std::vector<BlockEntry>(count, testing::block_at({0, 0, -10}, 1));
+std::vector<ldc::BlockEntry> many_blocks(size_t count) {
+  return std::vector<ldc::BlockEntry>(count, testing::block_at({0, 0, -10}, 1));
 }
 
 class BlockLoaderTest : public ::testing::Test {
  protected:
-  void want(const std::vector<uint32_t>& blocks) { loader_.want(source_, blocks); }
+  void set_requests(const std::vector<uint32_t>& blocks) { loader_.set_requests(source_, blocks); }
   std::vector<uint32_t> take(size_t count) {
     std::vector<uint32_t> taken;
     while (taken.size() < count) {
@@ -37,27 +37,27 @@ class BlockLoaderTest : public ::testing::Test {
   BlockLoader loader_{{.threads = 1, .cache_bytes = 3 * 16000, .ready_bytes = size_t{1} << 20}};
 };
 
-TEST_F(BlockLoaderTest, WishesComeTrueInTheirOrder) {
-  want({5, 3, 9});
+TEST_F(BlockLoaderTest, RequestsAreAnsweredInTheirOrder) {
+  set_requests({5, 3, 9});
   EXPECT_THAT(take(3), ElementsAre(5, 3, 9));
   EXPECT_FALSE(loader_.take());
 }
 
-TEST_F(BlockLoaderTest, WishesAreAnnouncedOnceSoThatTheDiskIsAheadOfTheDecoders) {
+TEST_F(BlockLoaderTest, RequestsArePrefetchedOnceSoThatTheDiskIsAheadOfTheDecoders) {
   source_->hold();
-  want({1, 2, 3});
-  want({2, 3, 4});
+  set_requests({1, 2, 3});
+  set_requests({2, 3, 4});
   source_->release();
   EXPECT_THAT(take(3), ElementsAre(2, 3, 4));
-  want({2, 7});
-  EXPECT_THAT(source_->expected(), ElementsAre(1, 2, 3, 4, 7)) << "2 is in host memory";
+  set_requests({2, 7});
+  EXPECT_THAT(source_->prefetched(), ElementsAre(1, 2, 3, 4, 7)) << "2 is in host memory";
 }
 
 TEST_F(BlockLoaderTest, WhatIsNotWantedAnyMoreIsDroppedBeforeItIsDecoded) {
   source_->hold();
-  want({1, 2, 3, 4});
+  set_requests({1, 2, 3, 4});
   source_->wait_for_start(1);
-  want({50, 3});
+  set_requests({50, 3});
   source_->release();
   EXPECT_THAT(take(2), ElementsAre(50, 3));
   EXPECT_THAT(source_->started(), ElementsAre(1, 50, 3)) << "1 was being decoded already";
@@ -65,40 +65,40 @@ TEST_F(BlockLoaderTest, WhatIsNotWantedAnyMoreIsDroppedBeforeItIsDecoded) {
 
 TEST_F(BlockLoaderTest, WhatWasDecodedForNobodyIsThereWhenItIsWantedAfterAll) {
   source_->hold();
-  want({1});
+  set_requests({1});
   source_->wait_for_start(1);
-  want({2});
+  set_requests({2});
   source_->release();
   EXPECT_THAT(take(1), ElementsAre(2));
-  want({1});
+  set_requests({1});
   EXPECT_THAT(take(1), ElementsAre(1));
   EXPECT_THAT(source_->started(), ElementsAre(1, 2));
 }
 
 TEST_F(BlockLoaderTest, ABlockThatIsBeingDecodedIsNotDecodedTwice) {
   source_->hold();
-  want({1});
+  set_requests({1});
   source_->wait_for_start(1);
-  want({1, 2});
+  set_requests({1, 2});
   source_->release();
   EXPECT_THAT(take(2), ElementsAre(1, 2));
   EXPECT_THAT(source_->started(), ElementsAre(1, 2));
 }
 
-TEST_F(BlockLoaderTest, OneWishStatedTwiceIsOne) {
-  want({4, 4, 4});
+TEST_F(BlockLoaderTest, OneRequestStatedTwiceIsOne) {
+  set_requests({4, 4, 4});
   EXPECT_THAT(take(1), ElementsAre(4));
   loader_.wait(std::chrono::milliseconds(5));
   EXPECT_FALSE(loader_.take());
 }
 
 TEST_F(BlockLoaderTest, HostMemoryHoldsWhatWasTakenLastWithinItsBudget) {
-  want({1, 2, 3, 4});  // 16000 bytes each, of 48000
+  set_requests({1, 2, 3, 4});  // 16000 bytes each, of 48000
   take(4);
-  want({2, 3, 4});
+  set_requests({2, 3, 4});
   EXPECT_THAT(take(3), ElementsAre(2, 3, 4));
   EXPECT_EQ(source_->started().size(), 4u);
-  want({1});
+  set_requests({1});
   EXPECT_THAT(take(1), ElementsAre(1));
   EXPECT_EQ(source_->started().size(), 5u);
 }
@@ -109,7 +109,7 @@ class PrefetchTest : public BlockLoaderTest {
   PrefetchTest() : loader_({.threads = 1, .idle_threads = 1, .cache_bytes = 8 * 32000, .ready_bytes = 1 << 20}) {}
   void prefetch(const std::vector<uint32_t>& blocks) { loader_.prefetch(source_, blocks, false); }
   uint32_t wanted(uint32_t block) {
-    loader_.want(source_, std::vector{block});
+    loader_.set_requests(source_, std::vector{block});
     loader_.wait(std::chrono::seconds(60));
     const std::optional<LoadedBlock> loaded = loader_.take();
     return loaded ? loaded->id.block : ~0U;
@@ -135,16 +135,16 @@ TEST_F(PrefetchTest, NoMoreIsPrefetchedThanHalfOfTheHostMemoryHolds) {
   EXPECT_THAT(source_->started(), ElementsAre(1, 2, 3, 4, 9));
 }
 
-TEST_F(PrefetchTest, AWishDoesNotWaitForTheIdleThreadThatHasTheBlock) {
+TEST_F(PrefetchTest, ARequestDoesNotWaitForTheIdleThreadThatHasTheBlock) {
   source_->hold();
   prefetch({1});
   source_->wait_for_start(1);
-  loader_.want(source_, std::vector<uint32_t>{1});
+  loader_.set_requests(source_, std::vector<uint32_t>{1});
   source_->wait_for_start(2);
   source_->release();
   EXPECT_EQ(wanted(1), 1U);
   loader_.wait(std::chrono::milliseconds(20));
-  EXPECT_FALSE(loader_.take()) << "it comes true once";
+  EXPECT_FALSE(loader_.take()) << "it is handed out once";
 }
 
 TEST_F(PrefetchTest, DamagedBlocksArePrefetchedOnceAndToldOfWhenTheyAreWanted) {
@@ -159,7 +159,7 @@ TEST_F(PrefetchTest, DamagedBlocksArePrefetchedOnceAndToldOfWhenTheyAreWanted) {
 
 TEST_F(BlockLoaderTest, DamagedBlocksAreToldOfAndOthersComeAllTheSame) {
   source_->damage(2);
-  want({1, 2, 3});
+  set_requests({1, 2, 3});
   int damaged = 0;
   for (int i = 0; i < 3; ++i) {
     loader_.wait(std::chrono::seconds(10));
@@ -179,7 +179,7 @@ TEST(BlockLoader, WorkersWaitWhenNobodyTakesWhatIsReady) {
   BlockLoader loader({.threads = 1, .cache_bytes = 0, .ready_bytes = 3 * 16000});
   std::vector<uint32_t> all(100);
   for (uint32_t i = 0; i < 100; ++i) all[i] = i;
-  loader.want(source, all);
+  loader.set_requests(source, all);
   source->wait_for_start(3);
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
   EXPECT_EQ(source->started().size(), 3u);
@@ -187,11 +187,11 @@ TEST(BlockLoader, WorkersWaitWhenNobodyTakesWhatIsReady) {
   source->wait_for_start(4);
 }
 
-TEST(BlockLoader, EndsWithWishesOutstanding) {
+TEST(BlockLoader, EndsWithRequestsOutstanding) {
   const auto source = std::make_shared<FakeBlocks>(1, many_blocks(100));
   BlockLoader loader({.threads = 3, .cache_bytes = 0, .ready_bytes = 16000});
-  loader.want(source, std::vector<uint32_t>{1, 2, 3, 4, 5, 6, 7});
+  loader.set_requests(source, std::vector<uint32_t>{1, 2, 3, 4, 5, 6, 7});
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::residency

@@ -16,14 +16,14 @@
 namespace surfcast::testing {
 
 /// Blocks whose first surfel holds their number. Loading can be held up, and blocks can be damaged.
-class FakeBlocks : public BlockSource {
+class FakeBlocks : public residency::BlockSource {
  public:
-  FakeBlocks(uint64_t id, std::vector<BlockEntry> blocks) : id_(id), tree_(std::move(blocks)) {}
+  FakeBlocks(uint64_t id, std::vector<ldc::BlockEntry> blocks) : id_(id), tree_(std::move(blocks)) {}
 
   [[nodiscard]] uint64_t id() const override { return id_; }
-  [[nodiscard]] const BlockTree& tree() const override { return tree_; }
-  void expect(uint32_t block) const override { expected_.push_back(block); }
-  [[nodiscard]] Result<PackedBlock> load(uint32_t block, bool attributes) const override {
+  [[nodiscard]] const ldc::BlockTree& tree() const override { return tree_; }
+  void prefetch(uint32_t block) const override { prefetched_.push_back(block); }
+  [[nodiscard]] Result<residency::PackedBlock> load(uint32_t block, bool attributes) const override {
     {
       std::unique_lock lock(mutex_);
       started_.push_back(block);
@@ -31,7 +31,7 @@ class FakeBlocks : public BlockSource {
       wake_.wait(lock, [this] { return !held_; });
     }
     if (damaged_.contains(block)) return fail(ErrorKind::kInvalidInput, "block " + std::to_string(block) + ": damaged");
-    PackedBlock packed;
+    residency::PackedBlock packed;
     packed.surfels.assign(tree_.blocks()[block].surfels, glm::uvec4(block));
     if (attributes) packed.attributes.assign(packed.surfels.size(), block);
     return packed;
@@ -52,7 +52,7 @@ class FakeBlocks : public BlockSource {
     return started_;
   }
   /// Blocks that were announced, in that order. The caller of the loader and of this must be one.
-  [[nodiscard]] const std::vector<uint32_t>& expected() const { return expected_; }
+  [[nodiscard]] const std::vector<uint32_t>& prefetched() const { return prefetched_; }
 
  private:
   void set_held(bool held) {
@@ -64,17 +64,17 @@ class FakeBlocks : public BlockSource {
   }
 
   uint64_t id_;
-  BlockTree tree_;
+  ldc::BlockTree tree_;
   std::set<uint32_t> damaged_;
   mutable std::mutex mutex_;
   mutable std::condition_variable wake_;
   mutable std::vector<uint32_t> started_;
-  mutable std::vector<uint32_t> expected_;
+  mutable std::vector<uint32_t> prefetched_;
   bool held_ = false;
 };
 
 /// Keeps what a pool writes.
-class FakeSink : public SurfelSink {
+class FakeSink : public residency::SurfelSink {
  public:
   void write(size_t first, std::span<const glm::uvec4> surfels) override {
     for (size_t i = 0; i < surfels.size(); ++i) texels_[first + i] = surfels[i].x;

@@ -10,7 +10,7 @@
 #include "geometry/morton.h"
 #include "shared/frame_layout.h"
 
-namespace surfcast {
+namespace surfcast::residency {
 namespace {
 
 constexpr float kGridRadius = 1.138F;  // of a square grid of spacing 1: the mean distance to its six nearest
@@ -61,7 +61,8 @@ std::vector<MergedSurfel> noise(size_t count, uint32_t seed) {
   for (uint32_t i = 0; i < count; ++i) {
     const glm::dvec3 p(at(random), at(random), 0.1 * at(random));
     const glm::vec3 n = glm::normalize(glm::vec3(part(random), part(random), part(random) + 1));
-    sorted.push_back({interleave(glm::u32vec3(p * 100.0)), {p, n, 0.5F + 0.1F * static_cast<float>(i % 10), 1, {}, i}});
+    sorted.push_back(
+        {geometry::interleave(glm::u32vec3(p * 100.0)), {p, n, 0.5F + 0.1F * static_cast<float>(i % 10), 1, {}, i}});
   }
   std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
   std::vector<MergedSurfel> surfels;
@@ -141,7 +142,7 @@ TEST(MergeLevels, NothingCoarserThanWantedIsDrawnButWhatTheBlockHas) {
 TEST(MergeLevels, ASequenceHasAtMostTwiceTheSurfelsAndItsPairsBeginAtEvenPlaces) {
   for (const size_t count : {size_t{1}, size_t{2}, size_t{255}, size_t{256}, size_t{1000}, size_t{16384}}) {
     const SurfelSequence sequence = merge_levels(noise(count, 5), true);
-    EXPECT_LE(sequence.surfels.size(), kMostPackedPerSurfel * count);
+    EXPECT_LE(sequence.surfels.size(), kMaxPackedPerSurfel * count);
     uint32_t next = 0;
     for (const PackedRun& run : sequence.runs) {
       EXPECT_EQ(run.first, next);
@@ -166,4 +167,4 @@ TEST(MergeLevels, TheRadiiOfAChunkHoldThoseOfItsSurfels) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::residency

@@ -8,7 +8,7 @@
 
 #include "model/quantize.h"
 
-namespace surfcast {
+namespace surfcast::residency {
 namespace {
 
 /// A surfel taken apart again, in double precision, from the layout as it is documented.
@@ -42,16 +42,17 @@ Unpacked unpacked(const PackedBlock& block, size_t i) {
           glm::uvec3(s.w & 255, (s.w >> 8) & 255, (s.w >> 16) & 255)};
 }
 
-DecodedBlock block_of(size_t surfels, int32_t extent, std::mt19937& random) {
+model::DecodedBlock block_of(size_t surfels, int32_t extent, std::mt19937& random) {
   std::uniform_int_distribution<int32_t> index(0, extent);
-  std::uniform_int_distribution<uint16_t> code(0, static_cast<uint16_t>(kSourcePrecision.max_normal_code()));
+  std::uniform_int_distribution<uint16_t> code(0, static_cast<uint16_t>(model::kSourcePrecision.max_normal_code()));
   std::uniform_real_distribution<float> octaves(-8, 0);
-  DecodedBlock block;
+  model::DecodedBlock block;
   block.grid = {glm::dvec3(0.001, 0.002, 0.004), glm::dvec3(448262.31, 5411932.67, 312.45)};
   block.origin = {-5, 17, 1000000};
   for (size_t i = 0; i < surfels; ++i) {
     block.indices.emplace_back(index(random), index(random), index(random));
-    block.normals.push_back(decode_normal({code(random), code(random)}, kSourcePrecision.octahedral_half));
+    block.normals.push_back(
+        model::decode_normal({code(random), code(random)}, model::kSourcePrecision.octahedral_half));
     block.radii.push_back(std::exp2(octaves(random) / 8));
     block.weights.push_back(std::exp2(octaves(random)));
     block.colors.emplace_back(random() % 256, random() % 256, random() % 256);
@@ -63,7 +64,7 @@ DecodedBlock block_of(size_t surfels, int32_t extent, std::mt19937& random) {
 TEST(PackBlock, WhatFitsTwentyBitsIsExact) {
   std::mt19937 random(1);
   for (const int extent : {0, 1, 1000, (1 << 20) - 1}) {
-    const DecodedBlock block = block_of(200, extent, random);
+    const model::DecodedBlock block = block_of(200, extent, random);
     const PackedBlock packed = pack_block(block, 8, true);
     for (size_t i = 0; i < block.size(); ++i) {
       EXPECT_LT(glm::distance(unpacked(packed, i).position, block.position(i)), 1e-8) << extent;
@@ -74,7 +75,7 @@ TEST(PackBlock, WhatFitsTwentyBitsIsExact) {
 TEST(PackBlock, LongerLatticesAreRoundedToAMillionthOfTheirExtent) {
   std::mt19937 random(2);
   for (const int extent : {1 << 20, (1 << 21) - 1, 12345678, (1 << 30) - 1}) {
-    const DecodedBlock block = block_of(200, extent, random);
+    const model::DecodedBlock block = block_of(200, extent, random);
     const PackedBlock packed = pack_block(block, 8, true);
     const glm::dvec3 tolerance = 1.01 * block.grid.scale * static_cast<double>(extent) / double{1 << 20};
     for (size_t i = 0; i < block.size(); ++i) {
@@ -86,18 +87,19 @@ TEST(PackBlock, LongerLatticesAreRoundedToAMillionthOfTheirExtent) {
 
 TEST(PackBlock, NormalsAndColorsOfEightBitsComeBackAsTheFileHasThem) {
   std::mt19937 random(3);
-  const DecodedBlock block = block_of(2000, 1000, random);
+  const model::DecodedBlock block = block_of(2000, 1000, random);
   const PackedBlock packed = pack_block(block, 8, true);
   for (size_t i = 0; i < block.size(); ++i) {
     const Unpacked s = unpacked(packed, i);
-    EXPECT_LT(glm::distance(decode_normal(s.normal, kSourcePrecision.octahedral_half), block.normals[i]), 1e-6F);
+    EXPECT_LT(glm::distance(model::decode_normal(s.normal, model::kSourcePrecision.octahedral_half), block.normals[i]),
+              1e-6F);
     EXPECT_EQ(s.color, glm::uvec3(block.colors[i]));
   }
 }
 
 TEST(PackBlock, ColorsOfSixteenBitsAreRounded) {
   std::mt19937 random(4);
-  DecodedBlock block = block_of(3, 10, random);
+  model::DecodedBlock block = block_of(3, 10, random);
   block.colors = {{0, 65535, 257 * 128}, {128, 129, 257}, {65535 - 128, 65535 - 129, 300}};
   const PackedBlock packed = pack_block(block, 16, true);
   EXPECT_EQ(unpacked(packed, 0).color, glm::uvec3(0, 255, 128));
@@ -107,7 +109,7 @@ TEST(PackBlock, ColorsOfSixteenBitsAreRounded) {
 
 TEST(PackBlock, SizesAreWithinAHalfStepOfTheBlocksOwnScale) {
   std::mt19937 random(5);
-  const DecodedBlock block = block_of(2000, 1000, random);
+  const model::DecodedBlock block = block_of(2000, 1000, random);
   const PackedBlock packed = pack_block(block, 8, true);
   for (size_t i = 0; i < block.size(); ++i) {
     const Unpacked s = unpacked(packed, i);
@@ -119,7 +121,7 @@ TEST(PackBlock, SizesAreWithinAHalfStepOfTheBlocksOwnScale) {
 
 TEST(PackBlock, OneSizeIsExactAndAVanishingOneHoldsBackNoOther) {
   std::mt19937 random(6);
-  DecodedBlock block = block_of(100, 1000, random);
+  model::DecodedBlock block = block_of(100, 1000, random);
   block.radii.assign(100, 0.0123F);
   block.weights.assign(100, 0.5F);
   block.weights[7] = 1e-30F;
@@ -131,7 +133,7 @@ TEST(PackBlock, OneSizeIsExactAndAVanishingOneHoldsBackNoOther) {
 
 TEST(PackBlock, WithoutColorsTheSurfelIsPackedAllTheSame) {
   std::mt19937 random(7);
-  DecodedBlock block = block_of(10, 1000, random);
+  model::DecodedBlock block = block_of(10, 1000, random);
   block.colors.clear();
   const PackedBlock packed = pack_block(block, 0, true);
   for (size_t i = 0; i < block.size(); ++i) EXPECT_EQ(unpacked(packed, i).color, glm::uvec3(0));
@@ -151,9 +153,9 @@ TEST(LinearRootTable, EveryLevelComesBackWithinAQuarterOfALevelOrSoInTenBits) {
   }
 }
 
-TEST(PackBlock, StraysAreDrawnNoLargerThanThat) {
+TEST(PackBlock, OutliersAreDrawnNoLargerThanThat) {
   std::mt19937 random(8);
-  DecodedBlock block = block_of(100, 1000, random);
+  model::DecodedBlock block = block_of(100, 1000, random);
   block.radii.assign(100, 0.01F);
   block.radii[7] = 1;
   EXPECT_NEAR(unpacked(pack_block(block, 8, true), 7).radius, 0.04, 1e-8);
@@ -161,7 +163,7 @@ TEST(PackBlock, StraysAreDrawnNoLargerThanThat) {
 
 TEST(PackBlock, WhatIsMergedShowsTheAttributesOfOneOfItsOwn) {
   std::mt19937 random(9);
-  DecodedBlock block = block_of(2000, 1000, random);
+  model::DecodedBlock block = block_of(2000, 1000, random);
   std::vector<uint8_t> classes(block.size());
   for (uint8_t& code : classes) code = static_cast<uint8_t>(random() % 200);
   block.scalars.push_back({"classification", classes});
@@ -175,4 +177,4 @@ TEST(PackBlock, WhatIsMergedShowsTheAttributesOfOneOfItsOwn) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::residency

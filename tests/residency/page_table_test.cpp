@@ -3,7 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-namespace surfcast {
+namespace surfcast::residency {
 namespace {
 
 using ::testing::ElementsAre;
@@ -77,7 +77,7 @@ TEST_F(PageTableTest, ForgettingAModelFreesItsPagesPinnedOrNotAndNoOthers) {
   insert(0, 3, 2);
   insert(5, 2, 2);
   table_.pin({2, 5});
-  table_.forget(2);
+  table_.release_model(2);
   EXPECT_EQ(table_.used_pages(), 3u);
   EXPECT_EQ(table_.pinned_pages(), 0u);
   EXPECT_EQ(table_.blocks(), 1u);
@@ -85,20 +85,20 @@ TEST_F(PageTableTest, ForgettingAModelFreesItsPagesPinnedOrNotAndNoOthers) {
   EXPECT_THAT(evicted_, IsEmpty());
 }
 
-TEST_F(PageTableTest, WhatAFrameUsesStaysThroughTheInterludesThatInterruptIt) {
+TEST_F(PageTableTest, WhatAFrameUsesStaysThroughTheFramesNestedInIt) {
   insert(0, 4);
   insert(1, 4);
   table_.begin_frame();
   table_.use({1, 0});
   for (int i = 0; i < 3; ++i) {
-    table_.begin_interlude();
+    table_.begin_nested_frame();
     table_.begin_frame();
-    EXPECT_THAT(insert(10 + i, 6), SizeIs(6)) << "of the other block, or of the interlude before";
+    EXPECT_THAT(insert(10 + i, 6), SizeIs(6)) << "of the other block, or of the nested frame before";
     EXPECT_THAT(insert(20 + i, 1), IsEmpty()) << "both are in use";
-    table_.end_interlude();
+    table_.end_nested_frame();
   }
   EXPECT_THAT(evicted_, ElementsAre(1, 10, 11));
-  EXPECT_THAT(insert(2, 6), SizeIs(6)) << "what an interlude used is not in use after it";
+  EXPECT_THAT(insert(2, 6), SizeIs(6)) << "what a nested frame used is not in use after it";
   EXPECT_THAT(insert(3, 1), IsEmpty());
   table_.begin_frame();
   EXPECT_THAT(insert(3, 4), SizeIs(4)) << "nor what the frame used, after that";
@@ -113,4 +113,4 @@ TEST_F(PageTableTest, ManyInsertionsKeepTheBooks) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::residency

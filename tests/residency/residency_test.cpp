@@ -6,7 +6,7 @@
 #include "base/stopwatch.h"
 #include "residency/fake_blocks.h"
 
-namespace surfcast {
+namespace surfcast::residency {
 namespace {
 
 using testing::block_at;
@@ -19,7 +19,7 @@ using testing::view_from;
 
 /// A root, four children in a row, and their four children each; every block takes a page.
 std::shared_ptr<FakeBlocks> two_splits(uint64_t id) {
-  std::vector<BlockEntry> blocks{block_at({0, 0, -20}, 4, 1)};
+  std::vector<ldc::BlockEntry> blocks{block_at({0, 0, -20}, 4, 1)};
   const uint32_t first = split(blocks, 0, 4, 1000);
   for (uint32_t i = 0; i < 4; ++i) split(blocks, first + i, 4, 1000);
   return std::make_shared<FakeBlocks>(id, blocks);
@@ -32,13 +32,13 @@ class ResidencyTest : public ::testing::Test {
         sink_, ResidencyLimits{pages, {.threads = 1, .cache_bytes = 0, .ready_bytes = size_t{1} << 20}, upload_bytes});
   }
   Result<PreparedView> whole(const ViewedModel& model, double spacing = 0) {
-    return residency_->prepare_whole(model, {frame_, spacing}, never_);
+    return residency_->prepare_complete(model, {frame_, spacing}, never_);
   }
   Result<PreparedView> whole_with_attributes(const ViewedModel& model) {
-    return residency_->prepare_whole(model, {frame_, 0, nullptr, true}, never_);
+    return residency_->prepare_complete(model, {frame_, 0, nullptr, true}, never_);
   }
   PreparedView now(const ViewedModel& model, double spacing = 0, bool moving = false) {
-    return residency_->prepare_now(model, {.frame = frame_, .spacing = spacing, .moving = moving}, {}, {});
+    return residency_->prepare_resident(model, {.frame = frame_, .spacing = spacing, .moving = moving}, {}, {});
   }
   /// Pictures at once until one converges.
   PreparedView now_until_converged(const ViewedModel& model, double spacing = 0) {
@@ -59,7 +59,7 @@ class ResidencyTest : public ::testing::Test {
     }
   }
 
-  const CameraFrame frame_ = view_from({0, 0, 0});
+  const geometry::CameraFrame frame_ = view_from({0, 0, 0});
   const std::atomic<bool> never_{false};
   FakeSink sink_;
   std::shared_ptr<FakeBlocks> source_ = two_splits(1);
@@ -82,7 +82,7 @@ TEST_F(ResidencyTest, AWholePictureWaitsForEveryBlockOfTheFinestCut) {
 
 TEST_F(ResidencyTest, AWholePictureLoadsWhatItShowsAndNoMore) {
   start(100);
-  const double middle = projected_spacing(source_->tree().blocks()[2], frame_);
+  const double middle = selection::projected_spacing(source_->tree().blocks()[2], frame_);
   EXPECT_EQ(whole(model_, 1.2 * middle)->selection.draw.size(), 4u);
   EXPECT_THAT(source_->started(), ElementsAre(0, 1, 2, 3, 4));
 }
@@ -99,7 +99,7 @@ TEST_F(ResidencyTest, AModelLargerThanTheMemoryIsShownAsFineAsFits) {
 }
 
 TEST_F(ResidencyTest, AForestLargerThanTheMemoryIsShownInPart) {
-  const auto forest = std::make_shared<FakeBlocks>(7, std::vector<BlockEntry>(20, block_at({0, 0, -10}, 1)));
+  const auto forest = std::make_shared<FakeBlocks>(7, std::vector<ldc::BlockEntry>(20, block_at({0, 0, -10}, 1)));
   start(8);
   const Result<PreparedView> view = whole(ViewedModel(forest));
   ASSERT_TRUE(view);
@@ -126,9 +126,9 @@ TEST_F(ResidencyTest, WhatARestWouldMissIsLoadedWhileTheViewMoves) {
       sink_,
       ResidencyLimits{
           100, {.threads = 1, .idle_threads = 1, .cache_bytes = 4 << 20, .ready_bytes = 1 << 20}, size_t{1} << 20});
-  const double coarse = 2 * projected_spacing(source_->tree().blocks()[0], frame_);
-  const ViewGoal moving{.frame = frame_, .spacing = coarse, .moving = true, .rest_spacing = 0};
-  PreparedView view = residency_->prepare_now(model_, moving, {}, {});
+  const double coarse = 2 * selection::projected_spacing(source_->tree().blocks()[0], frame_);
+  const ViewParameters moving{.frame = frame_, .spacing = coarse, .moving = true, .rest_spacing = 0};
+  PreparedView view = residency_->prepare_resident(model_, moving, {}, {});
   EXPECT_EQ(view.selection.target.size(), 1U) << "the root is fine enough for a motion";
   source_->wait_for_start(21);
   EXPECT_EQ(now_until_converged(model_).selection.draw.size(), 16U);
@@ -167,8 +167,8 @@ TEST_F(ResidencyTest, ALimitedNumberOfBytesIsUploadedInAPictureInMotion) {
 
 TEST_F(ResidencyTest, WhatTheCameraGoesToIsLoadedAfterWhatItSees) {
   start(100);
-  const double root = projected_spacing(source_->tree().blocks()[0], frame_);
-  residency_->prepare_now(model_, {frame_, 1.1 * root}, {}, view_from({0, 0, -10}));
+  const double root = selection::projected_spacing(source_->tree().blocks()[0], frame_);
+  residency_->prepare_resident(model_, {frame_, 1.1 * root}, {}, view_from({0, 0, -10}));
   source_->wait_for_start(5);
   std::vector<uint32_t> begun = source_->started();
   EXPECT_EQ(begun.front(), 0u) << "all that the view itself needs";
@@ -197,7 +197,8 @@ TEST_F(ResidencyTest, DamageLeavesAPictureAtOnceCoarserThere) {
 
 TEST_F(ResidencyTest, ARestLoadsNothingThatWouldOnlyStandInForAMoment) {
   start(100);
-  EXPECT_EQ(now_until_converged(model_, 2 * projected_spacing(source_->tree().blocks()[0], frame_)).missing, 0U);
+  EXPECT_EQ(now_until_converged(model_, 2 * selection::projected_spacing(source_->tree().blocks()[0], frame_)).missing,
+            0U);
   EXPECT_EQ(now(model_).missing, 16U) << "the leaves alone";
   EXPECT_EQ(now_until_converged(model_).selection.draw.size(), 16U);
   EXPECT_EQ(source_->started().size(), 17U) << "and before them the root";
@@ -211,7 +212,7 @@ TEST_F(ResidencyTest, ACancelledPictureIsGivenUp) {
     source_->wait_for_start(1);
     cancelled = true;
   });
-  const Result<PreparedView> view = residency_->prepare_whole(model_, {frame_, 0}, cancelled);
+  const Result<PreparedView> view = residency_->prepare_complete(model_, {frame_, 0}, cancelled);
   ASSERT_FALSE(view);
   EXPECT_EQ(view.error().kind, ErrorKind::kCancelled);
   source_->release();
@@ -222,18 +223,18 @@ TEST_F(ResidencyTest, AWholePictureLosesNothingToThoseThatInterruptItWhileItWait
   const ViewedModel second(other);
   for (const ViewedModel* interrupting : std::initializer_list<const ViewedModel*>{&second, &model_}) {
     start(34);
-    int interludes = 0;
-    const Interruption interruption(never_, [&] {
-      if (++interludes % 2 == 0) return false;
-      residency_->begin_interlude();
+    int nested_frames = 0;
+    const Preemption preemption(never_, [&] {
+      if (++nested_frames % 2 == 0) return false;
+      residency_->begin_nested_frame();
       now(*interrupting, 0.5, /*moving=*/true);
-      residency_->end_interlude();
+      residency_->end_nested_frame();
       return true;
     });
-    const Result<PreparedView> view = residency_->prepare_whole(model_, {frame_, 0}, interruption);
+    const Result<PreparedView> view = residency_->prepare_complete(model_, {frame_, 0}, preemption);
     ASSERT_TRUE(view);
     EXPECT_TRUE(view->selection.converged());
-    EXPECT_GT(interludes, 0);
+    EXPECT_GT(nested_frames, 0);
     expect_in_memory(*source_, view->selection.draw);
   }
 }
@@ -247,8 +248,8 @@ TEST_F(ResidencyTest, ModelsShareTheMemoryAndTheOneDrawnLeastRecentlyGivesWay) {
   EXPECT_LE(residency_->pool().bytes(), 44u * 16384);
   EXPECT_TRUE(residency_->pool().residents(1)[0]) << "the root stays, to stand in";
   ASSERT_TRUE(whole(model_)->selection.converged());
-  residency_->forget(1);
-  residency_->forget(2);
+  residency_->release_model(1);
+  residency_->release_model(2);
   EXPECT_EQ(residency_->pool().blocks(), 0u);
 }
 
@@ -256,7 +257,7 @@ TEST_F(ResidencyTest, WhenTheViewBecomesCoarserNothingFallsBackToTheRoot) {
   start(100);
   ASSERT_TRUE(whole(model_)->selection.converged());
   source_->hold();
-  const double middle = projected_spacing(source_->tree().blocks()[2], frame_);
+  const double middle = selection::projected_spacing(source_->tree().blocks()[2], frame_);
   const PreparedView view = now(model_, 1.2 * middle);
   EXPECT_EQ(view.selection.draw.size(), 16u);
   source_->release();
@@ -298,7 +299,7 @@ TEST_F(ResidencyTest, BlocksWithAttributesServePicturesWithoutAndAreLoadedOnce) 
 class SwitchedColorsTest : public ResidencyTest {
  protected:
   PreparedView now_by(bool attributes, bool moving) {
-    return residency_->prepare_now(model_, {.frame = frame_, .attributes = attributes, .moving = moving}, {}, {});
+    return residency_->prepare_resident(model_, {.frame = frame_, .attributes = attributes, .moving = moving}, {}, {});
   }
   /// What is drawn has what it is coloured by, and nothing is taken for finished that is not.
   void expect_honest(const PreparedView& view, bool attributes) {
@@ -310,8 +311,8 @@ class SwitchedColorsTest : public ResidencyTest {
     }
     const bool all = view.selection.draw == view.selection.target;
     ASSERT_EQ(view.selection.converged(), all);
-    ASSERT_EQ(view.settled, all && view.selection.holes == 0);
-    ASSERT_EQ(view.missing == 0, view.settled);
+    ASSERT_EQ(view.nothing_pending, all && view.selection.holes == 0);
+    ASSERT_EQ(view.missing == 0, view.nothing_pending);
   }
   void expect_converging(bool attributes) {
     for (int i = 0; i < 20'000; ++i) {
@@ -363,11 +364,11 @@ TEST_F(ResidencyTest, EvictedBlocksLoseTheirAttributes) {
   const auto source = two_splits(1);
   const ViewedModel model(source);
   ASSERT_TRUE(whole_with_attributes(model));
-  residency_->forget(1);
+  residency_->release_model(1);
   EXPECT_EQ(residency_->pool().bytes(), 0u);
   ASSERT_TRUE(whole(model));
   EXPECT_GT(whole_with_attributes(model)->waited_for, 0u);
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::residency

@@ -46,8 +46,8 @@ inline std::span<const std::byte> as_bytes(std::string_view text) {
 
 /// The values of a scalar attribute when it has exactly that type, else nothing.
 template <typename T>
-std::vector<T> scalar_values(const ScanPoints& points, std::string_view name) {
-  for (const ScalarAttribute& scalar : points.scalars) {
+std::vector<T> scalar_values(const scan::ScanPoints& points, std::string_view name) {
+  for (const surfel::ScalarAttribute& scalar : points.scalars) {
     if (scalar.name != name) continue;
     if (const auto* values = std::get_if<std::vector<T>>(&scalar.values)) return *values;
   }

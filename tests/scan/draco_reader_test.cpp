@@ -8,7 +8,7 @@
 #include "scan/samples.h"
 #include "scan/whole_scan.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 using testing::as_bytes;
@@ -45,4 +45,4 @@ TEST(DracoReaderTest, ClaimsOfBillionsOfPointsAreRefusedBeforeMemoryIsTaken) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -6,7 +6,7 @@
 #include "scan/las_file.h"
 #include "scan/whole_scan.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 using testing::as_bytes;
@@ -22,7 +22,7 @@ Result<testing::WholeScan> read(const LasFile& file) {
 
 std::vector<std::string> scalar_names(const ScanPoints& points) {
   std::vector<std::string> names;
-  for (const ScalarAttribute& scalar : points.scalars) names.push_back(scalar.name);
+  for (const surfel::ScalarAttribute& scalar : points.scalars) names.push_back(scalar.name);
   return names;
 }
 
@@ -218,4 +218,4 @@ TEST(LasReaderTest, BadHeadersAreNamed) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::scan

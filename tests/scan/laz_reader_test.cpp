@@ -11,7 +11,7 @@
 #include "scan/scan_stream.h"
 #include "scan/whole_scan.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 using ::testing::HasSubstr;
@@ -87,4 +87,4 @@ TEST(LazReaderTest, ACompressedFileWithoutTheRecordOfLaszipIsRefused) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::scan

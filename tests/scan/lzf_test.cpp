@@ -7,7 +7,7 @@
 
 #include "scan/bytes.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 using testing::as_bytes;
@@ -43,4 +43,4 @@ TEST(LzfTest, DamageIsRefused) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::scan

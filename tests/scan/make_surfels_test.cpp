@@ -12,7 +12,7 @@
 #include "scan/shapes.h"
 #include "scan/surfels_of.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 using ::testing::Each;
@@ -39,18 +39,18 @@ struct Made {
     cloud = testing::surfels_of(std::move(scans), report);
   }
   SurfelReport report;
-  SurfelCloud cloud;
+  surfel::SurfelCloud cloud;
 };
 
 template <typename T>
-std::vector<T> values_of(const SurfelCloud& cloud, size_t scalar) {
+std::vector<T> values_of(const surfel::SurfelCloud& cloud, size_t scalar) {
   return std::get<std::vector<T>>(cloud.scalars.at(scalar).values);
 }
 
 // ---- radii
 
 /// The radius of the surfel at that position.
-float radius_at(const SurfelCloud& cloud, const glm::dvec3& position) {
+float radius_at(const surfel::SurfelCloud& cloud, const glm::dvec3& position) {
   for (size_t i = 0; i < cloud.size(); ++i) {
     if (glm::distance(cloud.positions[i], position) < 1e-9) return cloud.radii[i];
   }
@@ -68,7 +68,7 @@ TEST(MakeSurfelsTest, RadiusIsTheMeanDistanceToTheSixNearest) {
 }
 
 TEST(MakeSurfelsTest, RadiusOnABorderEndsTheKernelWhereTheSurfaceEnds) {
-  const SurfelCloud cloud = Made(scan_of(testing::square_lattice(9, 1, {0, 0, 0}))).cloud;
+  const surfel::SurfelCloud cloud = Made(scan_of(testing::square_lattice(9, 1, {0, 0, 0}))).cloud;
   const float inside = radius_at(cloud, {4, 4, 0});
   for (const glm::dvec3& p : {glm::dvec3(0, 4, 0), glm::dvec3(8, 3, 0), glm::dvec3(5, 8, 0)}) {
     EXPECT_LT(radius_at(cloud, p), 0.75F * inside);
@@ -80,7 +80,7 @@ TEST(MakeSurfelsTest, RadiusOnABorderEndsTheKernelWhereTheSurfaceEnds) {
 TEST(MakeSurfelsTest, RadiusBesideAGapReachesAcrossIt) {
   std::vector<glm::dvec3> positions = testing::square_lattice(13, 1, {0, 0, 0});
   std::erase_if(positions, [](const glm::dvec3& p) { return p.x == 6; });  // a missing line
-  const SurfelCloud cloud = Made(scan_of(std::move(positions))).cloud;
+  const surfel::SurfelCloud cloud = Made(scan_of(std::move(positions))).cloud;
   for (const glm::dvec3& p : {glm::dvec3(5, 6, 0), glm::dvec3(7, 5, 0)}) {
     EXPECT_GE(radius_at(cloud, p), 0.6F * 2) << "two kernels close the gap";
     EXPECT_LE(radius_at(cloud, p), 0.6F * 2.5F);
@@ -91,7 +91,7 @@ TEST(MakeSurfelsTest, AHoleOfOneSampleIsNoBorder) {
   std::vector<glm::dvec3> positions = testing::square_lattice(9, 1, {0, 0, 0});
   const float inside = radius_at(Made(scan_of(positions)).cloud, {2, 2, 0});
   std::erase(positions, glm::dvec3(4, 4, 0));
-  const SurfelCloud cloud = Made(scan_of(positions)).cloud;
+  const surfel::SurfelCloud cloud = Made(scan_of(positions)).cloud;
   for (const glm::dvec3& p : {glm::dvec3(3, 4, 0), glm::dvec3(4, 3, 0), glm::dvec3(5, 5, 0)}) {
     EXPECT_GE(radius_at(cloud, p), inside) << p.x << ' ' << p.y;
   }
@@ -103,7 +103,7 @@ TEST(MakeSurfelsTest, LinesOfAScannerAreNoBorders) {
   for (int y = 0; y < 9; ++y) {
     for (int x = 0; x < 60; ++x) positions.emplace_back(0.25 * x, y, 0);
   }
-  const SurfelCloud cloud = Made(scan_of(std::move(positions))).cloud;
+  const surfel::SurfelCloud cloud = Made(scan_of(std::move(positions))).cloud;
   EXPECT_GE(radius_at(cloud, {7.5, 4, 0}), 0.5F);
 }
 
@@ -112,7 +112,7 @@ TEST(MakeSurfelsTest, PointsFloatingOffASurfaceDoNotHideIt) {
     std::vector<glm::dvec3> positions = testing::square_lattice(9, 0.5, {0, 0, 0});
     const float surface = radius_at(Made(scan_of(positions)).cloud, {2, 2, 0});
     for (size_t i = 0; i < floating; ++i) positions.emplace_back(2 + 0.2 * static_cast<double>(i), 2, 50);
-    const SurfelCloud cloud = Made(scan_of(positions)).cloud;
+    const surfel::SurfelCloud cloud = Made(scan_of(positions)).cloud;
     for (size_t i = 0; i < positions.size(); ++i) {
       EXPECT_LE(radius_at(cloud, positions[i]), 3.1F * surface) << i << " of " << floating;
     }
@@ -209,8 +209,8 @@ TEST(MakeSurfelsTest, ZeroNormalsAreDroppedUnlessAllAreZero) {
 TEST(MakeSurfelsTest, MergedScansFillWhatOneLacksAndSaySo) {
   WholeScan first = scan_of({{0, 0, 0}, {1, 0, 0}});
   first.name = "first.las";
-  first.grid = Grid{{0.01, 0.01, 0.01}, {0, 0, 0}};
-  first.colors = ColorAttribute{8, {{255, 0, 0}, {0, 128, 0}}};
+  first.grid = surfel::Grid{{0.01, 0.01, 0.01}, {0, 0, 0}};
+  first.colors = surfel::ColorAttribute{8, {{255, 0, 0}, {0, 128, 0}}};
   first.scalars.push_back({"intensity", std::vector<uint8_t>{7, 8}});
   WholeScan second = scan_of({{0, 1, 0}, {0, 1, 0}, {NAN, 0, 0}, {1, 1, 0}});
   second.name = "second.ply";
@@ -218,7 +218,7 @@ TEST(MakeSurfelsTest, MergedScansFillWhatOneLacksAndSaySo) {
   second.scalars.push_back({"gps_time", std::vector<double>{1, 1, 0, 2}});
   WholeScan third = scan_of({{2, 2, 2}});
   third.name = "third.ply";
-  third.colors = ColorAttribute{16, {{1000, 2000, 3000}}};
+  third.colors = surfel::ColorAttribute{16, {{1000, 2000, 3000}}};
 
   const Made made(std::move(first), std::move(second), std::move(third));
   ASSERT_EQ(made.cloud.size(), 5u);
@@ -374,12 +374,12 @@ TEST(MakeSurfelsTest, ResultDoesNotDependOnTheNumberOfThreads) {
     const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
     return Made(scan_of(testing::noise(20000, 10))).cloud;
   };
-  const SurfelCloud one = make(1);
-  const SurfelCloud four = make(4);
+  const surfel::SurfelCloud one = make(1);
+  const surfel::SurfelCloud four = make(4);
   EXPECT_EQ(one.positions, four.positions);
   EXPECT_EQ(one.normals, four.normals);
   EXPECT_EQ(one.radii, four.radii);
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -8,11 +8,11 @@
 
 #include "scan/shapes.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 Sites sites_of(const std::vector<glm::dvec3>& world) {
-  Box frame;
+  geometry::Box frame;
   for (const glm::dvec3& p : world) frame.include(p);
   return find_sites(world, frame);
 }
@@ -51,4 +51,4 @@ TEST(NeighboursTest, FewSitesHaveFewerNeighbours) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::scan

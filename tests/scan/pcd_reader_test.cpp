@@ -7,7 +7,7 @@
 #include "scan/samples.h"
 #include "scan/whole_scan.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 using testing::as_bytes;
@@ -132,4 +132,4 @@ TEST(PcdReaderTest, HugeCountsFailAtOnce) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -7,7 +7,7 @@
 #include "scan/bytes.h"
 #include "scan/whole_scan.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 using testing::as_bytes;
@@ -171,4 +171,4 @@ TEST(PlyReaderTest, BadHeadersAreNamed) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -7,7 +7,7 @@
 #include "scan/bytes.h"
 #include "scan/whole_scan.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 using testing::as_bytes;
@@ -52,4 +52,4 @@ TEST(PtxReaderTest, RowsOfFiveNumbersAreRefused) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::scan

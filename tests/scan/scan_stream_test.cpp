@@ -13,7 +13,7 @@
 #include "scan/samples.h"
 #include "scan/whole_scan.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 namespace fs = std::filesystem;
@@ -31,7 +31,8 @@ void expect_consistent(const ScanPoints& points) {
   EXPECT_TRUE(points.normals.empty() || points.normals.size() == points.size());
   EXPECT_TRUE(points.radii.empty() || points.radii.size() == points.size());
   EXPECT_TRUE(!points.colors || points.colors->values.size() == points.size());
-  for (const ScalarAttribute& scalar : points.scalars) EXPECT_EQ(value_count(scalar.values), points.size());
+  for (const surfel::ScalarAttribute& scalar : points.scalars)
+    EXPECT_EQ(surfel::value_count(scalar.values), points.size());
 }
 
 TEST(ScanStreamTest, EverySampleIsReadAndKeepsItsName) {
@@ -138,4 +139,4 @@ TEST(ScanStreamTest, FormatsDecodedWholeAreRefusedWhereMemoryDoesNotSuffice) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 TEST(SignedForestTest, SignsFollowTheJoins) {
@@ -40,4 +40,4 @@ TEST(SignedForestTest, RandomJoinsOfMembersWithSignsGiveThoseSignsBack) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::scan

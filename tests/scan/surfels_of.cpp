@@ -8,22 +8,23 @@
 namespace surfcast::testing {
 namespace {
 
-ScanSchema schema_of(const WholeScan& scan) {
-  ScanSchema schema;
+scan::ScanSchema schema_of(const WholeScan& scan) {
+  scan::ScanSchema schema;
   schema.name = scan.name;
   schema.grid = scan.grid;
   schema.normals = std::any_of(scan.normals.begin(), scan.normals.end(),
-                               [](const glm::vec3& n) { return unit_or_zero(n) != glm::vec3(0); });
+                               [](const glm::vec3& n) { return scan::unit_or_zero(n) != glm::vec3(0); });
   schema.radii = !scan.radii.empty();
   schema.color_bits = scan.colors ? scan.colors->bits : 0;
-  for (const ScalarAttribute& scalar : scan.scalars) schema.scalars.push_back({scalar.name, type_of(scalar.values)});
+  for (const surfel::ScalarAttribute& scalar : scan.scalars)
+    schema.scalars.push_back({scalar.name, scan::type_of(scalar.values)});
   schema.sensor = scan.sensor;
   schema.z_up = scan.z_up;
   return schema;
 }
 
-SurfelCloud cloud_of(ScanPoints points, std::vector<SourceRange> sources) {
-  SurfelCloud cloud;
+surfel::SurfelCloud cloud_of(scan::ScanPoints points, std::vector<surfel::SourceRange> sources) {
+  surfel::SurfelCloud cloud;
   cloud.positions = std::move(points.positions);
   cloud.normals = std::move(points.normals);
   cloud.radii = std::move(points.radii);
@@ -35,34 +36,34 @@ SurfelCloud cloud_of(ScanPoints points, std::vector<SourceRange> sources) {
 
 }  // namespace
 
-SurfelCloud surfels_of(std::vector<WholeScan> scans, SurfelReport& report) {
-  std::vector<ScanSchema> schemas;
+surfel::SurfelCloud surfels_of(std::vector<WholeScan> scans, scan::SurfelReport& report) {
+  std::vector<scan::ScanSchema> schemas;
   for (WholeScan& scan : scans) {
     schemas.push_back(schema_of(scan));
     if (!schemas.back().normals) scan.normals.clear();
   }
-  const ScanSchema merged = merge_schemas(schemas);
-  report.notes = describe_fillings(schemas, merged);
-  ScanPoints all;
-  PartFrame frame;
-  std::vector<SourceRange> sources;
+  const scan::ScanSchema merged = scan::merge_schemas(schemas);
+  report.notes = scan::describe_fillings(schemas, merged);
+  scan::ScanPoints all;
+  scan::PartFrame frame;
+  std::vector<surfel::SourceRange> sources;
   for (WholeScan& scan : scans) {
     report.points_read += scan.size();
-    drop_unusable_points(scan, report);
+    scan::drop_unusable_points(scan, report);
     sources.push_back({scan.name, all.size(), scan.size(), scan.grid});
     frame.sensors.push_back(scan.sensor);
     for (const glm::dvec3& p : scan.positions) frame.bounds.include(p);
-    append_points(all, conform(scan, merged));
+    append_points(all, scan::conform(scan, merged));
   }
-  SurfelCloud cloud = cloud_of(std::move(all), std::move(sources));
+  surfel::SurfelCloud cloud = cloud_of(std::move(all), std::move(sources));
   cloud.z_up = merged.z_up;
-  std::vector<bool> keep = find_duplicates(cloud);
+  std::vector<bool> keep = scan::find_duplicates(cloud);
   report.duplicates = static_cast<uint64_t>(std::count(keep.begin(), keep.end(), true));
   keep.flip();
-  keep_surfels(cloud, keep);
-  std::vector<PartSigns> signs(1);
-  PartSurfels surfels = make_surfels(std::move(cloud), frame, signs[0], report);
-  settle_normals(settle_signs(signs, {frame.bounds, merged.z_up, merged.normals}), 0, surfels);
+  scan::keep_surfels(cloud, keep);
+  std::vector<scan::PartSigns> signs(1);
+  scan::PartSurfels surfels = scan::make_surfels(std::move(cloud), frame, signs[0], report);
+  scan::apply_signs(scan::resolve_signs(signs, {frame.bounds, merged.z_up, merged.normals}), 0, surfels);
   return surfels.cloud;
 }
 

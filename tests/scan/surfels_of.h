@@ -9,6 +9,6 @@
 namespace surfcast::testing {
 
 /// Surfels of scans, made as one part; everything but the weights is there.
-SurfelCloud surfels_of(std::vector<WholeScan> scans, SurfelReport& report);
+surfel::SurfelCloud surfels_of(std::vector<WholeScan> scans, scan::SurfelReport& report);
 
 }  // namespace surfcast::testing

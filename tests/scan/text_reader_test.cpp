@@ -6,7 +6,7 @@
 #include "scan/bytes.h"
 #include "scan/whole_scan.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
 using testing::as_bytes;
@@ -133,4 +133,4 @@ TEST(TextReaderTest, LargeFilesReadInPartsKeepTheOrderAndTheLineNumbers) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::scan

@@ -4,11 +4,11 @@
 
 #include "scan/shapes.h"
 
-namespace surfcast {
+namespace surfcast::scan {
 namespace {
 
-Box box_of(const std::vector<glm::dvec3>& positions) {
-  Box box;
+geometry::Box box_of(const std::vector<glm::dvec3>& positions) {
+  geometry::Box box;
   for (const glm::dvec3& p : positions) box.include(p);
   return box;
 }
@@ -33,4 +33,4 @@ TEST(UpAxisTest, AttributesOfLidarAreASurvey) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::scan

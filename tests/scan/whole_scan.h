@@ -10,18 +10,18 @@
 namespace surfcast::testing {
 
 /// All points of a scan, and what is known of it as a whole.
-struct WholeScan : ScanPoints {
+struct WholeScan : scan::ScanPoints {
   std::string name = "scan";
-  std::optional<Grid> grid;
+  std::optional<surfel::Grid> grid;
   std::optional<glm::dvec3> sensor;
   bool z_up = true;
 };
 
-inline void append_points(ScanPoints& to, const ScanPoints& more) {
+inline void append_points(scan::ScanPoints& to, const scan::ScanPoints& more) {
   to.positions.insert(to.positions.end(), more.positions.begin(), more.positions.end());
   to.normals.insert(to.normals.end(), more.normals.begin(), more.normals.end());
   to.radii.insert(to.radii.end(), more.radii.begin(), more.radii.end());
-  if (more.colors && !to.colors) to.colors = ColorAttribute{more.colors->bits, {}};
+  if (more.colors && !to.colors) to.colors = surfel::ColorAttribute{more.colors->bits, {}};
   if (more.colors) {
     to.colors->values.insert(to.colors->values.end(), more.colors->values.begin(), more.colors->values.end());
   }
@@ -39,15 +39,15 @@ inline void append_points(ScanPoints& to, const ScanPoints& more) {
   }
 }
 
-inline Result<WholeScan> whole(const Result<ScanStream>& stream) {
+inline Result<WholeScan> whole(const Result<scan::ScanStream>& stream) {
   if (!stream) return fail(stream.error());
   WholeScan scan;
   for (size_t piece = 0; piece < stream->pieces(); ++piece) {
-    const Result<ScanPoints> points = stream->read(piece);
+    const Result<scan::ScanPoints> points = stream->read(piece);
     if (!points) return fail(points.error());
     append_points(scan, *points);
   }
-  const ScanSchema& schema = stream->schema();
+  const scan::ScanSchema& schema = stream->schema();
   scan.name = schema.name;
   scan.grid = schema.grid;
   scan.sensor = schema.sensor;
@@ -56,7 +56,7 @@ inline Result<WholeScan> whole(const Result<ScanStream>& stream) {
 }
 
 inline Result<WholeScan> read_whole(std::span<const std::byte> bytes, const std::filesystem::path& path) {
-  return whole(ScanStream::open_content(bytes, path));
+  return whole(scan::ScanStream::open_content(bytes, path));
 }
 
 }  // namespace surfcast::testing

@@ -6,17 +6,17 @@
 
 #include "selection/trees.h"
 
-namespace surfcast {
+namespace surfcast::selection {
 namespace {
 
 using testing::block_at;
 using testing::facing;
 using testing::view_from;
 
-bool seen(const BlockEntry& block, const glm::dvec3& eye = {0, 0, 0}) {
-  const BlockTree tree({block});
-  const CameraFrame frame = view_from(eye);
-  return may_be_seen(block_hulls(tree).front(), Frustum(frame, 0, 0, frame.width, frame.height), frame.eye);
+bool seen(const ldc::BlockEntry& block, const glm::dvec3& eye = {0, 0, 0}) {
+  const ldc::BlockTree tree({block});
+  const geometry::CameraFrame frame = view_from(eye);
+  return may_be_visible(block_hulls(tree).front(), Frustum(frame, 0, 0, frame.width, frame.height), frame.eye);
 }
 
 TEST(BlockHull, BlocksInFrontAreSeenAndOthersAreNot) {
@@ -41,7 +41,7 @@ TEST(BlockHull, TheBlockAroundTheEyeIsSeen) {
 }
 
 TEST(BlockHull, ABlockWhoseNormalsAllFaceAwayIsNotSeen) {
-  const BlockEntry block = block_at({0, 0, -10}, 0.5);
+  const ldc::BlockEntry block = block_at({0, 0, -10}, 0.5);
   EXPECT_FALSE(seen(facing(block, {0, 0, -1}, 0.3F)));
   EXPECT_TRUE(seen(facing(block, {0, 0, 1}, 0.3F)));
   EXPECT_TRUE(seen(facing(block, {0, 0, -1}, 1.6F))) << "some of its normals face the eye";
@@ -55,13 +55,13 @@ TEST(BlockHull, WorldCoordinatesOfMapsDoNotBlurTheFrustum) {
 }
 
 TEST(BlockHull, HoldsWhatIsBelowABlockThatIsSmallerThanItsChildren) {
-  std::vector<BlockEntry> blocks{facing(block_at({0, 0, 0}, 1, 0.1), {0, 0, 1}, 0.1F)};
+  std::vector<ldc::BlockEntry> blocks{facing(block_at({0, 0, 0}, 1, 0.1), {0, 0, 1}, 0.1F)};
   for (const float side : {-1.0F, 1.0F}) {
-    BlockEntry child = facing(block_at({side * 2, 0, 0}, 1, 0.3), glm::normalize(glm::vec3(side, 0, 1)), 0.2F);
+    ldc::BlockEntry child = facing(block_at({side * 2, 0, 0}, 1, 0.3), glm::normalize(glm::vec3(side, 0, 1)), 0.2F);
     child.parent = 0;
     blocks.push_back(child);
   }
-  const std::vector<BlockHull> hulls = block_hulls(BlockTree(blocks));
+  const std::vector<BlockHull> hulls = block_hulls(ldc::BlockTree(blocks));
   EXPECT_EQ(hulls[0].centres.min, glm::dvec3(-3, -1, -1));
   EXPECT_EQ(hulls[0].centres.max, glm::dvec3(3, 1, 1));
   EXPECT_EQ(hulls[0].reach, 0.3);
@@ -72,9 +72,9 @@ TEST(BlockHull, HoldsWhatIsBelowABlockThatIsSmallerThanItsChildren) {
 }
 
 TEST(BlockHull, OneChildWithoutAConeMayFaceAnywhere) {
-  std::vector<BlockEntry> blocks{facing(block_at({0, 0, 0}, 1), {0, 0, 1}, 0.1F), block_at({0, 0, 0}, 1)};
+  std::vector<ldc::BlockEntry> blocks{facing(block_at({0, 0, 0}, 1), {0, 0, 1}, 0.1F), block_at({0, 0, 0}, 1)};
   blocks[1].parent = 0;
-  EXPECT_FALSE(block_hulls(BlockTree(blocks))[0].normals);
+  EXPECT_FALSE(block_hulls(ldc::BlockTree(blocks))[0].normals);
 }
 
 TEST(ProjectedSpacing, OfASmallBlockStraightAheadIsItsSamplingDistanceOnTheScreen) {
@@ -84,12 +84,12 @@ TEST(ProjectedSpacing, OfASmallBlockStraightAheadIsItsSamplingDistanceOnTheScree
 
 TEST(ProjectedSpacing, HoldsForEverySampleOfTheBlock) {
   // No segment of length h at any point of the box, in any direction, covers more pixels.
-  const CameraFrame frame = view_from({0, 0, 0});
+  const geometry::CameraFrame frame = view_from({0, 0, 0});
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(-1, 1);
   for (int k = 0; k < 200; ++k) {
     const glm::dvec3 centre(8 * unit(random), 8 * unit(random), -10);
-    const BlockEntry block = block_at(centre, 1.5, 0.00108);
+    const ldc::BlockEntry block = block_at(centre, 1.5, 0.00108);
     const double bound = projected_spacing(block, frame);
     for (int i = 0; i < 200; ++i) {
       const glm::dvec3 p = centre + 1.5 * glm::dvec3(unit(random), unit(random), unit(random));
@@ -102,12 +102,12 @@ TEST(ProjectedSpacing, HoldsForEverySampleOfTheBlock) {
 }
 
 TEST(RadiiAtSpacing, HoldThatOfEveryPointOfTheBoxInThePicture) {
-  const CameraFrame frame = view_from({0, 0, 0});
+  const geometry::CameraFrame frame = view_from({0, 0, 0});
   std::mt19937 random(8);
   std::uniform_real_distribution<double> unit(-1, 1);
   for (int k = 0; k < 200; ++k) {
     const glm::dvec3 centre(8 * unit(random), 8 * unit(random), -6);
-    const Box box{centre - 4.0, centre + 4.0};
+    const geometry::Box box{centre - 4.0, centre + 4.0};
     const RadiusRange range = radii_at_spacing(box, frame, 3);
     for (int i = 0; i < 200; ++i) {
       const glm::dvec3 p = frame.to_camera(centre + 4.0 * glm::dvec3(unit(random), unit(random), unit(random)));
@@ -121,13 +121,13 @@ TEST(RadiiAtSpacing, HoldThatOfEveryPointOfTheBoxInThePicture) {
 }
 
 TEST(RadiiAtSpacing, AreZeroForEverySurfelAndAroundTheEye) {
-  const CameraFrame frame = view_from({0, 0, 0});
+  const geometry::CameraFrame frame = view_from({0, 0, 0});
   EXPECT_EQ(radii_at_spacing({{1, 1, -9}, {2, 2, -8}}, frame, 0).largest, 0);
   EXPECT_EQ(radii_at_spacing({glm::dvec3(-1), glm::dvec3(1)}, frame, 2).least, 0);
 }
 
 TEST(ProjectedSpacing, IsFiniteAndLargestAroundTheEyeAndBehindIt) {
-  const CameraFrame frame = view_from({0, 0, 0});
+  const geometry::CameraFrame frame = view_from({0, 0, 0});
   const double around = projected_spacing(block_at({0, 0, 0}, 1), frame);
   const double touching = projected_spacing(block_at({0, 0, 1}, 1), frame);
   EXPECT_TRUE(std::isfinite(around));
@@ -147,4 +147,4 @@ TEST(ProjectedSpacing, FallsWithDistanceAsFarAsOneMayGo) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::selection

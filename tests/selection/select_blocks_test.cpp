@@ -5,7 +5,7 @@
 
 #include "selection/trees.h"
 
-namespace surfcast {
+namespace surfcast::selection {
 namespace {
 
 using testing::block_at;
@@ -18,16 +18,16 @@ using testing::split;
 using testing::times_covered;
 using testing::view_from;
 
-std::vector<bool> all_of(const BlockTree& tree) {
+std::vector<bool> all_of(const ldc::BlockTree& tree) {
   return std::vector<bool>(tree.blocks().size(), true);
 }
 
-bool is_leaf(const BlockTree& tree, uint32_t block) {
+bool is_leaf(const ldc::BlockTree& tree, uint32_t block) {
   return tree.children(block).count == 0;
 }
 
 /// Every leaf in view is covered once; every leaf at all at most once.
-void expect_cut(const SelectionTree& tree, const CameraFrame& frame, const std::vector<uint32_t>& cut) {
+void expect_cut(const SelectionTree& tree, const geometry::CameraFrame& frame, const std::vector<uint32_t>& cut) {
   for (uint32_t b = 0; b < tree.tree.blocks().size(); ++b) {
     if (!is_leaf(tree.tree, b)) continue;
     const int times = times_covered(tree, cut, b);
@@ -40,29 +40,29 @@ void expect_cut(const SelectionTree& tree, const CameraFrame& frame, const std::
 }
 
 /// A root that faces the camera, four children in a row, and their four children each.
-BlockTree two_splits() {
-  std::vector<BlockEntry> blocks{block_at({0, 0, -20}, 4, 1)};
+ldc::BlockTree two_splits() {
+  std::vector<ldc::BlockEntry> blocks{block_at({0, 0, -20}, 4, 1)};
   const uint32_t first = split(blocks, 0, 4, 1000);
   for (uint32_t i = 0; i < 4; ++i) split(blocks, first + i, 4, 1000);
-  return BlockTree(blocks);
+  return ldc::BlockTree(blocks);
 }
 
 TEST(SelectBlocks, RandomTreesAndCamerasAreCoveredOnceWhateverIsResident) {
   std::mt19937 random(3);
   std::uniform_real_distribution<double> unit(-1, 1);
   for (int k = 0; k < 300; ++k) {
-    const BlockTree blocks(random_tree(random, 4, k % 2 == 0));
+    const ldc::BlockTree blocks(random_tree(random, 4, k % 2 == 0));
     const SelectionTree tree(blocks);
-    const Camera camera{3.0 * glm::dvec3(unit(random), unit(random), unit(random)),
-                        glm::dvec3(unit(random), unit(random), unit(random)),
-                        {0, 0, 1},
-                        20 + 50 * std::abs(unit(random))};
-    const CameraFrame frame = *make_camera_frame(camera, 300, 200);
+    const geometry::Camera camera{3.0 * glm::dvec3(unit(random), unit(random), unit(random)),
+                                  glm::dvec3(unit(random), unit(random), unit(random)),
+                                  {0, 0, 1},
+                                  20 + 50 * std::abs(unit(random))};
+    const geometry::CameraFrame frame = *geometry::make_camera_frame(camera, 300, 200);
     std::vector<bool> resident(blocks.blocks().size());
     for (size_t i = 0; i < resident.size(); ++i) resident[i] = i == 0 || unit(random) < 0.5;
-    const SelectionGoal goal{.spacing = k % 3 == 0 ? 0 : 20 * std::abs(unit(random)),
-                             .surfels = k % 5 == 0 ? random() % 200000 + 1000 : UINT64_MAX};
-    const BlockSelection s = select_blocks(tree, frame, goal, resident);
+    const SelectionCriteria criteria{.spacing = k % 3 == 0 ? 0 : 20 * std::abs(unit(random)),
+                                     .surfels = k % 5 == 0 ? random() % 200000 + 1000 : UINT64_MAX};
+    const BlockSelection s = select_blocks(tree, frame, criteria, resident);
     expect_cut(tree, frame, s.target);
     expect_cut(tree, frame, s.draw);
     ASSERT_EQ(s.holes, 0u);
@@ -73,9 +73,9 @@ TEST(SelectBlocks, RandomTreesAndCamerasAreCoveredOnceWhateverIsResident) {
 
 TEST(SelectBlocks, EveryBlockOfTheTargetIsAtTheSpacingOrALeaf) {
   std::mt19937 random(5);
-  const BlockTree blocks(random_tree(random, 5, false));
+  const ldc::BlockTree blocks(random_tree(random, 5, false));
   const SelectionTree tree(blocks);
-  const CameraFrame frame = view_from({0, 0, 2.5});
+  const geometry::CameraFrame frame = view_from({0, 0, 2.5});
   for (const double spacing : {0.5, 1.0, 2.0, 4.0}) {
     const BlockSelection s = select_blocks(tree, frame, {.spacing = spacing}, all_of(blocks));
     for (const uint32_t b : s.target) {
@@ -87,18 +87,18 @@ TEST(SelectBlocks, EveryBlockOfTheTargetIsAtTheSpacingOrALeaf) {
 
 TEST(SelectBlocks, AWallOf64BlocksHasUnlikeLevelsNearAndFar) {
   // A wall along z, seen from its near end: a root, 64 cells of it, and eight parts of each.
-  std::vector<BlockEntry> blocks{block_at({1, 0, 0}, 0.1, 3)};
-  blocks[0].bounds = Box{{1, -1, -128}, {1.2, 1, 0}};
+  std::vector<ldc::BlockEntry> blocks{block_at({1, 0, 0}, 0.1, 3)};
+  blocks[0].bounds = geometry::Box{{1, -1, -128}, {1.2, 1, 0}};
   for (int i = 0; i < 64; ++i) {
-    BlockEntry cell = block_at({1.1, 0, -2 * i - 1}, 1, 0.05);
+    ldc::BlockEntry cell = block_at({1.1, 0, -2 * i - 1}, 1, 0.05);
     cell.parent = 0;
     cell.surfels = 4096;
     blocks.push_back(cell);
   }
   for (uint32_t i = 1; i <= 64; ++i) split(blocks, i, 8, 4096);
-  const BlockTree entries(blocks);
+  const ldc::BlockTree entries(blocks);
   const SelectionTree tree(entries);
-  const CameraFrame frame = view_from({0, 0, 4});
+  const geometry::CameraFrame frame = view_from({0, 0, 4});
   const BlockSelection s = select_blocks(tree, frame, {.spacing = 0.2}, all_of(entries));
   expect_cut(tree, frame, s.draw);
   EXPECT_TRUE(std::binary_search(s.refined.begin(), s.refined.end(), 1u)) << "the nearest cell is refined";
@@ -113,21 +113,21 @@ TEST(SelectBlocks, AWallOf64BlocksHasUnlikeLevelsNearAndFar) {
 }
 
 TEST(SelectBlocks, ASubtreeWhoseNormalsAllFaceAwayIsSkipped) {
-  std::vector<BlockEntry> blocks{block_at({0, 0, -10}, 1, 0.1)};
+  std::vector<ldc::BlockEntry> blocks{block_at({0, 0, -10}, 1, 0.1)};
   for (const float z : {1.0F, -1.0F}) {
-    BlockEntry child = facing(block_at({0, 0, -10}, 0.5, 0.05), {0, 0, z}, 0.3F);
+    ldc::BlockEntry child = facing(block_at({0, 0, -10}, 0.5, 0.05), {0, 0, z}, 0.3F);
     child.parent = 0;
     blocks.push_back(child);
   }
-  const BlockTree entries(blocks);
+  const ldc::BlockTree entries(blocks);
   EXPECT_THAT(select_blocks(SelectionTree(entries), view_from({0, 0, 0}), {}, all_of(entries)).draw, ElementsAre(1));
 }
 
 TEST(SelectBlocks, FromWithinTheModelWhatSurroundsTheEyeIsRefinedFirst) {
   std::mt19937 random(11);
-  const BlockTree blocks(random_tree(random, 5, false));
+  const ldc::BlockTree blocks(random_tree(random, 5, false));
   const SelectionTree tree(blocks);
-  const CameraFrame frame = view_from({0.1, 0.1, 0.1});
+  const geometry::CameraFrame frame = view_from({0.1, 0.1, 0.1});
   expect_cut(tree, frame, select_blocks(tree, frame, {}, all_of(blocks)).draw);
   const BlockSelection s = select_blocks(tree, frame, {.surfels = 60000}, all_of(blocks));
   expect_cut(tree, frame, s.draw);
@@ -136,14 +136,14 @@ TEST(SelectBlocks, FromWithinTheModelWhatSurroundsTheEyeIsRefinedFirst) {
 }
 
 TEST(SelectBlocks, FromAMillionModelSizesAwayTheRootIsEnough) {
-  const BlockTree blocks = two_splits();
+  const ldc::BlockTree blocks = two_splits();
   const SelectionTree tree(blocks);
   EXPECT_THAT(select_blocks(tree, view_from({0, 0, 8e6}), {.spacing = 0.5}, all_of(blocks)).draw, ElementsAre(0));
   EXPECT_EQ(select_blocks(tree, view_from({0, 0, 8e6}), {}, all_of(blocks)).draw.size(), 16u) << "unless all is wanted";
 }
 
 TEST(SelectBlocks, OneBlockIsDrawnOrNotSeen) {
-  const BlockTree one({block_at({0, 0, -10}, 1)});
+  const ldc::BlockTree one({block_at({0, 0, -10}, 1)});
   const SelectionTree tree(one);
   const BlockSelection s = select_blocks(tree, view_from({0, 0, 0}), {.spacing = 1}, {true});
   EXPECT_THAT(s.draw, ElementsAre(0));
@@ -152,13 +152,13 @@ TEST(SelectBlocks, OneBlockIsDrawnOrNotSeen) {
 }
 
 TEST(SelectBlocks, AForestOfSingleBlocksHasOneLevel) {
-  const BlockTree forest({block_at({-3, 0, -10}, 1), block_at({3, 0, -10}, 1), block_at({0, 0, 10}, 1)});
+  const ldc::BlockTree forest({block_at({-3, 0, -10}, 1), block_at({3, 0, -10}, 1), block_at({0, 0, 10}, 1)});
   EXPECT_THAT(select_blocks(SelectionTree(forest), view_from({0, 0, 0}), {}, all_of(forest)).draw, ElementsAre(0, 1));
 }
 
 TEST(SelectBlocks, ASlowPathBackAndForthSwitchesEachBlockOnce) {
   std::mt19937 random(2);
-  const BlockTree blocks(random_tree(random, 5, false));
+  const ldc::BlockTree blocks(random_tree(random, 5, false));
   const SelectionTree tree(blocks);
   const auto switches = [&](bool remember) {
     std::vector<uint32_t> refined;
@@ -183,9 +183,9 @@ TEST(SelectBlocks, ASlowPathBackAndForthSwitchesEachBlockOnce) {
 }
 
 TEST(SelectBlocks, BlocksGoBackToCoarserOnceTheSpacingIsAFifthBelow) {
-  const BlockTree blocks = two_splits();
+  const ldc::BlockTree blocks = two_splits();
   const SelectionTree tree(blocks);
-  const CameraFrame frame = view_from({0, 0, 0});
+  const geometry::CameraFrame frame = view_from({0, 0, 0});
   const double root = projected_spacing(blocks.blocks()[0], frame);
   const std::vector<uint32_t> refined{0};
   EXPECT_EQ(select_blocks(tree, frame, {.spacing = 1.2 * root}, all_of(blocks), refined).draw.size(), 4u);
@@ -193,9 +193,9 @@ TEST(SelectBlocks, BlocksGoBackToCoarserOnceTheSpacingIsAFifthBelow) {
 }
 
 TEST(SelectBlocks, TheBudgetIsNeverExceededAndWhatFitsIsUsed) {
-  const BlockTree blocks = two_splits();
+  const ldc::BlockTree blocks = two_splits();
   const SelectionTree tree(blocks);
-  const CameraFrame frame = view_from({0, 0, 0});
+  const geometry::CameraFrame frame = view_from({0, 0, 0});
   const auto drawn = [&](uint64_t budget, uint32_t page = 1) {
     const BlockSelection s = select_blocks(tree, frame, {.surfels = budget, .page = page}, all_of(blocks));
     expect_cut(tree, frame, s.draw);
@@ -214,17 +214,17 @@ TEST(SelectBlocks, TheBudgetIsNeverExceededAndWhatFitsIsUsed) {
 }
 
 TEST(SelectBlocks, TheLargestErrorIsRefinedFirst) {
-  std::vector<BlockEntry> blocks{block_at({-4, 0, -10}, 1, 0.1), block_at({4, 0, -10}, 1, 0.3)};
+  std::vector<ldc::BlockEntry> blocks{block_at({-4, 0, -10}, 1, 0.1), block_at({4, 0, -10}, 1, 0.3)};
   split(blocks, 0, 2, 1000);
   split(blocks, 1, 2, 1000);
-  const BlockTree entries(blocks);
+  const ldc::BlockTree entries(blocks);
   const BlockSelection s =
       select_blocks(SelectionTree(entries), view_from({0, 0, 0}), {.surfels = 3000}, all_of(entries));
   EXPECT_THAT(s.draw, ElementsAre(0, 4, 5));
 }
 
 TEST(SelectBlocks, WithNothingButTheRootResidentItStandsInForAllAndTheRestIsWantedFromTheTopDown) {
-  const BlockTree blocks = two_splits();
+  const ldc::BlockTree blocks = two_splits();
   const SelectionTree tree(blocks);
   std::vector<bool> resident(blocks.blocks().size());
   resident[0] = true;
@@ -237,7 +237,7 @@ TEST(SelectBlocks, WithNothingButTheRootResidentItStandsInForAllAndTheRestIsWant
 }
 
 TEST(SelectBlocks, WithNothingResidentThereIsAHoleAndTheRootIsMostUrgent) {
-  const BlockTree blocks = two_splits();
+  const ldc::BlockTree blocks = two_splits();
   const SelectionTree tree(blocks);
   const BlockSelection s =
       select_blocks(tree, view_from({0, 0, 0}), {}, std::vector<bool>(blocks.blocks().size(), false));
@@ -248,7 +248,7 @@ TEST(SelectBlocks, WithNothingResidentThereIsAHoleAndTheRootIsMostUrgent) {
 }
 
 TEST(SelectBlocks, AllChildrenReplaceABlockOrNoneDoes) {
-  const BlockTree blocks = two_splits();
+  const ldc::BlockTree blocks = two_splits();
   const SelectionTree tree(blocks);
   std::vector<bool> resident = all_of(blocks);
   resident[2] = resident[9] = false;  // block 2 and its first child
@@ -260,11 +260,11 @@ TEST(SelectBlocks, AllChildrenReplaceABlockOrNoneDoes) {
 }
 
 TEST(SelectBlocks, WhenTheViewBecomesCoarserWhatIsResidentBelowStandsIn) {
-  const BlockTree blocks = two_splits();
+  const ldc::BlockTree blocks = two_splits();
   const SelectionTree tree(blocks);
   std::vector<bool> resident = all_of(blocks);
   for (uint32_t b = 1; b <= 4; ++b) resident[b] = false;
-  const CameraFrame frame = view_from({0, 0, 0});
+  const geometry::CameraFrame frame = view_from({0, 0, 0});
   const double middle = projected_spacing(blocks.blocks()[2], frame);
   const BlockSelection s = select_blocks(tree, frame, {.spacing = 1.2 * middle}, resident);
   EXPECT_THAT(s.target, ElementsAre(1, 2, 3, 4));
@@ -277,9 +277,9 @@ TEST(SelectBlocks, WhenTheViewBecomesCoarserWhatIsResidentBelowStandsIn) {
 TEST(SelectBlocks, FinerSpacingsNeverDrawCoarserBlocks) {
   std::mt19937 random(17);
   for (int k = 0; k < 20; ++k) {
-    const BlockTree blocks(random_tree(random, 4, false));
+    const ldc::BlockTree blocks(random_tree(random, 4, false));
     const SelectionTree tree(blocks);
-    const CameraFrame frame = view_from({0, 0.2, 2.0 + 0.1 * k});
+    const geometry::CameraFrame frame = view_from({0, 0.2, 2.0 + 0.1 * k});
     const uint64_t budget = k % 2 == 0 ? UINT64_MAX : 100000;
     std::vector<uint32_t> coarser;
     for (const double spacing : {8.0, 4.0, 2.0, 1.0, 0.5, 0.0}) {
@@ -291,24 +291,24 @@ TEST(SelectBlocks, FinerSpacingsNeverDrawCoarserBlocks) {
 }
 
 TEST(SelectBlocks, AChainAsLongAsAHostileFileMayMakeItIsWalked) {
-  std::vector<BlockEntry> blocks{block_at({0, 0, -10}, 1)};
+  std::vector<ldc::BlockEntry> blocks{block_at({0, 0, -10}, 1)};
   for (uint32_t i = 1; i < 100000; ++i) {
     blocks.push_back(block_at({0, 0, -10}, 1));
     blocks.back().parent = i - 1;
   }
-  const BlockTree entries(blocks);
+  const ldc::BlockTree entries(blocks);
   EXPECT_THAT(select_blocks(SelectionTree(entries), view_from({0, 0, 0}), {}, all_of(entries)).draw,
               ElementsAre(99999));
 }
 
 TEST(BlocksInRectangle, APartOfThePictureSeesItsBlocksOnly) {
-  const BlockTree forest({block_at({-5, 0, -10}, 0.5), block_at({5, 0, -10}, 0.5)});
+  const ldc::BlockTree forest({block_at({-5, 0, -10}, 0.5), block_at({5, 0, -10}, 0.5)});
   const SelectionTree tree(forest);
-  const CameraFrame frame = view_from({0, 0, 0});
+  const geometry::CameraFrame frame = view_from({0, 0, 0});
   const std::vector<uint32_t> both{0, 1};
   EXPECT_THAT(blocks_in_rectangle(tree, both, frame, 0, 0, 50, 100), ElementsAre(0));
   EXPECT_THAT(blocks_in_rectangle(tree, both, frame, 50, 0, 100, 100), ElementsAre(1));
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::selection

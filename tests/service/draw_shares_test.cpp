@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-namespace surfcast {
+namespace surfcast::service {
 namespace {
 
 /// A render thread with a clock of its own, a picture at rest in batches, and hands that move.
@@ -13,7 +13,7 @@ class RenderThread {
  public:
   struct Mover {
     double draw_ms = 20;      ///< of a frame
-    double pause_ms = 0;      ///< from a frame to the wish for the next
+    double pause_ms = 0;      ///< from a frame to the request for the next
     double wanted_since = 0;  ///< the frame that is wished for now
     double longest_wait = 0;  ///< of its frames
     int frames = 0;
@@ -106,4 +106,4 @@ TEST(DrawShares, AnExpensiveFrameDoesNotStopTheMotionForLong) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::service

@@ -9,10 +9,10 @@
 #include <utility>
 #include <vector>
 
+#include "service/frame_renderer.h"
 #include "service/model_source.h"
-#include "service/painter.h"
 
-namespace surfcast {
+namespace surfcast::service {
 
 /// Two models: "cube", z-up, and "teapot", y-up.
 class FakeModels : public ModelSource {
@@ -35,54 +35,54 @@ class FakeModels : public ModelSource {
     description.blocks = 7;
     return description;
   }
-  [[nodiscard]] Result<std::shared_ptr<const ModelFile>> open(const std::string& name) const override {
+  [[nodiscard]] Result<std::shared_ptr<const model::ModelFile>> open(const std::string& name) const override {
     return fail(ErrorKind::kNotFound, name + ": there is no file of this model");
   }
 };
 
-/// What a fake painter is told to do, shared with the test that watches it.
-struct FakeStudio {
-  std::atomic<int> drawn = 0;       ///< pictures begun
-  std::atomic<int> cancelled = 0;   ///< pictures given up half-way
-  std::atomic<int> interludes = 0;  ///< others were drawn in the middle of a slow picture
-  static constexpr int kRehearsals = 3;
-  std::atomic<int> rehearsed = 0;       ///< times
-  std::atomic<int> frame_ms = 0;        ///< that a picture takes at least
-  std::atomic<bool> slow = false;       ///< every picture goes on until it is cancelled or `slow` is taken back
-  std::atomic<bool> slow_quick = true;  ///< pictures for motion are as slow as others
-  std::vector<std::string> order;       ///< models in the order they were drawn; read it when nothing is being drawn
+/// What a fake renderer is told to do, shared with the test that watches it.
+struct FakeRendererControl {
+  std::atomic<int> drawn = 0;          ///< pictures begun
+  std::atomic<int> cancelled = 0;      ///< pictures given up half-way
+  std::atomic<int> nested_frames = 0;  ///< others were drawn in the middle of a slow picture
+  static constexpr int kWarmUps = 3;
+  std::atomic<int> warmed_up = 0;        ///< times
+  std::atomic<int> frame_ms = 0;         ///< that a picture takes at least
+  std::atomic<bool> slow = false;        ///< every picture goes on until it is cancelled or `slow` is taken back
+  std::atomic<bool> slow_motion = true;  ///< pictures for motion are as slow as others
+  std::vector<std::string> order;        ///< models in the order they were drawn; read it when nothing is being drawn
 };
 
 /// Fills pictures with the background's colour, or for the model "noise" with what no format makes smaller.
-class FakePainter : public Painter {
+class FakeRenderer : public FrameRenderer {
  public:
-  explicit FakePainter(std::shared_ptr<FakeStudio> studio) : studio_(std::move(studio)) {}
+  explicit FakeRenderer(std::shared_ptr<FakeRendererControl> control) : control_(std::move(control)) {}
 
-  Result<Frame> draw(const std::string& model, const PictureRequest& request,
-                     const Interruption& interruption) override {
-    studio_->order.push_back(model);
-    ++studio_->drawn;
-    const bool slow_too = request.viewer == 0 || studio_->slow_quick;
-    for (int ms = 0; ms < studio_->frame_ms; ++ms) {
+  Result<picture::Frame> draw(const std::string& model, const picture::PictureRequest& request,
+                              const Preemption& preemption) override {
+    control_->order.push_back(model);
+    ++control_->drawn;
+    const bool slow_too = request.viewer == 0 || control_->slow_motion;
+    for (int ms = 0; ms < control_->frame_ms; ++ms) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      if (interruption.step_aside()) ++studio_->interludes;
+      if (preemption.yield_to_urgent()) ++control_->nested_frames;
     }
-    while (studio_->slow && slow_too && !interruption.cancelled()) {
+    while (control_->slow && slow_too && !preemption.cancelled()) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
-      if (interruption.step_aside()) ++studio_->interludes;
+      if (preemption.yield_to_urgent()) ++control_->nested_frames;
     }
-    if (interruption.cancelled()) {
-      ++studio_->cancelled;
+    if (preemption.cancelled()) {
+      ++control_->cancelled;
       return fail(ErrorKind::kCancelled, "cancelled");
     }
     const bool known = model == "cube" || model == "teapot" || model == "noise";
     if (!known) return fail(ErrorKind::kNotFound, model + ": there is no such model");
-    Frame frame;
+    picture::Frame frame;
     frame.image = plain_image(request);
     if (model == "noise") add_noise(frame.image);
     if (request.camera) frame.camera = *request.camera;
     frame.converged = true;
-    frame.settled = true;
+    frame.nothing_pending = true;
     frame.cut = 7;
     frame.stats.surfels_drawn = 99;
     frame.stats.blocks_drawn = 5;
@@ -90,15 +90,15 @@ class FakePainter : public Painter {
     frame.stats.stages = {{"draw", 1.5}};
     return frame;
   }
-  bool rehearse() override { return ++studio_->rehearsed < FakeStudio::kRehearsals; }
-  [[nodiscard]] const DeviceInfo& device() const override { return device_; }
+  bool warm_up() override { return ++control_->warmed_up < FakeRendererControl::kWarmUps; }
+  [[nodiscard]] const picture::DeviceInfo& device() const override { return device_; }
   [[nodiscard]] int max_resolution() const override { return 8192; }
 
  private:
-  static Image plain_image(const PictureRequest& request) {
-    Image image{request.width, request.height, request.format, {}};
+  static picture::Image plain_image(const picture::PictureRequest& request) {
+    picture::Image image{request.width, request.height, request.format, {}};
     const size_t pixels = static_cast<size_t>(request.width) * static_cast<size_t>(request.height);
-    if (request.format == PixelFormat::kLinearFloat) {
+    if (request.format == picture::PixelFormat::kLinearFloat) {
       image.pixels.resize(pixels * 4 * sizeof(float));
       return image;
     }
@@ -109,17 +109,17 @@ class FakePainter : public Painter {
     return image;
   }
 
-  static void add_noise(Image& image) {
+  static void add_noise(picture::Image& image) {
     std::mt19937 random(1);
     for (std::byte& byte : image.pixels) byte = static_cast<std::byte>(random());
   }
 
-  std::shared_ptr<FakeStudio> studio_;
-  DeviceInfo device_{"nobody", "fake", "1", false};
+  std::shared_ptr<FakeRendererControl> control_;
+  picture::DeviceInfo device_{"nobody", "fake", "1", false};
 };
 
-inline PainterFactory fake_painters(std::shared_ptr<FakeStudio> studio) {
-  return [studio]() -> Result<std::unique_ptr<Painter>> { return std::make_unique<FakePainter>(studio); };
+inline FrameRendererFactory fake_renderers(std::shared_ptr<FakeRendererControl> control) {
+  return [control]() -> Result<std::unique_ptr<FrameRenderer>> { return std::make_unique<FakeRenderer>(control); };
 }
 
-}  // namespace surfcast
+}  // namespace surfcast::service

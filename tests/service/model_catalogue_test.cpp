@@ -8,7 +8,7 @@
 #include "base/atomic_file.h"
 #include "model/write_model.h"
 
-namespace surfcast {
+namespace surfcast::service {
 namespace {
 
 namespace fs = std::filesystem;
@@ -25,7 +25,7 @@ class ModelCatalogueTest : public ::testing::Test {
 
   /// A model of `count` surfels in a row.
   fs::path write(const fs::path& name, size_t count) const {
-    SurfelCloud cloud;
+    surfel::SurfelCloud cloud;
     for (size_t i = 0; i < count; ++i) {
       cloud.positions.push_back({static_cast<double>(i), 0, 0});
       cloud.normals.push_back({0, 0, 1});
@@ -34,7 +34,7 @@ class ModelCatalogueTest : public ::testing::Test {
     }
     cloud.sources = {{"row", 0, count, std::nullopt}};
     cloud.z_up = false;
-    EXPECT_TRUE(write_model(cloud, folder_ / name, {}));
+    EXPECT_TRUE(model::write_model(cloud, folder_ / name, {}));
     return folder_ / name;
   }
 
@@ -120,4 +120,4 @@ TEST_F(ModelCatalogueTest, AFolderThatVanishesHoldsNothing) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::service

@@ -8,13 +8,13 @@
 
 #include "service/fake_models.h"
 
-namespace surfcast {
+namespace surfcast::service {
 namespace {
 
 class RenderServiceTest : public ::testing::Test {
  protected:
   void start(const ServiceLimits& limits = {}) {
-    auto started = RenderService::start(models_, fake_painters(studio_), limits);
+    auto started = RenderService::start(models_, fake_renderers(control_), limits);
     ASSERT_TRUE(started);
     service_ = std::move(*started);
   }
@@ -24,7 +24,7 @@ class RenderServiceTest : public ::testing::Test {
     return {id, promise->get_future()};
   }
   void wait_for_drawing(int pictures) const {
-    while (studio_->drawn < pictures) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    while (control_->drawn < pictures) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   static PictureJob job_for(const std::string& model) {
     PictureJob job;
@@ -36,12 +36,12 @@ class RenderServiceTest : public ::testing::Test {
   static PictureJob motion_of(const std::string& model) {
     PictureJob job = job_for(model);
     job.request.viewer = 1;
-    job.urgency = Urgency::kMotion;
+    job.priority = Priority::kMotion;
     return job;
   }
 
   FakeModels models_;
-  std::shared_ptr<FakeStudio> studio_ = std::make_shared<FakeStudio>();
+  std::shared_ptr<FakeRendererControl> control_ = std::make_shared<FakeRendererControl>();
   std::unique_ptr<RenderService> service_;
 };
 
@@ -62,7 +62,7 @@ TEST_F(RenderServiceTest, APictureComesBackEncodedWithItsFigures) {
 TEST_F(RenderServiceTest, ExrIsPaintedInLinearFloats) {
   start();
   PictureJob job = job_for("cube");
-  job.format = FileFormat::kExr;
+  job.format = picture::FileFormat::kExr;
   auto [id, future] = draw(1, job);
   const Result<EncodedPicture> picture = future.get();
   ASSERT_TRUE(picture);
@@ -73,7 +73,7 @@ TEST_F(RenderServiceTest, UpIsTheVerticalAxisOfTheModelWhenTheCameraHasNone) {
   start();
   for (const auto& [model, up] : {std::pair{"cube", glm::dvec3{0, 0, 1}}, std::pair{"teapot", glm::dvec3{0, 1, 0}}}) {
     PictureJob job = job_for(model);
-    job.request.camera = Camera{{1, 2, 3}, {0, 0, 0}, {9, 9, 9}, 40};
+    job.request.camera = geometry::Camera{{1, 2, 3}, {0, 0, 0}, {9, 9, 9}, 40};
     job.up_from_model = true;
     auto [id, future] = draw(1, job);
     const Result<EncodedPicture> picture = future.get();
@@ -82,7 +82,7 @@ TEST_F(RenderServiceTest, UpIsTheVerticalAxisOfTheModelWhenTheCameraHasNone) {
   }
 }
 
-TEST_F(RenderServiceTest, ErrorsOfThePainterArriveAsTheyAre) {
+TEST_F(RenderServiceTest, ErrorsOfTheRendererArriveAsTheyAre) {
   start();
   auto [id, future] = draw(1, job_for("absent"));
   const Result<EncodedPicture> picture = future.get();
@@ -101,11 +101,11 @@ TEST_F(RenderServiceTest, APictureBeyondTheLimitsIsRefusedBeforeItIsDrawn) {
     ASSERT_FALSE(picture);
     EXPECT_EQ(picture.error().kind, ErrorKind::kLimit);
   }
-  EXPECT_EQ(studio_->drawn, 0);
+  EXPECT_EQ(control_->drawn, 0);
 }
 
 TEST_F(RenderServiceTest, AFullQueueAnswersBusyAtOnce) {
-  studio_->slow = true;
+  control_->slow = true;
   start({.queued_jobs = 1});
   auto [first, drawing] = draw(1, job_for("cube"));
   wait_for_drawing(1);
@@ -114,13 +114,13 @@ TEST_F(RenderServiceTest, AFullQueueAnswersBusyAtOnce) {
   const Result<EncodedPicture> answer = refused.get();
   ASSERT_FALSE(answer);
   EXPECT_EQ(answer.error().kind, ErrorKind::kUnavailable);
-  studio_->slow = false;
+  control_->slow = false;
   EXPECT_TRUE(drawing.get());
   EXPECT_TRUE(waiting.get());
 }
 
 TEST_F(RenderServiceTest, AJobThatIsBeingDrawnStopsWhenCancelled) {
-  studio_->slow = true;
+  control_->slow = true;
   start();
   auto [id, future] = draw(1, job_for("cube"));
   wait_for_drawing(1);
@@ -128,75 +128,75 @@ TEST_F(RenderServiceTest, AJobThatIsBeingDrawnStopsWhenCancelled) {
   const Result<EncodedPicture> picture = future.get();
   ASSERT_FALSE(picture);
   EXPECT_EQ(picture.error().kind, ErrorKind::kCancelled);
-  EXPECT_EQ(studio_->cancelled, 1);
+  EXPECT_EQ(control_->cancelled, 1);
   EXPECT_FALSE(service_->cancel(id));
 }
 
 TEST_F(RenderServiceTest, AJobThatWaitsIsCancelledWithoutBeingDrawn) {
-  studio_->slow = true;
+  control_->slow = true;
   start();
   auto [first, drawing] = draw(1, job_for("cube"));
   wait_for_drawing(1);
   auto [second, waiting] = draw(1, job_for("teapot"));
   EXPECT_TRUE(service_->cancel(second));
   EXPECT_FALSE(waiting.get());
-  studio_->slow = false;
+  control_->slow = false;
   EXPECT_TRUE(drawing.get());
-  EXPECT_EQ(studio_->drawn, 1);
+  EXPECT_EQ(control_->drawn, 1);
 }
 
 TEST_F(RenderServiceTest, ASecondSessionDoesNotWaitBehindAllOfTheFirst) {
-  studio_->slow = true;
+  control_->slow = true;
   start();
   std::vector<std::future<Result<EncodedPicture>>> futures;
   futures.push_back(draw(1, job_for("cube")).second);
   wait_for_drawing(1);
   for (int i = 0; i < 4; ++i) futures.push_back(draw(1, job_for("cube")).second);
   futures.push_back(draw(2, job_for("teapot")).second);
-  studio_->slow = false;
+  control_->slow = false;
   for (auto& future : futures) EXPECT_TRUE(future.get());
-  ASSERT_EQ(studio_->order.size(), 6u);
-  EXPECT_EQ(studio_->order[2], "teapot");
+  ASSERT_EQ(control_->order.size(), 6u);
+  EXPECT_EQ(control_->order[2], "teapot");
 }
 
 TEST_F(RenderServiceTest, AMotionIsDrawnInTheMiddleOfAPictureThatTakesLong) {
-  studio_->slow = true;
-  studio_->slow_quick = false;
+  control_->slow = true;
+  control_->slow_motion = false;
   start();
-  auto [long_one, patient] = draw(1, job_for("cube"));
+  auto [long_one, still] = draw(1, job_for("cube"));
   wait_for_drawing(1);
   auto [waits, second] = draw(2, job_for("cube"));
   for (int i = 1; i <= 20; ++i) EXPECT_TRUE(draw(3, motion_of("teapot")).second.get());
-  EXPECT_EQ(studio_->drawn, 21) << "and no other picture that can wait";
-  EXPECT_GT(studio_->interludes, 0);
-  studio_->slow = false;
-  EXPECT_TRUE(patient.get());
+  EXPECT_EQ(control_->drawn, 21) << "and no other picture that can wait";
+  EXPECT_GT(control_->nested_frames, 0);
+  control_->slow = false;
+  EXPECT_TRUE(still.get());
   EXPECT_TRUE(second.get());
 }
 
 TEST_F(RenderServiceTest, AMotionIsInterruptedByNothing) {
-  studio_->slow = true;
+  control_->slow = true;
   start();
   auto [id, first] = draw(1, motion_of("cube"));
   wait_for_drawing(1);
   auto [other, second] = draw(2, motion_of("teapot"));
-  auto [patient, third] = draw(3, job_for("cube"));
+  auto [still, third] = draw(3, job_for("cube"));
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  EXPECT_EQ(studio_->drawn, 1);
-  studio_->slow = false;
+  EXPECT_EQ(control_->drawn, 1);
+  control_->slow = false;
   EXPECT_TRUE(first.get());
   EXPECT_TRUE(second.get());
   EXPECT_TRUE(third.get());
-  EXPECT_EQ(studio_->interludes, 0);
+  EXPECT_EQ(control_->nested_frames, 0);
 }
 
 TEST_F(RenderServiceTest, APictureIsDrawnBesideOneWhoNeverStopsMoving) {
-  studio_->frame_ms = 4;
+  control_->frame_ms = 4;
   start();
   std::atomic<bool> moving = true;
   std::atomic<int> frames = 0;
   std::jthread mover([&] {
-    // Two wishes at a time, so that one always waits.
+    // Two requests at a time, so that one always waits.
     std::future<Result<EncodedPicture>> last = draw(1, motion_of("cube")).second;
     for (; moving; ++frames) std::exchange(last, draw(1, motion_of("cube")).second).wait();
     last.wait();
@@ -208,7 +208,7 @@ TEST_F(RenderServiceTest, APictureIsDrawnBesideOneWhoNeverStopsMoving) {
 }
 
 TEST_F(RenderServiceTest, AMotionInTheMiddleOfAPictureCanBeReplacedAndCancelledWhileItWaits) {
-  studio_->slow = true;
+  control_->slow = true;
   start();
   auto [first, drawing] = draw(1, job_for("cube"));
   wait_for_drawing(1);
@@ -221,16 +221,16 @@ TEST_F(RenderServiceTest, AMotionInTheMiddleOfAPictureCanBeReplacedAndCancelledW
   auto [fourth, unwanted] = draw(4, motion_of("teapot"));
   EXPECT_TRUE(service_->cancel(fourth));
   EXPECT_TRUE(service_->cancel(first)) << "it stands still while the motion is drawn";
-  studio_->slow = false;
+  control_->slow = false;
   EXPECT_EQ(waiting.get()->width, 16);
   EXPECT_TRUE(moving.get());
   EXPECT_FALSE(unwanted.get());
   EXPECT_FALSE(drawing.get());
-  EXPECT_EQ(std::ranges::count(studio_->order, "teapot"), 0);
+  EXPECT_EQ(std::ranges::count(control_->order, "teapot"), 0);
 }
 
 TEST_F(RenderServiceTest, StoppingEndsAMotionInTheMiddleOfAPicture) {
-  studio_->slow = true;
+  control_->slow = true;
   start();
   auto [first, drawing] = draw(1, job_for("cube"));
   wait_for_drawing(1);
@@ -243,7 +243,7 @@ TEST_F(RenderServiceTest, StoppingEndsAMotionInTheMiddleOfAPicture) {
 
 TEST_F(RenderServiceTest, AJobThatWaitsMayDrawSomethingElseInItsPlace) {
   start();
-  studio_->slow = true;
+  control_->slow = true;
   auto first = draw(1, job_for("cube"));
   wait_for_drawing(1);
   auto second = draw(1, job_for("cube"));
@@ -255,32 +255,32 @@ TEST_F(RenderServiceTest, AJobThatWaitsMayDrawSomethingElseInItsPlace) {
   PictureJob none = job_for("cube");
   none.request.width = 0;
   EXPECT_FALSE(service_->replace(second.first, none));
-  studio_->slow = false;
+  control_->slow = false;
   EXPECT_EQ(second.second.get()->width, 16);
   EXPECT_TRUE(third.second.get());
   EXPECT_TRUE(first.second.get());
-  EXPECT_EQ(studio_->order, (std::vector<std::string>{"cube", "teapot", "cube"})) << "it keeps its turn";
+  EXPECT_EQ(control_->order, (std::vector<std::string>{"cube", "teapot", "cube"})) << "it keeps its turn";
   EXPECT_FALSE(service_->replace(second.first, other)) << "it is done";
 }
 
 TEST_F(RenderServiceTest, AJobThatWaitsTooLongIsRefusedAndNotDrawn) {
-  start({.patience = std::chrono::milliseconds(0)});
-  studio_->slow = true;
+  start({.queue_timeout = std::chrono::milliseconds(0)});
+  control_->slow = true;
   auto first = draw(1, job_for("cube"));
   auto second = draw(1, job_for("cube"));
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
-  studio_->slow = false;
+  control_->slow = false;
   const Result<EncodedPicture> late = second.second.get();
   ASSERT_FALSE(late);
   EXPECT_EQ(late.error().kind, ErrorKind::kUnavailable);
   first.second.wait();
-  EXPECT_LE(studio_->drawn, 1);
+  EXPECT_LE(control_->drawn, 1);
 }
 
 TEST_F(RenderServiceTest, AFrameThatIsKeptIsEncodedAgainWithoutBeingDrawn) {
   start();
   PictureJob job = job_for("noise");
-  job.format = FileFormat::kJpeg;
+  job.format = picture::FileFormat::kJpeg;
   job.keep_frame = true;
   const Result<EncodedPicture> jpeg = draw(1, job).second.get();
   ASSERT_TRUE(jpeg);
@@ -292,11 +292,11 @@ TEST_F(RenderServiceTest, AFrameThatIsKeptIsEncodedAgainWithoutBeingDrawn) {
   ASSERT_TRUE(again);
   EXPECT_EQ(again->bytes, direct->bytes);
   EXPECT_FALSE(again->frame);
-  EXPECT_EQ(studio_->drawn, 2);
+  EXPECT_EQ(control_->drawn, 2);
 }
 
 TEST_F(RenderServiceTest, StoppingCancelsWhatIsDrawnAndWhatWaits) {
-  studio_->slow = true;
+  control_->slow = true;
   start();
   auto [first, drawing] = draw(1, job_for("cube"));
   wait_for_drawing(1);
@@ -306,20 +306,21 @@ TEST_F(RenderServiceTest, StoppingCancelsWhatIsDrawnAndWhatWaits) {
   EXPECT_EQ(waiting.get().error().kind, ErrorKind::kCancelled);
 }
 
-TEST_F(RenderServiceTest, ThePainterRehearsesWhileNobodyWaitsAndAgainAfterAPicture) {
+TEST_F(RenderServiceTest, TheRendererWarmsUpWhileNobodyWaitsAndAgainAfterAPicture) {
   start();
-  const auto wait_for_rehearsals = [&](int times) {
-    while (studio_->rehearsed < times) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  const auto wait_for_warm_ups = [&](int times) {
+    while (control_->warmed_up < times) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   };
-  wait_for_rehearsals(FakeStudio::kRehearsals);
+  wait_for_warm_ups(FakeRendererControl::kWarmUps);
   EXPECT_TRUE(draw(1, job_for("cube")).second.get());
-  wait_for_rehearsals(FakeStudio::kRehearsals + 1);
+  wait_for_warm_ups(FakeRendererControl::kWarmUps + 1);
 }
 
-TEST_F(RenderServiceTest, AServiceWithoutAPainterDoesNotStart) {
+TEST_F(RenderServiceTest, AServiceWithoutARendererDoesNotStart) {
   const auto started = RenderService::start(
       models_,
-      []() -> Result<std::unique_ptr<Painter>> { return fail(ErrorKind::kUnavailable, "there is no GL device"); }, {});
+      []() -> Result<std::unique_ptr<FrameRenderer>> { return fail(ErrorKind::kUnavailable, "there is no GL device"); },
+      {});
   ASSERT_FALSE(started);
   EXPECT_EQ(started.error().message, "there is no GL device");
 }
@@ -337,4 +338,4 @@ TEST_F(RenderServiceTest, ModelsAreListedAndDescribed) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::service

@@ -14,7 +14,7 @@
 #include "surfel/even_sampling.h"
 #include "surfel/normalization_weights.h"
 
-namespace surfcast {
+namespace surfcast::surfel {
 namespace {
 
 using reference::KernelParameters;
@@ -31,12 +31,12 @@ KernelParameters plain_sums() {
   return kernel;
 }
 
-PictureRequest view_from(const glm::dvec3& direction) {
-  PictureRequest request;
-  request.camera = Camera{4.0 * direction, {0, 0, 0}, {0, 0, 1}, 30};
+picture::PictureRequest view_from(const glm::dvec3& direction) {
+  picture::PictureRequest request;
+  request.camera = geometry::Camera{4.0 * direction, {0, 0, 0}, {0, 0, 1}, 30};
   request.width = request.height = kResolution;
-  request.filter = Filter::kNone;
-  request.normalization = Normalization::kSurfel;  // of weights 1: nothing is scaled
+  request.filter = picture::Filter::kNone;
+  request.normalization = picture::Normalization::kSurfel;  // of weights 1: nothing is scaled
   return request;
 }
 
@@ -45,9 +45,9 @@ std::vector<std::vector<double>> capture(SurfelCloud cloud) {
   cloud.weights.assign(cloud.size(), 1);
   std::vector<std::vector<double>> captured(cloud.size());
   for (const reference::SurfacePoint& from : reference::jittered_sphere(kViews, 0, 1)) {
-    const PictureRequest request = view_from(from.position);
+    const picture::PictureRequest request = view_from(from.position);
     const reference::ReferencePicture view = reference::render(cloud, request, plain_sums());
-    const CameraFrame frame = *make_camera_frame(*request.camera, kResolution, kResolution);
+    const geometry::CameraFrame frame = *geometry::make_camera_frame(*request.camera, kResolution, kResolution);
     for (size_t i = 0; i < cloud.size(); ++i) {
       const glm::dvec3 o = frame.to_camera(cloud.positions[i]);
       const glm::dvec3 n = frame.rotate(glm::dvec3(cloud.normals[i]));
@@ -81,4 +81,4 @@ TEST(CapturedWeights, AgreeWithWeightsFromTheNeighbours) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::surfel

@@ -4,10 +4,10 @@
 
 #include <gtest/gtest.h>
 
-namespace surfcast {
+namespace surfcast::surfel {
 namespace {
 
-TEST(LargestDrawnRadius, StraysAreHeldBackAndOrdinarySurfelsAreNot) {
+TEST(LargestDrawnRadius, OutliersAreHeldBackAndOrdinarySurfelsAreNot) {
   std::vector<float> radii(100, 0.01F);
   EXPECT_FLOAT_EQ(largest_drawn_radius(radii), 0.04F);
   radii[7] = 1;
@@ -16,4 +16,4 @@ TEST(LargestDrawnRadius, StraysAreHeldBackAndOrdinarySurfelsAreNot) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::surfel

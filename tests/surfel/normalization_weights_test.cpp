@@ -9,7 +9,7 @@
 
 #include "shared/kernel.h"
 
-namespace surfcast {
+namespace surfcast::surfel {
 namespace {
 
 void add_surfel(SurfelCloud& cloud, const glm::dvec3& position, double radius = 1,
@@ -166,4 +166,4 @@ TEST(NormalizationWeights, DoNotChangeWithTheScaleOrThePlaceOfTheModel) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::surfel

@@ -2,7 +2,7 @@
 
 #include <gtest/gtest.h>
 
-namespace surfcast {
+namespace surfcast::surfel {
 namespace {
 
 TEST(Srgb, EveryColorOfBothDepthsComesBack) {
@@ -23,4 +23,4 @@ TEST(Srgb, KnownValuesOfTheStandard) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::surfel

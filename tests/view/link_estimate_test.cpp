@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace surfcast {
+namespace surfcast::view {
 namespace {
 
 /// A line of a rate and a round trip, with messages in the order they are sent.
@@ -119,4 +119,4 @@ TEST(LinkEstimate, ClaimsOfAClientThatCannotBeDoNoHarm) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::view

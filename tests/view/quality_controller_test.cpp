@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-namespace surfcast {
+namespace surfcast::view {
 namespace {
 
 /// A machine: what a frame of a quality costs on it.
@@ -159,4 +159,4 @@ TEST(QualityController, AfterAStallTheQualityComesBack) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::view

@@ -4,7 +4,7 @@
 
 #include <gtest/gtest.h>
 
-namespace surfcast {
+namespace surfcast::view {
 namespace {
 
 using std::chrono::milliseconds;
@@ -20,7 +20,7 @@ class ViewPlanTest : public ::testing::Test {
   /// Milliseconds until the plan wants to be asked again; -1: it waits for an event.
   [[nodiscard]] long asked_in() const {
     const ViewStep step = plan_.next(now_);
-    return step.look_again ? std::chrono::duration_cast<milliseconds>(*step.look_again - now_).count() : -1;
+    return step.wake_at ? std::chrono::duration_cast<milliseconds>(*step.wake_at - now_).count() : -1;
   }
   uint64_t begin(FrameKind kind) {
     EXPECT_EQ(drawn(), kind);
@@ -28,21 +28,21 @@ class ViewPlanTest : public ::testing::Test {
     return frame_;
   }
   /// From the beginning of a frame to its arrival at the client.
-  void draw_and_send(FrameKind kind, FrameNews news = FrameNews::kComplete) {
+  void draw_and_send(FrameKind kind, FrameResult result = FrameResult::kComplete) {
     const uint64_t frame = begin(kind);
-    plan_.finish(frame, news, now_);
-    if (news != FrameNews::kNothing) plan_.send(kind, /*last=*/true);
+    plan_.finish(frame, result, now_);
+    if (result != FrameResult::kNothing) plan_.send(kind, /*last=*/true);
   }
-  void show(FrameKind kind, FrameNews news = FrameNews::kComplete) {
-    draw_and_send(kind, news);
-    if (news != FrameNews::kNothing) plan_.acknowledge(kind);
+  void show(FrameKind kind, FrameResult result = FrameResult::kComplete) {
+    draw_and_send(kind, result);
+    if (result != FrameResult::kNothing) plan_.acknowledge(kind);
   }
 
   static constexpr uint32_t kAny = std::numeric_limits<uint32_t>::max();
   /// The most blocks that a frame at rest may miss to be drawn, after a look that missed so many.
-  uint32_t most_missing(uint32_t missing) {
-    plan_.look(missing, now_);
-    return plan_.most_missing(now_);
+  uint32_t max_missing_blocks(uint32_t missing) {
+    plan_.record_missing(missing, now_);
+    return plan_.max_missing_blocks(now_);
   }
 
   ViewPlan plan_{ViewTiming{}};
@@ -52,10 +52,10 @@ class ViewPlanTest : public ::testing::Test {
 
 TEST_F(ViewPlanTest, APictureAtRestIsDrawnQuicklyThenFinelyThenFinallyAndNeverAgain) {
   update(/*moving=*/false);
-  show(FrameKind::kQuick);
+  show(FrameKind::kMotion);
   EXPECT_EQ(asked_in(), 150);
   pass(150);
-  show(FrameKind::kFine);
+  show(FrameKind::kRefined);
   EXPECT_EQ(asked_in(), 350);
   pass(350);
   show(FrameKind::kFinal);
@@ -67,13 +67,13 @@ TEST_F(ViewPlanTest, APictureAtRestIsDrawnQuicklyThenFinelyThenFinallyAndNeverAg
 
 TEST_F(ViewPlanTest, AMotionThatIsNotSaidToHaveEndedRestsAfterAWhile) {
   update(/*moving=*/true);
-  show(FrameKind::kQuick);
+  show(FrameKind::kMotion);
   EXPECT_EQ(asked_in(), 250 + 150);
 }
 
 TEST_F(ViewPlanTest, TheEndOfAMotionCountsFromItsLastMovement) {
   update(/*moving=*/true);
-  show(FrameKind::kQuick);
+  show(FrameKind::kMotion);
   pass(100);
   update(/*moving=*/false, /*changed=*/false);
   EXPECT_EQ(asked_in(), 50);
@@ -81,9 +81,9 @@ TEST_F(ViewPlanTest, TheEndOfAMotionCountsFromItsLastMovement) {
 
 TEST_F(ViewPlanTest, AnUpdateThatShowsNothingElseStopsNothing) {
   update(/*moving=*/false);
-  show(FrameKind::kQuick);
+  show(FrameKind::kMotion);
   pass(150);
-  begin(FrameKind::kFine);
+  begin(FrameKind::kRefined);
   update(/*moving=*/false, /*changed=*/false);
   EXPECT_TRUE(plan_.outdated().empty());
   EXPECT_EQ(drawn(), std::nullopt);
@@ -91,77 +91,77 @@ TEST_F(ViewPlanTest, AnUpdateThatShowsNothingElseStopsNothing) {
 
 TEST_F(ViewPlanTest, AFrameIsDrawnWhileTheLastOneIsOnItsWay) {
   update(/*moving=*/true);
-  draw_and_send(FrameKind::kQuick);
+  draw_and_send(FrameKind::kMotion);
   update(/*moving=*/true);
-  draw_and_send(FrameKind::kQuick);
+  draw_and_send(FrameKind::kMotion);
   update(/*moving=*/true);
   EXPECT_EQ(drawn(), std::nullopt) << "two are on their way";
   EXPECT_FALSE(plan_.may_send());
   EXPECT_EQ(asked_in(), -1) << "only the client can change that";
-  plan_.acknowledge(FrameKind::kQuick);
-  EXPECT_EQ(drawn(), FrameKind::kQuick);
+  plan_.acknowledge(FrameKind::kMotion);
+  EXPECT_EQ(drawn(), FrameKind::kMotion);
 }
 
 TEST_F(ViewPlanTest, TheNewestUpdateTakesThePlaceOfOneThatWaits) {
   update(/*moving=*/true);
-  begin(FrameKind::kQuick);
+  begin(FrameKind::kMotion);
   update(/*moving=*/true);
-  const uint64_t waiting = begin(FrameKind::kQuick);
-  EXPECT_EQ(plan_.renewable(), std::nullopt) << "it shows the newest";
+  const uint64_t waiting = begin(FrameKind::kMotion);
+  EXPECT_EQ(plan_.retargetable(), std::nullopt) << "it shows the newest";
   update(/*moving=*/true);
-  EXPECT_EQ(plan_.renewable(), waiting);
-  plan_.renew(waiting);
-  EXPECT_EQ(plan_.renewable(), std::nullopt);
+  EXPECT_EQ(plan_.retargetable(), waiting);
+  plan_.retarget(waiting);
+  EXPECT_EQ(plan_.retargetable(), std::nullopt);
   EXPECT_EQ(drawn(), std::nullopt) << "the newest is taken care of";
 }
 
 TEST_F(ViewPlanTest, AnUpdateOutdatesFramesAtRest) {
   update(/*moving=*/false);
-  show(FrameKind::kQuick);
+  show(FrameKind::kMotion);
   pass(150);
-  const uint64_t fine = begin(FrameKind::kFine);
+  const uint64_t fine = begin(FrameKind::kRefined);
   update(/*moving=*/true);
   EXPECT_EQ(plan_.outdated(), std::vector<uint64_t>{fine});
   plan_.drop(fine);
-  EXPECT_FALSE(plan_.expects(fine));
-  EXPECT_EQ(drawn(), FrameKind::kQuick) << "at once";
-  plan_.finish(fine, FrameNews::kComplete, now_);
-  EXPECT_EQ(drawn(), FrameKind::kQuick) << "what comes of it late does not matter";
+  EXPECT_FALSE(plan_.is_pending(fine));
+  EXPECT_EQ(drawn(), FrameKind::kMotion) << "at once";
+  plan_.finish(fine, FrameResult::kComplete, now_);
+  EXPECT_EQ(drawn(), FrameKind::kMotion) << "what comes of it late does not matter";
 }
 
 TEST_F(ViewPlanTest, AnOlderFrameDoesNotPassForTheNewestPicture) {
   update(/*moving=*/false);
-  const uint64_t old = begin(FrameKind::kQuick);
+  const uint64_t old = begin(FrameKind::kMotion);
   update(/*moving=*/false);
-  plan_.finish(old, FrameNews::kComplete, now_);
-  plan_.send(FrameKind::kQuick, true);
-  EXPECT_EQ(drawn(), FrameKind::kQuick);
+  plan_.finish(old, FrameResult::kComplete, now_);
+  plan_.send(FrameKind::kMotion, true);
+  EXPECT_EQ(drawn(), FrameKind::kMotion);
 }
 
 TEST_F(ViewPlanTest, BlocksThatComeAreDrawnUntilNoneIsMissing) {
   update(/*moving=*/false);
-  show(FrameKind::kQuick, FrameNews::kImproves);
+  show(FrameKind::kMotion, FrameResult::kImprovable);
   pass(150);
-  show(FrameKind::kFine, FrameNews::kImproves);
+  show(FrameKind::kRefined, FrameResult::kImprovable);
   EXPECT_EQ(asked_in(), 50);
   for (int i = 0; i < 20; ++i) {
     pass(50);
-    show(FrameKind::kFine, i % 2 == 0 ? FrameNews::kNothing : FrameNews::kImproves);
+    show(FrameKind::kRefined, i % 2 == 0 ? FrameResult::kNothing : FrameResult::kImprovable);
   }
   pass(50);
-  show(FrameKind::kFine, FrameNews::kComplete);
+  show(FrameKind::kRefined, FrameResult::kComplete);
   show(FrameKind::kFinal);
 }
 
 TEST_F(ViewPlanTest, BlocksThatNeverComeDoNotKeepItFromTheFinalFrame) {
   update(/*moving=*/false);
-  show(FrameKind::kQuick, FrameNews::kImproves);
+  show(FrameKind::kMotion, FrameResult::kImprovable);
   pass(150);
-  show(FrameKind::kFine, FrameNews::kImproves);
+  show(FrameKind::kRefined, FrameResult::kImprovable);
   int looks = 0;
   for (; looks < 1000 && asked_in() == 50; ++looks) {
     pass(50);
-    show(FrameKind::kFine, FrameNews::kNothing);
+    show(FrameKind::kRefined, FrameResult::kNothing);
   }
   EXPECT_LT(looks, 110);
   EXPECT_EQ(drawn(), FrameKind::kFinal);
@@ -177,7 +177,7 @@ struct LargeModel {
 TEST_F(ViewPlanTest, FewFramesAreDrawnWhileBlocksArrive) {
   const LargeModel model;
   update(/*moving=*/false);
-  show(FrameKind::kQuick, FrameNews::kImproves);
+  show(FrameKind::kMotion, FrameResult::kImprovable);
   const ViewTime rest = now_;
   pass(150);
   double work_ms = 0;
@@ -186,17 +186,17 @@ TEST_F(ViewPlanTest, FewFramesAreDrawnWhileBlocksArrive) {
     const double ms = std::chrono::duration<double, std::milli>(now_ - rest).count();
     const auto come = std::min(model.blocks, static_cast<uint32_t>(ms * model.blocks_per_ms));
     const uint32_t missing = model.blocks - come;
-    const uint64_t frame = begin(FrameKind::kFine);
-    plan_.look(missing, now_);
-    const bool worth = drawn_frames == 0 || missing == 0 || missing <= plan_.most_missing(now_);
+    const uint64_t frame = begin(FrameKind::kRefined);
+    plan_.record_missing(missing, now_);
+    const bool worth = drawn_frames == 0 || missing == 0 || missing <= plan_.max_missing_blocks(now_);
     if (worth) {
       const double draw_ms = model.draw_ms * come / model.blocks;
       now_ += std::chrono::microseconds(static_cast<long>(1000 * draw_ms));
-      plan_.drew(draw_ms, missing, now_);
+      plan_.record_draw(draw_ms, missing, now_);
       work_ms += draw_ms;
       ++drawn_frames;
     }
-    plan_.finish(frame, missing == 0 ? FrameNews::kComplete : FrameNews::kNothing, now_);
+    plan_.finish(frame, missing == 0 ? FrameResult::kComplete : FrameResult::kNothing, now_);
     if (missing == 0) break;
     pass(50);
   }
@@ -209,118 +209,118 @@ TEST_F(ViewPlanTest, FewFramesAreDrawnWhileBlocksArrive) {
 
 TEST_F(ViewPlanTest, AFrameThatShowsLittleMoreIsNotDrawn) {
   update(/*moving=*/false);
-  plan_.drew(/*draw_ms=*/100, /*missing=*/40, now_);
+  plan_.record_draw(/*draw_ms=*/100, /*missing=*/40, now_);
   pass(199);
-  EXPECT_EQ(most_missing(30), 0u) << "only with all that are to come";
+  EXPECT_EQ(max_missing_blocks(30), 0u) << "only with all that are to come";
   pass(1);
-  EXPECT_EQ(most_missing(30), 30u);
-  plan_.drew(100, 1, now_);
+  EXPECT_EQ(max_missing_blocks(30), 30u);
+  plan_.record_draw(100, 1, now_);
   pass(200);
-  EXPECT_EQ(most_missing(1), 1u);
+  EXPECT_EQ(max_missing_blocks(1), 1u);
 }
 
 TEST_F(ViewPlanTest, TheFirstFrameAtRestWaitsAMomentForItsBlocks) {
   update(/*moving=*/false);
-  EXPECT_EQ(most_missing(10), 0u);
+  EXPECT_EQ(max_missing_blocks(10), 0u);
   pass(499);
-  EXPECT_EQ(most_missing(10), 0u);
+  EXPECT_EQ(max_missing_blocks(10), 0u);
   pass(1);
-  EXPECT_EQ(most_missing(10), kAny) << "none came: what is there is shown";
+  EXPECT_EQ(max_missing_blocks(10), kAny) << "none came: what is there is shown";
 }
 
 TEST_F(ViewPlanTest, TheFirstFrameAtRestWaitsForAllBlocksThatComeSoon) {
   update(/*moving=*/false);
-  EXPECT_EQ(most_missing(700), 0u);
+  EXPECT_EQ(max_missing_blocks(700), 0u);
   pass(1000);
-  EXPECT_EQ(most_missing(500), 0u) << "200 in 1000 ms: 500 more take 2500 ms";
-  EXPECT_EQ(most_missing(510), kAny) << "190 in 1000 ms: 510 more take too long";
+  EXPECT_EQ(max_missing_blocks(500), 0u) << "200 in 1000 ms: 500 more take 2500 ms";
+  EXPECT_EQ(max_missing_blocks(510), kAny) << "190 in 1000 ms: 510 more take too long";
   pass(1000);
-  EXPECT_EQ(most_missing(100), 0u) << "600 in 2000 ms: the last 100 take 333 ms";
-  plan_.drew(/*draw_ms=*/100, /*missing=*/0, now_);
+  EXPECT_EQ(max_missing_blocks(100), 0u) << "600 in 2000 ms: the last 100 take 333 ms";
+  plan_.record_draw(/*draw_ms=*/100, /*missing=*/0, now_);
   update(/*moving=*/false);
-  EXPECT_EQ(most_missing(700), 0u);
+  EXPECT_EQ(max_missing_blocks(700), 0u);
   pass(600);
-  EXPECT_EQ(most_missing(400), kAny) << "300 in 600 ms: 400 more take 800 ms, and drawing 100";
+  EXPECT_EQ(max_missing_blocks(400), kAny) << "300 in 600 ms: 400 more take 800 ms, and drawing 100";
   pass(600);
-  EXPECT_EQ(most_missing(100), 0u) << "600 in 1200 ms: 100 more take 200 ms";
+  EXPECT_EQ(max_missing_blocks(100), 0u) << "600 in 1200 ms: 100 more take 200 ms";
   update(/*moving=*/false);
-  EXPECT_EQ(most_missing(500), 0u) << "another picture";
+  EXPECT_EQ(max_missing_blocks(500), 0u) << "another picture";
   pass(500);
-  EXPECT_EQ(most_missing(500), kAny);
+  EXPECT_EQ(max_missing_blocks(500), kAny);
 }
 
 TEST_F(ViewPlanTest, BlocksThatComeSoonerThanAFrameIsDrawnAreWaitedFor) {
   update(/*moving=*/false);
-  plan_.drew(/*draw_ms=*/500, /*missing=*/700, now_);
+  plan_.record_draw(/*draw_ms=*/500, /*missing=*/700, now_);
   pass(1200);
-  EXPECT_EQ(most_missing(100), 0u) << "600 in 1200 ms: the last 100 take 200 ms";
-  EXPECT_EQ(most_missing(400), 525u) << "300 in 1200 ms: 400 more take 1600 ms";
-  EXPECT_EQ(most_missing(700), 525u) << "none came";
+  EXPECT_EQ(max_missing_blocks(100), 0u) << "600 in 1200 ms: the last 100 take 200 ms";
+  EXPECT_EQ(max_missing_blocks(400), 525u) << "300 in 1200 ms: 400 more take 1600 ms";
+  EXPECT_EQ(max_missing_blocks(700), 525u) << "none came";
 }
 
 TEST_F(ViewPlanTest, BlocksThatArriveSlowlyAreNotGivenUp) {
   update(/*moving=*/false);
-  show(FrameKind::kQuick, FrameNews::kImproves);
+  show(FrameKind::kMotion, FrameResult::kImprovable);
   pass(150);
-  show(FrameKind::kFine, FrameNews::kImproves);
+  show(FrameKind::kRefined, FrameResult::kImprovable);
   for (uint32_t i = 0; i < 20; ++i) {
     pass(3000);
-    plan_.look(100 - i, now_);
-    show(FrameKind::kFine, FrameNews::kNothing);
+    plan_.record_missing(100 - i, now_);
+    show(FrameKind::kRefined, FrameResult::kNothing);
   }
   pass(50);
-  EXPECT_EQ(drawn(), FrameKind::kFine);
+  EXPECT_EQ(drawn(), FrameKind::kRefined);
 }
 
 TEST_F(ViewPlanTest, ABusyServerIsGivenTimeBetweenTwoTries) {
   update(/*moving=*/true);
   for (int i = 0; i < 3; ++i) {
-    plan_.refuse(begin(FrameKind::kQuick), now_);
+    plan_.refuse(begin(FrameKind::kMotion), now_);
     EXPECT_EQ(asked_in(), 500);
     pass(400);
     update(/*moving=*/true);
     EXPECT_EQ(asked_in(), 100) << "however often the hand moves";
     pass(100);
   }
-  show(FrameKind::kQuick);
+  show(FrameKind::kMotion);
 }
 
 TEST_F(ViewPlanTest, AFirstFrameWithNothingOnItIsTriedAgain) {
   update(/*moving=*/false);
-  draw_and_send(FrameKind::kQuick, FrameNews::kNothing);
+  draw_and_send(FrameKind::kMotion, FrameResult::kNothing);
   EXPECT_EQ(asked_in(), 50);
   pass(50);
-  show(FrameKind::kQuick);
+  show(FrameKind::kMotion);
 }
 
 TEST_F(ViewPlanTest, PiecesOnTheirWayDelayTheSendingOfAMotionButNotItsDrawing) {
   update(/*moving=*/false);
-  show(FrameKind::kQuick);
+  show(FrameKind::kMotion);
   pass(150);
-  const uint64_t fine = begin(FrameKind::kFine);
-  plan_.finish(fine, FrameNews::kComplete, now_);
-  plan_.send(FrameKind::kFine, /*last=*/false);
-  plan_.send(FrameKind::kFine, /*last=*/false);
+  const uint64_t fine = begin(FrameKind::kRefined);
+  plan_.finish(fine, FrameResult::kComplete, now_);
+  plan_.send(FrameKind::kRefined, /*last=*/false);
+  plan_.send(FrameKind::kRefined, /*last=*/false);
   pass(10'000);
   EXPECT_EQ(drawn(), std::nullopt) << "the rest of it comes first";
   update(/*moving=*/true);
   plan_.stop_sending();
-  EXPECT_EQ(drawn(), FrameKind::kQuick);
+  EXPECT_EQ(drawn(), FrameKind::kMotion);
   EXPECT_FALSE(plan_.may_send());
-  plan_.acknowledge(FrameKind::kFine);
+  plan_.acknowledge(FrameKind::kRefined);
   EXPECT_TRUE(plan_.may_send());
 }
 
 TEST_F(ViewPlanTest, MoreAnswersThanFramesDoNotMatter) {
   update(/*moving=*/true);
-  show(FrameKind::kQuick);
-  for (int i = 0; i < 10; ++i) plan_.acknowledge(FrameKind::kQuick);
+  show(FrameKind::kMotion);
+  for (int i = 0; i < 10; ++i) plan_.acknowledge(FrameKind::kMotion);
   update(/*moving=*/true);
-  draw_and_send(FrameKind::kQuick);
+  draw_and_send(FrameKind::kMotion);
   update(/*moving=*/true);
-  draw_and_send(FrameKind::kQuick);
+  draw_and_send(FrameKind::kMotion);
   EXPECT_FALSE(plan_.may_send());
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::view

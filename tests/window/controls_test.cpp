@@ -4,10 +4,10 @@
 
 #include <gtest/gtest.h>
 
-namespace surfcast {
+namespace surfcast::window {
 namespace {
 
-Pose start() {
+client::Pose start() {
   return {.position = {0, -10, 3}, .focal_point = {0, 0, 0}, .up = {0, 0, 1}, .view_angle = 30};
 }
 
@@ -18,7 +18,7 @@ Subject street() {
   return subject;
 }
 
-double distance(const Pose& pose) {
+double distance(const client::Pose& pose) {
   return glm::length(pose.focal_point - pose.position);
 }
 
@@ -34,7 +34,7 @@ TEST(Controls, ADragTurnsUntilTheButtonIsReleased) {
   controls.press(Controls::Drag::kOrbit);
   EXPECT_TRUE(controls.moving());
   controls.move({100, 0});
-  const Pose turned = controls.pose();
+  const client::Pose turned = controls.pose();
   EXPECT_NE(turned.position, start().position);
   EXPECT_EQ(turned.focal_point, start().focal_point);
   controls.release();
@@ -89,16 +89,16 @@ TEST(Controls, HomeIsTheFirstView) {
 TEST(Controls, UsualSidesShowTheWholeModel) {
   Controls controls(start(), street());
   controls.resize(1000, 500);
-  controls.stand(StandardView::kFront);
+  controls.set_standard_view(StandardView::kFront);
   EXPECT_LT(controls.pose().position.y, -4);
   EXPECT_NEAR(controls.pose().position.x, 0, 1e-9);
-  controls.stand(StandardView::kRight);
+  controls.set_standard_view(StandardView::kRight);
   EXPECT_GT(controls.pose().position.x, 20);
-  controls.stand(StandardView::kTop);
+  controls.set_standard_view(StandardView::kTop);
   EXPECT_GT(controls.pose().position.z, 9);
   EXPECT_EQ(controls.pose().up, glm::dvec3(0, 0, 1));
   const double from_above = distance(controls.pose());
-  controls.stand(StandardView::kLeft);
+  controls.set_standard_view(StandardView::kLeft);
   EXPECT_LT(distance(controls.pose()), from_above);  // its narrow side
 }
 
@@ -106,7 +106,7 @@ TEST(Controls, TheFrontOfAModelThatStandsOnItsYAxisFacesZ) {
   Subject subject = street();
   subject.z_up = false;
   Controls controls(start(), subject);
-  controls.stand(StandardView::kFront);
+  controls.set_standard_view(StandardView::kFront);
   EXPECT_GT(controls.pose().position.z, 9);
   EXPECT_EQ(controls.pose().up, glm::dvec3(0, 1, 0));
 }
@@ -128,15 +128,15 @@ TEST(Controls, FittingKeepsTheDirectionAndShowsAll) {
 TEST(Controls, ADoubleClickAsksOnceAndWhatItFindsComesIntoTheMiddle) {
   Controls controls(start(), street());
   controls.resize(1000, 500);
-  EXPECT_FALSE(controls.take_focus_wish());
+  EXPECT_FALSE(controls.take_focus_request());
   controls.double_click({250, 100});
   EXPECT_FALSE(controls.moving());
-  EXPECT_EQ(controls.take_focus_wish(), glm::dvec2(0.25, 0.2));
-  EXPECT_FALSE(controls.take_focus_wish());
+  EXPECT_EQ(controls.take_focus_request(), glm::dvec2(0.25, 0.2));
+  EXPECT_FALSE(controls.take_focus_request());
   controls.focus_on({3, -1, 2});
   EXPECT_EQ(controls.pose().focal_point, glm::dvec3(3, -1, 2));
   EXPECT_NEAR(distance(controls.pose()), glm::length(glm::dvec3(3, -1, 2) - start().position) / 3, 1e-9);
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::window

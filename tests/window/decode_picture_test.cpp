@@ -6,15 +6,15 @@
 
 #include "encode/encode_picture.h"
 
-namespace surfcast {
+namespace surfcast::window {
 namespace {
 
-wire::Picture encoded(FileFormat format, wire::FileFormat name) {
-  Image image{3, 2, PixelFormat::kSrgb8, {}};
+wire::Picture encoded(picture::FileFormat format, wire::FileFormat name) {
+  picture::Image image{3, 2, picture::PixelFormat::kSrgb8, {}};
   for (int i = 0; i < 6; ++i) {
     for (const int value : {200, 100, 50, 255}) image.pixels.push_back(static_cast<std::byte>(value));
   }
-  const auto bytes = encode_picture(image, format, 95);
+  const auto bytes = encode::encode_picture(image, format, 95);
   EXPECT_TRUE(bytes);
   wire::Picture picture;
   picture.set_format(name);
@@ -23,7 +23,7 @@ wire::Picture encoded(FileFormat format, wire::FileFormat name) {
 }
 
 TEST(DecodePicture, LosslessPixelsAreThoseThatWereEncoded) {
-  const auto image = decode_picture(encoded(FileFormat::kPng, wire::FILE_FORMAT_PNG));
+  const auto image = decode_picture(encoded(picture::FileFormat::kPng, wire::FILE_FORMAT_PNG));
   ASSERT_TRUE(image);
   EXPECT_EQ(image->width, 3);
   EXPECT_EQ(image->height, 2);
@@ -34,7 +34,7 @@ TEST(DecodePicture, LosslessPixelsAreThoseThatWereEncoded) {
 }
 
 TEST(DecodePicture, JpegIsNearThem) {
-  const auto image = decode_picture(encoded(FileFormat::kJpeg, wire::FILE_FORMAT_JPEG));
+  const auto image = decode_picture(encoded(picture::FileFormat::kJpeg, wire::FILE_FORMAT_JPEG));
   ASSERT_TRUE(image);
   EXPECT_EQ(image->width, 3);
   EXPECT_NEAR(image->pixels[0], 50, 8);
@@ -42,7 +42,7 @@ TEST(DecodePicture, JpegIsNearThem) {
 }
 
 TEST(DecodePicture, EveryTruncationOfAPngIsAnError) {
-  const wire::Picture whole = encoded(FileFormat::kPng, wire::FILE_FORMAT_PNG);
+  const wire::Picture whole = encoded(picture::FileFormat::kPng, wire::FILE_FORMAT_PNG);
   for (size_t length = 0; length + 13 < whole.data().size(); ++length) {  // what may be missing is the closing chunk
     wire::Picture cut = whole;
     cut.mutable_data()->resize(length);
@@ -51,7 +51,7 @@ TEST(DecodePicture, EveryTruncationOfAPngIsAnError) {
 }
 
 TEST(DecodePicture, ATruncatedJpegDoesNoHarm) {
-  const wire::Picture whole = encoded(FileFormat::kJpeg, wire::FILE_FORMAT_JPEG);
+  const wire::Picture whole = encoded(picture::FileFormat::kJpeg, wire::FILE_FORMAT_JPEG);
   for (size_t length = 0; length < whole.data().size(); ++length) {
     wire::Picture cut = whole;
     cut.mutable_data()->resize(length);
@@ -61,7 +61,7 @@ TEST(DecodePicture, ATruncatedJpegDoesNoHarm) {
 }
 
 TEST(DecodePicture, ASizeBeyondReasonIsRefusedBeforeMemoryIsSetAside) {
-  wire::Picture picture = encoded(FileFormat::kPng, wire::FILE_FORMAT_PNG);
+  wire::Picture picture = encoded(picture::FileFormat::kPng, wire::FILE_FORMAT_PNG);
   picture.mutable_data()->replace(16, 4, "\x7f\xff\xff\xff");  // the width in the first chunk
   EXPECT_FALSE(decode_picture(picture));
 }
@@ -73,4 +73,4 @@ TEST(DecodePicture, OtherFormatsAreRefused) {
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::window

@@ -4,49 +4,52 @@
 #include "client/run_program.h"
 #include "net/net_fixture.h"
 
-namespace surfcast {
+namespace surfcast::window {
 namespace {
 
 /// `surfcast view` without a display, against a server of fake models.
-class ViewProgramTest : public NetFixture {
+class ViewProgramTest : public net::NetFixture {
  protected:
   void SetUp() override { ::setenv("SDL_VIDEODRIVER", "dummy", 1); }
-  [[nodiscard]] std::string url(const std::string& model) const { return to_string(endpoint()) + "/" + model; }
+  [[nodiscard]] std::string url(const std::string& model) const {
+    return protocol::to_string(endpoint()) + "/" + model;
+  }
 };
 
 TEST_F(ViewProgramTest, ShowsAModelUntilItIsToldToEnd) {
   start();
-  const pid_t program = start_program({SURFCAST_CLIENT, "view", "ws://" + url("cube"), "--resolution", "64,48"});
+  const pid_t program =
+      client::start_program({SURFCAST_CLIENT, "view", "ws://" + url("cube"), "--resolution", "64,48"});
   EXPECT_TRUE(eventually([this] { return metric("surfcast_view_frames_total") > 0; }));
   ::kill(program, SIGTERM);
-  EXPECT_EQ(wait_for_program(program), 0);
+  EXPECT_EQ(client::wait_for_program(program), 0);
 }
 
 TEST_F(ViewProgramTest, ComesBackToAServerThatComesBack) {
   start();
   const uint16_t port = port_;
-  const pid_t program = start_program({SURFCAST_CLIENT, "view", url("cube"), "--resolution", "64,48"});
+  const pid_t program = client::start_program({SURFCAST_CLIENT, "view", url("cube"), "--resolution", "64,48"});
   EXPECT_TRUE(eventually([this] { return metric("surfcast_view_frames_total") > 0; }));
-  std::this_thread::sleep_for(milliseconds(300));  // until it has painted one
+  std::this_thread::sleep_for(std::chrono::milliseconds(300));  // until it has painted one
   stop();
   start({}, {}, port);
   EXPECT_TRUE(eventually([this] { return metric("surfcast_view_frames_total") > 0; }));
   ::kill(program, SIGTERM);
-  EXPECT_EQ(wait_for_program(program), 0);
+  EXPECT_EQ(client::wait_for_program(program), 0);
 }
 
 TEST_F(ViewProgramTest, AModelThatIsNotThereIsAFailure) {
   start();
-  const ProgramOutcome outcome = run_program(SURFCAST_CLIENT " view " + url("nowhere") + " 2>&1");
+  const client::ProgramOutcome outcome = client::run_program(SURFCAST_CLIENT " view " + url("nowhere") + " 2>&1");
   EXPECT_EQ(outcome.code, 1);
   EXPECT_NE(outcome.output.find("no such model"), std::string::npos);
 }
 
 TEST_F(ViewProgramTest, AWrongCommandLineEndsWithTwo) {
-  EXPECT_EQ(run_program(SURFCAST_CLIENT " view 2>/dev/null").code, 2);
-  EXPECT_EQ(run_program(SURFCAST_CLIENT " view here:1/cube --resolution wide 2>/dev/null").code, 2);
-  EXPECT_EQ(run_program(SURFCAST_CLIENT " view --help").code, 0);
+  EXPECT_EQ(client::run_program(SURFCAST_CLIENT " view 2>/dev/null").code, 2);
+  EXPECT_EQ(client::run_program(SURFCAST_CLIENT " view here:1/cube --resolution wide 2>/dev/null").code, 2);
+  EXPECT_EQ(client::run_program(SURFCAST_CLIENT " view --help").code, 0);
 }
 
 }  // namespace
-}  // namespace surfcast
+}  // namespace surfcast::window

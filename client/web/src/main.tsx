@@ -15,8 +15,8 @@ import * as store from './state/store';
 import { ActionsContext, type Actions } from './ui/actions';
 import { App } from './ui/app';
 import { copyText } from './ui/clipboard';
-import { Director } from './view/director';
-import { Navigator } from './view/navigator';
+import { ViewController } from './view/view_controller';
+import { CameraNavigator } from './view/camera_navigator';
 import { Probe } from './view/probe';
 import { followSize } from './view/stage_size';
 
@@ -50,10 +50,10 @@ const copyLink = (): Promise<void> =>
 
 function start(): void {
   const { stage, picture, overlay } = makeStage();
-  const eye = new Navigator();
-  const director = new Director(socketUrl(), picture, (now) => eye.step(now));
-  const probe = new Probe(director);
-  const actions: Actions = { director, navigator: eye, stage, copyLink: () => void copyLink() };
+  const eye = new CameraNavigator();
+  const controller = new ViewController(socketUrl(), picture, (now) => eye.step(now));
+  const probe = new Probe(controller);
+  const actions: Actions = { controller, navigator: eye, stage, copyLink: () => void copyLink() };
   new StageInput(stage, eye, probe, new Tools(eye, probe));
   new Keyboard(stage, eye, {
     toggleFlight: () => (store.flying.value = !store.flying.peek()),

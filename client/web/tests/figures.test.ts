@@ -1,7 +1,7 @@
 import { create } from '@bufbuild/protobuf';
 import { describe, expect, it } from 'vitest';
 import { ViewFrameSchema } from '../src/generated/surfcast_pb';
-import { FigureKeeper, median, stageNames, stagesOf } from '../src/view/figures';
+import { FigureCollector, median, stageNames, stagesOf } from '../src/view/figures';
 import type { PaintedFrame } from '../src/view/painter';
 import { pixelsOf } from '../src/view/stage_size';
 
@@ -33,24 +33,24 @@ describe('the time of a frame', () => {
 
 describe('figures', () => {
   it('count the frames and bytes of the last two seconds', () => {
-    const keeper = new FigureKeeper();
+    const collector = new FigureCollector();
     for (let at = 0; at <= 4000; at += 50) {
-      keeper.painted(painted(at), at - 60);
-      keeper.bytes(1000, at);
+      collector.painted(painted(at), at - 60);
+      collector.bytes(1000, at);
     }
-    const figures = keeper.figures(4000);
+    const figures = collector.figures(4000);
     expect(figures.framesPerSecond).toBeCloseTo(20, 9);
     expect(figures.bytesPerSecond).toBe(20_000);
     expect(figures.latency).toBe(60);
   });
 
   it('keep the latency of the last movement, but no rate at rest', () => {
-    const keeper = new FigureKeeper();
-    keeper.painted(painted(0), -60);
-    keeper.painted(painted(50), -10);
-    keeper.painted(painted(900, false), 100); // the fine picture after rest, late on purpose
-    expect(keeper.figures(1000).latency).toBe(60);
-    const later = keeper.figures(9000);
+    const collector = new FigureCollector();
+    collector.painted(painted(0), -60);
+    collector.painted(painted(50), -10);
+    collector.painted(painted(900, false), 100); // the fine picture after rest, late on purpose
+    expect(collector.figures(1000).latency).toBe(60);
+    const later = collector.figures(9000);
     expect([later.framesPerSecond, later.bytesPerSecond, later.latency]).toEqual([0, 0, 60]);
   });
 

@@ -4,7 +4,7 @@ import { vector } from '../src/camera/vector';
 import { projectionOf, project } from '../src/camera/projection';
 import { isClick, isDouble, pinchBetween, wheelPixels } from '../src/input/gestures';
 import { handleAt, handlesOf, pulled, pullOf } from '../src/overlay/clip_handles';
-import { Motor } from '../src/view/motor';
+import { CameraAnimator } from '../src/view/camera_animator';
 import type { Pose } from '../src/camera/pose';
 
 describe('two fingers', () => {
@@ -79,24 +79,24 @@ describe('the motor', () => {
   const there: Pose = { ...pose, position: vector(5, 0, 0) };
 
   it('travels, arrives exactly, and stops', () => {
-    const motor = new Motor();
-    motor.travel(pose, there, 1000, 400);
-    expect(motor.step(pose, 'z', 1000)).toEqual(pose);
-    expect(motor.step(pose, 'z', 1200).position.x).toBeCloseTo(2.5, 9);
-    expect(motor.step(pose, 'z', 1400)).toBe(there);
-    expect(motor.moving).toBe(false);
+    const animator = new CameraAnimator();
+    animator.travel(pose, there, 1000, 400);
+    expect(animator.step(pose, 'z', 1000)).toEqual(pose);
+    expect(animator.step(pose, 'z', 1200).position.x).toBeCloseTo(2.5, 9);
+    expect(animator.step(pose, 'z', 1400)).toBe(there);
+    expect(animator.moving).toBe(false);
   });
 
   it('coasts on after a drag until nobody would see it', () => {
-    const motor = new Motor();
+    const animator = new CameraAnimator();
     let at: Pose = pose;
     let far = 0;
-    motor.coastOn({ x: 1, y: 0 }, (p, by) => {
+    animator.coastOn({ x: 1, y: 0 }, (p, by) => {
       far += by.x;
       return p;
     });
     let time = 0;
-    for (; motor.moving; time += 16) at = motor.step(at, 'z', time);
+    for (; animator.moving; time += 16) at = animator.step(at, 'z', time);
     expect(far).toBeGreaterThan(coastDecay * 0.9);
     expect(far).toBeLessThan(coastDecay);
     expect(time).toBeLessThan(2000);
@@ -104,10 +104,10 @@ describe('the motor', () => {
 
   it('flies while keys are held, as far in a second whatever the frame rate', () => {
     const gone = (step: number): number => {
-      const motor = new Motor();
+      const animator = new CameraAnimator();
       let at: Pose = pose;
-      motor.flyAlong({ right: 0, forward: 1, up: 0 }, 0.01);
-      for (let time = 0; time <= 1000; time += step) at = motor.step(at, 'z', time);
+      animator.flyAlong({ right: 0, forward: 1, up: 0 }, 0.01);
+      for (let time = 0; time <= 1000; time += step) at = animator.step(at, 'z', time);
       return at.position.y;
     };
     expect(gone(10)).toBeCloseTo(10, 9);

@@ -1,6 +1,6 @@
 import { describe, expect, it } from 'vitest';
 import { vector } from '../src/camera/vector';
-import { usualLook, type Look } from '../src/state/look';
+import { defaultDisplay, type DisplayOptions } from '../src/state/display_options';
 import { formatPlace, parsePlace } from '../src/state/place';
 
 const camera = {
@@ -10,7 +10,7 @@ const camera = {
   viewAngle: 45,
 };
 
-const look: Look = {
+const display: DisplayOptions = {
   source: 'intensity',
   map: 'turbo',
   range: [-5.5, 1200],
@@ -26,13 +26,13 @@ const look: Look = {
 
 describe('a link', () => {
   it('is read back as it was written', () => {
-    const place = { model: 'Müller & Söhne/100% ?', camera, look };
+    const place = { model: 'Müller & Söhne/100% ?', camera, display };
     expect(parsePlace(formatPlace(place))).toEqual(place);
   });
 
   it('says nothing that is as usual', () => {
-    expect(formatPlace({ model: 'lion', camera: undefined, look: usualLook })).toBe('#/lion');
-    expect(formatPlace({ model: undefined, camera: undefined, look: usualLook })).toBe('#/');
+    expect(formatPlace({ model: 'lion', camera: undefined, display: defaultDisplay })).toBe('#/lion');
+    expect(formatPlace({ model: undefined, camera: undefined, display: defaultDisplay })).toBe('#/');
   });
 
   it.each([
@@ -43,7 +43,7 @@ describe('a link', () => {
     '#/lion?spacing=-3&eye_dome=1,0',
     '#/lion?&&=&',
   ])('with nonsense shows the model as usual: %s', (hash) => {
-    expect(parsePlace(hash)).toEqual({ model: 'lion', camera: undefined, look: usualLook });
+    expect(parsePlace(hash)).toEqual({ model: 'lion', camera: undefined, display: defaultDisplay });
   });
 
   it('with an impossible view angle takes the usual one', () => {

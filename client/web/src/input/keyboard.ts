@@ -1,8 +1,8 @@
 import type { Course } from '../camera/motion';
 import type { ViewName } from '../camera/standard_views';
-import { finish, undoPoint } from '../measure/desk';
+import { finish, undoPoint } from '../measure/measurement_list';
 import * as store from '../state/store';
-import type { Navigator } from '../view/navigator';
+import type { CameraNavigator } from '../view/camera_navigator';
 
 /** What other keys do, by `KeyboardEvent.key`; shown by the help, too. */
 export const viewKeys: Readonly<Record<string, ViewName>> = {
@@ -59,7 +59,7 @@ export class Keyboard {
 
   constructor(
     private readonly stage: HTMLElement,
-    private readonly navigator: Navigator,
+    private readonly navigator: CameraNavigator,
     private readonly actions: KeyActions,
   ) {
     addEventListener('keydown', (event) => this.down(event));

@@ -4,8 +4,8 @@ import { handleAt, pulled, pullOf, type Handle } from '../overlay/clip_handles';
 import { diagonal } from '../camera/standard_views';
 import * as store from '../state/store';
 import { type Anchor, type Probe } from '../view/probe';
-import type { Drag } from '../view/motor';
-import type { Navigator } from '../view/navigator';
+import type { Drag } from '../view/camera_animator';
+import type { CameraNavigator } from '../view/camera_navigator';
 import { isClick, isDouble, pinchBetween, wheelPixels, type Press } from './gestures';
 import type { Tools } from './tools';
 
@@ -35,7 +35,7 @@ export class StageInput {
 
   constructor(
     private readonly element: HTMLElement,
-    private readonly navigator: Navigator,
+    private readonly navigator: CameraNavigator,
     private readonly probe: Probe,
     private readonly tools: Tools,
   ) {
@@ -210,7 +210,7 @@ export class StageInput {
   private handleUnder(at: Pixel): { handle: Handle; index: number } | undefined {
     const index = store.editedClip.peek();
     const view = store.shownProjection.peek();
-    const clip = index === undefined ? undefined : store.look.peek().clips[index];
+    const clip = index === undefined ? undefined : store.display.peek().clips[index];
     const visible = store.panel.peek() === 'clip' || store.tool.peek() === 'clip';
     if (!clip || !view || index === undefined || !visible) return undefined;
     const handle = handleAt(clip.box, view, at, handleReach * this.ratio);
@@ -229,13 +229,13 @@ export class StageInput {
   private movePull(moved: Pixel): void {
     const { pull } = this;
     const view = store.shownProjection.peek();
-    const look = store.look.peek();
-    const clip = pull && look.clips[pull.index];
+    const display = store.display.peek();
+    const clip = pull && display.clips[pull.index];
     if (!pull || !view || !clip) return;
     const at = { ...pull.handle.at, [pull.handle.axis]: pull.value };
     pull.value += pullOf({ ...pull.handle, at }, view, moved, diagonal(store.bounds.peek()));
     const changed = { ...clip, box: pulled(clip.box, pull.handle, pull.value) };
-    store.look.value = { ...look, clips: look.clips.map((other, i) => (i === pull.index ? changed : other)) };
+    store.display.value = { ...display, clips: display.clips.map((other, i) => (i === pull.index ? changed : other)) };
   }
 
   private hover(event: PointerEvent): void {

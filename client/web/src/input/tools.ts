@@ -1,15 +1,15 @@
 import type { Pixel } from '../camera/vector';
-import { addPoint, finish, measuring } from '../measure/desk';
+import { addPoint, finish, measuring } from '../measure/measurement_list';
 import { vectorFrom } from '../protocol/pictures';
 import * as store from '../state/store';
-import type { Navigator } from '../view/navigator';
+import type { CameraNavigator } from '../view/camera_navigator';
 import type { Probe } from '../view/probe';
 import { addClipAround } from '../overlay/clip_list';
 
 /** What a click on the picture does, by the tool in hand. */
 export class Tools {
   constructor(
-    private readonly navigator: Navigator,
+    private readonly navigator: CameraNavigator,
     private readonly probe: Probe,
   ) {}
 
@@ -44,9 +44,9 @@ export class Tools {
     try {
       const result = await this.probe.pick(pixel);
       if (result?.hit && result.position) return { result, at: vectorFrom(result.position) };
-      store.say('Nothing of the scan is there.');
+      store.showNotice('Nothing of the scan is there.');
     } catch (error) {
-      store.say(error instanceof Error ? error.message : String(error));
+      store.showNotice(error instanceof Error ? error.message : String(error));
     } finally {
       store.picking.value = false;
     }

@@ -12,7 +12,7 @@ export interface Measurement {
 }
 
 /** A measurement with this many points takes no more. */
-export const mostPoints: Readonly<Record<MeasureKind, number>> = {
+export const maxPoints: Readonly<Record<MeasureKind, number>> = {
   distance: 64,
   height: 2,
   angle: 3,
@@ -21,7 +21,7 @@ export const mostPoints: Readonly<Record<MeasureKind, number>> = {
 };
 
 /** With fewer it says nothing yet. */
-export const fewestPoints: Readonly<Record<MeasureKind, number>> = {
+export const minPoints: Readonly<Record<MeasureKind, number>> = {
   distance: 2,
   height: 2,
   angle: 3,
@@ -29,8 +29,8 @@ export const fewestPoints: Readonly<Record<MeasureKind, number>> = {
   profile: 2,
 };
 
-export const isWhole = (m: Measurement): boolean => m.points.length >= fewestPoints[m.kind];
-export const isFull = (m: Measurement): boolean => m.points.length >= mostPoints[m.kind];
+export const isWhole = (m: Measurement): boolean => m.points.length >= minPoints[m.kind];
+export const isFull = (m: Measurement): boolean => m.points.length >= maxPoints[m.kind];
 
 const pairs = (points: readonly Vector[]): [Vector, Vector][] =>
   points.slice(1).map((point, i) => [points[i]!, point] as [Vector, Vector]);

@@ -1,7 +1,7 @@
 import { batch } from '@preact/signals';
 import { center, type Box } from '../camera/standard_views';
 import { add, scale, subtract, type Vector } from '../camera/vector';
-import type { Clip } from '../state/look';
+import type { Clip } from '../state/display_options';
 import * as store from '../state/store';
 
 /** Adds, changes and removes clip boxes of the look. */
@@ -12,10 +12,10 @@ const around = (middle: Vector, box: Box, part: number): Box => {
 };
 
 function addClip(box: Box): void {
-  const look = store.look.peek();
+  const display = store.display.peek();
   batch(() => {
-    store.editedClip.value = look.clips.length;
-    store.look.value = { ...look, clips: [...look.clips, { box, inverted: false }] };
+    store.editedClip.value = display.clips.length;
+    store.display.value = { ...display, clips: [...display.clips, { box, inverted: false }] };
   });
 }
 
@@ -32,15 +32,15 @@ export function addClipInTheMiddle(): void {
 }
 
 export function changeClip(index: number, change: Partial<Clip>): void {
-  const look = store.look.peek();
-  const clips = look.clips.map((clip, i) => (i === index ? { ...clip, ...change } : clip));
-  store.look.value = { ...look, clips };
+  const display = store.display.peek();
+  const clips = display.clips.map((clip, i) => (i === index ? { ...clip, ...change } : clip));
+  store.display.value = { ...display, clips };
 }
 
 export function removeClip(index: number): void {
-  const look = store.look.peek();
+  const display = store.display.peek();
   batch(() => {
     store.editedClip.value = undefined;
-    store.look.value = { ...look, clips: look.clips.filter((_, i) => i !== index) };
+    store.display.value = { ...display, clips: display.clips.filter((_, i) => i !== index) };
   });
 }

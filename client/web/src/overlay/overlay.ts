@@ -62,7 +62,7 @@ function clips(pen: Pen): void {
   const edited = store.editedClip.value;
   const showAll = store.panel.value === 'clip' || store.tool.value === 'clip';
   if (!showAll) return;
-  store.look.value.clips.forEach(({ box, inverted }, i) => {
+  store.display.value.clips.forEach(({ box, inverted }, i) => {
     const here = i === edited;
     const color = inverted ? (here ? colors.hide : colors.hideFaint) : here ? colors.clip : colors.clipFaint;
     pen.box(box, color, here ? 1.75 : 1.25, here ? [] : [5, 5]);

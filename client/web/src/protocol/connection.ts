@@ -73,7 +73,7 @@ export class Connection {
     });
   }
 
-  /** Sends a request with any number of answers, until `forget`. The id names it in later messages. */
+  /** Sends a request with any number of answers, until `unlisten`. The id names it in later messages. */
   listen(kind: RequestKind, listener: Listener): bigint {
     const id = this.nextId++;
     this.listeners.set(id, listener);
@@ -81,7 +81,7 @@ export class Connection {
     return id;
   }
 
-  forget(id: bigint): void {
+  unlisten(id: bigint): void {
     this.listeners.delete(id);
   }
 

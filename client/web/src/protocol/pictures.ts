@@ -12,7 +12,7 @@ import {
   type DrawPicture,
   type Vector3,
 } from '../generated/surfcast_pb';
-import type { ColorMapName, ColorSourceName, Look } from '../state/look';
+import type { ColorMapName, ColorSourceName, DisplayOptions } from '../state/display_options';
 
 export interface Size {
   readonly width: number;
@@ -38,14 +38,14 @@ const maps: Readonly<Record<ColorMapName, ColorMap>> = {
 export function pictureOf(
   model: string,
   camera: Camera | undefined,
-  look: Look,
+  display: DisplayOptions,
   resolution: Size,
   format: FileFormat = FileFormat.PNG,
 ): DrawPicture {
-  const [first, last] = look.range ?? [];
+  const [first, last] = display.range ?? [];
   const coloring = {
-    source: sources[look.source],
-    map: maps[look.map],
+    source: sources[display.source],
+    map: maps[display.map],
     ...(first !== undefined && last !== undefined ? { first, last } : {}),
   };
   const picture: MessageInitShape<typeof DrawPictureSchema> = {
@@ -53,12 +53,12 @@ export function pictureOf(
     resolution,
     format,
     coloring,
-    background: look.background,
-    spacing: look.spacing,
-    hiddenClasses: [...look.hiddenClasses],
-    clipBoxes: look.clips.map(({ box, inverted }) => ({ box, inverted })),
+    background: display.background,
+    spacing: display.spacing,
+    hiddenClasses: [...display.hiddenClasses],
+    clipBoxes: display.clips.map(({ box, inverted }) => ({ box, inverted })),
     ...(camera ? { camera: wireCamera(camera) } : {}),
-    ...(look.eyeDome.strength > 0 ? { eyeDome: look.eyeDome } : {}),
+    ...(display.eyeDome.strength > 0 ? { eyeDome: display.eyeDome } : {}),
   };
   return create(DrawPictureSchema, picture);
 }

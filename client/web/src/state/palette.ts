@@ -1,4 +1,4 @@
-import type { ColorMapName } from './look';
+import type { ColorMapName } from './display_options';
 
 /** The server's colours (server/render/color_maps.cpp), for legends. */
 

@@ -1,12 +1,19 @@
 import type { Camera } from '../camera/pose';
 import { vector, type Vector } from '../camera/vector';
-import { colorMaps, colorSources, usualBackground, usualLook, type Clip, type Look } from './look';
+import {
+  colorMaps,
+  colorSources,
+  defaultBackground,
+  defaultDisplay,
+  type Clip,
+  type DisplayOptions,
+} from './display_options';
 
 /** What a link says: the model, where it is seen from, and how. Names and forms are those of `GET /api/models/..`. */
 export interface Place {
   readonly model: string | undefined;
   readonly camera: Camera | undefined;
-  readonly look: Look;
+  readonly display: DisplayOptions;
 }
 
 const numbersIn = (text: string | null, count: number): number[] | undefined => {
@@ -37,10 +44,10 @@ function clipsIn(text: string | null, inverted: boolean): Clip[] {
   });
 }
 
-function eyeDomeIn(text: string | null): Look['eyeDome'] {
+function eyeDomeIn(text: string | null): DisplayOptions['eyeDome'] {
   const both = numbersIn(text, 2) ?? numbersIn(text, 1);
-  const [strength = 0, radius = usualLook.eyeDome.radius] = both ?? [];
-  return strength >= 0 && radius > 0 ? { strength, radius } : usualLook.eyeDome;
+  const [strength = 0, radius = defaultDisplay.eyeDome.radius] = both ?? [];
+  return strength >= 0 && radius > 0 ? { strength, radius } : defaultDisplay.eyeDome;
 }
 
 function classesIn(text: string | null): number[] {
@@ -48,21 +55,21 @@ function classesIn(text: string | null): number[] {
   return codes.map(Number).filter((code) => code < 65536);
 }
 
-function lookIn(values: URLSearchParams): Look {
+function displayIn(values: URLSearchParams): DisplayOptions {
   const range = numbersIn(values.get('color_range'), 2);
   const spacing = numbersIn(values.get('spacing'), 1)?.[0];
   const background = numbersIn(values.get('background'), 3);
   const inByte = background?.every((part) => Number.isInteger(part) && part >= 0 && part <= 255);
   return {
-    source: colorSources.find((name) => name === values.get('color_by')) ?? usualLook.source,
-    map: colorMaps.find((name) => name === values.get('color_map')) ?? usualLook.map,
+    source: colorSources.find((name) => name === values.get('color_by')) ?? defaultDisplay.source,
+    map: colorMaps.find((name) => name === values.get('color_map')) ?? defaultDisplay.map,
     range: range && range[0]! < range[1]! ? [range[0]!, range[1]!] : undefined,
     hiddenClasses: classesIn(values.get('hide_classes')),
     clips: [...clipsIn(values.get('clip_box'), false), ...clipsIn(values.get('clip_out'), true)],
     eyeDome: eyeDomeIn(values.get('eye_dome')),
     background:
-      background && inByte ? { red: background[0]!, green: background[1]!, blue: background[2]! } : usualBackground,
-    spacing: spacing !== undefined && spacing >= 0 ? spacing : usualLook.spacing,
+      background && inByte ? { red: background[0]!, green: background[1]!, blue: background[2]! } : defaultBackground,
+    spacing: spacing !== undefined && spacing >= 0 ? spacing : defaultDisplay.spacing,
   };
 }
 
@@ -70,7 +77,7 @@ function lookIn(values: URLSearchParams): Look {
 export function parsePlace(hash: string): Place {
   const [path = '', query = ''] = hash.replace(/^#?\/?/, '').split('?', 2);
   const values = new URLSearchParams(query);
-  return { model: decoded(path), camera: cameraIn(values), look: lookIn(values) };
+  return { model: decoded(path), camera: cameraIn(values), display: displayIn(values) };
 }
 
 function decoded(path: string): string | undefined {
@@ -89,22 +96,22 @@ const clipList = (clips: readonly Clip[], inverted: boolean): string | undefined
 };
 
 /** Only what differs from the usual. */
-function lookParameters(look: Look): Record<string, string | undefined> {
-  const { background, eyeDome } = look;
-  const usual = background.red === usualBackground.red && background.green === usualBackground.green;
+function displayParameters(display: DisplayOptions): Record<string, string | undefined> {
+  const { background, eyeDome } = display;
+  const usual = background.red === defaultBackground.red && background.green === defaultBackground.green;
   return {
-    color_by: look.source === usualLook.source ? undefined : look.source,
-    color_map: look.map === usualLook.map ? undefined : look.map,
-    color_range: look.range?.join(','),
-    hide_classes: look.hiddenClasses.length > 0 ? look.hiddenClasses.join(',') : undefined,
-    clip_box: clipList(look.clips, false),
-    clip_out: clipList(look.clips, true),
+    color_by: display.source === defaultDisplay.source ? undefined : display.source,
+    color_map: display.map === defaultDisplay.map ? undefined : display.map,
+    color_range: display.range?.join(','),
+    hide_classes: display.hiddenClasses.length > 0 ? display.hiddenClasses.join(',') : undefined,
+    clip_box: clipList(display.clips, false),
+    clip_out: clipList(display.clips, true),
     eye_dome: eyeDome.strength > 0 ? `${eyeDome.strength},${eyeDome.radius}` : undefined,
     background:
-      usual && background.blue === usualBackground.blue
+      usual && background.blue === defaultBackground.blue
         ? undefined
         : `${background.red},${background.green},${background.blue}`,
-    spacing: look.spacing === usualLook.spacing ? undefined : String(look.spacing),
+    spacing: display.spacing === defaultDisplay.spacing ? undefined : String(display.spacing),
   };
 }
 
@@ -117,7 +124,7 @@ export function formatPlace(place: Place): string {
     focal_point: camera && list(camera.focalPoint),
     view_up: camera?.viewUp && list(camera.viewUp),
     view_angle: camera && camera.viewAngle !== 30 ? String(camera.viewAngle) : undefined,
-    ...lookParameters(place.look),
+    ...displayParameters(place.display),
   };
   const said = Object.entries(values).flatMap(([name, value]) => (value === undefined ? [] : [`${name}=${value}`]));
   const path = `#/${encodeURIComponent(place.model)}`;

@@ -1,14 +1,14 @@
 import { batch, effect } from '@preact/signals';
 import { cameraOf, poseOf } from '../camera/pose';
 import { formatPlace, parsePlace, type Place } from './place';
-import { usualLook } from './look';
+import { defaultDisplay } from './display_options';
 import * as store from './store';
 
 const settled = 250; // ms without a change before the address follows
 
 /** Opens a model, seen as a link says or as the server chooses. */
 export function openModel(name: string | undefined): void {
-  show(formatPlace({ model: name, camera: undefined, look: usualLook }));
+  show(formatPlace({ model: name, camera: undefined, display: defaultDisplay }));
   history.pushState(null, '', location.href.replace(/#.*$/, '') + currentHash());
 }
 
@@ -16,7 +16,7 @@ function show(hash: string): void {
   const place = parsePlace(hash);
   const here = place.model === store.model.peek() && store.pose.peek() !== undefined;
   batch(() => {
-    store.look.value = place.look;
+    store.display.value = place.display;
     if (here && place.camera) store.pose.value = poseOf(place.camera, store.upAxis.peek());
   });
   if (!here || !place.camera) reopen(place);
@@ -45,7 +45,7 @@ function forgetModel(): void {
 export function currentHash(): string {
   const pose = store.pose.peek();
   const camera = pose ? cameraOf(pose, store.upAxis.peek()) : store.firstCamera.peek();
-  return formatPlace({ model: store.model.peek(), camera, look: store.look.peek() });
+  return formatPlace({ model: store.model.peek(), camera, display: store.display.peek() });
 }
 
 export const currentLink = (): string => location.href.replace(/#.*$/, '') + currentHash();
@@ -59,7 +59,7 @@ export function startRoutes(): void {
   });
   let timer: ReturnType<typeof setTimeout> | undefined;
   effect(() => {
-    void [store.model.value, store.pose.value, store.look.value];
+    void [store.model.value, store.pose.value, store.display.value];
     clearTimeout(timer);
     timer = setTimeout(() => history.replaceState(null, '', currentLink()), settled);
   });

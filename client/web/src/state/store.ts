@@ -10,11 +10,11 @@ import { boxFrom, cameraFrom, type Size } from '../protocol/pictures';
 import type { Figures } from '../view/figures';
 import type { MeasureKind, Measurement } from '../measure/measurement';
 import type { Vector } from '../camera/vector';
-import { usualLook, type Look } from './look';
+import { defaultDisplay, type DisplayOptions } from './display_options';
 
 /** What every part of the page may read. Each signal is written by one part, which its comment names. */
 
-// ---- written by view/director.ts ----
+// ---- written by view/view_controller.ts ----
 
 export const link = signal<LinkState>({ kind: 'connecting' });
 export const models = signal<readonly string[] | undefined>(undefined);
@@ -24,9 +24,9 @@ export const viewProblem = signal<{ readonly message: string; readonly again: bo
 /** The frame on the screen, without its data. */
 export const shownFrame = signal<ViewFrame | undefined>(undefined);
 /** The first update that asked for what is wanted now: a frame that shows an older one does not show it. */
-export const askedUpdate = signal(0n);
+export const wantedUpdate = signal(0n);
 /** Something changed that has not been asked for yet. */
-export const unasked = signal(false);
+export const updatePending = signal(false);
 export const figures = signal<Figures>({ framesPerSecond: 0, bytesPerSecond: 0, latency: undefined, stages: undefined });
 /** Where the newest picture is to be seen from; nothing until the server has chosen a first view. */
 export const pose = signal<Pose | undefined>(undefined);
@@ -36,12 +36,12 @@ export const moving = signal(false);
 // ---- written by state/routes.ts and the gallery ----
 
 export const model = signal<string | undefined>(undefined);
-/** From where a link says the model is to be seen first; taken by the director once it knows the model's axes. */
+/** From where a link says the model is to be seen first; taken once the model's axes are known. */
 export const firstCamera = signal<Camera | undefined>(undefined);
 
 // ---- written by the panels ----
 
-export const look = signal<Look>(usualLook);
+export const display = signal<DisplayOptions>(defaultDisplay);
 export type Tool = 'navigate' | 'inspect' | MeasureKind | 'clip';
 export const tool = signal<Tool>('navigate');
 export const flying = signal(false);
@@ -58,7 +58,7 @@ export const notice = signal<string | undefined>(undefined);
 const noticeTime = 2600; // ms
 let noticeTimer: ReturnType<typeof setTimeout> | undefined;
 
-export function say(text: string): void {
+export function showNotice(text: string): void {
   clearTimeout(noticeTimer);
   notice.value = text;
   noticeTimer = setTimeout(() => (notice.value = undefined), noticeTime);

@@ -1,12 +1,12 @@
 import { createContext } from 'preact';
 import { useContext } from 'preact/hooks';
-import type { Director } from '../view/director';
-import type { Navigator } from '../view/navigator';
+import type { ViewController } from '../view/view_controller';
+import type { CameraNavigator } from '../view/camera_navigator';
 
 /** What the page's parts may ask for, made once by main.tsx. */
 export interface Actions {
-  readonly director: Director;
-  readonly navigator: Navigator;
+  readonly controller: ViewController;
+  readonly navigator: CameraNavigator;
   readonly stage: HTMLElement; // holds the canvases
   copyLink(): void;
 }

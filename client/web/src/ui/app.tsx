@@ -11,7 +11,7 @@ import { Gallery } from './gallery';
 import { Gizmo } from './gizmo';
 import { HelpDialog } from './help_dialog';
 import { InspectCard } from './inspect_card';
-import { LookPanel, mapped, shownRange } from './look_panel';
+import { DisplayPanel, mapped, shownRange } from './display_panel';
 import { MeasurePanel } from './measure_panel';
 import { ModelPanel } from './model_panel';
 import { ScreenshotDialog } from './screenshot_dialog';
@@ -30,7 +30,7 @@ function Canvases(): JSX.Element {
 }
 
 function Legend(): JSX.Element | null {
-  const { source, map } = store.look.value;
+  const { source, map } = store.display.value;
   if (!mapped(source) || !store.shownFrame.value) return null;
   const [first, last] = shownRange();
   const decimals = Math.max(0, 2 - Math.floor(Math.log10(Math.max(1e-9, last - first))));
@@ -75,7 +75,7 @@ function Stage(): JSX.Element {
 }
 
 const panels: Readonly<Record<store.Panel, () => JSX.Element | null>> = {
-  look: LookPanel,
+  look: DisplayPanel,
   measure: MeasurePanel,
   clip: ClipPanel,
   model: ModelPanel,

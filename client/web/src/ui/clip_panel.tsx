@@ -1,8 +1,8 @@
 import type { JSX } from 'preact';
 import { axisNames, pulled, type AxisName } from '../overlay/clip_handles';
 import { addClipInTheMiddle, changeClip, removeClip } from '../overlay/clip_list';
-import type { Clip } from '../state/look';
-import { bounds, editedClip, lengthDecimals, look, tool } from '../state/store';
+import type { Clip } from '../state/display_options';
+import { bounds, editedClip, lengthDecimals, display, tool } from '../state/store';
 import { Choices, IconButton, NumberField, Section } from './controls';
 import { Icon } from './icons';
 import { SpanSlider } from './span_slider';
@@ -72,7 +72,7 @@ function ClipCard({ clip, index }: { clip: Clip; index: number }): JSX.Element {
 }
 
 export function ClipPanel(): JSX.Element {
-  const { clips } = look.value;
+  const { clips } = display.value;
   return (
     <Section title="Add a clip box">
       <div class="button-pair">

@@ -1,4 +1,4 @@
-import { say } from '../state/store';
+import { showNotice } from '../state/store';
 
 export const notAllowed = 'The browser does not let this page copy.';
 
@@ -6,8 +6,8 @@ export const notAllowed = 'The browser does not let this page copy.';
 export async function copyText(text: string, done: string, otherwise: string): Promise<void> {
   try {
     await navigator.clipboard.writeText(text);
-    say(done);
+    showNotice(done);
   } catch {
-    say(otherwise);
+    showNotice(otherwise);
   }
 }

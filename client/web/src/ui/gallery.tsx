@@ -20,11 +20,11 @@ function Thumbnail({ name }: { name: string }): JSX.Element {
 }
 
 function Card({ name }: { name: string }): JSX.Element {
-  const { director } = useActions();
+  const { controller } = useActions();
   const description = descriptions.value.get(name);
   const open = link.value.kind === 'open';
   useEffect(() => {
-    if (open && !description) director.describe(name).catch(() => undefined);
+    if (open && !description) controller.describe(name).catch(() => undefined);
   }, [open]);
   const choose = (): void => {
     galleryOpen.value = false;

@@ -1,5 +1,5 @@
 import type { JSX } from 'preact';
-import { clear, finish, remove, undoPoint } from '../measure/desk';
+import { clear, finish, remove, undoPoint } from '../measure/measurement_list';
 import { formatExact, linesOf } from '../measure/format';
 import { measureKinds, type MeasureKind, type Measurement } from '../measure/measurement';
 import { chooseTool } from '../input/keyboard';

@@ -3,7 +3,7 @@ import { useState } from 'preact/hooks';
 import { cameraOf } from '../camera/pose';
 import { FileFormat } from '../generated/surfcast_pb';
 import { pictureOf, type Size } from '../protocol/pictures';
-import { dialog, look, model, pose, say, stageSize, upAxis } from '../state/store';
+import { dialog, display, model, pose, showNotice, stageSize, upAxis } from '../state/store';
 import { mediaType } from '../view/painter';
 import { useActions, type Actions } from './actions';
 import { Choices, Dialog, NumberField, Switch } from './controls';
@@ -16,7 +16,7 @@ const formats = [
 ] as const;
 type FormatName = (typeof formats)[number]['value'];
 
-const mostPixels = 2 ** 25; // the server's own limit
+const maxPixels = 2 ** 25; // the server's own limit
 
 function save(data: Uint8Array, name: string, type: string): void {
   const url = URL.createObjectURL(new Blob([data as Uint8Array<ArrayBuffer>], { type }));
@@ -29,7 +29,7 @@ function save(data: Uint8Array, name: string, type: string): void {
 
 /** Drawn anew by the server, as sharp as it can. */
 async function shoot(
-  director: Actions['director'],
+  controller: Actions['controller'],
   size: Size,
   format: FormatName,
   every: boolean,
@@ -38,9 +38,9 @@ async function shoot(
   const name = model.peek() ?? '';
   const now = pose.peek();
   const wire = formats.find((each) => each.value === format)?.wire ?? FileFormat.PNG;
-  const shown = every ? { ...look.peek(), spacing: 0 } : look.peek();
+  const shown = every ? { ...display.peek(), spacing: 0 } : display.peek();
   const request = pictureOf(name, now && cameraOf(now, upAxis.peek()), shown, size, wire);
-  const picture = await director.draw(request, started);
+  const picture = await controller.draw(request, started);
   save(picture.data, `${name}.${format}`, mediaType(wire));
 }
 
@@ -85,18 +85,18 @@ function Sizes({ size, onChange }: { size: Size; onChange: (size: Size) => void 
 }
 
 export function ScreenshotDialog(): JSX.Element {
-  const { director } = useActions();
+  const { controller } = useActions();
   const [size, setSize] = useState(stageSize.peek());
   const [format, setFormat] = useState<FormatName>('png');
   const [every, setEvery] = useState(true);
   const [cancel, setCancel] = useState<(() => void) | undefined>(undefined);
   const [problem, setProblem] = useState('');
-  const tooLarge = size.width * size.height > mostPixels;
+  const tooLarge = size.width * size.height > maxPixels;
   const start = (): void => {
     setProblem('');
-    shoot(director, size, format, every, (give) => setCancel(() => give)).then(
+    shoot(controller, size, format, every, (give) => setCancel(() => give)).then(
       () => {
-        say('Picture saved.');
+        showNotice('Picture saved.');
         dialog.value = undefined;
       },
       (error: unknown) => {

@@ -15,7 +15,7 @@ function useSecondsUntil(time: number): number {
 }
 
 function Waiting({ until, message }: { until: number; message: string }): JSX.Element {
-  const { director } = useActions();
+  const { controller } = useActions();
   const seconds = useSecondsUntil(until);
   return (
     <div class="banner" role="status">
@@ -23,7 +23,7 @@ function Waiting({ until, message }: { until: number; message: string }): JSX.El
       <p>
         <b>{message}</b> Trying again {seconds > 0 ? `in ${seconds} s` : 'now'}.
       </p>
-      <button type="button" onClick={() => director.retry()}>
+      <button type="button" onClick={() => controller.retry()}>
         Try now
       </button>
     </div>
@@ -44,7 +44,7 @@ function Refused({ message }: { message: string }): JSX.Element {
 }
 
 function Problem({ message, again }: { message: string; again: boolean }): JSX.Element {
-  const { director } = useActions();
+  const { controller } = useActions();
   const missing = model.value !== undefined && models.value !== undefined && !models.value.includes(model.value);
   const title = again ? 'The server is busy' : missing ? 'No such model' : 'This view cannot be shown';
   return (
@@ -53,7 +53,7 @@ function Problem({ message, again }: { message: string; again: boolean }): JSX.E
       <p class="message">{message}</p>
       {again && <p class="faint">It is being tried again.</p>}
       <div class="button-row">
-        <button type="button" onClick={() => director.retry()}>
+        <button type="button" onClick={() => controller.retry()}>
           Try again
         </button>
         <button type="button" class="primary" onClick={() => (galleryOpen.value = true)}>

@@ -1,6 +1,16 @@
 import type { JSX } from 'preact';
 import { FileFormat, type Picture } from '../generated/surfcast_pb';
-import { askedUpdate, figures, figuresOpen, link, moving, picking, shownFrame, unasked, viewProblem } from '../state/store';
+import {
+  wantedUpdate,
+  figures,
+  figuresOpen,
+  link,
+  moving,
+  picking,
+  shownFrame,
+  updatePending,
+  viewProblem,
+} from '../state/store';
 import { stageNames, type StageName, type StageTimes } from '../view/figures';
 import { IconButton } from './controls';
 
@@ -23,7 +33,7 @@ function stateNow(): State {
   if (!frame) return { kind: 'working', text: 'Loading' };
   if (picking.value) return { kind: 'working', text: 'Looking' };
   if (moving.value) return { kind: 'working', text: 'Moving' };
-  const wanted = !unasked.value && frame.update >= askedUpdate.value;
+  const wanted = !updatePending.value && frame.update >= wantedUpdate.value;
   return wanted && !frame.moving && frame.picture?.converged ? { kind: 'sharp', text: 'Sharp' } : { kind: 'working', text: 'Refining' };
 }
 

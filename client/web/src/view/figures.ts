@@ -56,7 +56,7 @@ interface Entry {
 }
 
 /** Keeps what the figures of the last two seconds need. Times are given, so that tests choose them. */
-export class FigureKeeper {
+export class FigureCollector {
   private frames: Entry[] = [];
   private arrivals: { at: number; bytes: number }[] = [];
   private kept: Pick<Figures, 'latency' | 'stages'> = { latency: undefined, stages: undefined };

@@ -3,11 +3,11 @@ import type { Pixel, Vector } from '../camera/vector';
 import type { PickResult } from '../generated/surfcast_pb';
 import { cameraFrom, pictureOf, vectorFrom } from '../protocol/pictures';
 import * as store from '../state/store';
-import type { Director } from './director';
+import type { ViewController } from './view_controller';
 
 /** Asks what is under a pixel of the picture on the screen. */
 export class Probe {
-  constructor(private readonly director: Director) {}
+  constructor(private readonly controller: ViewController) {}
 
   /** Rejects with a RequestError; nothing while there is no picture. */
   async pick(pixel: Pixel): Promise<PickResult | undefined> {
@@ -18,7 +18,7 @@ export class Probe {
     const { width, height } = frame.resolution;
     const x = Math.min(width - 1, Math.max(0, Math.floor(pixel.x)));
     const y = Math.min(height - 1, Math.max(0, Math.floor(pixel.y)));
-    return this.director.pick(pictureOf(model, camera, store.look.peek(), { width, height }), x, y);
+    return this.controller.pick(pictureOf(model, camera, store.display.peek(), { width, height }), x, y);
   }
 
   /** The point under a pixel as well as it is known: the scan's own once the server has answered. */

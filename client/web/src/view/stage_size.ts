@@ -2,12 +2,12 @@ import { batch } from '@preact/signals';
 import type { Size } from '../protocol/pictures';
 import * as store from '../state/store';
 
-const mostPixels = 2560 * 1600; // beyond this sharpness is not worth the wait
+const maxPixels = 2560 * 1600; // beyond this sharpness is not worth the wait
 const settle = 120; // ms: a window that is being resized would ask for a new picture at every step
 
 /** Device pixels of an element, fewer where the screen has very many. */
 export function pixelsOf(width: number, height: number, ratio: number): Size {
-  const used = Math.min(ratio, 2, Math.sqrt(mostPixels / Math.max(1, width * height)));
+  const used = Math.min(ratio, 2, Math.sqrt(maxPixels / Math.max(1, width * height)));
   return { width: Math.round(width * used), height: Math.round(height * used) };
 }
 

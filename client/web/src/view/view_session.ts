@@ -39,7 +39,7 @@ export class ViewSession {
   close(): void {
     if (this.ended) return;
     this.ended = true;
-    this.connection.forget(this.id);
+    this.connection.unlisten(this.id);
     void this.connection.ask({ case: 'closeView', value: { view: this.id } }, 'viewClosed').catch(() => undefined);
   }
 
@@ -52,7 +52,7 @@ export class ViewSession {
       return;
     }
     this.ended = true;
-    this.connection.forget(this.id);
+    this.connection.unlisten(this.id);
     if (answer.case !== 'viewClosed') this.events.failed(errorOf(answer));
   }
 }

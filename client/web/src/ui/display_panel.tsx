@@ -1,0 +1,234 @@
+import type { JSX } from 'preact';
+import { heightOf } from '../camera/pose';
+import { formatNumber } from '../measure/format';
+import {
+  colorMaps,
+  colorSources,
+  fromHex,
+  toHex,
+  defaultBackground,
+  type ColorSourceName,
+  type DisplayOptions,
+  type Rgb,
+} from '../state/display_options';
+import { classColor, className, gradientOf } from '../state/palette';
+import { bounds, description, display, upAxis } from '../state/store';
+import { Choices, NumberField, Section, Slider } from './controls';
+
+const change = (part: Partial<DisplayOptions>): void => void (display.value = { ...display.peek(), ...part });
+
+const sourceLabels: Readonly<Record<ColorSourceName, string>> = {
+  rgb: 'Scan',
+  intensity: 'Intensity',
+  elevation: 'Elevation',
+  classification: 'Class',
+  normal: 'Normal',
+};
+
+const has = (attribute: string): boolean => description.value?.attributes.includes(attribute) ?? false;
+
+const available = (source: ColorSourceName): boolean =>
+  source === 'intensity' || source === 'classification' ? has(source) : true;
+
+/** What the ends of the colour map stand for when the look does not say. */
+function defaultRange(source: ColorSourceName): readonly [number, number] {
+  if (source === 'elevation') {
+    const { min, max } = bounds.value;
+    return [heightOf(min, upAxis.value), heightOf(max, upAxis.value)];
+  }
+  const range = description.value?.ranges.find((each) => each.attribute === source);
+  return range ? [range.low, range.high] : [0, 1];
+}
+
+export const mapped = (source: ColorSourceName): boolean => source === 'intensity' || source === 'elevation';
+
+export const shownRange = (): readonly [number, number] => display.value.range ?? defaultRange(display.value.source);
+
+function RangeFields(): JSX.Element {
+  const [first, last] = shownRange();
+  const usual = defaultRange(display.value.source);
+  const decimals = Math.max(0, 3 - Math.floor(Math.log10(Math.max(1e-9, usual[1] - usual[0]))));
+  const set = (a: number, b: number): void => {
+    if (a < b) change({ range: [a, b] });
+  };
+  return (
+    <div class="range-fields">
+      <NumberField label="From" value={first} {...{ decimals }} onChange={(value) => set(value, last)} />
+      <NumberField label="To" value={last} {...{ decimals }} onChange={(value) => set(first, value)} />
+      <button type="button" class="quiet" disabled={!display.value.range} onClick={() => change({ range: undefined })}>
+        Reset
+      </button>
+    </div>
+  );
+}
+
+function Maps(): JSX.Element {
+  return (
+    <div class="maps" role="radiogroup" aria-label="Colour map">
+      {colorMaps.map((map) => (
+        <label key={map} title={map}>
+          <input
+            type="radio"
+            name="map"
+            aria-label={map}
+            checked={display.value.map === map}
+            onChange={() => change({ map })}
+          />
+          <span style={{ background: gradientOf(map) }} />
+        </label>
+      ))}
+    </div>
+  );
+}
+
+function Coloring(): JSX.Element {
+  const { source } = display.value;
+  return (
+    <Section title="Colour">
+      <Choices
+        label="Colour by"
+        value={source}
+        options={colorSources.map((value) => ({ value, label: sourceLabels[value], disabled: !available(value) }))}
+        onChange={(value) => change({ source: value, range: undefined })}
+      />
+      {mapped(source) && (
+        <>
+          <Maps />
+          <RangeFields />
+        </>
+      )}
+    </Section>
+  );
+}
+
+function Classes(): JSX.Element | null {
+  const classes = description.value?.classes ?? [];
+  if (classes.length === 0) return null;
+  const { hiddenClasses } = display.value;
+  const toggle = (code: number, shown: boolean): void =>
+    change({ hiddenClasses: shown ? hiddenClasses.filter((c) => c !== code) : [...hiddenClasses, code] });
+  const all = (
+    <button
+      type="button"
+      class="quiet"
+      onClick={() => change({ hiddenClasses: hiddenClasses.length > 0 ? [] : classes.map((c) => c.code) })}
+    >
+      {hiddenClasses.length > 0 ? 'Show all' : 'Hide all'}
+    </button>
+  );
+  return (
+    <Section title="Classes" aside={all}>
+      <ul class="classes">
+        {classes.map(({ code, surfels }) => (
+          <li key={code}>
+            <label>
+              <input
+                type="checkbox"
+                checked={!hiddenClasses.includes(code)}
+                style={{ '--swatch': classColor(code) }}
+                onChange={(event) => toggle(code, event.currentTarget.checked)}
+              />
+              <span class="name">
+                {className(code)} <small>{code}</small>
+              </span>
+              <span class="count">{formatNumber(Number(surfels), 0)}</span>
+            </label>
+          </li>
+        ))}
+      </ul>
+    </Section>
+  );
+}
+
+function Depth(): JSX.Element {
+  const { eyeDome } = display.value;
+  const set = (part: Partial<DisplayOptions['eyeDome']>): void => change({ eyeDome: { ...eyeDome, ...part } });
+  return (
+    <Section title="Eye-dome lighting">
+      <Slider
+        label="Strength"
+        {...{ value: eyeDome.strength, min: 0, max: 3, step: 0.05 }}
+        shown={eyeDome.strength > 0 ? eyeDome.strength.toFixed(2) : 'off'}
+        onInput={(strength) => set({ strength })}
+      />
+      {eyeDome.strength > 0 && (
+        <Slider
+          label="Radius"
+          {...{ value: eyeDome.radius, min: 0.5, max: 5, step: 0.1 }}
+          shown={`${eyeDome.radius.toFixed(1)} px`}
+          onInput={(radius) => set({ radius })}
+        />
+      )}
+    </Section>
+  );
+}
+
+const backgrounds: readonly (readonly [string, Rgb])[] = [
+  ['Night', defaultBackground],
+  ['Black', { red: 0, green: 0, blue: 0 }],
+  ['Slate', { red: 58, green: 66, blue: 76 }],
+  ['Paper', { red: 238, green: 236, blue: 230 }],
+  ['White', { red: 255, green: 255, blue: 255 }],
+];
+
+function Background(): JSX.Element {
+  const now = toHex(display.value.background);
+  return (
+    <Section title="Background">
+      <div class="swatches">
+        {backgrounds.map(([name, color]) => (
+          <button
+            key={name}
+            type="button"
+            class="swatch"
+            title={name}
+            aria-label={`${name} background`}
+            aria-pressed={toHex(color) === now}
+            style={{ background: toHex(color) }}
+            onClick={() => change({ background: color })}
+          />
+        ))}
+        <label class="swatch custom" title="Any colour">
+          <input
+            type="color"
+            aria-label="Any background colour"
+            value={now}
+            onInput={(event) => change({ background: fromHex(event.currentTarget.value) })}
+          />
+        </label>
+      </div>
+    </Section>
+  );
+}
+
+const details = [
+  { value: '2', label: 'Light' },
+  { value: '1', label: 'Fine' },
+  { value: '0', label: 'Every point' },
+] as const;
+
+function Detail(): JSX.Element {
+  const value = details.find((each) => Number(each.value) === display.value.spacing)?.value ?? '1';
+  return (
+    <Section title="Detail at rest">
+      <Choices
+        label="Detail at rest"
+        value={value}
+        options={details}
+        onChange={(chosen) => change({ spacing: Number(chosen) })}
+      />
+    </Section>
+  );
+}
+
+export function DisplayPanel(): JSX.Element {
+  return (
+    <>
+      <Coloring />
+      <Classes />
+      <Depth />
+      <Background />
+      <Detail />
+    </>
+  );
+}

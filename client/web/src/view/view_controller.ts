@@ -1,0 +1,239 @@
+import { equals } from '@bufbuild/protobuf';
+import { effect } from '@preact/signals';
+import { cameraOf, poseOf } from '../camera/pose';
+import { DrawPictureSchema, ErrorCode, type DrawPicture, type PickResult, type Picture } from '../generated/surfcast_pb';
+import { backoff } from '../protocol/backoff';
+import { RequestError, type Connection } from '../protocol/connection';
+import { Link } from '../protocol/link';
+import { cameraFrom, pictureOf } from '../protocol/pictures';
+import * as store from '../state/store';
+import { FigureCollector } from './figures';
+import { Painter, type ArrivedFrame, type PaintedFrame } from './painter';
+import { ViewSession } from './view_session';
+
+/** Something to show, and whether more of it is about to follow. */
+interface ViewRequest {
+  readonly picture: DrawPicture;
+  readonly moving: boolean;
+}
+
+const sameRequest = (a: ViewRequest | undefined, b: ViewRequest): boolean =>
+  a?.moving === b.moving && equals(DrawPictureSchema, a.picture, b.picture);
+
+const figuresEvery = 500; // ms
+
+/**
+ * Keeps the server shown what the page wants to see, and the page what the server draws: follows the store's model,
+ * pose and look, at most one update per animation frame, over connections that may break and come back.
+ */
+export class ViewController {
+  private readonly link: Link;
+  private readonly painter: Painter;
+  private readonly collector = new FigureCollector();
+  private connection: Connection | undefined;
+  private session: ViewSession | undefined;
+  private sent: ViewRequest | undefined;
+  private readonly sentAt = new Map<bigint, number>(); // update: performance.now()
+  private scheduled = false;
+  private failures = 0;
+  private retryTimer: ReturnType<typeof setTimeout> | undefined;
+
+  /** `step` moves the eye on to the time it is given. */
+  constructor(
+    url: string,
+    canvas: HTMLCanvasElement,
+    private readonly step: (now: number) => boolean,
+  ) {
+    this.painter = new Painter(canvas, {
+      painted: (frame) => this.painted(frame),
+      skipped: (frame) => this.session?.acknowledge(frame.frame.frame, performance.now() - frame.arrived),
+      broken: (frame) => this.session?.acknowledge(frame.frame.frame, performance.now() - frame.arrived),
+    });
+    this.link = new Link(url, {
+      changed: (state) => (store.link.value = state),
+      opened: (connection) => this.opened(connection),
+      closed: () => this.closed(),
+      received: (bytes) => this.collector.bytes(bytes, performance.now()),
+    });
+    effect(() => this.follow(store.model.value));
+    effect(() => {
+      // Read here to be called again when one changes.
+      void [store.pose.value, store.display.value, store.stageSize.value, store.moving.value];
+      this.schedule();
+    });
+    addEventListener('pagehide', () => this.link.close());
+    addEventListener('pageshow', (event) => {
+      if (event.persisted) location.reload(); // back from the browser's cache, without a connection
+    });
+    setInterval(() => (store.figures.value = this.collector.figures(performance.now())), figuresEvery);
+  }
+
+  retry(): void {
+    this.failures = 0;
+    this.link.retry();
+    this.openView();
+  }
+
+  /** Asks for one step of the eye and, where something changed, one update with the next animation frame. */
+  schedule(): void {
+    if (this.scheduled) return;
+    this.scheduled = true;
+    store.updatePending.value = true;
+    requestAnimationFrame((now) => {
+      this.scheduled = false;
+      if (this.step(now)) this.schedule();
+      this.send();
+      store.updatePending.value = this.scheduled;
+    });
+  }
+
+  async pick(picture: DrawPicture, x: number, y: number): Promise<PickResult> {
+    return this.connected().ask({ case: 'pickSurfel', value: { picture, x, y } }, 'pickResult');
+  }
+
+  /** `started` gets what gives the request up. */
+  async draw(picture: DrawPicture, started: (cancel: () => void) => void): Promise<Picture> {
+    const connection = this.connected();
+    return connection.ask({ case: 'drawPicture', value: picture }, 'picture', (id) =>
+      started(() => {
+        void connection.ask({ case: 'cancel', value: { requestId: id } }, 'cancelResult').catch(() => undefined);
+      }),
+    );
+  }
+
+  private connected(): Connection {
+    if (this.connection) return this.connection;
+    throw new RequestError(ErrorCode.UNAVAILABLE, 'There is no connection to the server.');
+  }
+
+  private opened(connection: Connection): void {
+    this.connection = connection;
+    void this.listModels(connection);
+    this.openView();
+  }
+
+  private closed(): void {
+    this.connection = undefined;
+    this.endView();
+  }
+
+  private async listModels(connection: Connection): Promise<void> {
+    try {
+      store.models.value = (await connection.ask({ case: 'listModels', value: {} }, 'modelList')).models;
+    } catch {
+      // The connection has ended; the next one asks again.
+    }
+  }
+
+  async describe(name: string): Promise<void> {
+    const description = await this.connected().ask(
+      { case: 'describeModel', value: { model: name } },
+      'modelDescription',
+    );
+    store.descriptions.value = new Map(store.descriptions.value).set(name, description);
+  }
+
+  private follow(model: string | undefined): void {
+    this.failures = 0;
+    this.endView();
+    store.viewProblem.value = undefined;
+    store.shownFrame.value = undefined;
+    if (model !== undefined) this.openView();
+  }
+
+  private openView(): void {
+    clearTimeout(this.retryTimer);
+    const model = store.model.peek();
+    const connection = this.connection;
+    if (model === undefined || !connection || this.session) return;
+    this.describe(model).then(
+      () => {
+        if (connection === this.connection && model === store.model.peek()) this.start(connection);
+      },
+      (error: unknown) => this.failed(error),
+    );
+  }
+
+  private start(connection: Connection): void {
+    const camera = store.firstCamera.peek();
+    if (camera) store.pose.value = poseOf(camera, store.upAxis.peek());
+    store.firstCamera.value = undefined;
+    const request = this.currentRequest();
+    if (!request || this.session) return;
+    store.viewProblem.value = undefined;
+    this.painter.reset();
+    this.sentAt.clear();
+    store.wantedUpdate.value = 0n;
+    this.sent = { ...request, moving: false };
+    this.session = new ViewSession(connection, request.picture, {
+      frame: (frame) => void this.painter.take(frame),
+      failed: (error) => {
+        this.session = undefined;
+        this.failed(error);
+      },
+    });
+    this.schedule();
+  }
+
+  private endView(): void {
+    clearTimeout(this.retryTimer);
+    this.session?.close();
+    this.session = undefined;
+    this.sent = undefined;
+  }
+
+  private failed(error: unknown): void {
+    if (!this.connection) return; // the link says what is wrong, and comes back
+    const again = error instanceof RequestError && error.code === ErrorCode.UNAVAILABLE;
+    store.viewProblem.value = { message: error instanceof Error ? error.message : String(error), again };
+    if (again) this.retryTimer = setTimeout(() => this.openView(), backoff(this.failures++, Math.random()));
+  }
+
+  private currentRequest(): ViewRequest | undefined {
+    const model = store.model.peek();
+    const size = store.stageSize.peek();
+    if (model === undefined || size.width < 1 || size.height < 1) return undefined;
+    const pose = store.pose.peek();
+    const camera = pose && cameraOf(pose, store.upAxis.peek());
+    return { picture: pictureOf(model, camera, store.display.peek(), size), moving: store.moving.peek() };
+  }
+
+  private send(): void {
+    const request = this.currentRequest();
+    if (!request) return;
+    if (!this.session) {
+      if (this.connection && store.description.peek() && !store.viewProblem.peek()) this.start(this.connection);
+      return;
+    }
+    if (sameRequest(this.sent, request)) return;
+    const same = this.sent !== undefined && equals(DrawPictureSchema, this.sent.picture, request.picture);
+    this.sent = request;
+    const update = this.session.update(request.picture, request.moving);
+    this.sentAt.set(update, performance.now());
+    if (!same) store.wantedUpdate.value = update;
+  }
+
+  private painted(painted: PaintedFrame): void {
+    const { frame } = painted;
+    this.failures = 0;
+    this.session?.acknowledge(frame.frame, painted.painted - painted.arrived);
+    this.collector.painted(painted, this.sentAt.get(frame.update));
+    // Later frames of the same update are refinements: they come when they are ready, not when they were asked for.
+    for (const update of this.sentAt.keys()) if (update <= frame.update) this.sentAt.delete(update);
+    store.shownFrame.value = withoutData(painted);
+    if (!store.pose.peek() && frame.update >= store.wantedUpdate.peek()) this.adopt(painted);
+  }
+
+  /** Goes on from the view that the server chose, without asking for it again. */
+  private adopt({ frame }: ArrivedFrame): void {
+    const camera = cameraFrom(frame.picture?.camera);
+    if (!camera) return;
+    const untouched = this.sent && sameRequest(this.sent, this.currentRequest() ?? this.sent);
+    store.pose.value = poseOf(camera, store.upAxis.peek());
+    if (untouched) this.sent = this.currentRequest();
+  }
+}
+
+function withoutData({ frame }: PaintedFrame): PaintedFrame['frame'] {
+  return frame.picture ? { ...frame, picture: { ...frame.picture, data: new Uint8Array() } } : frame;
+}

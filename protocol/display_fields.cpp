@@ -1,0 +1,118 @@
+#include "protocol/display_fields.h"
+
+#include <algorithm>
+#include <array>
+#include <optional>
+#include <vector>
+
+#include "protocol/parse.h"
+#include "protocol/validate.h"
+
+namespace surfcast::protocol {
+namespace {
+
+using Numbers = std::vector<double>;
+
+bool set_source(wire::DrawPicture& picture, std::string_view text) {
+  constexpr std::array<std::string_view, 5> kNames{"rgb", "intensity", "elevation", "classification", "normal"};
+  const auto found = std::find(kNames.begin(), kNames.end(), text);
+  if (found == kNames.end()) return false;
+  picture.mutable_coloring()->set_source(static_cast<wire::ColorSource>(found - kNames.begin()));
+  return true;
+}
+
+bool set_map(wire::DrawPicture& picture, std::string_view text) {
+  constexpr std::array<std::string_view, 4> kNames{"viridis", "turbo", "gray", "terrain"};
+  const auto found = std::find(kNames.begin(), kNames.end(), text);
+  if (found == kNames.end()) return false;
+  picture.mutable_coloring()->set_map(static_cast<wire::ColorMap>(found - kNames.begin()));
+  return true;
+}
+
+bool set_range(wire::DrawPicture& picture, std::string_view text) {
+  const std::optional<Numbers> values = parse_doubles(text, 2);
+  if (!values || !((*values)[0] < (*values)[1])) return false;
+  picture.mutable_coloring()->set_first((*values)[0]);
+  picture.mutable_coloring()->set_last((*values)[1]);
+  return true;
+}
+
+/// The parts of a text between separators; an empty text has one part.
+std::vector<std::string_view> split(std::string_view text, char separator) {
+  std::vector<std::string_view> parts;
+  for (size_t end = text.find(separator); end != std::string_view::npos; end = text.find(separator)) {
+    parts.push_back(text.substr(0, end));
+    text.remove_prefix(end + 1);
+  }
+  parts.push_back(text);
+  return parts;
+}
+
+bool set_hidden_classes(wire::DrawPicture& picture, std::string_view text) {
+  std::vector<uint32_t> codes;
+  for (const std::string_view part : split(text, ',')) {
+    const std::optional<uint32_t> code = parse_unsigned(part);
+    if (!code || *code > kMaxClassCode) return false;
+    codes.push_back(*code);
+  }
+  picture.mutable_hidden_classes()->Assign(codes.begin(), codes.end());
+  return true;
+}
+
+std::optional<wire::ClipBox> parse_clip_box(std::string_view text, bool inverted) {
+  const std::optional<Numbers> values = parse_doubles(text, 6);
+  if (!values) return std::nullopt;
+  const auto set = [&values](wire::Vector3* corner, size_t first) {
+    corner->set_x((*values)[first]);
+    corner->set_y((*values)[first + 1]);
+    corner->set_z((*values)[first + 2]);
+  };
+  const auto below = [&values](size_t axis) { return (*values)[axis] <= (*values)[axis + 3]; };
+  if (!below(0) || !below(1) || !below(2)) return std::nullopt;
+  wire::ClipBox clip;
+  set(clip.mutable_box()->mutable_min(), 0);
+  set(clip.mutable_box()->mutable_max(), 3);
+  clip.set_inverted(inverted);
+  return clip;
+}
+
+/// Replaces the boxes of that kind.
+bool set_clip_boxes(wire::DrawPicture& picture, std::string_view text, bool inverted) {
+  std::vector<wire::ClipBox> boxes;
+  for (const wire::ClipBox& box : picture.clip_boxes()) {
+    if (box.inverted() != inverted) boxes.push_back(box);
+  }
+  for (const std::string_view part : split(text, ';')) {
+    const std::optional<wire::ClipBox> box = parse_clip_box(part, inverted);
+    if (!box) return false;
+    boxes.push_back(*box);
+  }
+  picture.mutable_clip_boxes()->Assign(boxes.begin(), boxes.end());
+  return true;
+}
+
+bool set_eye_dome(wire::DrawPicture& picture, std::string_view text) {
+  const size_t comma = text.find(',');
+  const std::optional<double> strength = parse_double(text.substr(0, comma));
+  const std::optional<double> radius =
+      comma == std::string_view::npos ? std::optional(0.0) : parse_double(text.substr(comma + 1));
+  if (!strength || !(*strength >= 0 && *strength <= kMaxEyeDomeStrength)) return false;
+  if (!radius || !(*radius >= 0 && *radius <= kMaxEyeDomeRadius)) return false;
+  picture.mutable_eye_dome()->set_strength(*strength);
+  picture.mutable_eye_dome()->set_radius(*radius);
+  return true;
+}
+
+}  // namespace
+
+bool set_display_field(wire::DrawPicture& picture, std::string_view name, std::string_view text) {
+  if (name == "color_by") return set_source(picture, text);
+  if (name == "color_map") return set_map(picture, text);
+  if (name == "color_range") return set_range(picture, text);
+  if (name == "hide_classes") return set_hidden_classes(picture, text);
+  if (name == "clip_box") return set_clip_boxes(picture, text, false);
+  if (name == "clip_out") return set_clip_boxes(picture, text, true);
+  return name == "eye_dome" && set_eye_dome(picture, text);
+}
+
+}  // namespace surfcast::protocol

@@ -1,0 +1,80 @@
+#include "service/catalogue_renderer.h"
+
+#include <atomic>
+#include <deque>
+#include <map>
+#include <memory>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "service/shader_warm_up.h"
+
+namespace surfcast::service {
+namespace {
+
+class CatalogueRenderer : public FrameRenderer {
+ public:
+  CatalogueRenderer(const ModelCatalogue& models, std::unique_ptr<render::Renderer> renderer)
+      : models_(models), renderer_(std::move(renderer)) {
+    if (const std::vector<std::string> names = models.names(); !names.empty()) next_model_ = names.front();
+  }
+
+  Result<picture::Frame> draw(const std::string& name, const picture::PictureRequest& request,
+                              const Preemption& preemption) override {
+    Result<std::shared_ptr<const model::ModelFile>> model = models_.open(name);
+    if (!model) return fail(model.error());
+    return renderer_->draw(current(name, std::move(*model)), request, preemption);
+  }
+  /// Draws the next of the tiny pictures of the model that was asked for last, at first of any.
+  bool warm_up() override {
+    if (!next_model_.empty()) begin_warm_up(std::exchange(next_model_, {}));
+    if (warm_ups_.empty()) return false;
+    const std::atomic<bool> never{false};
+    (void)renderer_->draw(warming_model_, warm_ups_.front(), never);  // failures show again when it is asked for
+    warm_ups_.pop_front();
+    if (warm_ups_.empty()) warming_model_.reset();
+    return !warm_ups_.empty();
+  }
+  [[nodiscard]] const picture::DeviceInfo& device() const override { return renderer_->device(); }
+  [[nodiscard]] int max_resolution() const override { return renderer_->max_resolution(); }
+
+ private:
+  /// Lets go of what is resident of a file that has been replaced.
+  std::shared_ptr<const model::ModelFile> current(const std::string& name,
+                                                  std::shared_ptr<const model::ModelFile> model) {
+    std::shared_ptr<const model::ModelFile>& drawn = drawn_[name];
+    if (drawn && drawn != model) renderer_->release_model(*drawn);
+    if (!drawn) next_model_ = name;
+    drawn = std::move(model);
+    return drawn;
+  }
+
+  void begin_warm_up(const std::string& name) {
+    const Result<std::shared_ptr<const model::ModelFile>> model = models_.open(name);
+    if (!model) return;
+    warming_model_ = current(name, *model);
+    next_model_.clear();
+    const std::vector<picture::PictureRequest> pictures = shader_warm_up_requests(warming_model_->info());
+    warm_ups_.assign(pictures.begin(), pictures.end());
+  }
+
+  const ModelCatalogue& models_;
+  std::string next_model_;  ///< to be warmed up; none: empty
+  std::shared_ptr<const model::ModelFile> warming_model_;
+  std::deque<picture::PictureRequest> warm_ups_;
+  std::map<std::string, std::shared_ptr<const model::ModelFile>> drawn_;  ///< by name
+  std::unique_ptr<render::Renderer> renderer_;
+};
+
+}  // namespace
+
+FrameRendererFactory catalogue_renderers(const ModelCatalogue& models, const render::RendererConfig& config) {
+  return [&models, config]() -> Result<std::unique_ptr<FrameRenderer>> {
+    Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create(config);
+    if (!renderer) return fail(renderer.error());
+    return std::make_unique<CatalogueRenderer>(models, std::move(*renderer));
+  };
+}
+
+}  // namespace surfcast::service

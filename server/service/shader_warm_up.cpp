@@ -1,0 +1,44 @@
+#include "service/shader_warm_up.h"
+
+#include <algorithm>
+
+namespace surfcast::service {
+namespace {
+
+/// One at rest and one in motion.
+void add_both(picture::PictureRequest request, std::vector<picture::PictureRequest>& pictures) {
+  pictures.push_back(request);
+  request.normalization = picture::Normalization::kSurfel;
+  pictures.push_back(request);
+}
+
+}  // namespace
+
+std::vector<picture::PictureRequest> shader_warm_up_requests(const model::ModelInfo& info) {
+  picture::PictureRequest plain;
+  plain.width = 16;
+  plain.height = 16;
+  plain.spacing = 1e6;  // the coarsest blocks
+  plain.silhouettes = true;
+  std::vector<picture::PictureRequest> pictures;
+  add_both(plain, pictures);
+  const auto colored_by = [&](picture::SurfelColor color) {
+    picture::PictureRequest request = plain;
+    request.coloring.source = color;
+    add_both(request, pictures);
+  };
+  const auto has = [&](const char* name) { return std::ranges::count(info.scalar_names, name) > 0; };
+  if (has("classification")) colored_by(picture::SurfelColor::kClassification);
+  if (has("intensity")) colored_by(picture::SurfelColor::kIntensity);
+  colored_by(picture::SurfelColor::kElevation);
+  colored_by(picture::SurfelColor::kNormal);
+  picture::PictureRequest shaded = plain;
+  shaded.eye_dome.strength = 1;
+  add_both(shaded, pictures);
+  picture::PictureRequest clipped = plain;
+  clipped.clip.inside.push_back(info.bounds);
+  add_both(clipped, pictures);
+  return pictures;
+}
+
+}  // namespace surfcast::service
