@@ -11,8 +11,8 @@ demo: configure
 test: build
 	ctest --preset release -j2
 
-# Time against error of every way to draw, written into docs/. SCANS are more scans or models to measure, BENCH_FLAGS
-# what `laboratory --help` lists.
+# Time against error of every way to draw, written into docs/laboratory.md. SCANS are more scans or models to measure,
+# BENCH_FLAGS what `laboratory --help` lists.
 bench: configure
 	cmake --build --preset release --target laboratory
 	build/bin/laboratory --docs docs $(BENCH_FLAGS) tests/data/lion.drc $(SCANS)

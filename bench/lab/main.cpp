@@ -35,11 +35,11 @@ void write(const fs::path& path, const std::string& content) {
   std::exit(1);
 }
 
-/// Replaces the results in the documentation: performance.md between its markers, laboratory.json, the plot.
+/// Replaces the results in the documentation: the section of kResultsPage, laboratory.json, the plot.
 void write_docs(const LabResults& results, const fs::path& docs) {
-  const fs::path page = docs / "performance.md";
-  const std::string text = bench::value_or_exit(
-      with_section(content_of(page), "<!-- laboratory: begin -->", "<!-- laboratory: end -->", markdown_of(results)));
+  const fs::path page = docs / kResultsPage;
+  const std::string text =
+      bench::value_or_exit(with_section(content_of(page), kResultsBegin, kResultsEnd, markdown_of(results)));
   write(page, text);
   write(docs / "laboratory.json", json_of(results));
   write(docs / "images" / "laboratory.svg", svg_of(results));
@@ -78,7 +78,7 @@ int main_of(int argc, char** argv) {
   app.add_option("--scenes", options.scenes, "names of the scenes, all without it")
       ->delimiter(',')
       ->check(CLI::IsMember(lab_scene_names()));
-  app.add_option("--docs", options.docs, "folder whose performance.md, laboratory.json and plot are to be replaced")
+  app.add_option("--docs", options.docs, "folder whose laboratory.md, laboratory.json and plot are to be replaced")
       ->check(CLI::ExistingDirectory);
   app.add_option("--pictures", options.pictures, "folder to keep all pictures in, as PPM");
   CLI11_PARSE(app, argc, argv);

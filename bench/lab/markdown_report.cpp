@@ -148,7 +148,7 @@ size_t occurrences(const std::string& text, const std::string& line) {
 
 std::string markdown_of(const LabResults& results) {
   return "Device: " + results.device + "; 512 x 512; milliseconds are medians of " + std::to_string(results.frames) +
-         " frames, in which the methods took turns.\n\n" + methods_and_scenes(results) +
+         " frames.\nThe methods took turns.\n\n" + methods_and_scenes(results) +
          "Time of a frame, and PSNR against the ideal picture; bold is the least error of a scene:\n\n" +
          matrix(results, time_and_error) +
          "![Time against error](images/laboratory.svg)\n\n"
@@ -158,11 +158,11 @@ std::string markdown_of(const LabResults& results) {
                   return number(m.errors.ssim, 4) + ", " + number(m.errors.worst_tile, 1) + " dB";
                 }) +
          "Flicker: the root mean square change of the error, in levels of 255, from frame to frame of a path that "
-         "moves "
-         "by 0.4 pixels a frame (256 x 256):\n\n" +
+         "moves by\n"
+         "0.4 pixels a frame (256 x 256):\n\n" +
          matrix(results, [](const auto&, const Measurement& m) { return number(m.flicker, 2); }) +
          "What per-pixel EWA gains over the best plain method, and over the papers' kernel; processor time as a "
-         "multiple of "
+         "multiple of\n"
          "that of the papers' kernel:\n\n" +
          gains(results) + "Ren's table 1 and figure 11:\n\n" + ren_table(results) + "Where the time goes:\n\n" +
          stages(results);

@@ -7,6 +7,11 @@
 
 namespace surfcast::lab {
 
+/// The page of the documentation that holds the results, and the lines between which they are.
+inline constexpr const char* kResultsPage = "laboratory.md";
+inline constexpr const char* kResultsBegin = "<!-- laboratory: begin -->";
+inline constexpr const char* kResultsEnd = "<!-- laboratory: end -->";
+
 /// Everything that was measured, as JSON.
 std::string json_of(const LabResults& results);
 

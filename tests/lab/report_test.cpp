@@ -2,7 +2,10 @@
 
 #include "lab/report.h"
 
+#include <filesystem>
+#include <fstream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include <gtest/gtest.h>
 
@@ -55,6 +58,19 @@ TEST(SectionTest, IsReplacedBetweenItsMarkersAndTwiceIsOnce) {
 TEST(SectionTest, MarkersThatAreMissingDoubledOrSwappedAreRefused) {
   for (const char* text : {"", "<a>", "<b>", "<b><a>", "<a><b><a>"}) {
     EXPECT_FALSE(with_section(text, "<a>", "<b>", "new")) << text;
+  }
+}
+
+TEST(SectionTest, ThePageOfTheDocumentationHasItsMarkers) {
+  std::ostringstream page;
+  page << std::ifstream(std::filesystem::path(SURFCAST_DOCS) / kResultsPage).rdbuf();
+  EXPECT_TRUE(with_section(page.str(), kResultsBegin, kResultsEnd, markdown_of(example())));
+}
+
+TEST(ReportTest, LinesOfProseHave120ColumnsAtMost) {
+  std::istringstream text(markdown_of(example()));
+  for (std::string line; std::getline(text, line);) {
+    EXPECT_TRUE(line.starts_with("|") || line.size() <= 120) << line;
   }
 }
 
