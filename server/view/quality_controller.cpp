@@ -20,7 +20,7 @@ struct LinkRung {
 };
 
 // Splats weigh by their number, which falls with the square of the spacing, and pixels by theirs. At a spacing of one
-// pixel the splats of software, where this matters, take ten times as long as the pixels (docs/performance.md).
+// pixel the splats of software, where this matters, take ten times as long as the pixels (docs/laboratory.md).
 constexpr double draw_cost(double scale, double spacing) {
   constexpr double kSplats = 10.0;
   return scale * scale * (1 + kSplats / (spacing * spacing));
