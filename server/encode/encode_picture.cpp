@@ -1,77 +1,47 @@
 #include "encode/encode_picture.h"
 
-#include <memory>
+#include <filesystem>
 #include <string>
 
-#include <OpenImageIO/filesystem.h>
-#include <OpenImageIO/imageio.h>
+#include <dlfcn.h>
 
 #include "base/contract.h"
+#include "encode/codec_module.h"
 
 namespace surfcast::encode {
 namespace {
 
-constexpr int kChannels = 3;       // written
-constexpr int kImageChannels = 4;  // of an Image in memory
-
-/// How OpenImageIO names a writer.
-const char* writer_of(picture::FileFormat format) {
-  switch (format) {
-    case picture::FileFormat::kJpeg:
-      return "jpeg";
-    case picture::FileFormat::kWebp:
-      return "webp";
-    case picture::FileFormat::kExr:
-      return "openexr";
-    case picture::FileFormat::kPng:
-      break;
-  }
-  return "png";
+/// Loads OpenImageIO with the module that uses it. The library brings some 250 others, which take longer to load than
+/// everything else at start, so that commands that encode nothing do without.
+Result<EncodeFunction*> load_codecs() {
+  std::error_code code;
+  const std::filesystem::path programs = std::filesystem::read_symlink("/proc/self/exe", code).parent_path();
+  const std::string path = (programs / "../lib/surfcast" / kCodecModule).lexically_normal().string();
+  void* module = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  void* function = module != nullptr ? dlsym(module, kEncodeSymbol) : nullptr;
+  if (function == nullptr) return fail(ErrorKind::kInternal, std::string("cannot load the image codecs: ") + dlerror());
+  return reinterpret_cast<EncodeFunction*>(function);
 }
 
-OIIO::ImageSpec make_spec(const picture::Image& image, picture::FileFormat format, int quality) {
-  const bool is_float = image.format == picture::PixelFormat::kLinearFloat;
-  OIIO::ImageSpec spec(image.width, image.height, kChannels, is_float ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
-  spec.attribute("oiio:ColorSpace", is_float ? "Linear" : "sRGB");
-  if (format == picture::FileFormat::kPng) {
-    // Level 1 of zlib takes a third of the time of the default for files a half larger.
-    spec.attribute("png:compressionLevel", 1);
-  } else if (format == picture::FileFormat::kExr) {
-    spec.attribute("compression", "zip:1");  // lossless; level 1 for the same reason
-    // The writer puts in the time of day otherwise, and the same request would not give the same bytes.
-    spec.attribute("DateTime", "1970:01:01 00:00:00");
-  } else {
-    spec.attribute("Compression", std::string(writer_of(format)) + ":" + std::to_string(quality));
-  }
-  return spec;
-}
-
-tl::unexpected<Error> writer_failed(OIIO::ImageOutput& writer) {
-  return fail(ErrorKind::kInternal, "cannot encode the picture: " + writer.geterror());
+const Result<EncodeFunction*>& codecs() {
+  static const Result<EncodeFunction*> loaded = load_codecs();
+  return loaded;
 }
 
 }  // namespace
 
-Result<std::vector<std::byte>> encode_picture(const picture::Image& image, picture::FileFormat format, int quality) {
-  const size_t channel_bytes = image.format == picture::PixelFormat::kLinearFloat ? sizeof(float) : 1;
-  const size_t pixel_bytes = kImageChannels * channel_bytes;
-  SURFCAST_EXPECTS(image.width > 0 && image.height > 0 && image.format == picture::pixel_format_of(format));
-  SURFCAST_EXPECTS(image.pixels.size() == pixel_bytes * static_cast<size_t>(image.width) * image.height);
+Status prepare_encoding() {
+  return codecs() ? Status() : fail(codecs().error());
+}
 
-  const std::unique_ptr<OIIO::ImageOutput> writer = OIIO::ImageOutput::create(writer_of(format));
-  if (!writer) return fail(ErrorKind::kInternal, std::string("no writer of ") + writer_of(format));
-  std::vector<unsigned char> bytes;
-  OIIO::Filesystem::IOVecOutput memory(bytes);
-  if (!writer->set_ioproxy(&memory)) return writer_failed(*writer);
-  const OIIO::ImageSpec spec = make_spec(image, format, quality);
-  if (!writer->open(writer_of(format), spec)) return writer_failed(*writer);
-  // The stride of four channels makes the writer skip the fourth.
-  if (!writer->write_image(spec.format, image.pixels.data(), static_cast<OIIO::stride_t>(pixel_bytes)) ||
-      !writer->close()) {
-    return writer_failed(*writer);
-  }
-  const auto* first = reinterpret_cast<const std::byte*>(bytes.data());
-  return std::vector<std::byte>(first, first + bytes.size());
+Result<std::vector<std::byte>> encode_picture(const picture::Image& image, picture::FileFormat format, int quality) {
+  SURFCAST_EXPECTS(image.width > 0 && image.height > 0 && image.format == picture::pixel_format_of(format));
+  SURFCAST_EXPECTS(image.pixels.size() ==
+                   bytes_per_pixel(image.format) * static_cast<size_t>(image.width) * image.height);
+  if (!codecs()) return fail(codecs().error());
+  Result<std::vector<std::byte>> bytes;
+  (*codecs())(image, format, quality, bytes);
+  return bytes;
 }
 
 }  // namespace surfcast::encode

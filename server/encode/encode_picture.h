@@ -13,4 +13,7 @@ namespace surfcast::encode {
 /// have the pixel format of the file format.
 Result<std::vector<std::byte>> encode_picture(const picture::Image& image, picture::FileFormat format, int quality);
 
+/// Loads the codecs, which the first call of encode_picture() does otherwise: some hundred milliseconds.
+Status prepare_encoding();
+
 }  // namespace surfcast::encode

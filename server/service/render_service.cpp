@@ -360,6 +360,8 @@ Result<std::unique_ptr<RenderService>> RenderService::start(const ModelSource& m
   auto state = std::make_unique<State>(models, limits);
   state->pool = std::make_unique<WorkerPool>(limits.encoders);
   state->motion_pool = std::make_unique<WorkerPool>(1);
+  // The codecs load while the first picture is drawn. The first picture that is encoded reports a failure.
+  state->motion_pool->post([] { static_cast<void>(surfcast::encode::prepare_encoding()); });
   state->picks = std::make_unique<PickService>(models);
   std::promise<Status> promise;
   std::future<Status> started = promise.get_future();

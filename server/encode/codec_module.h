@@ -1,0 +1,26 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+#include "base/result.h"
+#include "picture/file_format.h"
+
+namespace surfcast::encode {
+
+/// Of an Image in memory, which has four channels.
+[[nodiscard]] inline size_t bytes_per_pixel(picture::PixelFormat format) {
+  return 4 * (format == picture::PixelFormat::kLinearFloat ? sizeof(float) : 1);
+}
+
+/// The file of the module, in the folder lib/surfcast beside the program's folder.
+inline constexpr const char* kCodecModule = "image_codecs.so";
+/// The function that the module exports.
+inline constexpr const char* kEncodeSymbol = "surfcast_encode_picture";
+using EncodeFunction = void(const picture::Image& image, picture::FileFormat format, int quality,
+                            Result<std::vector<std::byte>>& bytes);
+
+}  // namespace surfcast::encode
+
+/// Exported by the module; see encode_picture() for its arguments.
+extern "C" [[gnu::visibility("default")]] surfcast::encode::EncodeFunction surfcast_encode_picture;
