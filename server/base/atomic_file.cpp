@@ -30,7 +30,7 @@ Status write_all(int descriptor, std::span<const std::byte> bytes, const std::fi
   return {};
 }
 
-/// Makes the rename itself durable: the directory's entry is flushed too.
+/// Makes the rename durable: flushes the directory entry too.
 void flush_directory_of(const std::filesystem::path& target) {
   const std::filesystem::path parent = target.parent_path().empty() ? "." : target.parent_path();
   const int descriptor = ::open(parent.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
@@ -45,7 +45,7 @@ Result<AtomicFile> AtomicFile::create(const std::filesystem::path& target) {
   static std::atomic<int> number{0};
   for (;;) {
     std::string temporary = target.string() + ".tmp" + std::to_string(::getpid()) + "-" + std::to_string(++number);
-    // Marked before it exists, so that no signal can come in between.
+    // Registered before the file exists: a signal between the two steps would otherwise leave the file behind.
     UnfinishedFile unfinished(temporary);
     const int descriptor = ::open(temporary.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
     if (descriptor >= 0) return AtomicFile(target, std::move(temporary), std::move(unfinished), descriptor);

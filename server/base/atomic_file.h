@@ -10,9 +10,9 @@
 
 namespace surfcast {
 
-/// An output that appears under its name only when it is whole: bytes go to a temporary file beside the target, and
-/// `commit` flushes it to the disk and renames it. Destroyed without `commit`, it leaves nothing behind, nor do signals
-/// that end the process (see unfinished_file.h).
+/// An output file that appears under its name only when it is complete. Bytes go to a temporary file beside the target;
+/// `commit` flushes it to disk and renames it. The destructor removes the temporary file unless `commit` was called. So
+/// do signals that end the process (see unfinished_file.h).
 class AtomicFile {
  public:
   static Result<AtomicFile> create(const std::filesystem::path& target);
@@ -25,7 +25,7 @@ class AtomicFile {
 
   /// Appends; `position()` is the number of bytes appended so far.
   Status append(std::span<const std::byte> bytes);
-  /// Writes over bytes already appended (a header whose figures are known last).
+  /// Overwrites bytes that were already appended, for example a header whose values are known last.
   Status overwrite(size_t offset, std::span<const std::byte> bytes);
   [[nodiscard]] size_t position() const { return position_; }
 
@@ -42,7 +42,7 @@ class AtomicFile {
   size_t position_ = 0;
 };
 
-/// Writes a whole small file atomically.
+/// Writes a complete small file atomically.
 Status write_file_atomically(const std::filesystem::path& target, std::span<const std::byte> bytes);
 Status write_file_atomically(const std::filesystem::path& target, std::string_view text);
 

@@ -7,5 +7,6 @@ namespace surfcast {
 
 }  // namespace surfcast
 
-/// States what the caller promised. A false condition is a bug in this program, never bad input, and stops it.
+/// States a precondition that the caller guarantees. A false condition is a bug in this program, never bad input; it
+/// aborts the process.
 #define SURFCAST_EXPECTS(condition) ((condition) ? void() : ::surfcast::contract_broken(#condition, __FILE__, __LINE__))

@@ -2,7 +2,7 @@
 
 namespace surfcast {
 
-/// From here on the calling thread gets only processor time that nothing else wants.
+/// Puts the calling thread into the scheduler's idle class: it runs only while a processor has nothing else to do.
 void use_idle_priority();
 
 }  // namespace surfcast

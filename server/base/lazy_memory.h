@@ -5,11 +5,11 @@
 
 namespace surfcast {
 
-/// Memory of which only the pages that have been written are taken from the machine. Zero at first.
+/// Zero-initialised memory that the operating system backs page by page, on the first write to each page.
 class LazyMemory {
  public:
   LazyMemory() = default;
-  /// Empty where the machine does not lend so much.
+  /// Reserves address space. `bytes()` is empty if the operating system refuses.
   explicit LazyMemory(size_t bytes);
   LazyMemory(LazyMemory&& other) noexcept;
   LazyMemory& operator=(LazyMemory&& other) noexcept;

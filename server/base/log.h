@@ -4,7 +4,7 @@
 
 namespace surfcast {
 
-/// Sends the log to stderr as `PROGRAM: message`, so that stdout is free for pictures. Call once, at start-up.
+/// Sends the log to stderr, so that stdout stays free for pictures. Call once, at start-up.
 void start_logging(const char* program);
 
 }  // namespace surfcast

@@ -8,13 +8,13 @@
 
 namespace surfcast {
 
-/// Values within a budget of bytes; the one used least recently goes first. Not thread-safe.
+/// A cache with a budget in bytes that evicts the least recently used value first. Not thread-safe.
 template <typename Key, typename Value>
 class LruCache {
  public:
   explicit LruCache(size_t budget_bytes) : budget_(budget_bytes) {}
 
-  /// Null if it is not here.
+  /// Null if the cache does not hold the key. Marks the entry as most recently used.
   std::shared_ptr<const Value> find(const Key& key) {
     const auto found = entries_.find(key);
     if (found == entries_.end()) return nullptr;
@@ -22,7 +22,8 @@ class LruCache {
     return found->second->value;
   }
 
-  /// Keeps a value that takes so many bytes, unless there is one of that key.
+  /// Adds a value of the given size, unless the key is present. Evicts others, or the value itself if it exceeds the
+  /// budget.
   void put(const Key& key, std::shared_ptr<const Value> value, size_t bytes) {
     if (find(key)) return;
     bytes_ += bytes;
@@ -31,7 +32,7 @@ class LruCache {
     while (bytes_ > budget_) erase(entries_.find(order_.back().key));
   }
 
-  /// Forgets the keys from `first` on to before `last`.
+  /// Removes all keys in [first, last).
   void erase_range(const Key& first, const Key& last) {
     const auto end = entries_.lower_bound(last);
     for (auto entry = entries_.lower_bound(first); entry != end;) erase(entry++);

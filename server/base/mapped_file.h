@@ -21,11 +21,11 @@ class MappedFile {
 
   [[nodiscard]] std::span<const std::byte> bytes() const { return {static_cast<const std::byte*>(data_), size_}; }
 
-  /// Says that a part of the file is about to be looked at, so that reading it begins. Returns at once.
+  /// Prefetches a part of the file: tells the kernel to begin reading it. Returns at once.
   void prefetch(size_t offset, size_t size) const;
 
-  /// Gives the memory that holds pages of the file back; they are read again when they are looked at. Keeps what a
-  /// large file takes bounded. Any thread may call it, also while others read.
+  /// Releases the resident pages of the file, which bounds the memory that reading a large file takes. Later accesses
+  /// read the pages again. Safe from any thread, also while others read.
   void release_pages() const;
 
  private:

@@ -8,21 +8,21 @@
 
 namespace surfcast {
 
-/// What may come between two steps of long work: that it is given up, or that something more urgent is done first on
-/// the same thread. Used by that thread alone, but for the flag.
+/// Checked between the steps of long work: whether the work is cancelled, and whether more urgent work has to run first
+/// on the same thread. Not thread-safe, except for the flag.
 class Preemption {
  public:
-  /// Work that stops soon after `cancelled`, which outlives this, becomes true.
-  // NOLINTNEXTLINE(google-explicit-constructor): a flag is all that most work is interrupted by
+  /// `cancelled` asks the work to stop soon. The flag must outlive this object.
+  // NOLINTNEXTLINE(google-explicit-constructor): most callers have nothing but a flag
   Preemption(const std::atomic<bool>& cancelled) : cancelled_(&cancelled) {}
-  /// `urgent` does what must not wait, and returns whether there was anything.
+  /// `urgent` runs all work that must not wait and returns whether there was any.
   Preemption(const std::atomic<bool>& cancelled, std::function<bool()> urgent)
       : cancelled_(&cancelled), urgent_(std::move(urgent)) {}
 
   [[nodiscard]] bool cancelled() const { return cancelled_->load(std::memory_order_relaxed); }
 
-  /// Lets what is more urgent go first. True if there was any: what the thread shares (the state of GL, what is on
-  /// order) is then not what it was.
+  /// Runs urgent work first. True if there was any: state shared on this thread (the GL state, the list of load
+  /// requests) may then have changed.
   [[nodiscard]] bool yield_to_urgent() const {
     if (!urgent_) return false;
     const Stopwatch watch;
@@ -30,7 +30,7 @@ class Preemption {
     if (preempted) preempted_ms_ += watch.milliseconds();
     return preempted;
   }
-  /// Milliseconds that others had.
+  /// Milliseconds spent in urgent work.
   [[nodiscard]] double preempted_ms() const { return preempted_ms_; }
 
  private:
@@ -39,7 +39,7 @@ class Preemption {
   mutable double preempted_ms_ = 0;
 };
 
-/// Measures work without what was done in between.
+/// Measures the time of some work without the urgent work that preempted it.
 class WorkStopwatch {
  public:
   explicit WorkStopwatch(const Preemption& preemption)

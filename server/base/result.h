@@ -6,17 +6,17 @@
 
 namespace surfcast {
 
-/// Why an operation could not be done. The kind decides how a caller answers (exit code, protocol error); the message
-/// is one line for a person and names the file or the request it is about.
+/// Why an operation failed. The kind decides how a caller reports it (exit code, protocol error). The message is one
+/// line for a person and names the file or the request concerned.
 enum class ErrorKind {
   kInvalidInput,  ///< a file or request whose content is wrong
-  kUnsupported,   ///< well formed, but of a kind that is not handled
-  kNotFound,      ///< no file or model of that name
+  kUnsupported,   ///< well formed, but of a kind that is not supported
+  kNotFound,      ///< no file or model of this name
   kIo,            ///< the operating system refused: permission, disk full, broken pipe
   kLimit,         ///< larger than a stated limit
   kCancelled,     ///< no longer wanted
   kUnavailable,   ///< a resource is missing (no GL device) or busy
-  kInternal,      ///< our own fault
+  kInternal,      ///< a bug in this program
 };
 
 struct Error {
@@ -24,7 +24,7 @@ struct Error {
   std::string message;
 };
 
-/// A value, or the reason there is none. Expected failures travel as values; broken contracts stop (see contract.h).
+/// A value, or the error why there is none. Expected failures are values; broken contracts abort (see contract.h).
 template <typename T>
 using Result = tl::expected<T, Error>;
 

@@ -17,7 +17,7 @@ class Stopwatch {
   std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
 };
 
-/// Largest resident size this process has had, in bytes.
+/// Peak resident set size of this process, bytes.
 uint64_t peak_resident_bytes();
 
 }  // namespace surfcast

@@ -14,17 +14,17 @@ namespace {
 
 enum class SlotState { kFree, kBeingFilled, kFilled };
 
-/// A name where a signal handler can read it: memory that is never given back.
+/// A path that a signal handler can read: static memory that is never freed.
 struct Slot {
   std::atomic<SlotState> state{SlotState::kFree};
   std::array<char, PATH_MAX> path{};
 };
 static_assert(std::atomic<SlotState>::is_always_lock_free);
 
-/// More files than are ever written at a time; further ones are only removed by their owners.
+/// More than the number of files written at one time. A file without a slot is removed by its owner only.
 std::array<Slot, 16> slots;
 
-/// Calls nothing but what a signal handler may.
+/// Calls only async-signal-safe functions.
 void remove_files_and_end(int signal) {
   for (const Slot& slot : slots) {
     if (slot.state.load() == SlotState::kFilled) ::unlink(slot.path.data());
@@ -37,7 +37,7 @@ void remove_files_and_end(int signal) {
 
 UnfinishedFile::UnfinishedFile(const std::filesystem::path& path) {
   const std::string& name = path.native();
-  if (name.size() >= PATH_MAX) return;  // no file of that name can be made either
+  if (name.size() >= PATH_MAX) return;  // such a file cannot be created either
   for (size_t i = 0; i < slots.size(); ++i) {
     SlotState free = SlotState::kFree;
     if (!slots[i].state.compare_exchange_strong(free, SlotState::kBeingFilled)) continue;

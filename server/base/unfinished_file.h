@@ -5,8 +5,8 @@
 
 namespace surfcast {
 
-/// Marks the file of that name, which need not exist yet, as unfinished for as long as this lives: a signal that ends
-/// the process removes it first, once `remove_unfinished_files_on_signals` has been called.
+/// Registers a path, which need not exist yet, as an unfinished file for the lifetime of this object. A signal that
+/// ends the process removes the file first, once `remove_unfinished_files_on_signals` has been called.
 class UnfinishedFile {
  public:
   UnfinishedFile() = default;
@@ -26,8 +26,8 @@ class UnfinishedFile {
   int slot_ = kNone;
 };
 
-/// From here on SIGINT, SIGTERM and SIGHUP remove all unfinished files before they end the process, as far as nobody
-/// else handles or ignores them.
+/// From this call on SIGINT, SIGTERM and SIGHUP remove all unfinished files before they end the process. Signals that
+/// the process ignores stay ignored.
 void remove_unfinished_files_on_signals();
 
 }  // namespace surfcast
