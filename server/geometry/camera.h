@@ -8,7 +8,7 @@
 
 namespace surfcast::geometry {
 
-/// A perspective view as users state it: world coordinates of the source file in double precision.
+/// A perspective camera as users state it: world coordinates of the source file in double precision.
 struct Camera {
   glm::dvec3 position{0, 0, 1};
   glm::dvec3 focal_point{0, 0, 0};

@@ -8,13 +8,13 @@
 
 namespace surfcast::geometry {
 
-/// What a picture shows of the world: points in any of `inside` (everywhere, if there are none) and in none of
-/// `outside`. Faces belong to their box.
+/// The clipped part of the world: a picture shows points that lie in at least one box of `inside` (everywhere if it is
+/// empty) and in no box of `outside`. A box includes its faces.
 struct Clip {
   std::vector<Box> inside;
   std::vector<Box> outside;
 
-  /// True when there is nothing to cut away.
+  /// True when nothing is clipped.
   [[nodiscard]] bool empty() const { return inside.empty() && outside.empty(); }
 
   [[nodiscard]] bool shows(const glm::dvec3& point) const {

@@ -9,9 +9,9 @@
 namespace surfcast::geometry {
 namespace {
 
-/// Where the eye stands along one axis of the picture, and how far back it must be: with `extent` the points' places on
-/// that axis and `nearer` their depths towards the eye, both from the point it looks at, each asks for
-/// |extent - offset| <= tangent (distance - nearer). The tightest of those on either side decide.
+/// Fits the eye along one axis of the picture: its offset on the axis and its distance from the focal point. A point at
+/// `extent` on the axis and `nearer` in depth towards the eye (both relative to the focal point) is in the picture if
+/// |extent - offset| <= tangent (distance - nearer). The tightest constraint on each side decides.
 class AxisFit {
  public:
   explicit AxisFit(double tangent) : tangent_(tangent) {}
@@ -28,9 +28,9 @@ class AxisFit {
   double highest_ = -std::numeric_limits<double>::infinity();
 };
 
-/// The unit direction from what is fitted to the eye.
+/// The unit direction from the fitted boxes to the eye.
 glm::dvec3 fitting_direction(const glm::dvec3& vertical, const glm::dvec3& facing) {
-  // Front is -y for models that are z-up and +z for models that are y-up: the customs of surveying and of graphics.
+  // By convention the front is -y in z-up models (surveying) and +z in y-up models (graphics).
   const glm::dvec3 front = std::abs(vertical.z) > 0.5 ? glm::dvec3{0, -1, 0} : glm::dvec3{0, 0, 1};
   const glm::dvec3 side = glm::cross(vertical, front);
   const glm::dvec3 customary = glm::normalize(front + 0.35 * side + 0.35 * vertical);
@@ -44,7 +44,7 @@ Box box_of(std::span<const Box> boxes) {
   return all;
 }
 
-/// 0 to 7: its bits choose the maximum along x, y and z.
+/// Corner 0 to 7: bits 0, 1 and 2 select the maximum along x, y and z.
 glm::dvec3 corner_of(const Box& box, int corner) {
   return {(corner & 1) ? box.max.x : box.min.x, (corner & 2) ? box.max.y : box.min.y,
           (corner & 4) ? box.max.z : box.min.z};
@@ -54,7 +54,7 @@ glm::dvec3 corner_of(const Box& box, int corner) {
 
 Camera fit_along(std::span<const Box> boxes, const glm::dvec3& towards_eye, const glm::dvec3& up, double aspect,
                  double view_angle) {
-  constexpr double kFilled = 0.95;  // of the picture
+  constexpr double kFilled = 0.95;  // share of the picture
   const CameraFrame axes = *make_camera_frame({glm::normalize(towards_eye), {0, 0, 0}, up, view_angle}, 1, 1);
   const glm::dvec3 centre = box_of(boxes).centre();
   const double tangent = kFilled * std::tan(glm::radians(view_angle) / 2);

@@ -7,10 +7,10 @@
 
 namespace surfcast::geometry {
 
-/// Times that the cube is halved along each axis: three coordinates interleave into 63 bits.
+/// Halvings of the root cube along each axis: three coordinates interleave into 63 bits.
 inline constexpr int kMortonDepth = 21;
 
-/// The cube that an octree halves: it holds the box, and its side is a power of two.
+/// The root cube of an octree: it contains the box, and its side is a power of two.
 struct RootCube {
   glm::dvec3 min{0};
   double side = 1;
@@ -18,11 +18,11 @@ struct RootCube {
 
 RootCube root_cube(const Box& box);
 
-/// The lowest kMortonDepth bits of x, y and z in turn: bit i of x becomes bit 3i, of y 3i + 1, of z 3i + 2.
+/// Interleaves the lowest kMortonDepth bits: bit i of x becomes bit 3i, of y 3i + 1, of z 3i + 2.
 uint64_t interleave(const glm::u32vec3& cell);
 glm::u32vec3 deinterleave(uint64_t code);
 
-/// Interleaved cell coordinates at kMortonDepth of a point in the cube; three bits per depth, the root's first.
+/// Morton code at kMortonDepth of a point in the cube: three bits per depth, the root's in the highest position.
 uint64_t morton_code(const RootCube& root, const glm::dvec3& point);
 
 }  // namespace surfcast::geometry

@@ -7,8 +7,8 @@
 namespace surfcast::geometry {
 namespace {
 
-/// Where a run is halved: at the first code with the highest bit in which the run's codes differ; equal codes in the
-/// middle.
+/// Where a run is split: at the first code that has the highest bit in which the codes of the run differ. A run of
+/// equal codes is split in the middle.
 uint32_t middle_of(std::span<const uint64_t> codes, const MortonTree::Run& run) {
   const uint64_t low = codes[run.first];
   const uint64_t differing = low ^ codes[run.last - 1];

@@ -13,40 +13,41 @@
 
 namespace surfcast::geometry {
 
-/// A binary tree of boxes over points in Morton order: each node is a run of points, halved where the highest bit that
-/// their codes differ in changes, so that its halves lie in different halves of an octree cell. Leaves are short runs.
+/// A bounding volume hierarchy (binary, of boxes) over points in Morton order. Each node is a run of points, split
+/// where the highest bit in which their codes differ changes, so the two halves lie in different halves of an octree
+/// cell. Leaves have at most kLeaf points.
 class MortonTree {
  public:
   static constexpr size_t kLeaf = 12;
 
-  /// Points of a leaf, as a run.
+  /// A run of consecutive points.
   struct Run {
     uint32_t first = 0;
-    uint32_t last = 0;  ///< one behind
+    uint32_t last = 0;  ///< exclusive
   };
 
-  /// `codes` are ascending Morton codes of the points, at least one; `reaches`, when given, says for each point how far
-  /// it is seen from. All spans must outlive the tree.
+  /// `codes` are the Morton codes of the points, ascending, at least one. `reaches`, if given, has the radius of
+  /// influence of each point, in the units of the points. All spans must outlive the tree.
   MortonTree(std::span<const glm::dvec3> points, std::span<const uint64_t> codes, std::span<const float> reaches = {});
 
-  /// In order; every point is in one.
+  /// All leaves in order. They cover every point once.
   [[nodiscard]] std::vector<Run> leaves() const;
   [[nodiscard]] Box box_of(const Run& run) const;
 
-  /// Calls `use(run)` for leaves with points within the reach of one of them of the box, and perhaps for others, until
-  /// it returns false.
+  /// Calls `use(run)` for each leaf that has a point within its own reach of the box, and possibly for other leaves.
+  /// Stops when `use` returns false.
   template <typename Use>
   void for_each_in_reach(const Box& box, const Use& use) const {
     for_each_leaf([&box](const Node& node) { return squared_gap(node.box, box) <= node.squared_reach; }, use);
   }
 
  private:
-  /// A node is followed by all nodes below it.
+  /// Nodes are stored in depth-first order: the subtree of a node follows it.
   struct Node {
     Box box;
-    double squared_reach = 0;  ///< of the farthest reaching point
+    double squared_reach = 0;  ///< largest of the points below
     Run run;
-    uint32_t next = 0;  ///< the first node that is not below this one
+    uint32_t next = 0;  ///< the first node after the subtree
     bool leaf = false;
   };
 

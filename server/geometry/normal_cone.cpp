@@ -8,12 +8,12 @@
 namespace surfcast::geometry {
 namespace {
 
-/// atan2 keeps small angles exact where acos loses them.
+/// atan2 is accurate for small angles, acos is not.
 double angle_between(const glm::dvec3& a, const glm::dvec3& b) {
   return std::atan2(glm::length(glm::cross(a, b)), glm::dot(a, b));
 }
 
-/// Turns the unit vector `from` by `angle` radians towards `to`, `between` radians away and neither equal nor opposite.
+/// Rotates the unit vector `from` by `angle` radians towards `to`. The angle between them is `between`, in (0, pi).
 glm::dvec3 turned(const glm::dvec3& from, const glm::dvec3& to, double angle, double between) {
   return glm::normalize((from * std::sin(between - angle) + to * std::sin(angle)) / std::sin(between));
 }
@@ -40,7 +40,7 @@ std::optional<NormalCone> united(const NormalCone& a, const NormalCone& b) {
   if (between + half_a <= half_b) return b;
   const double half = 0.5 * (half_a + between + half_b);
   if (half >= std::numbers::pi / 2) return std::nullopt;
-  // The axis is single precision; what it is off by goes to the angle.
+  // The axis is rounded to single precision; the angle is widened by the rounding error.
   constexpr double kRounding = 1e-6;
   const glm::dvec3 axis = turned(glm::dvec3(a.axis), glm::dvec3(b.axis), half - half_a, between);
   return NormalCone{glm::vec3(axis), static_cast<float>(half + kRounding)};
