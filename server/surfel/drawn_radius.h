@@ -4,9 +4,9 @@
 
 namespace surfcast::surfel {
 
-/// Scans have points that float off the surface; the mean distance to their neighbours, their radius, is the way back
-/// to it, and discs as large as that would hide it. No surfel is drawn larger than this: four times the radius that all
-/// but a twentieth of its block stay below.
+/// The largest radius with which surfels of a block are drawn, in the units of `radii`: four times their 95th
+/// percentile. Scans contain outliers off the surface. The radius of an outlier is its distance to the surface, and a
+/// disc of that size would hide the surface.
 float largest_drawn_radius(std::span<const float> radii);
 
 }  // namespace surfcast::surfel

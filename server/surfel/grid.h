@@ -5,8 +5,8 @@
 
 namespace surfcast::surfel {
 
-/// A lattice of exact coordinates: axis i of a stored point is `index[i] * scale[i] + offset[i]`, evaluated in double
-/// precision in just that way (the formula of LAS), so that coordinates come back to the last bit.
+/// A lattice of exact coordinates: axis i of a stored point is `index[i] * scale[i] + offset[i]`. The expression is
+/// evaluated in double precision in this form (the formula of LAS), which reproduces coordinates to the last bit.
 struct Grid {
   glm::dvec3 scale{1};
   glm::dvec3 offset{0};
@@ -15,7 +15,7 @@ struct Grid {
     return {static_cast<double>(index.x) * scale.x + offset.x, static_cast<double>(index.y) * scale.y + offset.y,
             static_cast<double>(index.z) * scale.z + offset.z};
   }
-  /// The nearest lattice point; indices beyond +-2^62 are a broken promise of the caller.
+  /// The nearest lattice point. The caller guarantees indices within +-2^62.
   [[nodiscard]] glm::i64vec3 index(const glm::dvec3& p) const {
     return {std::llround((p.x - offset.x) / scale.x), std::llround((p.y - offset.y) / scale.y),
             std::llround((p.z - offset.z) / scale.z)};

@@ -22,22 +22,22 @@
 namespace surfcast::surfel {
 namespace {
 
-/// A place that is too crowded is tried again with one in this many surfels.
+/// Where too many sources are near, one in this many is kept.
 constexpr size_t kThinning = 4;
 
-/// What the sum needs of a surfel, side by side in memory.
+/// The data of a surfel that the sum needs, contiguous in memory.
 struct Site {
   glm::dvec3 position;
   glm::vec3 normal;
   float radius;
-  uint32_t surfel;  ///< its index in the cloud
-  uint64_t code;    ///< its place on the Morton curve
+  uint32_t surfel;  ///< index in the cloud
+  uint64_t code;    ///< Morton code
 };
 
 /// Indices into the list of sites, ascending.
 using Indices = std::vector<uint32_t>;
 
-/// The surfels along a Morton curve, so that neighbours in space are mostly neighbours in memory.
+/// The surfels in Morton order, so that neighbours in space are mostly neighbours in memory.
 std::vector<Site> sort_sites(const SurfelCloud& cloud) {
   const geometry::RootCube root = geometry::root_cube(cloud.bounds());
   std::vector<std::pair<uint64_t, uint32_t>> order(cloud.size());
@@ -51,14 +51,14 @@ std::vector<Site> sort_sites(const SurfelCloud& cloud) {
   return sites;
 }
 
-/// How far a kernel of that radius reaches: to the cutoff along its plane, a radius off it.
+/// Radius of influence of a kernel: up to the cutoff along its plane, and one surfel radius off the plane.
 float reach_of(float radius) {
   constexpr double kReach = SURFCAST_KERNEL_CUTOFF * SURFCAST_KERNEL_SIGMA * SURFCAST_KERNEL_SIGMA + 1;
-  // Rounded up, so that no kernel is missed.
+  // Rounded up, or kernels could be missed.
   return static_cast<float>(std::sqrt(kReach) * 1.000001 * double{radius});
 }
 
-/// r_j(u_k - u_j), or 0 when j is of another surface.
+/// r_j(u_k - u_j), or 0 when j belongs to another surface.
 double kernel_at(const Site& k, const Site& j, bool oriented) {
   const glm::dvec3 offset = k.position - j.position;
   const double reach = double{reach_of(j.radius)};
@@ -75,14 +75,14 @@ double kernel_at(const Site& k, const Site& j, bool oriented) {
   return squared <= SURFCAST_KERNEL_CUTOFF ? std::exp(-0.5 * squared) : 0;
 }
 
-/// Sites by the octave of their radius: within a class the search range is right to a factor of two.
+/// Groups sites by the octave of their radius: within a group the search range varies by a factor of two only.
 std::map<int, Indices> radius_classes(std::span<const Site> sites) {
   std::map<int, Indices> classes;
   for (uint32_t i = 0; i < sites.size(); ++i) classes[std::ilogb(sites[i].radius)].push_back(i);
   return classes;
 }
 
-/// Some of the sites, and where their kernels reach.
+/// A subset of the sites and the extent of their kernels.
 class Sources {
  public:
   Sources(std::span<const Site> sites, const Indices& members) : members_(members) {
@@ -100,7 +100,7 @@ class Sources {
 
   [[nodiscard]] const geometry::MortonTree& tree() const { return *tree_; }
 
-  /// The sources whose kernels reach into the box; false when there are `most` or more.
+  /// Finds the sources whose kernels extend into the box. False when there are `most` or more.
   bool find(const geometry::Box& box, size_t most, std::vector<uint32_t>& found) const {
     found.clear();
     tree_->for_each_in_reach(box, [&](const geometry::MortonTree::Run& run) {
@@ -114,7 +114,7 @@ class Sources {
     });
     return found.size() < most;
   }
-  /// The site of a source that was found.
+  /// The site of a source that `find` returned.
   [[nodiscard]] uint32_t site(uint32_t found) const { return members_[found]; }
 
  private:
@@ -131,7 +131,7 @@ Indices thin(const Indices& sources) {
   return thinned;
 }
 
-/// Sum of the kernels of the sites that were found, at site k, its own left out.
+/// The sum at site k of the kernels of the sites found, without the kernel of k itself.
 double sum_at(std::span<const Site> sites, const Sources& sources, std::span<const uint32_t> found, uint32_t k,
               bool oriented) {
   double sum = 0;
@@ -142,8 +142,8 @@ double sum_at(std::span<const Site> sites, const Sources& sources, std::span<con
   return sum;
 }
 
-/// Adds up the kernels of all sites at all sites, leaf by leaf. Returns the sites of leaves with too many around,
-/// untouched.
+/// Adds up the kernels of all sites at all sites, leaf by leaf. Leaves with too many sources nearby are skipped;
+/// returns their sites.
 Indices add_all_kernels(std::span<const Site> sites, const Indices& all, bool oriented, std::vector<double>& sums) {
   const Sources sources(sites, all);
   const std::vector<geometry::MortonTree::Run> leaves = sources.tree().leaves();
@@ -165,8 +165,8 @@ Indices add_all_kernels(std::span<const Site> sites, const Indices& all, bool or
   return rest;
 }
 
-/// Adds to `sums` of the targets the kernels of the sources, each standing for `multiplicity` surfels. Returns the
-/// targets that had too many sources near them, untouched.
+/// Adds the kernels of the sources to `sums` of the targets; each source stands for `multiplicity` surfels. Targets
+/// with too many sources nearby are skipped and returned.
 Indices add_kernels(std::span<const Site> sites, const Indices& members, const Indices& targets, double multiplicity,
                     bool oriented, std::vector<double>& sums) {
   const Sources sources(sites, members);
@@ -187,7 +187,7 @@ Indices add_kernels(std::span<const Site> sites, const Indices& members, const I
   return rest;
 }
 
-/// Of surfels one after another that are the same but for their attributes, the first; the others have its sum.
+/// Of each run of consecutive surfels with equal position and normal, the first. The others share its sum.
 Indices first_of_each(std::span<const Site> sites, const Indices& dense) {
   const auto same = [&sites](uint32_t a, uint32_t b) {
     return sites[a].position == sites[b].position && sites[a].normal == sites[b].normal;
@@ -197,7 +197,7 @@ Indices first_of_each(std::span<const Site> sites, const Indices& dense) {
   return firsts;
 }
 
-/// Adds up the kernels at crowded places, class by class, from samples of the sources where there are too many.
+/// Adds up the kernels at dense places, one radius group after another. Sources are thinned where there are too many.
 void add_sampled_kernels(std::span<const Site> sites, const Indices& dense, bool oriented, std::vector<double>& sums) {
   const Indices firsts = first_of_each(sites, dense);
   for (auto& [octave, sources] : radius_classes(sites)) {

@@ -7,7 +7,7 @@
 
 namespace surfcast::surfel {
 
-/// The values of one per-point attribute in the type of its source, so that they come back exactly.
+/// The values of one per-point attribute in the type of its source, so that they are preserved exactly.
 using ScalarValues = std::variant<std::vector<uint8_t>, std::vector<int8_t>, std::vector<uint16_t>,
                                   std::vector<int16_t>, std::vector<uint32_t>, std::vector<int32_t>,
                                   std::vector<uint64_t>, std::vector<int64_t>, std::vector<float>, std::vector<double>>;

@@ -19,7 +19,7 @@ double brightest(int bits) {
   return static_cast<double>((1 << bits) - 1);
 }
 
-/// A power per surfel would cost more than the average that it is for.
+/// A lookup table: `pow` for every surfel would cost more than averaging the colours.
 std::vector<float> make_table(int bits) {
   std::vector<float> table(size_t{1} << bits);
   for (size_t i = 0; i < table.size(); ++i) {

@@ -5,10 +5,10 @@
 
 namespace surfcast::surfel {
 
-/// Linear light in [0, 1] of an sRGB colour (IEC 61966-2-1) of 8 or 16 bits per channel.
+/// Linear light in [0, 1] of an sRGB colour (IEC 61966-2-1). `bits` is 8 or 16 per channel.
 glm::vec3 to_linear(const glm::u16vec3& color, int bits);
 
-/// The nearest colour of that depth. Light outside [0, 1] is clamped.
+/// The nearest sRGB colour of `bits` per channel. Light outside [0, 1] is clamped.
 glm::u16vec3 from_linear(const glm::vec3& light, int bits);
 
 }  // namespace surfcast::surfel
