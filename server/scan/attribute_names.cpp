@@ -9,7 +9,7 @@ namespace {
 
 using Alias = std::pair<std::string_view, std::string_view>;
 
-// Keys are lower case, without underscores, spaces and a leading "scalar".
+// Keys are in lower case, without underscores, spaces and a leading "scalar".
 constexpr std::array kAliases = {
     Alias{"x", "x"},
     Alias{"y", "y"},

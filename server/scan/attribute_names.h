@@ -5,8 +5,8 @@
 
 namespace surfcast::scan {
 
-/// The name an attribute goes by in Surfcast: one of the well-known names when `name` is a spelling of it
-/// ("ReturnNumber", "scalar_intensity", "normal_x", "diffuse_red"), else `name` itself.
+/// The canonical name of an attribute: a well-known name if `name` is a spelling of it ("ReturnNumber",
+/// "scalar_intensity", "normal_x", "diffuse_red"), otherwise `name` itself.
 std::string canonical_attribute_name(std::string_view name);
 
 }  // namespace surfcast::scan

@@ -31,7 +31,7 @@ void compact(std::vector<T>& values, const Keep& keep) {
   values.resize(kept);
 }
 
-/// Points and clouds have their attributes under the same names.
+/// Works on points and clouds, which name their attributes alike.
 template <typename Points>
 void compact_attributes(Points& points, const Keep& keep) {
   compact(points.positions, keep);
@@ -45,7 +45,7 @@ void compact_attributes(Points& points, const Keep& keep) {
 
 // ---- duplicates
 
-/// Bytes of one attribute, the same number for each surfel.
+/// The values of one attribute as bytes; value i starts at `first + i * stride`.
 struct Bytes {
   const std::byte* first;
   size_t stride;
@@ -107,7 +107,7 @@ void drop_unusable_points(ScanPoints& points, SurfelReport& report) {
   Keep keep(points.size(), true);
   uint64_t dropped = 0;
   for (size_t i = 0; i < points.size(); ++i) {
-    points.positions[i] += 0.0;  // -0 becomes +0: they are the same place
+    points.positions[i] += 0.0;  // turns -0 into +0, which is the same position
     if (!finite(points.positions[i])) {
       ++report.not_finite;
     } else if (!points.normals.empty() && points.normals[i] == glm::vec3(0)) {

@@ -10,16 +10,16 @@
 
 namespace surfcast::scan {
 
-/// Drops points with coordinates that are not finite and, in a scan with normals, points whose normal is zero or not
-/// finite; makes the remaining normals unit. Counts in `report` what was dropped.
+/// Drops points with coordinates that are not finite. In a scan with normals, also drops points whose normal is zero or
+/// not finite, and normalises the others. Counts the dropped points in `report`.
 void drop_unusable_points(ScanPoints& points, SurfelReport& report);
 
-/// For each surfel whether an earlier one equals it in position and every attribute, to the bit. Surfels that share a
-/// position but differ in an attribute are no duplicates: the finest level keeps every source point with all its
-/// attributes.
+/// For each surfel, whether an earlier surfel has the same position and the same attributes, to the bit. Surfels that
+/// share a position but differ in an attribute are no duplicates, because the finest level keeps every source point
+/// with all its attributes.
 std::vector<bool> find_duplicates(const surfel::SurfelCloud& cloud);
 
-/// Keeps some of the surfels, with all their attributes.
+/// Removes the surfels whose `keep` is false, with all their attributes.
 void keep_surfels(surfel::SurfelCloud& cloud, const std::vector<bool>& keep);
 
 }  // namespace surfcast::scan

@@ -10,10 +10,10 @@
 namespace surfcast::scan {
 namespace {
 
-/// More than any scan has; naming columns apart takes time quadratic in their number.
+/// More columns than any scan has. The limit bounds the time to make names unique, which is quadratic.
 constexpr size_t kMaxColumns = 1024;
 
-/// Columns by canonical name; the second column of a name keeps a name of its own.
+/// Columns by canonical name. A second column of the same name gets a name of its own.
 using NamedColumns = std::map<std::string, size_t>;
 
 std::string unused_name(const NamedColumns& taken, const std::string& wanted) {
@@ -26,7 +26,7 @@ NamedColumns name_columns(std::span<const ColumnInfo> columns, const std::vector
   NamedColumns named;
   for (size_t i = 0; i < columns.size(); ++i) {
     if (!absent.empty() && absent[i]) continue;
-    // Names end up in messages and JSON, which take no arbitrary bytes.
+    // Names appear in messages and JSON, which do not accept arbitrary bytes.
     const std::string given = printable(columns[i].name);
     std::string name = canonical_attribute_name(given);
     if (name.empty() || named.contains(name)) name = unused_name(named, given);
@@ -43,7 +43,7 @@ std::optional<size_t> take(NamedColumns& named, const char* name) {
   return column;
 }
 
-/// Takes three columns out, when all three are there.
+/// Removes and returns three columns if all three exist.
 std::optional<ColumnTriple> take_triple(NamedColumns& named, const char* a, const char* b, const char* c) {
   if (!named.contains(a) || !named.contains(b) || !named.contains(c)) return std::nullopt;
   return ColumnTriple{*take(named, a), *take(named, b), *take(named, c)};

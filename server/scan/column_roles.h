@@ -14,7 +14,7 @@ namespace surfcast::scan {
 
 using ColumnTriple = std::array<size_t, 3>;
 
-/// Which columns of a table hold what, as indices.
+/// The roles of the columns of a table, as column indices.
 struct ColumnRoles {
   struct Scalar {
     size_t column = 0;
@@ -24,16 +24,16 @@ struct ColumnRoles {
   std::optional<ColumnTriple> normal;
   std::optional<size_t> radius;
   std::optional<ColumnTriple> color;
-  std::optional<size_t> packed_color;  ///< 0xAARRGGBB, whether the column calls it an integer or (PCL) a float
-  bool packed_alpha = false;           ///< and its first byte may be an alpha
-  std::vector<Scalar> scalars;         ///< every other column, in the order of the file
+  std::optional<size_t> packed_color;  ///< 0xAARRGGBB, stored as an integer or (PCL) as the bits of a float
+  bool packed_alpha = false;           ///< the first byte of packed_color may be an alpha
+  std::vector<Scalar> scalars;         ///< all other columns, in file order
 };
 
-/// Gives columns their meaning by name: x y z; nx ny nz or normal_x ...; red green blue, r g b, diffuse_red ... or a
-/// packed rgb; radius. Names are compared without case, underscores and a leading "scalar_". Every other column is a
-/// scalar attribute under its well-known name where it has one ("ReturnNumber" becomes "return_number"); a second one
-/// of a name gets a number behind it. Columns that are `absent` (none or one flag each) are passed over. Fails without
-/// x, y and z.
+/// Assigns roles to columns by name: x y z; nx ny nz, normal_x ...; red green blue, r g b, diffuse_red ...; a packed
+/// rgb; radius. Names are compared without case, underscores and a leading "scalar_". Every other column becomes a
+/// scalar attribute, under its well-known name if it has one ("ReturnNumber" becomes "return_number"). A repeated name
+/// gets a number appended. Columns marked in `absent` (empty, or one flag per column) are skipped. Fails without x, y
+/// and z.
 Result<ColumnRoles> assign_roles(std::span<const ColumnInfo> columns, const std::vector<bool>& absent);
 
 [[nodiscard]] inline uint32_t packed_color_bits(const Column& column, size_t row) {

@@ -12,8 +12,8 @@
 namespace surfcast::scan {
 namespace {
 
-// The layouts below are those of the Draco bitstream specification; numbers that later versions write with as many
-// bytes as they need had four bytes before.
+// Layouts according to the Draco bitstream specification. Numbers that later versions store with variable length had
+// four bytes in earlier versions.
 constexpr uint16_t version(uint8_t major, uint8_t minor) {
   return static_cast<uint16_t>(DRACO_BITSTREAM_VERSION(major, minor));
 }
@@ -24,14 +24,14 @@ std::optional<T> fixed(draco::DecoderBuffer& buffer) {
   return buffer.Decode(&value) ? std::optional(value) : std::nullopt;
 }
 
-/// A number that has a variable length from bitstream version `since` on.
+/// A number that is stored with variable length from bitstream version `since` on.
 std::optional<uint32_t> number(draco::DecoderBuffer& buffer, uint16_t since) {
   if (buffer.bitstream_version() < since) return fixed<uint32_t>(buffer);
   uint32_t value = 0;
   return draco::DecodeVarint(&value, &buffer) ? std::optional(value) : std::nullopt;
 }
 
-/// Bytes that one group of attributes takes for each point, with four for the index of each value.
+/// Bytes per point of one group of attributes, including four bytes for the index of each value.
 std::optional<uint64_t> attribute_bytes(draco::DecoderBuffer& buffer, bool sequential) {
   const std::optional<uint32_t> attributes = number(buffer, version(2, 0));
   if (!attributes) return std::nullopt;
@@ -47,7 +47,7 @@ std::optional<uint64_t> attribute_bytes(draco::DecoderBuffer& buffer, bool seque
     if (!kind || !type || !components || !normalized || !has_id) return std::nullopt;
     bytes += sizeof(uint32_t) + *components * std::max(draco::DataTypeLength(static_cast<draco::DataType>(*type)), 0);
   }
-  // A sequential coder says next how it codes each of them, with one byte.
+  // A sequential coder stores one byte per attribute here: its coding method.
   if (sequential) buffer.Advance(*attributes);
   return bytes;
 }
@@ -65,16 +65,17 @@ std::optional<double> cloud_memory(draco::DecoderBuffer& buffer, bool sequential
   return static_cast<double>(*points) * static_cast<double>(bytes);
 }
 
-/// What a mesh takes for its connectivity and typical attributes; those come too late in the file to look at.
+/// Memory estimate for the connectivity and typical attributes of a mesh. The attributes come too late in the file to
+/// be read here.
 std::optional<double> mesh_memory(draco::DecoderBuffer& buffer, bool sequential) {
   constexpr double kBytesPerFace = 128;
   uint16_t since = version(2, 2);
   if (!sequential) {
     since = version(2, 0);
-    fixed<uint8_t>(buffer);                                                 // kind of traversal
+    fixed<uint8_t>(buffer);                                                 // traversal method
     if (buffer.bitstream_version() < version(2, 2)) number(buffer, since);  // vertices added by splits
   }
-  // Faces and points (sequential), or vertices and faces (edgebreaker): the larger number counts.
+  // Faces and points (sequential), or vertices and faces (edgebreaker). The larger number is used.
   const std::optional<uint32_t> first = number(buffer, since);
   const std::optional<uint32_t> second = number(buffer, since);
   if (!first || !second) return std::nullopt;
@@ -95,7 +96,7 @@ std::optional<double> claimed_memory(draco::DecoderBuffer& buffer) {
   return mesh_memory(buffer, header.encoder_method == draco::MESH_SEQUENTIAL_ENCODING);
 }
 
-/// 0 for bytes that are no Draco file.
+/// Memory that the file claims to need, in bytes; 0 if the bytes are no Draco file.
 double claimed_memory(std::span<const std::byte> bytes) {
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
@@ -105,7 +106,7 @@ double claimed_memory(std::span<const std::byte> bytes) {
 }  // namespace
 
 bool draco_claims_are_plausible(std::span<const std::byte> bytes) {
-  // Real scans take 2 to 20 times their coded size.
+  // Decoded scans are 2 to 20 times as large as their coded form.
   constexpr double kAlwaysAllowed = 256.0 * 1024 * 1024;
   constexpr double kMaxExpansion = 256;
   const double allowed = std::max(kAlwaysAllowed, kMaxExpansion * static_cast<double>(bytes.size()));

@@ -6,12 +6,12 @@
 
 namespace surfcast::scan {
 
-/// Draco reserves memory for as many points and faces as a file claims to have before it decodes them. This looks at
-/// the claims alone: whether decoding takes no more memory than a file of that many bytes warrants. True as well for
-/// bytes that are no Draco file, which the decoder refuses by itself.
+/// Draco allocates memory for the numbers of points and faces that the file states, before it decodes any of them. This
+/// check reads only the stated numbers. True if decoding takes no more memory than is plausible for a file of this
+/// size. Also true for bytes that are no Draco file, which the decoder rejects by itself.
 bool draco_claims_are_plausible(std::span<const std::byte> bytes);
 
-/// Bytes of memory that the points take once they are decoded, as far as a file says so; 0 if it does not.
+/// Memory of the decoded points in bytes, as stated by the file; 0 if the file does not state it.
 uint64_t draco_decoded_bytes(std::span<const std::byte> bytes);
 
 }  // namespace surfcast::scan

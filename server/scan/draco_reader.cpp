@@ -46,7 +46,7 @@ std::optional<ScalarType> scalar_type(draco::DataType type) {
   }
 }
 
-/// The name that the metadata gives to an attribute, else one made of its number.
+/// The name of an attribute in the metadata, or one made from its number.
 std::string generic_name(const draco::PointCloud& cloud, int id) {
   std::string name;
   const draco::AttributeMetadata* metadata = cloud.GetAttributeMetadataByAttributeId(id);
@@ -79,7 +79,7 @@ std::string component_name(const draco::PointCloud& cloud, int id, size_t compon
   return attribute.num_components() == 1 ? name : name + "_" + std::to_string(component);
 }
 
-/// One component of an attribute for every point; nothing when a point refers to a value that is not there.
+/// One component of an attribute for every point. None if a point refers to a value that does not exist.
 template <typename T>
 std::optional<std::vector<T>> component_values(const draco::PointCloud& cloud, const draco::PointAttribute& attribute,
                                                size_t component) {
@@ -114,14 +114,14 @@ Result<std::unique_ptr<draco::PointCloud>> decode(std::span<const std::byte> byt
   }
   draco::DecoderBuffer buffer;
   buffer.Init(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  // A mesh is a point cloud with faces: it decodes as one, too.
+  // A mesh is a point cloud with faces, so it can be decoded as a point cloud.
   auto cloud = draco::Decoder().DecodePointCloudFromBuffer(&buffer);
   if (cloud.ok()) return std::move(cloud).value();
   return fail(ErrorKind::kInvalidInput,
               "Draco data cannot be decoded: " + printable(cloud.status().error_msg_string()));
 }
 
-/// The geometry type follows "DRACO" and two bytes of version.
+/// The geometry type follows "DRACO" and two version bytes.
 bool is_mesh(std::span<const std::byte> bytes) {
   constexpr size_t kGeometryType = 7;
   return bytes.size() > kGeometryType && bytes[kGeometryType] == std::byte{1};
@@ -130,7 +130,7 @@ bool is_mesh(std::span<const std::byte> bytes) {
 }  // namespace
 
 Result<std::unique_ptr<RowSource>> draco_rows(std::span<const std::byte> bytes, const DecodingLimit& limit) try {
-  // Draco's own copy of the points is there until the table is complete.
+  // Draco's copy of the points exists until the table is complete, hence the factor of 2.
   if (Status status = limit.check(2 * draco_decoded_bytes(bytes)); !status) return fail(std::move(status.error()));
   const Result<std::unique_ptr<draco::PointCloud>> cloud = decode(bytes);
   if (!cloud) return fail(cloud.error());
@@ -141,10 +141,10 @@ Result<std::unique_ptr<RowSource>> draco_rows(std::span<const std::byte> bytes, 
     if (Status status = add_attribute(**cloud, id, columns, table); !status) return fail(std::move(status.error()));
   }
   RowTraits traits;
-  traits.may_be_graphics = is_mesh(bytes);  // graphics write meshes, y-up; scanners write points, z-up
+  traits.may_be_graphics = is_mesh(bytes);  // meshes come from graphics, y-up; points come from scanners, z-up
   return std::make_unique<SlicedRows>(traits, std::move(columns), std::move(table));
 } catch (const std::exception&) {
-  // The library allocates what a damaged header asks for, and throws when that cannot be had.
+  // The library allocates what a damaged header asks for, and throws if the allocation fails.
   return fail(ErrorKind::kInvalidInput, "Draco data is damaged");
 }
 

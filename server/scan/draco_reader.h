@@ -9,8 +9,8 @@
 
 namespace surfcast::scan {
 
-/// The points of a Draco file, point cloud or mesh: positions, normals, colours, and every other attribute as
-/// scalars, named as the file's metadata names them. As with PLY, `z_up` follows up_axis.h.
+/// Reads a Draco file, a point cloud or a mesh: positions, normals and colours. All other attributes become scalars,
+/// named as in the file's metadata. `z_up` is decided as for PLY (see up_axis.h).
 Result<std::unique_ptr<RowSource>> draco_rows(std::span<const std::byte> bytes, const DecodingLimit& limit);
 
 }  // namespace surfcast::scan

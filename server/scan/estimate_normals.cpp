@@ -15,7 +15,7 @@ Eigen::Matrix3d covariance(const Sites& sites, size_t site, std::span<const uint
     const glm::dvec3 d = sites.positions[j] - sites.positions[site];
     return Eigen::Vector3d(d.x, d.y, d.z);
   };
-  // Relative to the farthest neighbour, so that squares are of the order of 1 at any scale.
+  // Relative to the farthest neighbour: squares are then of the order of 1 at any scale.
   const double scale = difference(neighbours.back()).cwiseAbs().maxCoeff();
   Eigen::Vector3d mean = Eigen::Vector3d::Zero();
   Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
@@ -35,7 +35,7 @@ bool usable(const Eigen::Vector3d& v) {
 
 Eigen::Vector3d least_spread(const Eigen::Matrix3d& matrix) {
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-  solver.computeDirect(matrix);  // closed form; the iteration below is five times slower
+  solver.computeDirect(matrix);  // closed form; the iterative solver below takes five times as long
   if (usable(solver.eigenvectors().col(0))) return solver.eigenvectors().col(0);
   solver.compute(matrix);
   if (usable(solver.eigenvectors().col(0))) return solver.eigenvectors().col(0);

@@ -8,15 +8,15 @@
 
 namespace surfcast::scan {
 
-/// Stirs all bits of a hash into all others (the finaliser of SplitMix64, Steele et al. 2014).
+/// Mixes all bits of a hash (the finaliser of SplitMix64, Steele et al. 2014).
 [[nodiscard]] constexpr uint64_t mix_hash(uint64_t h) {
   h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9ULL;
   h = (h ^ (h >> 27)) * 0x94d049bb133111ebULL;
   return h ^ (h >> 31);
 }
 
-/// For every item the index of the first item equal to it (its own when it is the first). `equal(i, j)` decides;
-/// equal items have equal hashes. At most 2^32 - 2 items.
+/// For every item, the index of the first item equal to it (its own index if there is no earlier one). `equal(i, j)`
+/// compares two items; equal items must have equal hashes. At most 2^32 - 2 items.
 template <typename Equal>
 std::vector<uint32_t> first_equals(std::span<const uint64_t> hashes, const Equal& equal) {
   constexpr uint32_t kFree = std::numeric_limits<uint32_t>::max();

@@ -12,8 +12,8 @@ namespace {
 
 using Bytes = std::span<const std::byte>;
 
-// Offsets in the public header block, LAS 1.4 specification, table 3.
-constexpr size_t kHeaderSize = 227;  // of LAS 1.0 to 1.2, the smallest
+// Offsets in the public header block: LAS 1.4 specification, table 3.
+constexpr size_t kHeaderSize = 227;  // LAS 1.0 to 1.2, the smallest
 constexpr size_t kHeaderSize14 = 375;
 constexpr size_t kRecordHeaderSize = 54;   // of a variable length record
 constexpr uint8_t kCompressedBits = 0xC0;  // set in the point format by LASzip
@@ -52,7 +52,7 @@ Status check_sizes(Bytes bytes, const LasHeader& header) {
   return {};
 }
 
-/// The number type of an extra field; none for undocumented bytes and the deprecated arrays.
+/// The number type of an extra field. None for undocumented bytes and the deprecated arrays.
 std::optional<ScalarType> extra_type(uint8_t code) {
   constexpr std::array kTypes = {ScalarType::kUint8,   ScalarType::kInt8,   ScalarType::kUint16, ScalarType::kInt16,
                                  ScalarType::kUint32,  ScalarType::kInt32,  ScalarType::kUint64, ScalarType::kInt64,
@@ -61,7 +61,7 @@ std::optional<ScalarType> extra_type(uint8_t code) {
   return kTypes[code - 1U];
 }
 
-/// Bytes of an extra field in the record. Codes 11 to 20 and 21 to 30 are the deprecated pairs and triples.
+/// Bytes of an extra field in a record. Codes 11 to 20 and 21 to 30 are the deprecated pairs and triples.
 size_t extra_size(uint8_t code, uint8_t options) {
   if (code == 0) return options;  // undocumented bytes
   if (code > 30) return 0;
@@ -79,7 +79,7 @@ LasExtraField describe_extra(Bytes entry, ScalarType type, size_t offset) {
   return field;
 }
 
-/// `body` is the content of the record that declares extra fields: entries of 192 bytes.
+/// Parses the body of the record that declares the extra fields: entries of 192 bytes.
 void parse_extra_fields(Bytes body, LasHeader& header) {
   constexpr size_t kEntrySize = 192;
   size_t offset = las_record_length(header.point_format);
@@ -94,8 +94,8 @@ void parse_extra_fields(Bytes body, LasHeader& header) {
   }
 }
 
-/// Calls `use` with the user, the number and the body of each variable length record. The count of the records is not
-/// to be trusted: the walk ends at the points.
+/// Calls `use` with the user ID, the record ID and the body of each variable length record. The stated number of
+/// records is not trustworthy: the loop ends at the point data.
 template <typename Use>
 void for_each_variable_record(Bytes bytes, size_t data_offset, const Use& use) {
   const auto count = load<uint32_t>(&bytes[100]);
@@ -111,7 +111,7 @@ void for_each_variable_record(Bytes bytes, size_t data_offset, const Use& use) {
   }
 }
 
-/// There is one record of each kind: of more of them the first counts.
+/// Only the first record of each kind counts.
 void parse_variable_records(Bytes bytes, LasHeader& header) {
   bool has_extra_fields = false;
   for_each_variable_record(bytes, header.data_offset, [&](std::string_view user, uint16_t id, Bytes body) {

@@ -12,21 +12,21 @@
 
 namespace surfcast::scan {
 
-/// A per-point value that a LAS file declares beyond its point format (LAS 1.4, table 24 "extra bytes").
+/// A per-point value that a LAS file declares in addition to its point format (LAS 1.4, table 24 "extra bytes").
 struct LasExtraField {
   std::string name;
   ScalarType type = ScalarType::kUint8;
   size_t offset = 0;  ///< within the point record
-  double scale = 1;   ///< the value is raw * scale + shift
+  double scale = 1;   ///< value = raw * scale + shift
   double shift = 0;
 };
 
-/// What reading the points takes from the header and the variable length records of a LAS file.
+/// The contents of the header and the variable length records of a LAS file that are needed to read the points.
 struct LasHeader {
   int minor_version = 2;
   int point_format = 0;  ///< 0 to 10
   bool compressed = false;
-  std::span<const std::byte> laszip_record;  ///< within the file: how compressed points are coded
+  std::span<const std::byte> laszip_record;  ///< a part of the file: the coding of compressed points
   size_t record_length = 0;
   size_t data_offset = 0;
   uint64_t count = 0;
@@ -34,11 +34,11 @@ struct LasHeader {
   std::vector<LasExtraField> extra_fields;
 };
 
-/// Checks the header against the bytes that are there: on success all `count` records lie within the file, unless they
-/// are compressed.
+/// Parses and checks the header. On success all `count` records lie within the file, unless they are compressed. Fails
+/// with kInvalidInput or kUnsupported.
 Result<LasHeader> parse_las_header(std::span<const std::byte> bytes);
 
-/// Bytes of a point record of that format without extra bytes.
+/// Bytes of a point record of this format, without extra bytes.
 size_t las_record_length(int point_format);
 
 }  // namespace surfcast::scan

@@ -10,7 +10,7 @@
 namespace surfcast::scan {
 namespace {
 
-/// A number of the record, or with a mask a part of one of its bytes: `(byte >> shift) & mask`.
+/// A value in a record. With a mask, a part of one byte: `(byte >> shift) & mask`.
 struct LasField {
   const char* name;
   size_t offset;
@@ -47,7 +47,7 @@ constexpr LasField kCore[] = {{"intensity", 12, kU16},
                               {"scan_angle", 18, ScalarType::kInt16},
                               {"point_source_id", 20, kU16}};
 
-/// Where a point format holds what only some formats have; 0: not at all.
+/// Offsets of fields that only some point formats have; 0: absent.
 struct OptionalOffsets {
   size_t gps_time;
   size_t color;
@@ -73,7 +73,7 @@ std::vector<LasField> fields_of(int point_format) {
   return fields;
 }
 
-/// Coordinates along one axis, as Grid::position computes them.
+/// Coordinates along one axis, computed as in Grid::position.
 std::vector<double> coordinates(const std::byte* at, size_t count, size_t stride, double scale, double offset) {
   std::vector<double> values(count);
   for (size_t i = 0; i < count; ++i, at += stride) values[i] = static_cast<double>(load<int32_t>(at)) * scale + offset;
@@ -109,7 +109,7 @@ void add_extra_field(const LasExtraField& field, const std::byte* records, size_
   add_column(table, std::move(values));
 }
 
-/// The records of an uncompressed file, in place.
+/// The records of an uncompressed file, read in place.
 class LasRows : public RowSource {
  public:
   LasRows(std::span<const std::byte> bytes, LasHeader header)

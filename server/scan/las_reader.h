@@ -11,16 +11,16 @@
 
 namespace surfcast::scan {
 
-/// The points of a LAS file, versions 1.0 to 1.4, point formats 0 to 10, or a LAZ file of formats 0 to 3 or 6 to 8.
-/// Positions are exact (the grid is the file's scale and offset). A point format reserves room for attributes whether
-/// or not the scanner had them, so an attribute that is zero everywhere is one the scan does not have. Colours are 16
-/// bit unless no value exceeds 255.
+/// Reads a LAS file (versions 1.0 to 1.4, point formats 0 to 10) or a LAZ file (point formats 0 to 3 and 6 to 8).
+/// Positions are exact: the grid is the scale and offset of the file. A point format has room for attributes that the
+/// scanner may not have recorded, so an attribute that is zero everywhere is treated as absent. Colours have 16 bits
+/// unless no value exceeds 255.
 Result<std::unique_ptr<RowSource>> las_rows(std::span<const std::byte> bytes);
 
 /// The columns of point records with this header.
 std::vector<ColumnInfo> las_columns(const LasHeader& header);
 
-/// `count` point records, one after another, as those columns; the records must stay where they are.
+/// `count` consecutive point records as these columns. The columns refer to the records, which must outlive the table.
 PointTable las_table(const std::byte* records, size_t count, const LasHeader& header);
 
 }  // namespace surfcast::scan

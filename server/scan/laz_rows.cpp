@@ -10,7 +10,7 @@
 namespace surfcast::scan {
 namespace {
 
-/// The count of a chunk is a claim until it is decoded, so memory is taken as the points turn up.
+/// Decodes a chunk. Memory grows with the points decoded, because the stated count of a chunk is not trustworthy.
 Result<std::vector<std::byte>> decode_chunk(const laz::LazFile& file, const laz::Chunk& chunk) {
   constexpr uint64_t kPointsAtOnce = 1 << 16;
   Result<laz::LazChunkReader> reader = file.read_chunk(chunk);

@@ -10,7 +10,7 @@
 
 namespace surfcast::scan {
 
-/// The points of a LAZ file whose header has been read: a piece for each chunk.
+/// The points of a LAZ file with a parsed header. Each chunk is one piece.
 Result<std::unique_ptr<RowSource>> laz_rows(std::span<const std::byte> bytes, LasHeader header);
 
 }  // namespace surfcast::scan

@@ -9,14 +9,15 @@
 
 namespace surfcast::scan {
 
-/// Neighbours of each site that signs spread to; more only costs time.
+/// Neighbours of each site along which signs are propagated. More of them only cost time.
 inline constexpr size_t kLinks = 8;
 
 [[nodiscard]] inline std::span<const uint32_t> links_of(const NeighbourGraph& graph, size_t site) {
   return graph.of(site).first(std::min(kLinks, graph.degree));
 }
 
-/// Calls `use(a, b)` once for every pair of linked sites.
+/// Calls `use(a, b)` once for every pair of linked sites. A pair is linked if either site is a near neighbour of the
+/// other.
 template <typename Use>
 void for_each_link(const NeighbourGraph& graph, size_t sites, const Use& use) {
   for (uint32_t a = 0; a < sites; ++a) {

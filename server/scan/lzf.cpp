@@ -5,18 +5,18 @@
 namespace surfcast::scan {
 namespace {
 
-// A control byte below 32 starts a run of that many bytes and one, copied as they are. Any other one refers back to
-// earlier output: its upper three bits are the length less 2 (7: the next byte is added), its lower five the upper
-// bits of the distance less 1, whose lower eight follow.
+// A control byte c below 32 starts a run of c + 1 literal bytes. Any other control byte refers back to earlier output:
+// its upper three bits are the length less 2 (if they are 7, the next byte is added), its lower five bits are the upper
+// bits of the distance less 1. The lower eight bits of the distance follow.
 constexpr unsigned kLiteral = 32;
 constexpr unsigned kLongLength = 7;
-constexpr size_t kMaxExpansion = 132;  // 3 bytes can stand for at most 264 others
+constexpr size_t kMaxExpansion = 132;  // an upper bound: 3 bytes expand to at most 264
 
 class Decoder {
  public:
   Decoder(std::span<const std::byte> in, std::span<uint8_t> out) : in_(in), out_(out) {}
 
-  /// Whether all of the input was used and all of the output written.
+  /// True if all input was consumed and all output written.
   bool run() {
     while (read_ < in_.size()) {
       const unsigned control = take();
@@ -46,7 +46,7 @@ class Decoder {
     if (read_ == in_.size()) return false;
     const size_t distance = ((control & 31U) << 8) + take() + 1;
     if (distance > written_ || length > out_.size() - written_) return false;
-    // Byte by byte: the source may reach into what is being written.
+    // Byte by byte, because source and destination may overlap.
     for (size_t i = 0; i < length; ++i, ++written_) out_[written_] = out_[written_ - distance];
     return true;
   }

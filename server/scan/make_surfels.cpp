@@ -12,7 +12,7 @@
 namespace surfcast::scan {
 namespace {
 
-/// Neighbours of each site that its normal is estimated from.
+/// Neighbours from which the normal of a site is estimated.
 constexpr size_t kDegree = 12;
 
 bool usable_radius(float radius) {
@@ -23,7 +23,7 @@ bool has_normal(const surfel::SurfelCloud& cloud, size_t i) {
   return !cloud.normals.empty() && !std::isnan(cloud.normals[i].x);
 }
 
-/// What is known and wanted of each site.
+/// Properties of the sites that their points determine.
 struct SiteFacts {
   std::vector<SitePlace> places;
   std::vector<SiteDirection> known;
@@ -32,7 +32,8 @@ struct SiteFacts {
   explicit SiteFacts(size_t sites) : places(sites), known(sites), towards(sites, glm::vec3(0)) {}
 };
 
-/// The first point at a site speaks for it; one that brings a normal, before one that knows the scanner only.
+/// Records the direction of a point at its site. The first point at a site counts, but a stored normal takes precedence
+/// over a direction to the scanner.
 void learn_direction(const surfel::SurfelCloud& cloud, size_t point, size_t site,
                      const std::optional<glm::dvec3>& sensor, SiteFacts& facts) {
   if (has_normal(cloud, point)) {
@@ -71,7 +72,7 @@ void fill_radii(const Sites& sites, const NeighbourGraph& graph, const SiteFacts
   }
 }
 
-/// Normals of the sites: the scan's own where it has one.
+/// Normals of the sites: those of the scan where it has them, estimated ones elsewhere.
 std::vector<glm::vec3> site_normals(const Sites& sites, const NeighbourGraph& graph, const SiteFacts& facts) {
   const bool all_stored = std::all_of(facts.known.begin(), facts.known.end(),
                                       [](SiteDirection known) { return known == SiteDirection::kStored; });
@@ -83,7 +84,7 @@ std::vector<glm::vec3> site_normals(const Sites& sites, const NeighbourGraph& gr
   return normals;
 }
 
-/// Fills in the normals, from those of the sites, and says which tree each follows.
+/// Copies the normals of the sites to points without one. Returns the tree of each point, or kNoTree.
 std::vector<uint32_t> fill_normals(const Sites& sites, const NeighbourGraph& graph, const SiteFacts& facts,
                                    std::vector<glm::vec3> normals, surfel::SurfelCloud& cloud, PartSigns& signs,
                                    SurfelReport& report) {

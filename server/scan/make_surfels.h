@@ -13,27 +13,27 @@
 
 namespace surfcast::scan {
 
-/// Where a part of a cloud lies in the whole.
+/// A part of a cloud in relation to the whole.
 struct PartFrame {
   geometry::Box bounds;  ///< of the whole cloud
-  /// Tells the part's own points from its halo, and those near the border from others. Any thread may ask.
+  /// Classifies positions: own or halo, near the border or not. Thread-safe.
   std::function<SitePlace(const glm::dvec3&)> place = [](const glm::dvec3&) { return SitePlace{}; };
-  std::vector<std::optional<glm::dvec3>> sensors;  ///< of each source
+  std::vector<std::optional<glm::dvec3>> sensors;  ///< scanner position of each source
 };
 
-/// Surfels of a part, halo included, before the signs of their normals are settled. Everything but the weights is
-/// there.
+/// The surfels of a part including its halo, before the signs of their normals are resolved. All attributes except the
+/// weights are set.
 struct PartSurfels {
   surfel::SurfelCloud cloud;
-  std::vector<uint32_t> trees;  ///< of each surfel: the tree whose sign its normal follows, or kNoTree
+  std::vector<uint32_t> trees;  ///< for each surfel, the tree that determines the sign of its normal, or kNoTree
 };
 
-/// Makes surfels of usable points: estimates the normals and radii that are missing, NaN or not positive. What has to
-/// be known of the part to settle the signs goes to `signs`, the numbers of its own points to `report`. The cloud has
-/// no duplicates. The result is the same for any number of threads.
+/// Makes surfels from clean points: estimates normals that are missing or NaN, and radii that are missing, NaN or not
+/// positive. `signs` receives the data that resolve_signs needs from this part. `report` counts the part's own points
+/// only. The cloud must not have duplicates. The result is the same for any number of threads.
 PartSurfels make_surfels(surfel::SurfelCloud cloud, const PartFrame& frame, PartSigns& signs, SurfelReport& report);
 
-/// Gives the normals of part number `part` their final signs.
+/// Applies the resolved signs to the normals of part number `part`.
 void apply_signs(const ResolvedSigns& signs, size_t part, PartSurfels& surfels);
 
 }  // namespace surfcast::scan

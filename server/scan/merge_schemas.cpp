@@ -11,7 +11,7 @@ namespace {
 
 constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
 
-/// The smallest type that holds all values of both; doubles where none does.
+/// The smallest type that holds all values of both types; double if none does.
 ScalarType common_type(ScalarType a, ScalarType b) {
   if (a == b) return a;
   const auto holds = [](ScalarType wide, ScalarType narrow) {
@@ -47,7 +47,7 @@ void merge_scalars(const std::vector<ScalarField>& more, std::vector<ScalarField
   }
 }
 
-/// Colours of any depth in `bits`: 257 takes 255 to 65535.
+/// Converts colours to `bits` per channel. The factor 257 maps 255 to 65535.
 void conform_colors(int bits, ScanPoints& points) {
   if (bits == 0) return;
   if (!points.colors) {

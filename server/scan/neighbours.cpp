@@ -10,11 +10,11 @@
 namespace surfcast::scan {
 namespace {
 
-/// How nanoflann sees the sites.
+/// Adapter for nanoflann.
 struct SiteAccess {
   const std::vector<glm::dvec3>& positions;
 
-  // The names are nanoflann's.
+  // nanoflann requires these names.
   [[nodiscard]] size_t kdtree_get_point_count() const { return positions.size(); }
   [[nodiscard]] double kdtree_get_pt(uint32_t site, size_t axis) const {
     return positions[site][static_cast<int>(axis)];
@@ -30,7 +30,7 @@ using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<do
 
 constexpr size_t kLargestDegree = 31;
 
-/// Writes the nearest `degree` sites other than `site`.
+/// Writes the `degree` nearest sites, without `site` itself.
 void query(const Tree& tree, const glm::dvec3& position, uint32_t site, size_t degree, uint32_t* out) {
   std::array<uint32_t, kLargestDegree + 1> ids;
   std::array<double, kLargestDegree + 1> squared_distances;

@@ -8,9 +8,9 @@
 
 namespace surfcast::scan {
 
-/// For every site its nearest other sites, nearest first.
+/// The nearest other sites of every site, nearest first.
 struct NeighbourGraph {
-  size_t degree = 0;          ///< neighbours of each site; fewer than asked for only when there are too few sites
+  size_t degree = 0;          ///< neighbours of each site; fewer than requested only if there are too few sites
   std::vector<uint32_t> ids;  ///< `degree` entries for each site
 
   [[nodiscard]] std::span<const uint32_t> of(size_t site) const { return {ids.data() + site * degree, degree}; }

@@ -12,25 +12,25 @@
 namespace surfcast::scan {
 namespace {
 
-/// One in so many sites near a border ties the trees of two parts together. The choice follows from the position, so
-/// that both parts make the same.
+/// One in this many sites near a border links the trees of two parts. The choice depends only on the position, so both
+/// parts choose the same sites.
 constexpr uint64_t kBorderSample = 16;
 
-/// The square of the distance to the farthest neighbour: in proportion to the area a site stands for.
+/// The squared distance to the farthest neighbour, which is proportional to the area that a site stands for.
 double area_of(const SitesOfPart& part, size_t site) {
   if (part.graph.degree == 0) return 0;
   const glm::dvec3 d = part.sites.positions[part.graph.of(site).back()] - part.sites.positions[site];
   return glm::dot(d, d);
 }
 
-/// Turns the normals whose direction is known, each by itself.
+/// Orients the normals of known direction individually.
 void face_known(const SitesOfPart& part, std::vector<glm::vec3>& normals) {
   for (size_t i = 0; i < normals.size(); ++i) {
     if (glm::dot(normals[i], part.towards[i]) < 0) normals[i] = -normals[i];
   }
 }
 
-/// Gives every site the sign it has relative to its tree's root, and numbers the trees.
+/// Gives every site its sign relative to the root of its tree, and numbers the trees.
 std::vector<uint32_t> number_trees(SignedForest& forest, std::vector<glm::vec3>& normals, PartSigns& signs) {
   std::vector<uint32_t> tree_of(normals.size());
   std::vector<uint32_t> number_of_root(normals.size(), kNoTree);
@@ -65,8 +65,8 @@ void vote(const SitesOfPart& part, std::span<const glm::vec3> normals, std::span
   }
 }
 
-/// Counts how far linked sites agree. A link across the border counts half in either part. `tree_of` is empty when all
-/// directions are known.
+/// Adds up the agreement and conflict of linked sites. A link across the border counts half in each part. `tree_of` is
+/// empty if all directions are known.
 void count_agreement(const SitesOfPart& part, std::span<const glm::vec3> normals, std::span<const uint32_t> tree_of,
                      PartSigns& signs) {
   const auto is_known = [&part](uint32_t site) { return part.known[site] != SiteDirection::kUnknown; };

@@ -9,7 +9,7 @@
 namespace surfcast::scan {
 namespace {
 
-/// More values in one point than any file has; bounds what a hostile header can ask for.
+/// More values per point than any file has. The limit bounds the memory that a malicious header can request.
 constexpr size_t kMaxValues = 4096;
 
 using Words = std::vector<std::string_view>;
@@ -18,7 +18,7 @@ tl::unexpected<Error> invalid(std::string what) {
   return fail(ErrorKind::kInvalidInput, std::move(what));
 }
 
-/// The lines of the header as they came, by keyword.
+/// The lines of the header by keyword, unparsed.
 struct RawHeader {
   Words fields;
   Words sizes;
@@ -44,7 +44,7 @@ Words* line_of(RawHeader& raw, std::string_view keyword) {
   return nullptr;
 }
 
-/// Collects the header's lines; `offset` is where the line after DATA begins.
+/// Splits the header into lines. `offset` becomes the start of the line after DATA.
 Result<RawHeader> split_header(std::string_view text, size_t& offset) {
   RawHeader raw;
   for (offset = 0; offset < text.size() && raw.data.empty();) {
@@ -115,7 +115,7 @@ Status parse_size(const RawHeader& raw, PcdHeader& header) {
 }
 
 std::optional<glm::dvec3> parse_sensor(const Words& viewpoint, bool organised) {
-  std::array<double, 7> numbers = {0, 0, 0, 1, 0, 0, 0};  // position, and a quaternion that begins with w
+  std::array<double, 7> numbers = {0, 0, 0, 1, 0, 0, 0};  // position, then a quaternion with w first
   if (viewpoint.size() == numbers.size()) {
     for (size_t i = 0; i < numbers.size(); ++i) {
       const std::optional<double> number = parse_number<double>(viewpoint[i]);

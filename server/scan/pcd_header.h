@@ -16,7 +16,7 @@ namespace surfcast::scan {
 struct PcdField {
   std::string name;  ///< "_" is padding
   ScalarType type = ScalarType::kFloat32;
-  size_t count = 1;  ///< values of each point
+  size_t count = 1;  ///< number of values per point
 
   [[nodiscard]] size_t bytes() const { return size_of(type) * count; }
 };
@@ -34,8 +34,9 @@ struct PcdHeader {
   [[nodiscard]] size_t record_length() const;
 };
 
-/// The sensor stands where VIEWPOINT puts it; a viewpoint at the origin counts only when it is turned, or when the
-/// cloud is organised, because writers put the default viewpoint into clouds of any origin.
+/// Parses and checks the header of a PCD file. The sensor position comes from VIEWPOINT. A viewpoint at the origin
+/// counts only if it is rotated or the cloud is organised, because many writers store the default viewpoint in any
+/// cloud.
 Result<PcdHeader> parse_pcd_header(std::span<const std::byte> bytes);
 
 }  // namespace surfcast::scan

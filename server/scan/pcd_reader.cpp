@@ -46,7 +46,7 @@ RowTraits traits_of(const PcdHeader& header) {
   return traits;
 }
 
-/// Adds the columns of a field whose values for point 0 begin at `first`, and for every next point `stride` on.
+/// Adds the columns of a field. Its values for point i begin at `first + i * stride`.
 void add_field(const PcdField& field, const std::byte* first, size_t stride, PointTable& table) {
   for (size_t value = 0; !is_padding(field) && value < field.count; ++value) {
     table.columns.push_back({field.type, first + value * size_of(field.type), stride, false});
@@ -66,7 +66,7 @@ Result<PointTable> read_binary(const PcdHeader& header, Bytes data) {
   return table;
 }
 
-/// Two sizes, then LZF data that expands to all values of the first field, all of the second, and so on.
+/// The data: two sizes, then LZF data that expands to all values of the first field, all of the second, and so on.
 Result<PointTable> read_compressed(const PcdHeader& header, Bytes data, const DecodingLimit& limit) {
   if (data.size() < 2 * sizeof(uint32_t)) return truncated(header);
   const auto compressed = load<uint32_t>(data.data());
@@ -91,7 +91,7 @@ Result<PointTable> read_compressed(const PcdHeader& header, Bytes data, const De
   return table;
 }
 
-/// Rows of words; each piece begins where a first pass has come by.
+/// Rows of words. The starts of the pieces are found in a first pass.
 class AsciiRows : public RowSource {
  public:
   AsciiRows(const PcdHeader& header, std::vector<Tokens> starts)

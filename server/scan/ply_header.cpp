@@ -29,8 +29,8 @@ tl::unexpected<Error> bad_line(std::string_view line) {
   return fail(ErrorKind::kInvalidInput, "PLY header line not understood: " + printable(line));
 }
 
-/// Hands out the lines of the header. The first line's end decides what ends every line (LF, CR LF or CR), because a
-/// CR before binary data could otherwise take a first data byte of 10 with it.
+/// Iterates over the lines of the header. The end of the first line determines the line ending (LF, CR LF or CR).
+/// Without this rule, a CR before binary data could swallow a first data byte of 10.
 class HeaderLines {
  public:
   explicit HeaderLines(std::string_view text) : text_(text) {

@@ -14,8 +14,8 @@ namespace surfcast::scan {
 
 struct PlyProperty {
   std::string name;
-  ScalarType type = ScalarType::kFloat32;  ///< of the value, or of every entry of the list
-  std::optional<ScalarType> list_count;    ///< the type of the number of entries, for a list
+  ScalarType type = ScalarType::kFloat32;  ///< of the value, or of the entries of a list
+  std::optional<ScalarType> list_count;    ///< for a list: the type of its length
 };
 
 struct PlyElement {

@@ -39,12 +39,12 @@ std::vector<ColumnInfo> columns_of(const PlyElement& element) {
   return columns;
 }
 
-/// Reads the rows of binary elements that have lists, whose rows differ in size.
+/// Reads rows of binary elements with lists, whose rows differ in size.
 class BinaryWalk {
  public:
   BinaryWalk(std::span<const std::byte> rest, bool swapped) : rest_(rest), swapped_(swapped) {}
 
-  /// Passes over elements of one size; fails when the file ends within them.
+  /// Skips an element of fixed record size and returns its first record. Fails if the file ends within it.
   Result<const std::byte*> take_records(const PlyElement& element) {
     const size_t size = record_size(element);
     if (size > 0 && element.count > rest_.size() / size) return truncated(element);
@@ -53,8 +53,8 @@ class BinaryWalk {
     return first;
   }
 
-  /// Reads so many rows, into the columns when there are any. Every row has at least the byte of a list's count, so the
-  /// end of the file bounds the walk whatever the header says.
+  /// Reads `rows` rows, into the columns if given. A row with lists has at least one byte for the length of a list, so
+  /// the file size bounds the loop whatever the header states.
   Status walk_rows(const PlyElement& element, uint64_t rows, std::vector<surfel::ScalarValues>* columns) {
     for (uint64_t row = 0; row < rows; ++row) {
       size_t column = 0;
@@ -102,7 +102,7 @@ class BinaryWalk {
   bool swapped_;
 };
 
-/// Reads the rows of ascii elements word by word.
+/// Reads rows of ascii elements word by word.
 class AsciiWalk {
  public:
   explicit AsciiWalk(std::string_view text) : tokens_(text) {}
@@ -149,7 +149,7 @@ class AsciiWalk {
   std::string_view word_;
 };
 
-/// Vertices whose rows have to be read one after another: each piece begins where a walk has come by.
+/// Vertices whose rows must be read sequentially. The starts of the pieces are found in a first pass.
 template <typename Walk>
 class WalkedRows : public RowSource {
  public:
@@ -181,7 +181,7 @@ bool is_vertex(const PlyElement& element) {
   return element.name == "vertex";
 }
 
-/// Passes over the elements before or behind the vertices.
+/// Skips the elements before or after the vertices.
 template <typename Walk>
 Status skip_all(std::span<const PlyElement> elements, Walk& walk) {
   for (const PlyElement& element : elements) {
@@ -267,7 +267,7 @@ Result<std::unique_ptr<RowSource>> ply_rows(std::span<const std::byte> bytes) {
   if (!header) return fail(header.error());
   if (Status status = check_vertices(*header); !status) return fail(status.error());
   RowTraits traits;
-  traits.may_be_graphics = has_faces(*header);  // graphics write meshes, y-up; scanners write points, z-up
+  traits.may_be_graphics = has_faces(*header);  // meshes come from graphics, y-up; points come from scanners, z-up
   const std::span<const std::byte> data = bytes.subspan(header->data_offset);
   if (header->encoding == PlyEncoding::kAscii) return rows_of(*header, traits, AsciiWalk(as_text(data)), false);
   const bool big = header->encoding == PlyEncoding::kBinaryBigEndian;

@@ -9,9 +9,9 @@
 
 namespace surfcast::scan {
 
-/// The element "vertex" of a PLY file, ascii or binary in either byte order; other elements are checked to be
-/// whole and left out. PLY is a graphics format: `z_up` stays false unless the points look like a survey (see
-/// up_axis.h). Files of 3D Gaussians are refused.
+/// Reads the element "vertex" of a PLY file, ascii or binary in either byte order. Other elements are checked for
+/// completeness and ignored. PLY is a graphics format: `z_up` is false unless the points look like a survey (see
+/// up_axis.h). Files of 3D Gaussians are rejected.
 Result<std::unique_ptr<RowSource>> ply_rows(std::span<const std::byte> bytes);
 
 }  // namespace surfcast::scan

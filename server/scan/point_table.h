@@ -9,37 +9,37 @@
 
 namespace surfcast::scan {
 
-/// One named number of every point.
+/// A named column of numbers, one for each point.
 struct ColumnInfo {
   std::string name;
   ScalarType type = ScalarType::kFloat32;
-  bool reserved = false;  ///< the format has room for it in any case: zero everywhere means that there is none
+  bool reserved = false;  ///< part of every file of the format: zero everywhere means absent
 
   bool operator==(const ColumnInfo&) const = default;
 };
 
-/// Values of a column, seen in place: value i is at `first + i * stride`.
+/// The values of a column in place: value i is at `first + i * stride`.
 struct Column {
   ScalarType type = ScalarType::kFloat32;
   const std::byte* first = nullptr;
   size_t stride = 0;
-  bool swapped = false;  ///< stored in the other byte order
+  bool swapped = false;  ///< stored in the opposite byte order
 };
 
-/// Some points of a file as columns of one length. Binary files are seen in place (the file must stay mapped); numbers
-/// decoded from text are kept in `storage`, which the columns point into.
+/// Some points of a file, as columns of equal length. The columns of binary files point into the file, which must stay
+/// mapped. Numbers decoded from text are kept in `storage`, into which the columns point.
 struct PointTable {
   size_t rows = 0;
-  uint64_t announced = 0;  ///< rows that count lines within this part of a PTS file speak of
+  uint64_t announced = 0;  ///< rows announced by count lines within this part of a PTS file
   std::vector<Column> columns;
   std::vector<surfel::ScalarValues> storage;
-  std::vector<std::byte> records;  ///< decoded records that columns point into
+  std::vector<std::byte> records;  ///< decoded records into which columns point
 };
 
-/// Adds a column that holds `values`, of `table.rows` values.
+/// Adds a column with `table.rows` values.
 void add_column(PointTable& table, surfel::ScalarValues values);
 
-/// Calls `use(i, value)` with every value of the column in its own type.
+/// Calls `use(i, value)` for every value of the column, in its own type.
 template <typename Use>
 void for_each_value(const Column& column, size_t rows, Use&& use) {
   with_type(column.type, [&](auto zero) {

@@ -12,18 +12,18 @@
 namespace surfcast::scan {
 namespace {
 
-/// Two pieces that touch, by members of them.
+/// The contact of two pieces, given by one member of each.
 struct Contact {
   uint32_t a;
   uint32_t b;
-  double agreement;  ///< sum of their links' votes: positive when the members' signs agree
+  double agreement;  ///< sum of the votes of their links; positive if the signs of the members agree
 };
 
 bool same_pieces(const Contact& x, const Contact& y) {
   return x.a == y.a && x.b == y.b;
 }
 
-/// States contacts by the roots of their pieces, once for each pair; those within one piece vanish.
+/// Rewrites contacts in terms of the roots of their pieces: one for each pair, none within a piece.
 std::vector<Contact> between_roots(std::vector<Contact> contacts, SignedForest& forest) {
   for (Contact& c : contacts) {
     const auto [root_a, opposed_a] = forest.find(c.a);
@@ -54,7 +54,7 @@ double vote(const Sites& sites, std::span<const glm::vec3> normals, uint32_t a, 
   return glm::dot(n, m) - glm::dot(n, d) * glm::dot(m, d) / glm::dot(d, d);
 }
 
-/// Every site is a piece at first.
+/// The initial contacts: every site is a piece.
 std::vector<Contact> link_contacts(const Sites& sites, const NeighbourGraph& graph,
                                    std::span<const glm::vec3> normals) {
   std::vector<Contact> contacts;
@@ -92,7 +92,7 @@ std::vector<Contact> strongest(std::span<const Contact> contacts, size_t sites) 
 
 SignedForest propagate_signs(const Sites& sites, const NeighbourGraph& graph, std::span<const glm::vec3> normals) {
   SignedForest forest(normals.size());
-  // Every round at least halves the pieces that touch others (Boruvka's way to a spanning forest).
+  // Every round at least halves the number of pieces in contact (Boruvka's algorithm).
   for (std::vector<Contact> contacts = link_contacts(sites, graph, normals); !contacts.empty();) {
     for (const Contact& c : strongest(contacts, normals.size())) forest.join(c.a, c.b, c.agreement < 0);
     contacts = between_roots(std::move(contacts), forest);

@@ -14,7 +14,7 @@
 namespace surfcast::scan {
 namespace {
 
-/// Takes row vectors from the scanner to the world: p' = (p, 1) M. The fourth column of M is not used.
+/// Transforms row vectors from the scanner's frame to the world: p' = (p, 1) M. The fourth column of M is ignored.
 using Matrix = std::array<double, 16>;
 
 glm::dvec3 transform(const Matrix& m, const glm::dvec3& p) {
@@ -46,7 +46,7 @@ Result<uint64_t> next_count(Tokens& tokens) {
   return *count;
 }
 
-/// Columns, rows, the scanner's position and axes (which the matrix repeats), the matrix.
+/// Reads columns, rows, the scanner's position and axes (which the matrix repeats), and the matrix.
 Result<Station> read_station(Tokens& tokens) {
   constexpr const char* kWhere = "a PTX header";
   const Result<uint64_t> columns = next_count(tokens);
@@ -65,7 +65,7 @@ Result<Station> read_station(Tokens& tokens) {
   return station;
 }
 
-/// Words in the line that follows.
+/// Number of words in the next line.
 size_t words_in_next_line(Tokens tokens) {
   const std::string_view rest = tokens.rest();
   const size_t first = rest.find_first_not_of(" \t\r\n");
@@ -76,16 +76,16 @@ size_t words_in_next_line(Tokens tokens) {
   return words;
 }
 
-/// Points of one station that are read together.
+/// Consecutive points of one station that are read together.
 struct Piece {
   Tokens start;
   uint64_t rows = 0;
   Matrix matrix{};
 };
 
-/// Where the points of all stations are, found by passing over them.
+/// The pieces of all stations, found in a first pass over the points.
 struct Layout {
-  size_t columns = 0;  ///< numbers of each point: 4 (x y z intensity) or 7 (and r g b)
+  size_t columns = 0;  ///< numbers of each point: 4 (x y z intensity) or 7 (with r g b)
   std::vector<Piece> pieces;
   std::vector<Matrix> stations;
 };
@@ -122,7 +122,7 @@ Result<Layout> find_layout(Tokens tokens) {
   return layout;
 }
 
-/// The point where the scanner's matrix takes it; a ray without an echo is nowhere.
+/// Transforms a point to the world. A ray without an echo becomes NaN.
 void place_point(double* xyz, const Matrix& matrix) {
   glm::dvec3 p(xyz[0], xyz[1], xyz[2]);
   p = p == glm::dvec3(0) ? glm::dvec3(std::numeric_limits<double>::quiet_NaN()) : transform(matrix, p);

@@ -10,12 +10,12 @@
 
 namespace surfcast::scan {
 
-/// Whether text has the beginning of a PTX file: two lines with one integer each.
+/// True if text begins like a PTX file: two lines with one integer each.
 bool looks_like_ptx(std::string_view text);
 
-/// A PTX file: one or more scanner stations, each a grid of points in the scanner's frame with the matrix that
-/// takes them to the world. Rays without an echo, stored as 0 0 0, become NaN points. The scanner's position is kept
-/// when there is one station. Intensities are 0 to 1.
+/// Reads a PTX file: one or more scanner stations, each a grid of points in the scanner's frame with a matrix that
+/// transforms them to world coordinates. Rays without an echo, stored as 0 0 0, become NaN points. The sensor position
+/// is set if there is exactly one station. Intensities are 0 to 1.
 Result<std::unique_ptr<RowSource>> ptx_rows(std::span<const std::byte> bytes);
 
 }  // namespace surfcast::scan

@@ -15,7 +15,7 @@ namespace surfcast::scan {
 /// The number types of scan files, in the order of the alternatives of ScalarValues.
 enum class ScalarType { kUint8, kInt8, kUint16, kInt16, kUint32, kInt32, kUint64, kInt64, kFloat32, kFloat64 };
 
-/// Calls `use` with a value of the C++ type that `type` names.
+/// Calls `use` with a zero of the C++ type that corresponds to `type`.
 template <typename Use>
 decltype(auto) with_type(ScalarType type, Use&& use) {
   switch (type) {
@@ -55,12 +55,12 @@ decltype(auto) with_type(ScalarType type, Use&& use) {
   return static_cast<ScalarType>(values.index());
 }
 
-/// An empty vector of that type.
+/// An empty vector of this type.
 [[nodiscard]] inline surfel::ScalarValues empty_values(ScalarType type) {
   return with_type(type, [](auto zero) { return surfel::ScalarValues(std::vector<decltype(zero)>()); });
 }
 
-/// The number at `at`, aligned or not; `swapped` when its byte order is not this machine's.
+/// Loads a number from `at`, which need not be aligned. `swapped`: its byte order is not this machine's.
 template <typename T>
 [[nodiscard]] T load(const std::byte* at, bool swapped = false) {
   std::array<std::byte, sizeof(T)> raw;

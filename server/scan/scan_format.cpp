@@ -16,7 +16,7 @@ namespace {
 
 using Known = std::pair<std::string_view, std::string_view>;
 
-/// How files begin that are no readable scans, and what they are.
+/// Signatures of files that cannot be read as scans, with the reason.
 constexpr Known kOtherContents[] = {
     {"ASTM-E57", "E57 scans are not supported"},
     {"pnts", "3D Tiles point tiles are not supported"},
@@ -72,22 +72,22 @@ std::string_view format_name(ScanFormat format) {
   return "text";
 }
 
-/// A word at the start of the text, followed by a space or the end of the line.
+/// True if the text starts with the word, followed by white space.
 bool starts_with_word(std::string_view text, std::string_view word) {
   return text.starts_with(word) && text.size() > word.size() && is_space(text[word.size()]);
 }
 
-/// How far into a file to look for what kind of text it is.
+/// Bytes examined to detect the kind of text.
 constexpr size_t kLook = 4096;
 
-/// No control characters but spaces.
+/// True if there are no control characters other than white space.
 bool is_text(std::string_view text) {
   const std::string_view head = text.substr(0, kLook);
   return std::all_of(head.begin(), head.end(),
                      [](char c) { return static_cast<unsigned char>(c) >= ' ' || is_space(c); });
 }
 
-/// PCD files may begin with comments; FIELDS comes in the first lines.
+/// PCD files may begin with comments; FIELDS is among the first lines.
 bool is_pcd(std::string_view text) {
   return text.starts_with("# .PCD") || starts_with_word(text, "VERSION") || starts_with_word(text, "FIELDS");
 }
@@ -111,8 +111,8 @@ tl::unexpected<Error> unsupported(std::string_view what) {
   return fail(ErrorKind::kUnsupported, std::string(what));
 }
 
-/// The format of text without a signature. A file that is called PLY, PCD and so on but does not begin like one is
-/// damaged, even if numbers are in it.
+/// The format of text without a signature. A file with the extension of PLY, PCD and so on that lacks the header is
+/// damaged, even if it contains numbers.
 Result<ScanFormat> format_of_text(std::string_view text, std::optional<ScanFormat> named) {
   const bool may_be_text = !named || *named == ScanFormat::kText || *named == ScanFormat::kPtx;
   if (!may_be_text) {

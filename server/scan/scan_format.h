@@ -10,8 +10,8 @@ namespace surfcast::scan {
 
 enum class ScanFormat { kPly, kLas, kPcd, kPtx, kText, kDraco };
 
-/// Tells the format of a file by its first bytes, and where they do not decide by its extension. Fails with the reason
-/// for files that are empty, of a known format that is no readable scan, or not recognised.
+/// Detects the format of a file from its first bytes, or from its extension if they are ambiguous. Fails with the
+/// reason if the file is empty, not recognised, or of a known format that cannot be read as a scan.
 Result<ScanFormat> scan_format_of(std::span<const std::byte> bytes, const std::filesystem::path& path);
 
 }  // namespace surfcast::scan

@@ -12,11 +12,11 @@
 
 namespace surfcast::scan {
 
-/// Some points of one input file as its format states them, nothing dropped or estimated yet. Structure of arrays;
-/// attributes that the file does not have are empty.
+/// Some points of one input file as stored, before cleaning and estimation. Structure of arrays; attributes that the
+/// file does not have are empty.
 struct ScanPoints {
   std::vector<glm::dvec3> positions;  ///< world coordinates; may hold NaN and infinities
-  std::vector<glm::vec3> normals;     ///< as stored: any length, perhaps zero
+  std::vector<glm::vec3> normals;     ///< as stored: of any length, may be zero
   std::vector<float> radii;           ///< world units
   std::optional<surfel::ColorAttribute> colors;
   std::vector<surfel::ScalarAttribute> scalars;

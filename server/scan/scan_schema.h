@@ -16,16 +16,16 @@ struct ScalarField {
   bool operator==(const ScalarField&) const = default;
 };
 
-/// What the points of a scan have, known before any of them is delivered.
+/// The attributes of the points of a scan, known before any point is read.
 struct ScanSchema {
   std::string name;                  ///< file name without its folders
-  std::optional<surfel::Grid> grid;  ///< the lattice all positions lie on, where the format has one (LAS)
+  std::optional<surfel::Grid> grid;  ///< the lattice of all positions, if the format has one (LAS)
   bool normals = false;
   bool radii = false;
   int color_bits = 0;  ///< of each channel: 8 or 16; 0 without colour
   std::vector<ScalarField> scalars;
-  std::optional<glm::dvec3> sensor;  ///< where the scanner stood, when the file says so
-  bool z_up = true;                  ///< LAS and text surveys are z-up; see each reader
+  std::optional<glm::dvec3> sensor;  ///< scanner position, if the file states it
+  bool z_up = true;                  ///< true for LAS and text surveys; see each reader
 };
 
 }  // namespace surfcast::scan

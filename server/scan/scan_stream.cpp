@@ -36,7 +36,7 @@ Result<std::unique_ptr<RowSource>> rows_of(ScanFormat format, std::span<const st
   return text_rows(bytes);
 }
 
-/// The roles that facts are looked for by. Without names, x, y and z come first, and the others have none yet.
+/// The roles with which facts are collected. Without names, x, y and z come first and the others have no role yet.
 Result<ColumnRoles> first_roles(const RowSource& rows) {
   if (!rows.columns().empty() && rows.columns()[0].name.empty()) {
     ColumnRoles roles;
@@ -46,7 +46,7 @@ Result<ColumnRoles> first_roles(const RowSource& rows) {
   return assign_roles(rows.columns(), {});
 }
 
-/// Reads all pieces on all threads. Of several failures the one of the first piece counts.
+/// Reads all pieces on all threads. Of several errors, returns the one of the first piece.
 Result<TableFacts> survey_rows(const RowSource& rows, const MappedFile* file) {
   const Result<ColumnRoles> roles = first_roles(rows);
   if (!roles) return fail(roles.error());

@@ -39,18 +39,18 @@ void TreeVotes::add(TreeVotes other) {
 
 namespace {
 
-/// Share of disagreement between neighbours up to which signs count as consistent. Smooth and sharp-edged surfaces
-/// stay below 0.02, normals of foliage come out above 0.1.
+/// Largest share of disagreement between neighbours for which signs count as consistent. Smooth and sharp-edged
+/// surfaces stay below 0.02, foliage exceeds 0.1.
 constexpr double kMaxConflict = 0.05;
 
-/// How far two trees of different parts agree where both see the same sites.
+/// The agreement of two trees of different parts at the sites that both contain.
 struct Bridge {
   uint32_t a = 0;
   uint32_t b = 0;
   double agreement = 0;  ///< sum of n . n'
 };
 
-/// Trees of all parts are numbered through: this is the number of each part's first.
+/// Trees of all parts are numbered consecutively. Returns the number of the first tree of each part.
 std::vector<uint32_t> first_trees(std::span<const PartSigns> parts) {
   std::vector<uint32_t> first = {0};
   for (const PartSigns& part : parts) first.push_back(first.back() + static_cast<uint32_t>(part.trees.size()));
@@ -77,7 +77,7 @@ std::vector<Bridge> pairs_at_borders(std::span<const PartSigns> parts, const std
   return pairs;
 }
 
-/// One bridge for each two trees, the strongest first.
+/// One bridge for each pair of trees, strongest first.
 std::vector<Bridge> find_bridges(std::span<const PartSigns> parts, const std::vector<uint32_t>& first) {
   std::vector<Bridge> pairs = pairs_at_borders(parts, first);
   const auto ends = [](const Bridge& bridge) { return std::pair(bridge.a, bridge.b); };
@@ -102,15 +102,16 @@ bool may_be_room(const Scene& scene) {
   return scene.z_up || 2 * sorted[0] <= sorted[1];
 }
 
-/// The flux through the tree as seen from its centroid.
+/// The flux of the tree relative to its centroid.
 double central_flux(const TreeVotes& tree) {
   return tree.flux - glm::dot(tree.normal, tree.moment) / tree.area;
 }
 
-/// Whether the tree is closed, or so nearly that its volume is sure. The normals of a closed surface sum to zero; what
-/// they do sum to is the area of the holes, and a lid over them takes away about that times its distance.
+/// True if the tree is closed, or so nearly that the sign of its volume is certain. The normals of a closed surface sum
+/// to zero. Otherwise the sum is the area of the holes, and a lid over the holes changes the flux by about this area
+/// times its distance.
 bool encloses_volume(const TreeVotes& tree) {
-  // What the flux would be on a sphere.
+  // The flux of a sphere of the same area and spread.
   const double reach = std::sqrt(tree.area * tree.spread - glm::dot(tree.moment, tree.moment));
   const double holes = glm::length(tree.normal) / tree.area;
   const double fullness = std::abs(central_flux(tree)) / reach;
@@ -119,11 +120,11 @@ bool encloses_volume(const TreeVotes& tree) {
 
 struct Decision {
   bool flip = false;
-  bool trusted = false;  ///< more than a guess
+  bool trusted = false;  ///< backed by evidence
 };
 
 Decision decide(const TreeVotes& tree, const Scene& scene) {
-  constexpr double kTerrain = 0.25;  // of the vote when all of the area faces up
+  constexpr double kTerrain = 0.25;  // share of the area, projected along z
   if (tree.towards != 0) return {tree.towards < 0, true};
   if (scene.z_up && std::abs(tree.normal.z) > kTerrain * tree.area) return {tree.normal.z < 0, true};
   if (tree.area > 0 && central_flux(tree) != 0) {
@@ -132,10 +133,10 @@ Decision decide(const TreeVotes& tree, const Scene& scene) {
   return {tree.normal.z < 0, false};
 }
 
-/// Trees of all parts, those that are one surface joined.
+/// The trees of all parts; trees of one surface are joined.
 struct JoinedTrees {
   SignedForest forest;
-  std::vector<TreeVotes> votes;  ///< at each forest's root those of all its members
+  std::vector<TreeVotes> votes;  ///< at the root of each joined tree: the votes of all its members
 
   JoinedTrees(std::span<const PartSigns> parts, const std::vector<uint32_t>& first) : forest(first.back()) {
     for (const auto& [a, b, agreement] : find_bridges(parts, first)) forest.join(a, b, agreement < 0);

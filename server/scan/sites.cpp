@@ -12,13 +12,13 @@
 namespace surfcast::scan {
 namespace {
 
-/// World to local coordinates. Halves keep the differences of the largest doubles finite.
+/// Transforms world to local coordinates. Halved, because differences of the largest doubles would overflow.
 struct LocalFrame {
   glm::dvec3 half_min;
   double half_unit;
 
   [[nodiscard]] glm::dvec3 to_local(const glm::dvec3& world) const {
-    // Smaller than any resolvable difference; as 0 it keeps squares of differences from underflowing.
+    // Smaller than any resolvable difference. Replaced by 0, or squares of differences could underflow.
     constexpr double kTiny = 0x1p-200;
     glm::dvec3 local = (0.5 * world - half_min) / half_unit;
     for (int axis = 0; axis < 3; ++axis) {
@@ -40,7 +40,7 @@ uint64_t hash_position(const glm::dvec3& p) {
   return mix_hash(hash + std::bit_cast<uint64_t>(p.z) + 0x9e3779b97f4a7c15ULL);
 }
 
-/// The lower 21 bits of a number, each with two zeros before it.
+/// Spreads the lower 21 bits of a number, with two zeros above each.
 uint64_t spread_bits(uint64_t v) {
   v = (v | v << 32) & 0x1f00000000ffffULL;
   v = (v | v << 16) & 0x1f0000ff0000ffULL;
@@ -49,14 +49,14 @@ uint64_t spread_bits(uint64_t v) {
   return (v | v << 2) & 0x1249249249249249ULL;
 }
 
-/// Where a local position lies along the Morton curve, at 2^21 steps along each axis.
+/// Morton code of a local position, with 2^21 steps along each axis.
 uint64_t morton_code(const glm::dvec3& local) {
   constexpr double kSteps = 0x1p21 - 1;
   const auto step = [](double v) { return static_cast<uint64_t>(std::min(v, 1.0) * kSteps); };
   return spread_bits(step(local.x)) << 2 | spread_bits(step(local.y)) << 1 | spread_bits(step(local.z));
 }
 
-/// The indices of the first points of each place, along the Morton curve.
+/// The index of the first point at each position, in Morton order.
 std::vector<uint32_t> ordered_firsts(const std::vector<uint32_t>& first, const std::vector<glm::dvec3>& local) {
   std::vector<std::pair<uint64_t, uint32_t>> codes;
   for (uint32_t i = 0; i < first.size(); ++i) {

@@ -7,7 +7,7 @@
 
 namespace surfcast::scan {
 
-/// A table that is there as a whole, in a mapped file or decoded in memory, handed out in pieces.
+/// A complete table, in a mapped file or decoded in memory, that is read in pieces.
 class SlicedRows : public RowSource {
  public:
   SlicedRows(RowTraits traits, std::vector<ColumnInfo> columns, PointTable table)

@@ -15,26 +15,26 @@ namespace {
 
 constexpr size_t kNearest = 6;
 
-/// Scans have points that float off the surface, alone or a few together, and discs as large as the way back to the
-/// surface would hide it. Hence two limits, which evenly spread points never reach. Of a few points together some of
-/// the nearest are far away: no distance counts more than this many times the third shortest. A point alone, or one of
-/// two or three, has neighbours on the surface: no radius exceeds the median of theirs this many times.
+/// Scans contain outliers off the surface, alone or in small groups. Discs as large as their distance to the surface
+/// would hide it. Two limits prevent this; evenly spread points reach neither. In a small group, some of the nearest
+/// neighbours are far away: no distance counts more than this many times the third shortest. Single outliers, pairs and
+/// triples have neighbours on the surface: no radius exceeds this many times the median radius of the neighbours.
 constexpr double kLargestRatio = 3;
 constexpr size_t kOrdinary = 2;  ///< index of the third nearest
 
-/// Of the distance to the far side of the widest gap: an evenly spread site keeps its mean distance.
+/// Factor on the reach (see surroundings.h). On even samplings the mean distance stays larger.
 constexpr double kReachShare = 0.6;
-/// Of the mean distance, which is larger on a border, where half of the neighbours are missing: the kernel then ends
-/// half a spacing beyond the last samples, as the surface does.
+/// Factor on the mean distance at a border. There the mean distance is larger, because half of the neighbours are
+/// missing. With this factor the kernel ends half a spacing beyond the last samples, as the surface does.
 constexpr double kBorderShare = 0.5;
-/// With fewer neighbours there is no telling a border from the rest.
+/// With fewer neighbours, a border cannot be distinguished from the interior.
 constexpr size_t kEnoughNeighbours = 8;
 
 std::span<const uint32_t> nearest_of(const NeighbourGraph& graph, size_t site) {
   return graph.of(site).first(std::min(kNearest, graph.degree));
 }
 
-/// What a site's kernel is to reach, as far as its own neighbours tell.
+/// The radius of a site as determined by its own neighbours.
 double own_radius(const Sites& sites, size_t i, std::span<const uint32_t> nearest, const Surroundings& around) {
   const auto distance_to = [&](uint32_t j) { return glm::distance(sites.positions[i], sites.positions[j]); };
   const double limit = kLargestRatio * distance_to(nearest[std::min(kOrdinary, nearest.size() - 1)]);
@@ -52,7 +52,7 @@ double median_radius(std::span<const uint32_t> sites, const std::vector<float>& 
   return sorted[sites.size() / 2];
 }
 
-/// World units may lie outside the range of float; a radius is neither 0 nor infinite.
+/// Clamps to the range of float, because world units may exceed it. A radius is neither 0 nor infinite.
 float to_radius(double length) {
   using Limits = std::numeric_limits<float>;
   return static_cast<float>(std::clamp<double>(length, Limits::min(), Limits::max()));

@@ -7,11 +7,14 @@
 
 namespace surfcast::scan {
 
-/// What the kernel of a site is to reach, in world units: the mean distance to its six nearest neighbours, or to as
-/// many as there are when there are fewer; more where the sampling is uneven, so that no gap opens to any side; less on
-/// the border of a surface, where nothing is to be reached beyond it. docs/kernel.md has what each is worth. Sites that
-/// float off a surface get a few times the radius of its sites at most. A single site has no spacing: it gets 1, so
-/// that it can be seen at a distance of a few units.
+/// The radius of each site, in world units: the distance that its kernel has to cover. It is the mean distance to the
+/// six nearest neighbours (to all of them if there are fewer), with these exceptions:
+/// - Where the sampling is uneven it is larger, so that the surface has no gaps.
+/// - On the border of a surface it is smaller, because there is no surface beyond to be covered.
+/// - For outliers off a surface it is limited to a few times the radius of the sites on the surface.
+/// - A single site has no spacing and gets 1, which makes it visible at a distance of a few units.
+///
+/// docs/kernel.md has measurements of each rule.
 std::vector<float> estimate_radii(const Sites& sites, const NeighbourGraph& graph,
                                   const std::vector<glm::vec3>& normals);
 

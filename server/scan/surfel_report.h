@@ -6,18 +6,18 @@
 
 namespace surfcast::scan {
 
-/// What was dropped and estimated on the way from points to surfels.
+/// What was dropped and estimated when surfels were made from points.
 struct SurfelReport {
   uint64_t points_read = 0;
   uint64_t not_finite = 0;    ///< dropped: NaN or infinite coordinates
   uint64_t duplicates = 0;    ///< dropped: same position and same attributes as an earlier point
-  uint64_t zero_normals = 0;  ///< dropped: a stored normal of zero or not finite, in a scan that has normals
+  uint64_t zero_normals = 0;  ///< dropped: the stored normal is zero or not finite
   uint64_t normals_estimated = 0;
   uint64_t radii_estimated = 0;
   bool oriented = false;
-  std::vector<std::string> notes;  ///< one line each: what was filled in for a scan that lacks an attribute of another
+  std::vector<std::string> notes;  ///< one line for each attribute that was filled in for a scan without it
 
-  /// Adds the numbers of a part.
+  /// Adds the counts of a part.
   void add(const SurfelReport& part);
 };
 

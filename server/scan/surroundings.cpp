@@ -15,11 +15,11 @@ namespace {
 
 constexpr size_t kMostNeighbours = 16;
 constexpr size_t kNearest = 6;
-constexpr size_t kAgreeing = 2;  ///< of the nearest
+constexpr size_t kAgreeing = 2;  ///< of the six nearest
 constexpr int kDirections = 8;
 
-// A straight border opens by 180 degrees, less what samples are moved by; a corner by 270. Other angles between
-// neighbours are a sixth of a turn. Where there are two wide angles, the neighbours lie on a line: a line of a scanner.
+// At a straight border the open angle is 180 degrees less the irregularity of the samples, at a corner 270. Elsewhere
+// the angles between neighbours are about 60 degrees. Two wide angles mean that the neighbours lie on a scan line.
 constexpr double kOpen = 2.4;         // radians
 constexpr double kSecondOpen = 1.75;  // radians
 constexpr double kSameSide = 0.7;     // cosine
@@ -35,13 +35,13 @@ Tangents tangents_of(const glm::dvec3& n) {
   return {e0, glm::cross(n, e0)};
 }
 
-/// A neighbour in the tangent plane.
+/// Polar coordinates of a neighbour in the tangent plane.
 struct Bearing {
   double angle = 0;  ///< radians
   double distance = 0;
 };
 
-/// The bearings of a site's neighbours, by angle.
+/// The bearings of a site's neighbours, sorted by angle.
 struct Bearings {
   std::array<Bearing, kMostNeighbours> all{};
   size_t count = 0;
@@ -74,7 +74,7 @@ double reach_of(std::span<const Bearing> bearings) {
   return reach;
 }
 
-/// The unit vector into the middle of the one wide angle, or zero.
+/// The unit vector along the bisector of the wide angle if there is exactly one, otherwise zero.
 glm::dvec3 opening_of(std::span<const Bearing> bearings, const Tangents& t) {
   double widest = 0;
   double second = 0;

@@ -7,19 +7,20 @@
 
 namespace surfcast::scan {
 
-/// How its neighbours lie around a site, seen along its normal.
+/// The arrangement of the neighbours around a site, projected along its normal.
 struct Surroundings {
-  /// Distance to the nearest neighbour in that direction in which it is farthest, of eight directions; along a
-  /// direction, the line halfway to a neighbour counts, which is farther the more the neighbour lies off it. Directions
-  /// without any neighbour within 45 degrees do not count. Local units.
+  /// The extent of the widest gap around the site, in local units. For each of eight directions, the minimum of d /
+  /// cos(t) over the neighbours within 45 degrees, where d is the distance of a neighbour and t its angle to the
+  /// direction. (This is twice the distance along the direction to the bisector between site and neighbour.) `reach` is
+  /// the maximum over the directions. Directions without such a neighbour are skipped.
   double reach = 0;
-  /// Unit, out of the surface, where the site lies on its border; otherwise zero.
+  /// Unit vector out of the surface if the site lies on its border; otherwise zero.
   glm::dvec3 outwards{0};
 };
 
-/// The surroundings of every site. A site on a border has one wide angle without neighbours, and at least two of its
-/// six nearest neighbours have one that opens to the same side: holes of an uneven sampling are open to a site, too,
-/// but to each of those around them in a direction of its own.
+/// The surroundings of every site. A site lies on a border if it has exactly one wide angle without neighbours, and at
+/// least two of its six nearest neighbours have one that opens to the same side. Sites around a hole of an uneven
+/// sampling have wide angles too, but each in a different direction.
 std::vector<Surroundings> find_surroundings(const Sites& sites, const NeighbourGraph& graph,
                                             const std::vector<glm::vec3>& normals);
 

@@ -11,11 +11,11 @@
 
 namespace surfcast::scan {
 
-/// What is true of all values of a column.
+/// Aggregate properties of the values of a column.
 struct ColumnFacts {
-  bool integers = true;   ///< false with a NaN among them
-  bool recorded = false;  ///< one is not zero
-  double min = INFINITY;  ///< of those that are numbers
+  bool integers = true;   ///< all values are integers; false if one is NaN
+  bool recorded = false;  ///< at least one value is not zero
+  double min = INFINITY;  ///< of the values that are not NaN
   double max = -INFINITY;
 
   template <typename T>
@@ -29,22 +29,22 @@ struct ColumnFacts {
   void include(const ColumnFacts& other);
 };
 
-/// Whether three columns side by side are unit vectors, as well as decimals state them, or zero, in every row.
+/// Properties of three adjacent columns: whether every row is zero or a unit vector, within the precision of decimals.
 struct UnitFacts {
   bool unit_or_zero = true;
-  bool any = false;  ///< one is not zero
+  bool any = false;  ///< at least one row is not zero
 };
 
-/// What has to be known of all rows before one of them can be turned into a point. Facts of pieces add up to the facts
-/// of the whole.
+/// Properties of all rows that are needed before any row can be converted to a point. The facts of pieces can be
+/// merged.
 struct TableFacts {
   uint64_t rows = 0;
   uint64_t announced = 0;
-  geometry::Box bounds;  ///< of the positions whose coordinates are all finite
+  geometry::Box bounds;  ///< of the positions with finite coordinates
   std::vector<ColumnFacts> columns;
-  std::vector<UnitFacts> units;  ///< of the columns from each one on; only where columns have no names
-  bool any_normal = false;       ///< one of the normals has a direction
-  uint8_t min_alpha = 255;       ///< of a packed colour
+  std::vector<UnitFacts> units;  ///< of each column and the two after it; only if columns have no names
+  bool any_normal = false;       ///< at least one normal is finite and not zero
+  uint8_t min_alpha = 255;       ///< of the packed colour
   uint8_t max_alpha = 0;
 
   void include(const TableFacts& other);

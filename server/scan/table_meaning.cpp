@@ -21,7 +21,7 @@ std::vector<bool> absent_columns(std::span<const ColumnInfo> columns, const Tabl
   return absent;
 }
 
-/// A colour of three reserved columns is there when one of them has a value.
+/// A colour of three reserved columns exists if one of them has a value.
 void keep_colors_together(std::span<const ColumnInfo> columns, std::vector<bool>& absent) {
   std::vector<size_t> channels;
   for (size_t i = 0; i < columns.size(); ++i) {
@@ -47,8 +47,8 @@ bool holds(const ColumnFacts& facts) {
   return facts.integers && facts.min >= Limits::min() && facts.max <= Limits::max();
 }
 
-/// The smallest type that holds all the doubles: an integer type when all are integers (of 8, 16 or 32 bits, unsigned
-/// if none is negative).
+/// The smallest type that holds all the doubles. An integer type (8, 16 or 32 bits, unsigned if none is negative) if
+/// all are integers.
 ScalarType narrow_type(const ColumnFacts& facts) {
   if (holds<uint8_t>(facts)) return ScalarType::kUint8;
   if (holds<int8_t>(facts)) return ScalarType::kInt8;
@@ -74,7 +74,7 @@ void decide_colors(std::span<const ColumnInfo> columns, const TableFacts& facts,
 
 void decide_scalars(std::span<const ColumnInfo> columns, const RowSource& rows, const TableFacts& facts,
                     TableMeaning& meaning) {
-  // An alpha that is the same everywhere says nothing.
+  // A constant alpha carries no information.
   meaning.alpha = meaning.roles.packed_alpha && facts.min_alpha != facts.max_alpha;
   if (meaning.alpha) meaning.schema.scalars.push_back({"alpha", ScalarType::kUint8});
   for (const auto& [column, name] : meaning.roles.scalars) {
@@ -84,7 +84,8 @@ void decide_scalars(std::span<const ColumnInfo> columns, const RowSource& rows, 
   }
 }
 
-/// A scanner at the origin, farther from all points than they spread, is a default of the writer's and no scanner.
+/// Some writers store a scanner position at the origin by default. It is ignored if it is farther from all points than
+/// the diagonal of their bounds.
 bool is_default_sensor(const glm::dvec3& sensor, const geometry::Box& box) {
   if (sensor != glm::dvec3(0)) return false;
   const glm::dvec3 nearest = glm::clamp(glm::dvec3(0), box.min, box.max);
@@ -109,7 +110,7 @@ std::vector<glm::u16vec3> read_colors(const PointTable& table, const ColumnTripl
   for (int axis = 0; axis < 3; ++axis) {
     for_each_value(table.columns[triple[static_cast<size_t>(axis)]], table.rows, [&](size_t i, auto value) {
       const double scaled = static_cast<double>(value) * factor + 0.5;
-      // Written so that NaN becomes 0.
+      // The comparison maps NaN to 0.
       colors[i][axis] = static_cast<uint16_t>(scaled > 0 ? std::min(scaled, top) : 0.0);
     });
   }

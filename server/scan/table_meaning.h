@@ -9,22 +9,22 @@
 
 namespace surfcast::scan {
 
-/// How rows become points: what their columns are, and what their values decided for the scan as a whole.
+/// How rows become points: the roles of the columns, and properties of the scan that depend on all values.
 struct TableMeaning {
   ScanSchema schema;  ///< without a name
   ColumnRoles roles;
-  double color_factor = 1;  ///< stored numbers times this, rounded, are colours of schema.color_bits
-  bool alpha = false;       ///< the first scalar is the alpha of the packed colours
+  double color_factor = 1;  ///< stored numbers times this factor, rounded, are colours of schema.color_bits
+  bool alpha = false;       ///< the first scalar is the alpha of the packed colour
 };
 
-/// Decides on the meaning of a file whose rows have these facts. Reserved columns without a value are left out, and
+/// Decides the meaning of a file from the facts of its rows. Reserved columns without a value are left out, and so are
 /// normals if none of them has a direction.
 ///
-/// Colours: 8-bit integers are 8 bit; wider integers are 16 bit unless no value exceeds 255; floats are 0 to 1 and
-/// become 16 bit, unless one exceeds 1: then they hold integers.
+/// Colours: 8-bit integers are 8 bits. Wider integers are 16 bits, or 8 if no value exceeds 255. Floats are 0 to 1 and
+/// become 16 bits; if one exceeds 1, they are treated as integers.
 Result<TableMeaning> decide_meaning(const RowSource& rows, const TableFacts& facts);
 
-/// The points of some rows, under the schema of `meaning`; nothing is dropped or cleaned.
+/// Converts rows to points under the schema of `meaning`. Nothing is dropped or cleaned.
 ScanPoints points_of(const PointTable& table, const TableMeaning& meaning);
 
 }  // namespace surfcast::scan

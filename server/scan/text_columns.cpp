@@ -14,7 +14,7 @@ bool is_opaque(const ColumnFacts& facts) {
   return facts.integers && facts.min == 255 && facts.max == 255;
 }
 
-/// Names columns from the fourth on, left to right.
+/// Names the columns after the third, from left to right.
 class Guess {
  public:
   Guess(const TableFacts& facts, bool counted) : facts_(facts), counted_(counted) {}
@@ -42,7 +42,7 @@ class Guess {
     return std::all_of(&facts_.columns[column], &facts_.columns[column] + 3, may_be_color);
   }
 
-  /// Whether the odd column stands behind a colour: see the header.
+  /// True if the single column follows a colour (see the header).
   [[nodiscard]] bool single_is_last() const {
     const size_t at = names_.size();
     if (counted_ || has_color_ || facts_.columns.size() - at != 4 || !is_color(at)) return false;

@@ -12,10 +12,10 @@
 namespace surfcast::scan {
 namespace {
 
-/// Text of one piece.
+/// Bytes of text of one piece.
 constexpr size_t kPieceBytes = size_t{1} << 23;
 
-/// More columns than any scan has; bounds what a line of a hostile file can ask for.
+/// More columns than any scan has. The limit bounds the memory that a malicious line can request.
 constexpr size_t kMaxColumns = 1024;
 
 struct Format {
@@ -28,7 +28,7 @@ bool separates(char c, const Format& format) {
   return is_space(c) || c == ';' || (c == ',' && format.comma_separates);
 }
 
-/// The next line from `at` on, without its end; moves `at` behind it.
+/// Returns the next line from `at` on without its line ending. Moves `at` to the line after it.
 std::string_view next_line(std::string_view text, size_t& at) {
   const size_t end = std::min(text.find('\n', at), text.size());
   const std::string_view line = text.substr(at, end - at);
@@ -47,7 +47,7 @@ std::vector<std::string_view> split(std::string_view line, const Format& format)
   return words;
 }
 
-/// Without the spaces before it.
+/// The line without leading white space.
 std::string_view trim_left(std::string_view line) {
   const size_t first = std::min(line.find_first_not_of(" \t\r"), line.size());
   return line.substr(first);
@@ -62,12 +62,12 @@ bool all_numbers(const std::vector<std::string_view>& words) {
                      [](std::string_view w) { return parse_number<double>(w).has_value(); });
 }
 
-// ---- what stands before the rows
+// ---- prologue
 
-/// How the rows are written, where they begin, and what is said before them.
+/// The number format, the position of the first row, and the contents of the lines before it.
 struct Prologue {
   Format format;
-  uint64_t count = 0;  ///< of rows, when the file is counted
+  uint64_t count = 0;  ///< rows stated by the file, if `counted`
   std::vector<std::string> names;
   size_t rows_offset = 0;
 };
@@ -89,12 +89,12 @@ bool names_coordinates(const std::vector<std::string>& names) {
   });
 }
 
-/// Whether the line is the number of rows of a PTS file.
+/// The number of rows of a PTS file, if the line is one.
 std::optional<uint64_t> row_count(const std::vector<std::string_view>& words) {
   return words.size() == 1 ? parse_number<uint64_t>(words[0]) : std::nullopt;
 }
 
-/// Takes a header line or the first row into account; whether it was the first row.
+/// Processes a header line or the first row. True if it was the first row.
 Result<bool> take_line(std::string_view line, std::string_view& header, Prologue& prologue) {
   prologue.format.comma_separates = line.find(';') == std::string_view::npos;
   const std::vector<std::string_view> words = split(line, prologue.format);
@@ -140,7 +140,7 @@ Result<Prologue> read_prologue(std::string_view text) {
     if (!*is_row) continue;
     prologue.names = names_in(header.empty() ? comment : header, prologue.format);
     if (Status status = check_columns(prologue, header); !status) return fail(status.error());
-    // A comment that is no header.
+    // The comment was no header.
     if (prologue.names.size() != prologue.format.columns || !names_coordinates(prologue.names)) prologue.names.clear();
     return prologue;
   }
@@ -149,14 +149,14 @@ Result<Prologue> read_prologue(std::string_view text) {
 
 // ---- rows
 
-/// The rows of a part of the text.
+/// The rows of one piece.
 struct Piece {
   std::vector<double> values;
-  uint64_t announced = 0;     ///< rows that count lines in this part speak of
-  const char* bad = nullptr;  ///< the first line that is no row
+  uint64_t announced = 0;     ///< rows stated by count lines in this piece
+  const char* bad = nullptr;  ///< the first line that is not a row
 };
 
-/// Appends the numbers of one line. Nothing when one of them is none, else how many there were.
+/// Appends the numbers of one line and returns how many there were. None if one word is not a number.
 std::optional<size_t> append_row(std::string_view line, const Format& format, std::vector<double>& values) {
   const char* at = line.data();
   const char* const end = at + line.size();
@@ -197,7 +197,7 @@ Piece read_rows(std::string_view text, const Format& format) {
   return piece;
 }
 
-/// Parts of about `kPieceBytes` that end with a line.
+/// Parts of about `kPieceBytes` that end at line ends.
 std::vector<std::string_view> split_into_pieces(std::string_view text) {
   std::vector<std::string_view> pieces;
   while (!text.empty()) {

@@ -10,15 +10,19 @@
 
 namespace surfcast::scan {
 
-/// Points written as text: XYZ, PTS, CSV. Numbers are separated by spaces, tabs, commas or semicolons. In a file with
-/// semicolons a comma does not separate, so that decimal commas are an error and not two numbers. Lines that begin with
-/// # or // are comments; the last one before the numbers is a header when it has as many words as there are columns,
-/// among them x, y and z. A first line with a single integer is the number of rows (PTS; further blocks with a count of
-/// their own may follow). Every row must have as many numbers as the first. text_columns.h says what columns mean that
-/// no header names. Text comes from surveys: z-up.
+/// Reads points from text: XYZ, PTS, CSV.
+/// - Numbers are separated by spaces, tabs, commas or semicolons. In a file with semicolons a comma is no separator, so
+///   decimal commas are an error instead of being read as two numbers.
+/// - Lines that begin with # or // are comments. The last one before the numbers is a header if it has one word for
+///   each column, among them x, y and z.
+/// - A first line with a single integer is the number of rows (PTS). Further blocks with their own count may follow.
+/// - Every row must have the same number of columns as the first.
+/// - Without a header, columns are guessed (text_columns.h).
+///
+/// Text is assumed to come from surveys: z-up.
 Result<std::unique_ptr<RowSource>> text_rows(std::span<const std::byte> bytes);
 
-/// Whether everything before the rows, and the first row, is as text_rows takes it.
+/// True if the lines before the rows and the first row are accepted by text_rows.
 bool begins_like_text_table(std::string_view text);
 
 }  // namespace surfcast::scan

@@ -7,7 +7,7 @@
 namespace surfcast::scan {
 namespace {
 
-/// from_chars leaves its value alone where a double is out of range; what was meant is zero or infinity.
+/// from_chars does not set the value of a double that is out of range. The result is zero or infinity.
 double out_of_range_value(std::string_view word) {
   const size_t exponent = word.find_first_of("eE");
   const bool tiny = exponent != std::string_view::npos && word.substr(exponent + 1).starts_with('-');
@@ -24,7 +24,7 @@ std::optional<double> parse_double(std::string_view word) {
 
 template <typename T>
 std::optional<T> exact_integer(std::optional<double> value) {
-  // 2^digits is the first value above the range, and exact in double.
+  // 2^digits is the first value above the range and exactly representable as double.
   const double top = std::ldexp(1.0, std::numeric_limits<T>::digits);
   const double bottom = std::is_signed_v<T> ? -top : 0.0;
   if (!value || !(*value >= bottom && *value < top) || std::trunc(*value) != *value) return std::nullopt;

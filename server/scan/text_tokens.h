@@ -15,14 +15,14 @@ namespace surfcast::scan {
   return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
-/// Text from a file as part of a one-line message: shortened, and without control characters.
+/// Text from a file for use in a one-line message: shortened, and without control characters.
 std::string printable(std::string_view text);
 
 [[nodiscard]] constexpr bool is_space(char c) {
   return c == ' ' || c == '\n' || c == '\t' || c == '\r' || c == '\f' || c == '\v';
 }
 
-/// The words of a text, one after another.
+/// Iterates over the words of a text.
 class Tokens {
  public:
   explicit Tokens(std::string_view text) : at_(text.data()), end_(text.data() + text.size()) {}
@@ -34,7 +34,7 @@ class Tokens {
     while (at_ != end_ && !is_space(*at_)) ++at_;
     return {first, static_cast<size_t>(at_ - first)};
   }
-  /// What has not been handed out.
+  /// The remaining text.
   [[nodiscard]] std::string_view rest() const { return {at_, static_cast<size_t>(end_ - at_)}; }
 
  private:
@@ -42,12 +42,12 @@ class Tokens {
   const char* end_;
 };
 
-/// The whole word as a number of type T, or nothing. A leading plus is accepted; integers may be written as decimals
-/// ("255.0") and floats beyond the range of T become zero or infinite.
+/// Parses the whole word as a number of type T. A leading plus is accepted. Integers may be written as decimals
+/// ("255.0"). Floats beyond the range of T become zero or infinite.
 template <typename T>
 std::optional<T> parse_number(std::string_view word);
 
-/// Appends the number to values of any type; false when the word is no number of that type.
+/// Appends the number to values of any type. False if the word is not a number of that type.
 bool append_number(surfel::ScalarValues& values, std::string_view word);
 
 }  // namespace surfcast::scan

@@ -6,7 +6,8 @@
 
 namespace surfcast::scan {
 
-/// Unit, computed in double so that neither very short nor very long normals are lost; zero when there is none.
+/// The normalised vector. Computed in double, because very short or long normals would underflow or overflow. Zero if
+/// the input has no direction.
 inline glm::vec3 unit_or_zero(const glm::vec3& normal) {
   const glm::dvec3 n(normal);
   const double length = glm::length(n);

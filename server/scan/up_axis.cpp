@@ -19,7 +19,7 @@ bool looks_like_survey(std::span<const ScalarField> scalars, const geometry::Box
   if (std::any_of(scalars.begin(), scalars.end(), is_lidar_attribute)) return true;
   if (bounds.empty()) return false;
   const glm::dvec3 size = bounds.size();
-  // Projected coordinate systems put eastings and northings far from the origin, many times the size of the scene.
+  // Projected coordinate systems have eastings and northings far from the origin, many times the size of the scene.
   const glm::dvec3 centre = glm::abs(bounds.centre());
   const double away = std::max(centre.x, centre.y);
   if (away > 1e4 && away > 10 * bounds.diagonal()) return true;
