@@ -10,15 +10,15 @@
 
 namespace surfcast::laz {
 
-/// Decodes the symbols that an arithmetic coder with 32 bit registers wrote (Said 2004, FastAC, as LASzip has it).
-/// Any bytes decode to something: whoever decodes asks `damaged` from time to time.
+/// Decodes symbols of an arithmetic coder with 32 bit registers (Said 2004, FastAC, in LASzip's variant). Any bytes
+/// decode to some symbols: callers must check `damaged` from time to time.
 class ArithmeticDecoder {
  public:
   ArithmeticDecoder() = default;
   explicit ArithmeticDecoder(std::span<const std::byte> bytes)
       : next_(bytes.data()), end_(bytes.data() + bytes.size()) {
     for (int i = 0; i < 4; ++i) value_ = value_ << 8 | next_byte();
-    // The coder's interval is half open: no value is its upper end.
+    // The coder's interval is half open, so no valid code equals its upper end.
     if (value_ >= length_) damaged_ = true, value_ = 0;
   }
 
@@ -39,10 +39,10 @@ class ArithmeticDecoder {
   template <uint32_t kSymbols>
   uint32_t symbol(SymbolModel<kSymbols>& model) {
     const uint32_t unit = length_ >> kSymbolShift;
-    // The quotient is below 2^15 + 64, as the length is 2^24 at least.
+    // The quotient is below 2^15 + 64, because the length is at least 2^24.
     const uint32_t symbol = model.find(static_cast<uint16_t>(value_ / unit));
     const uint32_t lower = model.lower(symbol) * unit;
-    // What is left over by the division into units belongs to the last symbol.
+    // The last symbol also owns the remainder of the division into units.
     const uint32_t upper = symbol + 1 < kSymbols ? model.lower(symbol + 1) * unit : length_;
     value_ -= lower;
     length_ = upper - lower;
@@ -51,7 +51,7 @@ class ArithmeticDecoder {
     return symbol;
   }
 
-  /// `count` bits, 32 at most, that are all equally probable.
+  /// `count` bits (at most 32) of uniform probability.
   uint32_t bits(int count) {
     constexpr int kAtOnce = 19;
     if (count <= kAtOnce) return few_bits(count);
@@ -59,13 +59,13 @@ class ArithmeticDecoder {
     return few_bits(count - 16) << 16 | low;
   }
 
-  /// A value that no coder would have written.
+  /// Call for a value that no coder writes.
   void mark_damaged() { damaged_ = true; }
-  /// The bytes were not written by a coder, or there were too few of them.
+  /// True if the bytes are not the output of a coder, or are truncated.
   [[nodiscard]] bool damaged() const { return damaged_ || missing_ > kSpareBytes; }
 
  private:
-  /// How many bytes beyond the end a decoder may have in its registers before it has used up the last symbol.
+  /// Bytes beyond the end that a decoder may have read into its registers before it has decoded the last symbol.
   static constexpr uint32_t kSpareBytes = 4;
   /// Below this length the registers take in another byte.
   static constexpr uint32_t kShortest = 1U << 24;
@@ -77,7 +77,7 @@ class ArithmeticDecoder {
     return 0;
   }
 
-  /// Takes in as many bytes as bring the length back above `kShortest`, without a branch on their number.
+  /// Takes in bytes until the length is at least `kShortest`, without a branch on their number.
   void renormalise() {
     if (end_ - next_ < 4) [[unlikely]]
       return renormalise_at_end();

@@ -5,7 +5,7 @@
 
 namespace surfcast::laz {
 
-/// The number at `at`, aligned or not. Files are little-endian, as the machines are.
+/// Loads a number from `at`, which need not be aligned. Files are little-endian, as are the supported machines.
 template <typename T>
 [[nodiscard]] T load(const std::byte* at) {
   T value;

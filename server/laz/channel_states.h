@@ -6,8 +6,8 @@
 
 namespace surfcast::laz {
 
-/// What is known of an item in each of the four scanner channels. A channel begins with its first point, and goes on
-/// from the last value of the channel before. `State` is made from that value and has it as its member `last`.
+/// The decoder state of an item in each of the four scanner channels. A channel starts with its first point, from the
+/// last value of the previous channel. `State` is constructed from this value and holds it in its member `last`.
 template <typename State>
 class ChannelStates {
  public:
@@ -18,7 +18,7 @@ class ChannelStates {
   State& current() { return *states_[current_]; }
   [[nodiscard]] uint32_t channel() const { return current_; }
 
-  /// Makes `channel` the current one. Returns the state that was current, or the new one if it had to be made.
+  /// Makes `channel` current. Returns the previous state, or the new state if it had to be created.
   State& change(uint32_t channel) {
     State& before = current();
     current_ = channel;

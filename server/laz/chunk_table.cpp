@@ -9,16 +9,16 @@
 namespace surfcast::laz {
 namespace {
 
-/// The offset of the table, in front of the first chunk.
+/// The offset of the table precedes the first chunk.
 constexpr size_t kOffsetBytes = 8;
-/// Version and number of chunks, in front of the coded entries.
+/// Version and number of chunks precede the coded entries.
 constexpr size_t kTableHeaderBytes = 8;
 
 tl::unexpected<Error> invalid(std::string what) {
   return fail(ErrorKind::kInvalidInput, std::move(what));
 }
 
-/// A writer that could not go back to the point data states the offset in the last bytes of the file.
+/// A writer that cannot seek back to the point data stores the offset in the last bytes of the file.
 Result<size_t> table_offset(std::span<const std::byte> file, size_t data_offset) {
   if (file.size() < data_offset || file.size() - data_offset < kOffsetBytes) {
     return invalid("truncated: the file ends where the LAZ points begin");
@@ -34,7 +34,7 @@ Result<size_t> table_offset(std::span<const std::byte> file, size_t data_offset)
 }
 
 Status check_number_of_chunks(uint64_t chunks, const PointData& points, uint32_t chunk_size, size_t data_bytes) {
-  // Every chunk begins with a whole record.
+  // Every chunk begins with an uncompressed record.
   if (chunks > data_bytes / points.record_length) return invalid("the LAZ chunk table has more chunks than fit");
   if (chunk_size == kVariableChunks) return {};
   const uint64_t needed = points.count / chunk_size + (points.count % chunk_size != 0 ? 1 : 0);
@@ -43,7 +43,7 @@ Status check_number_of_chunks(uint64_t chunks, const PointData& points, uint32_t
                  " points need " + std::to_string(needed));
 }
 
-/// The entries: of chunks of variable size the number of points, then the number of bytes.
+/// An entry: the number of points (for chunks of variable size only), then the number of bytes.
 class EntryDecoder {
  public:
   EntryDecoder(std::span<const std::byte> bytes, uint32_t chunk_size) : in_(bytes), chunk_size_(chunk_size) {}
@@ -64,7 +64,7 @@ class EntryDecoder {
   IntegerDecoder<32, 2> numbers_;
 };
 
-/// Puts the chunks one behind the other and checks that they fill the space up to `end` at most.
+/// Computes the positions of the chunks and checks that they end at or before `end`.
 Status place_chunks(std::vector<Chunk>& chunks, const PointData& points, size_t end) {
   uint64_t first = 0;
   size_t offset = points.offset + kOffsetBytes;

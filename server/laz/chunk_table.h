@@ -10,23 +10,23 @@
 
 namespace surfcast::laz {
 
-/// A run of points that can be decoded without any other.
+/// A run of points that can be decoded independently.
 struct Chunk {
-  uint64_t first = 0;  ///< number of its first point in the file
+  uint64_t first = 0;  ///< index in the file of its first point
   uint64_t count = 0;
   size_t offset = 0;  ///< in the file
   size_t size = 0;    ///< in bytes
 };
 
-/// What the table has to agree with.
+/// Properties of the file that the table must match.
 struct PointData {
-  size_t offset = 0;  ///< of the point data in the file
+  size_t offset = 0;  ///< of the point data, in the file
   uint64_t count = 0;
   size_t record_length = 0;
 };
 
-/// Reads the table behind the points. On success the chunks lie within the file, one behind the other, hold all
-/// points, and none is empty.
+/// Reads the table after the points. On success the chunks lie within the file, are contiguous, contain all points, and
+/// none is empty.
 Result<std::vector<Chunk>> read_chunk_table(std::span<const std::byte> file, const PointData& points,
                                             uint32_t chunk_size);
 

@@ -16,8 +16,8 @@ inline Color load_color(const std::byte* at) {
   return {load<uint16_t>(at), load<uint16_t>(at + 2), load<uint16_t>(at + 4)};
 }
 
-/// Decodes colours (items RGB12 and RGB14). Low and high bytes are coded apart; green is predicted from the step that
-/// red took, blue from the steps of both.
+/// Decodes colours (items RGB12 and RGB14). Low and high bytes are coded separately. Green is predicted from the change
+/// of red, blue from the changes of both.
 class ColorDecoder {
  public:
   Color decode(ArithmeticDecoder& in, const Color& last) {
@@ -47,7 +47,8 @@ class ColorDecoder {
     return next(in, changes, half, 0, byte_of(last[0], half));
   }
 
-  /// A byte that is `last`, or if bit `which` of the changes is set, is coded relative to `last` after a step.
+  /// Decodes a byte. If bit `which` of the changes is set, it is coded relative to the prediction `last + step`;
+  /// otherwise it equals `last`.
   int next(ArithmeticDecoder& in, uint32_t changes, int which, int step, int last) {
     if (!(changes >> which & 1)) return last;
     const int predicted = std::clamp(last + step, 0, 255);

@@ -9,9 +9,9 @@
 
 namespace surfcast::laz {
 
-/// Decodes X, Y and Z of a point, each with the precision that the ones before it were met with as its context.
-/// X and Y continue by the median of their last steps, of which there is one for each of `kStepContexts`; Z by the last
-/// height of a return on the same level.
+/// Decodes X, Y and Z of a point. The size of the correction of one coordinate is the context of the next. X and Y are
+/// predicted by the median of their recent steps, separately for each of `kStepContexts`; Z by the last height of a
+/// return on the same level.
 template <size_t kStepContexts>
 class CoordinateDecoder {
  public:
@@ -46,7 +46,7 @@ class CoordinateDecoder {
   IntegerDecoder<32, 20> z_;
 };
 
-/// The sum modulo 2^32, as all coordinates are computed.
+/// The sum modulo 2^32, as LASzip computes all coordinates.
 constexpr int32_t wrapping_sum(int32_t a, int32_t b) {
   return static_cast<int32_t>(static_cast<uint32_t>(a) + static_cast<uint32_t>(b));
 }

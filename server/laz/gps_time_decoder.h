@@ -7,20 +7,20 @@
 
 namespace surfcast::laz {
 
-/// Decodes GPS times, 64 bit floating point numbers treated as integers. Four sequences are followed, of which one is
-/// current: in each, a time is predicted as the one before plus a multiple of the sequence's usual step.
-/// `kMayRepeat`: a time equal to the last one has a code of its own (point formats 0 to 5; in the later ones the point
-/// itself says whether its time is another).
+/// Decodes GPS times, 64 bit floating point numbers treated as integers. Four sequences are tracked, one of which is
+/// current. In each, a time is predicted as the previous time plus a multiple of the usual step of the sequence.
+/// `kMayRepeat`: a time equal to the previous one has a code of its own (point formats 0 to 5; in later formats the
+/// point states whether its time changed).
 template <bool kMayRepeat>
 class GpsTimeDecoder {
  public:
   explicit GpsTimeDecoder(int64_t first) { sequences_[0].time = static_cast<uint64_t>(first); }
 
-  /// The current time, as it was last decoded.
+  /// The most recently decoded time.
   [[nodiscard]] int64_t time() const { return static_cast<int64_t>(sequences_[current_].time); }
 
   void decode(ArithmeticDecoder& in) {
-    // A coder changes over to another sequence once at most.
+    // A coder changes the sequence at most once per time.
     for (int changes = 0; changes < 2; ++changes) {
       const bool done = sequences_[current_].step == 0 ? first_step(in) : next_time(in);
       if (done) return;
@@ -31,18 +31,18 @@ class GpsTimeDecoder {
  private:
   struct Sequence {
     uint64_t time = 0;
-    uint32_t step = 0;      ///< modulo 2^32; 0: not known yet
-    int unusual_steps = 0;  ///< in a row; the fourth one becomes the usual step
+    uint32_t step = 0;      ///< modulo 2^32; 0: unknown
+    int unusual_steps = 0;  ///< consecutive; the fourth becomes the usual step
   };
 
-  // Codes of a time in a sequence whose step is known: multiples of the step, then the other ways.
+  // Codes of a time in a sequence with a known step: multiples of the step first, then the other cases.
   static constexpr uint32_t kLargestMultiple = 500;
   static constexpr uint32_t kSmallestMultiple = 10;  ///< negative
   static constexpr uint32_t kRepeat = kLargestMultiple + kSmallestMultiple + 1;
   static constexpr uint32_t kFull = kRepeat + (kMayRepeat ? 1 : 0);
   static constexpr uint32_t kCodes = kFull + 4;
 
-  /// The four functions below return whether the time is decoded: false after a change to another sequence.
+  /// The four functions below return whether a time was decoded. They return false after a change of the sequence.
   bool first_step(ArithmeticDecoder& in) {
     uint32_t code = in.symbol(first_codes_);
     if constexpr (kMayRepeat) {

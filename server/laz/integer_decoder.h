@@ -7,25 +7,25 @@
 
 namespace surfcast::laz {
 
-/// Decodes integers of `kBits` bits as corrections of predictions. A correction is coded as the number of its bits k,
-/// from a model that the caller's context selects, and then as its place among the 2^k numbers of k bits; of k above 8
-/// the lower bits are taken as they come.
+/// Decodes integers of `kBits` bits as corrections of predictions. A correction is coded as its number of bits k, with
+/// a model selected by the caller's context, and its index among the 2^k numbers of k bits. If k exceeds 8, the lower
+/// bits of the index are stored without a model.
 template <int kBits, uint32_t kContexts = 1>
 class IntegerDecoder {
   static_assert(kBits == 16 || kBits == 32);
 
  public:
-  /// The number itself; of fewer than 32 bits it is not negative.
+  /// The decoded number. It is not negative if it has fewer than 32 bits.
   int32_t decode(ArithmeticDecoder& in, int32_t prediction, uint32_t context = 0) {
     constexpr uint32_t kMask = 0xFFFFFFFFU >> (32 - kBits);
     return static_cast<int32_t>((static_cast<uint32_t>(prediction) + correction(in, context)) & kMask);
   }
 
-  /// Of the last correction: how well the prediction was met.
+  /// Number of bits of the last correction: a measure of the prediction error.
   [[nodiscard]] uint32_t size() const { return size_; }
 
  private:
-  static constexpr uint32_t kModelled = 8;  ///< bits of a correction that have models
+  static constexpr uint32_t kModelled = 8;  ///< modelled bits of a correction
 
   /// Modulo 2^32.
   uint32_t correction(ArithmeticDecoder& in, uint32_t context) {
@@ -37,7 +37,7 @@ class IntegerDecoder {
       const int rest = static_cast<int>(size_ - kModelled);
       place = place << rest | in.bits(rest);
     }
-    // The upper half of the 2^k places are the numbers 2^(k-1) + 1 .. 2^k, the lower half -(2^k - 1) .. -2^(k-1).
+    // The upper half of the 2^k indices are the numbers 2^(k-1) + 1 .. 2^k, the lower half -(2^k - 1) .. -2^(k-1).
     return place >= 1U << (size_ - 1) ? place + 1 : place - ((1U << size_) - 1);
   }
 

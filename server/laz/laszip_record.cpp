@@ -8,7 +8,7 @@
 namespace surfcast::laz {
 namespace {
 
-/// The fixed part, up to the number of items.
+/// The fixed part, including the number of items.
 constexpr size_t kFixedBytes = 34;
 constexpr size_t kItemBytes = 6;
 
@@ -32,7 +32,7 @@ struct Item {
   uint16_t version;
 };
 
-/// Nothing if the record ends before its last item.
+/// Empty if the record is truncated.
 std::vector<Item> parse_items(std::span<const std::byte> body) {
   std::vector<Item> items(load<uint16_t>(&body[kFixedBytes - 2]));
   if (body.size() < kFixedBytes + items.size() * kItemBytes) return {};
@@ -44,7 +44,7 @@ std::vector<Item> parse_items(std::span<const std::byte> body) {
   return items;
 }
 
-/// The items of a layout, whatever their versions.
+/// The items of a layout, regardless of their versions.
 std::vector<Item> expected_items(const RecordLayout& layout) {
   std::vector<Item> items;
   const auto extra = static_cast<uint16_t>(layout.extra_bytes());

@@ -9,18 +9,18 @@
 
 namespace surfcast::laz {
 
-/// What the variable length record of LASzip ("laszip encoded", 22204) says about the coding of the points.
+/// The parameters of the coding, from LASzip's variable length record ("laszip encoded", 22204).
 struct LaszipRecord {
-  uint32_t chunk_size = 0;  ///< points in each chunk but the last; kVariableChunks: the chunk table has each one's
-  /// Layered items before version 4: colours and extra bytes do not follow the scanner channel of their points as they
-  /// should. A point in the channel of the one before it has its items in channel 0, and an item whose channel changes
-  /// goes on from the last value of the channel before. The coder did so, and the decoder has to do the same.
+  uint32_t chunk_size = 0;  ///< points in each chunk except the last; kVariableChunks: see the chunk table
+  /// Layered items before version 4: a bug of the coder that the decoder has to reproduce. Colours and extra bytes do
+  /// not follow the scanner channel of their points. If a point has the channel of the previous point, its items are
+  /// coded in channel 0. An item whose channel changes continues from the last value of the previous channel.
   bool stale_channels = false;
 };
 
 constexpr uint32_t kVariableChunks = 0xFFFFFFFFU;
 
-/// Checks that the items are those of the layout, in versions that can be decoded.
+/// Parses the record. Fails unless the items match the layout and have supported versions.
 Result<LaszipRecord> parse_laszip_record(std::span<const std::byte> body, const RecordLayout& layout);
 
 }  // namespace surfcast::laz

@@ -7,7 +7,7 @@
 
 namespace surfcast::laz {
 
-/// The bytes of a chunk that hold one field of its points. A field that never changes has none.
+/// The bytes of a chunk that encode one field of its points. Empty if the field never changes.
 struct Layer {
   Layer() = default;
   explicit Layer(std::span<const std::byte> bytes) : present(!bytes.empty()) {

@@ -17,7 +17,7 @@ struct ColorWithInfrared {
   uint16_t infrared = 0;
 };
 
-/// Items RGB14 and RGBNIR14 in one scanner channel.
+/// The state of items RGB14 and RGBNIR14 in one scanner channel.
 struct ColorChannel {
   explicit ColorChannel(const ColorWithInfrared& first) : last(first) {}
 
@@ -36,7 +36,7 @@ struct ColorChannel {
   }
 };
 
-/// Item BYTE14 in one scanner channel.
+/// The state of item BYTE14 in one scanner channel.
 struct ExtraBytesChannel {
   explicit ExtraBytesChannel(const std::vector<std::byte>& first) : last(first), models(first.size()) {}
 
@@ -44,7 +44,7 @@ struct ExtraBytesChannel {
   std::vector<std::unique_ptr<SymbolModel<256>>> models;  ///< of the bytes that change
 };
 
-/// The layers of a chunk: their sizes come first, then their bytes, in the same order.
+/// The layers of a chunk: all sizes first, then all bytes, in the same order.
 class LayerBytes {
  public:
   LayerBytes(std::span<const std::byte> sizes, std::span<const std::byte> bytes) : sizes_(sizes), bytes_(bytes) {}
@@ -108,7 +108,7 @@ ColorWithInfrared first_color(const RecordLayout& layout, const std::byte* recor
 
 class LayeredDecoder final : public RecordDecoder {
  public:
-  /// `first` is the first record, which is stored as it is.
+  /// `first` is the first record, which is stored uncompressed.
   LayeredDecoder(const RecordLayout& layout, bool stale_channels, const std::byte* first, Layers layers)
       : layout_(layout),
         stale_channels_(stale_channels),
@@ -148,7 +148,7 @@ class LayeredDecoder final : public RecordDecoder {
     channel.last.write(record, points_.channel());
   }
 
-  /// Brings the states of an item to its channel. Returns the state that has the last value.
+  /// Switches an item to its channel. Returns the state that holds the last value.
   template <typename State>
   State& follow_channel(ChannelStates<State>& states) {
     if (states.channel() == item_channel_) return states.current();
@@ -182,10 +182,10 @@ class LayeredDecoder final : public RecordDecoder {
 
   RecordLayout layout_;
   bool stale_channels_;
-  std::vector<std::byte> first_;  ///< empty once it is handed out
+  std::vector<std::byte> first_;  ///< empty once it has been returned
   Layers layers_;
   ChannelStates<Point14Channel> points_;
-  uint32_t item_channel_ = 0;  ///< whose states the items behind the point are decoded with
+  uint32_t item_channel_ = 0;  ///< the channel whose states decode the items after the point
   ChannelStates<ColorChannel> colors_;
   ChannelStates<ExtraBytesChannel> extra_bytes_;
 };

@@ -13,18 +13,19 @@
 
 namespace surfcast::laz {
 
-/// What the header of a LAZ file says about its points.
+/// Properties of the points, from the header of a LAZ file.
 struct LazPoints {
-  int point_format = 0;      ///< without the bits that mark the file as compressed
+  int point_format = 0;      ///< without the compression bits
   size_t record_length = 0;  ///< in bytes, uncompressed
   uint64_t count = 0;
   size_t data_offset = 0;  ///< in the file
 };
 
-/// Decodes the points of one chunk in order, in pieces of any size.
+/// Decodes the points of one chunk sequentially, in portions of any size.
 class LazChunkReader {
  public:
-  /// Fills `records` with the next ones: a whole number of them, no more than the chunk has left.
+  /// Fills `records` with the next records. Its size must be a multiple of the record length and at most the rest of
+  /// the chunk. Fails if the chunk is damaged.
   Status read(std::span<std::byte> records);
 
  private:
@@ -33,23 +34,24 @@ class LazChunkReader {
       : decoder_(std::move(decoder)), left_(left) {}
 
   std::unique_ptr<laz::RecordDecoder> decoder_;
-  size_t left_;  ///< bytes of records
+  size_t left_;  ///< bytes of records left
 };
 
-/// The compressed points of a LAZ file (LASzip 2.0 and later, point formats 0 to 3 and 6 to 8). Points come in chunks
-/// that are decoded independently of each other, into records of the layout that an uncompressed LAS file has.
+/// The compressed points of a LAZ file (LASzip 2.0 and later, point formats 0 to 3 and 6 to 8). The points are stored
+/// in chunks that are decoded independently, into the records of the corresponding uncompressed LAS file.
 class LazFile {
  public:
-  /// Checks the description of the coding and the chunk table against the bytes that are there. `laszip_record` is the
-  /// body of the variable length record "laszip encoded". Refers to `file`, which has to outlive this.
+  /// Checks the coding parameters and the chunk table against the file. `laszip_record` is the body of the variable
+  /// length record "laszip encoded". `file` must outlive this object.
   static Result<LazFile> open(std::span<const std::byte> file, const LazPoints& points,
                               std::span<const std::byte> laszip_record);
 
-  /// In file order, all points of the file. A damaged chunk shows only when it is decoded: its count is a claim.
+  /// All chunks in file order. Damage within a chunk is detected only when it is decoded, so its count is not
+  /// trustworthy.
   [[nodiscard]] std::span<const laz::Chunk> chunks() const { return chunks_; }
   [[nodiscard]] size_t record_length() const { return layout_.length; }
 
-  /// Safe to call from many threads at once.
+  /// Thread-safe.
   [[nodiscard]] Result<LazChunkReader> read_chunk(const laz::Chunk& chunk) const;
 
  private:

@@ -8,7 +8,7 @@
 
 namespace surfcast::laz {
 
-/// Models selected by an earlier value. Few of those values occur in a chunk, so a model is made when it is first used.
+/// Models indexed by a previous value. Few of the values occur in a chunk, so models are created on first use.
 template <uint32_t kSymbols, size_t kCount>
 class ModelSet {
  public:

@@ -70,7 +70,7 @@ class Point10Decoder {
   uint8_t class_, angle_, user_;
   uint16_t source_;
   uint16_t written_intensity_ = 0;
-  std::array<uint16_t, 16> intensities_{};  ///< the last one of each return context
+  std::array<uint16_t, 16> intensities_{};  ///< the last intensity in each return context
   CoordinateDecoder<16> coordinates_;
   SymbolModel<64> changes_;
   ModelSet<256, 256> returns_models_, class_models_, user_models_;

@@ -18,14 +18,14 @@ namespace surfcast::laz {
 struct Point14 {
   int32_t x = 0, y = 0, z = 0;
   uint16_t intensity = 0;
-  uint8_t number = 0;   ///< of this return
-  uint8_t returns = 0;  ///< of its pulse
+  uint8_t number = 0;   ///< number of this return
+  uint8_t returns = 0;  ///< number of returns of the pulse
   uint8_t flags = 0;    ///< bits 0 to 3: classification flags; 4: scan direction; 5: edge of flight line
   uint8_t classification = 0;
   uint8_t user = 0;
   int16_t angle = 0;
   uint16_t source = 0;
-  int64_t time = 0;  ///< the bits of a double
+  int64_t time = 0;  ///< bits of a double
 
   static constexpr size_t kBytes = 30;
   static Point14 from_record(const std::byte* record);
@@ -69,29 +69,29 @@ inline void Point14::write(std::byte* record, uint32_t channel) const {
   store(record + 22, time);
 }
 
-/// The layers of a chunk that hold the fields of Point14, in file order.
+/// The layers of a chunk for the fields of Point14, in file order.
 struct Point14Layers {
   Layer returns_xy, z, classification, flags, intensity, angle, user, source, time;
 };
 
-/// Models and the last point of one scanner channel (item POINT14, versions 2 to 4).
+/// The models and the last point of one scanner channel (item POINT14, versions 2 to 4).
 class Point14Channel {
  public:
   explicit Point14Channel(const Point14& first) : last(first), coordinates_(first.z), time_(first.time) {
     intensities_.fill(first.intensity);
   }
 
-  /// What is different from the last point of the channel. The bits of a code, from the highest: the channel, the
-  /// source, the time, the angle, the number of returns; the lowest two say how the return number goes on.
+  /// Decodes which fields differ from the last point of the channel. Bits of the result, from the highest: channel,
+  /// source, time, angle, number of returns. The lowest two bits code the change of the return number.
   uint32_t decode_changes(ArithmeticDecoder& in) {
     const bool first = last.number == 1;
     const bool final = last.number >= last.returns;
     return in.symbol(changes_[(first ? 1U : 0U) + (final ? 2U : 0U) + (time_changed_ ? 4U : 0U)]);
   }
-  /// How many channels further the next point's is.
+  /// The difference to the channel of the next point, modulo 4.
   uint32_t decode_channel_step(ArithmeticDecoder& in) { return in.symbol(channel_steps_) + 1; }
 
-  /// Replaces `last` by the next point. `changes` may have been decoded by another channel.
+  /// Replaces `last` by the next point. `changes` may have been decoded in another channel.
   void decode(Point14Layers& in, uint32_t changes) {
     const bool time_changed = changes & 16;
     decode_returns(in.returns_xy.in, changes, time_changed);

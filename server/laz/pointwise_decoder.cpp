@@ -10,7 +10,7 @@
 namespace surfcast::laz {
 namespace {
 
-/// Extra bytes: each is coded as the step from the same byte of the last record.
+/// Decodes extra bytes: each one is coded as the difference to the same byte of the last record.
 class ExtraBytesDecoder {
  public:
   ExtraBytesDecoder(const std::byte* first, size_t count) : last_(first, first + count), models_(count) {}
@@ -28,7 +28,7 @@ class ExtraBytesDecoder {
   std::vector<SymbolModel<256>> models_;
 };
 
-/// All items of a record, one after the other, from one stream. The first record is stored as it is.
+/// Decodes all items of a record sequentially, from one stream. The first record is stored uncompressed.
 class PointwiseDecoder final : public RecordDecoder {
  public:
   PointwiseDecoder(const RecordLayout& layout, std::span<const std::byte> chunk)
@@ -69,7 +69,7 @@ class PointwiseDecoder final : public RecordDecoder {
   }
 
   RecordLayout layout_;
-  std::vector<std::byte> first_;  ///< empty once it is handed out
+  std::vector<std::byte> first_;  ///< empty once it has been returned
   ArithmeticDecoder in_;
   Point10Decoder point_;
   std::optional<GpsTimeDecoder<true>> gps_time_;

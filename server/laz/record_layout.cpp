@@ -5,7 +5,7 @@
 namespace surfcast::laz {
 namespace {
 
-/// Of the item that every record begins with.
+/// Sizes of the item at the start of every record.
 constexpr size_t kPoint10Bytes = 20;
 constexpr size_t kPoint14Bytes = 30;
 

@@ -6,20 +6,20 @@
 
 namespace surfcast::laz {
 
-/// What the records of a point format consist of.
+/// The items of the records of a point format.
 struct RecordLayout {
-  bool layered = false;   ///< point formats 6 to 8: each field of a chunk is coded apart
-  bool gps_time = false;  ///< as an item of its own, at byte 20
+  bool layered = false;   ///< point formats 6 to 8: each field of a chunk is coded separately
+  bool gps_time = false;  ///< as a separate item, at byte 20
   bool color = false;
-  bool infrared = false;  ///< behind the colour
+  bool infrared = false;  ///< after the colour
   size_t color_offset = 0;
-  size_t extra_offset = 0;  ///< what no item covers are extra bytes
+  size_t extra_offset = 0;  ///< start of the extra bytes, which belong to no other item
   size_t length = 0;
 
   [[nodiscard]] size_t extra_bytes() const { return length - extra_offset; }
 };
 
-/// Fails for the point formats with wave packets, and if the length is too short for the format.
+/// Fails for point formats with wave packets, and if the length is too short for the format.
 Result<RecordLayout> record_layout(int point_format, size_t length);
 
 }  // namespace surfcast::laz

@@ -5,8 +5,8 @@
 
 namespace surfcast::laz {
 
-/// Contexts that the coders of points derive from the number of returns of a pulse and the number of this return.
-/// The tables are part of the format. Rows: number of returns, columns: return.
+/// Contexts derived from the number of returns of a pulse (row) and the number of this return (column). The tables are
+/// part of the format.
 constexpr uint8_t kReturnContexts8[8][8] = {
     {15, 14, 13, 12, 11, 10, 9, 8},  {14, 0, 1, 3, 6, 10, 10, 9},    {13, 1, 2, 4, 7, 11, 11, 10},
     {12, 3, 4, 5, 8, 12, 12, 11},    {11, 6, 7, 8, 9, 13, 13, 12},   {10, 10, 11, 12, 13, 14, 14, 13},
@@ -24,7 +24,7 @@ constexpr uint8_t kReturnContexts16[16][16] = {
     {5, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5, 5}, {5, 3, 3, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 4, 5, 5},
 };
 
-/// How many returns lie between this one and the last.
+/// Distance between this return and the last return of its pulse, at most 7.
 constexpr uint32_t return_level(uint32_t returns, uint32_t number) {
   const uint32_t distance = returns > number ? returns - number : number - returns;
   return distance < 7 ? distance : 7;

@@ -6,8 +6,8 @@
 
 namespace surfcast::laz {
 
-/// An estimate of the median of the last few values: five sorted values, of which a new one replaces the largest or
-/// the smallest. All are zero at first.
+/// An estimate of the median of recent values: five sorted values, in which a new value replaces the largest or the
+/// smallest. All are zero initially.
 class RunningMedian {
  public:
   [[nodiscard]] int32_t get() const { return sorted_[2]; }
@@ -21,7 +21,7 @@ class RunningMedian {
  private:
   using Values = std::array<int32_t, 5>;
 
-  /// The four values from `kept` on, and `value`, sorted. Minima and maxima leave no branch to mispredict.
+  /// The four values from `kept` on and `value`, sorted. Minima and maxima avoid branches that would be mispredicted.
   [[nodiscard]] Values inserted(size_t kept, int32_t value) const {
     const int32_t* four = &sorted_[kept];
     Values values;

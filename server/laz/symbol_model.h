@@ -12,8 +12,8 @@ constexpr int kSymbolShift = 15;
 /// The probability of a zero bit is a fraction of 2^13.
 constexpr int kBitShift = 13;
 
-/// The adaptive probability that a bit is zero. Like all models of LASzip it is counted as symbols go by, and the
-/// probability in use is renewed in growing intervals (Said 2004, "Introduction to Arithmetic Coding", FastAC).
+/// The adaptive probability that a bit is zero. As in all models of LASzip, occurrences are counted continuously, and
+/// the probability is updated in growing intervals (Said 2004, "Introduction to Arithmetic Coding", FastAC).
 class BitModel {
  public:
   [[nodiscard]] uint32_t zero_probability() const { return zero_probability_; }
@@ -45,8 +45,8 @@ class BitModel {
   uint32_t until_renewal_ = 4;
 };
 
-/// How many of `kCount` numbers in ascending order are not above `limit`. Looks at all of them, without a branch that
-/// would be mispredicted: compilers turn this into a few vector instructions.
+/// How many of `kCount` ascending numbers are at most `limit`. Compares all of them, without a branch that could be
+/// mispredicted; compilers emit a few vector instructions.
 template <size_t kCount>
 uint32_t count_up_to(const uint16_t* numbers, uint16_t limit) {
   uint16_t count = 0;
@@ -54,7 +54,7 @@ uint32_t count_up_to(const uint16_t* numbers, uint16_t limit) {
   return count;
 }
 
-/// The adaptive probabilities of `kSymbols` symbols, all equal at first.
+/// The adaptive probabilities of `kSymbols` symbols, initially equal.
 template <uint32_t kSymbols>
 class SymbolModel {
  public:
@@ -66,9 +66,9 @@ class SymbolModel {
     interval_ = until_renewal_ = (kSymbols + 6) / 2;
   }
 
-  /// Sum of the probabilities of the symbols before this one.
+  /// Sum of the probabilities of all symbols before this one.
   [[nodiscard]] uint32_t lower(uint32_t symbol) const { return lower_[symbol]; }
-  /// The symbol in whose range `target` lies: the last one with `lower` not above it.
+  /// The symbol whose range contains `target`: the last one with `lower` at most `target`.
   [[nodiscard]] uint32_t find(uint16_t target) const {
     if constexpr (kFlat) return count_up_to<kPadded>(lower_.data(), target) - 1;
     const uint32_t group = count_up_to<kGroups>(group_lower_.data(), target) - 1;
@@ -87,7 +87,7 @@ class SymbolModel {
   static constexpr bool kFlat = kSymbols <= 64;
   static constexpr uint32_t kPadded = round_up(kSymbols, kFlat ? kLane : kGroup);
   static constexpr uint32_t kGroups = round_up(kPadded / kGroup, kLane);
-  static constexpr uint16_t kBeyond = 0xFFFF;  ///< the padding: above any target
+  static constexpr uint16_t kBeyond = 0xFFFF;  ///< padding: larger than any target
 
   [[gnu::noinline]] void renew() {
     constexpr uint32_t kMaxCounts = 1U << kSymbolShift;
