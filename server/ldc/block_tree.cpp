@@ -7,7 +7,7 @@
 namespace surfcast::ldc {
 namespace {
 
-/// Adds block `index` to the children of its parent. False when they would not lie side by side.
+/// Adds block `index` to the children of its parent. False if they would not be contiguous.
 bool add_child(std::vector<BlockTree::Children>& children, uint32_t parent, uint32_t index) {
   BlockTree::Children& siblings = children[parent];
   if (siblings.count == 0) siblings.first = index;

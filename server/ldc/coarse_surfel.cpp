@@ -11,12 +11,12 @@
 namespace surfcast::ldc {
 namespace {
 
-/// Where a coarse surfel keeps the scalar attribute of that name.
+/// The member of a coarse surfel that holds the scalar attribute `name`.
 double& slot(CoarseSurfel& surfel, std::string_view name) {
   return name == "intensity" ? surfel.intensity : surfel.classification;
 }
 
-/// Averages are kept to so many binary digits: what is seen has no more.
+/// Significant binary digits of stored averages. The display shows no more.
 constexpr int kDigits = 8;
 
 double round_to_digits(double mean) {

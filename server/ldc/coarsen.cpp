@@ -15,14 +15,14 @@
 namespace surfcast::ldc {
 namespace {
 
-/// A cell that gets a coarse block, the cells below it, and what is made of them.
+/// A cell that gets a coarse block, the front cells in it, and the result of coarsening.
 struct CoarsenedCell {
   OctreeKey key;
   std::vector<FrontCell> parts;
   CoarseCell coarse;
 };
 
-/// Cells by their location, so that order does not depend on hashing.
+/// Cells by location; an ordered map, because the order of the blocks must not depend on hashing.
 using CoarsenedCells = std::map<uint64_t, CoarsenedCell>;
 
 CoarsenedCells take_parts(Front& front, int depth) {
@@ -58,7 +58,7 @@ void for_each_value(Values& values, Work work) {
   oneapi::tbb::parallel_for(size_t{0}, values.size(), [&](size_t i) { work(values[i]); });
 }
 
-/// The raised cells and their neighbours of the same depth, and every cell that holds one of these.
+/// The coarsened cells, their neighbours of the same depth, and all ancestors of these.
 class Nearby {
  public:
   Nearby(const CoarsenedCells& coarsened, int depth) : depth_(depth) {
@@ -71,7 +71,7 @@ class Nearby {
   void add_neighbours(const OctreeKey& key) {
     const uint32_t cells = uint32_t{1} << key.depth;
     for (uint32_t i = 0; i < 27; ++i) {
-      // Wraps around below 0, to more than there are cells.
+      // Below 0 the unsigned coordinate wraps around to a value beyond the last cell.
       const OctreeKey neighbour{key.depth, key.x + i % 3 - 1, key.y + i / 3 % 3 - 1, key.z + i / 9 - 1};
       if (neighbour.x < cells && neighbour.y < cells && neighbour.z < cells) add_with_parents(neighbour);
     }
@@ -95,7 +95,7 @@ std::vector<CoarsenedCell*> pointers_to(CoarsenedCells& cells) {
   return list;
 }
 
-/// Makes those surfels around the part coarser that lie near raised cells, cell by cell.
+/// Coarsens the surfels around the part that lie near coarsened cells, cell by cell.
 void raise_around(std::vector<CoarseSurfel>& around, const Nearby& nearby, const LevelSources& sources) {
   CoarsenedCells cells;
   std::vector<CoarseSurfel> rest;
@@ -129,7 +129,7 @@ surfel::SurfelCloud geometry_of(std::span<const CoarseSurfel> surfels, bool orie
   return cloud;
 }
 
-/// Weights of the raised cells' surfels, in the order of the cells.
+/// Weights of the surfels of the coarsened cells, in the order of the cells.
 std::vector<float> find_weights(const CoarsenedCells& coarsened, const Front& waiting, const Nearby& nearby,
                                 const LevelSources& sources) {
   std::vector<CoarseSurfel> level;
@@ -146,7 +146,7 @@ std::vector<float> find_weights(const CoarsenedCells& coarsened, const Front& wa
   return weights;
 }
 
-/// Every block that shows one of the cells, once.
+/// The blocks that show the cells, each once.
 std::vector<uint32_t> blocks_of(std::span<const FrontCell> cells) {
   std::vector<uint32_t> blocks;
   for (const FrontCell& cell : cells) blocks.insert(blocks.end(), cell.blocks.begin(), cell.blocks.end());

@@ -8,27 +8,27 @@
 
 namespace surfcast::ldc {
 
-/// Lattice indices within a block stay below 2^kMaxIndexBits, so that they fit a signed 32 bit integer with room.
+/// Lattice indices within a block stay below 2^kMaxIndexBits, which leaves headroom in a signed 32 bit integer.
 inline constexpr int kMaxIndexBits = 30;
-/// Those of a block with kDenseBlockSurfels surfels or more stay below 2^kIndexBits: a dense cluster far smaller than
-/// its block gets a block of its own, where a step of a compact vertex is small next to the distance of its surfels.
-/// Fewer surfels are not worth that.
+/// In blocks with at least kDenseBlockSurfels surfels, indices stay below 2^kIndexBits. A dense cluster that is much
+/// smaller than its block then gets a block of its own, where the step of a compact vertex is small compared with the
+/// distance between surfels. Fewer surfels do not justify a block of their own.
 inline constexpr int kIndexBits = 20;
 inline constexpr size_t kDenseBlockSurfels = 256;
-/// Without a wanted precision a stored position is off by at most its surfel's radius over this.
+/// Without a requested precision, the error of a stored position is at most the radius of its surfel divided by this.
 inline constexpr double kRadiusOverError = 256;
 
 /// The coarsest lattice of step 2^k through the origin on which every point of the box has a lattice point within
-/// `max_error` (Euclidean, world units). The step is never finer than the spacing of doubles at the box: there, the
-/// lattice already holds every coordinate exactly.
+/// `max_error` (Euclidean, world units). The step is never finer than the spacing of doubles at the box, because such a
+/// lattice contains every coordinate exactly.
 surfel::Grid choose_lattice(const geometry::Box& box, double max_error);
 
-/// Largest Euclidean error to accept for a surfel of that radius.
+/// Largest Euclidean error accepted for a surfel of this radius, world units.
 inline double position_tolerance(double radius, const std::optional<double>& precision) {
   return precision ? *precision : radius / kRadiusOverError;
 }
 
-/// True when so many points in the box get indices that a block may have, counted from the box's lowest corner.
+/// True if the indices of `count` points in the box, counted from its lowest corner, stay within the limits of a block.
 bool indices_fit(const surfel::Grid& grid, const geometry::Box& box, size_t count);
 
 }  // namespace surfcast::ldc

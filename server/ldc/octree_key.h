@@ -7,13 +7,13 @@
 
 namespace surfcast::ldc {
 
-/// A cell of the octree over a model: the root cube, halved `depth` times along each axis. Parent and children follow
-/// from the coordinates, so no links are stored.
+/// A cell of the octree over a model: the root cube, halved `depth` times along each axis. Parents and children are
+/// computed from the coordinates; no links are stored.
 struct OctreeKey {
   static constexpr int kMaxDepth = geometry::kMortonDepth;
 
   uint8_t depth = 0;  ///< 0 is the root
-  uint32_t x = 0;     ///< counted in cells of this depth
+  uint32_t x = 0;     ///< in cells of this depth
   uint32_t y = 0;
   uint32_t z = 0;
 
@@ -26,18 +26,18 @@ struct OctreeKey {
   bool operator==(const OctreeKey&) const = default;
 };
 
-/// The cell of the given depth that a Morton code lies in.
+/// The cell of the given depth that contains a Morton code.
 OctreeKey key_of_code(uint64_t code, int depth);
 
-/// True if the cells are the same, or `inner` is one of those that `outer` is halved into.
+/// True if `inner` is `outer` or one of its descendants.
 bool contains(const OctreeKey& outer, const OctreeKey& inner);
 
-/// Depth and cell in one number: the Morton code of the cell at its own depth behind a leading 1.
+/// Depth and cell in one number: the Morton code of the cell at its own depth, prefixed by a 1 bit.
 uint64_t location_of(const OctreeKey& key);
-/// The cell of such a number; none for numbers that are no location.
+/// The inverse of location_of. None for numbers that are no location.
 std::optional<OctreeKey> key_at_location(uint64_t location);
 
-/// Number of the child (0 to 7) that a Morton code lies in, of its cell at the given depth.
+/// The octant (0 to 7) of the cell at the given depth that contains a Morton code.
 inline uint32_t octant_of_code(uint64_t code, int depth) {
   return static_cast<uint32_t>(code >> (3 * (OctreeKey::kMaxDepth - 1 - depth))) & 7u;
 }

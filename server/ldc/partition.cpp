@@ -14,18 +14,18 @@
 namespace surfcast::ldc {
 namespace {
 
-/// A surfel on its way into a block. Sorting by code lines the cells of every depth up as runs.
+/// A surfel of the core. Sorted by code, the surfels of every cell of every depth are contiguous.
 struct Member {
   uint64_t code;
   uint32_t surfel;
-  uint32_t group;  ///< surfels that may share blocks: of one grid, or of none
+  uint32_t group;  ///< surfels that may share blocks: those of one grid, or those without a grid
   bool operator<(const Member& other) const { return code != other.code ? code < other.code : surfel < other.surfel; }
 };
 
 using Run = std::span<Member>;
 
 bool grid_reproduces(const surfel::Grid& grid, const glm::dvec3& p) {
-  // Beyond 2^52 steps from the offset the nearest index is no longer certain.
+  // Beyond 2^52 steps from the offset the nearest index is not exact.
   const glm::dvec3 steps = glm::abs((p - grid.offset) / grid.scale);
   constexpr double kLimit = 4503599627370496.0;
   return steps.x < kLimit && steps.y < kLimit && steps.z < kLimit && grid.position(grid.index(p)) == p;
@@ -39,7 +39,7 @@ std::optional<surfel::Grid> usable_grid(const surfel::SurfelCloud& cloud, const 
   return exact ? source.grid : std::nullopt;
 }
 
-/// The members of the core in the order of their sources, and the grid of each group.
+/// The members of the core in the order of their sources. Sets the grid of each group.
 std::vector<Member> collect_members(const surfel::SurfelCloud& cloud, size_t core,
                                     std::vector<std::optional<surfel::Grid>>& grids) {
   std::vector<Member> members;
@@ -63,7 +63,7 @@ void sort_by_code(const surfel::SurfelCloud& cloud, const geometry::RootCube& ro
   oneapi::tbb::parallel_sort(members);
 }
 
-/// Members of one group in one cell, and what their lattice depends on.
+/// The members of one group in one cell, and the quantities that determine their lattice.
 struct Part {
   uint32_t group = 0;
   Run members;
@@ -72,10 +72,10 @@ struct Part {
   size_t count = 0;
 };
 
-/// A leaf whose blocks are not yet planned.
+/// A leaf before its blocks are planned.
 struct Cell {
   OctreeKey key;
-  std::vector<Part> parts;  ///< by group, ascending
+  std::vector<Part> parts;  ///< by ascending group
   size_t count = 0;
 };
 
@@ -99,7 +99,7 @@ class Splitter {
   }
 
  private:
-  /// The lattice for a block of such members; none when they need more index bits than a block has.
+  /// The lattice for a block of these members; none when the indices exceed the limit of a block.
   [[nodiscard]] std::optional<surfel::Grid> lattice(const Part& part) const {
     const surfel::Grid grid = grids_[part.group].value_or(
         choose_lattice(part.box, position_tolerance(double{part.smallest_radius}, options_.precision)));
@@ -115,7 +115,7 @@ class Splitter {
     return part;
   }
 
-  /// The run as a leaf; none when it has too many surfels or needs too many index bits. Leaves are sorted by group.
+  /// The run as a leaf; none when it has too many surfels or too large indices. A leaf is sorted by group.
   [[nodiscard]] std::optional<Cell> make_cell(Run run, const OctreeKey& key) const {
     if (run.size() > options_.max_surfels) return std::nullopt;
     std::stable_sort(run.begin(), run.end(), [](const Member& a, const Member& b) { return a.group < b.group; });
@@ -130,7 +130,7 @@ class Splitter {
     return std::nullopt;
   }
 
-  /// Splits the run, which lies in the cell and is too much for a leaf.
+  /// Splits a run that exceeds the limits of a leaf. `key` is the cell of the run.
   void split(Run run, const OctreeKey& key) {
     if (key.depth == OctreeKey::kMaxDepth) {
       split_below(run, key);
@@ -153,7 +153,7 @@ class Splitter {
     join(small, key);
   }
 
-  /// Plans blocks for small leaves of the cell `parent`, several for one block while they fit.
+  /// Plans blocks for small leaves of the cell `parent`. Consecutive leaves share a block while they fit.
   void join(std::span<const Cell> small, const OctreeKey& parent) {
     for (auto first = small.begin(); first != small.end();) {
       auto last = first + 1;
@@ -171,7 +171,7 @@ class Splitter {
     return std::all_of(parts.begin(), parts.end(), [&](const Part& part) { return lattice(part); });
   }
 
-  /// What the parts of each group are together; without members.
+  /// The union of the parts of each group, without members.
   static std::vector<Part> join_parts(std::span<const Cell> cells) {
     std::vector<Part> joined;
     for (const Cell& cell : cells) {
@@ -187,7 +187,7 @@ class Splitter {
     return joined;
   }
 
-  /// A block for each group of the cells.
+  /// Plans one block for each group of the cells.
   void plan_blocks(std::span<const Cell> cells, const OctreeKey& key) {
     std::vector<Leaf> leaves;
     for (const Cell& cell : cells) leaves.push_back({cell.key, {}});
@@ -207,7 +207,7 @@ class Splitter {
     for (const Member& m : part->members) result_.order.push_back(m.surfel);
   }
 
-  /// The smallest cell with too much in it.
+  /// Splits a cell of the greatest depth that exceeds the limits of a leaf.
   void split_below(Run run, const OctreeKey& key) {
     Leaf leaf{key.child(0), {}};
     std::stable_sort(run.begin(), run.end(), [](const Member& a, const Member& b) { return a.group < b.group; });
@@ -219,7 +219,7 @@ class Splitter {
     result_.leaves.push_back(std::move(leaf));
   }
 
-  /// Halves members of one group by the median along their longest side, down to coincident points and single ones.
+  /// Halves the members of one group at the median along their longest side, until each half fits into a block.
   void halve(Run run, const OctreeKey& key, Leaf& leaf) {
     const Part part = make_part(run);
     const std::optional<surfel::Grid> grid = lattice(part);

@@ -14,24 +14,25 @@
 namespace surfcast::ldc {
 namespace {
 
-/// A coarser level is worth its bytes when it has at most this part of the surfels below it. A surface makes it 1/4.
+/// Largest ratio of coarse to fine surfels for which a coarser level is worth its bytes. On a surface the ratio is 1/4.
 constexpr double kLargestPart = 0.3;
-/// Few enough to be worth keeping whatever part they are.
+/// A level with at most this many surfels is kept whatever its ratio.
 constexpr size_t kFew = 1024;
-/// Coarse surfels lie on a lattice of this many steps between two rays: off by at most 1/18 of their spacing.
+/// Steps of the position lattice between two rays. The position error is at most 1/18 of the ray spacing.
 constexpr int kStepsPerRay = 16;
-/// Mean distance to the six nearest neighbours on a square grid of spacing 1, the meaning of a radius.
+/// Radius of surfels on a square grid of spacing 1: the mean distance to the six nearest neighbours.
 constexpr double kGridRadius = (4 + 2 * std::numbers::sqrt2) / 6;
-/// Surfaces at 45 degrees are common, so that the switch between images lies elsewhere: z and y win by some measure.
+/// Factors on x, y and z that prefer z over y over x. They move the switch between images away from surfaces at 45
+/// degrees, which are common.
 constexpr glm::dvec3 kAxisBias{1, 1.1, 1.21};
-/// A surfel follows the image of its surroundings while its normal is within 60 degrees of the axis: the rays still
-/// sample its surface at half their density then.
+/// A surfel belongs to the image of its surroundings while its normal is within 60 degrees of the axis. At that angle
+/// the rays still sample its surface at half their density.
 constexpr float kSmallestCosine = 0.5F;
 
-/// A cell and how its rays lie in it.
+/// The cell and its grid of rays.
 struct Cube {
   glm::dvec3 min{0};
-  double spacing = 1;  ///< of the rays
+  double spacing = 1;  ///< of the rays, world units
   int lines = 1;       ///< rays along a side
 
   [[nodiscard]] int line(double offset) const {
@@ -40,11 +41,11 @@ struct Cube {
   [[nodiscard]] double centre(int line) const { return (line + 0.5) * spacing; }
 };
 
-/// A surfel where it meets its ray.
+/// The intersection of a surfel's plane with its ray.
 struct Crossing {
-  uint32_t ray = 0;  ///< image, side that faces the ray, and number within the image
+  uint32_t ray = 0;  ///< image, side of the surfel that faces the ray, and index within the image
   uint32_t surfel = 0;
-  double depth = 0;  ///< along the ray, of the surfel's plane
+  double depth = 0;  ///< of the intersection, along the ray
 
   bool operator<(const Crossing& other) const {
     return std::tie(ray, depth, surfel) < std::tie(other.ray, other.depth, other.surfel);
@@ -60,7 +61,7 @@ int largest_axis(const glm::dvec3& v) {
   return v.y >= v.z ? 1 : 2;
 }
 
-/// For every cell of two rays' width the squares of the components of the normals in it, weighted by area.
+/// For every cell of two ray spacings' width, the sum of the squared components of its normals, weighted by area.
 class Surroundings {
  public:
   Surroundings(std::span<const CoarseSurfel> surfels, const Cube& cube)
@@ -69,7 +70,7 @@ class Surroundings {
       squares_[index(s)] += squared(s.normal) * (double{s.radius} * double{s.radius});
   }
 
-  /// The image that the surfel belongs to.
+  /// The axis of the image that the surfel belongs to.
   [[nodiscard]] int axis(const CoarseSurfel& s) const {
     const int common = largest_axis(squares_[index(s)] * kAxisBias);
     if (std::abs(s.normal[common]) >= kSmallestCosine) return common;
@@ -116,7 +117,7 @@ std::vector<Crossing> find_crossings(std::span<const CoarseSurfel> surfels, cons
   return crossings;
 }
 
-/// The class that the largest area of the surfels has; of equals the lowest.
+/// Finds the class that covers the largest area; the lowest one of equal classes.
 class ClassVotes {
  public:
   void add(double value, double area) {
@@ -139,8 +140,8 @@ class ClassVotes {
   std::vector<std::pair<double, double>> areas_;
 };
 
-/// The radius of an average: that of the area that its surfels cover together, but not more than what a surfel of a
-/// whole grid has; and where the surfels are farther apart than the rays, theirs.
+/// The radius of an average: that of the total area of its surfels, at most that of a surfel on a complete grid. If the
+/// surfels are farther apart than the rays, the mean of their radii, weighted by area.
 float radius_of(double squares, double cubes, double cosine, const Cube& cube) {
   const double on_grid = kGridRadius * cube.spacing / std::sqrt(std::max(cosine, 0.5));
   return static_cast<float>(std::max(std::min(std::sqrt(squares), on_grid), cubes / squares));
@@ -193,7 +194,7 @@ std::vector<CoarseSurfel> resample(std::span<const CoarseSurfel> surfels, const 
   return averages;
 }
 
-/// Moves the surfels to the lattice, keeps them in their cell, and sorts them along a Morton curve.
+/// Rounds the positions to the lattice, clamps them to the cell, and sorts the surfels in Morton order.
 void snap(std::vector<CoarseSurfel>& surfels, const surfel::Grid& grid, const OctreeKey& cell, int64_t steps) {
   const glm::i64vec3 lowest = glm::i64vec3(cell.x, cell.y, cell.z) * steps;
   std::vector<std::pair<uint64_t, CoarseSurfel>> sorted;

@@ -32,7 +32,7 @@ float largest_drawn_radius_of(const surfel::SurfelCloud& cloud, std::span<const 
   return surfel::largest_drawn_radius(radii);
 }
 
-/// For every block the largest radius that its surfels are drawn with.
+/// The largest drawn radius of each block.
 std::vector<float> largest_radii(const surfel::SurfelCloud& cloud, std::span<const TreeBlock> blocks) {
   std::vector<float> largest(blocks.size());
   oneapi::tbb::parallel_for(size_t{0}, blocks.size(),
@@ -55,7 +55,7 @@ Front leaf_front(const Partition& partition, std::span<const float> largest, uin
   return front;
 }
 
-/// Adds the levels from the front's deepest cells up to those of depth `last`.
+/// Adds the levels from above the front's deepest cells up to depth `last`.
 void add_levels(Front& front, int last, LevelSources& sources, uint32_t first_number, std::vector<TreeBlock>& blocks) {
   for (int depth = deepest(front) - 1; depth >= last; --depth) {
     const auto number = static_cast<uint32_t>(first_number + blocks.size());
@@ -70,7 +70,7 @@ std::vector<CoarseSurfel> surfels_around(const surfel::SurfelCloud& cloud, size_
   return sample_surfels(cloud, members, std::numeric_limits<float>::max());
 }
 
-/// What is left of the front is sampled, so that it does not need the cloud any longer.
+/// Samples the remaining members of the front, so it no longer refers to the cloud.
 void finish(Front& front, const surfel::SurfelCloud& cloud) {
   for (FrontCell& cell : front) {
     if (cell.members.empty()) continue;
