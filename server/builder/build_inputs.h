@@ -14,29 +14,29 @@
 
 namespace surfcast::builder {
 
-/// Points of one input, cleaned, under the schema of the cloud.
+/// The clean points of one piece of an input, under the schema of the cloud.
 struct InputPiece {
   size_t source = 0;
   scan::ScanPoints points;
 };
 
-/// All inputs of a build, as one stream of points of one schema.
+/// All inputs of a build as one stream of points with a common schema.
 class BuildInputs {
  public:
-  /// Opens all inputs, which reads each of them once, holding no more decoded than `max_bytes`. `z_up` overrides what
-  /// they say about the vertical axis.
+  /// Opens all inputs, which reads each file once. At most `max_bytes` of memory hold decoded inputs. `z_up` overrides
+  /// the vertical axis that the inputs state. Errors name the file.
   static Result<BuildInputs> open(std::span<const std::filesystem::path> paths, std::optional<bool> z_up,
                                   uint64_t max_bytes, const std::function<void(double)>& progress);
 
   [[nodiscard]] const scan::ScanSchema& schema() const { return schema_; }
   [[nodiscard]] const std::vector<scan::ScanStream>& streams() const { return streams_; }
-  [[nodiscard]] uint64_t size() const;         ///< points, unusable ones included
+  [[nodiscard]] uint64_t size() const;         ///< points, including unusable ones
   [[nodiscard]] geometry::Box bounds() const;  ///< of the usable positions
-  [[nodiscard]] uint64_t held_bytes() const;   ///< of memory, for inputs that are decoded whole
+  [[nodiscard]] uint64_t held_bytes() const;   ///< memory of inputs that are decoded as a whole, bytes
   [[nodiscard]] size_t pieces() const { return pieces_.size(); }
   [[nodiscard]] std::vector<std::string> notes() const;
 
-  /// Reads a piece; counts in `report` what it drops. Any thread.
+  /// Reads a piece. Counts dropped points in `report`. Thread-safe.
   [[nodiscard]] Result<InputPiece> read(size_t piece, scan::SurfelReport& report) const;
 
  private:

@@ -22,10 +22,10 @@
 namespace surfcast::builder {
 namespace {
 
-/// What would spoil the target is found now, not after a long build.
+/// Finds errors of the target before the build, not after it.
 Status check_target(const std::filesystem::path& target, std::span<const std::filesystem::path> inputs) {
   const std::filesystem::path folder = target.parent_path().empty() ? "." : target.parent_path();
-  std::error_code ignored;  // of files that do not exist; reading them says so
+  std::error_code ignored;  // if a file does not exist, reading it reports the error
   if (!std::filesystem::is_directory(folder, ignored)) {
     return fail(ErrorKind::kIo, target.string() + ": no such folder: " + folder.string());
   }
@@ -41,7 +41,7 @@ Status check_target(const std::filesystem::path& target, std::span<const std::fi
 }
 
 Status check_bounds(const geometry::Box& bounds, const std::filesystem::path& target) {
-  // Far beyond any scan, and small enough that box sizes and squares stay finite.
+  // Far beyond any scan, and small enough for box sizes and their squares to stay finite.
   constexpr double kLimit = 1e150;
   if (bounds.empty()) {
     return fail(ErrorKind::kInvalidInput, target.string() + ": no usable point is left of the input");
@@ -51,7 +51,7 @@ Status check_bounds(const geometry::Box& bounds, const std::filesystem::path& ta
   return fail(ErrorKind::kInvalidInput, target.string() + ": a position of the input is too far away to be stored");
 }
 
-/// A cloud without surfels that has all that the model's clouds have in common.
+/// A cloud without surfels that has the common properties of all clouds of the model.
 surfel::SurfelCloud common_cloud(const BuildInputs& inputs, bool oriented) {
   surfel::SurfelCloud cloud = empty_cloud(inputs.schema(), 0);
   cloud.oriented = oriented;
@@ -61,13 +61,13 @@ surfel::SurfelCloud common_cloud(const BuildInputs& inputs, bool oriented) {
   return cloud;
 }
 
-/// The cell of a part; several cells are some of the eight of their parent.
+/// The region of a part: one cell, or some of the octants of the parent of its cells.
 ldc::Region region_of(const Part& part, const geometry::RootCube& root, size_t own) {
   const bool whole = part.cells.size() == 1;
   return {root, whole ? part.cells[0] : part.cells[0].parent(), whole, own};
 }
 
-/// Numbers of blocks begin with 0 in every part; in the file they go on.
+/// Block numbers start with 0 in every part. In the file they are consecutive over all parts.
 void renumber(uint32_t first, ldc::Subtree& subtree) {
   for (ldc::TreeBlock& block : subtree.blocks) {
     for (uint32_t& child : block.children) child += first;
@@ -77,7 +77,7 @@ void renumber(uint32_t first, ldc::Subtree& subtree) {
   }
 }
 
-/// Weighs the surfels of all parts, makes the blocks and writes them.
+/// Computes the weights of all surfels, makes the blocks and writes them, part by part.
 class ModelPass {
  public:
   ModelPass(BuildParts& parts, model::ModelWriter& writer, const BuildOptions& options)

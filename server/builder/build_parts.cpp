@@ -68,7 +68,7 @@ std::vector<PartRows> sort_out(const scan::ScanPoints& points, const PartFinder&
   return parts;
 }
 
-/// Keeps the surfels of a part that are no duplicates. Returns for each of them before whether it was kept.
+/// Removes the duplicates of a part. Returns for each original surfel whether it was kept.
 std::vector<uint8_t> drop_duplicates(surfel::SurfelCloud& cloud, size_t& own, scan::SurfelReport& report) {
   const std::vector<bool> duplicate = scan::find_duplicates(cloud);
   const auto dropped = std::count(duplicate.begin(), duplicate.begin() + static_cast<std::ptrdiff_t>(own), true);
@@ -80,7 +80,7 @@ std::vector<uint8_t> drop_duplicates(surfel::SurfelCloud& cloud, size_t& own, sc
   return {keep.begin(), keep.end()};
 }
 
-/// Findings of the surfels that were kept, for all points of the part.
+/// The findings of the surfels that were kept, with an entry for each point of the part.
 PartFindings spread_findings(const scan::PartSurfels& surfels, std::vector<uint8_t> kept) {
   PartFindings findings;
   findings.normals.resize(kept.size());

@@ -17,10 +17,11 @@
 
 namespace surfcast::builder {
 
-/// The points of a build, cut into parts that fit into memory. One part stays there; several wait on disk.
+/// The points of a build, divided into parts that fit into memory. A single part stays in memory; several are kept on
+/// disk.
 class BuildParts {
  public:
-  /// Counts the points in octree cells, plans the parts, and sorts the points into them.
+  /// Counts the points in octree cells, plans the parts, and distributes the points to them.
   static Result<BuildParts> gather(const BuildInputs& inputs, const MemoryPlan& memory,
                                    const std::filesystem::path& target, StageClock& clock, scan::SurfelReport& report);
 
@@ -29,10 +30,10 @@ class BuildParts {
   [[nodiscard]] const geometry::RootCube& root() const { return root_; }
   [[nodiscard]] size_t parts_at_once(const MemoryPlan& memory) const;
 
-  /// First half: makes surfels of every part and settles the signs of all normals together.
+  /// First phase: makes the surfels of every part and resolves the signs of all normals together.
   Status make_surfels(const MemoryPlan& memory, StageClock& clock, scan::SurfelReport& report);
-  /// Second half: the surfels of a part with their final normals, its own first. Each part is taken once, from any
-  /// thread.
+  /// Second phase: returns the surfels of a part with their final normals, own surfels before those of the halo. Each
+  /// part can be taken once. Thread-safe.
   struct Finished {
     surfel::SurfelCloud cloud;
     size_t own = 0;
@@ -59,13 +60,13 @@ class BuildParts {
   scan::Scene scene_;
   geometry::Box bounds_;
   geometry::RootCube root_;
-  std::vector<std::optional<glm::dvec3>> sensors_;  ///< of each input
+  std::vector<std::optional<glm::dvec3>> sensors_;  ///< for each input
   std::vector<InputName> names_;
   std::vector<Part> plan_;
   PartFinder finder_;
-  std::optional<PartStore> store_;   ///< of several parts
-  std::optional<PartPoints> whole_;  ///< the only part, before its surfels are made
-  scan::PartSurfels surfels_;        ///< the only part, after that
+  std::optional<PartStore> store_;   ///< if there are several parts
+  std::optional<PartPoints> whole_;  ///< a single part, before its surfels are made
+  scan::PartSurfels surfels_;        ///< a single part, after its surfels are made
   size_t own_ = 0;
   scan::ResolvedSigns signs_;
 };

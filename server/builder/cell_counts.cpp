@@ -7,12 +7,12 @@
 namespace surfcast::builder {
 namespace {
 
-/// 2^21 cells: enough for most scans in one pass, and 8 MiB.
+/// Depth of the first pass: 2^21 cells take 8 MiB and suffice for most scans.
 constexpr int kFirstDepth = 7;
-/// Levels that an overfull cell is looked into in one more pass.
+/// Levels by which an overfull cell is subdivided in the next pass.
 constexpr int kMoreDepth = 4;
 
-/// Counts the points of some cells of one depth in cells `levels` deeper.
+/// Counts the points of selected cells of one depth in their descendants `levels` deeper.
 class CountingGrid {
  public:
   CountingGrid(std::vector<uint64_t> prefixes, int depth, int levels)
@@ -44,7 +44,7 @@ class CountingGrid {
   }
 
  private:
-  std::vector<uint64_t> prefixes_;  ///< of the cells that are looked into, ascending
+  std::vector<uint64_t> prefixes_;  ///< of the selected cells, ascending
   int levels_;
   int depth_;
   std::vector<std::atomic<uint32_t>> counts_;

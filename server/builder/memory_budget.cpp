@@ -11,20 +11,21 @@ namespace surfcast::builder {
 namespace {
 
 constexpr uint64_t kMebibyte = uint64_t{1} << 20;
-/// What the program takes beside points: itself, pieces of the input on their way, blocks on theirs.
+/// Memory beside the points: the program, input pieces and blocks in flight.
 constexpr uint64_t kReserve = 256 * kMebibyte;
-/// Parts smaller than this would be mostly halo.
+/// Smaller parts would consist mostly of their halo.
 constexpr uint64_t kMinPart = 250000;
-/// Points that a part may have for each one of its own, halo included, before fewer parts are worked on at once.
+/// Estimated ratio of the points of a part with its halo to those without. Fewer parts are processed at once if it is
+/// exceeded.
 constexpr double kWithHalo = 1.5;
-/// Parts that are to fit side by side, so that what one thread does alone in one leaves no core idle.
+/// Parts that should fit into memory together, so that cores stay busy during the serial steps of one part.
 constexpr uint64_t kPartsAtOnce = 3;
-/// Bytes that a point takes while it is worked on, beside its own attributes: sites, neighbours, links and hashes when
-/// surfels are made; a tree of points, a spatial order and coarse levels when they are weighed and written. Measured.
+/// Bytes per point during processing, beside its attributes (measured): sites, neighbours, links and hashes while
+/// surfels are made; a point tree, a spatial order and coarse levels while surfels are weighted and written.
 constexpr uint64_t kWorkPerPoint = 260;
 
 uint64_t point_bytes(const scan::ScanSchema& schema) {
-  // Position, normal, radius and weight are always there in the end.
+  // Every surfel finally has a position, a normal, a radius and a weight.
   uint64_t bytes = 24 + 12 + 4 + 4 + (schema.color_bits != 0 ? 6 : 0);
   for (const scan::ScalarField& field : schema.scalars) bytes += scan::size_of(field.type);
   return bytes;

@@ -85,8 +85,8 @@ scan::SitePlace PartFinder::place(uint32_t part, const glm::dvec3& point) const 
   if (ends_.size() == 1) return {};
   scan::SitePlace place;
   place.own = part_of(geometry::morton_code(root_, point)) == part;
-  // Neighbours look as far into this part as their halo reaches, and the outer half of a halo has too few neighbours to
-  // say much.
+  // Neighbouring parts see this part only as far as their halo extends. In the outer half of a halo, sites have too few
+  // neighbours for reliable normals.
   const auto near_side = [&](const geometry::Box& cell) {
     const geometry::Box inner = grown(cell, -kHalo / 2);
     const geometry::Box outer = grown(cell, kHalo / 2);

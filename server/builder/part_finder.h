@@ -12,15 +12,15 @@
 
 namespace surfcast::builder {
 
-/// A part's halo reaches so far around each of its cells, in sides of the cell.
+/// Width of a part's halo around each of its cells, as a fraction of the cell's side.
 inline constexpr double kHalo = 1.0 / 16;
 
-/// Finds the parts that a point belongs to: the one whose cell it lies in, and those whose halo it lies in.
+/// Finds the parts of a point: the one whose cell contains it, and those whose halo contains it.
 class PartFinder {
  public:
   PartFinder(std::span<const Part> parts, const geometry::RootCube& root);
 
-  /// Calls `use(part)` for the part of the point, and then for each part whose halo it is in.
+  /// Calls `use(part)` for the part that contains the point, then for each part whose halo contains it.
   template <typename Use>
   void for_each_part(const glm::dvec3& point, uint64_t code, const Use& use) const {
     const uint32_t own = part_of(code);
@@ -32,11 +32,11 @@ class PartFinder {
     }
   }
 
-  /// Where a point that belongs to the part, or to its halo, lies.
+  /// The place of a point of the part or of its halo.
   [[nodiscard]] scan::SitePlace place(uint32_t part, const glm::dvec3& point) const;
 
  private:
-  /// Points are looked up in a grid of 64 cells along each side of the root cube.
+  /// Points are located in a grid of 64 cells along each side of the root cube.
   static constexpr int kBinDepth = 6;
   static constexpr int kBinShift = 3 * (geometry::kMortonDepth - kBinDepth);
 
@@ -45,11 +45,11 @@ class PartFinder {
   [[nodiscard]] bool is_near(uint32_t part, const glm::dvec3& point) const;
 
   geometry::RootCube root_;
-  std::vector<uint64_t> ends_;                         ///< of the parts' Morton codes
-  std::vector<std::vector<geometry::Box>> cells_;      ///< of each part
-  std::vector<std::vector<geometry::Box>> with_halo_;  ///< the same, grown by the halo
+  std::vector<uint64_t> ends_;                         ///< ends of the parts' Morton codes
+  std::vector<std::vector<geometry::Box>> cells_;      ///< for each part
+  std::vector<std::vector<geometry::Box>> with_halo_;  ///< the cells of each part, extended by the halo
   std::vector<uint32_t> first_of_bin_;
-  std::vector<uint32_t> near_bin_;  ///< the parts whose halo meets a bin
+  std::vector<uint32_t> near_bin_;  ///< for each bin, the parts whose halo overlaps it
 };
 
 }  // namespace surfcast::builder

@@ -19,8 +19,8 @@ Part part_of(uint64_t code, int depth, uint64_t count) {
   return {{ldc::key_of_code(code, depth)}, first, first + (uint64_t{1} << shift), count};
 }
 
-/// Adds a cell to the last part if both are children of one cell and fit together; `first_sibling` is the number of the
-/// first part that holds nothing but children of that cell.
+/// Adds a cell to the last part if both have the same parent and fit together. `first_sibling` is the index of the
+/// first part that holds only children of this parent.
 void add_cell(const Part& cell, uint64_t limit, size_t first_sibling, std::vector<Part>& parts) {
   const bool joins = parts.size() > first_sibling && parts.back().cells.back().depth == cell.cells[0].depth &&
                      parts.back().count + cell.count <= limit;
@@ -33,7 +33,7 @@ void add_cell(const Part& cell, uint64_t limit, size_t first_sibling, std::vecto
   parts.back().count += cell.count;
 }
 
-/// Cuts a cell of that depth, which has too many points for one part.
+/// Divides a cell of the given depth that has too many points for one part.
 void cut(Cells cells, int depth, uint64_t limit, std::vector<Part>& parts) {
   size_t first_sibling = parts.size();
   while (!cells.empty()) {

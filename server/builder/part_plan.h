@@ -9,16 +9,16 @@
 
 namespace surfcast::builder {
 
-/// A part of the cloud that is worked on as a whole: octree cells side by side under one parent, or the root alone.
+/// A part of the cloud that is processed as a whole: adjacent octree cells under one parent, or the root alone.
 struct Part {
   std::vector<ldc::OctreeKey> cells;  ///< of one depth, in Morton order
-  uint64_t first_code = 0;            ///< Morton codes of its points, the end excluded
+  uint64_t first_code = 0;            ///< Morton codes of its points: [first_code, end_code)
   uint64_t end_code = 0;
-  uint64_t count = 0;  ///< points, duplicates included
+  uint64_t count = 0;  ///< points, including duplicates
 };
 
-/// Cuts the counted cells into parts of at most `limit` points, in Morton order; a part of one smallest cell may have
-/// more. Siblings next to each other share a part if they fit.
+/// Divides the counted cells into parts of at most `limit` points, in Morton order. A part of one cell of the greatest
+/// depth may have more. Adjacent siblings share a part if they fit.
 std::vector<Part> plan_parts(std::span<const CountedCell> cells, uint64_t limit);
 
 }  // namespace surfcast::builder

@@ -15,7 +15,7 @@ uint64_t bytes_of_row(const scan::ScanSchema& schema) {
   return bytes;
 }
 
-/// Calls `use` with every array of the findings.
+/// Calls `use` with every array of the findings, until one call fails.
 template <typename Findings, typename Use>
 Status for_each_finding(Findings& findings, const Use& use) {
   Status status = use(findings.normals);

@@ -15,40 +15,40 @@
 
 namespace surfcast::builder {
 
-/// Points of a part, its own before those of its halo, each in the order of the input.
+/// The points of a part: own points before those of its halo, both in input order.
 struct PartPoints {
   surfel::SurfelCloud cloud;
   size_t own = 0;
-  std::vector<size_t> inputs;  ///< of each of the cloud's sources: the number of the input
+  std::vector<size_t> inputs;  ///< for each source of the cloud, the index of the input
 };
 
-/// What was found out about the points of a part, for each in the order in which they are loaded.
+/// Results for the points of a part, in the order in which the points are loaded.
 struct PartFindings {
   std::vector<glm::vec3> normals;
   std::vector<float> radii;
   std::vector<uint32_t> trees;
-  std::vector<uint8_t> kept;  ///< 0 for duplicates, which have no other findings
+  std::vector<uint8_t> kept;  ///< 0 for duplicates, whose other entries are unused
 };
 
-/// A name and a lattice for each input.
+/// The name and the lattice of an input.
 struct InputName {
   std::string name;
   std::optional<surfel::Grid> grid;
 };
 
-/// Rows of a piece of the input that belong to a part.
+/// The rows of an input piece that belong to a part.
 struct PartRows {
   uint32_t part = 0;
   bool own = true;
   std::vector<uint32_t> rows;
 };
 
-/// A piece of the input, sorted out by parts and packed.
+/// An input piece, sorted by parts and packed.
 struct PackedPiece {
   struct Run {
     uint32_t part = 0;
     bool own = true;
-    uint64_t offset = 0;  ///< in `bytes`
+    uint64_t offset = 0;  ///< index in `bytes`
     uint64_t rows = 0;
   };
   size_t source = 0;
@@ -58,22 +58,22 @@ struct PackedPiece {
 
 PackedPiece pack_piece(const InputPiece& piece, std::span<const PartRows> parts);
 
-/// Keeps the points of all parts on disk while others are worked on.
+/// Stores the points of all parts on disk.
 class PartStore {
  public:
   PartStore(SpoolFile file, const scan::ScanSchema& schema, std::vector<InputName> inputs, size_t parts);
 
-  /// One thread at a time; the order of the calls is the order of the points.
+  /// Must be called by one thread at a time. The order of the calls is the order of the points.
   Status add(const PackedPiece& piece);
-  [[nodiscard]] uint64_t points(size_t part) const;  ///< halo included
-  /// Any thread.
+  [[nodiscard]] uint64_t points(size_t part) const;  ///< including the halo
+  /// Thread-safe.
   [[nodiscard]] Result<PartPoints> load(size_t part) const;
 
-  /// Keeps the findings of a part. One thread at a time.
+  /// Stores the findings of a part. Must be called by one thread at a time.
   Status keep_findings(size_t part, const PartFindings& findings);
-  /// Any thread.
+  /// Thread-safe.
   [[nodiscard]] Result<PartFindings> load_findings(size_t part) const;
-  /// Gives the room of a part that is done with back. Any thread.
+  /// Releases the disk space of a part that is no longer needed. Thread-safe.
   void release(size_t part) const;
 
  private:
@@ -85,7 +85,7 @@ class PartStore {
   };
   struct Stored {
     std::vector<Extent> extents;
-    uint64_t findings = 0;  ///< where they begin
+    uint64_t findings = 0;  ///< offset in the file
   };
 
   SpoolFile file_;

@@ -16,7 +16,7 @@ tl::unexpected<Error> io_error(const std::filesystem::path& target, const char* 
   return fail(ErrorKind::kIo, target.string() + ": " + what + ": " + std::strerror(code));
 }
 
-/// Not every file system makes files without a name; there, the name is taken away at once.
+/// Creates a file without a name. On file systems without O_TMPFILE, creates a named file and unlinks it at once.
 int open_unnamed(const std::filesystem::path& target) {
   const std::filesystem::path folder = target.parent_path().empty() ? "." : target.parent_path();
   const int unnamed = ::open(folder.c_str(), O_TMPFILE | O_RDWR | O_CLOEXEC, 0600);

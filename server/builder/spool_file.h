@@ -9,8 +9,8 @@
 
 namespace surfcast::builder {
 
-/// A temporary file without a name, in the folder of a target: it takes no room any more once it is closed, however the
-/// program ends. Failures name the target.
+/// A temporary file without a name, in the folder of the target. Its disk space is freed when it is closed, however the
+/// program ends. Errors name the target.
 class SpoolFile {
  public:
   static Result<SpoolFile> create(const std::filesystem::path& target);
@@ -21,11 +21,11 @@ class SpoolFile {
   SpoolFile& operator=(const SpoolFile&) = delete;
   ~SpoolFile();
 
-  /// Appends, and returns where. One thread at a time.
+  /// Appends and returns the offset. Must be called by one thread at a time.
   Result<uint64_t> append(std::span<const std::byte> bytes);
-  /// Fills `bytes` with what lies from `offset` on. Any thread.
+  /// Fills `bytes` from `offset` on. Thread-safe.
   Status read(uint64_t offset, std::span<std::byte> bytes) const;
-  /// Gives the room of some bytes back to the file system, where it can take holes. Any thread.
+  /// Releases disk space, if the file system supports holes. Thread-safe.
   void release(uint64_t offset, uint64_t size) const;
   [[nodiscard]] uint64_t size() const { return size_; }
 

@@ -7,7 +7,7 @@
 
 namespace surfcast::builder {
 
-/// Tells the progress of stages that follow each other, and how long each took.
+/// Reports the progress of consecutive stages and records the duration of each.
 class StageClock {
  public:
   StageClock(const BuildProgress& progress, BuildReport& report) : progress_(progress), report_(report) {}
@@ -15,7 +15,7 @@ class StageClock {
   StageClock& operator=(const StageClock&) = delete;
   ~StageClock() { end(); }
 
-  /// Ends the stage before, and begins one of so many steps.
+  /// Ends the previous stage and begins one of `steps` steps.
   void begin(const char* stage, size_t steps) {
     end();
     stage_ = stage;
@@ -24,7 +24,7 @@ class StageClock {
     stopwatch_ = {};
     progress_({stage_, 0, report_.scan.points_read});
   }
-  /// Any thread, when a step is done.
+  /// Call when a step is complete. Thread-safe.
   void step() {
     const std::lock_guard lock(mutex_);
     ++done_;
