@@ -9,9 +9,9 @@
 namespace surfcast::selection {
 namespace {
 
-/// Kernels are cut, and discs end, well within two radii.
+/// Kernel cutoffs and disc edges lie within two radii.
 constexpr double kReachInRadii = 2;
-/// Stored normals are quantised after the cone was measured; this holds their error many times, radians.
+/// Normals are quantised after the cone was computed. The slack is many times the quantisation error, radians.
 constexpr double kConeSlack = 0.005;
 
 void include(BlockHull& hull, const BlockHull& child) {
@@ -31,7 +31,7 @@ bool faces_away(const BlockHull& hull, const glm::dvec3& eye) {
   return angle + std::asin(radius / distance) + double{hull.normals->half_angle} + kConeSlack < std::numbers::pi / 2;
 }
 
-/// Smallest cosine of the angle to the view direction that a point of the box has, and a pixel of the picture.
+/// Lower bound of the cosine to the view direction, for points of the box that are visible in the picture.
 double min_cosine(const geometry::Box& box, const geometry::CameraFrame& frame) {
   const double corner = 1 / std::hypot(1, 0.5 * frame.width / frame.eta, 0.5 * frame.height / frame.eta);
   const glm::dvec3 centre = frame.to_camera(box.centre());

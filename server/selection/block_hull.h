@@ -10,41 +10,44 @@
 
 namespace surfcast::selection {
 
-/// What a block and everything below it lies in. A coarse block averages its children, so its own bounds and cone need
-/// not hold theirs; whoever leaves a whole subtree out must ask these.
+/// Bounds of a block and of all its descendants. A coarse block averages its children, so its own bounds and cone need
+/// not contain theirs. Use the hull to cull a whole subtree.
 struct BlockHull {
   geometry::Box centres;                        ///< of all surfel centres, world units
-  double reach = 0;                             ///< largest radius: what `centres` must grow by to hold the discs
-  std::optional<geometry::NormalCone> normals;  ///< of all normals; none when they may point anywhere
+  double reach = 0;                             ///< largest radius: extends `centres` to hold the discs
+  std::optional<geometry::NormalCone> normals;  ///< of all normals; none when they may point in any direction
 };
 
 /// One hull for each block of the tree.
 std::vector<BlockHull> block_hulls(const ldc::BlockTree& tree);
 
-/// False only if nothing within the hull can touch a pixel of the frustum's rectangle or face the eye: it lies outside,
-/// or all its normals point away (Pfister 2000, visibility cones).
+/// Conservative culling: false only if no part of the hull touches a pixel of the frustum's rectangle, or all its
+/// normals face away from the eye (visibility cones, Pfister 2000).
 bool may_be_visible(const BlockHull& hull, const Frustum& frustum, const glm::dvec3& eye);
 
-/// The largest distance between neighbouring samples of a block, in pixels.
+/// An upper bound of the distance between neighbouring samples of a block on the screen, in pixels.
 ///
-/// Pfister 2000 warps the block's box to the screen and divides its longest diagonal by the number b of grid lines: the
-/// box is b samples wide. The boxes of leaves are as wide as their surfels happen to reach, so here the sampling
-/// distance h itself is projected: h = spacing / 1.08, the radius of an evenly sampled surface being 1.08 h. At the
-/// point p a length h covers at most eta h / (|p| cos(t)^2) pixels, where t is the angle between p and the view
-/// direction (the larger singular value of the projection's Jacobian). |p| is taken at the point of the box nearest to
-/// the eye and cos(t) at the most oblique ray of the picture that the box's sphere lets in, so every sample of the
-/// block stays below the result. Nearer than h to the eye, or around it, |p| = h: the result is finite and larger than
-/// for any box that the eye is outside of.
+/// Pfister 2000 warps the block's box to the screen and divides its longest diagonal by the number b of grid lines,
+/// because the box is b samples wide. Here the boxes of leaves have the extent of their surfels, so the sampling
+/// distance h is projected instead: h = spacing / kRadiusOverSpacing (surfel/even_sampling.h). A length h at the point
+/// p covers at most eta h / (|p| cos(t)^2) pixels. t is the angle between p and the view direction, and the bound is
+/// the larger singular value of the projection's Jacobian. |p| is taken at the point of the box nearest to the eye.
+/// cos(t) is taken at the most oblique ray of the picture that meets the box's bounding sphere. So every sample of the
+/// block stays below the result.
+///
+/// If the eye is in the box or nearer to it than h, |p| = h. The result is then finite, and larger than for any box
+/// that does not contain the eye.
 double projected_spacing(const ldc::BlockEntry& block, const geometry::CameraFrame& frame);
 
-/// Radii of evenly sampled surfaces, world units.
+/// A range of surfel radii on evenly sampled surfaces, world units.
 struct RadiusRange {
   double least = 0;
   double largest = 0;
 };
 
-/// What radius a surface in the box has whose samples are `spacing` pixels apart, by the same measure: at p it is
-/// 1.08 spacing |p| cos(t)^2 / eta. No point of the box in front of the eye lies outside the range.
+/// The radii of surfaces in the box whose samples are `spacing` pixels apart on the screen. It inverts
+/// projected_spacing: the radius at p is kRadiusOverSpacing spacing |p| cos(t)^2 / eta. The range is valid for all
+/// points of the box in front of the eye.
 RadiusRange radii_at_spacing(const geometry::Box& box, const geometry::CameraFrame& frame, double spacing);
 
 }  // namespace surfcast::selection

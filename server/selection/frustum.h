@@ -8,14 +8,14 @@
 
 namespace surfcast::selection {
 
-/// What a rectangle of pixels sees: the four planes through the eye and the sides of the rectangle, and the eye plane.
-/// Planes are stated relative to the eye, so that world coordinates of any size keep their precision.
+/// The view frustum of a rectangle of pixels: four planes through the eye and the sides of the rectangle, and the plane
+/// through the eye. Planes are relative to the eye, so precision does not depend on the size of world coordinates.
 class Frustum {
  public:
   /// The rectangle [x0, x1] x [y0, y1], pixels from the top left corner.
   Frustum(const geometry::CameraFrame& frame, double x0, double y0, double x1, double y1);
 
-  /// False only if the box, grown by `margin` world units on all sides, is surely outside.
+  /// Conservative: false only if the box, grown by `margin` world units on all sides, is outside.
   [[nodiscard]] bool may_see(const geometry::Box& box, double margin) const;
 
  private:

@@ -9,9 +9,9 @@ namespace surfcast::selection {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// What was refined counts as so much coarser than it is.
+/// Hysteresis: the projected spacing of blocks that were refined before is multiplied by this factor.
 constexpr double kReluctance = 1.25;
-/// The prefilter spreads a surfel over a few pixels more than its disc covers.
+/// The prefilter extends a splat by up to this many pixels beyond its disc.
 constexpr double kPrefilterPixels = 4;
 
 Frustum frustum_of(const geometry::CameraFrame& frame, double x0, double y0, double x1, double y1) {
@@ -44,10 +44,10 @@ class Selector {
   enum class Fate : uint8_t { kUnseen, kKept, kRefined };
   struct State {
     Fate fate = Fate::kUnseen;
-    bool available = false;  ///< resident blocks cover all of it that is in view
+    bool available = false;  ///< resident blocks cover all of its visible part
     bool by_children = false;
     double spacing = 0;          ///< projected, pixels
-    double urgency = kInfinity;  ///< least spacing of its ancestors
+    double urgency = kInfinity;  ///< smallest projected spacing of its ancestors, pixels
   };
   struct Candidate {
     double spacing;
@@ -73,7 +73,7 @@ class Selector {
     for (uint32_t i = 0; i < children.count; ++i) action(children.first + i);
   }
 
-  /// Takes a block into the target.
+  /// Adds a block to the target.
   void keep(uint32_t block) {
     State& state = states_[block];
     state.fate = Fate::kKept;
@@ -118,7 +118,7 @@ class Selector {
     for (const uint32_t child : seen) keep(child);
   }
 
-  /// From the leaves up: which blocks are covered by what is resident. Ends with the block's own, if it is.
+  /// Bottom up: finds the blocks that resident descendants, or the block itself, cover.
   void find_stand_ins() {
     for (auto block = seen_.rbegin(); block != seen_.rend(); ++block) {
       State& state = states_[*block];
@@ -134,7 +134,8 @@ class Selector {
     }
   }
 
-  /// Looks for resident blocks below one that is not, and enters them as refinements if they cover it in the budget.
+  /// Tries to cover a block that is not resident by resident descendants within the budget. If they do, adds them to
+  /// finer_.
   bool covered_by_finer(uint32_t block) {
     std::vector<uint32_t> found;
     std::vector<uint32_t> open{block};
@@ -159,7 +160,7 @@ class Selector {
     return true;
   }
 
-  /// From the roots down: the first blocks that can be drawn.
+  /// Top down: selects the first blocks on each path that can be drawn.
   void draw() {
     std::vector<bool> reached(blocks_.size());
     for (const uint32_t root : tree_.tree.roots()) reached[root] = true;
@@ -180,7 +181,7 @@ class Selector {
     add_finer(reached);
   }
 
-  /// Descendants that stand in for a block that is reached.
+  /// Adds the descendants that stand in for blocks on the drawn cut.
   void add_finer(const std::vector<bool>& reached) {
     for (const uint32_t block : finer_) {
       uint32_t above = block;
@@ -209,10 +210,10 @@ class Selector {
   std::span<const uint32_t> was_refined_;
 
   std::vector<State> states_;
-  std::vector<uint32_t> seen_;  ///< in view and reached by the refinement
+  std::vector<uint32_t> seen_;  ///< in view, and in the target or refined
   std::priority_queue<Candidate> candidates_;
-  uint64_t used_ = 0;            ///< of the budget
-  std::vector<uint32_t> finer_;  ///< blocks below the target that stand in for some of it
+  uint64_t used_ = 0;            ///< surfels of the budget
+  std::vector<uint32_t> finer_;  ///< descendants that stand in for blocks of the target
   BlockSelection selection_;
 };
 
