@@ -6,7 +6,7 @@ namespace surfcast::picture {
 
 enum class FileFormat { kPng, kJpeg, kWebp, kExr };
 
-/// The pixel format that a picture is rendered in for a file format: EXR holds measured light, the others pictures.
+/// The pixel format in which a picture is rendered for a file format: linear light for EXR, sRGB for the others.
 [[nodiscard]] inline PixelFormat pixel_format_of(FileFormat format) {
   return format == FileFormat::kExr ? PixelFormat::kLinearFloat : PixelFormat::kSrgb8;
 }
