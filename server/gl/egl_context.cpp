@@ -16,7 +16,7 @@ bool has_word(const char* list, std::string_view word) {
   return list != nullptr && (" " + std::string(list) + " ").find(" " + std::string(word) + " ") != std::string::npos;
 }
 
-/// libepoxy 1.5 resolves eglGetPlatformDisplay only once a display exists, so the EXT entry point is the one to use.
+/// Uses the EXT entry point: libepoxy 1.5 resolves eglGetPlatformDisplay only once a display exists.
 EGLDisplay platform_display(EGLenum platform, void* native) {
   EGLDisplay display = eglGetPlatformDisplayEXT(platform, native, kNoAttributes);
   if (display == EGL_NO_DISPLAY) return EGL_NO_DISPLAY;
@@ -36,7 +36,7 @@ bool is_software_device(EGLDeviceEXT device) {
   return has_word(eglQueryDeviceStringEXT(device, EGL_EXTENSIONS), "EGL_MESA_device_software");
 }
 
-/// A context on `display` made current without a surface, or EGL_NO_CONTEXT.
+/// Makes a context on `display` current without a surface. EGL_NO_CONTEXT on failure.
 EGLContext current_context(EGLDisplay display) {
   if (!eglBindAPI(EGL_OPENGL_API)) return EGL_NO_CONTEXT;
   constexpr std::array<EGLint, 7> kAttributes = {

@@ -7,13 +7,15 @@
 
 namespace surfcast::gl {
 
-/// A current OpenGL 4.5 core context without a window. Belongs to the thread that created it.
+/// A current OpenGL 4.5 core context without a window. It belongs to the thread that created it.
 ///
-/// The device is chosen so: the one asked for; else the first hardware device of EGL_EXT_device_enumeration that gives
-/// a context (NVIDIA's EGL, or a DRM device of Mesa); else Mesa's surfaceless platform, which computes on the CPU.
+/// The device is the requested one. Without a request it is the first hardware device of EGL_EXT_device_enumeration
+/// that provides a context (NVIDIA's EGL, or a DRM device of Mesa). If there is none, Mesa's surfaceless platform is
+/// used, which falls back to software rendering.
 class EglContext {
  public:
-  /// `gpu` is an index into the EGL devices of the machine; -1 chooses.
+  /// `gpu` is an index into the EGL devices of the machine, or -1 for the default choice. Fails with kUnavailable if
+  /// there is no such device or no OpenGL 4.5 core context.
   static Result<std::unique_ptr<EglContext>> create(int gpu);
   ~EglContext();
   EglContext(const EglContext&) = delete;
@@ -22,7 +24,7 @@ class EglContext {
   [[nodiscard]] const std::string& vendor() const { return vendor_; }
   [[nodiscard]] const std::string& renderer() const { return renderer_; }
   [[nodiscard]] const std::string& version() const { return version_; }
-  /// True when pixels are computed by the CPU.
+  /// True for a software renderer, which computes pixels on the CPU.
   [[nodiscard]] bool software() const { return software_; }
 
  private:

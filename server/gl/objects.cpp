@@ -8,7 +8,7 @@ namespace {
 Buffer make_storage(const char* label, const void* content, size_t bytes, GLbitfield flags) {
   GLuint name = 0;
   glCreateBuffers(1, &name);
-  // GL refuses empty storage; one word costs nothing and keeps every buffer bindable.
+  // GL rejects empty storage. Four bytes cost nothing, and every buffer stays bindable.
   glNamedBufferStorage(name, static_cast<GLsizeiptr>(std::max<size_t>(bytes, 4)), bytes == 0 ? nullptr : content,
                        flags);
   glObjectLabel(GL_BUFFER, name, -1, label);

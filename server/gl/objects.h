@@ -8,7 +8,7 @@
 
 namespace surfcast::gl {
 
-/// Move-only owner of one GL name. `Traits` says how it is deleted.
+/// Move-only owner of one GL name. `Traits::destroy` deletes it.
 template <typename Traits>
 class Object {
  public:
@@ -58,21 +58,21 @@ using VertexArray = Object<VertexArrayTraits>;
 using Program = Object<ProgramTraits>;
 using Query = Object<QueryTraits>;
 
-/// Immutable storage, filled from `content`, and labelled for debuggers.
+/// A buffer with immutable storage filled from `content`, with a debug label.
 Buffer make_buffer(const char* label, std::span<const std::byte> content, GLbitfield flags = 0);
-/// Immutable storage with undefined content.
+/// A buffer with immutable storage of undefined content.
 Buffer make_buffer(const char* label, size_t bytes, GLbitfield flags = 0);
-/// Whether buffers can be made of the program's own memory without a copy.
+/// True if the driver can make buffers of client memory without a copy (GL_AMD_pinned_memory).
 bool can_adopt_memory();
-/// A buffer of that very memory, which outlives it. Needs can_adopt_memory().
+/// A buffer whose storage is `memory` itself, which must outlive the buffer. Requires can_adopt_memory().
 Buffer adopt_memory(const char* label, std::span<std::byte> memory);
 Texture make_texture_2d(const char* label, GLenum internal_format, int width, int height);
-/// A buffer seen as a one-dimensional array of texels.
+/// A buffer texture: the buffer as a one-dimensional array of texels.
 Texture make_buffer_texture(const char* label, GLenum internal_format, const Buffer& buffer);
 VertexArray make_empty_vertex_array(const char* label);
 Framebuffer make_framebuffer(const char* label);
 
-/// Names a pass in debuggers for the lifetime of the object.
+/// A debug group: names a pass in GL debuggers for the lifetime of the object.
 class DebugGroup {
  public:
   explicit DebugGroup(const char* name) { glPushDebugGroup(GL_DEBUG_SOURCE_APPLICATION, 0, -1, name); }

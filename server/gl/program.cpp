@@ -34,7 +34,7 @@ Result<Program> make_program(const char* label, std::initializer_list<StageSourc
     Result<GLuint> shader = compile(stage, defines);
     if (!shader) return fail(std::move(shader.error()));
     glAttachShader(program.name(), *shader);
-    glDeleteShader(*shader);  // lives on while it is attached
+    glDeleteShader(*shader);  // deleted when it is detached
   }
   glLinkProgram(program.name());
   glObjectLabel(GL_PROGRAM, program.name(), -1, label);

@@ -16,8 +16,8 @@ struct StageSource {
   std::string_view source;
 };
 
-/// Compiles and links. `defines` is text such as "#define LIT 1\n" and stands before every source. The message of a
-/// failure holds the driver's log.
+/// Compiles and links a program. `defines` is text such as "#define LIT 1\n" and is placed before every source. The
+/// error message of a failure contains the driver's log.
 Result<Program> make_program(const char* label, std::initializer_list<StageSource> stages,
                              const std::string& defines = {});
 
