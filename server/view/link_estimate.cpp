@@ -7,8 +7,8 @@ namespace surfcast::view {
 namespace {
 
 constexpr size_t kSamples = 24;
-constexpr double kLarger = 1.5;    // than the quickest message, for the difference to say something
-constexpr double kNewShare = 0.3;  // of a new slope against what was known
+constexpr double kLarger = 1.5;    // times the bytes of the quickest message; smaller differences are noise
+constexpr double kNewShare = 0.3;  // weight of a new slope against the previous estimate
 
 double milliseconds_between(ViewTime from, ViewTime to) {
   return std::chrono::duration<double, std::milli>(to - from).count();
@@ -31,7 +31,7 @@ std::optional<double> LinkEstimate::acknowledge(uint64_t frame, double client_ms
   on_the_way_.erase(found);
   const double elapsed = milliseconds_between(message.sent, now);
   const ViewTime arrival = later(now, -(std::isfinite(client_ms) ? std::clamp(client_ms, 0.0, elapsed) : 0.0));
-  // A message that was sent while another one was on the line began to move when that one was through.
+  // A message sent while another one occupied the link starts when the other one has arrived.
   ViewTime begin = message.sent;
   if (last_arrival_) begin = std::max(begin, later(*last_arrival_, -round_trip_ms()));
   last_arrival_ = arrival;

@@ -7,7 +7,7 @@
 namespace surfcast::view {
 namespace {
 
-/// A setting and what it costs in relation to others of its ladder.
+/// A setting and its cost relative to the other rungs of its ladder.
 struct DrawRung {
   double scale = 1;
   double spacing = 1;
@@ -19,8 +19,9 @@ struct LinkRung {
   double cost = 1;
 };
 
-// Splats weigh by their number, which falls with the square of the spacing, and pixels by theirs. At a spacing of one
-// pixel the splats of software, where this matters, take ten times as long as the pixels (docs/laboratory.md).
+// The cost of splats is proportional to their number, which falls with the square of the spacing; that of pixels to
+// their number. With software rendering, where this matters, and a spacing of one pixel, the splats take ten times as
+// long as the pixels (docs/laboratory.md).
 constexpr double draw_cost(double scale, double spacing) {
   constexpr double kSplats = 10.0;
   return scale * scale * (1 + kSplats / (spacing * spacing));
@@ -30,15 +31,15 @@ constexpr DrawRung draw_rung(double scale, double spacing) {
   return {scale, spacing, draw_cost(scale, spacing)};
 }
 
-// A smaller picture with its surfels as dense looks better than a large one with few, until it is half as large. Each
-// rung costs a fifth to a third less than the one before, so that little of the time is left over on any.
+// A smaller picture with dense surfels looks better than a large one with sparse surfels, down to half the size. Each
+// rung costs a fifth to a third less than the one before, so no rung leaves much of the time unused.
 constexpr std::array kDrawRungs{
     draw_rung(1, 1),       draw_rung(1, 1.2),    draw_rung(1, 1.5),      draw_rung(0.875, 1.5), draw_rung(0.75, 1.5),
     draw_rung(0.75, 1.75), draw_rung(0.75, 2),   draw_rung(0.625, 1.75), draw_rung(0.5, 1.5),   draw_rung(0.5, 1.75),
     draw_rung(0.5, 2),     draw_rung(0.4375, 2), draw_rung(0.4375, 2.5), draw_rung(0.375, 2.5), draw_rung(0.3125, 2.5),
     draw_rung(0.25, 2),    draw_rung(0.25, 2.5), draw_rung(0.25, 3)};
 
-/// Whether each rung is cheaper than the one before it.
+/// True if each rung is cheaper than the one before.
 constexpr bool descends() {
   for (size_t i = 1; i < kDrawRungs.size(); ++i) {
     if (kDrawRungs[i].cost >= kDrawRungs[i - 1].cost) return false;
@@ -47,7 +48,7 @@ constexpr bool descends() {
 }
 static_assert(descends());
 
-// Bytes of a JPEG in relation to those at quality 85, times the share of the pixels.
+// Relative size of the JPEG: bytes relative to quality 85, times the share of pixels.
 constexpr std::array<LinkRung, 9> kLinkRungs{{{1, 85, 1.0},
                                               {1, 75, 0.75},
                                               {1, 65, 0.62},
@@ -58,8 +59,8 @@ constexpr std::array<LinkRung, 9> kLinkRungs{{{1, 85, 1.0},
                                               {0.375, 45, 0.08},
                                               {0.25, 45, 0.04}}};
 
-constexpr double kFull = 0.9;   // of the time of a frame may be used up
-constexpr double kRoom = 0.85;  // and a better rung is tried if it is expected to take this much of that
+constexpr double kFull = 0.9;   // usable share of the frame time
+constexpr double kRoom = 0.85;  // a better rung is tried if its predicted time is below this share of the usable time
 constexpr int kSlowFrames = 2;
 constexpr int kFramesBeforeClimb = 6;
 constexpr int kMaxFramesBeforeClimb = 192;
@@ -69,7 +70,7 @@ double predicted(std::span<const Rung> rungs, size_t from, size_t to, double ms)
   return ms * rungs[to].cost / rungs[from].cost;
 }
 
-/// The best rung that is expected to keep within the time, or the last.
+/// The best rung whose predicted time is within the budget, or the last rung.
 template <typename Rung>
 size_t affordable(std::span<const Rung> rungs, size_t from, double ms, double budget) {
   size_t rung = 0;
@@ -114,7 +115,7 @@ LadderState climb(LadderState state, std::span<const Rung> rungs, double ms, dou
 
 template <typename Rung>
 LadderState step(LadderState state, std::span<const Rung> rungs, double ms, double budget) {
-  // A rung that has been kept for long was no mistake: the next climb is as easy as the first.
+  // A rung kept for this long was no mistake: the next raise is as easy as the first.
   if (++state.since_climb > 2 * kMaxFramesBeforeClimb) state.frames_before_climb = kFramesBeforeClimb;
   return ms > budget ? descend(state, rungs, ms, budget) : climb(state, rungs, ms, budget);
 }

@@ -4,45 +4,44 @@
 
 namespace surfcast::view {
 
-/// How a frame for motion is drawn and encoded.
+/// How a motion frame is drawn and encoded.
 struct MotionQuality {
-  double scale = 1;       ///< of width and height
-  double spacing = 1;     ///< projected spacing of surfels to stop at, pixels of the smaller picture
+  double scale = 1;       ///< factor on width and height
+  double spacing = 1;     ///< projected spacing at which refinement stops, pixels of the scaled picture
   int jpeg_quality = 80;  ///< 1 to 100
 };
 
-/// What the last frame for motion took, milliseconds.
+/// Time spent on the last motion frame, milliseconds.
 struct MotionCost {
-  double draw = 0;  ///< waiting for the render thread and being drawn
+  double draw = 0;  ///< waiting for the render thread, and drawing
   double encode = 0;
-  double transfer = 0;  ///< that the frame kept the line busy
-  double client = 0;    ///< from its arrival to its being painted
+  double transfer = 0;  ///< time that the frame occupied the link
+  double client = 0;    ///< from arrival to display
 };
 
-/// A place on a ladder of settings, from the best (0) to the cheapest, and how often it was too expensive or cheaper
-/// than it need be.
+/// The position on a ladder of settings, from the best (rung 0) to the cheapest, and the evidence for leaving it.
 struct LadderState {
   size_t rung = 0;
-  int slow = 0;                 ///< frames in a row that took too long
-  int fast = 0;                 ///< frames in a row after which a better rung could be afforded
-  double least_ms = 0;          ///< of the frames counted in `slow` or the most of those in `fast`
-  int frames_before_climb = 6;  ///< frames in `fast` before a better rung is tried
-  int since_climb = 0;          ///< frames since a better rung was tried
+  int slow = 0;         ///< consecutive frames over the time budget
+  int fast = 0;         ///< consecutive frames that leave room for a better rung
+  double least_ms = 0;  ///< the least time of the frames counted in `slow`, or the greatest of those counted in `fast`
+  int frames_before_climb = 6;  ///< value of `fast` at which a better rung is tried
+  int since_climb = 0;          ///< frames since a better rung was last tried
 };
 
-/// Drawing and the line are adapted each by itself; the smaller of the two scales is drawn.
+/// Drawing and the link are adapted independently. The smaller of the two scales is used.
 struct QualityState {
   LadderState draw;
   LadderState link;
 };
 
-/// Where a view begins, before anything has been measured.
+/// The initial state, before any measurement.
 QualityState first_quality();
 
-/// The next state after a frame that was drawn as the state says. What goes on at a time (drawing, encoding, transfer,
-/// painting of successive frames) must each fit in the time of a frame at `target_fps`. One frame that took long
-/// changes nothing; two in a row lower the quality to what they would have afforded; to raise it takes several that
-/// leave room, and more of them each time that raising it turned out too much.
+/// The next state after a frame that was drawn with the given state. Drawing, encoding, transfer and display of
+/// successive frames overlap, so each of them separately must fit in the frame time of `target_fps`. One slow frame
+/// changes nothing. Two in a row lower the quality to the best rung that fits the faster of the two. Raising it takes
+/// several frames that leave room, and twice as many each time that a raise turned out too expensive.
 QualityState adapt(const QualityState& state, const MotionCost& cost, double target_fps);
 
 MotionQuality quality_of(const QualityState& state);

@@ -15,7 +15,7 @@ void ViewPlan::update(bool changed, bool moving, ViewTime now) {
     first_sample_.reset();
     drawn_ = false;
   }
-  // A hand that stops without a word rests some time after its last update, one that says so from its last movement.
+  // Without a report of its end, a motion ends some time after its last update. With one, it ended at its last change.
   rest_at_ = moving ? now + timing_.grace : changed_at_;
 }
 
@@ -24,8 +24,8 @@ const ViewPlan::Job* ViewPlan::find(uint64_t frame) const {
   return found == jobs_.end() ? nullptr : &*found;
 }
 
-/// One frame may be drawn while another is encoded or on its way: more would only show older pictures. What is on its
-/// way of a frame at rest delays the sending but not the drawing.
+/// One frame may be drawn while another is encoded or in flight; more would only show older pictures. Frames at rest
+/// that are in flight delay sending, but not drawing.
 bool ViewPlan::room_for_motion() const {
   return jobs_.size() + motion_unacknowledged_ < kMaxUnacknowledged;
 }
@@ -35,7 +35,7 @@ FrameKind ViewPlan::wanted() const {
   return progress_ == Progress::kRefinedComplete ? FrameKind::kFinal : FrameKind::kRefined;
 }
 
-/// When the next frame of a picture at rest is to be drawn.
+/// When the next frame of the picture is due.
 std::optional<ViewTime> ViewPlan::due(ViewTime rest) const {
   switch (progress_) {
     case Progress::kNone:
@@ -138,14 +138,15 @@ void ViewPlan::record_missing(uint32_t missing, ViewTime now) {
 
 namespace {
 
-/// Two frames at rest are so many drawing times apart, since two thirds of the time are for what blocks need. As long a
-/// wait for the rest of the blocks is worth it: drawing holds them up, and takes longer the more there is to show.
+/// Minimum pause between two frames at rest, in drawing times, so two thirds of the time are left for loading blocks.
+/// The same time is the longest wait for the remaining blocks: drawing stalls loading, and takes longer the more it
+/// shows.
 constexpr double kPauses = 2;
 
 }  // namespace
 
-/// Before any frame of a rest blocks are waited for a moment rather than drawn without; and longer, if at the pace so
-/// far all will be there soon.
+/// Before the first frame at rest, waits for all blocks until `final` after the start of rest. Waits longer only if all
+/// blocks will arrive soon at the rate measured so far.
 uint32_t ViewPlan::max_missing_before_first_draw(ViewTime now) const {
   constexpr uint32_t kAny = std::numeric_limits<uint32_t>::max();
   if (now < rest_at_ + timing_.final) return 0;

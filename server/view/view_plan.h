@@ -12,73 +12,73 @@ using ViewTime = std::chrono::steady_clock::time_point;
 
 /// How a frame of a view is drawn.
 enum class FrameKind {
-  kMotion,   ///< for motion: small, coarse, per-surfel weights, JPEG
-  kRefined,  ///< at rest: all that was asked for, of the blocks that are there, JPEG
-  kFinal,    ///< at rest: the very answer to the request for that picture
+  kMotion,   ///< in motion: small, coarse, per-surfel weights, JPEG
+  kRefined,  ///< at rest: all parameters as requested, resident blocks only, JPEG
+  kFinal,    ///< at rest: exactly the picture that was requested
 };
 
 struct ViewTiming {
-  std::chrono::milliseconds grace{250};         ///< after the last update of a motion that was not said to have ended
-  std::chrono::milliseconds refined{150};       ///< from the beginning of rest to kRefined
-  std::chrono::milliseconds final{500};         ///< from the beginning of rest to kFinal
-  std::chrono::milliseconds block_wait{2500};   ///< for blocks, before it is known how long drawing takes
-  std::chrono::milliseconds poll_interval{50};  ///< between two looks at whether missing blocks have come
-  std::chrono::milliseconds busy_retry{500};    ///< after a frame that the server was too busy to draw
-  std::chrono::milliseconds missing_block_timeout{5000};  ///< without any block: those that are missing will not come
+  std::chrono::milliseconds grace{250};         ///< from the last update to rest, if no end of the motion is reported
+  std::chrono::milliseconds refined{150};       ///< from the start of rest to kRefined
+  std::chrono::milliseconds final{500};         ///< from the start of rest to kFinal
+  std::chrono::milliseconds block_wait{2500};   ///< longest wait for blocks while the drawing time is unknown
+  std::chrono::milliseconds poll_interval{50};  ///< between two checks whether missing blocks have arrived
+  std::chrono::milliseconds busy_retry{500};    ///< after a frame that a busy server refused to draw
+  std::chrono::milliseconds missing_block_timeout{5000};  ///< without any new block: the missing ones are given up
 };
 
-/// Frames, or pieces of one, that may be on their way without having been acknowledged.
+/// The most frames, or pieces of one, that may be unacknowledged.
 inline constexpr size_t kMaxUnacknowledged = 2;
 
-/// What came of drawing a frame.
+/// The outcome of drawing a frame.
 enum class FrameResult {
-  kNothing,     ///< nothing to show yet: no block was there, or none that the frame before did not have
-  kImprovable,  ///< blocks are missing that are still to come
-  kComplete,    ///< nothing better will come of drawing it again in this way
+  kNothing,     ///< nothing new to display: no block is resident, or none that the previous frame lacked
+  kImprovable,  ///< missing blocks are still loading
+  kComplete,    ///< redrawing in this way would not improve the frame
 };
 
-/// What a view does next: draw, or nothing before that time or an event.
+/// The next action of a view: draw now, or wait until a time or an event.
 struct ViewStep {
   std::optional<FrameKind> draw;
   std::optional<ViewTime> wake_at;
 };
 
-/// Decides when a view draws what, from the times of its updates, drawings and acknowledgements. It knows pictures only
-/// by their number: what is to be seen now is the newest one.
+/// Schedules the frames of a view, from the times of its updates, drawings and acknowledgements. It identifies pictures
+/// by their number; the newest picture is the one to display.
 class ViewPlan {
  public:
   explicit ViewPlan(const ViewTiming& timing) : timing_(timing) {}
 
-  /// An update has come; `changed`: it shows another picture than the one before.
+  /// An update has arrived. `changed`: its picture differs from the previous one.
   void update(bool changed, bool moving, ViewTime now);
   [[nodiscard]] ViewStep next(ViewTime now) const;
 
-  /// Drawing a frame of the newest picture begins.
+  /// Drawing of a frame of the newest picture starts.
   void begin(uint64_t frame, FrameKind kind);
-  /// A frame whose drawing had not begun in truth will show the newest picture instead.
+  /// A frame that is still queued will show the newest picture instead of its own.
   void retarget(uint64_t frame);
-  /// The youngest frame for motion that is being drawn or waits for it, if it shows an older picture than the newest.
+  /// The youngest motion frame that is queued or being drawn, if it shows an older picture than the newest.
   [[nodiscard]] std::optional<uint64_t> retargetable() const;
-  /// Frames at rest that are being drawn for a picture which is not the newest any more.
+  /// Frames at rest in progress whose picture is not the newest any more.
   [[nodiscard]] std::vector<uint64_t> outdated() const;
-  /// A frame will not come.
+  /// The frame will not be delivered.
   void drop(uint64_t frame);
-  /// A frame will not come because the server is busy: the view gives it some time.
+  /// The server was too busy to draw the frame: the view retries after ViewTiming::busy_retry.
   void refuse(uint64_t frame, ViewTime now);
   void finish(uint64_t frame, FrameResult result, ViewTime now);
-  /// A frame at rest of the newest picture was drawn in that time, and so many blocks would make it better.
+  /// A frame at rest of the newest picture was drawn in `draw_ms`, with `missing` blocks missing.
   void record_draw(double draw_ms, uint32_t missing, ViewTime now);
-  /// So many blocks would make the newest picture better.
+  /// The newest picture now has `missing` blocks missing.
   void record_missing(uint32_t missing, ViewTime now);
-  /// How many blocks may be missing for a frame at rest to be worth drawing although more are still to come: a frame of
-  /// a large model takes seconds, and one for each few blocks would only delay the one that shows them all.
+  /// The most missing blocks with which a frame at rest is worth drawing while they are still loading. A frame of a
+  /// large model takes seconds; one frame for every few blocks would only delay the complete one.
   [[nodiscard]] uint32_t max_missing_blocks(ViewTime now) const;
   [[nodiscard]] bool is_pending(uint64_t frame) const;
 
-  /// A message has been sent; `last` of its frame.
+  /// A message has been sent. `last`: it is the last one of its frame.
   void send(FrameKind kind, bool last);
   void acknowledge(FrameKind kind);
-  /// The rest of a frame will not be sent.
+  /// The remaining pieces of a frame will not be sent.
   void stop_sending() { sending_ = false; }
   [[nodiscard]] bool may_send() const { return motion_unacknowledged_ + still_unacknowledged_ < kMaxUnacknowledged; }
 
@@ -88,7 +88,7 @@ class ViewPlan {
     FrameKind kind = FrameKind::kMotion;
     uint64_t picture = 0;
   };
-  /// The best that has been drawn of the newest picture.
+  /// The best frame drawn so far of the newest picture.
   enum class Progress { kNone, kMotion, kRefined, kRefinedComplete, kFinal };
 
   [[nodiscard]] const Job* find(uint64_t frame) const;
@@ -104,18 +104,18 @@ class ViewPlan {
   ViewTime rest_at_;
   ViewTime next_poll_at_;
   ViewTime improved_at_;
-  ViewTime not_before_;  ///< nothing is drawn: the server is busy
-  /// Blocks at a look at the newest picture.
+  ViewTime not_before_;  ///< no frame is drawn before this time because the server is busy
+  /// The number of missing blocks of the newest picture at one time.
   struct MissingSample {
     uint32_t missing = 0;
     ViewTime at;
   };
   std::optional<MissingSample> first_sample_;
   MissingSample last_sample_;
-  bool drawn_ = false;  ///< a frame at rest of the newest picture
-  ViewTime drawn_at_;   ///< the last one, in the time below
+  bool drawn_ = false;  ///< a frame at rest of the newest picture has been drawn
+  ViewTime drawn_at_;   ///< when the last such frame was drawn; its duration and missing blocks follow
   double draw_ms_ = 0;
-  uint32_t drawn_missing_ = 0;  ///< blocks, by the last frame at rest
+  uint32_t drawn_missing_ = 0;  ///< by the last frame at rest
   std::vector<Job> jobs_;       ///< oldest first
   size_t motion_unacknowledged_ = 0;
   size_t still_unacknowledged_ = 0;

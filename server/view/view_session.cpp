@@ -9,7 +9,7 @@ namespace surfcast::view {
 namespace {
 
 constexpr int kRefinedQuality = 90;  // of the JPEG at rest
-// A piece should be through before it can be felt in a motion that begins behind it.
+// The transfer time of a piece. Short enough that a motion which starts behind the piece is not noticeably delayed.
 constexpr double kPieceMs = 60;
 constexpr size_t kFirstPiece = size_t{64} << 10;
 constexpr size_t kMinPiece = size_t{24} << 10;
@@ -19,15 +19,16 @@ int scaled(int pixels, double scale) {
   return std::max(1, static_cast<int>(std::lround(pixels * scale)));
 }
 
-/// Whether the final frame can be made of the one before it, which has the same pixels.
+/// Whether the final picture can be encoded from the last refined frame: it has the same pixel format and is not too
+/// large to keep.
 bool may_be_kept(const service::PictureJob& job) {
   constexpr size_t kMaxPixels = size_t{1} << 23;
   return static_cast<size_t>(job.request.width) * static_cast<size_t>(job.request.height) <= kMaxPixels &&
          picture::pixel_format_of(job.format) == picture::pixel_format_of(picture::FileFormat::kJpeg);
 }
 
-/// What the picture says about going on: blocks that are still to come may make it better. A picture with holes that
-/// they will fill soon is not worth showing.
+/// A picture is improvable while missing blocks are loading. A picture with holes that will be filled soon is not
+/// shown.
 FrameResult result_of(FrameKind kind, const service::EncodedPicture& picture) {
   if (kind == FrameKind::kFinal || picture.nothing_pending) return FrameResult::kComplete;
   return picture.bytes.empty() || picture.stats.holes > 0 ? FrameResult::kNothing : FrameResult::kImprovable;
@@ -90,7 +91,7 @@ void ViewSession::update(ViewUpdate update, ViewTime now) {
   retarget();
 }
 
-/// Lets a frame that still waits for the render thread show the newest picture.
+/// Replaces the request of a frame that still waits for the render thread by the newest picture.
 void ViewSession::retarget() {
   const std::optional<uint64_t> frame = plan_.retargetable();
   if (!frame) return;
@@ -103,7 +104,7 @@ void ViewSession::retarget() {
   ++counts_.replaced;
 }
 
-/// Gives up a frame that is being drawn or encoded.
+/// Cancels a frame that is being drawn or encoded.
 void ViewSession::drop(uint64_t frame) {
   const auto found = frames_.find(frame);
   service_.cancel(found->second.job);
@@ -155,7 +156,7 @@ void ViewSession::finish(uint64_t frame, Result<service::EncodedPicture> picture
     frames_.erase(frame);
     return;
   }
-  // The wait for the frame before this one is not a cost: it was drawn meanwhile.
+  // Waiting for the previous frame is no cost of this one.
   job.cost.draw = picture->draw_ms + std::max(picture->waited_ms - last_draw_ms_, 0.0);
   job.cost.encode = picture->encode_ms;
   last_draw_ms_ = picture->draw_ms;
@@ -163,8 +164,7 @@ void ViewSession::finish(uint64_t frame, Result<service::EncodedPicture> picture
   send_pieces(now);
 }
 
-/// A frame did not come. A view lasts longer than the rush that keeps the server from drawing it; anything else ends
-/// it.
+/// A frame failed. If the server was busy the view retries later; any other error but a cancellation ends the view.
 void ViewSession::frame_failed(uint64_t frame, const Error& error) {
   frames_.erase(frame);
   ++counts_.dropped;
@@ -175,7 +175,7 @@ void ViewSession::frame_failed(uint64_t frame, const Error& error) {
   port_.fail(error);
 }
 
-/// Remembers how far the newest picture is.
+/// Records how complete the newest picture is.
 void ViewSession::record_progress(service::EncodedPicture& picture, ViewTime now) {
   const uint32_t missing = picture.stats.blocks_missing;
   plan_.record_missing(missing, now);
@@ -197,7 +197,7 @@ void ViewSession::show(uint64_t frame, FrameKind kind, service::EncodedPicture p
   message.width = newest_.picture.request.width;
   message.height = newest_.picture.request.height;
   message.moving = kind == FrameKind::kMotion;
-  // What the renderer calls converged is so for the request of this frame, not for the one of the view.
+  // The renderer's `converged` refers to the request of this frame, not to the request of the view.
   picture.converged = picture.converged && kind == FrameKind::kFinal;
   std::vector<std::byte> bytes = std::move(picture.bytes);
   message.picture = std::move(picture);
@@ -218,7 +218,7 @@ void ViewSession::erase_if_done(uint64_t frame) {
   if (found->second.sent && found->second.unacknowledged == 0) frames_.erase(found);
 }
 
-/// Sends what may be sent: a frame for motion whole, others in pieces that a motion need not wait for long.
+/// Sends as much as may be sent: motion frames as a whole, others in pieces small enough not to delay a motion.
 void ViewSession::send_pieces(ViewTime now) {
   while (outgoing_ && plan_.may_send()) {
     const size_t rest = outgoing_->bytes.size() - outgoing_->sent;
@@ -273,7 +273,7 @@ void ViewSession::adapt_quality(Job& job, double transfer_ms, double client_ms) 
   job.cost.transfer = transfer_ms;
   job.cost.client = client_ms;
   last_cost_ = job.cost;
-  // A frame from before the last change says nothing of the quality since.
+  // A frame drawn with an earlier quality is no evidence about the current one.
   const bool current = job.quality.draw.rung == quality_.draw.rung && job.quality.link.rung == quality_.link.rung;
   if (current) quality_ = adapt(quality_, job.cost, target_fps_);
 }

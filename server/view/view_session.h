@@ -16,47 +16,47 @@
 
 namespace surfcast::view {
 
-/// What all views of a server have done.
+/// Statistics over all views of a server.
 struct ViewCounts {
-  uint64_t open = 0;      ///< now
-  uint64_t frames = 0;    ///< sent whole
-  uint64_t replaced = 0;  ///< updates that were overtaken by a newer one before they were drawn
-  uint64_t dropped = 0;   ///< frames given up while they were drawn, encoded or sent
-  uint64_t bytes = 0;     ///< of encoded pictures, sent
+  uint64_t open = 0;      ///< currently open views
+  uint64_t frames = 0;    ///< frames sent completely
+  uint64_t replaced = 0;  ///< updates superseded by a newer one before they were drawn
+  uint64_t dropped = 0;   ///< frames cancelled while they were drawn, encoded or sent
+  uint64_t bytes = 0;     ///< of encoded pictures sent
 };
 
-/// A frame of a view, or a piece of one: then `picture.bytes` is that piece, and pieces after the first have nothing
-/// else.
+/// A frame of a view, or a piece of one. `picture.bytes` of a piece holds its part of the encoded picture; all other
+/// fields of `picture` are set in the first piece only.
 struct ViewMessage {
-  uint64_t frame = 0;   ///< grows within the view
-  uint64_t update = 0;  ///< the newest that it shows
+  uint64_t frame = 0;   ///< increases within the view
+  uint64_t update = 0;  ///< the newest update that the frame shows
   int width = 0;        ///< of the view, pixels; the picture may be smaller
   int height = 0;       ///< of the view, pixels
   bool moving = false;
-  bool first = true;  ///< piece of the frame
-  bool more = false;  ///< pieces follow
+  bool first = true;  ///< first piece of the frame
+  bool more = false;  ///< more pieces follow
   service::EncodedPicture picture;
 };
 
-/// What is to be seen from now on.
+/// The picture to show from now on.
 struct ViewUpdate {
   uint64_t update = 0;
   service::PictureJob picture;
-  bool changed = true;  ///< not the same picture as before
+  bool changed = true;  ///< false if the picture is the same as before
   bool moving = false;
 };
 
-/// How a view reaches its client. Functions are called on the view's thread.
+/// The connection of a view to its client. All functions but `post` are called on the view's thread.
 struct ViewPort {
   std::function<void(ViewMessage)> send;
-  std::function<void(const Error&)> fail;  ///< the view is over
-  std::function<bool()> may_draw;          ///< false while the client does not take what it was sent
-  /// From any thread: runs a task on the view's thread.
+  std::function<void(const Error&)> fail;  ///< the view has ended with this error
+  std::function<bool()> may_draw;          ///< false while the client does not read what it was sent
+  /// Runs a task on the view's thread. May be called from any thread.
   std::function<void(std::function<void()>)> post;
 };
 
-/// A picture that follows a camera: drawn for speed while it moves, finer and finer once it rests (see ViewPlan). All
-/// methods are called on one thread, the view's; drawing and encoding happen on the service's threads.
+/// A picture that follows a camera: optimised for speed during motion, refined step by step at rest (see ViewPlan). All
+/// methods must be called on the view's thread; drawing and encoding run on the threads of the service.
 class ViewSession : public std::enable_shared_from_this<ViewSession> {
  public:
   ViewSession(service::RenderService& service, service::SessionId session, uint64_t viewer, double target_fps,
@@ -66,32 +66,32 @@ class ViewSession : public std::enable_shared_from_this<ViewSession> {
   ViewSession& operator=(const ViewSession&) = delete;
 
   void update(ViewUpdate update, ViewTime now);
-  /// The client has dealt with a message of that frame. Others than those on their way do not matter.
+  /// The client has processed a message of this frame. Unknown frames are ignored.
   void acknowledge(uint64_t frame, double client_ms, ViewTime now);
-  /// Does what is due. When to be called again at the latest, if nothing happens before.
+  /// Performs all actions that are due. Returns the latest time of the next call, none if only an event can cause one.
   std::optional<ViewTime> advance(ViewTime now);
-  /// Gives up what is under way; nothing is sent from here on.
+  /// Cancels all work. Nothing is sent afterwards.
   void close();
 
  private:
-  /// A frame from its beginning to its last acknowledgement.
+  /// A frame, from the start of drawing to its last acknowledgement.
   struct Job {
     FrameKind kind = FrameKind::kMotion;
     uint64_t update = 0;
     service::JobId job = 0;
-    service::JobId supersedes = 0;  ///< the frame for motion before it
+    service::JobId supersedes = 0;  ///< the previous motion frame
     QualityState quality;
     MotionCost cost;
     size_t unacknowledged = 0;  ///< messages
-    bool sent = false;          ///< or dropped: it ends with its last acknowledgement
+    bool sent = false;          ///< sent or dropped: the job ends with its last acknowledgement
   };
-  /// A frame that is being sent or waits for it.
+  /// A frame that is being sent or waits to be sent.
   struct Outgoing {
     uint64_t frame = 0;
     FrameKind kind = FrameKind::kMotion;
-    ViewMessage message;           ///< without its bytes
-    std::vector<std::byte> bytes;  ///< of the whole frame
-    size_t sent = 0;               ///< bytes
+    ViewMessage message;           ///< without picture bytes
+    std::vector<std::byte> bytes;  ///< the complete encoded picture
+    size_t sent = 0;               ///< bytes sent so far
   };
 
   void draw(FrameKind kind);
@@ -121,13 +121,13 @@ class ViewSession : public std::enable_shared_from_this<ViewSession> {
   LinkEstimate link_;
   QualityState quality_ = first_quality();
   uint64_t last_frame_ = 0;
-  bool newest_begun_ = true;  ///< a frame of the newest picture has been begun
+  bool newest_begun_ = true;  ///< drawing of the newest picture has started
   service::JobId last_motion_job_ = 0;
-  double last_draw_ms_ = 0;  ///< of the last frame that was drawn
-  MotionCost last_cost_;     ///< of the last frame for motion that was acknowledged
-  /// The newest picture, if the last frame at rest was all that it will be.
+  double last_draw_ms_ = 0;  ///< of the last frame drawn
+  MotionCost last_cost_;     ///< of the last motion frame acknowledged
+  /// The last frame at rest of the newest picture, if it is final.
   std::shared_ptr<const picture::Frame> finished_frame_;
-  uint64_t displayed_cut_ = 0;  ///< of the last frame at rest that was drawn of the newest picture; 0: none
+  uint64_t displayed_cut_ = 0;  ///< of the last frame at rest drawn of the newest picture; 0: none
   std::map<uint64_t, Job> frames_;
   std::optional<Outgoing> outgoing_;
 };
