@@ -1,4 +1,4 @@
-// Enters every splat in the lists of the tiles it touches.
+// Adds every splat to the lists of the tiles it touches.
 #include "shared/frame_layout.h"
 #include "include/frame.glsl"
 

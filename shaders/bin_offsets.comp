@@ -1,6 +1,6 @@
-// Turns the counts of the tile lists into the places where the lists begin (an exclusive prefix sum), and clears the
-// counts for the binning that follows. Puts the tiles in order, those with the longest lists first: lanes that draw side
-// by side then have about as much to do. One work group: the counts are few.
+// Converts the lengths of the tile lists to offsets (an exclusive prefix sum), and clears the lengths for the binning
+// that follows. Sorts the tiles by descending list length, so lanes that draw side by side have similar work. Runs as
+// one work group, because there are few lengths.
 #include "shared/frame_layout.h"
 #include "include/frame.glsl"
 
@@ -17,7 +17,7 @@ layout(std430, binding = SURFCAST_BIND_TILE_ORDER) writeonly buffer TileOrder { 
 shared uint sums[LANES];
 shared uint longest;
 
-// Classes of lengths: none, then a quarter of an octave each.
+// Classes of lengths: zero, then a quarter of an octave each.
 #define CLASSES 72
 shared uint class_places[CLASSES];
 
@@ -30,7 +30,7 @@ uint demand_of(uint tile) { return tile_count[tile] + tile_count[tile + uint(fra
 
 const uint kLengths[8] = uint[8](SURFCAST_LIST_LENGTHS);
 
-// The tiles of the lane; counts are still there.
+// Sorts the lane's share of the tiles. Must run before the lengths are cleared.
 void order_tiles(uint lane) {
   uint share = (uint(frame.tiles.z) + uint(LANES) - 1u) / uint(LANES);
   uint first = min(lane * share, uint(frame.tiles.z));

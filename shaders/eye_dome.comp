@@ -1,12 +1,12 @@
-// Eye-dome lighting (Boucheny 2009): a pixel is darkened by what stands before its neighbours' surface. It needs no
-// normals, shows edges and cavities, and works on any colours.
+// Eye-dome lighting (Boucheny 2009): a pixel is darkened by surfaces that lie in front of it at neighbouring pixels. It
+// needs no normals, shows edges and cavities, and works with any colours.
 //
-//   slope_i = ln(z / z_i) eta / |d_i|     of the neighbour at the displacement d_i, pixels; z its depth
+//   slope_i = ln(z / z_i) eta / |d_i|     for the neighbour at displacement d_i in pixels; z is the depth
 //   light  *= exp(-k strength mean_i(a_i max(slope_i, 0)))
 //
-// ln z changes by slope / eta from pixel to pixel on a surface of that slope (change of depth over change across), so
-// the same scene is shaded alike at every resolution and view angle. a_i is how far the neighbour is covered: what is
-// seen in part shades in part, and the background does not shade.
+// On a surface with a given slope (change of depth per change across), ln z changes by slope / eta from pixel to pixel.
+// So the shading of a scene is the same at every resolution and view angle. a_i is the coverage of the neighbour:
+// partly covered neighbours shade partly, and the background does not shade.
 #include "shared/frame_layout.h"
 #include "include/frame.glsl"
 #include "include/srgb.glsl"
@@ -22,13 +22,13 @@ layout(std430, binding = SURFCAST_BIND_PICTURE) writeonly buffer Picture { vec4 
 layout(std430, binding = SURFCAST_BIND_PICTURE) writeonly buffer Picture { uint picture[]; };
 #endif
 
-// Makes strength 1 a matter of a tenth of the light on a surface seen at 45 degrees, and of nearly all of it behind a
-// step of a twentieth of the depth.
+// With strength 1, a surface seen at 45 degrees loses a tenth of its light, and a surface behind a step of a twentieth
+// of the depth nearly all of it.
 const float kShade = 0.25;
 const float kDiagonal = 0.70710678;
 const float kLn2 = 0.69314718;
 
-// Positive slope towards the neighbour at the displacement d, times its coverage. Beyond the picture there is none.
+// Positive slope towards the neighbour at the displacement d, times its coverage; 0 outside the picture.
 float rise(ivec2 at, float depth, ivec2 d) {
   ivec2 neighbour = at + d;
   if (any(lessThan(neighbour, ivec2(0))) || any(greaterThanEqual(neighbour, frame.region.zw))) return 0.0;

@@ -1,9 +1,9 @@
-// Projects, culls and bounds every surfel of the visible blocks once; what survives becomes a splat record, and the
-// tiles it touches are counted. The order of the records does not matter to the picture (see splat.comp).
+// Projects, culls and bounds every surfel of the visible blocks once. Visible surfels become splat records, and the
+// tiles they touch are counted. The order of the records does not affect the picture (see include/fixed_sum.glsl).
 //
-// A work group goes over its chunk twice: first all lanes look for the surfels that are drawn, then they share those.
-// Lanes that only accompany others cost as much as these do, most of all in software, and where a scene has back faces
-// or levels of detail most surfels are not drawn. Those whose splats may be large are few, and come last.
+// A work group runs over its chunk twice: first all lanes find the surfels to draw, then they share these among them.
+// Idle lanes cost as much as active ones, most of all in software, and with back faces or levels of detail most surfels
+// are not drawn. Surfels whose splats may be large are few, and are processed last.
 #include "shared/kernel.h"
 #include "shared/frame_layout.h"
 #include "include/frame.glsl"
@@ -18,7 +18,7 @@
 layout(location = SURFCAST_UNIFORM_FIRST_GROUP) uniform uint first_group;
 layout(local_size_x = SURFCAST_PROJECT_LANES) in;
 
-// Places in the chunk: of surfels with small splats from the front, of others from the back.
+// Indices in the chunk: surfels with small splats from the front, others from the back.
 shared uint drawn[SURFCAST_CHUNK];
 shared uint small_count;
 shared uint other_count;
@@ -35,12 +35,12 @@ layout(binding = SURFCAST_UNIT_BOUNDS, rg32ui) writeonly uniform uimageBuffer bo
 layout(binding = SURFCAST_UNIT_NORMALS, r32ui) writeonly uniform uimageBuffer normals;
 #endif
 
-// A splat is small when its ellipse hardly changes over its own extent: the exact variance differs from the one at the
-// centre by the kernel's tilt seen under the splat's own angle, and its gain by that angle itself: a pixel of a wide and
-// coarse picture spans a good part of it.
+// A splat is small if its ellipse hardly changes over its own extent. The exact variance differs from that at the
+// centre by the tilt of the kernel times the angle of the splat. The gain differs by that angle itself, because a pixel
+// of a wide and coarse picture covers a large part of the splat.
 const float kSmallExtent = 24.0;        // pixels
 const float kSmallAngle = 0.25;         // tangent
-const float kSmallPerspective = 0.02;  // relative change of the variance's root
+const float kSmallPerspective = 0.02;  // relative change of the standard deviation
 
 struct Surfel {
   uint id;
@@ -52,7 +52,7 @@ struct Surfel {
 };
 
 uvec2 tile_range(vec2 low, vec2 high, out bool outside) {
-  // Pixel centres at +0.5 that lie within [low, high], clipped to the region.
+  // Pixel centres at +0.5 within [low, high], clipped to the region.
   vec2 first = ceil(low - 0.5 - vec2(frame.region.xy));
   vec2 last = floor(high - 0.5 - vec2(frame.region.xy));
   vec2 size = vec2(frame.region.zw);
@@ -74,8 +74,8 @@ void count_tiles(uvec2 range, uint first_list) {
 
 void append(bool large, uvec2 range, uvec4 a, uvec4 b, uvec4 disc, vec3 n) {
   uint slot = large ? atomicAdd(counters.counts.y, 1u) : atomicAdd(counters.counts.x, 1u);
-  // Large splats fill the record buffer from its end. Records beyond its capacity are only counted: the caller makes
-  // room and projects again.
+  // Large splats fill the record buffer from its end. Records beyond the capacity are only counted: the caller then
+  // enlarges the buffer and repeats the projection.
   uint capacity = uint(frame.tiles.w);
   if (slot >= capacity) return;
   if (large) slot = capacity - 1u - slot;
@@ -100,7 +100,7 @@ void project_small(Surfel s, vec2 ray, vec2 centre, ScreenVariance v, float c) {
   float share = thinned_share(range, s.id, v.gain);
   if (share == 0.0) return;
 
-  // 1/z of the plane is affine on the screen: 1/z = (n.ray) / (n.o). The bounds only keep edge-on surfels finite.
+  // 1/z of the plane is affine on the screen: 1/z = (n.ray) / (n.o). The bounds keep edge-on surfels finite.
   float relief = s.o.z / min(dot(s.n, s.o), -1e-30);
   float footprints = eta() / s.o.z;  // per world unit
   SmallSplat splat;
@@ -124,13 +124,13 @@ void project_small(Surfel s, vec2 ray, vec2 centre, ScreenVariance v, float c) {
   append(false, range, a, b, encode_disc(disc), s.n);
 }
 
-// True when a disc that is cut by the eye plane lies wholly behind it or beyond a side of the picture.
+// True if a disc that the eye plane cuts lies wholly behind the eye plane or beyond a side of the picture.
 bool astride_outside(Surfel s, float extent) {
   if (s.o.z + depth_extent(s, extent) <= 0.0) return true;
   vec2 margin = vec2(4.0);  // pixels
   vec2 a = ray_of_pixel(vec2(frame.region.xy) - margin);
   vec2 b = ray_of_pixel(vec2(frame.region.xy + frame.region.zw) + margin);
-  // Inward normals of the frustum's sides in the camera frame; y runs upwards, so the top row is the largest ray.
+  // Inward normals of the frustum's sides in the camera frame. y runs upwards, so the top row has the largest ray.
   vec3 sides[4] = vec3[4](vec3(1.0, 0.0, -a.x), vec3(-1.0, 0.0, b.x), vec3(0.0, 1.0, -b.y), vec3(0.0, -1.0, a.y));
   for (int i = 0; i < 4; ++i) {
     float along_normal = dot(sides[i], s.n);
@@ -149,7 +149,7 @@ void project_large(Surfel s, bool reaches_eye_plane) {
   } else {
     vec2 ray_low, ray_high;
     projected_disc_bounds(s.o, s.n, extent, ray_low, ray_high);
-    // The prefilter widens the projection of each point p of the disc by sqrt(c) o.z / p.z pixels.
+    // The prefilter extends the projection of each point p of the disc by sqrt(c) o.z / p.z pixels.
     float dilation = sqrt(SURFCAST_KERNEL_CUTOFF * frame.filter_.x) * s.o.z /
                      (s.o.z - depth_extent(s, extent));
     low = pixel_of_ray(vec2(ray_low.x, ray_high.y)) - dilation;
@@ -169,7 +169,7 @@ bool is_small(float sigma, float extent, float depth) {
   return extent <= min(kSmallExtent, kSmallAngle * eta()) && sigma * extent <= kSmallPerspective * depth;
 }
 
-// Whether the splat is small in whatever way the surfel is turned.
+// True if the splat is small for every orientation of the surfel.
 bool is_surely_small(Surfel s) {
   float sigma = float(SURFCAST_KERNEL_SIGMA) * s.radius;
   vec2 ray = s.o.xy / s.o.z;
@@ -202,7 +202,7 @@ void project(Surfel s) {
   }
 }
 
-// Where a surfel lies, how large it is, and where it faces: towards the eye. `away`: it had to be turned.
+// Position, radius and normal of a surfel. The normal is turned towards the eye. `away`: it had to be turned.
 Surfel placed_surfel(BlockView block, uvec4 texel, out bool away) {
   mat3 rotation = transpose(mat3(frame.right.xyz, frame.up.xyz, frame.forward.xyz));
   Surfel s;
@@ -223,7 +223,7 @@ bool has_wanted_spacing(uvec4 run, BlockView block, uint place, Surfel s) {
   return fits_spacing(run.z, s.radius, merged, wanted_radius(s.o));
 }
 
-// Enters a surfel in the list of those that are drawn, if it is one.
+// Adds a surfel to the list of those to draw if it is visible and has the requested spacing.
 void collect_if_drawn(uvec4 run, BlockView block, uint place) {
   int at = int(run.y + place);
   uvec4 texel = texelFetch(surfels, at);

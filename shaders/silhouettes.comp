@@ -1,16 +1,16 @@
-// Finds the pixels at silhouettes, which supersample.comp then draws again: those at which the depth of the front surface
-// jumps, and their neighbours. Where there is no surface it is infinitely far.
+// Finds the pixels at silhouettes, which supersample.comp draws again: those where the depth of the front surface has a
+// discontinuity, and their neighbours. Pixels without a surface count as infinitely far.
 //
-// The inverse depth of a plane is affine on the screen, so a jump is where it bends: slopes do not count, however steep.
-// Gaps between samples are no silhouettes, since the opaque discs close them.
+// The inverse depth of a plane is affine on the screen, so a discontinuity is a large second difference: slopes do not
+// count, however steep. Gaps between samples are not detected, because the opaque discs close them.
 #include "shared/kernel.h"
 #include "shared/frame_layout.h"
 #include "include/frame.glsl"
 
 layout(location = SURFCAST_UNIFORM_FIRST_GROUP) uniform uint first_group;
-layout(local_size_x = SURFCAST_SILHOUETTE_LANES) in;  // each takes a tile, so that parts with long lists lie side by side
+layout(local_size_x = SURFCAST_SILHOUETTE_LANES) in;  // one tile per lane: parts with long lists stay adjacent
 
-// Inverse depth of the front surface, 0 where none is.
+// Inverse depth of the front surface, 0 if there is none.
 layout(std430, binding = SURFCAST_BIND_FRONTS) readonly buffer Fronts { float fronts[]; };
 layout(std430, binding = SURFCAST_BIND_TILE_ORDER) readonly buffer TileOrder { uint tile_order[]; };
 layout(std430, binding = SURFCAST_BIND_SILHOUETTES) buffer Silhouettes {
@@ -21,20 +21,20 @@ layout(std430, binding = SURFCAST_BIND_SILHOUETTES) buffer Silhouettes {
 const ivec2 kTile = ivec2(SURFCAST_TILE_WIDTH, SURFCAST_TILE_HEIGHT);
 
 const int kReach = SURFCAST_SILHOUETTE_REACH;
-const ivec2 kSeen = kTile + 2 * kReach + 2;  // pixels that decide over a tile
+const ivec2 kSeen = kTile + 2 * kReach + 2;  // the pixels that determine the silhouettes of a tile
 
 float front(ivec2 at) {
   ivec2 inside = clamp(at, ivec2(0), frame.region.zw - 1);
   return fronts[inside.y * frame.region.z + inside.x];
 }
 
-// Whether the front surface bends from one neighbour of a pixel to the opposite one.
+// True if the second difference over three pixels in a row exceeds the threshold.
 bool bends(float before, float here, float after) {
   return abs(before - 2.0 * here + after) * eta() > SURFCAST_SILHOUETTE_JUMP * max(here, max(before, after));
 }
 
-// The pixels from `low` to `high`, counted from the tile's first, that lie in the tile and in a picture of such a size,
-// as bits by rows.
+// The pixels from `low` to `high`, relative to the tile's first pixel, that lie in the tile and in a picture of this
+// size, as a bit mask by rows.
 uint pixels_between(ivec2 low, ivec2 high, ivec2 size) {
   ivec2 a = max(low, ivec2(0));
   ivec2 b = min(high, min(kTile, size) - 1);
@@ -44,7 +44,7 @@ uint pixels_between(ivec2 low, ivec2 high, ivec2 size) {
   return bits;
 }
 
-// The tile's pixels at silhouettes.
+// The tile's pixels at silhouettes, as a bit mask.
 uint find(ivec2 corner) {
   ivec2 first = corner - kReach - 1;
   float seen[kSeen.y][kSeen.x];
@@ -65,7 +65,7 @@ uint find(ivec2 corner) {
   return found;
 }
 
-// Lists the pixels, so many to a part as a lane of supersample.comp draws at once.
+// Appends the pixels to the list, divided into parts of as many pixels as a lane of supersample.comp draws at once.
 void list(uint tile, uint found) {
   uint parts = (uint(bitCount(found)) + uint(SURFCAST_COLUMNS) - 1u) / uint(SURFCAST_COLUMNS);
   uint place = atomicAdd(silhouette_count, parts);

@@ -1,24 +1,24 @@
-// The two passes of Ren 2002, section 5, for one tile: visibility splatting finds the visible surface of every pixel,
-// pushed back along the viewing ray; then the splats in front of it are accumulated, normalised and shaded. Sums stay
+// The two passes of Ren 2002, section 5, for one tile. Visibility splatting finds the visible surface of every pixel,
+// pushed back along the viewing ray. Then the splats in front of it are accumulated, normalised and shaded. Sums stay
 // in registers.
 //
-// Where the visible surface covers a pixel only partly, at a silhouette, what lies behind shows through: the same two
-// passes draw the next surface, for as long as a pixel of the lane is not opaque. So one surface in front of another
-// has an antialiased edge instead of a seam in the colour of the background; elsewhere the loop ends after one round.
+// At a silhouette the visible surface covers a pixel only partly, and the surface behind shows through. The same two
+// passes draw the next surface while a pixel of the lane is not opaque. So a surface in front of another one has an
+// antialiased edge instead of a seam in the background colour. Elsewhere the loop ends after one iteration.
 //
-// Silhouettes are drawn twice: SURFCAST_FINDS_SILHOUETTES writes what silhouettes.comp finds them by, and supersample.comp
-// draws the pixels at them once more.
+// Silhouettes are drawn twice. The variant with SURFCAST_FINDS_SILHOUETTES writes the depths from which
+// silhouettes.comp finds them, and supersample.comp draws their pixels again.
 //
-// Tiles with large splats and tiles without are drawn by two builds of this kernel (SURFCAST_LARGE): what large splats
-// need is paid where there are any.
+// Tiles with and without large splats are drawn by two variants of this kernel (SURFCAST_LARGE), because the code for
+// large splats would slow down all other tiles.
 #include "shared/kernel.h"
 #include "shared/frame_layout.h"
 #include "include/frame.glsl"
 
 layout(location = SURFCAST_UNIFORM_FIRST_GROUP) uniform uint first_group;
 layout(location = SURFCAST_UNIFORM_SPAN) uniform uvec3 span;
-// A work group draws SURFCAST_TILES_AT_ONCE tiles side by side, and span.z in all.
-const int kLanesAcross = SURFCAST_TILE_WIDTH / SURFCAST_COLUMNS;  // of a tile
+// A work group draws SURFCAST_TILES_AT_ONCE tiles side by side, and span.z in total.
+const int kLanesAcross = SURFCAST_TILE_WIDTH / SURFCAST_COLUMNS;  // per tile
 layout(local_size_x = SURFCAST_TILES_AT_ONCE * SURFCAST_TILE_WIDTH / SURFCAST_COLUMNS,
        local_size_y = SURFCAST_TILE_HEIGHT / SURFCAST_ROWS) in;
 
@@ -49,18 +49,18 @@ void write_column(Light light, Rows front, ivec2 first) {
   }
 }
 
-// What a lane is drawing.
+// The state of a lane.
 struct LaneState {
   TileLists tile;
   ivec2 local;  // first pixel of the lane
-  int columns;  // 0 in a tile that the other build draws
+  int columns;  // 0 in a tile that the other variant draws
   int layer;
   Columns limit;
   LightColumns light;
   Columns front;
 };
 
-// The lane's next tile of its work group; span.z or more when there is none.
+// Index within the work group of the lane's next tile; span.z or more if there is none.
 uint next_tile_slot(bool first) {
 #ifdef SURFCAST_DYNAMIC_TILES
   return atomicAdd(next_tiles[first_group + gl_WorkGroupID.x], 1u);
@@ -69,7 +69,7 @@ uint next_tile_slot(bool first) {
 #endif
 }
 
-// Begins another tile, if there is one.
+// Starts the lane's next tile, if there is one.
 bool begin(inout LaneState state, bool first) {
   uint slot = next_tile_slot(first);
   uint at = span.x + (first_group + gl_WorkGroupID.x) * span.z + slot;
@@ -87,7 +87,8 @@ bool begin(inout LaneState state, bool first) {
   return true;
 }
 
-// Lanes begin another tile when they have finished one, whatever the others do: tiles differ in their surfaces.
+// A lane starts its next tile when it has finished one, independently of other lanes, because tiles differ in the
+// number of surfaces.
 void main() {
   LaneState state;
   bool drawing = begin(state, true);

@@ -1,9 +1,9 @@
-// Draws the pixels at silhouettes again, each as the mean of its samples (SURFCAST_SILHOUETTE_SAMPLES): every sample
-// decides by itself what hides what. The samples' places and their narrower prefilters are together the prefilter of all
-// other pixels.
+// Draws the pixels at silhouettes again, each as the mean of its samples (SURFCAST_SILHOUETTE_SAMPLES). Visibility is
+// determined for every sample separately. The positions of the samples and their narrower prefilter together form the
+// prefilter of all other pixels.
 //
-// A lane draws a part of a tile's pixels: a column is a pixel, and its rows are samples. Large splats want a lane for
-// each sample: that build (SURFCAST_LARGE) draws one after the other.
+// A lane draws a part of a tile's pixels: a column is a pixel and its rows are samples. Large splats need one sample
+// per lane: that variant (SURFCAST_LARGE) draws the samples one after another.
 #define SURFCAST_SUPERSAMPLED
 #include "shared/kernel.h"
 #include "shared/frame_layout.h"
@@ -30,7 +30,7 @@ vec2 place_in_round(int i) { return vec2(0.0); }
 float mean(Rows samples) { return dot(samples, Rows(1.0 / float(SURFCAST_ROWS))); }
 #endif
 
-// A pixel, while its rounds are summed.
+// The accumulated values of a pixel.
 struct Pixel {
   vec3 light;
   float transmittance;
@@ -56,7 +56,7 @@ void write(ivec2 at, Pixel pixel) {
 #endif
 }
 
-// Draws as many pixels of a tile as there are columns, and takes them from its mask, which is not 0.
+// Draws at most SURFCAST_COLUMNS pixels of a tile and removes them from its mask, which must not be 0.
 void draw_some(TileLists tile, ivec2 corner, inout uint mask) {
   ivec2 places[SURFCAST_COLUMNS];
   Pixel pixels[SURFCAST_COLUMNS];

@@ -1,7 +1,7 @@
-// What the options of a picture do to a surfel: whether it is shown, and which colour stands for it. A build of the
-// projection has the parts that its picture asks for.
-//   SURFCAST_CLIPPED           some surfels are cut away
-//   SURFCAST_HIDES_CLASSES     some classes are not drawn
+// Effects of the display options on a surfel: its visibility and its colour. Each variant of the projection contains
+// only the parts that its picture needs.
+//   SURFCAST_CLIPPED           some surfels are clipped
+//   SURFCAST_HIDES_CLASSES     some classes are hidden
 //   SURFCAST_COLOR_TABLE       the colour comes from a table, by SURFCAST_BY_HEIGHT, _BY_INTENSITY or _BY_CLASS
 //   SURFCAST_COLOR_NORMAL      the colour is the normal
 #include "include/surfel.glsl"
@@ -43,7 +43,7 @@ bool class_hidden(int surfel) {
 #ifdef SURFCAST_COLOR_TABLE
 layout(binding = SURFCAST_UNIT_COLORS) uniform usamplerBuffer colors;
 
-// As surfel_color gives it.
+// In the format of surfel_color.
 uint table_color(uint block, int surfel, uvec4 texel) {
 #if defined(SURFCAST_BY_CLASS)
   int entry = int((texelFetch(attributes, surfel).x >> 16) & 255u);
@@ -61,7 +61,7 @@ uint table_color(uint block, int surfel, uvec4 texel) {
 #endif
 
 #ifdef SURFCAST_COLOR_NORMAL
-// The axes of a unit vector as sRGB red, green and blue, -1 black and 1 full.
+// The components of a unit vector as sRGB red, green and blue: -1 is black, 1 is full intensity.
 uint normal_color(vec3 n) {
   uvec3 level = uvec3(round(clamp(0.5 * n + 0.5, 0.0, 1.0) * 255.0));
   return surfel_color(uvec4(0u, 0u, 0u, level.x | (level.y << 8) | (level.z << 16)));

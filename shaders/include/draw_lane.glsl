@@ -1,9 +1,9 @@
 // The two passes of surface splatting for the pixels of a lane (see splat.comp): visibility, then accumulation,
-// normalisation and shading, surface after surface.
+// normalisation and shading, one surface after another.
 #include "include/rows.glsl"
 
 const int kMaxLayers = 8;
-const float kOpaque = 1.0 / 128.0;  // transmittance that is not worth another round
+const float kOpaque = 1.0 / 128.0;  // transmittance below which another layer is invisible
 
 layout(std430, binding = SURFCAST_BIND_TILE_COUNT) readonly buffer TileCount { uint tile_count[]; };
 layout(std430, binding = SURFCAST_BIND_TILE_OFFSET) readonly buffer TileOffset { uint tile_offset[]; };
@@ -29,7 +29,7 @@ TileLists lists_of_tile(uint index) {
   return TileLists(tile_offset[index], tile_count[index], tile_offset[large], tile_count[large]);
 }
 
-// Whether this build draws the tile.
+// True if this variant draws the tile.
 bool belongs_to_this_build(TileLists tile) {
 #ifdef SURFCAST_LARGE
   return tile.larges != 0u;
@@ -38,7 +38,7 @@ bool belongs_to_this_build(TileLists tile) {
 #endif
 }
 
-// Before the first layer: nothing is nearer than `limit`, an inverse depth. Only the first `wanted` columns are drawn.
+// Initialises the first layer: no depth limit (`limit` is an inverse depth). Only the first `wanted` columns are drawn.
 void begin_drawing(int wanted, out Columns limit, out LightColumns light) {
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
     light[c] = light_zero();
@@ -47,7 +47,7 @@ void begin_drawing(int wanted, out Columns limit, out LightColumns light) {
   }
 }
 
-// Draws the nearest surface behind `limit`, which becomes the limit. False when nothing behind that is seen.
+// Draws the nearest surface behind `limit`, which becomes the new limit. False if no surface behind it can be visible.
 bool draw_layer(TileLists tile, vec2 pixel, inout Columns limit, inout LightColumns light) {
   Columns surface;
   ColumnSums sums;

@@ -1,10 +1,10 @@
-// Sums of weights that do not depend on the order of their terms, so that the same request gives the same bytes
-// although the tile lists are filled in any order: sums of integers. A weight is kept to 2^-24 of the largest of its
-// list; after every SURFCAST_CARRY_INTERVAL terms the 32 bit sums are carried over, so that a million splats in one
-// pixel neither overflow nor lose their small terms.
+// Sums of weights that do not depend on the order of their terms: sums of integers. Tile lists are filled in arbitrary
+// order, but the same request must give the same bytes. A weight has a precision of 2^-24 of the largest weight of its
+// list. After every SURFCAST_CARRY_INTERVAL terms the 32 bit sums are carried over, so a million splats in one pixel
+// neither overflow nor lose small terms.
 #include "include/rows.glsl"
 
-// Integer units per unit of weight: the power of two that takes weights up to `peak` below 2^25.
+// Integer units per unit of weight: the power of two that scales weights up to `peak` to below 2^25.
 float fixed_unit(float peak) {
   int exponent = int(floatBitsToUint(max(peak, 1e-30)) >> 23);  // biased by 127; peak < 2^(exponent - 126)
   return uintBitsToFloat(uint(127 + 25 + 126 - exponent) << 23);
@@ -29,5 +29,5 @@ void fixed_carry(inout FixedSum sum) {
   sum.part = IntRows(0);
 }
 
-// In integer units.
+// The sum in integer units.
 Rows fixed_value(FixedSum sum) { return Rows(sum.high) * 65536.0 + Rows(sum.low); }

@@ -3,6 +3,6 @@ layout(std140, binding = SURFCAST_BIND_FRAME) uniform Frame { FrameConstants fra
 float eta() { return frame.right.w; }
 vec2 half_picture() { return vec2(frame.up.w, frame.forward.w); }
 
-// Pixel position (from the top left of the picture) to the ray's x and y at z = 1, and back.
+// Conversion between pixel positions (from the top left of the picture) and the x and y of a ray at z = 1.
 vec2 ray_of_pixel(vec2 pixel) { return (pixel - half_picture()) * vec2(1.0, -1.0) / eta(); }
 vec2 pixel_of_ray(vec2 ray) { return half_picture() + eta() * vec2(ray.x, -ray.y); }

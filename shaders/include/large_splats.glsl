@@ -1,4 +1,4 @@
-// Large splats: the exact filter in every pixel. Only where a lane holds one pixel.
+// Large splats: the exact filter in every pixel. Used only where a lane holds one pixel.
 #include "include/pixel_sums.glsl"
 #include "include/resampling_filter.glsl"
 #include "include/splat_record.glsl"
@@ -19,12 +19,12 @@ float kernel_deviation(LargeSplat s) { return float(SURFCAST_KERNEL_SIGMA) * s.r
 float depth_range(LargeSplat s) { return surfel_extent(s.radius) * sqrt(max(1.0 - s.n.z * s.n.z, 0.0)); }
 bool reaches_eye_plane(LargeSplat s) { return reaches_eye_plane(s.o.z, s.radius); }
 
-// Inverse depth at which a ray meets the plane of the surfel; the bound only keeps edge-on surfels finite.
+// Inverse depth at which a ray meets the plane of the surfel. The bound keeps edge-on surfels finite.
 float large_plane_inverse_depth(LargeSplat s, vec2 ray) {
   return (dot(s.n.xy, ray) + s.n.z) / min(dot(s.n, s.o), -1e-30);
 }
 
-// As for small splats; 0 or less where the ray misses.
+// As for small splats; 0 or less if the ray misses.
 float large_fragment_inverse_depth(LargeSplat s, vec2 ray) {
   float plane = large_plane_inverse_depth(s, ray);
   return reaches_eye_plane(s) ? plane : max(plane, 1.0 / (s.o.z + depth_range(s)));
@@ -36,11 +36,11 @@ float large_disc_inverse_depth(LargeSplat s, vec2 ray) {
   return min(plane, 1.0 / (s.o.z - depth_range(s))) / (1.0 + push_back(s.radius, s.o.z) / s.o.z);
 }
 
-// Squared radius of a pixel in the filter of a kernel of that deviation, world units, and the gain.
+// Squared radius of a pixel in the filter of a kernel with this deviation (world units), and the gain.
 vec2 large_form(LargeSplat s, vec2 ray, float deviation, float prefilter_variance) {
   if (reaches_eye_plane(s)) {
-    // Cut by the eye plane, the surfel is so near that the prefilter is nothing beside its kernel: measure on the
-    // surface itself.
+    // The eye plane cuts the surfel. It is so near that the prefilter is negligible beside its kernel, so the radius is
+    // measured on the surface itself.
     float inverse_depth = large_plane_inverse_depth(s, ray);
     vec3 u = (vec3(ray, 1.0) / inverse_depth - s.o) / deviation;
     return vec2(inverse_depth > 0.0 ? dot(u, u) : 1e30, 1.0);
@@ -49,7 +49,7 @@ vec2 large_form(LargeSplat s, vec2 ray, float deviation, float prefilter_varianc
   return filter_at(s.n, ray, v, frontal_deviation(deviation, s.o.z), prefilter_variance);
 }
 
-// The gain by which a fragment's coverage counts: that of the whole prefilter has a share.
+// The gain that determines the scale of a fragment's coverage: a mix with the gain of the whole prefilter.
 float coverage_gain(LargeSplat s, vec2 ray, float gain) {
 #ifdef SURFCAST_SUPERSAMPLED
   float whole = large_form(s, ray, kernel_deviation(s), frame.filter_.x).y;
@@ -59,14 +59,14 @@ float coverage_gain(LargeSplat s, vec2 ray, float gain) {
 #endif
 }
 
-// Squared radius at which the splat is cut: a property of the splat, from the gain at its centre.
+// Squared radius at which the splat is cut off: a property of the splat, from the gain at its centre.
 float large_cutoff(LargeSplat s) {
   if (reaches_eye_plane(s)) return SURFCAST_KERNEL_CUTOFF;
   float deviation = frontal_deviation(kernel_deviation(s), s.o.z);
   return cutoff(screen_variance(s.n, s.o.xy / s.o.z, deviation, prefilter_variance()).gain);
 }
 
-// An upper bound of what the splat adds to a pixel: det S >= prefilter variance^2 bounds the gain.
+// An upper bound of the splat's contribution to a pixel: det S >= prefilter variance^2 bounds the gain.
 float large_peak(LargeSplat s, vec2 ray) {
   float deviation = reaches_eye_plane(s) ? 1e9 : frontal_deviation(kernel_deviation(s), s.o.z);
   float gain = min(deviation * deviation * length(vec3(ray, 1.0)) / prefilter_variance(), 1.0);

@@ -1,19 +1,21 @@
-// Splats under a narrower prefilter, from their records: what silhouettes are drawn with. The record of a splat holds
-// the factor of the inverse of S = V + rho^2 I; the same surfel under the prefilter q rho has S' = S - (1 - q^2) rho^2 I.
+// Splats under a narrower prefilter, derived from their records, for supersampled silhouettes. The record of a splat
+// holds the factor of the inverse of S = V + rho^2 I. Under the prefilter q rho the same surfel has S' = S - (1 - q^2)
+// rho^2 I.
 #include "include/resampling_filter.glsl"
 
-// log2 of what the coverage of a whole splat of gain 1 is multiplied with beyond one of gain 0, see coverage_scale.
+// log2 of the ratio of coverage_scale at gain 1 to coverage_scale at gain 0.
 const float kCoverageOctaves = log2(float(SURFCAST_COVERAGE_MINIFIED) / float(SURFCAST_COVERAGE_MAGNIFIED));
-const float kNarrowed = 1.0 - SURFCAST_SILHOUETTE_VARIANCE;  // q^2, of a prefilter's variance
+const float kNarrowed = 1.0 - SURFCAST_SILHOUETTE_VARIANCE;  // q^2: factor on the variance of a prefilter
 
-// Of that, what counts of a gain that grows.
+// The part of these octaves that applies to an increase of the gain.
 const float kNarrowedOctaves = (1.0 - SURFCAST_SILHOUETTE_COVERAGE) * kCoverageOctaves;
 
-// No splat's weight grows by more: by at most 1 / q^2 of the gain, which grows itself by at most (1 - q) / (1 + q).
+// Upper bound of the increase of a splat's weight: the gain grows by at most the factor 1 / q^2 and the difference (1 -
+// q) / (1 + q).
 const float kHeavier = exp2(kNarrowedOctaves * (1.0 - sqrt(kNarrowed)) / (1.0 + sqrt(kNarrowed))) / kNarrowed;
 
-// Narrows a factor whose variance holds the given prefilter variance; returns sqrt(det S / det S'). The factor is in
-// half precision: the limits keep S' positive, as a sum of the prefilter and what is not negative.
+// Narrows a factor whose variance includes the given prefilter variance. Returns sqrt(det S / det S'). The factor has
+// half precision; the limits keep S' positive definite, as a sum of the prefilter and a non-negative part.
 float narrow_factor(inout vec3 factor, float prefilter) {
   float yy = 1.0 / (factor.z * factor.z);
   float a = 1.0 / (factor.x * factor.x);  // xx - xy^2 / yy

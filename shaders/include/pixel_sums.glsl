@@ -1,4 +1,4 @@
-// The sums of the pixels of a lane: weight, weighted colour, and weighted normal, as far as the scene has them.
+// The sums of the pixels of a lane: weight, and weighted colour and normal if the scene has them.
 #include "include/fixed_sum.glsl"
 #include "include/packing.glsl"
 
@@ -6,12 +6,12 @@
 layout(binding = SURFCAST_UNIT_NORMALS) uniform usamplerBuffer normals;
 #endif
 
-// Fragments lie in front of the pushed back surface by less than so many times its inverse depth.
+// Fragments lie in front of the pushed back surface by less than this factor times its inverse depth.
 const float kReliefRange = 4.0;
 
 struct PixelSums {
   FixedSum weight;
-  FixedSum red;  // colour, or the biased normal where the scene has no colour
+  FixedSum red;  // colour, or the biased normal in scenes without colour
   FixedSum green;
   FixedSum blue;
 #ifdef SURFCAST_LIT_COLOR
@@ -20,14 +20,14 @@ struct PixelSums {
   FixedSum normal_z;
 #endif
 #ifdef SURFCAST_EYE_DOME
-  FixedSum relief;  // inverse depth over the surface's, less 1, in units of kReliefRange
+  FixedSum relief;  // inverse depth relative to the surface's, less 1, in units of kReliefRange
 #endif
 };
 
-// Those of every column of a lane.
+// The sums of all columns of a lane.
 #define ColumnSums PixelSums[SURFCAST_COLUMNS]
 
-// What one splat adds per unit of weight, in integer units of the sums.
+// The contribution of one splat per unit of weight, in integer units of the sums.
 struct SplatValue {
   float one;
   vec3 color;

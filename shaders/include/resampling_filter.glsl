@@ -2,14 +2,14 @@
 //
 // For the ray (x, y, 1) of a pixel, the secant Jacobian
 //     J = (eta / o.z) (e_i.xy - ray e_i.z),   columns i = 0, 1,
-// maps the point u in which the ray meets the surfel's plane exactly to the pixel displacement v from the projected
+// maps the point u where the ray meets the surfel's plane exactly to the pixel displacement v from the projected
 // centre. So the quadratic form of Ren's object space filter, u^T (V + J^-1 J^-T)^-1 u, equals v^T S^-1 v with
 //     S = V_r J J^T + V_h I,
-// which stays finite at grazing angles, and neither tangents nor the plane's intersection are needed. With
-// a_0 = (1, 0, -ray.x) and a_1 = (0, 1, -ray.y),
+// which stays finite at grazing angles and needs neither tangents nor the intersection with the plane. With a_0 = (1,
+// 0, -ray.x) and a_1 = (0, 1, -ray.y),
 //     (J J^T)_ij = (eta / o.z)^2 (a_i x n) . (a_j x n),
-// sums of products of what is small when the result is: single precision serves at every angle.
-// Pixel rows run downwards, camera y upwards: the off-diagonal changes sign for pixel displacements.
+// which sums products that are small when the result is small: single precision suffices at every angle. Pixel rows run
+// downwards, camera y upwards: the off-diagonal changes sign for pixel displacements.
 
 // J J^T as (xx, xy, yy) in units of (eta / o.z)^2, for pixel displacements.
 vec3 projected_variance(vec3 n, vec2 ray) {
@@ -18,16 +18,17 @@ vec3 projected_variance(vec3 n, vec2 ray) {
   return vec3(dot(p, p), -dot(p, q), dot(q, q));
 }
 
-// The kernel's standard deviation in pixels, were it seen from the front.
+// The kernel's standard deviation in pixels if it faced the eye.
 float frontal_deviation(float deviation, float depth) { return deviation * eta() / depth; }
 
 struct ScreenVariance {
   vec3 s;      // S as (xx, xy, yy), pixels squared
   float det;   // of S
-  float gain;  // sqrt(det(V_r J J^T) / det S): what the prefilter leaves of the kernel's peak, in [0, 1]
+  float gain;  // sqrt(det(V_r J J^T) / det S): share of the kernel's peak after the prefilter, in [0, 1]
 };
 
-// `s` is the kernel's frontal_deviation. det(J J^T) = ((eta / o.z)^2 n.ray)^2, since the difference of products cancels.
+// `s` is the kernel's frontal_deviation. det(J J^T) = ((eta / o.z)^2 n.ray)^2, since the difference of products
+// cancels.
 ScreenVariance screen_variance(vec3 n, vec2 ray, float s, float prefilter_variance) {
   vec3 j = projected_variance(n, ray);
   float s2 = s * s;
@@ -39,8 +40,8 @@ ScreenVariance screen_variance(vec3 n, vec2 ray, float s, float prefilter_varian
   return v;
 }
 
-// r^2 = v^T S^-1 v as the sum of squares of docs/kernel.md, exact for a pixel at the displacement v from the projected
-// centre (y upwards), and the gain.
+// r^2 = v^T S^-1 v as the sum of squares in docs/kernel.md, and the gain. Exact for a pixel at the displacement v from
+// the projected centre (y upwards).
 vec2 filter_at(vec3 n, vec2 ray, vec2 v, float s, float prefilter_variance) {
   vec3 m = vec3(v.y, -v.x, ray.y * v.x - ray.x * v.y);
   vec3 mn = cross(m, n);
@@ -51,10 +52,10 @@ vec2 filter_at(vec3 n, vec2 ray, vec2 v, float s, float prefilter_variance) {
   return vec2((s2 * dot(mn, mn) + prefilter_variance * dot(v, v)) / det, area * inversesqrt(det));
 }
 
-// Bounds of the projected disc of radius `extent`, on rays, from the dual conic e^2 (I - n n^T) - o o^T of its outline,
-// in units of o.z: the line x = t z touches it where D_xx - 2 t D_xz + t^2 D_zz = 0. The discriminant, a difference of
-// fourth powers, is e^2 (n_y^2 (x^2 + 1 - e^2) + (n_x x + n_z)^2) and likewise along y. Needs the whole disc in front
-// of the eye.
+// Bounds on rays of the projected disc of radius `extent`, from the dual conic e^2 (I - n n^T) - o o^T of its outline,
+// in units of o.z: the line x = t z is a tangent where D_xx - 2 t D_xz + t^2 D_zz = 0. The discriminant, a difference
+// of fourth powers, equals e^2 (n_y^2 (x^2 + 1 - e^2) + (n_x x + n_z)^2), and likewise along y. The whole disc must be
+// in front of the eye.
 void projected_disc_bounds(vec3 o, vec3 n, float extent, out vec2 low, out vec2 high) {
   vec2 centre = o.xy / o.z;
   float e = extent / o.z;
@@ -66,43 +67,44 @@ void projected_disc_bounds(vec3 o, vec3 n, float extent, out vec2 low, out vec2 
   high = (dxz - root) / dzz;
 }
 
-// The squared radius at which the filter is cut: less of the Gaussian prefilter is worth its fragments.
+// The squared radius at which the filter is cut off. It is smaller where the Gaussian prefilter dominates, because its
+// tail is not worth the fragments.
 float cutoff(float gain) {
   return mix(SURFCAST_KERNEL_CUTOFF_MINIFIED, SURFCAST_KERNEL_CUTOFF, gain);
 }
 
-// The gain that a cutoff was chosen by; 0 of kernels with one cutoff for all.
+// The gain from which a cutoff was computed; 0 if the kernel has the same cutoff for all gains.
 float gain_of_cutoff(float cutoff) {
   const float range = float(SURFCAST_KERNEL_CUTOFF) - float(SURFCAST_KERNEL_CUTOFF_MINIFIED);
   return clamp((cutoff - float(SURFCAST_KERNEL_CUTOFF_MINIFIED)) / max(range, 0.1), 0.0, 1.0);
 }
 
-// What is taken off the kernel, whose peak is 1, so that magnified surfels end without a step: nothing where the prefilter
-// rules, whose sum would suffer.
+// Offset subtracted from the kernel, whose peak is 1: magnified surfels then end without a step. It is zero where the
+// prefilter dominates, because it would distort the sum.
 float rim(float cutoff) { return gain_of_cutoff(cutoff) * exp(-0.5 * cutoff); }
 
-// What a splat's weight is multiplied with so that the sum of weights says how far a pixel is covered: a sum of
-// SURFCAST_COVERAGE_MAGNIFIED or more is full coverage.
+// Factor on a splat's weight that turns the sum of weights into coverage: a sum of SURFCAST_COVERAGE_MAGNIFIED or more
+// is full coverage.
 float coverage_scale(float gain) {
   return pow(float(SURFCAST_COVERAGE_MAGNIFIED) / float(SURFCAST_COVERAGE_MINIFIED), 1.0 - gain);
 }
 
-// Radius on the surface beyond which neither the kernel nor the disc of a surfel reaches, world units.
+// Radius on the surface that contains both the kernel and the disc of a surfel, world units.
 float surfel_extent(float radius) {
   return max(sqrt(SURFCAST_KERNEL_CUTOFF) * float(SURFCAST_KERNEL_SIGMA), float(SURFCAST_VISIBILITY_RADIUS)) * radius;
 }
 
-// A surfel so near that its disc may reach the eye plane, where nothing projects.
+// True if the surfel is so near that its disc may reach the eye plane, where projection is undefined.
 bool reaches_eye_plane(float depth, float radius) { return depth <= 1.5 * surfel_extent(radius); }
 
-// How far visibility splatting pushes a surface back along the viewing rays, at the depth of its surfel: by the spacing
-// of the surfels (Ren 2002, section 5.1) and by the footprint of a pixel.
+// Distance by which visibility splatting pushes a surface back along the viewing rays: the spacing of the surfels (Ren
+// 2002, section 5.1) plus the footprint of a pixel at the depth of the surfel.
 float push_back(float radius, float depth) {
   return float(SURFCAST_VISIBILITY_DEPTH) * radius + float(SURFCAST_VISIBILITY_FOOTPRINT) * max(depth, 0.0) / eta();
 }
 
-// Factors (l11, l21, l22) of v^T S^-1 v = (l11 v.x + l21 v.y)^2 + (l22 v.y)^2: half precision serves them where it
-// would not serve the elements of S^-1, which cancel for thin ellipses.
+// Factors (l11, l21, l22) of v^T S^-1 v = (l11 v.x + l21 v.y)^2 + (l22 v.y)^2. Half precision suffices for the factors,
+// but not for the elements of S^-1, which cancel for thin ellipses.
 vec3 inverse_factor(vec3 s, float det) {
   float l11 = sqrt(s.z / det);
   return vec3(l11, -s.y / (det * l11), inversesqrt(s.z));

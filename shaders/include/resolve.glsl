@@ -1,22 +1,22 @@
-// From sums to light: normalisation, deferred shading, coverage.
+// Converts sums to light: normalisation, deferred shading, coverage.
 #include "include/pixel_sums.glsl"
 
 const float kGrey = 0.8;     // albedo of scans without colour
-const float kAmbient = 0.1;  // light that does not come from the eye
+const float kAmbient = 0.1;  // ambient light, independent of the headlight
 
-// The pixels of a column, in linear light, not yet blended with what lies behind.
+// The pixels of a column in linear light, before blending with the surfaces behind.
 struct Light {
   Rows red;
   Rows green;
   Rows blue;
   Rows transmittance;
 #ifdef SURFCAST_EYE_DOME
-  Rows depth;   // sum of log2(z) of the layers, weighted by what is seen of them
+  Rows depth;   // sum of log2(z) of the layers, weighted by their visible coverage
   Rows opaque;  // sum of these weights
 #endif
 };
 
-// Those of every column of a lane.
+// The light of all columns of a lane.
 #define LightColumns Light[SURFCAST_COLUMNS]
 
 Light light_zero() {
@@ -27,7 +27,7 @@ Light light_zero() {
 #endif
 }
 
-// A headlight: light falls along the viewing rays. The normal is the normalised mean of what covers the pixel.
+// A headlight: light falls along the viewing rays. The normal is the normalised mean over the fragments of the pixel.
 Rows headlight(Rows nx, Rows ny, Rows nz, vec2 pixel) {
   vec2 first = ray_of_pixel(pixel);
   Rows ray_x = first.x + over_rows(vec2(1.0, 0.0)) / eta();
@@ -37,8 +37,8 @@ Rows headlight(Rows nx, Rows ny, Rows nz, vec2 pixel) {
   return kAmbient + (1.0 - kAmbient) * min(along * inversesqrt(max(lengths, Rows(1e-12))), Rows(1.0));
 }
 
-// Blends one layer behind what is there already. `surface` is the inverse depth of its opaque discs, pushed back; `one`
-// the weight of an integer unit of the sums.
+// Blends one layer behind the layers drawn so far. `surface` is the inverse depth of its opaque discs, pushed back.
+// `one` is the weight of an integer unit of the sums.
 void composite(inout Light light, PixelSums sums, Rows surface, float one, vec2 pixel) {
   Rows weight = fixed_value(sums.weight);
   Rows share = 1.0 / max(weight, Rows(1.0));
@@ -46,7 +46,7 @@ void composite(inout Light light, PixelSums sums, Rows surface, float one, vec2 
   Rows seen = light.transmittance * coverage;
   light.transmittance *= 1.0 - coverage;
 #ifdef SURFCAST_EYE_DOME
-  // The mean inverse depth of what the layer shows is affine on the screen where the surface is plane.
+  // The mean inverse depth of the layer's fragments is affine on the screen where the surface is plane.
   Rows inverse_depth = surface * (1.0 + kReliefRange * fixed_value(sums.relief) * share);
   Rows part = mix(Rows(0.0), seen, less(Rows(0.0), surface));
   light.depth -= part * log2(max(inverse_depth, Rows(1e-37)));

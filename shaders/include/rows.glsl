@@ -1,6 +1,6 @@
-// A lane of the splat kernel holds SURFCAST_COLUMNS columns of SURFCAST_ROWS pixels, one below the other, as the
-// components of one vector: what the lane fetches of a splat serves all of them. On software GL, where fetches cost most,
-// a lane holds a whole tile; on hardware, a pixel.
+// A lane of the splat kernel holds SURFCAST_COLUMNS columns of SURFCAST_ROWS pixels each. The pixels of a column are
+// the components of one vector, so all of them share one fetch of a splat. With software GL, where fetches cost most, a
+// lane holds a whole tile; on GPUs it holds one pixel.
 #if SURFCAST_ROWS == 4
 #define Rows vec4
 #define IntRows ivec4
@@ -23,24 +23,24 @@ BoolRows both(BoolRows a, BoolRows b) { return a && b; }
 #define ROW(v, i) v
 #endif
 
-// A number for each pixel of a lane.
+// One number for each pixel of a lane.
 #define Columns Rows[SURFCAST_COLUMNS]
 #define BoolColumns BoolRows[SURFCAST_COLUMNS]
 
 #ifdef SURFCAST_SUPERSAMPLED
-// A column is a pixel, and its rows are samples: a rotated grid, see SURFCAST_SILHOUETTE_VARIANCE. -3, -1, 1 and 3 have a
-// variance of 5.
+// A column is a pixel and its rows are samples: a rotated grid, see SURFCAST_SILHOUETTE_VARIANCE. The numbers -3, -1, 1
+// and 3 have a variance of 5.
 const float kSampleStep = sqrt(SURFCAST_SILHOUETTE_VARIANCE / 5.0);
 const float kSampleX[4] = float[4](-kSampleStep, 3.0 * kSampleStep, kSampleStep, -3.0 * kSampleStep);
 const float kSampleY[4] = float[4](-3.0 * kSampleStep, -kSampleStep, 3.0 * kSampleStep, kSampleStep);
-vec2 column_places[SURFCAST_COLUMNS];  // pixels from the lane's first pixel
+vec2 column_places[SURFCAST_COLUMNS];  // pixels, relative to the lane's first pixel
 vec2 column(vec2 pixel, int c) { return pixel + column_places[c]; }
 #else
-// The first pixel of a column of the lane whose first pixel is given.
+// The first pixel of column c. `pixel` is the lane's first pixel.
 vec2 column(vec2 pixel, int c) { return pixel + vec2(float(c), 0.0); }
 #endif
 
-// How an affine function of such a gradient changes from the first row to each of them.
+// The change of an affine function with this gradient from the first row to each row.
 Rows over_rows(vec2 gradient) {
 #if SURFCAST_ROWS == 1
   return 0.0;
@@ -52,7 +52,7 @@ Rows over_rows(vec2 gradient) {
 #endif
 }
 
-// The larger and the smaller one of two numbers of which one is not negative: so ordered, too, are their bits as
-// integers. The language's own are three instructions in software, for the sake of what is not a number.
+// The larger and the smaller of two numbers, at least one of which is not negative: then the order of their bits as
+// integers is the same. The built-in functions take three instructions in software, because they handle NaN.
 Rows larger(Rows a, Rows b) { return intBitsToFloat(max(floatBitsToInt(a), floatBitsToInt(b))); }
 Rows smaller(Rows a, Rows b) { return intBitsToFloat(min(floatBitsToInt(a), floatBitsToInt(b))); }

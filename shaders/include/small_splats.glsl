@@ -3,9 +3,10 @@
 #include "include/resampling_filter.glsl"
 #include "include/splat_record.glsl"
 
-// The inverse depth of a splat's plane in the rows below the displacement v; `unit` is the centre's over eta. The
-// prefilter of a steep splat asks for its plane far beyond the surfel: a fragment is never behind the surfel's far end,
-// and a disc never in front of its near end. So fragments of one plane never hide each other, whatever its slope.
+// The inverse depth of a splat's plane in the rows from the displacement v on. `unit` is the inverse depth of the
+// centre over eta. The prefilter evaluates the plane of a steep splat far beyond the surfel. Therefore fragments are
+// clamped to the surfel's far end and discs to its near end. Fragments of one plane then never hide each other,
+// whatever its slope.
 Rows plane_inverse_depth(float inverse_depth, float unit, vec2 slope, vec2 v) {
   vec2 per_pixel = slope * unit;
   float first = inverse_depth + dot(per_pixel, v);
@@ -20,7 +21,7 @@ Rows disc_inverse_depth(Rows plane, float inverse_depth, float unit, Disc disc, 
   return smaller(plane, Rows(inverse_depth + unit * disc.rise)) * (1.0 - disc.push * footprint);
 }
 
-// (l11 v.x + l21 v.y)^2 + (l22 v.y)^2 in the rows below the displacement v.
+// (l11 v.x + l21 v.y)^2 + (l22 v.y)^2 in the rows from the displacement v on.
 Rows factored_form(vec3 factor, vec2 v) {
   Rows p = (factor.x * v.x + factor.y * v.y) + over_rows(factor.xy);
   Rows q = factor.z * v.y + over_rows(vec2(0.0, factor.z));

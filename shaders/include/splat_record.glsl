@@ -1,22 +1,23 @@
-// A splat is what the projection leaves of a visible surfel: two uvec4 and one uvec2 (its visibility disc).
+// The projection turns a visible surfel into a splat: two uvec4 and one uvec2 (its range of tiles). A small splat also
+// has one uvec4, its visibility disc.
 //
-// Small splats have one screen space ellipse; large ones (near, or wide in perspective) keep their surfel and are
-// evaluated with the exact variance of every pixel.
+// Small splats have one screen space ellipse. Large splats (near, or wide in perspective) keep their surfel and are
+// evaluated with the exact variance in every pixel.
 
 #define SURFCAST_SQRT_HALF_LOG2E 0.84932180
 
-// Weights are kept as roots, scaled so that half precision holds 1 and 1e-11 alike.
+// Weights are stored as scaled roots, so half precision represents 1 as well as 1e-11.
 const float kWeightRoot = 64.0;
 
 struct SmallSplat {
   vec2 centre;          // pixels
   float inverse_depth;  // 1 / z of the centre
-  vec2 slope;           // change of the plane's inverse depth per unit of tangent, relative to the centre's: unlike
-                        // that per pixel, half precision holds it in narrow views, too
+  vec2 slope;           // change of the plane's inverse depth per unit of tangent, relative to the centre's; fits half
+                        // precision
   vec3 factor;          // inverse_factor(S) * SURFCAST_SQRT_HALF_LOG2E, so that the weight is exp2 of the form
   float cutoff;         // largest value of the form
-  float fall;           // how much smaller the inverse depth of the surfel's far end is than that of its centre: the
-                        // plane of an edge-on surfel is not extrapolated beyond it. Units of the centre's over eta
+  float fall;           // inverse depth of the centre less that of the surfel's far end, in units of the centre's over
+                        // eta
   float weight;         // gain times normalisation
   uint color;
 };
@@ -35,14 +36,15 @@ SmallSplat decode_small(uvec4 a, uvec4 b) {
                     c.y, d.x, d.y * d.y, b.z);
 }
 
-// The opaque disc of a small splat for visibility splatting. `fall`, `rise` and `push` are differences of inverse depths
-// in units of the centre's over eta: numbers of pixel footprints that half precision holds in narrow views, too.
+// The opaque disc of a small splat for visibility splatting. `fall`, `rise` and `push` are differences of inverse
+// depths in units of the centre's over eta. These are numbers of pixel footprints, which half precision represents in
+// narrow views too.
 struct Disc {
   vec3 factor;   // inverse_factor of its variance: the disc is where the form is at most 1
-  float push;    // how far the surface is pushed back along the viewing rays, of every inverse depth's own over eta
+  float push;    // push-back along the viewing rays, in units of each pixel's inverse depth over eta
   float fall;    // as in SmallSplat
-  float rise;    // how much larger the inverse depth of the near end is than that of the centre
-  float weight;  // of the splat: an upper bound of what it adds to a pixel
+  float rise;    // inverse depth of the surfel's near end less that of the centre
+  float weight;  // of the splat: an upper bound of its contribution to a pixel
 };
 
 uvec4 encode_disc(Disc d) {

@@ -1,9 +1,9 @@
-// Takes a packed surfel apart. C++ twin: residency/packing.cpp; layout: shared/surfel_layout.h.
+// Unpacks a surfel. C++ counterpart: residency/packing.cpp; layout: shared/surfel_layout.h.
 #include "shared/surfel_layout.h"
 
 layout(binding = SURFCAST_UNIT_SRGB) uniform usamplerBuffer linear_roots;
 
-// Steps of the block's lattice.
+// In steps of the block's lattice.
 vec3 surfel_position(uvec4 s) { return vec3(s.xyz & SURFCAST_POSITION_MASK); }
 
 // World frame, unit.
@@ -16,7 +16,7 @@ vec3 surfel_normal(uvec4 s) {
   return normalize(n);
 }
 
-// Radius and weight. `scale`: log2 of the block's largest radius and octaves per step, the same of its weights.
+// Radius and weight. `scale`: log2 of the block's largest radius and octaves per step, then the same for its weights.
 vec2 surfel_size(uvec4 s, vec4 scale) {
   vec2 code = vec2((s.z >> SURFCAST_POSITION_BITS) & 1023u, ((s.z >> 30) << 8) | (s.w >> 24));
   return exp2(scale.xz - scale.yw * code);

@@ -1,12 +1,12 @@
 // Where more than frame.flags.z splats (SURFCAST_TILE_CAPACITY) fall on one tile, hundreds of them share every pixel,
-// and a fair sample of them gives the same mean: one splat in m is kept, and weighs m times as much. Which ones follows
-// from their place in the model alone, so that the picture stays the same from run to run. (It also keeps loops short:
-// llvmpipe ends a kernel's loops after 65535 rounds in all, silently; eight layers go over a list twice each.)
+// and a fair sample has the same mean. One splat in m is kept, with m times the weight. The choice depends only on the
+// surfel's place in the model, so the picture is the same in every run. (Thinning also keeps loops short: llvmpipe
+// silently ends the loops of a kernel after 65535 iterations in total, and eight layers run over a list twice each.)
 //
-// A sample of what few splats cover would have holes. So a splat of the gain g is kept with a probability of g / KEPT
-// where that is more than 1 / m: a surface in front of many others, or beside them in the same tile, is drawn whole.
-// A surface of any spacing has less than 700 such splats on a tile; only where so many of them lie behind each other
-// that the lists stay too long (frame.flags.w) are all splats sampled alike.
+// A sample of a surface that few splats cover would have holes. So a splat of gain g is kept with the probability g /
+// KEPT if that exceeds 1 / m: a surface in front of many others, or beside them in the same tile, is drawn completely.
+// A surface of any spacing has fewer than 700 such splats on a tile. Only where so many surfaces lie behind each other
+// that the lists stay too long (frame.flags.w), all splats are sampled with equal probability.
 
 layout(std430, binding = SURFCAST_BIND_TILE_DEMAND) readonly buffer TileDemand { uint tile_demand[]; };
 
@@ -19,7 +19,7 @@ uint hash(uint value) {
 
 const float kGainKept = 1.0 / 32.0;
 
-// What a splat's weight is multiplied with; 0 drops it. `range` is the splat's tiles, `id` its surfel.
+// Factor on a splat's weight; 0 drops the splat. `range` is its range of tiles, `id` the ID of its surfel.
 float thinned_share(uvec2 range, uint id, float gain) {
   if (frame.flags.z == 0) return 1.0;
   uint column = ((range.x & 0xffffu) + (range.y & 0xffffu)) / 2u;

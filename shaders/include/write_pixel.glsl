@@ -1,4 +1,4 @@
-// Where pixels go: to the picture, or to eye-dome lighting.
+// Destination of pixels: the picture, or the input of eye-dome lighting.
 #include "include/srgb.glsl"
 
 #if defined(SURFCAST_EYE_DOME)

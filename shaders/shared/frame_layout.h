@@ -1,5 +1,5 @@
-// Buffer layouts and bindings that C++ and GLSL share: one declaration, read by both (sizes are asserted in
-// render/frame_layout_check.cpp). A struct holds only 16-byte members, so std140, std430 and C++ agree on it.
+// Buffer layouts and bindings that C++ and GLSL share (sizes are asserted in render/frame_layout_check.cpp). Structs
+// have only 16-byte members, so std140, std430 and C++ agree on their layout.
 #ifndef SURFCAST_SHARED_FRAME_LAYOUT_H
 #define SURFCAST_SHARED_FRAME_LAYOUT_H
 
@@ -15,22 +15,22 @@ namespace surfcast::layout {
 #define SURFCAST_UVEC4 uvec4
 #endif
 
-// Size of a screen tile in pixels: the unit of binning and of the splat kernel. Smaller ones hold less that lies beside a
-// splat, larger ones are entered in fewer lists.
+// Size of a screen tile in pixels: the unit of binning and of the splat kernel. A smaller tile lists fewer splats that
+// miss some of its pixels. A larger tile needs fewer list entries per splat.
 #define SURFCAST_TILE_WIDTH 4
 #define SURFCAST_TILE_HEIGHT 4
-// Size in pixels of a work group of passes that go over pixels alone: a warp on hardware.
+// Work group size in pixels of passes over pixels only: one warp on GPUs.
 #define SURFCAST_BLOCK_WIDTH 8
 #define SURFCAST_BLOCK_HEIGHT 4
-// Lanes of a work group of the passes over silhouettes.
+// Lanes of a work group of the silhouette passes.
 #define SURFCAST_SILHOUETTE_LANES 32
-// Surfels that one work group projects; runs of a block are cut into chunks of this many.
+// Surfels that one work group projects. Runs of a block are divided into chunks of this size.
 #define SURFCAST_CHUNK 128
-// Splats that a tile may have before its splats are thinned out (see include/thinning.glsl).
+// Splats of a tile above which they are thinned (see include/thinning.glsl).
 #define SURFCAST_TILE_CAPACITY 3072
-// Splats that a tile may have after that, before all its splats are sampled alike.
+// Splats of a tile after thinning above which all its splats are sampled with equal probability.
 #define SURFCAST_TILE_CAPACITY_LIMIT 4000
-// Splats between two carries of the fixed-point sums (see splat.comp).
+// Splats between two carries of the fixed-point sums (see include/fixed_sum.glsl).
 #define SURFCAST_CARRY_INTERVAL 32
 
 // Constants of one region of one frame. Camera frame: x right, y up, z forward, origin at the eye.
@@ -38,103 +38,103 @@ struct FrameConstants {
   SURFCAST_VEC4 right;       // world to camera rotation, row x; w: eta, pixels per unit of tangent
   SURFCAST_VEC4 up;          // row y; w: half the picture's width, pixels
   SURFCAST_VEC4 forward;     // row z; w: half the picture's height, pixels
-  SURFCAST_IVEC4 region;     // first pixel x, y and size of the region, pixels from the top left of the picture
-  SURFCAST_IVEC4 tiles;      // tiles across, tiles down, tiles in all, splats that the record buffer holds
+  SURFCAST_IVEC4 region;     // first pixel x, y (from the top left of the picture) and size of the region, pixels
+  SURFCAST_IVEC4 tiles;      // tiles across, tiles down, number of tiles, capacity of the record buffer in splats
   SURFCAST_VEC4 filter_;     // prefilter variance, visibility prefilter variance (pixels squared), factor of every
-                             // surfel's weight, radius of the wanted spacing at distance 1 straight ahead
+                             // surfel's weight, surfel radius of the requested spacing at distance 1 on the view axis
   SURFCAST_VEC4 background;  // linear light
-  SURFCAST_IVEC4 flags;      // x: back faces are culled, y: per-surfel weights, z: splats that a tile is thinned out to
-                             // (0: not at all), w: those that cover much, too
+  SURFCAST_IVEC4 flags;      // x: cull back faces, y: per-surfel weights, z: splats per tile after thinning (0: no
+                             // thinning), w: thin splats of high gain too
 };
 
 // One visible block (see shared/surfel_layout.h).
 struct BlockView {
-  SURFCAST_VEC4 origin;  // where position code 0 lies, relative to the eye, camera coordinates, world units
-  SURFCAST_VEC4 step;    // world units of a step of the position codes, along the world's axes
-  SURFCAST_VEC4 scale;   // log2 of the largest radius, octaves per step, the same of the weights
+  SURFCAST_VEC4 origin;  // position of code 0 relative to the eye, camera axes, world units
+  SURFCAST_VEC4 step;    // world units per step of the position codes, along the world's axes
+  SURFCAST_VEC4 scale;   // log2 of the largest radius, octaves per step; the same for the weights
 };
 
-// What the options of a picture ask of one block, for builds of the projection that have them; as many as BlockViews.
+// Per-block parameters of the display options, for variants of the projection that use them; one for each BlockView.
 struct BlockDisplay {
-  SURFCAST_VEC4 ramp;    // x: place on the colour map (0 to 1) of code 0 of the attribute or height, y: of a step
-  SURFCAST_IVEC4 clips;  // x: first of its clip ranges, y: so many of which a surfel must be in any (0: it need not),
-                         // z: and so many that follow of which it must be in none
+  SURFCAST_VEC4 ramp;    // x: position on the colour map (0 to 1) of code 0 of the attribute or height, y: of one step
+  SURFCAST_IVEC4 clips;  // x: first clip range, y: number of ranges of which one must contain a surfel (0: no
+                         // condition), z: number of subsequent ranges that must not contain it
 };
 
-// The position codes of a block that lie in a clip box, from `low` to `high`.
+// The position codes of a block within a clip box, from `low` to `high` (inclusive).
 struct ClipRange {
   SURFCAST_UVEC4 low;
   SURFCAST_UVEC4 high;
 };
 
-// What the options of a picture ask of all blocks.
+// Parameters of the display options that apply to all blocks.
 struct DisplayConstants {
-  SURFCAST_UVEC4 hidden[2];  // 256 bits, by code of the classification: 1 where it is not drawn
-  SURFCAST_IVEC4 axis;       // x: the vertical one, 0 to 2; y: last entry of the colour table
+  SURFCAST_UVEC4 hidden[2];  // 256 bits, indexed by classification code: 1 if hidden
+  SURFCAST_IVEC4 axis;       // x: vertical axis, 0 to 2; y: last entry of the colour table
 };
 
-// What eye-dome lighting asks for.
+// Parameters of eye-dome lighting.
 struct EyeDomeConstants {
   SURFCAST_VEC4 shade;    // strength, radius in pixels, unused, unused
-  SURFCAST_IVEC4 region;  // the pixels that are wanted: first x and y counted from the drawn region's, width, height
+  SURFCAST_IVEC4 region;  // requested pixels: first x and y relative to the drawn region, width, height
 };
 
-// A run of at most SURFCAST_CHUNK surfels of one block: block index, first texel, surfels and what they are, a number
-// that no other run of the model shares (modulo 2^32).
+// A run of at most SURFCAST_CHUNK surfels of one block: block index, first texel, number of surfels with the flags
+// below, and an ID that is unique within the model (modulo 2^32).
 struct Chunk {
   SURFCAST_UVEC4 run;
 };
 #define SURFCAST_RUN_COUNT 0xffffu
 #define SURFCAST_RUN_FINEST 0x10000u    // surfels of the block itself, not merged ones
 #define SURFCAST_RUN_COARSEST 0x20000u  // not merged any further
-#define SURFCAST_RUN_PAIRS 0x40000u     // each two, from the first texel on, are merged to one of another run
-// A merged surfel takes over from its pair a little early, so that rounding never leaves both of them out.
+#define SURFCAST_RUN_PAIRS 0x40000u     // each pair, from the first texel on, is merged to one surfel of another run
+// Merged surfels replace their pair slightly early, because rounding could otherwise drop both.
 #define SURFCAST_SPACING_SLACK 0.99
 
-// What the projection counts.
+// Counters of the projection.
 struct Counters {
-  SURFCAST_UVEC4 counts;      // small splats, large splats, entries of all tile lists, of the longest (both lists of a tile)
-  SURFCAST_UVEC4 lengths[2];  // tiles with at least so many entries, for each of SURFCAST_LIST_LENGTHS
+  SURFCAST_UVEC4 counts;      // small splats, large splats, list entries of all tiles, most entries of a tile
+  SURFCAST_UVEC4 lengths[2];  // tiles with at least this many entries, for each of SURFCAST_LIST_LENGTHS
 };
-// Powers of two, which set tiles apart by what they cost (see render/tile_spans.h).
+// Powers of two that classify tiles by cost (see render/tile_spans.h).
 #define SURFCAST_LIST_LENGTHS 1, 4, 16, 64, 256, 512, 1024, 2048
 
-// Location of the uniform `first_group` of passes that are dispatched in batches: work groups, or rows of them, before
-// the batch.
+// Location of the uniform `first_group` of passes that are dispatched in batches: the number of work groups, or rows of
+// work groups, before the batch.
 #define SURFCAST_UNIFORM_FIRST_GROUP 0
-// Of the splat kernel's `span`: first tile, end and tiles of a work group, in the order of tiles.
+// Location of `span` of the splat kernel: first tile, end, and tiles per work group, in tile order.
 #define SURFCAST_UNIFORM_SPAN 1
 
 // Bindings. Storage buffers:
 #define SURFCAST_BIND_BLOCK_DISPLAYS 0  // BlockDisplay per block
-#define SURFCAST_BIND_CLIPS 1  // ClipRange, those of each block side by side
+#define SURFCAST_BIND_CLIPS 1           // ClipRange, contiguous for each block
 #define SURFCAST_BIND_BLOCKS 3
 #define SURFCAST_BIND_CHUNKS 4
 #define SURFCAST_BIND_COUNTERS 5
 #define SURFCAST_BIND_TILE_COUNT 6   // uint per tile and list: entries; small lists first, then large lists
 #define SURFCAST_BIND_TILE_OFFSET 7  // uint per tile and list: first entry
-#define SURFCAST_BIND_TILE_DEMAND 8   // uint per tile: entries of both its lists, as counted before thinning
+#define SURFCAST_BIND_TILE_DEMAND 8  // uint per tile: entries of both its lists, counted before thinning
 #define SURFCAST_BIND_PICTURE 9
-#define SURFCAST_BIND_TILE_ORDER 14  // uint per tile: the tiles, those with the longest lists first
-#define SURFCAST_BIND_NEXT_TILES 15       // uint per work group of the splat kernel: tiles that its lanes have begun
-#define SURFCAST_BIND_LIGHT 2   // vec4 per pixel: linear light and coverage before eye-dome lighting
-#define SURFCAST_BIND_DEPTH 10  // vec2 per pixel: log2 of the visible surface's depth, coverage that it is the mean of
-#define SURFCAST_BIND_FRONTS 11           // float per pixel: what silhouettes are found by, see silhouettes.comp
-#define SURFCAST_BIND_SILHOUETTES 12      // count, then parts of tiles, in any order: tile, its pixels by rows from bit 0 on
+#define SURFCAST_BIND_TILE_ORDER 14   // uint per tile: tiles in descending order of list length
+#define SURFCAST_BIND_NEXT_TILES 15   // uint per work group of the splat kernel: tiles started by its lanes
+#define SURFCAST_BIND_LIGHT 2         // vec4 per pixel: linear light and coverage before eye-dome lighting
+#define SURFCAST_BIND_DEPTH 10        // vec2 per pixel: mean log2 of the visible surface's depth, coverage
+#define SURFCAST_BIND_FRONTS 11       // float per pixel: inverse depth of the front surface, see silhouettes.comp
+#define SURFCAST_BIND_SILHOUETTES 12  // count, then parts of tiles in any order: tile, bit mask of its pixels by rows
 // Uniform buffers:
 #define SURFCAST_BIND_FRAME 0
 #define SURFCAST_BIND_DISPLAY 1
 #define SURFCAST_BIND_EYE_DOME 2
-// Image and texture units of the buffers that are larger than a storage block may be:
+// Image and texture units of buffers that exceed the size limit of storage blocks:
 #define SURFCAST_UNIT_SPLATS 0      // two uvec4 per splat
-#define SURFCAST_UNIT_DISCS 1       // uvec4 per small splat: the opaque disc of visibility splatting
-#define SURFCAST_UNIT_BOUNDS 2      // uvec2 per splat: its tiles, for binning
-#define SURFCAST_UNIT_LISTS 3       // uint per entry: splat
-#define SURFCAST_UNIT_NORMALS 4     // uint per splat: packed camera space normal, when a lit scene has colour too
+#define SURFCAST_UNIT_DISCS 1       // uvec4 per small splat: its opaque disc for visibility splatting
+#define SURFCAST_UNIT_BOUNDS 2      // uvec2 per splat: its range of tiles, for binning
+#define SURFCAST_UNIT_LISTS 3       // uint per entry: splat index
+#define SURFCAST_UNIT_NORMALS 4     // uint per splat: packed camera space normal, in lit scenes with colour
 #define SURFCAST_UNIT_SURFELS 5     // uvec4 per surfel, see shared/surfel_layout.h
-#define SURFCAST_UNIT_SRGB 6        // uint per 8 bit sRGB value: the root of its linear light in 11 and 10 bits
+#define SURFCAST_UNIT_SRGB 6        // uint per 8 bit sRGB value: root of its linear light in 11 and in 10 bits
 #define SURFCAST_UNIT_ATTRIBUTES 7  // uint per surfel: 16 bits of intensity, 8 of classification
-#define SURFCAST_UNIT_COLORS 8      // uint per entry of a colour table: linear light as in a splat's record
+#define SURFCAST_UNIT_COLORS 8      // uint per entry of a colour table: linear light as in a splat record
 
 #ifdef __cplusplus
 static_assert(sizeof(FrameConstants) == 128);
