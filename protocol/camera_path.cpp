@@ -43,8 +43,8 @@ Vector unit(const Vector& v) {
   return size > 0 ? scaled_sum(1 / size, v, 0, v) : v;
 }
 
-/// Velocity at the middle one of three values: of the parabola through them, within three times the slower of the mean
-/// velocities on both sides.
+/// Velocity at the middle of three values: the slope of the parabola through them, at most three times the lower of the
+/// mean speeds of the two segments. `before` and `after` are the mean velocities of these segments.
 Vector velocity(const Vector& before, double time_before, const Vector& after, double time_after) {
   const double share = time_before / (time_before + time_after);
   const Vector mean = scaled_sum(1 - share, before, share, after);
@@ -53,7 +53,7 @@ Vector velocity(const Vector& before, double time_before, const Vector& after, d
   return size > most ? scaled_sum(most / size, mean, 0, mean) : mean;
 }
 
-/// Values of keyframes between which a cubic runs, at a time.
+/// A value of the keyframes at `time`, on the cubic between keyframes `first` and `first` + 1.
 template <typename Value>
 Vector interpolate(const std::vector<Keyframe>& keys, size_t first, double time, const Value& value) {
   const auto step = [&](size_t i) { return keys[i + 1].time - keys[i].time; };
@@ -74,7 +74,7 @@ Vector interpolate(const std::vector<Keyframe>& keys, size_t first, double time,
   return scaled_sum(1, places, 1, pulls);
 }
 
-/// Turns from `a` to `b`, unit vectors, on the great circle; between opposite ones over any third.
+/// Spherical interpolation between the unit vectors `a` and `b`. If they are opposite, the rotation axis is arbitrary.
 Vector turn(const Vector& a, const Vector& b, double t) {
   const double angle = std::acos(std::clamp(dot(a, b), -1.0, 1.0));
   if (angle < 1e-6) return a;
@@ -86,7 +86,7 @@ Vector turn(const Vector& a, const Vector& b, double t) {
   return scaled_sum(std::sin((1 - t) * angle) / std::sin(angle), a, std::sin(t * angle) / std::sin(angle), b);
 }
 
-/// The part of `up` that is perpendicular to the view; `up` itself where nothing is.
+/// The component of `up` perpendicular to the view direction; `up` itself when the two are parallel.
 Vector upright(const Vector& up, const Vector& view) {
   const Vector along = unit(view);
   const Vector part = scaled_sum(1, up, -dot(up, along), along);
@@ -117,7 +117,7 @@ Result<Keyframe> read_keyframe(json document, size_t number) {
   return keyframe;
 }
 
-/// Keyframes must have the same fields, and follow each other.
+/// Keyframes must have the same fields and ascending times.
 Status check_order(const std::vector<Keyframe>& keyframes) {
   if (keyframes.size() < 2) return invalid("a path needs two keyframes");
   for (size_t i = 1; i < keyframes.size(); ++i) {
@@ -157,7 +157,7 @@ Result<CameraPath> CameraPath::read(const std::string& file) {
 }
 
 Result<int> CameraPath::frames(double per_second) const {
-  // A path of a whole number of frames has its last one, whatever the rounding of times.
+  // The margin keeps the last frame of a path whose duration is a whole number of frames despite rounding.
   const double count = (keyframes_.back().time - keyframes_.front().time) * per_second + 1e-6;
   if (count >= kMaxFrames) return fail(ErrorKind::kLimit, "the path has too many frames");
   return static_cast<int>(count) + 1;

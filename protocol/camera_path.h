@@ -9,30 +9,31 @@
 
 namespace surfcast::protocol {
 
-/// A camera at a time.
+/// A camera and the time at which it applies.
 struct Keyframe {
   double time = 0;  ///< seconds
   wire::Camera camera;
 };
 
-/// A flight of a camera through keyframes.
+/// An animated camera, interpolated between keyframes.
 ///
-/// Position, focal point and view angle pass through the keyframes on cubics whose velocity at a keyframe is that of a
-/// parabola through it and its neighbours (Catmull-Rom splines for uneven times), and zero at both ends. Where two
-/// keyframes in a row are alike the camera rests between them. No velocity is more than three times the slower of the
-/// mean velocities before and after, so that nothing overshoots far where times are uneven. The direction that is up
-/// turns evenly and is kept perpendicular to the view.
+/// Position, focal point and view angle are cubic Hermite splines through the keyframes. The velocity at an inner
+/// keyframe is the slope of the parabola through this keyframe and its two neighbours (Catmull-Rom for uneven times).
+/// The velocity at both ends is zero. The camera rests between two identical keyframes. The speed at a keyframe is at
+/// most three times the lower of the mean speeds of the two adjacent segments, which limits overshoot where times are
+/// uneven. view_up turns at a constant rate between two keyframes and is kept perpendicular to the view direction.
 class CameraPath {
  public:
-  /// From {"keyframes": [{"time": s, "position": [x,y,z], "focal_point": [x,y,z], "view_up": [x,y,z],
-  /// "view_angle": degrees}, ...]}; view_up and view_angle may be left out of all of them.
+  /// Parses {"keyframes": [{"time": s, "position": [x,y,z], "focal_point": [x,y,z], "view_up": [x,y,z],
+  /// "view_angle": degrees}, ...]}. view_up and view_angle are optional, but each must be in all keyframes or in none.
   static Result<CameraPath> parse(std::string_view json);
   static Result<CameraPath> read(const std::string& file);
 
-  /// Frames at so many per second, the first keyframe and the last one included; at most kMaxFrames.
+  /// Number of frames at `per_second`. The first frame shows the first keyframe; the last frame shows the last keyframe
+  /// if the duration is a whole number of frames. kLimit when there are more than kMaxFrames.
   [[nodiscard]] Result<int> frames(double per_second) const;
   [[nodiscard]] wire::Camera camera_at(double time) const;
-  /// Of frame `number`, from 0.
+  /// The camera of frame `number`; the first frame is 0.
   [[nodiscard]] wire::Camera camera_of(int number, double per_second) const;
 
   static constexpr int kMaxFrames = 1'000'000;
@@ -43,8 +44,8 @@ class CameraPath {
   std::vector<Keyframe> keyframes_;  ///< at least two, times ascending
 };
 
-/// The name of a frame's file: "%d" or "%05d" in the pattern becomes its number; "%%" a percent sign. An error unless
-/// there is just one number.
+/// The file name of frame `number`. "%d" or "%05d" in the pattern stands for the number, "%%" for a percent sign. An
+/// error unless the pattern contains exactly one number.
 Result<std::string> frame_name(std::string_view pattern, int number);
 
 }  // namespace surfcast::protocol

@@ -76,7 +76,7 @@ std::optional<wire::ClipBox> parse_clip_box(std::string_view text, bool inverted
   return clip;
 }
 
-/// Replaces the boxes of that kind.
+/// Replaces the boxes that have this value of `inverted`; keeps the others.
 bool set_clip_boxes(wire::DrawPicture& picture, std::string_view text, bool inverted) {
   std::vector<wire::ClipBox> boxes;
   for (const wire::ClipBox& box : picture.clip_boxes()) {

@@ -8,25 +8,25 @@
 
 namespace surfcast::protocol {
 
-/// Where a server listens.
+/// The address of a server, and the transport that a client uses.
 struct Endpoint {
   std::string host;  ///< name or address; without the brackets of IPv6
   uint16_t port = 0;
-  bool websocket = false;  ///< a client talks to it by WebSocket; otherwise by the framed protocol
+  bool websocket = false;  ///< connect by WebSocket; otherwise by the framed protocol over TCP
 };
 
-/// "HOST:PORT", perhaps after "tcp://" or "ws://"; an IPv6 address stands in brackets.
+/// Parses "HOST:PORT", optionally with the prefix "tcp://" or "ws://". An IPv6 address must be in brackets.
 Result<Endpoint> parse_endpoint(std::string_view text);
-/// The same way around, without a scheme; addresses of IPv6 get their brackets.
+/// "HOST:PORT" without a scheme; an IPv6 address is put in brackets.
 std::string to_string(const Endpoint& endpoint);
 
-/// A server and a model of it.
+/// A server and the name of a model on it.
 struct ModelUrl {
   Endpoint server;
   std::string model;
 };
 
-/// "HOST:PORT/MODEL".
+/// Parses "HOST:PORT/MODEL", with the prefixes of parse_endpoint.
 Result<ModelUrl> parse_model_url(std::string_view text);
 
 }  // namespace surfcast::protocol

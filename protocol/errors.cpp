@@ -32,7 +32,7 @@ const KindNames& names_of(ErrorKind kind) {
   return kKinds[0];
 }
 
-/// Length of the well-formed UTF-8 sequence that `text` begins with (Unicode 15, table 3-7), 0 if there is none.
+/// Length of the well-formed UTF-8 sequence at the start of `text` (Unicode 15, table 3-7); 0 if there is none.
 size_t utf8_sequence(std::string_view text) {
   const auto byte = [text](size_t i) { return i < text.size() ? static_cast<uint8_t>(text[i]) : uint8_t{0}; };
   const auto tail = [byte](size_t i) { return byte(i) >= 0x80 && byte(i) <= 0xbf; };

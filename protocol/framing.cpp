@@ -10,7 +10,7 @@
 namespace surfcast::protocol {
 namespace {
 
-/// Protobuf writes a line to stderr for what it cannot decode. A peer must not be able to fill the log.
+/// Protobuf writes a line to stderr for every message that it cannot decode. A peer must not be able to fill the log.
 void silence_protobuf() {
   static const auto silenced = google::protobuf::SetLogHandler(nullptr);
   static_cast<void>(silenced);

@@ -15,43 +15,44 @@ class MessageLite;
 
 namespace surfcast::protocol {
 
-/// Bytes of the length that goes before every message.
+/// Size of a frame header: the message length as a 32 bit integer.
 inline constexpr size_t kFrameHeaderBytes = 4;
-/// Largest message of a client: requests are small.
+/// Largest message from a client. Requests are small.
 inline constexpr size_t kMaxRequestBytes = size_t{64} << 10;
-/// Largest message of a server: the largest picture it agrees to draw, uncompressed, and room to spare.
+/// Largest message from a server: the largest picture that a server draws, uncompressed, with a margin.
 inline constexpr size_t kMaxAnswerBytes = size_t{512} << 20;
 
-/// The length announced by a frame's header, checked against the limit before anyone allocates for it.
+/// The message length in a header. kLimit when it exceeds `limit`, so that a caller checks before it allocates memory.
 Result<size_t> frame_length(std::span<const std::byte, kFrameHeaderBytes> header, size_t limit);
 
-/// What goes before a message of that length, which is within a limit.
+/// The header of a message of `length` bytes, which must be within the limit.
 std::array<std::byte, kFrameHeaderBytes> frame_header(size_t length);
 
-/// A message alone. Fails when it is larger than `limit`.
+/// Serializes a message without a header. Fails when it is larger than `limit`.
 Result<std::vector<std::byte>> encode_message(const google::protobuf::MessageLite& message, size_t limit);
-/// A message with its length before it. Fails when it is larger than `limit`.
+/// Serializes a message with its header. Fails when it is larger than `limit`.
 Result<std::vector<std::byte>> encode_frame(const google::protobuf::MessageLite& message, size_t limit);
 
-/// Fills `message` from the bytes of one frame, header left out.
+/// Parses the contents of one frame, without its header, into `message`.
 Status decode_message(std::span<const std::byte> bytes, google::protobuf::MessageLite& message);
 
-/// Cuts a stream of bytes, arriving in pieces of any size, into the contents of frames. Memory grows with the bytes
-/// that have arrived, never with the length that a frame announces.
+/// Splits a byte stream, received in pieces of any size, into the contents of its frames. Memory grows with the bytes
+/// received, never with the length that a header states.
 class FrameSplitter {
  public:
   explicit FrameSplitter(size_t limit) : limit_(limit) {}
 
   void append(std::span<const std::byte> bytes);
-  /// The next whole frame, nothing while it is incomplete, or an error after which the stream is of no use.
+  /// The contents of the next complete frame; nothing while the frame is incomplete. After an error the stream is no
+  /// longer usable.
   Result<std::optional<std::vector<std::byte>>> next();
-  /// Bytes of a frame have arrived that is not whole yet.
+  /// Whether part of an incomplete frame has been received.
   [[nodiscard]] bool inside_frame() const { return start_ < buffer_.size(); }
 
  private:
   size_t limit_;
   std::vector<std::byte> buffer_;
-  size_t start_ = 0;  ///< bytes of buffer_ that have been handed out
+  size_t start_ = 0;  ///< bytes of buffer_ already returned by next()
 };
 
 }  // namespace surfcast::protocol

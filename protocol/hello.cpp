@@ -16,7 +16,7 @@ constexpr size_t kStatus = 12;
 constexpr size_t kProgramBytes = 14;
 constexpr size_t kMessageBytes = 16;
 
-/// A peer's words end up on terminals and in logs: one line, no control characters.
+/// Text from a peer is shown on terminals and in logs, so it becomes one line without control characters.
 std::string text_of(std::span<const std::byte> bytes) {
   return clean_utf8({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
 }

@@ -12,47 +12,48 @@
 
 namespace surfcast::protocol {
 
-/// Version of the framed protocol. Peers of one major version understand each other.
+/// Version of the framed protocol. Peers with the same major version are compatible.
 struct ProtocolVersion {
   uint16_t major = 1;
   uint16_t minor = 1;
   bool operator==(const ProtocolVersion&) const = default;
 };
 
-/// The version this program speaks.
+/// The protocol version of this build.
 inline constexpr ProtocolVersion kProtocolVersion{};
 
-/// What a server says to a client's hello; anything but kWelcome is followed by the end of the connection.
+/// The server's reply to a client's hello. After any status but kWelcome the server closes the connection.
 enum class HelloStatus : uint16_t { kWelcome = 0, kVersionRefused = 1, kBusy = 2 };
 
-/// The first words of both sides. Its layout is the same in every version of the protocol, so that peers of any age
-/// can tell each other why they part.
+/// The first message of both sides. Its layout is the same in every version of the protocol, so that peers of different
+/// versions can report why the connection is refused.
 struct Hello {
   ProtocolVersion version = kProtocolVersion;
   HelloStatus status = HelloStatus::kWelcome;
-  std::string program;  ///< name and version, for a person: "surfcastd 0.1.0"
-  std::string message;  ///< why the status is not kWelcome, one line
+  std::string program;  ///< name and version, to be displayed: "surfcastd 0.1.0"
+  std::string message;  ///< the reason when the status is not kWelcome, one line
 };
 
-/// First bytes of a hello. No HTTP method begins with a byte beyond ASCII.
+/// First bytes of a hello. The first byte is not ASCII, so a hello cannot be the start of an HTTP request.
 inline constexpr std::array<uint8_t, 8> kHelloMagic{0xf5, 'S', 'U', 'R', 'F', 'C', 'S', 'T'};
-/// Bytes of a hello before its two texts.
+/// Size of a hello without its two texts.
 inline constexpr size_t kHelloHeaderBytes = 18;
 inline constexpr size_t kMaxHelloTextBytes = 1024;
 
-/// A hello of this build: `program` is the name of the executable.
+/// The hello of this build. `program` is the name of the executable.
 Hello make_hello(const std::string& program);
-/// Texts longer than kMaxHelloTextBytes are cut.
+/// Serializes a hello. Texts longer than kMaxHelloTextBytes are truncated.
 std::vector<std::byte> encode_hello(const Hello& hello);
 
-/// How many bytes of text follow this header. Fails when the peer does not speak this protocol at all.
+/// Number of text bytes that follow a header. Fails when the header is not that of a hello or states longer texts than
+/// kMaxHelloTextBytes.
 Result<size_t> hello_text_bytes(std::span<const std::byte, kHelloHeaderBytes> header);
-/// Decodes a whole hello: the header and exactly the text that it announces.
+/// Decodes a complete hello: the header and exactly the text length stated in it.
 Result<Hello> decode_hello(std::span<const std::byte> bytes);
 
-/// What a server answers to a client of that version: a welcome, or a refusal that names both versions.
+/// The server's reply to a client's hello: a welcome, or a refusal that states both versions.
 Hello answer_hello(const Hello& client, const std::string& program);
-/// Whether a client can go on after this answer; the error names both versions or repeats the server's reason.
+/// Success when the server's reply lets the client continue. The error states both versions or the server's reason.
 Status check_server_hello(const Hello& server);
 
 }  // namespace surfcast::protocol

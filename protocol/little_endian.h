@@ -5,7 +5,7 @@
 
 namespace surfcast::protocol {
 
-// Integers of the wire, least significant byte first, on any host.
+// Little-endian integers, independent of the host's byte order.
 
 inline void store_u16(std::byte* bytes, uint16_t value) {
   bytes[0] = static_cast<std::byte>(value & 0xff);

@@ -6,7 +6,7 @@
 namespace surfcast::protocol {
 namespace {
 
-/// Applies `parse` to each part between commas; nothing unless there are `count` parts that all parse.
+/// Parses each part of a comma-separated list. Fails unless there are `count` parts and all of them parse.
 template <typename T, typename Parse>
 std::optional<std::vector<T>> parse_list(std::string_view text, size_t count, Parse parse) {
   std::vector<T> values;
@@ -27,7 +27,7 @@ std::optional<std::vector<T>> parse_list(std::string_view text, size_t count, Pa
 
 std::optional<double> parse_double(std::string_view text) {
   double value = 0;
-  // from_chars takes a minus sign and no plus sign; people write both.
+  // from_chars accepts a minus sign but no plus sign.
   if (text.size() > 1 && text[0] == '+' && text[1] != '-') text.remove_prefix(1);
   const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
   if (code != std::errc() || end != text.data() + text.size() || !std::isfinite(value)) return std::nullopt;

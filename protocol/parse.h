@@ -7,13 +7,13 @@
 
 namespace surfcast::protocol {
 
-// Numbers as people write them, read strictly: the whole text or nothing. No leading or trailing blanks, no NaN, no
-// infinity, whatever the locale.
+// Strict number parsing, independent of the locale: the whole text must be a number. Leading and trailing blanks, NaN
+// and infinity are rejected.
 
 std::optional<double> parse_double(std::string_view text);
 std::optional<uint32_t> parse_unsigned(std::string_view text);
 
-/// "a,b,c" as exactly `count` numbers.
+/// Parses "a,b,c" as exactly `count` numbers.
 std::optional<std::vector<double>> parse_doubles(std::string_view text, size_t count);
 std::optional<std::vector<uint32_t>> parse_unsigneds(std::string_view text, size_t count);
 

@@ -30,7 +30,7 @@ std::string dump(const Json& value, int indent = -1) {
   return value.dump(indent, ' ', false, Json::error_handler_t::replace);
 }
 
-/// The numbers of a vector with blanks between them.
+/// A value as text: "yes" or "no" for a boolean, numbers separated by blanks for a vector.
 std::string plain(const Json& value) {
   if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
   if (!value.is_array()) return dump(value);

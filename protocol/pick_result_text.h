@@ -6,7 +6,7 @@
 
 namespace surfcast::protocol {
 
-/// Lines of `name: value` for a person; numbers are written so that they read back to the last bit.
+/// Lines of `name: value`. Numbers have enough digits to be read back exactly.
 std::string pick_result_text(const wire::PickResult& result);
 /// {"hit": true, "position": [x, y, z], ...}
 std::string pick_result_json(const wire::PickResult& result);

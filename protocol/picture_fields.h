@@ -8,26 +8,26 @@
 
 namespace surfcast::protocol {
 
-/// A part of a picture request as people name and write it. The same table serves flags of the command line
-/// (`--camera-view-up` is "view_up", `--resolution` is "resolution"), environment variables and queries of HTTP.
+/// A field of a picture request in text form. One table defines the command line flags (`--camera-view-up` sets
+/// "view_up", `--resolution` sets "resolution"), the environment variables and the HTTP query parameters.
 struct PictureField {
-  std::string_view name;  ///< as in a query
-  std::string_view flag;  ///< as on the command line, without dashes
-  std::string_view form;  ///< what a value looks like
+  std::string_view name;  ///< name of the query parameter
+  std::string_view flag;  ///< name of the command line flag, without leading dashes
+  std::string_view form;  ///< format of a value
   std::string_view help;
-  bool several = false;  ///< a value may be several, joined by ';'; the flag may then be given several times
+  bool several = false;  ///< takes a list separated by ';'; the flag may be repeated
 };
 
-/// All of them, in the order of the help text.
+/// All fields, in the order of the help text.
 std::span<const PictureField> picture_fields();
 
-/// Sets one field from its text. The error says what the value should look like; an unknown name is kNotFound.
+/// Sets one field from its text. The error states the expected format; an unknown name is kNotFound.
 Status set_picture_field(wire::DrawPicture& picture, std::string_view name, std::string_view text);
 
-/// Sets the pixel of a pick from "X,Y".
+/// Sets the pixel of a pick request from "X,Y".
 Status set_pixel(wire::PickSurfel& pick, std::string_view text);
 
-/// "png", "jpg" and so on, as in the extension of a file's name.
+/// Parses a file name extension: "png", "jpg" and so on.
 Result<wire::FileFormat> parse_file_format(std::string_view text);
 /// Name of a file format in lower case: "jpeg".
 std::string_view name_of(wire::FileFormat format);

@@ -16,7 +16,7 @@ int hex_digit(char c) {
   return -1;
 }
 
-/// The byte that the escape at `text[i]` ("%2C") stands for; nothing usable is negative or zero.
+/// The byte encoded by the escape at `text[i]` ("%2C"); -1 for a malformed escape.
 int escaped_byte(std::string_view text, size_t i) {
   if (i + 2 >= text.size()) return -1;
   const int high = hex_digit(text[i + 1]);
@@ -24,7 +24,7 @@ int escaped_byte(std::string_view text, size_t i) {
   return high < 0 || low < 0 ? -1 : high * 16 + low;
 }
 
-/// In a query, a plus sign is a blank.
+/// In a query, a plus sign stands for a blank.
 Result<std::string> decode_query(std::string_view text) {
   std::string blanks(text);
   std::replace(blanks.begin(), blanks.end(), '+', ' ');

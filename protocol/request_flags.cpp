@@ -19,8 +19,8 @@ namespace {
 
 using nlohmann::json;
 
-/// Checks a flag's text while the command line is parsed, so that a wrong value is a wrong command line. The message
-/// begins with the flag's name anyway, so the field's own name is left out.
+/// Checks a flag's value while the command line is parsed, so that an invalid value is a command line error. CLI11 puts
+/// the flag's name before the message, so the field name at its start is removed.
 std::string check_flag(std::string_view name, const std::string& text) {
   wire::DrawPicture scratch;
   const Status status = set_picture_field(scratch, name, text);

@@ -14,36 +14,35 @@ class App;
 
 namespace surfcast::protocol {
 
-/// The flags that every program which asks for a picture shares. Each is also read from the environment:
-/// `--resolution` is SURFCAST_RESOLUTION; the command line wins. Wrong values are reported by CLI11 as a wrong command
-/// line.
+/// The flags shared by all programs that request pictures. Each flag has an environment variable: SURFCAST_RESOLUTION
+/// sets `--resolution`. The command line takes precedence. CLI11 reports an invalid value as a command line error.
 class RequestFlags {
  public:
   /// Adds the flags to a command. The object must outlive the parsing.
   void add_to(CLI::App& command);
-  /// Only those that say what is to be seen, for programs that keep no file.
+  /// Adds only the flags that describe the view, for programs that write no picture file.
   void add_view_flags_to(CLI::App& command);
 
-  /// Whether the flags make sense together; what they get wrong is a wrong command line.
+  /// Checks that the flags are consistent. Callers report a failure as a command line error.
   [[nodiscard]] Status check() const;
   [[nodiscard]] Status check_view_flags() const;
-  /// The request for `model`, once `check` is content; reads the camera's file if one is given. Flags win over the
-  /// file's fields.
+  /// The request for `model`. Call it only after `check` has succeeded. Reads the camera file if one is given; flags
+  /// take precedence over the fields of the file.
   [[nodiscard]] Result<wire::DrawPicture> request(std::string_view model) const;
-  /// The same for `check_view_flags`; the format is that of --format, else PNG.
+  /// The same after `check_view_flags`. The format is that of --format, by default PNG.
   [[nodiscard]] Result<wire::DrawPicture> view_request(std::string_view model) const;
-  /// Where the picture goes; "-" is standard output.
+  /// File name of the picture; "-" is standard output.
   [[nodiscard]] const std::string& output() const { return output_; }
-  /// Where the figures go, empty for nowhere.
+  /// File name of the statistics; empty: none are written.
   [[nodiscard]] const std::string& stats() const { return stats_; }
-  /// The file of a camera path, of which every frame is drawn; empty for a single picture.
+  /// File name of a camera path, of which every frame is drawn; empty: a single picture.
   [[nodiscard]] const std::string& path() const { return path_; }
   [[nodiscard]] double frames_per_second() const { return fps_; }
 
  private:
   [[nodiscard]] Result<wire::FileFormat> format() const;
 
-  std::map<std::string, std::string> values_;  ///< by name of picture_fields(); empty: not given
+  std::map<std::string, std::string> values_;  ///< by field name (picture_fields()); empty text: not given
   std::string camera_file_;
   std::string output_;
   std::string stats_;
@@ -54,11 +53,11 @@ class RequestFlags {
 /// The flags of `pick`.
 class PickFlags {
  public:
-  /// As in RequestFlags, like the next two.
+  // These three are as in RequestFlags.
   void add_to(CLI::App& command);
   [[nodiscard]] Status check() const { return view_flags_.check_view_flags(); }
   [[nodiscard]] Result<wire::PickSurfel> request(std::string_view model) const;
-  /// The result as the flags want it, to standard output.
+  /// Writes the result to standard output, as text or as JSON.
   [[nodiscard]] Status print(const wire::PickResult& result) const;
 
  private:
@@ -67,11 +66,11 @@ class PickFlags {
   bool json_ = false;
 };
 
-/// The name of the environment variable that mirrors a flag: "camera-view-up" is SURFCAST_CAMERA_VIEW_UP.
+/// The name of a flag's environment variable: SURFCAST_CAMERA_VIEW_UP for "camera-view-up".
 std::string environment_name(std::string_view flag);
 
-/// Sets the fields of a camera that the JSON text states ({"position": [x,y,z], "focal_point": ..., "view_up": ...,
-/// "view_angle": degrees}).
+/// Sets the camera fields that are present in the JSON text ({"position": [x,y,z], "focal_point": ..., "view_up": ...,
+/// "view_angle": degrees}); leaves the others unchanged.
 Status parse_camera_json(std::string_view text, wire::Camera& camera);
 
 }  // namespace surfcast::protocol

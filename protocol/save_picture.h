@@ -9,14 +9,15 @@
 
 namespace surfcast::protocol {
 
-/// What an answered picture shows and took, as JSON. Its "camera" is what --camera reads.
+/// The statistics of a picture as JSON: camera, resolution, levels, memory, milliseconds per stage. The value of
+/// "camera" is in the format that --camera reads.
 std::string picture_stats_json(const wire::Picture& picture);
 
-/// Writes an answered picture to `output` ("-": standard output) and its figures to `stats` (empty: nowhere). Files
-/// appear whole or not at all.
+/// Writes a picture to `output` ("-": standard output) and its statistics to `stats` (empty: none). Files are written
+/// atomically.
 Status save_picture(const wire::Picture& picture, const std::string& output, const std::string& stats);
 
-/// Asks `draw` for the picture of the flags, or for each frame of their path, and saves what it gives.
+/// Draws the picture that the flags describe, or each frame of their camera path, with `draw`, and saves the results.
 Status draw_and_save(const RequestFlags& flags, const wire::DrawPicture& picture,
                      const std::function<Result<wire::Picture>(const wire::DrawPicture&)>& draw);
 

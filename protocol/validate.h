@@ -16,13 +16,13 @@ inline constexpr double kMaxEyeDomeStrength = 100;
 inline constexpr double kMaxEyeDomeRadius = 8;        ///< pixels
 inline constexpr double kDefaultEyeDomeRadius = 1.5;  ///< pixels
 
-/// Whether a request for a picture means something, whatever the model and the device: numbers finite and in range,
-/// choices known, the camera whole. Limits of the server (resolution) are not looked at here.
+/// Checks a picture request as far as this is possible without the model and the device: numbers are finite and in
+/// range, enum values are known, the camera is complete. The server's limits (resolution) are not checked.
 Status check_picture(const wire::DrawPicture& picture);
 
-inline constexpr double kMaxFramesPerSecond = 1000;  ///< that a view may ask for
+inline constexpr double kMaxFramesPerSecond = 1000;  ///< upper limit of OpenView.target_fps
 
-/// The same for a view to be opened.
+/// The same for a request to open a view.
 Status check_view(const wire::OpenView& view);
 
 }  // namespace surfcast::protocol
