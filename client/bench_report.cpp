@@ -12,7 +12,7 @@ namespace {
 
 using nlohmann::json;
 
-/// What the sum of a frame's stages leaves out: parts of `load`, and what belongs to the frame before.
+/// Stages excluded from the sum of a frame's stages: those contained in `load`, and those of the previous frame.
 bool is_no_part_of_sum(const std::string& stage) {
   return stage == "decode" || stage == "upload" || stage == "transfer" || stage == "paint";
 }
@@ -29,7 +29,7 @@ std::vector<BenchFrame> moving_frames(const BenchRecord& record) {
   return frames;
 }
 
-/// A figure of the frames of some part of every client's run.
+/// Percentiles of `figure` over the frames of every run from share `from` to share `to` of the run.
 Percentiles over(const std::vector<std::vector<BenchFrame>>& runs, double from, double to,
                  const std::function<double(const BenchFrame&)>& figure) {
   std::vector<double> values;

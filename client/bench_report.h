@@ -8,7 +8,7 @@
 
 namespace surfcast::client {
 
-/// What is left of many values. Nearest rank: a value that occurred.
+/// Summary of a sample. Percentiles are by nearest rank, so each is one of the values.
 struct Percentiles {
   size_t count = 0;
   double mean = 0;
@@ -20,20 +20,20 @@ struct Percentiles {
 
 Percentiles percentiles(std::vector<double> values);
 
-/// The figures of a run, over all clients that read.
+/// The results of a run, over all clients that read their frames.
 struct BenchReport {
   size_t clients = 0;
   Percentiles frames_per_second;  ///< while moving, over clients
-  Percentiles latency;            ///< of frames in motion, milliseconds from sending a camera to having its frame
+  Percentiles latency;            ///< of moving frames: milliseconds from sending a camera to receiving its frame
   Percentiles latency_begin;      ///< in the first third of each client's run
   Percentiles latency_end;        ///< in the last third
-  std::map<std::string, Percentiles> moving_stages;  ///< milliseconds, as the server states them
-  Percentiles outside;         ///< latency that no stage accounts for: the way, waiting for it, and the client
+  std::map<std::string, Percentiles> moving_stages;  ///< milliseconds of each stage, as reported by the server
+  Percentiles outside;         ///< latency not covered by any stage: network, waiting for it, and the client
   Percentiles moving_bytes;    ///< of a frame
   Percentiles moving_width;    ///< pixels
   Percentiles moving_spacing;  ///< pixels
-  Percentiles converged;       ///< milliseconds from the end of a movement to the final frame
-  Percentiles rest_bytes;      ///< of a final frame
+  Percentiles converged;       ///< milliseconds from the end of a movement to the converged frame
+  Percentiles rest_bytes;      ///< of a converged frame
   uint64_t updates = 0;
   uint64_t moving_frames = 0;
   uint64_t abandoned = 0;
@@ -44,9 +44,9 @@ struct BenchReport {
 
 BenchReport make_report(const std::vector<BenchRecord>& records);
 
-/// A short table for a person.
+/// A short table for display.
 std::string to_text(const BenchReport& report);
-/// The same and more for a program.
+/// All results as JSON.
 std::string to_json(const BenchReport& report, const std::string& url);
 
 }  // namespace surfcast::client

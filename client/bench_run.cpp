@@ -25,8 +25,8 @@ double milliseconds_since(Clock::time_point start, Clock::time_point end) {
   return std::chrono::duration<double, std::milli>(end - start).count();
 }
 
-/// Where the hand has moved the camera after so many seconds of moving: around the model once in 12 seconds, nearer and
-/// farther, as smooth as a hand is.
+/// The pose after `seconds` of movement. The camera turns around the model once in 12 seconds and smoothly changes its
+/// distance.
 Pose pose_on_path(const Pose& start, double seconds) {
   const double turn = 2 * std::numbers::pi * seconds / 12;
   const Pose around = orbit(start, {2 * seconds / 12, 0.03 * std::sin(3 * turn)});
@@ -56,12 +56,12 @@ class BenchClient {
   Clock::time_point end_ = after(Clock::now(), plan_.seconds);
   Pose start_;
   uint64_t last_update_ = 0;
-  std::map<uint64_t, Clock::time_point> sent_;  ///< updates that no frame has shown yet
-  Clock::time_point shown_sent_;                ///< when the newest update that was shown was sent
+  std::map<uint64_t, Clock::time_point> sent_;  ///< send times of the updates that no frame has shown yet
+  Clock::time_point shown_sent_;                ///< send time of the newest update that a frame has shown
   BenchRecord record_;
 };
 
-/// The first frame tells the camera.
+/// Waits for the first frame, which states the initial camera.
 Status BenchClient::begin() {
   const Result<std::optional<View::Frame>> first = view_.next_until(after(Clock::now(), 60));
   if (!first) return fail(first.error());

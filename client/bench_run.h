@@ -9,42 +9,42 @@
 
 namespace surfcast::client {
 
-/// What a client of the benchmark does: it moves the camera around the model as a hand would, rests, and so on.
+/// The behaviour of a benchmark client: it alternates between moving the camera around the model and resting.
 struct BenchPlan {
   protocol::Endpoint server;
-  wire::DrawPicture picture;       ///< its camera, if any, is where the path begins
+  wire::DrawPicture picture;       ///< its camera, if any, is the start of the path
   double target_fps = 0;           ///< as in OpenView
   double seconds = 20;             ///< of the whole run
   double move_seconds = 4;         ///< of one movement
-  double rest_seconds = 5;         ///< most that a rest takes; it ends when the picture has converged
-  double updates_per_second = 60;  ///< while moving: those of a screen
-  bool reads = true;               ///< false: reads the first picture and nothing more
+  double rest_seconds = 5;         ///< longest rest; it ends 0.5 s after the converged picture
+  double updates_per_second = 60;  ///< while moving: the refresh rate of a screen
+  bool reads = true;               ///< false: reads the first picture only
 };
 
-/// A frame as a client saw it.
+/// A frame received by a client.
 struct BenchFrame {
-  bool moving = false;     ///< shows a camera that was moving
-  bool converged = false;  ///< nothing better was to come
+  bool moving = false;     ///< drawn while the camera moved
+  bool converged = false;  ///< no better picture follows
   double latency_ms = 0;   ///< from sending the newest camera that it shows, or from the end of the movement
   uint64_t bytes = 0;      ///< on the wire
   uint32_t width = 0;      ///< of the picture, pixels
-  double spacing = 0;      ///< that it was drawn with, pixels
-  std::vector<std::pair<std::string, double>> stages;  ///< milliseconds, as the server states them
+  double spacing = 0;      ///< projected surfel spacing of the picture, pixels
+  std::vector<std::pair<std::string, double>> stages;  ///< milliseconds, as reported by the server
 };
 
-/// What one client went through.
+/// The frames and counters of one client.
 struct BenchRecord {
   std::vector<BenchFrame> frames;
   double moving_seconds = 0;
-  uint64_t updates = 0;      ///< cameras that were sent while moving
-  uint64_t abandoned = 0;    ///< frames whose rest never came
+  uint64_t updates = 0;      ///< cameras sent while moving
+  uint64_t abandoned = 0;    ///< frames that were received incompletely
   uint64_t unconverged = 0;  ///< rests that ended without a converged frame
-  uint64_t late = 0;         ///< frames that came after the converged one
-  uint64_t bytes = 0;        ///< received in all
+  uint64_t late = 0;         ///< frames received after the converged one
+  uint64_t bytes = 0;        ///< received in total
 };
 
-/// Plays the plan to its end; `phase` from 0 to 1 is where on its path the client begins, so that several do not ask
-/// for the same pictures.
+/// Runs the plan. `phase` is the start on the path, as a share of one turn around the model; different values make
+/// parallel clients request different pictures.
 Result<BenchRecord> run_bench_client(const BenchPlan& plan, const ClientConfig& config, double phase);
 
 }  // namespace surfcast::client

@@ -6,17 +6,17 @@
 
 namespace surfcast::client {
 
-// Each adds one command, which leaves how it went in `outcome`. `interrupt` is as in ClientConfig.
+// Each function adds one command, which stores its result in `outcome`. `interrupt` is as in ClientConfig.
 
-/// `models URL [--json]`: the names of what is served, one per line.
+/// `models URL [--json]`: the names of the served models, one per line.
 void add_models_command(CLI::App& app, int interrupt, Status& outcome);
 /// `render URL/MODEL --output OUT ...`: one picture.
 void add_render_command(CLI::App& app, int interrupt, Status& outcome);
-/// `bench URL/MODEL ...`: frame rates, latencies and bytes of views that move and rest.
+/// `bench URL/MODEL ...`: frame rates, latencies and bytes of views that alternately move and rest.
 void add_bench_command(CLI::App& app, int interrupt, Status& outcome);
-/// `pick URL/MODEL --pixel X,Y ...`: what a pixel shows.
+/// `pick URL/MODEL --pixel X,Y ...`: the surfel at a pixel.
 void add_pick_command(CLI::App& app, int interrupt, Status& outcome);
-/// `view URL/MODEL ...`: a window, by a program of its own.
+/// `view URL/MODEL ...`: an interactive window; runs the program surfcast-view.
 void add_view_command(CLI::App& app, Status& outcome);
 /// `ping URL [--count N]`: round trip times.
 void add_ping_command(CLI::App& app, int interrupt, Status& outcome);

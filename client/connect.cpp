@@ -19,7 +19,7 @@ namespace {
 using Clock = std::chrono::steady_clock;
 using Addresses = std::unique_ptr<addrinfo, decltype(&::freeaddrinfo)>;
 
-/// Finishes a connection that connect(2) has begun.
+/// Waits for the result of a non-blocking connect(2).
 Status finish_connecting(int descriptor, Clock::time_point deadline, int interrupt) {
   if (Status status = wait_for(descriptor, POLLOUT, deadline, interrupt); !status) return status;
   int code = 0;

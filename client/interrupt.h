@@ -2,8 +2,8 @@
 
 namespace surfcast::client {
 
-/// Turns SIGINT and SIGTERM into a descriptor that becomes readable, so that whoever waits for a server can tell it to
-/// give up before the program ends. The signals are blocked from here on; call it before any thread starts.
+/// A descriptor that becomes readable on SIGINT or SIGTERM. A command that waits for a server can then cancel its
+/// request before the program ends. Blocks both signals; call it before any thread starts.
 int interrupt_descriptor();
 
 }  // namespace surfcast::client

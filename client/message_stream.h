@@ -10,24 +10,24 @@
 
 namespace surfcast::client {
 
-/// How messages lie in the stream of bytes of a connection. Sends and receives nothing itself.
+/// Encodes messages into the byte stream of a connection, and decodes them. Does no input or output itself.
 class MessageStream {
  public:
   using Bytes = std::vector<std::byte>;
 
   virtual ~MessageStream() = default;
 
-  /// What to send for a message.
+  /// The bytes to send for a message.
   virtual Bytes encode(std::span<const std::byte> message) = 0;
-  /// Takes what has arrived.
+  /// Adds received bytes.
   virtual void append(std::span<const std::byte> bytes) = 0;
-  /// The next whole message, nothing while it is incomplete, or an error after which the stream is of no use.
+  /// The next complete message; nothing while it is incomplete. After an error the stream is no longer usable.
   virtual Result<std::optional<Bytes>> next() = 0;
-  /// What the stream itself has to say since this was last asked.
+  /// Bytes that the transport itself must send, such as WebSocket pongs, since the last call.
   virtual Bytes take_replies() = 0;
 };
 
-/// Each message after its length.
+/// The framed protocol: each message follows its length.
 std::unique_ptr<MessageStream> make_framed_stream();
 
 }  // namespace surfcast::client

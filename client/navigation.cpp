@@ -9,8 +9,8 @@
 namespace surfcast::client {
 namespace {
 
-constexpr double kHalfTurn = std::numbers::pi;  // a drag over the whole height of the picture
-constexpr double kPoleMargin = 0.01;            // radians between the line of sight and the vertical axis
+constexpr double kHalfTurn = std::numbers::pi;  // radians for a drag over the height of the picture
+constexpr double kPoleMargin = 0.01;            // least angle between view direction and vertical axis, radians
 
 glm::dvec3 vector_of(const wire::Vector3& v) {
   return {v.x(), v.y(), v.z()};
@@ -22,7 +22,7 @@ void store(const glm::dvec3& v, wire::Vector3& out) {
   out.set_z(v.z);
 }
 
-/// Unit vectors of the picture in the world.
+/// Axes of the camera in world coordinates, unit vectors.
 struct Axes {
   glm::dvec3 right;
   glm::dvec3 up;
@@ -43,7 +43,8 @@ glm::dvec3 rotate(const glm::dvec3& v, const glm::dvec3& axis, double angle) {
          axis * (glm::dot(axis, v) * (1 - std::cos(angle)));
 }
 
-/// A line of sight turned by yaw about the vertical axis and by pitch upwards, kept off the poles.
+/// Turns `sight`, the vector from the eye to the focal point, by yaw about the vertical axis and by pitch upwards.
+/// Keeps the margin to the vertical axis.
 glm::dvec3 turn(const glm::dvec3& sight, const Pose& pose, double yaw, double pitch) {
   const Axes axes = axes_of(pose);
   const double now = std::asin(std::clamp(glm::dot(glm::normalize(sight), pose.up), -1.0, 1.0));
@@ -52,7 +53,7 @@ glm::dvec3 turn(const glm::dvec3& sight, const Pose& pose, double yaw, double pi
   return rotate(rotate(sight, axes.right, wanted - now), pose.up, yaw);
 }
 
-/// World units that one height of the picture covers at the distance of the focal point.
+/// Height of the view at the distance of the focal point, world units.
 double height_at_focus(const Pose& pose) {
   return 2 * glm::length(pose.focal_point - pose.position) * std::tan(glm::radians(pose.view_angle) / 2);
 }

@@ -20,8 +20,8 @@ namespace surfcast::client {
 
 namespace {
 
-constexpr size_t kReadBytes = size_t{256} << 10;          // at a time
-constexpr size_t kMaxHttpHeaderBytes = size_t{16} << 10;  // of the answer that grants a WebSocket
+constexpr size_t kReadBytes = size_t{256} << 10;          // per recv(2)
+constexpr size_t kMaxHttpHeaderBytes = size_t{16} << 10;  // of the response to the WebSocket upgrade
 
 }  // namespace
 
@@ -76,7 +76,7 @@ Result<std::vector<std::byte>> ServerConnection::greet_framed(Clock::time_point 
   return bytes;
 }
 
-/// Turns the connection into a WebSocket.
+/// Upgrades the connection to a WebSocket.
 Status ServerConnection::upgrade(Clock::time_point deadline) {
   std::random_device random;
   std::string key(16, '\0');
@@ -85,7 +85,7 @@ Status ServerConnection::upgrade(Clock::time_point deadline) {
   if (Status status = write_all(std::as_bytes(std::span(handshake.request)), deadline); !status) return status;
   std::string answer;
   while (!answer.ends_with("\r\n\r\n") && answer.size() < kMaxHttpHeaderBytes) {
-    std::byte next{};  // one at a time: what follows the header is not HTTP any more
+    std::byte next{};  // one byte at a time: the bytes after the header are WebSocket frames
     const Result<size_t> count = read_some({&next, 1}, deadline);
     if (!count) return fail(count.error());
     answer += static_cast<char>(next);
@@ -174,7 +174,7 @@ Result<uint64_t> ServerConnection::send(wire::Request request) {
   return last_id_;
 }
 
-/// The next answer among the bytes that have arrived.
+/// The next answer in the bytes received so far; nothing while it is incomplete.
 Result<std::optional<wire::Answer>> ServerConnection::next_answer() {
   const Result<std::optional<std::vector<std::byte>>> message = stream_->next();
   if (const std::vector<std::byte> replies = stream_->take_replies(); !replies.empty()) {
@@ -215,7 +215,7 @@ Result<wire::Answer> ServerConnection::ask(wire::Request request) {
     if (!answer && answer.error().kind == ErrorKind::kCancelled) {
       wire::Request cancel;
       cancel.mutable_cancel()->set_request_id(*id);
-      static_cast<void>(send(std::move(cancel)));  // a courtesy: closing the connection cancels as well
+      static_cast<void>(send(std::move(cancel)));  // may fail: closing the connection cancels the request as well
     }
     if (!answer) return answer;
     if (answer->id() != *id && answer->id() != 0) continue;

@@ -19,12 +19,12 @@ namespace surfcast::client {
 
 struct ClientConfig {
   std::chrono::milliseconds connect{10'000};  ///< for the connection and both hellos
-  std::chrono::milliseconds answer{120'000};  ///< for one whole answer
-  int interrupt = -1;                         ///< descriptor that becomes readable when waiting should end; -1: none
+  std::chrono::milliseconds answer{120'000};  ///< for one complete answer
+  int interrupt = -1;                         ///< descriptor that becomes readable to end a wait; -1: none
 };
 
-/// A connection to a server, framed or by WebSocket as the endpoint says, hellos exchanged. Blocking, with a limit on
-/// every wait. Errors name the server.
+/// A connection to a server after the exchange of hellos, framed or by WebSocket as the endpoint states. Calls block;
+/// every wait has a timeout. Errors name the server.
 class ServerConnection {
  public:
   static Result<ServerConnection> open(const protocol::Endpoint& server, const ClientConfig& config);
@@ -33,23 +33,23 @@ class ServerConnection {
   ServerConnection& operator=(ServerConnection&&) = delete;
   ~ServerConnection();
 
-  /// Sends a request under a fresh id, which it returns.
+  /// Sends a request with a new id; returns the id.
   Result<uint64_t> send(wire::Request request);
-  /// Sends a request under an id that is in use: a message to a view.
+  /// Sends a request with an existing id: a message to a view.
   Status send_as(uint64_t id, wire::Request request);
-  /// The next answer, whatever its id. kCancelled when interrupted.
+  /// The next answer, with any id. kCancelled when interrupted.
   Result<wire::Answer> receive();
-  /// The same, but nothing when no answer is whole before `deadline`.
+  /// The same, but nothing if no answer is complete by `deadline`.
   Result<std::optional<wire::Answer>> receive_until(std::chrono::steady_clock::time_point deadline);
-  /// Sends a request and waits for its answer; an answer that is an error is the error. When interrupted, the server is
-  /// told to give the request up.
+  /// Sends a request and waits for its answer. An error answer is returned as an error. When interrupted, asks the
+  /// server to cancel the request.
   Result<wire::Answer> ask(wire::Request request);
 
-  /// Bytes that have arrived since the connection was opened.
+  /// Bytes received since the connection was opened.
   [[nodiscard]] uint64_t bytes_received() const { return bytes_received_; }
   /// An error that names the server.
   [[nodiscard]] tl::unexpected<Error> failed(ErrorKind kind, const std::string& what) const;
-  /// What the server said of itself.
+  /// The server's hello.
   [[nodiscard]] const protocol::Hello& server() const { return server_; }
 
  private:

@@ -6,7 +6,7 @@
 
 namespace surfcast::client {
 
-/// The flags `--connect-timeout` and `--timeout` that every command has. Must outlive the parsing.
+/// The flags `--connect-timeout` and `--timeout` of every command. The object must outlive the parsing.
 struct TimeLimits {
   double connect = 10;  ///< seconds
   double answer = 120;  ///< seconds

@@ -34,7 +34,7 @@ Status View::acknowledge(uint64_t frame, double client_ms) {
   return connection_->send_as(id_, std::move(request));
 }
 
-/// Puts the pieces of a frame together.
+/// Adds a piece to the current frame; returns the frame once it is complete.
 Result<std::optional<View::Frame>> View::take(wire::ViewFrame piece) {
   const bool more = piece.more();
   if (incomplete_ && incomplete_->frame() != piece.frame()) {

@@ -10,35 +10,35 @@
 
 namespace surfcast::client {
 
-/// A view of one model: what a server shows of it while the camera moves and rests. The connection must outlive it, and
-/// nothing else may be asked on the connection meanwhile.
+/// A view of one model, for which the server sends pictures while the camera moves and rests. The connection must
+/// outlive the view and must not be used for other requests meanwhile.
 class View {
  public:
   using Clock = std::chrono::steady_clock;
 
   struct Frame {
-    wire::ViewFrame frame;      ///< whole
-    Clock::time_point arrived;  ///< its last byte
-    uint64_t bytes = 0;         ///< that the connection carried since the frame before it
+    wire::ViewFrame frame;      ///< complete, with all its data
+    Clock::time_point arrived;  ///< arrival of its last byte
+    uint64_t bytes = 0;         ///< received on the connection since the previous frame
   };
 
-  /// `target_fps` is to be held while moving; 0: as the server likes.
+  /// `target_fps` is the frame rate to hold while moving; 0: the server's default.
   static Result<View> open(ServerConnection& connection, const wire::DrawPicture& picture, double target_fps);
 
-  /// Shows something else. Returns the number that frames which show it will bear.
+  /// Changes the picture of the view. Returns the update number; frames that show this picture repeat it.
   Result<uint64_t> show(const wire::DrawPicture& picture, bool moving);
-  /// The next frame, or nothing when none is whole by then. It must be acknowledged by `painted`.
+  /// The next frame, or nothing if none is complete by `deadline`. The caller must acknowledge it with `painted`.
   Result<std::optional<Frame>> next_until(Clock::time_point deadline);
-  /// The frame is to be seen now: the server may send another one.
+  /// Acknowledges that the frame is on the screen, so that the server may send another one.
   Status painted(const Frame& frame);
-  /// Asks what a picture shows at a pixel. A newer question takes the place of one that has no answer yet.
+  /// Requests the surfel at a pixel of a picture. Replaces an earlier request that has no result yet.
   Status pick(const wire::DrawPicture& picture, uint32_t x, uint32_t y);
-  /// The answer, once; it arrives while frames are waited for. A question that failed has none.
+  /// The result of the last pick request, once. It is received during `next_until`. A failed request has no result.
   std::optional<wire::PickResult> take_picked() { return std::exchange(picked_, std::nullopt); }
-  /// Ends the view; what comes until the server has heard of it is thrown away.
+  /// Ends the view. Discards the frames that arrive before the server's confirmation.
   Status close();
 
-  /// Frames of which the server gave up the rest, because there was something newer to be seen.
+  /// Number of frames that the server dropped for a newer one before their data was complete.
   [[nodiscard]] uint64_t abandoned() const { return abandoned_; }
 
  private:
@@ -52,7 +52,7 @@ class View {
   std::optional<wire::ViewFrame> incomplete_;
   uint64_t bytes_before_ = 0;
   uint64_t abandoned_ = 0;
-  std::optional<uint64_t> pick_;  ///< the question that waits for an answer
+  std::optional<uint64_t> pick_;  ///< id of the last pick request
   std::optional<wire::PickResult> picked_;
 };
 

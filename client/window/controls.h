@@ -10,7 +10,7 @@
 
 namespace surfcast::window {
 
-/// What the hand does to a pose. Positions are pixels of the window from its upper left corner.
+/// Applies mouse and key input to a pose. Positions are in pixels from the upper left corner of the window.
 class Controls {
  public:
   enum class Drag { kOrbit, kPan, kLook };
@@ -20,31 +20,32 @@ class Controls {
   void resize(int width, int height) { size_ = {width, height}; }
   void press(Drag drag) { drag_ = drag; }
   void release() { drag_.reset(); }
-  /// The pointer has moved by so many pixels.
+  /// The pointer has moved by `pixels`.
   void move(const glm::dvec2& pixels);
-  /// A wheel's clicks, away from the hand: towards what is under the pointer.
+  /// Clicks of the wheel; positive values zoom towards the point under the pointer.
   void wheel(double clicks, const glm::dvec2& pointer);
-  /// Directions of flight as long as keys are held: to the right, up, forwards, each -1, 0 or 1.
+  /// Direction of flight while keys are held: to the right, up, forwards, each -1, 0 or 1.
   void fly(const glm::dvec3& course, bool fast) { course_ = course * (fast ? 4.0 : 1.0); }
-  /// One press of an arrow key, to the right and up: a small drag of that kind.
+  /// One press of an arrow key: a small drag in direction `by` (to the right, up).
   void nudge(Drag drag, const glm::dvec2& by);
-  /// Clicks of the wheel, towards the middle.
+  /// Clicks of the wheel, towards the centre of the picture.
   void step(double clicks) { wheel(clicks, size_ / 2.0); }
   void go_home() { pose_ = home_; }
   void fit() { pose_ = fit_pose(pose_, subject_, aspect()); }
   void set_standard_view(StandardView view) { pose_ = standard_pose(view, pose_, subject_, aspect()); }
 
-  /// What is under the pointer shall come into the middle.
+  /// Requests that the point under the pointer becomes the centre of the view.
   void double_click(const glm::dvec2& pointer) { focus_request_ = pointer / size_; }
-  /// Where that is, once: in parts of the picture's width and height from its upper left corner.
+  /// The position of the last double click, once: as fractions of the picture's width and height from its upper left
+  /// corner.
   std::optional<glm::dvec2> take_focus_request() { return std::exchange(focus_request_, std::nullopt); }
   void focus_on(const glm::dvec3& point) { pose_ = client::focus(pose_, point); }
 
-  /// Lets time pass. `speed` is that of flight, world units per second.
+  /// Advances the flight by `seconds`. `speed` is in world units per second.
   void advance(double seconds, double speed);
 
   [[nodiscard]] const client::Pose& pose() const { return pose_; }
-  /// The pose is about to change further.
+  /// Whether a drag or a flight is in progress.
   [[nodiscard]] bool moving() const { return drag_.has_value() || course_ != glm::dvec3(0); }
 
  private:

@@ -36,7 +36,7 @@ Result<ViewRequest> view_request_of(const std::string& address, const protocol::
 }
 
 int run(int argc, char** argv) {
-  CLI::App app{std::string("Look at a model in a window\n") + kWindowHelp, "surfcast view"};
+  CLI::App app{std::string("Show a model in an interactive window\n") + kWindowHelp, "surfcast view"};
   std::string address;
   protocol::RequestFlags flags;
   client::TimeLimits limits;
@@ -64,7 +64,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   std::signal(SIGPIPE, SIG_IGN);
-  // `surfcast view` starts this program with the signals blocked by which it would end.
+  // `surfcast view` starts this program with these signals blocked (interrupt_descriptor()).
   sigset_t signals;
   sigemptyset(&signals);
   sigaddset(&signals, SIGINT);

@@ -9,10 +9,11 @@
 namespace surfcast::window {
 namespace {
 
-// Straight up and down have no horizon: they are left by as little as a drag leaves them.
+// The views from above and below are tilted slightly, because an exactly vertical view has no horizon. The tilt equals
+// the margin of orbit().
 constexpr double kOffPole = 0.01;
 
-/// Towards the eye: parts to the right, to the back and to the sky, in the order of StandardView.
+/// Direction towards the eye (right, back, up), in the order of StandardView.
 constexpr std::array<glm::dvec3, 7> kTowardsEye{{
     {0, -1, 0},
     {1, 0, 0},

@@ -5,18 +5,18 @@
 
 namespace surfcast::window {
 
-/// What is looked at, as far as views of all of it ask.
+/// The properties of the model that determine a view of the whole model.
 struct Subject {
   geometry::Box bounds;
-  bool z_up = true;  ///< otherwise y points to the sky
+  bool z_up = true;  ///< whether the vertical axis is z; otherwise it is y
 };
 
-/// The usual sides, as in the browser: the front of a z-up model faces -y, that of a y-up one +z.
+/// The same standard views as in the browser. The front of a z-up model faces -y, that of a y-up model +z.
 enum class StandardView { kFront, kRight, kBack, kLeft, kTop, kBottom, kIso };
 
-/// The nearest pose that looks the same way and sees all of the subject; `aspect` is width over height.
+/// The nearest pose with the same view direction that shows the whole subject. `aspect` is width over height.
 client::Pose fit_pose(const client::Pose& pose, const Subject& subject, double aspect);
-/// All of the subject from one of the usual sides.
+/// The whole subject in a standard view.
 client::Pose standard_pose(StandardView view, const client::Pose& pose, const Subject& subject, double aspect);
 
 }  // namespace surfcast::window

@@ -15,10 +15,10 @@ namespace {
 using Clock = client::View::Clock;
 using std::chrono::milliseconds;
 
-constexpr milliseconds kTick{8};          // between looks at what the hand does
-constexpr milliseconds kUpdateEvery{16};  // at most so many cameras are sent
+constexpr milliseconds kTick{8};          // between polls of the input
+constexpr milliseconds kUpdateEvery{16};  // least time between two updates
 constexpr milliseconds kRetryEvery{1000};
-constexpr double kFlightPart = 0.06;  // of the model's diagonal, per second
+constexpr double kFlightPart = 0.06;  // flight speed: share of the model's diagonal per second
 
 glm::dvec3 vector_of(const wire::Vector3& v) {
   return {v.x(), v.y(), v.z()};
@@ -28,7 +28,7 @@ Subject subject_of(const wire::ModelDescription& model) {
   return {{vector_of(model.bounds().min()), vector_of(model.bounds().max())}, model.z_up()};
 }
 
-/// Frames of the last second.
+/// Counts frames in intervals of one second; `last` is the count of the last complete interval.
 class FrameRate {
  public:
   void count(Clock::time_point now) {
@@ -52,9 +52,9 @@ class ViewLoop {
   ViewLoop(const ViewRequest& request, const client::ClientConfig& config, Window& window)
       : request_(request), config_(config), window_(window) {}
 
-  /// Looks until the window is closed; an error when the server goes away.
+  /// Connects and runs the view until the window is closed. An error when the connection fails.
   Status poll_input();
-  /// Lets the window live while there is no server. False when it is closed.
+  /// Keeps the window responsive until the next attempt to connect. False when the window is closed.
   bool wait_for_server(const std::string& why);
   [[nodiscard]] bool was_connected() const { return controls_.has_value(); }
 
@@ -70,7 +70,7 @@ class ViewLoop {
   const ViewRequest& request_;
   const client::ClientConfig& config_;
   Window& window_;
-  std::optional<Controls> controls_;  ///< once a frame has told the camera
+  std::optional<Controls> controls_;  ///< set with the first frame, which states the camera
   Subject subject_;
   bool open_ = true;
   bool sent_moving_ = false;
@@ -128,7 +128,7 @@ Status ViewLoop::step(client::View& view) {
   return receive(view);
 }
 
-/// Asks what was clicked, and goes there once that is known.
+/// Sends a pick request for a double click, and moves the view when its result arrives.
 Status ViewLoop::focus(client::View& view) {
   if (!controls_) return {};
   if (const auto picked = view.take_picked(); picked && picked->hit()) {

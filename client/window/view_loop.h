@@ -4,15 +4,15 @@
 
 namespace surfcast::window {
 
-/// What is looked at, and how.
+/// The model and picture of a view.
 struct ViewRequest {
   protocol::ModelUrl url;
-  wire::DrawPicture picture;  ///< its resolution is the window's at first
+  wire::DrawPicture picture;  ///< its resolution is the initial size of the window
   double target_fps = 0;      ///< as in OpenView
 };
 
-/// Shows a model in a window until somebody closes it. Comes back to the same view when the server was away; fails when
-/// it was never there.
+/// Shows a model in a window until the user closes it. After a loss of the connection it reconnects and continues with
+/// the same view. Fails if the first connection fails.
 Status view_in_window(const ViewRequest& request, const client::ClientConfig& config);
 
 }  // namespace surfcast::window

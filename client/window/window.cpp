@@ -18,7 +18,7 @@ tl::unexpected<Error> sdl_failed(const std::string& what) {
   return fail(ErrorKind::kUnavailable, what + ": " + SDL_GetError());
 }
 
-/// SDL as long as this lives.
+/// Initializes SDL, and shuts it down in the destructor.
 struct Library {
   bool up = SDL_Init(SDL_INIT_VIDEO) == 0;
   Library() = default;
@@ -46,7 +46,7 @@ Controls::Drag drag_of(uint8_t button) {
   return button == SDL_BUTTON_RIGHT || shift_held() ? Controls::Drag::kPan : Controls::Drag::kOrbit;
 }
 
-/// The arrow's direction: to the right and up.
+/// Direction of an arrow key: to the right, up.
 std::optional<glm::dvec2> arrow(SDL_Keycode key) {
   switch (key) {
     case SDLK_LEFT:

@@ -9,22 +9,22 @@
 
 namespace surfcast::window {
 
-/// What the hand can do, for a person: lines.
+/// Help text of the mouse and key controls.
 constexpr const char* kWindowHelp =
-    "drag: turn\n"
-    "right button, Shift: move\n"
-    "middle button, Ctrl: look around\n"
-    "wheel, + and -: come nearer, go away\n"
-    "double click: focus\n"
-    "arrows: turn, with Shift move\n"
-    "W A S D Q E: fly, with Shift faster\n"
+    "drag: orbit\n"
+    "drag with right button or Shift: pan\n"
+    "drag with middle button or Ctrl: look around\n"
+    "wheel, + and -: zoom\n"
+    "double click: centre on a point\n"
+    "arrow keys: orbit; with Shift: pan\n"
+    "W A S D Q E: fly; with Shift: faster\n"
     "1 to 7: front, right, back, left, top, bottom, iso\n"
     "F: fit the model\n"
-    "Home: the first view\n"
+    "Home: the initial view\n"
     "F1: this help\n"
-    "Esc: end";
+    "Esc: quit";
 
-/// A window that shows pictures and passes on what the hand does.
+/// A window that shows pictures and reports mouse and key input.
 class Window {
  public:
   static Result<Window> open(const std::string& title, int width, int height);
@@ -32,13 +32,13 @@ class Window {
   Window& operator=(Window&&) = delete;
   ~Window();
 
-  /// Passes on what has happened since the last call. False when the window is to be closed.
+  /// Applies the input since the last call to `controls`. False when the user closes the window.
   bool take_events(Controls& controls);
-  /// Shows a picture, stretched over the window.
+  /// Shows a picture, scaled to the window.
   Status show(const PixelImage& image);
   void set_title(const std::string& title);
 
-  /// Pixels of what can be shown.
+  /// Size of the drawable area, pixels.
   [[nodiscard]] int width() const;
   [[nodiscard]] int height() const;
 
