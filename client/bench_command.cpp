@@ -25,7 +25,7 @@ struct BenchCommand {
   std::string json;
 };
 
-/// What the clients that run at the same time come to.
+/// Collects the results of parallel clients.
 struct BenchResults {
   std::mutex mutex;
   std::vector<BenchRecord> records;
@@ -49,7 +49,7 @@ Result<std::vector<BenchRecord>> run_clients(const BenchCommand& command, const 
   {
     std::vector<std::jthread> threads;
     for (unsigned i = 0; i < command.silent; ++i) {
-      // Being cut off for reading nothing is what may happen to such a client.
+      // The server may disconnect a client that does not read, so its result is ignored.
       threads.emplace_back([&, i] { static_cast<void>(run_bench_client(silent, config, 0.5 + i)); });
     }
     for (unsigned i = 0; i < command.clients; ++i) {
@@ -84,17 +84,18 @@ Status bench(const BenchCommand& command, int interrupt) {
 void add_bench_command(CLI::App& app, int interrupt, Status& outcome) {
   const auto command = std::make_shared<BenchCommand>();
   BenchPlan& plan = command->plan;
-  CLI::App* sub = app.add_subcommand("bench", "Move and rest in views of a model, and measure what comes");
+  CLI::App* sub = app.add_subcommand("bench", "Measure frame rate, latency and bytes of views that move and rest");
   sub->add_option("url", command->url, "HOST:PORT/MODEL or ws://HOST:PORT/MODEL")->required();
-  sub->add_option("--clients", command->clients, "at the same time (default 1)")->check(CLI::Range(1U, 1000U));
-  sub->add_option("--silent", command->silent, "more clients, which read nothing (default 0)")
+  sub->add_option("--clients", command->clients, "number of parallel clients (default 1)")
+      ->check(CLI::Range(1U, 1000U));
+  sub->add_option("--silent", command->silent, "number of additional clients that stop reading (default 0)")
       ->check(CLI::Range(0U, 1000U));
-  sub->add_option("--seconds", plan.seconds, "of the whole run (default 20)")->check(CLI::Range(0.1, 86400.0));
+  sub->add_option("--seconds", plan.seconds, "seconds of the whole run (default 20)")->check(CLI::Range(0.1, 86400.0));
   sub->add_option("--move", plan.move_seconds, "seconds of one movement (default 4)")->check(CLI::Range(0.1, 3600.0));
   sub->add_option("--rest", plan.rest_seconds, "most seconds of one rest (default 5)")->check(CLI::Range(0.0, 3600.0));
   sub->add_option("--target-fps", plan.target_fps, "frames per second to hold while moving (default: the server's)")
       ->check(CLI::Range(0.0, 1000.0));
-  sub->add_option("--json", command->json, "write the figures to this file")->type_name("FILE");
+  sub->add_option("--json", command->json, "write the results to this file as JSON")->type_name("FILE");
   command->flags.add_view_flags_to(*sub);
   command->limits.add_to(*sub);
   sub->callback([command, interrupt, &outcome] { outcome = bench(*command, interrupt); });

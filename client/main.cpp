@@ -19,7 +19,7 @@ int report(const std::string& message, int code) {
 }
 
 int run(int argc, char** argv) {
-  CLI::App app{"Pictures of large scans, drawn by a server", "surfcast"};
+  CLI::App app{"Client of a Surfcast server, which renders pictures of large scans", "surfcast"};
   app.set_version_flag("--version", "surfcast " SURFCAST_VERSION);
   app.require_subcommand(1);
   const int interrupt = surfcast::client::interrupt_descriptor();
@@ -42,10 +42,10 @@ int run(int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  std::signal(SIGPIPE, SIG_IGN);  // a reader of standard output that goes away is an error like any other
+  std::signal(SIGPIPE, SIG_IGN);  // a closed pipe on standard output becomes a write error
   try {
     return run(argc, argv);
-  } catch (const std::exception& error) {  // out of memory, mostly
+  } catch (const std::exception& error) {  // usually std::bad_alloc
     return report(error.what(), kFailed);
   }
 }

@@ -45,7 +45,7 @@ void add_models_command(CLI::App& app, int interrupt, Status& outcome) {
   const auto command = std::make_shared<ModelsCommand>();
   CLI::App* sub = app.add_subcommand("models", "List the models of a server");
   sub->add_option("url", command->url, "HOST:PORT or ws://HOST:PORT")->required();
-  sub->add_flag("--json", command->json, "as JSON");
+  sub->add_flag("--json", command->json, "print JSON");
   command->limits.add_to(*sub);
   sub->callback([command, interrupt, &outcome] { outcome = list_models(*command, interrupt); });
 }

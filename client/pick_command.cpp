@@ -32,8 +32,8 @@ Status pick(const PickCommand& command, int interrupt) {
 
 void add_pick_command(CLI::App& app, int interrupt, Status& outcome) {
   const auto command = std::make_shared<PickCommand>();
-  CLI::App* sub = app.add_subcommand("pick", "Say what a pixel of a picture shows");
-  sub->add_option("url", command->url, "HOST:PORT/MODEL")->required();
+  CLI::App* sub = app.add_subcommand("pick", "Print the surfel at a pixel of a picture");
+  sub->add_option("url", command->url, "HOST:PORT/MODEL or ws://HOST:PORT/MODEL")->required();
   command->flags.add_to(*sub);
   command->limits.add_to(*sub);
   sub->callback([command, interrupt, &outcome] { outcome = pick(*command, interrupt); });

@@ -48,9 +48,9 @@ Status ping(const PingCommand& command, int interrupt) {
 
 void add_ping_command(CLI::App& app, int interrupt, Status& outcome) {
   const auto command = std::make_shared<PingCommand>();
-  CLI::App* sub = app.add_subcommand("ping", "Measure the round trip to a server");
+  CLI::App* sub = app.add_subcommand("ping", "Measure the round trip time to a server");
   sub->add_option("url", command->url, "HOST:PORT or ws://HOST:PORT")->required();
-  sub->add_option("--count", command->count, "round trips (default 4)")->check(CLI::Range(1U, 1000000U));
+  sub->add_option("--count", command->count, "number of round trips (default 4)")->check(CLI::Range(1U, 1000000U));
   command->limits.add_to(*sub);
   sub->callback([command, interrupt, &outcome] { outcome = ping(*command, interrupt); });
 }

@@ -12,10 +12,10 @@ std::chrono::milliseconds milliseconds(double seconds) {
 }  // namespace
 
 void TimeLimits::add_to(CLI::App& command) {
-  command.add_option("--connect-timeout", connect, "seconds to wait for the connection (default 10)")
+  command.add_option("--connect-timeout", connect, "timeout of connecting, seconds (default 10)")
       ->envname(protocol::environment_name("connect-timeout"))
       ->check(CLI::Range(0.001, 86400.0));
-  command.add_option("--timeout", answer, "seconds to wait for an answer (default 120)")
+  command.add_option("--timeout", answer, "timeout of an answer, seconds (default 120)")
       ->envname(protocol::environment_name("timeout"))
       ->check(CLI::Range(0.001, 86400.0));
 }

@@ -11,7 +11,8 @@
 namespace surfcast::client {
 namespace {
 
-/// Becomes the program that has a window, which lies beside this one: what it links stays out of this one.
+/// Replaces this process by surfcast-view, which is in the same folder. It is a separate program, so that the thin
+/// client does not link SDL.
 Status become_window(std::vector<std::string> arguments) {
   std::error_code code;
   const auto program = std::filesystem::read_symlink("/proc/self/exe", code).parent_path() / "surfcast-view";
@@ -27,7 +28,7 @@ Status become_window(std::vector<std::string> arguments) {
 }  // namespace
 
 void add_view_command(CLI::App& app, Status& outcome) {
-  CLI::App* sub = app.add_subcommand("view", "Look at a model in a window (view --help)");
+  CLI::App* sub = app.add_subcommand("view", "Show a model in an interactive window (view --help)");
   sub->set_help_flag();
   sub->prefix_command();
   sub->callback([sub, &outcome] { outcome = become_window(sub->remaining()); });

@@ -88,25 +88,25 @@ Status parse_camera_json(std::string_view text, wire::Camera& camera) {
 void RequestFlags::add_to(CLI::App& command) {
   command
       .add_option("--output", output_,
-                  "the picture's file; - is standard output, and needs --format; with --path a name with %d or %05d")
+                  "picture file; - is standard output and needs --format; with --path, a name with %d or %05d")
       ->required()
       ->envname(environment_name("output"))
       ->type_name("FILE");
   add_view_flags_to(command);
-  command.add_option("--stats", stats_, "write what drawing took as JSON")
+  command.add_option("--stats", stats_, "write the statistics of the picture as JSON")
       ->envname(environment_name("stats"))
       ->type_name("FILE");
-  command.add_option("--path", path_, "a camera path as JSON: draw its frames")
+  command.add_option("--path", path_, "draw the frames of a camera path (JSON)")
       ->envname(environment_name("path"))
       ->type_name("FILE");
-  command.add_option("--fps", fps_, "frames for each second of the path (default 30)")
+  command.add_option("--fps", fps_, "frames per second of the camera path (default 30)")
       ->envname(environment_name("fps"))
       ->type_name("NUMBER")
       ->check(CLI::Range(0.001, 1000.0));
 }
 
 void RequestFlags::add_view_flags_to(CLI::App& command) {
-  command.add_option("--camera", camera_file_, "a camera as JSON: position, focal_point, view_up, view_angle")
+  command.add_option("--camera", camera_file_, "camera as JSON: position, focal_point, view_up, view_angle")
       ->envname(environment_name("camera"))
       ->type_name("FILE");
   for (const PictureField& field : picture_fields()) {
@@ -176,7 +176,7 @@ Result<wire::DrawPicture> RequestFlags::view_request(std::string_view model) con
 }
 
 void PickFlags::add_to(CLI::App& command) {
-  command.add_option("--pixel", pixel_, "the pixel, from the upper left corner")
+  command.add_option("--pixel", pixel_, "pixel, counted from the upper left corner")
       ->required()
       ->envname(environment_name("pixel"))
       ->type_name("X,Y")
@@ -186,7 +186,7 @@ void PickFlags::add_to(CLI::App& command) {
         return status ? std::string() : status.error().message;
       });
   view_flags_.add_view_flags_to(command);
-  command.add_flag("--json", json_, "as JSON");
+  command.add_flag("--json", json_, "print JSON");
 }
 
 Result<wire::PickSurfel> PickFlags::request(std::string_view model) const {

@@ -121,21 +121,22 @@ Status build(const BuildCommand& command) {
 
 void add_build_command(CLI::App& app, Status& outcome) {
   auto command = std::make_shared<BuildCommand>();
-  CLI::App* build_command = app.add_subcommand("build", "Make a model file of scans");
+  CLI::App* build_command = app.add_subcommand("build", "Build a model file from scans");
   build_command->add_option("INPUT", command->inputs, "Scans of any supported format")->required();
-  build_command->add_option("--output", command->output, "The model file to write")->required();
+  build_command->add_option("--output", command->output, "Model file to write")->required();
   build_command
-      ->add_option("--precision", command->precision, "Largest error of a stored position, in units of the scan")
+      ->add_option("--precision", command->precision,
+                   "Largest error of a stored position, in units of the scan (default: 1/256 of each radius)")
       ->check(CLI::PositiveNumber);
-  build_command->add_option("--up", command->up, "The vertical axis, when the scan's format does not say it: y or z")
+  build_command->add_option("--up", command->up, "Vertical axis: y or z (default: derived from the scan)")
       ->check(CLI::IsMember({"y", "z"}));
   build_command
       ->add_option("--memory", command->memory,
-                   "Most memory to take, like 4G or 512M; a quarter of the machine's without it")
+                   "Memory limit of the build, like 4G or 512M (default: a quarter of the machine's memory)")
       ->check([](const std::string& text) {
         return builder::parse_memory_size(text) ? std::string() : "not a size like 4G or 512M: " + text;
       });
-  build_command->add_option("--report", command->report, "Write the figures of the build as JSON");
+  build_command->add_option("--report", command->report, "Write statistics of the build to this file as JSON");
   build_command->callback([command, &outcome] { outcome = build(*command); });
 }
 

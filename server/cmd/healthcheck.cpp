@@ -25,7 +25,7 @@ Status check_health(const protocol::Endpoint& server) {
 
 void add_healthcheck_command(CLI::App& app, Status& outcome) {
   auto url = std::make_shared<std::string>("127.0.0.1:7600");
-  CLI::App* sub = app.add_subcommand("healthcheck", "Tell whether a server answers, by the exit code");
+  CLI::App* sub = app.add_subcommand("healthcheck", "Check that a server answers; the exit code is 0 if it does");
   sub->add_option("--url", *url, "HOST:PORT of the server (default 127.0.0.1:7600)")
       ->envname(protocol::environment_name("listen"));
   sub->callback([url, &outcome] {

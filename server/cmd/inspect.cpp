@@ -34,9 +34,9 @@ Status inspect(const InspectOptions& options) {
 
 void add_inspect_command(CLI::App& app, Status& outcome) {
   auto options = std::make_shared<InspectOptions>();
-  CLI::App* command = app.add_subcommand("inspect", "Say what is in a model file");
-  command->add_option("MODEL", options->model, "The model file")->required();
-  command->add_flag("--json", options->json, "Answer in JSON");
+  CLI::App* command = app.add_subcommand("inspect", "Print the contents of a model file");
+  command->add_option("MODEL", options->model, "Model file")->required();
+  command->add_flag("--json", options->json, "Print JSON");
   command->add_flag("--verify", options->verify, "Check every checksum and decode every block");
   command->callback([options, &outcome] { outcome = inspect(*options); });
 }

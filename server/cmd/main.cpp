@@ -24,7 +24,7 @@ int report(const std::string& message, int code) {
 }
 
 int run(int argc, char** argv) {
-  CLI::App app{"Server of large scans: builds, inspects, serves and draws models", "surfcastd"};
+  CLI::App app{"Builds models from scans, inspects them, draws them, and serves them to clients", "surfcastd"};
   app.require_subcommand(1);
   surfcast::Status outcome;
   surfcast::cmd::add_build_command(app, outcome);

@@ -40,10 +40,10 @@ Status pick(const PickCommand& command) {
 
 void add_pick_command(CLI::App& app, Status& outcome) {
   auto command = std::make_shared<PickCommand>();
-  CLI::App* sub = app.add_subcommand("pick", "Say what a pixel of a picture of a model or a scan shows");
-  sub->add_option("MODEL", command->model, "A model file or a scan")->required();
+  CLI::App* sub = app.add_subcommand("pick", "Print the surfel at a pixel of a picture of a model or scan");
+  sub->add_option("MODEL", command->model, "Model file or scan")->required();
   command->flags.add_to(*sub);
-  sub->add_option("--cache", command->cache, "Folder for the models of scans (default ~/.cache/surfcast)")
+  sub->add_option("--cache", command->cache, "Folder of models built from scans (default ~/.cache/surfcast)")
       ->envname(protocol::environment_name("cache"));
   sub->callback([command, &outcome] {
     if (Status status = command->flags.check(); !status) throw CLI::ValidationError(status.error().message);

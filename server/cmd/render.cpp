@@ -53,13 +53,13 @@ Status render(const RenderCommand& command) {
 
 void add_render_command(CLI::App& app, Status& outcome) {
   auto command = std::make_shared<RenderCommand>();
-  CLI::App* sub = app.add_subcommand("render", "Draw a picture of a model or a scan, or the frames of a camera path");
-  sub->add_option("MODEL", command->model, "A model file or a scan")->required();
+  CLI::App* sub = app.add_subcommand("render", "Draw a picture of a model or scan, or the frames of a camera path");
+  sub->add_option("MODEL", command->model, "Model file or scan")->required();
   command->flags.add_to(*sub);
   sub->add_option("--gpu", command->renderer.gpu, "Index of the EGL device (default: the first hardware device)")
       ->envname(protocol::environment_name("gpu"))
       ->check(CLI::NonNegativeNumber);
-  sub->add_option("--cache", command->cache, "Folder for the models of scans (default ~/.cache/surfcast)")
+  sub->add_option("--cache", command->cache, "Folder of models built from scans (default ~/.cache/surfcast)")
       ->envname(protocol::environment_name("cache"));
   sub->callback([command, &outcome] {
     if (Status status = command->flags.check(); !status) throw CLI::ValidationError(status.error().message);

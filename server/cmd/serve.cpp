@@ -76,24 +76,25 @@ Status serve(ServeCommand command) {
 void add_serve_command(CLI::App& app, Status& outcome) {
   auto command = std::make_shared<ServeCommand>();
   CLI::App* sub = app.add_subcommand("serve", "Serve models over TCP and HTTP");
-  sub->add_option("PATH", command->paths, "Models, folders of models, and scans (default: the current folder)");
-  sub->add_option("--listen", command->listen, "HOST:PORT; port 0 takes a free one (default 127.0.0.1:7600)")
+  sub->add_option("PATH", command->paths,
+                  "Model files, folders of model files, and scans (default: the current folder)");
+  sub->add_option("--listen", command->listen, "HOST:PORT to listen on; port 0: any free port (default 127.0.0.1:7600)")
       ->envname(protocol::environment_name("listen"));
   sub->add_option("--gpu", command->renderer.gpu, "Index of the EGL device (default: the first hardware device)")
       ->envname(protocol::environment_name("gpu"))
       ->check(CLI::NonNegativeNumber);
-  sub->add_option("--cache", command->cache, "Folder for the models of scans (default ~/.cache/surfcast)")
+  sub->add_option("--cache", command->cache, "Folder of models built from scans (default ~/.cache/surfcast)")
       ->envname(protocol::environment_name("cache"));
-  sub->add_option("--connections", command->server.connections, "Most connections at once (default 256)")
+  sub->add_option("--connections", command->server.connections, "Most simultaneous connections (default 256)")
       ->envname(protocol::environment_name("connections"))
       ->check(CLI::PositiveNumber);
-  sub->add_option("--viewer", command->viewer, "Folder of the viewer for browsers (default: beside the program)")
+  sub->add_option("--viewer", command->viewer, "Folder of the browser viewer (default: the one built or installed)")
       ->envname(protocol::environment_name("viewer"));
   sub->add_option("--allow-origin", command->server.allowed_origins,
-                  "Origin of other pages that may connect (https://example.org); may be given again")
+                  "Web origin whose pages may connect, like https://example.org; may be repeated")
       ->envname(protocol::environment_name("allow-origin"));
   sub->add_option("--target-fps", command->server.target_fps,
-                  "Frames per second that views in motion adapt their quality to (default 30)")
+                  "Frames per second that moving views hold by adapting their quality (default 30)")
       ->envname(protocol::environment_name("target-fps"))
       ->check(CLI::Range(1.0, protocol::kMaxFramesPerSecond));
   sub->callback([command, &outcome] {
