@@ -1,6 +1,6 @@
 # cmake -D NPM=.. -D SOURCE=.. -D SCHEMA=.. -D BINARY=.. -P build_viewer.cmake: brings BINARY/dist up to date.
-# What npm's registry does not give must not take the rest of the build down: without it there is no viewer, a warning
-# says so, and the next build tries again. Errors in the viewer's own code are errors.
+# If packages cannot be installed from npm's registry, the build continues without the viewer and warns; the next build
+# tries again. Errors in the viewer's own code fail the build.
 cmake_minimum_required(VERSION 3.25)
 set(installed ${BINARY}/installed)
 set(page ${BINARY}/dist/index.html)

@@ -1,7 +1,7 @@
 import { readFileSync } from 'node:fs';
 import { defineConfig, type Plugin } from 'vite';
 
-/** The typeface's licence asks to travel with its files. */
+/** The licence of the typeface must be distributed with its files. */
 function fontLicence(): Plugin {
   return {
     name: 'font-licence',
@@ -17,6 +17,6 @@ export default defineConfig({
   base: './',
   build: { outDir: process.env['SURFCAST_VIEWER_OUT'] ?? 'dist', emptyOutDir: true, target: 'es2022' },
   esbuild: { jsx: 'automatic', jsxImportSource: 'preact' },
-  // `npm run dev` serves the page itself and leaves the rest to a surfcastd on its usual port.
+  // `npm run dev` serves the page itself and forwards other requests to a surfcastd on the default port.
   server: { proxy: { '/ws': { target: 'ws://127.0.0.1:7600', ws: true }, '/api': 'http://127.0.0.1:7600' } },
 });

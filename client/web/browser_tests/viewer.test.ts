@@ -46,7 +46,7 @@ async function openYard(): Promise<void> {
   await look.sharp(page);
 }
 
-/** The same picture, drawn without a server from what the address says. */
+/** The picture of the address, drawn without a server. */
 async function renderedFromAddress(): Promise<Buffer> {
   const place = await look.placeNow(page);
   const { width, height } = await look.pictureSize(page);
@@ -61,7 +61,7 @@ async function renderedFromAddress(): Promise<Buffer> {
   return readFile(output);
 }
 
-/** Reads the point under a pixel by the tool for that. */
+/** Reads the point under a pixel with the inspect tool. */
 async function inspect(dx: number, dy: number): Promise<{ at: number[]; rows: Map<string, string> }> {
   await page.keyboard.press('i');
   const pixel = await look.middle(page, dx, dy);
@@ -72,7 +72,7 @@ async function inspect(dx: number, dy: number): Promise<{ at: number[]; rows: Ma
   const names = await card.locator('.facts dt').allTextContents();
   const values = await card.locator('.facts dd').allTextContents();
   await page.keyboard.press('Escape');
-  await page.waitForTimeout(400); // not half of a double click
+  await page.waitForTimeout(400); // so that this click is not the first of a double click
   return { at: at.map(Number), rows: new Map(names.map((name, i) => [name, values[i]!.trim()])) };
 }
 
@@ -99,11 +99,11 @@ describe('the viewer', () => {
       await page.mouse.move(from.x + 40 + 4 * i, from.y + 10);
       await page.waitForTimeout(40);
     }
-    await page.waitForTimeout(700); // the figures follow twice a second
+    await page.waitForTimeout(700); // the figures are updated twice a second
     const stated = Number.parseFloat((await page.locator('.status .latency').textContent()) ?? '');
     await page.mouse.up();
     expect(stated).toBeGreaterThan(0);
-    // Reading pixels out of the browser takes its own time, and so does the first frame's shader: hence the room.
+    // The bound has a margin for reading pixels from the browser and for the first frame's shaders.
     expect(seen).toBeLessThan(5 * stated + 1500);
   });
 
@@ -229,7 +229,7 @@ describe('on a phone', () => {
     ({ page, errors } = await look.open(browser, look.phone));
     await openYard();
     expect(await page.evaluate(() => document.documentElement.scrollWidth)).toBe(360);
-    await page.locator('.phone-bar').getByText('Look').tap();
+    await page.locator('.phone-bar').getByText('Display').tap();
     const sheet = await page.locator('.panel').boundingBox();
     const bar = await page.locator('.phone-bar').boundingBox();
     expect(sheet!.width).toBe(360);

@@ -26,7 +26,7 @@ function canvas(className: string): HTMLCanvasElement {
   return element;
 }
 
-/** The picture, what is drawn over it, and the place that takes pointers and keys. */
+/** The canvas of the picture, the overlay canvas, and the element that receives pointer and key events. */
 function makeStage(): { stage: HTMLDivElement; picture: HTMLCanvasElement; overlay: HTMLCanvasElement } {
   const stage = document.createElement('div');
   stage.className = 'canvases';
@@ -46,7 +46,7 @@ function socketUrl(): string {
 }
 
 const copyLink = (): Promise<void> =>
-  copyText(currentLink(), 'Link copied.', 'The browser does not let this page copy. The address shows the view, too.');
+  copyText(currentLink(), 'Link copied.', 'The browser denies access to the clipboard. Copy the address instead.');
 
 function start(): void {
   const { stage, picture, overlay } = makeStage();
@@ -74,7 +74,7 @@ function start(): void {
   }
 }
 
-/** A server with one model shows it at once. */
+/** Opens the model of a server that has only one. */
 function openTheOnly(): void {
   const stop = store.models.subscribe((models) => {
     if (!models) return;

@@ -9,7 +9,7 @@ const stages = [
   { name: 'queue', milliseconds: 1 },
   { name: 'select', milliseconds: 1 },
   { name: 'load', milliseconds: 4 },
-  { name: 'decode', milliseconds: 40 }, // what the workers spent during `load`, together
+  { name: 'decode', milliseconds: 40 }, // sum over the workers, during `load`
   { name: 'project', milliseconds: 5 },
   { name: 'splat', milliseconds: 10 },
   { name: 'encode', milliseconds: 3 },
@@ -48,7 +48,7 @@ describe('figures', () => {
     const collector = new FigureCollector();
     collector.painted(painted(0), -60);
     collector.painted(painted(50), -10);
-    collector.painted(painted(900, false), 100); // the fine picture after rest, late on purpose
+    collector.painted(painted(900, false), 100); // the refined picture at rest, delayed on purpose
     expect(collector.figures(1000).latency).toBe(60);
     const later = collector.figures(9000);
     expect([later.framesPerSecond, later.bytesPerSecond, later.latency]).toEqual([0, 0, 60]);

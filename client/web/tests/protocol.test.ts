@@ -178,7 +178,7 @@ describe('a view', () => {
 
     const piece = (frame: bigint, data: number[], more: boolean): void =>
       server.send(id, { case: 'viewFrame', value: { frame, more, picture: { data: Uint8Array.from(data) } } });
-    piece(1n, [9], true); // the rest never comes
+    piece(1n, [9], true); // never completed
     piece(2n, [1, 2], true);
     piece(2n, [3], true);
     piece(2n, [4, 5], false);

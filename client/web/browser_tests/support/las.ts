@@ -1,6 +1,6 @@
 import { Buffer } from 'node:buffer';
 
-/** A point of the test's scan as the file holds it: integers on the lattice of the header. */
+/** A point of the test scan as stored in the file: integers on the lattice of the header. */
 export interface LasPoint {
   readonly x: number;
   readonly y: number;
@@ -13,7 +13,7 @@ export interface LasPoint {
 export const lattice = 0.001;
 export const offset = { x: 452_000, y: 5_411_000, z: 200 };
 
-/** World coordinates as every reader of LAS computes them. */
+/** World coordinates, computed as every LAS reader does. */
 export const worldOf = (p: LasPoint): [number, number, number] => [
   p.x * lattice + offset.x,
   p.y * lattice + offset.y,

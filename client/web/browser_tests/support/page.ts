@@ -1,7 +1,7 @@
 import { chromium, type Browser, type BrowserContextOptions, type Page } from 'playwright-core';
 import { expect } from 'vitest';
 
-/** What a person sees and does, as short words. */
+/** Actions and observations of a user, as short functions. */
 
 const flags = [
   '--no-sandbox',
@@ -27,11 +27,11 @@ export async function open(browser: Browser, options: BrowserContextOptions): Pr
   return { page, errors };
 }
 
-/** The picture on the screen is the best one there is of the newest view. */
+/** Waits until the picture on the screen is the converged one of the newest view. */
 export const sharp = (page: Page): Promise<unknown> =>
   page.locator('.status .lamp.sharp').waitFor({ state: 'attached', timeout: 90_000 });
 
-/** A number that differs when a pixel of the picture does. */
+/** A checksum of the picture's pixels. */
 export const pictureSum = (page: Page): Promise<number> =>
   page.evaluate(() => {
     const canvas = document.querySelector<HTMLCanvasElement>('canvas.picture')!;
@@ -41,7 +41,7 @@ export const pictureSum = (page: Page): Promise<number> =>
     return sum;
   });
 
-/** How many bytes of the picture on the screen differ from those of a PNG file. */
+/** Number of bytes in which the picture on the screen differs from a PNG file. */
 export const differenceFrom = (page: Page, png: Buffer): Promise<number> =>
   page.evaluate(async (base64) => {
     const canvas = document.querySelector<HTMLCanvasElement>('canvas.picture')!;
@@ -65,7 +65,7 @@ export const pictureSize = (page: Page): Promise<{ width: number; height: number
     return { width, height };
   });
 
-/** The middle of the picture, moved by some pixels, on the page. */
+/** The centre of the picture plus an offset, in page coordinates, pixels. */
 export async function middle(page: Page, dx = 0, dy = 0): Promise<{ x: number; y: number }> {
   const box = await page.locator('.canvases').boundingBox();
   expect(box).not.toBeNull();
@@ -77,11 +77,11 @@ export async function drag(page: Page, dx: number, dy: number): Promise<void> {
   await page.mouse.move(from.x, from.y);
   await page.mouse.down();
   for (let i = 1; i <= 6; ++i) await page.mouse.move(from.x + (dx * i) / 6, from.y + (dy * i) / 6);
-  await page.waitForTimeout(100); // the hand stops before it lets go, so nothing coasts
+  await page.waitForTimeout(100); // a pause before the release, so that nothing coasts
   await page.mouse.up();
 }
 
-/** What the address says once it has followed the view. */
+/** The parameters of the address once it has been updated to the view. */
 export async function placeNow(page: Page): Promise<URLSearchParams> {
   await page.waitForFunction(() => location.hash.includes('position='), undefined, { timeout: 20_000 });
   await page.waitForTimeout(400);

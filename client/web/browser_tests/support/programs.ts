@@ -4,7 +4,7 @@ import { promisify } from 'node:util';
 
 const run = promisify(execFile);
 
-/** Where CMake says the programs are; a plain `npm run browser-test` takes the release build's. */
+/** Path of surfcastd, set by CMake. A plain `npm run browser-test` uses the release build. */
 const surfcastd = process.env['SURFCASTD'] ?? '../../build/bin/surfcastd';
 
 export async function surfcastdRun(...args: string[]): Promise<void> {
@@ -32,7 +32,7 @@ export class Server {
     return Number(new URL(this.url).port);
   }
 
-  /** Like a crash or a power failure. */
+  /** Kills the server, as a crash or power failure would. */
   async kill(): Promise<void> {
     const ended = new Promise((resolve) => this.process.once('exit', resolve));
     if (this.process.exitCode !== null || this.process.signalCode !== null) return;

@@ -1,22 +1,22 @@
 import type { Pixel } from './vector';
 
-/** A hand's recent movement on the screen, and what goes on after it lets go. Pixels and milliseconds. */
+/** Recent pointer positions of a drag, from which the inertia after its end is computed. Pixels and milliseconds. */
 export interface Sample {
   readonly time: number;
   readonly at: Pixel;
 }
 
-const memory = 80; // ms: older movement says nothing about how the hand left the screen
-const stopped = 40; // ms without movement: the hand had come to rest
-const slowest = 0.02; // pixels per ms below which nothing moves on
-/** ms in which the speed of a drag that has let go falls to 1/e */
+const memory = 80; // ms: older samples do not count for the release velocity
+const stopped = 40; // ms without movement after which the pointer counts as at rest
+const slowest = 0.02; // pixels per ms; slower movement stops
+/** Time constant of coasting, ms: the speed after a drag falls to 1/e in this time. */
 export const coastDecay = 180;
 
 export function recent(samples: readonly Sample[], now: number): Sample[] {
   return samples.filter((sample) => now - sample.time <= memory);
 }
 
-/** Pixels per ms at which the hand let go; 0 if it had stopped. */
+/** Velocity of the pointer at its release, pixels per ms; 0 if the pointer was at rest. */
 export function releaseVelocity(samples: readonly Sample[], now: number): Pixel {
   const kept = recent(samples, now);
   const [first, last] = [kept[0], kept[kept.length - 1]];
@@ -25,7 +25,7 @@ export function releaseVelocity(samples: readonly Sample[], now: number): Pixel 
   return { x: (last.at.x - first.at.x) / elapsed, y: (last.at.y - first.at.y) / elapsed };
 }
 
-/** How far it coasts in `elapsed` ms, and the speed after them; at rest once too slow to see. */
+/** Distance coasted in `elapsed` ms, and the velocity afterwards. Coasting ends below the least visible speed. */
 export function coast(
   velocity: Pixel,
   elapsed: number,

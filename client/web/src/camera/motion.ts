@@ -2,7 +2,7 @@ import { clampPitch, poseAxes, skyOf, type Pose, type UpAxis } from './pose';
 import { etaOf } from './projection';
 import { addScaled, dot, scale, subtract, type Pixel, type Vector } from './vector';
 
-/** Turns the eye around a point that stays where it is on the screen. Radians. */
+/** Turns the eye around a point, which stays in place on the screen. Radians. */
 export function orbit(pose: Pose, up: UpAxis, pivot: Vector, yaw: number, pitch: number): Pose {
   const before = poseAxes(pose, up);
   const turned = { ...pose, yaw: pose.yaw + yaw, pitch: clampPitch(pose.pitch + pitch) };
@@ -14,12 +14,12 @@ export function orbit(pose: Pose, up: UpAxis, pivot: Vector, yaw: number, pitch:
   return { ...turned, position };
 }
 
-/** Turns the eye where it is. */
+/** Turns the view direction without moving the eye. Radians. */
 export function look(pose: Pose, yaw: number, pitch: number): Pose {
   return { ...pose, yaw: pose.yaw + yaw, pitch: clampPitch(pose.pitch + pitch) };
 }
 
-/** Moves the eye across the view so that what is at `depth` follows the hand by `drag` pixels. */
+/** Moves the eye parallel to the picture, so that a point at `depth` moves by `drag` pixels. */
 export function pan(pose: Pose, up: UpAxis, drag: Pixel, depth: number, height: number): Pose {
   const axes = poseAxes(pose, up);
   const perPixel = depth / etaOf(pose.viewAngle, height);
@@ -27,7 +27,7 @@ export function pan(pose: Pose, up: UpAxis, drag: Pixel, depth: number, height: 
   return { ...pose, position: addScaled(moved, axes.up, drag.y * perPixel) };
 }
 
-/** Brings the eye to `factor` of its distance from a point, which stays where it is on the screen. */
+/** Multiplies the distance of the eye from a point by `factor`. The point stays in place on the screen. */
 export function zoom(pose: Pose, target: Vector, factor: number, nearest: number, farthest: number): Pose {
   const bounded = Math.min(farthest / pose.distance, Math.max(nearest / pose.distance, factor));
   return {
@@ -37,14 +37,14 @@ export function zoom(pose: Pose, target: Vector, factor: number, nearest: number
   };
 }
 
-/** Which way to fly, each between -1 and 1. */
+/** Direction of flight; each component is between -1 and 1. */
 export interface Course {
   readonly right: number;
   readonly forward: number;
   readonly up: number; // along the model's vertical axis
 }
 
-/** Flies a distance: forward is where the eye looks. */
+/** Moves the eye by a distance. Forward is the view direction. */
 export function fly(pose: Pose, up: UpAxis, course: Course, far: number): Pose {
   const axes = poseAxes(pose, up);
   let step = scale(axes.forward, course.forward);
@@ -54,14 +54,17 @@ export function fly(pose: Pose, up: UpAxis, course: Course, far: number): Pose {
   return size > 0 ? { ...pose, position: addScaled(pose.position, step, far / Math.max(1, size)) } : pose;
 }
 
-/** The shorter way round from one direction to another, radians. */
+/** The signed angle of the shorter turn from one direction to another, radians. */
 export function turnBetween(from: number, to: number): number {
   const turn = (to - from) % (2 * Math.PI);
   if (turn > Math.PI) return turn - 2 * Math.PI;
   return turn < -Math.PI ? turn + 2 * Math.PI : turn;
 }
 
-/** Between two poses, t from 0 to 1, so that the point of interest travels in a straight line and zooms evenly. */
+/**
+ * Interpolates between two poses, t from 0 to 1. The point of interest moves along a straight line, and its distance
+ * changes by a constant factor per unit of t.
+ */
 export function between(from: Pose, to: Pose, up: UpAxis, t: number): Pose {
   const lerp = (a: number, b: number): number => a + (b - a) * t;
   const yaw = from.yaw + turnBetween(from.yaw, to.yaw) * t;
@@ -73,5 +76,5 @@ export function between(from: Pose, to: Pose, up: UpAxis, t: number): Pose {
   return { ...turned, position: addScaled(point, poseAxes(turned, up).forward, -far) };
 }
 
-/** Starts and ends gently; t from 0 to 1. */
+/** Smoothstep: speed 0 at both ends; t from 0 to 1. */
 export const ease = (t: number): number => t * t * (3 - 2 * t);

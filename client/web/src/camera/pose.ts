@@ -1,11 +1,11 @@
 import { add, addScaled, cross, distance, dot, normalize, scale, subtract, vector, type Vector } from './vector';
 
-/** The axis of the model that points to the sky. */
+/** The vertical axis of the model. */
 export type UpAxis = 'y' | 'z';
 
 /**
- * Where the eye is and where it looks, as one navigates: the horizon stays level, and looking straight up or down is a
- * value like any other. Angles are radians.
+ * Position and direction of the eye in the form used for navigation. The horizon is always level, and vertical view
+ * directions are ordinary values. Angles are radians.
  */
 export interface Pose {
   readonly position: Vector;
@@ -15,7 +15,7 @@ export interface Pose {
   readonly viewAngle: number; // vertical, degrees
 }
 
-/** A camera as the protocol and the command line state it. */
+/** A camera in the form of the protocol and the command line. */
 export interface Camera {
   readonly position: Vector;
   readonly focalPoint: Vector;
@@ -30,7 +30,7 @@ export interface Axes {
   readonly forward: Vector;
 }
 
-/** Two level directions and the vertical, right-handed: yaw 0 looks along `north`. */
+/** Two horizontal directions and the vertical one, right-handed. Yaw 0 looks along `north`. */
 interface Level {
   readonly east: Vector;
   readonly north: Vector;
@@ -47,7 +47,7 @@ export const skyOf = (up: UpAxis): Vector => levelOf(up).sky;
 export const heightOf = (point: Vector, up: UpAxis): number => dot(point, skyOf(up));
 
 export const maxPitch = Math.PI / 2;
-/** Beyond this the vertical axis no longer tells how the picture is turned, so the camera states its own. */
+/** At steeper pitches the vertical axis does not determine the picture's rotation, so the camera states its view up. */
 const statedUpPitch = (80 * Math.PI) / 180;
 
 export const clampPitch = (pitch: number): number => Math.min(maxPitch, Math.max(-maxPitch, pitch));
@@ -65,15 +65,15 @@ export const poseAxes = (pose: Pose, up: UpAxis): Axes => axesOf(pose.yaw, pose.
 export const focalPoint = (pose: Pose, up: UpAxis): Vector =>
   addScaled(pose.position, poseAxes(pose, up).forward, pose.distance);
 
-/** Cameras of the poses that were made from one: until the eye moves, pictures are asked for with these, to the bit. */
+/** The cameras that poses were made from. Until the eye moves, picture requests use these cameras without rounding. */
 const statedCameras = new WeakMap<Pose, Camera>();
 
-/** The pose that sees what the camera sees, except that its horizon is level once it moves. */
+/** The pose of a camera. A tilted horizon becomes level with the first movement. */
 export function poseOf(camera: Camera, up: UpAxis): Pose {
   const { east, north, sky } = levelOf(up);
   const forward = normalize(subtract(camera.focalPoint, camera.position));
   const pitch = Math.atan2(dot(forward, sky), Math.hypot(dot(forward, east), dot(forward, north)));
-  // Close to the vertical, the heading is where the picture's upper edge points.
+  // Close to the vertical, the view up determines the heading.
   const steep = Math.abs(pitch) > statedUpPitch && camera.viewUp !== undefined;
   const heading = steep ? scale(camera.viewUp, -Math.sign(pitch)) : forward;
   const yaw = Math.atan2(dot(heading, east), dot(heading, north));
@@ -83,7 +83,7 @@ export function poseOf(camera: Camera, up: UpAxis): Pose {
   return pose;
 }
 
-/** Decimals that keep an error of the camera far below a pixel, for something seen at this distance. */
+/** Number of decimals that keeps rounding errors of a camera far below a pixel, for an object at distance `size`. */
 export function decimalsFor(size: number): number {
   if (!(size > 0)) return 6;
   return Math.min(12, Math.max(0, 6 - Math.floor(Math.log10(size))));
@@ -94,8 +94,8 @@ const roundedVector = (v: Vector, decimals: number): Vector =>
   vector(rounded(v.x, decimals), rounded(v.y, decimals), rounded(v.z, decimals));
 
 /**
- * The camera of a pose, in numbers short enough for a link. Pictures are asked for with exactly these, so that a link
- * and a command line show the same picture.
+ * The camera of a pose, rounded to numbers short enough for a link. Picture requests use exactly these numbers, so that
+ * a link and a command line give the same picture.
  */
 export function cameraOf(pose: Pose, up: UpAxis): Camera {
   return statedCameras.get(pose) ?? roundedCamera(pose, up);

@@ -1,7 +1,7 @@
 import type { Axes, Camera } from './pose';
 import { addScaled, cross, dot, normalize, subtract, type Pixel, type Vector } from './vector';
 
-/** A camera with the size of its picture: between world and pixels, as the server's renderer has it. */
+/** A camera with the size of its picture: maps world coordinates to pixels in the same way as the server's renderer. */
 export interface Projection {
   readonly eye: Vector;
   readonly axes: Axes;
@@ -14,7 +14,7 @@ export function etaOf(viewAngle: number, height: number): number {
   return height / (2 * Math.tan((viewAngle * Math.PI) / 360));
 }
 
-/** `sky` stands in for a camera that states no view up. */
+/** `sky` is the view up of a camera that states none. */
 export function projectionOf(camera: Camera, sky: Vector, width: number, height: number): Projection {
   const forward = normalize(subtract(camera.focalPoint, camera.position));
   const right = normalize(cross(forward, camera.viewUp ?? sky));
@@ -22,10 +22,10 @@ export function projectionOf(camera: Camera, sky: Vector, width: number, height:
   return { eye: camera.position, axes, eta: etaOf(camera.viewAngle, height), width, height };
 }
 
-/** Distance in front of the eye, along the view. */
+/** Distance in front of the eye, along the view direction. */
 export const depthOf = (view: Projection, point: Vector): number => dot(subtract(point, view.eye), view.axes.forward);
 
-/** Nothing for points that are not in front of the eye. */
+/** The pixel of a point; undefined for points that are not in front of the eye. */
 export function project(view: Projection, point: Vector): Pixel | undefined {
   const offset = subtract(point, view.eye);
   const depth = dot(offset, view.axes.forward);
@@ -36,18 +36,18 @@ export function project(view: Projection, point: Vector): Pixel | undefined {
   };
 }
 
-/** The direction in which a pixel sees, with a length of 1 along the view. */
+/** The viewing ray of a pixel, scaled to a length of 1 along the view direction. */
 export function rayOf(view: Projection, pixel: Pixel): Vector {
   const x = (pixel.x - view.width / 2) / view.eta;
   const y = (view.height / 2 - pixel.y) / view.eta;
   return addScaled(addScaled(view.axes.forward, view.axes.right, x), view.axes.up, y);
 }
 
-/** The point that a pixel sees at a depth. */
+/** The point on a pixel's viewing ray at a depth. */
 export const pointAt = (view: Projection, pixel: Pixel, depth: number): Vector =>
   addScaled(view.eye, rayOf(view, pixel), depth);
 
-/** The part of a line in front of the eye, as pixels: lines that cross the eye's plane are cut just before it. */
+/** The pixels of the part of a line in front of the eye. A line that crosses the eye's plane is cut just before it. */
 export function projectLine(view: Projection, a: Vector, b: Vector): [Pixel, Pixel] | undefined {
   const [depthA, depthB] = [depthOf(view, a), depthOf(view, b)];
   const nearest = 1e-3 * Math.max(depthA, depthB);

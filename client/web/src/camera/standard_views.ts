@@ -21,7 +21,7 @@ export function corners(box: Box): Vector[] {
 export type ViewName = 'front' | 'back' | 'left' | 'right' | 'top' | 'bottom' | 'iso';
 
 const quarter = Math.PI / 2;
-/** Yaw and pitch of each; the front looks along y of a z-up model and along -z of a y-up one. */
+/** Yaw and pitch of each view. The front view looks along y of a z-up model and along -z of a y-up model. */
 const directions: Readonly<Record<ViewName, readonly [number, number]>> = {
   front: [0, 0],
   back: [2 * quarter, 0],
@@ -34,14 +34,14 @@ const directions: Readonly<Record<ViewName, readonly [number, number]>> = {
 
 export const viewNames = Object.keys(directions) as readonly ViewName[];
 
-/** Where the eye stands along one axis of the picture, and how far back it must be to see all that was included. */
+/** Computes, for one axis of the picture, the offset and the least distance of an eye that sees all included points. */
 class AxisFit {
   private lowest = Infinity;
   private highest = -Infinity;
 
   constructor(private readonly tangent: number) {}
 
-  /** A point's place on the axis and its depth towards the eye, both from the middle of what is fitted. */
+  /** Includes a point. `extent` is its offset along the axis, `nearer` towards the eye, both from the box's middle. */
   include(extent: number, nearer: number): void {
     this.lowest = Math.min(this.lowest, extent - this.tangent * nearer);
     this.highest = Math.max(this.highest, extent + this.tangent * nearer);
@@ -57,13 +57,13 @@ class AxisFit {
 }
 
 /**
- * The nearest pose that looks the same way and sees the whole box. Each corner bounds the eye on both sides of both
- * axes of the picture: |extent - offset| <= tangent * (distance - nearer).
+ * The nearest pose with the same view direction that shows the whole box. Each corner gives two bounds of the eye's
+ * position for each axis of the picture: |extent - offset| <= tangent * (distance - nearer).
  */
 export function fit(pose: Pose, up: UpAxis, box: Box, aspect: number): Pose {
   const axes = poseAxes(pose, up);
   const middle = center(box);
-  const tangent = Math.tan((pose.viewAngle * Math.PI) / 360) * 0.95; // a little air around it
+  const tangent = Math.tan((pose.viewAngle * Math.PI) / 360) * 0.95; // a margin of 5 %
   const across = new AxisFit(tangent * aspect);
   const along = new AxisFit(tangent);
   for (const corner of corners(box)) {
@@ -77,13 +77,13 @@ export function fit(pose: Pose, up: UpAxis, box: Box, aspect: number): Pose {
   return { ...pose, distance, position: addScaled(target, axes.forward, -distance) };
 }
 
-/** The box from one of the usual sides. */
+/** The whole box in a standard view. */
 export function standardView(name: ViewName, pose: Pose, up: UpAxis, box: Box, aspect: number): Pose {
   const [yaw, pitch] = directions[name];
   return fit({ ...pose, yaw, pitch }, up, box, aspect);
 }
 
-/** The usual side that looks most nearly along a direction, for the axes of the gizmo. */
+/** The standard view whose direction is closest to the given one, for the axes of the gizmo. */
 export function viewAlong(direction: Vector, up: UpAxis): ViewName {
   const sides = viewNames.filter((name) => name !== 'iso');
   const agreement = (name: ViewName): number => dot(axesOf(...directions[name], up).forward, direction);

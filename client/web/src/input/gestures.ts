@@ -1,15 +1,15 @@
 import type { Pixel } from '../camera/vector';
 
-/** What two fingers did between two moments. */
+/** The movement of two fingers between two events. */
 export interface Pinch {
-  readonly center: Pixel; // where the fingers are now
-  readonly moved: Pixel; // of the centre
-  readonly spread: number; // ratio of their distance, above 1: apart
+  readonly center: Pixel; // midpoint of the fingers, now
+  readonly moved: Pixel; // movement of the midpoint
+  readonly spread: number; // ratio of the fingers' distances, now to before
   readonly twist: number; // radians, clockwise on the screen
 }
 
 const middle = (a: Pixel, b: Pixel): Pixel => ({ x: (a.x + b.x) / 2, y: (a.y + b.y) / 2 });
-const closest = 8; // pixels: fingers nearer than this say nothing about spread and twist
+const closest = 8; // pixels; at smaller distances spread and twist are not measured
 
 export function pinchBetween(before: readonly [Pixel, Pixel], after: readonly [Pixel, Pixel]): Pinch {
   const center = middle(...after);
@@ -26,15 +26,15 @@ export function pinchBetween(before: readonly [Pixel, Pixel], after: readonly [P
   };
 }
 
-/** Pixels that a wheel event scrolls: browsers count in pixels, lines or pages. */
+/** Scroll distance of a wheel event in pixels. Browsers report pixels, lines or pages. */
 export function wheelPixels(event: Pick<WheelEvent, 'deltaY' | 'deltaMode' | 'ctrlKey'>): number {
   const unit = event.deltaMode === 1 ? 33 : event.deltaMode === 2 ? 400 : 1;
-  // Trackpads send pinches as small wheel movements with ctrl.
+  // Browsers report a pinch on a trackpad as small wheel movements with the Ctrl modifier.
   const pinch = event.ctrlKey && event.deltaMode === 0 && Math.abs(event.deltaY) < 50 ? 7 : 1;
   return Math.max(-400, Math.min(400, event.deltaY * unit * pinch));
 }
 
-const clickReach = 5; // CSS pixels that a hand may tremble
+const clickReach = 5; // CSS pixels that the pointer may move during a click
 const clickTime = 500; // ms
 const doubleTime = 350;
 const doubleReach = 16;

@@ -4,7 +4,7 @@ import { finish, undoPoint } from '../measure/measurement_list';
 import * as store from '../state/store';
 import type { CameraNavigator } from '../view/camera_navigator';
 
-/** What other keys do, by `KeyboardEvent.key`; shown by the help, too. */
+/** Keys of the standard views, by `KeyboardEvent.key`. */
 export const viewKeys: Readonly<Record<string, ViewName>> = {
   '1': 'front',
   '2': 'right',
@@ -25,7 +25,7 @@ const toolKeys: Readonly<Record<string, store.Tool>> = {
   p: 'profile',
 };
 
-/** By `KeyboardEvent.code`, so that they lie together on every keyboard. */
+/** By `KeyboardEvent.code`, so that the positions of the keys are the same with every keyboard layout. */
 const flightKeys: Readonly<Record<string, Partial<Course>>> = {
   KeyW: { forward: 1 },
   KeyS: { forward: -1 },
@@ -72,7 +72,7 @@ export class Keyboard {
 
   private down(event: KeyboardEvent): void {
     if (typing(event.target) || event.ctrlKey || event.metaKey || event.altKey || !store.model.peek()) return;
-    // A button that has the focus takes these itself.
+    // A focused button handles Enter and Space itself.
     if ((event.key === 'Enter' || event.key === ' ') && !this.onStage()) return;
     if (store.flying.peek() && flightKeys[event.code]) this.hold(event);
     else if (!this.arrow(event) && !this.press(event.key)) return;
@@ -102,7 +102,7 @@ export class Keyboard {
     this.navigator.flyAlong(courseOf(this.held), fast);
   }
 
-  /** Arrows turn the model, with shift they move it: only while the picture has the focus, as lists use them, too. */
+  /** Arrow keys orbit, with Shift they pan. Only while the picture has the focus, because lists use arrow keys too. */
   private arrow(event: KeyboardEvent): boolean {
     const directions: Readonly<Record<string, readonly [number, number]>> = {
       ArrowLeft: [-1, 0],
@@ -150,7 +150,7 @@ export class Keyboard {
     return command !== undefined;
   }
 
-  /** Lets go of one thing at a time. */
+  /** Ends the innermost active state: measurement, inspection, flight, tool, panel. One per key press. */
   private escape(): void {
     if (store.growing.peek() !== undefined) finish();
     else if (store.inspection.peek()) store.inspection.value = undefined;

@@ -10,21 +10,21 @@ import { isClick, isDouble, pinchBetween, wheelPixels, type Press } from './gest
 import type { Tools } from './tools';
 
 const handleReach = 18; // CSS pixels
-const wheelPause = 300; // ms after which another turn of the wheel may mean another point
+const wheelPause = 300; // ms; after a longer pause the wheel zooms towards a new point
 const wheelReach = 12; // CSS pixels
 
-/** What one hand is doing, from the press to the release. Positions are device pixels of the picture. */
+/** A drag with one pointer, from press to release. Positions are device pixels of the picture. */
 interface Stroke {
-  readonly down: Press; // in CSS pixels, as clicks are judged
+  readonly down: Press; // in CSS pixels, for the detection of clicks
   readonly anchor: Anchor;
   readonly drag: Drag;
   samples: Sample[];
   moved: boolean;
-  interested: boolean; // the eye knows how far away what it drags is
+  interested: boolean; // the depth of the anchor has been applied to the pose
   coasts: boolean;
 }
 
-/** Pointers, wheels and touches on the picture. */
+/** Mouse, wheel and touch input on the picture. */
 export class StageInput {
   private readonly pointers = new Map<number, Pixel>();
   private stroke: Stroke | undefined;
@@ -52,7 +52,7 @@ export class StageInput {
     return width > 0 ? store.stageSize.peek().width / width : 1;
   }
 
-  /** Of the frame on the screen, which is as high as the element and in its middle, also while another shape is awaited. */
+  /** Pixel of the frame on the screen. The frame is centred and as high as the element, also after a resize. */
   private pixelOf(event: MouseEvent): Pixel {
     const box = this.element.getBoundingClientRect();
     const { width, height } = store.shownProjection.peek() ?? store.stageSize.peek();
@@ -101,7 +101,7 @@ export class StageInput {
     this.pointers.set(event.pointerId, at);
   }
 
-  /** A trembling hand that means to click does not turn the picture. */
+  /** Ignores movement that is small enough for a click. */
   private moveStroke(stroke: Stroke, event: PointerEvent, before: Pixel, at: Pixel): void {
     const here = { at: { x: event.clientX, y: event.clientY }, time: event.timeStamp };
     if (!stroke.moved && isClick(stroke.down, here)) return;
@@ -172,7 +172,7 @@ export class StageInput {
     if (step.twist !== 0) this.navigator.twistBy(-step.twist, pinch.point);
   }
 
-  /** One finger stays: it goes on as if it had just come down, but is no click and does not coast. */
+  /** Continues with the remaining finger as a new drag that is never a click and does not coast. */
   private endPinch(): void {
     this.pinch = undefined;
     const [at] = [...this.pointers.values()];

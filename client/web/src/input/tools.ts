@@ -6,7 +6,7 @@ import type { CameraNavigator } from '../view/camera_navigator';
 import type { Probe } from '../view/probe';
 import { addClipAround } from '../overlay/clip_list';
 
-/** What a click on the picture does, by the tool in hand. */
+/** Applies the selected tool to clicks on the picture. */
 export class Tools {
   constructor(
     private readonly navigator: CameraNavigator,
@@ -44,7 +44,7 @@ export class Tools {
     try {
       const result = await this.probe.pick(pixel);
       if (result?.hit && result.position) return { result, at: vectorFrom(result.position) };
-      store.showNotice('Nothing of the scan is there.');
+      store.showNotice('There is no point of the scan here.');
     } catch (error) {
       store.showNotice(error instanceof Error ? error.message : String(error));
     } finally {

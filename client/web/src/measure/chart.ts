@@ -1,6 +1,6 @@
 import type { ProfilePoint } from './measurement';
 
-/** Round steps for an axis: of 1, 2 or 5 times a power of ten, about `count` of them between two values. */
+/** Ticks of an axis: about `count` between two values. The step is 1, 2 or 5 times a power of ten. */
 export function ticks(from: number, to: number, count: number): number[] {
   const span = to - from;
   if (!(span > 0)) return [from];
@@ -22,7 +22,7 @@ export interface ChartFrame {
 }
 
 export interface Chart {
-  readonly path: string; // of an SVG
+  readonly path: string; // SVG path data
   readonly dots: readonly { readonly x: number; readonly y: number }[];
   readonly x: (along: number) => number;
   readonly y: (height: number) => number;
@@ -30,7 +30,7 @@ export interface Chart {
   readonly heightTicks: readonly number[];
 }
 
-/** Fits a profile into a frame; a flat one gets some room above and below. */
+/** Scales a profile to a frame. A flat profile gets a margin above and below. */
 export function chartOf(profile: readonly ProfilePoint[], frame: ChartFrame): Chart {
   const far = profile[profile.length - 1]?.along ?? 0;
   const heights = profile.map((point) => point.height);

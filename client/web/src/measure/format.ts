@@ -4,7 +4,7 @@ import { subtract, type Vector } from '../camera/vector';
 
 const thin = '\u202f'; // between groups of three digits
 
-/** As many decimals as the model's precision gives reason for: a hundredth of the distance of its points. */
+/** Number of decimals of a length: down to a hundredth of the point spacing of the model. */
 export function decimalsOf(spacing: number): number {
   if (!(spacing > 0)) return 3;
   return Math.min(8, Math.max(0, 2 - Math.floor(Math.log10(spacing))));
@@ -18,7 +18,7 @@ export function formatNumber(value: number, decimals: number): string {
   return value < 0 && !zero ? `\u2212${digits}` : digits;
 }
 
-/** A coordinate as it is in the file: all its digits, and no more. */
+/** A coordinate with all digits of the source file and no others. */
 export const formatExact = (value: number): string => String(value);
 
 const degrees = (radians: number): string => `${((radians * 180) / Math.PI).toFixed(2)}°`;
@@ -28,7 +28,7 @@ export interface Line {
   readonly value: string;
 }
 
-/** What a measurement says, the main thing first. */
+/** The results of a measurement, the main result first. */
 export function linesOf(m: Measurement, up: UpAxis, decimals: number): Line[] {
   if (!isWhole(m)) return [];
   const number = (value: number): string => formatNumber(value, decimals);

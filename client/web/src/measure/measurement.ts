@@ -20,7 +20,7 @@ export const maxPoints: Readonly<Record<MeasureKind, number>> = {
   profile: 64,
 };
 
-/** With fewer it says nothing yet. */
+/** A measurement with fewer points has no result. */
 export const minPoints: Readonly<Record<MeasureKind, number>> = {
   distance: 2,
   height: 2,
@@ -35,31 +35,31 @@ export const isFull = (m: Measurement): boolean => m.points.length >= maxPoints[
 const pairs = (points: readonly Vector[]): [Vector, Vector][] =>
   points.slice(1).map((point, i) => [points[i]!, point] as [Vector, Vector]);
 
-/** Along the line from point to point. */
+/** Length of the polyline through the points. */
 export const pathLength = (points: readonly Vector[]): number =>
   pairs(points).reduce((sum, [a, b]) => sum + distance(a, b), 0);
 
-/** Of a vector's part that is level. */
+/** Length of the horizontal component of a vector. */
 export function levelLength(v: Vector, up: UpAxis): number {
   return length(addScaled(v, skyOf(up), -heightOf(v, up)));
 }
 
-/** How much higher b is than a. */
+/** Height of b above a. */
 export const rise = (a: Vector, b: Vector, up: UpAxis): number => heightOf(subtract(b, a), up);
 
-/** At the middle one of three points, radians. */
+/** Angle at the middle of three points, radians. */
 export function angleAt(a: Vector, middle: Vector, b: Vector): number {
   const [u, v] = [subtract(a, middle), subtract(b, middle)];
-  // atan2 stays exact where acos loses its digits: for angles near 0 and near pi.
+  // acos is inaccurate for angles near 0 and pi; atan2 is not.
   return Math.atan2(length(cross(u, v)), dot(u, v));
 }
 
-/** Newell's sum over a closed polygon: twice its area, along its normal. Exact for plane polygons. */
+/** Newell's sum over a closed polygon: a vector along its normal, twice as long as its area. Exact if it is planar. */
 function newell(points: readonly Vector[]): Vector {
   let sum = vector(0, 0, 0);
   const origin = points[0];
   if (!origin) return sum;
-  // Relative to one of its points, so that large coordinates do not eat the digits.
+  // Relative to the first point, so that large coordinates do not cancel significant digits.
   const local = points.map((point) => subtract(point, origin));
   local.forEach((point, i) => {
     sum = addScaled(sum, cross(point, local[(i + 1) % local.length]!), 1);
@@ -67,16 +67,16 @@ function newell(points: readonly Vector[]): Vector {
   return sum;
 }
 
-/** Of the polygon in the plane that fits it. */
+/** Area of the polygon in its best-fitting plane. */
 export const area = (points: readonly Vector[]): number => length(newell(points)) / 2;
 
-/** Of its shadow under a vertical light. */
+/** Area of the polygon's projection onto a horizontal plane. */
 export const levelArea = (points: readonly Vector[], up: UpAxis): number => Math.abs(heightOf(newell(points), up)) / 2;
 
 export const perimeter = (points: readonly Vector[]): number =>
   points.length < 2 ? 0 : pathLength([...points, points[0]!]);
 
-/** One point of a profile: how far along the level course, and how high. */
+/** A point of a profile: horizontal distance along its course, and height. */
 export interface ProfilePoint {
   readonly along: number;
   readonly height: number;
@@ -91,7 +91,7 @@ export function profileOf(points: readonly Vector[], up: UpAxis): ProfilePoint[]
   });
 }
 
-/** Where a height is read off: below or above `a`, as high as `b`. */
+/** The corner of the height triangle: below or above `a`, at the height of `b`. */
 export const cornerBelow = (a: Vector, b: Vector, up: UpAxis): Vector => addScaled(a, skyOf(up), rise(a, b, up));
 
 /** Points on the arc that marks an angle, at `radius` from its vertex. */

@@ -2,7 +2,7 @@ import type { Vector } from '../camera/vector';
 import { measurements, growing, tool } from '../state/store';
 import { isFull, isWhole, measureKinds, type MeasureKind, type Measurement } from './measurement';
 
-/** Adds and removes what is measured. */
+/** Adds and removes measurements. */
 
 let lastId = 0;
 
@@ -25,7 +25,7 @@ export function addPoint(kind: MeasureKind, point: Vector): void {
   growing.value = isFull(grown) ? undefined : grown.id;
 }
 
-/** Ends the one that grows; what has too few points to say anything goes. */
+/** Ends the measurement in progress; removes it if it has too few points. */
 export function finish(): void {
   const m = current();
   growing.value = undefined;

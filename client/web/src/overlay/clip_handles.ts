@@ -6,7 +6,7 @@ import { addScaled, vector, type Pixel, type Vector } from '../camera/vector';
 export type AxisName = 'x' | 'y' | 'z';
 export const axisNames: readonly AxisName[] = ['x', 'y', 'z'];
 
-/** The middle of one side of a box, by which it can be pulled. */
+/** The drag handle at the centre of one side of a box. */
 export interface Handle {
   readonly axis: AxisName;
   readonly end: 'min' | 'max';
@@ -22,7 +22,7 @@ export function handlesOf(box: Box): Handle[] {
   );
 }
 
-/** The handle within reach of a pixel, the nearest one of them. */
+/** The handle nearest to a pixel, if it is within reach. */
 export function handleAt(box: Box, view: Projection, pixel: Pixel, reach: number): Handle | undefined {
   let best: Handle | undefined;
   let nearest = reach;
@@ -35,8 +35,8 @@ export function handleAt(box: Box, view: Projection, pixel: Pixel, reach: number
 }
 
 /**
- * How far along its axis a handle has to go to follow the hand by `moved` pixels: the part of the movement that lies
- * along the axis as the picture shows it.
+ * Distance along its axis by which a handle follows a pointer movement of `moved` pixels: the component of the movement
+ * along the axis as projected onto the picture.
  */
 export function pullOf(handle: Handle, view: Projection, moved: Pixel, size: number): number {
   const step = size * 1e-3;
@@ -45,11 +45,11 @@ export function pullOf(handle: Handle, view: Projection, moved: Pixel, size: num
   if (!from || !to) return 0;
   const along = { x: (to.x - from.x) / step, y: (to.y - from.y) / step }; // pixels per world unit
   const perUnit = along.x ** 2 + along.y ** 2;
-  // An axis that points at the eye is a dot on the screen: nothing to follow.
+  // An axis that points at the eye projects to a point and has no direction on the screen.
   return perUnit * size * size < 1 ? 0 : (moved.x * along.x + moved.y * along.y) / perUnit;
 }
 
-/** The box with one side moved; sides push each other, so that it never turns inside out. */
+/** The box with one side moved. A side pushes the opposite one along, so that min never exceeds max. */
 export function pulled(box: Box, handle: Pick<Handle, 'axis' | 'end'>, to: number): Box {
   const { axis, end } = handle;
   const moved = { ...box, [end]: { ...box[end], [axis]: to } };

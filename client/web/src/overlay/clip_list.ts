@@ -4,7 +4,7 @@ import { add, scale, subtract, type Vector } from '../camera/vector';
 import type { Clip } from '../state/display_options';
 import * as store from '../state/store';
 
-/** Adds, changes and removes clip boxes of the look. */
+/** Adds, changes and removes clip boxes of the display options. */
 
 const around = (middle: Vector, box: Box, part: number): Box => {
   const half = scale(subtract(box.max, box.min), part / 2);
@@ -19,7 +19,7 @@ function addClip(box: Box): void {
   });
 }
 
-/** A box of a third of the model around a point. */
+/** Adds a box around a point, a third of the size of the model. */
 export function addClipAround(point: Vector): void {
   addClip(around(point, store.bounds.peek(), 1 / 3));
   store.panel.value = 'clip';

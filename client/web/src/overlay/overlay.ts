@@ -41,7 +41,7 @@ function shape(pen: Pen, m: Measurement, up: UpAxis): void {
   if (m.kind === 'angle' && points.length === 3) angleOf(pen, points as unknown as [Vector, Vector, Vector]);
 }
 
-/** Where the measurement's main figure is written. */
+/** Position of the label with the measurement's main result. */
 function labelPoint(m: Measurement, up: UpAxis): Vector {
   const { points } = m;
   const [a, b] = [points[0]!, points[1]!];
@@ -87,10 +87,10 @@ function draw(context: CanvasRenderingContext2D, view: Projection, ratio: number
   inspected(pen);
 }
 
-/** Redraws whenever the picture or what lies over it changes. */
+/** Redraws the overlay whenever the picture, a measurement or a clip box changes. */
 export function startOverlay(canvas: HTMLCanvasElement): () => void {
   const context = canvas.getContext('2d');
-  if (!context) throw new Error('This browser gives no 2D canvas.');
+  if (!context) throw new Error('This browser does not support 2D canvases.');
   return effect(() => {
     const view = store.shownProjection.value;
     const width = view?.width ?? 1;

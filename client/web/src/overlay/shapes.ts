@@ -2,7 +2,7 @@ import { corners, type Box } from '../camera/standard_views';
 import { project, projectLine, type Projection } from '../camera/projection';
 import type { Pixel, Vector } from '../camera/vector';
 
-/** Draws world coordinates onto the canvas over the picture. Sizes are CSS pixels, times `ratio` on the canvas. */
+/** Draws shapes in world coordinates on the overlay canvas. Sizes are CSS pixels; `ratio` canvas pixels each. */
 export class Pen {
   constructor(
     readonly context: CanvasRenderingContext2D,
@@ -21,7 +21,7 @@ export class Pen {
     points.slice(1).forEach((point, i) => this.line(points[i]!, point, color, width, dash));
   }
 
-  /** Nothing if a corner is behind the eye. */
+  /** Fills a polygon. Draws nothing if a corner is behind the eye. */
   fill(points: readonly Vector[], color: string): void {
     const pixels = points.map((point) => project(this.view, point));
     if (pixels.some((pixel) => pixel === undefined)) return;
@@ -51,7 +51,7 @@ export class Pen {
     this.stroke(color, 1.5, []);
   }
 
-  /** A small plate with text, above its point. */
+  /** Draws a text label above a point. */
   label(point: Vector, text: string, color: string): void {
     const at = project(this.view, point);
     if (!at) return;
@@ -83,7 +83,7 @@ export class Pen {
     if (closed) this.context.closePath();
   }
 
-  /** With a dark seam beneath, so that it shows on any picture. */
+  /** Strokes the path with a dark outline beneath, so that it is visible on any picture. */
   private stroke(color: string, width: number, dash: readonly number[]): void {
     const { context, ratio } = this;
     context.lineCap = 'round';

@@ -17,20 +17,20 @@ export class RequestError extends Error {
 }
 
 export interface ConnectionEvents {
-  /** Requests may be sent from here on. */
+  /** The hellos are exchanged; requests may be sent from now on. */
   opened(hello: Hello): void;
-  /** Comes once, whether or not it was open; without a reason the connection merely broke. */
+  /** Called once, also if the connection never opened. Without a refusal the connection was lost. */
   closed(refusal: Refusal | undefined): void;
   received(bytes: number): void;
 }
 
-/** What became of one request: answers until it says that there are no more. */
+/** Receives the answers to one request. */
 type Listener = (kind: AnswerKind, bytes: number) => void;
 
 const program = 'surfcast viewer';
 const helloTimeout = 10_000; // ms
 
-/** One WebSocket: hellos, then requests and answers told apart by their ids. */
+/** One WebSocket connection: hellos, then requests and answers, matched by id. */
 export class Connection {
   private readonly socket: WebSocket;
   private readonly listeners = new Map<bigint, Listener>();
@@ -57,7 +57,7 @@ export class Connection {
     this.end(undefined);
   }
 
-  /** Sends a request that has one answer. Errors, and the end of the connection, reject. */
+  /** Sends a request that has one answer. Rejects on an error answer and when the connection ends. */
   ask<Case extends keyof AnswerValues>(
     kind: RequestKind,
     expected: Case,
@@ -73,7 +73,7 @@ export class Connection {
     });
   }
 
-  /** Sends a request with any number of answers, until `unlisten`. The id names it in later messages. */
+  /** Sends a request that has any number of answers, until `unlisten`. Returns the id for later messages. */
   listen(kind: RequestKind, listener: Listener): bigint {
     const id = this.nextId++;
     this.listeners.set(id, listener);
@@ -114,7 +114,7 @@ export class Connection {
     try {
       answer = fromBinary(AnswerSchema, bytes);
     } catch {
-      this.end({ message: 'The server sent something that is not an answer.', again: true });
+      this.end({ message: 'The server sent an invalid message.', again: true });
       return;
     }
     this.listeners.get(answer.id)?.(answer.kind, bytes.length);

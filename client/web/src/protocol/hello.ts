@@ -1,6 +1,6 @@
 /**
- * The first message of each side, laid out alike in every version of the protocol (protocol/PROTOCOL.md), so that a
- * page and a server of any age can tell each other why they part.
+ * The first message of each side. Its layout is the same in every version of the protocol (protocol/PROTOCOL.md), so
+ * that a page and a server of different versions can report why the connection is refused.
  */
 export interface Hello {
   readonly major: number;
@@ -31,7 +31,7 @@ export function encodeHello(program: string): Uint8Array {
   return bytes;
 }
 
-/** Nothing if these bytes are no hello. */
+/** Undefined if the bytes are not a hello. */
 export function decodeHello(bytes: Uint8Array): Hello | undefined {
   if (bytes.length < fixedBytes || magic.some((byte, i) => bytes[i] !== byte)) return undefined;
   const view = new DataView(bytes.buffer, bytes.byteOffset, bytes.byteLength);
@@ -48,15 +48,15 @@ export function decodeHello(bytes: Uint8Array): Hello | undefined {
   };
 }
 
-/** Why a connection cannot go on; `again`: it may work later. */
+/** Why a connection ends; `again`: a retry may succeed. */
 export interface Refusal {
   readonly message: string;
   readonly again: boolean;
 }
 
-/** Nothing if the server is welcome. */
+/** The reason to end the connection after the server's hello; undefined if the connection can be used. */
 export function refusalIn(hello: Hello | undefined): Refusal | undefined {
-  if (!hello) return { message: 'What answers at this address is not a Surfcast server.', again: false };
+  if (!hello) return { message: 'There is no Surfcast server at this address.', again: false };
   if (hello.status === statusBusy) return { message: hello.message || 'The server is busy.', again: true };
   if (hello.major !== protocolMajor || hello.status === statusVersionRefused) {
     const versions = `This page speaks version ${protocolMajor} of the protocol, the server (${hello.program}) version ${hello.major}.`;

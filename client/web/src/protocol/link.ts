@@ -5,8 +5,8 @@ import type { Hello, Refusal } from './hello';
 export type LinkState =
   | { readonly kind: 'connecting' }
   | { readonly kind: 'open'; readonly server: string }
-  | { readonly kind: 'waiting'; readonly until: number; readonly message: string } // `until` as Date.now() counts
-  | { readonly kind: 'refused'; readonly message: string }; // trying again would not help
+  | { readonly kind: 'waiting'; readonly until: number; readonly message: string } // `until`: as Date.now()
+  | { readonly kind: 'refused'; readonly message: string }; // no retry
 
 export interface LinkEvents {
   changed(state: LinkState): void;
@@ -15,7 +15,7 @@ export interface LinkEvents {
   received(bytes: number): void;
 }
 
-/** A connection that comes back: after it breaks, another is tried, less and less often. */
+/** A connection that is reopened after it is lost, with exponential backoff. */
 export class Link {
   private connection: Connection | undefined;
   private timer: ReturnType<typeof setTimeout> | undefined;
@@ -29,14 +29,14 @@ export class Link {
     this.connect();
   }
 
-  /** For good. */
+  /** Closes the connection; no retries follow. */
   close(): void {
     this.closed = true;
     clearTimeout(this.timer);
     this.connection?.close();
   }
 
-  /** Tries at once instead of waiting. */
+  /** Retries immediately instead of waiting. */
   retry(): void {
     if (this.connection) return;
     this.attempt = 0;

@@ -34,7 +34,7 @@ const maps: Readonly<Record<ColorMapName, ColorMap>> = {
   terrain: ColorMap.TERRAIN,
 };
 
-/** Asks for a picture; without a camera the server chooses a view of the whole model. */
+/** The request for a picture. Without a camera the server chooses a view of the whole model. */
 export function pictureOf(
   model: string,
   camera: Camera | undefined,
@@ -70,7 +70,7 @@ export const vectorFrom = (v: Vector3 | undefined): Vector => vector(v?.x ?? 0, 
 
 export const boxFrom = (box: WireBox | undefined): Box => ({ min: vectorFrom(box?.min), max: vectorFrom(box?.max) });
 
-/** The camera that a picture was drawn with. */
+/** The camera of a picture; undefined if it is incomplete. */
 export function cameraFrom(camera: WireCamera | undefined): Camera | undefined {
   if (!camera?.position || !camera.focalPoint) return undefined;
   return {

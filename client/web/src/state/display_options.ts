@@ -8,7 +8,7 @@ export type ColorMapName = (typeof colorMaps)[number];
 
 export interface Clip {
   readonly box: Box;
-  readonly inverted: boolean; // hides what is inside
+  readonly inverted: boolean; // hides the points inside
 }
 
 export interface Rgb {
@@ -17,7 +17,7 @@ export interface Rgb {
   readonly blue: number;
 }
 
-/** How the model is shown, apart from where it is seen from. */
+/** How the model is shown, apart from the camera. */
 export interface DisplayOptions {
   readonly source: ColorSourceName;
   readonly map: ColorMapName;
@@ -26,10 +26,10 @@ export interface DisplayOptions {
   readonly clips: readonly Clip[];
   readonly eyeDome: { readonly strength: number; readonly radius: number }; // strength 0: off
   readonly background: Rgb;
-  readonly spacing: number; // projected spacing of surfels to stop at when at rest, pixels; 0: every one there is
+  readonly spacing: number; // projected surfel spacing at which refinement at rest stops, pixels; 0: every surfel
 }
 
-/** A little darker than the panels, so that the picture seems to lie behind them. */
+/** Slightly darker than the panels, so that the picture appears to be behind them. */
 export const defaultBackground: Rgb = { red: 14, green: 18, blue: 22 };
 
 export const defaultDisplay: DisplayOptions = {

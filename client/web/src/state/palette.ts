@@ -44,7 +44,7 @@ const classes: readonly (readonly [string, string])[] = [
 
 export const className = (code: number): string => classes[code]?.[0] ?? (code < 64 ? 'Reserved' : 'User defined');
 
-/** Codes without a colour of their own: hues a golden section apart. */
+/** Colours of the other codes: hues that differ by the golden ratio. */
 function spreadColor(code: number): string {
   const hue = 6 * ((code * 0.6180339887) % 1);
   const channel = (offset: number): number => {

@@ -9,7 +9,7 @@ import {
   type DisplayOptions,
 } from './display_options';
 
-/** What a link says: the model, where it is seen from, and how. Names and forms are those of `GET /api/models/..`. */
+/** The contents of a link: model, camera and display options. Parameters are those of `GET /api/models/..`. */
 export interface Place {
   readonly model: string | undefined;
   readonly camera: Camera | undefined;
@@ -73,7 +73,7 @@ function displayIn(values: URLSearchParams): DisplayOptions {
   };
 }
 
-/** From a location's hash. What it does not say, or says wrongly, is as usual. */
+/** Parses a location's hash. A parameter that is missing or invalid has its default value. */
 export function parsePlace(hash: string): Place {
   const [path = '', query = ''] = hash.replace(/^#?\/?/, '').split('?', 2);
   const values = new URLSearchParams(query);
@@ -95,7 +95,7 @@ const clipList = (clips: readonly Clip[], inverted: boolean): string | undefined
   return boxes.length > 0 ? boxes.join(';') : undefined;
 };
 
-/** Only what differs from the usual. */
+/** Only the parameters that differ from their defaults. */
 function displayParameters(display: DisplayOptions): Record<string, string | undefined> {
   const { background, eyeDome } = display;
   const usual = background.red === defaultBackground.red && background.green === defaultBackground.green;
@@ -115,7 +115,7 @@ function displayParameters(display: DisplayOptions): Record<string, string | und
   };
 }
 
-/** A hash that `parsePlace` reads back as it was. */
+/** The hash of a place; `parsePlace` restores the place from it. */
 export function formatPlace(place: Place): string {
   if (place.model === undefined) return '#/';
   const { camera } = place;

@@ -4,9 +4,9 @@ import { formatPlace, parsePlace, type Place } from './place';
 import { defaultDisplay } from './display_options';
 import * as store from './store';
 
-const settled = 250; // ms without a change before the address follows
+const settled = 250; // ms without a change after which the address is updated
 
-/** Opens a model, seen as a link says or as the server chooses. */
+/** Opens a model with default display options and the server's initial view. */
 export function openModel(name: string | undefined): void {
   show(formatPlace({ model: name, camera: undefined, display: defaultDisplay }));
   history.pushState(null, '', location.href.replace(/#.*$/, '') + currentHash());
@@ -22,7 +22,7 @@ function show(hash: string): void {
   if (!here || !place.camera) reopen(place);
 }
 
-/** Closes what is shown, so that the first view is chosen anew. */
+/** Opens the view again, with the camera of the place or, without one, the server's initial view. */
 function reopen(place: Place): void {
   if (place.model !== store.model.peek()) forgetModel();
   store.model.value = undefined;
@@ -41,7 +41,7 @@ function forgetModel(): void {
   store.tool.value = 'navigate';
 }
 
-/** What a link to the present view says. */
+/** The hash of a link to the current view. */
 export function currentHash(): string {
   const pose = store.pose.peek();
   const camera = pose ? cameraOf(pose, store.upAxis.peek()) : store.firstCamera.peek();
@@ -50,10 +50,10 @@ export function currentHash(): string {
 
 export const currentLink = (): string => location.href.replace(/#.*$/, '') + currentHash();
 
-/** Keeps the address and the store saying the same. */
+/** Synchronizes the address and the store. */
 export function startRoutes(): void {
   show(location.hash);
-  // Typed by hand, or back and forward.
+  // The user edited the address, or went back or forward.
   addEventListener('hashchange', () => {
     if (location.hash !== currentHash()) show(location.hash);
   });

@@ -12,31 +12,31 @@ import type { MeasureKind, Measurement } from '../measure/measurement';
 import type { Vector } from '../camera/vector';
 import { defaultDisplay, type DisplayOptions } from './display_options';
 
-/** What every part of the page may read. Each signal is written by one part, which its comment names. */
+/** The shared state of the page. Every part may read it; the headings below name the part that writes each signal. */
 
 // ---- written by view/view_controller.ts ----
 
 export const link = signal<LinkState>({ kind: 'connecting' });
 export const models = signal<readonly string[] | undefined>(undefined);
 export const descriptions = signal<ReadonlyMap<string, ModelDescription>>(new Map());
-/** Why there is no picture; `again`: it is being tried again. */
+/** Why there is no picture; `again`: a retry is scheduled. */
 export const viewProblem = signal<{ readonly message: string; readonly again: boolean } | undefined>(undefined);
 /** The frame on the screen, without its data. */
 export const shownFrame = signal<ViewFrame | undefined>(undefined);
-/** The first update that asked for what is wanted now: a frame that shows an older one does not show it. */
+/** The first update that requested the current view. A frame of an older update shows an earlier view. */
 export const wantedUpdate = signal(0n);
-/** Something changed that has not been asked for yet. */
+/** The view has changed, and the server has not been told yet. */
 export const updatePending = signal(false);
 export const figures = signal<Figures>({ framesPerSecond: 0, bytesPerSecond: 0, latency: undefined, stages: undefined });
-/** Where the newest picture is to be seen from; nothing until the server has chosen a first view. */
+/** The current pose; undefined until the server has chosen the initial view. */
 export const pose = signal<Pose | undefined>(undefined);
-/** The hand is down, or what it pushed is still coasting. */
+/** A drag, an animation, inertia or flight is in progress. */
 export const moving = signal(false);
 
 // ---- written by state/routes.ts and the gallery ----
 
 export const model = signal<string | undefined>(undefined);
-/** From where a link says the model is to be seen first; taken once the model's axes are known. */
+/** The initial camera given by a link. It is applied once the model's vertical axis is known. */
 export const firstCamera = signal<Camera | undefined>(undefined);
 
 // ---- written by the panels ----
@@ -47,12 +47,12 @@ export const tool = signal<Tool>('navigate');
 export const flying = signal(false);
 export type Panel = 'look' | 'measure' | 'clip' | 'model';
 export const panel = signal<Panel | undefined>(undefined);
-/** The models are shown instead of the one that is open. */
+/** The gallery of models covers the open model. */
 export const galleryOpen = signal(false);
 export type Dialog = 'screenshot' | 'help';
 export const dialog = signal<Dialog | undefined>(undefined);
 export const figuresOpen = signal(false);
-/** One line that goes away by itself. */
+/** One line of text, shown for a short time. */
 export const notice = signal<string | undefined>(undefined);
 
 const noticeTime = 2600; // ms
@@ -71,12 +71,12 @@ export interface Inspection {
 export const inspection = signal<Inspection | undefined>(undefined);
 export const picking = signal(false);
 export const measurements = signal<readonly Measurement[]>([]);
-/** The one that clicks add points to. */
+/** Id of the measurement to which clicks add points. */
 export const growing = signal<number | undefined>(undefined);
 /** Index of the clip box whose handles are shown. */
 export const editedClip = signal<number | undefined>(undefined);
 
-/** Of the picture, in device pixels; written by the stage. */
+/** Size of the picture, device pixels; written by view/stage_size.ts. */
 export const stageSize = signal<Size>({ width: 0, height: 0 });
 
 export const description = computed(() =>
@@ -85,12 +85,12 @@ export const description = computed(() =>
 export const upAxis = computed<UpAxis>(() => (description.value?.zUp === false ? 'y' : 'z'));
 export const bounds = computed<Box>(() => boxFrom(description.value?.bounds));
 
-/** Decimals of lengths that the model's precision gives reason for. */
+/** Number of decimals of lengths, from the point spacing of the model. */
 export const lengthDecimals = computed(() =>
   decimalsOf(description.value?.spacing || diagonal(bounds.value) * 1e-4),
 );
 
-/** Of the frame on the screen: what lies over the picture must match it, not the newest pose. */
+/** Projection of the frame on the screen. The overlay uses it, not the newest pose, so that it matches the picture. */
 export const shownProjection = computed<Projection | undefined>(() => {
   const frame = shownFrame.value;
   const camera = cameraFrom(frame?.picture?.camera);

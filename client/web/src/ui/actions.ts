@@ -3,7 +3,7 @@ import { useContext } from 'preact/hooks';
 import type { ViewController } from '../view/view_controller';
 import type { CameraNavigator } from '../view/camera_navigator';
 
-/** What the page's parts may ask for, made once by main.tsx. */
+/** The actions available to the components. main.tsx creates the only instance. */
 export interface Actions {
   readonly controller: ViewController;
   readonly navigator: CameraNavigator;

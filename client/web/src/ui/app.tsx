@@ -21,7 +21,7 @@ import { hintFor } from './hints';
 import { PhoneBar, ToolRail, panelNames } from './tool_rail';
 import { TopBar } from './top_bar';
 
-/** Takes the canvases in, which live outside of the components. */
+/** Inserts the canvases, which are created outside of the components. */
 function Canvases(): JSX.Element {
   const { stage } = useActions();
   const host = useRef<HTMLDivElement>(null);
@@ -108,7 +108,7 @@ function SidePanel(): JSX.Element | null {
 }
 
 export function App(): JSX.Element {
-  // Choosing to measure shows the results where there is room beside the picture.
+  // Starting a measurement opens the panel with the results, if the window is wide enough.
   useEffect(
     () =>
       store.growing.subscribe((id) => {

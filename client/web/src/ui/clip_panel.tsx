@@ -54,7 +54,7 @@ function ClipCard({ clip, index }: { clip: Clip; index: number }): JSX.Element {
       {edited && (
         <>
           <Choices
-            label="What the box does"
+            label="Effect of the box"
             value={clip.inverted ? 'out' : 'in'}
             options={[
               { value: 'in', label: 'Show inside' },

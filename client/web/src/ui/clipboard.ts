@@ -1,8 +1,8 @@
 import { showNotice } from '../state/store';
 
-export const notAllowed = 'The browser does not let this page copy.';
+export const notAllowed = 'The browser denies access to the clipboard.';
 
-/** Browsers give the clipboard only to pages of this machine and those that come encrypted. */
+/** Browsers allow clipboard access only to pages from localhost or over HTTPS. */
 export async function copyText(text: string, done: string, otherwise: string): Promise<void> {
   try {
     await navigator.clipboard.writeText(text);

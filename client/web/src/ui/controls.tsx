@@ -8,7 +8,7 @@ import { Icon, type IconName } from './icons';
 interface IconButtonProps {
   readonly icon: IconName;
   readonly label: string;
-  readonly hint?: string; // the key that does the same
+  readonly hint?: string; // keyboard shortcut
   readonly pressed?: boolean;
   readonly disabled?: boolean;
   readonly onPress: () => void;
@@ -62,7 +62,7 @@ interface ChoicesProps<Value extends string> {
   readonly onChange: (value: Value) => void;
 }
 
-/** A few choices side by side, of which one is taken. */
+/** A group of radio buttons side by side. */
 export function Choices<Value extends string>(props: ChoicesProps<Value>): JSX.Element {
   const name = useId();
   return (
@@ -93,7 +93,7 @@ interface SliderProps {
   readonly onInput: (value: number) => void;
 }
 
-/** While it is dragged the picture follows, as it does for the hand on the picture. */
+/** While the slider is dragged, the picture is updated with the quality of a moving view. */
 export function Slider({ label, value, min, max, step, shown, onInput }: SliderProps): JSX.Element {
   const { navigator } = useActions();
   const part = max > min ? ((value - min) / (max - min)) * 100 : 0;
@@ -122,7 +122,7 @@ interface NumberFieldProps {
   readonly onChange: (value: number) => void;
 }
 
-/** Takes what was typed when the field is left or Enter is pressed; what is no number changes nothing. */
+/** Applies the input on Enter or when the field loses the focus. Input that is not a number is ignored. */
 export function NumberField({ label, value, decimals, hideLabel, onChange }: NumberFieldProps): JSX.Element {
   const shown = String(Number(value.toFixed(decimals)));
   const [text, setText] = useState(shown);
@@ -167,7 +167,7 @@ export function Switch({ label, checked, onChange }: {
   );
 }
 
-/** A window over the page; Escape and a click beside it close it. */
+/** A modal dialog. Escape or a click outside closes it. */
 export function Dialog({ title, onClose, children }: {
   title: string;
   onClose: () => void;

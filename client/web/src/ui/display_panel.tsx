@@ -30,7 +30,7 @@ const has = (attribute: string): boolean => description.value?.attributes.includ
 const available = (source: ColorSourceName): boolean =>
   source === 'intensity' || source === 'classification' ? has(source) : true;
 
-/** What the ends of the colour map stand for when the look does not say. */
+/** The range of the colour map when the display options state none. */
 function defaultRange(source: ColorSourceName): readonly [number, number] {
   if (source === 'elevation') {
     const { min, max } = bounds.value;

@@ -10,7 +10,7 @@ const compact = new Intl.NumberFormat('en', { notation: 'compact', maximumFracti
 const thumbnail = (name: string): string =>
   `api/models/${encodeURIComponent(name)}/image?resolution=480,300&spacing=1.5&format=jpg&quality=80&background=18,22,27`;
 
-/** Only the pictures of cards that are seen are asked for: each is drawn for it. */
+/** The picture is requested only when its card is visible, because the server draws it on request. */
 function Thumbnail({ name }: { name: string }): JSX.Element {
   const [failed, setFailed] = useState(false);
   if (failed) return <div class="thumbnail" />;
@@ -70,7 +70,7 @@ function Cards(): JSX.Element {
   );
 }
 
-/** The models of the server: the first page, and what the model's name in the top bar opens. */
+/** The models of the server. Shown when no model is open, and on a click on the model's name in the top bar. */
 export function Gallery(): JSX.Element | null {
   if (model.value !== undefined && !galleryOpen.value) return null;
   return (

@@ -22,7 +22,7 @@ interface Tip {
   readonly direction: Vector;
 }
 
-/** The ends of the axes as the picture on the screen shows them, the farthest first. */
+/** The ends of the axes, projected as in the picture on the screen, the farthest first. */
 function tips(): Tip[] {
   const view = shownProjection.value;
   if (!view) return [];
@@ -36,7 +36,7 @@ function tips(): Tip[] {
   return ends.sort((a, b) => b.depth - a.depth);
 }
 
-/** Shows how the model is turned; a click on an axis looks along it. */
+/** Shows the orientation of the model. A click on an axis selects the view along it. */
 export function Gizmo(): JSX.Element | null {
   const { navigator } = useActions();
   const ends = tips();

@@ -5,31 +5,31 @@ import { Dialog } from './controls';
 type Rows = readonly (readonly [string, string])[];
 
 const mouse: Rows = [
-  ['Drag', 'turn around what is under the cursor'],
-  ['Right drag, Shift drag', 'move sideways'],
+  ['Drag', 'orbit around the point under the cursor'],
+  ['Right drag, Shift drag', 'pan'],
   ['Wheel', 'zoom towards the cursor'],
   ['Double click', 'focus on a point'],
 ];
 
 const touch: Rows = [
-  ['One finger', 'turn'],
-  ['Two fingers', 'move, pinch to zoom, twist to rotate'],
+  ['One finger', 'orbit'],
+  ['Two fingers', 'drag to pan, pinch to zoom, twist to rotate'],
   ['Double tap', 'focus on a point'],
 ];
 
 const keys: Rows = [
-  ['Arrows', 'turn; with Shift move'],
+  ['Arrows', 'orbit; with Shift pan'],
   ['+ −', 'zoom'],
   ['F', 'fit the model'],
   ['1 … 7', 'front, right, back, left, top, bottom, iso'],
   ['G', 'fly: W A S D, Q E down and up, Shift faster, wheel sets the speed'],
   ['N, I', 'navigate, inspect points'],
   ['M, H, K, B, P', 'distance, height, angle, area, profile'],
-  ['O, C', 'look, clip boxes'],
+  ['O, C', 'display options, clip boxes'],
   ['X', 'save a picture'],
   ['L', 'copy a link to this view'],
-  ['`', 'figures'],
-  ['Esc', 'let go'],
+  ['`', 'performance figures'],
+  ['Esc', 'end the measurement, leave the tool, close the panel'],
 ];
 
 function Table({ title, rows }: { title: string; rows: Rows }): JSX.Element {

@@ -38,7 +38,7 @@ export function Icon({ name, size = 20 }: { name: IconName; size?: number }): JS
   );
 }
 
-/** A wave of surfels, coming closer. */
+/** The logo: a wave of discs that grow to the right. */
 export function Logo({ size = 26 }: { size?: number }): JSX.Element {
   const dots = Array.from({ length: 7 }, (_, i) => {
     const t = i / 6;

@@ -13,7 +13,7 @@ function valueOf(attribute: string, value: number): string {
   return attribute === 'classification' ? `${value} · ${className(value)}` : formatExact(value);
 }
 
-/** Everything that the scan knows about the point that was clicked. */
+/** All attributes of the clicked point. */
 export function InspectCard(): JSX.Element | null {
   const shown = inspection.value;
   if (!shown) return null;

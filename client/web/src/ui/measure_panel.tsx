@@ -19,7 +19,7 @@ export const measureLabels: Readonly<Record<MeasureKind, string>> = {
 
 function Kinds(): JSX.Element {
   return (
-    <div class="kinds" role="group" aria-label="What to measure">
+    <div class="kinds" role="group" aria-label="Kind of measurement">
       {measureKinds.map((kind) => (
         <button key={kind} type="button" aria-pressed={tool.value === kind} onClick={() => chooseTool(kind)}>
           <Icon name={kind} />
@@ -87,7 +87,7 @@ export function MeasurePanel(): JSX.Element {
         <Kinds />
       </Section>
       <Section title="Results" aside={aside}>
-        {list.length === 0 && <p class="faint">Choose what to measure, then click points of the scan.</p>}
+        {list.length === 0 && <p class="faint">Choose a kind of measurement, then click points of the scan.</p>}
         <ul class="cards">
           {list.map((m, i) => (
             <Card key={m.id} m={m} number={i + 1} />

@@ -12,7 +12,7 @@ const decimalsOfStep = (values: readonly number[]): number => {
   return Math.min(8, Math.max(0, -Math.floor(Math.log10(step) + 1e-9)));
 };
 
-/** Height over distance along the level course. */
+/** Chart of height over horizontal distance along the course of the profile. */
 export function ProfileChart({ points }: { points: readonly Vector[] }): JSX.Element {
   const chart = chartOf(profileOf(points, upAxis.value), frame);
   const [alongDecimals, heightDecimals] = [decimalsOfStep(chart.alongTicks), decimalsOfStep(chart.heightTicks)];

@@ -27,7 +27,7 @@ function save(data: Uint8Array, name: string, type: string): void {
   setTimeout(() => URL.revokeObjectURL(url), 10_000);
 }
 
-/** Drawn anew by the server, as sharp as it can. */
+/** Requests the picture from the server at its best quality. */
 async function shoot(
   controller: Actions['controller'],
   size: Size,

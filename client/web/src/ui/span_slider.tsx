@@ -10,7 +10,7 @@ interface SpanSliderProps {
   readonly onInput: (end: 'min' | 'max', value: number) => void;
 }
 
-/** Two thumbs on one track: a part of a range. */
+/** A slider with two thumbs that selects an interval of a range. */
 export function SpanSlider({ label, low, high, from, to, onInput }: SpanSliderProps): JSX.Element {
   const { navigator } = useActions();
   const span = high - low || 1;

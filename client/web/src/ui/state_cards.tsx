@@ -3,7 +3,7 @@ import { useEffect, useState } from 'preact/hooks';
 import { galleryOpen, link, model, models, shownFrame, viewProblem } from '../state/store';
 import { useActions } from './actions';
 
-/** What is shown instead of, or over, the picture while something is missing. */
+/** Cards shown instead of the picture, or over it, while the connection, the model or the first frame is missing. */
 
 function useSecondsUntil(time: number): number {
   const [now, setNow] = useState(Date.now());
@@ -33,9 +33,9 @@ function Waiting({ until, message }: { until: number; message: string }): JSX.El
 function Refused({ message }: { message: string }): JSX.Element {
   return (
     <div class="state-card" role="alert">
-      <h2>This page and the server do not understand each other</h2>
+      <h2>This page and the server are not compatible</h2>
       <p class="message">{message}</p>
-      <p class="faint">Reload the page to get the one that belongs to the server.</p>
+      <p class="faint">Reload the page to get the version that matches the server.</p>
       <button type="button" class="primary" onClick={() => location.reload()}>
         Reload the page
       </button>
@@ -51,7 +51,7 @@ function Problem({ message, again }: { message: string; again: boolean }): JSX.E
     <div class="state-card" role="alert">
       <h2>{title}</h2>
       <p class="message">{message}</p>
-      {again && <p class="faint">It is being tried again.</p>}
+      {again && <p class="faint">The page retries automatically.</p>}
       <div class="button-row">
         <button type="button" onClick={() => controller.retry()}>
           Try again

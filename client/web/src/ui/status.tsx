@@ -14,7 +14,7 @@ import {
 import { stageNames, type StageName, type StageTimes } from '../view/figures';
 import { IconButton } from './controls';
 
-/** The line at the picture's foot, and the figures that it opens. */
+/** The status line below the picture, and the card of performance figures that it opens. */
 
 export function formatRate(bytesPerSecond: number): string {
   if (bytesPerSecond < 1000) return '0 kB/s';
@@ -148,7 +148,7 @@ export function FiguresCard(): JSX.Element | null {
           <b>{formatRate(bytesPerSecond).split(' ')[0]}</b> {formatRate(bytesPerSecond).split(' ')[1]}
         </p>
       </div>
-      {stages ? <Stages stages={stages} /> : <p class="faint">Move the model to see where the time goes.</p>}
+      {stages ? <Stages stages={stages} /> : <p class="faint">Move the view to measure the stages of a frame.</p>}
       {picture && <PictureFacts picture={picture} />}
     </section>
   );

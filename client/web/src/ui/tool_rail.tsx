@@ -7,7 +7,7 @@ import { Icon, type IconName } from './icons';
 import { measureLabels } from './measure_panel';
 
 export const panelNames: Readonly<Record<store.Panel, { label: string; icon: IconName; hint: string }>> = {
-  look: { label: 'Look', icon: 'look', hint: 'O' },
+  look: { label: 'Display', icon: 'look', hint: 'O' },
   measure: { label: 'Measure', icon: 'measure', hint: '' },
   clip: { label: 'Clip', icon: 'clip', hint: 'C' },
   model: { label: 'Model', icon: 'model', hint: '' },
@@ -26,7 +26,7 @@ function setFlying(flying: boolean): void {
   chooseTool('navigate');
 }
 
-/** The tools, at the left edge where there is room. */
+/** The tools at the left edge of a wide window. */
 export function ToolRail(): JSX.Element {
   const { value: tool } = store.tool;
   const flying = store.flying.value;
@@ -82,7 +82,7 @@ function PhoneButton(props: { icon: IconName; label: string; pressed: boolean; o
   );
 }
 
-/** The same at the lower edge of a phone, within the thumb's reach. */
+/** The tools at the lower edge of a phone, within reach of the thumb. */
 export function PhoneBar(): JSX.Element {
   const { value: tool } = store.tool;
   const panel = store.panel.value;

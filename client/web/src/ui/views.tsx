@@ -12,7 +12,7 @@ const labels: Readonly<Record<ViewName, string>> = {
   iso: 'Iso',
 };
 
-/** In the bar where there is room, else in the panel of the model. */
+/** The standard views: in the top bar of a wide window, otherwise in the model panel. */
 export function Views({ where }: { where: 'in-bar' | 'in-panel' }): JSX.Element {
   const { navigator } = useActions();
   return (

@@ -3,14 +3,14 @@ import { ViewFrameSchema, type ViewFrame } from '../generated/surfcast_pb';
 import type { ArrivedFrame } from './painter';
 
 /**
- * Puts the pieces of large pictures together. A piece says that more follow; one of another frame means that the rest
- * of the former will not come.
+ * Assembles frames from their pieces. Each piece states whether more pieces follow. A piece of another frame means that
+ * the server dropped the rest of the previous one.
  */
 export class FrameAssembler {
   private pieces: ViewFrame[] = [];
   private bytes = 0;
 
-  /** The whole frame, once its last piece is there. */
+  /** Adds a piece; returns the frame when the piece is its last. */
   take(piece: ViewFrame, bytes: number, arrived: number): ArrivedFrame | undefined {
     if (this.pieces[0] && this.pieces[0].frame !== piece.frame) this.drop();
     this.pieces.push(piece);
@@ -27,7 +27,7 @@ export class FrameAssembler {
   }
 }
 
-/** The first piece has all fields, the others only further data. */
+/** The first piece has all fields; the others have only data. */
 function joined(pieces: readonly ViewFrame[]): ViewFrame {
   const [first] = pieces;
   if (!first?.picture || pieces.length === 1) return first ?? create(ViewFrameSchema);

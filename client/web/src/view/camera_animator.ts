@@ -3,7 +3,7 @@ import { between, ease, fly, type Course } from '../camera/motion';
 import type { Pose, UpAxis } from '../camera/pose';
 import type { Pixel } from '../camera/vector';
 
-/** Turns further movement of a hand that has let go into a pose. */
+/** Applies a movement in pixels to a pose, during a drag or its inertia. */
 export type Drag = (pose: Pose, moved: Pixel) => Pose;
 
 type Motion =
@@ -11,8 +11,8 @@ type Motion =
   | { readonly kind: 'coast'; velocity: Pixel; readonly drag: Drag; readonly decay: number };
 
 /**
- * What moves the eye without a hand on the screen: travelling to another pose, coasting after a drag, flying while
- * keys are held. Times are given in ms, so that tests choose them.
+ * Movement of the eye without a drag: travel to another pose, coasting after a drag, flight while keys are held. The
+ * caller passes the time in ms, so that tests can choose it.
  */
 export class CameraAnimator {
   private motion: Motion | undefined;
@@ -28,12 +28,12 @@ export class CameraAnimator {
     this.motion = { kind: 'travel', from, to, start: now, length };
   }
 
-  /** Goes on at a speed that falls to 1/e in `decay` ms, so that it comes `decay` times the speed far. */
+  /** Coasts at a speed that falls to 1/e in `decay` ms. The total distance is `velocity` times `decay`. */
   coastOn(velocity: Pixel, drag: Drag, decay: number = coastDecay): void {
     this.motion = { kind: 'coast', velocity, drag, decay };
   }
 
-  /** What the last push by `coastOn` still has to go, pixels. */
+  /** Remaining distance of coasting, pixels. */
   get left(): Pixel {
     if (this.motion?.kind !== 'coast') return { x: 0, y: 0 };
     const { velocity, decay } = this.motion;
@@ -53,7 +53,7 @@ export class CameraAnimator {
     return this.course.right !== 0 || this.course.forward !== 0 || this.course.up !== 0;
   }
 
-  /** The pose at `now`, which must not go back. */
+  /** The pose at `now`. Times must not decrease. */
   step(pose: Pose, up: UpAxis, now: number): Pose {
     const elapsed = Math.min(100, now - (this.last ?? now));
     this.last = this.moving ? now : undefined;

@@ -9,23 +9,23 @@ import * as store from '../state/store';
 import { CameraAnimator, type Drag } from './camera_animator';
 
 const travelTime = 420; // ms
-const glideDecay = 70; // ms: wheels come in steps that should not be seen
-const halfTurn = Math.PI; // a drag over the picture's whole height
+const glideDecay = 70; // ms; smooths the steps of a wheel
+const halfTurn = Math.PI; // radians for a drag over the height of the picture
 const zoomPerPixel = 0.0015;
 const flightPerSecond = 0.06; // of the model's size
-const nearestPart = 1e-6; // of the model's size: as near as one can come
+const nearestPart = 1e-6; // least distance, as a share of the model's size
 const farthestPart = 20;
 
 const reducedMotion = (): boolean => matchMedia('(prefers-reduced-motion: reduce)').matches;
 
-/** Moves the store's pose: everything that can be asked of the eye. Pixels are device pixels of the picture. */
+/** All operations that move the eye; changes the store's pose. Pixels are device pixels of the picture. */
 export class CameraNavigator {
   private readonly animator = new CameraAnimator();
   private dragging = false;
   private adjusting = false;
   private flightFactor = 1;
 
-  /** The pose at `now`; true if it goes on moving by itself. */
+  /** Advances animations to `now`; true if an animation continues. */
   step(now: number): boolean {
     const pose = store.pose.peek();
     if (pose && this.animator.moving) store.pose.value = this.animator.step(pose, store.upAxis.peek(), now);
@@ -33,19 +33,19 @@ export class CameraNavigator {
     return this.animator.moving;
   }
 
-  /** A hand on the picture ends what moves by itself. */
+  /** Stops travel and coasting, as a press on the picture does. */
   stop(): void {
     this.animator.stop();
     this.publishMoving();
   }
 
-  /** The hand drags the picture, or has let go. */
+  /** A drag of the picture has begun or ended. */
   hold(dragging: boolean): void {
     this.dragging = dragging;
     this.publishMoving();
   }
 
-  /** A slider or a handle is being dragged: pictures are wanted soon rather than fine. */
+  /** The drag of a slider or handle has begun or ended. Meanwhile pictures are drawn for speed. */
   adjust(down: boolean): void {
     this.adjusting = down;
     this.publishMoving();
@@ -93,7 +93,7 @@ export class CameraNavigator {
     return look(pose, moved.x * perPixel * 1.5, -moved.y * perPixel * 1.5);
   };
 
-  /** Towards a point that stays where it is on the screen. */
+  /** Zooms towards a point, which stays in place on the screen. */
   zoomBy(factor: number, target: Vector): void {
     this.change((pose) => this.zoomed(pose, target, factor));
   }
@@ -102,7 +102,7 @@ export class CameraNavigator {
     this.change((pose) => orbit(pose, store.upAxis.peek(), pivot, radians, 0));
   }
 
-  /** A wheel's step: pixels of scrolling, down is away. */
+  /** A wheel step of `pixels`; scrolling down increases the distance. */
   wheel(pixels: number, target: (pose: Pose) => Vector): void {
     const drag: Drag = (pose, moved) => this.zoomed(pose, target(pose), Math.exp(moved.y * zoomPerPixel));
     const whole = this.animator.left.y + pixels;
@@ -110,7 +110,7 @@ export class CameraNavigator {
     this.publishMoving();
   }
 
-  /** One press of a key: towards the middle of the picture, or away from it. */
+  /** One press of a zoom key: towards the centre of the picture, or away from it. */
   zoomStep(direction: number): void {
     const up = store.upAxis.peek();
     this.wheel(direction * 120, (pose) => focalPoint(pose, up));
@@ -132,8 +132,8 @@ export class CameraNavigator {
   }
 
   /**
-   * The picture's shape changed. The view angle is vertical, so a picture that is higher than wide shows less from side
-   * to side: the eye goes as far back, or as much nearer, as keeps what the shorter side shows.
+   * Adapts the distance to a new shape of the picture. The view angle is vertical, so a picture that is higher than
+   * wide shows a narrower part of the model. The distance changes so that the extent along the shorter side is kept.
    */
   resized(before: Size, after: Size): void {
     const slender = ({ width, height }: Size): number => Math.max(1, height / Math.max(1, width));
@@ -181,7 +181,7 @@ export class CameraNavigator {
     if (pose) this.travelTo(standardView(name, pose, store.upAxis.peek(), store.bounds.peek(), this.aspect()));
   }
 
-  /** Puts a point into the middle, and comes closer: to a third of the way. */
+  /** Centres the view on a point and reduces the distance to it to a third. */
   focus(point: Vector): void {
     const pose = store.pose.peek();
     const up = store.upAxis.peek();
@@ -192,7 +192,7 @@ export class CameraNavigator {
     this.travelTo({ ...pose, position, distance: far });
   }
 
-  /** From now on the hand turns around what is at this point. */
+  /** Makes the depth of this point the distance of the focal point, which is the centre of later movements. */
   interestIn(point: Vector): void {
     const view = store.shownProjection.peek();
     if (!view) return;

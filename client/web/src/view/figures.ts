@@ -1,12 +1,12 @@
 import type { PaintedFrame } from './painter';
 
-/** Where the time of one frame went, ms. */
+/** Duration of the stages of one frame, ms. */
 export interface StageTimes {
   readonly wait: number; // in the server's queue
   readonly load: number; // reading and decoding blocks
   readonly draw: number;
   readonly encode: number;
-  readonly network: number; // both ways, and what the server does not account for
+  readonly network: number; // both ways, and server time outside of its stages
   readonly decode: number;
   readonly paint: number;
 }
@@ -17,17 +17,17 @@ export type StageName = (typeof stageNames)[number];
 export interface Figures {
   readonly framesPerSecond: number;
   readonly bytesPerSecond: number;
-  readonly latency: number | undefined; // ms from asking to seeing, median of the recent frames
-  readonly stages: StageTimes | undefined; // medians likewise
+  readonly latency: number | undefined; // ms from sending an update to painting its frame, median of recent frames
+  readonly stages: StageTimes | undefined; // medians of recent frames
 }
 
-const within = 2000; // ms that count as recent
+const within = 2000; // ms; older frames are not recent
 type ServerStage = 'wait' | 'load' | 'draw' | 'encode';
 const byStage: Readonly<Record<string, ServerStage>> = { queue: 'wait', select: 'wait', load: 'load', encode: 'encode' };
-/** Stages that happen while another one of the list does. */
+/** Stages contained in another stage. */
 const inside = new Set(['decode', 'upload']);
 
-/** `asked`: when the update that the frame shows was sent (performance.now()); unknown for the first of a view. */
+/** `asked`: send time of the update that the frame shows (performance.now()); unknown for the first frame of a view. */
 export function stagesOf(painted: PaintedFrame, asked: number | undefined): StageTimes {
   const sums = { wait: 0, load: 0, draw: 0, encode: 0 };
   for (const stage of painted.frame.picture?.stages ?? []) {
@@ -55,7 +55,7 @@ interface Entry {
   readonly stages: StageTimes;
 }
 
-/** Keeps what the figures of the last two seconds need. Times are given, so that tests choose them. */
+/** Collects the performance figures of the last two seconds. The caller passes times, so that tests can choose them. */
 export class FigureCollector {
   private frames: Entry[] = [];
   private arrivals: { at: number; bytes: number }[] = [];
@@ -65,7 +65,7 @@ export class FigureCollector {
     this.arrivals.push({ at: now, bytes: count });
   }
 
-  /** Only frames of a moving camera tell the latency: those at rest wait on purpose. */
+  /** Latency is measured on moving frames only, because frames at rest are delayed on purpose. */
   painted(frame: PaintedFrame, asked: number | undefined): void {
     const latency = asked === undefined || !frame.frame.moving ? undefined : frame.painted - asked;
     this.frames.push({ at: frame.painted, latency, stages: stagesOf(frame, asked) });
@@ -83,7 +83,7 @@ export class FigureCollector {
     };
   }
 
-  /** At rest there is nothing to time; the panel goes on showing the last movement. */
+  /** At rest there is no new measurement, so the figures of the last movement stay. */
   private keepLatency(): void {
     const timed = this.frames.filter((entry) => entry.latency !== undefined);
     if (timed.length === 0) return;
@@ -92,7 +92,7 @@ export class FigureCollector {
     this.kept = { latency: median(timed.map((entry) => entry.latency ?? 0)), stages };
   }
 
-  /** From the gaps between frames, so that it is right before two seconds have passed. */
+  /** Frame rate from the intervals between frames, so that it is correct before two seconds have passed. */
   private rate(): number {
     const [first, last] = [this.frames[0], this.frames[this.frames.length - 1]];
     if (!first || !last || last.at <= first.at) return 0;

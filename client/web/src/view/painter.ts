@@ -9,7 +9,7 @@ const types: Readonly<Record<FileFormat, string>> = {
 
 export const mediaType = (format: FileFormat): string => types[format];
 
-/** A frame on its way to the screen, with the times at which it got there (performance.now()). */
+/** A received frame and its time of arrival (performance.now()). */
 export interface ArrivedFrame {
   readonly frame: ViewFrame;
   readonly bytes: number;
@@ -28,14 +28,14 @@ interface DecodedFrame extends ArrivedFrame {
 
 export interface PainterEvents {
   painted(frame: PaintedFrame): void;
-  /** A newer frame was ready before this one could be painted; the server waits for word of it all the same. */
+  /** A newer frame was ready before this one could be painted. The frame must be acknowledged all the same. */
   skipped(frame: ArrivedFrame): void;
   broken(frame: ArrivedFrame): void;
 }
 
 /**
- * Takes frames to a canvas. Pictures are decoded off the main thread, and only the newest one that is ready is painted,
- * in the browser's own rhythm.
+ * Paints frames on a canvas. Pictures are decoded off the main thread. Each animation frame paints the newest decoded
+ * picture only.
  */
 export class Painter {
   private readonly context: CanvasRenderingContext2D;
@@ -49,12 +49,12 @@ export class Painter {
     private readonly events: PainterEvents,
   ) {
     const context = canvas.getContext('2d', { alpha: false });
-    if (!context) throw new Error('This browser gives no 2D canvas.');
+    if (!context) throw new Error('This browser does not support 2D canvases.');
     this.context = context;
-    canvas.hidden = true; // until there is something on it
+    canvas.hidden = true; // until the first picture
   }
 
-  /** Forgets the frames of a view that has ended; the picture stays until another comes. */
+  /** Drops the frames of a view that has ended. The picture stays until the next one. */
   reset(): void {
     this.generation += 1;
     this.newest = 0n;
@@ -100,7 +100,7 @@ export class Painter {
     if (!decoded) return;
     this.ready = undefined;
     const { bitmap, frame } = decoded;
-    // The view's own size, to which a smaller picture is scaled: a picture of that size is copied pixel by pixel.
+    // The canvas has the size of the view. A smaller picture is scaled to it; one of the same size is copied exactly.
     const { width, height } = frame.resolution ?? bitmap;
     if (this.canvas.width !== width) this.canvas.width = width;
     if (this.canvas.height !== height) this.canvas.height = height;

@@ -5,11 +5,11 @@ import { cameraFrom, pictureOf, vectorFrom } from '../protocol/pictures';
 import * as store from '../state/store';
 import type { ViewController } from './view_controller';
 
-/** Asks what is under a pixel of the picture on the screen. */
+/** Requests the surfel at a pixel of the picture on the screen. */
 export class Probe {
   constructor(private readonly controller: ViewController) {}
 
-  /** Rejects with a RequestError; nothing while there is no picture. */
+  /** Undefined while there is no picture. Rejects with a RequestError. */
   async pick(pixel: Pixel): Promise<PickResult | undefined> {
     const frame = store.shownFrame.peek();
     const model = store.model.peek();
@@ -21,14 +21,14 @@ export class Probe {
     return this.controller.pick(pictureOf(model, camera, store.display.peek(), { width, height }), x, y);
   }
 
-  /** The point under a pixel as well as it is known: the scan's own once the server has answered. */
+  /** The point under a pixel: an estimate at first, the surfel's position once the server has answered. */
   anchor(pixel: Pixel): Anchor {
     const anchor = new Anchor(pixel);
     this.pick(pixel).then(
       (result) => {
         if (result?.hit && result.position) anchor.hit = vectorFrom(result.position);
       },
-      () => undefined, // without an answer the plane of interest will do
+      () => undefined, // without an answer the estimate stays
     );
     return anchor;
   }
@@ -39,7 +39,7 @@ export class Anchor {
 
   constructor(readonly pixel: Pixel) {}
 
-  /** On the scan, or else as far away as what the eye is interested in. */
+  /** The picked point; without one, the point of the pixel at the depth of the focal point. */
   get point(): Vector {
     const view = store.shownProjection.peek();
     const pose = store.pose.peek();

@@ -2,16 +2,16 @@ import { batch } from '@preact/signals';
 import type { Size } from '../protocol/pictures';
 import * as store from '../state/store';
 
-const maxPixels = 2560 * 1600; // beyond this sharpness is not worth the wait
-const settle = 120; // ms: a window that is being resized would ask for a new picture at every step
+const maxPixels = 2560 * 1600; // larger pictures take too long for the gain in sharpness
+const settle = 120; // ms without a change; otherwise every step of resizing would request a new picture
 
-/** Device pixels of an element, fewer where the screen has very many. */
+/** Size of an element in device pixels, limited on screens of very high resolution. */
 export function pixelsOf(width: number, height: number, ratio: number): Size {
   const used = Math.min(ratio, 2, Math.sqrt(maxPixels / Math.max(1, width * height)));
   return { width: Math.round(width * used), height: Math.round(height * used) };
 }
 
-/** Keeps the store's size of the picture that of the element. */
+/** Keeps the store's picture size equal to the size of the element. */
 export function followSize(element: HTMLElement, changed: (before: Size, after: Size) => void): void {
   let timer: ReturnType<typeof setTimeout> | undefined;
   const take = (): void => {

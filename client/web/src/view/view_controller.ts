@@ -11,7 +11,7 @@ import { FigureCollector } from './figures';
 import { Painter, type ArrivedFrame, type PaintedFrame } from './painter';
 import { ViewSession } from './view_session';
 
-/** Something to show, and whether more of it is about to follow. */
+/** A requested picture, and whether more requests will follow soon. */
 interface ViewRequest {
   readonly picture: DrawPicture;
   readonly moving: boolean;
@@ -23,8 +23,8 @@ const sameRequest = (a: ViewRequest | undefined, b: ViewRequest): boolean =>
 const figuresEvery = 500; // ms
 
 /**
- * Keeps the server shown what the page wants to see, and the page what the server draws: follows the store's model,
- * pose and look, at most one update per animation frame, over connections that may break and come back.
+ * Synchronizes the page and the server. Sends changes of the store's model, pose and display options, at most one
+ * update per animation frame, and paints the frames received. Reopens the view when the connection is lost.
  */
 export class ViewController {
   private readonly link: Link;
@@ -38,7 +38,7 @@ export class ViewController {
   private failures = 0;
   private retryTimer: ReturnType<typeof setTimeout> | undefined;
 
-  /** `step` moves the eye on to the time it is given. */
+  /** `step` advances animations of the eye to the given time. */
   constructor(
     url: string,
     canvas: HTMLCanvasElement,
@@ -57,13 +57,13 @@ export class ViewController {
     });
     effect(() => this.follow(store.model.value));
     effect(() => {
-      // Read here to be called again when one changes.
+      // Reading the signals subscribes this effect to them.
       void [store.pose.value, store.display.value, store.stageSize.value, store.moving.value];
       this.schedule();
     });
     addEventListener('pagehide', () => this.link.close());
     addEventListener('pageshow', (event) => {
-      if (event.persisted) location.reload(); // back from the browser's cache, without a connection
+      if (event.persisted) location.reload(); // restored from the back/forward cache, without a connection
     });
     setInterval(() => (store.figures.value = this.collector.figures(performance.now())), figuresEvery);
   }
@@ -74,7 +74,7 @@ export class ViewController {
     this.openView();
   }
 
-  /** Asks for one step of the eye and, where something changed, one update with the next animation frame. */
+  /** With the next animation frame, advances animations and sends an update if something has changed. */
   schedule(): void {
     if (this.scheduled) return;
     this.scheduled = true;
@@ -91,7 +91,7 @@ export class ViewController {
     return this.connected().ask({ case: 'pickSurfel', value: { picture, x, y } }, 'pickResult');
   }
 
-  /** `started` gets what gives the request up. */
+  /** `started` receives a function that cancels the request. */
   async draw(picture: DrawPicture, started: (cancel: () => void) => void): Promise<Picture> {
     const connection = this.connected();
     return connection.ask({ case: 'drawPicture', value: picture }, 'picture', (id) =>
@@ -121,7 +121,7 @@ export class ViewController {
     try {
       store.models.value = (await connection.ask({ case: 'listModels', value: {} }, 'modelList')).models;
     } catch {
-      // The connection has ended; the next one asks again.
+      // The connection has ended; the next one repeats the request.
     }
   }
 
@@ -183,7 +183,7 @@ export class ViewController {
   }
 
   private failed(error: unknown): void {
-    if (!this.connection) return; // the link says what is wrong, and comes back
+    if (!this.connection) return; // the link reports the problem and reconnects
     const again = error instanceof RequestError && error.code === ErrorCode.UNAVAILABLE;
     store.viewProblem.value = { message: error instanceof Error ? error.message : String(error), again };
     if (again) this.retryTimer = setTimeout(() => this.openView(), backoff(this.failures++, Math.random()));
@@ -218,13 +218,13 @@ export class ViewController {
     this.failures = 0;
     this.session?.acknowledge(frame.frame, painted.painted - painted.arrived);
     this.collector.painted(painted, this.sentAt.get(frame.update));
-    // Later frames of the same update are refinements: they come when they are ready, not when they were asked for.
+    // Later frames of the same update are refinements, whose delay is not a latency.
     for (const update of this.sentAt.keys()) if (update <= frame.update) this.sentAt.delete(update);
     store.shownFrame.value = withoutData(painted);
     if (!store.pose.peek() && frame.update >= store.wantedUpdate.peek()) this.adopt(painted);
   }
 
-  /** Goes on from the view that the server chose, without asking for it again. */
+  /** Adopts the view that the server chose, without requesting it again. */
   private adopt({ frame }: ArrivedFrame): void {
     const camera = cameraFrom(frame.picture?.camera);
     if (!camera) return;

@@ -9,7 +9,7 @@ export interface ViewEvents {
   failed(error: RequestError): void;
 }
 
-/** One view of a model over one connection: what to show goes out, frames come back. */
+/** One view of a model over one connection: sends updates and receives frames. */
 export class ViewSession {
   private readonly id: bigint;
   private readonly assembler = new FrameAssembler();
@@ -24,14 +24,14 @@ export class ViewSession {
     this.id = connection.listen({ case: 'openView', value: { picture } }, (answer, bytes) => this.take(answer, bytes));
   }
 
-  /** The number that frames which show this will repeat. */
+  /** Sends an update. Returns its number, which frames that show it repeat. */
   update(picture: DrawPicture, moving: boolean): bigint {
     const update = ++this.lastUpdate;
     if (!this.ended) this.connection.send(this.id, { case: 'updateView', value: { update, picture, moving } });
     return update;
   }
 
-  /** Owed to the server once for every message of a frame, or it sends no more. */
+  /** Must be called once for every message of a frame; otherwise the server stops sending. */
   acknowledge(frame: bigint, clientMs: number): void {
     if (!this.ended) this.connection.send(this.id, { case: 'framePainted', value: { frame, clientMs } });
   }

@@ -5,7 +5,7 @@ import { AnswerSchema, RequestSchema, type Request } from '../../src/generated/s
 
 type AnswerInit = NonNullable<MessageInitShape<typeof AnswerSchema>['kind']>;
 
-/** Bytes of a server's hello (protocol/PROTOCOL.md), put together by hand so that the page's own code is not its judge. */
+/** Bytes of a server's hello (protocol/PROTOCOL.md), encoded independently of the tested code. */
 export function serverHello(major: number, status: number, message: string): Buffer {
   const program = Buffer.from('surfcastd 9.9');
   const fixed = Buffer.alloc(18);
@@ -17,11 +17,11 @@ export function serverHello(major: number, status: number, message: string): Buf
   return Buffer.concat([fixed, program, Buffer.from(message)]);
 }
 
-/** Speaks the protocol's messages and does what a test tells it to. */
+/** A server of the protocol whose answers a test determines. */
 export class FakeServer {
   readonly requests: Request[] = [];
   hello: Buffer = serverHello(1, 0, '');
-  /** Answers a request, if it wants to. */
+  /** The answer to a request; undefined: none. */
   answer: (request: Request) => AnswerInit | undefined = () => undefined;
   clientHellos: Buffer[] = [];
   private readonly server: WebSocketServer;
