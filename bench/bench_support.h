@@ -27,8 +27,8 @@ inline double median(std::vector<double> values) {
   return values[values.size() / 2];
 }
 
-/// Processor time of all threads of this process, milliseconds: other load on the machine disturbs it less than wall
-/// time, and on software GL it is the cost of a frame.
+/// Processor time of all threads of this process, milliseconds. It is less sensitive to other load on the machine than
+/// wall time, and on software GL it is the cost of a frame.
 inline double processor_ms() {
   timespec t{};
   clock_gettime(CLOCK_PROCESS_CPUTIME_ID, &t);
@@ -45,7 +45,7 @@ inline picture::Frame draw_or_exit(render::Renderer& renderer, const std::shared
   return value_or_exit(renderer.draw(model, request, never));
 }
 
-/// Milliseconds of a frame without those that depend on what was resident before it.
+/// Milliseconds of a frame without the stages that depend on which blocks were resident.
 inline double drawing_ms(const picture::Frame& frame) {
   double sum = 0;
   for (const picture::StageTime& stage : frame.stats.stages) {

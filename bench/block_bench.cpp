@@ -1,5 +1,5 @@
-// block_bench MODEL [BLOCKS]: what it takes of one core to decode blocks of a model, evenly spread over the file, and
-// to pack them for the GPU: milliseconds of the processor per block, means, with nothing read from the disk.
+// block_bench MODEL [BLOCKS]: measures the cost of decoding blocks of a model and of packing them for the GPU, on one
+// core. The blocks are evenly spread over the file. Prints mean processor milliseconds per block, without disk reads.
 
 #include <algorithm>
 #include <cstdio>
@@ -19,7 +19,7 @@ struct BlockCost {
 };
 
 void measure(const model::ModelFile& model, size_t block, BlockCost& cost) {
-  value_or_exit(model.decode(block));  // brings the bytes into memory
+  value_or_exit(model.decode(block));  // loads the bytes into memory
   const double start = processor_ms();
   const model::DecodedBlock decoded = value_or_exit(model.decode(block, model::WantedScalars::kNone));
   const double before_packing = processor_ms();

@@ -1,6 +1,7 @@
-// frame_bench [SURFELS] [SIDE] [silhouettes]: a per-pixel EWA frame, with its silhouettes drawn as at rest if so said,
-// beside frames of plain sized GL points of the same model, of all of them and of those that face the eye alone, on a
-// sphere that fills 80 % of the height, camera moving, picture read back. Medians of one run, interleaved.
+// frame_bench [SURFELS] [SIDE] [silhouettes]: compares the time of a per-pixel EWA frame with frames of GL points of
+// surfel size, once with all surfels and once with the front-facing ones only. The model is a sphere that fills 80 % of
+// the height. The camera moves, and every picture is read back. `silhouettes` refines silhouettes as in a picture at
+// rest. Prints medians of one run with interleaved methods.
 
 #include <algorithm>
 #include <cmath>
@@ -26,7 +27,7 @@ using bench::median;
 using bench::processor_ms;
 using bench::value_or_exit;
 
-/// A camera that sees a unit sphere at 80 % of the picture's height, `angle` radians around it.
+/// A camera at `angle` radians around a unit sphere, which fills 80 % of the picture's height.
 geometry::Camera orbit(double angle) {
   constexpr double kViewAngle = 30;
   const double eta_per_height = 1 / (2 * std::tan(kViewAngle / 2 * 3.14159265358979 / 180));
@@ -34,7 +35,7 @@ geometry::Camera orbit(double angle) {
   return {{distance * std::sin(angle), 0, distance * std::cos(angle)}, {0, 0, 0}, {0, 1, 0}, kViewAngle};
 }
 
-/// What something took, milliseconds, or a ratio of that.
+/// Wall time and processor time, milliseconds, or ratios of such times.
 struct Taken {
   double wall = 0;
   double processor = 0;

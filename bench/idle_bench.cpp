@@ -1,7 +1,7 @@
-// What connections cost that are greeted and then say nothing:
+// Measures the server's memory for idle connections, which have exchanged hellos and send nothing more:
 //   surfcastd serve ... --connections 3000 &
 //   idle_bench SERVERS_PROCESS_ID HOST:PORT|ws://HOST:PORT [COUNT]
-// A second run on the same server finds the memory of the first one free again: start the server anew.
+// Start a new server for every run, because a second run would reuse memory freed after the first one.
 
 #include <cstdio>
 #include <cstdlib>

@@ -1,5 +1,5 @@
-// Draws every scene of tests/reference with many choices of the kernel's constants and prints how far each is from the
-// ideal picture, as the Markdown tables of docs/kernel.md. Takes minutes.
+// Draws every scene of tests/reference with many values of the kernel's constants and prints the error of each picture
+// against the ideal one, as the Markdown tables of docs/kernel.md. Takes minutes.
 
 #include <algorithm>
 #include <cmath>
@@ -16,7 +16,7 @@
 namespace surfcast::reference {
 namespace {
 
-/// A scene with everything about it that does not depend on the constants.
+/// A scene with its precomputed ideal picture and coverage, which do not depend on the constants.
 struct Subject {
   Scene scene;
   SrgbPicture ideal;
@@ -28,7 +28,7 @@ struct Choice {
   KernelParameters kernel;
 };
 
-/// Stored radius of evenly jittered samples over their spacing h: the tables name sigma in both units.
+/// Ratio of the stored radius of evenly jittered samples to their spacing h. The tables state sigma in both units.
 constexpr double kRadiusOverSpacing = 1.09;
 
 std::vector<Subject> make_subjects() {
@@ -42,7 +42,7 @@ std::vector<Subject> make_subjects() {
   return subjects;
 }
 
-/// Percentage of the pixels inside the surface that come out less than fully covered.
+/// Percentage of the pixels inside the surface that are not fully covered.
 double uncovered_percent(const Subject& subject, const ReferencePicture& result) {
   size_t inside = 0;
   size_t uncovered = 0;
@@ -62,7 +62,8 @@ void print_header(const std::vector<Subject>& subjects) {
   std::printf("\n");
 }
 
-/// A cell: decibels; fragments per pixel in brackets; percent of pixels inside that are not fully covered, if any.
+/// Prints a table row. A cell states the PSNR in dB, fragments per pixel in brackets, and the percentage of uncovered
+/// pixels inside the surface, if any.
 void print_row(const std::vector<Subject>& subjects, const Choice& choice) {
   std::printf("| %s |", choice.name.c_str());
   for (const Subject& s : subjects) {
@@ -83,7 +84,7 @@ std::string number(double value) {
   return text;
 }
 
-/// sigma in units of h and one cutoff for every gain.
+/// A kernel with sigma in units of h and the same cutoff for every gain.
 Choice kernel_choice(double sigma_in_spacings, double cutoff) {
   Choice choice{number(sigma_in_spacings) + " h, " + number(cutoff), {}};
   choice.kernel.sigma = sigma_in_spacings / kRadiusOverSpacing;
@@ -91,7 +92,7 @@ Choice kernel_choice(double sigma_in_spacings, double cutoff) {
   return choice;
 }
 
-/// The constants as they are, but for one.
+/// The default constants with one of them changed.
 Choice varied(double KernelParameters::*constant, const std::string& name, double value) {
   Choice choice{name + " " + number(value), {}};
   choice.kernel.*constant = value;
@@ -110,7 +111,7 @@ std::vector<Choice> variations(double KernelParameters::*constant, const char* n
   return choices;
 }
 
-/// What magnified kernels reconstruct at the sites, from a coefficient for each.
+/// The colours that magnified kernels reconstruct at the sites from one coefficient per site.
 std::vector<glm::dvec3> reconstructed(const scan::Sites& sites, const scan::NeighbourGraph& graph,
                                       const std::vector<double>& radii, const std::vector<glm::dvec3>& coefficients) {
   const KernelParameters kernel;
@@ -131,8 +132,8 @@ std::vector<glm::dvec3> reconstructed(const scan::Sites& sites, const scan::Neig
   return result;
 }
 
-/// With colours whose reconstruction comes nearer to the samples: w += sample - reconstruction ("Surface Splatting",
-/// Zwicker et al. 2001, section 4). They are kept as samples are, in 8 bits.
+/// Adjusts the colours so that their reconstruction is closer to the samples: w += sample - reconstruction ("Surface
+/// Splatting", Zwicker et al. 2001, section 4). The colours are stored with 8 bits, as samples are.
 void correct_colors(surfel::SurfelCloud& cloud, int times) {
   constexpr size_t kNeighbours = 24;
   const scan::Sites sites = scan::find_sites(cloud.positions, cloud.bounds());

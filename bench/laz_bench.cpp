@@ -1,4 +1,5 @@
-// laz_bench FILE.laz...: points per second of processor time that one thread decodes, the median of five runs.
+// laz_bench FILE.laz...: decodes files on one thread and prints points per second of processor time, median of five
+// runs.
 
 #include <algorithm>
 #include <cstdio>

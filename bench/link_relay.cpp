@@ -1,5 +1,5 @@
-// A link between a client and a server on one machine: link_relay LISTEN_PORT SERVER_PORT [MBIT_PER_SECOND [RTT_MS]].
-// Runs until it is interrupted.
+// link_relay LISTEN_PORT SERVER_PORT [MBIT_PER_SECOND [RTT_MS]]: emulates a network link of limited bandwidth between a
+// client and a server on one machine. Runs until it is interrupted.
 
 #include "support/link_relay.h"
 
@@ -30,7 +30,7 @@ int main(int argc, char** argv) {
   sigemptyset(&signals);
   sigaddset(&signals, SIGINT);
   sigaddset(&signals, SIGTERM);
-  sigprocmask(SIG_BLOCK, &signals, nullptr);  // in the relay's threads, too
+  sigprocmask(SIG_BLOCK, &signals, nullptr);  // the relay's threads inherit the mask
   surfcast::testing::LinkShape shape;
   shape.bits_per_second = number(arguments, 3, 4) * 1e6;
   shape.delay = std::chrono::microseconds(static_cast<int64_t>(number(arguments, 4, 80) * 500));

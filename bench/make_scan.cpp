@@ -1,6 +1,6 @@
-// Writes a generated scan as LAS 1.4, point format 7: make_scan POINTS FILE.las
+// make_scan POINTS FILE.las: writes a generated scan as LAS 1.4, point format 7.
 //
-// The same scene for any number of points: measurements of different sizes differ in density alone. Points are
+// The scene is the same for any number of points, so that scans of different sizes differ only in density. Points are
 // streamed, so that a scan may be larger than memory.
 
 #include <charconv>
@@ -36,7 +36,7 @@ int32_t steps(double metres) {
   return static_cast<int32_t>(std::lround(metres / kScale));
 }
 
-/// LAS 1.4, table 20.
+/// Writes a point record (LAS 1.4, table 20).
 void put_echo(std::byte* record, const surfcast::bench::Echo& echo, uint64_t index) {
   put(record, 0, steps(echo.position.x));
   put(record, 4, steps(echo.position.y));
@@ -52,7 +52,7 @@ void put_echo(std::byte* record, const surfcast::bench::Echo& echo, uint64_t ind
   for (int channel = 0; channel < 3; ++channel) put(record, 30 + 2 * static_cast<size_t>(channel), echo.color[channel]);
 }
 
-/// LAS 1.4, table 3.
+/// The file header (LAS 1.4, table 3).
 std::vector<std::byte> make_header(uint64_t count) {
   std::vector<std::byte> header(kHeaderBytes);
   std::byte* at = header.data();

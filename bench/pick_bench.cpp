@@ -1,5 +1,5 @@
-// pick_bench MODEL: what picks of pixels that show something, all over a view of the whole model, take of one core:
-// each pixel for the first time, and then the pixel beside it.
+// pick_bench MODEL: measures the processor time of picks on one core, for covered pixels all over a view of the whole
+// model: first a pixel, then its neighbour, whose blocks are already decoded.
 
 #include <algorithm>
 #include <cstdio>

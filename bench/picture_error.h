@@ -7,8 +7,8 @@
 
 namespace surfcast::bench {
 
-/// Peak signal to noise ratio of two 8 bit pictures of one size, in dB, over all channels of the pixels that either of
-/// them covers; infinite when they are equal.
+/// Peak signal-to-noise ratio of two 8 bit pictures of the same size, in dB, over all channels of the pixels that are
+/// covered in at least one of them. Infinite when the pictures are equal.
 inline double psnr(const picture::Image& a, const picture::Image& b) {
   double sum = 0;
   size_t count = 0;

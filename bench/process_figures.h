@@ -8,7 +8,7 @@
 
 namespace surfcast::bench {
 
-/// Memory that another process of this machine has resident, bytes; 0 when there is no such process.
+/// Resident memory of another process on this machine, bytes; 0 if there is no such process.
 inline uint64_t resident_bytes(int process) {
   std::ifstream status("/proc/" + std::to_string(process) + "/status");
   for (std::string word; status >> word;) {
@@ -20,7 +20,7 @@ inline uint64_t resident_bytes(int process) {
   return 0;
 }
 
-/// Descriptors that it has open.
+/// Number of open descriptors of a process; 0 if there is no such process.
 inline int64_t open_descriptors(int process) {
   std::error_code code;
   const std::filesystem::directory_iterator entries("/proc/" + std::to_string(process) + "/fd", code);

@@ -1,5 +1,6 @@
-// scale_bench SPACING MODEL...: the same view of models of one scene in different sizes. For each: opening, the first
-// picture with nothing loaded, and the median of later ones, as time on the clock and of the processor.
+// scale_bench SPACING MODEL...: draws the same views of models of one scene in different sizes. For each model, prints
+// the time of opening it, of the first picture with nothing loaded, and the median wall time and processor time of
+// later pictures.
 
 #include <array>
 #include <cmath>
@@ -12,8 +13,8 @@ namespace {
 
 struct View {
   const char* name;
-  double height;  ///< of the eye above the middle of the model, in units of the model's width
-  double back;    ///< of the eye from the middle, the same
+  double height;  ///< of the eye above the model's centre, in units of the model's width
+  double back;    ///< horizontal distance of the eye from the centre, in the same units
 };
 constexpr std::array kViews{View{"whole", 1.2, 1.2}, View{"slanted", 0.4, 1.1}};
 
@@ -76,7 +77,7 @@ int main(int argc, char** argv) {
       "|\n");
   std::printf("|---|---|---|---|---|---|---|---|---|\n");
   for (const View& view : kViews) {
-    measure(*renderer, argv[2], camera_of(box, view), spacing);  // compiles the shaders, makes the buffers
+    measure(*renderer, argv[2], camera_of(box, view), spacing);  // warm-up: compiles the shaders, allocates the buffers
     for (int i = 2; i < argc; ++i) {
       const Timing t = measure(*renderer, argv[i], camera_of(box, view), spacing);
       std::printf("| %s | %s | %u | %llu | %.0f | %.1f | %.0f | %.0f | %.0f |\n", view.name,

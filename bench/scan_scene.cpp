@@ -21,7 +21,7 @@ uint64_t mix(uint64_t h) {
   return h ^ (h >> 31);
 }
 
-/// Numbers that follow from a seed: equal seeds give equal sequences.
+/// Deterministic random numbers: equal seeds give equal sequences.
 class Dice {
  public:
   explicit Dice(uint64_t seed) : state_(mix(seed + 0x9e3779b97f4a7c15ULL)) {}
@@ -62,13 +62,13 @@ double ground_height(const glm::dvec2& p) {
   return 40 * noise(p / 400.0) + 9 * noise(p / 90.0) + 0.25 * noise(p / 4.0) + 120;
 }
 
-// ---- what stands on a block
+// ---- houses and trees
 
 struct House {
   glm::dvec2 centre;
   glm::dvec2 half;   ///< of the footprint
   double floor = 0;  ///< height of the ground under it
-  double eaves = 0;  ///< height of the walls' upper end
+  double eaves = 0;  ///< height of the upper end of the walls
   double ridge = 0;  ///< height of the roof above the eaves; 0 for a flat one
   glm::dvec3 wall{0};
   glm::dvec3 roof{0};
@@ -123,7 +123,7 @@ std::optional<House> house_on(const BlockKey& block) {
 
 constexpr uint64_t kTrees = 6;
 
-/// Tree `number` of a block; blocks with a house have few.
+/// Tree `number` of a block, if there is one. Blocks with a house have fewer trees.
 std::optional<Tree> tree_on(const BlockKey& block, uint64_t number, bool beside_house) {
   Dice dice(block.seed(100 + number));
   if (dice.uniform() < (beside_house ? 0.7 : 0.35)) return std::nullopt;
@@ -171,7 +171,7 @@ Echo roof_echo(const House& house, const glm::dvec2& p, Dice& dice) {
   return echo;
 }
 
-/// A point of the four walls, gables included, evenly by area along the perimeter.
+/// A random point on the four walls, gables included, uniform along the perimeter.
 Echo wall_echo(const House& house, Dice& dice) {
   Echo echo;
   echo.classification = 6;
@@ -191,7 +191,7 @@ Echo wall_echo(const House& house, Dice& dice) {
   return echo;
 }
 
-/// The crown from above: the first leaf is met somewhere between the hull and the inside.
+/// An echo of a crown from above. The pulse penetrates the hull by a random depth before it hits a leaf.
 Echo crown_echo(const Tree& tree, const glm::dvec2& p, Dice& dice) {
   Echo echo;
   const glm::dvec2 d = (p - tree.foot) / tree.radius;

@@ -16,11 +16,11 @@ struct Echo {
 };
 
 /// A square kilometre of town and parkland on rolling ground: blocks of 40 m with houses, trees or meadow between
-/// streets, seen from the air and, for the walls, from the street. Everything follows from hashes of places, so that
-/// any number of echoes is a denser or sparser scan of one and the same scene.
+/// streets, scanned from the air and, for the walls, from the street. The scene is computed from hashes of positions.
+/// Scans with different numbers of echoes therefore differ only in their density.
 inline constexpr double kSceneSide = 1000;
 
-/// Echo `index` of `count`. Echoes come in the order of a survey: row by row.
+/// Echo `index` of `count`. Echoes are in the order of a survey: row by row.
 Echo scan_echo(uint64_t index, uint64_t count);
 
 }  // namespace surfcast::bench

@@ -1,8 +1,8 @@
-// Clients that come and go, as they do on a day with many visitors, and what that leaves behind in the server:
+// Soak test of a server with many short client visits:
 //   soak SERVERS_PROCESS_ID HOST:PORT/MODEL [SECONDS [CLIENTS_AT_ONCE [PERCENT]]]
-// Half of them speak WebSocket; they leave in the middle of a movement, of a rest, or of a picture. Fails when the
-// server's memory in the last quarter of the run is 2 % (or PERCENT) above that of the second quarter, or it keeps
-// descriptors.
+// Half of the clients use WebSocket. They disconnect during a movement, a rest, or a picture. Fails when the mean
+// memory of the server in the last quarter of the run is more than 2 % (or PERCENT) above that of the second quarter,
+// when descriptors stay open, or when a visit fails.
 
 #include <atomic>
 #include <cstdio>
@@ -24,7 +24,7 @@ struct SoakPlan {
   protocol::ModelUrl model;
   double seconds = 900;
   unsigned clients = 4;
-  double percent = 2;  ///< that memory may grow
+  double percent = 2;  ///< permitted growth of memory
 };
 
 struct Sample {
@@ -42,7 +42,7 @@ wire::DrawPicture small_picture(const std::string& model) {
   return picture;
 }
 
-/// One visit: a view that moves and rests for some seconds, or a picture that is not waited for.
+/// One visit: a view that moves and rests for up to three seconds, or a picture request without waiting for the answer.
 Status visit(const SoakPlan& plan, std::mt19937& random) {
   protocol::Endpoint server = plan.model.server;
   server.websocket = random() % 2 == 0;

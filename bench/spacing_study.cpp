@@ -1,6 +1,6 @@
-// spacing_study PLOT.svg MODEL...: what a coarser spacing costs in accuracy and saves in time. For each model, from
-// three sides and distances, the picture at spacing 0.5, 1, 2 and 4 pixels beside the one at spacing 0: PSNR, surfels
-// drawn, milliseconds. Prints a table in Markdown and plots PSNR against spacing.
+// spacing_study PLOT.svg MODEL...: measures the loss of accuracy and the gain of speed by a coarser spacing. For each
+// model and three views, compares the pictures at spacings of 0.5, 1, 2 and 4 pixels with the one at spacing 0: PSNR,
+// surfels drawn, milliseconds. Prints a Markdown table and plots PSNR against spacing.
 
 #include <array>
 #include <fstream>
@@ -18,8 +18,8 @@ constexpr double kPlottedAsEqual = 70;  // dB
 
 struct View {
   const char* name;
-  double angle;     ///< about the vertical axis, radians, from the view that fits the model
-  double distance;  ///< of the eye, in units of that view's
+  double angle;     ///< rotation about the vertical axis from the view that fits the model, radians
+  double distance;  ///< of the eye, relative to the view that fits the model
 };
 constexpr std::array kViews{View{"half as far", 0.6, 0.5}, View{"whole", 0, 1}, View{"from afar", -0.9, 2.5}};
 
@@ -45,7 +45,7 @@ void print_row(const std::string& name, double spacing, const picture::Frame& fr
               static_cast<unsigned long long>(frame.stats.surfels_drawn), frame.stats.blocks_drawn, drawing_ms(frame));
 }
 
-/// The second of two pictures, whose blocks and buffers are all there.
+/// Draws a picture twice; returns the second one, for which all blocks and buffers are resident.
 picture::Frame draw_warm(render::Renderer& renderer, const std::shared_ptr<const model::ModelFile>& model,
                          const picture::PictureRequest& request) {
   draw_or_exit(renderer, model, request);
@@ -69,7 +69,7 @@ Curve study(render::Renderer& renderer, const std::shared_ptr<const model::Model
   return curve;
 }
 
-/// PSNR against spacing, which doubles from tick to tick.
+/// Plot of PSNR against spacing; the spacing axis is logarithmic.
 class Plot {
  public:
   explicit Plot(const std::string& path) : out_(path) {

@@ -16,7 +16,7 @@ namespace {
 constexpr int kWindow = 11;  ///< pixels
 constexpr double kWindowDeviation = 1.5;
 
-/// One number for each pixel.
+/// A picture with one channel.
 struct Plane {
   int width = 0;
   int height = 0;
@@ -48,7 +48,7 @@ std::array<double, kWindow> window_weights() {
   return weights;
 }
 
-/// The same pixels with x and y exchanged.
+/// The plane with x and y exchanged.
 Plane transposed(const Plane& plane) {
   Plane result{plane.height, plane.width, std::vector<double>(plane.values.size())};
   for (int y = 0; y < plane.height; ++y) {
@@ -59,7 +59,7 @@ Plane transposed(const Plane& plane) {
   return result;
 }
 
-/// Weighted means along x, for windows within the plane.
+/// Weighted means along x, for the windows inside the plane.
 Plane means_along_x(const Plane& plane) {
   const auto weights = window_weights();
   Plane result{plane.width - kWindow + 1, plane.height, {}};

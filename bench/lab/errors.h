@@ -8,23 +8,23 @@ namespace surfcast::lab {
 
 using reference::SrgbPicture;
 
-/// How far a picture is from the ideal one.
+/// Error of a picture against the ideal one.
 struct PictureErrors {
   double psnr = 0;        ///< dB, over all channels of all pixels; infinite for equal pictures
   double ssim = 0;        ///< mean structural similarity of luma, 1 for equal pictures
-  double worst_tile = 0;  ///< dB, PSNR of the tile of 32 x 32 pixels that is furthest off
+  double worst_tile = 0;  ///< dB, the lowest PSNR of the tiles of 32 x 32 pixels
 };
 PictureErrors picture_errors(const SrgbPicture& drawn, const SrgbPicture& ideal);
 
-/// Mean structural similarity (Wang 2004, equation 13) of luma under a Gaussian window of deviation 1.5 pixels, over
-/// the windows of 11 x 11 pixels that lie within the picture. Pictures are at least that large.
+/// Mean structural similarity (Wang 2004, equation 13) of luma under a Gaussian window with a standard deviation of 1.5
+/// pixels, over the windows of 11 x 11 pixels inside the picture. Pictures must not be smaller than a window.
 double ssim(const SrgbPicture& a, const SrgbPicture& b);
 
-/// Least PSNR of all tiles of `side` x `side` pixels, those at the right and lower border cut off, dB.
+/// Lowest PSNR of the tiles of `side` x `side` pixels, dB. Tiles at the right and lower border may be smaller.
 double worst_tile(const SrgbPicture& a, const SrgbPicture& b, int side);
 
-/// Temporal error of a camera path in levels of 255: the root mean square of what the error changes by from frame to
-/// frame. An error that stands still is no flicker, and nor is change that the ideal pictures show.
+/// Temporal error of a camera path, in levels of 255: the root mean square of the change of the error from frame to
+/// frame. A constant error does not count as flicker, nor do changes in the ideal pictures.
 double flicker(std::span<const SrgbPicture> drawn, std::span<const SrgbPicture> ideal);
 
 }  // namespace surfcast::lab

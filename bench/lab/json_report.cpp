@@ -9,7 +9,7 @@ namespace {
 using nlohmann::ordered_json;
 
 ordered_json rounded(double value) {
-  if (!std::isfinite(value)) return nullptr;  // PSNR of equal pictures
+  if (!std::isfinite(value)) return nullptr;  // the PSNR of equal pictures is infinite
   return std::round(value * 1e4) / 1e4;
 }
 

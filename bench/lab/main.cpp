@@ -1,4 +1,4 @@
-// laboratory: draws a set of scenes with every method and measures time against error; see --help.
+// laboratory: draws a set of scenes with every method and measures their time and error; see --help.
 
 #include <CLI/CLI.hpp>
 #include <fstream>
@@ -35,7 +35,7 @@ void write(const fs::path& path, const std::string& content) {
   std::exit(1);
 }
 
-/// Replaces the results in the documentation: the section of kResultsPage, laboratory.json, the plot.
+/// Replaces the results in the documentation: the section of kResultsPage, laboratory.json and the plot.
 void write_docs(const LabResults& results, const fs::path& docs) {
   const fs::path page = docs / kResultsPage;
   const std::string text =
@@ -70,17 +70,17 @@ LabResults run(const Options& options) {
 
 int main_of(int argc, char** argv) {
   Options options;
-  CLI::App app{"Draws scenes with every method: milliseconds against error, as tables, plots and JSON."};
+  CLI::App app{"Draws scenes with every method and reports time and error as tables, plots and JSON."};
   app.add_option("scans", options.scans, "scans or models, each measured against its own supersampled picture")
       ->check(CLI::ExistingFile);
-  app.add_option("--frames", options.frames, "frames that a time is the median of")->check(CLI::Range(1, 1000));
+  app.add_option("--frames", options.frames, "number of frames; times are medians")->check(CLI::Range(1, 1000));
   app.add_option("--path-frames", options.path_frames, "length of the slow camera path")->check(CLI::Range(2, 1000));
-  app.add_option("--scenes", options.scenes, "names of the scenes, all without it")
+  app.add_option("--scenes", options.scenes, "names of the scenes (default: all)")
       ->delimiter(',')
       ->check(CLI::IsMember(lab_scene_names()));
-  app.add_option("--docs", options.docs, "folder whose laboratory.md, laboratory.json and plot are to be replaced")
+  app.add_option("--docs", options.docs, "folder whose laboratory.md, laboratory.json and plot are replaced")
       ->check(CLI::ExistingDirectory);
-  app.add_option("--pictures", options.pictures, "folder to keep all pictures in, as PPM");
+  app.add_option("--pictures", options.pictures, "folder for all pictures, as PPM");
   CLI11_PARSE(app, argc, argv);
   if (options.scenes.empty()) options.scenes = lab_scene_names();
   const LabResults results = run(options);

@@ -26,7 +26,7 @@ std::string header(const std::vector<std::string>& cells) {
 
 using Cell = std::function<std::string(const SceneResult&, const Measurement&)>;
 
-/// Scenes down, methods across.
+/// A table with a row for each scene and a column for each method.
 std::string matrix(const LabResults& results, const Cell& cell) {
   std::vector<std::string> names{"scene"};
   for (const MethodFacts& method : results.methods) names.push_back(method.name);
@@ -39,7 +39,7 @@ std::string matrix(const LabResults& results, const Cell& cell) {
   return text + "\n";
 }
 
-/// Bold where no method has a higher PSNR.
+/// Time and PSNR of a measurement; the highest PSNR of a scene is bold.
 std::string time_and_error(const SceneResult& scene, const Measurement& m) {
   double best = 0;
   for (const Measurement& other : scene.measurements) best = std::max(best, other.errors.psnr);
@@ -57,7 +57,7 @@ std::string methods_and_scenes(const LabResults& results) {
   return text + "\n";
 }
 
-/// The plain method with the least error.
+/// The plain method with the highest PSNR.
 const Measurement* best_plain(const LabResults& results, const SceneResult& scene) {
   const Measurement* best = nullptr;
   for (const MethodFacts& method : results.methods) {
@@ -67,12 +67,12 @@ const Measurement* best_plain(const LabResults& results, const SceneResult& scen
   return best;
 }
 
-/// How far a method is ahead of another one.
+/// Difference of the PSNR of two methods.
 std::string ahead(const Measurement& ours, const Measurement& other) {
   return number(ours.errors.psnr - other.errors.psnr, 1) + " dB";
 }
 
-/// Processor time, which other work disturbs less.
+/// Ratio of the times of two methods. Processor time is used, because it is less sensitive to other load.
 std::string times(const Measurement& ours, const Measurement& other) {
   return number(ours.processor_milliseconds / other.processor_milliseconds, 2);
 }
@@ -93,7 +93,7 @@ std::string gains(const LabResults& results) {
   return text + "\n";
 }
 
-/// Ren 2002, table 1: frames per second on his two cards.
+/// A row of table 1 of Ren 2002: frames per second on two graphics cards.
 struct RenRow {
   const char* algorithm;
   double radeon;

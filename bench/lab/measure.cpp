@@ -7,7 +7,7 @@
 namespace surfcast::lab {
 namespace {
 
-/// What the frames of one method took.
+/// The times of the frames of one method.
 struct Times {
   std::vector<double> frames;
   std::vector<double> processor;
@@ -49,7 +49,7 @@ SceneResult measure(const Subject& subject, int frames, const std::filesystem::p
   const std::vector<MethodFacts> facts = Methods::all();
   std::vector<Times> times(facts.size());
   std::vector<DrawnPicture> last(facts.size());
-  for (int frame = -1; frame < frames; ++frame) {  // the first one loads blocks and compiles shaders
+  for (int frame = -1; frame < frames; ++frame) {  // the first frame loads blocks and compiles shaders
     for (size_t i = 0; i < facts.size(); ++i) {
       last[i] = methods.draw(facts[i].name, subject.request);
       if (frame >= 0) times[i].add(last[i]);

@@ -11,8 +11,8 @@
 namespace surfcast::lab {
 namespace {
 
-/// The papers' kernel: a deviation of one spacing h (r = 1.08 h), cut at r^2 = 2, and divided by its sum, however
-/// small.
+/// The kernel of the papers: a standard deviation of one spacing h (r = 1.08 h), cut at r^2 = 2, and always normalized
+/// by the sum of weights, however small.
 constexpr const char* kPapersKernel = R"(
 #define SURFCAST_OTHER_KERNEL
 #define SURFCAST_KERNEL_SIGMA 0.9259
@@ -71,7 +71,7 @@ SrgbPicture picture_of(const picture::Image& image) {
   return picture;
 }
 
-/// From rows that run upwards.
+/// A picture from bytes whose rows run from bottom to top.
 SrgbPicture flipped_picture(const std::vector<std::byte>& bytes, int width, int height) {
   SrgbPicture picture{width, height, {}};
   const auto* pixels = reinterpret_cast<const glm::u8vec4*>(bytes.data());
@@ -81,10 +81,10 @@ SrgbPicture flipped_picture(const std::vector<std::byte>& bytes, int width, int 
   return picture;
 }
 
-constexpr int kSamples = 4;  ///< of a supersampled pixel, along each axis
+constexpr int kSamples = 4;  ///< per supersampled pixel, along each axis
 
-/// Weights of the samples within four pixels of a pixel's centre, under the pixel prefilter less the prefilter that the
-/// samples were drawn with.
+/// Weights of the samples within four pixels of a pixel's centre. The variance is that of the pixel prefilter minus
+/// that of the prefilter of the samples.
 std::vector<double> sample_weights() {
   constexpr int kReach = 4;  // pixels
   constexpr double kVariance = kSamples * kSamples - 1;
@@ -99,7 +99,7 @@ std::vector<double> sample_weights() {
   return weights;
 }
 
-/// Filters along x, where a sample in kSamples is kept, and exchanges x and y. What lies outside is background.
+/// Filters and downsamples by kSamples along x, and exchanges x and y. The outside of the picture is background.
 reference::LinearPicture filtered_along_x(const reference::LinearPicture& samples) {
   const std::vector<double> weights = sample_weights();
   const int reach = static_cast<int>(weights.size() - kSamples) / 2;

@@ -11,7 +11,7 @@
 
 namespace surfcast::lab {
 
-/// A picture, and what drawing it took.
+/// A picture and the cost of drawing it.
 struct DrawnPicture {
   SrgbPicture picture;
   double milliseconds = 0;
@@ -20,7 +20,7 @@ struct DrawnPicture {
   uint64_t splats = 0;
 };
 
-/// Draws one model with every method. Both kernels have renderers of their own, on threads of their own.
+/// Draws one model with every method. Each of the two kernels has its own renderer on its own thread.
 class Methods {
  public:
   Methods();
@@ -30,12 +30,12 @@ class Methods {
 
   [[nodiscard]] static std::vector<MethodFacts> all();
   [[nodiscard]] const std::string& device() const { return device_; }
-  /// Changes the model.
+  /// Replaces the model.
   void open(std::shared_ptr<const model::ModelFile> model);
-  /// The view that fits the model, where the request states none.
+  /// The camera of the request or, without one, the camera that fits the model.
   geometry::Camera camera_of(const picture::PictureRequest& request);
   DrawnPicture draw(const std::string& method, const picture::PictureRequest& request);
-  /// What the scan itself shows without aliasing: drawn with 4 x 4 times the pixels, then filtered with the pixel
+  /// A picture of the scan without aliasing: drawn with 4 x 4 samples per pixel, then filtered with the pixel
   /// prefilter.
   SrgbPicture supersampled(const picture::PictureRequest& request);
 
@@ -47,7 +47,7 @@ class Methods {
   RendererThread papers_;
   std::string device_;
   std::shared_ptr<const model::ModelFile> model_;
-  std::unique_ptr<PlainRasterizer> rasterizer_;  ///< of the size of the last picture; made and used on our thread
+  std::unique_ptr<PlainRasterizer> rasterizer_;  ///< for the size of the last picture; belongs to the thread of `ours_`
   glm::ivec2 painted_{0};
 };
 

@@ -11,7 +11,7 @@
 namespace surfcast::lab {
 namespace {
 
-// Depth is near / z, larger in front: as exact with a float as z itself.
+// Depth is near / z, which is larger in front. With floating point, its relative precision equals that of z.
 constexpr const char* kVertex = R"(
 layout(location = 0) in vec4 position_radius;
 layout(location = 1) in vec3 surfel_normal;
@@ -56,7 +56,7 @@ void main() {
 }
 )";
 
-/// 32 bytes.
+/// Vertex buffer format, 32 bytes.
 struct Vertex {
   glm::vec4 position_radius;  ///< relative to its block; world units
   glm::vec3 normal;
@@ -69,7 +69,7 @@ glm::u8vec3 eight_bits(const glm::u16vec3& color, int bits) {
 
 std::vector<Vertex> vertices_of(const model::DecodedBlock& block, int color_bits) {
   const glm::dvec3 origin = block.grid.position(block.origin);
-  constexpr glm::u8vec3 kGrey(231);  // 0.8 in linear light, as splats are without colours
+  constexpr glm::u8vec3 kGrey(231);  // 0.8 in linear light, the grey of splats without colours
   std::vector<Vertex> vertices;
   for (size_t i = 0; i < block.size(); ++i) {
     const glm::u8vec3 color = block.colors.empty() ? kGrey : eight_bits(block.colors[i], color_bits);
@@ -96,7 +96,7 @@ void describe_vertices(const gl::VertexArray& vertices) {
   attribute(2, 4, GL_UNSIGNED_BYTE, GL_TRUE, offsetof(Vertex, color));
 }
 
-/// From the block's own coordinates to the camera's.
+/// Transformation from block coordinates to camera coordinates.
 glm::mat4 view_of(const geometry::CameraFrame& frame, const glm::dvec3& origin) {
   return {glm::vec4(frame.right.x, frame.up.x, frame.forward.x, 0),
           glm::vec4(frame.right.y, frame.up.y, frame.forward.y, 0),

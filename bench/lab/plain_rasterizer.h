@@ -9,20 +9,20 @@
 
 namespace surfcast::lab {
 
-/// What splats are measured against: the surfels of the finest level drawn by the raster pipeline, the nearest one of
-/// every pixel as it is.
+/// The plain methods with which splats are compared: the raster pipeline draws the surfels of the finest level, and
+/// each pixel shows the nearest surfel without filtering.
 enum class PlainShape {
-  kPoint,  ///< GL points, squares as wide as the surfel's disc seen from the front
-  kDisc,   ///< opaque discs of the surfel's radius in its plane, depth exact in every pixel
+  kPoint,  ///< GL points: squares as wide as the surfel's disc seen from the front
+  kDisc,   ///< opaque discs of the surfel's radius in its plane, with exact depth in every pixel
 };
 
-/// Which surfels of a scan whose normals tell front from back. Others are drawn all.
+/// The surfels that are drawn of a scan with oriented normals. Of other scans, all surfels are drawn.
 enum class PlainFaces {
-  kFront,  ///< those that face the eye, as splats do
-  kAll,    ///< as points without normals would be
+  kFront,  ///< front-facing surfels, as with splats
+  kAll,    ///< all surfels, as with points without normals
 };
 
-/// Draws a coloured model plainly. Needs the current GL context.
+/// Draws a model with a plain method. Needs a current GL context.
 class PlainRasterizer {
  public:
   PlainRasterizer(const model::ModelFile& model, int width, int height);

@@ -10,13 +10,13 @@ namespace {
 
 constexpr int kColumns = 4;
 constexpr double kWidth = 250;   ///< of a plot with its margins
-constexpr double kHeight = 210;  ///< likewise
+constexpr double kHeight = 210;  ///< of a plot with its margins
 constexpr double kLeft = 38;
 constexpr double kRight = 12;
 constexpr double kTop = 24;
 constexpr double kBottom = 30;
 constexpr double kLegend = 36;          ///< height of the legend above the plots
-constexpr double kHighestPlotted = 60;  ///< dB; what is nearer to the ideal picture is drawn there
+constexpr double kHighestPlotted = 60;  ///< dB; higher values are drawn there
 
 constexpr std::array kColors{"#999999", "#6b4c9a", "#d2691e", "#c0392b", "#1b9e77",
                              "#1b6ca8", "#4a9bd1", "#7db8de", "#b3d7ef"};
@@ -79,7 +79,7 @@ class ScenePlot {
     return svg;
   }
 
-  /// Steps: beyond each of its points nothing is better at less time.
+  /// SVG path of the Pareto frontier, as steps.
   [[nodiscard]] std::string frontier_line() const {
     std::string path;
     for (const size_t i : frontier(scene_.measurements)) {

@@ -6,7 +6,7 @@
 
 namespace surfcast::lab {
 
-/// One plot for each scene in an SVG: milliseconds across (logarithmic), PSNR upwards, the frontier as a line.
+/// An SVG with one plot for each scene: PSNR against milliseconds (logarithmic), with the Pareto frontier as a line.
 std::string svg_of(const LabResults& results);
 
 }  // namespace surfcast::lab

@@ -9,17 +9,17 @@
 
 namespace surfcast::lab {
 
-/// A renderer on a thread of its own, on which its GL context stays current: several of them draw in turn.
+/// A renderer on its own thread, on which its GL context stays current. Several renderers can take turns.
 class RendererThread {
  public:
-  /// Ends the program where no renderer can be made.
+  /// Exits the program if the renderer cannot be created.
   explicit RendererThread(const render::RendererConfig& config);
   ~RendererThread();
   RendererThread(const RendererThread&) = delete;
   RendererThread& operator=(const RendererThread&) = delete;
 
   using Work = std::function<void(render::Renderer&)>;
-  /// Does the work on the thread, and returns when it is done.
+  /// Runs the work on the thread and waits until it is done.
   void run(const Work& work);
 
  private:

@@ -9,22 +9,22 @@
 
 namespace surfcast::lab {
 
-/// What a method is, for tables and plots.
+/// Description of a method, for tables and plots.
 struct MethodFacts {
   std::string name;
   std::string about;
-  bool plain = false;  ///< one of those that splats are measured against
+  bool plain = false;  ///< one of the plain methods with which splats are compared
 };
 
-/// A scene under a method.
+/// The results of one method for one scene.
 struct Measurement {
   std::string method;
   double milliseconds = 0;  ///< median of a frame, from the request to its pixels in memory
   double processor_milliseconds =
-      0;  ///< the same in processor time: the cost on software GL, which other load hardly changes
+      0;  ///< the same in processor time: the cost on software GL, almost independent of other load
   std::vector<picture::StageTime> stages;  ///< medians
-  double surfels_per_second = 0;           ///< of the scan, whether or not a coarser level stands for them
-  uint64_t splats = 0;                     ///< drawn, once what faces away or lies outside has been left out
+  double surfels_per_second = 0;           ///< of the scan, also if a coarser level is drawn instead of them
+  uint64_t splats = 0;                     ///< drawn splats, after culling
   PictureErrors errors;
   double flicker = 0;  ///< levels of 255
 };
@@ -38,16 +38,17 @@ struct SceneResult {
 
 struct LabResults {
   std::string device;
-  int frames = 0;  ///< that each time is the median of
+  int frames = 0;  ///< number of frames of each median
   std::vector<MethodFacts> methods;
   std::vector<SceneResult> scenes;
 };
 
-/// Null where the scene was not measured under the method.
+/// Null if the scene was not measured with the method.
 const Measurement* find(const SceneResult& scene, const std::string& method);
 const SceneResult* find(const LabResults& results, const std::string& scene);
 
-/// Indices of the measurements that no other one beats in both time and PSNR, fastest first.
+/// The Pareto frontier: indices of the measurements for which no other one is better in both time and PSNR, fastest
+/// first.
 std::vector<size_t> frontier(const std::vector<Measurement>& measurements);
 
 }  // namespace surfcast::lab

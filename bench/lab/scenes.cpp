@@ -29,7 +29,7 @@ Scene scene_of(const std::vector<SurfacePoint>& points, reference::RaySurface su
   return scene;
 }
 
-/// The checker plane from 2 degrees above its nearer border, so that it fills the picture up to its horizon.
+/// The checker plane seen from above its near border at 2 degrees, so that it fills the picture up to the horizon.
 Scene checker_horizon() {
   Scene scene = reference::make_scene("checker_oblique");
   scene.request.camera = geometry::Camera{{0, -1, 0.035}, {0, 0, 0}, {0, 0, 1}, 35};
@@ -42,7 +42,7 @@ Scene noise_torus() {
                   geometry::Camera{{0, -2.6, 1.9}, {0, 0, 0}, {0, 0, 1}, 35});
 }
 
-/// What a scanner sees of the square within `columns` of x: samples off the plane and off their colour.
+/// Adds the samples of one scanner station between x0 and x1, with noise in position and colour.
 void add_station(Scene& scene, int side, double x0, double x1, uint32_t seed) {
   constexpr double kOffPlane = 0.15;  // spacings
   constexpr double kOffColor = 6;     // levels
@@ -75,7 +75,7 @@ Scene noisy_stations() {
 struct NamedScene {
   const char* name;
   const char* about;
-  Scene (*make)();  ///< null: the scene of this name of tests/reference
+  Scene (*make)();  ///< null: the scene with this name in tests/reference
 };
 
 const NamedScene kScenes[] = {

@@ -9,19 +9,19 @@
 
 namespace surfcast::lab {
 
-/// A scene of the laboratory: a scan, a view of it, and what it ought to look like.
+/// A scene of the laboratory: a scan, a view of it, and the source of its ideal picture.
 struct LabScene {
   std::string name;
-  std::string about;  ///< half a sentence for the documentation
-  /// A sampled analytic surface, whose ideal picture can be computed; or else
+  std::string about;  ///< short description for the documentation
+  /// A sampled analytic surface, whose ideal picture can be computed. If absent, `scan` is used.
   std::optional<reference::Scene> analytic;
-  std::filesystem::path scan;  ///< a scan or a model: its ideal picture is its own, supersampled
+  std::filesystem::path scan;  ///< a scan or a model; its ideal picture is its supersampled picture
 };
 
-/// Names of the scenes that come with the program, in the order of the tables.
+/// Names of the built-in scenes, in the order of the tables.
 std::vector<std::string> lab_scene_names();
 LabScene make_lab_scene(const std::string& name);
-/// A scan or model of the user's.
+/// The scene of a scan or model given by the user.
 LabScene scan_scene(const std::filesystem::path& scan);
 
 /// The requests of a slow camera path: the view moves sideways and up by a fraction of a pixel from frame to frame.

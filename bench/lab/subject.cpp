@@ -11,7 +11,7 @@ namespace {
 
 constexpr int kPathSide = 256;  ///< pixels
 
-/// A cloud as a scan: binary PLY with positions in double precision, normals and colours, and without radii.
+/// Writes a cloud as a scan: binary PLY with positions in double precision, normals and colours, without radii.
 void write_scan(const surfel::SurfelCloud& cloud, const std::filesystem::path& path) {
   std::ofstream file(path, std::ios::binary);
   file << "ply\nformat binary_little_endian 1.0\nelement vertex " << cloud.size()
@@ -58,7 +58,7 @@ Subject prepare(const LabScene& scene, const std::filesystem::path& folder, int 
     subject.request = scene.analytic->request;
   } else {
     subject.request.width = subject.request.height = 512;
-    subject.request.shading = picture::Shading::kUnlit;  // as the plain methods
+    subject.request.shading = picture::Shading::kUnlit;  // the plain methods are unlit, too
     subject.request.camera = methods.camera_of(subject.request);
   }
   subject.ideal = ideal_of(scene, subject.request, methods);

@@ -8,7 +8,7 @@
 
 namespace surfcast::lab {
 
-/// A scene ready to be measured: its model, and what its pictures ought to be.
+/// A scene prepared for measurement: its model and its ideal pictures.
 struct Subject {
   std::string name;
   std::string about;
@@ -19,7 +19,7 @@ struct Subject {
   std::vector<SrgbPicture> ideal_path;
 };
 
-/// Builds the scene's model in `folder`, as the builder makes it of a scan, opens it with the methods, and computes its
+/// Builds the scene's model from a scan with the builder, in `folder`, opens it with the methods, and computes its
 /// ideal pictures. `path_frames` is the length of the slow camera path.
 Subject prepare(const LabScene& scene, const std::filesystem::path& folder, int path_frames, Methods& methods);
 

@@ -34,7 +34,7 @@ SurfacePoint torus_point(const Torus& torus, double u, double v) {
 
 reference::RaySurface ray_surface(const Torus& torus) {
   return [torus](const glm::dvec3& origin, const glm::dvec3& direction) -> std::optional<SurfacePoint> {
-    // Along the ray by steps of the distance to the surface, from where the ray enters the ball around it.
+    // Sphere tracing: steps of the distance to the surface, from the ray's entry into the bounding sphere.
     constexpr double kNear = 1e-7;
     constexpr int kSteps = 200;
     const double ball = torus.ring + torus.tube;
