@@ -1,4 +1,4 @@
-# The two commands of the README, on a bare Debian 12: make demo, make test. They install what is missing.
+# The two commands of the README for a bare Debian 12: make demo, make test. They install missing packages.
 .PHONY: build demo test bench asan tidy format-check configure packages lint-packages
 
 build: configure
@@ -11,14 +11,14 @@ demo: configure
 test: build
 	ctest --preset release -j2
 
-# Time against error of every way to draw, written into docs/laboratory.md. SCANS are more scans or models to measure,
-# BENCH_FLAGS what `laboratory --help` lists.
+# Measures time and error of every drawing method and writes the results into docs/laboratory.md. SCANS: additional
+# scans or models to measure. BENCH_FLAGS: further options, see `laboratory --help`.
 bench: configure
 	cmake --build --preset release --target laboratory
 	build/bin/laboratory --docs docs $(BENCH_FLAGS) tests/data/lion.drc $(SCANS)
 
-# The tests of the modules that need no GL and little time, and the hard cases of numerics, under the address and
-# undefined behaviour sanitizers. They alone are built: a sanitizer doubles what compiling takes.
+# Runs the fast tests without GL and the fast numerics tests with the address and undefined behaviour sanitizers. Builds
+# only these tests, because sanitizers double the compile time.
 asan: packages
 	cmake --preset asan-ubsan
 	cmake --build --preset asan-ubsan

@@ -1,5 +1,5 @@
-# surfcast_embed_shaders(TARGET): puts every file of shaders/ into TARGET as text, so that a program needs no files
-# beside it. Defines surfcast::render::embedded_shaders() (see render/shader_library.cpp).
+# surfcast_embed_shaders(TARGET): embeds every file of shaders/ into TARGET as text, so that a program does not need
+# separate shader files. Defines surfcast::render::embedded_shaders() (see render/shader_library.cpp).
 function(surfcast_embed_shaders target)
   file(GLOB_RECURSE files CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/shaders ${PROJECT_SOURCE_DIR}/shaders/*)
   set(output ${CMAKE_CURRENT_BINARY_DIR}/embedded_shaders.cpp)

@@ -1,4 +1,4 @@
-# Every build setting of the project in one place.
+# Build settings and helper functions of the project.
 
 option(SURFCAST_TESTS "Build the tests" ON)
 option(SURFCAST_BENCH "Build the benchmarks" ON)
@@ -20,7 +20,7 @@ endif()
 
 find_package(Threads REQUIRED)
 
-# Warnings are errors for our own code; generated and third-party code does not link this target.
+# Warnings are errors in the project's code. Generated and third-party code does not link this target.
 add_library(surfcast_warnings INTERFACE)
 target_compile_options(surfcast_warnings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor
@@ -37,9 +37,10 @@ if(SURFCAST_SANITIZE)
 endif()
 
 # surfcast_headers(TARGET PUBLIC|INTERFACE NAME FOLDER)
-# Lets TARGET and what links it include the headers of FOLDER as "NAME/header.h", and nothing beside FOLDER: the include
-# path is a folder of the build tree that holds a link to FOLDER alone. A target therefore sees only the headers of the
-# libraries that it links, and an include that docs/architecture.md does not allow fails to compile.
+# Lets TARGET and the targets that link it include the headers of FOLDER as "NAME/header.h", but no folders next to
+# FOLDER: the include path is a folder of the build tree that contains only a link to FOLDER. A target therefore sees
+# only the headers of the libraries that it links, and an include that docs/architecture.md does not allow fails to
+# compile.
 function(surfcast_headers target scope name folder)
   set(path ${CMAKE_BINARY_DIR}/include/${name})
   file(MAKE_DIRECTORY ${path})
@@ -48,8 +49,8 @@ function(surfcast_headers target scope name folder)
 endfunction()
 
 # surfcast_module(NAME [SOURCES file...] [PUBLIC lib...] [PRIVATE lib...])
-# One folder of server/ is one static library `surfcast_NAME` with the namespace surfcast::NAME, included as
-# "NAME/header.h". Without sources it is a library of headers.
+# Each folder of server/ is one static library `surfcast_NAME` with the namespace surfcast::NAME, included as
+# "NAME/header.h". Without sources it is a header-only library.
 function(surfcast_module name)
   cmake_parse_arguments(ARG "" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   if(ARG_SOURCES)
@@ -69,22 +70,23 @@ surfcast_headers(surfcast_shared INTERFACE shared ${PROJECT_SOURCE_DIR}/shaders/
 find_package(glm REQUIRED)
 target_link_libraries(surfcast_shared INTERFACE glm::glm)
 
-# surfcast_test_data(FILE...): lets these sources of tests find tests/data. Only these: a compiler cache then serves the
-# others in every checkout.
+# surfcast_test_data(FILE...): defines the path of tests/data for these test sources only. Other sources do not contain
+# the path of the checkout, so that a compiler cache can share them between checkouts.
 function(surfcast_test_data)
   set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_DEFINITIONS SURFCAST_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data")
 endfunction()
 
 # surfcast_test(NAME [WHOLE] SOURCES file... [LIBS lib...] [LABELS label...])
-# One GoogleTest program of one module. Every case becomes a ctest case of its own; WHOLE keeps them together, for
-# programs whose start costs more than their cases (a GL context and its shaders). A label is one word, of parts that
-# ctest tells apart (-L gl, -LE slow): what decides where a test runs, then suites of its own, as in gl-slow-numerics.
+# One GoogleTest program of one module. Every case becomes a separate ctest case. WHOLE keeps the cases together, for
+# programs whose start takes longer than their cases (a GL context and its shaders). A label is one word with parts that
+# ctest can select (-L gl, -LE slow): first the requirements of a test, then its suite, as in gl-slow-numerics.
 function(surfcast_test name)
   cmake_parse_arguments(ARG "WHOLE" "" "SOURCES;LIBS;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_link_libraries(${name} PRIVATE surfcast_warnings ${ARG_LIBS} GTest::gtest_main GTest::gmock)
-  # What runs once is not worth a long look of the compiler; what it tests is built as ever.
+  # Test code runs once, so less optimization saves more compile time than it costs. The tested libraries are built with
+  # the usual optimization.
   target_compile_options(${name} PRIVATE $<$<CONFIG:Debug>:-O0> $<$<CONFIG:Release>:-O1>)
   if(NOT ARG_LABELS)
     set(ARG_LABELS unit)
@@ -96,7 +98,7 @@ function(surfcast_test name)
     add_test(NAME ${name} COMMAND ${name})
     set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 600)
     if(SURFCAST_SANITIZE AND ARG_LABELS MATCHES "gl")
-      # Mesa keeps a little memory when its driver is unloaded.
+      # Mesa leaks a little memory when its driver is unloaded.
       set_tests_properties(${name} PROPERTIES ENVIRONMENT ASAN_OPTIONS=detect_leaks=0)
     endif()
   else()

@@ -1,5 +1,5 @@
-# OpenImageIO::OpenImageIO by way of pkg-config: Debian 12's package for CMake names programs, Python modules and an
-# include folder of OpenCV without depending on them, and CMake refuses targets whose files do not exist.
+# Finds OpenImageIO::OpenImageIO with pkg-config. The CMake package in Debian 12 refers to programs, Python modules and
+# an include folder of OpenCV that it does not depend on, and CMake rejects targets whose files do not exist.
 find_package(PkgConfig REQUIRED)
 if(NOT TARGET OpenImageIO::OpenImageIO)
   pkg_check_modules(OpenImageIO REQUIRED IMPORTED_TARGET OpenImageIO)

@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# demo.sh PROGRAMS FOLDER: builds a model of the scan in tests/data, serves it, and has the thin client fetch a picture
-# of it over TCP into FOLDER. On a terminal it then serves until Ctrl-C.
+# demo.sh PROGRAMS FOLDER: builds a model of the scan in tests/data, serves it, and fetches a picture of it with the
+# thin client over TCP into FOLDER. On a terminal it then serves until Ctrl-C.
 set -euo pipefail
 programs=$1
 folder=$2
@@ -12,14 +12,14 @@ mkdir -p "$folder"
 
 port=7600
 if (: >"/dev/tcp/127.0.0.1/$port") 2>/dev/null; then
-  port=0 # taken by somebody: any free one
+  port=0 # the port is in use: take any free one
 fi
-: >"$ready" # what an earlier run left must not be taken for this server's line
+: >"$ready" # removes the output of an earlier run
 "$programs/surfcastd" serve "$folder/lion.surf" --listen "127.0.0.1:$port" >"$ready" &
 server=$!
 trap 'kill "$server" 2>/dev/null || true' EXIT
 
-# Its one line on standard output ends with the URL and comes once it is ready. When it fails, stderr has said why.
+# The server prints one line with its URL on standard output once it is ready. If it fails, the reason is on stderr.
 until grep --quiet http "$ready"; do
   kill -0 "$server" 2>/dev/null || exit 1
   sleep 0.1
@@ -34,8 +34,8 @@ echo "picture: $PWD/$folder/lion.png"
 echo "server:  $url"
 if [ -t 1 ]; then
   echo "serving until Ctrl-C"
-  trap : INT # the server hears Ctrl-C, too, and stops by itself
+  trap : INT # the server receives Ctrl-C as well and stops by itself
 else
   kill "$server"
 fi
-wait "$server" || wait "$server" # the first ends early when a signal arrives
+wait "$server" || wait "$server" # a signal interrupts the first wait

@@ -1,6 +1,6 @@
 #!/bin/sh
 # install_packages.sh PURPOSE...: installs the packages that cmake/debian-packages.txt lists under these purposes.
-# Only what is missing, so that a second run needs neither network nor root.
+# Installs missing packages only, so that a second run needs neither network nor root.
 set -eu
 list=$(dirname "$0")/debian-packages.txt
 
@@ -24,7 +24,7 @@ done
 echo "installing:$missing"
 as_root=
 [ "$(id -u)" = 0 ] || as_root=sudo
-# One line each, so that nothing of apt's output hides what the program prints later.
+# Quiet, so that apt's output does not hide the output of later programs.
 $as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq update
 $as_root env DEBIAN_FRONTEND=noninteractive apt-get -qq -o=Dpkg::Use-Pty=0 install --no-install-recommends $missing \
   >/dev/null
