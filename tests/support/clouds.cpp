@@ -9,7 +9,7 @@
 namespace surfcast::testing {
 namespace {
 
-/// Radius of evenly spread samples over their spacing, and their normalisation weight.
+/// Ratio of the radius of evenly spread samples to their spacing. Also determines their normalisation weight.
 constexpr double kRadiusOverSpacing = 1.08;
 
 float even_weight() {

@@ -17,8 +17,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-constexpr size_t kPacketBytes = 1448;      // of a segment on Ethernet
-constexpr int kReceiveBuffer = 16 * 1024;  // small: what waits here is a delay that the link's shape does not say
+constexpr size_t kPacketBytes = 1448;      // payload of a TCP segment on Ethernet
+constexpr int kReceiveBuffer = 16 * 1024;  // small, because bytes in it are an additional delay outside of LinkShape
 constexpr std::chrono::milliseconds kStopCheck{50};
 
 sockaddr_in loopback(uint16_t port) {
@@ -33,7 +33,7 @@ void set_option(int socket, int level, int option, int value) {
   ::setsockopt(socket, level, option, &value, sizeof value);
 }
 
-/// Two sockets that are closed when neither direction needs them any more.
+/// Two sockets shared by both directions; closed when both have ended.
 struct Pair {
   int client;
   int server;
@@ -51,7 +51,7 @@ struct Packet {
   std::vector<char> bytes;
 };
 
-/// One direction: bytes leave as fast as the line takes them and arrive after its delay.
+/// One direction of the link: bytes are sent at the link's bandwidth and arrive after its delay.
 class Line {
  public:
   Line(int from, int to, const LinkShape& shape) : from_(from), to_(to), shape_(shape) {}
@@ -66,7 +66,7 @@ class Line {
   }
 
  private:
-  /// Until a packet arrives or, if the line has room, there is something to read.
+  /// Waits until a packet is due or, if the queue has room, reads the next one.
   void wait() {
     const Clock::time_point now = Clock::now();
     const bool room = open_ && free_at_ <= now + shape_.queue;
@@ -92,7 +92,7 @@ class Line {
     packets_.push_back({free_at_ + shape_.delay, std::move(bytes)});
   }
 
-  /// False when nobody takes the bytes any more.
+  /// Sends the packets that are due. False when the receiver has closed the connection.
   bool deliver() {
     while (!packets_.empty() && packets_.front().arrival <= Clock::now()) {
       const std::vector<char>& bytes = packets_.front().bytes;

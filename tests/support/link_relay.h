@@ -8,15 +8,15 @@
 
 namespace surfcast::testing {
 
-/// What a link between two places does to bytes, each way.
+/// The properties of an emulated network link, equal in both directions.
 struct LinkShape {
   double bits_per_second = 4e6;
   std::chrono::microseconds delay{40'000};  ///< one way
-  std::chrono::microseconds queue{20'000};  ///< what the line holds back before it takes no more
+  std::chrono::microseconds queue{20'000};  ///< transmission time of the sender's queue; a full queue reads no more
 };
 
-/// A TCP relay on the loopback that carries connections to a port as such a link would. Of its own: no privileges and
-/// no kernel's traffic control are needed.
+/// A TCP relay on the loopback interface that emulates such a link to a port. It needs neither privileges nor the
+/// kernel's traffic control.
 class LinkRelay {
  public:
   /// Listens on `port` (0: any) and connects to `target`.
@@ -36,7 +36,7 @@ class LinkRelay {
   int listener_;
   uint16_t port_ = 0;
   std::vector<std::jthread> lines_;
-  std::jthread acceptor_;  ///< the only one to touch lines_ while it runs
+  std::jthread acceptor_;  ///< the only thread that accesses lines_ while it runs
 };
 
 }  // namespace surfcast::testing
