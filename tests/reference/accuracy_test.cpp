@@ -1,4 +1,5 @@
-// The constants of shaders/shared/kernel.h against ideal pictures, in exact arithmetic. docs/kernel.md has the study.
+// Tests the constants of shaders/shared/kernel.h against ideal pictures with the double precision reference renderer.
+// docs/kernel.md describes how they were chosen.
 
 #include <algorithm>
 #include <ostream>
@@ -24,7 +25,7 @@ class Accuracy : public testing::TestWithParam<Goal> {};
 
 TEST_P(Accuracy, IsAtLeastTheLimitAndLeavesNoHole) {
   Scene scene = make_scene(GetParam().scene);
-  scene.request.silhouettes = true;  // as a picture at rest
+  scene.request.silhouettes = true;  // as in a picture at rest
   const ReferencePicture result = render(scene.cloud, scene.request);
   EXPECT_GE(psnr(encode(result.picture), encode(ideal_picture(scene))), GetParam().psnr);
   const std::vector<double> inside = ideal_coverage(scene);

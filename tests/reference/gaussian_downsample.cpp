@@ -16,7 +16,7 @@ constexpr int kSamples = 8;  ///< per pixel and axis
 constexpr int kReach = 4;    ///< pixels
 constexpr int kTaps = (2 * kReach + 1) * kSamples;
 
-/// Weights of the samples of the pixels -kReach to +kReach about the one that is computed.
+/// Weights of the samples of the pixels -kReach to +kReach relative to the computed pixel.
 std::array<double, kTaps> gaussian_taps() {
   std::array<double, kTaps> taps{};
   for (int i = 0; i < kTaps; ++i) {

@@ -6,11 +6,11 @@
 
 namespace surfcast::reference {
 
-/// Grey of models without colour, lit along the viewing ray, linear light.
+/// Albedo of models without colour, linear light. The light comes from the eye.
 inline constexpr double kAlbedo = 0.8;
-inline constexpr double kAmbient = 0.1;  ///< share of the light that ignores the normal
+inline constexpr double kAmbient = 0.1;  ///< ambient share of the light, independent of the normal
 
-/// Share of the light that a surface sends back along the ray.
+/// Brightness of a surface with this normal, seen along the ray, in [kAmbient, 1].
 inline double headlight(const glm::dvec3& normal, const glm::dvec3& ray) {
   const double lengths = glm::length(normal) * glm::length(ray);
   const double cosine = lengths > 0 ? std::abs(glm::dot(normal, ray)) / lengths : 0;

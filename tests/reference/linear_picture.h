@@ -35,10 +35,10 @@ SrgbPicture encode(const LinearPicture& picture);
 
 /// Peak signal to noise ratio over all channels of all pixels, dB; infinite for equal pictures.
 double psnr(const SrgbPicture& a, const SrgbPicture& b);
-/// Absolute differences, brightened by `gain` so that they can be seen.
+/// Absolute differences, multiplied by `gain` to make them visible.
 SrgbPicture difference(const SrgbPicture& a, const SrgbPicture& b, double gain);
 
-/// Writes a binary PPM for a person to look at; returns false when the file cannot be written.
+/// Writes a binary PPM for inspection. False when the file cannot be written.
 bool write_ppm(const std::filesystem::path& path, const SrgbPicture& picture);
 
 }  // namespace surfcast::reference

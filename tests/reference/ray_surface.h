@@ -14,7 +14,7 @@ struct SurfacePoint {
   glm::dvec2 uv{0};      ///< in [0, 1]^2
 };
 
-/// The nearest point of the surface in front of `origin` along `direction`.
+/// Finds the nearest point of the surface in front of `origin` along `direction`.
 using RaySurface = std::function<std::optional<SurfacePoint>(const glm::dvec3& origin, const glm::dvec3& direction)>;
 
 /// The square [-1, 1]^2 of the plane z = 0, seen from both sides, normal +z.

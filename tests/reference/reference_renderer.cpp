@@ -22,11 +22,11 @@ namespace {
 
 constexpr int kTile = 16;  ///< pixels
 constexpr int kMaxLayers = 8;
-constexpr double kOpaque = 1.0 / 128;  ///< transmittance that is not worth another layer
+constexpr double kOpaque = 1.0 / 128;  ///< transmittance below which no further layer is drawn
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr double kNoPrefilter = 0.01;  ///< pixels: no blur to speak of, yet r2 stays finite edge-on
+constexpr double kNoPrefilter = 0.01;  ///< pixels; a negligible blur that keeps r2 finite for edge-on surfels
 
-/// A surfel ready to be drawn: what it is seen as, and what it adds.
+/// A surfel prepared for drawing: its splat and its contribution.
 struct DrawnSurfel {
   Splat splat;
   glm::dvec3 color;   ///< linear light
@@ -64,11 +64,11 @@ glm::dvec3 linear_color(const surfel::ColorAttribute& colors, size_t i) {
   return linear_from_srgb8(glm::dvec3(colors.values[i]) * (255.0 / top));
 }
 
-/// What pixels are drawn with.
+/// The prefilters and the position of samples.
 struct Sampling {
-  double whole_prefilter = 1;  ///< of a pixel
-  double prefilter = 1;        ///< of a sample of it
-  int reach = 0;               ///< how far samples lie from the centre of their pixel, at most, pixels
+  double whole_prefilter = 1;  ///< standard deviation for a pixel, pixels
+  double prefilter = 1;        ///< standard deviation for a sample of a pixel, pixels
+  int reach = 0;               ///< largest distance of a sample from the centre of its pixel, pixels
 };
 
 /// The scene in camera coordinates, with the surfels that touch each tile in their order in the cloud.
@@ -97,7 +97,7 @@ class TiledScene {
     const int y = window_.y0 + row * kTile;
     return intersect({x, y, x + kTile, y + kTile}, window_);
   }
-  /// Calls visit(surfel, pixels) for every surfel of a tile, with the pixels of the tile it may touch.
+  /// Calls visit(surfel, pixels) for every surfel of a tile, with the pixels of the tile that it may touch.
   template <typename Visit>
   void for_each_surfel(int column, int row, const Visit& visit) const {
     const PixelRect tile = rect(column, row);
@@ -152,9 +152,9 @@ struct Drawing : ReferencePicture {
   std::vector<double> fronts;
 };
 
-/// One pixel while it is drawn: what the layer at hand has gathered, and the light of the layers in front of it.
+/// State of one pixel during drawing: the sums of the current layer, and the light of the layers in front of it.
 struct PixelState {
-  double limit = 0;  ///< depth of the layer in front: nothing nearer is drawn again
+  double limit = 0;  ///< depth of the previous layer; nearer fragments are not drawn again
   double surface = kInfinity;
   double weight = 0;
   glm::dvec3 color{0};
@@ -164,11 +164,11 @@ struct PixelState {
   double front_weight = 0;
   double front = kInfinity;  ///< depth of the first surface
   bool done = false;
-  bool left_out = false;  ///< is not drawn at all
+  bool left_out = false;  ///< not drawn, because it is not in the mask
 };
 
-/// Visibility and accumulation over one tile, for up to kMaxLayers surfaces one behind the other: where a surface
-/// covers a pixel in part, what lies behind it shows through.
+/// Visibility and accumulation over one tile, for up to kMaxLayers surfaces behind one another. Where a surface covers
+/// part of a pixel, the surfaces behind it are visible.
 class TilePass {
  public:
   TilePass(const TiledScene& scene, const geometry::CameraFrame& frame, const KernelParameters& kernel,
@@ -181,7 +181,7 @@ class TilePass {
         row_(row),
         rect_(scene.rect(column, row)) {}
 
-  /// Draws only the pixels that `mask` marks, rows of the window.
+  /// Restricts drawing to the pixels marked in `mask`, which has the rows of the window.
   void leave_out_unless(const std::vector<bool>& mask) {
     for_each_pixel(rect_, [&](PixelState& p, const glm::dvec3&, size_t place) { p.left_out = p.done = !mask[place]; });
   }
@@ -246,14 +246,14 @@ class TilePass {
     });
   }
 
-  /// The gain by which a fragment's coverage counts.
+  /// The gain that determines the coverage of a fragment.
   [[nodiscard]] double coverage_gain(const Splat& splat, const Fragment& f, const glm::dvec3& d) const {
     const Sampling& sampling = scene_.sampling();
     if (sampling.prefilter == sampling.whole_prefilter) return f.gain;
     return glm::mix(f.gain, splat.gain(d, sampling.whole_prefilter), kernel_.silhouette_coverage);
   }
 
-  /// Adds the layer behind the light of those in front, and makes ready for the next.
+  /// Composites the layer behind those in front of it, and resets the sums for the next layer.
   void composite(PixelState& p, const glm::dvec3& d, bool front) const {
     if (p.done) return;
     if (front) {
@@ -282,7 +282,8 @@ class TilePass {
   std::array<PixelState, kTile * kTile> pixels_{};
 };
 
-/// Draws the pixels of the scene's window that `mask` marks, or all, each at a place so far from its centre.
+/// Draws the pixels of the scene's window that are marked in `mask`, or all pixels if it is null. `sample` is the
+/// offset of the sample from the centre of a pixel.
 void draw_tiles(const TiledScene& scene, const geometry::CameraFrame& frame, const KernelParameters& kernel,
                 const picture::PictureRequest& request, const glm::dvec2& sample, const std::vector<bool>* mask,
                 Drawing& out) {
@@ -301,7 +302,7 @@ void draw_tiles(const TiledScene& scene, const geometry::CameraFrame& frame, con
   out.fragments += fragments;
 }
 
-/// Adds what the marked pixels of a sample show, times `share`.
+/// Adds the marked pixels of a sample, multiplied by `share`.
 void add_marked(const Drawing& sample, const std::vector<bool>& mask, double share, Drawing& sum) {
   for (size_t i = 0; i < mask.size(); ++i) {
     if (!mask[i]) continue;
@@ -351,7 +352,7 @@ Drawing draw(const surfel::SurfelCloud& cloud, const picture::PictureRequest& re
   return out;
 }
 
-/// The part `to` of what was drawn of `from`.
+/// The part `to` of a drawing of the part `from`.
 ReferencePicture cut_out(const Drawing& drawn, const PixelRect& from, const PixelRect& to) {
   ReferencePicture out{{to.x1 - to.x0, to.y1 - to.y0}, {}, {}, drawn.fragments};
   out.picture.pixels.clear();
@@ -380,7 +381,7 @@ ReferencePicture render(const surfel::SurfelCloud& cloud, const picture::Picture
   const PixelRect picture{0, 0, request.width, request.height};
   const Window part = window.value_or(Window{0, 0, request.width, request.height});
   const PixelRect rect{part.x, part.y, part.x + part.width, part.y + part.height};
-  // What is at a silhouette follows from neighbours.
+  // The detection of silhouettes needs the neighbouring pixels.
   const int margin = kernel.silhouette_reach + 1;
   const PixelRect drawn = intersect({rect.x0 - margin, rect.y0 - margin, rect.x1 + margin, rect.y1 + margin}, picture);
   return cut_out(draw(cloud, request, kernel, *frame, drawn), drawn, rect);

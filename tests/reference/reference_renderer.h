@@ -10,15 +10,15 @@
 
 namespace surfcast::reference {
 
-/// A picture, and what was accumulated for each of its pixels.
+/// A picture, and the accumulated values of its pixels.
 struct ReferencePicture {
   LinearPicture picture;         ///< blended with the background
-  std::vector<double> weights;   ///< A, the accumulated weights (times the multipliers of coverage)
-  std::vector<double> coverage;  ///< min(1, A)
-  uint64_t fragments = 0;        ///< fragments within the cutoff, hidden ones included: what drawing costs
+  std::vector<double> weights;   ///< A: the accumulated weights of the front layer, relative to full coverage
+  std::vector<double> coverage;  ///< of all layers, in [0, 1]
+  uint64_t fragments = 0;        ///< fragments within the cutoff, hidden ones included: the cost of drawing
 };
 
-/// Pixels of a picture, counted from its top left corner.
+/// A part of a picture, in pixels from its top left corner.
 struct Window {
   int x = 0;
   int y = 0;
@@ -26,9 +26,9 @@ struct Window {
   int height = 0;
 };
 
-/// Draws the finest level of the cloud in double precision, deterministically. The request states its camera; pixels
-/// are never quantised. Weights of the cloud are used for Normalization::kSurfel alone. With a window, only the part
-/// of the picture that lies in it.
+/// Draws the cloud in double precision, deterministically and without quantisation. The request must state its camera.
+/// The weights of the cloud are used for Normalization::kSurfel only. With a window, draws only this part of the
+/// picture.
 ReferencePicture render(const surfel::SurfelCloud& cloud, const picture::PictureRequest& request,
                         const KernelParameters& kernel = {}, const std::optional<Window>& window = {});
 

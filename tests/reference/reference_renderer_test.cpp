@@ -78,7 +78,7 @@ TEST(ReferenceRenderer, ShowsTheBackgroundWhereNothingIs) {
 }
 
 TEST(ReferenceRenderer, HidesWhatLiesBehindASurface) {
-  // A red sheet one spacing's push in front of a green one, and a view that meets both everywhere.
+  // A red sheet in front of a green one, farther than the visibility push of one spacing; both fill the picture.
   Scene scene = small_scene("color_plane");
   surfel::SurfelCloud& cloud = scene.cloud;
   const size_t count = cloud.size();

@@ -103,7 +103,7 @@ Splat::Bounds Splat::bounds() const {
   const glm::dvec3 reach = extent_ * glm::sqrt(glm::max(glm::dvec3(0), 1.0 - n_ * n_));
   const double pixels = reaches_eye_plane_ ? 0 : std::max(prefilter_ * std::sqrt(cutoff_), disc_pixels_);
   const double pad = pixels * o_.z / eta_;
-  const double near = reaches_eye_plane_ ? 0 : o_.z - reach.z;  // x / 0 with its sign is the bound at the eye's plane
+  const double near = reaches_eye_plane_ ? 0 : o_.z - reach.z;  // at the eye's plane, x / 0 is the infinite bound
   const double far = o_.z + reach.z;
   const auto low = [&](double x) { return x < 0 ? x / near : x / far; };
   const auto high = [&](double x) { return x > 0 ? x / near : x / far; };

@@ -10,7 +10,7 @@
 
 namespace surfcast::reference {
 
-/// The constants of shaders/shared/kernel.h as values, so that a study can vary them.
+/// The constants of shaders/shared/kernel.h as variables, so that a study can change them.
 struct KernelParameters {
   double sigma = SURFCAST_KERNEL_SIGMA;
   double cutoff_minified = SURFCAST_KERNEL_CUTOFF_MINIFIED;
@@ -27,36 +27,37 @@ struct KernelParameters {
   int silhouette_reach = SURFCAST_SILHOUETTE_REACH;
 };
 
-/// What a surfel contributes to one pixel, before its weight.
+/// The contribution of a surfel to one pixel, before its weight.
 struct Fragment {
   double r2 = 0;    ///< squared Mahalanobis distance of the pixel in the resampling filter
-  double gain = 0;  ///< share of the filter's peak left by the prefilter, in [0, 1]
+  double gain = 0;  ///< peak of the prefiltered kernel relative to the kernel's peak, in [0, 1]
 };
 
-/// One surfel seen by one camera: the object space EWA filter (Ren 2002, section 4), exact in perspective.
+/// The splat of one surfel in one camera: the object space EWA filter (Ren 2002, section 4), exact in perspective.
 ///
 /// Symbols: o centre, n unit normal, both in the camera frame; d = (x, y, 1) a pixel's ray; v = eta (d.xy - o.xy / o.z)
 /// the pixel's displacement from the projected centre, pixels, y up; s = sigma eta / o.z the kernel's standard
-/// deviation in pixels, were it seen from the front; rho the prefilter's standard deviation, pixels.
+/// deviation in pixels for a front-facing surfel; rho the prefilter's standard deviation, pixels.
 class Splat {
  public:
-  /// None where no pixel can see the surfel: behind the eye, or degenerate.
+  /// None if the surfel is invisible in every pixel: behind the eye, or degenerate.
   static std::optional<Splat> make(const glm::dvec3& o, const glm::dvec3& n, double radius, double eta,
                                    double prefilter, const KernelParameters& kernel);
 
   [[nodiscard]] Fragment fragment(const glm::dvec3& d) const;
-  /// The gain that a fragment would have under another prefilter, pixels.
+  /// The gain of a fragment with another prefilter; `prefilter` is its standard deviation in pixels.
   [[nodiscard]] double gain(const glm::dvec3& d, double prefilter) const;
   [[nodiscard]] bool cut(double r2) const { return !(r2 <= cutoff_); }
-  /// What the kernel is worth there, of its peak: exp(-r2 / 2), lowered so that a magnified one ends at 0.
+  /// Value of the kernel: exp(-r2 / 2), lowered by a constant so that a magnified kernel is 0 at its cutoff.
   [[nodiscard]] double kernel(double r2) const { return std::exp(-0.5 * r2) - rim_; }
   /// Whether the surfel's opaque disc covers the pixel.
   [[nodiscard]] bool opaque(const glm::dvec3& d) const;
-  /// Depth (camera z) at which a fragment is tested: the surfel's plane along the ray, yet never behind the splat's far
-  /// end, since a prefilter wider than the splat asks for the plane far beyond it.
+  /// Depth (camera z) for the depth test of a fragment: that of the surfel's plane along the ray, but at most that of
+  /// the splat's far end. Without this limit, a prefilter wider than the splat would use the plane far beyond the
+  /// splat.
   [[nodiscard]] double fragment_depth(const glm::dvec3& d) const;
-  /// Depth of the opaque disc: the plane, never in front of the splat's near end, then pushed back along the ray
-  /// (Ren 2002, section 5.1). Coplanar fragments are never behind it, whatever the slope.
+  /// Depth of the opaque disc: that of the plane, but at least that of the splat's near end, then pushed back along the
+  /// ray (Ren 2002, section 5.1). Coplanar fragments are never behind the pushed depth, at any slope.
   struct DiscDepth {
     double unpushed;
     double pushed;
@@ -83,12 +84,12 @@ class Splat {
   double cutoff_ = 0;
   double rim_ = 0;
   double extent_ = 0;       ///< radius of the splat in the tangent plane, world units
-  double depth_range_ = 0;  ///< how far the splat's rim lies before and behind its centre, camera z
+  double depth_range_ = 0;  ///< largest difference in depth between the splat's rim and its centre, camera z
   double disc_radius_ = 0;
   double disc_pixels_ = 0;
   double push_ = 0;  ///< of the opaque disc along the ray, at the centre's depth, camera z
 
-  bool reaches_eye_plane_ = false;  ///< the disc reaches the eye's plane, where nothing projects
+  bool reaches_eye_plane_ = false;  ///< the disc reaches the eye's plane, where the projection is undefined
 };
 
 }  // namespace surfcast::reference

@@ -26,7 +26,7 @@ Splat splat_at(const glm::dvec3& o, const glm::dvec3& n, double radius, double p
   return *splat;
 }
 
-/// |u|^2 / sigma^2 of the point in which the ray meets the surfel's plane.
+/// |u|^2 / sigma^2 of the intersection u of the ray with the surfel's plane.
 double object_space_r2(const glm::dvec3& o, const glm::dvec3& n, double radius, const glm::dvec3& d) {
   const glm::dvec3 unit = glm::normalize(n);
   const glm::dvec3 u = glm::dot(unit, o) / glm::dot(unit, d) * d - o;
@@ -54,7 +54,7 @@ TEST(ResamplingFilter, WithoutPrefilterIsTheKernelOnTheSurfaceForAnyTilt) {
     const glm::dvec3 o{uniform(random), uniform(random), 2.5 + uniform(random)};
     const glm::dvec3 n{uniform(random), uniform(random), uniform(random)};
     const double radius = 0.4 + 0.3 * uniform(random);
-    if (std::abs(glm::dot(glm::normalize(n), o)) < 0.05) continue;  // the closed form itself cancels there
+    if (std::abs(glm::dot(glm::normalize(n), o)) < 0.05) continue;  // cancellation in the closed form
     const glm::dvec3 d = ray_beside(o, 40 * uniform(random), 40 * uniform(random));
     if (std::abs(glm::dot(glm::normalize(n), d)) < 0.02) continue;
     const double expected = object_space_r2(o, n, radius, d);

@@ -12,7 +12,7 @@
 namespace surfcast::reference {
 namespace {
 
-constexpr size_t kNeighbours = 12;  ///< as the builder looks at
+constexpr size_t kNeighbours = 12;  ///< as in the builder
 
 }  // namespace
 

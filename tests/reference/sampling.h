@@ -9,15 +9,15 @@
 
 namespace surfcast::reference {
 
-/// A lattice of `side` x `side` samples on the square, every one moved by up to `jitter` cells along both axes.
+/// A lattice of `side` x `side` samples on the square, each moved by up to `jitter` cells along both axes.
 std::vector<SurfacePoint> jittered_square(int side, double jitter, uint32_t seed);
-/// Samples anywhere, none heeding the others: a Poisson process, with holes and clusters.
+/// Independent uniform samples (a Poisson process), with holes and clusters.
 std::vector<SurfacePoint> random_square(int count, uint32_t seed);
 std::vector<SurfacePoint> random_sphere(int count, uint32_t seed);
-/// A Fibonacci lattice on the unit sphere, every sample moved by up to `jitter` spacings along both directions.
+/// A Fibonacci lattice on the unit sphere, each sample moved by up to `jitter` spacings along both directions.
 std::vector<SurfacePoint> jittered_sphere(int count, double jitter, uint32_t seed);
 
-/// Surfels at the points: radii as the builder estimates them, oriented, without colour.
+/// Oriented surfels at the points, without colour. Radii are estimated as by the builder.
 surfel::SurfelCloud surfels_at(const std::vector<SurfacePoint>& points);
 /// The texture's 8 bit sRGB colour at every point.
 surfel::ColorAttribute sampled_colors(const std::vector<SurfacePoint>& points, const Texture& texture);

@@ -75,7 +75,7 @@ Scene scene_of(const std::vector<SurfacePoint>& points, RaySurface surface, Text
   return scene;
 }
 
-/// The point on the lower of two sheets, told apart by u in [2, 3].
+/// Moves a point to the lower of two sheets, which is identified by u in [2, 3].
 SurfacePoint lowered(SurfacePoint point, double gap) {
   point.position.z -= gap;
   point.uv.x += 2;
@@ -98,7 +98,7 @@ Scene sphere_scene(Texture texture, const geometry::Camera& camera) {
   return scene_of(jittered_sphere(kSphereCount, 0.5, 3), unit_sphere(), std::move(texture), camera);
 }
 
-/// A sheet above another of its own samples and colour, three spacings apart.
+/// Two sheets three spacings apart, each with its own samples and colour.
 Scene layers_scene(const geometry::Camera& camera) {
   const double gap = 3 * 2.0 / kPlaneSide;
   std::vector<SurfacePoint> points = jittered_square(kPlaneSide, 0.25, 1);
@@ -117,7 +117,7 @@ Scene layers_scene(const geometry::Camera& camera) {
   return scene_of(points, surface, texture, camera);
 }
 
-/// A sphere that is not known to have an outside: its far half must stay hidden all the same.
+/// A sphere without oriented normals. Its far half must be hidden nevertheless.
 Scene two_sided_sphere_scene() {
   Scene scene = sphere_scene(sphere_checker(), sphere_view());
   scene.cloud.oriented = false;
@@ -173,7 +173,7 @@ Scene make_scene(const std::string& name) {
 
 namespace {
 
-/// Filters what the analytic surface shows: `color` of the points it is hit in, `background` elsewhere.
+/// Filters the ray cast picture of the analytic surface: `color` at hit points, `background` elsewhere.
 template <typename Color>
 LinearPicture ray_cast(const Scene& scene, const glm::dvec3& background, const Color& color) {
   const auto frame = geometry::make_camera_frame(*scene.request.camera, scene.request.width, scene.request.height);

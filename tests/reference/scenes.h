@@ -11,22 +11,22 @@
 
 namespace surfcast::reference {
 
-/// A sampled surface, a view of it, and what it samples, so that the ideal picture can be computed.
+/// A sampled surface, a view of it, and the analytic surface, from which the ideal picture can be computed.
 struct Scene {
   std::string name;
   surfel::SurfelCloud cloud;
   picture::PictureRequest request;  ///< 512 x 512, per pixel normalisation, EWA
   RaySurface surface;
-  Texture texture;  ///< empty where the cloud has no colours: the surface is lit
+  Texture texture;  ///< empty if the cloud has no colours; the surface is then lit
 };
 
-/// Names of every scene, for make_scene.
+/// Names of all scenes, for make_scene.
 std::vector<std::string> scene_names();
 Scene make_scene(const std::string& name);
 
-/// The analytic surface, ray cast and filtered with the pixel prefilter in linear light, background included.
+/// The analytic surface over the background, ray cast and filtered with the pixel prefilter in linear light.
 LinearPicture ideal_picture(const Scene& scene);
-/// Share of every pixel, under the same filter, that the analytic surface covers.
+/// Coverage of every pixel by the analytic surface, with the same filter.
 std::vector<double> ideal_coverage(const Scene& scene);
 
 }  // namespace surfcast::reference

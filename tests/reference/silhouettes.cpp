@@ -6,7 +6,7 @@
 namespace surfcast::reference {
 namespace {
 
-/// Whether the inverse depth bends from one neighbour to the opposite one: on a plane it does not.
+/// Whether the inverse depth has a kink between two opposite neighbours. On a plane it is linear.
 bool bends(double before, double here, double after, double eta, double jump) {
   return std::abs(before - 2 * here + after) * eta > jump * std::max({before, here, after});
 }

@@ -8,11 +8,11 @@
 
 namespace surfcast::reference {
 
-/// Which pixels of a picture of the given width are at silhouettes, from the inverse depth of every pixel's front
-/// surface, 0 where none is. `eta`: pixels per unit of tangent.
+/// Marks the pixels at silhouettes. `fronts` are the inverse depths of the front surface in every pixel of a picture of
+/// the given width; 0 where there is none. `eta`: pixels per unit of tangent.
 std::vector<bool> silhouettes(const std::vector<double>& fronts, int width, double eta, const KernelParameters& kernel);
 
-/// Where the samples of a pixel at a silhouette lie, pixels from its centre.
+/// Positions of the samples of a pixel at a silhouette, in pixels from its centre.
 std::array<glm::dvec2, SURFCAST_SILHOUETTE_SAMPLES> silhouette_samples(const KernelParameters& kernel);
 
 }  // namespace surfcast::reference

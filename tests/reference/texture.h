@@ -16,7 +16,7 @@ Texture checker(int columns, int rows, const glm::dvec3& a, const glm::dvec3& b)
 Texture sines();
 /// White noise at the corners of `cells` x `cells` squares, interpolated bilinearly.
 Texture value_noise(int cells);
-/// Two colours that meet in a slanted straight edge through the middle.
+/// Two colours, separated by a slanted straight edge through the middle.
 Texture step_edge(const glm::dvec3& a, const glm::dvec3& b);
 
 }  // namespace surfcast::reference
