@@ -1,6 +1,6 @@
-// The same request gives the same bytes on one device, whatever was drawn before, in which order blocks arrived, and
-// how many threads there are. Sums are sums of integers and the nearest of several depths is a maximum: neither depends
-// on an order. Nothing else that a picture is made of is a race.
+// The same request gives the same bytes on one device, independently of earlier pictures, of the order in which blocks
+// arrive, and of the number of threads. Concurrent operations are sums of integers and maxima of depths, which do not
+// depend on the order. The renderer has no other concurrent writes to a picture.
 
 #include <algorithm>
 #include <array>
@@ -35,7 +35,7 @@ class DeterminismGLTest : public ::testing::Test {
     std::filesystem::remove_all(folder_);
   }
 
-  /// A fresh renderer in place of the last one.
+  /// Replaces the renderer by a new one.
   void start(const render::RendererConfig& config) {
     renderer_.reset();
     Result<std::unique_ptr<render::Renderer>> created = render::Renderer::create(config);
@@ -69,7 +69,7 @@ class DeterminismGLTest : public ::testing::Test {
   std::unique_ptr<render::Renderer> renderer_;
 };
 
-/// A model of many blocks on several levels, and views of it.
+/// A model with many blocks on several levels.
 surfel::SurfelCloud large_globe() {
   surfel::SurfelCloud cloud = fibonacci_sphere(150000, 1, {0, 0, 0}, {0, 0, 0});
   for (size_t i = 0; i < cloud.size(); ++i) cloud.colors->values[i] = glm::u16vec3(i % 256, i * 7 % 256, i * 31 % 256);
@@ -111,7 +111,7 @@ TEST_F(DeterminismGLTest, OtherProcessesAndNumbersOfThreadsDrawTheSame) {
     expected += line.data();
   }
   renderer_.reset();
-  for (const char* threads : {"0", "1", "3"}) {  // of llvmpipe; other devices have their own
+  for (const char* threads : {"0", "1", "3"}) {  // only llvmpipe reads this variable
     const client::ProgramOutcome other = client::run_program("LP_NUM_THREADS=" + std::string(threads) +
                                                              " '" SURFCAST_PRINT_HASHES "' '" + folder_.string() + "'");
     EXPECT_EQ(other.code, 0);
@@ -126,7 +126,7 @@ TEST_F(DeterminismGLTest, BlocksThatCameInAnotherOrderOrBackAgainMakeNoDifferenc
   const surfel::SurfelCloud other = fibonacci_sphere(150000, 1, {0, 0, 0}, {9, 9, 9});
   std::mt19937 random(5);
   std::uniform_real_distribution<double> angle(0, 6.28);
-  // Room for a part of either model alone, and none in host memory: every picture evicts blocks of the last ones.
+  // GPU memory holds a part of one model only, and host memory nothing, so that every picture evicts blocks.
   render::RendererConfig small;
   small.gpu_bytes = size_t{6} << 20;
   small.host_bytes = 0;
@@ -151,7 +151,7 @@ TEST_F(DeterminismGLTest, AViewThatComesToRestShowsWhatASinglePictureDoes) {
     picture::PictureRequest request = globe_view(0, 1);
     request.loading = picture::Loading::kNow;
     request.viewer = viewer;
-    // Turns towards the view, some ways off more for the second, then waits for what is still to come.
+    // Turns towards the view, from a different direction for each viewer, then waits for the remaining blocks.
     for (int k = 10; k > 0; --k) {
       request.camera = globe_view(0.3 + 0.1 * k * static_cast<double>(viewer), 1).camera;
       draw(model, request);

@@ -1,5 +1,5 @@
-// The shaders' own functions, run on the device for swept parameters, against the same formulas in double precision.
-// Differences are in units of what a picture can show: r2 within the cutoff and its weight, pixels, shares.
+// Compares the functions of the shaders, run on the device for ranges of parameters, with the same formulas in double
+// precision. Differences are in units that matter in a picture: weights within the cutoff, pixels, shares.
 
 #include <algorithm>
 #include <cmath>
@@ -19,21 +19,21 @@ namespace {
 
 constexpr double kDegree = std::numbers::pi / 180;
 
-/// A surfel, how it is seen and from which pixel, in numbers that single precision holds.
+/// A surfel, its view and a pixel, in numbers that are exact in single precision.
 struct Sighting {
   glm::vec3 o{0};
   glm::vec3 n{0};
   float radius = 0;
   glm::vec2 v{0};  ///< pixels from the projected centre, y up
   double degrees = 0;
-  double s = 0;  ///< the kernel's frontal deviation, pixels
+  double s = 0;  ///< standard deviation of the kernel seen from the front, pixels
 
   [[nodiscard]] glm::dvec3 ray(double eta) const {
     return {double{o.x} / o.z + v.x / eta, double{o.y} / o.z + v.y / eta, 1};
   }
 };
 
-/// A unit normal that faces the eye at o under so many degrees of incidence.
+/// A unit normal at o with an angle of incidence of `degrees`, facing the eye.
 glm::dvec3 normal_at(const glm::dvec3& o, double degrees, double turn) {
   const glm::dvec3 view = glm::normalize(o);
   const glm::dvec3 side = glm::normalize(glm::cross(view, glm::dvec3(0.3, 1, 0.1)));
@@ -41,7 +41,7 @@ glm::dvec3 normal_at(const glm::dvec3& o, double degrees, double turn) {
   return std::sin(degrees * kDegree) * across - std::cos(degrees * kDegree) * view;
 }
 
-/// A view: pixels per unit of tangent and how far to the side its corners are.
+/// A view: pixels per unit of tangent, and the tangent at its corners.
 struct View {
   double eta;
   double widest;
@@ -49,14 +49,14 @@ struct View {
 /// From 170 degrees to a tenth of one in a picture 8192 pixels high.
 constexpr View kViews[] = {{20, 15}, {250, 1.5}, {2000, 0.5}, {3e5, 2e-3}, {5e6, 2e-3}};
 
-/// From `least` up to `most`, each the root of ten times the one before.
+/// Values from `least` to `most`, in steps of a factor of sqrt(10).
 std::vector<double> half_decades(double least, double most) {
   std::vector<double> values{least};
   while (values.back() * std::sqrt(10.0) <= most) values.push_back(values.back() * std::sqrt(10.0));
   return values;
 }
 
-/// Surfels of s up to `most` pixels at every incidence, anywhere in the view.
+/// Surfels with s up to `most` pixels, at all angles of incidence and anywhere in the view.
 std::vector<Sighting> sweep(const View& view, double most) {
   std::mt19937 random(17);
   std::uniform_real_distribution<double> uniform(-1, 1);
@@ -100,13 +100,13 @@ class FilterGLTest : public ::testing::Test {
 
 constexpr double kPrefilters[] = {1, 1e-4};  ///< variances, pixels squared
 
-/// What the roundings of some operations do to a weight, and what turning the normal by so many radians does: edge-on,
-/// n.d is a difference of numbers as large as |d|, and no arithmetic on rounded numbers could know it better.
+/// Permitted error of a weight: the relative error of rounding, plus the effect of turning the normal by `radians`.
+/// Edge-on, n.d is a difference of numbers as large as |d|, so its error cannot be smaller with rounded inputs.
 double allowed_of(double gain, double relative, double radians, const glm::dvec3& n, const glm::dvec3& d) {
   return gain * (relative + radians * glm::length(d) / std::max(std::abs(glm::dot(n, d)), 1e-300));
 }
 
-/// The largest share of what is allowed that any case takes.
+/// The largest ratio of the error to the permitted error over all cases.
 class Worst {
  public:
   explicit Worst(std::string what) : what_(std::move(what)) {}
@@ -150,7 +150,7 @@ TEST_F(FilterGLTest, TheExactFilterHoldsAtEveryAngleAndSize) {
   }
 }
 
-/// v^T S^-1 v of the ellipse that the kernel has at the surfel's centre.
+/// v^T S^-1 v of the ellipse of the kernel at the surfel's centre.
 double ellipse_r2(const Sighting& at, double eta, double prefilter) {
   const glm::dvec3 n = glm::normalize(glm::dvec3(at.n));
   const glm::dvec2 c = glm::dvec2(at.o) / double{at.o.z};
@@ -180,9 +180,9 @@ TEST_F(FilterGLTest, SmallSplatsKeepTheirEllipseInHalfPrecision) {
       "    f = splat.factor;\n"
       "    out_[0][k + 2] = pow(f.x * d.x + f.y * d.y, 2.0) + pow(f.z * d.y, 2.0);\n"
       "  }\n";
-  // Half precision rounds each factor by 2^-11 of itself. Along the long side of an ellipse of 24 pixels that is one
-  // pixel wide, terms of 24 cancel: r is off by at most 24 2 / 2048, a weight by 1.5 %. Without prefilter an ellipse
-  // may be 0.01 pixels wide, and what is thinner than half a pixel has its brightness from luck anyway.
+  // Half precision has a relative error of 2^-11 in each factor. Along an ellipse 24 pixels long and one pixel wide,
+  // terms of size 24 cancel: the error of r is at most 24 * 2 / 2048, that of a weight 1.5 %. Without prefilter an
+  // ellipse may be 0.01 pixels wide, but the brightness of ellipses thinner than half a pixel is arbitrary anyway.
   constexpr double kHalf[] = {0.015, 0.1};
   for (const View& view : kViews) {
     const std::vector<Sighting> all = sweep(view, std::min(8.0, 0.2 * view.eta));
@@ -199,7 +199,7 @@ TEST_F(FilterGLTest, SmallSplatsKeepTheirEllipseInHalfPrecision) {
   }
 }
 
-/// Bounds on rays of the projected disc, from points on its rim.
+/// Bounds of the projected disc in d.xy, from points on its rim.
 struct DiscBounds {
   glm::dvec2 low{1e300};
   glm::dvec2 high{-1e300};
@@ -235,8 +235,8 @@ TEST_F(FilterGLTest, BoundsOfProjectedDiscsTouchTheirRims) {
       const glm::dvec2 off = glm::max(glm::abs(glm::dvec2(out[i].x, out[i].y) - expected.low),
                                       glm::abs(glm::dvec2(out[i].z, out[i].w) - expected.high));
       const glm::dvec2 size = expected.high - expected.low;
-      // Pixels: the rim between two of its points; single precision of a place that many pixels from the middle, and of
-      // the disc's slant, whose square root is taken edge-on.
+      // Sum of the errors in pixels: of the rim between two of its points, of single precision at this distance from
+      // the centre, and of the disc's slant, which is a square root that is inaccurate edge-on.
       const double allowed =
           view.eta * (2e-5 * std::max(size.x, size.y) + 1e-6 * view.widest + 1e-4 * extent / all[i].o.z) + 1e-3;
       worst.expect(view.eta * std::max(off.x, off.y), allowed, all[i]);
@@ -274,7 +274,7 @@ TEST_F(FilterGLTest, SumsOfManyTermsLoseLessThanTheirLastBits) {
   ASSERT_EQ(out.size(), 1U);
   double exact = 0;
   for (uint32_t i = 0; i < kTerms; ++i) exact += term(i);
-  // Every term is cut to the unit, 2^-24 of the largest; the whole is rounded to single precision once.
+  // Every term is truncated to the unit, 2^-24 of the largest term; the sum is rounded to single precision once.
   EXPECT_NEAR(out[0].x, exact, kTerms / double{out[0].y} + 2e-7 * exact);
 }
 

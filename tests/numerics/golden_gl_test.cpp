@@ -1,11 +1,11 @@
-// Pictures that were looked at once and kept in tests/data/golden, so that a change of what is drawn is seen and
-// wanted.
+// Golden pictures: inspected once and stored in tests/data/golden, so that every change of a picture is noticed.
 //
-// On the device that DEVICE.txt there names (renderer and version strings of GL: another Mesa, or another width of the
-// processor's vectors, is another device) they must come out to the bit; on any other within a tolerance.
+// The file DEVICE.txt there names a device by GL's renderer and version strings. Another Mesa version or vector width
+// of the processor counts as another device. On the named device the pictures must be equal to the bit, on other
+// devices within a tolerance.
 //
-// What was drawn is left in the folder `golden` of the working directory. After a change that is wanted, look at it and
-// take it over, on software GL of the Debian release that the project is built on:
+// The test writes its pictures to the folder `golden` of the working directory. After an intended change, inspect them
+// and copy them, on software GL of the Debian release on which the project is built:
 //     ctest --test-dir build -R golden_gl_test; cp build/tests/numerics/golden/* tests/data/golden/
 
 #include <cmath>
@@ -28,9 +28,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// A device rounds as it likes, and a fragment at its cutoff may fall on either side. llvmpipe without AVX and FMA
-/// differs in a single picture, by 94 dB; a picture whose fragments at the cutoff all fell on the other side would be
-/// at 45.
+/// Tolerance for other devices, as PSNR. Rounding differs between devices, and a fragment at its cutoff may be accepted
+/// or rejected. llvmpipe without AVX and FMA differs in one picture only, with 94 dB. If all fragments at the cutoff
+/// were decided the other way, a picture would have 45 dB.
 constexpr double kTolerance = 50;  // dB
 
 std::string text_of(const fs::path& path) {
@@ -40,7 +40,7 @@ std::string text_of(const fs::path& path) {
   return text.str();
 }
 
-/// The picture, and to its right its coverage in grey: PNG files here have no alpha.
+/// The picture with its coverage in grey at its right, because the PNG files have no alpha channel.
 picture::Image with_coverage(const picture::Image& image) {
   picture::Image both{2 * image.width, image.height, image.format, {}};
   both.pixels.resize(2 * image.pixels.size());
@@ -58,7 +58,7 @@ picture::Image with_coverage(const picture::Image& image) {
   return both;
 }
 
-/// Levels of red, green and blue of a PNG file; none if it cannot be read.
+/// The RGB levels of a PNG file; empty if it cannot be read.
 std::vector<uint8_t> levels_of(const fs::path& path) {
   const auto input = OIIO::ImageInput::open(path.string());
   if (!input) return {};

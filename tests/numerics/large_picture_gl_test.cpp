@@ -1,4 +1,4 @@
-// The largest pictures, in parts: all of one would take the reference minutes.
+// Compares parts of the largest pictures, because the reference would need minutes for a whole one.
 
 #include "numerics/numerics_fixture.h"
 #include "support/clouds.h"
@@ -15,7 +15,7 @@ TEST_F(NumericsGLTest, APictureOf8192PixelsSquare) {
   request.width = request.height = 8192;
   request.format = picture::PixelFormat::kLinearFloat;
   const picture::Image image = draw(model, request).image;
-  // Corners, borders of regions, and the middle.
+  // Corners, region borders, and the centre.
   const reference::Window windows[] = {
       {0, 0, 64, 64}, {8128, 8128, 64, 64}, {2016, 2016, 64, 64}, {4064, 4064, 64, 64}, {6112, 3000, 64, 64}};
   for (const reference::Window& window : windows) {

@@ -41,7 +41,7 @@ Difference NumericsGLTest::difference(const std::string& what, const picture::Im
       const glm::dvec4 actual = drawn_light(image, window, x, y);
       const glm::dvec3 d = glm::abs(glm::dvec3(actual) - expected.picture.pixels[place]);
       const double largest = std::max({d.x, d.y, d.z});
-      // Written so that what is no number stays none.
+      // The comparisons are written so that NaN is kept.
       found.worst = largest <= found.worst ? found.worst : largest;
       const double coverage = std::abs(actual.a - expected.coverage[place]);
       found.coverage = coverage <= found.coverage ? found.coverage : coverage;

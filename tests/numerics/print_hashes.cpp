@@ -1,4 +1,5 @@
-// Draws all sample pictures in the folder given, and prints what stands for their bytes: what another process draws.
+// Draws all sample pictures, with models in the given folder, and prints their hashes, so that a test can compare the
+// pictures of another process.
 
 #include <cstdio>
 #include <filesystem>

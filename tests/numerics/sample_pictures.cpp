@@ -16,7 +16,7 @@ picture::PictureRequest view_from(const glm::dvec3& eye, const glm::dvec3& targe
   return request;
 }
 
-/// Coloured by longitude and latitude, so that pictures compress and faults show.
+/// A sphere coloured by longitude and latitude, so that pictures compress well and errors are visible.
 surfel::SurfelCloud globe(size_t surfels) {
   surfel::SurfelCloud cloud = fibonacci_sphere(surfels, 1, {0, 0, 0}, {0, 0, 0});
   for (size_t i = 0; i < cloud.size(); ++i) {

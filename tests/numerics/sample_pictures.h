@@ -15,11 +15,11 @@ struct SamplePicture {
   picture::PictureRequest request;
 };
 
-/// One for every way of drawing: small and large splats, astride the eye's plane, crowded tiles, merged levels, several
-/// layers, normalisations, light, silhouettes, eye-dome lighting.
+/// One picture for every code path of the renderer: small and large splats, splats across the eye's plane, overflowing
+/// tiles, mixed levels, several layers, normalisations, lighting, silhouettes, eye-dome lighting.
 std::vector<SamplePicture> sample_pictures();
 
-/// A number that stands for the bytes of a picture (FNV-1a).
+/// Hash of the bytes of a picture (FNV-1a).
 uint64_t hash_of(const picture::Image& image);
 
 }  // namespace surfcast::testing

@@ -1,4 +1,4 @@
-// Scans that hold what is no surface, from the file to the picture.
+// Scans with invalid or degenerate points, from the file to the picture.
 
 #include <array>
 #include <cmath>
@@ -20,7 +20,7 @@ struct TextScan {
   std::string text = "x y z nx ny nz radius red green blue\n";
 
   void add(const std::string& row) { text += row + '\n'; }
-  /// A square of 20 x 20 points a unit apart, facing z; `row_of` says what the file has of each.
+  /// Adds a square of 20 x 20 points with a spacing of 1, facing z. `row_of` gives the row of each point.
   template <typename RowOf>
   void add_square(const RowOf& row_of) {
     for (int y = 0; y < 20; ++y) {
@@ -37,7 +37,7 @@ class ScanGLTest : public NumericsGLTest {
     return builder::build_model(std::span(&path, 1), folder_ / "scan.surf", {}, [](const builder::BuildStep&) {});
   }
 
-  /// Builds the scan, draws all of it and compares with the reference; the points that are left.
+  /// Builds a model of the scan, draws it and compares the picture with the reference. Returns the number of surfels.
   uint64_t surfels_of(const std::string& what, const TextScan& scan, const Difference& bound = kSplats) {
     const Result<builder::BuildReport> built = build(scan);
     EXPECT_TRUE(built) << (built ? "" : built.error().message);

@@ -1,4 +1,5 @@
-// Scenes of unlike scales, far origins, wide and narrow views, against the double precision reference.
+// Scenes with very different scales, distant origins, and wide and narrow views, against the double precision
+// reference.
 
 #include <algorithm>
 #include <cmath>
@@ -28,14 +29,14 @@ surfel::SurfelCloud motley_square(int side, double extent, const glm::dvec3& cen
 }
 
 TEST_F(NumericsGLTest, AMillionSurfelsInOnePixel) {
-  // The sphere's diameter is 0.6 pixels, of which up to 9 % are covered. Some 3000 of the million are drawn, each
-  // standing for 330: their sum has a standard deviation of 2 % of that.
+  // The sphere's diameter is 0.6 pixels, and the coverage of a pixel is at most 9 %. About 3000 of the million surfels
+  // are drawn, each in place of 330, so that the standard deviation of their sum is 2 %.
   const ModelPointer& model = model_of(fibonacci_sphere(1000000, 1e-3, {0, 0, 0}, {200, 90, 20}));
   expect_within(difference("a million in a pixel", model, view_from({0, 0, 0.2}, {0, 0, 0}, 30, 33, 33)),
                 {5e-4, 3e-3, 3e-3});
 }
 
-/// A square of `side` spacings of 1, and before it one of `fine` spacings of a millionth.
+/// A square of `side` x `side` surfels with a spacing of 1, and in front of it one of `fine` x `fine` with 1e-6.
 surfel::SurfelCloud spacings_a_million_times_apart(int side, int fine, const glm::dvec3& at) {
   surfel::SurfelCloud cloud = motley_square(side, side, {0, 0, 0}, {0, 0, 1});
   append(cloud, motley_square(fine, 1e-6 * fine, at, {0, 0, 1}));
@@ -52,7 +53,7 @@ TEST_F(NumericsGLTest, SpacingsAMillionTimesApart) {
 }
 
 TEST_F(NumericsGLTest, AFewFineSurfelsAmongCoarseOnes) {
-  // So few that nothing but their spacing asks for a block of their own.
+  // Few surfels, so that only their spacing is a reason for a separate block.
   const glm::dvec3 at(0.31, 0.17, 3);
   const ModelPointer& model = model_of(spacings_a_million_times_apart(40, 30, at));
   const picture::PictureRequest request = view_from(at + glm::dvec3(0, 0, 4e-5), at, 40, 160, 120);
@@ -71,7 +72,7 @@ TEST_F(NumericsGLTest, MillimetresAtMapCoordinates) {
 TEST_F(NumericsGLTest, FieldsOfViewFromATenthOfADegreeTo170) {
   const ModelPointer& model = model_of(motley_square(100, 1, {0, 0, 0}, {0.5, 0.2, 1}));
   for (const double angle : {0.1, 1.0, 30.0, 90.0, 150.0, 170.0}) {
-    // So far away that the square spans two thirds of the picture, yet never within its own plane.
+    // At this distance the square spans two thirds of the picture; the minimum keeps the eye away from its plane.
     const double distance = std::max(0.75 / std::tan(0.5 * angle * kDegree), 0.3);
     const picture::PictureRequest request = view_from({0, 0, distance}, {0, 0, 0}, angle, 320, 240);
     expect_within(difference("field of view " + std::to_string(angle), model, request), kSplats);
@@ -86,7 +87,7 @@ TEST_F(NumericsGLTest, AFieldOfViewOfATenthOfADegreeInAHighPicture) {
 }
 
 TEST_F(NumericsGLTest, DepthsABillionTimesApart) {
-  // Squares that look alike from the eye, the last a billion times as far away as the first, each to one side.
+  // Squares of equal apparent size, side by side; the last is a billion times as far away as the first.
   surfel::SurfelCloud cloud = motley_square(30, 0.3, {-0.5, 0, -1}, {0, 0, 1});
   for (const double depth : {1e3, 1e6, 1e9}) {
     const double side = 0.25 * (std::log10(depth) / 3 - 1);
@@ -104,7 +105,7 @@ TEST_F(NumericsGLTest, NearSurfacesHideWhatIsABillionTimesAsFar) {
 }
 
 TEST_F(NumericsGLTest, SilhouettesOfSmallAndLargeSplatsInOnePicture) {
-  // Of one spacing; the first square is so near that each of its surfels spans many pixels.
+  // Both squares have the same spacing. The first one is so near that each of its surfels spans many pixels.
   surfel::SurfelCloud cloud = motley_square(5, 0.1, {0.02, 0, 1}, {0.3, 0.2, 1});
   append(cloud, motley_square(100, 2, {0, 0, 0}, {0, 0.1, 1}));
   const ModelPointer& model = model_of(cloud);

@@ -14,13 +14,13 @@ namespace surfcast::testing {
 
 /// Runs shader functions on the device, one invocation for each case.
 ///
-/// A body is GLSL that sees `in_[k]`, the case's vec4 numbers k, and sets `out_[k]`; all of the filter's functions and
-/// the frame's constants are there for it.
+/// A body is GLSL code that reads `in_[k]`, the vec4 inputs of the case, and sets `out_[k]`. It can use all functions
+/// of the filter and the constants of the frame.
 class ShaderBench {
  public:
   ShaderBench();
 
-  /// `inputs` holds `ins` vectors for each case; the answer `outs` for each.
+  /// `inputs` has `ins` vectors per case; the result has `outs` vectors per case.
   std::vector<glm::vec4> run(const std::string& body, const layout::FrameConstants& frame, int ins, int outs,
                              std::span<const glm::vec4> inputs);
 
@@ -28,7 +28,7 @@ class ShaderBench {
   std::unique_ptr<gl::EglContext> context_;
 };
 
-/// Constants of a frame of that eta and size; all else is zero.
+/// Frame constants with this eta and size; all other values are zero.
 layout::FrameConstants frame_of(float eta, float width, float height);
 
 }  // namespace surfcast::testing

@@ -1,4 +1,4 @@
-// Surfels that are hard to draw one by one, against the double precision reference.
+// Single surfels in numerically difficult views, against the double precision reference.
 
 #include <cmath>
 #include <numbers>
@@ -20,22 +20,22 @@ picture::PictureRequest view_from(const glm::dvec3& eye, const glm::dvec3& targe
   return request;
 }
 
-/// The eye sees the plane z = 0 under so many degrees from its normal.
+/// A view of the plane z = 0 at `degrees` from its normal.
 picture::PictureRequest view_at_incidence(double degrees, double distance) {
   const double angle = degrees * kDegree;
   return view_from(distance * glm::dvec3(std::sin(angle) * 0.6, std::sin(angle) * 0.8, std::cos(angle)), {0, 0, 0}, 30,
                    160, 120);
 }
 
-/// What is left of a surfel edge-on, which covers a millionth of a pixel at last, is right to a hundredth of itself.
+/// The coverage of an edge-on surfel, down to a millionth of a pixel, must have a relative error of at most 1 %.
 void expect_edge_on(const Difference& difference) {
   EXPECT_LE(difference.coverage, 0.01 * difference.peak);
 }
 
 TEST_F(NumericsGLTest, AMinifiedSurfelEdgeOn) {
   const ModelPointer& model = model_of(single_surfel({0, 0, 0}, {0, 0, 1}, 0.004F, {230, 140, 60}));
-  // s = 0.34 pixels. A small splat has the gain of its centre, s^2 |n.d|, which goes to nothing as it should; that of a
-  // pixel beside it does not, as |n.d| grows by 1 / eta with every pixel (eta = 224), up to 2.2 of them.
+  // s = 0.34 pixels. A small splat uses the gain at its centre, s^2 |n.d|, which correctly tends to 0. The gain of a
+  // neighbouring pixel does not, because |n.d| grows by 1 / eta per pixel (eta = 224), over up to 2.2 pixels.
   const double most = 0.34 * 0.34 * 2.2 / 224;
   for (const double degrees : {89.0, 89.9, 89.99, 89.999, 89.9999}) {
     expect_within(difference("minified surfel at " + std::to_string(degrees), model, view_at_incidence(degrees, 1)),
@@ -63,10 +63,10 @@ TEST_F(NumericsGLTest, ALargeSurfelEdgeOn) {
   }
 }
 
-/// A small splat has the gain of its centre, s^2 |n.d| / rho^2 where the prefilter rules. Edge-on, |n.d| is smaller
-/// than 1 / eta, what it changes by from one row of pixels to the next: the rows beside the plane's line get up to a
-/// quarter less coverage than from the gain of each pixel, which sees a surface where there is only its edge. Nothing
-/// but these rows differs, so the mean stays small.
+/// A small splat uses the gain at its centre, s^2 |n.d| / rho^2 where the prefilter dominates. Edge-on, |n.d| is
+/// smaller than 1 / eta, its change from one row of pixels to the next. The rows next to the plane's line therefore get
+/// up to a quarter less coverage than with the gain of each pixel, which assumes a surface where there is only its
+/// edge. Other rows do not differ, so the mean stays small.
 constexpr Difference kSmallEdgeOn{1e-2, 0.1, 0.3};
 
 TEST_F(NumericsGLTest, APlaneEdgeOn) {
@@ -105,7 +105,7 @@ TEST_F(NumericsGLTest, OneSurfelOverTheWholeScreen) {
 }
 
 TEST_F(NumericsGLTest, EqualAndNearlyEqualEigenvalues) {
-  // Seen from straight above the ellipse is a circle; Ren's appendix A divides by the difference of its axes.
+  // Seen from straight above, the ellipse is a circle. Appendix A of Ren 2002 divides by the difference of its axes.
   const ModelPointer& model = model_of(single_surfel({0, 0, 0}, {0, 0, 1}, 0.03F, {230, 140, 60}));
   for (const double degrees : {0.0, 1e-7, 1e-5, 1e-3, 0.1}) {
     expect_within(difference("circle tilted by " + std::to_string(degrees), model, view_at_incidence(degrees, 1)),
