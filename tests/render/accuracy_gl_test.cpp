@@ -1,5 +1,5 @@
-// The renderer against the double precision reference of the same model, and against ideal pictures of the surface
-// that was sampled. A failing case leaves its pictures in the folder `accuracy_failures` of the working directory.
+// Compares the renderer with the double precision reference of the same model, and with ideal pictures of the sampled
+// surface. A failing case writes its pictures to the folder `accuracy_failures` of the working directory.
 
 #include <algorithm>
 #include <filesystem>
@@ -25,7 +25,7 @@ using reference::Scene;
 using reference::SrgbPicture;
 using testing::decoded_cloud;
 
-/// What the renderer drew: colours, and the coverage of every pixel.
+/// A picture of the renderer: colours, and the coverage of every pixel.
 struct DrawnPicture {
   SrgbPicture colors;
   std::vector<uint8_t> coverage;
@@ -83,7 +83,7 @@ class AccuracyGLTest : public ::testing::Test {
     return frame ? drawn_picture(frame->image) : DrawnPicture{};
   }
 
-  /// Draws a scene from a model of its own.
+  /// Draws a scene from a temporary model.
   static DrawnPicture draw(const Scene& scene) {
     const auto model = model_of(scene);
     DrawnPicture drawn = draw(model, scene.request);
@@ -99,7 +99,7 @@ class AccuracyGLTest : public ::testing::Test {
     reference::write_ppm(folder / (name + ".difference.ppm"), reference::difference(expected, actual, 8));
   }
 
-  /// Pixels that the reference covers and the renderer leaves to the background.
+  /// Number of pixels that are fully covered in the reference and not covered in the renderer's picture.
   static size_t holes(const reference::ReferencePicture& expected, const DrawnPicture& actual) {
     size_t count = 0;
     for (size_t i = 0; i < actual.coverage.size(); ++i) {
@@ -152,7 +152,7 @@ class IdealGLTest : public AccuracyGLTest, public ::testing::WithParamInterface<
 
 TEST_P(IdealGLTest, ComesNearTheIdealPicture) {
   Scene scene = reference::make_scene(GetParam().scene);
-  scene.request.silhouettes = true;  // as a picture at rest
+  scene.request.silhouettes = true;  // as in a picture at rest
   const SrgbPicture ideal = encode(reference::ideal_picture(scene));
   const SrgbPicture actual = draw(scene).colors;
   const double reached = psnr(actual, ideal);

@@ -5,7 +5,7 @@
 namespace surfcast::render {
 namespace {
 
-/// Batches of a pass whose groups take so long each.
+/// A sizer after `batches` batches whose groups take `ms_per_group` each.
 BatchSizer after(int batches, double ms_per_group) {
   BatchSizer sizer;
   for (int i = 0; i < batches; ++i) sizer.record(sizer.groups(), static_cast<double>(sizer.groups()) * ms_per_group);

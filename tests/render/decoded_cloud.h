@@ -7,7 +7,7 @@
 
 namespace surfcast::testing {
 
-/// The surfels of the finest level as they come out of the file: what the reference must draw.
+/// The surfels of the finest level as decoded from the file, for the reference renderer.
 inline surfel::SurfelCloud decoded_cloud(const model::ModelFile& model) {
   surfel::SurfelCloud cloud;
   cloud.oriented = model.info().oriented;

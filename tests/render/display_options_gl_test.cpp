@@ -1,4 +1,4 @@
-// What the options of a picture do to it, on scenes simple enough to know.
+// The effects of display options, on scenes with known pictures.
 
 #include <cmath>
 #include <set>
@@ -22,7 +22,7 @@ picture::PictureRequest front_view(int width, int height, const glm::dvec3& cent
   return request;
 }
 
-/// A white square of 2 x 2 whose left half is class 2 with intensity 1000, the right class 6 with 3000.
+/// A white square of 2 x 2. Its left half has class 2 and intensity 1000, its right half class 6 and intensity 3000.
 surfel::SurfelCloud two_classes(const glm::dvec3& centre = {0, 0, 0}) {
   surfel::SurfelCloud cloud = testing::square(100, 2, centre, {0, 0, 1}, {255, 255, 255});
   std::vector<uint8_t> classes;
@@ -90,7 +90,7 @@ TEST_F(DisplayOptionsGLTest, NormalsAreShownAsTheirAxes) {
 }
 
 TEST_F(DisplayOptionsGLTest, HiddenClassesTakePartInNothing) {
-  // What is behind a hidden surface is seen as if nothing were before it.
+  // A surface behind a hidden one is drawn as if the hidden one did not exist.
   surfel::SurfelCloud back = testing::square(100, 2, {0, 0, -0.5}, {0, 0, 1}, {10, 200, 30});
   surfel::SurfelCloud cloud = back;
   testing::append(cloud, testing::square(100, 2, {0, 0, 0}, {0, 0, 1}, {200, 10, 30}));
@@ -159,7 +159,7 @@ TEST_F(DisplayOptionsGLTest, AClipPlaneThroughUtmCoordinatesCutsBetweenTwoCentim
   std::set<double> columns;
   for (const glm::dvec3& p : cloud.positions) columns.insert(p.x);
   ASSERT_EQ(columns.size(), 200u);
-  // Each plane through a column of points keeps that column; half a step on it does not.
+  // A clip plane exactly through a column of points keeps the column; half a step further it does not.
   size_t left = 0;
   for (const double x : columns) {
     ++left;
@@ -239,7 +239,7 @@ TEST_F(DisplayOptionsGLTest, EyeDomeLightingHasNoSeamsBetweenRegions) {
   wide.camera->view_angle = 2;
   wide.eye_dome = {1, 6};
   const picture::Image large = draw(model, wide).image;
-  // The middle half of the wide picture, across its border between regions at 2032, in one region.
+  // The middle half of the wide picture in one region. The wide picture has a region border at 2032.
   picture::PictureRequest narrow = wide;
   narrow.width = 2032;
   const picture::Image small = draw(model, narrow).image;

@@ -101,14 +101,14 @@ TEST(DisplayOptions, HiddenClassesAreBitsByCode) {
   }
 }
 
-/// A block of survey data in UTM coordinates: centimetres that no double holds exactly.
+/// A block of survey data in UTM coordinates with centimetres, which are not exact in double precision.
 residency::ResidentBlock utm_block() {
   residency::ResidentBlock block;
   block.lattice = {{{0.01, 0.01, 0.01}, {400000, 5000000, 0}}, {4826231, 41193267, 31245}, {0, 0, 0}, {999, 999, 99}};
   return block;
 }
 
-/// Whether the shader would show a code, by the ranges that it gets.
+/// Whether the shader shows a code with these clip ranges.
 bool shown(const layout::BlockDisplay& display, const std::vector<layout::ClipRange>& ranges, const glm::uvec3& code) {
   const auto in_any = [&](int first, int count) {
     for (int i = first; i < first + count; ++i) {
@@ -141,7 +141,7 @@ void expect_same_as_clip(const geometry::Clip& clip) {
 TEST(DisplayOptions, ClipBoxesCutAtEveryPointOfAUtmLatticeExactly) {
   const residency::ResidentBlock block = utm_block();
   const auto at = [&](uint32_t x, uint32_t y, uint32_t z) { return block.lattice.position({x, y, z}); };
-  // Faces right on points, one bit beside them, and between them.
+  // Faces exactly on points, one bit beside them, and between them.
   const glm::dvec3 low = at(100, 0, 17);
   const glm::dvec3 high = at(700, 999, 50);
   const double above = std::nextafter(low.x, 1e9);
@@ -163,7 +163,7 @@ TEST(DisplayOptions, ABlockOutsideOfAllBoxesShowsNothingAndOneWithinAsksNothing)
   const glm::dvec3 first = block.lattice.position({0, 0, 0});
   const layout::BlockDisplay out = block_display(display, {{{first - 9.0, first - 1.0}}, {}}, block, ranges);
   EXPECT_FALSE(shown(out, ranges, {0, 0, 0}));
-  // Between two lattice points lies no code either.
+  // There is no code between two lattice points either.
   const layout::BlockDisplay between = block_display(display, {{{first + 0.002, first + 0.008}}, {}}, block, ranges);
   EXPECT_FALSE(shown(between, ranges, {0, 0, 0}) || shown(between, ranges, {1, 1, 1}));
   ranges.clear();

@@ -18,7 +18,7 @@ namespace surfcast::testing {
 
 using ModelPointer = std::shared_ptr<const model::ModelFile>;
 
-/// One renderer for all cases of a program: shaders compile once. Models go through a file, as they do in use.
+/// One renderer for all cases of a program, so that shaders compile once. Models are written to a file and read back.
 class RendererFixture : public ::testing::Test {
  protected:
   static void SetUpTestSuite() {
@@ -38,7 +38,7 @@ class RendererFixture : public ::testing::Test {
     if (model_) renderer_->release_model(*model_);
   }
 
-  /// The model of a cloud, until the next call.
+  /// The model of a cloud. It is released by the next call.
   const ModelPointer& model_of(const surfel::SurfelCloud& cloud) {
     if (model_) renderer_->release_model(*model_);
     const std::filesystem::path path = folder_ / "scene.surf";

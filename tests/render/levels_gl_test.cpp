@@ -1,4 +1,4 @@
-// Pictures of blocks of unlike levels: what is seen must not depend on where one block ends and another begins.
+// Pictures with blocks of different levels: block boundaries must be invisible.
 
 #include <algorithm>
 #include <cmath>
@@ -19,7 +19,7 @@ class LevelsGLTest : public testing::RendererFixture {
         std::ranges::count_if(frame.stats.levels, [](const picture::LevelStats& level) { return level.drawn > 0; }));
   }
 
-  /// Pixels that the finest level covers wholly, as do all pixels up to three away: not the model's border.
+  /// Marks the pixels whose neighbourhood of three pixels is fully covered by the finest level: the model's interior.
   static std::vector<bool> interior(const picture::Image& image) {
     constexpr int kBorder = 3;
     std::vector<bool> inside(static_cast<size_t>(image.width) * static_cast<size_t>(image.height));
@@ -35,8 +35,8 @@ class LevelsGLTest : public testing::RendererFixture {
     return inside;
   }
 
-  /// Draws the one-coloured model at spacings at which its levels mix, under both normalisations: within the model
-  /// every pixel has that colour, as at the finest level.
+  /// Draws a model of one colour at spacings that mix its levels, with both normalisations. In the model's interior
+  /// every pixel must have this colour, as at the finest level.
   static void expect_no_seams(const testing::ModelPointer& model, picture::PictureRequest request,
                               std::initializer_list<double> spacings) {
     request.spacing = 0;
@@ -93,7 +93,7 @@ TEST_F(LevelsGLTest, ASphereHasNoSeams) {
   expect_no_seams(model, request, {1, 1.5, 2, 3, 4, 6});
 }
 
-/// Draws with a renderer of its own, on a thread of its own: a thread has one GL context.
+/// Draws with a separate renderer on a separate thread, because a thread has only one GL context.
 Result<picture::Frame> draw_within(size_t gpu_bytes, const testing::ModelPointer& model,
                                    const picture::PictureRequest& request) {
   return std::async(std::launch::async,
@@ -148,7 +148,7 @@ TEST_F(LevelsGLTest, ASwitchOfLevelsIsNoMoreToSeeThanAStepOfTheCamera) {
     request.spacing = 1;
     return draw(model, request);
   };
-  // The distance at which the last block of the finest level goes.
+  // Bisection of the distance at which the last block of the finest level disappears.
   double near = 2;
   double far = 40;
   ASSERT_EQ(at(near).stats.levels.front().level, 0);
@@ -157,7 +157,7 @@ TEST_F(LevelsGLTest, ASwitchOfLevelsIsNoMoreToSeeThanAStepOfTheCamera) {
     const double middle = 0.5 * (near + far);
     (at(middle).stats.levels.front().level == 0 ? near : far) = middle;
   }
-  // A frame of a slow movement: a seventh of the distance in a second, at 30 frames.
+  // The step of one frame of a slow movement: a seventh of the distance per second, at 30 frames per second.
   const double step = 0.005 * near;
   const double across = rms(at(near - step / 2).image, at(far + step / 2).image);
   const double before = rms(at(near - 1.5 * step).image, at(near - step / 2).image);

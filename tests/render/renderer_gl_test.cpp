@@ -1,4 +1,4 @@
-// What a picture must be, on scenes simple enough to know.
+// Properties of pictures, on scenes with known results.
 
 #include <chrono>
 #include <cmath>
@@ -22,7 +22,7 @@ picture::PictureRequest front_view(int width, int height, double distance = 5) {
   return request;
 }
 
-/// Pixels whose coverage is whole, each of which must be `color` within `levels`.
+/// Counts the fully covered pixels. Each of them must have `color` within `levels`.
 int count_covered(const picture::Image& image, const glm::u8vec3& color, int levels) {
   int covered = 0;
   int wrong = 0;
@@ -77,7 +77,7 @@ TEST_F(RendererGLTest, TheSameRequestGivesTheSameBytes) {
   EXPECT_EQ(draw(model, front_view(300, 200)).image.pixels, first.image.pixels) << "after loading it again";
 }
 
-/// A cloud in many colours, with attributes and normals in all directions.
+/// A sphere in many colours, with attributes.
 surfel::SurfelCloud motley_sphere() {
   surfel::SurfelCloud cloud = testing::fibonacci_sphere(60000, 1, {0, 0, 0}, {200, 90, 20});
   for (size_t i = 0; i < cloud.size(); ++i) cloud.colors->values[i] = glm::u16vec3(i % 256, i * 7 % 256, i * 31 % 256);
@@ -179,13 +179,13 @@ TEST_F(RendererGLTest, AMillionSurfelsInOnePixelKeepTheirColor) {
   picture::PictureRequest request = front_view(33, 33, 1);
   request.format = picture::PixelFormat::kLinearFloat;
   request.background = {0, 0, 0};
-  // The sphere's diameter is about a tenth of a pixel, so that the middle pixel is covered by a small, known part:
-  // area times the peak of the prefilter over the coverage that counts as whole.
+  // The sphere's diameter is about a tenth of a pixel, so that the coverage of the middle pixel is small and known: the
+  // area times the peak of the prefilter, divided by the weight that counts as full coverage.
   const picture::Image image = draw(model, request).image;
   const glm::vec4 p = light(image, 16, 16);
   const double eta = 33 / (2 * std::tan(std::numbers::pi / 12));
   const double area = std::numbers::pi * std::pow(eta * 1e-3, 2);
-  // Kernels as small as these have no gain left; even_weight times their sum is the covered area.
+  // The gain of such small kernels is negligible; even_weight times their sum is the covered area.
   const double peak = 1 / (2 * std::numbers::pi);
   EXPECT_NEAR(p.a / (area * peak / SURFCAST_COVERAGE_MINIFIED), 1, 0.05) << "a fair sample of the million";
   // 200, 90, 20 in linear light, blended over black.
@@ -204,7 +204,7 @@ TEST_F(RendererGLTest, CoincidentSurfelsAreOne) {
 }
 
 TEST_F(RendererGLTest, EdgeOnSurfelsStayFiniteAndSmall) {
-  // A surfel of 20 pixels radius in a sweep from 89 to 89.9999 degrees: a line at most a few pixels thick.
+  // A surfel with a radius of 20 pixels at 89 to 90 degrees: a line at most a few pixels thick.
   for (const double degrees : {89.0, 89.9, 89.99, 89.999, 89.9999, 90.0}) {
     const double angle = degrees * std::numbers::pi / 180;
     surfel::SurfelCloud cloud =
@@ -234,7 +234,7 @@ TEST_F(RendererGLTest, MapCoordinatesAndMillimetresDrawAsAtTheOrigin) {
   request.camera->focal_point += far_away;
   const picture::Image moved =
       draw(model_of(testing::square(100, 0.001, far_away, {0, 0.3, 1}, {200, 90, 20})), request).image;
-  // Coordinates of 5e6 keep nanometres in double precision: a ten thousandth of the spacing.
+  // Coordinates of 5e6 have a resolution of nanometres in double precision: a ten thousandth of the spacing.
   int differing = 0;
   for (int y = 0; y < 128; ++y) {
     for (int x = 0; x < 128; ++x) {
@@ -270,7 +270,7 @@ TEST_F(RendererGLTest, WithoutColorASurfaceIsLitFromTheEye) {
   const testing::ModelPointer& model = model_of(cloud);
   const picture::Image image = draw(model, request).image;
   EXPECT_NEAR(light(image, 128, 128).r, 0.8, 0.005) << "albedo 0.8, seen from straight above";
-  // Half way out on the disc: the angle of incidence follows from the sphere's geometry.
+  // Halfway between centre and edge, the angle of incidence follows from the sphere's geometry.
   const double eta = 256 / (2 * std::tan(std::numbers::pi / 12));
   const double ray = 48.5 / eta;
   const double cosine_view = 1 / std::sqrt(1 + ray * ray);
@@ -296,9 +296,8 @@ TEST_F(RendererGLTest, PicturesOfOnePixelAndOfSeveralRegionsAreDrawn) {
   picture::PictureRequest wide = front_view(4100, 20, 20);
   wide.camera->view_angle = 0.9;
   const picture::Image image = draw(model, wide).image;
-  // The plane spans 4 / (20 * 2 tan(0.45 degrees)) of the height: all of the rows, and 255 columns about the middle.
-  // Radii that a scan states are kept at its borders, too, where kernels then reach up to half a spacing of 5 columns
-  // beyond.
+  // The plane spans 4 / (20 * 2 tan(0.45 degrees)) of the height: all rows, and 255 columns around the middle. Stated
+  // radii are kept at the borders, too, where kernels extend by up to half a spacing of 5 columns.
   EXPECT_NEAR(count_covered(image, {200, 90, 20}, 1), 255 * 20, 5 * 20);
   EXPECT_EQ(pixel(image, 2050, 10).a, 255) << "beyond the first region's edge at 2048";
 }
@@ -306,7 +305,7 @@ TEST_F(RendererGLTest, PicturesOfOnePixelAndOfSeveralRegionsAreDrawn) {
 TEST_F(RendererGLTest, AModelThatTookThePlaceOfAnotherIsDrawnAsItself) {
   const glm::u8vec3 colors[] = {{255, 0, 0}, {0, 0, 255}};
   for (const glm::u8vec3& color : colors) {
-    // The same file, without a word to the renderer.
+    // The same file name again, without a notification of the renderer.
     ASSERT_TRUE(model::write_model(testing::square(40, 2, {0, 0, 0}, {0, 0, 1}, color), folder_ / "one.surf", {}));
     Result<model::ModelFile> opened = model::ModelFile::open(folder_ / "one.surf");
     ASSERT_TRUE(opened);
