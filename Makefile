@@ -1,5 +1,5 @@
 # The two commands of the README for a bare Debian 12: make demo, make test. They install missing packages.
-.PHONY: build demo test bench asan tidy format-check configure packages lint-packages
+.PHONY: build demo test bench asan package tidy format-check configure packages lint-packages
 
 build: configure
 	cmake --build --preset release
@@ -25,6 +25,13 @@ asan: packages
 	ctest --preset asan-ubsan -j2 --label-exclude 'gl|slow|programs|web' --exclude-regex _NOT_BUILT
 	ctest --preset asan-ubsan -j2 --label-regex numerics --label-exclude slow
 
+# Debian packages in build-package/: surfcast-server, surfcast-client, surfcast-view.
+package:
+	@cmake/install_packages.sh build window package
+	cmake --preset package
+	cmake --build --preset package
+	cpack --preset package
+
 tidy: build lint-packages
 	run-clang-tidy -quiet -p build '^$(CURDIR)/(server|client|protocol|tests|bench)/'
 
@@ -35,7 +42,7 @@ configure: packages
 	cmake --preset release
 
 packages:
-	@cmake/install_packages.sh build run test
+	@cmake/install_packages.sh build window run test
 
 lint-packages:
 	@cmake/install_packages.sh lint

@@ -1,26 +1,22 @@
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <exception>
-#include <iostream>
 
 #include "base/result.h"
 #include "client/commands.h"
 #include "client/interrupt.h"
+#include "command_line/parse_command_line.h"
 
 namespace {
 
-constexpr int kDone = 0;
-constexpr int kFailed = 1;
-constexpr int kWrongCommandLine = 2;
-
-int report(const std::string& message, int code) {
-  std::cerr << "surfcast: " << message << '\n';
-  return code;
+const surfcast::command_line::ProgramText& program_text() {
+  static const surfcast::command_line::ProgramText text{
+      "surfcast", "surfcast", {{"SEE ALSO", {"surfcast-view(1), surfcastd(1)"}}}};
+  return text;
 }
 
 int run(int argc, char** argv) {
   CLI::App app{"Client of a Surfcast server, which renders pictures of large scans", "surfcast"};
-  app.set_version_flag("--version", "surfcast " SURFCAST_VERSION);
   app.require_subcommand(1);
   const int interrupt = surfcast::client::interrupt_descriptor();
   surfcast::Status outcome;
@@ -30,13 +26,10 @@ int run(int argc, char** argv) {
   surfcast::client::add_pick_command(app, interrupt, outcome);
   surfcast::client::add_view_command(app, outcome);
   surfcast::client::add_ping_command(app, interrupt, outcome);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);  // --help
-    return report(error.what(), kWrongCommandLine);
-  }
-  return outcome ? kDone : report(outcome.error().message, kFailed);
+  if (const auto code = surfcast::command_line::parse_command_line(app, program_text(), argc, argv)) return *code;
+  if (outcome) return surfcast::command_line::kDone;
+  return surfcast::command_line::report_failure(program_text(), outcome.error().message,
+                                                surfcast::command_line::kFailed);
 }
 
 }  // namespace
@@ -46,6 +39,6 @@ int main(int argc, char** argv) {
   try {
     return run(argc, argv);
   } catch (const std::exception& error) {  // usually std::bad_alloc
-    return report(error.what(), kFailed);
+    return surfcast::command_line::report_failure(program_text(), error.what(), surfcast::command_line::kFailed);
   }
 }

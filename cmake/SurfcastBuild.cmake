@@ -2,6 +2,10 @@
 
 option(SURFCAST_TESTS "Build the tests" ON)
 option(SURFCAST_BENCH "Build the benchmarks" ON)
+option(SURFCAST_WINDOW "Build surfcast-view, which needs SDL and libturbojpeg" ON)
+set(SURFCAST_VIEWER AUTO CACHE STRING
+  "The viewer for browsers: ON (fails without it), AUTO (warns where npm cannot build it), OFF")
+set_property(CACHE SURFCAST_VIEWER PROPERTY STRINGS ON AUTO OFF)
 set(SURFCAST_SANITIZE "" CACHE STRING "Sanitizers to build with, as the compiler names them (address,undefined)")
 
 set(CMAKE_CXX_STANDARD 20)

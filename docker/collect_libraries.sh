@@ -1,11 +1,11 @@
 #!/bin/sh
-# collect_libraries.sh PROGRAM SYSTEM FOLDER: copies to FOLDER the shared libraries that PROGRAM loads and that SYSTEM,
-# a copy of another image's /usr/lib, does not have. OpenImageIO's package alone depends on 300 MB of other things.
+# collect_libraries.sh SYSTEM FOLDER PROGRAM...: copies to FOLDER the shared libraries that the programs load and that
+# SYSTEM, a copy of another image's /usr/lib, does not have. A package would bring what other programs need, too.
 set -eu
-program=$1
-system=$2
-folder=$3
+system=$1
+folder=$2
+shift 2
 mkdir -p "$folder"
-ldd "$program" | awk '$2 == "=>" { print $1, $3 }' | while read -r name path; do
+ldd "$@" | awk '$2 == "=>" { print $1, $3 }' | sort -u | while read -r name path; do
   [ -n "$(find "$system" -name "$name" -print -quit)" ] || cp --dereference "$path" "$folder/$name"
 done

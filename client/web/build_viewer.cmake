@@ -1,6 +1,6 @@
-# cmake -D NPM=.. -D SOURCE=.. -D SCHEMA=.. -D BINARY=.. -P build_viewer.cmake: brings BINARY/dist up to date.
-# If packages cannot be installed from npm's registry, the build continues without the viewer and warns; the next build
-# tries again. Errors in the viewer's own code fail the build.
+# cmake -D NPM=.. -D SOURCE=.. -D SCHEMA=.. -D BINARY=.. -D REQUIRED=0|1 -P build_viewer.cmake: brings BINARY/dist up
+# to date. Where npm's registry cannot be reached there is no viewer: an error if it is REQUIRED, as in a package; else
+# a warning, and the next build tries again. Errors in the viewer's own code are errors in any case.
 cmake_minimum_required(VERSION 3.25)
 set(installed ${BINARY}/installed)
 set(page ${BINARY}/dist/index.html)
@@ -13,6 +13,10 @@ function(install_packages)
     WORKING_DIRECTORY ${SOURCE} RESULT_VARIABLE failed OUTPUT_QUIET ERROR_VARIABLE errors)
   if(failed)
     string(REGEX MATCH "npm (error|ERR!)( code)? [^\n]*" reason "${errors}")
+    if(REQUIRED)
+      message(FATAL_ERROR "the viewer is not built: `npm ci` failed (${reason}); "
+        "without the viewer: cmake -D SURFCAST_VIEWER=OFF")
+    endif()
     message(NOTICE "warning: the viewer is not built: `npm ci` failed (${reason}); "
       "run `cmake --build build --target viewer` again once npm's registry is reachable")
     return()

@@ -1,24 +1,25 @@
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <exception>
-#include <iostream>
+#include <string>
 
 #include "client/time_limits.h"
 #include "client/window/view_loop.h"
 #include "client/window/window.h"
+#include "command_line/parse_command_line.h"
 #include "protocol/request_flags.h"
 #include "protocol/validate.h"
 
 namespace surfcast::window {
 namespace {
 
-constexpr int kFailed = 1;
-constexpr int kWrongCommandLine = 2;
 constexpr double kUsualSpacing = 1;  // pixels
 
-int report(const std::string& message, int code) {
-  std::cerr << "surfcast: " << message << '\n';
-  return code;
+/// The program is started as `surfcast view`, mostly, and speaks by that name.
+const command_line::ProgramText& program_text() {
+  static const command_line::ProgramText text{
+      "surfcast-view", "surfcast", {{"KEYS", {std::string(kWindowHelp)}}, {"SEE ALSO", {"surfcast(1), surfcastd(1)"}}}};
+  return text;
 }
 
 Result<ViewRequest> view_request_of(const std::string& address, const protocol::RequestFlags& flags) {
@@ -46,17 +47,14 @@ int run(int argc, char** argv) {
       ->check(CLI::Range(0.0, 1000.0));
   flags.add_view_flags_to(app);
   limits.add_to(app);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);  // --help
-    return report(error.what(), kWrongCommandLine);
-  }
+  if (const auto code = command_line::parse_command_line(app, program_text(), argc, argv)) return *code;
   Result<ViewRequest> request = view_request_of(address, flags);
-  if (!request) return report(request.error().message, kWrongCommandLine);
+  if (!request)
+    return command_line::report_failure(program_text(), request.error().message, command_line::kWrongCommandLine);
   request->target_fps = target_fps;
   const Status outcome = view_in_window(*request, limits.config(-1));
-  return outcome ? 0 : report(outcome.error().message, kFailed);
+  return outcome ? command_line::kDone
+                 : command_line::report_failure(program_text(), outcome.error().message, command_line::kFailed);
 }
 
 }  // namespace
@@ -73,6 +71,7 @@ int main(int argc, char** argv) {
   try {
     return surfcast::window::run(argc, argv);
   } catch (const std::exception& error) {
-    return surfcast::window::report(error.what(), surfcast::window::kFailed);
+    return surfcast::command_line::report_failure(surfcast::window::program_text(), error.what(),
+                                                  surfcast::command_line::kFailed);
   }
 }

@@ -1,7 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <exception>
-#include <iostream>
 
 #include "base/log.h"
 #include "base/result.h"
@@ -11,16 +10,19 @@
 #include "cmd/pick.h"
 #include "cmd/render.h"
 #include "cmd/serve.h"
+#include "command_line/parse_command_line.h"
 
 namespace {
 
-constexpr int kDone = 0;
-constexpr int kFailed = 1;
-constexpr int kWrongCommandLine = 2;
-
-int report(const std::string& message, int code) {
-  std::cerr << "surfcastd: " << message << '\n';
-  return code;
+const surfcast::command_line::ProgramText& program_text() {
+  static const surfcast::command_line::ProgramText text{
+      "surfcastd",
+      "surfcastd",
+      {{"FILES",
+        {"~/.cache/surfcast: models that were built of scans; serve, render and pick use them again.",
+         "../share/surfcast/viewer, seen from the program: the viewer that serve shows to browsers."}},
+       {"SEE ALSO", {"surfcast(1), surfcast-view(1)"}}}};
+  return text;
 }
 
 int run(int argc, char** argv) {
@@ -33,13 +35,10 @@ int run(int argc, char** argv) {
   surfcast::cmd::add_render_command(app, outcome);
   surfcast::cmd::add_pick_command(app, outcome);
   surfcast::cmd::add_healthcheck_command(app, outcome);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::ParseError& error) {
-    if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) return app.exit(error);  // --help
-    return report(error.what(), kWrongCommandLine);
-  }
-  return outcome ? kDone : report(outcome.error().message, kFailed);
+  if (const auto code = surfcast::command_line::parse_command_line(app, program_text(), argc, argv)) return *code;
+  if (outcome) return surfcast::command_line::kDone;
+  return surfcast::command_line::report_failure(program_text(), outcome.error().message,
+                                                surfcast::command_line::kFailed);
 }
 
 }  // namespace
@@ -51,6 +50,6 @@ int main(int argc, char** argv) {
     surfcast::start_logging("surfcastd");
     return run(argc, argv);
   } catch (const std::exception& error) {  // out of memory, mostly
-    return report(error.what(), kFailed);
+    return surfcast::command_line::report_failure(program_text(), error.what(), surfcast::command_line::kFailed);
   }
 }

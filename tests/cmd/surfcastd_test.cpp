@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <array>
 #include <cstdio>
 #include <filesystem>
@@ -243,6 +244,37 @@ TEST_F(SurfcastdTest, InspectStatesRangesAndClasses) {
   EXPECT_EQ(model["ranges"][0]["largest"], 9);
   EXPECT_EQ(model["classes"], nlohmann::json::parse(R"([{"code": 2, "surfels": 2}, {"code": 6, "surfels": 1}])"));
   EXPECT_NE(run("inspect model.surf").out.find("class 6: 1 surfels\n"), std::string::npos);
+}
+
+TEST_F(SurfcastdTest, TellsItsVersion) {
+  const Answer answer = run("--version");
+  EXPECT_EQ(answer.exit_code, 0);
+  EXPECT_EQ(answer.out, "surfcastd " SURFCAST_VERSION "\n");
+  EXPECT_EQ(answer.err, "");
+}
+
+TEST_F(SurfcastdTest, AWrongCommandIsAnsweredWithTheRightOnes) {
+  const Answer answer = run("bild scan.ply");
+  EXPECT_EQ(answer.exit_code, 2);
+  expect_one_line_error(answer);
+  EXPECT_NE(answer.err.find("'bild' (did you mean 'build'?)"), std::string::npos) << answer.err;
+  EXPECT_NE(answer.err.find("build, healthcheck, inspect, pick, render, serve"), std::string::npos) << answer.err;
+}
+
+TEST_F(SurfcastdTest, ACommandLineWithoutACommandNamesThem) {
+  const Answer answer = run("");
+  EXPECT_EQ(answer.exit_code, 2);
+  expect_one_line_error(answer);
+  EXPECT_NE(answer.err.find("a command is missing"), std::string::npos) << answer.err;
+  EXPECT_NE(answer.err.find("build, healthcheck, inspect, pick, render, serve"), std::string::npos) << answer.err;
+}
+
+/// OpenImageIO, which was linked once, brought 247 libraries with it.
+TEST_F(SurfcastdTest, LoadsFewLibraries) {
+  const Answer answer = run("--help", "export LD_TRACE_LOADED_OBJECTS=1");
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  EXPECT_NE(answer.out.find("libdraco"), std::string::npos) << "the list of the loader: " << answer.out;
+  EXPECT_LE(std::count(answer.out.begin(), answer.out.end(), '\n'), 30) << answer.out;
 }
 
 }  // namespace

@@ -1,0 +1,15 @@
+#pragma once
+
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+namespace surfcast::command_line {
+
+/// The word that was probably meant: one that `typed` begins, or the one that fewest edits away. An edit inserts,
+/// removes or replaces a letter, or swaps two neighbours. None if all words need more than two edits, or as many as
+/// `typed` has letters.
+std::optional<std::string> closest_word(std::string_view typed, std::span<const std::string> words);
+
+}  // namespace surfcast::command_line

@@ -1,0 +1,20 @@
+#pragma once
+
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "command_line/command_summary.h"
+
+namespace surfcast::command_line {
+
+enum class Shell { kBash, kZsh, kFish };
+
+/// "bash", "zsh" or "fish".
+std::optional<Shell> parse_shell(std::string_view name);
+
+/// A script by which the shell completes the program's commands, flags and values; file names where any value will do.
+/// `name` is that of the program's file.
+std::string shell_completion(const CommandSummary& program, const std::string& name, Shell shell);
+
+}  // namespace surfcast::command_line
