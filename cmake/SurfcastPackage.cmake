@@ -1,4 +1,6 @@
 # `make package`: three Debian packages, one for each component.
+set(SURFCAST_MAINTAINER "The Surfcast authors <authors@surfcast.example>" CACHE STRING
+  "Whom the packages name as their maintainer")
 set(packaging ${PROJECT_SOURCE_DIR}/packaging/debian)
 set(documents ${PROJECT_BINARY_DIR}/packaging)
 
@@ -13,13 +15,18 @@ if(SURFCAST_WINDOW)
 endif()
 foreach(component IN LISTS components)
   set(folder ${CMAKE_INSTALL_DATADIR}/doc/surfcast-${component})
-  install(FILES ${documents}/copyright ${documents}/changelog.gz DESTINATION ${folder} COMPONENT ${component})
+  install(FILES ${documents}/changelog.gz DESTINATION ${folder} COMPONENT ${component})
+  if(component STREQUAL "server") # which has the viewer, with parts of others
+    install(FILES ${documents}/copyright DESTINATION ${folder} COMPONENT ${component})
+  else()
+    install(FILES ${PROJECT_SOURCE_DIR}/LICENSE RENAME copyright DESTINATION ${folder} COMPONENT ${component})
+  endif()
 endforeach()
 
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_NAME surfcast)
 set(CPACK_PACKAGE_VENDOR "The Surfcast authors")
-set(CPACK_PACKAGE_CONTACT "The Surfcast authors <surfcast@localhost>")
+set(CPACK_PACKAGE_CONTACT "${SURFCAST_MAINTAINER}")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
 set(CPACK_COMPONENTS_ALL ${components})
@@ -31,8 +38,8 @@ set(CPACK_DEBIAN_PACKAGE_CONTROL_STRICT_PERMISSION ON)
 
 set(CPACK_DEBIAN_SERVER_PACKAGE_NAME surfcast-server)
 set(CPACK_COMPONENT_SERVER_DESCRIPTION "server that draws large point scans
- Builds models of scans, draws them without a display on OpenGL 4.5, and sends
- the pictures to browsers and thin clients. Without a GPU it draws in software.")
+Builds models of scans, draws them without a display on OpenGL 4.5, and sends
+the pictures to browsers and thin clients. Without a GPU it draws in software.")
 # What is opened by name when the program runs. Mesa's software driver is required, so that pictures come on every
 # machine; NVIDIA's driver is found beside it.
 set(CPACK_DEBIAN_SERVER_PACKAGE_DEPENDS "libegl1, libopengl0, libegl-mesa0, libgl1-mesa-dri")
@@ -42,14 +49,14 @@ set(CPACK_DEBIAN_SERVER_PACKAGE_CONTROL_EXTRA
 
 set(CPACK_DEBIAN_CLIENT_PACKAGE_NAME surfcast-client)
 set(CPACK_COMPONENT_CLIENT_DESCRIPTION "thin client of the Surfcast server
- Fetches pictures of large point scans from a server that draws them, picks
- points in them, and measures the connection.")
+Fetches pictures of large point scans from a server that draws them, picks
+points in them, and measures the connection.")
 set(CPACK_DEBIAN_CLIENT_PACKAGE_SUGGESTS surfcast-view)
 
 set(CPACK_DEBIAN_VIEW_PACKAGE_NAME surfcast-view)
 set(CPACK_COMPONENT_VIEW_DESCRIPTION "window onto the models of a Surfcast server
- Moves through large point scans that a server draws. It is started by
- `surfcast view`.")
+Moves through large point scans that a server draws. It is started by
+`surfcast view`.")
 set(CPACK_DEBIAN_VIEW_PACKAGE_RECOMMENDS surfcast-client)
 
 # Read by cpack itself.
