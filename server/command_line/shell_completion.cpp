@@ -106,10 +106,11 @@ std::string zsh_arguments(const CommandSummary& command) {
       text += " " + in_quotes((option.several ? "*" : "") + zsh_value(option));
       continue;
     }
+    const std::string value = option.value.empty() ? "" : zsh_value(option);
+    const std::string meaning = "[" + zsh_escaped(option.help) + "]" + value;
     for (const std::string& name : option.names) {
-      const std::string value = option.value.empty() ? "" : zsh_value(option);
-      text += " \\\n        " +
-              in_quotes((option.several ? "*" : "") + name + "[" + zsh_escaped(option.help) + "]" + value);
+      const std::string flag = (option.several ? "*" : "") + name;
+      text += " \\\n        " + in_quotes(flag + meaning);
     }
   }
   return text;

@@ -144,9 +144,10 @@ TEST(EncodePicture, OnePixelIsAPicture) {
 }
 
 TEST(EncodePicture, ASideBeyondTheFormatIsAnErrorAndNotACrash) {
-  // WebP ends at 16383 pixels.
-  const Result<std::vector<std::byte>> bytes = encode_picture(make_picture(16384, 1), picture::FileFormat::kWebp, 90);
-  EXPECT_FALSE(bytes);
+  EXPECT_FALSE(encode_picture(make_picture(16384, 1), picture::FileFormat::kWebp, 90));  // ends at 16383 pixels
+  EXPECT_FALSE(encode_picture(make_picture(65501, 1), picture::FileFormat::kJpeg, 90));  // at 65500
+  EXPECT_FALSE(
+      encode_picture(make_picture(1000001, 1), picture::FileFormat::kPng, 90));  // at a million, by libpng's own limit
 }
 
 }  // namespace
