@@ -52,9 +52,9 @@ function(surfcast_install_service)
       set(${path} ${CMAKE_INSTALL_PREFIX}/${${path}})
     endif()
   endforeach()
-  configure_file(${PROJECT_SOURCE_DIR}/packaging/surfcastd.service.in ${unit} @ONLY)
+  configure_file(${PROJECT_SOURCE_DIR}/cmake/packaging/surfcastd.service.in ${unit} @ONLY)
   install(FILES ${unit} DESTINATION lib/systemd/system COMPONENT server)
-  install(FILES ${PROJECT_SOURCE_DIR}/packaging/surfcastd.default RENAME surfcastd
+  install(FILES ${PROJECT_SOURCE_DIR}/cmake/packaging/surfcastd.default RENAME surfcastd
     DESTINATION ${surfcast_settings_folder} COMPONENT server)
   install(DIRECTORY DESTINATION ${surfcast_models_folder} COMPONENT server)
 endfunction()

@@ -1,7 +1,7 @@
 # `make package`: three Debian packages, one for each component.
 set(SURFCAST_MAINTAINER "The Surfcast authors <authors@surfcast.example>" CACHE STRING
   "Whom the packages name as their maintainer")
-set(packaging ${PROJECT_SOURCE_DIR}/packaging/debian)
+set(packaging ${PROJECT_SOURCE_DIR}/cmake/packaging/debian)
 set(documents ${PROJECT_BINARY_DIR}/packaging)
 
 file(READ ${PROJECT_SOURCE_DIR}/LICENSE SURFCAST_LICENSE)
