@@ -35,6 +35,10 @@ nlohmann::ordered_json json_of(const LevelSummary& level) {
           {"spacing", {level.smallest_spacing, level.largest_spacing}}};
 }
 
+nlohmann::ordered_json json_of(const model::KindCount& kind) {
+  return {{"kind", kind.kind}, {"blocks", kind.blocks}, {"count", kind.items}};
+}
+
 nlohmann::ordered_json json_of(const model::AttributeRange& range) {
   return {{"attribute", range.attribute},
           {"smallest", range.smallest},
@@ -66,6 +70,9 @@ std::string to_text(const ModelSummary& summary) {
   std::string text = fmt::format("model: {}\n", summary.path.string());
   text += fmt::format("sources: {}\n", joined(info.source_names));
   text += fmt::format("surfels: {}\n", info.surfels);
+  for (const model::KindCount& kind : info.kinds) {
+    text += fmt::format("kind {}: {} in {} blocks\n", kind.kind, kind.items, kind.blocks);
+  }
   text += fmt::format("bytes: {} ({:.3f} per surfel)\n", summary.file_bytes, summary.bytes_per_surfel());
   text += fmt::format("bounds: {} .. {}\n", text_of(info.bounds.min), text_of(info.bounds.max));
   text += fmt::format("up: {}\n", info.z_up ? "z" : "y");
@@ -94,6 +101,7 @@ std::string to_json(const ModelSummary& summary) {
       {"model", summary.path.string()},
       {"sources", info.source_names},
       {"surfels", info.surfels},
+      {"kinds", nlohmann::ordered_json::array()},
       {"bytes", summary.file_bytes},
       {"bytes_per_surfel", summary.bytes_per_surfel()},
       {"bounds", {{"min", array_of(info.bounds.min)}, {"max", array_of(info.bounds.max)}}},
@@ -105,6 +113,7 @@ std::string to_json(const ModelSummary& summary) {
       {"classes", nlohmann::ordered_json::array()},
       {"levels", nlohmann::ordered_json::array()},
   };
+  for (const model::KindCount& kind : info.kinds) json["kinds"].push_back(json_of(kind));
   for (const model::AttributeRange& range : info.ranges) json["ranges"].push_back(json_of(range));
   for (const model::ClassCount& count : info.classes) {
     json["classes"].push_back({{"code", count.code}, {"surfels", count.surfels}});

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <filesystem>
 #include <string>
@@ -27,7 +28,7 @@ struct ModelSummary {
   std::vector<LevelSummary> levels;  ///< finest first
 
   [[nodiscard]] double bytes_per_surfel() const {
-    return static_cast<double>(file_bytes) / static_cast<double>(info.surfels);
+    return static_cast<double>(file_bytes) / static_cast<double>(std::max<uint64_t>(info.surfels, 1));
   }
 };
 

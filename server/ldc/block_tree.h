@@ -24,10 +24,11 @@ struct BlockEntry {
   double spacing = 0;
   double max_radius = 0;                        ///< largest radius of its surfels: extends `bounds` to hold the discs
   std::optional<geometry::NormalCone> normals;  ///< contains all its normals; none when the model is not oriented
-  uint32_t surfels = 0;
-  uint64_t offset = 0;  ///< of its bytes in the file
+  uint32_t surfels = 0;                         ///< or items of another kind
+  uint64_t offset = 0;                          ///< of its bytes in the file
   uint32_t bytes = 0;
   uint64_t checksum = 0;  ///< 64-bit XXH3 of its bytes
+  uint8_t kind = 0;       ///< index of its kind among those of the model; equal to that of its parent
 };
 
 /// The LDC tree (Pfister 2000) as a tree of blocks. Each block is a coarser version of all its children together; the

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <cstring>
 #include <numbers>
+#include <set>
+#include <string_view>
 
 #include <xxhash.h>
 
@@ -173,6 +175,30 @@ Status get_statistics(ByteReader& reader, Directory& directory) {
   return {};
 }
 
+/// The names of the kinds, then a byte for each block.
+void put_kinds(ByteWriter& writer, const Directory& directory) {
+  writer.put(static_cast<uint32_t>(directory.kinds.size()));
+  for (const std::string& kind : directory.kinds) writer.put_string(kind);
+  for (const BlockRecord& block : directory.blocks) writer.put(block.kind);
+}
+
+Status get_kinds(ByteReader& reader, Directory& directory) {
+  directory.kinds.clear();
+  uint32_t kinds = get_count(reader, 4);
+  if (kinds > kMaxKinds) return damaged("model has too many kinds of blocks");
+  std::set<std::string_view> names;
+  for (; kinds > 0; --kinds) directory.kinds.push_back(reader.get_string());
+  for (const std::string& kind : directory.kinds) {
+    if (kind.empty() || !names.insert(kind).second)
+      return damaged("model has kinds of blocks without names of their own");
+  }
+  for (BlockRecord& block : directory.blocks) {
+    block.kind = reader.get<uint8_t>();
+    if (block.kind >= directory.kinds.size()) return damaged("model has a block of no kind");
+  }
+  return {};
+}
+
 }  // namespace
 
 uint64_t checksum_of(std::span<const std::byte> bytes) {
@@ -182,7 +208,7 @@ uint64_t checksum_of(std::span<const std::byte> bytes) {
 std::vector<std::byte> write_header(const ModelHeader& header) {
   ByteWriter writer;
   writer.put_bytes(std::as_bytes(std::span(kMagic)));
-  writer.put(kModelVersion);
+  writer.put(header.version);
   writer.put(static_cast<uint16_t>((header.oriented ? kOrientedFlag : 0) | (header.z_up ? kZUpFlag : 0)));
   writer.put(static_cast<uint16_t>(header.color_bits));
   writer.put(header.file_bytes);
@@ -201,13 +227,14 @@ Result<ModelHeader> read_header(std::span<const std::byte> file) {
     return damaged("not a Surfcast model");
   }
   const auto version = reader.get<uint32_t>();
-  if (reader.ok() && version != kModelVersion) {
+  if (reader.ok() && version != kSurfelVersion && version != kKindsVersion) {
     return fail(ErrorKind::kUnsupported, "model format version " + std::to_string(version) +
-                                             " is not supported; this program reads version " +
-                                             std::to_string(kModelVersion));
+                                             " is not supported; this program reads versions " +
+                                             std::to_string(kSurfelVersion) + " and " + std::to_string(kKindsVersion));
   }
   if (file.size() < kHeaderBytes) return damaged("model is cut off within its header");
   ModelHeader header;
+  header.version = version;
   const auto flags = reader.get<uint16_t>();
   header.oriented = (flags & kOrientedFlag) != 0;
   header.z_up = (flags & kZUpFlag) != 0;
@@ -246,6 +273,7 @@ std::vector<std::byte> write_directory(const Directory& directory) {
   writer.put(static_cast<uint32_t>(directory.blocks.size()));
   for (const BlockRecord& block : directory.blocks) put_block(writer, block);
   put_statistics(writer, directory);
+  if (directory.version() == kKindsVersion) put_kinds(writer, directory);
   return std::move(writer).take();
 }
 
@@ -275,6 +303,9 @@ Result<Directory> read_directory(std::span<const std::byte> bytes, const ModelHe
   // Files written before there were statistics end here.
   if (reader.ok() && !reader.rest().empty()) {
     if (Status status = get_statistics(reader, directory); !status) return fail(std::move(status.error()));
+  }
+  if (header.version == kKindsVersion) {
+    if (Status status = get_kinds(reader, directory); !status) return fail(std::move(status.error()));
   }
   if (!reader.ok() || !reader.rest().empty()) return damaged("model tables have a wrong length");
   if (directory.blocks.empty()) return damaged("model has no blocks");

@@ -10,18 +10,21 @@
 
 namespace surfcast::model {
 
-/// Version of the format that is written, and the only one that is read.
-inline constexpr uint32_t kModelVersion = 2;
+/// Versions of the format. Models of surfels alone are written as the older one, so that older programs read them.
+inline constexpr uint32_t kSurfelVersion = 2;
+inline constexpr uint32_t kKindsVersion = 3;  ///< has a table of kinds
 inline constexpr size_t kHeaderBytes = 64;
 inline constexpr size_t kBlockRecordBytes = 92;
 /// Limits of the format: what a hostile table can make the reader allocate for one block is bounded by them.
 inline constexpr uint32_t kMaxBlockSurfels = 32768;
 inline constexpr uint32_t kMaxScalars = 128;
+inline constexpr uint32_t kMaxKinds = 255;
 
 uint64_t checksum_of(std::span<const std::byte> bytes);
 
 /// The first kHeaderBytes of a file.
 struct ModelHeader {
+  uint32_t version = kSurfelVersion;
   bool oriented = false;
   bool z_up = true;
   int color_bits = 0;
@@ -49,6 +52,7 @@ struct BlockRecord {
   uint64_t offset = 0;
   uint32_t bytes = 0;
   uint64_t checksum = 0;
+  uint8_t kind = 0;  ///< index into Directory::kinds
 };
 
 /// The tables at the end of a file.
@@ -59,6 +63,12 @@ struct Directory {
   std::vector<BlockRecord> blocks;  ///< parents before children, siblings side by side
   std::vector<AttributeRange> ranges;
   std::vector<ClassCount> classes;  ///< by code
+  std::vector<std::string> kinds{std::string(kSurfelKind)};
+
+  /// The version of the format that holds the tables.
+  [[nodiscard]] uint32_t version() const {
+    return kinds.size() == 1 && kinds.front() == kSurfelKind ? kSurfelVersion : kKindsVersion;
+  }
 };
 
 std::vector<std::byte> write_directory(const Directory& directory);

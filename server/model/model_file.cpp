@@ -40,11 +40,12 @@ ldc::BlockEntry make_entry(const BlockRecord& record, const surfel::Grid& grid) 
   entry.offset = record.offset;
   entry.bytes = record.bytes;
   entry.checksum = record.checksum;
+  entry.kind = record.kind;
   return entry;
 }
 
-/// Blocks make a tree whose cells nest. A block with children is deeper than its parent, so that no path through a
-/// hostile tree is longer than the octree is deep.
+/// Blocks make a tree whose cells nest, each tree of one kind. A block with children is deeper than its parent, so that
+/// no path through a hostile tree is longer than the octree is deep.
 bool valid_tree(std::span<const ldc::BlockEntry> entries) {
   if (!ldc::BlockTree::is_tree(entries)) return false;
   return std::all_of(entries.begin(), entries.end(), [&](const ldc::BlockEntry& entry) {
@@ -52,7 +53,7 @@ bool valid_tree(std::span<const ldc::BlockEntry> entries) {
     const ldc::BlockEntry& parent = entries[entry.parent];
     const bool below_its_parent =
         parent.parent == ldc::BlockEntry::kNoParent || parent.key.depth > entries[parent.parent].key.depth;
-    return ldc::contains(parent.key, entry.key) && below_its_parent;
+    return ldc::contains(parent.key, entry.key) && below_its_parent && entry.kind == parent.kind;
   });
 }
 
@@ -88,11 +89,17 @@ ModelInfo make_info(const ModelHeader& header, const Directory& directory, std::
   info.source_names = directory.source_names;
   info.ranges = directory.ranges;
   info.classes = directory.classes;
+  for (const std::string& kind : directory.kinds) info.kinds.push_back({kind, 0, 0});
   for (const ldc::BlockEntry& entry : entries) {
     info.levels = std::max(info.levels, entry.level + 1);
+    KindCount& kind = info.kinds[entry.kind];
+    ++kind.blocks;
     if (entry.level > 0) continue;
     info.bounds.include(entry.bounds);
-    info.surfels += entry.surfels;
+    kind.items += entry.surfels;
+  }
+  for (const KindCount& kind : info.kinds) {
+    if (kind.kind == kSurfelKind) info.surfels = kind.items;
   }
   return info;
 }
@@ -163,23 +170,33 @@ size_t count_of(WantedScalars wanted, std::span<const ScalarColumn> scalars) {
 
 }  // namespace
 
-Result<DecodedBlock> ModelFile::decode(size_t block, WantedScalars scalars) const {
+Error ModelFile::named(size_t block, const Error& error) const {
+  return {error.kind, state_->path.string() + ": block " + std::to_string(block) + ": " + error.message};
+}
+
+Result<StoredBlock> ModelFile::stored(size_t block) const {
   SURFCAST_EXPECTS(block < state_->directory.blocks.size());
-  const auto named = [&](const Error& error) {
-    return fail(error.kind, state_->path.string() + ": block " + std::to_string(block) + ": " + error.message);
-  };
   const BlockRecord& record = state_->directory.blocks[block];
   const std::span<const std::byte> bytes = state_->file.bytes().subspan(record.offset, record.bytes);
-  if (checksum_of(bytes) != record.checksum) return named({ErrorKind::kInvalidInput, "damaged"});
+  if (checksum_of(bytes) != record.checksum) return fail(named(block, {ErrorKind::kInvalidInput, "damaged"}));
+  return StoredBlock{bytes, state_->directory.grids[record.grid], record.origin, record.extent, record.surfels};
+}
+
+Result<DecodedBlock> ModelFile::decode(size_t block, WantedScalars scalars) const {
+  const Result<StoredBlock> stored_block = stored(block);
+  if (!stored_block) return fail(stored_block.error());
+  if (state_->info.kinds[blocks()[block].kind].kind != kSurfelKind) {
+    return fail(named(block, {ErrorKind::kUnsupported, "has no surfels"}));
+  }
   BlockShape shape;
-  shape.grid = state_->directory.grids[record.grid];
-  shape.origin = record.origin;
-  shape.extent = record.extent;
-  shape.surfels = record.surfels;
+  shape.grid = stored_block->grid;
+  shape.origin = stored_block->origin;
+  shape.extent = stored_block->extent;
+  shape.surfels = stored_block->items;
   shape.color_bits = state_->info.color_bits;
   shape.scalars = blocks()[block].level == 0 ? state_->directory.scalars : state_->coarse_scalars;
-  Result<DecodedBlock> decoded = decode_block(bytes, shape, count_of(scalars, shape.scalars));
-  if (!decoded) return named(decoded.error());
+  Result<DecodedBlock> decoded = decode_block(stored_block->bytes, shape, count_of(scalars, shape.scalars));
+  if (!decoded) return fail(named(block, decoded.error()));
   return decoded;
 }
 

@@ -13,6 +13,7 @@
 #include "base/result.h"
 #include "geometry/box.h"
 #include "ldc/block_tree.h"
+#include "model/kind_count.h"
 #include "model/statistics.h"
 #include "surfel/grid.h"
 #include "surfel/scalar_attribute.h"
@@ -23,6 +24,7 @@ namespace surfcast::model {
 /// What the header of a model says about all its blocks.
 struct ModelInfo {
   uint64_t surfels = 0;                   ///< of the source: those of the leaves of the tree
+  std::vector<KindCount> kinds;           ///< what the blocks are made of; BlockEntry::kind counts these
   int levels = 0;                         ///< of detail; 1 without coarser ones
   geometry::Box bounds;                   ///< of the stored positions, world units
   bool oriented = false;                  ///< see SurfelCloud::oriented
@@ -60,6 +62,15 @@ struct DecodedBlock {
   [[nodiscard]] glm::dvec3 position(size_t i) const { return grid.position(origin + glm::i64vec3(indices[i])); }
 };
 
+/// A block as the file has it.
+struct StoredBlock {
+  std::span<const std::byte> bytes;  ///< good as long as the file is open
+  surfel::Grid grid;
+  glm::i64vec3 origin{0};  ///< lattice index of the lowest corner of its bounds
+  glm::u32vec3 extent{0};  ///< of the highest one, counted from `origin`
+  uint32_t items = 0;      ///< surfels, or what else its kind is made of
+};
+
 /// The scalar attributes that somebody needs of a block. Decoding others takes as long as all that is drawn.
 enum class WantedScalars {
   kNone,
@@ -81,7 +92,12 @@ class ModelFile {
   [[nodiscard]] std::span<const ldc::BlockEntry> blocks() const { return tree().blocks(); }
   /// Says that a block is about to be decoded, so that reading its bytes begins. Returns at once.
   void prefetch(size_t block) const;
-  /// Checks the checksum of a block and decodes it. `scalars`: of the others only those that come before these.
+  /// Checks the checksum of a block, of any kind.
+  [[nodiscard]] Result<StoredBlock> stored(size_t block) const;
+  /// An error of reading a block, with the names of file and block before it.
+  [[nodiscard]] Error named(size_t block, const Error& error) const;
+  /// Checks and decodes a block of surfels; fails on one of another kind. `scalars`: of the others only those that
+  /// come before these.
   [[nodiscard]] Result<DecodedBlock> decode(size_t block, WantedScalars scalars = WantedScalars::kAll) const;
   [[nodiscard]] const std::filesystem::path& path() const;
   /// Tells this opening of a file from every other one in the life of the process, also after it has been closed.

@@ -16,6 +16,7 @@ struct ModelWriter::State {
   AtomicFile file;
   ModelSchema schema;
   std::vector<surfel::Grid> grids;
+  std::vector<std::string> kinds;
   std::vector<BlockRecord> records;             ///< in the order of the file; parents are numbers of this order
   std::vector<std::vector<uint32_t>> children;  ///< of each record
   AttributeStatistics statistics;
@@ -23,11 +24,12 @@ struct ModelWriter::State {
 
 namespace {
 
-/// Index of a grid in the table, which grows by the ones it lacks.
-uint32_t index_of(const surfel::Grid& grid, std::vector<surfel::Grid>& grids) {
-  const auto found = std::find(grids.begin(), grids.end(), grid);
-  const auto index = static_cast<uint32_t>(found - grids.begin());
-  if (found == grids.end()) grids.push_back(grid);
+/// Index of a value in a table, which grows by the ones it lacks.
+template <typename T>
+uint32_t index_of(const T& value, std::vector<T>& table) {
+  const auto found = std::find(table.begin(), table.end(), value);
+  const auto index = static_cast<uint32_t>(found - table.begin());
+  if (found == table.end()) table.push_back(value);
   return index;
 }
 
@@ -68,8 +70,10 @@ std::vector<BlockRecord> in_tree_order(std::span<const BlockRecord> records,
   return sorted;
 }
 
-ModelHeader make_header(const ModelSchema& schema, std::span<const std::byte> tables, uint64_t offset) {
+ModelHeader make_header(const ModelSchema& schema, uint32_t version, std::span<const std::byte> tables,
+                        uint64_t offset) {
   ModelHeader header;
+  header.version = version;
   header.oriented = schema.oriented;
   header.z_up = schema.z_up;
   header.color_bits = schema.color_bits;
@@ -109,14 +113,16 @@ Result<ModelWriter> ModelWriter::create(const std::filesystem::path& target, Mod
 
 Result<uint32_t> ModelWriter::add(const EncodedBlock& block, const ldc::OctreeKey& key,
                                   std::span<const uint32_t> children) {
-  SURFCAST_EXPECTS(block.surfels >= 1 && block.surfels <= kMaxBlockSurfels);
+  SURFCAST_EXPECTS(block.surfels >= 1 && block.surfels <= kMaxBlockSurfels && !block.kind.empty());
   const auto number = static_cast<uint32_t>(state_->records.size());
   BlockRecord record = make_record(block, key);
   record.offset = state_->file.position();
   record.grid = index_of(block.grid, state_->grids);
+  record.kind = static_cast<uint8_t>(index_of(block.kind, state_->kinds));
   if (Status status = state_->file.append(block.bytes); !status) return fail(std::move(status.error()));
   for (const uint32_t child : children) {
     SURFCAST_EXPECTS(child < number && state_->records[child].parent == ldc::BlockEntry::kNoParent);
+    SURFCAST_EXPECTS(state_->records[child].kind == record.kind);
     state_->records[child].parent = number;
   }
   state_->records.push_back(record);
@@ -133,20 +139,23 @@ Result<WriteReport> ModelWriter::finish() {
                       state_->grids,
                       in_tree_order(state_->records, state_->children),
                       {},
-                      {}};
+                      {},
+                      state_->kinds};
   std::vector<std::string> names;
   for (const ScalarColumn& scalar : state_->schema.scalars) names.push_back(scalar.name);
   directory.ranges = state_->statistics.ranges(names);
   directory.classes = state_->statistics.classes();
   const std::vector<std::byte> tables = write_directory(directory);
-  const std::vector<std::byte> header = write_header(make_header(state_->schema, tables, file.position()));
+  const std::vector<std::byte> header =
+      write_header(make_header(state_->schema, directory.version(), tables, file.position()));
   Status status = file.append(tables);
   if (status) status = file.overwrite(0, header);
   if (status) status = file.commit();
   if (!status) return fail(std::move(status.error()));
   WriteReport report{0, directory.blocks.size(), file.position()};
   for (size_t i = 0; i < state_->records.size(); ++i) {
-    if (state_->children[i].empty()) report.surfels += state_->records[i].surfels;
+    const BlockRecord& record = state_->records[i];
+    if (state_->children[i].empty() && state_->kinds[record.kind] == kSurfelKind) report.surfels += record.surfels;
   }
   return report;
 }

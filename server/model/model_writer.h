@@ -44,7 +44,7 @@ class ModelWriter {
   ~ModelWriter();
 
   /// Appends a block that stands for the children, numbers of blocks added before, each in one call at most; none for
-  /// a block of the source's surfels. Returns its number.
+  /// a block of the source's surfels. Children are of the block's own kind. Returns its number.
   Result<uint32_t> add(const EncodedBlock& block, const ldc::OctreeKey& key, std::span<const uint32_t> children);
 
   /// Writes the tables and moves the file into its place. Fails when no block was added.
