@@ -23,7 +23,7 @@ void measure(const model::ModelFile& model, size_t block, BlockCost& cost) {
   const double start = processor_ms();
   const model::DecodedBlock decoded = value_or_exit(model.decode(block, model::WantedScalars::kNone));
   const double before_packing = processor_ms();
-  residency::PackedBlock packed = residency::pack_block(decoded, model.info().color_bits, model.info().oriented);
+  residency::PackedSurfels packed = residency::pack_block(decoded, model.info().color_bits, model.info().oriented);
   const double before_attributes = processor_ms();
   residency::pack_attributes(decoded, packed);
   cost.attributes_ms += processor_ms() - before_attributes;

@@ -23,14 +23,7 @@ shared uint drawn[SURFCAST_CHUNK];
 shared uint small_count;
 shared uint other_count;
 
-layout(binding = SURFCAST_UNIT_SURFELS) uniform usamplerBuffer surfels;
-layout(std430, binding = SURFCAST_BIND_BLOCKS) readonly buffer Blocks { BlockView blocks[]; };
-layout(std430, binding = SURFCAST_BIND_CHUNKS) readonly buffer Chunks { Chunk chunks[]; };
-layout(std430, binding = SURFCAST_BIND_COUNTERS) buffer CountersBuffer { Counters counters; };
-layout(std430, binding = SURFCAST_BIND_TILE_COUNT) buffer TileCount { uint tile_count[]; };
-layout(binding = SURFCAST_UNIT_SPLATS, rgba32ui) writeonly uniform uimageBuffer splats;
-layout(binding = SURFCAST_UNIT_DISCS, rgba32ui) writeonly uniform uimageBuffer discs;
-layout(binding = SURFCAST_UNIT_BOUNDS, rg32ui) writeonly uniform uimageBuffer bounds;
+#include "include/projection_buffers.glsl"
 #ifdef SURFCAST_LIT_COLOR
 layout(binding = SURFCAST_UNIT_NORMALS, r32ui) writeonly uniform uimageBuffer normals;
 #endif
@@ -51,26 +44,7 @@ struct Surfel {
   uint color;
 };
 
-uvec2 tile_range(vec2 low, vec2 high, out bool outside) {
-  // Pixel centres at +0.5 within [low, high], clipped to the region.
-  vec2 first = ceil(low - 0.5 - vec2(frame.region.xy));
-  vec2 last = floor(high - 0.5 - vec2(frame.region.xy));
-  vec2 size = vec2(frame.region.zw);
-  outside = any(greaterThan(first, last)) || any(lessThan(last, vec2(0.0))) || any(greaterThanEqual(first, size)) ||
-            any(isnan(low + high));
-  uvec2 tile = uvec2(SURFCAST_TILE_WIDTH, SURFCAST_TILE_HEIGHT);
-  uvec2 a = uvec2(clamp(first, vec2(0.0), size - 1.0)) / tile;
-  uvec2 b = uvec2(clamp(last, vec2(0.0), size - 1.0)) / tile;
-  return uvec2(a.x | (a.y << 16), b.x | (b.y << 16));
-}
-
-void count_tiles(uvec2 range, uint first_list) {
-  for (uint y = range.x >> 16; y <= range.y >> 16; ++y) {
-    for (uint x = range.x & 0xffffu; x <= (range.y & 0xffffu); ++x) {
-      atomicAdd(tile_count[first_list + y * uint(frame.tiles.x) + x], 1u);
-    }
-  }
-}
+#include "include/tile_range.glsl"
 
 void append(bool large, uvec2 range, uvec4 a, uvec4 b, uvec4 disc, vec3 n) {
   uint slot = large ? atomicAdd(counters.counts.y, 1u) : atomicAdd(counters.counts.x, 1u);

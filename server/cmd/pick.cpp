@@ -26,10 +26,10 @@ Status pick(const PickCommand& command) {
   if (!request) return fail(request.error());
   Result<service::PickJob> job = net::to_job(*request);
   if (!job) return fail(job.error());
-  std::promise<Result<std::optional<pick::PickedSurfel>>> promise;
+  std::promise<Result<std::optional<kinds::PickedSurfel>>> promise;
   service::PickService service(**models);
   service.pick(std::move(*job), [&promise](auto picked) { promise.set_value(std::move(picked)); });
-  const Result<std::optional<pick::PickedSurfel>> picked = promise.get_future().get();
+  const Result<std::optional<kinds::PickedSurfel>> picked = promise.get_future().get();
   if (!picked) return fail(picked.error());
   wire::PickResult result;
   net::to_wire(*picked, result);

@@ -50,7 +50,7 @@ Outcome outcome_of(uint64_t id, const std::vector<std::string>& names) {
   return plain(answer);
 }
 
-Outcome outcome_of(uint64_t id, const Result<std::optional<pick::PickedSurfel>>& picked) {
+Outcome outcome_of(uint64_t id, const Result<std::optional<kinds::PickedSurfel>>& picked) {
   if (!picked) return failure(id, picked.error());
   wire::Answer answer;
   answer.set_id(id);

@@ -109,7 +109,7 @@ void Conversation::handle_pick(const wire::Request& request) {
   if (!job) return send_error(id, job.error());
   window_.add_other(id);
   context_->service.pick(std::move(*job),
-                         [later = answer_later(id), id](const Result<std::optional<pick::PickedSurfel>>& picked) {
+                         [later = answer_later(id), id](const Result<std::optional<kinds::PickedSurfel>>& picked) {
                            later(outcome_of(id, picked));
                          });
 }

@@ -159,7 +159,7 @@ Result<service::PickJob> to_job(const wire::PickSurfel& request) {
                           clamp_to_int(request.x()), clamp_to_int(request.y())};
 }
 
-void to_wire(const std::optional<pick::PickedSurfel>& picked, wire::PickResult& message) {
+void to_wire(const std::optional<kinds::PickedSurfel>& picked, wire::PickResult& message) {
   message.set_hit(picked.has_value());
   if (!picked) return;
   to_wire(picked->position, message.mutable_position());
@@ -171,7 +171,7 @@ void to_wire(const std::optional<pick::PickedSurfel>& picked, wire::PickResult& 
   }
   message.set_radius(picked->radius);
   message.set_distance(picked->distance);
-  for (const pick::PickedValue& value : picked->values) {
+  for (const kinds::PickedValue& value : picked->values) {
     wire::AttributeValue* attribute = message.add_attributes();
     attribute->set_attribute(protocol::clean_utf8(value.attribute));
     attribute->set_value(value.value);

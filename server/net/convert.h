@@ -18,7 +18,7 @@ Result<service::PictureJob> to_job(const wire::DrawPicture& request);
 
 Result<service::PickJob> to_job(const wire::PickSurfel& request);
 
-void to_wire(const std::optional<pick::PickedSurfel>& picked, wire::PickResult& message);
+void to_wire(const std::optional<kinds::PickedSurfel>& picked, wire::PickResult& message);
 /// Takes the bytes out of the picture.
 void to_wire(service::EncodedPicture picture, wire::Picture& message);
 /// Takes the bytes out of the message.

@@ -201,7 +201,7 @@ HttpAnswer file_answer(const StaticFile& file, std::string_view if_none_match) {
   return answer;
 }
 
-HttpAnswer pick_answer(const std::optional<pick::PickedSurfel>& picked) {
+HttpAnswer pick_answer(const std::optional<kinds::PickedSurfel>& picked) {
   wire::PickResult result;
   to_wire(picked, result);
   return text_answer(protocol::pick_result_json(result), kJson);

@@ -37,7 +37,7 @@ HttpAnswer picture_answer(service::EncodedPicture picture);
 /// A file of the viewer, or 304 when `if_none_match`, the request's header, already names what it holds.
 HttpAnswer file_answer(const StaticFile& file, std::string_view if_none_match);
 /// What a pixel shows, as pick_result_json writes it.
-HttpAnswer pick_answer(const std::optional<pick::PickedSurfel>& picked);
+HttpAnswer pick_answer(const std::optional<kinds::PickedSurfel>& picked);
 /// A page that shows the models.
 HttpAnswer page_answer(const std::vector<std::string>& names);
 

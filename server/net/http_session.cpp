@@ -265,7 +265,7 @@ asio::awaitable<HttpAnswer> HttpSession::answer_pick(HttpRoute route) {
   if (!request) co_return error_answer(request.error());
   const Result<service::PickJob> job = to_job(*request);
   if (!job) co_return error_answer(job.error());
-  const auto picked = co_await answer_of<Result<std::optional<pick::PickedSurfel>>>(
+  const auto picked = co_await answer_of<Result<std::optional<kinds::PickedSurfel>>>(
       [&](auto done) { context_->service.pick(*job, std::move(done)); });
   co_return picked ? pick_answer(*picked) : error_answer(picked.error());
 }

@@ -1,20 +1,17 @@
 #include "pick/pick_surfel.h"
 
 #include <algorithm>
-#include <cmath>
 #include <glm/geometric.hpp>
 #include <limits>
 
-#include "pick/opaque_disc.h"
 #include "selection/block_hull.h"
 #include "selection/frustum.h"
-#include "surfel/drawn_radius.h"
 
 namespace surfcast::pick {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Discs reach no farther than this many radii from their centres.
+/// Items reach no farther than this many of their block's largest radius from their centres.
 constexpr double kReachInRadii = 2;
 /// The prefilter of visibility widens discs by less, pixels.
 constexpr double kReachInPixels = 2;
@@ -25,11 +22,10 @@ struct LeafOnRay {
   double nearest = 0;
 };
 
-/// A surfel that covers the pixel.
+/// An item that covers the pixel.
 struct Candidate {
-  DiscHit hit;
+  kinds::PickHit hit;
   size_t block = 0;  ///< number among the decoded ones
-  size_t surfel = 0;
 };
 
 /// Camera z at which the ray enters a box, centred about the eye, grown by `margin`; infinite if it misses.
@@ -53,17 +49,17 @@ double entry_depth(const geometry::Box& box, double margin, const glm::dvec3& ey
 
 class Picker {
  public:
-  Picker(const model::ModelFile& model, const PickQuery& query, SourceBlocks& source)
+  Picker(const model::ModelFile& model, const kinds::PickQuery& query, SourceBlocks& source)
       : model_(model), query_(query), source_(source), frame_(query.frame) {
-    ray_ = frame_.ray(query.pixel);
-    direction_ = frame_.right * ray_.x + frame_.up * ray_.y + frame_.forward;
+    const glm::dvec3 ray = frame_.ray(query.pixel);
+    direction_ = frame_.right * ray.x + frame_.up * ray.y + frame_.forward;
   }
 
-  Result<std::optional<PickedSurfel>> pick(const std::atomic<bool>& cancelled) {
+  Result<std::optional<kinds::PickedSurfel>> pick(const std::atomic<bool>& cancelled) {
     for (const LeafOnRay& leaf : leaves_on_ray()) {
       if (leaf.nearest > occluder_) break;
       if (cancelled.load(std::memory_order_relaxed)) return fail(ErrorKind::kCancelled, "cancelled");
-      Result<std::shared_ptr<const model::DecodedBlock>> block = source_.get(model_, leaf.block);
+      Result<std::shared_ptr<const kinds::SourceBlock>> block = source_.get(model_, leaf.block);
       if (!block) return fail(std::move(block.error()));
       collect(**block);
       if (!candidates_.empty() && candidates_.back().block == blocks_.size()) blocks_.push_back(std::move(*block));
@@ -98,81 +94,39 @@ class Picker {
     return leaves;
   }
 
-  [[nodiscard]] bool hidden(const model::DecodedBlock& block, size_t surfel) const {
-    if (!query_.clip.shows(block.position(surfel))) return true;
-    if (query_.hidden_classes.none()) return false;
-    for (const surfel::ScalarAttribute& scalar : block.scalars) {
-      if (scalar.name != "classification") continue;
-      const double code = value_at(scalar.values, surfel);
-      return query_
-          .hidden_classes[static_cast<size_t>(std::isnan(code) ? 0 : std::clamp(std::round(code), 0.0, 255.0))];
-    }
-    return false;
-  }
-
-  void collect(const model::DecodedBlock& block) {
-    const float widest = surfel::largest_drawn_radius(block.radii);
-    for (size_t i = 0; i < block.size(); ++i) {
-      const glm::dvec3 o = frame_.to_camera(block.position(i));
-      const glm::dvec3 n = frame_.rotate(glm::dvec3(block.normals[i]));
-      if (model_.info().oriented && glm::dot(n, o) >= 0) continue;
-      const auto hit = hit_disc(o, n, double{std::min(block.radii[i], widest)}, ray_, frame_.eta);
-      if (!hit || hidden(block, i)) continue;
-      occluder_ = std::min(occluder_, hit->occluder);
-      candidates_.push_back({*hit, blocks_.size(), i});
+  void collect(const kinds::SourceBlock& block) {
+    std::vector<kinds::PickHit> hits;
+    block.hit(query_, hits);
+    for (const kinds::PickHit& hit : hits) {
+      occluder_ = std::min(occluder_, hit.occluder);
+      candidates_.push_back({hit, blocks_.size()});
     }
   }
 
-  [[nodiscard]] std::optional<PickedSurfel> best() const {
+  [[nodiscard]] std::optional<kinds::PickedSurfel> best() const {
     const Candidate* best = nullptr;
     for (const Candidate& candidate : candidates_) {
       if (candidate.hit.depth > occluder_) continue;
       if (best == nullptr || candidate.hit.form < best->hit.form) best = &candidate;
     }
     if (best == nullptr) return std::nullopt;
-    return describe(*blocks_[best->block], best->surfel);
-  }
-
-  [[nodiscard]] PickedSurfel describe(const model::DecodedBlock& block, size_t i) const {
-    PickedSurfel picked;
-    picked.position = block.position(i);
-    picked.normal = glm::normalize(glm::dvec3(block.normals[i]));
-    const glm::dvec3 from_eye = picked.position - frame_.eye;
-    if (!model_.info().oriented && glm::dot(picked.normal, from_eye) > 0) picked.normal = -picked.normal;
-    if (!block.colors.empty()) picked.color = color_of(block.colors[i]);
-    picked.radius = double{block.radii[i]};
-    picked.distance = glm::length(from_eye);
-    for (const surfel::ScalarAttribute& scalar : block.scalars) {
-      picked.values.push_back({scalar.name, value_at(scalar.values, i)});
-    }
-    return picked;
-  }
-
-  [[nodiscard]] glm::u8vec3 color_of(const glm::u16vec3& color) const {
-    if (model_.info().color_bits == 8) return {color.r, color.g, color.b};
-    const auto level = [](uint32_t value) { return static_cast<uint8_t>((value * 255 + 32767) / 65535); };
-    return {level(color.r), level(color.g), level(color.b)};
-  }
-
-  static double value_at(const surfel::ScalarValues& values, size_t i) {
-    return std::visit([i](const auto& column) { return static_cast<double>(column[i]); }, values);
+    return blocks_[best->block]->describe(query_, best->hit.item);
   }
 
   const model::ModelFile& model_;
-  const PickQuery& query_;
+  const kinds::PickQuery& query_;
   SourceBlocks& source_;
   const geometry::CameraFrame& frame_;
-  glm::dvec3 ray_{0};                                               ///< camera frame, z = 1
-  glm::dvec3 direction_{0};                                         ///< the same in the world
-  std::vector<std::shared_ptr<const model::DecodedBlock>> blocks_;  ///< those with candidates
+  glm::dvec3 direction_{0};  ///< of the pixel's ray, in the world; 1 along the view
+  std::vector<std::shared_ptr<const kinds::SourceBlock>> blocks_;  ///< those with candidates
   std::vector<Candidate> candidates_;
   double occluder_ = kInfinity;  ///< camera z behind which everything is hidden
 };
 
 }  // namespace
 
-Result<std::optional<PickedSurfel>> pick_surfel(const model::ModelFile& model, const PickQuery& query,
-                                                SourceBlocks& blocks, const std::atomic<bool>& cancelled) {
+Result<std::optional<kinds::PickedSurfel>> pick_surfel(const model::ModelFile& model, const kinds::PickQuery& query,
+                                                       SourceBlocks& blocks, const std::atomic<bool>& cancelled) {
   return Picker(model, query, blocks).pick(cancelled);
 }
 

@@ -1,6 +1,7 @@
 #include "render/programs.h"
 
 #include <string>
+#include <string_view>
 
 #include "gl/program.h"
 #include "render/shader_library.h"
@@ -10,10 +11,11 @@
 namespace surfcast::render {
 namespace {
 
-Result<gl::Program> compute_program(const char* name, const std::string& defines) {
-  Result<std::string> text = shader_text(name);
+Result<gl::Program> compute_program(const std::string& name, const std::string& file,
+                                    std::span<const EmbeddedShader> more, const std::string& defines) {
+  Result<std::string> text = shader_text(file, more);
   if (!text) return fail(std::move(text.error()));
-  return gl::make_program(name, {{GL_COMPUTE_SHADER, name, *text}}, defines);
+  return gl::make_program(name.c_str(), {{GL_COMPUTE_SHADER, name, *text}}, defines);
 }
 
 /// What both passes over surfels depend on.
@@ -67,58 +69,110 @@ std::string lane_defines(bool whole_tiles) {
          (whole_tiles ? "#define SURFCAST_DYNAMIC_TILES\n" : "");
 }
 
+/// What the kinds of a picture besides surfels add to the splat kernel.
+struct KindFragments {
+  std::string names;  ///< of the kinds; none: empty
+  std::string text;   ///< shaders/kinds/exact_list.glsl includes it
+};
+
+KindFragments fragments_of(const PictureKinds& kinds) {
+  KindFragments fragments;
+  std::string calls;
+  for (const PictureKind& kind : kinds) {
+    const std::string_view fragment = kind.kind->shaders().fragment;
+    if (fragment.empty()) continue;
+    const std::string name(kind.kind->name());
+    fragments.names += (fragments.names.empty() ? " with " : ", ") + name;
+    fragments.text += fragment;
+    calls += "  if (kind == " + std::to_string(kind.number) + "u) return " + name + "_fragment(a, b, c, ray);\n";
+  }
+  if (fragments.names.empty()) return {};
+  fragments.text += "\nFragment fragment_of(uint kind, uvec4 a, uvec4 b, uvec4 c, vec2 ray) {\n" + calls +
+                    "  return kNoFragment;\n}\n";
+  return fragments;
+}
+
 }  // namespace
 
 Result<Programs> Programs::create(const KernelShape& shape, const std::string& defines) {
   Programs programs;
   programs.shape_ = shape;
   programs.defines_ = defines;
-  Result<gl::Program> offsets = compute_program("bin_offsets.comp", defines);
+  Result<gl::Program> offsets = compute_program("bin_offsets.comp", "bin_offsets.comp", {}, defines);
   if (!offsets) return fail(std::move(offsets.error()));
-  Result<gl::Program> bin = compute_program("bin.comp", defines);
+  Result<gl::Program> bin = compute_program("bin.comp", "bin.comp", {}, defines);
   if (!bin) return fail(std::move(bin.error()));
   programs.bin_offsets_ = std::move(*offsets);
   programs.bin_ = std::move(*bin);
   return programs;
 }
 
-Result<const gl::Program*> Programs::program(const char* name, const std::string& defines) {
-  const std::string key = name + ("\n" + defines);
+Result<const gl::Program*> Programs::program(const Source& source, const std::string& defines) {
+  const std::pair key(source.name, defines);
   if (const auto found = compiled_.find(key); found != compiled_.end()) return &found->second;
-  Result<gl::Program> program = compute_program(name, defines_ + defines);
+  Result<gl::Program> program = compute_program(source.name, source.file, source.files, defines_ + defines);
   if (!program) return fail(std::move(program.error()));
   return &compiled_.emplace(key, std::move(*program)).first->second;
+}
+
+std::vector<std::string> Programs::compiled() const {
+  std::vector<std::string> names;
+  for (const auto& [key, program] : compiled_) names.push_back(key.first);
+  return names;
+}
+
+/// Each kind's own projection.
+Result<std::vector<const gl::Program*>> Programs::projections(const Variant& variant, const PictureKinds& kinds) {
+  constexpr const char* kFile = "projection of a kind";
+  const std::string lanes = define("SURFCAST_PROJECT_LANES", shape_.project_lanes);
+  std::vector<const gl::Program*> programs;
+  for (const PictureKind& kind : kinds) {
+    const kinds::KindShaders shaders = kind.kind->shaders();
+    const Source source{"projection of " + std::string(kind.kind->name()), kFile, {{kFile, shaders.project}}};
+    const std::string number = shaders.fragment.empty() ? "" : define("SURFCAST_KIND", static_cast<int>(kind.number));
+    const Result<const gl::Program*> compiled = program(source, project_defines(variant) + lanes + number);
+    if (!compiled) return fail(compiled.error());
+    programs.push_back(*compiled);
+  }
+  return programs;
 }
 
 int Programs::pixels_at_once() const {
   return shape_.whole_tiles ? SURFCAST_TILE_WIDTH : 1;
 }
 
-Result<SplatPrograms> Programs::variant(const Variant& variant) {
-  const std::string splat = splat_defines(variant);
+Result<SplatPrograms> Programs::variant(const Variant& variant, const PictureKinds& kinds) {
+  Result<std::vector<const gl::Program*>> project = projections(variant, kinds);
+  if (!project) return fail(std::move(project.error()));
   SplatPrograms programs;
-  const auto compile = [this](const gl::Program*& target, const char* name, const std::string& defines) -> Status {
-    const Result<const gl::Program*> compiled = program(name, defines);
+  programs.project = std::move(*project);
+  const auto compile = [this](const gl::Program*& target, const Source& source, const std::string& defines) -> Status {
+    const Result<const gl::Program*> compiled = program(source, defines);
     if (!compiled) return fail(compiled.error());
     target = *compiled;
     return {};
   };
-  const std::string lanes = define("SURFCAST_PROJECT_LANES", shape_.project_lanes);
+  const KindFragments fragments = fragments_of(kinds);
+  const auto plain = [](const char* file) { return Source{file, file}; };
+  const auto with_kinds = [&](const char* file) {
+    if (fragments.names.empty()) return plain(file);
+    return Source{file + fragments.names, file, {{"kinds/fragment_of.glsl", fragments.text}}};
+  };
+  const std::string splat = splat_defines(variant);
   const std::string at_once = splat + define("SURFCAST_TILES_AT_ONCE", shape_.tiles_at_once);
   const std::string small = at_once + lane_defines(shape_.whole_tiles);
   const std::string large = at_once + lane_defines(false) + "#define SURFCAST_LARGE\n";
   const std::string finding = variant.silhouettes ? "#define SURFCAST_FINDS_SILHOUETTES\n" : "";
-  Status status = compile(programs.project, "project.comp", project_defines(variant) + lanes);
-  if (status) status = compile(programs.splat, "splat.comp", small + finding);
-  if (status) status = compile(programs.splat_large, "splat.comp", large + finding);
+  Status status = compile(programs.splat, plain("splat.comp"), small + finding);
+  if (status) status = compile(programs.splat_large, with_kinds("splat.comp"), large + finding);
   if (variant.silhouettes) {
     const std::string columns = define("SURFCAST_COLUMNS", pixels_at_once());
     const std::string rows = define("SURFCAST_ROWS", SURFCAST_SILHOUETTE_SAMPLES);
-    if (status) status = compile(programs.silhouettes, "silhouettes.comp", columns);
-    if (status) status = compile(programs.supersample, "supersample.comp", splat + columns + rows);
-    if (status) status = compile(programs.supersample_large, "supersample.comp", large);
+    if (status) status = compile(programs.silhouettes, plain("silhouettes.comp"), columns);
+    if (status) status = compile(programs.supersample, plain("supersample.comp"), splat + columns + rows);
+    if (status) status = compile(programs.supersample_large, with_kinds("supersample.comp"), large);
   }
-  if (status && variant.eye_dome) status = compile(programs.eye_dome, "eye_dome.comp", float_define(variant));
+  if (status && variant.eye_dome) status = compile(programs.eye_dome, plain("eye_dome.comp"), float_define(variant));
   if (!status) return fail(std::move(status.error()));
   return programs;
 }

@@ -8,13 +8,19 @@
 
 #include "base/stopwatch.h"
 #include "render/tile_spans.h"
-#include "shared/surfel_layout.h"
 
 namespace surfcast::render {
 namespace {
 
+/// The chunks of one kind: its projection goes over these.
+struct KindWork {
+  size_t first = 0;  ///< in ProjectionWork::chunks
+  size_t count = 0;
+};
+
 /// What the projection works through.
 struct ProjectionWork {
+  std::vector<KindWork> kinds;  ///< of each kind of the picture
   std::vector<layout::BlockView> blocks;
   std::vector<layout::Chunk> chunks;
   std::vector<layout::BlockDisplay> block_displays;  ///< of each block, for display options that need them
@@ -41,65 +47,64 @@ int drawing_unit(const RegionTask& task) {
 
 /// Relative to the eye in double precision: single precision never sees world coordinates.
 layout::BlockView block_view(const residency::ResidentBlock& block, const geometry::CameraFrame& frame, int unit) {
-  const auto scale = [](const residency::LogScale& s) {
-    return glm::dvec2(s.log2_largest, s.octaves / SURFCAST_SIZE_STEPS);
-  };
   const double size = std::ldexp(1.0, unit);
   return {glm::vec4(glm::vec3(frame.to_camera(block.lattice.position(glm::uvec3(0))) * size), 0),
-          glm::vec4(glm::vec3(block.lattice.step() * size), 0),
-          glm::vec4(glm::vec2(scale(block.radius) + glm::dvec2(unit, 0)), glm::vec2(scale(block.weight)))};
+          glm::vec4(glm::vec3(block.lattice.step() * size), 0), block.header->scale(unit)};
 }
 
 bool needs_block_displays(const DisplayOptions& display) {
   return display.clipped || display.mapped();
 }
 
-uint32_t kinds_of(const residency::PackedRun& run) {
-  return (run.finest ? SURFCAST_RUN_FINEST : 0) | (run.coarsest ? SURFCAST_RUN_COARSEST : 0) |
-         (run.pairs ? SURFCAST_RUN_PAIRS : 0);
-}
-
-/// Whether the projection may draw any of a chunk (shaders/include/spacing.glsl), with room for what rounding radii to
-/// codes changes.
-bool may_be_drawn(const residency::PackedRun& run, const residency::PackedRun::Radii& radii,
-                  const selection::RadiusRange& wanted) {
-  constexpr double kRounding = 1.02;
-  return (run.finest || radii.least <= kRounding * wanted.largest) &&
-         (run.coarsest || kRounding * radii.largest_merged > SURFCAST_SPACING_SLACK * wanted.least);
-}
-
-/// Chunks of a run from `first` to `end`, cut where pages end.
-void add_chunks(const VisibleBlock& block, uint32_t view, const residency::PackedRun& run, uint32_t first, uint32_t end,
+/// Chunks of a run, cut where pages end.
+void add_chunks(const VisibleBlock& block, uint32_t view, const residency::TexelRun& run,
                 std::vector<layout::Chunk>& chunks) {
-  while (first < end) {
+  const uint32_t end = run.first + run.count;
+  for (uint32_t first = run.first; first < end;) {
     const uint32_t in_page = first % residency::SurfelPool::kPageSurfels;
     const uint32_t texel =
         block.resident->pages[first / residency::SurfelPool::kPageSurfels] * residency::SurfelPool::kPageSurfels +
         in_page;
     const uint32_t count = std::min(end - first, residency::SurfelPool::kPageSurfels - in_page);
     chunks.push_back(
-        {glm::uvec4(view, texel, count | kinds_of(run), residency::kMaxPackedPerSurfel * block.first_surfel + first)});
+        {glm::uvec4(view, texel, count | run.flags, residency::kMaxPackedPerSurfel * block.first_surfel + first)});
     first += count;
   }
 }
 
-ProjectionWork plan_work(const RegionTask& task) {
-  ProjectionWork work;
-  const int unit = drawing_unit(task);
+/// The kinds that a region may show something of, by number.
+PictureKinds kinds_of(const RegionTask& task) {
+  std::vector<bool> seen(task.kinds.size());
+  for (const VisibleBlock& block : task.blocks) seen[block.kind] = true;
+  PictureKinds kinds;
+  for (uint32_t number = 0; number < seen.size(); ++number) {
+    if (seen[number]) kinds.push_back({task.kinds[number], number});
+  }
+  return kinds;
+}
+
+/// Adds what is to be projected of a kind.
+void plan_kind(const RegionTask& task, uint32_t kind, int unit, ProjectionWork& work) {
+  std::vector<residency::TexelRun> runs;
+  const size_t first = work.chunks.size();
   for (const VisibleBlock& block : task.blocks) {
+    if (block.kind != kind) continue;
     const auto view = static_cast<uint32_t>(work.blocks.size());
     work.blocks.push_back(block_view(*block.resident, task.frame, unit));
     if (needs_block_displays(task.display)) {
       work.block_displays.push_back(block_display(task.display, task.request->clip, *block.resident, work.clips));
     }
-    for (const residency::PackedRun& run : block.resident->runs) {
-      for (uint32_t i = 0; i < run.count; i += SURFCAST_CHUNK) {
-        if (!may_be_drawn(run, run.chunks[i / SURFCAST_CHUNK], block.radii)) continue;
-        add_chunks(block, view, run, run.first + i, run.first + std::min<uint32_t>(run.count, i + SURFCAST_CHUNK),
-                   work.chunks);
-      }
-    }
+    runs.clear();
+    block.resident->header->add_runs(block.radii, runs);
+    for (const residency::TexelRun& run : runs) add_chunks(block, view, run, work.chunks);
   }
+  work.kinds.push_back({first, work.chunks.size() - first});
+}
+
+ProjectionWork plan_work(const RegionTask& task, const PictureKinds& kinds) {
+  ProjectionWork work;
+  const int unit = drawing_unit(task);
+  for (const PictureKind& kind : kinds) plan_kind(task, kind.number, unit, work);
   return work;
 }
 
@@ -107,6 +112,7 @@ ProjectionWork plan_work(const RegionTask& task) {
 struct Groups {
   size_t count = 0;
   std::optional<size_t> width;
+  size_t first = 0;  ///< of a line: counted in the uniform `first_group`
 };
 
 /// Dispatches them in batches between which the picture can be given up, or another one be drawn: then what the pass
@@ -120,7 +126,7 @@ Status dispatch_in_batches(const Groups& groups, BatchSizer& sizer, const Preemp
     const auto x = static_cast<GLuint>(groups.width ? width : count);
     const auto y = static_cast<GLuint>(groups.width ? count : 1);
     const Stopwatch watch;
-    glUniform1ui(SURFCAST_UNIFORM_FIRST_GROUP, static_cast<GLuint>(first));
+    glUniform1ui(SURFCAST_UNIFORM_FIRST_GROUP, static_cast<GLuint>(groups.first + first));
     glDispatchCompute(x, y, 1);
     glMemoryBarrier(GL_ALL_BARRIER_BITS);
     glFinish();
@@ -258,8 +264,22 @@ size_t first_capacity(const ProjectionWork& work, const SplatBuffers& buffers) {
                     residency::SurfelBuffer::device_limit() / 2);
 }
 
-/// Projects all visible surfels and sums up the tile counts; again if the records did not fit, or if a tile is so
-/// crowded that its splats are to be thinned out.
+/// Projects what is visible of one kind after another.
+Status project_kinds(const RegionTask& task, const ProjectionWork& work, const SplatPrograms& variant,
+                     SplatBuffers& buffers, const Preemption& preemption) {
+  for (size_t i = 0; i < work.kinds.size(); ++i) {
+    const Groups groups{work.kinds[i].count, {}, work.kinds[i].first};
+    Status projected = dispatch_in_batches(groups, buffers.project_batches, preemption, [&] {
+      bind_for_projection(task, buffers);
+      glUseProgram(variant.project[i]->name());
+    });
+    if (!projected) return projected;
+  }
+  return {};
+}
+
+/// Projects everything that is visible and sums up the tile counts; again if the records did not fit, or if a tile is
+/// so crowded that its splats are to be thinned out.
 Result<layout::Counters> project(const RegionTask& task, const ProjectionWork& work, Programs& programs,
                                  const SplatPrograms& variant, SplatBuffers& buffers, const Preemption& preemption) {
   const gl::DebugGroup group("project");
@@ -268,16 +288,14 @@ Result<layout::Counters> project(const RegionTask& task, const ProjectionWork& w
   upload(buffers.blocks, work.blocks);
   upload(buffers.chunks, work.chunks);
   upload_display_options(task, work, buffers);
-  const auto bind = [&] {
-    bind_for_projection(task, buffers);
-    glUseProgram(variant.project->name());
-  };
   Thinning thinning;
   while (true) {
     upload_constants(task, thinning, buffers);
     clear_counts(task, buffers);
-    Status projected = dispatch_in_batches({work.chunks.size(), {}}, buffers.project_batches, preemption, bind);
-    if (!projected) return fail(std::move(projected.error()));
+    if (Status projected = project_kinds(task, work, variant, buffers, preemption); !projected) {
+      return fail(std::move(projected.error()));
+    }
+    bind_frame(buffers);
     glUseProgram(programs.bin_offsets().name());
     glDispatchCompute(1, 1, 1);
     glMemoryBarrier(GL_ALL_BARRIER_BITS);
@@ -396,12 +414,14 @@ void shade_by_depth(const RegionTask& task, const gl::Program& program, SplatBuf
 
 Result<RegionStats> draw_region(const RegionTask& task, Programs& programs, SplatBuffers& buffers,
                                 const Preemption& preemption, std::span<std::byte> pixels) {
-  const Result<SplatPrograms> variant = programs.variant(task.variant);
+  const PictureKinds kinds = kinds_of(task);
+  const Result<SplatPrograms> variant = programs.variant(task.variant, kinds);
   if (!variant) return fail(variant.error());
 
   RegionStats stats;
   const WorkStopwatch project_watch(preemption);
-  const Result<layout::Counters> counters = project(task, plan_work(task), programs, *variant, buffers, preemption);
+  const Result<layout::Counters> counters =
+      project(task, plan_work(task, kinds), programs, *variant, buffers, preemption);
   if (!counters) return fail(counters.error());
   stats.splats = uint64_t{counters->counts.x} + counters->counts.y;
   stats.project_ms = project_watch.milliseconds();

@@ -6,6 +6,7 @@
 
 #include "base/preemption.h"
 #include "base/result.h"
+#include "kinds/kind_table.h"
 #include "render/display_options.h"
 #include "render/programs.h"
 #include "render/region.h"
@@ -21,11 +22,13 @@ struct VisibleBlock {
   const residency::ResidentBlock* resident = nullptr;
   selection::RadiusRange radii;  ///< of the wanted spacing within the block
   uint32_t first_surfel = 0;     ///< its place in the model, see Scene::first_surfel
+  uint32_t kind = 0;             ///< number in the table of kinds
 };
 
 /// One region to draw: what is seen, from where, how.
 struct RegionTask {
   const residency::SurfelBuffer* surfels = nullptr;
+  kinds::KindTable kinds;
   std::vector<VisibleBlock> blocks;
   geometry::CameraFrame frame;
   Region region;                     ///< that is wanted

@@ -13,6 +13,7 @@
 #include "render/region_passes.h"
 #include "render/scene.h"
 #include "render/splat_buffers.h"
+#include "residency/packing.h"
 
 namespace surfcast::render {
 namespace {
@@ -98,6 +99,7 @@ struct Renderer::State {
       : context(std::move(egl)),
         device{context->vendor(), context->renderer(), context->version(), context->software()},
         programs(std::move(passes)),
+        kinds(config.kinds),
         max_surfels(std::min(config.gpu_bytes / sizeof(glm::uvec4), residency::SurfelBuffer::device_limit() / 2)),
         surfels(max_surfels, device.software),
         residency(surfels, limits_of(config, max_surfels)) {
@@ -125,7 +127,7 @@ struct Renderer::State {
   void begin_picture();
   void end_picture();
   void release_models();
-  Scene& scene_of(const std::shared_ptr<const model::ModelFile>& model);
+  Result<Scene*> scene_of(const std::shared_ptr<const model::ModelFile>& model);
   Result<residency::PreparedView> prepare(Scene& scene, const picture::PictureRequest& request,
                                           const DisplayOptions& display, const geometry::Camera& camera,
                                           const geometry::CameraFrame& frame, const Preemption& preemption);
@@ -142,6 +144,7 @@ struct Renderer::State {
   std::unique_ptr<gl::EglContext> context;
   picture::DeviceInfo device;
   Programs programs;
+  kinds::KindTable kinds;
   std::array<SplatBuffers, 2> buffers;  ///< of the picture that is being drawn, and of one that interrupts it
   size_t depth = 0;                     ///< pictures that are being drawn: 2 when one interrupts another
   std::map<std::pair<picture::SurfelColor, picture::ColorMap>, ConstantTexels>
@@ -170,10 +173,11 @@ void Renderer::State::release_models() {
   }
 }
 
-Scene& Renderer::State::scene_of(const std::shared_ptr<const model::ModelFile>& model) {
-  std::unique_ptr<Scene>& scene = scenes[model->id()];
-  if (!scene) scene = std::make_unique<Scene>(model);
-  return *scene;
+Result<Scene*> Renderer::State::scene_of(const std::shared_ptr<const model::ModelFile>& model) {
+  if (const auto found = scenes.find(model->id()); found != scenes.end()) return found->second.get();
+  Result<std::unique_ptr<Scene>> scene = Scene::create(model, kinds);
+  if (!scene) return fail(std::move(scene.error()));
+  return scenes.emplace(model->id(), std::move(*scene)).first->second.get();
 }
 
 Result<residency::PreparedView> Renderer::State::prepare(Scene& scene, const picture::PictureRequest& request,
@@ -218,17 +222,24 @@ Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const pict
   std::vector<std::byte> pixels;
   for (const Region& region : cut_into_regions(request.width, request.height, margin)) {
     const Region drawn = with_margin(region, margin, request.width, request.height);
-    RegionTask task{&surfels, {},
-                    frame,    region,
-                    drawn,    frame_constants(frame, drawn, request, info.oriented),
-                    variant,  &request,
-                    display,  colors_of(display)};
+    RegionTask task{&surfels,
+                    kinds,
+                    {},
+                    frame,
+                    region,
+                    drawn,
+                    frame_constants(frame, drawn, request, info.oriented),
+                    variant,
+                    &request,
+                    display,
+                    colors_of(display)};
     for (const uint32_t block :
          selection::blocks_in_rectangle(scene.viewed().tree, view.selection.draw, frame, drawn.x, drawn.y,
                                         drawn.x + drawn.width, drawn.y + drawn.height)) {
       const geometry::Box& bounds = scene.model().tree().blocks()[block].bounds;
       task.blocks.push_back({&residency.pool().at({scene.model().id(), block}),
-                             selection::radii_at_spacing(bounds, frame, request.spacing), scene.first_surfel(block)});
+                             selection::radii_at_spacing(bounds, frame, request.spacing), scene.first_surfel(block),
+                             scene.kind_of(block)});
     }
     const Region& written = variant.eye_dome ? region : drawn;
     pixels.resize(static_cast<size_t>(written.width) * static_cast<size_t>(written.height) * bytes);
@@ -266,7 +277,9 @@ Result<picture::Frame> Renderer::State::draw(const std::shared_ptr<const model::
   }
   const Result<DisplayOptions> display = resolve_display_options(model->info(), request);
   if (!display) return fail(display.error());
-  Scene& scene = scene_of(model);
+  const Result<Scene*> found = scene_of(model);
+  if (!found) return fail(found.error());
+  Scene& scene = **found;
   picture::Frame result;
   result.camera = scene.camera_of(request);
   const Result<geometry::CameraFrame> frame = geometry::make_camera_frame(result.camera, request.width, request.height);
@@ -306,6 +319,9 @@ Renderer::~Renderer() = default;
 
 const picture::DeviceInfo& Renderer::device() const {
   return state_->device;
+}
+std::vector<std::string> Renderer::programs() const {
+  return state_->programs.compiled();
 }
 int Renderer::max_resolution() const {
   return kMaxResolution;

@@ -3,9 +3,11 @@
 #include <cstddef>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "base/preemption.h"
 #include "base/result.h"
+#include "kinds/kind_table.h"
 #include "model/model_file.h"
 #include "picture/device_info.h"
 #include "picture/picture.h"
@@ -17,6 +19,7 @@ struct RendererConfig {
   size_t gpu_bytes = size_t{1} << 30;     ///< for the surfels of all models
   size_t host_bytes = size_t{256} << 20;  ///< for blocks that may come back to the GPU
   std::string shader_defines{};  ///< text before every shader, of programs that measure other kernels than our own
+  kinds::KindTable kinds = built_in_kinds();  ///< that models may have; others are not drawn. Outlives the renderer
 };
 
 /// Draws pictures of models. Owns a GL context: create, use and destroy it on one thread.
@@ -25,16 +28,18 @@ class Renderer {
   static Result<std::unique_ptr<Renderer>> create(const RendererConfig& config);
   ~Renderer();
 
-  /// Draws one picture. Blocks of the model stay resident for later ones. Fails on a wrong camera or resolution, and
-  /// when it waits for a block that is damaged; returns kCancelled soon after it is interrupted for good. What is more
-  /// urgent may draw one other picture at a time meanwhile: it has memory of its own for what is between the passes,
-  /// and leaves alone the blocks that this one shows.
+  /// Draws one picture. Blocks of the model stay resident for later ones. Fails on a wrong camera or resolution, on
+  /// blocks of a kind that it does not know, and when it waits for a block that is damaged; returns kCancelled soon
+  /// after it is interrupted for good. What is more urgent may draw one other picture at a time meanwhile: it has
+  /// memory of its own for what is between the passes, and leaves alone the blocks that this one shows.
   Result<picture::Frame> draw(const std::shared_ptr<const model::ModelFile>& model,
                               const picture::PictureRequest& request, const Preemption& preemption);
   /// Lets go of what is resident of a model that will not be drawn again, after the picture that is being drawn.
   void release_model(const model::ModelFile& model);
 
   [[nodiscard]] const picture::DeviceInfo& device() const;
+  /// The shaders that were compiled so far, with the kinds that they are of besides surfels.
+  [[nodiscard]] std::vector<std::string> programs() const;
   /// Largest picture side in pixels that the device can draw.
   [[nodiscard]] int max_resolution() const;
 

@@ -5,8 +5,17 @@
 #include "model/fit_model.h"
 
 namespace surfcast::render {
-Scene::Scene(std::shared_ptr<const model::ModelFile> model)
-    : model_(std::move(model)), viewed_(std::make_shared<const residency::FileBlocks>(model_)) {
+
+Result<std::unique_ptr<Scene>> Scene::create(const std::shared_ptr<const model::ModelFile>& model,
+                                             kinds::KindTable kinds) {
+  Result<std::vector<uint32_t>> numbers = kinds::find_kinds(*model, kinds);
+  if (!numbers) return fail(std::move(numbers.error()));
+  auto blocks = std::make_shared<const kinds::FileBlocks>(model, kinds, std::move(*numbers));
+  return std::unique_ptr<Scene>(new Scene(model, std::move(blocks)));
+}
+
+Scene::Scene(std::shared_ptr<const model::ModelFile> model, std::shared_ptr<const kinds::FileBlocks> blocks)
+    : model_(std::move(model)), blocks_(std::move(blocks)), viewed_(blocks_) {
   uint32_t first = 0;
   for (const ldc::BlockEntry& block : model_->blocks()) {
     first_surfels_.push_back(first);

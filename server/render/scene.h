@@ -6,6 +6,7 @@
 #include <optional>
 #include <vector>
 
+#include "kinds/file_blocks.h"
 #include "model/model_file.h"
 #include "picture/picture.h"
 #include "residency/residency.h"
@@ -27,10 +28,14 @@ std::optional<geometry::CameraFrame> update_and_extrapolate(ViewerHistory& histo
 /// A model that is being looked at.
 class Scene {
  public:
-  explicit Scene(std::shared_ptr<const model::ModelFile> model);
+  /// Fails when the model has blocks of a kind that is not in the table.
+  static Result<std::unique_ptr<Scene>> create(const std::shared_ptr<const model::ModelFile>& model,
+                                               kinds::KindTable kinds);
 
   [[nodiscard]] const model::ModelFile& model() const { return *model_; }
   [[nodiscard]] const residency::ViewedModel& viewed() const { return viewed_; }
+  /// Number of a block's kind in the table.
+  [[nodiscard]] uint32_t kind_of(uint32_t block) const { return blocks_->kind_of(block); }
   /// Surfels of the blocks before this one: where its surfels begin among all of the model, modulo 2^32.
   [[nodiscard]] uint32_t first_surfel(uint32_t block) const { return first_surfels_[block]; }
   /// The camera asked for, or one that fits the model.
@@ -40,7 +45,10 @@ class Scene {
   ViewerHistory& history_of(uint64_t viewer);
 
  private:
+  Scene(std::shared_ptr<const model::ModelFile> model, std::shared_ptr<const kinds::FileBlocks> blocks);
+
   std::shared_ptr<const model::ModelFile> model_;
+  std::shared_ptr<const kinds::FileBlocks> blocks_;
   residency::ViewedModel viewed_;
   std::vector<uint32_t> first_surfels_;
   std::list<ViewerHistory> viewers_;  ///< most recent first

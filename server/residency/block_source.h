@@ -7,7 +7,7 @@
 
 #include "base/result.h"
 #include "ldc/block_tree.h"
-#include "residency/packing.h"
+#include "residency/packed_block.h"
 
 namespace surfcast::residency {
 
@@ -23,28 +23,6 @@ class BlockSource {
   virtual void prefetch(uint32_t block) const = 0;
   /// Reads, decodes and packs a block, with PackedBlock::attributes or without.
   [[nodiscard]] virtual Result<PackedBlock> load(uint32_t block, bool attributes) const = 0;
-};
-
-/// The blocks of a model file.
-class FileBlocks : public BlockSource {
- public:
-  explicit FileBlocks(std::shared_ptr<const model::ModelFile> model) : model_(std::move(model)) {}
-
-  [[nodiscard]] uint64_t id() const override { return model_->id(); }
-  [[nodiscard]] const ldc::BlockTree& tree() const override { return model_->tree(); }
-  void prefetch(uint32_t block) const override { model_->prefetch(block); }
-  [[nodiscard]] Result<PackedBlock> load(uint32_t block, bool attributes) const override {
-    const Result<model::DecodedBlock> decoded =
-        model_->decode(block, attributes ? model::WantedScalars::kDrawn : model::WantedScalars::kNone);
-    if (!decoded) return fail(decoded.error());
-    PackedBlock packed = pack_block(*decoded, model_->info().color_bits, model_->info().oriented);
-    if (attributes) pack_attributes(*decoded, packed);
-    packed.representatives = {};  // host memory keeps packed blocks, and nobody asks for these again
-    return packed;
-  }
-
- private:
-  std::shared_ptr<const model::ModelFile> model_;
 };
 
 /// A block of any model.

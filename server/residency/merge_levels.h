@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "residency/merge_surfels.h"
+#include "residency/packed_block.h"
 
 namespace surfcast::residency {
 
@@ -32,10 +33,8 @@ struct SurfelSequence {
   std::vector<PackedRun> runs;
 };
 
-/// A sequence has at most so many times the surfels of the block.
-inline constexpr uint32_t kMaxPackedPerSurfel = 2;
-
-/// `surfels` lie along a space filling curve; see merge_surfels.
+/// `surfels` lie along a space filling curve; see merge_surfels. The sequence has at most kMaxPackedPerSurfel times as
+/// many.
 SurfelSequence merge_levels(std::vector<MergedSurfel> surfels, bool oriented);
 
 }  // namespace surfcast::residency

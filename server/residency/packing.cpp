@@ -205,9 +205,9 @@ LogScale log_scale_of(std::span<const MergedSurfel> surfels, float MergedSurfel:
 
 }  // namespace
 
-PackedBlock pack_block(const model::DecodedBlock& block, int color_bits, bool oriented) {
+PackedSurfels pack_block(const model::DecodedBlock& block, int color_bits, bool oriented) {
   SURFCAST_EXPECTS(block.size() > 0);
-  PackedBlock packed;
+  PackedSurfels packed;
   packed.lattice = packed_lattice(block);
   SurfelSequence sequence = merge_levels(surfels_of(block, color_bits, packed.lattice), oriented);
   packed.radius = log_scale_of(sequence.surfels, &MergedSurfel::radius);
@@ -261,7 +261,7 @@ uint32_t class_code(double value) {
 
 }  // namespace
 
-void pack_attributes(const model::DecodedBlock& block, PackedBlock& packed) {
+void pack_attributes(const model::DecodedBlock& block, PackedSurfels& packed) {
   const std::vector<double> intensities = scalar_values(block, "intensity");
   const std::vector<double> classes = scalar_values(block, "classification");
   packed.intensity = scale_of(intensities);

@@ -8,6 +8,7 @@
 
 #include "model/model_file.h"
 #include "residency/merge_levels.h"
+#include "residency/packed_block.h"
 
 namespace surfcast::residency {
 
@@ -22,52 +23,28 @@ struct LogScale {
   [[nodiscard]] uint32_t code(float value) const;
 };
 
-/// Where the position codes of a block lie.
-struct PackedLattice {
-  surfel::Grid grid;      ///< of the model
-  glm::i64vec3 first{0};  ///< index of code 0 on it
-  glm::ivec3 shift{0};    ///< a step of the codes is 2^shift steps of the grid
-  glm::uvec3 largest{0};  ///< code
-
-  /// World coordinates of a code; exact where `shift` is 0.
-  [[nodiscard]] glm::dvec3 position(const glm::uvec3& code) const {
-    return grid.position(first + (glm::i64vec3(code) << glm::i64vec3(shift)));
-  }
-  [[nodiscard]] glm::dvec3 step() const { return grid.scale * glm::dvec3(glm::ivec3(1) << shift); }
-};
-
-/// Intensities on a linear scale of 16 bits: first + step * code.
-struct LinearScale {
-  double first = 0;
-  double step = 0;
-};
-
-/// A block in the form that the projection reads: 16 bytes a surfel (shaders/shared/surfel_layout.h).
+/// A block of surfels in the form that the projection reads: 16 bytes a surfel (shaders/shared/surfel_layout.h).
 ///
 /// Behind the surfels of the block follow some levels of merged ones, each about half as many as the one before, so
 /// that any spacing can be drawn at a cost that follows from it alone: of a surfel and what it is merged to, the one is
 /// drawn that is just fine enough where it stands (shaders/include/spacing.glsl).
-struct PackedBlock {
+struct PackedSurfels {
   PackedLattice lattice;
   LogScale radius;  ///< world units
   LogScale weight;
   std::vector<glm::uvec4> surfels;
-  /// For each of `surfels`, one of the block's whose attributes it shows. A source drops them once those are packed.
+  /// For each of `surfels`, one of the block's whose attributes it shows.
   std::vector<uint32_t> representatives;
   std::vector<PackedRun> runs;
 
   /// 16 bits of intensity, then 8 of classification, zeros of what the block lacks; none unless asked for.
   std::vector<uint32_t> attributes;
   LinearScale intensity;
-
-  [[nodiscard]] size_t bytes() const {
-    return surfels.size() * sizeof(glm::uvec4) + attributes.size() * sizeof(uint32_t);
-  }
 };
 
-PackedBlock pack_block(const model::DecodedBlock& block, int color_bits, bool oriented);
+PackedSurfels pack_block(const model::DecodedBlock& block, int color_bits, bool oriented);
 /// Adds the attributes of the same block.
-void pack_attributes(const model::DecodedBlock& block, PackedBlock& packed);
+void pack_attributes(const model::DecodedBlock& block, PackedSurfels& packed);
 
 /// For each 8 bit sRGB value the root of its linear light in the 11 bits, and from bit 16 on the 10 bits, of a splat's
 /// packed colour (unpack_linear_color in shaders/include/packing.glsl): near black as fine as 8 bit sRGB needs it.

@@ -14,14 +14,14 @@ void SurfelPool::pin(const BlockId& id) {
 
 namespace {
 
-/// Calls `write(first texel, first surfel, surfels)` for each run of pages that follow each other.
+/// Calls `write(first texel in memory, first of the block, count)` for each run of pages that follow each other.
 template <typename Write>
-void for_each_run(std::span<const uint32_t> pages, size_t surfels, const Write& write) {
+void for_each_run(std::span<const uint32_t> pages, size_t texels, const Write& write) {
   for (size_t i = 0; i < pages.size();) {
     size_t end = i + 1;
     while (end < pages.size() && pages[end] == pages[end - 1] + 1) ++end;
     const size_t first = i * SurfelPool::kPageSurfels;
-    const size_t last = std::min(end * SurfelPool::kPageSurfels, surfels);
+    const size_t last = std::min(end * SurfelPool::kPageSurfels, texels);
     write(size_t{pages[i]} * SurfelPool::kPageSurfels, first, last - first);
     i = end;
   }
@@ -39,20 +39,20 @@ void SurfelPool::drop(const BlockId& id) {
   residents.attributes[id.block] = false;
 }
 
-/// Gives a block pages and writes its surfels; null without room.
+/// Gives a block pages and writes its texels; null without room.
 ResidentBlock* SurfelPool::place(const BlockId& id, const ldc::BlockTree& tree, const PackedBlock& block) {
-  const auto surfels = static_cast<uint32_t>(block.surfels.size());
-  const uint32_t count = (surfels + kPageSurfels - 1) / kPageSurfels;
+  const auto texels = static_cast<uint32_t>(block.texels.size());
+  const uint32_t count = (texels + kPageSurfels - 1) / kPageSurfels;
   const std::span<const uint32_t> pages = table_.insert(id, count, [this](const BlockId& evicted) { drop(evicted); });
   if (pages.empty()) return nullptr;
-  for_each_run(pages, surfels, [&](size_t texel, size_t first, size_t run) {
-    sink_.write(texel, std::span(block.surfels).subspan(first, run));
+  for_each_run(pages, texels, [&](size_t texel, size_t first, size_t run) {
+    sink_.write(texel, std::span(block.texels).subspan(first, run));
   });
   Residents& residents = residents_[id.model];
   residents.surfels.resize(tree.blocks().size());
   residents.attributes.resize(tree.blocks().size());
   residents.surfels[id.block] = true;
-  return &(blocks_[id] = {block.lattice, block.radius, block.weight, block.runs, std::nullopt, pages});
+  return &(blocks_[id] = {block.lattice, block.header, std::nullopt, pages});
 }
 
 void SurfelPool::add_attributes(const BlockId& id, const PackedBlock& block, ResidentBlock& resident) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <memory>
 #include <optional>
 #include <span>
 #include <unordered_map>
@@ -11,22 +12,20 @@
 
 namespace surfcast::residency {
 
-/// Where packed surfels go to: GPU memory, as an array of texels of one surfel each.
+/// Where packed blocks go to: GPU memory, as an array of texels, of one surfel each where a block is of surfels.
 class SurfelSink {
  public:
   virtual ~SurfelSink() = default;
-  /// Writes surfels from texel `first` on.
-  virtual void write(size_t first, std::span<const glm::uvec4> surfels) = 0;
-  /// Writes attributes of the surfels from texel `first` on.
+  /// Writes from texel `first` on.
+  virtual void write(size_t first, std::span<const glm::uvec4> texels) = 0;
+  /// Writes attributes of the texels from `first` on.
   virtual void write_attributes(size_t first, std::span<const uint32_t> attributes) = 0;
 };
 
-/// A resident block: where its surfels lie, and how to read them.
+/// A resident block: where its texels lie, and how to read them.
 struct ResidentBlock {
   PackedLattice lattice;  ///< as in PackedBlock, like all but `pages`
-  LogScale radius;
-  LogScale weight;
-  std::vector<PackedRun> runs;
+  std::shared_ptr<const BlockHeader> header;
   std::optional<LinearScale> intensity{};  ///< none: without attributes
   std::span<const uint32_t> pages;         ///< each SurfelPool::kPageSurfels texels; good until the block is evicted
 };

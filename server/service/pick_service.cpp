@@ -34,14 +34,14 @@ void PickService::pick(PickJob job, Done done) {
     return done(fail(ErrorKind::kUnavailable, "the server is busy: too many picks wait"));
   }
   pool_.post([this, job = std::move(job), done = std::move(done)] {
-    Result<std::optional<pick::PickedSurfel>> picked = run(job);
+    Result<std::optional<kinds::PickedSurfel>> picked = run(job);
     --waiting_;
     done(std::move(picked));
   });
 }
 
 /// What may throw (memory runs out) becomes a value, so that one pick cannot end the server.
-Result<std::optional<pick::PickedSurfel>> PickService::run(const PickJob& job) {
+Result<std::optional<kinds::PickedSurfel>> PickService::run(const PickJob& job) {
   try {
     const picture::PictureRequest& request = job.request;
     if (job.x < 0 || job.y < 0 || job.x >= request.width || job.y >= request.height) {

@@ -26,7 +26,7 @@ struct PickJob {
 /// thread.
 class PickService {
  public:
-  using Done = std::function<void(Result<std::optional<pick::PickedSurfel>>)>;
+  using Done = std::function<void(Result<std::optional<kinds::PickedSurfel>>)>;
 
   /// `models` must outlive the service.
   explicit PickService(const ModelSource& models);
@@ -38,7 +38,7 @@ class PickService {
   void pick(PickJob job, Done done);
 
  private:
-  [[nodiscard]] Result<std::optional<pick::PickedSurfel>> run(const PickJob& job);
+  [[nodiscard]] Result<std::optional<kinds::PickedSurfel>> run(const PickJob& job);
 
   const ModelSource& models_;
   std::atomic<bool> stopping_ = false;

@@ -1,4 +1,5 @@
-// Large splats: the exact filter in every pixel. Used only where a lane holds one pixel.
+// Large splats: the exact filter in every pixel. Used only where a lane holds one pixel. Their tile lists also hold the
+// records of other kinds than surfels.
 #include "include/pixel_sums.glsl"
 #include "include/resampling_filter.glsl"
 #include "include/splat_record.glsl"
@@ -73,9 +74,12 @@ float large_peak(LargeSplat s, vec2 ray) {
   return s.weight * gain * coverage_scale(gain);
 }
 
+#include "kinds/exact_list.glsl"
+
 void find_surface_large(uint first, uint count, vec2 pixel, Columns limit, inout Columns surface, inout float peak) {
   vec2 ray = ray_of_pixel(pixel);
   for (uint k = 0u; k < count; ++k) {
+#include "kinds/see_entry.glsl"
     LargeSplat s = fetch_large(int(texelFetch(lists, int(first + k)).x));
     peak = max(peak, large_peak(s, ray));
     float disc_radius = float(SURFCAST_VISIBILITY_RADIUS) * s.radius;
@@ -92,6 +96,7 @@ void accumulate_large(uint first, uint count, vec2 pixel, Columns limit, Columns
     uint end = min(begin + uint(SURFCAST_CARRY_INTERVAL), count);
     for (uint k = begin; k < end; ++k) {
       int slot = int(texelFetch(lists, int(first + k)).x);
+#include "kinds/add_entry.glsl"
       LargeSplat s = fetch_large(slot);
       float end = large_cutoff(s);
       vec2 form_gain = large_form(s, ray, kernel_deviation(s), prefilter_variance());

@@ -31,7 +31,7 @@ bool near(const glm::u8vec4& pixel, const glm::u8vec3& color) {
 
 class Agreement {
  public:
-  void add(const glm::u8vec4& pixel, const std::optional<PickedSurfel>& picked) {
+  void add(const glm::u8vec4& pixel, const std::optional<kinds::PickedSurfel>& picked) {
     // Where edges are blended, both answers are right.
     if (pixel.a == 0 && picked) ++wrong_;
     if (pixel.a != 255 || !(near(pixel, kSphere) || near(pixel, kFloor))) return;
@@ -68,7 +68,7 @@ TEST_F(PickGLTest, PicksAgreeWithPicturesAlsoWhereSomethingIsHidden) {
       SourceBlocks blocks(size_t{1} << 20);
       for (int y = 3; y < request.height; y += 15) {
         for (int x = 3; x < request.width; x += 15) {
-          const PickQuery query{frame, {x + 0.5, y + 0.5}, request.clip, request.hidden_classes};
+          const kinds::PickQuery query{frame, {x + 0.5, y + 0.5}, request.clip, request.hidden_classes};
           agreement.add(pixel(image, x, y), *pick_surfel(*model, query, blocks, no));
         }
       }

@@ -32,8 +32,8 @@ class FakeBlocks : public residency::BlockSource {
     }
     if (damaged_.contains(block)) return fail(ErrorKind::kInvalidInput, "block " + std::to_string(block) + ": damaged");
     residency::PackedBlock packed;
-    packed.surfels.assign(tree_.blocks()[block].surfels, glm::uvec4(block));
-    if (attributes) packed.attributes.assign(packed.surfels.size(), block);
+    packed.texels.assign(tree_.blocks()[block].surfels, glm::uvec4(block));
+    if (attributes) packed.attributes.assign(packed.texels.size(), block);
     return packed;
   }
 

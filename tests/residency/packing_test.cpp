@@ -21,7 +21,7 @@ struct Unpacked {
 };
 
 /// Where surfel `i` of the block lies, not what it was merged to.
-size_t place_of(const PackedBlock& block, size_t i) {
+size_t place_of(const PackedSurfels& block, size_t i) {
   for (const PackedRun& run : block.runs) {
     for (uint32_t k = run.first; run.finest && k < run.first + run.count; ++k) {
       if (block.representatives[k] == i) return k;
@@ -31,7 +31,7 @@ size_t place_of(const PackedBlock& block, size_t i) {
   return 0;
 }
 
-Unpacked unpacked(const PackedBlock& block, size_t i) {
+Unpacked unpacked(const PackedSurfels& block, size_t i) {
   const glm::uvec4 s = block.surfels[place_of(block, i)];
   const auto size = [](const LogScale& scale, uint32_t code) {
     return std::exp2(scale.log2_largest - scale.octaves * code / 1023);
@@ -65,7 +65,7 @@ TEST(PackBlock, WhatFitsTwentyBitsIsExact) {
   std::mt19937 random(1);
   for (const int extent : {0, 1, 1000, (1 << 20) - 1}) {
     const model::DecodedBlock block = block_of(200, extent, random);
-    const PackedBlock packed = pack_block(block, 8, true);
+    const PackedSurfels packed = pack_block(block, 8, true);
     for (size_t i = 0; i < block.size(); ++i) {
       EXPECT_LT(glm::distance(unpacked(packed, i).position, block.position(i)), 1e-8) << extent;
     }
@@ -76,7 +76,7 @@ TEST(PackBlock, LongerLatticesAreRoundedToAMillionthOfTheirExtent) {
   std::mt19937 random(2);
   for (const int extent : {1 << 20, (1 << 21) - 1, 12345678, (1 << 30) - 1}) {
     const model::DecodedBlock block = block_of(200, extent, random);
-    const PackedBlock packed = pack_block(block, 8, true);
+    const PackedSurfels packed = pack_block(block, 8, true);
     const glm::dvec3 tolerance = 1.01 * block.grid.scale * static_cast<double>(extent) / double{1 << 20};
     for (size_t i = 0; i < block.size(); ++i) {
       const glm::dvec3 d = glm::abs(unpacked(packed, i).position - block.position(i));
@@ -88,7 +88,7 @@ TEST(PackBlock, LongerLatticesAreRoundedToAMillionthOfTheirExtent) {
 TEST(PackBlock, NormalsAndColorsOfEightBitsComeBackAsTheFileHasThem) {
   std::mt19937 random(3);
   const model::DecodedBlock block = block_of(2000, 1000, random);
-  const PackedBlock packed = pack_block(block, 8, true);
+  const PackedSurfels packed = pack_block(block, 8, true);
   for (size_t i = 0; i < block.size(); ++i) {
     const Unpacked s = unpacked(packed, i);
     EXPECT_LT(glm::distance(model::decode_normal(s.normal, model::kSourcePrecision.octahedral_half), block.normals[i]),
@@ -101,7 +101,7 @@ TEST(PackBlock, ColorsOfSixteenBitsAreRounded) {
   std::mt19937 random(4);
   model::DecodedBlock block = block_of(3, 10, random);
   block.colors = {{0, 65535, 257 * 128}, {128, 129, 257}, {65535 - 128, 65535 - 129, 300}};
-  const PackedBlock packed = pack_block(block, 16, true);
+  const PackedSurfels packed = pack_block(block, 16, true);
   EXPECT_EQ(unpacked(packed, 0).color, glm::uvec3(0, 255, 128));
   EXPECT_EQ(unpacked(packed, 1).color, glm::uvec3(0, 1, 1));
   EXPECT_EQ(unpacked(packed, 2).color, glm::uvec3(255, 254, 1));
@@ -110,7 +110,7 @@ TEST(PackBlock, ColorsOfSixteenBitsAreRounded) {
 TEST(PackBlock, SizesAreWithinAHalfStepOfTheBlocksOwnScale) {
   std::mt19937 random(5);
   const model::DecodedBlock block = block_of(2000, 1000, random);
-  const PackedBlock packed = pack_block(block, 8, true);
+  const PackedSurfels packed = pack_block(block, 8, true);
   for (size_t i = 0; i < block.size(); ++i) {
     const Unpacked s = unpacked(packed, i);
     EXPECT_NEAR(s.radius / static_cast<double>(block.radii[i]), 1, 0.0009)
@@ -125,7 +125,7 @@ TEST(PackBlock, OneSizeIsExactAndAVanishingOneHoldsBackNoOther) {
   block.radii.assign(100, 0.0123F);
   block.weights.assign(100, 0.5F);
   block.weights[7] = 1e-30F;
-  const PackedBlock packed = pack_block(block, 8, true);
+  const PackedSurfels packed = pack_block(block, 8, true);
   EXPECT_NEAR(unpacked(packed, 3).radius, 0.0123, 1e-9);
   EXPECT_NEAR(unpacked(packed, 3).weight, 0.5, 1e-9);
   EXPECT_NEAR(unpacked(packed, 7).weight, 0.5 * std::exp2(-32), 1e-12);
@@ -135,9 +135,9 @@ TEST(PackBlock, WithoutColorsTheSurfelIsPackedAllTheSame) {
   std::mt19937 random(7);
   model::DecodedBlock block = block_of(10, 1000, random);
   block.colors.clear();
-  const PackedBlock packed = pack_block(block, 0, true);
+  const PackedSurfels packed = pack_block(block, 0, true);
   for (size_t i = 0; i < block.size(); ++i) EXPECT_EQ(unpacked(packed, i).color, glm::uvec3(0));
-  EXPECT_EQ(packed.bytes(), 160u);
+  EXPECT_EQ(packed.surfels.size() * sizeof(glm::uvec4), 160U);
 }
 
 TEST(LinearRootTable, EveryLevelComesBackWithinAQuarterOfALevelOrSoInTenBits) {
@@ -167,7 +167,7 @@ TEST(PackBlock, WhatIsMergedShowsTheAttributesOfOneOfItsOwn) {
   std::vector<uint8_t> classes(block.size());
   for (uint8_t& code : classes) code = static_cast<uint8_t>(random() % 200);
   block.scalars.push_back({"classification", classes});
-  PackedBlock packed = pack_block(block, 8, true);
+  PackedSurfels packed = pack_block(block, 8, true);
   pack_attributes(block, packed);
   ASSERT_GT(packed.surfels.size(), block.size()) << "some are merged";
   ASSERT_EQ(packed.attributes.size(), packed.surfels.size());

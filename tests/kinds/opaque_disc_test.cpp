@@ -1,4 +1,4 @@
-#include "pick/opaque_disc.h"
+#include "kinds/opaque_disc.h"
 
 #include <cmath>
 #include <glm/geometric.hpp>
@@ -8,7 +8,7 @@
 
 #include "reference/resampling_filter.h"
 
-namespace surfcast::pick {
+namespace surfcast::kinds {
 namespace {
 
 constexpr double kEta = 1300;
@@ -54,4 +54,4 @@ TEST(OpaqueDisc, EdgeOnItIsAsThinAsThePrefilterAndNeverBeyondItsOwnDepth) {
 }
 
 }  // namespace
-}  // namespace surfcast::pick
+}  // namespace surfcast::kinds

@@ -1,4 +1,4 @@
-#include "pick/opaque_disc.h"
+#include "kinds/opaque_disc.h"
 
 #include <algorithm>
 #include <cmath>
@@ -8,7 +8,7 @@
 
 #include "shared/kernel.h"
 
-namespace surfcast::pick {
+namespace surfcast::kinds {
 namespace {
 
 /// Radius beyond which neither kernel nor disc of a surfel reaches.
@@ -51,4 +51,4 @@ std::optional<DiscHit> hit_disc(const glm::dvec3& o, const glm::dvec3& n, double
   return DiscHit{form, std::min(plane, o.z + range), std::max(plane, o.z - range) * (1 + push / o.z)};
 }
 
-}  // namespace surfcast::pick
+}  // namespace surfcast::kinds

@@ -3,7 +3,7 @@
 #include <glm/vec3.hpp>
 #include <optional>
 
-namespace surfcast::pick {
+namespace surfcast::kinds {
 
 /// The opaque disc of a surfel where it covers the centre of a pixel (Ren 2002, section 5.1), as the visibility pass of
 /// the shaders has it, in double precision. Symbols are those of shaders/include/resampling_filter.glsl.
@@ -18,4 +18,4 @@ struct DiscHit {
 std::optional<DiscHit> hit_disc(const glm::dvec3& o, const glm::dvec3& n, double radius, const glm::dvec3& ray,
                                 double eta);
 
-}  // namespace surfcast::pick
+}  // namespace surfcast::kinds

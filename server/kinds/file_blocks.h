@@ -1,0 +1,31 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "kinds/kind_table.h"
+#include "residency/block_source.h"
+
+namespace surfcast::kinds {
+
+/// The blocks of a model file, each loaded by its kind.
+class FileBlocks : public residency::BlockSource {
+ public:
+  /// `numbers`: find_kinds of the model.
+  FileBlocks(std::shared_ptr<const model::ModelFile> model, KindTable kinds, std::vector<uint32_t> numbers)
+      : model_(std::move(model)), kinds_(kinds), numbers_(std::move(numbers)) {}
+
+  [[nodiscard]] uint64_t id() const override { return model_->id(); }
+  [[nodiscard]] const ldc::BlockTree& tree() const override { return model_->tree(); }
+  void expect(uint32_t block) const override { model_->expect(block); }
+  [[nodiscard]] Result<residency::PackedBlock> load(uint32_t block, bool attributes) const override;
+  /// Number of a block's kind in the table.
+  [[nodiscard]] uint32_t kind_of(uint32_t block) const { return numbers_[model_->blocks()[block].kind]; }
+
+ private:
+  std::shared_ptr<const model::ModelFile> model_;
+  KindTable kinds_;
+  std::vector<uint32_t> numbers_;
+};
+
+}  // namespace surfcast::kinds

@@ -1,0 +1,75 @@
+#include "kinds/surfel_kind.h"
+
+#include <algorithm>
+#include <glm/vec2.hpp>
+#include <utility>
+
+#include "kinds/decoded_surfels.h"
+#include "residency/packing.h"
+#include "shared/frame_layout.h"
+#include "shared/surfel_layout.h"
+
+namespace surfcast::kinds {
+namespace {
+
+uint32_t flags_of(const residency::PackedRun& run) {
+  return (run.finest ? SURFCAST_RUN_FINEST : 0) | (run.coarsest ? SURFCAST_RUN_COARSEST : 0) |
+         (run.pairs ? SURFCAST_RUN_PAIRS : 0);
+}
+
+/// Whether the projection may draw any of a chunk (shaders/include/spacing.glsl), with room for what rounding radii to
+/// codes changes.
+bool may_be_drawn(const residency::PackedRun& run, const residency::PackedRun::Radii& radii,
+                  const selection::RadiusRange& wanted) {
+  constexpr double kRounding = 1.02;
+  return (run.finest || radii.least <= kRounding * wanted.largest) &&
+         (run.coarsest || kRounding * radii.largest_merged > SURFCAST_SPACING_SLACK * wanted.least);
+}
+
+class SurfelHeader : public residency::BlockHeader {
+ public:
+  explicit SurfelHeader(residency::PackedSurfels& packed)
+      : radius_(packed.radius), weight_(packed.weight), runs_(std::move(packed.runs)) {}
+
+  [[nodiscard]] glm::vec4 scale(int unit) const override {
+    const auto scale_of = [](const residency::LogScale& s) {
+      return glm::dvec2(s.log2_largest, s.octaves / SURFCAST_SIZE_STEPS);
+    };
+    return {glm::vec2(scale_of(radius_) + glm::dvec2(unit, 0)), glm::vec2(scale_of(weight_))};
+  }
+
+  void add_runs(const selection::RadiusRange& wanted, std::vector<residency::TexelRun>& runs) const override {
+    for (const residency::PackedRun& run : runs_) {
+      for (uint32_t i = 0; i < run.count; i += SURFCAST_CHUNK) {
+        if (!may_be_drawn(run, run.chunks[i / SURFCAST_CHUNK], wanted)) continue;
+        runs.push_back({run.first + i, std::min<uint32_t>(run.count - i, SURFCAST_CHUNK), flags_of(run)});
+      }
+    }
+  }
+
+ private:
+  residency::LogScale radius_;
+  residency::LogScale weight_;
+  std::vector<residency::PackedRun> runs_;
+};
+
+}  // namespace
+
+Result<residency::PackedBlock> SurfelKind::load(const model::ModelFile& model, uint32_t block, bool attributes) const {
+  const Result<model::DecodedBlock> decoded =
+      model.decode(block, attributes ? model::WantedScalars::kDrawn : model::WantedScalars::kNone);
+  if (!decoded) return fail(decoded.error());
+  residency::PackedSurfels packed = residency::pack_block(*decoded, model.info().color_bits, model.info().oriented);
+  if (attributes) residency::pack_attributes(*decoded, packed);
+  auto header = std::make_shared<const SurfelHeader>(packed);
+  return residency::PackedBlock{packed.lattice, std::move(packed.surfels), std::move(packed.attributes),
+                                packed.intensity, std::move(header)};
+}
+
+Result<std::shared_ptr<const SourceBlock>> SurfelKind::decode(const model::ModelFile& model, uint32_t block) const {
+  Result<model::DecodedBlock> decoded = model.decode(block);
+  if (!decoded) return fail(std::move(decoded.error()));
+  return std::make_shared<const DecodedSurfels>(std::move(*decoded), model.info());
+}
+
+}  // namespace surfcast::kinds

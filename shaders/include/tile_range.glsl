@@ -1,0 +1,21 @@
+// The tiles that a rectangle of pixels touches, as corners of 16 bits, and their counts.
+uvec2 tile_range(vec2 low, vec2 high, out bool outside) {
+  // Pixel centres at +0.5 within [low, high], clipped to the region.
+  vec2 first = ceil(low - 0.5 - vec2(frame.region.xy));
+  vec2 last = floor(high - 0.5 - vec2(frame.region.xy));
+  vec2 size = vec2(frame.region.zw);
+  outside = any(greaterThan(first, last)) || any(lessThan(last, vec2(0.0))) || any(greaterThanEqual(first, size)) ||
+            any(isnan(low + high));
+  uvec2 tile = uvec2(SURFCAST_TILE_WIDTH, SURFCAST_TILE_HEIGHT);
+  uvec2 a = uvec2(clamp(first, vec2(0.0), size - 1.0)) / tile;
+  uvec2 b = uvec2(clamp(last, vec2(0.0), size - 1.0)) / tile;
+  return uvec2(a.x | (a.y << 16), b.x | (b.y << 16));
+}
+
+void count_tiles(uvec2 range, uint first_list) {
+  for (uint y = range.x >> 16; y <= range.y >> 16; ++y) {
+    for (uint x = range.x & 0xffffu; x <= (range.y & 0xffffu); ++x) {
+      atomicAdd(tile_count[first_list + y * uint(frame.tiles.x) + x], 1u);
+    }
+  }
+}

@@ -1,0 +1,5 @@
+      // An entry of a kind's record, in the loop of accumulate_large.
+      if (is_of_kind(slot)) {
+        add_fragment(fragment_at(slot, ray), limit, surface, unit, sums);
+        continue;
+      }

@@ -1,0 +1,21 @@
+// For the projection of a kind, SURFCAST_KIND its number: appends a record to the lists of large splats.
+#include "include/projection_buffers.glsl"
+#include "include/tile_range.glsl"
+#include "kinds/record.glsl"
+
+// Whatever covers a pixel centre between `low` and `high` (pixels of the picture) is drawn. `a`, `b` and `c` are what the
+// kind's fragment function gets; a.w it finds taken.
+void append_record(vec2 low, vec2 high, uvec3 a, uvec4 b, uvec4 c) {
+  bool outside;
+  uvec2 range = tile_range(low, high, outside);
+  if (outside) return;
+  uint from_end = atomicAdd(counters.counts.y, 1u);
+  uint capacity = uint(frame.tiles.w);
+  if (from_end >= capacity) return;  // counted only: the caller makes room and projects again
+  uint slot = capacity - 1u - from_end;
+  imageStore(splats, int(2u * slot), uvec4(a, SURFCAST_KIND_RECORD | uint(SURFCAST_KIND)));
+  imageStore(splats, int(2u * slot + 1u), b);
+  imageStore(discs, int(slot), c);
+  imageStore(bounds, int(slot), uvec4(range, 0u, 0u));
+  count_tiles(range, uint(frame.tiles.z));
+}
