@@ -1,14 +1,16 @@
 // For the projection of a kind, SURFCAST_KIND its number: appends a record to the lists of large splats.
 #include "include/projection_buffers.glsl"
+#include "include/thinning.glsl"
 #include "include/tile_range.glsl"
 #include "kinds/record.glsl"
 
-// Whatever covers a pixel centre between `low` and `high` (pixels of the picture) is drawn. `a`, `b` and `c` are what the
-// kind's fragment function gets; a.w it finds taken.
-void append_record(vec2 low, vec2 high, uvec3 a, uvec4 b, uvec4 c) {
+// Whatever covers a pixel centre between `low` and `high` (pixels of the picture) is drawn, but for what tiles are too
+// crowded for. `id` is Chunk's number of the item's first texel. `a`, `b` and `c` are what the kind's fragment function
+// gets; a.w it finds taken.
+void append_record(uint id, vec2 low, vec2 high, uvec3 a, uvec4 b, uvec4 c) {
   bool outside;
   uvec2 range = tile_range(low, high, outside);
-  if (outside) return;
+  if (outside || thinned_share(range, id, 1.0) == 0.0) return;
   uint from_end = atomicAdd(counters.counts.y, 1u);
   uint capacity = uint(frame.tiles.w);
   if (from_end >= capacity) return;  // counted only: the caller makes room and projects again

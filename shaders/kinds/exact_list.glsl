@@ -1,6 +1,6 @@
-// Records of other kinds than surfels in the lists of large splats: what a kind's own function says of a pixel's ray takes
-// part in the rounds of the splat kernel. A record is three uvec4: two in the buffer of splats and one in that of discs.
-// The sign of the word that is a large splat's radius tells them apart.
+// Records of other kinds than surfels in the lists of large splats: what a kind's own function says of a pixel's ray
+// takes part in the rounds of the splat kernel. A record is three uvec4: two in the buffer of splats and one in that of
+// discs. The sign of the word that is a large splat's radius tells them apart.
 #include "kinds/record.glsl"
 
 // What the ray of a pixel meets of a record.

@@ -102,6 +102,19 @@ TEST_F(SurfcastdTest, InspectsAModelForPeopleAndPrograms) {
   EXPECT_NEAR(model["bounds"]["max"][0].get<double>(), 9, 0.01);
 }
 
+TEST_F(SurfcastdTest, AKindOfBlocksThatItDoesNotKnowIsCountedAndNamed) {
+  fs::copy_file(fs::path(SURFCAST_TEST_DATA) / "square-and-balls-v3.surf", folder_ / "model.surf");
+  const nlohmann::json model = nlohmann::json::parse(run("inspect model.surf --json").out);
+  EXPECT_EQ(model["kinds"], nlohmann::json::parse(R"([{"kind": "surfel", "blocks": 1, "count": 144},
+                                                      {"kind": "ball", "blocks": 3, "count": 4}])"));
+  EXPECT_NE(run("inspect model.surf").out.find("kind ball: 4 in 3 blocks\n"), std::string::npos);
+  for (const char* command : {"inspect model.surf --verify", "render model.surf --output out.png"}) {
+    const Answer answer = run(command);
+    EXPECT_EQ(answer.exit_code, 1) << command;
+    EXPECT_EQ(answer.err, "surfcastd: model.surf: has blocks of the unknown kind 'ball'\n") << command;
+  }
+}
+
 TEST_F(SurfcastdTest, VerifyFindsADamagedBlock) {
   ASSERT_EQ(run("build scan.ply --output model.surf").exit_code, 0);
   std::fstream model(folder_ / "model.surf", std::ios::in | std::ios::out | std::ios::binary);
