@@ -14,6 +14,7 @@
 #include "model/test_folder.h"
 #include "pick/pick_surfel.h"
 #include "render/renderer.h"
+#include "render/shader_library.h"
 
 namespace surfcast::kinds {
 namespace {
@@ -248,7 +249,8 @@ TEST_F(KindsGLTest, TensOfThousandsOfBallsInOnePixelStayOpaque) {
   schema.color_bits = 8;
   Result<model::ModelWriter> writer = model::ModelWriter::create(folder_ / "crowd.surf", schema);
   ASSERT_TRUE(writer);
-  ASSERT_TRUE(writer->add(testing::encode_balls(crowd), ldc::OctreeKey(), {}));
+  // More than software's loops go round (see thinning.glsl): 90000.
+  for (int i = 0; i < 3; ++i) ASSERT_TRUE(writer->add(testing::encode_balls(crowd), ldc::OctreeKey(), {}));
   ASSERT_TRUE(writer->finish());
   const ModelPointer model = open(folder_ / "crowd.surf");
   picture::PictureRequest request = scene_view();
@@ -307,6 +309,19 @@ TEST_F(KindsGLTest, AKindCompilesNothingWhereItIsNotSeen) {
   const std::unique_ptr<render::Renderer> other = renderer_of(testing::kinds_with_balls());
   ASSERT_TRUE(draw(*other, balls, scene_view()));
   EXPECT_FALSE(mentions(other->programs(), "projection of surfel"));
+}
+
+TEST(KindShadersTest, TheTextForSurfelsAloneHasNothingOfOtherKinds) {
+  const render::EmbeddedShader kinds{"kinds/fragment_of.glsl", "// the kinds"};
+  for (const char* file : {"splat.comp", "supersample.comp"}) {
+    const Result<std::string> alone = render::shader_text(file);
+    const Result<std::string> with_kinds = render::shader_text(file, std::span(&kinds, 1));
+    ASSERT_TRUE(alone && with_kinds) << file;
+    for (const char* word : {"Fragment f", "is_of_kind", "SURFCAST_KIND"}) {
+      EXPECT_EQ(alone->find(word), std::string::npos) << file << ' ' << word;
+      EXPECT_NE(with_kinds->find(word), std::string::npos) << file << ' ' << word;
+    }
+  }
 }
 
 TEST_F(KindsGLTest, AProgramThatDoesNotKnowAKindSaysWhichOne) {
