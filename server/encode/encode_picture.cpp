@@ -1,6 +1,8 @@
 #include "encode/encode_picture.h"
 
+#include <algorithm>
 #include <filesystem>
+#include <limits>
 #include <string>
 
 #include <dlfcn.h>
@@ -23,6 +25,22 @@ Result<EncodeFunction*> load_codecs() {
   return reinterpret_cast<EncodeFunction*>(function);
 }
 
+/// Longest side of a picture in a file of the format, pixels. Checked before encoding: libjpeg ends the process
+/// otherwise.
+int largest_side(picture::FileFormat format) {
+  switch (format) {
+    case picture::FileFormat::kJpeg:
+      return 65500;
+    case picture::FileFormat::kWebp:
+      return 16383;
+    case picture::FileFormat::kPng:
+      return 1'000'000;  // libpng's own limit
+    case picture::FileFormat::kExr:
+      break;
+  }
+  return std::numeric_limits<int>::max();
+}
+
 const Result<EncodeFunction*>& codecs() {
   static const Result<EncodeFunction*> loaded = load_codecs();
   return loaded;
@@ -38,6 +56,10 @@ Result<std::vector<std::byte>> encode_picture(const picture::Image& image, pictu
   SURFCAST_EXPECTS(image.width > 0 && image.height > 0 && image.format == picture::pixel_format_of(format));
   SURFCAST_EXPECTS(image.pixels.size() ==
                    bytes_per_pixel(image.format) * static_cast<size_t>(image.width) * image.height);
+  if (std::max(image.width, image.height) > largest_side(format)) {
+    return fail(ErrorKind::kLimit, "a side of more than " + std::to_string(largest_side(format)) +
+                                       " pixels cannot be stored in this file format");
+  }
   if (!codecs()) return fail(codecs().error());
   Result<std::vector<std::byte>> bytes;
   (*codecs())(image, format, quality, bytes);

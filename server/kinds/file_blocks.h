@@ -17,7 +17,7 @@ class FileBlocks : public residency::BlockSource {
 
   [[nodiscard]] uint64_t id() const override { return model_->id(); }
   [[nodiscard]] const ldc::BlockTree& tree() const override { return model_->tree(); }
-  void expect(uint32_t block) const override { model_->expect(block); }
+  void prefetch(uint32_t block) const override { model_->prefetch(block); }
   [[nodiscard]] Result<residency::PackedBlock> load(uint32_t block, bool attributes) const override;
   /// Number of a block's kind in the table.
   [[nodiscard]] uint32_t kind_of(uint32_t block) const { return numbers_[model_->blocks()[block].kind]; }

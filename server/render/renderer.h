@@ -19,7 +19,7 @@ struct RendererConfig {
   size_t gpu_bytes = size_t{1} << 30;     ///< for the surfels of all models
   size_t host_bytes = size_t{256} << 20;  ///< for blocks that may come back to the GPU
   std::string shader_defines{};  ///< text before every shader, of programs that measure other kernels than our own
-  kinds::KindTable kinds = built_in_kinds();  ///< that models may have; others are not drawn. Outlives the renderer
+  kinds::KindTable kinds = kinds::built_in_kinds();  ///< that models may have; others are not drawn. Outlives the renderer
 };
 
 /// Draws pictures of models. Owns a GL context: create, use and destroy it on one thread.

@@ -114,10 +114,10 @@ std::array<int, 6> for_each_sure_pixel(const BallScene& scene, const picture::Pi
   std::array<int, 6> counts{};
   for (int y = 0; y < kSize; ++y) {
     for (int x = 0; x < kSize; ++x) {
-      const Sight here = view_request(x, y);
+      const Sight here = sight(x, y);
       bool sure = here.margin > kTogether;
       for (int dy = -kReach; sure && dy <= kReach; dy += kReach) {
-        for (int dx = -kReach; dx <= kReach; dx += kReach) sure &= view_request(x + dx, y + dy).item == here.item;
+        for (int dx = -kReach; dx <= kReach; dx += kReach) sure &= sight(x + dx, y + dy).item == here.item;
       }
       if (!sure) continue;
       ++counts.at(static_cast<size_t>(here.item + 1));
@@ -185,7 +185,7 @@ TEST_F(KindsGLTest, BothNormalizationsAndSilhouettesShowTheSame) {
 TEST_F(KindsGLTest, TheSameRequestGivesTheSameBytes) {
   const ModelPointer model = mixed();
   const picture::Frame first = draw_scene(model, scene_view());
-  renderer_->forget(*model);
+  renderer_->release_model(*model);
   EXPECT_EQ(draw_scene(model, scene_view()).image.pixels, first.image.pixels);
 }
 
