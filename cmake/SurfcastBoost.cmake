@@ -1,0 +1,10 @@
+# surfcast_boost: Asio and Beast, compiled once for all who speak TCP, HTTP or WebSocket. Their templates alone are left
+# to those who include them. Boost itself is a package of headers.
+find_package(Boost 1.81 CONFIG REQUIRED)
+
+add_library(surfcast_boost STATIC ${CMAKE_CURRENT_LIST_DIR}/boost_asio.cpp ${CMAKE_CURRENT_LIST_DIR}/boost_beast.cpp)
+target_compile_definitions(surfcast_boost PUBLIC
+  BOOST_ASIO_NO_DEPRECATED BOOST_ASIO_SEPARATE_COMPILATION BOOST_BEAST_SEPARATE_COMPILATION)
+# A program that links this library statically carries only what it calls.
+target_compile_options(surfcast_boost PRIVATE -ffunction-sections -fdata-sections)
+target_link_libraries(surfcast_boost PUBLIC Boost::headers Threads::Threads)
