@@ -1,6 +1,5 @@
 #include "net/http_answer.h"
 
-#include <array>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -72,41 +71,6 @@ std::string server_timing(const std::vector<picture::StageTime>& stages) {
     out << token(stage.name) << ";dur=" << stage.milliseconds;
   }
   return out.str();
-}
-
-std::string escape_html(std::string_view text) {
-  std::string escaped;
-  for (const char c : text) {
-    if (c == '&') {
-      escaped += "&amp;";
-    } else if (c == '<') {
-      escaped += "&lt;";
-    } else if (c == '>') {
-      escaped += "&gt;";
-    } else if (c == '"') {
-      escaped += "&quot;";
-    } else {
-      escaped += c;
-    }
-  }
-  return escaped;
-}
-
-/// A part of a path: all but the unreserved characters of RFC 3986 is escaped.
-std::string escape_path(std::string_view text) {
-  constexpr std::string_view kDigits = "0123456789ABCDEF";
-  constexpr std::string_view kUnreserved = "-._~";
-  std::string escaped;
-  for (const char c : text) {
-    const auto byte = static_cast<unsigned char>(c);
-    const bool letter = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-    if (letter || kUnreserved.find(c) != std::string_view::npos) {
-      escaped += c;
-    } else {
-      escaped += {'%', kDigits[byte >> 4], kDigits[byte & 15]};
-    }
-  }
-  return escaped;
 }
 
 }  // namespace
@@ -207,20 +171,11 @@ HttpAnswer pick_answer(const std::optional<kinds::PickedSurfel>& picked) {
   return text_answer(protocol::pick_result_json(result), kJson);
 }
 
-HttpAnswer page_answer(const std::vector<std::string>& names) {
-  std::ostringstream page;
-  page << "<!DOCTYPE html>\n<html lang=\"en\">\n<head><meta charset=\"utf-8\"><title>Surfcast</title></head>\n<body>\n"
-          "<h1>Models</h1>\n";
-  if (names.empty()) page << "<p>There are none.</p>\n";
-  for (const std::string& name : names) {
-    const std::string place = "/api/models/" + escape_path(name);
-    page << "<figure><a href=\"" << place << "/image?resolution=1920,1080\"><img src=\"" << place
-         << "/image?resolution=480,270&amp;format=jpg\" width=\"480\" height=\"270\" loading=\"lazy\" alt=\"\"></a>"
-         << "<figcaption><a href=\"" << place << "\">" << escape_html(protocol::clean_utf8(name))
-         << "</a></figcaption></figure>\n";
-  }
-  page << "</body>\n</html>\n";
-  return text_answer(page.str(), "text/html; charset=utf-8");
+HttpAnswer no_viewer_answer() {
+  return text_answer(
+      "This Surfcast server has no viewer. Build it in client/web (make, with npm installed), or name its folder with\n"
+      "surfcastd serve --viewer DIR. The models are listed at /api/models.\n",
+      "text/plain; charset=utf-8");
 }
 
 }  // namespace surfcast::net

@@ -38,7 +38,7 @@ HttpAnswer picture_answer(service::EncodedPicture picture);
 HttpAnswer file_answer(const StaticFile& file, std::string_view if_none_match);
 /// What a pixel shows, as pick_result_json writes it.
 HttpAnswer pick_answer(const std::optional<kinds::PickedSurfel>& picked);
-/// A page that shows the models.
-HttpAnswer page_answer(const std::vector<std::string>& names);
+/// The page at / of a server without the viewer: how to install it.
+HttpAnswer no_viewer_answer();
 
 }  // namespace surfcast::net

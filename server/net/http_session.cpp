@@ -111,7 +111,7 @@ class HttpSession : public Session, public std::enable_shared_from_this<HttpSess
   asio::awaitable<HttpAnswer> answer_model(std::string name);
   asio::awaitable<HttpAnswer> answer_picture(HttpRoute route);
   asio::awaitable<HttpAnswer> answer_pick(HttpRoute route);
-  asio::awaitable<HttpAnswer> answer_models(HttpAnswer (*present)(const std::vector<std::string>&));
+  asio::awaitable<HttpAnswer> answer_models();
   asio::awaitable<Result<service::EncodedPicture>> draw(service::PictureJob job);
   asio::awaitable<void> cancel_when_client_leaves(service::JobId job);
   asio::awaitable<bool> write(const HttpAnswer& answer, unsigned version, bool keep_alive, bool head);
@@ -227,9 +227,9 @@ asio::awaitable<HttpAnswer> HttpSession::answer(const Parser::value_type& reques
 asio::awaitable<HttpAnswer> HttpSession::answer_place(HttpRoute route) {
   switch (route.kind) {
     case HttpRoute::Kind::kPage:
-      co_return co_await answer_models(page_answer);
+      co_return no_viewer_answer();
     case HttpRoute::Kind::kModels:
-      co_return co_await answer_models(models_answer);
+      co_return co_await answer_models();
     case HttpRoute::Kind::kModel:
       co_return co_await answer_model(std::move(route.model));
     case HttpRoute::Kind::kPicture:
@@ -248,10 +248,10 @@ asio::awaitable<HttpAnswer> HttpSession::answer_place(HttpRoute route) {
   co_return text_answer(to_prometheus(context_->metrics, context_->service.queued()), "text/plain; version=0.0.4");
 }
 
-asio::awaitable<HttpAnswer> HttpSession::answer_models(HttpAnswer (*present)(const std::vector<std::string>&)) {
+asio::awaitable<HttpAnswer> HttpSession::answer_models() {
   const auto names = co_await answer_of<std::vector<std::string>>(
       [this](auto done) { context_->service.list_models(std::move(done)); });
-  co_return present(names);
+  co_return models_answer(names);
 }
 
 asio::awaitable<HttpAnswer> HttpSession::answer_model(std::string name) {

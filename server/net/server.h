@@ -27,7 +27,7 @@ struct ServerConfig {
   std::chrono::milliseconds stall{30'000};    ///< without any byte of an answer being taken
   std::chrono::milliseconds ping{30'000};     ///< without a word on a WebSocket, before the client is asked for one
   std::chrono::milliseconds drain{5'000};     ///< for what is outstanding when the server stops
-  std::shared_ptr<const StaticFiles> viewer;  ///< served at "/"; null: a page that shows the models
+  std::shared_ptr<const StaticFiles> viewer;  ///< served at "/"; null: a hint where to get one
   std::vector<std::string> allowed_origins;   ///< of pages that may open a WebSocket beside the viewer's own
 };
 

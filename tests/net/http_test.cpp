@@ -183,11 +183,13 @@ TEST_F(HttpSessionTest, MetricsCountWhatHappened) {
   EXPECT_NE(get("/metrics").find("surfcast_stage_seconds_total{stage=\"draw\"} 0.0015"), std::string::npos);
 }
 
-TEST_F(HttpSessionTest, ThePageNamesTheModels) {
+TEST_F(HttpSessionTest, WithoutAViewerTheRootSaysHowToGetOne) {
   start();
   const std::string answer = get("/");
-  EXPECT_NE(answer.find("Content-Type: text/html"), std::string::npos);
-  EXPECT_NE(answer.find("/api/models/teapot/image?"), std::string::npos);
+  EXPECT_EQ(status_of(answer), "200");
+  EXPECT_NE(answer.find("Content-Type: text/plain"), std::string::npos);
+  EXPECT_NE(body_of(answer).find("--viewer DIR"), std::string::npos);
+  EXPECT_NE(body_of(answer).find("/api/models"), std::string::npos);
 }
 
 TEST_F(HttpSessionTest, ReadyAndHealthyAnswer) {
