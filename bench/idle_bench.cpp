@@ -1,7 +1,8 @@
 // Measures the server's memory for idle connections, which have exchanged hellos and send nothing more:
 //   surfcastd serve ... --connections 3000 &
 //   idle_bench SERVERS_PROCESS_ID HOST:PORT|ws://HOST:PORT [COUNT]
-// Start a new server for every run, because a second run would reuse memory freed after the first one.
+// Start a new server for every run, because a second run would reuse memory freed after the first one. A connection
+// takes four descriptors of this program (see `ulimit -n`).
 
 #include <cstdio>
 #include <cstdlib>

@@ -7,7 +7,8 @@
 #include <numbers>
 #include <optional>
 
-#include "client/connect.h"
+#include <poll.h>
+
 #include "client/navigation.h"
 #include "client/view.h"
 
@@ -23,6 +24,14 @@ Clock::time_point after(Clock::time_point start, double seconds) {
 
 double milliseconds_since(Clock::time_point start, Clock::time_point end) {
   return std::chrono::duration<double, std::milli>(end - start).count();
+}
+
+/// Waits until `end`; kCancelled if `interrupt` becomes readable first. A signal may end the wait early.
+Status pause_until(Clock::time_point end, int interrupt) {
+  pollfd watched{interrupt, POLLIN, 0};
+  const auto left = std::chrono::ceil<std::chrono::milliseconds>(end - Clock::now()).count();
+  const int ready = ::poll(&watched, 1, static_cast<int>(std::clamp<long>(left, 0, 1 << 30)));
+  return ready > 0 ? fail(ErrorKind::kCancelled, "interrupted") : Status();
 }
 
 /// The pose after `seconds` of movement. The camera turns around the model once in 12 seconds and smoothly changes its
@@ -85,8 +94,7 @@ Status BenchClient::send_update(double path_seconds, bool moving) {
 
 Result<std::optional<BenchFrame>> BenchClient::receive(Clock::time_point deadline) {
   if (!plan_.reads) {
-    const Status waited = wait_for(-1, 0, deadline, interrupt_);
-    if (!waited && waited.error().kind != ErrorKind::kUnavailable) return fail(waited.error());
+    if (Status status = pause_until(deadline, interrupt_); !status) return fail(status.error());
     return std::nullopt;
   }
   const Result<std::optional<View::Frame>> received = view_.next_until(deadline);

@@ -1,16 +1,13 @@
 #pragma once
 
 #include <chrono>
-#include <cstddef>
 #include <cstdint>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
-#include <vector>
 
 #include "base/result.h"
-#include "client/message_stream.h"
+#include "client/message_channel.h"
 #include "protocol/endpoint.h"
 #include "protocol/hello.h"
 #include "surfcast.pb.h"
@@ -29,10 +26,6 @@ class ServerConnection {
  public:
   static Result<ServerConnection> open(const protocol::Endpoint& server, const ClientConfig& config);
 
-  ServerConnection(ServerConnection&& other) noexcept;
-  ServerConnection& operator=(ServerConnection&&) = delete;
-  ~ServerConnection();
-
   /// Sends a request with a new id; returns the id.
   Result<uint64_t> send(wire::Request request);
   /// Sends a request with an existing id: a message to a view.
@@ -45,7 +38,7 @@ class ServerConnection {
   /// server to cancel the request.
   Result<wire::Answer> ask(wire::Request request);
 
-  /// Bytes received since the connection was opened.
+  /// Bytes of the answers received so far.
   [[nodiscard]] uint64_t bytes_received() const { return bytes_received_; }
   /// An error that names the server.
   [[nodiscard]] tl::unexpected<Error> failed(ErrorKind kind, const std::string& what) const;
@@ -55,23 +48,15 @@ class ServerConnection {
  private:
   using Clock = std::chrono::steady_clock;
 
-  ServerConnection(int descriptor, const protocol::Endpoint& server, const ClientConfig& config);
+  ServerConnection(const protocol::Endpoint& server, const ClientConfig& config,
+                   std::unique_ptr<MessageChannel> channel);
   Status exchange_hellos(Clock::time_point deadline);
-  Result<std::vector<std::byte>> greet_framed(Clock::time_point deadline);
-  Result<std::vector<std::byte>> greet_websocket(Clock::time_point deadline);
-  Status upgrade(Clock::time_point deadline);
-  Result<std::optional<wire::Answer>> next_answer();
-  Status wait(short events, Clock::time_point deadline) const;
-  Status write_all(std::span<const std::byte> bytes, Clock::time_point deadline);
-  Result<size_t> read_some(std::span<std::byte> bytes, Clock::time_point deadline);
-  Status read_all(std::span<std::byte> bytes, Clock::time_point deadline);
+  [[nodiscard]] tl::unexpected<Error> failed(const Error& error) const { return failed(error.kind, error.message); }
 
-  int descriptor_;
   protocol::Endpoint endpoint_;
   ClientConfig config_;
+  std::unique_ptr<MessageChannel> channel_;
   protocol::Hello server_;
-  std::unique_ptr<MessageStream> stream_;
-  std::vector<std::byte> buffer_;
   uint64_t bytes_received_ = 0;
   uint64_t last_id_ = 0;
 };

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/result.h"
@@ -39,6 +40,8 @@ inline constexpr std::array<uint8_t, 8> kHelloMagic{0xf5, 'S', 'U', 'R', 'F', 'C
 /// Size of a hello without its two texts.
 inline constexpr size_t kHelloHeaderBytes = 18;
 inline constexpr size_t kMaxHelloTextBytes = 1024;
+/// The subprotocol of WebSocket that carries the same messages.
+inline constexpr std::string_view kWebSocketProtocol = "surfcast.v1";
 
 /// The hello of this build. `program` is the name of the executable.
 Hello make_hello(const std::string& program);

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cctype>
 
+#include "protocol/hello.h"
+
 namespace surfcast::net {
 namespace {
 
@@ -40,9 +42,9 @@ Status check_upgrade(const UpgradeRequest& request, std::span<const std::string>
   if (!allows(request, allowed)) {
     return fail(ErrorKind::kInvalidInput, "pages of another origin may not connect; --allow-origin lets them");
   }
-  if (!offers(request.protocols, kWebSocketProtocol)) {
+  if (!offers(request.protocols, protocol::kWebSocketProtocol)) {
     return fail(ErrorKind::kUnsupported,
-                "a WebSocket here speaks the subprotocol " + std::string(kWebSocketProtocol) + " alone");
+                "a WebSocket here speaks the subprotocol " + std::string(protocol::kWebSocketProtocol) + " alone");
   }
   return {};
 }

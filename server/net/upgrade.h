@@ -8,9 +8,6 @@
 
 namespace surfcast::net {
 
-/// The subprotocol of WebSocket that carries this program's messages.
-inline constexpr std::string_view kWebSocketProtocol = "surfcast.v1";
-
 /// What of a request for a WebSocket decides whether it is granted; empty: the header was not there.
 struct UpgradeRequest {
   std::string_view host;

@@ -10,8 +10,8 @@
 
 #include "net/heartbeat.h"
 #include "net/redirect_error_to.h"
-#include "net/upgrade.h"
 #include "protocol/framing.h"
+#include "protocol/hello.h"
 
 namespace surfcast::net {
 namespace {
@@ -62,8 +62,8 @@ WebSocketTransport::WebSocketTransport(tcp::socket socket, UpgradeHead head, std
   stream_.read_message_max(protocol::kMaxRequestBytes);
   stream_.set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
     response.set(http::field::server, "surfcastd");
-    response.set(http::field::sec_websocket_protocol, beast::string_view(kWebSocketProtocol.data(),  //
-                                                                         kWebSocketProtocol.size()));
+    response.set(http::field::sec_websocket_protocol, beast::string_view(protocol::kWebSocketProtocol.data(),  //
+                                                                         protocol::kWebSocketProtocol.size()));
   }));
   stream_.control_callback([this](websocket::frame_type type, beast::string_view) { hear(type); });
 }

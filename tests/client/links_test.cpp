@@ -20,7 +20,7 @@ TEST(ThinClient, CarriesNothingOfTheServer) {
   const ProgramOutcome symbols = run_program("nm -C " SURFCAST_CLIENT);
   ASSERT_EQ(symbols.code, 0);
   ASSERT_NE(symbols.output.find("surfcast::ServerConnection::open"), std::string::npos);
-  for (const char* name : {"draco::", "surfcast::ModelFile", "surfcast::Renderer", "boost::"}) {
+  for (const char* name : {"draco::", "surfcast::ModelFile", "surfcast::Renderer"}) {
     EXPECT_EQ(symbols.output.find(name), std::string::npos) << name;
   }
 }

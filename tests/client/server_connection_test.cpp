@@ -84,17 +84,23 @@ TEST(ServerConnection, AnAnswerThatIsNotOneIsAnError) {
   EXPECT_EQ(error_of_asking(std::string("\x02\0\0\0\xff\xff", 6), /*stays=*/true).kind, ErrorKind::kInvalidInput);
 }
 
-TEST(ServerConnection, AnInterruptEndsTheWait) {
-  const ScriptedServer server(bytes_of(protocol::make_hello("surfcastd")), /*stays=*/true);
+TEST(ServerConnection, AnInterruptEndsTheWaitAndTheServerIsTold) {
+  ScriptedServer server(bytes_of(protocol::make_hello("surfcastd")), /*stays=*/true);
   std::array<int, 2> ends{};
   ASSERT_EQ(::pipe(ends.data()), 0);
-  auto connection = ServerConnection::open(
-      server.endpoint(), {.connect = milliseconds(5000), .answer = milliseconds(60'000), .interrupt = ends[0]});
-  ASSERT_TRUE(connection);
-  ASSERT_EQ(::write(ends[1], "x", 1), 1);
   wire::Request request;
   request.mutable_ping();
-  EXPECT_EQ(connection->ask(request).error().kind, ErrorKind::kCancelled);
+  {
+    auto connection = ServerConnection::open(
+        server.endpoint(), {.connect = milliseconds(5000), .answer = milliseconds(60'000), .interrupt = ends[0]});
+    ASSERT_TRUE(connection);
+    ASSERT_EQ(::write(ends[1], "x", 1), 1);
+    EXPECT_EQ(connection->ask(request).error().kind, ErrorKind::kCancelled);
+  }
+  wire::Request cancel;
+  cancel.set_id(2);
+  cancel.mutable_cancel()->set_request_id(1);
+  EXPECT_TRUE(server.heard().ends_with(cancel.SerializeAsString()));
   ::close(ends[0]);
   ::close(ends[1]);
 }

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <boost/asio/io_context.hpp>
+#include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/posix/stream_descriptor.hpp>
+#include <chrono>
+#include <cstddef>
+
+#include "base/result.h"
+#include "protocol/endpoint.h"
+
+namespace surfcast::client {
+
+/// An asynchronous operation of Asio and, once it is not pending any more, its outcome. Must outlive the operation.
+struct Operation {
+  bool pending = false;
+  boost::system::error_code outcome;
+  size_t bytes = 0;
+
+  /// The handler to start the operation with.
+  auto begin() {
+    pending = true;
+    return [this](const boost::system::error_code& code, size_t count = 0) { *this = {false, code, count}; };
+  }
+};
+
+/// A TCP socket whose operations are asynchronous ones that are waited for: what a deadline or an interrupt leaves
+/// unfinished goes on while something else is waited for.
+class ClientSocket {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  /// Tries each address of the name in turn. Waiting ends when `interrupt` becomes readable (-1: none).
+  Status connect(const protocol::Endpoint& server, Clock::time_point deadline, int interrupt);
+  /// Waits until the operation is done, and fails if it failed. kUnavailable at the deadline, kCancelled when
+  /// interrupted: only then is it still pending.
+  Status finish(const Operation& operation, Clock::time_point deadline);
+  /// Whether the interrupt has come.
+  bool interrupted();
+
+  boost::asio::ip::tcp::socket& socket() { return socket_; }
+
+ private:
+  Status watch(int interrupt);
+
+  boost::asio::io_context io_{1};
+  boost::asio::ip::tcp::socket socket_{io_};
+  boost::asio::posix::stream_descriptor interrupt_{io_};
+  bool interrupted_ = false;
+  Operation connecting_;
+};
+
+}  // namespace surfcast::client

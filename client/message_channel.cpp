@@ -1,0 +1,17 @@
+#include "client/message_channel.h"
+
+#include <utility>
+
+#include "client/client_socket.h"
+
+namespace surfcast::client {
+
+Result<std::unique_ptr<MessageChannel>> connect_channel(const protocol::Endpoint& server,
+                                                        MessageChannel::TimePoint deadline, int interrupt) {
+  auto socket = std::make_unique<ClientSocket>();
+  if (Status status = socket->connect(server, deadline, interrupt); !status) return fail(status.error());
+  return server.websocket ? make_websocket_channel(std::move(socket), protocol::to_string(server))
+                          : make_framed_channel(std::move(socket));
+}
+
+}  // namespace surfcast::client
