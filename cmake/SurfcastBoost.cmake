@@ -5,6 +5,7 @@ find_package(Boost 1.81 CONFIG REQUIRED)
 add_library(surfcast_boost STATIC ${CMAKE_CURRENT_LIST_DIR}/boost_asio.cpp ${CMAKE_CURRENT_LIST_DIR}/boost_beast.cpp)
 target_compile_definitions(surfcast_boost PUBLIC
   BOOST_ASIO_NO_DEPRECATED BOOST_ASIO_SEPARATE_COMPILATION BOOST_BEAST_SEPARATE_COMPILATION)
-# A program that links this library statically carries only what it calls.
+# The thin client is to carry only what it calls of it.
 target_compile_options(surfcast_boost PRIVATE -ffunction-sections -fdata-sections)
+target_link_options(surfcast_boost INTERFACE LINKER:--gc-sections)
 target_link_libraries(surfcast_boost PUBLIC Boost::headers Threads::Threads)
