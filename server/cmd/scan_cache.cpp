@@ -1,4 +1,3 @@
-#define XXH_INLINE_ALL
 #include "cmd/scan_cache.h"
 
 #include <array>
@@ -7,8 +6,8 @@
 #include <system_error>
 
 #include <spdlog/fmt/fmt.h>
-#include <xxhash.h>
 
+#include "base/hash.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
 #include "builder/build_model.h"
@@ -21,8 +20,7 @@ namespace fs = std::filesystem;
 
 /// Another release may build better models of the same scan, so its version is part of the key.
 std::string key_of(std::span<const std::byte> content) {
-  const XXH128_hash_t hash = XXH3_128bits(content.data(), content.size());
-  return fmt::format("{}-{:016x}{:016x}.surf", SURFCAST_VERSION, hash.high64, hash.low64);
+  return fmt::format("{}-{}.surf", SURFCAST_VERSION, hash_name(content));
 }
 
 Status build_into(const fs::path& scan, const fs::path& target) {

@@ -8,8 +8,7 @@
 #include <set>
 #include <string_view>
 
-#include <xxhash.h>
-
+#include "base/hash.h"
 #include "ldc/lattice.h"
 #include "model/byte_stream.h"
 #include "model/quantize.h"
@@ -202,7 +201,7 @@ Status get_kinds(ByteReader& reader, Directory& directory) {
 }  // namespace
 
 uint64_t checksum_of(std::span<const std::byte> bytes) {
-  return XXH3_64bits(bytes.data(), bytes.size());
+  return hash_of(bytes);  // XXH3 without a seed is what the format states
 }
 
 std::vector<std::byte> write_header(const ModelHeader& header) {

@@ -3,13 +3,12 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cstdio>
 #include <fstream>
 #include <optional>
 #include <system_error>
 #include <utility>
 
-#include <xxhash.h>
+#include "base/hash.h"
 
 namespace surfcast::net {
 namespace {
@@ -42,10 +41,7 @@ std::string_view media_type_of(const fs::path& path) {
 }
 
 std::string tag_of(const std::vector<std::byte>& content) {
-  std::array<char, 20> text{};
-  const auto hash = static_cast<unsigned long long>(XXH3_64bits(content.data(), content.size()));
-  std::snprintf(text.data(), text.size(), "\"%016llx\"", hash);
-  return text.data();
+  return '"' + hash_name(content) + '"';
 }
 
 /// The builder of the viewer puts what it has named by its content into this folder.

@@ -4,10 +4,12 @@
 #include <array>
 #include <cstring>
 #include <map>
+#include <span>
 #include <thread>
 #include <utility>
 
 #include "base/contract.h"
+#include "base/hash.h"
 #include "gl/egl_context.h"
 #include "render/programs.h"
 #include "render/region_passes.h"
@@ -78,11 +80,9 @@ std::vector<picture::LevelStats> level_stats(const ldc::BlockTree& tree, const s
   return stats;
 }
 
-/// A number that stands for the blocks that are drawn, never 0 (FNV-1a).
+/// A number that stands for the blocks that are drawn, never 0.
 uint64_t cut_of(const selection::BlockSelection& selection) {
-  uint64_t hash = 0xcbf29ce484222325U;
-  for (const uint32_t block : selection.draw) hash = (hash ^ block) * 0x100000001b3U;
-  return hash | 1;
+  return hash_of(std::as_bytes(std::span(selection.draw))) | 1;
 }
 
 /// Whether a view shows more than what whoever asks for it has already, and enough of it.

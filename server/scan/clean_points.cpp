@@ -1,7 +1,6 @@
 #include "scan/clean_points.h"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <cstring>
 #include <glm/geometric.hpp>
@@ -9,6 +8,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include "base/hash.h"
 #include "scan/first_equals.h"
 #include "scan/unit_normal.h"
 
@@ -68,23 +68,11 @@ std::vector<Bytes> all_bytes(const surfel::SurfelCloud& cloud) {
   return all;
 }
 
-uint64_t hash_bytes(const std::byte* at, size_t size, uint64_t hash) {
-  while (size > 0) {
-    const size_t step = std::min(size, sizeof(uint64_t));
-    uint64_t word = 0;
-    std::memcpy(&word, at, step);
-    hash = mix_hash(hash ^ word) + 0x9e3779b97f4a7c15ULL;
-    at += step;
-    size -= step;
-  }
-  return hash;
-}
-
 std::vector<uint64_t> hash_surfels(const std::vector<Bytes>& all, size_t count) {
   std::vector<uint64_t> hashes(count);
   tbb::parallel_for(size_t{0}, count, [&](size_t i) {
     uint64_t hash = 0;
-    for (const auto& [first, stride] : all) hash = hash_bytes(first + i * stride, stride, hash);
+    for (const auto& [first, stride] : all) hash = hash_of({first + i * stride, stride}, hash);
     hashes[i] = hash;
   });
   return hashes;

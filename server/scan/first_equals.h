@@ -8,13 +8,6 @@
 
 namespace surfcast::scan {
 
-/// Mixes all bits of a hash (the finaliser of SplitMix64, Steele et al. 2014).
-[[nodiscard]] constexpr uint64_t mix_hash(uint64_t h) {
-  h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  h = (h ^ (h >> 27)) * 0x94d049bb133111ebULL;
-  return h ^ (h >> 31);
-}
-
 /// For every item, the index of the first item equal to it (its own index if there is no earlier one). `equal(i, j)`
 /// compares two items; equal items must have equal hashes. At most 2^32 - 2 items.
 template <typename Equal>

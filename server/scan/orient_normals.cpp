@@ -5,7 +5,6 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 
-#include "scan/first_equals.h"
 #include "scan/links.h"
 #include "scan/propagate_signs.h"
 
@@ -80,6 +79,14 @@ void count_agreement(const SitesOfPart& part, std::span<const glm::vec3> normals
   });
 }
 
+/// Stirs all bits of a hash into all others (the finaliser of SplitMix64, Steele et al. 2014).
+constexpr uint64_t mix_hash(uint64_t h) {
+  h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9ULL;
+  h = (h ^ (h >> 27)) * 0x94d049bb133111ebULL;
+  return h ^ (h >> 31);
+}
+
+/// Decides which places speak for a part's border: a model depends on these numbers.
 uint64_t hash_place(const glm::dvec3& p) {
   uint64_t hash = mix_hash(std::bit_cast<uint64_t>(p.x));
   hash = mix_hash(hash + std::bit_cast<uint64_t>(p.y));

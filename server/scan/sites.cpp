@@ -1,12 +1,13 @@
 #include "scan/sites.h"
 
 #include <algorithm>
-#include <bit>
+#include <span>
 #include <utility>
 
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
+#include "base/hash.h"
 #include "scan/first_equals.h"
 
 namespace surfcast::scan {
@@ -32,12 +33,6 @@ LocalFrame local_frame(const geometry::Box& box) {
   const glm::dvec3 half_size = 0.5 * box.max - 0.5 * box.min;
   const double half_unit = std::max({half_size.x, half_size.y, half_size.z});
   return {0.5 * box.min, half_unit > 0 ? half_unit : 0.5};
-}
-
-uint64_t hash_position(const glm::dvec3& p) {
-  uint64_t hash = mix_hash(std::bit_cast<uint64_t>(p.x));
-  hash = mix_hash(hash + std::bit_cast<uint64_t>(p.y) + 0x9e3779b97f4a7c15ULL);
-  return mix_hash(hash + std::bit_cast<uint64_t>(p.z) + 0x9e3779b97f4a7c15ULL);
 }
 
 /// Spreads the lower 21 bits of a number, with two zeros above each.
@@ -76,7 +71,7 @@ Sites find_sites(std::span<const glm::dvec3> world, const geometry::Box& box) {
   std::vector<uint64_t> hashes(world.size());
   tbb::parallel_for(size_t{0}, world.size(), [&](size_t i) {
     local[i] = frame.to_local(world[i]);
-    hashes[i] = hash_position(local[i]);
+    hashes[i] = hash_of(std::as_bytes(std::span(&local[i], 1)));
   });
   const std::vector<uint32_t> first =
       first_equals(hashes, [&local](size_t a, size_t b) { return local[a] == local[b]; });

@@ -2,6 +2,7 @@
 
 #include <cmath>
 
+#include "base/hash.h"
 #include "support/clouds.h"
 
 namespace surfcast::testing {
@@ -85,9 +86,7 @@ std::vector<SamplePicture> sample_pictures() {
 }
 
 uint64_t hash_of(const picture::Image& image) {
-  uint64_t hash = 0xcbf29ce484222325U;
-  for (const std::byte byte : image.pixels) hash = (hash ^ static_cast<uint64_t>(byte)) * 0x100000001b3U;
-  return hash;
+  return surfcast::hash_of(image.pixels);
 }
 
 }  // namespace surfcast::testing
