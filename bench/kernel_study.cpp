@@ -12,6 +12,7 @@
 #include "reference/reference_renderer.h"
 #include "reference/scenes.h"
 #include "scan/neighbours.h"
+#include "surfel/even_sampling.h"
 
 namespace surfcast::reference {
 namespace {
@@ -27,9 +28,6 @@ struct Choice {
   std::string name;
   KernelParameters kernel;
 };
-
-/// Ratio of the stored radius of evenly jittered samples to their spacing h. The tables state sigma in both units.
-constexpr double kRadiusOverSpacing = 1.09;
 
 std::vector<Subject> make_subjects() {
   std::vector<Subject> subjects;
@@ -87,7 +85,7 @@ std::string number(double value) {
 /// A kernel with sigma in units of h and the same cutoff for every gain.
 Choice kernel_choice(double sigma_in_spacings, double cutoff) {
   Choice choice{number(sigma_in_spacings) + " h, " + number(cutoff), {}};
-  choice.kernel.sigma = sigma_in_spacings / kRadiusOverSpacing;
+  choice.kernel.sigma = sigma_in_spacings / surfel::kRadiusOverSpacing;
   choice.kernel.cutoff_minified = choice.kernel.cutoff_magnified = cutoff;
   return choice;
 }

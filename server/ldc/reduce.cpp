@@ -5,11 +5,11 @@
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <numbers>
 #include <tuple>
 #include <utility>
 
 #include "base/contract.h"
+#include "surfel/even_sampling.h"
 
 namespace surfcast::ldc {
 namespace {
@@ -20,8 +20,6 @@ constexpr double kLargestPart = 0.3;
 constexpr size_t kFew = 1024;
 /// Steps of the position lattice between two rays. The position error is at most 1/18 of the ray spacing.
 constexpr int kStepsPerRay = 16;
-/// Radius of surfels on a square grid of spacing 1: the mean distance to the six nearest neighbours.
-constexpr double kGridRadius = (4 + 2 * std::numbers::sqrt2) / 6;
 /// Factors on x, y and z that prefer z over y over x. They move the switch between images away from surfaces at 45
 /// degrees, which are common.
 constexpr glm::dvec3 kAxisBias{1, 1.1, 1.21};
@@ -143,7 +141,7 @@ class ClassVotes {
 /// The radius of an average: that of the total area of its surfels, at most that of a surfel on a complete grid. If the
 /// surfels are farther apart than the rays, the mean of their radii, weighted by area.
 float radius_of(double squares, double cubes, double cosine, const Cube& cube) {
-  const double on_grid = kGridRadius * cube.spacing / std::sqrt(std::max(cosine, 0.5));
+  const double on_grid = surfel::kGridRadiusOverSpacing * cube.spacing / std::sqrt(std::max(cosine, 0.5));
   return static_cast<float>(std::max(std::min(std::sqrt(squares), on_grid), cubes / squares));
 }
 
@@ -226,7 +224,7 @@ CoarseCell reduce(std::span<const CoarseSurfel> surfels, const geometry::RootCub
     if (lines > 1 && !few_enough(averages.size(), surfels.size())) continue;
     const surfel::Grid grid{glm::dvec3(cube.spacing / kStepsPerRay), root.min};
     snap(averages, grid, cell, int64_t{lines} * kStepsPerRay);
-    return {grid, static_cast<float>(kGridRadius * cube.spacing), std::move(averages)};
+    return {grid, static_cast<float>(surfel::kGridRadiusOverSpacing * cube.spacing), std::move(averages)};
   }
 }
 

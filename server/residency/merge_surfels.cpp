@@ -16,8 +16,8 @@ float turned(const MergedSurfel& a, const MergedSurfel& b, bool oriented) {
   return !oriented && glm::dot(a.normal, b.normal) < 0 ? -1.0F : 1.0F;
 }
 
-/// Neighbours on a square grid of spacing h are h apart and have radii of 1.08 h. No squares of lengths are taken here
-/// or below: single precision holds them only from 1e-19 to 1e19.
+/// Neighbours on a square grid are one spacing apart, less than a radius (kGridRadiusOverSpacing). No squares of
+/// lengths are taken here or below: single precision holds them only from 1e-19 to 1e19.
 bool mergeable(const MergedSurfel& a, const MergedSurfel& b, bool oriented) {
   const glm::vec3 d = (b.position - a.position) / (a.radius + b.radius);
   return glm::dot(d, d) <= 1 && turned(a, b, oriented) * glm::dot(a.normal, b.normal) >= kMinCosine;

@@ -5,9 +5,12 @@
 
 namespace surfcast::surfel {
 
-/// Radius of a surfel over the spacing h of its samples, for evenly sampled surfaces. The radius of such a surfel is
-/// the mean distance to its six nearest neighbours (scan/spacing.h).
+/// Radius of a surfel over the spacing h of its samples, for an even sampling, in which a surfel has the area h^2. The
+/// radius is the mean distance to the six nearest neighbours (scan/spacing.h): 1.075 h on a hexagonal lattice, 1.09 h
+/// on a jittered grid.
 inline constexpr double kRadiusOverSpacing = 1.08;
+/// The same ratio on a square grid: of the six nearest neighbours four are at h and two at sqrt(2) h.
+inline constexpr double kGridRadiusOverSpacing = (4 + 2 * std::numbers::sqrt2) / 6;
 
 /// The factor by which every kernel of an even sampling is multiplied so that the mean over the surface of the sum of
 /// kernels is 1. `sigma` is the standard deviation of the kernel in units of the surfel radius.

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "ldc/coarse_surfel.h"
+#include "surfel/even_sampling.h"
 
 namespace surfcast::ldc {
 
@@ -25,7 +26,7 @@ inline std::vector<CoarseSurfel> sheet(int side, const glm::dvec3& centre, const
   for (int i = 0; i < side; ++i) {
     for (int j = 0; j < side; ++j) {
       const glm::dvec3 p = centre + u * ((i + 0.5) / side - 0.5) + v * ((j + 0.5) / side - 0.5);
-      surfels.push_back(surfel_at(p, normal, 1.138F / static_cast<float>(side)));
+      surfels.push_back(surfel_at(p, normal, static_cast<float>(surfel::kGridRadiusOverSpacing / side)));
     }
   }
   return surfels;

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "ldc/coarse_samples.h"
+#include "surfel/even_sampling.h"
 
 namespace surfcast::ldc {
 namespace {
@@ -35,7 +36,7 @@ TEST(Reduce, APlaneBecomesTheGridOfItsRays) {
     EXPECT_NEAR(in_rays.y - std::floor(in_rays.y), 0.5, 1e-9);
     EXPECT_EQ(s.position.z, 0.5);
     EXPECT_EQ(s.normal, glm::vec3(0, 0, 1));
-    EXPECT_NEAR(s.radius, 1.138 * kRay, 0.001 * kRay);
+    EXPECT_NEAR(s.radius, surfel::kGridRadiusOverSpacing * kRay, 0.001 * kRay);
   }
 }
 
@@ -120,12 +121,14 @@ TEST(Reduce, ASlopeHasNeitherGapsNorASecondSheetWhereverTheDominantAxisSwitches)
 TEST(Reduce, ASphereStaysASphere) {
   std::vector<CoarseSurfel> sphere;
   constexpr int kCount = 60000;
+  const double spacing = 0.45 * std::sqrt(4 * std::numbers::pi / kCount);
+  const auto radius = static_cast<float>(surfel::kRadiusOverSpacing * spacing);
   for (int i = 0; i < kCount; ++i) {
     const double z = 1 - (2 * i + 1.0) / kCount;
     const double angle = 2.399963229728653 * i;
     const double r = std::sqrt(1 - z * z);
     const glm::dvec3 n(r * std::cos(angle), r * std::sin(angle), z);
-    sphere.push_back(surfel_at(0.5 + 0.45 * n, glm::vec3(n), 0.45F * 1.08F * std::sqrt(4 * 3.14159F / kCount)));
+    sphere.push_back(surfel_at(0.5 + 0.45 * n, glm::vec3(n), radius));
   }
   const std::vector<CoarseSurfel> coarse = reduced(sphere);
   double area = 0;
@@ -133,7 +136,7 @@ TEST(Reduce, ASphereStaysASphere) {
     const glm::dvec3 from_centre = s.position - glm::dvec3(0.5);
     ASSERT_NEAR(glm::length(from_centre), 0.45, 0.2 * kRay);
     ASSERT_GT(glm::dot(glm::normalize(from_centre), glm::dvec3(s.normal)), 0.995);
-    area += std::pow(s.radius / 1.08, 2);
+    area += std::pow(s.radius / surfel::kRadiusOverSpacing, 2);
   }
   EXPECT_NEAR(area, 4 * std::numbers::pi * 0.45 * 0.45, 0.1) << "radii stand for the area that is there";
 }

@@ -9,11 +9,12 @@
 
 #include "geometry/morton.h"
 #include "shared/frame_layout.h"
+#include "surfel/even_sampling.h"
 
 namespace surfcast::residency {
 namespace {
 
-constexpr float kGridRadius = 1.138F;  // of a square grid of spacing 1: the mean distance to its six nearest
+constexpr auto kGridRadius = static_cast<float>(surfel::kGridRadiusOverSpacing);  // of a grid of spacing 1
 
 /// A square sheet of side * side surfels, a unit apart, along a Morton curve.
 std::vector<MergedSurfel> sheet(uint32_t side) {

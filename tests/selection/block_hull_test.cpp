@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "selection/trees.h"
+#include "surfel/even_sampling.h"
 
 namespace surfcast::selection {
 namespace {
@@ -78,8 +79,9 @@ TEST(BlockHull, OneChildWithoutAConeMayFaceAnywhere) {
 }
 
 TEST(ProjectedSpacing, OfASmallBlockStraightAheadIsItsSamplingDistanceOnTheScreen) {
-  // 1.08 radii: samples 1 apart, 100 away, eta 50.
-  EXPECT_NEAR(projected_spacing(block_at({0, 0, -100}, 0.01, 1.08), view_from({0, 0, 0})), 0.5, 1e-3);
+  // Samples 1 apart, 100 away, eta 50.
+  EXPECT_NEAR(projected_spacing(block_at({0, 0, -100}, 0.01, surfel::kRadiusOverSpacing), view_from({0, 0, 0})), 0.5,
+              1e-3);
 }
 
 TEST(ProjectedSpacing, HoldsForEverySampleOfTheBlock) {
@@ -113,7 +115,7 @@ TEST(RadiiAtSpacing, HoldThatOfEveryPointOfTheBoxInThePicture) {
       const glm::dvec3 p = frame.to_camera(centre + 4.0 * glm::dvec3(unit(random), unit(random), unit(random)));
       const glm::dvec2 pixel = frame.project(p);
       if (p.z <= 0 || pixel.x < 0 || pixel.y < 0 || pixel.x > frame.width || pixel.y > frame.height) continue;
-      const double radius = 1.08 * 3 / frame.eta * p.z * p.z / glm::length(p);
+      const double radius = surfel::kRadiusOverSpacing * 3 / frame.eta * p.z * p.z / glm::length(p);
       ASSERT_GE(radius, 0.999 * range.least);
       ASSERT_LE(radius, 1.001 * range.largest);
     }

@@ -1,20 +1,18 @@
 #include "support/clouds.h"
 
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <numbers>
 
 #include "shared/kernel.h"
+#include "surfel/even_sampling.h"
 
 namespace surfcast::testing {
 namespace {
 
-/// Ratio of the radius of evenly spread samples to their spacing. Also determines their normalisation weight.
-constexpr double kRadiusOverSpacing = 1.08;
-
 float even_weight() {
-  const double sigma = SURFCAST_KERNEL_SIGMA * kRadiusOverSpacing;
-  return static_cast<float>(std::min(1.0, 1 / (2 * std::numbers::pi * sigma * sigma)));
+  return static_cast<float>(std::min(1.0, surfel::even_sampling_weight(SURFCAST_KERNEL_SIGMA)));
 }
 
 void add(surfel::SurfelCloud& cloud, const glm::dvec3& position, const glm::dvec3& normal, double radius,
@@ -48,7 +46,7 @@ surfel::SurfelCloud fibonacci_sphere(size_t count, double radius, const glm::dve
     const double ring = std::sqrt(1 - z * z);
     const double angle = golden_angle * static_cast<double>(i);
     const glm::dvec3 n(ring * std::cos(angle), ring * std::sin(angle), z);
-    add(cloud, centre + radius * n, n, kRadiusOverSpacing * spacing, color);
+    add(cloud, centre + radius * n, n, surfel::kRadiusOverSpacing * spacing, color);
   }
   name_source(cloud);
   return cloud;
@@ -65,7 +63,7 @@ surfel::SurfelCloud square(int side, double extent, const glm::dvec3& centre, co
     for (int column = 0; column < side; ++column) {
       const double u = (column + 0.5) * spacing - 0.5 * extent;
       const double v = (row + 0.5) * spacing - 0.5 * extent;
-      add(cloud, centre + u * a + v * b, n, kRadiusOverSpacing * spacing, color);
+      add(cloud, centre + u * a + v * b, n, surfel::kRadiusOverSpacing * spacing, color);
     }
   }
   name_source(cloud);
