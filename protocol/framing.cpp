@@ -42,14 +42,6 @@ Result<std::vector<std::byte>> encode_message(const google::protobuf::MessageLit
   return bytes;
 }
 
-Result<std::vector<std::byte>> encode_frame(const google::protobuf::MessageLite& message, size_t limit) {
-  Result<std::vector<std::byte>> frame = encode_message(message, limit);
-  if (!frame) return frame;
-  const auto header = frame_header(frame->size());
-  frame->insert(frame->begin(), header.begin(), header.end());
-  return frame;
-}
-
 Status decode_message(std::span<const std::byte> bytes, google::protobuf::MessageLite& message) {
   silence_protobuf();
   if (message.ParseFromArray(bytes.data(), static_cast<int>(bytes.size()))) return {};

@@ -30,8 +30,6 @@ std::array<std::byte, kFrameHeaderBytes> frame_header(size_t length);
 
 /// Serializes a message without a header. Fails when it is larger than `limit`.
 Result<std::vector<std::byte>> encode_message(const google::protobuf::MessageLite& message, size_t limit);
-/// Serializes a message with its header. Fails when it is larger than `limit`.
-Result<std::vector<std::byte>> encode_frame(const google::protobuf::MessageLite& message, size_t limit);
 
 /// Parses the contents of one frame, without its header, into `message`.
 Status decode_message(std::span<const std::byte> bytes, google::protobuf::MessageLite& message);
@@ -46,8 +44,6 @@ class FrameSplitter {
   /// The contents of the next complete frame; nothing while the frame is incomplete. After an error the stream is no
   /// longer usable.
   Result<std::optional<std::vector<std::byte>>> next();
-  /// Whether part of an incomplete frame has been received.
-  [[nodiscard]] bool inside_frame() const { return start_ < buffer_.size(); }
 
  private:
   size_t limit_;

@@ -47,16 +47,12 @@ struct VertexArrayTraits {
 struct ProgramTraits {
   static void destroy(GLuint name) { glDeleteProgram(name); }
 };
-struct QueryTraits {
-  static void destroy(GLuint name) { glDeleteQueries(1, &name); }
-};
 
 using Buffer = Object<BufferTraits>;
 using Texture = Object<TextureTraits>;
 using Framebuffer = Object<FramebufferTraits>;
 using VertexArray = Object<VertexArrayTraits>;
 using Program = Object<ProgramTraits>;
-using Query = Object<QueryTraits>;
 
 /// A buffer with immutable storage filled from `content`, with a debug label.
 Buffer make_buffer(const char* label, std::span<const std::byte> content, GLbitfield flags = 0);

@@ -10,6 +10,7 @@
 #include <gtest/gtest.h>
 
 #include "client/scripted_server.h"
+#include "protocol/framed.h"
 #include "protocol/framing.h"
 #include "protocol/hello.h"
 
@@ -27,7 +28,7 @@ std::string hello() {
 }
 
 std::string said(const wire::Answer& answer) {
-  return text_of(*protocol::encode_frame(answer, protocol::kMaxAnswerBytes));
+  return text_of(protocol::framed(answer));
 }
 
 /// One message of the view that is opened first.

@@ -1,3 +1,5 @@
+#include "protocol/framed.h"
+
 #include <random>
 #include <set>
 #include <vector>
@@ -20,7 +22,7 @@ std::string hello_bytes() {
 }
 
 std::string frame_of(const google::protobuf::MessageLite& message) {
-  return bytes_of(*protocol::encode_frame(message, protocol::kMaxRequestBytes));
+  return bytes_of(protocol::framed(message));
 }
 
 TEST_F(FramedSessionTest, ModelsAreListed) {

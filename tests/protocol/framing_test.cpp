@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+#include "protocol/framed.h"
 #include "protocol/little_endian.h"
 #include "surfcast.pb.h"
 
@@ -35,7 +36,7 @@ Bytes header_of(uint32_t length) {
 TEST(Framing, AMessageComesBackWhole) {
   const wire::Request sent = sample_request();
   FrameSplitter splitter(kMaxRequestBytes);
-  splitter.append(*encode_frame(sent, kMaxRequestBytes));
+  splitter.append(framed(sent));
   const auto frame = splitter.next();
   ASSERT_TRUE(frame && *frame);
   wire::Request received;
@@ -47,12 +48,12 @@ TEST(Framing, AMessageComesBackWhole) {
 TEST(Framing, TheLengthIsFourBytesLeastSignificantFirst) {
   wire::Request request;
   request.set_id(1);
-  const Bytes frame = *encode_frame(request, kMaxRequestBytes);
+  const Bytes frame = framed(request);
   EXPECT_EQ(frame, (Bytes{std::byte{2}, std::byte{0}, std::byte{0}, std::byte{0}, std::byte{8}, std::byte{1}}));
 }
 
 TEST(Framing, AMessageCutAnywhereIsIncompleteUntilTheRestArrives) {
-  const Bytes frame = *encode_frame(sample_request(), kMaxRequestBytes);
+  const Bytes frame = framed(sample_request());
   for (size_t cut = 0; cut < frame.size(); ++cut) {
     FrameSplitter splitter(kMaxRequestBytes);
     splitter.append(std::span(frame).first(cut));
@@ -69,7 +70,7 @@ TEST(Framing, ManyMessagesArrivingByteByByteAreAllFound) {
   for (uint64_t id = 1; id <= 5; ++id) {
     wire::Request request = sample_request();
     request.set_id(id);
-    const Bytes frame = *encode_frame(request, kMaxRequestBytes);
+    const Bytes frame = framed(request);
     stream.insert(stream.end(), frame.begin(), frame.end());
   }
   FrameSplitter splitter(kMaxRequestBytes);
@@ -114,7 +115,7 @@ TEST(Framing, ALengthAtTheLimitIsFine) {
 TEST(Framing, AMessageLargerThanTheLimitIsNotSent) {
   wire::Answer answer;
   answer.mutable_picture()->set_data(std::string(2000, 'x'));
-  const auto frame = encode_frame(answer, 1000);
+  const auto frame = encode_message(answer, 1000);
   ASSERT_FALSE(frame);
   EXPECT_EQ(frame.error().kind, ErrorKind::kLimit);
 }
