@@ -2,10 +2,9 @@
 
 #include <algorithm>
 #include <charconv>
-#include <fstream>
 #include <string>
 
-#include <unistd.h>
+#include "base/host_memory.h"
 
 namespace surfcast::builder {
 namespace {
@@ -35,12 +34,6 @@ std::string in_mebibytes(uint64_t bytes) {
   return std::to_string((bytes + kMebibyte - 1) / kMebibyte) + "M";
 }
 
-uint64_t control_group_limit() {
-  std::ifstream stream("/sys/fs/cgroup/memory.max");
-  uint64_t limit = 0;
-  return stream >> limit ? limit : UINT64_MAX;
-}
-
 }  // namespace
 
 std::optional<uint64_t> parse_memory_size(std::string_view text) {
@@ -54,8 +47,7 @@ std::optional<uint64_t> parse_memory_size(std::string_view text) {
 }
 
 uint64_t machine_memory() {
-  const auto pages = static_cast<uint64_t>(::sysconf(_SC_PHYS_PAGES));
-  return std::min(pages * static_cast<uint64_t>(::sysconf(_SC_PAGE_SIZE)), control_group_limit());
+  return read_host_memory().total;
 }
 
 Result<uint64_t> memory_budget(std::optional<uint64_t> wanted) {
