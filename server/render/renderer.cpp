@@ -10,7 +10,9 @@
 
 #include "base/contract.h"
 #include "base/hash.h"
+#include "base/host_memory.h"
 #include "gl/egl_context.h"
+#include "gl/gpu_memory.h"
 #include "render/programs.h"
 #include "render/region_passes.h"
 #include "render/scene.h"
@@ -20,6 +22,8 @@
 namespace surfcast::render {
 namespace {
 
+/// Largest side of a picture, pixels. Not a setting: screen coordinates are single precision, good to a thousandth of a
+/// pixel up to here and worse beyond. The service may allow less.
 constexpr int kMaxResolution = 16384;
 
 size_t pixel_bytes(picture::PixelFormat format) {
@@ -91,29 +95,41 @@ bool worth_drawing(const picture::PictureRequest& request, const residency::Prep
   return view.nothing_pending || view.missing <= request.max_missing_blocks;
 }
 
+/// Needs the current GL context. The pool is no larger than a buffer texture of splats, which take two texels each.
+MemoryBudgets budgets_of(const RendererConfig& config, bool software) {
+  const MemoryBudgets by_default =
+      default_budgets({read_host_memory().available, software ? std::nullopt : gl::free_gpu_memory()});
+  const uint64_t wanted = config.gpu_bytes.value_or(by_default.gpu);
+  const uint64_t possible = residency::SurfelBuffer::device_limit() / 2 * sizeof(glm::uvec4);
+  return {std::min(wanted, possible), config.host_bytes.value_or(by_default.host)};
+}
+
 }  // namespace
 
 struct Renderer::State {
-  /// The pool is no larger than a buffer texture of splats, which take two texels each.
   State(const RendererConfig& config, std::unique_ptr<gl::EglContext> egl, Programs passes)
       : context(std::move(egl)),
-        device{context->vendor(), context->renderer(), context->version(), context->software()},
+        device{context->vendor(), context->renderer(), context->version(), context->software(),
+               budgets_of(config, context->software())},
         programs(std::move(passes)),
         kinds(config.kinds),
-        max_surfels(std::min(config.gpu_bytes / sizeof(glm::uvec4), residency::SurfelBuffer::device_limit() / 2)),
-        surfels(max_surfels, device.software),
-        residency(surfels, limits_of(config, max_surfels)) {
+        viewers(config.viewers),
+        surfels(device.memory.gpu / sizeof(glm::uvec4), device.software),
+        residency(surfels, limits_of(config, device.memory)) {
     for (SplatBuffers& set : buffers) {
       set.srgb = ConstantTexels::make("linear roots of sRGB", residency::linear_root_table());
       set.lazy = device.software && gl::can_adopt_memory();
     }
   }
 
-  static residency::ResidencyLimits limits_of(const RendererConfig& config, size_t surfels) {
-    constexpr size_t kReadyBytes = size_t{64} << 20;
+  static residency::ResidencyLimits limits_of(const RendererConfig& config, const MemoryBudgets& memory) {
+    // Enough to keep the uploads busy; more would only hold memory. A quarter of a small budget.
+    const size_t ready = std::clamp<size_t>(memory.host / 4, size_t{16} << 20, size_t{64} << 20);
     const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
-    return {.pages = static_cast<uint32_t>(surfels / residency::SurfelPool::kPageSurfels),
-            .loader = {cores, cores, config.host_bytes, kReadyBytes}};
+    const unsigned threads = config.decoders > 0 ? config.decoders : cores;
+    return {.pages = static_cast<uint32_t>(memory.gpu / sizeof(glm::uvec4) / residency::SurfelPool::kPageSurfels),
+            .loader = {threads, threads, memory.host, ready},
+            .upload_bytes = config.upload_bytes};
   }
 
   /// A picture is being drawn as long as one of these is there.
@@ -149,7 +165,7 @@ struct Renderer::State {
   size_t depth = 0;                     ///< pictures that are being drawn: 2 when one interrupts another
   std::map<std::pair<picture::SurfelColor, picture::ColorMap>, ConstantTexels>
       color_tables;  ///< made when they are first needed
-  size_t max_surfels;
+  size_t viewers;    ///< see RendererConfig
   residency::SurfelBuffer surfels;
   residency::Residency residency;
   std::map<uint64_t, std::unique_ptr<Scene>> scenes;  ///< by ModelFile::id
@@ -193,7 +209,7 @@ Result<residency::PreparedView> Renderer::State::prepare(Scene& scene, const pic
   if (request.loading == picture::Loading::kWait)
     return residency.prepare_complete(scene.viewed(), parameters, preemption);
   if (request.viewer == 0) return residency.prepare_resident(scene.viewed(), parameters, {}, {});
-  ViewerHistory& history = scene.history_of(request.viewer);
+  ViewerHistory& history = scene.history_of(request.viewer, viewers);
   const std::optional<geometry::CameraFrame> ahead =
       update_and_extrapolate(history, camera, request.width, request.height);
   residency::PreparedView view = residency.prepare_resident(scene.viewed(), parameters, history.refined, ahead);

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -11,15 +12,20 @@
 #include "model/model_file.h"
 #include "picture/device_info.h"
 #include "picture/picture.h"
+#include "render/memory_budgets.h"
 
 namespace surfcast::render {
 
 struct RendererConfig {
-  int gpu = -1;  ///< index of the EGL device; -1 chooses: the first hardware device, else software
-  size_t gpu_bytes = size_t{1} << 30;     ///< for the surfels of all models
-  size_t host_bytes = size_t{256} << 20;  ///< for blocks that may come back to the GPU
+  int gpu = -1;                       ///< index of the EGL device; -1 chooses: the first hardware device, else software
+  std::optional<size_t> gpu_bytes{};  ///< for the surfels of all models; none: default_budgets
+  std::optional<size_t> host_bytes{};      ///< for blocks that may come back to the GPU; none: default_budgets
+  unsigned decoders = 0;                   ///< threads that decode blocks; 0: as many as the machine has cores
+  size_t upload_bytes = size_t{16} << 20;  ///< stored on the GPU in one picture in motion, which waits for it
+  size_t viewers = 64;  ///< of one model whose motion is remembered; beyond, the one not seen for longest is forgotten
   std::string shader_defines{};  ///< text before every shader, of programs that measure other kernels than our own
-  kinds::KindTable kinds = kinds::built_in_kinds();  ///< that models may have; others are not drawn. Outlives the renderer
+  kinds::KindTable kinds =
+      kinds::built_in_kinds();  ///< that models may have; others are not drawn. Outlives the renderer
 };
 
 /// Draws pictures of models. Owns a GL context: create, use and destroy it on one thread.

@@ -28,11 +28,10 @@ geometry::Camera Scene::camera_of(const picture::PictureRequest& request) const 
   return model::fit_model(*model_, static_cast<double>(request.width) / request.height);
 }
 
-ViewerHistory& Scene::history_of(uint64_t viewer) {
-  constexpr size_t kViewers = 64;
+ViewerHistory& Scene::history_of(uint64_t viewer, size_t most) {
   auto found = std::ranges::find(viewers_, viewer, &ViewerHistory::viewer);
   if (found == viewers_.end()) {
-    if (viewers_.size() == kViewers) viewers_.pop_back();
+    if (viewers_.size() == most) viewers_.pop_back();
     found = viewers_.insert(viewers_.end(), {viewer, {}, {}});
   }
   viewers_.splice(viewers_.begin(), viewers_, found);

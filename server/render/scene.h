@@ -41,8 +41,8 @@ class Scene {
   /// The camera asked for, or one that fits the model.
   [[nodiscard]] geometry::Camera camera_of(const picture::PictureRequest& request) const;
 
-  /// Memory of that viewer, new if it has not been seen for long.
-  ViewerHistory& history_of(uint64_t viewer);
+  /// Memory of that viewer, new if it has not been seen for long: the last `most` viewers are remembered.
+  ViewerHistory& history_of(uint64_t viewer, size_t most);
 
  private:
   Scene(std::shared_ptr<const model::ModelFile> model, std::shared_ptr<const kinds::FileBlocks> blocks);
