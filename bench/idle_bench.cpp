@@ -1,5 +1,5 @@
 // Measures the server's memory for idle connections, which have exchanged hellos and send nothing more:
-//   surfcastd serve ... --connections 3000 &
+//   surfcastd serve ... --max-connections 3000 &
 //   idle_bench SERVERS_PROCESS_ID HOST:PORT|ws://HOST:PORT [COUNT]
 // Start a new server for every run, because a second run would reuse memory freed after the first one. A connection
 // takes four descriptors of this program (see `ulimit -n`).

@@ -5,26 +5,17 @@
 #include <utility>
 #include <vector>
 
-#include "cmd/scan_cache.h"
-
 namespace surfcast::cmd {
 namespace {
 
 namespace fs = std::filesystem;
 
-Result<fs::path> build_in_cache(const fs::path& scan, const fs::path& cache) {
-  if (!cache.empty()) return model_of_scan(scan, cache);
-  const Result<fs::path> folder = default_cache_folder();
-  if (!folder) return fail(folder.error());
-  return model_of_scan(scan, *folder);
-}
-
 /// The model file behind a path that is no folder; it must open.
-Result<service::NamedModel> find_model(const fs::path& path, const fs::path& cache) {
+Result<service::NamedModel> find_model(const fs::path& path, const ScanCacheConfig& cache) {
   if (path.extension() != ".surf") {
-    const Result<fs::path> built = build_in_cache(path, cache);
+    Result<CachedModel> built = model_of_scan(path, cache);
     if (!built) return fail(built.error());
-    return service::NamedModel{path.stem().string(), *built};
+    return service::NamedModel{path.stem().string(), std::move(built->path), std::move(built->in_use)};
   }
   if (const Result<model::ModelFile> model = model::ModelFile::open(path); !model) return fail(model.error());
   return service::NamedModel{path.stem().string(), path};
@@ -32,7 +23,8 @@ Result<service::NamedModel> find_model(const fs::path& path, const fs::path& cac
 
 }  // namespace
 
-Result<std::unique_ptr<service::ModelCatalogue>> find_models(std::span<const fs::path> paths, const fs::path& cache) {
+Result<std::unique_ptr<service::ModelCatalogue>> find_models(std::span<const fs::path> paths,
+                                                             const ScanCacheConfig& cache) {
   std::vector<service::NamedModel> files;
   std::vector<fs::path> folders;
   for (const fs::path& path : paths) {
@@ -51,7 +43,7 @@ Result<std::unique_ptr<service::ModelCatalogue>> find_models(std::span<const fs:
   return std::make_unique<service::ModelCatalogue>(std::move(files), std::move(folders));
 }
 
-Result<std::unique_ptr<service::ModelCatalogue>> find_one_model(const fs::path& path, const fs::path& cache) {
+Result<std::unique_ptr<service::ModelCatalogue>> find_one_model(const fs::path& path, const ScanCacheConfig& cache) {
   std::error_code ignored;
   if (fs::is_directory(path, ignored)) {
     return fail(ErrorKind::kInvalidInput, path.string() + ": is a folder, and one model is wanted");

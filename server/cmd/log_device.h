@@ -4,7 +4,8 @@
 
 namespace surfcast::cmd {
 
-/// Says what draws. Software rendering is announced, never silent.
-void log_device(const picture::DeviceInfo& device);
+/// Says what draws, in how much memory, and where that is less than was asked for. Software rendering is announced,
+/// never silent.
+void log_device(const picture::DeviceInfo& device, const render::RendererConfig& asked);
 
 }  // namespace surfcast::cmd

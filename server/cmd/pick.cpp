@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "cmd/find_models.h"
+#include "cmd/limit_flags.h"
 #include "net/convert.h"
 #include "protocol/request_flags.h"
 #include "service/pick_service.h"
@@ -16,7 +17,8 @@ namespace {
 struct PickCommand {
   std::filesystem::path model;
   protocol::PickFlags flags;
-  std::filesystem::path cache;
+  ScanCacheConfig cache;
+  service::PickLimits limits;
 };
 
 Status pick(const PickCommand& command) {
@@ -27,7 +29,7 @@ Status pick(const PickCommand& command) {
   Result<service::PickJob> job = net::to_job(*request);
   if (!job) return fail(job.error());
   std::promise<Result<std::optional<kinds::PickedSurfel>>> promise;
-  service::PickService service(**models);
+  service::PickService service(**models, command.limits);
   service.pick(std::move(*job), [&promise](auto picked) { promise.set_value(std::move(picked)); });
   const Result<std::optional<kinds::PickedSurfel>> picked = promise.get_future().get();
   if (!picked) return fail(picked.error());
@@ -43,8 +45,8 @@ void add_pick_command(CLI::App& app, Status& outcome) {
   CLI::App* sub = app.add_subcommand("pick", "Print the surfel at a pixel of a picture of a model or scan");
   sub->add_option("MODEL", command->model, "Model file or scan")->required();
   command->flags.add_to(*sub);
-  sub->add_option("--cache", command->cache, "Folder of models built from scans (default ~/.cache/surfcast)")
-      ->envname(protocol::environment_name("cache"));
+  add_cache_flags(*sub, command->cache);
+  add_pick_cache_flag(*sub, command->limits);
   sub->callback([command, &outcome] {
     if (Status status = command->flags.check(); !status) throw CLI::ValidationError(status.error().message);
     outcome = pick(*command);

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "cmd/find_models.h"
+#include "cmd/limit_flags.h"
 #include "cmd/log_device.h"
 #include "net/convert.h"
 #include "protocol/request_flags.h"
@@ -19,8 +20,9 @@ namespace {
 struct RenderCommand {
   std::filesystem::path model;
   protocol::RequestFlags flags;
-  std::filesystem::path cache;
+  ScanCacheConfig cache;
   render::RendererConfig renderer;
+  service::ServiceLimits limits;
 };
 
 Result<wire::Picture> draw_and_wait(service::RenderService& service, const wire::DrawPicture& request) {
@@ -42,9 +44,9 @@ Status render(const RenderCommand& command) {
   const Result<wire::DrawPicture> request = command.flags.request((*models)->names().front());
   if (!request) return fail(request.error());
   const auto service =
-      service::RenderService::start(**models, service::catalogue_renderers(**models, command.renderer), {});
+      service::RenderService::start(**models, service::catalogue_renderers(**models, command.renderer), command.limits);
   if (!service) return fail(service.error());
-  log_device((*service)->device());
+  log_device((*service)->device(), command.renderer);
   return protocol::draw_and_save(command.flags, *request,
                                  [&](const wire::DrawPicture& draw) { return draw_and_wait(**service, draw); });
 }
@@ -56,11 +58,9 @@ void add_render_command(CLI::App& app, Status& outcome) {
   CLI::App* sub = app.add_subcommand("render", "Draw a picture of a model or scan, or the frames of a camera path");
   sub->add_option("MODEL", command->model, "Model file or scan")->required();
   command->flags.add_to(*sub);
-  sub->add_option("--gpu", command->renderer.gpu, "Index of the EGL device (default: the first hardware device)")
-      ->envname(protocol::environment_name("gpu"))
-      ->check(CLI::NonNegativeNumber);
-  sub->add_option("--cache", command->cache, "Folder of models built from scans (default ~/.cache/surfcast)")
-      ->envname(protocol::environment_name("cache"));
+  add_renderer_flags(*sub, command->renderer);
+  add_cache_flags(*sub, command->cache);
+  add_picture_flags(*sub, command->limits);
   sub->callback([command, &outcome] {
     if (Status status = command->flags.check(); !status) throw CLI::ValidationError(status.error().message);
     outcome = render(*command);

@@ -4,13 +4,18 @@
 #include <cstdlib>
 #include <string>
 #include <system_error>
+#include <utility>
 
+#include <fcntl.h>
 #include <spdlog/fmt/fmt.h>
+#include <sys/stat.h>
 
+#include "base/file_lock.h"
 #include "base/hash.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
 #include "builder/build_model.h"
+#include "cmd/cache_eviction.h"
 #include "model/model_file.h"
 
 namespace surfcast::cmd {
@@ -23,11 +28,45 @@ std::string key_of(std::span<const std::byte> content) {
   return fmt::format("{}-{}.surf", SURFCAST_VERSION, hash_name(content));
 }
 
-Status build_into(const fs::path& scan, const fs::path& target) {
+/// Notes in a file that it is used now: its time of access, because that of writing tells readers when it was replaced.
+void touch(const fs::path& path) {
+  const std::array<timespec, 2> times{timespec{0, UTIME_NOW}, timespec{0, UTIME_OMIT}};
+  (void)::utimensat(AT_FDCWD, path.c_str(), times.data(), 0);  // a folder that cannot be written evicts nothing either
+}
+
+/// A model that is used until this ends.
+class ModelInUse {
+ public:
+  ModelInUse(fs::path path, FileLock lock) : path_(std::move(path)), lock_(std::move(lock)) { touch(path_); }
+  ~ModelInUse() { touch(path_); }
+  ModelInUse(const ModelInUse&) = delete;
+  ModelInUse& operator=(const ModelInUse&) = delete;
+
+ private:
+  fs::path path_;
+  FileLock lock_;
+};
+
+/// The model of that name, if there is one and it is whole. It is locked before it is looked at: what is there then
+/// stays.
+std::optional<CachedModel> find_in_cache(const fs::path& path) {
+  std::optional<FileLock> lock = FileLock::share(path);
+  if (!model::ModelFile::open(path)) return std::nullopt;
+  if (!lock) return CachedModel{path, nullptr};  // a file system without locks, where nobody can evict either
+  return CachedModel{path, std::make_shared<const ModelInUse>(path, std::move(*lock))};
+}
+
+Status build_into(const fs::path& scan, const fs::path& target, const ScanCacheConfig& config) {
   spdlog::info("{}: building a model of it", scan.string());
+  std::error_code code;
+  fs::create_directories(target.parent_path(), code);
+  if (code) {
+    return fail(ErrorKind::kIo, target.parent_path().string() + ": cannot make the folder: " + code.message());
+  }
   const std::array inputs{scan};
   const Result<builder::BuildReport> report =
-      builder::build_model(inputs, target, {}, [](const builder::BuildStep&) {});
+      builder::build_model(inputs, target, {std::nullopt, std::nullopt, config.build_memory, std::nullopt},
+                           [](const builder::BuildStep&) {});
   if (!report) return fail(report.error());
   for (const std::string& note : report->scan.notes) spdlog::warn("{}", note);
   spdlog::info("{}: {} surfels in {:.1f} s", scan.string(), report->surfels, report->seconds);
@@ -46,16 +85,20 @@ Result<fs::path> default_cache_folder() {
   return fail(ErrorKind::kIo, "there is no folder for built models: set XDG_CACHE_HOME or HOME, or give --cache");
 }
 
-Result<fs::path> model_of_scan(const fs::path& scan, const fs::path& cache) {
+Result<CachedModel> model_of_scan(const fs::path& scan, const ScanCacheConfig& config) {
+  const Result<fs::path> folder = config.folder.empty() ? default_cache_folder() : config.folder;
+  if (!folder) return fail(folder.error());
   const Result<MappedFile> content = MappedFile::open(scan);
   if (!content) return fail(content.error());
-  const fs::path target = cache / key_of(content->bytes());
-  if (model::ModelFile::open(target)) return target;
-  std::error_code code;
-  fs::create_directories(cache, code);
-  if (code) return fail(ErrorKind::kIo, cache.string() + ": cannot make the folder: " + code.message());
-  if (Status status = build_into(scan, target); !status) return fail(status.error());
-  return target;
+  const fs::path target = *folder / key_of(content->bytes());
+  std::optional<CachedModel> model = find_in_cache(target);
+  if (!model) {
+    if (Status status = build_into(scan, target, config); !status) return fail(status.error());
+    model = find_in_cache(target);
+  }
+  if (!model) return fail(ErrorKind::kIo, target.string() + ": another process removed the model that was just built");
+  limit_cache(*folder, config.bytes);
+  return std::move(*model);
 }
 
 }  // namespace surfcast::cmd

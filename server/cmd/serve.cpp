@@ -8,6 +8,7 @@
 
 #include "base/log.h"
 #include "cmd/find_models.h"
+#include "cmd/limit_flags.h"
 #include "cmd/log_device.h"
 #include "net/server.h"
 #include "protocol/endpoint.h"
@@ -22,9 +23,11 @@ namespace {
 struct ServeCommand {
   std::vector<std::filesystem::path> paths;
   std::string listen = "127.0.0.1:7600";
-  std::filesystem::path cache;
+  ScanCacheConfig cache;
   std::filesystem::path viewer;
+  net::SiteLimits viewer_limits;
   render::RendererConfig renderer;
+  service::ServiceLimits service;
   net::ServerConfig server;
 };
 
@@ -41,24 +44,25 @@ std::filesystem::path find_viewer() {
 }
 
 /// Null when there is no viewer and none was asked for.
-Result<std::shared_ptr<const net::StaticFiles>> read_viewer(const std::filesystem::path& wanted) {
+Result<std::shared_ptr<const net::StaticFiles>> read_viewer(const std::filesystem::path& wanted,
+                                                            const net::SiteLimits& limits) {
   const std::filesystem::path folder = wanted.empty() ? find_viewer() : wanted;
   if (folder.empty()) return nullptr;
-  Result<net::StaticFiles> files = net::StaticFiles::read(folder);
+  Result<net::StaticFiles> files = net::StaticFiles::read(folder, limits);
   if (!files) return fail(files.error());
   return std::make_shared<const net::StaticFiles>(std::move(*files));
 }
 
 Status serve(ServeCommand command) {
-  Result<std::shared_ptr<const net::StaticFiles>> viewer = read_viewer(command.viewer);
+  Result<std::shared_ptr<const net::StaticFiles>> viewer = read_viewer(command.viewer, command.viewer_limits);
   if (!viewer) return fail(viewer.error());
   command.server.viewer = std::move(*viewer);
   Result<std::unique_ptr<service::ModelCatalogue>> models = find_models(command.paths, command.cache);
   if (!models) return fail(models.error());
-  const auto service =
-      service::RenderService::start(**models, service::catalogue_renderers(**models, command.renderer), {});
+  const auto service = service::RenderService::start(**models, service::catalogue_renderers(**models, command.renderer),
+                                                     command.service);
   if (!service) return fail(service.error());
-  log_device((*service)->device());
+  log_device((*service)->device(), command.renderer);
   const auto server = net::Server::create(**service, command.server);
   if (!server) return fail(server.error());
   const size_t count = (*models)->names().size();
@@ -80,14 +84,6 @@ void add_serve_command(CLI::App& app, Status& outcome) {
                   "Model files, folders of model files, and scans (default: the current folder)");
   sub->add_option("--listen", command->listen, "HOST:PORT to listen on; port 0: any free port (default 127.0.0.1:7600)")
       ->envname(protocol::environment_name("listen"));
-  sub->add_option("--gpu", command->renderer.gpu, "Index of the EGL device (default: the first hardware device)")
-      ->envname(protocol::environment_name("gpu"))
-      ->check(CLI::NonNegativeNumber);
-  sub->add_option("--cache", command->cache, "Folder of models built from scans (default ~/.cache/surfcast)")
-      ->envname(protocol::environment_name("cache"));
-  sub->add_option("--connections", command->server.connections, "Most simultaneous connections (default 256)")
-      ->envname(protocol::environment_name("connections"))
-      ->check(CLI::PositiveNumber);
   sub->add_option("--viewer", command->viewer, "Folder of the browser viewer (default: the one built or installed)")
       ->envname(protocol::environment_name("viewer"));
   sub->add_option("--allow-origin", command->server.allowed_origins,
@@ -96,7 +92,12 @@ void add_serve_command(CLI::App& app, Status& outcome) {
   sub->add_option("--target-fps", command->server.target_fps,
                   "Frames per second that moving views hold by adapting their quality (default 30)")
       ->envname(protocol::environment_name("target-fps"))
+      ->type_name("NUMBER")
       ->check(CLI::Range(1.0, protocol::kMaxFramesPerSecond));
+  add_renderer_flags(*sub, command->renderer);
+  add_cache_flags(*sub, command->cache);
+  add_picture_flags(*sub, command->service);
+  add_server_flags(*sub, command->service, command->renderer, command->server, command->viewer_limits);
   sub->callback([command, &outcome] {
     const Result<protocol::Endpoint> endpoint = protocol::parse_endpoint(command->listen);
     if (!endpoint) throw CLI::ValidationError("--listen", endpoint.error().message);

@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "command_line/closest_word.h"
+#include "command_line/parse_failure.h"
 #include "command_line/shell_completion.h"
 
 namespace surfcast::command_line {
@@ -58,8 +59,8 @@ std::optional<int> parse_command_line(CLI::App& app, const ProgramText& text, in
     return app.exit(answered);
   } catch (const CLI::ParseError& error) {
     const std::string first = argc > 1 ? argv[1] : "";
-    return report_failure(text, missing_command(summarize_command(app), first).value_or(error.what()),
-                          kWrongCommandLine);
+    const std::string failure = parse_failure(app, error.what(), argc, argv);
+    return report_failure(text, missing_command(summarize_command(app), first).value_or(failure), kWrongCommandLine);
   }
   return std::nullopt;
 }

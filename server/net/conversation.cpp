@@ -15,9 +15,10 @@ namespace surfcast::net {
 namespace asio = boost::asio;
 
 Conversation::Conversation(std::shared_ptr<NetContext> context, service::SessionId session,
-                           asio::any_io_executor executor, std::shared_ptr<AnswerWriter> writer)
+                           asio::any_io_executor executor, std::shared_ptr<AnswerWriter> writer, std::string client)
     : context_(std::move(context)),
       session_(session),
+      client_(std::move(client)),
       executor_(std::move(executor)),
       writer_(std::move(writer)),
       window_(context_->config.requests),

@@ -36,9 +36,9 @@ class AnswerWriter {
 /// else happens on the thread of the sockets.
 class Conversation : public std::enable_shared_from_this<Conversation> {
  public:
-  /// `writer` is kept until abandon() and while an answer is outstanding.
+  /// `writer` is kept until abandon() and while an answer is outstanding. `client`: see client_name.
   Conversation(std::shared_ptr<NetContext> context, service::SessionId session, boost::asio::any_io_executor executor,
-               std::shared_ptr<AnswerWriter> writer);
+               std::shared_ptr<AnswerWriter> writer, std::string client);
 
   /// Handles one encoded Request. Fails when it is none: the stream is of no use any more then.
   Status receive(std::span<const std::byte> message);
@@ -71,6 +71,7 @@ class Conversation : public std::enable_shared_from_this<Conversation> {
 
   std::shared_ptr<NetContext> context_;
   service::SessionId session_;
+  std::string client_;
   boost::asio::any_io_executor executor_;
   std::shared_ptr<AnswerWriter> writer_;  ///< null once abandoned
   RequestWindow window_;
@@ -78,6 +79,7 @@ class Conversation : public std::enable_shared_from_this<Conversation> {
     std::shared_ptr<view::ViewSession> view;
     std::string picture;  ///< encoded, what was asked for last
     std::string model;
+    Counted counted;
   };
   std::map<uint64_t, OpenedView> views_;  ///< by the id of their OpenView
   boost::asio::steady_timer view_timer_;  ///< when a view is to be looked at again

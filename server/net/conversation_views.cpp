@@ -29,13 +29,18 @@ void Conversation::handle_open_view(const wire::Request& request) {
   if (views_.size() >= context_->config.views) {
     return send_error(id, {ErrorKind::kUnavailable, "busy: too many views are open on this connection"});
   }
+  if (std::string refusal = context_->clients->refusal_of_view(client_); !refusal.empty()) {
+    return send_error(id, {ErrorKind::kUnavailable, std::move(refusal)});
+  }
   if (const Status checked = protocol::check_view(open_view); !checked) return send_error(id, checked.error());
   Result<service::PictureJob> job = to_job(open_view.picture());
   if (!job) return send_error(id, job.error());
   const double fps = open_view.target_fps() > 0 ? open_view.target_fps() : context_->config.target_fps;
-  const auto view = std::make_shared<view::ViewSession>(context_->service, session_, ++context_->last_viewer, fps,
-                                                        context_->metrics.views, port_of(id));
-  views_[id] = {view, open_view.picture().SerializeAsString(), open_view.picture().model()};
+  const auto view =
+      std::make_shared<view::ViewSession>(context_->service, session_, ++context_->last_viewer, fps,
+                                          context_->metrics.views, port_of(id), context_->config.kept_frame_bytes);
+  views_.emplace(id, OpenedView{view, open_view.picture().SerializeAsString(), open_view.picture().model(),
+                                Counted(context_->clients, client_, &Clients::Counts::views)});
   view->update({0, std::move(*job), /*changed=*/true, /*moving=*/false}, Clock::now());
   advance_views();
 }

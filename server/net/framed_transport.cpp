@@ -21,7 +21,7 @@ using boost::system::error_code;
 
 class FramedTransport : public Transport {
  public:
-  explicit FramedTransport(tcp::socket socket) : socket_(std::move(socket)) {}
+  FramedTransport(tcp::socket socket, size_t request_bytes) : socket_(std::move(socket)), splitter_(request_bytes) {}
 
   Awaitable<Result<Bytes>> read_hello() override;
   Awaitable<Result<std::optional<Bytes>>> read() override;
@@ -36,7 +36,7 @@ class FramedTransport : public Transport {
 
  private:
   tcp::socket socket_;
-  protocol::FrameSplitter splitter_{protocol::kMaxRequestBytes};
+  protocol::FrameSplitter splitter_;
   std::array<std::byte, 4096> buffer_{};
 };
 
@@ -103,8 +103,8 @@ void FramedTransport::close() {
 
 }  // namespace
 
-std::shared_ptr<Transport> make_framed_transport(tcp::socket socket) {
-  return std::make_shared<FramedTransport>(std::move(socket));
+std::shared_ptr<Transport> make_framed_transport(tcp::socket socket, size_t request_bytes) {
+  return std::make_shared<FramedTransport>(std::move(socket), request_bytes);
 }
 
 }  // namespace surfcast::net

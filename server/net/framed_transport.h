@@ -7,7 +7,8 @@
 
 namespace surfcast::net {
 
-/// The framed protocol, on a connection whose first byte has been seen but not read.
-std::shared_ptr<Transport> make_framed_transport(boost::asio::ip::tcp::socket socket);
+/// The framed protocol, on a connection whose first byte has been seen but not read. A longer message than
+/// `request_bytes` is an error.
+std::shared_ptr<Transport> make_framed_transport(boost::asio::ip::tcp::socket socket, size_t request_bytes);
 
 }  // namespace surfcast::net

@@ -38,8 +38,8 @@ namespace websocket = boost::beast::websocket;
 using asio::ip::tcp;
 using boost::system::error_code;
 
-constexpr uint32_t kHeaderLimit = 16384;  // bytes of a request's header
-constexpr uint64_t kBodyLimit = 4096;     // bytes of a body, which no request needs
+/// Bytes of a body. Not a setting: no request has one, and these are read only to answer that.
+constexpr uint64_t kBodyLimit = 4096;
 
 /// Waits in a coroutine for something that calls back from another thread. `start` gets the callback.
 template <typename Value, typename Start>
@@ -78,10 +78,11 @@ class HttpSession : public Session, public std::enable_shared_from_this<HttpSess
  public:
   HttpSession(Connection connection, AdoptSession adopt)
       : stream_(std::move(connection.socket)),
+        buffer_(connection.peer.context->config.http_header_bytes + kBodyLimit),
         context_(std::move(connection.peer.context)),
         open_(std::move(connection.peer.open)),
         id_(connection.peer.id),
-        busy_(connection.peer.busy),
+        refusal_(std::move(connection.peer.refusal)),
         adopt_(std::move(adopt)) {}
 
   void start() {
@@ -107,6 +108,7 @@ class HttpSession : public Session, public std::enable_shared_from_this<HttpSess
   asio::awaitable<HttpAnswer> answer(const Parser::value_type& request);
   bool become_websocket(const Parser::value_type& request);
   [[nodiscard]] HttpAnswer refuse_websocket(const Parser::value_type& request) const;
+  [[nodiscard]] std::string metrics_text() const;
   asio::awaitable<HttpAnswer> answer_place(HttpRoute route);
   asio::awaitable<HttpAnswer> answer_model(std::string name);
   asio::awaitable<HttpAnswer> answer_picture(HttpRoute route);
@@ -117,11 +119,11 @@ class HttpSession : public Session, public std::enable_shared_from_this<HttpSess
   asio::awaitable<bool> write(const HttpAnswer& answer, unsigned version, bool keep_alive, bool head);
 
   beast::tcp_stream stream_;
-  beast::flat_buffer buffer_{kHeaderLimit + kBodyLimit};
+  beast::flat_buffer buffer_;
   std::shared_ptr<NetContext> context_;
-  OpenConnection open_;
+  Counted open_;
   service::SessionId id_;
-  bool busy_;
+  std::string refusal_;  ///< as in Peer
   AdoptSession adopt_;
   bool answering_ = false;
   bool first_ = true;
@@ -152,7 +154,7 @@ asio::awaitable<void> HttpSession::linger() {
 asio::awaitable<bool> HttpSession::serve_one() {
   error_code code;
   Parser parser;
-  parser.header_limit(kHeaderLimit);
+  parser.header_limit(context_->config.http_header_bytes);
   parser.body_limit(kBodyLimit);
   stream_.expires_after(first_ ? context_->config.hello : context_->config.idle);
   first_ = false;
@@ -172,7 +174,7 @@ asio::awaitable<bool> HttpSession::serve_one() {
     result = co_await answer(request);
   }
   if (result.status >= 400) ++context_->metrics.errors;
-  const bool keep_alive = !code && parser.is_done() && request.keep_alive() && !context_->draining && !busy_;
+  const bool keep_alive = !code && parser.is_done() && request.keep_alive() && !context_->draining && refusal_.empty();
   const bool head = !code && request.method() == http::verb::head;
   const bool written = co_await write(result, code ? 11 : request.version(), keep_alive, head);
   answering_ = false;
@@ -190,8 +192,9 @@ bool HttpSession::become_websocket(const Parser::value_type& request) {
     return false;
   }
   stream_.expires_never();
-  auto transport = make_websocket_transport(stream_.release_socket(), request, context_->config.ping);
-  adopt_(start_message_session(std::move(transport), {context_, std::move(open_), id_, busy_}));
+  auto transport = make_websocket_transport(stream_.release_socket(), request, context_->config.ping,
+                                            context_->config.request_bytes);
+  adopt_(start_message_session(std::move(transport), {context_, std::move(open_), id_, refusal_}));
   return true;
 }
 
@@ -209,7 +212,7 @@ HttpAnswer HttpSession::refuse_websocket(const Parser::value_type& request) cons
 }
 
 asio::awaitable<HttpAnswer> HttpSession::answer(const Parser::value_type& request) {
-  if (busy_) co_return error_answer({ErrorKind::kUnavailable, "the server is busy: too many connections"});
+  if (!refusal_.empty()) co_return error_answer({ErrorKind::kUnavailable, refusal_});
   const std::string_view target = view_of(request.target());
   const StaticFile* file = find_file(context_->config, target);
   Result<HttpRoute> route = route_http(target);
@@ -245,7 +248,14 @@ asio::awaitable<HttpAnswer> HttpSession::answer_place(HttpRoute route) {
     case HttpRoute::Kind::kWebSocket:  // answered already
       break;
   }
-  co_return text_answer(to_prometheus(context_->metrics, context_->service.queued()), "text/plain; version=0.0.4");
+  co_return text_answer(metrics_text(), "text/plain; version=0.0.4");
+}
+
+std::string HttpSession::metrics_text() const {
+  const Clients::Counts& open = context_->clients->all();
+  return to_prometheus(context_->metrics, {.connections = open.connections + open.refused,
+                                           .queued = context_->service.queued(),
+                                           .memory = context_->service.device().memory});
 }
 
 asio::awaitable<HttpAnswer> HttpSession::answer_models() {

@@ -31,7 +31,8 @@ class MessageSession : public Session, public AnswerWriter, public std::enable_s
         room_(transport_->executor(), Clock::time_point::max()) {}
 
   void start() {
-    conversation_ = std::make_shared<Conversation>(peer_.context, peer_.id, transport_->executor(), shared_from_this());
+    conversation_ = std::make_shared<Conversation>(peer_.context, peer_.id, transport_->executor(), shared_from_this(),
+                                                   peer_.open.client());
     spawn([](auto self) -> asio::awaitable<void> { co_await self->read_all(); });
     spawn([](auto self) -> asio::awaitable<void> { co_await self->watch(); });
   }
@@ -90,9 +91,9 @@ asio::awaitable<bool> MessageSession::exchange_hellos() {
   const Result<protocol::Hello> client = bytes ? protocol::decode_hello(*bytes) : fail(bytes.error());
   if (!client || closing_) co_return false;
   protocol::Hello answer = protocol::answer_hello(*client, "surfcastd");
-  if (peer_.busy && answer.status == protocol::HelloStatus::kWelcome) {
+  if (!peer_.refusal.empty() && answer.status == protocol::HelloStatus::kWelcome) {
     answer.status = protocol::HelloStatus::kBusy;
-    answer.message = "the server is busy: too many connections";
+    answer.message = peer_.refusal;
   }
   const Bytes words = protocol::encode_hello(answer);
   greeted_ = co_await transport_->write_hello(words);

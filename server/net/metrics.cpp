@@ -34,10 +34,10 @@ void Metrics::count_stages(const picture::FrameStats& stats) {
   for (const picture::StageTime& stage : stats.stages) stage_seconds[stage.name] += stage.milliseconds / 1e3;
 }
 
-std::string to_prometheus(const Metrics& m, size_t queued) {
+std::string to_prometheus(const Metrics& m, const Gauges& gauges) {
   std::ostringstream out;
   write_value(out, "surfcast_connections_total", "counter", "Connections accepted.", m.connections);
-  write_value(out, "surfcast_connections_open", "gauge", "Connections open now.", m.connections_open);
+  write_value(out, "surfcast_connections_open", "gauge", "Connections open now.", gauges.connections);
   write_value(out, "surfcast_connections_refused_total", "counter", "Connections refused, too many at once.",
               m.connections_refused);
   write_value(out, "surfcast_requests_total", "counter", "Requests read.", m.requests);
@@ -52,7 +52,11 @@ std::string to_prometheus(const Metrics& m, size_t queued) {
   write_value(out, "surfcast_view_updates_replaced_total", "counter",
               "Updates of views overtaken by a newer one before they were drawn.", m.views.replaced);
   write_value(out, "surfcast_view_bytes_total", "counter", "Encoded bytes of frames of views.", m.views.bytes);
-  write_value(out, "surfcast_queued_pictures", "gauge", "Pictures that wait for the render thread.", queued);
+  write_value(out, "surfcast_queued_pictures", "gauge", "Pictures that wait for the render thread.", gauges.queued);
+  write_value(out, "surfcast_gpu_memory_budget_bytes", "gauge", "Most memory for surfels on the GPU.",
+              gauges.memory.gpu);
+  write_value(out, "surfcast_host_memory_budget_bytes", "gauge", "Most host memory for decoded blocks.",
+              gauges.memory.host);
   out << "# HELP surfcast_stage_seconds_total Time spent on pictures, by stage.\n"
          "# TYPE surfcast_stage_seconds_total counter\n";
   for (const auto& [stage, seconds] : m.stage_seconds) {

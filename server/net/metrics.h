@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "picture/picture.h"
+#include "render/memory_budgets.h"
 #include "view/view_session.h"
 
 namespace surfcast::net {
@@ -14,8 +15,7 @@ namespace surfcast::net {
 /// What the server counts while it runs. Lives on the thread of the sockets.
 struct Metrics {
   uint64_t connections = 0;          ///< accepted since the start
-  uint64_t connections_open = 0;     ///< now
-  uint64_t connections_refused = 0;  ///< too many at once
+  uint64_t connections_refused = 0;  ///< too many at once, of all clients or of one
   uint64_t requests = 0;             ///< messages and HTTP requests
   uint64_t errors = 0;               ///< requests answered with an error
   uint64_t pictures = 0;             ///< delivered to a session
@@ -28,7 +28,14 @@ struct Metrics {
   void count_stages(const picture::FrameStats& stats);
 };
 
-/// The text that Prometheus reads. `queued` is the number of pictures that wait now.
-std::string to_prometheus(const Metrics& metrics, size_t queued);
+/// What there is at the moment.
+struct Gauges {
+  size_t connections = 0;        ///< open
+  size_t queued = 0;             ///< pictures that wait for the render thread
+  render::MemoryBudgets memory;  ///< of the renderer
+};
+
+/// The text that Prometheus reads.
+std::string to_prometheus(const Metrics& metrics, const Gauges& gauges);
 
 }  // namespace surfcast::net

@@ -16,6 +16,7 @@
 #include <vector>
 
 #include "base/log.h"
+#include "net/client_name.h"
 #include "net/framed_transport.h"
 #include "net/http_session.h"
 #include "net/message_session.h"
@@ -31,7 +32,8 @@ namespace asio = boost::asio;
 using asio::ip::tcp;
 using boost::system::error_code;
 
-/// Connections beyond the limit that are told why they are refused; those beyond are closed without a word.
+/// Connections that are told why they are refused; those beyond are closed without a word. Not a setting: nobody is
+/// served by more of them, and less of them save nothing.
 constexpr size_t kRefusalsAtOnce = 32;
 
 /// Looks at the first byte of a connection and passes it on to the session of its protocol.
@@ -126,17 +128,22 @@ asio::awaitable<void> Server::State::accept_all() {
 void Server::State::admit(tcp::socket socket) {
   Metrics& metrics = context->metrics;
   ++metrics.connections;
-  const bool busy = metrics.connections_open >= context->config.connections;
-  if (busy) ++metrics.connections_refused;
-  if (metrics.connections_open >= context->config.connections + kRefusalsAtOnce) return;
   error_code ignored;
+  const std::string client = client_name(socket.remote_endpoint(ignored).address());
+  std::string refusal = context->clients->refusal_of_connection(client);
+  if (!refusal.empty()) {
+    ++metrics.connections_refused;
+    if (context->clients->all().refused >= kRefusalsAtOnce) return;
+  }
   socket.set_option(tcp::no_delay(true), ignored);
   socket.set_option(asio::socket_base::keep_alive(true), ignored);
-  Connection connection{std::move(socket), {context, OpenConnection(context), ++last_session, busy}};
+  Counted open(context->clients, client, refusal.empty() ? &Clients::Counts::connections : &Clients::Counts::refused);
+  Connection connection{std::move(socket), {context, std::move(open), ++last_session, std::move(refusal)}};
   const auto detector =
       std::make_shared<ProtocolDetector>(std::move(connection), [this](Connection passed, bool framed) {
         if (framed) {
-          add(start_message_session(make_framed_transport(std::move(passed.socket)), std::move(passed.peer)));
+          add(start_message_session(make_framed_transport(std::move(passed.socket), context->config.request_bytes),
+                                    std::move(passed.peer)));
         } else {
           add(start_http_session(std::move(passed), [this](const std::shared_ptr<Session>& session) { add(session); }));
         }

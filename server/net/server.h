@@ -8,20 +8,25 @@
 #include <vector>
 
 #include "base/result.h"
+#include "net/clients.h"
 #include "net/request_window.h"
 #include "net/static_files.h"
 #include "service/render_service.h"
+#include "view/view_session.h"
 
 namespace surfcast::net {
 
 struct ServerConfig {
   std::string host = "127.0.0.1";
   uint16_t port = 7600;  ///< 0: any free one
-  size_t connections = 256;
-  RequestWindow::Limits requests;             ///< of one connection of the framed protocol
-  size_t views = 8;                           ///< open at a time on one connection
-  double target_fps = 30;                     ///< of views in motion whose client does not say
-  size_t unread_bytes = size_t{64} << 20;     ///< of answers; beyond it the connection is not read from
+  ClientLimits clients;
+  RequestWindow::Limits requests;                           ///< of one connection of the framed protocol
+  size_t views = 8;                                         ///< open at a time on one connection
+  double target_fps = 30;                                   ///< of views in motion whose client does not say
+  size_t unread_bytes = size_t{64} << 20;                   ///< of answers; beyond it the connection is not read from
+  size_t kept_frame_bytes = view::ViewSession::kKeptBytes;  ///< see ViewSession
+  size_t request_bytes = size_t{64} << 10;    ///< of one message of a client; ours send no more than kMaxRequestBytes
+  uint32_t http_header_bytes = 16384;         ///< of one request of HTTP
   std::chrono::milliseconds hello{10'000};    ///< for the first words of a connection
   std::chrono::milliseconds idle{300'000};    ///< without a whole request and with nothing outstanding
   std::chrono::milliseconds stall{30'000};    ///< without any byte of an answer being taken

@@ -2,8 +2,10 @@
 
 #include <boost/asio/ip/tcp.hpp>
 #include <memory>
+#include <string>
 #include <utility>
 
+#include "net/clients.h"
 #include "net/metrics.h"
 #include "net/server.h"
 #include "service/render_service.h"
@@ -17,30 +19,15 @@ struct NetContext {
   Metrics metrics;
   uint64_t last_viewer = 0;  ///< see PictureRequest::viewer
   bool draining = false;     ///< no new requests; what is outstanding is finished
+  std::shared_ptr<Clients> clients = std::make_shared<Clients>(config.clients);
 };
 
-/// Counts a connection as open for as long as it lives.
-class OpenConnection {
- public:
-  explicit OpenConnection(std::shared_ptr<NetContext> context) : context_(std::move(context)) {
-    ++context_->metrics.connections_open;
-  }
-  ~OpenConnection() {
-    if (context_) --context_->metrics.connections_open;
-  }
-  OpenConnection(OpenConnection&&) = default;
-  OpenConnection& operator=(OpenConnection&&) = delete;
-
- private:
-  std::shared_ptr<NetContext> context_;
-};
-
-/// Who is at the other end. One that is `busy` came when there were too many, and is only told so.
+/// Who is at the other end.
 struct Peer {
   std::shared_ptr<NetContext> context;
-  OpenConnection open;
+  Counted open;  ///< the connection
   service::SessionId id = 0;
-  bool busy = false;
+  std::string refusal;  ///< why it is not served, which it is told before the connection ends; empty: it is served
 };
 
 /// An accepted connection.

@@ -15,9 +15,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr size_t kMaxFiles = 1000;
-constexpr uintmax_t kMaxBytes = uintmax_t{64} << 20;  // of all files together: they stay in memory
-
 constexpr std::array<std::pair<std::string_view, std::string_view>, 13> kMediaTypes{{
     {".html", "text/html; charset=utf-8"},
     {".js", "text/javascript; charset=utf-8"},
@@ -58,7 +55,7 @@ std::optional<std::vector<std::byte>> read_content(const fs::path& path, uintmax
 }
 
 /// Every plain file below the folder, by its path in a URL.
-Result<std::vector<std::pair<std::string, fs::path>>> list_files(const fs::path& folder) {
+Result<std::vector<std::pair<std::string, fs::path>>> list_files(const fs::path& folder, size_t most) {
   std::vector<std::pair<std::string, fs::path>> found;
   std::error_code code;
   for (fs::recursive_directory_iterator place(folder, code), end; !code && place != end; place.increment(code)) {
@@ -66,7 +63,9 @@ Result<std::vector<std::pair<std::string, fs::path>>> list_files(const fs::path&
     if (hidden) place.disable_recursion_pending();
     if (hidden || !fs::is_regular_file(place->symlink_status())) continue;
     found.emplace_back("/" + place->path().lexically_relative(folder).generic_string(), place->path());
-    if (found.size() > kMaxFiles) return fail(ErrorKind::kLimit, folder.string() + ": too many files for a viewer");
+    if (found.size() > most) {
+      return fail(ErrorKind::kLimit, folder.string() + ": more than " + std::to_string(most) + " files of a viewer");
+    }
   }
   if (code) return fail(ErrorKind::kIo, folder.string() + ": cannot be read: " + code.message());
   return found;
@@ -74,8 +73,8 @@ Result<std::vector<std::pair<std::string, fs::path>>> list_files(const fs::path&
 
 }  // namespace
 
-Result<StaticFiles> StaticFiles::read(const fs::path& folder) {
-  const auto listed = list_files(folder);
+Result<StaticFiles> StaticFiles::read(const fs::path& folder, const SiteLimits& limits) {
+  const auto listed = list_files(folder, limits.files);
   if (!listed) return fail(listed.error());
   StaticFiles site;
   uintmax_t total = 0;
@@ -83,7 +82,10 @@ Result<StaticFiles> StaticFiles::read(const fs::path& folder) {
     std::error_code code;
     const uintmax_t bytes = fs::file_size(place, code);
     if (!code) total += bytes;
-    if (total > kMaxBytes) return fail(ErrorKind::kLimit, folder.string() + ": too large for a viewer");
+    if (total > limits.bytes) {
+      return fail(ErrorKind::kLimit,
+                  folder.string() + ": more than " + std::to_string(limits.bytes) + " bytes of a viewer");
+    }
     std::optional<std::vector<std::byte>> content = code ? std::nullopt : read_content(place, bytes);
     if (!content) return fail(ErrorKind::kIo, place.string() + ": cannot be read");
     StaticFile file{std::string(media_type_of(place)), tag_of(*content), is_lasting(path), std::move(*content)};

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <map>
@@ -20,13 +21,19 @@ struct StaticFile {
   std::vector<std::byte> content;
 };
 
+/// What a viewer may hold: its files stay in memory, and a folder that is none is soon given up.
+struct SiteLimits {
+  size_t files = 1000;
+  uintmax_t bytes = uintmax_t{64} << 20;  ///< of all files together
+};
+
 /// The files of a folder, read once and found by their path in a URL. A path from outside never reaches the file
 /// system.
 class StaticFiles {
  public:
   /// Reads every plain file below `folder`; names that begin with a dot and links are left out. Fails when there is no
-  /// index.html or the folder holds more than a viewer could.
-  static Result<StaticFiles> read(const std::filesystem::path& folder);
+  /// index.html or the folder holds more than the limits allow.
+  static Result<StaticFiles> read(const std::filesystem::path& folder, const SiteLimits& limits = {});
 
   /// The file at an absolute path without query, "/" being index.html; null when there is none.
   [[nodiscard]] const StaticFile* find(std::string_view path) const;

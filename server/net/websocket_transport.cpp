@@ -29,7 +29,7 @@ constexpr size_t kFragmentBytes = size_t{64} << 10;
 
 class WebSocketTransport : public Transport, public std::enable_shared_from_this<WebSocketTransport> {
  public:
-  WebSocketTransport(tcp::socket socket, UpgradeHead head, std::chrono::milliseconds ping);
+  WebSocketTransport(tcp::socket socket, UpgradeHead head, std::chrono::milliseconds ping, size_t request_bytes);
 
   Awaitable<Result<Bytes>> read_hello() override;
   Awaitable<Result<std::optional<Bytes>>> read() override;
@@ -55,11 +55,12 @@ class WebSocketTransport : public Transport, public std::enable_shared_from_this
   bool reading_ = false;
 };
 
-WebSocketTransport::WebSocketTransport(tcp::socket socket, UpgradeHead head, std::chrono::milliseconds ping)
+WebSocketTransport::WebSocketTransport(tcp::socket socket, UpgradeHead head, std::chrono::milliseconds ping,
+                                       size_t request_bytes)
     : stream_(std::move(socket)), head_(std::move(head)), heartbeat_(ping, Clock::now()) {
   stream_.auto_fragment(false);
   stream_.binary(true);
-  stream_.read_message_max(protocol::kMaxRequestBytes);
+  stream_.read_message_max(request_bytes);
   stream_.set_option(websocket::stream_base::decorator([](websocket::response_type& response) {
     response.set(http::field::server, "surfcastd");
     response.set(http::field::sec_websocket_protocol, beast::string_view(protocol::kWebSocketProtocol.data(),  //
@@ -148,8 +149,8 @@ void WebSocketTransport::close_socket() {
 }  // namespace
 
 std::shared_ptr<Transport> make_websocket_transport(tcp::socket socket, UpgradeHead head,
-                                                    std::chrono::milliseconds ping) {
-  return std::make_shared<WebSocketTransport>(std::move(socket), std::move(head), ping);
+                                                    std::chrono::milliseconds ping, size_t request_bytes) {
+  return std::make_shared<WebSocketTransport>(std::move(socket), std::move(head), ping, request_bytes);
 }
 
 }  // namespace surfcast::net

@@ -14,8 +14,9 @@ namespace surfcast::net {
 using UpgradeHead = boost::beast::http::request<boost::beast::http::empty_body>;
 
 /// A WebSocket, on a connection whose request for one has been read and is to be granted. The client is asked for a
-/// sign of life when it gave none for `ping`, and is taken for gone when none came for twice that.
+/// sign of life when it gave none for `ping`, and is taken for gone when none came for twice that. A longer message
+/// than `request_bytes` ends the WebSocket.
 std::shared_ptr<Transport> make_websocket_transport(boost::asio::ip::tcp::socket socket, UpgradeHead head,
-                                                    std::chrono::milliseconds ping);
+                                                    std::chrono::milliseconds ping, size_t request_bytes);
 
 }  // namespace surfcast::net

@@ -17,6 +17,7 @@ namespace surfcast::service {
 struct NamedModel {
   std::string name;
   std::filesystem::path path;
+  std::shared_ptr<const void> in_use{};  ///< held for as long as the file may be opened: whoever keeps it from removal
 };
 
 /// Model files by name: single ones, and whatever folders hold at the moment ("NAME.surf"). A single file hides one of

@@ -9,10 +9,6 @@
 namespace surfcast::service {
 namespace {
 
-constexpr unsigned kThreads = 2;
-constexpr int kMaxWaiting = 64;
-constexpr size_t kBlockBytes = size_t{64} << 20;
-
 geometry::Camera camera_of(const model::ModelFile& model, const PickJob& job) {
   if (!job.request.camera) return model::fit_model(model, static_cast<double>(job.request.width) / job.request.height);
   geometry::Camera camera = *job.request.camera;
@@ -22,14 +18,15 @@ geometry::Camera camera_of(const model::ModelFile& model, const PickJob& job) {
 
 }  // namespace
 
-PickService::PickService(const ModelSource& models) : models_(models), blocks_(kBlockBytes), pool_(kThreads) {}
+PickService::PickService(const ModelSource& models, const PickLimits& limits)
+    : models_(models), most_waiting_(limits.waiting), blocks_(limits.block_bytes), pool_(limits.threads) {}
 
 PickService::~PickService() {
   stopping_ = true;
 }
 
 void PickService::pick(PickJob job, Done done) {
-  if (++waiting_ > kMaxWaiting) {
+  if (++waiting_ > most_waiting_) {
     --waiting_;
     return done(fail(ErrorKind::kUnavailable, "the server is busy: too many picks wait"));
   }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstddef>
 #include <functional>
 #include <optional>
 #include <string>
@@ -12,6 +13,12 @@
 #include "service/worker_pool.h"
 
 namespace surfcast::service {
+
+struct PickLimits {
+  unsigned threads = 2;
+  size_t waiting = 64;                    ///< picks that may be outstanding at a time
+  size_t block_bytes = size_t{64} << 20;  ///< of decoded blocks that are kept for later picks
+};
 
 /// A pixel of a picture: somebody wants to know what it shows.
 struct PickJob {
@@ -29,7 +36,7 @@ class PickService {
   using Done = std::function<void(Result<std::optional<kinds::PickedSurfel>>)>;
 
   /// `models` must outlive the service.
-  explicit PickService(const ModelSource& models);
+  explicit PickService(const ModelSource& models, const PickLimits& limits = {});
   /// Gives up what is outstanding.
   ~PickService();
 
@@ -42,7 +49,8 @@ class PickService {
 
   const ModelSource& models_;
   std::atomic<bool> stopping_ = false;
-  std::atomic<int> waiting_ = 0;
+  const size_t most_waiting_;
+  std::atomic<size_t> waiting_ = 0;
   pick::SourceBlocks blocks_;
   WorkerPool pool_;  ///< last, so that its threads end first
 };

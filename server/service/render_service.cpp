@@ -295,9 +295,8 @@ Status RenderService::State::check(const PictureJob& picture) const {
   const int height = picture.request.height;
   const std::string size = std::to_string(width) + "," + std::to_string(height);
   if (width < 1 || height < 1) return fail(ErrorKind::kInvalidInput, "resolution: must be at least 1,1");
-  if (width > max_resolution || height > max_resolution) {
-    return fail(ErrorKind::kLimit,
-                "resolution: " + size + " is beyond " + std::to_string(max_resolution) + " pixels a side");
+  if (const int side = std::min(max_resolution, limits.side); width > side || height > side) {
+    return fail(ErrorKind::kLimit, "resolution: " + size + " is beyond " + std::to_string(side) + " pixels a side");
   }
   if (static_cast<size_t>(width) * static_cast<size_t>(height) > limits.pixels) {
     return fail(ErrorKind::kLimit,
@@ -362,7 +361,7 @@ Result<std::unique_ptr<RenderService>> RenderService::start(const ModelSource& m
   state->motion_pool = std::make_unique<WorkerPool>(1);
   // The codecs load while the first picture is drawn. The first picture that is encoded reports a failure.
   state->motion_pool->post([] { static_cast<void>(surfcast::encode::prepare_encoding()); });
-  state->picks = std::make_unique<PickService>(models);
+  state->picks = std::make_unique<PickService>(models, limits.picks);
   std::promise<Status> promise;
   std::future<Status> started = promise.get_future();
   state->render_thread = std::jthread([raw = state.get(), make = std::move(make_renderer),

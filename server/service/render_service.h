@@ -20,9 +20,11 @@ namespace surfcast::service {
 struct ServiceLimits {
   size_t queued_jobs = 256;         ///< pictures that may wait for the render thread, over all sessions
   size_t pixels = size_t{1} << 25;  ///< of one picture (8192 x 4096)
+  int side = 16384;                 ///< of one picture, pixels; the renderer may draw less
   unsigned encoders = 2;            ///< threads that encode still pictures and look up models
   size_t frames_in_encoding = 3;    ///< drawn pictures of either priority in memory before no more are drawn
   std::chrono::milliseconds queue_timeout{20'000};  ///< of a picture that waits for the render thread
+  PickLimits picks{};
 };
 
 /// A picture somebody wants, as a file.

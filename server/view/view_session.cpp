@@ -13,18 +13,10 @@ constexpr int kRefinedQuality = 90;  // of the JPEG at rest
 constexpr double kPieceMs = 60;
 constexpr size_t kFirstPiece = size_t{64} << 10;
 constexpr size_t kMinPiece = size_t{24} << 10;
-constexpr size_t kMaxPiece = size_t{16} << 20;
+constexpr size_t kMaxPiece = size_t{16} << 20;  // a message stays far below kMaxAnswerBytes
 
 int scaled(int pixels, double scale) {
   return std::max(1, static_cast<int>(std::lround(pixels * scale)));
-}
-
-/// Whether the final picture can be encoded from the last refined frame: it has the same pixel format and is not too
-/// large to keep.
-bool may_be_kept(const service::PictureJob& job) {
-  constexpr size_t kMaxPixels = size_t{1} << 23;
-  return static_cast<size_t>(job.request.width) * static_cast<size_t>(job.request.height) <= kMaxPixels &&
-         picture::pixel_format_of(job.format) == picture::pixel_format_of(picture::FileFormat::kJpeg);
 }
 
 /// A picture is improvable while missing blocks are loading. A picture with holes that will be filled soon is not
@@ -37,18 +29,27 @@ FrameResult result_of(FrameKind kind, const service::EncodedPicture& picture) {
 }  // namespace
 
 ViewSession::ViewSession(service::RenderService& service, service::SessionId session, uint64_t viewer,
-                         double target_fps, ViewCounts& counts, ViewPort port)
+                         double target_fps, ViewCounts& counts, ViewPort port, size_t kept_bytes)
     : service_(service),
       session_(session),
       viewer_(viewer),
       target_fps_(target_fps),
       counts_(counts),
-      port_(std::move(port)) {
+      port_(std::move(port)),
+      kept_bytes_(kept_bytes) {
   ++counts_.open;
 }
 
 ViewSession::~ViewSession() {
   --counts_.open;
+}
+
+/// Whether the final frame can be made of the one before it, which has the same pixels.
+bool ViewSession::may_be_kept(const service::PictureJob& job) const {
+  constexpr size_t kPixelBytes = 4;  // of the JPEG at rest
+  const size_t pixels = static_cast<size_t>(job.request.width) * static_cast<size_t>(job.request.height);
+  return pixels * kPixelBytes <= kept_bytes_ &&
+         picture::pixel_format_of(job.format) == picture::pixel_format_of(picture::FileFormat::kJpeg);
 }
 
 service::PictureJob ViewSession::picture_job(FrameKind kind, service::JobId supersedes) const {

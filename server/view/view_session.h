@@ -59,8 +59,11 @@ struct ViewPort {
 /// methods must be called on the view's thread; drawing and encoding run on the threads of the service.
 class ViewSession : public std::enable_shared_from_this<ViewSession> {
  public:
+  static constexpr size_t kKeptBytes = size_t{32} << 20;  ///< a frame of 8 million pixels
+
+  /// `kept_bytes`: of pixels at most, a frame at rest is kept to make the final picture of it without drawing again.
   ViewSession(service::RenderService& service, service::SessionId session, uint64_t viewer, double target_fps,
-              ViewCounts& counts, ViewPort port);
+              ViewCounts& counts, ViewPort port, size_t kept_bytes = kKeptBytes);
   ~ViewSession();
   ViewSession(const ViewSession&) = delete;
   ViewSession& operator=(const ViewSession&) = delete;
@@ -95,6 +98,7 @@ class ViewSession : public std::enable_shared_from_this<ViewSession> {
   };
 
   void draw(FrameKind kind);
+  [[nodiscard]] bool may_be_kept(const service::PictureJob& job) const;
   [[nodiscard]] service::PictureJob picture_job(FrameKind kind, service::JobId supersedes) const;
   void retarget();
   void drop(uint64_t frame);
@@ -114,6 +118,7 @@ class ViewSession : public std::enable_shared_from_this<ViewSession> {
   double target_fps_;
   ViewCounts& counts_;
   ViewPort port_;
+  size_t kept_bytes_;
   bool closed_ = false;
 
   ViewPlan plan_{ViewTiming{}};

@@ -393,7 +393,7 @@ TEST_F(FramedSessionTest, AConnectionThatWaitsForAPictureIsNotIdle) {
 
 TEST_F(FramedSessionTest, ConnectionsBeyondTheLimitAreToldThatTheServerIsBusy) {
   ServerConfig config;
-  config.connections = 1;
+  config.clients.connections = 1;
   start(config);
   auto first = connect();
   ASSERT_TRUE(first);

@@ -22,7 +22,13 @@ namespace surfcast::net {
 /// A plain loopback socket for tests that say what no well-behaved client says.
 class RawSocket {
  public:
-  explicit RawSocket(uint16_t port, int receive_buffer = 0) : descriptor_(::socket(AF_INET, SOCK_STREAM, 0)) {
+  /// `source`: the address of the loopback that the client has.
+  explicit RawSocket(uint16_t port, int receive_buffer = 0, const char* source = "127.0.0.1")
+      : descriptor_(::socket(AF_INET, SOCK_STREAM, 0)) {
+    sockaddr_in own{};
+    own.sin_family = AF_INET;
+    ::inet_pton(AF_INET, source, &own.sin_addr);
+    ::bind(descriptor_, reinterpret_cast<sockaddr*>(&own), sizeof own);
     if (receive_buffer > 0) ::setsockopt(descriptor_, SOL_SOCKET, SO_RCVBUF, &receive_buffer, sizeof receive_buffer);
     sockaddr_in address{};
     address.sin_family = AF_INET;

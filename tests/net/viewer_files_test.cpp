@@ -104,6 +104,8 @@ TEST_F(ViewerFilesTest, AFolderWithoutAPageIsNoViewer) {
 TEST_F(ViewerFilesTest, AFolderLargerThanAViewerIsRefused) {
   fs::resize_file(folder_ / "dist/index.html", uintmax_t{65} << 20);
   EXPECT_FALSE(StaticFiles::read(folder_ / "dist"));
+  EXPECT_TRUE(StaticFiles::read(folder_ / "dist", {.bytes = uintmax_t{70} << 20}));
+  EXPECT_FALSE(StaticFiles::read(folder_ / "dist", {.files = 1, .bytes = uintmax_t{70} << 20}));
 }
 
 }  // namespace

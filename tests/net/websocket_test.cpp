@@ -91,7 +91,7 @@ TEST_F(WebSocketTest, AWrongVersionIsToldWhichOneIsRight) {
 
 TEST_F(WebSocketTest, ABusyServerSaysSoInItsHello) {
   ServerConfig config;
-  config.connections = 1;
+  config.clients.connections = 1;
   start(config);
   RawWebSocket first = greeted();
   RawWebSocket second(port_);

@@ -115,7 +115,7 @@ class FakeRenderer : public FrameRenderer {
   }
 
   std::shared_ptr<FakeRendererControl> control_;
-  picture::DeviceInfo device_{"nobody", "fake", "1", false};
+  picture::DeviceInfo device_{"nobody", "fake", "1", false, {.gpu = 3000, .host = 2000}};
 };
 
 inline FrameRendererFactory fake_renderers(std::shared_ptr<FakeRendererControl> control) {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <future>
+#include <optional>
 #include <thread>
 
 #include <gtest/gtest.h>
@@ -335,6 +336,30 @@ TEST_F(RenderServiceTest, ModelsAreListedAndDescribed) {
   const Result<ModelDescription> teapot = description.get_future().get();
   ASSERT_TRUE(teapot);
   EXPECT_EQ(teapot->blocks, 7u);
+}
+
+TEST_F(RenderServiceTest, ALongSideIsRefusedByTheServicesOwnLimit) {
+  ServiceLimits limits;
+  limits.side = 100;
+  start(limits);
+  PictureJob job = job_for("cube");
+  job.request.width = 100;
+  EXPECT_TRUE(draw(1, job).second.get());
+  job.request.width = 101;
+  const Result<EncodedPicture> refused = draw(1, job).second.get();
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, ErrorKind::kLimit);
+  EXPECT_EQ(refused.error().message, "resolution: 101,4 is beyond 100 pixels a side");
+}
+
+TEST_F(RenderServiceTest, PicksBeyondTheirLimitAreRefusedAtOnce) {
+  ServiceLimits limits;
+  limits.picks.waiting = 0;
+  start(limits);
+  std::optional<Error> error;
+  service_->pick({}, [&error](const auto& picked) { error = picked.error(); });
+  ASSERT_TRUE(error);
+  EXPECT_EQ(error->kind, ErrorKind::kUnavailable);
 }
 
 }  // namespace

@@ -1,0 +1,157 @@
+#include "cmd/limit_flags.h"
+
+#include "cmd/settings.h"
+#include "protocol/request_flags.h"
+
+namespace surfcast::cmd {
+namespace {
+
+constexpr uint64_t kMebibyte = uint64_t{1} << 20;
+constexpr SettingRange kThreads{1, 1024};
+constexpr SettingRange kOrNone{0, 1'000'000};
+
+void add_queue_flags(CLI::App& command, service::ServiceLimits& limits) {
+  add_count(command, "max-queue", limits.queued_jobs,
+            "Pictures that may wait for the renderer (default 256). More: longer waits; less: refused sooner");
+  add_seconds(command, "queue-timeout", limits.patience,
+              "Wait of a picture for the renderer before it is refused (default 20). More: pictures that nobody waits "
+              "for any longer are drawn; less: refused under short peaks");
+  add_count(command, "encoders", limits.encoders,
+            "Threads that encode pictures at rest (default 2). More: processor time taken from software rendering; "
+            "less: finished pictures wait",
+            kThreads);
+  add_count(command, "max-frames", limits.frames_in_encoding,
+            "Drawn pictures in memory that wait for an encoder (default 3). More: memory, 4 to 16 bytes a pixel; less: "
+            "the renderer waits");
+}
+
+void add_pick_flags(CLI::App& command, service::PickLimits& limits) {
+  add_pick_cache_flag(command, limits);
+  add_count(command, "pick-threads", limits.threads,
+            "Threads that find what a pixel shows (default 2). More: processor time; less: picks wait", kThreads);
+  add_count(command, "max-picks", limits.waiting,
+            "Picks that may be outstanding (default 64). More: longer waits; less: refused sooner");
+}
+
+void add_connection_flags(CLI::App& command, net::ServerConfig& server) {
+  add_count(command, "max-connections", server.clients.connections,
+            "Connections at once (default 256). More: memory and descriptors; less: refused sooner", {1, 1'000'000},
+            "connections");
+  add_count(command, "max-connections-per-client", server.clients.connections_per_client,
+            "Connections of one address (default 0: no limit of its own). More: one client may take all; less: clients "
+            "behind one proxy are refused",
+            kOrNone);
+  add_count(command, "max-views", server.views,
+            "Views open on one connection (default 8). More: one client loads the renderer; less: pages with many "
+            "views are refused");
+  add_count(command, "max-views-per-client", server.clients.views_per_client,
+            "Views of one address (default 0: no limit of its own). More and less as for connections", kOrNone);
+  add_size(command, "view-memory", server.kept_frame_bytes,
+           "Pixels of a view at rest that are kept to encode them again (default 32M). More: memory of every view; "
+           "less: the last picture at rest of large views is drawn twice");
+}
+
+void add_request_flags(CLI::App& command, net::ServerConfig& server) {
+  add_count(command, "max-requests", server.requests.outstanding,
+            "Requests of one connection without an answer (default 64). More: memory; less: pipelines are refused");
+  add_count(command, "max-drawing", server.requests.drawing,
+            "Pictures of one connection with the renderer (default 2). More: one client fills the queue; less: the "
+            "renderer waits between two");
+  add_setting(command, {"send-buffer", "SIZE",
+                        "Answers that a client has not taken before nothing more is drawn for it; twice that, and "
+                        "nothing more is read from it (default 32M). More: memory of slow clients; less: they wait",
+                        [](const std::string& text) -> Status { return parse_size(text, {}).map([](uint64_t) {}); },
+                        [&server](const std::string& text) {
+                          server.requests.outgoing_bytes = *parse_size(text, {});
+                          server.unread_bytes = 2 * server.requests.outgoing_bytes;
+                        }});
+  add_size(command, "max-message", server.request_bytes,
+           "A message of a client (default 64K). More: memory of hostile clients; less: requests with many clip boxes "
+           "are refused",
+           {1024, 64 * kMebibyte});
+  add_size(command, "max-http-header", server.http_header_bytes,
+           "The header of an HTTP request, with its query (default 16K). More: memory of every connection; less: long "
+           "queries and cookies are refused",
+           {1024, kMebibyte});
+}
+
+void add_time_flags(CLI::App& command, net::ServerConfig& server) {
+  add_seconds(command, "handshake-timeout", server.hello,
+              "For the first words of a connection (default 10). More: silent connections stay; less: slow networks "
+              "are cut off");
+  add_seconds(command, "idle-timeout", server.idle,
+              "Without a request (default 300). More: idle connections stay; less: clients connect again and again");
+  add_seconds(command, "answer-timeout", server.stall,
+              "Without any byte of an answer being taken (default 30). More: stuck clients hold memory; less: slow "
+              "networks are cut off");
+  add_seconds(command, "ping-interval", server.ping,
+              "Silence of a WebSocket before its client is pinged; after twice that it is gone (default 30). More: "
+              "vanished clients stay; less: traffic, and networks with gaps are cut off");
+  add_seconds(command, "drain-timeout", server.drain,
+              "For what is outstanding when the server stops (default 5). More: it stops later; less: pictures are "
+              "given up");
+}
+
+}  // namespace
+
+void add_cache_flags(CLI::App& command, ScanCacheConfig& cache) {
+  command.add_option("--cache", cache.folder, "Folder for the models of scans (default ~/.cache/surfcast)")
+      ->envname(protocol::environment_name("cache"));
+  add_size(command, "cache-size", cache.bytes,
+           "Models of scans that are kept there (default 20G, or half of what the disk would have free without them). "
+           "More: disk; less: scans are built again");
+  add_size(command, "build-memory", cache.build_memory,
+           "Memory for building a model of a scan (default: a quarter of the machine's). More: less for the rest; "
+           "less: large scans are built in more parts");
+}
+
+void add_renderer_flags(CLI::App& command, render::RendererConfig& renderer) {
+  command.add_option("--gpu", renderer.gpu, "Index of the EGL device (default: the first hardware device)")
+      ->envname(protocol::environment_name("gpu"))
+      ->check(CLI::Range(0, 63));
+  add_size(command, "gpu-memory", renderer.gpu_bytes,
+           "For surfels on the GPU (default: a quarter of what is free there, in software an eighth of the host's). "
+           "More: less for frames and other programs; less: coarser pictures of large scans",
+           {kMebibyte, UINT64_MAX});
+  add_size(command, "host-memory", renderer.host_bytes,
+           "For decoded blocks that may come back to the GPU (default: a quarter of what is available, in software an "
+           "eighth). More: less for other programs; less: blocks are decoded again",
+           {kMebibyte, UINT64_MAX});
+  add_count(command, "decoders", renderer.decoders,
+            "Threads that decode blocks (default: one a core). More: processor time; less: pictures wait for blocks",
+            kThreads);
+}
+
+void add_picture_flags(CLI::App& command, service::ServiceLimits& limits) {
+  add_count(command, "max-pixels", limits.pixels,
+            "Pixels of one picture (default 33554432). More: memory and time of one picture; less: refused sooner",
+            {1, uint64_t{1} << 28});
+  add_count(command, "max-side", limits.side,
+            "Pixels of its longer side (default 16384, the most there may be). Less: refused sooner", {1, 16384});
+}
+
+void add_pick_cache_flag(CLI::App& command, service::PickLimits& limits) {
+  add_size(command, "pick-cache", limits.block_bytes,
+           "Decoded blocks kept for picks (default 64M). More: memory; less: they are decoded for every pick");
+}
+
+void add_server_flags(CLI::App& command, service::ServiceLimits& service, render::RendererConfig& renderer,
+                      net::ServerConfig& server, net::SiteLimits& viewer) {
+  add_size(command, "motion-upload", renderer.upload_bytes,
+           "Blocks stored on the GPU in one picture in motion (default 16M). More: pictures in motion wait; less: "
+           "detail arrives later");
+  add_count(command, "remembered-views", renderer.viewers,
+            "Views of one model whose motion is remembered (default 64). More: memory; less: detail flickers where "
+            "more than these move");
+  add_queue_flags(command, service);
+  add_pick_flags(command, service.picks);
+  add_connection_flags(command, server);
+  add_request_flags(command, server);
+  add_time_flags(command, server);
+  add_size(command, "viewer-memory", viewer.bytes,
+           "The viewer's files, which stay in memory (default 64M). More: memory; less: large viewers are refused");
+  add_count(command, "viewer-files", viewer.files,
+            "Number of them (default 1000). More: a folder given by mistake is read for long; less: refused");
+}
+
+}  // namespace surfcast::cmd

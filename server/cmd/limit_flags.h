@@ -1,0 +1,28 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "cmd/scan_cache.h"
+#include "net/server.h"
+#include "net/static_files.h"
+#include "render/renderer.h"
+#include "service/render_service.h"
+
+namespace surfcast::cmd {
+
+// Flags that set the limits of the programs, and their variables. docs/settings.md lists them all. Targets must outlive
+// the parsing.
+
+/// `--cache`, its size, and the memory of builds.
+void add_cache_flags(CLI::App& command, ScanCacheConfig& cache);
+/// `--gpu`, the memory of the renderer and its threads.
+void add_renderer_flags(CLI::App& command, render::RendererConfig& renderer);
+/// The size of a picture.
+void add_picture_flags(CLI::App& command, service::ServiceLimits& limits);
+/// What picks keep in memory.
+void add_pick_cache_flag(CLI::App& command, service::PickLimits& limits);
+/// All that only a server has: queues, threads, connections, views, messages, times, the viewer.
+void add_server_flags(CLI::App& command, service::ServiceLimits& service, render::RendererConfig& renderer,
+                      net::ServerConfig& server, net::SiteLimits& viewer);
+
+}  // namespace surfcast::cmd
