@@ -57,6 +57,11 @@ struct KernelShape {
   int project_lanes = 64;    ///< lanes that share a chunk of surfels: one vector, or as many as hide waiting
 };
 
+/// The shape for devices whose lanes are those of a processor's vectors.
+constexpr KernelShape software_kernels() {
+  return {.whole_tiles = true, .tiles_at_once = 8, .project_lanes = 8};
+}
+
 /// Compiles the passes when they are first needed.
 class Programs {
  public:

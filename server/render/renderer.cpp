@@ -322,9 +322,8 @@ Result<picture::Frame> Renderer::State::draw(const std::shared_ptr<const model::
 Result<std::unique_ptr<Renderer>> Renderer::create(const RendererConfig& config) {
   Result<std::unique_ptr<gl::EglContext>> context = gl::EglContext::create(config.gpu);
   if (!context) return fail(std::move(context.error()));
-  constexpr KernelShape kSoftware = {.whole_tiles = true, .tiles_at_once = 8, .project_lanes = 8};
   Result<Programs> programs =
-      Programs::create((*context)->software() ? kSoftware : KernelShape(), config.shader_defines);
+      Programs::create((*context)->software() ? software_kernels() : KernelShape(), config.shader_defines);
   if (!programs) return fail(std::move(programs.error()));
   return std::unique_ptr<Renderer>(
       new Renderer(std::make_unique<State>(config, std::move(*context), std::move(*programs))));
