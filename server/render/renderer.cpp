@@ -322,8 +322,8 @@ Result<picture::Frame> Renderer::State::draw(const std::shared_ptr<const model::
 Result<std::unique_ptr<Renderer>> Renderer::create(const RendererConfig& config) {
   Result<std::unique_ptr<gl::EglContext>> context = gl::EglContext::create(config.gpu);
   if (!context) return fail(std::move(context.error()));
-  Result<Programs> programs =
-      Programs::create((*context)->software() ? software_kernels() : KernelShape(), config.shader_defines);
+  const bool software = (*context)->software() && !config.gpu_kernels;
+  Result<Programs> programs = Programs::create(software ? software_kernels() : KernelShape(), config.shader_defines);
   if (!programs) return fail(std::move(programs.error()));
   return std::unique_ptr<Renderer>(
       new Renderer(std::make_unique<State>(config, std::move(*context), std::move(*programs))));
