@@ -84,6 +84,7 @@ endfunction()
 # One GoogleTest program of one module. Every case becomes a separate ctest case. WHOLE keeps the cases together, for
 # programs whose start takes longer than their cases (a GL context and its shaders). A label is one word with parts that
 # ctest can select (-L gl, -LE slow): first the requirements of a test, then its suite, as in gl-slow-numerics.
+# Tests of code that uses several threads are of the suite `threads`, which runs under the thread sanitizer.
 function(surfcast_test name)
   cmake_parse_arguments(ARG "WHOLE" "" "SOURCES;LIBS;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
@@ -97,6 +98,9 @@ function(surfcast_test name)
   endif()
   if(ARG_LABELS MATCHES "^unit|^gl-numerics")
     add_dependencies(sanitized_tests ${name})
+  endif()
+  if(ARG_LABELS MATCHES "threads")
+    add_dependencies(concurrent_tests ${name})
   endif()
   if(ARG_WHOLE)
     add_test(NAME ${name} COMMAND ${name})

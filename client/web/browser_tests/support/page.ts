@@ -31,6 +31,12 @@ export async function open(browser: Browser, options: BrowserContextOptions): Pr
 export const sharp = (page: Page): Promise<unknown> =>
   page.locator('.status .lamp.sharp').waitFor({ state: 'attached', timeout: 90_000 });
 
+/** The state of the lamp in the status line: sharp, working or offline. */
+export async function lamp(page: Page): Promise<string> {
+  const names = (await page.locator('.status .lamp').getAttribute('class')) ?? '';
+  return names.replace('lamp ', '');
+}
+
 /** A checksum of the picture's pixels. */
 export const pictureSum = (page: Page): Promise<number> =>
   page.evaluate(() => {

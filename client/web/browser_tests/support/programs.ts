@@ -7,8 +7,9 @@ const run = promisify(execFile);
 /** Path of surfcastd, set by CMake. A plain `npm run browser-test` uses the release build. */
 const surfcastd = process.env['SURFCASTD'] ?? '../../build/bin/surfcastd';
 
-export async function surfcastdRun(...args: string[]): Promise<void> {
-  await run(surfcastd, args);
+/** What the program prints. */
+export async function surfcastdRun(...args: string[]): Promise<string> {
+  return (await run(surfcastd, args)).stdout;
 }
 
 export class Server {

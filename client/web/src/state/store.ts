@@ -23,6 +23,8 @@ export const descriptions = signal<ReadonlyMap<string, ModelDescription>>(new Ma
 export const viewProblem = signal<{ readonly message: string; readonly again: boolean } | undefined>(undefined);
 /** The frame on the screen, without its data. */
 export const shownFrame = signal<ViewFrame | undefined>(undefined);
+/** The frame on the screen belongs to the open view, not to one that ended with its connection. */
+export const frameIsCurrent = signal(false);
 /** The first update that requested the current view. A frame of an older update shows an earlier view. */
 export const wantedUpdate = signal(0n);
 /** The view has changed, and the server has not been told yet. */

@@ -4,6 +4,7 @@ import {
   wantedUpdate,
   figures,
   figuresOpen,
+  frameIsCurrent,
   link,
   moving,
   picking,
@@ -33,7 +34,7 @@ function stateNow(): State {
   if (!frame) return { kind: 'working', text: 'Loading' };
   if (picking.value) return { kind: 'working', text: 'Looking' };
   if (moving.value) return { kind: 'working', text: 'Moving' };
-  const wanted = !updatePending.value && frame.update >= wantedUpdate.value;
+  const wanted = frameIsCurrent.value && !updatePending.value && frame.update >= wantedUpdate.value;
   return wanted && !frame.moving && frame.picture?.converged ? { kind: 'sharp', text: 'Sharp' } : { kind: 'working', text: 'Refining' };
 }
 

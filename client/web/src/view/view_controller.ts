@@ -180,6 +180,7 @@ export class ViewController {
     this.session?.close();
     this.session = undefined;
     this.sent = undefined;
+    store.frameIsCurrent.value = false;
   }
 
   private failed(error: unknown): void {
@@ -221,6 +222,7 @@ export class ViewController {
     // Later frames of the same update are refinements, whose delay is not a latency.
     for (const update of this.sentAt.keys()) if (update <= frame.update) this.sentAt.delete(update);
     store.shownFrame.value = withoutData(painted);
+    store.frameIsCurrent.value = this.session !== undefined;
     if (!store.pose.peek() && frame.update >= store.wantedUpdate.peek()) this.adopt(painted);
   }
 
