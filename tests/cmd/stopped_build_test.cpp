@@ -1,16 +1,19 @@
-#include <chrono>
+// Builds that are stopped at every kind of moment: a library that the program is started with counts the calls that
+// change files and stops the program before or after one of them. Between two such calls no file changes, so all that
+// a stop can leave behind is seen, and the same on every run.
+
 #include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <fstream>
-#include <random>
+#include <ostream>
+#include <set>
 #include <sstream>
 #include <string>
-#include <thread>
+#include <vector>
 
 #include <gtest/gtest.h>
 
-#include "base/stopwatch.h"
 #include "client/run_program.h"
 
 namespace surfcast::cmd {
@@ -18,8 +21,10 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Builds that each test stops.
-constexpr int kRounds = 15;
+/// Moments that are tried beside the last ones, at even distances, where a build has more of them.
+constexpr long kMoments = 40;
+/// So many at the end are all tried: there the model takes its place.
+constexpr long kLastMoments = 16;
 
 std::string content(const fs::path& path) {
   std::ifstream stream(path, std::ios::binary);
@@ -41,94 +46,136 @@ void write_scan(const fs::path& path, int side) {
   }
 }
 
+/// A program that builds, and how often it changes files at least.
+struct Builder {
+  std::string name;
+  std::vector<std::string> (*command)(const std::string& scan, const std::string& target);
+  long least_moments;
+
+  friend std::ostream& operator<<(std::ostream& stream, const Builder& builder) { return stream << builder.name; }
+};
+
+const Builder kBuilders[] = {
+    {"AsAWhole",
+     [](const std::string& scan, const std::string& target) {
+       return std::vector<std::string>{SURFCASTD, "build", scan, "--output", target};
+     },
+     10},
+    {"InManyParts",
+     [](const std::string& scan, const std::string& target) {
+       return std::vector<std::string>{BUILD_IN_PARTS, scan, target, "1200"};
+     },
+     60},
+};
+
 /// A folder with a scan, and the model that an undisturbed build makes of it.
-class StoppedBuildTest : public ::testing::Test {
+class StoppedBuildTest : public ::testing::TestWithParam<Builder> {
  protected:
   void SetUp() override {
-    folder_ = fs::path(::testing::TempDir()) /
-              ("stopped_build_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+    const fs::path name = ::testing::UnitTest::GetInstance()->current_test_info()->name();
+    folder_ = fs::path(::testing::TempDir()) / ("stopped_build_" + name.filename().string() + std::to_string(getpid()));
     fs::remove_all(folder_);
     fs::create_directories(folder_);
     std::signal(SIGINT, SIG_DFL);  // may be ignored, which programs inherit
-    write_scan(folder_ / "scan.ply", 150);
-    const Stopwatch stopwatch;
-    ASSERT_EQ(client::wait_for_program(start_build()), 0);
-    seconds_ = stopwatch.seconds();
+    write_scan(scan(), 100);
+    const fs::path counted = folder_ / "moments";
+    ASSERT_EQ(build({"SURFCAST_MOMENTS=" + counted.string()}), 0);
+    moments_ = std::stol(content(counted));
+    ASSERT_GE(moments_, GetParam().least_moments);
     whole_ = content(target());
+    ASSERT_FALSE(whole_.empty());
+    fs::remove(counted);
     fs::remove(target());
   }
   void TearDown() override { fs::remove_all(folder_); }
 
+  [[nodiscard]] fs::path scan() const { return folder_ / "scan.ply"; }
   [[nodiscard]] fs::path target() const { return folder_ / "model.surf"; }
-  [[nodiscard]] pid_t start_build() const {
-    return client::start_program({SURFCASTD, "build", folder_ / "scan.ply", "--output", target()});
+
+  /// Builds with these variables in the environment; the exit code, or 128 and the signal.
+  [[nodiscard]] int build(std::vector<std::string> variables) const {
+    std::vector<std::string> line{"/usr/bin/env", "LD_PRELOAD=" STOP_AT_CALL};
+    line.insert(line.end(), variables.begin(), variables.end());
+    for (std::string& word : GetParam().command(scan(), target())) line.push_back(std::move(word));
+    return client::wait_for_program(client::start_program(line));
   }
 
-  /// Sends the signal at a random moment of the build. Returns whether the build was still going on.
-  bool stop_a_build(int signal) {
-    const pid_t build = start_build();
-    const double moment = std::uniform_real_distribution<>(0, 1.1 * seconds_)(random_);
-    std::this_thread::sleep_for(std::chrono::duration<double>(moment));
-    ::kill(build, signal);
-    return client::wait_for_program(build) == 128 + signal;
+  /// Returns whether the build was still going on at that moment.
+  [[nodiscard]] bool stop_build(long moment, int signal) const {
+    const int code =
+        build({"SURFCAST_STOP_AT=" + std::to_string(moment), "SURFCAST_STOP_SIGNAL=" + std::to_string(signal)});
+    EXPECT_TRUE(code == 128 + signal || code == 0) << code;
+    return code == 128 + signal;
+  }
+
+  /// How many changes of files there are varies with the order of threads a little, which the last moments cover.
+  [[nodiscard]] std::set<long> moments() const {
+    std::set<long> chosen;
+    for (long i = 0; i < kMoments; ++i) chosen.insert(1 + i * (moments_ - 1) / kMoments);
+    for (long i = 0; i < kLastMoments; ++i) chosen.insert(std::max(1L, moments_ - i));
+    return chosen;
   }
 
   /// What is in the folder beside the scan and the model.
   [[nodiscard]] std::string leftovers() const {
     std::string names;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
-      const std::string name = entry.path().filename();
-      if (name != "scan.ply" && name != "model.surf") names += name + ' ';
+      if (entry.path() != scan() && entry.path() != target()) names += entry.path().filename().string() + ' ';
     }
     return names;
   }
 
   void remove_leftovers() const {
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
-      if (entry.path().filename() != "scan.ply" && entry.path() != target()) fs::remove(entry.path());
+      if (entry.path() != scan() && entry.path() != target()) fs::remove(entry.path());
     }
   }
 
   fs::path folder_;
   std::string whole_;
-  double seconds_ = 0;
-  std::mt19937 random_{std::random_device{}()};
+  long moments_ = 0;
 };
 
-TEST_F(StoppedBuildTest, TheTargetIsAbsentOrWhole) {
-  int stopped = 0;
-  for (int i = 0; i < kRounds; ++i) {
-    const int signal = i % 2 == 0 ? SIGKILL : SIGINT;
-    stopped += stop_a_build(signal);
-    if (fs::exists(target())) {
-      ASSERT_TRUE(content(target()) == whole_) << "a model that is not whole";
+INSTANTIATE_TEST_SUITE_P(Builders, StoppedBuildTest, ::testing::ValuesIn(kBuilders),
+                         [](const auto& builder) { return builder.param.name; });
+
+TEST_P(StoppedBuildTest, TheTargetIsAbsentOrWhole) {
+  size_t stopped = 0;
+  bool was_absent = false, was_whole = false;
+  for (const long moment : moments()) {
+    const int signal = moment % 3 == 0 ? SIGKILL : SIGINT;
+    stopped += stop_build(moment, signal) ? 1 : 0;
+    const bool exists = fs::exists(target());
+    if (exists) {
+      ASSERT_TRUE(content(target()) == whole_) << "a model that is not whole, stopped at " << moment;
     }
+    (exists ? was_whole : was_absent) = true;
     if (signal == SIGINT) {
-      ASSERT_EQ(leftovers(), "");
+      ASSERT_EQ(leftovers(), "") << "stopped at " << moment << " of " << moments_;
     }
     fs::remove(target());
     remove_leftovers();
   }
-  EXPECT_GT(stopped, 0);
-  RecordProperty("stopped", stopped);
+  EXPECT_GE(stopped, moments().size() * 9 / 10);
+  EXPECT_TRUE(was_absent && was_whole) << "stops before and after the model was in its place";
 }
 
-TEST_F(StoppedBuildTest, AnOldModelStaysUntilTheNewOneIsWhole) {
+TEST_P(StoppedBuildTest, AnOldModelStaysUntilTheNewOneIsWhole) {
   const std::string old = "an old model, of which nothing may get lost";
-  int stopped = 0;
-  for (int i = 0; i < kRounds; ++i) {
+  bool was_old = false, was_whole = false;
+  for (const long moment : moments()) {
     std::ofstream(target(), std::ios::binary) << old;
-    const int signal = i % 2 == 0 ? SIGKILL : SIGINT;
-    stopped += stop_a_build(signal);
+    const int signal = moment % 3 == 0 ? SIGINT : SIGKILL;
+    static_cast<void>(stop_build(moment, signal));
     const std::string now = content(target());
-    ASSERT_TRUE(now == old || now == whole_) << now.size();
+    ASSERT_TRUE(now == old || now == whole_) << now.size() << ", stopped at " << moment;
+    (now == old ? was_old : was_whole) = true;
     if (signal == SIGINT) {
-      ASSERT_EQ(leftovers(), "");
+      ASSERT_EQ(leftovers(), "") << "stopped at " << moment << " of " << moments_;
     }
     remove_leftovers();
   }
-  EXPECT_GT(stopped, 0);
-  RecordProperty("stopped", stopped);
+  EXPECT_TRUE(was_old && was_whole) << "stops before and after the model was in its place";
 }
 
 }  // namespace

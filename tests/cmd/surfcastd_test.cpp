@@ -1,14 +1,20 @@
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 #include <fstream>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
+
+#include "model/model_file.h"
 
 namespace surfcast::cmd {
 namespace {
@@ -59,6 +65,32 @@ class SurfcastdTest : public ::testing::Test {
 
   fs::path folder_;
 };
+
+std::array<long, 3> nearest(const glm::dvec3& point) {
+  return {std::lround(point.x), std::lround(point.y), std::lround(point.z)};
+}
+
+/// How far the positions of a model's finest surfels are from those of the points, which `points` holds by the whole
+/// numbers nearest to them; infinite when it has others.
+double largest_error(const fs::path& path, const std::map<std::array<long, 3>, glm::dvec3>& points) {
+  const Result<model::ModelFile> model = model::ModelFile::open(path);
+  EXPECT_TRUE(model);
+  size_t found = 0;
+  double largest = 0;
+  for (size_t b = 0; model && b < model->blocks().size(); ++b) {
+    if (model->tree().blocks()[b].level != 0) continue;
+    const Result<model::DecodedBlock> block = model->decode(b);
+    EXPECT_TRUE(block);
+    for (size_t i = 0; block && i < block->size(); ++i) {
+      const auto point = points.find(nearest(block->position(i)));
+      if (point == points.end()) return std::numeric_limits<double>::infinity();
+      largest = std::max(largest, glm::distance(block->position(i), point->second));
+      ++found;
+    }
+  }
+  EXPECT_EQ(found, points.size());
+  return largest;
+}
 
 /// One line on stderr that begins with the program's name.
 void expect_one_line_error(const Answer& answer) {
@@ -130,11 +162,23 @@ TEST_F(SurfcastdTest, VerifyFindsADamagedBlock) {
 }
 
 TEST_F(SurfcastdTest, PrecisionBoundsThePositionError) {
-  const auto bytes = [&](const std::string& options) {
-    EXPECT_EQ(run("build scan.ply --output model.surf " + options).exit_code, 0);
-    return fs::file_size(folder_ / "model.surf");
-  };
-  EXPECT_LT(bytes("--precision 0.1"), bytes("--precision 0.000001"));
+  // Positions on no lattice, near to the whole numbers that tell which point is which.
+  std::map<std::array<long, 3>, glm::dvec3> points;
+  std::ofstream scan(folder_ / "survey.xyz");
+  scan.precision(17);
+  for (int i = 0; i < 400; ++i) {
+    const glm::dvec3 whole(i % 20, i / 20, 7);
+    const glm::dvec3 point = whole + 0.2 * glm::dvec3(std::sin(i), std::sin(2.1 * i), std::sin(3.7 * i));
+    points[nearest(point)] = point;
+    scan << point.x << ' ' << point.y << ' ' << point.z << '\n';
+  }
+  scan.close();
+  for (const double precision : {0.1, 0.003, 1e-6}) {
+    ASSERT_EQ(run("build survey.xyz --output model.surf --precision " + std::to_string(precision)).exit_code, 0);
+    const double error = largest_error(folder_ / "model.surf", points);
+    EXPECT_LE(error, precision);
+    EXPECT_GT(error, precision / 10) << "bytes are spent on digits that nobody asked for";
+  }
 }
 
 TEST_F(SurfcastdTest, FailuresNameTheFileAndLeaveNothingBehind) {
