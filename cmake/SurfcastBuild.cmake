@@ -7,6 +7,7 @@ set(SURFCAST_VIEWER AUTO CACHE STRING
   "The viewer for browsers: ON (fails without it), AUTO (warns where npm cannot build it), OFF")
 set_property(CACHE SURFCAST_VIEWER PROPERTY STRINGS ON AUTO OFF)
 set(SURFCAST_SANITIZE "" CACHE STRING "Sanitizers to build with, as the compiler names them (address,undefined)")
+option(SURFCAST_PCH "Precompile the headers that most sources include" OFF)
 
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
@@ -20,6 +21,13 @@ endif()
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM)
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+  if(SURFCAST_PCH)
+    # What ccache asks for before it caches compilations with precompiled headers.
+    set(CMAKE_CXX_COMPILER_LAUNCHER
+      ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
+      ${CCACHE_PROGRAM})
+    add_compile_options(-fpch-preprocess)
+  endif()
 endif()
 
 find_package(Threads REQUIRED)
@@ -38,7 +46,38 @@ endif()
 if(SURFCAST_SANITIZE)
   add_compile_options(-fsanitize=${SURFCAST_SANITIZE} -fno-sanitize-recover=all -fno-omit-frame-pointer)
   add_link_options(-fsanitize=${SURFCAST_SANITIZE})
+  if(SURFCAST_SANITIZE MATCHES "thread")
+    # The sanitizer does not support fences. Asio also passes work between threads under a mutex, so it needs none.
+    add_compile_definitions(BOOST_ASIO_DISABLE_FENCED_BLOCK)
+  endif()
 endif()
+
+# surfcast_precompiled_headers(NAME HEADERS header... [LIBS lib...] [OPTIONS option...]) precompiles headers once, if
+# SURFCAST_PCH is on, for targets that are compiled with the same options. surfcast_use_precompiled_headers(TARGET NAME)
+# uses them. The sanitizer builds do so. The release build does not: in it, a source that lacks an include fails.
+function(surfcast_precompiled_headers name)
+  if(NOT SURFCAST_PCH)
+    return()
+  endif()
+  cmake_parse_arguments(ARG "" "" "HEADERS;LIBS;OPTIONS" ${ARGN})
+  set(source ${CMAKE_CURRENT_BINARY_DIR}/${name}.cpp)
+  file(CONFIGURE OUTPUT ${source} CONTENT "")
+  add_library(${name} OBJECT ${source})
+  target_link_libraries(${name} PRIVATE surfcast_warnings ${ARG_LIBS})
+  target_compile_options(${name} PRIVATE ${ARG_OPTIONS})
+  target_precompile_headers(${name} PRIVATE ${ARG_HEADERS})
+endfunction()
+
+function(surfcast_use_precompiled_headers target name)
+  if(SURFCAST_PCH)
+    target_precompile_headers(${target} REUSE_FROM ${name})
+  endif()
+endfunction()
+
+set(SURFCAST_COMMON_HEADERS
+  <algorithm> <array> <atomic> <chrono> <cmath> <cstdint> <cstring> <filesystem> <fstream> <functional> <map> <memory>
+  <mutex> <optional> <span> <sstream> <string> <thread> <vector> <glm/glm.hpp> <tl/expected.hpp>)
+surfcast_precompiled_headers(surfcast_module_headers HEADERS ${SURFCAST_COMMON_HEADERS})
 
 # surfcast_headers(TARGET PUBLIC|INTERFACE NAME FOLDER)
 # Lets TARGET and the targets that link it include the headers of FOLDER as "NAME/header.h", but no folders next to
@@ -61,6 +100,7 @@ function(surfcast_module name)
     add_library(surfcast_${name} STATIC ${ARG_SOURCES})
     surfcast_headers(surfcast_${name} PUBLIC ${name} ${CMAKE_CURRENT_SOURCE_DIR})
     target_link_libraries(surfcast_${name} PUBLIC ${ARG_PUBLIC} PRIVATE surfcast_warnings ${ARG_PRIVATE})
+    surfcast_use_precompiled_headers(surfcast_${name} surfcast_module_headers)
   else()
     add_library(surfcast_${name} INTERFACE)
     surfcast_headers(surfcast_${name} INTERFACE ${name} ${CMAKE_CURRENT_SOURCE_DIR})
@@ -80,11 +120,14 @@ function(surfcast_test_data)
   set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_DEFINITIONS SURFCAST_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data")
 endfunction()
 
+set(SURFCAST_TEST_OPTIONS $<$<CONFIG:Debug>:-O0> $<$<CONFIG:Release>:-O1>)
+
 # surfcast_test(NAME [WHOLE] SOURCES file... [LIBS lib...] [LABELS label...])
 # One GoogleTest program of one module. Every case becomes a separate ctest case. WHOLE keeps the cases together, for
 # programs whose start takes longer than their cases (a GL context and its shaders). A label is one word with parts that
 # ctest can select (-L gl, -LE slow): first the requirements of a test, then its suite, as in gl-slow-numerics.
 # Tests of code that uses several threads are of the suite `threads`, which runs under the thread sanitizer.
+# Slow tests of damaged input are of the suite `hostile`, which also runs under the address sanitizer.
 function(surfcast_test name)
   cmake_parse_arguments(ARG "WHOLE" "" "SOURCES;LIBS;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
@@ -92,11 +135,12 @@ function(surfcast_test name)
   target_link_libraries(${name} PRIVATE surfcast_warnings ${ARG_LIBS} GTest::gtest_main GTest::gmock)
   # Test code runs once, so less optimization saves more compile time than it costs. The tested libraries are built with
   # the usual optimization.
-  target_compile_options(${name} PRIVATE $<$<CONFIG:Debug>:-O0> $<$<CONFIG:Release>:-O1>)
+  target_compile_options(${name} PRIVATE ${SURFCAST_TEST_OPTIONS})
+  surfcast_use_precompiled_headers(${name} surfcast_test_headers)
   if(NOT ARG_LABELS)
     set(ARG_LABELS unit)
   endif()
-  if(ARG_LABELS MATCHES "^unit|^gl-numerics")
+  if(ARG_LABELS MATCHES "^unit|^gl-numerics|hostile")
     add_dependencies(sanitized_tests ${name})
   endif()
   if(ARG_LABELS MATCHES "threads")
