@@ -8,16 +8,17 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 namespace surfcast::model {
 
-/// An empty folder for the running test, removed afterwards.
+/// An empty folder for the running test, removed afterwards. No other run of the test on the machine shares it.
 class TestFolder {
  public:
   TestFolder() {
     const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-    path_ = std::filesystem::path(::testing::TempDir()) /
-            (std::string("surfcast_") + test->test_suite_name() + "_" + test->name());
+    path_ = std::filesystem::path(::testing::TempDir()) / (std::string("surfcast_") + test->test_suite_name() + "_" +
+                                                           test->name() + "_" + std::to_string(::getpid()));
     std::filesystem::remove_all(path_);
     std::filesystem::create_directories(path_);
   }
