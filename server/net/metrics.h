@@ -6,8 +6,8 @@
 #include <string>
 #include <vector>
 
+#include "picture/device_info.h"
 #include "picture/picture.h"
-#include "render/memory_budgets.h"
 #include "view/view_session.h"
 
 namespace surfcast::net {
@@ -30,9 +30,9 @@ struct Metrics {
 
 /// What there is at the moment.
 struct Gauges {
-  size_t connections = 0;        ///< open
-  size_t queued = 0;             ///< pictures that wait for the render thread
-  render::MemoryBudgets memory;  ///< of the renderer
+  size_t connections = 0;         ///< open
+  size_t queued = 0;              ///< pictures that wait for the render thread
+  picture::MemoryBudgets memory;  ///< of the renderer
 };
 
 /// The text that Prometheus reads.
