@@ -15,7 +15,7 @@ bool all_at_most(const Column& column, uint64_t limit) {
   return std::all_of(column.begin(), column.end(), [limit](uint64_t value) { return value <= limit; });
 }
 
-/// Values beyond what the shape allows would reach the renderer as wild numbers, so they are refused.
+/// False if a value exceeds the limits of the shape. Such values would reach the renderer as arbitrary numbers.
 bool in_range(const std::vector<Field>& fields, const Precision& codes, const BlockShape& shape) {
   for (int axis = 0; axis < 3; ++axis) {
     if (!all_at_most(fields[kPositionField][axis], shape.extent[axis])) return false;

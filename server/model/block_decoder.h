@@ -12,14 +12,14 @@ namespace surfcast::model {
 /// Type of a scalar attribute: its index in the variant ScalarValues.
 using ScalarCode = uint8_t;
 
-/// A scalar attribute as the tables of a file state it.
+/// A scalar attribute, as declared in the tables of a file.
 struct ScalarColumn {
   std::string name;
   ScalarCode type = 0;
-  bool coarse = false;  ///< coarse blocks store it too
+  bool coarse = false;  ///< also stored by coarse blocks
 };
 
-/// What a block's bytes must hold, known from the tables of the file.
+/// The expected content of a block, known from the tables of the file.
 struct BlockShape {
   surfel::Grid grid;
   glm::i64vec3 origin{0};  ///< lowest lattice index of its surfels
@@ -29,8 +29,7 @@ struct BlockShape {
   std::span<const ScalarColumn> scalars;
 };
 
-/// Decodes a block, with the first `scalars` of its scalar attributes. Fails when the bytes do not hold what the shape
-/// says.
+/// Decodes a block and the first `scalars` of its scalar attributes. Fails if the bytes do not match the shape.
 Result<DecodedBlock> decode_block(std::span<const std::byte> bytes, const BlockShape& shape, size_t scalars);
 
 }  // namespace surfcast::model

@@ -22,7 +22,7 @@ Column make_column(Members members, Value value) {
   return column;
 }
 
-/// Lattice indices of the members, counted from the lowest, which becomes the block's origin.
+/// Lattice indices of the members, relative to the lowest one, which becomes the block's origin.
 std::vector<glm::ivec3> make_indices(const surfel::SurfelCloud& cloud, Members members, const surfel::Grid& grid,
                                      EncodedBlock& block) {
   std::vector<glm::i64vec3> absolute;

@@ -15,7 +15,7 @@
 
 namespace surfcast::model {
 
-/// A block's bytes, of any kind, and what the table of blocks says about it.
+/// The bytes of a block of any kind, and its entry in the table of blocks.
 struct EncodedBlock {
   std::vector<std::byte> bytes;
   surfel::Grid grid;
@@ -23,14 +23,15 @@ struct EncodedBlock {
   glm::u32vec3 extent{0};  ///< largest index, counted from `origin`
   uint32_t surfels = 0;    ///< or items of another kind
   float spacing = 0;       ///< median radius
-  float max_radius = 0;    ///< of the radii as they decode; what is drawn of an item reaches no farther than twice that
+  float max_radius =
+      0;  ///< largest decoded radius; what is drawn of an item extends at most twice this far from its centre
   std::optional<geometry::NormalCone> normals;
-  AttributeStatistics statistics{};  ///< of a block of the source's surfels, if wanted in the file
+  AttributeStatistics statistics{};  ///< only of blocks of source surfels, if the file is to contain statistics
   std::string kind{kSurfelKind};
 };
 
-/// Encodes some surfels of a cloud, given in a spatial order, as one block on the given lattice. A cone is stated for
-/// oriented clouds.
+/// Encodes surfels of a cloud, given in a spatial order, as one block on the given lattice. The normal cone is set for
+/// oriented clouds only.
 EncodedBlock encode_block(const surfel::SurfelCloud& cloud, std::span<const uint32_t> members,
                           const surfel::Grid& grid);
 

@@ -8,11 +8,12 @@
 
 namespace surfcast::model {
 
-/// The fields that every block has, in the order of the file. Green, red less green and blue less green follow when
-/// the model has colour (neighbouring channels differ by little), then one field for each scalar attribute.
+/// The fields that every block has, in the order of the file. If the model has colour, three fields follow: green, red
+/// minus green, and blue minus green (neighbouring channels differ by little). Then comes one field for each scalar
+/// attribute.
 enum BlockField : size_t { kPositionField, kNormalField, kRadiusField, kWeightField, kFixedFields };
 
-/// The first byte of a block: which of its values are as fine as those of a source.
+/// The first byte of a block: which of its values are stored with source precision.
 struct BlockPrecision {
   bool source_normals = false;
   bool source_radii = false;
@@ -38,7 +39,8 @@ inline std::vector<size_t> field_columns(bool colored, size_t scalars) {
   return columns;
 }
 
-/// Difference of two colour values modulo 2^bits, moved so that no difference is in the middle of the range.
+/// Difference of two colour values modulo 2^bits, offset by half the range so that small differences of either sign are
+/// adjacent.
 inline uint64_t color_difference(uint64_t value, uint64_t green, int bits) {
   const uint64_t range = uint64_t{1} << bits;
   return (value + range + range / 2 - green) % range;

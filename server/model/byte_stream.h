@@ -23,7 +23,7 @@ class ByteWriter {
     const auto* first = reinterpret_cast<const std::byte*>(&value);
     bytes_.insert(bytes_.end(), first, first + sizeof(T));
   }
-  /// Seven bits a byte, lowest first; the high bit says that more follow.
+  /// Seven bits per byte, lowest first; the high bit means that more bytes follow.
   void put_varint(uint64_t value) {
     for (; value >= 0x80; value >>= 7) put(static_cast<uint8_t>(value | 0x80));
     put(static_cast<uint8_t>(value));
@@ -42,7 +42,7 @@ class ByteWriter {
   std::vector<std::byte> bytes_;
 };
 
-/// Takes little-endian values off a buffer. Reading past the end gives zeros and makes `ok` false for good.
+/// Reads little-endian values from a buffer. Reading past the end returns zeros and makes `ok` false permanently.
 class ByteReader {
  public:
   explicit ByteReader(std::span<const std::byte> bytes) : rest_(bytes) {}

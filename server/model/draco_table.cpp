@@ -13,7 +13,8 @@
 namespace surfcast::model {
 namespace {
 
-/// Draco's 0 is the smallest and slowest, 10 the largest and fastest; docs/model-format.md has the measurement.
+/// Draco's speed 0 gives the smallest data and is slowest, 10 the largest and fastest; docs/model-format.md has the
+/// measurement.
 constexpr int kDracoSpeed = 5;
 
 draco::DataType data_type(uint8_t bytes) {
@@ -37,8 +38,8 @@ std::unique_ptr<draco::PointAttribute> make_attribute(const TableAttribute& tabl
   return attribute;
 }
 
-/// What Draco states about its attributes, of one group: of each its kind, type, components, whether it is normalized,
-/// and its number, then how each is coded.
+/// True if Draco's attribute declarations match: one group of attributes. Each has its kind, type, number of
+/// components, a normalized flag and its ID; then follows the coding method of each.
 bool states_attributes(ByteReader& reader, std::span<const TableType> types) {
   constexpr uint8_t kIntegers = 1;
   if (reader.get<uint8_t>() != 1 || reader.get_varint() != types.size()) return false;
@@ -57,7 +58,8 @@ bool states_attributes(ByteReader& reader, std::span<const TableType> types) {
 /// "DRACO", version in 2 bytes, encoder type, method, flags in 2 bytes, number of points in 4 (Draco bitstream 2.3).
 constexpr size_t kDracoHeadBytes = 15;
 
-/// Draco allocates by what it is told, so that is checked first. The attributes follow its head.
+/// True if Draco's header and attribute declarations describe this table. Checked before decoding, because Draco
+/// allocates memory by them.
 bool states_table(std::span<const std::byte> bytes, std::span<const TableType> types, uint32_t rows) {
   constexpr uint16_t kMetadataFlag = 0x8000;
   ByteReader reader(bytes);
@@ -70,8 +72,8 @@ bool states_table(std::span<const std::byte> bytes, std::span<const TableType> t
          (flags & kMetadataFlag) == 0 && points == rows && states_attributes(reader, types);
 }
 
-/// The bytes of a table of the first attributes alone. Those lie one behind another, each coded for itself, so it is
-/// enough to state fewer: what is left over behind the last one is not read.
+/// The bytes of a table that declares only the first attributes. The data of attributes are contiguous and coded
+/// independently, so Draco does not read the data after the last declared attribute.
 std::vector<std::byte> first_attributes(std::span<const std::byte> bytes, size_t wanted) {
   ByteReader reader(bytes);
   ByteWriter writer;
@@ -90,8 +92,9 @@ std::vector<std::byte> first_attributes(std::span<const std::byte> bytes, size_t
   return std::move(writer).take();
 }
 
-/// Draco believes in 64 symbols for each byte that is left and takes memory for them, so there must not be many bytes.
-/// Its coder keeps to the size of the table: it stores values plainly where symbols would take more.
+/// False if the table has implausibly many bytes. Draco accepts 64 symbols per remaining byte and allocates memory for
+/// them. Its encoder does not exceed the size of the table: it stores values uncompressed where symbols would take
+/// more.
 bool plausible_size(std::span<const std::byte> bytes, std::span<const TableType> types, uint32_t rows) {
   constexpr size_t kHeads = 65536;
   size_t table = 0;

@@ -11,13 +11,13 @@ namespace surfcast::model {
 namespace {
 
 constexpr int kMaxWidth = 8;    ///< bytes of a stored integer
-constexpr int kPieceBytes = 2;  ///< of each piece but the last
+constexpr int kPieceBytes = 2;  ///< of a piece; the last one may be smaller
 
 int width_of(uint64_t largest) {
   return (static_cast<int>(std::bit_width(largest)) + 7) / 8;
 }
 
-/// Bytes of piece `piece` of integers of that width.
+/// Bytes of piece number `piece` of integers of this width.
 uint8_t piece_bytes(int width, int piece) {
   return static_cast<uint8_t>(std::min(kPieceBytes, width - piece * kPieceBytes));
 }
@@ -48,7 +48,7 @@ void add_piece(const TableAttribute& attribute, const std::vector<ColumnPacking>
   }
 }
 
-/// What precedes the Draco data of one field.
+/// The header of one field, which precedes the Draco data.
 struct FieldHead {
   int width = 0;
   std::vector<ColumnPacking> packings;

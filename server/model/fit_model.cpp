@@ -8,9 +8,9 @@
 namespace surfcast::model {
 namespace {
 
-constexpr double kViewAngle = 30;  // degrees, of the view that is chosen when none is asked for
+constexpr double kViewAngle = 30;  // degrees, of the default camera
 
-/// Mean normal of the whole model, from the cones of its leaves; zero where front and back are not known.
+/// Mean normal of the whole model, from the cones of its leaves; zero if the model is not oriented.
 glm::dvec3 mean_facing(const ModelFile& model) {
   glm::dvec3 sum(0);
   for (const ldc::BlockEntry& block : model.blocks()) {
@@ -19,8 +19,8 @@ glm::dvec3 mean_facing(const ModelFile& model) {
   return sum / static_cast<double>(std::max<uint64_t>(model.info().surfels, 1));
 }
 
-/// Of the finest level, each with its discs. Together they follow the surface more closely than the model's own box,
-/// the corners of which are mostly empty.
+/// The bounding boxes of all leaves, including their discs. Together they follow the surface more closely than the
+/// model's own box, whose corners are mostly empty.
 std::vector<geometry::Box> boxes_of_discs(const ModelFile& model) {
   std::vector<geometry::Box> boxes;
   for (const ldc::BlockEntry& block : model.blocks()) {

@@ -5,7 +5,7 @@
 
 namespace surfcast::model {
 
-/// A view that shows the whole model, from where most of its surface shows its front; `aspect` is the picture's width
+/// A camera that shows the whole model, from the side that most of its normals face. `aspect` is the picture's width
 /// over its height.
 geometry::Camera fit_model(const ModelFile& model, double aspect);
 

@@ -20,11 +20,11 @@ constexpr std::array<char, 8> kMagic{'S', 'U', 'R', 'F', 'C', 'A', 'S', 'T'};
 constexpr size_t kHeaderChecksumAt = kHeaderBytes - sizeof(uint64_t);
 constexpr uint16_t kOrientedFlag = 1;
 constexpr uint16_t kZUpFlag = 2;
-/// Added to the type of a scalar attribute that coarse blocks have, too.
+/// Flag in the type of a scalar attribute: coarse blocks have it too.
 constexpr uint8_t kCoarseScalarFlag = 0x80;
-/// Half angle of a record without cone.
+/// Half angle in a record without a normal cone.
 constexpr float kNoCone = -1;
-/// More than an axis turns when it is quantised like a normal, radians.
+/// Upper bound of the rotation of an axis by quantization, radians.
 constexpr float kAxisError = 0.1f * std::numbers::pi_v<float> / 180;
 
 void put_vector(ByteWriter& writer, const auto& v) {
@@ -74,7 +74,7 @@ void put_block(ByteWriter& writer, const BlockRecord& block) {
   put_cone(writer, block.normals);
 }
 
-/// None when the cell is no cell.
+/// None if the octree cell is invalid.
 std::optional<BlockRecord> get_block(ByteReader& reader) {
   BlockRecord block;
   block.offset = reader.get<uint64_t>();
@@ -132,8 +132,8 @@ void put_statistics(ByteWriter& writer, const Directory& directory) {
   }
 }
 
-/// A count of things that take at least `bytes_each` in the rest of the buffer; zero (and a failed reader) when they
-/// cannot be there, so that nothing is allocated for them.
+/// Reads a count of items of at least `bytes_each` bytes. If the rest of the buffer is too short for them, returns zero
+/// and makes the reader fail, so nothing is allocated for them.
 uint32_t get_count(ByteReader& reader, size_t bytes_each) {
   const auto count = reader.get<uint32_t>();
   if (count <= reader.rest().size() / bytes_each) return count;
@@ -174,7 +174,7 @@ Status get_statistics(ByteReader& reader, Directory& directory) {
   return {};
 }
 
-/// The names of the kinds, then a byte for each block.
+/// The names of the kinds, then the kind of each block as one byte.
 void put_kinds(ByteWriter& writer, const Directory& directory) {
   writer.put(static_cast<uint32_t>(directory.kinds.size()));
   for (const std::string& kind : directory.kinds) writer.put_string(kind);
@@ -299,7 +299,7 @@ Result<Directory> read_directory(std::span<const std::byte> bytes, const ModelHe
     if (!block || !valid_block(*block, directory, header)) return damaged("model has a wrong block record");
     directory.blocks.push_back(*block);
   }
-  // Files written before there were statistics end here.
+  // Older files have no statistics and end here.
   if (reader.ok() && !reader.rest().empty()) {
     if (Status status = get_statistics(reader, directory); !status) return fail(std::move(status.error()));
   }

@@ -10,12 +10,13 @@
 
 namespace surfcast::model {
 
-/// Versions of the format. Models of surfels alone are written as the older one, so that older programs read them.
+/// Versions of the format. Models that contain only surfels are written in the older version, so older programs can
+/// read them.
 inline constexpr uint32_t kSurfelVersion = 2;
 inline constexpr uint32_t kKindsVersion = 3;  ///< has a table of kinds
 inline constexpr size_t kHeaderBytes = 64;
 inline constexpr size_t kBlockRecordBytes = 92;
-/// Limits of the format: what a hostile table can make the reader allocate for one block is bounded by them.
+/// Limits of the format. They bound the memory that a hostile table can make the reader allocate for one block.
 inline constexpr uint32_t kMaxBlockSurfels = 32768;
 inline constexpr uint32_t kMaxScalars = 128;
 inline constexpr uint32_t kMaxKinds = 255;
@@ -35,7 +36,7 @@ struct ModelHeader {
 };
 
 std::vector<std::byte> write_header(const ModelHeader& header);
-/// Checks magic, version, checksum, and that everything it points at is in a file of that many bytes.
+/// Checks magic, version and checksum, and that the directory lies within the file.
 Result<ModelHeader> read_header(std::span<const std::byte> file);
 
 /// One record of the table of blocks.
@@ -60,20 +61,20 @@ struct Directory {
   std::vector<std::string> source_names;
   std::vector<ScalarColumn> scalars;
   std::vector<surfel::Grid> grids;
-  std::vector<BlockRecord> blocks;  ///< parents before children, siblings side by side
+  std::vector<BlockRecord> blocks;  ///< parents before children, siblings contiguous
   std::vector<AttributeRange> ranges;
   std::vector<ClassCount> classes;  ///< by code
   std::vector<std::string> kinds{std::string(kSurfelKind)};
 
-  /// The version of the format that holds the tables.
+  /// The oldest version of the format that can represent the tables.
   [[nodiscard]] uint32_t version() const {
     return kinds.size() == 1 && kinds.front() == kSurfelKind ? kSurfelVersion : kKindsVersion;
   }
 };
 
 std::vector<std::byte> write_directory(const Directory& directory);
-/// Checks every field that later code relies on; blocks must lie between the header and the directory. Whether they
-/// make a tree is for the caller to check.
+/// Checks every field that later code relies on; blocks must lie between the header and the directory. The caller
+/// checks whether the blocks form a tree.
 Result<Directory> read_directory(std::span<const std::byte> bytes, const ModelHeader& header);
 
 }  // namespace surfcast::model

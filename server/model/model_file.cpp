@@ -17,7 +17,7 @@ struct ModelFile::State {
   MappedFile file;
   ModelInfo info;
   Directory directory;
-  std::vector<ScalarColumn> coarse_scalars;  ///< those that coarse blocks have
+  std::vector<ScalarColumn> coarse_scalars;  ///< scalar attributes of coarse blocks
   ldc::BlockTree tree;
 };
 
@@ -44,8 +44,8 @@ ldc::BlockEntry make_entry(const BlockRecord& record, const surfel::Grid& grid) 
   return entry;
 }
 
-/// Blocks make a tree whose cells nest, each tree of one kind. A block with children is deeper than its parent, so that
-/// no path through a hostile tree is longer than the octree is deep.
+/// True if the blocks form trees of nested cells, each tree of one kind. A block must be deeper than its parent unless
+/// it is a leaf, which bounds the paths through a hostile tree by the depth of the octree.
 bool valid_tree(std::span<const ldc::BlockEntry> entries) {
   if (!ldc::BlockTree::is_tree(entries)) return false;
   return std::all_of(entries.begin(), entries.end(), [&](const ldc::BlockEntry& entry) {
@@ -57,7 +57,7 @@ bool valid_tree(std::span<const ldc::BlockEntry> entries) {
   });
 }
 
-/// A block is one level above the highest of its children, which come after it.
+/// Sets the level of each block: one more than the highest level of its children, which come after it.
 void set_levels(std::span<ldc::BlockEntry> entries) {
   for (size_t i = entries.size(); i-- > 0;) {
     if (entries[i].parent == ldc::BlockEntry::kNoParent) continue;
@@ -157,7 +157,7 @@ void ModelFile::prefetch(size_t block) const {
 
 namespace {
 
-/// How many of the scalars must be decoded, counted from the first.
+/// The number of scalar attributes to decode, counted from the first.
 size_t count_of(WantedScalars wanted, std::span<const ScalarColumn> scalars) {
   if (wanted == WantedScalars::kNone) return 0;
   if (wanted == WantedScalars::kAll) return scalars.size();

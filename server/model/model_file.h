@@ -21,21 +21,22 @@
 
 namespace surfcast::model {
 
-/// What the header of a model says about all its blocks.
+/// Properties of a whole model.
 struct ModelInfo {
-  uint64_t surfels = 0;                   ///< of the source: those of the leaves of the tree
-  std::vector<KindCount> kinds;           ///< what the blocks are made of; BlockEntry::kind counts these
-  int levels = 0;                         ///< of detail; 1 without coarser ones
+  uint64_t surfels = 0;                   ///< surfels of the source: those in the leaves of the tree
+  std::vector<KindCount> kinds;           ///< kinds of its blocks; BlockEntry::kind is an index into this list
+  int levels = 0;                         ///< levels of detail; 1 without coarse levels
   geometry::Box bounds;                   ///< of the stored positions, world units
   bool oriented = false;                  ///< see SurfelCloud::oriented
   bool z_up = true;                       ///< see SurfelCloud::z_up
-  int color_bits = 0;                     ///< 8 or 16; 0: the scan has no colour and no block stores any
-  std::vector<std::string> scalar_names;  ///< attributes of the leaves, in order
+  int color_bits = 0;                     ///< 8 or 16; 0: the model has no colour
+  std::vector<std::string> scalar_names;  ///< scalar attributes of the leaves, in order
   std::vector<std::string> source_names;  ///< the input files
-  std::vector<AttributeRange> ranges;     ///< of the attributes that have numbers; empty: the file does not state them
-  std::vector<ClassCount> classes;        ///< by code, those that occur; likewise
+  std::vector<AttributeRange>
+      ranges;                       ///< of the attributes that have finite values; empty if the file has no statistics
+  std::vector<ClassCount> classes;  ///< classes that occur, sorted by code; likewise
 
-  /// Null if it is not stated.
+  /// Null if the file has no range of this attribute.
   [[nodiscard]] const AttributeRange* range_of(std::string_view attribute) const {
     for (const AttributeRange& range : ranges) {
       if (range.attribute == attribute) return &range;
@@ -44,37 +45,38 @@ struct ModelInfo {
   }
 };
 
-/// A block as it comes out of Draco: structure of arrays of one length.
+/// A decoded block of surfels: a structure of arrays of equal length.
 struct DecodedBlock {
   surfel::Grid grid;
-  glm::i64vec3 origin{0};            ///< lattice index that `indices` count from
+  glm::i64vec3 origin{0};            ///< lattice index of the origin of `indices`
   std::vector<glm::ivec3> indices;   ///< non-negative lattice steps from `origin`
   std::vector<glm::vec3> normals;    ///< unit
   std::vector<float> radii;          ///< world units
   std::vector<float> weights;        ///< s_k
   std::vector<glm::u16vec3> colors;  ///< in ModelInfo::color_bits; empty without colour
-  /// Of a leaf as ModelInfo::scalar_names. Coarse blocks have only those of them that can be averaged, intensity and
-  /// classification. The first of these, if not all were wanted.
+  /// In a leaf, the attributes of ModelInfo::scalar_names. In a coarse block, only those that can be averaged:
+  /// intensity and classification. Only the first ones if not all were requested.
   std::vector<surfel::ScalarAttribute> scalars;
 
   [[nodiscard]] size_t size() const { return indices.size(); }
-  /// World coordinates of surfel i, exact for inputs on a grid.
+  /// World coordinates of surfel i, exact for inputs whose coordinates lie on a grid.
   [[nodiscard]] glm::dvec3 position(size_t i) const { return grid.position(origin + glm::i64vec3(indices[i])); }
 };
 
-/// A block as the file has it.
+/// A block as stored in the file.
 struct StoredBlock {
-  std::span<const std::byte> bytes;  ///< good as long as the file is open
+  std::span<const std::byte> bytes;  ///< valid while the file is open
   surfel::Grid grid;
   glm::i64vec3 origin{0};  ///< lattice index of the lowest corner of its bounds
-  glm::u32vec3 extent{0};  ///< of the highest one, counted from `origin`
-  uint32_t items = 0;      ///< surfels, or what else its kind is made of
+  glm::u32vec3 extent{0};  ///< lattice index of the highest corner, relative to `origin`
+  uint32_t items = 0;      ///< surfels, or items of another kind
 };
 
-/// The scalar attributes that somebody needs of a block. Decoding others takes as long as all that is drawn.
+/// The scalar attributes to decode with a block. Decoding all of them takes about as long as decoding everything that
+/// is drawn.
 enum class WantedScalars {
   kNone,
-  kDrawn,  ///< at least those by which surfels are coloured or hidden, which coarse blocks have, too
+  kDrawn,  ///< at least the attributes that determine colour or visibility, which coarse blocks have too
   kAll,
 };
 
@@ -90,17 +92,17 @@ class ModelFile {
   [[nodiscard]] const ModelInfo& info() const;
   [[nodiscard]] const ldc::BlockTree& tree() const;
   [[nodiscard]] std::span<const ldc::BlockEntry> blocks() const { return tree().blocks(); }
-  /// Says that a block is about to be decoded, so that reading its bytes begins. Returns at once.
+  /// Starts to read the bytes of a block that is about to be decoded. Returns immediately.
   void prefetch(size_t block) const;
-  /// Checks the checksum of a block, of any kind.
+  /// The bytes of a block of any kind. Fails if their checksum is wrong.
   [[nodiscard]] Result<StoredBlock> stored(size_t block) const;
-  /// An error of reading a block, with the names of file and block before it.
+  /// Prefixes an error about a block with the names of file and block.
   [[nodiscard]] Error named(size_t block, const Error& error) const;
-  /// Checks and decodes a block of surfels; fails on one of another kind. `scalars`: of the others only those that
-  /// come before these.
+  /// Checks and decodes a block of surfels. Fails on a block of another kind. Attributes are decoded in order, up to
+  /// the last one that `scalars` requests.
   [[nodiscard]] Result<DecodedBlock> decode(size_t block, WantedScalars scalars = WantedScalars::kAll) const;
   [[nodiscard]] const std::filesystem::path& path() const;
-  /// Tells this opening of a file from every other one in the life of the process, also after it has been closed.
+  /// An ID of this opening of the file, unique in the process and not reused after the file is closed.
   [[nodiscard]] uint64_t id() const;
 
  private:

@@ -17,14 +17,14 @@ struct ModelWriter::State {
   ModelSchema schema;
   std::vector<surfel::Grid> grids;
   std::vector<std::string> kinds;
-  std::vector<BlockRecord> records;             ///< in the order of the file; parents are numbers of this order
+  std::vector<BlockRecord> records;             ///< in the order of the file; parents are indices into this list
   std::vector<std::vector<uint32_t>> children;  ///< of each record
   AttributeStatistics statistics;
 };
 
 namespace {
 
-/// Index of a value in a table, which grows by the ones it lacks.
+/// Index of a value in a table. Appends the value if the table lacks it.
 template <typename T>
 uint32_t index_of(const T& value, std::vector<T>& table) {
   const auto found = std::find(table.begin(), table.end(), value);
@@ -47,7 +47,7 @@ BlockRecord make_record(const EncodedBlock& block, const ldc::OctreeKey& key) {
   return record;
 }
 
-/// The records level by level from the roots down: parents before children, siblings side by side.
+/// The records level by level from the roots down: parents before children, siblings contiguous.
 std::vector<BlockRecord> in_tree_order(std::span<const BlockRecord> records,
                                        std::span<const std::vector<uint32_t>> children) {
   std::vector<uint32_t> order;

@@ -15,7 +15,7 @@
 
 namespace surfcast::model {
 
-/// What all blocks of a model have in common.
+/// Properties that all blocks of a model share.
 struct ModelSchema {
   bool oriented = false;  ///< see SurfelCloud::oriented
   bool z_up = true;       ///< see SurfelCloud::z_up
@@ -24,7 +24,7 @@ struct ModelSchema {
   std::vector<ScalarColumn> scalars;
 };
 
-/// The schema of a model of that cloud.
+/// The schema of a model made from this cloud.
 ModelSchema schema_of(const surfel::SurfelCloud& cloud);
 
 struct WriteReport {
@@ -33,8 +33,9 @@ struct WriteReport {
   uint64_t bytes = 0;
 };
 
-/// Writes a model file block by block, children before their parents; only the table of blocks stays in memory. The
-/// target appears when it is whole. Order and content of the calls decide every byte of the file.
+/// Writes a model file block by block, children before their parents. Only the table of blocks stays in memory. The
+/// target file appears only when it is complete. The order and the content of the calls determine every byte of the
+/// file.
 class ModelWriter {
  public:
   static Result<ModelWriter> create(const std::filesystem::path& target, ModelSchema schema);
@@ -43,11 +44,11 @@ class ModelWriter {
   ModelWriter& operator=(ModelWriter&&) noexcept;
   ~ModelWriter();
 
-  /// Appends a block that stands for the children, numbers of blocks added before, each in one call at most; none for
-  /// a block of the source's surfels. Children are of the block's own kind. Returns its number.
+  /// Appends a block and returns its number. `children` are the numbers of previously added blocks that it represents,
+  /// each of the same kind and the child of one block only. A block of source surfels has no children.
   Result<uint32_t> add(const EncodedBlock& block, const ldc::OctreeKey& key, std::span<const uint32_t> children);
 
-  /// Writes the tables and moves the file into its place. Fails when no block was added.
+  /// Writes the tables and moves the file to its target. Fails if no block was added.
   Result<WriteReport> finish();
 
  private:

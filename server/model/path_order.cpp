@@ -6,7 +6,7 @@
 namespace surfcast::model {
 namespace {
 
-/// Points to choose the next one from. More give a shorter path and cost time in proportion.
+/// Number of candidates for the next point. More give a shorter path; the time grows in proportion.
 constexpr size_t kWindow = 128;
 
 /// Points not yet visited, as arrays so that the compiler can use vector instructions on them.
@@ -22,7 +22,7 @@ class Window {
     numbers_[size_++] = number;
   }
 
-  /// Takes out the point nearest to `from` and moves `from` there.
+  /// Removes the point nearest to `from` and moves `from` there.
   uint32_t take_nearest(glm::vec3& from) {
     std::array<float, kWindow> distances;
     for (size_t i = 0; i < size_; ++i) {

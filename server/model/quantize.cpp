@@ -13,7 +13,7 @@ double sign(double x) {
   return x < 0 ? -1 : 1;
 }
 
-/// The lower half of the octahedron is folded outward over the diagonals of the square, and back.
+/// Folds the lower half of the octahedron outward over the diagonals of the square. The function is its own inverse.
 glm::dvec2 fold(const glm::dvec2& p) {
   return {(1 - std::abs(p.y)) * sign(p.x), (1 - std::abs(p.x)) * sign(p.y)};
 }
@@ -44,7 +44,7 @@ uint32_t encode_logarithm(float value, int steps) {
 
 float decode_logarithm(uint32_t code, int steps) {
   const double value = std::exp2(static_cast<double>(code) / steps - kLogRange);
-  // Rounding up past the largest float, or below the smallest, must not make an infinity or a zero of it.
+  // Rounding must not turn values near the limits of float into infinity or zero.
   return static_cast<float>(
       std::clamp(value, double{std::numeric_limits<float>::denorm_min()}, double{std::numeric_limits<float>::max()}));
 }

@@ -8,11 +8,10 @@
 namespace surfcast::model {
 namespace {
 
-/// Share of the surfels that are left below `low` and above `high`: so few that outliers set no range, and so many that
-/// a few bright reflectors do not.
+/// Share of the surfels below `low` and above `high`: large enough to exclude outliers and bright reflectors.
 constexpr double kTail = 0.02;
 
-/// Calls `use` with the members' values that are finite numbers.
+/// Calls `use` with those of the members' values that are finite.
 template <typename Use>
 void for_each_number(const surfel::ScalarValues& values, std::span<const uint32_t> members, const Use& use) {
   std::visit(
@@ -58,7 +57,7 @@ void AttributeStatistics::add(const AttributeStatistics& other) {
   for (size_t code = 0; code < classes_.size(); ++code) classes_[code] += other.classes_[code];
 }
 
-/// The value below which that share of the intensities lies, within the width of a bucket.
+/// The intensity below which this share of the surfels lies, to the resolution of a bucket.
 double AttributeStatistics::percentile(double share, const Extremes& bounds) const {
   uint64_t total = 0;
   for (const auto& [bucket, count] : intensities_) total += count;

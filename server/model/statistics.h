@@ -12,33 +12,33 @@
 
 namespace surfcast::model {
 
-/// The values of a scalar attribute over the source's surfels; what is no number is left out.
+/// The range of a scalar attribute over the source's surfels, without infinite values and NaNs.
 struct AttributeRange {
   std::string attribute;
   double smallest = 0;
   double largest = 0;
-  double low = 0;   ///< two surfels in a hundred are below; of intensity alone, otherwise `smallest`
-  double high = 0;  ///< two surfels in a hundred are above; likewise
+  double low = 0;   ///< second percentile of intensity; `smallest` for other attributes
+  double high = 0;  ///< 98th percentile of intensity; `largest` for other attributes
 };
 
-/// Surfels of the source of one class.
+/// Number of source surfels of one class.
 struct ClassCount {
   uint32_t code = 0;
   uint64_t surfels = 0;
 };
 
-/// Figures of the attributes of surfels, collected block by block. The order of blocks does not matter.
+/// Statistics of the attributes of surfels, collected block by block. The order of blocks does not matter.
 class AttributeStatistics {
  public:
   AttributeStatistics() = default;
   AttributeStatistics(const surfel::SurfelCloud& cloud, std::span<const uint32_t> members);
 
-  /// Adds those of other surfels with the same attributes.
+  /// Adds the statistics of other surfels with the same attributes.
   void add(const AttributeStatistics& other);
 
-  /// One for each attribute with numbers; `names` are those of all attributes, in order.
+  /// One range for each attribute with finite values. `names` are the names of all attributes, in order.
   [[nodiscard]] std::vector<AttributeRange> ranges(std::span<const std::string> names) const;
-  /// By code, those that occur; nothing without a classification.
+  /// The classes that occur, sorted by code; empty without a classification.
   [[nodiscard]] std::vector<ClassCount> classes() const;
 
  private:
@@ -49,8 +49,9 @@ class AttributeStatistics {
 
   [[nodiscard]] double percentile(double share, const Extremes& bounds) const;
 
-  std::vector<Extremes> extremes_;            ///< of each attribute
-  std::map<uint16_t, uint64_t> intensities_;  ///< by the upper half of the ordered bits as float: within a hundredth
+  std::vector<Extremes> extremes_;  ///< of each attribute
+  std::map<uint16_t, uint64_t>
+      intensities_;  ///< counts by the upper 16 ordered bits of the value as a float: a resolution of 1 %
   std::array<uint64_t, 256> classes_{};
 };
 

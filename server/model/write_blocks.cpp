@@ -23,7 +23,8 @@ EncodedBlock encode(const surfel::SurfelCloud& cloud, const ldc::TreeBlock& bloc
   std::vector<uint32_t> all(block.coarse->size());
   std::iota(all.begin(), all.end(), 0);
   EncodedBlock encoded = encode_block(*block.coarse, all, block.grid);
-  // Where rays meet many small pieces of surface, radii are small and yet nothing finer than the rays is shown.
+  // Where rays hit many small pieces of surface, the radii are smaller than the spacing of the rays, but there is no
+  // detail finer than that spacing.
   encoded.spacing = std::min(std::max(encoded.spacing, block.ray_spacing), encoded.max_radius);
   return encoded;
 }
@@ -36,7 +37,7 @@ Status write_blocks(ModelWriter& writer, const surfel::SurfelCloud& cloud, std::
   using Encoded = std::pair<size_t, EncodedBlock>;
   size_t next = 0;
   Status status;
-  std::atomic<bool> failed = false;  // the first filter and the last one run at the same time
+  std::atomic<bool> failed = false;  // the first and the last filter run concurrently
   const auto take = [&](tbb::flow_control& control) -> size_t {
     if (next < blocks.size() && !failed) return next++;
     control.stop();

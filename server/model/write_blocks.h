@@ -9,9 +9,8 @@
 
 namespace surfcast::model {
 
-/// Encodes blocks on all threads and adds them in their order, so that block i gets the number that the writer gives
-/// next plus i. The cloud is the one whose surfels are members of the leaves. `progress` is called with the number of
-/// blocks that are done, from any one thread.
+/// Encodes blocks on all threads and adds them in order: block i gets the writer's next number plus i. The members of
+/// leaves are surfels of `cloud`. `progress` is called with the number of finished blocks, by one thread at a time.
 Status write_blocks(ModelWriter& writer, const surfel::SurfelCloud& cloud, std::span<const ldc::TreeBlock> blocks,
                     const std::function<void(size_t)>& progress);
 

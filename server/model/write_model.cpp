@@ -15,7 +15,7 @@ bool storable(float value) {
 }
 
 bool storable(const glm::dvec3& p) {
-  // Far beyond any scan, and small enough that box sizes and squares stay finite.
+  // Far beyond the coordinates of any scan, and small enough that box sizes and their squares stay finite.
   constexpr double kLimit = 1e150;
   return std::abs(p.x) < kLimit && std::abs(p.y) < kLimit && std::abs(p.z) < kLimit;
 }
