@@ -5,13 +5,13 @@
 
 namespace surfcast::kinds {
 
-/// A block of surfels, as picks need it.
+/// A decoded block of surfels for picking.
 class DecodedSurfels : public SourceBlock {
  public:
   DecodedSurfels(model::DecodedBlock block, const model::ModelInfo& info);
 
   [[nodiscard]] size_t bytes() const override;
-  /// By the opaque discs of the surfels (hit_disc).
+  /// Tests the opaque discs of the surfels (hit_disc).
   void hit(const PickQuery& query, std::vector<PickHit>& hits) const override;
   [[nodiscard]] PickedSurfel describe(const PickQuery& query, uint32_t surfel) const override;
 

@@ -11,7 +11,7 @@ namespace surfcast::kinds {
 /// The blocks of a model file, each loaded by its kind.
 class FileBlocks : public residency::BlockSource {
  public:
-  /// `numbers`: find_kinds of the model.
+  /// `numbers`: the result of find_kinds for the model.
   FileBlocks(std::shared_ptr<const model::ModelFile> model, KindTable kinds, std::vector<uint32_t> numbers)
       : model_(std::move(model)), kinds_(kinds), numbers_(std::move(numbers)) {}
 
@@ -19,7 +19,7 @@ class FileBlocks : public residency::BlockSource {
   [[nodiscard]] const ldc::BlockTree& tree() const override { return model_->tree(); }
   void prefetch(uint32_t block) const override { model_->prefetch(block); }
   [[nodiscard]] Result<residency::PackedBlock> load(uint32_t block, bool attributes) const override;
-  /// Number of a block's kind in the table.
+  /// The number of a block's kind in the table of kinds.
   [[nodiscard]] uint32_t kind_of(uint32_t block) const { return numbers_[model_->blocks()[block].kind]; }
 
  private:

@@ -10,13 +10,13 @@
 
 namespace surfcast::kinds {
 
-/// The kinds that a program knows. A kind's number is its place in the table.
+/// The kinds that a program supports. The number of a kind is its index in the table.
 using KindTable = std::span<const Kind* const>;
 
-/// Those that every program knows.
+/// The kinds that every program supports.
 KindTable built_in_kinds();
 
-/// For each of ModelInfo::kinds its number. Fails on a kind that is not in the table, and names it.
+/// The number of each of ModelInfo::kinds. Fails on a kind that is not in the table; the error names it.
 Result<std::vector<uint32_t>> find_kinds(const model::ModelFile& model, KindTable table);
 
 }  // namespace surfcast::kinds

@@ -11,13 +11,13 @@
 namespace surfcast::kinds {
 namespace {
 
-/// Radius beyond which neither kernel nor disc of a surfel reaches.
+/// Radius that contains both the kernel and the disc of a surfel.
 double extent_of(double radius) {
   return std::max(std::sqrt(SURFCAST_KERNEL_CUTOFF) * SURFCAST_KERNEL_SIGMA, SURFCAST_VISIBILITY_RADIUS) * radius;
 }
 
-/// v^T S^-1 v for S = s^2 J J^T + rho^2 I, as a sum of squares over its determinant, so that nothing cancels at grazing
-/// angles; s is the disc's radius in pixels, were it seen from the front, rho the prefilter of visibility.
+/// v^T S^-1 v for S = s^2 J J^T + rho^2 I, as a sum of squares over the determinant, so nothing cancels at grazing
+/// angles. s is the disc's radius in pixels if it faced the eye; rho is the prefilter of visibility.
 double screen_form(const glm::dvec3& o, const glm::dvec3& n, double radius, const glm::dvec3& ray, double eta) {
   const glm::dvec2 v = eta * (glm::dvec2(ray) - glm::dvec2(o) / o.z);
   const glm::dvec3 mn = glm::cross(glm::dvec3(v.y, -v.x, ray.y * v.x - ray.x * v.y), n);
@@ -39,7 +39,7 @@ std::optional<DiscHit> hit_disc(const glm::dvec3& o, const glm::dvec3& n, double
   const double plane = meeting > 0 ? meeting : std::numeric_limits<double>::infinity();
   const double push = SURFCAST_VISIBILITY_DEPTH * radius + SURFCAST_VISIBILITY_FOOTPRINT * std::max(o.z, 0.0) / eta;
   if (o.z <= 1.5 * extent) {
-    // The disc may reach the eye plane, where nothing projects: measured on the surface.
+    // The disc may reach the eye plane, where projection is undefined, so the distance is measured on the surface.
     if (!std::isfinite(plane)) return std::nullopt;
     const glm::dvec3 u = (plane * ray - o) / (SURFCAST_VISIBILITY_RADIUS * radius);
     const double form = glm::dot(u, u);

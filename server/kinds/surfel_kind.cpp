@@ -17,8 +17,8 @@ uint32_t flags_of(const residency::PackedRun& run) {
          (run.pairs ? SURFCAST_RUN_PAIRS : 0);
 }
 
-/// Whether the projection may draw any of a chunk (shaders/include/spacing.glsl), with room for what rounding radii to
-/// codes changes.
+/// True if the projection may draw a surfel of the chunk (shaders/include/spacing.glsl). A margin allows for the
+/// rounding of radii to codes.
 bool may_be_drawn(const residency::PackedRun& run, const residency::PackedRun::Radii& radii,
                   const selection::RadiusRange& wanted) {
   constexpr double kRounding = 1.02;

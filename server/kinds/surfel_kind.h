@@ -4,7 +4,7 @@
 
 namespace surfcast::kinds {
 
-/// Surfels: oriented discs, which scans are made of.
+/// Surfels: oriented discs, the kind of scans.
 class SurfelKind : public Kind {
  public:
   [[nodiscard]] std::string_view name() const override { return model::kSurfelKind; }
