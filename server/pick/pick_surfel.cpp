@@ -11,12 +11,12 @@ namespace surfcast::pick {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-/// Items reach no farther than this many of their block's largest radius from their centres.
+/// Items extend at most this far from their centres, in units of the largest radius of their block.
 constexpr double kReachInRadii = 2;
-/// The prefilter of visibility widens discs by less, pixels.
+/// Upper bound of the widening of discs by the prefilter of visibility, pixels.
 constexpr double kReachInPixels = 2;
 
-/// A leaf that the ray passes, and the least camera z at which something of it can be seen.
+/// A leaf that the ray passes through, and the smallest camera z at which one of its items may be visible.
 struct LeafOnRay {
   uint32_t block = 0;
   double nearest = 0;
@@ -25,10 +25,10 @@ struct LeafOnRay {
 /// An item that covers the pixel.
 struct Candidate {
   kinds::PickHit hit;
-  size_t block = 0;  ///< number among the decoded ones
+  size_t block = 0;  ///< index among the decoded blocks
 };
 
-/// Camera z at which the ray enters a box, centred about the eye, grown by `margin`; infinite if it misses.
+/// Camera z at which the ray enters a box that is extended by `margin` on all sides; infinite if the ray misses it.
 double entry_depth(const geometry::Box& box, double margin, const glm::dvec3& eye, const glm::dvec3& direction) {
   double first = 0;
   double last = kInfinity;
@@ -68,7 +68,7 @@ class Picker {
   }
 
  private:
-  /// By the depth from which they may be seen.
+  /// The leaves that the ray passes through, sorted by `nearest`.
   [[nodiscard]] std::vector<LeafOnRay> leaves_on_ray() const {
     const std::vector<selection::BlockHull> hulls = selection::block_hulls(model_.tree());
     const selection::Frustum frustum(frame_, query_.pixel.x - kReachInPixels, query_.pixel.y - kReachInPixels,
@@ -117,8 +117,8 @@ class Picker {
   const kinds::PickQuery& query_;
   SourceBlocks& source_;
   const geometry::CameraFrame& frame_;
-  glm::dvec3 direction_{0};  ///< of the pixel's ray, in the world; 1 along the view
-  std::vector<std::shared_ptr<const kinds::SourceBlock>> blocks_;  ///< those with candidates
+  glm::dvec3 direction_{0};  ///< world direction of the pixel's ray; its component along the view axis is 1
+  std::vector<std::shared_ptr<const kinds::SourceBlock>> blocks_;  ///< blocks that contain candidates
   std::vector<Candidate> candidates_;
   double occluder_ = kInfinity;  ///< camera z behind which everything is hidden
 };

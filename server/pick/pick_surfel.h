@@ -10,10 +10,11 @@
 
 namespace surfcast::pick {
 
-/// The surfel, or item of another kind, of the finest level that a picture shows at a position: of those that cover it
-/// (surfels by their opaque discs) and are not hidden behind a nearer surface, the one whose centre is nearest,
-/// measured in its disc as it is seen. None where the background shows. Looks at the blocks along the ray from the eye
-/// on and no farther than it sees. Fails when one is damaged, and with kCancelled soon after `cancelled` becomes true.
+/// The surfel, or item of another kind, that a picture shows at a position, from the finest level. Candidates are the
+/// items that cover the position (surfels by their opaque discs) and are not hidden behind a nearer surface. The result
+/// is the candidate whose centre is nearest to the position, relative to its size on the screen. None if the picture
+/// shows the background. Reads only the blocks along the ray, from the eye to the first opaque surface. Fails if one of
+/// them is damaged, and with kCancelled soon after `cancelled` becomes true.
 Result<std::optional<kinds::PickedSurfel>> pick_surfel(const model::ModelFile& model, const kinds::PickQuery& query,
                                                        SourceBlocks& blocks, const std::atomic<bool>& cancelled);
 

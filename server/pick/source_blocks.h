@@ -12,8 +12,8 @@
 
 namespace surfcast::pick {
 
-/// Blocks with all that the source says of their items, and the last of them kept within a budget of bytes: pixels
-/// that are picked one after another are near each other. May be used by several threads at once.
+/// Decoded blocks with all attributes. The most recently used ones are kept within a budget of bytes, because
+/// consecutive picks are often close together. Thread-safe.
 class SourceBlocks {
  public:
   explicit SourceBlocks(size_t budget_bytes, kinds::KindTable kinds = kinds::built_in_kinds())
