@@ -14,7 +14,7 @@ size_t bytes_of(const LoadedBlock& loaded) {
   return loaded.block ? (*loaded.block)->bytes() : 0;
 }
 
-/// What may throw (memory runs out) becomes a value, so that one block cannot end the server.
+/// Returns exceptions (out of memory) as errors, so one block cannot terminate the server.
 Result<std::shared_ptr<const PackedBlock>> load_block(const BlockSource& source, const BlockId& id) {
   try {
     Result<PackedBlock> packed = source.load(id.block, id.attributes);
@@ -65,7 +65,7 @@ void BlockLoader::set_requests(const std::shared_ptr<const BlockSource>& source,
         make_ready({id, std::move(cached), 0});
       } else {
         queue_.push_back({source, id});
-        // While the first blocks are decoded the disk reads the others.
+        // The disk reads these blocks while the first ones are decoded.
         if (!known.contains(id)) source->prefetch(block);
       }
     }
@@ -107,7 +107,7 @@ void BlockLoader::keep(const LoadedBlock& loaded) {
 }
 
 void BlockLoader::finish(LoadedBlock loaded) {
-  // A request is not left to a thread that may have no time, so it can be answered twice.
+  // A prefetch thread of idle priority may be decoding the same block, so a request can be answered twice.
   const bool again = std::ranges::find(ready_, loaded.id, &LoadedBlock::id) != ready_.end();
   if (requested_.contains(loaded.id) && !again) {
     make_ready(std::move(loaded));
@@ -175,7 +175,7 @@ void BlockLoader::work_on_prefetches() {
     if (stopping_) return;
     const Request request = std::move(prefetch_queue_.front());
     prefetch_queue_.pop_front();
-    if (busy_.contains(request.id) || cache_.find(request.id)) continue;  // wanted meanwhile
+    if (busy_.contains(request.id) || cache_.find(request.id)) continue;  // requested meanwhile
     prefetching_.insert(request.id);
     LoadedBlock loaded = load(request, lock);
     prefetching_.erase(request.id);

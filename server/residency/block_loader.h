@@ -16,24 +16,24 @@
 
 namespace surfcast::residency {
 
-/// A block that was wanted, or why it cannot be had.
+/// A requested block, or the error of loading it.
 struct LoadedBlock {
   BlockId id;
   Result<std::shared_ptr<const PackedBlock>> block;
-  double milliseconds = 0;  ///< of a worker's time; 0 when it was still in host memory
+  double milliseconds = 0;  ///< time of a worker thread; 0 if the block was in host memory
 };
 
 struct LoaderLimits {
   unsigned threads = 1;
-  unsigned idle_threads = 0;  ///< besides, for what is not wanted yet, in time that the processor is idle
+  unsigned idle_threads = 0;  ///< additional threads of idle priority, for prefetches
   size_t cache_bytes =
-      0;  ///< packed blocks kept in host memory, those that left the GPU come back without being decoded again
-  size_t ready_bytes = 0;  ///< loaded blocks that wait to be taken before the workers wait, too
+      0;  ///< packed blocks kept in host memory, so blocks evicted from the GPU need not be decoded again
+  size_t ready_bytes = 0;  ///< loaded blocks not yet taken at which the workers pause
 };
 
-/// Worker threads that read, decode and pack blocks for one other thread, which alone calls the methods. They work on
-/// the newest list of requests only: what is not on it any more is dropped before it is decoded. Some work only when
-/// the processor has nothing else to do, on what may be wanted soon, and leave it in host memory.
+/// Worker threads that read, decode and pack blocks for one other thread, the only one that may call the methods. They
+/// serve the newest list of requests only: a request that is not on it any more is dropped before its block is decoded.
+/// Additional threads of idle priority load blocks that may be requested soon into host memory.
 class BlockLoader {
  public:
   explicit BlockLoader(const LoaderLimits& limits);
@@ -41,15 +41,16 @@ class BlockLoader {
   BlockLoader(const BlockLoader&) = delete;
   BlockLoader& operator=(const BlockLoader&) = delete;
 
-  /// Replaces the requests, most urgent first, all with attributes or all without. Blocks being decoded at the moment
-  /// are finished and, if nobody wants them, kept in host memory.
+  /// Replaces the requests, most urgent first, all with attributes or all without. Blocks that are currently being
+  /// decoded are finished; if they are no longer requested, they are kept in host memory.
   void set_requests(const std::shared_ptr<const BlockSource>& source, std::span<const uint32_t> blocks,
                     bool attributes = false);
-  /// Replaces what may be wanted soon, most urgent first; of it as much as half of the host memory for blocks holds.
+  /// Replaces the list of blocks that may be requested soon, most urgent first. The list is cut off at half of the host
+  /// memory for blocks.
   void prefetch(const std::shared_ptr<const BlockSource>& source, std::span<const uint32_t> blocks, bool attributes);
-  /// The next requested block that has been loaded; its request is then done.
+  /// The next requested block that has been loaded; this completes its request.
   std::optional<LoadedBlock> take();
-  /// Waits until take() has something, at most so long.
+  /// Waits until take() would return a block, at most this long.
   void wait(std::chrono::milliseconds most);
   void release_model(uint64_t model);
 
@@ -68,16 +69,16 @@ class BlockLoader {
   void drop_unwanted();
 
   const LoaderLimits limits_;
-  std::mutex mutex_;  ///< guards what follows
+  std::mutex mutex_;  ///< guards the following members
   std::condition_variable wake_workers_;
   std::condition_variable wake_prefetchers_;
   std::condition_variable wake_taker_;
   std::deque<Request> queue_;
-  std::deque<Request> prefetch_queue_;  ///< what may be wanted soon
-  std::set<BlockId> prefetching_;       ///< of it, being decoded
+  std::deque<Request> prefetch_queue_;  ///< blocks that may be requested soon
+  std::set<BlockId> prefetching_;       ///< prefetched blocks being decoded
   std::set<BlockId> damaged_prefetches_;
-  std::set<BlockId> requested_;  ///< the requests that have not been taken
-  std::set<BlockId> busy_;       ///< being decoded
+  std::set<BlockId> requested_;  ///< requests whose blocks have not been taken
+  std::set<BlockId> busy_;       ///< requested blocks being decoded
   std::deque<LoadedBlock> ready_;
   size_t ready_bytes_ = 0;
   LruCache<BlockId, PackedBlock> cache_;

@@ -11,17 +11,17 @@
 
 namespace surfcast::residency {
 
-/// Where the blocks of one model come from. All methods may be called from several threads at once.
+/// The source of the blocks of one model. All methods may be called from several threads at once.
 class BlockSource {
  public:
   virtual ~BlockSource() = default;
 
-  /// Tells this model from every other one in the life of the process.
+  /// An ID of this model, unique in the process.
   [[nodiscard]] virtual uint64_t id() const = 0;
   [[nodiscard]] virtual const ldc::BlockTree& tree() const = 0;
-  /// Says that a block is about to be loaded. Returns at once.
+  /// Announces that a block is about to be loaded. Returns immediately.
   virtual void prefetch(uint32_t block) const = 0;
-  /// Reads, decodes and packs a block, with PackedBlock::attributes or without.
+  /// Reads, decodes and packs a block, with or without PackedBlock::attributes.
   [[nodiscard]] virtual Result<PackedBlock> load(uint32_t block, bool attributes) const = 0;
 };
 
@@ -29,7 +29,7 @@ class BlockSource {
 struct BlockId {
   uint64_t model = 0;  ///< BlockSource::id
   uint32_t block = 0;
-  bool attributes = false;  ///< with them: what is loaded; where a block lies in memory does not depend on it
+  bool attributes = false;  ///< true: loaded with attributes; the block's place in GPU memory does not depend on it
 
   [[nodiscard]] BlockId without_attributes() const { return {model, block, false}; }
   bool operator==(const BlockId&) const = default;

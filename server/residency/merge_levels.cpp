@@ -11,14 +11,14 @@
 namespace surfcast::residency {
 namespace {
 
-/// Blocks of fewer surfels cost too little to be merged.
+/// Levels of fewer surfels are not merged further: they cost too little.
 constexpr size_t kFewest = 256;
-/// A level of the LDC tree is at most four times as far apart as the next finer, in blocks of source surfels.
+/// For blocks of source surfels, the next coarser level of the LDC tree has at most four times the spacing.
 constexpr size_t kMaxMerges = 3;
-/// A merged level is worth its memory when it has at most this part of the surfels below it.
+/// A merged level is worth its memory if it has at most this share of the surfels of the finer level.
 constexpr double kLargestPart = 0.75;
 
-/// The block itself, then coarser and coarser.
+/// The levels of a block from fine to coarse, beginning with its own surfels.
 std::vector<MergedLevel> merged_levels(std::vector<MergedSurfel> surfels, bool oriented) {
   const size_t most = kMaxPackedPerSurfel * surfels.size();
   size_t total = surfels.size();
@@ -34,7 +34,7 @@ std::vector<MergedLevel> merged_levels(std::vector<MergedSurfel> surfels, bool o
   return levels;
 }
 
-/// Adds what `fill` appends as one run.
+/// Adds the surfels that `fill` appends as one run.
 template <typename Fill>
 void add_run(SurfelSequence& sequence, PackedRun run, Fill fill) {
   run.first = static_cast<uint32_t>(sequence.surfels.size());
@@ -43,8 +43,8 @@ void add_run(SurfelSequence& sequence, PackedRun run, Fill fill) {
   if (run.count > 0) sequence.runs.push_back(std::move(run));
 }
 
-/// What is not in a pair is drawn as one of the finest or of a later level, never of one between. Pairs come first, so
-/// that they begin at even places.
+/// Surfels of intermediate levels that are not in a pair are omitted, because the next level contains them unchanged.
+/// Pairs come first, so they begin at even indices.
 SurfelSequence sequence_of(std::span<const MergedLevel> levels) {
   SurfelSequence sequence;
   sequence.surfels.reserve(kMaxPackedPerSurfel * levels.front().surfels.size());
@@ -71,7 +71,7 @@ SurfelSequence sequence_of(std::span<const MergedLevel> levels) {
   return sequence;
 }
 
-/// Of the surfels from `first` on, as many as a chunk has.
+/// The radii of the chunk that begins with surfel `first`.
 PackedRun::Radii radii_of(const SurfelSequence& sequence, const PackedRun& run, uint32_t first) {
   const uint32_t end = std::min<uint32_t>(first + SURFCAST_CHUNK, run.first + run.count);
   PackedRun::Radii radii{std::numeric_limits<float>::max(), 0};

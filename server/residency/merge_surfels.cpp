@@ -7,17 +7,19 @@
 namespace surfcast::residency {
 namespace {
 
-/// How far along the curve a surfel looks for one to merge with.
+/// Number of subsequent surfels along the curve among which a partner is searched.
 constexpr size_t kWindow = 8;
-/// Least cosine between normals that may be merged: leaves become one, two sides of a sheet stay apart.
+/// Smallest cosine between normals of surfels that may be merged. Leaves of plants are merged; two sides of a sheet are
+/// not.
 constexpr float kMinCosine = 0.0F;
 
 float turned(const MergedSurfel& a, const MergedSurfel& b, bool oriented) {
   return !oriented && glm::dot(a.normal, b.normal) < 0 ? -1.0F : 1.0F;
 }
 
-/// Neighbours on a square grid are one spacing apart, less than a radius (kGridRadiusOverSpacing). No squares of
-/// lengths are taken here or below: single precision holds them only from 1e-19 to 1e19.
+/// True if two surfels are close together and face the same way. Neighbours on a square grid of spacing h have the
+/// distance h, less than a radius (surfel::kGridRadiusOverSpacing). The code avoids squares of lengths, which single
+/// precision represents only for lengths from 1e-19 to 1e19.
 bool mergeable(const MergedSurfel& a, const MergedSurfel& b, bool oriented) {
   const glm::vec3 d = (b.position - a.position) / (a.radius + b.radius);
   return glm::dot(d, d) <= 1 && turned(a, b, oriented) * glm::dot(a.normal, b.normal) >= kMinCosine;
@@ -25,7 +27,7 @@ bool mergeable(const MergedSurfel& a, const MergedSurfel& b, bool oriented) {
 
 MergedSurfel mean(const MergedSurfel& a, const MergedSurfel& b, bool oriented) {
   const float ratio = b.radius / a.radius;
-  const float share = ratio * ratio / (1 + ratio * ratio);  // of b in the area
+  const float share = ratio * ratio / (1 + ratio * ratio);  // share of b in the area
   const auto mix = [share](const auto& x, const auto& y) { return x + (y - x) * share; };
   MergedSurfel m;
   m.position = mix(a.position, b.position);

@@ -7,32 +7,32 @@
 
 namespace surfcast::residency {
 
-/// A surfel of a block, or the mean of several.
+/// A surfel of a block, or the mean of several surfels.
 struct MergedSurfel {
-  glm::vec3 position{0};        ///< world units, from the corner of the block
+  glm::vec3 position{0};        ///< world units, relative to the corner of the block
   glm::vec3 normal{0, 0, 1};    ///< unit
-  float radius = 1;             ///< world units; its square is in proportion to the area it stands for
+  float radius = 1;             ///< world units; its square is proportional to the area that the surfel stands for
   float weight = 0;             ///< normalisation weight s_k
   glm::vec3 light{0};           ///< linear
-  uint32_t representative = 0;  ///< of the surfels that it was merged from, the one of the largest area
+  uint32_t representative = 0;  ///< the surfel of the largest area among those that it was merged from
 };
 
-/// One surfel each for two (first != second) or one of the level below.
+/// The one or two surfels of the finer level from which a surfel was made; first != second for two.
 struct MergedFrom {
   uint32_t first = 0;
   uint32_t second = 0;
   [[nodiscard]] bool pair() const { return first != second; }
 };
 
-/// What stands next to each other along the curve, close together and facing the same way, becomes one. A level of
-/// detail between those of the LDC tree, half as dense as its input: coarse enough, the area and so the radius of what
-/// is merged adds up, and the relation of radius and distance, with it the weight, stays what it was.
+/// A level of detail between those of the LDC tree, about half as dense as its input. Neighbours along the curve that
+/// are close together and face the same way are merged to one surfel. Areas add up, so radii grow in proportion to the
+/// distances between surfels, and the weights stay valid.
 struct MergedLevel {
-  std::vector<MergedSurfel> surfels;  ///< along the curve
-  std::vector<MergedFrom> from;       ///< for each of them
+  std::vector<MergedSurfel> surfels;  ///< in the order of the curve
+  std::vector<MergedFrom> from;       ///< origin of each of `surfels`
 };
 
-/// `surfels` lie along a space filling curve. Without a front and a back (`oriented`) normals may be turned around.
+/// `surfels` are ordered along a space filling curve. Normals may be flipped if the surfels are not `oriented`.
 MergedLevel merge_surfels(std::span<const MergedSurfel> surfels, bool oriented);
 
 }  // namespace surfcast::residency

@@ -11,12 +11,12 @@
 
 namespace surfcast::residency {
 
-/// Where the position codes of a block lie.
+/// The lattice of the position codes of a block.
 struct PackedLattice {
   surfel::Grid grid;      ///< of the model
-  glm::i64vec3 first{0};  ///< index of code 0 on it
+  glm::i64vec3 first{0};  ///< index of code 0 on the grid
   glm::ivec3 shift{0};    ///< a step of the codes is 2^shift steps of the grid
-  glm::uvec3 largest{0};  ///< code
+  glm::uvec3 largest{0};  ///< largest code along each axis
 
   /// World coordinates of a code; exact where `shift` is 0.
   [[nodiscard]] glm::dvec3 position(const glm::uvec3& code) const {
@@ -31,32 +31,33 @@ struct LinearScale {
   double step = 0;
 };
 
-/// Texels of a block that its kind's projection reads together.
+/// A run of texels of a block that the projection of its kind reads together.
 struct TexelRun {
-  uint32_t first = 0;  ///< counted from the first of the block
+  uint32_t first = 0;  ///< relative to the first texel of the block
   uint32_t count = 0;  ///< at most SURFCAST_CHUNK
-  uint32_t flags = 0;  ///< what the projection must know of them: bits above SURFCAST_RUN_COUNT
+  uint32_t flags = 0;  ///< parameters for the projection, in the bits above SURFCAST_RUN_COUNT
 };
 
-/// What the projection of a kind needs to know of a block beside its texels, and of which of these. One for each block,
-/// immutable, made by the kind when it packs the block.
+/// Parameters of a block for the projection of its kind: the scale of its texels, and the runs of texels to project.
+/// There is one header per block. It is immutable and made by the kind when it packs the block.
 class BlockHeader {
  public:
   virtual ~BlockHeader() = default;
-  /// BlockView::scale, for world units of 2^-unit.
+  /// BlockView::scale for lengths in units of 2^-unit world units.
   [[nodiscard]] virtual glm::vec4 scale(int unit) const = 0;
-  /// Appends the texels of which a picture may show something where radii of that range are wanted.
+  /// Appends the runs of texels that may be visible in a picture that requests radii in this range.
   virtual void add_runs(const selection::RadiusRange& wanted, std::vector<TexelRun>& runs) const = 0;
 };
 
-/// A block never has more texels than so many for each of its items.
+/// The largest number of texels of a block per item.
 inline constexpr uint32_t kMaxPackedPerSurfel = 2;
 
-/// A block in the form that the projection of its kind reads.
+/// A block in the format that the projection of its kind reads.
 struct PackedBlock {
-  PackedLattice lattice;             ///< holds everything that is drawn of the block but for radii
-  std::vector<glm::uvec4> texels;    ///< at most kMaxPackedPerSurfel for each item
-  std::vector<uint32_t> attributes;  ///< 16 bits of intensity, 8 of classification for each texel, if asked for
+  PackedLattice lattice;           ///< contains the centres of all items
+  std::vector<glm::uvec4> texels;  ///< at most kMaxPackedPerSurfel per item
+  std::vector<uint32_t>
+      attributes;  ///< for each texel 16 bits of intensity and 8 of classification; empty if not requested
   LinearScale intensity;
   std::shared_ptr<const BlockHeader> header;
 

@@ -18,7 +18,7 @@
 namespace surfcast::residency {
 namespace {
 
-/// How far lattice indices up to `extent` are shifted right, with rounding, to fit the position codes.
+/// The right shift, with rounding, after which lattice indices up to `extent` fit in position codes.
 int shift_for(int extent) {
   const auto largest = static_cast<int64_t>(SURFCAST_POSITION_MASK);
   int shift = std::max(0, static_cast<int>(std::bit_width(static_cast<unsigned>(extent))) - SURFCAST_POSITION_BITS);
@@ -36,7 +36,7 @@ glm::uvec3 position_code(const glm::ivec3& index, const glm::ivec3& shift) {
   return glm::uvec3(index + ((glm::ivec3(1) << shift) >> 1)) >> glm::uvec3(shift);
 }
 
-/// As encode_normal, but in single precision, which is off by a thousandth of a step.
+/// As encode_normal, but in single precision, with an error of a thousandth of a step.
 glm::u16vec2 normal_code(const glm::vec3& n) {
   const float norm = std::abs(n.x) + std::abs(n.y) + std::abs(n.z);
   const float x = n.x / norm;
@@ -52,7 +52,7 @@ uint32_t color_code(const glm::u16vec3& color, int bits) {
   return level(color.r) | (level(color.g) << 8) | (level(color.b) << 16);
 }
 
-/// Linear light of each 8 bit sRGB value.
+/// The linear light of each 8 bit sRGB value.
 const std::array<float, 256>& linear_levels() {
   static const std::array<float, 256> kLevels = [] {
     std::array<float, 256> levels{};
@@ -67,7 +67,7 @@ glm::vec3 linear_of_code(uint32_t color) {
   return {levels[color & 255], levels[(color >> 8) & 255], levels[color >> 16]};
 }
 
-/// For light in steps of 1/65535, a twentieth of the finest step of sRGB, the level nearest to it.
+/// The nearest 8 bit sRGB value of linear light in steps of 1/65535, a twentieth of the finest step of sRGB.
 const std::array<uint8_t, 65536>& nearest_levels() {
   static const std::array<uint8_t, 65536> kNearest = [] {
     const std::array<float, 256>& levels = linear_levels();
@@ -83,7 +83,7 @@ const std::array<uint8_t, 65536>& nearest_levels() {
   return kNearest;
 }
 
-/// To the nearest; for numbers that are not negative.
+/// Rounds a number that is not negative to the nearest integer.
 uint32_t rounded(float value) {
   const float above = value + 0.5F;
   return static_cast<uint32_t>(above);
@@ -97,7 +97,7 @@ uint32_t code_of_linear(const glm::vec3& light) {
   return nearest_level(light.r) | (nearest_level(light.g) << 8) | (nearest_level(light.b) << 16);
 }
 
-/// shaders/include/surfel.glsl takes it apart.
+/// Unpacked by shaders/include/surfel.glsl.
 glm::uvec4 pack_surfel(const glm::uvec3& position, const glm::u16vec2& normal, uint32_t radius, uint32_t weight,
                        uint32_t color) {
   return {position.x | (uint32_t{normal.x} << SURFCAST_POSITION_BITS),
@@ -127,7 +127,7 @@ PackedLattice packed_lattice(const model::DecodedBlock& block) {
   return {block.grid, block.origin, shift, position_code(extent, shift)};
 }
 
-/// Finds the position code of an offset from the corner. Single precision is fine enough: codes have 20 bits.
+/// Computes the position code of an offset from the corner. Single precision suffices, because codes have 20 bits.
 class CodeFinder {
  public:
   explicit CodeFinder(const PackedLattice& lattice) : inverse_(1.0 / lattice.step()), largest_(lattice.largest) {}
@@ -140,13 +140,13 @@ class CodeFinder {
   glm::vec3 largest_;
 };
 
-/// A surfel and where it stands on the curve.
+/// A surfel and its position along the curve.
 struct OnCurve {
   uint64_t code = 0;
   uint32_t surfel = 0;
 };
 
-/// Sorts by `bits` bits of the codes from `shift` on; what is equal keeps its order.
+/// Sorts stably by `bits` bits of the codes, starting at bit `shift`.
 void sort_by_digit(std::span<const OnCurve> from, int shift, int bits, std::span<OnCurve> to) {
   const uint64_t mask = (uint64_t{1} << bits) - 1;
   std::vector<uint32_t> next(mask + 1);
@@ -156,7 +156,7 @@ void sort_by_digit(std::span<const OnCurve> from, int shift, int bits, std::span
   for (const OnCurve& one : from) to[next[(one.code >> shift) & mask]++] = one;
 }
 
-/// Digit by digit, which takes a quarter of the time of comparing.
+/// A radix sort, which takes a quarter of the time of a comparison sort.
 void sort_along_curve(std::vector<OnCurve>& surfels, uint64_t largest) {
   constexpr int kDigitBits = 11;
   std::vector<OnCurve> other(surfels.size());
@@ -178,7 +178,7 @@ std::vector<OnCurve> along_curve(const model::DecodedBlock& block, const glm::iv
   return surfels;
 }
 
-/// The surfels of a block along a Morton curve, positions from code 0 on.
+/// The surfels of a block in Morton order, with positions relative to code 0.
 std::vector<MergedSurfel> surfels_of(const model::DecodedBlock& block, int color_bits, const PackedLattice& lattice) {
   const float widest = surfel::largest_drawn_radius(block.radii);
   std::vector<MergedSurfel> surfels;
@@ -227,7 +227,7 @@ PackedSurfels pack_block(const model::DecodedBlock& block, int color_bits, bool 
 
 namespace {
 
-/// The values of a scalar attribute as doubles; nothing if the block has none of that name.
+/// The values of a scalar attribute as doubles; empty if the block lacks the attribute.
 std::vector<double> scalar_values(const model::DecodedBlock& block, std::string_view name) {
   std::vector<double> doubles;
   for (const surfel::ScalarAttribute& scalar : block.scalars) {
@@ -249,7 +249,7 @@ LinearScale scale_of(std::span<const double> values) {
   return least <= largest ? LinearScale{least, largest / kSteps - least / kSteps} : LinearScale{};
 }
 
-/// What is no number is the smallest.
+/// NaN maps to the smallest code.
 uint32_t intensity_code(double value, const LinearScale& scale) {
   if (!(scale.step > 0) || std::isnan(value)) return 0;
   return static_cast<uint32_t>(std::lround(std::clamp((value - scale.first) / scale.step, 0.0, 65535.0)));

@@ -12,32 +12,30 @@
 
 namespace surfcast::residency {
 
-/// Numbers of one block on a logarithmic scale of SURFCAST_SIZE_STEPS steps, from the largest down:
-/// 2^(log2_largest - octaves * code / steps).
+/// A logarithmic scale of SURFCAST_SIZE_STEPS steps for numbers of one block, in descending order: code c represents
+/// 2^(log2_largest - octaves * c / steps).
 struct LogScale {
   double log2_largest = 0;
-  double octaves = 0;  ///< between code 0 and the last
+  double octaves = 0;  ///< between code 0 and the last code
 
-  /// The scale of positive numbers between these; what is below the largest by more than 2^-32 becomes that.
+  /// The scale for positive numbers between these two. Numbers below 2^-32 of the largest are clamped to that.
   static LogScale between(float least, float largest);
   [[nodiscard]] uint32_t code(float value) const;
 };
 
-/// A block of surfels in the form that the projection reads: 16 bytes a surfel (shaders/shared/surfel_layout.h).
-///
-/// Behind the surfels of the block follow some levels of merged ones, each about half as many as the one before, so
-/// that any spacing can be drawn at a cost that follows from it alone: of a surfel and what it is merged to, the one is
-/// drawn that is just fine enough where it stands (shaders/include/spacing.glsl).
+/// A block of surfels in the format that the projection reads: 16 bytes per surfel (shaders/shared/surfel_layout.h).
+/// The surfels of the block are followed by levels of merged surfels (see SurfelSequence).
 struct PackedSurfels {
   PackedLattice lattice;
   LogScale radius;  ///< world units
   LogScale weight;
   std::vector<glm::uvec4> surfels;
-  /// For each of `surfels`, one of the block's whose attributes it shows.
+  /// For each of `surfels`, the index of the surfel of the block whose attributes it has.
   std::vector<uint32_t> representatives;
   std::vector<PackedRun> runs;
 
-  /// 16 bits of intensity, then 8 of classification, zeros of what the block lacks; none unless asked for.
+  /// For each of `surfels`, 16 bits of intensity, then 8 of classification; 0 for an attribute that the block lacks.
+  /// Empty if not requested.
   std::vector<uint32_t> attributes;
   LinearScale intensity;
 };
@@ -46,8 +44,9 @@ PackedSurfels pack_block(const model::DecodedBlock& block, int color_bits, bool 
 /// Adds the attributes of the same block.
 void pack_attributes(const model::DecodedBlock& block, PackedSurfels& packed);
 
-/// For each 8 bit sRGB value the root of its linear light in the 11 bits, and from bit 16 on the 10 bits, of a splat's
-/// packed colour (unpack_linear_color in shaders/include/packing.glsl): near black as fine as 8 bit sRGB needs it.
+/// For each 8 bit sRGB value, the square root of its linear light: with 11 bits in the lower half of the word, and with
+/// 10 bits from bit 16 on, as in a splat's packed colour (unpack_linear_color in shaders/include/packing.glsl). Near
+/// black, the steps are as fine as 8 bit sRGB requires.
 std::vector<uint32_t> linear_root_table();
 
 }  // namespace surfcast::residency

@@ -13,7 +13,7 @@ void PageTable::begin_frame() {
 
 void PageTable::end_nested_frame() {
   in_nested_frame_ = false;
-  ++frame_;  // nothing of the nested frame is in use any more
+  ++frame_;  // the blocks of the nested frame are no longer in use
 }
 
 void PageTable::touch(Entry& entry) const {
@@ -44,7 +44,7 @@ bool PageTable::can_free(uint32_t count) const {
   uint32_t available = pages_ - used_;
   for (auto id = order_.rbegin(); id != order_.rend() && available < count; ++id) {
     const Entry& entry = entries_.at(*id);
-    if (entry.last_frame == frame_) break;  // all that follow are in use, too
+    if (entry.last_frame == frame_) break;  // all remaining blocks are in use too
     if (evictable(entry)) available += static_cast<uint32_t>(entry.pages.size());
   }
   return available >= count;
@@ -76,7 +76,7 @@ std::span<const uint32_t> PageTable::insert(const BlockId& id, uint32_t count,
     const auto entry = entries_.find(*last);
     if (!evictable(entry->second)) continue;
     evicted(*last);
-    ++last;  // release() takes the one before it out of the list
+    ++last;  // release() removes the preceding element from the list
     release(entry);
   }
   order_.push_front(id);

@@ -11,27 +11,27 @@
 
 namespace surfcast::residency {
 
-/// Who has which pages of a memory of equal pages. A block takes as many as it needs, wherever they are; the blocks
-/// used least recently give theirs up. What has been used since the last begin_frame() and what is pinned stays. A
-/// frame may be interrupted by a nested frame, with frames of its own: what it used before and uses after it stays
-/// through all of them.
+/// Assigns the pages of a memory of equal pages to blocks. A block takes as many pages as it needs; they need not be
+/// contiguous. If pages run short, the least recently used blocks are evicted. Blocks that were used since the last
+/// begin_frame() and pinned blocks are never evicted. A frame may be preempted by a nested frame, which has its own
+/// begin_frame(). Blocks that the outer frame uses before or after the nested one stay until the outer frame ends.
 class PageTable {
  public:
   explicit PageTable(uint32_t pages) : pages_(pages) {}
 
-  /// Forgets which blocks are in use.
+  /// Starts a frame: no block is in use.
   void begin_frame();
   void begin_nested_frame() { in_nested_frame_ = true; }
   void end_nested_frame();
   /// The block is in use until the next frame.
   void use(const BlockId& id);
-  /// The block stays until its model is forgotten.
+  /// The block stays until its model is released.
   void pin(const BlockId& id);
 
   /// The pages of a block; empty if it has none.
   [[nodiscard]] std::span<const uint32_t> find(const BlockId& id) const;
-  /// Gives a block, which has none, `count` pages (at least 1) and takes it for used. `evicted` is told which blocks
-  /// lose theirs. Empty, and nothing changes, when blocks in use leave too few.
+  /// Assigns `count` pages (at least 1) to a block that has none, and marks it as used. `evicted` is called for each
+  /// block that loses its pages. If the blocks in use leave too few pages, changes nothing and returns an empty span.
   std::span<const uint32_t> insert(const BlockId& id, uint32_t count,
                                    const std::function<void(const BlockId&)>& evicted);
   void release_model(uint64_t model);
@@ -45,7 +45,7 @@ class PageTable {
   struct Entry {
     std::vector<uint32_t> pages;
     uint64_t last_frame = 0;
-    uint64_t last_outer = 0;  ///< frame that was no nested frame
+    uint64_t last_outer = 0;  ///< the last outer frame that used the block
     bool pinned = false;
     std::list<BlockId>::iterator order;
   };
@@ -61,12 +61,12 @@ class PageTable {
 
   uint32_t pages_;
   uint64_t frame_ = 1;        ///< the newest
-  uint64_t outer_frame_ = 1;  ///< the newest that is no nested frame
+  uint64_t outer_frame_ = 1;  ///< the newest outer frame
   bool in_nested_frame_ = false;
   uint32_t used_ = 0;
   uint32_t pinned_ = 0;
-  uint32_t untouched_ = 0;      ///< pages from here on have never been used
-  std::vector<uint32_t> free_;  ///< used once, free again
+  uint32_t untouched_ = 0;      ///< pages from this one on have never been used
+  std::vector<uint32_t> free_;  ///< used earlier, free again
   Entries entries_;
   std::list<BlockId> order_;  ///< most recently used first
 };

@@ -35,7 +35,7 @@ std::vector<uint32_t> Residency::missing(const ViewedModel& model, std::span<con
   return missing;
 }
 
-/// The blocks that stand in for everything when nothing else is there.
+/// The roots that have children: they represent everything while no finer block is resident.
 std::vector<uint32_t> Residency::coarse_roots(const ViewedModel& model) const {
   std::vector<uint32_t> coarse;
   for (const uint32_t root : model.tree.tree.roots()) {
@@ -48,7 +48,7 @@ void Residency::use(const ViewedModel& model, std::span<const uint32_t> blocks) 
   for (const uint32_t block : blocks) pool_.use({model.source->id(), block});
 }
 
-/// What is drawn, what will be, and what may have to stand in for it.
+/// Marks the blocks that are drawn, those that will be drawn, and the coarser ones that may replace them.
 void Residency::use(const ViewedModel& model, const selection::BlockSelection& selection) {
   use(model, selection.refined);
   use(model, selection.target);
@@ -65,10 +65,10 @@ bool Residency::store(const ViewedModel& model, const LoadedBlock& loaded, Prepa
   return stored;
 }
 
-/// Loads and stores blocks that are not resident; less of them when the pool is full of what is in use.
+/// Loads and stores blocks that are not resident. Stops early if blocks in use fill the pool.
 Status Residency::load(const ViewedModel& model, std::span<const uint32_t> blocks, bool attributes,
                        const Preemption& preemption, PreparedView& view) {
-  constexpr std::chrono::milliseconds kPollInterval{4};  // between two looks at what is more urgent
+  constexpr std::chrono::milliseconds kPollInterval{4};  // between two checks for more urgent work
   const WorkStopwatch watch(preemption);
   const auto give_up = [&] { loader_.set_requests(model.source, {}); };
   loader_.set_requests(model.source, blocks, attributes);
@@ -78,7 +78,7 @@ Status Residency::load(const ViewedModel& model, std::span<const uint32_t> block
       return fail(ErrorKind::kCancelled, "cancelled");
     }
     if (preemption.yield_to_urgent()) {
-      // Meanwhile other blocks were wished for, and perhaps some of these stored.
+      // A nested frame may have replaced the requests and stored some of these blocks.
       const std::vector<uint32_t> still = missing(model, blocks, attributes);
       loader_.set_requests(model.source, still, attributes);
       left = still.size();
@@ -124,9 +124,9 @@ Result<PreparedView> Residency::prepare_complete(const ViewedModel& model, const
   return view;
 }
 
-/// Stores what has been loaded, up to the limit. Returns how many blocks.
+/// Stores loaded blocks, up to the limit. Returns the number of blocks stored.
 size_t Residency::upload_some(const ViewedModel& model, const ViewParameters& parameters, PreparedView& view) {
-  constexpr double kMotionMs = 8;  // a block may take more, but is stored all the same
+  constexpr double kMotionMs = 8;  // checked between blocks, so the last block may exceed it
   size_t stored = 0;
   for (size_t bytes = 0; !parameters.moving || bytes < upload_bytes_;) {
     if (parameters.moving && view.upload_ms > kMotionMs) break;
@@ -143,7 +143,7 @@ size_t Residency::upload_some(const ViewedModel& model, const ViewParameters& pa
   return stored;
 }
 
-/// Adds those that are wanted and can be had.
+/// Adds the requested blocks that are not damaged.
 void Residency::add(const ViewedModel& model, std::span<const selection::WantedBlock> wanted,
                     std::vector<uint32_t>& blocks) const {
   for (const selection::WantedBlock& one : wanted) {
@@ -151,8 +151,8 @@ void Residency::add(const ViewedModel& model, std::span<const selection::WantedB
   }
 }
 
-/// What the view misses. A picture at rest is to show its target: what would only stand in until it is there delays it,
-/// unless nothing else stands in.
+/// The missing blocks of a view. At rest only blocks of the target are loaded, because coarser substitutes would delay
+/// them, unless the picture has holes.
 std::vector<selection::WantedBlock> Residency::blocks_to_load(const ViewParameters& parameters,
                                                               const selection::BlockSelection& selection) {
   std::vector<selection::WantedBlock> wanted = selection.wanted;
@@ -163,17 +163,17 @@ std::vector<selection::WantedBlock> Residency::blocks_to_load(const ViewParamete
   return wanted;
 }
 
-/// What to load next: the roots, then what the view misses.
+/// The blocks to load next: the roots, then the missing blocks of the view.
 std::vector<uint32_t> Residency::load_requests(const ViewedModel& model, const ViewParameters& parameters,
                                                const selection::BlockSelection& selection) const {
   std::vector<uint32_t> blocks = missing(model, coarse_roots(model), parameters.attributes);
   std::erase_if(blocks, [&](uint32_t block) { return damaged_.contains({model.source->id(), block}); });
   add(model, blocks_to_load(parameters, selection), blocks);
-  if (blocks.empty()) add(model, selection.wanted, blocks);  // what stands in for damaged ones
+  if (blocks.empty()) add(model, selection.wanted, blocks);  // substitutes for damaged blocks
   return blocks;
 }
 
-/// And what it is going to miss.
+/// Adds the blocks that the view will miss when the camera reaches `ahead`.
 void Residency::add_requests_ahead(const ViewedModel& model, const ViewParameters& parameters,
                                    const selection::BlockSelection& selection, const geometry::CameraFrame& ahead,
                                    std::vector<uint32_t>& blocks) const {
@@ -182,9 +182,10 @@ void Residency::add_requests_ahead(const ViewedModel& model, const ViewParameter
   add(model, select(model, ahead_parameters, selection.refined).wanted, blocks);
 }
 
-/// Somebody who moves may stop any time, and would then wait for many more blocks than the movement shows.
+/// Prefetches the blocks of the view at rest. The camera may stop at any time, and a view at rest needs many more
+/// blocks than one in motion.
 void Residency::prefetch_rest(const ViewedModel& model, const ViewParameters& parameters) {
-  constexpr double kEveryMs = 150;  // choosing them takes as long as drawing some pictures in motion may not
+  constexpr double kEveryMs = 150;  // minimum interval: the selection is too slow for every motion frame
   if (!parameters.rest_spacing) return loader_.prefetch(model.source, {}, parameters.attributes);
   if (since_prefetch_ && since_prefetch_->milliseconds() < kEveryMs) return;
   since_prefetch_ = Stopwatch();

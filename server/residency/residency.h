@@ -13,7 +13,7 @@
 
 namespace surfcast::residency {
 
-/// A model that can be looked at: its blocks and their tree.
+/// A model with the data that its views share: its blocks and the tree for selection.
 struct ViewedModel {
   explicit ViewedModel(std::shared_ptr<const BlockSource> blocks) : source(std::move(blocks)), tree(source->tree()) {}
 
@@ -21,54 +21,54 @@ struct ViewedModel {
   selection::SelectionTree tree;
 };
 
-/// What a picture shows of a model.
+/// The parameters of a picture that determine which blocks it needs.
 struct ViewParameters {
   geometry::CameraFrame frame;
   double spacing = 0;                    ///< see SelectionCriteria
-  const geometry::Clip* clip = nullptr;  ///< likewise; outlives the preparation
-  bool attributes = false;               ///< blocks are wanted with theirs
-  bool moving = false;  ///< the next picture is soon to follow: storing blocks must not hold this one up
-  std::optional<double> rest_spacing{};  ///< what `spacing` will be once the movement ends, if it does so here
+  const geometry::Clip* clip = nullptr;  ///< see SelectionCriteria; outlives the preparation
+  bool attributes = false;               ///< blocks are needed with their attributes
+  bool moving = false;  ///< another picture follows soon, so the upload of blocks must not delay this one
+  std::optional<double> rest_spacing{};  ///< value of `spacing` at rest, if the camera stops here
 };
 
-/// The blocks that a picture is drawn from, and what getting them took.
+/// The blocks that a picture is drawn from, and the cost of making them resident.
 struct PreparedView {
   selection::BlockSelection selection;
-  uint32_t waited_for = 0;      ///< blocks that were wanted and not resident at first
-  uint32_t missing = 0;         ///< blocks that are about to come
-  bool nothing_pending = true;  ///< no block that it misses is about to come
+  uint32_t waited_for = 0;      ///< requested blocks that were not resident at first
+  uint32_t missing = 0;         ///< requested blocks that are not resident yet
+  bool nothing_pending = true;  ///< no missing block is still to be loaded
   double select_ms = 0;
-  double load_ms = 0;    ///< until the blocks were there
-  double decode_ms = 0;  ///< time of the workers, all together, for blocks that arrived meanwhile
+  double load_ms = 0;    ///< waiting for blocks
+  double decode_ms = 0;  ///< total time of the worker threads for blocks that arrived meanwhile
   double upload_ms = 0;
 };
 
 struct ResidencyLimits {
   uint32_t pages = 0;  ///< of SurfelPool::kPageSurfels, for all models together
   LoaderLimits loader;
-  size_t upload_bytes = size_t{16} << 20;  ///< in a picture in motion: little enough not to be felt
+  size_t upload_bytes = size_t{16} << 20;  ///< per picture in motion: small enough not to delay it noticeably
 };
 
-/// Keeps the blocks of all models within their budgets, and decides what each picture is drawn from. The blocks that a
-/// view was prepared of stay resident until the next one is. Used by the render thread.
+/// Keeps the blocks of all models within their memory budgets and chooses the blocks of each picture. The blocks of a
+/// view stay resident until the next view is prepared. Used by the render thread.
 class Residency {
  public:
   Residency(SurfelSink& sink, const ResidencyLimits& limits);
 
-  /// For a picture as good as it gets: waits for every block of the cut. Only the budget limits it. Fails when a block
-  /// is damaged, and with kCancelled soon after it is interrupted for good.
+  /// Prepares a picture of full quality: waits for every block of the cut, which only the budget limits. Fails if a
+  /// block is damaged, and with kCancelled soon after it is cancelled.
   Result<PreparedView> prepare_complete(const ViewedModel& model, const ViewParameters& parameters,
                                         const Preemption& preemption);
 
-  /// For a picture at once: takes what is resident, and up to a limit what has been loaded since the last call; asks
-  /// for what is missing, and after that for what `ahead` (where the camera is going) would miss. Never waits for a
-  /// block. What is damaged is done without. What is missing of ViewParameters::rest_spacing is loaded in idle time.
-  /// `was_refined`: see select_blocks.
+  /// Prepares a picture without waiting for blocks. Uses the resident blocks and uploads, up to a limit, those that
+  /// were loaded since the last call. Requests the missing blocks, then those that the camera frame `ahead`, where the
+  /// camera is moving to, would miss. Prefetches the missing blocks of ViewParameters::rest_spacing in idle time.
+  /// Leaves out damaged blocks. `was_refined`: see select_blocks.
   PreparedView prepare_resident(const ViewedModel& model, const ViewParameters& parameters,
                                 std::span<const uint32_t> was_refined,
                                 const std::optional<geometry::CameraFrame>& ahead);
 
-  /// Between the two, views are prepared for pictures that interrupt another one, whose blocks stay resident, too.
+  /// Views prepared between these two calls belong to pictures that preempt another one, whose blocks stay resident.
   void begin_nested_frame() { pool_.begin_nested_frame(); }
   void end_nested_frame() { pool_.end_nested_frame(); }
 
@@ -103,7 +103,7 @@ class Residency {
   BlockLoader loader_;
   size_t upload_bytes_;
   std::set<BlockId> damaged_;
-  std::optional<Stopwatch> since_prefetch_;  ///< since what a rest would miss was last looked for
+  std::optional<Stopwatch> since_prefetch_;  ///< since the last selection of blocks for rest
 };
 
 }  // namespace surfcast::residency

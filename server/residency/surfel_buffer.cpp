@@ -17,7 +17,7 @@ size_t SurfelBuffer::device_limit() {
   return static_cast<size_t>(texels);
 }
 
-/// Makes the buffer as large as it may get, if there is so much memory.
+/// Allocates the buffer in its full size, if there is enough memory.
 void SurfelBuffer::Texels::take_all(size_t most) {
   memory_ = LazyMemory(most * texel_bytes_);
   if (memory_.bytes().empty()) return;

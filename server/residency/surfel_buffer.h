@@ -6,28 +6,28 @@
 
 namespace surfcast::residency {
 
-/// The GPU memory of a surfel pool: one buffer, read through one buffer texture, so that a frame binds it once however
-/// many blocks it draws. Needs the current GL context.
+/// The GPU memory of a surfel pool: one buffer, read through one buffer texture. A frame binds it once, however many
+/// blocks it draws. Needs a current GL context.
 ///
-/// In software the buffer is as large as it may get from the beginning, made of memory of which only what is written
-/// counts: there a larger buffer takes up to a second, because the driver clears it. On hardware that is no matter, but
-/// memory that is set aside is taken from others; the buffer grows with what is written, by doubling.
+/// With software GL the buffer has its full size from the beginning. It is made of lazily committed memory, where only
+/// written pages count. (Enlarging a buffer takes up to a second there, because the driver clears it.) With hardware
+/// GL, enlarging is cheap but reserved memory is lost to other programs. So the buffer doubles as it fills.
 class SurfelBuffer : public SurfelSink {
  public:
-  /// Surfels that the device can hold in one buffer texture.
+  /// The largest number of surfels in one buffer texture of the device.
   static size_t device_limit();
 
-  /// Holds `most` surfels at most, which the device can. `software`: pixels are computed by the CPU.
+  /// `most`: capacity in surfels, not above device_limit(). `software`: the CPU computes the pixels.
   SurfelBuffer(size_t most, bool software) : most_(most), lazy_(software && gl::can_adopt_memory()) {}
 
   void write(size_t first, std::span<const glm::uvec4> surfels) override;
   void write_attributes(size_t first, std::span<const uint32_t> attributes) override;
   void bind(GLuint unit) const { surfels_.bind(unit); }
-  /// The attributes, once any were written.
+  /// Binds the attributes. Some must have been written.
   void bind_attributes(GLuint unit) const { attributes_.bind(unit); }
 
  private:
-  /// A buffer texture that grows and keeps its content.
+  /// A growing buffer texture that keeps its content.
   class Texels {
    public:
     Texels(const char* label, GLenum format, size_t texel_bytes)
@@ -43,7 +43,7 @@ class SurfelBuffer : public SurfelSink {
     GLenum format_;
     size_t texel_bytes_;
     size_t capacity_ = 0;
-    LazyMemory memory_;  ///< of the buffer, in software
+    LazyMemory memory_;  ///< memory of the buffer with software GL
     gl::Buffer buffer_;
     gl::Texture texture_;
   };

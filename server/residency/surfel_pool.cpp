@@ -14,7 +14,7 @@ void SurfelPool::pin(const BlockId& id) {
 
 namespace {
 
-/// Calls `write(first texel in memory, first of the block, count)` for each run of pages that follow each other.
+/// Calls `write(first texel in memory, first texel of the block, count)` for each run of contiguous pages.
 template <typename Write>
 void for_each_run(std::span<const uint32_t> pages, size_t texels, const Write& write) {
   for (size_t i = 0; i < pages.size();) {
@@ -29,7 +29,7 @@ void for_each_run(std::span<const uint32_t> pages, size_t texels, const Write& w
 
 }  // namespace
 
-/// Forgets a block that loses its pages.
+/// Removes a block that loses its pages.
 void SurfelPool::drop(const BlockId& id) {
   const auto found = blocks_.find(id);
   if (found->second.intensity) attribute_pages_ -= found->second.pages.size();
@@ -39,7 +39,7 @@ void SurfelPool::drop(const BlockId& id) {
   residents.attributes[id.block] = false;
 }
 
-/// Gives a block pages and writes its texels; null without room.
+/// Assigns pages to a block and writes its texels; null if there is no room.
 ResidentBlock* SurfelPool::place(const BlockId& id, const ldc::BlockTree& tree, const PackedBlock& block) {
   const auto texels = static_cast<uint32_t>(block.texels.size());
   const uint32_t count = (texels + kPageSurfels - 1) / kPageSurfels;

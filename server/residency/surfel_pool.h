@@ -12,28 +12,28 @@
 
 namespace surfcast::residency {
 
-/// Where packed blocks go to: GPU memory, as an array of texels, of one surfel each where a block is of surfels.
+/// The destination of packed blocks: GPU memory as an array of texels. In a block of surfels, each texel is one surfel.
 class SurfelSink {
  public:
   virtual ~SurfelSink() = default;
-  /// Writes from texel `first` on.
+  /// Writes texels, starting at index `first`.
   virtual void write(size_t first, std::span<const glm::uvec4> texels) = 0;
-  /// Writes attributes of the texels from `first` on.
+  /// Writes attributes of texels, starting at texel `first`.
   virtual void write_attributes(size_t first, std::span<const uint32_t> attributes) = 0;
 };
 
-/// A resident block: where its texels lie, and how to read them.
+/// A resident block: the location and the format of its texels.
 struct ResidentBlock {
-  PackedLattice lattice;  ///< as in PackedBlock, like all but `pages`
+  PackedLattice lattice;  ///< this and the following members as in PackedBlock, except `pages`
   std::shared_ptr<const BlockHeader> header;
-  std::optional<LinearScale> intensity{};  ///< none: without attributes
-  std::span<const uint32_t> pages;         ///< each SurfelPool::kPageSurfels texels; good until the block is evicted
+  std::optional<LinearScale> intensity{};  ///< none: resident without attributes
+  std::span<const uint32_t> pages;  ///< each of SurfelPool::kPageSurfels texels; valid until the block is evicted
 };
 
 /// The resident blocks of all models in one memory with a fixed budget.
 class SurfelPool {
  public:
-  /// 16 KiB: blocks of some thousand surfels leave half a page of it unused.
+  /// Pages of 16 KiB: a block of some thousand surfels leaves half a page unused on average.
   static constexpr uint32_t kPageSurfels = 1024;
 
   SurfelPool(uint32_t pages, SurfelSink& sink) : table_(pages), sink_(sink) {}
@@ -43,19 +43,20 @@ class SurfelPool {
   void begin_nested_frame() { table_.begin_nested_frame(); }
   void end_nested_frame() { table_.end_nested_frame(); }
   void use(const BlockId& id) { table_.use(id); }
-  /// Pins a block, unless pinned ones fill an eighth of the memory already.
+  /// Pins a block, unless an eighth of the memory is already pinned.
   void pin(const BlockId& id);
 
-  /// Writes a block, or the attributes of one that is here without them; it is then in use. False when the blocks in
-  /// use leave no room for it.
+  /// Writes a block, or the attributes of a block that is resident without them, and marks the block as used. False if
+  /// the blocks in use leave no room for it.
   bool store(const BlockId& id, const ldc::BlockTree& tree, const PackedBlock& block);
-  /// Whether each block of a model is resident (with its attributes); empty for a model of which nothing ever was.
+  /// For each block of a model: true if it is resident (with its attributes). Empty for a model without any resident
+  /// block so far.
   [[nodiscard]] const std::vector<bool>& residents(uint64_t model, bool attributes = false) const;
-  /// Good until the block is evicted.
+  /// The reference is valid until the block is evicted.
   [[nodiscard]] const ResidentBlock& at(const BlockId& id) const;
   void release_model(uint64_t model);
 
-  /// Surfels of blocks that may be in use at once, counted in whole pages; what is pinned may not be.
+  /// The number of surfels of blocks that may be in use at once, in whole pages; pinned pages are excluded.
   [[nodiscard]] uint64_t usable_surfels() const {
     return uint64_t{table_.pages() - table_.pinned_pages()} * kPageSurfels / kMaxPackedPerSurfel;
   }
