@@ -4,9 +4,10 @@
 
 namespace surfcast::render {
 
-/// How many work groups of a pass are dispatched at a time. Between two batches a picture can be given up, so a batch
-/// should take so little time that nobody feels it, and so much that starting it costs nothing beside it. The pace is
-/// learnt from batch to batch, also across pictures: hardware soon gets whole passes, software small parts of them.
+/// Chooses the number of work groups of a pass that are dispatched at once. A picture can be cancelled or preempted
+/// between two batches. So a batch should be short enough for a quick reaction, and long enough to make its overhead
+/// negligible. The rate is measured with every batch, also across pictures: hardware GL soon gets whole passes,
+/// software GL small parts of them.
 class BatchSizer {
  public:
   /// Work groups of the next batch, at least 1.

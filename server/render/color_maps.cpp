@@ -9,10 +9,11 @@
 namespace surfcast::render {
 namespace {
 
-// Colours at even steps of each map, sRGB as 0xrrggbb; between them sRGB values are interpolated, which is how the maps
-// are defined and how other programs show them.
+// Colours at even steps of each map, sRGB as 0xrrggbb. Between them, sRGB values are interpolated: the maps are defined
+// that way, and other programs show them that way.
 
-/// Even steps in lightness for every kind of sight: the published map of van der Walt and Smith, 2015, at eighths.
+/// Perceptually uniform, also with colour vision deficiency: the published map of van der Walt and Smith, 2015, at
+/// eighths.
 constexpr std::array<uint32_t, 9> kViridis{0x440154, 0x472d7b, 0x3b528b, 0x2c728e, 0x21918c,
                                            0x27ad81, 0x5ec962, 0xaadc32, 0xfde725};
 /// A rainbow without its false edges: the published map of Mikhailov, 2019, at fourteenths.
@@ -20,7 +21,7 @@ constexpr std::array<uint32_t, 15> kTurbo{0x30123b, 0x4145ab, 0x4675ed, 0x39a2fc
                                           0x24eca6, 0x61fc6c, 0xa4fc3b, 0xd1e834, 0xf3c63a,
                                           0xfe9b2d, 0xf36315, 0xd93806, 0xb11901, 0x7a0403};
 constexpr std::array<uint32_t, 2> kGray{0x000000, 0xffffff};
-/// As on a map of mountains: lowland greens, uplands, rock, snow.
+/// Colours of topographic maps: lowland greens, uplands, rock, snow.
 constexpr std::array<uint32_t, 9> kTerrain{0x1d5b4f, 0x3f8a55, 0x86b061, 0xcfcf7d, 0xdcb873,
                                            0xb98a58, 0x8e6a52, 0xb3a69d, 0xfafafa};
 
@@ -65,7 +66,8 @@ constexpr std::array<uint32_t, 19> kNamedClasses{
     0xff4040,  // high noise
 };
 
-/// Codes without a name: hues a golden section apart, so that neighbours differ.
+/// Colours of codes without a name: consecutive hues are a golden section of the circle apart, so neighbouring codes
+/// look different.
 glm::u8vec3 unnamed_class_color(uint8_t code) {
   const double hue = 6 * std::fmod(code * 0.6180339887, 1.0);
   const auto channel = [hue](double offset) {
@@ -75,12 +77,12 @@ glm::u8vec3 unnamed_class_color(uint8_t code) {
   return {channel(0), channel(4), channel(2)};
 }
 
-/// The root of linear light of an sRGB value (IEC 61966-2-1).
+/// The square root of the linear light of an sRGB value (IEC 61966-2-1).
 double linear_root(double encoded) {
   return std::sqrt(encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4));
 }
 
-/// unpack_linear_color in shaders/include/packing.glsl takes it apart.
+/// Unpacked by unpack_linear_color in shaders/include/packing.glsl.
 uint32_t packed(const glm::dvec3& srgb) {
   const auto code = [](double value, int largest) { return static_cast<uint32_t>(std::lround(value * largest)); };
   return code(linear_root(srgb.r), 2047) | (code(linear_root(srgb.g), 2047) << 11) |

@@ -8,7 +8,7 @@
 namespace surfcast::render {
 namespace {
 
-/// The largest intensity of LAS, for models that do not state theirs.
+/// The largest intensity of LAS, for models that do not state their range.
 constexpr double kLasIntensity = 65535;
 
 bool has_scalar(const model::ModelInfo& info, const char* name) {
@@ -24,7 +24,8 @@ void set_range(const picture::Coloring& coloring, double low, double high, Displ
   display.last = coloring.last.value_or(high);
 }
 
-/// How many of the block's codes on an axis, whose positions grow with them, lie below a place (`reached`: or on it).
+/// The number of codes of the block along an axis whose positions are less than `place` (`reached`: or equal).
+/// Positions increase with the codes.
 uint32_t codes_below(const residency::PackedLattice& lattice, int axis, double place, bool reached) {
   uint32_t first = 0;
   uint32_t last = lattice.largest[axis] + 1;
@@ -42,7 +43,7 @@ uint32_t codes_below(const residency::PackedLattice& lattice, int axis, double p
   return first;
 }
 
-/// None when no code of the block is in the box.
+/// None if no code of the block is in the box.
 std::optional<layout::ClipRange> clip_range(const residency::PackedLattice& lattice, const geometry::Box& box) {
   layout::ClipRange range{};
   for (int axis = 0; axis < 3; ++axis) {
@@ -64,7 +65,7 @@ std::vector<layout::ClipRange> clip_ranges(const residency::PackedLattice& latti
   return ranges;
 }
 
-/// Ranges of which a surfel must be in one; none when every surfel of the block is.
+/// The ranges of which one must contain a surfel; empty if they contain all surfels of the block.
 std::vector<layout::ClipRange> ranges_to_be_in(const residency::PackedLattice& lattice,
                                                const std::vector<geometry::Box>& boxes) {
   if (boxes.empty()) return {};
@@ -78,8 +79,8 @@ std::vector<layout::ClipRange> ranges_to_be_in(const residency::PackedLattice& l
   return ranges;
 }
 
-/// The place on the colour map of a value `first + step * code`: x at code 0, y for a step. A range without width
-/// parts the values below it from the others.
+/// The position on the colour map of the values `first + step * code`: x is the position of code 0, y the change per
+/// code. A range of zero width separates the values below it from the others.
 glm::vec4 ramp(const DisplayOptions& display, double first, double step) {
   const double width = std::max(display.last - display.first, 1e-300);
   const auto finite = [](double value) { return static_cast<float>(std::clamp(value, -1e30, 1e30)); };

@@ -10,33 +10,34 @@
 
 namespace surfcast::render {
 
-/// What the options of a picture come to on one model. What a picture does not ask for costs it nothing.
+/// The display options of a picture, resolved for one model. Options that a picture does not use cost nothing.
 struct DisplayOptions {
   picture::SurfelColor color = picture::SurfelColor::kStored;
   picture::ColorMap map = picture::ColorMap::kViridis;
-  double first = 0;  ///< the value that takes the first colour of the map
+  double first = 0;  ///< value of the map's first colour
   double last = 1;
   int up_axis = 2;
   bool hides_classes = false;
   bool clipped = false;
-  bool attributes = false;  ///< intensity or classification of each surfel is needed
+  bool attributes = false;  ///< the intensity or classification of each surfel is needed
 
-  /// The colour comes from a table.
+  /// True if the colour comes from a table.
   [[nodiscard]] bool mapped() const {
     return color != picture::SurfelColor::kStored && color != picture::SurfelColor::kNormal;
   }
 };
 
-/// Fails when the model lacks the attribute that is to be shown.
+/// Fails if the model lacks the attribute to be shown.
 Result<DisplayOptions> resolve_display_options(const model::ModelInfo& info, const picture::PictureRequest& request);
 
-/// The colours of Look::mapped, packed as splats have them: of a map from its first to its last, or one for each class.
+/// The colour table of DisplayOptions::mapped, packed as in splat records: the colours of a map from its first to its
+/// last one, or one colour for each class.
 std::vector<uint32_t> color_table(const DisplayOptions& display);
 
 layout::DisplayConstants display_constants(const DisplayOptions& display, const picture::PictureRequest& request);
 
-/// What each block is asked; appends the ranges of codes that the clip comes to on it. Exactly those codes whose
-/// position is in a box are in its range.
+/// The parameters of a block for the display options. Appends the ranges of its position codes that the clip boxes
+/// cover. A range contains exactly the codes whose positions lie in the box.
 layout::BlockDisplay block_display(const DisplayOptions& display, const geometry::Clip& clip,
                                    const residency::ResidentBlock& block, std::vector<layout::ClipRange>& ranges);
 

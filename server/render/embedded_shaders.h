@@ -6,7 +6,7 @@
 namespace surfcast::render {
 
 struct EmbeddedShader {
-  std::string_view name;  ///< path below shaders/, or what `#include` lines call it
+  std::string_view name;  ///< path below shaders/, or the name in `#include` lines
   std::string_view text;
 };
 

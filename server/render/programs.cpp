@@ -18,7 +18,7 @@ Result<gl::Program> compute_program(const std::string& name, const std::string& 
   return gl::make_program(name.c_str(), {{GL_COMPUTE_SHADER, name, *text}}, defines);
 }
 
-/// What both passes over surfels depend on.
+/// The defines that the projection and the splat kernel have in common.
 std::string common_defines(const Variant& variant) {
   std::string defines;
   if (variant.colored) defines += "#define SURFCAST_HAS_COLOR\n";
@@ -69,10 +69,10 @@ std::string lane_defines(bool whole_tiles) {
          (whole_tiles ? "#define SURFCAST_DYNAMIC_TILES\n" : "");
 }
 
-/// What the kinds of a picture besides surfels add to the splat kernel.
+/// The additions of kinds other than surfels to the splat kernel.
 struct KindFragments {
-  std::string names;  ///< of the kinds; none: empty
-  std::string text;   ///< shaders/kinds/exact_list.glsl includes it
+  std::string names;  ///< " with " and the names of the kinds; empty without such kinds
+  std::string text;   ///< included by shaders/kinds/exact_list.glsl
 };
 
 KindFragments fragments_of(const PictureKinds& kinds) {
@@ -121,7 +121,7 @@ std::vector<std::string> Programs::compiled() const {
   return names;
 }
 
-/// Each kind's own projection.
+/// The projection programs of all kinds of a picture.
 Result<std::vector<const gl::Program*>> Programs::projections(const Variant& variant, const PictureKinds& kinds) {
   constexpr const char* kFile = "projection of a kind";
   const std::string lanes = define("SURFCAST_PROJECT_LANES", shape_.project_lanes);

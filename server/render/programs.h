@@ -15,46 +15,46 @@
 
 namespace surfcast::render {
 
-/// What a picture has and needs: each combination is a program of its own, so that a picture without a feature does
-/// not pay for it.
+/// The features that a picture uses. Each combination has programs of its own, so a picture does not pay for features
+/// that it does not use.
 struct Variant {
-  bool colored = false;  ///< surfels have a colour of some kind
+  bool colored = false;  ///< surfels have colours, stored or from a table
   bool lit = false;
   bool float_picture = false;
   picture::SurfelColor color = picture::SurfelColor::kStored;
   bool hides_classes = false;
   bool clipped = false;
   bool eye_dome = false;
-  bool silhouettes = false;  ///< drawn again, as means of samples
+  bool silhouettes = false;  ///< silhouettes are supersampled
 };
 
 /// A kind that a picture shows.
 struct PictureKind {
   const kinds::Kind* kind = nullptr;
-  uint32_t number = 0;  ///< its place in the table of kinds
+  uint32_t number = 0;  ///< its index in the table of kinds
 };
-/// By number.
+/// Sorted by number.
 using PictureKinds = std::vector<PictureKind>;
 
-/// The programs of a variant; they live as long as Programs.
+/// The programs of a variant. They are valid as long as Programs.
 struct SplatPrograms {
-  std::vector<const gl::Program*> project;   ///< of each kind of the picture
-  const gl::Program* splat = nullptr;        ///< tiles without large splats, and without other kinds than surfels
-  const gl::Program* splat_large = nullptr;  ///< tiles with such
-  /// Null unless silhouettes are drawn again: what finds them, and what draws them in tiles without and with large
-  /// splats.
+  std::vector<const gl::Program*> project;   ///< for each kind of the picture
+  const gl::Program* splat = nullptr;        ///< for tiles without large splats or records of other kinds than surfels
+  const gl::Program* splat_large = nullptr;  ///< for tiles with them
+  /// Null unless silhouettes are supersampled. The first finds them; the others draw them in tiles without and with
+  /// large splats.
   const gl::Program* silhouettes = nullptr;
   const gl::Program* supersample = nullptr;
   const gl::Program* supersample_large = nullptr;
   const gl::Program* eye_dome = nullptr;  ///< null without eye-dome lighting
 };
 
-/// How the passes fit the device's vectors. No picture depends on it.
+/// The mapping of the passes to the device's vectors. It does not affect pictures.
 struct KernelShape {
   bool whole_tiles = false;  ///< a lane of the splat kernel holds a tile instead of a pixel (see include/rows.glsl),
-                             ///< and then another one
-  int tiles_at_once = 2;     ///< that a work group of the splat kernel draws side by side
-  int project_lanes = 64;    ///< lanes that share a chunk of surfels: one vector, or as many as hide waiting
+                             ///< and continues with the next tile
+  int tiles_at_once = 2;     ///< tiles that a work group of the splat kernel draws side by side
+  int project_lanes = 64;    ///< lanes that share a chunk of surfels: one vector, or as many as hide the memory latency
 };
 
 /// The shape for devices whose lanes are those of a processor's vectors.
@@ -65,7 +65,7 @@ constexpr KernelShape software_kernels() {
 /// Compiles the passes when they are first needed.
 class Programs {
  public:
-  /// `defines` stands before every shader.
+  /// `defines` is prepended to every shader.
   static Result<Programs> create(const KernelShape& shape, const std::string& defines);
 
   Result<SplatPrograms> variant(const Variant& variant, const PictureKinds& kinds);
@@ -74,15 +74,15 @@ class Programs {
   /// Pixels of a tile that a lane of supersample.comp draws at once.
   [[nodiscard]] int pixels_at_once() const;
   [[nodiscard]] const KernelShape& shape() const { return shape_; }
-  /// What was compiled, each with the kinds besides surfels that it is of.
+  /// The names of the compiled programs. A name includes the kinds, other than surfels, that the program supports.
   [[nodiscard]] std::vector<std::string> compiled() const;
 
  private:
-  /// A shader with what its kinds add to it.
+  /// A shader with the files that kinds add to it.
   struct Source {
-    std::string name;                        ///< of its file, and the kinds
-    std::string file;                        ///< what is compiled
-    std::vector<EmbeddedShader> files = {};  ///< besides those of shaders/
+    std::string name;                        ///< file name and kinds
+    std::string file;                        ///< file to compile
+    std::vector<EmbeddedShader> files = {};  ///< additional files to those of shaders/
   };
 
   Result<const gl::Program*> program(const Source& source, const std::string& defines);

@@ -9,7 +9,7 @@
 namespace surfcast::render {
 namespace {
 
-/// Without the prefilter the kernel alone is drawn; this much variance, pixels squared, keeps its inverse finite.
+/// Variance that replaces the prefilter if only the kernel is drawn, pixels squared. It keeps the inverse finite.
 constexpr double kNoPrefilter = 1e-4;
 
 float decode_srgb(uint8_t value) {

@@ -8,7 +8,7 @@
 
 namespace surfcast::render {
 
-/// A rectangle of a picture that is drawn at once, pixels from the top left.
+/// A rectangle of a picture that is drawn at once, in pixels from the top left.
 struct Region {
   int x = 0;
   int y = 0;
@@ -16,24 +16,24 @@ struct Region {
   int height = 0;
 };
 
-/// Largest side of a region: its picture and its tile lists fit in the smallest storage blocks that GL promises.
+/// Largest side of a region: its picture and its tile lists fit in the smallest storage blocks that OpenGL guarantees.
 inline constexpr int kMaxRegionSide = 2048;
 
-/// Pixels around a region that are drawn with it where eye-dome lighting (its largest radius) or silhouettes look at
-/// neighbours:
-/// whole tiles, so that tiles lie as they would in a picture of one region.
+/// Width in pixels of the margin that is drawn around a region if eye-dome lighting (its largest radius) or silhouettes
+/// read neighbouring pixels. It is a multiple of the tile size, so tiles have the same position as in a picture of one
+/// region.
 inline constexpr int kNeighbourMargin = 8;
 
-/// Cuts a picture into regions, row by row, each of which may be drawn with a margin (see with_margin).
+/// Divides a picture into regions, row by row. Each leaves room for the margin (see with_margin).
 std::vector<Region> cut_into_regions(int width, int height, int margin);
 
-/// The region and so many pixels around it, as far as the picture reaches.
+/// The region extended by `margin` pixels on all sides, clipped to the picture.
 Region with_margin(const Region& region, int margin, int width, int height);
 
 [[nodiscard]] int tiles_across(const Region& region);
 [[nodiscard]] int tiles_down(const Region& region);
 
-/// What the passes need to know of one region. `oriented` says whether normals tell front from back.
+/// The constants of the passes for one region. `oriented`: normals tell front from back.
 layout::FrameConstants frame_constants(const geometry::CameraFrame& frame, const Region& region,
                                        const picture::PictureRequest& request, bool oriented);
 

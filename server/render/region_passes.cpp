@@ -12,30 +12,30 @@
 namespace surfcast::render {
 namespace {
 
-/// The chunks of one kind: its projection goes over these.
+/// The chunks of one kind, which its projection processes.
 struct KindWork {
-  size_t first = 0;  ///< in ProjectionWork::chunks
+  size_t first = 0;  ///< index in ProjectionWork::chunks
   size_t count = 0;
 };
 
-/// What the projection works through.
+/// The work of the projection.
 struct ProjectionWork {
-  std::vector<KindWork> kinds;  ///< of each kind of the picture
+  std::vector<KindWork> kinds;  ///< for each kind of the picture
   std::vector<layout::BlockView> blocks;
   std::vector<layout::Chunk> chunks;
-  std::vector<layout::BlockDisplay> block_displays;  ///< of each block, for display options that need them
+  std::vector<layout::BlockDisplay> block_displays;  ///< for each block, if the display options need them
   std::vector<layout::ClipRange> clips;
 };
 
-/// Distance from the eye that no surfel of the block is beyond, world units.
+/// An upper bound of the distance of the block's surfels from the eye, world units.
 double farthest_of(const residency::PackedLattice& lattice, const geometry::CameraFrame& frame) {
   return glm::length(frame.to_camera(lattice.position(glm::uvec3(0)))) +
          glm::length(lattice.step() * glm::dvec3(lattice.largest));
 }
 
-/// The binary exponent of the unit that a region is drawn in: pictures do not depend on units, but fourth powers of
-/// lengths must stay within single precision. The farthest surfel comes to lie at about 2^24, so that it and what is a
-/// billion times nearer do. A power of two rounds nothing.
+/// The binary exponent of the unit of length for a region. Pictures do not depend on the unit, but fourth powers of
+/// lengths must stay within the range of single precision. The farthest surfel gets a distance of about 2^24, so
+/// distances down to a billionth of it stay within that range. Scaling by a power of two does not round.
 int drawing_unit(const RegionTask& task) {
   constexpr int kFarthest = 24;
   double farthest = 0;
@@ -45,7 +45,8 @@ int drawing_unit(const RegionTask& task) {
   return farthest > 0 ? kFarthest - std::ilogb(farthest) : 0;
 }
 
-/// Relative to the eye in double precision: single precision never sees world coordinates.
+/// The constants of a block. Its origin is computed relative to the eye in double precision, so single precision never
+/// represents world coordinates.
 layout::BlockView block_view(const residency::ResidentBlock& block, const geometry::CameraFrame& frame, int unit) {
   const double size = std::ldexp(1.0, unit);
   return {glm::vec4(glm::vec3(frame.to_camera(block.lattice.position(glm::uvec3(0))) * size), 0),
@@ -56,7 +57,7 @@ bool needs_block_displays(const DisplayOptions& display) {
   return display.clipped || display.mapped();
 }
 
-/// Chunks of a run, cut where pages end.
+/// Adds the chunks of a run, divided at the ends of pages.
 void add_chunks(const VisibleBlock& block, uint32_t view, const residency::TexelRun& run,
                 std::vector<layout::Chunk>& chunks) {
   const uint32_t end = run.first + run.count;
@@ -72,7 +73,7 @@ void add_chunks(const VisibleBlock& block, uint32_t view, const residency::Texel
   }
 }
 
-/// The kinds that a region may show something of, by number.
+/// The kinds of a region's blocks, sorted by number.
 PictureKinds kinds_of(const RegionTask& task) {
   std::vector<bool> seen(task.kinds.size());
   for (const VisibleBlock& block : task.blocks) seen[block.kind] = true;
@@ -83,7 +84,7 @@ PictureKinds kinds_of(const RegionTask& task) {
   return kinds;
 }
 
-/// Adds what is to be projected of a kind.
+/// Adds the blocks and chunks of a kind.
 void plan_kind(const RegionTask& task, uint32_t kind, int unit, ProjectionWork& work) {
   std::vector<residency::TexelRun> runs;
   const size_t first = work.chunks.size();
@@ -108,15 +109,16 @@ ProjectionWork plan_work(const RegionTask& task, const PictureKinds& kinds) {
   return work;
 }
 
-/// Work groups of a pass: rows of a width, or, without one, a line of `count`.
+/// Work groups of a pass: `count` rows of `width` groups, or without a width, one line of `count` groups.
 struct Groups {
   size_t count = 0;
   std::optional<size_t> width;
-  size_t first = 0;  ///< of a line: counted in the uniform `first_group`
+  size_t first = 0;  ///< of a line: added to the uniform `first_group`
 };
 
-/// Dispatches them in batches between which the picture can be given up, or another one be drawn: then what the pass
-/// works with is bound again. The current program finds the first row or group of a batch in its uniform `first_group`.
+/// Dispatches work groups in batches. Between batches the picture can be cancelled or preempted by another one; after a
+/// preemption the buffers of the pass are bound again. The uniform `first_group` of the current program gives the first
+/// row or group of a batch.
 Status dispatch_in_batches(const Groups& groups, BatchSizer& sizer, const Preemption& preemption,
                            const std::function<void()>& bind) {
   bind();
@@ -140,7 +142,7 @@ Status dispatch_in_batches(const Groups& groups, BatchSizer& sizer, const Preemp
 
 template <typename T>
 void upload(StorageBuffer& buffer, const std::vector<T>& values) {
-  buffer.reserve(std::max<size_t>(values.size(), 1) * sizeof(T));  // also a view of nothing binds a buffer
+  buffer.reserve(std::max<size_t>(values.size(), 1) * sizeof(T));  // a view without blocks binds a buffer too
   glNamedBufferSubData(buffer.name(), 0, static_cast<GLsizeiptr>(values.size() * sizeof(T)), values.data());
 }
 
@@ -152,8 +154,8 @@ void upload_uniforms(StorageBuffer& buffer, const T& constants) {
 
 /// How the splats of overfull tiles are sampled (shaders/include/thinning.glsl).
 struct Thinning {
-  uint32_t most = 0;   ///< splats of a tile; 0: all
-  bool alike = false;  ///< also those that cover much
+  uint32_t most = 0;   ///< splats per tile; 0: no thinning
+  bool alike = false;  ///< all splats with equal probability, also those of high gain
   bool operator==(const Thinning&) const = default;
 };
 
@@ -165,7 +167,7 @@ void upload_constants(const RegionTask& task, const Thinning& thinning, SplatBuf
   upload_uniforms(buffers.frame, constants);
 }
 
-/// What the options of the picture need, and nothing without any.
+/// Uploads the parameters of the display options that the picture uses.
 void upload_display_options(const RegionTask& task, const ProjectionWork& work, SplatBuffers& buffers) {
   const DisplayOptions& display = task.display;
   if (needs_block_displays(display)) upload(buffers.block_displays, work.block_displays);
@@ -194,7 +196,7 @@ void clear_counts(const RegionTask& task, SplatBuffers& buffers) {
   buffers.tile_order.reserve(lists * 2);
 }
 
-/// What every pass works with.
+/// Binds the buffers that every pass uses.
 void bind_frame(const SplatBuffers& buffers) {
   buffers.frame.bind_uniforms(SURFCAST_BIND_FRAME);
   buffers.counters.bind(SURFCAST_BIND_COUNTERS);
@@ -247,7 +249,7 @@ layout::Counters read_counters(const SplatBuffers& buffers) {
   return counters;
 }
 
-/// What to try next when `tried` left such counts; the same if it did.
+/// The thinning to try after `tried` gave these counts; equal to `tried` if the counts are acceptable.
 Thinning thinner(const layout::Counters& counters, const Thinning& tried, size_t list_limit) {
   if (tried.most == 0) return {counters.counts.w > SURFCAST_TILE_CAPACITY ? SURFCAST_TILE_CAPACITY : 0U, false};
   const bool lists_fit = counters.counts.z <= list_limit;
@@ -255,8 +257,8 @@ Thinning thinner(const layout::Counters& counters, const Thinning& tried, size_t
   return {lists_fit ? tried.most : std::max(tried.most / 2, 1U), true};
 }
 
-/// Room for splats to begin with. Where what is not written costs nothing there is room for every surfel, and nothing
-/// is ever projected twice for want of it.
+/// The initial capacity in splats. With lazily committed memory there is room for every surfel, so the projection is
+/// never repeated for lack of room.
 size_t first_capacity(const ProjectionWork& work, const SplatBuffers& buffers) {
   constexpr size_t kFirst = 1u << 18;
   if (!buffers.lazy) return kFirst;
@@ -264,7 +266,7 @@ size_t first_capacity(const ProjectionWork& work, const SplatBuffers& buffers) {
                     residency::SurfelBuffer::device_limit() / 2);
 }
 
-/// Projects what is visible of one kind after another.
+/// Projects the visible blocks, one kind after another.
 Status project_kinds(const RegionTask& task, const ProjectionWork& work, const SplatPrograms& variant,
                      SplatBuffers& buffers, const Preemption& preemption) {
   for (size_t i = 0; i < work.kinds.size(); ++i) {
@@ -278,8 +280,8 @@ Status project_kinds(const RegionTask& task, const ProjectionWork& work, const S
   return {};
 }
 
-/// Projects everything that is visible and sums up the tile counts; again if the records did not fit, or if a tile is
-/// so crowded that its splats are to be thinned out.
+/// Projects the visible blocks and sums up the tile counts. Repeats this if the records did not fit, or if the splats
+/// of a tile must be thinned.
 Result<layout::Counters> project(const RegionTask& task, const ProjectionWork& work, Programs& programs,
                                  const SplatPrograms& variant, SplatBuffers& buffers, const Preemption& preemption) {
   const gl::DebugGroup group("project");
@@ -302,7 +304,7 @@ Result<layout::Counters> project(const RegionTask& task, const ProjectionWork& w
     const layout::Counters counters = read_counters(buffers);
     const size_t needed = size_t{counters.counts.x} + counters.counts.y;
     if (needed > buffers.splat_capacity()) {
-      // Two texels each; the pool holds no more surfels than that allows.
+      // Each record has two texels. The pool is limited so that the records of all its surfels fit.
       buffers.reserve_splats(std::min(needed + needed / 4, residency::SurfelBuffer::device_limit() / 2), with_normals);
       continue;
     }
@@ -329,7 +331,7 @@ size_t ceil_divide(int total, int part) {
   return static_cast<size_t>((total + part - 1) / part);
 }
 
-/// Draws a span of tiles with a build of the splat kernel.
+/// Draws a span of tiles with a variant of the splat kernel.
 Status draw_tiles(const RegionTask& task, const TileSpan& span, const gl::Program& program, BatchSizer& sizer,
                   SplatBuffers& buffers, const Preemption& preemption) {
   if (span.first == span.end) return {};
@@ -395,7 +397,7 @@ Status supersample_silhouettes(const RegionTask& task, const layout::Counters& c
   return dispatch(*variant.supersample_large, parts, buffers.supersample_batches);
 }
 
-/// From light and depth of all that was drawn to the pixels that are wanted.
+/// Converts the light and depth of `drawn` to the requested pixels.
 void shade_by_depth(const RegionTask& task, const gl::Program& program, SplatBuffers& buffers) {
   const gl::DebugGroup group("eye_dome");
   const picture::EyeDome& eye_dome = task.request->eye_dome;

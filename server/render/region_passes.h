@@ -20,24 +20,24 @@ namespace surfcast::render {
 /// A block to draw.
 struct VisibleBlock {
   const residency::ResidentBlock* resident = nullptr;
-  selection::RadiusRange radii;  ///< of the wanted spacing within the block
-  uint32_t first_surfel = 0;     ///< its place in the model, see Scene::first_surfel
+  selection::RadiusRange radii;  ///< radii at the requested spacing within the block
+  uint32_t first_surfel = 0;     ///< index of its first surfel in the model, see Scene::first_surfel
   uint32_t kind = 0;             ///< number in the table of kinds
 };
 
-/// One region to draw: what is seen, from where, how.
+/// All inputs for drawing one region.
 struct RegionTask {
   const residency::SurfelBuffer* surfels = nullptr;
   kinds::KindTable kinds;
   std::vector<VisibleBlock> blocks;
   geometry::CameraFrame frame;
-  Region region;                     ///< that is wanted
-  Region drawn;                      ///< the same, or with a margin of neighbours
+  Region region;                     ///< requested pixels
+  Region drawn;                      ///< `region`, or `region` with a margin of neighbouring pixels
   layout::FrameConstants constants;  ///< of `drawn`
   Variant variant;
   const picture::PictureRequest* request = nullptr;
   DisplayOptions display;
-  const ConstantTexels* colors = nullptr;  ///< color_table of a look that is mapped
+  const ConstantTexels* colors = nullptr;  ///< color_table of `display`, if it is mapped
 };
 
 /// Milliseconds and counts of one region.
@@ -49,9 +49,9 @@ struct RegionStats {
   double read_ms = 0;
 };
 
-/// Draws a region with the passes project, bin_offsets, bin, splat and perhaps silhouettes, supersample, and
-/// eye_dome. Reads the pixels of `drawn`, or, after eye_dome, of `region` into `pixels` (4 bytes or 4 floats per pixel,
-/// rows from the top).
+/// Draws a region with the passes project, bin_offsets, bin and splat; then, if requested, silhouettes, supersample and
+/// eye_dome. Reads the result into `pixels` (4 bytes or 4 floats per pixel, rows from the top): the pixels of `drawn`,
+/// or with eye_dome those of `region`.
 Result<RegionStats> draw_region(const RegionTask& task, Programs& programs, SplatBuffers& buffers,
                                 const Preemption& preemption, std::span<std::byte> pixels);
 

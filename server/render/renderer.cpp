@@ -30,7 +30,7 @@ size_t pixel_bytes(picture::PixelFormat format) {
   return format == picture::PixelFormat::kSrgb8 ? 4 : 4 * sizeof(float);
 }
 
-/// Colours that say nothing of the shape need light to show it.
+/// True if the colours do not show the shape, so lighting is needed.
 bool lit_by_default(const model::ModelInfo& info, const DisplayOptions& display) {
   if (display.color == picture::SurfelColor::kStored) return info.color_bits == 0;
   return display.color == picture::SurfelColor::kElevation || display.color == picture::SurfelColor::kClassification;
@@ -52,7 +52,7 @@ Variant variant_of(const model::ModelInfo& info, const DisplayOptions& display,
   return variant;
 }
 
-/// Copies a region out of the pixels of `written`, which holds it.
+/// Copies a region from the pixels of `written`, which contains it.
 void copy_region(const Region& region, const Region& written, std::span<const std::byte> from, size_t bytes_per_pixel,
                  picture::Image& image) {
   const size_t row = static_cast<size_t>(region.width) * bytes_per_pixel;
@@ -73,7 +73,7 @@ void add(RegionStats& total, const RegionStats& stats) {
   total.read_ms += stats.read_ms;
 }
 
-/// Blocks by level, finest first.
+/// The number of blocks by level, finest first.
 std::vector<picture::LevelStats> level_stats(const ldc::BlockTree& tree, const selection::BlockSelection& selection) {
   std::map<int, picture::LevelStats> levels;
   for (const uint32_t block : selection.target) ++levels[tree.blocks()[block].level].selected;
@@ -84,12 +84,12 @@ std::vector<picture::LevelStats> level_stats(const ldc::BlockTree& tree, const s
   return stats;
 }
 
-/// A number that stands for the blocks that are drawn, never 0.
+/// A hash of the drawn blocks, never 0.
 uint64_t cut_of(const selection::BlockSelection& selection) {
   return hash_of(std::as_bytes(std::span(selection.draw))) | 1;
 }
 
-/// Whether a view shows more than what whoever asks for it has already, and enough of it.
+/// True if a view differs from the picture that the client displays, and few enough blocks are missing.
 bool worth_drawing(const picture::PictureRequest& request, const residency::PreparedView& view, uint64_t cut) {
   if (request.displayed_cut != 0 && cut == request.displayed_cut) return false;
   return view.nothing_pending || view.missing <= request.max_missing_blocks;
@@ -132,7 +132,7 @@ struct Renderer::State {
             .upload_bytes = config.upload_bytes};
   }
 
-  /// A picture is being drawn as long as one of these is there.
+  /// Marks a picture as being drawn during the lifetime of the object.
   struct PictureScope {
     explicit PictureScope(State& owner) : state(owner) { state.begin_picture(); }
     ~PictureScope() { state.end_picture(); }
@@ -161,15 +161,15 @@ struct Renderer::State {
   picture::DeviceInfo device;
   Programs programs;
   kinds::KindTable kinds;
-  std::array<SplatBuffers, 2> buffers;  ///< of the picture that is being drawn, and of one that interrupts it
-  size_t depth = 0;                     ///< pictures that are being drawn: 2 when one interrupts another
+  std::array<SplatBuffers, 2> buffers;  ///< of the picture being drawn, and of the one that preempts it
+  size_t depth = 0;                     ///< pictures being drawn: 2 while one preempts another
   std::map<std::pair<picture::SurfelColor, picture::ColorMap>, ConstantTexels>
-      color_tables;  ///< made when they are first needed
+      color_tables;  ///< made at their first use
   size_t viewers;    ///< see RendererConfig
   residency::SurfelBuffer surfels;
   residency::Residency residency;
   std::map<uint64_t, std::unique_ptr<Scene>> scenes;  ///< by ModelFile::id
-  std::vector<uint64_t> to_release;                   ///< models, once nothing is being drawn
+  std::vector<uint64_t> to_release;                   ///< models to release once no picture is being drawn
 };
 
 void Renderer::State::begin_picture() {
@@ -230,7 +230,7 @@ Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const pict
                                                   const residency::PreparedView& view, const Preemption& preemption,
                                                   picture::Image& image) {
   Variant variant = variant_of(scene.model().info(), display, request);
-  variant.silhouettes &= view.nothing_pending;  // what will be drawn again soon need not have its edges drawn twice
+  variant.silhouettes &= view.nothing_pending;  // a picture that will soon be redrawn does not need supersampling
   const int margin = variant.eye_dome || variant.silhouettes ? kNeighbourMargin : 0;
   const size_t bytes = pixel_bytes(request.format);
   const model::ModelInfo& info = scene.model().info();

@@ -17,16 +17,24 @@
 namespace surfcast::render {
 
 struct RendererConfig {
-  int gpu = -1;                       ///< index of the EGL device; -1 chooses: the first hardware device, else software
-  std::optional<size_t> gpu_bytes{};  ///< for the surfels of all models; none: default_budgets
-  std::optional<size_t> host_bytes{};      ///< for blocks that may come back to the GPU; none: default_budgets
-  unsigned decoders = 0;                   ///< threads that decode blocks; 0: as many as the machine has cores
-  size_t upload_bytes = size_t{16} << 20;  ///< stored on the GPU in one picture in motion, which waits for it
-  size_t viewers = 64;  ///< of one model whose motion is remembered; beyond, the one not seen for longest is forgotten
+  int gpu = -1;                            ///< index of the EGL device; -1: the first hardware device, else software
+  std::optional<size_t> gpu_bytes{};       ///< for the surfels of all models; none: default_budgets
+  std::optional<size_t> host_bytes{};      ///< for packed blocks evicted from the GPU; none: default_budgets
+  unsigned decoders = 0;                   ///< threads that decode blocks; 0: one for each core
+  size_t upload_bytes = size_t{16} << 20;  ///< stored on the GPU for one picture in motion, which waits for it
+  size_t viewers = 64;           ///< of one model whose motion is remembered; least recently seen are forgotten
   bool gpu_kernels = false;      ///< also draws software GL with the kernels for GPUs: for tests
-  std::string shader_defines{};  ///< text before every shader, of programs that measure other kernels than our own
-  kinds::KindTable kinds =
-      kinds::built_in_kinds();  ///< that models may have; others are not drawn. Outlives the renderer
+  std::string shader_defines{};  ///< text before every shader, for programs that measure other kernels
+  kinds::KindTable kinds = kinds::built_in_kinds();  ///< kinds of blocks that can be drawn; outlives the renderer
+};                                                   ///< for the surfels of all models; none: default_budgets
+std::optional<size_t> host_bytes{};      ///< for blocks that may come back to the GPU; none: default_budgets
+unsigned decoders = 0;                   ///< threads that decode blocks; 0: as many as the machine has cores
+size_t upload_bytes = size_t{16} << 20;  ///< stored on the GPU in one picture in motion, which waits for it
+size_t viewers = 64;  ///< of one model whose motion is remembered; beyond, the one not seen for longest is forgotten
+bool gpu_kernels = false;      ///< also draws software GL with the kernels for GPUs: for tests
+std::string shader_defines{};  ///< text before every shader, of programs that measure other kernels than our own
+kinds::KindTable kinds =
+    kinds::built_in_kinds();  ///< that models may have; others are not drawn. Outlives the renderer
 };
 
 /// Draws pictures of models. Owns a GL context: create, use and destroy it on one thread.
@@ -35,17 +43,17 @@ class Renderer {
   static Result<std::unique_ptr<Renderer>> create(const RendererConfig& config);
   ~Renderer();
 
-  /// Draws one picture. Blocks of the model stay resident for later ones. Fails on a wrong camera or resolution, on
-  /// blocks of a kind that it does not know, and when it waits for a block that is damaged; returns kCancelled soon
-  /// after it is interrupted for good. What is more urgent may draw one other picture at a time meanwhile: it has
-  /// memory of its own for what is between the passes, and leaves alone the blocks that this one shows.
+  /// Draws one picture. Blocks of the model stay resident for later pictures. Fails on an invalid camera or resolution,
+  /// on blocks of an unknown kind, and on a damaged block that the picture waits for. Returns kCancelled soon after it
+  /// is cancelled. More urgent work may draw one other picture at a time meanwhile. That picture uses other buffers
+  /// between the passes, and does not evict the blocks of this one.
   Result<picture::Frame> draw(const std::shared_ptr<const model::ModelFile>& model,
                               const picture::PictureRequest& request, const Preemption& preemption);
-  /// Lets go of what is resident of a model that will not be drawn again, after the picture that is being drawn.
+  /// Releases the resident blocks of a model that will not be drawn again, once the current picture is complete.
   void release_model(const model::ModelFile& model);
 
   [[nodiscard]] const picture::DeviceInfo& device() const;
-  /// The shaders that were compiled so far, with the kinds that they are of besides surfels.
+  /// The names of the shaders compiled so far, with the kinds other than surfels that they support.
   [[nodiscard]] std::vector<std::string> programs() const;
   /// Largest picture side in pixels that the device can draw.
   [[nodiscard]] int max_resolution() const;

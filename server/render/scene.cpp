@@ -40,7 +40,7 @@ ViewerHistory& Scene::history_of(uint64_t viewer, size_t most) {
 
 std::optional<geometry::CameraFrame> update_and_extrapolate(ViewerHistory& history, const geometry::Camera& camera,
                                                             int width, int height) {
-  constexpr double kPicturesAhead = 4;  // about as long as a block takes from being wished for to being drawn
+  constexpr double kPicturesAhead = 4;  // about the latency from the request of a block to its first picture
   const std::optional<geometry::Camera> last = std::exchange(history.camera, camera);
   if (!last || (last->position == camera.position && last->focal_point == camera.focal_point)) return std::nullopt;
   geometry::Camera ahead = camera;

@@ -13,35 +13,35 @@
 
 namespace surfcast::render {
 
-/// What is remembered of somebody's motion from picture to picture.
+/// The state of a viewer's motion between pictures.
 struct ViewerHistory {
   uint64_t viewer = 0;
   std::optional<geometry::Camera> camera;
   std::vector<uint32_t> refined;  ///< see select_blocks
 };
 
-/// Notes a picture that did not wait. Where the camera will be some pictures later if it goes on as since the last one;
-/// none if it does not move or nothing is known.
+/// Records the camera of a picture in motion and predicts the camera some pictures later, by linear extrapolation from
+/// the last picture. None if the camera does not move or there is no last picture.
 std::optional<geometry::CameraFrame> update_and_extrapolate(ViewerHistory& history, const geometry::Camera& camera,
                                                             int width, int height);
 
-/// A model that is being looked at.
+/// A model that is being viewed.
 class Scene {
  public:
-  /// Fails when the model has blocks of a kind that is not in the table.
+  /// Fails if the model has blocks of a kind that is not in the table.
   static Result<std::unique_ptr<Scene>> create(const std::shared_ptr<const model::ModelFile>& model,
                                                kinds::KindTable kinds);
 
   [[nodiscard]] const model::ModelFile& model() const { return *model_; }
   [[nodiscard]] const residency::ViewedModel& viewed() const { return viewed_; }
-  /// Number of a block's kind in the table.
+  /// The number of a block's kind in the table of kinds.
   [[nodiscard]] uint32_t kind_of(uint32_t block) const { return blocks_->kind_of(block); }
-  /// Surfels of the blocks before this one: where its surfels begin among all of the model, modulo 2^32.
+  /// Number of surfels in the blocks before this one, modulo 2^32: the index of its first surfel in the model.
   [[nodiscard]] uint32_t first_surfel(uint32_t block) const { return first_surfels_[block]; }
-  /// The camera asked for, or one that fits the model.
+  /// The requested camera, or one that shows the whole model.
   [[nodiscard]] geometry::Camera camera_of(const picture::PictureRequest& request) const;
 
-  /// Memory of that viewer, new if it has not been seen for long: the last `most` viewers are remembered.
+  /// The history of a viewer. Only the `most` most recently seen viewers are remembered.
   ViewerHistory& history_of(uint64_t viewer, size_t most);
 
  private:
@@ -51,7 +51,7 @@ class Scene {
   std::shared_ptr<const kinds::FileBlocks> blocks_;
   residency::ViewedModel viewed_;
   std::vector<uint32_t> first_surfels_;
-  std::list<ViewerHistory> viewers_;  ///< most recent first
+  std::list<ViewerHistory> viewers_;  ///< most recently seen first
 };
 
 }  // namespace surfcast::render

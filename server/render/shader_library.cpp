@@ -21,7 +21,7 @@ class Assembler {
       if (line.starts_with(kInclude)) {
         const std::string included = line.substr(kInclude.size(), line.rfind('"') - kInclude.size());
         if (more_.empty() && included.starts_with("kinds/")) continue;
-        // Headers that C++ reads too include C++ headers between #ifdef __cplusplus; those use angle brackets.
+        // Headers shared with C++ include C++ headers within #ifdef __cplusplus, in angle brackets.
         if (Status status = append_file(included); !status) return status;
       } else if (!line.starts_with("#include <")) {
         text_ += line + '\n';

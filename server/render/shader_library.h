@@ -9,9 +9,9 @@
 
 namespace surfcast::render {
 
-/// The text of a shader with its `#include "..."` lines replaced by the files they name, each once. `more` are files
-/// besides those of shaders/. What other kinds than surfels add to shared shaders lies in shaders/kinds/: without
-/// `more` these includes are left out, and the text is that of surfels alone.
+/// The text of a shader. Its `#include "..."` lines are replaced by the named files, each once. `more` are files in
+/// addition to those of shaders/. The files in shaders/kinds/ that extend shared shaders for kinds other than surfels
+/// are included only if `more` is not empty; otherwise the text is that for surfels alone.
 Result<std::string> shader_text(std::string_view name, std::span<const EmbeddedShader> more = {});
 
 }  // namespace surfcast::render

@@ -9,7 +9,7 @@ void TexelBuffer::reserve(size_t texels, bool lazily) {
   texels_ = texels;
   texture_ = gl::Texture();
   buffer_ = gl::Buffer();
-  glFinish();  // nothing may write into memory that is given back
+  glFinish();  // the GPU must not write to memory that is released
   memory_ = lazily ? LazyMemory(texels * texel_bytes_) : LazyMemory();
   buffer_ = memory_.bytes().empty() ? gl::make_buffer(label_, texels * texel_bytes_)
                                     : gl::adopt_memory(label_, memory_.bytes());

@@ -12,13 +12,15 @@
 
 namespace surfcast::render {
 
-/// A buffer that grows, seen as texels: records of splats may outgrow a storage block, texel buffers may not.
+/// A growing buffer, accessed as texels: splat records may exceed the size limit of a storage block, but not that of a
+/// texel buffer.
 class TexelBuffer {
  public:
   TexelBuffer(const char* label, GLenum format, size_t texel_bytes)
       : label_(label), format_(format), texel_bytes_(texel_bytes) {}
 
-  /// Room for `texels`, content undefined. `lazily`: of memory of which only what is written counts (software alone).
+  /// Makes room for `texels`; the content is undefined. `lazily`: in lazily committed memory, where only written pages
+  /// count (software GL only).
   void reserve(size_t texels, bool lazily = false);
   void bind_for_writing(GLuint unit) const;
   void bind_for_reading(GLuint unit) const;
@@ -29,12 +31,12 @@ class TexelBuffer {
   GLenum format_;
   size_t texel_bytes_;
   size_t texels_ = 0;
-  LazyMemory memory_;  ///< of the buffer, if it was reserved lazily
+  LazyMemory memory_;  ///< memory of the buffer if it was reserved lazily
   gl::Buffer buffer_;
   gl::Texture texture_;
 };
 
-/// A storage buffer that grows.
+/// A growing storage buffer.
 class StorageBuffer {
  public:
   explicit StorageBuffer(const char* label) : label_(label) {}
@@ -51,10 +53,10 @@ class StorageBuffer {
   gl::Buffer buffer_;
 };
 
-/// A table of numbers that shaders look up.
+/// A table of constants for shaders.
 class ConstantTexels {
  public:
-  /// Needs the current GL context.
+  /// Needs a current GL context.
   static ConstantTexels make(const char* label, std::span<const uint32_t> values);
   void bind(GLuint unit) const;
 
@@ -63,7 +65,7 @@ class ConstantTexels {
   gl::Texture texture_;
 };
 
-/// Everything between the passes of one region, and how fast they are.
+/// The buffers between the passes of one region, and the batch sizes of the passes.
 struct SplatBuffers {
   BatchSizer project_batches;
   BatchSizer bin_batches;
@@ -95,10 +97,11 @@ struct SplatBuffers {
   StorageBuffer eye_dome{"eye-dome constants"};
   StorageBuffer fronts{"fronts"};
   StorageBuffer silhouettes{"silhouettes"};
-  /// Records cost what is written of them: there may be room for all surfels of a view from the beginning.
+  /// Buffers use lazily committed memory, where only written pages count. Then there may be room for all surfels of a
+  /// view from the beginning.
   bool lazy = false;
 
-  /// Room for so many splat records; normals only for scenes that are lit and coloured.
+  /// Makes room for `count` splat records; for normals only in lit scenes with colour.
   void reserve_splats(size_t count, bool with_normals);
   [[nodiscard]] size_t splat_capacity() const { return discs.texels(); }
 };

@@ -9,8 +9,9 @@ namespace {
 constexpr uint32_t kLengths[] = {SURFCAST_LIST_LENGTHS};
 static_assert(std::size(kLengths) + 1 == kTileSpans);
 
-/// Turns that a lane may take in the mean where lists are shorter than `longest`. Eight lanes that share n tiles of up
-/// to eight surfaces draw at most n + 7 surfaces after each other, unless there is one turn each: then eight.
+/// The average number of tiles per lane if lists are not longer than `longest`. It keeps the iterations of a lane below
+/// the limit of llvmpipe. Eight lanes that share n tiles of up to eight surfaces draw at most n + 7 surfaces in
+/// sequence, or eight if each lane has one tile. Each surface takes two passes over its list.
 uint32_t turns_of(uint32_t longest) {
   if (longest <= 512) return 6;
   return longest <= 1024 ? 2 : 1;
