@@ -8,7 +8,7 @@
 
 namespace surfcast::encode {
 
-/// Of an Image in memory, which has four channels.
+/// Bytes per pixel of an Image in memory, which has four channels.
 [[nodiscard]] inline size_t bytes_per_pixel(picture::PixelFormat format) {
   return 4 * (format == picture::PixelFormat::kLinearFloat ? sizeof(float) : 1);
 }
@@ -22,5 +22,5 @@ using EncodeFunction = void(const picture::Image& image, picture::FileFormat for
 
 }  // namespace surfcast::encode
 
-/// Exported by the module; see encode_picture() for its arguments.
+/// Exported by the module. Arguments as of encode_picture().
 extern "C" [[gnu::visibility("default")]] surfcast::encode::EncodeFunction surfcast_encode_picture;

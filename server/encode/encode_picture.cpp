@@ -13,8 +13,8 @@
 namespace surfcast::encode {
 namespace {
 
-/// Loads OpenImageIO with the module that uses it. The library brings some 250 others, which take longer to load than
-/// everything else at start, so that commands that encode nothing do without.
+/// Loads the module that uses OpenImageIO. The library depends on some 250 others, which take longer to load than
+/// everything else at start. So commands that encode nothing do not load it.
 Result<EncodeFunction*> load_codecs() {
   std::error_code code;
   const std::filesystem::path programs = std::filesystem::read_symlink("/proc/self/exe", code).parent_path();
@@ -25,8 +25,8 @@ Result<EncodeFunction*> load_codecs() {
   return reinterpret_cast<EncodeFunction*>(function);
 }
 
-/// Longest side of a picture in a file of the format, pixels. Checked before encoding: libjpeg ends the process
-/// otherwise.
+/// Longest side of a picture in this file format, pixels. It is checked before encoding because libjpeg would otherwise
+/// terminate the process.
 int largest_side(picture::FileFormat format) {
   switch (format) {
     case picture::FileFormat::kJpeg:

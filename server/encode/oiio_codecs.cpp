@@ -10,9 +10,9 @@
 namespace surfcast::encode {
 namespace {
 
-constexpr int kChannels = 3;  // of a file
+constexpr int kChannels = 3;  // channels of a file
 
-/// How OpenImageIO names a writer.
+/// OpenImageIO's name of the writer.
 const char* writer_of(picture::FileFormat format) {
   switch (format) {
     case picture::FileFormat::kJpeg:
@@ -32,11 +32,11 @@ OIIO::ImageSpec make_spec(const picture::Image& image, picture::FileFormat forma
   OIIO::ImageSpec spec(image.width, image.height, kChannels, is_float ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
   spec.attribute("oiio:ColorSpace", is_float ? "Linear" : "sRGB");
   if (format == picture::FileFormat::kPng) {
-    // Level 1 of zlib takes a third of the time of the default for files a half larger.
+    // Level 1 of zlib takes a third of the time of the default level; files are half as large again.
     spec.attribute("png:compressionLevel", 1);
   } else if (format == picture::FileFormat::kExr) {
     spec.attribute("compression", "zip:1");  // lossless; level 1 for the same reason
-    // The writer puts in the time of day otherwise, and the same request would not give the same bytes.
+    // The writer would otherwise store the time of day, and equal images would not give equal bytes.
     spec.attribute("DateTime", "1970:01:01 00:00:00");
   } else {
     spec.attribute("Compression", std::string(writer_of(format)) + ":" + std::to_string(quality));
