@@ -26,12 +26,14 @@ class CatalogueRenderer : public FrameRenderer {
     if (!model) return fail(model.error());
     return renderer_->draw(current(name, std::move(*model)), request, preemption);
   }
-  /// Draws the next of the tiny pictures of the model that was asked for last, at first of any.
+  /// Draws the next warm-up picture: of the model that was most recently drawn for the first time, or before that, of
+  /// the first model in the catalogue.
   bool warm_up() override {
     if (!next_model_.empty()) begin_warm_up(std::exchange(next_model_, {}));
     if (warm_ups_.empty()) return false;
     const std::atomic<bool> never{false};
-    (void)renderer_->draw(warming_model_, warm_ups_.front(), never);  // failures show again when it is asked for
+    (void)renderer_->draw(warming_model_, warm_ups_.front(),
+                          never);  // a failure is reported when the model is requested
     warm_ups_.pop_front();
     if (warm_ups_.empty()) warming_model_.reset();
     return !warm_ups_.empty();
@@ -40,7 +42,7 @@ class CatalogueRenderer : public FrameRenderer {
   [[nodiscard]] int max_resolution() const override { return renderer_->max_resolution(); }
 
  private:
-  /// Lets go of what is resident of a file that has been replaced.
+  /// Releases the resident blocks of a file that has been replaced.
   std::shared_ptr<const model::ModelFile> current(const std::string& name,
                                                   std::shared_ptr<const model::ModelFile> model) {
     std::shared_ptr<const model::ModelFile>& drawn = drawn_[name];
@@ -60,7 +62,7 @@ class CatalogueRenderer : public FrameRenderer {
   }
 
   const ModelCatalogue& models_;
-  std::string next_model_;  ///< to be warmed up; none: empty
+  std::string next_model_;  ///< next model to warm up; empty: none
   std::shared_ptr<const model::ModelFile> warming_model_;
   std::deque<picture::PictureRequest> warm_ups_;
   std::map<std::string, std::shared_ptr<const model::ModelFile>> drawn_;  ///< by name

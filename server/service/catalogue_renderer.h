@@ -6,7 +6,7 @@
 
 namespace surfcast::service {
 
-/// Makes renderers that draw the models of a catalogue, which must outlive them, with the renderer.
+/// A factory of renderers for the models of a catalogue. The catalogue must outlive the factory and its renderers.
 FrameRendererFactory catalogue_renderers(const ModelCatalogue& models, const render::RendererConfig& config);
 
 }  // namespace surfcast::service

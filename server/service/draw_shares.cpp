@@ -6,8 +6,8 @@ namespace surfcast::service {
 namespace {
 
 constexpr double kShare = 0.25;
-// What either side may be behind at most: a motion is not held up for longer because a picture of it was expensive, nor
-// may it keep the thread for long because others were alone before.
+// The most time by which either side may fall behind its share. One expensive motion picture does not delay the motion
+// for longer, and a phase without motion does not let it occupy the thread for longer.
 constexpr double kMaxMs = 60;
 
 }  // namespace

@@ -2,21 +2,21 @@
 
 namespace surfcast::service {
 
-/// Shares the render thread's time between pictures of motions and all others. A motion's picture goes first, also
-/// between two batches of another one, until the others are owed: they have a quarter of the time as long as they wait.
-/// So whoever moves is delayed by a few milliseconds, and a picture at rest beside somebody who never stops takes
-/// four times as long as alone, and some more that does not depend on its length.
+/// Divides the render thread's time between motion pictures and still pictures. Motion pictures take precedence, also
+/// between two batches of a still picture, unless the still pictures have received less than their share: a quarter of
+/// the time while any of them waits. So motion is delayed by a few milliseconds. A still picture that competes with
+/// permanent motion takes four times as long as alone, plus a delay that does not depend on its length.
 class DrawShares {
  public:
-  /// A picture of a motion was drawn in that time; `others_wait`: one that is not waited for its end.
+  /// A motion picture was drawn in this time. `others_wait`: a still picture waits or is unfinished.
   void drew_motion(double milliseconds, bool others_wait);
-  /// Another picture, or a part of one, was drawn in that time.
+  /// A still picture, or a part of one, was drawn in this time.
   void drew_other(double milliseconds);
 
   [[nodiscard]] bool motion_first() const { return owed_ms_ <= 0; }
 
  private:
-  double owed_ms_ = 0;  ///< to pictures that are of no motion; negative: they had more than their share
+  double owed_ms_ = 0;  ///< time that still pictures lack of their share; negative: they had more
 };
 
 }  // namespace surfcast::service

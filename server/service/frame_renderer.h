@@ -11,16 +11,15 @@
 
 namespace surfcast::service {
 
-/// Draws pictures of models by name. Made, used and destroyed on the render thread.
+/// Draws pictures of models by name. Created, used and destroyed on the render thread.
 class FrameRenderer {
  public:
   virtual ~FrameRenderer() = default;
 
-  /// Returns kCancelled soon after it is interrupted for good. What is more urgent may draw one other picture at a time
-  /// meanwhile.
+  /// Returns kCancelled soon after it is cancelled. More urgent work may draw one other picture at a time meanwhile.
   virtual Result<picture::Frame> draw(const std::string& model, const picture::PictureRequest& request,
                                       const Preemption& preemption) = 0;
-  /// Called while nobody waits: does something that would hold up a later picture. False when nothing is left to do.
+  /// Called while no job waits: does one step of work that would delay later pictures. False when no work remains.
   virtual bool warm_up() = 0;
   [[nodiscard]] virtual const picture::DeviceInfo& device() const = 0;
   /// Largest side of a picture, pixels.

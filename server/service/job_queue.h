@@ -8,25 +8,26 @@
 
 namespace surfcast::service {
 
-/// Who asks: all jobs of one connection share one.
+/// The origin of a job: all jobs of a connection have the same session.
 using SessionId = uint64_t;
 using JobId = uint64_t;
 
-/// Whether somebody's hand waits for a picture.
+/// Motion pictures are urgent: a user is moving the view.
 enum class Priority { kMotion, kStill };
 
-/// What the render thread does next. Sessions take turns, one job each, so that one that asks for a thousand pictures
-/// delays another by one picture at most; the jobs of one session and priority keep their order. Not thread-safe.
+/// The jobs that wait for the render thread. Sessions take turns, one job each. So a session that requests a thousand
+/// pictures delays another one by at most one picture. Jobs of the same session and priority keep their order. Not
+/// thread-safe.
 class JobQueue {
  public:
-  /// `limit`: jobs that may wait at a time, over all sessions and of either priority.
+  /// `limit`: jobs that may wait at a time, in all sessions and both priorities together.
   explicit JobQueue(size_t limit) : limit_(limit) {}
 
-  /// False when the queue is full; the job has not been taken then.
+  /// False if the queue is full; the job is then not added.
   [[nodiscard]] bool push(SessionId session, JobId job, Priority priority);
   std::optional<JobId> pop(Priority priority);
   [[nodiscard]] bool has_waiting(Priority priority) const { return !lines_[static_cast<size_t>(priority)].empty(); }
-  /// False when the job does not wait here.
+  /// False if the job is not in the queue.
   bool remove(JobId job);
   [[nodiscard]] bool contains(JobId job) const;
   [[nodiscard]] size_t size() const { return size_; }
@@ -37,7 +38,7 @@ class JobQueue {
     std::deque<JobId> jobs;  ///< never empty between calls
   };
 
-  using Lines = std::deque<Line>;  ///< in the order of their turns
+  using Lines = std::deque<Line>;  ///< in the order of the sessions' turns
 
   size_t limit_;
   size_t size_ = 0;

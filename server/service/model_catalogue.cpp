@@ -13,7 +13,7 @@ namespace fs = std::filesystem;
 
 constexpr const char* kExtension = ".surf";
 
-/// Adds the models of a folder whose names are not taken. A folder that cannot be read holds none.
+/// Adds the models of a folder whose names are not taken. A folder that cannot be read counts as empty.
 void add_folder(const fs::path& folder, std::map<std::string, fs::path>& models) {
   std::error_code code;
   for (fs::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code)) {
@@ -24,7 +24,7 @@ void add_folder(const fs::path& folder, std::map<std::string, fs::path>& models)
   }
 }
 
-/// The median over the surfels, as far as the leaves state it.
+/// The median spacing over the surfels, to the resolution of leaves.
 double typical_spacing(std::span<const ldc::BlockEntry> blocks) {
   std::vector<std::pair<double, uint64_t>> leaves;
   uint64_t surfels = 0;

@@ -20,9 +20,9 @@ struct NamedModel {
   std::shared_ptr<const void> in_use{};  ///< held for as long as the file may be opened: whoever keeps it from removal
 };
 
-/// Model files by name: single ones, and whatever folders hold at the moment ("NAME.surf"). A single file hides one of
-/// the same name in a folder, an earlier folder one in a later. Files are opened when they are first asked for, and
-/// again when they have been replaced.
+/// Model files by name: individual files, and the current content of folders ("NAME.surf"). An individual file hides a
+/// file of the same name in a folder, and an earlier folder hides a later one. A file is opened at the first request,
+/// and again after it has been replaced.
 class ModelCatalogue : public ModelSource {
  public:
   ModelCatalogue(std::vector<NamedModel> files, std::vector<std::filesystem::path> folders)

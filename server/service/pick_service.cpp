@@ -37,7 +37,7 @@ void PickService::pick(PickJob job, Done done) {
   });
 }
 
-/// What may throw (memory runs out) becomes a value, so that one pick cannot end the server.
+/// Returns exceptions (out of memory) as errors, so one pick cannot terminate the server.
 Result<std::optional<kinds::PickedSurfel>> PickService::run(const PickJob& job) {
   try {
     const picture::PictureRequest& request = job.request;

@@ -20,7 +20,7 @@ struct PickLimits {
   size_t block_bytes = size_t{64} << 20;  ///< of decoded blocks that are kept for later picks
 };
 
-/// A pixel of a picture: somebody wants to know what it shows.
+/// A request for the item that a picture shows in a pixel.
 struct PickJob {
   std::string model;
   picture::PictureRequest request;  ///< camera, resolution, clip and hidden classes matter
@@ -29,7 +29,7 @@ struct PickJob {
   int y = 0;                        ///< pixels from the upper edge
 };
 
-/// Finds what is under pixels, on threads of its own, so that no picture waits for it. Methods may be called from any
+/// Picks items in pictures, on threads of its own so that pictures are not delayed. Methods may be called from any
 /// thread.
 class PickService {
  public:
@@ -37,11 +37,11 @@ class PickService {
 
   /// `models` must outlive the service.
   explicit PickService(const ModelSource& models, const PickLimits& limits = {});
-  /// Gives up what is outstanding.
+  /// Cancels the outstanding picks.
   ~PickService();
 
-  /// `done` is called once, on a thread of the service, or before the call returns when too many wait already. It must
-  /// not throw or block.
+  /// `done` is called once: on a thread of the service, or, if too many picks wait already, before this call returns.
+  /// It must not throw or block.
   void pick(PickJob job, Done done);
 
  private:

@@ -25,7 +25,8 @@ tl::unexpected<Error> cancelled_error() {
   return fail(ErrorKind::kCancelled, "the request was cancelled");
 }
 
-/// Runs what may throw (memory runs out in a library) and makes a value of it, so that one job cannot end the server.
+/// Runs a function and returns exceptions (out of memory in a library) as errors, so one job cannot terminate the
+/// server.
 template <typename Function>
 auto guarded(Function function) -> decltype(function()) {
   try {
@@ -46,7 +47,7 @@ struct RenderService::State {
     Stopwatch since_submission;
     double waited_ms = 0;  ///< for the render thread
     double draw_ms = 0;
-    std::atomic<bool> encoding = false;  ///< has begun
+    std::atomic<bool> encoding = false;  ///< encoding has begun
   };
   using JobPointer = std::shared_ptr<Job>;
   using SharedFrame = std::shared_ptr<const picture::Frame>;
@@ -86,15 +87,15 @@ struct RenderService::State {
   picture::DeviceInfo device;  ///< set before start() returns, constant afterwards
   int max_resolution = 0;      ///< likewise
 
-  mutable std::mutex mutex;  ///< guards what follows
+  mutable std::mutex mutex;  ///< guards the following members
   std::condition_variable wake;
   JobQueue queue;
   std::map<JobId, JobPointer> jobs;  ///< outstanding: waiting, being drawn or being encoded
   JobId last_id = 0;
-  std::array<size_t, 2> in_encoding{};  ///< drawn pictures and those being drawn, by priority
+  std::array<size_t, 2> in_encoding{};  ///< pictures being drawn or encoded, by priority
   bool stopping = false;
 
-  // Declared last, so that the threads end before what they use.
+  // Declared last, so the threads end before the members that they use.
   std::unique_ptr<PickService> picks;
   std::unique_ptr<WorkerPool> pool;
   std::unique_ptr<WorkerPool> motion_pool;  ///< one thread
@@ -127,7 +128,7 @@ void RenderService::State::run(const FrameRendererFactory& make_renderer, std::p
   }
 }
 
-/// True once nothing has been to do for a moment.
+/// Waits for a moment. True if no job could be drawn meanwhile.
 bool RenderService::State::idle_for_a_moment() {
   constexpr std::chrono::milliseconds kMoment{300};
   std::unique_lock lock(mutex);
@@ -139,7 +140,7 @@ bool RenderService::State::has_waiting(Priority priority) const {
   return queue.has_waiting(priority);
 }
 
-/// Whether a job of that priority waits and has room behind the renderer.
+/// True if a job of this priority waits and the encoders have room for its picture.
 bool RenderService::State::may_draw(Priority priority) const {
   return queue.has_waiting(priority) && in_encoding[static_cast<size_t>(priority)] < limits.frames_in_encoding;
 }
@@ -150,8 +151,8 @@ std::optional<Priority> RenderService::State::next_priority() const {
   return still ? std::optional(Priority::kStill) : std::nullopt;
 }
 
-/// The next job of that priority. Null if it has waited too long: it is refused, because whoever sent it has given up
-/// by now, and drawing it would make others wait too long in turn.
+/// Takes the next job of this priority. Null if the job has waited too long. It is then refused, because its client has
+/// probably given up, and drawing it would delay other jobs past their own timeout.
 RenderService::State::JobPointer RenderService::State::take(Priority priority, std::unique_lock<std::mutex>& lock) {
   JobPointer job = jobs.at(*queue.pop(priority));
   job->waited_ms = job->since_submission.milliseconds();
@@ -165,7 +166,7 @@ RenderService::State::JobPointer RenderService::State::take(Priority priority, s
   return nullptr;
 }
 
-/// Waits for a job that may be drawn; null when the service stops.
+/// Waits for a job that may be drawn; null if the service stops.
 RenderService::State::JobPointer RenderService::State::next_job() {
   std::unique_lock lock(mutex);
   for (;;) {
@@ -175,7 +176,7 @@ RenderService::State::JobPointer RenderService::State::next_job() {
   }
 }
 
-/// What is to be drawn in the middle of a still picture; null if nothing is.
+/// The motion job that preempts the current still picture; null if there is none.
 RenderService::State::JobPointer RenderService::State::next_motion() {
   std::unique_lock lock(mutex);
   while (!stopping && may_draw(Priority::kMotion) && shares.motion_first()) {
@@ -201,7 +202,7 @@ void RenderService::State::draw_motion(FrameRenderer& renderer, const JobPointer
   shares.drew_motion(job->draw_ms, others_wait);
 }
 
-/// Draws a picture, and what motions wait for between its batches.
+/// Draws a still picture, and motion pictures between its batches.
 void RenderService::State::draw_still(FrameRenderer& renderer, const JobPointer& job) {
   Stopwatch since_motion;
   const Preemption preemption(job->cancelled, [&] {
@@ -234,14 +235,14 @@ void RenderService::State::draw_one(FrameRenderer& renderer, const JobPointer& j
   encoder.post([this, job, shared = std::move(shared)]() mutable { encode_one(job, std::move(shared)); });
 }
 
-/// Spares the encoders a picture that is overtaken by a newer one.
+/// Cancels a picture that a newer one supersedes, if its encoding has not begun.
 void RenderService::State::cancel_superseded(JobId id) {
   const std::lock_guard lock(mutex);
   const auto found = jobs.find(id);
   if (found != jobs.end() && !found->second->encoding) found->second->cancelled = true;
 }
 
-/// What a picture shows and what drawing it took; without its bytes.
+/// The description of a picture and its cost; without its bytes.
 EncodedPicture RenderService::State::describe(const Job& job, const picture::Frame& frame) {
   EncodedPicture picture;
   picture.format = job.picture.format;
@@ -281,7 +282,7 @@ Result<EncodedPicture> RenderService::State::encode(Job& job, const Result<Share
 
 void RenderService::State::encode_one(const JobPointer& job, Result<SharedFrame> frame) {
   Result<EncodedPicture> result = guarded([&] { return encode(*job, frame); });
-  frame = cancelled_error();  // lets go of the pixels before the render thread may make more
+  frame = cancelled_error();  // releases the pixels before the render thread may draw more
   {
     const std::lock_guard lock(mutex);
     --in_encoding[static_cast<size_t>(job->picture.priority)];
@@ -359,7 +360,7 @@ Result<std::unique_ptr<RenderService>> RenderService::start(const ModelSource& m
   auto state = std::make_unique<State>(models, limits);
   state->pool = std::make_unique<WorkerPool>(limits.encoders);
   state->motion_pool = std::make_unique<WorkerPool>(1);
-  // The codecs load while the first picture is drawn. The first picture that is encoded reports a failure.
+  // Loads the codecs while the first picture is drawn. A failure is reported when the first picture is encoded.
   state->motion_pool->post([] { static_cast<void>(surfcast::encode::prepare_encoding()); });
   state->picks = std::make_unique<PickService>(models, limits.picks);
   std::promise<Status> promise;

@@ -18,30 +18,30 @@
 namespace surfcast::service {
 
 struct ServiceLimits {
-  size_t queued_jobs = 256;         ///< pictures that may wait for the render thread, over all sessions
+  size_t queued_jobs = 256;         ///< pictures that may wait for the render thread, in all sessions together
   size_t pixels = size_t{1} << 25;  ///< of one picture (8192 x 4096)
   int side = 16384;                 ///< of one picture, pixels; the renderer may draw less
   unsigned encoders = 2;            ///< threads that encode still pictures and look up models
-  size_t frames_in_encoding = 3;    ///< drawn pictures of either priority in memory before no more are drawn
-  std::chrono::milliseconds queue_timeout{20'000};  ///< of a picture that waits for the render thread
+  size_t frames_in_encoding = 3;    ///< per priority: pictures in memory at which no further ones are drawn
+  std::chrono::milliseconds queue_timeout{20'000};  ///< longest wait of a picture for the render thread
   PickLimits picks{};
 };
 
-/// A picture somebody wants, as a file.
+/// A request for an encoded picture.
 struct PictureJob {
   std::string model;
-  picture::PictureRequest request;  ///< its pixel format follows from `format`
+  picture::PictureRequest request;  ///< its pixel format is replaced by that of `format`
   bool up_from_model = false;       ///< take the model's vertical axis as the camera's view_up
   picture::FileFormat format = picture::FileFormat::kPng;
   int quality = 90;  ///< of JPEG and WebP, 1 to 100
   Priority priority = Priority::kStill;
-  JobId supersedes = 0;     ///< a job that nobody wants to see any more once this one is drawn; 0: none
-  bool keep_frame = false;  ///< hand the frame over with the picture
+  JobId supersedes = 0;     ///< a job whose picture is obsolete once this one is drawn; 0: none
+  bool keep_frame = false;  ///< return the frame with the picture
 };
 
-/// A picture as a file, and what it shows.
+/// An encoded picture and its description.
 struct EncodedPicture {
-  std::vector<std::byte> bytes;  ///< none where the frame has no pixels, see Frame
+  std::vector<std::byte> bytes;  ///< empty if the frame has no pixels, see Frame
   picture::FileFormat format = picture::FileFormat::kPng;
   int width = 0;            ///< pixels
   int height = 0;           ///< pixels
@@ -51,44 +51,43 @@ struct EncodedPicture {
   bool converged = false;        ///< as in Frame
   bool nothing_pending = false;  ///< as in Frame
   uint64_t cut = 0;              ///< as in Frame
-  double waited_ms = 0;          ///< for the render thread
+  double waited_ms = 0;          ///< waiting for the render thread
   double draw_ms = 0;
   double encode_ms = 0;
   std::shared_ptr<const picture::Frame> frame;  ///< see PictureJob::keep_frame
-  picture::FrameStats stats;                    ///< its stages begin with "queue" and end with "encode"
+  picture::FrameStats stats;                    ///< the first stage is "queue", the last one "encode"
 };
 
-/// Turns requests into encoded pictures. One render thread owns the renderer and takes jobs from a queue that is fair
-/// between sessions; a small pool encodes, and a thread of its own what motions wait for. These are also drawn in the
-/// middle of still pictures (see DrawShares). Every method may be called from any thread.
+/// Draws and encodes pictures. One render thread owns the renderer and takes jobs from a queue that is fair between
+/// sessions. A small pool encodes still pictures; motion pictures have an encoder thread of their own. Motion pictures
+/// may preempt still pictures (see DrawShares). All methods may be called from any thread.
 ///
-/// Callbacks run on a thread of the service or, for a job that is refused or cancelled while it waits, on the caller's
-/// own before the call returns. They must not throw or block. Each is called exactly once.
+/// Callbacks run on a thread of the service. If a job is refused, or cancelled while it waits, its callback runs on the
+/// calling thread before the call returns. Callbacks must not throw or block. Each is called exactly once.
 class RenderService {
  public:
   using PictureDone = std::function<void(Result<EncodedPicture>)>;
   using NamesDone = std::function<void(std::vector<std::string>)>;
   using DescriptionDone = std::function<void(Result<ModelDescription>)>;
 
-  /// Starts the threads; fails when the renderer cannot be made. `models` must outlive the service.
+  /// Starts the threads. Fails if the renderer cannot be created. `models` must outlive the service.
   static Result<std::unique_ptr<RenderService>> start(const ModelSource& models, FrameRendererFactory make_renderer,
                                                       const ServiceLimits& limits);
-  /// Cancels what is outstanding and joins the threads.
+  /// Cancels the outstanding jobs and joins the threads.
   ~RenderService();
 
   JobId draw(SessionId session, PictureJob job, PictureDone done);
-  /// Lets a job that still waits for the render thread draw something else in its place. False if it does not wait any
-  /// more, or if there can be no such picture.
+  /// Replaces the picture of a job that still waits for the render thread. False if the job does not wait any more, or
+  /// if the new picture is invalid.
   bool replace(JobId job, PictureJob picture);
-  /// Encodes `picture` from a frame that has been drawn for that very request.
+  /// Encodes `picture` from a frame that was drawn for the same request.
   JobId encode(std::shared_ptr<const picture::Frame> frame, PictureJob picture, PictureDone done);
-  /// True when the job was outstanding; its callback then gets kCancelled, unless the picture is just being handed
-  /// over.
+  /// True if the job was outstanding. Its callback then gets kCancelled, unless the picture is already being delivered.
   bool cancel(JobId job);
 
   void list_models(NamesDone done);
   void describe_model(const std::string& name, DescriptionDone done);
-  /// What a pixel shows; see PickService.
+  /// Finds the item in a pixel; see PickService.
   void pick(PickJob job, PickService::Done done);
 
   [[nodiscard]] const picture::DeviceInfo& device() const;

@@ -5,7 +5,7 @@
 namespace surfcast::service {
 namespace {
 
-/// One at rest and one in motion.
+/// Adds a picture at rest and one in motion.
 void add_both(picture::PictureRequest request, std::vector<picture::PictureRequest>& pictures) {
   pictures.push_back(request);
   request.normalization = picture::Normalization::kSurfel;

@@ -7,8 +7,8 @@
 
 namespace surfcast::service {
 
-/// Tiny pictures that need, one after another, all the programs that a viewer of the model is likely to ask for:
-/// drivers compile a program when it is first used, which can take seconds. The likeliest come first.
+/// Tiny pictures that together use all the programs that a viewer of the model is likely to need, the likeliest first.
+/// Drivers compile a program at its first use, which can take seconds.
 std::vector<picture::PictureRequest> shader_warm_up_requests(const model::ModelInfo& info);
 
 }  // namespace surfcast::service

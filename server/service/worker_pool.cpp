@@ -33,7 +33,7 @@ void WorkerPool::work() {
     tasks_.pop_front();
     lock.unlock();
     task();
-    task = nullptr;  // what it holds ends outside the lock
+    task = nullptr;  // destroys the task's captures outside the lock
     lock.lock();
   }
 }

@@ -9,7 +9,8 @@
 
 namespace surfcast::service {
 
-/// A few threads that run tasks in the order they were posted. The destructor runs what is left, then joins.
+/// Threads that run tasks in the order in which they were posted. The destructor runs the remaining tasks and then
+/// joins the threads.
 class WorkerPool {
  public:
   explicit WorkerPool(unsigned threads);
@@ -17,7 +18,7 @@ class WorkerPool {
   WorkerPool(const WorkerPool&) = delete;
   WorkerPool& operator=(const WorkerPool&) = delete;
 
-  /// From any thread. The task must not throw.
+  /// May be called from any thread. The task must not throw.
   void post(std::function<void()> task);
 
  private:
