@@ -7,9 +7,9 @@
 
 namespace surfcast::command_line {
 
-/// The word that was probably meant: one that `typed` begins, or the one that fewest edits away. An edit inserts,
-/// removes or replaces a letter, or swaps two neighbours. None if all words need more than two edits, or as many as
-/// `typed` has letters.
+/// The word that was probably meant: one of which `typed` is a prefix, or the one with the fewest edits. An edit
+/// inserts, removes or replaces a letter, or swaps two adjacent ones. None if all words need more than two edits, or as
+/// many as `typed` has letters.
 std::optional<std::string> closest_word(std::string_view typed, std::span<const std::string> words);
 
 }  // namespace surfcast::command_line

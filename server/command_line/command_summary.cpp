@@ -16,7 +16,7 @@ std::vector<std::string> split(std::string_view text, char separator) {
   return parts;
 }
 
-/// CLI11 appends what it checks to the name of a type: "TEXT:{y,z}", "INT:POSITIVE".
+/// CLI11 appends the validators of an option to the name of its type: "TEXT:{y,z}", "INT:POSITIVE".
 std::vector<std::string> choices_of(std::string_view type) {
   const size_t open = type.find(":{");
   const size_t close = type.find('}');

@@ -6,13 +6,13 @@
 
 namespace surfcast::command_line {
 
-/// A flag or a positional argument, as people are told of it.
+/// The documentation of a flag or positional argument.
 struct OptionSummary {
-  std::vector<std::string> names;    ///< with their dashes, short ones first; of a positional its one name
-  std::string value;                 ///< what a value looks like; empty for a switch
-  std::vector<std::string> choices;  ///< all values there are; empty: any
+  std::vector<std::string> names;    ///< with dashes, short names first; for a positional argument its one name
+  std::string value;                 ///< placeholder of the value; empty for a switch
+  std::vector<std::string> choices;  ///< all allowed values; empty: any
   std::string help;
-  std::string variable;  ///< of the environment; empty: none
+  std::string variable;  ///< environment variable; empty: none
   bool positional = false;
   bool required = false;
   bool several = false;  ///< may be given more than once
@@ -22,12 +22,12 @@ struct OptionSummary {
 struct CommandSummary {
   std::string name;
   std::string description;
-  std::vector<OptionSummary> options;    ///< positionals, too; without those that --help hides
+  std::vector<OptionSummary> options;    ///< with positional arguments, without options that --help hides
   std::vector<CommandSummary> commands;  ///< sorted by name
-  bool forwards = false;                 ///< hands its arguments to another program as they are
+  bool forwards = false;                 ///< passes its arguments to another program unchanged
 };
 
-/// What the definition of a command line says, as plain data for manual pages and completions.
+/// The definition of a command line as plain data for manual pages and completions.
 CommandSummary summarize_command(const CLI::App& app);
 
 /// The names of a program's commands.

@@ -7,7 +7,7 @@
 namespace surfcast::command_line {
 namespace {
 
-/// Text as troff reads it back: dashes stay dashes that can be searched for, and no line begins with a request.
+/// Escapes text for troff. Dashes stay ASCII dashes, which can be searched for, and no line starts with a request.
 std::string escaped(std::string_view text) {
   std::string result;
   for (const char c : text) {
@@ -42,14 +42,14 @@ std::string headline(const std::string& description) {
   return description.substr(0, description.find('\n'));
 }
 
-/// Breaks of lines stay.
+/// Text with its line breaks preserved.
 std::string paragraph(std::string_view text) {
   std::string lines;
   for (const char c : escaped(text)) lines += c == '\n' ? std::string("\n.br\n") : std::string(1, c);
   return ".PP\n" + lines + "\n";
 }
 
-/// "Make a model" with the full stop that descriptions leave out.
+/// Adds the full stop that descriptions such as "Make a model" leave out.
 std::string sentence(const std::string& text) {
   const bool ended = text.empty() || text.back() == '.';
   return ended ? text : text + ".";

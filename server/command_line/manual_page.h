@@ -7,14 +7,14 @@
 
 namespace surfcast::command_line {
 
-/// A part of a manual page that the definition of the command line does not give.
+/// A section of a manual page that cannot be derived from the command line's definition.
 struct ManualSection {
   std::string title;
   std::vector<std::string> paragraphs;
 };
 
-/// The page of a program in section 1 of the manual, for troff with the macros of man(7). `name` is that of the
-/// program's file, `version` that of the project.
+/// The manual page of a program (section 1), for troff with the man(7) macros. `name` is the name of the program's
+/// file, `version` the version of the project.
 std::string manual_page(const CommandSummary& program, const std::string& name, const std::string& version,
                         const std::vector<ManualSection>& sections);
 

@@ -16,7 +16,8 @@ std::string listed(const std::vector<std::string>& names) {
   return text;
 }
 
-/// Why no command was found, or nothing if one was. `first` is the first argument, empty if there is none.
+/// The error message if no command was given or found; none otherwise. `first` is the first argument, empty if there is
+/// none.
 std::optional<std::string> missing_command(const CommandSummary& program, const std::string& first) {
   const std::vector<std::string> names = command_names(program);
   if (names.empty() || first.starts_with('-') || std::ranges::find(names, first) != names.end()) return std::nullopt;
@@ -27,7 +28,7 @@ std::optional<std::string> missing_command(const CommandSummary& program, const 
   return "there is no command '" + first + "'" + question + hint;
 }
 
-/// The answers end the parsing by CLI::Success, as CLI11's own --help does.
+/// Adds the flags that print an answer. They end the parsing with CLI::Success, as CLI11's own --help does.
 void add_answers(CLI::App& app, const ProgramText& text) {
   app.set_version_flag("--version", text.name + " " SURFCAST_VERSION, "Print the version and exit");
   app.add_option_function<std::string>(

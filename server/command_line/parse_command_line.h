@@ -9,24 +9,24 @@
 
 namespace surfcast::command_line {
 
-// How every program ends.
+// Exit codes of all programs.
 constexpr int kDone = 0;
 constexpr int kFailed = 1;
 constexpr int kWrongCommandLine = 2;
 
-/// What a program is called, and what its manual says beyond its flags.
+/// The name of a program, and the sections of its manual beyond its flags.
 struct ProgramText {
-  std::string name;     ///< of its file
-  std::string speaker;  ///< with which its messages begin
+  std::string name;     ///< name of its file
+  std::string speaker;  ///< prefix of its messages
   std::vector<ManualSection> manual;
 };
 
-/// Parses the command line, which runs the callbacks of its commands. Besides the flags of `app` it knows --version,
-/// --completion SHELL and, hidden, --manual, the page in troff. Returns the program's exit code where there is nothing
-/// left to do: something was printed, or the command line is wrong, of which one line on standard error has told.
+/// Parses the command line, which runs the callbacks of its commands. Adds the flags --version, --completion SHELL, and
+/// the hidden --manual, which prints the manual page for troff. Returns an exit code if nothing is left to do: an
+/// answer was printed, or the command line is wrong and one line on standard error says so.
 std::optional<int> parse_command_line(CLI::App& app, const ProgramText& text, int argc, char** argv);
 
-/// "SPEAKER: MESSAGE" on standard error; returns `code`.
+/// Prints "SPEAKER: MESSAGE" on standard error; returns `code`.
 int report_failure(const ProgramText& text, const std::string& message, int code);
 
 }  // namespace surfcast::command_line

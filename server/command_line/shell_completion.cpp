@@ -6,7 +6,7 @@
 namespace surfcast::command_line {
 namespace {
 
-/// In single quotes, for all three shells.
+/// Text in single quotes, for all three shells.
 std::string in_quotes(std::string_view text) {
   std::string result = "'";
   for (const char c : text) result += c == '\'' ? std::string("'\\''") : std::string(1, c);
@@ -27,13 +27,13 @@ std::vector<std::string> flag_names(const CommandSummary& command) {
   return names;
 }
 
-/// The name of a function of the shell.
+/// The name of the completion function.
 std::string function_name(std::string name) {
   std::ranges::replace(name, '-', '_');
   return "_" + name;
 }
 
-/// The cases of what follows a flag that takes a value; file names where it is any value.
+/// The completions after a flag that takes a value; file names if any value is allowed.
 std::string bash_values(const CommandSummary& command) {
   std::string text;
   std::vector<std::string> any_value;
@@ -52,7 +52,7 @@ std::string bash_values(const CommandSummary& command) {
 
 std::string bash_command(const CommandSummary& command, const std::string& pattern, const std::string& program) {
   std::string text = "    " + pattern + ")\n";
-  if (command.forwards) {  // the other program's script lies beside this one
+  if (command.forwards) {  // the other program's script is in the same folder
     const std::string other = program + "-" + command.name;
     const std::string function = function_name(other);
     return text + "      declare -F " + function + " >/dev/null || . \"${BASH_SOURCE[0]%/*}/" + other +
@@ -62,7 +62,7 @@ std::string bash_command(const CommandSummary& command, const std::string& patte
   return text + "      case $previous in\n" + bash_values(command) + "      esac ;;\n";
 }
 
-/// `any`: words are offered whatever was typed, and not after a dash alone.
+/// `any`: words are offered for any typed text, not only after a dash.
 std::string bash_completion(const CommandSummary& program, const std::string& name) {
   const std::string function = function_name(name);
   std::string text = "# Completion of " + name + " for bash.\n" + function + "() {\n";
@@ -84,7 +84,7 @@ std::string bash_completion(const CommandSummary& program, const std::string& na
   return text + "complete -o default -F " + function + " " + name + "\n";
 }
 
-/// Inside [brackets] of _arguments.
+/// Escapes text inside the [brackets] of _arguments.
 std::string zsh_escaped(std::string_view text) {
   std::string result;
   for (const char c : text) {
