@@ -1,4 +1,4 @@
-// What the projection of every kind reads and writes.
+// The buffers that the projection of every kind reads and writes.
 layout(binding = SURFCAST_UNIT_SURFELS) uniform usamplerBuffer surfels;
 layout(std430, binding = SURFCAST_BIND_BLOCKS) readonly buffer Blocks { BlockView blocks[]; };
 layout(std430, binding = SURFCAST_BIND_CHUNKS) readonly buffer Chunks { Chunk chunks[]; };

@@ -1,6 +1,6 @@
-// The tiles that a rectangle of pixels touches, as corners of 16 bits, and their counts.
+// The range of tiles that a rectangle of pixels touches: its first and its last tile, with 16 bits per coordinate.
 uvec2 tile_range(vec2 low, vec2 high, out bool outside) {
-  // Pixel centres at +0.5 within [low, high], clipped to the region.
+  // The pixels whose centres (at +0.5) are in [low, high], clipped to the region.
   vec2 first = ceil(low - 0.5 - vec2(frame.region.xy));
   vec2 last = floor(high - 0.5 - vec2(frame.region.xy));
   vec2 size = vec2(frame.region.zw);

@@ -1,4 +1,4 @@
-      // An entry of a kind's record, in the loop of accumulate_large.
+      // Handles an entry that refers to a kind's record, in the loop of accumulate_large.
       if (is_of_kind(slot)) {
         add_fragment(fragment_at(slot, ray), limit, surface, unit, sums);
         continue;

@@ -1,19 +1,20 @@
-// Records of other kinds than surfels in the lists of large splats: what a kind's own function says of a pixel's ray
-// takes part in the rounds of the splat kernel. A record is three uvec4: two in the buffer of splats and one in that of
-// discs. The sign of the word that is a large splat's radius tells them apart.
+// Records of other kinds than surfels in the lists of large splats. The fragment function of their kind is evaluated
+// for the ray of each pixel, and takes part in the layers of the splat kernel. A record is three uvec4: two in the
+// splat buffer and one in the disc buffer. The sign bit of the word that holds the radius of a large splat marks these
+// records.
 #include "kinds/record.glsl"
 
-// What the ray of a pixel meets of a record.
+// The intersection of a pixel's ray with an item.
 struct Fragment {
-  float inverse_depth;  // of the point that is seen; 0: the ray meets nothing
-  float occluder;       // inverse depth behind which everything is hidden: a little smaller
-  float weight;         // 1 covers the pixel
+  float inverse_depth;  // of the visible point; 0 if the ray misses
+  float occluder;       // inverse depth of the point, pushed back: everything behind it is hidden
+  float weight;         // 1: the item covers the pixel
   vec3 color;           // linear light
   vec3 normal;          // unit, camera frame
 };
 const Fragment kNoFragment = Fragment(0.0, 0.0, 0.0, vec3(0.0), vec3(0.0));
 
-// The kinds of the picture, and a choice among them.
+// Generated: the fragment functions of the picture's kinds, and fragment_of, which selects one of them.
 #include "kinds/fragment_of.glsl"
 
 bool is_of_kind(int slot) { return (texelFetch(splats, 2 * slot).w & SURFCAST_KIND_RECORD) != 0u; }

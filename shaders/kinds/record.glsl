@@ -1,2 +1,2 @@
-// The sign bit of a.w: set of the records of other kinds than surfels, whose number the other bits are.
+// The sign bit of a.w. It is set in records of other kinds than surfels; the other bits are the number of the kind.
 #define SURFCAST_KIND_RECORD 0x80000000u

@@ -1,4 +1,4 @@
-    // An entry of a kind's record, in the loop of find_surface_large.
+    // Handles an entry that refers to a kind's record, in the loop of find_surface_large.
     int entry = int(texelFetch(lists, int(first + k)).x);
     if (is_of_kind(entry)) {
       see_fragment(fragment_at(entry, ray), limit, surface, peak);

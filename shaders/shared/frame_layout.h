@@ -24,7 +24,7 @@ namespace surfcast::layout {
 #define SURFCAST_BLOCK_HEIGHT 4
 // Lanes of a work group of the silhouette passes.
 #define SURFCAST_SILHOUETTE_LANES 32
-// Surfels that one work group projects. Runs of a block are divided into chunks of this size.
+// Texels (surfels) that one work group projects. Runs of a block are divided into chunks of this size.
 #define SURFCAST_CHUNK 128
 // Splats of a tile above which they are thinned (see include/thinning.glsl).
 #define SURFCAST_TILE_CAPACITY 3072
@@ -51,7 +51,8 @@ struct FrameConstants {
 struct BlockView {
   SURFCAST_VEC4 origin;  // position of code 0 relative to the eye, camera axes, world units
   SURFCAST_VEC4 step;    // world units per step of the position codes, along the world's axes
-  SURFCAST_VEC4 scale;   // log2 of the largest radius, octaves per step; the same for the weights
+  SURFCAST_VEC4 scale;   // surfels: log2 of the largest radius, octaves per step; the same for the weights; other
+                         // kinds: see BlockHeader::scale
 };
 
 // Per-block parameters of the display options, for variants of the projection that use them; one for each BlockView.
@@ -79,8 +80,9 @@ struct EyeDomeConstants {
   SURFCAST_IVEC4 region;  // requested pixels: first x and y relative to the drawn region, width, height
 };
 
-// A run of at most SURFCAST_CHUNK surfels of one block: block index, first texel, number of surfels with the flags
-// below, and an ID that is unique within the model (modulo 2^32).
+// A run of at most SURFCAST_CHUNK texels (surfels) of one block: block index, first texel, number of texels with the
+// flags below, and an ID of the first texel that is unique within the model (modulo 2^32). The flags are those of
+// surfels.
 struct Chunk {
   SURFCAST_UVEC4 run;
 };
@@ -93,7 +95,8 @@ struct Chunk {
 
 // Counters of the projection.
 struct Counters {
-  SURFCAST_UVEC4 counts;      // small splats, large splats, list entries of all tiles, most entries of a tile
+  SURFCAST_UVEC4 counts;      // small splats, large splats (with records of other kinds), list entries of all tiles,
+                              // most entries of a tile
   SURFCAST_UVEC4 lengths[2];  // tiles with at least this many entries, for each of SURFCAST_LIST_LENGTHS
 };
 // Powers of two that classify tiles by cost (see render/tile_spans.h).
@@ -127,11 +130,11 @@ struct Counters {
 #define SURFCAST_BIND_EYE_DOME 2
 // Image and texture units of buffers that exceed the size limit of storage blocks:
 #define SURFCAST_UNIT_SPLATS 0      // two uvec4 per splat
-#define SURFCAST_UNIT_DISCS 1       // uvec4 per small splat: its opaque disc for visibility splatting
+#define SURFCAST_UNIT_DISCS 1       // uvec4 per small splat: its opaque disc; or third uvec4 of a kind's record
 #define SURFCAST_UNIT_BOUNDS 2      // uvec2 per splat: its range of tiles, for binning
 #define SURFCAST_UNIT_LISTS 3       // uint per entry: splat index
 #define SURFCAST_UNIT_NORMALS 4     // uint per splat: packed camera space normal, in lit scenes with colour
-#define SURFCAST_UNIT_SURFELS 5     // uvec4 per surfel, see shared/surfel_layout.h
+#define SURFCAST_UNIT_SURFELS 5     // uvec4 per texel of a block; surfels: see shared/surfel_layout.h
 #define SURFCAST_UNIT_SRGB 6        // uint per 8 bit sRGB value: root of its linear light in 11 and in 10 bits
 #define SURFCAST_UNIT_ATTRIBUTES 7  // uint per surfel: 16 bits of intensity, 8 of classification
 #define SURFCAST_UNIT_COLORS 8      // uint per entry of a colour table: linear light as in a splat record
