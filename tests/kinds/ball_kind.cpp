@@ -16,16 +16,16 @@ namespace {
 
 const surfel::Grid kGrid{glm::dvec3(1.0 / 1024), glm::dvec3(0)};
 
-/// A ball as a block of the file has it.
+/// A ball as stored in a block of the file.
 struct StoredBall {
-  glm::u32vec3 index{0};  ///< counted from the block's origin
+  glm::u32vec3 index{0};  ///< relative to the block's origin
   float radius = 0;
   glm::u8vec3 color{0};
   uint8_t unused = 0;
 };
 static_assert(sizeof(StoredBall) == 20);
 
-/// The balls of a block. Fails when the bytes do not hold what the tables say.
+/// The balls of a block. Fails if the bytes do not match the tables.
 Result<std::vector<StoredBall>> read_balls(const model::ModelFile& model, uint32_t block) {
   const Result<model::StoredBlock> stored = model.stored(block);
   if (!stored) return fail(stored.error());
@@ -41,7 +41,7 @@ Result<std::vector<StoredBall>> read_balls(const model::ModelFile& model, uint32
   return balls;
 }
 
-/// Two texels a ball: position codes, then radius and linear colour.
+/// Two texels per ball: position codes, then radius and linear colour.
 class BallHeader : public residency::BlockHeader {
  public:
   explicit BallHeader(uint32_t texels) : texels_(texels) {}

@@ -8,7 +8,7 @@
 
 namespace surfcast::testing {
 
-/// An opaque sphere of one colour. Its centre comes back exactly if it is a multiple of 1/1024.
+/// An opaque sphere of one colour. Its centre is stored exactly if it is a multiple of 1/1024.
 struct Ball {
   glm::dvec3 centre{0};
   float radius = 1;
@@ -17,7 +17,8 @@ struct Ball {
 
 model::EncodedBlock encode_balls(std::span<const Ball> balls);
 
-/// Balls as a kind of model, ray-cast exactly: what a kind that is not built in has to bring.
+/// Balls as a kind, ray-cast exactly: an example of everything that a kind outside the table of built-in kinds
+/// provides.
 class BallKind : public kinds::Kind {
  public:
   [[nodiscard]] std::string_view name() const override { return "ball"; }

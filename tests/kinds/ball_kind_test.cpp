@@ -19,7 +19,7 @@ std::shared_ptr<const model::ModelFile> open(const std::filesystem::path& path) 
   return std::make_shared<const model::ModelFile>(std::move(*model));
 }
 
-/// What a pixel at the centre of a view from +z shows of one block.
+/// The items of one block that a pixel at the centre of a view from +z shows.
 std::vector<PickedSurfel> straight_ahead(const SourceBlock& block, const glm::dvec3& target) {
   const geometry::Camera camera{target + glm::dvec3(0, 0, 9), target, {0, 1, 0}, 30};
   const PickQuery query{*geometry::make_camera_frame(camera, 10, 10), {5, 5}, {}, {}};
@@ -30,8 +30,8 @@ std::vector<PickedSurfel> straight_ahead(const SourceBlock& block, const glm::dv
   return picked;
 }
 
-/// A file of the past must be read as it was meant, by every later reader: the scene with a square of 12 x 12 surfels,
-/// written when version 3 of the format was new.
+/// Every later version must read files of earlier ones correctly. The file contains the scene with a square of 12 x 12
+/// surfels, written when version 3 of the format was new.
 TEST(KindsFixture, OfVersionThreeIsStillRead) {
   const auto model = open(std::string(SURFCAST_TEST_DATA) + "/square-and-balls-v3.surf");
   const BallScene scene;

@@ -4,7 +4,7 @@
 
 namespace surfcast::testing {
 
-/// Exact bounds of a sphere on the screen: the slopes of the tangents from the eye.
+/// Projects a ball. Its exact bounds on the screen are the slopes of the tangents from the eye.
 inline constexpr std::string_view kBallProject = R"GLSL(
 #include "shared/frame_layout.h"
 #include "include/frame.glsl"

@@ -1,4 +1,4 @@
-// A kind that is not built in, in one picture with surfels.
+// A kind that is not built in, drawn in one picture with surfels.
 
 #include <algorithm>
 #include <atomic>
@@ -57,7 +57,7 @@ bool near(const glm::ivec4& seen, const glm::u8vec3& color) {
   return std::abs(seen.r - color.r) <= 2 && std::abs(seen.g - color.g) <= 2 && std::abs(seen.b - color.b) <= 2;
 }
 
-/// From the front and a little above, so that the square is no plane of constant depth.
+/// A view from the front and a little above, so the square does not have constant depth.
 picture::PictureRequest scene_view() {
   picture::PictureRequest request;
   request.camera = geometry::Camera{{0.5, 2, 6}, {0, 0, 0}, {0, 1, 0}, 36};
@@ -74,10 +74,10 @@ geometry::CameraFrame frame_of(const picture::PictureRequest& request) {
 constexpr int kNothing = -1;
 constexpr int kSquare = 0;  ///< balls are counted from 1 on
 
-/// What a ray meets, by closed form.
+/// The item that a ray hits, computed in closed form.
 struct Sight {
   int item = kNothing;
-  double margin = kInfinity;  ///< in depth, to what lies behind it
+  double margin = kInfinity;  ///< distance in depth to the next item behind it
 };
 
 Sight sight_of(const BallScene& scene, const geometry::Clip& clip, const geometry::CameraFrame& frame,
@@ -103,12 +103,12 @@ Sight sight_of(const BallScene& scene, const geometry::Clip& clip, const geometr
   return {hits[0].second, hits.size() > 1 ? hits[1].first - hits[0].first : kInfinity};
 }
 
-/// Calls `check(x, y, item)` for the pixels that show one item alone, and counts them by item.
+/// Calls `check(x, y, item)` for the pixels that show one item only. Returns their number for each item.
 template <typename Check>
 std::array<int, 6> for_each_sure_pixel(const BallScene& scene, const picture::PictureRequest& request,
                                        const Check& check) {
-  constexpr int kReach = 3;          // pixels, beyond the prefilter
-  constexpr double kTogether = 0.1;  // surfaces that are closer are one to the visibility of surfels
+  constexpr int kReach = 3;          // pixels; larger than the prefilter's radius
+  constexpr double kTogether = 0.1;  // surfaces that are closer count as one in the visibility pass
   const geometry::CameraFrame frame = frame_of(request);
   const auto sight = [&](int x, int y) { return sight_of(scene, request.clip, frame, {x + 0.5, y + 0.5}); };
   std::array<int, 6> counts{};
@@ -249,7 +249,7 @@ TEST_F(KindsGLTest, TensOfThousandsOfBallsInOnePixelStayOpaque) {
   schema.color_bits = 8;
   Result<model::ModelWriter> writer = model::ModelWriter::create(folder_ / "crowd.surf", schema);
   ASSERT_TRUE(writer);
-  // More than software's loops go round (see thinning.glsl): 90000.
+  // 90000 records: more than the loop limit of llvmpipe (see thinning.glsl).
   for (int i = 0; i < 3; ++i) ASSERT_TRUE(writer->add(testing::encode_balls(crowd), ldc::OctreeKey(), {}));
   ASSERT_TRUE(writer->finish());
   const ModelPointer model = open(folder_ / "crowd.surf");

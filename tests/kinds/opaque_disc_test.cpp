@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kEta = 1300;
 
-// The reference renderer states the same disc by itself.
+// The reference renderer has its own implementation of the disc.
 TEST(OpaqueDisc, CoversThePixelsThatTheReferenceCoversAtTheSameDepths) {
   std::mt19937 random(7);
   std::uniform_real_distribution<double> even(-1, 1);
