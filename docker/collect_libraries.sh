@@ -1,6 +1,6 @@
 #!/bin/sh
 # collect_libraries.sh SYSTEM FOLDER PROGRAM...: copies to FOLDER the shared libraries that the programs load and that
-# SYSTEM, a copy of another image's /usr/lib, does not have. A package would bring what other programs need, too.
+# SYSTEM, a copy of another image's /usr/lib, lacks. Installing their packages would add files that are not needed.
 set -eu
 system=$1
 folder=$2
