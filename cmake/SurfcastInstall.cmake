@@ -1,9 +1,9 @@
-# Where `cmake --install` and the packages put things. Three components, which are Debian's packages, too: server,
-# client, view.
+# Destinations of `cmake --install` and of the packages. There are three components, each of which is also a Debian
+# package: server, client, view.
 include(GNUInstallDirs)
 find_program(GZIP_PROGRAM gzip REQUIRED)
 
-# Debian keeps the completions of packages apart from those that an administrator installs.
+# Debian separates the completions of packages from those that an administrator installs.
 if(CMAKE_INSTALL_PREFIX STREQUAL "/usr")
   set(surfcast_zsh_folder ${CMAKE_INSTALL_DATADIR}/zsh/vendor-completions)
   set(surfcast_settings_folder ${CMAKE_INSTALL_FULL_SYSCONFDIR}/default) # /etc, not /usr/etc
@@ -16,8 +16,8 @@ endif()
 
 add_custom_target(program_documents ALL COMMENT "Manual pages and completions")
 
-# surfcast_install_program(TARGET COMPONENT): the program with what it says of itself: its manual page and the
-# completions of three shells, so that none of them can be out of date.
+# surfcast_install_program(TARGET COMPONENT): installs the program, its manual page and the completions of three shells.
+# The program itself prints these documents, so they are never out of date.
 function(surfcast_install_program target component)
   set(folder ${PROJECT_BINARY_DIR}/documents)
   set(page ${folder}/${target}.1.gz)
@@ -42,7 +42,8 @@ function(surfcast_install_program target component)
     DESTINATION ${CMAKE_INSTALL_DATADIR}/fish/vendor_completions.d COMPONENT ${component})
 endfunction()
 
-# surfcast_install_service(): the server's unit for systemd, its settings, and the folder that it serves.
+# surfcast_install_service(): installs the server's systemd unit, its settings, and the folder of the models that it
+# serves.
 function(surfcast_install_service)
   set(unit ${PROJECT_BINARY_DIR}/packaging/surfcastd.service)
   set(SURFCAST_MODELS_FOLDER ${surfcast_models_folder})

@@ -16,7 +16,7 @@ endif()
 foreach(component IN LISTS components)
   set(folder ${CMAKE_INSTALL_DATADIR}/doc/surfcast-${component})
   install(FILES ${documents}/changelog.gz DESTINATION ${folder} COMPONENT ${component})
-  if(component STREQUAL "server") # which has the viewer, with parts of others
+  if(component STREQUAL "server") # it contains the viewer, which includes third-party code
     install(FILES ${documents}/copyright DESTINATION ${folder} COMPONENT ${component})
   else()
     install(FILES ${PROJECT_SOURCE_DIR}/LICENSE RENAME copyright DESTINATION ${folder} COMPONENT ${component})
@@ -40,8 +40,8 @@ set(CPACK_DEBIAN_SERVER_PACKAGE_NAME surfcast-server)
 set(CPACK_COMPONENT_SERVER_DESCRIPTION "server that draws large point scans
 Builds models of scans, draws them without a display on OpenGL 4.5, and sends
 the pictures to browsers and thin clients. Without a GPU it draws in software.")
-# What is opened by name when the program runs. Mesa's software driver is required, so that pictures come on every
-# machine; NVIDIA's driver is found beside it.
+# Libraries that the program loads by name at run time. Mesa's software driver is required, so pictures can be drawn on
+# every machine; NVIDIA's driver is used as well if it is installed.
 set(CPACK_DEBIAN_SERVER_PACKAGE_DEPENDS "libegl1, libopengl0, libegl-mesa0, libgl1-mesa-dri")
 set(CPACK_DEBIAN_SERVER_PACKAGE_SUGGESTS surfcast-client)
 set(CPACK_DEBIAN_SERVER_PACKAGE_CONTROL_EXTRA
@@ -59,7 +59,7 @@ Moves through large point scans that a server draws. It is started by
 `surfcast view`.")
 set(CPACK_DEBIAN_VIEW_PACKAGE_RECOMMENDS surfcast-client)
 
-# Read by cpack itself.
+# Executed by cpack.
 set(SURFCAST_VIEWER_PAGE ${surfcast_viewer_page})
 configure_file(${PROJECT_SOURCE_DIR}/cmake/check_package.cmake.in ${documents}/check_package.cmake @ONLY)
 set(CPACK_PROJECT_CONFIG_FILE ${documents}/check_package.cmake)
