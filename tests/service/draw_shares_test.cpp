@@ -8,26 +8,26 @@
 namespace surfcast::service {
 namespace {
 
-/// A render thread with a clock of its own, a picture at rest in batches, and hands that move.
+/// Simulates a render thread with a simulated clock, a still picture in batches, and moving views.
 class RenderThread {
  public:
   struct Mover {
-    double draw_ms = 20;      ///< of a frame
-    double pause_ms = 0;      ///< from a frame to the request for the next
-    double wanted_since = 0;  ///< the frame that is wished for now
+    double draw_ms = 20;      ///< time to draw a frame
+    double pause_ms = 0;      ///< from the end of a frame to the next request
+    double wanted_since = 0;  ///< time of the current request
     double longest_wait = 0;  ///< of its frames
     int frames = 0;
   };
 
   explicit RenderThread(std::vector<Mover> hands) : movers(std::move(hands)) {}
 
-  /// Draws for so long while nobody rests.
+  /// Draws motion frames for `ms` while no still picture waits.
   void move(double ms) {
     for (const double end = now + ms; now < end;) {
       if (!draw_motion(/*others_wait=*/false)) now += 1;
     }
   }
-  /// Draws a picture at rest of that length; what it took.
+  /// Draws a still picture that takes `work_ms` alone. Returns the time that it took.
   double rest(double work_ms) {
     const double begin = now;
     while (work_ms > 0) {
@@ -47,7 +47,7 @@ class RenderThread {
   double now = 0;
 
  private:
-  /// The frame that has been wished for longest.
+  /// Draws the frame that has waited longest. False if no view requests one.
   bool draw_motion(bool others_wait) {
     Mover& mover = *std::ranges::min_element(movers, {}, &Mover::wanted_since);
     if (mover.wanted_since > now) return false;

@@ -40,20 +40,21 @@ class FakeModels : public ModelSource {
   }
 };
 
-/// What a fake renderer is told to do, shared with the test that watches it.
+/// The behaviour of a fake renderer and its counters, shared with the test.
 struct FakeRendererControl {
-  std::atomic<int> drawn = 0;          ///< pictures begun
-  std::atomic<int> cancelled = 0;      ///< pictures given up half-way
-  std::atomic<int> nested_frames = 0;  ///< others were drawn in the middle of a slow picture
+  std::atomic<int> drawn = 0;          ///< pictures started
+  std::atomic<int> cancelled = 0;      ///< pictures cancelled while they were drawn
+  std::atomic<int> nested_frames = 0;  ///< times that other pictures were drawn during a slow picture
   static constexpr int kWarmUps = 3;
-  std::atomic<int> warmed_up = 0;        ///< times
-  std::atomic<int> frame_ms = 0;         ///< that a picture takes at least
-  std::atomic<bool> slow = false;        ///< every picture goes on until it is cancelled or `slow` is taken back
-  std::atomic<bool> slow_motion = true;  ///< pictures for motion are as slow as others
-  std::vector<std::string> order;        ///< models in the order they were drawn; read it when nothing is being drawn
+  std::atomic<int> warmed_up = 0;        ///< number of warm-up steps done
+  std::atomic<int> frame_ms = 0;         ///< least duration of a picture
+  std::atomic<bool> slow = false;        ///< a picture continues until it is cancelled or `slow` becomes false
+  std::atomic<bool> slow_motion = true;  ///< motion pictures are slow too
+  std::vector<std::string>
+      order;  ///< models in the order in which they were drawn; read it only while nothing is drawn
 };
 
-/// Fills pictures with the background's colour, or for the model "noise" with what no format makes smaller.
+/// Fills pictures with the background colour; those of the model "noise" with incompressible content.
 class FakeRenderer : public FrameRenderer {
  public:
   explicit FakeRenderer(std::shared_ptr<FakeRendererControl> control) : control_(std::move(control)) {}

@@ -91,7 +91,7 @@ TEST_F(ModelCatalogueTest, AFileIsOpenedOnceAndAgainWhenItIsReplaced) {
   ASSERT_TRUE(second);
   EXPECT_NE(*second, *first);
   EXPECT_EQ((*second)->info().surfels, 4u);
-  EXPECT_EQ((*first)->info().surfels, 3u);  // whoever draws the old one may go on
+  EXPECT_EQ((*first)->info().surfels, 3u);  // the old model remains usable while it is held
 }
 
 TEST_F(ModelCatalogueTest, NamesThatAreNoneAreNotFoundAndNeverLeaveTheFolder) {

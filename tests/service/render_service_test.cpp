@@ -197,7 +197,7 @@ TEST_F(RenderServiceTest, APictureIsDrawnBesideOneWhoNeverStopsMoving) {
   std::atomic<bool> moving = true;
   std::atomic<int> frames = 0;
   std::jthread mover([&] {
-    // Two requests at a time, so that one always waits.
+    // Two requests are outstanding at any time, so one always waits.
     std::future<Result<EncodedPicture>> last = draw(1, motion_of("cube")).second;
     for (; moving; ++frames) std::exchange(last, draw(1, motion_of("cube")).second).wait();
     last.wait();
