@@ -93,7 +93,7 @@ TEST_F(BlockLoaderTest, OneRequestStatedTwiceIsOne) {
 }
 
 TEST_F(BlockLoaderTest, HostMemoryHoldsWhatWasTakenLastWithinItsBudget) {
-  set_requests({1, 2, 3, 4});  // 16000 bytes each, of 48000
+  set_requests({1, 2, 3, 4});  // 16000 bytes each; the cache has 48000
   take(4);
   set_requests({2, 3, 4});
   EXPECT_THAT(take(3), ElementsAre(2, 3, 4));
@@ -103,7 +103,7 @@ TEST_F(BlockLoaderTest, HostMemoryHoldsWhatWasTakenLastWithinItsBudget) {
   EXPECT_EQ(source_->started().size(), 5u);
 }
 
-/// A loader with one thread of each kind, which keeps eight of the blocks and prefetches up to half of them.
+/// A loader with one thread of each kind. It keeps eight blocks of the largest packed size and prefetches at most four.
 class PrefetchTest : public BlockLoaderTest {
  protected:
   PrefetchTest() : loader_({.threads = 1, .idle_threads = 1, .cache_bytes = 8 * 32000, .ready_bytes = 1 << 20}) {}
@@ -120,7 +120,7 @@ class PrefetchTest : public BlockLoaderTest {
 
 TEST_F(PrefetchTest, WhatMayBeWantedSoonIsInHostMemoryWhenItIs) {
   prefetch({7, 8});
-  source_->wait_for_start(2);  // so that 7 is done
+  source_->wait_for_start(2);  // then block 7 is complete
   EXPECT_FALSE(loader_.take()) << "nobody wants it yet";
   EXPECT_EQ(wanted(7), 7U);
   EXPECT_THAT(source_->started(), ElementsAre(7, 8));

@@ -15,7 +15,7 @@
 
 namespace surfcast::testing {
 
-/// Blocks whose first surfel holds their number. Loading can be held up, and blocks can be damaged.
+/// Blocks whose first surfel contains their number. Loading can be blocked, and blocks can be damaged.
 class FakeBlocks : public residency::BlockSource {
  public:
   FakeBlocks(uint64_t id, std::vector<ldc::BlockEntry> blocks) : id_(id), tree_(std::move(blocks)) {}
@@ -41,17 +41,17 @@ class FakeBlocks : public residency::BlockSource {
   /// From now on load() does not return until release().
   void hold() { set_held(true); }
   void release() { set_held(false); }
-  /// Waits until so many blocks have been begun.
+  /// Waits until the loading of this many blocks has started.
   void wait_for_start(size_t blocks) const {
     std::unique_lock lock(mutex_);
     wake_.wait(lock, [&] { return started_.size() >= blocks; });
   }
-  /// Blocks in the order in which they were begun.
+  /// The blocks in the order in which their loading started.
   [[nodiscard]] std::vector<uint32_t> started() const {
     const std::lock_guard lock(mutex_);
     return started_;
   }
-  /// Blocks that were announced, in that order. The caller of the loader and of this must be one.
+  /// The prefetched blocks, in order. Must be called by the thread that calls the loader.
   [[nodiscard]] const std::vector<uint32_t>& prefetched() const { return prefetched_; }
 
  private:
@@ -73,7 +73,7 @@ class FakeBlocks : public residency::BlockSource {
   bool held_ = false;
 };
 
-/// Keeps what a pool writes.
+/// Stores the texels that a pool writes.
 class FakeSink : public residency::SurfelSink {
  public:
   void write(size_t first, std::span<const glm::uvec4> surfels) override {

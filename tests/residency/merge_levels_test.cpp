@@ -16,7 +16,7 @@ namespace {
 
 constexpr auto kGridRadius = static_cast<float>(surfel::kGridRadiusOverSpacing);  // of a grid of spacing 1
 
-/// A square sheet of side * side surfels, a unit apart, along a Morton curve.
+/// A square of side * side surfels at distance 1, in Morton order.
 std::vector<MergedSurfel> sheet(uint32_t side) {
   std::vector<MergedSurfel> surfels;
   for (uint32_t i = 0; i < side * side; ++i) {
@@ -31,7 +31,7 @@ std::vector<MergedSurfel> sheet(uint32_t side) {
   return surfels;
 }
 
-/// The rule of shaders/include/spacing.glsl.
+/// Implements the rule of shaders/include/spacing.glsl.
 bool drawn(const SurfelSequence& sequence, const PackedRun& run, uint32_t i, float wanted) {
   const float radius = sequence.surfels[i].radius;
   const float merged = run.pairs ? std::hypot(radius, sequence.surfels[i ^ 1].radius) : radius;
@@ -116,7 +116,7 @@ TEST(MergeLevels, AtAnySpacingTheSameAreaIsDrawnOnce) {
   for (const std::vector<MergedSurfel>& surfels : {sheet(64), noise(5000, 1), noise(300, 2)}) {
     const SurfelSequence sequence = merge_levels(surfels, true);
     for (float wanted = 0.01F; wanted < 10; wanted *= 1.37F) {
-      // In a band of a hundredth both are drawn.
+      // Within a band of 1 %, both a merged surfel and its pair are drawn.
       EXPECT_NEAR(area(drawn(sequence, wanted)) / area(surfels), 1, 0.05) << wanted;
       EXPECT_GE(area(drawn(sequence, wanted)), 0.9999 * area(surfels)) << wanted;
     }

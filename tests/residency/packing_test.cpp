@@ -11,7 +11,7 @@
 namespace surfcast::residency {
 namespace {
 
-/// A surfel taken apart again, in double precision, from the layout as it is documented.
+/// A surfel unpacked in double precision, according to the documented layout.
 struct Unpacked {
   glm::dvec3 position;  // world
   glm::u16vec2 normal;
@@ -20,7 +20,7 @@ struct Unpacked {
   glm::uvec3 color;
 };
 
-/// Where surfel `i` of the block lies, not what it was merged to.
+/// The index of surfel `i` of the block itself, not of a surfel that it was merged to.
 size_t place_of(const PackedSurfels& block, size_t i) {
   for (const PackedRun& run : block.runs) {
     for (uint32_t k = run.first; run.finest && k < run.first + run.count; ++k) {

@@ -17,7 +17,7 @@ using ::testing::IsEmpty;
 using testing::split;
 using testing::view_from;
 
-/// A root, four children in a row, and their four children each; every block takes a page.
+/// A root, four children in a row, and four children of each. Every block takes one page.
 std::shared_ptr<FakeBlocks> two_splits(uint64_t id) {
   std::vector<ldc::BlockEntry> blocks{block_at({0, 0, -20}, 4, 1)};
   const uint32_t first = split(blocks, 0, 4, 1000);
@@ -40,7 +40,7 @@ class ResidencyTest : public ::testing::Test {
   PreparedView now(const ViewedModel& model, double spacing = 0, bool moving = false) {
     return residency_->prepare_resident(model, {.frame = frame_, .spacing = spacing, .moving = moving}, {}, {});
   }
-  /// Pictures at once until one converges.
+  /// Prepares pictures without waiting until one converges.
   PreparedView now_until_converged(const ViewedModel& model, double spacing = 0) {
     for (int i = 0; i < 20'000; ++i) {
       PreparedView view = now(model, spacing);
@@ -50,7 +50,7 @@ class ResidencyTest : public ::testing::Test {
     ADD_FAILURE() << "never converged";
     return {};
   }
-  /// The memory holds each drawn block where the pool says.
+  /// Checks that each drawn block is in memory where the pool says.
   void expect_in_memory(const FakeBlocks& source, const std::vector<uint32_t>& blocks) {
     for (const uint32_t block : blocks) {
       const ResidentBlock resident = residency_->pool().at({source.id(), block});
@@ -88,7 +88,7 @@ TEST_F(ResidencyTest, AWholePictureLoadsWhatItShowsAndNoMore) {
 }
 
 TEST_F(ResidencyTest, AModelLargerThanTheMemoryIsShownAsFineAsFits) {
-  start(22);  // the root is pinned and takes one, each block in use may take two
+  start(22);  // one page for the pinned root; each block in use may take two
   const Result<PreparedView> view = whole(model_);
   ASSERT_TRUE(view);
   EXPECT_FALSE(view->selection.converged());
@@ -135,11 +135,11 @@ TEST_F(ResidencyTest, WhatARestWouldMissIsLoadedWhileTheViewMoves) {
 }
 
 TEST_F(ResidencyTest, PicturesAtOnceGetFinerAndAreNeverWithoutAPart) {
-  start(100, 1);  // a block a picture
+  start(100, 1);  // one block per picture
   size_t drawn = 0;
   const Stopwatch watch;
   while (drawn < 16 && watch.seconds() < 20) {
-    std::this_thread::yield();  // to the loaders
+    std::this_thread::yield();  // let the loader threads run
     const PreparedView view = now(model_, 0, true);
     if (drawn > 0) {
       ASSERT_EQ(view.selection.holes, 0u);
@@ -153,14 +153,14 @@ TEST_F(ResidencyTest, PicturesAtOnceGetFinerAndAreNeverWithoutAPart) {
 }
 
 TEST_F(ResidencyTest, ALimitedNumberOfBytesIsUploadedInAPictureInMotion) {
-  start(100, 20000);  // two blocks of 16000 bytes: the limit is reached with the second
+  start(100, 20000);  // the limit is reached with the second block of 16000 bytes
   now(model_, 0, true);
   source_->wait_for_start(21);
   std::this_thread::sleep_for(std::chrono::milliseconds(20));
   const size_t before = sink_.written();
   now(model_, 0, true);
   EXPECT_GT(sink_.written(), before);
-  EXPECT_LE(sink_.written() - before, 32000u);  // less where the time for it ran out, on a busy machine
+  EXPECT_LE(sink_.written() - before, 32000u);  // less if the time limit is reached on a busy machine
   now(model_);
   EXPECT_GT(sink_.written() - before, 64000u) << "at rest, all that is there";
 }
@@ -295,13 +295,14 @@ TEST_F(ResidencyTest, BlocksWithAttributesServePicturesWithoutAndAreLoadedOnce) 
   EXPECT_EQ(source->started().size(), begun);
 }
 
-/// A view that is switched between colours by attribute and the scanned ones while blocks arrive.
+/// A view that switches between colours by attribute and stored colours while blocks arrive.
 class SwitchedColorsTest : public ResidencyTest {
  protected:
   PreparedView now_by(bool attributes, bool moving) {
     return residency_->prepare_resident(model_, {.frame = frame_, .attributes = attributes, .moving = moving}, {}, {});
   }
-  /// What is drawn has what it is coloured by, and nothing is taken for finished that is not.
+  /// Checks that the drawn blocks have the attributes for their colours, and that only complete views are reported
+  /// complete.
   void expect_honest(const PreparedView& view, bool attributes) {
     const std::vector<bool>& here = residency_->pool().residents(1, attributes);
     for (const uint32_t block : view.selection.draw) {
