@@ -47,8 +47,8 @@ void start_peak() {
 
 }  // namespace surfcast::model
 
-// All forms that programs and libraries call. The ones that do not throw may end the process instead: there is always
-// memory for what these tests take.
+// All forms of the operators that programs and libraries call. The forms that do not throw may terminate the process
+// instead of returning null: these tests never run out of memory.
 
 void* operator new(size_t size) {
   return surfcast::model::count(std::malloc(size));

@@ -4,9 +4,9 @@
 
 namespace surfcast::model {
 
-/// Bytes that `new` has given out and not got back. Programs that link counted_memory.cpp count them.
+/// Bytes allocated with `new` and not yet freed. Counted in programs that link counted_memory.cpp.
 size_t bytes_in_use();
-/// The most there have been at once since `start_peak`.
+/// The maximum of bytes_in_use() since `start_peak`.
 size_t peak_bytes_in_use();
 void start_peak();
 

@@ -1,5 +1,5 @@
-// Every way a model file can be damaged is an answer in time and within bounds of memory. A program of its own, as it
-// counts all memory that is taken.
+// Any damage to a model file results in an error within bounds of time and memory. A separate program, because it
+// counts all allocated memory.
 
 #include <array>
 #include <cmath>
@@ -29,7 +29,7 @@ surfel::SurfelCloud part_of_a_model(size_t count, bool leaf) {
   return cloud;
 }
 
-/// A model of three levels, with all that a block may have.
+/// A model of three levels, with all optional content of blocks.
 Bytes small_model(const TestFolder& folder) {
   const auto encode = [](const surfel::SurfelCloud& cloud) {
     std::vector<uint32_t> members(cloud.size());
@@ -51,10 +51,10 @@ Bytes small_model(const TestFolder& folder) {
   return {bytes.begin(), bytes.end()};
 }
 
-/// The tables of figures at the end of the small model: two counts of zero, without which a file is as good.
+/// The statistics tables at the end of the small model: two counts of zero. They are optional.
 constexpr size_t kStatisticsBytes = 8;
 
-/// Where the parts of a model file begin, and the end.
+/// The offsets of the parts of a model file, and its end.
 std::vector<size_t> boundaries_of(const Bytes& whole) {
   const ModelHeader header = *read_header(whole);
   Directory directory = *read_directory(std::span(whole).subspan(header.directory_offset), header);
@@ -63,7 +63,7 @@ std::vector<size_t> boundaries_of(const Bytes& whole) {
     boundaries.push_back(block.offset);
     boundaries.push_back(block.offset + block.bytes);
   }
-  // Tables without the last ones are shorter by those and have a count of zero, of four bytes, in their place.
+  // Removed tables shorten the directory, except for their counts of zero, which take four bytes each.
   const auto table_end = [&](size_t tables_left) {
     return header.directory_offset + write_directory(directory).size() - kStatisticsBytes - 4 * tables_left;
   };
@@ -84,8 +84,7 @@ void put(Bytes& bytes, size_t at, uint64_t value) {
   if (at + sizeof(value) <= bytes.size()) std::memcpy(&bytes[at], &value, sizeof(value));
 }
 
-/// Makes the size and the checksums of header and tables right, as an attacker would. Offsets as in
-/// docs/model-format.md.
+/// Corrects the size and the checksums of header and tables, as an attacker would. Offsets as in docs/model-format.md.
 void repair_tables(Bytes& bytes, size_t directory) {
   if (bytes.size() < kHeaderBytes) return;
   put(bytes, 16, bytes.size());
@@ -96,7 +95,7 @@ void repair_tables(Bytes& bytes, size_t directory) {
   put(bytes, 56, checksum_of(std::span(bytes).first(56)));
 }
 
-/// Makes the checksum of each block right; the tables are those of the undamaged file.
+/// Corrects the checksum of each block; the tables are those of the undamaged file.
 void repair_blocks(Bytes& bytes, const std::vector<BlockRecord>& blocks) {
   const size_t first_record = bytes.size() - kStatisticsBytes - blocks.size() * kBlockRecordBytes;
   for (size_t i = 0; i < blocks.size(); ++i) {
@@ -134,7 +133,7 @@ double processor_seconds() {
   return static_cast<double>(t.tv_sec) + static_cast<double>(t.tv_nsec) * 1e-9;
 }
 
-/// Thousands of new files would take their time, so the last one is overwritten.
+/// Overwrites the previous file, because creating thousands of files is slow.
 void overwrite(const std::filesystem::path& path, const Bytes& bytes) {
   std::ofstream(path, std::ios::binary | std::ios::app);
   std::fstream file(path, std::ios::binary | std::ios::in | std::ios::out);
@@ -143,9 +142,9 @@ void overwrite(const std::filesystem::path& path, const Bytes& bytes) {
   if (std::filesystem::file_size(path) != bytes.size()) std::filesystem::resize_file(path, bytes.size());
 }
 
-/// Reads all of a file, and expects an answer within bounds.
+/// Reads a whole file. Checks the time, the memory and the form of the error.
 Status read_within_bounds(const TestFolder& folder, const Bytes& bytes) {
-  constexpr size_t kOwnNeeds = 1 << 20;  // of a block of a few hundred surfels, whatever the file says
+  constexpr size_t kOwnNeeds = 1 << 20;  // for a block of a few hundred surfels, independent of the file's claims
   const std::filesystem::path path = folder / "damaged.surf";
   overwrite(path, bytes);
   const size_t before = bytes_in_use();

@@ -91,7 +91,8 @@ TEST(Field, DracoDataThatStatesOtherAttributesIsRefusedBeforeItIsDecoded) {
   const auto text = std::search(whole.begin(), whole.end(), "DRACO", "DRACO" + 5,
                                 [](std::byte a, char b) { return a == static_cast<std::byte>(b); });
   const auto draco = static_cast<size_t>(text - whole.begin());
-  // From byte 15 on: groups of attributes, attributes, and kind, type and components of the first.
+  // Bytes from offset 15: number of attribute groups, number of attributes, then kind, type and components of the
+  // first.
   for (const size_t at : {15, 16, 18, 19}) {
     std::vector<std::byte> bytes = whole;
     bytes.at(draco + at) = std::byte{100};

@@ -5,8 +5,8 @@
 namespace surfcast::model {
 namespace {
 
-/// The cloud of tests/data/sphere-and-grid-v2.surf, made when version 2 of the format was new: `build_subtree` with
-/// leaves of at most 64 surfels, so that a small file has coarser levels.
+/// The cloud of tests/data/sphere-and-grid-v2.surf, written when version 2 of the format was new. `build_subtree` used
+/// leaves of at most 64 surfels, so the small file has coarser levels.
 surfel::SurfelCloud fixture_cloud() {
   surfel::SurfelCloud cloud = sphere_cloud(200);
   const surfel::Grid grid{{0.01, 0.01, 0.01}, {500.3, -70.7, 12}};
@@ -25,7 +25,7 @@ surfel::SurfelCloud fixture_cloud() {
   return cloud;
 }
 
-/// A file of the past must be read as it was meant, by every later reader.
+/// Every later version must read files of earlier ones correctly.
 TEST(ModelFixture, OfVersionTwoIsStillRead) {
   const Result<ModelFile> model = ModelFile::open(std::string(SURFCAST_TEST_DATA) + "/sphere-and-grid-v2.surf");
   ASSERT_TRUE(model) << model.error().message;
@@ -60,7 +60,7 @@ TEST(ModelFixture, HasCoarseBlocksThatDecode) {
     EXPECT_TRUE(block->scalars.empty());
     for (size_t i = 0; i < block->size() && model->blocks()[b].spacing < 0.5; ++i) {
       const glm::dvec3 p = block->position(i);
-      if (glm::length(p) > 2) continue;  // of the grid
+      if (glm::length(p) > 2) continue;  // a surfel of the grid
       EXPECT_NEAR(glm::length(p), 1, 0.05);
       EXPECT_GT(glm::dot(glm::normalize(p), glm::dvec3(block->normals[i])), 0.99);
       ++coarse;

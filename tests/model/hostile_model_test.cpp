@@ -42,7 +42,7 @@ uint64_t get_u64(const std::vector<char>& bytes, size_t at) {
   return value;
 }
 
-/// Makes the checksums of tables and header right again, as an attacker would. Offsets as in docs/model-format.md.
+/// Corrects the checksums of tables and header, as an attacker would. Offsets as in docs/model-format.md.
 void repair_checksums(std::vector<char>& bytes) {
   const std::span<std::byte> all = as_bytes(bytes);
   const uint64_t directory = get_u64(bytes, 24);
@@ -50,7 +50,7 @@ void repair_checksums(std::vector<char>& bytes) {
   put_u64(bytes, 56, checksum_of(all.first(56)));
 }
 
-/// Opens a model and decodes all of it. Reports what is wrong with the first thing that fails.
+/// Opens a model and decodes all its blocks. Returns the first error.
 Status read_all(const std::filesystem::path& path) {
   const Result<ModelFile> model = ModelFile::open(path);
   if (!model) return fail(model.error());
@@ -62,7 +62,7 @@ Status read_all(const std::filesystem::path& path) {
   return {};
 }
 
-/// Overwrites the file of the test before: thousands of new files would take their time.
+/// Overwrites the previous file, because creating thousands of files is slow.
 Status read_all(const TestFolder& folder, const std::vector<char>& bytes) {
   const std::filesystem::path path = folder / "hostile.surf";
   std::ofstream(path, std::ios::binary | std::ios::app);
@@ -196,7 +196,7 @@ TEST(HostileModel, AHugeCountInTheTablesAllocatesNothing) {
   EXPECT_LT(after.ru_maxrss - before.ru_maxrss, 64 * 1024) << "KiB";
 }
 
-/// Parents and cells of a table of blocks, as a file with right checksums may state them.
+/// The parent and cell of an entry in a table of blocks whose checksums are correct.
 struct Claim {
   uint32_t parent;
   ldc::OctreeKey key;
@@ -232,12 +232,12 @@ TEST(HostileModel, BlocksThatMakeNoTreeAreRefused) {
   EXPECT_TRUE(read_tree(folder, {{none, root}, {0, root.child(1)}, {0, root}}));
   const std::vector<std::vector<Claim>> hostile{
       {{0, root}},                                                    // its own parent
-      {{1, root}, {0, root.child(1)}},                                // a circle
+      {{1, root}, {0, root.child(1)}},                                // a cycle
       {{none, root}, {7, root}},                                      // an absent parent
-      {{none, root}, {none, root}, {0, root}, {1, root}, {0, root}},  // siblings apart
+      {{none, root}, {none, root}, {0, root}, {1, root}, {0, root}},  // siblings not contiguous
       {{none, root.child(1)}, {0, root.child(2)}},                    // a child outside its parent's cell
       {{none, root.child(1)}, {0, root}},                             // a child larger than its parent
-      {{none, root}, {0, root}, {1, root}, {2, root}, {3, root}},     // a path that never gets smaller
+      {{none, root}, {0, root}, {1, root}, {2, root}, {3, root}},     // a path of equal cells
   };
   for (const std::vector<Claim>& claims : hostile) {
     const Status status = read_tree(folder, claims);

@@ -17,7 +17,7 @@ EncodedBlock surfel_block(size_t count) {
   return encode_block(cloud, members, surfel::Grid{glm::dvec3(1e-4), glm::dvec3(0)});
 }
 
-/// A block of a kind that nothing is known of: what the tables state of it must do.
+/// A block of an unknown kind: only its entry in the tables is interpreted.
 EncodedBlock foreign_block(const char* kind, uint32_t items) {
   EncodedBlock block;
   block.bytes.assign(5, std::byte{42});
@@ -94,7 +94,7 @@ TEST(Kinds, AModelWithoutSurfelsIsAModel) {
   EXPECT_EQ(model->info().kinds.front().kind, "blob");
 }
 
-/// The tables of a mixed model with other kinds than it was written with, as a reader takes them.
+/// Writes and rereads the tables of a mixed model after its kinds were changed.
 Result<Directory> reread(const Directory& directory) {
   const std::vector<std::byte> bytes = write_directory(directory);
   ModelHeader header;
@@ -130,7 +130,7 @@ TEST(Kinds, ATreeIsOfOneKind) {
   const TestFolder folder;
   std::ifstream file(write_mixed(folder), std::ios::binary);
   std::vector<char> bytes{std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
-  // The last bytes are the kinds of the three blocks: the surfels, the coarse blobs, and the fine ones below these.
+  // The last three bytes are the kinds of the blocks: the surfels, the coarse blobs, and the fine blobs below them.
   ASSERT_EQ(bytes.back(), char{1});
   bytes.back() = 0;
   const auto all = std::as_bytes(std::span(bytes));

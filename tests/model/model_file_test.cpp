@@ -82,7 +82,7 @@ std::vector<T> awkward_values(size_t count) {
   return values;
 }
 
-/// Bit patterns, so that NaNs compare too.
+/// Compares bit patterns, so NaNs compare as well.
 template <typename T>
 bool same_bits(T a, T b) {
   return to_ordered_bits(a) == to_ordered_bits(b);

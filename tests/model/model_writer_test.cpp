@@ -15,7 +15,7 @@ EncodedBlock encode(const surfel::SurfelCloud& cloud) {
   return encode_block(cloud, members, kGrid);
 }
 
-/// A cloud with attributes of both kinds: those that coarse blocks have, and one that they do not have.
+/// A cloud with attributes that coarse blocks store and one that they do not store.
 surfel::SurfelCloud leaf_cloud(size_t count) {
   surfel::SurfelCloud cloud = sphere_cloud(count);
   cloud.scalars.push_back({"gps_time", std::vector<double>(count, 12.5)});
@@ -32,7 +32,8 @@ surfel::SurfelCloud coarse_cloud(size_t count) {
   return cloud;
 }
 
-/// Adds two leaves under one coarse block and one leaf beside it, all under a root: children before parents.
+/// Adds two leaves under one coarse block, and one leaf next to it, all under a root. Children are added before
+/// parents.
 Result<ModelFile> write_two_levels(const std::filesystem::path& path) {
   Result<ModelWriter> writer = ModelWriter::create(path, schema_of(leaf_cloud(1)));
   if (!writer) return fail(writer.error());

@@ -67,7 +67,7 @@ TEST(Quantize, EveryNormalCodeIsAUnitVectorThatKeepsItsDirection) {
   }
 }
 
-/// Relative error of a value that went through its code.
+/// Relative error of a value after encoding and decoding.
 double relative_error(float value, int steps) {
   return std::abs(decode_logarithm(encode_logarithm(value, steps), steps) / double{value} - 1);
 }

@@ -24,13 +24,13 @@ inline ModelFile write_and_open(const surfel::SurfelCloud& cloud, const std::fil
   return std::move(*model);
 }
 
-/// Where a surfel of a cloud with `number_surfels` ended up.
+/// The location of a surfel in a model of a cloud with `number_surfels`.
 struct Found {
   const DecodedBlock* block = nullptr;
   size_t index = 0;
 };
 
-/// Every leaf of a model, and each surfel by its number.
+/// The leaves of a model, and the location of each surfel by its number.
 struct DecodedModel {
   std::vector<DecodedBlock> blocks;
   std::vector<Found> surfels;
@@ -53,7 +53,7 @@ struct DecodedModel {
   }
 };
 
-/// Writes a cloud, to which numbers are added, and decodes the whole model.
+/// Adds numbers to a cloud, writes it, and decodes the whole model.
 inline DecodedModel round_trip(surfel::SurfelCloud cloud, const std::filesystem::path& path,
                                const WriteOptions& options = {}) {
   number_surfels(cloud);

@@ -12,7 +12,7 @@
 
 namespace surfcast::model {
 
-/// Says that one source without a grid covers the whole cloud, and fills what is still missing with plain values.
+/// Declares one source without a grid for the whole cloud, and fills missing attributes with default values.
 inline surfel::SurfelCloud finish_cloud(surfel::SurfelCloud cloud) {
   cloud.normals.resize(cloud.size(), glm::vec3(0, 0, 1));
   cloud.radii.resize(cloud.size(), 1.0f);
@@ -41,7 +41,7 @@ inline surfel::SurfelCloud sphere_cloud(size_t count, double radius = 1) {
   return finish_cloud(std::move(cloud));
 }
 
-/// Adds the attribute "id": the number of each surfel in the cloud, by which tests find it again.
+/// Adds the attribute "id": the number of each surfel in the cloud, which identifies it in tests.
 inline void number_surfels(surfel::SurfelCloud& cloud) {
   std::vector<uint32_t> ids(cloud.size());
   std::iota(ids.begin(), ids.end(), 0);

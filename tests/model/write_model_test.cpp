@@ -46,7 +46,7 @@ TEST(WriteModel, NamesTheFolderThatIsMissing) {
   EXPECT_NE(report.error().message.find("absent/model.surf"), std::string::npos);
 }
 
-/// Files of this process end at a size, like on a full disk, while this lives.
+/// Limits the size of files that this process writes during the lifetime of the object, like a full disk.
 class FileSizeLimit {
  public:
   explicit FileSizeLimit(rlim_t bytes) : old_handler_(std::signal(SIGXFSZ, SIG_IGN)) {
