@@ -85,7 +85,7 @@ TEST(ProjectedSpacing, OfASmallBlockStraightAheadIsItsSamplingDistanceOnTheScree
 }
 
 TEST(ProjectedSpacing, HoldsForEverySampleOfTheBlock) {
-  // No segment of length h at any point of the box, in any direction, covers more pixels.
+  // No segment of length h at any point of the box, in any direction, covers more pixels than the bound.
   const geometry::CameraFrame frame = view_from({0, 0, 0});
   std::mt19937 random(7);
   std::uniform_real_distribution<double> unit(-1, 1);

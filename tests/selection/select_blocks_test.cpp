@@ -26,7 +26,7 @@ bool is_leaf(const ldc::BlockTree& tree, uint32_t block) {
   return tree.children(block).count == 0;
 }
 
-/// Every leaf in view is covered once; every leaf at all at most once.
+/// Checks that every leaf in view is covered once, and every other leaf at most once.
 void expect_cut(const SelectionTree& tree, const geometry::CameraFrame& frame, const std::vector<uint32_t>& cut) {
   for (uint32_t b = 0; b < tree.tree.blocks().size(); ++b) {
     if (!is_leaf(tree.tree, b)) continue;
@@ -39,7 +39,7 @@ void expect_cut(const SelectionTree& tree, const geometry::CameraFrame& frame, c
   }
 }
 
-/// A root that faces the camera, four children in a row, and their four children each.
+/// A root that faces the camera, four children in a row, and four children of each.
 ldc::BlockTree two_splits() {
   std::vector<ldc::BlockEntry> blocks{block_at({0, 0, -20}, 4, 1)};
   const uint32_t first = split(blocks, 0, 4, 1000);
@@ -86,7 +86,7 @@ TEST(SelectBlocks, EveryBlockOfTheTargetIsAtTheSpacingOrALeaf) {
 }
 
 TEST(SelectBlocks, AWallOf64BlocksHasUnlikeLevelsNearAndFar) {
-  // A wall along z, seen from its near end: a root, 64 cells of it, and eight parts of each.
+  // A wall along z, seen from its near end: a root with 64 cells, each with eight parts.
   std::vector<ldc::BlockEntry> blocks{block_at({1, 0, 0}, 0.1, 3)};
   blocks[0].bounds = geometry::Box{{1, -1, -128}, {1.2, 1, 0}};
   for (int i = 0; i < 64; ++i) {
@@ -103,7 +103,7 @@ TEST(SelectBlocks, AWallOf64BlocksHasUnlikeLevelsNearAndFar) {
   expect_cut(tree, frame, s.draw);
   EXPECT_TRUE(std::binary_search(s.refined.begin(), s.refined.end(), 1u)) << "the nearest cell is refined";
   EXPECT_TRUE(std::binary_search(s.draw.begin(), s.draw.end(), 64u)) << "the farthest is not";
-  // Away from the eye blocks only become coarser.
+  // Blocks become coarser with the distance from the eye.
   bool refined = true;
   for (uint32_t cell = 1; cell <= 64; ++cell) {
     const bool now = std::binary_search(s.refined.begin(), s.refined.end(), cell);
@@ -165,7 +165,7 @@ TEST(SelectBlocks, ASlowPathBackAndForthSwitchesEachBlockOnce) {
     std::vector<uint32_t> before;
     int count = 0;
     for (int k = 0; k < 200; ++k) {
-      // A slow approach that trembles by a hundredth of the distance.
+      // A slow approach with a jitter of about a hundredth of the distance.
       const double z = 8 - 0.02 * k + (k % 2 == 0 ? 0.05 : -0.05);
       const BlockSelection s =
           select_blocks(tree, view_from({0.2, 0.3, z}), {.spacing = 0.5}, all_of(blocks),

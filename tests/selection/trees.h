@@ -24,12 +24,12 @@ inline ldc::BlockEntry facing(ldc::BlockEntry block, const glm::vec3& axis, floa
   return block;
 }
 
-/// From `eye` along -z, 90 degrees, 100 x 100 pixels: eta is 50.
+/// A view from `eye` along -z, 90 degrees, 100 x 100 pixels: eta is 50.
 inline geometry::CameraFrame view_from(const glm::dvec3& eye) {
   return *geometry::make_camera_frame({eye, eye + glm::dvec3(0, 0, -1), {0, 1, 0}, 90}, 100, 100);
 }
 
-/// Adds children in a row along x, each `1 / count` as wide, of half the spacing. Returns the first.
+/// Adds children in a row along x, each with `1 / count` of the width and half the spacing. Returns the first.
 inline uint32_t split(std::vector<ldc::BlockEntry>& blocks, uint32_t parent, int count, uint32_t surfels) {
   const auto first = static_cast<uint32_t>(blocks.size());
   const geometry::Box box = blocks[parent].bounds;
@@ -46,7 +46,7 @@ inline uint32_t split(std::vector<ldc::BlockEntry>& blocks, uint32_t parent, int
   return first;
 }
 
-/// A tree of octants in which every cell is split, or holds no surface, by chance.
+/// A random tree of octants. Each cell is divided at random, and some of its octants are empty.
 inline std::vector<ldc::BlockEntry> random_tree(std::mt19937& random, int depth, bool oriented) {
   std::uniform_real_distribution<double> unit(-1, 1);
   std::vector<ldc::BlockEntry> blocks{block_at({0, 0, 0}, 1, 0.1)};
@@ -69,7 +69,7 @@ inline std::vector<ldc::BlockEntry> random_tree(std::mt19937& random, int depth,
   return blocks;
 }
 
-/// What is in view: not left out itself, nor with any block above it.
+/// True if neither the block nor any of its ancestors is culled.
 inline bool in_view(const selection::SelectionTree& tree, const geometry::CameraFrame& frame, uint32_t block) {
   const selection::Frustum frustum(frame, -4, -4, frame.width + 4, frame.height + 4);
   for (uint32_t b = block; b != ldc::BlockEntry::kNoParent; b = tree.tree.blocks()[b].parent) {
@@ -78,7 +78,7 @@ inline bool in_view(const selection::SelectionTree& tree, const geometry::Camera
   return true;
 }
 
-/// How many blocks of the cut are `block` or above it.
+/// The number of blocks of the cut that are `block` or one of its ancestors.
 inline int times_covered(const selection::SelectionTree& tree, const std::vector<uint32_t>& cut, uint32_t block) {
   int times = 0;
   for (uint32_t b = block; b != ldc::BlockEntry::kNoParent; b = tree.tree.blocks()[b].parent) {
