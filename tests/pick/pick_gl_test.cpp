@@ -1,4 +1,4 @@
-// What is picked must be what the renderer shows.
+// Compares picks with the pictures of the renderer.
 
 #include <cstdlib>
 
@@ -32,7 +32,7 @@ bool near(const glm::u8vec4& pixel, const glm::u8vec3& color) {
 class Agreement {
  public:
   void add(const glm::u8vec4& pixel, const std::optional<kinds::PickedSurfel>& picked) {
-    // Where edges are blended, both answers are right.
+    // Where edges are blended, both results are correct.
     if (pixel.a == 0 && picked) ++wrong_;
     if (pixel.a != 255 || !(near(pixel, kSphere) || near(pixel, kFloor))) return;
     ++compared_;

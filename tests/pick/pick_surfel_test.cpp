@@ -17,7 +17,7 @@ namespace {
 
 const surfel::Grid kUtm{{0.01, 0.01, 0.001}, {448262, 5411932, 312}};
 
-/// Moves the cloud's points to a lattice in UTM coordinates, where they all have classes, intensities and times.
+/// Moves the points of the cloud to a lattice in UTM coordinates, and adds classes, intensities and times.
 void make_survey(surfel::SurfelCloud& cloud) {
   std::vector<uint8_t> classes;
   std::vector<uint16_t> intensities;
@@ -74,7 +74,7 @@ geometry::Camera oblique() {
   return {kUtm.offset + glm::dvec3(150, -260, 120), kUtm.offset, {0, 0, 1}, 35};
 }
 
-/// The blocks of the finest level.
+/// The decoded leaves of a model.
 std::vector<model::DecodedBlock> leaves_of(const model::ModelFile& model) {
   std::vector<model::DecodedBlock> leaves;
   for (size_t b = 0; b < model.blocks().size(); ++b) {
@@ -83,7 +83,8 @@ std::vector<model::DecodedBlock> leaves_of(const model::ModelFile& model) {
   return leaves;
 }
 
-/// All surfels of the finest level, seen by the reference's discs: the position that is to be picked, if any is.
+/// Tests all surfels of the finest level with the discs of the reference renderer. Returns the position of the surfel
+/// to be picked.
 std::optional<glm::dvec3> brute_force(const std::vector<model::DecodedBlock>& leaves, const kinds::PickQuery& query) {
   const glm::dvec3 ray = query.frame.ray(query.pixel);
   struct Seen {
@@ -101,7 +102,7 @@ std::optional<glm::dvec3> brute_force(const std::vector<model::DecodedBlock>& le
       const glm::dvec3 n = query.frame.rotate(glm::dvec3(block.normals[i]));
       if (glm::dot(n, o) >= 0 || query.hidden_classes[classes[i]] || !query.clip.shows(block.position(i))) continue;
       const double radius = std::min(block.radii[i], widest);
-      // With the visibility prefilter the filter's own form is that of the disc.
+      // With the visibility prefilter, the quadratic form of the filter is that of the disc.
       reference::KernelParameters disc;
       disc.sigma = disc.visibility_radius;
       const auto splat = reference::Splat::make(o, n, radius, query.frame.eta, disc.visibility_pixels, disc);
@@ -118,12 +119,12 @@ std::optional<glm::dvec3> brute_force(const std::vector<model::DecodedBlock>& le
   return best == nullptr ? std::nullopt : std::optional(best->position);
 }
 
-/// Picks over the whole picture and counts hits.
+/// Compares picks all over the picture with brute_force and counts the hits.
 int compare(const model::ModelFile& model, const geometry::Clip& clip, const std::bitset<256>& hidden,
             const geometry::Camera& camera) {
   const std::vector<model::DecodedBlock> leaves = leaves_of(model);
   int hits = 0;
-  SourceBlocks blocks(size_t{1} << 20);  // some blocks
+  SourceBlocks blocks(size_t{1} << 20);  // room for some blocks
   for (int y = 5; y < 240; y += 23) {
     for (int x = 3; x < 320; x += 29) {
       kinds::PickQuery query{*geometry::make_camera_frame(camera, 320, 240), {x + 0.5, y + 0.5}, clip, hidden};
