@@ -9,7 +9,7 @@
 namespace surfcast::view {
 namespace {
 
-/// A line of a rate and a round trip, with messages in the order they are sent.
+/// Simulates a connection with a rate and a round-trip time. Messages are delivered in order.
 class Line {
  public:
   Line(double bytes_per_ms, double round_trip_ms) : bytes_per_ms_(bytes_per_ms), round_trip_ms_(round_trip_ms) {}
@@ -19,7 +19,7 @@ class Line {
     free_ms_ = std::max(free_ms_, now_ms_) + static_cast<double>(bytes) / bytes_per_ms_;
     arrivals_.push_back(free_ms_ + round_trip_ms_);
   }
-  /// The oldest message is acknowledged.
+  /// Acknowledges the oldest message.
   std::optional<double> acknowledge(LinkEstimate& estimate, double client_ms = 0) {
     now_ms_ = std::max(now_ms_, arrivals_.front() + client_ms);
     arrivals_.pop_front();

@@ -9,11 +9,11 @@
 namespace surfcast::view {
 namespace {
 
-/// A machine: what a frame of a quality costs on it.
+/// A simulated machine: the cost of a frame by its quality.
 using Machine = std::function<MotionCost(const MotionQuality&)>;
 
-/// Drawing takes `full_ms` for a whole picture at a spacing of one pixel, most of it for splats, and some time in any
-/// case.
+/// Drawing takes `full_ms` for a full-size picture at a spacing of one pixel, most of it for splats, and at least
+/// `least_ms`.
 Machine renderer(double full_ms, double least_ms = 1) {
   return [=](const MotionQuality& q) {
     const double pixels = q.scale * q.scale;
@@ -37,7 +37,7 @@ struct Ride {
       state = adapt(state, machine(shown.back()), fps);
     }
   }
-  /// Changes of quality among the last frames.
+  /// The number of changes of quality among the last frames.
   [[nodiscard]] int changes(size_t last) const {
     int count = 0;
     for (size_t i = shown.size() - last + 1; i < shown.size(); ++i) {
@@ -65,7 +65,7 @@ TEST(QualityController, ASlowRendererGetsSmallerAndCoarserPicturesThatKeepTheRat
 }
 
 TEST(QualityController, LittleOfTheTimeOfAFrameIsLeftOver) {
-  // Machines between those that draw all in time and those for which even the cheapest rung is too much.
+  // From machines that are fast enough for full quality to those that are too slow for the cheapest rung.
   for (double full = 40; full < 1500; full *= 1.07) {
     const Machine machine = renderer(full);
     Ride run;
@@ -124,7 +124,7 @@ TEST(QualityController, AMachineBetweenTwoRungsDoesNotMakeItSwing) {
 }
 
 TEST(QualityController, AMachineThatIsDearerThanItsRungsSayDoesNotMakeItSwing) {
-  // Each better rung looks affordable and is not.
+  // The extrapolated cost of each better rung is affordable, but the real cost is not.
   const Machine steep = [](const MotionQuality& q) { return MotionCost{q.scale > 0.4 ? 60.0 : 8.0, 1, 0.1, 1}; };
   Ride run;
   run.frames(steep, 3000);

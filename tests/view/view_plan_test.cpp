@@ -9,15 +9,15 @@ namespace {
 
 using std::chrono::milliseconds;
 
-/// A plan, a clock that the test moves, and a client that answers when it is told to.
+/// A plan, a simulated clock, and a simulated client.
 class ViewPlanTest : public ::testing::Test {
  protected:
   void update(bool moving, bool changed = true) { plan_.update(changed, moving, now_); }
   void pass(int ms) { now_ += milliseconds(ms); }
 
-  /// What is to be drawn now.
+  /// The kind of frame to draw now.
   [[nodiscard]] std::optional<FrameKind> drawn() const { return plan_.next(now_).draw; }
-  /// Milliseconds until the plan wants to be asked again; -1: it waits for an event.
+  /// Milliseconds until the plan must be called again; -1: it waits for an event.
   [[nodiscard]] long asked_in() const {
     const ViewStep step = plan_.next(now_);
     return step.wake_at ? std::chrono::duration_cast<milliseconds>(*step.wake_at - now_).count() : -1;
@@ -27,7 +27,7 @@ class ViewPlanTest : public ::testing::Test {
     plan_.begin(++frame_, kind);
     return frame_;
   }
-  /// From the beginning of a frame to its arrival at the client.
+  /// Draws and sends a whole frame.
   void draw_and_send(FrameKind kind, FrameResult result = FrameResult::kComplete) {
     const uint64_t frame = begin(kind);
     plan_.finish(frame, result, now_);
@@ -39,7 +39,7 @@ class ViewPlanTest : public ::testing::Test {
   }
 
   static constexpr uint32_t kAny = std::numeric_limits<uint32_t>::max();
-  /// The most blocks that a frame at rest may miss to be drawn, after a look that missed so many.
+  /// The number of blocks that may be missing for a frame at rest to be drawn, after `missing` were recorded.
   uint32_t max_missing_blocks(uint32_t missing) {
     plan_.record_missing(missing, now_);
     return plan_.max_missing_blocks(now_);
@@ -167,11 +167,11 @@ TEST_F(ViewPlanTest, BlocksThatNeverComeDoNotKeepItFromTheFinalFrame) {
   EXPECT_EQ(drawn(), FrameKind::kFinal);
 }
 
-/// A picture at rest of a large model: blocks arrive at a rate, drawing takes longer the more are there.
+/// A picture at rest of a large model. Blocks arrive at a constant rate; drawing takes longer with more blocks.
 struct LargeModel {
   uint32_t blocks = 1000;
   double blocks_per_ms = 0.1;
-  double draw_ms = 4000;  ///< of all blocks
+  double draw_ms = 4000;  ///< with all blocks
 };
 
 TEST_F(ViewPlanTest, FewFramesAreDrawnWhileBlocksArrive) {
