@@ -13,7 +13,7 @@ constexpr SettingRange kOrNone{0, 1'000'000};
 void add_queue_flags(CLI::App& command, service::ServiceLimits& limits) {
   add_count(command, "max-queue", limits.queued_jobs,
             "Pictures that may wait for the renderer (default 256). More: longer waits; less: refused sooner");
-  add_seconds(command, "queue-timeout", limits.patience,
+  add_seconds(command, "queue-timeout", limits.queue_timeout,
               "Wait of a picture for the renderer before it is refused (default 20). More: pictures that nobody waits "
               "for any longer are drawn; less: refused under short peaks");
   add_count(command, "encoders", limits.encoders,
