@@ -26,15 +26,6 @@ struct RendererConfig {
   bool gpu_kernels = false;      ///< also draws software GL with the kernels for GPUs: for tests
   std::string shader_defines{};  ///< text before every shader, for programs that measure other kernels
   kinds::KindTable kinds = kinds::built_in_kinds();  ///< kinds of blocks that can be drawn; outlives the renderer
-};                                                   ///< for the surfels of all models; none: default_budgets
-std::optional<size_t> host_bytes{};      ///< for blocks that may come back to the GPU; none: default_budgets
-unsigned decoders = 0;                   ///< threads that decode blocks; 0: as many as the machine has cores
-size_t upload_bytes = size_t{16} << 20;  ///< stored on the GPU in one picture in motion, which waits for it
-size_t viewers = 64;  ///< of one model whose motion is remembered; beyond, the one not seen for longest is forgotten
-bool gpu_kernels = false;      ///< also draws software GL with the kernels for GPUs: for tests
-std::string shader_defines{};  ///< text before every shader, of programs that measure other kernels than our own
-kinds::KindTable kinds =
-    kinds::built_in_kinds();  ///< that models may have; others are not drawn. Outlives the renderer
 };
 
 /// Draws pictures of models. Owns a GL context: create, use and destroy it on one thread.
