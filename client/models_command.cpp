@@ -15,13 +15,11 @@ struct ModelsCommand {
 };
 
 Result<wire::ModelList> ask_for_models(const protocol::Endpoint& server, const ClientConfig& config) {
-  Result<ServerConnection> connection = ServerConnection::open(server, config);
-  if (!connection) return fail(connection.error());
   wire::Request request;
   request.mutable_list_models();
-  Result<wire::Answer> answer = connection->ask(std::move(request));
-  if (!answer) return fail(answer.error());
-  return std::move(*answer->mutable_model_list());
+  return ask_server(server, config, std::move(request)).map([](wire::Answer answer) {
+    return std::move(*answer.mutable_model_list());
+  });
 }
 
 Status list_models(const ModelsCommand& command, int interrupt) {

@@ -17,15 +17,13 @@ Status pick(const PickCommand& command, int interrupt) {
   const Result<protocol::ModelUrl> url = protocol::parse_model_url(command.url);
   if (!url) throw CLI::ValidationError(url.error().message);
   if (Status status = command.flags.check(); !status) throw CLI::ValidationError(status.error().message);
-  Result<wire::PickSurfel> pick = command.flags.request(url->model);
-  if (!pick) return fail(pick.error());
-  Result<ServerConnection> connection = ServerConnection::open(url->server, command.limits.config(interrupt));
-  if (!connection) return fail(connection.error());
-  wire::Request request;
-  *request.mutable_pick_surfel() = std::move(*pick);
-  const Result<wire::Answer> answer = connection->ask(std::move(request));
-  if (!answer) return fail(answer.error());
-  return command.flags.print(answer->pick_result());
+  return command.flags.request(url->model)
+      .and_then([&](wire::PickSurfel pick) {
+        wire::Request request;
+        *request.mutable_pick_surfel() = std::move(pick);
+        return ask_server(url->server, command.limits.config(interrupt), std::move(request));
+      })
+      .and_then([&](const wire::Answer& answer) { return command.flags.print(answer.pick_result()); });
 }
 
 }  // namespace

@@ -22,14 +22,13 @@ Status render(const RenderCommand& command, int interrupt) {
   if (!picture) return fail(picture.error());
   Result<ServerConnection> connection = ServerConnection::open(url->server, command.limits.config(interrupt));
   if (!connection) return fail(connection.error());
-  return protocol::draw_and_save(command.flags, *picture,
-                                 [&](const wire::DrawPicture& wanted) -> Result<wire::Picture> {
-                                   wire::Request request;
-                                   *request.mutable_draw_picture() = wanted;
-                                   Result<wire::Answer> answer = connection->ask(std::move(request));
-                                   if (!answer) return fail(answer.error());
-                                   return std::move(*answer->mutable_picture());
-                                 });
+  return protocol::draw_and_save(command.flags, *picture, [&](const wire::DrawPicture& wanted) {
+    wire::Request request;
+    *request.mutable_draw_picture() = wanted;
+    return connection->ask(std::move(request)).map([](wire::Answer answer) {
+      return std::move(*answer.mutable_picture());
+    });
+  });
 }
 
 }  // namespace

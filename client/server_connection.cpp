@@ -28,12 +28,12 @@ tl::unexpected<Error> ServerConnection::failed(ErrorKind kind, const std::string
 }
 
 Status ServerConnection::exchange_hellos(Clock::time_point deadline) {
-  const auto bytes = channel_->exchange_hellos(protocol::encode_hello(protocol::make_hello("surfcast")), deadline);
-  if (!bytes) return fail(bytes.error());
-  Result<protocol::Hello> hello = protocol::decode_hello(*bytes);
-  if (!hello) return fail(hello.error());
-  server_ = std::move(*hello);
-  return protocol::check_server_hello(server_);
+  return channel_->exchange_hellos(protocol::encode_hello(protocol::make_hello("surfcast")), deadline)
+      .and_then([](const MessageChannel::Bytes& answer) { return protocol::decode_hello(answer); })
+      .and_then([this](protocol::Hello hello) {
+        server_ = std::move(hello);
+        return protocol::check_server_hello(server_);
+      });
 }
 
 Status ServerConnection::send_as(uint64_t id, wire::Request request) {
@@ -82,6 +82,12 @@ Result<wire::Answer> ServerConnection::ask(wire::Request request) {
     if (!answer->has_error()) return answer;
     return failed(protocol::from_wire(answer->error()));
   }
+}
+
+Result<wire::Answer> ask_server(const protocol::Endpoint& server, const ClientConfig& config, wire::Request request) {
+  return ServerConnection::open(server, config).and_then([&request](ServerConnection connection) {
+    return connection.ask(std::move(request));
+  });
 }
 
 }  // namespace surfcast::client

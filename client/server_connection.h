@@ -61,4 +61,7 @@ class ServerConnection {
   uint64_t last_id_ = 0;
 };
 
+/// Asks one thing over a connection of its own.
+Result<wire::Answer> ask_server(const protocol::Endpoint& server, const ClientConfig& config, wire::Request request);
+
 }  // namespace surfcast::client

@@ -11,14 +11,10 @@ namespace surfcast::cmd {
 namespace {
 
 Status check_health(const protocol::Endpoint& server, std::chrono::milliseconds timeout) {
-  Result<client::ServerConnection> connection =
-      client::ServerConnection::open(server, {.connect = timeout, .answer = timeout});
-  if (!connection) return fail(connection.error());
   wire::Request request;
   request.mutable_ping();
-  const Result<wire::Answer> answer = connection->ask(std::move(request));
-  if (!answer) return fail(answer.error());
-  return {};
+  return client::ask_server(server, {.connect = timeout, .answer = timeout}, std::move(request))
+      .map([](const wire::Answer&) {});
 }
 
 }  // namespace

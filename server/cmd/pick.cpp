@@ -24,18 +24,19 @@ struct PickCommand {
 Status pick(const PickCommand& command) {
   const Result<std::unique_ptr<service::ModelCatalogue>> models = find_one_model(command.model, command.cache);
   if (!models) return fail(models.error());
-  const Result<wire::PickSurfel> request = command.flags.request((*models)->names().front());
-  if (!request) return fail(request.error());
-  Result<service::PickJob> job = net::to_job(*request);
+  Result<service::PickJob> job =
+      command.flags.request((*models)->names().front()).and_then([](const wire::PickSurfel& request) {
+        return net::to_job(request);
+      });
   if (!job) return fail(job.error());
   std::promise<Result<std::optional<kinds::PickedSurfel>>> promise;
   service::PickService service(**models, command.limits);
   service.pick(std::move(*job), [&promise](auto picked) { promise.set_value(std::move(picked)); });
-  const Result<std::optional<kinds::PickedSurfel>> picked = promise.get_future().get();
-  if (!picked) return fail(picked.error());
-  wire::PickResult result;
-  net::to_wire(*picked, result);
-  return command.flags.print(result);
+  return promise.get_future().get().and_then([&](const std::optional<kinds::PickedSurfel>& picked) {
+    wire::PickResult result;
+    net::to_wire(picked, result);
+    return command.flags.print(result);
+  });
 }
 
 }  // namespace

@@ -31,11 +31,11 @@ Result<wire::Picture> draw_and_wait(service::RenderService& service, const wire:
   std::promise<Result<service::EncodedPicture>> promise;
   service.draw(0, std::move(*job),
                [&promise](Result<service::EncodedPicture> picture) { promise.set_value(std::move(picture)); });
-  Result<service::EncodedPicture> picture = promise.get_future().get();
-  if (!picture) return fail(picture.error());
-  wire::Picture message;
-  net::to_wire(std::move(*picture), message);
-  return message;
+  return promise.get_future().get().map([](service::EncodedPicture picture) {
+    wire::Picture message;
+    net::to_wire(std::move(picture), message);
+    return message;
+  });
 }
 
 Status render(const RenderCommand& command) {

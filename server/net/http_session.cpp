@@ -271,9 +271,10 @@ asio::awaitable<HttpAnswer> HttpSession::answer_model(std::string name) {
 }
 
 asio::awaitable<HttpAnswer> HttpSession::answer_pick(HttpRoute route) {
-  const Result<wire::PickSurfel> request = protocol::parse_pick_query(route.model, route.query);
-  if (!request) co_return error_answer(request.error());
-  const Result<service::PickJob> job = to_job(*request);
+  const Result<service::PickJob> job =
+      protocol::parse_pick_query(route.model, route.query).and_then([](const wire::PickSurfel& request) {
+        return to_job(request);
+      });
   if (!job) co_return error_answer(job.error());
   const auto picked = co_await answer_of<Result<std::optional<kinds::PickedSurfel>>>(
       [&](auto done) { context_->service.pick(*job, std::move(done)); });
@@ -281,9 +282,10 @@ asio::awaitable<HttpAnswer> HttpSession::answer_pick(HttpRoute route) {
 }
 
 asio::awaitable<HttpAnswer> HttpSession::answer_picture(HttpRoute route) {
-  const Result<wire::DrawPicture> request = protocol::parse_picture_query(route.model, route.query);
-  if (!request) co_return error_answer(request.error());
-  Result<service::PictureJob> job = to_job(*request);
+  Result<service::PictureJob> job =
+      protocol::parse_picture_query(route.model, route.query).and_then([](const wire::DrawPicture& request) {
+        return to_job(request);
+      });
   if (!job) co_return error_answer(job.error());
   Result<service::EncodedPicture> picture = co_await draw(std::move(*job));
   if (!picture) co_return error_answer(picture.error());

@@ -16,6 +16,7 @@
 
 #include "client/run_program.h"
 #include "gl/objects.h"
+#include "kinds/kind_table.h"
 #include "render/programs.h"
 
 namespace surfcast::testing {
@@ -86,11 +87,12 @@ std::vector<render::Variant> all_variants() {
 /// The texts of the shaders of all variants, for processors and for GPUs.
 std::set<std::string> all_shaders() {
   const RecordingDriver driver;
+  const render::PictureKinds surfels{{kinds::built_in_kinds().front(), 0}};
   for (const render::KernelShape& shape : {render::software_kernels(), render::KernelShape()}) {
     Result<render::Programs> programs = render::Programs::create(shape, {});
     EXPECT_TRUE(programs) << programs.error().message;
     for (const render::Variant& variant : all_variants()) {
-      const Result<render::SplatPrograms> compiled = programs->variant(variant);
+      const Result<render::SplatPrograms> compiled = programs->variant(variant, surfels);
       EXPECT_TRUE(compiled) << compiled.error().message;
     }
   }
