@@ -13,14 +13,19 @@ namespace surfcast::client {
 
 /// An asynchronous operation of Asio and, once it is not pending any more, its outcome. Must outlive the operation.
 struct Operation {
+  bool begun = false;  ///< until the owner has used its outcome: it may be done while something else is waited for
   bool pending = false;
   boost::system::error_code outcome;
   size_t bytes = 0;
 
   /// The handler to start the operation with.
   auto begin() {
-    pending = true;
-    return [this](const boost::system::error_code& code, size_t count = 0) { *this = {false, code, count}; };
+    begun = pending = true;
+    return [this](const boost::system::error_code& code, size_t count = 0) {
+      pending = false;
+      outcome = code;
+      bytes = count;
+    };
   }
 };
 

@@ -60,6 +60,7 @@ Result<MessageChannel::Bytes> FramedChannel::exchange_hellos(std::span<const std
   const std::span<std::byte> answer = std::span(incoming_).first(protocol::kHelloHeaderBytes + *text);
   if (Status status = receive(answer.subspan(protocol::kHelloHeaderBytes), deadline); !status)
     return fail(status.error());
+  reading_.begun = false;
   return Bytes(answer.begin(), answer.end());
 }
 
@@ -77,8 +78,9 @@ Result<MessageChannel::Bytes> FramedChannel::read(TimePoint deadline) {
     Result<std::optional<Bytes>> message = splitter_.next();
     if (!message) return fail(message.error());
     if (*message) return std::move(**message);
-    if (!reading_.pending) socket_->socket().async_read_some(asio::buffer(incoming_), reading_.begin());
+    if (!reading_.begun) socket_->socket().async_read_some(asio::buffer(incoming_), reading_.begin());
     if (Status status = socket_->finish(reading_, deadline); !status) return fail(status.error());
+    reading_.begun = false;
     splitter_.append(std::span(incoming_).first(reading_.bytes));
   }
 }

@@ -115,11 +115,12 @@ Status WebSocketChannel::explain(const Status& outcome) const {
 
 Result<MessageChannel::Bytes> WebSocketChannel::read(TimePoint deadline) {
   if (socket_->interrupted()) return fail(ErrorKind::kCancelled, "interrupted");
-  if (!reading_.pending) {
+  if (!reading_.begun) {
     incoming_.clear();
     stream_.async_read(incoming_, reading_.begin());
   }
   if (const Status outcome = socket_->finish(reading_, deadline); !outcome) return fail(explain(outcome).error());
+  reading_.begun = false;
   if (!stream_.got_binary()) return fail(ErrorKind::kInvalidInput, "the server sends text");
   const auto* first = static_cast<const std::byte*>(incoming_.cdata().data());
   return Bytes(first, first + incoming_.size());

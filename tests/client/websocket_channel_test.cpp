@@ -14,6 +14,7 @@
 
 #include "client/message_channel.h"
 #include "client/scripted_server.h"
+#include "protocol/hello.h"
 
 namespace surfcast::client {
 namespace {
@@ -25,15 +26,20 @@ using boost::system::error_code;
 using std::chrono::milliseconds;
 using namespace std::string_literals;
 
-/// Grants one WebSocket, then sends these bytes, right or wrong, whatever the client sends.
+/// Grants one WebSocket, or takes a framed connection, then sends these bytes, right or wrong, whatever the client
+/// sends.
 class ScriptedWebSocketServer {
  public:
-  explicit ScriptedWebSocketServer(std::vector<std::string> pieces)
-      : thread_([this, pieces = std::move(pieces)] { serve(pieces); }) {}
+  explicit ScriptedWebSocketServer(std::vector<std::string> pieces, bool websocket = true)
+      : websocket_(websocket), thread_([this, pieces = std::move(pieces)] { serve(pieces); }) {}
 
-  [[nodiscard]] protocol::Endpoint endpoint() const { return {"127.0.0.1", acceptor_.local_endpoint().port(), true}; }
+  [[nodiscard]] protocol::Endpoint endpoint() const {
+    return {"127.0.0.1", acceptor_.local_endpoint().port(), websocket_};
+  }
   /// All pieces but the first wait for this.
   void go_on() { going_on_.set_value(); }
+  /// Returns when all pieces have been sent.
+  void wait_until_sent() { sent_.get_future().wait(); }
   /// What the client sent after its request; ask when its channel is gone.
   const std::string& heard() {
     thread_.join();
@@ -46,17 +52,19 @@ class ScriptedWebSocketServer {
     websocket::stream<tcp::socket> stream(acceptor_.accept());
     tcp::socket& socket = stream.next_layer();
     socket.set_option(tcp::no_delay(true));
-    stream.accept(code);
+    if (websocket_) stream.accept(code);
     asio::write(socket, asio::buffer(pieces.front()), code);
     if (pieces.size() > 1) going_on_.get_future().wait();
     for (size_t i = 1; i < pieces.size(); ++i) asio::write(socket, asio::buffer(pieces[i]), code);
-    code = {};
+    sent_.set_value();
     asio::read(socket, asio::dynamic_buffer(heard_), code);
   }
 
+  const bool websocket_;
   asio::io_context io_;
   tcp::acceptor acceptor_{io_, tcp::endpoint(asio::ip::address_v4::loopback(), 0)};
   std::promise<void> going_on_;
+  std::promise<void> sent_;
   std::string heard_;
   std::jthread thread_;
 };
@@ -113,6 +121,23 @@ TEST(WebSocketChannel, AReadThatTimedOutIsGoneOnWith) {
   EXPECT_EQ(channel->read(in(milliseconds(50))).error().kind, ErrorKind::kUnavailable);
   server.go_on();
   EXPECT_EQ(text_of(channel->read(in(kLong))), "half two");
+}
+
+TEST(MessageChannel, WhatArrivesDuringAWriteIsKept) {
+  const std::vector<std::byte> hello = protocol::encode_hello(protocol::make_hello("test"));
+  const std::string framed_hello(reinterpret_cast<const char*>(hello.data()), hello.size());
+  for (const bool websocket : {false, true}) {
+    ScriptedWebSocketServer server(
+        websocket ? std::vector{"\x82\x03one"s, "\x82\x03two"s} : std::vector{framed_hello, "\x03\x00\x00\x00two"s},
+        websocket);
+    const auto channel = connect_to(server.endpoint());
+    ASSERT_TRUE(greet(*channel));
+    EXPECT_EQ(channel->read(in(milliseconds(0))).error().kind, ErrorKind::kUnavailable);
+    server.go_on();
+    server.wait_until_sent();
+    for (int i = 0; i < 3; ++i) EXPECT_TRUE(channel->write(std::as_bytes(std::span("more", 4)), in(kLong)));
+    EXPECT_EQ(text_of(channel->read(in(kLong))), "two");
+  }
 }
 
 /// A frame of a client without its mask.
