@@ -13,10 +13,9 @@ layout(local_size_x = SURFCAST_SILHOUETTE_LANES) in;  // one tile per lane: part
 // Inverse depth of the front surface, 0 if there is none.
 layout(std430, binding = SURFCAST_BIND_FRONTS) readonly buffer Fronts { float fronts[]; };
 layout(std430, binding = SURFCAST_BIND_TILE_ORDER) readonly buffer TileOrder { uint tile_order[]; };
-layout(std430, binding = SURFCAST_BIND_SILHOUETTES) buffer Silhouettes {
-  uint silhouette_count;
-  uvec2 silhouette_parts[];
-};
+layout(std430, binding = SURFCAST_BIND_TILE_COUNT) readonly buffer TileCount { uint tile_count[]; };
+
+#include "include/silhouette_list.glsl"
 
 const ivec2 kTile = ivec2(SURFCAST_TILE_WIDTH, SURFCAST_TILE_HEIGHT);
 
@@ -65,10 +64,10 @@ uint find(ivec2 corner) {
   return found;
 }
 
-// Appends the pixels to the list, divided into parts of as many pixels as a lane of supersample.comp draws at once.
-void list(uint tile, uint found) {
+// Appends the pixels of a tile without large splats.
+void list_parts(uint tile, uint found) {
   uint parts = (uint(bitCount(found)) + uint(SURFCAST_COLUMNS) - 1u) / uint(SURFCAST_COLUMNS);
-  uint place = atomicAdd(silhouette_count, parts);
+  uint place = atomicAdd(silhouette_counts.x, parts);
   for (uint i = 0u; i < parts; ++i) {
     uint rest = found;
     for (int c = 0; c < SURFCAST_COLUMNS; ++c) rest &= rest - 1u;
@@ -77,10 +76,21 @@ void list(uint tile, uint found) {
   }
 }
 
+// Appends the pixels of a tile with large splats.
+void list_pixels(uint tile, uint found) {
+  uint end = silhouettes_end() - atomicAdd(silhouette_counts.y, uint(bitCount(found)));
+  for (; found != 0u; found &= found - 1u) silhouette_parts[--end] = uvec2(tile, found & (~found + 1u));
+}
+
 void main() {
   uint index = (first_group + gl_WorkGroupID.x) * uint(SURFCAST_SILHOUETTE_LANES) + gl_LocalInvocationID.x;
   if (index >= uint(frame.tiles.z)) return;
   int tile = int(tile_order[index]);
   uint found = find(ivec2(tile % frame.tiles.x, tile / frame.tiles.x) * kTile);
-  if (found != 0u) list(uint(tile), found);
+  if (found == 0u) return;
+  if (tile_count[tile + frame.tiles.z] == 0u) {
+    list_parts(uint(tile), found);
+  } else {
+    list_pixels(uint(tile), found);
+  }
 }

@@ -2,8 +2,10 @@
 // determined for every sample separately. The positions of the samples and their narrower prefilter together form the
 // prefilter of all other pixels.
 //
-// A lane draws a part of a tile's pixels: a column is a pixel and its rows are samples. Large splats need one sample
-// per lane: that variant (SURFCAST_LARGE) draws the samples one after another.
+// In tiles without large splats a lane draws a part of a tile's pixels: a column is a pixel and its rows are samples. In
+// tiles with large splats (SURFCAST_LARGE) a lane draws one sample, and the lanes of a pixel share their results. So no
+// lane walks over its lists more often than a lane of splat.comp: software GL silently ends the loops of a lane after
+// 65535 iterations in total (see render/tile_spans.h), and the samples after that would be black.
 #define SURFCAST_SUPERSAMPLED
 #include "shared/kernel.h"
 #include "shared/frame_layout.h"
@@ -12,23 +14,9 @@
 layout(location = SURFCAST_UNIFORM_FIRST_GROUP) uniform uint first_group;
 layout(local_size_x = SURFCAST_SILHOUETTE_LANES) in;
 
-layout(std430, binding = SURFCAST_BIND_SILHOUETTES) readonly buffer Silhouettes {
-  uint silhouette_count;
-  uvec2 silhouette_parts[];
-};
-
+#include "include/silhouette_list.glsl"
 #include "include/draw_lane.glsl"
 #include "include/write_pixel.glsl"
-
-const int kRounds = SURFCAST_SILHOUETTE_SAMPLES / SURFCAST_ROWS;
-
-#if SURFCAST_ROWS == 1
-vec2 place_in_round(int i) { return vec2(kSampleX[i], kSampleY[i]); }
-float mean(float samples) { return samples; }
-#else
-vec2 place_in_round(int i) { return vec2(0.0); }
-float mean(Rows samples) { return dot(samples, Rows(1.0 / float(SURFCAST_ROWS))); }
-#endif
 
 // The accumulated values of a pixel.
 struct Pixel {
@@ -38,16 +26,6 @@ struct Pixel {
   float opaque;
 };
 
-void add(inout Pixel pixel, Light light) {
-  const float share = 1.0 / float(kRounds);
-  pixel.light += share * vec3(mean(light.red), mean(light.green), mean(light.blue));
-  pixel.transmittance += share * mean(light.transmittance);
-#ifdef SURFCAST_EYE_DOME
-  pixel.depth += share * mean(light.depth);
-  pixel.opaque += share * mean(light.opaque);
-#endif
-}
-
 void write(ivec2 at, Pixel pixel) {
 #ifdef SURFCAST_EYE_DOME
   write_lit_pixel(at, pixel.light, pixel.transmittance, pixel.depth, pixel.opaque);
@@ -56,37 +34,86 @@ void write(ivec2 at, Pixel pixel) {
 #endif
 }
 
-// Draws at most SURFCAST_COLUMNS pixels of a tile and removes them from its mask, which must not be 0.
-void draw_some(TileLists tile, ivec2 corner, inout uint mask) {
-  ivec2 places[SURFCAST_COLUMNS];
-  Pixel pixels[SURFCAST_COLUMNS];
-  int count = min(bitCount(mask), SURFCAST_COLUMNS);
-  for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
-    int bit = findLSB(mask);
-    places[c] = c < count ? corner + ivec2(bit % SURFCAST_TILE_WIDTH, bit / SURFCAST_TILE_WIDTH) : places[0];
-    column_places[c] = vec2(places[c] - places[0]);
-    pixels[c] = Pixel(vec3(0.0), 0.0, 0.0, 0.0);
-    mask &= mask - 1u;
+ivec2 corner_of(uint tile) {
+  return ivec2(tile % uint(frame.tiles.x), tile / uint(frame.tiles.x)) *
+         ivec2(SURFCAST_TILE_WIDTH, SURFCAST_TILE_HEIGHT);
+}
+
+ivec2 place_in_tile(int bit) { return ivec2(bit % SURFCAST_TILE_WIDTH, bit / SURFCAST_TILE_WIDTH); }
+
+#ifdef SURFCAST_LARGE
+const uint kPixels = uint(SURFCAST_SILHOUETTE_LANES / SURFCAST_SILHOUETTE_SAMPLES);  // of a work group
+
+// The samples of the work group's pixels.
+shared vec4 sample_lights[SURFCAST_SILHOUETTE_LANES];  // and transmittance
+#ifdef SURFCAST_EYE_DOME
+shared vec2 sample_depths[SURFCAST_SILHOUETTE_LANES];  // and opaque
+#endif
+
+void draw_sample(uint tile, ivec2 at, uint lane) {
+  uint i = lane % uint(SURFCAST_SILHOUETTE_SAMPLES);
+  column_places[0] = vec2(0.0);
+  LightColumns light;
+  draw(lists_of_tile(tile), 1, vec2(frame.region.xy + at) + 0.5 + vec2(kSampleX[i], kSampleY[i]), light);
+  sample_lights[lane] = vec4(light[0].red, light[0].green, light[0].blue, light[0].transmittance);
+#ifdef SURFCAST_EYE_DOME
+  sample_depths[lane] = vec2(light[0].depth, light[0].opaque);
+#endif
+}
+
+Pixel mean_of_samples(uint first) {
+  const float share = 1.0 / float(SURFCAST_SILHOUETTE_SAMPLES);
+  Pixel pixel = Pixel(vec3(0.0), 0.0, 0.0, 0.0);
+  for (uint i = first; i < first + uint(SURFCAST_SILHOUETTE_SAMPLES); ++i) {
+    pixel.light += share * sample_lights[i].rgb;
+    pixel.transmittance += share * sample_lights[i].a;
+#ifdef SURFCAST_EYE_DOME
+    pixel.depth += share * sample_depths[i].x;
+    pixel.opaque += share * sample_depths[i].y;
+#endif
   }
-  for (int i = 0; i < kRounds; ++i) {
-    LightColumns light;
-    draw(tile, count, vec2(frame.region.xy + places[0]) + 0.5 + place_in_round(i), light);
-    for (int c = 0; c < SURFCAST_COLUMNS; ++c) add(pixels[c], light[c]);
-  }
-  for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
-    if (c < count) write(places[c], pixels[c]);
-  }
+  return pixel;
+}
+
+void main() {
+  uint lane = gl_LocalInvocationID.x;
+  uint index = (first_group + gl_WorkGroupID.x) * kPixels + lane / uint(SURFCAST_SILHOUETTE_SAMPLES);
+  bool listed = index < silhouette_counts.y;
+  uvec2 part = listed ? silhouette_parts[silhouettes_end() - 1u - index] : uvec2(0u, 1u);
+  ivec2 at = corner_of(part.x) + place_in_tile(findLSB(part.y));
+  if (listed) draw_sample(part.x, at, lane);
+  barrier();
+  if (listed && lane % uint(SURFCAST_SILHOUETTE_SAMPLES) == 0u) write(at, mean_of_samples(lane));
+}
+#else
+float mean(Rows samples) { return dot(samples, Rows(1.0 / float(SURFCAST_ROWS))); }
+
+Pixel mean_of_rows(Light light) {
+  Pixel pixel = Pixel(vec3(mean(light.red), mean(light.green), mean(light.blue)), mean(light.transmittance), 0.0, 0.0);
+#ifdef SURFCAST_EYE_DOME
+  pixel.depth = mean(light.depth);
+  pixel.opaque = mean(light.opaque);
+#endif
+  return pixel;
 }
 
 void main() {
   uint index = (first_group + gl_WorkGroupID.x) * uint(SURFCAST_SILHOUETTE_LANES) + gl_LocalInvocationID.x;
-  if (index >= silhouette_count) return;
+  if (index >= silhouette_counts.x) return;
   uvec2 part = silhouette_parts[index];
-  TileLists tile = lists_of_tile(part.x);
-  if (!belongs_to_this_build(tile)) return;
-  ivec2 corner = ivec2(part.x % uint(frame.tiles.x), part.x / uint(frame.tiles.x)) *
-                 ivec2(SURFCAST_TILE_WIDTH, SURFCAST_TILE_HEIGHT);
+  ivec2 corner = corner_of(part.x);
+  ivec2 places[SURFCAST_COLUMNS];
+  int count = bitCount(part.y);
   uint mask = part.y;
-  do draw_some(tile, corner, mask);
-  while (mask != 0u);
+  for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
+    places[c] = c < count ? corner + place_in_tile(findLSB(mask)) : places[0];
+    column_places[c] = vec2(places[c] - places[0]);
+    mask &= mask - 1u;
+  }
+  LightColumns light;
+  draw(lists_of_tile(part.x), count, vec2(frame.region.xy + places[0]) + 0.5, light);
+  for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
+    if (c < count) write(places[c], mean_of_rows(light[c]));
+  }
 }
+#endif

@@ -8,6 +8,7 @@
 
 #include "base/stopwatch.h"
 #include "render/tile_spans.h"
+#include "shared/kernel.h"
 
 namespace surfcast::render {
 namespace {
@@ -354,8 +355,8 @@ void clear_silhouettes(const RegionTask& task, SplatBuffers& buffers) {
   const size_t pixels = kPixels * static_cast<size_t>(task.constants.tiles.z);
   buffers.fronts.reserve(pixels * sizeof(float));
   buffers.silhouettes.reserve((1 + pixels) * sizeof(glm::uvec2));
-  constexpr GLuint kNone = 0;
-  glNamedBufferSubData(buffers.silhouettes.name(), 0, sizeof kNone, &kNone);
+  constexpr GLuint kNone[2] = {};
+  glNamedBufferSubData(buffers.silhouettes.name(), 0, sizeof kNone, kNone);
 }
 
 Status splat(const RegionTask& task, const layout::Counters& counters, const SplatPrograms& variant,
@@ -379,8 +380,8 @@ Status splat(const RegionTask& task, const layout::Counters& counters, const Spl
 }
 
 /// Finds the pixels at silhouettes and draws them again.
-Status supersample_silhouettes(const RegionTask& task, const layout::Counters& counters, const SplatPrograms& variant,
-                               SplatBuffers& buffers, const Preemption& preemption) {
+Status supersample_silhouettes(const RegionTask& task, const SplatPrograms& variant, SplatBuffers& buffers,
+                               const Preemption& preemption) {
   const gl::DebugGroup group("silhouettes");
   const auto dispatch = [&](const gl::Program& program, int lanes, BatchSizer& sizer) {
     return dispatch_in_batches({ceil_divide(lanes, SURFCAST_SILHOUETTE_LANES), {}}, sizer, preemption, [&] {
@@ -390,11 +391,12 @@ Status supersample_silhouettes(const RegionTask& task, const layout::Counters& c
   };
   Status status = dispatch(*variant.silhouettes, task.constants.tiles.z, buffers.find_batches);
   if (!status) return status;
-  GLint parts = 0;
-  glGetNamedBufferSubData(buffers.silhouettes.name(), 0, sizeof parts, &parts);
-  status = dispatch(*variant.supersample, parts, buffers.supersample_batches);
-  if (!status || counters.counts.y == 0) return status;
-  return dispatch(*variant.supersample_large, parts, buffers.supersample_batches);
+  GLint counts[2] = {};
+  glGetNamedBufferSubData(buffers.silhouettes.name(), 0, sizeof counts, counts);
+  status = dispatch(*variant.supersample, counts[0], buffers.supersample_batches);
+  if (!status) return status;
+  return dispatch(*variant.supersample_large, counts[1] * SURFCAST_SILHOUETTE_SAMPLES,
+                  buffers.supersample_large_batches);
 }
 
 /// Converts the light and depth of `drawn` to the requested pixels.
@@ -438,7 +440,7 @@ Result<RegionStats> draw_region(const RegionTask& task, Programs& programs, Spla
     return fail(std::move(status.error()));
   }
   if (task.variant.silhouettes) {
-    Status status = supersample_silhouettes(task, *counters, *variant, buffers, preemption);
+    Status status = supersample_silhouettes(task, *variant, buffers, preemption);
     if (!status) return fail(std::move(status.error()));
   }
   if (task.variant.eye_dome) {

@@ -73,6 +73,7 @@ struct SplatBuffers {
   BatchSizer splat_large_batches;
   BatchSizer find_batches;
   BatchSizer supersample_batches;
+  BatchSizer supersample_large_batches;
   ConstantTexels srgb;  ///< linear_root_table
   TexelBuffer splats{"splats", GL_RGBA32UI, 16};
   TexelBuffer discs{"discs", GL_RGBA32UI, 16};

@@ -123,7 +123,7 @@ struct Counters {
 #define SURFCAST_BIND_LIGHT 2         // vec4 per pixel: linear light and coverage before eye-dome lighting
 #define SURFCAST_BIND_DEPTH 10        // vec2 per pixel: mean log2 of the visible surface's depth, coverage
 #define SURFCAST_BIND_FRONTS 11       // float per pixel: inverse depth of the front surface, see silhouettes.comp
-#define SURFCAST_BIND_SILHOUETTES 12  // count, then parts of tiles in any order: tile, bit mask of its pixels by rows
+#define SURFCAST_BIND_SILHOUETTES 12  // pixels at silhouettes, see include/silhouette_list.glsl
 // Uniform buffers:
 #define SURFCAST_BIND_FRAME 0
 #define SURFCAST_BIND_DISPLAY 1
