@@ -116,6 +116,26 @@ TEST_F(NumericsGLTest, SilhouettesOfSmallAndLargeSplatsInOnePicture) {
   }
 }
 
+/// Eight sheets one behind another, each of which covers a part of every pixel, with about three thousand
+/// splats on a tile of pixels of this size; before them, one surfel that spans many pixels.
+surfel::SurfelCloud sheer_sheets_behind_a_large_surfel(double pixel) {
+  const auto side = static_cast<int>(4 / (0.45 * pixel));
+  surfel::SurfelCloud cloud = motley_square(side, 4, {0, 0, 0}, {0, 0, 1});
+  for (int i = 1; i < 8; ++i) append(cloud, motley_square(side, 4, {0.01 * i, 0.013 * i, -0.5 * i}, {0, 0, 1}));
+  for (float& radius : cloud.radii) radius *= 0.4F;
+  append(cloud, single_surfel({0.05, 0.02, 9}, {0.1, 0.2, 1}, 0.05F, {240, 230, 220}));
+  return cloud;
+}
+
+TEST_F(NumericsGLTest, SilhouettesOfEightSurfacesInCrowdedTiles) {
+  const double distance = 10;
+  const double pixel = distance * 2 * std::tan(15 * kDegree) / 24;
+  const ModelPointer& model = model_of(sheer_sheets_behind_a_large_surfel(pixel));
+  picture::PictureRequest request = view_from({0, 0, distance}, {0, 0, 0}, 30, 24, 24);
+  request.silhouettes = true;
+  expect_within(difference("eight surfaces in crowded tiles", model, request), kSplats);
+}
+
 TEST_F(NumericsGLTest, PicturesOfOnePixel) {
   const ModelPointer& model = model_of(motley_square(50, 4, {0, 0, 0}, {0.2, 0.1, 1}));
   for (const double angle : {0.1, 30.0, 170.0}) {
