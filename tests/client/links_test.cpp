@@ -19,8 +19,8 @@ TEST(ThinClient, LinksNothingOfTheServer) {
 TEST(ThinClient, CarriesNothingOfTheServer) {
   const ProgramOutcome symbols = run_program("nm -C " SURFCAST_CLIENT);
   ASSERT_EQ(symbols.code, 0);
-  ASSERT_NE(symbols.output.find("surfcast::ServerConnection::open"), std::string::npos);
-  for (const char* name : {"draco::", "surfcast::ModelFile", "surfcast::Renderer"}) {
+  ASSERT_NE(symbols.output.find("surfcast::client::ServerConnection::open"), std::string::npos);
+  for (const char* name : {"draco::", "surfcast::model::ModelFile", "surfcast::render::Renderer"}) {
     EXPECT_EQ(symbols.output.find(name), std::string::npos) << name;
   }
 }
