@@ -138,7 +138,7 @@ TEST_F(ViewSessionTest, AnUpdateInterruptsWhatIsBeingRefined) {
   control_->slow_motion = false;
   update(1, picture("cube", 1), /*moving=*/false);
   EXPECT_EQ(next_frame().update(), 1u);
-  EXPECT_EQ(control_->cancelled, 1);
+  EXPECT_TRUE(eventually([&] { return control_->cancelled == 1; }));
   control_->slow = false;
   EXPECT_EQ(converged_frame().update(), 1u);
 }
