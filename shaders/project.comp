@@ -1,5 +1,5 @@
 // Projects, culls and bounds every surfel of the visible blocks once. Visible surfels become splat records, and the
-// tiles they touch are counted. The order of the records does not affect the picture (see include/fixed_sum.glsl).
+// tiles that small splats touch are counted (those of large splats by bin.comp). The order of the records does not affect the picture (see include/fixed_sum.glsl).
 //
 // A work group runs over its chunk twice: first all lanes find the surfels to draw, then they share these among them.
 // Idle lanes cost as much as active ones, most of all in software, and with back faces or levels of detail most surfels
@@ -24,6 +24,7 @@ shared uint small_count;
 shared uint other_count;
 
 #include "include/projection_buffers.glsl"
+layout(std430, binding = SURFCAST_BIND_TILE_COUNT) buffer TileCount { uint tile_count[]; };
 #ifdef SURFCAST_LIT_COLOR
 layout(binding = SURFCAST_UNIT_NORMALS, r32ui) writeonly uniform uimageBuffer normals;
 #endif
@@ -46,6 +47,14 @@ struct Surfel {
 
 #include "include/tile_range.glsl"
 
+void count_tiles(uvec2 range) {
+  for (uint y = range.x >> 16; y <= range.y >> 16; ++y) {
+    for (uint x = range.x & 0xffffu; x <= (range.y & 0xffffu); ++x) {
+      atomicAdd(tile_count[y * uint(frame.tiles.x) + x], 1u);
+    }
+  }
+}
+
 void append(bool large, uvec2 range, uvec4 a, uvec4 b, uvec4 disc, vec3 n) {
   uint slot = large ? atomicAdd(counters.counts.y, 1u) : atomicAdd(counters.counts.x, 1u);
   // Large splats fill the record buffer from its end. Records beyond the capacity are only counted: the caller then
@@ -60,7 +69,7 @@ void append(bool large, uvec2 range, uvec4 a, uvec4 b, uvec4 disc, vec3 n) {
 #ifdef SURFCAST_LIT_COLOR
   imageStore(normals, int(slot), uvec4(pack_biased_normal(n), 0u, 0u, 0u));
 #endif
-  count_tiles(range, large ? uint(frame.tiles.z) : 0u);
+  if (!large) count_tiles(range);
 }
 
 // Depth range of a disc of the given radius, as a distance along z.

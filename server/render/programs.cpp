@@ -102,6 +102,9 @@ Result<Programs> Programs::create(const KernelShape& shape, const std::string& d
   if (!offsets) return fail(std::move(offsets.error()));
   Result<gl::Program> bin = compute_program("bin.comp", "bin.comp", {}, defines);
   if (!bin) return fail(std::move(bin.error()));
+  Result<gl::Program> count = compute_program("bin.comp", "bin.comp", {}, defines + "#define SURFCAST_COUNTS_LARGE\n");
+  if (!count) return fail(std::move(count.error()));
+  programs.count_large_ = std::move(*count);
   programs.bin_offsets_ = std::move(*offsets);
   programs.bin_ = std::move(*bin);
   return programs;

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "base/stopwatch.h"
+#include "render/thinning.h"
 #include "render/tile_spans.h"
 #include "shared/kernel.h"
 
@@ -153,13 +154,6 @@ void upload_uniforms(StorageBuffer& buffer, const T& constants) {
   glNamedBufferSubData(buffer.name(), 0, static_cast<GLsizeiptr>(sizeof constants), &constants);
 }
 
-/// How the splats of overfull tiles are sampled (shaders/include/thinning.glsl).
-struct Thinning {
-  uint32_t most = 0;   ///< splats per tile; 0: no thinning
-  bool alike = false;  ///< all splats with equal probability, also those of high gain
-  bool operator==(const Thinning&) const = default;
-};
-
 void upload_constants(const RegionTask& task, const Thinning& thinning, SplatBuffers& buffers) {
   layout::FrameConstants constants = task.constants;
   constants.tiles.w = static_cast<int>(buffers.splat_capacity());
@@ -220,9 +214,13 @@ void bind_for_projection(const RegionTask& task, const SplatBuffers& buffers) {
   buffers.srgb.bind(SURFCAST_UNIT_SRGB);
 }
 
-void bind_for_binning(const SplatBuffers& buffers) {
+void bind_for_counting(const SplatBuffers& buffers) {
   bind_frame(buffers);
   buffers.bounds.bind_for_reading(SURFCAST_UNIT_BOUNDS);
+}
+
+void bind_for_binning(const SplatBuffers& buffers) {
+  bind_for_counting(buffers);
   buffers.lists.bind_for_writing(SURFCAST_UNIT_LISTS);
 }
 
@@ -250,14 +248,6 @@ layout::Counters read_counters(const SplatBuffers& buffers) {
   return counters;
 }
 
-/// The thinning to try after `tried` gave these counts; equal to `tried` if the counts are acceptable.
-Thinning thinner(const layout::Counters& counters, const Thinning& tried, size_t list_limit) {
-  if (tried.most == 0) return {counters.counts.w > SURFCAST_TILE_CAPACITY ? SURFCAST_TILE_CAPACITY : 0U, false};
-  const bool lists_fit = counters.counts.z <= list_limit;
-  if (!tried.alike) return {tried.most, counters.counts.w > SURFCAST_TILE_CAPACITY_LIMIT || !lists_fit};
-  return {lists_fit ? tried.most : std::max(tried.most / 2, 1U), true};
-}
-
 /// The initial capacity in splats. With lazily committed memory there is room for every surfel, so the projection is
 /// never repeated for lack of room.
 size_t first_capacity(const ProjectionWork& work, const SplatBuffers& buffers) {
@@ -281,6 +271,37 @@ Status project_kinds(const RegionTask& task, const ProjectionWork& work, const S
   return {};
 }
 
+size_t ceil_divide(int total, int part) {
+  return static_cast<size_t>((total + part - 1) / part);
+}
+
+Groups groups_of_lanes(size_t lanes) {
+  return {(lanes + SURFCAST_CHUNK - 1) / SURFCAST_CHUNK, {}};
+}
+
+/// Lanes that bin the large splats.
+size_t large_lanes(const RegionTask& task, const layout::Counters& counters) {
+  return counters.counts.y * ceil_divide(task.constants.tiles.y, SURFCAST_BAND_ROWS);
+}
+
+Status count_large(const RegionTask& task, const layout::Counters& counters, const Programs& programs,
+                   SplatBuffers& buffers, const Preemption& preemption) {
+  return dispatch_in_batches(groups_of_lanes(large_lanes(task, counters)), buffers.count_large_batches, preemption,
+                             [&] {
+                               bind_for_counting(buffers);
+                               glUseProgram(programs.count_large().name());
+                             });
+}
+
+/// Sums up the tile counts.
+layout::Counters sum_up(const Programs& programs, const SplatBuffers& buffers) {
+  bind_frame(buffers);
+  glUseProgram(programs.bin_offsets().name());
+  glDispatchCompute(1, 1, 1);
+  glMemoryBarrier(GL_ALL_BARRIER_BITS);
+  return read_counters(buffers);
+}
+
 /// Projects the visible blocks and sums up the tile counts. Repeats this if the records did not fit, or if the splats
 /// of a tile must be thinned.
 Result<layout::Counters> project(const RegionTask& task, const ProjectionWork& work, Programs& programs,
@@ -298,38 +319,33 @@ Result<layout::Counters> project(const RegionTask& task, const ProjectionWork& w
     if (Status projected = project_kinds(task, work, variant, buffers, preemption); !projected) {
       return fail(std::move(projected.error()));
     }
-    bind_frame(buffers);
-    glUseProgram(programs.bin_offsets().name());
-    glDispatchCompute(1, 1, 1);
-    glMemoryBarrier(GL_ALL_BARRIER_BITS);
-    const layout::Counters counters = read_counters(buffers);
-    const size_t needed = size_t{counters.counts.x} + counters.counts.y;
+    const layout::Counters splats = read_counters(buffers);
+    const size_t needed = size_t{splats.counts.x} + splats.counts.y;
     if (needed > buffers.splat_capacity()) {
       // Each record has two texels. The pool is limited so that the records of all its surfels fit.
       buffers.reserve_splats(std::min(needed + needed / 4, residency::SurfelBuffer::device_limit() / 2), with_normals);
       continue;
     }
-    const Thinning next = thinner(counters, thinning, residency::SurfelBuffer::device_limit());
+    Status counted = count_large(task, splats, programs, buffers, preemption);
+    if (!counted) return fail(std::move(counted.error()));
+    const layout::Counters counters = sum_up(programs, buffers);
+    const Thinning next = next_thinning(counters, thinning, residency::SurfelBuffer::device_limit());
     if (next == thinning) return counters;
     thinning = next;
   }
 }
 
-Status bin(const layout::Counters& counters, Programs& programs, SplatBuffers& buffers, const Preemption& preemption) {
+Status bin(const RegionTask& task, const layout::Counters& counters, const Programs& programs, SplatBuffers& buffers,
+           const Preemption& preemption) {
   const gl::DebugGroup group("bin");
   const size_t entries = counters.counts.z;
   buffers.lists.reserve(std::clamp<size_t>(entries + entries / 4, 1, residency::SurfelBuffer::device_limit()),
                         buffers.lazy);
-  const size_t splats = size_t{counters.counts.x} + counters.counts.y;
-  return dispatch_in_batches({(splats + SURFCAST_CHUNK - 1) / SURFCAST_CHUNK, {}}, buffers.bin_batches, preemption,
-                             [&] {
-                               bind_for_binning(buffers);
-                               glUseProgram(programs.bin().name());
-                             });
-}
-
-size_t ceil_divide(int total, int part) {
-  return static_cast<size_t>((total + part - 1) / part);
+  const Groups groups = groups_of_lanes(counters.counts.x + large_lanes(task, counters));
+  return dispatch_in_batches(groups, buffers.bin_batches, preemption, [&] {
+    bind_for_binning(buffers);
+    glUseProgram(programs.bin().name());
+  });
 }
 
 /// Draws a span of tiles with a variant of the splat kernel.
@@ -431,7 +447,8 @@ Result<RegionStats> draw_region(const RegionTask& task, Programs& programs, Spla
   stats.project_ms = project_watch.milliseconds();
 
   const WorkStopwatch bin_watch(preemption);
-  if (Status status = bin(*counters, programs, buffers, preemption); !status) return fail(std::move(status.error()));
+  if (Status status = bin(task, *counters, programs, buffers, preemption); !status)
+    return fail(std::move(status.error()));
   stats.bin_ms = bin_watch.milliseconds();
 
   const WorkStopwatch splat_watch(preemption);

@@ -68,6 +68,7 @@ class ConstantTexels {
 /// The buffers between the passes of one region, and the batch sizes of the passes.
 struct SplatBuffers {
   BatchSizer project_batches;
+  BatchSizer count_large_batches;
   BatchSizer bin_batches;
   std::array<BatchSizer, kTileSpans> splat_batches;
   BatchSizer splat_large_batches;

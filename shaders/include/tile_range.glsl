@@ -11,11 +11,3 @@ uvec2 tile_range(vec2 low, vec2 high, out bool outside) {
   uvec2 b = uvec2(clamp(last, vec2(0.0), size - 1.0)) / tile;
   return uvec2(a.x | (a.y << 16), b.x | (b.y << 16));
 }
-
-void count_tiles(uvec2 range, uint first_list) {
-  for (uint y = range.x >> 16; y <= range.y >> 16; ++y) {
-    for (uint x = range.x & 0xffffu; x <= (range.y & 0xffffu); ++x) {
-      atomicAdd(tile_count[first_list + y * uint(frame.tiles.x) + x], 1u);
-    }
-  }
-}

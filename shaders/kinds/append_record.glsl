@@ -1,4 +1,5 @@
-// Appends a record to the lists of large splats. For the projection of a kind; SURFCAST_KIND is the number of the kind.
+// Appends a record to those of large splats. bin.comp counts its tiles. For the projection of a kind; SURFCAST_KIND is
+// the number of the kind.
 #include "include/projection_buffers.glsl"
 #include "include/thinning.glsl"
 #include "include/tile_range.glsl"
@@ -19,5 +20,4 @@ void append_record(uint id, vec2 low, vec2 high, uvec3 a, uvec4 b, uvec4 c) {
   imageStore(splats, int(2u * slot + 1u), b);
   imageStore(discs, int(slot), c);
   imageStore(bounds, int(slot), uvec4(range, 0u, 0u));
-  count_tiles(range, uint(frame.tiles.z));
 }

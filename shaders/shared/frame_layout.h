@@ -30,6 +30,8 @@ namespace surfcast::layout {
 #define SURFCAST_TILE_CAPACITY 3072
 // Splats of a tile after thinning above which all its splats are sampled with equal probability.
 #define SURFCAST_TILE_CAPACITY_LIMIT 4000
+// Rows of tiles that one lane bins of a large splat.
+#define SURFCAST_BAND_ROWS 120
 // Splats between two carries of the fixed-point sums (see include/fixed_sum.glsl).
 #define SURFCAST_CARRY_INTERVAL 32
 

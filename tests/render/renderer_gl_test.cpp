@@ -151,6 +151,16 @@ TEST_F(RendererGLTest, OneSurfelMayFillTheScreen) {
   EXPECT_EQ(count_covered(draw(model, request).image, {10, 200, 30}, 1), 96 * 64);
 }
 
+TEST_F(RendererGLTest, SurfelsMayFillTheLargestRegion) {
+  // A region of 512 x 512 tiles, each of which every surfel touches.
+  surfel::SurfelCloud cloud = testing::single_surfel({0, 0, 0}, {0, 0, 1}, 1, {10, 200, 30});
+  for (int i = 1; i < 10; ++i) {
+    testing::append(cloud, testing::single_surfel({0, 0, -1e-3 * i}, {0, 0, 1}, 1, {10, 200, 30}));
+  }
+  const testing::ModelPointer& model = model_of(cloud);
+  EXPECT_EQ(count_covered(draw(model, front_view(2048, 2048, 0.05)).image, {10, 200, 30}, 1), 2048 * 2048);
+}
+
 TEST_F(RendererGLTest, FromWithinAModelEveryPixelIsCovered) {
   // Surfels in front of, beside, astride and behind the eye.
   surfel::SurfelCloud cloud = testing::fibonacci_sphere(2000, 1, {0, 0, 0}, {90, 120, 150});
