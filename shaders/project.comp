@@ -1,5 +1,6 @@
 // Projects, culls and bounds every surfel of the visible blocks once. Visible surfels become splat records, and the
-// tiles that small splats touch are counted (those of large splats by bin.comp). The order of the records does not affect the picture (see include/fixed_sum.glsl).
+// tiles that small splats touch are counted (bin.comp counts those of large splats). The order of the records does not
+// affect the picture (see include/fixed_sum.glsl).
 //
 // A work group runs over its chunk twice: first all lanes find the surfels to draw, then they share these among them.
 // Idle lanes cost as much as active ones, most of all in software, and with back faces or levels of detail most surfels

@@ -58,7 +58,8 @@ uint find(ivec2 corner) {
       bool across = at.x > 0 && at.x < size.x - 1 && bends(seen[y][x - 1], seen[y][x], seen[y][x + 1]);
       bool down = at.y > 0 && at.y < size.y - 1 && bends(seen[y - 1][x], seen[y][x], seen[y + 1][x]);
       bool inside = all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, size));
-      if (inside && (across || down)) found |= pixels_between(at - corner - kReach, at - corner + kReach, size - corner);
+      ivec2 place = at - corner;
+      if (inside && (across || down)) found |= pixels_between(place - kReach, place + kReach, size - corner);
     }
   }
   return found;

@@ -2,10 +2,10 @@
 // determined for every sample separately. The positions of the samples and their narrower prefilter together form the
 // prefilter of all other pixels.
 //
-// In tiles without large splats a lane draws a part of a tile's pixels: a column is a pixel and its rows are samples. In
-// tiles with large splats (SURFCAST_LARGE) a lane draws one sample, and the lanes of a pixel share their results. So no
-// lane walks over its lists more often than a lane of splat.comp: software GL silently ends the loops of a lane after
-// 65535 iterations in total (see render/tile_spans.h), and the samples after that would be black.
+// In tiles without large splats a lane draws a part of a tile's pixels: a column is a pixel and its rows are samples.
+// In tiles with large splats (SURFCAST_LARGE) a lane draws one sample, and the lanes of a pixel share their results. So
+// no lane walks over its lists more often than a lane of splat.comp: software GL silently ends the loops of a lane
+// after 65535 iterations in total (see render/tile_spans.h), and the samples after that would be black.
 #define SURFCAST_SUPERSAMPLED
 #include "shared/kernel.h"
 #include "shared/frame_layout.h"
