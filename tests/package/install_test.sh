@@ -1,10 +1,12 @@
 #!/bin/sh
-# install_test.sh CMAKE BUILD VERSION WINDOW: installs into a folder of its own and looks at what is there.
+# install_test.sh CMAKE BUILD VERSION WINDOW DATA: installs into a folder of its own and looks at what is there. DATA has
+# the models of the tests.
 set -eu
 cmake=$1
 build=$2
 version=$3
 window=$4
+data=$5
 prefix=$(mktemp -d)
 trap 'rm -rf "$prefix"' EXIT
 
@@ -41,6 +43,13 @@ for program in $programs; do
   grep --quiet "complete .* $program\$" "$script" || fail "$script completes nothing"
   [ -s "$prefix/share/zsh/site-functions/_$program" ] || fail "there is no completion for zsh"
   [ -s "$prefix/share/fish/vendor_completions.d/$program.fish" ] || fail "there is no completion for fish"
+done
+
+# The server finds its module of image codecs where both are installed.
+[ -s "$prefix/lib/surfcast/image_codecs.so" ] || fail "there is no module of image codecs"
+for format in png jpg webp exr; do
+  "$prefix/bin/surfcastd" render "$data/sphere-and-grid-v2.surf" --resolution 32,24 --output "$prefix/picture.$format"
+  [ -s "$prefix/picture.$format" ] || fail "the installed server wrote no picture in $format"
 done
 
 # The program with the window is found beside the client, and the viewer beside the server.
