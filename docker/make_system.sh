@@ -19,8 +19,8 @@ dpkg --listfiles libc6 | sed -n 's|^/\(.*/lib[^/]*\.so[^/]*\)$|\1|p; s|^/\(.*/ld
   cp --no-dereference "$file" "$root/$file"
 done
 
-# By these, NVIDIA's container toolkit knows where to put the driver's libraries, and libEGL finds a driver. The names of
-# Mesa's drivers are hard links to one file, which --archive keeps.
+# By these, NVIDIA's container toolkit knows where to put the driver's libraries, and libEGL finds a driver. The names
+# of Mesa's drivers are hard links to one file, which --archive keeps.
 cp --archive --parents "$libraries/dri" etc/debian_version etc/os-release usr/lib/os-release etc/ld.so.conf \
   etc/ld.so.conf.d etc/nsswitch.conf etc/passwd etc/group usr/share/drirc.d usr/share/glvnd usr/share/libdrm "$root"
 by_name="$libraries/libEGL.so.1 $libraries/libEGL_mesa.so.0 $libraries/libOpenGL.so.0"

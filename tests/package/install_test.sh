@@ -1,6 +1,6 @@
 #!/bin/sh
-# install_test.sh CMAKE BUILD VERSION WINDOW DATA: installs into a folder of its own and looks at what is there. DATA has
-# the models of the tests.
+# install_test.sh CMAKE BUILD VERSION WINDOW DATA: installs into a folder of its own and looks at what is there. DATA
+# has the models of the tests.
 set -eu
 cmake=$1
 build=$2
