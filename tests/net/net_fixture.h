@@ -52,8 +52,11 @@ class NetFixture : public ::testing::Test {
   /// Polls until `condition` holds; false after ten seconds.
   template <typename Condition>
   static bool eventually(Condition condition) {
-    for (int i = 0; i < 10'000 && !condition(); ++i) std::this_thread::sleep_for(milliseconds(1));
-    return condition();
+    for (int i = 0; i < 10'000; ++i) {
+      if (condition()) return true;
+      std::this_thread::sleep_for(milliseconds(1));
+    }
+    return false;
   }
   [[nodiscard]] std::string http(const std::string& request) const {
     RawSocket socket(port_);
