@@ -133,7 +133,10 @@ Result<std::vector<const gl::Program*>> Programs::projections(const Variant& var
     const kinds::KindShaders shaders = kind.kind->shaders();
     const Source source{"projection of " + std::string(kind.kind->name()), kFile, {{kFile, shaders.project}}};
     const std::string number = shaders.fragment.empty() ? "" : define("SURFCAST_KIND", static_cast<int>(kind.number));
-    const Result<const gl::Program*> compiled = program(source, project_defines(variant) + lanes + number);
+    std::string defines = project_defines(variant);
+    defines += lanes;
+    defines += number;
+    const Result<const gl::Program*> compiled = program(source, defines);
     if (!compiled) return fail(compiled.error());
     programs.push_back(*compiled);
   }
