@@ -73,7 +73,7 @@ WebSocketChannel::WebSocketChannel(std::unique_ptr<ClientSocket> socket, std::st
 /// Turns the connection into a WebSocket.
 Status WebSocketChannel::upgrade(TimePoint deadline) {
   stream_.async_handshake(response_, host_, "/ws", upgrading_.begin());
-  const Status outcome = socket_->finish(upgrading_, deadline);
+  Status outcome = socket_->finish(upgrading_, deadline);
   if (outcome || upgrading_.pending) return outcome;
   const error_code& code = upgrading_.outcome;
   if (code == http::error::end_of_stream || code == http::error::partial_message) {

@@ -37,7 +37,7 @@ std::filesystem::path find_viewer() {
   std::error_code code;
   const fs::path programs = fs::read_symlink("/proc/self/exe", code).parent_path();
   for (const char* place : {"../client/web/dist", "../share/surfcast/viewer"}) {
-    const fs::path folder = (programs / place).lexically_normal();
+    fs::path folder = (programs / place).lexically_normal();
     if (fs::is_regular_file(folder / "index.html", code)) return folder;
   }
   return {};

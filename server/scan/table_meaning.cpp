@@ -133,6 +133,7 @@ surfel::ScalarValues read_scalars(const Column& column, size_t rows, ScalarType 
   return with_type(type, [&](auto zero) {
     using T = decltype(zero);
     std::vector<T> values(rows);
+    // NOLINTNEXTLINE(bugprone-signed-char-misuse): numbers of 8 bits, not characters
     for_each_value(column, rows, [&](size_t i, auto value) { values[i] = static_cast<T>(value); });
     return surfel::ScalarValues(std::move(values));
   });
