@@ -49,7 +49,8 @@ TEST_F(ShutdownTest, APictureThatTakesTooLongIsCancelled) {
   const Stopwatch watch;
   stop();
   EXPECT_LT(watch.seconds(), 10);
-  EXPECT_EQ(control_->cancelled, 1);
+  EXPECT_GE(control_->cancelled, 1);
+  EXPECT_EQ(control_->cancelled, control_->drawn);  // the second picture may have begun, too; none is finished
   EXPECT_FALSE(connection->receive());
 }
 
