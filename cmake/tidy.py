@@ -10,8 +10,8 @@ With --minutes, no further file is begun after that time. What was changed last 
 order that --seed decides, so that runs with other seeds check other files. A finding fails the run, a file that was not
 reached does not.
 
-Tests and benchmarks are not checked: the macros of the test framework make it take five times as long, and a test
-that follows a null pointer fails by itself.
+--folders limits the check to some folders, separated by |. The gate leaves tests and benchmarks out: the macros of the
+test framework make them take five times as long.
 """
 
 import argparse
@@ -26,7 +26,6 @@ import sys
 import time
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-CHECKED = re.compile(r"(server|client|protocol)/.*\.cpp$")
 RECENT_COMMITS = 10
 
 
@@ -40,12 +39,13 @@ def without_precompiled_headers(command):
     return re.sub(r"-(Winvalid-pch|fpch-preprocess) ?", "", command)
 
 
-def read_entries(build):
+def read_entries(build, folders):
     """The sources to check: file relative to the root, compile command, object file; and a database without others."""
     entries = {}
+    checked = re.compile(rf"({folders})/.*\.cpp$")
     for entry in json.loads((build / "compile_commands.json").read_text()):
         file = os.path.relpath(entry["file"], ROOT)
-        if not CHECKED.match(file):
+        if not checked.match(file):
             continue
         entry["command"] = without_precompiled_headers(entry["command"])
         entries.setdefault(file, entry)
@@ -121,6 +121,7 @@ def parse_arguments():
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("--minutes", type=float, default=float("inf"))
     parser.add_argument("--seed", default="")
+    parser.add_argument("--folders", default="server|client|protocol|tests|bench")
     return parser.parse_args()
 
 
@@ -131,7 +132,7 @@ def main():
     cache = pathlib.Path(os.environ.get("SURFCAST_TIDY_CACHE", default_cache))
     cache.mkdir(parents=True, exist_ok=True)
 
-    entries, database = read_entries(build)
+    entries, database = read_entries(build, arguments.folders)
     version = output_of("clang-tidy", "--version")
     tool = version + (ROOT / ".clang-tidy").read_text() + pathlib.Path(__file__).read_text()
     headers, fingerprints = read_headers(build), Fingerprints(build)
