@@ -130,12 +130,13 @@ TEST_F(ViewSessionTest, AClientThatAnswersNothingGetsTwoFramesAndHoldsUpNobody) 
 }
 
 TEST_F(ViewSessionTest, AnUpdateInterruptsWhatIsBeingRefined) {
+  // Set before the view opens: a finer frame that is fast would be done before the update arrives.
+  control_->slow_motion = false;
+  control_->slow = true;
   start();
   open_view();
   next_frame();
-  control_->slow = true;
   ASSERT_TRUE(eventually([&] { return control_->drawn == 2; })) << "the finer frame";
-  control_->slow_motion = false;
   update(1, picture("cube", 1), /*moving=*/false);
   EXPECT_EQ(next_frame().update(), 1u);
   EXPECT_TRUE(eventually([&] { return control_->cancelled == 1; }));
