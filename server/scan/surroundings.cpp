@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
+#include <glm/vec2.hpp>
 #include <limits>
 #include <numbers>
 #include <span>
@@ -35,13 +37,13 @@ Tangents tangents_of(const glm::dvec3& n) {
   return {e0, glm::cross(n, e0)};
 }
 
-/// Polar coordinates of a neighbour in the tangent plane.
+/// A neighbour in the tangent plane.
 struct Bearing {
-  double angle = 0;  ///< radians
-  double distance = 0;
+  glm::dvec2 direction{1, 0};  ///< unit, along the tangents
+  double distance = 0;         ///< in space
 };
 
-/// The bearings of a site's neighbours, sorted by angle.
+/// The bearings of a site's neighbours.
 struct Bearings {
   std::array<Bearing, kMostNeighbours> all{};
   size_t count = 0;
@@ -53,40 +55,72 @@ Bearings bearings_of(const Sites& sites, size_t site, std::span<const uint32_t> 
   Bearings bearings;
   for (const uint32_t j : neighbours.first(std::min(neighbours.size(), kMostNeighbours))) {
     const glm::dvec3 d = sites.positions[j] - sites.positions[site];
-    bearings.all[bearings.count++] = {std::atan2(glm::dot(d, t.e1), glm::dot(d, t.e0)), glm::length(d)};
+    const glm::dvec2 flat(glm::dot(d, t.e0), glm::dot(d, t.e1));
+    const double length = glm::length(flat);
+    bearings.all[bearings.count++] = {length > 0 ? flat / length : glm::dvec2(1, 0), glm::length(d)};
   }
-  std::sort(bearings.all.begin(), bearings.all.begin() + static_cast<std::ptrdiff_t>(bearings.count),
-            [](const Bearing& a, const Bearing& b) { return a.angle < b.angle; });
   return bearings;
 }
 
+/// An octant of directions: bit 0 is set nearer to the second axis, bits 1 and 2 where x and y are negative.
+unsigned octant_of(const glm::dvec2& direction) {
+  return (std::abs(direction.y) > std::abs(direction.x) ? 1U : 0U) | (direction.x < 0 ? 2U : 0U) |
+         (direction.y < 0 ? 4U : 0U);
+}
+
+/// The numbers of the two of the eight directions between which an octant lies: direction k is at k * 45 degrees.
+constexpr std::array<uint8_t, 8> kAxisOfOctant = {0, 2, 4, 2, 0, 6, 4, 6};
+constexpr std::array<uint8_t, 8> kDiagonalOfOctant = {1, 1, 3, 3, 7, 7, 5, 5};
+/// Octants by angle: octant k begins at k * 45 degrees.
+constexpr std::array<uint8_t, 8> kOctantByAngle = {0, 1, 3, 2, 7, 6, 4, 5};
+
 double reach_of(std::span<const Bearing> bearings) {
-  double reach = 0;
-  for (int k = 0; k < kDirections; ++k) {
-    const double direction = 2 * std::numbers::pi * k / kDirections;
-    double nearest = std::numeric_limits<double>::infinity();
-    for (const Bearing& b : bearings) {
-      const double off = std::abs(std::remainder(b.angle - direction, 2 * std::numbers::pi));
-      if (off < std::numbers::pi / 4) nearest = std::min(nearest, b.distance / std::cos(off));
-    }
-    if (std::isfinite(nearest)) reach = std::max(reach, nearest);
+  constexpr double kNone = std::numeric_limits<double>::infinity();
+  constexpr double kDiagonal = 1 / std::numbers::sqrt2;
+  constexpr double kSmallestCosine = kDiagonal * (1 + 1e-12);  // excludes neighbours at 45 degrees however they round
+  std::array<double, kDirections> nearest;
+  nearest.fill(kNone);
+  const auto see = [&nearest](uint8_t direction, double cosine, double distance) {
+    const double extent = cosine > kSmallestCosine ? distance / cosine : kNone;
+    nearest[direction] = std::min(nearest[direction], extent);
+  };
+  for (const Bearing& b : bearings) {
+    const unsigned octant = octant_of(b.direction);
+    const glm::dvec2 u = glm::abs(b.direction);
+    see(kAxisOfOctant[octant], std::max(u.x, u.y), b.distance);
+    see(kDiagonalOfOctant[octant], (u.x + u.y) * kDiagonal, b.distance);
   }
+  double reach = 0;
+  for (const double extent : nearest) reach = std::max(reach, extent < kNone ? extent : 0);
   return reach;
+}
+
+/// False if no angle wider than kOpen can be without neighbours: it would contain two whole octants.
+bool may_be_open(std::span<const Bearing> bearings) {
+  unsigned occupied = 0;
+  for (const Bearing& b : bearings) occupied |= 1U << kOctantByAngle[octant_of(b.direction)];
+  const unsigned empty = ~occupied & 0xffU;
+  return (empty & (empty << 1U | empty >> 7U)) != 0;
 }
 
 /// The unit vector along the bisector of the wide angle if there is exactly one, otherwise zero.
 glm::dvec3 opening_of(std::span<const Bearing> bearings, const Tangents& t) {
+  if (!may_be_open(bearings)) return glm::dvec3(0);
+  std::array<double, kMostNeighbours> angles{};
+  const auto end = std::transform(bearings.begin(), bearings.end(), angles.begin(),
+                                  [](const Bearing& b) { return std::atan2(b.direction.y, b.direction.x); });
+  std::sort(angles.begin(), end);
   double widest = 0;
   double second = 0;
   double middle = 0;
   for (size_t i = 0; i < bearings.size(); ++i) {
     const bool last = i + 1 == bearings.size();
-    const double next = last ? bearings[0].angle + 2 * std::numbers::pi : bearings[i + 1].angle;
-    const double gap = next - bearings[i].angle;
+    const double next = last ? angles[0] + 2 * std::numbers::pi : angles[i + 1];
+    const double gap = next - angles[i];
     second = std::max(second, std::min(gap, widest));
     if (gap <= widest) continue;
     widest = gap;
-    middle = 0.5 * (next + bearings[i].angle);
+    middle = 0.5 * (next + angles[i]);
   }
   if (widest <= kOpen || second >= kSecondOpen) return glm::dvec3(0);
   return std::cos(middle) * t.e0 + std::sin(middle) * t.e1;
@@ -102,16 +136,20 @@ bool continues(std::span<const uint32_t> nearest, const glm::dvec3& opening, con
 
 std::vector<Surroundings> find_surroundings(const Sites& sites, const NeighbourGraph& graph,
                                             const std::vector<glm::vec3>& normals) {
-  std::vector<Surroundings> open(sites.size());
+  std::vector<Surroundings> surroundings(sites.size());
   tbb::parallel_for(size_t{0}, sites.size(), [&](size_t i) {
     const Tangents t = tangents_of(glm::dvec3(normals[i]));
     const Bearings bearings = bearings_of(sites, i, graph.of(i), t);
-    open[i] = {reach_of(bearings.span()), opening_of(bearings.span(), t)};
+    surroundings[i] = {reach_of(bearings.span()), opening_of(bearings.span(), t)};
   });
-  std::vector<Surroundings> surroundings = open;
+  std::vector<uint8_t> stray(sites.size());  // openings that no border explains
   tbb::parallel_for(size_t{0}, sites.size(), [&](size_t i) {
+    if (surroundings[i].outwards == glm::dvec3(0)) return;
     const std::span<const uint32_t> nearest = graph.of(i).first(std::min(kNearest, graph.degree));
-    if (!continues(nearest, open[i].outwards, open)) surroundings[i].outwards = glm::dvec3(0);
+    stray[i] = continues(nearest, surroundings[i].outwards, surroundings) ? 0 : 1;
+  });
+  tbb::parallel_for(size_t{0}, sites.size(), [&](size_t i) {
+    if (stray[i] != 0) surroundings[i].outwards = glm::dvec3(0);
   });
   return surroundings;
 }
