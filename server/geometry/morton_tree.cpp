@@ -23,11 +23,11 @@ uint32_t middle_of(std::span<const uint64_t> codes, const MortonTree::Run& run) 
 }  // namespace
 
 MortonTree::MortonTree(std::span<const glm::dvec3> points, std::span<const uint64_t> codes,
-                       std::span<const float> reaches)
-    : points_(points), reaches_(reaches) {
-  SURFCAST_EXPECTS(!points.empty() && codes.size() == points.size());
+                       std::span<const float> reaches, size_t leaf)
+    : points_(points), reaches_(reaches), leaf_(leaf) {
+  SURFCAST_EXPECTS(!points.empty() && codes.size() == points.size() && leaf > 0);
   SURFCAST_EXPECTS(reaches.empty() || reaches.size() == points.size());
-  nodes_.reserve(points.size() / 3);
+  nodes_.reserve(4 * points.size() / leaf + 1);
   build(codes, {0, static_cast<uint32_t>(points.size())});
 }
 
@@ -50,7 +50,7 @@ void MortonTree::build(std::span<const uint64_t> codes, Run run) {
   nodes_.emplace_back();
   Node node;
   node.run = run;
-  node.leaf = run.last - run.first <= kLeaf;
+  node.leaf = run.last - run.first <= leaf_;
   if (node.leaf) {
     node.box = box_of(run);
     for (uint32_t i = run.first; i < run.last && !reaches_.empty(); ++i) {

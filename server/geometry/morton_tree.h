@@ -15,10 +15,10 @@ namespace surfcast::geometry {
 
 /// A bounding volume hierarchy (binary, of boxes) over points in Morton order. Each node is a run of points, split
 /// where the highest bit in which their codes differ changes, so the two halves lie in different halves of an octree
-/// cell. Leaves have at most kLeaf points.
+/// cell.
 class MortonTree {
  public:
-  static constexpr size_t kLeaf = 12;
+  static constexpr size_t kLeaf = 12;  ///< points of a leaf, at most, where the caller does not state another number
 
   /// A run of consecutive points.
   struct Run {
@@ -27,8 +27,10 @@ class MortonTree {
   };
 
   /// `codes` are the Morton codes of the points, ascending, at least one. `reaches`, if given, has the radius of
-  /// influence of each point, in the units of the points. All spans must outlive the tree.
-  MortonTree(std::span<const glm::dvec3> points, std::span<const uint64_t> codes, std::span<const float> reaches = {});
+  /// influence of each point, in the units of the points. Leaves have at most `leaf` points. Spans of points and
+  /// reaches must outlive the tree.
+  MortonTree(std::span<const glm::dvec3> points, std::span<const uint64_t> codes, std::span<const float> reaches = {},
+             size_t leaf = kLeaf);
 
   /// All leaves in order. They cover every point once.
   [[nodiscard]] std::vector<Run> leaves() const;
@@ -39,6 +41,20 @@ class MortonTree {
   template <typename Use>
   void for_each_in_reach(const Box& box, const Use& use) const {
     for_each_leaf([&box](const Node& node) { return squared_gap(node.box, box) <= node.squared_reach; }, use);
+  }
+
+  /// Calls `use(run)` for each leaf whose box is at most that far from `box`. Stops when `use` returns false.
+  template <typename Use>
+  void for_each_near(const Box& box, double squared_distance, const Use& use) const {
+    for_each_leaf([&](const Node& node) { return squared_gap(node.box, box) <= squared_distance; }, use);
+  }
+
+  /// Calls `use(run)` for leaves whose box is at most that far from the point, mostly nearest first. `use` may lower
+  /// `squared_distance`.
+  template <typename Use>
+  void nearest_first(const glm::dvec3& point, const double& squared_distance, const Use& use) const {
+    const Box box{point, point};
+    visit(0, squared_gap(nodes_[0].box, box), box, squared_distance, use);
   }
 
  private:
@@ -66,10 +82,27 @@ class MortonTree {
     }
   }
 
+  template <typename Use>
+  void visit(uint32_t node, double gap, const Box& box, const double& squared_distance, const Use& use) const {
+    if (gap > squared_distance) return;
+    if (nodes_[node].leaf) {
+      use(nodes_[node].run);
+      return;
+    }
+    const uint32_t lower = node + 1;
+    const uint32_t upper = nodes_[lower].next;
+    const double to_lower = squared_gap(nodes_[lower].box, box);
+    const double to_upper = squared_gap(nodes_[upper].box, box);
+    const bool swap = to_upper < to_lower;
+    visit(swap ? upper : lower, swap ? to_upper : to_lower, box, squared_distance, use);
+    visit(swap ? lower : upper, swap ? to_lower : to_upper, box, squared_distance, use);
+  }
+
   void build(std::span<const uint64_t> codes, Run run);
 
   std::span<const glm::dvec3> points_;
   std::span<const float> reaches_;
+  size_t leaf_;
   std::vector<Node> nodes_;
 };
 

@@ -2,58 +2,323 @@
 
 #include <algorithm>
 #include <array>
-#include <nanoflann.hpp>
+#include <bit>
+#include <cmath>
+#include <glm/common.hpp>
+#include <glm/geometric.hpp>
+#include <limits>
+#include <numbers>
+#include <utility>
 
-#include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
+
+#include "geometry/morton_tree.h"
 
 namespace surfcast::scan {
 namespace {
 
-/// Adapter for nanoflann.
-struct SiteAccess {
-  const std::vector<glm::dvec3>& positions;
+using geometry::Box;
+using geometry::MortonTree;
+using Run = MortonTree::Run;
 
-  // nanoflann requires these names.
-  [[nodiscard]] size_t kdtree_get_point_count() const { return positions.size(); }
-  [[nodiscard]] double kdtree_get_pt(uint32_t site, size_t axis) const {
-    return positions[site][static_cast<int>(axis)];
+/// Sites of a leaf, which are searched together.
+constexpr size_t kLeafSites = 64;
+/// Bits of the number of a candidate.
+constexpr uint32_t kSlotBits = 10;
+constexpr uint32_t kSlotMask = (1U << kSlotBits) - 1;
+/// Candidates of a run of sites, at most. Where there are more, the run is halved.
+constexpr size_t kMostCandidates = size_t{1} << kSlotBits;
+/// Candidates of one site that are sorted, at most.
+constexpr size_t kMostSorted = 128;
+/// Candidates are padded to a multiple of this, so that loops over them consist of whole vectors.
+constexpr size_t kPadding = 16;
+/// Farther from every candidate than any other: its squared distance is infinite.
+constexpr float kNowhere = 1e30F;
+
+/// A neighbour and its squared distance. Neighbours are sorted by distance, then by number.
+using Found = std::pair<double, uint32_t>;
+
+/// The distance of points in the units of the sites, squared: the same expression wherever distances are compared, so
+/// that rounding never excludes a neighbour.
+double squared_distance(const glm::dvec3& a, const glm::dvec3& b) {
+  const glm::dvec3 d = a - b;
+  return glm::dot(d, d);
+}
+
+/// The nearest neighbours found so far, at most `degree` of them.
+class NearestList {
+ public:
+  explicit NearestList(size_t degree) : degree_(degree) {}
+
+  void add(const Found& found) {
+    if (full() && !(found < all_[count_ - 1])) return;
+    size_t at = full() ? count_ - 1 : count_++;
+    for (; at > 0 && found < all_[at - 1]; --at) all_[at] = all_[at - 1];
+    all_[at] = found;
   }
-  template <typename Bounds>
-  bool kdtree_get_bbox(Bounds&) const {
-    return false;
+  [[nodiscard]] bool full() const { return count_ == degree_; }
+  /// The squared distance beyond which no site belongs to the list.
+  [[nodiscard]] double bound() const {
+    return full() ? all_[count_ - 1].first : std::numeric_limits<double>::infinity();
+  }
+  [[nodiscard]] std::span<const Found> all() const { return {all_.data(), count_}; }
+
+ private:
+  size_t degree_;
+  size_t count_ = 0;
+  std::array<Found, kLargestDegree> all_{};
+};
+
+/// The sites around a run of sites as arrays of floats for vector instructions. Their coordinates are relative to an
+/// origin nearby and scaled to the order of 1, since squares of floats would underflow.
+struct Candidates {
+  glm::dvec3 origin{0};
+  double scale = 1;   ///< of coordinates: a power of two
+  double reach = 0;   ///< all sites at most this far from the box of the run are candidates
+  double extent = 0;  ///< largest coordinate, scaled
+  size_t count = 0;
+  size_t first = 0;  ///< the slot of the first site of the run; the others follow
+  alignas(64) std::array<float, kMostCandidates> x;
+  alignas(64) std::array<float, kMostCandidates> y;
+  alignas(64) std::array<float, kMostCandidates> z;
+  std::array<uint32_t, kMostCandidates> sites;
+
+  void clear(const Box& box, double wanted_reach) {
+    origin = box.centre();
+    reach = wanted_reach;
+    const glm::dvec3 size = box.size();
+    const double largest = std::max({size.x, size.y, size.z, reach});
+    scale = largest > 0 ? std::ldexp(1.0, -std::ilogb(largest)) : 1;
+    extent = 0;
+    count = 0;
+  }
+  void add(uint32_t site, const glm::dvec3& position) {
+    const glm::dvec3 p = (position - origin) * scale;
+    const glm::dvec3 size = glm::abs(p);
+    extent = std::max({extent, size.x, size.y, size.z});
+    x[count] = static_cast<float>(p.x);
+    y[count] = static_cast<float>(p.y);
+    z[count] = static_cast<float>(p.z);
+    sites[count++] = site;
+  }
+  [[nodiscard]] size_t padded() const { return (count + kPadding - 1) / kPadding * kPadding; }
+  void pad() { std::fill(x.begin() + count, x.begin() + padded(), kNowhere); }
+
+  /// A bound of the error of a squared, scaled distance between candidates in single precision: coordinates are rounded
+  /// to 2^-24 of the extent, and keys drop the lowest bits of the result.
+  [[nodiscard]] double error(double d2) const {
+    return 0x1p-12 * d2 + 0x1p-20 * extent * std::sqrt(d2) + 0x1p-40 * extent * extent;
   }
 };
 
-using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, SiteAccess, double, uint32_t>,
-                                                 SiteAccess, 3, uint32_t>;
+/// Keys of candidates: the bits of a squared distance, which ascend with it, with the lowest ones replaced by the slot.
+using Key = int32_t;
+using Keys = std::array<Key, kMostCandidates>;
 
-constexpr size_t kLargestDegree = 31;
+/// The key of the largest candidate at this squared distance.
+Key last_key(double d2) {
+  const auto rounded = static_cast<float>(std::min<double>(d2, std::numeric_limits<float>::max()));
+  return static_cast<Key>(std::bit_cast<uint32_t>(rounded) | kSlotMask);
+}
 
-/// Writes the `degree` nearest sites, without `site` itself.
-void query(const Tree& tree, const glm::dvec3& position, uint32_t site, size_t degree, uint32_t* out) {
-  std::array<uint32_t, kLargestDegree + 1> ids;
-  std::array<double, kLargestDegree + 1> squared_distances;
-  const size_t found = tree.knnSearch(&position.x, degree + 1, ids.data(), squared_distances.data());
-  size_t written = 0;
-  for (size_t i = 0; i < found && written < degree; ++i) {
-    if (ids[i] != site) out[written++] = ids[i];
+double distance_of(Key key) {
+  return double{std::bit_cast<float>(static_cast<uint32_t>(key) & ~kSlotMask)};
+}
+
+/// The keys of all candidates as seen from one of them, which has the largest key itself.
+void measure(const Candidates& candidates, size_t from, Keys& keys) {
+  const float x = candidates.x[from];
+  const float y = candidates.y[from];
+  const float z = candidates.z[from];
+  const auto count = static_cast<uint32_t>(candidates.padded());
+  for (uint32_t i = 0; i < count; ++i) {
+    const float dx = candidates.x[i] - x;
+    const float dy = candidates.y[i] - y;
+    const float dz = candidates.z[i] - z;
+    const auto bits = std::bit_cast<uint32_t>(dx * dx + dy * dy + dz * dz);
+    keys[i] = static_cast<Key>((bits & ~kSlotMask) | i);
   }
+  keys[from] = std::numeric_limits<Key>::max();
+}
+
+/// Moves the keys up to `last` to the front; returns how many they are.
+size_t keep_up_to(Key last, size_t count, Keys& keys) {
+  size_t kept = 0;
+  for (size_t i = 0; i < count; ++i) {
+    const Key key = keys[i];
+    keys[kept] = key;
+    kept += key <= last ? 1 : 0;
+  }
+  return kept;
+}
+
+/// Sorts at most kMostSorted different keys: the place of each is the number of smaller ones, which takes no branches.
+void sort_keys(size_t count, Keys& keys) {
+  std::array<Key, kMostSorted> unsorted;
+  std::copy_n(keys.begin(), count, unsorted.begin());
+  const size_t padded = std::min((count + 7) / 8 * 8, kMostSorted);
+  std::fill(unsorted.begin() + count, unsorted.begin() + padded, std::numeric_limits<Key>::max());
+  for (size_t i = 0; i < count; ++i) {
+    const Key key = unsorted[i];
+    int32_t place = 0;
+    for (size_t j = 0; j < padded; ++j) place += unsorted[j] < key ? 1 : 0;
+    keys[static_cast<size_t>(place)] = key;
+  }
+}
+
+/// The reach that the neighbours of most sites of a run will have, if the sites fill a surface or a line in its box.
+double expected_reach(const Box& box, size_t count, size_t degree) {
+  constexpr double kMargin = 1.5;
+  const glm::dvec3 size = box.size();
+  const glm::dvec3 sides(size.y * size.z, size.z * size.x, size.x * size.y);
+  const auto share = static_cast<double>(degree) / static_cast<double>(count);
+  const double on_surface = std::sqrt(share * glm::length(sides) / std::numbers::pi);
+  const double on_line = 0.5 * share * std::max({size.x, size.y, size.z});
+  return kMargin * std::max(on_surface, on_line);
+}
+
+class Search {
+ public:
+  Search(const Sites& sites, const MortonTree& tree, size_t degree, const std::function<void(const Neighbours&)>& use)
+      : sites_(sites), tree_(tree), degree_(degree), use_(use) {}
+
+  /// Searches the neighbours of all sites of a leaf.
+  void search(const Run& leaf) const {
+    thread_local Candidates candidates;
+    const Box box = tree_.box_of(leaf);
+    const double reach = expected_reach(box, leaf.last - leaf.first, degree_);
+    if (gather(leaf, box, reach, candidates)) {
+      search_together(leaf, candidates);
+    } else if (leaf.last - leaf.first > 8) {
+      const uint32_t middle = leaf.first + (leaf.last - leaf.first) / 2;
+      search({leaf.first, middle});
+      search({middle, leaf.last});
+    } else {
+      for (uint32_t site = leaf.first; site < leaf.last; ++site) search_alone(site);
+    }
+  }
+
+ private:
+  /// False if there are too many candidates.
+  bool gather(const Run& run, const Box& box, double reach, Candidates& candidates) const {
+    candidates.clear(box, reach);
+    bool fits = true;
+    tree_.for_each_near(box, reach * reach, [&](const Run& near) {
+      for (uint32_t i = near.first; i < near.last && fits; ++i) {
+        if (i == run.first) candidates.first = candidates.count;
+        const glm::dvec3& p = sites_.positions[i];
+        if (squared_distance(p, glm::clamp(p, box.min, box.max)) > reach * reach) continue;
+        fits = candidates.count < kMostCandidates;
+        if (fits) candidates.add(i, p);
+      }
+      return fits;
+    });
+    if (fits) candidates.pad();
+    return fits;
+  }
+
+  void search_together(const Run& run, const Candidates& candidates) const {
+    const double reach = candidates.reach * candidates.reach;
+    double bound = reach;
+    for (uint32_t site = run.first; site < run.last; ++site) {
+      const NearestList list = nearest_of(site, candidates, candidates.first + (site - run.first), bound);
+      const bool certain = list.full() && list.bound() <= reach;
+      bound = reach;
+      if (!certain) {
+        search_alone(site);
+        continue;
+      }
+      report(site, list);
+      if (site + 1 == run.last) break;
+      // The neighbours of this site are at most this far from the next one.
+      const double step = std::sqrt(squared_distance(sites_.positions[site], sites_.positions[site + 1]));
+      const double farthest = std::sqrt(list.bound()) + step;
+      bound = std::min(reach, farthest * farthest * (1 + 1e-9));
+    }
+  }
+
+  /// The nearest candidates of the candidate `slot`, if `degree` of them are within `bound`. Otherwise, or if there are
+  /// too many to sort, the list is not full.
+  NearestList nearest_of(uint32_t site, const Candidates& candidates, size_t slot, double bound) const {
+    thread_local Keys keys;
+    measure(candidates, slot, keys);
+    const double scaled = bound * candidates.scale * candidates.scale;
+    size_t count = keep_up_to(last_key(scaled + 2 * candidates.error(scaled)), candidates.padded(), keys);
+    NearestList list(degree_);
+    if (count < degree_) return list;
+    const auto kth = static_cast<std::ptrdiff_t>(degree_ - 1);
+    if (count > kMostSorted) {
+      std::nth_element(keys.begin(), keys.begin() + kth, keys.begin() + static_cast<std::ptrdiff_t>(count));
+      count = keep_up_to(last_needed(candidates, keys[degree_ - 1]), count, keys);
+      if (count > kMostSorted) return list;
+    }
+    sort_keys(count, keys);
+    const Key last = last_needed(candidates, keys[degree_ - 1]);
+    for (size_t i = 0; i < count && keys[i] <= last; ++i) {
+      const uint32_t other = candidates.sites[static_cast<uint32_t>(keys[i]) & kSlotMask];
+      list.add({squared_distance(sites_.positions[other], sites_.positions[site]), other});
+    }
+    return list;
+  }
+
+  /// The last key that may belong to a neighbour, when `kth` is the key of the candidate that seems to be the farthest.
+  static Key last_needed(const Candidates& candidates, Key kth) {
+    const double d2 = distance_of(kth);
+    const double most = d2 + 2 * candidates.error(d2);
+    return last_key(most + 2 * candidates.error(most));
+  }
+
+  void search_alone(uint32_t site) const {
+    NearestList list(degree_);
+    double bound = list.bound();
+    const glm::dvec3& from = sites_.positions[site];
+    tree_.nearest_first(from, bound, [&](const Run& run) {
+      for (uint32_t i = run.first; i < run.last; ++i) {
+        if (i != site) list.add({squared_distance(sites_.positions[i], from), i});
+      }
+      bound = list.bound();
+    });
+    report(site, list);
+  }
+
+  void report(uint32_t site, const NearestList& list) const {
+    std::array<uint32_t, kLargestDegree> ids;
+    std::array<double, kLargestDegree> distances;
+    size_t count = 0;
+    for (const auto& [distance, id] : list.all()) {
+      ids[count] = id;
+      distances[count++] = distance;
+    }
+    use_({site, {ids.data(), count}, {distances.data(), count}});
+  }
+
+  const Sites& sites_;
+  const MortonTree& tree_;
+  size_t degree_;
+  const std::function<void(const Neighbours&)>& use_;
+};
+
+size_t degree_for(const Sites& sites, size_t wanted) {
+  return sites.size() < 2 ? 0 : std::min({wanted, sites.size() - 1, kLargestDegree});
 }
 
 }  // namespace
 
+void for_each_neighbourhood(const Sites& sites, size_t degree, const std::function<void(const Neighbours&)>& use) {
+  if (degree_for(sites, degree) == 0) return;
+  const MortonTree tree(sites.positions, codes_of(sites), {}, kLeafSites);
+  const Search search(sites, tree, degree_for(sites, degree), use);
+  const std::vector<Run> leaves = tree.leaves();
+  tbb::parallel_for(size_t{0}, leaves.size(), [&](size_t i) { search.search(leaves[i]); });
+}
+
 NeighbourGraph find_neighbours(const Sites& sites, size_t degree) {
   NeighbourGraph graph;
-  if (sites.size() < 2) return graph;
-  graph.degree = std::min({degree, sites.size() - 1, kLargestDegree});
+  graph.degree = degree_for(sites, degree);
   graph.ids.resize(sites.size() * graph.degree);
-  const SiteAccess access{sites.positions};
-  const Tree tree(3, access, nanoflann::KDTreeSingleIndexAdaptorParams(12));
-  tbb::parallel_for(tbb::blocked_range<uint32_t>(0, static_cast<uint32_t>(sites.size()), 1024), [&](const auto& range) {
-    for (uint32_t site = range.begin(); site != range.end(); ++site) {
-      query(tree, sites.positions[site], site, graph.degree, &graph.ids[site * graph.degree]);
-    }
+  for_each_neighbourhood(sites, degree, [&graph](const Neighbours& found) {
+    std::copy(found.ids.begin(), found.ids.end(),
+              graph.ids.begin() + static_cast<std::ptrdiff_t>(found.site * graph.degree));
   });
   return graph;
 }

@@ -1,12 +1,29 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <span>
 #include <vector>
 
 #include "scan/sites.h"
 
 namespace surfcast::scan {
+
+/// The nearest other sites of one site, nearest first; equally near ones by their numbers.
+struct Neighbours {
+  uint32_t site = 0;
+  std::span<const uint32_t> ids;
+  std::span<const double> squared_distances;  ///< local units
+};
+
+/// The most neighbours of a site that a search finds.
+inline constexpr size_t kLargestDegree = 32;
+
+/// Calls `use` once for every site with its `degree` nearest neighbours: fewer if there are too few sites, at most
+/// kLargestDegree. Not called for a single site. `use` is called from any thread, in any order; its arguments live
+/// until it returns. The search is exact: all tests of distance are decided in double precision. The arguments do not
+/// depend on the number of threads.
+void for_each_neighbourhood(const Sites& sites, size_t degree, const std::function<void(const Neighbours&)>& use);
 
 /// The nearest other sites of every site, nearest first.
 struct NeighbourGraph {

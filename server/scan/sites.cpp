@@ -1,14 +1,16 @@
 #include "scan/sites.h"
 
 #include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
 #include <span>
+#include <tuple>
 #include <utility>
 
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_sort.h>
 
-#include "base/hash.h"
-#include "scan/first_equals.h"
+#include "geometry/morton.h"
 
 namespace surfcast::scan {
 namespace {
@@ -16,12 +18,12 @@ namespace {
 /// Transforms world to local coordinates. Halved, because differences of the largest doubles would overflow.
 struct LocalFrame {
   glm::dvec3 half_min;
-  double half_unit;
+  double quarter_unit;
 
   [[nodiscard]] glm::dvec3 to_local(const glm::dvec3& world) const {
     // Smaller than any resolvable difference. Replaced by 0, or squares of differences could underflow.
     constexpr double kTiny = 0x1p-200;
-    glm::dvec3 local = (0.5 * world - half_min) / half_unit;
+    glm::dvec3 local = 0.5 * ((0.5 * world - half_min) / quarter_unit);
     for (int axis = 0; axis < 3; ++axis) {
       if (local[axis] < kTiny) local[axis] = 0;
     }
@@ -29,61 +31,139 @@ struct LocalFrame {
   }
 };
 
+/// The unit is a power of two, so that local coordinates are exact wherever differences of world coordinates are.
 LocalFrame local_frame(const geometry::Box& box) {
   const glm::dvec3 half_size = 0.5 * box.max - 0.5 * box.min;
-  const double half_unit = std::max({half_size.x, half_size.y, half_size.z});
-  return {0.5 * box.min, half_unit > 0 ? half_unit : 0.5};
+  const double longest = std::max({half_size.x, half_size.y, half_size.z});
+  return {0.5 * box.min, longest > 0 ? std::ldexp(1.0, std::ilogb(longest)) : 0.25};
 }
 
-/// Spreads the lower 21 bits of a number, with two zeros above each.
-uint64_t spread_bits(uint64_t v) {
-  v = (v | v << 32) & 0x1f00000000ffffULL;
-  v = (v | v << 16) & 0x1f0000ff0000ffULL;
-  v = (v | v << 8) & 0x100f00f00f00f00fULL;
-  v = (v | v << 4) & 0x10c30c30c30c30c3ULL;
-  return (v | v << 2) & 0x1249249249249249ULL;
+/// A point of the cloud, by the cell in which it lies.
+struct Entry {
+  uint64_t code = 0;
+  uint32_t point = 0;
+
+  bool operator<(const Entry& other) const { return std::tie(code, point) < std::tie(other.code, other.point); }
+};
+
+constexpr double kCells = 1U << geometry::kMortonDepth;
+
+/// The cell of a position between 0 and 1. Moves the position into the frame of the cell, where it is between 0 and 1
+/// again.
+uint64_t enter_cell(glm::dvec3& position) {
+  const glm::dvec3 scaled = position * kCells;
+  const glm::dvec3 cell = glm::min(glm::floor(scaled), glm::dvec3(kCells - 1));
+  position = scaled - cell;
+  return geometry::interleave(glm::u32vec3(cell));
 }
 
-/// Morton code of a local position, with 2^21 steps along each axis.
-uint64_t morton_code(const glm::dvec3& local) {
-  constexpr double kSteps = 0x1p21 - 1;
-  const auto step = [](double v) { return static_cast<uint64_t>(std::min(v, 1.0) * kSteps); };
-  return spread_bits(step(local.x)) << 2 | spread_bits(step(local.y)) << 1 | spread_bits(step(local.z));
-}
-
-/// The index of the first point at each position, in Morton order.
-std::vector<uint32_t> ordered_firsts(const std::vector<uint32_t>& first, const std::vector<glm::dvec3>& local) {
-  std::vector<std::pair<uint64_t, uint32_t>> codes;
-  for (uint32_t i = 0; i < first.size(); ++i) {
-    if (first[i] == i) codes.emplace_back(morton_code(local[i]), i);
+/// Sorts the points of one cell: equal positions side by side, by their numbers, the others in Morton order in smaller
+/// cells. `positions` are those of the entries, in the frame of the cell.
+void sort_within(std::span<Entry> entries, std::vector<glm::dvec3> positions) {
+  const auto same = [&](const glm::dvec3& p) { return p == positions.front(); };
+  if (std::all_of(positions.begin(), positions.end(), same)) return;
+  std::vector<std::pair<Entry, glm::dvec3>> sorted;
+  for (size_t i = 0; i < entries.size(); ++i) {
+    const uint64_t code = enter_cell(positions[i]);
+    sorted.push_back({{code, entries[i].point}, positions[i]});
   }
-  tbb::parallel_sort(codes.begin(), codes.end());
-  std::vector<uint32_t> ordered(codes.size());
-  std::transform(codes.begin(), codes.end(), ordered.begin(), [](const auto& code) { return code.second; });
-  return ordered;
+  std::sort(sorted.begin(), sorted.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+  for (size_t first = 0; first < sorted.size();) {
+    size_t last = first;
+    positions.clear();
+    for (; last < sorted.size() && sorted[last].first.code == sorted[first].first.code; ++last) {
+      entries[last].point = sorted[last].first.point;
+      positions.push_back(sorted[last].second);
+    }
+    if (positions.size() > 1) sort_within(entries.subspan(first, last - first), positions);
+    first = last;
+  }
+}
+
+/// The points of the cloud in Morton order; those at one position by their numbers.
+std::vector<Entry> ordered_points(std::span<const glm::dvec3> world, const LocalFrame& frame) {
+  std::vector<Entry> entries(world.size());
+  tbb::parallel_for(size_t{0}, world.size(), [&](size_t i) {
+    glm::dvec3 local = frame.to_local(world[i]);
+    entries[i] = {enter_cell(local), static_cast<uint32_t>(i)};
+  });
+  tbb::parallel_sort(entries.begin(), entries.end());
+  for (size_t first = 0; first < entries.size();) {
+    size_t last = first + 1;
+    while (last < entries.size() && entries[last].code == entries[first].code) ++last;
+    if (last - first > 1) {
+      std::vector<glm::dvec3> positions;
+      for (size_t i = first; i < last; ++i) {
+        positions.push_back(frame.to_local(world[entries[i].point]));
+        enter_cell(positions.back());
+      }
+      sort_within(std::span(entries).subspan(first, last - first), std::move(positions));
+    }
+    first = last;
+  }
+  return entries;
+}
+
+/// Points are numbered in chunks: each chunk begins with the number of sites in the chunks before.
+constexpr size_t kChunk = 65536;
+
+/// Where a site begins in the list of ordered points.
+std::vector<uint8_t> site_begins(const std::vector<glm::dvec3>& ordered) {
+  std::vector<uint8_t> begins(ordered.size());
+  tbb::parallel_for(size_t{0}, ordered.size(),
+                    [&](size_t i) { begins[i] = i == 0 || ordered[i] != ordered[i - 1] ? 1 : 0; });
+  return begins;
+}
+
+/// The number of sites before each chunk, and of all sites.
+std::vector<size_t> sites_before(const std::vector<uint8_t>& begins) {
+  std::vector<size_t> before = {0};
+  for (size_t first = 0; first < begins.size(); first += kChunk) {
+    const auto begin = begins.begin() + static_cast<std::ptrdiff_t>(first);
+    const auto end = begin + static_cast<std::ptrdiff_t>(std::min(kChunk, begins.size() - first));
+    before.push_back(before.back() + static_cast<size_t>(std::count(begin, end, uint8_t{1})));
+  }
+  return before;
 }
 
 }  // namespace
 
 Sites find_sites(std::span<const glm::dvec3> world, const geometry::Box& box) {
   const LocalFrame frame = local_frame(box);
-  std::vector<glm::dvec3> local(world.size());
-  std::vector<uint64_t> hashes(world.size());
-  tbb::parallel_for(size_t{0}, world.size(), [&](size_t i) {
-    local[i] = frame.to_local(world[i]);
-    hashes[i] = hash_of(std::as_bytes(std::span(&local[i], 1)));
-  });
-  const std::vector<uint32_t> first =
-      first_equals(hashes, [&local](size_t a, size_t b) { return local[a] == local[b]; });
+  const std::vector<Entry> entries = ordered_points(world, frame);
+  std::vector<glm::dvec3> ordered(world.size());
+  tbb::parallel_for(size_t{0}, world.size(), [&](size_t i) { ordered[i] = frame.to_local(world[entries[i].point]); });
+  const std::vector<uint8_t> begins = site_begins(ordered);
+  const std::vector<size_t> before = sites_before(begins);
   Sites sites;
-  sites.unit = 2 * frame.half_unit;
+  sites.unit = 4 * frame.quarter_unit;
   sites.of_point.resize(world.size());
-  for (const uint32_t i : ordered_firsts(first, local)) {
-    sites.of_point[i] = static_cast<uint32_t>(sites.positions.size());
-    sites.positions.push_back(local[i]);
+  tbb::parallel_for(size_t{0}, before.size() - 1, [&](size_t chunk) {
+    size_t site = before[chunk];
+    for (size_t i = chunk * kChunk; i < std::min((chunk + 1) * kChunk, world.size()); ++i) {
+      site += begins[i];
+      sites.of_point[entries[i].point] = static_cast<uint32_t>(site - 1);
+    }
+  });
+  const bool distinct = before.back() == ordered.size();
+  if (!distinct) {
+    size_t next = 0;
+    for (size_t i = 0; i < ordered.size(); ++i) {
+      if (begins[i] != 0) ordered[next++] = ordered[i];
+    }
+    ordered.resize(next);
   }
-  for (size_t i = 0; i < world.size(); ++i) sites.of_point[i] = sites.of_point[first[i]];
+  sites.positions = std::move(ordered);
   return sites;
+}
+
+std::vector<uint64_t> codes_of(const Sites& sites) {
+  std::vector<uint64_t> codes(sites.size());
+  tbb::parallel_for(size_t{0}, sites.size(), [&](size_t i) {
+    glm::dvec3 position = sites.positions[i];
+    codes[i] = enter_cell(position);
+  });
+  return codes;
 }
 
 }  // namespace surfcast::scan

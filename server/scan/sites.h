@@ -9,20 +9,23 @@
 
 namespace surfcast::scan {
 
-/// The distinct positions of a cloud ("sites"), in coordinates local to a frame: 0 to 1 along its longest axis. Points
-/// at the same position share one site, so no two sites are at distance 0. Differences and squares of local coordinates
-/// are accurate and far from overflow and underflow, whatever the world coordinates are. Sites are in Morton order, so
-/// neighbours in space are mostly neighbours in memory. Overlapping parts of one cloud have, in the same frame, the
-/// same sites in the same order.
+/// The distinct positions of a cloud ("sites"), in coordinates local to a frame: 0 to at most 1 along its longest axis.
+/// Points at the same position share one site, so no two sites are at distance 0. Differences and squares of local
+/// coordinates are accurate and far from overflow and underflow, whatever the world coordinates are. Sites are in
+/// Morton order, in cells as small as needed to tell them apart, so neighbours in space are mostly neighbours in
+/// memory. Overlapping parts of one cloud have, in the same frame, the same sites in the same order.
 struct Sites {
   std::vector<glm::dvec3> positions;  ///< local
   std::vector<uint32_t> of_point;     ///< the site of each point
-  double unit = 1;                    ///< world units per local unit
+  double unit = 1;                    ///< world units per local unit: a power of two
 
   [[nodiscard]] size_t size() const { return positions.size(); }
 };
 
 /// `frame` must contain all positions.
 Sites find_sites(std::span<const glm::dvec3> world, const geometry::Box& frame);
+
+/// The Morton codes of the sites, ascending, in cells of 2^-21 local units.
+std::vector<uint64_t> codes_of(const Sites& sites);
 
 }  // namespace surfcast::scan
