@@ -4,28 +4,56 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <vector>
+
+#include <tbb/parallel_for.h>
 
 #include "scan/neighbours.h"
 
 namespace surfcast::scan {
 
-/// Neighbours of each site along which signs are propagated. More of them only cost time.
+/// Neighbours of each site along which signs are propagated, at most 8. More of them only cost time.
 inline constexpr size_t kLinks = 8;
 
-[[nodiscard]] inline std::span<const uint32_t> links_of(const NeighbourGraph& graph, size_t site) {
-  return graph.of(site).first(std::min(kLinks, graph.degree));
-}
+/// The pairs of linked sites. A pair is linked if either site is a near neighbour of the other.
+class Links {
+ public:
+  Links(const NeighbourGraph& graph, size_t sites) : graph_(graph), listed_(sites) {
+    tbb::parallel_for(size_t{0}, sites, [this](size_t a) { listed_[a] = pairs_listed_at(static_cast<uint32_t>(a)); });
+  }
 
-/// Calls `use(a, b)` once for every pair of linked sites. A pair is linked if either site is a near neighbour of the
-/// other.
-template <typename Use>
-void for_each_link(const NeighbourGraph& graph, size_t sites, const Use& use) {
-  for (uint32_t a = 0; a < sites; ++a) {
-    for (const uint32_t b : links_of(graph, a)) {
-      const auto back = links_of(graph, b);
-      if (a < b || std::find(back.begin(), back.end(), a) == back.end()) use(a, b);
+  [[nodiscard]] size_t sites() const { return listed_.size(); }
+
+  /// Calls `use(a, b)` for the pairs listed at the sites from `first` to before `last`. Every pair is listed at one of
+  /// its sites.
+  template <typename Use>
+  void for_each(size_t first, size_t last, const Use& use) const {
+    for (size_t a = first; a < last; ++a) {
+      const std::span<const uint32_t> near = near_to(a);
+      for (size_t k = 0; k < near.size(); ++k) {
+        if ((listed_[a] >> k & 1U) != 0) use(static_cast<uint32_t>(a), near[k]);
+      }
     }
   }
-}
+
+ private:
+  [[nodiscard]] std::span<const uint32_t> near_to(size_t site) const {
+    return graph_.of(site).first(std::min(kLinks, graph_.degree));
+  }
+
+  /// Bit k is set if the pair with neighbour k is listed here: the other site is a later one, or does not list it.
+  [[nodiscard]] uint8_t pairs_listed_at(uint32_t a) const {
+    unsigned listed = 0;
+    const std::span<const uint32_t> near = near_to(a);
+    for (size_t k = 0; k < near.size(); ++k) {
+      const std::span<const uint32_t> back = near_to(near[k]);
+      if (a < near[k] || std::find(back.begin(), back.end(), a) == back.end()) listed |= 1U << k;
+    }
+    return static_cast<uint8_t>(listed);
+  }
+
+  const NeighbourGraph& graph_;
+  std::vector<uint8_t> listed_;  ///< for each site
+};
 
 }  // namespace surfcast::scan
