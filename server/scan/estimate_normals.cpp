@@ -11,22 +11,23 @@ namespace {
 
 /// Covariance of the site and its neighbours, scaled to a trace of 1.
 Eigen::Matrix3d covariance(const Sites& sites, size_t site, std::span<const uint32_t> neighbours) {
-  const auto difference = [&](uint32_t j) {
-    const glm::dvec3 d = sites.positions[j] - sites.positions[site];
-    return Eigen::Vector3d(d.x, d.y, d.z);
-  };
-  // Relative to the farthest neighbour: squares are then of the order of 1 at any scale.
-  const double scale = difference(neighbours.back()).cwiseAbs().maxCoeff();
-  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
+  const glm::dvec3 centre = sites.positions[site];
+  glm::dvec3 sum(0);
+  glm::dvec3 squares(0);   // sums of x x, y y and z z
+  glm::dvec3 products(0);  // sums of y z, z x and x y
   for (const uint32_t j : neighbours) {
-    const Eigen::Vector3d d = difference(j) / scale;
-    mean += d;
-    products += d * d.transpose();
+    const glm::dvec3 d = sites.positions[j] - centre;
+    sum += d;
+    squares += d * d;
+    products += glm::dvec3(d.y * d.z, d.z * d.x, d.x * d.y);
   }
-  const auto count = static_cast<double>(neighbours.size() + 1);
-  products -= mean * mean.transpose() / count;
-  return products / products.trace();
+  const glm::dvec3 mean = sum / static_cast<double>(neighbours.size() + 1);
+  squares -= sum * mean;
+  products -= glm::dvec3(sum.y * mean.z, sum.z * mean.x, sum.x * mean.y);
+  const double trace = squares.x + squares.y + squares.z;  // positive: there are two distinct sites
+  Eigen::Matrix3d matrix;
+  matrix << squares.x, products.z, products.y, products.z, squares.y, products.x, products.y, products.x, squares.z;
+  return matrix / trace;
 }
 
 bool usable(const Eigen::Vector3d& v) {

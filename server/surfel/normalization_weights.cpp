@@ -1,10 +1,12 @@
 #include "surfel/normalization_weights.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <glm/geometric.hpp>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <numeric>
 #include <optional>
@@ -34,6 +36,11 @@ struct Site {
   uint64_t code;    ///< Morton code
 };
 
+/// Sites of a leaf, whose sources are found together.
+constexpr size_t kLeafSites = 32;
+/// Where a leaf has too many sources, it is halved until it has no more sites than this.
+constexpr size_t kFewSites = 12;
+
 /// Indices into the list of sites, ascending.
 using Indices = std::vector<uint32_t>;
 
@@ -45,9 +52,11 @@ std::vector<Site> sort_sites(const SurfelCloud& cloud) {
     order[i] = {geometry::morton_code(root, cloud.positions[i]), i};
   });
   oneapi::tbb::parallel_sort(order);
-  std::vector<Site> sites;
-  sites.reserve(order.size());
-  for (const auto& [code, i] : order) sites.push_back({cloud.positions[i], cloud.normals[i], cloud.radii[i], i, code});
+  std::vector<Site> sites(order.size());
+  oneapi::tbb::parallel_for(size_t{0}, order.size(), [&](size_t at) {
+    const auto& [code, i] = order[at];
+    sites[at] = {cloud.positions[i], cloud.normals[i], cloud.radii[i], i, code};
+  });
   return sites;
 }
 
@@ -85,14 +94,15 @@ std::map<int, Indices> radius_classes(std::span<const Site> sites) {
 /// A subset of the sites and the extent of their kernels.
 class Sources {
  public:
-  Sources(std::span<const Site> sites, const Indices& members) : members_(members) {
-    positions_.reserve(members.size());
-    for (const uint32_t i : members) {
-      positions_.push_back(sites[i].position);
-      codes_.push_back(sites[i].code);
-      reaches_.push_back(reach_of(sites[i].radius));
-    }
-    tree_.emplace(positions_, codes_, reaches_);
+  Sources(std::span<const Site> sites, const Indices& members)
+      : members_(members), positions_(members.size()), codes_(members.size()), reaches_(members.size()) {
+    oneapi::tbb::parallel_for(size_t{0}, members.size(), [&](size_t at) {
+      const Site& site = sites[members[at]];
+      positions_[at] = site.position;
+      codes_[at] = site.code;
+      reaches_[at] = reach_of(site.radius);
+    });
+    tree_.emplace(positions_, codes_, reaches_, kLeafSites);
   }
   Sources(const Sources&) = delete;
   Sources& operator=(const Sources&) = delete;
@@ -116,6 +126,8 @@ class Sources {
   }
   /// The site of a source that `find` returned.
   [[nodiscard]] uint32_t site(uint32_t found) const { return members_[found]; }
+  [[nodiscard]] const glm::dvec3& position(uint32_t found) const { return positions_[found]; }
+  [[nodiscard]] float reach(uint32_t found) const { return reaches_[found]; }
 
  private:
   const Indices& members_;
@@ -142,25 +154,99 @@ double sum_at(std::span<const Site> sites, const Sources& sources, std::span<con
   return sum;
 }
 
-/// Adds up the kernels of all sites at all sites, leaf by leaf. Leaves with too many sources nearby are skipped;
-/// returns their sites.
+/// The sources found for a leaf as arrays of floats for vector instructions: coordinates relative to an origin nearby,
+/// scaled to the order of 1, since squares of floats would underflow. They tell which sources are too far away from a
+/// site; rounding errs towards keeping a source.
+class NearSources {
+ public:
+  NearSources(const Sources& sources, const geometry::Box& box, std::span<const uint32_t> found)
+      : count_(found.size()) {
+    const glm::dvec3 origin = box.centre();
+    glm::dvec3 size = box.size();
+    for (const uint32_t i : found) size = glm::max(size, glm::abs(sources.position(i) - origin));
+    const double extent = std::max({size.x, size.y, size.z});
+    const double scale = extent > 0 ? std::ldexp(1.0, -std::ilogb(extent)) : 1;
+    for (size_t i = 0; i < count_; ++i) {
+      const glm::dvec3 p = (sources.position(found[i]) - origin) * scale;
+      x_[i] = static_cast<float>(p.x);
+      y_[i] = static_cast<float>(p.y);
+      z_[i] = static_cast<float>(p.z);
+      const double reach = (double{sources.reach(found[i])} * scale + kRounding) * (1 + kRounding);
+      squared_reaches_[i] = static_cast<float>(std::min<double>(reach * reach, std::numeric_limits<float>::max()));
+    }
+  }
+
+  /// Writes the numbers of the sources that may reach source number `at` to `near`, ascending; returns how many.
+  size_t reaching(size_t at, std::array<uint32_t, kMaxNeighbours>& near) const {
+    std::array<uint32_t, kMaxNeighbours> inside;
+    for (size_t i = 0; i < count_; ++i) {
+      const float dx = x_[i] - x_[at];
+      const float dy = y_[i] - y_[at];
+      const float dz = z_[i] - z_[at];
+      inside[i] = dx * dx + dy * dy + dz * dz <= squared_reaches_[i] ? 1 : 0;
+    }
+    size_t count = 0;
+    for (uint32_t i = 0; i < count_; ++i) {
+      near[count] = i;
+      count += inside[i];
+    }
+    return count;
+  }
+
+ private:
+  /// Coordinates are at most 2 and rounded to 2^-24 of that; their differences and the reach are, too.
+  static constexpr double kRounding = 0x1p-19;
+
+  size_t count_;
+  alignas(64) std::array<float, kMaxNeighbours> x_;
+  alignas(64) std::array<float, kMaxNeighbours> y_;
+  alignas(64) std::array<float, kMaxNeighbours> z_;
+  alignas(64) std::array<float, kMaxNeighbours> squared_reaches_;
+};
+
+/// Adds up the kernels of all sites at the sites of a run.
+void add_near_kernels(std::span<const Site> sites, const Sources& sources, const geometry::MortonTree::Run& run,
+                      std::span<const uint32_t> found, bool oriented, std::vector<double>& sums) {
+  const NearSources near_sources(sources, sources.tree().box_of(run), found);
+  const auto first = static_cast<size_t>(std::lower_bound(found.begin(), found.end(), run.first) - found.begin());
+  std::array<uint32_t, kMaxNeighbours> near;
+  for (uint32_t k = run.first; k < run.last; ++k) {
+    const size_t count = near_sources.reaching(first + (k - run.first), near);
+    double sum = 0;
+    for (const uint32_t i : std::span(near).first(count)) {
+      if (found[i] != k) sum += kernel_at(sites[k], sites[found[i]], oriented);
+    }
+    sums[k] += sum;
+  }
+}
+
+/// The same for a leaf, in parts where it has too many sources. Sites that have too many even so are marked.
+void add_kernels_of_leaf(std::span<const Site> sites, const Sources& sources, const geometry::MortonTree::Run& leaf,
+                         bool oriented, std::vector<double>& sums, std::vector<uint8_t>& dense) {
+  thread_local std::vector<uint32_t> found;
+  if (sources.find(sources.tree().box_of(leaf), kMaxNeighbours, found)) {
+    add_near_kernels(sites, sources, leaf, found, oriented, sums);
+  } else if (leaf.last - leaf.first > kFewSites) {
+    const uint32_t middle = leaf.first + (leaf.last - leaf.first) / 2;
+    add_kernels_of_leaf(sites, sources, {leaf.first, middle}, oriented, sums, dense);
+    add_kernels_of_leaf(sites, sources, {middle, leaf.last}, oriented, sums, dense);
+  } else {
+    std::fill(dense.begin() + leaf.first, dense.begin() + leaf.last, 1);
+  }
+}
+
+/// Adds up the kernels of all sites at all sites, leaf by leaf. Sites with too many sources nearby are skipped and
+/// returned.
 Indices add_all_kernels(std::span<const Site> sites, const Indices& all, bool oriented, std::vector<double>& sums) {
   const Sources sources(sites, all);
   const std::vector<geometry::MortonTree::Run> leaves = sources.tree().leaves();
-  std::vector<uint8_t> dense(leaves.size(), 0);
+  std::vector<uint8_t> dense(sites.size(), 0);
   oneapi::tbb::parallel_for(size_t{0}, leaves.size(), [&](size_t leaf) {
-    thread_local std::vector<uint32_t> found;
-    if (!sources.find(sources.tree().box_of(leaves[leaf]), kMaxNeighbours, found)) {
-      dense[leaf] = 1;
-      return;
-    }
-    for (uint32_t k = leaves[leaf].first; k < leaves[leaf].last; ++k) {
-      sums[k] += sum_at(sites, sources, found, k, oriented);
-    }
+    add_kernels_of_leaf(sites, sources, leaves[leaf], oriented, sums, dense);
   });
   Indices rest;
-  for (size_t leaf = 0; leaf < leaves.size(); ++leaf) {
-    for (uint32_t k = leaves[leaf].first; k < leaves[leaf].last && dense[leaf] != 0; ++k) rest.push_back(k);
+  for (uint32_t k = 0; k < sites.size(); ++k) {
+    if (dense[k] != 0) rest.push_back(k);
   }
   return rest;
 }
@@ -226,7 +312,8 @@ std::vector<float> normalization_weights(const SurfelCloud& cloud) {
   const Indices dense = add_all_kernels(sites, all, cloud.oriented, sums);
   if (!dense.empty()) add_sampled_kernels(sites, dense, cloud.oriented, sums);
   std::vector<float> weights(sites.size());
-  for (size_t i = 0; i < sites.size(); ++i) weights[sites[i].surfel] = static_cast<float>(1 / sums[i]);
+  oneapi::tbb::parallel_for(size_t{0}, sites.size(),
+                            [&](size_t i) { weights[sites[i].surfel] = static_cast<float>(1 / sums[i]); });
   return weights;
 }
 
