@@ -1,6 +1,6 @@
-// Converts the lengths of the tile lists to offsets (an exclusive prefix sum), and clears the lengths for the binning
-// that follows. Sorts the tiles by descending list length, so lanes that draw side by side have similar work. Runs as
-// one work group, because there are few lengths.
+// Converts the lengths of the tile lists, which slices.comp has summed up, to offsets (an exclusive prefix sum). Sorts the
+// tiles by descending list length, so lanes that draw side by side have similar work. Runs as one work group, because
+// there are few lengths.
 #include "shared/frame_layout.h"
 #include "include/frame.glsl"
 
@@ -8,8 +8,7 @@
 layout(local_size_x = LANES) in;
 
 layout(std430, binding = SURFCAST_BIND_COUNTERS) buffer CountersBuffer { Counters counters; };
-layout(std430, binding = SURFCAST_BIND_TILE_COUNT) buffer TileCount { uint tile_count[]; };
-layout(std430, binding = SURFCAST_BIND_TILE_OFFSET) writeonly buffer TileOffset { uint tile_offset[]; };
+layout(std430, binding = SURFCAST_BIND_TILE_OFFSET) buffer TileOffset { uint tile_offset[]; };
 
 layout(std430, binding = SURFCAST_BIND_TILE_DEMAND) writeonly buffer TileDemand { uint tile_demand[]; };
 layout(std430, binding = SURFCAST_BIND_TILE_ORDER) writeonly buffer TileOrder { uint tile_order[]; };
@@ -26,18 +25,13 @@ uint length_class(uint demand) {
   return min((floatBitsToUint(float(demand)) >> 21) - (127u << 2) + 1u, uint(CLASSES - 1));
 }
 
-uint demand_of(uint tile) { return tile_count[tile] + tile_count[tile + uint(frame.tiles.z)]; }
-
 const uint kLengths[8] = uint[8](SURFCAST_LIST_LENGTHS);
 
-// Sorts the lane's share of the tiles. Must run before the lengths are cleared.
-void order_tiles(uint lane) {
-  uint share = (uint(frame.tiles.z) + uint(LANES) - 1u) / uint(LANES);
-  uint first = min(lane * share, uint(frame.tiles.z));
-  uint last = min(first + share, uint(frame.tiles.z));
+// Sorts the lane's share of the tiles. Must run before the lengths become offsets.
+void order_tiles(uint lane, uint first, uint last) {
   if (lane < uint(CLASSES)) class_places[lane] = 0u;
   barrier();
-  for (uint i = first; i < last; ++i) atomicAdd(class_places[length_class(demand_of(i))], 1u);
+  for (uint i = first; i < last; ++i) atomicAdd(class_places[length_class(tile_offset[i])], 1u);
   barrier();
   if (lane == 0u) {
     uint place = 0u;
@@ -49,25 +43,24 @@ void order_tiles(uint lane) {
     for (int i = 0; i < 8; ++i) counters.lengths[i / 4][i % 4] = class_places[length_class(kLengths[i]) - 1u];
   }
   barrier();
-  for (uint i = first; i < last; ++i) tile_order[atomicAdd(class_places[length_class(demand_of(i))], 1u)] = i;
+  for (uint i = first; i < last; ++i) tile_order[atomicAdd(class_places[length_class(tile_offset[i])], 1u)] = i;
 }
 
 void main() {
   uint lane = gl_LocalInvocationID.x;
-  order_tiles(lane);
-  uint lists = 2u * uint(frame.tiles.z);
-  uint share = (lists + uint(LANES) - 1u) / uint(LANES);
-  uint first = min(lane * share, lists);
-  uint last = min(first + share, lists);
+  uint tiles = uint(frame.tiles.z);
+  uint share = (tiles + uint(LANES) - 1u) / uint(LANES);
+  uint first = min(lane * share, tiles);
+  uint last = min(first + share, tiles);
+  order_tiles(lane, first, last);
   if (lane == 0u) longest = 0u;
   barrier();
   uint sum = 0u;
   uint most = 0u;
   for (uint i = first; i < last; ++i) {
-    sum += tile_count[i];
-    uint tile = i % uint(frame.tiles.z);
-    uint demand = tile_count[tile] + tile_count[tile + uint(frame.tiles.z)];
-    if (i == tile && frame.flags.z == 0) tile_demand[tile] = demand;  // as counted before thinning
+    uint demand = tile_offset[i];
+    sum += demand;
+    if (frame.flags.z == 0) tile_demand[i] = demand;  // as counted before thinning
     most = max(most, demand);
   }
   sums[lane] = sum;
@@ -86,9 +79,8 @@ void main() {
   barrier();
   uint offset = sums[lane];
   for (uint i = first; i < last; ++i) {
-    uint count = tile_count[i];
+    uint count = tile_offset[i];
     tile_offset[i] = offset;
-    tile_count[i] = 0u;
     offset += count;
   }
 }

@@ -8,6 +8,7 @@
 #include "shared/kernel.h"
 #include "shared/frame_layout.h"
 #include "include/frame.glsl"
+#include "include/depth_slices.glsl"
 #include "include/display_options.glsl"
 #include "include/packing.glsl"
 #include "include/resampling_filter.glsl"
@@ -48,15 +49,15 @@ struct Surfel {
 
 #include "include/tile_range.glsl"
 
-void count_tiles(uvec2 range) {
+void count_tiles(uvec2 range, uint slice) {
   for (uint y = range.x >> 16; y <= range.y >> 16; ++y) {
     for (uint x = range.x & 0xffffu; x <= (range.y & 0xffffu); ++x) {
-      atomicAdd(tile_count[y * uint(frame.tiles.x) + x], 1u);
+      atomicAdd(tile_count[slice_count_at(y * uint(frame.tiles.x) + x, slice)], 1u);
     }
   }
 }
 
-void append(bool large, uvec2 range, uvec4 a, uvec4 b, uvec4 disc, vec3 n) {
+void append(bool large, uvec2 range, uint slice, uvec4 a, uvec4 b, uvec4 disc, vec3 n) {
   uint slot = large ? atomicAdd(counters.counts.y, 1u) : atomicAdd(counters.counts.x, 1u);
   // Large splats fill the record buffer from its end. Records beyond the capacity are only counted: the caller then
   // enlarges the buffer and repeats the projection.
@@ -66,15 +67,27 @@ void append(bool large, uvec2 range, uvec4 a, uvec4 b, uvec4 disc, vec3 n) {
   imageStore(splats, int(2u * slot), a);
   imageStore(splats, int(2u * slot + 1u), b);
   if (!large) imageStore(discs, int(slot), disc);
-  imageStore(bounds, int(slot), uvec4(range, 0u, 0u));
+  imageStore(bounds, int(slot), uvec4(range.x | (slice << SURFCAST_SLICE_SHIFT), range.y, 0u, 0u));
 #ifdef SURFCAST_LIT_COLOR
   imageStore(normals, int(slot), uvec4(pack_biased_normal(n), 0u, 0u, 0u));
 #endif
-  if (!large) count_tiles(range);
+  if (!large) count_tiles(range, slice);
 }
 
 // Depth range of a disc of the given radius, as a distance along z.
 float depth_extent(Surfel s, float disc_radius) { return disc_radius * sqrt(max(1.0 - s.n.z * s.n.z, 0.0)); }
+
+// Inverse depth that no fragment and no disc of a small splat exceeds. A fragment lies on the surfel's plane, which is
+// affine on the screen, within the ellipse v^T S^-1 v <= c; a disc is not nearer than the near end of the surfel. The
+// margin covers narrowed splats (see include/narrow.glsl), whose cutoff grows by at most 0.7, and the rounding of the
+// records.
+float nearest_of_small(ScreenVariance v, float c, SmallSplat splat, float rise) {
+  const float kMargin = 1.1;
+  vec2 d = splat.slope;
+  float variance = d.x * d.x * v.s.x + 2.0 * d.x * d.y * v.s.y + d.y * d.y * v.s.z;
+  float reach = max(sqrt(c * max(variance, 0.0)), rise);
+  return splat.inverse_depth * (1.0 + kMargin * reach / eta()) * 1.0001;
+}
 
 void project_small(Surfel s, vec2 ray, vec2 centre, ScreenVariance v, float c) {
   vec2 extent = sqrt(c * v.s.xz);
@@ -103,9 +116,9 @@ void project_small(Surfel s, vec2 ray, vec2 centre, ScreenVariance v, float c) {
   float disc_radius = float(SURFCAST_VISIBILITY_RADIUS) * s.radius;
   ScreenVariance d = screen_variance(s.n, ray, frontal_deviation(disc_radius, s.o.z), frame.filter_.y);
   float push = push_back(s.radius, s.o.z) * footprints;
-  Disc disc = Disc(inverse_factor(d.s, d.det), push / (1.0 + push / eta()), splat.fall,
-                   depth_range / (1.0 - depth_range / eta()), splat.weight);
-  append(false, range, a, b, encode_disc(disc), s.n);
+  float rise = depth_range / (1.0 - depth_range / eta());
+  Disc disc = Disc(inverse_factor(d.s, d.det), push / (1.0 + push / eta()), splat.fall, rise, splat.weight);
+  append(false, range, slice_at(nearest_of_small(v, c, splat, rise)), a, b, encode_disc(disc), s.n);
 }
 
 // True if a disc that the eye plane cuts lies wholly behind the eye plane or beyond a side of the picture.
@@ -146,7 +159,7 @@ void project_large(Surfel s, bool reaches_eye_plane) {
   if (share == 0.0) return;
   uvec4 a, b;
   encode_large(LargeSplat(s.o, s.radius, s.n, share * s.weight, s.color), a, b);
-  append(true, range, a, b, uvec4(0u), s.n);
+  append(true, range, 0u, a, b, uvec4(0u), s.n);
 }
 
 bool is_small(float sigma, float extent, float depth) {

@@ -15,6 +15,7 @@ layout(std430, binding = SURFCAST_BIND_FRONTS) readonly buffer Fronts { float fr
 layout(std430, binding = SURFCAST_BIND_TILE_ORDER) readonly buffer TileOrder { uint tile_order[]; };
 layout(std430, binding = SURFCAST_BIND_TILE_COUNT) readonly buffer TileCount { uint tile_count[]; };
 
+#include "include/depth_slices.glsl"
 #include "include/silhouette_list.glsl"
 
 const ivec2 kTile = ivec2(SURFCAST_TILE_WIDTH, SURFCAST_TILE_HEIGHT);
@@ -83,15 +84,20 @@ void list_pixels(uint tile, uint found) {
   for (; found != 0u; found &= found - 1u) silhouette_parts[--end] = uvec2(tile, found & (~found + 1u));
 }
 
+bool has_large_splats(uint tile) {
+  uint after_last_slice = slice_count_at(tile, uint(frame.slices.x));
+  return tile_count[after_last_slice] != tile_count[after_last_slice - 1u];
+}
+
 void main() {
   uint index = (first_group + gl_WorkGroupID.x) * uint(SURFCAST_SILHOUETTE_LANES) + gl_LocalInvocationID.x;
   if (index >= uint(frame.tiles.z)) return;
   int tile = int(tile_order[index]);
   uint found = find(ivec2(tile % frame.tiles.x, tile / frame.tiles.x) * kTile);
   if (found == 0u) return;
-  if (tile_count[tile + frame.tiles.z] == 0u) {
-    list_parts(uint(tile), found);
-  } else {
+  if (has_large_splats(uint(tile))) {
     list_pixels(uint(tile), found);
+  } else {
+    list_parts(uint(tile), found);
   }
 }

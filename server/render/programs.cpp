@@ -98,6 +98,8 @@ Result<Programs> Programs::create(const KernelShape& shape, const std::string& d
   Programs programs;
   programs.shape_ = shape;
   programs.defines_ = defines;
+  Result<gl::Program> slices = compute_program("slices.comp", "slices.comp", {}, defines);
+  if (!slices) return fail(std::move(slices.error()));
   Result<gl::Program> offsets = compute_program("bin_offsets.comp", "bin_offsets.comp", {}, defines);
   if (!offsets) return fail(std::move(offsets.error()));
   Result<gl::Program> bin = compute_program("bin.comp", "bin.comp", {}, defines);
@@ -105,6 +107,7 @@ Result<Programs> Programs::create(const KernelShape& shape, const std::string& d
   Result<gl::Program> count = compute_program("bin.comp", "bin.comp", {}, defines + "#define SURFCAST_COUNTS_LARGE\n");
   if (!count) return fail(std::move(count.error()));
   programs.count_large_ = std::move(*count);
+  programs.slices_ = std::move(*slices);
   programs.bin_offsets_ = std::move(*offsets);
   programs.bin_ = std::move(*bin);
   return programs;

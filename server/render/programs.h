@@ -71,6 +71,7 @@ class Programs {
   Result<SplatPrograms> variant(const Variant& variant, const PictureKinds& kinds);
   /// Counts the tiles that large splats touch.
   [[nodiscard]] const gl::Program& count_large() const { return count_large_; }
+  [[nodiscard]] const gl::Program& slices() const { return slices_; }
   [[nodiscard]] const gl::Program& bin_offsets() const { return bin_offsets_; }
   [[nodiscard]] const gl::Program& bin() const { return bin_; }
   /// Pixels of a tile that a lane of supersample.comp draws at once.
@@ -93,6 +94,7 @@ class Programs {
   KernelShape shape_;
   std::string defines_;
   gl::Program count_large_;
+  gl::Program slices_;
   gl::Program bin_offsets_;
   gl::Program bin_;
   std::map<std::pair<std::string, std::string>, gl::Program> compiled_;  ///< by Source::name and defines

@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "base/stopwatch.h"
+#include "render/depth_slices.h"
 #include "render/thinning.h"
 #include "render/tile_spans.h"
 #include "shared/kernel.h"
@@ -27,6 +28,7 @@ struct ProjectionWork {
   std::vector<layout::Chunk> chunks;
   std::vector<layout::BlockDisplay> block_displays;  ///< for each block, if the display options need them
   std::vector<layout::ClipRange> clips;
+  std::vector<DepthRange> depths;  ///< of the blocks, in units of the projection
 };
 
 /// An upper bound of the distance of the block's surfels from the eye, world units.
@@ -53,6 +55,15 @@ layout::BlockView block_view(const residency::ResidentBlock& block, const geomet
   const double size = std::ldexp(1.0, unit);
   return {glm::vec4(glm::vec3(frame.to_camera(block.lattice.position(glm::uvec3(0))) * size), 0),
           glm::vec4(glm::vec3(block.lattice.step() * size), 0), block.header->scale(unit)};
+}
+
+/// The depths of a block's surfels, without their radii.
+DepthRange depths_of(const residency::PackedLattice& lattice, const geometry::CameraFrame& frame, int unit,
+                     uint64_t items) {
+  const glm::dvec3 extent = 0.5 * lattice.step() * glm::dvec3(lattice.largest);
+  const double middle = frame.to_camera(lattice.position(glm::uvec3(0)) + extent).z;
+  const double reach = glm::dot(glm::abs(frame.forward), extent);
+  return {std::ldexp(middle - reach, unit), std::ldexp(middle + reach, unit), items};
 }
 
 bool needs_block_displays(const DisplayOptions& display) {
@@ -99,7 +110,12 @@ void plan_kind(const RegionTask& task, uint32_t kind, int unit, ProjectionWork& 
     }
     runs.clear();
     block.resident->header->add_runs(block.radii, runs);
-    for (const residency::TexelRun& run : runs) add_chunks(block, view, run, work.chunks);
+    uint64_t items = 0;
+    for (const residency::TexelRun& run : runs) {
+      add_chunks(block, view, run, work.chunks);
+      items += run.count;
+    }
+    work.depths.push_back(depths_of(block.resident->lattice, task.frame, unit, items));
   }
   work.kinds.push_back({first, work.chunks.size() - first});
 }
@@ -154,11 +170,16 @@ void upload_uniforms(StorageBuffer& buffer, const T& constants) {
   glNamedBufferSubData(buffer.name(), 0, static_cast<GLsizeiptr>(sizeof constants), &constants);
 }
 
-void upload_constants(const RegionTask& task, const Thinning& thinning, SplatBuffers& buffers) {
+void upload_constants(const RegionTask& task, const DepthSlices& slices, const Thinning& thinning,
+                      SplatBuffers& buffers) {
   layout::FrameConstants constants = task.constants;
   constants.tiles.w = static_cast<int>(buffers.splat_capacity());
   constants.flags.z = static_cast<int>(thinning.most);
   constants.flags.w = thinning.alike ? 1 : 0;
+  constants.slices.x = static_cast<int>(slices.count);
+  for (int i = 0; i < SURFCAST_SLICES; ++i) {
+    constants.slice_near[i / 4][i % 4] = slices.near.at(static_cast<size_t>(i));
+  }
   upload_uniforms(buffers.frame, constants);
 }
 
@@ -180,15 +201,15 @@ void bind_display_options(const RegionTask& task, const SplatBuffers& buffers) {
   if (display.attributes) task.surfels->bind_attributes(SURFCAST_UNIT_ATTRIBUTES);
 }
 
-void clear_counts(const RegionTask& task, SplatBuffers& buffers) {
-  const size_t lists = 2 * static_cast<size_t>(task.constants.tiles.z);
+void clear_counts(const RegionTask& task, const DepthSlices& slices, SplatBuffers& buffers) {
+  const auto tiles = static_cast<size_t>(task.constants.tiles.z);
   buffers.counters.reserve(sizeof(layout::Counters));
   buffers.counters.clear();
-  buffers.tile_count.reserve(lists * 4);
+  buffers.tile_count.reserve(tiles * (slices.count + 1) * sizeof(GLuint));
   buffers.tile_count.clear();
-  buffers.tile_offset.reserve(lists * 4);
-  buffers.tile_demand.reserve(lists * 2);
-  buffers.tile_order.reserve(lists * 2);
+  buffers.tile_offset.reserve(tiles * sizeof(GLuint));
+  buffers.tile_demand.reserve(tiles * sizeof(GLuint));
+  buffers.tile_order.reserve(tiles * sizeof(GLuint));
 }
 
 /// Binds the buffers that every pass uses.
@@ -248,13 +269,17 @@ layout::Counters read_counters(const SplatBuffers& buffers) {
   return counters;
 }
 
+/// The most splats of a region. Each record has two texels, and a list entry has room for a number of so many bits.
+size_t most_splats() {
+  return std::min(residency::SurfelBuffer::device_limit() / 2, size_t{1} << SURFCAST_SLICE_SHIFT);
+}
+
 /// The initial capacity in splats. With lazily committed memory there is room for every surfel, so the projection is
 /// never repeated for lack of room.
 size_t first_capacity(const ProjectionWork& work, const SplatBuffers& buffers) {
   constexpr size_t kFirst = 1u << 18;
   if (!buffers.lazy) return kFirst;
-  return std::clamp(std::bit_ceil(work.chunks.size() * SURFCAST_CHUNK), kFirst,
-                    residency::SurfelBuffer::device_limit() / 2);
+  return std::clamp(std::bit_ceil(work.chunks.size() * SURFCAST_CHUNK), kFirst, most_splats());
 }
 
 /// Projects the visible blocks, one kind after another.
@@ -294,7 +319,14 @@ Status count_large(const RegionTask& task, const layout::Counters& counters, con
 }
 
 /// Sums up the tile counts.
-layout::Counters sum_up(const Programs& programs, const SplatBuffers& buffers) {
+Result<layout::Counters> sum_up(const RegionTask& task, const Programs& programs, SplatBuffers& buffers,
+                                const Preemption& preemption) {
+  const auto tiles = static_cast<size_t>(task.constants.tiles.z);
+  const Status summed = dispatch_in_batches(groups_of_lanes(tiles), buffers.slice_batches, preemption, [&] {
+    bind_frame(buffers);
+    glUseProgram(programs.slices().name());
+  });
+  if (!summed) return fail(summed.error());
   bind_frame(buffers);
   glUseProgram(programs.bin_offsets().name());
   glDispatchCompute(1, 1, 1);
@@ -312,25 +344,27 @@ Result<layout::Counters> project(const RegionTask& task, const ProjectionWork& w
   upload(buffers.blocks, work.blocks);
   upload(buffers.chunks, work.chunks);
   upload_display_options(task, work, buffers);
+  const DepthSlices slices = depth_slices(work.depths, static_cast<size_t>(task.constants.tiles.z));
   Thinning thinning;
   while (true) {
-    upload_constants(task, thinning, buffers);
-    clear_counts(task, buffers);
+    upload_constants(task, slices, thinning, buffers);
+    clear_counts(task, slices, buffers);
     if (Status projected = project_kinds(task, work, variant, buffers, preemption); !projected) {
       return fail(std::move(projected.error()));
     }
     const layout::Counters splats = read_counters(buffers);
     const size_t needed = size_t{splats.counts.x} + splats.counts.y;
     if (needed > buffers.splat_capacity()) {
-      // Each record has two texels. The pool is limited so that the records of all its surfels fit.
-      buffers.reserve_splats(std::min(needed + needed / 4, residency::SurfelBuffer::device_limit() / 2), with_normals);
+      // The pool is limited so that the records of all its surfels fit.
+      buffers.reserve_splats(std::min(needed + needed / 4, most_splats()), with_normals);
       continue;
     }
     Status counted = count_large(task, splats, programs, buffers, preemption);
     if (!counted) return fail(std::move(counted.error()));
-    const layout::Counters counters = sum_up(programs, buffers);
-    const Thinning next = next_thinning(counters, thinning, residency::SurfelBuffer::device_limit());
-    if (next == thinning) return counters;
+    const Result<layout::Counters> counters = sum_up(task, programs, buffers, preemption);
+    if (!counters) return fail(counters.error());
+    const Thinning next = next_thinning(*counters, thinning, residency::SurfelBuffer::device_limit());
+    if (next == thinning) return *counters;
     thinning = next;
   }
 }

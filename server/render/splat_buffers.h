@@ -69,6 +69,7 @@ class ConstantTexels {
 struct SplatBuffers {
   BatchSizer project_batches;
   BatchSizer count_large_batches;
+  BatchSizer slice_batches;
   BatchSizer bin_batches;
   std::array<BatchSizer, kTileSpans> splat_batches;
   BatchSizer splat_large_batches;

@@ -11,6 +11,11 @@ layout(binding = SURFCAST_UNIT_SPLATS) uniform usamplerBuffer splats;
 layout(binding = SURFCAST_UNIT_DISCS) uniform usamplerBuffer discs;
 layout(binding = SURFCAST_UNIT_LISTS) uniform usamplerBuffer lists;
 
+#include "include/depth_slices.glsl"
+
+// Index of the splat of a list entry.
+int slot_of(uint entry) { return int(entry & kSlotMask); }
+
 #include "include/small_splats.glsl"
 #ifdef SURFCAST_LARGE
 #include "include/large_splats.glsl"
@@ -25,8 +30,10 @@ struct TileLists {
 };
 
 TileLists lists_of_tile(uint index) {
-  uint large = index + uint(frame.tiles.z);
-  return TileLists(tile_offset[index], tile_count[index], tile_offset[large], tile_count[large]);
+  uint first = tile_offset[index];
+  uint after_last_slice = slice_count_at(index, uint(frame.slices.x));
+  uint smalls = tile_count[after_last_slice - 1u];
+  return TileLists(first, smalls, first + smalls, tile_count[after_last_slice] - smalls);
 }
 
 // True if this variant draws the tile.
@@ -38,30 +45,34 @@ bool belongs_to_this_build(TileLists tile) {
 #endif
 }
 
+// Inverse depth that hides everything, as the surface of a pixel to which nothing can be added any more.
+const float kHidesAll = 3e38;
+
 // Initialises the first layer: no depth limit (`limit` is an inverse depth). Only the first `wanted` columns are drawn.
 void begin_drawing(int wanted, out Columns limit, out LightColumns light) {
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
     light[c] = light_zero();
     if (c >= wanted) light[c].transmittance = Rows(0.0);
-    limit[c] = Rows(3e38);
+    limit[c] = Rows(kHidesAll);
   }
 }
 
 // Draws the nearest surface behind `limit`, which becomes the new limit. False if no surface behind it can be visible.
+// Both passes leave a list where nothing that follows is in front of the surface of any pixel.
 bool draw_layer(TileLists tile, vec2 pixel, inout Columns limit, inout LightColumns light) {
   Columns surface;
   ColumnSums sums;
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
-    surface[c] = Rows(0.0);  // infinitely far
+    surface[c] = mix(Rows(0.0), Rows(kHidesAll), at_most(light[c].transmittance, Rows(0.0)));  // 0: infinitely far
     sums[c] = sums_zero();
   }
   float peak = 0.0;
-  find_surface_small(tile.first_small, tile.smalls, pixel, limit, surface, peak);
 #ifdef SURFCAST_LARGE
   find_surface_large(tile.first_large, tile.larges, pixel, limit, surface, peak);
 #endif
+  uint smalls = find_surface_small(tile.first_small, tile.smalls, pixel, limit, surface, peak);
   float unit = fixed_unit(peak);
-  accumulate_small(tile.first_small, tile.smalls, pixel, limit, surface, unit, sums);
+  accumulate_small(tile.first_small, smalls, pixel, limit, surface, unit, sums);
 #ifdef SURFCAST_LARGE
   accumulate_large(tile.first_large, tile.larges, pixel, limit, surface, unit, sums);
 #endif

@@ -80,7 +80,7 @@ void find_surface_large(uint first, uint count, vec2 pixel, Columns limit, inout
   vec2 ray = ray_of_pixel(pixel);
   for (uint k = 0u; k < count; ++k) {
 #include "kinds/see_entry.glsl"
-    LargeSplat s = fetch_large(int(texelFetch(lists, int(first + k)).x));
+    LargeSplat s = fetch_large(slot_of(texelFetch(lists, int(first + k)).x));
     peak = max(peak, large_peak(s, ray));
     float disc_radius = float(SURFCAST_VISIBILITY_RADIUS) * s.radius;
     float form = large_form(s, ray, disc_radius, disc_prefilter_variance()).x;
@@ -95,7 +95,7 @@ void accumulate_large(uint first, uint count, vec2 pixel, Columns limit, Columns
   for (uint begin = 0u; begin < count; begin += uint(SURFCAST_CARRY_INTERVAL)) {
     uint end = min(begin + uint(SURFCAST_CARRY_INTERVAL), count);
     for (uint k = begin; k < end; ++k) {
-      int slot = int(texelFetch(lists, int(first + k)).x);
+      int slot = slot_of(texelFetch(lists, int(first + k)).x);
 #include "kinds/add_entry.glsl"
       LargeSplat s = fetch_large(slot);
       float end = large_cutoff(s);

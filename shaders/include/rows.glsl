@@ -56,3 +56,13 @@ Rows over_rows(vec2 gradient) {
 // integers is the same. The built-in functions take three instructions in software, because they handle NaN.
 Rows larger(Rows a, Rows b) { return intBitsToFloat(max(floatBitsToInt(a), floatBitsToInt(b))); }
 Rows smaller(Rows a, Rows b) { return intBitsToFloat(min(floatBitsToInt(a), floatBitsToInt(b))); }
+
+// The least of the numbers of a column, none of which is negative.
+float least_of(Rows a) {
+#if SURFCAST_ROWS == 1
+  return a;
+#else
+  ivec2 pairs = min(floatBitsToInt(a.xy), floatBitsToInt(a.zw));
+  return intBitsToFloat(min(pairs.x, pairs.y));
+#endif
+}

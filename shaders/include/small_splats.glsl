@@ -32,6 +32,13 @@ Rows factored_form(vec3 factor, vec2 v) {
 #include "include/narrow.glsl"
 #endif
 
+// The least of the numbers of a lane, none of which is negative.
+float farthest(Columns surface) {
+  Rows least = surface[0];
+  for (int c = 1; c < SURFCAST_COLUMNS; ++c) least = smaller(least, surface[c]);
+  return least_of(least);
+}
+
 SmallSplat fetch_small(int slot) {
   SmallSplat splat = decode_small(texelFetch(splats, 2 * slot), texelFetch(splats, 2 * slot + 1));
 #ifdef SURFCAST_SUPERSAMPLED
@@ -48,11 +55,15 @@ Disc fetch_disc(int slot) {
   return disc;
 }
 
-// Finds the nearest surface behind `limit` (an inverse depth), pushed back, and the largest weight of the list.
-void find_surface_small(uint first, uint count, vec2 pixel, Columns limit, inout Columns surface, inout float peak) {
+// Finds the nearest surface behind `limit` (an inverse depth), pushed back, and the largest weight of the splats up to
+// it. Returns their number: in all slices that follow, nothing is in front of the surface of any pixel. It does not
+// depend on the order of splats within a slice, none of whose discs is in front of where the slice begins.
+uint find_surface_small(uint first, uint count, vec2 pixel, Columns limit, inout Columns surface, inout float peak) {
   float footprint = 1.0 / eta();
   for (uint k = 0u; k < count; ++k) {
-    int slot = int(texelFetch(lists, int(first + k)).x);
+    uint entry = texelFetch(lists, int(first + k)).x;
+    if (slice_near(slice_of(entry)) < farthest(surface)) return k;
+    int slot = slot_of(entry);
     uvec4 a = texelFetch(splats, 2 * slot);
     Disc disc = fetch_disc(slot);
     peak = max(peak, disc.weight);
@@ -68,6 +79,7 @@ void find_surface_small(uint first, uint count, vec2 pixel, Columns limit, inout
       surface[c] = larger(surface[c], mix(Rows(0.0), disc_z, hit));
     }
   }
+  return count;
 }
 
 // Accumulates the splats between `limit` and `surface`.
@@ -77,7 +89,7 @@ void accumulate_small(uint first, uint count, vec2 pixel, Columns limit, Columns
   for (uint begin = 0u; begin < count; begin += uint(SURFCAST_CARRY_INTERVAL)) {
     uint end = min(begin + uint(SURFCAST_CARRY_INTERVAL), count);
     for (uint k = begin; k < end; ++k) {
-      int slot = int(texelFetch(lists, int(first + k)).x);
+      int slot = slot_of(texelFetch(lists, int(first + k)).x);
       SmallSplat s = fetch_small(slot);
       SplatValue value = splat_value(s.color, slot, unit);
       float depth_unit = s.inverse_depth * footprint;

@@ -30,6 +30,10 @@ namespace surfcast::layout {
 #define SURFCAST_TILE_CAPACITY 3072
 // Splats of a tile after thinning above which all its splats are sampled with equal probability.
 #define SURFCAST_TILE_CAPACITY_LIMIT 4000
+// Depth slices into which the list of a tile may be divided. A list entry and the first tile of a splat hold the number
+// of a slice in the bits above SURFCAST_SLICE_SHIFT; below it are a splat's index, and a tile's row and column.
+#define SURFCAST_SLICES 32
+#define SURFCAST_SLICE_SHIFT 26
 // Rows of tiles that one lane bins of a large splat.
 #define SURFCAST_BAND_ROWS 120
 // Splats between two carries of the fixed-point sums (see include/fixed_sum.glsl).
@@ -47,6 +51,9 @@ struct FrameConstants {
   SURFCAST_VEC4 background;  // linear light
   SURFCAST_IVEC4 flags;      // x: cull back faces, y: per-surfel weights, z: splats per tile after thinning (0: no
                              // thinning), w: thin splats of high gain too
+  SURFCAST_IVEC4 slices;     // x: depth slices of a tile's list, a power of two
+  // Inverse depth at which each slice begins, descending. The first slice begins at the eye.
+  SURFCAST_VEC4 slice_near[SURFCAST_SLICES / 4];
 };
 
 // One visible block (see shared/surfel_layout.h).
@@ -116,8 +123,8 @@ struct Counters {
 #define SURFCAST_BIND_BLOCKS 3
 #define SURFCAST_BIND_CHUNKS 4
 #define SURFCAST_BIND_COUNTERS 5
-#define SURFCAST_BIND_TILE_COUNT 6   // uint per tile and list: entries; small lists first, then large lists
-#define SURFCAST_BIND_TILE_OFFSET 7  // uint per tile and list: first entry
+#define SURFCAST_BIND_TILE_COUNT 6   // uint per tile and slice, see slices.comp; large splats follow the last slice
+#define SURFCAST_BIND_TILE_OFFSET 7  // uint per tile: first entry
 #define SURFCAST_BIND_TILE_DEMAND 8  // uint per tile: entries of both its lists, counted before thinning
 #define SURFCAST_BIND_PICTURE 9
 #define SURFCAST_BIND_TILE_ORDER 14   // uint per tile: tiles in descending order of list length
@@ -134,7 +141,7 @@ struct Counters {
 #define SURFCAST_UNIT_SPLATS 0      // two uvec4 per splat
 #define SURFCAST_UNIT_DISCS 1       // uvec4 per small splat: its opaque disc; or third uvec4 of a kind's record
 #define SURFCAST_UNIT_BOUNDS 2      // uvec2 per splat: its range of tiles, for binning
-#define SURFCAST_UNIT_LISTS 3       // uint per entry: splat index
+#define SURFCAST_UNIT_LISTS 3       // uint per entry: splat index and depth slice
 #define SURFCAST_UNIT_NORMALS 4     // uint per splat: packed camera space normal, in lit scenes with colour
 #define SURFCAST_UNIT_SURFELS 5     // uvec4 per texel of a block; surfels: see shared/surfel_layout.h
 #define SURFCAST_UNIT_SRGB 6        // uint per 8 bit sRGB value: root of its linear light in 11 and in 10 bits
@@ -142,7 +149,7 @@ struct Counters {
 #define SURFCAST_UNIT_COLORS 8      // uint per entry of a colour table: linear light as in a splat record
 
 #ifdef __cplusplus
-static_assert(sizeof(FrameConstants) == 128);
+static_assert(sizeof(FrameConstants) == 144 + 4 * SURFCAST_SLICES);
 static_assert(sizeof(BlockView) == 48);
 static_assert(sizeof(BlockDisplay) == 32);
 static_assert(sizeof(ClipRange) == 32);
