@@ -9,8 +9,6 @@ layout(local_size_x = LANES) in;
 
 layout(std430, binding = SURFCAST_BIND_COUNTERS) buffer CountersBuffer { Counters counters; };
 layout(std430, binding = SURFCAST_BIND_TILE_OFFSET) buffer TileOffset { uint tile_offset[]; };
-
-layout(std430, binding = SURFCAST_BIND_TILE_DEMAND) writeonly buffer TileDemand { uint tile_demand[]; };
 layout(std430, binding = SURFCAST_BIND_TILE_ORDER) writeonly buffer TileOrder { uint tile_order[]; };
 
 shared uint sums[LANES];
@@ -24,6 +22,9 @@ uint length_class(uint demand) {
   if (demand == 0u) return 0u;
   return min((floatBitsToUint(float(demand)) >> 21) - (127u << 2) + 1u, uint(CLASSES - 1));
 }
+
+// The sum, or the largest number.
+uint saturated_sum(uint a, uint b) { return a + b < a ? 0xffffffffu : a + b; }
 
 const uint kLengths[8] = uint[8](SURFCAST_LIST_LENGTHS);
 
@@ -59,8 +60,7 @@ void main() {
   uint most = 0u;
   for (uint i = first; i < last; ++i) {
     uint demand = tile_offset[i];
-    sum += demand;
-    if (frame.flags.z == 0) tile_demand[i] = demand;  // as counted before thinning
+    sum = saturated_sum(sum, demand);
     most = max(most, demand);
   }
   sums[lane] = sum;
@@ -71,7 +71,7 @@ void main() {
     for (int i = 0; i < LANES; ++i) {
       uint s = sums[i];
       sums[i] = total;
-      total += s;
+      total = saturated_sum(total, s);
     }
     counters.counts.z = total;
     counters.counts.w = longest;

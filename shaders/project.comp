@@ -15,7 +15,6 @@
 #include "include/spacing.glsl"
 #include "include/splat_record.glsl"
 #include "include/surfel.glsl"
-#include "include/thinning.glsl"
 
 layout(location = SURFCAST_UNIFORM_FIRST_GROUP) uniform uint first_group;
 layout(local_size_x = SURFCAST_PROJECT_LANES) in;
@@ -39,7 +38,6 @@ const float kSmallAngle = 0.25;         // tangent
 const float kSmallPerspective = 0.02;  // relative change of the standard deviation
 
 struct Surfel {
-  uint id;
   vec3 o;  // camera frame
   vec3 n;  // unit, towards the eye
   float radius;
@@ -94,8 +92,6 @@ void project_small(Surfel s, vec2 ray, vec2 centre, ScreenVariance v, float c) {
   bool outside;
   uvec2 range = tile_range(centre - extent, centre + extent, outside);
   if (outside) return;
-  float share = thinned_share(range, s.id, v.gain);
-  if (share == 0.0) return;
 
   // 1/z of the plane is affine on the screen: 1/z = (n.ray) / (n.o). The bounds keep edge-on surfels finite.
   float relief = s.o.z / min(dot(s.n, s.o), -1e-30);
@@ -108,7 +104,7 @@ void project_small(Surfel s, vec2 ray, vec2 centre, ScreenVariance v, float c) {
   splat.cutoff = c * SURFCAST_SQRT_HALF_LOG2E * SURFCAST_SQRT_HALF_LOG2E;
   float depth_range = depth_extent(s, surfel_extent(s.radius)) * footprints;
   splat.fall = depth_range / (1.0 + depth_range / eta());
-  splat.weight = share * s.weight * v.gain * coverage_scale(v.gain);
+  splat.weight = s.weight * v.gain * coverage_scale(v.gain);
   splat.color = s.color;
   uvec4 a, b;
   encode_small(splat, a, b);
@@ -155,10 +151,8 @@ void project_large(Surfel s, bool reaches_eye_plane) {
   bool outside;
   uvec2 range = tile_range(low, high, outside);
   if (outside) return;
-  float share = thinned_share(range, s.id, 1.0);
-  if (share == 0.0) return;
   uvec4 a, b;
-  encode_large(LargeSplat(s.o, s.radius, s.n, share * s.weight, s.color), a, b);
+  encode_large(LargeSplat(s.o, s.radius, s.n, s.weight, s.color), a, b);
   append(true, range, 0u, a, b, uvec4(0u), s.n);
 }
 
@@ -246,7 +240,6 @@ Surfel drawn_surfel(uvec4 run, BlockView block, uint place) {
   uvec4 texel = texelFetch(surfels, at);
   bool away;
   Surfel s = placed_surfel(block, texel, away);
-  s.id = run.w + place;
   s.weight = frame.filter_.z * (frame.flags.y != 0 ? surfel_size(texel, block.scale).y : 1.0);
 #if defined(SURFCAST_COLOR_TABLE)
   s.color = table_color(run.x, at, texel);

@@ -67,9 +67,10 @@ uint find(ivec2 corner) {
 }
 
 // Appends the pixels of a tile without large splats.
-void list_parts(uint tile, uint found) {
+void list_parts(uint tile, bool long_list, uint found) {
   uint parts = (uint(bitCount(found)) + uint(SURFCAST_COLUMNS) - 1u) / uint(SURFCAST_COLUMNS);
-  uint place = atomicAdd(silhouette_counts.x, parts);
+  uint place = long_list ? atomicAdd(silhouette_counts.z, parts) : atomicAdd(silhouette_counts.x, parts);
+  place += silhouettes_begin(long_list);
   for (uint i = 0u; i < parts; ++i) {
     uint rest = found;
     for (int c = 0; c < SURFCAST_COLUMNS; ++c) rest &= rest - 1u;
@@ -79,14 +80,11 @@ void list_parts(uint tile, uint found) {
 }
 
 // Appends the pixels of a tile with large splats.
-void list_pixels(uint tile, uint found) {
-  uint end = silhouettes_end() - atomicAdd(silhouette_counts.y, uint(bitCount(found)));
+void list_pixels(uint tile, bool long_list, uint found) {
+  uint count = uint(bitCount(found));
+  uint before = long_list ? atomicAdd(silhouette_counts.w, count) : atomicAdd(silhouette_counts.y, count);
+  uint end = silhouettes_end(long_list) - before;
   for (; found != 0u; found &= found - 1u) silhouette_parts[--end] = uvec2(tile, found & (~found + 1u));
-}
-
-bool has_large_splats(uint tile) {
-  uint after_last_slice = slice_count_at(tile, uint(frame.slices.x));
-  return tile_count[after_last_slice] != tile_count[after_last_slice - 1u];
 }
 
 void main() {
@@ -95,9 +93,12 @@ void main() {
   int tile = int(tile_order[index]);
   uint found = find(ivec2(tile % frame.tiles.x, tile / frame.tiles.x) * kTile);
   if (found == 0u) return;
-  if (has_large_splats(uint(tile))) {
-    list_pixels(uint(tile), found);
+  uint after_last_slice = slice_count_at(uint(tile), uint(frame.slices.x));
+  uint entries = tile_count[after_last_slice];
+  bool long_list = entries >= uint(SURFCAST_LONG_LIST);
+  if (entries != tile_count[after_last_slice - 1u]) {
+    list_pixels(uint(tile), long_list, found);
   } else {
-    list_parts(uint(tile), found);
+    list_parts(uint(tile), long_list, found);
   }
 }

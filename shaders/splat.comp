@@ -10,20 +10,25 @@
 // silhouettes.comp finds them, and supersample.comp draws their pixels again.
 //
 // Tiles with and without large splats are drawn by two variants of this kernel (SURFCAST_LARGE), because the code for
-// large splats would slow down all other tiles.
+// large splats would slow down all other tiles. Tiles with long lists are drawn by two more (SURFCAST_TOGETHER), with a
+// work group for each tile.
 #include "shared/kernel.h"
 #include "shared/frame_layout.h"
 #include "include/frame.glsl"
 
 layout(location = SURFCAST_UNIFORM_FIRST_GROUP) uniform uint first_group;
 layout(location = SURFCAST_UNIFORM_SPAN) uniform uvec3 span;
-// A work group draws SURFCAST_TILES_AT_ONCE tiles side by side, and span.z in total.
 const int kLanesAcross = SURFCAST_TILE_WIDTH / SURFCAST_COLUMNS;  // per tile
+#ifdef SURFCAST_TOGETHER
+layout(local_size_x = SURFCAST_PIXEL_LANES * SURFCAST_SHARES) in;
+#else
+// A work group draws SURFCAST_TILES_AT_ONCE tiles side by side, and span.z in total.
 layout(local_size_x = SURFCAST_TILES_AT_ONCE * SURFCAST_TILE_WIDTH / SURFCAST_COLUMNS,
        local_size_y = SURFCAST_TILE_HEIGHT / SURFCAST_ROWS) in;
+#endif
 
 layout(std430, binding = SURFCAST_BIND_TILE_ORDER) readonly buffer TileOrder { uint tile_order[]; };
-#ifdef SURFCAST_DYNAMIC_TILES
+#if defined(SURFCAST_DYNAMIC_TILES) && !defined(SURFCAST_TOGETHER)
 layout(std430, binding = SURFCAST_BIND_NEXT_TILES) buffer NextTiles { uint next_tiles[]; };
 #endif
 #ifdef SURFCAST_FINDS_SILHOUETTES
@@ -49,6 +54,27 @@ void write_column(Light light, Rows front, ivec2 first) {
   }
 }
 
+ivec2 first_pixel(uint tile, ivec2 lane) {
+  ivec2 place = ivec2(tile % uint(frame.tiles.x), tile / uint(frame.tiles.x));
+  return place * ivec2(SURFCAST_TILE_WIDTH, SURFCAST_TILE_HEIGHT) + lane * ivec2(SURFCAST_COLUMNS, SURFCAST_ROWS);
+}
+
+#ifdef SURFCAST_TOGETHER
+void main() {
+  uint at = span.x + first_group + gl_WorkGroupID.x;
+  if (at >= span.y) return;
+  uint index = tile_order[at];
+  TileLists tile = lists_of_tile(index);
+  if (!belongs_to_this_build(tile)) return;
+  ivec2 lane = ivec2(pixel_lane() % uint(kLanesAcross), pixel_lane() / uint(kLanesAcross));
+  ivec2 local = first_pixel(index, lane);
+  Columns front;
+  LightColumns light;
+  draw_together(tile, SURFCAST_COLUMNS, vec2(frame.region.xy + local) + 0.5, front, light);
+  if (own_share() != 0u) return;
+  for (int c = 0; c < SURFCAST_COLUMNS; ++c) write_column(light[c], front[c], local + ivec2(c, 0));
+}
+#else
 // The state of a lane.
 struct LaneState {
   TileLists tile;
@@ -77,11 +103,8 @@ bool begin(inout LaneState state, bool first) {
   uint index = tile_order[at];
   state.tile = lists_of_tile(index);
   state.columns = belongs_to_this_build(state.tile) ? SURFCAST_COLUMNS : 0;
-  if (state.columns == 0) state.tile = TileLists(0u, 0u, 0u, 0u);
-  ivec2 place = ivec2(index % uint(frame.tiles.x), index / uint(frame.tiles.x));
-  state.local = place * ivec2(SURFCAST_TILE_WIDTH, SURFCAST_TILE_HEIGHT) +
-               ivec2(gl_LocalInvocationID.x % uint(kLanesAcross), gl_LocalInvocationID.y) *
-                   ivec2(SURFCAST_COLUMNS, SURFCAST_ROWS);
+  if (state.columns == 0) state.tile = TileLists(0u, 0u, 0u, 0u, 0u);
+  state.local = first_pixel(index, ivec2(gl_LocalInvocationID.x % uint(kLanesAcross), gl_LocalInvocationID.y));
   state.layer = 0;
   begin_drawing(state.columns, state.limit, state.light);
   return true;
@@ -103,3 +126,4 @@ void main() {
     drawing = begin(state, false);
   }
 }
+#endif

@@ -5,14 +5,21 @@
 // In tiles without large splats a lane draws a part of a tile's pixels: a column is a pixel and its rows are samples.
 // In tiles with large splats (SURFCAST_LARGE) a lane draws one sample, and the lanes of a pixel share their results. So
 // no lane walks over its lists more often than a lane of splat.comp: software GL silently ends the loops of a lane
-// after 65535 iterations in total (see render/tile_spans.h), and the samples after that would be black.
+// after 65535 iterations in total (see render/tile_spans.h), and the samples after that would be black. The pixels of
+// tiles with long lists are drawn by two more variants (SURFCAST_TOGETHER), with a work group for each part or pixel.
 #define SURFCAST_SUPERSAMPLED
 #include "shared/kernel.h"
 #include "shared/frame_layout.h"
 #include "include/frame.glsl"
 
 layout(location = SURFCAST_UNIFORM_FIRST_GROUP) uniform uint first_group;
+#ifdef SURFCAST_TOGETHER
+layout(local_size_x = SURFCAST_PIXEL_LANES * SURFCAST_SHARES) in;
+const bool kLongLists = true;
+#else
 layout(local_size_x = SURFCAST_SILHOUETTE_LANES) in;
+const bool kLongLists = false;
+#endif
 
 #include "include/silhouette_list.glsl"
 #include "include/draw_lane.glsl"
@@ -41,6 +48,15 @@ ivec2 corner_of(uint tile) {
 
 ivec2 place_in_tile(int bit) { return ivec2(bit % SURFCAST_TILE_WIDTH, bit / SURFCAST_TILE_WIDTH); }
 
+void draw_samples(TileLists tile, int wanted, vec2 pixel, out LightColumns light) {
+#ifdef SURFCAST_TOGETHER
+  Columns front;
+  draw_together(tile, wanted, pixel, front, light);
+#else
+  draw(tile, wanted, pixel, light);
+#endif
+}
+
 #ifdef SURFCAST_LARGE
 const uint kPixels = uint(SURFCAST_SILHOUETTE_LANES / SURFCAST_SILHOUETTE_SAMPLES);  // of a work group
 
@@ -54,7 +70,10 @@ void draw_sample(uint tile, ivec2 at, uint lane) {
   uint i = lane % uint(SURFCAST_SILHOUETTE_SAMPLES);
   column_places[0] = vec2(0.0);
   LightColumns light;
-  draw(lists_of_tile(tile), 1, vec2(frame.region.xy + at) + 0.5 + vec2(kSampleX[i], kSampleY[i]), light);
+  draw_samples(lists_of_tile(tile), 1, vec2(frame.region.xy + at) + 0.5 + vec2(kSampleX[i], kSampleY[i]), light);
+#ifdef SURFCAST_TOGETHER
+  if (own_share() != 0u) return;
+#endif
   sample_lights[lane] = vec4(light[0].red, light[0].green, light[0].blue, light[0].transmittance);
 #ifdef SURFCAST_EYE_DOME
   sample_depths[lane] = vec2(light[0].depth, light[0].opaque);
@@ -77,13 +96,23 @@ Pixel mean_of_samples(uint first) {
 
 void main() {
   uint lane = gl_LocalInvocationID.x;
+#ifdef SURFCAST_TOGETHER
+  uint index = first_group + gl_WorkGroupID.x;
+  bool listed = index < silhouette_counts.w;
+  if (!listed) return;
+#else
   uint index = (first_group + gl_WorkGroupID.x) * kPixels + lane / uint(SURFCAST_SILHOUETTE_SAMPLES);
   bool listed = index < silhouette_counts.y;
-  uvec2 part = listed ? silhouette_parts[silhouettes_end() - 1u - index] : uvec2(0u, 1u);
+#endif
+  uvec2 part = listed ? silhouette_parts[silhouettes_end(kLongLists) - 1u - index] : uvec2(0u, 1u);
   ivec2 at = corner_of(part.x) + place_in_tile(findLSB(part.y));
   if (listed) draw_sample(part.x, at, lane);
   barrier();
+#ifdef SURFCAST_TOGETHER
+  if (lane == 0u) write(at, mean_of_samples(0u));
+#else
   if (listed && lane % uint(SURFCAST_SILHOUETTE_SAMPLES) == 0u) write(at, mean_of_samples(lane));
+#endif
 }
 #else
 float mean(Rows samples) { return dot(samples, Rows(1.0 / float(SURFCAST_ROWS))); }
@@ -98,9 +127,14 @@ Pixel mean_of_rows(Light light) {
 }
 
 void main() {
+#ifdef SURFCAST_TOGETHER
+  uint index = first_group + gl_WorkGroupID.x;
+  if (index >= silhouette_counts.z) return;
+#else
   uint index = (first_group + gl_WorkGroupID.x) * uint(SURFCAST_SILHOUETTE_LANES) + gl_LocalInvocationID.x;
   if (index >= silhouette_counts.x) return;
-  uvec2 part = silhouette_parts[index];
+#endif
+  uvec2 part = silhouette_parts[silhouettes_begin(kLongLists) + index];
   ivec2 corner = corner_of(part.x);
   ivec2 places[SURFCAST_COLUMNS];
   int count = bitCount(part.y);
@@ -111,7 +145,10 @@ void main() {
     mask &= mask - 1u;
   }
   LightColumns light;
-  draw(lists_of_tile(part.x), count, vec2(frame.region.xy + places[0]) + 0.5, light);
+  draw_samples(lists_of_tile(part.x), count, vec2(frame.region.xy + places[0]) + 0.5, light);
+#ifdef SURFCAST_TOGETHER
+  if (own_share() != 0u) return;
+#endif
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
     if (c < count) write(places[c], mean_of_rows(light[c]));
   }

@@ -1,5 +1,6 @@
 #include "render/programs.h"
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 
@@ -146,6 +147,52 @@ Result<std::vector<const gl::Program*>> Programs::projections(const Variant& var
   return programs;
 }
 
+Result<LongListPrograms> Programs::long_lists(const Variant& variant, const PictureKinds& kinds, uint32_t longest) {
+  // Invocations of a work group: with many, lists of millions of entries are drawn to the end of all their surfaces,
+  // but shorter ones wait for the many lanes to share their sums.
+  constexpr uint32_t kVeryLong = 1U << 16;
+  const int most_lanes = longest > kVeryLong ? 1024 : 256;
+  const int tile_lanes = longest > kVeryLong || !shape_.whole_tiles ? most_lanes : 32;  // where a lane holds a tile
+  const std::string splat = splat_defines(variant) + "#define SURFCAST_TOGETHER\n";
+  const auto shares = [](int lanes, int pixel_lanes) {
+    return define("SURFCAST_PIXEL_LANES", pixel_lanes) + define("SURFCAST_SHARES", lanes / pixel_lanes);
+  };
+  const KindFragments fragments = fragments_of(kinds);
+  const auto compile = [&](const gl::Program*& target, const char* file, bool large,
+                           const std::string& defines) -> Status {
+    Source source{file, file};
+    if (large && !fragments.names.empty()) {
+      source = {file + fragments.names, file, {{"kinds/fragment_of.glsl", fragments.text}}};
+    }
+    const std::string all = splat + defines + (large ? "#define SURFCAST_LARGE\n" : "");
+    const Result<const gl::Program*> compiled = program(source, all);
+    if (!compiled) return fail(compiled.error());
+    target = *compiled;
+    return {};
+  };
+  constexpr int kPixels = SURFCAST_TILE_WIDTH * SURFCAST_TILE_HEIGHT;
+  const std::string finding = variant.silhouettes ? "#define SURFCAST_FINDS_SILHOUETTES\n" : "";
+  const int small_lanes = shape_.whole_tiles ? 1 : kPixels;
+  LongListPrograms programs;
+  Status status = compile(programs.splat, "splat.comp", false,
+                          lane_defines(shape_.whole_tiles) + shares(tile_lanes, small_lanes) + finding);
+  if (status) {
+    status =
+        compile(programs.splat_large, "splat.comp", true, lane_defines(false) + shares(most_lanes, kPixels) + finding);
+  }
+  if (status && variant.silhouettes) {
+    status = compile(programs.supersample, "supersample.comp", false,
+                     define("SURFCAST_COLUMNS", pixels_at_once()) +
+                         define("SURFCAST_ROWS", SURFCAST_SILHOUETTE_SAMPLES) + shares(tile_lanes, 1));
+  }
+  if (status && variant.silhouettes) {
+    status = compile(programs.supersample_large, "supersample.comp", true,
+                     lane_defines(false) + shares(most_lanes, SURFCAST_SILHOUETTE_SAMPLES));
+  }
+  if (!status) return fail(std::move(status.error()));
+  return programs;
+}
+
 int Programs::pixels_at_once() const {
   return shape_.whole_tiles ? SURFCAST_TILE_WIDTH : 1;
 }
@@ -161,8 +208,8 @@ Result<SplatPrograms> Programs::variant(const Variant& variant, const PictureKin
     target = *compiled;
     return {};
   };
-  const KindFragments fragments = fragments_of(kinds);
   const auto plain = [](const char* file) { return Source{file, file}; };
+  const KindFragments fragments = fragments_of(kinds);
   const auto with_kinds = [&](const char* file) {
     if (fragments.names.empty()) return plain(file);
     return Source{file + fragments.names, file, {{"kinds/fragment_of.glsl", fragments.text}}};

@@ -57,6 +57,14 @@ struct KernelShape {
   int project_lanes = 64;    ///< lanes that share a chunk of surfels: one vector, or as many as hide the memory latency
 };
 
+/// The programs for tiles with long lists, whose work groups draw one tile each.
+struct LongListPrograms {
+  const gl::Program* splat = nullptr;
+  const gl::Program* splat_large = nullptr;        ///< for tiles with large splats
+  const gl::Program* supersample = nullptr;        ///< null without silhouettes
+  const gl::Program* supersample_large = nullptr;  ///< likewise
+};
+
 /// The shape for devices whose lanes are those of a processor's vectors.
 constexpr KernelShape software_kernels() {
   return {.whole_tiles = true, .tiles_at_once = 8, .project_lanes = 8};
@@ -69,6 +77,8 @@ class Programs {
   static Result<Programs> create(const KernelShape& shape, const std::string& defines);
 
   Result<SplatPrograms> variant(const Variant& variant, const PictureKinds& kinds);
+  /// `longest`: entries of the longest list.
+  Result<LongListPrograms> long_lists(const Variant& variant, const PictureKinds& kinds, uint32_t longest);
   /// Counts the tiles that large splats touch.
   [[nodiscard]] const gl::Program& count_large() const { return count_large_; }
   [[nodiscard]] const gl::Program& slices() const { return slices_; }

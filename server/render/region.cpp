@@ -32,6 +32,24 @@ std::vector<Region> cut_into_regions(int width, int height, int margin) {
   return regions;
 }
 
+std::vector<Region> halves_of(const Region& region) {
+  const int across = tiles_across(region);
+  const int down = tiles_down(region);
+  if (across * down <= 1) return {};
+  Region first = region;
+  Region second = region;
+  if (across >= down) {
+    first.width = across / 2 * SURFCAST_TILE_WIDTH;
+    second.x += first.width;
+    second.width -= first.width;
+  } else {
+    first.height = down / 2 * SURFCAST_TILE_HEIGHT;
+    second.y += first.height;
+    second.height -= first.height;
+  }
+  return {first, second};
+}
+
 Region with_margin(const Region& region, int margin, int width, int height) {
   const int x = std::max(region.x - margin, 0);
   const int y = std::max(region.y - margin, 0);

@@ -27,6 +27,9 @@ inline constexpr int kNeighbourMargin = 8;
 /// Divides a picture into regions, row by row. Each leaves room for the margin (see with_margin).
 std::vector<Region> cut_into_regions(int width, int height, int margin);
 
+/// The halves of a region, divided along its longer side between two tiles. Empty if the region is one tile.
+std::vector<Region> halves_of(const Region& region);
+
 /// The region extended by `margin` pixels on all sides, clipped to the picture.
 Region with_margin(const Region& region, int margin, int width, int height);
 

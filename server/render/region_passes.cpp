@@ -8,7 +8,6 @@
 
 #include "base/stopwatch.h"
 #include "render/depth_slices.h"
-#include "render/thinning.h"
 #include "render/tile_spans.h"
 #include "shared/kernel.h"
 
@@ -170,12 +169,9 @@ void upload_uniforms(StorageBuffer& buffer, const T& constants) {
   glNamedBufferSubData(buffer.name(), 0, static_cast<GLsizeiptr>(sizeof constants), &constants);
 }
 
-void upload_constants(const RegionTask& task, const DepthSlices& slices, const Thinning& thinning,
-                      SplatBuffers& buffers) {
+void upload_constants(const RegionTask& task, const DepthSlices& slices, SplatBuffers& buffers) {
   layout::FrameConstants constants = task.constants;
   constants.tiles.w = static_cast<int>(buffers.splat_capacity());
-  constants.flags.z = static_cast<int>(thinning.most);
-  constants.flags.w = thinning.alike ? 1 : 0;
   constants.slices.x = static_cast<int>(slices.count);
   for (int i = 0; i < SURFCAST_SLICES; ++i) {
     constants.slice_near[i / 4][i % 4] = slices.near.at(static_cast<size_t>(i));
@@ -208,7 +204,6 @@ void clear_counts(const RegionTask& task, const DepthSlices& slices, SplatBuffer
   buffers.tile_count.reserve(tiles * (slices.count + 1) * sizeof(GLuint));
   buffers.tile_count.clear();
   buffers.tile_offset.reserve(tiles * sizeof(GLuint));
-  buffers.tile_demand.reserve(tiles * sizeof(GLuint));
   buffers.tile_order.reserve(tiles * sizeof(GLuint));
 }
 
@@ -218,7 +213,6 @@ void bind_frame(const SplatBuffers& buffers) {
   buffers.counters.bind(SURFCAST_BIND_COUNTERS);
   buffers.tile_count.bind(SURFCAST_BIND_TILE_COUNT);
   buffers.tile_offset.bind(SURFCAST_BIND_TILE_OFFSET);
-  buffers.tile_demand.bind(SURFCAST_BIND_TILE_DEMAND);
   buffers.tile_order.bind(SURFCAST_BIND_TILE_ORDER);
 }
 
@@ -334,8 +328,7 @@ Result<layout::Counters> sum_up(const RegionTask& task, const Programs& programs
   return read_counters(buffers);
 }
 
-/// Projects the visible blocks and sums up the tile counts. Repeats this if the records did not fit, or if the splats
-/// of a tile must be thinned.
+/// Projects the visible blocks and sums up the tile counts. Repeats this if the records did not fit.
 Result<layout::Counters> project(const RegionTask& task, const ProjectionWork& work, Programs& programs,
                                  const SplatPrograms& variant, SplatBuffers& buffers, const Preemption& preemption) {
   const gl::DebugGroup group("project");
@@ -345,9 +338,8 @@ Result<layout::Counters> project(const RegionTask& task, const ProjectionWork& w
   upload(buffers.chunks, work.chunks);
   upload_display_options(task, work, buffers);
   const DepthSlices slices = depth_slices(work.depths, static_cast<size_t>(task.constants.tiles.z));
-  Thinning thinning;
   while (true) {
-    upload_constants(task, slices, thinning, buffers);
+    upload_constants(task, slices, buffers);
     clear_counts(task, slices, buffers);
     if (Status projected = project_kinds(task, work, variant, buffers, preemption); !projected) {
       return fail(std::move(projected.error()));
@@ -361,11 +353,7 @@ Result<layout::Counters> project(const RegionTask& task, const ProjectionWork& w
     }
     Status counted = count_large(task, splats, programs, buffers, preemption);
     if (!counted) return fail(std::move(counted.error()));
-    const Result<layout::Counters> counters = sum_up(task, programs, buffers, preemption);
-    if (!counters) return fail(counters.error());
-    const Thinning next = next_thinning(*counters, thinning, residency::SurfelBuffer::device_limit());
-    if (next == thinning) return *counters;
-    thinning = next;
+    return sum_up(task, programs, buffers, preemption);
   }
 }
 
@@ -373,7 +361,7 @@ Status bin(const RegionTask& task, const layout::Counters& counters, const Progr
            const Preemption& preemption) {
   const gl::DebugGroup group("bin");
   const size_t entries = counters.counts.z;
-  buffers.lists.reserve(std::clamp<size_t>(entries + entries / 4, 1, residency::SurfelBuffer::device_limit()),
+  buffers.lists.reserve(std::clamp<size_t>(entries + entries / 4, 1, std::max(task.list_entries, entries)),
                         buffers.lazy);
   const Groups groups = groups_of_lanes(counters.counts.x + large_lanes(task, counters));
   return dispatch_in_batches(groups, buffers.bin_batches, preemption, [&] {
@@ -400,16 +388,37 @@ Groups all_pixels(const Region& region) {
   return {ceil_divide(region.height, SURFCAST_BLOCK_HEIGHT), ceil_divide(region.width, SURFCAST_BLOCK_WIDTH)};
 }
 
-void clear_silhouettes(const RegionTask& task, SplatBuffers& buffers) {
+/// True if some tiles have long lists.
+bool has_long_lists(const layout::Counters& counters) {
+  return counters.counts.w >= SURFCAST_LONG_LIST;
+}
+
+void clear_silhouettes(const RegionTask& task, bool long_lists, SplatBuffers& buffers) {
   constexpr size_t kPixels = size_t{SURFCAST_TILE_WIDTH} * SURFCAST_TILE_HEIGHT;
   const size_t pixels = kPixels * static_cast<size_t>(task.constants.tiles.z);
   buffers.fronts.reserve(pixels * sizeof(float));
-  buffers.silhouettes.reserve((1 + pixels) * sizeof(glm::uvec2));
-  constexpr GLuint kNone[2] = {};
+  buffers.silhouettes.reserve(sizeof(glm::uvec4) + (long_lists ? 2 : 1) * pixels * sizeof(glm::uvec2));
+  constexpr GLuint kNone[4] = {};
   glNamedBufferSubData(buffers.silhouettes.name(), 0, sizeof kNone, kNone);
 }
 
-Status splat(const RegionTask& task, const layout::Counters& counters, const SplatPrograms& variant,
+/// The programs of a picture. Those for long lists are null where there are none.
+struct RegionPrograms {
+  SplatPrograms lanes;
+  LongListPrograms groups;
+};
+
+/// Draws a span of tiles, with and without large splats.
+Status draw_span(const RegionTask& task, const TileSpan& span, bool large, const RegionPrograms& programs,
+                 BatchSizer& sizer, SplatBuffers& buffers, const Preemption& preemption) {
+  if (!span.together) return draw_tiles(task, span, *programs.lanes.splat, sizer, buffers, preemption);
+  if (span.first == span.end) return {};
+  Status status = draw_tiles(task, span, *programs.groups.splat, buffers.long_lists.splat, buffers, preemption);
+  if (!status || !large) return status;
+  return draw_tiles(task, span, *programs.groups.splat_large, buffers.long_lists.splat_large, buffers, preemption);
+}
+
+Status splat(const RegionTask& task, const layout::Counters& counters, const RegionPrograms& programs,
              const KernelShape& shape, SplatBuffers& buffers, const Preemption& preemption) {
   const gl::DebugGroup group("splat");
   if (task.variant.eye_dome) {
@@ -417,36 +426,54 @@ Status splat(const RegionTask& task, const layout::Counters& counters, const Spl
     buffers.light.reserve(pixels * sizeof(glm::vec4));
     buffers.depth.reserve(pixels * sizeof(glm::vec2));
   }
-  if (task.variant.silhouettes) clear_silhouettes(task, buffers);
+  if (task.variant.silhouettes) clear_silhouettes(task, has_long_lists(counters), buffers);
   const auto tiles = static_cast<uint32_t>(task.constants.tiles.z);
   const std::vector<TileSpan> spans = spans_of_tiles(counters, tiles, shape);
   for (size_t i = 0; i < spans.size(); ++i) {
-    Status status = draw_tiles(task, spans[i], *variant.splat, buffers.splat_batches.at(i), buffers, preemption);
+    Status status =
+        draw_span(task, spans[i], counters.counts.y > 0, programs, buffers.splat_batches.at(i), buffers, preemption);
     if (!status) return status;
   }
   if (counters.counts.y == 0) return {};
-  const TileSpan all{0, tiles, static_cast<uint32_t>(shape.tiles_at_once)};
-  return draw_tiles(task, all, *variant.splat_large, buffers.splat_large_batches, buffers, preemption);
+  const TileSpan others{spans.front().end, tiles, static_cast<uint32_t>(shape.tiles_at_once)};
+  return draw_tiles(task, others, *programs.lanes.splat_large, buffers.splat_large_batches, buffers, preemption);
 }
 
 /// Finds the pixels at silhouettes and draws them again.
-Status supersample_silhouettes(const RegionTask& task, const SplatPrograms& variant, SplatBuffers& buffers,
+Status supersample_silhouettes(const RegionTask& task, const RegionPrograms& programs, SplatBuffers& buffers,
                                const Preemption& preemption) {
   const gl::DebugGroup group("silhouettes");
-  const auto dispatch = [&](const gl::Program& program, int lanes, BatchSizer& sizer) {
-    return dispatch_in_batches({ceil_divide(lanes, SURFCAST_SILHOUETTE_LANES), {}}, sizer, preemption, [&] {
+  const auto dispatch = [&](const gl::Program* program, size_t groups, BatchSizer& sizer) -> Status {
+    if (groups == 0) return {};
+    return dispatch_in_batches({groups, {}}, sizer, preemption, [&] {
       bind_for_splatting(task, buffers);
-      glUseProgram(program.name());
+      glUseProgram(program->name());
     });
   };
-  Status status = dispatch(*variant.silhouettes, task.constants.tiles.z, buffers.find_batches);
+  const auto groups_of = [](int lanes) { return ceil_divide(lanes, SURFCAST_SILHOUETTE_LANES); };
+  Status status = dispatch(programs.lanes.silhouettes, groups_of(task.constants.tiles.z), buffers.find_batches);
   if (!status) return status;
-  GLint counts[2] = {};
+  GLint counts[4] = {};
   glGetNamedBufferSubData(buffers.silhouettes.name(), 0, sizeof counts, counts);
-  status = dispatch(*variant.supersample, counts[0], buffers.supersample_batches);
+  status = dispatch(programs.lanes.supersample, groups_of(counts[0]), buffers.supersample_batches);
   if (!status) return status;
-  return dispatch(*variant.supersample_large, counts[1] * SURFCAST_SILHOUETTE_SAMPLES,
-                  buffers.supersample_large_batches);
+  status = dispatch(programs.lanes.supersample_large, groups_of(counts[1] * SURFCAST_SILHOUETTE_SAMPLES),
+                    buffers.supersample_large_batches);
+  if (!status) return status;
+  LongListBatches& sizers = buffers.long_lists;
+  status = dispatch(programs.groups.supersample, static_cast<size_t>(counts[2]), sizers.supersample);
+  if (!status) return status;
+  return dispatch(programs.groups.supersample_large, static_cast<size_t>(counts[3]), sizers.supersample_large);
+}
+
+/// Compiles the programs for long lists if there are any.
+Status add_long_list_programs(const RegionTask& task, const PictureKinds& kinds, const layout::Counters& counters,
+                              Programs& programs, RegionPrograms& region) {
+  if (!has_long_lists(counters)) return {};
+  Result<LongListPrograms> groups = programs.long_lists(task.variant, kinds, counters.counts.w);
+  if (!groups) return fail(groups.error());
+  region.groups = *groups;
+  return {};
 }
 
 /// Converts the light and depth of `drawn` to the requested pixels.
@@ -466,17 +493,22 @@ void shade_by_depth(const RegionTask& task, const gl::Program& program, SplatBuf
 
 }  // namespace
 
-Result<RegionStats> draw_region(const RegionTask& task, Programs& programs, SplatBuffers& buffers,
-                                const Preemption& preemption, std::span<std::byte> pixels) {
+Result<std::optional<RegionStats>> draw_region(const RegionTask& task, Programs& programs, SplatBuffers& buffers,
+                                               const Preemption& preemption, std::span<std::byte> pixels) {
   const PictureKinds kinds = kinds_of(task);
-  const Result<SplatPrograms> variant = programs.variant(task.variant, kinds);
+  Result<SplatPrograms> variant = programs.variant(task.variant, kinds);
   if (!variant) return fail(variant.error());
+  RegionPrograms region{std::move(*variant), {}};
 
   RegionStats stats;
   const WorkStopwatch project_watch(preemption);
   const Result<layout::Counters> counters =
-      project(task, plan_work(task, kinds), programs, *variant, buffers, preemption);
+      project(task, plan_work(task, kinds), programs, region.lanes, buffers, preemption);
   if (!counters) return fail(counters.error());
+  if (counters->counts.z > task.list_entries) return std::optional<RegionStats>();
+  if (Status status = add_long_list_programs(task, kinds, *counters, programs, region); !status) {
+    return fail(std::move(status.error()));
+  }
   stats.splats = uint64_t{counters->counts.x} + counters->counts.y;
   stats.project_ms = project_watch.milliseconds();
 
@@ -487,15 +519,15 @@ Result<RegionStats> draw_region(const RegionTask& task, Programs& programs, Spla
 
   const WorkStopwatch splat_watch(preemption);
   buffers.picture.reserve(pixels.size());
-  if (Status status = splat(task, *counters, *variant, programs.shape(), buffers, preemption); !status) {
+  if (Status status = splat(task, *counters, region, programs.shape(), buffers, preemption); !status) {
     return fail(std::move(status.error()));
   }
   if (task.variant.silhouettes) {
-    Status status = supersample_silhouettes(task, *variant, buffers, preemption);
+    Status status = supersample_silhouettes(task, region, buffers, preemption);
     if (!status) return fail(std::move(status.error()));
   }
   if (task.variant.eye_dome) {
-    shade_by_depth(task, *variant->eye_dome, buffers);
+    shade_by_depth(task, *region.lanes.eye_dome, buffers);
     glFinish();
   }
   stats.splat_ms = splat_watch.milliseconds();
@@ -508,7 +540,7 @@ Result<RegionStats> draw_region(const RegionTask& task, Programs& programs, Spla
                 error == GL_OUT_OF_MEMORY ? "the GPU is out of memory for this picture"
                                           : "OpenGL error " + std::to_string(error));
   }
-  return stats;
+  return std::optional(stats);
 }
 
 }  // namespace surfcast::render

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -38,6 +39,7 @@ struct RegionTask {
   const picture::PictureRequest* request = nullptr;
   DisplayOptions display;
   const ConstantTexels* colors = nullptr;  ///< color_table of `display`, if it is mapped
+  size_t list_entries = 0;                 ///< the most entries of all tile lists together
 };
 
 /// Milliseconds and counts of one region.
@@ -51,8 +53,8 @@ struct RegionStats {
 
 /// Draws a region with the passes project, bin_offsets, bin and splat; then, if requested, silhouettes, supersample and
 /// eye_dome. Reads the result into `pixels` (4 bytes or 4 floats per pixel, rows from the top): the pixels of `drawn`,
-/// or with eye_dome those of `region`.
-Result<RegionStats> draw_region(const RegionTask& task, Programs& programs, SplatBuffers& buffers,
-                                const Preemption& preemption, std::span<std::byte> pixels);
+/// or with eye_dome those of `region`. None if the tile lists are too long: the region must be drawn in parts.
+Result<std::optional<RegionStats>> draw_region(const RegionTask& task, Programs& programs, SplatBuffers& buffers,
+                                               const Preemption& preemption, std::span<std::byte> pixels);
 
 }  // namespace surfcast::render

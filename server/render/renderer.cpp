@@ -114,6 +114,8 @@ struct Renderer::State {
         programs(std::move(passes)),
         kinds(config.kinds),
         viewers(config.viewers),
+        list_entries(std::min(config.list_entries.value_or(residency::SurfelBuffer::device_limit()),
+                              residency::SurfelBuffer::device_limit())),
         surfels(device.memory.gpu / sizeof(glm::uvec4), device.software),
         residency(surfels, limits_of(config, device.memory)) {
     for (SplatBuffers& set : buffers) {
@@ -164,8 +166,9 @@ struct Renderer::State {
   std::array<SplatBuffers, 2> buffers;  ///< of the picture being drawn, and of the one that preempts it
   size_t depth = 0;                     ///< pictures being drawn: 2 while one preempts another
   std::map<std::pair<picture::SurfelColor, picture::ColorMap>, ConstantTexels>
-      color_tables;  ///< made at their first use
-  size_t viewers;    ///< see RendererConfig
+      color_tables;     ///< made at their first use
+  size_t viewers;       ///< see RendererConfig
+  size_t list_entries;  ///< of all tile lists of a region
   residency::SurfelBuffer surfels;
   residency::Residency residency;
   std::map<uint64_t, std::unique_ptr<Scene>> scenes;  ///< by ModelFile::id
@@ -236,7 +239,10 @@ Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const pict
   const model::ModelInfo& info = scene.model().info();
   RegionStats total;
   std::vector<std::byte> pixels;
-  for (const Region& region : cut_into_regions(request.width, request.height, margin)) {
+  std::vector<Region> regions = cut_into_regions(request.width, request.height, margin);
+  while (!regions.empty()) {
+    const Region region = regions.back();
+    regions.pop_back();
     const Region drawn = with_margin(region, margin, request.width, request.height);
     RegionTask task{&surfels,
                     kinds,
@@ -248,7 +254,8 @@ Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const pict
                     variant,
                     &request,
                     display,
-                    colors_of(display)};
+                    colors_of(display),
+                    list_entries};
     for (const uint32_t block :
          selection::blocks_in_rectangle(scene.viewed().tree, view.selection.draw, frame, drawn.x, drawn.y,
                                         drawn.x + drawn.width, drawn.y + drawn.height)) {
@@ -259,10 +266,17 @@ Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const pict
     }
     const Region& written = variant.eye_dome ? region : drawn;
     pixels.resize(static_cast<size_t>(written.width) * static_cast<size_t>(written.height) * bytes);
-    const Result<RegionStats> stats = draw_region(task, programs, buffers[depth - 1], preemption, pixels);
+    const Result<std::optional<RegionStats>> stats =
+        draw_region(task, programs, buffers[depth - 1], preemption, pixels);
     if (!stats) return fail(stats.error());
+    if (!*stats) {
+      const std::vector<Region> halves = halves_of(region);
+      if (halves.empty()) return fail(ErrorKind::kLimit, "too many surfels in four by four pixels");
+      regions.insert(regions.end(), halves.begin(), halves.end());
+      continue;
+    }
     copy_region(region, written, pixels, bytes, image);
-    add(total, *stats);
+    add(total, **stats);
   }
   return total;
 }

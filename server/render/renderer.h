@@ -22,9 +22,10 @@ struct RendererConfig {
   std::optional<size_t> host_bytes{};      ///< for packed blocks evicted from the GPU; none: default_budgets
   unsigned decoders = 0;                   ///< threads that decode blocks; 0: one for each core
   size_t upload_bytes = size_t{16} << 20;  ///< stored on the GPU for one picture in motion, which waits for it
-  size_t viewers = 64;           ///< of one model whose motion is remembered; least recently seen are forgotten
-  bool gpu_kernels = false;      ///< also draws software GL with the kernels for GPUs: for tests
-  std::string shader_defines{};  ///< text before every shader, for programs that measure other kernels
+  size_t viewers = 64;                   ///< of one model whose motion is remembered; least recently seen are forgotten
+  bool gpu_kernels = false;              ///< also draws software GL with the kernels for GPUs: for tests
+  std::optional<size_t> list_entries{};  ///< of the tiles of a region, see docs/architecture.md; none: what fits
+  std::string shader_defines{};          ///< text before every shader, for programs that measure other kernels
   kinds::KindTable kinds = kinds::built_in_kinds();  ///< kinds of blocks that can be drawn; outlives the renderer
 };
 

@@ -65,6 +65,14 @@ class ConstantTexels {
   gl::Texture texture_;
 };
 
+/// The batch sizes of the passes over tiles with long lists.
+struct LongListBatches {
+  BatchSizer splat;
+  BatchSizer splat_large;
+  BatchSizer supersample;
+  BatchSizer supersample_large;
+};
+
 /// The buffers between the passes of one region, and the batch sizes of the passes.
 struct SplatBuffers {
   BatchSizer project_batches;
@@ -76,6 +84,7 @@ struct SplatBuffers {
   BatchSizer find_batches;
   BatchSizer supersample_batches;
   BatchSizer supersample_large_batches;
+  LongListBatches long_lists;
   ConstantTexels srgb;  ///< linear_root_table
   TexelBuffer splats{"splats", GL_RGBA32UI, 16};
   TexelBuffer discs{"discs", GL_RGBA32UI, 16};
@@ -85,7 +94,6 @@ struct SplatBuffers {
   StorageBuffer counters{"counters"};
   StorageBuffer tile_count{"tile count"};
   StorageBuffer tile_offset{"tile offset"};
-  StorageBuffer tile_demand{"tile demand"};
   StorageBuffer tile_order{"tile order"};
   StorageBuffer next_tiles{"next tiles"};
   StorageBuffer picture{"picture"};

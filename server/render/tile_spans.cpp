@@ -7,7 +7,7 @@ namespace surfcast::render {
 namespace {
 
 constexpr uint32_t kLengths[] = {SURFCAST_LIST_LENGTHS};
-static_assert(std::size(kLengths) + 1 == kTileSpans);
+static_assert(std::size(kLengths) + 1 == kTileSpans && kLengths[kTileSpans - 2] == SURFCAST_LONG_LIST);
 
 /// The average number of tiles per lane if lists are not longer than `longest`. It keeps the iterations of a lane below
 /// the limit of llvmpipe. Eight lanes that share n tiles of up to eight surfaces draw at most n + 7 surfaces in
@@ -26,8 +26,11 @@ std::vector<TileSpan> spans_of_tiles(const layout::Counters& counters, uint32_t 
   for (size_t i = kTileSpans; i-- > 0;) {
     const auto at = static_cast<glm::length_t>(i);
     const uint32_t end = i == 0 ? tiles : std::clamp(counters.lengths[(at - 1) / 4][(at - 1) % 4], first, tiles);
-    const uint32_t longest = i < std::size(kLengths) ? kLengths[i] : SURFCAST_TILE_CAPACITY_LIMIT;
-    spans.push_back({first, end, shape.whole_tiles ? at_once * turns_of(longest) : at_once});
+    if (i == std::size(kLengths)) {
+      spans.push_back({first, end, 1, true});
+    } else {
+      spans.push_back({first, end, shape.whole_tiles ? at_once * turns_of(kLengths[i]) : at_once, false});
+    }
     first = end;
   }
   return spans;

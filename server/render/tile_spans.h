@@ -13,6 +13,7 @@ struct TileSpan {
   uint32_t first = 0;
   uint32_t end = 0;
   uint32_t tiles_per_group = 1;  ///< tiles per work group of the splat kernel
+  bool together = false;         ///< long lists: the lanes of a work group share the list of a tile
   bool operator==(const TileSpan&) const = default;
 };
 

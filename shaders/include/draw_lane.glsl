@@ -23,6 +23,7 @@ int slot_of(uint entry) { return int(entry & kSlotMask); }
 #include "include/resolve.glsl"
 
 struct TileLists {
+  uint first_count;  // place of the first slice in the table of counts
   uint first_small;
   uint smalls;
   uint first_large;
@@ -33,7 +34,7 @@ TileLists lists_of_tile(uint index) {
   uint first = tile_offset[index];
   uint after_last_slice = slice_count_at(index, uint(frame.slices.x));
   uint smalls = tile_count[after_last_slice - 1u];
-  return TileLists(first, smalls, first + smalls, tile_count[after_last_slice] - smalls);
+  return TileLists(slice_count_at(index, 0u), first, smalls, first + smalls, tile_count[after_last_slice] - smalls);
 }
 
 // True if this variant draws the tile.
@@ -57,32 +58,45 @@ void begin_drawing(int wanted, out Columns limit, out LightColumns light) {
   }
 }
 
+// Where the surface of a column is looked for from: infinitely far.
+Rows surface_at_first(Light light) {
+  return mix(Rows(0.0), Rows(kHidesAll), at_most(light.transmittance, Rows(0.0)));
+}
+
+// Blends a surface behind those drawn so far. False if no surface behind it can be visible.
+bool composite_columns(inout LightColumns light, ColumnSums sums, Columns surface, float one, vec2 pixel) {
+  bool more = false;
+  for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
+    composite(light[c], sums[c], surface[c], one, column(pixel, c));
+    more = more || any_of(both(less(Rows(0.0), surface[c]), less(Rows(kOpaque), light[c].transmittance)));
+  }
+  return more;
+}
+
+#ifdef SURFCAST_TOGETHER
+#include "include/draw_together.glsl"
+#else
 // Draws the nearest surface behind `limit`, which becomes the new limit. False if no surface behind it can be visible.
 // Both passes leave a list where nothing that follows is in front of the surface of any pixel.
 bool draw_layer(TileLists tile, vec2 pixel, inout Columns limit, inout LightColumns light) {
   Columns surface;
   ColumnSums sums;
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
-    surface[c] = mix(Rows(0.0), Rows(kHidesAll), at_most(light[c].transmittance, Rows(0.0)));  // 0: infinitely far
+    surface[c] = surface_at_first(light[c]);
     sums[c] = sums_zero();
   }
   float peak = 0.0;
 #ifdef SURFCAST_LARGE
-  find_surface_large(tile.first_large, tile.larges, pixel, limit, surface, peak);
+  find_surface_large(tile.first_large, tile.larges, 0u, 1u, pixel, limit, surface, peak);
 #endif
   uint smalls = find_surface_small(tile.first_small, tile.smalls, pixel, limit, surface, peak);
   float unit = fixed_unit(peak);
   accumulate_small(tile.first_small, smalls, pixel, limit, surface, unit, sums);
 #ifdef SURFCAST_LARGE
-  accumulate_large(tile.first_large, tile.larges, pixel, limit, surface, unit, sums);
+  accumulate_large(tile.first_large, tile.larges, 0u, 1u, pixel, limit, surface, unit, sums);
 #endif
-  bool more = false;
-  for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
-    composite(light[c], sums[c], surface[c], 1.0 / unit, column(pixel, c));
-    more = more || any_of(both(less(Rows(0.0), surface[c]), less(Rows(kOpaque), light[c].transmittance)));
-  }
   limit = surface;
-  return more;
+  return composite_columns(light, sums, surface, 1.0 / unit, pixel);
 }
 
 // Draws the first `wanted` columns of a lane.
@@ -93,3 +107,4 @@ void draw(TileLists tile, int wanted, vec2 pixel, out LightColumns light) {
     if (!draw_layer(tile, pixel, limit, light)) break;
   }
 }
+#endif

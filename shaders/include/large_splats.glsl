@@ -76,9 +76,11 @@ float large_peak(LargeSplat s, vec2 ray) {
 
 #include "kinds/exact_list.glsl"
 
-void find_surface_large(uint first, uint count, vec2 pixel, Columns limit, inout Columns surface, inout float peak) {
+// Entries from `start` on, with a distance of `stride`.
+void find_surface_large(uint first, uint count, uint start, uint stride, vec2 pixel, Columns limit,
+                        inout Columns surface, inout float peak) {
   vec2 ray = ray_of_pixel(pixel);
-  for (uint k = 0u; k < count; ++k) {
+  for (uint k = start; k < count; k += stride) {
 #include "kinds/see_entry.glsl"
     LargeSplat s = fetch_large(slot_of(texelFetch(lists, int(first + k)).x));
     peak = max(peak, large_peak(s, ray));
@@ -89,12 +91,12 @@ void find_surface_large(uint first, uint count, vec2 pixel, Columns limit, inout
   }
 }
 
-void accumulate_large(uint first, uint count, vec2 pixel, Columns limit, Columns surface, float unit,
-                      inout ColumnSums sums) {
+void accumulate_large(uint first, uint count, uint start, uint stride, vec2 pixel, Columns limit, Columns surface,
+                      float unit, inout ColumnSums sums) {
   vec2 ray = ray_of_pixel(pixel);
-  for (uint begin = 0u; begin < count; begin += uint(SURFCAST_CARRY_INTERVAL)) {
-    uint end = min(begin + uint(SURFCAST_CARRY_INTERVAL), count);
-    for (uint k = begin; k < end; ++k) {
+  for (uint begin = start; begin < count; begin += uint(SURFCAST_CARRY_INTERVAL) * stride) {
+    uint end = min(begin + uint(SURFCAST_CARRY_INTERVAL) * stride, count);
+    for (uint k = begin; k < end; k += stride) {
       int slot = slot_of(texelFetch(lists, int(first + k)).x);
 #include "kinds/add_entry.glsl"
       LargeSplat s = fetch_large(slot);

@@ -24,6 +24,24 @@ struct PixelSums {
 #endif
 };
 
+// DO(name, number) for each sum of a pixel.
+#if defined(SURFCAST_HAS_COLOR) || defined(SURFCAST_LIT)
+#define COLOR_SUMS(DO) DO(red, 1) DO(green, 2) DO(blue, 3)
+#else
+#define COLOR_SUMS(DO)
+#endif
+#ifdef SURFCAST_LIT_COLOR
+#define NORMAL_SUMS(DO) DO(normal_x, 4) DO(normal_y, 5) DO(normal_z, 6)
+#else
+#define NORMAL_SUMS(DO)
+#endif
+#ifdef SURFCAST_EYE_DOME
+#define DEPTH_SUM(DO) DO(relief, 7)
+#else
+#define DEPTH_SUM(DO)
+#endif
+#define EACH_SUM(DO) DO(weight, 0) COLOR_SUMS(DO) NORMAL_SUMS(DO) DEPTH_SUM(DO)
+
 // The sums of all columns of a lane.
 #define ColumnSums PixelSums[SURFCAST_COLUMNS]
 

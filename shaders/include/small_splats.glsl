@@ -55,57 +55,66 @@ Disc fetch_disc(int slot) {
   return disc;
 }
 
-// Finds the nearest surface behind `limit` (an inverse depth), pushed back, and the largest weight of the splats up to
-// it. Returns their number: in all slices that follow, nothing is in front of the surface of any pixel. It does not
-// depend on the order of splats within a slice, none of whose discs is in front of where the slice begins.
+// Moves the surface of each pixel to the disc of a splat, pushed back, if that is nearer, but not before `limit` (an
+// inverse depth). `peak`: the largest weight seen. `footprint`: 1 / eta.
+void see_small(int slot, float footprint, vec2 pixel, Columns limit, inout Columns surface, inout float peak) {
+  uvec4 a = texelFetch(splats, 2 * slot);
+  Disc disc = fetch_disc(slot);
+  peak = max(peak, disc.weight);
+  float inverse_depth = uintBitsToFloat(a.z);
+  float unit = inverse_depth * footprint;
+  vec2 slope = unpack_halves(a.w);
+  for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
+    vec2 v = column(pixel, c) - uintBitsToFloat(a.xy);
+    Rows plane = plane_inverse_depth(inverse_depth, unit, slope, v);
+    Rows z = fragment_inverse_depth(plane, inverse_depth, unit, disc.fall);
+    BoolRows hit = both(at_most(factored_form(disc.factor, v), Rows(1.0)), less(z, limit[c]));
+    Rows disc_z = disc_inverse_depth(plane, inverse_depth, unit, disc, footprint);
+    surface[c] = larger(surface[c], mix(Rows(0.0), disc_z, hit));
+  }
+}
+
+// Finds the nearest surface behind `limit`, pushed back, and the largest weight of the splats up to it. Returns their
+// number: in all slices that follow, nothing is in front of the surface of any pixel. It does not depend on the order of
+// splats within a slice, none of whose discs is in front of where the slice begins.
 uint find_surface_small(uint first, uint count, vec2 pixel, Columns limit, inout Columns surface, inout float peak) {
   float footprint = 1.0 / eta();
   for (uint k = 0u; k < count; ++k) {
     uint entry = texelFetch(lists, int(first + k)).x;
     if (slice_near(slice_of(entry)) < farthest(surface)) return k;
-    int slot = slot_of(entry);
-    uvec4 a = texelFetch(splats, 2 * slot);
-    Disc disc = fetch_disc(slot);
-    peak = max(peak, disc.weight);
-    float inverse_depth = uintBitsToFloat(a.z);
-    float unit = inverse_depth * footprint;
-    vec2 slope = unpack_halves(a.w);
-    for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
-      vec2 v = column(pixel, c) - uintBitsToFloat(a.xy);
-      Rows plane = plane_inverse_depth(inverse_depth, unit, slope, v);
-      Rows z = fragment_inverse_depth(plane, inverse_depth, unit, disc.fall);
-      BoolRows hit = both(at_most(factored_form(disc.factor, v), Rows(1.0)), less(z, limit[c]));
-      Rows disc_z = disc_inverse_depth(plane, inverse_depth, unit, disc, footprint);
-      surface[c] = larger(surface[c], mix(Rows(0.0), disc_z, hit));
-    }
+    see_small(slot_of(entry), footprint, pixel, limit, surface, peak);
   }
   return count;
 }
 
-// Accumulates the splats between `limit` and `surface`.
+// Adds the fragments of a splat between `limit` and `surface`.
+void add_small(int slot, float footprint, vec2 pixel, Columns limit, Columns surface, float unit,
+               inout ColumnSums sums) {
+  SmallSplat s = fetch_small(slot);
+  SplatValue value = splat_value(s.color, slot, unit);
+  float depth_unit = s.inverse_depth * footprint;
+  float end = rim(s.cutoff / (SURFCAST_SQRT_HALF_LOG2E * SURFCAST_SQRT_HALF_LOG2E));
+  for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
+    vec2 v = column(pixel, c) - s.centre;
+    Rows form = factored_form(s.factor, v);
+    Rows plane = plane_inverse_depth(s.inverse_depth, depth_unit, s.slope, v);
+    Rows z = fragment_inverse_depth(plane, s.inverse_depth, depth_unit, s.fall);
+    BoolRows visible = both(at_most(form, Rows(s.cutoff)), both(at_most(surface[c], z), less(z, limit[c])));
+    Rows weight = mix(Rows(0.0), s.weight * larger(exp2(-form) - end, Rows(0.0)), visible);
+    sums_add(sums[c], value, weight);
+#ifdef SURFCAST_EYE_DOME
+    sums_add_depth(sums[c], unit, weight, z, surface[c]);
+#endif
+  }
+}
+
 void accumulate_small(uint first, uint count, vec2 pixel, Columns limit, Columns surface, float unit,
                       inout ColumnSums sums) {
   float footprint = 1.0 / eta();
   for (uint begin = 0u; begin < count; begin += uint(SURFCAST_CARRY_INTERVAL)) {
     uint end = min(begin + uint(SURFCAST_CARRY_INTERVAL), count);
     for (uint k = begin; k < end; ++k) {
-      int slot = slot_of(texelFetch(lists, int(first + k)).x);
-      SmallSplat s = fetch_small(slot);
-      SplatValue value = splat_value(s.color, slot, unit);
-      float depth_unit = s.inverse_depth * footprint;
-      float end = rim(s.cutoff / (SURFCAST_SQRT_HALF_LOG2E * SURFCAST_SQRT_HALF_LOG2E));
-      for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
-        vec2 v = column(pixel, c) - s.centre;
-        Rows form = factored_form(s.factor, v);
-        Rows plane = plane_inverse_depth(s.inverse_depth, depth_unit, s.slope, v);
-        Rows z = fragment_inverse_depth(plane, s.inverse_depth, depth_unit, s.fall);
-        BoolRows visible = both(at_most(form, Rows(s.cutoff)), both(at_most(surface[c], z), less(z, limit[c])));
-        Rows weight = mix(Rows(0.0), s.weight * larger(exp2(-form) - end, Rows(0.0)), visible);
-        sums_add(sums[c], value, weight);
-#ifdef SURFCAST_EYE_DOME
-        sums_add_depth(sums[c], unit, weight, z, surface[c]);
-#endif
-      }
+      add_small(slot_of(texelFetch(lists, int(first + k)).x), footprint, pixel, limit, surface, unit, sums);
     }
     for (int c = 0; c < SURFCAST_COLUMNS; ++c) sums_carry(sums[c]);
   }

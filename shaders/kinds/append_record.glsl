@@ -1,17 +1,15 @@
 // Appends a record to those of large splats. bin.comp counts its tiles. For the projection of a kind; SURFCAST_KIND is
 // the number of the kind.
 #include "include/projection_buffers.glsl"
-#include "include/thinning.glsl"
 #include "include/tile_range.glsl"
 #include "kinds/record.glsl"
 
-// The item is drawn at all pixel centres from `low` to `high` (pixels of the picture) that it covers, unless it is
-// dropped by the thinning of crowded tiles. `id` is the ID of the item's first texel, see Chunk. `a`, `b` and `c` are
-// passed to the kind's fragment function, except that a.w is overwritten with the number of the kind.
-void append_record(uint id, vec2 low, vec2 high, uvec3 a, uvec4 b, uvec4 c) {
+// The item is drawn at all pixel centres from `low` to `high` (pixels of the picture) that it covers. `a`, `b` and `c`
+// are passed to the kind's fragment function, except that a.w is overwritten with the number of the kind.
+void append_record(vec2 low, vec2 high, uvec3 a, uvec4 b, uvec4 c) {
   bool outside;
   uvec2 range = tile_range(low, high, outside);
-  if (outside || thinned_share(range, id, 1.0) == 0.0) return;
+  if (outside) return;
   uint from_end = atomicAdd(counters.counts.y, 1u);
   uint capacity = uint(frame.tiles.w);
   if (from_end >= capacity) return;  // counted only: the caller enlarges the buffer and repeats the projection

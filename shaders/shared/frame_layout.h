@@ -26,10 +26,9 @@ namespace surfcast::layout {
 #define SURFCAST_SILHOUETTE_LANES 32
 // Texels (surfels) that one work group projects. Runs of a block are divided into chunks of this size.
 #define SURFCAST_CHUNK 128
-// Splats of a tile above which they are thinned (see include/thinning.glsl).
-#define SURFCAST_TILE_CAPACITY 3072
-// Splats of a tile after thinning above which all its splats are sampled with equal probability.
-#define SURFCAST_TILE_CAPACITY_LIMIT 4000
+// Entries of a list from which on a work group draws its tile: one of SURFCAST_LIST_LENGTHS. A lane alone would come near
+// the limit of software GL for its loops (see render/tile_spans.h).
+#define SURFCAST_LONG_LIST 3584
 // Depth slices into which the list of a tile may be divided. A list entry and the first tile of a splat hold the number
 // of a slice in the bits above SURFCAST_SLICE_SHIFT; below it are a splat's index, and a tile's row and column.
 #define SURFCAST_SLICES 32
@@ -49,8 +48,7 @@ struct FrameConstants {
   SURFCAST_VEC4 filter_;     // prefilter variance, visibility prefilter variance (pixels squared), factor of every
                              // surfel's weight, surfel radius of the requested spacing at distance 1 on the view axis
   SURFCAST_VEC4 background;  // linear light
-  SURFCAST_IVEC4 flags;      // x: cull back faces, y: per-surfel weights, z: splats per tile after thinning (0: no
-                             // thinning), w: thin splats of high gain too
+  SURFCAST_IVEC4 flags;      // x: cull back faces, y: per-surfel weights
   SURFCAST_IVEC4 slices;     // x: depth slices of a tile's list, a power of two
   // Inverse depth at which each slice begins, descending. The first slice begins at the eye.
   SURFCAST_VEC4 slice_near[SURFCAST_SLICES / 4];
@@ -108,8 +106,8 @@ struct Counters {
                               // most entries of a tile
   SURFCAST_UVEC4 lengths[2];  // tiles with at least this many entries, for each of SURFCAST_LIST_LENGTHS
 };
-// Powers of two that classify tiles by cost (see render/tile_spans.h).
-#define SURFCAST_LIST_LENGTHS 1, 4, 16, 64, 256, 512, 1024, 2048
+// Numbers that classify tiles by cost (see render/tile_spans.h): bounds of the classes of bin_offsets.comp.
+#define SURFCAST_LIST_LENGTHS 1, 4, 16, 64, 256, 512, 1024, SURFCAST_LONG_LIST
 
 // Location of the uniform `first_group` of passes that are dispatched in batches: the number of work groups, or rows of
 // work groups, before the batch.
@@ -125,7 +123,6 @@ struct Counters {
 #define SURFCAST_BIND_COUNTERS 5
 #define SURFCAST_BIND_TILE_COUNT 6   // uint per tile and slice, see slices.comp; large splats follow the last slice
 #define SURFCAST_BIND_TILE_OFFSET 7  // uint per tile: first entry
-#define SURFCAST_BIND_TILE_DEMAND 8  // uint per tile: entries of both its lists, counted before thinning
 #define SURFCAST_BIND_PICTURE 9
 #define SURFCAST_BIND_TILE_ORDER 14   // uint per tile: tiles in descending order of list length
 #define SURFCAST_BIND_NEXT_TILES 15   // uint per work group of the splat kernel: tiles started by its lanes

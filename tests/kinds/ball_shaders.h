@@ -38,7 +38,7 @@ void project(uvec4 run, BlockView block, uint place) {
     low = pixel_of_ray(vec2(first.x, last.y)) - 1.0;
     high = pixel_of_ray(vec2(last.x, first.y)) + 1.0;
   }
-  append_record(run.w + place, low, high, floatBitsToUint(o), uvec4(floatBitsToUint(r), ball.y, 0u, 0u), uvec4(0u));
+  append_record(low, high, floatBitsToUint(o), uvec4(floatBitsToUint(r), ball.y, 0u, 0u), uvec4(0u));
 }
 
 void main() {

@@ -249,7 +249,7 @@ TEST_F(KindsGLTest, TensOfThousandsOfBallsInOnePixelStayOpaque) {
   schema.color_bits = 8;
   Result<model::ModelWriter> writer = model::ModelWriter::create(folder_ / "crowd.surf", schema);
   ASSERT_TRUE(writer);
-  // 90000 records: more than the loop limit of llvmpipe (see thinning.glsl).
+  // 90000 records: more than the loop limit of llvmpipe (see draw_together.glsl).
   for (int i = 0; i < 3; ++i) ASSERT_TRUE(writer->add(testing::encode_balls(crowd), ldc::OctreeKey(), {}));
   ASSERT_TRUE(writer->finish());
   const ModelPointer model = open(folder_ / "crowd.surf");

@@ -2,7 +2,9 @@
 // surface. A failing case writes its pictures to the folder `accuracy_failures` of the working directory.
 
 #include <algorithm>
+#include <cmath>
 #include <filesystem>
+#include <glm/trigonometric.hpp>
 #include <glm/vec4.hpp>
 #include <memory>
 #include <ostream>
@@ -15,6 +17,7 @@
 #include "reference/scenes.h"
 #include "render/decoded_cloud.h"
 #include "render/renderer.h"
+#include "support/clouds.h"
 #include "surfel/normalization_weights.h"
 
 namespace surfcast::render {
@@ -52,8 +55,9 @@ Scene transformed(Scene scene, double scale, const glm::dvec3& offset) {
 
 class AccuracyGLTest : public ::testing::Test {
  protected:
-  static void SetUpTestSuite() {
-    Result<std::unique_ptr<Renderer>> created = Renderer::create({});
+  static void SetUpTestSuite() { set_up({}); }
+  static void set_up(const RendererConfig& config) {
+    Result<std::unique_ptr<Renderer>> created = Renderer::create(config);
     ASSERT_TRUE(created) << created.error().message;
     renderer_ = std::move(*created);
     folder_ = fs::path(::testing::TempDir()) / "surfcast_accuracy_gl_test";
@@ -209,6 +213,43 @@ TEST_F(AccuracyGLTest, SilhouettesComeNearerToTheIdealPictureWhereTheyAreAskedFo
   }
 }
 
+/// Hundreds of surfels in each pixel: tiles have more than 10,000 splats.
+Scene crowded_scene() {
+  Scene scene = reference::make_scene("checker_far");
+  scene.name = "crowded";
+  scene.request.width = 32;
+  scene.request.height = 32;
+  return scene;
+}
+
+TEST_F(AccuracyGLTest, CrowdedTilesAgreeWithTheReference) {
+  const Scene scene = crowded_scene();
+  const auto model = model_of(scene);
+  for (const bool silhouettes : {false, true}) {
+    picture::PictureRequest request = scene.request;
+    request.silhouettes = silhouettes;
+    expect_reference(silhouettes ? "crowded_silhouettes" : "crowded", model, request, 60);
+  }
+  renderer_->release_model(*model);
+}
+
+TEST_F(AccuracyGLTest, CrowdedTilesBehindALargeSurfelAgreeWithTheReference) {
+  Scene scene = crowded_scene();
+  const geometry::Camera& camera = *scene.request.camera;
+  const glm::dvec3 towards_eye = camera.position - camera.focal_point;
+  const double pixel = 2 * glm::length(towards_eye) * std::tan(glm::radians(camera.view_angle / 2)) / 32;
+  scene.name = "crowded_behind_large";
+  testing::append(scene.cloud,
+                  testing::single_surfel(camera.focal_point + 0.1 * towards_eye, glm::vec3(glm::normalize(towards_eye)),
+                                         static_cast<float>(14 * pixel), {20, 220, 90}));
+  const auto model = model_of(scene);
+  for (const bool silhouettes : {false, true}) {
+    scene.request.silhouettes = silhouettes;
+    expect_reference(scene.name, model, scene.request, 55);
+  }
+  renderer_->release_model(*model);
+}
+
 TEST_F(AccuracyGLTest, OneColorIsThatColorWhereFullyCovered) {
   for (const char* name : {"color_plane", "color_sphere"}) {
     const Scene scene = reference::make_scene(name);
@@ -229,6 +270,53 @@ TEST_F(AccuracyGLTest, OneColorIsThatColorWhereFullyCovered) {
     }
     renderer_->release_model(*model);
   }
+}
+
+/// Regions are drawn in parts, because their lists are too long.
+class PartsOfRegionsGLTest : public AccuracyGLTest {
+ protected:
+  static void SetUpTestSuite() {
+    RendererConfig config;
+    config.list_entries = 100000;
+    set_up(config);
+  }
+};
+
+TEST_F(PartsOfRegionsGLTest, PicturesInPartsAgreeWithTheReference) {
+  Scene scene = reference::make_scene("checker_far");
+  scene.request.silhouettes = true;
+  const auto model = model_of(scene);
+  expect_reference("in_parts", model, scene.request, 45);
+  renderer_->release_model(*model);
+}
+
+TEST_F(PartsOfRegionsGLTest, ATileThatDoesNotFitWithItsMarginIsAnError) {
+  Scene scene = crowded_scene();
+  scene.request.silhouettes = true;
+  const auto model = model_of(scene);
+  const std::atomic<bool> cancelled{false};
+  const Result<picture::Frame> frame = renderer_->draw(model, scene.request, cancelled);
+  ASSERT_FALSE(frame);
+  EXPECT_EQ(frame.error().kind, ErrorKind::kLimit);
+  renderer_->release_model(*model);
+}
+
+/// The kernels for GPUs, whatever the device.
+class GpuKernelsGLTest : public AccuracyGLTest {
+ protected:
+  static void SetUpTestSuite() {
+    RendererConfig config;
+    config.gpu_kernels = true;
+    set_up(config);
+  }
+};
+
+TEST_F(GpuKernelsGLTest, CrowdedTilesAgreeWithTheReference) {
+  Scene scene = crowded_scene();
+  scene.request.silhouettes = true;
+  const auto model = model_of(scene);
+  expect_reference("crowded_for_gpus", model, scene.request, 60);
+  renderer_->release_model(*model);
 }
 
 }  // namespace

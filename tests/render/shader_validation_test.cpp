@@ -18,6 +18,7 @@
 #include "gl/objects.h"
 #include "kinds/kind_table.h"
 #include "render/programs.h"
+#include "shared/frame_layout.h"
 
 namespace surfcast::testing {
 namespace {
@@ -94,7 +95,11 @@ std::set<std::string> all_shaders() {
     for (const render::Variant& variant : all_variants()) {
       const Result<render::SplatPrograms> compiled = programs->variant(variant, surfels);
       EXPECT_TRUE(compiled) << compiled.error().message;
+      const Result<render::LongListPrograms> groups = programs->long_lists(variant, surfels, SURFCAST_LONG_LIST);
+      EXPECT_TRUE(groups) << groups.error().message;
     }
+    // Work groups of another size.
+    EXPECT_TRUE(programs->long_lists(all_variants().back(), surfels, uint32_t{1} << 20));
   }
   return RecordingDriver::texts();
 }

@@ -47,9 +47,11 @@ TEST(TileSpans, SetTilesApartByTheirLists) {
 TEST(TileSpans, KeepLoopsWithinWhatSoftwareGLAllows) {
   constexpr uint32_t kRounds = 65535;
   constexpr uint32_t kSurfaces = 8;
-  for (uint32_t list = 0; list <= SURFCAST_TILE_CAPACITY_LIMIT; ++list) {
+  for (uint32_t list = 0; list < 2 * SURFCAST_LONG_LIST; ++list) {
     for (const TileSpan& span : spans_of_tiles(counters_of({list}), 1, kSoftware)) {
       if (span.first == span.end) continue;
+      EXPECT_EQ(span.together, list >= SURFCAST_LONG_LIST);
+      if (span.together) continue;  // layers_for bounds their loops
       const uint32_t drawn = span.tiles_per_group == 8 ? kSurfaces : span.tiles_per_group + kSurfaces - 1;
       const uint32_t one = 2 * list + (list + SURFCAST_CARRY_INTERVAL - 1) / SURFCAST_CARRY_INTERVAL + 1;
       EXPECT_LE(drawn * one, kRounds) << list;
@@ -59,7 +61,7 @@ TEST(TileSpans, KeepLoopsWithinWhatSoftwareGLAllows) {
 
 TEST(TileSpans, AreAllOfOneGroupSizeOnHardware) {
   for (const TileSpan& span : spans_of_tiles(counters_of({3000, 30, 3}), 3, KernelShape())) {
-    EXPECT_EQ(span.tiles_per_group, 2);
+    EXPECT_EQ(span.tiles_per_group, span.together ? 1 : 2);
   }
 }
 

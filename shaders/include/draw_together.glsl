@@ -1,0 +1,166 @@
+// Long lists: the lanes of a work group share the list of one tile, because one lane would walk over it for too long.
+// (Software GL also ends the loops of a lane silently, after 65535 iterations in total.) SURFCAST_PIXEL_LANES lanes
+// hold the pixels, and SURFCAST_SHARES times as many of them each take a share of the list. Surfaces are maxima and sums
+// are integers, so pictures do not depend on who took what.
+//
+// All lanes run through the same loops, because they wait for each other.
+
+#define SHARED_PIXELS (SURFCAST_PIXEL_LANES * SURFCAST_COLUMNS * SURFCAST_ROWS)
+#define SHARED_SUMS (8 * SHARED_PIXELS)
+
+shared uint shared_surfaces[SHARED_PIXELS];  // bits of inverse depths
+shared uint shared_peak;                     // bits of the largest weight
+shared uint shared_low[SHARED_SUMS];
+shared uint shared_high[SHARED_SUMS];
+shared uint shared_more;
+
+const uint kLanes = uint(SURFCAST_PIXEL_LANES * SURFCAST_SHARES);
+const uint kShares = uint(SURFCAST_SHARES);
+// Entries after which lanes compare their surfaces.
+const uint kRound = 32u * kShares;
+
+uint pixel_lane() { return gl_LocalInvocationIndex % uint(SURFCAST_PIXEL_LANES); }
+uint own_share() { return gl_LocalInvocationIndex / uint(SURFCAST_PIXEL_LANES); }
+uint shared_pixel(int column, int row) {
+  return (pixel_lane() * uint(SURFCAST_COLUMNS) + uint(column)) * uint(SURFCAST_ROWS) + uint(row);
+}
+
+// The most surfaces for which loops over a list of this length stay within what software GL allows.
+int layers_for(uint entries) {
+  const uint kRounds = 24000u;  // of both passes over the list
+  return int(clamp(kRounds * kShares / max(entries, 1u), 1u, uint(kMaxLayers)));
+}
+
+void clear_shared() {
+  barrier();
+  for (uint i = gl_LocalInvocationIndex; i < uint(SHARED_SUMS); i += kLanes) {
+    shared_low[i] = 0u;
+    shared_high[i] = 0u;
+    if (i < uint(SHARED_PIXELS)) shared_surfaces[i] = 0u;
+  }
+  if (gl_LocalInvocationIndex == 0u) {
+    shared_peak = 0u;
+    shared_more = 0u;
+  }
+  barrier();
+}
+
+// Gives every lane the nearest surfaces and the largest weight of all lanes. Returns the farthest surface of the tile.
+float share_surfaces(inout Columns surface, inout float peak) {
+  for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
+    for (int i = 0; i < SURFCAST_ROWS; ++i) {
+      atomicMax(shared_surfaces[shared_pixel(c, i)], floatBitsToUint(ROW(surface[c], i)));
+    }
+  }
+  atomicMax(shared_peak, floatBitsToUint(peak));
+  barrier();
+  for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
+    for (int i = 0; i < SURFCAST_ROWS; ++i) {
+      ROW(surface[c], i) = uintBitsToFloat(shared_surfaces[shared_pixel(c, i)]);
+    }
+  }
+  peak = uintBitsToFloat(shared_peak);
+  uint least = shared_surfaces[0];
+  for (int i = 1; i < SHARED_PIXELS; ++i) least = min(least, shared_surfaces[i]);
+  barrier();
+  return uintBitsToFloat(least);
+}
+
+void give_sum(FixedSum sum, int number, int c) {
+  for (int i = 0; i < SURFCAST_ROWS; ++i) {
+    uint place = uint(number * SHARED_PIXELS) + shared_pixel(c, i);
+    atomicAdd(shared_low[place], ROW(sum.low, i));
+    atomicAdd(shared_high[place], ROW(sum.high, i));
+  }
+}
+
+void take_sum(inout FixedSum sum, int number, int c) {
+  for (int i = 0; i < SURFCAST_ROWS; ++i) {
+    uint place = uint(number * SHARED_PIXELS) + shared_pixel(c, i);
+    ROW(sum.low, i) = shared_low[place] & 0xffffu;
+    ROW(sum.high, i) = shared_high[place] + (shared_low[place] >> 16);
+  }
+}
+
+void share_sums(inout ColumnSums sums) {
+  for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
+#define GIVE_SUM(name, number) give_sum(sums[c].name, number, c);
+    EACH_SUM(GIVE_SUM)
+  }
+  barrier();
+  for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
+#define TAKE_SUM(name, number) take_sum(sums[c].name, number, c);
+    EACH_SUM(TAKE_SUM)
+  }
+}
+
+// As find_surface_small. A round has whole slices, so where the walk ends does not depend on the order of splats.
+uint find_surface_together(TileLists tile, vec2 pixel, Columns limit, inout Columns surface, inout float peak) {
+  float footprint = 1.0 / eta();
+  float least = share_surfaces(surface, peak);
+  uint slice = 0u;
+  uint begin = 0u;
+  while (begin < tile.smalls && slice_near(slice) >= least) {
+    uint end = begin;
+    while (end - begin < kRound && slice < uint(frame.slices.x)) end = tile_count[tile.first_count + slice++];
+    for (uint k = begin + own_share(); k < end; k += kShares) {
+      see_small(slot_of(texelFetch(lists, int(tile.first_small + k)).x), footprint, pixel, limit, surface, peak);
+    }
+    begin = end;
+    least = share_surfaces(surface, peak);
+  }
+  return begin;
+}
+
+void accumulate_together(uint first, uint count, vec2 pixel, Columns limit, Columns surface, float unit,
+                         inout ColumnSums sums) {
+  float footprint = 1.0 / eta();
+  for (uint begin = own_share(); begin < count; begin += uint(SURFCAST_CARRY_INTERVAL) * kShares) {
+    uint end = min(begin + uint(SURFCAST_CARRY_INTERVAL) * kShares, count);
+    for (uint k = begin; k < end; k += kShares) {
+      add_small(slot_of(texelFetch(lists, int(first + k)).x), footprint, pixel, limit, surface, unit, sums);
+    }
+    for (int c = 0; c < SURFCAST_COLUMNS; ++c) sums_carry(sums[c]);
+  }
+}
+
+// Draws the nearest surface behind `limit`, which becomes the new limit. `drawing`: the lane's pixels are not finished.
+// False if no pixel of the tile needs another surface.
+bool draw_layer_together(TileLists tile, vec2 pixel, inout bool drawing, inout Columns limit, inout LightColumns light) {
+  clear_shared();
+  Columns surface;
+  ColumnSums sums;
+  for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
+    surface[c] = drawing ? surface_at_first(light[c]) : Rows(kHidesAll);
+    sums[c] = sums_zero();
+  }
+  float peak = 0.0;
+#ifdef SURFCAST_LARGE
+  find_surface_large(tile.first_large, tile.larges, own_share(), kShares, pixel, limit, surface, peak);
+#endif
+  uint smalls = find_surface_together(tile, pixel, limit, surface, peak);
+  float unit = fixed_unit(peak);
+  accumulate_together(tile.first_small, smalls, pixel, limit, surface, unit, sums);
+#ifdef SURFCAST_LARGE
+  accumulate_large(tile.first_large, tile.larges, own_share(), kShares, pixel, limit, surface, unit, sums);
+#endif
+  share_sums(sums);
+  if (drawing) drawing = composite_columns(light, sums, surface, 1.0 / unit, pixel);
+  limit = surface;
+  if (drawing) shared_more = 1u;
+  barrier();
+  return shared_more != 0u;
+}
+
+// Draws the first `wanted` columns of a lane. `front`: the limit behind the first surface.
+void draw_together(TileLists tile, int wanted, vec2 pixel, out Columns front, out LightColumns light) {
+  Columns limit;
+  begin_drawing(wanted, limit, light);
+  bool drawing = true;
+  bool more = true;
+  int layers = layers_for(tile.smalls + tile.larges);
+  for (int layer = 0; more && layer < layers; ++layer) {
+    more = draw_layer_together(tile, pixel, drawing, limit, light);
+    if (layer == 0) front = limit;
+  }
+}
