@@ -31,7 +31,12 @@ ordered_json json_of(const Measurement& m) {
 ordered_json json_of(const SceneResult& scene) {
   ordered_json measurements = ordered_json::array();
   for (const Measurement& m : scene.measurements) measurements.push_back(json_of(m));
-  return {{"scene", scene.name}, {"surfels", scene.surfels}, {"measurements", measurements}};
+  ordered_json json{{"scene", scene.name}, {"surfels", scene.surfels}, {"measurements", measurements}};
+  if (scene.left_out) {
+    json["left_out"] = {{"hidden", rounded(scene.left_out->hidden)}, {"missing", rounded(scene.left_out->missing)}};
+    for (const double error : scene.left_out->colors) json["left_out"]["colors"].push_back(rounded(error));
+  }
+  return json;
 }
 
 }  // namespace

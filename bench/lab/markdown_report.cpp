@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <functional>
@@ -138,6 +139,27 @@ std::string stages(const LabResults& results) {
   return text + "\n";
 }
 
+/// Scans judged by points that were left out; the least colour error of a scan is bold.
+std::string left_out(const LabResults& results) {
+  std::vector<std::string> names{"scan", "hidden + missing, %"};
+  for (const MethodFacts& method : results.methods) names.push_back(method.name);
+  std::string rows;
+  for (const SceneResult& scene : results.scenes) {
+    if (!scene.left_out || scene.left_out->colors.empty()) continue;
+    const LeaveOutFigures& f = *scene.left_out;
+    const double least = *std::ranges::min_element(f.colors);
+    std::vector<std::string> cells{scene.name, number(f.hidden, 1) + " + " + number(f.missing, 1)};
+    for (const double error : f.colors) {
+      cells.push_back(error == least ? "**" + number(error, 2) + "**" : number(error, 2));
+    }
+    rows += row(cells);
+  }
+  if (rows.empty()) return "";
+  return "Points left out (see below): how many of them per-pixel EWA hides or misses, and the rms colour error of the "
+         "others,\nin levels of 255; bold is the least. This error needs no ideal picture:\n\n" +
+         header(names) + rows + "\n";
+}
+
 size_t occurrences(const std::string& text, const std::string& line) {
   size_t count = 0;
   for (size_t at = text.find(line); at != std::string::npos; at = text.find(line, at + line.size())) ++count;
@@ -150,8 +172,7 @@ std::string markdown_of(const LabResults& results) {
   return "Device: " + results.device + "; 512 x 512; milliseconds are medians of " + std::to_string(results.frames) +
          " frames.\nThe methods took turns.\n\n" + methods_and_scenes(results) +
          "Time of a frame, and PSNR against the ideal picture; bold is the least error of a scene:\n\n" +
-         matrix(results, time_and_error) +
-         "![Time against error](images/laboratory.svg)\n\n"
+         matrix(results, time_and_error) + "![Time against error](images/laboratory.svg)\n\n" + left_out(results) +
          "Structural similarity, and PSNR of the worst tile of 32 x 32 pixels:\n\n" +
          matrix(results,
                 [](const auto&, const Measurement& m) {

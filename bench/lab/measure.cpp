@@ -68,4 +68,21 @@ SceneResult measure(const Subject& subject, int frames, const std::filesystem::p
   return result;
 }
 
+LeaveOutFigures measure_left_out(const LabScene& scene, const std::filesystem::path& folder, Methods& methods) {
+  const LabPoints points = colored_points(scene.scan);
+  const auto make_model = [&](const LabPoints& kept) {
+    const std::filesystem::path scan = folder / (scene.name + ".kept.ply");
+    write_or_exit(kept, scan);
+    std::shared_ptr<const model::ModelFile> model = built_model(scan, folder, kept.z_up);
+    methods.open(model);
+    return model;
+  };
+  const auto draw = [&](const picture::PictureRequest& request) {
+    std::vector<SrgbPicture> pictures;
+    for (const MethodFacts& method : Methods::all()) pictures.push_back(methods.draw(method.name, request).picture);
+    return pictures;
+  };
+  return figures_of(study_points(scene.name, points, *scene.place, make_model, draw));
+}
+
 }  // namespace surfcast::lab

@@ -11,4 +11,8 @@ namespace surfcast::lab {
 /// empty.
 SceneResult measure(const Subject& subject, int frames, const std::filesystem::path& pictures, Methods& methods);
 
+/// Leaves out points of a scene's scan and measures in which colours the methods draw their places. The scene has a
+/// place. The methods then have the model of the points that were kept.
+LeaveOutFigures measure_left_out(const LabScene& scene, const std::filesystem::path& folder, Methods& methods);
+
 }  // namespace surfcast::lab

@@ -7,6 +7,7 @@
 #include "base/contract.h"
 #include "base/stopwatch.h"
 #include "bench_support.h"
+#include "lab/srgb_pictures.h"
 
 namespace surfcast::lab {
 namespace {
@@ -62,13 +63,6 @@ const Method& method_named(const std::string& name) {
   const auto found = std::ranges::find_if(methods(), [&](const Method& m) { return m.facts.name == name; });
   SURFCAST_EXPECTS(found != methods().end());
   return *found;
-}
-
-SrgbPicture picture_of(const picture::Image& image) {
-  SrgbPicture picture{image.width, image.height, {}};
-  const auto* pixels = reinterpret_cast<const glm::u8vec4*>(image.pixels.data());
-  for (int i = 0; i < image.width * image.height; ++i) picture.pixels.emplace_back(pixels[i]);
-  return picture;
 }
 
 /// A picture from bytes whose rows run from bottom to top.

@@ -1,10 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "lab/errors.h"
+#include "lab/leave_out_report.h"
 #include "picture/picture.h"
 
 namespace surfcast::lab {
@@ -33,7 +35,8 @@ struct SceneResult {
   std::string name;
   std::string about;
   uint64_t surfels = 0;
-  std::vector<Measurement> measurements;  ///< in the order of the methods
+  std::vector<Measurement> measurements;      ///< in the order of the methods
+  std::optional<LeaveOutFigures> left_out{};  ///< colours in the order of the methods
 };
 
 struct LabResults {

@@ -111,8 +111,9 @@ LabScene make_lab_scene(const std::string& name) {
   return {found->name, found->about, found->make ? found->make() : reference::make_scene(name), {}};
 }
 
-LabScene scan_scene(const std::filesystem::path& scan) {
-  return {scan.stem().string(), "a scan against its own supersampled picture", std::nullopt, scan};
+LabScene scan_scene(const PlacedScan& scan) {
+  return {scan.path.stem().string(), "a scan against its own supersampled picture", std::nullopt, scan.path,
+          scan.place};
 }
 
 std::vector<picture::PictureRequest> slow_path(const picture::PictureRequest& request, int side, int frames) {

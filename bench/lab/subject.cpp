@@ -1,45 +1,43 @@
 #include "lab/subject.h"
 
 #include <array>
-#include <fstream>
+#include <cstdio>
+#include <cstdlib>
 
 #include "bench_support.h"
 #include "builder/build_model.h"
+#include "lab/colored_points.h"
+#include "scan/scan_stream.h"
 
 namespace surfcast::lab {
 namespace {
 
 constexpr int kPathSide = 256;  ///< pixels
 
-/// Writes a cloud as a scan: binary PLY with positions in double precision, normals and colours, without radii.
-void write_scan(const surfel::SurfelCloud& cloud, const std::filesystem::path& path) {
-  std::ofstream file(path, std::ios::binary);
-  file << "ply\nformat binary_little_endian 1.0\nelement vertex " << cloud.size()
-       << "\nproperty double x\nproperty double y\nproperty double z\nproperty float nx\nproperty float ny\n"
-          "property float nz\nproperty uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n";
-  for (size_t i = 0; i < cloud.size(); ++i) {
-    const glm::u8vec3 color(cloud.colors->values[i]);
-    file.write(reinterpret_cast<const char*>(&cloud.positions[i]), sizeof cloud.positions[i]);
-    file.write(reinterpret_cast<const char*>(&cloud.normals[i]), sizeof cloud.normals[i]);
-    file.write(reinterpret_cast<const char*>(&color), sizeof color);
-  }
+/// The points of a cloud, without its radii.
+LabPoints points_of(const surfel::SurfelCloud& cloud) {
+  LabPoints points{cloud.positions, {}, {}, cloud.normals, cloud.z_up};
+  for (const glm::u16vec3& color : cloud.colors->values) points.colors.emplace_back(color);
+  return points;
 }
 
-std::shared_ptr<const model::ModelFile> built_model(const std::filesystem::path& scan,
-                                                    const std::filesystem::path& folder) {
-  const std::filesystem::path target = folder / (scan.stem().string() + ".surf");
-  const std::array inputs{scan};
-  bench::value_or_exit(builder::build_model(inputs, target, {}, [](const builder::BuildStep&) {}));
-  return bench::open_or_exit(target);
+/// The model of a scan: as it is if it is a model or has colours.
+std::shared_ptr<const model::ModelFile> scanned_model(const std::filesystem::path& scan,
+                                                      const std::filesystem::path& folder) {
+  if (scan.extension() == ".surf") return bench::open_or_exit(scan);
+  if (bench::value_or_exit(scan::ScanStream::open(scan)).schema().color_bits > 0)
+    return built_model(scan, folder, std::nullopt);
+  const LabPoints points = colored_points(scan);
+  const std::filesystem::path colored = folder / (scan.stem().string() + ".ply");
+  write_or_exit(points, colored);
+  return built_model(colored, folder, points.z_up);
 }
 
 std::shared_ptr<const model::ModelFile> model_of(const LabScene& scene, const std::filesystem::path& folder) {
-  if (!scene.analytic) {
-    return scene.scan.extension() == ".surf" ? bench::open_or_exit(scene.scan) : built_model(scene.scan, folder);
-  }
+  if (!scene.analytic) return scanned_model(scene.scan, folder);
   const std::filesystem::path scan = folder / (scene.name + ".ply");
-  write_scan(scene.analytic->cloud, scan);
-  return built_model(scan, folder);
+  write_or_exit(points_of(scene.analytic->cloud), scan);
+  return built_model(scan, folder, std::nullopt);
 }
 
 SrgbPicture ideal_of(const LabScene& scene, const picture::PictureRequest& request, Methods& methods) {
@@ -50,6 +48,27 @@ SrgbPicture ideal_of(const LabScene& scene, const picture::PictureRequest& reque
 }
 
 }  // namespace
+
+std::shared_ptr<const model::ModelFile> built_model(const std::filesystem::path& scan,
+                                                    const std::filesystem::path& folder, std::optional<bool> z_up) {
+  const std::filesystem::path target = folder / (scan.stem().string() + ".surf");
+  builder::BuildOptions options;
+  options.z_up = z_up;
+  bench::value_or_exit(builder::build_model(std::array{scan}, target, options, [](const builder::BuildStep&) {}));
+  return bench::open_or_exit(target);
+}
+
+LabPoints colored_points(const std::filesystem::path& scan) {
+  LabPoints points = bench::value_or_exit(read_points(scan));
+  if (points.colors.empty()) points.colors = colors_for(points);
+  return points;
+}
+
+void write_or_exit(const LabPoints& points, const std::filesystem::path& path) {
+  if (write_ply(points, path)) return;
+  std::fprintf(stderr, "%s: cannot be written\n", path.c_str());
+  std::exit(1);
+}
 
 Subject prepare(const LabScene& scene, const std::filesystem::path& folder, int path_frames, Methods& methods) {
   Subject subject{scene.name, scene.about, model_of(scene, folder), {}, {}, {}, {}};

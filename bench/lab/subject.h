@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "lab/methods.h"
+#include "lab/scan_points.h"
 #include "lab/scenes.h"
 
 namespace surfcast::lab {
@@ -22,5 +23,15 @@ struct Subject {
 /// Builds the scene's model from a scan with the builder, in `folder`, opens it with the methods, and computes its
 /// ideal pictures. `path_frames` is the length of the slow camera path.
 Subject prepare(const LabScene& scene, const std::filesystem::path& folder, int path_frames, Methods& methods);
+
+/// Builds a model of a scan with the builder, in `folder`, and opens it. `z_up`: the vertical axis; none: as the scan's
+/// format or points suggest.
+std::shared_ptr<const model::ModelFile> built_model(const std::filesystem::path& scan,
+                                                    const std::filesystem::path& folder, std::optional<bool> z_up);
+
+/// The points of a scan, coloured if they have no colours.
+LabPoints colored_points(const std::filesystem::path& scan);
+
+void write_or_exit(const LabPoints& points, const std::filesystem::path& path);
 
 }  // namespace surfcast::lab
