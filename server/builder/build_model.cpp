@@ -51,6 +51,25 @@ Status check_bounds(const geometry::Box& bounds, const std::filesystem::path& ta
   return fail(ErrorKind::kInvalidInput, target.string() + ": a position of the input is too far away to be stored");
 }
 
+std::vector<InputRadii> radii_of(const BuildInputs& inputs, const BuildParts& parts) {
+  std::vector<InputRadii> radii;
+  for (size_t i = 0; i < inputs.streams().size(); ++i) {
+    const scan::ScanSchema& schema = inputs.streams()[i].schema();
+    if (schema.radii) radii.push_back({schema.name, parts.radii()[i]});
+  }
+  return radii;
+}
+
+/// One line for each input whose radii are not used although they should be.
+void note_unused_radii(const BuildOptions& options, BuildReport& report) {
+  if (options.radii == scan::RadiusPolicy::kEstimate) return;
+  for (const auto& [input, decision] : report.radii) {
+    if (decision.outcome == scan::RadiusOutcome::kEstimated) {
+      report.scan.notes.push_back(input + ": " + scan::describe(decision));
+    }
+  }
+}
+
 /// A cloud without surfels that has the common properties of all clouds of the model.
 surfel::SurfelCloud common_cloud(const BuildInputs& inputs, bool oriented) {
   surfel::SurfelCloud cloud = empty_cloud(inputs.schema(), 0);
@@ -174,8 +193,10 @@ Result<BuildReport> build_model(std::span<const std::filesystem::path> inputs, c
     Result<BuildParts> parts = BuildParts::gather(*opened, *memory, target, clock, report.scan);
     if (!parts) return fail(std::move(parts.error()));
     report.parts = parts->size();
-    Status made = parts->make_surfels(*memory, clock, report.scan);
+    Status made = parts->make_surfels(*memory, options.radii, clock, report.scan);
     if (!made) return fail(std::move(made.error()));
+    report.radii = radii_of(*opened, *parts);
+    note_unused_radii(options, report);
     const Result<model::WriteReport> written = write(*opened, *parts, *memory, target, options, clock);
     if (!written) return fail(written.error());
     report.surfels = written->surfels;

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "scan/stated_radii.h"
 #include "scan/surfel_report.h"
 
 namespace surfcast::builder {
@@ -19,11 +20,19 @@ struct BuildOptions {
   std::optional<bool> z_up;             ///< vertical axis z (true) or y; none: as each scan's format or points suggest
   std::optional<uint64_t> memory;       ///< limit of resident memory, bytes; none: a quarter of the machine's memory
   std::optional<uint64_t> part_points;  ///< largest number of points of a part; none: as the memory allows
+  scan::RadiusPolicy radii = scan::RadiusPolicy::kAuto;
+};
+
+/// What became of the radii that an input states.
+struct InputRadii {
+  std::string input;  ///< file name without its folders
+  scan::RadiusDecision decision;
 };
 
 /// The result and the cost of a build.
 struct BuildReport {
   scan::SurfelReport scan;
+  std::vector<InputRadii> radii;  ///< of the inputs that have a column for them
   uint64_t surfels = 0;
   uint64_t blocks = 0;
   uint64_t bytes = 0;                                  ///< of the model file

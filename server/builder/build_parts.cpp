@@ -68,6 +68,13 @@ std::vector<PartRows> sort_out(const scan::ScanPoints& points, const PartFinder&
   return parts;
 }
 
+/// The input of each source of a single part.
+std::vector<size_t> every_input(size_t inputs) {
+  std::vector<size_t> all(inputs);
+  std::iota(all.begin(), all.end(), size_t{0});
+  return all;
+}
+
 /// Removes the duplicates of a part. Returns for each original surfel whether it was kept.
 std::vector<uint8_t> drop_duplicates(surfel::SurfelCloud& cloud, size_t& own, scan::SurfelReport& report) {
   const std::vector<bool> duplicate = scan::find_duplicates(cloud);
@@ -90,7 +97,7 @@ PartFindings spread_findings(const scan::PartSurfels& surfels, std::vector<uint8
   for (size_t i = 0; i < kept.size(); ++i) {
     if (kept[i] == 0) continue;
     findings.normals[i] = surfels.cloud.normals[next];
-    findings.radii[i] = surfels.cloud.radii[next];
+    findings.radii[i] = surfels.estimated_radii[next];
     findings.trees[i] = surfels.trees[next];
     ++next;
   }
@@ -126,10 +133,8 @@ Result<BuildParts> BuildParts::gather(const BuildInputs& inputs, const MemoryPla
 Status BuildParts::collect(const BuildInputs& inputs, StageClock& clock, scan::SurfelReport& report) {
   PartPoints points;
   points.cloud = empty_cloud(inputs.schema(), inputs.size());
-  for (size_t i = 0; i < names_.size(); ++i) {
-    points.cloud.sources.push_back({names_[i].name, 0, 0, names_[i].grid});
-    points.inputs.push_back(i);
-  }
+  points.inputs = every_input(names_.size());
+  for (const InputName& input : names_) points.cloud.sources.push_back({input.name, 0, 0, input.grid});
   Status status = work_in_order(inputs.pieces(), threads(), [&](size_t i) -> Result<std::function<Status()>> {
     scan::SurfelReport own;
     Result<InputPiece> piece = inputs.read(i, own);
@@ -179,7 +184,7 @@ size_t BuildParts::parts_at_once(const MemoryPlan& memory) const {
   return std::min(memory.parts_at_once(most), threads());
 }
 
-BuildParts::Made BuildParts::make(PartPoints points, size_t part) const {
+BuildParts::Made BuildParts::make(PartPoints points, size_t part, scan::RadiusPolicy radii) const {
   Made made;
   made.own = points.own;
   made.kept = drop_duplicates(points.cloud, made.own, made.report);
@@ -187,20 +192,34 @@ BuildParts::Made BuildParts::make(PartPoints points, size_t part) const {
   frame.bounds = bounds_;
   frame.place = [this, part](const glm::dvec3& p) { return finder_.place(static_cast<uint32_t>(part), p); };
   for (const size_t input : points.inputs) frame.sensors.push_back(sensors_[input]);
+  frame.inputs = std::move(points.inputs);
+  frame.radii = radii;
   made.surfels = surfcast::scan::make_surfels(std::move(points.cloud), frame, made.signs, made.report);
   return made;
 }
 
-Status BuildParts::make_surfels(const MemoryPlan& memory, StageClock& clock, scan::SurfelReport& report) {
+void BuildParts::decide_radii(const std::vector<scan::RadiusComparison>& comparisons, scan::RadiusPolicy policy,
+                              scan::SurfelReport& report) {
+  for (const scan::RadiusComparison& comparison : comparisons) {
+    radii_.push_back(scan::decide_radii(comparison, policy));
+    report.radii_estimated += radii_.back().estimated();
+  }
+}
+
+Status BuildParts::make_surfels(const MemoryPlan& memory, scan::RadiusPolicy radii, StageClock& clock,
+                                scan::SurfelReport& report) {
   clock.begin("making surfels", size());
   std::vector<scan::PartSigns> signs;
+  std::vector<scan::RadiusComparison> comparisons(names_.size());
   Status status = work_in_order(size(), parts_at_once(memory), [&](size_t part) -> Result<std::function<Status()>> {
     Result<PartPoints> points = store_ ? store_->load(part) : Result<PartPoints>(std::move(*whole_));
     if (!points) return fail(std::move(points.error()));
-    const auto made = std::make_shared<Made>(make(std::move(*points), part));
+    const auto made = std::make_shared<Made>(make(std::move(*points), part, radii));
     return [&, part, made] {
       signs.push_back(std::move(made->signs));
       report.add(made->report);
+      const std::vector<scan::RadiusComparison>& own = made->surfels.radii;
+      for (size_t input = 0; input < own.size(); ++input) comparisons[input].add(own[input]);
       clock.step();
       if (store_) return store_->keep_findings(part, spread_findings(made->surfels, std::move(made->kept)));
       surfels_ = std::move(made->surfels);
@@ -211,12 +230,14 @@ Status BuildParts::make_surfels(const MemoryPlan& memory, StageClock& clock, sca
   if (!status) return status;
   signs_ = scan::resolve_signs(signs, scene_);
   report.oriented = signs_.oriented;
+  decide_radii(comparisons, radii, report);
   return {};
 }
 
 Result<BuildParts::Finished> BuildParts::take(size_t part) {
   if (!store_) {
     scan::apply_signs(signs_, part, surfels_);
+    scan::apply_radii(radii_, every_input(names_.size()), std::move(surfels_.estimated_radii), surfels_.cloud);
     return Finished{std::move(surfels_.cloud), own_};
   }
   Result<PartPoints> points = store_->load(part);
@@ -224,10 +245,10 @@ Result<BuildParts::Finished> BuildParts::take(size_t part) {
   Result<PartFindings> findings = store_->load_findings(part);
   if (!findings) return fail(std::move(findings.error()));
   store_->release(part);
-  scan::PartSurfels surfels{std::move(points->cloud), std::move(findings->trees)};
+  scan::PartSurfels surfels{std::move(points->cloud), std::move(findings->trees), {}, {}};
   surfels.cloud.normals = std::move(findings->normals);
-  surfels.cloud.radii = std::move(findings->radii);
   scan::apply_signs(signs_, part, surfels);
+  scan::apply_radii(radii_, points->inputs, std::move(findings->radii), surfels.cloud);
   const auto end_own = findings->kept.begin() + static_cast<std::ptrdiff_t>(points->own);
   const auto own = static_cast<size_t>(std::count(findings->kept.begin(), end_own, uint8_t{1}));
   scan::keep_surfels(surfels.cloud, {findings->kept.begin(), findings->kept.end()});

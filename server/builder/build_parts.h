@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "base/result.h"
@@ -30,10 +31,12 @@ class BuildParts {
   [[nodiscard]] const geometry::RootCube& root() const { return root_; }
   [[nodiscard]] size_t parts_at_once(const MemoryPlan& memory) const;
 
-  /// First phase: makes the surfels of every part and resolves the signs of all normals together.
-  Status make_surfels(const MemoryPlan& memory, StageClock& clock, scan::SurfelReport& report);
-  /// Second phase: returns the surfels of a part with their final normals, own surfels before those of the halo. Each
-  /// part can be taken once. Thread-safe.
+  /// First phase: makes the surfels of every part, and decides for all of them the signs of normals and what stated
+  /// radii mean.
+  Status make_surfels(const MemoryPlan& memory, scan::RadiusPolicy radii, StageClock& clock,
+                      scan::SurfelReport& report);
+  /// Second phase: returns the surfels of a part with their final normals and radii, own surfels before those of the
+  /// halo. Each part can be taken once. Thread-safe.
   struct Finished {
     surfel::SurfelCloud cloud;
     size_t own = 0;
@@ -41,6 +44,7 @@ class BuildParts {
   Result<Finished> take(size_t part);
 
   [[nodiscard]] const scan::ResolvedSigns& signs() const { return signs_; }
+  [[nodiscard]] std::span<const scan::RadiusDecision> radii() const { return radii_; }  ///< for each input
 
  private:
   struct Made {
@@ -55,7 +59,9 @@ class BuildParts {
   Status spool(const BuildInputs& inputs, const MemoryPlan& memory, const std::filesystem::path& target,
                StageClock& clock, scan::SurfelReport& report);
   Status collect(const BuildInputs& inputs, StageClock& clock, scan::SurfelReport& report);
-  [[nodiscard]] Made make(PartPoints points, size_t part) const;
+  [[nodiscard]] Made make(PartPoints points, size_t part, scan::RadiusPolicy radii) const;
+  void decide_radii(const std::vector<scan::RadiusComparison>& comparisons, scan::RadiusPolicy policy,
+                    scan::SurfelReport& report);
 
   scan::Scene scene_;
   geometry::Box bounds_;
@@ -69,6 +75,7 @@ class BuildParts {
   scan::PartSurfels surfels_;        ///< a single part, after its surfels are made
   size_t own_ = 0;
   scan::ResolvedSigns signs_;
+  std::vector<scan::RadiusDecision> radii_;  ///< for each input
 };
 
 }  // namespace surfcast::builder

@@ -25,7 +25,7 @@ struct PartPoints {
 /// Results for the points of a part, in the order in which the points are loaded.
 struct PartFindings {
   std::vector<glm::vec3> normals;
-  std::vector<float> radii;
+  std::vector<float> radii;  ///< estimated ones
   std::vector<uint32_t> trees;
   std::vector<uint8_t> kept;  ///< 0 for duplicates, whose other entries are unused
 };

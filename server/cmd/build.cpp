@@ -1,5 +1,6 @@
 #include "cmd/build.h"
 
+#include <array>
 #include <cmath>
 #include <filesystem>
 #include <iostream>
@@ -16,6 +17,7 @@
 #include "base/stopwatch.h"
 #include "builder/build_model.h"
 #include "builder/memory_budget.h"
+#include "cmd/radius_flag.h"
 
 namespace surfcast::cmd {
 namespace {
@@ -26,6 +28,7 @@ struct BuildCommand {
   std::optional<double> precision;
   std::string up;
   std::string memory;
+  scan::RadiusPolicy radii = scan::RadiusPolicy::kAuto;
   std::filesystem::path report;
 };
 
@@ -70,6 +73,31 @@ std::string figures(const builder::BuildReport& report) {
                      static_cast<double>(report.peak_memory) / (1024.0 * 1024.0));
 }
 
+/// What became of the radii of each input, beside those that the notes name.
+std::string radii_lines(const builder::BuildReport& report) {
+  std::string lines;
+  for (const auto& [input, decision] : report.radii) {
+    if (decision.outcome == scan::RadiusOutcome::kEstimated) continue;
+    lines += fmt::format("{}: {}\n", input, scan::describe(decision));
+  }
+  return lines;
+}
+
+nlohmann::ordered_json to_json(const builder::InputRadii& radii) {
+  constexpr std::array kOutcomes{"kept", "scaled", "estimated"};
+  const scan::RadiusDecision& decision = radii.decision;
+  nlohmann::ordered_json json{{"input", radii.input},
+                              {"outcome", kOutcomes.at(static_cast<size_t>(decision.outcome))},
+                              {"stated", decision.stated},
+                              {"missing", decision.missing}};
+  if (decision.stating) {
+    const auto& [median, least, most] = *decision.stating;
+    json["spacings"] = {{"median", median}, {"least", least}, {"most", most}};
+  }
+  if (decision.outcome == scan::RadiusOutcome::kScaled) json["factor"] = decision.factor;
+  return json;
+}
+
 std::string to_json(const BuildCommand& command, const builder::BuildReport& report) {
   nlohmann::ordered_json json{
       {"output", command.output.string()},
@@ -88,6 +116,7 @@ std::string to_json(const BuildCommand& command, const builder::BuildReport& rep
         {"duplicates", report.scan.duplicates},
         {"zero_normals", report.scan.zero_normals}}},
       {"estimated", {{"normals", report.scan.normals_estimated}, {"radii", report.scan.radii_estimated}}},
+      {"radii", nlohmann::ordered_json::array()},
       {"oriented", report.scan.oriented},
       {"notes", report.scan.notes},
       {"inputs", nlohmann::ordered_json::array()},
@@ -96,6 +125,7 @@ std::string to_json(const BuildCommand& command, const builder::BuildReport& rep
     nlohmann::ordered_json& total = json["stage_seconds"][stage];
     total = seconds + (total.is_number() ? total.get<double>() : 0.0);
   }
+  for (const builder::InputRadii& radii : report.radii) json["radii"].push_back(to_json(radii));
   for (const std::filesystem::path& input : command.inputs) json["inputs"].push_back(input.string());
   // File names need not be UTF-8.
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
@@ -107,12 +137,13 @@ Status build(const BuildCommand& command) {
     ProgressLine line;
     const std::optional<bool> z_up = command.up.empty() ? std::nullopt : std::optional(command.up == "z");
     const std::optional<uint64_t> memory = builder::parse_memory_size(command.memory);
-    report = builder::build_model(command.inputs, command.output, {command.precision, z_up, memory, std::nullopt},
+    report = builder::build_model(command.inputs, command.output,
+                                  {command.precision, z_up, memory, std::nullopt, command.radii},
                                   [&line](const builder::BuildStep& step) { line.show(step); });
   }
   if (!report) return fail(std::move(report.error()));
   for (const std::string& note : report->scan.notes) spdlog::warn("{}", note);
-  std::cout << figures(*report);
+  std::cout << radii_lines(*report) << figures(*report);
   if (command.report.empty()) return {};
   return write_file_atomically(command.report, to_json(command, *report));
 }
@@ -136,6 +167,7 @@ void add_build_command(CLI::App& app, Status& outcome) {
       ->check([](const std::string& text) {
         return builder::parse_memory_size(text) ? std::string() : "not a size like 4G or 512M: " + text;
       });
+  add_radius_flag(*build_command, command->radii);
   build_command->add_option("--report", command->report, "Write statistics of the build to this file as JSON");
   build_command->callback([command, &outcome] { outcome = build(*command); });
 }

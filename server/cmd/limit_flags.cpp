@@ -1,5 +1,6 @@
 #include "cmd/limit_flags.h"
 
+#include "cmd/radius_flag.h"
 #include "cmd/settings.h"
 #include "protocol/request_flags.h"
 
@@ -103,6 +104,7 @@ void add_cache_flags(CLI::App& command, ScanCacheConfig& cache) {
   add_size(command, "build-memory", cache.build_memory,
            "Memory for building a model of a scan (default: a quarter of the machine's). More: less for the rest; "
            "less: large scans are built in more parts");
+  add_radius_flag(command, cache.radii)->envname(protocol::environment_name("radii"));
 }
 
 void add_renderer_flags(CLI::App& command, render::RendererConfig& renderer) {

@@ -13,7 +13,7 @@ namespace surfcast::cmd {
 // Flags that set the limits of the programs, and their variables. docs/settings.md lists them all. Targets must outlive
 // the parsing.
 
-/// `--cache`, its size, and the memory of builds.
+/// `--cache`, its size, and the memory and `--radii` of builds.
 void add_cache_flags(CLI::App& command, ScanCacheConfig& cache);
 /// `--gpu`, the memory of the renderer and its threads.
 void add_renderer_flags(CLI::App& command, render::RendererConfig& renderer);

@@ -23,9 +23,15 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Another release may build better models of the same scan, so its version is part of the key.
-std::string key_of(std::span<const std::byte> content) {
-  return fmt::format("{}-{}.surf", SURFCAST_VERSION, hash_name(content));
+/// Another release may build better models of the same scan, so its version is part of the key. So is the policy of
+/// radii, in the hash.
+std::string key_of(std::span<const std::byte> content, scan::RadiusPolicy radii) {
+  std::string hash = hash_name(content);
+  if (radii != scan::RadiusPolicy::kAuto) {
+    const std::string both = fmt::format("{} radii {}", hash, static_cast<int>(radii));
+    hash = hash_name(std::as_bytes(std::span(both)));
+  }
+  return fmt::format("{}-{}.surf", SURFCAST_VERSION, hash);
 }
 
 /// Notes in a file that it is used now: its time of access, because that of writing tells readers when it was replaced.
@@ -64,9 +70,9 @@ Status build_into(const fs::path& scan, const fs::path& target, const ScanCacheC
     return fail(ErrorKind::kIo, target.parent_path().string() + ": cannot make the folder: " + code.message());
   }
   const std::array inputs{scan};
-  const Result<builder::BuildReport> report =
-      builder::build_model(inputs, target, {std::nullopt, std::nullopt, config.build_memory, std::nullopt},
-                           [](const builder::BuildStep&) {});
+  const Result<builder::BuildReport> report = builder::build_model(
+      inputs, target, {std::nullopt, std::nullopt, config.build_memory, std::nullopt, config.radii},
+      [](const builder::BuildStep&) {});
   if (!report) return fail(report.error());
   for (const std::string& note : report->scan.notes) spdlog::warn("{}", note);
   spdlog::info("{}: {} surfels in {:.1f} s", scan.string(), report->surfels, report->seconds);
@@ -90,7 +96,7 @@ Result<CachedModel> model_of_scan(const fs::path& scan, const ScanCacheConfig& c
   if (!folder) return fail(folder.error());
   const Result<MappedFile> content = MappedFile::open(scan);
   if (!content) return fail(content.error());
-  const fs::path target = *folder / key_of(content->bytes());
+  const fs::path target = *folder / key_of(content->bytes(), config.radii);
   std::optional<CachedModel> model = find_in_cache(target);
   if (!model) {
     if (Status status = build_into(scan, target, config); !status) return fail(status.error());

@@ -15,10 +15,6 @@ namespace {
 /// Neighbours from which the normal of a site is estimated.
 constexpr size_t kDegree = 12;
 
-bool usable_radius(float radius) {
-  return std::isfinite(radius) && radius > 0;
-}
-
 bool has_normal(const surfel::SurfelCloud& cloud, size_t i) {
   return !cloud.normals.empty() && !std::isnan(cloud.normals[i].x);
 }
@@ -59,17 +55,23 @@ SiteFacts find_site_facts(const surfel::SurfelCloud& cloud, const Sites& sites, 
   return facts;
 }
 
-void fill_radii(const Sites& sites, const NeighbourGraph& graph, const SiteFacts& facts,
-                const std::vector<glm::vec3>& normals, surfel::SurfelCloud& cloud, SurfelReport& report) {
-  cloud.radii.resize(cloud.size(), 0.0F);
-  if (std::all_of(cloud.radii.begin(), cloud.radii.end(), usable_radius)) return;
-  const std::vector<float> estimated = estimate_radii(sites, graph, normals);
-  for (size_t i = 0; i < cloud.size(); ++i) {
-    if (usable_radius(cloud.radii[i])) continue;
-    const uint32_t site = sites.of_point[i];
-    cloud.radii[i] = estimated[site];
-    report.radii_estimated += facts.places[site].own ? 1 : 0;
+bool all_stated(const std::vector<float>& radii) {
+  return !radii.empty() && std::all_of(radii.begin(), radii.end(), is_radius);
+}
+
+/// Estimates the radius of every surfel and compares those stated with it, unless all are stated and kept.
+void find_radii(const Sites& sites, const NeighbourGraph& graph, const SiteFacts& facts,
+                const std::vector<glm::vec3>& normals, const PartFrame& frame, PartSurfels& made) {
+  const surfel::SurfelCloud& cloud = made.cloud;
+  std::vector<float> estimated;
+  if (frame.radii == RadiusPolicy::kKeep && all_stated(cloud.radii)) {
+    made.estimated_radii = cloud.radii;
+  } else {
+    estimated = estimate_radii(sites, graph, normals);
+    made.estimated_radii.resize(cloud.size());
+    for (size_t i = 0; i < cloud.size(); ++i) made.estimated_radii[i] = estimated[sites.of_point[i]];
   }
+  made.radii = compare_radii(cloud, frame.inputs, sites, graph, facts.places, estimated);
 }
 
 /// Normals of the sites: those of the scan where it has them, estimated ones elsewhere.
@@ -110,7 +112,6 @@ void SurfelReport::add(const SurfelReport& part) {
   duplicates += part.duplicates;
   zero_normals += part.zero_normals;
   normals_estimated += part.normals_estimated;
-  radii_estimated += part.radii_estimated;
 }
 
 PartSurfels make_surfels(surfel::SurfelCloud cloud, const PartFrame& frame, PartSigns& signs, SurfelReport& report) {
@@ -118,9 +119,10 @@ PartSurfels make_surfels(surfel::SurfelCloud cloud, const PartFrame& frame, Part
   const NeighbourGraph graph = find_neighbours(sites, kDegree);
   const SiteFacts facts = find_site_facts(cloud, sites, frame);
   std::vector<glm::vec3> normals = site_normals(sites, graph, facts);
-  fill_radii(sites, graph, facts, normals, cloud, report);
-  std::vector<uint32_t> trees = fill_normals(sites, graph, facts, std::move(normals), cloud, signs, report);
-  return {std::move(cloud), std::move(trees)};
+  PartSurfels made{std::move(cloud), {}, {}, {}};
+  find_radii(sites, graph, facts, normals, frame, made);
+  made.trees = fill_normals(sites, graph, facts, std::move(normals), made.cloud, signs, report);
+  return made;
 }
 
 void apply_signs(const ResolvedSigns& signs, size_t part, PartSurfels& surfels) {

@@ -8,6 +8,7 @@
 
 #include "scan/orient_normals.h"
 #include "scan/signed_trees.h"
+#include "scan/stated_radii.h"
 #include "scan/surfel_report.h"
 #include "surfel/surfel_cloud.h"
 
@@ -19,18 +20,22 @@ struct PartFrame {
   /// Classifies positions: own or halo, near the border or not. Thread-safe.
   std::function<SitePlace(const glm::dvec3&)> place = [](const glm::dvec3&) { return SitePlace{}; };
   std::vector<std::optional<glm::dvec3>> sensors;  ///< scanner position of each source
+  std::vector<size_t> inputs;                      ///< index of the input of each source
+  RadiusPolicy radii = RadiusPolicy::kAuto;
 };
 
-/// The surfels of a part including its halo, before the signs of their normals are resolved. All attributes except the
-/// weights are set.
+/// The surfels of a part including its halo, before the signs of their normals and the radii are decided. All
+/// attributes except radii and weights are set.
 struct PartSurfels {
-  surfel::SurfelCloud cloud;
-  std::vector<uint32_t> trees;  ///< for each surfel, the tree that determines the sign of its normal, or kNoTree
+  surfel::SurfelCloud cloud;           ///< radii: as stated, or none
+  std::vector<uint32_t> trees;         ///< for each surfel, the tree that determines the sign of its normal, or kNoTree
+  std::vector<float> estimated_radii;  ///< for each surfel; as stated where nobody asks for estimates
+  std::vector<RadiusComparison> radii;  ///< of each input
 };
 
-/// Makes surfels from clean points: estimates normals that are missing or NaN, and radii that are missing, NaN or not
-/// positive. `signs` receives the data that resolve_signs needs from this part. `report` counts the part's own points
-/// only. The cloud must not have duplicates. The result is the same for any number of threads.
+/// Makes surfels from clean points: estimates normals that are missing or NaN, and radii. `signs` receives the data
+/// that resolve_signs needs from this part. `report` counts the part's own points only; radii are counted by their
+/// comparisons. The cloud must not have duplicates. The result is the same for any number of threads.
 PartSurfels make_surfels(surfel::SurfelCloud cloud, const PartFrame& frame, PartSigns& signs, SurfelReport& report);
 
 /// Applies the resolved signs to the normals of part number `part`.

@@ -37,7 +37,7 @@ struct SurfelCloud {
   std::vector<ScalarAttribute> scalars;
   std::vector<SourceRange> sources;  ///< in order; they cover every surfel
   bool estimated_normals = false;    ///< no source has normals: they are accurate to a few degrees
-  bool estimated_radii = false;      ///< no source has radii
+  bool estimated_radii = false;      ///< no radius comes from a source
   bool oriented = false;             ///< normals point out of the surface or towards the sensor: back faces exist
   bool z_up = true;                  ///< the vertical axis is z (surveying); otherwise y (graphics)
 

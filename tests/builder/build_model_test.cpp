@@ -193,6 +193,77 @@ TEST_F(BuildModelTest, SeveralInputsWithDifferentAttributesAreOneModelInParts) {
   EXPECT_EQ(model->info().color_bits, 8);
 }
 
+/// Numbered points that state their radii.
+TextScan with_radii(const std::vector<glm::dvec3>& positions, double radius, size_t first = 0) {
+  TextScan scan;
+  scan.header = "x y z number intensity radius";
+  for (size_t i = 0; i < positions.size(); ++i) {
+    scan.add(positions[i], std::to_string(first + i) + " 0 " + std::to_string(radius));
+  }
+  return scan;
+}
+
+TEST_F(BuildModelTest, RadiiAreScaledAlikeWhateverTheParts) {
+  const std::vector<glm::dvec3> positions = hills_and_dome(120);
+  with_radii(positions, 0.5).write(scan_);
+  const BuildReport whole = build({scan_}, model_);
+  const BuildReport parts = build({scan_}, other_, in_parts_of(2500));
+  EXPECT_GT(parts.parts, 6U);
+  for (const BuildReport& report : {whole, parts}) {
+    ASSERT_EQ(report.radii.size(), 1U);
+    EXPECT_EQ(report.radii[0].input, "scan.xyz");
+    EXPECT_EQ(report.radii[0].decision.outcome, scan::RadiusOutcome::kScaled);
+    EXPECT_EQ(report.radii[0].decision.stated, positions.size());
+    EXPECT_EQ(report.scan.radii_estimated, 0U);
+    EXPECT_TRUE(report.scan.notes.empty());
+  }
+  EXPECT_EQ(parts.radii[0].decision.factor, whole.radii[0].decision.factor);
+  const float expected = 0.5F * whole.radii[0].decision.factor;
+  EXPECT_NEAR(expected, 1.08F, 0.04F);
+  for (const fs::path& model : {model_, other_}) {
+    for (const auto& [number, surfel] : surfels_of(model)) ASSERT_NEAR(surfel.radius, expected, 1e-3F) << number;
+  }
+}
+
+TEST_F(BuildModelTest, KeptRadiiComeBackAndEstimatedOnesAreThoseOfAScanWithout) {
+  const std::vector<glm::dvec3> positions = testing::square_lattice(60, 1, {0, 0, 0});
+  with_radii(positions, 0.25).write(scan_);
+  numbered(positions).write(folder_ / "without.xyz");
+  build({folder_ / "without.xyz"}, other_);
+  const auto without = surfels_of(other_);
+  for (BuildOptions options : {BuildOptions{}, in_parts_of(900)}) {
+    options.radii = scan::RadiusPolicy::kKeep;
+    EXPECT_EQ(build({scan_}, model_, options).radii[0].decision.outcome, scan::RadiusOutcome::kKept);
+    for (const auto& [number, surfel] : surfels_of(model_)) ASSERT_NEAR(surfel.radius, 0.25F, 1e-4F) << number;
+    options.radii = scan::RadiusPolicy::kEstimate;
+    const BuildReport report = build({scan_}, model_, options);
+    EXPECT_EQ(report.scan.radii_estimated, positions.size());
+    EXPECT_TRUE(report.scan.notes.empty()) << "as asked for";
+    for (const auto& [number, surfel] : surfels_of(model_)) ASSERT_EQ(surfel.radius, without.at(number).radius);
+  }
+}
+
+TEST_F(BuildModelTest, RadiiThatMakeNoSenseAreEstimatedWithANote) {
+  with_radii(testing::square_lattice(60, 1, {0, 0, 0}), 500).write(scan_);
+  numbered(testing::square_lattice(60, 1, {0, 0, 4}), 3600).write(folder_ / "without.xyz");
+  const BuildReport report = build({scan_, folder_ / "without.xyz"}, model_, in_parts_of(2000));
+  EXPECT_THAT(report.scan.notes, ::testing::ElementsAre(HasSubstr("scan.xyz: radii do not follow the sampling")));
+  EXPECT_EQ(report.scan.radii_estimated, 7200U);
+  ASSERT_EQ(report.radii.size(), 1U) << "the other has no column for them";
+  for (const auto& [number, surfel] : surfels_of(model_)) ASSERT_LT(surfel.radius, 2.5F) << number;
+}
+
+TEST_F(BuildModelTest, ThreadsDoNotChangeAByteOfScaledRadii) {
+  with_radii(hills_and_dome(60), 2).write(scan_);
+  std::vector<std::vector<char>> models;
+  for (const size_t threads : {1, 2, 8}) {
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    build({scan_}, model_, in_parts_of(700));
+    models.push_back(model::read_bytes(model_));
+  }
+  EXPECT_THAT(models, ::testing::Each(models[0]));
+}
+
 TEST_F(BuildModelTest, DuplicatesAreDroppedWhereverPartsEnd) {
   TextScan scan = numbered(testing::square_lattice(60, 1, {0, 0, 0}));
   const std::vector<std::string> once = scan.rows;

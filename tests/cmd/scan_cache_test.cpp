@@ -97,6 +97,20 @@ TEST_F(ScanCacheTest, TheModelUsedLeastRecentlyGoesFirst) {
   EXPECT_TRUE(fs::exists(c));
 }
 
+TEST_F(ScanCacheTest, EveryPolicyOfRadiiHasAModelOfItsOwn) {
+  std::set<fs::path> paths;
+  for (const auto radii : {scan::RadiusPolicy::kAuto, scan::RadiusPolicy::kKeep, scan::RadiusPolicy::kEstimate}) {
+    for (int times = 0; times < 2; ++times) {
+      const Result<CachedModel> model = model_of_scan(folder_ / "a.xyz", {.folder = cache_, .radii = radii});
+      ASSERT_TRUE(model);
+      paths.insert(model->path);
+    }
+  }
+  EXPECT_EQ(paths.size(), 3U);
+  limit_cache(cache_, 0);
+  for (const fs::path& path : paths) EXPECT_FALSE(fs::exists(path)) << "each counts as a model of the cache";
+}
+
 TEST_F(ScanCacheTest, UseIsNotedAndKeepsTheTimeOfWriting) {
   const fs::path a = model("a").path;
   const fs::path b = model("b").path;

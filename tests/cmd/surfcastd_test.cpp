@@ -113,6 +113,26 @@ TEST_F(SurfcastdTest, BuildsAModelAndSaysWhatItTook) {
   EXPECT_GT(report["peak_memory_bytes"], 1000000);
 }
 
+TEST_F(SurfcastdTest, SaysWhatBecameOfStatedRadii) {
+  std::ofstream scan(folder_ / "radii.xyz");
+  scan << "x y z radius\n";
+  for (int i = 0; i < 400; ++i) scan << i % 20 << ' ' << i / 20 << " 0 0.5\n";
+  scan.close();
+  const Answer scaled = run("build radii.xyz --output model.surf --report report.json");
+  ASSERT_EQ(scaled.exit_code, 0) << scaled.err;
+  EXPECT_EQ(scaled.err, "");
+  EXPECT_EQ(scaled.out.find("radii.xyz: radii of 0.47"), 0U) << scaled.out;
+  const nlohmann::json radii = nlohmann::json::parse(content(folder_ / "report.json"))["radii"];
+  ASSERT_EQ(radii.size(), 1U);
+  EXPECT_EQ(radii[0]["input"], "radii.xyz");
+  EXPECT_EQ(radii[0]["outcome"], "scaled");
+  EXPECT_EQ(radii[0]["stated"], 400);
+  EXPECT_NEAR(radii[0]["factor"].get<double>(), 2.28, 0.03);
+  EXPECT_EQ(run("build radii.xyz --output model.surf --radii keep").out.find("radii.xyz: radii kept\n"), 0U);
+  EXPECT_EQ(run("build radii.xyz --output model.surf --radii estimate").out.find("400 points read"), 0U);
+  EXPECT_EQ(run("build radii.xyz --output model.surf --radii all").exit_code, 2);
+}
+
 TEST_F(SurfcastdTest, JoinsSeveralScansIntoOneModel) {
   std::ofstream(folder_ / "more.xyz") << "0 0 5\n1 0 5\n0 1 5\n1 1 5\n";
   ASSERT_EQ(run("build scan.ply more.xyz --output model.surf").exit_code, 0);

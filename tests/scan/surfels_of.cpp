@@ -51,6 +51,7 @@ surfel::SurfelCloud surfels_of(std::vector<WholeScan> scans, scan::SurfelReport&
     report.points_read += scan.size();
     scan::drop_unusable_points(scan, report);
     sources.push_back({scan.name, all.size(), scan.size(), scan.grid});
+    frame.inputs.push_back(frame.inputs.size());
     frame.sensors.push_back(scan.sensor);
     for (const glm::dvec3& p : scan.positions) frame.bounds.include(p);
     append_points(all, scan::conform(scan, merged));
@@ -64,6 +65,12 @@ surfel::SurfelCloud surfels_of(std::vector<WholeScan> scans, scan::SurfelReport&
   std::vector<scan::PartSigns> signs(1);
   scan::PartSurfels surfels = scan::make_surfels(std::move(cloud), frame, signs[0], report);
   scan::apply_signs(scan::resolve_signs(signs, {frame.bounds, merged.z_up, merged.normals}), 0, surfels);
+  std::vector<scan::RadiusDecision> decisions;
+  for (const scan::RadiusComparison& radii : surfels.radii) {
+    decisions.push_back(scan::decide_radii(radii, frame.radii));
+    report.radii_estimated += decisions.back().estimated();
+  }
+  scan::apply_radii(decisions, frame.inputs, std::move(surfels.estimated_radii), surfels.cloud);
   return surfels.cloud;
 }
 

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include "scan/stated_radii.h"
+
+namespace surfcast::cmd {
+
+/// `--radii`: what a build makes of the radii that scans state. `policy` keeps its value where the flag is not given,
+/// and must outlive the parsing.
+CLI::Option* add_radius_flag(CLI::App& command, scan::RadiusPolicy& policy);
+
+}  // namespace surfcast::cmd
