@@ -28,6 +28,12 @@ std::string check_flag(std::string_view name, const std::string& text) {
   return status.error().message.substr(name.size() + 2);
 }
 
+/// The help of a field that may have another default.
+std::string help_of(const PictureField& field, const std::string& other_default) {
+  const std::string help(field.help);
+  return other_default.empty() ? help : help.substr(0, help.find(" (default ")) + " (default " + other_default + ")";
+}
+
 bool read_number(const json& value, double& number) {
   if (!value.is_number()) return false;
   number = value.get<double>();
@@ -85,6 +91,10 @@ Status parse_camera_json(std::string_view text, wire::Camera& camera) {
   return {};
 }
 
+void RequestFlags::set_default(std::string_view field, std::string_view text) {
+  values_[std::string(field)] = std::string(text);
+}
+
 void RequestFlags::add_to(CLI::App& command) {
   command
       .add_option("--output", output_,
@@ -110,11 +120,11 @@ void RequestFlags::add_view_flags_to(CLI::App& command) {
       ->envname(environment_name("camera"))
       ->type_name("FILE");
   for (const PictureField& field : picture_fields()) {
-    CLI::Option* option =
-        command.add_option("--" + std::string(field.flag), values_[std::string(field.name)], std::string(field.help))
-            ->envname(environment_name(field.flag))
-            ->type_name(std::string(field.form))
-            ->check([name = field.name](const std::string& text) { return check_flag(name, text); });
+    std::string& value = values_[std::string(field.name)];
+    CLI::Option* option = command.add_option("--" + std::string(field.flag), value, help_of(field, value))
+                              ->envname(environment_name(field.flag))
+                              ->type_name(std::string(field.form))
+                              ->check([name = field.name](const std::string& text) { return check_flag(name, text); });
     if (field.several) option->join(';');
   }
 }

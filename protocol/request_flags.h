@@ -18,6 +18,8 @@ namespace surfcast::protocol {
 /// sets `--resolution`. The command line takes precedence. CLI11 reports an invalid value as a command line error.
 class RequestFlags {
  public:
+  /// Gives a field of the picture another default than that of its help. Call it before the flags are added.
+  void set_default(std::string_view field, std::string_view text);
   /// Adds the flags to a command. The object must outlive the parsing.
   void add_to(CLI::App& command);
   /// Adds only the flags that describe the view, for programs that write no picture file.
@@ -42,7 +44,7 @@ class RequestFlags {
  private:
   [[nodiscard]] Result<wire::FileFormat> format() const;
 
-  std::map<std::string, std::string> values_;  ///< by field name (picture_fields()); empty text: not given
+  std::map<std::string, std::string> values_;  ///< by field name (picture_fields()); empty text: none
   std::string camera_file_;
   std::string output_;
   std::string stats_;

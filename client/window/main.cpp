@@ -13,8 +13,6 @@
 namespace surfcast::window {
 namespace {
 
-constexpr double kUsualSpacing = 1;  // pixels
-
 /// The program is started as `surfcast view`, mostly, and speaks by that name.
 const command_line::ProgramText& program_text() {
   static const command_line::ProgramText text{
@@ -32,7 +30,6 @@ Result<ViewRequest> view_request_of(const std::string& address, const protocol::
     picture->mutable_resolution()->set_width(protocol::kDefaultWidth);
     picture->mutable_resolution()->set_height(protocol::kDefaultHeight);
   }
-  if (picture->spacing() == 0) picture->set_spacing(kUsualSpacing);
   return ViewRequest{*url, std::move(*picture), 0};
 }
 
@@ -45,6 +42,7 @@ int run(int argc, char** argv) {
   app.add_option("url", address, "HOST:PORT/MODEL or ws://HOST:PORT/MODEL")->required();
   app.add_option("--target-fps", target_fps, "frames per second to hold while moving (default: the server's)")
       ->check(CLI::Range(0.0, 1000.0));
+  flags.set_default("spacing", "1");  // every surfel would take seconds to draw
   flags.add_view_flags_to(app);
   limits.add_to(app);
   if (const auto code = command_line::parse_command_line(app, program_text(), argc, argv)) return *code;

@@ -118,6 +118,18 @@ TEST_F(RequestFlagsTest, WrongCameraFilesAreNamedWithWhatIsWrong) {
   EXPECT_EQ(flags_.request("cube").error().kind, ErrorKind::kNotFound);
 }
 
+TEST_F(RequestFlagsTest, AnotherDefaultHoldsUntilAFlagSaysOtherwiseZeroIncluded) {
+  for (const auto& [arguments, expected] : {std::pair{"", 1.5}, std::pair{"--spacing 0", 0.0}}) {
+    CLI::App app;
+    RequestFlags flags;
+    flags.set_default("spacing", "1.5");
+    flags.add_view_flags_to(app);
+    EXPECT_NE(app.help().find("refinement stops; 0: the finest level (default 1.5)"), std::string::npos);
+    app.parse(arguments);
+    EXPECT_EQ(flags.view_request("cube").value().spacing(), expected) << arguments;
+  }
+}
+
 TEST_F(RequestFlagsTest, TheEnvironmentMirrorsFlagsAndTheCommandLineWins) {
   ::setenv("SURFCAST_RESOLUTION", "11,12", 1);
   ::setenv("SURFCAST_CAMERA_POSITION", "7,8,9", 1);
