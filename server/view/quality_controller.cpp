@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numeric>
 #include <span>
 
 namespace surfcast::view {
@@ -59,10 +60,11 @@ constexpr std::array<LinkRung, 9> kLinkRungs{{{1, 85, 1.0},
                                               {0.375, 45, 0.08},
                                               {0.25, 45, 0.04}}};
 
-constexpr double kFull = 0.9;   // usable share of the frame time
-constexpr double kRoom = 0.85;  // a better rung is tried if its predicted time is below this share of the usable time
-constexpr int kSlowFrames = 2;
-constexpr int kFramesBeforeClimb = 6;
+constexpr double kFull = 0.9;     // usable share of the frame time
+constexpr double kRoom = 0.9;     // a better rung is tried if its predicted time is below this share of the usable time
+constexpr double kOver = 1.08;    // times the usable time: a mean above it lowers the quality
+constexpr double kFarOver = 1.5;  // times the usable time: two frames in a row above it lower the quality at once
+constexpr int kFramesBeforeClimb = 8;
 constexpr int kMaxFramesBeforeClimb = 192;
 
 template <typename Rung>
@@ -78,46 +80,51 @@ size_t affordable(std::span<const Rung> rungs, size_t from, double ms, double bu
   return rung;
 }
 
-template <typename Rung>
-LadderState descend(LadderState state, std::span<const Rung> rungs, double ms, double budget) {
-  state.least_ms = state.slow == 0 ? ms : std::min(state.least_ms, ms);
-  state.fast = 0;
-  if (++state.slow < kSlowFrames) return state;
-  const size_t next = std::min(state.rung + 1, rungs.size() - 1);
-  const size_t fits = std::max(next, affordable(rungs, state.rung, state.least_ms, budget));
-  const bool climbed_in_vain = state.since_climb < state.frames_before_climb;
-  return {.rung = fits,
-          .slow = 0,
-          .fast = 0,
-          .least_ms = 0,
-          .frames_before_climb = climbed_in_vain ? std::min(2 * state.frames_before_climb, kMaxFramesBeforeClimb)
-                                                 : state.frames_before_climb,
-          .since_climb = kMaxFramesBeforeClimb};
+/// The mean of the times without the largest.
+double typical(const std::array<double, 8>& recent) {
+  const double sum = std::accumulate(recent.begin(), recent.end(), 0.0);
+  return (sum - *std::ranges::max_element(recent)) / static_cast<double>(recent.size() - 1);
 }
 
+/// Lowers the quality to what fits frames of this time, by at least one rung.
 template <typename Rung>
-LadderState climb(LadderState state, std::span<const Rung> rungs, double ms, double budget) {
-  state.slow = 0;
-  if (state.rung == 0 || predicted(rungs, state.rung, state.rung - 1, ms) > kRoom * budget) {
-    state.fast = 0;
-    return state;
-  }
-  state.least_ms = state.fast == 0 ? ms : std::max(state.least_ms, ms);
-  if (++state.fast < state.frames_before_climb) return state;
-  const size_t fits = affordable(rungs, state.rung, state.least_ms, kRoom * budget);
-  return {.rung = std::min(fits, state.rung - 1),
-          .slow = 0,
-          .fast = 0,
-          .least_ms = 0,
-          .frames_before_climb = state.frames_before_climb,
-          .since_climb = 0};
+LadderState descend(const LadderState& state, std::span<const Rung> rungs, double ms, double budget) {
+  const size_t next = std::min(state.rung + 1, rungs.size() - 1);
+  const bool climbed_in_vain = state.since_climb < state.frames_before_climb;
+  LadderState lower;
+  lower.rung = std::max(next, affordable(rungs, state.rung, ms, budget));
+  if (climbed_in_vain) lower.rung = std::max(lower.rung, state.climbed_from);
+  lower.frames_before_climb =
+      climbed_in_vain ? std::min(2 * state.frames_before_climb, kMaxFramesBeforeClimb) : state.frames_before_climb;
+  lower.since_climb = kMaxFramesBeforeClimb;
+  return lower;
+}
+
+/// Raises the quality if a better rung is predicted to leave room.
+template <typename Rung>
+LadderState climb(const LadderState& state, std::span<const Rung> rungs, double ms, double budget) {
+  if (state.rung == 0 || state.frames < state.frames_before_climb) return state;
+  const size_t fits = affordable(rungs, state.rung, ms, kRoom * budget);
+  if (fits >= state.rung) return state;
+  LadderState higher;
+  higher.rung = fits;
+  higher.frames_before_climb = state.frames_before_climb;
+  higher.climbed_from = state.rung;
+  return higher;
 }
 
 template <typename Rung>
 LadderState step(LadderState state, std::span<const Rung> rungs, double ms, double budget) {
   // A rung kept for this long was no mistake: the next raise is as easy as the first.
   if (++state.since_climb > 2 * kMaxFramesBeforeClimb) state.frames_before_climb = kFramesBeforeClimb;
-  return ms > budget ? descend(state, rungs, ms, budget) : climb(state, rungs, ms, budget);
+  std::ranges::rotate(state.recent, state.recent.end() - 1);
+  state.recent.front() = ms;
+  ++state.frames;
+  const double last_two = state.frames >= 2 ? std::min(state.recent[0], state.recent[1]) : 0;
+  if (last_two > kFarOver * budget) return descend(state, rungs, last_two, budget);
+  if (static_cast<size_t>(state.frames) < state.recent.size()) return state;
+  const double mean = typical(state.recent);
+  return mean > kOver * budget ? descend(state, rungs, mean, budget) : climb(state, rungs, mean, budget);
 }
 
 }  // namespace
@@ -125,8 +132,8 @@ LadderState step(LadderState state, std::span<const Rung> rungs, double ms, doub
 QualityState first_quality() {
   constexpr size_t kMiddle = 10;
   QualityState state;
-  state.draw = {.rung = kMiddle, .frames_before_climb = kFramesBeforeClimb, .since_climb = kMaxFramesBeforeClimb};
-  state.link = {.rung = 2, .frames_before_climb = kFramesBeforeClimb, .since_climb = kMaxFramesBeforeClimb};
+  state.draw = {.rung = kMiddle, .since_climb = kMaxFramesBeforeClimb};
+  state.link = {.rung = 2, .since_climb = kMaxFramesBeforeClimb};
   return state;
 }
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 
 namespace surfcast::view {
@@ -22,11 +23,11 @@ struct MotionCost {
 /// The position on a ladder of settings, from the best (rung 0) to the cheapest, and the evidence for leaving it.
 struct LadderState {
   size_t rung = 0;
-  int slow = 0;         ///< consecutive frames over the time budget
-  int fast = 0;         ///< consecutive frames that leave room for a better rung
-  double least_ms = 0;  ///< the least time of the frames counted in `slow`, or the greatest of those counted in `fast`
-  int frames_before_climb = 6;  ///< value of `fast` at which a better rung is tried
-  int since_climb = 0;          ///< frames since a better rung was last tried
+  std::array<double, 8> recent{};  ///< milliseconds of the last frames of this rung, newest first
+  int frames = 0;                  ///< frames of this rung
+  int frames_before_climb = 8;     ///< value of `frames` from which on a better rung may be tried
+  int since_climb = 0;             ///< frames since a better rung was last tried
+  size_t climbed_from = 0;         ///< the rung before that
 };
 
 /// Drawing and the link are adapted independently. The smaller of the two scales is used.
@@ -39,9 +40,12 @@ struct QualityState {
 QualityState first_quality();
 
 /// The next state after a frame that was drawn with the given state. Drawing, encoding, transfer and display of
-/// successive frames overlap, so each of them separately must fit in the frame time of `target_fps`. One slow frame
-/// changes nothing. Two in a row lower the quality to the best rung that fits the faster of the two. Raising it takes
-/// several frames that leave room, and twice as many each time that a raise turned out too expensive.
+/// successive frames overlap, so each of them separately must fit in the frame time of `target_fps`.
+///
+/// A rate of frames is an average, and the times of single frames vary by a factor of two and more: the quality follows
+/// the mean of the last eight frames without the slowest of them. Only two frames in a row that take far too long lower
+/// it at once, to the best rung that fits the faster of the two. After a raise that turned out too expensive, the next
+/// one waits for twice as many frames.
 QualityState adapt(const QualityState& state, const MotionCost& cost, double target_fps);
 
 MotionQuality quality_of(const QualityState& state);

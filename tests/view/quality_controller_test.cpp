@@ -141,6 +141,21 @@ TEST(QualityController, FramesThatTakeTurnsInCostingMoreDoNotMakeItSwing) {
   EXPECT_LE(run.changes(300), 4);
 }
 
+TEST(QualityController, FramesThatVaryGetTheQualityOfTheirMean) {
+  // Other work on the machine: one frame in four takes twice as long, and two such frames in a row are common.
+  int frame = 0;
+  const Machine disturbed = [&frame](const MotionQuality& q) {
+    const uint32_t random = static_cast<uint32_t>(++frame) * 2654435761U;
+    return MotionCost{renderer(60)(q).draw * (random >> 30 == 0 ? 1.6 : 0.8), 1, 0.1, 1};
+  };
+  Ride run;
+  run.frames(disturbed, 600);
+  double sum = 0;
+  for (size_t i = 300; i < 600; ++i) sum += disturbed(run.shown[i]).draw;
+  EXPECT_LE(sum / 300, 1000.0 / 30);
+  EXPECT_GE(sum / 300, 0.6 * 1000.0 / 30);
+}
+
 TEST(QualityController, OneFrameThatTakesLongChangesNothing) {
   Ride run;
   run.frames(renderer(10), 200);
