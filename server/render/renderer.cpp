@@ -163,8 +163,8 @@ struct Renderer::State {
   picture::DeviceInfo device;
   Programs programs;
   kinds::KindTable kinds;
-  std::array<SplatBuffers, 2> buffers;  ///< of the picture being drawn, and of the one that preempts it
-  size_t depth = 0;                     ///< pictures being drawn: 2 while one preempts another
+  std::array<SplatBuffers, 3> buffers;  ///< of the picture being drawn, and of those that preempt it
+  size_t depth = 0;                     ///< pictures being drawn: more than 1 while one preempts another
   std::map<std::pair<picture::SurfelColor, picture::ColorMap>, ConstantTexels>
       color_tables;     ///< made at their first use
   size_t viewers;       ///< see RendererConfig
@@ -177,7 +177,7 @@ struct Renderer::State {
 
 void Renderer::State::begin_picture() {
   SURFCAST_EXPECTS(depth < buffers.size());
-  if (++depth == 2) residency.begin_nested_frame();
+  if (++depth > 1) residency.begin_nested_frame();
 }
 
 void Renderer::State::end_picture() {

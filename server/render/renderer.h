@@ -37,8 +37,8 @@ class Renderer {
 
   /// Draws one picture. Blocks of the model stay resident for later pictures. Fails on an invalid camera or resolution,
   /// on blocks of an unknown kind, and on a damaged block that the picture waits for. Returns kCancelled soon after it
-  /// is cancelled. More urgent work may draw one other picture at a time meanwhile. That picture uses other buffers
-  /// between the passes, and does not evict the blocks of this one.
+  /// is cancelled. More urgent work may draw one other picture at a time meanwhile, which may be interrupted once more.
+  /// Such a picture uses other buffers between the passes, and does not evict the blocks of this one.
   Result<picture::Frame> draw(const std::shared_ptr<const model::ModelFile>& model,
                               const picture::PictureRequest& request, const Preemption& preemption);
   /// Releases the resident blocks of a model that will not be drawn again, once the current picture is complete.

@@ -7,18 +7,29 @@
 namespace surfcast::residency {
 
 void PageTable::begin_frame() {
-  ++frame_;
-  if (!in_nested_frame_) outer_frame_ = frame_;
+  begun_.at(depth_) = ++frame_;
+}
+
+void PageTable::begin_nested_frame() {
+  SURFCAST_EXPECTS(depth_ < kMaxNested);
+  begun_.at(++depth_) = ++frame_;
 }
 
 void PageTable::end_nested_frame() {
-  in_nested_frame_ = false;
-  ++frame_;  // the blocks of the nested frame are no longer in use
+  SURFCAST_EXPECTS(depth_ > 0);
+  --depth_;
 }
 
 void PageTable::touch(Entry& entry) const {
-  entry.last_frame = frame_;
-  if (!in_nested_frame_) entry.last_outer = outer_frame_;
+  entry.last.at(depth_) = begun_.at(depth_);
+}
+
+bool PageTable::evictable(const Entry& entry) const {
+  if (entry.pinned) return false;
+  for (size_t depth = 0; depth <= depth_; ++depth) {
+    if (entry.last.at(depth) == begun_.at(depth)) return false;
+  }
+  return true;
 }
 
 void PageTable::use(const BlockId& id) {
@@ -44,7 +55,6 @@ bool PageTable::can_free(uint32_t count) const {
   uint32_t available = pages_ - used_;
   for (auto id = order_.rbegin(); id != order_.rend() && available < count; ++id) {
     const Entry& entry = entries_.at(*id);
-    if (entry.last_frame == frame_) break;  // all remaining blocks are in use too
     if (evictable(entry)) available += static_cast<uint32_t>(entry.pages.size());
   }
   return available >= count;

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <functional>
 #include <list>
@@ -14,14 +16,18 @@ namespace surfcast::residency {
 /// Assigns the pages of a memory of equal pages to blocks. A block takes as many pages as it needs; they need not be
 /// contiguous. If pages run short, the least recently used blocks are evicted. Blocks that were used since the last
 /// begin_frame() and pinned blocks are never evicted. A frame may be preempted by a nested frame, which has its own
-/// begin_frame(). Blocks that the outer frame uses before or after the nested one stay until the outer frame ends.
+/// begin_frame() and may be preempted as well. Blocks that a frame uses before or after a nested one stay until it
+/// ends.
 class PageTable {
  public:
+  static constexpr size_t kMaxNested = 2;
+
   explicit PageTable(uint32_t pages) : pages_(pages) {}
 
   /// Starts a frame: no block is in use.
   void begin_frame();
-  void begin_nested_frame() { in_nested_frame_ = true; }
+  /// At most kMaxNested frames deep.
+  void begin_nested_frame();
   void end_nested_frame();
   /// The block is in use until the next frame.
   void use(const BlockId& id);
@@ -42,27 +48,26 @@ class PageTable {
   [[nodiscard]] size_t blocks() const { return entries_.size(); }
 
  private:
+  using Frames = std::array<uint64_t, kMaxNested + 1>;  ///< numbers of frames by depth, the outermost first
+
   struct Entry {
     std::vector<uint32_t> pages;
-    uint64_t last_frame = 0;
-    uint64_t last_outer = 0;  ///< the last outer frame that used the block
+    Frames last{};  ///< the last frame of each depth that used the block
     bool pinned = false;
     std::list<BlockId>::iterator order;
   };
   using Entries = std::map<BlockId, Entry>;
 
   void touch(Entry& entry) const;
-  [[nodiscard]] bool evictable(const Entry& entry) const {
-    return !entry.pinned && entry.last_frame < frame_ && entry.last_outer < outer_frame_;
-  }
+  [[nodiscard]] bool evictable(const Entry& entry) const;
   [[nodiscard]] bool can_free(uint32_t count) const;
   Entries::iterator release(Entries::iterator entry);
   uint32_t take_page();
 
   uint32_t pages_;
-  uint64_t frame_ = 1;        ///< the newest
-  uint64_t outer_frame_ = 1;  ///< the newest outer frame
-  bool in_nested_frame_ = false;
+  uint64_t frame_ = 1;  ///< number of the newest frame
+  Frames begun_{1};     ///< the frames that are being drawn
+  size_t depth_ = 0;    ///< of the newest of them
   uint32_t used_ = 0;
   uint32_t pinned_ = 0;
   uint32_t untouched_ = 0;      ///< pages from this one on have never been used

@@ -17,9 +17,18 @@ bool JobQueue::push(SessionId session, JobId job, Priority priority) {
 
 std::optional<JobId> JobQueue::pop(Priority priority) {
   Lines& lines = lines_[static_cast<size_t>(priority)];
-  if (lines.empty()) return std::nullopt;
-  Line line = std::move(lines.front());
-  lines.pop_front();
+  return take(lines, lines.begin());
+}
+
+std::optional<JobId> JobQueue::pop_of_others(Priority priority, SessionId session) {
+  Lines& lines = lines_[static_cast<size_t>(priority)];
+  return take(lines, std::ranges::find_if(lines, [&](const Line& line) { return line.session != session; }));
+}
+
+std::optional<JobId> JobQueue::take(Lines& lines, Lines::iterator place) {
+  if (place == lines.end()) return std::nullopt;
+  Line line = std::move(*place);
+  lines.erase(place);
   const JobId job = line.jobs.front();
   line.jobs.pop_front();
   --size_;

@@ -26,6 +26,8 @@ class JobQueue {
   /// False if the queue is full; the job is then not added.
   [[nodiscard]] bool push(SessionId session, JobId job, Priority priority);
   std::optional<JobId> pop(Priority priority);
+  /// The next job of another session.
+  std::optional<JobId> pop_of_others(Priority priority, SessionId session);
   [[nodiscard]] bool has_waiting(Priority priority) const { return !lines_[static_cast<size_t>(priority)].empty(); }
   /// False if the job is not in the queue.
   bool remove(JobId job);
@@ -39,6 +41,7 @@ class JobQueue {
   };
 
   using Lines = std::deque<Line>;  ///< in the order of the sessions' turns
+  std::optional<JobId> take(Lines& lines, Lines::iterator place);
 
   size_t limit_;
   size_t size_ = 0;

@@ -41,6 +41,7 @@ auto guarded(Function function) -> decltype(function()) {
 struct RenderService::State {
   struct Job {
     JobId id = 0;
+    SessionId session = 0;
     PictureJob picture;
     PictureDone done;
     std::atomic<bool> cancelled = false;
@@ -61,13 +62,15 @@ struct RenderService::State {
   [[nodiscard]] bool has_waiting(Priority priority) const;
   [[nodiscard]] bool may_draw(Priority priority) const;
   [[nodiscard]] std::optional<Priority> next_priority() const;
-  JobPointer take(Priority priority, std::unique_lock<std::mutex>& lock);
+  JobPointer start(JobId id, std::unique_lock<std::mutex>& lock);
   JobPointer next_job();
   JobPointer next_motion();
+  JobPointer next_still_of_others(SessionId session);
   Result<picture::Frame> render_frame(FrameRenderer& renderer, Job& job, const Preemption& preemption);
   void draw_one(FrameRenderer& renderer, const JobPointer& job, const Preemption& preemption);
   void draw_motion(FrameRenderer& renderer, const JobPointer& job, bool others_wait);
-  void draw_still(FrameRenderer& renderer, const JobPointer& job);
+  bool draw_waiting_motion(FrameRenderer& renderer);
+  void draw_still(FrameRenderer& renderer, const JobPointer& job, bool nested);
   void cancel_superseded(JobId id);
 
   // Pool.
@@ -123,7 +126,7 @@ void RenderService::State::run(const FrameRendererFactory& make_renderer, std::p
     if (job->picture.priority == Priority::kMotion) {
       draw_motion(**renderer, job, has_waiting(Priority::kStill));
     } else {
-      draw_still(**renderer, job);
+      draw_still(**renderer, job, /*nested=*/false);
     }
   }
 }
@@ -151,13 +154,13 @@ std::optional<Priority> RenderService::State::next_priority() const {
   return still ? std::optional(Priority::kStill) : std::nullopt;
 }
 
-/// Takes the next job of this priority. Null if the job has waited too long. It is then refused, because its client has
+/// Takes a job that has left the queue. Null if the job has waited too long. It is then refused, because its client has
 /// probably given up, and drawing it would delay other jobs past their own timeout.
-RenderService::State::JobPointer RenderService::State::take(Priority priority, std::unique_lock<std::mutex>& lock) {
-  JobPointer job = jobs.at(*queue.pop(priority));
+RenderService::State::JobPointer RenderService::State::start(JobId id, std::unique_lock<std::mutex>& lock) {
+  JobPointer job = jobs.at(id);
   job->waited_ms = job->since_submission.milliseconds();
   if (job->waited_ms <= static_cast<double>(limits.queue_timeout.count())) {
-    ++in_encoding[static_cast<size_t>(priority)];
+    ++in_encoding[static_cast<size_t>(job->picture.priority)];
     return job;
   }
   lock.unlock();
@@ -172,7 +175,7 @@ RenderService::State::JobPointer RenderService::State::next_job() {
   for (;;) {
     wake.wait(lock, [this] { return stopping || next_priority(); });
     if (stopping) return nullptr;
-    if (JobPointer job = take(*next_priority(), lock)) return job;
+    if (JobPointer job = start(*queue.pop(*next_priority()), lock)) return job;
   }
 }
 
@@ -180,7 +183,18 @@ RenderService::State::JobPointer RenderService::State::next_job() {
 RenderService::State::JobPointer RenderService::State::next_motion() {
   std::unique_lock lock(mutex);
   while (!stopping && may_draw(Priority::kMotion) && shares.motion_first()) {
-    if (JobPointer job = take(Priority::kMotion, lock)) return job;
+    if (JobPointer job = start(*queue.pop(Priority::kMotion), lock)) return job;
+  }
+  return nullptr;
+}
+
+/// The still job of another session that is drawn in the middle of the current one; null if there is none.
+RenderService::State::JobPointer RenderService::State::next_still_of_others(SessionId session) {
+  std::unique_lock lock(mutex);
+  while (!stopping && may_draw(Priority::kStill)) {
+    const std::optional<JobId> id = queue.pop_of_others(Priority::kStill, session);
+    if (!id) return nullptr;
+    if (JobPointer job = start(*id, lock)) return job;
   }
   return nullptr;
 }
@@ -202,21 +216,36 @@ void RenderService::State::draw_motion(FrameRenderer& renderer, const JobPointer
   shares.drew_motion(job->draw_ms, others_wait);
 }
 
-/// Draws a still picture, and motion pictures between its batches.
-void RenderService::State::draw_still(FrameRenderer& renderer, const JobPointer& job) {
-  Stopwatch since_motion;
+bool RenderService::State::draw_waiting_motion(FrameRenderer& renderer) {
+  bool any = false;
+  for (; const JobPointer motion = next_motion(); any = true) draw_motion(renderer, motion, /*others_wait=*/true);
+  return any;
+}
+
+/// Draws a still picture, and motion pictures between its batches. If it takes long, still pictures of other sessions
+/// are drawn in its middle, one after another. Between two of them it goes on for a turn, and at least for as long as
+/// the one before took: each side has half of the time.
+void RenderService::State::draw_still(FrameRenderer& renderer, const JobPointer& job, bool nested) {
+  const auto turn_ms = static_cast<double>(limits.still_turn.count());
+  double left_of_turn = turn_ms;
+  Stopwatch since_others;
   const Preemption preemption(job->cancelled, [&] {
-    shares.drew_other(since_motion.milliseconds());
-    bool preempted = false;
-    while (const JobPointer motion = next_motion()) {
-      draw_motion(renderer, motion, /*others_wait=*/true);
+    const double drawn_ms = since_others.milliseconds();
+    shares.drew_other(drawn_ms);
+    left_of_turn -= drawn_ms;
+    bool preempted = draw_waiting_motion(renderer);
+    const JobPointer other = !nested && left_of_turn <= 0 ? next_still_of_others(job->session) : nullptr;
+    if (other) {
+      const Stopwatch watch;
+      draw_still(renderer, other, /*nested=*/true);
+      left_of_turn = std::max(turn_ms, watch.milliseconds());
       preempted = true;
     }
-    since_motion = Stopwatch();
+    since_others = Stopwatch();
     return preempted;
   });
   draw_one(renderer, job, preemption);
-  shares.drew_other(since_motion.milliseconds());
+  shares.drew_other(since_others.milliseconds());
 }
 
 void RenderService::State::draw_one(FrameRenderer& renderer, const JobPointer& job, const Preemption& preemption) {
@@ -314,6 +343,7 @@ JobId RenderService::State::add(SessionId session, PictureJob picture, PictureDo
   if (room) {
     const auto job = std::make_shared<Job>();
     job->id = id;
+    job->session = session;
     job->picture = std::move(picture);
     job->done = std::move(done);
     jobs.emplace(id, job);

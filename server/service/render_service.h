@@ -24,6 +24,9 @@ struct ServiceLimits {
   unsigned encoders = 2;            ///< threads that encode still pictures and look up models
   size_t frames_in_encoding = 3;    ///< per priority: pictures in memory at which no further ones are drawn
   std::chrono::milliseconds queue_timeout{20'000};  ///< longest wait of a picture for the render thread
+  /// A still picture that others wait for is drawn for so long at least before one of another session is drawn in its
+  /// middle.
+  std::chrono::milliseconds still_turn{250};
   PickLimits picks{};
 };
 

@@ -112,6 +112,32 @@ TEST_F(RendererGLTest, APictureThatOthersInterruptHasTheBytesOfOneThatNobodyDoes
   }
 }
 
+TEST_F(RendererGLTest, APictureThatInterruptsAnotherMayBeInterruptedToo) {
+  const testing::ModelPointer& model = model_of(motley_sphere());
+  std::vector<picture::PictureRequest> requests(3, front_view(200, 150, 3));
+  requests[1].camera->position = {0, 0, 1.02};  // large splats
+  requests[2].eye_dome.strength = 1;
+  std::vector<picture::Frame> expected;
+  for (const picture::PictureRequest& request : requests) expected.push_back(draw(model, request));
+
+  const std::atomic<bool> never{false};
+  int innermost = 0;
+  const Preemption inner(never, [&] {
+    ++innermost;
+    EXPECT_EQ(draw(model, requests[2]).image.pixels, expected[2].image.pixels);
+    return true;
+  });
+  const Preemption outer(never, [&] {
+    const Result<picture::Frame> frame = renderer_->draw(model, requests[1], inner);
+    EXPECT_TRUE(frame && frame->image.pixels == expected[1].image.pixels);
+    return true;
+  });
+  const Result<picture::Frame> frame = renderer_->draw(model, requests[0], outer);
+  ASSERT_TRUE(frame);
+  EXPECT_EQ(frame->image.pixels, expected[0].image.pixels);
+  EXPECT_GE(innermost, 9);
+}
+
 TEST_F(RendererGLTest, APictureThatMissesTooMuchIsNotDrawnUntilAllIsThere) {
   const testing::ModelPointer& model = model_of(motley_sphere());
   picture::PictureRequest request = front_view(64, 64);

@@ -104,6 +104,28 @@ TEST_F(PageTableTest, WhatAFrameUsesStaysThroughTheFramesNestedInIt) {
   EXPECT_THAT(insert(3, 4), SizeIs(4)) << "nor what the frame used, after that";
 }
 
+TEST_F(PageTableTest, WhatTwoFramesUseStaysThroughAFrameNestedInBoth) {
+  insert(0, 3);
+  insert(1, 3);
+  insert(2, 4);
+  table_.begin_frame();
+  table_.use({1, 0});
+  table_.begin_nested_frame();
+  table_.begin_frame();
+  table_.use({1, 1});
+  table_.begin_nested_frame();
+  table_.begin_frame();
+  EXPECT_THAT(insert(3, 4), SizeIs(4)) << "of the third block";
+  EXPECT_THAT(insert(4, 1), IsEmpty());
+  table_.end_nested_frame();
+  EXPECT_THAT(insert(5, 4), SizeIs(4)) << "of the innermost frame, which has ended";
+  EXPECT_THAT(insert(6, 1), IsEmpty());
+  table_.end_nested_frame();
+  EXPECT_THAT(insert(7, 7), SizeIs(7)) << "of both nested frames";
+  EXPECT_THAT(insert(8, 1), IsEmpty()) << "the outermost goes on";
+  EXPECT_THAT(evicted_, ElementsAre(2, 3, 1, 5));
+}
+
 TEST_F(PageTableTest, ManyInsertionsKeepTheBooks) {
   for (uint32_t i = 0; i < 1000; ++i) {
     table_.begin_frame();

@@ -50,6 +50,7 @@ struct FakeRendererControl {
   std::atomic<int> frame_ms = 0;         ///< least duration of a picture
   std::atomic<bool> slow = false;        ///< a picture continues until it is cancelled or `slow` becomes false
   std::atomic<bool> slow_motion = true;  ///< motion pictures are slow too
+  std::string slow_model;                ///< if not empty, pictures of other models are not slow
   std::vector<std::string>
       order;  ///< models in the order in which they were drawn; read it only while nothing is drawn
 };
@@ -63,7 +64,8 @@ class FakeRenderer : public FrameRenderer {
                               const Preemption& preemption) override {
     control_->order.push_back(model);
     ++control_->drawn;
-    const bool slow_too = request.viewer == 0 || control_->slow_motion;
+    const bool slow_too = (request.viewer == 0 || control_->slow_motion) &&
+                          (control_->slow_model.empty() || control_->slow_model == model);
     for (int ms = 0; ms < control_->frame_ms; ++ms) {
       std::this_thread::sleep_for(std::chrono::milliseconds(1));
       if (preemption.yield_to_urgent()) ++control_->nested_frames;

@@ -37,6 +37,17 @@ TEST(JobQueue, ASessionThatWasServedWaitsBehindTheOthers) {
   EXPECT_EQ(drain(queue), (std::vector<JobId>{20, 11}));
 }
 
+TEST(JobQueue, OthersAreServedInTheirTurnAndTheSessionKeepsItsPlace) {
+  JobQueue queue(10);
+  for (JobId job = 10; job < 12; ++job) ASSERT_TRUE(queue.push(1, job, Priority::kStill));
+  ASSERT_TRUE(queue.push(2, 20, Priority::kStill));
+  ASSERT_TRUE(queue.push(3, 30, Priority::kStill));
+  EXPECT_EQ(queue.pop_of_others(Priority::kStill, 1), 20u);
+  EXPECT_EQ(queue.pop_of_others(Priority::kStill, 1), 30u);
+  EXPECT_FALSE(queue.pop_of_others(Priority::kStill, 1));
+  EXPECT_EQ(drain(queue), (std::vector<JobId>{10, 11}));
+}
+
 TEST(JobQueue, AFullQueueTakesNothingUntilAJobLeaves) {
   JobQueue queue(2);
   ASSERT_TRUE(queue.push(1, 1, Priority::kStill));

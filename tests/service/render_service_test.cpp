@@ -14,7 +14,9 @@ namespace {
 
 class RenderServiceTest : public ::testing::Test {
  protected:
-  void start(const ServiceLimits& limits = {}) {
+  /// Still pictures are not drawn in the middle of others unless the limits say so.
+  void start(ServiceLimits limits = {}) {
+    if (limits.still_turn == ServiceLimits().still_turn) limits.still_turn = std::chrono::hours(1);
     auto started = RenderService::start(models_, fake_renderers(control_), limits);
     ASSERT_TRUE(started);
     service_ = std::move(*started);
@@ -173,6 +175,38 @@ TEST_F(RenderServiceTest, AMotionIsDrawnInTheMiddleOfAPictureThatTakesLong) {
   control_->slow = false;
   EXPECT_TRUE(still.get());
   EXPECT_TRUE(second.get());
+}
+
+TEST_F(RenderServiceTest, APictureOfAnotherSessionDoesNotWaitForAllOfOneThatTakesLong) {
+  control_->slow = true;
+  control_->slow_model = "cube";
+  start({.still_turn = std::chrono::milliseconds(5)});
+  auto [long_one, still] = draw(1, job_for("cube"));
+  wait_for_drawing(1);
+  auto [own, second] = draw(1, job_for("teapot"));
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(draw(2, job_for("noise")).second.get());
+  EXPECT_EQ(control_->drawn, 4) << "and the pictures of the first session keep their order";
+  control_->slow = false;
+  EXPECT_TRUE(still.get());
+  EXPECT_TRUE(second.get());
+}
+
+TEST_F(RenderServiceTest, APictureInTheMiddleOfAnotherIsInterruptedByMotionAlone) {
+  control_->slow = true;
+  control_->slow_motion = false;
+  start({.still_turn = std::chrono::milliseconds(5)});
+  auto [outer, first] = draw(1, job_for("cube"));
+  wait_for_drawing(1);
+  auto [inner, second] = draw(2, job_for("cube"));
+  wait_for_drawing(2);
+  auto [waits, third] = draw(3, job_for("cube"));
+  for (int i = 1; i <= 5; ++i) EXPECT_TRUE(draw(4, motion_of("teapot")).second.get());
+  EXPECT_EQ(control_->drawn, 7);
+  EXPECT_TRUE(service_->cancel(inner));
+  EXPECT_FALSE(second.get());
+  control_->slow = false;
+  EXPECT_TRUE(first.get());
+  EXPECT_TRUE(third.get());
 }
 
 TEST_F(RenderServiceTest, AMotionIsInterruptedByNothing) {
