@@ -2,10 +2,14 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <span>
+#include <utility>
 
+#include <oneapi/tbb/blocked_range.h>
 #include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_reduce.h>
 #include <oneapi/tbb/parallel_sort.h>
 
 #include "base/contract.h"
@@ -33,17 +37,22 @@ bool grid_reproduces(const surfel::Grid& grid, const glm::dvec3& p) {
 
 std::optional<surfel::Grid> usable_grid(const surfel::SurfelCloud& cloud, const surfel::SourceRange& source) {
   if (!source.grid) return std::nullopt;
-  const std::span positions = std::span(cloud.positions).subspan(source.first, source.count);
-  const bool exact = std::all_of(positions.begin(), positions.end(),
-                                 [&](const glm::dvec3& p) { return grid_reproduces(*source.grid, p); });
+  using Range = oneapi::tbb::blocked_range<size_t>;
+  const bool exact = oneapi::tbb::parallel_reduce(
+      Range(source.first, source.first + source.count), true,
+      [&](const Range& range, bool before) {
+        const std::span positions = std::span(cloud.positions).subspan(range.begin(), range.size());
+        return before && std::all_of(positions.begin(), positions.end(),
+                                     [&](const glm::dvec3& p) { return grid_reproduces(*source.grid, p); });
+      },
+      std::logical_and<>());
   return exact ? source.grid : std::nullopt;
 }
 
 /// The members of the core in the order of their sources. Sets the grid of each group.
 std::vector<Member> collect_members(const surfel::SurfelCloud& cloud, size_t core,
                                     std::vector<std::optional<surfel::Grid>>& grids) {
-  std::vector<Member> members;
-  members.reserve(core);
+  std::vector<Member> members(core);
   for (const surfel::SourceRange& source : cloud.sources) {
     if (source.first >= core) break;
     const std::optional<surfel::Grid> grid = usable_grid(cloud, source);
@@ -51,7 +60,7 @@ std::vector<Member> collect_members(const surfel::SurfelCloud& cloud, size_t cor
     const auto group = static_cast<uint32_t>(found - grids.begin());
     if (found == grids.end()) grids.push_back(grid);
     const size_t end = std::min(core, source.first + source.count);
-    for (size_t i = source.first; i < end; ++i) members.push_back({0, static_cast<uint32_t>(i), group});
+    oneapi::tbb::parallel_for(source.first, end, [&](size_t i) { members[i] = {0, static_cast<uint32_t>(i), group}; });
   }
   return members;
 }
@@ -61,6 +70,30 @@ void sort_by_code(const surfel::SurfelCloud& cloud, const geometry::RootCube& ro
     members[i].code = geometry::morton_code(root, cloud.positions[members[i].surfel]);
   });
   oneapi::tbb::parallel_sort(members);
+}
+
+/// Keeps the order within each group.
+void sort_by_group(Run run) {
+  const auto by_group = [](const Member& a, const Member& b) { return a.group < b.group; };
+  if (!std::is_sorted(run.begin(), run.end(), by_group)) std::stable_sort(run.begin(), run.end(), by_group);
+}
+
+/// Appends a partition of other surfels.
+void append(Partition& to, const Partition& more) {
+  const size_t first = to.order.size();
+  const auto block = static_cast<uint32_t>(to.blocks.size());
+  to.order.insert(to.order.end(), more.order.begin(), more.order.end());
+  for (BlockPlan plan : more.blocks) {
+    plan.first += first;
+    to.blocks.push_back(plan);
+  }
+  for (Leaf leaf : more.leaves) {
+    for (LeafRun& run : leaf.runs) {
+      run.block += block;
+      run.first += first;
+    }
+    to.leaves.push_back(std::move(leaf));
+  }
 }
 
 /// The members of one group in one cell, and the quantities that determine their lattice.
@@ -89,13 +122,14 @@ class Splitter {
     SURFCAST_EXPECTS(members_.size() == region_.core);
     sort_by_code(cloud_, region_.root, members_);
     std::optional<Cell> cell;
+    Partition result;
     if (region_.whole) cell = make_cell(members_, region_.cell);
     if (cell) {
-      plan_blocks({&*cell, 1}, region_.cell);
+      plan_blocks({&*cell, 1}, region_.cell, result);
     } else {
-      split(members_, region_.cell);
+      split(members_, region_.cell, result);
     }
-    return std::move(result_);
+    return result;
   }
 
  private:
@@ -118,7 +152,7 @@ class Splitter {
   /// The run as a leaf; none when it has too many surfels or too large indices. A leaf is sorted by group.
   [[nodiscard]] std::optional<Cell> make_cell(Run run, const OctreeKey& key) const {
     if (run.size() > options_.max_surfels) return std::nullopt;
-    std::stable_sort(run.begin(), run.end(), [](const Member& a, const Member& b) { return a.group < b.group; });
+    sort_by_group(run);
     Cell cell{key, {}, run.size()};
     for (auto first = run.begin(); first != run.end();) {
       const auto last = std::find_if(first, run.end(), [&](const Member& m) { return m.group != first->group; });
@@ -130,35 +164,62 @@ class Splitter {
     return std::nullopt;
   }
 
-  /// Splits a run that exceeds the limits of a leaf. `key` is the cell of the run.
-  void split(Run run, const OctreeKey& key) {
-    if (key.depth == OctreeKey::kMaxDepth) {
-      split_below(run, key);
-      return;
+  /// One octant of a cell that is split: a leaf that may share blocks with others, or a partition of its own.
+  struct Octant {
+    std::optional<Cell> small;
+    Partition own;
+  };
+
+  [[nodiscard]] Octant work_on(Run run, const OctreeKey& key) const {
+    Octant octant;
+    std::optional<Cell> cell = make_cell(run, key);
+    if (!cell) {
+      split(run, key, octant.own);
+    } else if (cell->count < options_.min_surfels) {
+      octant.small = std::move(cell);
+    } else {
+      plan_blocks({&*cell, 1}, cell->key, octant.own);
     }
-    std::vector<Cell> small;
+    return octant;
+  }
+
+  /// The members of each octant of a cell that has some.
+  static std::vector<std::pair<uint32_t, Run>> octants_of(Run run, const OctreeKey& key) {
+    std::vector<std::pair<uint32_t, Run>> octants;
     for (auto first = run.begin(); first != run.end();) {
       const uint32_t octant = octant_of_code(first->code, key.depth);
       const auto last = std::partition_point(
           first, run.end(), [&](const Member& m) { return octant_of_code(m.code, key.depth) == octant; });
-      if (std::optional<Cell> cell = make_cell({first, last}, key.child(octant)); !cell) {
-        split({first, last}, key.child(octant));
-      } else if (cell->count < options_.min_surfels) {
-        small.push_back(std::move(*cell));
-      } else {
-        plan_blocks({&*cell, 1}, cell->key);
-      }
+      octants.emplace_back(octant, Run(first, last));
       first = last;
     }
-    join(small, key);
+    return octants;
+  }
+
+  /// Splits a run that exceeds the limits of a leaf. `key` is the cell of the run.
+  void split(Run run, const OctreeKey& key, Partition& result) const {
+    if (key.depth == OctreeKey::kMaxDepth) {
+      split_below(run, key, result);
+      return;
+    }
+    const std::vector<std::pair<uint32_t, Run>> runs = octants_of(run, key);
+    std::vector<Octant> octants(runs.size());
+    oneapi::tbb::parallel_for(size_t{0}, runs.size(),
+                              [&](size_t i) { octants[i] = work_on(runs[i].second, key.child(runs[i].first)); });
+    std::vector<Cell> small;
+    for (Octant& octant : octants) {
+      append(result, octant.own);
+      if (octant.small) small.push_back(std::move(*octant.small));
+    }
+    join(small, key, result);
   }
 
   /// Plans blocks for small leaves of the cell `parent`. Consecutive leaves share a block while they fit.
-  void join(std::span<const Cell> small, const OctreeKey& parent) {
+  void join(std::span<const Cell> small, const OctreeKey& parent, Partition& result) const {
     for (auto first = small.begin(); first != small.end();) {
       auto last = first + 1;
       while (last != small.end() && fit_together({first, last + 1})) ++last;
-      plan_blocks({first, last}, last - first == 1 ? first->key : parent);
+      plan_blocks({first, last}, last - first == 1 ? first->key : parent, result);
       first = last;
     }
   }
@@ -188,45 +249,45 @@ class Splitter {
   }
 
   /// Plans one block for each group of the cells.
-  void plan_blocks(std::span<const Cell> cells, const OctreeKey& key) {
+  void plan_blocks(std::span<const Cell> cells, const OctreeKey& key, Partition& result) const {
     std::vector<Leaf> leaves;
     for (const Cell& cell : cells) leaves.push_back({cell.key, {}});
     for (const Part& all : join_parts(cells)) {
-      const auto block = static_cast<uint32_t>(result_.blocks.size());
-      result_.blocks.push_back({key, *lattice(all), result_.order.size(), all.count});
-      for (size_t i = 0; i < cells.size(); ++i) append_part(cells[i], all.group, block, leaves[i]);
+      const auto block = static_cast<uint32_t>(result.blocks.size());
+      result.blocks.push_back({key, *lattice(all), result.order.size(), all.count});
+      for (size_t i = 0; i < cells.size(); ++i) append_part(cells[i], all.group, block, leaves[i], result);
     }
-    result_.leaves.insert(result_.leaves.end(), leaves.begin(), leaves.end());
+    result.leaves.insert(result.leaves.end(), leaves.begin(), leaves.end());
   }
 
-  void append_part(const Cell& cell, uint32_t group, uint32_t block, Leaf& leaf) {
+  static void append_part(const Cell& cell, uint32_t group, uint32_t block, Leaf& leaf, Partition& result) {
     const auto part =
         std::find_if(cell.parts.begin(), cell.parts.end(), [&](const Part& p) { return p.group == group; });
     if (part == cell.parts.end()) return;
-    leaf.runs.push_back({block, result_.order.size(), part->count});
-    for (const Member& m : part->members) result_.order.push_back(m.surfel);
+    leaf.runs.push_back({block, result.order.size(), part->count});
+    for (const Member& m : part->members) result.order.push_back(m.surfel);
   }
 
   /// Splits a cell of the greatest depth that exceeds the limits of a leaf.
-  void split_below(Run run, const OctreeKey& key) {
+  void split_below(Run run, const OctreeKey& key, Partition& result) const {
     Leaf leaf{key.child(0), {}};
-    std::stable_sort(run.begin(), run.end(), [](const Member& a, const Member& b) { return a.group < b.group; });
+    sort_by_group(run);
     for (auto first = run.begin(); first != run.end();) {
       const auto last = std::find_if(first, run.end(), [&](const Member& m) { return m.group != first->group; });
-      halve({first, last}, key, leaf);
+      halve({first, last}, key, leaf, result);
       first = last;
     }
-    result_.leaves.push_back(std::move(leaf));
+    result.leaves.push_back(std::move(leaf));
   }
 
   /// Halves the members of one group at the median along their longest side, until each half fits into a block.
-  void halve(Run run, const OctreeKey& key, Leaf& leaf) {
+  void halve(Run run, const OctreeKey& key, Leaf& leaf, Partition& result) const {
     const Part part = make_part(run);
     const std::optional<surfel::Grid> grid = lattice(part);
     if (grid && run.size() <= options_.max_surfels) {
-      leaf.runs.push_back({static_cast<uint32_t>(result_.blocks.size()), result_.order.size(), run.size()});
-      result_.blocks.push_back({key, *grid, result_.order.size(), run.size()});
-      for (const Member& m : run) result_.order.push_back(m.surfel);
+      leaf.runs.push_back({static_cast<uint32_t>(result.blocks.size()), result.order.size(), run.size()});
+      result.blocks.push_back({key, *grid, result.order.size(), run.size()});
+      for (const Member& m : run) result.order.push_back(m.surfel);
       return;
     }
     const glm::dvec3 size = part.box.size();
@@ -237,8 +298,8 @@ class Splitter {
       const double pb = cloud_.positions[b.surfel][axis];
       return pa != pb ? pa < pb : a.surfel < b.surfel;
     });
-    halve({run.begin(), middle}, key, leaf);
-    halve({middle, run.end()}, key, leaf);
+    halve({run.begin(), middle}, key, leaf, result);
+    halve({middle, run.end()}, key, leaf, result);
   }
 
   const surfel::SurfelCloud& cloud_;
@@ -246,7 +307,6 @@ class Splitter {
   const PartitionOptions& options_;
   std::vector<std::optional<surfel::Grid>> grids_;
   std::vector<Member> members_;
-  Partition result_;
 };
 
 }  // namespace

@@ -2,8 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <glm/geometric.hpp>
 #include <utility>
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
 
 #include "scan/estimate_normals.h"
 #include "scan/neighbours.h"
@@ -44,15 +49,37 @@ void learn_direction(const surfel::SurfelCloud& cloud, size_t point, size_t site
 
 SiteFacts find_site_facts(const surfel::SurfelCloud& cloud, const Sites& sites, const PartFrame& frame) {
   SiteFacts facts(sites.size());
+  const bool own_sites = sites.size() == cloud.size();
   for (size_t s = 0; s < cloud.sources.size(); ++s) {
     const surfel::SourceRange& source = cloud.sources[s];
-    for (size_t i = source.first; i < source.first + source.count; ++i) {
+    const auto learn = [&](size_t i) {
       const uint32_t site = sites.of_point[i];
       facts.places[site] = frame.place(cloud.positions[i]);
       learn_direction(cloud, i, site, frame.sensors[s], facts);
+    };
+    const size_t end = source.first + source.count;
+    if (own_sites) {
+      tbb::parallel_for(source.first, end, learn);
+    } else {
+      for (size_t i = source.first; i < end; ++i) learn(i);
     }
   }
   return facts;
+}
+
+/// The number of own points for which `use(point)` is true. Calls it for every point, on all threads.
+template <typename Use>
+uint64_t count_own(const Sites& sites, const SiteFacts& facts, const Use& use) {
+  using Range = tbb::blocked_range<size_t>;
+  return tbb::parallel_reduce(
+      Range(0, sites.of_point.size()), uint64_t{0},
+      [&](const Range& range, uint64_t count) {
+        for (size_t i = range.begin(); i != range.end(); ++i) {
+          if (use(i)) count += facts.places[sites.of_point[i]].own ? 1 : 0;
+        }
+        return count;
+      },
+      std::plus<>());
 }
 
 bool all_stated(const std::vector<float>& radii) {
@@ -69,7 +96,8 @@ void find_radii(const Sites& sites, const NeighbourGraph& graph, const SiteFacts
   } else {
     estimated = estimate_radii(sites, graph, normals);
     made.estimated_radii.resize(cloud.size());
-    for (size_t i = 0; i < cloud.size(); ++i) made.estimated_radii[i] = estimated[sites.of_point[i]];
+    tbb::parallel_for(size_t{0}, cloud.size(),
+                      [&](size_t i) { made.estimated_radii[i] = estimated[sites.of_point[i]]; });
   }
   made.radii = compare_radii(cloud, frame.inputs, sites, graph, facts.places, estimated);
 }
@@ -94,13 +122,12 @@ std::vector<uint32_t> fill_normals(const Sites& sites, const NeighbourGraph& gra
       orient_normals({sites, graph, facts.known, facts.towards, facts.places}, normals, signs);
   std::vector<uint32_t> trees(cloud.size(), kNoTree);
   cloud.normals.resize(cloud.size(), glm::vec3(std::nanf("")));
-  for (size_t i = 0; i < cloud.size(); ++i) {
-    if (has_normal(cloud, i)) continue;
-    const uint32_t site = sites.of_point[i];
-    cloud.normals[i] = normals[site];
-    trees[i] = tree_of[site];
-    report.normals_estimated += facts.places[site].own ? 1 : 0;
-  }
+  report.normals_estimated += count_own(sites, facts, [&](size_t i) {
+    const bool missing = !has_normal(cloud, i);
+    if (missing) cloud.normals[i] = normals[sites.of_point[i]];
+    if (missing) trees[i] = tree_of[sites.of_point[i]];
+    return missing;
+  });
   return trees;
 }
 
@@ -126,9 +153,9 @@ PartSurfels make_surfels(surfel::SurfelCloud cloud, const PartFrame& frame, Part
 }
 
 void apply_signs(const ResolvedSigns& signs, size_t part, PartSurfels& surfels) {
-  for (size_t i = 0; i < surfels.cloud.size(); ++i) {
+  tbb::parallel_for(size_t{0}, surfels.cloud.size(), [&](size_t i) {
     surfels.cloud.normals[i] = signs.apply(surfels.cloud.normals[i], part, surfels.trees[i]);
-  }
+  });
   surfels.cloud.oriented = signs.oriented;
 }
 

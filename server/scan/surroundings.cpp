@@ -39,8 +39,8 @@ Tangents tangents_of(const glm::dvec3& n) {
 
 /// A neighbour in the tangent plane.
 struct Bearing {
-  glm::dvec2 direction{1, 0};  ///< unit, along the tangents
-  double distance = 0;         ///< in space
+  glm::dvec2 flat{1, 0};        ///< its place along the tangents; (1, 0) for one exactly above or below the site
+  double squared_distance = 0;  ///< in space
 };
 
 /// The bearings of a site's neighbours.
@@ -56,16 +56,14 @@ Bearings bearings_of(const Sites& sites, size_t site, std::span<const uint32_t> 
   for (const uint32_t j : neighbours.first(std::min(neighbours.size(), kMostNeighbours))) {
     const glm::dvec3 d = sites.positions[j] - sites.positions[site];
     const glm::dvec2 flat(glm::dot(d, t.e0), glm::dot(d, t.e1));
-    const double length = glm::length(flat);
-    bearings.all[bearings.count++] = {length > 0 ? flat / length : glm::dvec2(1, 0), glm::length(d)};
+    bearings.all[bearings.count++] = {flat == glm::dvec2(0) ? glm::dvec2(1, 0) : flat, glm::dot(d, d)};
   }
   return bearings;
 }
 
 /// An octant of directions: bit 0 is set nearer to the second axis, bits 1 and 2 where x and y are negative.
-unsigned octant_of(const glm::dvec2& direction) {
-  return (std::abs(direction.y) > std::abs(direction.x) ? 1U : 0U) | (direction.x < 0 ? 2U : 0U) |
-         (direction.y < 0 ? 4U : 0U);
+unsigned octant_of(const glm::dvec2& flat) {
+  return (std::abs(flat.y) > std::abs(flat.x) ? 1U : 0U) | (flat.x < 0 ? 2U : 0U) | (flat.y < 0 ? 4U : 0U);
 }
 
 /// The numbers of the two of the eight directions between which an octant lies: direction k is at k * 45 degrees.
@@ -76,29 +74,31 @@ constexpr std::array<uint8_t, 8> kOctantByAngle = {0, 1, 3, 2, 7, 6, 4, 5};
 
 double reach_of(std::span<const Bearing> bearings) {
   constexpr double kNone = std::numeric_limits<double>::infinity();
-  constexpr double kDiagonal = 1 / std::numbers::sqrt2;
-  constexpr double kSmallestCosine = kDiagonal * (1 + 1e-12);  // excludes neighbours at 45 degrees however they round
-  std::array<double, kDirections> nearest;
+  constexpr double kLeast = 0.5 * (1 + 1e-12);  // excludes neighbours at 45 degrees however they round
+  std::array<double, kDirections> nearest;      // squared extents
   nearest.fill(kNone);
-  const auto see = [&nearest](uint8_t direction, double cosine, double distance) {
-    const double extent = cosine > kSmallestCosine ? distance / cosine : kNone;
-    nearest[direction] = std::min(nearest[direction], extent);
-  };
   for (const Bearing& b : bearings) {
-    const unsigned octant = octant_of(b.direction);
-    const glm::dvec2 u = glm::abs(b.direction);
-    see(kAxisOfOctant[octant], std::max(u.x, u.y), b.distance);
-    see(kDiagonalOfOctant[octant], (u.x + u.y) * kDiagonal, b.distance);
+    const unsigned octant = octant_of(b.flat);
+    const glm::dvec2 u = glm::abs(b.flat);
+    const double squared_length = glm::dot(u, u);
+    // d / cos t, squared. `squared` is that of the component along the direction, which is cos t times the length.
+    const auto see = [&](uint8_t direction, double squared) {
+      const double extent = squared > kLeast * squared_length ? b.squared_distance * squared_length / squared : kNone;
+      nearest[direction] = std::min(nearest[direction], extent);
+    };
+    const double larger = std::max(u.x, u.y);
+    see(kAxisOfOctant[octant], larger * larger);
+    see(kDiagonalOfOctant[octant], 0.5 * (u.x + u.y) * (u.x + u.y));
   }
   double reach = 0;
   for (const double extent : nearest) reach = std::max(reach, extent < kNone ? extent : 0);
-  return reach;
+  return std::sqrt(reach);
 }
 
 /// False if no angle wider than kOpen can be without neighbours: it would contain two whole octants.
 bool may_be_open(std::span<const Bearing> bearings) {
   unsigned occupied = 0;
-  for (const Bearing& b : bearings) occupied |= 1U << kOctantByAngle[octant_of(b.direction)];
+  for (const Bearing& b : bearings) occupied |= 1U << kOctantByAngle[octant_of(b.flat)];
   const unsigned empty = ~occupied & 0xffU;
   return (empty & (empty << 1U | empty >> 7U)) != 0;
 }
@@ -108,7 +108,7 @@ glm::dvec3 opening_of(std::span<const Bearing> bearings, const Tangents& t) {
   if (!may_be_open(bearings)) return glm::dvec3(0);
   std::array<double, kMostNeighbours> angles{};
   const auto end = std::transform(bearings.begin(), bearings.end(), angles.begin(),
-                                  [](const Bearing& b) { return std::atan2(b.direction.y, b.direction.x); });
+                                  [](const Bearing& b) { return std::atan2(b.flat.y, b.flat.x); });
   std::sort(angles.begin(), end);
   double widest = 0;
   double second = 0;
