@@ -13,6 +13,7 @@
 #include "builder/cell_counts.h"
 #include "builder/cloud_columns.h"
 #include "builder/ordered_work.h"
+#include "builder/spatial_order.h"
 #include "scan/clean_points.h"
 
 namespace surfcast::builder {
@@ -75,8 +76,12 @@ std::vector<size_t> every_input(size_t inputs) {
   return all;
 }
 
-/// Removes the duplicates of a part. Returns for each original surfel whether it was kept.
-std::vector<uint8_t> drop_duplicates(surfel::SurfelCloud& cloud, size_t& own, scan::SurfelReport& report) {
+/// Sorts the points of a part and removes duplicates. Returns for each sorted point whether it was kept.
+std::vector<uint8_t> sort_and_drop_duplicates(PartPoints& points, const geometry::RootCube& root,
+                                              scan::SurfelReport& report) {
+  surfel::SurfelCloud& cloud = points.cloud;
+  size_t& own = points.own;
+  if (sort_spatially(points, root)) return std::vector<uint8_t>(cloud.size(), 1);
   const std::vector<bool> duplicate = scan::find_duplicates(cloud);
   const auto dropped = std::count(duplicate.begin(), duplicate.begin() + static_cast<std::ptrdiff_t>(own), true);
   report.duplicates += static_cast<uint64_t>(dropped);
@@ -186,8 +191,8 @@ size_t BuildParts::parts_at_once(const MemoryPlan& memory) const {
 
 BuildParts::Made BuildParts::make(PartPoints points, size_t part, scan::RadiusPolicy radii) const {
   Made made;
+  made.kept = sort_and_drop_duplicates(points, root_, made.report);
   made.own = points.own;
-  made.kept = drop_duplicates(points.cloud, made.own, made.report);
   scan::PartFrame frame;
   frame.bounds = bounds_;
   frame.place = [this, part](const glm::dvec3& p) { return finder_.place(static_cast<uint32_t>(part), p); };
@@ -242,6 +247,7 @@ Result<BuildParts::Finished> BuildParts::take(size_t part) {
   }
   Result<PartPoints> points = store_->load(part);
   if (!points) return fail(std::move(points.error()));
+  sort_spatially(*points, root_);  // as when the findings were made
   Result<PartFindings> findings = store_->load_findings(part);
   if (!findings) return fail(std::move(findings.error()));
   store_->release(part);

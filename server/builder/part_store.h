@@ -22,7 +22,7 @@ struct PartPoints {
   std::vector<size_t> inputs;  ///< for each source of the cloud, the index of the input
 };
 
-/// Results for the points of a part, in the order in which the points are loaded.
+/// Results for the points of a part, in the order of its sorted points (see spatial_order.h).
 struct PartFindings {
   std::vector<glm::vec3> normals;
   std::vector<float> radii;  ///< estimated ones
