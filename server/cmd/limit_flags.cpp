@@ -58,14 +58,14 @@ void add_request_flags(CLI::App& command, net::ServerConfig& server) {
   add_count(command, "max-drawing", server.requests.drawing,
             "Pictures of one connection with the renderer (default 2). More: one client fills the queue; less: the "
             "renderer waits between two");
-  add_setting(command, {"send-buffer", "SIZE",
-                        "Answers that a client has not taken before nothing more is drawn for it; twice that, and "
-                        "nothing more is read from it (default 32M). More: memory of slow clients; less: they wait",
-                        [](const std::string& text) -> Status { return parse_size(text, {}).map([](uint64_t) {}); },
-                        [&server](const std::string& text) {
-                          server.requests.outgoing_bytes = *parse_size(text, {});
-                          server.unread_bytes = 2 * server.requests.outgoing_bytes;
-                        }});
+  add_size_setter(
+      command, "send-buffer",
+      [&server](uint64_t bytes) {
+        server.requests.outgoing_bytes = bytes;
+        server.unread_bytes = 2 * bytes;
+      },
+      "Answers that a client has not taken before nothing more is drawn for it; twice that, and nothing more is read "
+      "from it (default 32M). More: memory of slow clients; less: they wait");
   add_size(command, "max-message", server.request_bytes,
            "A message of a client (default 64K). More: memory of hostile clients; less: requests with many clip boxes "
            "are refused",

@@ -66,6 +66,14 @@ void add_setting(CLI::App& command, const Setting& setting) {
       });
 }
 
+void add_size_setter(CLI::App& command, const std::string& name, const std::function<void(uint64_t)>& set,
+                     const std::string& help, const SettingRange& range) {
+  add_setting(command,
+              {name, "SIZE", help,
+               [range](const std::string& text) -> Status { return parse_size(text, range).map([](uint64_t) {}); },
+               [set, range](const std::string& text) { set(*parse_size(text, range)); }});
+}
+
 void add_seconds(CLI::App& command, const std::string& name, std::chrono::milliseconds& target,
                  const std::string& help) {
   add_setting(command, {name, "SECONDS", help,

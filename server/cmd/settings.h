@@ -35,14 +35,16 @@ struct Setting {
 };
 void add_setting(CLI::App& command, const Setting& setting);
 
+/// A size that `set` receives in bytes.
+void add_size_setter(CLI::App& command, const std::string& name, const std::function<void(uint64_t)>& set,
+                     const std::string& help, const SettingRange& range = {});
+
 /// Settings whose target keeps its value where they are not given, and must outlive the parsing.
 template <typename Target>
 void add_size(CLI::App& command, const std::string& name, Target& target, const std::string& help,
               const SettingRange& range = {}) {
-  add_setting(command,
-              {name, "SIZE", help,
-               [range](const std::string& text) -> Status { return parse_size(text, range).map([](uint64_t) {}); },
-               [&target, range](const std::string& text) { target = static_cast<Target>(*parse_size(text, range)); }});
+  add_size_setter(
+      command, name, [&target](uint64_t bytes) { target = static_cast<Target>(bytes); }, help, range);
 }
 template <typename Target>
 void add_count(CLI::App& command, const std::string& name, Target& target, const std::string& help,
