@@ -43,7 +43,30 @@ struct Surfel {
   float radius;
   float weight;
   uint color;
+#ifdef SURFCAST_SCATTER
+  bool scatter;
+  vec3 lit_n;  // as n, but scatter has the estimated normal
+#endif
 };
+
+// The normal that is lit. That of scatter's splats would follow the eye.
+vec3 lit_normal(Surfel s) {
+#ifdef SURFCAST_SCATTER
+  return s.lit_n;
+#else
+  return s.n;
+#endif
+}
+
+// Factor on a splat's weight at this gain (shared/kernel.h).
+float scatter_scale(Surfel s, float gain) {
+#ifdef SURFCAST_SCATTER
+  const float more = float(SURFCAST_SCATTER_MINIFIED) - 1.0;
+  return s.scatter ? 1.0 + more * pow(max(1.0 - gain, 0.0), SURFCAST_SCATTER_POWER) : 1.0;
+#else
+  return 1.0;
+#endif
+}
 
 #include "include/tile_range.glsl"
 
@@ -104,7 +127,7 @@ void project_small(Surfel s, vec2 ray, vec2 centre, ScreenVariance v, float c) {
   splat.cutoff = c * SURFCAST_SQRT_HALF_LOG2E * SURFCAST_SQRT_HALF_LOG2E;
   float depth_range = depth_extent(s, surfel_extent(s.radius)) * footprints;
   splat.fall = depth_range / (1.0 + depth_range / eta());
-  splat.weight = s.weight * v.gain * coverage_scale(v.gain);
+  splat.weight = s.weight * v.gain * coverage_scale(v.gain) * scatter_scale(s, v.gain);
   splat.color = s.color;
   uvec4 a, b;
   encode_small(splat, a, b);
@@ -114,7 +137,7 @@ void project_small(Surfel s, vec2 ray, vec2 centre, ScreenVariance v, float c) {
   float push = push_back(s.radius, s.o.z) * footprints;
   float rise = depth_range / (1.0 - depth_range / eta());
   Disc disc = Disc(inverse_factor(d.s, d.det), push / (1.0 + push / eta()), splat.fall, rise, splat.weight);
-  append(false, range, slice_at(nearest_of_small(v, c, splat, rise)), a, b, encode_disc(disc), s.n);
+  append(false, range, slice_at(nearest_of_small(v, c, splat, rise)), a, b, encode_disc(disc), lit_normal(s));
 }
 
 // True if a disc that the eye plane cuts lies wholly behind the eye plane or beyond a side of the picture.
@@ -133,7 +156,8 @@ bool astride_outside(Surfel s, float extent) {
   return false;
 }
 
-void project_large(Surfel s, bool reaches_eye_plane) {
+// `gain`: at the splat's centre.
+void project_large(Surfel s, bool reaches_eye_plane, float gain) {
   float extent = surfel_extent(s.radius);
   vec2 low = vec2(frame.region.xy);
   vec2 high = vec2(frame.region.xy + frame.region.zw);
@@ -152,8 +176,8 @@ void project_large(Surfel s, bool reaches_eye_plane) {
   uvec2 range = tile_range(low, high, outside);
   if (outside) return;
   uvec4 a, b;
-  encode_large(LargeSplat(s.o, s.radius, s.n, s.weight, s.color), a, b);
-  append(true, range, 0u, a, b, uvec4(0u), s.n);
+  encode_large(LargeSplat(s.o, s.radius, s.n, s.weight * scatter_scale(s, gain), s.color), a, b);
+  append(true, range, 0u, a, b, uvec4(0u), lit_normal(s));
 }
 
 bool is_small(float sigma, float extent, float depth) {
@@ -179,7 +203,7 @@ void project_surely_small(Surfel s) {
 void project(Surfel s) {
   float sigma = float(SURFCAST_KERNEL_SIGMA) * s.radius;
   if (reaches_eye_plane(s.o.z, s.radius)) {
-    project_large(s, true);
+    project_large(s, true, 1.0);
     return;
   }
   vec2 ray = s.o.xy / s.o.z;
@@ -189,12 +213,18 @@ void project(Surfel s) {
   if (is_small(sigma, max(extent.x, extent.y), s.o.z)) {
     project_small(s, ray, pixel_of_ray(ray), v, c);
   } else {
-    project_large(s, false);
+    project_large(s, false, v.gain);
   }
 }
 
+// The normal of a splat that faces the eye.
+vec3 facing_eye(vec3 o) {
+  float distance = length(o);
+  return distance > 0.0 ? -o / distance : vec3(0.0, 0.0, -1.0);
+}
+
 // Position, radius and normal of a surfel. The normal is turned towards the eye. `away`: it had to be turned.
-Surfel placed_surfel(BlockView block, uvec4 texel, out bool away) {
+Surfel placed_surfel(uvec4 run, BlockView block, uvec4 texel, out bool away) {
   mat3 rotation = transpose(mat3(frame.right.xyz, frame.up.xyz, frame.forward.xyz));
   Surfel s;
   s.o = block.origin.xyz + rotation * (block.step.xyz * surfel_position(texel));
@@ -202,6 +232,11 @@ Surfel placed_surfel(BlockView block, uvec4 texel, out bool away) {
   s.n = rotation * surfel_normal(texel);
   away = dot(s.n, s.o) >= 0.0;
   if (away) s.n = -s.n;
+#ifdef SURFCAST_SCATTER
+  s.lit_n = s.n;
+  s.scatter = (run.z & SURFCAST_RUN_SCATTER) != 0u;
+  if (s.scatter) s.n = facing_eye(s.o);
+#endif
   return s;
 }
 
@@ -225,7 +260,10 @@ void collect_if_drawn(uvec4 run, BlockView block, uint place) {
   if (class_hidden(at)) return;
 #endif
   bool away;
-  Surfel s = placed_surfel(block, texel, away);
+  Surfel s = placed_surfel(run, block, texel, away);
+#ifdef SURFCAST_SCATTER
+  away = away && !s.scatter;  // scatter has no back
+#endif
   if (away && frame.flags.x != 0) return;
   if (s.o.z + s.radius * 2.0 <= 0.0 || !has_wanted_spacing(run, block, place, s)) return;
   if (is_surely_small(s)) {
@@ -239,7 +277,7 @@ Surfel drawn_surfel(uvec4 run, BlockView block, uint place) {
   int at = int(run.y + place);
   uvec4 texel = texelFetch(surfels, at);
   bool away;
-  Surfel s = placed_surfel(block, texel, away);
+  Surfel s = placed_surfel(run, block, texel, away);
   s.weight = frame.filter_.z * (frame.flags.y != 0 ? surfel_size(texel, block.scale).y : 1.0);
 #if defined(SURFCAST_COLOR_TABLE)
   s.color = table_color(run.x, at, texel);
@@ -248,7 +286,7 @@ Surfel drawn_surfel(uvec4 run, BlockView block, uint place) {
 #elif defined(SURFCAST_HAS_COLOR)
   s.color = surfel_color(texel);
 #elif defined(SURFCAST_LIT)
-  s.color = pack_biased_normal(s.n);
+  s.color = pack_biased_normal(lit_normal(s));
 #else
   s.color = 0u;
 #endif

@@ -98,12 +98,14 @@ PartFindings spread_findings(const scan::PartSurfels& surfels, std::vector<uint8
   findings.normals.resize(kept.size());
   findings.radii.resize(kept.size());
   findings.trees.resize(kept.size());
+  findings.kinds.resize(kept.size());
   size_t next = 0;
   for (size_t i = 0; i < kept.size(); ++i) {
     if (kept[i] == 0) continue;
     findings.normals[i] = surfels.cloud.normals[next];
-    findings.radii[i] = surfels.estimated_radii[next];
+    findings.radii[i] = surfels.estimates.radii[next];
     findings.trees[i] = surfels.trees[next];
+    findings.kinds[i] = surfels.estimates.kinds[next];
     ++next;
   }
   findings.kept = std::move(kept);
@@ -113,7 +115,7 @@ PartFindings spread_findings(const scan::PartSurfels& surfels, std::vector<uint8
 }  // namespace
 
 BuildParts::BuildParts(const BuildInputs& inputs, std::vector<Part> plan, const geometry::RootCube& root)
-    : bounds_(inputs.bounds()), root_(root), plan_(std::move(plan)), finder_(plan_, root) {
+    : bounds_(inputs.bounds()), points_(inputs.size()), root_(root), plan_(std::move(plan)), finder_(plan_, root) {
   scene_ = {bounds_, inputs.schema().z_up, inputs.schema().normals};
   for (const scan::ScanStream& stream : inputs.streams()) {
     sensors_.push_back(stream.schema().sensor);
@@ -195,6 +197,7 @@ BuildParts::Made BuildParts::make(PartPoints points, size_t part, scan::RadiusPo
   made.own = points.own;
   scan::PartFrame frame;
   frame.bounds = bounds_;
+  frame.points = points_;
   frame.place = [this, part](const glm::dvec3& p) { return finder_.place(static_cast<uint32_t>(part), p); };
   for (const size_t input : points.inputs) frame.sensors.push_back(sensors_[input]);
   frame.inputs = std::move(points.inputs);
@@ -208,6 +211,7 @@ void BuildParts::decide_radii(const std::vector<scan::RadiusComparison>& compari
   for (const scan::RadiusComparison& comparison : comparisons) {
     radii_.push_back(scan::decide_radii(comparison, policy));
     report.radii_estimated += radii_.back().estimated();
+    report.scatter += radii_.back().scatter();
   }
 }
 
@@ -216,12 +220,15 @@ Status BuildParts::make_surfels(const MemoryPlan& memory, scan::RadiusPolicy rad
   clock.begin("making surfels", size());
   std::vector<scan::PartSigns> signs;
   std::vector<scan::RadiusComparison> comparisons(names_.size());
+  std::vector<scan::SurfaceSample> samples;
   Status status = work_in_order(size(), parts_at_once(memory), [&](size_t part) -> Result<std::function<Status()>> {
     Result<PartPoints> points = store_ ? store_->load(part) : Result<PartPoints>(std::move(*whole_));
     if (!points) return fail(std::move(points.error()));
     const auto made = std::make_shared<Made>(make(std::move(*points), part, radii));
     return [&, part, made] {
       signs.push_back(std::move(made->signs));
+      const std::vector<scan::SurfaceSample> found = std::exchange(made->surfels.samples, {});
+      samples.insert(samples.end(), found.begin(), found.end());
       report.add(made->report);
       const std::vector<scan::RadiusComparison>& own = made->surfels.radii;
       for (size_t input = 0; input < own.size(); ++input) comparisons[input].add(own[input]);
@@ -236,13 +243,14 @@ Status BuildParts::make_surfels(const MemoryPlan& memory, scan::RadiusPolicy rad
   signs_ = scan::resolve_signs(signs, scene_);
   report.oriented = signs_.oriented;
   decide_radii(comparisons, radii, report);
+  spacing_.emplace(std::move(samples), bounds_);
   return {};
 }
 
 Result<BuildParts::Finished> BuildParts::take(size_t part) {
   if (!store_) {
     scan::apply_signs(signs_, part, surfels_);
-    scan::apply_radii(radii_, every_input(names_.size()), std::move(surfels_.estimated_radii), surfels_.cloud);
+    scan::apply_radii(radii_, every_input(names_.size()), surfels_.estimates, *spacing_, surfels_.cloud);
     return Finished{std::move(surfels_.cloud), own_};
   }
   Result<PartPoints> points = store_->load(part);
@@ -251,10 +259,13 @@ Result<BuildParts::Finished> BuildParts::take(size_t part) {
   Result<PartFindings> findings = store_->load_findings(part);
   if (!findings) return fail(std::move(findings.error()));
   store_->release(part);
-  scan::PartSurfels surfels{std::move(points->cloud), std::move(findings->trees), {}, {}};
+  scan::PartSurfels surfels;
+  surfels.cloud = std::move(points->cloud);
+  surfels.trees = std::move(findings->trees);
+  surfels.estimates = {std::move(findings->radii), std::move(findings->kinds)};
   surfels.cloud.normals = std::move(findings->normals);
   scan::apply_signs(signs_, part, surfels);
-  scan::apply_radii(radii_, points->inputs, std::move(findings->radii), surfels.cloud);
+  scan::apply_radii(radii_, points->inputs, surfels.estimates, *spacing_, surfels.cloud);
   const auto end_own = findings->kept.begin() + static_cast<std::ptrdiff_t>(points->own);
   const auto own = static_cast<size_t>(std::count(findings->kept.begin(), end_own, uint8_t{1}));
   scan::keep_surfels(surfels.cloud, {findings->kept.begin(), findings->kept.end()});

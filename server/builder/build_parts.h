@@ -31,8 +31,8 @@ class BuildParts {
   [[nodiscard]] const geometry::RootCube& root() const { return root_; }
   [[nodiscard]] size_t parts_at_once(const MemoryPlan& memory) const;
 
-  /// First phase: makes the surfels of every part, and decides for all of them the signs of normals and what stated
-  /// radii mean.
+  /// First phase: makes the surfels of every part, gathers the spacing of the surfaces, and decides for all parts the
+  /// signs of normals and what stated radii mean.
   Status make_surfels(const MemoryPlan& memory, scan::RadiusPolicy radii, StageClock& clock,
                       scan::SurfelReport& report);
   /// Second phase: returns the surfels of a part with their final normals and radii, own surfels before those of the
@@ -65,6 +65,7 @@ class BuildParts {
 
   scan::Scene scene_;
   geometry::Box bounds_;
+  uint64_t points_ = 0;  ///< of all inputs
   geometry::RootCube root_;
   std::vector<std::optional<glm::dvec3>> sensors_;  ///< for each input
   std::vector<InputName> names_;
@@ -75,7 +76,8 @@ class BuildParts {
   scan::PartSurfels surfels_;        ///< a single part, after its surfels are made
   size_t own_ = 0;
   scan::ResolvedSigns signs_;
-  std::vector<scan::RadiusDecision> radii_;  ///< for each input
+  std::vector<scan::RadiusDecision> radii_;      ///< for each input
+  std::optional<scan::SurfaceSpacing> spacing_;  ///< from the first phase on
 };
 
 }  // namespace surfcast::builder

@@ -1,6 +1,7 @@
 #include "builder/part_finder.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace surfcast::builder {
 namespace {
@@ -21,6 +22,16 @@ geometry::Box grown(const geometry::Box& box, double factor) {
   return larger;
 }
 
+/// Width of the halo around the cells of a part, as a fraction of their side. In a volume the 32 nearest neighbours of
+/// a point lie within two spacings, and a cell of n points is n^(1/3) spacings wide; on a surface they lie within 3.2
+/// of n^(1/2). Only cells of fewer than 43,000 points need more than kHalo.
+double halo_of(const Part& part) {
+  constexpr double kSpacings = 2.2;
+  constexpr double kWidest = 0.25;
+  const double points = static_cast<double>(part.count) / static_cast<double>(part.cells.size());
+  return points > 0 ? std::clamp(kSpacings / std::cbrt(points), kHalo, kWidest) : kHalo;
+}
+
 bool contains(const geometry::Box& box, const glm::dvec3& p) {
   return p.x >= box.min.x && p.y >= box.min.y && p.z >= box.min.z && p.x <= box.max.x && p.y <= box.max.y &&
          p.z <= box.max.z;
@@ -39,7 +50,7 @@ PartFinder::PartFinder(std::span<const Part> parts, const geometry::RootCube& ro
     std::vector<geometry::Box>& halos = with_halo_.emplace_back();
     for (const ldc::OctreeKey& key : part.cells) {
       cells.push_back(box_of(key, root));
-      halos.push_back(grown(cells.back(), kHalo));
+      halos.push_back(grown(cells.back(), halo_of(part)));
     }
   }
   fill_bins();

@@ -12,7 +12,8 @@
 
 namespace surfcast::builder {
 
-/// Width of a part's halo around each of its cells, as a fraction of the cell's side.
+/// Width of a part's halo around each of its cells, as a fraction of the cell's side. It is wider around cells of few
+/// points, so that it holds the neighbours of every point.
 inline constexpr double kHalo = 1.0 / 16;
 
 /// Finds the parts of a point: the one whose cell contains it, and those whose halo contains it.

@@ -21,6 +21,7 @@ Status for_each_finding(Findings& findings, const Use& use) {
   Status status = use(findings.normals);
   if (status) status = use(findings.radii);
   if (status) status = use(findings.trees);
+  if (status) status = use(findings.kinds);
   if (status) status = use(findings.kept);
   return status;
 }

@@ -27,6 +27,7 @@ struct PartFindings {
   std::vector<glm::vec3> normals;
   std::vector<float> radii;  ///< estimated ones
   std::vector<uint32_t> trees;
+  std::vector<scan::PointKind> kinds;
   std::vector<uint8_t> kept;  ///< 0 for duplicates, whose other entries are unused
 };
 

@@ -116,6 +116,7 @@ std::string to_json(const BuildCommand& command, const builder::BuildReport& rep
         {"duplicates", report.scan.duplicates},
         {"zero_normals", report.scan.zero_normals}}},
       {"estimated", {{"normals", report.scan.normals_estimated}, {"radii", report.scan.radii_estimated}}},
+      {"scatter", report.scan.scatter},
       {"radii", nlohmann::ordered_json::array()},
       {"oriented", report.scan.oriented},
       {"notes", report.scan.notes},

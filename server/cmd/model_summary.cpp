@@ -70,6 +70,10 @@ std::string to_text(const ModelSummary& summary) {
   std::string text = fmt::format("model: {}\n", summary.path.string());
   text += fmt::format("sources: {}\n", joined(info.source_names));
   text += fmt::format("surfels: {}\n", info.surfels);
+  if (info.scatter > 0) {
+    const double share = static_cast<double>(info.scatter) / static_cast<double>(info.surfels);
+    text += fmt::format("scatter: {} ({:.1f} % lie on no surface)\n", info.scatter, 100 * share);
+  }
   for (const model::KindCount& kind : info.kinds) {
     text += fmt::format("kind {}: {} in {} blocks\n", kind.kind, kind.items, kind.blocks);
   }
@@ -101,6 +105,7 @@ std::string to_json(const ModelSummary& summary) {
       {"model", summary.path.string()},
       {"sources", info.source_names},
       {"surfels", info.surfels},
+      {"scatter", info.scatter},
       {"kinds", nlohmann::ordered_json::array()},
       {"bytes", summary.file_bytes},
       {"bytes_per_surfel", summary.bytes_per_surfel()},

@@ -28,7 +28,7 @@ DecodedSurfels::DecodedSurfels(model::DecodedBlock block, const model::ModelInfo
 
 size_t DecodedSurfels::bytes() const {
   size_t bytes = bytes_of(block_.indices) + bytes_of(block_.normals) + bytes_of(block_.radii) +
-                 bytes_of(block_.weights) + bytes_of(block_.colors);
+                 bytes_of(block_.weights) + bytes_of(block_.scatter) + bytes_of(block_.colors);
   for (const surfel::ScalarAttribute& scalar : block_.scalars) {
     bytes += std::visit([](const auto& values) { return bytes_of(values); }, scalar.values);
   }
@@ -49,12 +49,14 @@ bool DecodedSurfels::hidden(const PickQuery& query, size_t surfel) const {
 void DecodedSurfels::hit(const PickQuery& query, std::vector<PickHit>& hits) const {
   const geometry::CameraFrame& frame = query.frame;
   const glm::dvec3 ray = frame.ray(query.pixel);
-  const float widest = surfel::largest_drawn_radius(block_.radii);
+  const float widest = surfel::largest_drawn_radius(block_.radii, block_.scatter);
   for (size_t i = 0; i < block_.size(); ++i) {
     const glm::dvec3 o = frame.to_camera(block_.position(i));
-    const glm::dvec3 n = frame.rotate(glm::dvec3(block_.normals[i]));
-    if (oriented_ && glm::dot(n, o) >= 0) continue;
-    const auto disc = hit_disc(o, n, double{std::min(block_.radii[i], widest)}, ray, frame.eta);
+    const bool scatter = block_.is_scatter(i);
+    const glm::dvec3 n = scatter ? facing_eye(o) : frame.rotate(glm::dvec3(block_.normals[i]));
+    if (oriented_ && !scatter && glm::dot(n, o) >= 0) continue;
+    const double radius = double{scatter ? block_.radii[i] : std::min(block_.radii[i], widest)};
+    const auto disc = hit_disc(o, n, radius, ray, frame.eta);
     if (!disc || hidden(query, i)) continue;
     hits.push_back({static_cast<uint32_t>(i), disc->form, disc->depth, disc->occluder});
   }

@@ -51,4 +51,9 @@ std::optional<DiscHit> hit_disc(const glm::dvec3& o, const glm::dvec3& n, double
   return DiscHit{form, std::min(plane, o.z + range), std::max(plane, o.z - range) * (1 + push / o.z)};
 }
 
+glm::dvec3 facing_eye(const glm::dvec3& o) {
+  const double distance = glm::length(o);
+  return distance > 0 ? -o / distance : glm::dvec3(0, 0, -1);
+}
+
 }  // namespace surfcast::kinds

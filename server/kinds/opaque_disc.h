@@ -18,4 +18,7 @@ struct DiscHit {
 std::optional<DiscHit> hit_disc(const glm::dvec3& o, const glm::dvec3& n, double radius, const glm::dvec3& ray,
                                 double eta);
 
+/// The normal of the splat of scatter at `o` (camera frame): it faces the eye.
+glm::dvec3 facing_eye(const glm::dvec3& o);
+
 }  // namespace surfcast::kinds

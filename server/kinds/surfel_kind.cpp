@@ -14,7 +14,7 @@ namespace {
 
 uint32_t flags_of(const residency::PackedRun& run) {
   return (run.finest ? SURFCAST_RUN_FINEST : 0) | (run.coarsest ? SURFCAST_RUN_COARSEST : 0) |
-         (run.pairs ? SURFCAST_RUN_PAIRS : 0);
+         (run.pairs ? SURFCAST_RUN_PAIRS : 0) | (run.scatter ? SURFCAST_RUN_SCATTER : 0);
 }
 
 /// True if the projection may draw a surfel of the chunk (shaders/include/spacing.glsl). A margin allows for the

@@ -65,7 +65,8 @@ std::vector<CoarseSurfel> sample_surfels(const surfel::SurfelCloud& cloud, std::
     const uint32_t member = members[i];
     surfels[i].position = cloud.positions[member];
     surfels[i].normal = cloud.normals[member];
-    surfels[i].radius = std::min(cloud.radii[member], largest);
+    surfels[i].scatter = cloud.is_scatter(member);
+    surfels[i].radius = surfels[i].scatter ? cloud.radii[member] : std::min(cloud.radii[member], largest);
     if (cloud.colors) surfels[i].light = surfel::to_linear(cloud.colors->values[member], cloud.colors->bits);
   }
   for (const surfel::ScalarAttribute& scalar : cloud.scalars) {
@@ -90,6 +91,10 @@ surfel::SurfelCloud make_coarse_cloud(std::span<const CoarseSurfel> surfels, con
   cloud.scalars = attributes.scalars;
   cloud.sources = {{"", 0, surfels.size(), std::nullopt}};
   if (attributes.color_bits > 0) cloud.colors = surfel::ColorAttribute{attributes.color_bits, {}};
+  if (std::any_of(surfels.begin(), surfels.end(), [](const CoarseSurfel& s) { return s.scatter; })) {
+    cloud.scatter.reserve(surfels.size());
+    for (const CoarseSurfel& s : surfels) cloud.scatter.push_back(s.scatter ? 1 : 0);
+  }
   for (CoarseSurfel surfel : surfels) {
     cloud.positions.push_back(surfel.position);
     cloud.normals.push_back(surfel.normal);

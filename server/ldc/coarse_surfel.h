@@ -18,6 +18,7 @@ struct CoarseSurfel {
   glm::vec3 light{0};         ///< linear, in [0, 1]; 0 without colour
   double intensity = 0;
   double classification = 0;
+  bool scatter = false;  ///< lies on no surface, as all surfels that it stands for
 };
 
 /// The attributes of the coarse surfels of a model.
@@ -30,7 +31,7 @@ struct CoarseAttributes {
 
 CoarseAttributes coarse_attributes(const surfel::SurfelCloud& cloud);
 
-/// A subset of the surfels of a cloud, unchanged except that radii are clamped to `largest`.
+/// A subset of the surfels of a cloud, unchanged except that the radii of discs are clamped to `largest`.
 std::vector<CoarseSurfel> sample_surfels(const surfel::SurfelCloud& cloud, std::span<const uint32_t> members,
                                          float largest);
 

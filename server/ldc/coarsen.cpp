@@ -125,6 +125,7 @@ surfel::SurfelCloud geometry_of(std::span<const CoarseSurfel> surfels, bool orie
     cloud.positions.push_back(s.position);
     cloud.normals.push_back(s.normal);
     cloud.radii.push_back(s.radius);
+    cloud.scatter.push_back(s.scatter ? 1 : 0);
   }
   return cloud;
 }

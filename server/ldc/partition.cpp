@@ -72,6 +72,23 @@ void sort_by_code(const surfel::SurfelCloud& cloud, const geometry::RootCube& ro
   oneapi::tbb::parallel_sort(members);
 }
 
+/// The smallest radii of some surfels. Splats of scatter are smaller than its spacing: where there are discs, these
+/// alone determine the lattice.
+struct SmallestRadii {
+  float disc = std::numeric_limits<float>::infinity();
+  float scatter = std::numeric_limits<float>::infinity();
+
+  void include(float radius, bool is_scatter) {
+    float& smallest = is_scatter ? scatter : disc;
+    smallest = std::min(smallest, radius);
+  }
+  void include(const SmallestRadii& other) {
+    disc = std::min(disc, other.disc);
+    scatter = std::min(scatter, other.scatter);
+  }
+  [[nodiscard]] double for_lattice() const { return double{std::isfinite(disc) ? disc : scatter}; }
+};
+
 /// Keeps the order within each group.
 void sort_by_group(Run run) {
   const auto by_group = [](const Member& a, const Member& b) { return a.group < b.group; };
@@ -101,7 +118,7 @@ struct Part {
   uint32_t group = 0;
   Run members;
   geometry::Box box;
-  float smallest_radius = std::numeric_limits<float>::infinity();
+  SmallestRadii radii = {};
   size_t count = 0;
 };
 
@@ -136,15 +153,15 @@ class Splitter {
   /// The lattice for a block of these members; none when the indices exceed the limit of a block.
   [[nodiscard]] std::optional<surfel::Grid> lattice(const Part& part) const {
     const surfel::Grid grid = grids_[part.group].value_or(
-        choose_lattice(part.box, position_tolerance(double{part.smallest_radius}, options_.precision)));
+        choose_lattice(part.box, position_tolerance(part.radii.for_lattice(), options_.precision)));
     return indices_fit(grid, part.box, part.count) ? std::optional(grid) : std::nullopt;
   }
 
   [[nodiscard]] Part make_part(Run run) const {
-    Part part{run.front().group, run, {}, std::numeric_limits<float>::infinity(), run.size()};
+    Part part{run.front().group, run, {}, {}, run.size()};
     for (const Member& m : run) {
       part.box.include(cloud_.positions[m.surfel]);
-      part.smallest_radius = std::min(part.smallest_radius, cloud_.radii[m.surfel]);
+      part.radii.include(cloud_.radii[m.surfel], cloud_.is_scatter(m.surfel));
     }
     return part;
   }
@@ -238,10 +255,9 @@ class Splitter {
     for (const Cell& cell : cells) {
       for (const Part& part : cell.parts) {
         auto at = std::find_if(joined.begin(), joined.end(), [&](const Part& p) { return p.group >= part.group; });
-        if (at == joined.end() || at->group != part.group)
-          at = joined.insert(at, Part{part.group, {}, {}, part.smallest_radius, 0});
+        if (at == joined.end() || at->group != part.group) at = joined.insert(at, Part{part.group, {}, {}, {}, 0});
         at->box.include(part.box);
-        at->smallest_radius = std::min(at->smallest_radius, part.smallest_radius);
+        at->radii.include(part.radii);
         at->count += part.count;
       }
     }

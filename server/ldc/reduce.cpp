@@ -64,8 +64,9 @@ class Surroundings {
  public:
   Surroundings(std::span<const CoarseSurfel> surfels, const Cube& cube)
       : cube_(cube), side_(static_cast<size_t>(cube.lines + 1) / 2), squares_(side_ * side_ * side_, glm::dvec3(0)) {
-    for (const CoarseSurfel& s : surfels)
-      squares_[index(s)] += squared(s.normal) * (double{s.radius} * double{s.radius});
+    for (const CoarseSurfel& s : surfels) {
+      if (!s.scatter) squares_[index(s)] += squared(s.normal) * (double{s.radius} * double{s.radius});
+    }
   }
 
   /// The axis of the image that the surfel belongs to.
@@ -109,6 +110,7 @@ std::vector<Crossing> find_crossings(std::span<const CoarseSurfel> surfels, cons
   std::vector<Crossing> crossings;
   crossings.reserve(surfels.size());
   for (uint32_t i = 0; i < surfels.size(); ++i) {
+    if (surfels[i].scatter) continue;
     crossings.push_back(cross(surfels[i], i, surroundings.axis(surfels[i]), cube, oriented));
   }
   std::sort(crossings.begin(), crossings.end());
@@ -145,6 +147,12 @@ float radius_of(double squares, double cubes, double cosine, const Cube& cube) {
   return static_cast<float>(std::max(std::min(std::sqrt(squares), on_grid), cubes / squares));
 }
 
+/// The radius of an average of scatter: that of the total area, at most half of the ray spacing, where it fills its
+/// cube, or the largest radius that it is made from. What is thin stays thin.
+float scatter_radius_of(double squares, double largest, const Cube& cube) {
+  return static_cast<float>(std::min(std::sqrt(squares), std::max(0.5 * cube.spacing, largest)));
+}
+
 CoarseSurfel average(std::span<const CoarseSurfel> surfels, std::span<const Crossing> crossings, const Cube& cube) {
   if (crossings.size() == 1) return surfels[crossings.front().surfel];
   const CoarseSurfel& first = surfels[crossings.front().surfel];
@@ -154,6 +162,7 @@ CoarseSurfel average(std::span<const CoarseSurfel> surfels, std::span<const Cros
   double intensity = 0;
   double squares = 0;
   double cubes = 0;
+  double largest = 0;
   ClassVotes classes;
   for (const Crossing& crossing : crossings) {
     const CoarseSurfel& s = surfels[crossing.surfel];
@@ -166,29 +175,52 @@ CoarseSurfel average(std::span<const CoarseSurfel> surfels, std::span<const Cros
     classes.add(s.classification, area);
     squares += area;
     cubes += area * double{s.radius};
+    largest = std::max(largest, double{s.radius});
   }
   const double length = glm::length(normal);
   CoarseSurfel result;
   result.position = cube.min + position / squares;
   result.normal = length > 0 ? glm::vec3(normal / length) : first.normal;
   const glm::vec3 n = glm::abs(result.normal);
-  result.radius = radius_of(squares, cubes, std::max({n.x, n.y, n.z}), cube);
+  result.scatter = first.scatter;
+  result.radius = first.scatter ? scatter_radius_of(squares, largest, cube)
+                                : radius_of(squares, cubes, std::max({n.x, n.y, n.z}), cube);
   result.light = glm::vec3(light / squares);
   result.intensity = intensity / squares;
   result.classification = classes.winner();
   return result;
 }
 
-std::vector<CoarseSurfel> resample(std::span<const CoarseSurfel> surfels, const Cube& cube, bool oriented) {
-  const std::vector<Crossing> crossings = find_crossings(surfels, cube, oriented);
-  std::vector<CoarseSurfel> averages;
+/// Scatter belongs to the cube of one ray spacing that it lies in, whatever its normals: `ray` and `depth` are those of
+/// the cube.
+std::vector<Crossing> find_cubes(std::span<const CoarseSurfel> surfels, const Cube& cube) {
+  std::vector<Crossing> crossings;
+  for (uint32_t i = 0; i < surfels.size(); ++i) {
+    if (!surfels[i].scatter) continue;
+    const glm::dvec3 offset = surfels[i].position - cube.min;
+    const auto ray = static_cast<uint32_t>(cube.line(offset.y) * cube.lines + cube.line(offset.x));
+    crossings.push_back({ray, i, cube.centre(cube.line(offset.z))});
+  }
+  std::sort(crossings.begin(), crossings.end());
+  return crossings;
+}
+
+/// Appends the averages of crossings on one ray whose depths differ by at most `reach`.
+void append_averages(std::span<const CoarseSurfel> surfels, std::span<const Crossing> crossings, const Cube& cube,
+                     double reach, std::vector<CoarseSurfel>& averages) {
   for (auto first = crossings.begin(); first != crossings.end();) {
     const auto last = std::find_if(first, crossings.end(), [&](const Crossing& c) {
-      return c.ray != first->ray || c.depth - first->depth > cube.spacing;
+      return c.ray != first->ray || c.depth - first->depth > reach;
     });
     averages.push_back(average(surfels, {first, last}, cube));
     first = last;
   }
+}
+
+std::vector<CoarseSurfel> resample(std::span<const CoarseSurfel> surfels, const Cube& cube, bool oriented) {
+  std::vector<CoarseSurfel> averages;
+  append_averages(surfels, find_crossings(surfels, cube, oriented), cube, cube.spacing, averages);
+  append_averages(surfels, find_cubes(surfels, cube), cube, 0, averages);
   return averages;
 }
 

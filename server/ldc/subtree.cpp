@@ -28,8 +28,10 @@ std::vector<TreeBlock> leaf_blocks(const Partition& partition) {
 float largest_drawn_radius_of(const surfel::SurfelCloud& cloud, std::span<const uint32_t> members) {
   std::vector<float> radii;
   radii.reserve(members.size());
-  for (const uint32_t member : members) radii.push_back(cloud.radii[member]);
-  return surfel::largest_drawn_radius(radii);
+  for (const uint32_t member : members) {
+    if (!cloud.is_scatter(member)) radii.push_back(cloud.radii[member]);
+  }
+  return radii.empty() ? 0 : surfel::largest_drawn_radius(radii);
 }
 
 /// The largest drawn radius of each block.

@@ -16,7 +16,8 @@ bool all_at_most(const Column& column, uint64_t limit) {
 }
 
 /// False if a value exceeds the limits of the shape. Such values would reach the renderer as arbitrary numbers.
-bool in_range(const std::vector<Field>& fields, const Precision& codes, const BlockShape& shape) {
+bool in_range(const std::vector<Field>& fields, const FieldLayout& layout, const Precision& codes,
+              const BlockShape& shape) {
   for (int axis = 0; axis < 3; ++axis) {
     if (!all_at_most(fields[kPositionField][axis], shape.extent[axis])) return false;
   }
@@ -32,7 +33,10 @@ bool in_range(const std::vector<Field>& fields, const Precision& codes, const Bl
   for (size_t i = 0; i < colors; ++i) {
     if (!all_at_most(fields[kFixedFields + i][0], brightest)) return false;
   }
-  return true;
+  if (!layout.scatter) return shape.scatter == 0;
+  const Column& scatter = fields[layout.scatter_field()][0];
+  return all_at_most(scatter, 1) && shape.scatter > 0 &&
+         std::count(scatter.begin(), scatter.end(), 1) == std::ptrdiff_t{shape.scatter};
 }
 
 void read_positions(const Field& field, DecodedBlock& block) {
@@ -85,15 +89,15 @@ surfel::ScalarAttribute read_scalar(const ScalarColumn& attribute, const Column&
 }  // namespace
 
 Result<DecodedBlock> decode_block(std::span<const std::byte> bytes, const BlockShape& shape, size_t scalars) {
-  const bool colored = shape.color_bits > 0;
-  const std::vector<size_t> columns = field_columns(colored, shape.scalars.size());
   if (bytes.empty()) return fail(ErrorKind::kInvalidInput, "cut off");
-  const Precision codes = BlockPrecision::of_flags(static_cast<uint8_t>(bytes.front())).codes();
-  const size_t first_scalar = kFixedFields + (colored ? 3 : 0);
+  const BlockFlags flags = BlockFlags::of_byte(static_cast<uint8_t>(bytes.front()));
+  const Precision codes = flags.codes();
+  const FieldLayout layout{shape.color_bits > 0, flags.scatter};
+  const std::vector<size_t> columns = layout.columns(shape.scalars.size());
   const Result<std::vector<Field>> fields =
-      decode_fields(bytes.subspan(1), columns, shape.surfels, first_scalar + scalars);
+      decode_fields(bytes.subspan(1), columns, shape.surfels, layout.first_scalar() + scalars);
   if (!fields) return fail(fields.error());
-  if (!in_range(*fields, codes, shape)) return fail(ErrorKind::kInvalidInput, "values out of range");
+  if (!in_range(*fields, layout, codes, shape)) return fail(ErrorKind::kInvalidInput, "values out of range");
 
   DecodedBlock block;
   block.grid = shape.grid;
@@ -104,9 +108,13 @@ Result<DecodedBlock> decode_block(std::span<const std::byte> bytes, const BlockS
   block.weights.resize(shape.surfels);
   read_positions((*fields)[kPositionField], block);
   read_surfaces(*fields, codes, block);
-  if (colored) read_colors(std::span(*fields).subspan(kFixedFields, 3), shape.color_bits, block);
+  if (layout.scatter) {
+    const Column& scatter = (*fields)[layout.scatter_field()][0];
+    block.scatter.assign(scatter.begin(), scatter.end());
+  }
+  if (layout.colored) read_colors(std::span(*fields).subspan(kFixedFields, 3), shape.color_bits, block);
   for (size_t i = 0; i < scalars; ++i) {
-    block.scalars.push_back(read_scalar(shape.scalars[i], (*fields)[first_scalar + i][0]));
+    block.scalars.push_back(read_scalar(shape.scalars[i], (*fields)[layout.first_scalar() + i][0]));
   }
   return block;
 }

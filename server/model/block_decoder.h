@@ -27,6 +27,7 @@ struct BlockShape {
   uint32_t surfels = 0;
   int color_bits = 0;
   std::span<const ScalarColumn> scalars;
+  uint32_t scatter = 0;  ///< surfels that lie on no surface
 };
 
 /// Decodes a block and the first `scalars` of its scalar attributes. Fails if the bytes do not match the shape.

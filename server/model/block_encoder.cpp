@@ -59,18 +59,27 @@ Field normal_field(const surfel::SurfelCloud& cloud, Members members, int octahe
     field[1].push_back(code.y);
     decoded.push_back(decode_normal(code, octahedral_half));
   }
-  if (cloud.oriented) block.normals = geometry::normal_cone(decoded);
+  if (cloud.oriented && block.scatter == 0) block.normals = geometry::normal_cone(decoded);
   return field;
 }
 
 Field radius_field(const surfel::SurfelCloud& cloud, Members members, int steps, EncodedBlock& block) {
   Column codes = make_column(members, [&](uint32_t s) { return encode_logarithm(cloud.radii[s], steps); });
-  Column sorted = codes;
+  // Splats of scatter are smaller than its spacing.
+  const bool discs_alone = block.scatter > 0 && block.scatter < members.size();
+  Column sorted;
+  for (size_t i = 0; i < members.size(); ++i) {
+    if (!discs_alone || !cloud.is_scatter(members[i])) sorted.push_back(codes[i]);
+  }
   const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
   std::nth_element(sorted.begin(), middle, sorted.end());
   block.spacing = decode_logarithm(static_cast<uint32_t>(*middle), steps);
-  block.max_radius = decode_logarithm(static_cast<uint32_t>(*std::max_element(middle, sorted.end())), steps);
+  block.max_radius = decode_logarithm(static_cast<uint32_t>(*std::max_element(codes.begin(), codes.end())), steps);
   return {std::move(codes)};
+}
+
+Field scatter_field(const surfel::SurfelCloud& cloud, Members members) {
+  return {make_column(members, [&](uint32_t s) { return cloud.scatter[s]; })};
 }
 
 void append_colors(const surfel::ColorAttribute& colors, Members members, std::vector<Field>& fields) {
@@ -96,22 +105,25 @@ EncodedBlock encode_block(const surfel::SurfelCloud& cloud, std::span<const uint
   EncodedBlock block;
   block.grid = grid;
   block.surfels = static_cast<uint32_t>(members.size());
+  const auto is_scatter = [&cloud](uint32_t s) { return cloud.is_scatter(s); };
+  block.scatter = static_cast<uint32_t>(std::count_if(members.begin(), members.end(), is_scatter));
   const std::vector<glm::ivec3> indices = make_indices(cloud, members, grid, block);
   const std::vector<uint32_t> path = path_order(indices);
   std::vector<uint32_t> ordered;
   ordered.reserve(path.size());
   for (const uint32_t i : path) ordered.push_back(members[i]);
 
-  const BlockPrecision precision{!cloud.estimated_normals, !cloud.estimated_radii};
+  const BlockFlags flags{!cloud.estimated_normals, !cloud.estimated_radii, block.scatter > 0};
   std::vector<Field> fields;
   fields.push_back(position_field(indices, path));
-  fields.push_back(normal_field(cloud, ordered, precision.codes().octahedral_half, block));
-  fields.push_back(radius_field(cloud, ordered, precision.codes().radius_steps, block));
+  fields.push_back(normal_field(cloud, ordered, flags.codes().octahedral_half, block));
+  fields.push_back(radius_field(cloud, ordered, flags.codes().radius_steps, block));
   fields.push_back(
       {make_column(ordered, [&](uint32_t s) { return encode_logarithm(cloud.weights[s], kWeightSteps); })});
   if (cloud.colors) append_colors(*cloud.colors, ordered, fields);
+  if (flags.scatter) fields.push_back(scatter_field(cloud, ordered));
   for (const surfel::ScalarAttribute& scalar : cloud.scalars) fields.push_back(scalar_field(scalar, ordered));
-  block.bytes = {static_cast<std::byte>(precision.flags())};
+  block.bytes = {static_cast<std::byte>(flags.byte())};
   const std::vector<std::byte> packed = encode_fields(fields);
   block.bytes.insert(block.bytes.end(), packed.begin(), packed.end());
   return block;

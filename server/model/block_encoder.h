@@ -22,7 +22,8 @@ struct EncodedBlock {
   glm::i64vec3 origin{0};  ///< lowest lattice index of its surfels
   glm::u32vec3 extent{0};  ///< largest index, counted from `origin`
   uint32_t surfels = 0;    ///< or items of another kind
-  float spacing = 0;       ///< median radius
+  uint32_t scatter = 0;    ///< how many of them lie on no surface
+  float spacing = 0;       ///< median radius; where there are both discs and scatter, of the discs
   float max_radius =
       0;  ///< largest decoded radius; what is drawn of an item extends at most twice this far from its centre
   std::optional<geometry::NormalCone> normals;
@@ -31,7 +32,7 @@ struct EncodedBlock {
 };
 
 /// Encodes surfels of a cloud, given in a spatial order, as one block on the given lattice. The normal cone is set for
-/// oriented clouds only.
+/// blocks of oriented clouds without scatter, which is seen from all sides.
 EncodedBlock encode_block(const surfel::SurfelCloud& cloud, std::span<const uint32_t> members,
                           const surfel::Grid& grid);
 

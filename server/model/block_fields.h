@@ -9,22 +9,28 @@
 namespace surfcast::model {
 
 /// The fields that every block has, in the order of the file. If the model has colour, three fields follow: green, red
-/// minus green, and blue minus green (neighbouring channels differ by little). Then comes one field for each scalar
-/// attribute.
+/// minus green, and blue minus green (neighbouring channels differ by little). A block with scatter has one field of
+/// flags next. Then comes one field for each scalar attribute.
 enum BlockField : size_t { kPositionField, kNormalField, kRadiusField, kWeightField, kFixedFields };
 
-/// The first byte of a block: which of its values are stored with source precision.
-struct BlockPrecision {
+/// The first byte of a block: which of its values are stored with source precision, and whether some of its surfels
+/// are scatter.
+struct BlockFlags {
   bool source_normals = false;
   bool source_radii = false;
+  bool scatter = false;
 
   static constexpr uint8_t kNormalsFlag = 1;
   static constexpr uint8_t kRadiiFlag = 2;
+  static constexpr uint8_t kScatterFlag = 4;
 
-  [[nodiscard]] uint8_t flags() const {
-    return static_cast<uint8_t>((source_normals ? kNormalsFlag : 0) | (source_radii ? kRadiiFlag : 0));
+  [[nodiscard]] uint8_t byte() const {
+    return static_cast<uint8_t>((source_normals ? kNormalsFlag : 0) | (source_radii ? kRadiiFlag : 0) |
+                                (scatter ? kScatterFlag : 0));
   }
-  static BlockPrecision of_flags(uint8_t flags) { return {(flags & kNormalsFlag) != 0, (flags & kRadiiFlag) != 0}; }
+  static BlockFlags of_byte(uint8_t byte) {
+    return {(byte & kNormalsFlag) != 0, (byte & kRadiiFlag) != 0, (byte & kScatterFlag) != 0};
+  }
 
   [[nodiscard]] Precision codes() const {
     return {(source_normals ? kSourcePrecision : kEstimatePrecision).octahedral_half,
@@ -32,12 +38,20 @@ struct BlockPrecision {
   }
 };
 
-/// Number of columns of each field of a block.
-inline std::vector<size_t> field_columns(bool colored, size_t scalars) {
-  std::vector<size_t> columns{3, 2, 1, 1};
-  columns.resize(kFixedFields + (colored ? 3 : 0) + scalars, 1);
-  return columns;
-}
+/// The fields of a block after the fixed ones.
+struct FieldLayout {
+  bool colored = false;
+  bool scatter = false;
+
+  [[nodiscard]] size_t scatter_field() const { return kFixedFields + (colored ? 3 : 0); }
+  [[nodiscard]] size_t first_scalar() const { return scatter_field() + (scatter ? 1 : 0); }
+  /// Number of columns of each field.
+  [[nodiscard]] std::vector<size_t> columns(size_t scalars) const {
+    std::vector<size_t> columns{3, 2, 1, 1};
+    columns.resize(first_scalar() + scalars, 1);
+    return columns;
+  }
+};
 
 /// Difference of two colour values modulo 2^bits, offset by half the range so that small differences of either sign are
 /// adjacent.

@@ -198,6 +198,15 @@ Status get_kinds(ByteReader& reader, Directory& directory) {
   return {};
 }
 
+/// The number of surfels of each block that lie on no surface.
+Status get_scatter(ByteReader& reader, Directory& directory) {
+  for (BlockRecord& block : directory.blocks) {
+    block.scatter = reader.get<uint32_t>();
+    if (block.scatter > block.surfels) return damaged("model has a wrong count of scatter");
+  }
+  return {};
+}
+
 }  // namespace
 
 uint64_t checksum_of(std::span<const std::byte> bytes) {
@@ -226,10 +235,10 @@ Result<ModelHeader> read_header(std::span<const std::byte> file) {
     return damaged("not a Surfcast model");
   }
   const auto version = reader.get<uint32_t>();
-  if (reader.ok() && version != kSurfelVersion && version != kKindsVersion) {
+  if (reader.ok() && (version < kSurfelVersion || version > kScatterVersion)) {
     return fail(ErrorKind::kUnsupported, "model format version " + std::to_string(version) +
                                              " is not supported; this program reads versions " +
-                                             std::to_string(kSurfelVersion) + " and " + std::to_string(kKindsVersion));
+                                             std::to_string(kSurfelVersion) + " to " + std::to_string(kScatterVersion));
   }
   if (file.size() < kHeaderBytes) return damaged("model is cut off within its header");
   ModelHeader header;
@@ -272,7 +281,9 @@ std::vector<std::byte> write_directory(const Directory& directory) {
   writer.put(static_cast<uint32_t>(directory.blocks.size()));
   for (const BlockRecord& block : directory.blocks) put_block(writer, block);
   put_statistics(writer, directory);
-  if (directory.version() == kKindsVersion) put_kinds(writer, directory);
+  if (directory.version() >= kKindsVersion) put_kinds(writer, directory);
+  if (directory.version() < kScatterVersion) return std::move(writer).take();
+  for (const BlockRecord& block : directory.blocks) writer.put(block.scatter);
   return std::move(writer).take();
 }
 
@@ -303,8 +314,11 @@ Result<Directory> read_directory(std::span<const std::byte> bytes, const ModelHe
   if (reader.ok() && !reader.rest().empty()) {
     if (Status status = get_statistics(reader, directory); !status) return fail(std::move(status.error()));
   }
-  if (header.version == kKindsVersion) {
+  if (header.version >= kKindsVersion) {
     if (Status status = get_kinds(reader, directory); !status) return fail(std::move(status.error()));
+  }
+  if (header.version >= kScatterVersion) {
+    if (Status status = get_scatter(reader, directory); !status) return fail(std::move(status.error()));
   }
   if (!reader.ok() || !reader.rest().empty()) return damaged("model tables have a wrong length");
   if (directory.blocks.empty()) return damaged("model has no blocks");

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -10,10 +11,11 @@
 
 namespace surfcast::model {
 
-/// Versions of the format. Models that contain only surfels are written in the older version, so older programs can
-/// read them.
+/// Versions of the format. A model is written in the oldest version that can represent it, so older programs can read
+/// models without later features.
 inline constexpr uint32_t kSurfelVersion = 2;
-inline constexpr uint32_t kKindsVersion = 3;  ///< has a table of kinds
+inline constexpr uint32_t kKindsVersion = 3;    ///< has a table of kinds
+inline constexpr uint32_t kScatterVersion = 4;  ///< has a table of kinds, a count of scatter per block, and scatter
 inline constexpr size_t kHeaderBytes = 64;
 inline constexpr size_t kBlockRecordBytes = 92;
 /// Limits of the format. They bound the memory that a hostile table can make the reader allocate for one block.
@@ -53,7 +55,8 @@ struct BlockRecord {
   uint64_t offset = 0;
   uint32_t bytes = 0;
   uint64_t checksum = 0;
-  uint8_t kind = 0;  ///< index into Directory::kinds
+  uint8_t kind = 0;      ///< index into Directory::kinds
+  uint32_t scatter = 0;  ///< surfels that lie on no surface
 };
 
 /// The tables at the end of a file.
@@ -68,6 +71,8 @@ struct Directory {
 
   /// The oldest version of the format that can represent the tables.
   [[nodiscard]] uint32_t version() const {
+    const auto has_scatter = [](const BlockRecord& block) { return block.scatter > 0; };
+    if (std::any_of(blocks.begin(), blocks.end(), has_scatter)) return kScatterVersion;
     return kinds.size() == 1 && kinds.front() == kSurfelKind ? kSurfelVersion : kKindsVersion;
   }
 };

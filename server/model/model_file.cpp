@@ -90,13 +90,15 @@ ModelInfo make_info(const ModelHeader& header, const Directory& directory, std::
   info.ranges = directory.ranges;
   info.classes = directory.classes;
   for (const std::string& kind : directory.kinds) info.kinds.push_back({kind, 0, 0});
-  for (const ldc::BlockEntry& entry : entries) {
+  for (size_t i = 0; i < entries.size(); ++i) {
+    const ldc::BlockEntry& entry = entries[i];
     info.levels = std::max(info.levels, entry.level + 1);
     KindCount& kind = info.kinds[entry.kind];
     ++kind.blocks;
     if (entry.level > 0) continue;
     info.bounds.include(entry.bounds);
     kind.items += entry.surfels;
+    info.scatter += directory.blocks[i].scatter;
   }
   for (const KindCount& kind : info.kinds) {
     if (kind.kind == kSurfelKind) info.surfels = kind.items;
@@ -193,6 +195,7 @@ Result<DecodedBlock> ModelFile::decode(size_t block, WantedScalars scalars) cons
   shape.origin = stored_block->origin;
   shape.extent = stored_block->extent;
   shape.surfels = stored_block->items;
+  shape.scatter = state_->directory.blocks[block].scatter;
   shape.color_bits = state_->info.color_bits;
   shape.scalars = blocks()[block].level == 0 ? state_->directory.scalars : state_->coarse_scalars;
   Result<DecodedBlock> decoded = decode_block(stored_block->bytes, shape, count_of(scalars, shape.scalars));

@@ -24,6 +24,7 @@ namespace surfcast::model {
 /// Properties of a whole model.
 struct ModelInfo {
   uint64_t surfels = 0;                   ///< surfels of the source: those in the leaves of the tree
+  uint64_t scatter = 0;                   ///< how many of them lie on no surface (SurfelCloud::scatter)
   std::vector<KindCount> kinds;           ///< kinds of its blocks; BlockEntry::kind is an index into this list
   int levels = 0;                         ///< levels of detail; 1 without coarse levels
   geometry::Box bounds;                   ///< of the stored positions, world units
@@ -53,12 +54,14 @@ struct DecodedBlock {
   std::vector<glm::vec3> normals;    ///< unit
   std::vector<float> radii;          ///< world units
   std::vector<float> weights;        ///< s_k
+  std::vector<uint8_t> scatter;      ///< 1: on no surface (SurfelCloud::scatter); empty if none of the block is
   std::vector<glm::u16vec3> colors;  ///< in ModelInfo::color_bits; empty without colour
   /// In a leaf, the attributes of ModelInfo::scalar_names. In a coarse block, only those that can be averaged:
   /// intensity and classification. Only the first ones if not all were requested.
   std::vector<surfel::ScalarAttribute> scalars;
 
   [[nodiscard]] size_t size() const { return indices.size(); }
+  [[nodiscard]] bool is_scatter(size_t i) const { return !scatter.empty() && scatter[i] != 0; }
   /// World coordinates of surfel i, exact for inputs whose coordinates lie on a grid.
   [[nodiscard]] glm::dvec3 position(size_t i) const { return grid.position(origin + glm::i64vec3(indices[i])); }
 };

@@ -39,6 +39,7 @@ BlockRecord make_record(const EncodedBlock& block, const ldc::OctreeKey& key) {
   record.origin = block.origin;
   record.extent = block.extent;
   record.surfels = block.surfels;
+  record.scatter = block.scatter;
   record.spacing = block.spacing;
   record.max_radius = block.max_radius;
   record.normals = block.normals;

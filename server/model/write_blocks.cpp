@@ -24,7 +24,8 @@ EncodedBlock encode(const surfel::SurfelCloud& cloud, const ldc::TreeBlock& bloc
   std::iota(all.begin(), all.end(), 0);
   EncodedBlock encoded = encode_block(*block.coarse, all, block.grid);
   // Where rays hit many small pieces of surface, the radii are smaller than the spacing of the rays, but there is no
-  // detail finer than that spacing.
+  // detail finer than that spacing. Splats of scatter are smaller than their spacing.
+  if (encoded.scatter > 0) encoded.max_radius = std::max(encoded.max_radius, block.ray_spacing);
   encoded.spacing = std::min(std::max(encoded.spacing, block.ray_spacing), encoded.max_radius);
   return encoded;
 }

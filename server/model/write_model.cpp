@@ -29,6 +29,7 @@ void expect_one_length(const surfel::SurfelCloud& cloud) {
   const size_t n = cloud.size();
   SURFCAST_EXPECTS(cloud.normals.size() == n && cloud.radii.size() == n && cloud.weights.size() == n);
   SURFCAST_EXPECTS(!cloud.colors || cloud.colors->values.size() == n);
+  SURFCAST_EXPECTS(cloud.scatter.empty() || cloud.scatter.size() == n);
   for (const surfel::ScalarAttribute& scalar : cloud.scalars) SURFCAST_EXPECTS(surfel::value_count(scalar.values) == n);
 }
 

@@ -48,6 +48,7 @@ std::string project_defines(const Variant& variant) {
   std::string defines = common_defines(variant) + color_defines(variant.color);
   if (variant.hides_classes) defines += "#define SURFCAST_HIDES_CLASSES\n";
   if (variant.clipped) defines += "#define SURFCAST_CLIPPED\n";
+  if (variant.scatter) defines += "#define SURFCAST_SCATTER\n";
   return defines;
 }
 

@@ -24,6 +24,7 @@ struct Variant {
   picture::SurfelColor color = picture::SurfelColor::kStored;
   bool hides_classes = false;
   bool clipped = false;
+  bool scatter = false;  ///< the model has scatter
   bool eye_dome = false;
   bool silhouettes = false;  ///< silhouettes are supersampled
 };

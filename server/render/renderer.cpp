@@ -46,6 +46,7 @@ Variant variant_of(const model::ModelInfo& info, const DisplayOptions& display,
   variant.color = display.color;
   variant.hides_classes = display.hides_classes;
   variant.clipped = display.clipped;
+  variant.scatter = info.scatter > 0;
   variant.eye_dome = request.eye_dome.strength > 0;
   variant.silhouettes = request.silhouettes && request.normalization == picture::Normalization::kPixel &&
                         request.filter == picture::Filter::kEwa;

@@ -34,42 +34,64 @@ std::vector<MergedLevel> merged_levels(std::vector<MergedSurfel> surfels, bool o
   return levels;
 }
 
-/// Adds the surfels that `fill` appends as one run.
-template <typename Fill>
-void add_run(SurfelSequence& sequence, PackedRun run, Fill fill) {
-  run.first = static_cast<uint32_t>(sequence.surfels.size());
-  fill();
-  run.count = static_cast<uint32_t>(sequence.surfels.size()) - run.first;
-  if (run.count > 0) sequence.runs.push_back(std::move(run));
-}
-
-/// Surfels of intermediate levels that are not in a pair are omitted, because the next level contains them unchanged.
-/// Pairs come first, so they begin at even indices.
-SurfelSequence sequence_of(std::span<const MergedLevel> levels) {
-  SurfelSequence sequence;
-  sequence.surfels.reserve(kMaxPackedPerSurfel * levels.front().surfels.size());
-  const auto put = [&](size_t level, uint32_t i) { sequence.surfels.push_back(levels[level].surfels[i]); };
-  for (size_t level = 0; level + 1 < levels.size(); ++level) {
-    add_run(sequence, {.finest = level == 0, .coarsest = false, .pairs = true}, [&] {
-      for (const MergedFrom& from : levels[level + 1].from) {
-        if (!from.pair()) continue;
-        put(level, from.first);
-        put(level, from.second);
-      }
-    });
+/// Appends the levels of a block to a sequence. Scatter has runs of its own after those of discs.
+class Sequencer {
+ public:
+  explicit Sequencer(std::span<const MergedLevel> levels) : levels_(levels) {
+    sequence_.surfels.reserve(kMaxPackedPerSurfel * levels.front().surfels.size());
+    const std::vector<MergedSurfel>& finest = levels.front().surfels;
+    has_scatter_ = std::any_of(finest.begin(), finest.end(), [](const MergedSurfel& s) { return s.scatter; });
   }
-  const size_t last = levels.size() - 1;
-  add_run(sequence, {.finest = last == 0, .coarsest = true}, [&] {
-    for (uint32_t i = 0; i < levels[last].surfels.size(); ++i) put(last, i);
-  });
-  if (last == 0) return sequence;
-  add_run(sequence, {.finest = true, .coarsest = false}, [&] {
-    for (const MergedFrom& from : levels[1].from) {
-      if (!from.pair()) put(0, from.first);
+
+  /// Surfels of intermediate levels that are not in a pair are omitted, because the next level contains them unchanged.
+  /// Pairs come first, so they begin at even indices.
+  SurfelSequence sequence() && {
+    const size_t last = levels_.size() - 1;
+    for (size_t level = 0; level < last; ++level) {
+      add_runs({.finest = level == 0, .coarsest = false, .pairs = true},
+               [&](bool scatter) { put_pairs(level, scatter); });
     }
-  });
-  return sequence;
-}
+    add_runs({.finest = last == 0, .coarsest = true}, [&](bool scatter) { put_all(last, scatter); });
+    if (last > 0) add_runs({.finest = true, .coarsest = false}, [&](bool scatter) { put_singles(scatter); });
+    return std::move(sequence_);
+  }
+
+ private:
+  /// Adds the surfels that `fill` appends as one run for each kind.
+  template <typename Fill>
+  void add_runs(PackedRun run, Fill fill) {
+    for (const bool scatter : {false, true}) {
+      if (scatter && !has_scatter_) return;
+      run.scatter = scatter;
+      run.first = static_cast<uint32_t>(sequence_.surfels.size());
+      fill(scatter);
+      run.count = static_cast<uint32_t>(sequence_.surfels.size()) - run.first;
+      if (run.count > 0) sequence_.runs.push_back(run);
+    }
+  }
+  void put(size_t level, uint32_t i) { sequence_.surfels.push_back(levels_[level].surfels[i]); }
+  void put_pairs(size_t level, bool scatter) {
+    for (const MergedFrom& from : levels_[level + 1].from) {
+      if (!from.pair() || levels_[level].surfels[from.first].scatter != scatter) continue;
+      put(level, from.first);
+      put(level, from.second);
+    }
+  }
+  void put_all(size_t level, bool scatter) {
+    for (uint32_t i = 0; i < levels_[level].surfels.size(); ++i) {
+      if (levels_[level].surfels[i].scatter == scatter) put(level, i);
+    }
+  }
+  void put_singles(bool scatter) {
+    for (const MergedFrom& from : levels_[1].from) {
+      if (!from.pair() && levels_[0].surfels[from.first].scatter == scatter) put(0, from.first);
+    }
+  }
+
+  std::span<const MergedLevel> levels_;
+  bool has_scatter_ = false;
+  SurfelSequence sequence_;
+};
 
 /// The radii of the chunk that begins with surfel `first`.
 PackedRun::Radii radii_of(const SurfelSequence& sequence, const PackedRun& run, uint32_t first) {
@@ -95,7 +117,8 @@ void note_radii(SurfelSequence& sequence) {
 }  // namespace
 
 SurfelSequence merge_levels(std::vector<MergedSurfel> surfels, bool oriented) {
-  SurfelSequence sequence = sequence_of(merged_levels(std::move(surfels), oriented));
+  const std::vector<MergedLevel> levels = merged_levels(std::move(surfels), oriented);
+  SurfelSequence sequence = Sequencer(levels).sequence();
   note_radii(sequence);
   return sequence;
 }

@@ -21,6 +21,7 @@ struct PackedRun {
   bool finest = true;    ///< surfels of the block itself; otherwise merged from surfels in an earlier run
   bool coarsest = true;  ///< not merged to a surfel in a later run
   bool pairs = false;    ///< each two consecutive surfels are merged to one
+  bool scatter = false;  ///< all its surfels are scatter; otherwise none is
   std::vector<Radii> chunks = {};
 };
 

@@ -17,12 +17,23 @@ float turned(const MergedSurfel& a, const MergedSurfel& b, bool oriented) {
   return !oriented && glm::dot(a.normal, b.normal) < 0 ? -1.0F : 1.0F;
 }
 
-/// True if two surfels are close together and face the same way. Neighbours on a square grid of spacing h have the
-/// distance h, less than a radius (surfel::kGridRadiusOverSpacing). The code avoids squares of lengths, which single
-/// precision represents only for lengths from 1e-19 to 1e19.
+/// Scatter is merged within this multiple of the sum of the radii: a splat's radius is 0.3 times the distance to its
+/// third nearest neighbour (scan/classify_points.cpp).
+constexpr float kScatterReach = 0.5F / 0.3F;
+
+/// True if two surfels are close together and face the same way, or are scatter. Neighbours on a square grid of spacing
+/// h have the distance h, less than a radius (surfel::kGridRadiusOverSpacing). The code avoids squares of lengths,
+/// which single precision represents only for lengths from 1e-19 to 1e19.
 bool mergeable(const MergedSurfel& a, const MergedSurfel& b, bool oriented) {
+  if (a.scatter != b.scatter) return false;
   const glm::vec3 d = (b.position - a.position) / (a.radius + b.radius);
+  if (a.scatter) return glm::dot(d, d) <= kScatterReach * kScatterReach;
   return glm::dot(d, d) <= 1 && turned(a, b, oriented) * glm::dot(a.normal, b.normal) >= kMinCosine;
+}
+
+/// Opposite normals of scatter have no mean.
+glm::vec3 unit_or(const glm::vec3& v, const glm::vec3& otherwise) {
+  return v == glm::vec3(0) ? otherwise : glm::normalize(v);
 }
 
 MergedSurfel mean(const MergedSurfel& a, const MergedSurfel& b, bool oriented) {
@@ -31,7 +42,8 @@ MergedSurfel mean(const MergedSurfel& a, const MergedSurfel& b, bool oriented) {
   const auto mix = [share](const auto& x, const auto& y) { return x + (y - x) * share; };
   MergedSurfel m;
   m.position = mix(a.position, b.position);
-  m.normal = glm::normalize(mix(a.normal, turned(a, b, oriented) * b.normal));
+  m.normal = unit_or(mix(a.normal, turned(a, b, oriented) * b.normal), a.normal);
+  m.scatter = a.scatter;
   m.radius = std::hypot(a.radius, b.radius);
   m.weight = mix(a.weight, b.weight);
   m.light = mix(a.light, b.light);

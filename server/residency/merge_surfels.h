@@ -15,6 +15,7 @@ struct MergedSurfel {
   float weight = 0;             ///< normalisation weight s_k
   glm::vec3 light{0};           ///< linear
   uint32_t representative = 0;  ///< the surfel of the largest area among those that it was merged from
+  bool scatter = false;         ///< lies on no surface, as all surfels that it was merged from
 };
 
 /// The one or two surfels of the finer level from which a surfel was made; first != second for two.
@@ -26,7 +27,7 @@ struct MergedFrom {
 
 /// A level of detail between those of the LDC tree, about half as dense as its input. Neighbours along the curve that
 /// are close together and face the same way are merged to one surfel. Areas add up, so radii grow in proportion to the
-/// distances between surfels, and the weights stay valid.
+/// distances between surfels, and the weights stay valid. Scatter is merged with scatter alone, whatever its normals.
 struct MergedLevel {
   std::vector<MergedSurfel> surfels;  ///< in the order of the curve
   std::vector<MergedFrom> from;       ///< origin of each of `surfels`

@@ -180,7 +180,7 @@ std::vector<OnCurve> along_curve(const model::DecodedBlock& block, const glm::iv
 
 /// The surfels of a block in Morton order, with positions relative to code 0.
 std::vector<MergedSurfel> surfels_of(const model::DecodedBlock& block, int color_bits, const PackedLattice& lattice) {
-  const float widest = surfel::largest_drawn_radius(block.radii);
+  const float widest = surfel::largest_drawn_radius(block.radii, block.scatter);
   std::vector<MergedSurfel> surfels;
   surfels.reserve(block.size());
   const glm::dvec3 step = lattice.step();
@@ -188,7 +188,8 @@ std::vector<MergedSurfel> surfels_of(const model::DecodedBlock& block, int color
     const glm::vec3 light =
         block.colors.empty() ? glm::vec3(0) : linear_of_code(color_code(block.colors[i], color_bits));
     surfels.push_back({glm::vec3(step * glm::dvec3(position_code(block.indices[i], lattice.shift))), block.normals[i],
-                       std::min(block.radii[i], widest), block.weights[i], light, i});
+                       block.is_scatter(i) ? block.radii[i] : std::min(block.radii[i], widest), block.weights[i], light,
+                       i, block.is_scatter(i)});
   }
   return surfels;
 }

@@ -126,6 +126,7 @@ void keep_surfels(surfel::SurfelCloud& cloud, const std::vector<bool>& keep) {
   if (std::find(keep.begin(), keep.end(), false) == keep.end()) return;
   shrink_sources(cloud.sources, keep);
   compact(cloud.weights, keep);
+  compact(cloud.scatter, keep);
   compact_attributes(cloud, keep);
 }
 

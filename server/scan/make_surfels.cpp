@@ -4,6 +4,7 @@
 #include <cmath>
 #include <functional>
 #include <glm/geometric.hpp>
+#include <span>
 #include <utility>
 
 #include <tbb/blocked_range.h>
@@ -11,6 +12,7 @@
 #include <tbb/parallel_reduce.h>
 
 #include "scan/estimate_normals.h"
+#include "scan/neighbour_spread.h"
 #include "scan/neighbours.h"
 #include "scan/spacing.h"
 
@@ -18,7 +20,7 @@ namespace surfcast::scan {
 namespace {
 
 /// Neighbours from which the normal of a site is estimated.
-constexpr size_t kDegree = 12;
+constexpr size_t kDegree = kNearNeighbours;
 
 bool has_normal(const surfel::SurfelCloud& cloud, size_t i) {
   return !cloud.normals.empty() && !std::isnan(cloud.normals[i].x);
@@ -29,8 +31,9 @@ struct SiteFacts {
   std::vector<SitePlace> places;
   std::vector<SiteDirection> known;
   std::vector<glm::vec3> towards;
+  std::vector<uint8_t> scatter;  ///< 1: lies on no surface
 
-  explicit SiteFacts(size_t sites) : places(sites), known(sites), towards(sites, glm::vec3(0)) {}
+  explicit SiteFacts(size_t sites) : places(sites), known(sites), towards(sites, glm::vec3(0)), scatter(sites) {}
 };
 
 /// Records the direction of a point at its site. The first point at a site counts, but a stored normal takes precedence
@@ -86,20 +89,52 @@ bool all_stated(const std::vector<float>& radii) {
   return !radii.empty() && std::all_of(radii.begin(), radii.end(), is_radius);
 }
 
+/// World units, within the range of float.
+float scatter_radius_of(const Sites& sites, const NeighbourGraph& graph, uint32_t site) {
+  constexpr size_t kThird = 2;
+  const double third = glm::distance(sites.positions[site], sites.positions[graph.of(site)[kThird]]);
+  return to_radius(scatter_radius(third) * sites.unit);
+}
+
+/// What each surfel is, and how large it is as such. `on_surface`: the radius of each site if it is a disc.
+Estimates estimates_of(const Sites& sites, const NeighbourGraph& graph, const SiteFacts& facts,
+                       std::span<const float> on_surface) {
+  Estimates estimates;
+  estimates.radii.resize(sites.of_point.size());
+  estimates.kinds.resize(sites.of_point.size());
+  tbb::parallel_for(size_t{0}, sites.of_point.size(), [&](size_t i) {
+    const uint32_t site = sites.of_point[i];
+    const bool scatter = facts.scatter[site] != 0;
+    estimates.kinds[i] = scatter ? PointKind::kScatter : PointKind::kSurface;
+    estimates.radii[i] = scatter ? scatter_radius_of(sites, graph, site) : on_surface[site];
+  });
+  return estimates;
+}
+
+std::vector<SurfaceSample> sample_surfaces(const Sites& sites, const NeighbourGraph& graph, const SiteFacts& facts,
+                                           std::span<const float> estimated, const PartFrame& frame) {
+  const uint64_t per_sample = points_per_sample(frame.points);
+  std::vector<SurfaceSample> samples;
+  for (uint32_t site = 0; site < sites.size(); ++site) {
+    if (facts.scatter[site] != 0 || !facts.places[site].own || !is_sampled(sites, graph, site, per_sample)) continue;
+    samples.push_back({sites.positions[site], estimated[site]});
+  }
+  return samples;
+}
+
 /// Estimates the radius of every surfel and compares those stated with it, unless all are stated and kept.
 void find_radii(const Sites& sites, const NeighbourGraph& graph, const SiteFacts& facts,
                 const std::vector<glm::vec3>& normals, const PartFrame& frame, PartSurfels& made) {
   const surfel::SurfelCloud& cloud = made.cloud;
-  std::vector<float> estimated;
+  std::vector<float> on_surface;
   if (frame.radii == RadiusPolicy::kKeep && all_stated(cloud.radii)) {
-    made.estimated_radii = cloud.radii;
+    made.estimates = {cloud.radii, std::vector<PointKind>(cloud.size(), PointKind::kStated)};
   } else {
-    estimated = estimate_radii(sites, graph, normals);
-    made.estimated_radii.resize(cloud.size());
-    tbb::parallel_for(size_t{0}, cloud.size(),
-                      [&](size_t i) { made.estimated_radii[i] = estimated[sites.of_point[i]]; });
+    on_surface = estimate_radii(sites, graph, normals);
+    made.estimates = estimates_of(sites, graph, facts, on_surface);
+    made.samples = sample_surfaces(sites, graph, facts, on_surface, frame);
   }
-  made.radii = compare_radii(cloud, frame.inputs, sites, graph, facts.places, estimated);
+  made.radii = compare_radii(cloud, frame.inputs, sites, graph, facts.places, facts.scatter, on_surface);
 }
 
 /// Normals of the sites: those of the scan where it has them, estimated ones elsewhere.
@@ -143,10 +178,14 @@ void SurfelReport::add(const SurfelReport& part) {
 
 PartSurfels make_surfels(surfel::SurfelCloud cloud, const PartFrame& frame, PartSigns& signs, SurfelReport& report) {
   const Sites sites = find_sites(cloud.positions, frame.bounds);
-  const NeighbourGraph graph = find_neighbours(sites, kDegree);
-  const SiteFacts facts = find_site_facts(cloud, sites, frame);
+  SiteFacts facts = find_site_facts(cloud, sites, frame);
+  const NeighbourGraph graph =
+      find_neighbours(sites, kDegree, kWideNeighbours, [&](uint32_t site, std::span<const uint32_t> neighbours) {
+        facts.scatter[site] = is_scatter(sites, site, neighbours) ? 1 : 0;
+      });
   std::vector<glm::vec3> normals = site_normals(sites, graph, facts);
-  PartSurfels made{std::move(cloud), {}, {}, {}};
+  PartSurfels made;
+  made.cloud = std::move(cloud);
   find_radii(sites, graph, facts, normals, frame, made);
   made.trees = fill_normals(sites, graph, facts, std::move(normals), made.cloud, signs, report);
   return made;

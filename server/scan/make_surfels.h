@@ -6,9 +6,11 @@
 #include <optional>
 #include <vector>
 
+#include "scan/classify_points.h"
 #include "scan/orient_normals.h"
 #include "scan/signed_trees.h"
 #include "scan/stated_radii.h"
+#include "scan/surface_spacing.h"
 #include "scan/surfel_report.h"
 #include "surfel/surfel_cloud.h"
 
@@ -22,15 +24,17 @@ struct PartFrame {
   std::vector<std::optional<glm::dvec3>> sensors;  ///< scanner position of each source
   std::vector<size_t> inputs;                      ///< index of the input of each source
   RadiusPolicy radii = RadiusPolicy::kAuto;
+  uint64_t points = 0;  ///< of the whole cloud
 };
 
-/// The surfels of a part including its halo, before the signs of their normals and the radii are decided. All
-/// attributes except radii and weights are set.
+/// The surfels of a part including its halo, before what depends on the whole cloud: the signs of their normals, what
+/// stated radii mean, and the limits of estimated ones. All attributes except radii and weights are set.
 struct PartSurfels {
-  surfel::SurfelCloud cloud;           ///< radii: as stated, or none
-  std::vector<uint32_t> trees;         ///< for each surfel, the tree that determines the sign of its normal, or kNoTree
-  std::vector<float> estimated_radii;  ///< for each surfel; as stated where nobody asks for estimates
+  surfel::SurfelCloud cloud;    ///< radii: as stated, or none
+  std::vector<uint32_t> trees;  ///< for each surfel, the tree that determines the sign of its normal, or kNoTree
+  Estimates estimates;          ///< radii as stated where nobody asks for estimates
   std::vector<RadiusComparison> radii;  ///< of each input
+  std::vector<SurfaceSample> samples;   ///< of the part's own surface points
 };
 
 /// Makes surfels from clean points: estimates normals that are missing or NaN, and radii. `signs` receives the data

@@ -313,12 +313,18 @@ void for_each_neighbourhood(const Sites& sites, size_t degree, const std::functi
 }
 
 NeighbourGraph find_neighbours(const Sites& sites, size_t degree) {
+  return find_neighbours(sites, degree, degree, [](uint32_t, std::span<const uint32_t>) {});
+}
+
+NeighbourGraph find_neighbours(const Sites& sites, size_t degree, size_t visited, const NeighbourVisitor& visit) {
   NeighbourGraph graph;
   graph.degree = degree_for(sites, degree);
   graph.ids.resize(sites.size() * graph.degree);
-  for_each_neighbourhood(sites, degree, [&graph](const Neighbours& found) {
-    std::copy(found.ids.begin(), found.ids.end(),
-              graph.ids.begin() + static_cast<std::ptrdiff_t>(found.site * graph.degree));
+  const size_t searched = std::max(degree, visited);
+  for_each_neighbourhood(sites, searched, [&](const Neighbours& found) {
+    std::copy_n(found.ids.begin(), graph.degree,
+                graph.ids.begin() + static_cast<std::ptrdiff_t>(found.site * graph.degree));
+    visit(found.site, found.ids.first(std::min(visited, found.ids.size())));
   });
   return graph;
 }

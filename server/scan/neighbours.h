@@ -33,7 +33,14 @@ struct NeighbourGraph {
   [[nodiscard]] std::span<const uint32_t> of(size_t site) const { return {ids.data() + site * degree, degree}; }
 };
 
+/// Called with a site and its nearest other sites, nearest first. Several sites are visited at the same time.
+using NeighbourVisitor = std::function<void(uint32_t site, std::span<const uint32_t> neighbours)>;
+
 /// The result is the same for any number of threads.
 NeighbourGraph find_neighbours(const Sites& sites, size_t degree);
+
+/// The same, and calls `visit` with `visited` neighbours of every site (fewer if there are too few sites), of which
+/// the graph keeps the first `degree`.
+NeighbourGraph find_neighbours(const Sites& sites, size_t degree, size_t visited, const NeighbourVisitor& visit);
 
 }  // namespace surfcast::scan

@@ -15,29 +15,6 @@
 namespace surfcast::scan {
 namespace {
 
-/// Transforms world to local coordinates. Halved, because differences of the largest doubles would overflow.
-struct LocalFrame {
-  glm::dvec3 half_min;
-  double quarter_unit;
-
-  [[nodiscard]] glm::dvec3 to_local(const glm::dvec3& world) const {
-    // Smaller than any resolvable difference. Replaced by 0, or squares of differences could underflow.
-    constexpr double kTiny = 0x1p-200;
-    glm::dvec3 local = 0.5 * ((0.5 * world - half_min) / quarter_unit);
-    for (int axis = 0; axis < 3; ++axis) {
-      if (local[axis] < kTiny) local[axis] = 0;
-    }
-    return local;
-  }
-};
-
-/// The unit is a power of two, so that local coordinates are exact wherever differences of world coordinates are.
-LocalFrame local_frame(const geometry::Box& box) {
-  const glm::dvec3 half_size = 0.5 * box.max - 0.5 * box.min;
-  const double longest = std::max({half_size.x, half_size.y, half_size.z});
-  return {0.5 * box.min, longest > 0 ? std::ldexp(1.0, std::ilogb(longest)) : 0.25};
-}
-
 /// A point of the cloud, by the cell in which it lies.
 struct Entry {
   uint64_t code = 0;
@@ -128,8 +105,24 @@ std::vector<size_t> sites_before(const std::vector<uint8_t>& begins) {
 
 }  // namespace
 
+LocalFrame::LocalFrame(const geometry::Box& box) : half_min(0.5 * box.min) {
+  const glm::dvec3 half_size = 0.5 * box.max - 0.5 * box.min;
+  const double longest = std::max({half_size.x, half_size.y, half_size.z});
+  quarter_unit = longest > 0 ? std::ldexp(1.0, std::ilogb(longest)) : 0.25;
+}
+
+glm::dvec3 LocalFrame::to_local(const glm::dvec3& world) const {
+  // Smaller than any resolvable difference. Replaced by 0, or squares of differences could underflow.
+  constexpr double kTiny = 0x1p-200;
+  glm::dvec3 local = 0.5 * ((0.5 * world - half_min) / quarter_unit);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (local[axis] < kTiny) local[axis] = 0;
+  }
+  return local;
+}
+
 Sites find_sites(std::span<const glm::dvec3> world, const geometry::Box& box) {
-  const LocalFrame frame = local_frame(box);
+  const LocalFrame frame(box);
   const std::vector<Entry> entries = ordered_points(world, frame);
   std::vector<glm::dvec3> ordered(world.size());
   tbb::parallel_for(size_t{0}, world.size(), [&](size_t i) { ordered[i] = frame.to_local(world[entries[i].point]); });

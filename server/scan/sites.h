@@ -9,6 +9,18 @@
 
 namespace surfcast::scan {
 
+/// Transforms world coordinates to those of sites: 0 to at most 1 along the longest axis of a box. Halved, because
+/// differences of the largest doubles would overflow. The unit is a power of two, so that local coordinates are exact
+/// wherever differences of world coordinates are.
+struct LocalFrame {
+  glm::dvec3 half_min{0};
+  double quarter_unit = 0.25;
+
+  explicit LocalFrame(const geometry::Box& box);
+  /// `world` lies in the box.
+  [[nodiscard]] glm::dvec3 to_local(const glm::dvec3& world) const;
+};
+
 /// The distinct positions of a cloud ("sites"), in coordinates local to a frame: 0 to at most 1 along its longest axis.
 /// Points at the same position share one site, so no two sites are at distance 0. Differences and squares of local
 /// coordinates are accurate and far from overflow and underflow, whatever the world coordinates are. Sites are in

@@ -52,13 +52,12 @@ double median_radius(std::span<const uint32_t> sites, const std::vector<float>& 
   return sorted[sites.size() / 2];
 }
 
-/// Clamps to the range of float, because world units may exceed it. A radius is neither 0 nor infinite.
+}  // namespace
+
 float to_radius(double length) {
   using Limits = std::numeric_limits<float>;
   return static_cast<float>(std::clamp<double>(length, Limits::min(), Limits::max()));
 }
-
-}  // namespace
 
 std::vector<float> estimate_radii(const Sites& sites, const NeighbourGraph& graph,
                                   const std::vector<glm::vec3>& normals) {

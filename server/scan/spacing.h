@@ -18,4 +18,7 @@ namespace surfcast::scan {
 std::vector<float> estimate_radii(const Sites& sites, const NeighbourGraph& graph,
                                   const std::vector<glm::vec3>& normals);
 
+/// Clamps to the range of float, because world units may exceed it. A radius is neither 0 nor infinite.
+float to_radius(double length);
+
 }  // namespace surfcast::scan

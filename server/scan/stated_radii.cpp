@@ -6,8 +6,10 @@
 #include <numeric>
 
 #include <spdlog/fmt/fmt.h>
+#include <tbb/parallel_for.h>
 
 #include "base/contract.h"
+#include "scan/spacing.h"
 #include "surfel/even_sampling.h"
 
 namespace surfcast::scan {
@@ -35,6 +37,15 @@ void for_each_point(const surfel::SurfelCloud& cloud, std::span<const size_t> in
   for (size_t s = 0; s < cloud.sources.size(); ++s) {
     const surfel::SourceRange& source = cloud.sources[s];
     for (size_t i = source.first; i < source.first + source.count; ++i) use(i, inputs[s]);
+  }
+}
+
+/// The same on all threads.
+template <typename Use>
+void for_each_point_parallel(const surfel::SurfelCloud& cloud, std::span<const size_t> inputs, const Use& use) {
+  for (size_t s = 0; s < cloud.sources.size(); ++s) {
+    const surfel::SourceRange& source = cloud.sources[s];
+    tbb::parallel_for(source.first, source.first + source.count, [&, s](size_t i) { use(i, inputs[s]); });
   }
 }
 
@@ -71,15 +82,27 @@ float scaled(float radius, float factor) {
   return factor == 1 ? radius : std::clamp(factor * radius, Limits::min(), Limits::max());
 }
 
+float estimated_radius(const Estimates& estimates, size_t i, const SurfaceSpacing& spacing,
+                       const glm::dvec3& position) {
+  const PointKind kind = estimates.kinds[i];
+  const float radius = estimates.radii[i];
+  return kind == PointKind::kStated ? radius : to_radius(limited_radius(kind, double{radius}, spacing.at(position)));
+}
+
 }  // namespace
 
 bool is_radius(float number) {
   return std::isfinite(number) && number > 0;
 }
 
-void RadiusComparison::add_points(uint64_t stated, uint64_t missing) {
-  stated_ += stated;
-  missing_ += missing;
+void RadiusComparison::add_stated(uint64_t points, uint64_t scatter) {
+  stated_ += points;
+  stated_scatter_ += scatter;
+}
+
+void RadiusComparison::add_missing(uint64_t points, uint64_t scatter) {
+  missing_ += points;
+  missing_scatter_ += scatter;
 }
 
 void RadiusComparison::add_ratio(double ratio) {
@@ -90,7 +113,8 @@ void RadiusComparison::add_ratio(double ratio) {
 }
 
 void RadiusComparison::add(const RadiusComparison& part) {
-  add_points(part.stated_, part.missing_);
+  add_stated(part.stated_, part.stated_scatter_);
+  add_missing(part.missing_, part.missing_scatter_);
   histogram_.resize(std::max(histogram_.size(), part.histogram_.size()));
   std::transform(part.histogram_.begin(), part.histogram_.end(), histogram_.begin(), histogram_.begin(), std::plus<>());
 }
@@ -110,13 +134,16 @@ double RadiusComparison::quantile(double share) const {
 
 std::vector<RadiusComparison> compare_radii(const surfel::SurfelCloud& cloud, std::span<const size_t> inputs,
                                             const Sites& sites, const NeighbourGraph& graph,
-                                            std::span<const SitePlace> places, std::span<const float> needed) {
+                                            std::span<const SitePlace> places, std::span<const uint8_t> scatter,
+                                            std::span<const float> needed) {
   std::vector<RadiusComparison> comparisons;
   for_each_point(cloud, inputs, [&](size_t i, size_t input) {
     comparisons.resize(std::max(comparisons.size(), input + 1));
-    if (!places[sites.of_point[i]].own) return;
+    const uint32_t site = sites.of_point[i];
+    if (!places[site].own) return;
     const bool stated = !cloud.radii.empty() && is_radius(cloud.radii[i]);
-    comparisons[input].add_points(stated ? 1 : 0, stated ? 0 : 1);
+    if (stated) comparisons[input].add_stated(1, scatter[site]);
+    if (!stated) comparisons[input].add_missing(1, scatter[site]);
   });
   if (cloud.radii.empty() || needed.empty()) return comparisons;
   const std::vector<StatedSite> stated = find_stated(cloud, inputs, sites);
@@ -132,6 +159,8 @@ RadiusDecision decide_radii(const RadiusComparison& comparison, RadiusPolicy pol
   RadiusDecision decision;
   decision.stated = comparison.stated();
   decision.missing = comparison.missing();
+  decision.stated_scatter = comparison.stated_scatter();
+  decision.missing_scatter = comparison.missing_scatter();
   if (decision.stated == 0 || policy == RadiusPolicy::kEstimate) return decision;
   decision.outcome = RadiusOutcome::kKept;
   if (policy == RadiusPolicy::kKeep || comparison.ratios() < kFewest) return decision;
@@ -156,21 +185,25 @@ std::string describe(const RadiusDecision& decision) {
                      decision.stating->most);
 }
 
-void apply_radii(std::span<const RadiusDecision> decisions, std::span<const size_t> inputs,
-                 std::vector<float> estimated, surfel::SurfelCloud& cloud) {
-  SURFCAST_EXPECTS(estimated.size() == cloud.size());
+void apply_radii(std::span<const RadiusDecision> decisions, std::span<const size_t> inputs, const Estimates& estimates,
+                 const SurfaceSpacing& spacing, surfel::SurfelCloud& cloud) {
+  SURFCAST_EXPECTS(estimates.radii.size() == cloud.size() && estimates.kinds.size() == cloud.size());
   cloud.estimated_radii = std::all_of(decisions.begin(), decisions.end(), [](const RadiusDecision& decision) {
     return decision.outcome == RadiusOutcome::kEstimated;
   });
-  if (cloud.radii.empty()) {
-    cloud.radii = std::move(estimated);
-    return;
-  }
-  for_each_point(cloud, inputs, [&](size_t i, size_t input) {
+  cloud.radii.resize(cloud.size(), 0.0F);
+  std::vector<uint8_t> scatter(cloud.size());
+  for_each_point_parallel(cloud, inputs, [&](size_t i, size_t input) {
     const RadiusDecision& decision = decisions[input];
-    const bool use_stated = decision.outcome != RadiusOutcome::kEstimated && is_radius(cloud.radii[i]);
-    cloud.radii[i] = use_stated ? scaled(cloud.radii[i], decision.factor) : estimated[i];
+    if (decision.outcome != RadiusOutcome::kEstimated && is_radius(cloud.radii[i])) {
+      cloud.radii[i] = scaled(cloud.radii[i], decision.factor);
+    } else {
+      cloud.radii[i] = estimated_radius(estimates, i, spacing, cloud.positions[i]);
+      scatter[i] = estimates.kinds[i] == PointKind::kScatter ? 1 : 0;
+    }
   });
+  const bool any = std::find(scatter.begin(), scatter.end(), uint8_t{1}) != scatter.end();
+  if (any) cloud.scatter = std::move(scatter);
 }
 
 }  // namespace surfcast::scan

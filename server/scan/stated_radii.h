@@ -8,8 +8,10 @@
 #include <string>
 #include <vector>
 
+#include "scan/classify_points.h"
 #include "scan/neighbours.h"
 #include "scan/orient_normals.h"
+#include "scan/surface_spacing.h"
 #include "surfel/surfel_cloud.h"
 
 namespace surfcast::scan {
@@ -28,7 +30,9 @@ bool is_radius(float number);
 /// whole input, in any order.
 class RadiusComparison {
  public:
-  void add_points(uint64_t stated, uint64_t missing);
+  /// `scatter`: how many of them lie on no surface.
+  void add_stated(uint64_t points, uint64_t scatter);
+  void add_missing(uint64_t points, uint64_t scatter);
   /// `ratio` > 0: stated to needed.
   void add_ratio(double ratio);
   void add(const RadiusComparison& part);
@@ -36,6 +40,8 @@ class RadiusComparison {
   [[nodiscard]] uint64_t stated() const { return stated_; }    ///< points with a radius that is finite and positive
   [[nodiscard]] uint64_t missing() const { return missing_; }  ///< points without
   [[nodiscard]] uint64_t ratios() const;
+  [[nodiscard]] uint64_t stated_scatter() const { return stated_scatter_; }
+  [[nodiscard]] uint64_t missing_scatter() const { return missing_scatter_; }
   /// The ratio that a share of the ratios is below, with a relative error of at most 2^(1/128). There must be ratios.
   [[nodiscard]] double quantile(double share) const;
 
@@ -45,6 +51,8 @@ class RadiusComparison {
 
   uint64_t stated_ = 0;
   uint64_t missing_ = 0;
+  uint64_t stated_scatter_ = 0;
+  uint64_t missing_scatter_ = 0;
   std::vector<uint64_t> histogram_;  ///< of log2(ratio); empty without ratios
 };
 
@@ -52,9 +60,11 @@ class RadiusComparison {
 /// the part's own points, the square root of the quotient of the sums of squares of both, over the point and those of
 /// the six nearest sites that state a radius in the same input. Single radii may be off; what is covered from afar is
 /// the sum of areas. `inputs` has the input of each source of the cloud. An empty `needed` only counts points.
+/// `scatter`: 1 for sites on no surface.
 std::vector<RadiusComparison> compare_radii(const surfel::SurfelCloud& cloud, std::span<const size_t> inputs,
                                             const Sites& sites, const NeighbourGraph& graph,
-                                            std::span<const SitePlace> places, std::span<const float> needed);
+                                            std::span<const SitePlace> places, std::span<const uint8_t> scatter,
+                                            std::span<const float> needed);
 
 /// Stated radii in units of the spacing, which the needed radius is 1.08 times (surfel/even_sampling.h).
 struct RadiiInSpacings {
@@ -70,9 +80,15 @@ struct RadiusDecision {
   RadiusOutcome outcome = RadiusOutcome::kEstimated;
   uint64_t stated = 0;                     ///< points with a radius that is finite and positive
   uint64_t missing = 0;                    ///< points without; theirs are estimated, whatever the outcome
+  uint64_t stated_scatter = 0;             ///< those of the stated ones that lie on no surface
+  uint64_t missing_scatter = 0;            ///< and of the missing ones
   std::optional<RadiiInSpacings> stating;  ///< none: not compared
   float factor = 1;                        ///< on the stated radii, unless they are estimated
 
+  /// Points that are drawn as scatter: those with stated radii are discs.
+  [[nodiscard]] uint64_t scatter() const {
+    return missing_scatter + (outcome == RadiusOutcome::kEstimated ? stated_scatter : 0);
+  }
   [[nodiscard]] uint64_t estimated() const { return outcome == RadiusOutcome::kEstimated ? stated + missing : missing; }
 };
 
@@ -83,10 +99,11 @@ RadiusDecision decide_radii(const RadiusComparison& comparison, RadiusPolicy pol
 /// One line for the report, like "radii of 0.95 spacings, scaled by 1.14".
 std::string describe(const RadiusDecision& decision);
 
-/// Sets the radii of a cloud, which has those stated or none: by the decision for the input of each source, or from
-/// `estimated`, one for each surfel. `decisions` are those of all inputs, so that all parts of a cloud agree whether
-/// any radius comes from a source.
-void apply_radii(std::span<const RadiusDecision> decisions, std::span<const size_t> inputs,
-                 std::vector<float> estimated, surfel::SurfelCloud& cloud);
+/// Sets the radii of a cloud, which has those stated or none: by the decision for the input of each source, or as
+/// estimated for each surfel, within the limits of `spacing`. Tells the cloud which of the surfels with estimated radii
+/// are scatter. `decisions` are those of all inputs, so that all parts of a cloud agree whether any radius comes from a
+/// source.
+void apply_radii(std::span<const RadiusDecision> decisions, std::span<const size_t> inputs, const Estimates& estimates,
+                 const SurfaceSpacing& spacing, surfel::SurfelCloud& cloud);
 
 }  // namespace surfcast::scan

@@ -14,6 +14,7 @@ struct SurfelReport {
   uint64_t zero_normals = 0;  ///< dropped: the stored normal is zero or not finite
   uint64_t normals_estimated = 0;
   uint64_t radii_estimated = 0;  ///< set once the radii of all parts are decided
+  uint64_t scatter = 0;          ///< points that lie on no surface; set with radii_estimated
   bool oriented = false;
   std::vector<std::string> notes;  ///< one line for each attribute that was filled in for a scan without it
 

@@ -20,9 +20,14 @@
 #include "geometry/morton.h"
 #include "geometry/morton_tree.h"
 #include "shared/kernel.h"
+#include "surfel/even_sampling.h"
 
 namespace surfcast::surfel {
 namespace {
+
+/// The weight of scatter, which no sum of kernels normalises: that of a surfel of an even sampling.
+const auto kScatterWeight =
+    static_cast<float>(even_sampling_weight(SURFCAST_KERNEL_SIGMA) / per_surfel_scale(SURFCAST_KERNEL_SIGMA));
 
 /// Where too many sources are near, one in this many is kept.
 constexpr size_t kThinning = 4;
@@ -52,6 +57,7 @@ std::vector<Site> sort_sites(const SurfelCloud& cloud) {
     order[i] = {geometry::morton_code(root, cloud.positions[i]), i};
   });
   oneapi::tbb::parallel_sort(order);
+  std::erase_if(order, [&](const auto& entry) { return cloud.is_scatter(entry.second); });
   std::vector<Site> sites(order.size());
   oneapi::tbb::parallel_for(size_t{0}, order.size(), [&](size_t at) {
     const auto& [code, i] = order[at];
@@ -304,14 +310,14 @@ void add_sampled_kernels(std::span<const Site> sites, const Indices& dense, bool
 
 std::vector<float> normalization_weights(const SurfelCloud& cloud) {
   SURFCAST_EXPECTS(cloud.normals.size() == cloud.size() && cloud.radii.size() == cloud.size());
-  if (cloud.size() == 0) return {};
+  std::vector<float> weights(cloud.size(), kScatterWeight);
   const std::vector<Site> sites = sort_sites(cloud);
+  if (sites.empty()) return weights;
   std::vector<double> sums(sites.size(), 1.0);  // the kernel of a surfel at its own centre
   Indices all(sites.size());
   std::iota(all.begin(), all.end(), 0);
   const Indices dense = add_all_kernels(sites, all, cloud.oriented, sums);
   if (!dense.empty()) add_sampled_kernels(sites, dense, cloud.oriented, sums);
-  std::vector<float> weights(sites.size());
   oneapi::tbb::parallel_for(size_t{0}, sites.size(),
                             [&](size_t i) { weights[sites[i].surfel] = static_cast<float>(1 / sums[i]); });
   return weights;

@@ -11,7 +11,8 @@ namespace surfcast::surfel {
 /// runs over k itself and the surfels j around it that belong to the same surface. These have normals within 60 degrees
 /// of k's (of either sign if the cloud is not oriented), and the distance of k to their plane is less than their
 /// radius. r_j is the Gaussian of shaders/shared/kernel.h with its cutoff. u is measured on the plane of j, as its
-/// splat is drawn.
+/// splat is drawn. Scatter belongs to no surface: it has the weight of a surfel of an even sampling and does not count
+/// for others.
 ///
 /// The sum is exact where fewer than kMaxNeighbours surfels of similar radius are near. Denser places are sampled:
 /// every 4th (16th, ...) surfel along a Morton curve stands for 4 (16, ...). The error of the sum is then a few

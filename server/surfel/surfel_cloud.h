@@ -33,6 +33,9 @@ struct SurfelCloud {
   std::vector<glm::vec3> normals;     ///< unit
   std::vector<float> radii;           ///< world units; estimated ones follow scan/spacing.h
   std::vector<float> weights;         ///< per-surfel normalisation weights s_k (Ren 2002, section 7)
+  /// 1 for scatter: points that lie on no surface and are drawn as round splats that face the eye, not as discs. Empty
+  /// without scatter.
+  std::vector<uint8_t> scatter;
   std::optional<ColorAttribute> colors;
   std::vector<ScalarAttribute> scalars;
   std::vector<SourceRange> sources;  ///< in order; they cover every surfel
@@ -42,6 +45,7 @@ struct SurfelCloud {
   bool z_up = true;                  ///< the vertical axis is z (surveying); otherwise y (graphics)
 
   [[nodiscard]] size_t size() const { return positions.size(); }
+  [[nodiscard]] bool is_scatter(size_t i) const { return !scatter.empty() && scatter[i] != 0; }
   [[nodiscard]] geometry::Box bounds() const;
 };
 

@@ -26,8 +26,8 @@ namespace surfcast::layout {
 #define SURFCAST_SILHOUETTE_LANES 32
 // Texels (surfels) that one work group projects. Runs of a block are divided into chunks of this size.
 #define SURFCAST_CHUNK 128
-// Entries of a list from which on a work group draws its tile: one of SURFCAST_LIST_LENGTHS. A lane alone would come near
-// the limit of software GL for its loops (see render/tile_spans.h).
+// Entries of a list from which on a work group draws its tile: one of SURFCAST_LIST_LENGTHS. A lane alone would come
+// near the limit of software GL for its loops (see render/tile_spans.h).
 #define SURFCAST_LONG_LIST 3584
 // Depth slices into which the list of a tile may be divided. A list entry and the first tile of a splat hold the number
 // of a slice in the bits above SURFCAST_SLICE_SHIFT; below it are a splat's index, and a tile's row and column.
@@ -97,6 +97,7 @@ struct Chunk {
 #define SURFCAST_RUN_FINEST 0x10000u    // surfels of the block itself, not merged ones
 #define SURFCAST_RUN_COARSEST 0x20000u  // not merged any further
 #define SURFCAST_RUN_PAIRS 0x40000u     // each pair, from the first texel on, is merged to one surfel of another run
+#define SURFCAST_RUN_SCATTER 0x80000u   // scatter, in variants of the projection that draw it
 // Merged surfels replace their pair slightly early, because rounding could otherwise drop both.
 #define SURFCAST_SPACING_SLACK 0.99
 

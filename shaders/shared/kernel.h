@@ -37,6 +37,11 @@
 #define SURFCAST_VISIBILITY_DEPTH 1.0
 #define SURFCAST_VISIBILITY_FOOTPRINT 1.0
 
+// Scatter: points that lie on no surface, drawn as round splats that face the eye. The weight of a splat is multiplied
+// by 1 + (MINIFIED - 1) (1 - g)^POWER, so that a lone one covers the same area, in units of its r, at every distance.
+#define SURFCAST_SCATTER_MINIFIED 3.3
+#define SURFCAST_SCATTER_POWER 6.0
+
 // With per-pixel normalisation, pixels at silhouettes are the mean of four samples. The samples form a rotated grid
 // whose positions have VARIANCE (pixels squared) along each axis. Each sample is drawn with the rest of the prefilter's
 // variance, so the total filter is that of all other pixels. The coverage of a sample is scaled by a0 at mix(g', g,

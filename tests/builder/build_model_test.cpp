@@ -73,6 +73,7 @@ struct Surfel {
   float radius;
   float weight;
   int intensity;
+  bool scatter;
 };
 
 /// The leaves of a model, each surfel by its number.
@@ -90,8 +91,12 @@ std::map<uint32_t, Surfel> surfels_of(const fs::path& path) {
                                          [&name](const surfel::ScalarAttribute& s) { return s.name == name; });
         return std::visit([i](const auto& values) { return static_cast<uint32_t>(values[i]); }, scalar->values);
       };
-      surfels[value("number")] = {block->position(i), block->normals[i], block->radii[i], block->weights[i],
-                                  static_cast<int>(value("intensity"))};
+      surfels[value("number")] = {block->position(i),
+                                  block->normals[i],
+                                  block->radii[i],
+                                  block->weights[i],
+                                  static_cast<int>(value("intensity")),
+                                  block->is_scatter(i)};
     }
   }
   return surfels;
@@ -141,6 +146,36 @@ TEST_F(BuildModelTest, ManyPartsGiveTheSurfelsOfOne) {
   }
   // Cells of so few points have halos of two or three points: kernels reach beyond.
   EXPECT_LT(differing, expected.size() / 200);
+}
+
+/// Hills with bushes and strays over them.
+std::vector<glm::dvec3> hills_and_bushes(int side) {
+  std::vector<glm::dvec3> positions = hills_and_dome(side);
+  for (int bush = 0; bush < 9; ++bush) {
+    const glm::dvec3 corner(bush % 3 * side / 3.0, bush / 3 * side / 3.0, 5);
+    for (const glm::dvec3& p : testing::noise(600, 4)) positions.push_back(corner + p);
+    positions.emplace_back(corner + glm::dvec3(2, 2, 8));
+  }
+  return positions;
+}
+
+TEST_F(BuildModelTest, KindsAndRadiiDoNotDependOnTheParts) {
+  numbered(hills_and_bushes(120)).write(scan_);
+  const BuildReport whole = build({scan_}, model_);
+  const BuildReport parts = build({scan_}, other_, in_parts_of(12000));
+  EXPECT_GT(parts.parts, 3U);
+  EXPECT_GT(whole.scan.scatter, 4000U);
+  EXPECT_EQ(parts.scan.scatter, whole.scan.scatter);
+  const auto expected = surfels_of(model_);
+  const auto actual = surfels_of(other_);
+  size_t scatter = 0;
+  for (const auto& [number, one] : expected) {
+    const Surfel& other = actual.at(number);
+    EXPECT_EQ(other.scatter, one.scatter) << number;
+    EXPECT_NEAR(other.radius, one.radius, 0.001F * one.radius) << number;
+    scatter += one.scatter ? 1 : 0;
+  }
+  EXPECT_EQ(scatter, whole.scan.scatter);
 }
 
 TEST_F(BuildModelTest, SignsOfNormalsAgreeAcrossParts) {

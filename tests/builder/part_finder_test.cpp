@@ -15,13 +15,14 @@ using ::testing::ElementsAre;
 /// The root cube of side 16 in eight parts: its children.
 struct EightParts {
   geometry::RootCube root{glm::dvec3(0), 16};
-  PartFinder finder{children(), root};
+  uint64_t points = 1000000;  ///< of each part
+  PartFinder finder{children(points), root};
 
-  static std::vector<Part> children() {
+  static std::vector<Part> children(uint64_t points) {
     std::vector<Part> parts;
     for (uint32_t i = 0; i < 8; ++i) {
       const uint64_t side = uint64_t{1} << (3 * (geometry::kMortonDepth - 1));
-      parts.push_back({{ldc::OctreeKey{}.child(i)}, i * side, (i + 1) * side, 1});
+      parts.push_back({{ldc::OctreeKey{}.child(i)}, i * side, (i + 1) * side, points});
     }
     return parts;
   }
@@ -42,6 +43,12 @@ TEST(PartFinderTest, APointNearABorderIsInTheHalosOfItsNeighbours) {
   EXPECT_THAT(EightParts().parts_of({8.4, 4, 4}), ElementsAre(1, 0));
   EXPECT_THAT(EightParts().parts_of({7.4, 4, 4}), ElementsAre(0));
   EXPECT_EQ(EightParts().parts_of({8.1, 7.9, 8.1}).size(), 8U);
+}
+
+TEST(PartFinderTest, CellsOfFewPointsHaveHalosThatHoldTheirNeighbours) {
+  const EightParts few{.points = 1000};  // ten spacings of 0.8 along a side: neighbours lie within 1.76
+  EXPECT_THAT(few.parts_of({6.3, 4, 4}), ElementsAre(0, 1));
+  EXPECT_THAT(few.parts_of({6.2, 4, 4}), ElementsAre(0));
 }
 
 TEST(PartFinderTest, EveryPartSeesExactlyItsGrownCells) {

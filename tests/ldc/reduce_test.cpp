@@ -204,5 +204,84 @@ TEST(Reduce, SurfelsStayInTheirCellOnItsLattice) {
   }
 }
 
+CoarseSurfel scatter_at(const glm::dvec3& position, const glm::vec3& normal, float radius) {
+  CoarseSurfel surfel = surfel_at(position, normal, radius);
+  surfel.scatter = true;
+  return surfel;
+}
+
+double area_of(const std::vector<CoarseSurfel>& surfels) {
+  double area = 0;
+  for (const CoarseSurfel& s : surfels) area += double{s.radius} * double{s.radius};
+  return area;
+}
+
+/// A ball of scatter in the unit cube: `count` points with splats of 0.3 times the distance to the third nearest.
+std::vector<CoarseSurfel> crown(size_t count) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> even(-1, 1);
+  const double density = static_cast<double>(count) / (4 * std::numbers::pi / 3 * 0.064);
+  const auto radius = static_cast<float>(0.3 * 0.86 / std::cbrt(density));
+  std::vector<CoarseSurfel> surfels;
+  while (surfels.size() < count) {
+    const glm::dvec3 p(even(random), even(random), even(random));
+    const glm::vec3 n(glm::normalize(glm::dvec3(even(random), even(random), even(random))));
+    if (glm::length(p) < 1) surfels.push_back(scatter_at(0.5 + 0.4 * p, n, radius));
+  }
+  return surfels;
+}
+
+TEST(Reduce, ScatterKeepsItsAreaWhateverItsNormals) {
+  const std::vector<CoarseSurfel> fine = crown(100000);
+  const std::vector<CoarseSurfel> coarse = reduced(fine);
+  EXPECT_LT(coarse.size(), fine.size() / 3);
+  EXPECT_NEAR(area_of(coarse) / area_of(fine), 1, 0.02);
+  for (const CoarseSurfel& s : coarse) {
+    ASSERT_TRUE(s.scatter);
+    ASSERT_NEAR(glm::length(s.normal), 1, 1e-5);
+  }
+}
+
+TEST(Reduce, ScatterFillsItsCubeAtMost) {
+  std::vector<CoarseSurfel> dense;
+  for (int i = 0; i < 4000; ++i) {
+    dense.push_back(scatter_at(glm::dvec3(0.5 + 0.5 * kRay) + 0.9e-4 * kRay * i, {0, 0, 1}, 0.1F * kRay));
+  }
+  for (const CoarseSurfel& s : reduced(dense)) EXPECT_LE(s.radius, 0.5 * kRay);
+}
+
+TEST(Reduce, AWireStaysThinnerThanAFourthOfTheRaySpacing) {
+  std::vector<CoarseSurfel> wire;
+  for (int i = 0; i < 3000; ++i) {
+    wire.push_back(scatter_at({0.1 + 0.8 * i / 3000, 0.5 + 0.5 * kRay, 0.5 + 0.5 * kRay}, {0, 0, 1}, 1e-4F));
+  }
+  const std::vector<CoarseSurfel> coarse = reduced(wire);
+  EXPECT_LT(coarse.size(), 100U);
+  EXPECT_NEAR(area_of(coarse) / area_of(wire), 1, 1e-4);
+  for (const CoarseSurfel& s : coarse) EXPECT_LT(s.radius, 0.25 * kRay);
+}
+
+TEST(Reduce, ScatterIsNeverMergedIntoTheSurfaceBehindIt) {
+  std::vector<CoarseSurfel> scene = sheet(256, {0.5, 0.5, 0.5});
+  const std::vector<CoarseSurfel> alone = reduced(scene);
+  for (int i = 0; i < 500; ++i) {
+    scene.push_back(scatter_at({0.3 + 0.0008 * i, 0.4, 0.5 + 0.1 * kRay}, {0, 0, 1}, 1e-4F));
+    scene.back().light = {1, 0, 0};
+  }
+  std::vector<CoarseSurfel> discs;
+  double area = 0;
+  for (const CoarseSurfel& s : reduced(scene)) {
+    if (!s.scatter) discs.push_back(s);
+    if (s.scatter) area += double{s.radius} * double{s.radius};
+    EXPECT_EQ(s.light.r, s.scatter ? 1 : 0);
+  }
+  ASSERT_EQ(discs.size(), alone.size());
+  for (size_t i = 0; i < discs.size(); ++i) {
+    EXPECT_EQ(discs[i].position, alone[i].position);
+    EXPECT_EQ(discs[i].radius, alone[i].radius);
+  }
+  EXPECT_NEAR(area / (500 * 1e-8), 1, 1e-4);
+}
+
 }  // namespace
 }  // namespace surfcast::ldc

@@ -96,10 +96,10 @@ std::optional<glm::dvec3> brute_force(const std::vector<model::DecodedBlock>& le
   double surface = std::numeric_limits<double>::infinity();
   for (const model::DecodedBlock& block : leaves) {
     const auto& classes = std::get<std::vector<uint8_t>>(block.scalars[1].values);
-    const float widest = surfel::largest_drawn_radius(block.radii);
+    const float widest = surfel::largest_drawn_radius(block.radii, block.scatter);
     for (size_t i = 0; i < block.size(); ++i) {
       const glm::dvec3 o = query.frame.to_camera(block.position(i));
-      const glm::dvec3 n = query.frame.rotate(glm::dvec3(block.normals[i]));
+      const glm::dvec3 n = block.is_scatter(i) ? -glm::normalize(o) : query.frame.rotate(glm::dvec3(block.normals[i]));
       if (glm::dot(n, o) >= 0 || query.hidden_classes[classes[i]] || !query.clip.shows(block.position(i))) continue;
       const double radius = std::min(block.radii[i], widest);
       // With the visibility prefilter, the quadratic form of the filter is that of the disc.
@@ -153,6 +153,28 @@ TEST_F(PickSurfel, FindsTheSameWithinTheScene) {
   const model::ModelFile model = model_of(cloud);
   const geometry::Camera low{kUtm.offset + glm::dvec3(60, 60, -58), kUtm.offset + glm::dvec3(0, 0, -50), {0, 0, 1}, 80};
   EXPECT_GT(compare(model, {}, {}, low), 30);
+}
+
+TEST_F(PickSurfel, ScatterIsPickedFromAllSidesAsItIsDrawn) {
+  surfel::SurfelCloud cloud = survey();
+  for (size_t i = 0; i < cloud.size(); ++i) cloud.scatter.push_back(i % 3 == 0 ? 1 : 0);
+  const model::ModelFile model = model_of(cloud);
+  EXPECT_GT(compare(model, {}, {}, oblique()), 40);
+  const geometry::Camera inside{kUtm.offset, kUtm.offset + glm::dvec3(1, 0.3, 0.2), {0, 0, 1}, 60};
+  EXPECT_GT(compare(model, {}, {}, inside), 10) << "the discs of the sphere show their backs";
+}
+
+TEST_F(PickSurfel, AStrayFacesTheEyeAndKeepsItsNormal) {
+  surfel::SurfelCloud cloud = testing::single_surfel({0, 0, 0}, {0, 0, 1}, 1, {1, 2, 3});
+  const kinds::PickQuery side = query_at(160.5, 120.5, {{0, -50, 0}, {0, 0, 0}, {0, 0, 1}, 5});
+  const kinds::PickQuery edge = query_at(160.5, 100.5, {{0, -50, 0}, {0, 0, 0}, {0, 0, 1}, 5});
+  EXPECT_FALSE(pick(model_of(cloud), edge)) << "a disc is seen from its edge";
+  cloud.scatter = {1};
+  const model::ModelFile model = model_of(cloud);
+  ASSERT_TRUE(pick(model, side));
+  const std::optional<kinds::PickedSurfel> picked = pick(model, edge);
+  ASSERT_TRUE(picked);
+  EXPECT_NEAR(glm::dot(picked->normal, glm::dvec3(0, 0, 1)), 1, 1e-6);
 }
 
 TEST_F(PickSurfel, ClipsAndHiddenClassesAreLookedThrough) {

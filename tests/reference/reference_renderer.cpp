@@ -111,17 +111,21 @@ class TiledScene {
            const KernelParameters& kernel) {
     const glm::dvec3 o = frame_.to_camera(cloud.positions[i]);
     const glm::dvec3 n = frame_.rotate(glm::dvec3(cloud.normals[i]));
-    if (cloud.oriented && glm::dot(n, o) > 0) return;
-    const auto splat = Splat::make(o, n, cloud.radii[i], frame_.eta, sampling_.prefilter, kernel);
+    const bool scatter = cloud.is_scatter(i);
+    if (cloud.oriented && !scatter && glm::dot(n, o) > 0) return;
+    const glm::dvec3 drawn_n = scatter ? -glm::normalize(o) : n;
+    const auto splat = Splat::make(o, drawn_n, cloud.radii[i], frame_.eta, sampling_.prefilter, kernel);
     if (!splat) return;
     const PixelRect bounds = intersect(grown(pixel_bounds(*splat, frame_), sampling_.reach), window_);
     if (bounds.x0 >= bounds.x1 || bounds.y0 >= bounds.y1) return;
     const glm::dvec3 facing = glm::dot(n, o) > 0 ? -n : n;
     const glm::dvec3 color = cloud.colors ? linear_color(*cloud.colors, i) : glm::dvec3(kAlbedo);
     const bool per_surfel = request.normalization == picture::Normalization::kSurfel;
+    const double minified = 1 - splat->gain(o / o.z, sampling_.whole_prefilter);
+    const double area = scatter ? 1 + (kernel.scatter_minified - 1) * std::pow(minified, kernel.scatter_power) : 1;
     surfels_.push_back({*splat, color, facing,
-                        per_surfel ? surfel::per_surfel_scale(kernel.sigma) * cloud.weights[i]
-                                   : surfel::even_sampling_weight(kernel.sigma)});
+                        area * (per_surfel ? surfel::per_surfel_scale(kernel.sigma) * cloud.weights[i]
+                                           : surfel::even_sampling_weight(kernel.sigma))});
     bounds_.push_back(bounds);
     bin(static_cast<uint32_t>(surfels_.size() - 1), bounds);
   }

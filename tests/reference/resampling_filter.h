@@ -21,6 +21,8 @@ struct KernelParameters {
   double visibility_footprint = SURFCAST_VISIBILITY_FOOTPRINT;
   double coverage_minified = SURFCAST_COVERAGE_MINIFIED;
   double coverage_magnified = SURFCAST_COVERAGE_MAGNIFIED;
+  double scatter_minified = SURFCAST_SCATTER_MINIFIED;
+  double scatter_power = SURFCAST_SCATTER_POWER;
   double silhouette_variance = SURFCAST_SILHOUETTE_VARIANCE;
   double silhouette_coverage = SURFCAST_SILHOUETTE_COVERAGE;
   double silhouette_jump = SURFCAST_SILHOUETTE_JUMP;

@@ -7,6 +7,7 @@
 #include <glm/trigonometric.hpp>
 #include <glm/vec4.hpp>
 #include <memory>
+#include <numbers>
 #include <ostream>
 #include <string>
 
@@ -248,6 +249,72 @@ TEST_F(AccuracyGLTest, CrowdedTilesBehindALargeSurfelAgreeWithTheReference) {
     expect_reference(scene.name, model, scene.request, 55);
   }
   renderer_->release_model(*model);
+}
+
+/// A scene of which one surfel in `step` is scatter, with splats of a share of its radius.
+Scene scattered(const std::string& name, size_t step, float share) {
+  Scene scene = reference::make_scene(name);
+  scene.name += "_scattered";
+  scene.cloud.scatter.resize(scene.cloud.size());
+  for (size_t i = 0; i < scene.cloud.size(); i += step) {
+    scene.cloud.scatter[i] = 1;
+    scene.cloud.radii[i] *= share;
+  }
+  return scene;
+}
+
+TEST_F(AccuracyGLTest, ScatterAgreesWithTheReference) {
+  for (const char* name : {"checker_oblique", "checker_grazing", "checker_close", "checker_far", "lit_sphere"}) {
+    for (const bool all : {false, true}) {
+      Scene scene = scattered(name, all ? 1 : 2, 0.4F);
+      const auto model = model_of(scene);
+      expect_reference(scene.name + (all ? "_all" : ""), model, scene.request, 45);
+      scene.request.normalization = picture::Normalization::kSurfel;
+      expect_reference(scene.name + (all ? "_all_per_surfel" : "_per_surfel"), model, scene.request, 45);
+      renderer_->release_model(*model);
+    }
+  }
+}
+
+TEST_F(AccuracyGLTest, ScatterAtSilhouettesAgreesWithTheReference) {
+  Scene scene = scattered("checker_sphere", 2, 0.4F);
+  scene.request.silhouettes = true;
+  const auto model = model_of(scene);
+  expect_reference("scatter_silhouettes", model, scene.request, 45);
+  renderer_->release_model(*model);
+}
+
+/// One surfel that is seen from its edge, at this distance, in pictures of 64 x 64 pixels.
+Scene stray(double distance, bool scatter) {
+  Scene scene;
+  scene.name = "stray";
+  scene.cloud.positions = {{0, 0, 0}};
+  scene.cloud.normals = {{0, 0, 1}};
+  scene.cloud.radii = {1};
+  scene.cloud.colors = surfel::ColorAttribute{8, {{255, 255, 255}}};
+  scene.cloud.sources = {{"stray", 0, 1, std::nullopt}};
+  scene.cloud.oriented = true;
+  if (scatter) scene.cloud.scatter = {1};
+  scene.request.camera = geometry::Camera{{0, -distance, 0}, {0, 0, 0}, {0, 0, 1}, 20};
+  scene.request.width = scene.request.height = 64;
+  return scene;
+}
+
+/// Pixels that are covered, in units of the square of the surfel's radius in pixels.
+double covered_area(const DrawnPicture& drawn, double distance) {
+  const double eta = 32 / std::tan(10 * std::numbers::pi / 180);
+  double sum = 0;
+  for (const uint8_t coverage : drawn.coverage) sum += coverage / 255.0;
+  return sum / std::pow(eta / distance, 2);
+}
+
+TEST_F(AccuracyGLTest, AStraySeenFromItsEdgeIsRoundAndCoversAsMuchFarAwayAsNear) {
+  const double near = covered_area(draw(stray(12, true)), 12);
+  EXPECT_NEAR(near, 2.9, 0.1);
+  for (const double distance : {30.0, 60.0, 100.0, 150.0, 200.0, 400.0}) {
+    EXPECT_NEAR(covered_area(draw(stray(distance, true)), distance), near, 0.1 * near) << distance;
+  }
+  EXPECT_LT(covered_area(draw(stray(12, false)), 12), 1) << "a disc is as thin as the prefilter";
 }
 
 TEST_F(AccuracyGLTest, OneColorIsThatColorWhereFullyCovered) {

@@ -21,6 +21,7 @@ inline surfel::SurfelCloud decoded_cloud(const model::ModelFile& model) {
       cloud.normals.push_back(block->normals[i]);
       cloud.radii.push_back(block->radii[i]);
       cloud.weights.push_back(block->weights[i]);
+      cloud.scatter.push_back(block->is_scatter(i) ? 1 : 0);
       if (cloud.colors) cloud.colors->values.push_back(block->colors[i]);
     }
   }

@@ -2,8 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <random>
 #include <set>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -165,6 +167,63 @@ TEST(MergeLevels, TheRadiiOfAChunkHoldThoseOfItsSurfels) {
       EXPECT_LE(run.pairs ? std::hypot(own, sequence.surfels[(run.first + i) ^ 1].radius) : own, radii.largest_merged);
     }
   }
+}
+
+/// Noise of which one surfel in three is scatter, with normals of all directions.
+std::vector<MergedSurfel> mixed(size_t count) {
+  std::vector<MergedSurfel> surfels = noise(count, 8);
+  for (size_t i = 0; i < surfels.size(); i += 3) {
+    surfels[i].scatter = true;
+    surfels[i].radius *= 0.3F;
+    if (i % 2 == 0) surfels[i].normal = -surfels[i].normal;
+  }
+  return surfels;
+}
+
+TEST(MergeSurfels, ScatterIsMergedWithScatterAloneWhateverItsNormals) {
+  std::vector<MergedSurfel> two{{{0, 0, 0}, {0, 0, 1}, 1, 0.5F, glm::vec3(0), 7, true},
+                                {{1, 0, 0}, {0, 0, -1}, 1, 0.5F, glm::vec3(1), 9, true}};
+  const MergedLevel merged = merge_surfels(two, true);
+  ASSERT_EQ(merged.surfels.size(), 1U);
+  EXPECT_TRUE(merged.surfels[0].scatter);
+  EXPECT_NEAR(merged.surfels[0].radius, std::sqrt(2.0), 1e-6);
+  EXPECT_NEAR(glm::length(merged.surfels[0].normal), 1, 1e-6);
+  two[1].scatter = false;
+  two[1].normal = {0, 0, 1};
+  EXPECT_EQ(merge_surfels(two, true).surfels.size(), 2U);
+}
+
+TEST(MergeLevels, ScatterHasRunsOfItsOwn) {
+  const SurfelSequence sequence = merge_levels(mixed(5000), true);
+  size_t scatter = 0;
+  for (const PackedRun& run : sequence.runs) {
+    EXPECT_TRUE(!run.pairs || (run.first % 2 == 0 && run.count % 2 == 0));
+    for (uint32_t i = run.first; i < run.first + run.count; ++i) {
+      ASSERT_EQ(sequence.surfels[i].scatter, run.scatter) << i;
+      scatter += run.scatter ? 1 : 0;
+    }
+  }
+  EXPECT_GT(scatter, 5000U / 3);
+}
+
+TEST(MergeLevels, AreasOfScatterAndDiscsEachStayAtEverySpacing) {
+  const std::vector<MergedSurfel> surfels = mixed(5000);
+  const auto areas = [](const std::vector<MergedSurfel>& all) {
+    std::vector<MergedSurfel> scatter;
+    std::copy_if(all.begin(), all.end(), std::back_inserter(scatter), [](const MergedSurfel& s) { return s.scatter; });
+    return std::pair(area(scatter), area(all) - area(scatter));
+  };
+  const SurfelSequence sequence = merge_levels(surfels, true);
+  const auto expected = areas(surfels);
+  for (float wanted = 0.1F; wanted < 5; wanted *= 1.5F) {
+    const auto actual = areas(drawn(sequence, wanted));
+    EXPECT_NEAR(actual.first / expected.first, 1, 0.05) << wanted;
+    EXPECT_NEAR(actual.second / expected.second, 1, 0.05) << wanted;
+  }
+}
+
+TEST(MergeLevels, WithoutScatterTheRunsAreAsBefore) {
+  for (const PackedRun& run : merge_levels(noise(5000, 6), true).runs) EXPECT_FALSE(run.scatter);
 }
 
 }  // namespace

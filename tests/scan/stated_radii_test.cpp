@@ -75,9 +75,9 @@ struct Decided {
     SurfelReport report;
     PartSurfels made = make_surfels(inputs.cloud, frame, signs, report);
     for (const RadiusComparison& comparison : made.radii) decisions.push_back(decide_radii(comparison, policy));
-    estimated = made.estimated_radii;
+    estimated = made.estimates.radii;
     cloud = std::move(made.cloud);
-    apply_radii(decisions, frame.inputs, std::move(made.estimated_radii), cloud);
+    apply_radii(decisions, frame.inputs, made.estimates, SurfaceSpacing(made.samples, frame.bounds), cloud);
   }
   Decided(const Positions& positions, const RadiusAt& radius, RadiusPolicy policy = RadiusPolicy::kAuto)
       : Decided(
@@ -244,8 +244,10 @@ TEST(RadiusComparisonTest, PartsAddUpInAnyOrder) {
     whole.add_ratio(ratio);
     (i % 2 == 1 ? odd : even).add_ratio(ratio);
   }
-  odd.add_points(500, 1);
-  even.add_points(500, 2);
+  odd.add_stated(500, 0);
+  odd.add_missing(1, 0);
+  even.add_stated(500, 0);
+  even.add_missing(2, 0);
   RadiusComparison one = odd;
   one.add(even);
   RadiusComparison other = even;

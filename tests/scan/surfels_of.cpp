@@ -36,7 +36,7 @@ surfel::SurfelCloud cloud_of(scan::ScanPoints points, std::vector<surfel::Source
 
 }  // namespace
 
-surfel::SurfelCloud surfels_of(std::vector<WholeScan> scans, scan::SurfelReport& report) {
+surfel::SurfelCloud surfels_of(std::vector<WholeScan> scans, scan::SurfelReport& report, scan::RadiusPolicy radii) {
   std::vector<scan::ScanSchema> schemas;
   for (WholeScan& scan : scans) {
     schemas.push_back(schema_of(scan));
@@ -46,6 +46,7 @@ surfel::SurfelCloud surfels_of(std::vector<WholeScan> scans, scan::SurfelReport&
   report.notes = scan::describe_fillings(schemas, merged);
   scan::ScanPoints all;
   scan::PartFrame frame;
+  frame.radii = radii;
   std::vector<surfel::SourceRange> sources;
   for (WholeScan& scan : scans) {
     report.points_read += scan.size();
@@ -66,11 +67,13 @@ surfel::SurfelCloud surfels_of(std::vector<WholeScan> scans, scan::SurfelReport&
   scan::PartSurfels surfels = scan::make_surfels(std::move(cloud), frame, signs[0], report);
   scan::apply_signs(scan::resolve_signs(signs, {frame.bounds, merged.z_up, merged.normals}), 0, surfels);
   std::vector<scan::RadiusDecision> decisions;
-  for (const scan::RadiusComparison& radii : surfels.radii) {
-    decisions.push_back(scan::decide_radii(radii, frame.radii));
+  for (const scan::RadiusComparison& comparison : surfels.radii) {
+    decisions.push_back(scan::decide_radii(comparison, radii));
     report.radii_estimated += decisions.back().estimated();
+    report.scatter += decisions.back().scatter();
   }
-  scan::apply_radii(decisions, frame.inputs, std::move(surfels.estimated_radii), surfels.cloud);
+  scan::apply_radii(decisions, frame.inputs, surfels.estimates, scan::SurfaceSpacing(surfels.samples, frame.bounds),
+                    surfels.cloud);
   return surfels.cloud;
 }
 

@@ -1,5 +1,6 @@
 #include "surfel/normalization_weights.h"
 
+#include <algorithm>
 #include <cmath>
 #include <ctime>
 #include <glm/geometric.hpp>
@@ -8,6 +9,7 @@
 #include <gtest/gtest.h>
 
 #include "shared/kernel.h"
+#include "surfel/even_sampling.h"
 
 namespace surfcast::surfel {
 namespace {
@@ -162,6 +164,23 @@ TEST(NormalizationWeights, DoNotChangeWithTheScaleOrThePlaceOfTheModel) {
     for (glm::dvec3& p : scaled.positions) p = (p + glm::dvec3(4194304, -1024, 7)) * scale;
     for (float& r : scaled.radii) r *= static_cast<float>(scale);
     EXPECT_EQ(normalization_weights(scaled), expected);
+  }
+}
+
+TEST(NormalizationWeights, ScatterNeitherHasNorIsANeighbour) {
+  SurfelCloud cloud;
+  for (int i = 0; i < 400; ++i) add_surfel(cloud, {i % 20, i / 20, 0}, 1.1);
+  const std::vector<float> without = normalization_weights(cloud);
+  SurfelCloud more = cloud;
+  for (int i = 0; i < 50; ++i) add_surfel(more, {10 + 0.01 * i, 10, 0.01 * i});
+  more.scatter.assign(more.size(), 0);
+  std::fill(more.scatter.begin() + 400, more.scatter.end(), 1);
+  const std::vector<float> with = normalization_weights(more);
+  EXPECT_TRUE(std::equal(without.begin(), without.end(), with.begin()));
+  for (size_t i = 400; i < with.size(); ++i) {
+    // Under either normalisation the same.
+    EXPECT_NEAR(double{with[i]} * per_surfel_scale(SURFCAST_KERNEL_SIGMA), even_sampling_weight(SURFCAST_KERNEL_SIGMA),
+                1e-6);
   }
 }
 
