@@ -19,6 +19,8 @@ Json document_of(const wire::PickResult& result) {
   if (result.has_color()) document["color"] = {result.color().red(), result.color().green(), result.color().blue()};
   document["radius"] = result.radius();
   document["distance"] = result.distance();
+  document["depth"] = result.depth();
+  document["surfel"] = result.surfel();
   document["attributes"] = Json::object();
   for (const wire::AttributeValue& value : result.attributes()) {
     document["attributes"][value.attribute()] = value.value();

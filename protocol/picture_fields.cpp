@@ -1,8 +1,10 @@
 #include "protocol/picture_fields.h"
 
+#include <algorithm>
 #include <array>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "protocol/display_fields.h"
 #include "protocol/parse.h"
@@ -18,6 +20,8 @@ constexpr std::array kFields{
     PictureField{"resolution", "resolution", "W,H", "size of the picture, pixels (default 1280,720)"},
     PictureField{"format", "format", "png|jpg|webp|exr", "format of the picture file"},
     PictureField{"quality", "quality", "1..100", "quality of JPEG and WebP (default 90)"},
+    PictureField{"channels", "channels", "NAME,NAME,...",
+                 "add channels to an EXR file: depth, normal, position, coverage, classification, surfel", false, true},
     PictureField{"normalization", "normalization", "pixel|surfel",
                  "normalization of overlapping splats, per pixel or per surfel (default pixel)"},
     PictureField{"filter", "filter", "ewa|none", "anti-aliasing prefilter (default ewa)"},
@@ -64,6 +68,15 @@ constexpr std::array kShadings{
     Choice<wire::Shading>{"auto", wire::SHADING_AUTO},
     Choice<wire::Shading>{"unlit", wire::SHADING_UNLIT},
     Choice<wire::Shading>{"lit", wire::SHADING_LIT},
+};
+
+constexpr std::array kChannels{
+    Choice<wire::Channel>{"depth", wire::CHANNEL_DEPTH},
+    Choice<wire::Channel>{"normal", wire::CHANNEL_NORMAL},
+    Choice<wire::Channel>{"position", wire::CHANNEL_POSITION},
+    Choice<wire::Channel>{"coverage", wire::CHANNEL_COVERAGE},
+    Choice<wire::Channel>{"classification", wire::CHANNEL_CLASSIFICATION},
+    Choice<wire::Channel>{"surfel", wire::CHANNEL_SURFEL},
 };
 
 template <typename Choices>
@@ -124,6 +137,19 @@ bool set_background(wire::DrawPicture& picture, std::string_view text) {
   return true;
 }
 
+bool set_channels(wire::DrawPicture& picture, std::string_view text) {
+  std::vector<int> channels;
+  for (size_t end = 0; end != std::string_view::npos;) {
+    end = text.find(',');
+    const auto channel = choose(kChannels, text.substr(0, end));
+    if (!channel) return false;
+    channels.push_back(*channel);
+    text.remove_prefix(std::min(end, text.size() - 1) + 1);
+  }
+  picture.mutable_channels()->Assign(channels.begin(), channels.end());
+  return true;
+}
+
 template <typename Choices, typename Setter>
 bool set_choice(const Choices& choices, std::string_view text, Setter set) {
   const auto value = choose(choices, text);
@@ -139,6 +165,7 @@ bool set_by_name(wire::DrawPicture& picture, std::string_view name, std::string_
   if (name == "resolution") return set_resolution(picture, text);
   if (name == "format") return set_choice(kFormats, text, [&](auto value) { picture.set_format(value); });
   if (name == "quality") return set_quality(picture, text);
+  if (name == "channels") return set_channels(picture, text);
   if (name == "normalization") {
     return set_choice(kNormalizations, text, [&](auto value) { picture.set_normalization(value); });
   }

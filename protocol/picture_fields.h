@@ -16,6 +16,7 @@ struct PictureField {
   std::string_view form;  ///< format of a value
   std::string_view help;
   bool several = false;  ///< takes a list separated by ';'; the flag may be repeated
+  bool file = false;     ///< only where a picture file is written: not a flag of views and picks
 };
 
 /// All fields, in the order of the help text.

@@ -103,6 +103,7 @@ void RequestFlags::add_to(CLI::App& command) {
       ->envname(environment_name("output"))
       ->type_name("FILE");
   add_view_flags_to(command);
+  add_fields_to(command, true);
   command.add_option("--stats", stats_, "write the statistics of the picture as JSON")
       ->envname(environment_name("stats"))
       ->type_name("FILE");
@@ -119,7 +120,13 @@ void RequestFlags::add_view_flags_to(CLI::App& command) {
   command.add_option("--camera", camera_file_, "camera as JSON: position, focal_point, view_up, view_angle")
       ->envname(environment_name("camera"))
       ->type_name("FILE");
+  add_fields_to(command, false);
+}
+
+/// Adds the fields that are of picture files only, or all others.
+void RequestFlags::add_fields_to(CLI::App& command, bool file) {
   for (const PictureField& field : picture_fields()) {
+    if (field.file != file) continue;
     std::string& value = values_[std::string(field.name)];
     CLI::Option* option = command.add_option("--" + std::string(field.flag), value, help_of(field, value))
                               ->envname(environment_name(field.flag))
@@ -143,7 +150,11 @@ Result<wire::FileFormat> RequestFlags::format() const {
 }
 
 Status RequestFlags::check() const {
-  if (const Result<wire::FileFormat> chosen = format(); !chosen) return fail(chosen.error());
+  const Result<wire::FileFormat> chosen = format();
+  if (!chosen) return fail(chosen.error());
+  if (!values_.at("channels").empty() && *chosen != wire::FILE_FORMAT_EXR) {
+    return fail(ErrorKind::kInvalidInput, "--channels needs a picture in EXR format");
+  }
   if (!path_.empty()) {
     if (!stats_.empty()) return fail(ErrorKind::kInvalidInput, "--stats is of one picture, and --path draws many");
     if (const Result<std::string> name = frame_name(output_, 0); !name) return fail(name.error());
@@ -162,14 +173,16 @@ Status RequestFlags::check_view_flags() const {
 }
 
 Result<wire::DrawPicture> RequestFlags::request(std::string_view model) const {
-  Result<wire::DrawPicture> picture = view_request(model);
   const Result<wire::FileFormat> chosen = format();
   SURFCAST_EXPECTS(chosen.has_value());
-  if (picture) picture->set_format(*chosen);
-  return picture;
+  return request(model, *chosen);
 }
 
 Result<wire::DrawPicture> RequestFlags::view_request(std::string_view model) const {
+  return request(model, std::nullopt);
+}
+
+Result<wire::DrawPicture> RequestFlags::request(std::string_view model, std::optional<wire::FileFormat> format) const {
   wire::DrawPicture picture;
   picture.set_model(std::string(model));
   if (!camera_file_.empty()) {
@@ -181,6 +194,7 @@ Result<wire::DrawPicture> RequestFlags::view_request(std::string_view model) con
     if (text.empty()) continue;
     if (Status status = set_picture_field(picture, name, text); !status) return fail(status.error());
   }
+  if (format) picture.set_format(*format);
   if (Status status = check_picture(picture); !status) return fail(status.error());
   return picture;
 }

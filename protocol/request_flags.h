@@ -42,7 +42,10 @@ class RequestFlags {
   [[nodiscard]] double frames_per_second() const { return fps_; }
 
  private:
+  void add_fields_to(CLI::App& command, bool file);
   [[nodiscard]] Result<wire::FileFormat> format() const;
+  /// The request in this format; none: that of --format.
+  [[nodiscard]] Result<wire::DrawPicture> request(std::string_view model, std::optional<wire::FileFormat> format) const;
 
   std::map<std::string, std::string> values_;  ///< by field name (picture_fields()); empty text: none
   std::string camera_file_;

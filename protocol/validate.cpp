@@ -35,6 +35,16 @@ Status check_choices(const wire::DrawPicture& picture) {
   return {};
 }
 
+Status check_channels(const wire::DrawPicture& picture) {
+  for (const int channel : picture.channels()) {
+    if (!wire::Channel_IsValid(channel)) return invalid("channels: unknown");
+  }
+  if (picture.channels_size() > 0 && picture.format() != wire::FILE_FORMAT_EXR) {
+    return invalid("channels: only an EXR file holds them");
+  }
+  return {};
+}
+
 Status check_numbers(const wire::DrawPicture& picture) {
   const wire::Resolution& resolution = picture.resolution();
   if (picture.has_resolution() && (resolution.width() == 0 || resolution.height() == 0)) {
@@ -101,15 +111,21 @@ Status check_picture(const wire::DrawPicture& picture) {
     if (Status status = check_camera(picture.camera()); !status) return status;
   }
   if (Status status = check_choices(picture); !status) return status;
+  if (Status status = check_channels(picture); !status) return status;
   if (Status status = check_numbers(picture); !status) return status;
   return check_display_options(picture);
+}
+
+Status check_view_picture(const wire::DrawPicture& picture) {
+  if (picture.channels_size() > 0) return invalid("channels: a view has none");
+  return check_picture(picture);
 }
 
 Status check_view(const wire::OpenView& view) {
   if (!(view.target_fps() >= 0 && view.target_fps() <= kMaxFramesPerSecond)) {
     return invalid("target_fps: must lie between 0 and 1000");
   }
-  return check_picture(view.picture());
+  return check_view_picture(view.picture());
 }
 
 }  // namespace surfcast::protocol

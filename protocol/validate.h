@@ -22,6 +22,8 @@ Status check_picture(const wire::DrawPicture& picture);
 
 inline constexpr double kMaxFramesPerSecond = 1000;  ///< upper limit of OpenView.target_fps
 
+/// The same for the picture of a view, which has no channels.
+Status check_view_picture(const wire::DrawPicture& picture);
 /// The same for a request to open a view.
 Status check_view(const wire::OpenView& view);
 

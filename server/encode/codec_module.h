@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "picture/channels.h"
 #include "picture/file_format.h"
 
 namespace surfcast::encode {
@@ -18,7 +19,7 @@ inline constexpr const char* kCodecModule = "image_codecs.so";
 /// The function that the module exports.
 inline constexpr const char* kEncodeSymbol = "surfcast_encode_picture";
 using EncodeFunction = void(const picture::Image& image, picture::FileFormat format, int quality,
-                            Result<std::vector<std::byte>>& bytes);
+                            const picture::Channels* channels, Result<std::vector<std::byte>>& bytes);
 
 }  // namespace surfcast::encode
 

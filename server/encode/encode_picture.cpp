@@ -52,7 +52,9 @@ Status prepare_encoding() {
   return codecs() ? Status() : fail(codecs().error());
 }
 
-Result<std::vector<std::byte>> encode_picture(const picture::Image& image, picture::FileFormat format, int quality) {
+Result<std::vector<std::byte>> encode_picture(const picture::Image& image, picture::FileFormat format, int quality,
+                                              const picture::Channels* channels) {
+  SURFCAST_EXPECTS(channels == nullptr || format == picture::FileFormat::kExr);
   SURFCAST_EXPECTS(image.width > 0 && image.height > 0 && image.format == picture::pixel_format_of(format));
   SURFCAST_EXPECTS(image.pixels.size() ==
                    bytes_per_pixel(image.format) * static_cast<size_t>(image.width) * image.height);
@@ -62,7 +64,7 @@ Result<std::vector<std::byte>> encode_picture(const picture::Image& image, pictu
   }
   if (!codecs()) return fail(codecs().error());
   Result<std::vector<std::byte>> bytes;
-  (*codecs())(image, format, quality, bytes);
+  (*codecs())(image, format, quality, channels, bytes);
   return bytes;
 }
 

@@ -4,14 +4,17 @@
 #include <vector>
 
 #include "base/result.h"
+#include "picture/channels.h"
 #include "picture/file_format.h"
 
 namespace surfcast::encode {
 
 /// Encodes the three colour channels of a picture as a file. Coverage is left out, because the background is already
 /// blended in. `quality` (1 to 100) applies to JPEG and WebP only. Equal images give equal bytes. The image must have
-/// the pixel format of the file format.
-Result<std::vector<std::byte>> encode_picture(const picture::Image& image, picture::FileFormat format, int quality);
+/// the pixel format of the file format. `channels` are added to the colours of an EXR file, and their origin as the
+/// attribute `surfcast:origin`; null: none.
+Result<std::vector<std::byte>> encode_picture(const picture::Image& image, picture::FileFormat format, int quality,
+                                              const picture::Channels* channels = nullptr);
 
 /// Loads the codecs, which takes some hundred milliseconds. Otherwise the first call of encode_picture() does this.
 Status prepare_encoding();

@@ -35,15 +35,30 @@ size_t DecodedSurfels::bytes() const {
   return bytes;
 }
 
-bool DecodedSurfels::hidden(const PickQuery& query, size_t surfel) const {
-  if (!query.clip.shows(block_.position(surfel))) return true;
-  if (query.hidden_classes.none()) return false;
+std::optional<uint8_t> DecodedSurfels::class_of(size_t surfel) const {
   for (const surfel::ScalarAttribute& scalar : block_.scalars) {
     if (scalar.name != "classification") continue;
     const double code = value_at(scalar.values, surfel);
-    return query.hidden_classes[static_cast<size_t>(std::isnan(code) ? 0 : std::clamp(std::round(code), 0.0, 255.0))];
+    return static_cast<uint8_t>(std::isnan(code) ? 0 : std::clamp(std::round(code), 0.0, 255.0));
   }
-  return false;
+  return std::nullopt;
+}
+
+bool DecodedSurfels::hidden(const PickQuery& query, size_t surfel) const {
+  if (!query.clip.shows(block_.position(surfel))) return true;
+  if (query.hidden_classes.none()) return false;
+  const std::optional<uint8_t> code = class_of(surfel);
+  return code && query.hidden_classes[*code];
+}
+
+/// The disc of a surfel as it is drawn, in the camera frame; none if its back is seen.
+std::optional<DecodedSurfels::DrawnDisc> DecodedSurfels::disc_of(const geometry::CameraFrame& frame, size_t surfel,
+                                                                 float widest) const {
+  const glm::dvec3 o = frame.to_camera(block_.position(surfel));
+  if (block_.is_scatter(surfel)) return DrawnDisc{o, facing_eye(o), double{block_.radii[surfel]}};
+  const glm::dvec3 n = frame.rotate(glm::dvec3(block_.normals[surfel]));
+  if (oriented_ && glm::dot(n, o) >= 0) return std::nullopt;
+  return DrawnDisc{o, n, double{std::min(block_.radii[surfel], widest)}};
 }
 
 void DecodedSurfels::hit(const PickQuery& query, std::vector<PickHit>& hits) const {
@@ -51,15 +66,43 @@ void DecodedSurfels::hit(const PickQuery& query, std::vector<PickHit>& hits) con
   const glm::dvec3 ray = frame.ray(query.pixel);
   const float widest = surfel::largest_drawn_radius(block_.radii, block_.scatter);
   for (size_t i = 0; i < block_.size(); ++i) {
-    const glm::dvec3 o = frame.to_camera(block_.position(i));
-    const bool scatter = block_.is_scatter(i);
-    const glm::dvec3 n = scatter ? facing_eye(o) : frame.rotate(glm::dvec3(block_.normals[i]));
-    if (oriented_ && !scatter && glm::dot(n, o) >= 0) continue;
-    const double radius = double{scatter ? block_.radii[i] : std::min(block_.radii[i], widest)};
-    const auto disc = hit_disc(o, n, radius, ray, frame.eta);
+    const auto drawn = disc_of(frame, i, widest);
+    if (!drawn) continue;
+    const auto disc = hit_disc(drawn->o, drawn->n, drawn->radius, ray, frame.eta);
     if (!disc || hidden(query, i)) continue;
-    hits.push_back({static_cast<uint32_t>(i), disc->form, disc->depth, disc->occluder});
+    hits.push_back({static_cast<uint32_t>(i), disc->form, disc->surface, disc->occluder});
   }
+}
+
+/// The discs of hit(), each in the pixels that it may cover.
+void DecodedSurfels::cover(const PickQuery& query, PixelHits& pixels) const {
+  const geometry::CameraFrame& frame = query.frame;
+  const float widest = surfel::largest_drawn_radius(block_.radii, block_.scatter);
+  for (size_t i = 0; i < block_.size(); ++i) {
+    const auto drawn = disc_of(frame, i, widest);
+    if (!drawn) continue;
+    const auto& [o, n, radius] = *drawn;
+    const auto range = disc_pixels(o, n, radius, frame, pixels.range());
+    if (!range || hidden(query, i)) continue;
+    const ItemLook look = look_of(query, i);
+    const double nearest = nearest_depth(o, radius);
+    pixels.for_each_shown(*range, nearest, [&](const glm::ivec2& pixel) {
+      const auto disc = hit_disc(drawn->o, drawn->n, drawn->radius, frame.ray(glm::dvec2(pixel) + 0.5), frame.eta);
+      if (disc) pixels.add(pixel, {static_cast<uint32_t>(i), disc->form, disc->surface, disc->occluder}, look);
+    });
+  }
+}
+
+/// Unit; turned towards the eye if the model is not oriented.
+glm::dvec3 DecodedSurfels::normal_of(const PickQuery& query, size_t surfel) const {
+  const glm::dvec3 normal = glm::normalize(glm::dvec3(block_.normals[surfel]));
+  const bool turned = !oriented_ && glm::dot(normal, block_.position(surfel) - query.frame.eye) > 0;
+  return turned ? -normal : normal;
+}
+
+ItemLook DecodedSurfels::look_of(const PickQuery& query, size_t surfel) const {
+  const std::optional<uint8_t> code = class_of(surfel);
+  return {glm::vec3(normal_of(query, surfel)), code ? static_cast<float>(*code) : kNoClass};
 }
 
 glm::u8vec3 DecodedSurfels::color_of(size_t surfel) const {
@@ -72,12 +115,10 @@ glm::u8vec3 DecodedSurfels::color_of(size_t surfel) const {
 PickedSurfel DecodedSurfels::describe(const PickQuery& query, uint32_t surfel) const {
   PickedSurfel picked;
   picked.position = block_.position(surfel);
-  picked.normal = glm::normalize(glm::dvec3(block_.normals[surfel]));
-  const glm::dvec3 from_eye = picked.position - query.frame.eye;
-  if (!oriented_ && glm::dot(picked.normal, from_eye) > 0) picked.normal = -picked.normal;
+  picked.normal = normal_of(query, surfel);
   if (!block_.colors.empty()) picked.color = color_of(surfel);
   picked.radius = double{block_.radii[surfel]};
-  picked.distance = glm::length(from_eye);
+  picked.distance = glm::length(picked.position - query.frame.eye);
   for (const surfel::ScalarAttribute& scalar : block_.scalars) {
     picked.values.push_back({scalar.name, value_at(scalar.values, surfel)});
   }

@@ -13,11 +13,23 @@ class DecodedSurfels : public SourceBlock {
   [[nodiscard]] size_t bytes() const override;
   /// Tests the opaque discs of the surfels (hit_disc).
   void hit(const PickQuery& query, std::vector<PickHit>& hits) const override;
+  void cover(const PickQuery& query, PixelHits& pixels) const override;
   [[nodiscard]] PickedSurfel describe(const PickQuery& query, uint32_t surfel) const override;
 
  private:
+  /// The classification code; none if the model has no classes.
+  [[nodiscard]] std::optional<uint8_t> class_of(size_t surfel) const;
   [[nodiscard]] bool hidden(const PickQuery& query, size_t surfel) const;
+  struct DrawnDisc {
+    glm::dvec3 o;  ///< centre
+    glm::dvec3 n;  ///< unit normal
+    double radius = 0;
+  };
+  /// `widest`: the largest radius of a disc that is no scatter.
+  [[nodiscard]] std::optional<DrawnDisc> disc_of(const geometry::CameraFrame& frame, size_t surfel, float widest) const;
+  [[nodiscard]] glm::dvec3 normal_of(const PickQuery& query, size_t surfel) const;
   [[nodiscard]] glm::u8vec3 color_of(size_t surfel) const;
+  [[nodiscard]] ItemLook look_of(const PickQuery& query, size_t surfel) const;
 
   model::DecodedBlock block_;
   bool oriented_;

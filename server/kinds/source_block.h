@@ -11,6 +11,7 @@
 
 #include "geometry/camera.h"
 #include "geometry/clip.h"
+#include "kinds/pixel_hits.h"
 
 namespace surfcast::kinds {
 
@@ -35,14 +36,8 @@ struct PickedSurfel {
   double radius = 0;                 ///< world units
   double distance = 0;               ///< from the eye, world units
   std::vector<PickedValue> values;   ///< all attributes, in the model's order
-};
-
-/// An item of a block that covers a pixel.
-struct PickHit {
-  uint32_t item = 0;
-  double form = 0;      ///< squared distance from the item's centre on the screen, scaled to 1 at its rim
-  double depth = 0;     ///< camera z of the item in this pixel
-  double occluder = 0;  ///< camera z behind which the item hides everything
+  double depth = 0;                  ///< camera z of the item in the pixel, world units
+  uint64_t number = 0;               ///< items of the leaves before it, in the order of the file
 };
 
 /// A decoded block with all attributes in the file.
@@ -53,6 +48,8 @@ class SourceBlock {
   [[nodiscard]] virtual size_t bytes() const = 0;
   /// Appends the items that cover the pixel, except those that are clipped, culled or in a hidden class.
   virtual void hit(const PickQuery& query, std::vector<PickHit>& hits) const = 0;
+  /// Adds what hit() finds in each pixel of a rectangle. `query.pixel` has no meaning.
+  virtual void cover(const PickQuery& query, PixelHits& pixels) const = 0;
   [[nodiscard]] virtual PickedSurfel describe(const PickQuery& query, uint32_t item) const = 0;
 };
 

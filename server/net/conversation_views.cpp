@@ -52,6 +52,8 @@ void Conversation::handle_update_view(const wire::Request& request) {
   if (update.picture().model() != found->second.model) {
     return end_view(request.id(), {ErrorKind::kInvalidInput, "a view stays with its model"});
   }
+  const Status checked = protocol::check_view_picture(update.picture());
+  if (!checked) return end_view(request.id(), checked.error());
   Result<service::PictureJob> job = to_job(update.picture());
   if (!job) return end_view(request.id(), job.error());
   std::string picture = update.picture().SerializeAsString();

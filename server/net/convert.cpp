@@ -148,6 +148,7 @@ Result<service::PictureJob> to_job(const wire::DrawPicture& request) {
   job.request.background = {background.red(), background.green(), background.blue()};
   set_display_options(request, job.request);
   job.format = from_wire(request.format());
+  for (const int channel : request.channels()) job.channels.set(static_cast<size_t>(channel));
   job.quality = static_cast<int>(request.quality() == 0 ? protocol::kDefaultQuality : request.quality());
   return job;
 }
@@ -171,6 +172,8 @@ void to_wire(const std::optional<kinds::PickedSurfel>& picked, wire::PickResult&
   }
   message.set_radius(picked->radius);
   message.set_distance(picked->distance);
+  message.set_depth(picked->depth);
+  message.set_surfel(picked->number);
   for (const kinds::PickedValue& value : picked->values) {
     wire::AttributeValue* attribute = message.add_attributes();
     attribute->set_attribute(protocol::clean_utf8(value.attribute));

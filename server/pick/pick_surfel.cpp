@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <map>
 
+#include "pick/leaf_numbers.h"
 #include "selection/block_hull.h"
 #include "selection/frustum.h"
 
@@ -24,8 +26,8 @@ struct LeafOnRay {
 
 /// An item that covers the pixel.
 struct Candidate {
-  kinds::PickHit hit;
-  size_t block = 0;  ///< index among the decoded blocks
+  kinds::PickRank rank;
+  double depth = 0;  ///< camera z
 };
 
 /// Camera z at which the ray enters a box that is extended by `margin` on all sides; infinite if the ray misses it.
@@ -61,8 +63,7 @@ class Picker {
       if (cancelled.load(std::memory_order_relaxed)) return fail(ErrorKind::kCancelled, "cancelled");
       Result<std::shared_ptr<const kinds::SourceBlock>> block = source_.get(model_, leaf.block);
       if (!block) return fail(std::move(block.error()));
-      collect(**block);
-      if (!candidates_.empty() && candidates_.back().block == blocks_.size()) blocks_.push_back(std::move(*block));
+      collect(leaf.block, std::move(*block));
     }
     return best();
   }
@@ -94,23 +95,27 @@ class Picker {
     return leaves;
   }
 
-  void collect(const kinds::SourceBlock& block) {
+  void collect(uint32_t number, std::shared_ptr<const kinds::SourceBlock> block) {
     std::vector<kinds::PickHit> hits;
-    block.hit(query_, hits);
+    block->hit(query_, hits);
     for (const kinds::PickHit& hit : hits) {
       occluder_ = std::min(occluder_, hit.occluder);
-      candidates_.push_back({hit, blocks_.size()});
+      candidates_.push_back({{hit.form, number, hit.item}, hit.depth});
     }
+    if (!hits.empty()) blocks_.emplace(number, std::move(block));
   }
 
   [[nodiscard]] std::optional<kinds::PickedSurfel> best() const {
     const Candidate* best = nullptr;
     for (const Candidate& candidate : candidates_) {
-      if (candidate.hit.depth > occluder_) continue;
-      if (best == nullptr || candidate.hit.form < best->hit.form) best = &candidate;
+      if (candidate.depth > occluder_) continue;
+      if (best == nullptr || candidate.rank < best->rank) best = &candidate;
     }
     if (best == nullptr) return std::nullopt;
-    return blocks_[best->block]->describe(query_, best->hit.item);
+    kinds::PickedSurfel picked = blocks_.at(best->rank.block)->describe(query_, best->rank.item);
+    picked.depth = best->depth;
+    picked.number = leaf_numbers(model_)[best->rank.block] + best->rank.item;
+    return picked;
   }
 
   const model::ModelFile& model_;
@@ -118,7 +123,7 @@ class Picker {
   SourceBlocks& source_;
   const geometry::CameraFrame& frame_;
   glm::dvec3 direction_{0};  ///< world direction of the pixel's ray; its component along the view axis is 1
-  std::vector<std::shared_ptr<const kinds::SourceBlock>> blocks_;  ///< blocks that contain candidates
+  std::map<uint32_t, std::shared_ptr<const kinds::SourceBlock>> blocks_;  ///< blocks that contain candidates
   std::vector<Candidate> candidates_;
   double occluder_ = kInfinity;  ///< camera z behind which everything is hidden
 };

@@ -5,21 +5,46 @@
 #include <utility>
 
 #include "model/fit_model.h"
+#include "service/picture_channels.h"
 
 namespace surfcast::service {
 namespace {
 
-geometry::Camera camera_of(const model::ModelFile& model, const PickJob& job) {
-  if (!job.request.camera) return model::fit_model(model, static_cast<double>(job.request.width) / job.request.height);
-  geometry::Camera camera = *job.request.camera;
-  if (job.up_from_model) camera.view_up = model.info().z_up ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
+geometry::Camera camera_of(const model::ModelFile& model, const picture::PictureRequest& request, bool up_from_model) {
+  if (!request.camera) return model::fit_model(model, static_cast<double>(request.width) / request.height);
+  geometry::Camera camera = *request.camera;
+  if (up_from_model) camera.view_up = model.info().z_up ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
   return camera;
+}
+
+/// The query of a picture, for all its pixels.
+Result<kinds::PickQuery> query_of(const model::ModelFile& model, const picture::PictureRequest& request,
+                                  bool up_from_model) {
+  const Result<geometry::CameraFrame> frame =
+      geometry::make_camera_frame(camera_of(model, request, up_from_model), request.width, request.height);
+  if (!frame) return fail(frame.error());
+  return kinds::PickQuery{*frame, glm::dvec2(0), request.clip, request.hidden_classes};
+}
+
+/// Returns exceptions (out of memory) as errors, so one job cannot terminate the server.
+template <typename Function>
+auto guarded(Function function) -> decltype(function()) {
+  try {
+    return function();
+  } catch (const std::exception& error) {
+    return fail(ErrorKind::kInternal, std::string("unexpected: ") + error.what());
+  }
 }
 
 }  // namespace
 
 PickService::PickService(const ModelSource& models, const PickLimits& limits)
-    : models_(models), most_waiting_(limits.waiting), blocks_(limits.block_bytes), pool_(limits.threads) {}
+    : models_(models),
+      most_waiting_(limits.waiting),
+      blocks_(limits.block_bytes),
+      searched_blocks_(limits.block_bytes),
+      pool_(limits.threads),
+      searches_(1) {}
 
 PickService::~PickService() {
   stopping_ = true;
@@ -37,23 +62,34 @@ void PickService::pick(PickJob job, Done done) {
   });
 }
 
-/// Returns exceptions (out of memory) as errors, so one pick cannot terminate the server.
 Result<std::optional<kinds::PickedSurfel>> PickService::run(const PickJob& job) {
-  try {
+  return guarded([&]() -> Result<std::optional<kinds::PickedSurfel>> {
     const picture::PictureRequest& request = job.request;
     if (job.x < 0 || job.y < 0 || job.x >= request.width || job.y >= request.height) {
       return fail(ErrorKind::kInvalidInput, "pixel: outside the picture");
     }
     const Result<std::shared_ptr<const model::ModelFile>> model = models_.open(job.model);
     if (!model) return fail(model.error());
-    const Result<geometry::CameraFrame> frame =
-        geometry::make_camera_frame(camera_of(**model, job), request.width, request.height);
-    if (!frame) return fail(frame.error());
-    return pick::pick_surfel(**model, {*frame, {job.x + 0.5, job.y + 0.5}, request.clip, request.hidden_classes},
-                             blocks_, stopping_);
-  } catch (const std::exception& error) {
-    return fail(ErrorKind::kInternal, std::string("unexpected: ") + error.what());
-  }
+    Result<kinds::PickQuery> query = query_of(**model, request, job.up_from_model);
+    if (!query) return fail(query.error());
+    query->pixel = {job.x + 0.5, job.y + 0.5};
+    return pick::pick_surfel(**model, *query, blocks_, stopping_);
+  });
+}
+
+void PickService::find_surface(SurfaceJob job, std::shared_ptr<const std::atomic<bool>> cancelled, SurfaceDone done) {
+  searches_.post([this, job = std::move(job), cancelled = std::move(cancelled), done = std::move(done)] {
+    done(guarded([&] { return search(job, *cancelled); }));
+  });
+}
+
+Result<std::vector<pick::FrontPixel>> PickService::search(const SurfaceJob& job, const std::atomic<bool>& cancelled) {
+  const Result<std::shared_ptr<const model::ModelFile>> model = models_.open(job.model);
+  if (!model) return fail(model.error());
+  if (Status status = check_channels(job.channels, (*model)->info()); !status) return fail(std::move(status.error()));
+  const Result<kinds::PickQuery> query = query_of(**model, job.request, job.up_from_model);
+  if (!query) return fail(query.error());
+  return pick::find_front_surface(**model, *query, searched_blocks_, cancelled);
 }
 
 }  // namespace surfcast::service

@@ -3,11 +3,15 @@
 #include <atomic>
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "base/result.h"
+#include "pick/front_surface.h"
 #include "pick/pick_surfel.h"
+#include "picture/channels.h"
 #include "picture/picture.h"
 #include "service/model_source.h"
 #include "service/worker_pool.h"
@@ -29,11 +33,20 @@ struct PickJob {
   int y = 0;                        ///< pixels from the upper edge
 };
 
+/// A request for what a picture shows in all its pixels.
+struct SurfaceJob {
+  std::string model;
+  picture::PictureRequest request;  ///< as in PickJob
+  bool up_from_model = false;       ///< likewise
+  picture::ChannelSet channels;     ///< that will be made of it; an error if the model cannot have one of them
+};
+
 /// Picks items in pictures, on threads of its own so that pictures are not delayed. Methods may be called from any
 /// thread.
 class PickService {
  public:
   using Done = std::function<void(Result<std::optional<kinds::PickedSurfel>>)>;
+  using SurfaceDone = std::function<void(Result<std::vector<pick::FrontPixel>>)>;
 
   /// `models` must outlive the service.
   explicit PickService(const ModelSource& models, const PickLimits& limits = {});
@@ -43,16 +56,23 @@ class PickService {
   /// `done` is called once: on a thread of the service, or, if too many picks wait already, before this call returns.
   /// It must not throw or block.
   void pick(PickJob job, Done done);
+  /// Searches all pixels, one picture after another, on a thread that does nothing else. `done` is called once, on that
+  /// thread, with kCancelled soon after `cancelled` becomes true. The caller bounds the number of searches.
+  void find_surface(SurfaceJob job, std::shared_ptr<const std::atomic<bool>> cancelled, SurfaceDone done);
 
  private:
   [[nodiscard]] Result<std::optional<kinds::PickedSurfel>> run(const PickJob& job);
+  [[nodiscard]] Result<std::vector<pick::FrontPixel>> search(const SurfaceJob& job, const std::atomic<bool>& cancelled);
 
   const ModelSource& models_;
   std::atomic<bool> stopping_ = false;
   const size_t most_waiting_;
   std::atomic<size_t> waiting_ = 0;
   pick::SourceBlocks blocks_;
-  WorkerPool pool_;  ///< last, so that its threads end first
+  pick::SourceBlocks searched_blocks_;  ///< apart, so that a search does not drive out those of picks
+  // Last, so that their threads end first.
+  WorkerPool pool_;
+  WorkerPool searches_;  ///< one thread
 };
 
 }  // namespace surfcast::service

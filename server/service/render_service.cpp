@@ -16,6 +16,7 @@
 #include "base/stopwatch.h"
 #include "encode/encode_picture.h"
 #include "service/draw_shares.h"
+#include "service/picture_channels.h"
 #include "service/worker_pool.h"
 
 namespace surfcast::service {
@@ -23,6 +24,10 @@ namespace {
 
 tl::unexpected<Error> cancelled_error() {
   return fail(ErrorKind::kCancelled, "the request was cancelled");
+}
+
+tl::unexpected<Error> busy_error() {
+  return fail(ErrorKind::kUnavailable, "the server is busy: too many pictures wait");
 }
 
 /// Runs a function and returns exceptions (out of memory in a library) as errors, so one job cannot terminate the
@@ -45,8 +50,10 @@ struct RenderService::State {
     PictureJob picture;
     PictureDone done;
     std::atomic<bool> cancelled = false;
-    Stopwatch since_submission;
-    double waited_ms = 0;  ///< for the render thread
+    std::vector<pick::FrontPixel> front;  ///< for PictureJob::channels
+    double search_ms = 0;                 ///< to find it
+    Stopwatch since_submission;           ///< to the render thread
+    double waited_ms = 0;                 ///< for the render thread
     double draw_ms = 0;
     std::atomic<bool> encoding = false;  ///< encoding has begun
   };
@@ -75,12 +82,15 @@ struct RenderService::State {
 
   // Pool.
   static EncodedPicture describe(const Job& job, const picture::Frame& frame);
+  static Result<std::vector<std::byte>> encode_file(const Job& job, const picture::Frame& frame);
   static Result<EncodedPicture> encode(Job& job, const Result<SharedFrame>& shared);
   void encode_one(const JobPointer& job, Result<SharedFrame> frame);
 
   // Any thread.
   [[nodiscard]] Status check(const PictureJob& picture) const;
   JobId add(SessionId session, PictureJob picture, PictureDone done);
+  void search(const JobPointer& job);
+  void end_search(const JobPointer& job, Result<std::vector<pick::FrontPixel>> front);
   void finish(const JobPointer& job, Result<EncodedPicture> result);
   void stop();
 
@@ -96,6 +106,7 @@ struct RenderService::State {
   std::map<JobId, JobPointer> jobs;  ///< outstanding: waiting, being drawn or being encoded
   JobId last_id = 0;
   std::array<size_t, 2> in_encoding{};  ///< pictures being drawn or encoded, by priority
+  size_t searching = 0;                 ///< jobs whose front surface is being found
   bool stopping = false;
 
   // Declared last, so the threads end before the members that they use.
@@ -289,6 +300,16 @@ EncodedPicture RenderService::State::describe(const Job& job, const picture::Fra
   return picture;
 }
 
+/// The bytes of a picture's file, with its channels.
+Result<std::vector<std::byte>> RenderService::State::encode_file(const Job& job, const picture::Frame& frame) {
+  const PictureJob& picture = job.picture;
+  if (picture.channels.none()) {
+    return surfcast::encode::encode_picture(frame.image, picture.format, picture.quality);
+  }
+  const picture::Channels channels = make_channels(picture.channels, frame, job.front);
+  return surfcast::encode::encode_picture(frame.image, picture.format, picture.quality, &channels);
+}
+
 Result<EncodedPicture> RenderService::State::encode(Job& job, const Result<SharedFrame>& shared) {
   if (!shared) return fail(shared.error());
   job.encoding = true;
@@ -298,13 +319,13 @@ Result<EncodedPicture> RenderService::State::encode(Job& job, const Result<Share
   EncodedPicture picture = describe(job, frame);
   if (job.picture.keep_frame) picture.frame = *shared;
   if (!frame.image.pixels.empty()) {
-    Result<std::vector<std::byte>> bytes =
-        surfcast::encode::encode_picture(frame.image, job.picture.format, job.picture.quality);
+    Result<std::vector<std::byte>> bytes = encode_file(job, frame);
     if (!bytes) return fail(bytes.error());
     picture.bytes = std::move(*bytes);
   }
   if (job.cancelled) return cancelled_error();
   picture.encode_ms = watch.milliseconds();
+  if (!job.front.empty()) picture.stats.stages.push_back({"surface", job.search_ms});
   picture.stats.stages.push_back({"encode", picture.encode_ms});
   return picture;
 }
@@ -339,7 +360,9 @@ JobId RenderService::State::add(SessionId session, PictureJob picture, PictureDo
   const Status checked = check(picture);
   std::unique_lock lock(mutex);
   const JobId id = ++last_id;
-  const bool room = checked && !stopping && queue.push(session, id, picture.priority);
+  const bool searches = needs_front_surface(picture.channels);
+  const bool room =
+      checked && !stopping && (searches ? searching < limits.queued_jobs : queue.push(session, id, picture.priority));
   if (room) {
     const auto job = std::make_shared<Job>();
     job->id = id;
@@ -347,13 +370,44 @@ JobId RenderService::State::add(SessionId session, PictureJob picture, PictureDo
     job->picture = std::move(picture);
     job->done = std::move(done);
     jobs.emplace(id, job);
+    if (searches) ++searching;
     lock.unlock();
-    wake.notify_one();
+    if (searches) {
+      search(job);
+    } else {
+      wake.notify_one();
+    }
     return id;
   }
   lock.unlock();
-  done(checked ? fail(ErrorKind::kUnavailable, "the server is busy: too many pictures wait") : fail(checked.error()));
+  done(checked ? busy_error() : fail(checked.error()));
   return id;
+}
+
+/// Finds what the channels of a picture need, before the picture waits for the render thread.
+void RenderService::State::search(const JobPointer& job) {
+  const PictureJob& picture = job->picture;
+  const std::shared_ptr<const std::atomic<bool>> cancelled(job, &job->cancelled);
+  picks->find_surface({picture.model, picture.request, picture.up_from_model, picture.channels}, cancelled,
+                      [this, job](Result<std::vector<pick::FrontPixel>> front) { end_search(job, std::move(front)); });
+}
+
+void RenderService::State::end_search(const JobPointer& job, Result<std::vector<pick::FrontPixel>> front) {
+  std::unique_lock lock(mutex);
+  --searching;
+  const bool wanted = front && !job->cancelled && !stopping;
+  if (wanted) {
+    job->front = std::move(*front);
+    job->search_ms = job->since_submission.milliseconds();
+    job->since_submission = Stopwatch();
+    if (queue.push(job->session, job->id, job->picture.priority)) {
+      lock.unlock();
+      return wake.notify_one();
+    }
+  }
+  lock.unlock();
+  if (wanted) return finish(job, busy_error());
+  finish(job, front ? cancelled_error() : fail(front.error()));
 }
 
 void RenderService::State::finish(const JobPointer& job, Result<EncodedPicture> result) {

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "picture/channels.h"
 #include "picture/file_format.h"
 #include "picture/picture.h"
 #include "service/frame_renderer.h"
@@ -36,7 +37,8 @@ struct PictureJob {
   picture::PictureRequest request;  ///< its pixel format is replaced by that of `format`
   bool up_from_model = false;       ///< take the model's vertical axis as the camera's view_up
   picture::FileFormat format = picture::FileFormat::kPng;
-  int quality = 90;  ///< of JPEG and WebP, 1 to 100
+  int quality = 90;              ///< of JPEG and WebP, 1 to 100
+  picture::ChannelSet channels;  ///< of the file beside colours; only of EXR and of still pictures
   Priority priority = Priority::kStill;
   JobId supersedes = 0;     ///< a job whose picture is obsolete once this one is drawn; 0: none
   bool keep_frame = false;  ///< return the frame with the picture
@@ -65,8 +67,11 @@ struct EncodedPicture {
 /// sessions. A small pool encodes still pictures; motion pictures have an encoder thread of their own. Motion pictures
 /// may preempt still pictures (see DrawShares). All methods may be called from any thread.
 ///
-/// Callbacks run on a thread of the service. If a job is refused, or cancelled while it waits, its callback runs on the
-/// calling thread before the call returns. Callbacks must not throw or block. Each is called exactly once.
+/// A picture with channels of its front surface waits until that has been found, and then for the render thread.
+///
+/// Callbacks run on a thread of the service. If a job is refused, or cancelled while it waits for the render thread,
+/// its callback runs on the calling thread before the call returns. Callbacks must not throw or block. Each is called
+/// exactly once.
 class RenderService {
  public:
   using PictureDone = std::function<void(Result<EncodedPicture>)>;

@@ -10,6 +10,7 @@
 
 #include "base/atomic_file.h"
 #include "client/run_program.h"
+#include "net/raw_socket.h"
 
 namespace surfcast::cmd {
 
@@ -63,6 +64,13 @@ class ServeTest : public ::testing::Test {
     const int code = client::wait_for_program(server_);
     server_ = -1;
     return code;
+  }
+  /// The body of the server's answer to a GET.
+  [[nodiscard]] std::string get(const std::string& target) const {
+    net::RawSocket socket(static_cast<uint16_t>(std::stoi(url_.substr(url_.find(':') + 1))));
+    socket.send("GET " + target + " HTTP/1.1\r\nHost: here\r\nConnection: close\r\n\r\n");
+    const std::string answer = socket.read_to_end(std::chrono::minutes(5));
+    return answer.substr(answer.find("\r\n\r\n") + 4);
   }
   [[nodiscard]] std::string cache() const { return (folder_ / "cache").string(); }
   [[nodiscard]] std::string file(const std::string& name) const { return (folder_ / name).string(); }

@@ -23,6 +23,25 @@ TEST_F(ServeTest, AScanIsBuiltServedDrawnAndTheServerEndsWhenTold) {
   EXPECT_EQ(client::run_program(SURFCAST_SERVER " healthcheck --url " + url_ + " 2>&1").code, 1);
 }
 
+TEST_F(ServeTest, ChannelsAreTheSameByEveryWay) {
+  serve(scan_.string());
+  const std::string flags = " --resolution 64,48 --channels depth,normal,position,coverage,surfel --output ";
+  const std::string program = SURFCAST_CLIENT " render ";
+  EXPECT_EQ(client::run_program(program + url_ + "/square" + flags + file("tcp.exr")).code, 0);
+  EXPECT_EQ(client::run_program(program + "ws://" + url_ + "/square" + flags + file("ws.exr")).code, 0);
+  const std::string fetched =
+      get("/api/models/square/image?resolution=64,48&format=exr&"
+          "channels=depth,normal,position,coverage,surfel");
+  EXPECT_EQ(client::run_program(SURFCAST_SERVER " render --cache " + cache() + " " + scan_.string() + flags +
+                                file("drawn.exr") + " 2>&1")
+                .code,
+            0);
+  const std::string drawn = content(file("drawn.exr"));
+  EXPECT_NE(drawn.find("P.Z"), std::string::npos);
+  for (const char* name : {"tcp.exr", "ws.exr"}) EXPECT_TRUE(content(file(name)) == drawn) << name;
+  EXPECT_TRUE(fetched == drawn);
+}
+
 TEST_F(ServeTest, AScanIsBuiltOnceHoweverItIsNamed) {
   serve(scan_.string());
   EXPECT_EQ(end(SIGINT), 0);

@@ -1,8 +1,11 @@
 #include "encode/encode_picture.h"
 
+#include <bit>
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <glm/vec3.hpp>
+#include <limits>
 #include <vector>
 
 #include <OpenImageIO/filesystem.h>
@@ -122,6 +125,43 @@ TEST(EncodePicture, ExrKeepsLinearFloatsToTheLastBit) {
   EXPECT_EQ(decoded.values[3 * 7], 0.001F * 7);
   EXPECT_EQ(decoded.values[3 * 7 + 1], 12345.678F);
   EXPECT_EQ(decoded.values[3 * 7 + 2], -1e-6F);
+}
+
+TEST(EncodePicture, ChannelsComeBackToTheLastBitAndTheColorsStayTheSame) {
+  const picture::Image image = make_light(70, 130);
+  picture::Channels channels;
+  channels.channels = {{"Z"}, {"N.X"}, {"id", true}};
+  channels.origin = {1'234'567.890123456789, -2, 1e-9};
+  const float infinite = std::numeric_limits<float>::infinity();
+  for (uint32_t i = 0; i < 70 * 130; ++i) {
+    const uint32_t depth = std::bit_cast<uint32_t>(i % 7 == 0 ? infinite : 0.1F * static_cast<float>(i));
+    channels.words.insert(channels.words.end(), {depth, std::bit_cast<uint32_t>(-0.5F), 0xffffff00U + i % 256});
+  }
+  const auto bytes = encode_picture(image, picture::FileFormat::kExr, 90, &channels);
+  ASSERT_TRUE(bytes);
+  OIIO::Filesystem::IOMemReader memory(const_cast<std::byte*>(bytes->data()), bytes->size());
+  const auto input = OIIO::ImageInput::open("memory.exr", nullptr, &memory);
+  ASSERT_TRUE(input);
+  const OIIO::ImageSpec& spec = input->spec();
+  ASSERT_EQ(spec.nchannels, 6);
+  glm::dvec3 origin(0);
+  ASSERT_TRUE(
+      spec.getattribute("surfcast:origin", OIIO::TypeDesc(OIIO::TypeDesc::DOUBLE, OIIO::TypeDesc::VEC3), &origin.x));
+  EXPECT_EQ(origin, channels.origin);
+  std::vector<uint32_t> words(size_t{70} * 130 * 6);
+  ASSERT_TRUE(input->read_image(0, 0, 0, 6, OIIO::TypeDesc::UNKNOWN, words.data()));
+  const std::vector<std::string> names{"R", "G", "B", "Z", "N.X", "id"};
+  for (size_t i = 0; i < size_t{70} * 130; ++i) {
+    for (size_t c = 0; c < 6; ++c) {
+      const auto place = static_cast<size_t>(spec.channelindex(names[c]));
+      ASSERT_LT(place, 6U) << names[c];
+      uint32_t expected = 0;
+      if (c < 3) std::memcpy(&expected, image.pixels.data() + 16 * i + 4 * c, 4);
+      if (c >= 3) expected = channels.words[3 * i + c - 3];
+      ASSERT_EQ(words[6 * i + place], expected) << names[c] << ' ' << i;
+    }
+  }
+  EXPECT_EQ(*encode_picture(image, picture::FileFormat::kExr, 90, &channels), *bytes);
 }
 
 TEST(EncodePicture, TheSameImageGivesTheSameBytes) {

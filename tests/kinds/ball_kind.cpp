@@ -79,6 +79,17 @@ class Balls : public kinds::SourceBlock {
       hits.push_back({i, form, z, z * (1 + 1 / query.frame.eta)});
     }
   }
+  void cover(const kinds::PickQuery& query, kinds::PixelHits& pixels) const override {
+    pixels.for_each_shown(pixels.range(), 0, [&](const glm::ivec2& pixel) {
+      kinds::PickQuery there = query;
+      there.pixel = glm::dvec2(pixel) + 0.5;
+      std::vector<kinds::PickHit> hits;
+      hit(there, hits);
+      for (const kinds::PickHit& found : hits) {
+        pixels.add(pixel, found, {glm::vec3(describe(there, found.item).normal), kinds::kNoClass});
+      }
+    });
+  }
   [[nodiscard]] kinds::PickedSurfel describe(const kinds::PickQuery& query, uint32_t item) const override {
     const Ball& ball = balls_[item];
     const glm::dvec3 to_eye = query.frame.eye - ball.centre;

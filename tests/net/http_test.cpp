@@ -70,7 +70,8 @@ TEST_F(HttpSessionTest, WrongQueriesAreExplained) {
   for (const std::string query :
        {"resolution=20", "resolution=20,10,5", "resolution=20x10", "resolution=-1,5", "resolution=9000,1",
         "view_angle=nan", "position=1,2,3", "colour=red", "format=gif", "quality=0", "spacing=1;drop",
-        "background=256,0,0", "position=1,2,3&position=1,2,3", "position=%zz", "resolution=%00"}) {
+        "background=256,0,0", "channels=depth", "format=exr&channels=colour", "position=1,2,3&position=1,2,3",
+        "position=%zz", "resolution=%00"}) {
     const std::string answer = get("/api/models/cube/image?" + query);
     EXPECT_EQ(status_of(answer), "400") << query;
     EXPECT_FALSE(json::parse(body_of(answer))["error"]["message"].get<std::string>().empty()) << query;

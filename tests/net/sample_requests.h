@@ -42,6 +42,8 @@ inline wire::DrawPicture sample_picture() {
   clip->set_inverted(true);
   picture.mutable_eye_dome()->set_strength(1);
   picture.mutable_eye_dome()->set_radius(2);
+  picture.add_channels(wire::CHANNEL_DEPTH);
+  picture.add_channels(wire::CHANNEL_SURFEL);
   return picture;
 }
 

@@ -199,6 +199,20 @@ TEST_F(ViewSessionTest, AWrongUpdateEndsTheView) {
   EXPECT_TRUE(connection_->ask(ping_request())) << "messages of a view that is no more do not matter";
 }
 
+TEST_F(ViewSessionTest, AnUpdateWithChannelsEndsTheView) {
+  start();
+  open_view();
+  converged_frame();
+  wire::DrawPicture wanted = picture("cube", 1);
+  wanted.set_format(wire::FILE_FORMAT_EXR);
+  wanted.add_channels(wire::CHANNEL_DEPTH);
+  update(1, wanted, /*moving=*/true);
+  const auto answer = connection_->receive();
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(protocol::from_wire(answer->error()).message, "channels: a view has none");
+  EXPECT_TRUE(connection_->ask(ping_request()));
+}
+
 TEST_F(ViewSessionTest, ViewsBeyondTheLimitAreRefused) {
   ServerConfig config;
   config.views = 1;

@@ -39,25 +39,14 @@ TEST(Parse, ListsHaveExactlyAsManyPartsAsAskedFor) {
 
 TEST(PictureFields, EachFieldIsSetFromItsText) {
   wire::DrawPicture picture;
-  const std::vector<std::pair<std::string, std::string>> texts = {{"position", "1,2,3"},
-                                                                  {"focal_point", "4,5,6"},
-                                                                  {"view_up", "0,0,1"},
-                                                                  {"view_angle", "45"},
-                                                                  {"resolution", "8,9"},
-                                                                  {"format", "exr"},
-                                                                  {"quality", "33"},
-                                                                  {"normalization", "surfel"},
-                                                                  {"filter", "none"},
-                                                                  {"spacing", "1.5"},
-                                                                  {"shading", "lit"},
-                                                                  {"background", "1,2,255"},
-                                                                  {"color_by", "normal"},
-                                                                  {"color_map", "terrain"},
-                                                                  {"color_range", "-2,7.5"},
-                                                                  {"hide_classes", "2,255"},
-                                                                  {"clip_box", "0,0,0,1,1,1;2,2,2,3,3,3"},
-                                                                  {"clip_out", "4,4,4,5,5,5"},
-                                                                  {"eye_dome", "1.5,2"}};
+  const std::vector<std::pair<std::string, std::string>> texts = {
+      {"position", "1,2,3"},       {"focal_point", "4,5,6"},     {"view_up", "0,0,1"},
+      {"view_angle", "45"},        {"resolution", "8,9"},        {"format", "exr"},
+      {"quality", "33"},           {"channels", "surfel,depth"}, {"normalization", "surfel"},
+      {"filter", "none"},          {"spacing", "1.5"},           {"shading", "lit"},
+      {"background", "1,2,255"},   {"color_by", "normal"},       {"color_map", "terrain"},
+      {"color_range", "-2,7.5"},   {"hide_classes", "2,255"},    {"clip_box", "0,0,0,1,1,1;2,2,2,3,3,3"},
+      {"clip_out", "4,4,4,5,5,5"}, {"eye_dome", "1.5,2"}};
   EXPECT_EQ(texts.size(), picture_fields().size());
   for (const auto& [name, text] : texts) EXPECT_TRUE(set_picture_field(picture, name, text)) << name;
   EXPECT_EQ(picture.camera().focal_point().y(), 5);
@@ -65,6 +54,9 @@ TEST(PictureFields, EachFieldIsSetFromItsText) {
   EXPECT_EQ(picture.resolution().height(), 9u);
   EXPECT_EQ(picture.format(), wire::FILE_FORMAT_EXR);
   EXPECT_EQ(picture.quality(), 33u);
+  ASSERT_EQ(picture.channels_size(), 2);
+  EXPECT_EQ(picture.channels(0), wire::CHANNEL_SURFEL);
+  EXPECT_EQ(picture.channels(1), wire::CHANNEL_DEPTH);
   EXPECT_EQ(picture.normalization(), wire::NORMALIZATION_SURFEL);
   EXPECT_EQ(picture.filter(), wire::FILTER_NONE);
   EXPECT_EQ(picture.spacing(), 1.5);
@@ -106,6 +98,10 @@ TEST(PictureFields, WrongTextsAreExplained) {
                                                                                    {"format", "PNG"},
                                                                                    {"quality", "0"},
                                                                                    {"quality", "101"},
+                                                                                   {"channels", ""},
+                                                                                   {"channels", "depth,"},
+                                                                                   {"channels", "Z"},
+                                                                                   {"channels", "depth, normal"},
                                                                                    {"spacing", "-1"},
                                                                                    {"shading", ""},
                                                                                    {"background", "256,0,0"},
@@ -171,6 +167,16 @@ TEST(CheckPicture, ASoundRequestPasses) {
   EXPECT_TRUE(check_picture(sound_picture()));
 }
 
+TEST(CheckPicture, ChannelsAreOfEXRFilesAndNotOfViews) {
+  wire::DrawPicture picture = sound_picture();
+  picture.set_format(wire::FILE_FORMAT_EXR);
+  picture.add_channels(wire::CHANNEL_POSITION);
+  EXPECT_TRUE(check_picture(picture));
+  EXPECT_FALSE(check_view_picture(picture));
+  picture.clear_channels();
+  EXPECT_TRUE(check_view_picture(picture));
+}
+
 TEST(CheckPicture, WhatNoFlagCouldSayIsCaughtInMessagesToo) {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto refused = [](auto spoil) {
@@ -192,6 +198,11 @@ TEST(CheckPicture, WhatNoFlagCouldSayIsCaughtInMessagesToo) {
   EXPECT_TRUE(refused([](auto& p) { p.set_spacing(-0.5); }));
   EXPECT_TRUE(refused([](auto& p) { p.mutable_background()->set_green(256); }));
   EXPECT_TRUE(refused([](auto& p) { p.set_quality(101); }));
+  EXPECT_TRUE(refused([](auto& p) { p.add_channels(wire::CHANNEL_DEPTH); })) << "a PNG has none";
+  EXPECT_TRUE(refused([](auto& p) {
+    p.set_format(wire::FILE_FORMAT_EXR);
+    p.add_channels(static_cast<wire::Channel>(6));
+  }));
   EXPECT_TRUE(refused([](auto& p) { p.set_format(static_cast<wire::FileFormat>(9)); }));
   EXPECT_TRUE(refused([](auto& p) { p.set_normalization(static_cast<wire::Normalization>(9)); }));
   EXPECT_TRUE(refused([](auto& p) { p.set_filter(static_cast<wire::Filter>(-1)); }));

@@ -85,6 +85,19 @@ TEST_F(RequestFlagsTest, AnOutputWithoutAFormatIsRefused) {
   }
 }
 
+TEST_F(RequestFlagsTest, ChannelsNeedAnEXRFile) {
+  ASSERT_TRUE(parse({"--output", "a.exr", "--channels", "depth,surfel"}));
+  ASSERT_TRUE(flags_.check());
+  const auto picture = flags_.request("cube");
+  ASSERT_TRUE(picture) << picture.error().message;
+  EXPECT_EQ(picture->channels_size(), 2);
+  ASSERT_TRUE(parse({"--output", "a.png", "--channels", "depth"}));
+  const Status refused = flags_.check();
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().message, "--channels needs a picture in EXR format");
+  EXPECT_FALSE(parse({"--output", "a.exr", "--channels", "colour"}));
+}
+
 TEST_F(RequestFlagsTest, HalfACameraIsRefused) {
   ASSERT_TRUE(parse({"--output", "a.png", "--camera-position", "1,2,3"}));
   EXPECT_FALSE(flags_.check());

@@ -48,6 +48,40 @@ class RenderServiceTest : public ::testing::Test {
   std::unique_ptr<RenderService> service_;
 };
 
+TEST_F(RenderServiceTest, APictureWithCoverageIsALargerFile) {
+  start();
+  PictureJob job = job_for("cube");
+  job.format = picture::FileFormat::kExr;
+  const Result<EncodedPicture> plain = draw(1, job).second.get();
+  job.channels.set(static_cast<size_t>(picture::Channel::kCoverage));
+  const Result<EncodedPicture> covered = draw(1, job).second.get();
+  ASSERT_TRUE(plain && covered);
+  EXPECT_GT(covered->bytes.size(), plain->bytes.size());
+}
+
+TEST_F(RenderServiceTest, WithoutAFrontSurfaceNothingIsDrawn) {
+  start();
+  PictureJob job = job_for("cube");  // has no file
+  job.format = picture::FileFormat::kExr;
+  job.channels.set(static_cast<size_t>(picture::Channel::kDepth));
+  EXPECT_EQ(draw(1, job).second.get().error().kind, ErrorKind::kNotFound);
+  EXPECT_EQ(control_->drawn, 0);
+  EXPECT_TRUE(draw(1, job_for("cube")).second.get());
+}
+
+TEST_F(RenderServiceTest, FrontSurfacesBeyondTheLimitAreRefusedAndStopWithTheService) {
+  ServiceLimits limits;
+  limits.queued_jobs = 2;
+  start(limits);
+  PictureJob job = job_for("cube");
+  job.format = picture::FileFormat::kExr;
+  job.channels.set(static_cast<size_t>(picture::Channel::kDepth));
+  std::vector<std::future<Result<EncodedPicture>>> pictures;
+  for (int i = 0; i < 50; ++i) pictures.push_back(draw(1, job).second);
+  service_.reset();
+  for (auto& picture : pictures) EXPECT_FALSE(picture.get());
+}
+
 TEST_F(RenderServiceTest, APictureComesBackEncodedWithItsFigures) {
   start();
   auto [id, future] = draw(1, job_for("cube"));

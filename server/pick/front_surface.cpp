@@ -1,0 +1,147 @@
+#include "pick/front_surface.h"
+
+#include <algorithm>
+#include <glm/geometric.hpp>
+#include <memory>
+#include <optional>
+
+#include "pick/leaf_numbers.h"
+#include "selection/block_hull.h"
+#include "selection/frustum.h"
+
+namespace surfcast::pick {
+namespace {
+
+/// Pixels a side of the rectangles that are searched at once.
+constexpr int kRegionSide = 1024;
+/// Upper bound of the widening of discs by the prefilter of visibility, pixels.
+constexpr double kReachInPixels = 2;
+
+/// A leaf in view of a region.
+struct LeafInView {
+  uint32_t block = 0;
+  double nearest = 0;        ///< lower bound of the camera z of its items
+  kinds::PixelRange pixels;  ///< that its items may cover
+};
+
+/// The regions of a picture, row by row.
+std::vector<kinds::PixelRange> regions_of(const geometry::CameraFrame& frame) {
+  std::vector<kinds::PixelRange> regions;
+  for (int y = 0; y < frame.height; y += kRegionSide) {
+    for (int x = 0; x < frame.width; x += kRegionSide) {
+      const glm::ivec2 end = glm::min(glm::ivec2(x, y) + kRegionSide, glm::ivec2(frame.width, frame.height));
+      regions.push_back({{x, y}, end - 1});
+    }
+  }
+  return regions;
+}
+
+/// The pixels of a region that a box, grown by `reach` world units, may cover: those of its corners, or the whole
+/// region if it reaches the eye plane.
+kinds::PixelRange pixels_of(const geometry::Box& box, double reach, const geometry::CameraFrame& frame,
+                            const kinds::PixelRange& region) {
+  glm::dvec2 low(std::numeric_limits<double>::infinity());
+  glm::dvec2 high = -low;
+  for (int corner = 0; corner < 8; ++corner) {
+    const auto of = [&](int axis) { return (corner >> axis & 1) == 0 ? box.min[axis] - reach : box.max[axis] + reach; };
+    const glm::dvec3 at = frame.to_camera({of(0), of(1), of(2)});
+    if (at.z <= reach) return region;
+    const glm::dvec2 pixel = frame.project(at);
+    low = glm::min(low, pixel);
+    high = glm::max(high, pixel);
+  }
+  const glm::dvec2 first(region.first);
+  const glm::dvec2 last(region.last);
+  return {glm::ivec2(glm::clamp(glm::floor(low - kReachInPixels), first, last)),
+          glm::ivec2(glm::clamp(glm::ceil(high + kReachInPixels), first, last))};
+}
+
+/// A lower bound of the camera z of a block's items.
+double nearest_of(const selection::BlockHull& hull, const geometry::CameraFrame& frame) {
+  const glm::dvec3 half = 0.5 * hull.centres.size();
+  const double depth = glm::dot(half, glm::abs(frame.forward));
+  // Discs extend by less than two radii (kinds::nearest_depth).
+  return glm::dot(frame.forward, hull.centres.centre() - frame.eye) - depth - 2 * hull.reach;
+}
+
+class FrontSearch {
+ public:
+  FrontSearch(const model::ModelFile& model, const kinds::PickQuery& query, SourceBlocks& source)
+      : model_(model),
+        query_(query),
+        source_(source),
+        hulls_(selection::block_hulls(model.tree())),
+        numbers_(leaf_numbers(model)) {}
+
+  Status search(const kinds::PixelRange& region, const std::atomic<bool>& cancelled,
+                std::vector<FrontPixel>& pixels) const {
+    kinds::PixelHits hits(region);
+    for (const LeafInView& leaf : leaves_in(region)) {
+      if (cancelled.load(std::memory_order_relaxed)) return fail(ErrorKind::kCancelled, "cancelled");
+      if (!hits.may_show(leaf.pixels, leaf.nearest)) continue;
+      const Result<std::shared_ptr<const kinds::SourceBlock>> block = source_.get(model_, leaf.block);
+      if (!block) return fail(block.error());
+      hits.begin_block(leaf.block);
+      (*block)->cover(query_, hits);
+    }
+    read(hits, pixels);
+    return {};
+  }
+
+ private:
+  /// Sorted by `nearest`.
+  [[nodiscard]] std::vector<LeafInView> leaves_in(const kinds::PixelRange& region) const {
+    const geometry::CameraFrame& frame = query_.frame;
+    const selection::Frustum frustum(frame, region.first.x - kReachInPixels, region.first.y - kReachInPixels,
+                                     region.last.x + 1 + kReachInPixels, region.last.y + 1 + kReachInPixels);
+    std::vector<LeafInView> leaves;
+    std::vector<uint32_t> open(model_.tree().roots().begin(), model_.tree().roots().end());
+    while (!open.empty()) {
+      const uint32_t block = open.back();
+      open.pop_back();
+      const selection::BlockHull& hull = hulls_[block];
+      if (!selection::may_be_visible(hull, frustum, frame.eye) || !query_.clip.may_show(hull.centres)) continue;
+      const ldc::BlockTree::Children children = model_.tree().children(block);
+      for (uint32_t i = 0; i < children.count; ++i) open.push_back(children.first + i);
+      if (children.count > 0) continue;
+      leaves.push_back({block, nearest_of(hull, frame), pixels_of(hull.centres, 2 * hull.reach, frame, region)});
+    }
+    std::sort(leaves.begin(), leaves.end(), [](const LeafInView& a, const LeafInView& b) {
+      return std::pair(a.nearest, a.block) < std::pair(b.nearest, b.block);
+    });
+    return leaves;
+  }
+
+  /// Copies what the pixels of a region show.
+  void read(const kinds::PixelHits& hits, std::vector<FrontPixel>& pixels) const {
+    const kinds::PixelRange& region = hits.range();
+    for (int y = region.first.y; y <= region.last.y; ++y) {
+      for (int x = region.first.x; x <= region.last.x; ++x) {
+        const std::optional<kinds::ShownItem> item = hits.shown({x, y});
+        if (!item) continue;
+        pixels[static_cast<size_t>(y) * static_cast<size_t>(query_.frame.width) + static_cast<size_t>(x)] = {
+            item->depth, numbers_[item->rank.block] + item->rank.item, item->look.normal, item->look.code};
+      }
+    }
+  }
+
+  const model::ModelFile& model_;
+  const kinds::PickQuery& query_;
+  SourceBlocks& source_;
+  std::vector<selection::BlockHull> hulls_;
+  std::vector<uint64_t> numbers_;
+};
+
+}  // namespace
+
+Result<std::vector<FrontPixel>> find_front_surface(const model::ModelFile& model, const kinds::PickQuery& query,
+                                                   SourceBlocks& blocks, const std::atomic<bool>& cancelled) {
+  const FrontSearch search(model, query, blocks);
+  std::vector<FrontPixel> pixels(static_cast<size_t>(query.frame.width) * static_cast<size_t>(query.frame.height));
+  for (const kinds::PixelRange& region : regions_of(query.frame)) {
+    if (Status status = search.search(region, cancelled, pixels); !status) return fail(std::move(status.error()));
+  }
+  return pixels;
+}
+
+}  // namespace surfcast::pick
