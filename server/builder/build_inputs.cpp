@@ -18,11 +18,12 @@ std::vector<scan::ScanSchema> schemas_of(const std::vector<scan::ScanStream>& st
 }  // namespace
 
 Result<BuildInputs> BuildInputs::open(std::span<const std::filesystem::path> paths, std::optional<bool> z_up,
-                                      uint64_t max_bytes, const std::function<void(double)>& progress) {
+                                      uint64_t max_bytes, std::optional<uint64_t> sample,
+                                      const std::function<void(double)>& progress) {
   BuildInputs inputs;
   for (const std::filesystem::path& path : paths) {
     progress(static_cast<double>(inputs.streams_.size()) / static_cast<double>(paths.size()));
-    Result<scan::ScanStream> stream = scan::ScanStream::open(path, {max_bytes - inputs.held_bytes()});
+    Result<scan::ScanStream> stream = scan::ScanStream::open(path, {max_bytes - inputs.held_bytes()}, sample);
     if (!stream) return fail(std::move(stream.error()));
     for (size_t piece = 0; piece < stream->pieces(); ++piece) {
       inputs.pieces_.push_back({inputs.streams_.size(), piece});
@@ -37,6 +38,12 @@ Result<BuildInputs> BuildInputs::open(std::span<const std::filesystem::path> pat
 uint64_t BuildInputs::size() const {
   uint64_t size = 0;
   for (const scan::ScanStream& stream : streams_) size += stream.size();
+  return size;
+}
+
+uint64_t BuildInputs::size_of_files() const {
+  uint64_t size = 0;
+  for (const scan::ScanStream& stream : streams_) size += stream.size_of_file();
   return size;
 }
 

@@ -24,15 +24,18 @@ struct InputPiece {
 class BuildInputs {
  public:
   /// Opens all inputs, which reads each file once. At most `max_bytes` of memory hold decoded inputs. `z_up` overrides
-  /// the vertical axis that the inputs state. Errors name the file.
+  /// the vertical axis that the inputs state. `sample` points of each input at most, see ScanStream. Errors name the
+  /// file.
   static Result<BuildInputs> open(std::span<const std::filesystem::path> paths, std::optional<bool> z_up,
-                                  uint64_t max_bytes, const std::function<void(double)>& progress);
+                                  uint64_t max_bytes, std::optional<uint64_t> sample,
+                                  const std::function<void(double)>& progress);
 
   [[nodiscard]] const scan::ScanSchema& schema() const { return schema_; }
   [[nodiscard]] const std::vector<scan::ScanStream>& streams() const { return streams_; }
-  [[nodiscard]] uint64_t size() const;         ///< points, including unusable ones
-  [[nodiscard]] geometry::Box bounds() const;  ///< of the usable positions
-  [[nodiscard]] uint64_t held_bytes() const;   ///< memory of inputs that are decoded as a whole, bytes
+  [[nodiscard]] uint64_t size() const;           ///< points, including unusable ones
+  [[nodiscard]] uint64_t size_of_files() const;  ///< points, beyond samples too
+  [[nodiscard]] geometry::Box bounds() const;    ///< of the usable positions
+  [[nodiscard]] uint64_t held_bytes() const;     ///< memory of inputs that are decoded as a whole, bytes
   [[nodiscard]] size_t pieces() const { return pieces_.size(); }
   [[nodiscard]] std::vector<std::string> notes() const;
 

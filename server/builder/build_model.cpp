@@ -182,8 +182,10 @@ Result<BuildReport> build_model(std::span<const std::filesystem::path> inputs, c
     StageClock clock(progress, report);
     clock.begin("reading", inputs.size());
     const Result<BuildInputs> opened =
-        BuildInputs::open(inputs, options.z_up, *budget, [&clock](double) { clock.step(); });
+        BuildInputs::open(inputs, options.z_up, *budget, options.sample, [&clock](double) { clock.step(); });
     if (!opened) return fail(opened.error());
+    report.points_in_scans = opened->size_of_files();
+    clock.know_points(opened->size());
     if (Status status = check_bounds(opened->bounds(), target); !status) return fail(std::move(status.error()));
     Result<MemoryPlan> memory = plan_memory(*budget, opened->held_bytes(), opened->schema());
     if (!memory) return named(memory.error());

@@ -15,6 +15,8 @@ class StageClock {
   StageClock& operator=(const StageClock&) = delete;
   ~StageClock() { end(); }
 
+  /// How many points the stages from now on work on.
+  void know_points(uint64_t points) { points_ = points; }
   /// Ends the previous stage and begins one of `steps` steps.
   void begin(const char* stage, size_t steps) {
     end();
@@ -22,13 +24,13 @@ class StageClock {
     steps_ = steps;
     done_ = 0;
     stopwatch_ = {};
-    progress_({stage_, 0, report_.scan.points_read});
+    progress_({stage_, 0, points_});
   }
   /// Call when a step is complete. Thread-safe.
   void step() {
     const std::lock_guard lock(mutex_);
     ++done_;
-    progress_({stage_, static_cast<double>(done_) / static_cast<double>(steps_), report_.scan.points_read});
+    progress_({stage_, static_cast<double>(done_) / static_cast<double>(steps_), points_});
   }
 
  private:
@@ -43,6 +45,7 @@ class StageClock {
   const char* stage_ = nullptr;
   size_t steps_ = 1;
   size_t done_ = 0;
+  uint64_t points_ = 0;
   Stopwatch stopwatch_;
 };
 

@@ -1,22 +1,30 @@
 #include "cmd/build.h"
 
+#include <algorithm>
 #include <array>
+#include <cerrno>
 #include <cmath>
+#include <csignal>
+#include <cstring>
 #include <filesystem>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
+#include <thread>
 #include <vector>
 
+#include <oneapi/tbb/global_control.h>
 #include <spdlog/fmt/fmt.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
 #include <unistd.h>
 
 #include "base/atomic_file.h"
 #include "base/log.h"
-#include "base/stopwatch.h"
 #include "builder/build_model.h"
 #include "builder/memory_budget.h"
+#include "cmd/build_progress.h"
 #include "cmd/radius_flag.h"
 
 namespace surfcast::cmd {
@@ -30,42 +38,31 @@ struct BuildCommand {
   std::string memory;
   scan::RadiusPolicy radii = scan::RadiusPolicy::kAuto;
   std::filesystem::path report;
+  std::optional<uint64_t> sample;
+  size_t threads = 0;  ///< 0: one a core
+  std::string progress = "auto";
+  bool background = false;
 };
 
-/// One line on a terminal that is rewritten as the build goes on; silent where stderr is not a terminal.
-class ProgressLine {
- public:
-  ~ProgressLine() {
-    if (!shown_.empty()) std::cerr << "\r\033[K" << std::flush;
-  }
-  void show(const builder::BuildStep& step) {
-    if (!terminal_) return;
-    if (step.stage != stage_ || step.done == 0) {
-      stage_ = step.stage;
-      since_ = {};
-    }
-    const std::string text = describe(step);
-    if (text == shown_) return;
-    shown_ = text;
-    std::cerr << "\r\033[K" << text << std::flush;
-  }
+/// A share of the processors that a build gets by itself, points a second and processor; measured without other load.
+constexpr double kPointsPerSecondAndCore = 90'000;
 
- private:
-  /// Rate and time left are those of the stage.
-  [[nodiscard]] std::string describe(const builder::BuildStep& step) const {
-    if (step.done <= 0) return stage_;
-    const double seconds = since_.seconds();
-    std::string text = fmt::format("{} {:.0f} %", stage_, 100 * step.done);
-    if (step.points > 0)
-      text += fmt::format(", {:.0f} points/s", static_cast<double>(step.points) * step.done / seconds);
-    return text + fmt::format(", {:.0f} s left", seconds * (1 - step.done) / step.done);
-  }
+ProgressStyle style_of(const std::string& wanted) {
+  if (wanted == "json") return ProgressStyle::kJson;
+  return wanted != "none" && ::isatty(STDERR_FILENO) == 1 ? ProgressStyle::kTerminal : ProgressStyle::kNone;
+}
 
-  bool terminal_ = ::isatty(STDERR_FILENO) == 1;
-  std::string stage_;
-  Stopwatch since_;
-  std::string shown_;
-};
+/// Leaves the processors to other programs, and ends when the program that started this one does. What has already
+/// ended is noticed by a changed parent.
+Status go_into_background() {
+  constexpr int kLeastPriority = 19;
+  const pid_t parent = ::getppid();
+  if (::setpriority(PRIO_PROCESS, 0, kLeastPriority) != 0 || ::prctl(PR_SET_PDEATHSIG, SIGTERM) != 0) {
+    return fail(ErrorKind::kIo, std::string("cannot go into the background: ") + std::strerror(errno));
+  }
+  if (::getppid() != parent) return fail(ErrorKind::kCancelled, "the program that started this one has ended");
+  return {};
+}
 
 std::string figures(const builder::BuildReport& report) {
   return fmt::format("{} points read, {} surfels, {} bytes, {:.2f} s, {:.0f} points/s, {:.0f} MiB peak memory\n",
@@ -102,6 +99,7 @@ std::string to_json(const BuildCommand& command, const builder::BuildReport& rep
   nlohmann::ordered_json json{
       {"output", command.output.string()},
       {"points_read", report.scan.points_read},
+      {"points_in_scans", report.points_in_scans},
       {"surfels", report.surfels},
       {"blocks", report.blocks},
       {"bytes", report.bytes},
@@ -133,14 +131,23 @@ std::string to_json(const BuildCommand& command, const builder::BuildReport& rep
 }
 
 Status build(const BuildCommand& command) {
+  if (command.background) {
+    if (Status status = go_into_background(); !status) return status;
+  }
+  std::optional<oneapi::tbb::global_control> threads;
+  if (command.threads > 0) threads.emplace(oneapi::tbb::global_control::max_allowed_parallelism, command.threads);
   Result<builder::BuildReport> report;
   {
-    ProgressLine line;
-    const std::optional<bool> z_up = command.up.empty() ? std::nullopt : std::optional(command.up == "z");
-    const std::optional<uint64_t> memory = builder::parse_memory_size(command.memory);
-    report = builder::build_model(command.inputs, command.output,
-                                  {command.precision, z_up, memory, std::nullopt, command.radii},
-                                  [&line](const builder::BuildStep& step) { line.show(step); });
+    const size_t cores = command.threads > 0 ? command.threads : std::max(1U, std::thread::hardware_concurrency());
+    BuildProgressReport progress(style_of(command.progress), kPointsPerSecondAndCore * static_cast<double>(cores));
+    builder::BuildOptions options;
+    options.precision = command.precision;
+    if (!command.up.empty()) options.z_up = command.up == "z";
+    options.memory = builder::parse_memory_size(command.memory);
+    options.sample = command.sample;
+    options.radii = command.radii;
+    report = builder::build_model(command.inputs, command.output, options,
+                                  [&progress](const builder::BuildStep& step) { progress.note(step); });
   }
   if (!report) return fail(std::move(report.error()));
   for (const std::string& note : report->scan.notes) spdlog::warn("{}", note);
@@ -170,6 +177,19 @@ void add_build_command(CLI::App& app, Status& outcome) {
       });
   add_radius_flag(*build_command, command->radii);
   build_command->add_option("--report", command->report, "Write statistics of the build to this file as JSON");
+  build_command
+      ->add_option("--sample", command->sample,
+                   "Build a preview: of about that many points of each scan, spread over it, with radii for their "
+                   "spacing")
+      ->check(CLI::PositiveNumber);
+  build_command->add_option("--threads", command->threads, "Threads of the build (default: one a core)")
+      ->check(CLI::Range(1, 1024));
+  build_command
+      ->add_option("--progress", command->progress,
+                   "On standard error: auto (a line on a terminal, the default), json (lines for programs), none")
+      ->check(CLI::IsMember({"auto", "json", "none"}));
+  build_command->add_flag("--background", command->background,
+                          "Leave the processors to other programs, and end when the program that started this ends");
   build_command->callback([command, &outcome] { outcome = build(*command); });
 }
 

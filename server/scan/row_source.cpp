@@ -11,4 +11,10 @@ Status DecodingLimit::check(uint64_t bytes) const {
                                      mebibytes(max_bytes) + " are left for it");
 }
 
+Status check_announced(uint64_t rows, uint64_t announced) {
+  if (rows >= announced) return {};
+  return fail(ErrorKind::kInvalidInput,
+              "truncated: the file states " + std::to_string(announced) + " points and holds " + std::to_string(rows));
+}
+
 }  // namespace surfcast::scan

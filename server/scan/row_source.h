@@ -24,6 +24,7 @@ struct RowTraits {
   bool from_text = false;        ///< scalars get the smallest type that holds all their values
   bool counted = false;          ///< a PTS file
   uint64_t announced = 0;        ///< number of rows that the file states before the first row
+  bool sampled = false;          ///< these are a part of the rows, so that radii stated for all of them are too small
 };
 
 /// Limits the memory of formats that can only be decoded as a whole.
@@ -32,6 +33,9 @@ struct DecodingLimit {
 
   [[nodiscard]] Status check(uint64_t bytes) const;
 };
+
+/// An error if a file states more rows than it holds.
+[[nodiscard]] Status check_announced(uint64_t rows, uint64_t announced);
 
 /// The rows of a file in pieces. Pieces can be read in any order and from any thread. All pieces have the same columns,
 /// and at least one piece has a row.

@@ -11,6 +11,7 @@
 #include "scan/pcd_reader.h"
 #include "scan/ply_reader.h"
 #include "scan/ptx_reader.h"
+#include "scan/sampled_rows.h"
 #include "scan/scan_format.h"
 #include "scan/text_reader.h"
 
@@ -62,24 +63,32 @@ Result<TableFacts> survey_rows(const RowSource& rows, const MappedFile* file) {
     if (!piece) return fail(piece.error());
     all.include(*piece);
   }
-  const uint64_t announced = all.announced + rows.traits().announced;
-  if (all.rows < announced) {
-    return fail(ErrorKind::kInvalidInput, "truncated: the file states " + std::to_string(announced) +
-                                              " points and holds " + std::to_string(all.rows));
-  }
+  Status whole = check_announced(all.rows, all.announced + rows.traits().announced);
+  if (!whole) return fail(std::move(whole.error()));
   return all;
 }
 
 }  // namespace
 
+/// Leaves a part of the rows, if one is wanted.
+Status ScanStream::take_sample(std::optional<uint64_t> sample) {
+  if (!sample) return {};
+  Result<RowSample> taken = sample_rows(*rows_, *sample);
+  if (!taken) return fail(std::move(taken.error()));
+  rows_ = std::move(taken->rows);
+  size_of_file_ = taken->of_rows;
+  return {};
+}
+
 Status ScanStream::examine(std::span<const std::byte> bytes, const std::filesystem::path& path,
-                           const DecodingLimit& limit) {
+                           const DecodingLimit& limit, std::optional<uint64_t> sample) {
   path_ = path;
   const auto named = [&path](const Error& error) { return fail(error.kind, path.string() + ": " + error.message); };
   Result<std::unique_ptr<RowSource>> rows =
       scan_format_of(bytes, path).and_then([&](ScanFormat format) { return rows_of(format, bytes, limit); });
   if (!rows) return named(rows.error());
   rows_ = std::move(*rows);
+  if (Status taken = take_sample(sample); !taken) return named(taken.error());
   const Result<TableFacts> facts = survey_rows(*rows_, file_ ? &*file_ : nullptr);
   if (!facts) return named(facts.error());
   Result<TableMeaning> meaning = decide_meaning(*rows_, *facts);
@@ -87,22 +96,24 @@ Status ScanStream::examine(std::span<const std::byte> bytes, const std::filesyst
   meaning_ = std::move(*meaning);
   meaning_.schema.name = path.filename().string();
   size_ = facts->rows;
+  if (!sample) size_of_file_ = size_;
   bounds_ = facts->bounds;
   return {};
 }
 
 Result<ScanStream> ScanStream::open_content(std::span<const std::byte> bytes, const std::filesystem::path& path) {
   ScanStream stream;
-  if (Status status = stream.examine(bytes, path, {}); !status) return fail(std::move(status.error()));
+  if (Status status = stream.examine(bytes, path, {}, {}); !status) return fail(std::move(status.error()));
   return stream;
 }
 
-Result<ScanStream> ScanStream::open(const std::filesystem::path& path, const DecodingLimit& limit) {
+Result<ScanStream> ScanStream::open(const std::filesystem::path& path, const DecodingLimit& limit,
+                                    std::optional<uint64_t> sample) {
   Result<MappedFile> file = MappedFile::open(path);
   if (!file) return fail(std::move(file.error()));
   ScanStream stream;
   stream.file_ = std::move(*file);
-  if (Status status = stream.examine(stream.file_->bytes(), path, limit); !status)
+  if (Status status = stream.examine(stream.file_->bytes(), path, limit, sample); !status)
     return fail(std::move(status.error()));
   return stream;
 }
@@ -113,6 +124,18 @@ Result<ScanPoints> ScanStream::read(size_t piece) const {
   ScanPoints points = points_of(*table, meaning_);
   if (file_) file_->release_pages();
   return points;
+}
+
+Status check_header(const std::filesystem::path& path) {
+  const Result<MappedFile> file = MappedFile::open(path);
+  if (!file) return fail(file.error());
+  const Result<ScanFormat> format = scan_format_of(file->bytes(), path);
+  const auto named = [&path](const Error& error) { return fail(error.kind, path.string() + ": " + error.message); };
+  if (!format) return named(format.error());
+  if (*format != ScanFormat::kPly && *format != ScanFormat::kLas) return {};
+  const Result<std::unique_ptr<RowSource>> rows = rows_of(*format, file->bytes(), {});
+  if (!rows) return named(rows.error());
+  return {};
 }
 
 }  // namespace surfcast::scan

@@ -21,13 +21,16 @@ namespace surfcast::scan {
 class ScanStream {
  public:
   /// Opens a scan of any supported format, detected by content first and extension second. Every error names the file
-  /// and the fault; a file without points is an error.
-  static Result<ScanStream> open(const std::filesystem::path& path, const DecodingLimit& limit = {});
+  /// and the fault; a file without points is an error. With `sample`, the scan has only about that many of the file's
+  /// points, see sample_rows; they stay in memory.
+  static Result<ScanStream> open(const std::filesystem::path& path, const DecodingLimit& limit = {},
+                                 std::optional<uint64_t> sample = {});
   /// The same for content in memory, which must outlive the stream. `path` only names it in messages.
   static Result<ScanStream> open_content(std::span<const std::byte> bytes, const std::filesystem::path& path);
 
   [[nodiscard]] const ScanSchema& schema() const { return meaning_.schema; }
   [[nodiscard]] uint64_t size() const { return size_; }                  ///< points, including unusable ones
+  [[nodiscard]] uint64_t size_of_file() const { return size_of_file_; }  ///< points, beyond a sample too
   [[nodiscard]] const geometry::Box& bounds() const { return bounds_; }  ///< of the points with finite coordinates
   [[nodiscard]] size_t pieces() const { return rows_->pieces(); }
   [[nodiscard]] uint64_t held_bytes() const { return rows_->held_bytes(); }  ///< memory, for formats decoded as a whole
@@ -35,14 +38,21 @@ class ScanStream {
   [[nodiscard]] Result<ScanPoints> read(size_t piece) const;
 
  private:
-  Status examine(std::span<const std::byte> bytes, const std::filesystem::path& path, const DecodingLimit& limit);
+  Status examine(std::span<const std::byte> bytes, const std::filesystem::path& path, const DecodingLimit& limit,
+                 std::optional<uint64_t> sample);
+  Status take_sample(std::optional<uint64_t> sample);
 
   std::filesystem::path path_;
   std::optional<MappedFile> file_;  ///< none for content in memory
   std::unique_ptr<RowSource> rows_;
   TableMeaning meaning_;
   uint64_t size_ = 0;
+  uint64_t size_of_file_ = 0;
   geometry::Box bounds_;
 };
+
+/// What can be told of a scan from its header: whether it exists, has a known format, and its header makes sense.
+/// Formats without a header pass.
+Status check_header(const std::filesystem::path& path);
 
 }  // namespace surfcast::scan

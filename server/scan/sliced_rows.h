@@ -25,7 +25,7 @@ class SlicedRows : public RowSource {
     return slice;
   }
   [[nodiscard]] uint64_t held_bytes() const override {
-    uint64_t bytes = 0;
+    uint64_t bytes = table_.records.size();
     for (const surfel::ScalarValues& values : table_.storage) {
       bytes += std::visit([](const auto& typed) { return typed.size() * sizeof(typed[0]); }, values);
     }

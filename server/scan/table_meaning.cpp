@@ -149,6 +149,7 @@ Result<TableMeaning> decide_meaning(const RowSource& rows, const TableFacts& fac
   keep_colors_together(columns, absent);
   Result<ColumnRoles> roles = assign_roles(columns, absent);
   if (!roles) return fail(std::move(roles.error()));
+  if (traits.sampled) roles->radius.reset();
   TableMeaning meaning;
   meaning.roles = std::move(*roles);
   meaning.schema.grid = traits.grid;

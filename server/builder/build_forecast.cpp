@@ -1,0 +1,70 @@
+#include "builder/build_forecast.h"
+
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
+
+namespace surfcast::builder {
+namespace {
+
+/// Shares of the time of a build in one part; "counting" is a stage of builds in several.
+constexpr std::array<std::pair<std::string_view, double>, 6> kShares{{
+    {"reading", 0.04},
+    {"counting", 0.03},
+    {"sorting points", 0.04},
+    {"making surfels", 0.47},
+    {"writing blocks", 0.40},
+    {"writing levels above", 0.02},
+}};
+/// Beyond this share of a stage nothing is claimed that was not reported.
+constexpr double kMostByTime = 0.95;
+/// The pace of a build is known once this share of it is done: reading alone says little.
+constexpr double kKnownShare = 0.1;
+
+double share_of(std::string_view stage) {
+  const auto* found = std::ranges::find(kShares, stage, &std::pair<std::string_view, double>::first);
+  return found == kShares.end() ? 0 : found->second;
+}
+
+/// The share of all stages before this one.
+double share_before(std::string_view stage) {
+  double sum = 0;
+  for (const auto& [name, share] : kShares) {
+    if (name == stage) return sum;
+    sum += share;
+  }
+  return 0;
+}
+
+}  // namespace
+
+void BuildForecast::note(const BuildStep& step, double seconds) {
+  if (step.stage != stage_) begin_stage(step, seconds);
+  stage_done_ = step.done;
+  if (step.points > 0) points_ = step.points;
+}
+
+void BuildForecast::begin_stage(const BuildStep& step, double seconds) {
+  stage_ = step.stage;
+  stage_share_ = share_of(stage_);
+  before_ = std::max(before_, share_before(stage_));
+  stage_began_ = seconds;
+  if (before_ >= kKnownShare) seconds_per_share_ = seconds / before_;
+}
+
+double BuildForecast::expected_seconds() const {
+  if (seconds_per_share_ > 0) return seconds_per_share_;
+  return static_cast<double>(points_) / points_per_second_;
+}
+
+BuildOutlook BuildForecast::outlook(double seconds) {
+  const double stage_seconds = expected_seconds() * stage_share_;
+  const double by_time = stage_seconds > 0 ? std::min((seconds - stage_began_) / stage_seconds, kMostByTime) : 0;
+  const double in_stage = std::clamp(std::max(stage_done_, by_time), 0.0, 1.0);
+  shown_ = std::max(shown_, std::min(before_ + stage_share_ * in_stage, 1.0));
+  const double pace = std::max(expected_seconds(), shown_ >= kKnownShare ? seconds / shown_ : 0.0);
+  return {stage_, shown_, pace * (1 - shown_)};
+}
+
+}  // namespace surfcast::builder
