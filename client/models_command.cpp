@@ -1,6 +1,9 @@
+#include <cmath>
 #include <iostream>
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
 
 #include "client/commands.h"
 #include "client/time_limits.h"
@@ -22,14 +25,43 @@ Result<wire::ModelList> ask_for_models(const protocol::Endpoint& server, const C
   });
 }
 
+const char* name_of(wire::ScanState state) {
+  switch (state) {
+    case wire::SCAN_STATE_WAITING:
+      return "waiting";
+    case wire::SCAN_STATE_BUILDING:
+      return "building";
+    default:
+      break;
+  }
+  return "failed";
+}
+
+/// As /api/models states it.
+nlohmann::json to_json(const wire::ScanStatus& scan) {
+  nlohmann::json json{{"model", scan.model()}, {"state", name_of(scan.state())}, {"preview", scan.edition() > 0}};
+  if (scan.state() == wire::SCAN_STATE_FAILED) {
+    json["problem"] = scan.problem();
+    return json;
+  }
+  json["percent"] = std::floor(1000 * scan.done()) / 10;
+  json["seconds_left"] = scan.seconds_left() > 0 ? nlohmann::json(std::ceil(scan.seconds_left())) : nlohmann::json();
+  return json;
+}
+
+nlohmann::json to_json(const wire::ModelList& list) {
+  nlohmann::json scans = nlohmann::json::array();
+  for (const wire::ScanStatus& scan : list.scans()) scans.push_back(to_json(scan));
+  return {{"models", std::vector<std::string>(list.models().begin(), list.models().end())}, {"scans", scans}};
+}
+
 Status list_models(const ModelsCommand& command, int interrupt) {
   const Result<protocol::Endpoint> server = protocol::parse_endpoint(command.url);
   if (!server) throw CLI::ValidationError(server.error().message);
   const Result<wire::ModelList> list = ask_for_models(*server, command.limits.config(interrupt));
   if (!list) return fail(list.error());
   if (command.json) {
-    const std::vector<std::string> names(list->models().begin(), list->models().end());
-    std::cout << nlohmann::json{{"models", names}}.dump(2) << '\n';
+    std::cout << to_json(*list).dump(2) << '\n';
   } else {
     for (const std::string& name : list->models()) std::cout << name << '\n';
   }

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -12,5 +14,8 @@ uint64_t hash_of(std::span<const std::byte> bytes, uint64_t seed = 0);
 
 /// XXH3, 128 bit, as 32 hexadecimal digits: a name for content that no other content will have by chance.
 std::string hash_name(std::span<const std::byte> bytes);
+
+/// The same, in pieces; none as soon as it is cancelled.
+std::optional<std::string> hash_name(std::span<const std::byte> bytes, const std::atomic<bool>& cancelled);
 
 }  // namespace surfcast

@@ -1,16 +1,20 @@
 #include "cmd/find_models.h"
 
-#include <algorithm>
+#include <set>
+#include <string>
 #include <system_error>
 #include <utility>
 #include <vector>
+
+#include "base/mapped_file.h"
+#include "scan/scan_stream.h"
 
 namespace surfcast::cmd {
 namespace {
 
 namespace fs = std::filesystem;
 
-/// The model file behind a path that is no folder; it must open.
+/// The model file of a path that is no folder; a scan is built now unless the cache has its model.
 Result<service::NamedModel> find_model(const fs::path& path, const ScanCacheConfig& cache) {
   if (path.extension() != ".surf") {
     Result<CachedModel> built = model_of_scan(path, cache);
@@ -21,26 +25,60 @@ Result<service::NamedModel> find_model(const fs::path& path, const ScanCacheConf
   return service::NamedModel{path.stem().string(), path};
 }
 
+Status check_file(const fs::path& path) {
+  if (path.extension() == ".surf") return model::ModelFile::open(path).map([](const model::ModelFile&) {});
+  return MappedFile::open(path).map([](const MappedFile&) {});
+}
+
+/// The names under which files are served must differ.
+Status check_names(const NamedPaths& paths) {
+  std::set<std::string> names;
+  const auto add = [&names](const fs::path& path) -> Status {
+    if (names.insert(path.stem().string()).second) return {};
+    return fail(ErrorKind::kInvalidInput, path.string() + ": another model is served under that name");
+  };
+  for (const service::NamedModel& model : paths.models) {
+    if (Status status = add(model.path); !status) return status;
+  }
+  for (const fs::path& scan : paths.scans) {
+    if (Status status = add(scan); !status) return status;
+  }
+  return {};
+}
+
+/// Of several scans those that cannot be read are listed with their faults. If there is nothing else to serve, it is
+/// the command line that is wrong.
+Status check_any_scan(const NamedPaths& paths) {
+  if (paths.scans.empty() || !paths.models.empty() || !paths.folders.empty()) return {};
+  Status first;
+  for (const fs::path& scan : paths.scans) {
+    Status status = scan::check_header(scan);
+    if (status) return {};
+    if (first) first = std::move(status);
+  }
+  return first;
+}
+
 }  // namespace
 
-Result<std::unique_ptr<service::ModelCatalogue>> find_models(std::span<const fs::path> paths,
-                                                             const ScanCacheConfig& cache) {
-  std::vector<service::NamedModel> files;
-  std::vector<fs::path> folders;
+Result<NamedPaths> sort_paths(std::span<const fs::path> paths) {
+  NamedPaths sorted;
   for (const fs::path& path : paths) {
     std::error_code ignored;
     if (fs::is_directory(path, ignored)) {
-      folders.push_back(path);
+      sorted.folders.push_back(path);
       continue;
     }
-    Result<service::NamedModel> model = find_model(path, cache);
-    if (!model) return fail(model.error());
-    const bool taken =
-        std::ranges::any_of(files, [&](const service::NamedModel& other) { return other.name == model->name; });
-    if (taken) return fail(ErrorKind::kInvalidInput, path.string() + ": another model is served under that name");
-    files.push_back(std::move(*model));
+    if (Status status = check_file(path); !status) return fail(std::move(status.error()));
+    if (path.extension() == ".surf") {
+      sorted.models.push_back({path.stem().string(), path});
+    } else {
+      sorted.scans.push_back(path);
+    }
   }
-  return std::make_unique<service::ModelCatalogue>(std::move(files), std::move(folders));
+  if (Status status = check_names(sorted); !status) return fail(std::move(status.error()));
+  if (Status status = check_any_scan(sorted); !status) return fail(std::move(status.error()));
+  return sorted;
 }
 
 Result<std::unique_ptr<service::ModelCatalogue>> find_one_model(const fs::path& path, const ScanCacheConfig& cache) {
@@ -48,7 +86,11 @@ Result<std::unique_ptr<service::ModelCatalogue>> find_one_model(const fs::path& 
   if (fs::is_directory(path, ignored)) {
     return fail(ErrorKind::kInvalidInput, path.string() + ": is a folder, and one model is wanted");
   }
-  return find_models({&path, 1}, cache);
+  Result<service::NamedModel> model = find_model(path, cache);
+  if (!model) return fail(std::move(model.error()));
+  std::vector<service::NamedModel> files;
+  files.push_back(std::move(*model));
+  return std::make_unique<service::ModelCatalogue>(std::move(files), std::vector<fs::path>());
 }
 
 }  // namespace surfcast::cmd

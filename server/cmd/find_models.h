@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <memory>
 #include <span>
+#include <vector>
 
 #include "base/result.h"
 #include "cmd/scan_cache.h"
@@ -10,10 +11,16 @@
 
 namespace surfcast::cmd {
 
-/// The catalogue of what a command line names: model files, folders of them, and scans, which are built now unless the
-/// cache has their models.
-Result<std::unique_ptr<service::ModelCatalogue>> find_models(std::span<const std::filesystem::path> paths,
-                                                             const ScanCacheConfig& cache);
+/// What a command line names.
+struct NamedPaths {
+  std::vector<service::NamedModel> models;     ///< they open
+  std::vector<std::filesystem::path> folders;  ///< of models
+  std::vector<std::filesystem::path> scans;
+};
+
+/// Sorts the paths of a command line. Fails if one does not exist, if a model does not open, if two have one name, and
+/// if there is nothing but scans that are none by their first bytes.
+Result<NamedPaths> sort_paths(std::span<const std::filesystem::path> paths);
 
 /// The catalogue of one model, named by a model file or a scan.
 Result<std::unique_ptr<service::ModelCatalogue>> find_one_model(const std::filesystem::path& path,

@@ -107,6 +107,23 @@ void add_cache_flags(CLI::App& command, ScanCacheConfig& cache) {
   add_radius_flag(command, cache.radii)->envname(protocol::environment_name("radii"));
 }
 
+void add_build_flags(CLI::App& command, PreviewRule& previews, size_t& threads) {
+  add_count(
+      command, "preview-points", previews.points,
+      "Points of a scan that its first preview is made of (default 250000; 0: no previews). More: it is finer, and "
+      "comes later; less: coarser, and sooner",
+      {0, 1'000'000'000});
+  add_size(command, "preview-from", previews.least_bytes,
+           "File of a scan from which on there is a preview (default 4M). More: nothing is seen of larger scans before "
+           "they are built; less: small scans are complete later",
+           {0, UINT64_MAX});
+  add_count(
+      command, "build-threads", threads,
+      "Threads that build a model of a scan (default: one a core). More: memory and time of other programs; less: "
+      "scans are complete later",
+      kThreads);
+}
+
 void add_renderer_flags(CLI::App& command, render::RendererConfig& renderer) {
   command.add_option("--gpu", renderer.gpu, "Index of the EGL device (default: the first hardware device)")
       ->envname(protocol::environment_name("gpu"))

@@ -2,6 +2,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "cmd/scan_builds.h"
 #include "cmd/scan_cache.h"
 #include "net/server.h"
 #include "net/static_files.h"
@@ -15,6 +16,8 @@ namespace surfcast::cmd {
 
 /// `--cache`, its size, and the memory and `--radii` of builds.
 void add_cache_flags(CLI::App& command, ScanCacheConfig& cache);
+/// Previews of scans, and the threads of builds.
+void add_build_flags(CLI::App& command, PreviewRule& previews, size_t& threads);
 /// `--gpu`, the memory of the renderer and its threads.
 void add_renderer_flags(CLI::App& command, render::RendererConfig& renderer);
 /// The size of a picture.

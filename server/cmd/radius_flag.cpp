@@ -1,20 +1,35 @@
 #include "cmd/radius_flag.h"
 
-#include <map>
-#include <string>
+#include <algorithm>
+#include <array>
+#include <string_view>
+#include <utility>
 
 namespace surfcast::cmd {
+namespace {
+
+constexpr std::array<std::pair<std::string_view, scan::RadiusPolicy>, 3> kPolicies = {
+    {{"auto", scan::RadiusPolicy::kAuto},
+     {"keep", scan::RadiusPolicy::kKeep},
+     {"estimate", scan::RadiusPolicy::kEstimate}}};
+
+scan::RadiusPolicy policy_named(const std::string& name) {
+  return std::ranges::find(kPolicies, name, [](const auto& entry) { return entry.first; })->second;
+}
+
+}  // namespace
 
 CLI::Option* add_radius_flag(CLI::App& command, scan::RadiusPolicy& policy) {
-  static const std::map<std::string, scan::RadiusPolicy> kPolicies{{"auto", scan::RadiusPolicy::kAuto},
-                                                                   {"keep", scan::RadiusPolicy::kKeep},
-                                                                   {"estimate", scan::RadiusPolicy::kEstimate}};
   return command
       .add_option_function<std::string>(
-          "--radii", [&policy](const std::string& name) { policy = kPolicies.at(name); },
+          "--radii", [&policy](const std::string& name) { policy = policy_named(name); },
           "Radii that scans state: auto (scaled to the kernel where they follow the sampling, else estimated), keep or "
           "estimate (default auto)")
       ->check(CLI::IsMember({"auto", "keep", "estimate"}));
+}
+
+std::string name_of(scan::RadiusPolicy policy) {
+  return std::string(std::ranges::find(kPolicies, policy, [](const auto& entry) { return entry.second; })->first);
 }
 
 }  // namespace surfcast::cmd

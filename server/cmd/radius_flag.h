@@ -1,6 +1,7 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <string>
 
 #include "scan/stated_radii.h"
 
@@ -9,5 +10,8 @@ namespace surfcast::cmd {
 /// `--radii`: what a build makes of the radii that scans state. `policy` keeps its value where the flag is not given,
 /// and must outlive the parsing.
 CLI::Option* add_radius_flag(CLI::App& command, scan::RadiusPolicy& policy);
+
+/// The value of the flag that asks for a policy.
+std::string name_of(scan::RadiusPolicy policy);
 
 }  // namespace surfcast::cmd

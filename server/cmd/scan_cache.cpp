@@ -25,8 +25,8 @@ namespace fs = std::filesystem;
 
 /// Another release may build better models of the same scan, so its version is part of the key. So is the policy of
 /// radii, in the hash.
-std::string key_of(std::span<const std::byte> content, scan::RadiusPolicy radii) {
-  std::string hash = hash_name(content);
+std::string key_of(const std::string& content_name, scan::RadiusPolicy radii) {
+  std::string hash = content_name;
   if (radii != scan::RadiusPolicy::kAuto) {
     const std::string both = fmt::format("{} radii {}", hash, static_cast<int>(radii));
     hash = hash_name(std::as_bytes(std::span(both)));
@@ -64,15 +64,12 @@ std::optional<CachedModel> find_in_cache(const fs::path& path) {
 
 Status build_into(const fs::path& scan, const fs::path& target, const ScanCacheConfig& config) {
   spdlog::info("{}: building a model of it", scan.string());
-  std::error_code code;
-  fs::create_directories(target.parent_path(), code);
-  if (code) {
-    return fail(ErrorKind::kIo, target.parent_path().string() + ": cannot make the folder: " + code.message());
-  }
   const std::array inputs{scan};
-  const Result<builder::BuildReport> report = builder::build_model(
-      inputs, target, {std::nullopt, std::nullopt, config.build_memory, std::nullopt, config.radii},
-      [](const builder::BuildStep&) {});
+  builder::BuildOptions options;
+  options.memory = config.build_memory;
+  options.radii = config.radii;
+  const Result<builder::BuildReport> report =
+      builder::build_model(inputs, target, options, [](const builder::BuildStep&) {});
   if (!report) return fail(report.error());
   for (const std::string& note : report->scan.notes) spdlog::warn("{}", note);
   spdlog::info("{}: {} surfels in {:.1f} s", scan.string(), report->surfels, report->seconds);
@@ -91,20 +88,43 @@ Result<fs::path> default_cache_folder() {
   return fail(ErrorKind::kIo, "there is no folder for built models: set XDG_CACHE_HOME or HOME, or give --cache");
 }
 
-Result<CachedModel> model_of_scan(const fs::path& scan, const ScanCacheConfig& config) {
-  const Result<fs::path> folder = config.folder.empty() ? default_cache_folder() : config.folder;
+Result<fs::path> ready_cache_folder(const ScanCacheConfig& config) {
+  Result<fs::path> folder = config.folder.empty() ? default_cache_folder() : config.folder;
+  if (!folder) return folder;
+  std::error_code code;
+  fs::create_directories(*folder, code);
+  if (code) return fail(ErrorKind::kIo, folder->string() + ": cannot make the folder: " + code.message());
+  return folder;
+}
+
+Result<CacheSlot> find_cache_slot(const fs::path& scan, const ScanCacheConfig& config,
+                                  const std::atomic<bool>& cancelled) {
+  const Result<fs::path> folder = ready_cache_folder(config);
   if (!folder) return fail(folder.error());
   const Result<MappedFile> content = MappedFile::open(scan);
   if (!content) return fail(content.error());
-  const fs::path target = *folder / key_of(content->bytes(), config.radii);
+  const std::optional<std::string> name = hash_name(content->bytes(), cancelled);
+  if (!name) return fail(ErrorKind::kCancelled, scan.string() + ": not wanted any more");
+  CacheSlot slot{*folder / key_of(*name, config.radii), {}};
+  slot.model = find_in_cache(slot.target);
+  return slot;
+}
+
+Result<CachedModel> use_built_model(const fs::path& target, const ScanCacheConfig& config) {
   std::optional<CachedModel> model = find_in_cache(target);
-  if (!model) {
-    if (Status status = build_into(scan, target, config); !status) return fail(status.error());
-    model = find_in_cache(target);
-  }
   if (!model) return fail(ErrorKind::kIo, target.string() + ": another process removed the model that was just built");
-  limit_cache(*folder, config.bytes);
+  limit_cache(target.parent_path(), config.bytes);
   return std::move(*model);
+}
+
+Result<CachedModel> model_of_scan(const fs::path& scan, const ScanCacheConfig& config) {
+  const std::atomic<bool> never{false};
+  Result<CacheSlot> slot = find_cache_slot(scan, config, never);
+  if (!slot) return fail(std::move(slot.error()));
+  if (!slot->model) {
+    if (Status status = build_into(scan, slot->target, config); !status) return fail(status.error());
+  }
+  return use_built_model(slot->target, config);
 }
 
 }  // namespace surfcast::cmd

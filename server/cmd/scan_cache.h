@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -25,6 +26,21 @@ struct CachedModel {
   std::filesystem::path path;
   std::shared_ptr<const void> in_use;
 };
+
+/// The folder of the cache, made if it does not exist.
+Result<std::filesystem::path> ready_cache_folder(const ScanCacheConfig& config);
+
+/// Where the model of a scan is kept, and the model if it is there. Reads the whole scan, and fails with kCancelled
+/// soon after that is cancelled.
+struct CacheSlot {
+  std::filesystem::path target;
+  std::optional<CachedModel> model;
+};
+Result<CacheSlot> find_cache_slot(const std::filesystem::path& scan, const ScanCacheConfig& config,
+                                  const std::atomic<bool>& cancelled);
+
+/// The model that was just built into a slot. Then the cache is brought within its limit again, see files_to_evict.
+Result<CachedModel> use_built_model(const std::filesystem::path& target, const ScanCacheConfig& config);
 
 /// The model of a scan: the one in the cache whose key is the scan's content and the policy of radii, else one that is
 /// built now. Names of cached files say nothing of the scan's own. Then the cache is brought within its limit again,

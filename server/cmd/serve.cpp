@@ -6,10 +6,13 @@
 #include <string>
 #include <vector>
 
+#include "base/contract.h"
 #include "base/log.h"
 #include "cmd/find_models.h"
 #include "cmd/limit_flags.h"
 #include "cmd/log_device.h"
+#include "cmd/program_builder.h"
+#include "cmd/scan_builds.h"
 #include "net/server.h"
 #include "protocol/endpoint.h"
 #include "protocol/request_flags.h"
@@ -24,6 +27,8 @@ struct ServeCommand {
   std::vector<std::filesystem::path> paths;
   std::string listen = "127.0.0.1:7600";
   ScanCacheConfig cache;
+  PreviewRule previews;
+  size_t build_threads = 0;  ///< 0: one a core
   std::filesystem::path viewer;
   net::SiteLimits viewer_limits;
   render::RendererConfig renderer;
@@ -57,15 +62,22 @@ Status serve(ServeCommand command) {
   Result<std::shared_ptr<const net::StaticFiles>> viewer = read_viewer(command.viewer, command.viewer_limits);
   if (!viewer) return fail(viewer.error());
   command.server.viewer = std::move(*viewer);
-  Result<std::unique_ptr<service::ModelCatalogue>> models = find_models(command.paths, command.cache);
-  if (!models) return fail(models.error());
-  const auto service = service::RenderService::start(**models, service::catalogue_renderers(**models, command.renderer),
-                                                     command.service);
+  Result<NamedPaths> paths = sort_paths(command.paths);
+  if (!paths) return fail(paths.error());
+  service::ModelCatalogue models(std::move(paths->models), std::move(paths->folders));
+  const auto service =
+      service::RenderService::start(models, service::catalogue_renderers(models, command.renderer), command.service);
   if (!service) return fail(service.error());
   log_device((*service)->device(), command.renderer);
   const auto server = net::Server::create(**service, command.server);
   if (!server) return fail(server.error());
-  const size_t count = (*models)->names().size();
+  models.on_change([&](bool published) {
+    (*service)->models_changed();
+    if (published) (*server)->models_changed();
+  });
+  ScanBuilds builds(models, make_program_builder(command.cache, command.build_threads), command.previews);
+  for (const std::filesystem::path& scan : paths->scans) SURFCAST_EXPECTS(builds.add(scan));  // sort_paths saw to it
+  const size_t count = models.names().size();
   if (count == 0) spdlog::warn("there are no models yet; those that appear in the folders will be served");
   const protocol::Endpoint bound{command.server.host, (*server)->port()};
   std::cout << "surfcastd: serving " << count << (count == 1 ? " model" : " models") << " at http://"
@@ -96,6 +108,7 @@ void add_serve_command(CLI::App& app, Status& outcome) {
       ->check(CLI::Range(1.0, protocol::kMaxFramesPerSecond));
   add_renderer_flags(*sub, command->renderer);
   add_cache_flags(*sub, command->cache);
+  add_build_flags(*sub, command->previews, command->build_threads);
   add_picture_flags(*sub, command->service);
   add_server_flags(*sub, command->service, command->renderer, command->server, command->viewer_limits);
   sub->callback([command, &outcome] {

@@ -94,7 +94,7 @@ void Conversation::handle_other(const wire::Request& request) {
   window_.add_other(id);
   if (request.has_list_models()) {
     return context_->service.list_models(
-        [later = answer_later(id), id](const std::vector<std::string>& names) { later(outcome_of(id, names)); });
+        [later = answer_later(id), id](const service::ModelList& models) { later(outcome_of(id, models)); });
   }
   const std::string& name = request.describe_model().model();
   context_->service.describe_model(

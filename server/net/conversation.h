@@ -44,6 +44,8 @@ class Conversation : public std::enable_shared_from_this<Conversation> {
   Status receive(std::span<const std::byte> message);
   /// The client has taken answers: what waited for that goes on.
   void resume_sending();
+  /// Models may have newer editions, which views are to show.
+  void models_changed();
   /// Cancels what is outstanding; nothing is sent from here on.
   void abandon();
 

@@ -120,6 +120,11 @@ void Conversation::end_view(uint64_t view, const Error& error) {
   send_error(view, error);
 }
 
+void Conversation::models_changed() {
+  for (const auto& [id, opened] : views_) opened.view->model_changed();
+  advance_views();
+}
+
 /// Lets every view do what is due, and waits for what is due later.
 void Conversation::advance_views() {
   std::vector<std::shared_ptr<view::ViewSession>> views;

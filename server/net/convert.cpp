@@ -190,7 +190,8 @@ void to_wire(service::EncodedPicture picture, wire::Picture& message) {
   message.set_normalization(picture.normalization == picture::Normalization::kSurfel ? wire::NORMALIZATION_SURFEL
                                                                                      : wire::NORMALIZATION_PIXEL);
   message.set_spacing(picture.spacing);
-  message.set_converged(picture.converged);
+  message.set_converged(picture.converged && !picture.preview);
+  message.set_preview(picture.preview);
   message.set_surfels_drawn(picture.stats.surfels_drawn);
   message.set_blocks_drawn(picture.stats.blocks_drawn);
   message.set_blocks_selected(picture.stats.blocks_selected);
@@ -226,8 +227,33 @@ void to_wire(view::ViewMessage message, wire::ViewFrame& frame) {
   to_wire(std::move(message.picture), *frame.mutable_picture());
 }
 
-void to_wire(const std::vector<std::string>& names, wire::ModelList& message) {
-  for (const std::string& name : names) message.add_models(protocol::clean_utf8(name));
+namespace {
+
+wire::ScanState to_wire(service::ScanStatus::State state) {
+  switch (state) {
+    case service::ScanStatus::State::kWaiting:
+      return wire::SCAN_STATE_WAITING;
+    case service::ScanStatus::State::kBuilding:
+      return wire::SCAN_STATE_BUILDING;
+    case service::ScanStatus::State::kFailed:
+      break;
+  }
+  return wire::SCAN_STATE_FAILED;
+}
+
+}  // namespace
+
+void to_wire(const service::ModelList& list, wire::ModelList& message) {
+  for (const std::string& name : list.names) message.add_models(protocol::clean_utf8(name));
+  for (const service::ScanStatus& scan : list.scans) {
+    wire::ScanStatus* to = message.add_scans();
+    to->set_model(protocol::clean_utf8(scan.model));
+    to->set_state(to_wire(scan.state));
+    to->set_done(scan.done);
+    to->set_seconds_left(scan.seconds_left);
+    to->set_problem(protocol::clean_utf8(scan.problem));
+    to->set_edition(scan.edition);
+  }
 }
 
 void to_wire(const std::string& name, const service::ModelDescription& description, wire::ModelDescription& message) {

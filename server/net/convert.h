@@ -23,7 +23,7 @@ void to_wire(const std::optional<kinds::PickedSurfel>& picked, wire::PickResult&
 void to_wire(service::EncodedPicture picture, wire::Picture& message);
 /// Takes the bytes out of the message.
 void to_wire(view::ViewMessage message, wire::ViewFrame& frame);
-void to_wire(const std::vector<std::string>& names, wire::ModelList& message);
+void to_wire(const service::ModelList& list, wire::ModelList& message);
 void to_wire(const std::string& name, const service::ModelDescription& description, wire::ModelDescription& message);
 
 /// MIME type of a file format.

@@ -1,5 +1,6 @@
 #include "net/http_answer.h"
 
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
 
@@ -95,11 +96,30 @@ HttpAnswer error_answer(const Error& error) {
   return error_answer(error, status_of(error.kind));
 }
 
-HttpAnswer models_answer(const std::vector<std::string>& names) {
-  return json_answer({{"models", names}});
+namespace {
+
+const char* name_of(service::ScanStatus::State state) {
+  switch (state) {
+    case service::ScanStatus::State::kWaiting:
+      return "waiting";
+    case service::ScanStatus::State::kBuilding:
+      return "building";
+    case service::ScanStatus::State::kFailed:
+      break;
+  }
+  return "failed";
 }
 
-namespace {
+json to_json(const service::ScanStatus& scan) {
+  json document{{"model", scan.model}, {"state", name_of(scan.state)}, {"preview", scan.edition > 0}};
+  if (scan.state == service::ScanStatus::State::kFailed) {
+    document["problem"] = scan.problem;
+    return document;
+  }
+  document["percent"] = std::floor(1000 * scan.done) / 10;
+  document["seconds_left"] = scan.seconds_left > 0 ? json(std::ceil(scan.seconds_left)) : json();
+  return document;
+}
 
 json to_json(const model::AttributeRange& range) {
   return {{"attribute", range.attribute},
@@ -117,6 +137,12 @@ json array_of(const Values& values, const Convert& convert) {
 }
 
 }  // namespace
+
+HttpAnswer models_answer(const service::ModelList& models) {
+  return json_answer({{"models", models.names}, {"scans", array_of(models.scans, [](const service::ScanStatus& scan) {
+                                                   return to_json(scan);
+                                                 })}});
+}
 
 HttpAnswer model_answer(const std::string& name, const service::ModelDescription& description) {
   const model::ModelInfo& info = description.info;
@@ -145,7 +171,8 @@ HttpAnswer picture_answer(service::EncodedPicture picture) {
                     {"X-Surfcast-Camera", to_json(picture.camera).dump()},
                     {"X-Surfcast-Surfels", std::to_string(picture.stats.surfels_drawn)},
                     {"X-Surfcast-Blocks", std::to_string(picture.stats.blocks_drawn)},
-                    {"X-Surfcast-Converged", picture.converged ? "true" : "false"},
+                    {"X-Surfcast-Converged", picture.converged && !picture.preview ? "true" : "false"},
+                    {"X-Surfcast-Preview", picture.preview ? "true" : "false"},
                     {"Cache-Control", "no-cache"}};
   answer.body = std::move(picture.bytes);
   return answer;

@@ -29,8 +29,8 @@ HttpAnswer error_answer(const Error& error);
 /// The same with a status that no kind stands for.
 HttpAnswer error_answer(const Error& error, unsigned status);
 
-/// {"models": ["a", "b"]}
-HttpAnswer models_answer(const std::vector<std::string>& names);
+/// {"models": ["a", "b"], "scans": [{"model": "b", "state": "building", "percent": 37, ...}]}
+HttpAnswer models_answer(const service::ModelList& models);
 HttpAnswer model_answer(const std::string& name, const service::ModelDescription& description);
 /// The picture, with what drawing it took in the headers Server-Timing and X-Surfcast-*.
 HttpAnswer picture_answer(service::EncodedPicture picture);

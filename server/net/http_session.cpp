@@ -259,9 +259,9 @@ std::string HttpSession::metrics_text() const {
 }
 
 asio::awaitable<HttpAnswer> HttpSession::answer_models() {
-  const auto names = co_await answer_of<std::vector<std::string>>(
-      [this](auto done) { context_->service.list_models(std::move(done)); });
-  co_return models_answer(names);
+  const auto models =
+      co_await answer_of<service::ModelList>([this](auto done) { context_->service.list_models(std::move(done)); });
+  co_return models_answer(models);
 }
 
 asio::awaitable<HttpAnswer> HttpSession::answer_model(std::string name) {

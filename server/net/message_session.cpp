@@ -38,6 +38,7 @@ class MessageSession : public Session, public AnswerWriter, public std::enable_s
   }
   void drain() override { answer_sent(); }
   void abort() override { close(); }
+  void models_changed() override { conversation_->models_changed(); }
 
   void send(Bytes answer) override;
   [[nodiscard]] size_t unread_bytes() const override { return outgoing_bytes_; }

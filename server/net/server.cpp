@@ -215,6 +215,14 @@ void Server::run(bool until_signal) {
   state_->io.run();
 }
 
+void Server::models_changed() {
+  asio::post(state_->io, [this] {
+    for (const auto& weak : std::vector(state_->sessions)) {
+      if (const auto session = weak.lock()) session->models_changed();
+    }
+  });
+}
+
 void Server::stop() {
   asio::post(state_->io, [this] { state_->begin_drain(); });
 }

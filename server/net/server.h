@@ -50,6 +50,8 @@ class Server {
   void run(bool until_signal);
   /// From any thread.
   void stop();
+  /// There is a newer edition of a model, which open views are to show. From any thread.
+  void models_changed();
 
  private:
   struct State;

@@ -44,6 +44,8 @@ class Session {
   virtual void drain() = 0;
   /// Ends it now; jobs are cancelled.
   virtual void abort() = 0;
+  /// Models may have newer editions.
+  virtual void models_changed() {}
 };
 
 }  // namespace surfcast::net

@@ -57,7 +57,8 @@ struct PictureRequest {
   glm::u8vec3 background{0, 0, 0};  ///< sRGB
   PixelFormat format = PixelFormat::kSrgb8;
   Loading loading = Loading::kWait;
-  uint64_t viewer = 0;  ///< with kNow: the viewer whose motion this is, or 0; keys state that is kept between pictures
+  uint64_t edition = 0;  ///< of a scan's model, see ModelSource::edition; 0: the newest
+  uint64_t viewer = 0;   ///< with kNow: the viewer whose motion this is, or 0; keys state that is kept between pictures
   /// With a viewer: the `spacing` of the picture that follows when the motion ends, in pixels of this picture.
   std::optional<double> rest_spacing{};
   uint64_t displayed_cut = 0;  ///< with kNow: Frame::cut of a picture that need not be drawn again; 0: none
@@ -113,6 +114,7 @@ struct Frame {
   bool converged = false;
   bool nothing_pending = false;  ///< no missing block is about to arrive: redrawing would not improve the frame
   uint64_t cut = 0;              ///< identifies the set of blocks drawn
+  bool preview = false;          ///< of a scan whose model is still being built
   FrameStats stats;
 };
 

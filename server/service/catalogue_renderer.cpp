@@ -1,5 +1,6 @@
 #include "service/catalogue_renderer.h"
 
+#include <algorithm>
 #include <atomic>
 #include <deque>
 #include <map>
@@ -22,9 +23,12 @@ class CatalogueRenderer : public FrameRenderer {
 
   Result<picture::Frame> draw(const std::string& name, const picture::PictureRequest& request,
                               const Preemption& preemption) override {
-    Result<std::shared_ptr<const model::ModelFile>> model = models_.open(name);
-    if (!model) return fail(model.error());
-    return renderer_->draw(current(name, std::move(*model)), request, preemption);
+    Result<ModelCatalogue::Edition> edition = models_.open_edition(name, request.edition);
+    if (!edition) return fail(edition.error());
+    keep(name, edition->model);
+    Result<picture::Frame> frame = renderer_->draw(edition->model, request, preemption);
+    if (frame) frame->preview = edition->preview;
+    return frame;
   }
   /// Draws the next warm-up picture: of the model that was most recently drawn for the first time, or before that, of
   /// the first model in the catalogue.
@@ -42,20 +46,25 @@ class CatalogueRenderer : public FrameRenderer {
   [[nodiscard]] int max_resolution() const override { return renderer_->max_resolution(); }
 
  private:
-  /// Releases the resident blocks of a file that has been replaced.
-  std::shared_ptr<const model::ModelFile> current(const std::string& name,
-                                                  std::shared_ptr<const model::ModelFile> model) {
-    std::shared_ptr<const model::ModelFile>& drawn = drawn_[name];
-    if (drawn && drawn != model) renderer_->release_model(*drawn);
-    if (!drawn) next_model_ = name;
-    drawn = std::move(model);
-    return drawn;
+  /// Notes a model as drawn, and releases the resident blocks of those that it replaces. Views may still show the
+  /// edition before the newest one of a scan's model.
+  void keep(const std::string& name, const std::shared_ptr<const model::ModelFile>& model) {
+    std::vector<std::shared_ptr<const model::ModelFile>>& drawn = drawn_[name];
+    if (std::ranges::find(drawn, model) != drawn.end()) return;
+    if (drawn.empty()) next_model_ = name;
+    drawn.push_back(model);
+    const size_t most = models_.edition(name) > 0 ? 2 : 1;
+    while (drawn.size() > most) {
+      renderer_->release_model(*drawn.front());
+      drawn.erase(drawn.begin());
+    }
   }
 
   void begin_warm_up(const std::string& name) {
     const Result<std::shared_ptr<const model::ModelFile>> model = models_.open(name);
     if (!model) return;
-    warming_model_ = current(name, *model);
+    warming_model_ = *model;
+    keep(name, warming_model_);
     next_model_.clear();
     const std::vector<picture::PictureRequest> pictures = shader_warm_up_requests(warming_model_->info());
     warm_ups_.assign(pictures.begin(), pictures.end());
@@ -65,7 +74,7 @@ class CatalogueRenderer : public FrameRenderer {
   std::string next_model_;  ///< next model to warm up; empty: none
   std::shared_ptr<const model::ModelFile> warming_model_;
   std::deque<picture::PictureRequest> warm_ups_;
-  std::map<std::string, std::shared_ptr<const model::ModelFile>> drawn_;  ///< by name
+  std::map<std::string, std::vector<std::shared_ptr<const model::ModelFile>>> drawn_;  ///< by name, oldest first
   std::unique_ptr<render::Renderer> renderer_;
 };
 

@@ -42,6 +42,19 @@ double typical_spacing(std::span<const ldc::BlockEntry> blocks) {
   return 0;
 }
 
+/// Why a scan cannot be drawn.
+Error why_not(const ScanStatus& scan) {
+  switch (scan.state) {
+    case ScanStatus::State::kFailed:
+      return {ErrorKind::kInvalidInput, scan.problem};
+    case ScanStatus::State::kWaiting:
+      return {ErrorKind::kUnavailable, "the model '" + scan.model + "' waits to be built"};
+    case ScanStatus::State::kBuilding:
+      break;
+  }
+  return {ErrorKind::kUnavailable, "the model '" + scan.model + "' is being built"};
+}
+
 }  // namespace
 
 std::map<std::string, fs::path> ModelCatalogue::find_all() const {
@@ -51,13 +64,93 @@ std::map<std::string, fs::path> ModelCatalogue::find_all() const {
   return models;
 }
 
+bool ModelCatalogue::add_scan(const std::string& name) {
+  {
+    const std::lock_guard lock(mutex_);
+    const bool taken = std::ranges::any_of(files_, [&](const NamedModel& file) { return file.name == name; });
+    if (taken || scans_.contains(name)) return false;
+    scans_[name].status.model = name;
+  }
+  changed_(false);
+  return true;
+}
+
+void ModelCatalogue::note(const ScanStatus& status) {
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = scans_.find(status.model);
+    if (found == scans_.end() || found->second.complete) return;
+    found->second.status = status;
+    found->second.status.edition = found->second.edition;
+  }
+  changed_(false);
+}
+
+void ModelCatalogue::publish(const std::string& name, Edition edition) {
+  {
+    const std::lock_guard lock(mutex_);
+    Scan& scan = scans_[name];
+    scan.status.model = name;
+    scan.status.edition = ++scan.edition;
+    scan.complete = !edition.preview;
+    scan.former = std::exchange(scan.newest, std::move(edition));
+  }
+  changed_(true);
+}
+
 std::vector<std::string> ModelCatalogue::names() const {
+  std::map<std::string, fs::path> found = find_all();
+  {
+    const std::lock_guard lock(mutex_);
+    for (const auto& [name, scan] : scans_) {
+      if (scan.status.state != ScanStatus::State::kFailed || scan.edition > 0) found.emplace(name, fs::path());
+    }
+  }
   std::vector<std::string> names;
-  for (const auto& [name, path] : find_all()) names.push_back(name);
+  names.reserve(found.size());
+  for (const auto& [name, path] : found) names.push_back(name);
   return names;
 }
 
+std::vector<ScanStatus> ModelCatalogue::scans() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<ScanStatus> incomplete;
+  for (const auto& [name, scan] : scans_) {
+    if (!scan.complete) incomplete.push_back(scan.status);
+  }
+  return incomplete;
+}
+
+bool ModelCatalogue::awaited(const std::string& name) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = scans_.find(name);
+  return found != scans_.end() && found->second.edition == 0 &&
+         found->second.status.state != ScanStatus::State::kFailed;
+}
+
+uint64_t ModelCatalogue::edition(const std::string& name) const {
+  const std::lock_guard lock(mutex_);
+  const auto found = scans_.find(name);
+  return found == scans_.end() ? 0 : found->second.edition;
+}
+
+Result<ModelCatalogue::Edition> ModelCatalogue::open_edition(const std::string& name, uint64_t edition) const {
+  {
+    const std::lock_guard lock(mutex_);
+    if (const auto found = scans_.find(name); found != scans_.end()) {
+      const Scan& scan = found->second;
+      if (scan.edition == 0) return fail(why_not(scan.status));
+      return edition + 1 == scan.edition && scan.former.model ? scan.former : scan.newest;
+    }
+  }
+  return open_file(name).map([](std::shared_ptr<const model::ModelFile> model) { return Edition{std::move(model)}; });
+}
+
 Result<std::shared_ptr<const model::ModelFile>> ModelCatalogue::open(const std::string& name) const {
+  return open_edition(name, 0).map([](const Edition& edition) { return edition.model; });
+}
+
+Result<std::shared_ptr<const model::ModelFile>> ModelCatalogue::open_file(const std::string& name) const {
   const auto models = find_all();
   const auto found = models.find(name);
   if (found == models.end()) return fail(ErrorKind::kNotFound, "there is no model '" + name + "'");

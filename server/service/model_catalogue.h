@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -20,15 +21,39 @@ struct NamedModel {
   std::shared_ptr<const void> in_use{};  ///< held for as long as the file may be opened: whoever keeps it from removal
 };
 
-/// Model files by name: individual files, and the current content of folders ("NAME.surf"). An individual file hides a
-/// file of the same name in a folder, and an earlier folder hides a later one. A file is opened at the first request,
-/// and again after it has been replaced.
+/// Model files by name: scans, whose models come later and are replaced by better ones, individual files, and the
+/// current content of folders ("NAME.surf"). A scan or an individual file hides a file of the same name in a folder,
+/// and an earlier folder hides a later one. A file is opened at the first request, and again after it has been
+/// replaced.
 class ModelCatalogue : public ModelSource {
  public:
   ModelCatalogue(std::vector<NamedModel> files, std::vector<std::filesystem::path> folders)
       : files_(std::move(files)), folders_(std::move(folders)) {}
 
+  /// An edition of a scan's model.
+  struct Edition {
+    std::shared_ptr<const model::ModelFile> model;
+    bool preview = false;
+    std::shared_ptr<const void> in_use{};  ///< as in NamedModel
+  };
+  /// Called after every change of a scan, from the thread that changed it. `published`: there is another edition.
+  using Changed = std::function<void(bool published)>;
+
+  /// Set it before the first scan is added.
+  void on_change(Changed changed) { changed_ = std::move(changed); }
+  /// Adds a scan whose model will be published. False if there is a file or scan of that name.
+  [[nodiscard]] bool add_scan(const std::string& name);
+  /// How far a scan is: kWaiting, kBuilding or kFailed. Of a scan that was published, kFailed leaves the preview.
+  void note(const ScanStatus& status);
+  /// Adds the next edition. The one before it stays for views that show it, until there is another one.
+  void publish(const std::string& name, Edition edition);
+
   [[nodiscard]] std::vector<std::string> names() const override;
+  [[nodiscard]] std::vector<ScanStatus> scans() const override;
+  [[nodiscard]] bool awaited(const std::string& name) const override;
+  [[nodiscard]] uint64_t edition(const std::string& name) const override;
+  /// The edition of a scan's model, or the newest one if it is 0 or gone.
+  [[nodiscard]] Result<Edition> open_edition(const std::string& name, uint64_t edition) const;
   [[nodiscard]] Result<ModelDescription> describe(const std::string& name) const override;
   [[nodiscard]] Result<std::shared_ptr<const model::ModelFile>> open(const std::string& name) const override;
 
@@ -39,11 +64,22 @@ class ModelCatalogue : public ModelSource {
     std::shared_ptr<const model::ModelFile> model;
   };
 
-  [[nodiscard]] std::map<std::string, std::filesystem::path> find_all() const;
+  struct Scan {
+    ScanStatus status;
+    bool complete = false;
+    uint64_t edition = 0;  ///< number of `newest`
+    Edition newest;
+    Edition former;
+  };
 
+  [[nodiscard]] std::map<std::string, std::filesystem::path> find_all() const;
+  [[nodiscard]] Result<std::shared_ptr<const model::ModelFile>> open_file(const std::string& name) const;
+
+  Changed changed_ = [](bool) {};
   std::vector<NamedModel> files_;
   std::vector<std::filesystem::path> folders_;
   mutable std::mutex mutex_;
+  std::map<std::string, Scan> scans_;             ///< by name
   mutable std::map<std::string, Opened> opened_;  ///< by name
 };
 

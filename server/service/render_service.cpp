@@ -91,6 +91,10 @@ struct RenderService::State {
   JobId add(SessionId session, PictureJob picture, PictureDone done);
   void search(const JobPointer& job);
   void end_search(const JobPointer& job, Result<std::vector<pick::FrontPixel>> front);
+  [[nodiscard]] bool enqueue(SessionId session, JobId id, const PictureJob& picture);
+  [[nodiscard]] bool await_model(JobId id);
+  [[nodiscard]] bool waits_for_model(const PictureJob& picture) const;
+  void models_changed();
   void finish(const JobPointer& job, Result<EncodedPicture> result);
   void stop();
 
@@ -103,7 +107,8 @@ struct RenderService::State {
   mutable std::mutex mutex;  ///< guards the following members
   std::condition_variable wake;
   JobQueue queue;
-  std::map<JobId, JobPointer> jobs;  ///< outstanding: waiting, being drawn or being encoded
+  std::vector<JobId> awaiting_models;  ///< not in the queue yet
+  std::map<JobId, JobPointer> jobs;    ///< outstanding: waiting, being drawn or being encoded
   JobId last_id = 0;
   std::array<size_t, 2> in_encoding{};  ///< pictures being drawn or encoded, by priority
   size_t searching = 0;                 ///< jobs whose front surface is being found
@@ -294,6 +299,7 @@ EncodedPicture RenderService::State::describe(const Job& job, const picture::Fra
   picture.converged = frame.converged;
   picture.nothing_pending = frame.nothing_pending;
   picture.cut = frame.cut;
+  picture.preview = frame.preview;
   picture.waited_ms = job.waited_ms;
   picture.draw_ms = job.draw_ms;
   picture.stats = frame.stats;
@@ -356,13 +362,33 @@ Status RenderService::State::check(const PictureJob& picture) const {
   return {};
 }
 
+/// Views ask again by themselves.
+bool RenderService::State::waits_for_model(const PictureJob& picture) const {
+  return picture.request.loading == picture::Loading::kWait && models.awaited(picture.model);
+}
+
+/// Puts a job into the queue, or makes room for the search that precedes it. False if there is no room.
+bool RenderService::State::enqueue(SessionId session, JobId id, const PictureJob& picture) {
+  if (!needs_front_surface(picture.channels)) return queue.push(session, id, picture.priority);
+  if (searching >= limits.queued_jobs) return false;
+  ++searching;
+  return true;
+}
+
+/// Puts a job among those that wait for their models. False if there is no room.
+bool RenderService::State::await_model(JobId id) {
+  if (awaiting_models.size() >= limits.queued_jobs) return false;
+  awaiting_models.push_back(id);
+  return true;
+}
+
 JobId RenderService::State::add(SessionId session, PictureJob picture, PictureDone done) {
   const Status checked = check(picture);
   std::unique_lock lock(mutex);
   const JobId id = ++last_id;
-  const bool searches = needs_front_surface(picture.channels);
-  const bool room =
-      checked && !stopping && (searches ? searching < limits.queued_jobs : queue.push(session, id, picture.priority));
+  const bool waits = waits_for_model(picture);
+  const bool searches = !waits && needs_front_surface(picture.channels);
+  const bool room = checked && !stopping && (waits ? await_model(id) : enqueue(session, id, picture));
   if (room) {
     const auto job = std::make_shared<Job>();
     job->id = id;
@@ -370,7 +396,6 @@ JobId RenderService::State::add(SessionId session, PictureJob picture, PictureDo
     job->picture = std::move(picture);
     job->done = std::move(done);
     jobs.emplace(id, job);
-    if (searches) ++searching;
     lock.unlock();
     if (searches) {
       search(job);
@@ -410,6 +435,29 @@ void RenderService::State::end_search(const JobPointer& job, Result<std::vector<
   finish(job, front ? cancelled_error() : fail(front.error()));
 }
 
+void RenderService::State::models_changed() {
+  std::vector<JobPointer> late;
+  std::vector<JobPointer> to_search;
+  {
+    const std::lock_guard lock(mutex);
+    std::erase_if(awaiting_models, [&](JobId id) {
+      const JobPointer& job = jobs.at(id);
+      if (!models.awaited(job->picture.model) && enqueue(job->session, id, job->picture)) {
+        if (needs_front_surface(job->picture.channels)) to_search.push_back(job);
+        return true;
+      }
+      if (job->since_submission.milliseconds() <= static_cast<double>(limits.queue_timeout.count())) return false;
+      late.push_back(job);
+      return true;
+    });
+  }
+  wake.notify_one();
+  for (const JobPointer& job : to_search) search(job);
+  for (const JobPointer& job : late) {
+    finish(job, fail(ErrorKind::kUnavailable, "the model '" + job->picture.model + "' is being built"));
+  }
+}
+
 void RenderService::State::finish(const JobPointer& job, Result<EncodedPicture> result) {
   {
     const std::lock_guard lock(mutex);
@@ -424,6 +472,7 @@ void RenderService::State::stop() {
     const std::lock_guard lock(mutex);
     stopping = true;
     for (const auto& [id, job] : jobs) job->cancelled = true;
+    for (const JobId id : std::exchange(awaiting_models, {})) waiting.push_back(jobs.at(id));
     for (const Priority priority : {Priority::kMotion, Priority::kStill}) {
       while (const std::optional<JobId> id = queue.pop(priority)) waiting.push_back(jobs.at(*id));
     }
@@ -470,7 +519,7 @@ bool RenderService::cancel(JobId id) {
     const auto found = state_->jobs.find(id);
     if (found == state_->jobs.end()) return false;
     found->second->cancelled = true;
-    if (state_->queue.remove(id)) waiting = found->second;
+    if (state_->queue.remove(id) || std::erase(state_->awaiting_models, id) > 0) waiting = found->second;
   }
   if (waiting) state_->finish(waiting, cancelled_error());
   return true;
@@ -503,8 +552,18 @@ bool RenderService::replace(JobId id, PictureJob picture) {
   return true;
 }
 
-void RenderService::list_models(NamesDone done) {
-  state_->pool->post([state = state_.get(), done = std::move(done)] { done(state->models.names()); });
+void RenderService::models_changed() {
+  state_->models_changed();
+}
+
+uint64_t RenderService::edition(const std::string& model) const {
+  return state_->models.edition(model);
+}
+
+void RenderService::list_models(ListDone done) {
+  state_->pool->post([state = state_.get(), done = std::move(done)] {
+    done({state->models.names(), state->models.scans()});
+  });
 }
 
 void RenderService::describe_model(const std::string& name, DescriptionDone done) {

@@ -56,6 +56,7 @@ struct EncodedPicture {
   bool converged = false;        ///< as in Frame
   bool nothing_pending = false;  ///< as in Frame
   uint64_t cut = 0;              ///< as in Frame
+  bool preview = false;          ///< as in Frame
   double waited_ms = 0;          ///< waiting for the render thread
   double draw_ms = 0;
   double encode_ms = 0;
@@ -75,7 +76,7 @@ struct EncodedPicture {
 class RenderService {
  public:
   using PictureDone = std::function<void(Result<EncodedPicture>)>;
-  using NamesDone = std::function<void(std::vector<std::string>)>;
+  using ListDone = std::function<void(ModelList)>;
   using DescriptionDone = std::function<void(Result<ModelDescription>)>;
 
   /// Starts the threads. Fails if the renderer cannot be created. `models` must outlive the service.
@@ -84,6 +85,7 @@ class RenderService {
   /// Cancels the outstanding jobs and joins the threads.
   ~RenderService();
 
+  /// A picture of a model that is awaited (see ModelSource) waits for it; pictures of views fail at once.
   JobId draw(SessionId session, PictureJob job, PictureDone done);
   /// Replaces the picture of a job that still waits for the render thread. False if the job does not wait any more, or
   /// if the new picture is invalid.
@@ -93,8 +95,13 @@ class RenderService {
   /// True if the job was outstanding. Its callback then gets kCancelled, unless the picture is already being delivered.
   bool cancel(JobId job);
 
-  void list_models(NamesDone done);
+  void list_models(ListDone done);
   void describe_model(const std::string& name, DescriptionDone done);
+  /// Call it after a change of an awaited model, and now and then while there is one: pictures that wait for it are
+  /// drawn, or refused after the queue's timeout.
+  void models_changed();
+  /// See ModelSource.
+  [[nodiscard]] uint64_t edition(const std::string& model) const;
   /// Finds the item in a pixel; see PickService.
   void pick(PickJob job, PickService::Done done);
 

@@ -32,11 +32,13 @@ bool ViewPlan::room_for_motion() const {
 
 FrameKind ViewPlan::wanted() const {
   if (progress_ == Progress::kNone) return FrameKind::kMotion;
+  if (successor_ && progress_ >= Progress::kRefinedComplete) return FrameKind::kTakeover;
   return progress_ == Progress::kRefinedComplete ? FrameKind::kFinal : FrameKind::kRefined;
 }
 
 /// When the next frame of the picture is due.
 std::optional<ViewTime> ViewPlan::due(ViewTime rest) const {
+  if (wanted() == FrameKind::kTakeover) return std::max(rest + timing_.refined, next_poll_at_);
   switch (progress_) {
     case Progress::kNone:
       return next_poll_at_;
@@ -119,6 +121,11 @@ void ViewPlan::finish(uint64_t frame, FrameResult result, ViewTime now) {
       break;
     case FrameKind::kFinal:
       progress_ = Progress::kFinal;
+      break;
+    case FrameKind::kTakeover:
+      if (result != FrameResult::kComplete) break;
+      progress_ = Progress::kRefinedComplete;
+      successor_ = false;
       break;
   }
 }

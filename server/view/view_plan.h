@@ -15,6 +15,9 @@ enum class FrameKind {
   kMotion,   ///< in motion: small, coarse, per-surfel weights, JPEG
   kRefined,  ///< at rest: all parameters as requested, resident blocks only, JPEG
   kFinal,    ///< at rest: exactly the picture that was requested
+  /// At rest: as kRefined, from the newest edition of the model, which replaces the one shown so far. Not drawn before
+  /// all its blocks are there, so that it is no worse than the picture on the screen.
+  kTakeover,
 };
 
 struct ViewTiming {
@@ -66,6 +69,8 @@ class ViewPlan {
   /// The server was too busy to draw the frame: the view retries after ViewTiming::busy_retry.
   void refuse(uint64_t frame, ViewTime now);
   void finish(uint64_t frame, FrameResult result, ViewTime now);
+  /// The model has a newer edition, which takes over once the newest picture is drawn from the present one at rest.
+  void expect_takeover() { successor_ = true; }
   /// A frame at rest of the newest picture was drawn in `draw_ms`, with `missing` blocks missing.
   void record_draw(double draw_ms, uint32_t missing, ViewTime now);
   /// The newest picture now has `missing` blocks missing.
@@ -119,7 +124,8 @@ class ViewPlan {
   std::vector<Job> jobs_;       ///< oldest first
   size_t motion_unacknowledged_ = 0;
   size_t still_unacknowledged_ = 0;
-  bool sending_ = false;  ///< pieces of a frame remain to be sent
+  bool successor_ = false;  ///< a newer edition of the model is to take over
+  bool sending_ = false;    ///< pieces of a frame remain to be sent
 };
 
 }  // namespace surfcast::view

@@ -22,6 +22,7 @@ int scaled(int pixels, double scale) {
 /// A picture is improvable while missing blocks are loading. A picture with holes that will be filled soon is not
 /// shown.
 FrameResult result_of(FrameKind kind, const service::EncodedPicture& picture) {
+  if (kind == FrameKind::kTakeover) return picture.bytes.empty() ? FrameResult::kNothing : FrameResult::kComplete;
   if (kind == FrameKind::kFinal || picture.nothing_pending) return FrameResult::kComplete;
   return picture.bytes.empty() || picture.stats.holes > 0 ? FrameResult::kNothing : FrameResult::kImprovable;
 }
@@ -54,11 +55,17 @@ bool ViewSession::may_be_kept(const service::PictureJob& job) const {
 
 service::PictureJob ViewSession::picture_job(FrameKind kind, service::JobId supersedes) const {
   service::PictureJob job = newest_.picture;
+  job.request.edition = kind == FrameKind::kTakeover ? successor_ : edition_;
   if (kind == FrameKind::kFinal) return job;
   picture::PictureRequest& request = job.request;
   request.loading = picture::Loading::kNow;
   job.format = picture::FileFormat::kJpeg;
   job.quality = kRefinedQuality;
+  if (kind == FrameKind::kTakeover) {
+    request.max_missing_blocks = 0;
+    job.keep_frame = may_be_kept(newest_.picture);
+    return job;
+  }
   if (kind == FrameKind::kRefined) {
     request.displayed_cut = displayed_cut_;
     request.max_missing_blocks = plan_.max_missing_blocks(std::chrono::steady_clock::now());
@@ -123,11 +130,25 @@ std::optional<ViewTime> ViewSession::advance(ViewTime now) {
   return std::nullopt;
 }
 
+void ViewSession::model_changed() {
+  const uint64_t newest = service_.edition(newest_.picture.model);
+  if (closed_ || edition_ == 0 || newest <= std::max(edition_, successor_)) return;
+  successor_ = newest;
+  plan_.expect_takeover();
+}
+
+/// The first picture decides which edition is shown until another one takes over.
+void ViewSession::settle_edition() {
+  if (edition_ == 0) edition_ = service_.edition(newest_.picture.model);
+}
+
 void ViewSession::draw(FrameKind kind) {
+  settle_edition();
   const uint64_t frame = ++last_frame_;
   Job& job = frames_[frame];
   job.kind = kind;
   job.update = newest_.update;
+  job.edition = kind == FrameKind::kTakeover ? successor_ : edition_;
   job.quality = quality_;
   job.supersedes = last_motion_job_;
   plan_.begin(frame, kind);
@@ -153,6 +174,7 @@ void ViewSession::finish(uint64_t frame, Result<service::EncodedPicture> picture
   const FrameResult result = result_of(job.kind, *picture);
   plan_.finish(frame, result, now);
   if (job.kind == FrameKind::kRefined) record_progress(*picture, now);
+  if (job.kind == FrameKind::kTakeover && result == FrameResult::kComplete) take_over(frame, *picture);
   if (picture->bytes.empty() || (result == FrameResult::kNothing)) {
     frames_.erase(frame);
     return;
@@ -174,6 +196,20 @@ void ViewSession::frame_failed(uint64_t frame, const Error& error) {
   if (error.kind == ErrorKind::kCancelled) return;
   close();
   port_.fail(error);
+}
+
+/// From now on the edition of this frame is shown.
+void ViewSession::take_over(uint64_t frame, service::EncodedPicture& picture) {
+  edition_ = frames_.at(frame).edition;
+  displayed_cut_ = picture.cut;
+  finished_frame_.reset();
+  if (picture.converged) finished_frame_ = std::move(picture.frame);
+  picture.frame.reset();
+  if (successor_ == edition_) {
+    successor_ = 0;
+  } else {
+    plan_.expect_takeover();  // there is a still newer one
+  }
 }
 
 /// Records how complete the newest picture is.

@@ -71,6 +71,8 @@ class ViewSession : public std::enable_shared_from_this<ViewSession> {
   void update(ViewUpdate update, ViewTime now);
   /// The client has processed a message of this frame. Unknown frames are ignored.
   void acknowledge(uint64_t frame, double client_ms, ViewTime now);
+  /// The service may have a newer edition of the model.
+  void model_changed();
   /// Performs all actions that are due. Returns the latest time of the next call, none if only an event can cause one.
   std::optional<ViewTime> advance(ViewTime now);
   /// Cancels all work. Nothing is sent afterwards.
@@ -83,6 +85,7 @@ class ViewSession : public std::enable_shared_from_this<ViewSession> {
     uint64_t update = 0;
     service::JobId job = 0;
     service::JobId supersedes = 0;  ///< the previous motion frame
+    uint64_t edition = 0;           ///< of the model
     QualityState quality;
     MotionCost cost;
     size_t unacknowledged = 0;  ///< messages
@@ -98,6 +101,8 @@ class ViewSession : public std::enable_shared_from_this<ViewSession> {
   };
 
   void draw(FrameKind kind);
+  void settle_edition();
+  void take_over(uint64_t frame, service::EncodedPicture& picture);
   [[nodiscard]] bool may_be_kept(const service::PictureJob& job) const;
   [[nodiscard]] service::PictureJob picture_job(FrameKind kind, service::JobId supersedes) const;
   void retarget();
@@ -123,6 +128,8 @@ class ViewSession : public std::enable_shared_from_this<ViewSession> {
 
   ViewPlan plan_{ViewTiming{}};
   ViewUpdate newest_;
+  uint64_t edition_ = 0;    ///< of the model that is shown; 0: none yet, or a model without editions
+  uint64_t successor_ = 0;  ///< the newer edition that is to take over; 0: none
   LinkEstimate link_;
   QualityState quality_ = first_quality();
   uint64_t last_frame_ = 0;

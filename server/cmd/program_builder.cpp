@@ -1,0 +1,108 @@
+#include "cmd/program_builder.h"
+
+#include <filesystem>
+#include <nlohmann/json.hpp>
+#include <system_error>
+#include <utility>
+#include <vector>
+
+#include <spdlog/fmt/fmt.h>
+#include <unistd.h>
+
+#include "base/child_process.h"
+#include "base/log.h"
+#include "base/mapped_file.h"
+#include "cmd/radius_flag.h"
+
+namespace surfcast::cmd {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kFailurePrefix = "surfcastd: ";
+
+class ProgramBuilder : public ScanBuilder {
+ public:
+  ProgramBuilder(ScanCacheConfig cache, size_t threads) : cache_(std::move(cache)), threads_(threads) {}
+
+  Result<CacheSlot> find(const fs::path& scan, const std::atomic<bool>& cancelled) override {
+    return find_cache_slot(scan, cache_, cancelled);
+  }
+
+  Result<ScanPreview> preview(const fs::path& scan, uint64_t points, const BuildWatch& watch) override {
+    const Result<fs::path> folder = ready_cache_folder(cache_);
+    if (!folder) return fail(folder.error());
+    const fs::path file = *folder / fmt::format("preview-{}-{}.surf", ::getpid(), ++previews_);
+    const fs::path report = fs::path(file).replace_extension("json");
+    const Status built = run(scan, file, {"--sample", std::to_string(points), "--report", report.string()}, watch);
+    Result<ScanPreview> preview = built ? model::ModelFile::open(file).map([&](model::ModelFile model) {
+      return ScanPreview{std::make_shared<const model::ModelFile>(std::move(model)), points_in(report)};
+    })
+                                        : Result<ScanPreview>(fail(built.error()));
+    std::error_code ignored;
+    fs::remove(file, ignored);
+    fs::remove(report, ignored);
+    return preview;
+  }
+
+  Result<CachedModel> build(const fs::path& scan, const fs::path& target, const BuildWatch& watch) override {
+    if (Status built = run(scan, target, {}, watch); !built) return fail(built.error());
+    return use_built_model(target, cache_);
+  }
+
+ private:
+  Status run(const fs::path& scan, const fs::path& target, const std::vector<std::string>& more,
+             const BuildWatch& watch) const {
+    std::error_code code;
+    const fs::path program = fs::read_symlink("/proc/self/exe", code);
+    if (code) return fail(ErrorKind::kIo, "cannot find the program itself: " + code.message());
+    std::vector<std::string> arguments{program.string(), "build",    "--background", "--progress",
+                                       "json",           "--output", target.string()};
+    arguments.insert(arguments.end(), {"--radii", name_of(cache_.radii)});
+    if (threads_ > 0) arguments.insert(arguments.end(), {"--threads", std::to_string(threads_)});
+    if (cache_.build_memory) arguments.insert(arguments.end(), {"--memory", std::to_string(*cache_.build_memory)});
+    arguments.insert(arguments.end(), more.begin(), more.end());
+    arguments.insert(arguments.end(), {"--", scan.string()});
+    BuildOutput output(watch);
+    const Result<int> ended = run_child(
+        arguments, [&](std::string_view line) { output.take(line); }, Preemption(watch.cancelled));
+    if (!ended) return fail(ended.error());
+    if (*ended == 0) return {};
+    if (!output.problem().empty()) return fail(ErrorKind::kInvalidInput, output.problem());
+    return fail(ErrorKind::kInternal, fmt::format("{}: building a model of it ended with {}", scan.string(), *ended));
+  }
+
+  /// The number of points of the scan that a report states; 0 if there is none.
+  static uint64_t points_in(const fs::path& report) {
+    const Result<MappedFile> file = MappedFile::open(report);
+    if (!file) return 0;
+    const auto* text = reinterpret_cast<const char*>(file->bytes().data());
+    const nlohmann::json json = nlohmann::json::parse(text, text + file->bytes().size(), nullptr, false);
+    return json.is_object() ? json.value("points_in_scans", uint64_t{0}) : 0;
+  }
+
+  const ScanCacheConfig cache_;
+  const size_t threads_;
+  int previews_ = 0;
+};
+
+}  // namespace
+
+void BuildOutput::take(std::string_view line) {
+  if (line.starts_with(kFailurePrefix)) {
+    problem_ = line.substr(kFailurePrefix.size());
+    return;
+  }
+  const nlohmann::json json = nlohmann::json::parse(line, nullptr, false);
+  if (json.is_object() && json.contains("done")) {
+    watch_.progress(json.value("done", 0.0), json.value("seconds_left", 0.0));
+  } else if (line.find("warn") != std::string_view::npos) {
+    spdlog::warn("build: {}", line);
+  }
+}
+
+std::unique_ptr<ScanBuilder> make_program_builder(const ScanCacheConfig& cache, size_t threads) {
+  return std::make_unique<ProgramBuilder>(cache, threads);
+}
+
+}  // namespace surfcast::cmd
