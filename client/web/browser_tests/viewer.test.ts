@@ -274,6 +274,47 @@ describe('a real scan', () => {
   });
 });
 
+describe('a scan that is being built', () => {
+  /** A hilly square; larger than what is built before a test could look. */
+  async function writeHills(file: string, side: number): Promise<void> {
+    const points: LasPoint[] = [];
+    for (let y = 0; y < side; ++y) {
+      for (let x = 0; x < side; ++x) {
+        const z = Math.round(900 * Math.sin(x / 60) * Math.cos(y / 45));
+        const color = [(x * 90) % 65536, (y * 90) % 65536, 25_000] as const;
+        points.push({ x: 40 * x, y: 40 * y, z, intensity: (x * 7) % 256, classification: 2, color });
+      }
+    }
+    await writeFile(file, encodeLas(points));
+  }
+
+  it('is shown as a preview, which the model replaces without a reload', async () => {
+    const scan = join(folder, 'hills.las');
+    await writeHills(scan, 500);
+    const wire = await Wire.tap(page);
+    const cache = join(folder, 'cache');
+    const hills = await Server.start(scan, 0, '--cache', cache, '--preview-points', '5000', '--preview-from', '1K');
+    try {
+      await page.goto(hills.url);
+      await page.locator('.status', { hasText: 'Preview' }).waitFor({ timeout: 60_000 });
+      await page.evaluate(() => (window.name = 'not reloaded'));
+      await look.drag(page, 90, -30); // moves while the model is built
+      await look.sharp(page);
+      expect(await page.evaluate(() => window.name)).toBe('not reloaded');
+      expect(page.url()).toContain('#/hills');
+      const kinds = wire.frames.map((frame) => frame.picture?.preview ?? false);
+      const first = kinds.indexOf(false);
+      expect(first).toBeGreaterThan(0);
+      expect(kinds.slice(0, first).every((preview) => preview)).toBe(true); // all previews come before
+      expect(kinds.slice(first).some((preview) => preview)).toBe(false);
+      expect(wire.frames[first]!.moving).toBe(false); // the model comes at rest
+      await expect.poll(() => page.locator('.status').textContent(), { timeout: 20_000 }).toContain('Sharp');
+    } finally {
+      await hills.kill();
+    }
+  });
+});
+
 describe('on a phone', () => {
   it('fits 360 pixels, and its panels are sheets over the picture', async () => {
     await page.context().close();

@@ -18,8 +18,8 @@ export class Server {
     readonly url: string, // ends with a slash
   ) {}
 
-  static async start(model: string, port = 0): Promise<Server> {
-    const process = spawn(surfcastd, ['serve', model, '--listen', `127.0.0.1:${port}`], {
+  static async start(model: string, port = 0, ...more: string[]): Promise<Server> {
+    const process = spawn(surfcastd, ['serve', model, '--listen', `127.0.0.1:${port}`, ...more], {
       stdio: ['ignore', 'pipe', 'ignore'],
     });
     for await (const line of createInterface({ input: process.stdout! })) {

@@ -4,7 +4,7 @@ import { skyOf } from '../camera/pose';
 import { projectionOf, type Projection } from '../camera/projection';
 import { diagonal, type Box } from '../camera/standard_views';
 import { decimalsOf } from '../measure/format';
-import type { ModelDescription, PickResult, ViewFrame } from '../generated/surfcast_pb';
+import type { ModelDescription, PickResult, ScanStatus, ViewFrame } from '../generated/surfcast_pb';
 import type { LinkState } from '../protocol/link';
 import { boxFrom, cameraFrom, type Size } from '../protocol/pictures';
 import type { Figures } from '../view/figures';
@@ -18,6 +18,8 @@ import { defaultDisplay, type DisplayOptions } from './display_options';
 
 export const link = signal<LinkState>({ kind: 'connecting' });
 export const models = signal<readonly string[] | undefined>(undefined);
+/** Scans whose models are not complete, by name. */
+export const scans = signal<ReadonlyMap<string, ScanStatus>>(new Map());
 export const descriptions = signal<ReadonlyMap<string, ModelDescription>>(new Map());
 /** Why there is no picture; `again`: a retry is scheduled. */
 export const viewProblem = signal<{ readonly message: string; readonly again: boolean } | undefined>(undefined);
@@ -84,6 +86,8 @@ export const stageSize = signal<Size>({ width: 0, height: 0 });
 export const description = computed(() =>
   model.value === undefined ? undefined : descriptions.value.get(model.value),
 );
+/** The open model, if it is a scan whose model is not complete. */
+export const openScan = computed(() => (model.value === undefined ? undefined : scans.value.get(model.value)));
 export const upAxis = computed<UpAxis>(() => (description.value?.zUp === false ? 'y' : 'z'));
 export const bounds = computed<Box>(() => boxFrom(description.value?.bounds));
 

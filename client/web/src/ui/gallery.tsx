@@ -1,7 +1,9 @@
 import type { JSX } from 'preact';
 import { useEffect, useState } from 'preact/hooks';
+import type { ScanStatus } from '../generated/surfcast_pb';
 import { openModel } from '../state/routes';
-import { descriptions, galleryOpen, link, model, models } from '../state/store';
+import { failed, progressText } from '../state/scans';
+import { descriptions, galleryOpen, link, model, models, scans } from '../state/store';
 import { useActions } from './actions';
 import { IconButton } from './controls';
 
@@ -10,16 +12,47 @@ const compact = new Intl.NumberFormat('en', { notation: 'compact', maximumFracti
 const thumbnail = (name: string): string =>
   `api/models/${encodeURIComponent(name)}/image?resolution=480,300&spacing=1.5&format=jpg&quality=80&background=18,22,27`;
 
+/** Two editions of a model are two pictures, which the browser is not to confuse. */
+const thumbnailOf = (name: string, edition: bigint | undefined): string =>
+  edition === undefined ? thumbnail(name) : `${thumbnail(name)}#${edition}`;
+
 /** The picture is requested only when its card is visible, because the server draws it on request. */
-function Thumbnail({ name }: { name: string }): JSX.Element {
-  const [failed, setFailed] = useState(false);
-  if (failed) return <div class="thumbnail" />;
+function Thumbnail({ name, edition }: { name: string; edition: bigint | undefined }): JSX.Element {
+  const [broken, setBroken] = useState(false);
+  if (broken) return <div class="thumbnail" />;
   return (
-    <img class="thumbnail" src={thumbnail(name)} alt="" loading="lazy" decoding="async" onError={() => setFailed(true)} />
+    <img
+      class="thumbnail"
+      src={thumbnailOf(name, edition)}
+      alt=""
+      loading="lazy"
+      decoding="async"
+      onError={() => setBroken(true)}
+    />
+  );
+}
+
+/** A scan that cannot be opened, or not yet. */
+function ScanCard({ scan }: { scan: ScanStatus }): JSX.Element {
+  return (
+    <li>
+      <div class={failed(scan) ? 'model-card scan broken' : 'model-card scan'}>
+        <div class="thumbnail" />
+        <span class="name">{scan.model}</span>
+        <span class="faint">{failed(scan) ? 'cannot be built' : progressText(scan)}</span>
+        {failed(scan) ? <p class="problem">{scan.problem}</p> : <progress value={scan.done} />}
+      </div>
+    </li>
   );
 }
 
 function Card({ name }: { name: string }): JSX.Element {
+  const scan = scans.value.get(name);
+  if (scan && scan.edition === 0n) return <ScanCard scan={scan} />;
+  return <OpenCard name={name} scan={scan} />;
+}
+
+function OpenCard({ name, scan }: { name: string; scan: ScanStatus | undefined }): JSX.Element {
   const { controller } = useActions();
   const description = descriptions.value.get(name);
   const open = link.value.kind === 'open';
@@ -33,9 +66,12 @@ function Card({ name }: { name: string }): JSX.Element {
   return (
     <li>
       <button type="button" class="model-card" aria-current={name === model.value} onClick={choose}>
-        <Thumbnail name={name} />
+        <Thumbnail key={`${name} ${scan?.edition ?? ''}`} name={name} edition={scan?.edition} />
         <span class="name">{name}</span>
-        <span class="faint">{description ? `${compact.format(Number(description.surfels))} points` : '…'}</span>
+        <span class="faint">
+          {scan ? progressText(scan) : description ? `${compact.format(Number(description.surfels))} points` : '…'}
+        </span>
+        {scan && !failed(scan) && <progress value={scan.done} />}
       </button>
     </li>
   );
@@ -43,7 +79,8 @@ function Card({ name }: { name: string }): JSX.Element {
 
 function Cards(): JSX.Element {
   const [wanted, setWanted] = useState('');
-  const all = models.value ?? [];
+  const broken = [...scans.value.values()].filter((scan) => failed(scan) && scan.edition === 0n);
+  const all = [...new Set([...(models.value ?? []), ...broken.map((scan) => scan.model)])].sort();
   const names = all.filter((name) => name.toLowerCase().includes(wanted.toLowerCase()));
   return (
     <>
@@ -63,7 +100,7 @@ function Cards(): JSX.Element {
       </ul>
       {all.length === 0 && models.value && (
         <p class="faint">
-          This server has no models yet. Put a <code>.surf</code> file or a scan into a folder that it serves.
+          This server has no models yet. Model files that are put into a folder that it serves appear here.
         </p>
       )}
     </>

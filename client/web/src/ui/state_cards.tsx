@@ -1,6 +1,8 @@
 import type { JSX } from 'preact';
 import { useEffect, useState } from 'preact/hooks';
-import { galleryOpen, link, model, models, shownFrame, viewProblem } from '../state/store';
+import type { ScanStatus } from '../generated/surfcast_pb';
+import { failed, progressText } from '../state/scans';
+import { galleryOpen, link, model, models, openScan, shownFrame, viewProblem } from '../state/store';
 import { useActions } from './actions';
 
 /** Cards shown instead of the picture, or over it, while the connection, the model or the first frame is missing. */
@@ -73,6 +75,22 @@ function Loading({ text }: { text: string }): JSX.Element {
   );
 }
 
+/** The open scan has nothing to show yet, or never will. */
+function ScanState({ scan }: { scan: ScanStatus }): JSX.Element {
+  return (
+    <div class="state-card" role={failed(scan) ? 'alert' : 'status'}>
+      <h2>{failed(scan) ? `${scan.model} cannot be built` : `${scan.model} is being built`}</h2>
+      {failed(scan) ? <p class="message">{scan.problem}</p> : <progress value={scan.done} />}
+      {!failed(scan) && (
+        <p class="faint">{progressText(scan)}. A preview appears here as soon as there is one.</p>
+      )}
+      <button type="button" onClick={() => (galleryOpen.value = true)}>
+        Show all models
+      </button>
+    </div>
+  );
+}
+
 export function StateCards(): JSX.Element | null {
   const state = link.value;
   if (state.kind === 'refused') return <Refused message={state.message} />;
@@ -80,6 +98,8 @@ export function StateCards(): JSX.Element | null {
   if (model.value === undefined || galleryOpen.value) {
     return state.kind === 'connecting' && !models.value ? <Loading text="Connecting" /> : null;
   }
+  const scan = openScan.value;
+  if (scan && scan.edition === 0n && state.kind === 'open') return <ScanState scan={scan} />;
   if (viewProblem.value) return <Problem {...viewProblem.value} />;
   if (shownFrame.value) return state.kind === 'connecting' ? <Loading text="Connecting" /> : null;
   return <Loading text={state.kind === 'connecting' ? 'Connecting' : `Opening ${model.value}`} />;

@@ -7,11 +7,13 @@ import {
   frameIsCurrent,
   link,
   moving,
+  openScan,
   picking,
   shownFrame,
   updatePending,
   viewProblem,
 } from '../state/store';
+import { failed, progressText } from '../state/scans';
 import { stageNames, type StageName, type StageTimes } from '../view/figures';
 import { IconButton } from './controls';
 
@@ -23,8 +25,15 @@ export function formatRate(bytesPerSecond: number): string {
 }
 
 interface State {
-  readonly kind: 'sharp' | 'working' | 'offline';
+  readonly kind: 'sharp' | 'working' | 'offline' | 'preview';
   readonly text: string;
+}
+
+/** How far the model is of which a preview is shown. */
+function previewText(): string {
+  const scan = openScan.value;
+  if (!scan) return 'Preview';
+  return failed(scan) ? 'Preview; the model cannot be built' : `Preview: ${progressText(scan)}`;
 }
 
 function stateNow(): State {
@@ -34,6 +43,7 @@ function stateNow(): State {
   if (!frame) return { kind: 'working', text: 'Loading' };
   if (picking.value) return { kind: 'working', text: 'Looking' };
   if (moving.value) return { kind: 'working', text: 'Moving' };
+  if (frame.picture?.preview) return { kind: 'preview', text: previewText() };
   const wanted = frameIsCurrent.value && !updatePending.value && frame.update >= wantedUpdate.value;
   return wanted && !frame.moving && frame.picture?.converged ? { kind: 'sharp', text: 'Sharp' } : { kind: 'working', text: 'Refining' };
 }

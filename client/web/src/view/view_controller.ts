@@ -1,11 +1,19 @@
 import { equals } from '@bufbuild/protobuf';
-import { effect } from '@preact/signals';
+import { batch, effect } from '@preact/signals';
 import { cameraOf, poseOf } from '../camera/pose';
-import { DrawPictureSchema, ErrorCode, type DrawPicture, type PickResult, type Picture } from '../generated/surfcast_pb';
+import {
+  DrawPictureSchema,
+  ErrorCode,
+  type DrawPicture,
+  type ModelList,
+  type PickResult,
+  type Picture,
+} from '../generated/surfcast_pb';
 import { backoff } from '../protocol/backoff';
 import { RequestError, type Connection } from '../protocol/connection';
 import { Link } from '../protocol/link';
 import { cameraFrom, pictureOf } from '../protocol/pictures';
+import { awaited, failed, renewed } from '../state/scans';
 import * as store from '../state/store';
 import { FigureCollector } from './figures';
 import { Painter, type ArrivedFrame, type PaintedFrame } from './painter';
@@ -21,6 +29,7 @@ const sameRequest = (a: ViewRequest | undefined, b: ViewRequest): boolean =>
   a?.moving === b.moving && equals(DrawPictureSchema, a.picture, b.picture);
 
 const figuresEvery = 500; // ms
+const listEvery = 500; // ms, while scans are being built
 
 /**
  * Synchronizes the page and the server. Sends changes of the store's model, pose and display options, at most one
@@ -37,6 +46,7 @@ export class ViewController {
   private scheduled = false;
   private failures = 0;
   private retryTimer: ReturnType<typeof setTimeout> | undefined;
+  private listTimer: ReturnType<typeof setTimeout> | undefined;
 
   /** `step` advances animations of the eye to the given time. */
   constructor(
@@ -117,12 +127,34 @@ export class ViewController {
     this.endView();
   }
 
+  /** Asks for the models now, and again as long as scans are being built. */
+  refreshModels(): void {
+    if (this.connection) void this.listModels(this.connection);
+  }
+
   private async listModels(connection: Connection): Promise<void> {
+    clearTimeout(this.listTimer);
     try {
-      store.models.value = (await connection.ask({ case: 'listModels', value: {} }, 'modelList')).models;
+      this.takeModels(await connection.ask({ case: 'listModels', value: {} }, 'modelList'));
     } catch {
-      // The connection has ended; the next one repeats the request.
+      return; // The connection has ended; the next one repeats the request.
     }
+    const building = [...store.scans.peek().values()].some((scan) => !failed(scan));
+    if (building) this.listTimer = setTimeout(() => this.refreshModels(), listEvery);
+  }
+
+  private takeModels(list: ModelList): void {
+    const scans = new Map(list.scans.map((scan) => [scan.model, scan]));
+    const names = renewed(store.scans.peek(), scans);
+    batch(() => {
+      store.scans.value = scans;
+      store.models.value = list.models;
+    });
+    for (const name of names) {
+      if (store.descriptions.peek().has(name)) this.describe(name).catch(() => undefined);
+    }
+    const open = store.model.peek();
+    if (open !== undefined && !this.session && (names.includes(open) || scans.has(open))) this.openView();
   }
 
   async describe(name: string): Promise<void> {
@@ -146,6 +178,11 @@ export class ViewController {
     const model = store.model.peek();
     const connection = this.connection;
     if (model === undefined || !connection || this.session) return;
+    const scan = store.scans.peek().get(model);
+    if (awaited(scan)) {
+      store.viewProblem.value = undefined;
+      return; // the list of models tells when there is a preview
+    }
     this.describe(model).then(
       () => {
         if (connection === this.connection && model === store.model.peek()) this.start(connection);
