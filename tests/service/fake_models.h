@@ -18,6 +18,11 @@ namespace surfcast::service {
 class FakeModels : public ModelSource {
  public:
   [[nodiscard]] std::vector<std::string> names() const override { return {"cube", "teapot"}; }
+  [[nodiscard]] std::vector<ScanStatus> scans() const override { return scan_list; }
+  [[nodiscard]] bool awaited(const std::string& name) const override { return awaited_model == name; }
+  [[nodiscard]] uint64_t edition(const std::string& name) const override {
+    return name == "cube" ? cube_edition.load() : 0;
+  }
   [[nodiscard]] Result<ModelDescription> describe(const std::string& name) const override {
     if (name != "cube" && name != "teapot") return fail(ErrorKind::kNotFound, name + ": there is no such model");
     ModelDescription description;
@@ -38,6 +43,10 @@ class FakeModels : public ModelSource {
   [[nodiscard]] Result<std::shared_ptr<const model::ModelFile>> open(const std::string& name) const override {
     return fail(ErrorKind::kNotFound, name + ": there is no file of this model");
   }
+
+  std::vector<ScanStatus> scan_list;  ///< set it before the service starts
+  std::string awaited_model;          ///< likewise, or before models_changed()
+  std::atomic<uint64_t> cube_edition = 0;
 };
 
 /// The behaviour of a fake renderer and its counters, shared with the test.
@@ -46,11 +55,15 @@ struct FakeRendererControl {
   std::atomic<int> cancelled = 0;      ///< pictures cancelled while they were drawn
   std::atomic<int> nested_frames = 0;  ///< times that other pictures were drawn during a slow picture
   static constexpr int kWarmUps = 3;
-  std::atomic<int> warmed_up = 0;        ///< number of warm-up steps done
-  std::atomic<int> frame_ms = 0;         ///< least duration of a picture
-  std::atomic<bool> slow = false;        ///< a picture continues until it is cancelled or `slow` becomes false
-  std::atomic<bool> slow_motion = true;  ///< motion pictures are slow too
-  std::string slow_model;                ///< if not empty, pictures of other models are not slow
+  std::atomic<int> warmed_up = 0;              ///< number of warm-up steps done
+  std::atomic<int> frame_ms = 0;               ///< least duration of a picture
+  std::atomic<bool> slow = false;              ///< a picture continues until it is cancelled or `slow` becomes false
+  std::atomic<bool> slow_motion = true;        ///< motion pictures are slow too
+  std::atomic<uint64_t> preview_editions = 0;  ///< editions up to this one are previews
+  std::atomic<bool> loading = false;           ///< blocks of the newest edition are still missing
+  std::atomic<uint64_t> loading_edition = 0;   ///< that edition
+  std::vector<uint64_t> editions;              ///< asked for; read it only while nothing is drawn
+  std::string slow_model;                      ///< if not empty, pictures of other models are not slow
   std::vector<std::string>
       order;  ///< models in the order in which they were drawn; read it only while nothing is drawn
 };
@@ -80,7 +93,13 @@ class FakeRenderer : public FrameRenderer {
     }
     const bool known = model == "cube" || model == "teapot" || model == "noise";
     if (!known) return fail(ErrorKind::kNotFound, model + ": there is no such model");
+    control_->editions.push_back(request.edition);
     picture::Frame frame;
+    frame.preview = request.edition > 0 && request.edition <= control_->preview_editions;
+    if (control_->loading && request.edition == control_->loading_edition && request.max_missing_blocks == 0) {
+      frame.stats.blocks_missing = 3;
+      return frame;  // without pixels
+    }
     frame.image = plain_image(request);
     if (model == "noise") add_noise(frame.image);
     if (request.camera) frame.camera = *request.camera;

@@ -397,7 +397,7 @@ TEST_F(RenderServiceTest, AServiceWithoutARendererDoesNotStart) {
 TEST_F(RenderServiceTest, ModelsAreListedAndDescribed) {
   start();
   std::promise<std::vector<std::string>> names;
-  service_->list_models([&](auto list) { names.set_value(std::move(list)); });
+  service_->list_models([&](ModelList list) { names.set_value(std::move(list.names)); });
   EXPECT_EQ(names.get_future().get(), (std::vector<std::string>{"cube", "teapot"}));
   std::promise<Result<ModelDescription>> description;
   service_->describe_model("teapot", [&](auto result) { description.set_value(std::move(result)); });
@@ -428,6 +428,61 @@ TEST_F(RenderServiceTest, PicksBeyondTheirLimitAreRefusedAtOnce) {
   service_->pick({}, [&error](const auto& picked) { error = picked.error(); });
   ASSERT_TRUE(error);
   EXPECT_EQ(error->kind, ErrorKind::kUnavailable);
+}
+
+/// A service of which "cube" is a scan whose model is not there yet.
+class AwaitedModelTest : public RenderServiceTest {
+ protected:
+  void SetUp() override { models_.awaited_model = "cube"; }
+  void publish() {
+    models_.awaited_model = "";
+    service_->models_changed();
+  }
+};
+
+TEST_F(AwaitedModelTest, PicturesWaitForTheModel) {
+  start();
+  auto [id, cube] = draw(1, job_for("cube"));
+  auto [other, teapot] = draw(1, job_for("teapot"));
+  EXPECT_TRUE(teapot.get()) << "other models are drawn meanwhile";
+  EXPECT_EQ(cube.wait_for(std::chrono::seconds(0)), std::future_status::timeout);
+  publish();
+  EXPECT_TRUE(cube.get());
+}
+
+TEST_F(AwaitedModelTest, PicturesOfViewsDoNotWait) {
+  start();
+  PictureJob job = motion_of("cube");
+  job.request.loading = picture::Loading::kNow;
+  EXPECT_TRUE(draw(1, job).second.get()) << "the renderer decides";
+}
+
+TEST_F(AwaitedModelTest, APictureThatWaitsTooLongIsRefused) {
+  start({.queue_timeout = std::chrono::milliseconds(1)});
+  auto [id, cube] = draw(1, job_for("cube"));
+  std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  service_->models_changed();
+  const Result<EncodedPicture> picture = cube.get();
+  ASSERT_FALSE(picture);
+  EXPECT_EQ(picture.error().kind, ErrorKind::kUnavailable);
+}
+
+TEST_F(AwaitedModelTest, APictureThatWaitsCanBeCancelledAndDoesNotOutliveTheService) {
+  start();
+  auto [id, first] = draw(1, job_for("cube"));
+  EXPECT_TRUE(service_->cancel(id));
+  EXPECT_EQ(first.get().error().kind, ErrorKind::kCancelled);
+  auto [other, second] = draw(1, job_for("cube"));
+  service_.reset();
+  EXPECT_EQ(second.get().error().kind, ErrorKind::kCancelled);
+}
+
+TEST_F(AwaitedModelTest, NoMorePicturesWaitThanTheQueueHolds) {
+  start({.queued_jobs = 1});
+  auto [id, first] = draw(1, job_for("cube"));
+  EXPECT_EQ(draw(1, job_for("cube")).second.get().error().kind, ErrorKind::kUnavailable);
+  publish();
+  EXPECT_TRUE(first.get());
 }
 
 }  // namespace

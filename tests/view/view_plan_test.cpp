@@ -322,5 +322,68 @@ TEST_F(ViewPlanTest, MoreAnswersThanFramesDoNotMatter) {
   EXPECT_FALSE(plan_.may_send());
 }
 
+TEST_F(ViewPlanTest, ANewerEditionTakesOverOnceThePictureAtRestIsDrawn) {
+  update(/*moving=*/false);
+  show(FrameKind::kMotion);
+  plan_.expect_takeover();
+  pass(150);
+  show(FrameKind::kRefined);  // from the present edition, which is quick
+  pass(50);
+  show(FrameKind::kTakeover);
+  pass(300);
+  show(FrameKind::kFinal);
+  EXPECT_EQ(drawn(), std::nullopt);
+}
+
+TEST_F(ViewPlanTest, ANewerEditionThatComesAfterTheFinalPictureTakesOverToo) {
+  update(/*moving=*/false);
+  show(FrameKind::kMotion);
+  pass(150);
+  show(FrameKind::kRefined);
+  pass(350);
+  show(FrameKind::kFinal);
+  pass(10'000);
+  EXPECT_EQ(drawn(), std::nullopt);
+  plan_.expect_takeover();
+  show(FrameKind::kTakeover);
+  show(FrameKind::kFinal);
+  EXPECT_EQ(drawn(), std::nullopt);
+}
+
+TEST_F(ViewPlanTest, ATakeoverIsAskedForAgainUntilItsBlocksAreThere) {
+  update(/*moving=*/false);
+  show(FrameKind::kMotion);
+  pass(150);
+  show(FrameKind::kRefined);
+  plan_.expect_takeover();
+  pass(50);
+  for (int i = 0; i < 200; ++i) {  // however long it takes
+    draw_and_send(FrameKind::kTakeover, FrameResult::kNothing);
+    EXPECT_EQ(asked_in(), 50);
+    pass(50);
+  }
+  show(FrameKind::kTakeover);
+  show(FrameKind::kFinal);
+}
+
+TEST_F(ViewPlanTest, AMotionComesBeforeATakeoverWhichFollowsWhenItEnds) {
+  update(/*moving=*/false);
+  show(FrameKind::kMotion);
+  pass(150);
+  show(FrameKind::kRefined);
+  plan_.expect_takeover();
+  pass(50);
+  const uint64_t takeover = begin(FrameKind::kTakeover);
+  update(/*moving=*/true);
+  EXPECT_EQ(plan_.outdated(), std::vector<uint64_t>{takeover});
+  plan_.drop(takeover);
+  show(FrameKind::kMotion);
+  update(/*moving=*/false, /*changed=*/false);
+  pass(150);
+  show(FrameKind::kRefined);
+  pass(50);
+  EXPECT_EQ(drawn(), FrameKind::kTakeover);
+}
+
 }  // namespace
 }  // namespace surfcast::view
