@@ -1,5 +1,7 @@
 #include "base/hash.h"
 
+#include <atomic>
+#include <optional>
 #include <span>
 #include <string>
 
@@ -20,6 +22,15 @@ TEST(Hash, DependsOnTheBytesAndTheSeed) {
   EXPECT_NE(hash_of(bytes), hash_of(bytes, 1));
   EXPECT_NE(hash_of(bytes), hash_of(bytes.first(bytes.size() - 1)));
   EXPECT_NE(hash_name(bytes), hash_name(bytes.subspan(1)));
+}
+
+TEST(Hash, InPiecesIsThatOfTheWholeUnlessItIsCancelled) {
+  const std::string text(50'000'000, 'x');  // several pieces
+  const std::span<const std::byte> bytes = std::as_bytes(std::span(text));
+  std::atomic<bool> cancelled{false};
+  EXPECT_EQ(hash_name(bytes, cancelled), hash_name(bytes));
+  cancelled = true;
+  EXPECT_EQ(hash_name(bytes, cancelled), std::nullopt);
 }
 
 }  // namespace

@@ -59,6 +59,20 @@ class ServeTest : public ::testing::Test {
     ASSERT_NE(url, std::string::npos) << line << content(folder_ / "log");
     url_ = line.substr(url + 7, line.find('/', url + 7) - url - 7);
   }
+  /// Draws a small picture of a model, which waits for it.
+  [[nodiscard]] client::ProgramOutcome draw(const std::string& model) const {
+    return client::run_program(SURFCAST_CLIENT " render " + url_ + "/" + model + " --resolution 64,48 --output " +
+                               file("drawn.png") + " 2>&1");
+  }
+  /// The list of models, once it contains `text`.
+  [[nodiscard]] std::string list_until(const std::string& text) const {
+    std::string list;
+    for (int i = 0; i < 3000 && list.find(text) == std::string::npos; ++i) {
+      if (i > 0) ::usleep(20'000);
+      list = client::run_program(SURFCAST_CLIENT " models --json " + url_).output;
+    }
+    return list;
+  }
   int end(int signal) {
     ::kill(server_, signal);
     const int code = client::wait_for_program(server_);

@@ -44,6 +44,7 @@ TEST_F(ServeTest, ChannelsAreTheSameByEveryWay) {
 
 TEST_F(ServeTest, AScanIsBuiltOnceHoweverItIsNamed) {
   serve(scan_.string());
+  ASSERT_EQ(draw("square").code, 0);  // once it is built
   EXPECT_EQ(end(SIGINT), 0);
   const fs::path copy = folder_ / "renamed.ply";
   fs::copy_file(scan_, copy);
@@ -62,6 +63,40 @@ TEST_F(ServeTest, WhatCannotBeServedIsAFailureThatNamesIt) {
     EXPECT_NE(outcome.output.find("surfcastd: "), std::string::npos);
     EXPECT_NE(outcome.output.find(name), std::string::npos) << outcome.output;
   }
+}
+
+TEST_F(ServeTest, AScanThatCannotBeBuiltIsListedWithItsReasonAndOthersAreServed) {
+  ASSERT_TRUE(write_file_atomically(folder_ / "broken.ply", square_of_points().substr(0, 400)));
+  serve(file("broken.ply") + " " + scan_.string());
+  EXPECT_EQ(draw("square").code, 0);
+  const std::string list = list_until("\"state\": \"failed\"");
+  EXPECT_NE(list.find("broken.ply: truncated"), std::string::npos) << list;
+  EXPECT_EQ(client::run_program(SURFCAST_CLIENT " models " + url_).output, "square\n");
+  EXPECT_NE(draw("broken").code, 0);
+  EXPECT_EQ(end(SIGTERM), 0);
+}
+
+/// A scan of whose model the build takes much longer than the rest of a test.
+class ServeLargeScanTest : public ServeTest {
+ protected:
+  void SetUp() override {
+    ServeTest::SetUp();
+    std::ofstream stream(large_ = folder_ / "large.xyz");
+    for (int i = 0; i < 1'500'000; ++i) stream << i % 1500 << ' ' << i / 1500 << ' ' << (i % 1500) * (i % 7) << '\n';
+  }
+
+  fs::path large_;
+};
+
+TEST_F(ServeLargeScanTest, ThePortIsOpenAtOnceAndAPreviewIsServedWhileTheModelIsBuilt) {
+  serve("--preview-points 20000 " + large_.string());
+  EXPECT_EQ(client::run_program(SURFCAST_CLIENT " models " + url_).output, "large\n");
+  const std::string list = list_until("\"preview\": true");
+  EXPECT_NE(list.find("\"percent\""), std::string::npos) << list;
+  EXPECT_NE(list.find("\"seconds_left\""), std::string::npos) << list;
+  EXPECT_EQ(draw("large").code, 0);
+  EXPECT_EQ(end(SIGTERM), 0) << "the build is given up";
+  EXPECT_TRUE(fs::is_empty(cache())) << "and leaves nothing behind";
 }
 
 TEST_F(ServeTest, WrongCommandLinesEndWithTwo) {
