@@ -14,7 +14,7 @@ namespace surfcast::scan {
 namespace {
 
 /// Rows kept of a piece, for every row that its share of the sample will need: pieces may differ in size that much.
-constexpr uint64_t kSpare = 2;
+constexpr uint64_t kSpare = 3;
 
 struct PieceSample {
   uint64_t of_rows = 0;
