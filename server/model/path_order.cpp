@@ -5,6 +5,8 @@
 #include <bit>
 #include <limits>
 
+#include "base/vector_clones.h"
+
 namespace surfcast::model {
 namespace {
 
@@ -13,6 +15,24 @@ constexpr uint32_t kWindow = 128;
 
 /// Farther from every point than any other point. Its squared distance is infinite.
 constexpr float kNowhere = 1e30F;
+
+using Coordinates = std::array<float, kWindow>;
+
+/// The slot of the point nearest to `from`. The lowest bits of a squared distance, seen as an integer, give way to the
+/// number of its slot, so that one minimum finds both. Distances that differ by less than 1 in 10^5 count as equal.
+SURFCAST_VECTOR_CLONES size_t nearest_slot(const Coordinates& x, const Coordinates& y, const Coordinates& z,
+                                           const glm::vec3& from) {
+  constexpr uint32_t kSlot = kWindow - 1;
+  int32_t least = std::numeric_limits<int32_t>::max();
+  for (uint32_t i = 0; i < kWindow; ++i) {
+    const float dx = x[i] - from.x;
+    const float dy = y[i] - from.y;
+    const float dz = z[i] - from.z;
+    const auto bits = std::bit_cast<uint32_t>(dx * dx + dy * dy + dz * dz);  // ascending with the distance
+    least = std::min(least, static_cast<int32_t>((bits & ~kSlot) | i));
+  }
+  return static_cast<uint32_t>(least) & kSlot;
+}
 
 /// Points not yet visited, as arrays so that the compiler can use vector instructions on them.
 class Window {
@@ -29,24 +49,9 @@ class Window {
   }
 
   /// Removes the point nearest to `from` and moves `from` there.
-  uint32_t take_nearest(glm::vec3& from) { return take(nearest_to(from), from); }
+  uint32_t take_nearest(glm::vec3& from) { return take(nearest_slot(x_, y_, z_, from), from); }
 
  private:
-  /// The slot of the nearest point. The lowest bits of a squared distance, seen as an integer, give way to the number
-  /// of its slot, so that one minimum finds both. Distances that differ by less than 1 in 10^5 count as equal.
-  [[nodiscard]] size_t nearest_to(const glm::vec3& from) const {
-    constexpr uint32_t kSlot = kWindow - 1;
-    int32_t least = std::numeric_limits<int32_t>::max();
-    for (uint32_t i = 0; i < kWindow; ++i) {
-      const float dx = x_[i] - from.x;
-      const float dy = y_[i] - from.y;
-      const float dz = z_[i] - from.z;
-      const auto bits = std::bit_cast<uint32_t>(dx * dx + dy * dy + dz * dz);  // ascending with the distance
-      least = std::min(least, static_cast<int32_t>((bits & ~kSlot) | i));
-    }
-    return static_cast<uint32_t>(least) & kSlot;
-  }
-
   uint32_t take(size_t i, glm::vec3& at) {
     at = {x_[i], y_[i], z_[i]};
     const uint32_t number = numbers_[i];
@@ -60,9 +65,9 @@ class Window {
   }
 
   size_t size_ = 0;
-  std::array<float, kWindow> x_{};
-  std::array<float, kWindow> y_{};
-  std::array<float, kWindow> z_{};
+  Coordinates x_{};
+  Coordinates y_{};
+  Coordinates z_{};
   std::array<uint32_t, kWindow> numbers_{};
 };
 

@@ -28,6 +28,16 @@ uint16_t bucket_of(double value) {
   return static_cast<uint16_t>(to_ordered_bits(static_cast<float>(value)) >> 16);
 }
 
+std::map<uint16_t, uint64_t> count_buckets(const surfel::ScalarValues& values, std::span<const uint32_t> members) {
+  std::vector<uint32_t> counts(size_t{1} << 16U);
+  for_each_number(values, members, [&counts](double value) { ++counts[bucket_of(value)]; });
+  std::map<uint16_t, uint64_t> buckets;
+  for (size_t bucket = 0; bucket < counts.size(); ++bucket) {
+    if (counts[bucket] > 0) buckets.emplace_hint(buckets.end(), static_cast<uint16_t>(bucket), counts[bucket]);
+  }
+  return buckets;
+}
+
 }  // namespace
 
 AttributeStatistics::AttributeStatistics(const surfel::SurfelCloud& cloud, std::span<const uint32_t> members) {
@@ -38,7 +48,7 @@ AttributeStatistics::AttributeStatistics(const surfel::SurfelCloud& cloud, std::
       extremes.largest = std::max(extremes.largest, value);
     });
     if (scalar.name == "intensity") {
-      for_each_number(scalar.values, members, [this](double value) { ++intensities_[bucket_of(value)]; });
+      intensities_ = count_buckets(scalar.values, members);
     } else if (scalar.name == "classification") {
       for_each_number(scalar.values, members, [this](double value) {
         ++classes_[static_cast<size_t>(std::lround(std::clamp(value, 0.0, 255.0)))];

@@ -12,6 +12,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include "base/vector_clones.h"
 #include "geometry/morton_tree.h"
 
 namespace surfcast::scan {
@@ -126,7 +127,7 @@ double distance_of(Key key) {
 }
 
 /// The keys of all candidates as seen from one of them, which has the largest key itself.
-void measure(const Candidates& candidates, size_t from, Keys& keys) {
+SURFCAST_VECTOR_CLONES void measure(const Candidates& candidates, size_t from, Keys& keys) {
   const float x = candidates.x[from];
   const float y = candidates.y[from];
   const float z = candidates.z[from];
@@ -153,7 +154,7 @@ size_t keep_up_to(Key last, size_t count, Keys& keys) {
 }
 
 /// Sorts at most kMostSorted different keys: the place of each is the number of smaller ones, which takes no branches.
-void sort_keys(size_t count, Keys& keys) {
+SURFCAST_VECTOR_CLONES void sort_keys(size_t count, Keys& keys) {
   std::array<Key, kMostSorted> unsorted;
   std::copy_n(keys.begin(), count, unsorted.begin());
   const size_t padded = std::min((count + 7) / 8 * 8, kMostSorted);

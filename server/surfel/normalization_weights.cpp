@@ -17,6 +17,7 @@
 #include <oneapi/tbb/parallel_sort.h>
 
 #include "base/contract.h"
+#include "base/vector_clones.h"
 #include "geometry/morton.h"
 #include "geometry/morton_tree.h"
 #include "shared/kernel.h"
@@ -185,12 +186,7 @@ class NearSources {
   /// Writes the numbers of the sources that may reach source number `at` to `near`, ascending; returns how many.
   size_t reaching(size_t at, std::array<uint32_t, kMaxNeighbours>& near) const {
     std::array<uint32_t, kMaxNeighbours> inside;
-    for (size_t i = 0; i < count_; ++i) {
-      const float dx = x_[i] - x_[at];
-      const float dy = y_[i] - y_[at];
-      const float dz = z_[i] - z_[at];
-      inside[i] = dx * dx + dy * dy + dz * dz <= squared_reaches_[i] ? 1 : 0;
-    }
+    find_reaching(at, inside);
     size_t count = 0;
     for (uint32_t i = 0; i < count_; ++i) {
       near[count] = i;
@@ -202,6 +198,16 @@ class NearSources {
  private:
   /// Coordinates are at most 2 and rounded to 2^-24 of that; their differences and the reach are, too.
   static constexpr double kRounding = 0x1p-19;
+
+  /// Sets `inside` to 1 for the sources that may reach source number `at`, otherwise to 0.
+  SURFCAST_VECTOR_CLONES void find_reaching(size_t at, std::array<uint32_t, kMaxNeighbours>& inside) const {
+    for (size_t i = 0; i < count_; ++i) {
+      const float dx = x_[i] - x_[at];
+      const float dy = y_[i] - y_[at];
+      const float dz = z_[i] - z_[at];
+      inside[i] = dx * dx + dy * dy + dz * dz <= squared_reaches_[i] ? 1 : 0;
+    }
+  }
 
   size_t count_;
   alignas(64) std::array<float, kMaxNeighbours> x_;
