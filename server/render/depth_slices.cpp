@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <limits>
+#include <numeric>
 #include <vector>
 
 namespace surfcast::render {
@@ -16,10 +16,12 @@ constexpr int kBins = 24 * kBinsPerOctave;
 /// Integer weight of an item in a bin: sums do not depend on the order of their terms.
 constexpr uint64_t kItem = 4096;
 
-/// One slice for each item per tile.
-uint32_t count_for(size_t items, size_t tiles) {
-  const size_t per_tile = items / std::max<size_t>(tiles, 1);
-  return static_cast<uint32_t>(std::bit_floor(std::clamp<size_t>(per_tile, 1, SURFCAST_SLICES)));
+constexpr uint64_t kLeastItems = 8;  // per tile; a picture of one surface at the finest spacing has about as many
+
+int32_t count_for(uint64_t items, size_t tiles) {
+  const uint64_t per_tile = items / std::max<size_t>(tiles, 1);
+  if (per_tile < kLeastItems) return 1;
+  return static_cast<int32_t>(std::min<uint64_t>(2 * per_tile, SURFCAST_SLICES));
 }
 
 int bin_of(double depth, double farthest) {
@@ -45,7 +47,8 @@ std::vector<uint64_t> histogram(std::span<const DepthRange> ranges, double farth
 
 }  // namespace
 
-DepthSlices depth_slices(std::span<const DepthRange> ranges, size_t tiles) {
+DepthSlices depth_slices(std::span<const DepthRange> ranges, bool culled, size_t tiles) {
+  constexpr uint64_t kLeftOut = 64;  // of so many items, one on either side
   uint64_t items = 0;
   double farthest = 0;
   for (const DepthRange& range : ranges) {
@@ -53,21 +56,19 @@ DepthSlices depth_slices(std::span<const DepthRange> ranges, size_t tiles) {
     farthest = std::max(farthest, range.farthest);
   }
   DepthSlices slices;
-  slices.near[0] = std::numeric_limits<float>::infinity();
-  if (farthest <= 0) return slices;
-  slices.count = count_for(items, tiles);
+  slices.count = farthest > 0 ? count_for(culled ? items / 2 : items, tiles) : 1;
+  if (slices.count == 1) return slices;
   const std::vector<uint64_t> bins = histogram(ranges, farthest);
-  uint64_t total = 0;
-  for (const uint64_t bin : bins) total += bin;
-  uint64_t passed = 0;
-  uint32_t slice = 1;
-  for (size_t bin = bins.size(); bin-- > 0;) {
-    passed += bins[bin];
-    const double begin = farthest * std::exp2(-static_cast<double>(bin) / kBinsPerOctave);
-    for (; slice < slices.count && passed >= total / slices.count * slice; ++slice) {
-      slices.near.at(slice) = static_cast<float>(1 / begin);
-    }
-  }
+  const uint64_t total = std::accumulate(bins.begin(), bins.end(), uint64_t{0});
+  // The depth that `part` items lie behind.
+  const auto bits_at = [&](uint64_t part) {
+    uint64_t passed = 0;
+    size_t bin = 0;
+    while (bin + 1 < bins.size() && passed + bins[bin] <= part) passed += bins[bin++];
+    return std::bit_cast<int32_t>(static_cast<float>(std::exp2(static_cast<double>(bin) / kBinsPerOctave) / farthest));
+  };
+  slices.second = bits_at(total - total / kLeftOut);
+  slices.step = std::max((slices.second - bits_at(total / kLeftOut)) / (slices.count - 1), 1);
   return slices;
 }
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
@@ -17,13 +17,16 @@ struct DepthRange {
 
 /// The slices of depth by which the lists of tiles are sorted (shaders/include/depth_slices.glsl).
 struct DepthSlices {
-  uint32_t count = 1;                         ///< a power of two of at most SURFCAST_SLICES
-  std::array<float, SURFCAST_SLICES> near{};  ///< inverse depth at which each slice begins, descending
+  int32_t count = 1;   ///< at most SURFCAST_SLICES
+  int32_t second = 0;  ///< bits of the inverse depth at which the second slice begins
+  int32_t step = 1;    ///< from there to the next slice, towards 0
 };
 
-/// Slices with similar numbers of items, as many as pay off: with few items for each of `tiles` tiles, lists are short,
-/// and sums over slices would take longer than what hidden items cost. Items count as spread evenly, over the logarithm
-/// of depth, within their range. The result does not depend on the order of ranges.
-DepthSlices depth_slices(std::span<const DepthRange> ranges, size_t tiles);
+/// Slices from where the nearest of the items lie to where the farthest lie, few of them left out on either side. There
+/// is more than one where it pays off: with few items for each of `tiles` tiles, lists are short, and sums over slices
+/// would take longer than what hidden items cost. Items count as spread evenly, over the logarithm of depth, within
+/// their range. `culled`: half of the items face away and are not drawn. The result does not depend on the order of
+/// ranges.
+DepthSlices depth_slices(std::span<const DepthRange> ranges, bool culled, size_t tiles);
 
 }  // namespace surfcast::render

@@ -172,10 +172,7 @@ void upload_uniforms(StorageBuffer& buffer, const T& constants) {
 void upload_constants(const RegionTask& task, const DepthSlices& slices, SplatBuffers& buffers) {
   layout::FrameConstants constants = task.constants;
   constants.tiles.w = static_cast<int>(buffers.splat_capacity());
-  constants.slices.x = static_cast<int>(slices.count);
-  for (int i = 0; i < SURFCAST_SLICES; ++i) {
-    constants.slice_near[i / 4][i % 4] = slices.near.at(static_cast<size_t>(i));
-  }
+  constants.slices = {slices.count, slices.second, slices.step, 0};
   upload_uniforms(buffers.frame, constants);
 }
 
@@ -337,7 +334,8 @@ Result<layout::Counters> project(const RegionTask& task, const ProjectionWork& w
   upload(buffers.blocks, work.blocks);
   upload(buffers.chunks, work.chunks);
   upload_display_options(task, work, buffers);
-  const DepthSlices slices = depth_slices(work.depths, static_cast<size_t>(task.constants.tiles.z));
+  const bool culled = task.constants.flags.x != 0;
+  const DepthSlices slices = depth_slices(work.depths, culled, static_cast<size_t>(task.constants.tiles.z));
   while (true) {
     upload_constants(task, slices, buffers);
     clear_counts(task, slices, buffers);

@@ -3,18 +3,19 @@
 
 const uint kSlotMask = (1u << SURFCAST_SLICE_SHIFT) - 1u;
 
-// Inverse depth at which a slice begins: nothing that its splats draw is nearer.
-float slice_near(uint slice) { return frame.slice_near[slice >> 2][slice & 3u]; }
-
 uint slice_of(uint packed_slice) { return packed_slice >> SURFCAST_SLICE_SHIFT; }
 
-// The last slice that holds a splat of which nothing is nearer than `nearest` (an inverse depth).
+// Slices are even steps of the bits of a float, which approximate a logarithm. The first slice reaches to the eye.
+
+// The slice of a splat of which nothing is nearer than `nearest` (an inverse depth).
 uint slice_at(float nearest) {
-  uint slice = 0u;
-  for (uint step = uint(frame.slices.x) >> 1; step > 0u; step >>= 1) {
-    if (slice_near(slice + step) >= nearest) slice += step;
-  }
-  return slice;
+  int behind = frame.slices.y - floatBitsToInt(nearest);
+  return behind < 0 ? 0u : uint(min(1 + behind / frame.slices.z, frame.slices.x - 1));
+}
+
+// True if nothing in the slice, nor in those behind it, is nearer than `surface` (an inverse depth, not negative).
+bool slice_is_behind(uint slice, float surface) {
+  return (int(slice) - 1) * frame.slices.z > max(frame.slices.y - floatBitsToInt(surface), 0);
 }
 
 // Place in the table of counts.

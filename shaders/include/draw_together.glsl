@@ -100,7 +100,7 @@ uint find_surface_together(TileLists tile, vec2 pixel, Columns limit, inout Colu
   float least = share_surfaces(surface, peak);
   uint slice = 0u;
   uint begin = 0u;
-  while (begin < tile.smalls && slice_near(slice) >= least) {
+  while (begin < tile.smalls && !slice_is_behind(slice, least)) {
     uint end = begin;
     while (end - begin < kRound && slice < uint(frame.slices.x)) end = tile_count[tile.first_count + slice++];
     for (uint k = begin + own_share(); k < end; k += kShares) {

@@ -81,7 +81,7 @@ uint find_surface_small(uint first, uint count, vec2 pixel, Columns limit, inout
   float footprint = 1.0 / eta();
   for (uint k = 0u; k < count; ++k) {
     uint entry = texelFetch(lists, int(first + k)).x;
-    if (slice_near(slice_of(entry)) < farthest(surface)) return k;
+    if (slice_is_behind(slice_of(entry), farthest(surface))) return k;
     see_small(slot_of(entry), footprint, pixel, limit, surface, peak);
   }
   return count;

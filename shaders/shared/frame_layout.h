@@ -49,9 +49,8 @@ struct FrameConstants {
                              // surfel's weight, surfel radius of the requested spacing at distance 1 on the view axis
   SURFCAST_VEC4 background;  // linear light
   SURFCAST_IVEC4 flags;      // x: cull back faces, y: per-surfel weights
-  SURFCAST_IVEC4 slices;     // x: depth slices of a tile's list, a power of two
-  // Inverse depth at which each slice begins, descending. The first slice begins at the eye.
-  SURFCAST_VEC4 slice_near[SURFCAST_SLICES / 4];
+  SURFCAST_IVEC4 slices;     // depth slices of a tile's list, see include/depth_slices.glsl: x: number, y: bits of the
+                             // inverse depth at which the second one begins, z: step of these bits to the next slice
 };
 
 // One visible block (see shared/surfel_layout.h).
@@ -147,7 +146,7 @@ struct Counters {
 #define SURFCAST_UNIT_COLORS 8      // uint per entry of a colour table: linear light as in a splat record
 
 #ifdef __cplusplus
-static_assert(sizeof(FrameConstants) == 144 + 4 * SURFCAST_SLICES);
+static_assert(sizeof(FrameConstants) == 144);
 static_assert(sizeof(BlockView) == 48);
 static_assert(sizeof(BlockDisplay) == 32);
 static_assert(sizeof(ClipRange) == 32);

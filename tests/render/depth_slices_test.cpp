@@ -1,6 +1,7 @@
 #include "render/depth_slices.h"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <vector>
 
@@ -9,43 +10,51 @@
 namespace surfcast::render {
 namespace {
 
-/// The share of items of one range, spread evenly over the logarithm of depth, that is nearer than an inverse depth.
-double share_nearer(const DepthRange& range, double inverse_depth) {
-  return std::clamp(std::log(1 / inverse_depth / range.nearest) / std::log(range.farthest / range.nearest), 0.0, 1.0);
+/// The depth at which a slice begins; 0 for the first one.
+double begin_of(const DepthSlices& slices, int slice) {
+  return slice == 0 ? 0 : 1 / static_cast<double>(std::bit_cast<float>(slices.second - (slice - 1) * slices.step));
 }
 
-TEST(DepthSlices, HoldSimilarNumbersOfItems) {
-  const DepthRange range{2, 32, 100000};
-  const DepthSlices slices = depth_slices(std::vector{range}, 1000);
-  ASSERT_EQ(slices.count, 32u);
-  for (uint32_t i = 1; i < slices.count; ++i) {
-    EXPECT_NEAR(share_nearer(range, slices.near.at(i)), i / 32.0, 0.01) << i;
+TEST(DepthSlices, AreSimilarStepsOfTheLogarithmOfDepthBetweenAlmostAllItems) {
+  const DepthSlices slices = depth_slices(std::vector{DepthRange{2, 32, 100000}}, false, 1000);
+  ASSERT_EQ(slices.count, SURFCAST_SLICES);
+  EXPECT_NEAR(begin_of(slices, 1), 2, 0.2);
+  EXPECT_NEAR(begin_of(slices, slices.count - 1), 28, 2);
+  for (int i = 1; i + 1 < slices.count; ++i) {
+    EXPECT_NEAR(std::log2(begin_of(slices, i + 1) / begin_of(slices, i)), 4.0 / 31, 0.07) << i;
   }
 }
 
-TEST(DepthSlices, BeginAtTheEyeAndDescend) {
+TEST(DepthSlices, FewItemsFarFromTheOthersDoNotWidenThem) {
+  const std::vector<DepthRange> ranges{{0.001, 0.002, 100}, {10, 11, 50000}, {4000, 9000, 100}};
+  const DepthSlices slices = depth_slices(ranges, false, 100);
+  EXPECT_NEAR(begin_of(slices, 1), 10, 0.2);
+  EXPECT_NEAR(begin_of(slices, slices.count - 1), 11, 0.2);
+}
+
+TEST(DepthSlices, AreInFrontOfTheEyeWhateverTheRanges) {
   const std::vector<DepthRange> ranges{{-1, 2, 5000}, {1, 1, 20000}, {700, 9000, 40000}, {0, 1e-9, 300}, {-5, -2, 8}};
-  const DepthSlices slices = depth_slices(ranges, 100);
-  EXPECT_TRUE(std::isinf(slices.near[0]));
-  for (uint32_t i = 1; i < slices.count; ++i) {
-    EXPECT_GT(slices.near.at(i), 0);
-    EXPECT_LE(slices.near.at(i), slices.near.at(i - 1));
-  }
+  const DepthSlices slices = depth_slices(ranges, false, 100);
+  EXPECT_GT(slices.step, 0);
+  EXPECT_GT(slices.second - (slices.count - 2) * slices.step, 0);
+  EXPECT_GT(depth_slices(std::vector{DepthRange{3, 3, 9999}}, false, 1).step, 0);
 }
 
 TEST(DepthSlices, DoNotDependOnTheOrderOfBlocks) {
   std::vector<DepthRange> ranges;
   for (int i = 1; i < 60; ++i) ranges.push_back({0.3 * i, 0.37 * i * i, static_cast<uint64_t>(10007 * i % 977)});
-  const DepthSlices before = depth_slices(ranges, 50);
+  const DepthSlices before = depth_slices(ranges, false, 50);
   std::ranges::reverse(ranges);
-  EXPECT_EQ(depth_slices(ranges, 50).near, before.near);
+  EXPECT_EQ(depth_slices(ranges, false, 50).second, before.second);
+  EXPECT_EQ(depth_slices(ranges, false, 50).step, before.step);
 }
 
 TEST(DepthSlices, AreOneWhereListsAreShort) {
-  EXPECT_EQ(depth_slices(std::vector{DepthRange{1, 2, 1999}}, 1000).count, 1u);
-  EXPECT_EQ(depth_slices(std::vector{DepthRange{1, 2, 2000}}, 1000).count, 2u);
-  EXPECT_EQ(depth_slices({}, 1000).count, 1u);
-  EXPECT_EQ(depth_slices(std::vector{DepthRange{-3, -2, 1000000}}, 10).count, 1u);
+  EXPECT_EQ(depth_slices(std::vector{DepthRange{1, 2, 7999}}, false, 1000).count, 1);
+  EXPECT_EQ(depth_slices(std::vector{DepthRange{1, 2, 8000}}, false, 1000).count, 16);
+  EXPECT_EQ(depth_slices(std::vector{DepthRange{1, 2, 8000}}, true, 1000).count, 1);
+  EXPECT_EQ(depth_slices({}, false, 1000).count, 1);
+  EXPECT_EQ(depth_slices(std::vector{DepthRange{-3, -2, 1000000}}, false, 10).count, 1);
 }
 
 }  // namespace
