@@ -1,5 +1,5 @@
-// Adds every splat to the lists of the tiles it touches, small ones in their depth slice. The variant with SURFCAST_COUNTS_LARGE runs before the lists
-// have their places, and only counts the tiles that large splats touch.
+// Adds every splat to the lists of the tiles it touches, small ones in their depth slice. The variant with
+// SURFCAST_COUNTS_LARGE runs before the lists have their places, and only counts the tiles that large splats touch.
 //
 // A large splat may touch every tile of a region. Its rows of tiles are divided into bands, one for each lane: software
 // GL silently ends the loops of a lane after 65535 iterations in total.

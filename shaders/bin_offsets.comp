@@ -1,6 +1,6 @@
-// Converts the lengths of the tile lists, which slices.comp has summed up, to offsets (an exclusive prefix sum). Sorts the
-// tiles by descending list length, so lanes that draw side by side have similar work. Runs as one work group, because
-// there are few lengths.
+// Converts the lengths of the tile lists, which slices.comp has summed up, to offsets (an exclusive prefix sum). Sorts
+// the tiles by descending list length, so lanes that draw side by side have similar work. Runs as one work group,
+// because there are few lengths.
 #include "shared/frame_layout.h"
 #include "include/frame.glsl"
 

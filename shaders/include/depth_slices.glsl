@@ -1,5 +1,5 @@
-// Depth slices. The list of a tile is sorted by slices, near to far, and the kernel leaves a list where all that follows
-// is hidden. Where slices begin decides how soon, and not what is drawn.
+// Depth slices. The list of a tile is sorted by slices, near to far, and the kernel leaves a list where all that
+// follows is hidden. Where slices begin decides how soon, and not what is drawn.
 
 const uint kSlotMask = (1u << SURFCAST_SLICE_SHIFT) - 1u;
 

@@ -1,7 +1,7 @@
 // Long lists: the lanes of a work group share the list of one tile, because one lane would walk over it for too long.
 // (Software GL also ends the loops of a lane silently, after 65535 iterations in total.) SURFCAST_PIXEL_LANES lanes
-// hold the pixels, and SURFCAST_SHARES times as many of them each take a share of the list. Surfaces are maxima and sums
-// are integers, so pictures do not depend on who took what.
+// hold the pixels, and SURFCAST_SHARES times as many of them each take a share of the list. Surfaces are maxima and
+// sums are integers, so pictures do not depend on who took what.
 //
 // All lanes run through the same loops, because they wait for each other.
 
@@ -126,7 +126,8 @@ void accumulate_together(uint first, uint count, vec2 pixel, Columns limit, Colu
 
 // Draws the nearest surface behind `limit`, which becomes the new limit. `drawing`: the lane's pixels are not finished.
 // False if no pixel of the tile needs another surface.
-bool draw_layer_together(TileLists tile, vec2 pixel, inout bool drawing, inout Columns limit, inout LightColumns light) {
+bool draw_layer_together(TileLists tile, vec2 pixel, inout bool drawing, inout Columns limit,
+                         inout LightColumns light) {
   clear_shared();
   Columns surface;
   ColumnSums sums;

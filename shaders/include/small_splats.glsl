@@ -75,8 +75,8 @@ void see_small(int slot, float footprint, vec2 pixel, Columns limit, inout Colum
 }
 
 // Finds the nearest surface behind `limit`, pushed back, and the largest weight of the splats up to it. Returns their
-// number: in all slices that follow, nothing is in front of the surface of any pixel. It does not depend on the order of
-// splats within a slice, none of whose discs is in front of where the slice begins.
+// number: in all slices that follow, nothing is in front of the surface of any pixel. It does not depend on the order
+// of splats within a slice, none of whose discs is in front of where the slice begins.
 uint find_surface_small(uint first, uint count, vec2 pixel, Columns limit, inout Columns surface, inout float peak) {
   float footprint = 1.0 / eta();
   for (uint k = 0u; k < count; ++k) {

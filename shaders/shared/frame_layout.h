@@ -31,7 +31,7 @@ namespace surfcast::layout {
 #define SURFCAST_LONG_LIST 3584
 // Depth slices into which the list of a tile may be divided. A list entry and the first tile of a splat hold the number
 // of a slice in the bits above SURFCAST_SLICE_SHIFT; below it are a splat's index, and a tile's row and column.
-#define SURFCAST_SLICES 32
+#define SURFCAST_SLICES 16
 #define SURFCAST_SLICE_SHIFT 26
 // Rows of tiles that one lane bins of a large splat.
 #define SURFCAST_BAND_ROWS 120
