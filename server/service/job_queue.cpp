@@ -25,7 +25,7 @@ std::optional<JobId> JobQueue::pop_of_others(Priority priority, SessionId sessio
   return take(lines, std::ranges::find_if(lines, [&](const Line& line) { return line.session != session; }));
 }
 
-std::optional<JobId> JobQueue::take(Lines& lines, Lines::iterator place) {
+std::optional<JobId> JobQueue::take(Lines& lines, const Lines::iterator& place) {
   if (place == lines.end()) return std::nullopt;
   Line line = std::move(*place);
   lines.erase(place);

@@ -41,7 +41,7 @@ class JobQueue {
   };
 
   using Lines = std::deque<Line>;  ///< in the order of the sessions' turns
-  std::optional<JobId> take(Lines& lines, Lines::iterator place);
+  std::optional<JobId> take(Lines& lines, const Lines::iterator& place);
 
   size_t limit_;
   size_t size_ = 0;

@@ -117,7 +117,7 @@ template <typename Rung>
 LadderState step(LadderState state, std::span<const Rung> rungs, double ms, double budget) {
   // A rung kept for this long was no mistake: the next raise is as easy as the first.
   if (++state.since_climb > 2 * kMaxFramesBeforeClimb) state.frames_before_climb = kFramesBeforeClimb;
-  std::ranges::rotate(state.recent, state.recent.end() - 1);
+  std::rotate(state.recent.begin(), state.recent.end() - 1, state.recent.end());
   state.recent.front() = ms;
   ++state.frames;
   const double last_two = state.frames >= 2 ? std::min(state.recent[0], state.recent[1]) : 0;
