@@ -1,5 +1,5 @@
 # The two commands of the README for a bare Debian 12: make demo, make test. They install missing packages.
-.PHONY: build demo test bench asan tsan package tidy format-check configure packages lint-packages
+.PHONY: build demo test bench peers asan tsan package tidy format-check configure packages lint-packages
 
 build: configure
 	cmake --build --preset release
@@ -15,7 +15,13 @@ test: build
 # scans or models to measure. BENCH_FLAGS: further options, see `laboratory --help`.
 bench: configure
 	cmake --build --preset release --target laboratory
-	build/bin/laboratory --docs docs $(BENCH_FLAGS) tests/data/lion.drc $(SCANS)
+	build/bin/laboratory --docs docs $(BENCH_FLAGS) object:tests/data/lion.drc $(SCANS)
+
+# The same scenes by other programs of Debian, into docs/peers.md. PEERS_FLAGS: see bench/peers/peers.py.
+peers: configure
+	@cmake/install_packages.sh peers
+	cmake --build --preset release --target laboratory
+	/usr/bin/python3 bench/peers/peers.py build/bin/laboratory --docs docs $(PEERS_FLAGS) tests/data/lion.drc $(SCANS)
 
 # Runs the fast tests without GL, the tests of damaged input and the fast numerics tests with the address and undefined
 # behaviour sanitizers. Builds only these tests, because sanitizers double the compile time.
