@@ -10,6 +10,7 @@
 
 #include "bench_support.h"
 #include "builder/build_model.h"
+#include "lab/colored_points.h"
 #include "lab/kernel_defines.h"
 #include "lab/leave_out_report.h"
 #include "lab/renderer_thread.h"
@@ -27,6 +28,7 @@ struct Options {
   fs::path builder;
   fs::path model;
   fs::path keep;
+  fs::path pictures;
   fs::path report;
   fs::path docs;
   fs::path before;
@@ -107,6 +109,7 @@ LeaveOutResult study(const PlacedScan& scan, const Options& options, const fs::p
   LabPoints points = bench::value_or_exit(read_points(scan.path));
   if (points.size() < 2) stop(scan.path.string() + " has fewer than two points");
   if (points.colors.empty()) points.colors = intensity_levels(points.intensities);
+  if (points.colors.empty() && !options.pictures.empty()) points.colors = colors_for(points);
   const std::string name = scan.path.stem().string();
   const auto make_model = [&](const LabPoints& kept) {
     const fs::path kept_scan = folder / (name + ".kept.ply");
@@ -119,7 +122,13 @@ LeaveOutResult study(const PlacedScan& scan, const Options& options, const fs::p
     return bench::open_or_exit(target);
   };
   return study_points(name, points, *scan.place, make_model,
-                      [&](const picture::PictureRequest& request) { return pictures.draw(request); });
+                      [&](const NamedCamera& camera, const picture::PictureRequest& request) {
+                        std::vector<SrgbPicture> drawn = pictures.draw(request);
+                        if (!options.pictures.empty()) {
+                          reference::write_ppm(options.pictures / (name + " " + camera.name + ".ppm"), drawn.front());
+                        }
+                        return drawn;
+                      });
 }
 
 void print(const LeaveOutFigures& f, const std::vector<double>& sigmas) {
@@ -184,6 +193,9 @@ int main_of(int argc, char** argv) {
       ->check(CLI::ExistingFile)
       ->excludes(builder);
   app.add_option("--keep", options.keep, "folder in which the kept points and the models stay");
+  app.add_option("--pictures", options.pictures,
+                 "folder for what the cameras see, as PPM; scans without colours get some for it")
+      ->check(CLI::ExistingDirectory);
   app.add_option("--report", options.report, "file for the figures as JSON");
   auto* docs = app.add_option("--docs", options.docs, "folder whose laboratory.md gets the table")
                    ->check(CLI::ExistingDirectory);

@@ -26,8 +26,17 @@ ordered_json rounded(const std::vector<double>& values) {
   return list;
 }
 
+ordered_json json_of(const glm::dvec3& v) {
+  return {v.x, v.y, v.z};
+}
+
 ordered_json json_of(const CameraResult& camera) {
-  return {{"camera", camera.camera},
+  const geometry::Camera& view = camera.camera.camera;
+  return {{"camera", camera.camera.name},
+          {"position", json_of(view.position)},
+          {"focal_point", json_of(view.focal_point)},
+          {"view_up", json_of(view.view_up)},
+          {"view_angle", view.view_angle},
           {"open", camera.counts.open()},
           {"hidden", camera.counts.by_verdict[static_cast<size_t>(Verdict::kHidden)]},
           {"missing", camera.counts.by_verdict[static_cast<size_t>(Verdict::kMissing)]}};

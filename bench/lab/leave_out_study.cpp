@@ -74,9 +74,9 @@ CameraResult look(const Judged& judged, const NamedCamera& camera, const DrawnSu
                   const DrawPictures& draw) {
   const geometry::CameraFrame frame = bench::value_or_exit(geometry::make_camera_frame(camera.camera, kWidth, kHeight));
   View view{frame, witness_depths(judged.points.positions, judged.witness, frame), model_depths(surfels, frame), {}};
-  CameraResult result{camera.name, {}, {}};
+  CameraResult result{camera, {}, {}};
   if (!judged.points.colors.empty()) {
-    view.images = draw(request_of(camera.camera));
+    view.images = draw(camera, request_of(camera.camera));
     result.colors.resize(view.images.size());
   }
   for (size_t i = 0; i < judged.points.size(); ++i) {

@@ -22,7 +22,7 @@ struct KernelColors {
 
 /// What one camera shows of the points that were left out.
 struct CameraResult {
-  std::string camera;
+  NamedCamera camera;
   LeaveOutCounts counts;
   std::vector<KernelColors> colors;  ///< one for each picture; empty if the points have no colour
 };
@@ -42,7 +42,7 @@ struct LeaveOutResult {
 using MakeModel = std::function<std::shared_ptr<const model::ModelFile>(const LabPoints& kept)>;
 
 /// Draws a picture of the last model that was made, with each of the kernels or methods that are compared.
-using DrawPictures = std::function<std::vector<SrgbPicture>(const picture::PictureRequest&)>;
+using DrawPictures = std::function<std::vector<SrgbPicture>(const NamedCamera&, const picture::PictureRequest&)>;
 
 /// Leaves out one point in five, makes a model of the others, and looks for the points that were left out.
 LeaveOutResult study_points(const std::string& name, const LabPoints& points, Place place, const MakeModel& make_model,

@@ -77,7 +77,7 @@ LeaveOutFigures measure_left_out(const LabScene& scene, const std::filesystem::p
     methods.open(model);
     return model;
   };
-  const auto draw = [&](const picture::PictureRequest& request) {
+  const auto draw = [&](const NamedCamera&, const picture::PictureRequest& request) {
     std::vector<SrgbPicture> pictures;
     for (const MethodFacts& method : Methods::all()) pictures.push_back(methods.draw(method.name, request).picture);
     return pictures;

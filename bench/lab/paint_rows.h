@@ -22,12 +22,25 @@ struct PixelBox {
   [[nodiscard]] bool empty() const { return first_x >= last_x || first_y >= last_y; }
 };
 
+/// Whether a sphere is wholly beyond a side of the picture. It may contain the eye or be behind it.
+inline bool beside_picture(const geometry::CameraFrame& frame, const glm::dvec3& centre, double radius) {
+  const auto outside = [&](double along, double pixels) {
+    const double tangent = 0.5 * pixels / frame.eta;
+    return std::abs(along) - tangent * centre.z > radius * std::sqrt(1 + tangent * tangent);
+  };
+  return outside(centre.x, frame.width) || outside(centre.y, frame.height);
+}
+
 /// The pixels whose centres are within `margin` pixels of the picture of a sphere (centre in the camera frame, radius
-/// in world units). All pixels if the sphere is about to reach the plane of the eye; none if it is behind that plane.
+/// in world units). All pixels if the sphere is about to reach the plane of the eye and the picture; none if it is
+/// behind that plane.
 inline PixelBox pixels_within(const geometry::CameraFrame& frame, const glm::dvec3& centre, double radius,
                               double margin) {
   if (centre.z + radius <= 0) return {};
-  if (centre.z <= 1.5 * radius) return {0, 0, frame.width, frame.height};
+  if (centre.z <= 1.5 * radius) {
+    if (beside_picture(frame, centre, radius + margin * 2.5 * radius / frame.eta)) return {};
+    return {0, 0, frame.width, frame.height};
+  }
   const auto range = [&](double along, double middle, int size, int& first, int& last) {
     const double tangent = std::abs(along) / centre.z;
     const double reach =

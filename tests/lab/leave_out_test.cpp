@@ -4,14 +4,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <numbers>
 
 #include <gtest/gtest.h>
 
+#include "lab/colored_points.h"
 #include "lab/kernel_defines.h"
 #include "lab/leave_out_cameras.h"
 #include "lab/leave_out_report.h"
 #include "lab/model_depth.h"
+#include "lab/paint_rows.h"
 #include "lab/scan_points.h"
 #include "lab/witness.h"
 
@@ -31,10 +34,10 @@ std::vector<glm::dvec3> lattice(int side) {
   return points;
 }
 
-/// Looks down on the origin from a height; 100 pixels to a unit of tangent.
+/// Looks down from a height over the origin; 100 pixels to a unit of tangent.
 geometry::CameraFrame looking_down(double height) {
   const double angle = 2 * std::atan(0.5) * 180 / std::numbers::pi;
-  return *geometry::make_camera_frame({{0, 0, height}, {0, 0, 0}, {0, 1, 0}, angle}, 100, 100);
+  return *geometry::make_camera_frame({{0, 0, height}, {0, 0, height - 1}, {0, 1, 0}, angle}, 100, 100);
 }
 
 DepthPicture flat(float depth) {
@@ -170,6 +173,27 @@ TEST(WitnessTest, ADiscBehindTheEyeHidesNothing) {
   EXPECT_TRUE(std::ranges::all_of(depths.depths, [](float d) { return std::isinf(d); }));
 }
 
+TEST(PixelsWithinTest, HoldTheWholePictureOfASphere) {
+  const geometry::CameraFrame frame = looking_down(0);  // looks along -z from the origin
+  const PixelBox box = pixels_within(frame, {0, 0, 10}, 1, 0);
+  const double reach = 100 / std::sqrt(99.0);  // the tangent of the cone around the sphere, 100 pixels to a unit
+  EXPECT_LE(box.first_x, 50 - reach);
+  EXPECT_GE(box.last_x, 50 + reach);
+  EXPECT_LT(box.last_x - box.first_x, 26);
+}
+
+TEST(PixelsWithinTest, ASphereAtTheEyeIsAnywhereInThePicture) {
+  const PixelBox box = pixels_within(looking_down(0), {0.5, 0, 0.2}, 1, 0);
+  EXPECT_EQ(box.last_x - box.first_x, 100);
+}
+
+TEST(PixelsWithinTest, ASphereBesideOrBehindTheEyeIsNowhere) {
+  const geometry::CameraFrame frame = looking_down(0);
+  EXPECT_TRUE(pixels_within(frame, {5, 0, 0.2}, 1, 0.5).empty());
+  EXPECT_TRUE(pixels_within(frame, {0, -5, 0.2}, 1, 0.5).empty());
+  EXPECT_TRUE(pixels_within(frame, {0, 0, -2}, 1, 0.5).empty());
+}
+
 /// A model of one lattice.
 DrawnSurfels surfels_on(std::vector<glm::dvec3> points, double radius) {
   const size_t count = points.size();
@@ -219,6 +243,39 @@ TEST(LeaveOutCamerasTest, EveryPlaceHasFiveToElevenThatFaceTheScan) {
   EXPECT_FALSE(place_named("anywhere"));
 }
 
+TEST(PlacedScanTest, ThePlaceStandsBeforeTheFirstColon) {
+  EXPECT_EQ(placed_scan("room:a/b.laz").place, Place::kRoom);
+  EXPECT_EQ(placed_scan("room:a/b.laz").path, "a/b.laz");
+  EXPECT_FALSE(placed_scan("a/b.laz").place);
+  EXPECT_EQ(placed_scan("c:a.laz").path, "c:a.laz");
+}
+
+TEST(ScanPointsTest, PointsAtOnePlaceCountOnce) {
+  const std::filesystem::path path = std::filesystem::path(::testing::TempDir()) / "points_at_one_place.ply";
+  const LabPoints points{{{1, 2, 3}, {4, 5, 6}, {1, 2, 3}}, {{1, 1, 1}, {2, 2, 2}, {3, 3, 3}}, {7, 8, 9}, {}, true};
+  ASSERT_TRUE(write_ply(points, path));
+  const Result<LabPoints> read = read_points(path);
+  std::filesystem::remove(path);
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->positions, (std::vector<glm::dvec3>{{1, 2, 3}, {4, 5, 6}}));
+  EXPECT_EQ(read->colors, (std::vector<glm::u8vec3>{{1, 1, 1}, {2, 2, 2}}));
+  EXPECT_EQ(read->intensities, (std::vector<float>{7, 8}));
+}
+
+TEST(ColoredPointsTest, ElevationAndLightColorAScanWithoutIntensity) {
+  LabPoints points{lattice(20), {}, {}, {}, true};
+  for (glm::dvec3 p : lattice(20)) points.positions.push_back(p + glm::dvec3(10, 0, 0.1 * p.y + 3));
+  const std::vector<glm::u8vec3> colors = colors_for(points);
+  ASSERT_EQ(colors.size(), points.size());
+  EXPECT_NE(colors.front(), colors.back());
+}
+
+TEST(ColoredPointsTest, IntensityIsGrey) {
+  LabPoints points{lattice(20), {}, std::vector<float>(400, 1), {}, true};
+  for (size_t i = 0; i < 200; ++i) points.intensities[i] = 5;
+  for (const glm::u8vec3& c : colors_for(points)) EXPECT_TRUE(c.r == c.g && c.g == c.b);
+}
+
 TEST(IntensityLevelsTest, RunFromTheSecondToTheLastButOnePercentile) {
   std::vector<float> intensities;
   for (int i = 0; i <= 100; ++i) intensities.push_back(static_cast<float>(i));
@@ -232,7 +289,7 @@ TEST(IntensityLevelsTest, RunFromTheSecondToTheLastButOnePercentile) {
 TEST(LeaveOutReportTest, SurvivesItsJson) {
   LeaveOutReport report{{0.35, 0.5}, {{"lion", 342, 18, 8, 0.5, 4.1, 3.5, {18.25, 18.5}, {17, 16}}}};
   LeaveOutResult result{"lion", 342, 68, 3.5};
-  result.cameras.push_back({"above", {}, {}});
+  result.cameras.push_back({{"above", {}}, {}, {}});
   const std::optional<LeaveOutReport> read = report_of(json_of(report, {result}));
   ASSERT_TRUE(read);
   EXPECT_EQ(read->sigmas, report.sigmas);

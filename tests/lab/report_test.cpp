@@ -106,6 +106,17 @@ TEST(ReportTest, EqualPicturesAreNullInJson) {
   EXPECT_TRUE(nlohmann::json::parse(json_of(results))["scenes"][0]["measurements"][0]["psnr"].is_null());
 }
 
+TEST(ReportTest, ScansJudgedByPointsLeftOutHaveATableOfTheirOwn) {
+  EXPECT_EQ(markdown_of(example()).find("Points left out"), std::string::npos);
+  LabResults results = example();
+  results.scenes[0].left_out = LeaveOutFigures{"lion", 342, 18, 4.81, 0.09, 3, 7, {20, 18.5, 19, 17.25, 17, 17.5}, {}};
+  const std::string text = markdown_of(results);
+  EXPECT_NE(text.find("| checker_oblique | 4.8 + 0.1 | 20.00 | 18.50 | 19.00 | 17.25 | **17.00** | 17.50 |"),
+            std::string::npos)
+      << text;
+  EXPECT_EQ(nlohmann::json::parse(json_of(results))["scenes"][0]["left_out"]["colors"][4], 17);
+}
+
 TEST(PlotTest, HasAMarkForEveryMeasurement) {
   const std::string svg = svg_of(example());
   size_t marks = 0;
