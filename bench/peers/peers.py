@@ -171,7 +171,8 @@ def main():
                     results[scene][method] = measurement
                 methods += [method] if measured else []
     note = f"512 x 512; medians of {options.frames} frames. {load_note()}\n\n"
-    replace_section(options.docs / "peers.md", note + table(results, methods) + "\n![Time against error](images/peers.svg)\n")
+    section = note + table(results, methods) + "\n![Time against error](images/peers.svg)\n"
+    replace_section(options.docs / "peers.md", section)
     (options.docs / "images" / "peers.svg").write_text(svg(results, methods))
 
 
