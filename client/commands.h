@@ -16,6 +16,8 @@ void add_render_command(CLI::App& app, int interrupt, Status& outcome);
 void add_bench_command(CLI::App& app, int interrupt, Status& outcome);
 /// `pick URL/MODEL --pixel X,Y ...`: the surfel at a pixel.
 void add_pick_command(CLI::App& app, int interrupt, Status& outcome);
+/// `profile URL/MODEL --line ... --width W --output FILE`: the points in a band along a line.
+void add_profile_command(CLI::App& app, int interrupt, Status& outcome);
 /// `view URL/MODEL ...`: an interactive window; runs the program surfcast-view.
 void add_view_command(CLI::App& app, Status& outcome);
 /// `ping URL [--count N]`: round trip times.

@@ -8,9 +8,6 @@
 
 namespace surfcast::protocol {
 
-/// Decodes the percent escapes ("%2C") in part of a URL. A malformed escape or an escaped NUL is an error.
-Result<std::string> decode_escapes(std::string_view text);
-
 /// Parses the query of a picture URL ("resolution=640,480&position=1,2,3") into a request for `model`. An unknown,
 /// repeated or malformed parameter is an error.
 Result<wire::DrawPicture> parse_picture_query(std::string_view model, std::string_view query);

@@ -31,7 +31,11 @@ void add_pick_flags(CLI::App& command, service::PickLimits& limits) {
   add_count(command, "pick-threads", limits.threads,
             "Threads that find what a pixel shows (default 2). More: processor time; less: picks wait", kThreads);
   add_count(command, "max-picks", limits.waiting,
-            "Picks that may be outstanding (default 64). More: longer waits; less: refused sooner");
+            "Picks, and profiles, that may be outstanding (default 64 each). More: longer waits; less: refused sooner");
+  add_count(command, "max-profile-points", limits.profile_points,
+            "Points of one profile (default 1000000). More: memory, some 200 bytes a point and 40 for each attribute; "
+            "less: coarser samples of wide profiles",
+            {1, 100'000'000});
 }
 
 void add_connection_flags(CLI::App& command, net::ServerConfig& server) {

@@ -58,6 +58,14 @@ Outcome outcome_of(uint64_t id, const Result<std::optional<kinds::PickedSurfel>>
   return plain(answer);
 }
 
+Outcome outcome_of(uint64_t id, const Result<service::ProfileResult>& profile) {
+  if (!profile) return failure(id, profile.error());
+  wire::Answer answer;
+  answer.set_id(id);
+  to_wire(*profile, *answer.mutable_profile());
+  return plain(answer);
+}
+
 Outcome outcome_of(uint64_t id, const std::string& name, const Result<service::ModelDescription>& description) {
   if (!description) return failure(id, description.error());
   wire::Answer answer;

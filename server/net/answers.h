@@ -31,6 +31,7 @@ Bytes encode_error(uint64_t id, const Error& error);
 Outcome outcome_of(uint64_t id, Result<service::EncodedPicture> picture);
 Outcome outcome_of(uint64_t id, const service::ModelList& models);
 Outcome outcome_of(uint64_t id, const Result<std::optional<kinds::PickedSurfel>>& picked);
+Outcome outcome_of(uint64_t id, const Result<service::ProfileResult>& profile);
 Outcome outcome_of(uint64_t id, const std::string& name, const Result<service::ModelDescription>& description);
 
 }  // namespace surfcast::net

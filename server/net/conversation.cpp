@@ -42,6 +42,8 @@ void Conversation::handle(const wire::Request& request) {
       return handle_other(request);
     case wire::Request::kPickSurfel:
       return handle_pick(request);
+    case wire::Request::kGetProfile:
+      return handle_profile(request);
     case wire::Request::kCancel:
       return handle_cancel(request);
     case wire::Request::kOpenView:
@@ -113,6 +115,18 @@ void Conversation::handle_pick(const wire::Request& request) {
                          [later = answer_later(id), id](const Result<std::optional<kinds::PickedSurfel>>& picked) {
                            later(outcome_of(id, picked));
                          });
+}
+
+void Conversation::handle_profile(const wire::Request& request) {
+  const uint64_t id = request.id();
+  if (const Status admitted = window_.admit(id); !admitted) return send_error(id, admitted.error());
+  Result<service::ProfileJob> job = to_job(request.get_profile());
+  if (!job) return send_error(id, job.error());
+  window_.add_other(id);
+  context_->service.profile(std::move(*job),
+                            [later = answer_later(id), id](const Result<service::ProfileResult>& profile) {
+                              later(outcome_of(id, profile));
+                            });
 }
 
 /// A function for any thread that hands an answer over to this object.

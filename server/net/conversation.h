@@ -56,6 +56,7 @@ class Conversation : public std::enable_shared_from_this<Conversation> {
   void handle_picture(const wire::Request& request);
   void handle_other(const wire::Request& request);
   void handle_pick(const wire::Request& request);
+  void handle_profile(const wire::Request& request);
   void handle_cancel(const wire::Request& request);
   void handle_open_view(const wire::Request& request);
   void handle_update_view(const wire::Request& request);

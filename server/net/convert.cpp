@@ -5,6 +5,7 @@
 
 #include "protocol/errors.h"
 #include "protocol/picture_fields.h"
+#include "protocol/profile_query.h"
 #include "protocol/validate.h"
 
 namespace surfcast::net {
@@ -158,6 +159,42 @@ Result<service::PickJob> to_job(const wire::PickSurfel& request) {
   if (!picture) return fail(picture.error());
   return service::PickJob{std::move(picture->model), std::move(picture->request), picture->up_from_model,
                           clamp_to_int(request.x()), clamp_to_int(request.y())};
+}
+
+Result<service::ProfileJob> to_job(const wire::GetProfile& request) {
+  if (Status status = protocol::check_profile(request); !status) return fail(std::move(status.error()));
+  service::ProfileJob job;
+  job.model = request.model();
+  for (const wire::Vector3& point : request.line()) job.query.line.push_back(from_wire(point));
+  job.query.width = request.width();
+  job.query.most = request.max_points();
+  return job;
+}
+
+void to_wire(const service::ProfileResult& result, wire::Profile& message) {
+  const pick::Band& band = result.band;
+  message.set_total(band.total);
+  message.set_length(band.length);
+  message.set_z_up(result.z_up);
+  to_wire(band.grid.scale, message.mutable_scale());
+  to_wire(band.grid.offset, message.mutable_offset());
+  message.set_color_bits(static_cast<uint32_t>(result.color_bits));
+  for (const pick::BandPoint& point : band.points) {
+    message.add_x(point.position.x);
+    message.add_y(point.position.y);
+    message.add_z(point.position.z);
+    message.add_along(point.place.along);
+    message.add_across(point.place.across);
+    if (result.color_bits == 0) continue;
+    message.add_red(point.color.r);
+    message.add_green(point.color.g);
+    message.add_blue(point.color.b);
+  }
+  for (size_t a = 0; a < result.attributes.size(); ++a) {
+    wire::AttributeColumn* column = message.add_attributes();
+    column->set_attribute(protocol::clean_utf8(result.attributes[a]));
+    for (size_t i = a; i < band.values.size(); i += result.attributes.size()) column->add_values(band.values[i]);
+  }
 }
 
 void to_wire(const std::optional<kinds::PickedSurfel>& picked, wire::PickResult& message) {

@@ -18,6 +18,9 @@ Result<service::PictureJob> to_job(const wire::DrawPicture& request);
 
 Result<service::PickJob> to_job(const wire::PickSurfel& request);
 
+Result<service::ProfileJob> to_job(const wire::GetProfile& request);
+
+void to_wire(const service::ProfileResult& result, wire::Profile& message);
 void to_wire(const std::optional<kinds::PickedSurfel>& picked, wire::PickResult& message);
 /// Takes the bytes out of the picture.
 void to_wire(service::EncodedPicture picture, wire::Picture& message);

@@ -7,6 +7,7 @@
 #include "net/convert.h"
 #include "protocol/errors.h"
 #include "protocol/pick_result_text.h"
+#include "protocol/profile_file.h"
 
 namespace surfcast::net {
 namespace {
@@ -196,6 +197,19 @@ HttpAnswer pick_answer(const std::optional<kinds::PickedSurfel>& picked) {
   wire::PickResult result;
   to_wire(picked, result);
   return text_answer(protocol::pick_result_json(result), kJson);
+}
+
+HttpAnswer profile_answer(const std::string& name, const service::ProfileResult& profile,
+                          protocol::ProfileFormat format) {
+  wire::Profile message;
+  to_wire(profile, message);
+  HttpAnswer answer = text_answer(protocol::profile_file(message, format), protocol::media_type(format));
+  const std::string file = token(name) + "-profile." + std::string(protocol::extension_of(format));
+  answer.headers = {{"Content-Disposition", "attachment; filename=\"" + file + "\""},
+                    {"X-Surfcast-Points", std::to_string(profile.band.points.size())},
+                    {"X-Surfcast-Total", std::to_string(profile.band.total)},
+                    {"Cache-Control", "no-cache"}};
+  return answer;
 }
 
 HttpAnswer no_viewer_answer() {

@@ -9,6 +9,7 @@
 
 #include "base/result.h"
 #include "net/static_files.h"
+#include "protocol/profile_query.h"
 #include "service/model_source.h"
 #include "service/render_service.h"
 
@@ -38,6 +39,9 @@ HttpAnswer picture_answer(service::EncodedPicture picture);
 HttpAnswer file_answer(const StaticFile& file, std::string_view if_none_match);
 /// What a pixel shows, as pick_result_json writes it.
 HttpAnswer pick_answer(const std::optional<kinds::PickedSurfel>& picked);
+/// The points of a profile as a file to save, and in the headers how many they are, and how many there are in the band.
+HttpAnswer profile_answer(const std::string& name, const service::ProfileResult& profile,
+                          protocol::ProfileFormat format);
 /// The page at / of a server without the viewer: how to install it.
 HttpAnswer no_viewer_answer();
 

@@ -3,7 +3,7 @@
 #include <array>
 #include <utility>
 
-#include "protocol/picture_query.h"
+#include "protocol/url_query.h"
 
 namespace surfcast::net {
 namespace {
@@ -13,6 +13,7 @@ using Kind = HttpRoute::Kind;
 constexpr std::string_view kModels = "/api/models";
 constexpr std::string_view kImage = "/image";
 constexpr std::string_view kPick = "/pick";
+constexpr std::string_view kProfile = "/profile";
 constexpr std::array<std::pair<std::string_view, Kind>, 6> kPlaces{{
     {"/", Kind::kPage},
     {kModels, Kind::kModels},
@@ -26,7 +27,7 @@ tl::unexpected<Error> no_such_place(std::string_view path) {
   return fail(ErrorKind::kNotFound, "there is nothing at " + std::string(path));
 }
 
-/// "NAME", "NAME/image" or "NAME/pick", what follows "/api/models/".
+/// "NAME", "NAME/image", "NAME/pick" or "NAME/profile", what follows "/api/models/".
 Result<HttpRoute> route_model(std::string_view rest, std::string_view query) {
   HttpRoute route{Kind::kModel, {}, std::string(query)};
   if (rest.ends_with(kImage)) {
@@ -35,6 +36,9 @@ Result<HttpRoute> route_model(std::string_view rest, std::string_view query) {
   } else if (rest.ends_with(kPick)) {
     route.kind = Kind::kPick;
     rest.remove_suffix(kPick.size());
+  } else if (rest.ends_with(kProfile)) {
+    route.kind = Kind::kProfile;
+    rest.remove_suffix(kProfile.size());
   }
   if (rest.empty() || rest.find('/') != std::string_view::npos) return no_such_place(kModels);
   Result<std::string> name = protocol::decode_escapes(rest);

@@ -9,10 +9,10 @@ namespace surfcast::net {
 
 /// What an HTTP request asks for.
 struct HttpRoute {
-  enum class Kind { kPage, kModels, kModel, kPicture, kPick, kWebSocket, kHealth, kReady, kMetrics };
+  enum class Kind { kPage, kModels, kModel, kPicture, kPick, kProfile, kWebSocket, kHealth, kReady, kMetrics };
   Kind kind = Kind::kPage;
-  std::string model;  ///< of kModel, kPicture and kPick
-  std::string query;  ///< of kPicture and kPick, still escaped
+  std::string model;  ///< of kModel, kPicture, kPick and kProfile
+  std::string query;  ///< of kPicture, kPick and kProfile, still escaped
 };
 
 /// Where the target of a GET leads: kNotFound for no such place, kInvalidInput for a malformed one.

@@ -27,6 +27,7 @@
 #include "net/upgrade.h"
 #include "net/websocket_transport.h"
 #include "protocol/picture_query.h"
+#include "protocol/profile_query.h"
 
 namespace surfcast::net {
 namespace {
@@ -110,9 +111,11 @@ class HttpSession : public Session, public std::enable_shared_from_this<HttpSess
   [[nodiscard]] HttpAnswer refuse_websocket(const Parser::value_type& request) const;
   [[nodiscard]] std::string metrics_text() const;
   asio::awaitable<HttpAnswer> answer_place(HttpRoute route);
+  asio::awaitable<HttpAnswer> answer_about_model(HttpRoute route);
   asio::awaitable<HttpAnswer> answer_model(std::string name);
   asio::awaitable<HttpAnswer> answer_picture(HttpRoute route);
   asio::awaitable<HttpAnswer> answer_pick(HttpRoute route);
+  asio::awaitable<HttpAnswer> answer_profile(HttpRoute route);
   asio::awaitable<HttpAnswer> answer_models();
   asio::awaitable<Result<service::EncodedPicture>> draw(service::PictureJob job);
   asio::awaitable<void> cancel_when_client_leaves(service::JobId job);
@@ -234,11 +237,10 @@ asio::awaitable<HttpAnswer> HttpSession::answer_place(HttpRoute route) {
     case HttpRoute::Kind::kModels:
       co_return co_await answer_models();
     case HttpRoute::Kind::kModel:
-      co_return co_await answer_model(std::move(route.model));
     case HttpRoute::Kind::kPicture:
-      co_return co_await answer_picture(std::move(route));
     case HttpRoute::Kind::kPick:
-      co_return co_await answer_pick(std::move(route));
+    case HttpRoute::Kind::kProfile:
+      co_return co_await answer_about_model(std::move(route));
     case HttpRoute::Kind::kHealth:
       co_return text_answer("ok\n", "text/plain");
     case HttpRoute::Kind::kReady:
@@ -249,6 +251,20 @@ asio::awaitable<HttpAnswer> HttpSession::answer_place(HttpRoute route) {
       break;
   }
   co_return text_answer(metrics_text(), "text/plain; version=0.0.4");
+}
+
+/// What is asked of one model.
+asio::awaitable<HttpAnswer> HttpSession::answer_about_model(HttpRoute route) {
+  switch (route.kind) {
+    case HttpRoute::Kind::kPicture:
+      return answer_picture(std::move(route));
+    case HttpRoute::Kind::kPick:
+      return answer_pick(std::move(route));
+    case HttpRoute::Kind::kProfile:
+      return answer_profile(std::move(route));
+    default:
+      return answer_model(std::move(route.model));
+  }
 }
 
 std::string HttpSession::metrics_text() const {
@@ -279,6 +295,17 @@ asio::awaitable<HttpAnswer> HttpSession::answer_pick(HttpRoute route) {
   const auto picked = co_await answer_of<Result<std::optional<kinds::PickedSurfel>>>(
       [&](auto done) { context_->service.pick(*job, std::move(done)); });
   co_return picked ? pick_answer(*picked) : error_answer(picked.error());
+}
+
+asio::awaitable<HttpAnswer> HttpSession::answer_profile(HttpRoute route) {
+  const Result<protocol::ProfileQuery> query = protocol::parse_profile_query(route.model, route.query);
+  if (!query) co_return error_answer(query.error());
+  const Result<service::ProfileJob> job = to_job(query->profile);
+  if (!job) co_return error_answer(job.error());
+  stream_.expires_never();
+  const auto profile = co_await answer_of<Result<service::ProfileResult>>(
+      [&](auto done) { context_->service.profile(*job, std::move(done)); });
+  co_return profile ? profile_answer(route.model, *profile, query->format) : error_answer(profile.error());
 }
 
 asio::awaitable<HttpAnswer> HttpSession::answer_picture(HttpRoute route) {

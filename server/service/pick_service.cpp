@@ -1,5 +1,6 @@
 #include "service/pick_service.h"
 
+#include <algorithm>
 #include <exception>
 #include <memory>
 #include <utility>
@@ -41,6 +42,7 @@ auto guarded(Function function) -> decltype(function()) {
 PickService::PickService(const ModelSource& models, const PickLimits& limits)
     : models_(models),
       most_waiting_(limits.waiting),
+      most_points_(limits.profile_points),
       blocks_(limits.block_bytes),
       searched_blocks_(limits.block_bytes),
       pool_(limits.threads),
@@ -90,6 +92,29 @@ Result<std::vector<pick::FrontPixel>> PickService::search(const SurfaceJob& job,
   const Result<kinds::PickQuery> query = query_of(**model, job.request, job.up_from_model);
   if (!query) return fail(query.error());
   return pick::find_front_surface(**model, *query, searched_blocks_, cancelled);
+}
+
+void PickService::profile(ProfileJob job, ProfileDone done) {
+  if (++profiles_waiting_ > most_waiting_) {
+    --profiles_waiting_;
+    return done(fail(ErrorKind::kUnavailable, "the server is busy: too many profiles wait"));
+  }
+  searches_.post([this, job = std::move(job), done = std::move(done)] {
+    Result<ProfileResult> result = guarded([&] { return find_profile(job); });
+    --profiles_waiting_;
+    done(std::move(result));
+  });
+}
+
+Result<ProfileResult> PickService::find_profile(const ProfileJob& job) const {
+  const Result<std::shared_ptr<const model::ModelFile>> model = models_.open(job.model);
+  if (!model) return fail(model.error());
+  pick::BandQuery query = job.query;
+  query.most = query.most == 0 ? most_points_ : std::min(query.most, most_points_);
+  Result<pick::Band> band = pick::find_band(**model, query, stopping_);
+  if (!band) return fail(band.error());
+  const model::ModelInfo& info = (*model)->info();
+  return ProfileResult{std::move(*band), info.z_up, info.color_bits, info.scalar_names};
 }
 
 }  // namespace surfcast::service

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "pick/band.h"
 #include "pick/front_surface.h"
 #include "pick/pick_surfel.h"
 #include "picture/channels.h"
@@ -22,6 +23,7 @@ struct PickLimits {
   unsigned threads = 2;
   size_t waiting = 64;                    ///< picks that may be outstanding at a time
   size_t block_bytes = size_t{64} << 20;  ///< of decoded blocks that are kept for later picks
+  size_t profile_points = 1'000'000;      ///< of one profile
 };
 
 /// A request for the item that a picture shows in a pixel.
@@ -41,11 +43,26 @@ struct SurfaceJob {
   picture::ChannelSet channels;     ///< that will be made of it; an error if the model cannot have one of them
 };
 
+/// A request for the points near a line.
+struct ProfileJob {
+  std::string model;
+  pick::BandQuery query;  ///< `most`: 0 or more than PickLimits::profile_points: as many as that
+};
+
+/// The points near a line, and what is needed to describe them.
+struct ProfileResult {
+  pick::Band band;
+  bool z_up = true;
+  int color_bits = 0;
+  std::vector<std::string> attributes;
+};
+
 /// Picks items in pictures, on threads of its own so that pictures are not delayed. Methods may be called from any
 /// thread.
 class PickService {
  public:
   using Done = std::function<void(Result<std::optional<kinds::PickedSurfel>>)>;
+  using ProfileDone = std::function<void(Result<ProfileResult>)>;
   using SurfaceDone = std::function<void(Result<std::vector<pick::FrontPixel>>)>;
 
   /// `models` must outlive the service.
@@ -59,15 +76,21 @@ class PickService {
   /// Searches all pixels, one picture after another, on a thread that does nothing else. `done` is called once, on that
   /// thread, with kCancelled soon after `cancelled` becomes true. The caller bounds the number of searches.
   void find_surface(SurfaceJob job, std::shared_ptr<const std::atomic<bool>> cancelled, SurfaceDone done);
+  /// Finds the points near a line, on the same thread. At most PickLimits::waiting profiles may be outstanding. `done`
+  /// as of pick().
+  void profile(ProfileJob job, ProfileDone done);
 
  private:
+  [[nodiscard]] Result<ProfileResult> find_profile(const ProfileJob& job) const;
   [[nodiscard]] Result<std::optional<kinds::PickedSurfel>> run(const PickJob& job);
   [[nodiscard]] Result<std::vector<pick::FrontPixel>> search(const SurfaceJob& job, const std::atomic<bool>& cancelled);
 
   const ModelSource& models_;
   std::atomic<bool> stopping_ = false;
   const size_t most_waiting_;
+  const size_t most_points_;
   std::atomic<size_t> waiting_ = 0;
+  std::atomic<size_t> profiles_waiting_ = 0;
   pick::SourceBlocks blocks_;
   pick::SourceBlocks searched_blocks_;  ///< apart, so that a search does not drive out those of picks
   // Last, so that their threads end first.

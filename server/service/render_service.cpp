@@ -576,6 +576,10 @@ void RenderService::pick(PickJob job, PickService::Done done) {
   state_->picks->pick(std::move(job), std::move(done));
 }
 
+void RenderService::profile(ProfileJob job, PickService::ProfileDone done) {
+  state_->picks->profile(std::move(job), std::move(done));
+}
+
 const picture::DeviceInfo& RenderService::device() const {
   return state_->device;
 }

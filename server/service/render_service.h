@@ -104,6 +104,8 @@ class RenderService {
   [[nodiscard]] uint64_t edition(const std::string& model) const;
   /// Finds the item in a pixel; see PickService.
   void pick(PickJob job, PickService::Done done);
+  /// Finds the points near a line; see PickService.
+  void profile(ProfileJob job, PickService::ProfileDone done);
 
   [[nodiscard]] const picture::DeviceInfo& device() const;
   /// Jobs that wait for the render thread.

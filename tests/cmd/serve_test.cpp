@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "cmd/serve_fixture.h"
 
 namespace surfcast::cmd {
@@ -40,6 +42,35 @@ TEST_F(ServeTest, ChannelsAreTheSameByEveryWay) {
   EXPECT_NE(drawn.find("P.Z"), std::string::npos);
   for (const char* name : {"tcp.exr", "ws.exr"}) EXPECT_TRUE(content(file(name)) == drawn) << name;
   EXPECT_TRUE(fetched == drawn);
+}
+
+TEST_F(ServeTest, AProfileIsTheSameByEveryWay) {
+  serve(scan_.string());
+  const std::string flags = " --line '2,3.2,0;12.5,3.2,9' --width 1 --output ";
+  const std::string program = SURFCAST_CLIENT " profile ";
+  for (const std::string format : {"csv", "las"}) {
+    EXPECT_EQ(client::run_program(program + url_ + "/square" + flags + file("tcp." + format)).code, 0);
+    EXPECT_EQ(client::run_program(program + "ws://" + url_ + "/square" + flags + file("ws." + format)).code, 0);
+    EXPECT_FALSE(content(file("tcp." + format)).empty());
+    EXPECT_TRUE(content(file("tcp." + format)) == content(file("ws." + format)));
+    EXPECT_TRUE(content(file("tcp." + format)) ==
+                get("/api/models/square/profile?line=2,3.2,0;12.5,3.2,9&width=1&format=" + format));
+  }
+  // The points from x = 2 to 12 at y = 3; the band ends at 2.7 and 3.7.
+  const std::string header = "x,y,z,along,across,red,green,blue\r\n";
+  const std::string csv = content(file("tcp.csv"));
+  EXPECT_TRUE(csv.starts_with(header)) << csv;
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 12);
+  EXPECT_NE(csv.find("\r\n2,3,0,0,-0."), std::string::npos) << csv;
+  EXPECT_NE(csv.find("\r\n12,3,0,10,-0."), std::string::npos) << csv;
+  const client::ProgramOutcome sample =
+      client::run_program(program + url_ + "/square" + flags + file("few.csv") + " --max-points 4 2>&1");
+  EXPECT_EQ(sample.output, "surfcast: an even sample: 4 of 11 points\n");
+  for (const std::string wrong :
+       {"--line '1,2,3' --width 1", "--line '1,2,3;4,5,6' --width 0", "--line '1,2,3;4,5,6' --width 1 --format laz"}) {
+    EXPECT_EQ(client::run_program(program + url_ + "/square " + wrong + " --output " + file("a.csv") + " 2>&1").code,
+              2);
+  }
 }
 
 TEST_F(ServeTest, AScanIsBuiltOnceHoweverItIsNamed) {

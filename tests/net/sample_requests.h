@@ -49,7 +49,7 @@ inline wire::DrawPicture sample_picture() {
 
 /// A request of every kind, each with every field set, by the name of its kind. Ids are small and different.
 inline std::vector<wire::Request> sample_requests() {
-  std::vector<wire::Request> requests(10);
+  std::vector<wire::Request> requests(11);
   requests[0].mutable_list_models();
   requests[1].mutable_describe_model()->set_model("teapot");
   *requests[2].mutable_draw_picture() = sample_picture();
@@ -66,6 +66,11 @@ inline std::vector<wire::Request> sample_requests() {
   requests[8].mutable_frame_painted()->set_frame(1);
   requests[8].mutable_frame_painted()->set_client_ms(4.5);
   requests[9].mutable_close_view()->set_view(7);
+  requests[10].mutable_get_profile()->set_model("cube");
+  fill(requests[10].mutable_get_profile()->add_line(), 1, 2, 3);
+  fill(requests[10].mutable_get_profile()->add_line(), 4, 5, 6);
+  requests[10].mutable_get_profile()->set_width(0.5);
+  requests[10].mutable_get_profile()->set_max_points(7);
   for (size_t i = 0; i < requests.size(); ++i) requests[i].set_id(i + 1);
   requests[7].set_id(7);  // the view's
   requests[8].set_id(7);

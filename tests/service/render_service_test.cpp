@@ -82,6 +82,14 @@ TEST_F(RenderServiceTest, FrontSurfacesBeyondTheLimitAreRefusedAndStopWithTheSer
   for (auto& picture : pictures) EXPECT_FALSE(picture.get());
 }
 
+TEST_F(RenderServiceTest, ProfilesOfNoModelAreErrors) {
+  start();
+  std::promise<Result<ProfileResult>> promise;
+  service_->profile({"nowhere", {{{0, 0, 0}, {1, 0, 0}}, 1, 0}},
+                    [&](auto result) { promise.set_value(std::move(result)); });
+  EXPECT_EQ(promise.get_future().get().error().kind, ErrorKind::kNotFound);
+}
+
 TEST_F(RenderServiceTest, APictureComesBackEncodedWithItsFigures) {
   start();
   auto [id, future] = draw(1, job_for("cube"));
