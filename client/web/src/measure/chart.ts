@@ -30,10 +30,10 @@ export interface Chart {
   readonly heightTicks: readonly number[];
 }
 
-/** Scales a profile to a frame. A flat profile gets a margin above and below. */
-export function chartOf(profile: readonly ProfilePoint[], frame: ChartFrame): Chart {
+/** Scales a profile, and other heights that it shows, to a frame. A flat profile gets a margin above and below. */
+export function chartOf(profile: readonly ProfilePoint[], frame: ChartFrame, others: readonly number[] = []): Chart {
   const far = profile[profile.length - 1]?.along ?? 0;
-  const heights = profile.map((point) => point.height);
+  const heights = [...profile.map((point) => point.height), ...others];
   const [low, high] = [Math.min(...heights), Math.max(...heights)];
   const air = high > low ? (high - low) * 0.08 : Math.max(far * 0.02, 1e-6);
   const [bottom, top] = [low - air, high + air];

@@ -1,13 +1,15 @@
 import type { JSX } from 'preact';
 import { clear, finish, remove, undoPoint } from '../measure/measurement_list';
+import { csvOf, geoJsonOf } from '../measure/export';
 import { formatExact, linesOf } from '../measure/format';
-import { measureKinds, type MeasureKind, type Measurement } from '../measure/measurement';
+import { isWhole, measureKinds, type MeasureKind, type Measurement } from '../measure/measurement';
 import { chooseTool } from '../input/keyboard';
-import { growing, lengthDecimals, measurements, tool, upAxis } from '../state/store';
+import { growing, lengthDecimals, measurements, model, tool, upAxis } from '../state/store';
 import { copyText, notAllowed } from './clipboard';
 import { IconButton, Section } from './controls';
 import { Icon } from './icons';
 import { ProfileChart } from './profile_chart';
+import { saveFile } from './save_file';
 
 export const measureLabels: Readonly<Record<MeasureKind, string>> = {
   distance: 'Distance',
@@ -59,7 +61,7 @@ function Card({ m, number }: { m: Measurement; number: number }): JSX.Element {
           </div>
         ))}
       </dl>
-      {m.kind === 'profile' && m.points.length >= 2 && <ProfileChart points={m.points} />}
+      {m.kind === 'profile' && m.points.length >= 2 && <ProfileChart points={m.points} open={open} />}
       {open && (
         <footer>
           <button type="button" onClick={undoPoint}>
@@ -71,6 +73,23 @@ function Card({ m, number }: { m: Measurement; number: number }): JSX.Element {
         </footer>
       )}
     </li>
+  );
+}
+
+function Export(): JSX.Element {
+  const name = `${model.value ?? 'model'}-measurements`;
+  const geoJson = (): void =>
+    saveFile(geoJsonOf(measurements.peek(), upAxis.peek(), model.peek() ?? ''), `${name}.geojson`, 'application/geo+json');
+  const csv = (): void => saveFile(csvOf(measurements.peek(), upAxis.peek()), `${name}.csv`, 'text/csv');
+  return (
+    <div class="button-row" role="group" aria-label="Save all measurements">
+      <button type="button" onClick={geoJson}>
+        <Icon name="download" size={16} /> GeoJSON
+      </button>
+      <button type="button" onClick={csv}>
+        <Icon name="download" size={16} /> CSV
+      </button>
+    </div>
   );
 }
 
@@ -88,6 +107,7 @@ export function MeasurePanel(): JSX.Element {
       </Section>
       <Section title="Results" aside={aside}>
         {list.length === 0 && <p class="faint">Choose a kind of measurement, then click points of the scan.</p>}
+        {list.some(isWhole) && <Export />}
         <ul class="cards">
           {list.map((m, i) => (
             <Card key={m.id} m={m} number={i + 1} />

@@ -7,6 +7,7 @@ import { dialog, display, model, pose, showNotice, stageSize, upAxis } from '../
 import { mediaType } from '../view/painter';
 import { useActions, type Actions } from './actions';
 import { Choices, Dialog, NumberField, Switch } from './controls';
+import { saveFile } from './save_file';
 
 const formats = [
   { value: 'png', label: 'PNG', wire: FileFormat.PNG },
@@ -17,15 +18,6 @@ const formats = [
 type FormatName = (typeof formats)[number]['value'];
 
 const maxPixels = 2 ** 25; // the server's own limit
-
-function save(data: Uint8Array, name: string, type: string): void {
-  const url = URL.createObjectURL(new Blob([data as Uint8Array<ArrayBuffer>], { type }));
-  const anchor = document.createElement('a');
-  anchor.href = url;
-  anchor.download = name;
-  anchor.click();
-  setTimeout(() => URL.revokeObjectURL(url), 10_000);
-}
 
 /** Requests the picture from the server at its best quality. */
 async function shoot(
@@ -41,7 +33,7 @@ async function shoot(
   const shown = every ? { ...display.peek(), spacing: 0 } : display.peek();
   const request = pictureOf(name, now && cameraOf(now, upAxis.peek()), shown, size, wire);
   const picture = await controller.draw(request, started);
-  save(picture.data, `${name}.${format}`, mediaType(wire));
+  saveFile(picture.data, `${name}.${format}`, mediaType(wire));
 }
 
 const presets: readonly (readonly [string, (stage: Size) => Size])[] = [

@@ -1,6 +1,7 @@
 import { equals } from '@bufbuild/protobuf';
 import { batch, effect } from '@preact/signals';
 import { cameraOf, poseOf } from '../camera/pose';
+import type { Vector } from '../camera/vector';
 import {
   DrawPictureSchema,
   ErrorCode,
@@ -8,6 +9,7 @@ import {
   type ModelList,
   type PickResult,
   type Picture,
+  type Profile,
 } from '../generated/surfcast_pb';
 import { backoff } from '../protocol/backoff';
 import { RequestError, type Connection } from '../protocol/connection';
@@ -99,6 +101,12 @@ export class ViewController {
 
   async pick(picture: DrawPicture, x: number, y: number): Promise<PickResult> {
     return this.connected().ask({ case: 'pickSurfel', value: { picture, x, y } }, 'pickResult');
+  }
+
+  /** The points of the scan in a band along a line, at most `maxPoints` of them. */
+  async profile(model: string, line: readonly Vector[], width: number, maxPoints: number): Promise<Profile> {
+    const value = { model, line: line.map(({ x, y, z }) => ({ x, y, z })), width, maxPoints };
+    return this.connected().ask({ case: 'getProfile', value }, 'profile');
   }
 
   /** `started` receives a function that cancels the request. */
