@@ -18,11 +18,13 @@ constexpr double kPrefilterReach = 1;
 constexpr double kExtent = 1.1;
 
 void append(const model::DecodedBlock& block, DrawnSurfels& surfels) {
-  const float widest = surfel::largest_drawn_radius(block.radii);
+  const float widest = surfel::largest_drawn_radius(block.radii, block.scatter);
   for (size_t i = 0; i < block.size(); ++i) {
+    const bool scatter = block.is_scatter(i);
     surfels.positions.push_back(block.position(i));
     surfels.normals.emplace_back(block.normals[i]);
-    surfels.radii.push_back(std::min(block.radii[i], widest));
+    surfels.radii.push_back(scatter ? block.radii[i] : std::min(block.radii[i], widest));
+    surfels.scatter.push_back(scatter ? 1 : 0);
   }
 }
 
@@ -40,8 +42,9 @@ Projected project(const DrawnSurfels& surfels, const geometry::CameraFrame& fram
     const glm::dvec3 centre = frame.to_camera(surfels.positions[i]);
     const PixelBox box = pixels_within(frame, centre, kExtent * surfels.radii[i], kPrefilterReach);
     if (box.empty()) continue;
-    const glm::dvec3 normal = frame.rotate(surfels.normals[i]);
-    if (surfels.oriented && glm::dot(normal, centre) >= 0) continue;
+    const bool scatter = !surfels.scatter.empty() && surfels.scatter[i] != 0;
+    const glm::dvec3 normal = scatter ? kinds::facing_eye(centre) : frame.rotate(surfels.normals[i]);
+    if (surfels.oriented && !scatter && glm::dot(normal, centre) >= 0) continue;
     projected.centres.push_back(centre);
     projected.normals.push_back(normal);
     projected.radii.push_back(surfels.radii[i]);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "geometry/camera.h"
@@ -13,6 +14,7 @@ struct DrawnSurfels {
   std::vector<glm::dvec3> positions;  ///< world
   std::vector<glm::dvec3> normals;    ///< unit
   std::vector<double> radii;          ///< world units, limited as in pictures
+  std::vector<uint8_t> scatter;       ///< 1: faces the eye (SurfelCloud::scatter); empty without scatter
   bool oriented = false;              ///< back faces are not drawn
 };
 

@@ -94,6 +94,7 @@ struct RenderService::State {
   [[nodiscard]] bool enqueue(SessionId session, JobId id, const PictureJob& picture);
   [[nodiscard]] bool await_model(JobId id);
   [[nodiscard]] bool waits_for_model(const PictureJob& picture) const;
+  void when_available(const std::string& model, std::function<void()> go);
   void models_changed();
   void finish(const JobPointer& job, Result<EncodedPicture> result);
   void stop();
@@ -108,7 +109,14 @@ struct RenderService::State {
   std::condition_variable wake;
   JobQueue queue;
   std::vector<JobId> awaiting_models;  ///< not in the queue yet
-  std::map<JobId, JobPointer> jobs;    ///< outstanding: waiting, being drawn or being encoded
+  /// Something other than a picture that waits for its model.
+  struct AwaitingCall {
+    std::string model;
+    Stopwatch since;
+    std::function<void()> go;
+  };
+  std::vector<AwaitingCall> awaiting_calls;
+  std::map<JobId, JobPointer> jobs;  ///< outstanding: waiting, being drawn or being encoded
   JobId last_id = 0;
   std::array<size_t, 2> in_encoding{};  ///< pictures being drawn or encoded, by priority
   size_t searching = 0;                 ///< jobs whose front surface is being found
@@ -435,24 +443,47 @@ void RenderService::State::end_search(const JobPointer& job, Result<std::vector<
   finish(job, front ? cancelled_error() : fail(front.error()));
 }
 
+/// Calls `go` once a model that is awaited is there, or after the queue's timeout: then the model's own error is the
+/// answer.
+void RenderService::State::when_available(const std::string& model, std::function<void()> go) {
+  {
+    const std::lock_guard lock(mutex);
+    if (!stopping && models.awaited(model) && awaiting_calls.size() < limits.queued_jobs) {
+      awaiting_calls.push_back({model, Stopwatch(), std::move(go)});
+      return;
+    }
+  }
+  go();
+}
+
 void RenderService::State::models_changed() {
   std::vector<JobPointer> late;
   std::vector<JobPointer> to_search;
+  std::vector<std::function<void()>> calls;
+  const auto timed_out = [&](const Stopwatch& since) {
+    return since.milliseconds() > static_cast<double>(limits.queue_timeout.count());
+  };
   {
     const std::lock_guard lock(mutex);
+    std::erase_if(awaiting_calls, [&](AwaitingCall& call) {
+      if (models.awaited(call.model) && !timed_out(call.since)) return false;
+      calls.push_back(std::move(call.go));
+      return true;
+    });
     std::erase_if(awaiting_models, [&](JobId id) {
       const JobPointer& job = jobs.at(id);
       if (!models.awaited(job->picture.model) && enqueue(job->session, id, job->picture)) {
         if (needs_front_surface(job->picture.channels)) to_search.push_back(job);
         return true;
       }
-      if (job->since_submission.milliseconds() <= static_cast<double>(limits.queue_timeout.count())) return false;
+      if (!timed_out(job->since_submission)) return false;
       late.push_back(job);
       return true;
     });
   }
   wake.notify_one();
   for (const JobPointer& job : to_search) search(job);
+  for (const std::function<void()>& go : calls) go();
   for (const JobPointer& job : late) {
     finish(job, fail(ErrorKind::kUnavailable, "the model '" + job->picture.model + "' is being built"));
   }
@@ -468,9 +499,11 @@ void RenderService::State::finish(const JobPointer& job, Result<EncodedPicture> 
 
 void RenderService::State::stop() {
   std::vector<JobPointer> waiting;
+  std::vector<AwaitingCall> calls;
   {
     const std::lock_guard lock(mutex);
     stopping = true;
+    calls = std::exchange(awaiting_calls, {});
     for (const auto& [id, job] : jobs) job->cancelled = true;
     for (const JobId id : std::exchange(awaiting_models, {})) waiting.push_back(jobs.at(id));
     for (const Priority priority : {Priority::kMotion, Priority::kStill}) {
@@ -479,6 +512,7 @@ void RenderService::State::stop() {
   }
   wake.notify_all();
   for (const JobPointer& job : waiting) finish(job, cancelled_error());
+  for (const AwaitingCall& call : calls) call.go();
   if (render_thread.joinable()) render_thread.join();
   picks.reset();
   pool.reset();
@@ -567,17 +601,24 @@ void RenderService::list_models(ListDone done) {
 }
 
 void RenderService::describe_model(const std::string& name, DescriptionDone done) {
-  state_->pool->post([state = state_.get(), name, done = std::move(done)] {
-    done(guarded([&] { return state->models.describe(name); }));
+  state_->when_available(name, [state = state_.get(), name, done = std::move(done)]() mutable {
+    state->pool->post(
+        [state, name, done = std::move(done)] { done(guarded([&] { return state->models.describe(name); })); });
   });
 }
 
 void RenderService::pick(PickJob job, PickService::Done done) {
-  state_->picks->pick(std::move(job), std::move(done));
+  const std::string model = job.model;
+  state_->when_available(model, [state = state_.get(), job = std::move(job), done = std::move(done)]() mutable {
+    state->picks->pick(std::move(job), std::move(done));
+  });
 }
 
 void RenderService::profile(ProfileJob job, PickService::ProfileDone done) {
-  state_->picks->profile(std::move(job), std::move(done));
+  const std::string model = job.model;
+  state_->when_available(model, [state = state_.get(), job = std::move(job), done = std::move(done)]() mutable {
+    state->picks->profile(std::move(job), std::move(done));
+  });
 }
 
 const picture::DeviceInfo& RenderService::device() const {

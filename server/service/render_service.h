@@ -97,8 +97,8 @@ class RenderService {
 
   void list_models(ListDone done);
   void describe_model(const std::string& name, DescriptionDone done);
-  /// Call it after a change of an awaited model, and now and then while there is one: pictures that wait for it are
-  /// drawn, or refused after the queue's timeout.
+  /// Call it after a change of an awaited model, and now and then while there is one: pictures, picks, profiles and
+  /// descriptions that wait for it are begun, or refused after the queue's timeout.
   void models_changed();
   /// See ModelSource.
   [[nodiscard]] uint64_t edition(const std::string& model) const;

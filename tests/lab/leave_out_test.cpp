@@ -197,7 +197,7 @@ TEST(PixelsWithinTest, ASphereBesideOrBehindTheEyeIsNowhere) {
 /// A model of one lattice.
 DrawnSurfels surfels_on(std::vector<glm::dvec3> points, double radius) {
   const size_t count = points.size();
-  return {std::move(points), std::vector<glm::dvec3>(count, {0, 0, 1}), std::vector<double>(count, radius), false};
+  return {std::move(points), std::vector<glm::dvec3>(count, {0, 0, 1}), std::vector<double>(count, radius), {}, false};
 }
 
 TEST(ModelDepthTest, IsThatOfThePlane) {

@@ -18,6 +18,8 @@ wire::PickResult hit() {
   result.mutable_color()->set_red(7);
   result.set_radius(0.25);
   result.set_distance(12);
+  result.set_depth(11.5);
+  result.set_surfel(7);
   wire::AttributeValue* value = result.add_attributes();
   value->set_attribute("gps_time");
   value->set_value(384933630.3884339);
@@ -27,7 +29,7 @@ wire::PickResult hit() {
 TEST(PickResultText, LinesHoldEveryBitOfTheCoordinates) {
   EXPECT_EQ(pick_result_text(hit()),
             "hit: yes\nposition: 448262.31 5411932.67 -0.1\nnormal: 0.0 0.0 1.0\ncolor: 7 0 0\nradius: 0.25\n"
-            "distance: 12.0\ngps_time: 384933630.3884339\n");
+            "distance: 12.0\ndepth: 11.5\nsurfel: 7\ngps_time: 384933630.3884339\n");
   EXPECT_EQ(pick_result_text({}), "hit: no\n");
 }
 

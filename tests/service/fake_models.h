@@ -19,7 +19,7 @@ class FakeModels : public ModelSource {
  public:
   [[nodiscard]] std::vector<std::string> names() const override { return {"cube", "teapot"}; }
   [[nodiscard]] std::vector<ScanStatus> scans() const override { return scan_list; }
-  [[nodiscard]] bool awaited(const std::string& name) const override { return awaited_model == name; }
+  [[nodiscard]] bool awaited(const std::string& name) const override { return !name.empty() && awaited_model == name; }
   [[nodiscard]] uint64_t edition(const std::string& name) const override {
     return name == "cube" ? cube_edition.load() : 0;
   }
