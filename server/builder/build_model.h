@@ -21,7 +21,7 @@ struct BuildOptions {
   std::optional<uint64_t> memory;       ///< limit of resident memory, bytes; none: a quarter of the machine's memory
   std::optional<uint64_t> part_points;  ///< largest number of points of a part; none: as the memory allows
   scan::RadiusPolicy radii = scan::RadiusPolicy::kAuto;
-  std::optional<uint64_t> sample{};     ///< points of each scan, spread over it, that a preview is made of; none: all
+  std::optional<uint64_t> sample{};  ///< points of each scan, spread over it, that a preview is made of; none: all
 };
 
 /// What became of the radii that an input states.
@@ -34,7 +34,7 @@ struct InputRadii {
 struct BuildReport {
   scan::SurfelReport scan;
   std::vector<InputRadii> radii;  ///< of the inputs that have a column for them
-  uint64_t points_in_scans = 0;  ///< beyond BuildOptions::sample too
+  uint64_t points_in_scans = 0;   ///< beyond BuildOptions::sample too
   uint64_t surfels = 0;
   uint64_t blocks = 0;
   uint64_t bytes = 0;                                  ///< of the model file

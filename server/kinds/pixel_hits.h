@@ -6,6 +6,7 @@
 #include <glm/vec3.hpp>
 #include <limits>
 #include <optional>
+#include <tuple>
 #include <vector>
 
 namespace surfcast::kinds {
@@ -24,7 +25,10 @@ struct PickRank {
   double form = 0;
   uint32_t block = 0;
   uint32_t item = 0;
-  friend auto operator<=>(const PickRank&, const PickRank&) = default;
+
+  friend bool operator<(const PickRank& a, const PickRank& b) {
+    return std::tie(a.form, a.block, a.item) < std::tie(b.form, b.block, b.item);
+  }
 };
 
 /// ItemLook::code of models without classes.

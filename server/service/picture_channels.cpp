@@ -127,7 +127,8 @@ picture::Channels make_channels(const picture::ChannelSet& channels, const pictu
   const pick::FrontPixel nothing;
   for (size_t i = 0; i < count; ++i) {
     const auto width = static_cast<size_t>(image.width);
-    const glm::dvec3 ray = view->ray({static_cast<double>(i % width) + 0.5, static_cast<double>(i / width) + 0.5});
+    const glm::dvec2 pixel_corner(glm::uvec2(i % width, i / width));
+    const glm::dvec3 ray = view->ray(pixel_corner + 0.5);
     const ChannelPixel pixel{front.empty() ? nothing : front[i], coverage_of(image, i),
                              view->right * ray.x + view->up * ray.y + view->forward};
     for (const Channel channel : list) append(channel, pixel, result.words);
