@@ -10,12 +10,12 @@ namespace {
 
 /// Shares of the time of a build in one part; "counting" is a stage of builds in several.
 constexpr std::array<std::pair<std::string_view, double>, 6> kShares{{
-    {"reading", 0.04},
+    {"reading", 0.02},
     {"counting", 0.03},
-    {"sorting points", 0.04},
-    {"making surfels", 0.47},
-    {"writing blocks", 0.40},
-    {"writing levels above", 0.02},
+    {"sorting points", 0.02},
+    {"making surfels", 0.51},
+    {"writing blocks", 0.41},
+    {"writing levels above", 0.01},
 }};
 /// Beyond this share of a stage nothing is claimed that was not reported.
 constexpr double kMostByTime = 0.95;

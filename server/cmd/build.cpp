@@ -45,7 +45,7 @@ struct BuildCommand {
 };
 
 /// A share of the processors that a build gets by itself, points a second and processor; measured without other load.
-constexpr double kPointsPerSecondAndCore = 90'000;
+constexpr double kPointsPerSecondAndCore = 160'000;
 
 ProgressStyle style_of(const std::string& wanted) {
   if (wanted == "json") return ProgressStyle::kJson;
