@@ -130,7 +130,7 @@ Result<RowSample> sample_rows(const RowSource& rows, uint64_t wanted) {
   traits.sampled = true;
   std::vector<std::byte> records = join(all->pieces, wanted, of_rows, bytes);
   PointTable table = packed_table(std::move(records), rows.columns(), all->swapped, bytes);
-  return RowSample{std::make_unique<SlicedRows>(std::move(traits), rows.columns(), std::move(table)), of_rows};
+  return RowSample{std::make_unique<SlicedRows>(traits, rows.columns(), std::move(table)), of_rows};
 }
 
 }  // namespace surfcast::scan
