@@ -30,6 +30,9 @@ tl::unexpected<Error> busy_error() {
   return fail(ErrorKind::kUnavailable, "the server is busy: too many pictures wait");
 }
 
+/// The number of no job: jobs count from 1.
+constexpr JobId kNoJob = 0;
+
 /// Runs a function and returns exceptions (out of memory in a library) as errors, so one job cannot terminate the
 /// server.
 template <typename Function>
@@ -58,6 +61,8 @@ struct RenderService::State {
     std::atomic<bool> encoding = false;  ///< encoding has begun
   };
   using JobPointer = std::shared_ptr<Job>;
+  /// Gets an error if the model is not there in time.
+  using Proceed = std::function<void(const Status& there)>;
   using SharedFrame = std::shared_ptr<const picture::Frame>;
 
   State(const ModelSource& source, const ServiceLimits& service_limits)
@@ -91,10 +96,12 @@ struct RenderService::State {
   JobId add(SessionId session, PictureJob picture, PictureDone done);
   void search(const JobPointer& job);
   void end_search(const JobPointer& job, Result<std::vector<pick::FrontPixel>> front);
-  [[nodiscard]] bool enqueue(SessionId session, JobId id, const PictureJob& picture);
-  [[nodiscard]] bool await_model(JobId id);
+  [[nodiscard]] bool enqueue(const Job& job);
+  void proceed(const JobPointer& job);
+  void end_waiting(const JobPointer& job, const Status& there);
+  [[nodiscard]] bool await_model(JobId job, const std::string& model, Proceed proceed);
   [[nodiscard]] bool waits_for_model(const PictureJob& picture) const;
-  void when_available(const std::string& model, std::function<void()> go);
+  void when_available(const std::string& model, const Proceed& proceed);
   void models_changed();
   void finish(const JobPointer& job, Result<EncodedPicture> result);
   void stop();
@@ -108,14 +115,14 @@ struct RenderService::State {
   mutable std::mutex mutex;  ///< guards the following members
   std::condition_variable wake;
   JobQueue queue;
-  std::vector<JobId> awaiting_models;  ///< not in the queue yet
-  /// Something other than a picture that waits for its model.
-  struct AwaitingCall {
+  /// What waits for a model.
+  struct Awaiting {
+    JobId job = kNoJob;  ///< of a picture
     std::string model;
     Stopwatch since;
-    std::function<void()> go;
+    Proceed proceed;
   };
-  std::vector<AwaitingCall> awaiting_calls;
+  std::vector<Awaiting> awaiting;
   std::map<JobId, JobPointer> jobs;  ///< outstanding: waiting, being drawn or being encoded
   JobId last_id = 0;
   std::array<size_t, 2> in_encoding{};  ///< pictures being drawn or encoded, by priority
@@ -376,45 +383,53 @@ bool RenderService::State::waits_for_model(const PictureJob& picture) const {
 }
 
 /// Puts a job into the queue, or makes room for the search that precedes it. False if there is no room.
-bool RenderService::State::enqueue(SessionId session, JobId id, const PictureJob& picture) {
-  if (!needs_front_surface(picture.channels)) return queue.push(session, id, picture.priority);
+bool RenderService::State::enqueue(const Job& job) {
+  if (!needs_front_surface(job.picture.channels)) return queue.push(job.session, job.id, job.picture.priority);
   if (searching >= limits.queued_jobs) return false;
   ++searching;
   return true;
 }
 
-/// Puts a job among those that wait for their models. False if there is no room.
-bool RenderService::State::await_model(JobId id) {
-  if (awaiting_models.size() >= limits.queued_jobs) return false;
-  awaiting_models.push_back(id);
-  return true;
+/// Goes on with a job that has been enqueued.
+void RenderService::State::proceed(const JobPointer& job) {
+  if (needs_front_surface(job->picture.channels)) return search(job);
+  wake.notify_one();
+}
+
+/// Goes on with a job that has waited for its model.
+void RenderService::State::end_waiting(const JobPointer& job, const Status& there) {
+  if (!there) return finish(job, fail(there.error()));
+  bool room = false;
+  {
+    const std::lock_guard lock(mutex);
+    job->since_submission = Stopwatch();
+    room = !stopping && enqueue(*job);
+  }
+  if (room) return proceed(job);
+  finish(job, busy_error());
 }
 
 JobId RenderService::State::add(SessionId session, PictureJob picture, PictureDone done) {
   const Status checked = check(picture);
+  const auto job = std::make_shared<Job>();
+  job->session = session;
+  job->picture = std::move(picture);
+  job->done = std::move(done);
   std::unique_lock lock(mutex);
-  const JobId id = ++last_id;
-  const bool waits = waits_for_model(picture);
-  const bool searches = !waits && needs_front_surface(picture.channels);
-  const bool room = checked && !stopping && (waits ? await_model(id) : enqueue(session, id, picture));
-  if (room) {
-    const auto job = std::make_shared<Job>();
-    job->id = id;
-    job->session = session;
-    job->picture = std::move(picture);
-    job->done = std::move(done);
-    jobs.emplace(id, job);
-    lock.unlock();
-    if (searches) {
-      search(job);
-    } else {
-      wake.notify_one();
-    }
-    return id;
-  }
+  job->id = ++last_id;
+  const bool waits = waits_for_model(job->picture);
+  const bool room =
+      checked && !stopping &&
+      (waits ? await_model(job->id, job->picture.model, [this, job](const Status& there) { end_waiting(job, there); })
+             : enqueue(*job));
+  if (room) jobs.emplace(job->id, job);
   lock.unlock();
-  done(checked ? busy_error() : fail(checked.error()));
-  return id;
+  if (!room) {
+    job->done(checked ? busy_error() : fail(checked.error()));
+  } else if (!waits) {
+    proceed(job);
+  }
+  return job->id;
 }
 
 /// Finds what the channels of a picture need, before the picture waits for the render thread.
@@ -443,49 +458,38 @@ void RenderService::State::end_search(const JobPointer& job, Result<std::vector<
   finish(job, front ? cancelled_error() : fail(front.error()));
 }
 
-/// Calls `go` once a model that is awaited is there, or after the queue's timeout: then the model's own error is the
-/// answer.
-void RenderService::State::when_available(const std::string& model, std::function<void()> go) {
+/// Keeps `proceed` until the model is there. False if there is no room.
+bool RenderService::State::await_model(JobId job, const std::string& model, Proceed proceed) {
+  if (awaiting.size() >= limits.queued_jobs) return false;
+  awaiting.push_back({job, model, Stopwatch(), std::move(proceed)});
+  return true;
+}
+
+/// Calls `proceed` at once, or, if the model is awaited, when it is there.
+void RenderService::State::when_available(const std::string& model, const Proceed& proceed) {
   {
     const std::lock_guard lock(mutex);
-    if (!stopping && models.awaited(model) && awaiting_calls.size() < limits.queued_jobs) {
-      awaiting_calls.push_back({model, Stopwatch(), std::move(go)});
-      return;
-    }
+    if (!stopping && models.awaited(model) && await_model(kNoJob, model, proceed)) return;
   }
-  go();
+  proceed({});
 }
 
 void RenderService::State::models_changed() {
-  std::vector<JobPointer> late;
-  std::vector<JobPointer> to_search;
-  std::vector<std::function<void()>> calls;
-  const auto timed_out = [&](const Stopwatch& since) {
-    return since.milliseconds() > static_cast<double>(limits.queue_timeout.count());
-  };
+  std::vector<Awaiting> there;
+  std::vector<Awaiting> late;
   {
     const std::lock_guard lock(mutex);
-    std::erase_if(awaiting_calls, [&](AwaitingCall& call) {
-      if (models.awaited(call.model) && !timed_out(call.since)) return false;
-      calls.push_back(std::move(call.go));
-      return true;
-    });
-    std::erase_if(awaiting_models, [&](JobId id) {
-      const JobPointer& job = jobs.at(id);
-      if (!models.awaited(job->picture.model) && enqueue(job->session, id, job->picture)) {
-        if (needs_front_surface(job->picture.channels)) to_search.push_back(job);
-        return true;
-      }
-      if (!timed_out(job->since_submission)) return false;
-      late.push_back(job);
+    std::erase_if(awaiting, [&](Awaiting& entry) {
+      const bool in_time = entry.since.milliseconds() <= static_cast<double>(limits.queue_timeout.count());
+      const bool awaited = models.awaited(entry.model);
+      if (awaited && in_time) return false;
+      (awaited ? late : there).push_back(std::move(entry));
       return true;
     });
   }
-  wake.notify_one();
-  for (const JobPointer& job : to_search) search(job);
-  for (const std::function<void()>& go : calls) go();
-  for (const JobPointer& job : late) {
-    finish(job, fail(ErrorKind::kUnavailable, "the model '" + job->picture.model + "' is being built"));
+  for (const Awaiting& entry : there) entry.proceed({});
+  for (const Awaiting& entry : late) {
+    entry.proceed(fail(ErrorKind::kUnavailable, "the model '" + entry.model + "' is being built"));
   }
 }
 
@@ -499,20 +503,19 @@ void RenderService::State::finish(const JobPointer& job, Result<EncodedPicture> 
 
 void RenderService::State::stop() {
   std::vector<JobPointer> waiting;
-  std::vector<AwaitingCall> calls;
+  std::vector<Awaiting> without_model;
   {
     const std::lock_guard lock(mutex);
     stopping = true;
-    calls = std::exchange(awaiting_calls, {});
+    without_model = std::exchange(awaiting, {});
     for (const auto& [id, job] : jobs) job->cancelled = true;
-    for (const JobId id : std::exchange(awaiting_models, {})) waiting.push_back(jobs.at(id));
     for (const Priority priority : {Priority::kMotion, Priority::kStill}) {
       while (const std::optional<JobId> id = queue.pop(priority)) waiting.push_back(jobs.at(*id));
     }
   }
   wake.notify_all();
   for (const JobPointer& job : waiting) finish(job, cancelled_error());
-  for (const AwaitingCall& call : calls) call.go();
+  for (const Awaiting& entry : without_model) entry.proceed(cancelled_error());
   if (render_thread.joinable()) render_thread.join();
   picks.reset();
   pool.reset();
@@ -553,7 +556,8 @@ bool RenderService::cancel(JobId id) {
     const auto found = state_->jobs.find(id);
     if (found == state_->jobs.end()) return false;
     found->second->cancelled = true;
-    if (state_->queue.remove(id) || std::erase(state_->awaiting_models, id) > 0) waiting = found->second;
+    const bool awaits = std::erase_if(state_->awaiting, [id](const auto& entry) { return entry.job == id; }) > 0;
+    if (awaits || state_->queue.remove(id)) waiting = found->second;
   }
   if (waiting) state_->finish(waiting, cancelled_error());
   return true;
@@ -601,24 +605,28 @@ void RenderService::list_models(ListDone done) {
 }
 
 void RenderService::describe_model(const std::string& name, DescriptionDone done) {
-  state_->when_available(name, [state = state_.get(), name, done = std::move(done)]() mutable {
-    state->pool->post(
-        [state, name, done = std::move(done)] { done(guarded([&] { return state->models.describe(name); })); });
+  state_->when_available(name, [state = state_.get(), name, done = std::move(done)](const Status& there) {
+    if (!there) return done(fail(there.error()));
+    state->pool->post([state, name, done] { done(guarded([&] { return state->models.describe(name); })); });
   });
 }
 
 void RenderService::pick(PickJob job, PickService::Done done) {
   const std::string model = job.model;
-  state_->when_available(model, [state = state_.get(), job = std::move(job), done = std::move(done)]() mutable {
-    state->picks->pick(std::move(job), std::move(done));
-  });
+  const auto run = [state = state_.get(), job = std::move(job), done = std::move(done)](const Status& there) {
+    if (!there) return done(fail(there.error()));
+    state->picks->pick(job, done);
+  };
+  state_->when_available(model, run);
 }
 
 void RenderService::profile(ProfileJob job, PickService::ProfileDone done) {
   const std::string model = job.model;
-  state_->when_available(model, [state = state_.get(), job = std::move(job), done = std::move(done)]() mutable {
-    state->picks->profile(std::move(job), std::move(done));
-  });
+  const auto run = [state = state_.get(), job = std::move(job), done = std::move(done)](const Status& there) {
+    if (!there) return done(fail(there.error()));
+    state->picks->profile(job, done);
+  };
+  state_->when_available(model, run);
 }
 
 const picture::DeviceInfo& RenderService::device() const {

@@ -485,6 +485,38 @@ TEST_F(AwaitedModelTest, APictureThatWaitsCanBeCancelledAndDoesNotOutliveTheServ
   EXPECT_EQ(second.get().error().kind, ErrorKind::kCancelled);
 }
 
+TEST_F(AwaitedModelTest, DescriptionsAndPicksWaitForTheModel) {
+  start();
+  std::atomic<int> answers = 0;
+  std::promise<Result<ModelDescription>> description;
+  service_->describe_model("cube", [&](auto result) {
+    ++answers;
+    description.set_value(std::move(result));
+  });
+  std::promise<Error> pick;
+  PickJob pick_job;
+  pick_job.model = "cube";
+  service_->pick(pick_job, [&](const auto& picked) {
+    ++answers;
+    pick.set_value(picked.error());
+  });
+  EXPECT_EQ(answers, 0);
+  publish();
+  EXPECT_TRUE(description.get_future().get());
+  EXPECT_NE(pick.get_future().get().kind, ErrorKind::kUnavailable) << "the pick was run";
+}
+
+TEST_F(AwaitedModelTest, ADescriptionThatWaitsTooLongIsRefused) {
+  start({.queue_timeout = std::chrono::milliseconds(1)});
+  std::optional<Error> refusal;
+  service_->describe_model("cube", [&](const auto& result) { refusal = result.error(); });
+  std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  service_->models_changed();
+  ASSERT_TRUE(refusal);
+  EXPECT_EQ(refusal->kind, ErrorKind::kUnavailable);
+  EXPECT_EQ(refusal->message, "the model 'cube' is being built");
+}
+
 TEST_F(AwaitedModelTest, NoMorePicturesWaitThanTheQueueHolds) {
   start({.queued_jobs = 1});
   auto [id, first] = draw(1, job_for("cube"));
