@@ -14,6 +14,7 @@
 
 #include "base/vector_clones.h"
 #include "geometry/morton_tree.h"
+#include "scan/nearest_list.h"
 
 namespace surfcast::scan {
 namespace {
@@ -36,39 +37,7 @@ constexpr size_t kPadding = 16;
 /// Farther from every candidate than any other: its squared distance is infinite.
 constexpr float kNowhere = 1e30F;
 
-/// A neighbour and its squared distance. Neighbours are sorted by distance, then by number.
-using Found = std::pair<double, uint32_t>;
-
-/// The distance of points in the units of the sites, squared: the same expression wherever distances are compared, so
-/// that rounding never excludes a neighbour.
-double squared_distance(const glm::dvec3& a, const glm::dvec3& b) {
-  const glm::dvec3 d = a - b;
-  return glm::dot(d, d);
-}
-
-/// The nearest neighbours found so far, at most `degree` of them.
-class NearestList {
- public:
-  explicit NearestList(size_t degree) : degree_(degree) {}
-
-  void add(const Found& found) {
-    if (full() && !(found < all_[count_ - 1])) return;
-    size_t at = full() ? count_ - 1 : count_++;
-    for (; at > 0 && found < all_[at - 1]; --at) all_[at] = all_[at - 1];
-    all_[at] = found;
-  }
-  [[nodiscard]] bool full() const { return count_ == degree_; }
-  /// The squared distance beyond which no site belongs to the list.
-  [[nodiscard]] double bound() const {
-    return full() ? all_[count_ - 1].first : std::numeric_limits<double>::infinity();
-  }
-  [[nodiscard]] std::span<const Found> all() const { return {all_.data(), count_}; }
-
- private:
-  size_t degree_;
-  size_t count_ = 0;
-  std::array<Found, kLargestDegree> all_{};
-};
+using Nearest = NearestList<kLargestDegree>;
 
 /// The sites around a run of sites as arrays of floats for vector instructions. Their coordinates are relative to an
 /// origin nearby and scaled to the order of 1, since squares of floats would underflow.
@@ -222,7 +191,7 @@ class Search {
     const double reach = candidates.reach * candidates.reach;
     double bound = reach;
     for (uint32_t site = run.first; site < run.last; ++site) {
-      const NearestList list = nearest_of(site, candidates, candidates.first + (site - run.first), bound);
+      const Nearest list = nearest_of(site, candidates, candidates.first + (site - run.first), bound);
       const bool certain = list.full() && list.bound() <= reach;
       bound = reach;
       if (!certain) {
@@ -240,12 +209,12 @@ class Search {
 
   /// The nearest candidates of the candidate `slot`, if `degree` of them are within `bound`. Otherwise, or if there are
   /// too many to sort, the list is not full.
-  NearestList nearest_of(uint32_t site, const Candidates& candidates, size_t slot, double bound) const {
+  Nearest nearest_of(uint32_t site, const Candidates& candidates, size_t slot, double bound) const {
     thread_local Keys keys;
     measure(candidates, slot, keys);
     const double scaled = bound * candidates.scale * candidates.scale;
     size_t count = keep_up_to(last_key(scaled + 2 * candidates.error(scaled)), candidates.padded(), keys);
-    NearestList list(degree_);
+    Nearest list(degree_);
     if (count < degree_) return list;
     const auto kth = static_cast<std::ptrdiff_t>(degree_ - 1);
     if (count > kMostSorted) {
@@ -270,7 +239,7 @@ class Search {
   }
 
   void search_alone(uint32_t site) const {
-    NearestList list(degree_);
+    Nearest list(degree_);
     double bound = list.bound();
     const glm::dvec3& from = sites_.positions[site];
     tree_.nearest_first(from, bound, [&](const Run& run) {
@@ -282,7 +251,7 @@ class Search {
     report(site, list);
   }
 
-  void report(uint32_t site, const NearestList& list) const {
+  void report(uint32_t site, const Nearest& list) const {
     std::array<uint32_t, kLargestDegree> ids;
     std::array<double, kLargestDegree> distances;
     size_t count = 0;

@@ -82,11 +82,15 @@ float scaled(float radius, float factor) {
   return factor == 1 ? radius : std::clamp(factor * radius, Limits::min(), Limits::max());
 }
 
-float estimated_radius(const Estimates& estimates, size_t i, const SurfaceSpacing& spacing,
-                       const glm::dvec3& position) {
-  const PointKind kind = estimates.kinds[i];
-  const float radius = estimates.radii[i];
-  return kind == PointKind::kStated ? radius : to_radius(limited_radius(kind, double{radius}, spacing.at(position)));
+/// `around`: the radius of the surfaces around.
+float estimated_radius(const Estimates& estimates, size_t i, float around) {
+  return to_radius(limited_radius(estimates.kinds[i], double{estimates.radii[i]}, double{around}));
+}
+
+/// True if the estimate of any radius is needed.
+bool any_estimated(std::span<const RadiusDecision> decisions) {
+  return std::any_of(decisions.begin(), decisions.end(),
+                     [](const RadiusDecision& decision) { return decision.estimated() > 0; });
 }
 
 }  // namespace
@@ -193,12 +197,13 @@ void apply_radii(std::span<const RadiusDecision> decisions, std::span<const size
   });
   cloud.radii.resize(cloud.size(), 0.0F);
   std::vector<uint8_t> scatter(cloud.size());
+  const std::vector<float> around = any_estimated(decisions) ? spacing.at_all(cloud.positions) : std::vector<float>();
   for_each_point_parallel(cloud, inputs, [&](size_t i, size_t input) {
     const RadiusDecision& decision = decisions[input];
     if (decision.outcome != RadiusOutcome::kEstimated && is_radius(cloud.radii[i])) {
       cloud.radii[i] = scaled(cloud.radii[i], decision.factor);
     } else {
-      cloud.radii[i] = estimated_radius(estimates, i, spacing, cloud.positions[i]);
+      cloud.radii[i] = estimated_radius(estimates, i, around[i]);
       scatter[i] = estimates.kinds[i] == PointKind::kScatter ? 1 : 0;
     }
   });

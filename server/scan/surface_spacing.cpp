@@ -2,12 +2,20 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
 #include <limits>
-#include <nanoflann.hpp>
+#include <optional>
 #include <tuple>
-#include <utility>
+
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_sort.h>
 
 #include "base/hash.h"
+#include "base/vector_clones.h"
+#include "geometry/morton.h"
+#include "geometry/morton_tree.h"
+#include "scan/nearest_list.h"
 
 namespace surfcast::scan {
 namespace {
@@ -20,29 +28,75 @@ constexpr uint64_t kMostSamples = uint64_t{1} << 20;
 constexpr size_t kAsked = 6;
 constexpr int kMutual = 2;
 
-/// Adapter for nanoflann.
-struct Positions {
-  std::vector<glm::dvec3> local;
+using geometry::Box;
+using geometry::MortonTree;
+using Nearest = NearestList<kNearest>;
 
-  // nanoflann requires these names.
-  [[nodiscard]] size_t kdtree_get_point_count() const { return local.size(); }
-  [[nodiscard]] double kdtree_get_pt(uint32_t sample, size_t axis) const {
-    return local[sample][static_cast<int>(axis)];
+/// A sample, by the cell in which it lies. The order decides between equally near samples.
+struct Entry {
+  uint64_t code = 0;
+  SurfaceSample sample;
+
+  [[nodiscard]] auto key() const {
+    const glm::dvec3& p = sample.position;
+    return std::tuple(code, p.x, p.y, p.z, sample.radius);
   }
-  template <typename Bounds>
-  bool kdtree_get_bbox(Bounds&) const {
-    return false;
+  bool operator<(const Entry& other) const { return key() < other.key(); }
+};
+
+std::vector<Entry> sort_samples(std::span<const SurfaceSample> samples) {
+  std::vector<Entry> entries(samples.size());
+  tbb::parallel_for(size_t{0}, samples.size(), [&](size_t i) {
+    entries[i] = {geometry::morton_code({glm::dvec3(0), 1}, samples[i].position), samples[i]};
+  });
+  tbb::parallel_sort(entries);
+  return entries;
+}
+
+/// Places that are worked on together, and the most samples around them. Where there are more, the run is halved.
+constexpr size_t kRun = 32;
+constexpr size_t kMostNear = 256;
+
+/// Samples around a run of places as arrays for vector instructions, in ascending order of their numbers.
+struct NearSamples {
+  size_t count = 0;
+  alignas(64) std::array<double, kMostNear> x;
+  alignas(64) std::array<double, kMostNear> y;
+  alignas(64) std::array<double, kMostNear> z;
+  alignas(64) std::array<double, kMostNear> squared_distances;
+  std::array<uint32_t, kMostNear> numbers;
+
+  void add(uint32_t number, const glm::dvec3& position) {
+    x[count] = position.x;
+    y[count] = position.y;
+    z[count] = position.z;
+    numbers[count++] = number;
   }
 };
 
-using Tree = nanoflann::KDTreeSingleIndexAdaptor<nanoflann::L2_Simple_Adaptor<double, Positions, double, uint32_t>,
-                                                 Positions, 3, uint32_t>;
+/// Finds the distances of all samples to a place; each is the same expression as squared_distance().
+SURFCAST_VECTOR_CLONES void measure(const glm::dvec3& from, NearSamples& near) {
+  const glm::dvec3 p = from;
+  const size_t count = near.count;
+  for (size_t i = 0; i < count; ++i) {
+    const double dx = near.x[i] - p.x;
+    const double dy = near.y[i] - p.y;
+    const double dz = near.z[i] - p.z;
+    near.squared_distances[i] = dx * dx + dy * dy + dz * dz;
+  }
+}
 
-bool before(const SurfaceSample& a, const SurfaceSample& b) {
-  const auto key = [](const SurfaceSample& s) {
-    return std::tuple(s.position.x, s.position.y, s.position.z, s.radius);
-  };
-  return key(a) < key(b);
+/// The nearest of the samples, at most `degree`, provided that they are at most as far away as `bound`.
+Nearest nearest_of(const NearSamples& near, size_t degree, double bound) {
+  std::array<uint32_t, kMostNear> inside;
+  size_t count = 0;
+  for (uint32_t i = 0; i < near.count; ++i) {
+    inside[count] = i;
+    count += near.squared_distances[i] <= bound ? 1 : 0;
+  }
+  Nearest nearest(degree);
+  for (const uint32_t i : std::span(inside).first(count)) nearest.add({near.squared_distances[i], near.numbers[i]});
+  return nearest;
 }
 
 }  // namespace
@@ -63,44 +117,114 @@ bool is_sampled(const Sites& sites, const NeighbourGraph& graph, uint32_t site, 
 
 struct SurfaceSpacing::Index {
   LocalFrame frame;
+  std::vector<glm::dvec3> positions;
   std::vector<float> radii;
-  Positions positions;
-  Tree tree;
+  std::optional<MortonTree> tree;  ///< if there are samples
 
-  Index(const geometry::Box& bounds, std::vector<float> sample_radii, Positions local)
-      : frame(bounds),
-        radii(std::move(sample_radii)),
-        positions(std::move(local)),
-        tree(3, positions, nanoflann::KDTreeSingleIndexAdaptorParams(12)) {}
+  Index(const Box& bounds, std::span<const SurfaceSample> samples) : frame(bounds) {
+    std::vector<uint64_t> codes;
+    for (const Entry& entry : sort_samples(samples)) {
+      codes.push_back(entry.code);
+      positions.push_back(entry.sample.position);
+      radii.push_back(entry.sample.radius);
+    }
+    if (!samples.empty()) tree.emplace(positions, codes);
+  }
+
+  [[nodiscard]] size_t degree() const { return std::min(kNearest, radii.size()); }
+
+  [[nodiscard]] Nearest nearest(const glm::dvec3& local) const {
+    Nearest nearest(degree());
+    double bound = nearest.bound();
+    tree->nearest_first(local, bound, [&](const MortonTree::Run& run) {
+      for (uint32_t i = run.first; i < run.last; ++i) nearest.add({squared_distance(positions[i], local), i});
+      bound = nearest.bound();
+    });
+    return nearest;
+  }
+
+  [[nodiscard]] float median(const Nearest& nearest) const {
+    std::array<float, kNearest> sorted{};
+    const auto end = std::transform(nearest.all().begin(), nearest.all().end(), sorted.begin(),
+                                    [this](const Found& found) { return radii[found.second]; });
+    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(nearest.all().size() / 2);
+    std::nth_element(sorted.begin(), middle, end);
+    return *middle;
+  }
+
+  /// Finds all samples that are among the nearest of any place in the box. False if they are too many.
+  bool gather(const Box& box, NearSamples& near) const {
+    near.count = 0;
+    // The nearest samples of a place are at most this much farther away from it than those of the centre from that;
+    // from the centre, once more.
+    const glm::dvec3 centre = box.centre();
+    const double reach = (std::sqrt(nearest(centre).bound()) + glm::length(box.size())) * (1 + 1e-9);
+    bool fits = true;
+    tree->for_each_near({centre, centre}, reach * reach, [&](const MortonTree::Run& run) {
+      for (uint32_t i = run.first; i < run.last && fits; ++i) {
+        if (squared_distance(positions[i], centre) > reach * reach) continue;
+        fits = near.count < kMostNear;
+        if (fits) near.add(i, positions[i]);
+      }
+      return fits;
+    });
+    return fits;
+  }
+
+  void find(std::span<const glm::dvec3> places, std::span<float> found) const {
+    thread_local NearSamples near;
+    Box box;
+    for (const glm::dvec3& place : places) box.include(place);
+    if (places.size() == 1) {
+      found[0] = median(nearest(places[0]));
+    } else if (gather(box, near)) {
+      find_together(places, near, found);
+    } else {
+      const size_t middle = places.size() / 2;
+      find(places.first(middle), found.first(middle));
+      find(places.subspan(middle), found.subspan(middle));
+    }
+  }
+
+  void find_together(std::span<const glm::dvec3> places, NearSamples& near, std::span<float> found) const {
+    double bound = std::numeric_limits<double>::infinity();
+    for (size_t i = 0; i < places.size(); ++i) {
+      measure(places[i], near);
+      const Nearest nearest = nearest_of(near, degree(), bound);
+      found[i] = median(nearest);
+      if (i + 1 == places.size()) break;
+      // The nearest samples of this place are at most this far from the next one.
+      const double step = std::sqrt(squared_distance(places[i], places[i + 1]));
+      const double farthest = std::sqrt(nearest.bound()) + step;
+      bound = farthest * farthest * (1 + 1e-9);
+    }
+  }
 };
 
-SurfaceSpacing::SurfaceSpacing(std::vector<SurfaceSample> samples, const geometry::Box& bounds) {
-  std::sort(samples.begin(), samples.end(), before);
-  std::vector<float> radii;
-  Positions positions;
-  for (const SurfaceSample& sample : samples) {
-    radii.push_back(sample.radius);
-    positions.local.push_back(sample.position);
-  }
-  index_ = std::make_unique<Index>(bounds, std::move(radii), std::move(positions));
-}
+SurfaceSpacing::SurfaceSpacing(std::vector<SurfaceSample> samples, const geometry::Box& bounds)
+    : index_(std::make_unique<Index>(bounds, samples)) {}
 
 SurfaceSpacing::SurfaceSpacing(SurfaceSpacing&&) noexcept = default;
 SurfaceSpacing& SurfaceSpacing::operator=(SurfaceSpacing&&) noexcept = default;
 SurfaceSpacing::~SurfaceSpacing() = default;
 
 double SurfaceSpacing::at(const glm::dvec3& position) const {
-  if (index_->radii.empty()) return std::numeric_limits<double>::infinity();
-  const glm::dvec3 local = index_->frame.to_local(position);
-  std::array<uint32_t, kNearest> ids{};
-  std::array<double, kNearest> squared_distances{};
-  const size_t found = index_->tree.knnSearch(&local.x, kNearest, ids.data(), squared_distances.data());
-  std::array<float, kNearest> radii{};
-  const auto end = std::transform(ids.begin(), ids.begin() + static_cast<std::ptrdiff_t>(found), radii.begin(),
-                                  [this](uint32_t id) { return index_->radii[id]; });
-  const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(found / 2);
-  std::nth_element(radii.begin(), middle, end);
-  return double{*middle};
+  return double{at_all({&position, 1}).front()};
+}
+
+std::vector<float> SurfaceSpacing::at_all(std::span<const glm::dvec3> positions) const {
+  std::vector<float> found(positions.size(), std::numeric_limits<float>::infinity());
+  if (!index_->tree) return found;
+  const size_t runs = (positions.size() + kRun - 1) / kRun;
+  tbb::parallel_for(size_t{0}, runs, [&](size_t run) {
+    std::array<glm::dvec3, kRun> places;
+    const size_t first = run * kRun;
+    const size_t count = std::min(kRun, positions.size() - first);
+    std::transform(positions.begin() + first, positions.begin() + first + count, places.begin(),
+                   [this](const glm::dvec3& p) { return index_->frame.to_local(p); });
+    index_->find(std::span(places).first(count), std::span(found).subspan(first, count));
+  });
+  return found;
 }
 
 }  // namespace surfcast::scan

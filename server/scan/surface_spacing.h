@@ -28,7 +28,8 @@ uint64_t points_per_sample(uint64_t points);
 bool is_sampled(const Sites& sites, const NeighbourGraph& graph, uint32_t site, uint64_t per_sample);
 
 /// The radius of the surfaces around a place: the median of the radii of the eight nearest samples, which stand for 64
-/// points. The samples are those of a whole cloud, so the result does not depend on how the cloud is cut into parts.
+/// points; of equally near ones, those that come first in Morton order. The samples are those of a whole cloud, so the
+/// result does not depend on how the cloud is cut into parts.
 class SurfaceSpacing {
  public:
   /// `bounds` are those of the whole cloud. The order of the samples does not affect the result.
@@ -40,6 +41,9 @@ class SurfaceSpacing {
 
   /// World units; infinite without samples. Thread-safe.
   [[nodiscard]] double at(const glm::dvec3& position) const;
+
+  /// The same for many places, on all threads. Fast where places that follow each other are near each other.
+  [[nodiscard]] std::vector<float> at_all(std::span<const glm::dvec3> positions) const;
 
  private:
   struct Index;

@@ -1,8 +1,11 @@
 #include "scan/surface_spacing.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <random>
+#include <utility>
 
 #include <gtest/gtest.h>
 
@@ -55,6 +58,38 @@ TEST(SurfaceSpacing, DoesNotDependOnTheOrderOfTheSamples) {
     const glm::dvec3 p(at(random), at(random), at(random));
     EXPECT_EQ(spacing.at(p), other.at(p));
   }
+}
+
+/// The median radius of the eight samples that are nearest by an exhaustive search.
+double exhaustive_median(const std::vector<SurfaceSample>& samples, const glm::dvec3& place) {
+  const glm::dvec3 local = LocalFrame(kBounds).to_local(place);
+  std::vector<std::pair<double, float>> found;
+  for (const SurfaceSample& sample : samples) {
+    found.emplace_back(glm::distance(local, sample.position), sample.radius);
+  }
+  std::partial_sort(found.begin(), found.begin() + 8, found.end());
+  std::array<float, 8> radii{};
+  std::transform(found.begin(), found.begin() + 8, radii.begin(), [](const auto& entry) { return entry.second; });
+  std::sort(radii.begin(), radii.end());
+  return double{radii[4]};
+}
+
+TEST(SurfaceSpacing, AtManyPlacesIsThatOfAnExhaustiveSearchAtEach) {
+  std::mt19937 random(3);
+  std::normal_distribution<double> near(0, 0.01);  // a dense cluster in sparse surroundings
+  std::uniform_real_distribution<double> anywhere(-9, 9);
+  std::vector<SurfaceSample> samples;
+  std::vector<glm::dvec3> places;
+  for (int i = 0; i < 1200; ++i) {
+    const bool dense = i % 3 != 0;
+    const auto at = [&] { return dense ? 2 + near(random) : anywhere(random); };
+    samples.push_back(sample_at({at(), at(), at()}, static_cast<float>(1 + i % 13)));
+    places.emplace_back(at(), at(), at());
+  }
+  std::sort(places.begin(), places.begin() + 600, [](const glm::dvec3& a, const glm::dvec3& b) { return a.x < b.x; });
+  const std::vector<float> found = SurfaceSpacing(samples, kBounds).at_all(places);
+  ASSERT_EQ(found.size(), places.size());
+  for (size_t i = 0; i < places.size(); ++i) ASSERT_EQ(double{found[i]}, exhaustive_median(samples, places[i])) << i;
 }
 
 TEST(SurfaceSpacing, IsNoLimitWithoutSurfaces) {
