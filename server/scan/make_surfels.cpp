@@ -11,7 +11,7 @@
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
-#include "scan/estimate_normals.h"
+#include "scan/neighbour_offsets.h"
 #include "scan/neighbour_spread.h"
 #include "scan/neighbours.h"
 #include "scan/spacing.h"
@@ -122,31 +122,57 @@ std::vector<SurfaceSample> sample_surfaces(const Sites& sites, const NeighbourGr
   return samples;
 }
 
+/// True if no radius is estimated.
+bool radii_kept(const surfel::SurfelCloud& cloud, const PartFrame& frame) {
+  return frame.radii == RadiusPolicy::kKeep && all_stated(cloud.radii);
+}
+
+/// What the neighbours of every site tell, found while they are at hand.
+struct Findings {
+  NeighbourGraph graph;
+  std::vector<glm::vec3> normals;    ///< those of the scan where it has them
+  std::vector<RadiusGuess> guesses;  ///< of radii; none if no radius is estimated
+};
+
+/// The normal of a site: that of the scan, or the direction of least variance of its neighbourhood.
+glm::vec3 normal_of(const SiteFacts& facts, size_t site, const Covariance& covariance) {
+  return facts.known[site] == SiteDirection::kStored ? facts.towards[site] : glm::vec3(least_axis(covariance));
+}
+
+/// Sets `facts.scatter`, too, if radii are estimated.
+Findings study_neighbourhoods(const Sites& sites, bool radii, SiteFacts& facts) {
+  Findings findings{{}, std::vector<glm::vec3>(sites.size(), glm::vec3(0, 0, 1)), {}};
+  for (size_t i = 0; i < sites.size(); ++i) {
+    if (facts.known[i] == SiteDirection::kStored) findings.normals[i] = facts.towards[i];
+  }
+  if (radii) findings.guesses.resize(sites.size());
+  const size_t visited = radii ? kWideNeighbours : kDegree;
+  findings.graph = find_neighbours(sites, kDegree, visited, [&](uint32_t site, std::span<const uint32_t> neighbours) {
+    if (!radii && facts.known[site] == SiteDirection::kStored) return;
+    const NeighbourOffsets offsets(sites, site, neighbours);
+    const Covariances covariances = covariances_of(offsets);
+    findings.normals[site] = normal_of(facts, site, covariances.near);
+    if (!radii) return;
+    facts.scatter[site] = is_scatter(covariances, offsets.count) ? 1 : 0;
+    findings.guesses[site] = guess_radius(offsets, kDegree, findings.normals[site], sites.unit);
+  });
+  return findings;
+}
+
 /// Estimates the radius of every surfel and compares those stated with it, unless all are stated and kept.
 void find_radii(const Sites& sites, const NeighbourGraph& graph, const SiteFacts& facts,
-                const std::vector<glm::vec3>& normals, const PartFrame& frame, PartSurfels& made) {
+                std::vector<RadiusGuess> guesses, const PartFrame& frame, PartSurfels& made) {
   const surfel::SurfelCloud& cloud = made.cloud;
   std::vector<float> on_surface;
-  if (frame.radii == RadiusPolicy::kKeep && all_stated(cloud.radii)) {
+  if (guesses.empty()) {
     made.estimates = {cloud.radii, std::vector<PointKind>(cloud.size(), PointKind::kStated)};
   } else {
-    on_surface = estimate_radii(sites, graph, normals);
+    on_surface = settle_radii(graph, guesses);
+    std::vector<RadiusGuess>().swap(guesses);
     made.estimates = estimates_of(sites, graph, facts, on_surface);
     made.samples = sample_surfaces(sites, graph, facts, on_surface, frame);
   }
   made.radii = compare_radii(cloud, frame.inputs, sites, graph, facts.places, facts.scatter, on_surface);
-}
-
-/// Normals of the sites: those of the scan where it has them, estimated ones elsewhere.
-std::vector<glm::vec3> site_normals(const Sites& sites, const NeighbourGraph& graph, const SiteFacts& facts) {
-  const bool all_stored = std::all_of(facts.known.begin(), facts.known.end(),
-                                      [](SiteDirection known) { return known == SiteDirection::kStored; });
-  if (all_stored) return facts.towards;
-  std::vector<glm::vec3> normals = estimate_normals(sites, graph);
-  for (size_t i = 0; i < normals.size(); ++i) {
-    if (facts.known[i] == SiteDirection::kStored) normals[i] = facts.towards[i];
-  }
-  return normals;
 }
 
 /// Copies the normals of the sites to points without one. Returns the tree of each point, or kNoTree.
@@ -179,15 +205,11 @@ void SurfelReport::add(const SurfelReport& part) {
 PartSurfels make_surfels(surfel::SurfelCloud cloud, const PartFrame& frame, PartSigns& signs, SurfelReport& report) {
   const Sites sites = find_sites(cloud.positions, frame.bounds);
   SiteFacts facts = find_site_facts(cloud, sites, frame);
-  const NeighbourGraph graph =
-      find_neighbours(sites, kDegree, kWideNeighbours, [&](uint32_t site, std::span<const uint32_t> neighbours) {
-        facts.scatter[site] = is_scatter(sites, site, neighbours) ? 1 : 0;
-      });
-  std::vector<glm::vec3> normals = site_normals(sites, graph, facts);
+  Findings findings = study_neighbourhoods(sites, !radii_kept(cloud, frame), facts);
   PartSurfels made;
   made.cloud = std::move(cloud);
-  find_radii(sites, graph, facts, normals, frame, made);
-  made.trees = fill_normals(sites, graph, facts, std::move(normals), made.cloud, signs, report);
+  find_radii(sites, findings.graph, facts, std::move(findings.guesses), frame, made);
+  made.trees = fill_normals(sites, findings.graph, facts, std::move(findings.normals), made.cloud, signs, report);
   return made;
 }
 

@@ -2,39 +2,135 @@
 
 #include <Eigen/Eigenvalues>
 #include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <utility>
 
 #include "base/contract.h"
+#include "base/vector_clones.h"
 
 namespace surfcast::scan {
+namespace {
 
-Spread neighbour_spread(const Sites& sites, uint32_t site, std::span<const uint32_t> neighbours) {
-  SURFCAST_EXPECTS(!neighbours.empty());
-  const auto difference = [&](uint32_t j) {
-    const glm::dvec3 d = sites.positions[j] - sites.positions[site];
-    return Eigen::Vector3d(d.x, d.y, d.z);
-  };
-  // Relative to the farthest neighbour: squares are then of the order of 1 at any scale.
-  const double inverse = 1 / difference(neighbours.back()).cwiseAbs().maxCoeff();
-  Eigen::Vector3d sum = Eigen::Vector3d::Zero();
-  Eigen::Matrix3d products = Eigen::Matrix3d::Zero();
-  for (const uint32_t j : neighbours) {
-    const Eigen::Vector3d d = difference(j) * inverse;
-    sum += d;
-    products += d * d.transpose();
-  }
-  const auto count = static_cast<double>(neighbours.size() + 1);
-  products -= sum * sum.transpose() / count;
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-  solver.computeDirect(products, Eigen::EigenvaluesOnly);
-  const Eigen::Vector3d& values = solver.eigenvalues();
-  // Rounding may leave the least one slightly below 0.
-  return {std::max(values[0], 0.0), std::max(values[1], 0.0), values[2]};
+/// Neighbours whose terms are added up side by side.
+constexpr size_t kLanes = 4;
+static_assert(kNearNeighbours % kLanes == 0 && kLargestDegree % kLanes == 0);
+
+/// x, y, z, xx, yy, zz, yz, zx and xy.
+constexpr size_t kTerms = 9;
+using Sums = std::array<double, kTerms>;
+using LaneSums = std::array<std::array<double, kLanes>, kTerms>;
+
+Sums total(const LaneSums& lanes) {
+  Sums sums;
+  for (size_t t = 0; t < kTerms; ++t) sums[t] = (lanes[t][0] + lanes[t][1]) + (lanes[t][2] + lanes[t][3]);
+  return sums;
 }
 
-bool is_scatter(const Sites& sites, uint32_t site, std::span<const uint32_t> neighbours) {
-  if (neighbours.size() < kWideNeighbours) return false;
-  return !lies_on_surface(neighbour_spread(sites, site, neighbours.first(kNearNeighbours)),
-                          neighbour_spread(sites, site, neighbours.first(kWideNeighbours)));
+/// Adds the terms of the neighbours from `first` to before `last`, multiples of kLanes.
+SURFCAST_VECTOR_CLONES void add_terms(const NeighbourOffsets& neighbours, size_t first, size_t last, LaneSums& sums) {
+  LaneSums s = sums;
+  for (size_t i = first; i < last; i += kLanes) {
+    for (size_t lane = 0; lane < kLanes; ++lane) {
+      const double x = neighbours.x[i + lane];
+      const double y = neighbours.y[i + lane];
+      const double z = neighbours.z[i + lane];
+      s[0][lane] += x;
+      s[1][lane] += y;
+      s[2][lane] += z;
+      s[3][lane] += x * x;
+      s[4][lane] += y * y;
+      s[5][lane] += z * z;
+      s[6][lane] += y * z;
+      s[7][lane] += z * x;
+      s[8][lane] += x * y;
+    }
+  }
+  sums = s;
+}
+
+/// `count`: of the site and its neighbours.
+Covariance covariance_of(const Sums& sums, size_t count) {
+  const glm::dvec3 sum(sums[0], sums[1], sums[2]);
+  const glm::dvec3 mean = sum / static_cast<double>(count);
+  const glm::dvec3 squares = glm::dvec3(sums[3], sums[4], sums[5]) - sum * mean;
+  const glm::dvec3 products =
+      glm::dvec3(sums[6], sums[7], sums[8]) - glm::dvec3(sum.y * mean.z, sum.z * mean.x, sum.x * mean.y);
+  const double inverse = 1 / (squares.x + squares.y + squares.z);  // positive: there are two distinct sites
+  return {squares * inverse, products * inverse};
+}
+
+/// The largest root of t^3 - 3 t - 2 c, for c from 0 to 1: 2 cos(acos(c) / 3). The quadratic start is off by 10^-3 at
+/// most, and each of Newton's steps squares the error.
+double largest_root(double c) {
+  double t = 1.7320508 + (0.3215 - 0.05355 * c) * c;
+  for (int step = 0; step < 3; ++step) t -= (t * t * t - 3 * t - 2 * c) / (3 * (t * t - 1));
+  return t;
+}
+
+/// Columns of the matrix less `value` on its diagonal.
+std::array<glm::dvec3, 3> columns(const Covariance& m, double value) {
+  const glm::dvec3 d = m.diagonal - value;
+  return {{{d.x, m.mixed.z, m.mixed.y}, {m.mixed.z, d.y, m.mixed.x}, {m.mixed.y, m.mixed.x, d.z}}};
+}
+
+/// By iteration, for matrices of which two eigenvalues are nearly equal.
+glm::dvec3 least_axis_by_iteration(const Covariance& m) {
+  Eigen::Matrix3d matrix;
+  matrix << m.diagonal.x, m.mixed.z, m.mixed.y, m.mixed.z, m.diagonal.y, m.mixed.x, m.mixed.y, m.mixed.x, m.diagonal.z;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(matrix);
+  const Eigen::Vector3d v = solver.eigenvectors().col(0);
+  const bool usable = v.allFinite() && std::abs(v.squaredNorm() - 1) < 1e-3;
+  return usable ? glm::normalize(glm::dvec3(v.x(), v.y(), v.z())) : glm::dvec3(0, 0, 1);
+}
+
+}  // namespace
+
+Covariances covariances_of(const NeighbourOffsets& neighbours) {
+  SURFCAST_EXPECTS(neighbours.count > 0);
+  LaneSums sums{};
+  add_terms(neighbours, 0, kNearNeighbours, sums);
+  const size_t near = std::min(neighbours.count, kNearNeighbours);
+  Covariances covariances{covariance_of(total(sums), near + 1), {}};
+  if (neighbours.count > kNearNeighbours) add_terms(neighbours, kNearNeighbours, kLargestDegree, sums);
+  covariances.wide = covariance_of(total(sums), neighbours.count + 1);
+  return covariances;
+}
+
+Spread spread_of(const Covariance& m) {
+  // The matrix is mean I + p B, where B has the eigenvalues t of t^3 - 3 t - 2 c (Smith 1961).
+  const double mean = (m.diagonal.x + m.diagonal.y + m.diagonal.z) / 3;
+  const glm::dvec3 d = m.diagonal - mean;
+  const double p = std::sqrt((glm::dot(d, d) + 2 * glm::dot(m.mixed, m.mixed)) / 6);
+  if (!(p > 0)) return {mean, mean, mean};
+  const std::array<glm::dvec3, 3> b = columns(m, mean);
+  const double c = std::clamp(glm::dot(b[0], glm::cross(b[1], b[2])) / (2 * p * p * p), -1.0, 1.0);
+  const double apart = largest_root(std::abs(c));  // the root that is apart from the other two, but for its sign
+  const double half = 0.5 * std::sqrt(std::max(12 - 3 * apart * apart, 0.0));
+  const std::array<double, 3> t = c < 0 ? std::array{-apart, 0.5 * apart - half, 0.5 * apart + half}
+                                        : std::array{-0.5 * apart - half, -0.5 * apart + half, apart};
+  // Rounding may leave the least one slightly below 0.
+  return {std::max(mean + p * t[0], 0.0), std::max(mean + p * t[1], 0.0), mean + p * t[2]};
+}
+
+glm::dvec3 least_axis(const Covariance& m) {
+  constexpr double kTooClose = 1e-24;
+  const std::array<glm::dvec3, 3> c = columns(m, spread_of(m).least);
+  // All columns are perpendicular to the axis. The one with the largest entry on the diagonal is not short.
+  const glm::dvec3 size = glm::abs(glm::dvec3(c[0].x, c[1].y, c[2].z));
+  const size_t longest = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
+  const glm::dvec3 first = glm::cross(c[longest], c[(longest + 1) % 3]);
+  const glm::dvec3 second = glm::cross(c[longest], c[(longest + 2) % 3]);
+  const double squared_first = glm::dot(first, first);
+  const double squared_second = glm::dot(second, second);
+  if (!(std::max(squared_first, squared_second) > kTooClose)) return least_axis_by_iteration(m);
+  return squared_first > squared_second ? first / std::sqrt(squared_first) : second / std::sqrt(squared_second);
+}
+
+bool is_scatter(const Covariances& covariances, size_t neighbours) {
+  if (neighbours < kWideNeighbours) return false;
+  return !lies_on_surface(spread_of(covariances.near), spread_of(covariances.wide));
 }
 
 }  // namespace surfcast::scan

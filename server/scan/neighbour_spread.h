@@ -1,19 +1,37 @@
 #pragma once
 
-#include <cstdint>
-#include <span>
+#include <cstddef>
+#include <glm/vec3.hpp>
 
 #include "scan/classify_points.h"
-#include "scan/sites.h"
+#include "scan/neighbour_offsets.h"
 
 namespace surfcast::scan {
 
-/// The spread of a site and its neighbours, relative to the squared distance of the farthest one. `neighbours` must
-/// not be empty.
-Spread neighbour_spread(const Sites& sites, uint32_t site, std::span<const uint32_t> neighbours);
+/// The covariance of a site and some of its neighbours, scaled to a trace of 1.
+struct Covariance {
+  glm::dvec3 diagonal{0};  ///< xx, yy and zz
+  glm::dvec3 mixed{0};     ///< yz, zx and xy
+};
 
-/// True if a site lies on no surface. `neighbours` are its nearest, nearest first. With fewer than kWideNeighbours
-/// nothing is known, and the site counts as a surface.
-bool is_scatter(const Sites& sites, uint32_t site, std::span<const uint32_t> neighbours);
+/// The covariances of a site with its kNearNeighbours and with all its neighbours, found in one pass.
+struct Covariances {
+  Covariance near;
+  Covariance wide;
+};
+
+/// There must be a neighbour.
+Covariances covariances_of(const NeighbourOffsets& neighbours);
+
+/// The eigenvalues of the matrix, in closed form.
+Spread spread_of(const Covariance& covariance);
+
+/// The direction of least variance (Hoppe et al. 1992, section 3.2): the eigenvector of the smallest eigenvalue. Unit;
+/// the sign is arbitrary. Neighbourhoods on a line get a direction perpendicular to it.
+glm::dvec3 least_axis(const Covariance& covariance);
+
+/// True if a site lies on no surface. `neighbours`: how many it has. With fewer than kWideNeighbours nothing is known,
+/// and the site counts as a surface.
+bool is_scatter(const Covariances& covariances, size_t neighbours);
 
 }  // namespace surfcast::scan

@@ -29,20 +29,24 @@ constexpr double kReachShare = 0.6;
 constexpr double kBorderShare = 0.5;
 /// With fewer neighbours, a border cannot be distinguished from the interior.
 constexpr size_t kEnoughNeighbours = 8;
+/// How many of the six nearest neighbours of a site on a border have an opening to the same side, at least, and what
+/// counts as the same.
+constexpr size_t kAgreeing = 2;
+constexpr double kSameSide = 0.7;  // cosine
 
 std::span<const uint32_t> nearest_of(const NeighbourGraph& graph, size_t site) {
   return graph.of(site).first(std::min(kNearest, graph.degree));
 }
 
-/// The radius of a site as determined by its own neighbours.
-double own_radius(const Sites& sites, size_t i, std::span<const uint32_t> nearest, const Surroundings& around) {
-  const auto distance_to = [&](uint32_t j) { return glm::distance(sites.positions[i], sites.positions[j]); };
-  const double limit = kLargestRatio * distance_to(nearest[std::min(kOrdinary, nearest.size() - 1)]);
-  double sum = 0;
-  for (const uint32_t j : nearest) sum += std::min<double>(distance_to(j), limit);
-  const double mean = sum / static_cast<double>(nearest.size());
-  if (around.outwards != glm::dvec3(0)) return kBorderShare * mean;
-  return std::max(mean, kReachShare * std::min(around.reach, limit));
+/// True if at least two of the six nearest neighbours have an opening to the same side.
+bool on_border(const NeighbourGraph& graph, size_t site, std::span<const RadiusGuess> guesses) {
+  const glm::dvec3 opening(guesses[site].opening);
+  if (opening == glm::dvec3(0)) return false;
+  size_t agreeing = 0;
+  for (const uint32_t j : nearest_of(graph, site)) {
+    agreeing += glm::dot(opening, glm::dvec3(guesses[j].opening)) > kSameSide ? 1 : 0;
+  }
+  return agreeing >= kAgreeing;
 }
 
 double median_radius(std::span<const uint32_t> sites, const std::vector<float>& radii) {
@@ -59,21 +63,41 @@ float to_radius(double length) {
   return static_cast<float>(std::clamp<double>(length, Limits::min(), Limits::max()));
 }
 
-std::vector<float> estimate_radii(const Sites& sites, const NeighbourGraph& graph,
-                                  const std::vector<glm::vec3>& normals) {
-  if (graph.degree == 0) return std::vector<float>(sites.size(), 1.0F);
-  const std::vector<Surroundings> surroundings = graph.degree >= kEnoughNeighbours
-                                                     ? find_surroundings(sites, graph, normals)
-                                                     : std::vector<Surroundings>(sites.size());
-  std::vector<float> own(sites.size());
-  tbb::parallel_for(size_t{0}, sites.size(), [&](size_t i) {
-    own[i] = to_radius(own_radius(sites, i, nearest_of(graph, i), surroundings[i]) * sites.unit);
+RadiusGuess guess_radius(const NeighbourOffsets& neighbours, size_t count, const glm::vec3& normal, double unit) {
+  count = std::min(count, neighbours.count);
+  if (count == 0) return {};
+  const size_t nearest = std::min(kNearest, count);
+  const double limit = kLargestRatio * glm::length(neighbours[std::min(kOrdinary, nearest - 1)]);
+  double sum = 0;
+  for (size_t i = 0; i < nearest; ++i) sum += std::min<double>(glm::length(neighbours[i]), limit);
+  const double mean = sum / static_cast<double>(nearest);
+  const Surroundings around =
+      count < kEnoughNeighbours ? Surroundings{} : find_surroundings(neighbours, count, glm::dvec3(normal));
+  return {to_radius(std::max(mean, kReachShare * std::min(around.reach, limit)) * unit),
+          to_radius(kBorderShare * mean * unit), glm::vec3(around.opening)};
+}
+
+std::vector<float> settle_radii(const NeighbourGraph& graph, std::span<const RadiusGuess> guesses) {
+  std::vector<float> own(guesses.size());
+  tbb::parallel_for(size_t{0}, own.size(), [&](size_t i) {
+    own[i] = on_border(graph, i, guesses) ? guesses[i].on_border : guesses[i].inside;
   });
-  std::vector<float> radii(sites.size());
-  tbb::parallel_for(size_t{0}, sites.size(), [&](size_t i) {
+  if (graph.degree == 0) return own;
+  std::vector<float> radii(own.size());
+  tbb::parallel_for(size_t{0}, radii.size(), [&](size_t i) {
     radii[i] = to_radius(std::min<double>(own[i], kLargestRatio * median_radius(nearest_of(graph, i), own)));
   });
   return radii;
+}
+
+std::vector<float> estimate_radii(const Sites& sites, const NeighbourGraph& graph,
+                                  const std::vector<glm::vec3>& normals) {
+  std::vector<RadiusGuess> guesses(sites.size());
+  tbb::parallel_for(size_t{0}, sites.size(), [&](size_t i) {
+    const NeighbourOffsets neighbours(sites, static_cast<uint32_t>(i), graph.of(i));
+    guesses[i] = guess_radius(neighbours, graph.degree, normals[i], sites.unit);
+  });
+  return settle_radii(graph, guesses);
 }
 
 }  // namespace surfcast::scan

@@ -3,28 +3,23 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <glm/common.hpp>
 #include <glm/geometric.hpp>
-#include <glm/vec2.hpp>
 #include <limits>
 #include <numbers>
-#include <span>
 
-#include <tbb/parallel_for.h>
+#include "base/vector_clones.h"
 
 namespace surfcast::scan {
 namespace {
 
 constexpr size_t kMostNeighbours = 16;
-constexpr size_t kNearest = 6;
-constexpr size_t kAgreeing = 2;  ///< of the six nearest
 constexpr int kDirections = 8;
+constexpr double kNone = std::numeric_limits<double>::infinity();
 
 // At a straight border the open angle is 180 degrees less the irregularity of the samples, at a corner 270. Elsewhere
 // the angles between neighbours are about 60 degrees. Two wide angles mean that the neighbours lie on a scan line.
 constexpr double kOpen = 2.4;         // radians
 constexpr double kSecondOpen = 1.75;  // radians
-constexpr double kSameSide = 0.7;     // cosine
 
 struct Tangents {
   glm::dvec3 e0;
@@ -37,33 +32,48 @@ Tangents tangents_of(const glm::dvec3& n) {
   return {e0, glm::cross(n, e0)};
 }
 
-/// A neighbour in the tangent plane.
-struct Bearing {
-  glm::dvec2 flat{1, 0};        ///< its place along the tangents; (1, 0) for one exactly above or below the site
-  double squared_distance = 0;  ///< in space
-};
-
-/// The bearings of a site's neighbours.
+/// The neighbours in the tangent plane, as arrays for vector instructions.
 struct Bearings {
-  std::array<Bearing, kMostNeighbours> all{};
-  size_t count = 0;
+  using Numbers = std::array<double, kMostNeighbours>;
 
-  [[nodiscard]] std::span<const Bearing> span() const { return {all.data(), count}; }
+  size_t count = 0;
+  alignas(32) Numbers u;  ///< place along the tangents; (1, 0) for a neighbour exactly above or below the site
+  alignas(32) Numbers v;
+  /// Squared extents along the two of the eight directions between which a neighbour lies, see Surroundings::reach.
+  alignas(32) Numbers along_axis;
+  alignas(32) Numbers along_diagonal;
 };
 
-Bearings bearings_of(const Sites& sites, size_t site, std::span<const uint32_t> neighbours, const Tangents& t) {
-  Bearings bearings;
-  for (const uint32_t j : neighbours.first(std::min(neighbours.size(), kMostNeighbours))) {
-    const glm::dvec3 d = sites.positions[j] - sites.positions[site];
-    const glm::dvec2 flat(glm::dot(d, t.e0), glm::dot(d, t.e1));
-    bearings.all[bearings.count++] = {flat == glm::dvec2(0) ? glm::dvec2(1, 0) : flat, glm::dot(d, d)};
+SURFCAST_VECTOR_CLONES void find_bearings(const NeighbourOffsets& neighbours, const Tangents& t, Bearings& bearings) {
+  constexpr double kLeast = 0.5 * (1 + 1e-12);  // excludes neighbours at 45 degrees however they round
+  const glm::dvec3 e0 = t.e0;
+  const glm::dvec3 e1 = t.e1;
+  for (size_t i = 0; i < kMostNeighbours; ++i) {
+    const double x = neighbours.x[i];
+    const double y = neighbours.y[i];
+    const double z = neighbours.z[i];
+    const double flat_u = x * e0.x + y * e0.y + z * e0.z;
+    const double v = x * e1.x + y * e1.y + z * e1.z;
+    const double u = flat_u == 0 && v == 0 ? 1.0 : flat_u;
+    const double squared_distance = x * x + y * y + z * z;
+    const double squared_length = u * u + v * v;
+    // d / cos t, squared. `axis` and `diagonal` are the squares of the components along the directions, which are cos t
+    // times the length.
+    const double larger = std::max(std::abs(u), std::abs(v));
+    const double axis = larger * larger;
+    const double both = std::abs(u) + std::abs(v);
+    const double diagonal = 0.5 * both * both;
+    bearings.u[i] = u;
+    bearings.v[i] = v;
+    bearings.along_axis[i] = axis > kLeast * squared_length ? squared_distance * squared_length / axis : kNone;
+    bearings.along_diagonal[i] =
+        diagonal > kLeast * squared_length ? squared_distance * squared_length / diagonal : kNone;
   }
-  return bearings;
 }
 
 /// An octant of directions: bit 0 is set nearer to the second axis, bits 1 and 2 where x and y are negative.
-unsigned octant_of(const glm::dvec2& flat) {
-  return (std::abs(flat.y) > std::abs(flat.x) ? 1U : 0U) | (flat.x < 0 ? 2U : 0U) | (flat.y < 0 ? 4U : 0U);
+unsigned octant_of(double u, double v) {
+  return (std::abs(v) > std::abs(u) ? 1U : 0U) | (u < 0 ? 2U : 0U) | (v < 0 ? 4U : 0U);
 }
 
 /// The numbers of the two of the eight directions between which an octant lies: direction k is at k * 45 degrees.
@@ -72,49 +82,53 @@ constexpr std::array<uint8_t, 8> kDiagonalOfOctant = {1, 1, 3, 3, 7, 7, 5, 5};
 /// Octants by angle: octant k begins at k * 45 degrees.
 constexpr std::array<uint8_t, 8> kOctantByAngle = {0, 1, 3, 2, 7, 6, 4, 5};
 
-double reach_of(std::span<const Bearing> bearings) {
-  constexpr double kNone = std::numeric_limits<double>::infinity();
-  constexpr double kLeast = 0.5 * (1 + 1e-12);  // excludes neighbours at 45 degrees however they round
-  std::array<double, kDirections> nearest;      // squared extents
+double reach_of(const Bearings& bearings) {
+  std::array<double, kDirections> nearest;  // squared extents
   nearest.fill(kNone);
-  for (const Bearing& b : bearings) {
-    const unsigned octant = octant_of(b.flat);
-    const glm::dvec2 u = glm::abs(b.flat);
-    const double squared_length = glm::dot(u, u);
-    // d / cos t, squared. `squared` is that of the component along the direction, which is cos t times the length.
-    const auto see = [&](uint8_t direction, double squared) {
-      const double extent = squared > kLeast * squared_length ? b.squared_distance * squared_length / squared : kNone;
-      nearest[direction] = std::min(nearest[direction], extent);
-    };
-    const double larger = std::max(u.x, u.y);
-    see(kAxisOfOctant[octant], larger * larger);
-    see(kDiagonalOfOctant[octant], 0.5 * (u.x + u.y) * (u.x + u.y));
+  for (size_t i = 0; i < bearings.count; ++i) {
+    const unsigned octant = octant_of(bearings.u[i], bearings.v[i]);
+    double& axis = nearest[kAxisOfOctant[octant]];
+    double& diagonal = nearest[kDiagonalOfOctant[octant]];
+    axis = std::min(axis, bearings.along_axis[i]);
+    diagonal = std::min(diagonal, bearings.along_diagonal[i]);
   }
   double reach = 0;
   for (const double extent : nearest) reach = std::max(reach, extent < kNone ? extent : 0);
   return std::sqrt(reach);
 }
 
-/// False if no angle wider than kOpen can be without neighbours: it would contain two whole octants.
-bool may_be_open(std::span<const Bearing> bearings) {
+/// The sixteenth of all directions in which a neighbour lies: sixteenth k begins at k * 22.5 degrees.
+unsigned sixteenth_of(double u, double v) {
+  constexpr double kTangent = 0.41421356237309503;  // of 22.5 degrees
+  const unsigned octant = kOctantByAngle[octant_of(u, v)];
+  const double larger = std::max(std::abs(u), std::abs(v));
+  const unsigned off_axis = std::min(std::abs(u), std::abs(v)) > kTangent * larger ? 1 : 0;
+  return 2 * octant + (octant % 2 == 0 ? off_axis : 1 - off_axis);
+}
+
+/// False if no angle wider than kOpen can be without neighbours: it would contain five whole sixteenths.
+bool may_be_open(const Bearings& bearings) {
   unsigned occupied = 0;
-  for (const Bearing& b : bearings) occupied |= 1U << kOctantByAngle[octant_of(b.flat)];
-  const unsigned empty = ~occupied & 0xffU;
-  return (empty & (empty << 1U | empty >> 7U)) != 0;
+  for (size_t i = 0; i < bearings.count; ++i) occupied |= 1U << sixteenth_of(bearings.u[i], bearings.v[i]);
+  const unsigned empty = ~occupied & 0xffffU;
+  const unsigned twice = empty | empty << 16U;
+  const unsigned pairs = twice & twice >> 1U;
+  return (pairs & pairs >> 2U & twice >> 4U) != 0;
 }
 
 /// The unit vector along the bisector of the wide angle if there is exactly one, otherwise zero.
-glm::dvec3 opening_of(std::span<const Bearing> bearings, const Tangents& t) {
+glm::dvec3 opening_of(const Bearings& bearings, const Tangents& t) {
   if (!may_be_open(bearings)) return glm::dvec3(0);
   std::array<double, kMostNeighbours> angles{};
-  const auto end = std::transform(bearings.begin(), bearings.end(), angles.begin(),
-                                  [](const Bearing& b) { return std::atan2(b.flat.y, b.flat.x); });
+  const auto end = angles.begin() + static_cast<std::ptrdiff_t>(bearings.count);
+  std::transform(bearings.v.begin(), bearings.v.begin() + static_cast<std::ptrdiff_t>(bearings.count),
+                 bearings.u.begin(), angles.begin(), [](double v, double u) { return std::atan2(v, u); });
   std::sort(angles.begin(), end);
   double widest = 0;
   double second = 0;
   double middle = 0;
-  for (size_t i = 0; i < bearings.size(); ++i) {
-    const bool last = i + 1 == bearings.size();
+  for (size_t i = 0; i < bearings.count; ++i) {
+    const bool last = i + 1 == bearings.count;
     const double next = last ? angles[0] + 2 * std::numbers::pi : angles[i + 1];
     const double gap = next - angles[i];
     second = std::max(second, std::min(gap, widest));
@@ -126,32 +140,14 @@ glm::dvec3 opening_of(std::span<const Bearing> bearings, const Tangents& t) {
   return std::cos(middle) * t.e0 + std::sin(middle) * t.e1;
 }
 
-bool continues(std::span<const uint32_t> nearest, const glm::dvec3& opening, const std::vector<Surroundings>& open) {
-  size_t agreeing = 0;
-  for (const uint32_t j : nearest) agreeing += glm::dot(opening, open[j].outwards) > kSameSide ? 1 : 0;
-  return agreeing >= kAgreeing;
-}
-
 }  // namespace
 
-std::vector<Surroundings> find_surroundings(const Sites& sites, const NeighbourGraph& graph,
-                                            const std::vector<glm::vec3>& normals) {
-  std::vector<Surroundings> surroundings(sites.size());
-  tbb::parallel_for(size_t{0}, sites.size(), [&](size_t i) {
-    const Tangents t = tangents_of(glm::dvec3(normals[i]));
-    const Bearings bearings = bearings_of(sites, i, graph.of(i), t);
-    surroundings[i] = {reach_of(bearings.span()), opening_of(bearings.span(), t)};
-  });
-  std::vector<uint8_t> stray(sites.size());  // openings that no border explains
-  tbb::parallel_for(size_t{0}, sites.size(), [&](size_t i) {
-    if (surroundings[i].outwards == glm::dvec3(0)) return;
-    const std::span<const uint32_t> nearest = graph.of(i).first(std::min(kNearest, graph.degree));
-    stray[i] = continues(nearest, surroundings[i].outwards, surroundings) ? 0 : 1;
-  });
-  tbb::parallel_for(size_t{0}, sites.size(), [&](size_t i) {
-    if (stray[i] != 0) surroundings[i].outwards = glm::dvec3(0);
-  });
-  return surroundings;
+Surroundings find_surroundings(const NeighbourOffsets& neighbours, size_t count, const glm::dvec3& normal) {
+  const Tangents t = tangents_of(normal);
+  Bearings bearings;
+  bearings.count = std::min({count, neighbours.count, kMostNeighbours});
+  find_bearings(neighbours, t, bearings);
+  return {reach_of(bearings), opening_of(bearings, t)};
 }
 
 }  // namespace surfcast::scan

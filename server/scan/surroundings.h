@@ -1,9 +1,9 @@
 #pragma once
 
+#include <cstddef>
 #include <glm/vec3.hpp>
-#include <vector>
 
-#include "scan/neighbours.h"
+#include "scan/neighbour_offsets.h"
 
 namespace surfcast::scan {
 
@@ -14,14 +14,11 @@ struct Surroundings {
   /// direction. (This is twice the distance along the direction to the bisector between site and neighbour.) `reach` is
   /// the maximum over the directions. Directions without such a neighbour are skipped.
   double reach = 0;
-  /// Unit vector out of the surface if the site lies on its border; otherwise zero.
-  glm::dvec3 outwards{0};
+  /// Unit vector along the bisector of the wide angle without neighbours if there is exactly one; otherwise zero.
+  glm::dvec3 opening{0};
 };
 
-/// The surroundings of every site. A site lies on a border if it has exactly one wide angle without neighbours, and at
-/// least two of its six nearest neighbours have one that opens to the same side. Sites around a hole of an uneven
-/// sampling have wide angles too, but each in a different direction.
-std::vector<Surroundings> find_surroundings(const Sites& sites, const NeighbourGraph& graph,
-                                            const std::vector<glm::vec3>& normals);
+/// The arrangement of the `count` nearest neighbours; at most 16 are looked at.
+Surroundings find_surroundings(const NeighbourOffsets& neighbours, size_t count, const glm::dvec3& normal);
 
 }  // namespace surfcast::scan
