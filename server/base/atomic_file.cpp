@@ -2,15 +2,19 @@
 
 #include <atomic>
 #include <cerrno>
+#include <cstdio>
 #include <cstring>
 #include <string>
+#include <system_error>
 #include <utility>
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
 #include "base/contract.h"
+#include "base/file_lock.h"
 
 namespace surfcast {
 namespace {
@@ -39,17 +43,41 @@ void flush_directory_of(const std::filesystem::path& target) {
   ::close(descriptor);
 }
 
+/// Moves a file where there is none. Network file systems lack that form of rename, others lack links.
+int rename_new(const char* from, const char* to) {
+  const int moved = ::renameat2(AT_FDCWD, from, AT_FDCWD, to, RENAME_NOREPLACE);
+  if (moved == 0 || (errno != EINVAL && errno != ENOSYS)) return moved;
+  return ::link(from, to) == 0 ? ::unlink(from) : -1;
+}
+
+constexpr std::string_view kMark = ".tmp";  // TARGET.tmpPID-NUMBER
+
+/// Whether a name is that of a temporary file.
+bool is_temporary(std::string_view name) {
+  const size_t mark = name.rfind(kMark);
+  if (mark == std::string_view::npos) return false;
+  const std::string_view rest = name.substr(mark + kMark.size());
+  const size_t dash = rest.find('-');
+  const auto is_number = [](std::string_view text) {
+    return !text.empty() && text.find_first_not_of("0123456789") == std::string_view::npos;
+  };
+  return dash != std::string_view::npos && is_number(rest.substr(0, dash)) && is_number(rest.substr(dash + 1));
+}
+
 }  // namespace
 
 Result<AtomicFile> AtomicFile::create(const std::filesystem::path& target) {
   static std::atomic<int> number{0};
   for (;;) {
-    std::string temporary = target.string() + ".tmp" + std::to_string(::getpid()) + "-" + std::to_string(++number);
+    std::string temporary =
+        target.string() + std::string(kMark) + std::to_string(::getpid()) + "-" + std::to_string(++number);
     // Registered before the file exists: a signal between the two steps would otherwise leave the file behind.
     UnfinishedFile unfinished(temporary);
     const int descriptor = ::open(temporary.c_str(), O_RDWR | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
-    if (descriptor >= 0) return AtomicFile(target, std::move(temporary), std::move(unfinished), descriptor);
-    if (errno != EEXIST) return io_error(target, "cannot create", errno);
+    if (descriptor < 0 && errno != EEXIST) return io_error(target, "cannot create", errno);
+    if (descriptor < 0) continue;
+    AtomicFile file(target, std::move(temporary), std::move(unfinished), descriptor);
+    if (file.hold()) return file;
   }
 }
 
@@ -82,6 +110,14 @@ AtomicFile::~AtomicFile() {
   discard();
 }
 
+/// Locks the file against remove_abandoned_files. False if that was faster. The lock is shared, so that readers of the
+/// file in its final place need not wait for the end of `commit`. File systems without locks have no abandoned files.
+bool AtomicFile::hold() const {
+  struct stat status {};
+  while (::flock(descriptor_, LOCK_SH) != 0 && errno == EINTR) continue;
+  return ::fstat(descriptor_, &status) == 0 && status.st_nlink > 0;
+}
+
 void AtomicFile::discard() noexcept {
   if (descriptor_ < 0) return;
   ::close(std::exchange(descriptor_, -1));
@@ -101,12 +137,29 @@ Status AtomicFile::overwrite(size_t offset, std::span<const std::byte> bytes) {
 }
 
 Status AtomicFile::commit() {
+  return commit(std::rename);
+}
+
+Status AtomicFile::commit_new() {
+  return commit(rename_new);
+}
+
+Status AtomicFile::commit(int (*move)(const char* from, const char* to)) {
   SURFCAST_EXPECTS(descriptor_ >= 0);
   if (::fsync(descriptor_) != 0) return io_error(target_, "cannot flush", errno);
-  if (::rename(temporary_.c_str(), target_.c_str()) != 0) return io_error(target_, "cannot rename into place", errno);
+  if (move(temporary_.c_str(), target_.c_str()) != 0) return io_error(target_, "cannot rename into place", errno);
   ::close(std::exchange(descriptor_, -1));
   flush_directory_of(target_);
   return {};
+}
+
+void remove_abandoned_files(const std::filesystem::path& folder) {
+  std::error_code code;
+  for (std::filesystem::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code)) {
+    if (!is_temporary(entry->path().filename().string())) continue;
+    std::error_code ignored;
+    if (const auto alone = FileLock::try_alone(entry->path())) std::filesystem::remove(entry->path(), ignored);
+  }
 }
 
 Status write_file_atomically(const std::filesystem::path& target, std::span<const std::byte> bytes) {

@@ -30,10 +30,14 @@ class AtomicFile {
   [[nodiscard]] size_t position() const { return position_; }
 
   Status commit();
+  /// The same, but fails where there is a file of that name.
+  Status commit_new();
 
  private:
   AtomicFile(std::filesystem::path target, std::filesystem::path temporary, UnfinishedFile unfinished, int descriptor);
+  [[nodiscard]] bool hold() const;
   void discard() noexcept;
+  Status commit(int (*move)(const char* from, const char* to));
 
   std::filesystem::path target_;
   std::filesystem::path temporary_;
@@ -41,6 +45,10 @@ class AtomicFile {
   int descriptor_ = -1;
   size_t position_ = 0;
 };
+
+/// Removes the temporary files in a folder whose writers ended without doing so: killed, or with the machine. Those of
+/// files that are being written, here or by other processes, are locked and stay.
+void remove_abandoned_files(const std::filesystem::path& folder);
 
 /// Writes a complete small file atomically.
 Status write_file_atomically(const std::filesystem::path& target, std::span<const std::byte> bytes);

@@ -7,11 +7,11 @@
 #include <vector>
 
 #include <spdlog/fmt/fmt.h>
-#include <unistd.h>
 
 #include "base/child_process.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
+#include "base/scratch_folder.h"
 #include "cmd/radius_flag.h"
 
 namespace surfcast::cmd {
@@ -32,17 +32,15 @@ class ProgramBuilder : public ScanBuilder {
   Result<ScanPreview> preview(const fs::path& scan, uint64_t points, const BuildWatch& watch) override {
     const Result<fs::path> folder = ready_cache_folder(cache_);
     if (!folder) return fail(folder.error());
-    const fs::path file = *folder / fmt::format("preview-{}-{}.surf", ::getpid(), ++previews_);
-    const fs::path report = fs::path(file).replace_extension("json");
+    const Result<ScratchFolder> scratch = ScratchFolder::create(*folder, kPreviewFolder);
+    if (!scratch) return fail(scratch.error());
+    const fs::path file = scratch->path() / "preview.surf";
+    const fs::path report = scratch->path() / "report.json";
     const Status built = run(scan, file, {"--sample", std::to_string(points), "--report", report.string()}, watch);
-    Result<ScanPreview> preview = built ? model::ModelFile::open(file).map([&](model::ModelFile model) {
+    if (!built) return fail(built.error());
+    return model::ModelFile::open(file).map([&](model::ModelFile model) {
       return ScanPreview{std::make_shared<const model::ModelFile>(std::move(model)), points_in(report)};
-    })
-                                        : Result<ScanPreview>(fail(built.error()));
-    std::error_code ignored;
-    fs::remove(file, ignored);
-    fs::remove(report, ignored);
-    return preview;
+    });
   }
 
   Result<CachedModel> build(const fs::path& scan, const fs::path& target, const BuildWatch& watch) override {
@@ -83,7 +81,6 @@ class ProgramBuilder : public ScanBuilder {
 
   const ScanCacheConfig cache_;
   const size_t threads_;
-  int previews_ = 0;
 };
 
 }  // namespace

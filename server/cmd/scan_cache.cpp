@@ -10,10 +10,12 @@
 #include <spdlog/fmt/fmt.h>
 #include <sys/stat.h>
 
+#include "base/atomic_file.h"
 #include "base/file_lock.h"
 #include "base/hash.h"
 #include "base/log.h"
 #include "base/mapped_file.h"
+#include "base/scratch_folder.h"
 #include "builder/build_model.h"
 #include "cmd/cache_eviction.h"
 #include "model/model_file.h"
@@ -62,6 +64,10 @@ std::optional<CachedModel> find_in_cache(const fs::path& path) {
   return CachedModel{path, std::make_shared<const ModelInUse>(path, std::move(*lock))};
 }
 
+Result<fs::path> cache_folder(const ScanCacheConfig& config) {
+  return config.folder.empty() ? default_cache_folder() : config.folder;
+}
+
 Status build_into(const fs::path& scan, const fs::path& target, const ScanCacheConfig& config) {
   spdlog::info("{}: building a model of it", scan.string());
   const std::array inputs{scan};
@@ -88,8 +94,15 @@ Result<fs::path> default_cache_folder() {
   return fail(ErrorKind::kIo, "there is no folder for built models: set XDG_CACHE_HOME or HOME, or give --cache");
 }
 
+void remove_abandoned(const ScanCacheConfig& config) {
+  const Result<fs::path> folder = cache_folder(config);
+  if (!folder) return;
+  remove_abandoned_files(*folder);
+  remove_abandoned_folders(*folder, kPreviewFolder);
+}
+
 Result<fs::path> ready_cache_folder(const ScanCacheConfig& config) {
-  Result<fs::path> folder = config.folder.empty() ? default_cache_folder() : config.folder;
+  Result<fs::path> folder = cache_folder(config);
   if (!folder) return folder;
   std::error_code code;
   fs::create_directories(*folder, code);

@@ -30,6 +30,12 @@ struct CachedModel {
 /// The folder of the cache, made if it does not exist.
 Result<std::filesystem::path> ready_cache_folder(const ScanCacheConfig& config);
 
+/// How the names of folders for previews begin, in the folder of the cache.
+inline constexpr const char* kPreviewFolder = "preview-";
+
+/// Removes what processes that were killed have left in the folder of the cache.
+void remove_abandoned(const ScanCacheConfig& config);
+
 /// Where the model of a scan is kept, and the model if it is there. Reads the whole scan, and fails with kCancelled
 /// soon after that is cancelled.
 struct CacheSlot {

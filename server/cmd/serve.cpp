@@ -75,6 +75,7 @@ Status serve(ServeCommand command) {
     (*service)->models_changed();
     if (published) (*server)->models_changed();
   });
+  remove_abandoned(command.cache);
   ScanBuilds builds(models, make_program_builder(command.cache, command.build_threads), command.previews);
   for (const std::filesystem::path& scan : paths->scans) SURFCAST_EXPECTS(builds.add(scan));  // sort_paths saw to it
   const size_t count = models.names().size();

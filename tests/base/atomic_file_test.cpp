@@ -92,6 +92,35 @@ TEST_F(AtomicFileTest, HeaderIsOverwrittenInPlace) {
   EXPECT_EQ(content(target), "headbody");
 }
 
+TEST_F(AtomicFileTest, ANewFileReplacesNone) {
+  const fs::path target = folder_ / "out";
+  Result<AtomicFile> first = AtomicFile::create(target);
+  ASSERT_TRUE(first->append(std::as_bytes(std::span("first", 5))));
+  ASSERT_TRUE(first->commit_new());
+  {
+    Result<AtomicFile> second = AtomicFile::create(target);
+    EXPECT_FALSE(second->commit_new());
+  }
+  EXPECT_EQ(content(target), "first");
+  EXPECT_EQ(entries(), 1u);
+}
+
+TEST_F(AtomicFileTest, WhatAKilledProcessLeavesIsRemovedAndFilesThatAreBeingWrittenStay) {
+  const auto killed = [this] {
+    const Result<AtomicFile> file = AtomicFile::create(folder_ / "abandoned");
+    std::raise(SIGKILL);
+  };
+  EXPECT_EXIT(killed(), ::testing::KilledBySignal(SIGKILL), "");
+  ASSERT_TRUE(write_file_atomically(folder_ / "other.tmp-1", "stays"));
+  Result<AtomicFile> written = AtomicFile::create(folder_ / "written");
+  EXPECT_EQ(entries(), 3u);
+  remove_abandoned_files(folder_);
+  EXPECT_EQ(entries(), 2u);
+  ASSERT_TRUE(written->commit());
+  EXPECT_EQ(content(folder_ / "other.tmp-1"), "stays");
+  EXPECT_TRUE(fs::exists(folder_ / "written"));
+}
+
 TEST_F(AtomicFileTest, MissingFolderIsAnErrorThatNamesTheFile) {
   const Status status = write_file_atomically(folder_ / "absent" / "out", "text");
   ASSERT_FALSE(status);

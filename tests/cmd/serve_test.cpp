@@ -130,6 +130,18 @@ TEST_F(ServeLargeScanTest, ThePortIsOpenAtOnceAndAPreviewIsServedWhileTheModelIs
   EXPECT_TRUE(fs::is_empty(cache())) << "and leaves nothing behind";
 }
 
+TEST_F(ServeTest, WhatKilledServersLeftInTheCacheIsRemoved) {
+  fs::create_directories(folder_ / "cache" / "preview-a1b2c3");
+  for (const char* name : {"cache/preview-a1b2c3/preview.surf.tmp7-1", "cache/model.surf.tmp7-2", "cache/mine.txt"}) {
+    ASSERT_TRUE(write_file_atomically(folder_ / name, "left"));
+  }
+  serve(scan_.string());
+  ASSERT_EQ(draw("square").code, 0);
+  EXPECT_FALSE(fs::exists(folder_ / "cache" / "preview-a1b2c3"));
+  EXPECT_FALSE(fs::exists(folder_ / "cache" / "model.surf.tmp7-2"));
+  EXPECT_TRUE(fs::exists(folder_ / "cache" / "mine.txt"));
+}
+
 TEST_F(ServeTest, WrongCommandLinesEndWithTwo) {
   for (const std::string arguments : {"serve --listen nowhere", "serve --gpu -1", "render a.surf",
                                       "render a.surf --output a.gif", "healthcheck --url x"}) {
