@@ -116,13 +116,15 @@ void BlockLoader::finish(LoadedBlock loaded) {
   }
 }
 
-std::optional<LoadedBlock> BlockLoader::take() {
+std::optional<LoadedBlock> BlockLoader::take(std::optional<uint64_t> model) {
   std::optional<LoadedBlock> loaded;
   {
     const std::lock_guard lock(mutex_);
-    if (ready_.empty()) return std::nullopt;
-    loaded = std::move(ready_.front());
-    ready_.pop_front();
+    const auto next =
+        std::ranges::find_if(ready_, [&](const LoadedBlock& block) { return !model || block.id.model == *model; });
+    if (next == ready_.end()) return std::nullopt;
+    loaded = std::move(*next);
+    ready_.erase(next);
     ready_bytes_ -= bytes_of(*loaded);
     requested_.erase(loaded->id);
     if (loaded->block) keep(*loaded);

@@ -48,8 +48,8 @@ class BlockLoader {
   /// Replaces the list of blocks that may be requested soon, most urgent first. The list is cut off at half of the host
   /// memory for blocks.
   void prefetch(const std::shared_ptr<const BlockSource>& source, std::span<const uint32_t> blocks, bool attributes);
-  /// The next requested block that has been loaded; this completes its request.
-  std::optional<LoadedBlock> take();
+  /// The next requested block, of that model if one is given, that has been loaded; this completes its request.
+  std::optional<LoadedBlock> take(std::optional<uint64_t> model = std::nullopt);
   /// Waits until take() would return a block, at most this long.
   void wait(std::chrono::milliseconds most);
   void release_model(uint64_t model);

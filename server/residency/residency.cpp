@@ -130,12 +130,12 @@ size_t Residency::upload_some(const ViewedModel& model, const ViewParameters& pa
   size_t stored = 0;
   for (size_t bytes = 0; !parameters.moving || bytes < upload_bytes_;) {
     if (parameters.moving && view.upload_ms > kMotionMs) break;
-    const std::optional<LoadedBlock> loaded = loader_.take();
+    const std::optional<LoadedBlock> loaded = loader_.take(model.source->id());
     if (!loaded) break;
     view.decode_ms += loaded->milliseconds;
     if (!loaded->block) {
       damaged_.insert(loaded->id.without_attributes());
-    } else if (loaded->id.model == model.source->id() && store(model, *loaded, view)) {
+    } else if (store(model, *loaded, view)) {
       bytes += (*loaded->block)->bytes();
       ++stored;
     }
@@ -197,6 +197,13 @@ void Residency::prefetch_rest(const ViewedModel& model, const ViewParameters& pa
   loader_.prefetch(model.source, blocks, parameters.attributes);
 }
 
+/// A picture that lacks nothing leaves the loading of other models going: a preview of a scan that of its model.
+void Residency::request(const ViewedModel& model, std::span<const uint32_t> blocks, bool attributes) {
+  if (blocks.empty() && requested_model_ != model.source->id()) return;
+  loader_.set_requests(model.source, blocks, attributes);
+  requested_model_ = model.source->id();
+}
+
 PreparedView Residency::prepare_resident(const ViewedModel& model, const ViewParameters& parameters,
                                          std::span<const uint32_t> was_refined,
                                          const std::optional<geometry::CameraFrame>& ahead) {
@@ -214,7 +221,7 @@ PreparedView Residency::prepare_resident(const ViewedModel& model, const ViewPar
   view.nothing_pending = blocks.empty();
   view.missing = static_cast<uint32_t>(blocks.size());
   if (ahead) add_requests_ahead(model, parameters, view.selection, *ahead, blocks);
-  loader_.set_requests(model.source, blocks, parameters.attributes);
+  request(model, blocks, parameters.attributes);
   prefetch_rest(model, parameters);
   view.select_ms = watch.milliseconds() - view.upload_ms;
   return view;

@@ -91,6 +91,7 @@ class Residency {
   void add_requests_ahead(const ViewedModel& model, const ViewParameters& parameters,
                           const selection::BlockSelection& selection, const geometry::CameraFrame& ahead,
                           std::vector<uint32_t>& blocks) const;
+  void request(const ViewedModel& model, std::span<const uint32_t> blocks, bool attributes);
   void prefetch_rest(const ViewedModel& model, const ViewParameters& parameters);
   Status load(const ViewedModel& model, std::span<const uint32_t> blocks, bool attributes, const Preemption& preemption,
               PreparedView& view);
@@ -102,6 +103,7 @@ class Residency {
   SurfelPool pool_;
   BlockLoader loader_;
   size_t upload_bytes_;
+  std::optional<uint64_t> requested_model_;  ///< whose blocks were requested last
   std::set<BlockId> damaged_;
   std::optional<Stopwatch> since_prefetch_;  ///< since the last selection of blocks for rest
 };

@@ -28,6 +28,7 @@ struct ViewTiming {
   std::chrono::milliseconds poll_interval{50};  ///< between two checks whether missing blocks have arrived
   std::chrono::milliseconds busy_retry{500};    ///< after a frame that a busy server refused to draw
   std::chrono::milliseconds missing_block_timeout{5000};  ///< without any new block: the missing ones are given up
+  std::chrono::milliseconds takeover_try{250};  ///< in motion, between two frames tried from the newer edition
 };
 
 /// The most frames, or pieces of one, that may be unacknowledged.
@@ -69,8 +70,13 @@ class ViewPlan {
   /// The server was too busy to draw the frame: the view retries after ViewTiming::busy_retry.
   void refuse(uint64_t frame, ViewTime now);
   void finish(uint64_t frame, FrameResult result, ViewTime now);
-  /// The model has a newer edition, which takes over once the newest picture is drawn from the present one at rest.
+  /// The model has a newer edition, which takes over once the newest picture is drawn from the present one at rest, or
+  /// in motion at the first try for which all blocks are there.
   void expect_takeover() { successor_ = true; }
+  void taken_over() { successor_ = false; }
+  /// Whether the motion frame that is to be drawn now is tried from the newer edition.
+  [[nodiscard]] bool may_try_takeover(ViewTime now) const { return successor_ && now >= next_try_at_; }
+  void try_takeover(ViewTime now) { next_try_at_ = now + timing_.takeover_try; }
   /// A frame at rest of the newest picture was drawn in `draw_ms`, with `missing` blocks missing.
   void record_draw(double draw_ms, uint32_t missing, ViewTime now);
   /// The newest picture now has `missing` blocks missing.
@@ -109,7 +115,8 @@ class ViewPlan {
   ViewTime rest_at_;
   ViewTime next_poll_at_;
   ViewTime improved_at_;
-  ViewTime not_before_;  ///< no frame is drawn before this time because the server is busy
+  ViewTime next_try_at_;  ///< of a motion frame from the newer edition
+  ViewTime not_before_;   ///< no frame is drawn before this time because the server is busy
   /// The number of missing blocks of the newest picture at one time.
   struct MissingSample {
     uint32_t missing = 0;

@@ -53,9 +53,9 @@ bool ViewSession::may_be_kept(const service::PictureJob& job) const {
          picture::pixel_format_of(job.format) == picture::pixel_format_of(picture::FileFormat::kJpeg);
 }
 
-service::PictureJob ViewSession::picture_job(FrameKind kind, service::JobId supersedes) const {
+service::PictureJob ViewSession::picture_job(FrameKind kind, uint64_t edition, service::JobId supersedes) const {
   service::PictureJob job = newest_.picture;
-  job.request.edition = kind == FrameKind::kTakeover ? successor_ : edition_;
+  job.request.edition = edition;
   if (kind == FrameKind::kFinal) return job;
   picture::PictureRequest& request = job.request;
   request.loading = picture::Loading::kNow;
@@ -79,6 +79,7 @@ service::PictureJob ViewSession::picture_job(FrameKind kind, service::JobId supe
   request.spacing = std::max(request.spacing * quality.scale, quality.spacing);
   request.normalization = picture::Normalization::kSurfel;
   request.viewer = viewer_;
+  if (edition != edition_) request.max_missing_blocks = 0;
   job.priority = service::Priority::kMotion;
   job.quality = quality.jpeg_quality;
   job.supersedes = supersedes;
@@ -104,7 +105,7 @@ void ViewSession::retarget() {
   const std::optional<uint64_t> frame = plan_.retargetable();
   if (!frame) return;
   Job& job = frames_.at(*frame);
-  if (!service_.replace(job.job, picture_job(FrameKind::kMotion, job.supersedes))) return;
+  if (!service_.replace(job.job, picture_job(FrameKind::kMotion, job.edition, job.supersedes))) return;
   plan_.retarget(*frame);
   job.update = newest_.update;
   job.quality = quality_;
@@ -126,7 +127,7 @@ std::optional<ViewTime> ViewSession::advance(ViewTime now) {
   send_pieces(now);
   const ViewStep step = plan_.next(now);
   if (!step.draw) return step.wake_at;
-  if (port_.may_draw()) draw(*step.draw);
+  if (port_.may_draw()) draw(*step.draw, now);
   return std::nullopt;
 }
 
@@ -142,15 +143,24 @@ void ViewSession::settle_edition() {
   if (edition_ == 0) edition_ = service_.edition(newest_.picture.model);
 }
 
-void ViewSession::draw(FrameKind kind) {
+/// The edition to draw a frame from.
+uint64_t ViewSession::next_edition(FrameKind kind, ViewTime now) {
+  if (kind == FrameKind::kTakeover) return successor_;
+  if (kind != FrameKind::kMotion || !plan_.may_try_takeover(now)) return edition_;
+  plan_.try_takeover(now);
+  return successor_;
+}
+
+void ViewSession::draw(FrameKind kind, ViewTime now) {
   settle_edition();
   const uint64_t frame = ++last_frame_;
   Job& job = frames_[frame];
   job.kind = kind;
   job.update = newest_.update;
-  job.edition = kind == FrameKind::kTakeover ? successor_ : edition_;
+  job.edition = next_edition(kind, now);
   job.quality = quality_;
-  job.supersedes = last_motion_job_;
+  // A frame that is tried may come to nothing, and is in place of no other.
+  job.supersedes = kind == FrameKind::kMotion && job.edition == edition_ ? last_motion_job_ : 0;
   plan_.begin(frame, kind);
   newest_begun_ = true;
   auto done = [weak = weak_from_this(), post = port_.post, frame](Result<service::EncodedPicture> picture) {
@@ -159,22 +169,27 @@ void ViewSession::draw(FrameKind kind) {
     });
   };
   if (kind == FrameKind::kFinal && finished_frame_) {
-    job.job = service_.encode(std::exchange(finished_frame_, {}), picture_job(kind, 0), std::move(done));
+    job.job = service_.encode(std::exchange(finished_frame_, {}), picture_job(kind, job.edition, 0), std::move(done));
   } else {
-    job.job = service_.draw(session_, picture_job(kind, last_motion_job_), std::move(done));
+    job.job = service_.draw(session_, picture_job(kind, job.edition, job.supersedes), std::move(done));
   }
-  if (kind == FrameKind::kMotion) last_motion_job_ = job.job;
+  if (kind == FrameKind::kMotion && job.edition == edition_) last_motion_job_ = job.job;
 }
 
 void ViewSession::finish(uint64_t frame, Result<service::EncodedPicture> picture) {
   if (closed_ || !plan_.is_pending(frame)) return;
   Job& job = frames_.at(frame);
   if (!picture) return frame_failed(frame, picture.error());
+  if (job.kind == FrameKind::kMotion && job.edition > edition_ && picture->bytes.empty()) {
+    plan_.drop(frame);  // drawn from the present edition at once
+    frames_.erase(frame);
+    return;
+  }
   const ViewTime now = std::chrono::steady_clock::now();
   const FrameResult result = result_of(job.kind, *picture);
   plan_.finish(frame, result, now);
   if (job.kind == FrameKind::kRefined) record_progress(*picture, now);
-  if (job.kind == FrameKind::kTakeover && result == FrameResult::kComplete) take_over(frame, *picture);
+  if (job.edition > edition_ && result != FrameResult::kNothing) take_over(frame, *picture);
   if (picture->bytes.empty() || (result == FrameResult::kNothing)) {
     frames_.erase(frame);
     return;
@@ -200,16 +215,28 @@ void ViewSession::frame_failed(uint64_t frame, const Error& error) {
 
 /// From now on the edition of this frame is shown.
 void ViewSession::take_over(uint64_t frame, service::EncodedPicture& picture) {
-  edition_ = frames_.at(frame).edition;
-  displayed_cut_ = picture.cut;
+  const Job& job = frames_.at(frame);
+  edition_ = job.edition;
+  displayed_cut_ = job.kind == FrameKind::kTakeover ? picture.cut : 0;
   finished_frame_.reset();
   if (picture.converged) finished_frame_ = std::move(picture.frame);
   picture.frame.reset();
+  drop_former_editions();
   if (successor_ == edition_) {
     successor_ = 0;
+    plan_.taken_over();
   } else {
     plan_.expect_takeover();  // there is a still newer one
   }
+}
+
+/// Cancels the frames in progress of editions before the one that is shown now.
+void ViewSession::drop_former_editions() {
+  std::vector<uint64_t> former;
+  for (const auto& [frame, job] : frames_) {
+    if (plan_.is_pending(frame) && job.edition < edition_) former.push_back(frame);
+  }
+  for (const uint64_t frame : former) drop(frame);
 }
 
 /// Records how complete the newest picture is.

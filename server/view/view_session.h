@@ -100,13 +100,15 @@ class ViewSession : public std::enable_shared_from_this<ViewSession> {
     size_t sent = 0;               ///< bytes sent so far
   };
 
-  void draw(FrameKind kind);
+  void draw(FrameKind kind, ViewTime now);
   void settle_edition();
   void take_over(uint64_t frame, service::EncodedPicture& picture);
   [[nodiscard]] bool may_be_kept(const service::PictureJob& job) const;
-  [[nodiscard]] service::PictureJob picture_job(FrameKind kind, service::JobId supersedes) const;
+  [[nodiscard]] uint64_t next_edition(FrameKind kind, ViewTime now);
+  [[nodiscard]] service::PictureJob picture_job(FrameKind kind, uint64_t edition, service::JobId supersedes) const;
   void retarget();
   void drop(uint64_t frame);
+  void drop_former_editions();
   void erase_if_done(uint64_t frame);
   void finish(uint64_t frame, Result<service::EncodedPicture> picture);
   void frame_failed(uint64_t frame, const Error& error);

@@ -152,6 +152,21 @@ TEST_F(ResidencyTest, PicturesAtOnceGetFinerAndAreNeverWithoutAPart) {
   EXPECT_EQ(source_->started().front(), 0u) << "the root comes first";
 }
 
+TEST_F(ResidencyTest, AModelIsLoadedBetweenPicturesOfAnotherThatLacksNothing) {
+  start(100);
+  ASSERT_TRUE(whole(model_));
+  const std::shared_ptr<FakeBlocks> other_source = two_splits(2);
+  const ViewedModel other{other_source};
+  bool converged = false;
+  for (int i = 0; i < 5000 && !converged; ++i) {
+    converged = now(other, 0, /*moving=*/true).selection.converged();
+    EXPECT_TRUE(now(model_, 0, /*moving=*/true).selection.converged());
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    now(model_, 0, /*moving=*/true);
+  }
+  EXPECT_TRUE(converged);
+}
+
 TEST_F(ResidencyTest, ALimitedNumberOfBytesIsUploadedInAPictureInMotion) {
   start(100, 20000);  // the limit is reached with the second block of 16000 bytes
   now(model_, 0, true);

@@ -366,6 +366,19 @@ TEST_F(ViewPlanTest, ATakeoverIsAskedForAgainUntilItsBlocksAreThere) {
   show(FrameKind::kFinal);
 }
 
+TEST_F(ViewPlanTest, AMotionIsTriedFromTheNewerEditionNowAndThen) {
+  EXPECT_FALSE(plan_.may_try_takeover(now_));
+  plan_.expect_takeover();
+  EXPECT_TRUE(plan_.may_try_takeover(now_));
+  plan_.try_takeover(now_);
+  pass(249);
+  EXPECT_FALSE(plan_.may_try_takeover(now_));
+  pass(1);
+  EXPECT_TRUE(plan_.may_try_takeover(now_));
+  plan_.taken_over();
+  EXPECT_FALSE(plan_.may_try_takeover(now_));
+}
+
 TEST_F(ViewPlanTest, AMotionComesBeforeATakeoverWhichFollowsWhenItEnds) {
   update(/*moving=*/false);
   show(FrameKind::kMotion);

@@ -40,13 +40,13 @@ class ViewOfAScanTest : public ::testing::Test {
     service_.reset();
   }
 
-  void update() {
+  void update(bool moving = false) {
     service::PictureJob job;
     job.model = "cube";
     job.request.width = 8;
     job.request.height = 4;
     job.request.background = glm::u8vec3(static_cast<uint8_t>(++updates_));
-    view_->update({updates_, std::move(job), true, false}, Clock::now());
+    view_->update({updates_, std::move(job), true, moving}, Clock::now());
   }
   void publish(uint64_t edition) {
     models_.cube_edition = edition;
@@ -65,6 +65,16 @@ class ViewOfAScanTest : public ::testing::Test {
       view_->advance(Clock::now());
     }
     return false;
+  }
+  /// Moves the view without a rest until the condition holds of a frame; false if it does of none.
+  template <typename Condition>
+  bool move_until(Condition condition) {
+    const auto next = [&](const ViewMessage& frame) {
+      if (!condition(frame)) update(/*moving=*/true);
+      return condition(frame);
+    };
+    update(/*moving=*/true);
+    return run_until(next);
   }
   void run_tasks() {
     std::unique_lock lock(mutex_);
@@ -116,6 +126,24 @@ TEST_F(ViewOfAScanTest, ShowsThePreviewUntilTheModelsBlocksAreThere) {
   control_->loading = false;
   ASSERT_TRUE(run_until(is_final));
   EXPECT_FALSE(frames_.back().picture.preview);
+}
+
+TEST_F(ViewOfAScanTest, GoesToTheModelInAMotionThatNeverRests) {
+  ASSERT_TRUE(run_until(is_final));
+  control_->loading_edition = 2;
+  control_->loading = true;
+  publish(2);
+  frames_.clear();
+  const auto many = [this](const ViewMessage&) { return frames_.size() > 30; };
+  ASSERT_TRUE(move_until(many)) << "the preview goes on";
+  EXPECT_TRUE(std::ranges::all_of(frames_, [](const ViewMessage& frame) { return frame.picture.preview; }));
+  control_->loading = false;
+  frames_.clear();
+  ASSERT_TRUE(move_until([](const ViewMessage& frame) { return !frame.picture.preview; }));
+  EXPECT_TRUE(std::ranges::all_of(frames_, [](const ViewMessage& frame) { return frame.moving; }));
+  frames_.clear();
+  ASSERT_TRUE(move_until([this](const ViewMessage&) { return frames_.size() > 10; }));
+  EXPECT_TRUE(std::ranges::none_of(frames_, [](const ViewMessage& frame) { return frame.picture.preview; }));
 }
 
 TEST_F(ViewOfAScanTest, StaysWithTheModelOnceItWasShown) {

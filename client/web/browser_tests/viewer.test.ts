@@ -367,7 +367,8 @@ describe('a scan that is being built', () => {
       expect(first).toBeGreaterThan(0);
       expect(kinds.slice(0, first).every((preview) => preview)).toBe(true); // all previews come before
       expect(kinds.slice(first).some((preview) => preview)).toBe(false);
-      expect(wire.frames[first]!.moving).toBe(false); // the model comes at rest
+      const { blocksDrawn, blocksSelected } = wire.frames[first]!.picture!;
+      expect(blocksDrawn).toBe(blocksSelected); // the model comes once nothing of it is missing
       await expect.poll(() => page.locator('.status').textContent(), { timeout: 20_000 }).toContain('Sharp');
     } finally {
       await hills.kill();
