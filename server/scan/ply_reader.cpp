@@ -149,7 +149,7 @@ class AsciiWalk {
   std::string_view word_;
 };
 
-/// Vertices whose rows must be read sequentially. The starts of the pieces are found in a first pass.
+/// Elements whose rows must be read sequentially. The starts of the pieces are found in a first pass.
 template <typename Walk>
 class WalkedRows : public RowSource {
  public:
@@ -177,11 +177,7 @@ class WalkedRows : public RowSource {
   std::vector<Walk> starts_;
 };
 
-bool is_vertex(const PlyElement& element) {
-  return element.name == "vertex";
-}
-
-/// Skips the elements before or after the vertices.
+/// Skips the elements before or after the wanted one.
 template <typename Walk>
 Status skip_all(std::span<const PlyElement> elements, Walk& walk) {
   for (const PlyElement& element : elements) {
@@ -221,11 +217,11 @@ Result<Rows> walked_rows(const PlyElement& element, const RowTraits& traits, Wal
   return std::make_unique<WalkedRows<Walk>>(traits, element, std::move(*starts));
 }
 
-Result<Rows> vertices(const PlyElement& element, const RowTraits& traits, AsciiWalk& walk, bool /*swapped*/) {
+Result<Rows> element_rows(const PlyElement& element, const RowTraits& traits, AsciiWalk& walk, bool /*swapped*/) {
   return walked_rows(element, traits, walk);
 }
 
-Result<Rows> vertices(const PlyElement& element, const RowTraits& traits, BinaryWalk& walk, bool swapped) {
+Result<Rows> element_rows(const PlyElement& element, const RowTraits& traits, BinaryWalk& walk, bool swapped) {
   if (has_lists(element)) return walked_rows(element, traits, walk);
   const Result<const std::byte*> records = walk.take_records(element);
   if (!records) return fail(records.error());
@@ -233,25 +229,43 @@ Result<Rows> vertices(const PlyElement& element, const RowTraits& traits, Binary
 }
 
 template <typename Walk>
-Result<Rows> rows_of(const PlyHeader& header, const RowTraits& traits, Walk walk, bool swapped) {
+Result<Rows> rows_of(const PlyHeader& header, size_t wanted, const RowTraits& traits, Walk walk, bool swapped) {
   const std::span elements(header.elements);
-  const auto vertex = static_cast<size_t>(std::find_if(elements.begin(), elements.end(), is_vertex) - elements.begin());
-  if (Status status = skip_all(elements.first(vertex), walk); !status) return fail(std::move(status.error()));
-  Result<Rows> rows = vertices(elements[vertex], traits, walk, swapped);
+  if (Status status = skip_all(elements.first(wanted), walk); !status) return fail(std::move(status.error()));
+  Result<Rows> rows = element_rows(elements[wanted], traits, walk, swapped);
   if (!rows) return rows;
-  if (Status status = skip_all(elements.subspan(vertex + 1), walk); !status) return fail(std::move(status.error()));
+  if (Status status = skip_all(elements.subspan(wanted + 1), walk); !status) return fail(std::move(status.error()));
   return rows;
 }
 
-Status check_vertices(const PlyHeader& header) {
-  const auto vertex = std::find_if(header.elements.begin(), header.elements.end(), is_vertex);
-  if (vertex == header.elements.end()) return fail(ErrorKind::kInvalidInput, "PLY file without vertex elements");
-  for (const PlyProperty& property : vertex->properties) {
+Result<Rows> rows_of(std::span<const std::byte> bytes, const PlyHeader& header, size_t wanted,
+                     const RowTraits& traits) {
+  const std::span<const std::byte> data = bytes.subspan(header.data_offset);
+  if (header.encoding == PlyEncoding::kAscii) return rows_of(header, wanted, traits, AsciiWalk(as_text(data)), false);
+  const bool big = header.encoding == PlyEncoding::kBinaryBigEndian;
+  const bool swapped = big != (std::endian::native == std::endian::big);
+  return rows_of(header, wanted, traits, BinaryWalk(data, swapped), swapped);
+}
+
+/// The index of the element; none if the file has no such element.
+std::optional<size_t> find_element(const PlyHeader& header, std::string_view name) {
+  const auto at = std::find_if(header.elements.begin(), header.elements.end(),
+                               [name](const PlyElement& element) { return element.name == name; });
+  if (at == header.elements.end()) return std::nullopt;
+  return static_cast<size_t>(at - header.elements.begin());
+}
+
+tl::unexpected<Error> without(std::string_view element) {
+  return fail(ErrorKind::kInvalidInput, "PLY file without " + std::string(element) + " elements");
+}
+
+Status check_vertices(const PlyElement& vertex) {
+  for (const PlyProperty& property : vertex.properties) {
     if (property.name == "f_dc_0" || property.name == "packed_position") {
       return fail(ErrorKind::kUnsupported, "PLY file of 3D Gaussians, which is not supported");
     }
   }
-  if (vertex->count == 0) return fail(ErrorKind::kInvalidInput, "has no points");
+  if (vertex.count == 0) return fail(ErrorKind::kInvalidInput, "has no points");
   return {};
 }
 
@@ -265,14 +279,20 @@ bool has_faces(const PlyHeader& header) {
 Result<std::unique_ptr<RowSource>> ply_rows(std::span<const std::byte> bytes) {
   const Result<PlyHeader> header = parse_ply_header(bytes);
   if (!header) return fail(header.error());
-  if (Status status = check_vertices(*header); !status) return fail(status.error());
+  const std::optional<size_t> vertex = find_element(*header, "vertex");
+  if (!vertex) return without("vertex");
+  if (Status status = check_vertices(header->elements[*vertex]); !status) return fail(status.error());
   RowTraits traits;
   traits.may_be_graphics = has_faces(*header);  // meshes come from graphics, y-up; points come from scanners, z-up
-  const std::span<const std::byte> data = bytes.subspan(header->data_offset);
-  if (header->encoding == PlyEncoding::kAscii) return rows_of(*header, traits, AsciiWalk(as_text(data)), false);
-  const bool big = header->encoding == PlyEncoding::kBinaryBigEndian;
-  const bool swapped = big != (std::endian::native == std::endian::big);
-  return rows_of(*header, traits, BinaryWalk(data, swapped), swapped);
+  return rows_of(bytes, *header, *vertex, traits);
+}
+
+Result<std::unique_ptr<RowSource>> ply_element_rows(std::span<const std::byte> bytes, std::string_view element) {
+  const Result<PlyHeader> header = parse_ply_header(bytes);
+  if (!header) return fail(header.error());
+  const std::optional<size_t> wanted = find_element(*header, element);
+  if (!wanted) return without(element);
+  return rows_of(bytes, *header, *wanted, {});
 }
 
 }  // namespace surfcast::scan

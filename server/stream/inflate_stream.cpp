@@ -16,7 +16,7 @@ constexpr int kWindowAndDetection = 15 + 32;
 
 /// A symbol of deflate takes at least 2 bits for at most 258 bytes (zlib's technical notes).
 constexpr uint64_t kLargestRatio = 1032;
-/// Bytes that the window may still yield after the last input.
+/// Bytes that a decoder at work may still yield without further input.
 constexpr uint64_t kPending = uint64_t{1} << 16;
 
 tl::unexpected<Error> damaged(const char* why) {
@@ -35,7 +35,8 @@ InflateStream::~InflateStream() {
 
 uint64_t InflateStream::at_most() const {
   if (ended_) return 0;
-  return saturating(saturating(source_->at_most(), 1, state_.avail_in), kLargestRatio, kPending);
+  return saturating(saturating(source_->at_most(), 1, state_.avail_in), kLargestRatio,
+                    state_.total_in > 0 ? kPending : 0);
 }
 
 /// Moves the unread input to the front and appends to it. Fewer than two bytes are left only at the end of the input.

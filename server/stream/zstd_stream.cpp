@@ -30,8 +30,8 @@ ZstdStream::~ZstdStream() {
 
 uint64_t ZstdStream::at_most() const {
   const uint64_t blocks = (source_->at_most() + (filled_ - used_)) / kSmallestBlock;
-  // A window may wait in the decoder.
-  return saturating(blocks, kLargestBlock, uint64_t{1} << kLargestWindow);
+  // A decoder at work may still hold a window of bytes.
+  return saturating(blocks, kLargestBlock, filled_ > 0 ? uint64_t{1} << kLargestWindow : 0);
 }
 
 Result<size_t> ZstdStream::read(std::span<std::byte> out) {

@@ -13,10 +13,10 @@ namespace surfcast::testing {
 
 /// A row of a table of files whose content other decoders have read: columns "file", "points" and so on.
 struct DigestRow {
-  std::string file;        ///< below the folder of the table
-  uint64_t count = 0;      ///< points, or numbers of a grid
-  std::string values;      ///< SHA-256 of positions, or of the numbers of a grid, as doubles
-  std::string colors;      ///< SHA-256 of colours of 8 bits; "-" without
+  std::string file;    ///< below the folder of the table
+  uint64_t count = 0;  ///< points, or numbers of a grid
+  std::string values;  ///< SHA-256 of positions, or of the numbers of a grid, as doubles
+  std::string colors;  ///< SHA-256 of colours of 8 bits; "-" without
   std::string min;
   std::string max;
   std::string mean;
