@@ -128,6 +128,29 @@ void add_build_flags(CLI::App& command, PreviewRule& previews, size_t& threads) 
       kThreads);
 }
 
+void add_upload_flags(CLI::App& command, net::UploadConfig& uploads) {
+  command
+      .add_option(
+          "--uploads", uploads.folder,
+          "Folder for scans that clients send, by dropping them on the viewer's page or with PUT; its scans are "
+          "served too (default: none are taken)")
+      ->envname(protocol::environment_name("uploads"))
+      ->check(CLI::ExistingDirectory);
+  add_size(command, "upload-size", uploads.bytes,
+           "One scan that a client sends (default 10G). More: one client fills the disk; less: larger scans are "
+           "refused");
+  add_size(command, "upload-total", uploads.total_bytes,
+           "All scans in the folder (default 100G). More: clients fill the disk; less: scans are refused once it is "
+           "full");
+  add_count(
+      command, "max-uploads", uploads.at_once,
+      "Scans that are received at a time (default 2). More: disk and network taken from others; less: clients are "
+      "told to try again");
+  add_seconds(command, "upload-timeout", uploads.timeout,
+              "For each 64 KiB of a scan (default 30). More: stuck clients hold a place; less: slow networks are cut "
+              "off");
+}
+
 void add_renderer_flags(CLI::App& command, render::RendererConfig& renderer) {
   command.add_option("--gpu", renderer.gpu, "Index of the EGL device (default: the first hardware device)")
       ->envname(protocol::environment_name("gpu"))

@@ -18,6 +18,8 @@ namespace surfcast::cmd {
 void add_cache_flags(CLI::App& command, ScanCacheConfig& cache);
 /// Previews of scans, and the threads of builds.
 void add_build_flags(CLI::App& command, PreviewRule& previews, size_t& threads);
+/// `--uploads` and its limits.
+void add_upload_flags(CLI::App& command, net::UploadConfig& uploads);
 /// `--gpu`, the memory of the renderer and its threads.
 void add_renderer_flags(CLI::App& command, render::RendererConfig& renderer);
 /// The size of a picture.

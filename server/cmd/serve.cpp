@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/atomic_file.h"
 #include "base/contract.h"
 #include "base/log.h"
 #include "cmd/find_models.h"
@@ -17,6 +18,8 @@
 #include "protocol/endpoint.h"
 #include "protocol/request_flags.h"
 #include "protocol/validate.h"
+#include "scan/scan_format.h"
+#include "scan/scan_stream.h"
 #include "service/catalogue_renderer.h"
 #include "service/render_service.h"
 
@@ -58,6 +61,22 @@ Result<std::shared_ptr<const net::StaticFiles>> read_viewer(const std::filesyste
   return std::make_shared<const net::StaticFiles>(std::move(*files));
 }
 
+/// Serves a scan of the folder for uploads. It hides no other model.
+Status serve_uploaded(const std::filesystem::path& scan, const service::ModelCatalogue& models, ScanBuilds& builds) {
+  if (Status header = scan::check_header(scan); !header) return header;
+  if (!models.has(scan.stem().string()) && builds.add(scan)) return {};
+  return fail(ErrorKind::kInvalidInput, scan.string() + ": another model is served under that name");
+}
+
+/// Serves the scans that clients have sent to servers before this one.
+void serve_former_uploads(const net::UploadConfig& uploads) {
+  if (uploads.folder.empty()) return;
+  remove_abandoned_files(uploads.folder);
+  for (const std::filesystem::path& scan : net::uploaded_scans(uploads)) {
+    if (const Status served = uploads.serve(scan); !served) spdlog::warn("{}", served.error().message);
+  }
+}
+
 Status serve(ServeCommand command) {
   Result<std::shared_ptr<const net::StaticFiles>> viewer = read_viewer(command.viewer, command.viewer_limits);
   if (!viewer) return fail(viewer.error());
@@ -69,6 +88,11 @@ Status serve(ServeCommand command) {
       service::RenderService::start(models, service::catalogue_renderers(models, command.renderer), command.service);
   if (!service) return fail(service.error());
   log_device((*service)->device(), command.renderer);
+  ScanBuilds* builder = nullptr;  // set before the server runs
+  net::UploadConfig& uploads = command.server.uploads;
+  uploads.extensions = scan::scan_extensions();
+  uploads.taken = [&models](const std::string& name) { return models.has(name); };
+  uploads.serve = [&](const std::filesystem::path& scan) { return serve_uploaded(scan, models, *builder); };
   const auto server = net::Server::create(**service, command.server);
   if (!server) return fail(server.error());
   models.on_change([&](bool published) {
@@ -78,6 +102,8 @@ Status serve(ServeCommand command) {
   remove_abandoned(command.cache);
   ScanBuilds builds(models, make_program_builder(command.cache, command.build_threads), command.previews);
   for (const std::filesystem::path& scan : paths->scans) SURFCAST_EXPECTS(builds.add(scan));  // sort_paths saw to it
+  builder = &builds;
+  serve_former_uploads(uploads);
   const size_t count = models.names().size();
   if (count == 0) spdlog::warn("there are no models yet; those that appear in the folders will be served");
   const protocol::Endpoint bound{command.server.host, (*server)->port()};
@@ -110,6 +136,7 @@ void add_serve_command(CLI::App& app, Status& outcome) {
   add_renderer_flags(*sub, command->renderer);
   add_cache_flags(*sub, command->cache);
   add_build_flags(*sub, command->previews, command->build_threads);
+  add_upload_flags(*sub, command->server.uploads);
   add_picture_flags(*sub, command->service);
   add_server_flags(*sub, command->service, command->renderer, command->server, command->viewer_limits);
   sub->callback([command, &outcome] {

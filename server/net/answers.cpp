@@ -43,10 +43,10 @@ Outcome outcome_of(uint64_t id, Result<service::EncodedPicture> picture) {
   return outcome;
 }
 
-Outcome outcome_of(uint64_t id, const service::ModelList& models) {
+Outcome outcome_of(uint64_t id, const service::ModelList& models, const UploadConfig& uploads) {
   wire::Answer answer;
   answer.set_id(id);
-  to_wire(models, *answer.mutable_model_list());
+  to_wire(models, uploads, *answer.mutable_model_list());
   return plain(answer);
 }
 

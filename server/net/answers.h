@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "net/uploads.h"
 #include "service/model_source.h"
 #include "service/render_service.h"
 #include "surfcast.pb.h"
@@ -29,7 +30,7 @@ Bytes encode_answer(const wire::Answer& answer);
 Bytes encode_error(uint64_t id, const Error& error);
 
 Outcome outcome_of(uint64_t id, Result<service::EncodedPicture> picture);
-Outcome outcome_of(uint64_t id, const service::ModelList& models);
+Outcome outcome_of(uint64_t id, const service::ModelList& models, const UploadConfig& uploads);
 Outcome outcome_of(uint64_t id, const Result<std::optional<kinds::PickedSurfel>>& picked);
 Outcome outcome_of(uint64_t id, const Result<service::ProfileResult>& profile);
 Outcome outcome_of(uint64_t id, const std::string& name, const Result<service::ModelDescription>& description);

@@ -96,7 +96,9 @@ void Conversation::handle_other(const wire::Request& request) {
   window_.add_other(id);
   if (request.has_list_models()) {
     return context_->service.list_models(
-        [later = answer_later(id), id](const service::ModelList& models) { later(outcome_of(id, models)); });
+        [later = answer_later(id), id, context = context_](const service::ModelList& models) {
+          later(outcome_of(id, models, context->config.uploads));
+        });
   }
   const std::string& name = request.describe_model().model();
   context_->service.describe_model(

@@ -280,7 +280,7 @@ wire::ScanState to_wire(service::ScanStatus::State state) {
 
 }  // namespace
 
-void to_wire(const service::ModelList& list, wire::ModelList& message) {
+void to_wire(const service::ModelList& list, const UploadConfig& uploads, wire::ModelList& message) {
   for (const std::string& name : list.names) message.add_models(protocol::clean_utf8(name));
   for (const service::ScanStatus& scan : list.scans) {
     wire::ScanStatus* to = message.add_scans();
@@ -291,6 +291,9 @@ void to_wire(const service::ModelList& list, wire::ModelList& message) {
     to->set_problem(protocol::clean_utf8(scan.problem));
     to->set_edition(scan.edition);
   }
+  if (uploads.folder.empty()) return;
+  message.mutable_uploads()->set_max_bytes(uploads.bytes);
+  for (const std::string& extension : uploads.extensions) message.mutable_uploads()->add_extensions(extension);
 }
 
 void to_wire(const std::string& name, const service::ModelDescription& description, wire::ModelDescription& message) {

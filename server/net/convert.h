@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "net/uploads.h"
 #include "service/model_source.h"
 #include "service/render_service.h"
 #include "surfcast.pb.h"
@@ -26,7 +27,7 @@ void to_wire(const std::optional<kinds::PickedSurfel>& picked, wire::PickResult&
 void to_wire(service::EncodedPicture picture, wire::Picture& message);
 /// Takes the bytes out of the message.
 void to_wire(view::ViewMessage message, wire::ViewFrame& frame);
-void to_wire(const service::ModelList& list, wire::ModelList& message);
+void to_wire(const service::ModelList& list, const UploadConfig& uploads, wire::ModelList& message);
 void to_wire(const std::string& name, const service::ModelDescription& description, wire::ModelDescription& message);
 
 /// MIME type of a file format.

@@ -139,10 +139,19 @@ json array_of(const Values& values, const Convert& convert) {
 
 }  // namespace
 
-HttpAnswer models_answer(const service::ModelList& models) {
-  return json_answer({{"models", models.names}, {"scans", array_of(models.scans, [](const service::ScanStatus& scan) {
-                                                   return to_json(scan);
-                                                 })}});
+HttpAnswer models_answer(const service::ModelList& models, const UploadConfig& uploads) {
+  json document{{"models", models.names},
+                {"scans", array_of(models.scans, [](const service::ScanStatus& scan) { return to_json(scan); })}};
+  if (!uploads.folder.empty()) {
+    document["uploads"] = {{"max_bytes", uploads.bytes}, {"extensions", uploads.extensions}};
+  }
+  return json_answer(document);
+}
+
+HttpAnswer uploaded_answer(const std::string& name) {
+  HttpAnswer answer = json_answer({{"model", name}});
+  answer.status = 201;
+  return answer;
 }
 
 HttpAnswer model_answer(const std::string& name, const service::ModelDescription& description) {

@@ -9,6 +9,7 @@
 
 #include "base/result.h"
 #include "net/static_files.h"
+#include "net/uploads.h"
 #include "protocol/profile_query.h"
 #include "service/model_source.h"
 #include "service/render_service.h"
@@ -31,7 +32,9 @@ HttpAnswer error_answer(const Error& error);
 HttpAnswer error_answer(const Error& error, unsigned status);
 
 /// {"models": ["a", "b"], "scans": [{"model": "b", "state": "building", "percent": 37, ...}]}
-HttpAnswer models_answer(const service::ModelList& models);
+HttpAnswer models_answer(const service::ModelList& models, const UploadConfig& uploads);
+/// 201: {"model": "a"}
+HttpAnswer uploaded_answer(const std::string& name);
 HttpAnswer model_answer(const std::string& name, const service::ModelDescription& description);
 /// The picture, with what drawing it took in the headers Server-Timing and X-Surfcast-*.
 HttpAnswer picture_answer(service::EncodedPicture picture);

@@ -11,6 +11,7 @@ namespace {
 using Kind = HttpRoute::Kind;
 
 constexpr std::string_view kModels = "/api/models";
+constexpr std::string_view kUploads = "/api/uploads/";
 constexpr std::string_view kImage = "/image";
 constexpr std::string_view kPick = "/pick";
 constexpr std::string_view kProfile = "/profile";
@@ -55,6 +56,11 @@ Result<HttpRoute> route_http(std::string_view target) {
   const std::string_view query = mark == std::string_view::npos ? std::string_view() : target.substr(mark + 1);
   for (const auto& [place, kind] : kPlaces) {
     if (path == place) return HttpRoute{kind, {}, std::string(query)};
+  }
+  if (path.starts_with(kUploads)) {
+    return protocol::decode_escapes(path.substr(kUploads.size())).map([](std::string name) {
+      return HttpRoute{Kind::kUpload, std::move(name), {}};
+    });
   }
   const std::string prefix = std::string(kModels) + "/";
   if (path.starts_with(prefix)) return route_model(path.substr(prefix.size()), query);

@@ -9,13 +9,13 @@ namespace surfcast::net {
 
 /// What an HTTP request asks for.
 struct HttpRoute {
-  enum class Kind { kPage, kModels, kModel, kPicture, kPick, kProfile, kWebSocket, kHealth, kReady, kMetrics };
+  enum class Kind { kPage, kModels, kModel, kPicture, kPick, kProfile, kWebSocket, kUpload, kHealth, kReady, kMetrics };
   Kind kind = Kind::kPage;
-  std::string model;  ///< of kModel, kPicture, kPick and kProfile
+  std::string model;  ///< of kModel, kPicture, kPick and kProfile; of kUpload the file's name
   std::string query;  ///< of kPicture, kPick and kProfile, still escaped
 };
 
-/// Where the target of a GET leads: kNotFound for no such place, kInvalidInput for a malformed one.
+/// Where the target of a request leads: kNotFound for no such place, kInvalidInput for a malformed one.
 Result<HttpRoute> route_http(std::string_view target);
 
 }  // namespace surfcast::net

@@ -5,8 +5,6 @@
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
-#include <boost/asio/post.hpp>
-#include <boost/asio/use_awaitable.hpp>
 #include <boost/beast/core/flat_buffer.hpp>
 #include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http/empty_body.hpp>
@@ -18,12 +16,13 @@
 #include <optional>
 #include <utility>
 
+#include "net/await_answer.h"
 #include "net/convert.h"
 #include "net/http_answer.h"
 #include "net/http_route.h"
+#include "net/http_upload.h"
 #include "net/message_session.h"
 #include "net/redirect_error_to.h"
-#include "net/share_across_threads.h"
 #include "net/upgrade.h"
 #include "net/websocket_transport.h"
 #include "protocol/picture_query.h"
@@ -39,22 +38,8 @@ namespace websocket = boost::beast::websocket;
 using asio::ip::tcp;
 using boost::system::error_code;
 
-/// Bytes of a body. Not a setting: no request has one, and these are read only to answer that.
+/// Bytes of a body. Not a setting: only uploads have one, and they are read piece by piece.
 constexpr uint64_t kBodyLimit = 4096;
-
-/// Waits in a coroutine for something that calls back from another thread. `start` gets the callback.
-template <typename Value, typename Start>
-asio::awaitable<Value> answer_of(Start start) {
-  const auto initiate = [&start](auto handler) {
-    const auto executor = asio::get_associated_executor(handler);
-    const auto shared = share_across_threads(std::make_shared<decltype(handler)>(std::move(handler)), executor);
-    start([shared, executor](Value value) {
-      asio::post(executor,
-                 [shared, value = std::make_shared<Value>(std::move(value))] { (*shared)(std::move(*value)); });
-    });
-  };
-  co_return co_await asio::async_initiate<const asio::use_awaitable_t<>, void(Value)>(initiate, asio::use_awaitable);
-}
 
 unsigned status_of(const error_code& code) {
   if (code == http::error::header_limit) return 431;
@@ -101,11 +86,12 @@ class HttpSession : public Session, public std::enable_shared_from_this<HttpSess
   }
 
  private:
-  using Parser = http::request_parser<http::empty_body>;
+  using Parser = HeadParser;
 
   asio::awaitable<void> serve();
   asio::awaitable<void> linger();
   asio::awaitable<bool> serve_one();
+  asio::awaitable<bool> serve_upload(Parser& parser);
   asio::awaitable<HttpAnswer> answer(const Parser::value_type& request);
   bool become_websocket(const Parser::value_type& request);
   [[nodiscard]] HttpAnswer refuse_websocket(const Parser::value_type& request) const;
@@ -158,7 +144,7 @@ asio::awaitable<bool> HttpSession::serve_one() {
   error_code code;
   Parser parser;
   parser.header_limit(context_->config.http_header_bytes);
-  parser.body_limit(kBodyLimit);
+  parser.body_limit(boost::none);  // what is no upload is refused before its body is read
   stream_.expires_after(first_ ? context_->config.hello : context_->config.idle);
   first_ = false;
   co_await http::async_read_header(stream_, buffer_, parser, redirect_error_to(code));
@@ -168,6 +154,7 @@ asio::awaitable<bool> HttpSession::serve_one() {
   const Parser::value_type& request = parser.get();
   if (!code && parser.is_done() && become_websocket(request)) co_return false;
   answering_ = true;
+  if (!code && refusal_.empty() && is_upload(request)) co_return co_await serve_upload(parser);
   HttpAnswer result;
   if (code) {
     result = error_answer({ErrorKind::kInvalidInput, "not a request of HTTP/1.1: " + code.message()}, status_of(code));
@@ -182,6 +169,19 @@ asio::awaitable<bool> HttpSession::serve_one() {
   const bool written = co_await write(result, code ? 11 : request.version(), keep_alive, head);
   answering_ = false;
   // The server may have begun to stop during the write.
+  const bool going_on = written && keep_alive && !context_->draining;
+  co_return going_on;
+}
+
+/// Receives a scan and answers. False when the connection is at its end.
+asio::awaitable<bool> HttpSession::serve_upload(Parser& parser) {
+  const unsigned version = parser.get().version();
+  bool keep_alive = parser.keep_alive();
+  const UploadOutcome outcome = co_await receive_scan(*context_, stream_, buffer_, parser);
+  if (outcome.answer.status >= 400) ++context_->metrics.errors;
+  keep_alive = keep_alive && outcome.whole && !context_->draining;
+  const bool written = co_await write(outcome.answer, version, keep_alive, /*head=*/false);
+  answering_ = false;
   const bool going_on = written && keep_alive && !context_->draining;
   co_return going_on;
 }
@@ -220,6 +220,11 @@ asio::awaitable<HttpAnswer> HttpSession::answer(const Parser::value_type& reques
   const StaticFile* file = find_file(context_->config, target);
   Result<HttpRoute> route = route_http(target);
   if (!route && file == nullptr) co_return error_answer(route.error());
+  if (route && route->kind == HttpRoute::Kind::kUpload) {
+    HttpAnswer refusal = error_answer({ErrorKind::kUnsupported, "scans are sent here with PUT"}, 405);
+    refusal.headers.emplace_back("Allow", "PUT");
+    co_return refusal;
+  }
   if (request.method() != http::verb::get && request.method() != http::verb::head) {
     HttpAnswer refusal = error_answer({ErrorKind::kUnsupported, "only GET and HEAD are answered"}, 405);
     refusal.headers.emplace_back("Allow", "GET, HEAD");
@@ -247,6 +252,7 @@ asio::awaitable<HttpAnswer> HttpSession::answer_place(HttpRoute route) {
       if (context_->draining) co_return error_answer({ErrorKind::kUnavailable, "the server is stopping"});
       co_return text_answer("ready\n", "text/plain");
     case HttpRoute::Kind::kMetrics:
+    case HttpRoute::Kind::kUpload:     // answered already
     case HttpRoute::Kind::kWebSocket:  // answered already
       break;
   }
@@ -277,7 +283,7 @@ std::string HttpSession::metrics_text() const {
 asio::awaitable<HttpAnswer> HttpSession::answer_models() {
   const auto models =
       co_await answer_of<service::ModelList>([this](auto done) { context_->service.list_models(std::move(done)); });
-  co_return models_answer(models);
+  co_return models_answer(models, context_->config.uploads);
 }
 
 asio::awaitable<HttpAnswer> HttpSession::answer_model(std::string name) {

@@ -11,6 +11,7 @@
 #include "net/clients.h"
 #include "net/request_window.h"
 #include "net/static_files.h"
+#include "net/uploads.h"
 #include "service/render_service.h"
 #include "view/view_session.h"
 
@@ -33,6 +34,7 @@ struct ServerConfig {
   std::chrono::milliseconds ping{30'000};     ///< without a word on a WebSocket, before the client is asked for one
   std::chrono::milliseconds drain{5'000};     ///< for what is outstanding when the server stops
   std::shared_ptr<const StaticFiles> viewer;  ///< served at "/"; null: a hint where to get one
+  UploadConfig uploads;                       ///< scans that clients may send
   std::vector<std::string> allowed_origins;   ///< of pages that may open a WebSocket beside the viewer's own
 };
 

@@ -1,6 +1,8 @@
 #pragma once
 
 #include <boost/asio/ip/tcp.hpp>
+#include <cstdint>
+#include <map>
 #include <memory>
 #include <string>
 #include <utility>
@@ -9,6 +11,7 @@
 #include "net/metrics.h"
 #include "net/server.h"
 #include "service/render_service.h"
+#include "service/worker_pool.h"
 
 namespace surfcast::net {
 
@@ -17,8 +20,12 @@ struct NetContext {
   service::RenderService& service;
   ServerConfig config;
   Metrics metrics;
-  uint64_t last_viewer = 0;  ///< see PictureRequest::viewer
-  bool draining = false;     ///< no new requests; what is outstanding is finished
+  uint64_t last_viewer = 0;                   ///< see PictureRequest::viewer
+  bool draining = false;                      ///< no new requests; what is outstanding is finished
+  std::map<std::string, uint64_t> uploads{};  ///< scans on their way by model, and the bytes kept for them
+  /// Writes what arrives, so that no other connection waits for the disk. Null: nothing may be sent.
+  std::shared_ptr<service::WorkerPool> disk =
+      config.uploads.folder.empty() ? nullptr : std::make_shared<service::WorkerPool>(1);
   std::shared_ptr<Clients> clients = std::make_shared<Clients>(config.clients);
 };
 

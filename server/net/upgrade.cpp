@@ -29,19 +29,22 @@ bool offers(std::string_view list, std::string_view protocol) {
   return false;
 }
 
-bool allows(const UpgradeRequest& request, std::span<const std::string> allowed) {
-  if (request.origin.empty()) return true;
-  const std::string_view authority = authority_of(request.origin);
-  if (!authority.empty() && equal_in_any_case(authority, request.host)) return true;
-  return std::ranges::any_of(allowed, [&](const auto& origin) { return equal_in_any_case(origin, request.origin); });
+bool allows(std::string_view host, std::string_view origin, std::span<const std::string> allowed) {
+  if (origin.empty()) return true;
+  const std::string_view authority = authority_of(origin);
+  if (!authority.empty() && equal_in_any_case(authority, host)) return true;
+  return std::ranges::any_of(allowed, [&](const auto& other) { return equal_in_any_case(other, origin); });
 }
 
 }  // namespace
 
+Status check_origin(std::string_view host, std::string_view origin, std::span<const std::string> allowed) {
+  if (allows(host, origin, allowed)) return {};
+  return fail(ErrorKind::kInvalidInput, "pages of another origin may not connect; --allow-origin lets them");
+}
+
 Status check_upgrade(const UpgradeRequest& request, std::span<const std::string> allowed) {
-  if (!allows(request, allowed)) {
-    return fail(ErrorKind::kInvalidInput, "pages of another origin may not connect; --allow-origin lets them");
-  }
+  if (Status status = check_origin(request.host, request.origin, allowed); !status) return status;
   if (!offers(request.protocols, protocol::kWebSocketProtocol)) {
     return fail(ErrorKind::kUnsupported,
                 "a WebSocket here speaks the subprotocol " + std::string(protocol::kWebSocketProtocol) + " alone");

@@ -144,4 +144,10 @@ Result<ScanFormat> scan_format_of(std::span<const std::byte> bytes, const std::f
   return fail(ErrorKind::kInvalidInput, "not a " + std::string(format_name(named->second)) + " file");
 }
 
+std::vector<std::string> scan_extensions() {
+  std::vector<std::string> all;
+  for (const auto& [extension, format] : kExtensions) all.emplace_back(extension);
+  return all;
+}
+
 }  // namespace surfcast::scan

@@ -75,6 +75,12 @@ bool ModelCatalogue::add_scan(const std::string& name) {
   return true;
 }
 
+bool ModelCatalogue::has(const std::string& name) const {
+  if (find_all().contains(name)) return true;
+  const std::lock_guard lock(mutex_);
+  return scans_.contains(name);
+}
+
 void ModelCatalogue::note(const ScanStatus& status) {
   {
     const std::lock_guard lock(mutex_);

@@ -43,6 +43,8 @@ class ModelCatalogue : public ModelSource {
   void on_change(Changed changed) { changed_ = std::move(changed); }
   /// Adds a scan whose model will be published. False if there is a file or scan of that name.
   [[nodiscard]] bool add_scan(const std::string& name);
+  /// Whether there is a file or a scan of that name. Unlike `names`, counts scans that failed.
+  [[nodiscard]] bool has(const std::string& name) const;
   /// How far a scan is: kWaiting, kBuilding or kFailed. Of a scan that was published, kFailed leaves the preview.
   void note(const ScanStatus& status);
   /// Adds the next edition. The one before it stays for views that show it, until there is another one.

@@ -142,6 +142,52 @@ TEST_F(ServeTest, WhatKilledServersLeftInTheCacheIsRemoved) {
   EXPECT_TRUE(fs::exists(folder_ / "cache" / "mine.txt"));
 }
 
+/// A server that takes scans.
+class ServeUploadsTest : public ServeTest {
+ protected:
+  void SetUp() override {
+    ServeTest::SetUp();
+    fs::create_directories(uploads());
+    serve_uploads();
+  }
+  void serve_uploads() { serve(scan_.string() + " --uploads " + uploads()); }
+  [[nodiscard]] std::string uploads() const { return file("uploads"); }
+  /// The server's answer to a scan that is sent.
+  [[nodiscard]] std::string put(const std::string& name, const std::string& body) const {
+    net::RawSocket socket(static_cast<uint16_t>(std::stoi(url_.substr(url_.find(':') + 1))));
+    socket.send("PUT /api/uploads/" + name +
+                " HTTP/1.1\r\nHost: here\r\nContent-Length: " + std::to_string(body.size()) + "\r\n\r\n" + body);
+    return socket.read_http();
+  }
+};
+
+TEST_F(ServeUploadsTest, AScanThatIsSentIsBuiltAndServedByLaterServersToo) {
+  EXPECT_NE(put("Sent.PLY", square_of_points()).find("201 Created"), std::string::npos);
+  EXPECT_EQ(draw("Sent").code, 0);
+  ASSERT_TRUE(write_file_atomically(file("uploads/half.ply.tmp7-1"), "left by a server that was killed"));
+  EXPECT_EQ(end(SIGTERM), 0);
+  serve_uploads();
+  EXPECT_EQ(client::run_program(SURFCAST_CLIENT " models " + url_).output, "Sent\nsquare\n");
+  EXPECT_EQ(draw("Sent").code, 0);
+  EXPECT_EQ(std::distance(fs::directory_iterator(uploads()), fs::directory_iterator()), 1);
+}
+
+TEST_F(ServeUploadsTest, WhatIsNoScanOrHasANameThatIsTakenIsRefused) {
+  const std::string garbage = put("garbage.laz", "no scan");
+  EXPECT_NE(garbage.find("\"garbage.laz: "), std::string::npos) << garbage;
+  const std::string torn = put("torn.ply", square_of_points().substr(0, 400));
+  EXPECT_NE(torn.find("\"torn.ply: truncated"), std::string::npos) << torn;
+  EXPECT_NE(put("square.ply", square_of_points()).find("that name already"), std::string::npos);
+  EXPECT_TRUE(fs::is_empty(uploads()));
+  EXPECT_EQ(client::run_program(SURFCAST_CLIENT " models " + url_).output, "square\n");
+}
+
+TEST_F(ServeUploadsTest, AScanThatCannotBeBuiltIsListedWithItsReason) {
+  EXPECT_NE(put("torn.xyz", "1 2 3\n4 5\n").find("201 Created"), std::string::npos);
+  const std::string list = list_until("\"state\": \"failed\"");
+  EXPECT_NE(list.find("torn.xyz: line 2"), std::string::npos) << list;
+}
+
 TEST_F(ServeTest, WrongCommandLinesEndWithTwo) {
   for (const std::string arguments : {"serve --listen nowhere", "serve --gpu -1", "render a.surf",
                                       "render a.surf --output a.gif", "healthcheck --url x"}) {

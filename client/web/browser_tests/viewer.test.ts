@@ -1,4 +1,4 @@
-import { mkdtemp, readFile, rm, writeFile } from 'node:fs/promises';
+import { mkdtemp, readdir, readFile, rm, writeFile } from 'node:fs/promises';
 import { tmpdir } from 'node:os';
 import { join } from 'node:path';
 import type { Browser, Page } from 'playwright-core';
@@ -372,6 +372,71 @@ describe('a scan that is being built', () => {
       await expect.poll(() => page.locator('.status').textContent(), { timeout: 20_000 }).toContain('Sharp');
     } finally {
       await hills.kill();
+    }
+  });
+
+  it('is dropped on the page, sent, listed and shown', async () => {
+    const uploads = await mkdtemp(join(tmpdir(), 'surfcast-uploads-'));
+    const taking = await Server.start(model, 0, '--cache', join(folder, 'cache'), '--uploads', uploads);
+    try {
+      await page.goto(`${taking.url}#/yard`);
+      await look.sharp(page);
+      expect(await page.locator('.uploads').count()).toBe(0);
+      const dropped = await page.evaluateHandle(
+        ([las]) => {
+          const bytes = Uint8Array.from(atob(las!), (c) => c.charCodeAt(0));
+          const transfer = new DataTransfer();
+          transfer.items.add(new File([bytes], 'shed.las'));
+          transfer.items.add(new File(['words'], 'notes.docx'));
+          transfer.items.add(new File(['no scan'], 'bad.ply'));
+          return transfer;
+        },
+        [Buffer.from(encodeLas(scene)).toString('base64')],
+      );
+      await page.dispatchEvent('body', 'drop', { dataTransfer: dropped });
+      const row = (name: string) => page.locator('.uploads li', { hasText: name });
+      await row('notes.docx').getByText('Not a scan by its name').waitFor();
+      await row('bad.ply').getByText('bad.ply: ').waitFor({ timeout: 30_000 });
+      await row('shed.las').getByRole('button', { name: 'Open' }).click({ timeout: 30_000 });
+      await look.sharp(page);
+      expect(page.url()).toContain('#/shed');
+      expect((await readdir(uploads)).sort()).toEqual(['shed.las']);
+      await page.goto(`${taking.url}#/`);
+      const torn = Buffer.from('1 2 3\n4 5\n');
+      await page.locator('.send-scans input').setInputFiles({ name: 'torn.xyz', mimeType: '', buffer: torn });
+      await row('torn.xyz').getByRole('button', { name: 'Open' }).click({ timeout: 30_000 });
+      await page.getByText('torn cannot be built').waitFor({ timeout: 30_000 });
+    } finally {
+      await taking.kill();
+      await rm(uploads, { recursive: true });
+    }
+  });
+
+  it('is given up by its sender, and nothing of it stays', async () => {
+    const uploads = await mkdtemp(join(tmpdir(), 'surfcast-uploads-'));
+    const taking = await Server.start(model, 0, '--cache', join(folder, 'cache'), '--uploads', uploads);
+    try {
+      await page.goto(`${taking.url}#/yard`);
+      await look.sharp(page);
+      const slow = await page.context().newCDPSession(page);
+      await slow.send('Network.enable');
+      const rate = { offline: false, latency: 0, downloadThroughput: -1, uploadThroughput: 200_000 };
+      await slow.send('Network.emulateNetworkConditions', rate);
+      const dropped = await page.evaluateHandle(() => {
+        const transfer = new DataTransfer();
+        transfer.items.add(new File([new Uint8Array(8_000_000)], 'long.laz'));
+        return transfer;
+      });
+      await page.dispatchEvent('body', 'drop', { dataTransfer: dropped });
+      const cancel = page.getByRole('button', { name: 'Cancel long.laz' });
+      await cancel.waitFor();
+      await expect.poll(async () => (await readdir(uploads)).length).toBe(1);
+      await cancel.click();
+      await expect.poll(async () => (await readdir(uploads)).length).toBe(0);
+      expect(await page.locator('.uploads').count()).toBe(0);
+    } finally {
+      await taking.kill();
+      await rm(uploads, { recursive: true });
     }
   });
 });

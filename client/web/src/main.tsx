@@ -9,6 +9,7 @@ import { render } from 'preact';
 import { Keyboard } from './input/keyboard';
 import { StageInput } from './input/stage_input';
 import { Tools } from './input/tools';
+import { acceptDrops, Uploader } from './input/uploads';
 import { startOverlay } from './overlay/overlay';
 import { currentLink, openModel, startRoutes } from './state/routes';
 import * as store from './state/store';
@@ -53,7 +54,13 @@ function start(): void {
   const eye = new CameraNavigator();
   const controller = new ViewController(socketUrl(), picture, (now) => eye.step(now));
   const probe = new Probe(controller);
-  const actions: Actions = { controller, navigator: eye, stage, copyLink: () => void copyLink() };
+  const uploader = new Uploader(() => controller.refreshModels());
+  acceptDrops(
+    () => store.uploads.peek(),
+    (held) => (store.dropping.value = held),
+    (files, rules) => uploader.add(files, rules),
+  );
+  const actions: Actions = { controller, navigator: eye, stage, uploader, copyLink: () => void copyLink() };
   new StageInput(stage, eye, probe, new Tools(eye, probe));
   new Keyboard(stage, eye, {
     toggleFlight: () => (store.flying.value = !store.flying.peek()),

@@ -4,7 +4,7 @@ import { skyOf } from '../camera/pose';
 import { projectionOf, type Projection } from '../camera/projection';
 import { diagonal, type Box } from '../camera/standard_views';
 import { decimalsOf } from '../measure/format';
-import type { ModelDescription, PickResult, ScanStatus, ViewFrame } from '../generated/surfcast_pb';
+import type { ModelDescription, PickResult, ScanStatus, Uploads, ViewFrame } from '../generated/surfcast_pb';
 import type { LinkState } from '../protocol/link';
 import { boxFrom, cameraFrom, type Size } from '../protocol/pictures';
 import type { Figures } from '../view/figures';
@@ -20,6 +20,8 @@ export const link = signal<LinkState>({ kind: 'connecting' });
 export const models = signal<readonly string[] | undefined>(undefined);
 /** Scans whose models are not complete, by name. */
 export const scans = signal<ReadonlyMap<string, ScanStatus>>(new Map());
+/** Which scans the server takes; undefined: none. */
+export const uploads = signal<Uploads | undefined>(undefined);
 export const descriptions = signal<ReadonlyMap<string, ModelDescription>>(new Map());
 /** Why there is no picture; `again`: a retry is scheduled. */
 export const viewProblem = signal<{ readonly message: string; readonly again: boolean } | undefined>(undefined);
@@ -55,6 +57,8 @@ export const panel = signal<Panel | undefined>(undefined);
 export const galleryOpen = signal(false);
 export type Dialog = 'screenshot' | 'help';
 export const dialog = signal<Dialog | undefined>(undefined);
+/** Files are held over the page that the server would take. */
+export const dropping = signal(false);
 export const figuresOpen = signal(false);
 /** One line of text, shown for a short time. */
 export const notice = signal<string | undefined>(undefined);

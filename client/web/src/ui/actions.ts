@@ -1,5 +1,6 @@
 import { createContext } from 'preact';
 import { useContext } from 'preact/hooks';
+import type { Uploader } from '../input/uploads';
 import type { ViewController } from '../view/view_controller';
 import type { CameraNavigator } from '../view/camera_navigator';
 
@@ -8,6 +9,7 @@ export interface Actions {
   readonly controller: ViewController;
   readonly navigator: CameraNavigator;
   readonly stage: HTMLElement; // holds the canvases
+  readonly uploader: Uploader;
   copyLink(): void;
 }
 

@@ -20,6 +20,7 @@ import { FiguresCard, Status } from './status';
 import { hintFor } from './hints';
 import { PhoneBar, ToolRail, panelNames } from './tool_rail';
 import { TopBar } from './top_bar';
+import { UploadsCard } from './uploads_card';
 
 /** Inserts the canvases, which are created outside of the components. */
 function Canvases(): JSX.Element {
@@ -129,6 +130,7 @@ export function App(): JSX.Element {
       {shown && <PhoneBar />}
       <Gallery />
       <StateCards />
+      <UploadsCard />
       {store.dialog.value === 'screenshot' && <ScreenshotDialog />}
       {store.dialog.value === 'help' && <HelpDialog />}
     </div>

@@ -3,7 +3,7 @@ import { useEffect, useState } from 'preact/hooks';
 import type { ScanStatus } from '../generated/surfcast_pb';
 import { openModel } from '../state/routes';
 import { failed, progressText } from '../state/scans';
-import { descriptions, galleryOpen, link, model, models, scans } from '../state/store';
+import { descriptions, galleryOpen, link, model, models, scans, uploads } from '../state/store';
 import { useActions } from './actions';
 import { IconButton } from './controls';
 
@@ -107,6 +107,23 @@ function Cards(): JSX.Element {
   );
 }
 
+/** Chooses scans to send, for those who cannot drop files. */
+function SendScans(): JSX.Element | null {
+  const { uploader } = useActions();
+  const rules = uploads.value;
+  if (!rules) return null;
+  const send = (event: JSX.TargetedEvent<HTMLInputElement>): void => {
+    uploader.add([...(event.currentTarget.files ?? [])], rules);
+    event.currentTarget.value = ''; // the same file may be chosen again
+  };
+  return (
+    <label class="send-scans">
+      <span class="faint">Send scans to this server: drop them on the page, or choose them</span>
+      <input type="file" multiple accept={rules.extensions.join(',')} onChange={send} />
+    </label>
+  );
+}
+
 /** The models of the server. Shown when no model is open, and on a click on the model's name in the top bar. */
 export function Gallery(): JSX.Element | null {
   if (model.value !== undefined && !galleryOpen.value) return null;
@@ -120,6 +137,7 @@ export function Gallery(): JSX.Element | null {
           )}
         </header>
         <Cards />
+        <SendScans />
       </div>
     </main>
   );

@@ -156,6 +156,7 @@ export class ViewController {
     const names = renewed(store.scans.peek(), scans);
     batch(() => {
       store.scans.value = scans;
+      store.uploads.value = list.uploads;
       store.models.value = list.models;
     });
     for (const name of names) {

@@ -1,0 +1,164 @@
+#include "net/http_upload.h"
+
+#include <algorithm>
+#include <boost/asio/buffer.hpp>
+#include <boost/asio/write.hpp>
+#include <boost/beast/core/string.hpp>
+#include <boost/beast/http/buffer_body.hpp>
+#include <boost/beast/http/read.hpp>
+#include <filesystem>
+#include <memory>
+#include <numeric>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "net/await_answer.h"
+#include "net/http_route.h"
+#include "net/redirect_error_to.h"
+#include "net/upgrade.h"
+#include "net/uploads.h"
+
+namespace surfcast::net {
+namespace {
+
+namespace asio = boost::asio;
+namespace beast = boost::beast;
+namespace http = boost::beast::http;
+using boost::system::error_code;
+using BodyParser = http::request_parser<http::buffer_body>;
+
+/// Bytes that are read before they are written. Not a setting: UploadConfig::timeout is that of one piece.
+constexpr size_t kPiece = size_t{64} << 10;
+
+std::string_view view_of(beast::string_view text) {
+  return {text.data(), text.size()};
+}
+
+/// What a client announces of a scan.
+struct Announced {
+  std::filesystem::path target;
+  std::optional<uint64_t> bytes;  ///< none: it says so at the end only
+};
+
+/// Whether a scan may be sent, and which one.
+Result<Announced> admit(const NetContext& context, const HeadParser& head) {
+  const UploadConfig& config = context.config.uploads;
+  if (context.draining) return fail(ErrorKind::kUnavailable, "the server is stopping");
+  if (config.folder.empty()) return fail(ErrorKind::kUnsupported, "this server takes no scans; --uploads lets it");
+  Announced scan;
+  if (const auto length = head.content_length()) scan.bytes = *length;
+  Result<std::filesystem::path> target = upload_target(config, route_http(view_of(head.get().target()))->model);
+  if (!target) return fail(std::move(target.error()));
+  scan.target = std::move(*target);
+  if (scan.bytes.value_or(0) > config.bytes) return fail(too_large(config));
+  if (context.uploads.contains(scan.target.stem().string())) {
+    return fail(ErrorKind::kInvalidInput, "a scan of that name is being received");
+  }
+  if (context.uploads.size() >= config.at_once) {
+    return fail(ErrorKind::kUnavailable, "busy: other scans are being received");
+  }
+  return scan;
+}
+
+/// Space that is kept for the scans on their way.
+uint64_t reserved_bytes(const NetContext& context) {
+  return std::accumulate(context.uploads.begin(), context.uploads.end(), uint64_t{0},
+                         [](uint64_t sum, const auto& upload) { return sum + upload.second; });
+}
+
+/// Runs `work` where it may wait for the disk. It is passed as a variable: GCC 12 ends temporaries twice that have a
+/// destructor and stand beside co_await.
+template <typename Value, typename Work>
+asio::awaitable<Value> on_disk(NetContext& context, const Work& work) {
+  return answer_of<Value>(
+      [&context, work](auto done) { context.disk->post([work, done = std::move(done)] { done(work()); }); });
+}
+
+/// Tells a client that waits for it to send the body.
+asio::awaitable<void> say_continue(const NetContext& context, beast::tcp_stream& stream) {
+  static constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
+  stream.expires_after(context.config.stall);
+  error_code ignored;  // reading fails as well
+  co_await asio::async_write(stream, asio::buffer(kContinue), redirect_error_to(ignored));
+}
+
+/// Reads a body piece by piece. The next piece is read once the last one is written.
+asio::awaitable<Status> receive_body(NetContext& context, beast::tcp_stream& stream, beast::flat_buffer& buffer,
+                                     BodyParser& parser, std::shared_ptr<IncomingScan> scan) {
+  const auto piece = std::make_shared<std::vector<std::byte>>(kPiece);
+  while (!parser.is_done()) {
+    http::buffer_body::value_type& body = parser.get().body();
+    body = {piece->data(), piece->size(), true};
+    stream.expires_after(context.config.uploads.timeout);
+    error_code code;
+    co_await http::async_read(stream, buffer, parser, redirect_error_to(code));
+    if (code && code != http::error::need_buffer) {
+      co_return fail(ErrorKind::kCancelled, "the scan did not arrive: " + code.message());
+    }
+    const size_t count = piece->size() - body.size;
+    const auto append = [=] { return scan->append(std::span(*piece).first(count)); };
+    Status written = co_await on_disk<Status>(context, append);
+    if (!written) co_return written;
+  }
+  co_return Status();
+}
+
+asio::awaitable<Status> store(NetContext& context, beast::tcp_stream& stream, beast::flat_buffer& buffer,
+                              HeadParser& head, Announced announced, uint64_t reserved) {
+  const UploadConfig& config = context.config.uploads;
+  using Created = Result<std::shared_ptr<IncomingScan>>;
+  const auto create = [&config, announced, reserved] {
+    return IncomingScan::create(config, announced.target, announced.bytes, reserved).map([](IncomingScan created) {
+      return std::make_shared<IncomingScan>(std::move(created));
+    });
+  };
+  Created scan = co_await on_disk<Created>(context, create);
+  if (!scan) co_return fail(scan.error());
+  if (beast::iequals(head.get()[http::field::expect], "100-continue")) co_await say_continue(context, stream);
+  BodyParser body{std::move(head)};
+  body.body_limit(boost::none);  // IncomingScan counts
+  Status status = co_await receive_body(context, stream, buffer, body, *scan);
+  const auto finish = [scan = *scan] { return scan->finish(); };
+  if (status) status = co_await on_disk<Status>(context, finish);
+  context.disk->post([scan = std::move(*scan)] {});  // what is not whole is removed there
+  co_return status;
+}
+
+UploadOutcome refusal_of(const Error& error) {
+  return {error.kind == ErrorKind::kLimit ? error_answer(error, 413) : error_answer(error)};
+}
+
+}  // namespace
+
+bool is_upload(const HeadParser::value_type& request) {
+  const Result<HttpRoute> route = route_http(view_of(request.target()));
+  return route && route->kind == HttpRoute::Kind::kUpload && request.method() == http::verb::put;
+}
+
+asio::awaitable<UploadOutcome> receive_scan(NetContext& context, beast::tcp_stream& stream, beast::flat_buffer& buffer,
+                                            HeadParser& head) {
+  const auto& request = head.get();
+  const Status page = check_origin(view_of(request[http::field::host]), view_of(request[http::field::origin]),
+                                   context.config.allowed_origins);
+  UploadOutcome outcome;
+  if (!page) {
+    outcome.answer = error_answer(page.error(), 403);
+    co_return outcome;
+  }
+  const Result<Announced> scan = admit(context, head);
+  if (!scan) co_return refusal_of(scan.error());
+  const std::string model = scan->target.stem().string();
+  const uint64_t reserved = reserved_bytes(context);
+  context.uploads.emplace(model, scan->bytes.value_or(context.config.uploads.bytes));
+  const Status stored = co_await store(context, stream, buffer, head, *scan, reserved);
+  context.uploads.erase(model);
+  if (!stored) co_return refusal_of(stored.error());
+  outcome.answer = uploaded_answer(model);
+  outcome.whole = true;
+  co_return outcome;
+}
+
+}  // namespace surfcast::net

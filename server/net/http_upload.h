@@ -1,0 +1,30 @@
+#pragma once
+
+#include <boost/asio/awaitable.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http/empty_body.hpp>
+#include <boost/beast/http/message.hpp>
+#include <boost/beast/http/parser.hpp>
+
+#include "net/http_answer.h"
+#include "net/session.h"
+
+namespace surfcast::net {
+
+using HeadParser = boost::beast::http::request_parser<boost::beast::http::empty_body>;
+
+/// Whether a client begins to send a scan.
+bool is_upload(const HeadParser::value_type& request);
+
+/// The answer to a client that sends a scan. `whole`: nothing of the request is unread.
+struct UploadOutcome {
+  HttpAnswer answer;
+  bool whole = false;
+};
+
+/// Receives the scan of a request whose head was read, and serves it. All arguments must outlive the coroutine.
+boost::asio::awaitable<UploadOutcome> receive_scan(NetContext& context, boost::beast::tcp_stream& stream,
+                                                   boost::beast::flat_buffer& buffer, HeadParser& head);
+
+}  // namespace surfcast::net

@@ -1,0 +1,132 @@
+#include "net/uploads.h"
+
+#include <algorithm>
+#include <cctype>
+#include <system_error>
+#include <utility>
+
+#include "protocol/errors.h"
+
+namespace surfcast::net {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Bytes of a name. Not a setting: file systems end at 255, and the temporary file's name is longer.
+constexpr size_t kLongestName = 200;
+
+std::string lower(std::string text) {
+  std::ranges::transform(text, text.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return text;
+}
+
+/// Whether a name stays within its folder, is not hidden, and can be listed as it is.
+bool is_plain(std::string_view name) {
+  const auto wrong = [](unsigned char c) { return c < 0x20 || c == 0x7f || c == '/' || c == '\\' || c == ':'; };
+  return !name.empty() && name.front() != '.' && std::ranges::none_of(name, wrong) &&
+         protocol::clean_utf8(name) == name;
+}
+
+std::string known_extensions(const UploadConfig& config) {
+  std::string list;
+  for (const std::string& extension : config.extensions) list += (list.empty() ? "" : " ") + extension;
+  return list;
+}
+
+tl::unexpected<Error> taken(const fs::path& target) {
+  return fail(ErrorKind::kInvalidInput, target.filename().string() + ": there is a model or scan of that name already");
+}
+
+uint64_t bytes_in_folder(const UploadConfig& config) {
+  uint64_t sum = 0;
+  for (const fs::path& scan : uploaded_scans(config)) {
+    std::error_code code;
+    const uint64_t bytes = fs::file_size(scan, code);
+    if (!code) sum += bytes;
+  }
+  return sum;
+}
+
+/// Bytes that a further scan may have.
+uint64_t room_in_folder(const UploadConfig& config, uint64_t reserved) {
+  std::error_code code;
+  const fs::space_info disk = fs::space(config.folder, code);
+  const uint64_t on_disk = code ? config.total_bytes : disk.available;
+  const uint64_t within_total = config.total_bytes - std::min(config.total_bytes, bytes_in_folder(config));
+  const uint64_t room = std::min(on_disk, within_total);
+  return std::min(config.bytes, room - std::min(room, reserved));
+}
+
+/// The error with the file's name in place of its path.
+Error without_folder(Error error, const fs::path& target) {
+  const std::string path = target.string();
+  const std::string name = target.filename().string();
+  for (size_t at = error.message.find(path); at != std::string::npos; at = error.message.find(path, at + name.size())) {
+    error.message.replace(at, path.size(), name);
+  }
+  return error;
+}
+
+}  // namespace
+
+Result<fs::path> upload_target(const UploadConfig& config, std::string_view name) {
+  if (!is_plain(name)) {
+    return fail(ErrorKind::kInvalidInput, "the name must be that of a file, without folders and a leading dot");
+  }
+  if (name.size() > kLongestName) {
+    return fail(ErrorKind::kInvalidInput, "the name is longer than " + std::to_string(kLongestName) + " bytes");
+  }
+  const fs::path file{name};
+  if (std::ranges::find(config.extensions, lower(file.extension().string())) == config.extensions.end()) {
+    return fail(ErrorKind::kUnsupported,
+                file.string() + ": not a scan by its name; known are " + known_extensions(config));
+  }
+  return config.folder / file;
+}
+
+Error too_large(const UploadConfig& config) {
+  return {ErrorKind::kLimit, "larger than the " + std::to_string(config.bytes) + " bytes that are taken"};
+}
+
+std::vector<fs::path> uploaded_scans(const UploadConfig& config) {
+  std::vector<fs::path> scans;
+  std::error_code code;
+  for (fs::directory_iterator entry(config.folder, code), end; !code && entry != end; entry.increment(code)) {
+    std::error_code ignored;
+    const bool named = upload_target(config, entry->path().filename().string()).has_value();
+    if (named && entry->is_regular_file(ignored)) scans.push_back(entry->path());
+  }
+  std::ranges::sort(scans);
+  return scans;
+}
+
+Result<IncomingScan> IncomingScan::create(const UploadConfig& config, const fs::path& target,
+                                          std::optional<uint64_t> bytes, uint64_t reserved) {
+  std::error_code code;
+  if (fs::exists(fs::symlink_status(target, code)) || config.taken(target.stem().string())) return taken(target);
+  const uint64_t room = room_in_folder(config, reserved);
+  if (room == 0 || bytes.value_or(0) > room) {
+    return fail(ErrorKind::kUnavailable, target.filename().string() + ": the server has no room for it");
+  }
+  Result<AtomicFile> file = AtomicFile::create(target);
+  if (!file) return fail(without_folder(std::move(file.error()), target));
+  return IncomingScan(config, target, std::move(*file), bytes.value_or(room));
+}
+
+Status IncomingScan::append(std::span<const std::byte> bytes) {
+  if (bytes.size() > room_ - file_.position()) return fail(too_large(*config_));
+  return file_.append(bytes).map_error([&](Error error) { return without_folder(std::move(error), target_); });
+}
+
+Status IncomingScan::finish() {
+  std::error_code code;
+  if (fs::exists(fs::symlink_status(target_, code))) return taken(target_);
+  Status status = file_.commit_new();
+  if (!status) return fail(without_folder(std::move(status.error()), target_));
+  status = config_->serve(target_);
+  if (status) return {};
+  fs::remove(target_, code);
+  return fail(without_folder(std::move(status.error()), target_));
+}
+
+}  // namespace surfcast::net
