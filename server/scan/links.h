@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include <tbb/parallel_for.h>
@@ -14,6 +15,9 @@ namespace surfcast::scan {
 
 /// Neighbours of each site along which signs are propagated, at most 8. More of them only cost time.
 inline constexpr size_t kLinks = 8;
+
+/// The most sites of a part: pairs of linked sites have numbers of 32 bits.
+inline constexpr size_t kMostSites = (size_t{1} << 32U) / kLinks - 1;
 
 /// The pairs of linked sites. A pair is linked if either site is a near neighbour of the other.
 class Links {
@@ -28,12 +32,24 @@ class Links {
   /// its sites.
   template <typename Use>
   void for_each(size_t first, size_t last, const Use& use) const {
+    for_each_numbered(first, last, [&use](uint32_t a, uint32_t b, uint32_t) { use(a, b); });
+  }
+
+  /// The same, and passes the number of the pair, which ascends from call to call.
+  template <typename Use>
+  void for_each_numbered(size_t first, size_t last, const Use& use) const {
     for (size_t a = first; a < last; ++a) {
       const std::span<const uint32_t> near = near_to(a);
       for (size_t k = 0; k < near.size(); ++k) {
-        if ((listed_[a] >> k & 1U) != 0) use(static_cast<uint32_t>(a), near[k]);
+        if ((listed_[a] >> k & 1U) != 0) use(static_cast<uint32_t>(a), near[k], static_cast<uint32_t>(a * kLinks + k));
       }
     }
+  }
+
+  /// The sites of a pair by its number.
+  [[nodiscard]] std::pair<uint32_t, uint32_t> pair(uint32_t number) const {
+    const uint32_t a = number / kLinks;
+    return {a, near_to(a)[number % kLinks]};
   }
 
  private:

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include <tbb/blocked_range.h>
+#include <tbb/enumerable_thread_specific.h>
 #include <tbb/parallel_for.h>
 #include <tbb/parallel_reduce.h>
 
@@ -30,10 +31,11 @@ bool has_normal(const surfel::SurfelCloud& cloud, size_t i) {
 struct SiteFacts {
   std::vector<SitePlace> places;
   std::vector<SiteDirection> known;
-  std::vector<glm::vec3> towards;
-  std::vector<uint8_t> scatter;  ///< 1: lies on no surface
+  std::vector<glm::vec3> towards;  ///< empty if nothing is known
+  std::vector<uint8_t> scatter;    ///< 1: lies on no surface
 
-  explicit SiteFacts(size_t sites) : places(sites), known(sites), towards(sites, glm::vec3(0)), scatter(sites) {}
+  SiteFacts(size_t sites, bool any_known)
+      : places(sites), known(sites), towards(any_known ? sites : 0, glm::vec3(0)), scatter(sites) {}
 };
 
 /// Records the direction of a point at its site. The first point at a site counts, but a stored normal takes precedence
@@ -51,7 +53,9 @@ void learn_direction(const surfel::SurfelCloud& cloud, size_t point, size_t site
 }
 
 SiteFacts find_site_facts(const surfel::SurfelCloud& cloud, const Sites& sites, const PartFrame& frame) {
-  SiteFacts facts(sites.size());
+  const bool any_known = !cloud.normals.empty() || std::any_of(frame.sensors.begin(), frame.sensors.end(),
+                                                               [](const auto& sensor) { return sensor.has_value(); });
+  SiteFacts facts(sites.size(), any_known);
   const bool own_sites = sites.size() == cloud.size();
   for (size_t s = 0; s < cloud.sources.size(); ++s) {
     const surfel::SourceRange& source = cloud.sources[s];
@@ -114,12 +118,18 @@ Estimates estimates_of(const Sites& sites, const NeighbourGraph& graph, const Si
 std::vector<SurfaceSample> sample_surfaces(const Sites& sites, const NeighbourGraph& graph, const SiteFacts& facts,
                                            std::span<const float> estimated, const PartFrame& frame) {
   const uint64_t per_sample = points_per_sample(frame.points);
-  std::vector<SurfaceSample> samples;
-  for (uint32_t site = 0; site < sites.size(); ++site) {
-    if (facts.scatter[site] != 0 || !facts.places[site].own || !is_sampled(sites, graph, site, per_sample)) continue;
-    samples.push_back({sites.positions[site], estimated[site]});
-  }
-  return samples;
+  tbb::enumerable_thread_specific<std::vector<SurfaceSample>> samples;
+  using Range = tbb::blocked_range<uint32_t>;
+  tbb::parallel_for(Range(0, static_cast<uint32_t>(sites.size())), [&](const Range& range) {
+    std::vector<SurfaceSample>& own = samples.local();
+    for (uint32_t site = range.begin(); site != range.end(); ++site) {
+      if (facts.scatter[site] != 0 || !facts.places[site].own || !is_sampled(sites, graph, site, per_sample)) continue;
+      own.push_back({sites.positions[site], estimated[site]});
+    }
+  });
+  std::vector<SurfaceSample> all;
+  for (const std::vector<SurfaceSample>& own : samples) all.insert(all.end(), own.begin(), own.end());
+  return all;
 }
 
 /// True if no radius is estimated.
@@ -134,26 +144,35 @@ struct Findings {
   std::vector<RadiusGuess> guesses;  ///< of radii; none if no radius is estimated
 };
 
-/// The normal of a site: that of the scan, or the direction of least variance of its neighbourhood.
-glm::vec3 normal_of(const SiteFacts& facts, size_t site, const Covariance& covariance) {
-  return facts.known[site] == SiteDirection::kStored ? facts.towards[site] : glm::vec3(least_axis(covariance));
+/// True if a site lies on no surface. With fewer than kWideNeighbours nothing is known, and the site counts as a
+/// surface.
+bool is_scatter(const Spread& near, const Covariances& covariances, size_t neighbours) {
+  return neighbours >= kWideNeighbours && !lies_on_surface(near, spread_of(covariances.wide));
+}
+
+/// The normals that the scan has; z elsewhere.
+std::vector<glm::vec3> stored_normals(const SiteFacts& facts) {
+  std::vector<glm::vec3> normals(facts.known.size(), glm::vec3(0, 0, 1));
+  if (facts.towards.empty()) return normals;
+  tbb::parallel_for(size_t{0}, normals.size(), [&](size_t i) {
+    if (facts.known[i] == SiteDirection::kStored) normals[i] = facts.towards[i];
+  });
+  return normals;
 }
 
 /// Sets `facts.scatter`, too, if radii are estimated.
 Findings study_neighbourhoods(const Sites& sites, bool radii, SiteFacts& facts) {
-  Findings findings{{}, std::vector<glm::vec3>(sites.size(), glm::vec3(0, 0, 1)), {}};
-  for (size_t i = 0; i < sites.size(); ++i) {
-    if (facts.known[i] == SiteDirection::kStored) findings.normals[i] = facts.towards[i];
-  }
-  if (radii) findings.guesses.resize(sites.size());
+  Findings findings{{}, stored_normals(facts), std::vector<RadiusGuess>(radii ? sites.size() : 0)};
   const size_t visited = radii ? kWideNeighbours : kDegree;
   findings.graph = find_neighbours(sites, kDegree, visited, [&](uint32_t site, std::span<const uint32_t> neighbours) {
-    if (!radii && facts.known[site] == SiteDirection::kStored) return;
+    const bool stored = facts.known[site] == SiteDirection::kStored;
+    if (!radii && stored) return;
     const NeighbourOffsets offsets(sites, site, neighbours);
     const Covariances covariances = covariances_of(offsets);
-    findings.normals[site] = normal_of(facts, site, covariances.near);
+    const Spread near = spread_of(covariances.near);
+    if (!stored) findings.normals[site] = glm::vec3(least_axis(covariances.near, near.least));
     if (!radii) return;
-    facts.scatter[site] = is_scatter(covariances, offsets.count) ? 1 : 0;
+    facts.scatter[site] = is_scatter(near, covariances, offsets.count) ? 1 : 0;
     findings.guesses[site] = guess_radius(offsets, kDegree, findings.normals[site], sites.unit);
   });
   return findings;

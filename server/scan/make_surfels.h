@@ -34,7 +34,7 @@ struct PartSurfels {
   std::vector<uint32_t> trees;  ///< for each surfel, the tree that determines the sign of its normal, or kNoTree
   Estimates estimates;          ///< radii as stated where nobody asks for estimates
   std::vector<RadiusComparison> radii;  ///< of each input
-  std::vector<SurfaceSample> samples;   ///< of the part's own surface points
+  std::vector<SurfaceSample> samples;   ///< of the part's own surface points, in any order
 };
 
 /// Makes surfels from clean points: estimates normals that are missing or NaN, and radii. `signs` receives the data

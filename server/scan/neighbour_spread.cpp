@@ -114,9 +114,9 @@ Spread spread_of(const Covariance& m) {
   return {std::max(mean + p * t[0], 0.0), std::max(mean + p * t[1], 0.0), mean + p * t[2]};
 }
 
-glm::dvec3 least_axis(const Covariance& m) {
+glm::dvec3 least_axis(const Covariance& m, double least) {
   constexpr double kTooClose = 1e-24;
-  const std::array<glm::dvec3, 3> c = columns(m, spread_of(m).least);
+  const std::array<glm::dvec3, 3> c = columns(m, least);
   // All columns are perpendicular to the axis. The one with the largest entry on the diagonal is not short.
   const glm::dvec3 size = glm::abs(glm::dvec3(c[0].x, c[1].y, c[2].z));
   const size_t longest = size.x >= size.y && size.x >= size.z ? 0 : size.y >= size.z ? 1 : 2;
@@ -126,11 +126,6 @@ glm::dvec3 least_axis(const Covariance& m) {
   const double squared_second = glm::dot(second, second);
   if (!(std::max(squared_first, squared_second) > kTooClose)) return least_axis_by_iteration(m);
   return squared_first > squared_second ? first / std::sqrt(squared_first) : second / std::sqrt(squared_second);
-}
-
-bool is_scatter(const Covariances& covariances, size_t neighbours) {
-  if (neighbours < kWideNeighbours) return false;
-  return !lies_on_surface(spread_of(covariances.near), spread_of(covariances.wide));
 }
 
 }  // namespace surfcast::scan

@@ -26,12 +26,8 @@ Covariances covariances_of(const NeighbourOffsets& neighbours);
 /// The eigenvalues of the matrix, in closed form.
 Spread spread_of(const Covariance& covariance);
 
-/// The direction of least variance (Hoppe et al. 1992, section 3.2): the eigenvector of the smallest eigenvalue. Unit;
-/// the sign is arbitrary. Neighbourhoods on a line get a direction perpendicular to it.
-glm::dvec3 least_axis(const Covariance& covariance);
-
-/// True if a site lies on no surface. `neighbours`: how many it has. With fewer than kWideNeighbours nothing is known,
-/// and the site counts as a surface.
-bool is_scatter(const Covariances& covariances, size_t neighbours);
+/// The direction of least variance (Hoppe et al. 1992, section 3.2): the eigenvector of the smallest eigenvalue, which
+/// is `least`. Unit; the sign is arbitrary. Neighbourhoods on a line get a direction perpendicular to it.
+glm::dvec3 least_axis(const Covariance& covariance, double least);
 
 }  // namespace surfcast::scan

@@ -35,6 +35,7 @@ size_t chunks_of(size_t sites) {
 
 /// Orients the normals of known direction individually.
 void face_known(const SitesOfPart& part, std::vector<glm::vec3>& normals) {
+  if (part.towards.empty()) return;
   tbb::parallel_for(size_t{0}, normals.size(), [&](size_t i) {
     if (glm::dot(normals[i], part.towards[i]) < 0) normals[i] = -normals[i];
   });
@@ -107,7 +108,7 @@ void vote(const SitesOfPart& part, std::span<const glm::vec3> normals, std::span
     tree.spread += area * glm::dot(p, p);
     tree.normal += area * n;
     tree.flux += area * glm::dot(n, p);
-    tree.towards += area * static_cast<double>(glm::dot(normals[i], part.towards[i]));
+    if (!part.towards.empty()) tree.towards += area * static_cast<double>(glm::dot(normals[i], part.towards[i]));
   });
 }
 

@@ -28,7 +28,7 @@ struct SitesOfPart {
   const Sites& sites;
   const NeighbourGraph& graph;
   std::span<const SiteDirection> known;
-  std::span<const glm::vec3> towards;  ///< zero if unknown
+  std::span<const glm::vec3> towards;  ///< zero if unknown; empty if nothing is known
   std::span<const SitePlace> places;
 };
 

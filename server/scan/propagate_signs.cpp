@@ -46,32 +46,70 @@ double vote(const Sites& sites, std::span<const glm::vec3> normals, uint32_t a, 
   return glm::dot(n, m) - glm::dot(n, d) * glm::dot(m, d) / glm::dot(d, d);
 }
 
-/// The initial contacts: every site is a piece.
-std::vector<Contact> link_contacts(const Sites& sites, const Links& links, std::span<const glm::vec3> normals) {
-  std::vector<size_t> begins(chunks_of(links.sites()) + 1);
-  for_each_chunk(links.sites(), [&](size_t chunk, size_t first, size_t last) {
-    links.for_each(first, last, [&](uint32_t, uint32_t) { ++begins[chunk + 1]; });
-  });
-  for (size_t chunk = 1; chunk < begins.size(); ++chunk) begins[chunk] += begins[chunk - 1];
-  std::vector<Contact> contacts(begins.back());
-  for_each_chunk(links.sites(), [&](size_t chunk, size_t first, size_t last) {
-    size_t next = begins[chunk];
-    links.for_each(first, last, [&](uint32_t a, uint32_t b) {
-      contacts[next++] = {a, b, std::llround(std::ldexp(vote(sites, normals, a, b), 32))};
-    });
-  });
-  return contacts;
-}
+/// The initial contacts, of linked sites: every site is a piece. Their numbers are those of the links.
+class LinkContacts {
+ public:
+  LinkContacts(const Sites& sites, const Links& links, std::span<const glm::vec3> normals)
+      : sites_(sites), links_(links), normals_(normals) {
+    SURFCAST_EXPECTS(links.sites() <= kMostSites);
+  }
+
+  [[nodiscard]] bool empty() const { return links_.sites() < 2; }
+  [[nodiscard]] size_t chunks() const { return (links_.sites() + kSites - 1) / kSites; }
+  /// Calls `use(contact, number)` for the contacts of a chunk, in ascending order of their numbers.
+  template <typename Use>
+  void for_each(size_t chunk, const Use& use) const {
+    const size_t first = chunk * kSites;
+    links_.for_each_numbered(first, std::min(links_.sites(), first + kSites),
+                             [&](uint32_t a, uint32_t b, uint32_t number) { use(contact(a, b), number); });
+  }
+  [[nodiscard]] Contact at(uint32_t number) const {
+    const auto [a, b] = links_.pair(number);
+    return contact(a, b);
+  }
+
+ private:
+  static constexpr size_t kSites = 8192;  ///< of a chunk
+
+  [[nodiscard]] Contact contact(uint32_t a, uint32_t b) const {
+    const double scaled = 0x1p32 * vote(sites_, normals_, a, b);
+    return {a, b, static_cast<int64_t>(scaled + std::copysign(0.5, scaled))};
+  }
+
+  const Sites& sites_;
+  const Links& links_;
+  std::span<const glm::vec3> normals_;
+};
+
+/// Contacts in runs, with unused places between these. Their numbers are their places.
+struct ContactRuns {
+  struct Run {
+    size_t first = 0;
+    size_t last = 0;  ///< exclusive
+  };
+  std::vector<Contact> contacts;
+  std::vector<Run> runs;
+
+  [[nodiscard]] bool empty() const {
+    return std::all_of(runs.begin(), runs.end(), [](const Run& run) { return run.first == run.last; });
+  }
+  [[nodiscard]] size_t chunks() const { return runs.size(); }
+  template <typename Use>
+  void for_each(size_t chunk, const Use& use) const {
+    for (size_t i = runs[chunk].first; i < runs[chunk].last; ++i) use(contacts[i], static_cast<uint32_t>(i));
+  }
+  [[nodiscard]] const Contact& at(uint32_t number) const { return contacts[number]; }
+};
 
 /// A contact by its strength: larger numbers are stronger contacts, and of equally strong ones earlier ones. 0 is none.
 using Strength = uint64_t;
 
-Strength strength_of(const Contact& contact, size_t number) {
+Strength strength_of(const Contact& contact, uint32_t number) {
   const auto bits = std::bit_cast<uint32_t>(static_cast<float>(std::abs(contact.agreement)));
-  return uint64_t{bits} << 32U | (std::numeric_limits<uint32_t>::max() - static_cast<uint32_t>(number));
+  return uint64_t{bits} << 32U | (std::numeric_limits<uint32_t>::max() - number);
 }
 
-size_t number_of(Strength strength) {
+uint32_t number_of(Strength strength) {
   return std::numeric_limits<uint32_t>::max() - static_cast<uint32_t>(strength);
 }
 
@@ -83,15 +121,15 @@ void raise(Strength& largest, Strength strength) {
 }
 
 /// The strongest contact of every piece.
-std::vector<Strength> strongest(std::span<const Contact> contacts, size_t pieces) {
-  SURFCAST_EXPECTS(contacts.size() < std::numeric_limits<uint32_t>::max());
+template <typename Contacts>
+std::vector<Strength> strongest(const Contacts& contacts, size_t pieces) {
   std::vector<Strength> best(pieces);
-  for_each_chunk(contacts.size(), [&](size_t, size_t first, size_t last) {
-    for (size_t i = first; i < last; ++i) {
-      const Strength strength = strength_of(contacts[i], i);
-      raise(best[contacts[i].a], strength);
-      raise(best[contacts[i].b], strength);
-    }
+  tbb::parallel_for(size_t{0}, contacts.chunks(), [&](size_t chunk) {
+    contacts.for_each(chunk, [&](const Contact& contact, uint32_t number) {
+      const Strength strength = strength_of(contact, number);
+      raise(best[contact.a], strength);
+      raise(best[contact.b], strength);
+    });
   });
   return best;
 }
@@ -106,14 +144,15 @@ struct Member {
 
 /// Each piece under the one at the other end of its strongest contact. Of two that are each other's, the first is the
 /// root. There are no longer circles, because contacts grow stronger from piece to piece.
-std::vector<Member> hook(std::span<const Contact> contacts, const std::vector<Strength>& best) {
+template <typename Contacts>
+std::vector<Member> hook(const Contacts& contacts, const std::vector<Strength>& best) {
   std::vector<Member> members(best.size());
   for_each_chunk(best.size(), [&](size_t, size_t first, size_t last) {
     for (size_t p = first; p < last; ++p) {
       const auto piece = static_cast<uint32_t>(p);
       members[p] = {piece, 0};
       if (best[p] == 0) continue;
-      const Contact& c = contacts[number_of(best[p])];
+      const Contact c = contacts.at(number_of(best[p]));
       const uint32_t other = c.a == piece ? c.b : c.a;
       const bool root = best[other] == best[p] && piece < other;
       if (!root) members[p] = {other, c.agreement < 0 ? 1U : 0U};
@@ -153,52 +192,100 @@ uint32_t number_roots(std::vector<Member>& members) {
   return count;
 }
 
-/// Rewrites contacts in terms of the pieces to which theirs belong.
-void relabel(std::vector<Contact>& contacts, const std::vector<Member>& members) {
-  for_each_chunk(contacts.size(), [&](size_t, size_t first, size_t last) {
-    for (size_t i = first; i < last; ++i) {
-      Contact& c = contacts[i];
-      const Member& a = members[c.a];
-      const Member& b = members[c.b];
-      c = {std::min(a.of, b.of), std::max(a.of, b.of), a.opposed != b.opposed ? -c.agreement : c.agreement};
-    }
-  });
+/// A contact in terms of the pieces to which its own belong.
+Contact relabelled(const Contact& contact, const std::vector<Member>& members) {
+  const Member& a = members[contact.a];
+  const Member& b = members[contact.b];
+  return {std::min(a.of, b.of), std::max(a.of, b.of), a.opposed != b.opposed ? -contact.agreement : contact.agreement};
 }
 
-/// Contacts between different pieces, sorted into buckets by their first piece. Bucket i is from begins[i] to
-/// begins[i + 1].
+/// Adds up contacts of equal pairs in the order in which pairs come first.
+class PairSums {
+ public:
+  void clear() {
+    sums_.clear();
+    slots_.assign(slots_.size(), kNone);
+  }
+  void add(const Contact& contact) {
+    if (2 * sums_.size() >= slots_.size()) grow();
+    uint32_t& slot = slot_of(contact);
+    if (slot == kNone) {
+      slot = static_cast<uint32_t>(sums_.size());
+      sums_.push_back(contact);
+    } else {
+      sums_[slot].agreement += contact.agreement;
+    }
+  }
+  [[nodiscard]] const std::vector<Contact>& sums() const { return sums_; }
+
+ private:
+  static constexpr uint32_t kNone = std::numeric_limits<uint32_t>::max();
+
+  [[nodiscard]] uint32_t& slot_of(const Contact& contact) {
+    const uint64_t pair = uint64_t{contact.a} << 32U | contact.b;
+    size_t at = pair * 0x9e3779b97f4a7c15ULL >> (64 - bits_);
+    while (slots_[at] != kNone && (sums_[slots_[at]].a != contact.a || sums_[slots_[at]].b != contact.b)) {
+      at = (at + 1) & (slots_.size() - 1);
+    }
+    return slots_[at];
+  }
+  void grow() {
+    ++bits_;
+    slots_.assign(size_t{1} << bits_, kNone);
+    for (uint32_t i = 0; i < sums_.size(); ++i) slot_of(sums_[i]) = i;
+  }
+
+  unsigned bits_ = 13;
+  std::vector<uint32_t> slots_ = std::vector<uint32_t>(size_t{1} << bits_, kNone);  ///< open addressing
+  std::vector<Contact> sums_;
+};
+
+/// The contacts between the pieces to which the members belong, chunk by chunk: one for each pair of pieces.
+template <typename Contacts>
+std::vector<std::vector<Contact>> join_chunks(const Contacts& contacts, const std::vector<Member>& members) {
+  std::vector<std::vector<Contact>> joined(contacts.chunks());
+  tbb::parallel_for(size_t{0}, joined.size(), [&](size_t chunk) {
+    thread_local PairSums pairs;
+    pairs.clear();
+    contacts.for_each(chunk, [&](const Contact& contact, uint32_t) {
+      const Contact c = relabelled(contact, members);
+      if (c.a != c.b) pairs.add(c);
+    });
+    joined[chunk] = pairs.sums();
+  });
+  return joined;
+}
+
+/// Contacts sorted into buckets by their first piece. Bucket i is from begins[i] to begins[i + 1].
 struct Buckets {
   std::vector<Contact> contacts;
   std::vector<size_t> begins;
   unsigned shift = 0;  ///< a bucket is for 2^shift pieces
 };
 
-Buckets sort_into_buckets(const std::vector<Contact>& contacts, uint32_t pieces) {
+Buckets sort_into_buckets(std::vector<std::vector<Contact>> chunks, uint32_t pieces) {
   constexpr unsigned kBucketBits = 10;
   Buckets buckets;
   buckets.shift = std::max<unsigned>(static_cast<unsigned>(std::bit_width(pieces)), kBucketBits) - kBucketBits;
   const size_t count = (size_t{pieces} >> buckets.shift) + 1;
-  std::vector<size_t> places(chunks_of(contacts.size()) * count);  // of each chunk in each bucket
-  for_each_chunk(contacts.size(), [&](size_t chunk, size_t first, size_t last) {
-    for (size_t i = first; i < last; ++i) {
-      const Contact& c = contacts[i];
-      if (c.a != c.b) ++places[chunk * count + (c.a >> buckets.shift)];
-    }
+  std::vector<size_t> places(chunks.size() * count);  // of each chunk in each bucket
+  tbb::parallel_for(size_t{0}, chunks.size(), [&](size_t chunk) {
+    for (const Contact& c : chunks[chunk]) ++places[chunk * count + (c.a >> buckets.shift)];
   });
   size_t total = 0;
   for (size_t bucket = 0; bucket < count; ++bucket) {
     buckets.begins.push_back(total);
-    for (size_t chunk = 0; chunk < chunks_of(contacts.size()); ++chunk) {
+    for (size_t chunk = 0; chunk < chunks.size(); ++chunk) {
       total += std::exchange(places[chunk * count + bucket], total);
     }
   }
   buckets.begins.push_back(total);
   buckets.contacts.resize(total);
-  for_each_chunk(contacts.size(), [&](size_t chunk, size_t first, size_t last) {
-    for (size_t i = first; i < last; ++i) {
-      const Contact& c = contacts[i];
-      if (c.a != c.b) buckets.contacts[places[chunk * count + (c.a >> buckets.shift)]++] = c;
+  tbb::parallel_for(size_t{0}, chunks.size(), [&](size_t chunk) {
+    for (const Contact& c : chunks[chunk]) {
+      buckets.contacts[places[chunk * count + (c.a >> buckets.shift)]++] = c;
     }
+    std::vector<Contact>().swap(chunks[chunk]);
   });
   return buckets;
 }
@@ -232,22 +319,36 @@ size_t add_up(std::span<Contact> contacts, uint32_t base, size_t pieces) {
 }
 
 /// One contact for each pair of pieces, none within a piece.
-std::vector<Contact> between_pieces(std::vector<Contact> contacts, uint32_t pieces) {
-  Buckets buckets = sort_into_buckets(contacts, pieces);
-  const size_t count = buckets.begins.size() - 1;
-  std::vector<size_t> kept(count + 1);
-  tbb::parallel_for(size_t{0}, count, [&](size_t i) {
-    const std::span all =
-        std::span(buckets.contacts).subspan(buckets.begins[i], buckets.begins[i + 1] - buckets.begins[i]);
-    kept[i + 1] = add_up(all, static_cast<uint32_t>(i << buckets.shift), size_t{1} << buckets.shift);
+template <typename Contacts>
+ContactRuns between_pieces(const Contacts& contacts, const std::vector<Member>& members, uint32_t pieces) {
+  Buckets buckets = sort_into_buckets(join_chunks(contacts, members), pieces);
+  SURFCAST_EXPECTS(buckets.contacts.size() < std::numeric_limits<uint32_t>::max());
+  ContactRuns joined{std::move(buckets.contacts), std::vector<ContactRuns::Run>(buckets.begins.size() - 1)};
+  tbb::parallel_for(size_t{0}, joined.runs.size(), [&](size_t i) {
+    const size_t first = buckets.begins[i];
+    const std::span all = std::span(joined.contacts).subspan(first, buckets.begins[i + 1] - first);
+    joined.runs[i] = {first,
+                      first + add_up(all, static_cast<uint32_t>(i << buckets.shift), size_t{1} << buckets.shift)};
   });
-  for (size_t i = 0; i < count; ++i) kept[i + 1] += kept[i];
-  contacts.resize(kept.back());
-  tbb::parallel_for(size_t{0}, count, [&](size_t i) {
-    std::copy_n(buckets.contacts.begin() + static_cast<std::ptrdiff_t>(buckets.begins[i]), kept[i + 1] - kept[i],
-                contacts.begin() + static_cast<std::ptrdiff_t>(kept[i]));
-  });
-  return contacts;
+  return joined;
+}
+
+/// The contacts of a round, and the pieces that they join into larger ones.
+struct Round {
+  std::vector<Member> members;  ///< each piece in a larger one
+  uint32_t pieces = 0;          ///< larger ones
+  ContactRuns contacts;         ///< between these
+};
+
+/// Joins each piece with that of its strongest contact.
+template <typename Contacts>
+Round join(const Contacts& contacts, size_t pieces) {
+  Round round;
+  round.members = hook(contacts, strongest(contacts, pieces));
+  flatten(round.members);
+  round.pieces = number_roots(round.members);
+  round.contacts = between_pieces(contacts, round.members, round.pieces);
+  return round;
 }
 
 /// Follows every site to its last piece. `levels[0]` are the sites in the pieces of the first round, `levels[1]` these
@@ -272,13 +373,15 @@ SurfacePieces propagate_signs(const Sites& sites, const Links& links, std::span<
   SurfacePieces pieces{static_cast<uint32_t>(links.sites()), {}, {}};
   std::vector<std::vector<Member>> levels;
   // Every round at least halves the number of pieces in contact (Boruvka's algorithm).
-  for (std::vector<Contact> contacts = link_contacts(sites, links, normals); !contacts.empty();) {
-    std::vector<Member> members = hook(contacts, strongest(contacts, pieces.count));
-    flatten(members);
-    pieces.count = number_roots(members);
-    relabel(contacts, members);
-    contacts = between_pieces(std::move(contacts), pieces.count);
-    levels.push_back(std::move(members));
+  const LinkContacts all(sites, links, normals);
+  if (!all.empty()) {
+    Round round = join(all, links.sites());
+    levels.push_back(std::move(round.members));
+    while (!round.contacts.empty()) {
+      round = join(round.contacts, round.pieces);
+      levels.push_back(std::move(round.members));
+    }
+    pieces.count = round.pieces;
   }
   pieces.piece.resize(links.sites());
   pieces.opposed.resize(links.sites());

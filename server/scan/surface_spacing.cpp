@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <limits>
 #include <optional>
@@ -59,6 +60,7 @@ constexpr size_t kMostNear = 256;
 
 /// Samples around a run of places as arrays for vector instructions, in ascending order of their numbers.
 struct NearSamples {
+  double bound = 0;  ///< of the squared distances of the nearest samples of any of the places
   size_t count = 0;
   alignas(64) std::array<double, kMostNear> x;
   alignas(64) std::array<double, kMostNear> y;
@@ -86,16 +88,61 @@ SURFCAST_VECTOR_CLONES void measure(const glm::dvec3& from, NearSamples& near) {
   }
 }
 
-/// The nearest of the samples, at most `degree`, provided that they are at most as far away as `bound`.
-Nearest nearest_of(const NearSamples& near, size_t degree, double bound) {
+/// The most samples that are ranked. Where there are more, they are sorted.
+constexpr size_t kMostRanked = 64;
+
+/// Samples that may be among the nearest of a place, by their squared distances.
+struct Ranked {
+  size_t count = 0;
+  alignas(64) std::array<double, kMostRanked> squared_distances;
+  std::array<uint32_t, kMostRanked> numbers;            ///< ascending
+  alignas(64) std::array<uint64_t, kMostRanked> ranks;  ///< by distance, then by number
+};
+
+/// Keeps the samples that are at most as far away as `bound`. False if they are too many.
+bool keep_near(const NearSamples& near, double bound, Ranked& kept) {
   std::array<uint32_t, kMostNear> inside;
   size_t count = 0;
   for (uint32_t i = 0; i < near.count; ++i) {
     inside[count] = i;
     count += near.squared_distances[i] <= bound ? 1 : 0;
   }
+  if (count > kMostRanked) return false;
+  for (size_t i = 0; i < count; ++i) {
+    kept.squared_distances[i] = near.squared_distances[inside[i]];
+    kept.numbers[i] = near.numbers[inside[i]];
+  }
+  kept.count = count;
+  return true;
+}
+
+/// The rank of each is the number of those before it, which takes no branches.
+SURFCAST_VECTOR_CLONES void rank(Ranked& kept) {
+  const size_t padded = std::min((kept.count + 7) / 8 * 8, kMostRanked);
+  std::fill(kept.squared_distances.begin() + kept.count, kept.squared_distances.begin() + padded, 0.0);
+  std::fill(kept.ranks.begin(), kept.ranks.begin() + padded, uint64_t{0});
+  for (uint64_t j = 0; j < kept.count; ++j) {
+    const double d = kept.squared_distances[j];
+    for (uint64_t i = 0; i < padded; ++i) {
+      const uint64_t nearer = d < kept.squared_distances[i] ? 1 : 0;
+      const uint64_t first = d == kept.squared_distances[i] && j < i ? 1 : 0;
+      kept.ranks[i] += nearer | first;
+    }
+  }
+}
+
+/// The nearest of the samples, `degree` of them. None of these is farther away than `bound`.
+Nearest nearest_of(const NearSamples& near, size_t degree, double bound) {
+  Ranked kept;
   Nearest nearest(degree);
-  for (const uint32_t i : std::span(inside).first(count)) nearest.add({near.squared_distances[i], near.numbers[i]});
+  if (keep_near(near, bound, kept)) {
+    rank(kept);
+    std::array<uint32_t, kMostRanked> by_rank;
+    for (uint32_t i = 0; i < kept.count; ++i) by_rank[kept.ranks[i]] = i;
+    for (size_t i = 0; i < degree; ++i) nearest.add({kept.squared_distances[by_rank[i]], kept.numbers[by_rank[i]]});
+  } else {
+    for (size_t i = 0; i < near.count; ++i) nearest.add({near.squared_distances[i], near.numbers[i]});
+  }
   return nearest;
 }
 
@@ -155,14 +202,14 @@ struct SurfaceSpacing::Index {
   /// Finds all samples that are among the nearest of any place in the box. False if they are too many.
   bool gather(const Box& box, NearSamples& near) const {
     near.count = 0;
-    // The nearest samples of a place are at most this much farther away from it than those of the centre from that;
-    // from the centre, once more.
-    const glm::dvec3 centre = box.centre();
-    const double reach = (std::sqrt(nearest(centre).bound()) + glm::length(box.size())) * (1 + 1e-9);
+    // From a place in the box, the nearest samples are at most half its diagonal farther away than from its centre.
+    const double reach = (std::sqrt(nearest(box.centre()).bound()) + 0.5 * glm::length(box.size())) * (1 + 1e-9);
+    near.bound = reach * reach;
     bool fits = true;
-    tree->for_each_near({centre, centre}, reach * reach, [&](const MortonTree::Run& run) {
+    tree->for_each_near(box, near.bound, [&](const MortonTree::Run& run) {
       for (uint32_t i = run.first; i < run.last && fits; ++i) {
-        if (squared_distance(positions[i], centre) > reach * reach) continue;
+        const glm::dvec3& p = positions[i];
+        if (squared_distance(p, glm::clamp(p, box.min, box.max)) > near.bound) continue;
         fits = near.count < kMostNear;
         if (fits) near.add(i, positions[i]);
       }
@@ -187,7 +234,7 @@ struct SurfaceSpacing::Index {
   }
 
   void find_together(std::span<const glm::dvec3> places, NearSamples& near, std::span<float> found) const {
-    double bound = std::numeric_limits<double>::infinity();
+    double bound = near.bound;
     for (size_t i = 0; i < places.size(); ++i) {
       measure(places[i], near);
       const Nearest nearest = nearest_of(near, degree(), bound);
@@ -196,7 +243,7 @@ struct SurfaceSpacing::Index {
       // The nearest samples of this place are at most this far from the next one.
       const double step = std::sqrt(squared_distance(places[i], places[i + 1]));
       const double farthest = std::sqrt(nearest.bound()) + step;
-      bound = farthest * farthest * (1 + 1e-9);
+      bound = std::min(near.bound, farthest * farthest * (1 + 1e-9));
     }
   }
 };
