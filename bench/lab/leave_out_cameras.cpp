@@ -17,8 +17,10 @@ namespace {
 
 constexpr double kViewAngle = 45;     // degrees
 constexpr double kNearSpacings = 70;  ///< distance of near cameras: about 8 pixels to a spacing at 480 rows
-constexpr double kEyeSpacings = 4;    ///< height of the eye above the ground, in spacings of the points there
+constexpr double kEyeHeight = 1.7;    ///< of a person above the ground, metres
+constexpr double kEyeSpacings = 4;    ///< least height of the eye above the ground, in spacings of the points there
 constexpr double kClearSpacings = 2;  ///< free space around an eye
+constexpr size_t kAround = 64;        ///< points whose median spacing is that of a place
 
 double radians(double degrees) {
   return degrees * std::numbers::pi / 180;
@@ -66,11 +68,15 @@ class Site {
 
   /// The point nearest to a place, and the median spacing of the points around it.
   [[nodiscard]] std::pair<glm::dvec3, double> surface_near(const glm::dvec3& place) const {
-    const NearestPoints nearest = nearest_points(points_, std::array{place}, 64);
+    const NearestPoints nearest = nearest_points(points_, std::array{place}, kAround);
+    return {points_[nearest.of(0).front()], median_spacing(nearest.of(0))};
+  }
+
+  [[nodiscard]] double median_spacing(std::span<const uint32_t> points) const {
     std::vector<double> around;
-    for (const uint32_t i : nearest.of(0)) around.push_back(spacings_[i]);
+    for (const uint32_t i : points) around.push_back(spacings_[i]);
     std::ranges::sort(around);
-    return {points_[nearest.of(0).front()], around[around.size() / 2]};
+    return around[around.size() / 2];
   }
 
   [[nodiscard]] NamedCamera camera(std::string name, const glm::dvec3& eye, const glm::dvec3& target) const {
@@ -116,7 +122,9 @@ class Ground {
   explicit Ground(const Site& site) : site_(site), cell_(site.radius() / 50) {
     std::map<std::pair<int64_t, int64_t>, std::vector<size_t>> cells;
     for (size_t i = 0; i < site.points().size(); ++i) cells[key(site.points()[i])].push_back(i);
-    for (auto& [place, members] : cells) add_eye(members);
+    std::vector<glm::dvec3> lowest;
+    for (auto& [place, members] : cells) lowest.push_back(lowest_of(members));
+    add_eyes(lowest);
   }
 
   /// The free eye over the ground that is nearest to a place.
@@ -140,13 +148,19 @@ class Ground {
     return {static_cast<int64_t>(place.x), static_cast<int64_t>(site_.up().z > 0 ? place.y : place.z)};
   }
 
-  void add_eye(std::vector<size_t>& members) {
+  [[nodiscard]] glm::dvec3 lowest_of(std::vector<size_t>& members) const {
     std::ranges::sort(members, {}, [&](size_t i) { return glm::dot(site_.points()[i], site_.up()); });
-    const glm::dvec3 lowest = site_.points()[members[members.size() / 20]];
-    std::ranges::sort(members, {}, [&](size_t i) { return site_.spacings()[i]; });
-    const double spacing = std::max(site_.spacing(), site_.spacings()[members[members.size() / 2]]);
-    eyes_.push_back(lowest + kEyeSpacings * spacing * site_.up());
-    clear_.push_back(kClearSpacings * spacing);
+    return site_.points()[members[members.size() / 20]];
+  }
+
+  /// The spacing is that of the points around, because a stray may be alone in its cell.
+  void add_eyes(const std::vector<glm::dvec3>& lowest) {
+    const NearestPoints nearest = nearest_points(site_.points(), lowest, kAround);
+    for (size_t i = 0; i < lowest.size(); ++i) {
+      const double spacing = std::max(site_.spacing(), site_.median_spacing(nearest.of(i)));
+      eyes_.push_back(lowest[i] + std::max(kEyeHeight, kEyeSpacings * spacing) * site_.up());
+      clear_.push_back(kClearSpacings * spacing);
+    }
   }
 
   const Site& site_;

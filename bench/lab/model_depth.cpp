@@ -85,7 +85,7 @@ DepthPicture model_depths(const DrawnSurfels& surfels, const geometry::CameraFra
     const auto disc = hit(i, x, y);
     if (!disc || disc->depth > occluders[pixel] || disc->form >= forms[pixel]) return;
     forms[pixel] = disc->form;
-    picture.depths[pixel] = static_cast<float>(disc->depth);
+    picture.depths[pixel] = static_cast<float>(disc->surface);
   });
   return picture;
 }

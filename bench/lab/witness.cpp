@@ -11,6 +11,7 @@
 #include <tbb/parallel_for.h>
 
 #include "base/contract.h"
+#include "kinds/opaque_disc.h"
 #include "lab/nearest_points.h"
 #include "lab/paint_rows.h"
 
@@ -34,6 +35,10 @@ constexpr double kDiscLimit = 2;       ///< spacings of the surfaces around
 constexpr double kSplatFactor = 0.25;  ///< of the distance to the nearest point
 constexpr size_t kSampling = 8;        ///< the spacing of the surfaces around is a median over every eighth point
 constexpr size_t kSamples = 8;         ///< of a surface, and of these eight
+
+/// Bounds of the pixels of a disc: its extent in radii, and how far the prefilter of visibility widens it, pixels.
+constexpr double kExtent = 1.1;
+constexpr double kPrefilterReach = 1;
 
 // The radius of a disc, as in docs/kernel.md, Radii.
 constexpr double kLargestRatio = 3;
@@ -227,14 +232,7 @@ struct CameraDisc {
 
 CameraDisc in_camera(const glm::dvec3& point, const WitnessPoint& shown, const geometry::CameraFrame& frame) {
   const glm::dvec3 centre = frame.to_camera(point);
-  return {centre, shown.surface ? frame.rotate(shown.normal) : glm::normalize(centre), shown.radius};
-}
-
-/// The depth of the disc along the ray of a pixel; infinite if the ray misses it.
-double depth_at(const CameraDisc& disc, const glm::dvec3& ray) {
-  const double depth = glm::dot(disc.normal, disc.centre) / glm::dot(disc.normal, ray);
-  const bool hit = depth > 0 && glm::distance(depth * ray, disc.centre) <= disc.radius;
-  return hit ? depth : std::numeric_limits<double>::infinity();
+  return {centre, shown.surface ? frame.rotate(shown.normal) : kinds::facing_eye(centre), shown.radius};
 }
 
 }  // namespace
@@ -268,7 +266,7 @@ DepthPicture witness_depths(std::span<const glm::dvec3> points, std::span<const 
   std::vector<PixelBox> boxes;
   for (size_t i = 0; i < points.size(); ++i) {
     const CameraDisc disc = in_camera(points[i], witness[i], frame);
-    const PixelBox box = pixels_within(frame, disc.centre, disc.radius, 0.5);
+    const PixelBox box = pixels_within(frame, disc.centre, kExtent * disc.radius, kPrefilterReach);
     if (box.empty()) continue;
     discs.push_back(disc);
     boxes.push_back(box);
@@ -276,11 +274,9 @@ DepthPicture witness_depths(std::span<const glm::dvec3> points, std::span<const 
   DepthPicture picture(frame.width, frame.height);
   for_each_pixel(boxes, frame.height, [&](size_t i, int x, int y) {
     const CameraDisc& disc = discs[i];
-    double depth = depth_at(disc, frame.ray({x + 0.5, y + 0.5}));
-    const bool own = disc.centre.z > 0 && glm::ivec2(glm::floor(frame.project(disc.centre))) == glm::ivec2(x, y);
-    if (own) depth = std::min(depth, disc.centre.z);
+    const auto hit = kinds::hit_disc(disc.centre, disc.normal, disc.radius, frame.ray({x + 0.5, y + 0.5}), frame.eta);
     float& nearest = picture.depths[picture.index(x, y)];
-    nearest = std::min(nearest, static_cast<float>(depth));
+    if (hit) nearest = std::min(nearest, static_cast<float>(hit->surface));
   });
   return picture;
 }

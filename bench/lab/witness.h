@@ -23,8 +23,8 @@ struct WitnessPoint {
 /// of a quarter of the distance to the nearest point. At least two points.
 std::vector<WitnessPoint> make_witness(std::span<const glm::dvec3> points);
 
-/// The nearest depth of the witness's discs and splats at the pixels' centres. Each also covers the pixel of its own
-/// centre, however small it is.
+/// The nearest depth of the witness's discs and splats at the pixels' centres. They are drawn as those of a model
+/// (kinds/opaque_disc.h), but not pushed back, so that nothing is hidden for the width of the prefilter alone.
 DepthPicture witness_depths(std::span<const glm::dvec3> points, std::span<const WitnessPoint> witness,
                             const geometry::CameraFrame& frame);
 

@@ -231,6 +231,43 @@ TEST(ModelDepthTest, BackFacesOfAnOrientedModelAreBackground) {
   EXPECT_TRUE(std::ranges::all_of(depths.depths, [](float d) { return std::isinf(d); }));
 }
 
+TEST(ModelDepthTest, ADiscSeenEdgeOnIsNotNearerThanItsRim) {
+  DrawnSurfels surfels = surfels_on({{0, 0, 0}}, 0.1);
+  surfels.normals = {glm::normalize(glm::dvec3(1, 0, 0.02))};
+  const DepthPicture depths = model_depths(surfels, looking_down(4));
+  EXPECT_TRUE(std::ranges::any_of(depths.depths, [](float d) { return std::isfinite(d); }));
+  EXPECT_GE(std::ranges::min(depths.depths), 4 - 1.1 * 0.1);
+}
+
+TEST(WitnessTest, IsAsWideInAPictureAsTheDiscsOfAModel) {
+  const std::vector<glm::dvec3> points{{0, 0, 0}, {1, 0, 0}, {0.003, 0.8, 0}};
+  const std::vector<WitnessPoint> witness(3, {1, true, 0.01, {0, 0, 1}});
+  const DepthPicture drawn = witness_depths(points, witness, looking_down(4));
+  const DepthPicture model = model_depths(surfels_on(points, 0.01), looking_down(4));
+  for (size_t i = 0; i < model.depths.size(); ++i) EXPECT_EQ(drawn.depths[i], model.depths[i]);
+}
+
+TEST(LeaveOutCamerasTest, AStrayOverAHoleDoesNotLiftTheEyesOnTheGround) {
+  std::vector<glm::dvec3> points = lattice(60);
+  std::erase_if(points, [](const glm::dvec3& p) { return std::abs(p.x) < 0.3 && std::abs(p.y) < 0.3; });
+  std::vector<double> spacings(points.size(), kSpacing);
+  points.emplace_back(0, 0, 5);
+  spacings.push_back(5);
+  for (const NamedCamera& c : leave_out_cameras(points, spacings, Place::kGround, true)) {
+    if (!c.name.starts_with("ground")) continue;
+    EXPECT_LT(c.camera.focal_point.z, 7) << c.name;
+  }
+}
+
+TEST(LeaveOutCamerasTest, EyesOnTheGroundAreAtTheHeightOfAPerson) {
+  const std::vector<glm::dvec3> points = lattice(60);
+  const std::vector<double> spacings(points.size(), kSpacing);
+  for (const NamedCamera& c : leave_out_cameras(points, spacings, Place::kGround, true)) {
+    if (!c.name.starts_with("ground")) continue;
+    EXPECT_DOUBLE_EQ(c.camera.position.z, 1.7) << c.name;
+  }
+}
+
 TEST(LeaveOutCamerasTest, EveryPlaceHasFiveToElevenThatFaceTheScan) {
   const std::vector<glm::dvec3> points = lattice(60);
   const std::vector<double> spacings(points.size(), kSpacing);
