@@ -54,10 +54,12 @@ ProgressStyle style_of(const std::string& wanted) {
 
 /// Leaves the processors to other programs, and ends when the program that started this one does. What has already
 /// ended is noticed by a changed parent.
-Status go_into_background() {
+Status go_into_background(bool sample) {
   constexpr int kLeastPriority = 19;
+  constexpr int kSamplePriority = 5;  // done within seconds, for which somebody waits
   const pid_t parent = ::getppid();
-  if (::setpriority(PRIO_PROCESS, 0, kLeastPriority) != 0 || ::prctl(PR_SET_PDEATHSIG, SIGTERM) != 0) {
+  if (::setpriority(PRIO_PROCESS, 0, sample ? kSamplePriority : kLeastPriority) != 0 ||
+      ::prctl(PR_SET_PDEATHSIG, SIGTERM) != 0) {
     return fail(ErrorKind::kIo, std::string("cannot go into the background: ") + std::strerror(errno));
   }
   if (::getppid() != parent) return fail(ErrorKind::kCancelled, "the program that started this one has ended");
@@ -132,7 +134,7 @@ std::string to_json(const BuildCommand& command, const builder::BuildReport& rep
 
 Status build(const BuildCommand& command) {
   if (command.background) {
-    if (Status status = go_into_background(); !status) return status;
+    if (Status status = go_into_background(command.sample.has_value()); !status) return status;
   }
   std::optional<oneapi::tbb::global_control> threads;
   if (command.threads > 0) threads.emplace(oneapi::tbb::global_control::max_allowed_parallelism, command.threads);

@@ -53,7 +53,7 @@ Result<Announced> admit(const NetContext& context, const HeadParser& head) {
   Result<std::filesystem::path> target = upload_target(config, route_http(view_of(head.get().target()))->model);
   if (!target) return fail(std::move(target.error()));
   scan.target = std::move(*target);
-  if (scan.bytes.value_or(0) > config.bytes) return fail(too_large(config));
+  if (scan.bytes.value_or(0) > config.bytes) return fail(too_large(config.bytes));
   if (context.uploads.contains(scan.target.stem().string())) {
     return fail(ErrorKind::kInvalidInput, "a scan of that name is being received");
   }

@@ -84,8 +84,8 @@ Result<fs::path> upload_target(const UploadConfig& config, std::string_view name
   return config.folder / file;
 }
 
-Error too_large(const UploadConfig& config) {
-  return {ErrorKind::kLimit, "larger than the " + std::to_string(config.bytes) + " bytes that are taken"};
+Error too_large(uint64_t bytes) {
+  return {ErrorKind::kLimit, "larger than the " + std::to_string(bytes) + " bytes that are taken"};
 }
 
 std::vector<fs::path> uploaded_scans(const UploadConfig& config) {
@@ -114,7 +114,7 @@ Result<IncomingScan> IncomingScan::create(const UploadConfig& config, const fs::
 }
 
 Status IncomingScan::append(std::span<const std::byte> bytes) {
-  if (bytes.size() > room_ - file_.position()) return fail(too_large(*config_));
+  if (bytes.size() > room_ - file_.position()) return fail(too_large(room_));
   return file_.append(bytes).map_error([&](Error error) { return without_folder(std::move(error), target_); });
 }
 

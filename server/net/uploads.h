@@ -33,8 +33,8 @@ struct UploadConfig {
 /// with the name.
 Result<std::filesystem::path> upload_target(const UploadConfig& config, std::string_view name);
 
-/// The error of a scan beyond UploadConfig::bytes.
-Error too_large(const UploadConfig& config);
+/// The error of a scan that has more than these bytes.
+Error too_large(uint64_t bytes);
 
 /// The complete scans in the folder, sorted by name.
 std::vector<std::filesystem::path> uploaded_scans(const UploadConfig& config);
