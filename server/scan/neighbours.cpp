@@ -149,7 +149,8 @@ double expected_reach(const Box& box, size_t count, size_t degree) {
 
 class Search {
  public:
-  Search(const Sites& sites, const MortonTree& tree, size_t degree, const std::function<void(const Neighbours&)>& use)
+  /// `use` receives the numbers of a site's neighbours.
+  Search(const Sites& sites, const MortonTree& tree, size_t degree, const NeighbourVisitor& use)
       : sites_(sites), tree_(tree), degree_(degree), use_(use) {}
 
   /// Searches the neighbours of all sites of a leaf.
@@ -190,45 +191,70 @@ class Search {
   void search_together(const Run& run, const Candidates& candidates) const {
     const double reach = candidates.reach * candidates.reach;
     double bound = reach;
+    std::array<uint32_t, kMostSorted> nearest;
     for (uint32_t site = run.first; site < run.last; ++site) {
-      const Nearest list = nearest_of(site, candidates, candidates.first + (site - run.first), bound);
-      const bool certain = list.full() && list.bound() <= reach;
+      const bool found = find_nearest(site, candidates, candidates.first + (site - run.first), bound, nearest);
+      const double farthest = found ? distance_between(site, nearest[degree_ - 1]) : 0;
       bound = reach;
-      if (!certain) {
+      if (!found || farthest > reach) {
         search_alone(site);
         continue;
       }
-      report(site, list);
+      use_(site, std::span(nearest).first(degree_));
       if (site + 1 == run.last) break;
       // The neighbours of this site are at most this far from the next one.
-      const double step = std::sqrt(squared_distance(sites_.positions[site], sites_.positions[site + 1]));
-      const double farthest = std::sqrt(list.bound()) + step;
-      bound = std::min(reach, farthest * farthest * (1 + 1e-9));
+      const double next = std::sqrt(farthest) + std::sqrt(distance_between(site, site + 1));
+      bound = std::min(reach, next * next * (1 + 1e-9));
     }
   }
 
-  /// The nearest candidates of the candidate `slot`, if `degree` of them are within `bound`. Otherwise, or if there are
-  /// too many to sort, the list is not full.
-  Nearest nearest_of(uint32_t site, const Candidates& candidates, size_t slot, double bound) const {
+  /// Finds the nearest candidates of the candidate `slot`. False if there are not `degree` of them within `bound`, or
+  /// too many to sort.
+  bool find_nearest(uint32_t site, const Candidates& candidates, size_t slot, double bound,
+                    std::array<uint32_t, kMostSorted>& nearest) const {
     thread_local Keys keys;
     measure(candidates, slot, keys);
     const double scaled = bound * candidates.scale * candidates.scale;
     size_t count = keep_up_to(last_key(scaled + 2 * candidates.error(scaled)), candidates.padded(), keys);
-    Nearest list(degree_);
-    if (count < degree_) return list;
+    if (count < degree_) return false;
     const auto kth = static_cast<std::ptrdiff_t>(degree_ - 1);
     if (count > kMostSorted) {
       std::nth_element(keys.begin(), keys.begin() + kth, keys.begin() + static_cast<std::ptrdiff_t>(count));
       count = keep_up_to(last_needed(candidates, keys[degree_ - 1]), count, keys);
-      if (count > kMostSorted) return list;
+      if (count > kMostSorted) return false;
     }
     sort_keys(count, keys);
     const Key last = last_needed(candidates, keys[degree_ - 1]);
-    for (size_t i = 0; i < count && keys[i] <= last; ++i) {
-      const uint32_t other = candidates.sites[static_cast<uint32_t>(keys[i]) & kSlotMask];
-      list.add({squared_distance(sites_.positions[other], sites_.positions[site]), other});
+    while (keys[count - 1] > last) --count;
+    for (size_t i = 0; i < count; ++i) nearest[i] = candidates.sites[static_cast<uint32_t>(keys[i]) & kSlotMask];
+    sort_where_uncertain(site, candidates.error(distance_of(last)), std::span(keys).first(count),
+                         std::span(nearest).first(count));
+    return true;
+  }
+
+  /// Sorts candidates by their exact distances where those of their keys differ too little to be sure. `error`: that of
+  /// the largest of the keys.
+  void sort_where_uncertain(uint32_t site, double error, std::span<const Key> keys, std::span<uint32_t> nearest) const {
+    for (size_t first = 0; first < keys.size();) {
+      size_t last = first + 1;
+      while (last < keys.size() && distance_of(keys[last]) - distance_of(keys[last - 1]) <= 2 * error) ++last;
+      if (last - first > 1) sort_exactly(site, nearest.subspan(first, last - first));
+      first = last;
     }
-    return list;
+  }
+
+  void sort_exactly(uint32_t site, std::span<uint32_t> nearest) const {
+    std::array<Found, kMostSorted> found;
+    const auto end = std::transform(nearest.begin(), nearest.end(), found.begin(), [&](uint32_t other) {
+      return Found{distance_between(site, other), other};
+    });
+    std::sort(found.begin(), end);
+    std::transform(found.begin(), end, nearest.begin(), [](const Found& f) { return f.second; });
+  }
+
+  /// Squared, in the units of the sites.
+  [[nodiscard]] double distance_between(uint32_t site, uint32_t other) const {
+    return squared_distance(sites_.positions[other], sites_.positions[site]);
   }
 
   /// The last key that may belong to a neighbour, when `kth` is the key of the candidate that seems to be the farthest.
@@ -241,45 +267,46 @@ class Search {
   void search_alone(uint32_t site) const {
     Nearest list(degree_);
     double bound = list.bound();
-    const glm::dvec3& from = sites_.positions[site];
-    tree_.nearest_first(from, bound, [&](const Run& run) {
+    tree_.nearest_first(sites_.positions[site], bound, [&](const Run& run) {
       for (uint32_t i = run.first; i < run.last; ++i) {
-        if (i != site) list.add({squared_distance(sites_.positions[i], from), i});
+        if (i != site) list.add({distance_between(site, i), i});
       }
       bound = list.bound();
     });
-    report(site, list);
-  }
-
-  void report(uint32_t site, const Nearest& list) const {
     std::array<uint32_t, kLargestDegree> ids;
-    std::array<double, kLargestDegree> distances;
-    size_t count = 0;
-    for (const auto& [distance, id] : list.all()) {
-      ids[count] = id;
-      distances[count++] = distance;
-    }
-    use_({site, {ids.data(), count}, {distances.data(), count}});
+    const auto end =
+        std::transform(list.all().begin(), list.all().end(), ids.begin(), [](const Found& f) { return f.second; });
+    use_(site, {ids.begin(), end});
   }
 
   const Sites& sites_;
   const MortonTree& tree_;
   size_t degree_;
-  const std::function<void(const Neighbours&)>& use_;
+  const NeighbourVisitor& use_;
 };
 
 size_t degree_for(const Sites& sites, size_t wanted) {
   return sites.size() < 2 ? 0 : std::min({wanted, sites.size() - 1, kLargestDegree});
 }
 
-}  // namespace
-
-void for_each_neighbourhood(const Sites& sites, size_t degree, const std::function<void(const Neighbours&)>& use) {
+void search_all(const Sites& sites, size_t degree, const NeighbourVisitor& use) {
   if (degree_for(sites, degree) == 0) return;
   const MortonTree tree(sites.positions, codes_of(sites), {}, kLeafSites);
   const Search search(sites, tree, degree_for(sites, degree), use);
   const std::vector<Run> leaves = tree.leaves();
   tbb::parallel_for(size_t{0}, leaves.size(), [&](size_t i) { search.search(leaves[i]); });
+}
+
+}  // namespace
+
+void for_each_neighbourhood(const Sites& sites, size_t degree, const std::function<void(const Neighbours&)>& use) {
+  search_all(sites, degree, [&](uint32_t site, std::span<const uint32_t> ids) {
+    std::array<double, kLargestDegree> distances;
+    const auto end = std::transform(ids.begin(), ids.end(), distances.begin(), [&](uint32_t other) {
+      return squared_distance(sites.positions[other], sites.positions[site]);
+    });
+    use({site, ids, {distances.begin(), end}});
+  });
 }
 
 NeighbourGraph find_neighbours(const Sites& sites, size_t degree) {
@@ -291,10 +318,9 @@ NeighbourGraph find_neighbours(const Sites& sites, size_t degree, size_t visited
   graph.degree = degree_for(sites, degree);
   graph.ids.resize(sites.size() * graph.degree);
   const size_t searched = std::max(degree, visited);
-  for_each_neighbourhood(sites, searched, [&](const Neighbours& found) {
-    std::copy_n(found.ids.begin(), graph.degree,
-                graph.ids.begin() + static_cast<std::ptrdiff_t>(found.site * graph.degree));
-    visit(found.site, found.ids.first(std::min(visited, found.ids.size())));
+  search_all(sites, searched, [&](uint32_t site, std::span<const uint32_t> ids) {
+    std::copy_n(ids.begin(), graph.degree, graph.ids.begin() + static_cast<std::ptrdiff_t>(site * graph.degree));
+    visit(site, ids.first(std::min(visited, ids.size())));
   });
   return graph;
 }

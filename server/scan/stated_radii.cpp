@@ -83,14 +83,20 @@ float scaled(float radius, float factor) {
 }
 
 /// `around`: the radius of the surfaces around.
-float estimated_radius(const Estimates& estimates, size_t i, float around) {
-  return to_radius(limited_radius(estimates.kinds[i], double{estimates.radii[i]}, double{around}));
+float estimated_radius(const Estimates& estimates, size_t i, double around) {
+  return to_radius(limited_radius(estimates.kinds[i], double{estimates.radii[i]}, around));
 }
 
-/// True if the estimate of any radius is needed.
-bool any_estimated(std::span<const RadiusDecision> decisions) {
-  return std::any_of(decisions.begin(), decisions.end(),
-                     [](const RadiusDecision& decision) { return decision.estimated() > 0; });
+/// The radius of the surfaces around every surfel as far as it limits an estimated radius; nothing if none is
+/// estimated.
+std::vector<float> radii_around(const surfel::SurfelCloud& cloud, std::span<const RadiusDecision> decisions,
+                                const Estimates& estimates, const SurfaceSpacing& spacing) {
+  const bool any_estimated =
+      std::any_of(decisions.begin(), decisions.end(), [](const auto& decision) { return decision.estimated() > 0; });
+  if (!any_estimated) return {};
+  return spacing.at_all(cloud.positions, [&estimates](size_t i, double least) {
+    return estimated_radius(estimates, i, least) == estimates.radii[i];  // larger surfaces do not limit it either
+  });
 }
 
 }  // namespace
@@ -197,13 +203,13 @@ void apply_radii(std::span<const RadiusDecision> decisions, std::span<const size
   });
   cloud.radii.resize(cloud.size(), 0.0F);
   std::vector<uint8_t> scatter(cloud.size());
-  const std::vector<float> around = any_estimated(decisions) ? spacing.at_all(cloud.positions) : std::vector<float>();
+  const std::vector<float> around = radii_around(cloud, decisions, estimates, spacing);
   for_each_point_parallel(cloud, inputs, [&](size_t i, size_t input) {
     const RadiusDecision& decision = decisions[input];
     if (decision.outcome != RadiusOutcome::kEstimated && is_radius(cloud.radii[i])) {
       cloud.radii[i] = scaled(cloud.radii[i], decision.factor);
     } else {
-      cloud.radii[i] = estimated_radius(estimates, i, around[i]);
+      cloud.radii[i] = estimated_radius(estimates, i, double{around[i]});
       scatter[i] = estimates.kinds[i] == PointKind::kScatter ? 1 : 0;
     }
   });

@@ -55,7 +55,7 @@ std::vector<Entry> sort_samples(std::span<const SurfaceSample> samples) {
 }
 
 /// Places that are worked on together, and the most samples around them. Where there are more, the run is halved.
-constexpr size_t kRun = 32;
+constexpr size_t kRun = 64;
 constexpr size_t kMostNear = 256;
 
 /// Samples around a run of places as arrays for vector instructions, in ascending order of their numbers.
@@ -131,20 +131,33 @@ SURFCAST_VECTOR_CLONES void rank(Ranked& kept) {
   }
 }
 
-/// The nearest of the samples, `degree` of them. None of these is farther away than `bound`.
+/// The nearest of the samples, `degree` of them, none of which is farther away than `bound`.
 Nearest nearest_of(const NearSamples& near, size_t degree, double bound) {
   Ranked kept;
   Nearest nearest(degree);
-  if (keep_near(near, bound, kept)) {
-    rank(kept);
-    std::array<uint32_t, kMostRanked> by_rank;
-    for (uint32_t i = 0; i < kept.count; ++i) by_rank[kept.ranks[i]] = i;
-    for (size_t i = 0; i < degree; ++i) nearest.add({kept.squared_distances[by_rank[i]], kept.numbers[by_rank[i]]});
-  } else {
+  if (!keep_near(near, bound, kept)) {
     for (size_t i = 0; i < near.count; ++i) nearest.add({near.squared_distances[i], near.numbers[i]});
+    return nearest;
   }
+  rank(kept);
+  std::array<uint32_t, kMostRanked> by_rank;
+  for (uint32_t i = 0; i < kept.count; ++i) by_rank[kept.ranks[i]] = i;
+  for (size_t i = 0; i < degree; ++i) nearest.add({kept.squared_distances[by_rank[i]], kept.numbers[by_rank[i]]});
   return nearest;
 }
+
+/// Places that follow each other, and their numbers from `first` on.
+struct Places {
+  size_t first = 0;
+  std::span<const glm::dvec3> local;
+
+  [[nodiscard]] Places part(size_t begin, size_t count) const { return {first + begin, local.subspan(begin, count)}; }
+  [[nodiscard]] Box box() const {
+    Box box;
+    for (const glm::dvec3& place : local) box.include(place);
+    return box;
+  }
+};
 
 }  // namespace
 
@@ -218,32 +231,38 @@ struct SurfaceSpacing::Index {
     return fits;
   }
 
-  void find(std::span<const glm::dvec3> places, std::span<float> found) const {
+  /// `found` has an entry for each of the places.
+  void find(const Places& places, const Enough& enough, std::span<float> found) const {
     thread_local NearSamples near;
-    Box box;
-    for (const glm::dvec3& place : places) box.include(place);
-    if (places.size() == 1) {
-      found[0] = median(nearest(places[0]));
-    } else if (gather(box, near)) {
-      find_together(places, near, found);
+    if (places.local.size() == 1) {
+      found[0] = median(nearest(places.local[0]));
+    } else if (gather(places.box(), near)) {
+      find_together(places, enough, near, found);
     } else {
-      const size_t middle = places.size() / 2;
-      find(places.first(middle), found.first(middle));
-      find(places.subspan(middle), found.subspan(middle));
+      const size_t middle = places.local.size() / 2;
+      find(places.part(0, middle), enough, found.first(middle));
+      find(places.part(middle, places.local.size() - middle), enough, found.subspan(middle));
     }
   }
 
-  void find_together(std::span<const glm::dvec3> places, NearSamples& near, std::span<float> found) const {
+  void find_together(const Places& places, const Enough& enough, NearSamples& near, std::span<float> found) const {
+    const auto smaller = [this](uint32_t a, uint32_t b) { return radii[a] < radii[b]; };
+    const float least = radii[*std::min_element(near.numbers.begin(), near.numbers.begin() + near.count, smaller)];
+    std::optional<glm::dvec3> last;  // place that was searched, whose nearest samples are within `bound`
     double bound = near.bound;
-    for (size_t i = 0; i < places.size(); ++i) {
-      measure(places[i], near);
+    for (size_t i = 0; i < found.size(); ++i) {
+      found[i] = least;
+      if (enough(places.first + i, double{least})) continue;
+      const glm::dvec3& place = places.local[i];
+      if (last) {
+        const double farthest = std::sqrt(bound) + std::sqrt(squared_distance(*last, place));
+        bound = std::min(near.bound, farthest * farthest * (1 + 1e-9));
+      }
+      measure(place, near);
       const Nearest nearest = nearest_of(near, degree(), bound);
       found[i] = median(nearest);
-      if (i + 1 == places.size()) break;
-      // The nearest samples of this place are at most this far from the next one.
-      const double step = std::sqrt(squared_distance(places[i], places[i + 1]));
-      const double farthest = std::sqrt(nearest.bound()) + step;
-      bound = std::min(near.bound, farthest * farthest * (1 + 1e-9));
+      bound = nearest.bound();
+      last = place;
     }
   }
 };
@@ -256,20 +275,21 @@ SurfaceSpacing& SurfaceSpacing::operator=(SurfaceSpacing&&) noexcept = default;
 SurfaceSpacing::~SurfaceSpacing() = default;
 
 double SurfaceSpacing::at(const glm::dvec3& position) const {
-  return double{at_all({&position, 1}).front()};
+  return double{at_all({&position, 1}, [](size_t, double) { return false; }).front()};
 }
 
-std::vector<float> SurfaceSpacing::at_all(std::span<const glm::dvec3> positions) const {
+std::vector<float> SurfaceSpacing::at_all(std::span<const glm::dvec3> positions, const Enough& enough) const {
   std::vector<float> found(positions.size(), std::numeric_limits<float>::infinity());
   if (!index_->tree) return found;
   const size_t runs = (positions.size() + kRun - 1) / kRun;
   tbb::parallel_for(size_t{0}, runs, [&](size_t run) {
-    std::array<glm::dvec3, kRun> places;
+    std::array<glm::dvec3, kRun> local;
     const size_t first = run * kRun;
-    const size_t count = std::min(kRun, positions.size() - first);
-    std::transform(positions.begin() + first, positions.begin() + first + count, places.begin(),
+    const std::span<const glm::dvec3> places = positions.subspan(first, std::min(kRun, positions.size() - first));
+    std::transform(places.begin(), places.end(), local.begin(),
                    [this](const glm::dvec3& p) { return index_->frame.to_local(p); });
-    index_->find(std::span(places).first(count), std::span(found).subspan(first, count));
+    index_->find({first, std::span(local).first(places.size())}, enough,
+                 std::span(found).subspan(first, places.size()));
   });
   return found;
 }

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <span>
@@ -42,8 +43,12 @@ class SurfaceSpacing {
   /// World units; infinite without samples. Thread-safe.
   [[nodiscard]] double at(const glm::dvec3& position) const;
 
-  /// The same for many places, on all threads. Fast where places that follow each other are near each other.
-  [[nodiscard]] std::vector<float> at_all(std::span<const glm::dvec3> positions) const;
+  /// True if it is enough to know that the spacing at place number i is at least `least`.
+  using Enough = std::function<bool(size_t i, double least)>;
+
+  /// The same for many places, on all threads. Where `enough` says so, a smaller number that is enough. Fast where
+  /// places that follow each other are near each other.
+  [[nodiscard]] std::vector<float> at_all(std::span<const glm::dvec3> positions, const Enough& enough) const;
 
  private:
   struct Index;
