@@ -1,0 +1,63 @@
+#include "service/render_job.h"
+
+#include <cstddef>
+#include <utility>
+
+#include "encode/encode_picture.h"
+#include "service/picture_channels.h"
+
+namespace surfcast::service {
+namespace {
+
+/// The description of a picture and its cost; without its bytes.
+EncodedPicture describe(const RenderJob& job, const picture::Frame& frame) {
+  EncodedPicture picture;
+  picture.format = job.picture.format;
+  picture.width = frame.image.width;
+  picture.height = frame.image.height;
+  picture.camera = frame.camera;
+  picture.normalization = job.picture.request.normalization;
+  picture.spacing = job.picture.request.spacing;
+  picture.converged = frame.converged;
+  picture.nothing_pending = frame.nothing_pending;
+  picture.cut = frame.cut;
+  picture.preview = frame.preview;
+  picture.waited_ms = job.waited_ms;
+  picture.draw_ms = job.draw_ms;
+  picture.stats = frame.stats;
+  return picture;
+}
+
+/// The bytes of a picture's file, with its channels.
+Result<std::vector<std::byte>> encode_file(const RenderJob& job, const picture::Frame& frame) {
+  const PictureJob& picture = job.picture;
+  if (picture.channels.none()) {
+    return surfcast::encode::encode_picture(frame.image, picture.format, picture.quality);
+  }
+  const picture::Channels channels = make_channels(picture.channels, frame, job.front);
+  return surfcast::encode::encode_picture(frame.image, picture.format, picture.quality, &channels);
+}
+
+}  // namespace
+
+Result<EncodedPicture> encode_job(RenderJob& job, const Result<SharedFrame>& shared) {
+  if (!shared) return fail(shared.error());
+  job.encoding = true;
+  if (job.cancelled) return cancelled_error();
+  const Stopwatch watch;
+  const picture::Frame& frame = **shared;
+  EncodedPicture picture = describe(job, frame);
+  if (job.picture.keep_frame) picture.frame = *shared;
+  if (!frame.image.pixels.empty()) {
+    Result<std::vector<std::byte>> bytes = encode_file(job, frame);
+    if (!bytes) return fail(bytes.error());
+    picture.bytes = std::move(*bytes);
+  }
+  if (job.cancelled) return cancelled_error();
+  picture.encode_ms = watch.milliseconds();
+  if (!job.front.empty()) picture.stats.stages.push_back({"surface", job.search_ms});
+  picture.stats.stages.push_back({"encode", picture.encode_ms});
+  return picture;
+}
+
+}  // namespace surfcast::service

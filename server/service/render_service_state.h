@@ -1,0 +1,104 @@
+#pragma once
+
+#include <array>
+#include <condition_variable>
+#include <functional>
+#include <future>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "base/preemption.h"
+#include "base/stopwatch.h"
+#include "service/draw_shares.h"
+#include "service/frame_renderer.h"
+#include "service/job_queue.h"
+#include "service/pick_service.h"
+#include "service/render_job.h"
+#include "service/render_service.h"
+#include "service/worker_pool.h"
+
+namespace surfcast::service {
+
+/// The number of no job: jobs count from 1.
+inline constexpr JobId kNoJob = 0;
+
+/// The service itself. Its render thread is in render_thread.cpp.
+struct RenderService::State {
+  using JobPointer = std::shared_ptr<RenderJob>;
+  /// Gets an error if the model is not there in time.
+  using Proceed = std::function<void(const Status& there)>;
+
+  State(const ModelSource& source, const ServiceLimits& service_limits)
+      : models(source), limits(service_limits), queue(service_limits.queued_jobs) {}
+
+  // Render thread.
+  void run(const FrameRendererFactory& make_renderer, std::promise<Status> started);
+  [[nodiscard]] bool idle_for_a_moment();
+  [[nodiscard]] bool has_waiting(Priority priority) const;
+  [[nodiscard]] bool may_draw(Priority priority) const;
+  [[nodiscard]] std::optional<Priority> next_priority() const;
+  JobPointer start(JobId id, std::unique_lock<std::mutex>& lock);
+  JobPointer next_job();
+  JobPointer next_motion();
+  JobPointer next_still_of_others(SessionId session);
+  Result<picture::Frame> render_frame(FrameRenderer& renderer, RenderJob& job, const Preemption& preemption);
+  void draw_one(FrameRenderer& renderer, const JobPointer& job, const Preemption& preemption);
+  void draw_motion(FrameRenderer& renderer, const JobPointer& job, bool others_wait);
+  bool draw_waiting_motion(FrameRenderer& renderer);
+  void draw_still(FrameRenderer& renderer, const JobPointer& job, bool nested);
+  void cancel_superseded(JobId id);
+
+  // Pool.
+  void encode_one(const JobPointer& job, Result<SharedFrame> frame);
+
+  // Any thread.
+  [[nodiscard]] Status check(const PictureJob& picture) const;
+  JobId add(SessionId session, PictureJob picture, PictureDone done);
+  void search(const JobPointer& job);
+  void end_search(const JobPointer& job, Result<std::vector<pick::FrontPixel>> front);
+  [[nodiscard]] bool enqueue(const RenderJob& job);
+  void proceed(const JobPointer& job);
+  void end_waiting(const JobPointer& job, const Status& there);
+  [[nodiscard]] bool await_model(JobId job, const std::string& model, Proceed proceed);
+  [[nodiscard]] bool waits_for_model(const PictureJob& picture) const;
+  void when_available(const std::string& model, const Proceed& proceed);
+  void models_changed();
+  void finish(const JobPointer& job, Result<EncodedPicture> result);
+  void stop();
+
+  const ModelSource& models;
+  const ServiceLimits limits;
+  DrawShares shares;           ///< of the render thread
+  picture::DeviceInfo device;  ///< set before start() returns, constant afterwards
+  int max_resolution = 0;      ///< likewise
+
+  mutable std::mutex mutex;  ///< guards the following members
+  std::condition_variable wake;
+  JobQueue queue;
+  /// What waits for a model.
+  struct Awaiting {
+    JobId job = kNoJob;  ///< of a picture
+    std::string model;
+    Stopwatch since;
+    Proceed proceed;
+  };
+  std::vector<Awaiting> awaiting;
+  std::map<JobId, JobPointer> jobs;  ///< outstanding: waiting, being drawn or being encoded
+  JobId last_id = 0;
+  std::array<size_t, 2> in_encoding{};  ///< pictures being drawn or encoded, by priority
+  size_t searching = 0;                 ///< jobs whose front surface is being found
+  bool stopping = false;
+
+  // Declared last, so the threads end before the members that they use.
+  std::unique_ptr<PickService> picks;
+  std::unique_ptr<WorkerPool> pool;
+  std::unique_ptr<WorkerPool> motion_pool;  ///< one thread
+  std::jthread render_thread;
+};
+
+}  // namespace surfcast::service
