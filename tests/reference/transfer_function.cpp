@@ -1,0 +1,52 @@
+#include "reference/transfer_function.h"
+
+#include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
+
+#include "base/contract.h"
+#include "reference/linear_picture.h"
+
+namespace surfcast::reference {
+namespace {
+
+constexpr double kOpaqueDepth = 16;  ///< optical depth of one spacing at opacity 1: a transmittance of 1e-7
+
+}  // namespace
+
+TransferFunction::TransferFunction(std::vector<TransferPoint> points, double spacing) : spacing_(spacing) {
+  SURFCAST_EXPECTS(spacing > 0);
+  std::stable_sort(points.begin(), points.end(), [](const auto& a, const auto& b) { return a.value < b.value; });
+  for (const TransferPoint& p : points) points_.push_back({p.value, linear_from_srgb8(255.0 * p.srgb), p.opacity});
+}
+
+Classified TransferFunction::classified(const glm::dvec3& color, double opacity) const {
+  return {color, std::min(-std::log1p(-std::min(opacity, 1.0)), kOpaqueDepth) / spacing_};
+}
+
+Classified TransferFunction::at(double value) const {
+  if (points_.empty()) return {};
+  const auto above = std::upper_bound(points_.begin(), points_.end(), value,
+                                      [](double v, const Point& point) { return v < point.value; });
+  if (above == points_.begin()) return classified(above->color, above->opacity);
+  const Point& a = *(above - 1);
+  if (above == points_.end()) return classified(a.color, a.opacity);
+  const double t = (value - a.value) / (above->value - a.value);
+  return classified(glm::mix(a.color, above->color, t), std::lerp(a.opacity, above->opacity, t));
+}
+
+bool TransferFunction::visible_within(double low, double high) const {
+  const auto seen = [&](const Point& p) { return p.opacity > 0 && p.value >= low && p.value <= high; };
+  return at(low).extinction > 0 || at(high).extinction > 0 || std::any_of(points_.begin(), points_.end(), seen);
+}
+
+void RayLight::add(const glm::dvec3& color, double extinction, double length) {
+  add_surface(color, -std::expm1(-extinction * length));
+}
+
+void RayLight::add_surface(const glm::dvec3& color, double coverage) {
+  light += transmittance * coverage * color;
+  transmittance *= 1 - coverage;
+}
+
+}  // namespace surfcast::reference
