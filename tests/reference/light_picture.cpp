@@ -12,17 +12,16 @@
 namespace surfcast::reference {
 namespace {
 
-constexpr int kReach = 4;                    ///< of the prefilter, pixels
 constexpr double kCovered = 0.5 / 255;       ///< opacity from which on a pixel counts as covered
 constexpr double kLevels = 255.0;            ///< of an 8 bit channel
 constexpr double kPrefilterDeviation = 1.0;  ///< pixels
 
-/// Weights of `samples` per pixel over the pixels -kReach to +kReach, sum 1.
+/// Weights of `samples` per pixel over the pixels -kFilterReach to +kFilterReach, sum 1.
 std::vector<double> prefilter_taps(int samples) {
-  std::vector<double> taps(static_cast<size_t>(2 * kReach + 1) * samples);
+  std::vector<double> taps(static_cast<size_t>(2 * kFilterReach + 1) * samples);
   double sum = 0;
   for (size_t i = 0; i < taps.size(); ++i) {
-    const double x = ((static_cast<double>(i) + 0.5) / samples - (kReach + 0.5)) / kPrefilterDeviation;
+    const double x = ((static_cast<double>(i) + 0.5) / samples - (kFilterReach + 0.5)) / kPrefilterDeviation;
     sum += taps[i] = std::exp(-0.5 * x * x);
   }
   for (double& tap : taps) tap /= sum;
@@ -33,24 +32,6 @@ glm::dvec4 weighted_sum(const std::vector<double>& taps, const glm::dvec4* value
   glm::dvec4 sum{0};
   for (size_t i = 0; i < taps.size(); ++i) sum += taps[i] * values[i * stride];
   return sum;
-}
-
-/// The prefilter along both axes of a lattice of samples that reaches kReach pixels over the picture on every side.
-LightPicture reduce(const LightPicture& lattice, int samples) {
-  const std::vector<double> taps = prefilter_taps(samples);
-  LightPicture rows(lattice.width / samples - 2 * kReach, lattice.height);
-  LightPicture picture(rows.width, lattice.height / samples - 2 * kReach);
-  for (int y = 0; y < rows.height; ++y) {
-    for (int x = 0; x < rows.width; ++x) {
-      rows.pixels[rows.index(x, y)] = weighted_sum(taps, &lattice.pixels[lattice.index(x * samples, y)], 1);
-    }
-  }
-  for (int y = 0; y < picture.height; ++y) {
-    for (int x = 0; x < picture.width; ++x) {
-      picture.pixels[picture.index(x, y)] = weighted_sum(taps, &rows.pixels[rows.index(x, y * samples)], rows.width);
-    }
-  }
-  return picture;
 }
 
 LightPicture bordered(const LightPicture& picture, int pixels) {
@@ -96,16 +77,33 @@ LightPicture sampled_picture(int width, int height, const LightSampler& sample) 
 }
 
 LightPicture prefiltered_picture(int width, int height, int samples, const LightSampler& sample) {
-  const auto place = [&](double lattice) { return lattice / samples - kReach; };
-  const LightPicture lattice =
-      sampled_picture((width + 2 * kReach) * samples, (height + 2 * kReach) * samples, [&](const glm::dvec2& at) {
-        return sample({place(at.x), place(at.y)});
-      });
-  return reduce(lattice, samples);
+  const auto place = [&](double lattice) { return lattice / samples - kFilterReach; };
+  const LightPicture lattice = sampled_picture((width + 2 * kFilterReach) * samples,
+                                               (height + 2 * kFilterReach) * samples, [&](const glm::dvec2& at) {
+                                                 return sample({place(at.x), place(at.y)});
+                                               });
+  return reduced(lattice, samples);
+}
+
+LightPicture reduced(const LightPicture& lattice, int samples) {
+  const std::vector<double> taps = prefilter_taps(samples);
+  LightPicture rows(lattice.width / samples - 2 * kFilterReach, lattice.height);
+  LightPicture picture(rows.width, lattice.height / samples - 2 * kFilterReach);
+  for (int y = 0; y < rows.height; ++y) {
+    for (int x = 0; x < rows.width; ++x) {
+      rows.pixels[rows.index(x, y)] = weighted_sum(taps, &lattice.pixels[lattice.index(x * samples, y)], 1);
+    }
+  }
+  for (int y = 0; y < picture.height; ++y) {
+    for (int x = 0; x < picture.width; ++x) {
+      picture.pixels[picture.index(x, y)] = weighted_sum(taps, &rows.pixels[rows.index(x, y * samples)], rows.width);
+    }
+  }
+  return picture;
 }
 
 LightPicture filtered(const LightPicture& picture) {
-  return reduce(bordered(picture, kReach), 1);
+  return reduced(bordered(picture, kFilterReach), 1);
 }
 
 LightPicture inner_part(const LightPicture& picture, int pixels) {

@@ -30,6 +30,9 @@ LightPicture sampled_picture(int width, int height, const LightSampler& sample);
 /// a regular lattice of `samples` x `samples` per pixel, at positions up to 4.5 pixels outside of the picture.
 LightPicture prefiltered_picture(int width, int height, int samples, const LightSampler& sample);
 
+/// The same filter on a lattice of `samples` x `samples` per pixel that reaches kFilterReach pixels over the picture.
+constexpr int kFilterReach = 4;
+LightPicture reduced(const LightPicture& lattice, int samples);
 /// The same filter on a finished picture; what lies outside of it repeats its border.
 LightPicture filtered(const LightPicture& picture);
 /// A picture without a border of `pixels` on every side.

@@ -19,7 +19,6 @@ namespace surfcast::reference {
 namespace {
 
 constexpr int kBand = 4;              ///< rows of pixels that are drawn together
-constexpr int kFilterBorder = 4;      ///< pixels
 constexpr int kNeighbourhood = 2;     ///< spacings over which a kernel and the slabs that it is in reach
 constexpr double kLeastWeight = 0.5;  ///< of a slab at which its scalar is known
 
@@ -201,11 +200,15 @@ class SlabPass {
       const int at = static_cast<int>(slab) + i;
       if (at < 0 || at >= slabs_.count) continue;
       const double share = i == 0 ? slab + 1 - place : place - slab;
-      pixel[at].value += share * t * kernel.value;
-      pixel[at].weight += share * t;
+      pixel[at].value += rounded(share * t * kernel.value);
+      pixel[at].weight += rounded(share * t);
       pixel[at].gradient += share * t * kernel.gradient;
     }
     return true;
+  }
+
+  [[nodiscard]] double rounded(double value) const {
+    return parameters_.unit > 0 ? parameters_.unit * std::round(value / parameters_.unit) : value;
   }
 
   /// The kernels' peak: they are a partition of unity, also with what the cutoff takes from every line integral.
@@ -306,10 +309,10 @@ geometry::CameraFrame widened(geometry::CameraFrame frame, int pixels) {
 SlabDrawing draw_slabs(const VolumeGrid& samples, double outside, const TransferFunction& transfer,
                        const geometry::CameraFrame& frame, const SlabParameters& parameters,
                        const SurfaceLayers& layers, const std::optional<ClipBox>& clip) {
-  const geometry::CameraFrame drawn = parameters.filter ? widened(frame, kFilterBorder) : frame;
+  const geometry::CameraFrame drawn = parameters.filter ? widened(frame, kFilterReach) : frame;
   SlabPass pass(samples, outside, transfer, drawn, parameters);
   LightPicture picture = pass.draw(layers, clip);
-  if (parameters.filter) picture = inner_part(filtered(picture), kFilterBorder);
+  if (parameters.filter) picture = inner_part(filtered(picture), kFilterReach);
   return {std::move(picture), pass.kernels(), pass.fragments(), pass.largest_sum()};
 }
 

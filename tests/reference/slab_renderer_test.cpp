@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include "reference/sheet_renderer.h"
 #include "reference/volume_scenes.h"
 
 namespace surfcast::reference {
@@ -192,6 +193,14 @@ TEST(SlabRenderer, LeavesOutOnlyWhatCannotShow) {
   }
 }
 
+TEST(SlabRenderer, IsAsGoodInIntegersOf16Bits) {
+  const VolumeScene scene = make_volume_scene("blobs", "mid", glm::ivec3(24), kSide);
+  const LightPicture expected = draw_slabs(scene.grid, 0, scene.transfer, scene.frame).picture;
+  SlabParameters integers;
+  integers.unit = 1.0 / 65536;
+  EXPECT_GT(covered_psnr(draw_slabs(scene.grid, 0, scene.transfer, scene.frame, integers).picture, expected), 60);
+}
+
 TEST(SlabRenderer, ShowsNothingUnderAnEmptyFunction) {
   const VolumeScene scene = make_volume_scene("ball", "mid", glm::ivec3(8), kSide);
   const SlabDrawing drawing = draw_slabs(scene.grid, 0, TransferFunction(), scene.frame);
@@ -199,10 +208,11 @@ TEST(SlabRenderer, ShowsNothingUnderAnEmptyFunction) {
   for (const glm::dvec4& p : drawing.picture.pixels) EXPECT_EQ(p, glm::dvec4(0));
 }
 
-TEST(SlabRenderer, IsCloserToTheIdealThanRayCasting) {
+TEST(SlabRenderer, IsCloserToTheIdealThanSheetsAndRayCasting) {
   const VolumeScene scene = make_volume_scene("torus", "mid", glm::ivec3(32), 2 * kSide);
   const LightPicture ideal = ideal_picture(scene);
   EXPECT_GT(covered_psnr(draw_slabs(scene.grid, 0, scene.transfer, scene.frame).picture, ideal), 48);
+  EXPECT_LT(covered_psnr(draw_sheets(scene.grid, scene.transfer, scene.frame), ideal), 30);
   const auto cast = [&](Reconstruction how) {
     return covered_psnr(filtered(ray_cast(scene.grid, scene.transfer, false, scene.frame, how)), ideal);
   };

@@ -13,7 +13,7 @@ constexpr double kFadeWidth = 0.012;
 constexpr double kBallRadius = 0.7;
 constexpr double kBallEdge = 0.02;
 constexpr double kTorusRadius = 0.6;
-constexpr double kTubeDeviation = 0.115;
+constexpr double kTubeDeviation = 0.125;
 constexpr int kTorusWaves = 5;
 constexpr double kDifference = 1e-4;
 
