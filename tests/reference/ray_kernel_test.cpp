@@ -117,8 +117,10 @@ TEST(RayKernel, WithAPrefilterIsTheIntegralsOfTheRaysAroundFiltered) {
     const glm::dvec3 d{o.x / o.z + offset / kEta, o.y / o.z - 0.5 * offset / kEta, 1};
     double sum = 0;
     double weights = 0;
-    for (double y = -5; y <= 5; y += 0.1) {
-      for (double x = -5; x <= 5; x += 0.1) {
+    for (int row = -50; row <= 50; ++row) {
+      for (int column = -50; column <= 50; ++column) {
+        const double x = 0.1 * column;  // pixels
+        const double y = 0.1 * row;
         const double weight = std::exp(-0.5 * (x * x + y * y));
         weights += weight;
         sum += weight * sharp.on_ray(d + glm::dvec3(x, y, 0) / kEta).length;

@@ -12,6 +12,7 @@
 
 #include <tbb/parallel_for.h>
 
+#include "reference/affine_kernel.h"
 #include "reference/headlight.h"
 #include "reference/ray_kernel.h"
 
@@ -25,7 +26,9 @@ constexpr double kLeastWeight = 0.5;  ///< of a slab at which its scalar is know
 /// A kernel of the grid.
 struct GridKernel {
   RayKernel shape;
-  double value;  ///< c - f0
+  std::optional<AffineKernel> affine;
+  double distance;  ///< of the centre from the eye, world units; negative behind it
+  double value;     ///< c - f0
   glm::dvec3 gradient;
   int first_row;  ///< rows of pixels that it may touch
   int last_row;
@@ -131,8 +134,13 @@ class SlabPass {
     const glm::dvec3 centre = frame_.to_camera(samples_.place(glm::dvec3(i)));
     const RayKernel shape(centre, factor_, frame_.eta, parameters_.prefilter);
     if (shape.behind(parameters_.cutoff)) return;
-    GridKernel kernel{shape, value, gradient_at(i), 0, frame_.height - 1, 0, frame_.width - 1};
-    if (const auto bounds = shape.bounds(parameters_.cutoff)) {
+    const double distance = std::copysign(glm::length(centre), centre.z);
+    GridKernel kernel{shape, {}, distance, value, gradient_at(i), 0, frame_.height - 1, 0, frame_.width - 1};
+    const auto bounds = shape.bounds(parameters_.cutoff);
+    if (parameters_.affine && bounds) {
+      kernel.affine = AffineKernel(centre, factor_, frame_.eta, parameters_.prefilter * parameters_.prefilter);
+    }
+    if (bounds) {
       const auto column = [&](double x) {
         return std::clamp(0.5 * frame_.width + frame_.eta * x, -1.0, frame_.width + 1.0);
       };
@@ -191,9 +199,9 @@ class SlabPass {
 
   /// Adds a fragment to the two nearest slabs, with shares that are linear in its distance from the eye.
   bool add(const GridKernel& kernel, const glm::dvec3& d, SlabSum* pixel) const {
-    const KernelOnRay seen = kernel.shape.on_ray(d);
+    const KernelOnRay seen = fragment(kernel, d);
     if (!(seen.r2 <= parameters_.cutoff)) return false;
-    const double place = slabs_.place(seen.depth * glm::length(d));
+    const double place = slabs_.place(parameters_.by_centre ? kernel.distance : seen.depth * glm::length(d));
     const double slab = std::floor(place);
     const double t = peak() * seen.length / slabs_.thickness;
     for (int i = 0; i < 2; ++i) {
@@ -207,6 +215,13 @@ class SlabPass {
     return true;
   }
 
+  static KernelOnRay fragment(const GridKernel& kernel, const glm::dvec3& d) {
+    KernelOnRay seen = kernel.shape.on_ray(d);
+    if (!kernel.affine) return seen;
+    seen.r2 = kernel.affine->r2(d);
+    seen.length = kernel.affine->length(d);
+    return seen;
+  }
   [[nodiscard]] double rounded(double value) const {
     return parameters_.unit > 0 ? parameters_.unit * std::round(value / parameters_.unit) : value;
   }

@@ -20,6 +20,8 @@ struct SlabParameters {
   double thickness = 1;    ///< of slabs, in spacings of the samples along the view
   int steps = 8;           ///< of integration between two slab centres; 0: one at the front centre's scalar
   double clear = 1e-3;     ///< transmittance at which a ray ends
+  bool by_centre = false;  ///< a kernel has the distance of its centre in every pixel, not that on the pixel's ray
+  bool affine = false;     ///< footprints by Zwicker's form instead of the exact one, for kernels in front of the eye
   double unit = 0;         ///< to whose multiples what is added to slabs is rounded, as integer sums do; 0: exact
   bool filter = true;      ///< the finished picture with the pixel prefilter
   bool anchored = true;    ///< a slab through the volume's centre, as long as the eye is outside

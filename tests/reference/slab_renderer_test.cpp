@@ -201,6 +201,45 @@ TEST(SlabRenderer, IsAsGoodInIntegersOf16Bits) {
   EXPECT_GT(covered_psnr(draw_slabs(scene.grid, 0, scene.transfer, scene.frame, integers).picture, expected), 60);
 }
 
+TEST(SlabRenderer, DrawsTheSameAtEveryScaleAndPlaceInTheWorld) {
+  const VolumeScene scene = make_volume_scene("torus", "mid", glm::ivec3(16), kSide);
+  const LightPicture expected = draw_slabs(scene.grid, 0, scene.transfer, scene.frame).picture;
+  const auto moved = [&](double scale, const glm::dvec3& offset) {
+    VolumeGrid grid = scene.grid;
+    grid.origin = scale * grid.origin + offset;
+    grid.axes *= scale;
+    geometry::CameraFrame frame = scene.frame;
+    frame.eye = scale * frame.eye + offset;
+    const LightPicture picture = draw_slabs(grid, 0, transfer_by_name("smooth", scale * 2 / 31), frame).picture;
+    return linear_psnr(picture, expected);
+  };
+  EXPECT_GT(moved(1e-4, {0, 0, 0}), 150);
+  EXPECT_GT(moved(1e5, {0, 0, 0}), 150);
+  EXPECT_GT(moved(1, {5e6, 4e5, 300}), 120);
+}
+
+TEST(SlabRenderer, EndsRaysWhereNothingMoreIsSeen) {
+  const VolumeScene scene = make_volume_scene("ball", "mid", glm::ivec3(24), kSide);
+  SlabParameters whole;
+  whole.clear = 0;
+  EXPECT_GT(covered_psnr(draw_slabs(scene.grid, 0, scene.transfer, scene.frame).picture,
+                         draw_slabs(scene.grid, 0, scene.transfer, scene.frame, whole).picture),
+            60);
+}
+
+TEST(SlabRenderer, MayTakeTheDistanceOfCentresExceptNearTheEye) {
+  SlabParameters centres;
+  centres.by_centre = true;
+  const auto against_ray = [&](const char* view) {
+    const VolumeScene scene = make_volume_scene("torus", view, glm::ivec3(24), kSide);
+    return covered_psnr(draw_slabs(scene.grid, 0, scene.transfer, scene.frame, centres).picture,
+                        draw_slabs(scene.grid, 0, scene.transfer, scene.frame).picture);
+  };
+  EXPECT_GT(against_ray("mid"), 58);
+  EXPECT_GT(against_ray("wide"), 50);
+  EXPECT_LT(against_ray("inside"), 30);
+}
+
 TEST(SlabRenderer, ShowsNothingUnderAnEmptyFunction) {
   const VolumeScene scene = make_volume_scene("ball", "mid", glm::ivec3(8), kSide);
   const SlabDrawing drawing = draw_slabs(scene.grid, 0, TransferFunction(), scene.frame);

@@ -24,8 +24,9 @@ TEST(VolumeGrid, TapsOfAKernelSumToOne) {
 
 TEST(VolumeGrid, KernelsArePartitionOfUnityWithinTwoThousandths) {
   const VolumeGrid ones = make_grid({12, 12, 12}, glm::dvec3(0), glm::dmat3(1), [](const auto&) { return 1.0; });
-  for (double x = 5; x <= 6; x += 0.125) {
-    for (double y = 5; y <= 6; y += 0.125) EXPECT_NEAR(gaussian_sum(ones, kSigma, {x, y, 5.3}), 1, 0.0045);
+  for (int column = 0; column <= 8; ++column) {
+    const double x = 5 + 0.125 * column;
+    for (int row = 0; row <= 8; ++row) EXPECT_NEAR(gaussian_sum(ones, kSigma, {x, 5 + 0.125 * row, 5.3}), 1, 0.0045);
     EXPECT_NEAR(gaussian_sum(ones, kSigma, {x, 5.25, 5.25}), 1, 0.002);
   }
 }
