@@ -99,7 +99,7 @@ KindFragments fragments_of(const PictureKinds& kinds) {
 Result<Programs> Programs::create(const KernelShape& shape, const std::string& defines) {
   Programs programs;
   programs.shape_ = shape;
-  programs.defines_ = defines;
+  programs.defines_ = defines + define("SURFCAST_SILHOUETTE_LANES", shape.silhouette_lanes);
   Result<gl::Program> slices = compute_program("slices.comp", "slices.comp", {}, defines);
   if (!slices) return fail(std::move(slices.error()));
   Result<gl::Program> offsets = compute_program("bin_offsets.comp", "bin_offsets.comp", {}, defines);

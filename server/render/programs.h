@@ -52,10 +52,11 @@ struct SplatPrograms {
 
 /// The mapping of the passes to the device's vectors. It does not affect pictures.
 struct KernelShape {
-  bool whole_tiles = false;  ///< a lane of the splat kernel holds a tile instead of a pixel (see include/rows.glsl),
-                             ///< and continues with the next tile
-  int tiles_at_once = 2;     ///< tiles that a work group of the splat kernel draws side by side
-  int project_lanes = 64;    ///< lanes that share a chunk of surfels: one vector, or as many as hide the memory latency
+  bool whole_tiles = false;   ///< a lane of the splat kernel holds a tile instead of a pixel (see include/rows.glsl),
+                              ///< and continues with the next tile
+  int tiles_at_once = 2;      ///< tiles that a work group of the splat kernel draws side by side
+  int silhouette_lanes = 32;  ///< of a work group of the silhouette passes
+  int project_lanes = 64;  ///< lanes that share a chunk of surfels: one vector, or as many as hide the memory latency
 };
 
 /// The programs for tiles with long lists, whose work groups draw one tile each.
@@ -68,7 +69,7 @@ struct LongListPrograms {
 
 /// The shape for devices whose lanes are those of a processor's vectors.
 constexpr KernelShape software_kernels() {
-  return {.whole_tiles = true, .tiles_at_once = 8, .project_lanes = 8};
+  return {.whole_tiles = true, .tiles_at_once = 8, .silhouette_lanes = 16, .project_lanes = 8};
 }
 
 /// Compiles the passes when they are first needed.

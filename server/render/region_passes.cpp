@@ -438,8 +438,8 @@ Status splat(const RegionTask& task, const layout::Counters& counters, const Reg
 }
 
 /// Finds the pixels at silhouettes and draws them again.
-Status supersample_silhouettes(const RegionTask& task, const RegionPrograms& programs, SplatBuffers& buffers,
-                               const Preemption& preemption) {
+Status supersample_silhouettes(const RegionTask& task, const RegionPrograms& programs, const KernelShape& shape,
+                               SplatBuffers& buffers, const Preemption& preemption) {
   const gl::DebugGroup group("silhouettes");
   const auto dispatch = [&](const gl::Program* program, size_t groups, BatchSizer& sizer) -> Status {
     if (groups == 0) return {};
@@ -448,7 +448,7 @@ Status supersample_silhouettes(const RegionTask& task, const RegionPrograms& pro
       glUseProgram(program->name());
     });
   };
-  const auto groups_of = [](int lanes) { return ceil_divide(lanes, SURFCAST_SILHOUETTE_LANES); };
+  const auto groups_of = [&](int lanes) { return ceil_divide(lanes, shape.silhouette_lanes); };
   Status status = dispatch(programs.lanes.silhouettes, groups_of(task.constants.tiles.z), buffers.find_batches);
   if (!status) return status;
   GLint counts[4] = {};
@@ -521,7 +521,7 @@ Result<std::optional<RegionStats>> draw_region(const RegionTask& task, Programs&
     return fail(std::move(status.error()));
   }
   if (task.variant.silhouettes) {
-    Status status = supersample_silhouettes(task, region, buffers, preemption);
+    Status status = supersample_silhouettes(task, region, programs.shape(), buffers, preemption);
     if (!status) return fail(std::move(status.error()));
   }
   if (task.variant.eye_dome) {

@@ -13,8 +13,9 @@ static_assert(std::size(kLengths) + 1 == kTileSpans && kLengths[kTileSpans - 2] 
 /// the limit of llvmpipe. Eight lanes that share n tiles of up to eight surfaces draw at most n + 7 surfaces in
 /// sequence, or eight if each lane has one tile. Each surface takes two passes over its list.
 uint32_t turns_of(uint32_t longest) {
+  if (longest <= 256) return 12;
   if (longest <= 512) return 6;
-  return longest <= 1024 ? 2 : 1;
+  return longest <= 1024 ? 3 : 1;
 }
 
 }  // namespace

@@ -22,8 +22,11 @@ namespace surfcast::layout {
 // Work group size in pixels of passes over pixels only: one warp on GPUs.
 #define SURFCAST_BLOCK_WIDTH 8
 #define SURFCAST_BLOCK_HEIGHT 4
-// Lanes of a work group of the silhouette passes.
+// Lanes of a work group of the silhouette passes, unless the shape of the kernels says otherwise
+// (render/programs.h).
+#ifndef SURFCAST_SILHOUETTE_LANES
 #define SURFCAST_SILHOUETTE_LANES 32
+#endif
 // Texels (surfels) that one work group projects. Runs of a block are divided into chunks of this size.
 #define SURFCAST_CHUNK 128
 // Entries of a list from which on a work group draws its tile: one of SURFCAST_LIST_LENGTHS. A lane alone would come
