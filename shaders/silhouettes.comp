@@ -1,8 +1,6 @@
 // Finds the pixels at silhouettes, which supersample.comp draws again: those where the depth of the front surface has a
-// discontinuity, and their neighbours. Pixels without a surface count as infinitely far.
-//
-// The inverse depth of a plane is affine on the screen, so a discontinuity is a large second difference: slopes do not
-// count, however steep. Gaps between samples are not detected, because the opaque discs close them.
+// discontinuity, and their neighbours. Pixels without a surface count as infinitely far. Gaps between samples are not
+// detected, because the opaque discs close them.
 #include "shared/kernel.h"
 #include "shared/frame_layout.h"
 #include "include/frame.glsl"
@@ -17,6 +15,7 @@ layout(std430, binding = SURFCAST_BIND_TILE_COUNT) readonly buffer TileCount { u
 
 #include "include/depth_slices.glsl"
 #include "include/silhouette_list.glsl"
+#include "include/silhouettes.glsl"
 
 const ivec2 kTile = ivec2(SURFCAST_TILE_WIDTH, SURFCAST_TILE_HEIGHT);
 
@@ -26,11 +25,6 @@ const ivec2 kSeen = kTile + 2 * kReach + 2;  // the pixels that determine the si
 float front(ivec2 at) {
   ivec2 inside = clamp(at, ivec2(0), frame.region.zw - 1);
   return fronts[inside.y * frame.region.z + inside.x];
-}
-
-// True if the second difference over three pixels in a row exceeds the threshold.
-bool bends(float before, float here, float after) {
-  return abs(before - 2.0 * here + after) * eta() > SURFCAST_SILHOUETTE_JUMP * max(here, max(before, after));
 }
 
 // The pixels from `low` to `high`, relative to the tile's first pixel, that lie in the tile and in a picture of this

@@ -37,6 +37,11 @@ layout(std430, binding = SURFCAST_BIND_FRONTS) writeonly buffer Fronts { float f
 
 #include "include/draw_lane.glsl"
 #include "include/write_pixel.glsl"
+#if defined(SURFCAST_FINDS_SILHOUETTES) && !defined(SURFCAST_EYE_DOME) && SURFCAST_COLUMNS == SURFCAST_TILE_WIDTH
+// (Eye-dome lighting looks at all surfaces of a pixel, even those that are hardly visible.)
+#define SURFCAST_LEAVES_TO_SAMPLES
+#include "include/leave_to_samples.glsl"
+#endif
 
 void write_column(Light light, Rows front, ivec2 first) {
   for (int i = 0; i < SURFCAST_ROWS; ++i) {
@@ -84,6 +89,7 @@ struct LaneState {
   Columns limit;
   LightColumns light;
   Columns front;
+  uint left_to_samples;  // pixels at silhouettes, see include/leave_to_samples.glsl
 };
 
 // Index within the work group of the lane's next tile; span.z or more if there is none.
@@ -118,6 +124,10 @@ void main() {
   while (drawing) {
     bool more = draw_layer(state.tile, vec2(frame.region.xy + state.local) + 0.5, state.limit, state.light);
     if (state.layer == 0) state.front = state.limit;
+#ifdef SURFCAST_LEAVES_TO_SAMPLES
+    if (state.layer == 0) state.left_to_samples = pixels_left_to_samples(state.front, state.local);
+    more = more && others_need_more(state.light, state.limit, state.left_to_samples);
+#endif
     ++state.layer;
     if (more && state.layer < kMaxLayers) continue;
     for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
