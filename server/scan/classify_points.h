@@ -13,7 +13,8 @@ inline constexpr size_t kWideNeighbours = 32;
 /// What a point stands for.
 enum class PointKind : uint8_t {
   kSurface,  ///< an oriented disc
-  kScatter,  ///< lies on no surface (leaves, wires, strays): a round splat that faces the eye
+  kScatter,  ///< lies on no surface (leaves, strays): a round splat that faces the eye
+  kThread,   ///< the same, in a line of points (wires, single scan lines)
   kStated,   ///< an oriented disc whose radius the file states
 };
 
@@ -29,6 +30,16 @@ struct Spread {
 /// kNearNeighbours as well, unless these lie on a line (a scan line has no plane of its own). docs/kernel.md has
 /// measurements.
 bool lies_on_surface(const Spread& near, const Spread& wide);
+
+/// True if it is so flat that chance does not make it so in a volume: the spacing of the surfaces around is theirs.
+bool lies_on_clear_surface(const Spread& near, const Spread& wide);
+
+/// True if either neighbourhood is a line.
+bool lies_on_line(const Spread& near, const Spread& wide);
+
+constexpr bool is_scatter(PointKind kind) {
+  return kind == PointKind::kScatter || kind == PointKind::kThread;
+}
 
 /// The radius of a splat off the surface before its limit, in the unit of `third`, the distance to the third nearest
 /// neighbour. On average it is half the distance to the nearest one; paired echoes do not affect it.

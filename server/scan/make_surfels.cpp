@@ -33,9 +33,10 @@ struct SiteFacts {
   std::vector<SiteDirection> known;
   std::vector<glm::vec3> towards;  ///< empty if nothing is known
   std::vector<uint8_t> scatter;    ///< 1: lies on no surface
+  std::vector<SiteShape> shapes;
 
   SiteFacts(size_t sites, bool any_known)
-      : places(sites), known(sites), towards(any_known ? sites : 0, glm::vec3(0)), scatter(sites) {}
+      : places(sites), known(sites), towards(any_known ? sites : 0, glm::vec3(0)), scatter(sites), shapes(sites) {}
 };
 
 /// Records the direction of a point at its site. The first point at a site counts, but a stored normal takes precedence
@@ -108,9 +109,8 @@ Estimates estimates_of(const Sites& sites, const NeighbourGraph& graph, const Si
   estimates.kinds.resize(sites.of_point.size());
   tbb::parallel_for(size_t{0}, sites.of_point.size(), [&](size_t i) {
     const uint32_t site = sites.of_point[i];
-    const bool scatter = facts.scatter[site] != 0;
-    estimates.kinds[i] = scatter ? PointKind::kScatter : PointKind::kSurface;
-    estimates.radii[i] = scatter ? scatter_radius_of(sites, graph, site) : on_surface[site];
+    estimates.kinds[i] = facts.shapes[site].kind;
+    estimates.radii[i] = is_scatter(estimates.kinds[i]) ? scatter_radius_of(sites, graph, site) : on_surface[site];
   });
   return estimates;
 }
@@ -123,7 +123,8 @@ std::vector<SurfaceSample> sample_surfaces(const Sites& sites, const NeighbourGr
   tbb::parallel_for(Range(0, static_cast<uint32_t>(sites.size())), [&](const Range& range) {
     std::vector<SurfaceSample>& own = samples.local();
     for (uint32_t site = range.begin(); site != range.end(); ++site) {
-      if (facts.scatter[site] != 0 || !facts.places[site].own || !is_sampled(sites, graph, site, per_sample)) continue;
+      const bool usable = facts.shapes[site].clear_surface && facts.places[site].own;
+      if (!usable || !is_sampled(sites, graph, site, per_sample)) continue;
       own.push_back({sites.positions[site], estimated[site]});
     }
   });
@@ -144,12 +145,6 @@ struct Findings {
   std::vector<RadiusGuess> guesses;  ///< of radii; none if no radius is estimated
 };
 
-/// True if a site lies on no surface. With fewer than kWideNeighbours nothing is known, and the site counts as a
-/// surface.
-bool is_scatter(const Spread& near, const Covariances& covariances, size_t neighbours) {
-  return neighbours >= kWideNeighbours && !lies_on_surface(near, spread_of(covariances.wide));
-}
-
 /// The normals that the scan has; z elsewhere.
 std::vector<glm::vec3> stored_normals(const SiteFacts& facts) {
   std::vector<glm::vec3> normals(facts.known.size(), glm::vec3(0, 0, 1));
@@ -160,7 +155,7 @@ std::vector<glm::vec3> stored_normals(const SiteFacts& facts) {
   return normals;
 }
 
-/// Sets `facts.scatter`, too, if radii are estimated.
+/// Sets `facts.scatter` and `facts.shapes`, too, if radii are estimated.
 Findings study_neighbourhoods(const Sites& sites, bool radii, SiteFacts& facts) {
   Findings findings{{}, stored_normals(facts), std::vector<RadiusGuess>(radii ? sites.size() : 0)};
   const size_t visited = radii ? kWideNeighbours : kDegree;
@@ -172,7 +167,8 @@ Findings study_neighbourhoods(const Sites& sites, bool radii, SiteFacts& facts) 
     const Spread near = spread_of(covariances.near);
     if (!stored) findings.normals[site] = glm::vec3(least_axis(covariances.near, near.least));
     if (!radii) return;
-    facts.scatter[site] = is_scatter(near, covariances, offsets.count) ? 1 : 0;
+    facts.shapes[site] = shape_of(near, covariances.wide, offsets.count);
+    facts.scatter[site] = is_scatter(facts.shapes[site].kind) ? 1 : 0;
     findings.guesses[site] = guess_radius(offsets, kDegree, findings.normals[site], sites.unit);
   });
   return findings;

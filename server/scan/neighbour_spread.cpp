@@ -128,4 +128,11 @@ glm::dvec3 least_axis(const Covariance& m, double least) {
   return squared_first > squared_second ? first / std::sqrt(squared_first) : second / std::sqrt(squared_second);
 }
 
+SiteShape shape_of(const Spread& near, const Covariance& wide, size_t neighbours) {
+  if (neighbours < kWideNeighbours) return {PointKind::kSurface, true};
+  const Spread spread = spread_of(wide);
+  if (lies_on_surface(near, spread)) return {PointKind::kSurface, lies_on_clear_surface(near, spread)};
+  return {lies_on_line(near, spread) ? PointKind::kThread : PointKind::kScatter, false};
+}
+
 }  // namespace surfcast::scan

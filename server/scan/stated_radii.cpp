@@ -210,7 +210,7 @@ void apply_radii(std::span<const RadiusDecision> decisions, std::span<const size
       cloud.radii[i] = scaled(cloud.radii[i], decision.factor);
     } else {
       cloud.radii[i] = estimated_radius(estimates, i, double{around[i]});
-      scatter[i] = estimates.kinds[i] == PointKind::kScatter ? 1 : 0;
+      scatter[i] = is_scatter(estimates.kinds[i]) ? 1 : 0;
     }
   });
   const bool any = std::find(scatter.begin(), scatter.end(), uint8_t{1}) != scatter.end();

@@ -33,11 +33,25 @@ TEST(ClassifyPoints, ThicknessCountsRelativeToTheSmallerExtent) {
   EXPECT_FALSE(lies_on_surface(thin, thick));
 }
 
+TEST(ClassifyPoints, OnlyFlatSurfacesGiveTheSpacingOfThoseAround) {
+  EXPECT_TRUE(lies_on_clear_surface(kFlat, kFlat));
+  EXPECT_FALSE(lies_on_clear_surface(kFlat, {0.3 * 0.3, 1, 3})) << "leaves may be that flat by chance";
+  EXPECT_FALSE(lies_on_clear_surface(kRound, kFlat)) << "no surface at all";
+}
+
+TEST(ClassifyPoints, ALineIsALineAtEitherScale) {
+  EXPECT_TRUE(lies_on_line(kLine, kRound));
+  EXPECT_TRUE(lies_on_line(kRound, kLine));
+  EXPECT_FALSE(lies_on_line(kRound, kFlat));
+}
+
 TEST(ClassifyPoints, RadiiAreLimitedByTheSurfacesAround) {
   EXPECT_EQ(limited_radius(PointKind::kSurface, 1.9, 1), 1.9);
   EXPECT_EQ(limited_radius(PointKind::kSurface, 90, 1), 2);
-  EXPECT_EQ(limited_radius(PointKind::kScatter, 0.4, 1), 0.4);
-  EXPECT_EQ(limited_radius(PointKind::kScatter, 90, 1), 0.5);
+  EXPECT_EQ(limited_radius(PointKind::kScatter, 0.3, 1), 0.3);
+  EXPECT_DOUBLE_EQ(limited_radius(PointKind::kScatter, 90, 1), 1.0 / 3);
+  EXPECT_EQ(limited_radius(PointKind::kThread, 0.4, 1), 0.4) << "a line stays closed";
+  EXPECT_EQ(limited_radius(PointKind::kThread, 90, 1), 0.5);
   EXPECT_EQ(limited_radius(PointKind::kScatter, 90, kInfinity), 90) << "no surface anywhere";
   EXPECT_EQ(limited_radius(PointKind::kStated, 90, 1), 90) << "the file says so";
 }

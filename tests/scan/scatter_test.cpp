@@ -133,6 +133,35 @@ TEST(Scatter, AStrayAboveAPlaneIsNoWiderThanHalfThePlanesRadius) {
   EXPECT_EQ(share_of_scatter(cloud, [](const glm::dvec3& p) { return p.z == 0; }), 0);
 }
 
+/// A plane with strays around it: alone, in pairs, and in a row of single points away from it.
+std::vector<glm::dvec3> plane_and_strays() {
+  std::vector<glm::dvec3> points = plane();
+  for (int i = 0; i < 12; ++i) points.emplace_back(0.5 * i, 2 + 0.1 * (i % 3), 0.4 * (1 + i % 5));
+  for (int i = 0; i < 4; ++i) points.emplace_back(8 + 3 * i, 3, 0);
+  points.emplace_back(1, 1, 60);
+  points.emplace_back(1, 1, 60 + kSpacing);
+  return points;
+}
+
+TEST(Scatter, NoRadiusIsAboveFourSpacingsOfTheSurfaceAround) {
+  const surfel::SurfelCloud cloud = surfels_at(plane_and_strays());
+  EXPECT_LE(*std::max_element(cloud.radii.begin(), cloud.radii.end()), 4 * kSpacing);
+}
+
+TEST(Scatter, ASparseSurfaceBesideADenseOneKeepsItsRadii) {
+  constexpr double kFactor = 8;
+  std::vector<glm::dvec3> points = plane();
+  const size_t dense = points.size();
+  for (const glm::dvec3& p : plane()) points.push_back(kFactor * p + glm::dvec3(60 * kSpacing, 0, 0));
+  const surfel::SurfelCloud cloud = surfels_at(points);
+  EXPECT_LE(*std::max_element(cloud.radii.begin(), cloud.radii.begin() + static_cast<std::ptrdiff_t>(dense)),
+            4 * kSpacing);
+  const auto middle = dense + static_cast<size_t>(30 * 60 + 30);
+  EXPECT_FALSE(cloud.is_scatter(middle));
+  EXPECT_GT(cloud.radii[middle], 4 * kSpacing);
+  EXPECT_LT(cloud.radii[middle], 2 * kFactor * kSpacing);
+}
+
 TEST(Scatter, TwoPlanesAreScatterAtMostWhereTheyCross) {
   std::vector<glm::dvec3> points = plane();
   for (const glm::dvec3& p : plane()) points.emplace_back(p.x, 3, p.y - 3);
