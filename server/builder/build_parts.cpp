@@ -76,12 +76,10 @@ std::vector<size_t> every_input(size_t inputs) {
   return all;
 }
 
-/// Sorts the points of a part and removes duplicates. Returns for each sorted point whether it was kept.
-std::vector<uint8_t> sort_and_drop_duplicates(PartPoints& points, const geometry::RootCube& root,
-                                              scan::SurfelReport& report) {
+/// Removes duplicates from the sorted points of a part. Returns for each point whether it was kept.
+std::vector<uint8_t> drop_duplicates(PartPoints& points, scan::SurfelReport& report) {
   surfel::SurfelCloud& cloud = points.cloud;
   size_t& own = points.own;
-  if (sort_spatially(points, root)) return std::vector<uint8_t>(cloud.size(), 1);
   const std::vector<bool> duplicate = scan::find_duplicates(cloud);
   const auto dropped = std::count(duplicate.begin(), duplicate.begin() + static_cast<std::ptrdiff_t>(own), true);
   report.duplicates += static_cast<uint64_t>(dropped);
@@ -93,8 +91,9 @@ std::vector<uint8_t> sort_and_drop_duplicates(PartPoints& points, const geometry
 }
 
 /// The findings of the surfels that were kept, with an entry for each point of the part.
-PartFindings spread_findings(const scan::PartSurfels& surfels, std::vector<uint8_t> kept) {
+PartFindings spread_findings(const scan::PartSurfels& surfels, std::vector<uint32_t> order, std::vector<uint8_t> kept) {
   PartFindings findings;
+  findings.order = std::move(order);
   findings.normals.resize(kept.size());
   findings.radii.resize(kept.size());
   findings.trees.resize(kept.size());
@@ -193,8 +192,11 @@ size_t BuildParts::parts_at_once(const MemoryPlan& memory) const {
 
 BuildParts::Made BuildParts::make(PartPoints points, size_t part, scan::RadiusPolicy radii) const {
   Made made;
-  made.kept = sort_and_drop_duplicates(points, root_, made.report);
+  SpatialOrder order = spatial_order(points, root_);
+  reorder(points.cloud, order.points);
+  made.kept = order.distinct ? std::vector<uint8_t>(points.cloud.size(), 1) : drop_duplicates(points, made.report);
   made.own = points.own;
+  if (store_) made.order = std::move(order.points);
   scan::PartFrame frame;
   frame.bounds = bounds_;
   frame.points = points_;
@@ -233,7 +235,9 @@ Status BuildParts::make_surfels(const MemoryPlan& memory, scan::RadiusPolicy rad
       const std::vector<scan::RadiusComparison>& own = made->surfels.radii;
       for (size_t input = 0; input < own.size(); ++input) comparisons[input].add(own[input]);
       clock.step();
-      if (store_) return store_->keep_findings(part, spread_findings(made->surfels, std::move(made->kept)));
+      if (store_)
+        return store_->keep_findings(part,
+                                     spread_findings(made->surfels, std::move(made->order), std::move(made->kept)));
       surfels_ = std::move(made->surfels);
       own_ = made->own;
       return Status();
@@ -255,9 +259,9 @@ Result<BuildParts::Finished> BuildParts::take(size_t part) {
   }
   Result<PartPoints> points = store_->load(part);
   if (!points) return fail(std::move(points.error()));
-  sort_spatially(*points, root_);  // as when the findings were made
   Result<PartFindings> findings = store_->load_findings(part);
   if (!findings) return fail(std::move(findings.error()));
+  reorder(points->cloud, findings->order);
   store_->release(part);
   scan::PartSurfels surfels;
   surfels.cloud = std::move(points->cloud);

@@ -50,6 +50,7 @@ class BuildParts {
   struct Made {
     scan::PartSurfels surfels;
     size_t own = 0;
+    std::vector<uint32_t> order;  ///< of the points, if there are several parts
     std::vector<uint8_t> kept;
     scan::PartSigns signs;
     scan::SurfelReport report;

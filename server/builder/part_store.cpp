@@ -18,7 +18,8 @@ uint64_t bytes_of_row(const scan::ScanSchema& schema) {
 /// Calls `use` with every array of the findings, until one call fails.
 template <typename Findings, typename Use>
 Status for_each_finding(Findings& findings, const Use& use) {
-  Status status = use(findings.normals);
+  Status status = use(findings.order);
+  if (status) status = use(findings.normals);
   if (status) status = use(findings.radii);
   if (status) status = use(findings.trees);
   if (status) status = use(findings.kinds);

@@ -22,8 +22,9 @@ struct PartPoints {
   std::vector<size_t> inputs;  ///< for each source of the cloud, the index of the input
 };
 
-/// Results for the points of a part, in the order of its sorted points (see spatial_order.h).
+/// Results for the points of a part, in the order of its sorted points.
 struct PartFindings {
+  std::vector<uint32_t> order;  ///< the numbers of the sorted points before they were sorted (see spatial_order.h)
   std::vector<glm::vec3> normals;
   std::vector<float> radii;  ///< estimated ones
   std::vector<uint32_t> trees;

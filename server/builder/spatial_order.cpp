@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -27,19 +28,6 @@ std::vector<Place> sorted_places(const surfel::SurfelCloud& cloud, const surfel:
   return places;
 }
 
-/// Moves the points of a source to their places.
-void reorder(surfel::SurfelCloud& cloud, const surfel::SourceRange& source, const std::vector<Place>& places) {
-  for_each_column(cloud, [&](auto& values) {
-    auto sorted = std::vector(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(source.count));
-    oneapi::tbb::parallel_for(size_t{0}, sorted.size(), [&](size_t i) { sorted[i] = values[places[i].second]; });
-    if (source.count == values.size()) {
-      values.swap(sorted);
-    } else {
-      std::copy(sorted.begin(), sorted.end(), values.begin() + static_cast<std::ptrdiff_t>(source.first));
-    }
-  });
-}
-
 bool share_a_cell(const std::vector<Place>& places) {
   const auto same = [](const Place& a, const Place& b) { return a.first == b.first; };
   return std::adjacent_find(places.begin(), places.end(), same) != places.end();
@@ -47,15 +35,26 @@ bool share_a_cell(const std::vector<Place>& places) {
 
 }  // namespace
 
-bool sort_spatially(PartPoints& points, const geometry::RootCube& root) {
+SpatialOrder spatial_order(const PartPoints& points, const geometry::RootCube& root) {
   const std::vector<size_t>& inputs = points.inputs;
-  bool distinct = std::adjacent_find(inputs.begin(), inputs.end(), std::not_equal_to<>()) == inputs.end();
+  SpatialOrder order;
+  order.distinct = std::adjacent_find(inputs.begin(), inputs.end(), std::not_equal_to<>()) == inputs.end();
+  order.points.resize(points.cloud.size());
   for (const surfel::SourceRange& source : points.cloud.sources) {
     const std::vector<Place> places = sorted_places(points.cloud, source, root);
-    reorder(points.cloud, source, places);
-    distinct = distinct && !share_a_cell(places);
+    oneapi::tbb::parallel_for(size_t{0}, places.size(),
+                              [&](size_t i) { order.points[source.first + i] = places[i].second; });
+    order.distinct = order.distinct && !share_a_cell(places);
   }
-  return distinct;
+  return order;
+}
+
+void reorder(surfel::SurfelCloud& cloud, std::span<const uint32_t> order) {
+  for_each_column(cloud, [&](auto& values) {
+    std::decay_t<decltype(values)> sorted(values.size());
+    oneapi::tbb::parallel_for(size_t{0}, sorted.size(), [&](size_t i) { sorted[i] = values[order[i]]; });
+    values.swap(sorted);
+  });
 }
 
 }  // namespace surfcast::builder

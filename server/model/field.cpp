@@ -30,11 +30,16 @@ TableAttribute make_piece(const Field& field, const std::vector<ColumnPacking>& 
   TableAttribute attribute{{piece_bytes(width, piece), static_cast<uint8_t>(field.size())}, {}};
   const size_t rows = field.front().size();
   attribute.values.resize(rows * field.size());
-  for (size_t c = 0; c < field.size(); ++c) {
+  const auto store = [&](size_t c, const auto& divide) {
     for (size_t i = 0; i < rows; ++i) {
-      const uint64_t stored = (field[c][i] - packings[c].base) / packings[c].stride;
+      const uint64_t stored = divide(field[c][i] - packings[c].base);
       attribute.values[i * field.size() + c] = static_cast<uint16_t>(stored >> (8 * kPieceBytes * piece));
     }
+  };
+  for (size_t c = 0; c < field.size(); ++c) {
+    const uint64_t stride = packings[c].stride;
+    if (stride == 1) store(c, [](uint64_t difference) { return difference; });
+    if (stride != 1) store(c, [stride](uint64_t difference) { return difference / stride; });
   }
   return attribute;
 }

@@ -56,12 +56,15 @@ class LinkContacts {
 
   [[nodiscard]] bool empty() const { return links_.sites() < 2; }
   [[nodiscard]] size_t chunks() const { return (links_.sites() + kSites - 1) / kSites; }
-  /// Calls `use(contact, number)` for the contacts of a chunk, in ascending order of their numbers.
-  template <typename Use>
-  void for_each(size_t chunk, const Use& use) const {
+  /// Calls `use(number, contact)` for the contacts of a chunk, in ascending order of their numbers, unless
+  /// `skip(a, b)` is true for their pieces.
+  template <typename Skip, typename Use>
+  void for_each(size_t chunk, const Skip& skip, const Use& use) const {
     const size_t first = chunk * kSites;
     links_.for_each_numbered(first, std::min(links_.sites(), first + kSites),
-                             [&](uint32_t a, uint32_t b, uint32_t number) { use(contact(a, b), number); });
+                             [&](uint32_t a, uint32_t b, uint32_t number) {
+                               if (!skip(a, b)) use(number, contact(a, b));
+                             });
   }
   [[nodiscard]] Contact at(uint32_t number) const {
     const auto [a, b] = links_.pair(number);
@@ -94,9 +97,11 @@ struct ContactRuns {
     return std::all_of(runs.begin(), runs.end(), [](const Run& run) { return run.first == run.last; });
   }
   [[nodiscard]] size_t chunks() const { return runs.size(); }
-  template <typename Use>
-  void for_each(size_t chunk, const Use& use) const {
-    for (size_t i = runs[chunk].first; i < runs[chunk].last; ++i) use(contacts[i], static_cast<uint32_t>(i));
+  template <typename Skip, typename Use>
+  void for_each(size_t chunk, const Skip& skip, const Use& use) const {
+    for (size_t i = runs[chunk].first; i < runs[chunk].last; ++i) {
+      if (!skip(contacts[i].a, contacts[i].b)) use(static_cast<uint32_t>(i), contacts[i]);
+    }
   }
   [[nodiscard]] const Contact& at(uint32_t number) const { return contacts[number]; }
 };
@@ -124,8 +129,9 @@ void raise(Strength& largest, Strength strength) {
 template <typename Contacts>
 std::vector<Strength> strongest(const Contacts& contacts, size_t pieces) {
   std::vector<Strength> best(pieces);
+  const auto none = [](uint32_t, uint32_t) { return false; };
   tbb::parallel_for(size_t{0}, contacts.chunks(), [&](size_t chunk) {
-    contacts.for_each(chunk, [&](const Contact& contact, uint32_t number) {
+    contacts.for_each(chunk, none, [&](uint32_t number, const Contact& contact) {
       const Strength strength = strength_of(contact, number);
       raise(best[contact.a], strength);
       raise(best[contact.b], strength);
@@ -244,13 +250,12 @@ class PairSums {
 template <typename Contacts>
 std::vector<std::vector<Contact>> join_chunks(const Contacts& contacts, const std::vector<Member>& members) {
   std::vector<std::vector<Contact>> joined(contacts.chunks());
+  const auto inside = [&members](uint32_t a, uint32_t b) { return members[a].of == members[b].of; };
   tbb::parallel_for(size_t{0}, joined.size(), [&](size_t chunk) {
     thread_local PairSums pairs;
     pairs.clear();
-    contacts.for_each(chunk, [&](const Contact& contact, uint32_t) {
-      const Contact c = relabelled(contact, members);
-      if (c.a != c.b) pairs.add(c);
-    });
+    contacts.for_each(chunk, inside,
+                      [&](uint32_t, const Contact& contact) { pairs.add(relabelled(contact, members)); });
     joined[chunk] = pairs.sums();
   });
   return joined;

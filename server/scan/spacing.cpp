@@ -4,6 +4,7 @@
 #include <array>
 #include <glm/geometric.hpp>
 #include <limits>
+#include <numeric>
 #include <span>
 
 #include <tbb/parallel_for.h>
@@ -56,6 +57,15 @@ double median_radius(std::span<const uint32_t> sites, const std::vector<float>& 
   return sorted[sites.size() / 2];
 }
 
+/// The radius of a site, limited by the median of its neighbours' radii. The smallest of these tells mostly that it is
+/// below the limit.
+float limited_by_neighbours(std::span<const uint32_t> nearest, const std::vector<float>& radii, size_t site) {
+  const auto smaller = [&radii](float least, uint32_t j) { return std::min(least, radii[j]); };
+  const float least = std::accumulate(nearest.begin(), nearest.end(), std::numeric_limits<float>::max(), smaller);
+  if (double{radii[site]} <= kLargestRatio * double{least}) return radii[site];
+  return to_radius(std::min<double>(radii[site], kLargestRatio * median_radius(nearest, radii)));
+}
+
 }  // namespace
 
 float to_radius(double length) {
@@ -84,9 +94,8 @@ std::vector<float> settle_radii(const NeighbourGraph& graph, std::span<const Rad
   });
   if (graph.degree == 0) return own;
   std::vector<float> radii(own.size());
-  tbb::parallel_for(size_t{0}, radii.size(), [&](size_t i) {
-    radii[i] = to_radius(std::min<double>(own[i], kLargestRatio * median_radius(nearest_of(graph, i), own)));
-  });
+  tbb::parallel_for(size_t{0}, radii.size(),
+                    [&](size_t i) { radii[i] = limited_by_neighbours(nearest_of(graph, i), own, i); });
   return radii;
 }
 

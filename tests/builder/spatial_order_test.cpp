@@ -25,6 +25,13 @@ PartPoints points_at(const std::vector<double>& xs) {
 
 const geometry::RootCube kRoot{{0, 0, 0}, 16};
 
+/// Returns whether the points are at different positions for sure.
+bool sort_spatially(PartPoints& points, const geometry::RootCube& root) {
+  const SpatialOrder order = spatial_order(points, root);
+  reorder(points.cloud, order.points);
+  return order.distinct;
+}
+
 TEST(SpatialOrderTest, PointsAreInMortonOrderWithTheirAttributes) {
   PartPoints points = points_at({9, 2, 14, 0, 5, 3});
   EXPECT_TRUE(sort_spatially(points, kRoot));
