@@ -15,7 +15,7 @@ namespace {
 
 /// Draco's speed 0 gives the smallest data and is slowest, 10 the largest and fastest; docs/model-format.md has the
 /// measurement.
-constexpr int kDracoSpeed = 10;
+constexpr int kDracoSpeed = 5;
 
 draco::DataType data_type(uint8_t bytes) {
   return bytes == 1 ? draco::DT_UINT8 : draco::DT_UINT16;

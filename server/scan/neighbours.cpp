@@ -38,6 +38,12 @@ constexpr size_t kPadding = 16;
 constexpr float kNowhere = 1e30F;
 
 using Nearest = NearestList<kLargestDegree>;
+using NearestIds = std::array<uint32_t, kMostSorted>;
+
+/// More than any squared distance.
+constexpr double kUncertain = std::numeric_limits<double>::infinity();
+/// The squared distance to the farthest neighbour is mostly less than this many times that of the site before.
+constexpr double kLikely = 1.25;
 
 /// The sites around a run of sites as arrays of floats for vector instructions. Their coordinates are relative to an
 /// origin nearby and scaled to the order of 1, since squares of floats would underflow.
@@ -191,27 +197,38 @@ class Search {
   void search_together(const Run& run, const Candidates& candidates) const {
     const double reach = candidates.reach * candidates.reach;
     double bound = reach;
-    std::array<uint32_t, kMostSorted> nearest;
+    double likely = reach;
+    NearestIds nearest;
     for (uint32_t site = run.first; site < run.last; ++site) {
-      const bool found = find_nearest(site, candidates, candidates.first + (site - run.first), bound, nearest);
-      const double farthest = found ? distance_between(site, nearest[degree_ - 1]) : 0;
-      bound = reach;
-      if (!found || farthest > reach) {
+      const size_t slot = candidates.first + (site - run.first);
+      double farthest = search_within(site, candidates, slot, std::min(bound, likely), nearest);
+      if (farthest == kUncertain && likely < bound) farthest = search_within(site, candidates, slot, bound, nearest);
+      if (farthest == kUncertain) {
         search_alone(site);
+        bound = likely = reach;
         continue;
       }
       use_(site, std::span(nearest).first(degree_));
       if (site + 1 == run.last) break;
-      // The neighbours of this site are at most this far from the next one.
+      // The neighbours of this site are at most this far from the next one; mostly, it has nearer ones.
       const double next = std::sqrt(farthest) + std::sqrt(distance_between(site, site + 1));
       bound = std::min(reach, next * next * (1 + 1e-9));
+      likely = kLikely * farthest;
     }
+  }
+
+  /// Finds the neighbours of a site, which is the candidate `slot`, if all are within `bound`. Returns the squared
+  /// distance of the farthest one, or kUncertain.
+  double search_within(uint32_t site, const Candidates& candidates, size_t slot, double bound,
+                       NearestIds& nearest) const {
+    if (!find_nearest(site, candidates, slot, bound, nearest)) return kUncertain;
+    const double farthest = distance_between(site, nearest[degree_ - 1]);
+    return farthest <= bound ? farthest : kUncertain;
   }
 
   /// Finds the nearest candidates of the candidate `slot`. False if there are not `degree` of them within `bound`, or
   /// too many to sort.
-  bool find_nearest(uint32_t site, const Candidates& candidates, size_t slot, double bound,
-                    std::array<uint32_t, kMostSorted>& nearest) const {
+  bool find_nearest(uint32_t site, const Candidates& candidates, size_t slot, double bound, NearestIds& nearest) const {
     thread_local Keys keys;
     measure(candidates, slot, keys);
     const double scaled = bound * candidates.scale * candidates.scale;
