@@ -46,8 +46,9 @@ struct BuildCommand {
   bool background = false;
 };
 
-/// A share of the processors that a build gets by itself, points a second and processor; measured without other load.
-constexpr double kPointsPerSecondAndCore = 160'000;
+/// A share of the processors that a build gets by itself, points a second and processor: by the processor time of 10^7
+/// points.
+constexpr double kPointsPerSecondAndCore = 250'000;
 
 ProgressStyle style_of(const std::string& wanted) {
   if (wanted == "json") return ProgressStyle::kJson;
