@@ -25,22 +25,39 @@ tl::unexpected<Error> zip_error(const std::string& what, zip_error_t* error) {
   return fail(ErrorKind::kInvalidInput, what + ": " + why);
 }
 
-/// Memory grows with what is read, not with what the archive states.
-Result<std::vector<std::byte>> read_entry(zip_t* archive, const std::string& name, const scan::DecodingLimit& limit) {
-  const zip_int64_t index = zip_name_locate(archive, name.c_str(), ZIP_FL_NODIR);
-  if (index < 0) return fail(ErrorKind::kNotFound, "the archive has no file " + scan::printable(name));
-  const std::unique_ptr<zip_file_t, Discard> file(zip_fopen_index(archive, static_cast<zip_uint64_t>(index), 0));
-  if (!file) return fail(ErrorKind::kInvalidInput, scan::printable(name) + ": " + zip_strerror(archive));
+/// Pictures are compressed already, and a description shrinks to a third. More is an attack.
+uint64_t most_unpacked(uint64_t packed) {
+  return 16 * packed + (uint64_t{1} << 20);
+}
+
+using EntryPtr = std::unique_ptr<zip_file_t, Discard>;
+
+/// Reads to the end. Memory grows with what is read, not with what the archive states.
+Result<std::vector<std::byte>> read_to_end(zip_file_t* file, uint64_t most, const scan::DecodingLimit& limit) {
   std::vector<std::byte> bytes;
   for (;;) {
     const size_t before = bytes.size();
     bytes.resize(before + kPart);
-    const zip_int64_t read = zip_fread(file.get(), bytes.data() + before, kPart);
-    if (read < 0) return fail(ErrorKind::kInvalidInput, scan::printable(name) + ": " + zip_file_strerror(file.get()));
+    const zip_int64_t read = zip_fread(file, bytes.data() + before, kPart);
+    if (read < 0) return fail(ErrorKind::kInvalidInput, zip_file_strerror(file));
     bytes.resize(before + static_cast<size_t>(read));
     if (read == 0) return bytes;
     if (Status status = limit.check(bytes.size()); !status) return fail(std::move(status.error()));
+    if (bytes.size() > most) return fail(ErrorKind::kLimit, "unpacks to far more than it is packed");
   }
+}
+
+Result<std::vector<std::byte>> read_entry(zip_t* archive, const std::string& name, const scan::DecodingLimit& limit) {
+  const zip_int64_t found = zip_name_locate(archive, name.c_str(), ZIP_FL_NODIR);
+  if (found < 0) return fail(ErrorKind::kNotFound, "the archive has no file " + scan::printable(name));
+  const auto index = static_cast<zip_uint64_t>(found);
+  zip_stat_t information;
+  const EntryPtr file(zip_fopen_index(archive, index, 0));
+  const bool sized = zip_stat_index(archive, index, 0, &information) == 0 && (information.valid & ZIP_STAT_COMP_SIZE);
+  if (!file || !sized) return fail(ErrorKind::kInvalidInput, scan::printable(name) + ": " + zip_strerror(archive));
+  Result<std::vector<std::byte>> bytes = read_to_end(file.get(), most_unpacked(information.comp_size), limit);
+  if (!bytes) return fail(bytes.error().kind, scan::printable(name) + ": " + bytes.error().message);
+  return bytes;
 }
 
 bool is_plain_name(const std::filesystem::path& name) {

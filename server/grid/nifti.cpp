@@ -224,7 +224,7 @@ void place(const Fields& fields, GridHeader& header) {
   if (fields.sform > 0) {
     for (int row = 0; row < 3; ++row) {
       for (int column = 0; column < 4; ++column) {
-        header.index_to_world[column][row] = fields.rows[static_cast<size_t>(row * 4 + column)];
+        header.index_to_world[column][row] = fields.rows[static_cast<size_t>(row) * 4 + static_cast<size_t>(column)];
       }
     }
     header.frame = WorldFrame::kRas;

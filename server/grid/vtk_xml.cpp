@@ -58,8 +58,9 @@ Result<glm::dmat4x3> parse_affine(const Attributes& image) {
     if (!*part) return fail(part->error());
   }
   glm::dmat3 axes(1.0);
-  for (int row = 0; row < 3; ++row) {
-    for (int column = 0; column < 3; ++column) axes[column][row] = (*direction)[static_cast<size_t>(row * 3 + column)];
+  for (int column = 0; column < 3; ++column) {
+    const auto at = static_cast<size_t>(column);
+    axes[column] = {(*direction)[at], (*direction)[at + 3], (*direction)[at + 6]};
   }
   return affine(axes, {(*spacing)[0], (*spacing)[1], (*spacing)[2]}, {(*origin)[0], (*origin)[1], (*origin)[2]});
 }

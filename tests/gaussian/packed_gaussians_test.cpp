@@ -311,6 +311,15 @@ TEST(SogTest, BadDescriptionsAreNamed) {
   EXPECT_THAT(fault_with("meta.json", meta.substr(0, meta.size() - 1)), HasSubstr("damaged JSON"));
 }
 
+TEST(SogTest, FilesOfAnArchiveThatUnpackWithoutMeasureAreRefused) {
+  const model::TestFolder folder;
+  SogContent content = testing::sog_pair();
+  content.meta += std::string(10000000, ' ');
+  EXPECT_THAT(fault_of(write(folder / "a.sog", testing::sog_zip(content, true))),
+              AllOf(HasSubstr("a.sog"), HasSubstr("meta.json"), HasSubstr("unpacks to far more")));
+  EXPECT_EQ(fault_of(write(folder / "b.sog", testing::sog_zip(content, false))), "");
+}
+
 TEST(SogTest, DamagedArchivesFail) {
   const model::TestFolder folder;
   const std::string whole = testing::sog_zip(testing::sog_pair(), true);
