@@ -87,7 +87,7 @@ Result<Extent> find_extent(const XmlImage& image) {
     return fail(ErrorKind::kUnsupported,
                 "VTK: an image in " + std::to_string(image.pieces.size()) + " pieces; one is read");
   }
-  const Result<Extent> extent = parse_extent(attribute(image.pieces[0], "Extent"));
+  Result<Extent> extent = parse_extent(attribute(image.pieces[0], "Extent"));
   const Result<Extent> whole = parse_extent(attribute(image.image, "WholeExtent"));
   if (!extent || !whole) return fail(extent ? whole.error() : extent.error());
   if (!(*extent == *whole)) return fail(ErrorKind::kUnsupported, "VTK: the piece is a part of the image");
