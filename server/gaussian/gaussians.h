@@ -27,7 +27,7 @@ struct GaussianTraits {
 
 /// Functions of the harmonics up to a degree: 1, 4, 9, 16, 25.
 [[nodiscard]] constexpr size_t harmonics_of(int degree) {
-  const auto side = static_cast<size_t>(degree + 1);
+  const auto side = static_cast<size_t>(degree) + 1;
   return side * side;
 }
 
