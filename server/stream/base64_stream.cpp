@@ -22,13 +22,13 @@ constexpr int digit_of(unsigned char c) {
   return c == ' ' || c == '\n' || c == '\r' || c == '\t' ? kSpace : kWrong;
 }
 
-constexpr std::array<int8_t, 256> make_digits() {
-  std::array<int8_t, 256> digits{};
-  for (size_t c = 0; c < digits.size(); ++c) digits[c] = static_cast<int8_t>(digit_of(static_cast<unsigned char>(c)));
+constexpr std::array<int, 256> make_digits() {
+  std::array<int, 256> digits{};
+  for (size_t c = 0; c < digits.size(); ++c) digits[c] = digit_of(static_cast<unsigned char>(c));
   return digits;
 }
 
-constexpr std::array<int8_t, 256> kDigits = make_digits();
+constexpr std::array<int, 256> kDigits = make_digits();
 
 tl::unexpected<Error> not_base64() {
   return fail(ErrorKind::kInvalidInput, "data that should be base64 is not");
