@@ -40,6 +40,10 @@ Result<std::vector<std::byte>> encode_file(const RenderJob& job, const picture::
 
 }  // namespace
 
+tl::unexpected<Error> cancelled_error() {
+  return fail(ErrorKind::kCancelled, "the request was cancelled");
+}
+
 Result<EncodedPicture> encode_job(RenderJob& job, const Result<SharedFrame>& shared) {
   if (!shared) return fail(shared.error());
   job.encoding = true;

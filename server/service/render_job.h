@@ -27,9 +27,7 @@ struct RenderJob {
 };
 using SharedFrame = std::shared_ptr<const picture::Frame>;
 
-inline tl::unexpected<Error> cancelled_error() {
-  return fail(ErrorKind::kCancelled, "the request was cancelled");
-}
+tl::unexpected<Error> cancelled_error();
 
 /// The encoded picture of a job whose frame was drawn, or why there is none. Fails with kCancelled soon after the job
 /// is cancelled.
