@@ -48,7 +48,7 @@ class Links {
 
   /// The sites of a pair by its number.
   [[nodiscard]] std::pair<uint32_t, uint32_t> pair(uint32_t number) const {
-    const uint32_t a = number / kLinks;
+    const auto a = static_cast<uint32_t>(number / kLinks);
     return {a, near_to(a)[number % kLinks]};
   }
 
