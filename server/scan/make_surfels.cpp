@@ -32,11 +32,10 @@ struct SiteFacts {
   std::vector<SitePlace> places;
   std::vector<SiteDirection> known;
   std::vector<glm::vec3> towards;  ///< empty if nothing is known
-  std::vector<uint8_t> scatter;    ///< 1: lies on no surface
   std::vector<SiteShape> shapes;
 
   SiteFacts(size_t sites, bool any_known)
-      : places(sites), known(sites), towards(any_known ? sites : 0, glm::vec3(0)), scatter(sites), shapes(sites) {}
+      : places(sites), known(sites), towards(any_known ? sites : 0, glm::vec3(0)), shapes(sites) {}
 };
 
 /// Records the direction of a point at its site. The first point at a site counts, but a stored normal takes precedence
@@ -155,7 +154,7 @@ std::vector<glm::vec3> stored_normals(const SiteFacts& facts) {
   return normals;
 }
 
-/// Sets `facts.scatter` and `facts.shapes`, too, if radii are estimated.
+/// Sets `facts.shapes`, too, if radii are estimated.
 Findings study_neighbourhoods(const Sites& sites, bool radii, SiteFacts& facts) {
   Findings findings{{}, stored_normals(facts), std::vector<RadiusGuess>(radii ? sites.size() : 0)};
   const size_t visited = radii ? kWideNeighbours : kDegree;
@@ -168,7 +167,6 @@ Findings study_neighbourhoods(const Sites& sites, bool radii, SiteFacts& facts) 
     if (!stored) findings.normals[site] = glm::vec3(least_axis(covariances.near, near.least));
     if (!radii) return;
     facts.shapes[site] = shape_of(near, covariances.wide, offsets.count);
-    facts.scatter[site] = is_scatter(facts.shapes[site].kind) ? 1 : 0;
     findings.guesses[site] = guess_radius(offsets, kDegree, findings.normals[site], sites.unit);
   });
   return findings;
@@ -187,7 +185,7 @@ void find_radii(const Sites& sites, const NeighbourGraph& graph, const SiteFacts
     made.estimates = estimates_of(sites, graph, facts, on_surface);
     made.samples = sample_surfaces(sites, graph, facts, on_surface, frame);
   }
-  made.radii = compare_radii(cloud, frame.inputs, sites, graph, facts.places, facts.scatter, on_surface);
+  made.radii = compare_radii(cloud, frame.inputs, sites, graph, facts.places, made.estimates.kinds, on_surface);
 }
 
 /// Copies the normals of the sites to points without one. Returns the tree of each point, or kNoTree.

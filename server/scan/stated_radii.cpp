@@ -144,7 +144,7 @@ double RadiusComparison::quantile(double share) const {
 
 std::vector<RadiusComparison> compare_radii(const surfel::SurfelCloud& cloud, std::span<const size_t> inputs,
                                             const Sites& sites, const NeighbourGraph& graph,
-                                            std::span<const SitePlace> places, std::span<const uint8_t> scatter,
+                                            std::span<const SitePlace> places, std::span<const PointKind> kinds,
                                             std::span<const float> needed) {
   std::vector<RadiusComparison> comparisons;
   for_each_point(cloud, inputs, [&](size_t i, size_t input) {
@@ -152,8 +152,9 @@ std::vector<RadiusComparison> compare_radii(const surfel::SurfelCloud& cloud, st
     const uint32_t site = sites.of_point[i];
     if (!places[site].own) return;
     const bool stated = !cloud.radii.empty() && is_radius(cloud.radii[i]);
-    if (stated) comparisons[input].add_stated(1, scatter[site]);
-    if (!stated) comparisons[input].add_missing(1, scatter[site]);
+    const uint64_t scatter = is_scatter(kinds[i]) ? 1 : 0;
+    if (stated) comparisons[input].add_stated(1, scatter);
+    if (!stated) comparisons[input].add_missing(1, scatter);
   });
   if (cloud.radii.empty() || needed.empty()) return comparisons;
   const std::vector<StatedSite> stated = find_stated(cloud, inputs, sites);

@@ -60,10 +60,10 @@ class RadiusComparison {
 /// the part's own points, the square root of the quotient of the sums of squares of both, over the point and those of
 /// the six nearest sites that state a radius in the same input. Single radii may be off; what is covered from afar is
 /// the sum of areas. `inputs` has the input of each source of the cloud. An empty `needed` only counts points.
-/// `scatter`: 1 for sites on no surface.
+/// `kinds`: of the surfels.
 std::vector<RadiusComparison> compare_radii(const surfel::SurfelCloud& cloud, std::span<const size_t> inputs,
                                             const Sites& sites, const NeighbourGraph& graph,
-                                            std::span<const SitePlace> places, std::span<const uint8_t> scatter,
+                                            std::span<const SitePlace> places, std::span<const PointKind> kinds,
                                             std::span<const float> needed);
 
 /// Stated radii in units of the spacing, which the needed radius is 1.08 times (surfel/even_sampling.h).
