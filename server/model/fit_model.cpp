@@ -10,13 +10,45 @@ namespace {
 
 constexpr double kViewAngle = 30;  // degrees, of the default camera
 
-/// Mean normal of the whole model, from the cones of its leaves; zero if the model is not oriented.
-glm::dvec3 mean_facing(const ModelFile& model) {
-  glm::dvec3 sum(0);
+/// Sums of normals and of their weights.
+struct Facing {
+  glm::dvec3 normals{0};
+  double weight = 0;
+  [[nodiscard]] glm::dvec3 mean() const { return weight > 0 ? normals / weight : glm::dvec3(0); }
+};
+
+/// From the cones of the leaves.
+Facing facing_of_leaves(const ModelFile& model) {
+  Facing facing;
   for (const ldc::BlockEntry& block : model.blocks()) {
-    if (block.level == 0 && block.normals) sum += glm::dvec3(block.normals->axis) * static_cast<double>(block.surfels);
+    if (block.level > 0) continue;
+    const auto weight = static_cast<double>(block.surfels);
+    facing.weight += weight;
+    if (block.normals) facing.normals += glm::dvec3(block.normals->axis) * weight;
   }
-  return sum / static_cast<double>(std::max<uint64_t>(model.info().surfels, 1));
+  return facing;
+}
+
+/// From the discs of the coarsest blocks, by area: a block with scatter has no cone.
+Facing facing_of_discs(const ModelFile& model) {
+  Facing facing;
+  for (size_t i = 0; i < model.blocks().size(); ++i) {
+    if (model.blocks()[i].parent != ldc::BlockEntry::kNoParent) continue;
+    const Result<DecodedBlock> block = model.decode(i, WantedScalars::kNone);
+    for (size_t k = 0; block && k < block->size(); ++k) {
+      if (block->is_scatter(k)) continue;
+      const double area = double{block->radii[k]} * double{block->radii[k]};
+      facing.weight += area;
+      facing.normals += area * glm::dvec3(block->normals[k]);
+    }
+  }
+  return facing;
+}
+
+/// Mean normal of the whole model; zero if the model is not oriented.
+glm::dvec3 mean_facing(const ModelFile& model) {
+  if (model.info().scatter == 0) return facing_of_leaves(model).mean();
+  return model.info().oriented ? facing_of_discs(model).mean() : glm::dvec3(0);
 }
 
 /// The bounding boxes of all leaves, including their discs. Together they follow the surface more closely than the

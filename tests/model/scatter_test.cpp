@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 
+#include "model/fit_model.h"
 #include "model/format.h"
 #include "model/round_trip.h"
 
@@ -57,6 +58,21 @@ TEST(ModelScatter, HasAVersionThatOlderProgramsRefuse) {
   const TestFolder folder;
   ASSERT_TRUE(write_model(half_scattered(1000), folder / "model.surf", {}));
   EXPECT_EQ(read_bytes(folder / "model.surf")[kVersionAt], 4);
+}
+
+/// The unit direction from the focal point of the default camera to its eye.
+glm::dvec3 first_direction(const ModelFile& model) {
+  const geometry::Camera camera = fit_model(model, 1);
+  return glm::normalize(camera.position - camera.focal_point);
+}
+
+TEST(ModelScatter, LeavesTheFirstViewToTheSideThatTheDiscsFace) {
+  const TestFolder folder;
+  for (const size_t count : {size_t{1000}, size_t{100000}}) {
+    const glm::dvec3 all = first_direction(write_and_open(sphere_cloud(count), folder / "discs.surf"));
+    const glm::dvec3 lower = first_direction(write_and_open(half_scattered(count), folder / "half.surf"));
+    EXPECT_LT(lower.z, all.z - 0.3) << count << ": the discs of the lower half face down";
+  }
 }
 
 TEST(ModelScatter, BlocksWithItHaveNoConeBecauseItIsSeenFromAllSides) {
