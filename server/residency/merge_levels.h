@@ -28,7 +28,7 @@ struct PackedRun {
 /// The surfels of a block, followed by levels of merged surfels, each about half as many as the one before. So any
 /// spacing can be drawn at a cost that depends on the spacing alone. Of a surfel and the surfel that it is merged to,
 /// one is drawn: the one that is just fine enough at its position (shaders/include/spacing.glsl). This is a sequential
-/// point tree (Dachsbacher 2003) of pairs.
+/// point tree (Dachsbacher 2003) of pairs. Discs and scatter are merged each for themselves.
 struct SurfelSequence {
   std::vector<MergedSurfel> surfels;
   std::vector<PackedRun> runs;

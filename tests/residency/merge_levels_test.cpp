@@ -5,6 +5,7 @@
 #include <iterator>
 #include <random>
 #include <set>
+#include <tuple>
 #include <utility>
 
 #include <gtest/gtest.h>
@@ -219,6 +220,31 @@ TEST(MergeLevels, AreasOfScatterAndDiscsEachStayAtEverySpacing) {
     const auto actual = areas(drawn(sequence, wanted));
     EXPECT_NEAR(actual.first / expected.first, 1, 0.05) << wanted;
     EXPECT_NEAR(actual.second / expected.second, 1, 0.05) << wanted;
+  }
+}
+
+std::vector<MergedSurfel> discs_of(const std::vector<MergedSurfel>& surfels) {
+  std::vector<MergedSurfel> discs;
+  std::copy_if(surfels.begin(), surfels.end(), std::back_inserter(discs),
+               [](const MergedSurfel& s) { return !s.scatter; });
+  return discs;
+}
+
+std::vector<glm::vec3> sorted_positions(const std::vector<MergedSurfel>& surfels) {
+  std::vector<glm::vec3> positions;
+  for (const MergedSurfel& s : surfels) positions.push_back(s.position);
+  std::sort(positions.begin(), positions.end(),
+            [](const glm::vec3& a, const glm::vec3& b) { return std::tie(a.x, a.y, a.z) < std::tie(b.x, b.y, b.z); });
+  return positions;
+}
+
+TEST(MergeLevels, DiscsAreMergedAsIfThereWereNoScatterAmongThem) {
+  std::vector<MergedSurfel> surfels = mixed(5000);
+  for (MergedSurfel& s : surfels) s.radius *= s.scatter ? 0.01F : 1;  // too far apart to be merged
+  const SurfelSequence together = merge_levels(surfels, true);
+  const SurfelSequence alone = merge_levels(discs_of(surfels), true);
+  for (float wanted = 0.1F; wanted < 5; wanted *= 1.5F) {
+    EXPECT_EQ(sorted_positions(discs_of(drawn(together, wanted))), sorted_positions(drawn(alone, wanted))) << wanted;
   }
 }
 
