@@ -147,7 +147,7 @@ float radius_of(double squares, double cubes, double cosine, const Cube& cube) {
   return static_cast<float>(std::max(std::min(std::sqrt(squares), on_grid), cubes / squares));
 }
 
-/// The radius of an average of scatter: that of the total area, at most half of the ray spacing, where it fills its
+/// The radius of an average of scatter: that of the total area, at most half of the cube's side, where it fills its
 /// cube, or the largest radius that it is made from. What is thin stays thin.
 float scatter_radius_of(double squares, double largest, const Cube& cube) {
   return static_cast<float>(std::min(std::sqrt(squares), std::max(0.5 * cube.spacing, largest)));
@@ -191,8 +191,8 @@ CoarseSurfel average(std::span<const CoarseSurfel> surfels, std::span<const Cros
   return result;
 }
 
-/// Scatter belongs to the cube of one ray spacing that it lies in, whatever its normals: `ray` and `depth` are those of
-/// the cube.
+/// Scatter belongs to the cube, as wide as the rays are apart, that it lies in, whatever its normals: `ray` and `depth`
+/// are those of the cube.
 std::vector<Crossing> find_cubes(std::span<const CoarseSurfel> surfels, const Cube& cube) {
   std::vector<Crossing> crossings;
   for (uint32_t i = 0; i < surfels.size(); ++i) {
@@ -217,10 +217,26 @@ void append_averages(std::span<const CoarseSurfel> surfels, std::span<const Cros
   }
 }
 
+/// The rays of twice the spacing.
+Cube wider(const Cube& cube) {
+  return {cube.min, 2 * cube.spacing, cube.lines / 2};
+}
+
+/// Appends the averages of scatter, in cubes of one ray spacing or two.
+void append_scatter(std::span<const CoarseSurfel> surfels, const Cube& cube, std::vector<CoarseSurfel>& averages) {
+  const size_t discs = averages.size();
+  const auto is_scatter = [](const CoarseSurfel& s) { return s.scatter; };
+  const auto fine = static_cast<double>(std::count_if(surfels.begin(), surfels.end(), is_scatter));
+  append_averages(surfels, find_cubes(surfels, cube), cube, 0, averages);
+  if (cube.lines == 1 || static_cast<double>(averages.size() - discs) <= kLargestPart * fine) return;
+  averages.resize(discs);
+  append_averages(surfels, find_cubes(surfels, wider(cube)), wider(cube), 0, averages);
+}
+
 std::vector<CoarseSurfel> resample(std::span<const CoarseSurfel> surfels, const Cube& cube, bool oriented) {
   std::vector<CoarseSurfel> averages;
   append_averages(surfels, find_crossings(surfels, cube, oriented), cube, cube.spacing, averages);
-  append_averages(surfels, find_cubes(surfels, cube), cube, 0, averages);
+  append_scatter(surfels, cube, averages);
   return averages;
 }
 

@@ -27,8 +27,8 @@ struct CoarseCell {
 /// so each piece of surface is in one image (3-to-1 reduction). Surfels on one ray that lie within one ray spacing of
 /// each other and face the same side are replaced by their average, weighted by area.
 ///
-/// Scatter is averaged among itself, in cubes of one ray spacing, and keeps its area. It is never merged into a
-/// surface.
+/// Scatter is averaged among itself and keeps its area. It is never merged into a surface. Its cubes are as wide as the
+/// rays are apart; twice as wide where such cubes would leave more than 0.3 of the scatter, because it fills a volume.
 ///
 /// If too many surfels remain (vegetation, layers of surface closer than the rays), the cell is resampled with twice
 /// the ray spacing, repeatedly. A surfel that is alone on its ray keeps its attributes; its position is rounded to the

@@ -242,6 +242,20 @@ TEST(Reduce, ScatterKeepsItsAreaWhateverItsNormals) {
   }
 }
 
+TEST(Reduce, ScatterInAVolumeBecomesAsFewAsSurfacesDoAndLeavesTheirRaysAlone) {
+  const std::vector<CoarseSurfel> ground = sheet(400, {0.5, 0.5, 0.01});
+  const std::vector<CoarseSurfel> leaves = crown(40000);
+  std::vector<CoarseSurfel> scene = ground;
+  scene.insert(scene.end(), leaves.begin(), leaves.end());
+  std::vector<CoarseSurfel> discs;
+  std::vector<CoarseSurfel> scatter;
+  for (const CoarseSurfel& s : reduced(scene)) (s.scatter ? scatter : discs).push_back(s);
+  EXPECT_EQ(discs.size(), reduced(ground).size());
+  EXPECT_LT(static_cast<double>(scatter.size()), 0.3 * 40000);
+  EXPECT_NEAR(area_of(scatter) / area_of(leaves), 1, 0.02);
+  for (const CoarseSurfel& s : scatter) EXPECT_LE(s.radius, kRay) << "a splat is no wider than its cube of two rays";
+}
+
 TEST(Reduce, ScatterFillsItsCubeAtMost) {
   std::vector<CoarseSurfel> dense;
   for (int i = 0; i < 4000; ++i) {
