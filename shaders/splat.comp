@@ -122,7 +122,8 @@ void main() {
   LaneState state;
   bool drawing = begin(state, true);
   while (drawing) {
-    bool more = draw_layer(state.tile, vec2(frame.region.xy + state.local) + 0.5, state.limit, state.light);
+    bool more =
+        draw_layer(state.tile, state.layer, vec2(frame.region.xy + state.local) + 0.5, state.limit, state.light);
     if (state.layer == 0) state.front = state.limit;
 #ifdef SURFCAST_LEAVES_TO_SAMPLES
     if (state.layer == 0) state.left_to_samples = pixels_left_to_samples(state.front, state.local);

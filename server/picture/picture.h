@@ -53,6 +53,8 @@ struct PictureRequest {
   /// Supersamples the pixels at silhouettes (docs/kernel.md). Only under per-pixel normalisation, and only in pictures
   /// that are not about to be redrawn.
   bool silhouettes = false;
+  /// Blends all that is behind the front surface of a pixel as if it were one surface, for pictures in motion.
+  bool blends_behind = false;
   double spacing = 0;               ///< projected spacing at which refinement stops, pixels; 0: the finest level
   glm::u8vec3 background{0, 0, 0};  ///< sRGB
   PixelFormat format = PixelFormat::kSrgb8;

@@ -58,7 +58,7 @@ std::string float_define(const Variant& variant) {
 
 std::string splat_defines(const Variant& variant) {
   const std::string output = variant.eye_dome ? "#define SURFCAST_EYE_DOME\n" : float_define(variant);
-  return common_defines(variant) + output;
+  return common_defines(variant) + output + (variant.blends_behind ? "#define SURFCAST_BLENDS_BEHIND\n" : "");
 }
 
 std::string define(const std::string& name, int value) {
@@ -154,7 +154,9 @@ Result<LongListPrograms> Programs::long_lists(const Variant& variant, const Pict
   constexpr uint32_t kVeryLong = 1U << 16;
   const int most_lanes = longest > kVeryLong ? 1024 : 256;
   const int tile_lanes = longest > kVeryLong || !shape_.whole_tiles ? most_lanes : 32;  // where a lane holds a tile
-  const std::string splat = splat_defines(variant) + "#define SURFCAST_TOGETHER\n";
+  Variant drawn = variant;
+  drawn.blends_behind = false;
+  const std::string splat = splat_defines(drawn) + "#define SURFCAST_TOGETHER\n";
   const auto shares = [](int lanes, int pixel_lanes) {
     return define("SURFCAST_PIXEL_LANES", pixel_lanes) + define("SURFCAST_SHARES", lanes / pixel_lanes);
   };

@@ -26,7 +26,8 @@ struct Variant {
   bool clipped = false;
   bool scatter = false;  ///< the model has scatter
   bool eye_dome = false;
-  bool silhouettes = false;  ///< silhouettes are supersampled
+  bool silhouettes = false;    ///< silhouettes are supersampled
+  bool blends_behind = false;  ///< see PictureRequest::blends_behind
 };
 
 /// A kind that a picture shows.

@@ -335,7 +335,10 @@ Result<layout::Counters> project(const RegionTask& task, const ProjectionWork& w
   upload(buffers.chunks, work.chunks);
   upload_display_options(task, work, buffers);
   const bool culled = task.constants.flags.x != 0;
-  const DepthSlices slices = depth_slices(work.depths, culled, static_cast<size_t>(task.constants.tiles.z));
+  // What is behind the front surface is blended by one walk over all of the list.
+  const DepthSlices slices = task.variant.blends_behind
+                                 ? DepthSlices{}
+                                 : depth_slices(work.depths, culled, static_cast<size_t>(task.constants.tiles.z));
   while (true) {
     upload_constants(task, slices, buffers);
     clear_counts(task, slices, buffers);

@@ -48,6 +48,7 @@ Variant variant_of(const model::ModelInfo& info, const DisplayOptions& display,
   variant.clipped = display.clipped;
   variant.scatter = info.scatter > 0;
   variant.eye_dome = request.eye_dome.strength > 0;
+  variant.blends_behind = request.blends_behind;
   variant.silhouettes = request.silhouettes && request.normalization == picture::Normalization::kPixel &&
                         request.filter == picture::Filter::kEwa;
   return variant;

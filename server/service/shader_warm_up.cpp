@@ -9,6 +9,7 @@ namespace {
 void add_both(picture::PictureRequest request, std::vector<picture::PictureRequest>& pictures) {
   pictures.push_back(request);
   request.normalization = picture::Normalization::kSurfel;
+  request.blends_behind = true;
   pictures.push_back(request);
 }
 

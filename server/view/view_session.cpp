@@ -78,6 +78,7 @@ service::PictureJob ViewSession::picture_job(FrameKind kind, uint64_t edition, s
   request.height = scaled(request.height, quality.scale);
   request.spacing = std::max(request.spacing * quality.scale, quality.spacing);
   request.normalization = picture::Normalization::kSurfel;
+  request.blends_behind = true;
   request.viewer = viewer_;
   if (edition != edition_) request.max_missing_blocks = 0;
   job.priority = service::Priority::kMotion;

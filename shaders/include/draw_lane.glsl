@@ -2,8 +2,14 @@
 // normalisation and shading, one surface after another.
 #include "include/rows.glsl"
 
-const int kMaxLayers = 8;
 const float kOpaque = 1.0 / 128.0;  // transmittance below which another layer is invisible
+#ifdef SURFCAST_BLENDS_BEHIND
+// The front surface, and all that is behind it as a second one, whose colour is the mean of the fragments there.
+const int kMaxLayers = 2;
+float list_peak;  // the largest weight of the list
+#else
+const int kMaxLayers = 8;
+#endif
 
 layout(std430, binding = SURFCAST_BIND_TILE_COUNT) readonly buffer TileCount { uint tile_count[]; };
 layout(std430, binding = SURFCAST_BIND_TILE_OFFSET) readonly buffer TileOffset { uint tile_offset[]; };
@@ -78,7 +84,7 @@ bool composite_columns(inout LightColumns light, ColumnSums sums, Columns surfac
 #else
 // Draws the nearest surface behind `limit`, which becomes the new limit. False if no surface behind it can be visible.
 // Both passes leave a list where nothing that follows is in front of the surface of any pixel.
-bool draw_layer(TileLists tile, vec2 pixel, inout Columns limit, inout LightColumns light) {
+bool draw_layer(TileLists tile, int layer, vec2 pixel, inout Columns limit, inout LightColumns light) {
   Columns surface;
   ColumnSums sums;
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
@@ -86,10 +92,19 @@ bool draw_layer(TileLists tile, vec2 pixel, inout Columns limit, inout LightColu
     sums[c] = sums_zero();
   }
   float peak = 0.0;
-#ifdef SURFCAST_LARGE
-  find_surface_large(tile.first_large, tile.larges, 0u, 1u, pixel, limit, surface, peak);
+  uint smalls = tile.smalls;
+#ifdef SURFCAST_BLENDS_BEHIND
+  if (layer == 0) {
 #endif
-  uint smalls = find_surface_small(tile.first_small, tile.smalls, pixel, limit, surface, peak);
+#ifdef SURFCAST_LARGE
+    find_surface_large(tile.first_large, tile.larges, 0u, 1u, pixel, limit, surface, peak);
+#endif
+    smalls = find_surface_small(tile.first_small, tile.smalls, pixel, limit, surface, peak);
+#ifdef SURFCAST_BLENDS_BEHIND
+    list_peak = peak;
+  }
+  peak = list_peak;
+#endif
   float unit = fixed_unit(peak);
   accumulate_small(tile.first_small, smalls, pixel, limit, surface, unit, sums);
 #ifdef SURFCAST_LARGE
@@ -104,7 +119,7 @@ void draw(TileLists tile, int wanted, vec2 pixel, out LightColumns light) {
   Columns limit;
   begin_drawing(wanted, limit, light);
   for (int layer = 0; layer < kMaxLayers; ++layer) {
-    if (!draw_layer(tile, pixel, limit, light)) break;
+    if (!draw_layer(tile, layer, pixel, limit, light)) break;
   }
 }
 #endif

@@ -292,10 +292,51 @@ TEST_F(RendererGLTest, ScaleDoesNotMatter) {
 TEST_F(RendererGLTest, OneSurfaceBeforeAnotherHasNoSeamInTheColorOfTheBackground) {
   surfel::SurfelCloud cloud = testing::square(200, 4, {0, 0, -1}, {0, 0, 1}, {200, 200, 200});
   testing::append(cloud, testing::square(60, 0.6, {0, 0, 0}, {0.2, 0.1, 1}, {200, 200, 200}));
-  const picture::Image image = draw(model_of(cloud), front_view(256, 256)).image;
-  for (int y = 16; y < 240; ++y) {
-    for (int x = 16; x < 240; ++x) ASSERT_NEAR(pixel(image, x, y).r, 200, 2) << x << ' ' << y;
+  for (const bool blends_behind : {false, true}) {
+    picture::PictureRequest request = front_view(256, 256);
+    request.blends_behind = blends_behind;
+    const picture::Image image = draw(model_of(cloud), request).image;
+    for (int y = 16; y < 240; ++y) {
+      for (int x = 16; x < 240; ++x) ASSERT_NEAR(pixel(image, x, y).r, 200, 2) << x << ' ' << y;
+    }
   }
+}
+
+TEST_F(RendererGLTest, BehindASurfaceThatHidesAllBlendingChangesNothing) {
+  surfel::SurfelCloud cloud = testing::square(200, 4, {0, 0, 0}, {0, 0, 1}, {200, 90, 20});
+  testing::append(cloud, testing::square(200, 4, {0, 0, -1}, {0, 0, 1}, {20, 200, 90}));
+  picture::PictureRequest request = front_view(128, 128);
+  const picture::Image exact = draw(model_of(cloud), request).image;
+  request.blends_behind = true;
+  EXPECT_EQ(draw(model_of(cloud), request).image.pixels, exact.pixels);
+}
+
+/// Surfaces of several colours, one behind the other, behind points so far apart that they cover a half.
+surfel::SurfelCloud surfaces_behind_scatter() {
+  surfel::SurfelCloud cloud = testing::square(100, 2, {0, 0, 0}, {0, 0, 1}, {200, 200, 200});
+  for (float& radius : cloud.radii) radius *= 0.25F;
+  cloud.scatter.assign(cloud.size(), 1);
+  const size_t front = cloud.size();
+  testing::append(cloud, testing::square(100, 2, {0, 0, -1}, {0, 0, 1}, {200, 0, 0}));
+  testing::append(cloud, testing::square(100, 2, {0, 0, -2}, {0, 0, 1}, {0, 200, 0}));
+  cloud.scatter.resize(cloud.size(), 0);
+  EXPECT_EQ(cloud.scatter[front], 0);
+  return cloud;
+}
+
+TEST_F(RendererGLTest, BlendedBehindTheFrontSurfaceAllSurfacesCountAsOne) {
+  const testing::ModelPointer& model = model_of(surfaces_behind_scatter());
+  picture::PictureRequest request = front_view(64, 64, 8);
+  request.normalization = picture::Normalization::kSurfel;
+  const glm::u8vec4 exact = pixel(draw(model, request).image, 32, 32);
+  request.blends_behind = true;
+  const picture::Image image = draw(model, request).image;
+  const glm::u8vec4 blended = pixel(image, 32, 32);
+  EXPECT_EQ(exact.g, exact.b) << "the surface behind the nearest is hidden";
+  EXPECT_GT(blended.g, blended.b + 20) << "it counts as much as the nearest";
+  EXPECT_NEAR(blended.b, exact.b, 2) << "the front is as it was";
+  EXPECT_EQ(blended.a, 255);
+  EXPECT_EQ(draw(model, request).image.pixels, image.pixels) << "the same request gives the same bytes";
 }
 
 TEST_F(RendererGLTest, WithoutColorASurfaceIsLitFromTheEye) {
