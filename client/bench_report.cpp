@@ -57,15 +57,18 @@ std::map<std::string, Percentiles> stages_of(const std::vector<std::vector<Bench
 void add_rests(const std::vector<BenchRecord>& records, BenchReport& report) {
   std::vector<double> times;
   std::vector<double> bytes;
+  std::vector<BenchFrame> frames;
   for (const BenchRecord& record : records) {
     for (const BenchFrame& frame : record.frames) {
       if (!frame.converged) continue;
+      frames.push_back(frame);
       times.push_back(frame.latency_ms);
       bytes.push_back(static_cast<double>(frame.bytes));
     }
   }
   report.converged = percentiles(std::move(times));
   report.rest_bytes = percentiles(std::move(bytes));
+  report.rest_stages = stages_of({frames});
 }
 
 void add_counts(const BenchRecord& record, BenchReport& report) {
@@ -79,6 +82,12 @@ void add_counts(const BenchRecord& record, BenchReport& report) {
 json to_json(const Percentiles& values) {
   return {{"count", values.count}, {"mean", values.mean}, {"p50", values.p50},
           {"p95", values.p95},     {"p99", values.p99},   {"max", values.most}};
+}
+
+json to_json(const std::map<std::string, Percentiles>& stages) {
+  json object = json::object();
+  for (const auto& [name, values] : stages) object[name] = to_json(values);
+  return object;
 }
 
 std::string line(const std::string& name, const Percentiles& values) {
@@ -141,6 +150,7 @@ std::string to_text(const BenchReport& report) {
   text += line("width of it, pixels", report.moving_width);
   text += line("spacing of it, pixels", report.moving_spacing);
   text += line("time to converged, ms", report.converged);
+  for (const auto& [name, values] : report.rest_stages) text += line("  " + name, values);
   text += line("bytes of that frame", report.rest_bytes);
   text += std::to_string(report.updates) + " cameras, " + std::to_string(report.moving_frames) + " moving frames, " +
           std::to_string(report.abandoned) + " given up on the way; " + std::to_string(report.converged.count) +
@@ -150,8 +160,6 @@ std::string to_text(const BenchReport& report) {
 }
 
 std::string to_json(const BenchReport& report, const std::string& url) {
-  json stages = json::object();
-  for (const auto& [name, values] : report.moving_stages) stages[name] = to_json(values);
   const json document{{"url", url},
                       {"clients", report.clients},
                       {"bytes", report.bytes},
@@ -160,7 +168,7 @@ std::string to_json(const BenchReport& report, const std::string& url) {
                         {"latency_ms", to_json(report.latency)},
                         {"latency_ms_first_third", to_json(report.latency_begin)},
                         {"latency_ms_last_third", to_json(report.latency_end)},
-                        {"stages_ms", std::move(stages)},
+                        {"stages_ms", to_json(report.moving_stages)},
                         {"outside_ms", to_json(report.outside)},
                         {"bytes", to_json(report.moving_bytes)},
                         {"width", to_json(report.moving_width)},
@@ -170,6 +178,7 @@ std::string to_json(const BenchReport& report, const std::string& url) {
                         {"abandoned", report.abandoned}}},
                       {"rest",
                        {{"converged_ms", to_json(report.converged)},
+                        {"stages_ms", to_json(report.rest_stages)},
                         {"bytes", to_json(report.rest_bytes)},
                         {"unconverged", report.unconverged},
                         {"frames_after_converged", report.late}}}};

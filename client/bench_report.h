@@ -33,7 +33,8 @@ struct BenchReport {
   Percentiles moving_width;    ///< pixels
   Percentiles moving_spacing;  ///< pixels
   Percentiles converged;       ///< milliseconds from the end of a movement to the converged frame
-  Percentiles rest_bytes;      ///< of a converged frame
+  std::map<std::string, Percentiles> rest_stages;  ///< of the converged frame, as moving_stages
+  Percentiles rest_bytes;                          ///< of a converged frame
   uint64_t updates = 0;
   uint64_t moving_frames = 0;
   uint64_t abandoned = 0;

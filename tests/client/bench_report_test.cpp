@@ -92,11 +92,13 @@ TEST(BenchReport, JsonHoldsTheFigures) {
   BenchRecord record;
   record.moving_seconds = 1;
   record.frames = {moving_frame(10, {{"splat", 3}}), final_frame(20)};
+  record.frames[1].stages = {{"splat", 7}};
   const auto document = nlohmann::json::parse(to_json(make_report({record}), "here:1/cube"));
   EXPECT_EQ(document["url"], "here:1/cube");
   EXPECT_EQ(document["moving"]["latency_ms"]["p95"], 10);
   EXPECT_EQ(document["moving"]["stages_ms"]["splat"]["p50"], 3);
   EXPECT_EQ(document["rest"]["converged_ms"]["p50"], 20);
+  EXPECT_EQ(document["rest"]["stages_ms"]["splat"]["p50"], 7);
 }
 
 }  // namespace
