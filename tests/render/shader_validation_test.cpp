@@ -68,7 +68,7 @@ std::vector<render::Variant> all_variants() {
   for (const picture::SurfelColor color :
        {picture::SurfelColor::kStored, picture::SurfelColor::kIntensity, picture::SurfelColor::kElevation,
         picture::SurfelColor::kClassification, picture::SurfelColor::kNormal}) {
-    for (unsigned bits = 0; bits < 256; ++bits) {
+    for (unsigned bits = 0; bits < 512; ++bits) {
       const auto bit = [bits](unsigned place) { return (bits >> place & 1) != 0; };
       render::Variant variant;
       variant.colored = bit(0);
@@ -80,6 +80,9 @@ std::vector<render::Variant> all_variants() {
       variant.eye_dome = bit(5);
       variant.silhouettes = bit(6);
       variant.scatter = bit(7);
+      variant.blends_behind = bit(8);
+      const bool in_motion = !variant.silhouettes && !variant.float_picture;
+      if (variant.blends_behind && !in_motion) continue;
       if (color == picture::SurfelColor::kStored || variant.colored) variants.push_back(variant);
     }
   }
