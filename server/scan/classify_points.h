@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 namespace surfcast::scan {
@@ -12,10 +13,12 @@ inline constexpr size_t kWideNeighbours = 32;
 
 /// What a point stands for.
 enum class PointKind : uint8_t {
-  kSurface,  ///< an oriented disc
-  kScatter,  ///< lies on no surface (leaves, strays): a round splat that faces the eye
-  kThread,   ///< the same, in a line of points (wires, single scan lines)
-  kStated,   ///< an oriented disc whose radius the file states
+  kSurface,       ///< an oriented disc
+  kRoughSurface,  ///< the same where the points are so rough that distances to neighbours are not those along a surface
+  kLayer,         ///< the same, in one of the thin layers of a surface that was measured in steps of depth
+  kScatter,       ///< lies on no surface (leaves, strays): a round splat that faces the eye
+  kThread,        ///< the same, in a line of points (wires, single scan lines)
+  kStated,        ///< an oriented disc whose radius the file states
 };
 
 /// The eigenvalues of the covariance of a point and its nearest neighbours: variances along the principal axes, in any
@@ -26,16 +29,19 @@ struct Spread {
   double largest = 0;
 };
 
-/// True if the neighbourhood is a piece of a surface: flat with kWideNeighbours, no line there, and flat with
-/// kNearNeighbours as well, unless these lie on a line (a scan line has no plane of its own). docs/kernel.md has
-/// measurements.
-bool lies_on_surface(const Spread& near, const Spread& wide);
+/// The kind of a point, from its neighbourhoods. docs/kernel.md has measurements.
+/// - kSurface: flat with kWideNeighbours, no line there, and flat with kNearNeighbours as well, unless these lie on a
+///   line (a scan line has no plane of its own). So flat that chance does not make it so in a volume: the spacing of
+///   the surfaces around is theirs.
+/// - kRoughSurface: the same, less flat.
+/// - kLayer: beyond doubt flat with kNearNeighbours alone. Only a layer if is_in_layer(); otherwise scatter.
+/// - kThread: neither, and either neighbourhood is a line.
+/// - kScatter: everything else.
+PointKind kind_of(const Spread& near, const Spread& wide);
 
-/// True if it is so flat that chance does not make it so in a volume: the spacing of the surfaces around is theirs.
-bool lies_on_clear_surface(const Spread& near, const Spread& wide);
-
-/// True if either neighbourhood is a line.
-bool lies_on_line(const Spread& near, const Spread& wide);
+/// True if so many of the kNearNeighbours have their plane parallel to that of the point that both are in a layer.
+/// `cosines`: of the angles between the point's normal and theirs, of either sign.
+bool is_in_layer(std::span<const double> cosines);
 
 constexpr bool is_scatter(PointKind kind) {
   return kind == PointKind::kScatter || kind == PointKind::kThread;

@@ -1,6 +1,7 @@
 #include "scan/make_surfels.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <functional>
 #include <glm/geometric.hpp>
@@ -32,10 +33,10 @@ struct SiteFacts {
   std::vector<SitePlace> places;
   std::vector<SiteDirection> known;
   std::vector<glm::vec3> towards;  ///< empty if nothing is known
-  std::vector<SiteShape> shapes;
+  std::vector<PointKind> kinds;
 
   SiteFacts(size_t sites, bool any_known)
-      : places(sites), known(sites), towards(any_known ? sites : 0, glm::vec3(0)), shapes(sites) {}
+      : places(sites), known(sites), towards(any_known ? sites : 0, glm::vec3(0)), kinds(sites) {}
 };
 
 /// Records the direction of a point at its site. The first point at a site counts, but a stored normal takes precedence
@@ -108,7 +109,7 @@ Estimates estimates_of(const Sites& sites, const NeighbourGraph& graph, const Si
   estimates.kinds.resize(sites.of_point.size());
   tbb::parallel_for(size_t{0}, sites.of_point.size(), [&](size_t i) {
     const uint32_t site = sites.of_point[i];
-    estimates.kinds[i] = facts.shapes[site].kind;
+    estimates.kinds[i] = facts.kinds[site];
     estimates.radii[i] = is_scatter(estimates.kinds[i]) ? scatter_radius_of(sites, graph, site) : on_surface[site];
   });
   return estimates;
@@ -122,7 +123,7 @@ std::vector<SurfaceSample> sample_surfaces(const Sites& sites, const NeighbourGr
   tbb::parallel_for(Range(0, static_cast<uint32_t>(sites.size())), [&](const Range& range) {
     std::vector<SurfaceSample>& own = samples.local();
     for (uint32_t site = range.begin(); site != range.end(); ++site) {
-      const bool usable = facts.shapes[site].clear_surface && facts.places[site].own;
+      const bool usable = facts.kinds[site] == PointKind::kSurface && facts.places[site].own;
       if (!usable || !is_sampled(sites, graph, site, per_sample)) continue;
       own.push_back({sites.positions[site], estimated[site]});
     }
@@ -154,7 +155,19 @@ std::vector<glm::vec3> stored_normals(const SiteFacts& facts) {
   return normals;
 }
 
-/// Sets `facts.shapes`, too, if radii are estimated.
+/// Makes scatter of the sites that may be in a layer, but whose neighbours are not.
+void settle_layers(const NeighbourGraph& graph, std::span<const glm::vec3> normals, std::span<PointKind> kinds) {
+  tbb::parallel_for(size_t{0}, kinds.size(), [&](size_t site) {
+    if (kinds[site] != PointKind::kLayer) return;
+    std::array<double, kDegree> cosines{};
+    const auto end = std::ranges::transform(graph.of(site), cosines.begin(), [&](uint32_t neighbour) {
+                       return double{glm::dot(normals[site], normals[neighbour])};
+                     }).out;
+    if (!is_in_layer({cosines.begin(), end})) kinds[site] = PointKind::kScatter;
+  });
+}
+
+/// Sets `facts.kinds`, too, if radii are estimated.
 Findings study_neighbourhoods(const Sites& sites, bool radii, SiteFacts& facts) {
   Findings findings{{}, stored_normals(facts), std::vector<RadiusGuess>(radii ? sites.size() : 0)};
   const size_t visited = radii ? kWideNeighbours : kDegree;
@@ -166,9 +179,10 @@ Findings study_neighbourhoods(const Sites& sites, bool radii, SiteFacts& facts) 
     const Spread near = spread_of(covariances.near);
     if (!stored) findings.normals[site] = glm::vec3(least_axis(covariances.near, near.least));
     if (!radii) return;
-    facts.shapes[site] = shape_of(near, covariances.wide, offsets.count);
+    facts.kinds[site] = kind_of_site(near, covariances.wide, offsets.count);
     findings.guesses[site] = guess_radius(offsets, kDegree, findings.normals[site], sites.unit);
   });
+  if (radii) settle_layers(findings.graph, findings.normals, facts.kinds);
   return findings;
 }
 

@@ -128,11 +128,8 @@ glm::dvec3 least_axis(const Covariance& m, double least) {
   return squared_first > squared_second ? first / std::sqrt(squared_first) : second / std::sqrt(squared_second);
 }
 
-SiteShape shape_of(const Spread& near, const Covariance& wide, size_t neighbours) {
-  if (neighbours < kWideNeighbours) return {PointKind::kSurface, true};
-  const Spread spread = spread_of(wide);
-  if (lies_on_surface(near, spread)) return {PointKind::kSurface, lies_on_clear_surface(near, spread)};
-  return {lies_on_line(near, spread) ? PointKind::kThread : PointKind::kScatter, false};
+PointKind kind_of_site(const Spread& near, const Covariance& wide, size_t neighbours) {
+  return neighbours < kWideNeighbours ? PointKind::kSurface : kind_of(near, spread_of(wide));
 }
 
 }  // namespace surfcast::scan

@@ -30,14 +30,8 @@ Spread spread_of(const Covariance& covariance);
 /// is `least`. Unit; the sign is arbitrary. Neighbourhoods on a line get a direction perpendicular to it.
 glm::dvec3 least_axis(const Covariance& covariance, double least);
 
-/// What the neighbours of a site tell about it.
-struct SiteShape {
-  PointKind kind = PointKind::kSurface;
-  bool clear_surface = false;  ///< lies_on_clear_surface
-};
-
-/// From the spread of the kNearNeighbours, the covariance of all neighbours and their number. With fewer than
-/// kWideNeighbours nothing is known, and the site counts as a surface.
-SiteShape shape_of(const Spread& near, const Covariance& wide, size_t neighbours);
+/// The kind of a site from the spread of the kNearNeighbours, the covariance of all neighbours and their number. With
+/// fewer than kWideNeighbours nothing is known, and the site counts as a surface.
+PointKind kind_of_site(const Spread& near, const Covariance& wide, size_t neighbours);
 
 }  // namespace surfcast::scan

@@ -120,6 +120,54 @@ TEST(Scatter, AScanLineOfASurfaceIsASurface) {
   EXPECT_LT(share_of_scatter(cloud, inside), 0.01);
 }
 
+/// A wall as a depth camera at the origin measures it, which looks along z: a step of depth is `step` distance^2, and
+/// depths are off by a third of a step. `slant`: tangent of the angle to the picture's plane.
+std::vector<glm::dvec3> stepped_wall(double distance, double slant) {
+  constexpr double kFocal = 525;  // pixels
+  constexpr double kStep = 0.00285;
+  std::mt19937 random(7);
+  std::normal_distribution<double> noise(0, 0.3);
+  std::vector<glm::dvec3> points;
+  for (int row = -60; row < 60; ++row) {
+    for (int column = -80; column < 80; ++column) {
+      const glm::dvec3 ray((column + 0.5) / kFocal, (row + 0.5) / kFocal, 1);
+      const double steps = (1 - slant * ray.x) / (kStep * distance) + noise(random);
+      points.push_back(ray / (kStep * std::round(steps)));
+    }
+  }
+  return points;
+}
+
+TEST(Scatter, LayersOfAWallMeasuredInStepsOfDepthAreSurfaces) {
+  // Without layers 99, 61, 41 and 10 % are scatter.
+  EXPECT_LT(share_of_scatter(surfels_at(stepped_wall(2, 0)), anywhere), 0.25);
+  EXPECT_LT(share_of_scatter(surfels_at(stepped_wall(2, 1)), anywhere), 0.35);
+  EXPECT_LT(share_of_scatter(surfels_at(stepped_wall(3, 1)), anywhere), 0.03);
+  EXPECT_LT(share_of_scatter(surfels_at(stepped_wall(4.5, 2)), anywhere), 0.01);
+}
+
+TEST(Scatter, LayersCloseTheWallTogetherAndAreNoWider) {
+  const surfel::SurfelCloud cloud = surfels_at(stepped_wall(3, 1));
+  constexpr double kPixel = 3.0 / 525;
+  for (size_t i = 0; i < cloud.size(); ++i) {
+    EXPECT_LT(double{cloud.radii[i]}, 3 * kPixel * cloud.positions[i].z / 3) << i;
+  }
+}
+
+TEST(Scatter, LeavesAreNoLayers) {
+  // A crown of 400 leaves of nine points: each is flat, in a direction of its own.
+  std::mt19937 random(11);
+  std::normal_distribution<double> normal;
+  std::vector<glm::dvec3> points;
+  for (const glm::dvec3& leaf : testing::noise(400, 10)) {
+    const glm::dvec3 u = glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
+    const glm::dvec3 other(normal(random), normal(random), normal(random));
+    const glm::dvec3 v = glm::normalize(glm::cross(u, other));
+    for (int k = 0; k < 9; ++k) points.push_back(leaf + 0.15 * (k % 3) * u + 0.15 * (k / 3) * v);
+  }
+  EXPECT_GT(share_of_scatter(surfels_at(points), anywhere), 0.83) << "0.85 without layers";
+}
+
 TEST(Scatter, AStrayAboveAPlaneIsNoWiderThanHalfThePlanesRadius) {
   std::vector<glm::dvec3> points = plane();
   points.emplace_back(3, 3, 2);
