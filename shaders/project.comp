@@ -68,17 +68,23 @@ float scatter_scale(Surfel s, float gain) {
 #endif
 }
 
+#include "include/splat_bounds.glsl"
 #include "include/tile_range.glsl"
 
-void count_tiles(uvec2 range, uint slice) {
-  for (uint y = range.x >> 16; y <= range.y >> 16; ++y) {
-    for (uint x = range.x & 0xffffu; x <= (range.y & 0xffffu); ++x) {
+void count_tiles(uvec2 range) {
+  SplatBounds splat = unpack_bounds(range);
+  uint slice = slice_of_level(splat.nearest);
+  uvec2 first = splat.first_tile;
+  uvec2 last = splat.last_tile;
+  for (uint y = first.y; y <= last.y; ++y) {
+    for (uint x = first.x; x <= last.x; ++x) {
       atomicAdd(tile_count[slice_count_at(y * uint(frame.tiles.x) + x, slice)], 1u);
     }
   }
 }
 
-void append(bool large, uvec2 range, uint slice, uvec4 a, uvec4 b, uvec4 disc, vec3 n) {
+// `range`: of tiles, or the packed bounds of a small splat.
+void append(bool large, uvec2 range, uvec4 a, uvec4 b, uvec4 disc, vec3 n) {
   uint slot = large ? atomicAdd(counters.counts.y, 1u) : atomicAdd(counters.counts.x, 1u);
   // Large splats fill the record buffer from its end. Records beyond the capacity are only counted: the caller then
   // enlarges the buffer and repeats the projection.
@@ -88,11 +94,11 @@ void append(bool large, uvec2 range, uint slice, uvec4 a, uvec4 b, uvec4 disc, v
   imageStore(splats, int(2u * slot), a);
   imageStore(splats, int(2u * slot + 1u), b);
   if (!large) imageStore(discs, int(slot), disc);
-  imageStore(bounds, int(slot), uvec4(range.x | (slice << SURFCAST_SLICE_SHIFT), range.y, 0u, 0u));
+  imageStore(bounds, int(slot), uvec4(range, 0u, 0u));
 #ifdef SURFCAST_LIT_COLOR
   imageStore(normals, int(slot), uvec4(pack_biased_normal(n), 0u, 0u, 0u));
 #endif
-  if (!large) count_tiles(range, slice);
+  if (!large) count_tiles(range);
 }
 
 // Depth range of a disc of the given radius, as a distance along z.
@@ -110,10 +116,26 @@ float nearest_of_small(ScreenVariance v, float c, SmallSplat splat, float rise) 
   return splat.inverse_depth * (1.0 + kMargin * reach / eta()) * 1.0001;
 }
 
+// Inverse depth that every fragment of a small splat exceeds. The margin covers the rounding of the record.
+float farthest_of_small(SmallSplat splat) {
+  return max(splat.inverse_depth * (1.0 - 1.01 * splat.fall / eta()) * 0.9999, 0.0);
+}
+
+// The pixels of which a small splat touches the centre or a sample. Samples have a narrower prefilter
+// (include/narrow.glsl), and cutoffs that are larger by up to 0.7.
+uvec4 pixels_with_samples(vec2 centre, ScreenVariance v, float c) {
+  const float kFarthestSample = 3.0 * sqrt(SURFCAST_SILHOUETTE_VARIANCE / 5.0);
+  float removed = SURFCAST_SILHOUETTE_VARIANCE * frame.filter_.x;
+  vec2 extent = sqrt(c * v.s.xz);
+  vec2 reach = max(extent, sqrt((c + 0.7) * (v.s.xz - removed)) + kFarthestSample);
+  bool outside;
+  return pixel_range(centre - reach, centre + reach, outside);
+}
+
 void project_small(Surfel s, vec2 ray, vec2 centre, ScreenVariance v, float c) {
   vec2 extent = sqrt(c * v.s.xz);
   bool outside;
-  uvec2 range = tile_range(centre - extent, centre + extent, outside);
+  uvec4 range = pixel_range(centre - extent, centre + extent, outside);
   if (outside) return;
 
   // 1/z of the plane is affine on the screen: 1/z = (n.ray) / (n.o). The bounds keep edge-on surfels finite.
@@ -137,7 +159,10 @@ void project_small(Surfel s, vec2 ray, vec2 centre, ScreenVariance v, float c) {
   float push = push_back(s.radius, s.o.z) * footprints;
   float rise = depth_range / (1.0 - depth_range / eta());
   Disc disc = Disc(inverse_factor(d.s, d.det), push / (1.0 + push / eta()), splat.fall, rise, splat.weight);
-  append(false, range, slice_at(nearest_of_small(v, c, splat, rise)), a, b, encode_disc(disc), lit_normal(s));
+  uvec4 pixels = pixels_with_samples(centre, v, c);
+  SplatBounds reach = SplatBounds(range.xy / kTileSize, range.zw / kTileSize, pixels.xy, pixels.zw,
+                                  level_at(nearest_of_small(v, c, splat, rise)), level_at(farthest_of_small(splat)));
+  append(false, pack_bounds(reach), a, b, encode_disc(disc), lit_normal(s));
 }
 
 // True if a disc that the eye plane cuts lies wholly behind the eye plane or beyond a side of the picture.
@@ -177,7 +202,7 @@ void project_large(Surfel s, bool reaches_eye_plane, float gain) {
   if (outside) return;
   uvec4 a, b;
   encode_large(LargeSplat(s.o, s.radius, s.n, s.weight * scatter_scale(s, gain), s.color), a, b);
-  append(true, range, 0u, a, b, uvec4(0u), lit_normal(s));
+  append(true, range, a, b, uvec4(0u), lit_normal(s));
 }
 
 bool is_small(float sigma, float extent, float depth) {

@@ -6,6 +6,7 @@
 #include "include/frame.glsl"
 
 layout(location = SURFCAST_UNIFORM_FIRST_GROUP) uniform uint first_group;
+layout(location = SURFCAST_UNIFORM_SPAN) uniform uvec3 span;  // first tile and end, in tile order
 layout(local_size_x = SURFCAST_SILHOUETTE_LANES) in;  // one tile per lane: parts with long lists stay adjacent
 
 // Inverse depth of the front surface, 0 if there is none.
@@ -60,15 +61,23 @@ uint find(ivec2 corner) {
   return found;
 }
 
+// A mask by rows as a mask by squares of 2 x 2 pixels, and vice versa: the middle bits of a pixel's number change
+// places.
+uint by_quads(uint mask) {
+  uint changed = (mask ^ (mask >> 2)) & 0x0c0cu;
+  return mask ^ changed ^ (changed << 2);
+}
+
 // Appends the pixels of a tile without large splats.
 void list_parts(uint tile, bool long_list, uint found) {
   uint parts = (uint(bitCount(found)) + uint(SURFCAST_COLUMNS) - 1u) / uint(SURFCAST_COLUMNS);
   uint place = long_list ? atomicAdd(silhouette_counts.z, parts) : atomicAdd(silhouette_counts.x, parts);
   place += silhouettes_begin(long_list);
+  found = by_quads(found);
   for (uint i = 0u; i < parts; ++i) {
     uint rest = found;
     for (int c = 0; c < SURFCAST_COLUMNS; ++c) rest &= rest - 1u;
-    silhouette_parts[place + i] = uvec2(tile, found & ~rest);
+    silhouette_parts[place + i] = uvec2(tile, by_quads(found & ~rest));
     found = rest;
   }
 }
@@ -82,8 +91,9 @@ void list_pixels(uint tile, bool long_list, uint found) {
 }
 
 void main() {
-  uint index = (first_group + gl_WorkGroupID.x) * uint(SURFCAST_SILHOUETTE_LANES) + gl_LocalInvocationID.x;
-  if (index >= uint(frame.tiles.z)) return;
+  uint group = first_group + gl_WorkGroupID.x;
+  uint index = span.x + group * uint(SURFCAST_SILHOUETTE_LANES) + gl_LocalInvocationID.x;
+  if (index >= span.y) return;
   int tile = int(tile_order[index]);
   uint found = find(ivec2(tile % frame.tiles.x, tile / frame.tiles.x) * kTile);
   if (found == 0u) return;

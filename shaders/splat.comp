@@ -35,24 +35,18 @@ layout(std430, binding = SURFCAST_BIND_NEXT_TILES) buffer NextTiles { uint next_
 layout(std430, binding = SURFCAST_BIND_FRONTS) writeonly buffer Fronts { float fronts[]; };
 #endif
 
-#include "include/draw_lane.glsl"
-#include "include/write_pixel.glsl"
-#if defined(SURFCAST_FINDS_SILHOUETTES) && !defined(SURFCAST_EYE_DOME) && SURFCAST_COLUMNS == SURFCAST_TILE_WIDTH
+#if defined(SURFCAST_SELECTS) && !defined(SURFCAST_EYE_DOME)
 // (Eye-dome lighting looks at all surfaces of a pixel, even those that are hardly visible.)
 #define SURFCAST_LEAVES_TO_SAMPLES
-#include "include/leave_to_samples.glsl"
 #endif
+#include "include/draw_lane.glsl"
+#include "include/write_rows.glsl"
 
 void write_column(Light light, Rows front, ivec2 first) {
   for (int i = 0; i < SURFCAST_ROWS; ++i) {
     ivec2 at = first + ivec2(0, i);
     if (any(greaterThanEqual(at, frame.region.zw))) continue;
-    vec3 linear = vec3(ROW(light.red, i), ROW(light.green, i), ROW(light.blue, i));
-#ifdef SURFCAST_EYE_DOME
-    write_lit_pixel(at, linear, ROW(light.transmittance, i), ROW(light.depth, i), ROW(light.opaque, i));
-#else
-    write_pixel(at, linear, ROW(light.transmittance, i));
-#endif
+    write_row(light, i, at);
 #ifdef SURFCAST_FINDS_SILHOUETTES
     fronts[at.y * frame.region.z + at.x] = ROW(front, i);
 #endif
@@ -82,6 +76,7 @@ void main() {
 #else
 // The state of a lane.
 struct LaneState {
+  uint index;  // of the tile
   TileLists tile;
   ivec2 local;  // first pixel of the lane
   int columns;  // 0 in a tile that the other variant draws
@@ -89,7 +84,6 @@ struct LaneState {
   Columns limit;
   LightColumns light;
   Columns front;
-  uint left_to_samples;  // pixels at silhouettes, see include/leave_to_samples.glsl
 };
 
 // Index within the work group of the lane's next tile; span.z or more if there is none.
@@ -107,6 +101,7 @@ bool begin(inout LaneState state, bool first) {
   uint at = span.x + (first_group + gl_WorkGroupID.x) * span.z + slot;
   if (slot >= span.z || at >= span.y) return false;
   uint index = tile_order[at];
+  state.index = index;
   state.tile = lists_of_tile(index);
   state.columns = belongs_to_this_build(state.tile) ? SURFCAST_COLUMNS : 0;
   if (state.columns == 0) state.tile = TileLists(0u, 0u, 0u, 0u, 0u);
@@ -116,21 +111,36 @@ bool begin(inout LaneState state, bool first) {
   return true;
 }
 
+#ifdef SURFCAST_SELECTS
+void hand_over_unfinished(LaneState state) {
+  uint unfinished_columns = 0u;
+  for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
+    if (any_of(unfinished_rows(state.light[c], state.limit[c]))) unfinished_columns |= 1u << uint(c);
+  }
+  // (A loop, because most tiles have none: lanes run through all branches.)
+  for (; unfinished_columns != 0u; unfinished_columns &= unfinished_columns - 1u) {
+    int c = findLSB(unfinished_columns);
+    hand_over(state.index, uint(c), state.limit[c], state.light[c]);
+  }
+}
+#endif
+
 // A lane starts its next tile when it has finished one, independently of other lanes, because tiles differ in the
 // number of surfaces.
 void main() {
   LaneState state;
   bool drawing = begin(state, true);
   while (drawing) {
-    bool more =
-        draw_layer(state.tile, state.layer, vec2(frame.region.xy + state.local) + 0.5, state.limit, state.light);
+    vec2 pixel = vec2(frame.region.xy + state.local) + 0.5;
+#ifdef SURFCAST_SELECTS
+    state.front = draw_layer(state.tile, true, 0u, pixel, state.limit, state.light);
+    hand_over_unfinished(state);
+#else
+    bool more = draw_layer(state.tile, state.layer, pixel, state.limit, state.light);
     if (state.layer == 0) state.front = state.limit;
-#ifdef SURFCAST_LEAVES_TO_SAMPLES
-    if (state.layer == 0) state.left_to_samples = pixels_left_to_samples(state.front, state.local);
-    more = more && others_need_more(state.light, state.limit, state.left_to_samples);
-#endif
     ++state.layer;
     if (more && state.layer < kMaxLayers) continue;
+#endif
     for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
       if (c < state.columns) write_column(state.light[c], state.front[c], state.local + ivec2(c, 0));
     }

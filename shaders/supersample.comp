@@ -13,6 +13,7 @@
 #include "include/frame.glsl"
 
 layout(location = SURFCAST_UNIFORM_FIRST_GROUP) uniform uint first_group;
+layout(location = SURFCAST_UNIFORM_SPAN) uniform uvec3 span;  // first part and end
 #ifdef SURFCAST_TOGETHER
 layout(local_size_x = SURFCAST_PIXEL_LANES * SURFCAST_SHARES) in;
 const bool kLongLists = true;
@@ -23,23 +24,7 @@ const bool kLongLists = false;
 
 #include "include/silhouette_list.glsl"
 #include "include/draw_lane.glsl"
-#include "include/write_pixel.glsl"
-
-// The accumulated values of a pixel.
-struct Pixel {
-  vec3 light;
-  float transmittance;
-  float depth;
-  float opaque;
-};
-
-void write(ivec2 at, Pixel pixel) {
-#ifdef SURFCAST_EYE_DOME
-  write_lit_pixel(at, pixel.light, pixel.transmittance, pixel.depth, pixel.opaque);
-#else
-  write_pixel(at, pixel.light, pixel.transmittance);
-#endif
-}
+#include "include/write_rows.glsl"
 
 ivec2 corner_of(uint tile) {
   return ivec2(tile % uint(frame.tiles.x), tile / uint(frame.tiles.x)) *
@@ -48,10 +33,11 @@ ivec2 corner_of(uint tile) {
 
 ivec2 place_in_tile(int bit) { return ivec2(bit % SURFCAST_TILE_WIDTH, bit / SURFCAST_TILE_WIDTH); }
 
-void draw_samples(TileLists tile, int wanted, vec2 pixel, out LightColumns light) {
-#ifdef SURFCAST_TOGETHER
-  Columns front;
-  draw_together(tile, wanted, pixel, front, light);
+void draw_samples(TileLists tile, int wanted, vec2 pixel, out Columns limit, out LightColumns light) {
+#if defined(SURFCAST_TOGETHER)
+  draw_together(tile, wanted, pixel, limit, light);
+#elif defined(SURFCAST_SELECTS)
+  draw(tile, wanted, pixel, limit, light);
 #else
   draw(tile, wanted, pixel, light);
 #endif
@@ -69,8 +55,10 @@ shared vec2 sample_depths[SURFCAST_SILHOUETTE_LANES];  // and opaque
 void draw_sample(uint tile, ivec2 at, uint lane) {
   uint i = lane % uint(SURFCAST_SILHOUETTE_SAMPLES);
   column_places[0] = vec2(0.0);
+  Columns limit;
   LightColumns light;
-  draw_samples(lists_of_tile(tile), 1, vec2(frame.region.xy + at) + 0.5 + vec2(kSampleX[i], kSampleY[i]), light);
+  vec2 place = vec2(frame.region.xy + at) + 0.5 + vec2(kSampleX[i], kSampleY[i]);
+  draw_samples(lists_of_tile(tile), 1, place, limit, light);
 #ifdef SURFCAST_TOGETHER
   if (own_share() != 0u) return;
 #endif
@@ -79,6 +67,14 @@ void draw_sample(uint tile, ivec2 at, uint lane) {
   sample_depths[lane] = vec2(light[0].depth, light[0].opaque);
 #endif
 }
+
+// The accumulated values of a pixel.
+struct Pixel {
+  vec3 light;
+  float transmittance;
+  float depth;
+  float opaque;
+};
 
 Pixel mean_of_samples(uint first) {
   const float share = 1.0 / float(SURFCAST_SILHOUETTE_SAMPLES);
@@ -94,15 +90,19 @@ Pixel mean_of_samples(uint first) {
   return pixel;
 }
 
+void write(ivec2 at, Pixel pixel) {
+  write_light(at, pixel.light, pixel.transmittance, vec2(pixel.depth, pixel.opaque));
+}
+
 void main() {
   uint lane = gl_LocalInvocationID.x;
 #ifdef SURFCAST_TOGETHER
   uint index = first_group + gl_WorkGroupID.x;
-  bool listed = index < silhouette_counts.w;
+  bool listed = index < span.y;
   if (!listed) return;
 #else
   uint index = (first_group + gl_WorkGroupID.x) * kPixels + lane / uint(SURFCAST_SILHOUETTE_SAMPLES);
-  bool listed = index < silhouette_counts.y;
+  bool listed = index < span.y;
 #endif
   uvec2 part = listed ? silhouette_parts[silhouettes_end(kLongLists) - 1u - index] : uvec2(0u, 1u);
   ivec2 at = corner_of(part.x) + place_in_tile(findLSB(part.y));
@@ -115,24 +115,14 @@ void main() {
 #endif
 }
 #else
-float mean(Rows samples) { return dot(samples, Rows(1.0 / float(SURFCAST_ROWS))); }
-
-Pixel mean_of_rows(Light light) {
-  Pixel pixel = Pixel(vec3(mean(light.red), mean(light.green), mean(light.blue)), mean(light.transmittance), 0.0, 0.0);
-#ifdef SURFCAST_EYE_DOME
-  pixel.depth = mean(light.depth);
-  pixel.opaque = mean(light.opaque);
-#endif
-  return pixel;
-}
-
 void main() {
 #ifdef SURFCAST_TOGETHER
   uint index = first_group + gl_WorkGroupID.x;
-  if (index >= silhouette_counts.z) return;
+  if (index >= span.y) return;
 #else
-  uint index = (first_group + gl_WorkGroupID.x) * uint(SURFCAST_SILHOUETTE_LANES) + gl_LocalInvocationID.x;
-  if (index >= silhouette_counts.x) return;
+  uint group = first_group + gl_WorkGroupID.x;
+  uint index = span.x + group * uint(SURFCAST_SILHOUETTE_LANES) + gl_LocalInvocationID.x;
+  if (index >= span.y) return;
 #endif
   uvec2 part = silhouette_parts[silhouettes_begin(kLongLists) + index];
   ivec2 corner = corner_of(part.x);
@@ -142,15 +132,23 @@ void main() {
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
     places[c] = c < count ? corner + place_in_tile(findLSB(mask)) : places[0];
     column_places[c] = vec2(places[c] - places[0]);
+#ifdef SURFCAST_SELECTS
+    column_bits[c] = c < count ? mask & (~mask + 1u) : 0u;
+#endif
     mask &= mask - 1u;
   }
+  Columns limit;
   LightColumns light;
-  draw_samples(lists_of_tile(part.x), count, vec2(frame.region.xy + places[0]) + 0.5, light);
+  draw_samples(lists_of_tile(part.x), count, vec2(frame.region.xy + places[0]) + 0.5, limit, light);
 #ifdef SURFCAST_TOGETHER
   if (own_share() != 0u) return;
 #endif
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
-    if (c < count) write(places[c], mean_of_rows(light[c]));
+    if (c < count) write_mean(light[c], places[c]);
+#ifdef SURFCAST_SELECTS
+    if (!any_of(unfinished_rows(light[c], limit[c]))) continue;
+    hand_over(part.x, uint(findLSB(column_bits[c])), limit[c], light[c]);
+#endif
   }
 }
 #endif

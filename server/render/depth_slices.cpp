@@ -56,8 +56,8 @@ DepthSlices depth_slices(std::span<const DepthRange> ranges, bool culled, size_t
     farthest = std::max(farthest, range.farthest);
   }
   DepthSlices slices;
-  slices.count = farthest > 0 ? count_for(culled ? items / 2 : items, tiles) : 1;
-  if (slices.count == 1) return slices;
+  if (farthest <= 0) return slices;
+  slices.count = count_for(culled ? items / 2 : items, tiles);
   const std::vector<uint64_t> bins = histogram(ranges, farthest);
   const uint64_t total = std::accumulate(bins.begin(), bins.end(), uint64_t{0});
   // The depth that `part` items lie behind.
@@ -68,7 +68,7 @@ DepthSlices depth_slices(std::span<const DepthRange> ranges, bool culled, size_t
     return std::bit_cast<int32_t>(static_cast<float>(std::exp2(static_cast<double>(bin) / kBinsPerOctave) / farthest));
   };
   slices.second = bits_at(total - total / kLeftOut);
-  slices.step = std::max((slices.second - bits_at(total / kLeftOut)) / (slices.count - 1), 1);
+  slices.step = std::max((slices.second - bits_at(total / kLeftOut)) / (SURFCAST_SLICES - 1), 1);
   return slices;
 }
 

@@ -108,6 +108,9 @@ Result<Programs> Programs::create(const KernelShape& shape, const std::string& d
   if (!bin) return fail(std::move(bin.error()));
   Result<gl::Program> count = compute_program("bin.comp", "bin.comp", {}, defines + "#define SURFCAST_COUNTS_LARGE\n");
   if (!count) return fail(std::move(count.error()));
+  Result<gl::Program> reaches = compute_program("bin.comp", "bin.comp", {}, defines + "#define SURFCAST_SELECTS\n");
+  if (!reaches) return fail(std::move(reaches.error()));
+  programs.bin_reaches_ = std::move(*reaches);
   programs.count_large_ = std::move(*count);
   programs.slices_ = std::move(*slices);
   programs.bin_offsets_ = std::move(*offsets);
@@ -222,14 +225,22 @@ Result<SplatPrograms> Programs::variant(const Variant& variant, const PictureKin
   const std::string small = at_once + lane_defines(shape_.whole_tiles);
   const std::string large = at_once + lane_defines(false) + "#define SURFCAST_LARGE\n";
   const std::string finding = variant.silhouettes ? "#define SURFCAST_FINDS_SILHOUETTES\n" : "";
-  Status status = compile(programs.splat, plain("splat.comp"), small + finding);
+  const std::string selecting = selects(variant) ? "#define SURFCAST_SELECTS\n" : "";
+  Status status = compile(programs.splat, plain("splat.comp"), small + finding + selecting);
   if (status) status = compile(programs.splat_large, with_kinds("splat.comp"), large + finding);
   if (variant.silhouettes) {
     const std::string columns = define("SURFCAST_COLUMNS", pixels_at_once());
     const std::string rows = define("SURFCAST_ROWS", SURFCAST_SILHOUETTE_SAMPLES);
     if (status) status = compile(programs.silhouettes, plain("silhouettes.comp"), columns);
-    if (status) status = compile(programs.supersample, plain("supersample.comp"), splat + columns + rows);
+    if (status) status = compile(programs.supersample, plain("supersample.comp"), splat + columns + rows + selecting);
     if (status) status = compile(programs.supersample_large, with_kinds("supersample.comp"), large);
+  }
+  if (status && selects(variant)) {
+    const std::string column = at_once + define("SURFCAST_COLUMNS", 1) + define("SURFCAST_ROWS", SURFCAST_TILE_HEIGHT);
+    status = compile(programs.behind, plain("behind.comp"), column);
+    if (status) {
+      status = compile(programs.behind_samples, plain("behind.comp"), column + "#define SURFCAST_SUPERSAMPLED\n");
+    }
   }
   if (status && variant.eye_dome) status = compile(programs.eye_dome, plain("eye_dome.comp"), float_define(variant));
   if (!status) return fail(std::move(status.error()));

@@ -43,6 +43,9 @@ struct SplatPrograms {
   std::vector<const gl::Program*> project;   ///< for each kind of the picture
   const gl::Program* splat = nullptr;        ///< for tiles without large splats or records of other kinds than surfels
   const gl::Program* splat_large = nullptr;  ///< for tiles with them
+  /// Draw the columns that the programs without large splats hand over; null unless Programs::selects.
+  const gl::Program* behind = nullptr;
+  const gl::Program* behind_samples = nullptr;
   /// Null unless silhouettes are supersampled. The first finds them; the others draw them in tiles without and with
   /// large splats.
   const gl::Program* silhouettes = nullptr;
@@ -86,7 +89,10 @@ class Programs {
   [[nodiscard]] const gl::Program& count_large() const { return count_large_; }
   [[nodiscard]] const gl::Program& slices() const { return slices_; }
   [[nodiscard]] const gl::Program& bin_offsets() const { return bin_offsets_; }
-  [[nodiscard]] const gl::Program& bin() const { return bin_; }
+  [[nodiscard]] const gl::Program& bin(const Variant& variant) const { return selects(variant) ? bin_reaches_ : bin_; }
+  /// True if lanes draw from the list entries that matter (include/selection.glsl), and hand over what few of their
+  /// pixels need. This pays off where silhouettes are supersampled and a lane holds many pixels.
+  [[nodiscard]] bool selects(const Variant& variant) const { return variant.silhouettes && shape_.whole_tiles; }
   /// Pixels of a tile that a lane of supersample.comp draws at once.
   [[nodiscard]] int pixels_at_once() const;
   [[nodiscard]] const KernelShape& shape() const { return shape_; }
@@ -110,6 +116,7 @@ class Programs {
   gl::Program slices_;
   gl::Program bin_offsets_;
   gl::Program bin_;
+  gl::Program bin_reaches_;                                              ///< also stores the reaches of list entries
   std::map<std::pair<std::string, std::string>, gl::Program> compiled_;  ///< by Source::name and defines
 };
 

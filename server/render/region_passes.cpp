@@ -169,10 +169,17 @@ void upload_uniforms(StorageBuffer& buffer, const T& constants) {
   glNamedBufferSubData(buffer.name(), 0, static_cast<GLsizeiptr>(sizeof constants), &constants);
 }
 
+/// The levels of depth of a region (shaders/include/depth_slices.glsl): as many in each slice.
+glm::ivec4 slice_constants(const DepthSlices& slices) {
+  constexpr int kLevels = SURFCAST_LEVELS / SURFCAST_SLICES;
+  const float levels_per_bit = static_cast<float>(kLevels) / static_cast<float>(slices.step);
+  return {slices.count, slices.second + slices.step - slices.step / kLevels, std::bit_cast<int32_t>(levels_per_bit), 0};
+}
+
 void upload_constants(const RegionTask& task, const DepthSlices& slices, SplatBuffers& buffers) {
   layout::FrameConstants constants = task.constants;
   constants.tiles.w = static_cast<int>(buffers.splat_capacity());
-  constants.slices = {slices.count, slices.second, slices.step, 0};
+  constants.slices = slice_constants(slices);
   upload_uniforms(buffers.frame, constants);
 }
 
@@ -234,6 +241,7 @@ void bind_for_counting(const SplatBuffers& buffers) {
 void bind_for_binning(const SplatBuffers& buffers) {
   bind_for_counting(buffers);
   buffers.lists.bind_for_writing(SURFCAST_UNIT_LISTS);
+  if (buffers.reaches.texels() > 0) buffers.reaches.bind_for_writing(SURFCAST_UNIT_REACHES);
 }
 
 void bind_for_splatting(const RegionTask& task, const SplatBuffers& buffers) {
@@ -248,6 +256,12 @@ void bind_for_splatting(const RegionTask& task, const SplatBuffers& buffers) {
   buffers.discs.bind_for_reading(SURFCAST_UNIT_DISCS);
   buffers.lists.bind_for_reading(SURFCAST_UNIT_LISTS);
   if (task.variant.colored && task.variant.lit) buffers.normals.bind_for_reading(SURFCAST_UNIT_NORMALS);
+  if (buffers.reaches.texels() > 0) buffers.reaches.bind_for_reading(SURFCAST_UNIT_REACHES);
+  if (buffers.unfinished.texels() > 0) {
+    buffers.unfinished_count.bind(SURFCAST_BIND_UNFINISHED);
+    buffers.unfinished.bind_for_writing(SURFCAST_UNIT_UNFINISHED);
+    buffers.unfinished.bind_for_reading(SURFCAST_UNIT_UNFINISHED);
+  }
   if (task.variant.silhouettes) {
     buffers.fronts.bind(SURFCAST_BIND_FRONTS);
     buffers.silhouettes.bind(SURFCAST_BIND_SILHOUETTES);
@@ -362,12 +376,13 @@ Status bin(const RegionTask& task, const layout::Counters& counters, const Progr
            const Preemption& preemption) {
   const gl::DebugGroup group("bin");
   const size_t entries = counters.counts.z;
-  buffers.lists.reserve(std::clamp<size_t>(entries + entries / 4, 1, std::max(task.list_entries, entries)),
-                        buffers.lazy);
+  const size_t room = std::clamp<size_t>(entries + entries / 4, 1, std::max(task.list_entries, entries));
+  buffers.lists.reserve(room, buffers.lazy);
+  if (programs.selects(task.variant)) buffers.reaches.reserve(room, buffers.lazy);
   const Groups groups = groups_of_lanes(counters.counts.x + large_lanes(task, counters));
   return dispatch_in_batches(groups, buffers.bin_batches, preemption, [&] {
     bind_for_binning(buffers);
-    glUseProgram(programs.bin().name());
+    glUseProgram(programs.bin(task.variant).name());
   });
 }
 
@@ -389,6 +404,17 @@ Groups all_pixels(const Region& region) {
   return {ceil_divide(region.height, SURFCAST_BLOCK_HEIGHT), ceil_divide(region.width, SURFCAST_BLOCK_WIDTH)};
 }
 
+/// Draws the columns that the passes before have handed over.
+Status draw_behind(const RegionTask& task, const gl::Program* program, uint32_t per_group, BatchSizer& sizer,
+                   SplatBuffers& buffers, const Preemption& preemption) {
+  if (program == nullptr) return {};
+  GLuint count = 0;
+  glGetNamedBufferSubData(buffers.unfinished_count.name(), 0, sizeof count, &count);
+  if (count == 0) return {};
+  buffers.unfinished_count.clear();
+  return draw_tiles(task, {0, count, per_group, false}, *program, sizer, buffers, preemption);
+}
+
 /// True if some tiles have long lists.
 bool has_long_lists(const layout::Counters& counters) {
   return counters.counts.w >= SURFCAST_LONG_LIST;
@@ -401,6 +427,16 @@ void clear_silhouettes(const RegionTask& task, bool long_lists, SplatBuffers& bu
   buffers.silhouettes.reserve(sizeof(glm::uvec4) + (long_lists ? 2 : 1) * pixels * sizeof(glm::uvec2));
   constexpr GLuint kNone[4] = {};
   glNamedBufferSubData(buffers.silhouettes.name(), 0, sizeof kNone, kNone);
+}
+
+/// Makes room for every column of pixels, and the samples of every pixel.
+void reserve_unfinished(const RegionTask& task, const SplatPrograms& programs, SplatBuffers& buffers) {
+  if (programs.behind == nullptr) return;
+  constexpr size_t kTexels = 8;  // include/unfinished.glsl
+  constexpr size_t kPixels = size_t{SURFCAST_TILE_WIDTH} * SURFCAST_TILE_HEIGHT;
+  buffers.unfinished.reserve(kTexels * kPixels * static_cast<size_t>(task.constants.tiles.z), buffers.lazy);
+  buffers.unfinished_count.reserve(sizeof(GLuint));
+  buffers.unfinished_count.clear();
 }
 
 /// The programs of a picture. Those for long lists are null where there are none.
@@ -428,11 +464,15 @@ Status splat(const RegionTask& task, const layout::Counters& counters, const Reg
     buffers.depth.reserve(pixels * sizeof(glm::vec2));
   }
   if (task.variant.silhouettes) clear_silhouettes(task, has_long_lists(counters), buffers);
+  reserve_unfinished(task, programs.lanes, buffers);
   const auto tiles = static_cast<uint32_t>(task.constants.tiles.z);
   const std::vector<TileSpan> spans = spans_of_tiles(counters, tiles, shape);
   for (size_t i = 0; i < spans.size(); ++i) {
     Status status =
         draw_span(task, spans[i], counters.counts.y > 0, programs, buffers.splat_batches.at(i), buffers, preemption);
+    if (!status) return status;
+    status =
+        draw_behind(task, programs.lanes.behind, spans[i].tiles_per_group, buffers.behind_batches, buffers, preemption);
     if (!status) return status;
   }
   if (counters.counts.y == 0) return {};
@@ -440,31 +480,66 @@ Status splat(const RegionTask& task, const layout::Counters& counters, const Reg
   return draw_tiles(task, others, *programs.lanes.splat_large, buffers.splat_large_batches, buffers, preemption);
 }
 
+/// Numbers of pixels at silhouettes, as in include/silhouette_list.glsl.
+glm::uvec4 read_silhouette_counts(const SplatBuffers& buffers) {
+  glm::uvec4 counts{0};
+  glGetNamedBufferSubData(buffers.silhouettes.name(), 0, sizeof counts, &counts);
+  return counts;
+}
+
+/// Runs a pass of the silhouettes over the tiles or parts from `first` to `end`.
+Status dispatch_silhouettes(const RegionTask& task, const gl::Program* program, glm::uvec2 range, uint32_t lanes,
+                            BatchSizer& sizer, SplatBuffers& buffers, const Preemption& preemption) {
+  if (range.x == range.y) return {};
+  const Groups groups{(range.y - range.x + lanes - 1) / lanes, {}};
+  return dispatch_in_batches(groups, sizer, preemption, [&] {
+    bind_for_splatting(task, buffers);
+    glUseProgram(program->name());
+    glUniform3ui(SURFCAST_UNIFORM_SPAN, range.x, range.y, 0);
+  });
+}
+
+/// Finds the pixels at silhouettes in a span of tiles. Draws those of tiles without large splats and long lists again.
+Status supersample_span(const RegionTask& task, const TileSpan& span, const SplatPrograms& programs,
+                        const KernelShape& shape, SplatBuffers& buffers, const Preemption& preemption) {
+  const auto lanes = static_cast<uint32_t>(shape.silhouette_lanes);
+  const uint32_t done = read_silhouette_counts(buffers).x;
+  Status status = dispatch_silhouettes(task, programs.silhouettes, {span.first, span.end}, lanes, buffers.find_batches,
+                                       buffers, preemption);
+  if (!status) return status;
+  status = dispatch_silhouettes(task, programs.supersample, {done, read_silhouette_counts(buffers).x}, lanes,
+                                buffers.supersample_batches, buffers, preemption);
+  if (!status) return status;
+  return draw_behind(task, programs.behind_samples, span.tiles_per_group, buffers.behind_samples_batches, buffers,
+                     preemption);
+}
+
+/// The spans whose silhouettes are drawn together: of tiles with splats. Without columns that are handed over all tiles
+/// are alike.
+std::vector<TileSpan> spans_of_silhouettes(const layout::Counters& counters, const KernelShape& shape) {
+  const uint32_t tiles = counters.lengths[0][0];  // with at least one entry
+  if (!shape.whole_tiles) return {{0, tiles, 1, false}};
+  return spans_of_tiles(counters, tiles, shape);
+}
+
 /// Finds the pixels at silhouettes and draws them again.
-Status supersample_silhouettes(const RegionTask& task, const RegionPrograms& programs, const KernelShape& shape,
-                               SplatBuffers& buffers, const Preemption& preemption) {
+Status supersample_silhouettes(const RegionTask& task, const layout::Counters& counters, const RegionPrograms& programs,
+                               const KernelShape& shape, SplatBuffers& buffers, const Preemption& preemption) {
   const gl::DebugGroup group("silhouettes");
-  const auto dispatch = [&](const gl::Program* program, size_t groups, BatchSizer& sizer) -> Status {
-    if (groups == 0) return {};
-    return dispatch_in_batches({groups, {}}, sizer, preemption, [&] {
-      bind_for_splatting(task, buffers);
-      glUseProgram(program->name());
-    });
+  for (const TileSpan& span : spans_of_silhouettes(counters, shape)) {
+    Status status = supersample_span(task, span, programs.lanes, shape, buffers, preemption);
+    if (!status) return status;
+  }
+  const glm::uvec4 counts = read_silhouette_counts(buffers);
+  const auto draw = [&](const gl::Program* program, uint32_t count, int lanes, BatchSizer& sizer) {
+    return dispatch_silhouettes(task, program, {0, count}, static_cast<uint32_t>(lanes), sizer, buffers, preemption);
   };
-  const auto groups_of = [&](int lanes) { return ceil_divide(lanes, shape.silhouette_lanes); };
-  Status status = dispatch(programs.lanes.silhouettes, groups_of(task.constants.tiles.z), buffers.find_batches);
-  if (!status) return status;
-  GLint counts[4] = {};
-  glGetNamedBufferSubData(buffers.silhouettes.name(), 0, sizeof counts, counts);
-  status = dispatch(programs.lanes.supersample, groups_of(counts[0]), buffers.supersample_batches);
-  if (!status) return status;
-  status = dispatch(programs.lanes.supersample_large, groups_of(counts[1] * SURFCAST_SILHOUETTE_SAMPLES),
-                    buffers.supersample_large_batches);
-  if (!status) return status;
   LongListBatches& sizers = buffers.long_lists;
-  status = dispatch(programs.groups.supersample, static_cast<size_t>(counts[2]), sizers.supersample);
-  if (!status) return status;
-  return dispatch(programs.groups.supersample_large, static_cast<size_t>(counts[3]), sizers.supersample_large);
+  Status status = draw(programs.lanes.supersample_large, counts.y, shape.silhouette_lanes / SURFCAST_SILHOUETTE_SAMPLES,
+                       buffers.supersample_large_batches);
+  if (status) status = draw(programs.groups.supersample, counts.z, 1, sizers.supersample);
+  if (status) status = draw(programs.groups.supersample_large, counts.w, 1, sizers.supersample_large);
+  return status;
 }
 
 /// Compiles the programs for long lists if there are any.
@@ -524,7 +599,7 @@ Result<std::optional<RegionStats>> draw_region(const RegionTask& task, Programs&
     return fail(std::move(status.error()));
   }
   if (task.variant.silhouettes) {
-    Status status = supersample_silhouettes(task, region, programs.shape(), buffers, preemption);
+    Status status = supersample_silhouettes(task, *counters, region, programs.shape(), buffers, preemption);
     if (!status) return fail(std::move(status.error()));
   }
   if (task.variant.eye_dome) {

@@ -81,21 +81,26 @@ struct SplatBuffers {
   BatchSizer bin_batches;
   std::array<BatchSizer, kTileSpans> splat_batches;
   BatchSizer splat_large_batches;
+  BatchSizer behind_batches;
   BatchSizer find_batches;
   BatchSizer supersample_batches;
   BatchSizer supersample_large_batches;
+  BatchSizer behind_samples_batches;
   LongListBatches long_lists;
   ConstantTexels srgb;  ///< linear_root_table
   TexelBuffer splats{"splats", GL_RGBA32UI, 16};
   TexelBuffer discs{"discs", GL_RGBA32UI, 16};
   TexelBuffer bounds{"bounds", GL_RG32UI, 8};
   TexelBuffer normals{"splat normals", GL_R32UI, 4};
+  TexelBuffer unfinished{"unfinished columns", GL_RGBA32UI, 16};
   TexelBuffer lists{"tile lists", GL_R32UI, 4};
+  TexelBuffer reaches{"reaches of list entries", GL_R32UI, 4};
   StorageBuffer counters{"counters"};
   StorageBuffer tile_count{"tile count"};
   StorageBuffer tile_offset{"tile offset"};
   StorageBuffer tile_order{"tile order"};
   StorageBuffer next_tiles{"next tiles"};
+  StorageBuffer unfinished_count{"number of unfinished columns"};
   StorageBuffer picture{"picture"};
   StorageBuffer blocks{"blocks"};
   StorageBuffer chunks{"chunks"};

@@ -66,7 +66,7 @@ void begin_drawing(int wanted, out Columns limit, out LightColumns light) {
 
 // Where the surface of a column is looked for from: infinitely far.
 Rows surface_at_first(Light light) {
-  return mix(Rows(0.0), Rows(kHidesAll), at_most(light.transmittance, Rows(0.0)));
+  return mix(Rows(0.0), Rows(kHidesAll), at_most(light.transmittance, Rows(kOpaque)));
 }
 
 // Blends a surface behind those drawn so far. False if no surface behind it can be visible.
@@ -79,8 +79,10 @@ bool composite_columns(inout LightColumns light, ColumnSums sums, Columns surfac
   return more;
 }
 
-#ifdef SURFCAST_TOGETHER
+#if defined(SURFCAST_TOGETHER)
 #include "include/draw_together.glsl"
+#elif defined(SURFCAST_SELECTS)
+#include "include/draw_selected.glsl"
 #else
 // Draws the nearest surface behind `limit`, which becomes the new limit. False if no surface behind it can be visible.
 // Both passes leave a list where nothing that follows is in front of the surface of any pixel.

@@ -97,6 +97,7 @@ void share_sums(inout ColumnSums sums) {
 // As find_surface_small. A round has whole slices, so where the walk ends does not depend on the order of splats.
 uint find_surface_together(TileLists tile, vec2 pixel, Columns limit, inout Columns surface, inout float peak) {
   float footprint = 1.0 / eta();
+  Columns deepest = surface;  // not used
   float least = share_surfaces(surface, peak);
   uint slice = 0u;
   uint begin = 0u;
@@ -104,7 +105,8 @@ uint find_surface_together(TileLists tile, vec2 pixel, Columns limit, inout Colu
     uint end = begin;
     while (end - begin < kRound && slice < uint(frame.slices.x)) end = tile_count[tile.first_count + slice++];
     for (uint k = begin + own_share(); k < end; k += kShares) {
-      see_small(slot_of(texelFetch(lists, int(tile.first_small + k)).x), footprint, pixel, limit, surface, peak);
+      see_small(slot_of(texelFetch(lists, int(tile.first_small + k)).x), footprint, pixel, limit, surface, deepest,
+                peak);
     }
     begin = end;
     least = share_surfaces(surface, peak);

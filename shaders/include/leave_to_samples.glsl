@@ -34,12 +34,11 @@ uint pixels_left_to_samples(Columns front, ivec2 corner) {
   return pixels;
 }
 
-// True if a pixel that is not left to samples needs a surface behind `limit`.
-bool others_need_more(LightColumns light, Columns limit, uint left) {
-  bool more = false;
+// Finishes the pixels at silhouettes. `corner`: the tile's first pixel in the region.
+void leave_to_samples(Columns front, ivec2 corner, inout LightColumns light) {
+  uint left = pixels_left_to_samples(front, corner);
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
     BoolRows drawn = equal((uvec4(left) >> (uvec4(0u, 1u, 2u, 3u) + uint(c * SURFCAST_ROWS))) & 1u, uvec4(0u));
-    more = more || any_of(both(drawn, both(less(Rows(0.0), limit[c]), less(Rows(kOpaque), light[c].transmittance))));
+    light[c].transmittance = mix(Rows(0.0), light[c].transmittance, drawn);
   }
-  return more;
 }

@@ -55,9 +55,14 @@ Disc fetch_disc(int slot) {
   return disc;
 }
 
+// An inverse depth in front of everything.
+const float kInFront = 3e38;
+
 // Moves the surface of each pixel to the disc of a splat, pushed back, if that is nearer, but not before `limit` (an
-// inverse depth). `peak`: the largest weight seen. `footprint`: 1 / eta.
-void see_small(int slot, float footprint, vec2 pixel, Columns limit, inout Columns surface, inout float peak) {
+// inverse depth). `deepest`: the least inverse depth of the fragments where discs are. `peak`: the largest weight seen.
+// `footprint`: 1 / eta.
+void see_small(int slot, float footprint, vec2 pixel, Columns limit, inout Columns surface, inout Columns deepest,
+               inout float peak) {
   uvec4 a = texelFetch(splats, 2 * slot);
   Disc disc = fetch_disc(slot);
   peak = max(peak, disc.weight);
@@ -71,6 +76,7 @@ void see_small(int slot, float footprint, vec2 pixel, Columns limit, inout Colum
     BoolRows hit = both(at_most(factored_form(disc.factor, v), Rows(1.0)), less(z, limit[c]));
     Rows disc_z = disc_inverse_depth(plane, inverse_depth, unit, disc, footprint);
     surface[c] = larger(surface[c], mix(Rows(0.0), disc_z, hit));
+    deepest[c] = smaller(deepest[c], mix(Rows(kInFront), z, hit));
   }
 }
 
@@ -79,29 +85,54 @@ void see_small(int slot, float footprint, vec2 pixel, Columns limit, inout Colum
 // of splats within a slice, none of whose discs is in front of where the slice begins.
 uint find_surface_small(uint first, uint count, vec2 pixel, Columns limit, inout Columns surface, inout float peak) {
   float footprint = 1.0 / eta();
+  Columns deepest = surface;  // not used
   for (uint k = 0u; k < count; ++k) {
     uint entry = texelFetch(lists, int(first + k)).x;
     if (slice_is_behind(slice_of(entry), farthest(surface))) return k;
-    see_small(slot_of(entry), footprint, pixel, limit, surface, peak);
+    see_small(slot_of(entry), footprint, pixel, limit, surface, deepest, peak);
   }
   return count;
+}
+
+// A splat that is being added.
+struct Addend {
+  SmallSplat splat;
+  SplatValue value;
+  float depth_unit;
+  float end;  // rim
+};
+
+Addend addend(int slot, float footprint, float unit) {
+  SmallSplat s = fetch_small(slot);
+  float end = rim(s.cutoff / (SURFCAST_SQRT_HALF_LOG2E * SURFCAST_SQRT_HALF_LOG2E));
+  return Addend(s, splat_value(s.color, slot, unit), s.inverse_depth * footprint, end);
+}
+
+// Where the splat has fragments behind `limit`, in the rows from the displacement v on, and their inverse depths.
+BoolRows fragments_behind(SmallSplat s, float depth_unit, vec2 v, Rows form, Rows limit, out Rows z) {
+  Rows plane = plane_inverse_depth(s.inverse_depth, depth_unit, s.slope, v);
+  z = fragment_inverse_depth(plane, s.inverse_depth, depth_unit, s.fall);
+  return both(at_most(form, Rows(s.cutoff)), less(z, limit));
+}
+
+// The weights of a splat's fragments in a column that are behind `limit`, and their inverse depths.
+Rows weights_in(Addend a, vec2 first, Rows limit, out Rows z) {
+  SmallSplat s = a.splat;
+  vec2 v = first - s.centre;
+  Rows form = factored_form(s.factor, v);
+  BoolRows visible = fragments_behind(s, a.depth_unit, v, form, limit, z);
+  return mix(Rows(0.0), s.weight * larger(exp2(-form) - a.end, Rows(0.0)), visible);
 }
 
 // Adds the fragments of a splat between `limit` and `surface`.
 void add_small(int slot, float footprint, vec2 pixel, Columns limit, Columns surface, float unit,
                inout ColumnSums sums) {
-  SmallSplat s = fetch_small(slot);
-  SplatValue value = splat_value(s.color, slot, unit);
-  float depth_unit = s.inverse_depth * footprint;
-  float end = rim(s.cutoff / (SURFCAST_SQRT_HALF_LOG2E * SURFCAST_SQRT_HALF_LOG2E));
+  Addend a = addend(slot, footprint, unit);
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
-    vec2 v = column(pixel, c) - s.centre;
-    Rows form = factored_form(s.factor, v);
-    Rows plane = plane_inverse_depth(s.inverse_depth, depth_unit, s.slope, v);
-    Rows z = fragment_inverse_depth(plane, s.inverse_depth, depth_unit, s.fall);
-    BoolRows visible = both(at_most(form, Rows(s.cutoff)), both(at_most(surface[c], z), less(z, limit[c])));
-    Rows weight = mix(Rows(0.0), s.weight * larger(exp2(-form) - end, Rows(0.0)), visible);
-    sums_add(sums[c], value, weight);
+    Rows z;
+    Rows weight = weights_in(a, column(pixel, c), limit[c], z);
+    weight = mix(Rows(0.0), weight, at_most(surface[c], z));
+    sums_add(sums[c], a.value, weight);
 #ifdef SURFCAST_EYE_DOME
     sums_add_depth(sums[c], unit, weight, z, surface[c]);
 #endif

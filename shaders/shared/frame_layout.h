@@ -35,6 +35,7 @@ namespace surfcast::layout {
 // Depth slices into which the list of a tile may be divided. A list entry and the first tile of a splat hold the number
 // of a slice in the bits above SURFCAST_SLICE_SHIFT; below it are a splat's index, and a tile's row and column.
 #define SURFCAST_SLICES 16
+#define SURFCAST_LEVELS 256  // of depth, for all slices together
 #define SURFCAST_SLICE_SHIFT 26
 // Rows of tiles that one lane bins of a large splat.
 #define SURFCAST_BAND_ROWS 120
@@ -53,7 +54,7 @@ struct FrameConstants {
   SURFCAST_VEC4 background;  // linear light
   SURFCAST_IVEC4 flags;      // x: cull back faces, y: per-surfel weights
   SURFCAST_IVEC4 slices;     // depth slices of a tile's list, see include/depth_slices.glsl: x: number, y: bits of the
-                             // inverse depth at which the second one begins, z: step of these bits to the next slice
+                             // inverse depth at which the second level begins, z: bits of the levels per step of these
 };
 
 // One visible block (see shared/surfel_layout.h).
@@ -126,6 +127,7 @@ struct Counters {
 #define SURFCAST_BIND_COUNTERS 5
 #define SURFCAST_BIND_TILE_COUNT 6   // uint per tile and slice, see slices.comp; large splats follow the last slice
 #define SURFCAST_BIND_TILE_OFFSET 7  // uint per tile: first entry
+#define SURFCAST_BIND_UNFINISHED 8   // number of columns that were handed over, see include/unfinished.glsl
 #define SURFCAST_BIND_PICTURE 9
 #define SURFCAST_BIND_TILE_ORDER 14   // uint per tile: tiles in descending order of list length
 #define SURFCAST_BIND_NEXT_TILES 15   // uint per work group of the splat kernel: tiles started by its lanes
@@ -146,6 +148,8 @@ struct Counters {
 #define SURFCAST_UNIT_SURFELS 5     // uvec4 per texel of a block; surfels: see shared/surfel_layout.h
 #define SURFCAST_UNIT_SRGB 6        // uint per 8 bit sRGB value: root of its linear light in 11 and in 10 bits
 #define SURFCAST_UNIT_ATTRIBUTES 7  // uint per surfel: 16 bits of intensity, 8 of classification
+#define SURFCAST_UNIT_REACHES 6     // uint per list entry: what its splat may reach, see include/splat_bounds.glsl
+#define SURFCAST_UNIT_UNFINISHED 7  // columns that were handed over, in the passes that draw
 #define SURFCAST_UNIT_COLORS 8      // uint per entry of a colour table: linear light as in a splat record
 
 #ifdef __cplusplus

@@ -59,6 +59,24 @@ TEST(TileSpans, KeepLoopsWithinWhatSoftwareGLAllows) {
   }
 }
 
+TEST(TileSpans, KeepLoopsBehindTheFirstSurfaceWithinWhatSoftwareGLAllows) {
+  constexpr uint32_t kRounds = 65535;
+  constexpr uint32_t kLanes = 8;
+  constexpr uint32_t kSurfaces = 7;
+  constexpr uint32_t kMarked = 24;  // shaders/include/selection.glsl: entries of a word, marked eight at a time
+  for (uint32_t list = 1; list < SURFCAST_LONG_LIST; ++list) {
+    for (const TileSpan& span : spans_of_tiles(counters_of({list}), 1, kSoftware)) {
+      if (span.first == span.end) continue;
+      const uint32_t words = (list + kMarked - 1) / kMarked;
+      const uint32_t marking = 4 * words + 2;
+      const uint32_t walks = 2 * (list + words + 1) + list / SURFCAST_CARRY_INTERVAL + 2;
+      const uint32_t columns = (span.tiles_per_group + kLanes - 1) / kLanes;
+      const uint32_t surfaces = columns == 1 ? kSurfaces : kSurfaces * columns + kSurfaces - 1;
+      EXPECT_LE(surfaces * walks + (2 * columns - 1) * marking, kRounds) << list;
+    }
+  }
+}
+
 TEST(TileSpans, AreAllOfOneGroupSizeOnHardware) {
   for (const TileSpan& span : spans_of_tiles(counters_of({3000, 30, 3}), 3, KernelShape())) {
     EXPECT_EQ(span.tiles_per_group, span.together ? 1 : 2);
