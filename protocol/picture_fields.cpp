@@ -8,6 +8,7 @@
 
 #include "protocol/display_fields.h"
 #include "protocol/parse.h"
+#include "protocol/volume_fields.h"
 
 namespace surfcast::protocol {
 namespace {
@@ -43,6 +44,16 @@ constexpr std::array kFields{
     PictureField{"eye_dome", "eye-dome", "STRENGTH[,RADIUS]",
                  "darken pixels behind depth discontinuities: strength 0 to 100, usually 1; radius up to 8 pixels "
                  "(default 0,1.5)"},
+    PictureField{
+        "transfer", "transfer", "NAME[,FIRST,LAST]|VALUE,R,G,B,OPACITY;...",
+        "colours and opacities of volumes: gray, ct-bone, ct-soft or mr, with the values at its ends; or points "
+        "in ascending order, with the opacity of one spacing of the grid; or on the command line a JSON file "
+        "(default gray)"},
+    PictureField{"shaded", "shaded", "on|off", "lighting of volumes (default off)"},
+    PictureField{
+        "splat_convention", "splat-convention", "trained|exact",
+        "pictures of Gaussian models as the training programs draw them, or exact in perspective and antialiased "
+        "(default trained)"},
 };
 
 template <typename Enum>
@@ -173,7 +184,7 @@ bool set_by_name(wire::DrawPicture& picture, std::string_view name, std::string_
   if (name == "spacing") return set_spacing(picture, text);
   if (name == "shading") return set_choice(kShadings, text, [&](auto value) { picture.set_shading(value); });
   if (name == "background") return set_background(picture, text);
-  return set_display_field(picture, name, text);
+  return set_display_field(picture, name, text) || set_volume_field(picture, name, text);
 }
 
 }  // namespace

@@ -12,6 +12,7 @@
 #include "protocol/camera_path.h"
 #include "protocol/pick_result_text.h"
 #include "protocol/picture_fields.h"
+#include "protocol/transfer_file.h"
 #include "protocol/validate.h"
 
 namespace surfcast::protocol {
@@ -19,9 +20,15 @@ namespace {
 
 using nlohmann::json;
 
+/// Files are of the command line alone: a server does not open what a client names.
+bool names_transfer_file(std::string_view name, std::string_view text) {
+  return name == "transfer" && text.ends_with(".json");
+}
+
 /// Checks a flag's value while the command line is parsed, so that an invalid value is a command line error. CLI11 puts
 /// the flag's name before the message, so the field name at its start is removed.
 std::string check_flag(std::string_view name, const std::string& text) {
+  if (names_transfer_file(name, text)) return {};
   wire::DrawPicture scratch;
   const Status status = set_picture_field(scratch, name, text);
   if (status) return {};
@@ -192,7 +199,9 @@ Result<wire::DrawPicture> RequestFlags::request(std::string_view model, std::opt
   }
   for (const auto& [name, text] : values_) {
     if (text.empty()) continue;
-    if (Status status = set_picture_field(picture, name, text); !status) return fail(status.error());
+    const Status status = names_transfer_file(name, text) ? read_transfer_file(text, *picture.mutable_transfer())
+                                                          : set_picture_field(picture, name, text);
+    if (!status) return fail(status.error());
   }
   if (format) picture.set_format(*format);
   if (Status status = check_picture(picture); !status) return fail(status.error());

@@ -1,6 +1,7 @@
 #include "protocol/validate.h"
 
 #include <cmath>
+#include <limits>
 #include <string>
 
 namespace surfcast::protocol {
@@ -12,6 +13,10 @@ tl::unexpected<Error> invalid(const char* message) {
 
 bool finite(const wire::Vector3& v) {
   return std::isfinite(v.x()) && std::isfinite(v.y()) && std::isfinite(v.z());
+}
+
+bool valid(const wire::Color& color) {
+  return color.red() <= 255 && color.green() <= 255 && color.blue() <= 255;
 }
 
 Status check_camera(const wire::Camera& camera) {
@@ -53,10 +58,7 @@ Status check_numbers(const wire::DrawPicture& picture) {
   if (!(picture.spacing() >= 0) || !std::isfinite(picture.spacing())) {
     return invalid("spacing: must be a finite number of pixels, at least 0");
   }
-  const wire::Color& background = picture.background();
-  if (background.red() > 255 || background.green() > 255 || background.blue() > 255) {
-    return invalid("background: each part must be at most 255");
-  }
+  if (!valid(picture.background())) return invalid("background: each part must be at most 255");
   if (picture.quality() > 100) return invalid("quality: must be at most 100");
   return {};
 }
@@ -86,6 +88,32 @@ Status check_clip_boxes(const wire::DrawPicture& picture) {
   return {};
 }
 
+Status check_transfer_points(const wire::TransferFunction& transfer) {
+  if (transfer.points_size() > kMaxTransferPoints) return invalid("transfer: too many points");
+  double before = -std::numeric_limits<double>::infinity();
+  for (const wire::TransferPoint& point : transfer.points()) {
+    if (!std::isfinite(point.value())) return invalid("transfer: values must be finite numbers");
+    if (point.value() < before) return invalid("transfer: values must ascend");
+    if (!valid(point.color())) return invalid("transfer: each part of a colour must be at most 255");
+    if (!(point.opacity() >= 0 && point.opacity() <= 1)) return invalid("transfer: opacities must lie between 0 and 1");
+    before = point.value();
+  }
+  return {};
+}
+
+Status check_volume_options(const wire::DrawPicture& picture) {
+  const wire::TransferFunction& transfer = picture.transfer();
+  if (!wire::TransferPreset_IsValid(transfer.preset())) return invalid("transfer: unknown preset");
+  if (!std::isfinite(transfer.first()) || !std::isfinite(transfer.last())) {
+    return invalid("transfer: the first and last value must be finite numbers");
+  }
+  if (transfer.has_first() && transfer.has_last() && !(transfer.first() < transfer.last())) {
+    return invalid("transfer: the first value must be below the last");
+  }
+  if (!wire::SplatConvention_IsValid(picture.splat_convention())) return invalid("splat_convention: unknown");
+  return check_transfer_points(transfer);
+}
+
 Status check_display_options(const wire::DrawPicture& picture) {
   if (Status status = check_coloring(picture.coloring()); !status) return status;
   for (const uint32_t code : picture.hidden_classes()) {
@@ -99,7 +127,7 @@ Status check_display_options(const wire::DrawPicture& picture) {
   if (!(eye_dome.radius() >= 0 && eye_dome.radius() <= kMaxEyeDomeRadius)) {
     return invalid("eye_dome: the radius must be at most 8 pixels");
   }
-  return {};
+  return check_volume_options(picture);
 }
 
 }  // namespace

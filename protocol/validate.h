@@ -15,6 +15,7 @@ inline constexpr uint32_t kMaxClassCode = 255;
 inline constexpr double kMaxEyeDomeStrength = 100;
 inline constexpr double kMaxEyeDomeRadius = 8;        ///< pixels
 inline constexpr double kDefaultEyeDomeRadius = 1.5;  ///< pixels
+inline constexpr int kMaxTransferPoints = 256;
 
 /// Checks a picture request as far as this is possible without the model and the device: numbers are finite and in
 /// range, enum values are known, the camera is complete. The server's limits (resolution) are not checked.

@@ -102,6 +102,34 @@ picture::Coloring from_wire(const wire::Coloring& coloring) {
   return result;
 }
 
+picture::TransferPreset from_wire(wire::TransferPreset preset) {
+  switch (preset) {
+    case wire::TRANSFER_PRESET_CT_BONE:
+      return picture::TransferPreset::kCtBone;
+    case wire::TRANSFER_PRESET_CT_SOFT:
+      return picture::TransferPreset::kCtSoft;
+    case wire::TRANSFER_PRESET_MR:
+      return picture::TransferPreset::kMr;
+    default:
+      return picture::TransferPreset::kGray;
+  }
+}
+
+glm::u8vec3 from_wire(const wire::Color& color) {
+  return {color.red(), color.green(), color.blue()};
+}
+
+picture::Transfer from_wire(const wire::TransferFunction& transfer) {
+  picture::Transfer result;
+  result.preset = from_wire(transfer.preset());
+  if (transfer.has_first()) result.first = transfer.first();
+  if (transfer.has_last()) result.last = transfer.last();
+  for (const wire::TransferPoint& point : transfer.points()) {
+    result.points.push_back({point.value(), from_wire(point.color()), point.opacity()});
+  }
+  return result;
+}
+
 /// What is shown of the model, and in which colours.
 void set_display_options(const wire::DrawPicture& request, picture::PictureRequest& picture) {
   picture.coloring = from_wire(request.coloring());
@@ -113,6 +141,10 @@ void set_display_options(const wire::DrawPicture& request, picture::PictureReque
   picture.eye_dome.strength = request.eye_dome().strength();
   const double radius = request.eye_dome().radius();
   picture.eye_dome.radius = radius > 0 ? radius : protocol::kDefaultEyeDomeRadius;
+  picture.volumes = {from_wire(request.transfer()), request.shaded()};
+  picture.splat_convention = request.splat_convention() == wire::SPLAT_CONVENTION_EXACT
+                                 ? picture::SplatConvention::kExact
+                                 : picture::SplatConvention::kTrained;
 }
 
 geometry::Camera from_wire(const wire::Camera& camera) {
@@ -134,7 +166,6 @@ void to_wire(const geometry::Camera& camera, wire::Camera* message) {
 Result<service::PictureJob> to_job(const wire::DrawPicture& request) {
   if (Status status = protocol::check_picture(request); !status) return fail(status.error());
   const wire::Resolution& resolution = request.resolution();
-  const wire::Color& background = request.background();
   service::PictureJob job;
   job.model = request.model();
   if (request.has_camera()) job.request.camera = from_wire(request.camera());
@@ -146,7 +177,7 @@ Result<service::PictureJob> to_job(const wire::DrawPicture& request) {
   job.request.shading = from_wire(request.shading());
   job.request.silhouettes = true;
   job.request.spacing = request.spacing();
-  job.request.background = {background.red(), background.green(), background.blue()};
+  job.request.background = from_wire(request.background());
   set_display_options(request, job.request);
   job.format = from_wire(request.format());
   for (const int channel : request.channels()) job.channels.set(static_cast<size_t>(channel));

@@ -42,6 +42,32 @@ struct EyeDome {
   double radius = 1.5;  ///< pixels, at most 8
 };
 
+/// A point of a transfer function.
+struct TransferPoint {
+  double value = 0;  ///< of a sample
+  glm::u8vec3 color{255};
+  double opacity = 0;  ///< of one spacing of the grid, 0 to 1
+};
+
+enum class TransferPreset { kGray, kCtBone, kCtSoft, kMr };
+
+/// The colours and opacities of the samples of volumes: points in ascending order, or a preset.
+struct Transfer {
+  TransferPreset preset = TransferPreset::kGray;  ///< without points
+  std::optional<double> first{};                  ///< the value at the start of the preset; none: its own
+  std::optional<double> last{};                   ///< the value at the end of the preset; none: its own
+  std::vector<TransferPoint> points;
+};
+
+/// How volumes are drawn.
+struct VolumeOptions {
+  Transfer transfer;
+  bool shaded = false;  ///< lit by their gradients
+};
+
+/// How Gaussian models are drawn: as the programs that trained them do, or exactly in perspective.
+enum class SplatConvention { kTrained, kExact };
+
 /// All parameters of a picture of a model.
 struct PictureRequest {
   std::optional<geometry::Camera> camera;  ///< none: a view that fits the whole model
@@ -70,6 +96,8 @@ struct PictureRequest {
   std::bitset<256> hidden_classes;  ///< hidden classification codes; no effect on models without classes
   geometry::Clip clip;
   EyeDome eye_dome;
+  VolumeOptions volumes;
+  SplatConvention splat_convention = SplatConvention::kTrained;
 };
 
 /// A rendered picture. Rows run from top to bottom without padding. Each pixel has four channels: the colour, already

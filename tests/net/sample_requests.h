@@ -42,6 +42,12 @@ inline wire::DrawPicture sample_picture() {
   clip->set_inverted(true);
   picture.mutable_eye_dome()->set_strength(1);
   picture.mutable_eye_dome()->set_radius(2);
+  wire::TransferPoint& point = *picture.mutable_transfer()->add_points();
+  point.set_value(-3);
+  point.mutable_color()->set_red(255);
+  point.set_opacity(0.5);
+  picture.mutable_transfer()->set_first(1);
+  picture.set_shaded(true);
   picture.add_channels(wire::CHANNEL_DEPTH);
   picture.add_channels(wire::CHANNEL_SURFEL);
   return picture;

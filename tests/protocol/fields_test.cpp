@@ -9,6 +9,7 @@
 #include "protocol/parse.h"
 #include "protocol/picture_fields.h"
 #include "protocol/picture_query.h"
+#include "protocol/transfer_file.h"
 #include "protocol/validate.h"
 
 namespace surfcast::protocol {
@@ -39,14 +40,29 @@ TEST(Parse, ListsHaveExactlyAsManyPartsAsAskedFor) {
 
 TEST(PictureFields, EachFieldIsSetFromItsText) {
   wire::DrawPicture picture;
-  const std::vector<std::pair<std::string, std::string>> texts = {
-      {"position", "1,2,3"},       {"focal_point", "4,5,6"},     {"view_up", "0,0,1"},
-      {"view_angle", "45"},        {"resolution", "8,9"},        {"format", "exr"},
-      {"quality", "33"},           {"channels", "surfel,depth"}, {"normalization", "surfel"},
-      {"filter", "none"},          {"spacing", "1.5"},           {"shading", "lit"},
-      {"background", "1,2,255"},   {"color_by", "normal"},       {"color_map", "terrain"},
-      {"color_range", "-2,7.5"},   {"hide_classes", "2,255"},    {"clip_box", "0,0,0,1,1,1;2,2,2,3,3,3"},
-      {"clip_out", "4,4,4,5,5,5"}, {"eye_dome", "1.5,2"}};
+  const std::vector<std::pair<std::string, std::string>> texts = {{"position", "1,2,3"},
+                                                                  {"focal_point", "4,5,6"},
+                                                                  {"view_up", "0,0,1"},
+                                                                  {"view_angle", "45"},
+                                                                  {"resolution", "8,9"},
+                                                                  {"format", "exr"},
+                                                                  {"quality", "33"},
+                                                                  {"channels", "surfel,depth"},
+                                                                  {"normalization", "surfel"},
+                                                                  {"filter", "none"},
+                                                                  {"spacing", "1.5"},
+                                                                  {"shading", "lit"},
+                                                                  {"background", "1,2,255"},
+                                                                  {"color_by", "normal"},
+                                                                  {"color_map", "terrain"},
+                                                                  {"color_range", "-2,7.5"},
+                                                                  {"hide_classes", "2,255"},
+                                                                  {"clip_box", "0,0,0,1,1,1;2,2,2,3,3,3"},
+                                                                  {"clip_out", "4,4,4,5,5,5"},
+                                                                  {"eye_dome", "1.5,2"},
+                                                                  {"transfer", "mr,-1,2.5"},
+                                                                  {"shaded", "on"},
+                                                                  {"splat_convention", "exact"}};
   EXPECT_EQ(texts.size(), picture_fields().size());
   for (const auto& [name, text] : texts) EXPECT_TRUE(set_picture_field(picture, name, text)) << name;
   EXPECT_EQ(picture.camera().focal_point().y(), 5);
@@ -75,6 +91,75 @@ TEST(PictureFields, EachFieldIsSetFromItsText) {
   EXPECT_EQ(picture.eye_dome().strength(), 1.5);
   EXPECT_EQ(picture.eye_dome().radius(), 2);
   EXPECT_TRUE(check_picture(parse_picture_query("m", "eye_dome=1").value()));
+  EXPECT_EQ(picture.transfer().preset(), wire::TRANSFER_PRESET_MR);
+  EXPECT_EQ(picture.transfer().first(), -1);
+  EXPECT_EQ(picture.transfer().last(), 2.5);
+  EXPECT_TRUE(picture.shaded());
+  EXPECT_EQ(picture.splat_convention(), wire::SPLAT_CONVENTION_EXACT);
+}
+
+TEST(PictureFields, ATransferFunctionIsAPresetOrPoints) {
+  wire::DrawPicture picture;
+  ASSERT_TRUE(set_picture_field(picture, "transfer", "ct-bone"));
+  EXPECT_EQ(picture.transfer().preset(), wire::TRANSFER_PRESET_CT_BONE);
+  EXPECT_FALSE(picture.transfer().has_first());
+  ASSERT_TRUE(set_picture_field(picture, "transfer", "-5.5,1,2,3,0;-5.5,4,5,6,0.25;7,255,0,0,1"));
+  EXPECT_EQ(picture.transfer().preset(), wire::TRANSFER_PRESET_GRAY);
+  ASSERT_EQ(picture.transfer().points_size(), 3);
+  EXPECT_EQ(picture.transfer().points(1).value(), -5.5);
+  EXPECT_EQ(picture.transfer().points(1).color().blue(), 6u);
+  EXPECT_EQ(picture.transfer().points(1).opacity(), 0.25);
+  ASSERT_TRUE(set_picture_field(picture, "transfer", "gray"));
+  EXPECT_EQ(picture.transfer().points_size(), 0);
+}
+
+TEST(PictureFields, TransferFunctionsAreChecked) {
+  const auto checked = [](const std::string& text) {
+    return check_picture(*parse_picture_query("m", "transfer=" + text));
+  };
+  EXPECT_TRUE(parse_picture_query("m", "transfer=0,0,0,0,0;0,9,9,9,1;2,9,9,9,1"));
+  for (const char* text : {"2,0,0,0,0;1,0,0,0,0", "0,0,0,0,1.5", "0,0,0,0,-1"}) {
+    EXPECT_FALSE(parse_picture_query("m", std::string("transfer=") + text)) << text;
+  }
+  std::string many = "0,0,0,0,0";
+  for (int i = 1; i < kMaxTransferPoints; ++i) many += ";0,0,0,0,0";
+  EXPECT_TRUE(checked(many));
+  EXPECT_FALSE(parse_picture_query("m", "transfer=" + many + ";0,0,0,0,0"));
+  wire::DrawPicture picture;
+  picture.set_model("m");
+  picture.mutable_transfer()->set_first(std::numeric_limits<double>::quiet_NaN());
+  EXPECT_FALSE(check_picture(picture));
+  picture.mutable_transfer()->set_first(2);
+  picture.mutable_transfer()->set_last(2);
+  EXPECT_FALSE(check_picture(picture));
+}
+
+TEST(TransferFile, HoldsPointsOrAPreset) {
+  wire::TransferFunction transfer;
+  ASSERT_TRUE(parse_transfer_json(
+      R"({"points": [{"value": 0, "color": [1, 2, 3], "opacity": 0}, {"value": 9.5, "color": [9, 0, 255], "opacity": 1}]})",
+      transfer));
+  ASSERT_EQ(transfer.points_size(), 2);
+  EXPECT_EQ(transfer.points(1).value(), 9.5);
+  EXPECT_EQ(transfer.points(1).color().blue(), 255u);
+  ASSERT_TRUE(parse_transfer_json(R"({"preset": "mr", "first": 3, "last": 40})", transfer));
+  EXPECT_EQ(transfer.points_size(), 0);
+  EXPECT_EQ(transfer.preset(), wire::TRANSFER_PRESET_MR);
+  EXPECT_EQ(transfer.last(), 40);
+}
+
+TEST(TransferFile, WrongTextsAreExplainedAndChangeNothing) {
+  wire::TransferFunction transfer;
+  transfer.set_first(1);
+  for (const char* text :
+       {"", "[]", "{}", R"({"points": 3})", R"({"points": [1]})", R"({"points": [{"value": 0, "opacity": 0}]})",
+        R"({"points": [{"value": 0, "color": [1, 2], "opacity": 0}]})",
+        R"({"points": [{"value": 0, "color": [1, 2, 256], "opacity": 0}]})",
+        R"({"points": [{"value": "0", "color": [1, 2, 5], "opacity": 0}]})", R"({"preset": "bone"})",
+        R"({"preset": 1})"}) {
+    EXPECT_FALSE(parse_transfer_json(text, transfer)) << text;
+  }
+  EXPECT_EQ(transfer.first(), 1);
 }
 
 TEST(PictureFields, BoxesOfOneKindReplaceEachOtherAndLeaveTheOtherKind) {
@@ -122,6 +207,17 @@ TEST(PictureFields, WrongTextsAreExplained) {
                                                                                    {"eye_dome", "101"},
                                                                                    {"eye_dome", "1,9"},
                                                                                    {"eye_dome", "1,"},
+                                                                                   {"transfer", ""},
+                                                                                   {"transfer", "bone"},
+                                                                                   {"transfer", "gray,1"},
+                                                                                   {"transfer", "gray,2,1"},
+                                                                                   {"transfer", "lung.json"},
+                                                                                   {"transfer", "0,0,0,256,0"},
+                                                                                   {"transfer", "0,0,0,0.5,0"},
+                                                                                   {"transfer", "0,0,0,0"},
+                                                                                   {"transfer", "0,0,0,0,0;"},
+                                                                                   {"shaded", "yes"},
+                                                                                   {"splat_convention", "inria"},
                                                                                    {"filter", "EWA"}}) {
     const Status status = set_picture_field(picture, name, text);
     ASSERT_FALSE(status) << name << '=' << text;

@@ -46,6 +46,23 @@ class RequestFlagsTest : public ::testing::Test {
   fs::path folder_;
 };
 
+TEST_F(RequestFlagsTest, ATransferFunctionMayBeAFile) {
+  const std::string file = write("lung.json", R"({"preset": "ct-soft", "last": 40})");
+  ASSERT_TRUE(parse({"--output", "a.png", "--transfer", file}));
+  const auto picture = flags_.request("ct");
+  ASSERT_TRUE(picture);
+  EXPECT_EQ(picture->transfer().preset(), wire::TRANSFER_PRESET_CT_SOFT);
+  EXPECT_EQ(picture->transfer().last(), 40);
+}
+
+TEST_F(RequestFlagsTest, ABadFileOfATransferFunctionIsNamed) {
+  const std::string file = write("lung.json", "{}");
+  ASSERT_TRUE(parse({"--output", "a.png", "--transfer", file}));
+  const auto picture = flags_.request("ct");
+  ASSERT_FALSE(picture);
+  EXPECT_NE(picture.error().message.find(file), std::string::npos);
+}
+
 TEST_F(RequestFlagsTest, FlagsBecomeARequest) {
   ASSERT_TRUE(parse({"--output", "a.jpg", "--camera-position", "-1,2,3", "--camera-focal-point=0,0,-5", "--resolution",
                      "640,480", "--background", "9,8,7"}));
