@@ -22,6 +22,16 @@ const display: DisplayOptions = {
   eyeDome: { strength: 0.75, radius: 2 },
   background: { red: 255, green: 0, blue: 9 },
   spacing: 0,
+  transfer: {
+    preset: 'gray',
+    range: undefined,
+    points: [
+      { value: -1000, color: { red: 0, green: 0, blue: 0 }, opacity: 0 },
+      { value: 400.5, color: { red: 255, green: 240, blue: 9 }, opacity: 0.25 },
+    ],
+  },
+  shaded: true,
+  splatConvention: 'exact',
 };
 
 describe('a link', () => {
@@ -41,6 +51,7 @@ describe('a link', () => {
     '#/lion?position=1,2,Infinity&focal_point=3,4,5',
     '#/lion?color_by=smell&color_map=&color_range=1&hide_classes=x,-1,70000&clip_box=1,2,3&eye_dome=-1&background=1,2,256',
     '#/lion?spacing=-3&eye_dome=1,0',
+    '#/lion?transfer=bone&shaded=yes&splat_convention=inria',
     '#/lion?&&=&',
   ])('with nonsense shows the model as usual: %s', (hash) => {
     expect(parsePlace(hash)).toEqual({ model: 'lion', camera: undefined, display: defaultDisplay });

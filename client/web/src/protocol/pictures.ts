@@ -7,12 +7,16 @@ import {
   ColorSource,
   DrawPictureSchema,
   FileFormat,
+  SplatConvention,
+  TransferPreset,
   type Box as WireBox,
   type Camera as WireCamera,
   type DrawPicture,
+  type TransferFunctionSchema,
   type Vector3,
 } from '../generated/surfcast_pb';
 import type { ColorMapName, ColorSourceName, DisplayOptions } from '../state/display_options';
+import { defaultTransfer, type PresetName, type Transfer } from '../volume/transfer';
 
 export interface Size {
   readonly width: number;
@@ -33,6 +37,18 @@ const maps: Readonly<Record<ColorMapName, ColorMap>> = {
   gray: ColorMap.GRAY,
   terrain: ColorMap.TERRAIN,
 };
+
+const presets: Readonly<Record<PresetName, TransferPreset>> = {
+  gray: TransferPreset.GRAY,
+  'ct-bone': TransferPreset.CT_BONE,
+  'ct-soft': TransferPreset.CT_SOFT,
+  mr: TransferPreset.MR,
+};
+
+function wireTransfer({ preset, range, points }: Transfer): MessageInitShape<typeof TransferFunctionSchema> {
+  if (points.length > 0) return { points: points.map(({ value, color, opacity }) => ({ value, color, opacity })) };
+  return { preset: presets[preset], ...(range ? { first: range[0], last: range[1] } : {}) };
+}
 
 /** The request for a picture. Without a camera the server chooses a view of the whole model. */
 export function pictureOf(
@@ -59,6 +75,9 @@ export function pictureOf(
     clipBoxes: display.clips.map(({ box, inverted }) => ({ box, inverted })),
     ...(camera ? { camera: wireCamera(camera) } : {}),
     ...(display.eyeDome.strength > 0 ? { eyeDome: display.eyeDome } : {}),
+    ...(display.transfer === defaultTransfer ? {} : { transfer: wireTransfer(display.transfer) }),
+    shaded: display.shaded,
+    splatConvention: display.splatConvention === 'exact' ? SplatConvention.EXACT : SplatConvention.TRAINED,
   };
   return create(DrawPictureSchema, picture);
 }

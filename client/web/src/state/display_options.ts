@@ -1,10 +1,14 @@
 import type { Box } from '../camera/standard_views';
+import { defaultTransfer, type Transfer } from '../volume/transfer';
 
 export const colorSources = ['rgb', 'intensity', 'elevation', 'classification', 'normal'] as const;
 export type ColorSourceName = (typeof colorSources)[number];
 
 export const colorMaps = ['viridis', 'turbo', 'gray', 'terrain'] as const;
 export type ColorMapName = (typeof colorMaps)[number];
+
+export const splatConventions = ['trained', 'exact'] as const;
+export type SplatConventionName = (typeof splatConventions)[number];
 
 export interface Clip {
   readonly box: Box;
@@ -27,6 +31,9 @@ export interface DisplayOptions {
   readonly eyeDome: { readonly strength: number; readonly radius: number }; // strength 0: off
   readonly background: Rgb;
   readonly spacing: number; // projected surfel spacing at which refinement at rest stops, pixels; 0: every surfel
+  readonly transfer: Transfer; // of volumes
+  readonly shaded: boolean; // volumes are lit
+  readonly splatConvention: SplatConventionName;
 }
 
 /** Slightly darker than the panels, so that the picture appears to be behind them. */
@@ -41,6 +48,9 @@ export const defaultDisplay: DisplayOptions = {
   eyeDome: { strength: 0, radius: 1.5 },
   background: defaultBackground,
   spacing: 1,
+  transfer: defaultTransfer,
+  shaded: false,
+  splatConvention: 'trained',
 };
 
 export const toHex = (color: Rgb): string =>

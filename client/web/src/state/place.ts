@@ -5,9 +5,11 @@ import {
   colorSources,
   defaultBackground,
   defaultDisplay,
+  splatConventions,
   type Clip,
   type DisplayOptions,
 } from './display_options';
+import { formatTransfer, parseTransfer } from '../volume/transfer';
 
 /** The contents of a link: model, camera and display options. Parameters are those of `GET /api/models/..`. */
 export interface Place {
@@ -70,6 +72,10 @@ function displayIn(values: URLSearchParams): DisplayOptions {
     background:
       background && inByte ? { red: background[0]!, green: background[1]!, blue: background[2]! } : defaultBackground,
     spacing: spacing !== undefined && spacing >= 0 ? spacing : defaultDisplay.spacing,
+    transfer: parseTransfer(values.get('transfer')),
+    shaded: values.get('shaded') === 'on',
+    splatConvention:
+      splatConventions.find((name) => name === values.get('splat_convention')) ?? defaultDisplay.splatConvention,
   };
 }
 
@@ -112,6 +118,9 @@ function displayParameters(display: DisplayOptions): Record<string, string | und
         ? undefined
         : `${background.red},${background.green},${background.blue}`,
     spacing: display.spacing === defaultDisplay.spacing ? undefined : String(display.spacing),
+    transfer: formatTransfer(display.transfer),
+    shaded: display.shaded ? 'on' : undefined,
+    splat_convention: display.splatConvention === defaultDisplay.splatConvention ? undefined : display.splatConvention,
   };
 }
 

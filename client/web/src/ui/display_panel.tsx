@@ -14,6 +14,7 @@ import {
 import { classColor, className, gradientOf } from '../state/palette';
 import { bounds, description, display, upAxis } from '../state/store';
 import { Choices, NumberField, Section, Slider } from './controls';
+import { GaussianSection, VolumeSections } from './volume_sections';
 
 const change = (part: Partial<DisplayOptions>): void => void (display.value = { ...display.peek(), ...part });
 
@@ -221,10 +222,18 @@ function Detail(): JSX.Element {
   );
 }
 
+/** Colours by attribute belong to surfels; a server that does not count its items by kind has nothing else. */
+function hasSurfels(): boolean {
+  const kinds = description.value?.kinds ?? [];
+  return kinds.length === 0 || kinds.some(({ kind }) => kind === 'surfel');
+}
+
 export function DisplayPanel(): JSX.Element {
   return (
     <>
-      <Coloring />
+      <VolumeSections />
+      <GaussianSection />
+      {hasSurfels() && <Coloring />}
       <Classes />
       <Depth />
       <Background />

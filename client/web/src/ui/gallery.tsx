@@ -1,13 +1,12 @@
 import type { JSX } from 'preact';
 import { useEffect, useState } from 'preact/hooks';
 import type { ScanStatus } from '../generated/surfcast_pb';
+import { contentsOf } from '../state/contents';
 import { openModel } from '../state/routes';
 import { failed, progressText } from '../state/scans';
 import { descriptions, galleryOpen, link, model, models, scans, uploads } from '../state/store';
 import { useActions } from './actions';
 import { IconButton } from './controls';
-
-const compact = new Intl.NumberFormat('en', { notation: 'compact', maximumFractionDigits: 1 });
 
 const thumbnail = (name: string): string =>
   `api/models/${encodeURIComponent(name)}/image?resolution=480,300&spacing=1.5&format=jpg&quality=80&background=18,22,27`;
@@ -69,7 +68,7 @@ function OpenCard({ name, scan }: { name: string; scan: ScanStatus | undefined }
         <Thumbnail key={`${name} ${scan?.edition ?? ''}`} name={name} edition={scan?.edition} />
         <span class="name">{name}</span>
         <span class="faint">
-          {scan ? progressText(scan) : description ? `${compact.format(Number(description.surfels))} points` : '…'}
+          {scan ? progressText(scan) : description ? contentsOf(description) : '…'}
         </span>
         {scan && !failed(scan) && <progress value={scan.done} />}
       </button>

@@ -1,4 +1,5 @@
 import type { ComponentChildren, JSX } from 'preact';
+import type { ModelDescription, VolumeDescription } from '../generated/surfcast_pb';
 import { formatNumber } from '../measure/format';
 import { bounds, description, lengthDecimals } from '../state/store';
 import { Section } from './controls';
@@ -14,6 +15,33 @@ function Row({ name, children }: { name: string; children: ComponentChildren }):
 }
 
 const count = (value: bigint | number): string => formatNumber(Number(value), 0);
+
+const kindLabels: Readonly<Record<string, string>> = { surfel: 'Points', grid: 'Samples', gaussian: 'Gaussians' };
+
+/** The number of items of each kind; of a server that does not tell kinds apart, the points. */
+function Items({ model }: { model: ModelDescription }): JSX.Element {
+  if (model.kinds.length === 0) return <Row name="Points">{count(model.surfels)}</Row>;
+  const rows = model.kinds.map(({ kind, items }) => (
+    <Row key={kind} name={kindLabels[kind] ?? kind}>
+      {count(items)}
+    </Row>
+  ));
+  return <>{rows}</>;
+}
+
+function Volume({ volume }: { volume: VolumeDescription }): JSX.Element {
+  const significant = (value: number): string => String(Number(value.toPrecision(5)));
+  const unit = (text: string): string => (text ? ` ${text}` : '');
+  return (
+    <Section title={volume.name || 'Volume'}>
+      <dl class="facts">
+        <Row name="Samples">{volume.size.join(' × ')}</Row>
+        <Row name="Spacing">{volume.spacing.map(significant).join(' × ') + unit(volume.lengthUnit)}</Row>
+        <Row name="Values">{`${significant(volume.low)} – ${significant(volume.high)}${unit(volume.sampleUnit)}`}</Row>
+      </dl>
+    </Section>
+  );
+}
 
 function Extent(): JSX.Element {
   const { min, max } = bounds.value;
@@ -51,7 +79,7 @@ export function ModelPanel(): JSX.Element | null {
       <Views where="in-panel" />
       <Section title={model.model}>
         <dl class="facts">
-          <Row name="Points">{count(model.surfels)}</Row>
+          <Items model={model} />
           {model.spacing > 0 && <Row name="Point spacing">{model.spacing.toPrecision(3)}</Row>}
           <Row name="Colour">{color}</Row>
           <Row name="Vertical axis">{model.zUp ? 'Z' : 'Y'}</Row>
@@ -59,6 +87,9 @@ export function ModelPanel(): JSX.Element | null {
           <Row name="Blocks">{count(model.blocks)}</Row>
         </dl>
       </Section>
+      {model.volumes.map((volume, i) => (
+        <Volume key={i} volume={volume} />
+      ))}
       <Section title="Extent">
         <Extent />
       </Section>
