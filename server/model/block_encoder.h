@@ -10,6 +10,7 @@
 #include "geometry/normal_cone.h"
 #include "model/kind_count.h"
 #include "model/statistics.h"
+#include "model/volume.h"
 #include "surfel/grid.h"
 #include "surfel/surfel_cloud.h"
 
@@ -29,6 +30,7 @@ struct EncodedBlock {
   std::optional<geometry::NormalCone> normals;
   AttributeStatistics statistics{};  ///< only of blocks of source surfels, if the file is to contain statistics
   std::string kind{kSurfelKind};
+  std::optional<BrickRecord> brick{};  ///< of the kind "grid" and of no other
 };
 
 /// Encodes surfels of a cloud, given in a spatial order, as one block on the given lattice. The normal cone is set for

@@ -12,6 +12,7 @@
 #include "ldc/lattice.h"
 #include "model/byte_stream.h"
 #include "model/quantize.h"
+#include "model/volume_tables.h"
 
 namespace surfcast::model {
 namespace {
@@ -235,10 +236,10 @@ Result<ModelHeader> read_header(std::span<const std::byte> file) {
     return damaged("not a Surfcast model");
   }
   const auto version = reader.get<uint32_t>();
-  if (reader.ok() && (version < kSurfelVersion || version > kScatterVersion)) {
+  if (reader.ok() && (version < kSurfelVersion || version > kVolumesVersion)) {
     return fail(ErrorKind::kUnsupported, "model format version " + std::to_string(version) +
                                              " is not supported; this program reads versions " +
-                                             std::to_string(kSurfelVersion) + " to " + std::to_string(kScatterVersion));
+                                             std::to_string(kSurfelVersion) + " to " + std::to_string(kVolumesVersion));
   }
   if (file.size() < kHeaderBytes) return damaged("model is cut off within its header");
   ModelHeader header;
@@ -284,6 +285,7 @@ std::vector<std::byte> write_directory(const Directory& directory) {
   if (directory.version() >= kKindsVersion) put_kinds(writer, directory);
   if (directory.version() < kScatterVersion) return std::move(writer).take();
   for (const BlockRecord& block : directory.blocks) writer.put(block.scatter);
+  if (directory.version() >= kVolumesVersion) put_volumes(writer, directory);
   return std::move(writer).take();
 }
 
@@ -319,6 +321,11 @@ Result<Directory> read_directory(std::span<const std::byte> bytes, const ModelHe
   }
   if (header.version >= kScatterVersion) {
     if (Status status = get_scatter(reader, directory); !status) return fail(std::move(status.error()));
+  }
+  if (header.version >= kVolumesVersion) {
+    if (Status status = get_volumes(reader, directory); !status) return fail(std::move(status.error()));
+  } else if (std::ranges::find(directory.kinds, kGridKind) != directory.kinds.end()) {
+    return damaged("model has bricks but no volumes");
   }
   if (!reader.ok() || !reader.rest().empty()) return damaged("model tables have a wrong length");
   if (directory.blocks.empty()) return damaged("model has no blocks");

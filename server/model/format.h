@@ -8,6 +8,7 @@
 
 #include "base/result.h"
 #include "model/block_decoder.h"
+#include "model/volume.h"
 
 namespace surfcast::model {
 
@@ -16,6 +17,7 @@ namespace surfcast::model {
 inline constexpr uint32_t kSurfelVersion = 2;
 inline constexpr uint32_t kKindsVersion = 3;    ///< has a table of kinds
 inline constexpr uint32_t kScatterVersion = 4;  ///< has a table of kinds, a count of scatter per block, and scatter
+inline constexpr uint32_t kVolumesVersion = 5;  ///< has all tables of version 4, and tables of volumes and bricks
 inline constexpr size_t kHeaderBytes = 64;
 inline constexpr size_t kBlockRecordBytes = 92;
 /// Limits of the format. They bound the memory that a hostile table can make the reader allocate for one block.
@@ -57,6 +59,7 @@ struct BlockRecord {
   uint64_t checksum = 0;
   uint8_t kind = 0;      ///< index into Directory::kinds
   uint32_t scatter = 0;  ///< surfels that lie on no surface
+  uint32_t brick = 0;    ///< of a block of a volume: index into Directory::bricks
 };
 
 /// The tables at the end of a file.
@@ -68,9 +71,12 @@ struct Directory {
   std::vector<AttributeRange> ranges;
   std::vector<ClassCount> classes;  ///< by code
   std::vector<std::string> kinds{std::string(kSurfelKind)};
+  std::vector<Volume> volumes;
+  std::vector<BrickRecord> bricks;  ///< of the blocks of kind "grid"
 
   /// The oldest version of the format that can represent the tables.
   [[nodiscard]] uint32_t version() const {
+    if (!volumes.empty()) return kVolumesVersion;
     const auto has_scatter = [](const BlockRecord& block) { return block.scatter > 0; };
     if (std::any_of(blocks.begin(), blocks.end(), has_scatter)) return kScatterVersion;
     return kinds.size() == 1 && kinds.front() == kSurfelKind ? kSurfelVersion : kKindsVersion;

@@ -8,6 +8,7 @@
 #include "base/contract.h"
 #include "base/mapped_file.h"
 #include "model/format.h"
+#include "model/volume_tables.h"
 
 namespace surfcast::model {
 
@@ -64,6 +65,17 @@ void set_levels(std::span<ldc::BlockEntry> entries) {
     ldc::BlockEntry& parent = entries[entries[i].parent];
     parent.level = std::max(parent.level, entries[i].level + 1);
   }
+}
+
+/// True if the bricks of each volume have the levels of their blocks and lie where their parents are.
+bool valid_pyramids(const Directory& directory, std::span<const ldc::BlockEntry> entries) {
+  for (size_t i = 0; i < entries.size(); ++i) {
+    const BlockRecord& block = directory.blocks[i];
+    if (directory.kinds[block.kind] != kGridKind) continue;
+    const uint32_t level = directory.bricks[block.brick].level;
+    if (level != static_cast<uint32_t>(entries[i].level) || !is_within_pyramid(directory, block)) return false;
+  }
+  return true;
 }
 
 std::vector<ldc::BlockEntry> make_entries(const Directory& directory) {
@@ -126,6 +138,9 @@ Result<ModelFile> ModelFile::open(const std::filesystem::path& path) {
     return fail_naming(path, {ErrorKind::kInvalidInput, "the blocks of the model make no tree"});
   }
   set_levels(entries);
+  if (!valid_pyramids(*directory, entries)) {
+    return fail_naming(path, {ErrorKind::kInvalidInput, "the bricks of the model make no pyramid"});
+  }
   ModelInfo info = make_info(*header, *directory, entries);
   std::vector<ScalarColumn> coarse_scalars;
   std::copy_if(directory->scalars.begin(), directory->scalars.end(), std::back_inserter(coarse_scalars),
@@ -145,6 +160,15 @@ const ModelInfo& ModelFile::info() const {
 
 const ldc::BlockTree& ModelFile::tree() const {
   return state_->tree;
+}
+
+std::span<const Volume> ModelFile::volumes() const {
+  return state_->directory.volumes;
+}
+
+const BrickRecord& ModelFile::brick(size_t block) const {
+  SURFCAST_EXPECTS(block < blocks().size() && state_->info.kinds[blocks()[block].kind].kind == kGridKind);
+  return state_->directory.bricks[state_->directory.blocks[block].brick];
 }
 
 const std::filesystem::path& ModelFile::path() const {

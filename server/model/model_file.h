@@ -15,6 +15,7 @@
 #include "ldc/block_tree.h"
 #include "model/kind_count.h"
 #include "model/statistics.h"
+#include "model/volume.h"
 #include "surfel/grid.h"
 #include "surfel/scalar_attribute.h"
 #include "surfel/surfel_cloud.h"
@@ -99,6 +100,10 @@ class ModelFile {
   void prefetch(size_t block) const;
   /// The bytes of a block of any kind. Fails if their checksum is wrong.
   [[nodiscard]] Result<StoredBlock> stored(size_t block) const;
+  /// The volumes whose bricks are blocks of the kind "grid"; none in most models.
+  [[nodiscard]] std::span<const Volume> volumes() const;
+  /// The place of a block of the kind "grid". It lies within its volume, and its parent stands for it.
+  [[nodiscard]] const BrickRecord& brick(size_t block) const;
   /// Prefixes an error about a block with the names of file and block.
   [[nodiscard]] Error named(size_t block, const Error& error) const;
   /// Checks and decodes a block of surfels. Fails on a block of another kind. Attributes are decoded in order, up to

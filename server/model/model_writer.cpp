@@ -17,6 +17,8 @@ struct ModelWriter::State {
   ModelSchema schema;
   std::vector<surfel::Grid> grids;
   std::vector<std::string> kinds;
+  std::vector<Volume> volumes;
+  std::vector<BrickRecord> bricks;
   std::vector<BlockRecord> records;             ///< in the order of the file; parents are indices into this list
   std::vector<std::vector<uint32_t>> children;  ///< of each record
   AttributeStatistics statistics;
@@ -115,11 +117,14 @@ Result<ModelWriter> ModelWriter::create(const std::filesystem::path& target, Mod
 Result<uint32_t> ModelWriter::add(const EncodedBlock& block, const ldc::OctreeKey& key,
                                   std::span<const uint32_t> children) {
   SURFCAST_EXPECTS(block.surfels >= 1 && block.surfels <= kMaxBlockSurfels && !block.kind.empty());
+  SURFCAST_EXPECTS(block.brick.has_value() == (block.kind == kGridKind));
   const auto number = static_cast<uint32_t>(state_->records.size());
   BlockRecord record = make_record(block, key);
   record.offset = state_->file.position();
   record.grid = index_of(block.grid, state_->grids);
   record.kind = static_cast<uint8_t>(index_of(block.kind, state_->kinds));
+  record.brick = static_cast<uint32_t>(state_->bricks.size());
+  if (block.brick) state_->bricks.push_back(*block.brick);
   if (Status status = state_->file.append(block.bytes); !status) return fail(std::move(status.error()));
   for (const uint32_t child : children) {
     SURFCAST_EXPECTS(child < number && state_->records[child].parent == ldc::BlockEntry::kNoParent);
@@ -132,6 +137,10 @@ Result<uint32_t> ModelWriter::add(const EncodedBlock& block, const ldc::OctreeKe
   return number;
 }
 
+void ModelWriter::set_volumes(std::vector<Volume> volumes) {
+  state_->volumes = std::move(volumes);
+}
+
 Result<WriteReport> ModelWriter::finish() {
   AtomicFile& file = state_->file;
   if (state_->records.empty()) return fail(ErrorKind::kInvalidInput, "no surfels to write");
@@ -141,7 +150,9 @@ Result<WriteReport> ModelWriter::finish() {
                       in_tree_order(state_->records, state_->children),
                       {},
                       {},
-                      state_->kinds};
+                      state_->kinds,
+                      state_->volumes,
+                      state_->bricks};
   std::vector<std::string> names;
   for (const ScalarColumn& scalar : state_->schema.scalars) names.push_back(scalar.name);
   directory.ranges = state_->statistics.ranges(names);

@@ -48,6 +48,9 @@ class ModelWriter {
   /// each of the same kind and the child of one block only. A block of source surfels has no children.
   Result<uint32_t> add(const EncodedBlock& block, const ldc::OctreeKey& key, std::span<const uint32_t> children);
 
+  /// The volumes whose bricks are blocks of the file. Call before finish().
+  void set_volumes(std::vector<Volume> volumes);
+
   /// Writes the tables and moves the file to its target. Fails if no block was added.
   Result<WriteReport> finish();
 

@@ -19,6 +19,10 @@ enum class WorldFrame : uint8_t { kUnstated, kRas, kLas, kLps };
 inline constexpr uint8_t kWorldFrames = 4;
 
 inline constexpr size_t kHistogramBins = 1024;
+/// Samples of a brick along each axis, without its halo.
+inline constexpr uint32_t kBrickSamples = 32;
+/// The octree has no room for longer axes.
+inline constexpr uint32_t kMaxAxisSamples = kBrickSamples << 20;
 
 /// A regular grid of samples. The samples themselves are in blocks of the kind "grid".
 struct Volume {

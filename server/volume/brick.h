@@ -4,13 +4,15 @@
 #include <glm/vec3.hpp>
 #include <vector>
 
+#include "model/volume.h"
+
 namespace surfcast::volume {
 
 /// A volume is stored as levels of a pyramid, each cut into bricks. Level 0 has the samples of the source. Each further
 /// level halves the axes that still have several samples; its samples are means of 2 x 2 x 2, where an odd last sample
 /// counts twice. The last level is one brick. Brick b of an axis holds the samples 32 b to 32 b + 31 of its level, and
 /// stands for the bricks 2 b and 2 b + 1 of the level below.
-inline constexpr uint32_t kBrickSamples = 32;
+using model::kBrickSamples;
 /// A brick repeats samples of its neighbours; at the faces of the volume the first and last samples are repeated. A
 /// brick draws the source indices of its children. They begin up to half a sample before its own first sample, so cubic
 /// reconstruction there reads two samples before it.
