@@ -2,14 +2,17 @@
 
 #include <algorithm>
 #include <array>
+#include <span>
 #include <string_view>
 #include <utility>
 
 namespace surfcast::builder {
 namespace {
 
+using StageShare = std::pair<std::string_view, double>;
+
 /// Shares of the time of a build in one part; "counting" is a stage of builds in several.
-constexpr std::array<std::pair<std::string_view, double>, 6> kShares{{
+constexpr std::array<StageShare, 6> kShares{{
     {"reading", 0.02},
     {"counting", 0.03},
     {"sorting points", 0.02},
@@ -17,20 +20,29 @@ constexpr std::array<std::pair<std::string_view, double>, 6> kShares{{
     {"writing blocks", 0.41},
     {"writing levels above", 0.01},
 }};
+/// The same for builds of volumes.
+constexpr std::array<StageShare, 2> kVolumeShares{{{"measuring samples", 0.15}, {"writing bricks", 0.85}}};
 /// Beyond this share of a stage nothing is claimed that was not reported.
 constexpr double kMostByTime = 0.95;
 /// The pace of a build is known once this share of it is done: reading alone says little.
 constexpr double kKnownShare = 0.1;
 
+std::span<const StageShare> shares_with(std::string_view stage) {
+  const bool of_volumes = std::ranges::find(kVolumeShares, stage, &StageShare::first) != kVolumeShares.end();
+  return of_volumes ? std::span<const StageShare>(kVolumeShares) : kShares;
+}
+
 double share_of(std::string_view stage) {
-  const auto* found = std::ranges::find(kShares, stage, &std::pair<std::string_view, double>::first);
-  return found == kShares.end() ? 0 : found->second;
+  for (const auto& [name, share] : shares_with(stage)) {
+    if (name == stage) return share;
+  }
+  return 0;
 }
 
 /// The share of all stages before this one.
 double share_before(std::string_view stage) {
   double sum = 0;
-  for (const auto& [name, share] : kShares) {
+  for (const auto& [name, share] : shares_with(stage)) {
     if (name == stage) return sum;
     sum += share;
   }

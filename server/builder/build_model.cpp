@@ -1,5 +1,6 @@
 #include "builder/build_model.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
 #include <numeric>
@@ -10,7 +11,9 @@
 
 #include "builder/build_inputs.h"
 #include "builder/build_parts.h"
+#include "builder/build_volumes.h"
 #include "builder/cloud_columns.h"
+#include "builder/grid_input.h"
 #include "builder/memory_budget.h"
 #include "builder/ordered_work.h"
 #include "builder/stage_clock.h"
@@ -168,42 +171,60 @@ Result<model::WriteReport> write(const BuildInputs& inputs, BuildParts& parts, c
   return writer->finish();
 }
 
+/// True if all inputs are grids. Fails if only some are.
+Result<bool> are_grids(std::span<const std::filesystem::path> inputs) {
+  const auto first = std::ranges::find_if(inputs, is_grid);
+  if (first == inputs.end()) return false;
+  const auto other = std::ranges::find_if_not(inputs, is_grid);
+  if (other == inputs.end()) return true;
+  return fail(ErrorKind::kUnsupported, other->string() + ": is no grid, but " + first->string() +
+                                           " is one; a model is built of scans or of grids");
+}
+
+Status build_surfels(std::span<const std::filesystem::path> inputs, const std::filesystem::path& target,
+                     const BuildOptions& options, StageClock& clock, BuildReport& report) {
+  clock.begin("reading", inputs.size());
+  const Result<BuildInputs> opened =
+      BuildInputs::open(inputs, options.z_up, report.memory_budget, options.sample, [&clock](double) { clock.step(); });
+  if (!opened) return fail(opened.error());
+  report.points_in_scans = opened->size_of_files();
+  clock.know_points(opened->size());
+  if (Status status = check_bounds(opened->bounds(), target); !status) return status;
+  Result<MemoryPlan> memory = plan_memory(report.memory_budget, opened->held_bytes(), opened->schema());
+  if (!memory) return fail(memory.error().kind, target.string() + ": " + memory.error().message);
+  if (options.part_points) memory->split_into(*options.part_points);
+  report.scan.notes = opened->notes();
+  Result<BuildParts> parts = BuildParts::gather(*opened, *memory, target, clock, report.scan);
+  if (!parts) return fail(std::move(parts.error()));
+  report.parts = parts->size();
+  Status made = parts->make_surfels(*memory, options.radii, clock, report.scan);
+  if (!made) return made;
+  report.radii = radii_of(*opened, *parts);
+  note_unused_radii(options, report);
+  const Result<model::WriteReport> written = write(*opened, *parts, *memory, target, options, clock);
+  if (!written) return fail(written.error());
+  report.surfels = written->surfels;
+  report.blocks = written->blocks;
+  report.bytes = written->bytes;
+  return {};
+}
+
 }  // namespace
 
 Result<BuildReport> build_model(std::span<const std::filesystem::path> inputs, const std::filesystem::path& target,
                                 const BuildOptions& options, const BuildProgress& progress) {
   const Stopwatch stopwatch;
   BuildReport report;
-  const auto named = [&target](const Error& error) { return fail(error.kind, target.string() + ": " + error.message); };
   if (Status status = check_target(target, inputs); !status) return fail(std::move(status.error()));
   const Result<uint64_t> budget = memory_budget(options.memory);
-  if (!budget) return named(budget.error());
+  if (!budget) return fail(budget.error().kind, target.string() + ": " + budget.error().message);
+  report.memory_budget = *budget;
+  const Result<bool> grids = are_grids(inputs);
+  if (!grids) return fail(grids.error());
   {
     StageClock clock(progress, report);
-    clock.begin("reading", inputs.size());
-    const Result<BuildInputs> opened =
-        BuildInputs::open(inputs, options.z_up, *budget, options.sample, [&clock](double) { clock.step(); });
-    if (!opened) return fail(opened.error());
-    report.points_in_scans = opened->size_of_files();
-    clock.know_points(opened->size());
-    if (Status status = check_bounds(opened->bounds(), target); !status) return fail(std::move(status.error()));
-    Result<MemoryPlan> memory = plan_memory(*budget, opened->held_bytes(), opened->schema());
-    if (!memory) return named(memory.error());
-    if (options.part_points) memory->split_into(*options.part_points);
-    report.memory_budget = memory->budget;
-    report.scan.notes = opened->notes();
-    Result<BuildParts> parts = BuildParts::gather(*opened, *memory, target, clock, report.scan);
-    if (!parts) return fail(std::move(parts.error()));
-    report.parts = parts->size();
-    Status made = parts->make_surfels(*memory, options.radii, clock, report.scan);
-    if (!made) return fail(std::move(made.error()));
-    report.radii = radii_of(*opened, *parts);
-    note_unused_radii(options, report);
-    const Result<model::WriteReport> written = write(*opened, *parts, *memory, target, options, clock);
-    if (!written) return fail(written.error());
-    report.surfels = written->surfels;
-    report.blocks = written->blocks;
-    report.bytes = written->bytes;
+    const auto build = *grids ? build_volumes : build_surfels;
+    if (Status status = build(inputs, target, options, clock, report); !status) return fail(std::move(status.error()));
   }
   report.seconds = stopwatch.seconds();
   report.peak_memory = peak_resident_bytes();

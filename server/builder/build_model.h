@@ -35,6 +35,7 @@ struct BuildReport {
   scan::SurfelReport scan;
   std::vector<InputRadii> radii;  ///< of the inputs that have a column for them
   uint64_t points_in_scans = 0;   ///< beyond BuildOptions::sample too
+  uint64_t samples = 0;           ///< of the volumes
   uint64_t surfels = 0;
   uint64_t blocks = 0;
   uint64_t bytes = 0;                                  ///< of the model file
@@ -45,6 +46,7 @@ struct BuildReport {
   std::vector<std::pair<std::string, double>> stages;  ///< seconds of each stage
 
   [[nodiscard]] double points_per_second() const { return static_cast<double>(scan.points_read) / seconds; }
+  [[nodiscard]] double samples_per_second() const { return static_cast<double>(samples) / seconds; }
 };
 
 /// Progress of a build.
@@ -57,7 +59,8 @@ struct BuildStep {
 /// Called from any thread, but from one at a time.
 using BuildProgress = std::function<void(const BuildStep&)>;
 
-/// Reads scans, makes surfels and writes one model file, which appears only when it is complete. Scans that exceed the
+/// Reads scans and makes surfels, or reads regular grids and makes volumes, and writes one model file, which appears
+/// only when it is complete. Fails on scans and grids together. Scans that exceed the
 /// memory budget are processed in parts, kept in a temporary file beside the target. The model depends on the input and
 /// the options: not on the number of threads, and only minimally on the division into parts.
 Result<BuildReport> build_model(std::span<const std::filesystem::path> inputs, const std::filesystem::path& target,

@@ -70,9 +70,14 @@ Status go_into_background(bool sample) {
 }
 
 std::string figures(const builder::BuildReport& report) {
+  const double peak = static_cast<double>(report.peak_memory) / (1024.0 * 1024.0);
+  if (report.samples > 0) {
+    return fmt::format("{} samples read, {} blocks, {} bytes, {:.2f} s, {:.0f} samples/s, {:.0f} MiB peak memory\n",
+                       report.samples, report.blocks, report.bytes, report.seconds, report.samples_per_second(), peak);
+  }
   return fmt::format("{} points read, {} surfels, {} bytes, {:.2f} s, {:.0f} points/s, {:.0f} MiB peak memory\n",
                      report.scan.points_read, report.surfels, report.bytes, report.seconds, report.points_per_second(),
-                     static_cast<double>(report.peak_memory) / (1024.0 * 1024.0));
+                     peak);
 }
 
 /// What became of the radii of each input, beside those that the notes name.
@@ -105,6 +110,7 @@ std::string to_json(const BuildCommand& command, const builder::BuildReport& rep
       {"output", command.output.string()},
       {"points_read", report.scan.points_read},
       {"points_in_scans", report.points_in_scans},
+      {"samples", report.samples},
       {"surfels", report.surfels},
       {"blocks", report.blocks},
       {"bytes", report.bytes},
@@ -175,8 +181,8 @@ Status build(const BuildCommand& command) {
 
 void add_build_command(CLI::App& app, Status& outcome) {
   auto command = std::make_shared<BuildCommand>();
-  CLI::App* build_command = app.add_subcommand("build", "Build a model file from scans");
-  build_command->add_option("INPUT", command->inputs, "Scans of any supported format")->required();
+  CLI::App* build_command = app.add_subcommand("build", "Build a model file from scans or volumes");
+  build_command->add_option("INPUT", command->inputs, "Scans, or regular grids, of any supported format")->required();
   build_command->add_option("--output", command->output, "Model file to write")->required();
   build_command
       ->add_option("--precision", command->precision,

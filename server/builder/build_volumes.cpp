@@ -1,0 +1,91 @@
+#include "builder/build_volumes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "builder/grid_input.h"
+#include "builder/volume_pass.h"
+#include "model/model_writer.h"
+
+namespace surfcast::builder {
+namespace {
+
+/// Memory beside the planes: the program, decoders of inputs and bricks in flight.
+constexpr double kReserve = 64.0 * 1024 * 1024;
+
+Status check_memory(const std::vector<GridInput>& inputs, const std::filesystem::path& target, uint64_t budget) {
+  constexpr double kMebibyte = 1024.0 * 1024;
+  double most = 0;
+  for (const GridInput& input : inputs) most = std::max(most, volume_bytes(input));
+  if (kReserve + most <= static_cast<double>(budget)) return {};
+  const auto mebibytes = [](double bytes) { return std::to_string(std::llround(std::ceil(bytes / kMebibyte))) + "M"; };
+  return fail(ErrorKind::kLimit, target.string() + ": a memory budget of " + mebibytes(static_cast<double>(budget)) +
+                                     " is too small for these grids: it takes at least " + mebibytes(kReserve + most));
+}
+
+Result<std::vector<GridInput>> open_all(std::span<const std::filesystem::path> paths) {
+  std::vector<GridInput> inputs;
+  for (const std::filesystem::path& path : paths) {
+    Result<GridInput> input = GridInput::open(path);
+    if (!input) return fail(std::move(input.error()));
+    inputs.push_back(std::move(*input));
+  }
+  return inputs;
+}
+
+uint64_t planes_of(const std::vector<GridInput>& inputs) {
+  uint64_t planes = 0;
+  for (const GridInput& input : inputs) planes += input.volume().size.z;
+  return planes;
+}
+
+Status measure_all(std::vector<GridInput>& inputs, StageClock& clock, BuildReport& report) {
+  clock.begin("measuring samples", planes_of(inputs));
+  for (GridInput& input : inputs) {
+    if (Status status = input.measure([&clock] { clock.step(); }); !status) return status;
+    if (input.not_finite() == 0) continue;
+    report.scan.notes.push_back(input.volume().name + ": " + std::to_string(input.not_finite()) +
+                                " samples are not finite and count as the lowest value");
+  }
+  return {};
+}
+
+model::ModelSchema schema_of(std::span<const std::filesystem::path> paths, const BuildOptions& options) {
+  model::ModelSchema schema;
+  schema.z_up = options.z_up.value_or(true);  // of medical frames z is superior
+  for (const std::filesystem::path& path : paths) schema.source_names.push_back(path.filename().string());
+  return schema;
+}
+
+}  // namespace
+
+Status build_volumes(std::span<const std::filesystem::path> paths, const std::filesystem::path& target,
+                     const BuildOptions& options, StageClock& clock, BuildReport& report) {
+  Result<std::vector<GridInput>> inputs = open_all(paths);
+  if (!inputs) return fail(std::move(inputs.error()));
+  if (Status status = check_memory(*inputs, target, report.memory_budget); !status) return status;
+  for (const GridInput& input : *inputs) report.samples += input.volume().samples();
+  clock.know_points(report.samples);
+  if (Status status = measure_all(*inputs, clock, report); !status) return status;
+  Result<model::ModelWriter> writer = model::ModelWriter::create(target, schema_of(paths, options));
+  if (!writer) return fail(std::move(writer.error()));
+  clock.begin("writing bricks", planes_of(*inputs));
+  std::vector<model::Volume> volumes;
+  for (GridInput& input : *inputs) {
+    const auto number = static_cast<uint32_t>(volumes.size());
+    if (Status status = write_volume(input, number, *writer, clock); !status) return status;
+    volumes.push_back(input.volume());
+  }
+  writer->set_volumes(std::move(volumes));
+  const Result<model::WriteReport> written = writer->finish();
+  if (!written) return fail(written.error());
+  report.blocks = written->blocks;
+  report.bytes = written->bytes;
+  report.parts = inputs->size();
+  return {};
+}
+
+}  // namespace surfcast::builder
