@@ -14,7 +14,7 @@ namespace surfcast::kinds {
 /// The GLSL sources of a kind. They may include files of shaders/.
 struct KindShaders {
   /// A compute shader that projects the texels of a chunk and appends a record for each visible item; see
-  /// shaders/kinds/append_record.glsl.
+  /// shaders/kinds/append_record.glsl. Empty for kinds that are drawn by a pass of their own.
   std::string_view project;
   /// Defines `Fragment NAME_fragment(uvec4 a, uvec4 b, uvec4 c, vec2 ray)`, where NAME is the name of the kind. The
   /// function returns the fragment of a record at the ray of a pixel (shaders/kinds/exact_list.glsl). Empty for

@@ -3,13 +3,15 @@
 #include <algorithm>
 #include <array>
 
+#include "kinds/grid_kind.h"
 #include "kinds/surfel_kind.h"
 
 namespace surfcast::kinds {
 
 KindTable built_in_kinds() {
   static const SurfelKind kSurfels;
-  static const std::array<const Kind*, 1> kKinds{&kSurfels};
+  static const GridKind kGrids;
+  static const std::array<const Kind*, 2> kKinds{&kSurfels, &kGrids};
   return kKinds;
 }
 

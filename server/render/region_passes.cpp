@@ -85,13 +85,13 @@ void add_chunks(const VisibleBlock& block, uint32_t view, const residency::Texel
   }
 }
 
-/// The kinds of a region's blocks, sorted by number.
+/// The kinds of a region's blocks that are projected, sorted by number.
 PictureKinds kinds_of(const RegionTask& task) {
   std::vector<bool> seen(task.kinds.size());
   for (const VisibleBlock& block : task.blocks) seen[block.kind] = true;
   PictureKinds kinds;
   for (uint32_t number = 0; number < seen.size(); ++number) {
-    if (seen[number]) kinds.push_back({task.kinds[number], number});
+    if (seen[number] && !task.kinds[number]->shaders().project.empty()) kinds.push_back({task.kinds[number], number});
   }
   return kinds;
 }
