@@ -180,6 +180,9 @@ Findings study_neighbourhoods(const Sites& sites, bool radii, SiteFacts& facts) 
     if (!stored) findings.normals[site] = glm::vec3(least_axis(covariances.near, near.least));
     if (!radii) return;
     facts.kinds[site] = kind_of_site(near, covariances.wide, offsets.count);
+    if (facts.kinds[site] == PointKind::kLayer && is_in_sheet(offsets, least_axis(covariances.near, near.least))) {
+      facts.kinds[site] = PointKind::kSurface;
+    }
     findings.guesses[site] = guess_radius(offsets, kDegree, findings.normals[site], sites.unit);
   });
   if (radii) settle_layers(findings.graph, findings.normals, facts.kinds);

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <utility>
+#include <vector>
 
 #include "base/contract.h"
 #include "base/vector_clones.h"
@@ -85,6 +86,21 @@ glm::dvec3 least_axis_by_iteration(const Covariance& m) {
   return usable ? glm::normalize(glm::dvec3(v.x(), v.y(), v.z())) : glm::dvec3(0, 0, 1);
 }
 
+struct Sides {
+  std::vector<glm::dvec3> inside;  ///< neighbours within `reach` of the plane through the site, and the site
+  std::vector<glm::dvec3> apart;   ///< the others
+};
+
+/// All are projected onto the plane.
+Sides split_at_plane(const NeighbourOffsets& neighbours, const glm::dvec3& normal, double reach) {
+  Sides sides{{glm::dvec3(0)}, {}};
+  for (size_t i = 0; i < neighbours.count; ++i) {
+    const double height = glm::dot(neighbours[i], normal);
+    (std::abs(height) <= reach ? sides.inside : sides.apart).push_back(neighbours[i] - height * normal);
+  }
+  return sides;
+}
+
 }  // namespace
 
 Covariances covariances_of(const NeighbourOffsets& neighbours) {
@@ -126,6 +142,23 @@ glm::dvec3 least_axis(const Covariance& m, double least) {
   const double squared_second = glm::dot(second, second);
   if (!(std::max(squared_first, squared_second) > kTooClose)) return least_axis_by_iteration(m);
   return squared_first > squared_second ? first / std::sqrt(squared_first) : second / std::sqrt(squared_second);
+}
+
+bool is_in_sheet(const NeighbourOffsets& neighbours, const glm::dvec3& normal) {
+  // The twelfth neighbour is two spacings away: half a spacing to either side, and 0.7 spacings, half the diagonal of a
+  // cell, along it.
+  constexpr double kThickness = 0.25;
+  constexpr double kBeside = 0.36;
+  // Of two even sheets three spacings apart, 28 of 32 neighbours are in the own one.
+  constexpr double kMost = 0.82;
+  if (neighbours.count < kWideNeighbours) return false;
+  const double twelfth = glm::length(neighbours[kNearNeighbours - 1]);
+  const auto [inside, apart] = split_at_plane(neighbours, normal, kThickness * twelfth);
+  if (static_cast<double>(inside.size()) < kMost * static_cast<double>(neighbours.count)) return false;
+  return std::ranges::all_of(apart, [&, &inside = inside](const glm::dvec3& other) {
+    return std::ranges::any_of(inside,
+                               [&](const glm::dvec3& own) { return glm::length(other - own) < kBeside * twelfth; });
+  });
 }
 
 PointKind kind_of_site(const Spread& near, const Covariance& wide, size_t neighbours) {

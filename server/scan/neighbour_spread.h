@@ -30,6 +30,10 @@ Spread spread_of(const Covariance& covariance);
 /// is `least`. Unit; the sign is arbitrary. Neighbourhoods on a line get a direction perpendicular to it.
 glm::dvec3 least_axis(const Covariance& covariance, double least);
 
+/// True if most neighbours lie in the plane through the site, and the plane goes on behind or in front of the others: a
+/// sheet beside another one, not a step. `normal`: of the plane of the nearest ones, unit.
+bool is_in_sheet(const NeighbourOffsets& neighbours, const glm::dvec3& normal);
+
 /// The kind of a site from the spread of the kNearNeighbours, the covariance of all neighbours and their number. With
 /// fewer than kWideNeighbours nothing is known, and the site counts as a surface.
 PointKind kind_of_site(const Spread& near, const Covariance& wide, size_t neighbours);

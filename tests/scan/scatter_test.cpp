@@ -154,6 +154,21 @@ TEST(Scatter, LayersCloseTheWallTogetherAndAreNoWider) {
   }
 }
 
+TEST(Scatter, SheetsOneBehindTheOtherAreSurfacesOfTheirOwn) {
+  // Beyond twelve neighbours those of the other sheet come in, but each sheet goes on behind or in front of them.
+  std::vector<glm::dvec3> points;
+  for (int i = 0; i < 50; ++i) {
+    for (int j = 0; j < 50; ++j) {
+      for (const double z : {0.0, 3.0}) points.emplace_back(i, j, z);
+    }
+  }
+  const surfel::SurfelCloud cloud = surfels_at(points);
+  EXPECT_LT(share_of_scatter(cloud, anywhere), 0.01);
+  std::vector<float> radii = cloud.radii;
+  std::ranges::nth_element(radii, radii.begin() + 2500);
+  EXPECT_NEAR(radii[2500], (4 + 2 * std::sqrt(2)) / 6, 0.02);
+}
+
 TEST(Scatter, LeavesAreNoLayers) {
   // A crown of 400 leaves of nine points: each is flat, in a direction of its own.
   std::mt19937 random(11);
