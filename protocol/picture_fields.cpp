@@ -29,6 +29,8 @@ constexpr std::array kFields{
     PictureField{"spacing", "spacing", "PIXELS",
                  "projected surfel spacing at which refinement stops; 0: the finest level (default 0)"},
     PictureField{"shading", "shading", "auto|unlit|lit", "lighting of the surfels (default auto)"},
+    PictureField{"splat_convention", "splat-convention", "trained|exact",
+                 "models of Gaussians as they were trained, or exact in perspective (default trained)"},
     PictureField{"background", "background", "R,G,B", "background colour, 0 to 255 each (default 0,0,0)"},
     PictureField{"color_by", "color-by", "rgb|intensity|elevation|classification|normal",
                  "property shown as colour (default rgb: the scanned colour)"},
@@ -50,10 +52,6 @@ constexpr std::array kFields{
         "in ascending order, with the opacity of one spacing of the grid; or on the command line a JSON file "
         "(default gray)"},
     PictureField{"shaded", "shaded", "on|off", "lighting of volumes (default off)"},
-    PictureField{
-        "splat_convention", "splat-convention", "trained|exact",
-        "pictures of Gaussian models as the training programs draw them, or exact in perspective and antialiased "
-        "(default trained)"},
 };
 
 template <typename Enum>
@@ -74,6 +72,10 @@ constexpr std::array kNormalizations{
 constexpr std::array kFilters{
     Choice<wire::Filter>{"ewa", wire::FILTER_EWA},
     Choice<wire::Filter>{"none", wire::FILTER_NONE},
+};
+constexpr std::array kSplatConventions{
+    Choice<wire::SplatConvention>{"trained", wire::SPLAT_CONVENTION_TRAINED},
+    Choice<wire::SplatConvention>{"exact", wire::SPLAT_CONVENTION_EXACT},
 };
 constexpr std::array kShadings{
     Choice<wire::Shading>{"auto", wire::SHADING_AUTO},
@@ -183,6 +185,9 @@ bool set_by_name(wire::DrawPicture& picture, std::string_view name, std::string_
   if (name == "filter") return set_choice(kFilters, text, [&](auto value) { picture.set_filter(value); });
   if (name == "spacing") return set_spacing(picture, text);
   if (name == "shading") return set_choice(kShadings, text, [&](auto value) { picture.set_shading(value); });
+  if (name == "splat_convention") {
+    return set_choice(kSplatConventions, text, [&](auto value) { picture.set_splat_convention(value); });
+  }
   if (name == "background") return set_background(picture, text);
   return set_display_field(picture, name, text) || set_volume_field(picture, name, text);
 }

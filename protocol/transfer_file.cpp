@@ -70,7 +70,7 @@ Status parse_transfer_json(std::string_view text, wire::TransferFunction& transf
   const json document = json::parse(text, nullptr, /*allow_exceptions=*/false);
   if (!document.is_object()) return invalid("not a JSON object");
   wire::TransferFunction read;
-  const Status status = document.contains("preset") ? read_preset(document, read) : read_points(document, read);
+  Status status = document.contains("preset") ? read_preset(document, read) : read_points(document, read);
   if (status) transfer = std::move(read);
   return status;
 }

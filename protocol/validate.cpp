@@ -37,6 +37,7 @@ Status check_choices(const wire::DrawPicture& picture) {
   if (!wire::Normalization_IsValid(picture.normalization())) return invalid("normalization: unknown");
   if (!wire::Filter_IsValid(picture.filter())) return invalid("filter: unknown");
   if (!wire::Shading_IsValid(picture.shading())) return invalid("shading: unknown");
+  if (!wire::SplatConvention_IsValid(picture.splat_convention())) return invalid("splat_convention: unknown");
   return {};
 }
 
@@ -110,7 +111,6 @@ Status check_volume_options(const wire::DrawPicture& picture) {
   if (transfer.has_first() && transfer.has_last() && !(transfer.first() < transfer.last())) {
     return invalid("transfer: the first value must be below the last");
   }
-  if (!wire::SplatConvention_IsValid(picture.splat_convention())) return invalid("splat_convention: unknown");
   return check_transfer_points(transfer);
 }
 

@@ -67,12 +67,6 @@ bool set_shaded(wire::DrawPicture& picture, std::string_view text) {
   return true;
 }
 
-bool set_splat_convention(wire::DrawPicture& picture, std::string_view text) {
-  if (text != "trained" && text != "exact") return false;
-  picture.set_splat_convention(text == "exact" ? wire::SPLAT_CONVENTION_EXACT : wire::SPLAT_CONVENTION_TRAINED);
-  return true;
-}
-
 }  // namespace
 
 std::optional<wire::TransferPreset> parse_transfer_preset(std::string_view name) {
@@ -84,8 +78,7 @@ std::optional<wire::TransferPreset> parse_transfer_preset(std::string_view name)
 
 bool set_volume_field(wire::DrawPicture& picture, std::string_view name, std::string_view text) {
   if (name == "transfer") return set_transfer(picture, text);
-  if (name == "shaded") return set_shaded(picture, text);
-  return name == "splat_convention" && set_splat_convention(picture, text);
+  return name == "shaded" && set_shaded(picture, text);
 }
 
 }  // namespace surfcast::protocol

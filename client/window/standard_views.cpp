@@ -39,8 +39,9 @@ client::Pose fit_pose(const client::Pose& pose, const Subject& subject, double a
 client::Pose standard_pose(StandardView view, const client::Pose& pose, const Subject& subject, double aspect) {
   const glm::dvec3 side = kTowardsEye[static_cast<size_t>(view)];
   client::Pose level = pose;
-  level.up = subject.z_up ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
-  const glm::dvec3 back = subject.z_up ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, -1);
+  const double sign = subject.upside_down ? -1 : 1;
+  level.up = sign * (subject.z_up ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0));
+  const glm::dvec3 back = sign * (subject.z_up ? glm::dvec3(0, 1, 0) : glm::dvec3(0, 0, -1));
   return fit_from(glm::dvec3(side.x, 0, 0) + side.y * back + side.z * level.up, level, subject, aspect);
 }
 

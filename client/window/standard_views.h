@@ -8,10 +8,12 @@ namespace surfcast::window {
 /// The properties of the model that determine a view of the whole model.
 struct Subject {
   geometry::Box bounds;
-  bool z_up = true;  ///< whether the vertical axis is z; otherwise it is y
+  bool z_up = true;          ///< whether the vertical axis is z; otherwise it is y
+  bool upside_down = false;  ///< the vertical axis points down
 };
 
-/// The same standard views as in the browser. The front of a z-up model faces -y, that of a y-up model +z.
+/// The same standard views as in the browser. The front of a z-up model faces -y, that of a y-up model +z, and that of
+/// a model whose y points down -z.
 enum class StandardView { kFront, kRight, kBack, kLeft, kTop, kBottom, kIso };
 
 /// The nearest pose with the same view direction that shows the whole subject. `aspect` is width over height.

@@ -25,7 +25,7 @@ glm::dvec3 vector_of(const wire::Vector3& v) {
 }
 
 Subject subject_of(const wire::ModelDescription& model) {
-  return {{vector_of(model.bounds().min()), vector_of(model.bounds().max())}, model.z_up()};
+  return {{vector_of(model.bounds().min()), vector_of(model.bounds().max())}, model.z_up(), model.upside_down()};
 }
 
 /// Counts frames in intervals of one second; `last` is the count of the last complete interval.

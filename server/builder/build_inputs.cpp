@@ -17,13 +17,14 @@ std::vector<scan::ScanSchema> schemas_of(const std::vector<scan::ScanStream>& st
 
 }  // namespace
 
-Result<BuildInputs> BuildInputs::open(std::span<const std::filesystem::path> paths, std::optional<bool> z_up,
-                                      uint64_t max_bytes, std::optional<uint64_t> sample,
+Result<BuildInputs> BuildInputs::open(std::span<const std::filesystem::path> paths, const OpenInput& open,
+                                      std::optional<bool> z_up, uint64_t max_bytes, std::optional<uint64_t> sample,
                                       const std::function<void(double)>& progress) {
   BuildInputs inputs;
   for (const std::filesystem::path& path : paths) {
     progress(static_cast<double>(inputs.streams_.size()) / static_cast<double>(paths.size()));
-    Result<scan::ScanStream> stream = scan::ScanStream::open(path, {max_bytes - inputs.held_bytes()}, sample);
+    const scan::DecodingLimit limit{max_bytes - inputs.held_bytes()};
+    Result<scan::ScanStream> stream = open ? open(path, limit, sample) : scan::ScanStream::open(path, limit, sample);
     if (!stream) return fail(std::move(stream.error()));
     for (size_t piece = 0; piece < stream->pieces(); ++piece) {
       inputs.pieces_.push_back({inputs.streams_.size(), piece});

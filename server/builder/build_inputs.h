@@ -14,6 +14,10 @@
 
 namespace surfcast::builder {
 
+/// Opens an input as a stream of points. `limit`: memory that it may use. `sample`: see ScanStream::open.
+using OpenInput = std::function<Result<scan::ScanStream>(
+    const std::filesystem::path& input, const scan::DecodingLimit& limit, std::optional<uint64_t> sample)>;
+
 /// The clean points of one piece of an input, under the schema of the cloud.
 struct InputPiece {
   size_t source = 0;
@@ -23,11 +27,11 @@ struct InputPiece {
 /// All inputs of a build as one stream of points with a common schema.
 class BuildInputs {
  public:
-  /// Opens all inputs, which reads each file once. At most `max_bytes` of memory hold decoded inputs. `z_up` overrides
-  /// the vertical axis that the inputs state. `sample` points of each input at most, see ScanStream. Errors name the
-  /// file.
-  static Result<BuildInputs> open(std::span<const std::filesystem::path> paths, std::optional<bool> z_up,
-                                  uint64_t max_bytes, std::optional<uint64_t> sample,
+  /// Opens all inputs, by `open` unless it is empty, which reads each file once. At most `max_bytes` of memory hold
+  /// decoded inputs. `z_up` overrides the vertical axis that the inputs state. `sample` points of each input at most,
+  /// see ScanStream. Errors name the file.
+  static Result<BuildInputs> open(std::span<const std::filesystem::path> paths, const OpenInput& open,
+                                  std::optional<bool> z_up, uint64_t max_bytes, std::optional<uint64_t> sample,
                                   const std::function<void(double)>& progress);
 
   [[nodiscard]] const scan::ScanSchema& schema() const { return schema_; }

@@ -9,6 +9,7 @@
 
 #include <unistd.h>
 
+#include "builder/build_gaussians.h"
 #include "builder/build_inputs.h"
 #include "builder/build_parts.h"
 #include "builder/build_volumes.h"
@@ -171,21 +172,13 @@ Result<model::WriteReport> write(const BuildInputs& inputs, BuildParts& parts, c
   return writer->finish();
 }
 
-/// True if all inputs are grids. Fails if only some are.
-Result<bool> are_grids(std::span<const std::filesystem::path> inputs) {
-  const auto first = std::ranges::find_if(inputs, is_grid);
-  if (first == inputs.end()) return false;
-  const auto other = std::ranges::find_if_not(inputs, is_grid);
-  if (other == inputs.end()) return true;
-  return fail(ErrorKind::kUnsupported, other->string() + ": is no grid, but " + first->string() +
-                                           " is one; a model is built of scans or of grids");
-}
-
+/// Builds a model of surfels.
 Status build_surfels(std::span<const std::filesystem::path> inputs, const std::filesystem::path& target,
                      const BuildOptions& options, StageClock& clock, BuildReport& report) {
   clock.begin("reading", inputs.size());
-  const Result<BuildInputs> opened =
-      BuildInputs::open(inputs, options.z_up, report.memory_budget, options.sample, [&clock](double) { clock.step(); });
+  const OpenInput open = options.open ? options.open : OpenInput(scan::ScanStream::open);
+  const Result<BuildInputs> opened = BuildInputs::open(inputs, open, options.z_up, report.memory_budget, options.sample,
+                                                       [&clock](double) { clock.step(); });
   if (!opened) return fail(opened.error());
   report.points_in_scans = opened->size_of_files();
   clock.know_points(opened->size());
@@ -209,6 +202,24 @@ Status build_surfels(std::span<const std::filesystem::path> inputs, const std::f
   return {};
 }
 
+/// A function that builds a model of one kind.
+using Build = Status (*)(std::span<const std::filesystem::path> inputs, const std::filesystem::path& target,
+                         const BuildOptions& options, StageClock& clock, BuildReport& report);
+
+/// The build for the kind of the inputs. Fails if they are of several kinds.
+Result<Build> build_for(std::span<const std::filesystem::path> inputs, const BuildOptions& options) {
+  if (options.open) return build_surfels;
+  const auto kind_of = [](const std::filesystem::path& input) -> Build {
+    if (is_grid(input)) return build_volumes;
+    return holds_gaussians(input) ? build_gaussians : build_surfels;
+  };
+  const Build first = kind_of(inputs.front());
+  const auto other = std::ranges::find_if(inputs, [&](const auto& input) { return kind_of(input) != first; });
+  if (other == inputs.end()) return first;
+  return fail(ErrorKind::kUnsupported, other->string() + ": is of another kind than " + inputs.front().string() +
+                                           "; scans, grids and Gaussians need a model each");
+}
+
 }  // namespace
 
 Result<BuildReport> build_model(std::span<const std::filesystem::path> inputs, const std::filesystem::path& target,
@@ -219,12 +230,12 @@ Result<BuildReport> build_model(std::span<const std::filesystem::path> inputs, c
   const Result<uint64_t> budget = memory_budget(options.memory);
   if (!budget) return fail(budget.error().kind, target.string() + ": " + budget.error().message);
   report.memory_budget = *budget;
-  const Result<bool> grids = are_grids(inputs);
-  if (!grids) return fail(grids.error());
+  const Result<Build> build = build_for(inputs, options);
+  if (!build) return fail(build.error());
   {
     StageClock clock(progress, report);
-    const auto build = *grids ? build_volumes : build_surfels;
-    if (Status status = build(inputs, target, options, clock, report); !status) return fail(std::move(status.error()));
+    if (Status status = (*build)(inputs, target, options, clock, report); !status)
+      return fail(std::move(status.error()));
   }
   report.seconds = stopwatch.seconds();
   report.peak_memory = peak_resident_bytes();

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "builder/build_inputs.h"
 #include "scan/stated_radii.h"
 #include "scan/surfel_report.h"
 
@@ -22,6 +23,7 @@ struct BuildOptions {
   std::optional<uint64_t> part_points;  ///< largest number of points of a part; none: as the memory allows
   scan::RadiusPolicy radii = scan::RadiusPolicy::kAuto;
   std::optional<uint64_t> sample{};  ///< points of each scan, spread over it, that a preview is made of; none: all
+  OpenInput open{};                  ///< how inputs are read as points; none: scans are, and grids become volumes
 };
 
 /// What became of the radii that an input states.
@@ -37,6 +39,7 @@ struct BuildReport {
   uint64_t points_in_scans = 0;   ///< beyond BuildOptions::sample too
   uint64_t samples = 0;           ///< of the volumes
   uint64_t surfels = 0;
+  uint64_t gaussians = 0;
   uint64_t blocks = 0;
   uint64_t bytes = 0;                                  ///< of the model file
   uint64_t parts = 0;                                  ///< parts in which the scan was processed
@@ -59,10 +62,10 @@ struct BuildStep {
 /// Called from any thread, but from one at a time.
 using BuildProgress = std::function<void(const BuildStep&)>;
 
-/// Reads scans and makes surfels, or reads regular grids and makes volumes, and writes one model file, which appears
-/// only when it is complete. Fails on scans and grids together. Scans that exceed the
-/// memory budget are processed in parts, kept in a temporary file beside the target. The model depends on the input and
-/// the options: not on the number of threads, and only minimally on the division into parts.
+/// Reads scans and makes surfels, or reads regular grids (build_volumes) or models of Gaussians (build_gaussians), and
+/// writes one model file, which appears only when it is complete. Fails on inputs of several kinds. Scans that exceed
+/// the memory budget are processed in parts, kept in a temporary file beside the target. The model depends on the input
+/// and the options: not on the number of threads, and only minimally on the division into parts.
 Result<BuildReport> build_model(std::span<const std::filesystem::path> inputs, const std::filesystem::path& target,
                                 const BuildOptions& options, const BuildProgress& progress);
 

@@ -115,9 +115,13 @@ PartFindings spread_findings(const scan::PartSurfels& surfels, std::vector<uint3
 
 BuildParts::BuildParts(const BuildInputs& inputs, std::vector<Part> plan, const geometry::RootCube& root)
     : bounds_(inputs.bounds()), points_(inputs.size()), root_(root), plan_(std::move(plan)), finder_(plan_, root) {
-  scene_ = {bounds_, inputs.schema().z_up, inputs.schema().normals};
+  const bool exact = std::all_of(inputs.streams().begin(), inputs.streams().end(), [](const scan::ScanStream& stream) {
+    return stream.schema().surface_step.has_value();
+  });
+  scene_ = {bounds_, inputs.schema().z_up, inputs.schema().normals && !exact};
   for (const scan::ScanStream& stream : inputs.streams()) {
     sensors_.push_back(stream.schema().sensor);
+    surface_steps_.push_back(stream.schema().surface_step);
     names_.push_back({stream.schema().name, stream.schema().grid});
   }
 }
@@ -201,7 +205,10 @@ BuildParts::Made BuildParts::make(PartPoints points, size_t part, scan::RadiusPo
   frame.bounds = bounds_;
   frame.points = points_;
   frame.place = [this, part](const glm::dvec3& p) { return finder_.place(static_cast<uint32_t>(part), p); };
-  for (const size_t input : points.inputs) frame.sensors.push_back(sensors_[input]);
+  for (const size_t input : points.inputs) {
+    frame.sensors.push_back(sensors_[input]);
+    frame.surface_steps.push_back(surface_steps_[input]);
+  }
   frame.inputs = std::move(points.inputs);
   frame.radii = radii;
   made.surfels = surfcast::scan::make_surfels(std::move(points.cloud), frame, made.signs, made.report);

@@ -68,7 +68,8 @@ class BuildParts {
   geometry::Box bounds_;
   uint64_t points_ = 0;  ///< of all inputs
   geometry::RootCube root_;
-  std::vector<std::optional<glm::dvec3>> sensors_;  ///< for each input
+  std::vector<std::optional<glm::dvec3>> sensors_;    ///< for each input
+  std::vector<std::optional<double>> surface_steps_;  ///< for each input, see ScanSchema
   std::vector<InputName> names_;
   std::vector<Part> plan_;
   PartFinder finder_;

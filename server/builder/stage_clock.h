@@ -26,10 +26,10 @@ class StageClock {
     stopwatch_ = {};
     progress_({stage_, 0, points_});
   }
-  /// Call when a step is complete. Thread-safe.
-  void step() {
+  /// Call when a step, or several, are complete. Thread-safe.
+  void step(uint64_t steps = 1) {
     const std::lock_guard lock(mutex_);
-    ++done_;
+    done_ += static_cast<size_t>(steps);
     progress_({stage_, static_cast<double>(done_) / static_cast<double>(steps_), points_});
   }
 

@@ -48,7 +48,7 @@ class VolumePass {
  private:
   Status write_slab(uint32_t level, uint32_t k) {
     const glm::u32vec3 bricks = volume::level_bricks(size_, level);
-    const auto at_once = static_cast<size_t>(2 * oneapi::tbb::this_task_arena::max_concurrency());
+    const auto at_once = 2 * static_cast<size_t>(oneapi::tbb::this_task_arena::max_concurrency());
     return work_in_order(size_t{bricks.x} * bricks.y, at_once, [&](size_t i) -> Result<std::function<Status()>> {
       const glm::u32vec3 brick(static_cast<uint32_t>(i % bricks.x), static_cast<uint32_t>(i / bricks.x), k);
       auto block = std::make_shared<const model::EncodedBlock>(encode(level, brick));

@@ -7,6 +7,7 @@
 #include <csignal>
 #include <cstring>
 #include <filesystem>
+#include <functional>
 #include <iostream>
 #include <limits>
 #include <memory>
@@ -25,9 +26,12 @@
 #include "base/atomic_file.h"
 #include "base/log.h"
 #include "builder/build_model.h"
+#include "builder/grid_input.h"
 #include "builder/memory_budget.h"
 #include "cmd/build_progress.h"
+#include "cmd/iso_flag.h"
 #include "cmd/radius_flag.h"
+#include "isosurface/surface_inputs.h"
 
 namespace surfcast::cmd {
 namespace {
@@ -44,6 +48,7 @@ struct BuildCommand {
   size_t threads = 0;  ///< 0: one a core
   std::string progress = "auto";
   bool background = false;
+  std::vector<isosurface::IsoSurface> surfaces;  ///< of grids among the inputs
 };
 
 /// A share of the processors that a build gets by itself, points a second and processor: by the processor time of 10^7
@@ -75,9 +80,38 @@ std::string figures(const builder::BuildReport& report) {
     return fmt::format("{} samples read, {} blocks, {} bytes, {:.2f} s, {:.0f} samples/s, {:.0f} MiB peak memory\n",
                        report.samples, report.blocks, report.bytes, report.seconds, report.samples_per_second(), peak);
   }
+  if (report.gaussians > 0) {
+    return fmt::format("{} Gaussians, {} bytes, {:.2f} s, {:.0f} Gaussians/s, {:.0f} MiB peak memory\n",
+                       report.gaussians, report.bytes, report.seconds, report.points_per_second(), peak);
+  }
   return fmt::format("{} points read, {} surfels, {} bytes, {:.2f} s, {:.0f} points/s, {:.0f} MiB peak memory\n",
                      report.scan.points_read, report.surfels, report.bytes, report.seconds, report.points_per_second(),
                      peak);
+}
+
+/// What was found of each surface.
+std::string surface_lines(const std::vector<isosurface::InputSurfaces>& inputs) {
+  std::string lines;
+  for (const auto& [input, surfaces] : inputs) {
+    for (const isosurface::SurfaceReport& surface : surfaces) {
+      lines += fmt::format("{}: {} points of the surface at {}\n", input, surface.points, surface.value);
+    }
+  }
+  return lines;
+}
+
+nlohmann::ordered_json to_json(const std::vector<isosurface::InputSurfaces>& inputs) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const auto& [input, surfaces] : inputs) {
+    for (const isosurface::SurfaceReport& surface : surfaces) {
+      json.push_back({{"input", input},
+                      {"value", surface.value},
+                      {"points", surface.points},
+                      {"thinned", surface.thinned},
+                      {"lost", surface.lost}});
+    }
+  }
+  return json;
 }
 
 /// What became of the radii of each input, beside those that the notes name.
@@ -105,13 +139,15 @@ nlohmann::ordered_json to_json(const builder::InputRadii& radii) {
   return json;
 }
 
-std::string to_json(const BuildCommand& command, const builder::BuildReport& report) {
+std::string to_json(const BuildCommand& command, const builder::BuildReport& report,
+                    const std::vector<isosurface::InputSurfaces>& surfaces) {
   nlohmann::ordered_json json{
       {"output", command.output.string()},
       {"points_read", report.scan.points_read},
       {"points_in_scans", report.points_in_scans},
       {"samples", report.samples},
       {"surfels", report.surfels},
+      {"gaussians", report.gaussians},
       {"blocks", report.blocks},
       {"bytes", report.bytes},
       {"seconds", report.seconds},
@@ -136,6 +172,7 @@ std::string to_json(const BuildCommand& command, const builder::BuildReport& rep
     total = seconds + (total.is_number() ? total.get<double>() : 0.0);
   }
   for (const builder::InputRadii& radii : report.radii) json["radii"].push_back(to_json(radii));
+  if (!surfaces.empty()) json["surfaces"] = to_json(surfaces);
   for (const std::filesystem::path& input : command.inputs) json["inputs"].push_back(input.string());
   // File names need not be UTF-8.
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
@@ -150,7 +187,17 @@ void keep_freed_memory() {
 #endif
 }
 
+/// An error if surfaces are wanted and no input has any. What does not exist is an error of reading.
+Status check_surfaces(const BuildCommand& command) {
+  const auto may_have = [](const std::filesystem::path& input) {
+    return builder::is_grid(input) || !std::filesystem::exists(input);
+  };
+  if (command.surfaces.empty() || std::any_of(command.inputs.begin(), command.inputs.end(), may_have)) return {};
+  return fail(ErrorKind::kInvalidInput, command.inputs[0].string() + ": --iso needs a volume, and no input is one");
+}
+
 Status build(const BuildCommand& command) {
+  if (Status status = check_surfaces(command); !status) return status;
   keep_freed_memory();
   if (command.background) {
     if (Status status = go_into_background(command.sample.has_value()); !status) return status;
@@ -158,6 +205,7 @@ Status build(const BuildCommand& command) {
   std::optional<oneapi::tbb::global_control> threads;
   if (command.threads > 0) threads.emplace(oneapi::tbb::global_control::max_allowed_parallelism, command.threads);
   Result<builder::BuildReport> report;
+  isosurface::SurfaceInputs surfaces(command.surfaces, command.output);
   {
     const size_t cores = command.threads > 0 ? command.threads : std::max(1U, std::thread::hardware_concurrency());
     BuildProgressReport progress(style_of(command.progress), kPointsPerSecondAndCore * static_cast<double>(cores));
@@ -167,14 +215,15 @@ Status build(const BuildCommand& command) {
     options.memory = builder::parse_memory_size(command.memory);
     options.sample = command.sample;
     options.radii = command.radii;
+    if (!command.surfaces.empty()) options.open = std::bind_front(&isosurface::SurfaceInputs::open, &surfaces);
     report = builder::build_model(command.inputs, command.output, options,
                                   [&progress](const builder::BuildStep& step) { progress.note(step); });
   }
   if (!report) return fail(std::move(report.error()));
   for (const std::string& note : report->scan.notes) spdlog::warn("{}", note);
-  std::cout << radii_lines(*report) << figures(*report);
+  std::cout << surface_lines(surfaces.found()) << radii_lines(*report) << figures(*report);
   if (command.report.empty()) return {};
-  return write_file_atomically(command.report, to_json(command, *report));
+  return write_file_atomically(command.report, to_json(command, *report, surfaces.found()));
 }
 
 }  // namespace
@@ -197,6 +246,7 @@ void add_build_command(CLI::App& app, Status& outcome) {
         return builder::parse_memory_size(text) ? std::string() : "not a size like 4G or 512M: " + text;
       });
   add_radius_flag(*build_command, command->radii);
+  add_iso_flag(*build_command, command->surfaces);
   build_command->add_option("--report", command->report, "Write statistics of the build to this file as JSON");
   build_command
       ->add_option("--sample", command->sample,

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/mapped_file.h"
+#include "builder/build_gaussians.h"
 #include "scan/scan_stream.h"
 
 namespace surfcast::cmd {
@@ -52,6 +53,7 @@ Status check_any_scan(const NamedPaths& paths) {
   if (paths.scans.empty() || !paths.models.empty() || !paths.folders.empty()) return {};
   Status first;
   for (const fs::path& scan : paths.scans) {
+    if (builder::holds_gaussians(scan)) return {};
     Status status = scan::check_header(scan);
     if (status) return {};
     if (first) first = std::move(status);

@@ -3,8 +3,11 @@
 #include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <utility>
 
 #include <spdlog/fmt/fmt.h>
+
+#include "model/volume_facts.h"
 
 namespace surfcast::cmd {
 namespace {
@@ -17,6 +20,7 @@ std::string joined(const std::vector<std::string>& names) {
 
 /// Names of everything a surfel of the model has.
 std::vector<std::string> attribute_names(const model::ModelInfo& info) {
+  if (info.surfels == 0) return info.scalar_names;
   std::vector<std::string> names{"position", "normal", "radius", "weight"};
   if (info.color_bits > 0) names.push_back("color");
   names.insert(names.end(), info.scalar_names.begin(), info.scalar_names.end());
@@ -25,6 +29,41 @@ std::vector<std::string> attribute_names(const model::ModelInfo& info) {
 
 std::string text_of(const glm::dvec3& v) {
   return fmt::format("{} {} {}", v.x, v.y, v.z);
+}
+
+std::string with_unit(std::string text, const std::string& unit) {
+  return unit.empty() ? text : std::move(text) + " " + unit;
+}
+
+std::string text_of(const model::Volume& volume) {
+  std::string text =
+      fmt::format("volume {}: {} x {} x {} samples of {}, spacing {}", volume.name, volume.size.x, volume.size.y,
+                  volume.size.z, type_name(volume), with_unit(text_of(spacing_of(volume)), volume.length_unit));
+  if (volume.frame != model::WorldFrame::kUnstated) {
+    text += fmt::format(", axes {}", frame_name(volume));
+  }
+  return text +
+         fmt::format(", values {}\n", with_unit(fmt::format("{} .. {}", volume.low, volume.high), volume.sample_unit));
+}
+
+nlohmann::ordered_json json_of(const glm::dvec3& v) {
+  return {v.x, v.y, v.z};
+}
+
+nlohmann::ordered_json json_of(const model::Volume& volume) {
+  const glm::dmat4x3& axes = volume.index_to_world;
+  return {{"name", volume.name},
+          {"size", {volume.size.x, volume.size.y, volume.size.z}},
+          {"spacing", json_of(spacing_of(volume))},
+          {"index_to_world", {json_of(axes[0]), json_of(axes[1]), json_of(axes[2]), json_of(axes[3])}},
+          {"frame", frame_name(volume)},
+          {"length_unit", volume.length_unit},
+          {"type", type_name(volume)},
+          {"slope", volume.slope},
+          {"intercept", volume.intercept},
+          {"low", volume.low},
+          {"high", volume.high},
+          {"sample_unit", volume.sample_unit}};
 }
 
 nlohmann::ordered_json json_of(const LevelSummary& level) {
@@ -60,7 +99,8 @@ ModelSummary summarize(const model::ModelFile& model, uint64_t file_bytes) {
     level.surfels += block.surfels;
     level.bytes += block.bytes;
   }
-  ModelSummary summary{model.path(), file_bytes, model.info(), {}};
+  const std::span<const model::Volume> volumes = model.volumes();
+  ModelSummary summary{model.path(), file_bytes, model.info(), {volumes.begin(), volumes.end()}, {}};
   for (const auto& [number, level] : levels) summary.levels.push_back(level);
   return summary;
 }
@@ -77,9 +117,11 @@ std::string to_text(const ModelSummary& summary) {
   for (const model::KindCount& kind : info.kinds) {
     text += fmt::format("kind {}: {} in {} blocks\n", kind.kind, kind.items, kind.blocks);
   }
-  text += fmt::format("bytes: {} ({:.3f} per surfel)\n", summary.file_bytes, summary.bytes_per_surfel());
+  for (const model::Volume& volume : summary.volumes) text += text_of(volume);
+  text += fmt::format("bytes: {} ({:.3f} per {})\n", summary.file_bytes, summary.bytes_per_surfel(),
+                      info.surfels > 0 ? "surfel" : "item");
   text += fmt::format("bounds: {} .. {}\n", text_of(info.bounds.min), text_of(info.bounds.max));
-  text += fmt::format("up: {}\n", info.z_up ? "z" : "y");
+  text += fmt::format("up: {}{}\n", info.upside_down ? "-" : "", info.z_up ? "z" : "y");
   text += fmt::format("oriented: {}\n", info.oriented ? "yes" : "no");
   text += fmt::format("color bits: {}\n", info.color_bits);
   text += fmt::format("attributes: {}\n", joined(attribute_names(info)));
@@ -100,17 +142,18 @@ std::string to_text(const ModelSummary& summary) {
 
 std::string to_json(const ModelSummary& summary) {
   const model::ModelInfo& info = summary.info;
-  const auto array_of = [](const glm::dvec3& v) { return nlohmann::ordered_json{v.x, v.y, v.z}; };
   nlohmann::ordered_json json{
       {"model", summary.path.string()},
       {"sources", info.source_names},
       {"surfels", info.surfels},
       {"scatter", info.scatter},
       {"kinds", nlohmann::ordered_json::array()},
+      {"volumes", nlohmann::ordered_json::array()},
       {"bytes", summary.file_bytes},
       {"bytes_per_surfel", summary.bytes_per_surfel()},
-      {"bounds", {{"min", array_of(info.bounds.min)}, {"max", array_of(info.bounds.max)}}},
+      {"bounds", {{"min", json_of(info.bounds.min)}, {"max", json_of(info.bounds.max)}}},
       {"z_up", info.z_up},
+      {"upside_down", info.upside_down},
       {"oriented", info.oriented},
       {"color_bits", info.color_bits},
       {"attributes", attribute_names(info)},
@@ -119,6 +162,7 @@ std::string to_json(const ModelSummary& summary) {
       {"levels", nlohmann::ordered_json::array()},
   };
   for (const model::KindCount& kind : info.kinds) json["kinds"].push_back(json_of(kind));
+  for (const model::Volume& volume : summary.volumes) json["volumes"].push_back(json_of(volume));
   for (const model::AttributeRange& range : info.ranges) json["ranges"].push_back(json_of(range));
   for (const model::ClassCount& count : info.classes) {
     json["classes"].push_back({{"code", count.code}, {"surfels", count.surfels}});

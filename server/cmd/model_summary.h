@@ -25,10 +25,18 @@ struct ModelSummary {
   std::filesystem::path path;
   uint64_t file_bytes = 0;
   model::ModelInfo info;
+  std::vector<model::Volume> volumes;
   std::vector<LevelSummary> levels;  ///< finest first
 
+  /// Of the leaves, of all kinds.
+  [[nodiscard]] uint64_t items() const {
+    uint64_t sum = 0;
+    for (const model::KindCount& kind : info.kinds) sum += kind.items;
+    return sum;
+  }
+  /// Or per item of another kind.
   [[nodiscard]] double bytes_per_surfel() const {
-    return static_cast<double>(file_bytes) / static_cast<double>(std::max<uint64_t>(info.surfels, 1));
+    return static_cast<double>(file_bytes) / static_cast<double>(std::max<uint64_t>(items(), 1));
   }
 };
 

@@ -17,6 +17,7 @@
 #include "base/mapped_file.h"
 #include "base/scratch_folder.h"
 #include "builder/build_model.h"
+#include "builder/grid_input.h"
 #include "cmd/cache_eviction.h"
 #include "model/model_file.h"
 
@@ -112,6 +113,10 @@ Result<fs::path> ready_cache_folder(const ScanCacheConfig& config) {
 
 Result<CacheSlot> find_cache_slot(const fs::path& scan, const ScanCacheConfig& config,
                                   const std::atomic<bool>& cancelled) {
+  // The samples of a grid may be in other files, which the key would not tell apart.
+  if (builder::is_grid(scan)) {
+    return fail(ErrorKind::kUnsupported, scan.string() + ": is a volume; make a model of it with surfcastd build");
+  }
   const Result<fs::path> folder = ready_cache_folder(config);
   if (!folder) return fail(folder.error());
   const Result<MappedFile> content = MappedFile::open(scan);

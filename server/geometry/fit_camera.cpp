@@ -30,8 +30,10 @@ class AxisFit {
 
 /// The unit direction from the fitted boxes to the eye.
 glm::dvec3 fitting_direction(const glm::dvec3& vertical, const glm::dvec3& facing) {
-  // By convention the front is -y in z-up models (surveying) and +z in y-up models (graphics).
-  const glm::dvec3 front = std::abs(vertical.z) > 0.5 ? glm::dvec3{0, -1, 0} : glm::dvec3{0, 0, 1};
+  // By convention the front is -y in z-up models (surveying), +z in y-up models (graphics), and -z in models whose y
+  // points down (cameras of training programs).
+  const glm::dvec3 graphics{0, 0, vertical.y < 0 ? -1 : 1};
+  const glm::dvec3 front = std::abs(vertical.z) > 0.5 ? glm::dvec3{0, -1, 0} : graphics;
   const glm::dvec3 side = glm::cross(vertical, front);
   const glm::dvec3 customary = glm::normalize(front + 0.35 * side + 0.35 * vertical);
   constexpr double kPullOfNormals = 1.2;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "kinds/kind_table.h"
@@ -12,11 +13,12 @@ namespace surfcast::kinds {
 class FileBlocks : public residency::BlockSource {
  public:
   /// `numbers`: the result of find_kinds for the model.
-  FileBlocks(std::shared_ptr<const model::ModelFile> model, KindTable kinds, std::vector<uint32_t> numbers)
-      : model_(std::move(model)), kinds_(kinds), numbers_(std::move(numbers)) {}
+  FileBlocks(std::shared_ptr<const model::ModelFile> model, KindTable kinds, std::vector<uint32_t> numbers);
 
   [[nodiscard]] uint64_t id() const override { return model_->id(); }
-  [[nodiscard]] const ldc::BlockTree& tree() const override { return model_->tree(); }
+  /// The tree of the model. Blocks of kinds with more than kMaxPackedPerSurfel texels per item count as so many more
+  /// items.
+  [[nodiscard]] const ldc::BlockTree& tree() const override { return tree_ ? *tree_ : model_->tree(); }
   void prefetch(uint32_t block) const override { model_->prefetch(block); }
   [[nodiscard]] Result<residency::PackedBlock> load(uint32_t block, bool attributes) const override;
   /// The number of a block's kind in the table of kinds.
@@ -26,6 +28,7 @@ class FileBlocks : public residency::BlockSource {
   std::shared_ptr<const model::ModelFile> model_;
   KindTable kinds_;
   std::vector<uint32_t> numbers_;
+  std::optional<ldc::BlockTree> tree_;  ///< if it differs from that of the model
 };
 
 }  // namespace surfcast::kinds

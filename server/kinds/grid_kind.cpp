@@ -3,24 +3,12 @@
 #include <utility>
 
 #include "base/contract.h"
+#include "kinds/brick_block.h"
 #include "volume/packing.h"
 #include "volume/read_brick.h"
 
 namespace surfcast::kinds {
 namespace {
-
-class GridHeader : public residency::BlockHeader {
- public:
-  explicit GridHeader(const volume::BrickHeader& brick)
-      : scale_(static_cast<float>(brick.offset), static_cast<float>(brick.scale), static_cast<float>(brick.low),
-               static_cast<float>(brick.high)) {}
-
-  [[nodiscard]] glm::vec4 scale(int /*unit*/) const override { return scale_; }
-  void add_runs(const selection::RadiusRange& /*wanted*/, std::vector<residency::TexelRun>& /*runs*/) const override {}
-
- private:
-  glm::vec4 scale_;
-};
 
 /// A decoded brick. It has no items that a pixel could show alone.
 class GridBlock : public SourceBlock {
@@ -50,7 +38,8 @@ Result<residency::PackedBlock> GridKind::load(const model::ModelFile& model, uin
   packed.lattice = {stored->grid, stored->origin, glm::ivec3(0), stored->extent};
   packed.texels = volume::pack_brick(*brick);
   if (attributes) packed.attributes.resize(packed.texels.size());
-  packed.header = std::make_shared<const GridHeader>(brick->header);
+  const model::Volume& volume = model.volumes()[brick->header.volume];
+  packed.header = std::make_shared<const BrickBlock>(*brick, volume.size, volume.index_to_world);
   return packed;
 }
 

@@ -8,12 +8,13 @@ namespace surfcast::kinds {
 class GridKind : public Kind {
  public:
   [[nodiscard]] std::string_view name() const override { return model::kGridKind; }
-  /// `BlockHeader::scale` is the offset and the scale of the codes, then the lowest and the highest value.
+  /// The header is a BrickBlock.
   [[nodiscard]] Result<residency::PackedBlock> load(const model::ModelFile& model, uint32_t block,
                                                     bool attributes) const override;
   [[nodiscard]] Result<std::shared_ptr<const SourceBlock>> decode(const model::ModelFile& model,
                                                                   uint32_t block) const override;
   [[nodiscard]] KindShaders shaders() const override { return {}; }
+  [[nodiscard]] DrawnAs drawn_as() const override { return DrawnAs::kVolume; }
 };
 
 }  // namespace surfcast::kinds

@@ -22,6 +22,13 @@ struct KindShaders {
   std::string_view fragment;
 };
 
+/// How the items of a kind become a picture.
+enum class DrawnAs {
+  kSurface,    ///< layers of the splat kernel
+  kGaussians,  ///< composited one by one, sorted by depth (render/gaussian_passes.h)
+  kVolume,     ///< sampled along rays (render/volume_passes.h); the headers of its blocks are BrickBlocks
+};
+
 /// The kind of the items in a block of a model. It determines how blocks are read, packed, drawn and picked. The tree,
 /// selection, residency, tile lists, compositing and the order of picks are the same for all kinds. Kinds are
 /// constants. All methods may be called from several threads at once. No method is called once per item. docs/kinds.md
@@ -38,7 +45,13 @@ class Kind {
   /// Reads and decodes a block of this kind with all attributes in the file.
   [[nodiscard]] virtual Result<std::shared_ptr<const SourceBlock>> decode(const model::ModelFile& model,
                                                                           uint32_t block) const = 0;
+  /// Empty for kinds that are not drawn as surfaces.
   [[nodiscard]] virtual KindShaders shaders() const = 0;
+  [[nodiscard]] virtual DrawnAs drawn_as() const { return DrawnAs::kSurface; }
+  /// The most texels of a block of so many items in a model.
+  [[nodiscard]] virtual uint64_t texels(const model::ModelInfo& /*info*/, uint32_t items) const {
+    return uint64_t{residency::kMaxPackedPerSurfel} * items;
+  }
 };
 
 }  // namespace surfcast::kinds

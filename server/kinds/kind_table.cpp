@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "kinds/gaussian_kind.h"
 #include "kinds/grid_kind.h"
 #include "kinds/surfel_kind.h"
 
@@ -11,7 +12,8 @@ namespace surfcast::kinds {
 KindTable built_in_kinds() {
   static const SurfelKind kSurfels;
   static const GridKind kGrids;
-  static const std::array<const Kind*, 2> kKinds{&kSurfels, &kGrids};
+  static const GaussianKind kGaussians;
+  static const std::array<const Kind*, 3> kKinds{&kSurfels, &kGrids, &kGaussians};
   return kKinds;
 }
 

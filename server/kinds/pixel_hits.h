@@ -17,6 +17,7 @@ struct PickHit {
   double form = 0;      ///< squared distance from the item's centre on the screen, scaled to 1 at its rim
   double depth = 0;     ///< camera z of the item in this pixel
   double occluder = 0;  ///< camera z behind which the item hides everything
+  double opacity = 1;   ///< of a translucent item: less than 1, and it hides only what is behind it in part
 };
 
 /// The place of an item among those that cover a pixel: the lesser one is picked. Blocks and items decide between equal
@@ -33,6 +34,9 @@ struct PickRank {
 
 /// ItemLook::code of models without classes.
 inline constexpr float kNoClass = -1;
+
+/// The share of the light that a ray loses up to the translucent item that it sees.
+inline constexpr double kSeenThrough = 0.5;
 
 /// What a picture can show of an item beside its colour.
 struct ItemLook {
@@ -57,7 +61,8 @@ struct ShownItem {
 };
 
 /// The items that cover the pixels of a rectangle, collected block by block in any order. Afterwards each pixel knows
-/// the item that a pick there would find. Of the hits only those are kept that may still be found: of two items the one
+/// the item that a pick there would find: the nearest one up to which translucent items leave half of the light, or
+/// else the opaque one of the least rank. Of the hits only those are kept that may still be found: of two items the one
 /// that is farther and ranks behind never is. So memory grows with the pixels and hardly with the items.
 class PixelHits {
  public:
@@ -88,10 +93,12 @@ class PixelHits {
   struct Entry {
     ShownItem item;
     uint32_t next = kNone;
+    double opacity = 1;
   };
   struct Pixel {
     double occluder = std::numeric_limits<double>::infinity();
     uint32_t nearest = kNone;
+    uint32_t translucent = kNone;  ///< list of translucent items in ascending depth
   };
 
   [[nodiscard]] size_t index_of(const glm::ivec2& pixel) const {
@@ -101,6 +108,7 @@ class PixelHits {
   uint32_t store(const Entry& entry);
   void drop_from(uint32_t& link);
   void drop_hidden(Pixel& pixel);
+  void add_translucent(Pixel& pixel, const PickHit& hit, const ItemLook& look);
 
   PixelRange range_;
   uint32_t block_ = 0;

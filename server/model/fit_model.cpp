@@ -57,7 +57,10 @@ std::vector<geometry::Box> boxes_of_discs(const ModelFile& model) {
   std::vector<geometry::Box> boxes;
   for (const ldc::BlockEntry& block : model.blocks()) {
     if (block.level > 0) continue;
-    boxes.push_back({block.bounds.min - block.max_radius, block.bounds.max + block.max_radius});
+    // The largest of other kinds may be far larger than what is seen of them.
+    const bool discs = model.info().kinds[block.kind].kind == kSurfelKind;
+    const double reach = discs ? block.max_radius : block.spacing;
+    boxes.push_back({block.bounds.min - reach, block.bounds.max + reach});
   }
   return boxes;
 }
@@ -65,8 +68,7 @@ std::vector<geometry::Box> boxes_of_discs(const ModelFile& model) {
 }  // namespace
 
 geometry::Camera fit_model(const ModelFile& model, double aspect) {
-  const glm::dvec3 up = model.info().z_up ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
-  return geometry::fit_camera(boxes_of_discs(model), up, aspect, kViewAngle, mean_facing(model));
+  return geometry::fit_camera(boxes_of_discs(model), model.info().up(), aspect, kViewAngle, mean_facing(model));
 }
 
 }  // namespace surfcast::model

@@ -21,6 +21,9 @@ constexpr std::array<char, 8> kMagic{'S', 'U', 'R', 'F', 'C', 'A', 'S', 'T'};
 constexpr size_t kHeaderChecksumAt = kHeaderBytes - sizeof(uint64_t);
 constexpr uint16_t kOrientedFlag = 1;
 constexpr uint16_t kZUpFlag = 2;
+constexpr uint16_t kUpsideDownFlag = 4;
+constexpr int kDegreeShift = 4;  // of the degree of harmonics, three bits
+constexpr int kMostDegree = 4;
 /// Flag in the type of a scalar attribute: coarse blocks have it too.
 constexpr uint8_t kCoarseScalarFlag = 0x80;
 /// Half angle in a record without a normal cone.
@@ -218,7 +221,9 @@ std::vector<std::byte> write_header(const ModelHeader& header) {
   ByteWriter writer;
   writer.put_bytes(std::as_bytes(std::span(kMagic)));
   writer.put(header.version);
-  writer.put(static_cast<uint16_t>((header.oriented ? kOrientedFlag : 0) | (header.z_up ? kZUpFlag : 0)));
+  writer.put(static_cast<uint16_t>((header.oriented ? kOrientedFlag : 0) | (header.z_up ? kZUpFlag : 0) |
+                                   (header.upside_down ? kUpsideDownFlag : 0) |
+                                   (header.harmonics_degree << kDegreeShift)));
   writer.put(static_cast<uint16_t>(header.color_bits));
   writer.put(header.file_bytes);
   writer.put(header.directory_offset);
@@ -247,6 +252,8 @@ Result<ModelHeader> read_header(std::span<const std::byte> file) {
   const auto flags = reader.get<uint16_t>();
   header.oriented = (flags & kOrientedFlag) != 0;
   header.z_up = (flags & kZUpFlag) != 0;
+  header.upside_down = (flags & kUpsideDownFlag) != 0;
+  header.harmonics_degree = (flags >> kDegreeShift) & 7;
   header.color_bits = reader.get<uint16_t>();
   header.file_bytes = reader.get<uint64_t>();
   header.directory_offset = reader.get<uint64_t>();
@@ -257,6 +264,7 @@ Result<ModelHeader> read_header(std::span<const std::byte> file) {
   if (header.color_bits != 0 && header.color_bits != 8 && header.color_bits != 16) {
     return damaged("model header states a wrong colour depth");
   }
+  if (header.harmonics_degree > kMostDegree) return damaged("model header states a wrong degree of harmonics");
   if (header.file_bytes != file.size()) return damaged("model is cut off or has bytes after its end");
   if (header.directory_offset < kHeaderBytes || header.directory_offset > file.size() ||
       header.directory_bytes != file.size() - header.directory_offset) {

@@ -33,6 +33,8 @@ struct ModelHeader {
   bool oriented = false;
   bool z_up = true;
   int color_bits = 0;
+  bool upside_down = false;
+  int harmonics_degree = 0;
   uint64_t file_bytes = 0;
   uint64_t directory_offset = 0;
   uint64_t directory_bytes = 0;

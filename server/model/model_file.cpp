@@ -97,6 +97,8 @@ ModelInfo make_info(const ModelHeader& header, const Directory& directory, std::
   info.oriented = header.oriented;
   info.z_up = header.z_up;
   info.color_bits = header.color_bits;
+  info.upside_down = header.upside_down;
+  info.harmonics_degree = header.harmonics_degree;
   for (const ScalarColumn& scalar : directory.scalars) info.scalar_names.push_back(scalar.name);
   info.source_names = directory.source_names;
   info.ranges = directory.ranges;

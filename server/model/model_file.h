@@ -32,12 +32,18 @@ struct ModelInfo {
   bool oriented = false;                  ///< see SurfelCloud::oriented
   bool z_up = true;                       ///< see SurfelCloud::z_up
   int color_bits = 0;                     ///< 8 or 16; 0: the model has no colour
+  bool upside_down = false;               ///< the vertical axis points down: up is its negative end
+  int harmonics_degree = 0;               ///< highest degree of the harmonics of its Gaussians
   std::vector<std::string> scalar_names;  ///< scalar attributes of the leaves, in order
   std::vector<std::string> source_names;  ///< the input files
   std::vector<AttributeRange>
       ranges;                       ///< of the attributes that have finite values; empty if the file has no statistics
   std::vector<ClassCount> classes;  ///< classes that occur, sorted by code; likewise
 
+  /// The direction that points up, unit.
+  [[nodiscard]] glm::dvec3 up() const {
+    return (upside_down ? -1.0 : 1.0) * (z_up ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0));
+  }
   /// Null if the file has no range of this attribute.
   [[nodiscard]] const AttributeRange* range_of(std::string_view attribute) const {
     for (const AttributeRange& range : ranges) {

@@ -80,6 +80,8 @@ ModelHeader make_header(const ModelSchema& schema, uint32_t version, std::span<c
   header.oriented = schema.oriented;
   header.z_up = schema.z_up;
   header.color_bits = schema.color_bits;
+  header.upside_down = schema.upside_down;
+  header.harmonics_degree = schema.harmonics_degree;
   header.file_bytes = offset + tables.size();
   header.directory_offset = offset;
   header.directory_bytes = tables.size();
@@ -90,7 +92,7 @@ ModelHeader make_header(const ModelSchema& schema, uint32_t version, std::span<c
 }  // namespace
 
 ModelSchema schema_of(const surfel::SurfelCloud& cloud) {
-  ModelSchema schema{cloud.oriented, cloud.z_up, cloud.colors ? cloud.colors->bits : 0, {}, {}};
+  ModelSchema schema{cloud.oriented, cloud.z_up, cloud.colors ? cloud.colors->bits : 0, {}, {}, false, 0};
   for (const surfel::SourceRange& source : cloud.sources) schema.source_names.push_back(source.name);
   for (const surfel::ScalarAttribute& scalar : cloud.scalars) {
     schema.scalars.push_back(

@@ -22,6 +22,8 @@ struct ModelSchema {
   int color_bits = 0;     ///< 8 or 16; 0 without colour
   std::vector<std::string> source_names;
   std::vector<ScalarColumn> scalars;
+  bool upside_down = false;  ///< see ModelInfo::upside_down
+  int harmonics_degree = 0;  ///< see ModelInfo::harmonics_degree
 };
 
 /// The schema of a model made from this cloud.

@@ -1,8 +1,10 @@
 #include "net/convert.h"
 
+#include <cmath>
 #include <limits>
 #include <utility>
 
+#include "model/volume_facts.h"
 #include "protocol/errors.h"
 #include "protocol/picture_fields.h"
 #include "protocol/profile_query.h"
@@ -38,6 +40,10 @@ picture::Filter from_wire(wire::Filter value) {
 picture::Shading from_wire(wire::Shading value) {
   if (value == wire::SHADING_UNLIT) return picture::Shading::kUnlit;
   return value == wire::SHADING_LIT ? picture::Shading::kLit : picture::Shading::kAuto;
+}
+
+picture::SplatConvention from_wire(wire::SplatConvention value) {
+  return value == wire::SPLAT_CONVENTION_EXACT ? picture::SplatConvention::kExact : picture::SplatConvention::kTrained;
 }
 
 picture::FileFormat from_wire(wire::FileFormat value) {
@@ -125,7 +131,7 @@ picture::Transfer from_wire(const wire::TransferFunction& transfer) {
   if (transfer.has_first()) result.first = transfer.first();
   if (transfer.has_last()) result.last = transfer.last();
   for (const wire::TransferPoint& point : transfer.points()) {
-    result.points.push_back({point.value(), from_wire(point.color()), point.opacity()});
+    result.points.push_back({point.value(), glm::dvec3(from_wire(point.color())) / 255.0, point.opacity()});
   }
   return result;
 }
@@ -142,9 +148,6 @@ void set_display_options(const wire::DrawPicture& request, picture::PictureReque
   const double radius = request.eye_dome().radius();
   picture.eye_dome.radius = radius > 0 ? radius : protocol::kDefaultEyeDomeRadius;
   picture.volumes = {from_wire(request.transfer()), request.shaded()};
-  picture.splat_convention = request.splat_convention() == wire::SPLAT_CONVENTION_EXACT
-                                 ? picture::SplatConvention::kExact
-                                 : picture::SplatConvention::kTrained;
 }
 
 geometry::Camera from_wire(const wire::Camera& camera) {
@@ -175,6 +178,7 @@ Result<service::PictureJob> to_job(const wire::DrawPicture& request) {
   job.request.normalization = from_wire(request.normalization());
   job.request.filter = from_wire(request.filter());
   job.request.shading = from_wire(request.shading());
+  job.request.splat_convention = from_wire(request.splat_convention());
   job.request.silhouettes = true;
   job.request.spacing = request.spacing();
   job.request.background = from_wire(request.background());
@@ -327,6 +331,34 @@ void to_wire(const service::ModelList& list, const UploadConfig& uploads, wire::
   for (const std::string& extension : uploads.extensions) message.mutable_uploads()->add_extensions(extension);
 }
 
+void to_wire(const picture::TransferPoint& point, wire::TransferPoint& message) {
+  const auto code = [](double part) { return static_cast<uint32_t>(std::lround(255 * part)); };
+  message.set_value(point.value);
+  message.mutable_color()->set_red(code(point.color.r));
+  message.mutable_color()->set_green(code(point.color.g));
+  message.mutable_color()->set_blue(code(point.color.b));
+  message.set_opacity(point.opacity);
+}
+
+void to_wire(const model::Volume& volume, const service::VolumePresets& presets, wire::VolumeDescription& message) {
+  const glm::dvec3 spacing = spacing_of(volume);
+  for (int axis = 0; axis < 3; ++axis) {
+    message.add_size(volume.size[axis]);
+    message.add_spacing(spacing[axis]);
+  }
+  message.set_name(protocol::clean_utf8(volume.name));
+  message.set_low(volume.low);
+  message.set_high(volume.high);
+  message.mutable_histogram()->Assign(volume.histogram.begin(), volume.histogram.end());
+  message.set_length_unit(protocol::clean_utf8(volume.length_unit));
+  message.set_sample_unit(protocol::clean_utf8(volume.sample_unit));
+  for (size_t i = 0; i < presets.size(); ++i) {
+    wire::PresetPoints& preset = *message.add_presets();
+    preset.set_preset(static_cast<wire::TransferPreset>(i));
+    for (const picture::TransferPoint& point : presets[i]) to_wire(point, *preset.add_points());
+  }
+}
+
 void to_wire(const std::string& name, const service::ModelDescription& description, wire::ModelDescription& message) {
   const model::ModelInfo& info = description.info;
   message.set_model(name);
@@ -341,6 +373,15 @@ void to_wire(const std::string& name, const service::ModelDescription& descripti
   message.set_levels(description.levels);
   message.set_blocks(description.blocks);
   message.set_spacing(description.spacing);
+  message.set_upside_down(info.upside_down);
+  for (const model::KindCount& kind : info.kinds) {
+    wire::KindCount* to = message.add_kinds();
+    to->set_kind(protocol::clean_utf8(kind.kind));
+    to->set_items(kind.items);
+  }
+  for (size_t i = 0; i < description.volumes.size(); ++i) {
+    to_wire(description.volumes[i], description.presets[i], *message.add_volumes());
+  }
   for (const model::AttributeRange& range : info.ranges) {
     wire::AttributeRange* to = message.add_ranges();
     to->set_attribute(protocol::clean_utf8(range.attribute));

@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include "model/volume_facts.h"
 #include "net/convert.h"
 #include "protocol/errors.h"
 #include "protocol/pick_result_text.h"
@@ -130,6 +131,21 @@ json to_json(const model::AttributeRange& range) {
           {"high", range.high}};
 }
 
+json to_json(const model::Volume& volume) {
+  const glm::dmat4x3& axes = volume.index_to_world;
+  return {{"name", volume.name},
+          {"size", {volume.size.x, volume.size.y, volume.size.z}},
+          {"spacing", to_json(spacing_of(volume))},
+          {"index_to_world", {to_json(axes[0]), to_json(axes[1]), to_json(axes[2]), to_json(axes[3])}},
+          {"frame", frame_name(volume)},
+          {"length_unit", volume.length_unit},
+          {"type", type_name(volume)},
+          {"low", volume.low},
+          {"high", volume.high},
+          {"sample_unit", volume.sample_unit},
+          {"histogram", volume.histogram}};
+}
+
 template <typename Values, typename Convert>
 json array_of(const Values& values, const Convert& convert) {
   json array = json::array();
@@ -161,13 +177,18 @@ HttpAnswer model_answer(const std::string& name, const service::ModelDescription
        {"surfels", info.surfels},
        {"bounds", {{"min", to_json(info.bounds.min)}, {"max", to_json(info.bounds.max)}}},
        {"oriented", info.oriented},
-       {"up_axis", info.z_up ? "z" : "y"},
+       {"up_axis", std::string(info.upside_down ? "-" : "") + (info.z_up ? "z" : "y")},
        {"color_bits", info.color_bits},
        {"attributes", info.scalar_names},
        {"sources", info.source_names},
        {"levels", description.levels},
        {"blocks", description.blocks},
        {"spacing", description.spacing},
+       {"kinds", array_of(info.kinds,
+                          [](const model::KindCount& kind) {
+                            return json{{"kind", kind.kind}, {"blocks", kind.blocks}, {"count", kind.items}};
+                          })},
+       {"volumes", array_of(description.volumes, [](const model::Volume& volume) { return to_json(volume); })},
        {"ranges", array_of(info.ranges, [](const model::AttributeRange& range) { return to_json(range); })},
        {"classes", array_of(info.classes, [](const model::ClassCount& count) {
           return json{{"code", count.code}, {"surfels", count.surfels}};

@@ -27,7 +27,8 @@ struct LeafOnRay {
 /// An item that covers the pixel.
 struct Candidate {
   kinds::PickRank rank;
-  double depth = 0;  ///< camera z
+  double depth = 0;    ///< camera z
+  double opacity = 1;  ///< less than 1 for translucent items
 };
 
 /// Camera z at which the ray enters a box that is extended by `margin` on all sides; infinite if the ray misses it.
@@ -99,22 +100,45 @@ class Picker {
     std::vector<kinds::PickHit> hits;
     block->hit(query_, hits);
     for (const kinds::PickHit& hit : hits) {
+      const Candidate candidate{{hit.form, number, hit.item}, hit.depth, hit.opacity};
+      if (hit.opacity < 1) translucent_.push_back(candidate);
+      if (hit.opacity < 1) continue;
       occluder_ = std::min(occluder_, hit.occluder);
-      candidates_.push_back({{hit.form, number, hit.item}, hit.depth});
+      candidates_.push_back(candidate);
     }
+    std::sort(translucent_.begin(), translucent_.end(), [](const Candidate& a, const Candidate& b) {
+      return a.depth != b.depth ? a.depth < b.depth : a.rank < b.rank;
+    });
+    if (const Candidate* seen = seen_translucent()) occluder_ = std::min(occluder_, seen->depth);
     if (!hits.empty()) blocks_.emplace(number, std::move(block));
   }
 
+  /// The item at which translucent ones have taken half of the light; null if they do not before an opaque one.
+  [[nodiscard]] const Candidate* seen_translucent() const {
+    double left = 1;
+    for (const Candidate& candidate : translucent_) {
+      left *= 1 - candidate.opacity;
+      if (candidate.depth > occluder_) return nullptr;
+      if (left <= kinds::kSeenThrough) return &candidate;
+    }
+    return nullptr;
+  }
+
   [[nodiscard]] std::optional<kinds::PickedSurfel> best() const {
-    const Candidate* best = nullptr;
+    const Candidate* best = seen_translucent();
+    if (best != nullptr) return describe(*best);
     for (const Candidate& candidate : candidates_) {
       if (candidate.depth > occluder_) continue;
       if (best == nullptr || candidate.rank < best->rank) best = &candidate;
     }
     if (best == nullptr) return std::nullopt;
-    kinds::PickedSurfel picked = blocks_.at(best->rank.block)->describe(query_, best->rank.item);
-    picked.depth = best->depth;
-    picked.number = leaf_numbers(model_)[best->rank.block] + best->rank.item;
+    return describe(*best);
+  }
+
+  [[nodiscard]] kinds::PickedSurfel describe(const Candidate& candidate) const {
+    kinds::PickedSurfel picked = blocks_.at(candidate.rank.block)->describe(query_, candidate.rank.item);
+    picked.depth = candidate.depth;
+    picked.number = leaf_numbers(model_)[candidate.rank.block] + candidate.rank.item;
     return picked;
   }
 
@@ -124,6 +148,7 @@ class Picker {
   const geometry::CameraFrame& frame_;
   glm::dvec3 direction_{0};  ///< world direction of the pixel's ray; its component along the view axis is 1
   std::map<uint32_t, std::shared_ptr<const kinds::SourceBlock>> blocks_;  ///< blocks that contain candidates
+  std::vector<Candidate> translucent_;                                    ///< in ascending depth
   std::vector<Candidate> candidates_;
   double occluder_ = kInfinity;  ///< camera z behind which everything is hidden
 };

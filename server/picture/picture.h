@@ -11,12 +11,17 @@
 
 #include "geometry/camera.h"
 #include "geometry/clip.h"
+#include "picture/transfer.h"
 
 namespace surfcast::picture {
 
 enum class Normalization { kPixel, kSurfel };
 enum class Filter { kEwa, kNone };  ///< kNone leaves out the prefilter and uses the reconstruction kernel alone
 enum class Shading { kAuto, kUnlit, kLit };
+
+/// How Gaussian models are drawn: by the rules of their training programs, or exact in perspective, filtered, and in
+/// the order of the depths in each pixel.
+enum class SplatConvention { kTrained, kExact };
 
 /// Whether a picture waits for missing blocks. kNow draws the resident blocks only and leaves the others to later
 /// pictures of the view.
@@ -41,32 +46,6 @@ struct EyeDome {
   double strength = 0;  ///< 0: off; 1: usual
   double radius = 1.5;  ///< pixels, at most 8
 };
-
-/// A point of a transfer function.
-struct TransferPoint {
-  double value = 0;  ///< of a sample
-  glm::u8vec3 color{255};
-  double opacity = 0;  ///< of one spacing of the grid, 0 to 1
-};
-
-enum class TransferPreset { kGray, kCtBone, kCtSoft, kMr };
-
-/// The colours and opacities of the samples of volumes: points in ascending order, or a preset.
-struct Transfer {
-  TransferPreset preset = TransferPreset::kGray;  ///< without points
-  std::optional<double> first{};                  ///< the value at the start of the preset; none: its own
-  std::optional<double> last{};                   ///< the value at the end of the preset; none: its own
-  std::vector<TransferPoint> points;
-};
-
-/// How volumes are drawn.
-struct VolumeOptions {
-  Transfer transfer;
-  bool shaded = false;  ///< lit by their gradients
-};
-
-/// How Gaussian models are drawn: as the programs that trained them do, or exactly in perspective.
-enum class SplatConvention { kTrained, kExact };
 
 /// All parameters of a picture of a model.
 struct PictureRequest {

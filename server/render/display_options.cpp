@@ -99,6 +99,7 @@ Result<DisplayOptions> resolve_display_options(const model::ModelInfo& info, con
   display.clipped = !request.clip.empty();
   display.hides_classes = classified && request.hidden_classes.any();
   display.attributes = display.hides_classes;
+  display.volumes = {request.volumes.transfer.points, request.clip, request.volumes.transfer.spacing};
   if (display.color == picture::SurfelColor::kElevation) {
     set_range(coloring, info.bounds.min[display.up_axis], info.bounds.max[display.up_axis], display);
   } else if (display.color == picture::SurfelColor::kIntensity) {

@@ -5,6 +5,7 @@
 #include "base/result.h"
 #include "model/model_file.h"
 #include "picture/picture.h"
+#include "render/volume_plan.h"
 #include "residency/surfel_pool.h"
 #include "shared/frame_layout.h"
 
@@ -19,6 +20,7 @@ struct DisplayOptions {
   int up_axis = 2;
   bool hides_classes = false;
   bool clipped = false;
+  VolumeLook volumes;
   bool attributes = false;  ///< the intensity or classification of each surfel is needed
 
   /// True if the colour comes from a table.

@@ -1,12 +1,14 @@
 #include "render/programs.h"
 
 #include <algorithm>
+#include <array>
 #include <string>
 #include <string_view>
 
 #include "gl/program.h"
 #include "render/shader_library.h"
 #include "shared/frame_layout.h"
+#include "shared/gaussian_layout.h"
 #include "shared/kernel.h"
 
 namespace surfcast::render {
@@ -58,7 +60,9 @@ std::string float_define(const Variant& variant) {
 
 std::string splat_defines(const Variant& variant) {
   const std::string output = variant.eye_dome ? "#define SURFCAST_EYE_DOME\n" : float_define(variant);
-  return common_defines(variant) + output + (variant.blends_behind ? "#define SURFCAST_BLENDS_BEHIND\n" : "");
+  const std::string layers = variant.layered ? "#define SURFCAST_LAYERS\n" : "";
+  const std::string behind = variant.blends_behind ? "#define SURFCAST_BLENDS_BEHIND\n" : "";
+  return common_defines(variant) + output + layers + behind;
 }
 
 std::string define(const std::string& name, int value) {
@@ -199,6 +203,47 @@ Result<LongListPrograms> Programs::long_lists(const Variant& variant, const Pict
   return programs;
 }
 
+Result<VolumePrograms> Programs::volumes(const Variant& variant) {
+  const std::string layers = variant.layered ? "#define SURFCAST_LAYERS\n" : "";
+  const std::string look = std::string(variant.clipped ? "#define SURFCAST_CLIPPED\n" : "") +
+                           (variant.shaded ? "#define SURFCAST_SHADED\n" : "") + layers;
+  const Result<const gl::Program*> draw = program({"volume.comp", "volume.comp"}, look);
+  if (!draw) return fail(draw.error());
+  constexpr const char* kFilter = "volume_filter.comp";
+  const Result<const gl::Program*> rows = program({kFilter, kFilter}, "");
+  if (!rows) return fail(rows.error());
+  const Result<const gl::Program*> columns =
+      program({kFilter, kFilter}, "#define SURFCAST_COLUMNS_OF_LIGHT\n" + float_define(variant) + layers);
+  if (!columns) return fail(columns.error());
+  return VolumePrograms{*draw, *rows, *columns};
+}
+
+Result<GaussianPrograms> Programs::gaussians(const Variant& variant, GaussianForm form) {
+  constexpr std::array kForms{"", "#define SURFCAST_FLAT\n", "#define SURFCAST_EXACT\n"};
+  const std::string form_define = kForms.at(static_cast<size_t>(form));
+  const bool rays = form != GaussianForm::kTrained;
+  constexpr auto kPixels = static_cast<uint32_t>(SURFCAST_TILE_WIDTH * SURFCAST_TILE_HEIGHT);
+  GaussianPrograms programs;
+  programs.record = rays ? SURFCAST_RAY_GAUSSIAN_RECORD : SURFCAST_GAUSSIAN_RECORD;
+  programs.round = rays ? SURFCAST_RAY_GAUSSIAN_ROUND : SURFCAST_GAUSSIAN_ROUND;
+  programs.lanes_of_tile = rays ? kPixels : static_cast<uint32_t>(SURFCAST_TILE_HEIGHT / shape_.blend_rows());
+  programs.lanes = shape_.whole_tiles ? (rays ? kPixels : 8) : 32;
+  std::string projection = form_define + define("SURFCAST_PROJECT_LANES", shape_.project_lanes);
+  projection += define("SURFCAST_HARMONICS", variant.harmonics);
+  if (variant.clipped) projection += "#define SURFCAST_CLIPPED\n";
+  const std::string blending = form_define + define("SURFCAST_BLEND_ROWS", shape_.blend_rows()) +
+                               define("SURFCAST_BLEND_LANES", static_cast<int>(programs.lanes)) + float_define(variant);
+  const Result<const gl::Program*> project = program({"projection of gaussian", "gaussian/project.comp"}, projection);
+  if (!project) return fail(project.error());
+  const char* file = rays ? "gaussian/blend_rays.comp" : "gaussian/blend.comp";
+  const Result<const gl::Program*> blend = program({"blending of gaussian", file}, blending);
+  if (!blend) return fail(blend.error());
+  programs.project = *project;
+  programs.blend = *blend;
+  programs.has_near = form == GaussianForm::kFlat;
+  return programs;
+}
+
 int Programs::pixels_at_once() const {
   return shape_.whole_tiles ? SURFCAST_TILE_WIDTH : 1;
 }
@@ -242,7 +287,9 @@ Result<SplatPrograms> Programs::variant(const Variant& variant, const PictureKin
       status = compile(programs.behind_samples, plain("behind.comp"), column + "#define SURFCAST_SUPERSAMPLED\n");
     }
   }
-  if (status && variant.eye_dome) status = compile(programs.eye_dome, plain("eye_dome.comp"), float_define(variant));
+  if (status && variant.eye_dome && !variant.layered) {
+    status = compile(programs.eye_dome, plain("eye_dome.comp"), float_define(variant));
+  }
   if (!status) return fail(std::move(status.error()));
   return programs;
 }

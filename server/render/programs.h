@@ -12,6 +12,7 @@
 #include "kinds/kind.h"
 #include "picture/picture.h"
 #include "render/embedded_shaders.h"
+#include "shared/frame_layout.h"
 
 namespace surfcast::render {
 
@@ -28,6 +29,10 @@ struct Variant {
   bool eye_dome = false;
   bool silhouettes = false;    ///< silhouettes are supersampled
   bool blends_behind = false;  ///< see PictureRequest::blends_behind
+  bool shaded = false;         ///< volumes are lit
+  bool layered = false;        ///< surfaces are kept for volumes instead of drawn; with eye_dome
+  bool exact = false;          ///< Gaussians are exact in perspective
+  int harmonics = 4;           ///< highest degree of the harmonics of Gaussians that is evaluated
 };
 
 /// A kind that a picture shows.
@@ -61,6 +66,9 @@ struct KernelShape {
   int tiles_at_once = 2;      ///< tiles that a work group of the splat kernel draws side by side
   int silhouette_lanes = 32;  ///< of a work group of the silhouette passes
   int project_lanes = 64;  ///< lanes that share a chunk of surfels: one vector, or as many as hide the memory latency
+
+  /// Rows of a tile that a lane of the blending pass of Gaussians holds, if it does not hold one pixel.
+  [[nodiscard]] int blend_rows() const { return whole_tiles ? SURFCAST_TILE_HEIGHT : 1; }
 };
 
 /// The programs for tiles with long lists, whose work groups draw one tile each.
@@ -71,10 +79,31 @@ struct LongListPrograms {
   const gl::Program* supersample_large = nullptr;  ///< likewise
 };
 
+/// The programs for volumes.
+struct VolumePrograms {
+  const gl::Program* draw = nullptr;
+  const gl::Program* filter_rows = nullptr;
+  const gl::Program* filter_columns = nullptr;
+};
+
 /// The shape for devices whose lanes are those of a processor's vectors.
 constexpr KernelShape software_kernels() {
   return {.whole_tiles = true, .tiles_at_once = 8, .silhouette_lanes = 16, .project_lanes = 8};
 }
+
+/// How Gaussians are drawn: affine footprints, discs, or exact in perspective.
+enum class GaussianForm { kTrained, kFlat, kExact };
+
+/// The programs of pictures with Gaussians.
+struct GaussianPrograms {
+  const gl::Program* project = nullptr;
+  const gl::Program* blend = nullptr;
+  uint32_t record = 2;         ///< texels of a Gaussian on the screen
+  uint32_t round = 0;          ///< list entries that a lane draws in one dispatch
+  uint32_t lanes_of_tile = 1;  ///< of the blending pass
+  uint32_t lanes = 8;          ///< of its work groups
+  bool has_near = false;       ///< the blending pass needs the depth of the nearest centre
+};
 
 /// Compiles the passes when they are first needed.
 class Programs {
@@ -85,6 +114,8 @@ class Programs {
   Result<SplatPrograms> variant(const Variant& variant, const PictureKinds& kinds);
   /// `longest`: entries of the longest list.
   Result<LongListPrograms> long_lists(const Variant& variant, const PictureKinds& kinds, uint32_t longest);
+  Result<VolumePrograms> volumes(const Variant& variant);
+  Result<GaussianPrograms> gaussians(const Variant& variant, GaussianForm form);
   /// Counts the tiles that large splats touch.
   [[nodiscard]] const gl::Program& count_large() const { return count_large_; }
   [[nodiscard]] const gl::Program& slices() const { return slices_; }

@@ -19,8 +19,8 @@ float decode_srgb(uint8_t value) {
 
 }  // namespace
 
-std::vector<Region> cut_into_regions(int width, int height, int margin) {
-  const auto side_of = [margin](int size) { return size <= kMaxRegionSide ? size : kMaxRegionSide - 2 * margin; };
+std::vector<Region> cut_into_regions(int width, int height, int margin, int side) {
+  const auto side_of = [=](int size) { return size <= side ? size : side - 2 * margin; };
   const int across = side_of(width);
   const int down = side_of(height);
   std::vector<Region> regions;

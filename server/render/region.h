@@ -18,14 +18,16 @@ struct Region {
 
 /// Largest side of a region: its picture and its tile lists fit in the smallest storage blocks that OpenGL guarantees.
 inline constexpr int kMaxRegionSide = 2048;
+/// The same with volumes among surfaces: the surfaces of every pixel are kept (SURFCAST_LAYERS_KEPT).
+inline constexpr int kMaxLayeredSide = 1024;
 
 /// Width in pixels of the margin that is drawn around a region if eye-dome lighting (its largest radius) or silhouettes
 /// read neighbouring pixels. It is a multiple of the tile size, so tiles have the same position as in a picture of one
 /// region.
 inline constexpr int kNeighbourMargin = 8;
 
-/// Divides a picture into regions, row by row. Each leaves room for the margin (see with_margin).
-std::vector<Region> cut_into_regions(int width, int height, int margin);
+/// Divides a picture into regions, row by row, of at most `side` pixels with the margin (see with_margin).
+std::vector<Region> cut_into_regions(int width, int height, int margin, int side = kMaxRegionSide);
 
 /// The halves of a region, divided along its longer side between two tiles. Empty if the region is one tile.
 std::vector<Region> halves_of(const Region& region);

@@ -3,171 +3,18 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
-#include <functional>
 #include <optional>
 
 #include "base/stopwatch.h"
+#include "render/batched_dispatch.h"
 #include "render/depth_slices.h"
+#include "render/projection_work.h"
 #include "render/tile_spans.h"
+#include "render/volume_passes.h"
 #include "shared/kernel.h"
 
 namespace surfcast::render {
 namespace {
-
-/// The chunks of one kind, which its projection processes.
-struct KindWork {
-  size_t first = 0;  ///< index in ProjectionWork::chunks
-  size_t count = 0;
-};
-
-/// The work of the projection.
-struct ProjectionWork {
-  std::vector<KindWork> kinds;  ///< for each kind of the picture
-  std::vector<layout::BlockView> blocks;
-  std::vector<layout::Chunk> chunks;
-  std::vector<layout::BlockDisplay> block_displays;  ///< for each block, if the display options need them
-  std::vector<layout::ClipRange> clips;
-  std::vector<DepthRange> depths;  ///< of the blocks, in units of the projection
-};
-
-/// An upper bound of the distance of the block's surfels from the eye, world units.
-double farthest_of(const residency::PackedLattice& lattice, const geometry::CameraFrame& frame) {
-  return glm::length(frame.to_camera(lattice.position(glm::uvec3(0)))) +
-         glm::length(lattice.step() * glm::dvec3(lattice.largest));
-}
-
-/// The binary exponent of the unit of length for a region. Pictures do not depend on the unit, but fourth powers of
-/// lengths must stay within the range of single precision. The farthest surfel gets a distance of about 2^24, so
-/// distances down to a billionth of it stay within that range. Scaling by a power of two does not round.
-int drawing_unit(const RegionTask& task) {
-  constexpr int kFarthest = 24;
-  double farthest = 0;
-  for (const VisibleBlock& block : task.blocks) {
-    farthest = std::max(farthest, farthest_of(block.resident->lattice, task.frame));
-  }
-  return farthest > 0 ? kFarthest - std::ilogb(farthest) : 0;
-}
-
-/// The constants of a block. Its origin is computed relative to the eye in double precision, so single precision never
-/// represents world coordinates.
-layout::BlockView block_view(const residency::ResidentBlock& block, const geometry::CameraFrame& frame, int unit) {
-  const double size = std::ldexp(1.0, unit);
-  return {glm::vec4(glm::vec3(frame.to_camera(block.lattice.position(glm::uvec3(0))) * size), 0),
-          glm::vec4(glm::vec3(block.lattice.step() * size), 0), block.header->scale(unit)};
-}
-
-/// The depths of a block's surfels, without their radii.
-DepthRange depths_of(const residency::PackedLattice& lattice, const geometry::CameraFrame& frame, int unit,
-                     uint64_t items) {
-  const glm::dvec3 extent = 0.5 * lattice.step() * glm::dvec3(lattice.largest);
-  const double middle = frame.to_camera(lattice.position(glm::uvec3(0)) + extent).z;
-  const double reach = glm::dot(glm::abs(frame.forward), extent);
-  return {std::ldexp(middle - reach, unit), std::ldexp(middle + reach, unit), items};
-}
-
-bool needs_block_displays(const DisplayOptions& display) {
-  return display.clipped || display.mapped();
-}
-
-/// Adds the chunks of a run, divided at the ends of pages.
-void add_chunks(const VisibleBlock& block, uint32_t view, const residency::TexelRun& run,
-                std::vector<layout::Chunk>& chunks) {
-  const uint32_t end = run.first + run.count;
-  for (uint32_t first = run.first; first < end;) {
-    const uint32_t in_page = first % residency::SurfelPool::kPageSurfels;
-    const uint32_t texel =
-        block.resident->pages[first / residency::SurfelPool::kPageSurfels] * residency::SurfelPool::kPageSurfels +
-        in_page;
-    const uint32_t count = std::min(end - first, residency::SurfelPool::kPageSurfels - in_page);
-    chunks.push_back(
-        {glm::uvec4(view, texel, count | run.flags, residency::kMaxPackedPerSurfel * block.first_surfel + first)});
-    first += count;
-  }
-}
-
-/// The kinds of a region's blocks that are projected, sorted by number.
-PictureKinds kinds_of(const RegionTask& task) {
-  std::vector<bool> seen(task.kinds.size());
-  for (const VisibleBlock& block : task.blocks) seen[block.kind] = true;
-  PictureKinds kinds;
-  for (uint32_t number = 0; number < seen.size(); ++number) {
-    if (seen[number] && !task.kinds[number]->shaders().project.empty()) kinds.push_back({task.kinds[number], number});
-  }
-  return kinds;
-}
-
-/// Adds the blocks and chunks of a kind.
-void plan_kind(const RegionTask& task, uint32_t kind, int unit, ProjectionWork& work) {
-  std::vector<residency::TexelRun> runs;
-  const size_t first = work.chunks.size();
-  for (const VisibleBlock& block : task.blocks) {
-    if (block.kind != kind) continue;
-    const auto view = static_cast<uint32_t>(work.blocks.size());
-    work.blocks.push_back(block_view(*block.resident, task.frame, unit));
-    if (needs_block_displays(task.display)) {
-      work.block_displays.push_back(block_display(task.display, task.request->clip, *block.resident, work.clips));
-    }
-    runs.clear();
-    block.resident->header->add_runs(block.radii, runs);
-    uint64_t items = 0;
-    for (const residency::TexelRun& run : runs) {
-      add_chunks(block, view, run, work.chunks);
-      items += run.count;
-    }
-    work.depths.push_back(depths_of(block.resident->lattice, task.frame, unit, items));
-  }
-  work.kinds.push_back({first, work.chunks.size() - first});
-}
-
-ProjectionWork plan_work(const RegionTask& task, const PictureKinds& kinds) {
-  ProjectionWork work;
-  const int unit = drawing_unit(task);
-  for (const PictureKind& kind : kinds) plan_kind(task, kind.number, unit, work);
-  return work;
-}
-
-/// Work groups of a pass: `count` rows of `width` groups, or without a width, one line of `count` groups.
-struct Groups {
-  size_t count = 0;
-  std::optional<size_t> width;
-  size_t first = 0;  ///< of a line: added to the uniform `first_group`
-};
-
-/// Dispatches work groups in batches. Between batches the picture can be cancelled or preempted by another one; after a
-/// preemption the buffers of the pass are bound again. The uniform `first_group` of the current program gives the first
-/// row or group of a batch.
-Status dispatch_in_batches(const Groups& groups, BatchSizer& sizer, const Preemption& preemption,
-                           const std::function<void()>& bind) {
-  bind();
-  const size_t width = groups.width.value_or(1);
-  for (size_t first = 0; first < groups.count;) {
-    const size_t count = std::clamp<size_t>(sizer.groups() / width, 1, groups.count - first);
-    const auto x = static_cast<GLuint>(groups.width ? width : count);
-    const auto y = static_cast<GLuint>(groups.width ? count : 1);
-    const Stopwatch watch;
-    glUniform1ui(SURFCAST_UNIFORM_FIRST_GROUP, static_cast<GLuint>(groups.first + first));
-    glDispatchCompute(x, y, 1);
-    glMemoryBarrier(GL_ALL_BARRIER_BITS);
-    glFinish();
-    sizer.record(count * width, watch.milliseconds());
-    first += count;
-    if (preemption.cancelled()) return fail(ErrorKind::kCancelled, "cancelled");
-    if (preemption.yield_to_urgent()) bind();
-  }
-  return {};
-}
-
-template <typename T>
-void upload(StorageBuffer& buffer, const std::vector<T>& values) {
-  buffer.reserve(std::max<size_t>(values.size(), 1) * sizeof(T));  // a view without blocks binds a buffer too
-  glNamedBufferSubData(buffer.name(), 0, static_cast<GLsizeiptr>(values.size() * sizeof(T)), values.data());
-}
-
-template <typename T>
-void upload_uniforms(StorageBuffer& buffer, const T& constants) {
-  buffer.reserve(sizeof constants);
-  glNamedBufferSubData(buffer.name(), 0, static_cast<GLsizeiptr>(sizeof constants), &constants);
-}
 
 /// The levels of depth of a region (shaders/include/depth_slices.glsl): as many in each slice.
 glm::ivec4 slice_constants(const DepthSlices& slices) {
@@ -252,6 +99,7 @@ void bind_for_splatting(const RegionTask& task, const SplatBuffers& buffers) {
     buffers.light.bind(SURFCAST_BIND_LIGHT);
     buffers.depth.bind(SURFCAST_BIND_DEPTH);
   }
+  if (task.variant.layered) buffers.volume.layers.bind(SURFCAST_BIND_LAYERS);
   buffers.splats.bind_for_reading(SURFCAST_UNIT_SPLATS);
   buffers.discs.bind_for_reading(SURFCAST_UNIT_DISCS);
   buffers.lists.bind_for_reading(SURFCAST_UNIT_LISTS);
@@ -400,10 +248,6 @@ Status draw_tiles(const RegionTask& task, const TileSpan& span, const gl::Progra
   });
 }
 
-Groups all_pixels(const Region& region) {
-  return {ceil_divide(region.height, SURFCAST_BLOCK_HEIGHT), ceil_divide(region.width, SURFCAST_BLOCK_WIDTH)};
-}
-
 /// Draws the columns that the passes before have handed over.
 Status draw_behind(const RegionTask& task, const gl::Program* program, uint32_t per_group, BatchSizer& sizer,
                    SplatBuffers& buffers, const Preemption& preemption) {
@@ -439,6 +283,12 @@ void reserve_unfinished(const RegionTask& task, const SplatPrograms& programs, S
   buffers.unfinished_count.clear();
 }
 
+void clear_layers(const Region& drawn, SplatBuffers& buffers) {
+  const size_t pixels = static_cast<size_t>(drawn.width) * static_cast<size_t>(drawn.height);
+  buffers.volume.layers.reserve(pixels * SURFCAST_LAYERS_KEPT * SURFCAST_LAYER_WORDS * sizeof(GLuint));
+  buffers.volume.layers.clear();
+}
+
 /// The programs of a picture. Those for long lists are null where there are none.
 struct RegionPrograms {
   SplatPrograms lanes;
@@ -463,6 +313,7 @@ Status splat(const RegionTask& task, const layout::Counters& counters, const Reg
     buffers.light.reserve(pixels * sizeof(glm::vec4));
     buffers.depth.reserve(pixels * sizeof(glm::vec2));
   }
+  if (task.variant.layered) clear_layers(task.drawn, buffers);
   if (task.variant.silhouettes) clear_silhouettes(task, has_long_lists(counters), buffers);
   reserve_unfinished(task, programs.lanes, buffers);
   const auto tiles = static_cast<uint32_t>(task.constants.tiles.z);
@@ -562,16 +413,14 @@ void shade_by_depth(const RegionTask& task, const gl::Program& program, SplatBuf
   upload_uniforms(buffers.eye_dome, constants);
   buffers.eye_dome.bind_uniforms(SURFCAST_BIND_EYE_DOME);
   glUseProgram(program.name());
-  const Groups groups = all_pixels(task.region);
+  const Groups groups = all_pixels(task.region.width, task.region.height);
   glDispatchCompute(static_cast<GLuint>(*groups.width), static_cast<GLuint>(groups.count), 1);
   glMemoryBarrier(GL_ALL_BARRIER_BITS);
 }
 
-}  // namespace
-
-Result<std::optional<RegionStats>> draw_region(const RegionTask& task, Programs& programs, SplatBuffers& buffers,
-                                               const Preemption& preemption, std::span<std::byte> pixels) {
-  const PictureKinds kinds = kinds_of(task);
+/// Draws the surfaces of a region into `buffers.picture`. None if the tile lists are too long.
+Result<std::optional<RegionStats>> draw_surfaces(const RegionTask& task, const PictureKinds& kinds, Programs& programs,
+                                                 SplatBuffers& buffers, const Preemption& preemption) {
   Result<SplatPrograms> variant = programs.variant(task.variant, kinds);
   if (!variant) return fail(variant.error());
   RegionPrograms region{std::move(*variant), {}};
@@ -594,7 +443,6 @@ Result<std::optional<RegionStats>> draw_region(const RegionTask& task, Programs&
   stats.bin_ms = bin_watch.milliseconds();
 
   const WorkStopwatch splat_watch(preemption);
-  buffers.picture.reserve(pixels.size());
   if (Status status = splat(task, *counters, region, programs.shape(), buffers, preemption); !status) {
     return fail(std::move(status.error()));
   }
@@ -602,21 +450,64 @@ Result<std::optional<RegionStats>> draw_region(const RegionTask& task, Programs&
     Status status = supersample_silhouettes(task, *counters, region, programs.shape(), buffers, preemption);
     if (!status) return fail(std::move(status.error()));
   }
-  if (task.variant.eye_dome) {
+  if (task.variant.eye_dome && !task.variant.layered) {
     shade_by_depth(task, *region.lanes.eye_dome, buffers);
     glFinish();
   }
   stats.splat_ms = splat_watch.milliseconds();
+  return std::optional(stats);
+}
 
-  Stopwatch read_watch;
+/// Draws a region with volumes: surfaces first, if it has any, then the volumes between them. Eye-dome lighting and
+/// supersampled silhouettes are left out.
+Result<std::optional<RegionStats>> draw_with_volumes(RegionTask task, const PictureKinds& kinds,
+                                                     std::span<const VisibleBrick> bricks, Programs& programs,
+                                                     SplatBuffers& buffers, const Preemption& preemption) {
+  const Region written = task.variant.eye_dome ? task.region : task.drawn;
+  task.variant.layered = task.variant.eye_dome = !kinds.empty();
+  task.variant.silhouettes = false;
+  RegionStats stats;
+  if (!kinds.empty()) {
+    const Result<std::optional<RegionStats>> surfaces = draw_surfaces(task, kinds, programs, buffers, preemption);
+    if (!surfaces || !*surfaces) return surfaces;
+    stats = **surfaces;
+  }
+  const WorkStopwatch watch(preemption);
+  const double depth_unit = std::ldexp(1.0, -drawing_unit(task));
+  if (Status status = draw_volumes(task, written, depth_unit, bricks, programs, buffers, preemption); !status) {
+    return fail(std::move(status.error()));
+  }
+  stats.splat_ms += watch.milliseconds();
+  return std::optional(stats);
+}
+
+}  // namespace
+
+Result<double> read_picture(const SplatBuffers& buffers, std::span<std::byte> pixels) {
+  const Stopwatch watch;
   glGetNamedBufferSubData(buffers.picture.name(), 0, static_cast<GLsizeiptr>(pixels.size()), pixels.data());
-  stats.read_ms = read_watch.milliseconds();
+  const double milliseconds = watch.milliseconds();
   if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
     return fail(error == GL_OUT_OF_MEMORY ? ErrorKind::kLimit : ErrorKind::kInternal,
                 error == GL_OUT_OF_MEMORY ? "the GPU is out of memory for this picture"
                                           : "OpenGL error " + std::to_string(error));
   }
-  return std::optional(stats);
+  return milliseconds;
+}
+
+Result<std::optional<RegionStats>> draw_region(const RegionTask& task, Programs& programs, SplatBuffers& buffers,
+                                               const Preemption& preemption, std::span<std::byte> pixels) {
+  const PictureKinds kinds = kinds_of(task);
+  const std::vector<VisibleBrick> bricks = bricks_of(task);
+  buffers.picture.reserve(pixels.size());
+  Result<std::optional<RegionStats>> drawn =
+      bricks.empty() ? draw_surfaces(task, kinds, programs, buffers, preemption)
+                     : draw_with_volumes(task, kinds, bricks, programs, buffers, preemption);
+  if (!drawn || !*drawn) return drawn;
+  const Result<double> read = read_picture(buffers, pixels);
+  if (!read) return fail(read.error());
+  (*drawn)->read_ms = *read;
+  return drawn;
 }
 
 }  // namespace surfcast::render

@@ -57,4 +57,7 @@ struct RegionStats {
 Result<std::optional<RegionStats>> draw_region(const RegionTask& task, Programs& programs, SplatBuffers& buffers,
                                                const Preemption& preemption, std::span<std::byte> pixels);
 
+/// Reads the finished pixels. Returns the milliseconds that it took. Fails on errors of OpenGL up to here.
+Result<double> read_picture(const SplatBuffers& buffers, std::span<std::byte> pixels);
+
 }  // namespace surfcast::render

@@ -13,10 +13,13 @@
 #include "base/host_memory.h"
 #include "gl/egl_context.h"
 #include "gl/gpu_memory.h"
+#include "render/clear_blocks.h"
+#include "render/gaussian_passes.h"
 #include "render/programs.h"
 #include "render/region_passes.h"
 #include "render/scene.h"
 #include "render/splat_buffers.h"
+#include "render/transfer_presets.h"
 #include "residency/packing.h"
 
 namespace surfcast::render {
@@ -47,8 +50,10 @@ Variant variant_of(const model::ModelInfo& info, const DisplayOptions& display,
   variant.hides_classes = display.hides_classes;
   variant.clipped = display.clipped;
   variant.scatter = info.scatter > 0;
+  variant.shaded = request.volumes.shaded;
   variant.eye_dome = request.eye_dome.strength > 0;
   variant.blends_behind = request.blends_behind;
+  variant.exact = request.splat_convention == picture::SplatConvention::kExact && !request.rest_spacing;
   variant.silhouettes = request.silhouettes && request.normalization == picture::Normalization::kPixel &&
                         request.filter == picture::Filter::kEwa;
   return variant;
@@ -205,11 +210,13 @@ Result<residency::PreparedView> Renderer::State::prepare(Scene& scene, const pic
                                                          const DisplayOptions& display, const geometry::Camera& camera,
                                                          const geometry::CameraFrame& frame,
                                                          const Preemption& preemption) {
+  const std::vector<bool> hidden = clear_blocks(scene.model(), display.volumes);
   const residency::ViewParameters parameters{frame,
                                              request.spacing,
                                              display.clipped ? &request.clip : nullptr,
                                              display.attributes,
                                              request.viewer != 0,
+                                             hidden.empty() ? nullptr : &hidden,
                                              request.rest_spacing};
   if (request.loading == picture::Loading::kWait)
     return residency.prepare_complete(scene.viewed(), parameters, preemption);
@@ -235,13 +242,18 @@ Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const pict
                                                   const residency::PreparedView& view, const Preemption& preemption,
                                                   picture::Image& image) {
   Variant variant = variant_of(scene.model().info(), display, request);
+  if (!scene.has_surfaces()) variant.eye_dome = variant.silhouettes = false;
+  // Harmonics of higher degrees cost as much as all else of a projection, and change little from picture to picture.
+  if (request.rest_spacing) variant.harmonics = 1;
   variant.silhouettes &= view.nothing_pending;  // a picture that will soon be redrawn does not need supersampling
-  const int margin = variant.eye_dome || variant.silhouettes ? kNeighbourMargin : 0;
+  const bool layered = scene.mixes_volumes();
+  const int margin = variant.eye_dome || variant.silhouettes || layered ? kNeighbourMargin : 0;
   const size_t bytes = pixel_bytes(request.format);
   const model::ModelInfo& info = scene.model().info();
   RegionStats total;
   std::vector<std::byte> pixels;
-  std::vector<Region> regions = cut_into_regions(request.width, request.height, margin);
+  std::vector<Region> regions =
+      cut_into_regions(request.width, request.height, margin, layered ? kMaxLayeredSide : kMaxRegionSide);
   while (!regions.empty()) {
     const Region region = regions.back();
     regions.pop_back();
@@ -268,8 +280,8 @@ Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const pict
     }
     const Region& written = variant.eye_dome ? region : drawn;
     pixels.resize(static_cast<size_t>(written.width) * static_cast<size_t>(written.height) * bytes);
-    const Result<std::optional<RegionStats>> stats =
-        draw_region(task, programs, buffers[depth - 1], preemption, pixels);
+    const auto draw_kinds = has_gaussians(task) ? draw_gaussians : draw_region;
+    const Result<std::optional<RegionStats>> stats = draw_kinds(task, programs, buffers[depth - 1], preemption, pixels);
     if (!stats) return fail(stats.error());
     if (!*stats) {
       const std::vector<Region> halves = halves_of(region);
@@ -307,8 +319,11 @@ Result<picture::Frame> Renderer::State::draw(const std::shared_ptr<const model::
   if (request.width < 1 || request.height < 1 || request.width > kMaxResolution || request.height > kMaxResolution) {
     return fail(ErrorKind::kLimit, "resolution: each side must lie between 1 and " + std::to_string(kMaxResolution));
   }
-  const Result<DisplayOptions> display = resolve_display_options(model->info(), request);
+  Result<DisplayOptions> display = resolve_display_options(model->info(), request);
   if (!display) return fail(display.error());
+  if (display->volumes.points.empty() && !model->volumes().empty()) {
+    display->volumes.points = preset_points(request.volumes.transfer, model->volumes().front());
+  }
   const Result<Scene*> found = scene_of(model);
   if (!found) return fail(found.error());
   Scene& scene = **found;

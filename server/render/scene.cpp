@@ -1,5 +1,7 @@
 #include "render/scene.h"
 
+#include <algorithm>
+#include <string>
 #include <utility>
 
 #include "model/fit_model.h"
@@ -8,16 +10,28 @@ namespace surfcast::render {
 
 Result<std::unique_ptr<Scene>> Scene::create(const std::shared_ptr<const model::ModelFile>& model,
                                              kinds::KindTable kinds) {
+  if (model->volumes().size() > 1) {
+    return fail(ErrorKind::kUnsupported, "the model has " + std::to_string(model->volumes().size()) +
+                                             " volumes, and a picture can show one; build a model of each");
+  }
   Result<std::vector<uint32_t>> numbers = kinds::find_kinds(*model, kinds);
   if (!numbers) return fail(std::move(numbers.error()));
+  const auto drawn_as = [&](kinds::DrawnAs form) {
+    return std::ranges::count_if(*numbers, [&](uint32_t kind) { return kinds[kind]->drawn_as() == form; });
+  };
+  Kinds found;
+  found.surfaces = drawn_as(kinds::DrawnAs::kSurface) > 0;
+  const auto volumes = drawn_as(kinds::DrawnAs::kVolume);
+  found.mixes_volumes = volumes > 0 && static_cast<size_t>(volumes) < numbers->size();
   auto blocks = std::make_shared<const kinds::FileBlocks>(model, kinds, std::move(*numbers));
-  return std::unique_ptr<Scene>(new Scene(model, std::move(blocks)));
+  return std::unique_ptr<Scene>(new Scene(model, std::move(blocks), found));
 }
 
-Scene::Scene(std::shared_ptr<const model::ModelFile> model, std::shared_ptr<const kinds::FileBlocks> blocks)
-    : model_(std::move(model)), blocks_(std::move(blocks)), viewed_(blocks_) {
+Scene::Scene(std::shared_ptr<const model::ModelFile> model, std::shared_ptr<const kinds::FileBlocks> blocks,
+             const Kinds& kinds)
+    : model_(std::move(model)), blocks_(std::move(blocks)), viewed_(blocks_), kinds_(kinds) {
   uint32_t first = 0;
-  for (const ldc::BlockEntry& block : model_->blocks()) {
+  for (const ldc::BlockEntry& block : blocks_->tree().blocks()) {
     first_surfels_.push_back(first);
     first += block.surfels;
   }

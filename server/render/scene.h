@@ -36,6 +36,10 @@ class Scene {
   [[nodiscard]] const residency::ViewedModel& viewed() const { return viewed_; }
   /// The number of a block's kind in the table of kinds.
   [[nodiscard]] uint32_t kind_of(uint32_t block) const { return blocks_->kind_of(block); }
+  /// True if it has blocks of a kind that is drawn as surfaces.
+  [[nodiscard]] bool has_surfaces() const { return kinds_.surfaces; }
+  /// True if the model has volumes and blocks of other kinds.
+  [[nodiscard]] bool mixes_volumes() const { return kinds_.mixes_volumes; }
   /// Number of surfels in the blocks before this one, modulo 2^32: the index of its first surfel in the model.
   [[nodiscard]] uint32_t first_surfel(uint32_t block) const { return first_surfels_[block]; }
   /// The requested camera, or one that shows the whole model.
@@ -45,12 +49,19 @@ class Scene {
   ViewerHistory& history_of(uint64_t viewer, size_t most);
 
  private:
-  Scene(std::shared_ptr<const model::ModelFile> model, std::shared_ptr<const kinds::FileBlocks> blocks);
+  struct Kinds {
+    bool surfaces = false;
+    bool mixes_volumes = false;
+  };
+
+  Scene(std::shared_ptr<const model::ModelFile> model, std::shared_ptr<const kinds::FileBlocks> blocks,
+        const Kinds& kinds);
 
   std::shared_ptr<const model::ModelFile> model_;
   std::shared_ptr<const kinds::FileBlocks> blocks_;
   residency::ViewedModel viewed_;
   std::vector<uint32_t> first_surfels_;
+  Kinds kinds_;
   std::list<ViewerHistory> viewers_;  ///< most recently seen first
 };
 

@@ -11,7 +11,7 @@ void TexelBuffer::reserve(size_t texels, bool lazily) {
   buffer_ = gl::Buffer();
   glFinish();  // the GPU must not write to memory that is released
   memory_ = lazily ? LazyMemory(texels * texel_bytes_) : LazyMemory();
-  buffer_ = memory_.bytes().empty() ? gl::make_buffer(label_, texels * texel_bytes_)
+  buffer_ = memory_.bytes().empty() ? gl::make_buffer(label_, texels * texel_bytes_, flags_)
                                     : gl::adopt_memory(label_, memory_.bytes());
   texture_ = gl::make_buffer_texture(label_, format_, buffer_);
 }
@@ -24,22 +24,12 @@ void TexelBuffer::bind_for_reading(GLuint unit) const {
   glBindTextureUnit(unit, texture_.name());
 }
 
-void StorageBuffer::reserve(size_t bytes) {
-  if (bytes <= bytes_) return;
-  bytes_ = bytes;
-  buffer_ = gl::make_buffer(label_, bytes, GL_DYNAMIC_STORAGE_BIT);
+void TexelBuffer::write(std::span<const std::byte> bytes) const {
+  glNamedBufferSubData(buffer_.name(), 0, static_cast<GLsizeiptr>(bytes.size()), bytes.data());
 }
 
-void StorageBuffer::clear() const {
-  glClearNamedBufferData(buffer_.name(), GL_R32UI, GL_RED_INTEGER, GL_UNSIGNED_INT, nullptr);
-}
-
-void StorageBuffer::bind(GLuint binding) const {
-  glBindBufferBase(GL_SHADER_STORAGE_BUFFER, binding, buffer_.name());
-}
-
-void StorageBuffer::bind_uniforms(GLuint binding) const {
-  glBindBufferBase(GL_UNIFORM_BUFFER, binding, buffer_.name());
+void TexelBuffer::read(std::span<std::byte> bytes) const {
+  glGetNamedBufferSubData(buffer_.name(), 0, static_cast<GLsizeiptr>(bytes.size()), bytes.data());
 }
 
 ConstantTexels ConstantTexels::make(const char* label, std::span<const uint32_t> values) {

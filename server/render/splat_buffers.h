@@ -8,7 +8,9 @@
 #include "base/lazy_memory.h"
 #include "gl/objects.h"
 #include "render/batch_sizer.h"
+#include "render/storage_buffer.h"
 #include "render/tile_spans.h"
+#include "render/volume_buffers.h"
 
 namespace surfcast::render {
 
@@ -16,41 +18,28 @@ namespace surfcast::render {
 /// texel buffer.
 class TexelBuffer {
  public:
-  TexelBuffer(const char* label, GLenum format, size_t texel_bytes)
-      : label_(label), format_(format), texel_bytes_(texel_bytes) {}
+  /// `flags`: GL_DYNAMIC_STORAGE_BIT for buffers that write() fills.
+  TexelBuffer(const char* label, GLenum format, size_t texel_bytes, GLbitfield flags = 0)
+      : label_(label), format_(format), texel_bytes_(texel_bytes), flags_(flags) {}
 
   /// Makes room for `texels`; the content is undefined. `lazily`: in lazily committed memory, where only written pages
   /// count (software GL only).
   void reserve(size_t texels, bool lazily = false);
   void bind_for_writing(GLuint unit) const;
   void bind_for_reading(GLuint unit) const;
+  void write(std::span<const std::byte> bytes) const;
+  void read(std::span<std::byte> bytes) const;
   [[nodiscard]] size_t texels() const { return texels_; }
 
  private:
   const char* label_;
   GLenum format_;
   size_t texel_bytes_;
+  GLbitfield flags_;
   size_t texels_ = 0;
   LazyMemory memory_;  ///< memory of the buffer if it was reserved lazily
   gl::Buffer buffer_;
   gl::Texture texture_;
-};
-
-/// A growing storage buffer.
-class StorageBuffer {
- public:
-  explicit StorageBuffer(const char* label) : label_(label) {}
-
-  void reserve(size_t bytes);
-  void clear() const;
-  [[nodiscard]] GLuint name() const { return buffer_.name(); }
-  void bind(GLuint binding) const;
-  void bind_uniforms(GLuint binding) const;
-
- private:
-  const char* label_;
-  size_t bytes_ = 0;
-  gl::Buffer buffer_;
 };
 
 /// A table of constants for shaders.
@@ -71,6 +60,16 @@ struct LongListBatches {
   BatchSizer splat_large;
   BatchSizer supersample;
   BatchSizer supersample_large;
+};
+
+/// The buffers between the passes of Gaussians (gaussian_passes.h).
+struct GaussianBuffers {
+  BatchSizer project_batches;
+  BatchSizer blend_batches;
+  TexelBuffer records{"Gaussians", GL_RGBA32UI, 16};
+  TexelBuffer keys{"depths and tiles of Gaussians", GL_RGBA32UI, 16};
+  TexelBuffer lists{"lists of Gaussians", GL_R32UI, 4, GL_DYNAMIC_STORAGE_BIT};
+  StorageBuffer tiles{"tiles of Gaussians"};
 };
 
 /// The buffers between the passes of one region, and the batch sizes of the passes.
@@ -113,6 +112,8 @@ struct SplatBuffers {
   StorageBuffer eye_dome{"eye-dome constants"};
   StorageBuffer fronts{"fronts"};
   StorageBuffer silhouettes{"silhouettes"};
+  VolumeBuffers volume;
+  GaussianBuffers gaussians;
   /// Buffers use lazily committed memory, where only written pages count. Then there may be room for all surfels of a
   /// view from the beginning.
   bool lazy = false;

@@ -28,7 +28,8 @@ struct ViewParameters {
   const geometry::Clip* clip = nullptr;  ///< see SelectionCriteria; outlives the preparation
   bool attributes = false;               ///< blocks are needed with their attributes
   bool moving = false;  ///< another picture follows soon, so the upload of blocks must not delay this one
-  std::optional<double> rest_spacing{};  ///< value of `spacing` at rest, if the camera stops here
+  const std::vector<bool>* hidden = nullptr;  ///< see SelectionCriteria; outlives the preparation
+  std::optional<double> rest_spacing{};       ///< value of `spacing` at rest, if the camera stops here
 };
 
 /// The blocks that a picture is drawn from, and the cost of making them resident.

@@ -28,12 +28,20 @@ bool has_normal(const surfel::SurfelCloud& cloud, size_t i) {
   return !cloud.normals.empty() && !std::isnan(cloud.normals[i].x);
 }
 
+/// Largest radius where the largest distance of neighbours is known, in units of it. Small pieces of a surface have
+/// their next neighbours on others.
+constexpr double kWidestStep = 1.25;
+
 /// Properties of the sites that their points determine.
 struct SiteFacts {
   std::vector<SitePlace> places;
   std::vector<SiteDirection> known;
   std::vector<glm::vec3> towards;  ///< empty if nothing is known
   std::vector<PointKind> kinds;
+  /// The largest radius of sites that are known to lie on a surface, world units; 0 elsewhere. Empty if there are none.
+  std::vector<float> widest;
+
+  [[nodiscard]] bool known_surface(size_t site) const { return !widest.empty() && widest[site] > 0; }
 
   SiteFacts(size_t sites, bool any_known)
       : places(sites), known(sites), towards(any_known ? sites : 0, glm::vec3(0)), kinds(sites) {}
@@ -57,6 +65,9 @@ SiteFacts find_site_facts(const surfel::SurfelCloud& cloud, const Sites& sites, 
   const bool any_known = !cloud.normals.empty() || std::any_of(frame.sensors.begin(), frame.sensors.end(),
                                                                [](const auto& sensor) { return sensor.has_value(); });
   SiteFacts facts(sites.size(), any_known);
+  const bool any_surface = std::any_of(frame.surface_steps.begin(), frame.surface_steps.end(),
+                                       [](const auto& step) { return step.has_value(); });
+  if (any_surface) facts.widest.resize(sites.size());
   const bool own_sites = sites.size() == cloud.size();
   for (size_t s = 0; s < cloud.sources.size(); ++s) {
     const surfel::SourceRange& source = cloud.sources[s];
@@ -64,6 +75,7 @@ SiteFacts find_site_facts(const surfel::SurfelCloud& cloud, const Sites& sites, 
       const uint32_t site = sites.of_point[i];
       facts.places[site] = frame.place(cloud.positions[i]);
       learn_direction(cloud, i, site, frame.sensors[s], facts);
+      if (any_surface && frame.surface_steps[s]) facts.widest[site] = to_radius(kWidestStep * *frame.surface_steps[s]);
     };
     const size_t end = source.first + source.count;
     if (own_sites) {
@@ -180,13 +192,21 @@ Findings study_neighbourhoods(const Sites& sites, bool radii, SiteFacts& facts) 
     if (!stored) findings.normals[site] = glm::vec3(least_axis(covariances.near, near.least));
     if (!radii) return;
     facts.kinds[site] = kind_of_site(near, covariances.wide, offsets.count);
-    if (facts.kinds[site] == PointKind::kLayer && is_in_sheet(offsets, least_axis(covariances.near, near.least))) {
-      facts.kinds[site] = PointKind::kSurface;
-    }
+    const bool sheet =
+        facts.kinds[site] == PointKind::kLayer && is_in_sheet(offsets, least_axis(covariances.near, near.least));
+    if (sheet || facts.known_surface(site)) facts.kinds[site] = PointKind::kSurface;
     findings.guesses[site] = guess_radius(offsets, kDegree, findings.normals[site], sites.unit);
   });
   if (radii) settle_layers(findings.graph, findings.normals, facts.kinds);
   return findings;
+}
+
+/// Limits the radii of sites on known surfaces.
+void limit_radii(const SiteFacts& facts, std::vector<float>& radii) {
+  if (facts.widest.empty()) return;
+  tbb::parallel_for(size_t{0}, radii.size(), [&](size_t site) {
+    if (facts.known_surface(site)) radii[site] = std::min(radii[site], facts.widest[site]);
+  });
 }
 
 /// Estimates the radius of every surfel and compares those stated with it, unless all are stated and kept.
@@ -198,6 +218,7 @@ void find_radii(const Sites& sites, const NeighbourGraph& graph, const SiteFacts
     made.estimates = {cloud.radii, std::vector<PointKind>(cloud.size(), PointKind::kStated)};
   } else {
     on_surface = settle_radii(graph, guesses);
+    limit_radii(facts, on_surface);
     std::vector<RadiusGuess>().swap(guesses);
     made.estimates = estimates_of(sites, graph, facts, on_surface);
     made.samples = sample_surfaces(sites, graph, facts, on_surface, frame);

@@ -21,8 +21,9 @@ struct PartFrame {
   geometry::Box bounds;  ///< of the whole cloud
   /// Classifies positions: own or halo, near the border or not. Thread-safe.
   std::function<SitePlace(const glm::dvec3&)> place = [](const glm::dvec3&) { return SitePlace{}; };
-  std::vector<std::optional<glm::dvec3>> sensors;  ///< scanner position of each source
-  std::vector<size_t> inputs;                      ///< index of the input of each source
+  std::vector<std::optional<glm::dvec3>> sensors;    ///< scanner position of each source
+  std::vector<std::optional<double>> surface_steps;  ///< of each source, see ScanSchema; empty: none is known
+  std::vector<size_t> inputs;                        ///< index of the input of each source
   RadiusPolicy radii = RadiusPolicy::kAuto;
   uint64_t points = 0;  ///< of the whole cloud
 };

@@ -20,11 +20,12 @@ struct RowTraits {
   std::optional<surfel::Grid> grid;  ///< the lattice of all positions
   std::optional<glm::dvec3> sensor;  ///< scanner position
   bool z_up = true;
-  bool may_be_graphics = false;  ///< z-up only if the points look like a survey (up_axis.h); else y-up
-  bool from_text = false;        ///< scalars get the smallest type that holds all their values
-  bool counted = false;          ///< a PTS file
-  uint64_t announced = 0;        ///< number of rows that the file states before the first row
-  bool sampled = false;          ///< these are a part of the rows, so that radii stated for all of them are too small
+  bool may_be_graphics = false;        ///< z-up only if the points look like a survey (up_axis.h); else y-up
+  bool from_text = false;              ///< scalars get the smallest type that holds all their values
+  bool counted = false;                ///< a PTS file
+  uint64_t announced = 0;              ///< number of rows that the file states before the first row
+  std::optional<double> surface_step;  ///< see ScanSchema
+  bool sampled = false;  ///< these are a part of the rows, so that radii stated for all of them are too small
 };
 
 /// Limits the memory of formats that can only be decoded as a whole.

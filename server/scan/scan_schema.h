@@ -25,7 +25,10 @@ struct ScanSchema {
   int color_bits = 0;  ///< of each channel: 8 or 16; 0 without colour
   std::vector<ScalarField> scalars;
   std::optional<glm::dvec3> sensor;  ///< scanner position, if the file states it
-  bool z_up = true;                  ///< true for LAS and text surveys; see each reader
+  /// Set if every point is known to lie on a surface whose normal it states, out of the solid: about the largest
+  /// distance of neighbouring points there, world units.
+  std::optional<double> surface_step;
+  bool z_up = true;  ///< true for LAS and text surveys; see each reader
 };
 
 }  // namespace surfcast::scan

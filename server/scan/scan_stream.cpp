@@ -82,12 +82,16 @@ Status ScanStream::take_sample(std::optional<uint64_t> sample) {
 
 Status ScanStream::examine(std::span<const std::byte> bytes, const std::filesystem::path& path,
                            const DecodingLimit& limit, std::optional<uint64_t> sample) {
-  path_ = path;
-  const auto named = [&path](const Error& error) { return fail(error.kind, path.string() + ": " + error.message); };
   Result<std::unique_ptr<RowSource>> rows =
       scan_format_of(bytes, path).and_then([&](ScanFormat format) { return rows_of(format, bytes, limit); });
-  if (!rows) return named(rows.error());
+  if (!rows) return fail(rows.error().kind, path.string() + ": " + rows.error().message);
   rows_ = std::move(*rows);
+  return examine_rows(path, sample);
+}
+
+Status ScanStream::examine_rows(const std::filesystem::path& path, std::optional<uint64_t> sample) {
+  path_ = path;
+  const auto named = [&path](const Error& error) { return fail(error.kind, path.string() + ": " + error.message); };
   if (Status taken = take_sample(sample); !taken) return named(taken.error());
   const Result<TableFacts> facts = survey_rows(*rows_, file_ ? &*file_ : nullptr);
   if (!facts) return named(facts.error());
@@ -104,6 +108,14 @@ Status ScanStream::examine(std::span<const std::byte> bytes, const std::filesyst
 Result<ScanStream> ScanStream::open_content(std::span<const std::byte> bytes, const std::filesystem::path& path) {
   ScanStream stream;
   if (Status status = stream.examine(bytes, path, {}, {}); !status) return fail(std::move(status.error()));
+  return stream;
+}
+
+Result<ScanStream> ScanStream::of_rows(std::unique_ptr<RowSource> rows, const std::filesystem::path& path,
+                                       std::optional<uint64_t> sample) {
+  ScanStream stream;
+  stream.rows_ = std::move(rows);
+  if (Status status = stream.examine_rows(path, sample); !status) return fail(std::move(status.error()));
   return stream;
 }
 

@@ -27,6 +27,9 @@ class ScanStream {
                                  std::optional<uint64_t> sample = {});
   /// The same for content in memory, which must outlive the stream. `path` only names it in messages.
   static Result<ScanStream> open_content(std::span<const std::byte> bytes, const std::filesystem::path& path);
+  /// The same for rows that are made, not read. `path` only names them.
+  static Result<ScanStream> of_rows(std::unique_ptr<RowSource> rows, const std::filesystem::path& path,
+                                    std::optional<uint64_t> sample);
 
   [[nodiscard]] const ScanSchema& schema() const { return meaning_.schema; }
   [[nodiscard]] uint64_t size() const { return size_; }                  ///< points, including unusable ones
@@ -40,6 +43,7 @@ class ScanStream {
  private:
   Status examine(std::span<const std::byte> bytes, const std::filesystem::path& path, const DecodingLimit& limit,
                  std::optional<uint64_t> sample);
+  Status examine_rows(const std::filesystem::path& path, std::optional<uint64_t> sample);
   Status take_sample(std::optional<uint64_t> sample);
 
   std::filesystem::path path_;

@@ -153,6 +153,7 @@ Result<TableMeaning> decide_meaning(const RowSource& rows, const TableFacts& fac
   TableMeaning meaning;
   meaning.roles = std::move(*roles);
   meaning.schema.grid = traits.grid;
+  meaning.schema.surface_step = traits.surface_step;
   meaning.schema.normals = meaning.roles.normal && (rows.columns()[0].name.empty() || facts.any_normal);
   meaning.schema.radii = meaning.roles.radius.has_value();
   decide_colors(columns, facts, meaning);

@@ -62,6 +62,7 @@ class Selector {
     return (blocks_[block].surfels + page - 1) / page * page;
   }
   [[nodiscard]] bool in_view(uint32_t block) const {
+    if (criteria_.hidden != nullptr && (*criteria_.hidden)[block]) return false;
     const BlockHull& hull = tree_.hulls[block];
     return may_be_visible(hull, frustum_, frame_.eye) &&
            (criteria_.clip == nullptr || criteria_.clip->may_show(hull.centres));

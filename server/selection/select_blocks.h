@@ -27,6 +27,8 @@ struct SelectionCriteria {
   uint32_t page = 1;  ///< allocation granularity: the surfels of a block are rounded up to a multiple of this
   const geometry::Clip* clip =
       nullptr;  ///< subtrees without any surfel inside the clip are left out; null: nothing is clipped
+  /// For each block: true if neither it nor a descendant shows anything; these are left out. Null: all may show.
+  const std::vector<bool>* hidden = nullptr;
 };
 
 /// A block that is not resident and would refine the picture.

@@ -4,6 +4,7 @@
 #include <system_error>
 #include <utility>
 
+#include "render/transfer_presets.h"
 #include "surfel/even_sampling.h"
 
 namespace surfcast::service {
@@ -12,6 +13,16 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr const char* kExtension = ".surf";
+
+VolumePresets presets_of(const model::Volume& volume) {
+  VolumePresets presets;
+  for (size_t i = 0; i < presets.size(); ++i) {
+    picture::Transfer transfer;
+    transfer.preset = static_cast<picture::TransferPreset>(i);
+    presets[i] = render::preset_points(transfer, volume);
+  }
+  return presets;
+}
 
 /// Adds the models of a folder whose names are not taken. A folder that cannot be read counts as empty.
 void add_folder(const fs::path& folder, std::map<std::string, fs::path>& models) {
@@ -183,6 +194,9 @@ Result<ModelDescription> ModelCatalogue::describe(const std::string& name) const
   description.info = (*model)->info();
   description.spacing = typical_spacing((*model)->blocks());
   description.blocks = static_cast<uint32_t>((*model)->blocks().size());
+  const std::span<const model::Volume> volumes = (*model)->volumes();
+  description.volumes.assign(volumes.begin(), volumes.end());
+  for (const model::Volume& volume : volumes) description.presets.push_back(presets_of(volume));
   for (const ldc::BlockEntry& block : (*model)->blocks()) {
     description.levels = std::max(description.levels, static_cast<uint32_t>(block.level + 1));
   }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <memory>
 #include <string>
@@ -7,8 +8,12 @@
 
 #include "base/result.h"
 #include "model/model_file.h"
+#include "picture/transfer.h"
 
 namespace surfcast::service {
+
+/// The points of each picture::TransferPreset for a volume.
+using VolumePresets = std::array<std::vector<picture::TransferPoint>, picture::kTransferPresets>;
 
 /// The description of a model for users.
 struct ModelDescription {
@@ -16,6 +21,8 @@ struct ModelDescription {
   uint32_t levels = 0;
   uint32_t blocks = 0;
   double spacing = 0;  ///< typical distance between neighbouring surfels of the source, world units
+  std::vector<model::Volume> volumes{};
+  std::vector<VolumePresets> presets{};  ///< for each of the volumes
 };
 
 /// A scan whose model is not complete.

@@ -14,7 +14,7 @@ namespace {
 geometry::Camera camera_of(const model::ModelFile& model, const picture::PictureRequest& request, bool up_from_model) {
   if (!request.camera) return model::fit_model(model, static_cast<double>(request.width) / request.height);
   geometry::Camera camera = *request.camera;
-  if (up_from_model) camera.view_up = model.info().z_up ? glm::dvec3(0, 0, 1) : glm::dvec3(0, 1, 0);
+  if (up_from_model) camera.view_up = model.info().up();
   return camera;
 }
 

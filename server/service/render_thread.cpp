@@ -111,7 +111,7 @@ Result<picture::Frame> RenderService::State::render_frame(FrameRenderer& rendere
   if (request.camera && job.picture.up_from_model) {
     const Result<ModelDescription> description = models.describe(job.picture.model);
     if (!description) return fail(description.error());
-    request.camera->view_up = description->info.z_up ? glm::dvec3{0, 0, 1} : glm::dvec3{0, 1, 0};
+    request.camera->view_up = description->info.up();
   }
   return renderer.draw(job.picture.model, request, preemption);
 }

@@ -1,5 +1,6 @@
 // Converts sums to light: normalisation, deferred shading, coverage.
 #include "include/pixel_sums.glsl"
+#include "include/keep_layer.glsl"
 
 const float kGrey = 0.8;     // albedo of scans without colour
 const float kAmbient = 0.1;  // ambient light, independent of the headlight
@@ -14,13 +15,18 @@ struct Light {
   Rows depth;   // sum of log2(z) of the layers, weighted by their visible coverage
   Rows opaque;  // sum of these weights
 #endif
+#ifdef SURFCAST_LAYERS
+  int layer;  // of the next surface
+#endif
 };
 
 // The light of all columns of a lane.
 #define LightColumns Light[SURFCAST_COLUMNS]
 
 Light light_zero() {
-#ifdef SURFCAST_EYE_DOME
+#if defined(SURFCAST_LAYERS)
+  return Light(Rows(0.0), Rows(0.0), Rows(0.0), Rows(1.0), Rows(0.0), Rows(0.0), 0);
+#elif defined(SURFCAST_EYE_DOME)
   return Light(Rows(0.0), Rows(0.0), Rows(0.0), Rows(1.0), Rows(0.0), Rows(0.0));
 #else
   return Light(Rows(0.0), Rows(0.0), Rows(0.0), Rows(1.0));
@@ -71,4 +77,8 @@ void composite(inout Light light, PixelSums sums, Rows surface, float one, vec2 
   light.red += seen * red;
   light.green += seen * green;
   light.blue += seen * blue;
+#ifdef SURFCAST_LAYERS
+  keep_layer(light.layer++, pixel, mix(Rows(0.0), inverse_depth, less(Rows(0.0), surface)), seen * red, seen * green,
+             seen * blue, light.transmittance);
+#endif
 }

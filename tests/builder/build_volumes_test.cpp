@@ -417,7 +417,7 @@ TEST(BuildVolumes, scans_and_grids_together_are_refused_by_name) {
   const Result<BuildReport> report =
       build_model(std::array{scan, grid}, folder / "both.surf", {}, [](const BuildStep&) {});
   ASSERT_FALSE(report);
-  EXPECT_THAT(report.error().message, HasSubstr("scan.xyz: is no grid, but "));
+  EXPECT_THAT(report.error().message, HasSubstr("grid.nrrd: is of another kind than " + scan.string()));
 }
 
 TEST(BuildVolumes, several_grids_are_volumes_of_one_model) {

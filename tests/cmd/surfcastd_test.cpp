@@ -133,6 +133,42 @@ TEST_F(SurfcastdTest, SaysWhatBecameOfStatedRadii) {
   EXPECT_EQ(run("build radii.xyz --output model.surf --radii all").exit_code, 2);
 }
 
+/// A grid of 8 x 8 x 8 samples of x + y + z, in a file of text.
+void write_ramp(const fs::path& path) {
+  std::ofstream grid(path);
+  grid << "NRRD0004\ntype: short\ndimension: 3\nsizes: 8 8 8\nencoding: ascii\n\n";
+  for (int i = 0; i < 512; ++i) grid << i % 8 + i / 8 % 8 + i / 64 << '\n';
+}
+
+TEST_F(SurfcastdTest, MakesSurfacesOfAVolume) {
+  write_ramp(folder_ / "ramp.nrrd");
+  const Answer answer = run("build ramp.nrrd --iso 9.5,200,30,4 --iso=4 --output model.surf --report report.json");
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  EXPECT_EQ(answer.err, "");
+  EXPECT_EQ(answer.out.find("ramp.nrrd: "), 0U) << answer.out;
+  EXPECT_NE(answer.out.find(" points of the surface at 9.5\n"), std::string::npos) << answer.out;
+  const nlohmann::json report = nlohmann::json::parse(content(folder_ / "report.json"));
+  ASSERT_EQ(report["surfaces"].size(), 2U);
+  EXPECT_EQ(report["surfaces"][1]["input"], "ramp.nrrd");
+  EXPECT_EQ(report["surfaces"][1]["value"], 4);
+  EXPECT_EQ(report["surfaces"][1]["lost"], 0);
+  EXPECT_EQ(report["scatter"], 0);
+  EXPECT_TRUE(report["oriented"]);
+  const std::string summary = run("inspect model.surf").out;
+  EXPECT_NE(summary.find("iso_value"), std::string::npos) << summary;
+}
+
+TEST_F(SurfcastdTest, ASurfaceThatTheVolumeDoesNotHaveIsAnError) {
+  write_ramp(folder_ / "ramp.nrrd");
+  const Answer beyond = run("build ramp.nrrd --iso -3 --output model.surf");
+  EXPECT_EQ(beyond.exit_code, 1);
+  EXPECT_EQ(beyond.err, "surfcastd: ramp.nrrd: no surface at -3: the samples are from 0 to 21\n");
+  EXPECT_FALSE(fs::exists(folder_ / "model.surf"));
+  const Answer scan = run("build scan.ply --iso 3 --output model.surf");
+  EXPECT_EQ(scan.exit_code, 1);
+  EXPECT_EQ(scan.err, "surfcastd: scan.ply: --iso needs a volume, and no input is one\n");
+}
+
 TEST_F(SurfcastdTest, JoinsSeveralScansIntoOneModel) {
   std::ofstream(folder_ / "more.xyz") << "0 0 5\n1 0 5\n0 1 5\n1 1 5\n";
   ASSERT_EQ(run("build scan.ply more.xyz --output model.surf").exit_code, 0);
@@ -261,6 +297,8 @@ TEST_F(SurfcastdTest, AMemoryBudgetIsASizeThatSuffices) {
 TEST_F(SurfcastdTest, AWrongCommandLineIsTwo) {
   for (const char* arguments :
        {"", "nonsense", "build scan.ply", "build --output model.surf", "build scan.ply --output m.surf --precision 0",
+        "build scan.ply --output m.surf --iso few", "build scan.ply --output m.surf --iso 3,1",
+        "build scan.ply --output m.surf --iso 3,0,0,256", "build scan.ply --output m.surf --iso 3,1,2,3,0.5",
         "build scan.ply --output m.surf --precision few", "build scan.ply --output m.surf --nonsense", "inspect"}) {
     const Answer answer = run(arguments);
     EXPECT_EQ(answer.exit_code, 2) << arguments;

@@ -57,4 +57,22 @@ enum class Reconstruction { kTrilinear, kCatmullRom };
 LightPicture ray_cast(const VolumeGrid& grid, const TransferFunction& transfer, bool shaded,
                       const geometry::CameraFrame& frame, Reconstruction reconstruction);
 
+/// How a grid is drawn by cubic rays. The defaults are the method; the rest is for studies.
+struct CubicRayParameters {
+  double step = 1;      ///< between places on the ray, in spacings of the samples along it
+  int parts = 3;        ///< of a segment between two places; over each the transfer function is integrated on its own
+  double clear = 1e-3;  ///< transmittance at which a ray ends
+  bool filter = true;   ///< the finished light with the pixel prefilter
+  bool shaded = false;
+  SurfaceLayers layers{};
+  std::vector<ClipBox> inside{};   ///< of which one must contain what is seen, if there are any
+  std::vector<ClipBox> outside{};  ///< which must not
+};
+
+/// Draws a grid with one ray a pixel. The scalar and its gradient are reconstructed with the kernel of Catmull and Rom
+/// at multiples of the step about the volume's centre (about the eye if it is in the volume) and at faces. Between two
+/// places the scalar is the cubic with their values and derivatives.
+LightPicture cast_cubic_rays(const VolumeGrid& grid, const TransferFunction& transfer,
+                             const geometry::CameraFrame& frame, const CubicRayParameters& parameters = {});
+
 }  // namespace surfcast::reference

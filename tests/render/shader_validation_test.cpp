@@ -102,6 +102,15 @@ std::set<std::string> all_shaders() {
       const Result<render::LongListPrograms> groups = programs->long_lists(variant, surfels, SURFCAST_LONG_LIST);
       EXPECT_TRUE(groups) << groups.error().message;
     }
+    for (render::Variant variant : all_variants()) {
+      for (const int degree : {1, 4}) {
+        variant.harmonics = degree;
+        for (const auto form :
+             {render::GaussianForm::kTrained, render::GaussianForm::kFlat, render::GaussianForm::kExact}) {
+          EXPECT_TRUE(programs->gaussians(variant, form));
+        }
+      }
+    }
     // Work groups of another size.
     EXPECT_TRUE(programs->long_lists(all_variants().back(), surfels, uint32_t{1} << 20));
   }

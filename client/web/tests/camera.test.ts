@@ -7,7 +7,7 @@ import { distance, dot, vector, type Vector } from '../src/camera/vector';
 import { expectNear, expectPixel } from './support/near';
 
 const pose: Pose = { position: vector(10, -20, 5), yaw: 0.4, pitch: -0.3, distance: 25, viewAngle: 40 };
-const ups: readonly UpAxis[] = ['y', 'z'];
+const ups: readonly UpAxis[] = ['y', 'z', '-y'];
 
 function seen(from: Pose, up: UpAxis): Projection {
   const axes = poseAxes(from, up);

@@ -1,7 +1,7 @@
 import { add, addScaled, cross, distance, dot, normalize, scale, subtract, vector, type Vector } from './vector';
 
-/** The vertical axis of the model. */
-export type UpAxis = 'y' | 'z';
+/** The vertical axis of the model. With '-y' it points down: trained models mostly have the axes of their cameras. */
+export type UpAxis = 'y' | 'z' | '-y';
 
 /**
  * Position and direction of the eye in the form used for navigation. The horizon is always level, and vertical view
@@ -9,7 +9,7 @@ export type UpAxis = 'y' | 'z';
  */
 export interface Pose {
   readonly position: Vector;
-  readonly yaw: number; // clockwise seen from above; 0 looks along y (z-up) or along -z (y-up)
+  readonly yaw: number; // clockwise seen from above; 0 looks along y (z-up), -z (y-up) or z (-y up)
   readonly pitch: number; // -pi/2 straight down, pi/2 straight up
   readonly distance: number; // to the point of interest, world units
   readonly viewAngle: number; // vertical, degrees
@@ -40,7 +40,10 @@ interface Level {
 const zUp: Level = { east: vector(1, 0, 0), north: vector(0, 1, 0), sky: vector(0, 0, 1) };
 const yUp: Level = { east: vector(1, 0, 0), north: vector(0, 0, -1), sky: vector(0, 1, 0) };
 
-const levelOf = (up: UpAxis): Level => (up === 'z' ? zUp : yUp);
+const yDown: Level = { east: vector(1, 0, 0), north: vector(0, 0, 1), sky: vector(0, -1, 0) };
+const levels: Readonly<Record<UpAxis, Level>> = { y: yUp, z: zUp, '-y': yDown };
+
+const levelOf = (up: UpAxis): Level => levels[up];
 export const skyOf = (up: UpAxis): Vector => levelOf(up).sky;
 
 /** Height of a point above the origin, along the model's vertical axis. */

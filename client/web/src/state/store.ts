@@ -92,7 +92,10 @@ export const description = computed(() =>
 );
 /** The open model, if it is a scan whose model is not complete. */
 export const openScan = computed(() => (model.value === undefined ? undefined : scans.value.get(model.value)));
-export const upAxis = computed<UpAxis>(() => (description.value?.zUp === false ? 'y' : 'z'));
+export const upAxis = computed<UpAxis>(() => {
+  if (description.value?.zUp !== false) return 'z';
+  return description.value.upsideDown ? '-y' : 'y';
+});
 export const bounds = computed<Box>(() => boxFrom(description.value?.bounds));
 
 /** Number of decimals of lengths, from the point spacing of the model. */

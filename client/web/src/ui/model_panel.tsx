@@ -1,7 +1,7 @@
 import type { ComponentChildren, JSX } from 'preact';
 import type { ModelDescription, VolumeDescription } from '../generated/surfcast_pb';
 import { formatNumber } from '../measure/format';
-import { bounds, description, lengthDecimals } from '../state/store';
+import { bounds, description, lengthDecimals, upAxis } from '../state/store';
 import { Section } from './controls';
 import { Views } from './views';
 
@@ -82,7 +82,7 @@ export function ModelPanel(): JSX.Element | null {
           <Items model={model} />
           {model.spacing > 0 && <Row name="Point spacing">{model.spacing.toPrecision(3)}</Row>}
           <Row name="Colour">{color}</Row>
-          <Row name="Vertical axis">{model.zUp ? 'Z' : 'Y'}</Row>
+          <Row name="Vertical axis">{upAxis.value.toUpperCase()}</Row>
           <Row name="Levels of detail">{model.levels}</Row>
           <Row name="Blocks">{count(model.blocks)}</Row>
         </dl>

@@ -1,0 +1,162 @@
+#include "builder/build_gaussians.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <utility>
+
+#include "builder/gaussian_tree.h"
+#include "gaussian/gaussian_format.h"
+#include "gaussian/gaussian_reader.h"
+
+namespace surfcast::builder {
+namespace {
+
+constexpr uint64_t kRun = 8192;  // Gaussians that are read at once
+/// Of the budget, for the Gaussians that are sorted. Sorting copies them, and blocks are made of others.
+constexpr uint64_t kSortingShare = 4;
+
+std::string name_of(const std::filesystem::path& path) {
+  const std::filesystem::path name = path.filename();
+  return name.empty() ? path.parent_path().filename().string() : name.string();
+}
+
+using Readers = std::vector<gaussian::GaussianReader>;
+
+Result<Readers> open_readers(std::span<const std::filesystem::path> inputs, uint64_t memory) {
+  Readers readers;
+  uint64_t held = 0;
+  for (const std::filesystem::path& input : inputs) {
+    Result<gaussian::GaussianReader> reader = gaussian::GaussianReader::open(input, {memory - std::min(memory, held)});
+    if (!reader) return fail(std::move(reader.error()));
+    held += reader->held_bytes();
+    readers.push_back(std::move(*reader));
+  }
+  return readers;
+}
+
+/// Fails if a model cannot hold both.
+Status check_alike(const Readers& readers, std::span<const std::filesystem::path> inputs) {
+  const gaussian::GaussianTraits& first = readers.front().traits();
+  for (size_t i = 1; i < readers.size(); ++i) {
+    const gaussian::GaussianTraits& other = readers[i].traits();
+    if (other.antialiased == first.antialiased && other.flat == first.flat && other.up == first.up) continue;
+    return fail(ErrorKind::kUnsupported,
+                inputs[i].string() + ": is trained otherwise than " + inputs[0].string() + ": build a model of each");
+  }
+  return {};
+}
+
+/// Adds coefficients of 0 for the degrees that Gaussians do not have.
+void raise_degree(gaussian::Gaussians& gaussians, int from, int to) {
+  if (from == to) return;
+  const size_t before = 3 * gaussian::harmonics_of(from);
+  const size_t after = 3 * gaussian::harmonics_of(to);
+  std::vector<float> harmonics(gaussians.size() * after);
+  for (size_t i = 0; i < gaussians.size(); ++i) {
+    std::copy_n(gaussians.harmonics.begin() + static_cast<ptrdiff_t>(i * before), before,
+                harmonics.begin() + static_cast<ptrdiff_t>(i * after));
+  }
+  gaussians.harmonics = std::move(harmonics);
+}
+
+/// Calls `use` for all Gaussians, run by run.
+template <typename Use>
+Status for_each_run(Readers& readers, int degree, const Use& use) {
+  for (gaussian::GaussianReader& reader : readers) {
+    reader.rewind();
+    while (reader.position() < reader.traits().count) {
+      Result<gaussian::Gaussians> run = reader.read(kRun);
+      if (!run) return fail(std::move(run.error()));
+      raise_degree(*run, reader.traits().degree, degree);
+      if (Status status = use(*run); !status) return status;
+    }
+  }
+  return {};
+}
+
+int degree_of(const Readers& readers) {
+  int degree = 0;
+  for (const gaussian::GaussianReader& reader : readers) degree = std::max(degree, reader.traits().degree);
+  return degree;
+}
+
+/// Counts what is usable and finds its bounds.
+Result<geometry::Box> survey(Readers& readers, StageClock& clock, BuildReport& report) {
+  geometry::Box box;
+  Status status = for_each_run(readers, degree_of(readers), [&](const gaussian::Gaussians& run) -> Status {
+    for (const glm::dvec3& position : run.positions) box.include(position);
+    report.gaussians += run.size();
+    report.scan.points_read += run.size() + run.unusable;
+    report.scan.not_finite += run.unusable;
+    clock.step();
+    return {};
+  });
+  if (!status) return fail(std::move(status.error()));
+  return box;
+}
+
+model::ModelSchema schema_of(const Readers& readers, std::span<const std::filesystem::path> inputs,
+                             const BuildOptions& options) {
+  model::ModelSchema schema;
+  schema.z_up = options.z_up.value_or(false);
+  schema.upside_down = !options.z_up && readers.front().traits().up == gaussian::UpAxis::kMinusY;
+  schema.color_bits = 8;
+  schema.harmonics_degree = degree_of(readers);
+  for (const std::filesystem::path& input : inputs) schema.source_names.push_back(name_of(input));
+  return schema;
+}
+
+size_t runs_of(const Readers& readers) {
+  uint64_t runs = 0;
+  for (const gaussian::GaussianReader& reader : readers) runs += (reader.traits().count + kRun - 1) / kRun;
+  return static_cast<size_t>(std::max<uint64_t>(runs, 1));
+}
+
+}  // namespace
+
+bool holds_gaussians(const std::filesystem::path& input) {
+  std::error_code ignored;  // if a file does not exist, reading it reports the error
+  const bool folder = std::filesystem::is_directory(input, ignored);
+  const std::filesystem::path content = folder ? input / "meta.json" : input;
+  const Result<stream::FilePtr> file = stream::open_shared(content);
+  return file && gaussian::gaussian_format_of(*file, content).has_value();
+}
+
+Status build_gaussians(std::span<const std::filesystem::path> inputs, const std::filesystem::path& target,
+                       const BuildOptions& options, StageClock& clock, BuildReport& report) {
+  Result<Readers> readers = open_readers(inputs, report.memory_budget);
+  if (!readers) return fail(std::move(readers.error()));
+  if (Status status = check_alike(*readers, inputs); !status) return status;
+  clock.begin("reading", runs_of(*readers));
+  const Result<geometry::Box> box = survey(*readers, clock, report);
+  if (!box) return fail(box.error());
+  if (report.gaussians == 0) {
+    return fail(ErrorKind::kInvalidInput, target.string() + ": no usable Gaussian is left of the input");
+  }
+  clock.know_points(report.gaussians);
+  clock.begin("sorting", runs_of(*readers));
+  const geometry::RootCube root = geometry::root_cube(*box);
+  const gaussian::GaussianTraits& traits = readers->front().traits();
+  const int degree = degree_of(*readers);
+  GaussianSorter sorter(target, root, degree, report.memory_budget / kSortingShare);
+  Status status = for_each_run(*readers, degree, [&](const gaussian::Gaussians& run) {
+    clock.step();
+    return sorter.add(run);
+  });
+  if (status) status = sorter.finish();
+  if (!status) return status;
+  Result<model::ModelWriter> writer = model::ModelWriter::create(target, schema_of(*readers, inputs, options));
+  if (!writer) return fail(std::move(writer.error()));
+  clock.begin("writing blocks", static_cast<size_t>(report.gaussians));
+  status = write_gaussian_tree(sorter, root, {degree, traits.antialiased, traits.flat}, *writer,
+                               [&clock](uint64_t count) { clock.step(count); });
+  if (!status) return status;
+  const Result<model::WriteReport> written = writer->finish();
+  if (!written) return fail(written.error());
+  report.parts = 1;
+  report.blocks = written->blocks;
+  report.bytes = written->bytes;
+  return {};
+}
+
+}  // namespace surfcast::builder

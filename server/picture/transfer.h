@@ -1,0 +1,38 @@
+#pragma once
+
+#include <cstddef>
+#include <glm/vec3.hpp>
+#include <optional>
+#include <vector>
+
+namespace surfcast::picture {
+
+/// A point of a transfer function.
+struct TransferPoint {
+  double value = 0;
+  glm::dvec3 color{1};  ///< sRGB, components from 0 to 1
+  double opacity = 0;   ///< of one spacing, from 0 to 1
+  bool operator==(const TransferPoint&) const = default;
+};
+
+enum class TransferPreset { kGray, kCtBone, kCtSoft, kMr };
+inline constexpr size_t kTransferPresets = 4;
+
+/// How the values of volumes look: points, or a preset. Between points, the colour in linear light and the opacity are
+/// linear; beyond the first and the last they stay. Two points of one value are a step.
+struct Transfer {
+  /// In any order; of several at one value the first and last count, in the order stated.
+  std::vector<TransferPoint> points;
+  std::optional<double> spacing{};  ///< length to which opacities refer, world units; none: the volume's grid spacing
+  TransferPreset preset = TransferPreset::kGray;  ///< without points
+  std::optional<double> first{};                  ///< the value at the start of the preset; none: the volume's own
+  std::optional<double> last{};                   ///< the value at the end of the preset
+};
+
+/// How volumes are drawn.
+struct VolumeOptions {
+  Transfer transfer;
+  bool shaded = false;  ///< lit by a headlight, by their gradients
+};
+
+}  // namespace surfcast::picture

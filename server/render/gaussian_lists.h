@@ -1,0 +1,28 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <glm/vec2.hpp>
+#include <glm/vec4.hpp>
+#include <optional>
+#include <span>
+#include <vector>
+
+namespace surfcast::render {
+
+/// The Gaussians of each tile, from front to back.
+struct GaussianLists {
+  std::vector<glm::uvec4> tiles;  ///< all tiles, longest lists first: tile, first entry, number of entries, unused
+  std::vector<uint32_t> entries;  ///< places of Gaussians among the keys
+  uint64_t drawn = 0;             ///< Gaussians that are in a list
+
+  /// How many tiles have more than this number of entries: the first ones.
+  [[nodiscard]] uint32_t longer_than(uint32_t count) const;
+};
+
+/// Sorts Gaussians by depth, equally deep ones by their places, and enters them in the lists of their tiles. A key is
+/// a depth, as the bits of a positive float (0: not drawn), and the first and the last tile (16 bits each for column
+/// and row). None if there would be more than `most` entries.
+std::optional<GaussianLists> list_by_depth(std::span<const glm::uvec4> keys, const glm::uvec2& tiles, size_t most);
+
+}  // namespace surfcast::render

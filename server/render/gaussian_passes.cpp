@@ -1,0 +1,161 @@
+#include "render/gaussian_passes.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/preemption.h"
+#include "gaussian/pack_gaussians.h"
+#include "render/batched_dispatch.h"
+#include "render/gaussian_lists.h"
+#include "render/projection_work.h"
+#include "shared/gaussian_layout.h"
+
+namespace surfcast::render {
+namespace {
+
+/// Tiles whose lists are drawn from an entry on.
+struct GaussianRound {
+  uint32_t tiles = 0;
+  uint32_t first = 0;
+};
+
+/// Gives the Gaussians of each chunk their places, in the order of the blocks. Returns their number.
+uint32_t number_gaussians(ProjectionWork& work) {
+  uint32_t place = 0;
+  for (layout::Chunk& chunk : work.chunks) {
+    const int degree = static_cast<int>((chunk.run.z >> SURFCAST_RUN_DEGREE_SHIFT) & 7U);
+    chunk.run.w = place;
+    place += (chunk.run.z & SURFCAST_RUN_COUNT) / gaussian::texels_per_gaussian(degree);
+  }
+  return place;
+}
+
+void upload_work(const RegionTask& task, const ProjectionWork& work, SplatBuffers& buffers) {
+  upload(buffers.blocks, work.blocks);
+  upload(buffers.chunks, work.chunks);
+  upload_uniforms(buffers.frame, task.constants);
+  if (!task.display.clipped) return;
+  upload(buffers.block_displays, work.block_displays);
+  upload(buffers.clips, work.clips.empty() ? std::vector<layout::ClipRange>(1) : work.clips);
+}
+
+Status project(const RegionTask& task, const ProjectionWork& work, const gl::Program& program, SplatBuffers& buffers,
+               const Preemption& preemption) {
+  const gl::DebugGroup group("project Gaussians");
+  return dispatch_in_batches({work.chunks.size(), {}}, buffers.gaussians.project_batches, preemption, [&] {
+    buffers.frame.bind_uniforms(SURFCAST_BIND_FRAME);
+    buffers.blocks.bind(SURFCAST_BIND_BLOCKS);
+    buffers.chunks.bind(SURFCAST_BIND_CHUNKS);
+    if (task.display.clipped) {
+      buffers.block_displays.bind(SURFCAST_BIND_BLOCK_DISPLAYS);
+      buffers.clips.bind(SURFCAST_BIND_CLIPS);
+    }
+    buffers.gaussians.records.bind_for_writing(SURFCAST_UNIT_SPLATS);
+    buffers.gaussians.keys.bind_for_writing(SURFCAST_UNIT_BOUNDS);
+    task.surfels->bind(SURFCAST_UNIT_SURFELS);
+    glUseProgram(program.name());
+  });
+}
+
+/// Draws so many tiles, from an entry of their lists on. `near`: depth of the nearest centre that is drawn.
+Status blend(const GaussianRound& round, const GaussianPrograms& programs, float near, SplatBuffers& buffers,
+             const Preemption& preemption) {
+  const size_t lanes = size_t{round.tiles} * programs.lanes_of_tile;
+  const Groups groups{(lanes + programs.lanes - 1) / programs.lanes, {}};
+  return dispatch_in_batches(groups, buffers.gaussians.blend_batches, preemption, [&] {
+    buffers.frame.bind_uniforms(SURFCAST_BIND_FRAME);
+    buffers.gaussians.tiles.bind(SURFCAST_BIND_TILE_ORDER);
+    buffers.light.bind(SURFCAST_BIND_LIGHT);
+    buffers.picture.bind(SURFCAST_BIND_PICTURE);
+    buffers.gaussians.records.bind_for_reading(SURFCAST_UNIT_SPLATS);
+    buffers.gaussians.lists.bind_for_reading(SURFCAST_UNIT_LISTS);
+    glUseProgram(programs.blend->name());
+    glUniform2ui(SURFCAST_UNIFORM_SPAN, round.tiles, round.first);
+    if (programs.has_near) glUniform1f(SURFCAST_UNIFORM_NEAR, near);
+  });
+}
+
+void upload_lists(const GaussianLists& lists, SplatBuffers& buffers) {
+  upload(buffers.gaussians.tiles, lists.tiles);
+  const size_t entries = lists.entries.size();
+  buffers.gaussians.lists.reserve(std::max<size_t>(entries + entries / 4, 1), buffers.lazy);
+  buffers.gaussians.lists.write(std::as_bytes(std::span(lists.entries)));
+}
+
+/// Draws the tiles, those with long lists in several rounds.
+Status blend_rounds(const RegionTask& task, const GaussianLists& lists, const GaussianPrograms& programs, float near,
+                    SplatBuffers& buffers, const Preemption& preemption) {
+  const gl::DebugGroup group("blend Gaussians");
+  const bool several = lists.longer_than(programs.round) > 0;
+  const size_t pixels = static_cast<size_t>(task.drawn.width) * static_cast<size_t>(task.drawn.height);
+  buffers.light.reserve((several ? pixels : 1) * sizeof(glm::vec4));
+  GaussianRound round{static_cast<uint32_t>(lists.tiles.size()), 0};
+  while (round.tiles > 0) {
+    if (Status status = blend(round, programs, near, buffers, preemption); !status) return status;
+    round.first += programs.round;
+    round.tiles = lists.longer_than(round.first);
+  }
+  return {};
+}
+
+GaussianForm form_of(const RegionTask& task, const ProjectionWork& work) {
+  if (task.variant.exact) return GaussianForm::kExact;
+  const bool flat = std::ranges::any_of(
+      work.chunks, [](const layout::Chunk& chunk) { return (chunk.run.z & SURFCAST_RUN_FLAT) != 0; });
+  return flat ? GaussianForm::kFlat : GaussianForm::kTrained;
+}
+
+std::vector<glm::uvec4> read_keys(size_t count, const SplatBuffers& buffers) {
+  std::vector<glm::uvec4> keys(count);
+  buffers.gaussians.keys.read(std::as_writable_bytes(std::span(keys)));
+  return keys;
+}
+
+}  // namespace
+
+bool has_gaussians(const RegionTask& task) {
+  return std::ranges::any_of(task.blocks, [&](const VisibleBlock& block) {
+    return task.kinds[block.kind]->drawn_as() == kinds::DrawnAs::kGaussians;
+  });
+}
+
+Result<std::optional<RegionStats>> draw_gaussians(const RegionTask& task, Programs& programs, SplatBuffers& buffers,
+                                                  const Preemption& preemption, std::span<std::byte> pixels) {
+  const PictureKinds kinds = kinds_of(task);
+  if (kinds.size() > 1) return fail(ErrorKind::kUnsupported, "Gaussians and other kinds in one picture");
+  ProjectionWork work = plan_work(task, kinds);
+  const Result<GaussianPrograms> compiled = programs.gaussians(task.variant, form_of(task, work));
+  if (!compiled) return fail(compiled.error());
+  RegionStats stats;
+  const WorkStopwatch project_watch(preemption);
+  const uint32_t count = number_gaussians(work);
+  buffers.gaussians.records.reserve(size_t{compiled->record} * std::max(count, 1U), buffers.lazy);
+  buffers.gaussians.keys.reserve(std::max(count, 1U), buffers.lazy);
+  upload_work(task, work, buffers);
+  if (Status status = project(task, work, *compiled->project, buffers, preemption); !status) {
+    return fail(std::move(status.error()));
+  }
+  stats.project_ms = project_watch.milliseconds();
+
+  const WorkStopwatch bin_watch(preemption);
+  const glm::uvec2 tiles(task.constants.tiles.x, task.constants.tiles.y);
+  const std::optional<GaussianLists> lists = list_by_depth(read_keys(count, buffers), tiles, task.list_entries);
+  if (!lists) return std::optional<RegionStats>();
+  upload_lists(*lists, buffers);
+  stats.splats = lists->drawn;
+  stats.bin_ms = bin_watch.milliseconds();
+
+  const WorkStopwatch blend_watch(preemption);
+  buffers.picture.reserve(pixels.size());
+  // BlockView::scale.x is the unit of the projection.
+  const float near = work.blocks.empty() ? 0 : static_cast<float>(SURFCAST_TRAINED_NEAR) * work.blocks.front().scale.x;
+  Status status = blend_rounds(task, *lists, *compiled, near, buffers, preemption);
+  if (!status) return fail(std::move(status.error()));
+  stats.splat_ms = blend_watch.milliseconds();
+  const Result<double> read = read_picture(buffers, pixels);
+  if (!read) return fail(read.error());
+  stats.read_ms = *read;
+  return std::optional(stats);
+}
+
+}  // namespace surfcast::render

@@ -1,0 +1,18 @@
+#pragma once
+
+#include <optional>
+#include <span>
+
+#include "render/region_passes.h"
+
+namespace surfcast::render {
+
+/// True if a region has a block of Gaussians.
+bool has_gaussians(const RegionTask& task);
+
+/// Draws a region of Gaussians, as draw_region does with one of surfels: projects them, sorts them by depth into the
+/// lists of the tiles, and blends them. None if the lists are too long. Fails on a region that has other kinds, too.
+Result<std::optional<RegionStats>> draw_gaussians(const RegionTask& task, Programs& programs, SplatBuffers& buffers,
+                                                  const Preemption& preemption, std::span<std::byte> pixels);
+
+}  // namespace surfcast::render
