@@ -1,16 +1,15 @@
 import type { JSX } from 'preact';
+import { contentsOf } from '../state/contents';
 import * as store from '../state/store';
 import { useActions } from './actions';
 import { IconButton } from './controls';
 import { Icon, Logo } from './icons';
 import { Views } from './views';
 
-const compact = new Intl.NumberFormat('en', { notation: 'compact', maximumFractionDigits: 1 });
-
 function ModelButton(): JSX.Element | null {
   const name = store.model.value;
   if (name === undefined) return null;
-  const points = store.description.value?.surfels;
+  const description = store.description.value;
   return (
     <button
       type="button"
@@ -20,7 +19,7 @@ function ModelButton(): JSX.Element | null {
       onClick={() => (store.galleryOpen.value = !store.galleryOpen.value)}
     >
       <span class="name">{name}</span>
-      {points !== undefined && <small>{compact.format(Number(points))} points</small>}
+      {description && <small>{contentsOf(description)}</small>}
       <Icon name="chevron" size={18} />
     </button>
   );
