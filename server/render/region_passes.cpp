@@ -468,7 +468,7 @@ Result<std::optional<RegionStats>> draw_with_volumes(RegionTask task, const Pict
   task.variant.silhouettes = false;
   RegionStats stats;
   if (!kinds.empty()) {
-    const Result<std::optional<RegionStats>> surfaces = draw_surfaces(task, kinds, programs, buffers, preemption);
+    Result<std::optional<RegionStats>> surfaces = draw_surfaces(task, kinds, programs, buffers, preemption);
     if (!surfaces || !*surfaces) return surfaces;
     stats = **surfaces;
   }
