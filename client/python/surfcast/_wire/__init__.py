@@ -1,0 +1,1 @@
+"""The messages of the protocol. Their module is generated from surfcast.proto."""

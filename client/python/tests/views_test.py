@@ -1,0 +1,74 @@
+"""Views: frames in motion, and at rest the picture of `render`."""
+
+from __future__ import annotations
+
+import asyncio
+
+import surfcast
+from surfcast import aio
+from surfcast.testing import RunningServer
+
+SIZE = (160, 120)
+
+
+def moved(camera: surfcast.Camera, x: float) -> surfcast.Camera:
+    return surfcast.Camera((camera.position[0] + x, *camera.position[1:]), camera.focal_point)
+
+
+def test_a_view_at_rest_is_the_picture(field: surfcast.Model, camera: surfcast.Camera) -> None:
+    with field.view(camera, resolution=SIZE, color_by="intensity") as view:
+        frame = view.wait_converged(timeout=60)
+        assert frame.picture.data == field.render(camera, resolution=SIZE, color_by="intensity").data
+        view.camera = moved(camera, 3)
+        frame = view.wait_converged(timeout=60)
+        assert frame.update == 1
+        assert frame.picture.data == field.render(view.camera, resolution=SIZE, color_by="intensity").data
+
+
+def test_the_newest_frame_wins(field: surfcast.Model, camera: surfcast.Camera) -> None:
+    with field.view(camera, resolution=SIZE) as view:
+        for step in range(20):
+            view.update(moved(camera, step / 4), moving=True)
+        view.update(moved(camera, 5))
+        updates = []
+        for frame in view:
+            updates.append(frame.update)
+            if frame.picture.converged:
+                break
+        assert updates == sorted(updates)
+        assert updates[-1] == 21
+        assert len(updates) < 21
+
+
+def test_frames_in_motion_are_marked(field: surfcast.Model, camera: surfcast.Camera) -> None:
+    with field.view(camera, resolution=SIZE) as view:
+        rest = view.wait_converged(timeout=60)
+        view.update(moved(camera, 1), moving=True)
+        frame = view.next(after=rest, timeout=60)
+        assert frame.moving
+        assert frame.resolution == SIZE
+
+
+async def test_a_view_waits_for_frames_to_be_painted(running: RunningServer, camera: surfcast.Camera) -> None:
+    async with aio.connect(running.address) as client:
+        field = await client.model("field")
+        async with field.view(camera, resolution=SIZE, acknowledge=False) as view:
+            frame = await view.next(timeout=60)
+            seen = 1
+            while not frame.picture.converged:
+                await view.painted(frame)
+                frame = await view.next(after=frame, timeout=60)
+                seen += 1
+            assert frame.picture.data == (await field.render(camera, resolution=SIZE)).data
+
+
+async def test_an_open_view_leaves_the_connection_to_others(running: RunningServer, camera: surfcast.Camera) -> None:
+    async with aio.connect(running.address) as client:
+        field = await client.model("field")
+        async with field.view(camera, resolution=SIZE) as view:
+            hit, picture, frame = await asyncio.gather(
+                field.pick((80, 60), camera, resolution=SIZE), field.render(camera, resolution=SIZE), view.next()
+            )
+        assert hit is not None and picture.converged and frame.number >= 1
+        frames = [frame async for frame in view]
+        assert frames == []
