@@ -1,5 +1,6 @@
 # The two commands of the README for a bare Debian 12: make demo, make test. They install missing packages.
-.PHONY: build demo test bench peers asan tsan package tidy format-check configure packages lint-packages
+.PHONY: build demo test bench bench-volumes peers peers-volumes asan tsan package tidy format-check configure packages \
+  lint-packages fuzz
 
 build: configure
 	cmake --build --preset release
@@ -17,11 +18,22 @@ bench: configure
 	cmake --build --preset release --target laboratory
 	build/bin/laboratory --docs docs $(BENCH_FLAGS) object:tests/data/lion.drc $(SCANS)
 
+# The same for volumes and Gaussian models. GRIDS: files to measure, as PRESET:PATH, for example ct-bone:chest.nrrd.
+bench-volumes: configure
+	cmake --build --preset release --target volume_laboratory
+	build/bin/volume_laboratory --docs docs $(BENCH_FLAGS) $(GRIDS)
+
 # The same scenes by other programs of Debian, into docs/peers.md. PEERS_FLAGS: see bench/peers/peers.py.
 peers: configure
 	@cmake/install_packages.sh peers
 	cmake --build --preset release --target laboratory
 	/usr/bin/python3 bench/peers/peers.py build/bin/laboratory --docs docs $(PEERS_FLAGS) tests/data/lion.drc $(SCANS)
+
+# The grids GRIDS by Surfcast and by VTK's ray casters, into docs/peers.md.
+peers-volumes: configure
+	@cmake/install_packages.sh peers
+	cmake --build --preset release --target volume_laboratory
+	/usr/bin/python3 bench/peers/volumes.py build/bin/volume_laboratory --docs docs $(PEERS_FLAGS) $(GRIDS)
 
 # Runs the fast tests without GL, the tests of damaged input and the fast numerics tests with the address and undefined
 # behaviour sanitizers. Builds only these tests, because sanitizers double the compile time.
@@ -42,9 +54,17 @@ tsan: packages
 	$(FIXED_ADDRESSES) cmake --build --preset tsan
 	$(FIXED_ADDRESSES) ctest --preset tsan -j2 --label-regex threads --exclude-regex _NOT_BUILT
 
-# Debian packages in build-package/: surfcast-server, surfcast-client, surfcast-view.
+# libFuzzer on everything that reads bytes of strangers, so many seconds for each target.
+FUZZ_SECONDS = 60
+fuzz: packages
+	@cmake/install_packages.sh fuzz
+	cmake --preset fuzz
+	cmake --build --preset fuzz
+	tests/fuzz/run.sh build-fuzz $(FUZZ_SECONDS)
+
+# Debian packages in build-package/: surfcast-server, surfcast-client, surfcast-view, python3-surfcast.
 package:
-	@cmake/install_packages.sh build window package
+	@cmake/install_packages.sh build window python package
 	cmake --preset package
 	cmake --build --preset package
 	cpack --preset package
@@ -60,7 +80,7 @@ configure: packages
 	cmake --preset release
 
 packages:
-	@cmake/install_packages.sh build window run test
+	@cmake/install_packages.sh build window python run test
 
 lint-packages:
 	@cmake/install_packages.sh lint

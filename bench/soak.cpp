@@ -90,8 +90,16 @@ std::vector<Sample> watch(const SoakPlan& plan, const std::atomic<unsigned>& vis
   return samples;
 }
 
+/// The descriptors of the server once it has the model open.
+int64_t descriptors_at_first(const SoakPlan& plan) {
+  std::mt19937 random(plan.clients);
+  if (!visit(plan, random)) std::fputs("the first visit failed\n", stderr);
+  std::this_thread::sleep_for(std::chrono::seconds(1));
+  return open_descriptors(plan.process);
+}
+
 int soak(const SoakPlan& plan) {
-  const int64_t descriptors_before = open_descriptors(plan.process);
+  const int64_t descriptors_before = descriptors_at_first(plan);
   std::atomic<bool> over = false;
   std::atomic<unsigned> visits = 0;
   std::atomic<unsigned> failures = 0;

@@ -1,9 +1,12 @@
 #include "client/client_socket.h"
 
 #include <boost/asio/error.hpp>
+#include <boost/asio/ssl/error.hpp>
 #include <string>
 
 #include <fcntl.h>
+
+#include "tls/trust.h"
 
 namespace surfcast::client {
 
@@ -27,13 +30,24 @@ Status ClientSocket::connect(const protocol::Endpoint& server, Clock::time_point
   if (code) return fail(ErrorKind::kIo, code.message());
   Status connected = fail(ErrorKind::kIo, "no address");
   for (const auto& address : addresses) {
-    socket_.close(code);
-    socket_.async_connect(address.endpoint(), connecting_.begin());
+    stream_.socket().close(code);
+    stream_.socket().async_connect(address.endpoint(), connecting_.begin());
     connected = finish(connecting_, deadline);
     if (connected || connecting_.pending) break;
   }
-  if (connected) socket_.set_option(tcp::no_delay(true), code);
+  if (connected) stream_.socket().set_option(tcp::no_delay(true), code);
   return connected;
+}
+
+Status ClientSocket::encrypt(const std::string& host, const std::string& ca, Clock::time_point deadline) {
+  const auto trust = tls::make_trust(ca);
+  if (!trust) return fail(trust.error());
+  stream_.encrypt(**trust);
+  tls::expect_host(stream_, host);
+  stream_.encryption()->async_handshake(boost::asio::ssl::stream_base::client, shaking_hands_.begin());
+  Status status = finish(shaking_hands_, deadline);
+  if (status || shaking_hands_.pending) return status;
+  return fail(ErrorKind::kIo, tls::explain_handshake(stream_, shaking_hands_.outcome));
 }
 
 bool ClientSocket::interrupted() {
@@ -50,7 +64,8 @@ Status ClientSocket::finish(const Operation& operation, Clock::time_point deadli
     if (io_.run_one_until(deadline) == 0) return fail(ErrorKind::kUnavailable, "timed out");
   }
   if (!operation.outcome) return {};
-  const bool left = operation.outcome == boost::asio::error::eof;
+  const bool left =
+      operation.outcome == boost::asio::error::eof || operation.outcome == boost::asio::ssl::error::stream_truncated;
   return fail(ErrorKind::kIo, left ? "the server closed the connection" : operation.outcome.message());
 }
 

@@ -5,9 +5,11 @@
 #include <boost/asio/posix/stream_descriptor.hpp>
 #include <chrono>
 #include <cstddef>
+#include <string>
 
 #include "base/result.h"
 #include "protocol/endpoint.h"
+#include "tls/stream.h"
 
 namespace surfcast::client {
 
@@ -29,30 +31,34 @@ struct Operation {
   }
 };
 
-/// A TCP socket whose operations are asynchronous ones that are waited for: what a deadline or an interrupt leaves
-/// unfinished goes on while something else is waited for.
+/// A TCP socket, with TLS or without, whose operations are asynchronous ones that are waited for: what a deadline or an
+/// interrupt leaves unfinished goes on while something else is waited for.
 class ClientSocket {
  public:
+  using Stream = tls::Stream<boost::asio::ip::tcp::socket>;
   using Clock = std::chrono::steady_clock;
 
   /// Tries each address of the name in turn. Waiting ends when `interrupt` becomes readable (-1: none).
   Status connect(const protocol::Endpoint& server, Clock::time_point deadline, int interrupt);
+  /// Begins TLS with the server of that name, which shows a certificate that make_trust(`ca`) believes.
+  Status encrypt(const std::string& host, const std::string& ca, Clock::time_point deadline);
   /// Waits until the operation is done, and fails if it failed. kUnavailable at the deadline, kCancelled when
   /// interrupted: only then is it still pending.
   Status finish(const Operation& operation, Clock::time_point deadline);
   /// Whether the interrupt has come.
   bool interrupted();
 
-  boost::asio::ip::tcp::socket& socket() { return socket_; }
+  Stream& stream() { return stream_; }
 
  private:
   Status watch(int interrupt);
 
   boost::asio::io_context io_{1};
-  boost::asio::ip::tcp::socket socket_{io_};
+  Stream stream_{boost::asio::ip::tcp::socket(io_)};
   boost::asio::posix::stream_descriptor interrupt_{io_};
   bool interrupted_ = false;
   Operation connecting_;
+  Operation shaking_hands_;
 };
 
 }  // namespace surfcast::client

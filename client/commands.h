@@ -10,6 +10,8 @@ namespace surfcast::client {
 
 /// `models URL [--json]`: the names of the served models, one per line.
 void add_models_command(CLI::App& app, int interrupt, Status& outcome);
+/// `login URL`: keeps a token for a server, or forgets it.
+void add_login_command(CLI::App& app, int interrupt, Status& outcome);
 /// `render URL/MODEL --output OUT ...`: one picture.
 void add_render_command(CLI::App& app, int interrupt, Status& outcome);
 /// `bench URL/MODEL ...`: frame rates, latencies and bytes of views that alternately move and rest.

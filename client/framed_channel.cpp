@@ -40,13 +40,13 @@ class FramedChannel : public MessageChannel {
 
 /// Sends what is in outgoing_.
 Status FramedChannel::send(TimePoint deadline) {
-  asio::async_write(socket_->socket(), asio::buffer(outgoing_), writing_.begin());
+  asio::async_write(socket_->stream(), asio::buffer(outgoing_), writing_.begin());
   return socket_->finish(writing_, deadline);
 }
 
 /// Fills a part of incoming_.
 Status FramedChannel::receive(std::span<std::byte> bytes, TimePoint deadline) {
-  asio::async_read(socket_->socket(), asio::buffer(bytes.data(), bytes.size()), reading_.begin());
+  asio::async_read(socket_->stream(), asio::buffer(bytes.data(), bytes.size()), reading_.begin());
   return socket_->finish(reading_, deadline);
 }
 
@@ -78,7 +78,7 @@ Result<MessageChannel::Bytes> FramedChannel::read(TimePoint deadline) {
     Result<std::optional<Bytes>> message = splitter_.next();
     if (!message) return fail(message.error());
     if (*message) return std::move(**message);
-    if (!reading_.begun) socket_->socket().async_read_some(asio::buffer(incoming_), reading_.begin());
+    if (!reading_.begun) socket_->stream().async_read_some(asio::buffer(incoming_), reading_.begin());
     if (Status status = socket_->finish(reading_, deadline); !status) return fail(status.error());
     reading_.begun = false;
     splitter_.append(std::span(incoming_).first(reading_.bytes));

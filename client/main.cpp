@@ -21,6 +21,7 @@ int run(int argc, char** argv) {
   const int interrupt = surfcast::client::interrupt_descriptor();
   surfcast::Status outcome;
   surfcast::client::add_models_command(app, interrupt, outcome);
+  surfcast::client::add_login_command(app, interrupt, outcome);
   surfcast::client::add_render_command(app, interrupt, outcome);
   surfcast::client::add_bench_command(app, interrupt, outcome);
   surfcast::client::add_pick_command(app, interrupt, outcome);

@@ -7,9 +7,13 @@
 namespace surfcast::client {
 
 Result<std::unique_ptr<MessageChannel>> connect_channel(const protocol::Endpoint& server,
-                                                        MessageChannel::TimePoint deadline, int interrupt) {
+                                                        MessageChannel::TimePoint deadline, int interrupt,
+                                                        const std::string& ca) {
   auto socket = std::make_unique<ClientSocket>();
   if (Status status = socket->connect(server, deadline, interrupt); !status) return fail(status.error());
+  if (server.encrypted) {
+    if (Status status = socket->encrypt(server.host, ca, deadline); !status) return fail(status.error());
+  }
   return server.websocket ? make_websocket_channel(std::move(socket), protocol::to_string(server))
                           : make_framed_channel(std::move(socket));
 }

@@ -28,9 +28,11 @@ class MessageChannel {
   virtual Result<Bytes> read(TimePoint deadline) = 0;
 };
 
-/// Connects to a server: a WebSocket or the framed protocol, as the endpoint says. `interrupt` is as in ClientConfig.
+/// Connects to a server: a WebSocket or the framed protocol, as the endpoint says. `interrupt` and `ca` are as in
+/// ClientConfig.
 Result<std::unique_ptr<MessageChannel>> connect_channel(const protocol::Endpoint& server,
-                                                        MessageChannel::TimePoint deadline, int interrupt);
+                                                        MessageChannel::TimePoint deadline, int interrupt,
+                                                        const std::string& ca);
 
 class ClientSocket;
 

@@ -58,7 +58,7 @@ nlohmann::json to_json(const wire::ModelList& list) {
 Status list_models(const ModelsCommand& command, int interrupt) {
   const Result<protocol::Endpoint> server = protocol::parse_endpoint(command.url);
   if (!server) throw CLI::ValidationError(server.error().message);
-  const Result<wire::ModelList> list = ask_for_models(*server, command.limits.config(interrupt));
+  const Result<wire::ModelList> list = ask_for_models(*server, command.limits.config(*server, interrupt));
   if (!list) return fail(list.error());
   if (command.json) {
     std::cout << to_json(*list).dump(2) << '\n';
@@ -74,7 +74,7 @@ Status list_models(const ModelsCommand& command, int interrupt) {
 void add_models_command(CLI::App& app, int interrupt, Status& outcome) {
   const auto command = std::make_shared<ModelsCommand>();
   CLI::App* sub = app.add_subcommand("models", "List the models of a server");
-  sub->add_option("url", command->url, "HOST:PORT or ws://HOST:PORT")->required();
+  sub->add_option("url", command->url, "HOST:PORT or ws://HOST:PORT; with TLS tcps:// or wss://")->required();
   sub->add_flag("--json", command->json, "print JSON");
   command->limits.add_to(*sub);
   sub->callback([command, interrupt, &outcome] { outcome = list_models(*command, interrupt); });

@@ -27,7 +27,7 @@ void print_summary(const std::vector<double>& times) {
 Status ping(const PingCommand& command, int interrupt) {
   const Result<protocol::Endpoint> server = protocol::parse_endpoint(command.url);
   if (!server) throw CLI::ValidationError(server.error().message);
-  Result<ServerConnection> connection = ServerConnection::open(*server, command.limits.config(interrupt));
+  Result<ServerConnection> connection = ServerConnection::open(*server, command.limits.config(*server, interrupt));
   if (!connection) return fail(connection.error());
   std::cout << std::fixed << std::setprecision(3);
   std::vector<double> times;
@@ -49,7 +49,7 @@ Status ping(const PingCommand& command, int interrupt) {
 void add_ping_command(CLI::App& app, int interrupt, Status& outcome) {
   const auto command = std::make_shared<PingCommand>();
   CLI::App* sub = app.add_subcommand("ping", "Measure the round trip time to a server");
-  sub->add_option("url", command->url, "HOST:PORT or ws://HOST:PORT")->required();
+  sub->add_option("url", command->url, "HOST:PORT or ws://HOST:PORT; with TLS tcps:// or wss://")->required();
   sub->add_option("--count", command->count, "number of round trips (default 4)")->check(CLI::Range(1U, 1000000U));
   command->limits.add_to(*sub);
   sub->callback([command, interrupt, &outcome] { outcome = ping(*command, interrupt); });

@@ -1,5 +1,6 @@
 #include "client/server_connection.h"
 
+#include <algorithm>
 #include <span>
 #include <utility>
 
@@ -14,13 +15,35 @@ ServerConnection::ServerConnection(const protocol::Endpoint& server, const Clien
 
 Result<ServerConnection> ServerConnection::open(const protocol::Endpoint& server, const ClientConfig& config) {
   const Clock::time_point deadline = Clock::now() + config.connect;
-  auto channel = connect_channel(server, deadline, config.interrupt);
+  auto channel = connect_channel(server, deadline, config.interrupt, config.ca);
   if (!channel) {
     return fail(channel.error().kind, protocol::to_string(server) + ": cannot connect: " + channel.error().message);
   }
   ServerConnection connection(server, config, std::move(*channel));
   if (Status status = connection.exchange_hellos(deadline); !status) return connection.failed(status.error());
+  if (Status status = connection.authenticate(); !status) return fail(status.error());
   return connection;
+}
+
+/// Ids of views that go on are not given to anything else.
+Result<wire::Resumed> ServerConnection::resume(const std::string& session) {
+  wire::Request request;
+  request.mutable_resume()->set_session(session);
+  Result<wire::Answer> answer = ask(std::move(request));
+  if (!answer && answer.error().kind == ErrorKind::kUnsupported) return wire::Resumed();
+  if (!answer) return fail(answer.error());
+  for (const uint64_t view : answer->resumed().views()) last_id_ = std::max(last_id_, view);
+  return std::move(*answer->mutable_resumed());
+}
+
+/// A server that wants no token takes any; one that is too old to know of tokens wants none.
+Status ServerConnection::authenticate() {
+  if (config_.token.empty()) return {};
+  wire::Request request;
+  request.mutable_authenticate()->set_token(config_.token);
+  const Result<wire::Answer> answer = ask(std::move(request));
+  if (answer || answer.error().kind == ErrorKind::kUnsupported) return {};
+  return fail(answer.error());
 }
 
 tl::unexpected<Error> ServerConnection::failed(ErrorKind kind, const std::string& what) const {

@@ -18,6 +18,8 @@ struct ClientConfig {
   std::chrono::milliseconds connect{10'000};  ///< for the connection and both hellos
   std::chrono::milliseconds answer{120'000};  ///< for one complete answer
   int interrupt = -1;                         ///< descriptor that becomes readable to end a wait; -1: none
+  std::string token{};                        ///< that is named to the server; empty: none
+  std::string ca{};                           ///< certificates to trust, a PEM file; empty: those of the system
 };
 
 /// A connection to a server after the exchange of hellos, framed or by WebSocket as the endpoint states. Calls block;
@@ -38,6 +40,10 @@ class ServerConnection {
   /// server to cancel the request.
   Result<wire::Answer> ask(wire::Request request);
 
+  /// Begins a session, or goes on with one of a former connection: its views are open again. To be asked before all
+  /// else. A server that is too old to keep sessions names none.
+  Result<wire::Resumed> resume(const std::string& session);
+
   /// Bytes of the answers received so far.
   [[nodiscard]] uint64_t bytes_received() const { return bytes_received_; }
   /// An error that names the server.
@@ -51,6 +57,7 @@ class ServerConnection {
   ServerConnection(const protocol::Endpoint& server, const ClientConfig& config,
                    std::unique_ptr<MessageChannel> channel);
   Status exchange_hellos(Clock::time_point deadline);
+  Status authenticate();
   [[nodiscard]] tl::unexpected<Error> failed(const Error& error) const { return failed(error.kind, error.message); }
 
   protocol::Endpoint endpoint_;

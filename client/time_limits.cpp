@@ -1,5 +1,9 @@
 #include "client/time_limits.h"
 
+#include <cstdlib>
+#include <fstream>
+
+#include "client/token_store.h"
 #include "protocol/request_flags.h"
 
 namespace surfcast::client {
@@ -18,10 +22,36 @@ void TimeLimits::add_to(CLI::App& command) {
   command.add_option("--timeout", answer, "timeout of an answer, seconds (default 120)")
       ->envname(protocol::environment_name("timeout"))
       ->check(CLI::Range(0.001, 86400.0));
+  command
+      .add_option("--ca", ca,
+                  "certificates to trust with tcps:// and wss://, a PEM file (default: those of the system)")
+      ->envname(protocol::environment_name("ca"))
+      ->type_name("FILE");
+  command
+      .add_option("--token-file", token_file,
+                  "file with the token that is named to the server (default: the variable SURFCAST_TOKEN, or what "
+                  "surfcast login has kept)")
+      ->envname(protocol::environment_name("token-file"))
+      ->type_name("FILE")
+      ->check(CLI::ExistingFile);
 }
 
-ClientConfig TimeLimits::config(int interrupt) const {
-  return {.connect = milliseconds(connect), .answer = milliseconds(answer), .interrupt = interrupt};
+std::string TimeLimits::token_for(const protocol::Endpoint& server) const {
+  if (!token_file.empty()) {
+    std::string token;
+    std::ifstream(token_file) >> token;
+    return token;
+  }
+  const char* const named = std::getenv("SURFCAST_TOKEN");
+  return named != nullptr ? named : stored_token(token_store(), server);
+}
+
+ClientConfig TimeLimits::config(const protocol::Endpoint& server, int interrupt) const {
+  return {.connect = milliseconds(connect),
+          .answer = milliseconds(answer),
+          .interrupt = interrupt,
+          .token = token_for(server),
+          .ca = ca};
 }
 
 }  // namespace surfcast::client

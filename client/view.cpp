@@ -17,6 +17,13 @@ Result<View> View::open(ServerConnection& connection, const wire::DrawPicture& p
   return view;
 }
 
+void View::go_on(ServerConnection& connection) {
+  connection_ = &connection;
+  incomplete_.reset();
+  bytes_before_ = connection.bytes_received();
+  pick_.reset();
+}
+
 Result<uint64_t> View::show(const wire::DrawPicture& picture, bool moving) {
   wire::Request request;
   wire::UpdateView& update = *request.mutable_update_view();

@@ -25,6 +25,11 @@ class View {
   /// `target_fps` is the frame rate to hold while moving; 0: the server's default.
   static Result<View> open(ServerConnection& connection, const wire::DrawPicture& picture, double target_fps);
 
+  /// Goes on over another connection, whose server has the view open again (ServerConnection::resume).
+  void go_on(ServerConnection& connection);
+  /// Its number, as wire::Resumed names it.
+  [[nodiscard]] uint64_t id() const { return id_; }
+
   /// Changes the picture of the view. Returns the update number; frames that show this picture repeat it.
   Result<uint64_t> show(const wire::DrawPicture& picture, bool moving);
   /// The next frame, or nothing if none is complete by `deadline`. The caller must acknowledge it with `painted`.

@@ -18,16 +18,15 @@ namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace http = boost::beast::http;
 namespace websocket = boost::beast::websocket;
-using asio::ip::tcp;
 using boost::system::error_code;
 
 constexpr const char* kServerLeft = "the server closed the connection";
 
 /// A socket on which Beast reports the end of a WebSocket, or what is wrong with it, as soon as it knows: by default it
 /// would wait for the server to close the connection first.
-class ImpatientSocket : public tcp::socket {
+class ImpatientSocket : public ClientSocket::Stream {
  public:
-  explicit ImpatientSocket(tcp::socket socket) : tcp::socket(std::move(socket)) {}
+  explicit ImpatientSocket(ClientSocket::Stream stream) : ClientSocket::Stream(std::move(stream)) {}
 };
 
 /// Found by Beast.
@@ -60,7 +59,7 @@ class WebSocketChannel : public MessageChannel {
 };
 
 WebSocketChannel::WebSocketChannel(std::unique_ptr<ClientSocket> socket, std::string host)
-    : socket_(std::move(socket)), host_(std::move(host)), stream_(ImpatientSocket(std::move(socket_->socket()))) {
+    : socket_(std::move(socket)), host_(std::move(host)), stream_(ImpatientSocket(std::move(socket_->stream()))) {
   stream_.binary(true);
   stream_.auto_fragment(false);
   stream_.read_message_max(protocol::kMaxAnswerBytes);

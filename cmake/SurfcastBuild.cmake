@@ -6,8 +6,13 @@ option(SURFCAST_WINDOW "Build surfcast-view, which needs SDL and libturbojpeg" O
 set(SURFCAST_VIEWER AUTO CACHE STRING
   "The viewer for browsers: ON (fails without it), AUTO (warns where npm cannot build it), OFF")
 set_property(CACHE SURFCAST_VIEWER PROPERTY STRINGS ON AUTO OFF)
+set(SURFCAST_PYTHON AUTO CACHE STRING
+  "The wheel of the Python client: ON (fails without it), AUTO (where its tools are installed), OFF")
+set_property(CACHE SURFCAST_PYTHON PROPERTY STRINGS ON AUTO OFF)
 set(SURFCAST_SANITIZE "" CACHE STRING "Sanitizers to build with, as the compiler names them (address,undefined)")
+option(SURFCAST_FUZZ "Build the targets of libFuzzer, which needs clang" OFF)
 option(SURFCAST_PCH "Precompile the headers that most sources include" OFF)
+option(SURFCAST_JOIN "Compile several sources of a target together" OFF)
 
 set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
@@ -40,7 +45,10 @@ target_compile_options(surfcast_warnings INTERFACE
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # GCC 12 reports these inside inlined standard library code that is correct.
   target_compile_options(surfcast_warnings INTERFACE -Wno-null-dereference -Wno-maybe-uninitialized
-    -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow)
+    -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread)
+else()
+  # Conditions without a branch are meant.
+  target_compile_options(surfcast_warnings INTERFACE -Wno-bitwise-instead-of-logical)
 endif()
 
 if(SURFCAST_SANITIZE)
@@ -54,7 +62,7 @@ endif()
 
 # surfcast_precompiled_headers(NAME HEADERS header... [LIBS lib...] [OPTIONS option...]) precompiles headers once, if
 # SURFCAST_PCH is on, for targets that are compiled with the same options. surfcast_use_precompiled_headers(TARGET NAME)
-# uses them. The sanitizer builds do so. The release build does not: in it, a source that lacks an include fails.
+# uses them. The build of the packages and clang-tidy do without: there, a source that lacks an include fails.
 function(surfcast_precompiled_headers name)
   if(NOT SURFCAST_PCH)
     return()
@@ -79,14 +87,28 @@ set(SURFCAST_COMMON_HEADERS
   <mutex> <optional> <span> <sstream> <string> <thread> <vector> <glm/glm.hpp> <tl/expected.hpp>)
 surfcast_precompiled_headers(surfcast_module_headers HEADERS ${SURFCAST_COMMON_HEADERS})
 
-# surfcast_io_bound(TARGET): TARGET reads options or waits for the network rather than computes. Debug builds do not
-# optimize it: with the sanitizers that halves the compile time of sources that instantiate Beast and CLI11.
+# surfcast_io_bound(TARGET): TARGET waits for the network or for disks rather than computes. Debug builds do not optimize
+# it: with the sanitizers that halves the compile time of sources that instantiate Beast.
 set(SURFCAST_IO_BOUND_OPTIONS $<$<CONFIG:Debug>:-O0>)
 surfcast_precompiled_headers(surfcast_io_bound_headers
   HEADERS ${SURFCAST_COMMON_HEADERS} OPTIONS ${SURFCAST_IO_BOUND_OPTIONS})
 function(surfcast_io_bound target)
   target_compile_options(${target} PRIVATE ${SURFCAST_IO_BOUND_OPTIONS})
   surfcast_use_precompiled_headers(${target} surfcast_io_bound_headers)
+endfunction()
+
+# surfcast_commands(TARGET): TARGET reads options by CLI11 and calls what they ask for. It runs once, so that less
+# optimization saves more compile time than it costs.
+find_package(CLI11 REQUIRED)
+find_package(nlohmann_json REQUIRED)
+set(SURFCAST_COMMAND_OPTIONS $<$<CONFIG:Debug>:-O0> $<$<CONFIG:Release>:-O1>)
+surfcast_precompiled_headers(surfcast_command_headers
+  HEADERS ${SURFCAST_COMMON_HEADERS} <CLI/CLI.hpp> <nlohmann/json.hpp>
+  LIBS CLI11::CLI11 nlohmann_json::nlohmann_json
+  OPTIONS ${SURFCAST_COMMAND_OPTIONS})
+function(surfcast_commands target)
+  target_compile_options(${target} PRIVATE ${SURFCAST_COMMAND_OPTIONS})
+  surfcast_use_precompiled_headers(${target} surfcast_command_headers)
 endfunction()
 
 # surfcast_headers(TARGET PUBLIC|INTERFACE NAME FOLDER)
@@ -101,20 +123,43 @@ function(surfcast_headers target scope name folder)
   target_include_directories(${target} ${scope} ${path})
 endfunction()
 
-# surfcast_module(NAME [IO_BOUND] [SOURCES file...] [PUBLIC lib...] [PRIVATE lib...])
+# surfcast_join_sources(TARGET): compiles several sources of TARGET together, if SURFCAST_JOIN is on. This halves the
+# compile time, because each header is read and each template instantiated once for all of them. The presets release,
+# asan-ubsan and tsan do so. The preset dev does not: in it, a change of one source compiles one source.
+function(surfcast_join_sources target)
+  if(SURFCAST_JOIN)
+    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
+    if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+      # It takes the unnamed namespaces of joined sources for those of headers.
+      target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
+    endif()
+  endif()
+endfunction()
+
+# surfcast_compile_alone(FILE...): these sources are never joined, because they share a name of an unnamed namespace with
+# another source of their target, or hide one.
+function(surfcast_compile_alone)
+  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+endfunction()
+
+# surfcast_module(NAME [IO_BOUND|COMMANDS] [SOURCES file...] [PUBLIC lib...] [PRIVATE lib...])
 # Each folder of server/ is one static library `surfcast_NAME` with the namespace surfcast::NAME, included as
 # "NAME/header.h". Without sources it is a header-only library. IO_BOUND: see surfcast_io_bound.
+# COMMANDS: see surfcast_commands.
 function(surfcast_module name)
-  cmake_parse_arguments(ARG "IO_BOUND" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "IO_BOUND;COMMANDS" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   if(ARG_SOURCES)
     add_library(surfcast_${name} STATIC ${ARG_SOURCES})
     surfcast_headers(surfcast_${name} PUBLIC ${name} ${CMAKE_CURRENT_SOURCE_DIR})
     target_link_libraries(surfcast_${name} PUBLIC ${ARG_PUBLIC} PRIVATE surfcast_warnings ${ARG_PRIVATE})
     if(ARG_IO_BOUND)
       surfcast_io_bound(surfcast_${name})
+    elseif(ARG_COMMANDS)
+      surfcast_commands(surfcast_${name})
     else()
       surfcast_use_precompiled_headers(surfcast_${name} surfcast_module_headers)
     endif()
+    surfcast_join_sources(surfcast_${name})
   else()
     add_library(surfcast_${name} INTERFACE)
     surfcast_headers(surfcast_${name} INTERFACE ${name} ${CMAKE_CURRENT_SOURCE_DIR})
@@ -151,6 +196,7 @@ function(surfcast_test name)
   # the usual optimization.
   target_compile_options(${name} PRIVATE ${SURFCAST_TEST_OPTIONS})
   surfcast_use_precompiled_headers(${name} surfcast_test_headers)
+  surfcast_join_sources(${name})
   if(NOT ARG_LABELS)
     set(ARG_LABELS unit)
   endif()

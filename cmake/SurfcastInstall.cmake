@@ -1,5 +1,5 @@
-# Destinations of `cmake --install` and of the packages. There are three components, each of which is also a Debian
-# package: server, client, view.
+# Destinations of `cmake --install` and of the packages. There are four components, each of which is also a Debian
+# package: server, client, view, python.
 include(GNUInstallDirs)
 find_program(GZIP_PROGRAM gzip REQUIRED)
 

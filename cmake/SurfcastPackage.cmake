@@ -1,4 +1,4 @@
-# `make package`: three Debian packages, one for each component.
+# `make package`: four Debian packages, one for each component.
 set(SURFCAST_MAINTAINER "The Surfcast authors <authors@surfcast.example>" CACHE STRING
   "Whom the packages name as their maintainer")
 set(packaging ${PROJECT_SOURCE_DIR}/cmake/packaging/debian)
@@ -13,8 +13,12 @@ set(components server client)
 if(SURFCAST_WINDOW)
   list(APPEND components view)
 endif()
+list(APPEND components ${surfcast_python_component})
 foreach(component IN LISTS components)
   set(folder ${CMAKE_INSTALL_DATADIR}/doc/surfcast-${component})
+  if(component STREQUAL "python")
+    set(folder ${CMAKE_INSTALL_DATADIR}/doc/python3-surfcast)
+  endif()
   install(FILES ${documents}/changelog.gz DESTINATION ${folder} COMPONENT ${component})
   if(component STREQUAL "server") # it contains the viewer, which includes third-party code
     install(FILES ${documents}/copyright DESTINATION ${folder} COMPONENT ${component})
@@ -58,6 +62,18 @@ set(CPACK_COMPONENT_VIEW_DESCRIPTION "window onto the models of a Surfcast serve
 Moves through large point scans that a server draws. It is started by
 `surfcast view`.")
 set(CPACK_DEBIAN_VIEW_PACKAGE_RECOMMENDS surfcast-client)
+
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-surfcast)
+set(CPACK_COMPONENT_PYTHON_DESCRIPTION "Python client of the Surfcast server
+Fetches pictures, views, picks and profiles of large point scans as arrays of
+numpy, shows them in notebooks, and compares pictures in tests.")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3 (>= 3.11), python3-numpy, python3-protobuf")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS python3-pil)
+# They compile the modules, because users may not write beside them.
+set(CPACK_DEBIAN_PYTHON_PACKAGE_CONTROL_EXTRA ${packaging}/python/postinst ${packaging}/python/prerm)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-websockets, python3-pytest, python3-ipykernel")
 
 # Executed by cpack.
 set(SURFCAST_VIEWER_PAGE ${surfcast_viewer_page})

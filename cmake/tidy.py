@@ -39,11 +39,25 @@ def without_precompiled_headers(command):
     return re.sub(r"-(Winvalid-pch|fpch-preprocess) ?", "", command)
 
 
+JOINED = re.compile(r'#include "(.*\.cpp)"')
+
+
+def separate_entries(database):
+    """The compile command of each source, also of those that CMake joined (surfcast_join_sources)."""
+    for entry in database:
+        if "/Unity/unity_" not in entry["file"]:
+            yield entry
+            continue
+        for source in JOINED.findall(pathlib.Path(entry["file"]).read_text()):
+            # The object stays that of the joined sources: Ninja knows it.
+            yield {**entry, "file": source, "command": entry["command"].replace(f"-c {entry['file']}", f"-c {source}")}
+
+
 def read_entries(build, folders):
     """The sources to check: file relative to the root, compile command, object file; and a database without others."""
     entries = {}
     checked = re.compile(rf"({folders})/.*\.cpp$")
-    for entry in json.loads((build / "compile_commands.json").read_text()):
+    for entry in separate_entries(json.loads((build / "compile_commands.json").read_text())):
         file = os.path.relpath(entry["file"], ROOT)
         if not checked.match(file):
             continue
@@ -98,8 +112,13 @@ def key_of(entry, tool, headers, fingerprints):
     if made_of is None:
         return None
     parts = [tool, command.replace(str(ROOT), "."), fingerprints.of(entry["file"])]
-    parts += sorted(fingerprints.of(name) for name in made_of if "cmake_pch" not in name)
+    parts += sorted(fingerprints.of(name) for name in made_of if "cmake_pch" not in name and not joined(name))
     return hashlib.sha256("\n".join(parts).encode()).hexdigest()
+
+
+def joined(name):
+    """Another source of those that were joined."""
+    return name.endswith((".cpp", ".cxx"))
 
 
 def order_of(files, seed):

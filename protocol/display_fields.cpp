@@ -13,10 +13,23 @@ namespace {
 
 using Numbers = std::vector<double>;
 
+/// The attributes that every ellipsoid has, or one by name.
+bool set_attribute(wire::DrawPicture& picture, std::string_view text) {
+  constexpr std::string_view kByName = "attribute:";
+  const bool by_name = text.starts_with(kByName);
+  if (by_name) text.remove_prefix(kByName.size());
+  if (text.empty() || text.size() > kMaxAttributeBytes) return false;
+  if (!by_name && text != "fa" && text != "mode" && text != "md") return false;
+  picture.mutable_coloring()->set_source(wire::COLOR_SOURCE_ATTRIBUTE);
+  picture.mutable_coloring()->set_attribute(std::string(text));
+  return true;
+}
+
 bool set_source(wire::DrawPicture& picture, std::string_view text) {
-  constexpr std::array<std::string_view, 5> kNames{"rgb", "intensity", "elevation", "classification", "normal"};
+  constexpr std::array<std::string_view, 7> kNames{"rgb",    "intensity", "elevation", "classification",
+                                                   "normal", "direction", "dec"};
   const auto found = std::find(kNames.begin(), kNames.end(), text);
-  if (found == kNames.end()) return false;
+  if (found == kNames.end()) return set_attribute(picture, text);
   picture.mutable_coloring()->set_source(static_cast<wire::ColorSource>(found - kNames.begin()));
   return true;
 }
@@ -56,6 +69,41 @@ bool set_hidden_classes(wire::DrawPicture& picture, std::string_view text) {
     codes.push_back(*code);
   }
   picture.mutable_hidden_classes()->Assign(codes.begin(), codes.end());
+  return true;
+}
+
+std::optional<double> parse_share(std::string_view text) {
+  const std::optional<double> value = parse_double(text);
+  return value && *value >= 0 && *value <= 1 ? value : std::nullopt;
+}
+
+bool set_class_opacities(wire::DrawPicture& picture, std::string_view text) {
+  google::protobuf::RepeatedPtrField<wire::ClassOpacity> classes;
+  for (const std::string_view part : split(text, ',')) {
+    const size_t equals = part.find('=');
+    if (equals == std::string_view::npos) return false;
+    const std::optional<uint32_t> code = parse_unsigned(part.substr(0, equals));
+    const std::optional<double> opacity = parse_share(part.substr(equals + 1));
+    if (!code || *code > kMaxClassCode || !opacity) return false;
+    wire::ClassOpacity* added = classes.Add();
+    added->set_code(*code);
+    added->set_opacity(*opacity);
+  }
+  picture.mutable_class_opacities()->Swap(&classes);
+  return true;
+}
+
+bool set_ghost(wire::DrawPicture& picture, std::string_view text) {
+  const std::optional<double> factor = parse_share(text);
+  if (factor) picture.set_ghost(*factor);
+  return factor.has_value();
+}
+
+bool set_xray(wire::DrawPicture& picture, std::string_view text) {
+  constexpr std::array<std::string_view, 3> kNames{"off", "sorted", "density"};
+  const auto found = std::find(kNames.begin(), kNames.end(), text);
+  if (found == kNames.end()) return false;
+  picture.set_xray(static_cast<wire::XRay>(found - kNames.begin()));
   return true;
 }
 
@@ -110,6 +158,9 @@ bool set_display_field(wire::DrawPicture& picture, std::string_view name, std::s
   if (name == "color_map") return set_map(picture, text);
   if (name == "color_range") return set_range(picture, text);
   if (name == "hide_classes") return set_hidden_classes(picture, text);
+  if (name == "opacity_by_class") return set_class_opacities(picture, text);
+  if (name == "ghost") return set_ghost(picture, text);
+  if (name == "xray") return set_xray(picture, text);
   if (name == "clip_box") return set_clip_boxes(picture, text, false);
   if (name == "clip_out") return set_clip_boxes(picture, text, true);
   return name == "eye_dome" && set_eye_dome(picture, text);

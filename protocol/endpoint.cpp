@@ -9,9 +9,11 @@ namespace {
 
 constexpr std::string_view kFramed = "tcp://";
 constexpr std::string_view kWebSocket = "ws://";
+constexpr std::string_view kEncryptedFramed = "tcps://";
+constexpr std::string_view kEncryptedWebSocket = "wss://";
 
 std::string_view scheme_of(std::string_view text) {
-  for (const std::string_view scheme : {kFramed, kWebSocket}) {
+  for (const std::string_view scheme : {kFramed, kWebSocket, kEncryptedFramed, kEncryptedWebSocket}) {
     if (text.starts_with(scheme)) return scheme;
   }
   return {};
@@ -35,7 +37,9 @@ Result<Endpoint> parse_endpoint(std::string_view text) {
     return wrong();
   }
   if (host.empty() || host.find('/') != std::string_view::npos || !port || *port > 65535) return wrong();
-  return Endpoint{std::string(host), static_cast<uint16_t>(*port), scheme == kWebSocket};
+  return Endpoint{std::string(host), static_cast<uint16_t>(*port),
+                  /*websocket=*/scheme == kWebSocket || scheme == kEncryptedWebSocket,
+                  /*encrypted=*/scheme == kEncryptedFramed || scheme == kEncryptedWebSocket};
 }
 
 std::string to_string(const Endpoint& endpoint) {

@@ -13,9 +13,11 @@ struct Endpoint {
   std::string host;  ///< name or address; without the brackets of IPv6
   uint16_t port = 0;
   bool websocket = false;  ///< connect by WebSocket; otherwise by the framed protocol over TCP
+  bool encrypted = false;  ///< through TLS
 };
 
-/// Parses "HOST:PORT", optionally with the prefix "tcp://" or "ws://". An IPv6 address must be in brackets.
+/// Parses "HOST:PORT", optionally with the prefix "tcp://" or "ws://", or "tcps://" or "wss://" for TLS. An IPv6
+/// address must be in brackets.
 Result<Endpoint> parse_endpoint(std::string_view text);
 /// "HOST:PORT" without a scheme; an IPv6 address is put in brackets.
 std::string to_string(const Endpoint& endpoint);

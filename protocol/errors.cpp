@@ -68,6 +68,7 @@ Error from_wire(const wire::Error& message) {
   for (const KindNames& names : kKinds) {
     if (names.code == message.code()) return {names.kind, clean_utf8(message.message())};
   }
+  if (message.code() == wire::ERROR_CODE_DENIED) return {ErrorKind::kInvalidInput, clean_utf8(message.message())};
   return {ErrorKind::kInternal, clean_utf8(message.message())};
 }
 

@@ -44,6 +44,8 @@ class FrameSplitter {
   /// The contents of the next complete frame; nothing while the frame is incomplete. After an error the stream is no
   /// longer usable.
   Result<std::optional<std::vector<std::byte>>> next();
+  /// Whether there are bytes that next() has not returned.
+  [[nodiscard]] bool begun() const { return start_ < buffer_.size(); }
 
  private:
   size_t limit_;

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "protocol/display_fields.h"
+#include "protocol/glyph_fields.h"
 #include "protocol/parse.h"
 #include "protocol/volume_fields.h"
 
@@ -32,10 +33,12 @@ constexpr std::array kFields{
     PictureField{"splat_convention", "splat-convention", "trained|exact",
                  "models of Gaussians as they were trained, or exact in perspective (default trained)"},
     PictureField{"background", "background", "R,G,B", "background colour, 0 to 255 each (default 0,0,0)"},
-    PictureField{"color_by", "color-by", "rgb|intensity|elevation|classification|normal",
-                 "property shown as colour (default rgb: the scanned colour)"},
+    PictureField{
+        "color_by", "color-by", "rgb|intensity|elevation|classification|normal|direction|dec|fa|mode|md|attribute:NAME",
+        "property shown as colour; from direction on, those of ellipsoids (default rgb: the scanned colour; of "
+        "tensors their direction)"},
     PictureField{"color_map", "color-map", "viridis|turbo|gray|terrain",
-                 "colour map of intensity and elevation (default viridis)"},
+                 "colour map of intensity, elevation and attributes of ellipsoids (default viridis)"},
     PictureField{"color_range", "color-range", "FIRST,LAST",
                  "values of the first and the last colour of the map (default: the model's range)"},
     PictureField{"hide_classes", "hide-classes", "CODE,CODE,...", "classification codes to hide, 0 to 255 each"},
@@ -52,6 +55,35 @@ constexpr std::array kFields{
         "in ascending order, with the opacity of one spacing of the grid; or on the command line a JSON file "
         "(default gray)"},
     PictureField{"shaded", "shaded", "on|off", "lighting of volumes (default off)"},
+    PictureField{"iso", "iso", "VALUE[,R,G,B[,OPACITY]];...",
+                 "surfaces of volumes where they have a value, lit (default colour light grey, opacity 1)", true},
+    PictureField{"slice", "slice", "X,Y,Z,NX,NY,NZ|i,INDEX|j,INDEX|k,INDEX;...",
+                 "planes through volumes in the colours of the transfer function: a point and a normal in world "
+                 "coordinates, or an index along an axis of the grid",
+                 true},
+    PictureField{"medium", "medium", "on|off",
+                 "show what the transfer function shows of volumes (default on; off with --iso or --slice and without "
+                 "--transfer)"},
+    PictureField{"opacity", "opacity", "FACTOR",
+                 "factor of the opacities of surfels, volumes, Gaussians and ellipsoids, 0 to 1 (default 1)"},
+    PictureField{"opacity_by_class", "opacity-by-class", "CODE=FACTOR,...",
+                 "factors of the opacities of surfels by classification code, 0 to 1 each"},
+    PictureField{"ghost", "ghost", "FACTOR",
+                 "factor of the opacities of surfels that clip boxes hide, 0 to 1 (default 0)"},
+    PictureField{"xray", "xray", "off|sorted|density",
+                 "surfels as in X-rays: thin where they are seen flat, or as a medium (default off)"},
+    PictureField{"glyph", "glyph", "ellipsoid|superquadric[,SHARPNESS]",
+                 "shape of the glyphs of tensors; sharpness of superquadrics, 0 to 10 (default ellipsoid; 3)"},
+    PictureField{"glyph_radius", "glyph-radius", "eigenvalue|root|unit",
+                 "semi-axes of glyphs: by eigenvalues, their roots, or divided by the largest (default eigenvalue)"},
+    PictureField{"glyph_scale", "glyph-scale", "LENGTH",
+                 "semi-axis of a glyph for a value (or root, or ratio) of 1, world units (default: by the model)"},
+    PictureField{"threshold", "threshold", "ATTRIBUTE,MIN[,MAX];...",
+                 "draw ellipsoids whose attribute lies in the range: fa, mode, md, or a column of the file", true},
+    PictureField{
+        "lights", "lights", "AMBIENT,SPECULAR,EXPONENT;X,Y,Z,POWER;...",
+        "lights on ellipsoids, by their directions: x right, y up, z forward; or on the command line a JSON file "
+        "(default: a headlight)"},
 };
 
 template <typename Enum>
@@ -189,7 +221,8 @@ bool set_by_name(wire::DrawPicture& picture, std::string_view name, std::string_
     return set_choice(kSplatConventions, text, [&](auto value) { picture.set_splat_convention(value); });
   }
   if (name == "background") return set_background(picture, text);
-  return set_display_field(picture, name, text) || set_volume_field(picture, name, text);
+  return set_display_field(picture, name, text) || set_volume_field(picture, name, text) ||
+         set_glyph_field(picture, name, text);
 }
 
 }  // namespace

@@ -10,6 +10,7 @@
 #include "base/contract.h"
 #include "base/mapped_file.h"
 #include "protocol/camera_path.h"
+#include "protocol/lights_file.h"
 #include "protocol/pick_result_text.h"
 #include "protocol/picture_fields.h"
 #include "protocol/transfer_file.h"
@@ -21,14 +22,19 @@ namespace {
 using nlohmann::json;
 
 /// Files are of the command line alone: a server does not open what a client names.
-bool names_transfer_file(std::string_view name, std::string_view text) {
-  return name == "transfer" && text.ends_with(".json");
+bool names_file(std::string_view name, std::string_view text) {
+  return (name == "transfer" || name == "lights") && text.ends_with(".json");
+}
+
+Status read_file(std::string_view name, const std::string& path, wire::DrawPicture& picture) {
+  if (name == "lights") return read_lights_file(path, *picture.mutable_lighting());
+  return read_transfer_file(path, *picture.mutable_transfer());
 }
 
 /// Checks a flag's value while the command line is parsed, so that an invalid value is a command line error. CLI11 puts
 /// the flag's name before the message, so the field name at its start is removed.
 std::string check_flag(std::string_view name, const std::string& text) {
-  if (names_transfer_file(name, text)) return {};
+  if (names_file(name, text)) return {};
   wire::DrawPicture scratch;
   const Status status = set_picture_field(scratch, name, text);
   if (status) return {};
@@ -199,8 +205,8 @@ Result<wire::DrawPicture> RequestFlags::request(std::string_view model, std::opt
   }
   for (const auto& [name, text] : values_) {
     if (text.empty()) continue;
-    const Status status = names_transfer_file(name, text) ? read_transfer_file(text, *picture.mutable_transfer())
-                                                          : set_picture_field(picture, name, text);
+    const Status status =
+        names_file(name, text) ? read_file(name, text, picture) : set_picture_field(picture, name, text);
     if (!status) return fail(status.error());
   }
   if (format) picture.set_format(*format);

@@ -33,14 +33,40 @@ bool read_color(const json& object, wire::Color& color) {
   return true;
 }
 
+/// Parts out of range are refused by check_picture.
+bool read_linear_color(const json& object, wire::Vector3& color) {
+  const json& parts = object["color_linear"];
+  if (!parts.is_array() || parts.size() != 3) return false;
+  for (const json& part : parts) {
+    if (!part.is_number()) return false;
+  }
+  color.set_x(parts[0].get<double>());
+  color.set_y(parts[1].get<double>());
+  color.set_z(parts[2].get<double>());
+  return true;
+}
+
+bool read_any_color(const json& object, wire::TransferPoint& point) {
+  if (object.contains("color_linear")) return read_linear_color(object, *point.mutable_color_linear());
+  return read_color(object, *point.mutable_color());
+}
+
 Status read_point(const json& object, wire::TransferPoint& point) {
-  const std::string wanted = "a point needs a value, a color of three numbers from 0 to 255, and an opacity";
+  const std::string wanted =
+      "a point needs a value, a color of three numbers from 0 to 255 (or a color_linear, from 0 to 1), and an "
+      "extinction "
+      "or an opacity";
   if (!object.is_object()) return invalid(wanted);
   const auto value = number_in(object, "value");
+  const auto extinction = number_in(object, "extinction");
   const auto opacity = number_in(object, "opacity");
-  if (!value || !opacity || !read_color(object, *point.mutable_color())) return invalid(wanted);
+  if (!value || !(extinction || opacity) || !read_any_color(object, point)) return invalid(wanted);
   point.set_value(*value);
-  point.set_opacity(*opacity);
+  if (extinction) {
+    point.set_extinction(*extinction);
+  } else {
+    point.set_opacity(*opacity);
+  }
   return {};
 }
 

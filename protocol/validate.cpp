@@ -66,6 +66,10 @@ Status check_numbers(const wire::DrawPicture& picture) {
 
 Status check_coloring(const wire::Coloring& coloring) {
   if (!wire::ColorSource_IsValid(coloring.source())) return invalid("color_by: unknown");
+  if (coloring.source() == wire::COLOR_SOURCE_ATTRIBUTE &&
+      (coloring.attribute().empty() || coloring.attribute().size() > kMaxAttributeBytes)) {
+    return invalid("color_by: an attribute must be named");
+  }
   if (!wire::ColorMap_IsValid(coloring.map())) return invalid("color_map: unknown");
   if (!std::isfinite(coloring.first()) || !std::isfinite(coloring.last())) {
     return invalid("color_range: must be finite numbers");
@@ -89,15 +93,57 @@ Status check_clip_boxes(const wire::DrawPicture& picture) {
   return {};
 }
 
+bool is_share(double value) {
+  return value >= 0 && value <= 1;
+}
+
+Status check_transfer_point(const wire::TransferPoint& point) {
+  const wire::Vector3& linear = point.color_linear();
+  if (!std::isfinite(point.value())) return invalid("transfer: values must be finite numbers");
+  if (!valid(point.color())) return invalid("transfer: each part of a colour must be at most 255");
+  if (!is_share(linear.x()) || !is_share(linear.y()) || !is_share(linear.z())) {
+    return invalid("transfer: each part of a linear colour must lie between 0 and 1");
+  }
+  if (!is_share(point.opacity())) return invalid("transfer: opacities must lie between 0 and 1");
+  if (!(point.extinction() >= 0) || !std::isfinite(point.extinction())) {
+    return invalid("transfer: extinctions must be finite numbers of at least 0");
+  }
+  return {};
+}
+
 Status check_transfer_points(const wire::TransferFunction& transfer) {
   if (transfer.points_size() > kMaxTransferPoints) return invalid("transfer: too many points");
   double before = -std::numeric_limits<double>::infinity();
   for (const wire::TransferPoint& point : transfer.points()) {
-    if (!std::isfinite(point.value())) return invalid("transfer: values must be finite numbers");
+    if (Status status = check_transfer_point(point); !status) return status;
     if (point.value() < before) return invalid("transfer: values must ascend");
-    if (!valid(point.color())) return invalid("transfer: each part of a colour must be at most 255");
-    if (!(point.opacity() >= 0 && point.opacity() <= 1)) return invalid("transfer: opacities must lie between 0 and 1");
     before = point.value();
+  }
+  return {};
+}
+
+Status check_iso_surfaces(const wire::DrawPicture& picture) {
+  if (picture.iso_surfaces_size() > kMaxIsoSurfaces) return invalid("iso: too many surfaces");
+  for (const wire::IsoSurface& surface : picture.iso_surfaces()) {
+    if (!std::isfinite(surface.value())) return invalid("iso: values must be finite numbers");
+    if (!valid(surface.color())) return invalid("iso: each part of a colour must be at most 255");
+    if (!is_share(surface.opacity())) return invalid("iso: opacities must lie between 0 and 1");
+  }
+  return {};
+}
+
+Status check_slices(const wire::DrawPicture& picture) {
+  if (picture.slices_size() > kMaxSlices) return invalid("slice: too many");
+  for (const wire::Slice& slice : picture.slices()) {
+    if (!wire::GridAxis_IsValid(slice.axis())) return invalid("slice: unknown axis");
+    if (slice.axis() != wire::GRID_AXIS_NONE) {
+      if (!std::isfinite(slice.index())) return invalid("slice: the index must be a finite number");
+      continue;
+    }
+    const wire::Vector3& n = slice.normal();
+    if (!finite(slice.point()) || !finite(n)) return invalid("slice: coordinates must be finite numbers");
+    const double length = std::hypot(n.x(), n.y(), n.z());
+    if (!(length > 0) || !std::isfinite(length)) return invalid("slice: the normal must have a length");
   }
   return {};
 }
@@ -111,7 +157,65 @@ Status check_volume_options(const wire::DrawPicture& picture) {
   if (transfer.has_first() && transfer.has_last() && !(transfer.first() < transfer.last())) {
     return invalid("transfer: the first value must be below the last");
   }
+  if (Status status = check_iso_surfaces(picture); !status) return status;
+  if (Status status = check_slices(picture); !status) return status;
+  if (!is_share(picture.opacity())) return invalid("opacity: must lie between 0 and 1");
   return check_transfer_points(transfer);
+}
+
+bool names_attribute(const std::string& name) {
+  return !name.empty() && name.size() <= kMaxAttributeBytes;
+}
+
+Status check_glyphs(const wire::Glyphs& glyphs) {
+  if (!wire::GlyphShape_IsValid(glyphs.shape())) return invalid("glyph: unknown shape");
+  if (!wire::GlyphRadius_IsValid(glyphs.radius())) return invalid("glyph_radius: unknown");
+  if (glyphs.has_scale() && !(glyphs.scale() > 0 && std::isfinite(glyphs.scale()))) {
+    return invalid("glyph_scale: must be a finite number above 0");
+  }
+  if (glyphs.has_sharpness() && !(glyphs.sharpness() >= 0 && glyphs.sharpness() <= kMaxSharpness)) {
+    return invalid("glyph: the sharpness must lie between 0 and 10");
+  }
+  if (glyphs.thresholds_size() > kMaxThresholds) return invalid("threshold: too many");
+  for (const wire::Threshold& threshold : glyphs.thresholds()) {
+    if (!names_attribute(threshold.attribute())) return invalid("threshold: an attribute must be named");
+    if (!std::isfinite(threshold.smallest()) || !std::isfinite(threshold.largest())) {
+      return invalid("threshold: must be finite numbers");
+    }
+    if (threshold.has_largest() && threshold.largest() < threshold.smallest()) {
+      return invalid("threshold: the smallest value must come first");
+    }
+  }
+  return {};
+}
+
+Status check_lighting(const wire::Lighting& lighting) {
+  const auto positive = [](double value) { return value >= 0 && std::isfinite(value); };
+  if (!positive(lighting.ambient()) || !positive(lighting.specular()) || !positive(lighting.exponent())) {
+    return invalid("lights: ambient, specular and exponent must be finite and at least 0");
+  }
+  if (lighting.lights_size() > kMaxLights) return invalid("lights: too many");
+  for (const wire::Light& light : lighting.lights()) {
+    const wire::Vector3& l = light.direction();
+    const double length = std::hypot(l.x(), l.y(), l.z());
+    if (!finite(l) || !(length > 0) || !std::isfinite(length)) return invalid("lights: a direction must have a length");
+    if (!positive(light.power())) return invalid("lights: powers must be finite and at least 0");
+  }
+  return {};
+}
+
+/// How surfels are seen through.
+Status check_opacities(const wire::DrawPicture& picture) {
+  if (picture.class_opacities_size() > static_cast<int>(kMaxClassCode) + 1) {
+    return invalid("opacity_by_class: too many classes");
+  }
+  for (const wire::ClassOpacity& of : picture.class_opacities()) {
+    if (of.code() > kMaxClassCode) return invalid("opacity_by_class: codes must be at most 255");
+    if (!is_share(of.opacity())) return invalid("opacity_by_class: factors must lie between 0 and 1");
+  }
+  if (!is_share(picture.ghost())) return invalid("ghost: must lie between 0 and 1");
+  if (!wire::XRay_IsValid(picture.xray())) return invalid("xray: unknown");
+  return {};
 }
 
 Status check_display_options(const wire::DrawPicture& picture) {
@@ -120,6 +224,7 @@ Status check_display_options(const wire::DrawPicture& picture) {
     if (code > kMaxClassCode) return invalid("hide_classes: codes must be at most 255");
   }
   if (Status status = check_clip_boxes(picture); !status) return status;
+  if (Status status = check_opacities(picture); !status) return status;
   const wire::EyeDomeLighting& eye_dome = picture.eye_dome();
   if (!(eye_dome.strength() >= 0 && eye_dome.strength() <= kMaxEyeDomeStrength)) {
     return invalid("eye_dome: the strength must lie between 0 and 100");
@@ -127,6 +232,8 @@ Status check_display_options(const wire::DrawPicture& picture) {
   if (!(eye_dome.radius() >= 0 && eye_dome.radius() <= kMaxEyeDomeRadius)) {
     return invalid("eye_dome: the radius must be at most 8 pixels");
   }
+  if (Status status = check_glyphs(picture.glyphs()); !status) return status;
+  if (Status status = check_lighting(picture.lighting()); !status) return status;
   return check_volume_options(picture);
 }
 

@@ -16,6 +16,12 @@ inline constexpr double kMaxEyeDomeStrength = 100;
 inline constexpr double kMaxEyeDomeRadius = 8;        ///< pixels
 inline constexpr double kDefaultEyeDomeRadius = 1.5;  ///< pixels
 inline constexpr int kMaxTransferPoints = 256;
+inline constexpr int kMaxIsoSurfaces = 8;
+inline constexpr int kMaxSlices = 8;
+inline constexpr size_t kMaxAttributeBytes = 255;
+inline constexpr int kMaxThresholds = 8;
+inline constexpr int kMaxLights = 64;
+inline constexpr double kMaxSharpness = 10;
 
 /// Checks a picture request as far as this is possible without the model and the device: numbers are finite and in
 /// range, enum values are known, the camera is complete. The server's limits (resolution) are not checked.

@@ -3,11 +3,16 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <vector>
 
 #include "protocol/parse.h"
 
 namespace surfcast::protocol {
 namespace {
+
+bool is_share(double value) {
+  return value >= 0 && value <= 1;
+}
 
 /// A part of a colour, 0 to 255.
 bool set_part(double value, uint32_t& part) {
@@ -16,29 +21,38 @@ bool set_part(double value, uint32_t& part) {
   return true;
 }
 
-bool add_point(wire::TransferFunction& transfer, std::string_view text) {
-  const auto values = parse_doubles(text, 5);
-  std::array<uint32_t, 3> color{};
-  if (!values) return false;
-  for (size_t i = 0; i < color.size(); ++i) {
-    if (!set_part((*values)[i + 1], color[i])) return false;
+/// A colour from three successive numbers, the first at `first`.
+bool set_color(const std::vector<double>& values, size_t first, wire::Color& color) {
+  std::array<uint32_t, 3> parts{};
+  for (size_t i = 0; i < parts.size(); ++i) {
+    if (!set_part(values[first + i], parts[i])) return false;
   }
-  wire::TransferPoint& point = *transfer.add_points();
+  color.set_red(parts[0]);
+  color.set_green(parts[1]);
+  color.set_blue(parts[2]);
+  return true;
+}
+
+bool set_point(wire::TransferPoint& point, std::string_view text) {
+  const auto values = parse_doubles(text, 5);
+  if (!values || !set_color(*values, 1, *point.mutable_color())) return false;
   point.set_value((*values)[0]);
-  point.mutable_color()->set_red(color[0]);
-  point.mutable_color()->set_green(color[1]);
-  point.mutable_color()->set_blue(color[2]);
   point.set_opacity((*values)[4]);
   return true;
 }
 
-bool add_points(wire::TransferFunction& transfer, std::string_view text) {
+/// Sets a list from a text with ';' between its members.
+template <typename Message, typename Setter>
+bool set_list(google::protobuf::RepeatedPtrField<Message>& list, std::string_view text, const Setter& set) {
+  google::protobuf::RepeatedPtrField<Message> members;
   while (true) {
     const size_t end = text.find(';');
-    if (!add_point(transfer, text.substr(0, end))) return false;
-    if (end == std::string_view::npos) return true;
+    if (!set(*members.Add(), text.substr(0, end))) return false;
+    if (end == std::string_view::npos) break;
     text.remove_prefix(end + 1);
   }
+  list.Swap(&members);
+  return true;
 }
 
 bool set_preset(wire::TransferFunction& transfer, std::string_view text) {
@@ -56,7 +70,7 @@ bool set_preset(wire::TransferFunction& transfer, std::string_view text) {
 
 bool set_transfer(wire::DrawPicture& picture, std::string_view text) {
   wire::TransferFunction transfer;
-  if (!set_preset(transfer, text) && !add_points(transfer, text)) return false;
+  if (!set_preset(transfer, text) && !set_list(*transfer.mutable_points(), text, set_point)) return false;
   *picture.mutable_transfer() = std::move(transfer);
   return true;
 }
@@ -64,6 +78,55 @@ bool set_transfer(wire::DrawPicture& picture, std::string_view text) {
 bool set_shaded(wire::DrawPicture& picture, std::string_view text) {
   if (text != "on" && text != "off") return false;
   picture.set_shaded(text == "on");
+  return true;
+}
+
+/// VALUE, VALUE,R,G,B or VALUE,R,G,B,OPACITY.
+bool set_iso_surface(wire::IsoSurface& surface, std::string_view text) {
+  const auto commas = static_cast<size_t>(std::count(text.begin(), text.end(), ','));
+  const auto values = parse_doubles(text, commas + 1);
+  if (!values || (commas != 0 && commas != 3 && commas != 4)) return false;
+  if (commas > 0 && !set_color(*values, 1, *surface.mutable_color())) return false;
+  surface.set_value((*values)[0]);
+  if (commas == 4) surface.set_opacity((*values)[4]);
+  return commas < 4 || is_share(surface.opacity());
+}
+
+bool set_slice_by_index(wire::Slice& slice, std::string_view text) {
+  constexpr std::string_view kAxes = "ijk";
+  const size_t axis = text.size() > 2 && text[1] == ',' ? kAxes.find(text[0]) : std::string_view::npos;
+  if (axis == std::string_view::npos) return false;
+  const auto index = parse_double(text.substr(2));
+  if (!index) return false;
+  slice.set_axis(static_cast<wire::GridAxis>(wire::GRID_AXIS_I + static_cast<int>(axis)));
+  slice.set_index(*index);
+  return true;
+}
+
+bool set_slice(wire::Slice& slice, std::string_view text) {
+  if (set_slice_by_index(slice, text)) return true;
+  const auto values = parse_doubles(text, 6);
+  if (!values) return false;
+  const auto set = [&values](wire::Vector3& vector, size_t first) {
+    vector.set_x((*values)[first]);
+    vector.set_y((*values)[first + 1]);
+    vector.set_z((*values)[first + 2]);
+  };
+  set(*slice.mutable_point(), 0);
+  set(*slice.mutable_normal(), 3);
+  return (*values)[3] != 0 || (*values)[4] != 0 || (*values)[5] != 0;
+}
+
+bool set_medium(wire::DrawPicture& picture, std::string_view text) {
+  if (text != "on" && text != "off") return false;
+  picture.set_medium(text == "on");
+  return true;
+}
+
+bool set_opacity(wire::DrawPicture& picture, std::string_view text) {
+  const auto value = parse_double(text);
+  if (!value || !is_share(*value)) return false;
+  picture.set_opacity(*value);
   return true;
 }
 
@@ -78,6 +141,10 @@ std::optional<wire::TransferPreset> parse_transfer_preset(std::string_view name)
 
 bool set_volume_field(wire::DrawPicture& picture, std::string_view name, std::string_view text) {
   if (name == "transfer") return set_transfer(picture, text);
+  if (name == "iso") return set_list(*picture.mutable_iso_surfaces(), text, set_iso_surface);
+  if (name == "slice") return set_list(*picture.mutable_slices(), text, set_slice);
+  if (name == "medium") return set_medium(picture, text);
+  if (name == "opacity") return set_opacity(picture, text);
   return name == "shaded" && set_shaded(picture, text);
 }
 

@@ -15,6 +15,9 @@
 #include "include/spacing.glsl"
 #include "include/splat_record.glsl"
 #include "include/surfel.glsl"
+#ifdef SURFCAST_TRANSPARENT
+#include "include/transparent_surfel.glsl"
+#endif
 
 layout(location = SURFCAST_UNIFORM_FIRST_GROUP) uniform uint first_group;
 layout(local_size_x = SURFCAST_PROJECT_LANES) in;
@@ -43,6 +46,9 @@ struct Surfel {
   float radius;
   float weight;
   uint color;
+#ifdef SURFCAST_TRANSPARENT
+  float opacity;
+#endif
 #ifdef SURFCAST_SCATTER
   bool scatter;
   vec3 lit_n;  // as n, but scatter has the estimated normal
@@ -70,6 +76,9 @@ float scatter_scale(Surfel s, float gain) {
 
 #include "include/splat_bounds.glsl"
 #include "include/tile_range.glsl"
+#ifdef SURFCAST_CURVED
+#include "curved/project.glsl"
+#endif
 
 void count_tiles(uvec2 range) {
   SplatBounds splat = unpack_bounds(range);
@@ -93,7 +102,11 @@ void append(bool large, uvec2 range, uvec4 a, uvec4 b, uvec4 disc, vec3 n) {
   if (large) slot = capacity - 1u - slot;
   imageStore(splats, int(2u * slot), a);
   imageStore(splats, int(2u * slot + 1u), b);
+#ifdef SURFCAST_TRANSPARENT
+  imageStore(discs, int(slot), disc);
+#else
   if (!large) imageStore(discs, int(slot), disc);
+#endif
   imageStore(bounds, int(slot), uvec4(range, 0u, 0u));
 #ifdef SURFCAST_LIT_COLOR
   imageStore(normals, int(slot), uvec4(pack_biased_normal(n), 0u, 0u, 0u));
@@ -156,13 +169,21 @@ void project_small(Surfel s, vec2 ray, vec2 centre, ScreenVariance v, float c) {
 
   float disc_radius = float(SURFCAST_VISIBILITY_RADIUS) * s.radius;
   ScreenVariance d = screen_variance(s.n, ray, frontal_deviation(disc_radius, s.o.z), frame.filter_.y);
+#ifdef SURFCAST_TRANSPARENT
+  float push = surface_depth(s.n, ray, s.radius) * footprints;
+#else
   float push = push_back(s.radius, s.o.z) * footprints;
+#endif
   float rise = depth_range / (1.0 - depth_range / eta());
   Disc disc = Disc(inverse_factor(d.s, d.det), push / (1.0 + push / eta()), splat.fall, rise, splat.weight);
   uvec4 pixels = pixels_with_samples(centre, v, c);
   SplatBounds reach = SplatBounds(range.xy / kTileSize, range.zw / kTileSize, pixels.xy, pixels.zw,
                                   level_at(nearest_of_small(v, c, splat, rise)), level_at(farthest_of_small(splat)));
-  append(false, pack_bounds(reach), a, b, encode_disc(disc), lit_normal(s));
+  uvec4 words = encode_disc(disc);
+#ifdef SURFCAST_TRANSPARENT
+  words.w = through_of(s.opacity, s.n, s.o, 1.0 / coverage_scale(v.gain));
+#endif
+  append(false, pack_bounds(reach), a, b, words, lit_normal(s));
 }
 
 // True if a disc that the eye plane cuts lies wholly behind the eye plane or beyond a side of the picture.
@@ -202,7 +223,11 @@ void project_large(Surfel s, bool reaches_eye_plane, float gain) {
   if (outside) return;
   uvec4 a, b;
   encode_large(LargeSplat(s.o, s.radius, s.n, s.weight * scatter_scale(s, gain), s.color), a, b);
-  append(true, range, a, b, uvec4(0u), lit_normal(s));
+  uvec4 words = uvec4(0u);
+#ifdef SURFCAST_TRANSPARENT
+  words.w = through_of(s.opacity, s.n, s.o, 1.0);
+#endif
+  append(true, range, a, b, words, lit_normal(s));
 }
 
 bool is_small(float sigma, float extent, float depth) {
@@ -278,19 +303,32 @@ bool has_wanted_spacing(uvec4 run, BlockView block, uint place, Surfel s) {
 void collect_if_drawn(uvec4 run, BlockView block, uint place) {
   int at = int(run.y + place);
   uvec4 texel = texelFetch(surfels, at);
-#ifdef SURFCAST_CLIPPED
+#if defined(SURFCAST_CLIPPED) && !defined(SURFCAST_GHOSTS)
   if (clipped_away(run.x, texel)) return;
 #endif
 #ifdef SURFCAST_HIDES_CLASSES
   if (class_hidden(at)) return;
+#endif
+#ifdef SURFCAST_TRANSPARENT
+  if (surfel_opacity(run.x, at, texel) <= 0.0) return;
 #endif
   bool away;
   Surfel s = placed_surfel(run, block, texel, away);
 #ifdef SURFCAST_SCATTER
   away = away && !s.scatter;  // scatter has no back
 #endif
+#ifdef SURFCAST_CURVED
+  bool bent = is_bent(s, shape_of(run, at));
+  away = away && !bent;  // what faces away is known of every place alone
+#endif
   if (away && frame.flags.x != 0) return;
   if (s.o.z + s.radius * 2.0 <= 0.0 || !has_wanted_spacing(run, block, place, s)) return;
+#ifdef SURFCAST_CURVED
+  if (bent) {
+    drawn[uint(SURFCAST_CHUNK - 1) - atomicAdd(other_count, 1u)] = place;
+    return;
+  }
+#endif
   if (is_surely_small(s)) {
     drawn[atomicAdd(small_count, 1u)] = place;
   } else {
@@ -303,6 +341,9 @@ Surfel drawn_surfel(uvec4 run, BlockView block, uint place) {
   uvec4 texel = texelFetch(surfels, at);
   bool away;
   Surfel s = placed_surfel(run, block, texel, away);
+#ifdef SURFCAST_TRANSPARENT
+  s.opacity = surfel_opacity(run.x, at, texel);
+#endif
   s.weight = frame.filter_.z * (frame.flags.y != 0 ? surfel_size(texel, block.scale).y : 1.0);
 #if defined(SURFCAST_COLOR_TABLE)
   s.color = table_color(run.x, at, texel);
@@ -318,6 +359,19 @@ Surfel drawn_surfel(uvec4 run, BlockView block, uint place) {
   return s;
 }
 
+void project_other(uvec4 run, BlockView block, uint place) {
+  Surfel s = drawn_surfel(run, block, place);
+#ifdef SURFCAST_CURVED
+  int at = int(run.y + place);
+  Shape shape = shape_of(run, at);
+  if (is_bent(s, shape)) {
+    project_bent(s, surfel_normal(texelFetch(surfels, at)), shape);
+    return;
+  }
+#endif
+  project(s);
+}
+
 void main() {
   const uint lanes = uint(SURFCAST_PROJECT_LANES);
   uint lane = gl_LocalInvocationID.x;
@@ -329,10 +383,15 @@ void main() {
   }
   barrier();
   uint count = run.z & SURFCAST_RUN_COUNT;
-  for (uint place = lane; place < count; place += lanes) collect_if_drawn(run, block, place);
+#ifdef SURFCAST_CURVED
+  uint texels = texels_of_surfel(run);
+#else
+  const uint texels = 1u;
+#endif
+  for (uint place = lane * texels; place < count; place += lanes * texels) collect_if_drawn(run, block, place);
   barrier();
   for (uint i = lane; i < small_count; i += lanes) project_surely_small(drawn_surfel(run, block, drawn[i]));
   for (uint i = lane; i < other_count; i += lanes) {
-    project(drawn_surfel(run, block, drawn[uint(SURFCAST_CHUNK - 1) - i]));
+    project_other(run, block, drawn[uint(SURFCAST_CHUNK - 1) - i]);
   }
 }

@@ -39,6 +39,10 @@ layout(std430, binding = SURFCAST_BIND_FRONTS) writeonly buffer Fronts { float f
 // (Eye-dome lighting looks at all surfaces of a pixel, even those that are hardly visible.)
 #define SURFCAST_LEAVES_TO_SAMPLES
 #endif
+#if SURFCAST_ROWS > 1 && !defined(SURFCAST_SELECTS) && !defined(SURFCAST_TOGETHER) && !defined(SURFCAST_BLENDS_BEHIND)
+// Lanes that hold a tile draw surfaces behind the first one from the entries that have fragments there.
+#define SURFCAST_MARKS
+#endif
 #include "include/draw_lane.glsl"
 #include "include/write_rows.glsl"
 
@@ -135,6 +139,13 @@ void main() {
 #ifdef SURFCAST_SELECTS
     state.front = draw_layer(state.tile, true, 0u, pixel, state.limit, state.light);
     hand_over_unfinished(state);
+#elif defined(SURFCAST_MARKS)
+    float peak;
+    bool more = draw_front(state.tile, pixel, state.limit, state.light, peak);
+    state.front = state.limit;
+    for (int layer = 1; more && layer < kMaxLayers; ++layer) {
+      more = draw_behind(state.tile, pixel, state.limit, state.light, peak);
+    }
 #else
     bool more = draw_layer(state.tile, state.layer, pixel, state.limit, state.light);
     if (state.layer == 0) state.front = state.limit;

@@ -15,19 +15,24 @@ const int kReach = SURFCAST_VOLUME_REACH;
 const float kWeights[kReach + 1] = float[](0.39894349, 0.24197148, 0.05399112, 0.00443187, 0.00013383);
 
 #ifdef SURFCAST_COLUMNS_OF_LIGHT
-layout(std430, binding = SURFCAST_BIND_VOLUME_ROWS) readonly buffer Rows { vec4 lights[]; };
+layout(binding = SURFCAST_UNIT_VOLUME_ROWS) uniform samplerBuffer lights;
+#include "include/srgb.glsl"
+#ifdef SURFCAST_CODES
+#include "gaussian/write_codes.glsl"
+#else
 #include "include/write_pixel.glsl"
+#endif
 #ifdef SURFCAST_LAYERS
 layout(std430, binding = SURFCAST_BIND_SURFACE_LIGHT) readonly buffer SurfaceLight { vec4 surface_lights[]; };
 #endif
 #else
-layout(std430, binding = SURFCAST_BIND_VOLUME_LIGHT) readonly buffer LightBuffer { vec4 lights[]; };
+layout(binding = SURFCAST_UNIT_VOLUME_LIGHT) uniform samplerBuffer lights;
 layout(std430, binding = SURFCAST_BIND_VOLUME_ROWS) writeonly buffer Rows { vec4 rows[]; };
 #endif
 
 vec4 filtered(int first, int step) {
   vec4 sum = vec4(0.0);
-  for (int i = -kReach; i <= kReach; ++i) sum += kWeights[abs(i)] * lights[first + (i + kReach) * step];
+  for (int i = -kReach; i <= kReach; ++i) sum += kWeights[abs(i)] * texelFetch(lights, first + (i + kReach) * step);
   return sum;
 }
 
@@ -40,7 +45,11 @@ void main() {
 #ifdef SURFCAST_LAYERS
   light += surface_lights[(at.y + kReach) * volume.light.z + at.x + kReach];  // filtered already
 #endif
+#ifdef SURFCAST_CODES
+  write_codes(at, light.rgb, 1.0 - light.a);
+#else
   write_pixel(at, light.rgb, 1.0 - light.a);
+#endif
 #else
   if (any(greaterThanEqual(at, volume.light.zw - ivec2(2 * kReach, 0)))) return;
   rows[at.y * width + at.x] = filtered(at.y * volume.light.z + at.x, 1);

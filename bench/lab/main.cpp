@@ -1,14 +1,13 @@
 // laboratory: draws a set of scenes with every method and measures their time and error; see --help.
 
 #include <CLI/CLI.hpp>
-#include <fstream>
-#include <sstream>
 
 #include "bench_support.h"
 #include "lab/export_scene.h"
 #include "lab/measure.h"
 #include "lab/plots.h"
 #include "lab/report.h"
+#include "lab/text_file.h"
 
 namespace surfcast::lab {
 namespace {
@@ -25,26 +24,14 @@ struct Options {
   fs::path exported;
 };
 
-std::string content_of(const fs::path& path) {
-  std::ostringstream text;
-  text << std::ifstream(path).rdbuf();
-  return text.str();
-}
-
-void write(const fs::path& path, const std::string& content) {
-  if (std::ofstream(path) << content) return;
-  std::fprintf(stderr, "%s: cannot be written\n", path.c_str());
-  std::exit(1);
-}
-
 /// Replaces the results in the documentation: the section of kResultsPage, laboratory.json and the plot.
 void write_docs(const LabResults& results, const fs::path& docs) {
   const fs::path page = docs / kResultsPage;
   const std::string text =
       bench::value_or_exit(with_section(content_of(page), kResultsBegin, kResultsEnd, markdown_of(results)));
-  write(page, text);
-  write(docs / "laboratory.json", json_of(results));
-  write(docs / "images" / "laboratory.svg", svg_of(results));
+  write_or_exit(page, text);
+  write_or_exit(docs / "laboratory.json", json_of(results));
+  write_or_exit(docs / "images" / "laboratory.svg", svg_of(results));
 }
 
 LabResults run(const Options& options) {
@@ -94,7 +81,7 @@ int main_of(int argc, char** argv) {
   if (options.scenes.empty()) options.scenes = lab_scene_names();
   const LabResults results = run(options);
   if (!options.docs.empty()) write_docs(results, options.docs);
-  if (!options.exported.empty()) write(options.exported / "laboratory.json", json_of(results));
+  if (!options.exported.empty()) write_or_exit(options.exported / "laboratory.json", json_of(results));
   return 0;
 }
 

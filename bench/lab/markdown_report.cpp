@@ -1,29 +1,11 @@
 #include <algorithm>
-#include <cmath>
-#include <cstdio>
 #include <functional>
 
+#include "lab/markdown_table.h"
 #include "lab/report.h"
 
 namespace surfcast::lab {
 namespace {
-
-std::string number(double value, int digits) {
-  if (std::isinf(value)) return "equal";
-  char text[32];
-  std::snprintf(text, sizeof text, "%.*f", digits, value);
-  return text;
-}
-
-std::string row(const std::vector<std::string>& cells) {
-  std::string line = "|";
-  for (const std::string& cell : cells) line += " " + cell + " |";
-  return line + "\n";
-}
-
-std::string header(const std::vector<std::string>& cells) {
-  return row(cells) + row(std::vector<std::string>(cells.size(), "---"));
-}
 
 using Cell = std::function<std::string(const SceneResult&, const Measurement&)>;
 

@@ -1,5 +1,6 @@
 #include "client/window/view_loop.h"
 
+#include <algorithm>
 #include <chrono>
 #include <glm/common.hpp>
 #include <optional>
@@ -59,6 +60,7 @@ class ViewLoop {
   [[nodiscard]] bool was_connected() const { return controls_.has_value(); }
 
  private:
+  Status open_view(client::ServerConnection& connection);
   Status step(client::View& view);
   Status send_update(client::View& view, bool moving);
   Status focus(client::View& view);
@@ -71,6 +73,8 @@ class ViewLoop {
   const client::ClientConfig& config_;
   Window& window_;
   std::optional<Controls> controls_;  ///< set with the first frame, which states the camera
+  std::string session_;               ///< of the last connection
+  std::optional<client::View> view_;  ///< its connection is gone while there is none
   Subject subject_;
   bool open_ = true;
   bool sent_moving_ = false;
@@ -93,18 +97,33 @@ wire::DrawPicture ViewLoop::picture() const {
 Status ViewLoop::poll_input() {
   Result<client::ServerConnection> connection = client::ServerConnection::open(request_.url.server, config_);
   if (!connection) return fail(connection.error());
+  if (Status status = open_view(*connection); !status) return status;
+  while (open_) {
+    if (Status status = step(*view_); !status) return status;
+  }
+  return {};
+}
+
+/// Goes on with the view of the former connection if the server has kept it.
+Status ViewLoop::open_view(client::ServerConnection& connection) {
+  Result<wire::Resumed> resumed = connection.resume(session_);
+  if (!resumed) return fail(resumed.error());
+  session_ = resumed->session();
+  const auto& views = resumed->views();
+  if (view_ && std::find(views.begin(), views.end(), view_->id()) != views.end()) {
+    view_->go_on(connection);
+    return send_update(*view_, sent_moving_);
+  }
   wire::Request describe;
   describe.mutable_describe_model()->set_model(request_.url.model);
-  const Result<wire::Answer> answer = connection->ask(std::move(describe));
+  const Result<wire::Answer> answer = connection.ask(std::move(describe));
   if (!answer) return fail(answer.error());
   subject_ = subject_of(answer->model_description());
   sent_width_ = window_.width();
   sent_height_ = window_.height();
-  Result<client::View> view = client::View::open(*connection, picture(), request_.target_fps);
+  Result<client::View> view = client::View::open(connection, picture(), request_.target_fps);
   if (!view) return fail(view.error());
-  while (open_) {
-    if (Status status = step(*view); !status) return status;
-  }
+  view_.emplace(std::move(*view));
   return {};
 }
 

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <utility>
 
+#include "builder/gaussian_sample.h"
 #include "builder/gaussian_tree.h"
 #include "gaussian/gaussian_format.h"
 #include "gaussian/gaussian_reader.h"
@@ -59,15 +60,17 @@ void raise_degree(gaussian::Gaussians& gaussians, int from, int to) {
   gaussians.harmonics = std::move(harmonics);
 }
 
-/// Calls `use` for all Gaussians, run by run.
+/// Calls `use` for all Gaussians, run by run, or for a sample of so many of each input.
 template <typename Use>
-Status for_each_run(Readers& readers, int degree, const Use& use) {
+Status for_each_run(Readers& readers, int degree, std::optional<uint64_t> sampled, const Use& use) {
   for (gaussian::GaussianReader& reader : readers) {
+    GaussianSample sample(reader.traits().count, sampled);
     reader.rewind();
     while (reader.position() < reader.traits().count) {
       Result<gaussian::Gaussians> run = reader.read(kRun);
       if (!run) return fail(std::move(run.error()));
       raise_degree(*run, reader.traits().degree, degree);
+      sample.thin(*run);
       if (Status status = use(*run); !status) return status;
     }
   }
@@ -81,9 +84,10 @@ int degree_of(const Readers& readers) {
 }
 
 /// Counts what is usable and finds its bounds.
-Result<geometry::Box> survey(Readers& readers, StageClock& clock, BuildReport& report) {
+Result<geometry::Box> survey(Readers& readers, std::optional<uint64_t> sampled, StageClock& clock,
+                             BuildReport& report) {
   geometry::Box box;
-  Status status = for_each_run(readers, degree_of(readers), [&](const gaussian::Gaussians& run) -> Status {
+  Status status = for_each_run(readers, degree_of(readers), sampled, [&](const gaussian::Gaussians& run) -> Status {
     for (const glm::dvec3& position : run.positions) box.include(position);
     report.gaussians += run.size();
     report.scan.points_read += run.size() + run.unusable;
@@ -122,41 +126,36 @@ bool holds_gaussians(const std::filesystem::path& input) {
   return file && gaussian::gaussian_format_of(*file, content).has_value();
 }
 
-Status build_gaussians(std::span<const std::filesystem::path> inputs, const std::filesystem::path& target,
-                       const BuildOptions& options, StageClock& clock, BuildReport& report) {
+Status build_gaussians(std::span<const std::filesystem::path> inputs, ModelOutput& output, const BuildOptions& options,
+                       StageClock& clock, BuildReport& report) {
   Result<Readers> readers = open_readers(inputs, report.memory_budget);
   if (!readers) return fail(std::move(readers.error()));
   if (Status status = check_alike(*readers, inputs); !status) return status;
   clock.begin("reading", runs_of(*readers));
-  const Result<geometry::Box> box = survey(*readers, clock, report);
+  for (const gaussian::GaussianReader& reader : *readers) report.points_in_scans += reader.traits().count;
+  const Result<geometry::Box> box = survey(*readers, options.sample, clock, report);
   if (!box) return fail(box.error());
   if (report.gaussians == 0) {
-    return fail(ErrorKind::kInvalidInput, target.string() + ": no usable Gaussian is left of the input");
+    return fail(ErrorKind::kInvalidInput, output.target().string() + ": no usable Gaussian is left of the input");
   }
   clock.know_points(report.gaussians);
   clock.begin("sorting", runs_of(*readers));
   const geometry::RootCube root = geometry::root_cube(*box);
   const gaussian::GaussianTraits& traits = readers->front().traits();
   const int degree = degree_of(*readers);
-  GaussianSorter sorter(target, root, degree, report.memory_budget / kSortingShare);
-  Status status = for_each_run(*readers, degree, [&](const gaussian::Gaussians& run) {
+  GaussianSorter sorter(output.target(), root, degree, report.memory_budget / kSortingShare);
+  Status status = for_each_run(*readers, degree, options.sample, [&](const gaussian::Gaussians& run) {
     clock.step();
     return sorter.add(run);
   });
   if (status) status = sorter.finish();
   if (!status) return status;
-  Result<model::ModelWriter> writer = model::ModelWriter::create(target, schema_of(*readers, inputs, options));
-  if (!writer) return fail(std::move(writer.error()));
+  const Result<model::ModelWriter*> writer = output.writer(schema_of(*readers, inputs, options));
+  if (!writer) return fail(writer.error());
   clock.begin("writing blocks", static_cast<size_t>(report.gaussians));
-  status = write_gaussian_tree(sorter, root, {degree, traits.antialiased, traits.flat}, *writer,
-                               [&clock](uint64_t count) { clock.step(count); });
-  if (!status) return status;
-  const Result<model::WriteReport> written = writer->finish();
-  if (!written) return fail(written.error());
-  report.parts = 1;
-  report.blocks = written->blocks;
-  report.bytes = written->bytes;
-  return {};
+  ++report.parts;
+  return write_gaussian_tree(sorter, root, {degree, traits.antialiased, traits.flat}, **writer,
+                             [&clock](uint64_t count) { clock.step(count); });
 }
 
 }  // namespace surfcast::builder

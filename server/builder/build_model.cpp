@@ -9,6 +9,7 @@
 
 #include <unistd.h>
 
+#include "builder/build_ellipsoids.h"
 #include "builder/build_gaussians.h"
 #include "builder/build_inputs.h"
 #include "builder/build_parts.h"
@@ -16,11 +17,14 @@
 #include "builder/cloud_columns.h"
 #include "builder/grid_input.h"
 #include "builder/memory_budget.h"
+#include "builder/model_output.h"
 #include "builder/ordered_work.h"
 #include "builder/stage_clock.h"
+#include "ellipsoid/ellipsoid_input.h"
 #include "ldc/subtree.h"
 #include "model/model_writer.h"
 #include "model/write_blocks.h"
+#include "surfel/curvature.h"
 #include "surfel/normalization_weights.h"
 
 namespace surfcast::builder {
@@ -103,8 +107,10 @@ void renumber(uint32_t first, ldc::Subtree& subtree) {
 /// Computes the weights of all surfels, makes the blocks and writes them, part by part.
 class ModelPass {
  public:
-  ModelPass(BuildParts& parts, model::ModelWriter& writer, const BuildOptions& options)
-      : parts_(parts), writer_(writer) {
+  /// `simplified`: the surfels of the only part, if they were simplified.
+  ModelPass(BuildParts& parts, model::ModelWriter& writer, const BuildOptions& options,
+            std::optional<BuildParts::Finished> simplified)
+      : parts_(parts), writer_(writer), simplified_(std::move(simplified)) {
     partition_.precision = options.precision;
   }
 
@@ -135,7 +141,7 @@ class ModelPass {
   };
 
   Result<Work> make_work(size_t part) {
-    Result<BuildParts::Finished> surfels = parts_.take(part);
+    Result<BuildParts::Finished> surfels = simplified_ ? std::move(*simplified_) : parts_.take(part);
     if (!surfels) return fail(std::move(surfels.error()));
     Work work{std::move(surfels->cloud), {}};
     work.cloud.weights = surfel::normalization_weights(work.cloud);
@@ -155,28 +161,83 @@ class ModelPass {
 
   BuildParts& parts_;
   model::ModelWriter& writer_;
+  std::optional<BuildParts::Finished> simplified_;
   ldc::PartitionOptions partition_;
   size_t blocks_ = 0;
   ldc::Front front_;
 };
 
-Result<model::WriteReport> write(const BuildInputs& inputs, BuildParts& parts, const MemoryPlan& memory,
-                                 const std::filesystem::path& target, const BuildOptions& options, StageClock& clock) {
-  const surfel::SurfelCloud common = common_cloud(inputs, parts.signs().oriented);
-  Result<model::ModelWriter> writer = model::ModelWriter::create(target, model::schema_of(common));
-  if (!writer) return fail(std::move(writer.error()));
-  ModelPass pass(parts, *writer, options);
-  if (Status status = pass.write_parts(memory, clock); !status) return fail(std::move(status.error()));
-  clock.begin("writing levels above", 1);
-  if (Status status = pass.write_levels_above(common); !status) return fail(std::move(status.error()));
-  return writer->finish();
+/// A patch may be as wide as the model: all samples have to be at hand.
+Status check_whole(const BuildParts& parts, const std::filesystem::path& target) {
+  if (parts.size() == 1) return {};
+  return fail(ErrorKind::kLimit, target.string() +
+                                     ": --simplify needs all points at once, and they do not fit into the "
+                                     "memory of the build; allow more with --memory");
 }
 
-/// Builds a model of surfels.
-Status build_surfels(std::span<const std::filesystem::path> inputs, const std::filesystem::path& target,
-                     const BuildOptions& options, StageClock& clock, BuildReport& report) {
+std::string describe(const simplify::SimplifyReport& report) {
+  return "not simplified, because " + report.reason;
+}
+
+/// The surfels of the only part, simplified.
+Result<BuildParts::Finished> simplify_whole(BuildParts& parts, const simplify::ErrorBound& bound, StageClock& clock,
+                                            BuildReport& report) {
+  clock.begin("simplifying", 1);
+  Result<BuildParts::Finished> surfels = parts.take(0);
+  if (!surfels) return surfels;
+  report.simplified = simplify::simplify(bound, surfels->cloud);
+  surfels->own = surfels->cloud.size();
+  if (!report.simplified->pays) report.scan.notes.push_back(describe(*report.simplified));
+  clock.step();
+  return surfels;
+}
+
+/// The properties of a model of these surfels.
+void take_properties(const surfel::SurfelCloud& cloud, surfel::SurfelCloud& common) {
+  common.estimated_normals = cloud.estimated_normals;
+  common.estimated_radii = cloud.estimated_radii;
+  if (!surfel::CurvatureColumns(cloud.scalars).empty()) surfel::add_curvature({}, common);
+}
+
+Status write(const BuildInputs& inputs, BuildParts& parts, const MemoryPlan& memory, ModelOutput& output,
+             const BuildOptions& options, StageClock& clock, BuildReport& report) {
+  surfel::SurfelCloud common = common_cloud(inputs, parts.signs().oriented);
+  std::optional<BuildParts::Finished> simplified;
+  if (options.simplify) {
+    if (Status status = check_whole(parts, output.target()); !status) return status;
+    Result<BuildParts::Finished> surfels = simplify_whole(parts, *options.simplify, clock, report);
+    if (!surfels) return fail(std::move(surfels.error()));
+    simplified = std::move(*surfels);
+    take_properties(simplified->cloud, common);
+  }
+  const Result<model::ModelWriter*> writer = output.writer(model::schema_of(common));
+  if (!writer) return fail(writer.error());
+  ModelPass pass(parts, **writer, options, std::move(simplified));
+  if (Status status = pass.write_parts(memory, clock); !status) return status;
+  clock.begin("writing levels above", 1);
+  return pass.write_levels_above(common);
+}
+
+/// Meshes become surfels, and scans are read, unless the options say otherwise.
+OpenInput opener(const BuildOptions& options, const std::filesystem::path& target, BuildReport& report) {
+  const OpenInput read = [&options](const std::filesystem::path& input, const scan::DecodingLimit& limit,
+                                    std::optional<uint64_t> sample) {
+    return scan::ScanStream::open(input, limit, sample, options.selection);
+  };
+  const OpenInput other = options.open ? options.open : read;
+  return [&options, &report, target, other](const std::filesystem::path& input, const scan::DecodingLimit& limit,
+                                            std::optional<uint64_t> sample) {
+    if (!is_mesh(input, options.meshes.faces)) return other(input, limit, sample);
+    return open_mesh(input, options.meshes, limit, sample, target, report.meshes);
+  };
+}
+
+/// Makes surfels of scans and adds their blocks to a model.
+Status build_surfels(std::span<const std::filesystem::path> inputs, ModelOutput& output, const BuildOptions& options,
+                     StageClock& clock, BuildReport& report) {
+  const std::filesystem::path& target = output.target();
   clock.begin("reading", inputs.size());
-  const OpenInput open = options.open ? options.open : OpenInput(scan::ScanStream::open);
+  const OpenInput open = opener(options, target, report);
   const Result<BuildInputs> opened = BuildInputs::open(inputs, open, options.z_up, report.memory_budget, options.sample,
                                                        [&clock](double) { clock.step(); });
   if (!opened) return fail(opened.error());
@@ -187,37 +248,81 @@ Status build_surfels(std::span<const std::filesystem::path> inputs, const std::f
   if (!memory) return fail(memory.error().kind, target.string() + ": " + memory.error().message);
   if (options.part_points) memory->split_into(*options.part_points);
   report.scan.notes = opened->notes();
+  for (const InputMesh& mesh : report.meshes) {
+    for (const std::string& note : mesh.report.notes) report.scan.notes.push_back(mesh.input + ": " + note);
+  }
   Result<BuildParts> parts = BuildParts::gather(*opened, *memory, target, clock, report.scan);
   if (!parts) return fail(std::move(parts.error()));
-  report.parts = parts->size();
+  report.parts += parts->size();
   Status made = parts->make_surfels(*memory, options.radii, clock, report.scan);
   if (!made) return made;
   report.radii = radii_of(*opened, *parts);
   note_unused_radii(options, report);
-  const Result<model::WriteReport> written = write(*opened, *parts, *memory, target, options, clock);
+  return write(*opened, *parts, *memory, output, options, clock, report);
+}
+
+/// The inputs of each kind, in their order.
+struct InputsByKind {
+  std::vector<std::filesystem::path> scans;
+  std::vector<std::filesystem::path> grids;
+  std::vector<std::filesystem::path> gaussians;
+  std::vector<std::filesystem::path> ellipsoids;
+
+  std::vector<std::filesystem::path>& of(InputKind kind) {
+    switch (kind) {
+      case InputKind::kGrid:
+        return grids;
+      case InputKind::kGaussians:
+        return gaussians;
+      case InputKind::kEllipsoids:
+        return ellipsoids;
+      case InputKind::kMesh:  // is read as a scan of its surfels
+      case InputKind::kScan:
+        break;
+    }
+    return scans;
+  }
+};
+
+InputKind kind_of(const std::filesystem::path& input, const BuildOptions& options) {
+  if (options.kind) return *options.kind;
+  // A file whose order of components is stated holds tensors.
+  if (ellipsoid::holds_ellipsoids(input, {options.tensor_order, {}, false, {}})) return InputKind::kEllipsoids;
+  const InputKind kind = kind_of_input(input);
+  return options.open && kind == InputKind::kGrid ? InputKind::kScan : kind;
+}
+
+InputsByKind by_kind(std::span<const std::filesystem::path> inputs, const BuildOptions& options) {
+  InputsByKind kinds;
+  for (const std::filesystem::path& input : inputs) kinds.of(kind_of(input, options)).push_back(input);
+  return kinds;
+}
+
+/// Finds errors of the headers of what is read last before anything is worked on.
+Status check_headers(const InputsByKind& inputs) {
+  for (const std::filesystem::path& grid : inputs.grids) {
+    if (const Result<GridInput> opened = GridInput::open(grid); !opened) return fail(opened.error());
+  }
+  return {};
+}
+
+/// Adds the inputs kind by kind: what one kind holds in memory is free before the next.
+Status build_kinds(const InputsByKind& inputs, ModelOutput& output, const BuildOptions& options, StageClock& clock,
+                   BuildReport& report) {
+  Status status = check_headers(inputs);
+  if (status && !inputs.scans.empty()) status = build_surfels(inputs.scans, output, options, clock, report);
+  if (status && !inputs.grids.empty()) status = build_volumes(inputs.grids, output, options, clock, report);
+  if (status && !inputs.gaussians.empty()) status = build_gaussians(inputs.gaussians, output, options, clock, report);
+  if (status && !inputs.ellipsoids.empty()) {
+    status = build_ellipsoids(inputs.ellipsoids, output, options, clock, report);
+  }
+  if (!status) return status;
+  const Result<model::WriteReport> written = output.finish();
   if (!written) return fail(written.error());
   report.surfels = written->surfels;
   report.blocks = written->blocks;
   report.bytes = written->bytes;
   return {};
-}
-
-/// A function that builds a model of one kind.
-using Build = Status (*)(std::span<const std::filesystem::path> inputs, const std::filesystem::path& target,
-                         const BuildOptions& options, StageClock& clock, BuildReport& report);
-
-/// The build for the kind of the inputs. Fails if they are of several kinds.
-Result<Build> build_for(std::span<const std::filesystem::path> inputs, const BuildOptions& options) {
-  if (options.open) return build_surfels;
-  const auto kind_of = [](const std::filesystem::path& input) -> Build {
-    if (is_grid(input)) return build_volumes;
-    return holds_gaussians(input) ? build_gaussians : build_surfels;
-  };
-  const Build first = kind_of(inputs.front());
-  const auto other = std::ranges::find_if(inputs, [&](const auto& input) { return kind_of(input) != first; });
-  if (other == inputs.end()) return first;
-  return fail(ErrorKind::kUnsupported, other->string() + ": is of another kind than " + inputs.front().string() +
-                                           "; scans, grids and Gaussians need a model each");
 }
 
 }  // namespace
@@ -230,12 +335,11 @@ Result<BuildReport> build_model(std::span<const std::filesystem::path> inputs, c
   const Result<uint64_t> budget = memory_budget(options.memory);
   if (!budget) return fail(budget.error().kind, target.string() + ": " + budget.error().message);
   report.memory_budget = *budget;
-  const Result<Build> build = build_for(inputs, options);
-  if (!build) return fail(build.error());
+  ModelOutput output(target);
   {
     StageClock clock(progress, report);
-    if (Status status = (*build)(inputs, target, options, clock, report); !status)
-      return fail(std::move(status.error()));
+    Status status = build_kinds(by_kind(inputs, options), output, options, clock, report);
+    if (!status) return fail(std::move(status.error()));
   }
   report.seconds = stopwatch.seconds();
   report.peak_memory = peak_resident_bytes();

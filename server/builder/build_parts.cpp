@@ -122,6 +122,8 @@ BuildParts::BuildParts(const BuildInputs& inputs, std::vector<Part> plan, const 
   for (const scan::ScanStream& stream : inputs.streams()) {
     sensors_.push_back(stream.schema().sensor);
     surface_steps_.push_back(stream.schema().surface_step);
+    exact_radii_.push_back(stream.schema().exact_radii);
+    two_sided_ = two_sided_ || stream.schema().two_sided;
     names_.push_back({stream.schema().name, stream.schema().grid});
   }
 }
@@ -209,16 +211,23 @@ BuildParts::Made BuildParts::make(PartPoints points, size_t part, scan::RadiusPo
     frame.sensors.push_back(sensors_[input]);
     frame.surface_steps.push_back(surface_steps_[input]);
   }
+  const bool keep = std::all_of(points.inputs.begin(), points.inputs.end(),
+                                [&](size_t input) { return policy_of(input, radii) == scan::RadiusPolicy::kKeep; });
   frame.inputs = std::move(points.inputs);
-  frame.radii = radii;
+  frame.radii = keep ? scan::RadiusPolicy::kKeep : radii;
   made.surfels = surfcast::scan::make_surfels(std::move(points.cloud), frame, made.signs, made.report);
   return made;
 }
 
+/// Exact radii are kept unless estimates are wanted.
+scan::RadiusPolicy BuildParts::policy_of(size_t input, scan::RadiusPolicy policy) const {
+  return exact_radii_[input] && policy == scan::RadiusPolicy::kAuto ? scan::RadiusPolicy::kKeep : policy;
+}
+
 void BuildParts::decide_radii(const std::vector<scan::RadiusComparison>& comparisons, scan::RadiusPolicy policy,
                               scan::SurfelReport& report) {
-  for (const scan::RadiusComparison& comparison : comparisons) {
-    radii_.push_back(scan::decide_radii(comparison, policy));
+  for (size_t input = 0; input < comparisons.size(); ++input) {
+    radii_.push_back(scan::decide_radii(comparisons[input], policy_of(input, policy)));
     report.radii_estimated += radii_.back().estimated();
     report.scatter += radii_.back().scatter();
   }
@@ -252,6 +261,7 @@ Status BuildParts::make_surfels(const MemoryPlan& memory, scan::RadiusPolicy rad
   });
   if (!status) return status;
   signs_ = scan::resolve_signs(signs, scene_);
+  signs_.oriented = signs_.oriented && !two_sided_;
   report.oriented = signs_.oriented;
   decide_radii(comparisons, radii, report);
   spacing_.emplace(std::move(samples), bounds_);

@@ -61,6 +61,7 @@ class BuildParts {
                StageClock& clock, scan::SurfelReport& report);
   Status collect(const BuildInputs& inputs, StageClock& clock, scan::SurfelReport& report);
   [[nodiscard]] Made make(PartPoints points, size_t part, scan::RadiusPolicy radii) const;
+  [[nodiscard]] scan::RadiusPolicy policy_of(size_t input, scan::RadiusPolicy policy) const;
   void decide_radii(const std::vector<scan::RadiusComparison>& comparisons, scan::RadiusPolicy policy,
                     scan::SurfelReport& report);
 
@@ -70,6 +71,8 @@ class BuildParts {
   geometry::RootCube root_;
   std::vector<std::optional<glm::dvec3>> sensors_;    ///< for each input
   std::vector<std::optional<double>> surface_steps_;  ///< for each input, see ScanSchema
+  std::vector<bool> exact_radii_;                     ///< for each input, see ScanSchema
+  bool two_sided_ = false;                            ///< of some input
   std::vector<InputName> names_;
   std::vector<Part> plan_;
   PartFinder finder_;

@@ -26,10 +26,10 @@ Status check_memory(const std::vector<GridInput>& inputs, const std::filesystem:
                                      " is too small for these grids: it takes at least " + mebibytes(kReserve + most));
 }
 
-Result<std::vector<GridInput>> open_all(std::span<const std::filesystem::path> paths) {
+Result<std::vector<GridInput>> open_all(std::span<const std::filesystem::path> paths, std::optional<uint64_t> sample) {
   std::vector<GridInput> inputs;
   for (const std::filesystem::path& path : paths) {
-    Result<GridInput> input = GridInput::open(path);
+    Result<GridInput> input = GridInput::open(path, sample);
     if (!input) return fail(std::move(input.error()));
     inputs.push_back(std::move(*input));
   }
@@ -62,29 +62,28 @@ model::ModelSchema schema_of(std::span<const std::filesystem::path> paths, const
 
 }  // namespace
 
-Status build_volumes(std::span<const std::filesystem::path> paths, const std::filesystem::path& target,
-                     const BuildOptions& options, StageClock& clock, BuildReport& report) {
-  Result<std::vector<GridInput>> inputs = open_all(paths);
+Status build_volumes(std::span<const std::filesystem::path> paths, ModelOutput& output, const BuildOptions& options,
+                     StageClock& clock, BuildReport& report) {
+  Result<std::vector<GridInput>> inputs = open_all(paths, options.sample);
   if (!inputs) return fail(std::move(inputs.error()));
-  if (Status status = check_memory(*inputs, target, report.memory_budget); !status) return status;
-  for (const GridInput& input : *inputs) report.samples += input.volume().samples();
+  if (Status status = check_memory(*inputs, output.target(), report.memory_budget); !status) return status;
+  for (const GridInput& input : *inputs) {
+    report.samples += input.volume().samples();
+    report.points_in_scans += input.samples_of_file();
+  }
   clock.know_points(report.samples);
   if (Status status = measure_all(*inputs, clock, report); !status) return status;
-  Result<model::ModelWriter> writer = model::ModelWriter::create(target, schema_of(paths, options));
-  if (!writer) return fail(std::move(writer.error()));
+  const Result<model::ModelWriter*> writer = output.writer(schema_of(paths, options));
+  if (!writer) return fail(writer.error());
   clock.begin("writing bricks", planes_of(*inputs));
   std::vector<model::Volume> volumes;
   for (GridInput& input : *inputs) {
     const auto number = static_cast<uint32_t>(volumes.size());
-    if (Status status = write_volume(input, number, *writer, clock); !status) return status;
+    if (Status status = write_volume(input, number, **writer, clock); !status) return status;
     volumes.push_back(input.volume());
   }
-  writer->set_volumes(std::move(volumes));
-  const Result<model::WriteReport> written = writer->finish();
-  if (!written) return fail(written.error());
-  report.blocks = written->blocks;
-  report.bytes = written->bytes;
-  report.parts = inputs->size();
+  (*writer)->set_volumes(std::move(volumes));
+  report.parts += inputs->size();
   return {};
 }
 

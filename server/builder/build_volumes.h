@@ -5,13 +5,14 @@
 
 #include "base/result.h"
 #include "builder/build_model.h"
+#include "builder/model_output.h"
 #include "builder/stage_clock.h"
 
 namespace surfcast::builder {
 
-/// Makes a volume of each grid and writes them into one model file. Memory depends on the size of their planes.
+/// Makes a volume of each grid and adds its bricks to a model. Memory depends on the size of their planes.
 /// `report` has the budget; the rest of it is filled in.
-Status build_volumes(std::span<const std::filesystem::path> inputs, const std::filesystem::path& target,
-                     const BuildOptions& options, StageClock& clock, BuildReport& report);
+Status build_volumes(std::span<const std::filesystem::path> inputs, ModelOutput& output, const BuildOptions& options,
+                     StageClock& clock, BuildReport& report);
 
 }  // namespace surfcast::builder

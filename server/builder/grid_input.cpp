@@ -14,11 +14,29 @@ namespace {
 /// Samples read at a time.
 constexpr size_t kPart = size_t{1} << 14;
 
-model::Volume volume_of(const grid::GridHeader& header, const std::filesystem::path& path) {
+/// Samples along an axis, if one of so many is taken.
+uint64_t taken_of(uint64_t samples, uint64_t stride) {
+  return (samples + stride - 1) / stride;
+}
+
+/// The smallest stride that leaves at most so many samples. Beyond the longest axis one is left.
+uint64_t stride_for(const grid::GridHeader& header, uint64_t most) {
+  const auto left = [&](uint64_t stride) {
+    return taken_of(header.size[0], stride) * taken_of(header.size[1], stride) * taken_of(header.size[2], stride);
+  };
+  uint64_t stride = 1;
+  while (left(stride) > std::max<uint64_t>(most, 1)) ++stride;
+  return stride;
+}
+
+model::Volume volume_of(const grid::GridHeader& header, const std::filesystem::path& path, uint64_t stride) {
   model::Volume volume;
   volume.name = header.name.empty() ? path.stem().string() : header.name;
-  for (int axis = 0; axis < 3; ++axis) volume.size[axis] = static_cast<uint32_t>(header.size[axis]);
   volume.index_to_world = header.index_to_world;
+  for (int axis = 0; axis < 3; ++axis) {
+    volume.size[axis] = static_cast<uint32_t>(taken_of(header.size[axis], stride));
+    volume.index_to_world[axis] *= static_cast<double>(stride);
+  }
   volume.frame = static_cast<model::WorldFrame>(header.frame);  // the same enumerators
   volume.length_unit = header.length_unit;
   volume.sample_unit = header.sample_unit;
@@ -40,18 +58,20 @@ bool is_grid(const std::filesystem::path& path) {
   return file && !(*file)->bytes().empty() && grid::grid_format_of(*file).has_value();
 }
 
-GridInput::GridInput(std::filesystem::path path, grid::GridReader reader)
-    : path_(std::move(path)), reader_(std::move(reader)), volume_(volume_of(reader_.header(), path_)) {}
+GridInput::GridInput(std::filesystem::path path, grid::GridReader reader, uint64_t stride)
+    : path_(std::move(path)),
+      reader_(std::move(reader)),
+      stride_(stride),
+      volume_(volume_of(reader_.header(), path_, stride)) {}
 
 Status GridInput::failed(ErrorKind kind, const std::string& what) const {
   return fail(kind, path_.string() + ": " + what);
 }
 
-Result<GridInput> GridInput::open(const std::filesystem::path& path) {
+Result<GridInput> GridInput::open(const std::filesystem::path& path, std::optional<uint64_t> sample) {
   Result<grid::GridReader> reader = grid::GridReader::open(path);
   if (!reader) return fail(std::move(reader.error()));
-  GridInput input(path, std::move(*reader));
-  const grid::GridHeader& header = input.header();
+  const grid::GridHeader& header = reader->header();
   if (header.components() > 1) {
     return fail(ErrorKind::kUnsupported, path.string() + ": holds tensors of " + std::to_string(header.components()) +
                                              " components; volumes are made of grids with one number a sample");
@@ -62,11 +82,45 @@ Result<GridInput> GridInput::open(const std::filesystem::path& path) {
                                        " samples along an axis; a volume has at most " +
                                        std::to_string(model::kMaxAxisSamples));
   }
-  return input;
+  const uint64_t stride = sample ? stride_for(header, *sample) : 1;
+  return GridInput(path, std::move(*reader), stride);
 }
 
 bool GridInput::needs_doubles() const {
   return header().type != scan::ScalarType::kFloat32 && scan::size_of(header().type) > 2;
+}
+
+Status GridInput::rewind() {
+  column_ = row_.size();
+  next_row_ = 0;
+  return reader_.seek(0);
+}
+
+/// Reads the row that the volume has next, and keeps every few of its samples.
+Status GridInput::read_row() {
+  const auto& [width, height, depth] = header().size;
+  const uint64_t j = next_row_ % volume_.size.y;
+  const uint64_t k = next_row_ / volume_.size.y;
+  if (Status status = reader_.seek((k * height + j) * stride_ * width); !status) return status;
+  row_.resize(width);
+  if (Status status = reader_.read(row_); !status) return status;
+  for (size_t i = 0; i < volume_.size.x; ++i) row_[i] = row_[i * stride_];
+  row_.resize(volume_.size.x);
+  column_ = 0;
+  ++next_row_;
+  return {};
+}
+
+/// The next samples of the volume.
+Status GridInput::read_next(std::span<double> samples) {
+  if (stride_ == 1) return reader_.read(samples);
+  for (double& sample : samples) {
+    if (column_ == row_.size()) {
+      if (Status status = read_row(); !status) return status;
+    }
+    sample = row_[column_++];
+  }
+  return {};
 }
 
 Status GridInput::measure(const std::function<void()>& plane_done) {
@@ -78,7 +132,7 @@ Status GridInput::measure(const std::function<void()>& plane_done) {
     // Parts end where planes end.
     const uint64_t of_plane = (left - 1) % plane + 1;
     const std::span part = std::span(buffer).first(std::min<uint64_t>(of_plane, kPart));
-    if (Status status = reader_.read(part); !status) return status;
+    if (Status status = read_next(part); !status) return status;
     for (const double sample : part) {
       if (!std::isfinite(sample)) {
         ++not_finite_;
@@ -99,7 +153,7 @@ Status GridInput::measure(const std::function<void()>& plane_done) {
   }
   volume_.low = low;
   volume_.high = high;
-  return reader_.seek(0);
+  return rewind();
 }
 
 void GridInput::count(std::span<const double> samples) {
@@ -112,7 +166,7 @@ void GridInput::count(std::span<const double> samples) {
 }
 
 Status GridInput::read_part(std::span<double> samples) {
-  if (Status status = reader_.read(samples); !status) return status;
+  if (Status status = read_next(samples); !status) return status;
   const double lowest = header().slope > 0 ? low_ : high_;
   if (not_finite_ > 0) {
     std::ranges::replace_if(

@@ -3,8 +3,10 @@
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
+#include <vector>
 
 #include "base/result.h"
 #include "grid/grid_reader.h"
@@ -18,7 +20,8 @@ namespace surfcast::builder {
 /// A regular grid with one number a sample, as the source of a volume. All errors name the file.
 class GridInput {
  public:
-  static Result<GridInput> open(const std::filesystem::path& path);
+  /// With `sample`, every kth sample along each axis alone, so many that they are at most that number: a preview.
+  static Result<GridInput> open(const std::filesystem::path& path, std::optional<uint64_t> sample = {});
 
   /// Reads all samples for the range of values. Calls `plane_done` after each plane.
   Status measure(const std::function<void()>& plane_done);
@@ -30,6 +33,8 @@ class GridInput {
   [[nodiscard]] uint64_t not_finite() const { return not_finite_; }
   /// True if all finite samples are integers, of whatever type. Known after measure().
   [[nodiscard]] bool integral() const { return integral_; }
+  /// Samples of the file, which are more than those of the volume if only every few of them are read.
+  [[nodiscard]] uint64_t samples_of_file() const { return header().samples(); }
   /// True if a float cannot hold all samples exactly.
   [[nodiscard]] bool needs_doubles() const;
 
@@ -38,13 +43,20 @@ class GridInput {
   Status read_plane(std::span<Sample> samples);
 
  private:
-  GridInput(std::filesystem::path path, grid::GridReader reader);
+  GridInput(std::filesystem::path path, grid::GridReader reader, uint64_t stride);
+  Status read_next(std::span<double> samples);
+  Status read_row();
+  Status rewind();
   Status read_part(std::span<double> samples);
   [[nodiscard]] Status failed(ErrorKind kind, const std::string& what) const;
   void count(std::span<const double> samples);
 
   std::filesystem::path path_;
   grid::GridReader reader_;
+  const uint64_t stride_;    ///< one of so many samples along each axis is read
+  std::vector<double> row_;  ///< of the volume, the last one that was read; empty if all samples are
+  size_t column_ = 0;        ///< the next sample of it
+  uint64_t next_row_ = 0;
   model::Volume volume_;
   double low_ = 0;  ///< of the samples
   double high_ = 0;

@@ -10,6 +10,7 @@
 #include <functional>
 #include <iostream>
 #include <limits>
+#include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -30,7 +31,10 @@
 #include "builder/memory_budget.h"
 #include "cmd/build_progress.h"
 #include "cmd/iso_flag.h"
+#include "cmd/mesh_flags.h"
 #include "cmd/radius_flag.h"
+#include "cmd/selection_flags.h"
+#include "cmd/simplify_flag.h"
 #include "isosurface/surface_inputs.h"
 
 namespace surfcast::cmd {
@@ -45,10 +49,15 @@ struct BuildCommand {
   scan::RadiusPolicy radii = scan::RadiusPolicy::kAuto;
   std::filesystem::path report;
   std::optional<uint64_t> sample;
+  scan::Selection selection;
+  std::optional<simplify::ErrorBound> simplify;
   size_t threads = 0;  ///< 0: one a core
   std::string progress = "auto";
   bool background = false;
   std::vector<isosurface::IsoSurface> surfaces;  ///< of grids among the inputs
+  std::optional<builder::InputKind> kind;
+  std::optional<grid::TensorOrder> tensor_order;
+  builder::MeshOptions meshes;
 };
 
 /// A share of the processors that a build gets by itself, points a second and processor: by the processor time of 10^7
@@ -76,6 +85,19 @@ Status go_into_background(bool sample) {
 
 std::string figures(const builder::BuildReport& report) {
   const double peak = static_cast<double>(report.peak_memory) / (1024.0 * 1024.0);
+  const uint64_t ellipsoids = report.drawn_ellipsoids();
+  if ((report.samples > 0) + (report.gaussians > 0) + (report.surfels > 0) + (ellipsoids > 0) > 1) {
+    return fmt::format(
+        "{} surfels, {} samples, {} Gaussians, {}{} blocks, {} bytes, {:.2f} s, {:.0f} MiB peak memory\n",
+        report.surfels, report.samples, report.gaussians,
+        ellipsoids > 0 ? fmt::format("{} ellipsoids, ", ellipsoids) : "", report.blocks, report.bytes, report.seconds,
+        peak);
+  }
+  if (ellipsoids > 0) {
+    return fmt::format("{} samples read, {} ellipsoids, {} bytes, {:.2f} s, {:.0f} samples/s, {:.0f} MiB peak memory\n",
+                       report.scan.points_read, ellipsoids, report.bytes, report.seconds, report.points_per_second(),
+                       peak);
+  }
   if (report.samples > 0) {
     return fmt::format("{} samples read, {} blocks, {} bytes, {:.2f} s, {:.0f} samples/s, {:.0f} MiB peak memory\n",
                        report.samples, report.blocks, report.bytes, report.seconds, report.samples_per_second(), peak);
@@ -114,11 +136,68 @@ nlohmann::ordered_json to_json(const std::vector<isosurface::InputSurfaces>& inp
   return json;
 }
 
+/// What became of the meshes.
+std::string mesh_lines(const std::vector<builder::InputMesh>& meshes) {
+  std::string lines;
+  for (const auto& [input, mesh] : meshes) {
+    lines += fmt::format("{}: {} triangles, {} surfels", input, mesh.triangles, mesh.surfels);
+    if (mesh.texels > 0) lines += fmt::format(", {:.0f} texels", mesh.texels);
+    lines += "\n";
+  }
+  return lines;
+}
+
+nlohmann::ordered_json to_json(const std::vector<builder::InputMesh>& meshes) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const auto& [input, mesh] : meshes) {
+    json.push_back({{"input", input},
+                    {"triangles", mesh.triangles},
+                    {"surfels", mesh.surfels},
+                    {"textured_surfels", mesh.textured},
+                    {"texels", mesh.texels},
+                    {"texels_per_surfel", mesh.textured > 0 ? mesh.texels / static_cast<double>(mesh.textured) : 0.0},
+                    {"masked", mesh.masked},
+                    {"images", mesh.images},
+                    {"images_missing", mesh.images_missing},
+                    {"two_sided", mesh.two_sided}});
+  }
+  return json;
+}
+
+/// What a simplified model is, and its errors.
+std::string simplify_lines(const BuildCommand& command, const builder::BuildReport& report) {
+  if (!command.simplify || !report.simplified || !report.simplified->pays) return {};
+  const simplify::SimplifyReport& s = *report.simplified;
+  const std::string height = command.simplify->height ? fmt::format("height within {}", *command.simplify->height)
+                                                      : fmt::format("height within {} times the angle and the distance",
+                                                                    simplify::kHeightPerAngle);
+  return fmt::format(
+      "{} points simplified to {} surfels, {} with curvature, {} that no surface fits; asked for: nine in "
+      "ten normals of a surfel within {} degrees, {}; largest: {:.3g} degrees, height {:.3g}\n",
+      s.samples, s.points, s.curved, s.kept, command.simplify->degrees, height, s.degrees, s.height);
+}
+
+nlohmann::ordered_json to_json(const simplify::ErrorBound& bound, const simplify::SimplifyReport& s) {
+  nlohmann::ordered_json json{{"bound_degrees", bound.degrees},
+                              {"points", s.samples},
+                              {"surfels", s.points},
+                              {"curved", s.curved},
+                              {"kept", s.kept},
+                              {"degrees", s.degrees},
+                              {"height", s.height},
+                              {"simplified", s.pays}};
+  if (bound.height) json["bound_height"] = *bound.height;
+  if (!s.pays) json["reason"] = s.reason;
+  return json;
+}
+
 /// What became of the radii of each input, beside those that the notes name.
 std::string radii_lines(const builder::BuildReport& report) {
   std::string lines;
   for (const auto& [input, decision] : report.radii) {
-    if (decision.outcome == scan::RadiusOutcome::kEstimated) continue;
+    const bool of_mesh = std::any_of(report.meshes.begin(), report.meshes.end(),
+                                     [&name = input](const builder::InputMesh& mesh) { return mesh.input == name; });
+    if (of_mesh || decision.outcome == scan::RadiusOutcome::kEstimated) continue;
     lines += fmt::format("{}: {}\n", input, scan::describe(decision));
   }
   return lines;
@@ -137,6 +216,12 @@ nlohmann::ordered_json to_json(const builder::InputRadii& radii) {
   }
   if (decision.outcome == scan::RadiusOutcome::kScaled) json["factor"] = decision.factor;
   return json;
+}
+
+nlohmann::ordered_json to_json(const builder::InputEllipsoids& input) {
+  const model::EllipsoidCounts& counts = input.counts;
+  return {{"input", input.input},    {"samples", counts.samples},       {"drawn", counts.drawn},
+          {"masked", counts.masked}, {"not_finite", counts.not_finite}, {"not_positive", counts.not_positive}};
 }
 
 std::string to_json(const BuildCommand& command, const builder::BuildReport& report,
@@ -173,6 +258,9 @@ std::string to_json(const BuildCommand& command, const builder::BuildReport& rep
   }
   for (const builder::InputRadii& radii : report.radii) json["radii"].push_back(to_json(radii));
   if (!surfaces.empty()) json["surfaces"] = to_json(surfaces);
+  for (const builder::InputEllipsoids& input : report.ellipsoids) json["ellipsoids"].push_back(to_json(input));
+  if (!report.meshes.empty()) json["meshes"] = to_json(report.meshes);
+  if (command.simplify && report.simplified) json["simplify"] = to_json(*command.simplify, *report.simplified);
   for (const std::filesystem::path& input : command.inputs) json["inputs"].push_back(input.string());
   // File names need not be UTF-8.
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
@@ -214,16 +302,41 @@ Status build(const BuildCommand& command) {
     if (!command.up.empty()) options.z_up = command.up == "z";
     options.memory = builder::parse_memory_size(command.memory);
     options.sample = command.sample;
+    options.selection = command.selection;
     options.radii = command.radii;
+    options.kind = command.kind;
+    options.tensor_order = command.tensor_order;
+    options.meshes = command.meshes;
+    options.simplify = command.simplify;
     if (!command.surfaces.empty()) options.open = std::bind_front(&isosurface::SurfaceInputs::open, &surfaces);
     report = builder::build_model(command.inputs, command.output, options,
                                   [&progress](const builder::BuildStep& step) { progress.note(step); });
   }
   if (!report) return fail(std::move(report.error()));
   for (const std::string& note : report->scan.notes) spdlog::warn("{}", note);
-  std::cout << surface_lines(surfaces.found()) << radii_lines(*report) << figures(*report);
+  std::cout << surface_lines(surfaces.found()) << mesh_lines(report->meshes) << radii_lines(*report)
+            << simplify_lines(command, *report) << figures(*report);
   if (command.report.empty()) return {};
   return write_file_atomically(command.report, to_json(command, *report, surfaces.found()));
+}
+
+void add_kind_flags(CLI::App& app, BuildCommand& command) {
+  static const std::map<std::string, builder::InputKind> kKinds{{"surfel", builder::InputKind::kScan},
+                                                                {"grid", builder::InputKind::kGrid},
+                                                                {"gaussian", builder::InputKind::kGaussians},
+                                                                {"ellipsoid", builder::InputKind::kEllipsoids}};
+  static const std::map<std::string, grid::TensorOrder> kOrders{
+      {"lower", grid::TensorOrder::kLower}, {"fsl", grid::TensorOrder::kFsl}, {"mrtrix", grid::TensorOrder::kMrtrix}};
+  app.add_option_function<std::string>(
+         "--kind", [&command](const std::string& kind) { command.kind = kKinds.at(kind); },
+         "What all inputs become: surfel, grid, gaussian or ellipsoid (default: as their content says)")
+      ->check(CLI::IsMember({"surfel", "grid", "gaussian", "ellipsoid"}));
+  app.add_option_function<std::string>(
+         "--tensor-order", [&command](const std::string& order) { command.tensor_order = kOrders.at(order); },
+         "Six components of a NIfTI file that does not state what they are: lower (xx xy yy xz yz zz), fsl (xx xy xz "
+         "yy "
+         "yz zz) or mrtrix (xx yy zz xy xz yz)")
+      ->check(CLI::IsMember({"lower", "fsl", "mrtrix"}));
 }
 
 }  // namespace
@@ -231,7 +344,9 @@ Status build(const BuildCommand& command) {
 void add_build_command(CLI::App& app, Status& outcome) {
   auto command = std::make_shared<BuildCommand>();
   CLI::App* build_command = app.add_subcommand("build", "Build a model file from scans or volumes");
-  build_command->add_option("INPUT", command->inputs, "Scans, or regular grids, of any supported format")->required();
+  build_command
+      ->add_option("INPUT", command->inputs, "Scans, regular grids, Gaussians, tensor fields or tables of ellipsoids")
+      ->required();
   build_command->add_option("--output", command->output, "Model file to write")->required();
   build_command
       ->add_option("--precision", command->precision,
@@ -245,13 +360,17 @@ void add_build_command(CLI::App& app, Status& outcome) {
       ->check([](const std::string& text) {
         return builder::parse_memory_size(text) ? std::string() : "not a size like 4G or 512M: " + text;
       });
+  add_kind_flags(*build_command, *command);
   add_radius_flag(*build_command, command->radii);
+  add_selection_flags(*build_command, command->selection);
   add_iso_flag(*build_command, command->surfaces);
+  add_mesh_flags(*build_command, command->meshes);
+  add_simplify_flag(*build_command, command->simplify);
   build_command->add_option("--report", command->report, "Write statistics of the build to this file as JSON");
   build_command
       ->add_option("--sample", command->sample,
                    "Build a preview: of about that many points of each scan, spread over it, with radii for their "
-                   "spacing")
+                   "spacing, or of as many samples of each volume")
       ->check(CLI::PositiveNumber);
   build_command->add_option("--threads", command->threads, "Threads of the build (default: one a core)")
       ->check(CLI::Range(1, 1024));

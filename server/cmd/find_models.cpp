@@ -8,7 +8,8 @@
 
 #include "base/mapped_file.h"
 #include "builder/build_gaussians.h"
-#include "scan/scan_stream.h"
+#include "builder/input_files.h"
+#include "service/model_name.h"
 
 namespace surfcast::cmd {
 namespace {
@@ -20,14 +21,21 @@ Result<service::NamedModel> find_model(const fs::path& path, const ScanCacheConf
   if (path.extension() != ".surf") {
     Result<CachedModel> built = model_of_scan(path, cache);
     if (!built) return fail(built.error());
-    return service::NamedModel{path.stem().string(), std::move(built->path), std::move(built->in_use)};
+    return service::NamedModel{service::model_name(path), std::move(built->path), std::move(built->in_use)};
   }
   if (const Result<model::ModelFile> model = model::ModelFile::open(path); !model) return fail(model.error());
-  return service::NamedModel{path.stem().string(), path};
+  return service::NamedModel{service::model_name(path), path};
+}
+
+/// A folder that is one model of Gaussians (SOG), not a folder of models.
+bool is_gaussian_folder(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_directory(path, ignored) && builder::holds_gaussians(path);
 }
 
 Status check_file(const fs::path& path) {
   if (path.extension() == ".surf") return model::ModelFile::open(path).map([](const model::ModelFile&) {});
+  if (is_gaussian_folder(path)) return {};
   return MappedFile::open(path).map([](const MappedFile&) {});
 }
 
@@ -35,7 +43,7 @@ Status check_file(const fs::path& path) {
 Status check_names(const NamedPaths& paths) {
   std::set<std::string> names;
   const auto add = [&names](const fs::path& path) -> Status {
-    if (names.insert(path.stem().string()).second) return {};
+    if (names.insert(service::model_name(path)).second) return {};
     return fail(ErrorKind::kInvalidInput, path.string() + ": another model is served under that name");
   };
   for (const service::NamedModel& model : paths.models) {
@@ -53,8 +61,7 @@ Status check_any_scan(const NamedPaths& paths) {
   if (paths.scans.empty() || !paths.models.empty() || !paths.folders.empty()) return {};
   Status first;
   for (const fs::path& scan : paths.scans) {
-    if (builder::holds_gaussians(scan)) return {};
-    Status status = scan::check_header(scan);
+    Status status = builder::check_input(scan);
     if (status) return {};
     if (first) first = std::move(status);
   }
@@ -67,13 +74,13 @@ Result<NamedPaths> sort_paths(std::span<const fs::path> paths) {
   NamedPaths sorted;
   for (const fs::path& path : paths) {
     std::error_code ignored;
-    if (fs::is_directory(path, ignored)) {
+    if (fs::is_directory(path, ignored) && !is_gaussian_folder(path)) {
       sorted.folders.push_back(path);
       continue;
     }
     if (Status status = check_file(path); !status) return fail(std::move(status.error()));
     if (path.extension() == ".surf") {
-      sorted.models.push_back({path.stem().string(), path});
+      sorted.models.push_back({service::model_name(path), path});
     } else {
       sorted.scans.push_back(path);
     }
@@ -85,7 +92,7 @@ Result<NamedPaths> sort_paths(std::span<const fs::path> paths) {
 
 Result<std::unique_ptr<service::ModelCatalogue>> find_one_model(const fs::path& path, const ScanCacheConfig& cache) {
   std::error_code ignored;
-  if (fs::is_directory(path, ignored)) {
+  if (fs::is_directory(path, ignored) && !is_gaussian_folder(path)) {
     return fail(ErrorKind::kInvalidInput, path.string() + ": is a folder, and one model is wanted");
   }
   Result<service::NamedModel> model = find_model(path, cache);

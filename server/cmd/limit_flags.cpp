@@ -1,5 +1,6 @@
 #include "cmd/limit_flags.h"
 
+#include "cmd/mesh_flags.h"
 #include "cmd/radius_flag.h"
 #include "cmd/settings.h"
 #include "protocol/request_flags.h"
@@ -24,6 +25,10 @@ void add_queue_flags(CLI::App& command, service::ServiceLimits& limits) {
   add_count(command, "max-frames", limits.frames_in_encoding,
             "Drawn pictures in memory that wait for an encoder (default 3). More: memory, 4 to 16 bytes a pixel; less: "
             "the renderer waits");
+  add_size(
+      command, "picture-memory", limits.picture_memory,
+      "Pictures at rest from drawing until their clients have taken them (default: a quarter of the host's available "
+      "memory, 1G at most; half of it for one client). More: memory; less: large pictures wait for each other");
 }
 
 void add_pick_flags(CLI::App& command, service::PickLimits& limits) {
@@ -32,6 +37,10 @@ void add_pick_flags(CLI::App& command, service::PickLimits& limits) {
             "Threads that find what a pixel shows (default 2). More: processor time; less: picks wait", kThreads);
   add_count(command, "max-picks", limits.waiting,
             "Picks, and profiles, that may be outstanding (default 64 each). More: longer waits; less: refused sooner");
+  add_count(
+      command, "max-pick-blocks", limits.blocks,
+      "Blocks of a model that one pick may read (default 256). More: wide pixels occupy a thread for longer; less: "
+      "picks in small pictures of large models are refused");
   add_count(command, "max-profile-points", limits.profile_points,
             "Points of one profile (default 1000000). More: memory, some 200 bytes a point and 40 for each attribute; "
             "less: coarser samples of wide profiles",
@@ -43,8 +52,8 @@ void add_connection_flags(CLI::App& command, net::ServerConfig& server) {
             "Connections at once (default 256). More: memory and descriptors; less: refused sooner", {1, 1'000'000},
             "connections");
   add_count(command, "max-connections-per-client", server.clients.connections_per_client,
-            "Connections of one address (default 0: no limit of its own). More: one client may take all; less: clients "
-            "behind one proxy are refused",
+            "Connections of one address (default 64; 0: no limit of its own). More: one client may take all; less: "
+            "clients behind one proxy are refused",
             kOrNone);
   add_count(command, "max-views", server.views,
             "Views open on one connection (default 8). More: one client loads the renderer; less: pages with many "
@@ -70,6 +79,14 @@ void add_request_flags(CLI::App& command, net::ServerConfig& server) {
       },
       "Answers that a client has not taken before nothing more is drawn for it; twice that, and nothing more is read "
       "from it (default 32M). More: memory of slow clients; less: they wait");
+  add_size(command, "max-unread", server.small_unread_bytes,
+           "Answers of at most 64K that a client has not taken before nothing more is read from it (default 1M). More: "
+           "memory of clients that do not read; less: clients that ask much and read late wait");
+  add_size(
+      command, "least-rate", server.least_rate,
+      "Bytes of its answers that a client takes each second, over --answer-timeout (default 8K; 0: any). More: slow "
+      "networks are cut off; less: clients that hardly read hold memory",
+      {0, 1 << 30});
   add_size(command, "max-message", server.request_bytes,
            "A message of a client (default 64K). More: memory of hostile clients; less: requests with many clip boxes "
            "are refused",
@@ -81,9 +98,13 @@ void add_request_flags(CLI::App& command, net::ServerConfig& server) {
 }
 
 void add_time_flags(CLI::App& command, net::ServerConfig& server) {
+  add_count(command, "log-lines", server.log_lines,
+            "Lines of the log a minute of each kind that clients cause (default 60; 0: all). More: clients fill the "
+            "disk; less: of many that are refused, few are named",
+            kOrNone);
   add_seconds(command, "handshake-timeout", server.hello,
-              "For the first words of a connection (default 10). More: silent connections stay; less: slow networks "
-              "are cut off");
+              "For the first words of a connection, and for every request that has begun (default 10). More: silent "
+              "connections stay; less: slow networks are cut off");
   add_seconds(command, "idle-timeout", server.idle,
               "Without a request (default 300). More: idle connections stay; less: clients connect again and again");
   add_seconds(command, "answer-timeout", server.stall,
@@ -92,6 +113,23 @@ void add_time_flags(CLI::App& command, net::ServerConfig& server) {
   add_seconds(command, "ping-interval", server.ping,
               "Silence of a WebSocket before its client is pinged; after twice that it is gone (default 30). More: "
               "vanished clients stay; less: traffic, and networks with gaps are cut off");
+  add_seconds(command, "resume-time", server.sessions.time,
+              "That a client whose connection is gone may take to come back to its views (default 180). More: memory; "
+              "less: it opens them anew, by itself");
+  add_count(command, "max-resumes", server.sessions.sessions,
+            "Clients that may come back, at a time (default 256; 0: none). More: memory, --max-views of --resume-view "
+            "for each; less: they open their views anew",
+            kOrNone);
+  add_size(command, "resume-view", server.sessions.view_bytes,
+           "What is kept of a view whose client may come back (default 8K; a larger one is opened anew). More: memory; "
+           "less: views with many clip boxes are opened anew",
+           {1, kMebibyte});
+  add_seconds(command, "grace-time", server.grace,
+              "Between the signal to stop, when /readyz begins to answer 503, and the end of listening (default 0; a "
+              "second signal ends it). More: it stops later; less: a balancer still sends clients");
+  add_seconds(command, "leave-time", server.leave,
+              "Then, over which clients with views are sent away one after the other (default 0; a second signal ends "
+              "it). More: it stops later; less: they come to other servers all at once");
   add_seconds(command, "drain-timeout", server.drain,
               "For what is outstanding when the server stops (default 5). More: it stops later; less: pictures are "
               "given up");
@@ -109,6 +147,7 @@ void add_cache_flags(CLI::App& command, ScanCacheConfig& cache) {
            "Memory for building a model of a scan (default: a quarter of the machine's). More: less for the rest; "
            "less: large scans are built in more parts");
   add_radius_flag(command, cache.radii)->envname(protocol::environment_name("radii"));
+  add_mesh_flags(command, cache.meshes);
 }
 
 void add_build_flags(CLI::App& command, PreviewRule& previews, size_t& threads) {

@@ -6,10 +6,12 @@
 #include "base/result.h"
 #include "base/unfinished_file.h"
 #include "cmd/build.h"
+#include "cmd/colorize.h"
 #include "cmd/inspect.h"
 #include "cmd/pick.h"
 #include "cmd/render.h"
 #include "cmd/serve.h"
+#include "cmd/token.h"
 #include "command_line/parse_command_line.h"
 
 namespace {
@@ -30,11 +32,13 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   surfcast::Status outcome;
   surfcast::cmd::add_build_command(app, outcome);
+  surfcast::cmd::add_colorize_command(app, outcome);
   surfcast::cmd::add_inspect_command(app, outcome);
   surfcast::cmd::add_serve_command(app, outcome);
   surfcast::cmd::add_render_command(app, outcome);
   surfcast::cmd::add_pick_command(app, outcome);
   surfcast::cmd::add_healthcheck_command(app, outcome);
+  surfcast::cmd::add_token_command(app, outcome);
   if (const auto code = surfcast::command_line::parse_command_line(app, program_text(), argc, argv)) return *code;
   if (outcome) return surfcast::command_line::kDone;
   return surfcast::command_line::report_failure(program_text(), outcome.error().message,
@@ -45,6 +49,7 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   std::signal(SIGXFSZ, SIG_IGN);  // a file that may not grow any further is an error of the write
+  std::signal(SIGPIPE, SIG_IGN);  // so is a pipe whose reader has gone, also that of the log
   surfcast::remove_unfinished_files_on_signals();
   try {
     surfcast::start_logging("surfcastd");

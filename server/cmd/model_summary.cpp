@@ -1,6 +1,7 @@
 #include "cmd/model_summary.h"
 
 #include <algorithm>
+#include <array>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <utility>
@@ -66,6 +67,60 @@ nlohmann::ordered_json json_of(const model::Volume& volume) {
           {"sample_unit", volume.sample_unit}};
 }
 
+constexpr std::array kFrames{"", "RAS", "LAS", "LPS"};
+
+std::string frame_of(const model::EllipsoidSource& source) {
+  return kFrames.at(static_cast<size_t>(source.frame));
+}
+
+std::string text_of(const model::EllipsoidSource& source) {
+  const model::EllipsoidCounts& counts = source.counts;
+  std::string text = fmt::format("{} {}: {} glyphs of {} {}", source.tensors ? "tensors" : "ellipsoids", source.name,
+                                 counts.drawn, counts.samples, source.tensors ? "samples" : "rows");
+  if (source.on_grid()) text += fmt::format(" ({} x {} x {})", source.size.x, source.size.y, source.size.z);
+  if (source.frame != model::WorldFrame::kUnstated) text += ", axes " + frame_of(source);
+  text += fmt::format(", not drawn: {} of low confidence, {} not finite, {} not positive\n", counts.masked,
+                      counts.not_finite, counts.not_positive);
+  text += fmt::format("  mean FA {:.6f}, mode {:.6f}, {} {}; FA >= 0.2: {}\n", source.mean_anisotropy, source.mean_mode,
+                      source.tensors ? "eigenvalues" : "semi-axes",
+                      with_unit(text_of(source.mean_values), source.sample_unit), counts.anisotropic);
+  for (const model::EllipsoidAttribute& attribute : source.attributes) {
+    text += fmt::format("  {}: {} .. {}\n", attribute.name, attribute.smallest, attribute.largest);
+  }
+  return text;
+}
+
+nlohmann::ordered_json json_of(const model::EllipsoidSource& source) {
+  const model::EllipsoidCounts& counts = source.counts;
+  const glm::dmat4x3& axes = source.index_to_world;
+  nlohmann::ordered_json json{{"name", source.name},
+                              {"tensors", source.tensors},
+                              {"samples", counts.samples},
+                              {"drawn", counts.drawn},
+                              {"masked", counts.masked},
+                              {"not_finite", counts.not_finite},
+                              {"not_positive", counts.not_positive},
+                              {"anisotropic", counts.anisotropic},
+                              {"mean_fa", source.mean_anisotropy},
+                              {"mean_mode", source.mean_mode},
+                              {"mean_eigenvalues", json_of(source.mean_values)},
+                              {"largest", source.largest},
+                              {"scale", source.scale()},
+                              {"frame", frame_of(source)},
+                              {"length_unit", source.length_unit},
+                              {"sample_unit", source.sample_unit},
+                              {"attributes", nlohmann::ordered_json::array()}};
+  if (source.on_grid()) {
+    json["size"] = {source.size.x, source.size.y, source.size.z};
+    json["index_to_world"] = {json_of(axes[0]), json_of(axes[1]), json_of(axes[2]), json_of(axes[3])};
+  }
+  for (const model::EllipsoidAttribute& attribute : source.attributes) {
+    json["attributes"].push_back(
+        {{"attribute", attribute.name}, {"smallest", attribute.smallest}, {"largest", attribute.largest}});
+  }
+  return json;
+}
+
 nlohmann::ordered_json json_of(const LevelSummary& level) {
   return {{"level", level.level},
           {"blocks", level.blocks},
@@ -102,6 +157,8 @@ ModelSummary summarize(const model::ModelFile& model, uint64_t file_bytes) {
   const std::span<const model::Volume> volumes = model.volumes();
   ModelSummary summary{model.path(), file_bytes, model.info(), {volumes.begin(), volumes.end()}, {}};
   for (const auto& [number, level] : levels) summary.levels.push_back(level);
+  const std::span<const model::EllipsoidSource> ellipsoids = model.ellipsoid_sources();
+  summary.ellipsoids.assign(ellipsoids.begin(), ellipsoids.end());
   return summary;
 }
 
@@ -118,6 +175,7 @@ std::string to_text(const ModelSummary& summary) {
     text += fmt::format("kind {}: {} in {} blocks\n", kind.kind, kind.items, kind.blocks);
   }
   for (const model::Volume& volume : summary.volumes) text += text_of(volume);
+  for (const model::EllipsoidSource& source : summary.ellipsoids) text += text_of(source);
   text += fmt::format("bytes: {} ({:.3f} per {})\n", summary.file_bytes, summary.bytes_per_surfel(),
                       info.surfels > 0 ? "surfel" : "item");
   text += fmt::format("bounds: {} .. {}\n", text_of(info.bounds.min), text_of(info.bounds.max));
@@ -163,6 +221,7 @@ std::string to_json(const ModelSummary& summary) {
   };
   for (const model::KindCount& kind : info.kinds) json["kinds"].push_back(json_of(kind));
   for (const model::Volume& volume : summary.volumes) json["volumes"].push_back(json_of(volume));
+  for (const model::EllipsoidSource& source : summary.ellipsoids) json["ellipsoids"].push_back(json_of(source));
   for (const model::AttributeRange& range : info.ranges) json["ranges"].push_back(json_of(range));
   for (const model::ClassCount& count : info.classes) {
     json["classes"].push_back({{"code", count.code}, {"surfels", count.surfels}});

@@ -27,6 +27,7 @@ struct ModelSummary {
   model::ModelInfo info;
   std::vector<model::Volume> volumes;
   std::vector<LevelSummary> levels;  ///< finest first
+  std::vector<model::EllipsoidSource> ellipsoids{};
 
   /// Of the leaves, of all kinds.
   [[nodiscard]] uint64_t items() const {

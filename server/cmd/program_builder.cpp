@@ -12,6 +12,7 @@
 #include "base/log.h"
 #include "base/mapped_file.h"
 #include "base/scratch_folder.h"
+#include "cmd/mesh_flags.h"
 #include "cmd/radius_flag.h"
 
 namespace surfcast::cmd {
@@ -57,6 +58,8 @@ class ProgramBuilder : public ScanBuilder {
     std::vector<std::string> arguments{program.string(), "build",    "--background", "--progress",
                                        "json",           "--output", target.string()};
     arguments.insert(arguments.end(), {"--radii", name_of(cache_.radii)});
+    const std::vector<std::string> meshes = arguments_of(cache_.meshes);
+    arguments.insert(arguments.end(), meshes.begin(), meshes.end());
     if (threads_ > 0) arguments.insert(arguments.end(), {"--threads", std::to_string(threads_)});
     if (cache_.build_memory) arguments.insert(arguments.end(), {"--memory", std::to_string(*cache_.build_memory)});
     arguments.insert(arguments.end(), more.begin(), more.end());

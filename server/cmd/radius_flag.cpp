@@ -13,7 +13,7 @@ constexpr std::array<std::pair<std::string_view, scan::RadiusPolicy>, 3> kPolici
      {"keep", scan::RadiusPolicy::kKeep},
      {"estimate", scan::RadiusPolicy::kEstimate}}};
 
-scan::RadiusPolicy policy_named(const std::string& name) {
+scan::RadiusPolicy radius_policy(const std::string& name) {
   return std::ranges::find(kPolicies, name, [](const auto& entry) { return entry.first; })->second;
 }
 
@@ -22,7 +22,7 @@ scan::RadiusPolicy policy_named(const std::string& name) {
 CLI::Option* add_radius_flag(CLI::App& command, scan::RadiusPolicy& policy) {
   return command
       .add_option_function<std::string>(
-          "--radii", [&policy](const std::string& name) { policy = policy_named(name); },
+          "--radii", [&policy](const std::string& name) { policy = radius_policy(name); },
           "Radii that scans state: auto (scaled to the kernel where they follow the sampling, else estimated), keep or "
           "estimate (default auto)")
       ->check(CLI::IsMember({"auto", "keep", "estimate"}));

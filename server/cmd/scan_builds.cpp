@@ -7,6 +7,8 @@
 
 #include "base/log.h"
 #include "base/stopwatch.h"
+#include "builder/input_files.h"
+#include "service/model_name.h"
 
 namespace surfcast::cmd {
 namespace {
@@ -26,6 +28,13 @@ bool wants_first_preview(const ScanWork& scan, const PreviewRule& rule) {
 uint64_t further_preview(const ScanWork& scan) {
   const uint64_t points = kRefinement * scan.preview_points;
   return !scan.previews_failed && points <= scan.points / kLargestPart ? points : 0;
+}
+
+/// Points, samples and Gaussians of a model.
+uint64_t items_of(const model::ModelFile& model) {
+  uint64_t items = 0;
+  for (const auto& kind : model.info().kinds) items += kind.items;
+  return items;
 }
 
 }  // namespace
@@ -56,14 +65,13 @@ ScanBuilds::~ScanBuilds() {
 }
 
 bool ScanBuilds::add(const fs::path& scan) {
-  std::string name = scan.stem().string();
+  std::string name = service::model_name(scan);
   if (!models_.add_scan(name)) return false;
-  std::error_code code;
-  const uint64_t bytes = fs::file_size(scan, code);
+  const uint64_t bytes = builder::bytes_of_input(scan);
   {
     const std::lock_guard lock(mutex_);
     scans_.push_back({scan, std::move(name), {}});
-    works_.push_back({.bytes = code ? 0 : bytes});
+    works_.push_back({.bytes = bytes});
   }
   wake_.notify_all();
   return true;
@@ -142,8 +150,8 @@ void ScanBuilds::make_preview(const BuildTask& task, const BuildWatch& watch) {
   }
   work.points = preview->points_in_scan;
   work.preview_points = task.preview_points;
-  spdlog::info("{}: a preview of {} of {} points is served, after {:.1f} s", scan.path.string(),
-               preview->model->info().surfels, work.points, stopwatch.seconds());
+  spdlog::info("{}: a preview of {} of {} items is served, after {:.1f} s", scan.path.string(),
+               items_of(*preview->model), work.points, stopwatch.seconds());
   models_.publish(scan.name, {std::move(preview->model), true});
   models_.note({.model = scan.name});
 }
@@ -173,7 +181,7 @@ void ScanBuilds::complete(size_t scan, CachedModel model) {
   end(scan);
   const Scan of = scan_at(scan);
   auto file = std::make_shared<const model::ModelFile>(std::move(*opened));
-  spdlog::info("{}: the model is complete: {} surfels", of.path.string(), file->info().surfels);
+  spdlog::info("{}: the model is complete: {} items", of.path.string(), items_of(*file));
   models_.publish(of.name, {std::move(file), false, std::move(model.in_use)});
 }
 

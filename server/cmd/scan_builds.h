@@ -26,7 +26,7 @@ struct BuildWatch {
   std::function<void(double done, double seconds_left)> progress;
 };
 
-/// A model of a part of a scan's points.
+/// A model of a part of a scan's points, or of every few samples of a grid.
 struct ScanPreview {
   std::shared_ptr<const model::ModelFile> model;
   uint64_t points_in_scan = 0;
@@ -46,13 +46,13 @@ class ScanBuilder {
 /// Which previews are made.
 struct PreviewRule {
   uint64_t points = 250'000;                 ///< of the first one; 0: none are made
-  uint64_t least_bytes = uint64_t{4} << 20;  ///< of a scan's file; smaller ones are built at once
+  uint64_t least_bytes = uint64_t{4} << 20;  ///< of a scan's files; smaller ones are built at once
 };
 
 /// What is known of a scan while it is not complete.
 struct ScanWork {
-  uint64_t bytes = 0;            ///< of the file
-  uint64_t points = 0;           ///< 0: not known yet
+  uint64_t bytes = 0;            ///< of its files
+  uint64_t points = 0;           ///< or samples, or Gaussians; 0: not known yet
   uint64_t preview_points = 0;   ///< of the last preview; 0: none
   bool previews_failed = false;  ///< building tells why
   bool looked_up = false;        ///< the cache does not have the model

@@ -5,6 +5,7 @@
 #include <string>
 #include <system_error>
 #include <utility>
+#include <vector>
 
 #include <fcntl.h>
 #include <spdlog/fmt/fmt.h>
@@ -17,8 +18,9 @@
 #include "base/mapped_file.h"
 #include "base/scratch_folder.h"
 #include "builder/build_model.h"
-#include "builder/grid_input.h"
+#include "builder/input_files.h"
 #include "cmd/cache_eviction.h"
+#include "cmd/mesh_flags.h"
 #include "model/model_file.h"
 
 namespace surfcast::cmd {
@@ -26,12 +28,20 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Another release may build better models of the same scan, so its version is part of the key. So is the policy of
-/// radii, in the hash.
-std::string key_of(const std::string& content_name, scan::RadiusPolicy radii) {
+/// How models are built that are not built as by default.
+std::string manner_of(const ScanCacheConfig& config) {
+  std::string manner;
+  if (config.radii != scan::RadiusPolicy::kAuto) manner += fmt::format(" radii {}", static_cast<int>(config.radii));
+  for (const std::string& argument : arguments_of(config.meshes)) manner += " " + argument;
+  return manner;
+}
+
+/// Another release may build better models of the same scan, so its version is part of the key. So is how a model is
+/// built, in the hash.
+std::string key_of(const std::string& content_name, const ScanCacheConfig& config) {
   std::string hash = content_name;
-  if (radii != scan::RadiusPolicy::kAuto) {
-    const std::string both = fmt::format("{} radii {}", hash, static_cast<int>(radii));
+  if (const std::string manner = manner_of(config); !manner.empty()) {
+    const std::string both = hash + manner;
     hash = hash_name(std::as_bytes(std::span(both)));
   }
   return fmt::format("{}-{}.surf", SURFCAST_VERSION, hash);
@@ -69,17 +79,33 @@ Result<fs::path> cache_folder(const ScanCacheConfig& config) {
   return config.folder.empty() ? default_cache_folder() : config.folder;
 }
 
+/// The name of the content of a scan: that of its file, or those of all its files. None as soon as it is cancelled.
+Result<std::optional<std::string>> content_name(const fs::path& scan, const std::atomic<bool>& cancelled) {
+  const Result<std::vector<fs::path>> files = builder::files_of_input(scan);
+  if (!files) return fail(files.error());
+  std::string names;
+  for (const fs::path& file : *files) {
+    const Result<MappedFile> content = MappedFile::open(file);
+    if (!content) return fail(content.error());
+    const std::optional<std::string> name = hash_name(content->bytes(), cancelled);
+    if (!name) return std::optional<std::string>();
+    names += *name;
+  }
+  return files->size() == 1 ? std::optional(names) : hash_name(std::as_bytes(std::span(names)), cancelled);
+}
+
 Status build_into(const fs::path& scan, const fs::path& target, const ScanCacheConfig& config) {
   spdlog::info("{}: building a model of it", scan.string());
   const std::array inputs{scan};
   builder::BuildOptions options;
   options.memory = config.build_memory;
   options.radii = config.radii;
+  options.meshes = config.meshes;
   const Result<builder::BuildReport> report =
       builder::build_model(inputs, target, options, [](const builder::BuildStep&) {});
   if (!report) return fail(report.error());
   for (const std::string& note : report->scan.notes) spdlog::warn("{}", note);
-  spdlog::info("{}: {} surfels in {:.1f} s", scan.string(), report->surfels, report->seconds);
+  spdlog::info("{}: {} blocks in {:.1f} s", scan.string(), report->blocks, report->seconds);
   return {};
 }
 
@@ -113,17 +139,12 @@ Result<fs::path> ready_cache_folder(const ScanCacheConfig& config) {
 
 Result<CacheSlot> find_cache_slot(const fs::path& scan, const ScanCacheConfig& config,
                                   const std::atomic<bool>& cancelled) {
-  // The samples of a grid may be in other files, which the key would not tell apart.
-  if (builder::is_grid(scan)) {
-    return fail(ErrorKind::kUnsupported, scan.string() + ": is a volume; make a model of it with surfcastd build");
-  }
   const Result<fs::path> folder = ready_cache_folder(config);
   if (!folder) return fail(folder.error());
-  const Result<MappedFile> content = MappedFile::open(scan);
-  if (!content) return fail(content.error());
-  const std::optional<std::string> name = hash_name(content->bytes(), cancelled);
-  if (!name) return fail(ErrorKind::kCancelled, scan.string() + ": not wanted any more");
-  CacheSlot slot{*folder / key_of(*name, config.radii), {}};
+  const Result<std::optional<std::string>> name = content_name(scan, cancelled);
+  if (!name) return fail(name.error());
+  if (!*name) return fail(ErrorKind::kCancelled, scan.string() + ": not wanted any more");
+  CacheSlot slot{*folder / key_of(**name, config), {}};
   slot.model = find_in_cache(slot.target);
   return slot;
 }

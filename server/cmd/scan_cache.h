@@ -7,6 +7,7 @@
 #include <optional>
 
 #include "base/result.h"
+#include "builder/mesh_input.h"
 #include "scan/stated_radii.h"
 
 namespace surfcast::cmd {
@@ -19,6 +20,7 @@ struct ScanCacheConfig {
   std::optional<uint64_t> bytes{};         ///< of models at most; none: default_cache_bytes
   std::optional<uint64_t> build_memory{};  ///< see BuildOptions::memory
   scan::RadiusPolicy radii = scan::RadiusPolicy::kAuto;
+  builder::MeshOptions meshes{};
 };
 
 /// A model in the cache, which nobody evicts as long as `in_use` lives, in this process or another.
@@ -36,8 +38,8 @@ inline constexpr const char* kPreviewFolder = "preview-";
 /// Removes what processes that were killed have left in the folder of the cache.
 void remove_abandoned(const ScanCacheConfig& config);
 
-/// Where the model of a scan is kept, and the model if it is there. Reads the whole scan, and fails with kCancelled
-/// soon after that is cancelled.
+/// Where the model of a scan is kept, and the model if it is there. Reads the whole scan with all files that it names,
+/// and fails with kCancelled soon after that is cancelled.
 struct CacheSlot {
   std::filesystem::path target;
   std::optional<CachedModel> model;
@@ -48,9 +50,10 @@ Result<CacheSlot> find_cache_slot(const std::filesystem::path& scan, const ScanC
 /// The model that was just built into a slot. Then the cache is brought within its limit again, see files_to_evict.
 Result<CachedModel> use_built_model(const std::filesystem::path& target, const ScanCacheConfig& config);
 
-/// The model of a scan: the one in the cache whose key is the scan's content and the policy of radii, else one that is
-/// built now. Names of cached files say nothing of the scan's own. Then the cache is brought within its limit again,
-/// see files_to_evict; several processes may share a folder.
+/// The model of a scan: the one in the cache whose key is the scan's content and how it is built, else one that is
+/// built now. The content is that of all files that the scan names, too. Names of cached files say nothing of the
+/// scan's own. Then the cache is brought within its limit again, see files_to_evict; several processes may share a
+/// folder.
 Result<CachedModel> model_of_scan(const std::filesystem::path& scan, const ScanCacheConfig& config);
 
 }  // namespace surfcast::cmd

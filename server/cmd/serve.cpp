@@ -1,14 +1,24 @@
 #include "cmd/serve.h"
 
+#include <array>
+#include <atomic>
+#include <climits>
+#include <csignal>
 #include <filesystem>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <string>
 #include <vector>
 
+#include <sys/resource.h>
+#include <unistd.h>
+
 #include "base/atomic_file.h"
 #include "base/contract.h"
 #include "base/log.h"
+#include "base/log_format.h"
+#include "builder/input_files.h"
 #include "cmd/find_models.h"
 #include "cmd/limit_flags.h"
 #include "cmd/log_device.h"
@@ -18,9 +28,8 @@
 #include "protocol/endpoint.h"
 #include "protocol/request_flags.h"
 #include "protocol/validate.h"
-#include "scan/scan_format.h"
-#include "scan/scan_stream.h"
 #include "service/catalogue_renderer.h"
+#include "service/model_name.h"
 #include "service/render_service.h"
 
 namespace surfcast::cmd {
@@ -37,6 +46,10 @@ struct ServeCommand {
   render::RendererConfig renderer;
   service::ServiceLimits service;
   net::ServerConfig server;
+  std::filesystem::path certificate;
+  std::filesystem::path key;
+  LogFormat log_format = LogFormat::kText;
+  bool insecure = false;  ///< for everybody, without TLS or without tokens
 };
 
 /// Where the viewer is when nobody says: where it is built, or where it is installed. Empty: nowhere.
@@ -51,6 +64,43 @@ std::filesystem::path find_viewer() {
   return {};
 }
 
+/// The name of this machine, by which clients of its network call it. Nobody else can make the name lead elsewhere.
+void add_machine_name(std::vector<std::string>& hosts) {
+  std::array<char, HOST_NAME_MAX + 1> name{};
+  if (::gethostname(name.data(), HOST_NAME_MAX) == 0) hosts.emplace_back(name.data());
+}
+
+bool is_loopback(const std::string& host) {
+  return host == "localhost" || host == "::1" || host.starts_with("127.");
+}
+
+/// What is missing for a server that others can reach; empty: nothing.
+std::string missing_guard(const net::ServerConfig& server) {
+  const bool tls = !server.tls.certificate.empty();
+  if (is_loopback(server.host) || (tls && !server.tokens.empty())) return {};
+  if (tls) return "--tokens";
+  return server.tokens.empty() ? "--tls-certificate and --tokens" : "--tls-certificate";
+}
+
+/// Where others can reach the port without encryption or without tokens, that is said.
+void warn_of_strangers(const net::ServerConfig& server) {
+  const std::string missing = missing_guard(server);
+  if (missing.empty()) return;
+  spdlog::warn("without {}, whoever reaches {} may {}: put a proxy before it that sees to that", missing, server.host,
+               server.tokens.empty() ? "see all models and order pictures" : "read along");
+}
+
+/// Each connection is a descriptor; models, the log and the device take some more.
+void allow_descriptors(size_t connections) {
+  constexpr size_t kOthers = 128;
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+  limit.rlim_cur = limit.rlim_max;
+  ::setrlimit(RLIMIT_NOFILE, &limit);
+  if (limit.rlim_max >= connections + kOthers) return;
+  spdlog::warn("the system allows {} descriptors, --max-connections {} may need more", limit.rlim_max, connections);
+}
+
 /// Null when there is no viewer and none was asked for.
 Result<std::shared_ptr<const net::StaticFiles>> read_viewer(const std::filesystem::path& wanted,
                                                             const net::SiteLimits& limits) {
@@ -63,8 +113,8 @@ Result<std::shared_ptr<const net::StaticFiles>> read_viewer(const std::filesyste
 
 /// Serves a scan of the folder for uploads. It hides no other model.
 Status serve_uploaded(const std::filesystem::path& scan, const service::ModelCatalogue& models, ScanBuilds& builds) {
-  if (Status header = scan::check_header(scan); !header) return header;
-  if (!models.has(scan.stem().string()) && builds.add(scan)) return {};
+  if (Status header = builder::check_input(scan); !header) return header;
+  if (!models.has(service::model_name(scan)) && builds.add(scan)) return {};
   return fail(ErrorKind::kInvalidInput, scan.string() + ": another model is served under that name");
 }
 
@@ -84,13 +134,20 @@ Status serve(ServeCommand command) {
   Result<NamedPaths> paths = sort_paths(command.paths);
   if (!paths) return fail(paths.error());
   service::ModelCatalogue models(std::move(paths->models), std::move(paths->folders));
-  const auto service =
-      service::RenderService::start(models, service::catalogue_renderers(models, command.renderer), command.service);
+  std::atomic<bool> gpu_reset = false;
+  const auto on_reset = [&gpu_reset] {
+    gpu_reset = true;
+    ::kill(::getpid(), SIGTERM);
+  };
+  const auto service = service::RenderService::start(
+      models, service::catalogue_renderers(models, command.renderer, on_reset), command.service);
   if (!service) return fail(service.error());
   log_device((*service)->device(), command.renderer);
+  add_machine_name(command.server.hosts);
   ScanBuilds* builder = nullptr;  // set before the server runs
   net::UploadConfig& uploads = command.server.uploads;
-  uploads.extensions = scan::scan_extensions();
+  uploads.extensions = builder::input_extensions();
+  uploads.data_extensions = builder::data_extensions();
   uploads.taken = [&models](const std::string& name) { return models.has(name); };
   uploads.serve = [&](const std::filesystem::path& scan) { return serve_uploaded(scan, models, *builder); };
   const auto server = net::Server::create(**service, command.server);
@@ -106,12 +163,35 @@ Status serve(ServeCommand command) {
   serve_former_uploads(uploads);
   const size_t count = models.names().size();
   if (count == 0) spdlog::warn("there are no models yet; those that appear in the folders will be served");
+  warn_of_strangers(command.server);
+  allow_descriptors(command.server.clients.connections);
   const protocol::Endpoint bound{command.server.host, (*server)->port()};
-  std::cout << "surfcastd: serving " << count << (count == 1 ? " model" : " models") << " at http://"
-            << protocol::to_string(bound) << '/' << std::endl;
+  std::cout << "surfcastd: serving " << count << (count == 1 ? " model" : " models") << " at "
+            << (command.server.tls.certificate.empty() ? "http://" : "https://") << protocol::to_string(bound) << '/'
+            << std::endl;
   (*server)->run(/*until_signal=*/true);
+  if (gpu_reset) return fail(ErrorKind::kUnavailable, "the GPU was reset: whoever watches the server starts it again");
   spdlog::info("stopped");
   return {};
+}
+
+void add_tls_flags(CLI::App& sub, ServeCommand& command) {
+  sub.add_option("--tls-certificate", command.certificate,
+                 "Certificate chain in PEM for https://, wss:// and tcps:// on the same port, or a folder with tls.crt "
+                 "and tls.key or fullchain.pem and privkey.pem; read again when it changes and on SIGHUP")
+      ->envname(protocol::environment_name("tls-certificate"))
+      ->type_name("PATH");
+  sub.add_option("--tls-key", command.key, "Its private key in PEM")
+      ->envname(protocol::environment_name("tls-key"))
+      ->type_name("PATH");
+  sub.add_option("--tokens", command.server.tokens,
+                 "File of the tokens of those who may ask for models, see surfcastd token; read again when it changes "
+                 "and on SIGHUP (default: none are wanted)")
+      ->envname(protocol::environment_name("tokens"))
+      ->type_name("FILE");
+  sub.add_flag("--insecure-listen", command.insecure,
+               "Listen beyond the loopback without TLS or without tokens, behind a proxy or in a trusted network")
+      ->envname(protocol::environment_name("insecure-listen"));
 }
 
 }  // namespace
@@ -125,6 +205,11 @@ void add_serve_command(CLI::App& app, Status& outcome) {
       ->envname(protocol::environment_name("listen"));
   sub->add_option("--viewer", command->viewer, "Folder of the browser viewer (default: the one built or installed)")
       ->envname(protocol::environment_name("viewer"));
+  sub->add_option(
+         "--host", command->server.hosts,
+         "Name that clients of HTTP may call the server by, beside addresses, localhost and the machine's name; "
+         "may be repeated; *: any name")
+      ->envname(protocol::environment_name("host"));
   sub->add_option("--allow-origin", command->server.allowed_origins,
                   "Web origin whose pages may connect, like https://example.org; may be repeated")
       ->envname(protocol::environment_name("allow-origin"));
@@ -133,17 +218,45 @@ void add_serve_command(CLI::App& app, Status& outcome) {
       ->envname(protocol::environment_name("target-fps"))
       ->type_name("NUMBER")
       ->check(CLI::Range(1.0, protocol::kMaxFramesPerSecond));
+  add_tls_flags(*sub, *command);
   add_renderer_flags(*sub, command->renderer);
   add_cache_flags(*sub, command->cache);
   add_build_flags(*sub, command->previews, command->build_threads);
   add_upload_flags(*sub, command->server.uploads);
   add_picture_flags(*sub, command->service);
   add_server_flags(*sub, command->service, command->renderer, command->server, command->viewer_limits);
+  sub->add_option("--log-format", command->log_format, "Lines of the log: text or json (default text)")
+      ->envname(protocol::environment_name("log-format"))
+      ->transform(CLI::CheckedTransformer(
+          std::map<std::string, LogFormat>{{"text", LogFormat::kText}, {"json", LogFormat::kJson}}))
+      ->type_name("FORMAT");
+  sub->add_option("--audit-log", command->server.audit,
+                  "File that tells who asked for what, one JSON object a line (default: none); SIGHUP opens it again")
+      ->envname(protocol::environment_name("audit-log"))
+      ->type_name("FILE");
+  sub->add_option_function<std::vector<std::string>>(
+         "--trusted-proxy",
+         [command](const std::vector<std::string>& texts) {
+           Result<net::Networks> networks = net::Networks::parse(texts);
+           if (!networks) throw CLI::ValidationError("--trusted-proxy", networks.error().message);
+           command->server.trusted_proxies = std::move(*networks);
+         },
+         "Address or network of proxies that tell their clients' addresses by version 2 of the PROXY protocol")
+      ->envname(protocol::environment_name("trusted-proxy"))
+      ->type_name("NETWORK");
   sub->callback([command, &outcome] {
+    set_log_format(command->log_format);
     const Result<protocol::Endpoint> endpoint = protocol::parse_endpoint(command->listen);
     if (!endpoint) throw CLI::ValidationError("--listen", endpoint.error().message);
     command->server.host = endpoint->host;
     command->server.port = endpoint->port;
+    const auto certificate = tls::find_certificate(command->certificate, command->key);
+    if (!certificate) throw CLI::ValidationError("--tls-certificate", certificate.error().message);
+    command->server.tls = *certificate;
+    if (const std::string missing = missing_guard(command->server); !missing.empty() && !command->insecure) {
+      throw CLI::ValidationError("--listen", command->server.host + " can be reached by others: " + missing +
+                                                 " are for that, or --insecure-listen");
+    }
     if (command->paths.empty()) command->paths.emplace_back(".");
     outcome = serve(*command);
   });

@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "base/contract.h"
-#include "ldc/lattice.h"
 #include "model/byte_stream.h"
 #include "model/field.h"
+#include "model/item_lattice.h"
 #include "model/path_order.h"
 #include "surfel/even_sampling.h"
 
@@ -17,8 +17,6 @@ namespace surfcast::gaussian {
 namespace {
 
 constexpr double kDeviationOverError = 128;
-constexpr double kLeastTolerance = 1e-30;  // keeps spacings above 0 in single precision
-constexpr size_t kFinerShare = 50;         // one Gaussian in so many may be finer than the lattice
 constexpr uint8_t kAntialiasedBit = 8;
 constexpr uint8_t kFlatBit = 16;
 /// Fields of every block; those of the harmonics of degree 1 and more follow.
@@ -33,51 +31,7 @@ double tolerance_of(const Gaussians& gaussians) {
   std::vector<double> deviations;
   deviations.reserve(gaussians.size());
   for (const glm::vec3& scale : gaussians.scales) deviations.push_back(middle_of(scale));
-  const auto least = deviations.begin() + static_cast<ptrdiff_t>(deviations.size() / kFinerShare);
-  std::nth_element(deviations.begin(), least, deviations.end());
-  return std::max(*least / kDeviationOverError, kLeastTolerance);
-}
-
-bool fits(const surfel::Grid& grid, const geometry::Box& box) {
-  const glm::i64vec3 extent = grid.index(box.max) - grid.index(box.min);
-  return std::max({extent.x, extent.y, extent.z}) < (int64_t{1} << kPositionBits);
-}
-
-surfel::Grid lattice_of(const Gaussians& gaussians) {
-  geometry::Box box;
-  for (const glm::dvec3& position : gaussians.positions) box.include(position);
-  const glm::dvec3 size = box.max - box.min;
-  const double coarse = std::max({size.x, size.y, size.z}) / (int64_t{1} << kPositionBits);
-  surfel::Grid grid = ldc::choose_lattice(box, std::max(tolerance_of(gaussians), coarse / 2));
-  while (!fits(grid, box)) grid.scale *= 2;
-  return grid;
-}
-
-/// Positions as indices from the lowest one, which becomes the block's origin.
-std::vector<glm::ivec3> indices_of(const Gaussians& gaussians, model::EncodedBlock& block) {
-  glm::i64vec3 lowest = block.grid.index(gaussians.positions.front());
-  glm::i64vec3 highest = lowest;
-  for (const glm::dvec3& position : gaussians.positions) {
-    lowest = glm::min(lowest, block.grid.index(position));
-    highest = glm::max(highest, block.grid.index(position));
-  }
-  block.origin = lowest;
-  block.extent = glm::u32vec3(highest - lowest);
-  std::vector<glm::ivec3> indices;
-  indices.reserve(gaussians.size());
-  for (const glm::dvec3& position : gaussians.positions) indices.emplace_back(block.grid.index(position) - lowest);
-  return indices;
-}
-
-/// The median distance along the path, world units; at least a step of the lattice.
-double step_of(const std::vector<glm::ivec3>& indices, const std::vector<uint32_t>& path, double lattice) {
-  std::vector<double> steps{1};
-  for (size_t i = 1; i < path.size(); ++i) {
-    steps.push_back(glm::distance(glm::dvec3(indices[path[i]]), glm::dvec3(indices[path[i - 1]])));
-  }
-  const auto middle = steps.begin() + static_cast<ptrdiff_t>(steps.size() / 2);
-  std::nth_element(steps.begin(), middle, steps.end());
-  return std::max(1.0, *middle) * lattice;
+  return model::item_tolerance(std::move(deviations), kDeviationOverError);
 }
 
 template <typename Value>
@@ -86,14 +40,6 @@ model::Column column_of(const std::vector<uint32_t>& path, const Value& value) {
   column.reserve(path.size());
   for (const uint32_t i : path) column.push_back(value(i));
   return column;
-}
-
-model::Field vector_field(const std::vector<uint32_t>& path, const auto& values) {
-  model::Field field;
-  for (int axis = 0; axis < 3; ++axis) {
-    field.push_back(column_of(path, [&](uint32_t i) { return static_cast<uint64_t>(values[i][axis]); }));
-  }
-  return field;
 }
 
 void add_harmonics(const std::vector<uint32_t>& path, const GaussianCodes& codes, std::vector<model::Field>& fields) {
@@ -110,14 +56,14 @@ void add_harmonics(const std::vector<uint32_t>& path, const GaussianCodes& codes
 std::vector<model::Field> fields_of(const std::vector<glm::ivec3>& indices, const GaussianCodes& codes,
                                     const std::vector<uint32_t>& path) {
   std::vector<model::Field> fields(kFixedFields);
-  fields[kPositions] = vector_field(path, indices);
-  fields[kScales] = vector_field(path, codes.scales);
+  fields[kPositions] = model::vector_field(path, indices);
+  fields[kScales] = model::vector_field(path, codes.scales);
   fields[kLargestParts] = {column_of(path, [&](uint32_t i) { return codes.rotations[i].largest; })};
   for (size_t part = 0; part < 3; ++part) {
     fields[kRotations].push_back(column_of(path, [&](uint32_t i) { return codes.rotations[i].parts.at(part); }));
   }
   fields[kOpacities] = {column_of(path, [&](uint32_t i) { return codes.opacities[i]; })};
-  fields[kColors] = vector_field(path, codes.colors);
+  fields[kColors] = model::vector_field(path, codes.colors);
   add_harmonics(path, codes, fields);
   return fields;
 }
@@ -128,17 +74,10 @@ std::vector<size_t> columns_of(int degree) {
   return columns;
 }
 
-bool all_at_most(const model::Field& field, uint64_t limit) {
-  return std::all_of(field.begin(), field.end(), [limit](const model::Column& column) {
-    return std::all_of(column.begin(), column.end(), [limit](uint64_t value) { return value <= limit; });
-  });
-}
-
 /// False if a value is none that an encoder writes.
 bool in_range(const std::vector<model::Field>& fields, const glm::u32vec3& extent) {
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!all_at_most({fields[kPositions][axis]}, extent[axis])) return false;
-  }
+  using model::all_at_most;
+  if (!model::within_extent(fields[kPositions], extent)) return false;
   for (size_t i = kFixedFields; i < fields.size(); ++i) {
     if (!all_at_most(fields[i], 2 * kHarmonicHalf)) return false;
   }
@@ -179,13 +118,13 @@ model::EncodedBlock encode_gaussians(const Gaussians& gaussians, const BlockTrai
   model::EncodedBlock block;
   block.kind = kGaussianKind;
   block.surfels = static_cast<uint32_t>(gaussians.size());
-  block.grid = lattice_of(gaussians);
-  const std::vector<glm::ivec3> indices = indices_of(gaussians, block);
+  block.grid = model::item_lattice(gaussians.positions, tolerance_of(gaussians));
+  const std::vector<glm::ivec3> indices = model::item_indices(gaussians.positions, block);
   const std::vector<uint32_t> path = model::path_order(indices);
   const GaussianCodes codes = encode_shapes(gaussians, traits);
   double largest = 0;
   for (const glm::u16vec3& s : codes.scales) largest = std::max(largest, decode_scale(std::max({s.x, s.y, s.z})));
-  block.spacing = static_cast<float>(surfel::kRadiusOverSpacing * step_of(indices, path, block.grid.scale.x));
+  block.spacing = static_cast<float>(surfel::kRadiusOverSpacing * model::step_along(indices, path, block.grid.scale.x));
   block.max_radius = std::max(block.spacing, static_cast<float>(kDrawnDeviations / 2 * largest));
   model::ByteWriter writer;
   writer.put(

@@ -129,4 +129,10 @@ Result<SogMeta> parse_sog_meta(std::string_view text) {
   return meta;
 }
 
+std::vector<std::string> picture_names(const SogMeta& meta) {
+  std::vector<std::string> names{meta.means_low, meta.means_high, meta.quats, meta.scale_codes, meta.color_codes};
+  if (meta.palette) names.insert(names.end(), {meta.palette->centroids, meta.palette->labels});
+  return names;
+}
+
 }  // namespace surfcast::gaussian

@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/result.h"
 
@@ -42,5 +43,8 @@ struct SogMeta {
 [[nodiscard]] bool looks_like_sog_meta(std::string_view text);
 
 Result<SogMeta> parse_sog_meta(std::string_view text);
+
+/// The pictures that a description names.
+[[nodiscard]] std::vector<std::string> picture_names(const SogMeta& meta);
 
 }  // namespace surfcast::gaussian

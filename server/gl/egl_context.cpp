@@ -36,13 +36,27 @@ bool is_software_device(EGLDeviceEXT device) {
   return has_word(eglQueryDeviceStringEXT(device, EGL_EXTENSIONS), "EGL_MESA_device_software");
 }
 
+/// A context that tells of a reset of the GPU (reset_status.h), or one that does not where there is no such thing.
+EGLContext new_context(EGLDisplay display) {
+  std::array<EGLint, 9> attributes = {EGL_CONTEXT_MAJOR_VERSION,
+                                      4,
+                                      EGL_CONTEXT_MINOR_VERSION,
+                                      5,
+                                      EGL_CONTEXT_OPENGL_PROFILE_MASK,
+                                      EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT,
+                                      EGL_CONTEXT_OPENGL_RESET_NOTIFICATION_STRATEGY,
+                                      EGL_LOSE_CONTEXT_ON_RESET,
+                                      EGL_NONE};
+  const EGLContext telling = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
+  if (telling != EGL_NO_CONTEXT) return telling;
+  attributes[6] = EGL_NONE;
+  return eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, attributes.data());
+}
+
 /// Makes a context on `display` current without a surface. EGL_NO_CONTEXT on failure.
 EGLContext current_context(EGLDisplay display) {
   if (!eglBindAPI(EGL_OPENGL_API)) return EGL_NO_CONTEXT;
-  constexpr std::array<EGLint, 7> kAttributes = {
-      EGL_CONTEXT_MAJOR_VERSION,           4,       EGL_CONTEXT_MINOR_VERSION, 5, EGL_CONTEXT_OPENGL_PROFILE_MASK,
-      EGL_CONTEXT_OPENGL_CORE_PROFILE_BIT, EGL_NONE};
-  EGLContext context = eglCreateContext(display, EGL_NO_CONFIG_KHR, EGL_NO_CONTEXT, kAttributes.data());
+  EGLContext context = new_context(display);
   if (context == EGL_NO_CONTEXT) return EGL_NO_CONTEXT;
   if (eglMakeCurrent(display, EGL_NO_SURFACE, EGL_NO_SURFACE, context)) return context;
   eglDestroyContext(display, context);

@@ -6,7 +6,7 @@
 
 namespace surfcast::grid {
 
-enum class GridFormat { kNrrd, kMetaImage, kVtkLegacy, kVtkXml, kNifti };
+enum class GridFormat { kNrrd, kMetaImage, kVtkLegacy, kVtkXml, kMrtrix, kNifti };
 
 /// The format of a file, by its first bytes; none if they are not those of a grid. A VTK file may still turn out to
 /// hold something else.

@@ -38,6 +38,7 @@ uint32_t components_of(SampleKind kind) {
     case SampleKind::kSymmetricTensor:
     case SampleKind::kSymmetricTensorLower:
     case SampleKind::kSymmetricTensorVtk:
+    case SampleKind::kSymmetricTensorMrtrix:
       return 6;
     case SampleKind::kMaskedSymmetricTensor:
       return 7;

@@ -20,12 +20,20 @@ enum class SampleKind {
   kSymmetricTensor,        ///< xx xy xz yy yz zz
   kSymmetricTensorLower,   ///< xx xy yy xz yz zz (NIfTI)
   kSymmetricTensorVtk,     ///< xx yy zz xy yz xz
+  kSymmetricTensorMrtrix,  ///< xx yy zz xy xz yz
   kMaskedSymmetricTensor,  ///< confidence, then as kSymmetricTensor
   kTensor,                 ///< nine, row by row
   kMaskedTensor,           ///< confidence, then as kTensor
 };
 
 [[nodiscard]] uint32_t components_of(SampleKind kind);
+
+/// The order and the axes of six components for which a file states none, as their writers have them.
+enum class TensorOrder {
+  kLower,   ///< xx xy yy xz yz zz, the lower triangle by rows, in the axes of the world
+  kFsl,     ///< xx xy xz yy yz zz, in the axes of the grid, the first one turned where they are right-handed
+  kMrtrix,  ///< xx yy zz xy xz yz, in the axes of the world
+};
 
 /// The directions of the axes x, y and z of the world, where a file states them: R or L, A or P, S for right or left,
 /// anterior or posterior, superior.

@@ -9,6 +9,7 @@
 #include "base/contract.h"
 #include "grid/grid_format.h"
 #include "grid/meta_image.h"
+#include "grid/mrtrix.h"
 #include "grid/nifti.h"
 #include "grid/nrrd.h"
 #include "grid/vtk_legacy.h"
@@ -30,6 +31,8 @@ Result<StoredGrid> parse(GridFormat format, const GridFile& file) {
       return parse_vtk_legacy(file);
     case GridFormat::kVtkXml:
       return parse_vtk_xml(file);
+    case GridFormat::kMrtrix:
+      return parse_mrtrix(file);
     case GridFormat::kNifti:
       break;
   }
@@ -47,18 +50,26 @@ Status GridReader::named(Status status) const {
   return fail(status.error().kind, path_.string() + ": " + status.error().message);
 }
 
-Result<GridReader> GridReader::open(const std::filesystem::path& path, std::string_view array) {
+Result<GridReader> GridReader::open(const std::filesystem::path& path, std::string_view array,
+                                    std::optional<TensorOrder> order) {
   Result<stream::FilePtr> file = stream::open_shared(path);
   if (!file) return fail(std::move(file.error()));
   const auto error = [&path](const Error& e) { return fail(e.kind, path.string() + ": " + e.message); };
   if ((*file)->bytes().empty()) return error({ErrorKind::kInvalidInput, "the file is empty"});
   const std::optional<GridFormat> format = grid_format_of(*file);
   if (!format) return error({ErrorKind::kUnsupported, "not a grid of a supported format"});
-  Result<StoredGrid> grid = parse(*format, {path, *file, std::string(array)});
+  Result<StoredGrid> grid = parse(*format, {path, *file, std::string(array), order});
   if (!grid) return error(grid.error());
   GridReader reader(path, std::move(*grid));
   if (Status status = reader.named(reader.restart()); !status) return fail(std::move(status.error()));
   return reader;
+}
+
+std::vector<std::filesystem::path> GridReader::data_files() const {
+  std::vector<std::filesystem::path> files;
+  files.reserve(grid_.data_files);
+  for (uint64_t i = 0; i < grid_.data_files; ++i) files.push_back(grid_.data_file(i));
+  return files;
 }
 
 /// Opens the streams at the first sample.

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
@@ -15,12 +16,16 @@ namespace surfcast::grid {
 /// depends on the format, not on the size of the grid: some buffers, and the window of a decoder.
 class GridReader {
  public:
-  /// Opens NRRD, MetaImage, VTK image data (legacy and XML) or NIfTI, detected by content. `array` names the array of a
-  /// VTK file; empty: its active one. Fails on colours and other components that are not a tensor, and where the file
-  /// cannot hold as many samples as it states. Every error names the file and the fault.
-  static Result<GridReader> open(const std::filesystem::path& path, std::string_view array = {});
+  /// Opens NRRD, MetaImage, VTK image data (legacy and XML), NIfTI or MRtrix, detected by content. `array` names the
+  /// array of a VTK file; empty: its active one. `order`: of six components of which a NIfTI file does not say that
+  /// they are a tensor; without it they are refused. Fails on colours and other components that are not a tensor, and
+  /// where the file cannot hold as many samples as it states. Every error names the file and the fault.
+  static Result<GridReader> open(const std::filesystem::path& path, std::string_view array = {},
+                                 std::optional<TensorOrder> order = {});
 
   [[nodiscard]] const GridHeader& header() const { return grid_.header; }
+  /// The files beside the header's that hold the samples.
+  [[nodiscard]] std::vector<std::filesystem::path> data_files() const;
   /// Samples read so far, or passed over.
   [[nodiscard]] uint64_t position() const { return position_; }
 

@@ -261,7 +261,7 @@ Result<StoredGrid> parse_meta_image(const GridFile& file) {
   StoredGrid grid;
   grid.header = std::move(*header);
   grid.swapped = samples.packing != Packing::kText && big != (std::endian::native == std::endian::big);
-  grid.open = [samples = std::move(samples)] { return open_samples(samples); };
+  store(std::move(samples), grid);
   return grid;
 }
 

@@ -5,6 +5,8 @@
 #include <bit>
 #include <cmath>
 #include <cstring>
+#include <glm/geometric.hpp>
+#include <glm/matrix.hpp>
 #include <string_view>
 #include <utility>
 #include <vector>
@@ -174,8 +176,27 @@ Result<ScalarType> type_of(int code) {
   return fail(ErrorKind::kInvalidInput, "NIfTI: unknown type of samples: " + std::to_string(code));
 }
 
+SampleKind kind_of(TensorOrder order) {
+  switch (order) {
+    case TensorOrder::kLower:
+      return SampleKind::kSymmetricTensorLower;
+    case TensorOrder::kMrtrix:
+      return SampleKind::kSymmetricTensorMrtrix;
+    case TensorOrder::kFsl:
+      break;
+  }
+  return SampleKind::kSymmetricTensor;
+}
+
+/// Six images along the fourth or the fifth axis, of which nothing says what they are.
+tl::unexpected<Error> ask_for_order() {
+  return fail(ErrorKind::kUnsupported,
+              "NIfTI: six images, which may be tensors: state their order with --tensor-order (lower: xx xy yy xz yz "
+              "zz, fsl: xx xy xz yy yz zz, mrtrix: xx yy zz xy xz yz)");
+}
+
 /// Dimensions: 1 to 3 space, 4 time, 5 components, which follow each other as whole images.
-Status read_sizes(const Fields& fields, StoredGrid& grid) {
+Status read_sizes(const Fields& fields, std::optional<TensorOrder> order, StoredGrid& grid) {
   const int64_t dimensions = fields.sizes[0];
   if (dimensions < 1 || dimensions > 7) {
     return fail(ErrorKind::kInvalidInput, "NIfTI: a grid of " + std::to_string(dimensions) + " dimensions");
@@ -186,8 +207,12 @@ Status read_sizes(const Fields& fields, StoredGrid& grid) {
     return fail(ErrorKind::kInvalidInput, "NIfTI: a negative size");
   }
   for (size_t axis = 0; axis < 3; ++axis) grid.header.size[axis] = static_cast<uint64_t>(sizes[axis + 1]);
-  const bool tensors = fields.intent == kSymmetricMatrixIntent && sizes[5] == 6;
-  if (sizes[4] != 1) {
+  const bool stated = fields.intent == kSymmetricMatrixIntent && sizes[5] == 6;
+  const bool six = std::max(sizes[4], sizes[5]) == 6 && std::min(sizes[4], sizes[5]) == 1;
+  const bool tensors = stated || (six && order.has_value());
+  const bool one = sizes[6] == 1 && sizes[7] == 1;
+  if (six && one && !tensors) return ask_for_order();
+  if (sizes[4] != 1 && !tensors) {
     return fail(ErrorKind::kUnsupported, "NIfTI: a series of " + std::to_string(sizes[4]) + " grids; one is read");
   }
   if ((sizes[5] != 1 && !tensors) || sizes[6] != 1 || sizes[7] != 1) {
@@ -196,7 +221,7 @@ Status read_sizes(const Fields& fields, StoredGrid& grid) {
                                              "; only scalars and tensors (1005) are read");
   }
   grid.planar = tensors;
-  grid.header.kind = tensors ? SampleKind::kSymmetricTensorLower : SampleKind::kScalar;
+  if (tensors) grid.header.kind = kind_of(order.value_or(TensorOrder::kLower));
   return {};
 }
 
@@ -237,13 +262,22 @@ void place(const Fields& fields, GridHeader& header) {
   }
 }
 
+/// The axes of tensors of FSL: those of the grid, the first one turned if they are right-handed, as in its tables of
+/// gradients.
+glm::dmat3 fsl_frame(const glm::dmat4x3& index_to_world) {
+  glm::dmat3 axes;
+  for (int axis = 0; axis < 3; ++axis) axes[axis] = glm::normalize(index_to_world[axis]);
+  if (glm::determinant(axes) > 0) axes[0] = -axes[0];
+  return axes;
+}
+
 std::string length_unit(int units) {
   static constexpr const char* kUnits[] = {"", "m", "mm", "um"};
   const int code = units & 7;
   return code < 4 ? kUnits[code] : "";
 }
 
-Result<StoredGrid> describe(const Fields& fields) {
+Result<StoredGrid> describe(const Fields& fields, std::optional<TensorOrder> order) {
   StoredGrid grid;
   grid.swapped = fields.swapped;
   grid.header.format = "NIfTI";
@@ -251,8 +285,11 @@ Result<StoredGrid> describe(const Fields& fields) {
   const Result<ScalarType> type = type_of(fields.type);
   if (!type) return fail(type.error());
   grid.header.type = *type;
-  if (Status status = read_sizes(fields, grid); !status) return fail(std::move(status.error()));
+  if (Status status = read_sizes(fields, order, grid); !status) return fail(std::move(status.error()));
   place(fields, grid.header);
+  if (grid.header.kind == SampleKind::kSymmetricTensor) {
+    grid.header.measurement_frame = fsl_frame(grid.header.index_to_world);
+  }
   grid.header.length_unit = length_unit(fields.units);
   if (fields.slope != 0 && std::isfinite(fields.slope) && std::isfinite(fields.intercept)) {
     grid.header.slope = fields.slope;
@@ -263,13 +300,13 @@ Result<StoredGrid> describe(const Fields& fields) {
 }
 
 /// "name.img" or "name.img.gz" beside "name.hdr" or "name.hdr.gz".
-Result<FilePtr> image_beside(std::filesystem::path header) {
+Result<std::filesystem::path> image_beside(std::filesystem::path header) {
   if (header.extension() == ".gz") header.replace_extension();
   header.replace_extension();
   for (const char* extension : {".img", ".img.gz"}) {
     std::filesystem::path path = header;
     path += extension;
-    if (std::filesystem::exists(path)) return stream::open_shared(path);
+    if (std::filesystem::exists(path)) return path;
   }
   return fail(ErrorKind::kNotFound, "NIfTI: the image (.img) beside this header is missing");
 }
@@ -287,9 +324,11 @@ bool looks_like_packed_nifti(const FilePtr& file) {
 Result<StoredGrid> parse_nifti(const GridFile& file) {
   const Result<Fields> fields = read_fields(head_of(file.file));
   if (!fields) return fail(fields.error());
-  Result<StoredGrid> grid = describe(*fields);
+  Result<StoredGrid> grid = describe(*fields, file.order);
   if (!grid) return grid;
-  Result<FilePtr> image = fields->pair ? image_beside(file.path) : Result<FilePtr>(file.file);
+  const Result<std::filesystem::path> path = fields->pair ? image_beside(file.path) : file.path;
+  if (!path) return fail(path.error());
+  Result<FilePtr> image = fields->pair ? stream::open_shared(*path) : Result<FilePtr>(file.file);
   if (!image) return fail(std::move(image.error()));
   StoredSamples samples;
   samples.packing = is_packed(*image) ? Packing::kInflate : Packing::kRaw;
@@ -298,7 +337,11 @@ Result<StoredGrid> parse_nifti(const GridFile& file) {
   samples.byte_skip = fields->data_offset;
   samples.file = std::move(*image);
   if (samples.byte_skip < 0) return fail(ErrorKind::kInvalidInput, "NIfTI: the place of the samples makes no sense");
-  grid->open = [samples = std::move(samples)] { return open_samples(samples); };
+  store(std::move(samples), *grid);
+  if (fields->pair) {
+    grid->data_files = 1;
+    grid->data_file = [image = *path](uint64_t) { return image; };
+  }
   return grid;
 }
 

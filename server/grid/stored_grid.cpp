@@ -139,6 +139,14 @@ Status check_files(const StoredSamples& samples, uint64_t share) {
 
 }  // namespace
 
+void store(StoredSamples samples, StoredGrid& grid) {
+  if (!samples.file) {
+    grid.data_files = samples.files;
+    grid.data_file = samples.name;
+  }
+  grid.open = [samples = std::move(samples)] { return open_samples(samples); };
+}
+
 Result<StreamPtr> open_samples(const StoredSamples& samples) {
   if (samples.file) return open_share(samples, samples.file, samples.bytes);
   const Result<uint64_t> share = share_of(samples);

@@ -19,13 +19,18 @@ struct StoredGrid {
   bool planar = false;   ///< all samples of the first component come first, then those of the next
   /// A new stream of the samples, component fastest unless planar, of exactly their size or truncated.
   std::function<Result<stream::StreamPtr>()> open;
+  /// The files that hold the samples; none if the header's own file does. A header may state any number of them; all
+  /// are there once the samples are open.
+  uint64_t data_files = 0;
+  std::function<std::filesystem::path(uint64_t)> data_file;
 };
 
 /// A file that is to be read as a grid.
 struct GridFile {
   std::filesystem::path path;
   stream::FilePtr file;
-  std::string array;  ///< the array wanted of a file with several; empty: the one the file prefers
+  std::string array;                   ///< the array wanted of a file with several; empty: the one the file prefers
+  std::optional<TensorOrder> order{};  ///< of tensors whose order the file does not state
 
   [[nodiscard]] std::string_view text() const {
     const auto bytes = file->bytes();
@@ -47,6 +52,9 @@ struct StoredSamples {
   uint64_t files = 1;
   std::function<std::filesystem::path(uint64_t)> name;
 };
+
+/// Notes in a grid which files its samples are in, and how they are opened.
+void store(StoredSamples samples, StoredGrid& grid);
 
 /// Opens the samples. Fails if a file is missing, or holds fewer bytes than its share where that can be told.
 Result<stream::StreamPtr> open_samples(const StoredSamples& samples);

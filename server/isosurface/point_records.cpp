@@ -8,6 +8,8 @@
 #include <glm/vec4.hpp>
 #include <utility>
 
+#include "builder/spooled_rows.h"
+
 namespace surfcast::isosurface {
 namespace {
 
@@ -20,41 +22,6 @@ template <typename T>
 void put(const T& value, std::vector<std::byte>& bytes) {
   const auto* first = reinterpret_cast<const std::byte*>(&value);
   bytes.insert(bytes.end(), first, first + sizeof(T));
-}
-
-class SpooledRows : public scan::RowSource {
- public:
-  SpooledRows(builder::SpoolFile file, const PointRecords& records)
-      : file_(std::move(file)), columns_(records.columns()), record_(records.size()) {
-    traits_.surface_step = records.surface_step();
-  }
-
-  [[nodiscard]] const scan::RowTraits& traits() const override { return traits_; }
-  [[nodiscard]] const std::vector<scan::ColumnInfo>& columns() const override { return columns_; }
-  [[nodiscard]] size_t pieces() const override { return (rows() + scan::kPieceRows - 1) / scan::kPieceRows; }
-  [[nodiscard]] Result<scan::PointTable> read(size_t piece) const override;
-
- private:
-  [[nodiscard]] uint64_t rows() const { return file_.size() / record_; }
-
-  builder::SpoolFile file_;
-  scan::RowTraits traits_;
-  std::vector<scan::ColumnInfo> columns_;
-  size_t record_;
-};
-
-Result<scan::PointTable> SpooledRows::read(size_t piece) const {
-  const uint64_t first = piece * scan::kPieceRows;
-  scan::PointTable table;
-  table.rows = static_cast<size_t>(std::min(scan::kPieceRows, rows() - first));
-  table.records.resize(table.rows * record_);
-  if (Status status = file_.read(first * record_, table.records); !status) return fail(std::move(status.error()));
-  const std::byte* at = table.records.data();
-  for (const scan::ColumnInfo& column : columns_) {
-    table.columns.push_back({column.type, at, record_, false});
-    at += scan::size_of(column.type);
-  }
-  return table;
 }
 
 }  // namespace
@@ -86,7 +53,9 @@ void PointRecords::append(const SurfacePoint& point, const IsoSurface& surface, 
 }
 
 std::unique_ptr<scan::RowSource> rows_of(builder::SpoolFile file, const PointRecords& records) {
-  return std::make_unique<SpooledRows>(std::move(file), records);
+  scan::RowTraits traits;
+  traits.surface_step = records.surface_step();
+  return builder::spooled_rows(std::move(file), records.columns(), traits);
 }
 
 }  // namespace surfcast::isosurface

@@ -1,8 +1,8 @@
 #pragma once
 
-#include <array>
 #include <glm/mat4x3.hpp>
 #include <glm/vec3.hpp>
+#include <vector>
 
 #include "residency/packed_block.h"
 #include "volume/brick.h"
@@ -20,7 +20,7 @@ class BrickBlock : public residency::BlockHeader {
   /// Samples of the volume, and its place (model::Volume).
   [[nodiscard]] const glm::u32vec3& size() const { return size_; }
   [[nodiscard]] const glm::dmat4x3& index_to_world() const { return index_to_world_; }
-  [[nodiscard]] const std::array<volume::CodeRange, volume::kAllSubBricks>& sub_bricks() const { return ranges_; }
+  [[nodiscard]] const std::vector<volume::CodeRange>& sub_bricks() const { return ranges_; }
 
   /// Bricks are not projected.
   [[nodiscard]] glm::vec4 scale(int /*unit*/) const override { return glm::vec4(0); }
@@ -30,7 +30,7 @@ class BrickBlock : public residency::BlockHeader {
   volume::BrickHeader header_;
   glm::u32vec3 size_;
   glm::dmat4x3 index_to_world_;
-  std::array<volume::CodeRange, volume::kAllSubBricks> ranges_;
+  std::vector<volume::CodeRange> ranges_;
 };
 
 }  // namespace surfcast::kinds

@@ -38,12 +38,12 @@ size_t DecodedGaussians::bytes() const {
 std::optional<GaussianOnRays> DecodedGaussians::drawn(const PickQuery& query, size_t i) const {
   const glm::dvec3 position = block_.position(i);
   const glm::dvec3 o = query.frame.to_camera(position);
-  if (!(o.z > SURFCAST_TRAINED_NEAR) || block_.codes.opacities[i] == 0 || !query.clip.shows(position)) {
-    return std::nullopt;
-  }
+  const double opacity = double{shapes_.opacities[i]} * query.opacity;
+  const bool clear = block_.codes.opacities[i] == 0 || opacity <= 0;
+  if (!(o.z > SURFCAST_TRAINED_NEAR) || clear || !query.clip.shows(position)) return std::nullopt;
   const glm::dmat3 factor = factor_of(shapes_, i);
   const glm::dmat3 turned{query.frame.rotate(factor[0]), query.frame.rotate(factor[1]), query.frame.rotate(factor[2])};
-  return GaussianOnRays(o, turned, double{shapes_.opacities[i]}, query.frame.eta);
+  return GaussianOnRays(o, turned, opacity, query.frame.eta);
 }
 
 void DecodedGaussians::hit(const PickQuery& query, std::vector<PickHit>& hits) const {

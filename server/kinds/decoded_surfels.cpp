@@ -3,11 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <numbers>
 #include <utility>
 #include <variant>
 
 #include "kinds/opaque_disc.h"
 #include "surfel/drawn_radius.h"
+#include "surfel/even_sampling.h"
+#include "surfel/opacity.h"
 
 namespace surfcast::kinds {
 namespace {
@@ -24,7 +27,7 @@ double value_at(const surfel::ScalarValues& values, size_t i) {
 }  // namespace
 
 DecodedSurfels::DecodedSurfels(model::DecodedBlock block, const model::ModelInfo& info)
-    : block_(std::move(block)), oriented_(info.oriented), color_bits_(info.color_bits) {}
+    : block_(std::move(block)), curvature_(block_.scalars), oriented_(info.oriented), color_bits_(info.color_bits) {}
 
 size_t DecodedSurfels::bytes() const {
   size_t bytes = bytes_of(block_.indices) + bytes_of(block_.normals) + bytes_of(block_.radii) +
@@ -44,21 +47,50 @@ std::optional<uint8_t> DecodedSurfels::class_of(size_t surfel) const {
   return std::nullopt;
 }
 
-bool DecodedSurfels::hidden(const PickQuery& query, size_t surfel) const {
-  if (!query.clip.shows(block_.position(surfel))) return true;
-  if (query.hidden_classes.none()) return false;
-  const std::optional<uint8_t> code = class_of(surfel);
-  return code && query.hidden_classes[*code];
+double DecodedSurfels::opacity_of_scan(size_t surfel) const {
+  const auto found = std::ranges::find(block_.scalars, surfel::kOpacityAttribute, &surfel::ScalarAttribute::name);
+  return found == block_.scalars.end() ? 1 : surfel::opacity_at(found->values, surfel);
+}
+
+/// Discs of an even sampling cover each point of a surface pi r^2 / h^2 times, which together have its opacity.
+double DecodedSurfels::opacity_of(const PickQuery& query, size_t surfel) const {
+  constexpr double kShare = 1 / (std::numbers::pi * surfel::kRadiusOverSpacing * surfel::kRadiusOverSpacing);
+  double opacity = query.transparent ? query.opacity : 1;
+  if (query.by_file) opacity *= opacity_of_scan(surfel);
+  if (!query.clip.shows(block_.position(surfel))) opacity *= query.ghost;
+  if (opacity > 0 && (query.hidden_classes.any() || !query.class_opacities.empty())) {
+    const std::optional<uint8_t> code = class_of(surfel);
+    if (code && query.hidden_classes[*code]) return 0;
+    if (code && !query.class_opacities.empty()) opacity *= query.class_opacities[*code];
+  }
+  return opacity < 1 ? -std::expm1(kShare * std::log1p(-opacity)) : 1;
 }
 
 /// The disc of a surfel as it is drawn, in the camera frame; none if its back is seen.
-std::optional<DecodedSurfels::DrawnDisc> DecodedSurfels::disc_of(const geometry::CameraFrame& frame, size_t surfel,
+std::optional<DecodedSurfels::DrawnDisc> DecodedSurfels::disc_of(const PickQuery& query, size_t surfel,
                                                                  float widest) const {
+  const geometry::CameraFrame& frame = query.frame;
   const glm::dvec3 o = frame.to_camera(block_.position(surfel));
   if (block_.is_scatter(surfel)) return DrawnDisc{o, facing_eye(o), double{block_.radii[surfel]}};
-  const glm::dvec3 n = frame.rotate(glm::dvec3(block_.normals[surfel]));
-  if (oriented_ && glm::dot(n, o) >= 0) return std::nullopt;
-  return DrawnDisc{o, n, double{std::min(block_.radii[surfel], widest)}};
+  const glm::dvec3 world(block_.normals[surfel]);
+  const glm::dvec3 n = frame.rotate(world);
+  const double radius = double{std::min(block_.radii[surfel], widest)};
+  if (!curvature_.empty() && curvature_.at(surfel) != surfel::CurvatureCode{}) {
+    const surfel::CurvatureCode code = curvature_.at(surfel);
+    const surfel::TangentFrame axes = surfel::tangent_frame(world);
+    const surfel::Curvature bend = surfel::decode_curvature(code, double{block_.radii[surfel]});
+    return DrawnDisc{o, n, radius, surfel::OsculatingSurface{o, n, {frame.rotate(axes.u), frame.rotate(axes.v)}, bend},
+                     surfel::decode_border(code[3])};
+  }
+  if (oriented_ && !query.transparent && glm::dot(n, o) >= 0) return std::nullopt;
+  return DrawnDisc{o, n, radius};
+}
+
+std::optional<DiscHit> DecodedSurfels::meet(const DrawnDisc& drawn, const PickQuery& query,
+                                            const glm::dvec3& ray) const {
+  return drawn.surface ? hit_surface(*drawn.surface, drawn.radius, drawn.border, ray, query.frame.eta,
+                                     oriented_ && !query.transparent)
+                       : hit_disc(drawn.o, drawn.n, drawn.radius, ray, query.frame.eta);
 }
 
 void DecodedSurfels::hit(const PickQuery& query, std::vector<PickHit>& hits) const {
@@ -66,11 +98,12 @@ void DecodedSurfels::hit(const PickQuery& query, std::vector<PickHit>& hits) con
   const glm::dvec3 ray = frame.ray(query.pixel);
   const float widest = surfel::largest_drawn_radius(block_.radii, block_.scatter);
   for (size_t i = 0; i < block_.size(); ++i) {
-    const auto drawn = disc_of(frame, i, widest);
+    const auto drawn = disc_of(query, i, widest);
     if (!drawn) continue;
-    const auto disc = hit_disc(drawn->o, drawn->n, drawn->radius, ray, frame.eta);
-    if (!disc || hidden(query, i)) continue;
-    hits.push_back({static_cast<uint32_t>(i), disc->form, disc->surface, disc->occluder});
+    const auto disc = meet(*drawn, query, ray);
+    const double opacity = disc ? opacity_of(query, i) : 0;
+    if (opacity <= 0) continue;
+    hits.push_back({static_cast<uint32_t>(i), disc->form, disc->surface, disc->occluder, opacity});
   }
 }
 
@@ -79,16 +112,18 @@ void DecodedSurfels::cover(const PickQuery& query, PixelHits& pixels) const {
   const geometry::CameraFrame& frame = query.frame;
   const float widest = surfel::largest_drawn_radius(block_.radii, block_.scatter);
   for (size_t i = 0; i < block_.size(); ++i) {
-    const auto drawn = disc_of(frame, i, widest);
+    const auto drawn = disc_of(query, i, widest);
     if (!drawn) continue;
-    const auto& [o, n, radius] = *drawn;
-    const auto range = disc_pixels(o, n, radius, frame, pixels.range());
-    if (!range || hidden(query, i)) continue;
+    const double ball = drawn->surface ? ball_of(*drawn->surface, drawn->radius) : 0;
+    const auto range = drawn->surface ? ball_pixels(drawn->o, ball, frame, pixels.range())
+                                      : disc_pixels(drawn->o, drawn->n, drawn->radius, frame, pixels.range());
+    const double opacity = range ? opacity_of(query, i) : 0;
+    if (opacity <= 0) continue;
     const ItemLook look = look_of(query, i);
-    const double nearest = nearest_depth(o, radius);
+    const double nearest = drawn->surface ? drawn->o.z - ball : nearest_depth(drawn->o, drawn->radius);
     pixels.for_each_shown(*range, nearest, [&](const glm::ivec2& pixel) {
-      const auto disc = hit_disc(drawn->o, drawn->n, drawn->radius, frame.ray(glm::dvec2(pixel) + 0.5), frame.eta);
-      if (disc) pixels.add(pixel, {static_cast<uint32_t>(i), disc->form, disc->surface, disc->occluder}, look);
+      const auto disc = meet(*drawn, query, frame.ray(glm::dvec2(pixel) + 0.5));
+      if (disc) pixels.add(pixel, {static_cast<uint32_t>(i), disc->form, disc->surface, disc->occluder, opacity}, look);
     });
   }
 }
@@ -120,6 +155,7 @@ PickedSurfel DecodedSurfels::describe(const PickQuery& query, uint32_t surfel) c
   picked.radius = double{block_.radii[surfel]};
   picked.distance = glm::length(picked.position - query.frame.eye);
   for (const surfel::ScalarAttribute& scalar : block_.scalars) {
+    if (surfel::is_curvature_column(scalar.name)) continue;  // no attribute of the source
     picked.values.push_back({scalar.name, value_at(scalar.values, surfel)});
   }
   return picked;

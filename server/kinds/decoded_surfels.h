@@ -1,5 +1,6 @@
 #pragma once
 
+#include "kinds/opaque_disc.h"
 #include "kinds/source_block.h"
 #include "model/model_file.h"
 
@@ -19,19 +20,27 @@ class DecodedSurfels : public SourceBlock {
  private:
   /// The classification code; none if the model has no classes.
   [[nodiscard]] std::optional<uint8_t> class_of(size_t surfel) const;
-  [[nodiscard]] bool hidden(const PickQuery& query, size_t surfel) const;
+  [[nodiscard]] double opacity_of_scan(size_t surfel) const;
+  /// The share of the light that the surfel's disc takes; 0 if it is not shown.
+  [[nodiscard]] double opacity_of(const PickQuery& query, size_t surfel) const;
   struct DrawnDisc {
     glm::dvec3 o;  ///< centre
     glm::dvec3 n;  ///< unit normal
     double radius = 0;
+    std::optional<surfel::OsculatingSurface> surface{};  ///< of a surfel with curvature or a border
+    std::optional<surfel::Border> border{};
   };
+  /// Where the ray meets what is drawn.
+  [[nodiscard]] std::optional<DiscHit> meet(const DrawnDisc& drawn, const PickQuery& query,
+                                            const glm::dvec3& ray) const;
   /// `widest`: the largest radius of a disc that is no scatter.
-  [[nodiscard]] std::optional<DrawnDisc> disc_of(const geometry::CameraFrame& frame, size_t surfel, float widest) const;
+  [[nodiscard]] std::optional<DrawnDisc> disc_of(const PickQuery& query, size_t surfel, float widest) const;
   [[nodiscard]] glm::dvec3 normal_of(const PickQuery& query, size_t surfel) const;
   [[nodiscard]] glm::u8vec3 color_of(size_t surfel) const;
   [[nodiscard]] ItemLook look_of(const PickQuery& query, size_t surfel) const;
 
   model::DecodedBlock block_;
+  surfel::CurvatureColumns curvature_;  ///< of the block
   bool oriented_;
   int color_bits_;
 };

@@ -7,14 +7,14 @@ namespace surfcast::kinds {
 FileBlocks::FileBlocks(std::shared_ptr<const model::ModelFile> model, KindTable kinds, std::vector<uint32_t> numbers)
     : model_(std::move(model)), kinds_(kinds), numbers_(std::move(numbers)) {
   std::vector<ldc::BlockEntry> blocks(model_->blocks().begin(), model_->blocks().end());
-  bool counts_more = false;
+  bool differs = false;
   for (uint32_t block = 0; block < blocks.size(); ++block) {
     const uint64_t texels = kinds_[kind_of(block)]->texels(model_->info(), blocks[block].surfels);
     const uint64_t items = (texels + residency::kMaxPackedPerSurfel - 1) / residency::kMaxPackedPerSurfel;
-    counts_more |= items > blocks[block].surfels;
+    differs |= items != blocks[block].surfels;
     blocks[block].surfels = static_cast<uint32_t>(items);
   }
-  if (counts_more) tree_.emplace(std::move(blocks));
+  if (differs) tree_.emplace(std::move(blocks));
 }
 
 Result<residency::PackedBlock> FileBlocks::load(uint32_t block, bool attributes) const {

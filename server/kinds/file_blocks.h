@@ -16,8 +16,8 @@ class FileBlocks : public residency::BlockSource {
   FileBlocks(std::shared_ptr<const model::ModelFile> model, KindTable kinds, std::vector<uint32_t> numbers);
 
   [[nodiscard]] uint64_t id() const override { return model_->id(); }
-  /// The tree of the model. Blocks of kinds with more than kMaxPackedPerSurfel texels per item count as so many more
-  /// items.
+  /// The tree of the model. Blocks count as many items as their texels need at kMaxPackedPerSurfel each, so that
+  /// budgets are those of memory.
   [[nodiscard]] const ldc::BlockTree& tree() const override { return tree_ ? *tree_ : model_->tree(); }
   void prefetch(uint32_t block) const override { model_->prefetch(block); }
   [[nodiscard]] Result<residency::PackedBlock> load(uint32_t block, bool attributes) const override;

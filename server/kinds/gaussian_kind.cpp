@@ -15,7 +15,7 @@ namespace {
 
 constexpr uint32_t kPage = residency::SurfelPool::kPageSurfels;
 
-Result<gaussian::GaussianBlock> decode_block(const model::ModelFile& model, uint32_t block) {
+Result<gaussian::GaussianBlock> decode_gaussian_block(const model::ModelFile& model, uint32_t block) {
   const Result<model::StoredBlock> stored = model.stored(block);
   if (!stored) return fail(stored.error());
   Result<gaussian::GaussianBlock> decoded = gaussian::decode_gaussians(*stored);
@@ -71,7 +71,7 @@ uint64_t GaussianKind::texels(const model::ModelInfo& info, uint32_t items) cons
 
 Result<residency::PackedBlock> GaussianKind::load(const model::ModelFile& model, uint32_t block,
                                                   bool attributes) const {
-  const Result<gaussian::GaussianBlock> decoded = decode_block(model, block);
+  const Result<gaussian::GaussianBlock> decoded = decode_gaussian_block(model, block);
   if (!decoded) return fail(decoded.error());
   gaussian::PackedGaussians packed = gaussian::pack_gaussians(decoded->codes, kPage);
   residency::PackedBlock result;
@@ -83,7 +83,7 @@ Result<residency::PackedBlock> GaussianKind::load(const model::ModelFile& model,
 }
 
 Result<std::shared_ptr<const SourceBlock>> GaussianKind::decode(const model::ModelFile& model, uint32_t block) const {
-  Result<gaussian::GaussianBlock> decoded = decode_block(model, block);
+  Result<gaussian::GaussianBlock> decoded = decode_gaussian_block(model, block);
   if (!decoded) return fail(std::move(decoded.error()));
   return std::make_shared<const DecodedGaussians>(std::move(*decoded));
 }

@@ -2,32 +2,12 @@
 
 #include <utility>
 
-#include "base/contract.h"
 #include "kinds/brick_block.h"
+#include "kinds/grid_block.h"
 #include "volume/packing.h"
 #include "volume/read_brick.h"
 
 namespace surfcast::kinds {
-namespace {
-
-/// A decoded brick. It has no items that a pixel could show alone.
-class GridBlock : public SourceBlock {
- public:
-  explicit GridBlock(volume::Brick brick) : brick_(std::move(brick)) {}
-
-  [[nodiscard]] size_t bytes() const override { return brick_.codes.size() * sizeof(uint16_t); }
-  void hit(const PickQuery& /*query*/, std::vector<PickHit>& /*hits*/) const override {}
-  void cover(const PickQuery& /*query*/, PixelHits& /*pixels*/) const override {}
-  [[nodiscard]] PickedSurfel describe(const PickQuery& /*query*/, uint32_t /*item*/) const override {
-    SURFCAST_EXPECTS(false);  // hit() finds nothing to describe
-    return {};
-  }
-
- private:
-  volume::Brick brick_;
-};
-
-}  // namespace
 
 Result<residency::PackedBlock> GridKind::load(const model::ModelFile& model, uint32_t block, bool attributes) const {
   const Result<volume::Brick> brick = volume::read_brick(model, block);
@@ -43,10 +23,16 @@ Result<residency::PackedBlock> GridKind::load(const model::ModelFile& model, uin
   return packed;
 }
 
+uint64_t GridKind::texels(const model::ModelInfo& info, uint32_t items) const {
+  const uint32_t texels = volume::most_texels(items);
+  return texels > 0 ? texels : Kind::texels(info, items);  // of a damaged block, which is not loaded
+}
+
 Result<std::shared_ptr<const SourceBlock>> GridKind::decode(const model::ModelFile& model, uint32_t block) const {
   Result<volume::Brick> brick = volume::read_brick(model, block);
   if (!brick) return fail(std::move(brick.error()));
-  return std::make_shared<const GridBlock>(std::move(*brick));
+  const model::Volume& volume = model.volumes()[brick->header.volume];
+  return std::make_shared<const GridBlock>(std::move(*brick), volume);
 }
 
 }  // namespace surfcast::kinds

@@ -15,6 +15,7 @@ class GridKind : public Kind {
                                                                   uint32_t block) const override;
   [[nodiscard]] KindShaders shaders() const override { return {}; }
   [[nodiscard]] DrawnAs drawn_as() const override { return DrawnAs::kVolume; }
+  [[nodiscard]] uint64_t texels(const model::ModelInfo& info, uint32_t items) const override;
 };
 
 }  // namespace surfcast::kinds

@@ -26,6 +26,7 @@ struct KindShaders {
 enum class DrawnAs {
   kSurface,    ///< layers of the splat kernel
   kGaussians,  ///< composited one by one, sorted by depth (render/gaussian_passes.h)
+  kGlyphs,     ///< opaque, the nearest of each sample (render/ellipsoid_passes.h); their headers are GlyphBlocks
   kVolume,     ///< sampled along rays (render/volume_passes.h); the headers of its blocks are BrickBlocks
 };
 

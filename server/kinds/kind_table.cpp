@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 
+#include "kinds/ellipsoid_kind.h"
 #include "kinds/gaussian_kind.h"
 #include "kinds/grid_kind.h"
 #include "kinds/surfel_kind.h"
@@ -13,7 +14,8 @@ KindTable built_in_kinds() {
   static const SurfelKind kSurfels;
   static const GridKind kGrids;
   static const GaussianKind kGaussians;
-  static const std::array<const Kind*, 3> kKinds{&kSurfels, &kGrids, &kGaussians};
+  static const EllipsoidKind kEllipsoids;
+  static const std::array<const Kind*, 4> kKinds{&kSurfels, &kGrids, &kGaussians, &kEllipsoids};
   return kKinds;
 }
 

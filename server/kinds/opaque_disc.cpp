@@ -99,6 +99,32 @@ std::optional<DiscHit> hit_disc(const glm::dvec3& o, const glm::dvec3& n, double
   return DiscHit{form, depth, std::max(plane, o.z - range) * (1 + push / o.z), std::max(depth, o.z - range)};
 }
 
+std::optional<DiscHit> hit_surface(const surfel::OsculatingSurface& surface, double radius,
+                                   const std::optional<surfel::Border>& border, const glm::dvec3& ray, double eta,
+                                   bool oriented) {
+  const std::optional<surfel::SurfaceHit> hit = surfel::meet(surface, ray, oriented);
+  if (!hit) return std::nullopt;
+  const double disc = SURFCAST_VISIBILITY_RADIUS * radius;
+  const double form = glm::dot(hit->place, hit->place) / (disc * disc);
+  if (!(form <= 1)) return std::nullopt;
+  if (border && glm::dot(hit->place, border->direction) > border->distance * radius) return std::nullopt;
+  const double push = SURFCAST_VISIBILITY_DEPTH * radius + SURFCAST_VISIBILITY_FOOTPRINT * hit->t / eta;
+  return DiscHit{form, hit->t, hit->t + push, hit->t};
+}
+
+double ball_of(const surfel::OsculatingSurface& surface, double radius) {
+  const double extent = extent_of(radius);
+  return std::hypot(extent, 0.5 * surface.curvature.largest() * extent * extent);
+}
+
+std::optional<PixelRange> ball_pixels(const glm::dvec3& o, double radius, const geometry::CameraFrame& frame,
+                                      const PixelRange& within) {
+  if (o.z + radius <= 0) return std::nullopt;
+  const double reach = radius * (1 + kSlack);
+  if (o.z <= reach) return within;
+  return pixels_between(ball_interval(o.x, o.z, reach), ball_interval(o.y, o.z, reach), frame, within);
+}
+
 double nearest_depth(const glm::dvec3& o, double radius) {
   return o.z - extent_of(radius);
 }
@@ -111,9 +137,7 @@ std::optional<PixelRange> disc_pixels(const glm::dvec3& o, const glm::dvec3& n, 
     const Interval y = ellipse_interval(o.y / o.z, n.y, n.z, radius / o.z, frame.eta);
     return pixels_between(x, y, frame, within);
   }
-  const double reach = radius * (1 + kSlack);
-  if (o.z <= reach) return within;
-  return pixels_between(ball_interval(o.x, o.z, reach), ball_interval(o.y, o.z, reach), frame, within);
+  return ball_pixels(o, radius, frame, within);
 }
 
 glm::dvec3 facing_eye(const glm::dvec3& o) {

@@ -5,6 +5,7 @@
 
 #include "geometry/camera.h"
 #include "kinds/pixel_hits.h"
+#include "surfel/curvature.h"
 
 namespace surfcast::kinds {
 
@@ -23,6 +24,16 @@ struct DiscHit {
 /// is CameraFrame::eta. None if the surfel does not cover the pixel.
 std::optional<DiscHit> hit_disc(const glm::dvec3& o, const glm::dvec3& n, double radius, const glm::dvec3& ray,
                                 double eta);
+
+/// The same for a surfel with curvature, in the camera frame: as in shaders/curved/fragment.glsl.
+std::optional<DiscHit> hit_surface(const surfel::OsculatingSurface& surface, double radius,
+                                   const std::optional<surfel::Border>& border, const glm::dvec3& ray, double eta,
+                                   bool oriented);
+/// Radius of a ball about the centre that contains the part of the surface that is drawn.
+double ball_of(const surfel::OsculatingSurface& surface, double radius);
+/// The pixels within `within` where a ball is seen. None if it is seen in no pixel.
+std::optional<PixelRange> ball_pixels(const glm::dvec3& o, double radius, const geometry::CameraFrame& frame,
+                                      const PixelRange& within);
 
 /// The normal of the splat of scatter at `o` (camera frame): it faces the eye.
 glm::dvec3 facing_eye(const glm::dvec3& o);

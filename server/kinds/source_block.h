@@ -5,13 +5,16 @@
 #include <cstdint>
 #include <glm/vec2.hpp>
 #include <glm/vec3.hpp>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "geometry/camera.h"
 #include "geometry/clip.h"
+#include "kinds/glyph_sight.h"
 #include "kinds/pixel_hits.h"
+#include "kinds/volume_sight.h"
 
 namespace surfcast::kinds {
 
@@ -21,6 +24,26 @@ struct PickQuery {
   glm::dvec2 pixel{0};  ///< from the upper left corner; pixel centres are at +0.5
   geometry::Clip clip;
   std::bitset<256> hidden_classes;
+  /// What the picture shows of the volumes of the model, by their numbers; null: nothing.
+  std::shared_ptr<const std::vector<VolumeSight>> volumes{};
+  /// What the picture shows of the sources of ellipsoids, by their numbers; null: all, by default.
+  std::shared_ptr<const std::vector<GlyphSight>> glyphs{};
+  double reach = 0;    ///< what is drawn of an item may extend so far from its centre although its block says less
+  double opacity = 1;  ///< see picture::PictureRequest
+  double depth = 0;    ///< in describe(): PickHit::depth of the item
+  /// How surfels are seen through, beside `opacity`, see picture::PictureRequest. By class; empty: all are 1.
+  std::vector<double> class_opacities{};
+  double ghost = 0;
+  bool by_file = false;      ///< opacities are those of the scan
+  bool transparent = false;  ///< surfels are seen through, and from behind
+
+  /// Whether something of what lies in the box may be shown.
+  [[nodiscard]] bool may_show(const geometry::Box& box) const { return ghost > 0 || clip.may_show(box); }
+
+  /// Null if nothing is shown.
+  [[nodiscard]] const VolumeSight* sight_of(uint32_t volume) const {
+    return volumes && volume < volumes->size() ? &(*volumes)[volume] : nullptr;
+  }
 };
 
 struct PickedValue {

@@ -29,7 +29,7 @@ bool may_be_drawn(const residency::PackedRun& run, const residency::PackedRun::R
 class SurfelHeader : public residency::BlockHeader {
  public:
   explicit SurfelHeader(residency::PackedSurfels& packed)
-      : radius_(packed.radius), weight_(packed.weight), runs_(std::move(packed.runs)) {}
+      : radius_(packed.radius), weight_(packed.weight), curved_(packed.curved), runs_(std::move(packed.runs)) {}
 
   [[nodiscard]] glm::vec4 scale(int unit) const override {
     const auto scale_of = [](const residency::LogScale& s) {
@@ -42,7 +42,8 @@ class SurfelHeader : public residency::BlockHeader {
     for (const residency::PackedRun& run : runs_) {
       for (uint32_t i = 0; i < run.count; i += SURFCAST_CHUNK) {
         if (!may_be_drawn(run, run.chunks[i / SURFCAST_CHUNK], wanted)) continue;
-        runs.push_back({run.first + i, std::min<uint32_t>(run.count - i, SURFCAST_CHUNK), flags_of(run)});
+        const uint32_t flags = flags_of(run) | (curved_ ? SURFCAST_RUN_CURVED : 0);
+        runs.push_back({run.first + i, std::min<uint32_t>(run.count - i, SURFCAST_CHUNK), flags});
       }
     }
   }
@@ -50,6 +51,7 @@ class SurfelHeader : public residency::BlockHeader {
  private:
   residency::LogScale radius_;
   residency::LogScale weight_;
+  bool curved_;
   std::vector<residency::PackedRun> runs_;
 };
 

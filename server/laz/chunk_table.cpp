@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "base/invalid_input.h"
 #include "laz/byte_access.h"
 #include "laz/integer_decoder.h"
 
@@ -13,34 +14,35 @@ namespace {
 constexpr size_t kOffsetBytes = 8;
 /// Version and number of chunks precede the coded entries.
 constexpr size_t kTableHeaderBytes = 8;
-
-tl::unexpected<Error> invalid(std::string what) {
-  return fail(ErrorKind::kInvalidInput, std::move(what));
-}
+/// Points that one byte of a chunk can encode, at the very most. Each point but the first takes a symbol of 64 or 128
+/// and two or three of 33. A symbol of n takes -log2(1 - (n - 1) / 2^15) bits at least, because each of the others has
+/// a probability of 2^-15 or more. The sum is 0.007 bits, which makes 1143 points of a byte; this is a round number
+/// above.
+constexpr uint64_t kPointsOfByte = 2048;
 
 /// A writer that cannot seek back to the point data stores the offset in the last bytes of the file.
 Result<size_t> table_offset(std::span<const std::byte> file, size_t data_offset) {
   if (file.size() < data_offset || file.size() - data_offset < kOffsetBytes) {
-    return invalid("truncated: the file ends where the LAZ points begin");
+    return invalid_input("truncated: the file ends where the LAZ points begin");
   }
   auto offset = load<int64_t>(&file[data_offset]);
   if (offset == -1) offset = load<int64_t>(file.data() + file.size() - kOffsetBytes);
   const auto first_chunk = static_cast<int64_t>(data_offset + kOffsetBytes);
-  if (offset < first_chunk) return invalid("the LAZ chunk table is missing: the file was not written to its end");
+  if (offset < first_chunk) return invalid_input("the LAZ chunk table is missing: the file was not written to its end");
   if (file.size() < kTableHeaderBytes || static_cast<uint64_t>(offset) > file.size() - kTableHeaderBytes) {
-    return invalid("truncated: the LAZ chunk table lies beyond the end of the file");
+    return invalid_input("truncated: the LAZ chunk table lies beyond the end of the file");
   }
   return static_cast<size_t>(offset);
 }
 
 Status check_number_of_chunks(uint64_t chunks, const PointData& points, uint32_t chunk_size, size_t data_bytes) {
   // Every chunk begins with an uncompressed record.
-  if (chunks > data_bytes / points.record_length) return invalid("the LAZ chunk table has more chunks than fit");
+  if (chunks > data_bytes / points.record_length) return invalid_input("the LAZ chunk table has more chunks than fit");
   if (chunk_size == kVariableChunks) return {};
   const uint64_t needed = points.count / chunk_size + (points.count % chunk_size != 0 ? 1 : 0);
   if (chunks >= needed) return {};  // the header may state fewer points than there are
-  return invalid("the LAZ chunk table has " + std::to_string(chunks) + " chunks, " + std::to_string(points.count) +
-                 " points need " + std::to_string(needed));
+  return invalid_input("the LAZ chunk table has " + std::to_string(chunks) + " chunks, " +
+                       std::to_string(points.count) + " points need " + std::to_string(needed));
 }
 
 /// An entry: the number of points (for chunks of variable size only), then the number of bytes.
@@ -72,18 +74,25 @@ Status place_chunks(std::vector<Chunk>& chunks, const PointData& points, size_t 
     chunk.first = first;
     chunk.count = std::min(chunk.count, points.count - first);
     chunk.offset = offset;
-    if (chunk.size > end - offset) return invalid("a LAZ chunk runs into the chunk table");
-    if (chunk.count != 0 && chunk.size < points.record_length) return invalid("a LAZ chunk is too short for a point");
+    if (Status status = check_chunk(chunk, points.record_length, end); !status) return status;
     first += chunk.count;
     offset += chunk.size;
   }
   std::erase_if(chunks, [](const Chunk& chunk) { return chunk.count == 0; });
   if (first == points.count) return {};
-  return invalid("the LAZ chunks hold " + std::to_string(first) + " points, the header states " +
-                 std::to_string(points.count));
+  return invalid_input("the LAZ chunks hold " + std::to_string(first) + " points, the header states " +
+                       std::to_string(points.count));
 }
 
 }  // namespace
+
+Status check_chunk(const Chunk& chunk, size_t record_length, size_t end) {
+  if (chunk.offset > end || chunk.size > end - chunk.offset) return invalid_input("a LAZ chunk runs beyond the points");
+  if (chunk.count != 0 && chunk.size < record_length) return invalid_input("a LAZ chunk is too short for a point");
+  if (chunk.count <= 1 + kPointsOfByte * chunk.size) return {};
+  return invalid_input("a LAZ chunk is damaged: " + std::to_string(chunk.count) + " points do not fit into its " +
+                       std::to_string(chunk.size) + " bytes");
+}
 
 Result<std::vector<Chunk>> read_chunk_table(std::span<const std::byte> file, const PointData& points,
                                             uint32_t chunk_size) {
@@ -101,7 +110,7 @@ Result<std::vector<Chunk>> read_chunk_table(std::span<const std::byte> file, con
   std::vector<Chunk> chunks(number);
   EntryDecoder entries(file.subspan(*offset + kTableHeaderBytes), chunk_size);
   std::generate(chunks.begin(), chunks.end(), [&entries] { return entries.next(); });
-  if (entries.damaged()) return invalid("the LAZ chunk table is damaged");
+  if (entries.damaged()) return invalid_input("the LAZ chunk table is damaged");
   if (Status status = place_chunks(chunks, points, *offset); !status) return fail(status.error());
   return chunks;
 }

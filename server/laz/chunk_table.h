@@ -25,9 +25,12 @@ struct PointData {
   size_t record_length = 0;
 };
 
-/// Reads the table after the points. On success the chunks lie within the file, are contiguous, contain all points, and
-/// none is empty.
+/// Reads the table after the points. On success the chunks lie within the file, are contiguous, contain all points,
+/// none is empty, and none states more points than its bytes can encode.
 Result<std::vector<Chunk>> read_chunk_table(std::span<const std::byte> file, const PointData& points,
                                             uint32_t chunk_size);
+
+/// An error unless the chunk ends at or before `end` and can hold as many points as it states.
+Status check_chunk(const Chunk& chunk, size_t record_length, size_t end);
 
 }  // namespace surfcast::laz

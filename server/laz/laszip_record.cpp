@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "laz/byte_access.h"
+#include "laz/wave_packet_decoder.h"
 
 namespace surfcast::laz {
 namespace {
@@ -12,6 +13,7 @@ namespace {
 constexpr size_t kFixedBytes = 34;
 constexpr size_t kItemBytes = 6;
 
+constexpr uint16_t kPointwise = 1;  // one chunk, without a table
 constexpr uint16_t kPointwiseChunked = 2;
 constexpr uint16_t kLayeredChunked = 3;
 
@@ -20,9 +22,11 @@ enum ItemType : uint16_t {
   kPoint10 = 6,
   kGpsTime11 = 7,
   kRgb12 = 8,
+  kWavePacket13 = 9,
   kPoint14 = 10,
   kRgb14 = 11,
   kRgbNir14 = 12,
+  kWavePacket14 = 13,
   kBytes14 = 14,
 };
 
@@ -52,12 +56,14 @@ std::vector<Item> expected_items(const RecordLayout& layout) {
     items.push_back({kPoint14, 30, 0});
     if (layout.infrared) items.push_back({kRgbNir14, 8, 0});
     if (layout.color && !layout.infrared) items.push_back({kRgb14, 6, 0});
+    if (layout.wave_packet) items.push_back({kWavePacket14, WavePacket::kBytes, 0});
     if (extra != 0) items.push_back({kBytes14, extra, 0});
     return items;
   }
   items.push_back({kPoint10, 20, 0});
   if (layout.gps_time) items.push_back({kGpsTime11, 8, 0});
   if (layout.color) items.push_back({kRgb12, 6, 0});
+  if (layout.wave_packet) items.push_back({kWavePacket13, WavePacket::kBytes, 0});
   if (extra != 0) items.push_back({kBytes, extra, 0});
   return items;
 }
@@ -66,7 +72,8 @@ Status check_item(const Item& item, const Item& expected, bool layered) {
   if (item.type != expected.type || item.size != expected.size) {
     return fail(ErrorKind::kInvalidInput, "the LAZ items do not fit the point format");
   }
-  const bool known = layered ? item.version >= 2 && item.version <= 4 : item.version == 2;
+  const uint16_t pointwise_version = item.type == kWavePacket13 ? 1 : 2;
+  const bool known = layered ? item.version >= 2 && item.version <= 4 : item.version == pointwise_version;
   if (known) return {};
   return fail(ErrorKind::kUnsupported, "LAZ item type " + std::to_string(item.type) + ", version " +
                                            std::to_string(item.version) + " is not supported");
@@ -76,6 +83,9 @@ Status check_coder(std::span<const std::byte> body, bool layered) {
   const auto compressor = load<uint16_t>(&body[0]);
   const auto coder = load<uint16_t>(&body[2]);
   if (compressor == (layered ? kLayeredChunked : kPointwiseChunked) && coder == 0) return {};
+  if (compressor == kPointwise) {
+    return fail(ErrorKind::kUnsupported, "LAZ compressor 1: written by LASzip 1, save it again with a later version");
+  }
   return fail(ErrorKind::kUnsupported, "LAZ compressor " + std::to_string(compressor) + " with coder " +
                                            std::to_string(coder) + " is not supported for this point format");
 }

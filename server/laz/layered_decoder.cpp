@@ -8,6 +8,7 @@
 #include "laz/layer.h"
 #include "laz/point14_decoder.h"
 #include "laz/record_decoder.h"
+#include "laz/wave_packet_decoder.h"
 
 namespace surfcast::laz {
 namespace {
@@ -34,6 +35,14 @@ struct ColorChannel {
     if (changes & 2) high += in.symbol(infrared_steps[1]);
     return static_cast<uint16_t>((low & 255) | (high & 255) << 8);
   }
+};
+
+/// The state of item WAVEPACKET14 in one scanner channel.
+struct WavePacketChannel {
+  explicit WavePacketChannel(const WavePacket& first) : last(first) {}
+
+  WavePacket last;
+  WavePacketDecoder packet;
 };
 
 /// The state of item BYTE14 in one scanner channel.
@@ -69,11 +78,12 @@ struct Layers {
   Point14Layers point;
   Layer color;
   Layer infrared;
+  Layer wave_packet;
   std::vector<Layer> extra_bytes;
 };
 
 size_t layer_count(const RecordLayout& layout) {
-  return 9 + (layout.color ? 1 : 0) + (layout.infrared ? 1 : 0) + layout.extra_bytes();
+  return 9 + (layout.color ? 1 : 0) + (layout.infrared ? 1 : 0) + (layout.wave_packet ? 1 : 0) + layout.extra_bytes();
 }
 
 Layers take_layers(const RecordLayout& layout, LayerBytes& bytes) {
@@ -85,14 +95,16 @@ Layers take_layers(const RecordLayout& layout, LayerBytes& bytes) {
   }
   if (layout.color) layers.color = bytes.next();
   if (layout.infrared) layers.infrared = bytes.next();
+  if (layout.wave_packet) layers.wave_packet = bytes.next();
   for (size_t i = 0; i < layout.extra_bytes(); ++i) layers.extra_bytes.push_back(bytes.next());
   return layers;
 }
 
 bool damaged(const Layers& layers) {
   const Point14Layers& point = layers.point;
-  for (const Layer* layer : {&point.returns_xy, &point.z, &point.classification, &point.flags, &point.intensity,
-                             &point.angle, &point.user, &point.source, &point.time, &layers.color, &layers.infrared}) {
+  for (const Layer* layer :
+       {&point.returns_xy, &point.z, &point.classification, &point.flags, &point.intensity, &point.angle, &point.user,
+        &point.source, &point.time, &layers.color, &layers.infrared, &layers.wave_packet}) {
     if (layer->damaged()) return true;
   }
   return std::any_of(layers.extra_bytes.begin(), layers.extra_bytes.end(),
@@ -106,6 +118,10 @@ ColorWithInfrared first_color(const RecordLayout& layout, const std::byte* recor
   return color;
 }
 
+WavePacket first_packet(const RecordLayout& layout, const std::byte* record) {
+  return layout.wave_packet ? WavePacket::from_record(record + layout.wave_offset) : WavePacket();
+}
+
 class LayeredDecoder final : public RecordDecoder {
  public:
   /// `first` is the first record, which is stored uncompressed.
@@ -116,6 +132,7 @@ class LayeredDecoder final : public RecordDecoder {
         layers_(std::move(layers)),
         points_(channel_of(first), Point14::from_record(first)),
         colors_(channel_of(first), first_color(layout, first)),
+        wave_packets_(channel_of(first), first_packet(layout, first)),
         extra_bytes_(channel_of(first), std::vector(first + layout.extra_offset, first + layout.length)) {}
 
   void decode(std::span<std::byte> records) override {
@@ -133,6 +150,7 @@ class LayeredDecoder final : public RecordDecoder {
   void decode_record(std::byte* record) {
     decode_point(record);
     if (layout_.color) decode_color(record + layout_.color_offset);
+    if (layout_.wave_packet) decode_wave_packet(record + layout_.wave_offset);
     if (layout_.extra_bytes() != 0) decode_extra_bytes(record + layout_.extra_offset);
   }
 
@@ -166,6 +184,13 @@ class LayeredDecoder final : public RecordDecoder {
     store(color + sizeof(Color), last.infrared);
   }
 
+  void decode_wave_packet(std::byte* packet) {
+    WavePacket& last = follow_channel(wave_packets_).last;
+    WavePacketDecoder& models = wave_packets_.current().packet;
+    if (layers_.wave_packet.present) last = models.decode(layers_.wave_packet.in, last);
+    last.write(packet);
+  }
+
   void decode_extra_bytes(std::byte* bytes) {
     std::vector<std::byte>& last = follow_channel(extra_bytes_).last;
     ExtraBytesChannel& channel = extra_bytes_.current();
@@ -187,6 +212,7 @@ class LayeredDecoder final : public RecordDecoder {
   ChannelStates<Point14Channel> points_;
   uint32_t item_channel_ = 0;  ///< the channel whose states decode the items after the point
   ChannelStates<ColorChannel> colors_;
+  ChannelStates<WavePacketChannel> wave_packets_;
   ChannelStates<ExtraBytesChannel> extra_bytes_;
 };
 
@@ -206,6 +232,10 @@ Result<std::unique_ptr<RecordDecoder>> decode_layered(const RecordLayout& layout
   LayerBytes bytes(sizes, chunk.subspan(layout.length + count_bytes + size_bytes));
   Layers layers = take_layers(layout, bytes);
   if (!bytes.enough()) return fail(ErrorKind::kInvalidInput, "a LAZ chunk is shorter than its layers");
+  // Every point but the first takes a part of this layer. Without it any number of points would decode from nothing.
+  if (count > 1 && !layers.point.returns_xy.present) {
+    return fail(ErrorKind::kInvalidInput, "a LAZ chunk is damaged: its points have no positions");
+  }
   return std::make_unique<LayeredDecoder>(layout, stale_channels, chunk.data(), std::move(layers));
 }
 

@@ -26,6 +26,19 @@ Result<LazFile> LazFile::open(std::span<const std::byte> file, const LazPoints& 
   return LazFile(file, *layout, *coding, std::move(*chunks));
 }
 
+Result<LazFile> LazFile::open_chunks(std::span<const std::byte> file, const LazPoints& points,
+                                     std::span<const std::byte> laszip_record, std::vector<laz::Chunk> chunks) {
+  const Result<laz::RecordLayout> layout = laz::record_layout(points.point_format, points.record_length);
+  if (!layout) return fail(layout.error());
+  const Result<laz::LaszipRecord> coding = laz::parse_laszip_record(laszip_record, *layout);
+  if (!coding) return fail(coding.error());
+  for (const laz::Chunk& chunk : chunks) {
+    if (Status status = laz::check_chunk(chunk, points.record_length, file.size()); !status)
+      return fail(status.error());
+  }
+  return LazFile(file, *layout, *coding, std::move(chunks));
+}
+
 Result<LazChunkReader> LazFile::read_chunk(const laz::Chunk& chunk) const {
   const std::span<const std::byte> bytes = file_.subspan(chunk.offset, chunk.size);
   Result<std::unique_ptr<laz::RecordDecoder>> decoder =

@@ -37,7 +37,7 @@ class LazChunkReader {
   size_t left_;  ///< bytes of records left
 };
 
-/// The compressed points of a LAZ file (LASzip 2.0 and later, point formats 0 to 3 and 6 to 8). The points are stored
+/// The compressed points of a LAZ file (LASzip 2.0 and later, point formats 0 to 10). The points are stored
 /// in chunks that are decoded independently, into the records of the corresponding uncompressed LAS file.
 class LazFile {
  public:
@@ -45,6 +45,10 @@ class LazFile {
   /// length record "laszip encoded". `file` must outlive this object.
   static Result<LazFile> open(std::span<const std::byte> file, const LazPoints& points,
                               std::span<const std::byte> laszip_record);
+
+  /// The same for chunks that something else than the chunk table states. Their order and `first` are kept.
+  static Result<LazFile> open_chunks(std::span<const std::byte> file, const LazPoints& points,
+                                     std::span<const std::byte> laszip_record, std::vector<laz::Chunk> chunks);
 
   /// All chunks in file order. Damage within a chunk is detected only when it is decoded, so its count is not
   /// trustworthy.

@@ -6,6 +6,7 @@
 #include "laz/gps_time_decoder.h"
 #include "laz/point10_decoder.h"
 #include "laz/record_decoder.h"
+#include "laz/wave_packet_decoder.h"
 
 namespace surfcast::laz {
 namespace {
@@ -39,6 +40,7 @@ class PointwiseDecoder final : public RecordDecoder {
         extra_bytes_(chunk.data() + layout.extra_offset, layout.extra_bytes()) {
     if (layout.gps_time) gps_time_.emplace(load<int64_t>(chunk.data() + Point10Decoder::kBytes));
     if (layout.color) last_color_ = load_color(chunk.data() + layout.color_offset);
+    if (layout.wave_packet) start_wave_packets(chunk.data() + layout.wave_offset);
   }
 
   void decode(std::span<std::byte> records) override {
@@ -65,7 +67,16 @@ class PointwiseDecoder final : public RecordDecoder {
       last_color_ = color_.decode(in, last_color_);
       std::memcpy(record + layout_.color_offset, last_color_.data(), sizeof(Color));
     }
+    if (wave_packets_) {
+      last_packet_ = wave_packets_->decode(in, last_packet_);
+      last_packet_.write(record + layout_.wave_offset);
+    }
     extra_bytes_.decode(in, record + layout_.extra_offset);
+  }
+
+  void start_wave_packets(const std::byte* first) {
+    wave_packets_.emplace();
+    last_packet_ = WavePacket::from_record(first);
   }
 
   RecordLayout layout_;
@@ -75,6 +86,8 @@ class PointwiseDecoder final : public RecordDecoder {
   std::optional<GpsTimeDecoder<true>> gps_time_;
   ColorDecoder color_;
   Color last_color_{};
+  std::optional<WavePacketDecoder> wave_packets_;
+  WavePacket last_packet_;
   ExtraBytesDecoder extra_bytes_;
 };
 

@@ -6,15 +6,11 @@
 #include <type_traits>
 
 #include "ldc/coarse_scalars.h"
+#include "surfel/opacity.h"
 #include "surfel/srgb.h"
 
 namespace surfcast::ldc {
 namespace {
-
-/// The member of a coarse surfel that holds the scalar attribute `name`.
-double& slot(CoarseSurfel& surfel, std::string_view name) {
-  return name == "intensity" ? surfel.intensity : surfel.classification;
-}
 
 /// Significant binary digits of stored averages. The display shows no more.
 constexpr int kDigits = 8;
@@ -23,6 +19,12 @@ double round_to_digits(double mean) {
   if (mean == 0 || !std::isfinite(mean)) return mean;
   const int exponent = std::ilogb(mean) + 1 - kDigits;
   return exponent > 0 ? std::ldexp(std::round(std::ldexp(mean, -exponent)), exponent) : mean;
+}
+
+/// The opacity in steps of the display, in the unit of the attribute. More digits would cost bytes.
+double round_opacity(double opacity, const surfel::ScalarValues& column) {
+  constexpr double kSteps = 255;
+  return std::round(opacity * kSteps) / kSteps * surfel::full_opacity(column);
 }
 
 glm::u16vec3 to_color(const glm::vec3& light, int bits) {
@@ -40,6 +42,22 @@ T to_value(double mean) {
     if (!(rounded < kLargest)) return std::numeric_limits<T>::max();
     return static_cast<T>(std::max(rounded, static_cast<double>(std::numeric_limits<T>::lowest())));
   }
+}
+
+/// Sets the member of a coarse surfel that holds value i of a scalar attribute.
+void take(const surfel::ScalarAttribute& scalar, size_t i, CoarseSurfel& surfel) {
+  if (scalar.name == surfel::kOpacityAttribute) {
+    surfel.opacity = static_cast<float>(surfel::opacity_at(scalar.values, i));
+  } else {
+    const double value = std::visit([i](const auto& column) { return static_cast<double>(column[i]); }, scalar.values);
+    (scalar.name == "intensity" ? surfel.intensity : surfel.classification) = value;
+  }
+}
+
+/// The value of a scalar attribute to be stored.
+double stored_value(const CoarseSurfel& surfel, const surfel::ScalarAttribute& scalar) {
+  if (scalar.name == surfel::kOpacityAttribute) return round_opacity(double{surfel.opacity}, scalar.values);
+  return scalar.name == "intensity" ? round_to_digits(surfel.intensity) : surfel.classification;
 }
 
 surfel::ScalarAttribute without_values(const surfel::ScalarAttribute& scalar) {
@@ -71,13 +89,7 @@ std::vector<CoarseSurfel> sample_surfels(const surfel::SurfelCloud& cloud, std::
   }
   for (const surfel::ScalarAttribute& scalar : cloud.scalars) {
     if (!is_coarse_scalar(scalar.name)) continue;
-    std::visit(
-        [&](const auto& values) {
-          for (size_t i = 0; i < members.size(); ++i) {
-            slot(surfels[i], scalar.name) = static_cast<double>(values[members[i]]);
-          }
-        },
-        scalar.values);
+    for (size_t i = 0; i < members.size(); ++i) take(scalar, members[i], surfels[i]);
   }
   return surfels;
 }
@@ -95,14 +107,13 @@ surfel::SurfelCloud make_coarse_cloud(std::span<const CoarseSurfel> surfels, con
     cloud.scatter.reserve(surfels.size());
     for (const CoarseSurfel& s : surfels) cloud.scatter.push_back(s.scatter ? 1 : 0);
   }
-  for (CoarseSurfel surfel : surfels) {
+  for (const CoarseSurfel& surfel : surfels) {
     cloud.positions.push_back(surfel.position);
     cloud.normals.push_back(surfel.normal);
     cloud.radii.push_back(surfel.radius);
     if (cloud.colors) cloud.colors->values.push_back(to_color(surfel.light, attributes.color_bits));
     for (surfel::ScalarAttribute& scalar : cloud.scalars) {
-      const double value = slot(surfel, scalar.name);
-      const double mean = scalar.name == "intensity" ? round_to_digits(value) : value;
+      const double mean = stored_value(surfel, scalar);
       std::visit(
           [mean](auto& values) {
             values.push_back(to_value<typename std::decay_t<decltype(values)>::value_type>(mean));

@@ -15,7 +15,8 @@ struct CoarseSurfel {
   glm::dvec3 position{0};
   glm::vec3 normal{0, 0, 1};  ///< unit
   float radius = 1;           ///< world units; its square is proportional to the area that the surfel stands for
-  glm::vec3 light{0};         ///< linear, in [0, 1]; 0 without colour
+  glm::vec3 light{0};         ///< linear, in [0, 1], not multiplied by the opacity; 0 without colour
+  float opacity = 1;          ///< share of the light behind it that it hides, in [0, 1]
   double intensity = 0;
   double classification = 0;
   bool scatter = false;  ///< lies on no surface, as all surfels that it stands for

@@ -161,6 +161,7 @@ CoarseSurfel average(std::span<const CoarseSurfel> surfels, std::span<const Cros
   glm::dvec3 light(0);
   double intensity = 0;
   double squares = 0;
+  double hidden = 0;  // area that the surfels hide
   double cubes = 0;
   double largest = 0;
   ClassVotes classes;
@@ -170,7 +171,8 @@ CoarseSurfel average(std::span<const CoarseSurfel> surfels, std::span<const Cros
     const glm::dvec3 n(s.normal);
     position += area * (s.position - cube.min);
     normal += glm::dot(n, glm::dvec3(first.normal)) < 0 ? -area * n : area * n;
-    light += area * glm::dvec3(s.light);
+    light += area * double{s.opacity} * glm::dvec3(s.light);
+    hidden += area * double{s.opacity};
     intensity += area * s.intensity;
     classes.add(s.classification, area);
     squares += area;
@@ -185,7 +187,8 @@ CoarseSurfel average(std::span<const CoarseSurfel> surfels, std::span<const Cros
   result.scatter = first.scatter;
   result.radius = first.scatter ? scatter_radius_of(squares, largest, cube)
                                 : radius_of(squares, cubes, std::max({n.x, n.y, n.z}), cube);
-  result.light = glm::vec3(light / squares);
+  result.light = hidden > 0 ? glm::vec3(light / hidden) : first.light;
+  result.opacity = static_cast<float>(hidden / squares);
   result.intensity = intensity / squares;
   result.classification = classes.winner();
   return result;

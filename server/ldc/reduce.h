@@ -25,7 +25,7 @@ struct CoarseCell {
 /// Resamples the surfels of a cell on its layered depth cube (Pfister 2000): three layered depth images along the axes,
 /// with rays `side / kLdcLines` apart. A surfel belongs to the image along the dominant axis of the normals around it,
 /// so each piece of surface is in one image (3-to-1 reduction). Surfels on one ray that lie within one ray spacing of
-/// each other and face the same side are replaced by their average, weighted by area.
+/// each other and face the same side are replaced by their average, weighted by area; light also by opacity.
 ///
 /// Scatter is averaged among itself and keeps its area. It is never merged into a surface. Its cubes are as wide as the
 /// rays are apart; twice as wide where such cubes would leave more than 0.3 of the scatter, because it fills a volume.

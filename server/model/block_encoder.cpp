@@ -1,6 +1,8 @@
 #include "model/block_encoder.h"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 
 #include "base/contract.h"
 #include "model/block_fields.h"
@@ -8,6 +10,7 @@
 #include "model/path_order.h"
 #include "model/quantize.h"
 #include "model/scalar_bits.h"
+#include "surfel/curvature.h"
 
 namespace surfcast::model {
 namespace {
@@ -50,6 +53,21 @@ Field position_field(std::span<const glm::ivec3> indices, std::span<const uint32
   return field;
 }
 
+/// The cone of the decoded normals, widened by what curved surfels turn within their reach.
+std::optional<geometry::NormalCone> cone_of(const surfel::SurfelCloud& cloud, Members members,
+                                            std::span<const glm::vec3> decoded) {
+  constexpr double kReach = 1.1;  // of a kernel, in radii
+  std::optional<geometry::NormalCone> cone = geometry::normal_cone(decoded);
+  const surfel::CurvatureColumns columns(cloud.scalars);
+  if (!cone || columns.empty()) return cone;
+  double bend = 0;
+  for (const uint32_t s : members) bend = std::max(bend, surfel::decode_curvature(columns.at(s), 1).largest());
+  const double half = double{cone->half_angle} + std::asin(std::min(1.0, kReach * bend));
+  if (half >= std::numbers::pi) return std::nullopt;
+  cone->half_angle = static_cast<float>(half);
+  return cone;
+}
+
 Field normal_field(const surfel::SurfelCloud& cloud, Members members, int octahedral_half, EncodedBlock& block) {
   Field field(2);
   std::vector<glm::vec3> decoded;
@@ -59,7 +77,7 @@ Field normal_field(const surfel::SurfelCloud& cloud, Members members, int octahe
     field[1].push_back(code.y);
     decoded.push_back(decode_normal(code, octahedral_half));
   }
-  if (cloud.oriented && block.scatter == 0) block.normals = geometry::normal_cone(decoded);
+  if (cloud.oriented && block.scatter == 0) block.normals = cone_of(cloud, members, decoded);
   return field;
 }
 

@@ -11,6 +11,7 @@
 #include "base/hash.h"
 #include "ldc/lattice.h"
 #include "model/byte_stream.h"
+#include "model/ellipsoid_tables.h"
 #include "model/quantize.h"
 #include "model/volume_tables.h"
 
@@ -234,19 +235,19 @@ std::vector<std::byte> write_header(const ModelHeader& header) {
   return std::move(writer).take();
 }
 
-Result<ModelHeader> read_header(std::span<const std::byte> file) {
-  ByteReader reader(file);
+Result<ModelHeader> read_header(std::span<const std::byte> head, uint64_t file_bytes) {
+  ByteReader reader(head);
   const std::span<const std::byte> magic = reader.get_bytes(kMagic.size());
   if (!reader.ok() || std::memcmp(magic.data(), kMagic.data(), kMagic.size()) != 0) {
     return damaged("not a Surfcast model");
   }
   const auto version = reader.get<uint32_t>();
-  if (reader.ok() && (version < kSurfelVersion || version > kVolumesVersion)) {
-    return fail(ErrorKind::kUnsupported, "model format version " + std::to_string(version) +
-                                             " is not supported; this program reads versions " +
-                                             std::to_string(kSurfelVersion) + " to " + std::to_string(kVolumesVersion));
+  if (reader.ok() && (version < kSurfelVersion || version > kEllipsoidsVersion)) {
+    return fail(ErrorKind::kUnsupported,
+                "model format version " + std::to_string(version) + " is not supported; this program reads versions " +
+                    std::to_string(kSurfelVersion) + " to " + std::to_string(kEllipsoidsVersion));
   }
-  if (file.size() < kHeaderBytes) return damaged("model is cut off within its header");
+  if (head.size() < kHeaderBytes) return damaged("model is cut off within its header");
   ModelHeader header;
   header.version = version;
   const auto flags = reader.get<uint16_t>();
@@ -260,14 +261,14 @@ Result<ModelHeader> read_header(std::span<const std::byte> file) {
   header.directory_bytes = reader.get<uint64_t>();
   header.directory_checksum = reader.get<uint64_t>();
   reader.get<uint64_t>();
-  if (reader.get<uint64_t>() != checksum_of(file.first(kHeaderChecksumAt))) return damaged("model header is damaged");
+  if (reader.get<uint64_t>() != checksum_of(head.first(kHeaderChecksumAt))) return damaged("model header is damaged");
   if (header.color_bits != 0 && header.color_bits != 8 && header.color_bits != 16) {
     return damaged("model header states a wrong colour depth");
   }
   if (header.harmonics_degree > kMostDegree) return damaged("model header states a wrong degree of harmonics");
-  if (header.file_bytes != file.size()) return damaged("model is cut off or has bytes after its end");
-  if (header.directory_offset < kHeaderBytes || header.directory_offset > file.size() ||
-      header.directory_bytes != file.size() - header.directory_offset) {
+  if (header.file_bytes != file_bytes) return damaged("model is cut off or has bytes after its end");
+  if (header.directory_offset < kHeaderBytes || header.directory_offset > file_bytes ||
+      header.directory_bytes != file_bytes - header.directory_offset) {
     return damaged("model header points outside the file");
   }
   return header;
@@ -294,6 +295,7 @@ std::vector<std::byte> write_directory(const Directory& directory) {
   if (directory.version() < kScatterVersion) return std::move(writer).take();
   for (const BlockRecord& block : directory.blocks) writer.put(block.scatter);
   if (directory.version() >= kVolumesVersion) put_volumes(writer, directory);
+  if (directory.version() >= kEllipsoidsVersion) put_ellipsoid_sources(writer, directory);
   return std::move(writer).take();
 }
 
@@ -334,6 +336,9 @@ Result<Directory> read_directory(std::span<const std::byte> bytes, const ModelHe
     if (Status status = get_volumes(reader, directory); !status) return fail(std::move(status.error()));
   } else if (std::ranges::find(directory.kinds, kGridKind) != directory.kinds.end()) {
     return damaged("model has bricks but no volumes");
+  }
+  if (header.version >= kEllipsoidsVersion) {
+    if (Status status = get_ellipsoid_sources(reader, directory); !status) return fail(std::move(status.error()));
   }
   if (!reader.ok() || !reader.rest().empty()) return damaged("model tables have a wrong length");
   if (directory.blocks.empty()) return damaged("model has no blocks");

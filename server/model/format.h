@@ -8,6 +8,7 @@
 
 #include "base/result.h"
 #include "model/block_decoder.h"
+#include "model/ellipsoid_source.h"
 #include "model/volume.h"
 
 namespace surfcast::model {
@@ -15,9 +16,10 @@ namespace surfcast::model {
 /// Versions of the format. A model is written in the oldest version that can represent it, so older programs can read
 /// models without later features.
 inline constexpr uint32_t kSurfelVersion = 2;
-inline constexpr uint32_t kKindsVersion = 3;    ///< has a table of kinds
-inline constexpr uint32_t kScatterVersion = 4;  ///< has a table of kinds, a count of scatter per block, and scatter
-inline constexpr uint32_t kVolumesVersion = 5;  ///< has all tables of version 4, and tables of volumes and bricks
+inline constexpr uint32_t kKindsVersion = 3;       ///< has a table of kinds
+inline constexpr uint32_t kScatterVersion = 4;     ///< has a table of kinds, a count of scatter per block, and scatter
+inline constexpr uint32_t kVolumesVersion = 5;     ///< has all tables of version 4, and tables of volumes and bricks
+inline constexpr uint32_t kEllipsoidsVersion = 6;  ///< has all tables of version 5, and one of sources of ellipsoids
 inline constexpr size_t kHeaderBytes = 64;
 inline constexpr size_t kBlockRecordBytes = 92;
 /// Limits of the format. They bound the memory that a hostile table can make the reader allocate for one block.
@@ -42,8 +44,12 @@ struct ModelHeader {
 };
 
 std::vector<std::byte> write_header(const ModelHeader& header);
-/// Checks magic, version and checksum, and that the directory lies within the file.
-Result<ModelHeader> read_header(std::span<const std::byte> file);
+/// Checks magic, version and checksum, and that the directory lies within a file of `file_bytes`. `head`: the first
+/// kHeaderBytes of the file, or all of a smaller one.
+Result<ModelHeader> read_header(std::span<const std::byte> head, uint64_t file_bytes);
+inline Result<ModelHeader> read_header(std::span<const std::byte> file) {
+  return read_header(file, file.size());
+}
 
 /// One record of the table of blocks.
 struct BlockRecord {
@@ -75,9 +81,11 @@ struct Directory {
   std::vector<std::string> kinds{std::string(kSurfelKind)};
   std::vector<Volume> volumes;
   std::vector<BrickRecord> bricks;  ///< of the blocks of kind "grid"
+  std::vector<EllipsoidSource> ellipsoids;
 
   /// The oldest version of the format that can represent the tables.
   [[nodiscard]] uint32_t version() const {
+    if (!ellipsoids.empty()) return kEllipsoidsVersion;
     if (!volumes.empty()) return kVolumesVersion;
     const auto has_scatter = [](const BlockRecord& block) { return block.scatter > 0; };
     if (std::any_of(blocks.begin(), blocks.end(), has_scatter)) return kScatterVersion;

@@ -6,16 +6,17 @@
 #include <utility>
 
 #include "base/contract.h"
-#include "base/mapped_file.h"
+#include "base/positioned_file.h"
 #include "model/format.h"
 #include "model/volume_tables.h"
+#include "surfel/curvature.h"
 
 namespace surfcast::model {
 
 struct ModelFile::State {
   uint64_t id = 0;
   std::filesystem::path path;
-  MappedFile file;
+  PositionedFile file;
   ModelInfo info;
   Directory directory;
   std::vector<ScalarColumn> coarse_scalars;  ///< scalar attributes of coarse blocks
@@ -92,6 +93,24 @@ uint64_t next_id() {
   return ++last;
 }
 
+Result<std::vector<std::byte>> load(const PositionedFile& file, uint64_t offset, uint64_t size) {
+  std::vector<std::byte> bytes(size);
+  if (Status status = file.read(offset, bytes); !status) return fail(std::move(status.error()));
+  return bytes;
+}
+
+Result<ModelHeader> load_header(const PositionedFile& file) {
+  const Result<std::vector<std::byte>> head = load(file, 0, std::min<uint64_t>(file.size(), kHeaderBytes));
+  if (!head) return fail(head.error());
+  return read_header(*head, file.size());
+}
+
+Result<Directory> load_directory(const PositionedFile& file, const ModelHeader& header) {
+  const Result<std::vector<std::byte>> bytes = load(file, header.directory_offset, header.directory_bytes);
+  if (!bytes) return fail(bytes.error());
+  return read_directory(*bytes, header);
+}
+
 ModelInfo make_info(const ModelHeader& header, const Directory& directory, std::span<const ldc::BlockEntry> entries) {
   ModelInfo info;
   info.oriented = header.oriented;
@@ -103,6 +122,9 @@ ModelInfo make_info(const ModelHeader& header, const Directory& directory, std::
   info.source_names = directory.source_names;
   info.ranges = directory.ranges;
   info.classes = directory.classes;
+  for (const EllipsoidSource& source : directory.ellipsoids) {
+    info.ellipsoid_columns = std::max(info.ellipsoid_columns, source.attributes.size() - kDerivedAttributes);
+  }
   for (const std::string& kind : directory.kinds) info.kinds.push_back({kind, 0, 0});
   for (size_t i = 0; i < entries.size(); ++i) {
     const ldc::BlockEntry& entry = entries[i];
@@ -128,11 +150,11 @@ ModelFile& ModelFile::operator=(ModelFile&&) noexcept = default;
 ModelFile::~ModelFile() = default;
 
 Result<ModelFile> ModelFile::open(const std::filesystem::path& path) {
-  Result<MappedFile> file = MappedFile::open(path);
+  Result<PositionedFile> file = PositionedFile::open(path);
   if (!file) return fail(std::move(file.error()));
-  const Result<ModelHeader> header = read_header(file->bytes());
+  const Result<ModelHeader> header = load_header(*file);
   if (!header) return fail_naming(path, header.error());
-  Result<Directory> directory = read_directory(file->bytes().subspan(header->directory_offset), *header);
+  Result<Directory> directory = load_directory(*file, *header);
   if (!directory) return fail_naming(path, directory.error());
 
   std::vector<ldc::BlockEntry> entries = make_entries(*directory);
@@ -168,6 +190,10 @@ std::span<const Volume> ModelFile::volumes() const {
   return state_->directory.volumes;
 }
 
+std::span<const EllipsoidSource> ModelFile::ellipsoid_sources() const {
+  return state_->directory.ellipsoids;
+}
+
 const BrickRecord& ModelFile::brick(size_t block) const {
   SURFCAST_EXPECTS(block < blocks().size() && state_->info.kinds[blocks()[block].kind].kind == kGridKind);
   return state_->directory.bricks[state_->directory.blocks[block].brick];
@@ -185,15 +211,25 @@ void ModelFile::prefetch(size_t block) const {
 
 namespace {
 
-/// The number of scalar attributes to decode, counted from the first.
+/// The number of scalar attributes to decode, counted from the first. Curvature is drawn as the normal is, whatever is
+/// asked for.
 size_t count_of(WantedScalars wanted, std::span<const ScalarColumn> scalars) {
-  if (wanted == WantedScalars::kNone) return 0;
   if (wanted == WantedScalars::kAll) return scalars.size();
   size_t count = 0;
   for (size_t i = 0; i < scalars.size(); ++i) {
-    if (scalars[i].coarse) count = i + 1;
+    if (surfel::is_curvature_column(scalars[i].name) || (wanted == WantedScalars::kDrawn && scalars[i].coarse))
+      count = i + 1;
   }
   return count;
+}
+
+/// Memory for the block that this thread reads. It is used again, so that decoding takes none anew.
+std::span<std::byte> buffer_of_thread(size_t size) {
+  constexpr size_t kKept = size_t{8} << 20;  // more than the blocks of any model that was built
+  thread_local std::vector<std::byte> buffer;
+  if (buffer.size() > kKept && size <= kKept) buffer = {};
+  if (buffer.size() < size) buffer.resize(size);
+  return std::span(buffer).first(size);
 }
 
 }  // namespace
@@ -205,7 +241,9 @@ Error ModelFile::named(size_t block, const Error& error) const {
 Result<StoredBlock> ModelFile::stored(size_t block) const {
   SURFCAST_EXPECTS(block < state_->directory.blocks.size());
   const BlockRecord& record = state_->directory.blocks[block];
-  const std::span<const std::byte> bytes = state_->file.bytes().subspan(record.offset, record.bytes);
+  // What is checked is what is decoded: the file may be overwritten at any time.
+  const std::span<std::byte> bytes = buffer_of_thread(record.bytes);
+  if (const Status read = state_->file.read(record.offset, bytes); !read) return fail(named(block, read.error()));
   if (checksum_of(bytes) != record.checksum) return fail(named(block, {ErrorKind::kInvalidInput, "damaged"}));
   return StoredBlock{bytes, state_->directory.grids[record.grid], record.origin, record.extent, record.surfels};
 }

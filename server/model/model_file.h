@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <glm/vec3.hpp>
@@ -13,6 +14,7 @@
 #include "base/result.h"
 #include "geometry/box.h"
 #include "ldc/block_tree.h"
+#include "model/ellipsoid_source.h"
 #include "model/kind_count.h"
 #include "model/statistics.h"
 #include "model/volume.h"
@@ -34,6 +36,7 @@ struct ModelInfo {
   int color_bits = 0;                     ///< 8 or 16; 0: the model has no colour
   bool upside_down = false;               ///< the vertical axis points down: up is its negative end
   int harmonics_degree = 0;               ///< highest degree of the harmonics of its Gaussians
+  size_t ellipsoid_columns = 0;           ///< most columns of a source of its ellipsoids
   std::vector<std::string> scalar_names;  ///< scalar attributes of the leaves, in order
   std::vector<std::string> source_names;  ///< the input files
   std::vector<AttributeRange>
@@ -63,8 +66,8 @@ struct DecodedBlock {
   std::vector<float> weights;        ///< s_k
   std::vector<uint8_t> scatter;      ///< 1: on no surface (SurfelCloud::scatter); empty if none of the block is
   std::vector<glm::u16vec3> colors;  ///< in ModelInfo::color_bits; empty without colour
-  /// In a leaf, the attributes of ModelInfo::scalar_names. In a coarse block, only those that can be averaged:
-  /// intensity and classification. Only the first ones if not all were requested.
+  /// In a leaf, the attributes of ModelInfo::scalar_names. In a coarse block, only those of ldc::is_coarse_scalar.
+  /// Only the first ones if not all were requested.
   std::vector<surfel::ScalarAttribute> scalars;
 
   [[nodiscard]] size_t size() const { return indices.size(); }
@@ -75,7 +78,7 @@ struct DecodedBlock {
 
 /// A block as stored in the file.
 struct StoredBlock {
-  std::span<const std::byte> bytes;  ///< valid while the file is open
+  std::span<const std::byte> bytes;  ///< valid until this thread reads another block
   surfel::Grid grid;
   glm::i64vec3 origin{0};  ///< lattice index of the lowest corner of its bounds
   glm::u32vec3 extent{0};  ///< lattice index of the highest corner, relative to `origin`
@@ -110,6 +113,8 @@ class ModelFile {
   [[nodiscard]] std::span<const Volume> volumes() const;
   /// The place of a block of the kind "grid". It lies within its volume, and its parent stands for it.
   [[nodiscard]] const BrickRecord& brick(size_t block) const;
+  /// The sources of the blocks of the kind "ellipsoid"; none in most models.
+  [[nodiscard]] std::span<const EllipsoidSource> ellipsoid_sources() const;
   /// Prefixes an error about a block with the names of file and block.
   [[nodiscard]] Error named(size_t block, const Error& error) const;
   /// Checks and decodes a block of surfels. Fails on a block of another kind. Attributes are decoded in order, up to

@@ -19,6 +19,7 @@ struct ModelWriter::State {
   std::vector<std::string> kinds;
   std::vector<Volume> volumes;
   std::vector<BrickRecord> bricks;
+  std::vector<EllipsoidSource> ellipsoids;
   std::vector<BlockRecord> records;             ///< in the order of the file; parents are indices into this list
   std::vector<std::vector<uint32_t>> children;  ///< of each record
   AttributeStatistics statistics;
@@ -139,8 +140,18 @@ Result<uint32_t> ModelWriter::add(const EncodedBlock& block, const ldc::OctreeKe
   return number;
 }
 
+void ModelWriter::add_schema(const ModelSchema& schema) {
+  ModelSchema& own = state_->schema;
+  own.source_names.insert(own.source_names.end(), schema.source_names.begin(), schema.source_names.end());
+  own.harmonics_degree = std::max(own.harmonics_degree, schema.harmonics_degree);
+}
+
 void ModelWriter::set_volumes(std::vector<Volume> volumes) {
   state_->volumes = std::move(volumes);
+}
+
+void ModelWriter::set_ellipsoid_sources(std::vector<EllipsoidSource> sources) {
+  state_->ellipsoids = std::move(sources);
 }
 
 Result<WriteReport> ModelWriter::finish() {
@@ -154,7 +165,8 @@ Result<WriteReport> ModelWriter::finish() {
                       {},
                       state_->kinds,
                       state_->volumes,
-                      state_->bricks};
+                      state_->bricks,
+                      state_->ellipsoids};
   std::vector<std::string> names;
   for (const ScalarColumn& scalar : state_->schema.scalars) names.push_back(scalar.name);
   directory.ranges = state_->statistics.ranges(names);

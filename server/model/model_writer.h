@@ -11,6 +11,7 @@
 #include "ldc/octree_key.h"
 #include "model/block_decoder.h"
 #include "model/block_encoder.h"
+#include "model/ellipsoid_source.h"
 #include "surfel/surfel_cloud.h"
 
 namespace surfcast::model {
@@ -50,8 +51,15 @@ class ModelWriter {
   /// each of the same kind and the child of one block only. A block of source surfels has no children.
   Result<uint32_t> add(const EncodedBlock& block, const ldc::OctreeKey& key, std::span<const uint32_t> children);
 
+  /// Adds the properties of blocks of another kind: their sources and harmonics. Colours, attributes and the vertical
+  /// axis stay those of the schema that came first.
+  void add_schema(const ModelSchema& schema);
+
   /// The volumes whose bricks are blocks of the file. Call before finish().
   void set_volumes(std::vector<Volume> volumes);
+
+  /// The sources whose ellipsoids are blocks of the file. Call before finish().
+  void set_ellipsoid_sources(std::vector<EllipsoidSource> sources);
 
   /// Writes the tables and moves the file to its target. Fails if no block was added.
   Result<WriteReport> finish();

@@ -36,6 +36,7 @@ Outcome outcome_of(uint64_t id, Result<service::EncodedPicture> picture) {
   Outcome outcome;
   outcome.picture_bytes = picture->bytes.size();
   outcome.stats = picture->stats;
+  outcome.memory = picture->memory;
   wire::Answer answer;
   answer.set_id(id);
   to_wire(std::move(*picture), *answer.mutable_picture());

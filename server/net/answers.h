@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -23,6 +24,7 @@ struct Outcome {
   bool failed = false;
   size_t picture_bytes = 0;                  ///< encoded
   std::optional<picture::FrameStats> stats;  ///< of a picture
+  std::shared_ptr<const void> memory{};      ///< counts the bytes of a picture
 };
 
 /// The bytes of an answer, or of the error that it is too large.

@@ -9,4 +9,7 @@ namespace surfcast::net {
 /// address, of which a single machine may use every address.
 std::string client_name(const boost::asio::ip::address& address);
 
+/// Whether it is an address of this machine for itself, also one that is mapped into IPv6.
+bool is_loopback(const boost::asio::ip::address& address);
+
 }  // namespace surfcast::net

@@ -10,9 +10,9 @@ namespace surfcast::net {
 
 /// How many connections and views there may be. 0 for a client: as many as there may be at all.
 struct ClientLimits {
-  size_t connections = 256;  ///< of all clients together
-  size_t connections_per_client = 0;
-  size_t views_per_client = 0;  ///< on all its connections together
+  size_t connections = 256;            ///< of all clients together
+  size_t connections_per_client = 64;  ///< one client leaves most of them to others
+  size_t views_per_client = 0;         ///< on all its connections together
 };
 
 /// What each client (see client_name) has open. Used on the thread of the sockets.
@@ -32,13 +32,12 @@ class Clients {
   [[nodiscard]] std::string refusal_of_view(const std::string& client) const;
   /// Of all clients.
   [[nodiscard]] const Counts& all() const { return all_; }
+  [[nodiscard]] Counts counts_of(const std::string& client) const;
 
   void add(const std::string& client, size_t Counts::*what);
   void remove(const std::string& client, size_t Counts::*what);
 
  private:
-  [[nodiscard]] Counts counts_of(const std::string& client) const;
-
   ClientLimits limits_;
   Counts all_;
   std::map<std::string, Counts> counts_;  ///< by name, of clients that have anything open

@@ -14,26 +14,49 @@ namespace surfcast::net {
 
 namespace asio = boost::asio;
 
-Conversation::Conversation(std::shared_ptr<NetContext> context, service::SessionId session,
-                           asio::any_io_executor executor, std::shared_ptr<AnswerWriter> writer, std::string client)
+namespace {
+
+/// Requests of unknown kinds, one after another, that end a connection. A newer client asks once and takes the answer.
+/// Not a setting: it is a matter of the protocol.
+constexpr size_t kMostUnknown = 3;
+
+}  // namespace
+
+Conversation::Conversation(std::shared_ptr<NetContext> context, const service::Asker& asker,
+                           asio::any_io_executor executor, std::shared_ptr<AnswerWriter> writer, std::string client,
+                           const Gatekeeper::Guest& guest)
     : context_(std::move(context)),
-      session_(session),
+      asker_(asker),
       client_(std::move(client)),
       executor_(std::move(executor)),
       writer_(std::move(writer)),
       window_(context_->config.requests),
-      view_timer_(executor_) {}
+      view_timer_(executor_) {
+  if (guest) welcome(guest);
+}
 
 Status Conversation::receive(std::span<const std::byte> message) {
+  if (!writer_) return {};  // it was told to leave
   wire::Request request;
   if (Status decoded = protocol::decode_message(message, request); !decoded) return decoded;
+  unknown_ = request.kind_case() == wire::Request::KIND_NOT_SET ? unknown_ + 1 : 0;
+  if (unknown_ >= kMostUnknown)
+    return fail(ErrorKind::kUnsupported, "these requests are of no kind that is known here");
   handle(request);
   return {};
 }
 
 void Conversation::handle(const wire::Request& request) {
   ++context_->metrics.requests;
-  if (context_->draining) return send_error(request.id(), {ErrorKind::kUnavailable, "the server is stopping"});
+  if (context_->draining || refusing_)
+    return send_error(request.id(), {ErrorKind::kUnavailable, "the server is stopping"});
+  if (request.has_ping()) return handle_ping(request);
+  if (request.has_authenticate()) return handle_authenticate(request);
+  if (!admitted()) return deny(request.id(), "this server wants a token first (surfcast login)");
+  handle_admitted(request);
+}
+
+void Conversation::handle_admitted(const wire::Request& request) {
   switch (request.kind_case()) {
     case wire::Request::kDrawPicture:
       return handle_picture(request);
@@ -46,6 +69,8 @@ void Conversation::handle(const wire::Request& request) {
       return handle_profile(request);
     case wire::Request::kCancel:
       return handle_cancel(request);
+    case wire::Request::kResume:
+      return handle_resume(request);
     case wire::Request::kOpenView:
       return handle_open_view(request);
     case wire::Request::kUpdateView:
@@ -54,16 +79,17 @@ void Conversation::handle(const wire::Request& request) {
       return handle_painted(request);
     case wire::Request::kCloseView:
       return handle_close_view(request);
-    case wire::Request::kPing: {
-      wire::Answer answer;
-      answer.set_id(request.id());
-      answer.mutable_pong();
-      return send(encode_answer(answer));
-    }
     default:
       break;
   }
   send_error(request.id(), {ErrorKind::kUnsupported, "this server does not know that kind of request"});
+}
+
+void Conversation::handle_ping(const wire::Request& request) {
+  wire::Answer answer;
+  answer.set_id(request.id());
+  answer.mutable_pong();
+  send(encode_answer(answer));
 }
 
 void Conversation::handle_picture(const wire::Request& request) {
@@ -72,6 +98,8 @@ void Conversation::handle_picture(const wire::Request& request) {
   }
   Result<service::PictureJob> job = to_job(request.draw_picture());
   if (!job) return send_error(request.id(), job.error());
+  audit_once("picture", job->model);
+  job->model = name_for(guest_, job->model);
   window_.add_picture(request.id(), std::move(*job));
   draw_next();
 }
@@ -83,7 +111,7 @@ void Conversation::draw_next() {
     if (!next) return;
     const uint64_t id = next->first;
     const service::JobId job = context_->service.draw(
-        session_, std::move(next->second), [later = answer_later(id), id](Result<service::EncodedPicture> picture) {
+        asker_, std::move(next->second), [later = answer_later(id), id](Result<service::EncodedPicture> picture) {
           later(outcome_of(id, std::move(picture)));
         });
     window_.set_job(id, job);
@@ -96,15 +124,19 @@ void Conversation::handle_other(const wire::Request& request) {
   window_.add_other(id);
   if (request.has_list_models()) {
     return context_->service.list_models(
-        [later = answer_later(id), id, context = context_](const service::ModelList& models) {
-          later(outcome_of(id, models, context->config.uploads));
-        });
+        [later = answer_later(id), id, context = context_, guest = guest_](const service::ModelList& models) {
+          later(outcome_of(id, list_for(guest, models), context->config.uploads));
+        },
+        asker_.client);
   }
   const std::string& name = request.describe_model().model();
+  audit_once("describe", name);
   context_->service.describe_model(
-      name, [later = answer_later(id), id, name](const Result<service::ModelDescription>& description) {
+      name_for(guest_, name),
+      [later = answer_later(id), id, name](const Result<service::ModelDescription>& description) {
         later(outcome_of(id, name, description));
-      });
+      },
+      asker_.client);
 }
 
 void Conversation::handle_pick(const wire::Request& request) {
@@ -112,11 +144,15 @@ void Conversation::handle_pick(const wire::Request& request) {
   if (const Status admitted = window_.admit(id); !admitted) return send_error(id, admitted.error());
   Result<service::PickJob> job = to_job(request.pick_surfel());
   if (!job) return send_error(id, job.error());
+  audit_once("pick", job->model);
+  job->model = name_for(guest_, job->model);
   window_.add_other(id);
-  context_->service.pick(std::move(*job),
-                         [later = answer_later(id), id](const Result<std::optional<kinds::PickedSurfel>>& picked) {
-                           later(outcome_of(id, picked));
-                         });
+  context_->service.pick(
+      std::move(*job),
+      [later = answer_later(id), id](const Result<std::optional<kinds::PickedSurfel>>& picked) {
+        later(outcome_of(id, picked));
+      },
+      asker_.client);
 }
 
 void Conversation::handle_profile(const wire::Request& request) {
@@ -124,11 +160,13 @@ void Conversation::handle_profile(const wire::Request& request) {
   if (const Status admitted = window_.admit(id); !admitted) return send_error(id, admitted.error());
   Result<service::ProfileJob> job = to_job(request.get_profile());
   if (!job) return send_error(id, job.error());
+  audit_once("profile", job->model);
+  job->model = name_for(guest_, job->model);
   window_.add_other(id);
-  context_->service.profile(std::move(*job),
-                            [later = answer_later(id), id](const Result<service::ProfileResult>& profile) {
-                              later(outcome_of(id, profile));
-                            });
+  context_->service.profile(
+      std::move(*job),
+      [later = answer_later(id), id](const Result<service::ProfileResult>& profile) { later(outcome_of(id, profile)); },
+      asker_.client);
 }
 
 /// A function for any thread that hands an answer over to this object.
@@ -144,7 +182,7 @@ void Conversation::hand_over(uint64_t id, Outcome outcome) {
   if (outcome.stats) metrics.count_picture(outcome.picture_bytes, *outcome.stats);
   if (outcome.failed) ++metrics.errors;
   window_.finish(id);
-  send(std::move(outcome.answer));
+  send(std::move(outcome.answer), std::move(outcome.memory));
   draw_next();
   if (writer_) writer_->answer_sent();
 }
@@ -160,13 +198,32 @@ void Conversation::handle_cancel(const wire::Request& request) {
   send(encode_answer(answer));
 }
 
+void Conversation::audit(std::string_view what, const std::string& model) {
+  if (!context_->audit) return;
+  const bool allowed = !guest_ || access::may_see(*guest_, model);
+  context_->audit->write({.what = what,
+                          .who = owner(),
+                          .client = client_,
+                          .connection = asker_.session,
+                          .model = model,
+                          .outcome = allowed ? "allowed" : "denied"});
+}
+
+/// A client that asks the same again and again makes one line.
+void Conversation::audit_once(std::string_view what, const std::string& model) {
+  constexpr size_t kRemembered = 256;
+  if (!context_->audit || !audited_.insert(std::string(what) + ' ' + model).second) return;
+  if (audited_.size() > kRemembered) audited_.clear();
+  audit(what, model);
+}
+
 void Conversation::send_error(uint64_t id, const Error& error) {
   ++context_->metrics.errors;
   send(encode_error(id, error));
 }
 
-void Conversation::send(Bytes answer) {
-  if (writer_) writer_->send(std::move(answer));
+void Conversation::send(Bytes answer, std::shared_ptr<const void> memory) {
+  if (writer_) writer_->send(std::move(answer), std::move(memory));
 }
 
 void Conversation::resume_sending() {
@@ -175,6 +232,9 @@ void Conversation::resume_sending() {
 }
 
 void Conversation::abandon() {
+  if (!session_.empty()) {
+    context_->sessions.keep(std::exchange(session_, {}), views_to_keep(), KeptSessions::Clock::now());
+  }
   writer_.reset();
   for (const service::JobId job : window_.abandon()) context_->service.cancel(job);
   for (const auto& [id, opened] : views_) opened.view->close();

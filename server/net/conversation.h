@@ -6,11 +6,16 @@
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
+#include <set>
 #include <span>
 #include <string>
+#include <string_view>
+#include <vector>
 
 #include "base/result.h"
 #include "net/answers.h"
+#include "net/kept_sessions.h"
 #include "net/request_window.h"
 #include "net/session.h"
 #include "surfcast.pb.h"
@@ -24,21 +29,24 @@ class AnswerWriter {
   virtual ~AnswerWriter() = default;
 
   /// Queues one encoded Answer; nothing once the connection is closed.
-  virtual void send(Bytes answer) = 0;
+  /// `memory` is kept until the client has taken the answer, or is gone.
+  virtual void send(Bytes answer, std::shared_ptr<const void> memory) = 0;
   /// Bytes of answers that the client has not taken.
   [[nodiscard]] virtual size_t unread_bytes() const = 0;
   /// An answer that was outstanding has been sent: the connection may end now if it waits for that.
   virtual void answer_sent() = 0;
+  /// Queues the last answer; the connection ends once it is sent.
+  virtual void end(Bytes answer) = 0;
 };
 
 /// What a client and the server say to each other after their hellos, whatever carries it: takes encoded requests,
 /// hands out encoded answers. Answers of the service are made into bytes on the service's threads and posted here; all
 /// else happens on the thread of the sockets.
-class Conversation : public std::enable_shared_from_this<Conversation> {
+class Conversation : public KeptSessions::Holder, public std::enable_shared_from_this<Conversation> {
  public:
   /// `writer` is kept until abandon() and while an answer is outstanding. `client`: see client_name.
-  Conversation(std::shared_ptr<NetContext> context, service::SessionId session, boost::asio::any_io_executor executor,
-               std::shared_ptr<AnswerWriter> writer, std::string client);
+  Conversation(std::shared_ptr<NetContext> context, const service::Asker& asker, boost::asio::any_io_executor executor,
+               std::shared_ptr<AnswerWriter> writer, std::string client, const Gatekeeper::Guest& guest);
 
   /// Handles one encoded Request. Fails when it is none: the stream is of no use any more then.
   Status receive(std::span<const std::byte> message);
@@ -46,19 +54,38 @@ class Conversation : public std::enable_shared_from_this<Conversation> {
   void resume_sending();
   /// Models may have newer editions, which views are to show.
   void models_changed();
-  /// Cancels what is outstanding; nothing is sent from here on.
+  /// Ends the conversation, with the reason, if the guest has to leave.
+  void check_guest();
+  /// Whether the client may ask for models.
+  [[nodiscard]] bool admitted() const { return context_->gate->admits(guest_); }
+  /// Takes no more requests: the server stops.
+  void refuse_requests() { refusing_ = true; }
+  /// Cancels what is outstanding; nothing is sent from here on. Views wait for the client, if it has begun a session.
   void abandon();
+  std::vector<KeptView> hand_over() override;
 
   [[nodiscard]] size_t outstanding() const { return window_.outstanding(); }
+  [[nodiscard]] bool has_views() const { return !views_.empty(); }
 
  private:
   void handle(const wire::Request& request);
+  void handle_admitted(const wire::Request& request);
+  void handle_ping(const wire::Request& request);
+  void handle_authenticate(const wire::Request& request);
+  void welcome(const Gatekeeper::Guest& guest);
+  void deny(uint64_t id, const std::string& reason);
+  [[nodiscard]] std::string refusal_of_view() const;
   void handle_picture(const wire::Request& request);
   void handle_other(const wire::Request& request);
   void handle_pick(const wire::Request& request);
   void handle_profile(const wire::Request& request);
   void handle_cancel(const wire::Request& request);
+  void handle_resume(const wire::Request& request);
   void handle_open_view(const wire::Request& request);
+  Status open_view(KeptView wanted);
+  [[nodiscard]] Status check_room_for_view(uint64_t id) const;
+  [[nodiscard]] std::vector<KeptView> views_to_keep() const;
+  [[nodiscard]] std::string owner() const { return guest_ ? guest_->name : ""; }
   void handle_update_view(const wire::Request& request);
   void handle_painted(const wire::Request& request);
   void handle_close_view(const wire::Request& request);
@@ -69,22 +96,32 @@ class Conversation : public std::enable_shared_from_this<Conversation> {
   void advance_views();
   std::function<void(Outcome)> answer_later(uint64_t id);
   void hand_over(uint64_t id, Outcome outcome);
-  void send(Bytes answer);
+  void send(Bytes answer, std::shared_ptr<const void> memory = {});
   void send_error(uint64_t id, const Error& error);
+  void audit_token(std::string_view outcome, const std::string& reason) const;
+  void audit(std::string_view what, const std::string& model);
+  void audit_once(std::string_view what, const std::string& model);
 
   std::shared_ptr<NetContext> context_;
-  service::SessionId session_;
+  service::Asker asker_;
   std::string client_;
   boost::asio::any_io_executor executor_;
   std::shared_ptr<AnswerWriter> writer_;  ///< null once abandoned
   RequestWindow window_;
+  size_t unknown_ = 0;  ///< requests of unknown kinds, one after another
   struct OpenedView {
     std::shared_ptr<view::ViewSession> view;
-    std::string picture;  ///< encoded, what was asked for last
+    KeptView wanted;  ///< its quality is that at the beginning
     std::string model;
     Counted counted;
+    std::optional<Counted> counted_guest;
   };
   std::map<uint64_t, OpenedView> views_;  ///< by the id of their OpenView
+  Gatekeeper::Guest guest_;               ///< null: nobody that is known
+  std::optional<Counted> counted_guest_;
+  std::string session_;  ///< its secret; empty: there is none
+  bool refusing_ = false;
+  std::set<std::string> audited_;         ///< what was asked of which model
   boost::asio::steady_timer view_timer_;  ///< when a view is to be looked at again
 };
 

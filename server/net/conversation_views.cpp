@@ -20,29 +20,91 @@ using Clock = std::chrono::steady_clock;
 }  // namespace
 
 void Conversation::handle_open_view(const wire::Request& request) {
-  const uint64_t id = request.id();
-  const wire::OpenView& open_view = request.open_view();
-  if (views_.contains(id)) {
-    return send_error(id, {ErrorKind::kInvalidInput, "view " + std::to_string(id) + " is open already"});
-  }
-  if (const Status admitted = window_.admit(id); !admitted) return send_error(id, admitted.error());
-  if (views_.size() >= context_->config.views) {
-    return send_error(id, {ErrorKind::kUnavailable, "busy: too many views are open on this connection"});
-  }
-  if (std::string refusal = context_->clients->refusal_of_view(client_); !refusal.empty()) {
-    return send_error(id, {ErrorKind::kUnavailable, std::move(refusal)});
-  }
-  if (const Status checked = protocol::check_view(open_view); !checked) return send_error(id, checked.error());
-  Result<service::PictureJob> job = to_job(open_view.picture());
-  if (!job) return send_error(id, job.error());
-  const double fps = open_view.target_fps() > 0 ? open_view.target_fps() : context_->config.target_fps;
-  const auto view =
-      std::make_shared<view::ViewSession>(context_->service, session_, ++context_->last_viewer, fps,
-                                          context_->metrics.views, port_of(id), context_->config.kept_frame_bytes);
-  views_.emplace(id, OpenedView{view, open_view.picture().SerializeAsString(), open_view.picture().model(),
-                                Counted(context_->clients, client_, &Clients::Counts::views)});
-  view->update({0, std::move(*job), /*changed=*/true, /*moving=*/false}, Clock::now());
+  const wire::OpenView& asked = request.open_view();
+  Status opened = protocol::check_view(asked);
+  if (opened) opened = open_view({request.id(), asked.picture().SerializeAsString(), 0, asked.target_fps()});
+  if (!opened) return send_error(request.id(), opened.error());
   advance_views();
+}
+
+Status Conversation::check_room_for_view(uint64_t id) const {
+  if (views_.contains(id)) return fail(ErrorKind::kInvalidInput, "view " + std::to_string(id) + " is open already");
+  if (Status admitted = window_.admit(id); !admitted) return admitted;
+  if (views_.size() >= context_->config.views) {
+    return fail(ErrorKind::kUnavailable, "busy: too many views are open on this connection");
+  }
+  std::string refusal = refusal_of_view();
+  return refusal.empty() ? Status() : fail(ErrorKind::kUnavailable, std::move(refusal));
+}
+
+/// Opens a view whose picture was checked.
+Status Conversation::open_view(KeptView wanted) {
+  if (Status room = check_room_for_view(wanted.id); !room) return room;
+  wire::DrawPicture picture;
+  picture.ParseFromString(wanted.picture);
+  Result<service::PictureJob> job = to_job(picture);
+  if (!job) return fail(job.error());
+  audit("view", job->model);
+  job->model = name_for(guest_, job->model);
+  const double fps = wanted.target_fps > 0 ? wanted.target_fps : context_->config.target_fps;
+  const auto view = std::make_shared<view::ViewSession>(context_->service, asker_, ++context_->last_viewer, fps,
+                                                        context_->metrics.views, port_of(wanted.id),
+                                                        context_->config.kept_frame_bytes);
+  view->begin_with(wanted.quality);
+  view->update({wanted.update, std::move(*job), /*changed=*/true, /*moving=*/false}, Clock::now());
+  OpenedView opened{view, std::move(wanted), picture.model(),
+                    Counted(context_->clients, client_, &Clients::Counts::views), std::nullopt};
+  if (guest_) opened.counted_guest.emplace(context_->gate->guests(), guest_->name, &Clients::Counts::views);
+  const uint64_t id = opened.wanted.id;
+  views_.emplace(id, std::move(opened));
+  return {};
+}
+
+/// The answer comes before the first frame of a view.
+void Conversation::handle_resume(const wire::Request& request) {
+  KeptSessions& sessions = context_->sessions;
+  sessions.forget(session_);
+  std::vector<KeptView> views = sessions.take(request.resume().session(), owner(), Clock::now());
+  session_ = sessions.begin(weak_from_this(), owner(), client_);
+  wire::Answer answer;
+  answer.set_id(request.id());
+  wire::Resumed& resumed = *answer.mutable_resumed();
+  resumed.set_session(session_);
+  resumed.set_seconds(std::chrono::duration<double>(sessions.time()).count());
+  for (KeptView& view : views) {
+    const uint64_t id = view.id;
+    if (open_view(std::move(view))) resumed.add_views(id);
+  }
+  send(encode_answer(answer));
+  advance_views();
+}
+
+std::vector<KeptView> Conversation::views_to_keep() const {
+  std::vector<KeptView> kept;
+  for (const auto& [id, opened] : views_) {
+    kept.push_back(opened.wanted);
+    kept.back().quality = opened.view->quality();
+  }
+  return kept;
+}
+
+/// The client has come over another connection: this one is as good as gone.
+std::vector<KeptView> Conversation::hand_over() {
+  session_.clear();
+  std::vector<KeptView> views = views_to_keep();
+  const auto writer = writer_;
+  abandon();
+  if (writer) writer->end(encode_error(0, {ErrorKind::kUnavailable, "the session goes on over another connection"}));
+  return views;
+}
+
+/// Why there may not be another view; empty: there may.
+std::string Conversation::refusal_of_view() const {
+  const Clients& guests = *context_->gate->guests();
+  if (guest_ && guest_->views > 0 && guests.counts_of(guest_->name).views >= guest_->views) {
+    return "busy: this token opens " + std::to_string(guest_->views) + " views at a time";
+  }
+  return context_->clients->refusal_of_view(client_);
 }
 
 void Conversation::handle_update_view(const wire::Request& request) {
@@ -56,9 +118,11 @@ void Conversation::handle_update_view(const wire::Request& request) {
   if (!checked) return end_view(request.id(), checked.error());
   Result<service::PictureJob> job = to_job(update.picture());
   if (!job) return end_view(request.id(), job.error());
+  job->model = name_for(guest_, job->model);
   std::string picture = update.picture().SerializeAsString();
-  const bool changed = picture != found->second.picture;
-  found->second.picture = std::move(picture);
+  const bool changed = picture != found->second.wanted.picture;
+  found->second.wanted.picture = std::move(picture);
+  found->second.wanted.update = update.update();
   found->second.view->update({update.update(), std::move(*job), changed, update.moving()}, Clock::now());
   advance_views();
 }
@@ -105,7 +169,7 @@ view::ViewPort Conversation::port_of(uint64_t view) {
 }
 
 void Conversation::send_frame(uint64_t view, view::ViewMessage message) {
-  if (message.first) context_->metrics.count_stages(message.picture.stats);
+  if (message.first) context_->metrics.count_stages(message.picture.stats, context_->metrics.view);
   wire::Answer answer;
   answer.set_id(view);
   to_wire(std::move(message), *answer.mutable_view_frame());

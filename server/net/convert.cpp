@@ -4,8 +4,6 @@
 #include <limits>
 #include <utility>
 
-#include "model/volume_facts.h"
-#include "protocol/errors.h"
 #include "protocol/picture_fields.h"
 #include "protocol/profile_query.h"
 #include "protocol/validate.h"
@@ -15,12 +13,6 @@ namespace {
 
 glm::dvec3 from_wire(const wire::Vector3& v) {
   return {v.x(), v.y(), v.z()};
-}
-
-void to_wire(const glm::dvec3& v, wire::Vector3* message) {
-  message->set_x(v.x);
-  message->set_y(v.y);
-  message->set_z(v.z);
 }
 
 /// Resolutions beyond int are refused later like any that is too large.
@@ -46,6 +38,11 @@ picture::SplatConvention from_wire(wire::SplatConvention value) {
   return value == wire::SPLAT_CONVENTION_EXACT ? picture::SplatConvention::kExact : picture::SplatConvention::kTrained;
 }
 
+picture::XRay from_wire(wire::XRay value) {
+  if (value == wire::X_RAY_SORTED) return picture::XRay::kSorted;
+  return value == wire::X_RAY_DENSITY ? picture::XRay::kDensity : picture::XRay::kOff;
+}
+
 picture::FileFormat from_wire(wire::FileFormat value) {
   switch (value) {
     case wire::FILE_FORMAT_JPEG:
@@ -59,20 +56,6 @@ picture::FileFormat from_wire(wire::FileFormat value) {
   }
 }
 
-wire::FileFormat to_wire(picture::FileFormat value) {
-  switch (value) {
-    case picture::FileFormat::kJpeg:
-      return wire::FILE_FORMAT_JPEG;
-    case picture::FileFormat::kWebp:
-      return wire::FILE_FORMAT_WEBP;
-    case picture::FileFormat::kExr:
-      return wire::FILE_FORMAT_EXR;
-    case picture::FileFormat::kPng:
-      break;
-  }
-  return wire::FILE_FORMAT_PNG;
-}
-
 picture::SurfelColor from_wire(wire::ColorSource source) {
   switch (source) {
     case wire::COLOR_SOURCE_INTENSITY:
@@ -83,6 +66,12 @@ picture::SurfelColor from_wire(wire::ColorSource source) {
       return picture::SurfelColor::kClassification;
     case wire::COLOR_SOURCE_NORMAL:
       return picture::SurfelColor::kNormal;
+    case wire::COLOR_SOURCE_DIRECTION:
+      return picture::SurfelColor::kDirection;
+    case wire::COLOR_SOURCE_DEC:
+      return picture::SurfelColor::kDec;
+    case wire::COLOR_SOURCE_ATTRIBUTE:
+      return picture::SurfelColor::kAttribute;
     default:
       return picture::SurfelColor::kStored;
   }
@@ -105,6 +94,33 @@ picture::Coloring from_wire(const wire::Coloring& coloring) {
   picture::Coloring result{from_wire(coloring.source()), from_wire(coloring.map())};
   if (coloring.has_first()) result.first = coloring.first();
   if (coloring.has_last()) result.last = coloring.last();
+  result.attribute = coloring.attribute();
+  return result;
+}
+
+picture::GlyphRadius from_wire(wire::GlyphRadius radius) {
+  if (radius == wire::GLYPH_RADIUS_ROOT) return picture::GlyphRadius::kRoot;
+  return radius == wire::GLYPH_RADIUS_UNIT ? picture::GlyphRadius::kUnit : picture::GlyphRadius::kEigenvalue;
+}
+
+picture::GlyphOptions from_wire(const wire::Glyphs& glyphs) {
+  picture::GlyphOptions result;
+  if (glyphs.shape() == wire::GLYPH_SHAPE_SUPERQUADRIC) result.shape = picture::GlyphShape::kSuperquadric;
+  result.radius = from_wire(glyphs.radius());
+  if (glyphs.has_scale()) result.scale = glyphs.scale();
+  if (glyphs.has_sharpness()) result.sharpness = glyphs.sharpness();
+  for (const wire::Threshold& threshold : glyphs.thresholds()) {
+    result.thresholds.push_back({threshold.attribute(), threshold.smallest()});
+    if (threshold.has_largest()) result.thresholds.back().largest = threshold.largest();
+  }
+  return result;
+}
+
+picture::Lighting from_wire(const wire::Lighting& lighting) {
+  picture::Lighting result{lighting.ambient(), lighting.specular(), lighting.exponent()};
+  for (const wire::Light& light : lighting.lights()) {
+    result.lights.push_back({from_wire(light.direction()), light.power()});
+  }
   return result;
 }
 
@@ -125,15 +141,52 @@ glm::u8vec3 from_wire(const wire::Color& color) {
   return {color.red(), color.green(), color.blue()};
 }
 
+double srgb_from_linear(double light) {
+  return light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
+}
+
+glm::dvec3 srgb_from_linear(const wire::Vector3& light) {
+  return {srgb_from_linear(light.x()), srgb_from_linear(light.y()), srgb_from_linear(light.z())};
+}
+
+picture::TransferPoint from_wire(const wire::TransferPoint& point) {
+  picture::TransferPoint result{point.value(), glm::dvec3(from_wire(point.color())) / 255.0, point.opacity()};
+  if (point.has_color_linear()) result.color = srgb_from_linear(point.color_linear());
+  if (point.has_extinction()) result.extinction = point.extinction();
+  return result;
+}
+
 picture::Transfer from_wire(const wire::TransferFunction& transfer) {
   picture::Transfer result;
   result.preset = from_wire(transfer.preset());
   if (transfer.has_first()) result.first = transfer.first();
   if (transfer.has_last()) result.last = transfer.last();
-  for (const wire::TransferPoint& point : transfer.points()) {
-    result.points.push_back({point.value(), glm::dvec3(from_wire(point.color())) / 255.0, point.opacity()});
-  }
+  result.points.reserve(static_cast<size_t>(transfer.points_size()));
+  for (const wire::TransferPoint& point : transfer.points()) result.points.push_back(from_wire(point));
   return result;
+}
+
+picture::IsoSurface from_wire(const wire::IsoSurface& surface) {
+  picture::IsoSurface result{surface.value()};
+  if (surface.has_color()) result.color = glm::dvec3(from_wire(surface.color())) / 255.0;
+  if (surface.has_opacity()) result.opacity = surface.opacity();
+  return result;
+}
+
+picture::Slice from_wire(const wire::Slice& slice) {
+  picture::Slice result{from_wire(slice.point()), from_wire(slice.normal())};
+  if (slice.axis() != wire::GRID_AXIS_NONE) result.axis = slice.axis() - wire::GRID_AXIS_I;
+  result.index = slice.index();
+  return result;
+}
+
+picture::VolumeOptions volume_options(const wire::DrawPicture& request) {
+  picture::VolumeOptions options{from_wire(request.transfer()), request.shaded()};
+  for (const wire::IsoSurface& surface : request.iso_surfaces()) options.isos.push_back(from_wire(surface));
+  for (const wire::Slice& slice : request.slices()) options.slices.push_back(from_wire(slice));
+  const bool surfaces = !options.isos.empty() || !options.slices.empty();
+  options.medium = request.has_medium() ? request.medium() : !surfaces || request.has_transfer();
+  return options;
 }
 
 /// What is shown of the model, and in which colours.
@@ -147,7 +200,15 @@ void set_display_options(const wire::DrawPicture& request, picture::PictureReque
   picture.eye_dome.strength = request.eye_dome().strength();
   const double radius = request.eye_dome().radius();
   picture.eye_dome.radius = radius > 0 ? radius : protocol::kDefaultEyeDomeRadius;
-  picture.volumes = {from_wire(request.transfer()), request.shaded()};
+  picture.volumes = volume_options(request);
+  picture.glyphs = from_wire(request.glyphs());
+  picture.lighting = from_wire(request.lighting());
+  if (request.has_opacity()) picture.opacity = request.opacity();
+  for (const wire::ClassOpacity& of : request.class_opacities()) {
+    picture.class_opacities.push_back({static_cast<uint8_t>(of.code()), of.opacity()});
+  }
+  picture.ghost = request.ghost();
+  picture.xray = from_wire(request.xray());
 }
 
 geometry::Camera from_wire(const wire::Camera& camera) {
@@ -155,13 +216,6 @@ geometry::Camera from_wire(const wire::Camera& camera) {
           .focal_point = from_wire(camera.focal_point()),
           .view_up = from_wire(camera.view_up()),
           .view_angle = camera.has_view_angle() ? camera.view_angle() : protocol::kDefaultViewAngle};
-}
-
-void to_wire(const geometry::Camera& camera, wire::Camera* message) {
-  to_wire(camera.position, message->mutable_position());
-  to_wire(camera.focal_point, message->mutable_focal_point());
-  to_wire(camera.view_up, message->mutable_view_up());
-  message->set_view_angle(camera.view_angle);
 }
 
 }  // namespace
@@ -204,201 +258,6 @@ Result<service::ProfileJob> to_job(const wire::GetProfile& request) {
   job.query.width = request.width();
   job.query.most = request.max_points();
   return job;
-}
-
-void to_wire(const service::ProfileResult& result, wire::Profile& message) {
-  const pick::Band& band = result.band;
-  message.set_total(band.total);
-  message.set_length(band.length);
-  message.set_z_up(result.z_up);
-  to_wire(band.grid.scale, message.mutable_scale());
-  to_wire(band.grid.offset, message.mutable_offset());
-  message.set_color_bits(static_cast<uint32_t>(result.color_bits));
-  for (const pick::BandPoint& point : band.points) {
-    message.add_x(point.position.x);
-    message.add_y(point.position.y);
-    message.add_z(point.position.z);
-    message.add_along(point.place.along);
-    message.add_across(point.place.across);
-    if (result.color_bits == 0) continue;
-    message.add_red(point.color.r);
-    message.add_green(point.color.g);
-    message.add_blue(point.color.b);
-  }
-  for (size_t a = 0; a < result.attributes.size(); ++a) {
-    wire::AttributeColumn* column = message.add_attributes();
-    column->set_attribute(protocol::clean_utf8(result.attributes[a]));
-    for (size_t i = a; i < band.values.size(); i += result.attributes.size()) column->add_values(band.values[i]);
-  }
-}
-
-void to_wire(const std::optional<kinds::PickedSurfel>& picked, wire::PickResult& message) {
-  message.set_hit(picked.has_value());
-  if (!picked) return;
-  to_wire(picked->position, message.mutable_position());
-  to_wire(picked->normal, message.mutable_normal());
-  if (picked->color) {
-    message.mutable_color()->set_red(picked->color->r);
-    message.mutable_color()->set_green(picked->color->g);
-    message.mutable_color()->set_blue(picked->color->b);
-  }
-  message.set_radius(picked->radius);
-  message.set_distance(picked->distance);
-  message.set_depth(picked->depth);
-  message.set_surfel(picked->number);
-  for (const kinds::PickedValue& value : picked->values) {
-    wire::AttributeValue* attribute = message.add_attributes();
-    attribute->set_attribute(protocol::clean_utf8(value.attribute));
-    attribute->set_value(value.value);
-  }
-}
-
-void to_wire(service::EncodedPicture picture, wire::Picture& message) {
-  message.set_data(picture.bytes.data(), picture.bytes.size());
-  message.set_format(to_wire(picture.format));
-  to_wire(picture.camera, message.mutable_camera());
-  message.mutable_resolution()->set_width(static_cast<uint32_t>(picture.width));
-  message.mutable_resolution()->set_height(static_cast<uint32_t>(picture.height));
-  message.set_normalization(picture.normalization == picture::Normalization::kSurfel ? wire::NORMALIZATION_SURFEL
-                                                                                     : wire::NORMALIZATION_PIXEL);
-  message.set_spacing(picture.spacing);
-  message.set_converged(picture.converged && !picture.preview);
-  message.set_preview(picture.preview);
-  message.set_surfels_drawn(picture.stats.surfels_drawn);
-  message.set_blocks_drawn(picture.stats.blocks_drawn);
-  message.set_blocks_selected(picture.stats.blocks_selected);
-  message.set_blocks_waited_for(picture.stats.blocks_waited_for);
-  message.set_blocks_resident(picture.stats.blocks_resident);
-  message.set_bytes_resident(picture.stats.bytes_resident);
-  for (const picture::LevelStats& stats : picture.stats.levels) {
-    wire::Level* level = message.add_levels();
-    level->set_level(static_cast<uint32_t>(stats.level));
-    level->set_blocks_selected(stats.selected);
-    level->set_blocks_drawn(stats.drawn);
-  }
-  message.set_gl_renderer(protocol::clean_utf8(picture.stats.gl_renderer));
-  for (const picture::StageTime& time : picture.stats.stages) {
-    wire::Stage* stage = message.add_stages();
-    stage->set_name(protocol::clean_utf8(time.name));
-    stage->set_milliseconds(time.milliseconds);
-  }
-}
-
-void to_wire(view::ViewMessage message, wire::ViewFrame& frame) {
-  frame.set_frame(message.frame);
-  frame.set_more(message.more);
-  if (!message.first) {
-    const std::vector<std::byte>& piece = message.picture.bytes;
-    frame.mutable_picture()->set_data(piece.data(), piece.size());
-    return;
-  }
-  frame.set_update(message.update);
-  frame.mutable_resolution()->set_width(static_cast<uint32_t>(message.width));
-  frame.mutable_resolution()->set_height(static_cast<uint32_t>(message.height));
-  frame.set_moving(message.moving);
-  to_wire(std::move(message.picture), *frame.mutable_picture());
-}
-
-namespace {
-
-wire::ScanState to_wire(service::ScanStatus::State state) {
-  switch (state) {
-    case service::ScanStatus::State::kWaiting:
-      return wire::SCAN_STATE_WAITING;
-    case service::ScanStatus::State::kBuilding:
-      return wire::SCAN_STATE_BUILDING;
-    case service::ScanStatus::State::kFailed:
-      break;
-  }
-  return wire::SCAN_STATE_FAILED;
-}
-
-}  // namespace
-
-void to_wire(const service::ModelList& list, const UploadConfig& uploads, wire::ModelList& message) {
-  for (const std::string& name : list.names) message.add_models(protocol::clean_utf8(name));
-  for (const service::ScanStatus& scan : list.scans) {
-    wire::ScanStatus* to = message.add_scans();
-    to->set_model(protocol::clean_utf8(scan.model));
-    to->set_state(to_wire(scan.state));
-    to->set_done(scan.done);
-    to->set_seconds_left(scan.seconds_left);
-    to->set_problem(protocol::clean_utf8(scan.problem));
-    to->set_edition(scan.edition);
-  }
-  if (uploads.folder.empty()) return;
-  message.mutable_uploads()->set_max_bytes(uploads.bytes);
-  for (const std::string& extension : uploads.extensions) message.mutable_uploads()->add_extensions(extension);
-}
-
-void to_wire(const picture::TransferPoint& point, wire::TransferPoint& message) {
-  const auto code = [](double part) { return static_cast<uint32_t>(std::lround(255 * part)); };
-  message.set_value(point.value);
-  message.mutable_color()->set_red(code(point.color.r));
-  message.mutable_color()->set_green(code(point.color.g));
-  message.mutable_color()->set_blue(code(point.color.b));
-  message.set_opacity(point.opacity);
-}
-
-void to_wire(const model::Volume& volume, const service::VolumePresets& presets, wire::VolumeDescription& message) {
-  const glm::dvec3 spacing = spacing_of(volume);
-  for (int axis = 0; axis < 3; ++axis) {
-    message.add_size(volume.size[axis]);
-    message.add_spacing(spacing[axis]);
-  }
-  message.set_name(protocol::clean_utf8(volume.name));
-  message.set_low(volume.low);
-  message.set_high(volume.high);
-  message.mutable_histogram()->Assign(volume.histogram.begin(), volume.histogram.end());
-  message.set_length_unit(protocol::clean_utf8(volume.length_unit));
-  message.set_sample_unit(protocol::clean_utf8(volume.sample_unit));
-  for (size_t i = 0; i < presets.size(); ++i) {
-    wire::PresetPoints& preset = *message.add_presets();
-    preset.set_preset(static_cast<wire::TransferPreset>(i));
-    for (const picture::TransferPoint& point : presets[i]) to_wire(point, *preset.add_points());
-  }
-}
-
-void to_wire(const std::string& name, const service::ModelDescription& description, wire::ModelDescription& message) {
-  const model::ModelInfo& info = description.info;
-  message.set_model(name);
-  message.set_surfels(info.surfels);
-  to_wire(info.bounds.min, message.mutable_bounds()->mutable_min());
-  to_wire(info.bounds.max, message.mutable_bounds()->mutable_max());
-  message.set_oriented(info.oriented);
-  message.set_z_up(info.z_up);
-  message.set_color_bits(static_cast<uint32_t>(info.color_bits));
-  for (const std::string& attribute : info.scalar_names) message.add_attributes(protocol::clean_utf8(attribute));
-  for (const std::string& source : info.source_names) message.add_sources(protocol::clean_utf8(source));
-  message.set_levels(description.levels);
-  message.set_blocks(description.blocks);
-  message.set_spacing(description.spacing);
-  message.set_upside_down(info.upside_down);
-  for (const model::KindCount& kind : info.kinds) {
-    wire::KindCount* to = message.add_kinds();
-    to->set_kind(protocol::clean_utf8(kind.kind));
-    to->set_items(kind.items);
-  }
-  for (size_t i = 0; i < description.volumes.size(); ++i) {
-    to_wire(description.volumes[i], description.presets[i], *message.add_volumes());
-  }
-  for (const model::AttributeRange& range : info.ranges) {
-    wire::AttributeRange* to = message.add_ranges();
-    to->set_attribute(protocol::clean_utf8(range.attribute));
-    to->set_smallest(range.smallest);
-    to->set_largest(range.largest);
-    to->set_low(range.low);
-    to->set_high(range.high);
-  }
-  for (const model::ClassCount& count : info.classes) {
-    wire::ClassCount* to = message.add_classes();
-    to->set_code(count.code);
-    to->set_surfels(count.surfels);
-  }
-}
-
-std::string media_type(picture::FileFormat format) {
-  return std::string(protocol::media_type(to_wire(format)));
 }
 
 }  // namespace surfcast::net

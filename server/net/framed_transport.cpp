@@ -21,34 +21,42 @@ using boost::system::error_code;
 
 class FramedTransport : public Transport {
  public:
-  FramedTransport(tcp::socket socket, size_t request_bytes) : socket_(std::move(socket)), splitter_(request_bytes) {}
+  FramedTransport(ClientStream stream, Bytes begun, size_t request_bytes)
+      : stream_(std::move(stream)), begun_(std::move(begun)), splitter_(request_bytes) {}
 
   Awaitable<Result<Bytes>> read_hello() override;
   Awaitable<Result<std::optional<Bytes>>> read() override;
   Awaitable<bool> write_hello(const Bytes& hello) override;
-  Awaitable<bool> write(const Bytes& message, const std::function<void()>& progress) override;
+  Awaitable<bool> write(const Bytes& message, const std::function<void(size_t)>& progress) override;
   Awaitable<void> linger() override;
-  Awaitable<void> send_close() override { co_return; }
+  Awaitable<void> send_close() override;
   bool keep_alive(Clock::time_point /*now*/) override { return true; }  // TCP sees to it
   void close() override;
-  [[nodiscard]] bool is_open() const override { return socket_.is_open(); }
-  [[nodiscard]] asio::any_io_executor executor() override { return socket_.get_executor(); }
+  [[nodiscard]] std::optional<Clock::time_point> reading_since() const override { return reading_since_; }
+  [[nodiscard]] bool is_open() const override { return stream_.socket().socket().is_open(); }
+  [[nodiscard]] asio::any_io_executor executor() override { return stream_.get_executor(); }
 
  private:
-  tcp::socket socket_;
+  [[nodiscard]] tcp::socket& tcp_socket() { return stream_.socket().socket(); }
+
+  ClientStream stream_;
+  Bytes begun_;  ///< of the hello
   protocol::FrameSplitter splitter_;
   std::array<std::byte, 4096> buffer_{};
+  std::optional<Clock::time_point> reading_since_;
 };
 
 asio::awaitable<Result<Bytes>> FramedTransport::read_hello() {
   error_code code;
-  Bytes bytes(protocol::kHelloHeaderBytes);
-  co_await asio::async_read(socket_, asio::buffer(bytes), redirect_error_to(code));
+  Bytes bytes = std::exchange(begun_, {});
+  const size_t begun = bytes.size();
+  bytes.resize(protocol::kHelloHeaderBytes);
+  co_await asio::async_read(stream_, asio::buffer(bytes) + begun, redirect_error_to(code));
   if (code) co_return fail(ErrorKind::kIo, code.message());
   const Result<size_t> text = protocol::hello_text_bytes(std::span(bytes).first<protocol::kHelloHeaderBytes>());
   if (!text) co_return fail(text.error());
   bytes.resize(protocol::kHelloHeaderBytes + *text);
-  co_await asio::async_read(socket_, asio::buffer(bytes.data() + protocol::kHelloHeaderBytes, *text),
+  co_await asio::async_read(stream_, asio::buffer(bytes.data() + protocol::kHelloHeaderBytes, *text),
                             redirect_error_to(code));
   if (code) co_return fail(ErrorKind::kIo, code.message());
   co_return bytes;
@@ -57,9 +65,13 @@ asio::awaitable<Result<Bytes>> FramedTransport::read_hello() {
 asio::awaitable<Result<std::optional<Bytes>>> FramedTransport::read() {
   for (;;) {
     Result<std::optional<Bytes>> frame = splitter_.next();
-    if (!frame || frame->has_value()) co_return frame;
+    if (!frame || frame->has_value()) {
+      reading_since_.reset();
+      co_return frame;
+    }
+    if (!reading_since_ && splitter_.begun()) reading_since_ = Clock::now();
     error_code code;
-    const size_t count = co_await socket_.async_read_some(asio::buffer(buffer_), redirect_error_to(code));
+    const size_t count = co_await stream_.async_read_some(asio::buffer(buffer_), redirect_error_to(code));
     if (code) co_return std::nullopt;
     splitter_.append(std::span(buffer_).first(count));
   }
@@ -67,20 +79,20 @@ asio::awaitable<Result<std::optional<Bytes>>> FramedTransport::read() {
 
 asio::awaitable<bool> FramedTransport::write_hello(const Bytes& hello) {
   error_code code;
-  co_await asio::async_write(socket_, asio::buffer(hello), redirect_error_to(code));
+  co_await asio::async_write(stream_, asio::buffer(hello), redirect_error_to(code));
   co_return !code;
 }
 
-asio::awaitable<bool> FramedTransport::write(const Bytes& message, const std::function<void()>& progress) {
+asio::awaitable<bool> FramedTransport::write(const Bytes& message, const std::function<void(size_t)>& progress) {
   const auto header = protocol::frame_header(message.size());
   std::array<asio::const_buffer, 2> rest{asio::buffer(header), asio::buffer(message)};
   error_code code;
   while (asio::buffer_size(rest) > 0 && !code) {
-    const size_t sent = co_await socket_.async_write_some(rest, redirect_error_to(code));
+    const size_t sent = co_await stream_.async_write_some(rest, redirect_error_to(code));
     const size_t of_header = std::min(sent, rest[0].size());
     rest[0] += of_header;
     rest[1] += sent - of_header;
-    progress();
+    progress(sent);
   }
   co_return !code;
 }
@@ -89,22 +101,29 @@ asio::awaitable<bool> FramedTransport::write(const Bytes& message, const std::fu
 /// still on its way to it.
 asio::awaitable<void> FramedTransport::linger() {
   error_code code;
-  socket_.shutdown(tcp::socket::shutdown_send, code);
+  if (stream_.is_encrypted()) co_await stream_.encryption()->async_shutdown(redirect_error_to(code));
+  tcp_socket().shutdown(tcp::socket::shutdown_send, code);
   while (!code) {
-    co_await socket_.async_read_some(asio::buffer(buffer_), redirect_error_to(code));
+    co_await stream_.socket().async_read_some(asio::buffer(buffer_), redirect_error_to(code));
   }
+}
+
+asio::awaitable<void> FramedTransport::send_close() {
+  error_code ignored;
+  tcp_socket().shutdown(tcp::socket::shutdown_send, ignored);
+  co_return;
 }
 
 void FramedTransport::close() {
   error_code ignored;
-  socket_.shutdown(tcp::socket::shutdown_both, ignored);
-  socket_.close(ignored);
+  tcp_socket().shutdown(tcp::socket::shutdown_both, ignored);
+  stream_.socket().close();
 }
 
 }  // namespace
 
-std::shared_ptr<Transport> make_framed_transport(tcp::socket socket, size_t request_bytes) {
-  return std::make_shared<FramedTransport>(std::move(socket), request_bytes);
+std::shared_ptr<Transport> make_framed_transport(ClientStream stream, Bytes begun, size_t request_bytes) {
+  return std::make_shared<FramedTransport>(std::move(stream), std::move(begun), request_bytes);
 }
 
 }  // namespace surfcast::net

@@ -146,6 +146,27 @@ json to_json(const model::Volume& volume) {
           {"histogram", volume.histogram}};
 }
 
+json to_json(const model::EllipsoidAttribute& attribute) {
+  return {{"attribute", attribute.name}, {"smallest", attribute.smallest}, {"largest", attribute.largest}};
+}
+
+json to_json(const model::EllipsoidSource& source) {
+  json ranges = json::array();
+  for (const model::EllipsoidAttribute& attribute : source.attributes) ranges.push_back(to_json(attribute));
+  return {{"name", source.name},
+          {"tensors", source.tensors},
+          {"size", {source.size.x, source.size.y, source.size.z}},
+          {"samples", source.counts.samples},
+          {"drawn", source.counts.drawn},
+          {"scale", source.scale()},
+          {"mean_fa", source.mean_anisotropy},
+          {"mean_mode", source.mean_mode},
+          {"mean_eigenvalues", to_json(source.mean_values)},
+          {"length_unit", source.length_unit},
+          {"sample_unit", source.sample_unit},
+          {"ranges", ranges}};
+}
+
 template <typename Values, typename Convert>
 json array_of(const Values& values, const Convert& convert) {
   json array = json::array();
@@ -159,13 +180,13 @@ HttpAnswer models_answer(const service::ModelList& models, const UploadConfig& u
   json document{{"models", models.names},
                 {"scans", array_of(models.scans, [](const service::ScanStatus& scan) { return to_json(scan); })}};
   if (!uploads.folder.empty()) {
-    document["uploads"] = {{"max_bytes", uploads.bytes}, {"extensions", uploads.extensions}};
+    document["uploads"] = {{"max_bytes", uploads.bytes}, {"extensions", all_extensions(uploads)}};
   }
   return json_answer(document);
 }
 
-HttpAnswer uploaded_answer(const std::string& name) {
-  HttpAnswer answer = json_answer({{"model", name}});
+HttpAnswer uploaded_answer(const char* what, const std::string& name) {
+  HttpAnswer answer = json_answer({{what, name}});
   answer.status = 201;
   return answer;
 }
@@ -189,6 +210,8 @@ HttpAnswer model_answer(const std::string& name, const service::ModelDescription
                             return json{{"kind", kind.kind}, {"blocks", kind.blocks}, {"count", kind.items}};
                           })},
        {"volumes", array_of(description.volumes, [](const model::Volume& volume) { return to_json(volume); })},
+       {"ellipsoids",
+        array_of(description.ellipsoids, [](const model::EllipsoidSource& source) { return to_json(source); })},
        {"ranges", array_of(info.ranges, [](const model::AttributeRange& range) { return to_json(range); })},
        {"classes", array_of(info.classes, [](const model::ClassCount& count) {
           return json{{"code", count.code}, {"surfels", count.surfels}};
@@ -206,6 +229,7 @@ HttpAnswer picture_answer(service::EncodedPicture picture) {
                     {"X-Surfcast-Preview", picture.preview ? "true" : "false"},
                     {"Cache-Control", "no-cache"}};
   answer.body = std::move(picture.bytes);
+  answer.memory = std::move(picture.memory);
   return answer;
 }
 
@@ -243,10 +267,12 @@ HttpAnswer profile_answer(const std::string& name, const service::ProfileResult&
 }
 
 HttpAnswer no_viewer_answer() {
-  return text_answer(
+  HttpAnswer answer = text_answer(
       "This Surfcast server has no viewer. Build it in client/web (make, with npm installed), or name its folder with\n"
       "surfcastd serve --viewer DIR. The models are listed at /api/models.\n",
       "text/plain; charset=utf-8");
+  answer.headers = {{"Content-Security-Policy", "default-src 'none'; frame-ancestors 'none'"}};
+  return answer;
 }
 
 }  // namespace surfcast::net

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <memory>
 #include <optional>
 #include <string>
 #include <string_view>
@@ -22,6 +23,7 @@ struct HttpAnswer {
   std::string content_type;
   std::vector<std::pair<std::string, std::string>> headers;
   std::vector<std::byte> body;
+  std::shared_ptr<const void> memory{};  ///< counts the body of a picture
 };
 
 HttpAnswer text_answer(std::string_view text, std::string_view content_type);
@@ -33,8 +35,8 @@ HttpAnswer error_answer(const Error& error, unsigned status);
 
 /// {"models": ["a", "b"], "scans": [{"model": "b", "state": "building", "percent": 37, ...}]}
 HttpAnswer models_answer(const service::ModelList& models, const UploadConfig& uploads);
-/// 201: {"model": "a"}
-HttpAnswer uploaded_answer(const std::string& name);
+/// 201: {"model": "a"}. `what` has arrived: a "model", or a "file" that a scan will name.
+HttpAnswer uploaded_answer(const char* what, const std::string& name);
 HttpAnswer model_answer(const std::string& name, const service::ModelDescription& description);
 /// The picture, with what drawing it took in the headers Server-Timing and X-Surfcast-*.
 HttpAnswer picture_answer(service::EncodedPicture picture);

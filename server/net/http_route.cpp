@@ -15,13 +15,15 @@ constexpr std::string_view kUploads = "/api/uploads/";
 constexpr std::string_view kImage = "/image";
 constexpr std::string_view kPick = "/pick";
 constexpr std::string_view kProfile = "/profile";
-constexpr std::array<std::pair<std::string_view, Kind>, 6> kPlaces{{
+constexpr std::array<std::pair<std::string_view, Kind>, 8> kPlaces{{
     {"/", Kind::kPage},
     {kModels, Kind::kModels},
     {"/ws", Kind::kWebSocket},
     {"/healthz", Kind::kHealth},
     {"/readyz", Kind::kReady},
     {"/metrics", Kind::kMetrics},
+    {"/api/login", Kind::kLogin},
+    {"/api/logout", Kind::kLogout},
 }};
 
 tl::unexpected<Error> no_such_place(std::string_view path) {

@@ -9,10 +9,25 @@ namespace surfcast::net {
 
 /// What an HTTP request asks for.
 struct HttpRoute {
-  enum class Kind { kPage, kModels, kModel, kPicture, kPick, kProfile, kWebSocket, kUpload, kHealth, kReady, kMetrics };
+  enum class Kind {
+    kPage,
+    kModels,
+    kModel,
+    kPicture,
+    kPick,
+    kProfile,
+    kWebSocket,
+    kUpload,
+    kHealth,
+    kReady,
+    kMetrics,
+    kLogin,
+    kLogout
+  };
   Kind kind = Kind::kPage;
-  std::string model;  ///< of kModel, kPicture, kPick and kProfile; of kUpload the file's name
-  std::string query;  ///< of kPicture, kPick and kProfile, still escaped
+  std::string model;     ///< of kModel, kPicture, kPick and kProfile; of kUpload the file's name
+  std::string query;     ///< of kPicture, kPick and kProfile, still escaped
+  std::string accept{};  ///< the header of the request
 };
 
 /// Where the target of a request leads: kNotFound for no such place, kInvalidInput for a malformed one.

@@ -1,32 +1,29 @@
 #include "net/http_session.h"
 
-#include <algorithm>
-#include <array>
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
-#include <boost/beast/core/flat_buffer.hpp>
-#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/asio/steady_timer.hpp>
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/parser.hpp>
-#include <boost/beast/http/read.hpp>
-#include <boost/beast/http/span_body.hpp>
-#include <boost/beast/http/write.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <optional>
 #include <utility>
 
-#include "net/await_answer.h"
-#include "net/convert.h"
 #include "net/http_answer.h"
+#include "net/http_connection.h"
+#include "net/http_credentials.h"
+#include "net/http_login.h"
+#include "net/http_places.h"
 #include "net/http_route.h"
 #include "net/http_upload.h"
 #include "net/message_session.h"
 #include "net/redirect_error_to.h"
+#include "net/request_guard.h"
+#include "net/trace.h"
 #include "net/upgrade.h"
 #include "net/websocket_transport.h"
-#include "protocol/picture_query.h"
-#include "protocol/profile_query.h"
+#include "service/model_name.h"
 
 namespace surfcast::net {
 namespace {
@@ -35,11 +32,7 @@ namespace asio = boost::asio;
 namespace beast = boost::beast;
 namespace http = boost::beast::http;
 namespace websocket = boost::beast::websocket;
-using asio::ip::tcp;
 using boost::system::error_code;
-
-/// Bytes of a body. Not a setting: only uploads have one, and they are read piece by piece.
-constexpr uint64_t kBodyLimit = 4096;
 
 unsigned status_of(const error_code& code) {
   if (code == http::error::header_limit) return 431;
@@ -51,8 +44,34 @@ std::string_view view_of(beast::string_view text) {
 }
 
 UpgradeRequest upgrade_of(const UpgradeHead& request) {
-  return {view_of(request[http::field::host]), view_of(request[http::field::origin]),
+  return {origin_of(request), view_of(request[http::field::sec_websocket_protocol])};
+}
+
+RequestHead guarded_head_of(const HeadParser::value_type& request) {
+  return {.version = request.version(),
+          .get = request.method() == http::verb::get || request.method() == http::verb::head,
+          .hosts = request.count(http::field::host),
+          .host = view_of(request[http::field::host]),
+          .transfer_encodings = request.count(http::field::transfer_encoding),
+          .transfer_encoding = view_of(request[http::field::transfer_encoding]),
+          .content_length = request.count(http::field::content_length) > 0,
+          .origin = view_of(request[http::field::origin]),
+          .forwarded_scheme = view_of(request["X-Forwarded-Proto"]),
+          .fetch_site = view_of(request["Sec-Fetch-Site"]),
+          .fetch_mode = view_of(request["Sec-Fetch-Mode"]),
+          .fetch_destination = view_of(request["Sec-Fetch-Dest"])};
+}
+
+HttpCredentials credentials_of(const HeadParser::value_type& request) {
+  return {view_of(request[http::field::authorization]), view_of(request[http::field::cookie]),
           view_of(request[http::field::sec_websocket_protocol])};
+}
+
+/// Whether a request changes who is logged in.
+bool is_login(const HeadParser::value_type& request) {
+  const Result<HttpRoute> route = route_http(view_of(request.target()));
+  return route && request.method() == http::verb::post &&
+         (route->kind == HttpRoute::Kind::kLogin || route->kind == HttpRoute::Kind::kLogout);
 }
 
 /// The file of the viewer that a target names, query left out.
@@ -62,61 +81,67 @@ const StaticFile* find_file(const ServerConfig& config, std::string_view target)
 
 class HttpSession : public Session, public std::enable_shared_from_this<HttpSession> {
  public:
-  HttpSession(Connection connection, AdoptSession adopt)
-      : stream_(std::move(connection.socket)),
-        buffer_(connection.peer.context->config.http_header_bytes + kBodyLimit),
+  HttpSession(Connection connection, AdoptSession adopt, const service::Asker& asker)
+      : connection_(
+            std::make_shared<HttpConnection>(std::move(connection.stream), connection.begun, connection.peer.context)),
         context_(std::move(connection.peer.context)),
         open_(std::move(connection.peer.open)),
-        id_(connection.peer.id),
+        asker_(asker),
         refusal_(std::move(connection.peer.refusal)),
-        adopt_(std::move(adopt)) {}
+        adopt_(std::move(adopt)),
+        places_(std::make_shared<HttpPlaces>(context_, connection_, asker_)) {}
 
   void start() {
     asio::co_spawn(
-        stream_.get_executor(),
+        connection_->stream().get_executor(),
         [](std::shared_ptr<HttpSession> self) -> asio::awaitable<void> { co_await self->serve(); }(shared_from_this()),
         asio::detached);
   }
   void drain() override {
     if (!answering_) abort();
   }
+  void give_up() override {
+    if (!places_->cancel()) abort();
+  }
+  [[nodiscard]] bool refused() const override { return !refusal_.empty() && !aborted_; }
   void abort() override {
-    if (job_) context_->service.cancel(*job_);
-    stream_.close();
+    aborted_ = true;
+    places_->cancel();
+    if (!passed_on_) connection_->close();
   }
 
  private:
   using Parser = HeadParser;
 
   asio::awaitable<void> serve();
-  asio::awaitable<void> linger();
   asio::awaitable<bool> serve_one();
+  [[nodiscard]] std::optional<HttpAnswer> refusal_of_head(const Parser& parser, const error_code& code) const;
   asio::awaitable<bool> serve_upload(Parser& parser);
+  asio::awaitable<bool> serve_login(Parser& parser);
+  asio::awaitable<HttpAnswer> answer_login(Parser& parser);
+  void identify(const Parser::value_type& request);
+  [[nodiscard]] bool may_upload(const Parser::value_type& request) const;
+  [[nodiscard]] std::string refusal_of_guest() const;
+  asio::awaitable<void> wait_for_penalty();
+  asio::awaitable<HttpAnswer> deny(const Parser::value_type& request);
   asio::awaitable<HttpAnswer> answer(const Parser::value_type& request);
+  void audit(AuditEvent event) const;
+  void audit_route(const HttpRoute& route) const;
   bool become_websocket(const Parser::value_type& request);
   [[nodiscard]] HttpAnswer refuse_websocket(const Parser::value_type& request) const;
-  [[nodiscard]] std::string metrics_text() const;
-  asio::awaitable<HttpAnswer> answer_place(HttpRoute route);
-  asio::awaitable<HttpAnswer> answer_about_model(HttpRoute route);
-  asio::awaitable<HttpAnswer> answer_model(std::string name);
-  asio::awaitable<HttpAnswer> answer_picture(HttpRoute route);
-  asio::awaitable<HttpAnswer> answer_pick(HttpRoute route);
-  asio::awaitable<HttpAnswer> answer_profile(HttpRoute route);
-  asio::awaitable<HttpAnswer> answer_models();
-  asio::awaitable<Result<service::EncodedPicture>> draw(service::PictureJob job);
-  asio::awaitable<void> cancel_when_client_leaves(service::JobId job);
-  asio::awaitable<bool> write(const HttpAnswer& answer, unsigned version, bool keep_alive, bool head);
 
-  beast::tcp_stream stream_;
-  beast::flat_buffer buffer_;
+  std::shared_ptr<HttpConnection> connection_;
   std::shared_ptr<NetContext> context_;
   Counted open_;
-  service::SessionId id_;
+  service::Asker asker_;
   std::string refusal_;  ///< as in Peer
   AdoptSession adopt_;
   bool answering_ = false;
-  bool first_ = true;
-  std::optional<service::JobId> job_;  ///< being drawn for this client
+  bool aborted_ = false;
+  bool passed_on_ = false;  ///< the connection is a WebSocket's
+  std::shared_ptr<HttpPlaces> places_;
+  Gatekeeper::Guest guest_;  ///< of the request that is answered
+  std::optional<Counted> counted_guest_;
 };
 
 asio::awaitable<void> HttpSession::serve() {
@@ -124,65 +149,169 @@ asio::awaitable<void> HttpSession::serve() {
   while (going_on) {
     going_on = co_await serve_one();
   }
-  if (stream_.socket().is_open()) co_await linger();
+  if (!passed_on_ && connection_->is_open()) co_await connection_->linger();
 }
 
-/// Closing with bytes of the client unread resets the connection, and the answer may be lost on its way.
-asio::awaitable<void> HttpSession::linger() {
-  error_code ignored;
-  stream_.socket().shutdown(tcp::socket::shutdown_send, ignored);
-  stream_.expires_after(std::min(context_->config.hello, context_->config.stall));
-  std::array<char, 4096> scratch{};
-  while (!ignored && !context_->draining) {
-    co_await stream_.async_read_some(asio::buffer(scratch), redirect_error_to(ignored));
+/// The answer to a request that is refused for its head alone. The connection ends with it: where a next request would
+/// begin is not certain, or the client is not welcome.
+std::optional<HttpAnswer> HttpSession::refusal_of_head(const Parser& parser, const error_code& code) const {
+  if (code) {
+    return error_answer({ErrorKind::kInvalidInput, "not a request of HTTP/1.1: " + code.message()}, status_of(code));
   }
-  stream_.close();
+  const ServerConfig& config = context_->config;
+  const auto refusal = refusal_of(guarded_head_of(parser.get()), {config.hosts, config.allowed_origins});
+  if (refusal) return error_answer(refusal->error, refusal->status);
+  if (parser.is_done() || (refusal_.empty() && (is_upload(parser.get()) || is_login(parser.get())))) {
+    return std::nullopt;
+  }
+  return error_answer({ErrorKind::kLimit, "a request with a body is not wanted here"}, 413);
 }
 
 /// Reads one request and answers it. False when the connection is at its end.
 asio::awaitable<bool> HttpSession::serve_one() {
-  error_code code;
   Parser parser;
   parser.header_limit(context_->config.http_header_bytes);
   parser.body_limit(boost::none);  // what is no upload is refused before its body is read
-  stream_.expires_after(first_ ? context_->config.hello : context_->config.idle);
-  first_ = false;
-  co_await http::async_read_header(stream_, buffer_, parser, redirect_error_to(code));
-  if (code == http::error::end_of_stream || !stream_.socket().is_open()) co_return false;
+  const error_code code = co_await connection_->read_head(parser);
+  if (code == http::error::end_of_stream || !connection_->is_open()) co_return false;
   if (code && code.category() != http::make_error_code(http::error::bad_method).category()) co_return false;
   ++context_->metrics.requests;
+  if (connection_->stream().is_encrypted()) parser.get().set("X-Forwarded-Proto", "https");  // as a proxy would say
   const Parser::value_type& request = parser.get();
-  if (!code && parser.is_done() && become_websocket(request)) co_return false;
+  const std::optional<HttpAnswer> refused = refusal_of_head(parser, code);
+  if (!refused) identify(request);
+  if (!refused && parser.is_done() && become_websocket(request)) co_return false;
   answering_ = true;
-  if (!code && refusal_.empty() && is_upload(request)) co_return co_await serve_upload(parser);
+  if (!refused && refusal_.empty() && is_login(request)) co_return co_await serve_login(parser);
+  if (!refused && refusal_.empty() && may_upload(request)) co_return co_await serve_upload(parser);
   HttpAnswer result;
-  if (code) {
-    result = error_answer({ErrorKind::kInvalidInput, "not a request of HTTP/1.1: " + code.message()}, status_of(code));
-  } else if (!parser.is_done()) {
-    result = error_answer({ErrorKind::kLimit, "a request with a body is not wanted here"}, 413);
+  if (refused) {
+    result = *refused;
   } else {
     result = co_await answer(request);
   }
   if (result.status >= 400) ++context_->metrics.errors;
-  const bool keep_alive = !code && parser.is_done() && request.keep_alive() && !context_->draining && refusal_.empty();
+  std::string trace = answered_trace(view_of(request["traceparent"]));
+  if (!trace.empty()) result.headers.emplace_back("traceparent", std::move(trace));
+  const bool keep_alive =
+      !refused && parser.is_done() && request.keep_alive() && !context_->leaving && refusal_.empty();
   const bool head = !code && request.method() == http::verb::head;
-  const bool written = co_await write(result, code ? 11 : request.version(), keep_alive, head);
+  const AnswerForm form{code ? 11 : request.version(), keep_alive, head};
+  const bool written = co_await connection_->write(result, form);
   answering_ = false;
   // The server may have begun to stop during the write.
-  const bool going_on = written && keep_alive && !context_->draining;
+  const bool going_on = written && keep_alive && !context_->leaving;
   co_return going_on;
+}
+
+/// Finds out who asks. Turns of the renderer go to a guest, on whatever connections it comes.
+void HttpSession::identify(const Parser::value_type& request) {
+  const std::string_view token = token_of(credentials_of(request));
+  guest_ = token.empty() ? nullptr : context_->gate->enter(token, open_.client());
+  const bool wrong = !token.empty() && !guest_ && context_->gate->wants_tokens();
+  if (wrong) audit({.what = "token", .outcome = "denied"});
+  service::Asker asker = asker_;
+  if (guest_) asker.client = std::hash<std::string>()("token " + guest_->name);
+  places_->set_guest(guest_, asker);
+  const bool same = guest_ && counted_guest_ && counted_guest_->client() == guest_->name;
+  if (same) return;
+  counted_guest_.reset();
+  if (!guest_ || !refusal_of_guest().empty()) return;
+  counted_guest_.emplace(context_->gate->guests(), guest_->name, &Clients::Counts::connections);
+  audit({.what = "token", .outcome = "allowed"});
+}
+
+/// Adds who it is and where from.
+void HttpSession::audit(AuditEvent event) const {
+  if (!context_->audit) return;
+  event.client = open_.client();
+  event.connection = asker_.session;
+  if (guest_) event.who = guest_->name;
+  context_->audit->write(event);
+}
+
+/// What is asked of a model.
+void HttpSession::audit_route(const HttpRoute& route) const {
+  const std::string_view what = route.kind == HttpRoute::Kind::kPicture   ? "picture"
+                                : route.kind == HttpRoute::Kind::kPick    ? "pick"
+                                : route.kind == HttpRoute::Kind::kProfile ? "profile"
+                                : route.kind == HttpRoute::Kind::kModel   ? "describe"
+                                                                          : "";
+  if (what.empty()) return;
+  const bool allowed = !guest_ || access::may_see(*guest_, route.model);
+  audit({.what = what, .model = route.model, .outcome = allowed ? "allowed" : "denied"});
+}
+
+/// Why a guest who may come in has to wait; empty: it has not.
+std::string HttpSession::refusal_of_guest() const {
+  if (!guest_ || counted_guest_ || guest_->connections == 0) return {};
+  if (context_->gate->guests()->counts_of(guest_->name).connections < guest_->connections) return {};
+  return "busy: this token opens " + std::to_string(guest_->connections) + " connections at a time";
+}
+
+/// Whether a scan is begun by somebody who may send one under that name.
+bool HttpSession::may_upload(const Parser::value_type& request) const {
+  if (!is_upload(request) || !context_->gate->admits(guest_) || !refusal_of_guest().empty()) return false;
+  if (!guest_) return true;
+  const std::string name = service::model_name(route_http(view_of(request.target()))->model);
+  return guest_->uploads && access::may_see(*guest_, name);
+}
+
+asio::awaitable<void> HttpSession::wait_for_penalty() {
+  error_code ignored;
+  connection_->wait_without_limit();
+  asio::steady_timer penalty(connection_->stream().get_executor(), context_->gate->penalty(open_.client()));
+  co_await penalty.async_wait(redirect_error_to(ignored));
+}
+
+/// The answer to somebody who may not ask. A browser gets a page to log in.
+asio::awaitable<HttpAnswer> HttpSession::deny(const Parser::value_type& request) {
+  co_await wait_for_penalty();
+  const Result<HttpRoute> route = route_http(view_of(request.target()));
+  const bool page = route && route->kind == HttpRoute::Kind::kPage && request.method() == http::verb::get;
+  co_return page ? login_page("") : denied_answer();
+}
+
+asio::awaitable<HttpAnswer> HttpSession::answer_login(Parser& parser) {
+  constexpr size_t kMostBytes = 1024;  // of the form
+  const bool encrypted = view_of(parser.get()["X-Forwarded-Proto"]) == "https";
+  const Status page = check_origin(origin_of(parser.get()), context_->config.allowed_origins);
+  if (!page) co_return error_answer(page.error(), 403);
+  const bool logout = route_http(view_of(parser.get().target()))->kind == HttpRoute::Kind::kLogout;
+  const std::optional<std::string> form = co_await connection_->read_body(parser, kMostBytes);
+  if (!form) co_return error_answer({ErrorKind::kInvalidInput, "this is no form with a token"}, 400);
+  if (logout) co_return login_answer(login_cookie("", encrypted));
+  const std::string token = token_of_form(*form);
+  const Gatekeeper::Guest guest = context_->gate->enter(token, open_.client());
+  audit({.what = "login", .who = guest ? guest->name : "", .outcome = guest ? "allowed" : "denied"});
+  if (guest) co_return login_answer(login_cookie(token, encrypted));
+  co_await wait_for_penalty();
+  co_return login_page("This token is not known here, or has ended.");
+}
+
+/// False: the connection ends. A browser opens another.
+asio::awaitable<bool> HttpSession::serve_login(Parser& parser) {
+  const AnswerForm form{parser.get().version(), /*keep_alive=*/false, /*head=*/false};
+  const HttpAnswer result = co_await answer_login(parser);
+  co_await connection_->write(result, form);
+  answering_ = false;
+  co_return false;
 }
 
 /// Receives a scan and answers. False when the connection is at its end.
 asio::awaitable<bool> HttpSession::serve_upload(Parser& parser) {
   const unsigned version = parser.get().version();
   bool keep_alive = parser.keep_alive();
-  const UploadOutcome outcome = co_await receive_scan(*context_, stream_, buffer_, parser);
-  if (outcome.answer.status >= 400) ++context_->metrics.errors;
-  keep_alive = keep_alive && outcome.whole && !context_->draining;
-  const bool written = co_await write(outcome.answer, version, keep_alive, /*head=*/false);
+  const std::string uploaded = route_http(view_of(parser.get().target()))->model;
+  const UploadOutcome outcome = co_await receive_scan(*context_, *connection_, parser);
+  const bool taken = outcome.answer.status < 400;
+  audit({.what = "upload", .model = uploaded, .outcome = taken ? "allowed" : "denied"});
+  if (!taken) ++context_->metrics.errors;
+  keep_alive = keep_alive && outcome.whole && !context_->leaving;
+  const AnswerForm form{version, keep_alive, /*head=*/false};
+  const bool written = co_await connection_->write(outcome.answer, form);
   answering_ = false;
-  const bool going_on = written && keep_alive && !context_->draining;
+  const bool going_on = written && keep_alive && !context_->leaving;
   co_return going_on;
 }
 
@@ -190,14 +319,16 @@ asio::awaitable<bool> HttpSession::serve_upload(Parser& parser) {
 bool HttpSession::become_websocket(const Parser::value_type& request) {
   const Result<HttpRoute> route = route_http(view_of(request.target()));
   if (!route || route->kind != HttpRoute::Kind::kWebSocket || !websocket::is_upgrade(request)) return false;
-  if (context_->draining || buffer_.size() > 0 ||
+  if (context_->draining || connection_->buffer().size() > 0 || !refusal_of_guest().empty() ||
       !check_upgrade(upgrade_of(request), context_->config.allowed_origins)) {
     return false;
   }
-  stream_.expires_never();
-  auto transport = make_websocket_transport(stream_.release_socket(), request, context_->config.ping,
+  connection_->wait_without_limit();
+  passed_on_ = true;
+  auto transport = make_websocket_transport(std::move(connection_->stream()), request, context_->config.ping,
                                             context_->config.request_bytes);
-  adopt_(start_message_session(std::move(transport), {context_, std::move(open_), id_, refusal_}));
+  counted_guest_.reset();
+  adopt_(start_message_session(std::move(transport), {context_, std::move(open_), asker_.session, refusal_, guest_}));
   return true;
 }
 
@@ -214,12 +345,27 @@ HttpAnswer HttpSession::refuse_websocket(const Parser::value_type& request) cons
   return error_answer({ErrorKind::kInvalidInput, "nothing may be sent before the WebSocket is granted"}, 400);
 }
 
+/// Health is answered to those, too, who are not served: a full server that seems dead would be started again.
+bool asks_for_health(const Result<HttpRoute>& route) {
+  return route && (route->kind == HttpRoute::Kind::kHealth || route->kind == HttpRoute::Kind::kReady);
+}
+
 asio::awaitable<HttpAnswer> HttpSession::answer(const Parser::value_type& request) {
-  if (!refusal_.empty()) co_return error_answer({ErrorKind::kUnavailable, refusal_});
   const std::string_view target = view_of(request.target());
-  const StaticFile* file = find_file(context_->config, target);
   Result<HttpRoute> route = route_http(target);
+  if (!refusal_.empty() && !asks_for_health(route)) co_return error_answer({ErrorKind::kUnavailable, refusal_});
+  if (!asks_for_health(route) && !context_->gate->admits(guest_)) co_return co_await deny(request);
+  if (std::string busy = refusal_of_guest(); !busy.empty() && !asks_for_health(route)) {
+    co_return error_answer({ErrorKind::kUnavailable, std::move(busy)}, 429);
+  }
+  const StaticFile* file = find_file(context_->config, target);
   if (!route && file == nullptr) co_return error_answer(route.error());
+  if (is_upload(request)) co_return denied_answer();
+  if (route && (route->kind == HttpRoute::Kind::kLogin || route->kind == HttpRoute::Kind::kLogout)) {
+    HttpAnswer refusal = error_answer({ErrorKind::kUnsupported, "a token is sent here with POST"}, 405);
+    refusal.headers.emplace_back("Allow", "POST");
+    co_return refusal;
+  }
   if (route && route->kind == HttpRoute::Kind::kUpload) {
     HttpAnswer refusal = error_answer({ErrorKind::kUnsupported, "scans are sent here with PUT"}, 405);
     refusal.headers.emplace_back("Allow", "PUT");
@@ -232,151 +378,16 @@ asio::awaitable<HttpAnswer> HttpSession::answer(const Parser::value_type& reques
   }
   if (file != nullptr) co_return file_answer(*file, view_of(request[http::field::if_none_match]));
   if (route->kind == HttpRoute::Kind::kWebSocket) co_return refuse_websocket(request);
-  co_return co_await answer_place(std::move(*route));
-}
-
-asio::awaitable<HttpAnswer> HttpSession::answer_place(HttpRoute route) {
-  switch (route.kind) {
-    case HttpRoute::Kind::kPage:
-      co_return no_viewer_answer();
-    case HttpRoute::Kind::kModels:
-      co_return co_await answer_models();
-    case HttpRoute::Kind::kModel:
-    case HttpRoute::Kind::kPicture:
-    case HttpRoute::Kind::kPick:
-    case HttpRoute::Kind::kProfile:
-      co_return co_await answer_about_model(std::move(route));
-    case HttpRoute::Kind::kHealth:
-      co_return text_answer("ok\n", "text/plain");
-    case HttpRoute::Kind::kReady:
-      if (context_->draining) co_return error_answer({ErrorKind::kUnavailable, "the server is stopping"});
-      co_return text_answer("ready\n", "text/plain");
-    case HttpRoute::Kind::kMetrics:
-    case HttpRoute::Kind::kUpload:     // answered already
-    case HttpRoute::Kind::kWebSocket:  // answered already
-      break;
-  }
-  co_return text_answer(metrics_text(), "text/plain; version=0.0.4");
-}
-
-/// What is asked of one model.
-asio::awaitable<HttpAnswer> HttpSession::answer_about_model(HttpRoute route) {
-  switch (route.kind) {
-    case HttpRoute::Kind::kPicture:
-      return answer_picture(std::move(route));
-    case HttpRoute::Kind::kPick:
-      return answer_pick(std::move(route));
-    case HttpRoute::Kind::kProfile:
-      return answer_profile(std::move(route));
-    default:
-      return answer_model(std::move(route.model));
-  }
-}
-
-std::string HttpSession::metrics_text() const {
-  const Clients::Counts& open = context_->clients->all();
-  return to_prometheus(context_->metrics, {.connections = open.connections + open.refused,
-                                           .queued = context_->service.queued(),
-                                           .memory = context_->service.device().memory});
-}
-
-asio::awaitable<HttpAnswer> HttpSession::answer_models() {
-  const auto models =
-      co_await answer_of<service::ModelList>([this](auto done) { context_->service.list_models(std::move(done)); });
-  co_return models_answer(models, context_->config.uploads);
-}
-
-asio::awaitable<HttpAnswer> HttpSession::answer_model(std::string name) {
-  const auto description = co_await answer_of<Result<service::ModelDescription>>(
-      [&](auto done) { context_->service.describe_model(name, std::move(done)); });
-  co_return description ? model_answer(name, *description) : error_answer(description.error());
-}
-
-asio::awaitable<HttpAnswer> HttpSession::answer_pick(HttpRoute route) {
-  const Result<service::PickJob> job =
-      protocol::parse_pick_query(route.model, route.query).and_then([](const wire::PickSurfel& request) {
-        return to_job(request);
-      });
-  if (!job) co_return error_answer(job.error());
-  const auto picked = co_await answer_of<Result<std::optional<kinds::PickedSurfel>>>(
-      [&](auto done) { context_->service.pick(*job, std::move(done)); });
-  co_return picked ? pick_answer(*picked) : error_answer(picked.error());
-}
-
-asio::awaitable<HttpAnswer> HttpSession::answer_profile(HttpRoute route) {
-  const Result<protocol::ProfileQuery> query = protocol::parse_profile_query(route.model, route.query);
-  if (!query) co_return error_answer(query.error());
-  const Result<service::ProfileJob> job = to_job(query->profile);
-  if (!job) co_return error_answer(job.error());
-  stream_.expires_never();
-  const auto profile = co_await answer_of<Result<service::ProfileResult>>(
-      [&](auto done) { context_->service.profile(*job, std::move(done)); });
-  co_return profile ? profile_answer(route.model, *profile, query->format) : error_answer(profile.error());
-}
-
-asio::awaitable<HttpAnswer> HttpSession::answer_picture(HttpRoute route) {
-  Result<service::PictureJob> job =
-      protocol::parse_picture_query(route.model, route.query).and_then([](const wire::DrawPicture& request) {
-        return to_job(request);
-      });
-  if (!job) co_return error_answer(job.error());
-  Result<service::EncodedPicture> picture = co_await draw(std::move(*job));
-  if (!picture) co_return error_answer(picture.error());
-  context_->metrics.count_picture(picture->bytes.size(), picture->stats);
-  co_return picture_answer(std::move(*picture));
-}
-
-asio::awaitable<Result<service::EncodedPicture>> HttpSession::draw(service::PictureJob job) {
-  stream_.expires_never();
-  Result<service::EncodedPicture> picture = co_await answer_of<Result<service::EncodedPicture>>([&](auto done) {
-    job_ = context_->service.draw(id_, std::move(job), std::move(done));
-    asio::co_spawn(
-        stream_.get_executor(),
-        [](std::shared_ptr<HttpSession> self, service::JobId id) -> asio::awaitable<void> {
-          co_await self->cancel_when_client_leaves(id);
-        }(shared_from_this(), *job_),
-        asio::detached);
-  });
-  job_.reset();
-  error_code ignored;
-  if (stream_.socket().is_open()) stream_.socket().cancel(ignored);  // the watch for the client's leaving
-  co_return picture;
-}
-
-/// Looks at what arrives while a picture is drawn: the end of the stream means that nobody waits for it any more.
-asio::awaitable<void> HttpSession::cancel_when_client_leaves(service::JobId job) {
-  error_code code;
-  co_await stream_.socket().async_wait(tcp::socket::wait_read, redirect_error_to(code));
-  if (code || job_ != job) co_return;
-  char byte = 0;
-  stream_.socket().non_blocking(true, code);
-  const size_t count = stream_.socket().receive(asio::buffer(&byte, 1), tcp::socket::message_peek, code);
-  if (count == 0 && code != asio::error::would_block) context_->service.cancel(job);
-}
-
-asio::awaitable<bool> HttpSession::write(const HttpAnswer& answer, unsigned version, bool keep_alive, bool head) {
-  using Body = http::span_body<const char>;
-  http::response<Body> response{static_cast<http::status>(answer.status), version};
-  response.set(http::field::server, "surfcastd");
-  response.set(http::field::content_type, answer.content_type);
-  response.set("X-Content-Type-Options", "nosniff");
-  for (const auto& [name, value] : answer.headers) response.set(name, value);
-  if (answer.status != 304) response.content_length(answer.body.size());
-  response.keep_alive(keep_alive);
-  if (!head) response.body() = {reinterpret_cast<const char*>(answer.body.data()), answer.body.size()};
-  http::response_serializer<Body> serializer{response};
-  error_code code;
-  while (!serializer.is_done() && !code) {
-    stream_.expires_after(context_->config.stall);  // for some bytes, not for all of them
-    co_await http::async_write_some(stream_, serializer, redirect_error_to(code));
-  }
-  co_return !code;
+  audit_route(*route);
+  route->accept = std::string(view_of(request[http::field::accept]));
+  co_return co_await places_->answer(std::move(*route));
 }
 
 }  // namespace
 
 std::shared_ptr<Session> start_http_session(Connection connection, AdoptSession adopt) {
-  const auto session = std::make_shared<HttpSession>(std::move(connection), std::move(adopt));
+  const service::Asker asker = connection.peer.asker();
+  const auto session = std::make_shared<HttpSession>(std::move(connection), std::move(adopt), asker);
   session->start();
   return session;
 }

@@ -3,7 +3,7 @@
 #include <functional>
 #include <memory>
 
-#include "net/session.h"
+#include "net/connection.h"
 
 namespace surfcast::net {
 

@@ -16,10 +16,11 @@
 #include <vector>
 
 #include "net/await_answer.h"
+#include "net/http_connection.h"
 #include "net/http_route.h"
 #include "net/redirect_error_to.h"
-#include "net/upgrade.h"
 #include "net/uploads.h"
+#include "service/model_name.h"
 
 namespace surfcast::net {
 namespace {
@@ -43,6 +44,11 @@ struct Announced {
   std::optional<uint64_t> bytes;  ///< none: it says so at the end only
 };
 
+/// What an arriving file will be known by: the name of its model, or of the file itself if another one names it.
+std::string name_of(const UploadConfig& config, const std::filesystem::path& target) {
+  return is_data(config, target) ? target.filename().string() : service::model_name(target);
+}
+
 /// Whether a scan may be sent, and which one.
 Result<Announced> admit(const NetContext& context, const HeadParser& head) {
   const UploadConfig& config = context.config.uploads;
@@ -54,7 +60,7 @@ Result<Announced> admit(const NetContext& context, const HeadParser& head) {
   if (!target) return fail(std::move(target.error()));
   scan.target = std::move(*target);
   if (scan.bytes.value_or(0) > config.bytes) return fail(too_large(config.bytes));
-  if (context.uploads.contains(scan.target.stem().string())) {
+  if (context.uploads.contains(name_of(config, scan.target))) {
     return fail(ErrorKind::kInvalidInput, "a scan of that name is being received");
   }
   if (context.uploads.size() >= config.at_once) {
@@ -78,23 +84,23 @@ asio::awaitable<Value> on_disk(NetContext& context, const Work& work) {
 }
 
 /// Tells a client that waits for it to send the body.
-asio::awaitable<void> say_continue(const NetContext& context, beast::tcp_stream& stream) {
+asio::awaitable<void> say_continue(const NetContext& context, ClientStream& stream) {
   static constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
-  stream.expires_after(context.config.stall);
+  stream.socket().expires_after(context.config.stall);
   error_code ignored;  // reading fails as well
   co_await asio::async_write(stream, asio::buffer(kContinue), redirect_error_to(ignored));
 }
 
 /// Reads a body piece by piece. The next piece is read once the last one is written.
-asio::awaitable<Status> receive_body(NetContext& context, beast::tcp_stream& stream, beast::flat_buffer& buffer,
-                                     BodyParser& parser, std::shared_ptr<IncomingScan> scan) {
+asio::awaitable<Status> receive_body(NetContext& context, HttpConnection& connection, BodyParser& parser,
+                                     std::shared_ptr<IncomingScan> scan) {
   const auto piece = std::make_shared<std::vector<std::byte>>(kPiece);
   while (!parser.is_done()) {
     http::buffer_body::value_type& body = parser.get().body();
     body = {piece->data(), piece->size(), true};
-    stream.expires_after(context.config.uploads.timeout);
+    connection.stream().socket().expires_after(context.config.uploads.timeout);
     error_code code;
-    co_await http::async_read(stream, buffer, parser, redirect_error_to(code));
+    co_await http::async_read(connection.stream(), connection.buffer(), parser, redirect_error_to(code));
     if (code && code != http::error::need_buffer) {
       co_return fail(ErrorKind::kCancelled, "the scan did not arrive: " + code.message());
     }
@@ -106,8 +112,8 @@ asio::awaitable<Status> receive_body(NetContext& context, beast::tcp_stream& str
   co_return Status();
 }
 
-asio::awaitable<Status> store(NetContext& context, beast::tcp_stream& stream, beast::flat_buffer& buffer,
-                              HeadParser& head, Announced announced, uint64_t reserved) {
+asio::awaitable<Status> store(NetContext& context, HttpConnection& connection, HeadParser& head, Announced announced,
+                              uint64_t reserved) {
   const UploadConfig& config = context.config.uploads;
   using Created = Result<std::shared_ptr<IncomingScan>>;
   const auto create = [&config, announced, reserved] {
@@ -117,10 +123,11 @@ asio::awaitable<Status> store(NetContext& context, beast::tcp_stream& stream, be
   };
   Created scan = co_await on_disk<Created>(context, create);
   if (!scan) co_return fail(scan.error());
-  if (beast::iequals(head.get()[http::field::expect], "100-continue")) co_await say_continue(context, stream);
+  if (beast::iequals(head.get()[http::field::expect], "100-continue"))
+    co_await say_continue(context, connection.stream());
   BodyParser body{std::move(head)};
   body.body_limit(boost::none);  // IncomingScan counts
-  Status status = co_await receive_body(context, stream, buffer, body, *scan);
+  Status status = co_await receive_body(context, connection, body, *scan);
   const auto finish = [scan = *scan] { return scan->finish(); };
   if (status) status = co_await on_disk<Status>(context, finish);
   context.disk->post([scan = std::move(*scan)] {});  // what is not whole is removed there
@@ -133,16 +140,19 @@ UploadOutcome refusal_of(const Error& error) {
 
 }  // namespace
 
+RequestOrigin origin_of(const HeadParser::value_type& request) {
+  return {view_of(request[http::field::host]), view_of(request[http::field::origin]),
+          view_of(request["X-Forwarded-Proto"])};
+}
+
 bool is_upload(const HeadParser::value_type& request) {
   const Result<HttpRoute> route = route_http(view_of(request.target()));
   return route && route->kind == HttpRoute::Kind::kUpload && request.method() == http::verb::put;
 }
 
-asio::awaitable<UploadOutcome> receive_scan(NetContext& context, beast::tcp_stream& stream, beast::flat_buffer& buffer,
-                                            HeadParser& head) {
+asio::awaitable<UploadOutcome> receive_scan(NetContext& context, HttpConnection& connection, HeadParser& head) {
   const auto& request = head.get();
-  const Status page = check_origin(view_of(request[http::field::host]), view_of(request[http::field::origin]),
-                                   context.config.allowed_origins);
+  const Status page = check_origin(origin_of(request), context.config.allowed_origins);
   UploadOutcome outcome;
   if (!page) {
     outcome.answer = error_answer(page.error(), 403);
@@ -150,13 +160,13 @@ asio::awaitable<UploadOutcome> receive_scan(NetContext& context, beast::tcp_stre
   }
   const Result<Announced> scan = admit(context, head);
   if (!scan) co_return refusal_of(scan.error());
-  const std::string model = scan->target.stem().string();
+  const std::string name = name_of(context.config.uploads, scan->target);
   const uint64_t reserved = reserved_bytes(context);
-  context.uploads.emplace(model, scan->bytes.value_or(context.config.uploads.bytes));
-  const Status stored = co_await store(context, stream, buffer, head, *scan, reserved);
-  context.uploads.erase(model);
+  context.uploads.emplace(name, scan->bytes.value_or(context.config.uploads.bytes));
+  const Status stored = co_await store(context, connection, head, *scan, reserved);
+  context.uploads.erase(name);
   if (!stored) co_return refusal_of(stored.error());
-  outcome.answer = uploaded_answer(model);
+  outcome.answer = uploaded_answer(is_data(context.config.uploads, scan->target) ? "file" : "model", name);
   outcome.whole = true;
   co_return outcome;
 }

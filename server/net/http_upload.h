@@ -1,18 +1,22 @@
 #pragma once
 
 #include <boost/asio/awaitable.hpp>
-#include <boost/beast/core/flat_buffer.hpp>
-#include <boost/beast/core/tcp_stream.hpp>
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/http/parser.hpp>
 
 #include "net/http_answer.h"
 #include "net/session.h"
+#include "net/upgrade.h"
 
 namespace surfcast::net {
 
+class HttpConnection;
+
 using HeadParser = boost::beast::http::request_parser<boost::beast::http::empty_body>;
+
+/// Where a request comes from. The result points into it.
+RequestOrigin origin_of(const HeadParser::value_type& request);
 
 /// Whether a client begins to send a scan.
 bool is_upload(const HeadParser::value_type& request);
@@ -24,7 +28,6 @@ struct UploadOutcome {
 };
 
 /// Receives the scan of a request whose head was read, and serves it. All arguments must outlive the coroutine.
-boost::asio::awaitable<UploadOutcome> receive_scan(NetContext& context, boost::beast::tcp_stream& stream,
-                                                   boost::beast::flat_buffer& buffer, HeadParser& head);
+boost::asio::awaitable<UploadOutcome> receive_scan(NetContext& context, HttpConnection& connection, HeadParser& head);
 
 }  // namespace surfcast::net

@@ -10,6 +10,7 @@
 
 #include "base/log.h"
 #include "net/conversation.h"
+#include "net/reading_rate.h"
 #include "net/redirect_error_to.h"
 #include "protocol/hello.h"
 
@@ -19,6 +20,18 @@ namespace {
 namespace asio = boost::asio;
 using boost::system::error_code;
 using Clock = std::chrono::steady_clock;
+
+/// Of an answer that waits, with what the queue and the allocator take for it.
+size_t memory_of(const Bytes& answer) {
+  constexpr size_t kOverhead = 64;
+  return answer.size() + kOverhead;
+}
+
+/// Most pictures are larger, all answers of the server itself are smaller. Not a setting: small_unread_bytes is.
+bool is_small(const Bytes& answer) {
+  constexpr size_t kSmall = size_t{64} << 10;
+  return answer.size() <= kSmall;
+}
 
 /// A reader, one queue of answers with a writer, and a watchdog, all on the thread of the sockets. What is said is the
 /// conversation's affair, how it travels the transport's.
@@ -31,18 +44,26 @@ class MessageSession : public Session, public AnswerWriter, public std::enable_s
         room_(transport_->executor(), Clock::time_point::max()) {}
 
   void start() {
-    conversation_ = std::make_shared<Conversation>(peer_.context, peer_.id, transport_->executor(), shared_from_this(),
-                                                   peer_.open.client());
+    conversation_ = std::make_shared<Conversation>(peer_.context, peer_.asker(), transport_->executor(),
+                                                   shared_from_this(), peer_.open.client(), peer_.guest);
     spawn([](auto self) -> asio::awaitable<void> { co_await self->read_all(); });
     spawn([](auto self) -> asio::awaitable<void> { co_await self->watch(); });
   }
-  void drain() override { answer_sent(); }
+  void drain() override {
+    draining_ = true;
+    conversation_->refuse_requests();
+    answer_sent();
+  }
+  [[nodiscard]] bool lasts() const override { return conversation_->has_views() && !draining_; }
   void abort() override { close(); }
+  [[nodiscard]] bool refused() const override { return !peer_.refusal.empty(); }
   void models_changed() override { conversation_->models_changed(); }
+  void check_guest() override { conversation_->check_guest(); }
 
-  void send(Bytes answer) override;
+  void send(Bytes answer, std::shared_ptr<const void> memory) override;
   [[nodiscard]] size_t unread_bytes() const override { return outgoing_bytes_; }
   void answer_sent() override;
+  void end(Bytes answer) override;
 
  private:
   /// Runs a coroutine that keeps the session alive.
@@ -61,21 +82,33 @@ class MessageSession : public Session, public AnswerWriter, public std::enable_s
   void send_last(Bytes answer);
   void close();
   [[nodiscard]] const ServerConfig& config() const { return peer_.context->config; }
-  [[nodiscard]] Clock::time_point deadline() const;
+  void progress(size_t bytes);
+  [[nodiscard]] Clock::time_point deadline();
+  [[nodiscard]] bool is_late(Clock::time_point now) const;
+  [[nodiscard]] bool has_room() const;
 
   std::shared_ptr<Transport> transport_;
   Peer peer_;
   std::shared_ptr<Conversation> conversation_;
 
-  std::deque<Bytes> outgoing_;
+  struct Outgoing {
+    Bytes answer;
+    std::shared_ptr<const void> memory;
+  };
+  std::deque<Outgoing> outgoing_;
   size_t outgoing_bytes_ = 0;
-  bool closing_ = false;  ///< nothing more is said after what is in the queue
+  size_t small_bytes_ = 0;  ///< of small answers among them
+  bool closing_ = false;    ///< nothing more is said after what is in the queue
+  bool ending_ = false;     ///< while the client may still be saying something
+  bool draining_ = false;   ///< it ends as soon as everything is answered
 
   asio::steady_timer watchdog_;
   asio::steady_timer room_;  ///< cancelled when the reader should look again whether it may go on
   bool greeted_ = false;
+  Clock::time_point greeted_at_;
   Clock::time_point last_request_ = Clock::now();
   Clock::time_point last_write_ = Clock::now();
+  ReadingRate reading_{config().stall, config().least_rate, last_write_};  ///< while there are answers
 };
 
 asio::awaitable<void> MessageSession::read_all() {
@@ -84,7 +117,7 @@ asio::awaitable<void> MessageSession::read_all() {
     // GCC 12 makes wrong code of a co_await inside a condition: it stands by itself here and below.
     going_on = co_await read_one();
   }
-  if (!closing_) close();
+  if (!closing_ || ending_) close();
 }
 
 asio::awaitable<bool> MessageSession::exchange_hellos() {
@@ -98,20 +131,27 @@ asio::awaitable<bool> MessageSession::exchange_hellos() {
   }
   const Bytes words = protocol::encode_hello(answer);
   greeted_ = co_await transport_->write_hello(words);
-  last_request_ = last_write_ = Clock::now();
+  last_request_ = last_write_ = greeted_at_ = Clock::now();
   if (closing_) co_return false;  // the server stops meanwhile, and leave() has the last word
   if (answer.status == protocol::HelloStatus::kWelcome) co_return greeted_;
-  spdlog::info("connection {} refused: {}", peer_.id, answer.message);
+  log_limited(peer_.context->refused_lines, spdlog::level::info,
+              "connection " + std::to_string(peer_.id) + " refused: " + answer.message);
   closing_ = true;
   co_await transport_->linger();
   close();
   co_return false;
 }
 
+/// Whether the client has read enough of its answers to ask for more. Small answers come of requests that cost it next
+/// to nothing, so that fewer bytes of them are kept.
+bool MessageSession::has_room() const {
+  return outgoing_bytes_ <= config().unread_bytes && small_bytes_ <= config().small_unread_bytes;
+}
+
 /// Waits until the client has read enough of its answers, then handles one request of it. False at the end.
 asio::awaitable<bool> MessageSession::read_one() {
   error_code code;
-  while (outgoing_bytes_ > config().unread_bytes && transport_->is_open()) {
+  while (!has_room() && transport_->is_open()) {
     co_await room_.async_wait(redirect_error_to(code));
   }
   const Result<std::optional<Bytes>> message = co_await transport_->read();
@@ -119,40 +159,59 @@ asio::awaitable<bool> MessageSession::read_one() {
   last_request_ = Clock::now();
   const Status handled = message ? conversation_->receive(**message) : fail(message.error());
   if (handled) co_return true;
-  spdlog::info("connection {}: {}", peer_.id, handled.error().message);
+  log_limited(peer_.context->broken_lines, spdlog::level::info,
+              "connection " + std::to_string(peer_.id) + ": " + handled.error().message);
   ++peer_.context->metrics.errors;
   conversation_->abandon();
   send_last(encode_error(0, handled.error()));
   co_return false;
 }
 
-void MessageSession::send(Bytes answer) {
+void MessageSession::send(Bytes answer, std::shared_ptr<const void> memory) {
   if (!transport_->is_open() || closing_) return;
-  outgoing_bytes_ += answer.size();
-  outgoing_.push_back(std::move(answer));
+  outgoing_bytes_ += memory_of(answer);
+  if (is_small(answer)) small_bytes_ += memory_of(answer);
+  outgoing_.push_back({std::move(answer), std::move(memory)});
   if (outgoing_.size() > 1) return;  // the writer is at work
   last_write_ = Clock::now();
+  reading_ = ReadingRate(config().stall, config().least_rate, last_write_);
   spawn([](auto self) -> asio::awaitable<void> { co_await self->write_all(); });
+}
+
+/// The client has taken some of its answers.
+void MessageSession::progress(size_t bytes) {
+  last_write_ = Clock::now();
+  reading_.take(bytes);
 }
 
 /// Sends, then closes.
 void MessageSession::send_last(Bytes answer) {
-  send(std::move(answer));
+  send(std::move(answer), {});
   closing_ = true;
+}
+
+/// The reader goes on until the client has understood, or its time is over.
+void MessageSession::end(Bytes answer) {
+  ending_ = true;
+  send_last(std::move(answer));
 }
 
 asio::awaitable<void> MessageSession::write_all() {
   bool written = true;
   while (written && !outgoing_.empty() && transport_->is_open()) {
-    written = co_await transport_->write(outgoing_.front(), [this] { last_write_ = Clock::now(); });
+    const Bytes& answer = outgoing_.front().answer;
+    written = co_await transport_->write(answer, [this](size_t bytes) { progress(bytes); });
     if (!written) break;
-    outgoing_bytes_ -= outgoing_.front().size();
+    outgoing_bytes_ -= memory_of(answer);
+    if (is_small(answer)) small_bytes_ -= memory_of(answer);
     outgoing_.pop_front();
     room_.cancel();
     conversation_->resume_sending();
   }
   if (!written) close();
-  if (closing_ && transport_->is_open()) {
+  if (ending_ && transport_->is_open()) {
+    co_await transport_->send_close();
+  } else if (closing_ && transport_->is_open()) {
     co_await transport_->linger();
     close();
   }
@@ -160,12 +219,21 @@ asio::awaitable<void> MessageSession::write_all() {
 }
 
 /// When the session is to be closed if nothing happens until then.
-Clock::time_point MessageSession::deadline() const {
+Clock::time_point MessageSession::deadline() {
+  if (!outgoing_.empty() && reading_.is_too_slow(Clock::now())) return Clock::time_point::min();
   if (!outgoing_.empty()) return last_write_ + config().stall;
   if (closing_) return last_write_ + std::min(config().hello, config().stall);
   if (!greeted_) return last_request_ + config().hello;
+  if (!conversation_->admitted()) return greeted_at_ + config().hello;
   if (conversation_->outstanding() > 0) return Clock::now() + config().idle;
   return last_request_ + config().idle;
+}
+
+/// Whether a request that has begun to arrive is not whole in time. What the client does not read keeps its requests
+/// waiting outside.
+bool MessageSession::is_late(Clock::time_point now) const {
+  const auto since = transport_->reading_since();
+  return since && now >= *since + config().hello;
 }
 
 asio::awaitable<void> MessageSession::watch() {
@@ -175,7 +243,7 @@ asio::awaitable<void> MessageSession::watch() {
     watchdog_.expires_after(std::min({config().hello, config().idle, config().stall, config().ping}) / 4);
     co_await watchdog_.async_wait(redirect_error_to(code));
     const Clock::time_point now = Clock::now();
-    if (now >= deadline() || !transport_->keep_alive(now)) close();
+    if (now >= deadline() || is_late(now) || !transport_->keep_alive(now)) close();
   }
 }
 
@@ -197,7 +265,8 @@ asio::awaitable<void> MessageSession::leave() {
 
 void MessageSession::answer_sent() {
   const bool waiting = conversation_->outstanding() > 0 || !outgoing_.empty();
-  if (!peer_.context->draining || waiting || closing_ || !transport_->is_open()) return;
+  const bool draining = draining_ || peer_.context->draining;
+  if (!draining || waiting || closing_ || !transport_->is_open()) return;
   spawn([](auto self) -> asio::awaitable<void> { co_await self->leave(); });
 }
 

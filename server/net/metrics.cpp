@@ -1,24 +1,16 @@
 #include "net/metrics.h"
 
-#include <sstream>
-#include <string_view>
-
 namespace surfcast::net {
 namespace {
 
-void write_value(std::ostream& out, std::string_view name, std::string_view type, std::string_view help,
-                 uint64_t value) {
-  out << "# HELP " << name << ' ' << help << "\n# TYPE " << name << ' ' << type << '\n' << name << ' ' << value << '\n';
-}
-
-/// A label's value with the three characters escaped that the format wants escaped.
-std::string escape_label(std::string_view text) {
-  std::string escaped;
-  for (const char c : text) {
-    if (c == '\\' || c == '"') escaped += '\\';
-    escaped += c == '\n' ? ' ' : c;
-  }
-  return escaped;
+/// Of a server without TLS: nothing.
+void write_tls(Exposition& out, const Metrics& m) {
+  if (m.tls_expires == 0) return;
+  out.value("surfcast_tls_handshakes_failed_total", "counter", "Handshakes of TLS that failed.", m.tls_failures);
+  out.value("surfcast_tls_reloads_failed_total", "counter",
+            "New certificates that could not be used, so that the former ones stay.", m.tls_reloads_failed);
+  out.value("surfcast_tls_certificate_expires_seconds", "gauge", "End of the certificate, since 1970.",
+            static_cast<uint64_t>(m.tls_expires));
 }
 
 }  // namespace
@@ -26,43 +18,61 @@ std::string escape_label(std::string_view text) {
 void Metrics::count_picture(size_t bytes, const picture::FrameStats& stats) {
   ++pictures;
   picture_bytes += bytes;
-  count_stages(stats);
+  count_stages(stats, still);
 }
 
-void Metrics::count_stages(const picture::FrameStats& stats) {
+void Metrics::count_stages(const picture::FrameStats& stats, PictureTimes& times) {
   surfels_drawn += stats.surfels_drawn;
-  for (const picture::StageTime& stage : stats.stages) stage_seconds[stage.name] += stage.milliseconds / 1e3;
+  double whole = 0;
+  for (const picture::StageTime& stage : stats.stages) {
+    const double seconds = stage.milliseconds / 1e3;
+    stage_seconds[stage.name] += seconds;
+    if (stage.name == "queue") times.queue.add(seconds);
+    whole += seconds;
+  }
+  times.whole.add(whole);
 }
 
-std::string to_prometheus(const Metrics& m, const Gauges& gauges) {
-  std::ostringstream out;
-  write_value(out, "surfcast_connections_total", "counter", "Connections accepted.", m.connections);
-  write_value(out, "surfcast_connections_open", "gauge", "Connections open now.", gauges.connections);
-  write_value(out, "surfcast_connections_refused_total", "counter", "Connections refused, too many at once.",
-              m.connections_refused);
-  write_value(out, "surfcast_requests_total", "counter", "Requests read.", m.requests);
-  write_value(out, "surfcast_errors_total", "counter", "Requests answered with an error.", m.errors);
-  write_value(out, "surfcast_pictures_total", "counter", "Pictures drawn and delivered.", m.pictures);
-  write_value(out, "surfcast_picture_bytes_total", "counter", "Encoded bytes of pictures.", m.picture_bytes);
-  write_value(out, "surfcast_surfels_drawn_total", "counter", "Surfels drawn.", m.surfels_drawn);
-  write_value(out, "surfcast_views_open", "gauge", "Views open now.", m.views.open);
-  write_value(out, "surfcast_view_frames_total", "counter", "Frames of views sent.", m.views.frames);
-  write_value(out, "surfcast_view_frames_dropped_total", "counter",
-              "Frames of views given up while they were drawn, encoded or sent.", m.views.dropped);
-  write_value(out, "surfcast_view_updates_replaced_total", "counter",
-              "Updates of views overtaken by a newer one before they were drawn.", m.views.replaced);
-  write_value(out, "surfcast_view_bytes_total", "counter", "Encoded bytes of frames of views.", m.views.bytes);
-  write_value(out, "surfcast_queued_pictures", "gauge", "Pictures that wait for the render thread.", gauges.queued);
-  write_value(out, "surfcast_gpu_memory_budget_bytes", "gauge", "Most memory for surfels on the GPU.",
-              gauges.memory.gpu);
-  write_value(out, "surfcast_host_memory_budget_bytes", "gauge", "Most host memory for decoded blocks.",
-              gauges.memory.host);
-  out << "# HELP surfcast_stage_seconds_total Time spent on pictures, by stage.\n"
-         "# TYPE surfcast_stage_seconds_total counter\n";
+std::string metrics_text(const Metrics& m, const Gauges& gauges, Exposition::Format format) {
+  Exposition out(format);
+  out.value("surfcast_connections_total", "counter", "Connections accepted.", m.connections);
+  out.value("surfcast_connections_open", "gauge", "Connections open now.", gauges.connections);
+  out.value("surfcast_connections_refused_total", "counter", "Connections refused, too many at once.",
+            m.connections_refused);
+  write_tls(out, m);
+  out.value("surfcast_guests_open", "gauge", "Connections open now that have named a token.", gauges.guests);
+  out.value("surfcast_denied_total", "counter", "Tokens that are not known, or have ended.", gauges.denied);
+  out.value("surfcast_audit_lost_total", "counter", "Events that the audit log could not be told.", gauges.audit_lost);
+  out.value("surfcast_requests_total", "counter", "Requests read.", m.requests);
+  out.value("surfcast_errors_total", "counter", "Requests answered with an error.", m.errors);
+  out.value("surfcast_pictures_total", "counter", "Pictures drawn and delivered.", m.pictures);
+  out.value("surfcast_picture_bytes_total", "counter", "Encoded bytes of pictures.", m.picture_bytes);
+  out.value("surfcast_surfels_drawn_total", "counter", "Surfels drawn.", m.surfels_drawn);
+  out.value("surfcast_views_open", "gauge", "Views open now.", m.views.open);
+  out.value("surfcast_sessions_waiting", "gauge", "Sessions without a connection whose clients may come back.",
+            gauges.waiting);
+  out.value("surfcast_view_frames_total", "counter", "Frames of views sent.", m.views.frames);
+  out.value("surfcast_view_frames_dropped_total", "counter",
+            "Frames of views given up while they were drawn, encoded or sent.", m.views.dropped);
+  out.value("surfcast_view_updates_replaced_total", "counter",
+            "Updates of views overtaken by a newer one before they were drawn.", m.views.replaced);
+  out.value("surfcast_view_bytes_total", "counter", "Encoded bytes of frames of views.", m.views.bytes);
+  out.value("surfcast_queued_pictures", "gauge", "Pictures that wait for the render thread.", gauges.queued);
+  out.value("surfcast_picture_memory_bytes", "gauge",
+            "Memory of pictures at rest that are drawn, encoded or not taken by their clients.", gauges.picture_memory);
+  out.value("surfcast_gpu_memory_budget_bytes", "gauge", "Most memory for surfels on the GPU.", gauges.memory.gpu);
+  out.value("surfcast_host_memory_budget_bytes", "gauge", "Most host memory for decoded blocks.", gauges.memory.host);
+  out.begin("surfcast_stage_seconds_total", "counter", "Time spent on pictures, by stage.");
   for (const auto& [stage, seconds] : m.stage_seconds) {
-    out << "surfcast_stage_seconds_total{stage=\"" << escape_label(stage) << "\"} " << seconds << '\n';
+    out.add("surfcast_stage_seconds_total", label_of("stage", stage), seconds);
   }
-  return out.str();
+  out.begin("surfcast_picture_seconds", "histogram", "Time of a picture from its order to its bytes, by kind.");
+  out.add("surfcast_picture_seconds", label_of("kind", "still"), m.still.whole);
+  out.add("surfcast_picture_seconds", label_of("kind", "view"), m.view.whole);
+  out.begin("surfcast_queue_seconds", "histogram", "Wait of a picture for the render thread, by kind.");
+  out.add("surfcast_queue_seconds", label_of("kind", "still"), m.still.queue);
+  out.add("surfcast_queue_seconds", label_of("kind", "view"), m.view.queue);
+  return out.text();
 }
 
 }  // namespace surfcast::net

@@ -26,10 +26,13 @@ class Transport {
   /// The next one; nothing at the end of the stream. After an error the stream is of no use any more.
   virtual Awaitable<Result<std::optional<Bytes>>> read() = 0;
 
+  /// When the client has begun with the message that is being read. Nothing: it has not.
+  [[nodiscard]] virtual std::optional<Clock::time_point> reading_since() const = 0;
+
   /// False when the connection is gone.
   virtual Awaitable<bool> write_hello(const Bytes& hello) = 0;
-  /// `progress` is called whenever the client has taken some of the message.
-  virtual Awaitable<bool> write(const Bytes& message, const std::function<void()>& progress) = 0;
+  /// `progress` is called whenever the client has taken some bytes of the message.
+  virtual Awaitable<bool> write(const Bytes& message, const std::function<void(size_t)>& progress) = 0;
 
   /// Lets the client read the last words before the connection is closed.
   virtual Awaitable<void> linger() = 0;

@@ -12,12 +12,6 @@ bool equal_in_any_case(std::string_view a, std::string_view b) {
   return std::ranges::equal(a, b, [](unsigned char x, unsigned char y) { return std::tolower(x) == std::tolower(y); });
 }
 
-/// "https://example.org:8443" without its scheme; empty when there is none, as in "null".
-std::string_view authority_of(std::string_view origin) {
-  const size_t mark = origin.find("://");
-  return mark == std::string_view::npos ? std::string_view() : origin.substr(mark + 3);
-}
-
 bool offers(std::string_view list, std::string_view protocol) {
   while (!list.empty()) {
     const size_t comma = std::min(list.find(','), list.size());
@@ -29,22 +23,27 @@ bool offers(std::string_view list, std::string_view protocol) {
   return false;
 }
 
-bool allows(std::string_view host, std::string_view origin, std::span<const std::string> allowed) {
-  if (origin.empty()) return true;
-  const std::string_view authority = authority_of(origin);
-  if (!authority.empty() && equal_in_any_case(authority, host)) return true;
-  return std::ranges::any_of(allowed, [&](const auto& other) { return equal_in_any_case(other, origin); });
+/// The origin of the server's own pages.
+std::string own_origin(const RequestOrigin& request) {
+  const std::string_view scheme = request.forwarded_scheme.empty() ? "http" : request.forwarded_scheme;
+  return std::string(scheme) + "://" + std::string(request.host);
+}
+
+bool allows(const RequestOrigin& request, std::span<const std::string> allowed) {
+  if (request.origin.empty()) return true;
+  if (!request.host.empty() && equal_in_any_case(request.origin, own_origin(request))) return true;
+  return std::ranges::any_of(allowed, [&](const auto& other) { return equal_in_any_case(other, request.origin); });
 }
 
 }  // namespace
 
-Status check_origin(std::string_view host, std::string_view origin, std::span<const std::string> allowed) {
-  if (allows(host, origin, allowed)) return {};
+Status check_origin(const RequestOrigin& request, std::span<const std::string> allowed) {
+  if (allows(request, allowed)) return {};
   return fail(ErrorKind::kInvalidInput, "pages of another origin may not connect; --allow-origin lets them");
 }
 
 Status check_upgrade(const UpgradeRequest& request, std::span<const std::string> allowed) {
-  if (Status status = check_origin(request.host, request.origin, allowed); !status) return status;
+  if (Status status = check_origin(request.from, allowed); !status) return status;
   if (!offers(request.protocols, protocol::kWebSocketProtocol)) {
     return fail(ErrorKind::kUnsupported,
                 "a WebSocket here speaks the subprotocol " + std::string(protocol::kWebSocketProtocol) + " alone");

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "protocol/errors.h"
+#include "service/model_name.h"
 
 namespace surfcast::net {
 namespace {
@@ -29,7 +30,7 @@ bool is_plain(std::string_view name) {
 
 std::string known_extensions(const UploadConfig& config) {
   std::string list;
-  for (const std::string& extension : config.extensions) list += (list.empty() ? "" : " ") + extension;
+  for (const std::string& extension : all_extensions(config)) list += (list.empty() ? "" : " ") + extension;
   return list;
 }
 
@@ -37,11 +38,30 @@ tl::unexpected<Error> taken(const fs::path& target) {
   return fail(ErrorKind::kInvalidInput, target.filename().string() + ": there is a model or scan of that name already");
 }
 
+bool ends_with_any(const fs::path& file, const std::vector<std::string>& extensions) {
+  const std::string name = lower(file.filename().string());
+  return std::ranges::any_of(extensions, [&](const std::string& extension) {
+    return name.size() > extension.size() && name.ends_with(extension);
+  });
+}
+
+/// The complete files in the folder.
+std::vector<fs::path> uploaded_files(const UploadConfig& config) {
+  std::vector<fs::path> files;
+  std::error_code code;
+  for (fs::directory_iterator entry(config.folder, code), end; !code && entry != end; entry.increment(code)) {
+    std::error_code ignored;
+    const bool named = upload_target(config, entry->path().filename().string()).has_value();
+    if (named && entry->is_regular_file(ignored)) files.push_back(entry->path());
+  }
+  return files;
+}
+
 uint64_t bytes_in_folder(const UploadConfig& config) {
   uint64_t sum = 0;
-  for (const fs::path& scan : uploaded_scans(config)) {
+  for (const fs::path& file : uploaded_files(config)) {
     std::error_code code;
-    const uint64_t bytes = fs::file_size(scan, code);
+    const uint64_t bytes = fs::file_size(file, code);
     if (!code) sum += bytes;
   }
   return sum;
@@ -77,11 +97,21 @@ Result<fs::path> upload_target(const UploadConfig& config, std::string_view name
     return fail(ErrorKind::kInvalidInput, "the name is longer than " + std::to_string(kLongestName) + " bytes");
   }
   const fs::path file{name};
-  if (std::ranges::find(config.extensions, lower(file.extension().string())) == config.extensions.end()) {
+  if (!ends_with_any(file, config.extensions) && !is_data(config, file)) {
     return fail(ErrorKind::kUnsupported,
                 file.string() + ": not a scan by its name; known are " + known_extensions(config));
   }
   return config.folder / file;
+}
+
+std::vector<std::string> all_extensions(const UploadConfig& config) {
+  std::vector<std::string> all = config.extensions;
+  all.insert(all.end(), config.data_extensions.begin(), config.data_extensions.end());
+  return all;
+}
+
+bool is_data(const UploadConfig& config, const fs::path& file) {
+  return !ends_with_any(file, config.extensions) && ends_with_any(file, config.data_extensions);
 }
 
 Error too_large(uint64_t bytes) {
@@ -89,13 +119,8 @@ Error too_large(uint64_t bytes) {
 }
 
 std::vector<fs::path> uploaded_scans(const UploadConfig& config) {
-  std::vector<fs::path> scans;
-  std::error_code code;
-  for (fs::directory_iterator entry(config.folder, code), end; !code && entry != end; entry.increment(code)) {
-    std::error_code ignored;
-    const bool named = upload_target(config, entry->path().filename().string()).has_value();
-    if (named && entry->is_regular_file(ignored)) scans.push_back(entry->path());
-  }
+  std::vector<fs::path> scans = uploaded_files(config);
+  std::erase_if(scans, [&](const fs::path& file) { return is_data(config, file); });
   std::ranges::sort(scans);
   return scans;
 }
@@ -103,7 +128,8 @@ std::vector<fs::path> uploaded_scans(const UploadConfig& config) {
 Result<IncomingScan> IncomingScan::create(const UploadConfig& config, const fs::path& target,
                                           std::optional<uint64_t> bytes, uint64_t reserved) {
   std::error_code code;
-  if (fs::exists(fs::symlink_status(target, code)) || config.taken(target.stem().string())) return taken(target);
+  const bool served = !is_data(config, target) && config.taken(service::model_name(target));
+  if (fs::exists(fs::symlink_status(target, code)) || served) return taken(target);
   const uint64_t room = room_in_folder(config, reserved);
   if (room == 0 || bytes.value_or(0) > room) {
     return fail(ErrorKind::kUnavailable, target.filename().string() + ": the server has no room for it");
@@ -123,6 +149,7 @@ Status IncomingScan::finish() {
   if (fs::exists(fs::symlink_status(target_, code))) return taken(target_);
   Status status = file_.commit_new();
   if (!status) return fail(without_folder(std::move(status.error()), target_));
+  if (is_data(*config_, target_)) return {};
   status = config_->serve(target_);
   if (status) return {};
   fs::remove(target_, code);

@@ -23,6 +23,7 @@ struct UploadConfig {
   size_t at_once = 2;                          ///< files that are being received
   std::chrono::milliseconds timeout{30'000};   ///< for 64 KiB
   std::vector<std::string> extensions;         ///< of names, lower case: ".laz"
+  std::vector<std::string> data_extensions;    ///< of files that scans name: kept, and served with them
   /// Whether a model is served under a name.
   std::function<bool(const std::string&)> taken = [](const std::string&) { return false; };
   /// Serves a file that has arrived, or tells what is wrong with it.
@@ -32,6 +33,12 @@ struct UploadConfig {
 /// The file that a client's name stands for: one name within the folder, of a known extension. Fails with what is wrong
 /// with the name.
 Result<std::filesystem::path> upload_target(const UploadConfig& config, std::string_view name);
+
+/// The extensions of all files that are taken.
+std::vector<std::string> all_extensions(const UploadConfig& config);
+
+/// Whether a file is one that scans name, and no model is made of.
+bool is_data(const UploadConfig& config, const std::filesystem::path& file);
 
 /// The error of a scan that has more than these bytes.
 Error too_large(uint64_t bytes);

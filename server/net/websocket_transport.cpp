@@ -29,16 +29,17 @@ constexpr size_t kFragmentBytes = size_t{64} << 10;
 
 class WebSocketTransport : public Transport, public std::enable_shared_from_this<WebSocketTransport> {
  public:
-  WebSocketTransport(tcp::socket socket, UpgradeHead head, std::chrono::milliseconds ping, size_t request_bytes);
+  WebSocketTransport(ClientStream stream, UpgradeHead head, std::chrono::milliseconds ping, size_t request_bytes);
 
   Awaitable<Result<Bytes>> read_hello() override;
   Awaitable<Result<std::optional<Bytes>>> read() override;
   Awaitable<bool> write_hello(const Bytes& hello) override;
-  Awaitable<bool> write(const Bytes& message, const std::function<void()>& progress) override;
+  Awaitable<bool> write(const Bytes& message, const std::function<void(size_t)>& progress) override;
   Awaitable<void> linger() override { return part(websocket::close_code::normal); }
   Awaitable<void> send_close() override { return part(websocket::close_code::going_away); }
   bool keep_alive(Clock::time_point now) override;
   void close() override;
+  [[nodiscard]] std::optional<Clock::time_point> reading_since() const override { return reading_since_; }
   [[nodiscard]] bool is_open() const override { return open_; }
   [[nodiscard]] asio::any_io_executor executor() override { return stream_.get_executor(); }
 
@@ -47,17 +48,18 @@ class WebSocketTransport : public Transport, public std::enable_shared_from_this
   void close_socket();
   Awaitable<void> part(websocket::close_code reason);
 
-  websocket::stream<tcp::socket> stream_;
+  websocket::stream<ClientStream> stream_;
   UpgradeHead head_;
   Heartbeat heartbeat_;
   bool open_ = true;  ///< until close(): the stream closes its socket by itself when the client says goodbye
   bool granted_ = false;
   bool reading_ = false;
+  std::optional<Clock::time_point> reading_since_;
 };
 
-WebSocketTransport::WebSocketTransport(tcp::socket socket, UpgradeHead head, std::chrono::milliseconds ping,
+WebSocketTransport::WebSocketTransport(ClientStream stream, UpgradeHead head, std::chrono::milliseconds ping,
                                        size_t request_bytes)
-    : stream_(std::move(socket)), head_(std::move(head)), heartbeat_(ping, Clock::now()) {
+    : stream_(std::move(stream)), head_(std::move(head)), heartbeat_(ping, Clock::now()) {
   stream_.auto_fragment(false);
   stream_.binary(true);
   stream_.read_message_max(request_bytes);
@@ -92,8 +94,12 @@ asio::awaitable<Result<std::optional<Bytes>>> WebSocketTransport::read() {
   error_code code;
   beast::flat_buffer buffer;  // of its own: a connection that is silent holds no memory for messages
   reading_ = true;
-  co_await stream_.async_read(buffer, redirect_error_to(code));
+  do {
+    co_await stream_.async_read_some(buffer, 0, redirect_error_to(code));
+    if (!reading_since_) reading_since_ = Clock::now();
+  } while (!code && !stream_.is_message_done());
   reading_ = false;
+  reading_since_.reset();
   if (code) co_return std::nullopt;
   heartbeat_.hear(Clock::now());
   if (!stream_.got_binary()) co_return fail(ErrorKind::kInvalidInput, "a message of text is not understood");
@@ -107,14 +113,14 @@ asio::awaitable<bool> WebSocketTransport::write_hello(const Bytes& hello) {
   co_return !code;
 }
 
-asio::awaitable<bool> WebSocketTransport::write(const Bytes& message, const std::function<void()>& progress) {
+asio::awaitable<bool> WebSocketTransport::write(const Bytes& message, const std::function<void(size_t)>& progress) {
   error_code code;
   for (size_t sent = 0; sent < message.size() && !code;) {
     const size_t count = std::min(kFragmentBytes, message.size() - sent);
     const bool last = sent + count == message.size();
     co_await stream_.async_write_some(last, asio::buffer(message.data() + sent, count), redirect_error_to(code));
     sent += count;
-    progress();
+    progress(count);
   }
   co_return !code;
 }
@@ -142,15 +148,16 @@ void WebSocketTransport::close() {
 
 void WebSocketTransport::close_socket() {
   error_code ignored;
-  stream_.next_layer().shutdown(tcp::socket::shutdown_both, ignored);
-  stream_.next_layer().close(ignored);
+  beast::tcp_stream& connection = stream_.next_layer().socket();
+  connection.socket().shutdown(tcp::socket::shutdown_both, ignored);
+  connection.close();
 }
 
 }  // namespace
 
-std::shared_ptr<Transport> make_websocket_transport(tcp::socket socket, UpgradeHead head,
+std::shared_ptr<Transport> make_websocket_transport(ClientStream stream, UpgradeHead head,
                                                     std::chrono::milliseconds ping, size_t request_bytes) {
-  return std::make_shared<WebSocketTransport>(std::move(socket), std::move(head), ping, request_bytes);
+  return std::make_shared<WebSocketTransport>(std::move(stream), std::move(head), ping, request_bytes);
 }
 
 }  // namespace surfcast::net

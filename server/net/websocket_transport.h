@@ -1,11 +1,11 @@
 #pragma once
 
-#include <boost/asio/ip/tcp.hpp>
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/message.hpp>
 #include <chrono>
 #include <memory>
 
+#include "net/client_stream.h"
 #include "net/transport.h"
 
 namespace surfcast::net {
@@ -16,7 +16,7 @@ using UpgradeHead = boost::beast::http::request<boost::beast::http::empty_body>;
 /// A WebSocket, on a connection whose request for one has been read and is to be granted. The client is asked for a
 /// sign of life when it gave none for `ping`, and is taken for gone when none came for twice that. A longer message
 /// than `request_bytes` ends the WebSocket.
-std::shared_ptr<Transport> make_websocket_transport(boost::asio::ip::tcp::socket socket, UpgradeHead head,
+std::shared_ptr<Transport> make_websocket_transport(ClientStream stream, UpgradeHead head,
                                                     std::chrono::milliseconds ping, size_t request_bytes);
 
 }  // namespace surfcast::net

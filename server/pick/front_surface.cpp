@@ -70,7 +70,7 @@ class FrontSearch {
       : model_(model),
         query_(query),
         source_(source),
-        hulls_(selection::block_hulls(model.tree())),
+        hulls_(hulls_of(model, query, source)),
         numbers_(leaf_numbers(model)) {}
 
   Status search(const kinds::PixelRange& region, const std::atomic<bool>& cancelled,
@@ -96,11 +96,12 @@ class FrontSearch {
                                      region.last.x + 1 + kReachInPixels, region.last.y + 1 + kReachInPixels);
     std::vector<LeafInView> leaves;
     std::vector<uint32_t> open(model_.tree().roots().begin(), model_.tree().roots().end());
+    const auto sides = query_.transparent ? selection::Sides::kBoth : selection::Sides::kFront;
     while (!open.empty()) {
       const uint32_t block = open.back();
       open.pop_back();
-      const selection::BlockHull& hull = hulls_[block];
-      if (!selection::may_be_visible(hull, frustum, frame.eye) || !query_.clip.may_show(hull.centres)) continue;
+      const selection::BlockHull& hull = (*hulls_)[block];
+      if (!selection::may_be_visible(hull, frustum, frame.eye, sides) || !query_.may_show(hull.centres)) continue;
       const ldc::BlockTree::Children children = model_.tree().children(block);
       for (uint32_t i = 0; i < children.count; ++i) open.push_back(children.first + i);
       if (children.count > 0) continue;
@@ -128,7 +129,7 @@ class FrontSearch {
   const model::ModelFile& model_;
   const kinds::PickQuery& query_;
   SourceBlocks& source_;
-  std::vector<selection::BlockHull> hulls_;
+  SourceBlocks::Hulls hulls_;
   std::vector<uint64_t> numbers_;
 };
 

@@ -4,6 +4,7 @@
 #include <glm/geometric.hpp>
 #include <limits>
 #include <map>
+#include <string>
 
 #include "pick/leaf_numbers.h"
 #include "selection/block_hull.h"
@@ -50,6 +51,11 @@ double entry_depth(const geometry::Box& box, double margin, const glm::dvec3& ey
   return first <= last ? first : kInfinity;
 }
 
+Error too_wide(size_t most_blocks) {
+  return {ErrorKind::kLimit, "pixel: it is so wide that more than " + std::to_string(most_blocks) +
+                                 " blocks of the model may show in it; pick in a picture of more pixels"};
+}
+
 class Picker {
  public:
   Picker(const model::ModelFile& model, const kinds::PickQuery& query, SourceBlocks& source)
@@ -58,9 +64,11 @@ class Picker {
     direction_ = frame_.right * ray.x + frame_.up * ray.y + frame_.forward;
   }
 
-  Result<std::optional<kinds::PickedSurfel>> pick(const std::atomic<bool>& cancelled) {
+  Result<std::optional<kinds::PickedSurfel>> pick(const std::atomic<bool>& cancelled, size_t most_blocks) {
+    size_t left = most_blocks;
     for (const LeafOnRay& leaf : leaves_on_ray()) {
       if (leaf.nearest > occluder_) break;
+      if (left-- == 0) return fail(too_wide(most_blocks));
       if (cancelled.load(std::memory_order_relaxed)) return fail(ErrorKind::kCancelled, "cancelled");
       Result<std::shared_ptr<const kinds::SourceBlock>> block = source_.get(model_, leaf.block);
       if (!block) return fail(std::move(block.error()));
@@ -72,16 +80,17 @@ class Picker {
  private:
   /// The leaves that the ray passes through, sorted by `nearest`.
   [[nodiscard]] std::vector<LeafOnRay> leaves_on_ray() const {
-    const std::vector<selection::BlockHull> hulls = selection::block_hulls(model_.tree());
+    const SourceBlocks::Hulls hulls = hulls_of(model_, query_, source_);
     const selection::Frustum frustum(frame_, query_.pixel.x - kReachInPixels, query_.pixel.y - kReachInPixels,
                                      query_.pixel.x + kReachInPixels, query_.pixel.y + kReachInPixels);
     std::vector<LeafOnRay> leaves;
     std::vector<uint32_t> open(model_.tree().roots().begin(), model_.tree().roots().end());
+    const auto sides = query_.transparent ? selection::Sides::kBoth : selection::Sides::kFront;
     while (!open.empty()) {
       const uint32_t block = open.back();
       open.pop_back();
-      const selection::BlockHull& hull = hulls[block];
-      if (!selection::may_be_visible(hull, frustum, frame_.eye) || !query_.clip.may_show(hull.centres)) continue;
+      const selection::BlockHull& hull = (*hulls)[block];
+      if (!selection::may_be_visible(hull, frustum, frame_.eye, sides) || !query_.may_show(hull.centres)) continue;
       const ldc::BlockTree::Children children = model_.tree().children(block);
       for (uint32_t i = 0; i < children.count; ++i) open.push_back(children.first + i);
       if (children.count > 0) continue;
@@ -136,7 +145,9 @@ class Picker {
   }
 
   [[nodiscard]] kinds::PickedSurfel describe(const Candidate& candidate) const {
-    kinds::PickedSurfel picked = blocks_.at(candidate.rank.block)->describe(query_, candidate.rank.item);
+    kinds::PickQuery query = query_;
+    query.depth = candidate.depth;
+    kinds::PickedSurfel picked = blocks_.at(candidate.rank.block)->describe(query, candidate.rank.item);
     picked.depth = candidate.depth;
     picked.number = leaf_numbers(model_)[candidate.rank.block] + candidate.rank.item;
     return picked;
@@ -156,8 +167,9 @@ class Picker {
 }  // namespace
 
 Result<std::optional<kinds::PickedSurfel>> pick_surfel(const model::ModelFile& model, const kinds::PickQuery& query,
-                                                       SourceBlocks& blocks, const std::atomic<bool>& cancelled) {
-  return Picker(model, query, blocks).pick(cancelled);
+                                                       SourceBlocks& blocks, const std::atomic<bool>& cancelled,
+                                                       size_t most_blocks) {
+  return Picker(model, query, blocks).pick(cancelled, most_blocks);
 }
 
 }  // namespace surfcast::pick

@@ -2,6 +2,8 @@
 
 #include <vector>
 
+#include "selection/block_hull.h"
+
 namespace surfcast::pick {
 
 Result<std::shared_ptr<const kinds::SourceBlock>> SourceBlocks::get(const model::ModelFile& model, uint32_t block) {
@@ -18,6 +20,25 @@ Result<std::shared_ptr<const kinds::SourceBlock>> SourceBlocks::get(const model:
   const std::lock_guard lock(mutex_);
   cache_.put(key, *decoded, (*decoded)->bytes());
   return decoded;
+}
+
+SourceBlocks::Hulls SourceBlocks::hulls(const model::ModelFile& model) {
+  {
+    const std::lock_guard lock(mutex_);
+    if (auto found = hulls_.find(model.id())) return found;
+  }
+  auto made = std::make_shared<const std::vector<selection::BlockHull>>(selection::block_hulls(model.tree()));
+  const std::lock_guard lock(mutex_);
+  hulls_.put(model.id(), made, 1);
+  return made;
+}
+
+SourceBlocks::Hulls hulls_of(const model::ModelFile& model, const kinds::PickQuery& query, SourceBlocks& source) {
+  constexpr double kReachInRadii = 2;  // of what is drawn of an item (model::EncodedBlock::max_radius)
+  SourceBlocks::Hulls hulls = source.hulls(model);
+  if (!(query.reach > 0)) return hulls;
+  auto reaching = selection::with_reach(*hulls, query.reach / kReachInRadii);
+  return std::make_shared<const std::vector<selection::BlockHull>>(std::move(reaching));
 }
 
 }  // namespace surfcast::pick

@@ -4,11 +4,16 @@
 #include <memory>
 #include <mutex>
 #include <utility>
+#include <vector>
 
 #include "base/lru_cache.h"
 #include "base/result.h"
 #include "kinds/kind_table.h"
 #include "model/model_file.h"
+
+namespace surfcast::selection {
+struct BlockHull;
+}
 
 namespace surfcast::pick {
 
@@ -21,10 +26,20 @@ class SourceBlocks {
 
   Result<std::shared_ptr<const kinds::SourceBlock>> get(const model::ModelFile& model, uint32_t block);
 
+  using Hulls = std::shared_ptr<const std::vector<selection::BlockHull>>;
+  static constexpr size_t kHullModels = 8;
+  /// selection::block_hulls of a model. Those of the models used most recently are kept.
+  Hulls hulls(const model::ModelFile& model);
+
  private:
   kinds::KindTable kinds_;
   std::mutex mutex_;
   LruCache<std::pair<uint64_t, uint32_t>, kinds::SourceBlock> cache_;  ///< by ModelFile::id and block
+  /// By ModelFile::id. The budget counts models: one has some hundred bytes for each of its blocks.
+  LruCache<uint64_t, std::vector<selection::BlockHull>> hulls_{kHullModels};
 };
+
+/// The hulls of a model whose items reach as far as a query states.
+SourceBlocks::Hulls hulls_of(const model::ModelFile& model, const kinds::PickQuery& query, SourceBlocks& source);
 
 }  // namespace surfcast::pick

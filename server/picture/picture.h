@@ -11,6 +11,7 @@
 
 #include "geometry/camera.h"
 #include "geometry/clip.h"
+#include "picture/glyphs.h"
 #include "picture/transfer.h"
 
 namespace surfcast::picture {
@@ -30,8 +31,9 @@ enum class Loading { kWait, kNow };
 /// The pixel format of a rendered picture: kSrgb8 for display, kLinearFloat for linear light (EXR).
 enum class PixelFormat { kSrgb8, kLinearFloat };
 
-/// The quantity that determines the colour of a surfel.
-enum class SurfelColor { kStored, kIntensity, kElevation, kClassification, kNormal };
+/// The quantity that determines the colour of a surfel. The last three are of ellipsoids: the principal direction; it
+/// and the anisotropy, as in radiology; an attribute by name. Surfels keep their own colours then.
+enum class SurfelColor { kStored, kIntensity, kElevation, kClassification, kNormal, kDirection, kDec, kAttribute };
 enum class ColorMap { kViridis, kTurbo, kGray, kTerrain };
 
 struct Coloring {
@@ -39,12 +41,23 @@ struct Coloring {
   ColorMap map = ColorMap::kViridis;  ///< for intensity and elevation
   std::optional<double> first{};      ///< the value at the start of the colour map; none: the model's lowest
   std::optional<double> last{};       ///< the value at the end of the colour map; none: the model's highest
+  std::string attribute{};            ///< of kAttribute: see Threshold::attribute
 };
 
 /// Eye-dome lighting (Boucheny 2009): darkens surfaces behind a depth discontinuity.
 struct EyeDome {
   double strength = 0;  ///< 0: off; 1: usual
   double radius = 1.5;  ///< pixels, at most 8
+};
+
+/// X-ray pictures of surfels: walls that are seen flat are thinner than their edges, in the order of depth, or surfels
+/// are a medium that absorbs light.
+enum class XRay { kOff, kSorted, kDensity };
+
+/// The opacity of the surfels of a class.
+struct ClassOpacity {
+  uint8_t code = 0;
+  double opacity = 1;
 };
 
 /// All parameters of a picture of a model.
@@ -77,6 +90,16 @@ struct PictureRequest {
   EyeDome eye_dome;
   VolumeOptions volumes;
   SplatConvention splat_convention = SplatConvention::kTrained;
+  GlyphOptions glyphs;
+  Lighting lighting;  ///< of ellipsoids
+  /// From 0 to 1. A factor of the opacities of surfels, transfer functions, iso-surfaces, slices, Gaussians and
+  /// ellipsoids.
+  double opacity = 1;
+  XRay xray = XRay::kOff;
+  /// Further factors for the surfels of a class, from 0 to 1; of several with the same code the last one counts. No
+  /// effect on models without classes.
+  std::vector<ClassOpacity> class_opacities;
+  double ghost = 0;  ///< factor of the opacities of the surfels that `clip` hides, from 0 to 1
 };
 
 /// A rendered picture. Rows run from top to bottom without padding. Each pixel has four channels: the colour, already

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "render/color_maps.h"
+#include "surfel/opacity.h"
 
 namespace surfcast::render {
 namespace {
@@ -89,6 +90,18 @@ glm::vec4 ramp(const DisplayOptions& display, double first, double step) {
 
 }  // namespace
 
+SeenThrough seen_through(const model::ModelInfo& info, const picture::PictureRequest& request) {
+  SeenThrough through;
+  const model::AttributeRange* alpha = info.range_of(surfel::kOpacityAttribute);
+  through.by_file = alpha != nullptr && surfel::tells_opacities(alpha->smallest, alpha->largest);
+  through.by_class = has_scalar(info, "classification") &&
+                     std::ranges::any_of(request.class_opacities, [](const auto& of) { return of.opacity < 1; });
+  through.ghosts = !request.clip.empty() && request.ghost > 0;
+  through.any = through.by_file || through.by_class || through.ghosts || request.opacity < 1 ||
+                request.xray != picture::XRay::kOff;
+  return through;
+}
+
 Result<DisplayOptions> resolve_display_options(const model::ModelInfo& info, const picture::PictureRequest& request) {
   const picture::Coloring& coloring = request.coloring;
   const bool classified = has_scalar(info, "classification");
@@ -98,8 +111,9 @@ Result<DisplayOptions> resolve_display_options(const model::ModelInfo& info, con
   display.up_axis = info.z_up ? 2 : 1;
   display.clipped = !request.clip.empty();
   display.hides_classes = classified && request.hidden_classes.any();
-  display.attributes = display.hides_classes;
-  display.volumes = {request.volumes.transfer.points, request.clip, request.volumes.transfer.spacing};
+  display.through = seen_through(info, request);
+  display.attributes = display.hides_classes || display.through.by_class || display.through.by_file;
+  display.volumes = look_of(request);
   if (display.color == picture::SurfelColor::kElevation) {
     set_range(coloring, info.bounds.min[display.up_axis], info.bounds.max[display.up_axis], display);
   } else if (display.color == picture::SurfelColor::kIntensity) {
@@ -116,6 +130,16 @@ Result<DisplayOptions> resolve_display_options(const model::ModelInfo& info, con
 
 std::vector<uint32_t> color_table(const DisplayOptions& display) {
   return display.color == picture::SurfelColor::kClassification ? class_color_table() : map_color_table(display.map);
+}
+
+layout::ThroughConstants through_constants(const picture::PictureRequest& request) {
+  layout::ThroughConstants constants{};
+  constants.ghost.x = static_cast<float>(request.ghost);
+  for (glm::vec4& classes : constants.classes) classes = glm::vec4(1);
+  for (const picture::ClassOpacity& of : request.class_opacities) {
+    constants.classes[of.code / 4][of.code % 4] = static_cast<float>(of.opacity);
+  }
+  return constants;
 }
 
 layout::DisplayConstants display_constants(const DisplayOptions& display, const picture::PictureRequest& request) {

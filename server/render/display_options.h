@@ -11,6 +11,15 @@
 
 namespace surfcast::render {
 
+/// How surfels are seen through.
+struct SeenThrough {
+  bool any = false;       ///< they are
+  bool by_file = false;   ///< their opacities are those of the scan
+  bool by_class = false;  ///< their opacities depend on their classes
+  bool ghosts = false;    ///< those that are clipped are drawn, too
+};
+SeenThrough seen_through(const model::ModelInfo& info, const picture::PictureRequest& request);
+
 /// The display options of a picture, resolved for one model. Options that a picture does not use cost nothing.
 struct DisplayOptions {
   picture::SurfelColor color = picture::SurfelColor::kStored;
@@ -20,12 +29,15 @@ struct DisplayOptions {
   int up_axis = 2;
   bool hides_classes = false;
   bool clipped = false;
+  SeenThrough through;
   VolumeLook volumes;
-  bool attributes = false;  ///< the intensity or classification of each surfel is needed
+  std::vector<double> glyph_reaches;  ///< see render/glyph_plan.h
+  bool attributes = false;            ///< the intensity or classification of each surfel is needed
 
   /// True if the colour comes from a table.
   [[nodiscard]] bool mapped() const {
-    return color != picture::SurfelColor::kStored && color != picture::SurfelColor::kNormal;
+    return color == picture::SurfelColor::kIntensity || color == picture::SurfelColor::kElevation ||
+           color == picture::SurfelColor::kClassification || color == picture::SurfelColor::kAttribute;
   }
 };
 
@@ -35,6 +47,9 @@ Result<DisplayOptions> resolve_display_options(const model::ModelInfo& info, con
 /// The colour table of DisplayOptions::mapped, packed as in splat records: the colours of a map from its first to its
 /// last one, or one colour for each class.
 std::vector<uint32_t> color_table(const DisplayOptions& display);
+
+/// The opacities of ghosts and classes.
+layout::ThroughConstants through_constants(const picture::PictureRequest& request);
 
 layout::DisplayConstants display_constants(const DisplayOptions& display, const picture::PictureRequest& request);
 

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <glm/common.hpp>
 #include <utility>
 
 namespace surfcast::render {
@@ -105,6 +106,24 @@ std::optional<GaussianLists> list_by_depth(std::span<const glm::uvec4> keys, con
     }
   }
   return lists;
+}
+
+void order_by_rays(std::span<const RayDepth> depths, const std::function<TileRays(uint32_t tile)>& rays_of_tile,
+                   GaussianLists& lists) {
+  std::vector<std::pair<float, uint32_t>> order;
+  for (const glm::uvec4& tile : lists.tiles) {
+    const std::span<uint32_t> list = std::span(lists.entries).subspan(tile.y, tile.z);
+    if (list.size() < 2) continue;
+    const TileRays rays = rays_of_tile(tile.x);
+    const glm::dvec2 middle = 0.5 * (rays.low + rays.high);
+    order.clear();
+    for (const uint32_t i : list) {
+      const glm::dvec2 nearest = glm::clamp(glm::dvec2(depths[i].centre), rays.low, rays.high);
+      order.emplace_back(depths[i].at(0.5 * (middle + nearest)), i);
+    }
+    std::ranges::stable_sort(order, {}, &std::pair<float, uint32_t>::first);
+    std::ranges::transform(order, list.begin(), &std::pair<float, uint32_t>::second);
+  }
 }
 
 }  // namespace surfcast::render

@@ -1,13 +1,17 @@
 #include "render/gaussian_passes.h"
 
 #include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
 #include <utility>
 
 #include "base/preemption.h"
 #include "gaussian/pack_gaussians.h"
 #include "render/batched_dispatch.h"
+#include "render/ellipsoid_passes.h"
 #include "render/gaussian_lists.h"
 #include "render/projection_work.h"
+#include "render/volume_passes.h"
 #include "shared/gaussian_layout.h"
 
 namespace surfcast::render {
@@ -69,6 +73,11 @@ Status blend(const GaussianRound& round, const GaussianPrograms& programs, float
     buffers.picture.bind(SURFCAST_BIND_PICTURE);
     buffers.gaussians.records.bind_for_reading(SURFCAST_UNIT_SPLATS);
     buffers.gaussians.lists.bind_for_reading(SURFCAST_UNIT_LISTS);
+    if (programs.layered) {
+      buffers.volume.layers.bind(SURFCAST_BIND_LAYERS);
+      buffers.gaussians.keys.bind_for_reading(SURFCAST_UNIT_BOUNDS);
+    }
+    if (programs.keeps) buffers.gaussians.layers.bind(SURFCAST_BIND_KEPT);
     glUseProgram(programs.blend->name());
     glUniform2ui(SURFCAST_UNIFORM_SPAN, round.tiles, round.first);
     if (programs.has_near) glUniform1f(SURFCAST_UNIFORM_NEAR, near);
@@ -105,10 +114,43 @@ GaussianForm form_of(const RegionTask& task, const ProjectionWork& work) {
   return flat ? GaussianForm::kFlat : GaussianForm::kTrained;
 }
 
-std::vector<glm::uvec4> read_keys(size_t count, const SplatBuffers& buffers) {
-  std::vector<glm::uvec4> keys(count);
+/// The kinds of a picture by how they are drawn.
+struct SplitKinds {
+  PictureKinds gaussians;
+  PictureKinds surfaces;
+};
+
+SplitKinds split(const PictureKinds& kinds) {
+  SplitKinds parts;
+  for (const PictureKind& kind : kinds) {
+    if (kind.kind->drawn_as() == kinds::DrawnAs::kGaussians) parts.gaussians.push_back(kind);
+    if (kind.kind->drawn_as() == kinds::DrawnAs::kSurface) parts.surfaces.push_back(kind);
+  }
+  return parts;
+}
+
+std::vector<glm::uvec4> read_keys(size_t texels, const SplatBuffers& buffers) {
+  std::vector<glm::uvec4> keys(texels);
   buffers.gaussians.keys.read(std::as_writable_bytes(std::span(keys)));
   return keys;
+}
+
+/// The lists of the tiles; none if they are too long.
+std::optional<GaussianLists> list_gaussians(const RegionTask& task, size_t count, const SplatBuffers& buffers) {
+  const glm::uvec2 tiles(task.constants.tiles.x, task.constants.tiles.y);
+  if (!task.variant.exact) return list_by_depth(read_keys(count, buffers), tiles, task.list_entries);
+  const ExactKeys exact = unpack_exact_keys(read_keys(count * SURFCAST_EXACT_GAUSSIAN_KEY, buffers));
+  std::optional<GaussianLists> lists = list_by_depth(exact.keys, tiles, task.list_entries);
+  const auto rays_of_tile = [&](uint32_t tile) {
+    const glm::dvec2 size(SURFCAST_TILE_WIDTH, SURFCAST_TILE_HEIGHT);
+    const glm::dvec2 corner =
+        glm::dvec2(task.drawn.x, task.drawn.y) + size * glm::dvec2(tile % tiles.x, tile / tiles.x);
+    const glm::dvec2 first(task.frame.ray(corner + 0.5));
+    const glm::dvec2 last(task.frame.ray(corner + size - 0.5));
+    return TileRays{glm::min(first, last), glm::max(first, last)};
+  };
+  if (lists) order_by_rays(exact.depths, rays_of_tile, *lists);
+  return lists;
 }
 
 }  // namespace
@@ -121,29 +163,45 @@ bool has_gaussians(const RegionTask& task) {
 
 Result<std::optional<RegionStats>> draw_gaussians(const RegionTask& task, Programs& programs, SplatBuffers& buffers,
                                                   const Preemption& preemption, std::span<std::byte> pixels) {
-  const PictureKinds kinds = kinds_of(task);
-  if (kinds.size() > 1) return fail(ErrorKind::kUnsupported, "Gaussians and other kinds in one picture");
-  ProjectionWork work = plan_work(task, kinds);
-  const Result<GaussianPrograms> compiled = programs.gaussians(task.variant, form_of(task, work));
-  if (!compiled) return fail(compiled.error());
+  const auto [gaussians, surfaces] = split(kinds_of(task));
   RegionStats stats;
+  if (!surfaces.empty()) {
+    Result<std::optional<RegionStats>> layers = draw_layers(task, surfaces, programs, buffers, preemption);
+    if (!layers || !*layers) return layers;
+    stats = **layers;
+  }
+  const std::vector<VisibleBrick> bricks = bricks_of(task);
+  const bool ellipsoids = has_ellipsoids(task);
+  Variant variant = task.variant;
+  variant.keeps = !bricks.empty();
+  variant.layered = !surfaces.empty() || variant.keeps || ellipsoids;
+  if (surfaces.empty() && variant.layered) clear_layers(task.drawn, buffers.volume.layers);
+  if (ellipsoids) {
+    Result<std::optional<RegionStats>> added = add_ellipsoids(task, programs, buffers, preemption);
+    if (!added || !*added) return added;
+    stats.splats += (*added)->splats;
+    stats.splat_ms += (*added)->splat_ms;
+  }
+  if (variant.keeps) clear_layers(task.drawn, buffers.gaussians.layers);
+  ProjectionWork work = plan_work(task, gaussians);
+  const Result<GaussianPrograms> compiled = programs.gaussians(variant, form_of(task, work));
+  if (!compiled) return fail(compiled.error());
   const WorkStopwatch project_watch(preemption);
   const uint32_t count = number_gaussians(work);
   buffers.gaussians.records.reserve(size_t{compiled->record} * std::max(count, 1U), buffers.lazy);
-  buffers.gaussians.keys.reserve(std::max(count, 1U), buffers.lazy);
+  buffers.gaussians.keys.reserve(size_t{compiled->key} * std::max(count, 1U), buffers.lazy);
   upload_work(task, work, buffers);
   if (Status status = project(task, work, *compiled->project, buffers, preemption); !status) {
     return fail(std::move(status.error()));
   }
-  stats.project_ms = project_watch.milliseconds();
+  stats.project_ms += project_watch.milliseconds();
 
   const WorkStopwatch bin_watch(preemption);
-  const glm::uvec2 tiles(task.constants.tiles.x, task.constants.tiles.y);
-  const std::optional<GaussianLists> lists = list_by_depth(read_keys(count, buffers), tiles, task.list_entries);
+  const std::optional<GaussianLists> lists = list_gaussians(task, count, buffers);
   if (!lists) return std::optional<RegionStats>();
   upload_lists(*lists, buffers);
-  stats.splats = lists->drawn;
-  stats.bin_ms = bin_watch.milliseconds();
+  stats.splats += lists->drawn;
+  stats.bin_ms += bin_watch.milliseconds();
 
   const WorkStopwatch blend_watch(preemption);
   buffers.picture.reserve(pixels.size());
@@ -151,7 +209,14 @@ Result<std::optional<RegionStats>> draw_gaussians(const RegionTask& task, Progra
   const float near = work.blocks.empty() ? 0 : static_cast<float>(SURFCAST_TRAINED_NEAR) * work.blocks.front().scale.x;
   Status status = blend_rounds(task, *lists, *compiled, near, buffers, preemption);
   if (!status) return fail(std::move(status.error()));
-  stats.splat_ms = blend_watch.milliseconds();
+  if (!bricks.empty()) {
+    RegionTask volumes = task;
+    volumes.variant.layered = volumes.variant.codes = true;
+    const double depth_unit = std::ldexp(1.0, -drawing_unit(task));
+    status = draw_volumes(volumes, task.drawn, depth_unit, bricks, programs, buffers, preemption);
+    if (!status) return fail(std::move(status.error()));
+  }
+  stats.splat_ms += blend_watch.milliseconds();
   const Result<double> read = read_picture(buffers, pixels);
   if (!read) return fail(read.error());
   stats.read_ms = *read;

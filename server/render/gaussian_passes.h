@@ -11,7 +11,8 @@ namespace surfcast::render {
 bool has_gaussians(const RegionTask& task);
 
 /// Draws a region of Gaussians, as draw_region does with one of surfels: projects them, sorts them by depth into the
-/// lists of the tiles, and blends them. None if the lists are too long. Fails on a region that has other kinds, too.
+/// lists of the tiles, and blends them, between the surfaces of the region if it has any. None if lists are too long.
+/// Eye-dome lighting and supersampled silhouettes of the surfaces are left out.
 Result<std::optional<RegionStats>> draw_gaussians(const RegionTask& task, Programs& programs, SplatBuffers& buffers,
                                                   const Preemption& preemption, std::span<std::byte> pixels);
 

@@ -7,6 +7,7 @@
 
 #include "gl/program.h"
 #include "render/shader_library.h"
+#include "shared/ellipsoid_layout.h"
 #include "shared/frame_layout.h"
 #include "shared/gaussian_layout.h"
 #include "shared/kernel.h"
@@ -41,6 +42,9 @@ std::string color_defines(picture::SurfelColor color) {
     case picture::SurfelColor::kNormal:
       return "#define SURFCAST_COLOR_NORMAL\n";
     case picture::SurfelColor::kStored:
+    case picture::SurfelColor::kDirection:
+    case picture::SurfelColor::kDec:
+    case picture::SurfelColor::kAttribute:
       break;
   }
   return {};
@@ -51,6 +55,12 @@ std::string project_defines(const Variant& variant) {
   if (variant.hides_classes) defines += "#define SURFCAST_HIDES_CLASSES\n";
   if (variant.clipped) defines += "#define SURFCAST_CLIPPED\n";
   if (variant.scatter) defines += "#define SURFCAST_SCATTER\n";
+  if (variant.curved) defines += "#define SURFCAST_CURVED\n";
+  if (variant.transparent) defines += "#define SURFCAST_TRANSPARENT\n";
+  if (variant.by_file) defines += "#define SURFCAST_OPACITY_OF_FILE\n";
+  if (variant.by_class) defines += "#define SURFCAST_OPACITY_BY_CLASS\n";
+  if (variant.ghosts) defines += "#define SURFCAST_GHOSTS\n";
+  if (variant.xray) defines += "#define SURFCAST_XRAY\n";
   return defines;
 }
 
@@ -58,11 +68,21 @@ std::string float_define(const Variant& variant) {
   return variant.float_picture ? "#define SURFCAST_FLOAT_PICTURE\n" : "";
 }
 
+std::string layers_define(const Variant& variant) {
+  return variant.layered ? "#define SURFCAST_LAYERS\n" : "";
+}
+
 std::string splat_defines(const Variant& variant) {
   const std::string output = variant.eye_dome ? "#define SURFCAST_EYE_DOME\n" : float_define(variant);
-  const std::string layers = variant.layered ? "#define SURFCAST_LAYERS\n" : "";
+  const std::string layers = layers_define(variant);
   const std::string behind = variant.blends_behind ? "#define SURFCAST_BLENDS_BEHIND\n" : "";
-  return common_defines(variant) + output + layers + behind;
+  const std::string medium = variant.density ? "#define SURFCAST_DENSITY\n" : "";
+  return common_defines(variant) + output + layers + behind + medium;
+}
+
+/// The kernel that draws tiles.
+const char* tile_kernel(const Variant& variant) {
+  return variant.transparent ? "transparent.comp" : "splat.comp";
 }
 
 std::string define(const std::string& name, int value) {
@@ -81,11 +101,19 @@ struct KindFragments {
   std::string text;   ///< included by shaders/kinds/exact_list.glsl
 };
 
-KindFragments fragments_of(const PictureKinds& kinds) {
+/// The fragment function of a kind. Surfels have one if they have curvature, for those that show it.
+std::string fragment_of(const Variant& variant, const kinds::Kind& kind) {
+  if (kind.name() != model::kSurfelKind) return std::string(kind.shaders().fragment);
+  if (!variant.curved) return {};
+  const bool normals = variant.color == picture::SurfelColor::kNormal;
+  return std::string(normals ? "#define SURFCAST_COLOR_NORMAL\n" : "") + "#include \"curved/fragment.glsl\"\n";
+}
+
+KindFragments fragments_of(const Variant& variant, const PictureKinds& kinds) {
   KindFragments fragments;
   std::string calls;
   for (const PictureKind& kind : kinds) {
-    const std::string_view fragment = kind.kind->shaders().fragment;
+    const std::string fragment = fragment_of(variant, *kind.kind);
     if (fragment.empty()) continue;
     const std::string name(kind.kind->name());
     fragments.names += (fragments.names.empty() ? " with " : ", ") + name;
@@ -144,7 +172,8 @@ Result<std::vector<const gl::Program*>> Programs::projections(const Variant& var
   for (const PictureKind& kind : kinds) {
     const kinds::KindShaders shaders = kind.kind->shaders();
     const Source source{"projection of " + std::string(kind.kind->name()), kFile, {{kFile, shaders.project}}};
-    const std::string number = shaders.fragment.empty() ? "" : define("SURFCAST_KIND", static_cast<int>(kind.number));
+    const std::string number =
+        fragment_of(variant, *kind.kind).empty() ? "" : define("SURFCAST_KIND", static_cast<int>(kind.number));
     std::string defines = project_defines(variant);
     defines += lanes;
     defines += number;
@@ -167,7 +196,7 @@ Result<LongListPrograms> Programs::long_lists(const Variant& variant, const Pict
   const auto shares = [](int lanes, int pixel_lanes) {
     return define("SURFCAST_PIXEL_LANES", pixel_lanes) + define("SURFCAST_SHARES", lanes / pixel_lanes);
   };
-  const KindFragments fragments = fragments_of(kinds);
+  const KindFragments fragments = fragments_of(variant, kinds);
   const auto compile = [&](const gl::Program*& target, const char* file, bool large,
                            const std::string& defines) -> Status {
     Source source{file, file};
@@ -184,11 +213,11 @@ Result<LongListPrograms> Programs::long_lists(const Variant& variant, const Pict
   const std::string finding = variant.silhouettes ? "#define SURFCAST_FINDS_SILHOUETTES\n" : "";
   const int small_lanes = shape_.whole_tiles ? 1 : kPixels;
   LongListPrograms programs;
-  Status status = compile(programs.splat, "splat.comp", false,
+  Status status = compile(programs.splat, tile_kernel(variant), false,
                           lane_defines(shape_.whole_tiles) + shares(tile_lanes, small_lanes) + finding);
   if (status) {
-    status =
-        compile(programs.splat_large, "splat.comp", true, lane_defines(false) + shares(most_lanes, kPixels) + finding);
+    status = compile(programs.splat_large, tile_kernel(variant), true,
+                     lane_defines(false) + shares(most_lanes, kPixels) + finding);
   }
   if (status && variant.silhouettes) {
     status = compile(programs.supersample, "supersample.comp", false,
@@ -203,11 +232,16 @@ Result<LongListPrograms> Programs::long_lists(const Variant& variant, const Pict
   return programs;
 }
 
-Result<VolumePrograms> Programs::volumes(const Variant& variant) {
-  const std::string layers = variant.layered ? "#define SURFCAST_LAYERS\n" : "";
+Result<VolumePrograms> Programs::volumes(const Variant& variant, size_t volumes) {
+  const std::string several = volumes > 1 ? define("SURFCAST_VOLUMES", static_cast<int>(volumes)) : "";
+  const std::string layers = layers_define(variant) + (variant.codes ? "#define SURFCAST_CODES\n" : "");
+  const bool gradients = variant.shaded || variant.volume_surfaces;
   const std::string look = std::string(variant.clipped ? "#define SURFCAST_CLIPPED\n" : "") +
-                           (variant.shaded ? "#define SURFCAST_SHADED\n" : "") + layers;
-  const Result<const gl::Program*> draw = program({"volume.comp", "volume.comp"}, look);
+                           (variant.shaded ? "#define SURFCAST_SHADED\n" : "") +
+                           (gradients ? "#define SURFCAST_GRADIENTS\n" : "") +
+                           (variant.volume_surfaces ? "#define SURFCAST_SURFACES\n" : "") + layers + several;
+  const std::string name = several.empty() ? "volume.comp" : "volume.comp for several volumes";
+  const Result<const gl::Program*> draw = program({name, "volume.comp"}, look);
   if (!draw) return fail(draw.error());
   constexpr const char* kFilter = "volume_filter.comp";
   const Result<const gl::Program*> rows = program({kFilter, kFilter}, "");
@@ -222,17 +256,21 @@ Result<GaussianPrograms> Programs::gaussians(const Variant& variant, GaussianFor
   constexpr std::array kForms{"", "#define SURFCAST_FLAT\n", "#define SURFCAST_EXACT\n"};
   const std::string form_define = kForms.at(static_cast<size_t>(form));
   const bool rays = form != GaussianForm::kTrained;
-  constexpr auto kPixels = static_cast<uint32_t>(SURFCAST_TILE_WIDTH * SURFCAST_TILE_HEIGHT);
+  constexpr auto kLanes =
+      static_cast<uint32_t>(SURFCAST_TILE_WIDTH * SURFCAST_TILE_HEIGHT / SURFCAST_RAY_GAUSSIAN_PIXELS);
   GaussianPrograms programs;
+  programs.key = form == GaussianForm::kExact ? SURFCAST_EXACT_GAUSSIAN_KEY : SURFCAST_GAUSSIAN_KEY;
   programs.record = rays ? SURFCAST_RAY_GAUSSIAN_RECORD : SURFCAST_GAUSSIAN_RECORD;
-  programs.round = rays ? SURFCAST_RAY_GAUSSIAN_ROUND : SURFCAST_GAUSSIAN_ROUND;
-  programs.lanes_of_tile = rays ? kPixels : static_cast<uint32_t>(SURFCAST_TILE_HEIGHT / shape_.blend_rows());
-  programs.lanes = shape_.whole_tiles ? (rays ? kPixels : 8) : 32;
+  programs.round = SURFCAST_GAUSSIAN_ROUND;
+  programs.lanes_of_tile = rays ? kLanes : static_cast<uint32_t>(SURFCAST_TILE_HEIGHT / shape_.blend_rows());
+  programs.lanes = shape_.whole_tiles ? 8 : 32;
   std::string projection = form_define + define("SURFCAST_PROJECT_LANES", shape_.project_lanes);
   projection += define("SURFCAST_HARMONICS", variant.harmonics);
   if (variant.clipped) projection += "#define SURFCAST_CLIPPED\n";
   const std::string blending = form_define + define("SURFCAST_BLEND_ROWS", shape_.blend_rows()) +
-                               define("SURFCAST_BLEND_LANES", static_cast<int>(programs.lanes)) + float_define(variant);
+                               define("SURFCAST_BLEND_LANES", static_cast<int>(programs.lanes)) +
+                               float_define(variant) + layers_define(variant) +
+                               (variant.keeps ? "#define SURFCAST_KEEPS\n" : "");
   const Result<const gl::Program*> project = program({"projection of gaussian", "gaussian/project.comp"}, projection);
   if (!project) return fail(project.error());
   const char* file = rays ? "gaussian/blend_rays.comp" : "gaussian/blend.comp";
@@ -240,7 +278,49 @@ Result<GaussianPrograms> Programs::gaussians(const Variant& variant, GaussianFor
   if (!blend) return fail(blend.error());
   programs.project = *project;
   programs.blend = *blend;
+  programs.layered = variant.layered;
+  if (variant.layered) programs.round = SURFCAST_LAYERED_GAUSSIAN_ROUND;
+  programs.keeps = variant.keeps;
   programs.has_near = form == GaussianForm::kFlat;
+  return programs;
+}
+
+Result<EllipsoidPrograms> Programs::ellipsoids(const Variant& variant, bool mapped, EllipsoidTarget target) {
+  EllipsoidPrograms programs;
+  programs.samples = variant.blends_behind ? 1 : SURFCAST_GLYPH_SAMPLES;
+  programs.record = variant.superquadrics ? SURFCAST_SUPERQUADRIC_RECORD : SURFCAST_ELLIPSOID_RECORD;
+  programs.round = variant.superquadrics ? SURFCAST_SUPERQUADRIC_ROUND : SURFCAST_ELLIPSOID_ROUND;
+  programs.lanes_of_tile = static_cast<uint32_t>(SURFCAST_TILE_HEIGHT / shape_.blend_rows());
+  programs.lanes = shape_.whole_tiles ? 8 : 32;
+  const std::string samples = define("SURFCAST_SAMPLES", static_cast<int>(programs.samples));
+  const std::string shape = variant.superquadrics ? "#define SURFCAST_SUPERQUADRICS\n" : "";
+  const std::string projection = define("SURFCAST_PROJECT_LANES", shape_.project_lanes) + shape +
+                                 (variant.clipped ? "#define SURFCAST_CLIPPED\n" : "") +
+                                 (mapped ? "#define SURFCAST_GLYPH_COLORS\n" : "");
+  const std::string lanes = define("SURFCAST_BLEND_ROWS", shape_.blend_rows()) +
+                            define("SURFCAST_BLEND_LANES", static_cast<int>(programs.lanes));
+  const auto compile = [this](const gl::Program*& made, const char* name, const char* file,
+                              const std::string& defines) -> Status {
+    const Result<const gl::Program*> compiled = program({name, file}, defines);
+    if (!compiled) return fail(compiled.error());
+    made = *compiled;
+    return {};
+  };
+  Status status = compile(programs.project, "projection of ellipsoid", "ellipsoid/project.comp", projection);
+  if (status) {
+    status = compile(programs.nearest, "nearest ellipsoid", "ellipsoid/nearest.comp", samples + shape + lanes);
+  }
+  const std::string layers = target == EllipsoidTarget::kPicture ? "" : "#define SURFCAST_LAYERS\n";
+  const std::string written =
+      target == EllipsoidTarget::kLayers ? "#define SURFCAST_ADDS_LAYER\n" : float_define(variant);
+  if (status) status = compile(programs.shade, "light of ellipsoid", "ellipsoid/shade.comp", samples + shape + layers);
+  constexpr const char* kFilter = "ellipsoid/filter.comp";
+  if (status) status = compile(programs.filter_rows, kFilter, kFilter, samples + layers);
+  if (status) {
+    status = compile(programs.filter_columns, kFilter, kFilter,
+                     samples + "#define SURFCAST_FILTERS_COLUMNS\n" + layers + written);
+  }
+  if (!status) return fail(std::move(status.error()));
   return programs;
 }
 
@@ -260,7 +340,7 @@ Result<SplatPrograms> Programs::variant(const Variant& variant, const PictureKin
     return {};
   };
   const auto plain = [](const char* file) { return Source{file, file}; };
-  const KindFragments fragments = fragments_of(kinds);
+  const KindFragments fragments = fragments_of(variant, kinds);
   const auto with_kinds = [&](const char* file) {
     if (fragments.names.empty()) return plain(file);
     return Source{file + fragments.names, file, {{"kinds/fragment_of.glsl", fragments.text}}};
@@ -271,8 +351,9 @@ Result<SplatPrograms> Programs::variant(const Variant& variant, const PictureKin
   const std::string large = at_once + lane_defines(false) + "#define SURFCAST_LARGE\n";
   const std::string finding = variant.silhouettes ? "#define SURFCAST_FINDS_SILHOUETTES\n" : "";
   const std::string selecting = selects(variant) ? "#define SURFCAST_SELECTS\n" : "";
-  Status status = compile(programs.splat, plain("splat.comp"), small + finding + selecting);
-  if (status) status = compile(programs.splat_large, with_kinds("splat.comp"), large + finding);
+  const char* kernel = tile_kernel(variant);
+  Status status = compile(programs.splat, plain(kernel), small + finding + selecting);
+  if (status) status = compile(programs.splat_large, with_kinds(kernel), large + finding);
   if (variant.silhouettes) {
     const std::string columns = define("SURFCAST_COLUMNS", pixels_at_once());
     const std::string rows = define("SURFCAST_ROWS", SURFCAST_SILHOUETTE_SAMPLES);
@@ -280,7 +361,7 @@ Result<SplatPrograms> Programs::variant(const Variant& variant, const PictureKin
     if (status) status = compile(programs.supersample, plain("supersample.comp"), splat + columns + rows + selecting);
     if (status) status = compile(programs.supersample_large, with_kinds("supersample.comp"), large);
   }
-  if (status && selects(variant)) {
+  if (status && selects(variant) && !variant.transparent) {
     const std::string column = at_once + define("SURFCAST_COLUMNS", 1) + define("SURFCAST_ROWS", SURFCAST_TILE_HEIGHT);
     status = compile(programs.behind, plain("behind.comp"), column);
     if (status) {

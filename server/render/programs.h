@@ -26,13 +26,24 @@ struct Variant {
   bool hides_classes = false;
   bool clipped = false;
   bool scatter = false;  ///< the model has scatter
+  bool curved = false;   ///< the model has surfels with curvature
   bool eye_dome = false;
-  bool silhouettes = false;    ///< silhouettes are supersampled
-  bool blends_behind = false;  ///< see PictureRequest::blends_behind
-  bool shaded = false;         ///< volumes are lit
-  bool layered = false;        ///< surfaces are kept for volumes instead of drawn; with eye_dome
-  bool exact = false;          ///< Gaussians are exact in perspective
-  int harmonics = 4;           ///< highest degree of the harmonics of Gaussians that is evaluated
+  bool silhouettes = false;      ///< silhouettes are supersampled
+  bool blends_behind = false;    ///< see PictureRequest::blends_behind
+  bool transparent = false;      ///< surfels are seen through
+  bool by_file = false;          ///< their opacities are those of the scan; with transparent
+  bool by_class = false;         ///< their opacities depend on their classes; with transparent
+  bool ghosts = false;           ///< those that are clipped have an opacity; with transparent
+  bool xray = false;             ///< their opacities grow with the angle at which they are seen; with transparent
+  bool density = false;          ///< they are a medium; with transparent
+  bool shaded = false;           ///< volumes are lit
+  bool volume_surfaces = false;  ///< volumes have iso-surfaces or slices
+  bool layered = false;          ///< surfaces are kept for what is drawn between them; their own passes: with eye_dome
+  bool codes = false;            ///< volumes are drawn between layers in sRGB codes; with layered
+  bool keeps = false;            ///< Gaussians are kept as layers for volumes instead of drawn; with layered
+  bool superquadrics = false;    ///< glyphs are superquadrics instead of ellipsoids
+  bool exact = false;            ///< Gaussians are exact in perspective
+  int harmonics = 4;             ///< highest degree of the harmonics of Gaussians that is evaluated
 };
 
 /// A kind that a picture shows.
@@ -48,7 +59,8 @@ struct SplatPrograms {
   std::vector<const gl::Program*> project;   ///< for each kind of the picture
   const gl::Program* splat = nullptr;        ///< for tiles without large splats or records of other kinds than surfels
   const gl::Program* splat_large = nullptr;  ///< for tiles with them
-  /// Draw the columns that the programs without large splats hand over; null unless Programs::selects.
+  /// Draw the columns that the programs without large splats hand over; null unless Programs::selects, and where
+  /// surfels are seen through.
   const gl::Program* behind = nullptr;
   const gl::Program* behind_samples = nullptr;
   /// Null unless silhouettes are supersampled. The first finds them; the others draw them in tiles without and with
@@ -99,10 +111,31 @@ struct GaussianPrograms {
   const gl::Program* project = nullptr;
   const gl::Program* blend = nullptr;
   uint32_t record = 2;         ///< texels of a Gaussian on the screen
+  uint32_t key = 1;            ///< texels of its key
   uint32_t round = 0;          ///< list entries that a lane draws in one dispatch
   uint32_t lanes_of_tile = 1;  ///< of the blending pass
   uint32_t lanes = 8;          ///< of its work groups
   bool has_near = false;       ///< the blending pass needs the depth of the nearest centre
+  bool keeps = false;          ///< the blending pass writes layers
+  bool layered = false;        ///< the blending pass reads the surfaces of the pixels and the keys of the Gaussians
+};
+
+/// Where ellipsoids go: into the picture, into a picture with surfaces, which are kept in layers, or among these
+/// layers.
+enum class EllipsoidTarget { kPicture, kBesideSurfaces, kLayers };
+
+/// The programs of pictures with ellipsoids.
+struct EllipsoidPrograms {
+  const gl::Program* project = nullptr;
+  const gl::Program* nearest = nullptr;  ///< finds the nearest ellipsoid of each sample
+  const gl::Program* shade = nullptr;    ///< lights it
+  const gl::Program* filter_rows = nullptr;
+  const gl::Program* filter_columns = nullptr;
+  uint32_t samples = 1;        ///< of a pixel
+  uint32_t record = 1;         ///< texels of an ellipsoid on the screen
+  uint32_t round = 1;          ///< list entries that a lane draws in one dispatch
+  uint32_t lanes_of_tile = 1;  ///< of the pass that finds the nearest ones
+  uint32_t lanes = 8;          ///< of its work groups
 };
 
 /// Compiles the passes when they are first needed.
@@ -114,16 +147,21 @@ class Programs {
   Result<SplatPrograms> variant(const Variant& variant, const PictureKinds& kinds);
   /// `longest`: entries of the longest list.
   Result<LongListPrograms> long_lists(const Variant& variant, const PictureKinds& kinds, uint32_t longest);
-  Result<VolumePrograms> volumes(const Variant& variant);
+  /// `volumes`: that the program has room for (room_for_volumes).
+  Result<VolumePrograms> volumes(const Variant& variant, size_t volumes);
   Result<GaussianPrograms> gaussians(const Variant& variant, GaussianForm form);
+  /// `mapped`: colours come from a table.
+  Result<EllipsoidPrograms> ellipsoids(const Variant& variant, bool mapped, EllipsoidTarget target);
   /// Counts the tiles that large splats touch.
   [[nodiscard]] const gl::Program& count_large() const { return count_large_; }
   [[nodiscard]] const gl::Program& slices() const { return slices_; }
   [[nodiscard]] const gl::Program& bin_offsets() const { return bin_offsets_; }
   [[nodiscard]] const gl::Program& bin(const Variant& variant) const { return selects(variant) ? bin_reaches_ : bin_; }
-  /// True if lanes draw from the list entries that matter (include/selection.glsl), and hand over what few of their
-  /// pixels need. This pays off where silhouettes are supersampled and a lane holds many pixels.
-  [[nodiscard]] bool selects(const Variant& variant) const { return variant.silhouettes && shape_.whole_tiles; }
+  /// True if lanes draw from the list entries that matter (include/selection.glsl). This pays off where a lane holds
+  /// many pixels, and silhouettes are supersampled or several surfaces of a pixel are seen.
+  [[nodiscard]] bool selects(const Variant& variant) const {
+    return (variant.silhouettes || variant.transparent) && shape_.whole_tiles;
+  }
   /// Pixels of a tile that a lane of supersample.comp draws at once.
   [[nodiscard]] int pixels_at_once() const;
   [[nodiscard]] const KernelShape& shape() const { return shape_; }

@@ -94,6 +94,12 @@ PictureKinds kinds_of(const RegionTask& task) {
   return kinds;
 }
 
+PictureKinds surface_kinds(const RegionTask& task) {
+  PictureKinds kinds = kinds_of(task);
+  std::erase_if(kinds, [](const PictureKind& kind) { return kind.kind->drawn_as() != kinds::DrawnAs::kSurface; });
+  return kinds;
+}
+
 ProjectionWork plan_work(const RegionTask& task, const PictureKinds& kinds) {
   ProjectionWork work;
   const int unit = drawing_unit(task);

@@ -31,6 +31,8 @@ int drawing_unit(const RegionTask& task);
 bool needs_block_displays(const DisplayOptions& display);
 /// The kinds of a region's blocks that are projected, sorted by number.
 PictureKinds kinds_of(const RegionTask& task);
+/// Those of them that are drawn as surfaces.
+PictureKinds surface_kinds(const RegionTask& task);
 /// The work of these kinds, in the order of the region's blocks.
 ProjectionWork plan_work(const RegionTask& task, const PictureKinds& kinds);
 

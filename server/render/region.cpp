@@ -73,13 +73,15 @@ layout::FrameConstants frame_constants(const geometry::CameraFrame& frame, const
   c.region = {region.x, region.y, region.width, region.height};
   c.tiles = {tiles_across(region), tiles_down(region), tiles_across(region) * tiles_down(region), 0};
   const double prefilter = request.filter == picture::Filter::kEwa ? 1.0 : kNoPrefilter;
-  const bool per_surfel = request.normalization == picture::Normalization::kSurfel;
+  // The depth of a medium is the amount of surfels, whatever their overlaps.
+  const bool per_surfel =
+      request.normalization == picture::Normalization::kSurfel || request.xray == picture::XRay::kDensity;
   const double weight_scale = per_surfel ? surfel::per_surfel_scale(SURFCAST_KERNEL_SIGMA)
                                          : surfel::even_sampling_weight(SURFCAST_KERNEL_SIGMA);
   c.filter_ = {prefilter, SURFCAST_VISIBILITY_PIXELS * SURFCAST_VISIBILITY_PIXELS, weight_scale,
                static_cast<float>(surfel::kRadiusOverSpacing * request.spacing / frame.eta)};
   c.background = {decode_srgb(request.background.r), decode_srgb(request.background.g),
-                  decode_srgb(request.background.b), 0};
+                  decode_srgb(request.background.b), static_cast<float>(request.opacity)};
   c.flags = {oriented ? 1 : 0, per_surfel ? 1 : 0, 0, 0};
   return c;
 }

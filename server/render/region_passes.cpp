@@ -8,10 +8,11 @@
 #include "base/stopwatch.h"
 #include "render/batched_dispatch.h"
 #include "render/depth_slices.h"
+#include "render/ellipsoid_passes.h"
 #include "render/projection_work.h"
-#include "render/tile_spans.h"
+#include "render/silhouette_passes.h"
+#include "render/splat_pass.h"
 #include "render/volume_passes.h"
-#include "shared/kernel.h"
 
 namespace surfcast::render {
 namespace {
@@ -37,6 +38,8 @@ void upload_display_options(const RegionTask& task, const ProjectionWork& work, 
   if (display.clipped) upload(buffers.clips, work.clips.empty() ? std::vector<layout::ClipRange>(1) : work.clips);
   if (display.mapped() || display.hides_classes)
     upload_uniforms(buffers.display, display_constants(display, *task.request));
+  if (display.through.by_class || display.through.ghosts)
+    upload_uniforms(buffers.through, through_constants(*task.request));
 }
 
 void bind_display_options(const RegionTask& task, const SplatBuffers& buffers) {
@@ -44,6 +47,7 @@ void bind_display_options(const RegionTask& task, const SplatBuffers& buffers) {
   if (needs_block_displays(display)) buffers.block_displays.bind(SURFCAST_BIND_BLOCK_DISPLAYS);
   if (display.clipped) buffers.clips.bind(SURFCAST_BIND_CLIPS);
   if (display.mapped() || display.hides_classes) buffers.display.bind_uniforms(SURFCAST_BIND_DISPLAY);
+  if (display.through.by_class || display.through.ghosts) buffers.through.bind_uniforms(SURFCAST_BIND_THROUGH);
   if (display.mapped()) task.colors->bind(SURFCAST_UNIT_COLORS);
   if (display.attributes) task.surfels->bind_attributes(SURFCAST_UNIT_ATTRIBUTES);
 }
@@ -56,15 +60,6 @@ void clear_counts(const RegionTask& task, const DepthSlices& slices, SplatBuffer
   buffers.tile_count.clear();
   buffers.tile_offset.reserve(tiles * sizeof(GLuint));
   buffers.tile_order.reserve(tiles * sizeof(GLuint));
-}
-
-/// Binds the buffers that every pass uses.
-void bind_frame(const SplatBuffers& buffers) {
-  buffers.frame.bind_uniforms(SURFCAST_BIND_FRAME);
-  buffers.counters.bind(SURFCAST_BIND_COUNTERS);
-  buffers.tile_count.bind(SURFCAST_BIND_TILE_COUNT);
-  buffers.tile_offset.bind(SURFCAST_BIND_TILE_OFFSET);
-  buffers.tile_order.bind(SURFCAST_BIND_TILE_ORDER);
 }
 
 void bind_for_projection(const RegionTask& task, const SplatBuffers& buffers) {
@@ -89,31 +84,6 @@ void bind_for_binning(const SplatBuffers& buffers) {
   bind_for_counting(buffers);
   buffers.lists.bind_for_writing(SURFCAST_UNIT_LISTS);
   if (buffers.reaches.texels() > 0) buffers.reaches.bind_for_writing(SURFCAST_UNIT_REACHES);
-}
-
-void bind_for_splatting(const RegionTask& task, const SplatBuffers& buffers) {
-  bind_frame(buffers);
-  buffers.next_tiles.bind(SURFCAST_BIND_NEXT_TILES);
-  buffers.picture.bind(SURFCAST_BIND_PICTURE);
-  if (task.variant.eye_dome) {
-    buffers.light.bind(SURFCAST_BIND_LIGHT);
-    buffers.depth.bind(SURFCAST_BIND_DEPTH);
-  }
-  if (task.variant.layered) buffers.volume.layers.bind(SURFCAST_BIND_LAYERS);
-  buffers.splats.bind_for_reading(SURFCAST_UNIT_SPLATS);
-  buffers.discs.bind_for_reading(SURFCAST_UNIT_DISCS);
-  buffers.lists.bind_for_reading(SURFCAST_UNIT_LISTS);
-  if (task.variant.colored && task.variant.lit) buffers.normals.bind_for_reading(SURFCAST_UNIT_NORMALS);
-  if (buffers.reaches.texels() > 0) buffers.reaches.bind_for_reading(SURFCAST_UNIT_REACHES);
-  if (buffers.unfinished.texels() > 0) {
-    buffers.unfinished_count.bind(SURFCAST_BIND_UNFINISHED);
-    buffers.unfinished.bind_for_writing(SURFCAST_UNIT_UNFINISHED);
-    buffers.unfinished.bind_for_reading(SURFCAST_UNIT_UNFINISHED);
-  }
-  if (task.variant.silhouettes) {
-    buffers.fronts.bind(SURFCAST_BIND_FRONTS);
-    buffers.silhouettes.bind(SURFCAST_BIND_SILHOUETTES);
-  }
 }
 
 layout::Counters read_counters(const SplatBuffers& buffers) {
@@ -234,165 +204,6 @@ Status bin(const RegionTask& task, const layout::Counters& counters, const Progr
   });
 }
 
-/// Draws a span of tiles with a variant of the splat kernel.
-Status draw_tiles(const RegionTask& task, const TileSpan& span, const gl::Program& program, BatchSizer& sizer,
-                  SplatBuffers& buffers, const Preemption& preemption) {
-  if (span.first == span.end) return {};
-  const Groups groups{(span.end - span.first + span.tiles_per_group - 1) / span.tiles_per_group, {}};
-  buffers.next_tiles.reserve(groups.count * sizeof(GLuint));
-  buffers.next_tiles.clear();
-  return dispatch_in_batches(groups, sizer, preemption, [&] {
-    bind_for_splatting(task, buffers);
-    glUseProgram(program.name());
-    glUniform3ui(SURFCAST_UNIFORM_SPAN, span.first, span.end, span.tiles_per_group);
-  });
-}
-
-/// Draws the columns that the passes before have handed over.
-Status draw_behind(const RegionTask& task, const gl::Program* program, uint32_t per_group, BatchSizer& sizer,
-                   SplatBuffers& buffers, const Preemption& preemption) {
-  if (program == nullptr) return {};
-  GLuint count = 0;
-  glGetNamedBufferSubData(buffers.unfinished_count.name(), 0, sizeof count, &count);
-  if (count == 0) return {};
-  buffers.unfinished_count.clear();
-  return draw_tiles(task, {0, count, per_group, false}, *program, sizer, buffers, preemption);
-}
-
-/// True if some tiles have long lists.
-bool has_long_lists(const layout::Counters& counters) {
-  return counters.counts.w >= SURFCAST_LONG_LIST;
-}
-
-void clear_silhouettes(const RegionTask& task, bool long_lists, SplatBuffers& buffers) {
-  constexpr size_t kPixels = size_t{SURFCAST_TILE_WIDTH} * SURFCAST_TILE_HEIGHT;
-  const size_t pixels = kPixels * static_cast<size_t>(task.constants.tiles.z);
-  buffers.fronts.reserve(pixels * sizeof(float));
-  buffers.silhouettes.reserve(sizeof(glm::uvec4) + (long_lists ? 2 : 1) * pixels * sizeof(glm::uvec2));
-  constexpr GLuint kNone[4] = {};
-  glNamedBufferSubData(buffers.silhouettes.name(), 0, sizeof kNone, kNone);
-}
-
-/// Makes room for every column of pixels, and the samples of every pixel.
-void reserve_unfinished(const RegionTask& task, const SplatPrograms& programs, SplatBuffers& buffers) {
-  if (programs.behind == nullptr) return;
-  constexpr size_t kTexels = 8;  // include/unfinished.glsl
-  constexpr size_t kPixels = size_t{SURFCAST_TILE_WIDTH} * SURFCAST_TILE_HEIGHT;
-  buffers.unfinished.reserve(kTexels * kPixels * static_cast<size_t>(task.constants.tiles.z), buffers.lazy);
-  buffers.unfinished_count.reserve(sizeof(GLuint));
-  buffers.unfinished_count.clear();
-}
-
-void clear_layers(const Region& drawn, SplatBuffers& buffers) {
-  const size_t pixels = static_cast<size_t>(drawn.width) * static_cast<size_t>(drawn.height);
-  buffers.volume.layers.reserve(pixels * SURFCAST_LAYERS_KEPT * SURFCAST_LAYER_WORDS * sizeof(GLuint));
-  buffers.volume.layers.clear();
-}
-
-/// The programs of a picture. Those for long lists are null where there are none.
-struct RegionPrograms {
-  SplatPrograms lanes;
-  LongListPrograms groups;
-};
-
-/// Draws a span of tiles, with and without large splats.
-Status draw_span(const RegionTask& task, const TileSpan& span, bool large, const RegionPrograms& programs,
-                 BatchSizer& sizer, SplatBuffers& buffers, const Preemption& preemption) {
-  if (!span.together) return draw_tiles(task, span, *programs.lanes.splat, sizer, buffers, preemption);
-  if (span.first == span.end) return {};
-  Status status = draw_tiles(task, span, *programs.groups.splat, buffers.long_lists.splat, buffers, preemption);
-  if (!status || !large) return status;
-  return draw_tiles(task, span, *programs.groups.splat_large, buffers.long_lists.splat_large, buffers, preemption);
-}
-
-Status splat(const RegionTask& task, const layout::Counters& counters, const RegionPrograms& programs,
-             const KernelShape& shape, SplatBuffers& buffers, const Preemption& preemption) {
-  const gl::DebugGroup group("splat");
-  if (task.variant.eye_dome) {
-    const size_t pixels = static_cast<size_t>(task.drawn.width) * static_cast<size_t>(task.drawn.height);
-    buffers.light.reserve(pixels * sizeof(glm::vec4));
-    buffers.depth.reserve(pixels * sizeof(glm::vec2));
-  }
-  if (task.variant.layered) clear_layers(task.drawn, buffers);
-  if (task.variant.silhouettes) clear_silhouettes(task, has_long_lists(counters), buffers);
-  reserve_unfinished(task, programs.lanes, buffers);
-  const auto tiles = static_cast<uint32_t>(task.constants.tiles.z);
-  const std::vector<TileSpan> spans = spans_of_tiles(counters, tiles, shape);
-  for (size_t i = 0; i < spans.size(); ++i) {
-    Status status =
-        draw_span(task, spans[i], counters.counts.y > 0, programs, buffers.splat_batches.at(i), buffers, preemption);
-    if (!status) return status;
-    status =
-        draw_behind(task, programs.lanes.behind, spans[i].tiles_per_group, buffers.behind_batches, buffers, preemption);
-    if (!status) return status;
-  }
-  if (counters.counts.y == 0) return {};
-  const TileSpan others{spans.front().end, tiles, static_cast<uint32_t>(shape.tiles_at_once)};
-  return draw_tiles(task, others, *programs.lanes.splat_large, buffers.splat_large_batches, buffers, preemption);
-}
-
-/// Numbers of pixels at silhouettes, as in include/silhouette_list.glsl.
-glm::uvec4 read_silhouette_counts(const SplatBuffers& buffers) {
-  glm::uvec4 counts{0};
-  glGetNamedBufferSubData(buffers.silhouettes.name(), 0, sizeof counts, &counts);
-  return counts;
-}
-
-/// Runs a pass of the silhouettes over the tiles or parts from `first` to `end`.
-Status dispatch_silhouettes(const RegionTask& task, const gl::Program* program, glm::uvec2 range, uint32_t lanes,
-                            BatchSizer& sizer, SplatBuffers& buffers, const Preemption& preemption) {
-  if (range.x == range.y) return {};
-  const Groups groups{(range.y - range.x + lanes - 1) / lanes, {}};
-  return dispatch_in_batches(groups, sizer, preemption, [&] {
-    bind_for_splatting(task, buffers);
-    glUseProgram(program->name());
-    glUniform3ui(SURFCAST_UNIFORM_SPAN, range.x, range.y, 0);
-  });
-}
-
-/// Finds the pixels at silhouettes in a span of tiles. Draws those of tiles without large splats and long lists again.
-Status supersample_span(const RegionTask& task, const TileSpan& span, const SplatPrograms& programs,
-                        const KernelShape& shape, SplatBuffers& buffers, const Preemption& preemption) {
-  const auto lanes = static_cast<uint32_t>(shape.silhouette_lanes);
-  const uint32_t done = read_silhouette_counts(buffers).x;
-  Status status = dispatch_silhouettes(task, programs.silhouettes, {span.first, span.end}, lanes, buffers.find_batches,
-                                       buffers, preemption);
-  if (!status) return status;
-  status = dispatch_silhouettes(task, programs.supersample, {done, read_silhouette_counts(buffers).x}, lanes,
-                                buffers.supersample_batches, buffers, preemption);
-  if (!status) return status;
-  return draw_behind(task, programs.behind_samples, span.tiles_per_group, buffers.behind_samples_batches, buffers,
-                     preemption);
-}
-
-/// The spans whose silhouettes are drawn together: of tiles with splats. Without columns that are handed over all tiles
-/// are alike.
-std::vector<TileSpan> spans_of_silhouettes(const layout::Counters& counters, const KernelShape& shape) {
-  const uint32_t tiles = counters.lengths[0][0];  // with at least one entry
-  if (!shape.whole_tiles) return {{0, tiles, 1, false}};
-  return spans_of_tiles(counters, tiles, shape);
-}
-
-/// Finds the pixels at silhouettes and draws them again.
-Status supersample_silhouettes(const RegionTask& task, const layout::Counters& counters, const RegionPrograms& programs,
-                               const KernelShape& shape, SplatBuffers& buffers, const Preemption& preemption) {
-  const gl::DebugGroup group("silhouettes");
-  for (const TileSpan& span : spans_of_silhouettes(counters, shape)) {
-    Status status = supersample_span(task, span, programs.lanes, shape, buffers, preemption);
-    if (!status) return status;
-  }
-  const glm::uvec4 counts = read_silhouette_counts(buffers);
-  const auto draw = [&](const gl::Program* program, uint32_t count, int lanes, BatchSizer& sizer) {
-    return dispatch_silhouettes(task, program, {0, count}, static_cast<uint32_t>(lanes), sizer, buffers, preemption);
-  };
-  LongListBatches& sizers = buffers.long_lists;
-  Status status = draw(programs.lanes.supersample_large, counts.y, shape.silhouette_lanes / SURFCAST_SILHOUETTE_SAMPLES,
-                       buffers.supersample_large_batches);
-  if (status) status = draw(programs.groups.supersample, counts.z, 1, sizers.supersample);
-  if (status) status = draw(programs.groups.supersample_large, counts.w, 1, sizers.supersample_large);
-  return status;
-}
-
 /// Compiles the programs for long lists if there are any.
 Status add_long_list_programs(const RegionTask& task, const PictureKinds& kinds, const layout::Counters& counters,
                               Programs& programs, RegionPrograms& region) {
@@ -458,20 +269,26 @@ Result<std::optional<RegionStats>> draw_surfaces(const RegionTask& task, const P
   return std::optional(stats);
 }
 
-/// Draws a region with volumes: surfaces first, if it has any, then the volumes between them. Eye-dome lighting and
-/// supersampled silhouettes are left out.
+/// Draws a region with volumes: surfaces first, if it has any, then the volumes between them.
 Result<std::optional<RegionStats>> draw_with_volumes(RegionTask task, const PictureKinds& kinds,
                                                      std::span<const VisibleBrick> bricks, Programs& programs,
                                                      SplatBuffers& buffers, const Preemption& preemption) {
   const Region written = task.variant.eye_dome ? task.region : task.drawn;
-  task.variant.layered = task.variant.eye_dome = !kinds.empty();
-  task.variant.silhouettes = false;
+  const bool ellipsoids = has_ellipsoids(task);
   RegionStats stats;
   if (!kinds.empty()) {
-    Result<std::optional<RegionStats>> surfaces = draw_surfaces(task, kinds, programs, buffers, preemption);
+    Result<std::optional<RegionStats>> surfaces = draw_layers(task, kinds, programs, buffers, preemption);
     if (!surfaces || !*surfaces) return surfaces;
     stats = **surfaces;
   }
+  if (ellipsoids) {
+    if (kinds.empty()) clear_layers(task.drawn, buffers.volume.layers);
+    Result<std::optional<RegionStats>> added = add_ellipsoids(task, programs, buffers, preemption);
+    if (!added || !*added) return added;
+    stats.splats += (*added)->splats;
+    stats.splat_ms += (*added)->splat_ms;
+  }
+  task.variant.layered = !kinds.empty() || ellipsoids;
   const WorkStopwatch watch(preemption);
   const double depth_unit = std::ldexp(1.0, -drawing_unit(task));
   if (Status status = draw_volumes(task, written, depth_unit, bricks, programs, buffers, preemption); !status) {
@@ -482,6 +299,21 @@ Result<std::optional<RegionStats>> draw_with_volumes(RegionTask task, const Pict
 }
 
 }  // namespace
+
+void clear_layers(const Region& drawn, StorageBuffer& layers) {
+  const size_t pixels = static_cast<size_t>(drawn.width) * static_cast<size_t>(drawn.height);
+  layers.reserve(pixels * SURFCAST_LAYERS_KEPT * SURFCAST_LAYER_WORDS * sizeof(GLuint));
+  layers.clear();
+}
+
+Result<std::optional<RegionStats>> draw_layers(RegionTask task, const PictureKinds& kinds, Programs& programs,
+                                               SplatBuffers& buffers, const Preemption& preemption) {
+  task.variant.layered = task.variant.eye_dome = true;
+  task.variant.silhouettes = false;
+  // The depth of all that is behind the front surface as one would not be known.
+  task.variant.blends_behind = false;
+  return draw_surfaces(task, kinds, programs, buffers, preemption);
+}
 
 Result<double> read_picture(const SplatBuffers& buffers, std::span<std::byte> pixels) {
   const Stopwatch watch;
@@ -497,7 +329,7 @@ Result<double> read_picture(const SplatBuffers& buffers, std::span<std::byte> pi
 
 Result<std::optional<RegionStats>> draw_region(const RegionTask& task, Programs& programs, SplatBuffers& buffers,
                                                const Preemption& preemption, std::span<std::byte> pixels) {
-  const PictureKinds kinds = kinds_of(task);
+  const PictureKinds kinds = surface_kinds(task);
   const std::vector<VisibleBrick> bricks = bricks_of(task);
   buffers.picture.reserve(pixels.size());
   Result<std::optional<RegionStats>> drawn =

@@ -14,13 +14,17 @@
 #include "gl/egl_context.h"
 #include "gl/gpu_memory.h"
 #include "render/clear_blocks.h"
+#include "render/ellipsoid_passes.h"
 #include "render/gaussian_passes.h"
+#include "render/glyph_plan.h"
 #include "render/programs.h"
 #include "render/region_passes.h"
 #include "render/scene.h"
 #include "render/splat_buffers.h"
 #include "render/transfer_presets.h"
+#include "render/volume_passes.h"
 #include "residency/packing.h"
+#include "surfel/curvature.h"
 
 namespace surfcast::render {
 namespace {
@@ -39,6 +43,30 @@ bool lit_by_default(const model::ModelInfo& info, const DisplayOptions& display)
   return display.color == picture::SurfelColor::kElevation || display.color == picture::SurfelColor::kClassification;
 }
 
+selection::Sides sides_of(const DisplayOptions& display) {
+  return display.through.any ? selection::Sides::kBoth : selection::Sides::kFront;
+}
+
+/// The projected spacing of what clip boxes hide, pixels; none if it is not drawn.
+std::optional<double> ghost_spacing(const DisplayOptions& display, const picture::PictureRequest& request) {
+  constexpr double kCoarser = 4;
+  constexpr double kFinest = 2;
+  if (!display.through.ghosts) return std::nullopt;
+  return std::max(kCoarser * request.spacing, kFinest);
+}
+
+/// Chooses the programs of surfels that are seen through.
+void set_transparency(const DisplayOptions& display, const picture::PictureRequest& request, Variant& variant) {
+  variant.transparent = display.through.any;
+  if (!display.through.any) return;
+  variant.by_file = display.through.by_file;
+  variant.by_class = display.through.by_class;
+  variant.ghosts = display.through.ghosts;
+  variant.xray = request.xray == picture::XRay::kSorted;
+  variant.density = request.xray == picture::XRay::kDensity;
+  variant.silhouettes = false;
+}
+
 Variant variant_of(const model::ModelInfo& info, const DisplayOptions& display,
                    const picture::PictureRequest& request) {
   Variant variant;
@@ -50,12 +78,16 @@ Variant variant_of(const model::ModelInfo& info, const DisplayOptions& display,
   variant.hides_classes = display.hides_classes;
   variant.clipped = display.clipped;
   variant.scatter = info.scatter > 0;
+  variant.curved = surfel::has_curvature(info.scalar_names);
   variant.shaded = request.volumes.shaded;
+  variant.volume_surfaces = !display.volumes.isos.empty() || !display.volumes.slices.empty();
   variant.eye_dome = request.eye_dome.strength > 0;
   variant.blends_behind = request.blends_behind;
   variant.exact = request.splat_convention == picture::SplatConvention::kExact && !request.rest_spacing;
+  variant.superquadrics = request.glyphs.shape == picture::GlyphShape::kSuperquadric;
   variant.silhouettes = request.silhouettes && request.normalization == picture::Normalization::kPixel &&
                         request.filter == picture::Filter::kEwa;
+  set_transparency(display, request, variant);
   return variant;
 }
 
@@ -217,7 +249,10 @@ Result<residency::PreparedView> Renderer::State::prepare(Scene& scene, const pic
                                              display.attributes,
                                              request.viewer != 0,
                                              hidden.empty() ? nullptr : &hidden,
-                                             request.rest_spacing};
+                                             request.rest_spacing,
+                                             sides_of(display),
+                                             ghost_spacing(display, request),
+                                             display.glyph_reaches.empty() ? nullptr : &display.glyph_reaches};
   if (request.loading == picture::Loading::kWait)
     return residency.prepare_complete(scene.viewed(), parameters, preemption);
   if (request.viewer == 0) return residency.prepare_resident(scene.viewed(), parameters, {}, {});
@@ -243,11 +278,12 @@ Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const pict
                                                   picture::Image& image) {
   Variant variant = variant_of(scene.model().info(), display, request);
   if (!scene.has_surfaces()) variant.eye_dome = variant.silhouettes = false;
+  if (scene.has_gaussians() || scene.has_glyphs()) variant.eye_dome = false;
   // Harmonics of higher degrees cost as much as all else of a projection, and change little from picture to picture.
   if (request.rest_spacing) variant.harmonics = 1;
   variant.silhouettes &= view.nothing_pending;  // a picture that will soon be redrawn does not need supersampling
-  const bool layered = scene.mixes_volumes();
-  const int margin = variant.eye_dome || variant.silhouettes || layered ? kNeighbourMargin : 0;
+  const bool layered = scene.mixed() || scene.has_glyphs();  // many buffers for every pixel
+  const int margin = variant.eye_dome || variant.silhouettes || scene.mixed() ? kNeighbourMargin : 0;
   const size_t bytes = pixel_bytes(request.format);
   const model::ModelInfo& info = scene.model().info();
   RegionStats total;
@@ -264,7 +300,7 @@ Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const pict
                     frame,
                     region,
                     drawn,
-                    frame_constants(frame, drawn, request, info.oriented),
+                    frame_constants(frame, drawn, request, info.oriented && !variant.transparent),
                     variant,
                     &request,
                     display,
@@ -272,7 +308,8 @@ Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const pict
                     list_entries};
     for (const uint32_t block :
          selection::blocks_in_rectangle(scene.viewed().tree, view.selection.draw, frame, drawn.x, drawn.y,
-                                        drawn.x + drawn.width, drawn.y + drawn.height)) {
+                                        drawn.x + drawn.width, drawn.y + drawn.height, sides_of(display),
+                                        display.glyph_reaches.empty() ? nullptr : &display.glyph_reaches)) {
       const geometry::Box& bounds = scene.model().tree().blocks()[block].bounds;
       task.blocks.push_back({&residency.pool().at({scene.model().id(), block}),
                              selection::radii_at_spacing(bounds, frame, request.spacing), scene.first_surfel(block),
@@ -280,7 +317,10 @@ Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const pict
     }
     const Region& written = variant.eye_dome ? region : drawn;
     pixels.resize(static_cast<size_t>(written.width) * static_cast<size_t>(written.height) * bytes);
-    const auto draw_kinds = has_gaussians(task) ? draw_gaussians : draw_region;
+    // Volumes are blended in the same way in all regions of a picture.
+    const bool among_gaussians = has_gaussians(task) || (scene.has_gaussians() && !bricks_of(task).empty());
+    const bool glyphs = has_ellipsoids(task) && bricks_of(task).empty();
+    const auto draw_kinds = among_gaussians ? draw_gaussians : (glyphs ? draw_ellipsoids : draw_region);
     const Result<std::optional<RegionStats>> stats = draw_kinds(task, programs, buffers[depth - 1], preemption, pixels);
     if (!stats) return fail(stats.error());
     if (!*stats) {
@@ -324,6 +364,10 @@ Result<picture::Frame> Renderer::State::draw(const std::shared_ptr<const model::
   if (display->volumes.points.empty() && !model->volumes().empty()) {
     display->volumes.points = preset_points(request.volumes.transfer, model->volumes().front());
   }
+  if (Status status = resolve_glyphs(model->ellipsoid_sources(), request, *display); !status) {
+    return fail(std::move(status.error()));
+  }
+  display->glyph_reaches = glyph_reaches(*model, request.glyphs);
   const Result<Scene*> found = scene_of(model);
   if (!found) return fail(found.error());
   Scene& scene = **found;

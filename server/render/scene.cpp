@@ -1,7 +1,6 @@
 #include "render/scene.h"
 
 #include <algorithm>
-#include <string>
 #include <utility>
 
 #include "model/fit_model.h"
@@ -10,19 +9,17 @@ namespace surfcast::render {
 
 Result<std::unique_ptr<Scene>> Scene::create(const std::shared_ptr<const model::ModelFile>& model,
                                              kinds::KindTable kinds) {
-  if (model->volumes().size() > 1) {
-    return fail(ErrorKind::kUnsupported, "the model has " + std::to_string(model->volumes().size()) +
-                                             " volumes, and a picture can show one; build a model of each");
-  }
   Result<std::vector<uint32_t>> numbers = kinds::find_kinds(*model, kinds);
   if (!numbers) return fail(std::move(numbers.error()));
   const auto drawn_as = [&](kinds::DrawnAs form) {
-    return std::ranges::count_if(*numbers, [&](uint32_t kind) { return kinds[kind]->drawn_as() == form; });
+    return std::ranges::any_of(*numbers, [&](uint32_t kind) { return kinds[kind]->drawn_as() == form; });
   };
   Kinds found;
-  found.surfaces = drawn_as(kinds::DrawnAs::kSurface) > 0;
-  const auto volumes = drawn_as(kinds::DrawnAs::kVolume);
-  found.mixes_volumes = volumes > 0 && static_cast<size_t>(volumes) < numbers->size();
+  found.surfaces = drawn_as(kinds::DrawnAs::kSurface);
+  found.gaussians = drawn_as(kinds::DrawnAs::kGaussians);
+  found.glyphs = drawn_as(kinds::DrawnAs::kGlyphs);
+  const bool volumes = drawn_as(kinds::DrawnAs::kVolume);
+  found.mixed = int{found.surfaces} + int{found.gaussians} + int{found.glyphs} + int{volumes} > 1;
   auto blocks = std::make_shared<const kinds::FileBlocks>(model, kinds, std::move(*numbers));
   return std::unique_ptr<Scene>(new Scene(model, std::move(blocks), found));
 }

@@ -38,8 +38,10 @@ class Scene {
   [[nodiscard]] uint32_t kind_of(uint32_t block) const { return blocks_->kind_of(block); }
   /// True if it has blocks of a kind that is drawn as surfaces.
   [[nodiscard]] bool has_surfaces() const { return kinds_.surfaces; }
-  /// True if the model has volumes and blocks of other kinds.
-  [[nodiscard]] bool mixes_volumes() const { return kinds_.mixes_volumes; }
+  /// True if the model has blocks that are drawn in several ways: surfaces are then kept in layers.
+  [[nodiscard]] bool mixed() const { return kinds_.mixed; }
+  [[nodiscard]] bool has_gaussians() const { return kinds_.gaussians; }
+  [[nodiscard]] bool has_glyphs() const { return kinds_.glyphs; }
   /// Number of surfels in the blocks before this one, modulo 2^32: the index of its first surfel in the model.
   [[nodiscard]] uint32_t first_surfel(uint32_t block) const { return first_surfels_[block]; }
   /// The requested camera, or one that shows the whole model.
@@ -51,7 +53,9 @@ class Scene {
  private:
   struct Kinds {
     bool surfaces = false;
-    bool mixes_volumes = false;
+    bool gaussians = false;
+    bool glyphs = false;
+    bool mixed = false;
   };
 
   Scene(std::shared_ptr<const model::ModelFile> model, std::shared_ptr<const kinds::FileBlocks> blocks,

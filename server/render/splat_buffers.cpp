@@ -50,4 +50,12 @@ void SplatBuffers::reserve_splats(size_t count, bool with_normals) {
   if (with_normals) normals.reserve(std::max(count, discs.texels()), lazy);
 }
 
+void bind_frame(const SplatBuffers& buffers) {
+  buffers.frame.bind_uniforms(SURFCAST_BIND_FRAME);
+  buffers.counters.bind(SURFCAST_BIND_COUNTERS);
+  buffers.tile_count.bind(SURFCAST_BIND_TILE_COUNT);
+  buffers.tile_offset.bind(SURFCAST_BIND_TILE_OFFSET);
+  buffers.tile_order.bind(SURFCAST_BIND_TILE_ORDER);
+}
+
 }  // namespace surfcast::render

@@ -70,6 +70,29 @@ struct GaussianBuffers {
   TexelBuffer keys{"depths and tiles of Gaussians", GL_RGBA32UI, 16};
   TexelBuffer lists{"lists of Gaussians", GL_R32UI, 4, GL_DYNAMIC_STORAGE_BIT};
   StorageBuffer tiles{"tiles of Gaussians"};
+  StorageBuffer layers{"Gaussians for volumes"};
+};
+
+/// The buffers between the passes of ellipsoids (ellipsoid_passes.h).
+struct EllipsoidBuffers {
+  BatchSizer project_batches;
+  BatchSizer nearest_batches;
+  BatchSizer shade_batches;
+  BatchSizer row_batches;
+  BatchSizer column_batches;
+  TexelBuffer records{"ellipsoids", GL_RGBA32UI, 16};
+  TexelBuffer keys{"depths and tiles of ellipsoids", GL_RGBA32UI, 16};
+  TexelBuffer lists{"lists of ellipsoids", GL_R32UI, 4, GL_DYNAMIC_STORAGE_BIT};
+  StorageBuffer tiles{"tiles of ellipsoids"};
+  StorageBuffer frame{"frame of samples"};
+  StorageBuffer views{"views of blocks of ellipsoids"};
+  StorageBuffer ranges{"thresholds and layers"};
+  StorageBuffer lighting{"lighting"};
+  StorageBuffer lights{"lights"};
+  StorageBuffer ids{"ellipsoids of samples"};
+  StorageBuffer depths{"depths of samples"};
+  StorageBuffer shades{"light of samples"};
+  StorageBuffer rows{"filtered rows of samples"};
 };
 
 /// The buffers between the passes of one region, and the batch sizes of the passes.
@@ -107,6 +130,7 @@ struct SplatBuffers {
   StorageBuffer block_displays{"display options of blocks"};
   StorageBuffer clips{"clip ranges"};
   StorageBuffer display{"display constants"};
+  StorageBuffer through{"opacities of ghosts and classes"};
   StorageBuffer light{"light before eye-dome lighting"};
   StorageBuffer depth{"depth"};
   StorageBuffer eye_dome{"eye-dome constants"};
@@ -114,6 +138,7 @@ struct SplatBuffers {
   StorageBuffer silhouettes{"silhouettes"};
   VolumeBuffers volume;
   GaussianBuffers gaussians;
+  EllipsoidBuffers ellipsoids;
   /// Buffers use lazily committed memory, where only written pages count. Then there may be room for all surfels of a
   /// view from the beginning.
   bool lazy = false;
@@ -122,5 +147,8 @@ struct SplatBuffers {
   void reserve_splats(size_t count, bool with_normals);
   [[nodiscard]] size_t splat_capacity() const { return discs.texels(); }
 };
+
+/// Binds the buffers that every pass uses.
+void bind_frame(const SplatBuffers& buffers);
 
 }  // namespace surfcast::render

@@ -1,7 +1,6 @@
 #include "render/transfer_function.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <glm/common.hpp>
 
@@ -11,7 +10,8 @@
 namespace surfcast::render {
 namespace {
 
-constexpr double kOpaqueDepth = 16;  ///< optical depth of one spacing at opacity 1: a transmittance of 1e-7
+constexpr double kOpaqueDepth = 16;    ///< optical depth of one spacing at opacity 1: a transmittance of 1e-7
+constexpr double kLargestDepth = 256;  ///< of one spacing
 /// Of a sum over all bins. Differences of sums must fit in 31 bits.
 constexpr double kLargestSum = 2147480000;
 
@@ -19,8 +19,11 @@ double linear_from_srgb(double code) {
   return code <= 0.04045 ? code / 12.92 : std::pow((code + 0.055) / 1.055, 2.4);
 }
 
-glm::dvec3 linear_from_srgb(const glm::dvec3& color) {
-  return {linear_from_srgb(color.x), linear_from_srgb(color.y), linear_from_srgb(color.z)};
+/// Optical depth of one spacing. `opacity`: factor of the opacity of a spacing.
+double depth_of(const picture::TransferPoint& point, double spacing, double opacity) {
+  if (point.extinction && opacity == 1) return std::min(*point.extinction * spacing, kLargestDepth);
+  const double own = point.extinction ? -std::expm1(-*point.extinction * spacing) : std::min(point.opacity, 1.0);
+  return std::min(-std::log1p(-opacity * own), kOpaqueDepth);
 }
 
 /// The sums of the bins before each bin, and of all, in integers of `units`.
@@ -36,43 +39,49 @@ std::vector<glm::uvec4> rounded_sums(const std::vector<glm::dvec4>& bins, const 
 
 }  // namespace
 
-TransferFunction::TransferFunction(std::span<const picture::TransferPoint> points, double spacing) : spacing_(spacing) {
-  SURFCAST_EXPECTS(spacing > 0);
-  for (const picture::TransferPoint& p : points) points_.push_back({p.value, linear_from_srgb(p.color), p.opacity});
-  std::ranges::stable_sort(points_, {}, &Point::value);
+glm::dvec3 linear_from_srgb(const glm::dvec3& color) {
+  return {linear_from_srgb(color.x), linear_from_srgb(color.y), linear_from_srgb(color.z)};
 }
 
-Classified TransferFunction::classified(const glm::dvec3& color, double opacity) const {
-  return {color, std::min(-std::log1p(-std::min(opacity, 1.0)), kOpaqueDepth) / spacing_};
+std::vector<picture::TransferPoint> sorted_points(std::span<const picture::TransferPoint> points) {
+  std::vector<picture::TransferPoint> sorted(points.begin(), points.end());
+  std::ranges::stable_sort(sorted, {}, &picture::TransferPoint::value);
+  return sorted;
+}
+
+TransferFunction::TransferFunction(std::span<const picture::TransferPoint> points, double spacing, double opacity) {
+  SURFCAST_EXPECTS(spacing > 0 && opacity >= 0 && opacity <= 1);
+  points_.reserve(points.size());
+  for (const picture::TransferPoint& p : sorted_points(points)) {
+    points_.push_back({p.value, {linear_from_srgb(p.color), depth_of(p, spacing, opacity) / spacing}});
+  }
 }
 
 Classified TransferFunction::at(double value) const {
   if (points_.empty()) return {};
   const auto above = std::ranges::upper_bound(points_, value, {}, &Point::value);
-  if (above == points_.begin()) return classified(above->color, above->opacity);
+  if (above == points_.begin()) return above->seen;
   const Point& below = *(above - 1);
-  if (above == points_.end()) return classified(below.color, below.opacity);
+  if (above == points_.end()) return below.seen;
   const double part = (value - below.value) / (above->value - below.value);
-  return classified(glm::mix(below.color, above->color, part), std::lerp(below.opacity, above->opacity, part));
+  return {glm::mix(below.seen.color, above->seen.color, part),
+          std::lerp(below.seen.extinction, above->seen.extinction, part)};
 }
 
 bool TransferFunction::visible_within(double low, double high) const {
   const auto first = std::ranges::lower_bound(points_, low, {}, &Point::value);
-  const auto seen = [&](const Point& p) { return p.value <= high && p.opacity > 0; };
+  const auto seen = [&](const Point& p) { return p.value <= high && p.seen.extinction > 0; };
   return at(low).extinction > 0 || at(high).extinction > 0 || std::any_of(first, points_.end(), seen);
 }
 
 glm::dvec4 TransferFunction::smooth_integral(double low, double high) const {
-  // Gauss and Legendre, four places.
-  constexpr std::array<double, 2> kPlaces{0.33998104358485626, 0.86113631159405258};
-  constexpr std::array<double, 2> kWeights{0.65214515486254614, 0.34785484513745386};
+  // Two places of Gauss and Legendre: exact for colour times extinction, a polynomial of degree 2.
+  constexpr double kPlace = 0.57735026918962576;
   const double half = 0.5 * (high - low);
   glm::dvec4 sum(0);
-  for (size_t i = 0; i < kPlaces.size(); ++i) {
-    for (const double side : {-1.0, 1.0}) {
-      const Classified seen = at(low + half * (1 + side * kPlaces.at(i)));
-      sum += half * kWeights.at(i) * glm::dvec4(seen.extinction * seen.color, seen.extinction);
-    }
+  for (const double side : {-1.0, 1.0}) {
+    const Classified seen = at(low + half * (1 + side * kPlace));
+    sum += half * glm::dvec4(seen.extinction * seen.color, seen.extinction);
   }
   return sum;
 }
@@ -98,7 +107,7 @@ TransferTable TransferFunction::table() const {
   const auto density = [](const Classified& c) { return glm::dvec4(c.extinction * c.color, c.extinction); };
   const double width = points_.back().value - points_.front().value;
   table.first = points_.front().value;
-  std::vector<glm::dvec4> bins{density(classified(points_.front().color, points_.front().opacity))};
+  std::vector<glm::dvec4> bins{density(points_.front().seen)};
   if (width > 0) {
     table.bins_per_value = SURFCAST_TRANSFER_BINS / width;
     const auto edge = [&](int bin) { return table.first + width * bin / SURFCAST_TRANSFER_BINS; };

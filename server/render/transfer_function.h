@@ -26,12 +26,19 @@ struct TransferTable {
   double color_unit = 0;
 };
 
-/// Colour and extinction over the values of one volume. Opacities refer to a grid spacing: the extinction is
-/// -ln(1 - opacity) / spacing, at most 16 / spacing, so that the opacity 1 stays finite.
+/// Linear light of an sRGB colour, components from 0 to 1.
+glm::dvec3 linear_from_srgb(const glm::dvec3& color);
+
+/// The points in ascending order of their values; those of one value as they were.
+std::vector<picture::TransferPoint> sorted_points(std::span<const picture::TransferPoint> points);
+
+/// Colour and extinction over the values of one volume, both linear between points. Opacities refer to a grid spacing:
+/// the extinction is -ln(1 - opacity) / spacing, at most 16 / spacing, so that the opacity 1 stays finite. A stated
+/// extinction is at most 256 / spacing, so that sums keep their digits where little is seen.
 class TransferFunction {
  public:
-  /// `spacing`: world units, above 0.
-  TransferFunction(std::span<const picture::TransferPoint> points, double spacing);
+  /// `spacing`: world units, above 0. `opacity`: from 0 to 1, factor of the opacities of one spacing.
+  TransferFunction(std::span<const picture::TransferPoint> points, double spacing, double opacity = 1);
 
   [[nodiscard]] Classified at(double value) const;
   /// True if any value in [low, high] has an opacity. Exact.
@@ -41,16 +48,13 @@ class TransferFunction {
  private:
   struct Point {
     double value;
-    glm::dvec3 color;  ///< linear light
-    double opacity;
+    Classified seen;
   };
-  [[nodiscard]] Classified classified(const glm::dvec3& color, double opacity) const;
   /// Integral over the values from `low` to `high`, between which no point lies.
   [[nodiscard]] glm::dvec4 smooth_integral(double low, double high) const;
   [[nodiscard]] glm::dvec4 integral(double low, double high) const;
 
   std::vector<Point> points_;
-  double spacing_;
 };
 
 }  // namespace surfcast::render

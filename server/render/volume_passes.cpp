@@ -1,24 +1,38 @@
 #include "render/volume_passes.h"
 
 #include <algorithm>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "base/contract.h"
 #include "render/batched_dispatch.h"
+#include "render/join_plans.h"
 
 namespace surfcast::render {
 namespace {
 
-void upload_plan(const RegionTask& task, const VolumePlan& plan, SplatBuffers& buffers) {
+void upload_plan(const RegionTask& task, const JoinedPlan& joined, SplatBuffers& buffers) {
+  const VolumePlan& plan = joined.tables;
+  std::vector<layout::VolumeConstants> constants = joined.constants;
+  constants.resize(room_for_volumes(constants.size()));
   upload_uniforms(buffers.frame, task.constants);
-  upload_uniforms(buffers.volume.constants, plan.constants);
+  upload(buffers.volume.constants, constants);
   upload(buffers.volume.clips, plan.clips);
   buffers.volume.bricks.upload(plan.bricks);
   buffers.volume.cells.upload(plan.cells);
+  buffers.volume.seen.upload(plan.seen);
   buffers.volume.pages.upload(plan.pages);
   buffers.volume.transfer.upload(plan.transfer);
+  if (task.variant.volume_surfaces) {
+    std::vector<layout::VolumeSurfaces> surfaces = joined.surfaces;
+    surfaces.resize(constants.size());
+    upload(buffers.volume.surfaces, surfaces);
+    buffers.volume.ramp.upload(plan.ramp);
+  }
   const size_t pixels = static_cast<size_t>(plan.constants.light.z) * static_cast<size_t>(plan.constants.light.w);
-  buffers.volume.light.reserve(pixels * sizeof(glm::vec4));
-  buffers.volume.rows.reserve(pixels * sizeof(glm::vec4));
+  buffers.volume.light.reserve(pixels);
+  buffers.volume.rows.reserve(pixels);
   if (task.variant.layered) buffers.volume.surface_light.reserve(pixels * sizeof(glm::vec4));
 }
 
@@ -28,17 +42,44 @@ void bind(const RegionTask& task, const SplatBuffers& buffers, const gl::Program
   buffers.volume.bricks.bind(SURFCAST_UNIT_BRICKS);
   buffers.volume.clips.bind(SURFCAST_BIND_VOLUME_CLIPS);
   buffers.volume.light.bind(SURFCAST_BIND_VOLUME_LIGHT);
+  buffers.volume.light.bind_texels(SURFCAST_UNIT_VOLUME_LIGHT);
   buffers.volume.rows.bind(SURFCAST_BIND_VOLUME_ROWS);
+  buffers.volume.rows.bind_texels(SURFCAST_UNIT_VOLUME_ROWS);
   if (task.variant.layered) {
-    buffers.volume.layers.bind(SURFCAST_BIND_LAYERS);
+    (task.variant.codes ? buffers.gaussians.layers : buffers.volume.layers).bind(SURFCAST_BIND_LAYERS);
     buffers.volume.surface_light.bind(SURFCAST_BIND_SURFACE_LIGHT);
+  }
+  if (task.variant.volume_surfaces) {
+    buffers.volume.surfaces.bind_uniforms(SURFCAST_BIND_VOLUME_SURFACES);
+    buffers.volume.ramp.bind(SURFCAST_UNIT_RAMP);
   }
   buffers.picture.bind(SURFCAST_BIND_PICTURE);
   buffers.volume.cells.bind(SURFCAST_UNIT_CELLS);
+  buffers.volume.seen.bind(SURFCAST_UNIT_SEEN);
   buffers.volume.pages.bind(SURFCAST_UNIT_PAGES);
   buffers.volume.transfer.bind(SURFCAST_UNIT_TRANSFER);
   task.surfels->bind(SURFCAST_UNIT_SURFELS);
   glUseProgram(program.name());
+}
+
+/// The plans of all volumes of a region.
+JoinedPlan plan_volumes(const RegionTask& task, const Region& written, double depth_unit,
+                        std::span<const VisibleBrick> bricks) {
+  std::vector<VolumePlan> plans;
+  for (const std::vector<VisibleBrick>& own : by_volume(bricks)) {
+    plans.push_back(plan_volume(own, task.display.volumes, task.frame, written));
+    plans.back().constants.transfer.w = static_cast<float>(depth_unit);
+  }
+  return join_plans(std::move(plans));
+}
+
+/// Fails if the device has no room for the constants of so many volumes.
+Status check_number(size_t volumes) {
+  GLint most = 0;
+  glGetIntegerv(GL_MAX_UNIFORM_BLOCK_SIZE, &most);
+  constexpr size_t kLargest = std::max(sizeof(layout::VolumeConstants), sizeof(layout::VolumeSurfaces));
+  if (room_for_volumes(volumes) * kLargest <= static_cast<size_t>(most)) return {};
+  return fail(ErrorKind::kLimit, "more volumes in view than the device can draw: " + std::to_string(volumes));
 }
 
 }  // namespace
@@ -58,15 +99,15 @@ Status draw_volumes(const RegionTask& task, const Region& written, double depth_
                     std::span<const VisibleBrick> bricks, Programs& programs, SplatBuffers& buffers,
                     const Preemption& preemption) {
   const gl::DebugGroup group("volumes");
-  Result<VolumePrograms> compiled = programs.volumes(task.variant);
+  const JoinedPlan plan = plan_volumes(task, written, depth_unit, bricks);
+  if (Status status = check_number(plan.constants.size()); !status) return status;
+  Result<VolumePrograms> compiled = programs.volumes(task.variant, room_for_volumes(plan.constants.size()));
   if (!compiled) return fail(std::move(compiled.error()));
-  VolumePlan plan = plan_volume(bricks, task.display.volumes, task.frame, written);
-  plan.constants.transfer.w = static_cast<float>(depth_unit);
   upload_plan(task, plan, buffers);
   const auto dispatch = [&](const gl::Program* program, int width, int height, BatchSizer& sizer) {
     return dispatch_in_batches(all_pixels(width, height), sizer, preemption, [&] { bind(task, buffers, *program); });
   };
-  const glm::ivec4 light = plan.constants.light;
+  const glm::ivec4 light = plan.tables.constants.light;
   Status status = dispatch(compiled->draw, light.z, light.w, buffers.volume.draw_batches);
   if (status) status = dispatch(compiled->filter_rows, written.width, light.w, buffers.volume.row_batches);
   if (status) status = dispatch(compiled->filter_columns, written.width, written.height, buffers.volume.column_batches);

@@ -10,8 +10,9 @@
 #include "geometry/camera.h"
 #include "geometry/clip.h"
 #include "kinds/brick_block.h"
-#include "picture/transfer.h"
+#include "picture/picture.h"
 #include "render/region.h"
+#include "render/transfer_function.h"
 #include "residency/surfel_pool.h"
 #include "shared/volume_layout.h"
 
@@ -28,9 +29,12 @@ struct VolumePlan {
   layout::VolumeConstants constants{};
   std::vector<layout::BrickView> bricks;
   std::vector<uint32_t> cells;  ///< see SURFCAST_UNIT_CELLS
+  std::vector<uint32_t> seen;   ///< see SURFCAST_UNIT_SEEN
   std::vector<uint32_t> pages;  ///< see SURFCAST_UNIT_PAGES
   std::vector<layout::VolumeClip> clips;
   std::vector<glm::uvec4> transfer;  ///< see TransferTable::sums
+  layout::VolumeSurfaces surfaces{};
+  std::vector<glm::vec4> ramp;  ///< see SURFCAST_UNIT_RAMP; for slices only
 };
 
 /// How volumes are drawn in one picture.
@@ -39,7 +43,18 @@ struct VolumeLook {
   geometry::Clip clip;
   std::optional<double> spacing{};  ///< see Transfer::spacing
   double step = 1;                  ///< between places on a ray, in samples of a brick's level
+  bool medium = true;               ///< what the transfer function shows is drawn
+  double opacity = 1;               ///< see PictureRequest::opacity
+  bool unlit = false;               ///< iso-surfaces are not lit
+  std::vector<picture::IsoSurface> isos{};
+  std::vector<picture::Slice> slices{};
+
+  /// The transfer function as it is drawn: transparent without the medium. `grid_spacing`: world units.
+  [[nodiscard]] TransferFunction medium_function(double grid_spacing) const;
 };
+
+/// How the volumes of a picture are drawn; without points if it names a preset.
+VolumeLook look_of(const picture::PictureRequest& request);
 
 /// The world's part of a volume: from the first to the last sample along every axis.
 struct VolumePlace {

@@ -57,7 +57,7 @@ struct PackedBlock {
   PackedLattice lattice;           ///< contains the centres of all items
   std::vector<glm::uvec4> texels;  ///< at most kMaxPackedPerSurfel per item
   std::vector<uint32_t>
-      attributes;  ///< for each texel 16 bits of intensity and 8 of classification; empty if not requested
+      attributes;  ///< for each texel intensity (16 bits), classification and opacity (8); empty if not requested
   LinearScale intensity;
   std::shared_ptr<const BlockHeader> header;
 

@@ -11,8 +11,11 @@
 
 #include "base/contract.h"
 #include "geometry/morton.h"
+#include "shared/frame_layout.h"
 #include "shared/surfel_layout.h"
+#include "surfel/curvature.h"
 #include "surfel/drawn_radius.h"
+#include "surfel/opacity.h"
 #include "surfel/srgb.h"
 
 namespace surfcast::residency {
@@ -206,21 +209,97 @@ LogScale log_scale_of(std::span<const MergedSurfel> surfels, float MergedSurfel:
 
 }  // namespace
 
+namespace {
+
+/// The texel of a surfel of a block with these scales.
+class TexelPacker {
+ public:
+  TexelPacker(const PackedSurfels& packed, bool colored)
+      : packed_(packed), colored_(colored), code_of_(packed.lattice) {}
+  [[nodiscard]] glm::uvec4 operator()(const MergedSurfel& s) const {
+    return pack_surfel(code_of_(s.position), normal_code(s.normal), packed_.radius.code(s.radius),
+                       packed_.weight.code(s.weight), colored_ ? code_of_linear(s.light) : 0);
+  }
+
+ private:
+  const PackedSurfels& packed_;
+  bool colored_;
+  CodeFinder code_of_;
+};
+
+/// The second texel of a surfel. `ratio`: of the drawn radius to the stored one, to which the code is relative.
+glm::uvec4 pack_curvature(const surfel::CurvatureCode& code, float ratio) {
+  static_assert(surfel::kCurvatureSteps == SURFCAST_CURVATURE_STEPS);
+  static_assert(surfel::kBorderSteps == SURFCAST_BORDER_STEPS);
+  uint32_t bits = 0;
+  for (size_t i = 0; i < 3; ++i) {
+    const int step = static_cast<int>(std::lround(static_cast<float>(code.at(i)) * ratio));
+    bits |= static_cast<uint32_t>(step + SURFCAST_CURVATURE_STEPS) << (10 * i);
+  }
+  return {bits, static_cast<uint32_t>(code[3]), 0, 0};
+}
+
+/// A run of surfels with two texels each, with the radii of its chunks.
+PackedRun curved_run(std::span<const MergedSurfel> surfels, size_t first) {
+  PackedRun run;
+  run.first = static_cast<uint32_t>(2 * first);
+  run.count = static_cast<uint32_t>(2 * surfels.size());
+  run.scatter = surfels.front().scatter;
+  constexpr size_t kPerChunk = SURFCAST_CHUNK / 2;
+  for (size_t i = 0; i < surfels.size(); i += kPerChunk) {
+    const auto chunk = surfels.subspan(i, std::min(kPerChunk, surfels.size() - i));
+    const auto [least, most] = std::minmax_element(chunk.begin(), chunk.end(),
+                                                   [](const auto& a, const auto& b) { return a.radius < b.radius; });
+    run.chunks.push_back({least->radius, most->radius});
+  }
+  return run;
+}
+
+/// Discs and scatter have runs of their own.
+std::vector<PackedRun> curved_runs(std::span<const MergedSurfel> surfels) {
+  const auto scatter = std::find_if(surfels.begin(), surfels.end(), [](const auto& s) { return s.scatter; });
+  const auto discs = static_cast<size_t>(scatter - surfels.begin());
+  std::vector<PackedRun> runs;
+  if (discs > 0) runs.push_back(curved_run(surfels.first(discs), 0));
+  if (discs < surfels.size()) runs.push_back(curved_run(surfels.subspan(discs), discs));
+  return runs;
+}
+
+void pack_curved(const model::DecodedBlock& block, const surfel::CurvatureColumns& curvature,
+                 std::vector<MergedSurfel> surfels, PackedSurfels& packed) {
+  std::stable_partition(surfels.begin(), surfels.end(), [](const auto& s) { return !s.scatter; });
+  packed.curved = true;
+  packed.radius = log_scale_of(surfels, &MergedSurfel::radius);
+  packed.weight = log_scale_of(surfels, &MergedSurfel::weight);
+  const TexelPacker texel(packed, !block.colors.empty());
+  for (const MergedSurfel& s : surfels) {
+    packed.surfels.push_back(texel(s));
+    packed.surfels.push_back(pack_curvature(curvature.at(s.representative), s.radius / block.radii[s.representative]));
+    packed.representatives.insert(packed.representatives.end(), 2, s.representative);
+  }
+  packed.runs = curved_runs(surfels);
+}
+
+}  // namespace
+
 PackedSurfels pack_block(const model::DecodedBlock& block, int color_bits, bool oriented) {
   SURFCAST_EXPECTS(block.size() > 0);
   PackedSurfels packed;
   packed.lattice = packed_lattice(block);
-  SurfelSequence sequence = merge_levels(surfels_of(block, color_bits, packed.lattice), oriented);
+  std::vector<MergedSurfel> surfels = surfels_of(block, color_bits, packed.lattice);
+  if (const surfel::CurvatureColumns curvature(block.scalars); !curvature.empty()) {
+    pack_curved(block, curvature, std::move(surfels), packed);
+    return packed;
+  }
+  SurfelSequence sequence = merge_levels(std::move(surfels), oriented);
   packed.radius = log_scale_of(sequence.surfels, &MergedSurfel::radius);
   packed.weight = log_scale_of(sequence.surfels, &MergedSurfel::weight);
-  const CodeFinder code_of(packed.lattice);
+  const TexelPacker texel(packed, !block.colors.empty());
   packed.surfels.reserve(sequence.surfels.size());
   packed.representatives.reserve(sequence.surfels.size());
   for (const MergedSurfel& s : sequence.surfels) {
     packed.representatives.push_back(s.representative);
-    packed.surfels.push_back(pack_surfel(code_of(s.position), normal_code(s.normal), packed.radius.code(s.radius),
-                                         packed.weight.code(s.weight),
-                                         block.colors.empty() ? 0 : code_of_linear(s.light)));
+    packed.surfels.push_back(texel(s));
   }
   packed.runs = std::move(sequence.runs);
   return packed;
@@ -260,16 +339,33 @@ uint32_t class_code(double value) {
   return std::isnan(value) ? 0 : static_cast<uint32_t>(std::lround(std::clamp(value, 0.0, 255.0)));
 }
 
+constexpr uint32_t kFullOpacity = 255;
+
+/// The opacities of the block's surfels, of kFullOpacity; empty without.
+std::vector<uint32_t> opacity_codes(const model::DecodedBlock& block) {
+  std::vector<uint32_t> codes;
+  for (const surfel::ScalarAttribute& scalar : block.scalars) {
+    if (scalar.name != surfel::kOpacityAttribute) continue;
+    for (size_t i = 0; i < block.size(); ++i) {
+      codes.push_back(static_cast<uint32_t>(std::lround(kFullOpacity * surfel::opacity_at(scalar.values, i))));
+    }
+  }
+  return codes;
+}
+
 }  // namespace
 
 void pack_attributes(const model::DecodedBlock& block, PackedSurfels& packed) {
   const std::vector<double> intensities = scalar_values(block, "intensity");
   const std::vector<double> classes = scalar_values(block, "classification");
+  const std::vector<uint32_t> opacities = opacity_codes(block);
   packed.intensity = scale_of(intensities);
   packed.attributes.reserve(packed.surfels.size());
   for (const uint32_t i : packed.representatives) {
     const uint32_t intensity = intensities.empty() ? 0 : intensity_code(intensities[i], packed.intensity);
-    packed.attributes.push_back(intensity | (classes.empty() ? 0 : class_code(classes[i]) << 16));
+    const uint32_t code = classes.empty() ? 0 : class_code(classes[i]);
+    const uint32_t opacity = opacities.empty() ? kFullOpacity : opacities[i];
+    packed.attributes.push_back(intensity | (code << 16) | (opacity << 24));
   }
 }
 

@@ -24,18 +24,20 @@ struct LogScale {
 };
 
 /// A block of surfels in the format that the projection reads: 16 bytes per surfel (shaders/shared/surfel_layout.h).
-/// The surfels of the block are followed by levels of merged surfels (see SurfelSequence).
+/// The surfels of the block are followed by levels of merged surfels (see SurfelSequence). Surfels with curvature have
+/// 32 bytes and no merged levels.
 struct PackedSurfels {
   PackedLattice lattice;
   LogScale radius;  ///< world units
   LogScale weight;
+  bool curved = false;  ///< `surfels` has two texels for each surfel, counted as two in `runs`
   std::vector<glm::uvec4> surfels;
   /// For each of `surfels`, the index of the surfel of the block whose attributes it has.
   std::vector<uint32_t> representatives;
   std::vector<PackedRun> runs;
 
-  /// For each of `surfels`, 16 bits of intensity, then 8 of classification; 0 for an attribute that the block lacks.
-  /// Empty if not requested.
+  /// For each of `surfels`, 16 bits of intensity, then 8 of classification and 8 of opacity. Of a block that lacks
+  /// them, intensity and classification are 0, and opacities 255. Empty if not requested.
   std::vector<uint32_t> attributes;
   LinearScale intensity;
 };

@@ -30,6 +30,9 @@ struct ViewParameters {
   bool moving = false;  ///< another picture follows soon, so the upload of blocks must not delay this one
   const std::vector<bool>* hidden = nullptr;  ///< see SelectionCriteria; outlives the preparation
   std::optional<double> rest_spacing{};       ///< value of `spacing` at rest, if the camera stops here
+  selection::Sides sides = selection::Sides::kFront;
+  std::optional<double> ghost_spacing{};         ///< see SelectionCriteria
+  const std::vector<double>* reaches = nullptr;  ///< see SelectionCriteria; outlives the preparation
 };
 
 /// The blocks that a picture is drawn from, and the cost of making them resident.

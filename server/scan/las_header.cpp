@@ -5,6 +5,7 @@
 #include <optional>
 #include <string_view>
 
+#include "base/invalid_input.h"
 #include "scan/text_tokens.h"
 
 namespace surfcast::scan {
@@ -13,14 +14,10 @@ namespace {
 using Bytes = std::span<const std::byte>;
 
 // Offsets in the public header block: LAS 1.4 specification, table 3.
-constexpr size_t kHeaderSize = 227;  // LAS 1.0 to 1.2, the smallest
-constexpr size_t kHeaderSize14 = 375;
+constexpr size_t kHeaderSize = 227;        // LAS 1.0 to 1.2, the smallest
+constexpr size_t kHeaderSize14 = 375;      // the first fields of 1.5, too
 constexpr size_t kRecordHeaderSize = 54;   // of a variable length record
 constexpr uint8_t kCompressedBits = 0xC0;  // set in the point format by LASzip
-
-tl::unexpected<Error> invalid(std::string what) {
-  return fail(ErrorKind::kInvalidInput, std::move(what));
-}
 
 uint64_t point_count(Bytes bytes, int minor_version) {
   const auto legacy = load<uint32_t>(&bytes[107]);
@@ -37,17 +34,19 @@ bool usable_grid(const surfel::Grid& grid) {
 }
 
 Status check_sizes(Bytes bytes, const LasHeader& header) {
-  if (header.data_offset < load<uint16_t>(&bytes[94])) return invalid("LAS points are said to begin in the header");
-  if (header.data_offset > bytes.size()) return invalid("truncated: the LAS points begin beyond the end of the file");
+  if (header.data_offset < load<uint16_t>(&bytes[94]))
+    return invalid_input("LAS points are said to begin in the header");
+  if (header.data_offset > bytes.size())
+    return invalid_input("truncated: the LAS points begin beyond the end of the file");
   if (header.record_length < las_record_length(header.point_format)) {
-    return invalid("LAS point records of " + std::to_string(header.record_length) +
-                   " bytes are too short for point format " + std::to_string(header.point_format));
+    return invalid_input("LAS point records of " + std::to_string(header.record_length) +
+                         " bytes are too short for point format " + std::to_string(header.point_format));
   }
   if (header.compressed) return {};
   const uint64_t there = (bytes.size() - header.data_offset) / header.record_length;
   if (header.count > there) {
-    return invalid("truncated: the header states " + std::to_string(header.count) + " points, the file holds " +
-                   std::to_string(there));
+    return invalid_input("truncated: the header states " + std::to_string(header.count) + " points, the file holds " +
+                         std::to_string(there));
   }
   return {};
 }
@@ -111,6 +110,43 @@ void for_each_variable_record(Bytes bytes, size_t data_offset, const Use& use) {
   }
 }
 
+/// A text without the padding behind it. Some writers store two quotes for no text.
+std::string stored_text(Bytes body) {
+  const std::string_view text = as_text(body);
+  const std::string_view stored = text.substr(0, text.find('\0'));
+  return stored == "\"\"" ? std::string() : std::string(stored);
+}
+
+/// The code of the coordinate system in a GeoKey directory (OGC 19-008r4): projected, or else geographic. Codes that
+/// other records define count as none.
+std::string system_of_geo_keys(Bytes body) {
+  constexpr uint16_t kGeographic = 2048;
+  constexpr uint16_t kProjected = 3072;
+  constexpr uint16_t kUserDefined = 32767;
+  uint16_t geographic = 0;
+  uint16_t projected = 0;
+  for (size_t at = 8; at + 8 <= body.size(); at += 8) {  // behind the header: key, place, count, value
+    const auto key = load<uint16_t>(&body[at]);
+    const auto value = load<uint16_t>(&body[at + 6]);
+    if (load<uint16_t>(&body[at + 2]) != 0 || value == 0 || value == kUserDefined) continue;
+    if (key == kGeographic) geographic = value;
+    if (key == kProjected) projected = value;
+  }
+  const uint16_t code = projected != 0 ? projected : geographic;
+  return code == 0 ? std::string() : "EPSG:" + std::to_string(code);
+}
+
+/// WKT wins over GeoKeys, whatever the header says which of them there is.
+void take_projection(uint16_t id, Bytes body, LasHeader& header) {
+  constexpr uint16_t kWkt = 2112;
+  constexpr uint16_t kGeoKeys = 34735;
+  std::string system = id == kWkt ? stored_text(body) : id == kGeoKeys ? system_of_geo_keys(body) : std::string();
+  if (system.empty() || (id == kGeoKeys && !header.crs.empty())) return;
+  header.crs = std::move(system);
+}
+
+constexpr std::string_view kCopcUser{"copc\0\0\0\0\0\0\0\0\0\0\0\0", 16};
+
 /// Only the first record of each kind counts.
 void parse_variable_records(Bytes bytes, LasHeader& header) {
   bool has_extra_fields = false;
@@ -119,6 +155,8 @@ void parse_variable_records(Bytes bytes, LasHeader& header) {
       parse_extra_fields(body, header);
       has_extra_fields = true;
     }
+    if (user.starts_with("LASF_Projection")) take_projection(id, body, header);
+    if (id == 1 && user == kCopcUser && header.copc_record.empty()) header.copc_record = body;
     if (id == 22204 && user.starts_with("laszip encoded") && header.laszip_record.empty()) header.laszip_record = body;
   });
 }
@@ -126,13 +164,13 @@ void parse_variable_records(Bytes bytes, LasHeader& header) {
 Status check_version(Bytes bytes) {
   const auto major = load<uint8_t>(&bytes[24]);
   const auto minor = load<uint8_t>(&bytes[25]);
-  if (major != 1 || minor > 4) {
+  if (major != 1 || minor > 5) {
     return fail(ErrorKind::kUnsupported,
                 "LAS version " + std::to_string(major) + "." + std::to_string(minor) + " is not supported");
   }
   const size_t size = load<uint16_t>(&bytes[94]);
-  if (size < (minor == 4 ? kHeaderSize14 : kHeaderSize)) return invalid("LAS header size is too small");
-  if (size > bytes.size()) return invalid("truncated: the file ends within its LAS header");
+  if (size < (minor >= 4 ? kHeaderSize14 : kHeaderSize)) return invalid_input("LAS header size is too small");
+  if (size > bytes.size()) return invalid_input("truncated: the file ends within its LAS header");
   return {};
 }
 
@@ -149,7 +187,7 @@ size_t las_record_length(int point_format) {
 }
 
 Result<LasHeader> parse_las_header(Bytes bytes) {
-  if (bytes.size() < kHeaderSize) return invalid("truncated: the file ends within its LAS header");
+  if (bytes.size() < kHeaderSize) return invalid_input("truncated: the file ends within its LAS header");
   if (Status status = check_version(bytes); !status) return fail(status.error());
   const auto stated_format = load<uint8_t>(&bytes[104]);
   LasHeader header;
@@ -164,9 +202,9 @@ Result<LasHeader> parse_las_header(Bytes bytes) {
     header.grid.scale[axis] = load<double>(&bytes[131 + 8 * static_cast<size_t>(axis)]);
     header.grid.offset[axis] = load<double>(&bytes[155 + 8 * static_cast<size_t>(axis)]);
   }
-  if (!usable_grid(header.grid)) return invalid("LAS scale or offset is not usable");
+  if (!usable_grid(header.grid)) return invalid_input("LAS scale or offset is not usable");
   if (Status status = check_sizes(bytes, header); !status) return fail(status.error());
-  if (header.count == 0) return invalid("has no points");
+  if (header.count == 0) return invalid_input("has no points");
   parse_variable_records(bytes, header);
   return header;
 }

@@ -27,10 +27,12 @@ struct LasHeader {
   int point_format = 0;  ///< 0 to 10
   bool compressed = false;
   std::span<const std::byte> laszip_record;  ///< a part of the file: the coding of compressed points
+  std::span<const std::byte> copc_record;    ///< a part of the file: where its hierarchy lies; empty if it is not COPC
   size_t record_length = 0;
   size_t data_offset = 0;
   uint64_t count = 0;
   surfel::Grid grid;
+  std::string crs;  ///< coordinate system: WKT, or "EPSG:code" of GeoKeys; empty without
   std::vector<LasExtraField> extra_fields;
 };
 

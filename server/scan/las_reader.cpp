@@ -52,11 +52,21 @@ struct OptionalOffsets {
   size_t gps_time;
   size_t color;
   size_t nir;
+  size_t wave_packet;
 };
 
-constexpr OptionalOffsets kOptionalOffsets[] = {{0, 0, 0},    {20, 0, 0},  {0, 20, 0},  {20, 28, 0},
-                                                {20, 0, 0},   {20, 28, 0}, {22, 0, 0},  {22, 30, 0},
-                                                {22, 30, 36}, {22, 0, 0},  {22, 30, 36}};
+/// Relative to the start of the wave packet (LAS 1.4, table 12).
+constexpr LasField kWavePacket[] = {{"wave_packet_index", 0, kU8},
+                                    {"wave_packet_offset", 1, ScalarType::kUint64},
+                                    {"wave_packet_size", 9, ScalarType::kUint32},
+                                    {"wave_return_location", 13, ScalarType::kFloat32},
+                                    {"wave_dx", 17, ScalarType::kFloat32},
+                                    {"wave_dy", 21, ScalarType::kFloat32},
+                                    {"wave_dz", 25, ScalarType::kFloat32}};
+
+constexpr OptionalOffsets kOptionalOffsets[] = {{0, 0, 0, 0},    {20, 0, 0, 0},   {0, 20, 0, 0},   {20, 28, 0, 0},
+                                                {20, 0, 0, 28},  {20, 28, 0, 34}, {22, 0, 0, 0},   {22, 30, 0, 0},
+                                                {22, 30, 36, 0}, {22, 0, 0, 30},  {22, 30, 36, 38}};
 
 std::vector<LasField> fields_of(int point_format) {
   std::vector<LasField> fields;
@@ -70,6 +80,11 @@ std::vector<LasField> fields_of(int point_format) {
     fields.push_back({"blue", offsets.color + 4, kU16});
   }
   if (offsets.nir != 0) fields.push_back({"nir", offsets.nir, kU16});
+  if (offsets.wave_packet == 0) return fields;
+  for (LasField field : kWavePacket) {
+    field.offset += offsets.wave_packet;
+    fields.push_back(field);
+  }
   return fields;
 }
 
@@ -113,9 +128,10 @@ void add_extra_field(const LasExtraField& field, const std::byte* records, size_
 class LasRows : public RowSource {
  public:
   LasRows(std::span<const std::byte> bytes, LasHeader header)
-      : first_(bytes.data() + header.data_offset), header_(std::move(header)), columns_(las_columns(header_)) {
-    traits_.grid = header_.grid;
-  }
+      : first_(bytes.data() + header.data_offset),
+        header_(std::move(header)),
+        traits_(las_traits(header_)),
+        columns_(las_columns(header_)) {}
 
   [[nodiscard]] const RowTraits& traits() const override { return traits_; }
   [[nodiscard]] const std::vector<ColumnInfo>& columns() const override { return columns_; }
@@ -133,6 +149,16 @@ class LasRows : public RowSource {
 };
 
 }  // namespace
+
+RowTraits las_traits(const LasHeader& header) {
+  RowTraits traits;
+  traits.grid = header.grid;
+  traits.crs = header.crs;
+  if (kOptionalOffsets[header.point_format].wave_packet != 0) {
+    traits.notes.emplace_back("the samples of its waveforms are not read");
+  }
+  return traits;
+}
 
 std::vector<ColumnInfo> las_columns(const LasHeader& header) {
   std::vector<ColumnInfo> columns;
@@ -157,10 +183,10 @@ PointTable las_table(const std::byte* records, size_t count, const LasHeader& he
   return table;
 }
 
-Result<std::unique_ptr<RowSource>> las_rows(std::span<const std::byte> bytes) {
+Result<std::unique_ptr<RowSource>> las_rows(std::span<const std::byte> bytes, const Selection& selection) {
   Result<LasHeader> header = parse_las_header(bytes);
   if (!header) return fail(std::move(header.error()));
-  if (header->compressed) return laz_rows(bytes, std::move(*header));
+  if (header->compressed) return laz_rows(bytes, std::move(*header), selection);
   return std::make_unique<LasRows>(bytes, std::move(*header));
 }
 

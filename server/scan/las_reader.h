@@ -8,14 +8,19 @@
 #include "base/result.h"
 #include "scan/las_header.h"
 #include "scan/row_source.h"
+#include "scan/selection.h"
 
 namespace surfcast::scan {
 
-/// Reads a LAS file (versions 1.0 to 1.4, point formats 0 to 10) or a LAZ file (point formats 0 to 3 and 6 to 8).
+/// Reads a LAS or LAZ file (versions 1.0 to 1.5, point formats 0 to 10).
 /// Positions are exact: the grid is the scale and offset of the file. A point format has room for attributes that the
 /// scanner may not have recorded, so an attribute that is zero everywhere is treated as absent. Colours have 16 bits
 /// unless no value exceeds 255.
-Result<std::unique_ptr<RowSource>> las_rows(std::span<const std::byte> bytes);
+/// Of a COPC file only the nodes that may have points of the selection are read.
+Result<std::unique_ptr<RowSource>> las_rows(std::span<const std::byte> bytes, const Selection& selection = {});
+
+/// What the header tells of the points as a whole.
+RowTraits las_traits(const LasHeader& header);
 
 /// The columns of point records with this header.
 std::vector<ColumnInfo> las_columns(const LasHeader& header);

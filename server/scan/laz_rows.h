@@ -7,10 +7,13 @@
 #include "base/result.h"
 #include "scan/las_header.h"
 #include "scan/row_source.h"
+#include "scan/selection.h"
 
 namespace surfcast::scan {
 
-/// The points of a LAZ file with a parsed header. Each chunk is one piece.
-Result<std::unique_ptr<RowSource>> laz_rows(std::span<const std::byte> bytes, LasHeader header);
+/// The points of a LAZ file with a parsed header. A piece is a chunk, or a slice of a larger one. If the selection has
+/// bounds and the file is COPC, only chunks that meet the bounds.
+Result<std::unique_ptr<RowSource>> laz_rows(std::span<const std::byte> bytes, LasHeader header,
+                                            const Selection& selection = {});
 
 }  // namespace surfcast::scan

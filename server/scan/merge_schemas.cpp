@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "scan/scalar_type.h"
+#include "surfel/opacity.h"
 
 namespace surfcast::scan {
 namespace {
@@ -73,8 +74,26 @@ surfel::ScalarValues convert(surfel::ScalarValues values, ScalarType type) {
   });
 }
 
-surfel::ScalarValues zeros(ScalarType type, size_t count) {
-  return with_type(type, [count](auto zero) { return surfel::ScalarValues(std::vector<decltype(zero)>(count, zero)); });
+/// Opacities in the unit of another type.
+surfel::ScalarValues convert_opacities(const surfel::ScalarValues& values, ScalarType type) {
+  return with_type(type, [&values](auto zero) {
+    using T = decltype(zero);
+    std::vector<T> to(surfel::value_count(values));
+    for (size_t i = 0; i < to.size(); ++i) {
+      to[i] = surfel::opacity_as<T>(surfel::opacity_at(values, i));
+    }
+    return surfel::ScalarValues(std::move(to));
+  });
+}
+
+/// What stands for an attribute that a scan lacks: full opacity, or 0.
+surfel::ScalarValues filling(const ScalarField& field, size_t count) {
+  return with_type(field.type, [&](auto zero) {
+    using T = decltype(zero);
+    const bool opacity = field.name == surfel::kOpacityAttribute;
+    const T value = opacity ? surfel::opacity_as<T>(1) : zero;
+    return surfel::ScalarValues(std::vector<T>(count, value));
+  });
 }
 
 void conform_scalars(const std::vector<ScalarField>& fields, ScanPoints& points) {
@@ -82,11 +101,13 @@ void conform_scalars(const std::vector<ScalarField>& fields, ScanPoints& points)
   for (const ScalarField& field : fields) {
     const auto own = find_named(points.scalars, field.name);
     if (own == points.scalars.end()) {
-      conformed.push_back({field.name, zeros(field.type, points.size())});
-    } else {
-      auto& values = points.scalars[static_cast<size_t>(own - points.scalars.begin())].values;
-      conformed.push_back({field.name, convert(std::move(values), field.type)});
+      conformed.push_back({field.name, filling(field, points.size())});
+      continue;
     }
+    auto& values = points.scalars[static_cast<size_t>(own - points.scalars.begin())].values;
+    const bool rescaled = field.name == surfel::kOpacityAttribute && type_of(values) != field.type;
+    conformed.push_back(
+        {field.name, rescaled ? convert_opacities(values, field.type) : convert(std::move(values), field.type)});
   }
   points.scalars = std::move(conformed);
 }
@@ -109,12 +130,14 @@ ScanSchema merge_schemas(std::span<const ScanSchema> scans) {
 std::vector<std::string> describe_fillings(std::span<const ScanSchema> scans, const ScanSchema& cloud) {
   std::vector<std::string> notes;
   for (const ScanSchema& scan : scans) {
+    for (const std::string& note : scan.notes) notes.push_back(scan.name + ": " + note);
     if (cloud.color_bits != 0 && scan.color_bits == 0) notes.push_back(scan.name + ": no colour, filled with grey");
   }
   for (const ScalarField& field : cloud.scalars) {
     for (const ScanSchema& scan : scans) {
       if (find_named(scan.scalars, field.name) == scan.scalars.end()) {
-        notes.push_back(scan.name + ": no " + field.name + ", filled with 0");
+        const bool opacity = field.name == surfel::kOpacityAttribute;
+        notes.push_back(scan.name + ": no " + field.name + (opacity ? ", opaque" : ", filled with 0"));
       }
     }
   }

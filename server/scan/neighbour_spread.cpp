@@ -89,14 +89,16 @@ glm::dvec3 least_axis_by_iteration(const Covariance& m) {
 struct Sides {
   std::vector<glm::dvec3> inside;  ///< neighbours within `reach` of the plane through the site, and the site
   std::vector<glm::dvec3> apart;   ///< the others
+  size_t in_front = 0;             ///< of these, those to which the normal points
 };
 
 /// All are projected onto the plane.
 Sides split_at_plane(const NeighbourOffsets& neighbours, const glm::dvec3& normal, double reach) {
-  Sides sides{{glm::dvec3(0)}, {}};
+  Sides sides{{glm::dvec3(0)}, {}, 0};
   for (size_t i = 0; i < neighbours.count; ++i) {
     const double height = glm::dot(neighbours[i], normal);
     (std::abs(height) <= reach ? sides.inside : sides.apart).push_back(neighbours[i] - height * normal);
+    if (height > reach) ++sides.in_front;
   }
   return sides;
 }
@@ -149,12 +151,16 @@ bool is_in_sheet(const NeighbourOffsets& neighbours, const glm::dvec3& normal) {
   // cell, along it.
   constexpr double kThickness = 0.25;
   constexpr double kBeside = 0.36;
-  // Of two even sheets three spacings apart, 28 of 32 neighbours are in the own one.
+  // Of two even sheets three spacings apart, 28 of 32 neighbours are in the own one, and 24 where both have a border.
+  // Layers of a depth camera mostly have others before and behind them.
   constexpr double kMost = 0.82;
+  constexpr double kMostOfTwo = 0.8;
   if (neighbours.count < kWideNeighbours) return false;
   const double twelfth = glm::length(neighbours[kNearNeighbours - 1]);
-  const auto [inside, apart] = split_at_plane(neighbours, normal, kThickness * twelfth);
-  if (static_cast<double>(inside.size()) < kMost * static_cast<double>(neighbours.count)) return false;
+  const auto [inside, apart, in_front] = split_at_plane(neighbours, normal, kThickness * twelfth);
+  const bool two = in_front == 0 || in_front == apart.size();
+  const double least = two ? kMostOfTwo : kMost;
+  if (static_cast<double>(inside.size()) < least * static_cast<double>(neighbours.count)) return false;
   return std::ranges::all_of(apart, [&, &inside = inside](const glm::dvec3& other) {
     return std::ranges::any_of(inside,
                                [&](const glm::dvec3& own) { return glm::length(other - own) < kBeside * twelfth; });

@@ -4,6 +4,7 @@
 #include <limits>
 #include <string_view>
 
+#include "base/invalid_input.h"
 #include "scan/text_tokens.h"
 
 namespace surfcast::scan {
@@ -13,10 +14,6 @@ namespace {
 constexpr size_t kMaxValues = 4096;
 
 using Words = std::vector<std::string_view>;
-
-tl::unexpected<Error> invalid(std::string what) {
-  return fail(ErrorKind::kInvalidInput, std::move(what));
-}
 
 /// The lines of the header by keyword, unparsed.
 struct RawHeader {
@@ -54,11 +51,11 @@ Result<RawHeader> split_header(std::string_view text, size_t& offset) {
     offset = std::min(end + 1, text.size());
     if (keyword.empty() || keyword.starts_with('#') || keyword == "VERSION") continue;
     Words* line = line_of(raw, keyword);
-    if (line == nullptr) return invalid("PCD header line not understood: " + printable(keyword));
+    if (line == nullptr) return invalid_input("PCD header line not understood: " + printable(keyword));
     line->clear();
     for (std::string_view word = tokens.next(); !word.empty(); word = tokens.next()) line->push_back(word);
   }
-  if (raw.data.empty()) return invalid("PCD header has no DATA line");
+  if (raw.data.empty()) return invalid_input("PCD header has no DATA line");
   return raw;
 }
 
@@ -78,21 +75,21 @@ std::optional<ScalarType> type_of(std::string_view type, std::string_view size) 
 
 Status parse_fields(const RawHeader& raw, PcdHeader& header) {
   const size_t count = raw.fields.size();
-  if (count == 0) return invalid("PCD header has no FIELDS line");
+  if (count == 0) return invalid_input("PCD header has no FIELDS line");
   if (raw.sizes.size() != count || raw.types.size() != count || (!raw.counts.empty() && raw.counts.size() != count)) {
-    return invalid("PCD header lines FIELDS, SIZE, TYPE and COUNT differ in length");
+    return invalid_input("PCD header lines FIELDS, SIZE, TYPE and COUNT differ in length");
   }
   size_t values = 0;
   for (size_t i = 0; i < count; ++i) {
     const auto type = type_of(raw.types[i], raw.sizes[i]);
     const auto repeat = raw.counts.empty() ? std::optional<uint32_t>(1) : parse_number<uint32_t>(raw.counts[i]);
     if (!type || !repeat || *repeat > kMaxValues) {
-      return invalid("PCD field " + printable(raw.fields[i]) + " has a type, size or count that is not known");
+      return invalid_input("PCD field " + printable(raw.fields[i]) + " has a type, size or count that is not known");
     }
     values += *repeat;
     header.fields.push_back({std::string(raw.fields[i]), *type, *repeat});
   }
-  if (values > kMaxValues) return invalid("PCD header states too many values for each point");
+  if (values > kMaxValues) return invalid_input("PCD header states too many values for each point");
   return {};
 }
 
@@ -109,7 +106,7 @@ Status parse_size(const RawHeader& raw, PcdHeader& header) {
   } else if (width && height && (*height == 0 || *width <= std::numeric_limits<uint64_t>::max() / *height)) {
     header.points = *width * *height;
   } else {
-    return invalid("PCD header does not state the number of points");
+    return invalid_input("PCD header does not state the number of points");
   }
   return {};
 }
@@ -152,10 +149,10 @@ Result<PcdHeader> parse_pcd_header(std::span<const std::byte> bytes) {
   if (Status status = parse_size(*raw, header); !status) return fail(status.error());
   header.sensor = parse_sensor(raw->viewpoint, header.organised);
   const std::optional<PcdEncoding> encoding = parse_encoding(raw->data);
-  if (!encoding) return invalid("PCD data is neither ascii, binary nor binary_compressed");
+  if (!encoding) return invalid_input("PCD data is neither ascii, binary nor binary_compressed");
   header.encoding = *encoding;
-  if (header.record_length() == 0) return invalid("PCD header states no values for its points");
-  if (header.points == 0) return invalid("has no points");
+  if (header.record_length() == 0) return invalid_input("PCD header states no values for its points");
+  if (header.points == 0) return invalid_input("has no points");
   return header;
 }
 

@@ -154,7 +154,10 @@ template <typename Walk>
 class WalkedRows : public RowSource {
  public:
   WalkedRows(RowTraits traits, PlyElement element, std::vector<Walk> starts)
-      : traits_(traits), element_(std::move(element)), columns_(columns_of(element_)), starts_(std::move(starts)) {}
+      : traits_(std::move(traits)),
+        element_(std::move(element)),
+        columns_(columns_of(element_)),
+        starts_(std::move(starts)) {}
 
   [[nodiscard]] const RowTraits& traits() const override { return traits_; }
   [[nodiscard]] const std::vector<ColumnInfo>& columns() const override { return columns_; }

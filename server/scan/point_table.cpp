@@ -1,5 +1,6 @@
 #include "scan/point_table.h"
 
+#include <cstring>
 #include <utility>
 
 namespace surfcast::scan {
@@ -12,6 +13,26 @@ void add_column(PointTable& table, surfel::ScalarValues values) {
                                  sizeof(stored[0]), false});
       },
       table.storage.back());
+}
+
+PointTable pick_rows(const PointTable& table, std::span<const uint32_t> rows) {
+  size_t bytes = 0;
+  for (const Column& column : table.columns) bytes += size_of(column.type);
+  PointTable picked;
+  picked.rows = rows.size();
+  picked.records.resize(rows.size() * bytes);
+  std::byte* first = picked.records.data();
+  for (const Column& column : table.columns) {
+    const size_t size = size_of(column.type);
+    std::byte* to = first;
+    for (const uint32_t row : rows) {
+      std::memcpy(to, column.first + row * column.stride, size);
+      to += bytes;
+    }
+    picked.columns.push_back({column.type, first, bytes, column.swapped});
+    first += size;
+  }
+  return picked;
 }
 
 }  // namespace surfcast::scan

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -38,6 +39,9 @@ struct PointTable {
 
 /// Adds a column with `table.rows` values.
 void add_column(PointTable& table, surfel::ScalarValues values);
+
+/// These rows of the table, packed. They do not refer to `table`.
+PointTable pick_rows(const PointTable& table, std::span<const uint32_t> rows);
 
 /// Calls `use(i, value)` for every value of the column, in its own type.
 template <typename Use>

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <glm/vec3.hpp>
 #include <optional>
+#include <string>
 #include <vector>
 
 #include "base/result.h"
@@ -25,6 +26,10 @@ struct RowTraits {
   bool counted = false;                ///< a PTS file
   uint64_t announced = 0;              ///< number of rows that the file states before the first row
   std::optional<double> surface_step;  ///< see ScanSchema
+  bool exact_radii = false;            ///< see ScanSchema
+  bool two_sided = false;              ///< see ScanSchema
+  std::string crs;                     ///< see ScanSchema
+  std::vector<std::string> notes;      ///< see ScanSchema
   bool sampled = false;  ///< these are a part of the rows, so that radii stated for all of them are too small
 };
 

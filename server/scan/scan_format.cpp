@@ -18,10 +18,7 @@ using Known = std::pair<std::string_view, std::string_view>;
 
 /// Signatures of files that cannot be read as scans, with the reason.
 constexpr Known kOtherContents[] = {
-    {"ASTM-E57", "E57 scans are not supported"},
-    {"pnts", "3D Tiles point tiles are not supported"},
     {"glTF", "glTF meshes are not supported"},
-    {"[Expe/PointSet", "Expe point sets are not supported"},
     {"\x1F\x8B", "gzip-compressed files (SPZ among them) are not supported"},
     {"NGSP", "SPZ files of 3D Gaussians are not supported"},
     {"PK\x03\x04", "zip archives are not supported"},
@@ -49,9 +46,11 @@ constexpr Known kOtherExtensions[] = {
 };
 
 constexpr std::pair<std::string_view, ScanFormat> kExtensions[] = {
-    {".ply", ScanFormat::kPly},  {".las", ScanFormat::kLas},   {".laz", ScanFormat::kLas},  {".pcd", ScanFormat::kPcd},
-    {".ptx", ScanFormat::kPtx},  {".drc", ScanFormat::kDraco}, {".xyz", ScanFormat::kText}, {".pts", ScanFormat::kText},
-    {".txt", ScanFormat::kText}, {".csv", ScanFormat::kText},  {".asc", ScanFormat::kText},
+    {".ply", ScanFormat::kPly},   {".las", ScanFormat::kLas},  {".laz", ScanFormat::kLas},
+    {".pcd", ScanFormat::kPcd},   {".ptx", ScanFormat::kPtx},  {".drc", ScanFormat::kDraco},
+    {".xyz", ScanFormat::kText},  {".pts", ScanFormat::kText}, {".txt", ScanFormat::kText},
+    {".csv", ScanFormat::kText},  {".asc", ScanFormat::kText}, {".e57", ScanFormat::kE57},
+    {".pnts", ScanFormat::kPnts},
 };
 
 std::string_view format_name(ScanFormat format) {
@@ -66,6 +65,12 @@ std::string_view format_name(ScanFormat format) {
       return "PTX";
     case ScanFormat::kDraco:
       return "Draco";
+    case ScanFormat::kE57:
+      return "E57";
+    case ScanFormat::kExpe:
+      return "Expe";
+    case ScanFormat::kPnts:
+      return "3D Tiles";
     case ScanFormat::kText:
       break;
   }
@@ -96,6 +101,9 @@ std::optional<ScanFormat> by_content(std::string_view text) {
   if (starts_with_word(text, "ply")) return ScanFormat::kPly;
   if (text.starts_with("LASF")) return ScanFormat::kLas;
   if (text.starts_with("DRACO")) return ScanFormat::kDraco;
+  if (text.starts_with("ASTM-E57")) return ScanFormat::kE57;
+  if (text.starts_with("[Expe/PointSet")) return ScanFormat::kExpe;
+  if (text.starts_with("pnts")) return ScanFormat::kPnts;
   if (is_pcd(text)) return ScanFormat::kPcd;
   return std::nullopt;
 }

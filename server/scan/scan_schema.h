@@ -28,7 +28,11 @@ struct ScanSchema {
   /// Set if every point is known to lie on a surface whose normal it states, out of the solid: about the largest
   /// distance of neighbouring points there, world units.
   std::optional<double> surface_step;
-  bool z_up = true;  ///< true for LAS and text surveys; see each reader
+  bool exact_radii = false;  ///< radii are those that the kernel needs, so that they are not compared with the spacing
+  bool two_sided = false;    ///< some surfaces have no back
+  std::string crs;           ///< coordinate system: WKT or "EPSG:code"; empty if the file does not state one
+  std::vector<std::string> notes;  ///< what is left out of the file, for people
+  bool z_up = true;                ///< true for LAS and text surveys; see each reader
 };
 
 }  // namespace surfcast::scan

@@ -7,30 +7,41 @@
 #include <oneapi/tbb/parallel_for.h>
 
 #include "scan/draco_reader.h"
+#include "scan/e57_reader.h"
+#include "scan/expe_reader.h"
 #include "scan/las_reader.h"
 #include "scan/pcd_reader.h"
 #include "scan/ply_reader.h"
+#include "scan/pnts_reader.h"
 #include "scan/ptx_reader.h"
 #include "scan/sampled_rows.h"
+#include "scan/scan_folder.h"
 #include "scan/scan_format.h"
+#include "scan/selected_rows.h"
 #include "scan/text_reader.h"
 
 namespace surfcast::scan {
 namespace {
 
 Result<std::unique_ptr<RowSource>> rows_of(ScanFormat format, std::span<const std::byte> bytes,
-                                           const DecodingLimit& limit) {
+                                           const DecodingLimit& limit, const Selection& selection) {
   switch (format) {
     case ScanFormat::kPly:
       return ply_rows(bytes);
     case ScanFormat::kLas:
-      return las_rows(bytes);
+      return las_rows(bytes, selection);
     case ScanFormat::kPcd:
       return pcd_rows(bytes, limit);
     case ScanFormat::kPtx:
       return ptx_rows(bytes);
     case ScanFormat::kDraco:
       return draco_rows(bytes, limit);
+    case ScanFormat::kE57:
+      return e57_rows(bytes);
+    case ScanFormat::kExpe:
+      return expe_rows(bytes);
+    case ScanFormat::kPnts:
+      return pnts_rows(bytes, limit);
     case ScanFormat::kText:
       break;
   }
@@ -81,9 +92,23 @@ Status ScanStream::take_sample(std::optional<uint64_t> sample) {
 }
 
 Status ScanStream::examine(std::span<const std::byte> bytes, const std::filesystem::path& path,
-                           const DecodingLimit& limit, std::optional<uint64_t> sample) {
+                           const DecodingLimit& limit, std::optional<uint64_t> sample, const Selection& selection) {
   Result<std::unique_ptr<RowSource>> rows =
-      scan_format_of(bytes, path).and_then([&](ScanFormat format) { return rows_of(format, bytes, limit); });
+      scan_format_of(bytes, path)
+          .and_then([&](ScanFormat format) { return rows_of(format, bytes, limit, selection); })
+          .and_then([&](std::unique_ptr<RowSource> all) { return select_rows(std::move(all), selection); });
+  if (!rows) return fail(rows.error().kind, path.string() + ": " + rows.error().message);
+  rows_ = std::move(*rows);
+  return examine_rows(path, sample);
+}
+
+Status ScanStream::examine_folder(const ScanFolder& folder, const std::filesystem::path& path,
+                                  const DecodingLimit& limit, std::optional<uint64_t> sample,
+                                  const Selection& selection) {
+  Result<std::unique_ptr<RowSource>> rows =
+      folder_rows(folder, limit, selection).and_then([&](std::unique_ptr<RowSource> all) {
+        return select_rows(std::move(all), selection);
+      });
   if (!rows) return fail(rows.error().kind, path.string() + ": " + rows.error().message);
   rows_ = std::move(*rows);
   return examine_rows(path, sample);
@@ -107,7 +132,7 @@ Status ScanStream::examine_rows(const std::filesystem::path& path, std::optional
 
 Result<ScanStream> ScanStream::open_content(std::span<const std::byte> bytes, const std::filesystem::path& path) {
   ScanStream stream;
-  if (Status status = stream.examine(bytes, path, {}, {}); !status) return fail(std::move(status.error()));
+  if (Status status = stream.examine(bytes, path, {}, {}, {}); !status) return fail(std::move(status.error()));
   return stream;
 }
 
@@ -120,12 +145,17 @@ Result<ScanStream> ScanStream::of_rows(std::unique_ptr<RowSource> rows, const st
 }
 
 Result<ScanStream> ScanStream::open(const std::filesystem::path& path, const DecodingLimit& limit,
-                                    std::optional<uint64_t> sample) {
+                                    std::optional<uint64_t> sample, const Selection& selection) {
+  ScanStream stream;
+  if (const std::optional<ScanFolder> folder = scan_folder_of(path)) {
+    const Status status = stream.examine_folder(*folder, path, limit, sample, selection);
+    if (!status) return fail(status.error());
+    return stream;
+  }
   Result<MappedFile> file = MappedFile::open(path);
   if (!file) return fail(std::move(file.error()));
-  ScanStream stream;
   stream.file_ = std::move(*file);
-  if (Status status = stream.examine(stream.file_->bytes(), path, limit, sample); !status)
+  if (Status status = stream.examine(stream.file_->bytes(), path, limit, sample, selection); !status)
     return fail(std::move(status.error()));
   return stream;
 }
@@ -139,13 +169,14 @@ Result<ScanPoints> ScanStream::read(size_t piece) const {
 }
 
 Status check_header(const std::filesystem::path& path) {
+  if (scan_folder_of(path)) return {};
   const Result<MappedFile> file = MappedFile::open(path);
   if (!file) return fail(file.error());
   const Result<ScanFormat> format = scan_format_of(file->bytes(), path);
   const auto named = [&path](const Error& error) { return fail(error.kind, path.string() + ": " + error.message); };
   if (!format) return named(format.error());
   if (*format != ScanFormat::kPly && *format != ScanFormat::kLas) return {};
-  const Result<std::unique_ptr<RowSource>> rows = rows_of(*format, file->bytes(), {});
+  const Result<std::unique_ptr<RowSource>> rows = rows_of(*format, file->bytes(), {}, {});
   if (!rows) return named(rows.error());
   return {};
 }

@@ -12,9 +12,12 @@
 #include "geometry/box.h"
 #include "scan/row_source.h"
 #include "scan/scan_points.h"
+#include "scan/selection.h"
 #include "scan/table_meaning.h"
 
 namespace surfcast::scan {
+
+struct ScanFolder;
 
 /// A scan whose points are read in pieces of bounded size, any number of times. Opening reads the whole file once (on
 /// all threads) to collect the properties of the scan and to find damage before any work is done.
@@ -23,8 +26,10 @@ class ScanStream {
   /// Opens a scan of any supported format, detected by content first and extension second. Every error names the file
   /// and the fault; a file without points is an error. With `sample`, the scan has only about that many of the file's
   /// points, see sample_rows; they stay in memory.
+  /// A scan in many files is named by its folder or by the file that describes it (see scan_folder.h). With a
+  /// selection, the scan has only the points in it; a file with an index is read only where they may be.
   static Result<ScanStream> open(const std::filesystem::path& path, const DecodingLimit& limit = {},
-                                 std::optional<uint64_t> sample = {});
+                                 std::optional<uint64_t> sample = {}, const Selection& selection = {});
   /// The same for content in memory, which must outlive the stream. `path` only names it in messages.
   static Result<ScanStream> open_content(std::span<const std::byte> bytes, const std::filesystem::path& path);
   /// The same for rows that are made, not read. `path` only names them.
@@ -42,7 +47,9 @@ class ScanStream {
 
  private:
   Status examine(std::span<const std::byte> bytes, const std::filesystem::path& path, const DecodingLimit& limit,
-                 std::optional<uint64_t> sample);
+                 std::optional<uint64_t> sample, const Selection& selection);
+  Status examine_folder(const ScanFolder& folder, const std::filesystem::path& path, const DecodingLimit& limit,
+                        std::optional<uint64_t> sample, const Selection& selection);
   Status examine_rows(const std::filesystem::path& path, std::optional<uint64_t> sample);
   Status take_sample(std::optional<uint64_t> sample);
 

@@ -11,7 +11,7 @@ namespace surfcast::scan {
 class SlicedRows : public RowSource {
  public:
   SlicedRows(RowTraits traits, std::vector<ColumnInfo> columns, PointTable table)
-      : traits_(traits), columns_(std::move(columns)), table_(std::move(table)) {}
+      : traits_(std::move(traits)), columns_(std::move(columns)), table_(std::move(table)) {}
 
   [[nodiscard]] const RowTraits& traits() const override { return traits_; }
   [[nodiscard]] const std::vector<ColumnInfo>& columns() const override { return columns_; }

@@ -9,6 +9,7 @@
 
 #include "scan/text_columns.h"
 #include "scan/up_axis.h"
+#include "surfel/opacity.h"
 
 namespace surfcast::scan {
 namespace {
@@ -59,6 +60,13 @@ ScalarType narrow_type(const ColumnFacts& facts) {
   return ScalarType::kFloat64;
 }
 
+/// An opacity is a share of the largest number of its type, so the type follows the values: 1 or 255 is opaque,
+/// whatever numbers a file has.
+ScalarType opacity_type(ScalarType type, const ColumnFacts& facts, bool from_text) {
+  if (facts.max <= 1) return is_floating(type) ? type : ScalarType::kFloat32;
+  return is_floating(type) && !from_text ? type : narrow_type(facts);
+}
+
 void decide_colors(std::span<const ColumnInfo> columns, const TableFacts& facts, TableMeaning& meaning) {
   if (meaning.roles.packed_color) meaning.schema.color_bits = 8;
   if (!meaning.roles.color) return;
@@ -80,7 +88,10 @@ void decide_scalars(std::span<const ColumnInfo> columns, const RowSource& rows, 
   for (const auto& [column, name] : meaning.roles.scalars) {
     const ScalarType type = columns[column].type;
     const bool narrow = rows.traits().from_text && type == ScalarType::kFloat64;
-    meaning.schema.scalars.push_back({name, narrow ? narrow_type(facts.columns[column]) : type});
+    const ScalarType stored = name == surfel::kOpacityAttribute
+                                  ? opacity_type(type, facts.columns[column], rows.traits().from_text)
+                                  : (narrow ? narrow_type(facts.columns[column]) : type);
+    meaning.schema.scalars.push_back({name, stored});
   }
 }
 
@@ -154,6 +165,10 @@ Result<TableMeaning> decide_meaning(const RowSource& rows, const TableFacts& fac
   meaning.roles = std::move(*roles);
   meaning.schema.grid = traits.grid;
   meaning.schema.surface_step = traits.surface_step;
+  meaning.schema.exact_radii = traits.exact_radii && !traits.sampled;
+  meaning.schema.two_sided = traits.two_sided;
+  meaning.schema.crs = traits.crs;
+  meaning.schema.notes = traits.notes;
   meaning.schema.normals = meaning.roles.normal && (rows.columns()[0].name.empty() || facts.any_normal);
   meaning.schema.radii = meaning.roles.radius.has_value();
   decide_colors(columns, facts, meaning);

@@ -255,16 +255,25 @@ class TextRows : public RowSource {
   std::vector<std::string_view> pieces_;
 };
 
+std::string_view without_mark(std::string_view text) {
+  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  return text;
+}
+
 }  // namespace
 
 bool begins_like_text_table(std::string_view text) {
   return read_prologue(text).has_value();
 }
 
+std::vector<std::string> text_column_names(std::string_view text) {
+  Result<Prologue> prologue = read_prologue(without_mark(text));
+  return prologue ? std::move(prologue->names) : std::vector<std::string>();
+}
+
 Result<std::unique_ptr<RowSource>> text_rows(std::span<const std::byte> bytes) {
-  std::string_view text = as_text(bytes);
-  constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
-  if (text.starts_with(kByteOrderMark)) text.remove_prefix(kByteOrderMark.size());
+  const std::string_view text = without_mark(as_text(bytes));
   const Result<Prologue> prologue = read_prologue(text);
   if (!prologue) return fail(prologue.error());
   return std::make_unique<TextRows>(text, *prologue);

@@ -3,7 +3,9 @@
 #include <cstddef>
 #include <memory>
 #include <span>
+#include <string>
 #include <string_view>
+#include <vector>
 
 #include "base/result.h"
 #include "scan/row_source.h"
@@ -24,5 +26,8 @@ Result<std::unique_ptr<RowSource>> text_rows(std::span<const std::byte> bytes);
 
 /// True if the lines before the rows and the first row are accepted by text_rows.
 bool begins_like_text_table(std::string_view text);
+
+/// The names of the columns in the header of a text that text_rows accepts; none without a header.
+std::vector<std::string> text_column_names(std::string_view text);
 
 }  // namespace surfcast::scan

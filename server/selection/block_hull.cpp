@@ -44,6 +44,11 @@ double min_cosine(const geometry::Box& box, const geometry::CameraFrame& frame) 
 
 }  // namespace
 
+std::vector<BlockHull> with_reach(std::vector<BlockHull> hulls, double reach) {
+  for (BlockHull& hull : hulls) hull.reach = std::max(hull.reach, reach);
+  return hulls;
+}
+
 std::vector<BlockHull> block_hulls(const ldc::BlockTree& tree) {
   const auto blocks = tree.blocks();
   std::vector<BlockHull> hulls;
@@ -55,8 +60,10 @@ std::vector<BlockHull> block_hulls(const ldc::BlockTree& tree) {
   return hulls;
 }
 
-bool may_be_visible(const BlockHull& hull, const Frustum& frustum, const glm::dvec3& eye) {
-  return frustum.may_see(hull.centres, kReachInRadii * hull.reach) && !faces_away(hull, eye);
+bool may_be_visible(const BlockHull& hull, const Frustum& frustum, const glm::dvec3& eye, Sides sides,
+                    double least_reach) {
+  const double reach = std::max(hull.reach, least_reach);
+  return frustum.may_see(hull.centres, kReachInRadii * reach) && (sides == Sides::kBoth || !faces_away(hull, eye));
 }
 
 double projected_spacing(const ldc::BlockEntry& block, const geometry::CameraFrame& frame) {

@@ -21,9 +21,17 @@ struct BlockHull {
 /// One hull for each block of the tree.
 std::vector<BlockHull> block_hulls(const ldc::BlockTree& tree);
 
+/// The same hulls with at least this reach.
+[[nodiscard]] std::vector<BlockHull> with_reach(std::vector<BlockHull> hulls, double reach);
+
+/// Whether surfels are seen from behind: those that are seen through have a far side.
+enum class Sides { kFront, kBoth };
+
 /// Conservative culling: false only if no part of the hull touches a pixel of the frustum's rectangle, or all its
-/// normals face away from the eye (visibility cones, Pfister 2000).
-bool may_be_visible(const BlockHull& hull, const Frustum& frustum, const glm::dvec3& eye);
+/// normals face away from the eye and only front sides are seen (visibility cones, Pfister 2000). `least_reach`: of the
+/// hull.
+bool may_be_visible(const BlockHull& hull, const Frustum& frustum, const glm::dvec3& eye, Sides sides = Sides::kFront,
+                    double least_reach = 0);
 
 /// An upper bound of the distance between neighbouring samples of a block on the screen, in pixels.
 ///

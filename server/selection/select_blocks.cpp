@@ -18,6 +18,10 @@ Frustum frustum_of(const geometry::CameraFrame& frame, double x0, double y0, dou
   return {frame, x0 - kPrefilterPixels, y0 - kPrefilterPixels, x1 + kPrefilterPixels, y1 + kPrefilterPixels};
 }
 
+double least_reach(const std::vector<double>* reaches, uint32_t block) {
+  return reaches == nullptr ? 0 : (*reaches)[block];
+}
+
 class Selector {
  public:
   Selector(const SelectionTree& tree, const geometry::CameraFrame& frame, const SelectionCriteria& criteria,
@@ -64,8 +68,11 @@ class Selector {
   [[nodiscard]] bool in_view(uint32_t block) const {
     if (criteria_.hidden != nullptr && (*criteria_.hidden)[block]) return false;
     const BlockHull& hull = tree_.hulls[block];
-    return may_be_visible(hull, frustum_, frame_.eye) &&
-           (criteria_.clip == nullptr || criteria_.clip->may_show(hull.centres));
+    return may_be_visible(hull, frustum_, frame_.eye, criteria_.sides, least_reach(criteria_.reaches, block)) &&
+           (criteria_.ghost_spacing || !clipped_away(block));
+  }
+  [[nodiscard]] bool clipped_away(uint32_t block) const {
+    return criteria_.clip != nullptr && !criteria_.clip->may_show(tree_.hulls[block].centres);
   }
 
   template <typename Action>
@@ -84,6 +91,7 @@ class Selector {
     }
     seen_.push_back(block);
     if (tree_.tree.children(block).count == 0) return;
+    if (criteria_.ghost_spacing && state.spacing <= *criteria_.ghost_spacing && clipped_away(block)) return;
     const bool before = std::binary_search(was_refined_.begin(), was_refined_.end(), block);
     candidates_.push({before ? kReluctance * state.spacing : state.spacing, block});
   }
@@ -229,11 +237,12 @@ BlockSelection select_blocks(const SelectionTree& tree, const geometry::CameraFr
 
 std::vector<uint32_t> blocks_in_rectangle(const SelectionTree& tree, std::span<const uint32_t> blocks,
                                           const geometry::CameraFrame& frame, double x0, double y0, double x1,
-                                          double y1) {
+                                          double y1, Sides sides, const std::vector<double>* reaches) {
   const Frustum frustum = frustum_of(frame, x0, y0, x1, y1);
   std::vector<uint32_t> seen;
-  std::copy_if(blocks.begin(), blocks.end(), std::back_inserter(seen),
-               [&](uint32_t block) { return may_be_visible(tree.hulls[block], frustum, frame.eye); });
+  std::copy_if(blocks.begin(), blocks.end(), std::back_inserter(seen), [&](uint32_t block) {
+    return may_be_visible(tree.hulls[block], frustum, frame.eye, sides, least_reach(reaches, block));
+  });
   return seen;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -29,6 +30,11 @@ struct SelectionCriteria {
       nullptr;  ///< subtrees without any surfel inside the clip are left out; null: nothing is clipped
   /// For each block: true if neither it nor a descendant shows anything; these are left out. Null: all may show.
   const std::vector<bool>* hidden = nullptr;
+  Sides sides = Sides::kFront;
+  /// Subtrees that the clip hides wholly are not left out, but refined to this projected spacing, in pixels.
+  std::optional<double> ghost_spacing{};
+  /// For each block: the least reach of its hull, where a picture draws items larger than the model states. Null: none.
+  const std::vector<double>* reaches = nullptr;
 };
 
 /// A block that is not resident and would refine the picture.
@@ -69,9 +75,11 @@ BlockSelection select_blocks(const SelectionTree& tree, const geometry::CameraFr
                              const SelectionCriteria& criteria, const std::vector<bool>& resident,
                              std::span<const uint32_t> was_refined = {});
 
-/// The subset of `blocks` that is visible in a rectangle of the picture, pixels from the top left corner.
+/// The subset of `blocks` that is visible in a rectangle of the picture, pixels from the top left corner. `reaches`:
+/// see SelectionCriteria.
 std::vector<uint32_t> blocks_in_rectangle(const SelectionTree& tree, std::span<const uint32_t> blocks,
                                           const geometry::CameraFrame& frame, double x0, double y0, double x1,
-                                          double y1);
+                                          double y1, Sides sides = Sides::kFront,
+                                          const std::vector<double>* reaches = nullptr);
 
 }  // namespace surfcast::selection

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <atomic>
 #include <deque>
+#include <functional>
 #include <map>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
+#include "gl/reset_status.h"
 #include "service/shader_warm_up.h"
 
 namespace surfcast::service {
@@ -16,8 +18,9 @@ namespace {
 
 class CatalogueRenderer : public FrameRenderer {
  public:
-  CatalogueRenderer(const ModelCatalogue& models, std::unique_ptr<render::Renderer> renderer)
-      : models_(models), renderer_(std::move(renderer)) {
+  CatalogueRenderer(const ModelCatalogue& models, std::unique_ptr<render::Renderer> renderer,
+                    std::function<void()> on_reset)
+      : models_(models), renderer_(std::move(renderer)), on_reset_(std::move(on_reset)) {
     if (const std::vector<std::string> names = models.names(); !names.empty()) next_model_ = names.front();
   }
 
@@ -27,12 +30,14 @@ class CatalogueRenderer : public FrameRenderer {
     if (!edition) return fail(edition.error());
     keep(name, edition->model);
     Result<picture::Frame> frame = renderer_->draw(edition->model, request, preemption);
+    if (was_reset()) return fail(ErrorKind::kUnavailable, "the GPU was reset, and the server ends");
     if (frame) frame->preview = edition->preview;
     return frame;
   }
   /// Draws the next warm-up picture: of the model that was most recently drawn for the first time, or before that, of
   /// the first model in the catalogue.
   bool warm_up() override {
+    release_removed();
     if (!next_model_.empty()) begin_warm_up(std::exchange(next_model_, {}));
     if (warm_ups_.empty()) return false;
     const std::atomic<bool> never{false};
@@ -60,14 +65,33 @@ class CatalogueRenderer : public FrameRenderer {
     }
   }
 
+  /// Releases what is resident of models whose files have gone.
+  void release_removed() {
+    models_.close_removed();
+    std::erase_if(drawn_, [this](const auto& entry) {
+      if (models_.has(entry.first)) return false;
+      for (const auto& model : entry.second) renderer_->release_model(*model);
+      return true;
+    });
+  }
+
   void begin_warm_up(const std::string& name) {
     const Result<std::shared_ptr<const model::ModelFile>> model = models_.open(name);
     if (!model) return;
     warming_model_ = *model;
     keep(name, warming_model_);
     next_model_.clear();
-    const std::vector<picture::PictureRequest> pictures = shader_warm_up_requests(warming_model_->info());
+    const std::vector<picture::PictureRequest> pictures = shader_warm_up_requests(*warming_model_);
     warm_ups_.assign(pictures.begin(), pictures.end());
+  }
+
+  /// What was drawn since is worth nothing then, and nothing can be drawn any more.
+  bool was_reset() {
+    if (!reset_ && gl::context_was_reset()) {
+      reset_ = true;
+      on_reset_();
+    }
+    return reset_;
   }
 
   const ModelCatalogue& models_;
@@ -76,15 +100,18 @@ class CatalogueRenderer : public FrameRenderer {
   std::deque<picture::PictureRequest> warm_ups_;
   std::map<std::string, std::vector<std::shared_ptr<const model::ModelFile>>> drawn_;  ///< by name, oldest first
   std::unique_ptr<render::Renderer> renderer_;
+  std::function<void()> on_reset_;
+  bool reset_ = false;
 };
 
 }  // namespace
 
-FrameRendererFactory catalogue_renderers(const ModelCatalogue& models, const render::RendererConfig& config) {
-  return [&models, config]() -> Result<std::unique_ptr<FrameRenderer>> {
+FrameRendererFactory catalogue_renderers(const ModelCatalogue& models, const render::RendererConfig& config,
+                                         std::function<void()> on_reset) {
+  return [&models, config, on_reset = std::move(on_reset)]() -> Result<std::unique_ptr<FrameRenderer>> {
     Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create(config);
     if (!renderer) return fail(renderer.error());
-    return std::make_unique<CatalogueRenderer>(models, std::move(*renderer));
+    return std::make_unique<CatalogueRenderer>(models, std::move(*renderer), on_reset);
   };
 }
 

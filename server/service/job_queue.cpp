@@ -5,30 +5,58 @@
 
 namespace surfcast::service {
 
-bool JobQueue::push(SessionId session, JobId job, Priority priority) {
-  if (size_ >= limit_) return false;
+size_t JobQueue::waiting_of(ClientId client) const {
+  size_t count = 0;
+  for (const Lines& lines : lines_) {
+    for (const Line& line : lines) count += line.asker.client == client ? line.jobs.size() : 0;
+  }
+  return count;
+}
+
+bool JobQueue::push(const Asker& asker, JobId job, Priority priority) {
+  if (size_ >= limit_ || waiting_of(asker.client) >= limit_ - limit_ / 8) return false;
   Lines& lines = lines_[static_cast<size_t>(priority)];
-  auto line = std::ranges::find(lines, session, &Line::session);
-  if (line == lines.end()) line = lines.insert(lines.end(), Line{session, {}});
+  auto line = std::ranges::find_if(lines, [&](const Line& other) { return other.asker.session == asker.session; });
+  if (line == lines.end()) line = lines.insert(lines.end(), Line{asker, {}});
   line->jobs.push_back(job);
+  shares_.enter(asker.client);
   ++size_;
   return true;
 }
 
-std::optional<JobId> JobQueue::pop(Priority priority) {
-  Lines& lines = lines_[static_cast<size_t>(priority)];
-  return take(lines, lines.begin());
+/// The first of the lines whose client has had least.
+JobQueue::Lines::const_iterator JobQueue::next(const Lines& lines, const AcceptsLine& accepts) const {
+  auto best = lines.end();
+  for (auto line = lines.begin(); line != lines.end(); ++line) {
+    if (!accepts(*line)) continue;
+    if (best == lines.end() || shares_.used(line->asker.client) < shares_.used(best->asker.client)) best = line;
+  }
+  return best;
 }
 
-std::optional<JobId> JobQueue::pop_of_others(Priority priority, SessionId session) {
+std::optional<JobId> JobQueue::pop(Priority priority, const Accepts& accepts) {
   Lines& lines = lines_[static_cast<size_t>(priority)];
-  return take(lines, std::ranges::find_if(lines, [&](const Line& line) { return line.session != session; }));
+  return take(lines, next(lines, [&](const Line& line) { return !accepts || accepts(line.jobs.front()); }));
 }
 
-std::optional<JobId> JobQueue::take(Lines& lines, const Lines::iterator& place) {
+std::optional<JobId> JobQueue::pop_of_others(Priority priority, const Asker& asker, const Accepts& accepts) {
+  Lines& lines = lines_[static_cast<size_t>(priority)];
+  return take(lines, next(lines, [&](const Line& line) {
+                return line.asker.session != asker.session && (!accepts || accepts(line.jobs.front()));
+              }));
+}
+
+std::optional<ClientId> JobQueue::next_client(Priority priority, const Accepts& accepts) const {
+  const Lines& lines = lines_[static_cast<size_t>(priority)];
+  const auto line = next(lines, [&](const Line& each) { return !accepts || accepts(each.jobs.front()); });
+  return line == lines.end() ? std::nullopt : std::optional(line->asker.client);
+}
+
+std::optional<JobId> JobQueue::take(Lines& lines, const Lines::const_iterator& place) {
   if (place == lines.end()) return std::nullopt;
-  Line line = std::move(*place);
-  lines.erase(place);
+  const auto found = lines.begin() + (place - lines.cbegin());
+  Line line = std::move(*found);
+  lines.erase(found);
   const JobId job = line.jobs.front();
   line.jobs.pop_front();
   --size_;
@@ -41,6 +69,7 @@ bool JobQueue::remove(JobId job) {
     for (auto line = lines.begin(); line != lines.end(); ++line) {
       if (std::erase(line->jobs, job) == 0) continue;
       --size_;
+      shares_.leave(line->asker.client);
       if (line->jobs.empty()) lines.erase(line);
       return true;
     }

@@ -1,10 +1,12 @@
 #include "service/model_catalogue.h"
 
 #include <algorithm>
+#include <chrono>
 #include <system_error>
 #include <utility>
 
 #include "render/transfer_presets.h"
+#include "service/model_name.h"
 #include "surfel/even_sampling.h"
 
 namespace surfcast::service {
@@ -24,8 +26,9 @@ VolumePresets presets_of(const model::Volume& volume) {
   return presets;
 }
 
-/// Adds the models of a folder whose names are not taken. A folder that cannot be read counts as empty.
-void add_folder(const fs::path& folder, std::map<std::string, fs::path>& models) {
+/// The models of a folder. One that cannot be read counts as empty.
+std::map<std::string, fs::path> models_in(const fs::path& folder) {
+  std::map<std::string, fs::path> models;
   std::error_code code;
   for (fs::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code)) {
     std::error_code ignored;
@@ -33,6 +36,7 @@ void add_folder(const fs::path& folder, std::map<std::string, fs::path>& models)
       models.emplace(entry->path().stem().string(), entry->path());
     }
   }
+  return models;
 }
 
 /// The median spacing over the surfels, to the resolution of leaves.
@@ -68,11 +72,45 @@ Error why_not(const ScanStatus& scan) {
 
 }  // namespace
 
+/// To be called with listing_mutex_ locked.
+const ModelCatalogue::Listing& ModelCatalogue::listing_of(const fs::path& folder) const {
+  constexpr std::chrono::seconds kResolution{2};  // of the coarsest file systems in use
+  std::error_code code;
+  const fs::file_time_type written = fs::last_write_time(folder, code);
+  Listing& listing = listings_[folder];
+  if (listing.settled && !code && listing.written == written) return listing;
+  const bool settled = !code && fs::file_time_type::clock::now() - written > kResolution;
+  listing = {written, settled, models_in(folder)};
+  return listing;
+}
+
 std::map<std::string, fs::path> ModelCatalogue::find_all() const {
   std::map<std::string, fs::path> models;
   for (const NamedModel& file : files_) models.emplace(file.name, file.path);
-  for (const fs::path& folder : folders_) add_folder(folder, models);
+  const std::lock_guard lock(listing_mutex_);
+  for (const fs::path& folder : folders_) {
+    const Listing& listing = listing_of(folder);
+    models.insert(listing.models.begin(), listing.models.end());
+  }
   return models;
+}
+
+/// The file of a model; empty if there is none.
+fs::path ModelCatalogue::find(const std::string& name) const {
+  const auto file = std::ranges::find(files_, name, &NamedModel::name);
+  if (file != files_.end()) return file->path;
+  const std::lock_guard lock(listing_mutex_);
+  for (const fs::path& folder : folders_) {
+    const Listing& listing = listing_of(folder);
+    if (const auto found = listing.models.find(name); found != listing.models.end()) return found->second;
+  }
+  return {};
+}
+
+void ModelCatalogue::close_removed() const {
+  const std::map<std::string, fs::path> models = find_all();
+  const std::lock_guard lock(mutex_);
+  std::erase_if(opened_, [&](const auto& entry) { return !models.contains(entry.first); });
 }
 
 bool ModelCatalogue::add_scan(const std::string& name) {
@@ -87,7 +125,7 @@ bool ModelCatalogue::add_scan(const std::string& name) {
 }
 
 bool ModelCatalogue::has(const std::string& name) const {
-  if (find_all().contains(name)) return true;
+  if (!find(name).empty()) return true;
   const std::lock_guard lock(mutex_);
   return scans_.contains(name);
 }
@@ -167,18 +205,25 @@ Result<std::shared_ptr<const model::ModelFile>> ModelCatalogue::open(const std::
   return open_edition(name, 0).map([](const Edition& edition) { return edition.model; });
 }
 
+/// A file is opened without a lock: a slow disk holds up only those who want that file.
 Result<std::shared_ptr<const model::ModelFile>> ModelCatalogue::open_file(const std::string& name) const {
-  const auto models = find_all();
-  const auto found = models.find(name);
-  if (found == models.end()) return fail(ErrorKind::kNotFound, "there is no model '" + name + "'");
-  const fs::path& path = found->second;
+  const fs::path path = find(name);
+  if (path.empty()) return fail(ErrorKind::kNotFound, "there is no model '" + shown_name(name) + "'");
   std::error_code code;
   const fs::file_time_type written = fs::last_write_time(path, code);
-
+  const auto is_current = [&](const Opened& opened) {
+    return opened.model && opened.path == path && opened.written == written && !code;
+  };
+  {
+    const std::lock_guard lock(mutex_);
+    if (const auto found = opened_.find(name); found != opened_.end() && is_current(found->second)) {
+      return found->second.model;
+    }
+  }
+  Result<model::ModelFile> model = model::ModelFile::open(path);
   const std::lock_guard lock(mutex_);
   Opened& opened = opened_[name];
-  if (opened.model && opened.path == path && opened.written == written && !code) return opened.model;
-  Result<model::ModelFile> model = model::ModelFile::open(path);
+  if (is_current(opened)) return opened.model;  // another thread was faster
   if (!model) {
     opened_.erase(name);
     return fail(model.error());
@@ -196,6 +241,8 @@ Result<ModelDescription> ModelCatalogue::describe(const std::string& name) const
   description.blocks = static_cast<uint32_t>((*model)->blocks().size());
   const std::span<const model::Volume> volumes = (*model)->volumes();
   description.volumes.assign(volumes.begin(), volumes.end());
+  const std::span<const model::EllipsoidSource> ellipsoids = (*model)->ellipsoid_sources();
+  description.ellipsoids.assign(ellipsoids.begin(), ellipsoids.end());
   for (const model::Volume& volume : volumes) description.presets.push_back(presets_of(volume));
   for (const ldc::BlockEntry& block : (*model)->blocks()) {
     description.levels = std::max(description.levels, static_cast<uint32_t>(block.level + 1));

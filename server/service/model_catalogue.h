@@ -24,7 +24,7 @@ struct NamedModel {
 /// Model files by name: scans, whose models come later and are replaced by better ones, individual files, and the
 /// current content of folders ("NAME.surf"). A scan or an individual file hides a file of the same name in a folder,
 /// and an earlier folder hides a later one. A file is opened at the first request, and again after it has been
-/// replaced.
+/// replaced. A folder is read again after it has changed.
 class ModelCatalogue : public ModelSource {
  public:
   ModelCatalogue(std::vector<NamedModel> files, std::vector<std::filesystem::path> folders)
@@ -50,6 +50,9 @@ class ModelCatalogue : public ModelSource {
   /// Adds the next edition. The one before it stays for views that show it, until there is another one.
   void publish(const std::string& name, Edition edition);
 
+  /// Closes the files that are not there any more. They stay open for whoever still uses them.
+  void close_removed() const;
+
   [[nodiscard]] std::vector<std::string> names() const override;
   [[nodiscard]] std::vector<ScanStatus> scans() const override;
   [[nodiscard]] bool awaited(const std::string& name) const override;
@@ -74,7 +77,17 @@ class ModelCatalogue : public ModelSource {
     Edition former;
   };
 
+  /// What a folder holds, and whether that can be told from its time of modification: a change within the resolution
+  /// of the clock of a file system does not show there.
+  struct Listing {
+    std::filesystem::file_time_type written;
+    bool settled = false;
+    std::map<std::string, std::filesystem::path> models;
+  };
+
+  [[nodiscard]] const Listing& listing_of(const std::filesystem::path& folder) const;
   [[nodiscard]] std::map<std::string, std::filesystem::path> find_all() const;
+  [[nodiscard]] std::filesystem::path find(const std::string& name) const;
   [[nodiscard]] Result<std::shared_ptr<const model::ModelFile>> open_file(const std::string& name) const;
 
   Changed changed_ = [](bool) {};
@@ -83,6 +96,8 @@ class ModelCatalogue : public ModelSource {
   mutable std::mutex mutex_;
   std::map<std::string, Scan> scans_;             ///< by name
   mutable std::map<std::string, Opened> opened_;  ///< by name
+  mutable std::mutex listing_mutex_;              ///< guards what follows; nothing else is locked under it
+  mutable std::map<std::filesystem::path, Listing> listings_;
 };
 
 }  // namespace surfcast::service

@@ -23,6 +23,7 @@ struct ModelDescription {
   double spacing = 0;  ///< typical distance between neighbouring surfels of the source, world units
   std::vector<model::Volume> volumes{};
   std::vector<VolumePresets> presets{};  ///< for each of the volumes
+  std::vector<model::EllipsoidSource> ellipsoids{};
 };
 
 /// A scan whose model is not complete.

@@ -1,12 +1,15 @@
 #include "service/pick_service.h"
 
 #include <algorithm>
-#include <exception>
 #include <memory>
 #include <utility>
 
 #include "model/fit_model.h"
+#include "render/display_options.h"
+#include "service/glyph_sights.h"
+#include "service/guarded.h"
 #include "service/picture_channels.h"
+#include "service/volume_sights.h"
 
 namespace surfcast::service {
 namespace {
@@ -18,23 +21,35 @@ geometry::Camera camera_of(const model::ModelFile& model, const picture::Picture
   return camera;
 }
 
+/// How surfels are seen through. As in the picture, but for X-rays of surfaces, whose opacities depend on the angle.
+void set_transparency(const model::ModelFile& model, const picture::PictureRequest& request, kinds::PickQuery& query) {
+  const render::SeenThrough through = render::seen_through(model.info(), request);
+  query.transparent = through.any;
+  query.by_file = through.by_file;
+  if (through.ghosts) query.ghost = request.ghost;
+  if (!through.by_class) return;
+  query.class_opacities.assign(256, 1);
+  for (const picture::ClassOpacity& of : request.class_opacities) query.class_opacities[of.code] = of.opacity;
+}
+
 /// The query of a picture, for all its pixels.
 Result<kinds::PickQuery> query_of(const model::ModelFile& model, const picture::PictureRequest& request,
                                   bool up_from_model) {
   const Result<geometry::CameraFrame> frame =
       geometry::make_camera_frame(camera_of(model, request, up_from_model), request.width, request.height);
   if (!frame) return fail(frame.error());
-  return kinds::PickQuery{*frame, glm::dvec2(0), request.clip, request.hidden_classes};
-}
-
-/// Returns exceptions (out of memory) as errors, so one job cannot terminate the server.
-template <typename Function>
-auto guarded(Function function) -> decltype(function()) {
-  try {
-    return function();
-  } catch (const std::exception& error) {
-    return fail(ErrorKind::kInternal, std::string("unexpected: ") + error.what());
+  kinds::PickQuery query{*frame, glm::dvec2(0), request.clip, request.hidden_classes};
+  query.opacity = request.opacity;
+  set_transparency(model, request, query);
+  if (!model.volumes().empty()) {
+    query.volumes = std::make_shared<const std::vector<kinds::VolumeSight>>(volume_sights(model, request));
   }
+  if (!model.ellipsoid_sources().empty()) {
+    GlyphSights sights = glyph_sights(model, request);
+    query.glyphs = std::make_shared<const std::vector<kinds::GlyphSight>>(std::move(sights.sights));
+    query.reach = sights.reach;
+  }
+  return query;
 }
 
 }  // namespace
@@ -43,25 +58,26 @@ PickService::PickService(const ModelSource& models, const PickLimits& limits)
     : models_(models),
       most_waiting_(limits.waiting),
       most_points_(limits.profile_points),
+      most_blocks_(limits.blocks),
       blocks_(limits.block_bytes),
       searched_blocks_(limits.block_bytes),
-      pool_(limits.threads),
+      pool_(limits.threads, 0, limits.waiting),
       searches_(1) {}
 
 PickService::~PickService() {
   stopping_ = true;
 }
 
-void PickService::pick(PickJob job, Done done) {
-  if (++waiting_ > most_waiting_) {
-    --waiting_;
-    return done(fail(ErrorKind::kUnavailable, "the server is busy: too many picks wait"));
-  }
-  pool_.post([this, job = std::move(job), done = std::move(done)] {
+void PickService::pick(PickJob job, const Done& done, ClientId client) {
+  const bool room = ++waiting_ <= most_waiting_;
+  const auto task = [this, job = std::move(job), done] {
     Result<std::optional<kinds::PickedSurfel>> picked = run(job);
     --waiting_;
-    done(std::move(picked));
-  });
+    deliver(done, std::move(picked));
+  };
+  if (room && pool_.post(task, client)) return;
+  --waiting_;
+  done(fail(ErrorKind::kUnavailable, "the server is busy: too many picks wait"));
 }
 
 Result<std::optional<kinds::PickedSurfel>> PickService::run(const PickJob& job) {
@@ -75,14 +91,16 @@ Result<std::optional<kinds::PickedSurfel>> PickService::run(const PickJob& job) 
     Result<kinds::PickQuery> query = query_of(**model, request, job.up_from_model);
     if (!query) return fail(query.error());
     query->pixel = {job.x + 0.5, job.y + 0.5};
-    return pick::pick_surfel(**model, *query, blocks_, stopping_);
+    return pick::pick_surfel(**model, *query, blocks_, stopping_, most_blocks_);
   });
 }
 
-void PickService::find_surface(SurfaceJob job, std::shared_ptr<const std::atomic<bool>> cancelled, SurfaceDone done) {
-  searches_.post([this, job = std::move(job), cancelled = std::move(cancelled), done = std::move(done)] {
-    done(guarded([&] { return search(job, *cancelled); }));
-  });
+void PickService::find_surface(SurfaceJob job, std::shared_ptr<const std::atomic<bool>> cancelled, SurfaceDone done,
+                               ClientId client) {
+  const auto task = [this, job = std::move(job), cancelled = std::move(cancelled), done = std::move(done)] {
+    deliver(done, guarded([&] { return search(job, *cancelled); }));
+  };
+  searches_.post(task, client);
 }
 
 Result<std::vector<pick::FrontPixel>> PickService::search(const SurfaceJob& job, const std::atomic<bool>& cancelled) {
@@ -94,16 +112,17 @@ Result<std::vector<pick::FrontPixel>> PickService::search(const SurfaceJob& job,
   return pick::find_front_surface(**model, *query, searched_blocks_, cancelled);
 }
 
-void PickService::profile(ProfileJob job, ProfileDone done) {
+void PickService::profile(ProfileJob job, ProfileDone done, ClientId client) {
   if (++profiles_waiting_ > most_waiting_) {
     --profiles_waiting_;
     return done(fail(ErrorKind::kUnavailable, "the server is busy: too many profiles wait"));
   }
-  searches_.post([this, job = std::move(job), done = std::move(done)] {
+  const auto task = [this, job = std::move(job), done = std::move(done)] {
     Result<ProfileResult> result = guarded([&] { return find_profile(job); });
     --profiles_waiting_;
-    done(std::move(result));
-  });
+    deliver(done, std::move(result));
+  };
+  searches_.post(task, client);
 }
 
 Result<ProfileResult> PickService::find_profile(const ProfileJob& job) const {

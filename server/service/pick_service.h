@@ -24,6 +24,7 @@ struct PickLimits {
   size_t waiting = 64;                    ///< picks that may be outstanding at a time
   size_t block_bytes = size_t{64} << 20;  ///< of decoded blocks that are kept for later picks
   size_t profile_points = 1'000'000;      ///< of one profile
+  size_t blocks = 256;                    ///< that one pick may read, see pick::pick_surfel
 };
 
 /// A request for the item that a picture shows in a pixel.
@@ -57,8 +58,8 @@ struct ProfileResult {
   std::vector<std::string> attributes;
 };
 
-/// Picks items in pictures, on threads of its own so that pictures are not delayed. Methods may be called from any
-/// thread.
+/// Picks items in pictures, on threads of its own so that pictures are not delayed, in turns of the clients. Methods
+/// may be called from any thread.
 class PickService {
  public:
   using Done = std::function<void(Result<std::optional<kinds::PickedSurfel>>)>;
@@ -72,13 +73,14 @@ class PickService {
 
   /// `done` is called once: on a thread of the service, or, if too many picks wait already, before this call returns.
   /// It must not throw or block.
-  void pick(PickJob job, Done done);
+  void pick(PickJob job, const Done& done, ClientId client = 0);
   /// Searches all pixels, one picture after another, on a thread that does nothing else. `done` is called once, on that
   /// thread, with kCancelled soon after `cancelled` becomes true. The caller bounds the number of searches.
-  void find_surface(SurfaceJob job, std::shared_ptr<const std::atomic<bool>> cancelled, SurfaceDone done);
+  void find_surface(SurfaceJob job, std::shared_ptr<const std::atomic<bool>> cancelled, SurfaceDone done,
+                    ClientId client = 0);
   /// Finds the points near a line, on the same thread. At most PickLimits::waiting profiles may be outstanding. `done`
   /// as of pick().
-  void profile(ProfileJob job, ProfileDone done);
+  void profile(ProfileJob job, ProfileDone done, ClientId client = 0);
 
  private:
   [[nodiscard]] Result<ProfileResult> find_profile(const ProfileJob& job) const;
@@ -89,6 +91,7 @@ class PickService {
   std::atomic<bool> stopping_ = false;
   const size_t most_waiting_;
   const size_t most_points_;
+  const size_t most_blocks_;
   std::atomic<size_t> waiting_ = 0;
   std::atomic<size_t> profiles_waiting_ = 0;
   pick::SourceBlocks blocks_;

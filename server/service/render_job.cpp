@@ -40,6 +40,20 @@ Result<std::vector<std::byte>> encode_file(const RenderJob& job, const picture::
 
 }  // namespace
 
+size_t memory_of(const PictureJob& picture) {
+  constexpr size_t kChannelBytes = 48;  // of a pixel, at most
+  const size_t pixels = static_cast<size_t>(picture.request.width) * static_cast<size_t>(picture.request.height);
+  const bool floats = picture::pixel_format_of(picture.format) == picture::PixelFormat::kLinearFloat;
+  const size_t pixel = (floats ? 4 * sizeof(float) : 4) + (picture.channels.none() ? 0 : kChannelBytes);
+  return 2 * pixels * pixel;  // a file is not larger than what it is made of
+}
+
+bool is_small(const PictureJob& picture) {
+  constexpr size_t kPixels = size_t{512} * 512;  // 8 MiB at most, and some milliseconds to encode
+  return picture.channels.none() &&
+         static_cast<size_t>(picture.request.width) * static_cast<size_t>(picture.request.height) <= kPixels;
+}
+
 tl::unexpected<Error> cancelled_error() {
   return fail(ErrorKind::kCancelled, "the request was cancelled");
 }

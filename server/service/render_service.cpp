@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "base/contract.h"
+#include "base/host_memory.h"
 #include "encode/encode_picture.h"
 #include "service/guarded.h"
 #include "service/picture_channels.h"
@@ -21,12 +22,29 @@ tl::unexpected<Error> busy_error() {
 void RenderService::State::encode_one(const JobPointer& job, Result<SharedFrame> frame) {
   Result<EncodedPicture> result = guarded([&] { return encode_job(*job, frame); });
   frame = cancelled_error();  // releases the pixels before the render thread may draw more
+  if (const auto share = std::exchange(job->memory, nullptr); share && result) {
+    share->shrink(result->bytes.size());
+    result->memory = share;
+  }
   {
     const std::lock_guard lock(mutex);
-    --in_encoding[static_cast<size_t>(job->picture.priority)];
+    --(job->small ? small_in_encoding : in_encoding[static_cast<size_t>(job->picture.priority)]);
   }
   wake.notify_one();
   finish(job, std::move(result));
+}
+
+size_t RenderService::State::picture_memory_limit(const ServiceLimits& limits) {
+  constexpr size_t kMost = size_t{1} << 30;
+  if (limits.picture_memory > 0) return limits.picture_memory;
+  const uint64_t available = read_host_memory().available;
+  return available == 0 ? kMost : std::min<size_t>(kMost, available / 4);
+}
+
+/// The render thread looks whether there is room now. Locking orders it behind a look that has just been taken.
+void RenderService::State::look_again() {
+  { const std::lock_guard lock(mutex); }
+  wake.notify_one();
 }
 
 Status RenderService::State::check(const PictureJob& picture) const {
@@ -51,7 +69,7 @@ bool RenderService::State::waits_for_model(const PictureJob& picture) const {
 
 /// Puts a job into the queue, or makes room for the search that precedes it. False if there is no room.
 bool RenderService::State::enqueue(const RenderJob& job) {
-  if (!needs_front_surface(job.picture.channels)) return queue.push(job.session, job.id, job.picture.priority);
+  if (!needs_front_surface(job.picture.channels)) return queue.push(job.asker, job.id, job.picture.priority);
   if (searching >= limits.queued_jobs) return false;
   ++searching;
   return true;
@@ -76,10 +94,10 @@ void RenderService::State::end_waiting(const JobPointer& job, const Status& ther
   finish(job, busy_error());
 }
 
-JobId RenderService::State::add(SessionId session, PictureJob picture, PictureDone done) {
+JobId RenderService::State::add(const Asker& asker, PictureJob picture, PictureDone done) {
   const Status checked = check(picture);
   const auto job = std::make_shared<RenderJob>();
-  job->session = session;
+  job->asker = asker;
   job->picture = std::move(picture);
   job->done = std::move(done);
   std::unique_lock lock(mutex);
@@ -103,8 +121,10 @@ JobId RenderService::State::add(SessionId session, PictureJob picture, PictureDo
 void RenderService::State::search(const JobPointer& job) {
   const PictureJob& picture = job->picture;
   const std::shared_ptr<const std::atomic<bool>> cancelled(job, &job->cancelled);
-  picks->find_surface({picture.model, picture.request, picture.up_from_model, picture.channels}, cancelled,
-                      [this, job](Result<std::vector<pick::FrontPixel>> front) { end_search(job, std::move(front)); });
+  picks->find_surface(
+      {picture.model, picture.request, picture.up_from_model, picture.channels}, cancelled,
+      [this, job](Result<std::vector<pick::FrontPixel>> front) { end_search(job, std::move(front)); },
+      job->asker.client);
 }
 
 void RenderService::State::end_search(const JobPointer& job, Result<std::vector<pick::FrontPixel>> front) {
@@ -115,7 +135,7 @@ void RenderService::State::end_search(const JobPointer& job, Result<std::vector<
     job->front = std::move(*front);
     job->search_ms = job->since_submission.milliseconds();
     job->since_submission = Stopwatch();
-    if (queue.push(job->session, job->id, job->picture.priority)) {
+    if (queue.push(job->asker, job->id, job->picture.priority)) {
       lock.unlock();
       return wake.notify_one();
     }
@@ -165,7 +185,7 @@ void RenderService::State::finish(const JobPointer& job, Result<EncodedPicture> 
     const std::lock_guard lock(mutex);
     if (jobs.erase(job->id) == 0) return;
   }
-  job->done(std::move(result));
+  deliver(job->done, std::move(result));
 }
 
 void RenderService::State::stop() {
@@ -177,7 +197,10 @@ void RenderService::State::stop() {
     without_model = std::exchange(awaiting, {});
     for (const auto& [id, job] : jobs) job->cancelled = true;
     for (const Priority priority : {Priority::kMotion, Priority::kStill}) {
-      while (const std::optional<JobId> id = queue.pop(priority)) waiting.push_back(jobs.at(*id));
+      while (const std::optional<JobId> id = queue.pop(priority)) {
+        waiting.push_back(jobs.at(*id));
+        queue.shares().leave(waiting.back()->asker.client);
+      }
     }
   }
   wake.notify_all();
@@ -185,8 +208,10 @@ void RenderService::State::stop() {
   for (const Awaiting& entry : without_model) entry.proceed(cancelled_error());
   if (render_thread.joinable()) render_thread.join();
   picks.reset();
+  lookups.reset();
   pool.reset();
   motion_pool.reset();
+  memory->close();
 }
 
 RenderService::RenderService(std::unique_ptr<State> state) : state_(std::move(state)) {}
@@ -195,7 +220,8 @@ Result<std::unique_ptr<RenderService>> RenderService::start(const ModelSource& m
                                                             FrameRendererFactory make_renderer,
                                                             const ServiceLimits& limits) {
   auto state = std::make_unique<State>(models, limits);
-  state->pool = std::make_unique<WorkerPool>(limits.encoders);
+  state->pool = std::make_unique<WorkerPool>(limits.encoders, /*small_threads=*/1);
+  state->lookups = std::make_unique<WorkerPool>(1);
   state->motion_pool = std::make_unique<WorkerPool>(1);
   // Loads the codecs while the first picture is drawn. A failure is reported when the first picture is encoded.
   state->motion_pool->post([] { static_cast<void>(surfcast::encode::prepare_encoding()); });
@@ -212,8 +238,8 @@ RenderService::~RenderService() {
   state_->stop();
 }
 
-JobId RenderService::draw(SessionId session, PictureJob job, PictureDone done) {
-  return state_->add(session, std::move(job), std::move(done));
+JobId RenderService::draw(const Asker& asker, PictureJob job, PictureDone done) {
+  return state_->add(asker, std::move(job), std::move(done));
 }
 
 bool RenderService::cancel(JobId id) {
@@ -230,21 +256,25 @@ bool RenderService::cancel(JobId id) {
   return true;
 }
 
-JobId RenderService::encode(std::shared_ptr<const picture::Frame> frame, PictureJob picture, PictureDone done) {
+JobId RenderService::encode(std::shared_ptr<const picture::Frame> frame, PictureJob picture, PictureDone done,
+                            const Asker& asker) {
   SURFCAST_EXPECTS(frame->image.format == picture::pixel_format_of(picture.format));
   const auto job = std::make_shared<RenderJob>();
   job->picture = std::move(picture);
   job->picture.priority = Priority::kStill;
   job->done = std::move(done);
+  job->asker = asker;
+  job->small = is_small(job->picture);
+  job->memory = state_->memory->take(asker.client, memory_of(job->picture));
   {
     const std::lock_guard lock(state_->mutex);
     job->id = ++state_->last_id;
     state_->jobs.emplace(job->id, job);
-    ++state_->in_encoding[static_cast<size_t>(Priority::kStill)];
+    ++(job->small ? state_->small_in_encoding : state_->in_encoding[static_cast<size_t>(Priority::kStill)]);
   }
-  state_->pool->post([state = state_.get(), job, frame = std::move(frame)]() mutable {
-    state->encode_one(job, SharedFrame(std::move(frame)));
-  });
+  state_->pool->post([state = state_.get(), job,
+                      frame = std::move(frame)]() mutable { state->encode_one(job, SharedFrame(std::move(frame))); },
+                     asker.client, job->small ? TaskSize::kSmall : TaskSize::kLarge);
   return job->id;
 }
 
@@ -265,39 +295,45 @@ uint64_t RenderService::edition(const std::string& model) const {
   return state_->models.edition(model);
 }
 
-void RenderService::list_models(ListDone done) {
-  state_->pool->post([state = state_.get(), done = std::move(done)] {
-    done({state->models.names(), state->models.scans()});
-  });
+void RenderService::list_models(ListDone done, ClientId client) {
+  const auto list = [state = state_.get()]() -> Result<ModelList> {
+    return ModelList{state->models.names(), state->models.scans()};
+  };
+  state_->lookups->post([list, done = std::move(done)] { done(guarded(list).value_or(ModelList())); }, client);
 }
 
-void RenderService::describe_model(const std::string& name, DescriptionDone done) {
-  state_->when_available(name, [state = state_.get(), name, done = std::move(done)](const Status& there) {
+void RenderService::describe_model(const std::string& name, DescriptionDone done, ClientId client) {
+  state_->when_available(name, [state = state_.get(), name, done = std::move(done), client](const Status& there) {
     if (!there) return done(fail(there.error()));
-    state->pool->post([state, name, done] { done(guarded([&] { return state->models.describe(name); })); });
+    state->lookups->post([state, name, done] { deliver(done, guarded([&] { return state->models.describe(name); })); },
+                         client);
   });
 }
 
-void RenderService::pick(PickJob job, PickService::Done done) {
+void RenderService::pick(PickJob job, PickService::Done done, ClientId client) {
   const std::string model = job.model;
-  const auto run = [state = state_.get(), job = std::move(job), done = std::move(done)](const Status& there) {
+  const auto run = [state = state_.get(), job = std::move(job), done = std::move(done), client](const Status& there) {
     if (!there) return done(fail(there.error()));
-    state->picks->pick(job, done);
+    state->picks->pick(job, done, client);
   };
   state_->when_available(model, run);
 }
 
-void RenderService::profile(ProfileJob job, PickService::ProfileDone done) {
+void RenderService::profile(ProfileJob job, PickService::ProfileDone done, ClientId client) {
   const std::string model = job.model;
-  const auto run = [state = state_.get(), job = std::move(job), done = std::move(done)](const Status& there) {
+  const auto run = [state = state_.get(), job = std::move(job), done = std::move(done), client](const Status& there) {
     if (!there) return done(fail(there.error()));
-    state->picks->profile(job, done);
+    state->picks->profile(job, done, client);
   };
   state_->when_available(model, run);
 }
 
 const picture::DeviceInfo& RenderService::device() const {
   return state_->device;
+}
+
+size_t RenderService::picture_memory() const {
+  return state_->memory->held();
 }
 
 size_t RenderService::queued() const {

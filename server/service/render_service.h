@@ -24,6 +24,9 @@ struct ServiceLimits {
   int side = 16384;                 ///< of one picture, pixels; the renderer may draw less
   unsigned encoders = 2;            ///< threads that encode still pictures and look up models
   size_t frames_in_encoding = 3;    ///< per priority: pictures in memory at which no further ones are drawn
+  /// Of pictures at rest, from the beginning of drawing until their clients have taken them, bytes. 0: a quarter of the
+  /// host's available memory, 1 GiB at most. See PictureMemory.
+  size_t picture_memory = 0;
   std::chrono::milliseconds queue_timeout{20'000};  ///< longest wait of a picture for the render thread
   /// A still picture that others wait for is drawn for so long at least before one of another session is drawn in its
   /// middle.
@@ -61,18 +64,19 @@ struct EncodedPicture {
   double draw_ms = 0;
   double encode_ms = 0;
   std::shared_ptr<const picture::Frame> frame;  ///< see PictureJob::keep_frame
+  std::shared_ptr<const void> memory;           ///< counts `bytes`; to be kept until they are released
   picture::FrameStats stats;                    ///< the first stage is "queue", the last one "encode"
 };
 
 /// Draws and encodes pictures. One render thread owns the renderer and takes jobs from a queue that is fair between
-/// sessions. A small pool encodes still pictures; motion pictures have an encoder thread of their own. Motion pictures
-/// may preempt still pictures (see DrawShares). All methods may be called from any thread.
+/// clients and their sessions. A small pool encodes still pictures; motion pictures have an encoder thread of their
+/// own. Motion pictures may preempt still pictures (see DrawShares). All methods may be called from any thread.
 ///
 /// A picture with channels of its front surface waits until that has been found, and then for the render thread.
 ///
 /// Callbacks run on a thread of the service. If a job is refused, or cancelled while it waits for the render thread,
-/// its callback runs on the calling thread before the call returns. Callbacks must not throw or block. Each is called
-/// exactly once.
+/// its callback runs on the calling thread before the call returns. Callbacks must not block. Each is called exactly
+/// once, or again with an error if it throws (out of memory).
 class RenderService {
  public:
   using PictureDone = std::function<void(Result<EncodedPicture>)>;
@@ -86,30 +90,34 @@ class RenderService {
   ~RenderService();
 
   /// A picture of a model that is awaited (see ModelSource) waits for it; pictures of views fail at once.
-  JobId draw(SessionId session, PictureJob job, PictureDone done);
+  JobId draw(const Asker& asker, PictureJob job, PictureDone done);
   /// Replaces the picture of a job that still waits for the render thread. False if the job does not wait any more, or
   /// if the new picture is invalid.
   bool replace(JobId job, PictureJob picture);
   /// Encodes `picture` from a frame that was drawn for the same request.
-  JobId encode(std::shared_ptr<const picture::Frame> frame, PictureJob picture, PictureDone done);
+  JobId encode(std::shared_ptr<const picture::Frame> frame, PictureJob picture, PictureDone done,
+               const Asker& asker = {});
   /// True if the job was outstanding. Its callback then gets kCancelled, unless the picture is already being delivered.
   bool cancel(JobId job);
 
-  void list_models(ListDone done);
-  void describe_model(const std::string& name, DescriptionDone done);
+  /// Look-ups run on a thread of their own, in turns of the clients.
+  void list_models(ListDone done, ClientId client = 0);
+  void describe_model(const std::string& name, DescriptionDone done, ClientId client = 0);
   /// Call it after a change of an awaited model, and now and then while there is one: pictures, picks, profiles and
   /// descriptions that wait for it are begun, or refused after the queue's timeout.
   void models_changed();
   /// See ModelSource.
   [[nodiscard]] uint64_t edition(const std::string& model) const;
   /// Finds the item in a pixel; see PickService.
-  void pick(PickJob job, PickService::Done done);
+  void pick(PickJob job, PickService::Done done, ClientId client = 0);
   /// Finds the points near a line; see PickService.
-  void profile(ProfileJob job, PickService::ProfileDone done);
+  void profile(ProfileJob job, PickService::ProfileDone done, ClientId client = 0);
 
   [[nodiscard]] const picture::DeviceInfo& device() const;
   /// Jobs that wait for the render thread.
   [[nodiscard]] size_t queued() const;
+  /// Bytes of ServiceLimits::picture_memory that are taken.
+  [[nodiscard]] size_t picture_memory() const;
 
  private:
   struct State;

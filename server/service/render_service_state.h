@@ -34,31 +34,42 @@ struct RenderService::State {
   using Proceed = std::function<void(const Status& there)>;
 
   State(const ModelSource& source, const ServiceLimits& service_limits)
-      : models(source), limits(service_limits), queue(service_limits.queued_jobs) {}
+      : models(source),
+        limits(service_limits),
+        queue(service_limits.queued_jobs),
+        memory(std::make_shared<PictureMemory>(picture_memory_limit(service_limits), [this] { look_again(); })) {}
 
   // Render thread.
   void run(const FrameRendererFactory& make_renderer, std::promise<Status> started);
   [[nodiscard]] bool idle_for_a_moment();
   [[nodiscard]] bool has_waiting(Priority priority) const;
   [[nodiscard]] bool may_draw(Priority priority) const;
+  [[nodiscard]] bool has_room(JobId id) const;
+  [[nodiscard]] bool moves_first(ClientId other) const;
+  void refuse_late(std::unique_lock<std::mutex>& lock);
+  void charge(const RenderJob& job, double milliseconds);
+  void leave_queue(const RenderJob& job);
   [[nodiscard]] std::optional<Priority> next_priority() const;
   JobPointer start(JobId id, std::unique_lock<std::mutex>& lock);
   JobPointer next_job();
-  JobPointer next_motion();
-  JobPointer next_still_of_others(SessionId session);
+  JobPointer next_motion(const RenderJob& current);
+  JobPointer next_still_of_others(const RenderJob& current, int depth);
   Result<picture::Frame> render_frame(FrameRenderer& renderer, RenderJob& job, const Preemption& preemption);
   void draw_one(FrameRenderer& renderer, const JobPointer& job, const Preemption& preemption);
   void draw_motion(FrameRenderer& renderer, const JobPointer& job, bool others_wait);
-  bool draw_waiting_motion(FrameRenderer& renderer);
-  void draw_still(FrameRenderer& renderer, const JobPointer& job, bool nested);
+  bool draw_waiting_motion(FrameRenderer& renderer, const RenderJob& current);
+  void draw_still(FrameRenderer& renderer, const JobPointer& job, int depth);
   void cancel_superseded(JobId id);
+
+  static size_t picture_memory_limit(const ServiceLimits& limits);
+  void look_again();
 
   // Pool.
   void encode_one(const JobPointer& job, Result<SharedFrame> frame);
 
   // Any thread.
   [[nodiscard]] Status check(const PictureJob& picture) const;
-  JobId add(SessionId session, PictureJob picture, PictureDone done);
+  JobId add(const Asker& asker, PictureJob picture, PictureDone done);
   void search(const JobPointer& job);
   void end_search(const JobPointer& job, Result<std::vector<pick::FrontPixel>> front);
   [[nodiscard]] bool enqueue(const RenderJob& job);
@@ -90,14 +101,17 @@ struct RenderService::State {
   std::vector<Awaiting> awaiting;
   std::map<JobId, JobPointer> jobs;  ///< outstanding: waiting, being drawn or being encoded
   JobId last_id = 0;
-  std::array<size_t, 2> in_encoding{};  ///< pictures being drawn or encoded, by priority
-  size_t searching = 0;                 ///< jobs whose front surface is being found
+  std::array<size_t, 2> in_encoding{};  ///< pictures being drawn or encoded, by priority, but for small ones at rest
+  size_t small_in_encoding = 0;         ///< these
+  std::shared_ptr<PictureMemory> memory;
+  size_t searching = 0;  ///< jobs whose front surface is being found
   bool stopping = false;
 
   // Declared last, so the threads end before the members that they use.
   std::unique_ptr<PickService> picks;
   std::unique_ptr<WorkerPool> pool;
   std::unique_ptr<WorkerPool> motion_pool;  ///< one thread
+  std::unique_ptr<WorkerPool> lookups;      ///< one thread, which waits for the disk
   std::jthread render_thread;
 };
 

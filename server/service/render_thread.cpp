@@ -3,12 +3,26 @@
 #include <algorithm>
 #include <chrono>
 #include <utility>
+#include <vector>
+
+#include <malloc.h>
 
 #include "base/stopwatch.h"
 #include "service/guarded.h"
 #include "service/render_service_state.h"
 
 namespace surfcast::service {
+namespace {
+
+tl::unexpected<Error> late_error() {
+  return fail(ErrorKind::kUnavailable, "the server is busy: the picture waited too long");
+}
+
+/// Pictures of which each is drawn in the middle of the one before, the first of them not counted: as many as
+/// residency::PageTable can have.
+constexpr int kDeepest = 2;
+
+}  // namespace
 
 void RenderService::State::run(const FrameRendererFactory& make_renderer, std::promise<Status> started) {
   Result<std::unique_ptr<FrameRenderer>> renderer = guarded([&] { return make_renderer(); });
@@ -23,6 +37,7 @@ void RenderService::State::run(const FrameRendererFactory& make_renderer, std::p
   for (;;) {
     if (more_to_warm_up && idle_for_a_moment()) {
       more_to_warm_up = guarded([&]() -> Result<bool> { return (*renderer)->warm_up(); }).value_or(false);
+      if (!more_to_warm_up) ::malloc_trim(0);  // what large pictures have left goes back to the system
       continue;
     }
     const JobPointer job = next_job();
@@ -31,7 +46,7 @@ void RenderService::State::run(const FrameRendererFactory& make_renderer, std::p
     if (job->picture.priority == Priority::kMotion) {
       draw_motion(**renderer, job, has_waiting(Priority::kStill));
     } else {
-      draw_still(**renderer, job, /*nested=*/false);
+      draw_still(**renderer, job, /*depth=*/0);
     }
   }
 }
@@ -48,15 +63,48 @@ bool RenderService::State::has_waiting(Priority priority) const {
   return queue.has_waiting(priority);
 }
 
-/// True if a job of this priority waits and the encoders have room for its picture.
+/// Whether a job may be drawn now: the encoders have room for its picture, and there is memory for it. Small pictures
+/// at rest take next to none, so that they do not wait for large ones to be encoded, sent and read.
+bool RenderService::State::has_room(JobId id) const {
+  const RenderJob& job = *jobs.at(id);
+  if (job.picture.priority == Priority::kMotion) {
+    return in_encoding[static_cast<size_t>(Priority::kMotion)] < limits.frames_in_encoding;
+  }
+  if (is_small(job.picture)) return small_in_encoding < limits.frames_in_encoding;
+  return in_encoding[static_cast<size_t>(Priority::kStill)] < limits.frames_in_encoding &&
+         memory->fits(job.asker.client, memory_of(job.picture));
+}
+
+/// True if a job of this priority waits and has room.
 bool RenderService::State::may_draw(Priority priority) const {
-  return queue.has_waiting(priority) && in_encoding[static_cast<size_t>(priority)] < limits.frames_in_encoding;
+  return queue.next_client(priority, [this](JobId id) { return has_room(id); }).has_value();
+}
+
+/// Whether the next motion picture comes before a picture at rest of that client. Not if its own client is ahead: one
+/// large motion picture takes as long as many small pictures at rest.
+bool RenderService::State::moves_first(ClientId other) const {
+  constexpr double kPatienceMs = 60;  // as in DrawShares
+  const std::optional<ClientId> mover = queue.next_client(Priority::kMotion);
+  return shares.motion_first() && mover && queue.shares().used(*mover) <= queue.shares().used(other) + kPatienceMs;
 }
 
 std::optional<Priority> RenderService::State::next_priority() const {
-  const bool still = may_draw(Priority::kStill);
-  if (may_draw(Priority::kMotion) && (shares.motion_first() || !still)) return Priority::kMotion;
-  return still ? std::optional(Priority::kStill) : std::nullopt;
+  const auto resting = queue.next_client(Priority::kStill, [this](JobId id) { return has_room(id); });
+  if (may_draw(Priority::kMotion) && (!resting || moves_first(*resting))) return Priority::kMotion;
+  return resting ? std::optional(Priority::kStill) : std::nullopt;
+}
+
+void RenderService::State::charge(const RenderJob& job, double milliseconds) {
+  // A user who moves a view has three quarters of the time, as DrawShares gives to motion.
+  const double weight = job.picture.priority == Priority::kMotion ? 1.0 / 3 : 1;
+  const std::lock_guard lock(mutex);
+  queue.shares().charge(job.asker.client, weight * milliseconds);
+}
+
+/// A job that has left the queue does not count for its client any more.
+void RenderService::State::leave_queue(const RenderJob& job) {
+  const std::lock_guard lock(mutex);
+  queue.shares().leave(job.asker.client);
 }
 
 /// Takes a job that has left the queue. Null if the job has waited too long. It is then refused, because its client has
@@ -65,39 +113,67 @@ RenderService::State::JobPointer RenderService::State::start(JobId id, std::uniq
   JobPointer job = jobs.at(id);
   job->waited_ms = job->since_submission.milliseconds();
   if (job->waited_ms <= static_cast<double>(limits.queue_timeout.count())) {
-    ++in_encoding[static_cast<size_t>(job->picture.priority)];
+    const bool still = job->picture.priority == Priority::kStill;
+    job->small = still && is_small(job->picture);
+    ++(job->small ? small_in_encoding : in_encoding[static_cast<size_t>(job->picture.priority)]);
+    if (still) job->memory = memory->take(job->asker.client, memory_of(job->picture));
     return job;
   }
+  queue.shares().leave(job->asker.client);
   lock.unlock();
-  finish(job, fail(ErrorKind::kUnavailable, "the server is busy: the picture waited too long"));
+  finish(job, late_error());
   lock.lock();
   return nullptr;
 }
 
+/// Refuses the jobs that have waited too long for room.
+void RenderService::State::refuse_late(std::unique_lock<std::mutex>& lock) {
+  std::vector<JobPointer> late;
+  for (const auto& [id, job] : jobs) {
+    const bool waits = job->since_submission.milliseconds() > static_cast<double>(limits.queue_timeout.count());
+    if (waits && queue.remove(id)) late.push_back(job);
+  }
+  lock.unlock();
+  for (const JobPointer& job : late) {
+    finish(job, late_error());
+  }
+  lock.lock();
+}
+
 /// Waits for a job that may be drawn; null if the service stops.
 RenderService::State::JobPointer RenderService::State::next_job() {
+  constexpr std::chrono::seconds kLookAgain{1};
   std::unique_lock lock(mutex);
   for (;;) {
-    wake.wait(lock, [this] { return stopping || next_priority(); });
+    wake.wait(lock, [this] { return stopping || queue.size() > 0; });
+    const bool ready = wake.wait_for(lock, kLookAgain, [this] { return stopping || next_priority(); });
     if (stopping) return nullptr;
-    if (JobPointer job = start(*queue.pop(*next_priority()), lock)) return job;
+    if (!ready) {
+      refuse_late(lock);
+      continue;
+    }
+    const auto id = queue.pop(*next_priority(), [this](JobId job) { return has_room(job); });
+    if (JobPointer job = start(*id, lock)) return job;
   }
 }
 
 /// The motion job that preempts the current still picture; null if there is none.
-RenderService::State::JobPointer RenderService::State::next_motion() {
+RenderService::State::JobPointer RenderService::State::next_motion(const RenderJob& current) {
   std::unique_lock lock(mutex);
-  while (!stopping && may_draw(Priority::kMotion) && shares.motion_first()) {
+  while (!stopping && may_draw(Priority::kMotion) && moves_first(current.asker.client)) {
     if (JobPointer job = start(*queue.pop(Priority::kMotion), lock)) return job;
   }
   return nullptr;
 }
 
-/// The still job of another session that is drawn in the middle of the current one; null if there is none.
-RenderService::State::JobPointer RenderService::State::next_still_of_others(SessionId session) {
+/// The still job of another session that is drawn in the middle of the current one; null if there is none. In the
+/// middle of one that is itself in the middle of another only a much smaller one is drawn.
+RenderService::State::JobPointer RenderService::State::next_still_of_others(const RenderJob& current, int depth) {
+  const size_t most = depth == 0 ? SIZE_MAX : memory_of(current.picture) / 4;
+  const auto accepts = [&](JobId id) { return has_room(id) && memory_of(jobs.at(id)->picture) <= most; };
   std::unique_lock lock(mutex);
-  while (!stopping && may_draw(Priority::kStill)) {
-    const std::optional<JobId> id = queue.pop_of_others(Priority::kStill, session);
+  while (!stopping && depth < kDeepest) {
+    const std::optional<JobId> id = queue.pop_of_others(Priority::kStill, current.asker, accepts);
     if (!id) return nullptr;
     if (JobPointer job = start(*id, lock)) return job;
   }
@@ -118,31 +194,36 @@ Result<picture::Frame> RenderService::State::render_frame(FrameRenderer& rendere
 
 void RenderService::State::draw_motion(FrameRenderer& renderer, const JobPointer& job, bool others_wait) {
   draw_one(renderer, job, job->cancelled);
+  charge(*job, job->draw_ms);
+  leave_queue(*job);
   shares.drew_motion(job->draw_ms, others_wait);
 }
 
-bool RenderService::State::draw_waiting_motion(FrameRenderer& renderer) {
+bool RenderService::State::draw_waiting_motion(FrameRenderer& renderer, const RenderJob& current) {
   bool any = false;
-  for (; const JobPointer motion = next_motion(); any = true) draw_motion(renderer, motion, /*others_wait=*/true);
+  for (; const JobPointer motion = next_motion(current); any = true) {
+    draw_motion(renderer, motion, /*others_wait=*/true);
+  }
   return any;
 }
 
 /// Draws a still picture, and motion pictures between its batches. If it takes long, still pictures of other sessions
 /// are drawn in its middle, one after another. Between two of them it goes on for a turn, and at least for as long as
-/// the one before took: each side has half of the time.
-void RenderService::State::draw_still(FrameRenderer& renderer, const JobPointer& job, bool nested) {
+/// the one before took: each side has half of the time. The innermost one is small and is not interrupted.
+void RenderService::State::draw_still(FrameRenderer& renderer, const JobPointer& job, int depth) {
   const auto turn_ms = static_cast<double>(limits.still_turn.count());
   double left_of_turn = turn_ms;
   Stopwatch since_others;
   const Preemption preemption(job->cancelled, [&] {
     const double drawn_ms = since_others.milliseconds();
     shares.drew_other(drawn_ms);
+    charge(*job, drawn_ms);
     left_of_turn -= drawn_ms;
-    bool preempted = draw_waiting_motion(renderer);
-    const JobPointer other = !nested && left_of_turn <= 0 ? next_still_of_others(job->session) : nullptr;
+    bool preempted = depth < kDeepest && draw_waiting_motion(renderer, *job);
+    const JobPointer other = left_of_turn <= 0 ? next_still_of_others(*job, depth) : nullptr;
     if (other) {
       const Stopwatch watch;
-      draw_still(renderer, other, /*nested=*/true);
+      draw_still(renderer, other, depth + 1);
       left_of_turn = std::max(turn_ms, watch.milliseconds());
       preempted = true;
     }
@@ -151,6 +232,8 @@ void RenderService::State::draw_still(FrameRenderer& renderer, const JobPointer&
   });
   draw_one(renderer, job, preemption);
   shares.drew_other(since_others.milliseconds());
+  charge(*job, since_others.milliseconds());
+  leave_queue(*job);
 }
 
 void RenderService::State::draw_one(FrameRenderer& renderer, const JobPointer& job, const Preemption& preemption) {
@@ -166,7 +249,8 @@ void RenderService::State::draw_one(FrameRenderer& renderer, const JobPointer& j
     shared = fail(frame.error());
   }
   WorkerPool& encoder = job->picture.priority == Priority::kMotion ? *motion_pool : *pool;
-  encoder.post([this, job, shared = std::move(shared)]() mutable { encode_one(job, std::move(shared)); });
+  encoder.post([this, job, shared = std::move(shared)]() mutable { encode_one(job, std::move(shared)); },
+               job->asker.client, job->small ? TaskSize::kSmall : TaskSize::kLarge);
 }
 
 /// Cancels a picture that a newer one supersedes, if its encoding has not begun.

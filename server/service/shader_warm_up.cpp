@@ -15,7 +15,8 @@ void add_both(picture::PictureRequest request, std::vector<picture::PictureReque
 
 }  // namespace
 
-std::vector<picture::PictureRequest> shader_warm_up_requests(const model::ModelInfo& info) {
+std::vector<picture::PictureRequest> shader_warm_up_requests(const model::ModelFile& model) {
+  const model::ModelInfo& info = model.info();
   picture::PictureRequest plain;
   plain.width = 16;
   plain.height = 16;
@@ -23,6 +24,11 @@ std::vector<picture::PictureRequest> shader_warm_up_requests(const model::ModelI
   plain.silhouettes = true;
   std::vector<picture::PictureRequest> pictures;
   add_both(plain, pictures);
+  if (!model.ellipsoid_sources().empty()) {
+    picture::PictureRequest superquadrics = plain;
+    superquadrics.glyphs.shape = picture::GlyphShape::kSuperquadric;
+    add_both(superquadrics, pictures);
+  }
   const auto colored_by = [&](picture::SurfelColor color) {
     picture::PictureRequest request = plain;
     request.coloring.source = color;

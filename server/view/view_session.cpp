@@ -29,10 +29,10 @@ FrameResult result_of(FrameKind kind, const service::EncodedPicture& picture) {
 
 }  // namespace
 
-ViewSession::ViewSession(service::RenderService& service, service::SessionId session, uint64_t viewer,
+ViewSession::ViewSession(service::RenderService& service, const service::Asker& asker, uint64_t viewer,
                          double target_fps, ViewCounts& counts, ViewPort port, size_t kept_bytes)
     : service_(service),
-      session_(session),
+      asker_(asker),
       viewer_(viewer),
       target_fps_(target_fps),
       counts_(counts),
@@ -170,9 +170,10 @@ void ViewSession::draw(FrameKind kind, ViewTime now) {
     });
   };
   if (kind == FrameKind::kFinal && finished_frame_) {
-    job.job = service_.encode(std::exchange(finished_frame_, {}), picture_job(kind, job.edition, 0), std::move(done));
+    job.job =
+        service_.encode(std::exchange(finished_frame_, {}), picture_job(kind, job.edition, 0), std::move(done), asker_);
   } else {
-    job.job = service_.draw(session_, picture_job(kind, job.edition, job.supersedes), std::move(done));
+    job.job = service_.draw(asker_, picture_job(kind, job.edition, job.supersedes), std::move(done));
   }
   if (kind == FrameKind::kMotion && job.edition == edition_) last_motion_job_ = job.job;
 }
@@ -265,8 +266,9 @@ void ViewSession::show(uint64_t frame, FrameKind kind, service::EncodedPicture p
   // The renderer's `converged` refers to the request of this frame, not to the request of the view.
   picture.converged = picture.converged && kind == FrameKind::kFinal;
   std::vector<std::byte> bytes = std::move(picture.bytes);
+  std::shared_ptr<const void> memory = std::move(picture.memory);
   message.picture = std::move(picture);
-  outgoing_ = Outgoing{frame, kind, std::move(message), std::move(bytes), 0};
+  outgoing_ = Outgoing{frame, kind, std::move(message), std::move(bytes), 0, std::move(memory)};
 }
 
 void ViewSession::give_up_sending() {

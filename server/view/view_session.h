@@ -62,12 +62,15 @@ class ViewSession : public std::enable_shared_from_this<ViewSession> {
   static constexpr size_t kKeptBytes = size_t{32} << 20;  ///< a frame of 8 million pixels
 
   /// `kept_bytes`: of pixels at most, a frame at rest is kept to make the final picture of it without drawing again.
-  ViewSession(service::RenderService& service, service::SessionId session, uint64_t viewer, double target_fps,
+  ViewSession(service::RenderService& service, const service::Asker& asker, uint64_t viewer, double target_fps,
               ViewCounts& counts, ViewPort port, size_t kept_bytes = kKeptBytes);
   ~ViewSession();
   ViewSession(const ViewSession&) = delete;
   ViewSession& operator=(const ViewSession&) = delete;
 
+  /// Frames in motion begin with this quality, as another view had it.
+  void begin_with(const QualityState& quality) { quality_ = quality; }
+  [[nodiscard]] const QualityState& quality() const { return quality_; }
   void update(ViewUpdate update, ViewTime now);
   /// The client has processed a message of this frame. Unknown frames are ignored.
   void acknowledge(uint64_t frame, double client_ms, ViewTime now);
@@ -95,9 +98,10 @@ class ViewSession : public std::enable_shared_from_this<ViewSession> {
   struct Outgoing {
     uint64_t frame = 0;
     FrameKind kind = FrameKind::kMotion;
-    ViewMessage message;           ///< without picture bytes
-    std::vector<std::byte> bytes;  ///< the complete encoded picture
-    size_t sent = 0;               ///< bytes sent so far
+    ViewMessage message;                 ///< without picture bytes
+    std::vector<std::byte> bytes;        ///< the complete encoded picture
+    size_t sent = 0;                     ///< bytes sent so far
+    std::shared_ptr<const void> memory;  ///< counts `bytes`
   };
 
   void draw(FrameKind kind, ViewTime now);
@@ -120,7 +124,7 @@ class ViewSession : public std::enable_shared_from_this<ViewSession> {
   void adapt_quality(Job& job, double transfer_ms, double client_ms);
 
   service::RenderService& service_;
-  service::SessionId session_;
+  service::Asker asker_;
   uint64_t viewer_;
   double target_fps_;
   ViewCounts& counts_;

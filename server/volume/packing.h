@@ -1,6 +1,5 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <glm/vec3.hpp>
@@ -26,10 +25,13 @@ struct BrickLayout {
 /// Items of the block of a brick: its samples without the halo, but at least half its texels (docs/kinds.md).
 [[nodiscard]] uint32_t brick_items(const glm::u32vec3& count);
 
+/// The most texels of a brick whose block has so many items; 0 if no brick has as many.
+[[nodiscard]] uint32_t most_texels(uint32_t items);
+
 [[nodiscard]] std::vector<glm::uvec4> pack_brick(const Brick& brick);
 
-/// Sub-bricks of 4 x 4 x 4 samples: 8 along each axis, whatever the size of the brick.
-inline constexpr uint32_t kSubBricks = 8;
+/// Sub-bricks of 2 x 2 x 2 samples: 16 along each axis, whatever the size of the brick.
+inline constexpr uint32_t kSubBricks = 16;
 inline constexpr uint32_t kSubBrickSamples = kBrickSamples / kSubBricks;
 inline constexpr size_t kAllSubBricks = size_t{kSubBricks} * kSubBricks * kSubBricks;
 
@@ -40,9 +42,11 @@ struct CodeRange {
   bool operator==(const CodeRange&) const = default;
 };
 
-/// The codes that reconstruction in each sub-brick may read, i fastest: those of the samples from one before the
-/// sub-brick (two before the first) to two after it. Empty for a sub-brick beyond the last sample.
-[[nodiscard]] std::array<CodeRange, kAllSubBricks> sub_brick_ranges(const Brick& brick);
+/// The codes that reconstruction in each sub-brick may find, kAllSubBricks, i fastest. It may find more than the
+/// samples, and less than 0 and more than 65535: these two stand for all beyond them. Empty for a sub-brick beyond the
+/// last sample. (The range of the control points of the Bezier form of the reconstruction in each cell, which is
+/// narrow.)
+[[nodiscard]] std::vector<CodeRange> sub_brick_ranges(const Brick& brick);
 
 /// Cubic reconstruction overshoots the samples that it reads by at most this part of their range: weights of either
 /// sign sum to 1.25 along an axis.

@@ -1,9 +1,10 @@
 // Blends the Gaussians of each tile along the rays of its pixels: discs as their training program draws them (Huang
-// 2024, SURFCAST_FLAT), or every Gaussian exact in perspective (SURFCAST_EXACT). A lane draws a pixel. Colours are
-// sRGB codes.
+// 2024, SURFCAST_FLAT), or every Gaussian exact in perspective (SURFCAST_EXACT). A lane draws two pixels of a row,
+// which share the record. Colours are sRGB codes.
 //
-// Exact pictures are in the order of the depths on each ray. Lists are in the order of the centres, which is nearly
-// the same: the next SURFCAST_EXACT_SORTED fragments of a pixel wait, and the nearest of them is blended.
+// Exact pictures are in the order of the depths on each ray. Lists are in the order of the depths at the centre of the
+// tile, which is nearly the same: the next SURFCAST_EXACT_SORTED fragments of a pixel wait, and the nearest of them is
+// blended.
 #include "shared/frame_layout.h"
 #include "include/frame.glsl"
 #include "gaussian/ray_record.glsl"
@@ -11,7 +12,8 @@
 layout(location = SURFCAST_UNIFORM_FIRST_GROUP) uniform uint first_group;
 // Number of lists, first entry of the round.
 layout(location = SURFCAST_UNIFORM_SPAN) uniform uvec2 span;
-const uint kPixels = uint(SURFCAST_TILE_WIDTH * SURFCAST_TILE_HEIGHT);
+const int kPixels = SURFCAST_RAY_GAUSSIAN_PIXELS;
+const uint kLanesOfTile = uint(SURFCAST_TILE_WIDTH * SURFCAST_TILE_HEIGHT / kPixels);
 layout(local_size_x = SURFCAST_BLEND_LANES) in;
 
 layout(std430, binding = SURFCAST_BIND_TILE_ORDER) readonly buffer TileLists { uvec4 tile_lists[]; };
@@ -19,11 +21,39 @@ layout(binding = SURFCAST_UNIT_SPLATS) uniform usamplerBuffer records;
 layout(binding = SURFCAST_UNIT_LISTS) uniform usamplerBuffer lists;
 layout(std430, binding = SURFCAST_BIND_LIGHT) buffer State { vec4 states[]; };
 #include "gaussian/write_codes.glsl"
+#ifdef SURFCAST_LAYERS
+#include "gaussian/surfaces.glsl"
+#ifdef SURFCAST_KEEPS
+#include "gaussian/keep_layers.glsl"
+#endif
+#endif
 
 struct Fragment {
   float depth;
   float alpha;
-  vec3 color;
+};
+
+#ifdef SURFCAST_EXACT
+struct Waiting {
+  float depth;
+  uvec2 light;  // halves: red, green, blue, opacity
+};
+#endif
+
+// Premultiplied colour and transmittance, which is negative where the pixel takes no more.
+struct Pixel {
+  vec3 d;
+  vec4 state;
+#ifdef SURFCAST_LAYERS
+  ivec2 at;    // in the region
+  int passed;  // surfaces that have been blended
+#endif
+#ifdef SURFCAST_KEEPS
+  Filling filling;
+#endif
+#ifdef SURFCAST_EXACT
+  Waiting waiting[SURFCAST_EXACT_SORTED];  // in ascending depth
+#endif
 };
 
 #ifdef SURFCAST_EXACT
@@ -38,94 +68,213 @@ float normal_integral(float x) {
 
 // The share that lies before the eye.
 float seen_share(OnRay seen) {
-  if (!(seen.deviation > 0.0)) return seen.depth >= 0.0 ? 1.0 : 0.0;
-  return normal_integral(seen.depth / seen.deviation);
+  if (seen.depth >= 0.0 && seen.depth * seen.depth >= 36.0 * seen.spread) return 1.0;
+  return seen.spread > 0.0 ? normal_integral(seen.depth * inversesqrt(seen.spread)) : 0.0;
+}
+
+// With all of the Gaussian, whatever hides it.
+Fragment whole_fragment(RayGaussian g, OnRay seen) {
+  float alpha = g.opacity * sqrt(seen.gain) * exp(-0.5 * seen.r2);
+  return Fragment(seen.depth, seen.r2 <= float(SURFCAST_EXACT_CUTOFF) ? alpha : 0.0);
+}
+
+OnRay exact_on_ray(RayGaussian g, vec3 d) {
+  return on_ray(g, float(SURFCAST_EXACT_PREFILTER) * pixel_square(g.o), d);
 }
 
 Fragment fragment_of(RayGaussian g, vec3 d) {
-  OnRay seen = on_ray(g, adjugate(g.m), float(SURFCAST_EXACT_PREFILTER), d);
-  float alpha = g.opacity * sqrt(seen.gain) * exp(-0.5 * seen.r2) * seen_share(seen);
-  return Fragment(seen.depth, seen.r2 <= float(SURFCAST_EXACT_CUTOFF) ? alpha : 0.0, g.color);
+  OnRay seen = exact_on_ray(g, d);
+  Fragment fragment = whole_fragment(g, seen);
+  if (fragment.alpha > 0.0) fragment.alpha *= seen_share(seen);
+  return fragment;
 }
 #else
 layout(location = SURFCAST_UNIFORM_NEAR) uniform float near;  // depth, in units of the projection
 
-// The disc where the ray hits it, but at least a Gaussian on the screen.
+// The disc where the ray hits it, but at least a Gaussian on the screen. The record of a disc has its centre's depth in
+// the place of the spread.
 Fragment fragment_of(RayGaussian g, vec3 d) {
-  OnRay seen = on_ray(g, adjugate(g.m), 0.0, d);
+  OnRay seen = on_ray(g, 0.0, d);
   vec2 v = eta() * (d.xy - g.o.xy / g.o.z);
   float on_screen = float(SURFCAST_DISC_SCREEN) * dot(v, v);
   bool hit = seen.r2 <= on_screen;
   float alpha = min(float(SURFCAST_TRAINED_MOST), g.opacity * exp(-0.5 * (hit ? seen.r2 : on_screen)));
-  float centre = g.unit * g.o.z;
-  bool drawn = (hit ? seen.depth : centre) >= near && alpha >= float(SURFCAST_TRAINED_LEAST);
-  return Fragment(centre, drawn ? alpha : 0.0, g.color);
+  bool drawn = (hit ? seen.depth : g.spread) >= near && alpha >= float(SURFCAST_TRAINED_LEAST);
+  return Fragment(g.spread, drawn ? alpha : 0.0);
 }
 #endif
 
-// Premultiplied colour, transmittance; negative where the pixel takes no more.
-vec4 state;
+// The transmittance below which a pixel takes no more.
+#ifdef SURFCAST_EXACT
+const float kClear = float(SURFCAST_EXACT_CLEAR);
+#else
+const float kClear = float(SURFCAST_TRAINED_CLEAR);
+#endif
 
-void blend(Fragment f) {
-  if (state.a < 0.0 || f.alpha <= 0.0) return;
-  float left = state.a * (1.0 - f.alpha);
+#ifdef SURFCAST_LAYERS
+// Blends the surfaces that are nearer than `depth`.
+void blend_nearer(float depth, inout Pixel pixel) {
+  if (surface_depth(pixel.at, pixel.passed) >= depth) return;
+  vec3 color = pixel.state.rgb;
+  float clear = pixel.state.a;
+#ifdef SURFCAST_KEEPS
+  end_layer(pixel.at, pixel.filling, color, clear);
+  float surface = surface_depth(pixel.at, pixel.passed);
+#endif
+  blend_surfaces(pixel.at, depth, kClear, pixel.passed, color, clear);
+#ifdef SURFCAST_KEEPS
+  pixel.filling.depth += (pixel.state.a - abs(clear)) * surface;
+  end_layer(pixel.at, pixel.filling, color, clear);
+#endif
+  pixel.state = vec4(color, clear);
+}
+#endif
+
+// `light`: colour, opacity.
+void blend(float depth, vec4 light, inout Pixel pixel) {
+  if (pixel.state.a < 0.0 || light.a <= 0.0) return;
+#ifdef SURFCAST_LAYERS
+  blend_nearer(depth, pixel);
+  if (pixel.state.a < 0.0) return;
+#endif
+  float left = pixel.state.a * (1.0 - light.a);
 #ifdef SURFCAST_FLAT
-  if (left < float(SURFCAST_TRAINED_CLEAR)) {
-    state.a = -state.a;
+  if (left < kClear) {
+    pixel.state.a = -pixel.state.a;
     return;
   }
 #endif
-  state = vec4(state.rgb + state.a * f.alpha * f.color, left);
+#ifdef SURFCAST_KEEPS
+  fill_layer(pixel.at, pixel.filling, pixel.state.rgb, pixel.state.a, pixel.state.a - left, depth);
+#endif
+  pixel.state = vec4(pixel.state.rgb + pixel.state.a * light.a * light.rgb, left);
 #ifdef SURFCAST_EXACT
-  if (left < 1e-5) state.a = -left;
+  if (left < kClear) pixel.state.a = -left;
 #endif
 }
 
-#ifdef SURFCAST_EXACT
-Fragment waiting[SURFCAST_EXACT_SORTED];  // in ascending depth; alpha 0: none
+vec4 unpack_light(uvec2 light) { return vec4(unpackHalf2x16(light.x), unpackHalf2x16(light.y)); }
 
-// Takes a fragment in, and blends the nearest.
-void blend_in_order(Fragment f) {
+// Takes a fragment in; with an order for each pixel, blends the nearest of those that wait.
+void take(Fragment f, uvec2 color, inout Pixel pixel) {
+  if (f.alpha <= 0.0) return;
+#ifdef SURFCAST_EXACT
+  Waiting moved = Waiting(f.depth, uvec2(color.x, color.y | packHalf2x16(vec2(0.0, f.alpha))));
   for (int i = SURFCAST_EXACT_SORTED - 1; i >= 0; --i) {
-    if (f.depth < waiting[i].depth) continue;
-    Fragment nearer = waiting[i];
-    waiting[i] = f;
-    f = nearer;
+    Waiting other = pixel.waiting[i];
+    bool behind = moved.depth >= other.depth;
+    pixel.waiting[i] = Waiting(max(moved.depth, other.depth), behind ? moved.light : other.light);
+    moved = Waiting(min(moved.depth, other.depth), behind ? other.light : moved.light);
   }
-  blend(f);
-}
+  blend(moved.depth, unpack_light(moved.light), pixel);
+#else
+  blend(f.depth, vec4(unpack_light(color).rgb, f.alpha), pixel);
 #endif
+}
+
+#if defined(SURFCAST_EXACT) && defined(SURFCAST_LAYERS)
+// The share of a Gaussian on the ray that is nearer than a depth.
+float share_before(OnRay seen, float depth) {
+  if (!(seen.spread > 0.0)) return seen.depth < depth ? 1.0 : 0.0;
+  return normal_integral((depth - seen.depth) * inversesqrt(seen.spread));
+}
+
+// Takes in the parts of a Gaussian between the surfaces. A part lies between its surfaces, wherever its centre is.
+void draw(RayGaussian g, inout Pixel pixel) {
+  const float kBehind = 1.0 + 1e-6;
+  if (pixel.state.a < 0.0) return;
+  OnRay seen = exact_on_ray(g, pixel.d);
+  Fragment whole = whole_fragment(g, seen);
+  if (whole.alpha <= 0.0) return;
+  float begin = 0.0;
+  float share = 1.0 - seen_share(seen);
+  for (int i = pixel.passed; i <= SURFCAST_LAYERS_KEPT; ++i) {
+    float end = surface_depth(pixel.at, i);
+    float until = end < kNoSurface ? share_before(seen, end) : 1.0;
+    float alpha = whole.alpha * (until - share);
+    if (alpha > 1e-6) take(Fragment(clamp(whole.depth, begin, max(begin, end)), alpha), g.color, pixel);
+    if (end >= kNoSurface || surfaces_through(pixel.at, i) <= 0.0) break;
+    share = max(share, until);
+    begin = end * kBehind;
+  }
+}
+#else
+void draw(RayGaussian g, inout Pixel pixel) { take(fragment_of(g, pixel.d), g.color, pixel); }
+#endif
+
+RayGaussian fetch_gaussian(int entry) {
+  int record = SURFCAST_RAY_GAUSSIAN_RECORD * int(texelFetch(lists, entry).x);
+  uvec4 texels[SURFCAST_RAY_GAUSSIAN_RECORD];
+  for (int i = 0; i < SURFCAST_RAY_GAUSSIAN_RECORD; ++i) texels[i] = texelFetch(records, record + i);
+  return decode_ray_gaussian(texels);
+}
+
+int state_of(ivec2 at) { return at.y * frame.region.z + at.x; }
+bool inside(ivec2 at) { return at.x < frame.region.z && at.y < frame.region.w; }
+
+Pixel begin_pixel(ivec2 at) {
+  Pixel pixel;
+  pixel.d = vec3(ray_of_pixel(vec2(frame.region.xy + at) + 0.5), 1.0);
+  pixel.state = vec4(0.0, 0.0, 0.0, inside(at) ? 1.0 : -1.0);
+  if (span.y > 0u && inside(at)) pixel.state = states[state_of(at)];
+#ifdef SURFCAST_LAYERS
+  pixel.at = at;
+  pixel.state.a = unpack_state(pixel.state.a, pixel.passed);
+#endif
+#ifdef SURFCAST_KEEPS
+  pixel.filling = first_filling();
+  if (span.y > 0u && inside(at)) pixel.filling = stored_filling(at, pixel.state.rgb, pixel.state.a);
+#endif
+#ifdef SURFCAST_EXACT
+  for (int i = 0; i < SURFCAST_EXACT_SORTED; ++i) pixel.waiting[i] = Waiting(-1e30, uvec2(0u));
+#endif
+  return pixel;
+}
+
+void end_pixel(Pixel pixel, ivec2 at, bool finished) {
+#ifdef SURFCAST_EXACT
+  for (int i = 0; i < SURFCAST_EXACT_SORTED; ++i) {
+    blend(pixel.waiting[i].depth, unpack_light(pixel.waiting[i].light), pixel);
+  }
+#endif
+  if (!inside(at)) return;
+  vec4 state = pixel.state;
+#ifdef SURFCAST_KEEPS
+  if (finished) finish_layers(at, pixel.filling, state.rgb, state.a, pixel.passed);
+  else store_layer(at, pixel.filling, state.rgb, state.a);
+#endif
+#ifdef SURFCAST_LAYERS
+#ifndef SURFCAST_KEEPS
+  if (finished) write_codes_before(at, state.rgb, abs(state.a), behind_gaussians(at, pixel.passed));
+#endif
+  state.a = pack_state(state.a, pixel.passed);
+  if (!finished) states[state_of(at)] = state;
+#else
+  if (finished) write_codes(at, state.rgb, abs(state.a));
+  else states[state_of(at)] = state;
+#endif
+}
 
 void main() {
   uint lane = (first_group + gl_WorkGroupID.x) * uint(SURFCAST_BLEND_LANES) + gl_LocalInvocationID.x;
-  if (lane / kPixels >= span.x) return;
-  uvec4 list = tile_lists[lane / kPixels];  // tile, first entry, number of entries
-  uint within = lane % kPixels;
+  if (lane / kLanesOfTile >= span.x) return;
+  uvec4 list = tile_lists[lane / kLanesOfTile];  // tile, first entry, number of entries
+  int within = kPixels * int(lane % kLanesOfTile);
   ivec2 tile = ivec2(int(list.x) % frame.tiles.x, int(list.x) / frame.tiles.x);
   ivec2 at = ivec2(SURFCAST_TILE_WIDTH, SURFCAST_TILE_HEIGHT) * tile +
-             ivec2(within % uint(SURFCAST_TILE_WIDTH), within / uint(SURFCAST_TILE_WIDTH));
-  if (at.x >= frame.region.z || at.y >= frame.region.w) return;
-  int index = at.y * frame.region.z + at.x;
-  state = span.y == 0u ? vec4(0.0, 0.0, 0.0, 1.0) : states[index];
-  vec3 d = vec3(ray_of_pixel(vec2(frame.region.xy + at) + 0.5), 1.0);
-#ifdef SURFCAST_EXACT
-  for (int i = 0; i < SURFCAST_EXACT_SORTED; ++i) waiting[i] = Fragment(-1e30, 0.0, vec3(0.0));
-#endif
-  uint last = min(list.z, span.y + uint(SURFCAST_RAY_GAUSSIAN_ROUND));
-  for (uint i = span.y; i < last && state.a >= 0.0; ++i) {
-    int record = SURFCAST_RAY_GAUSSIAN_RECORD * int(texelFetch(lists, int(list.y + i)).x);
-    uvec4 texels[4] = uvec4[4](texelFetch(records, record), texelFetch(records, record + 1),
-                               texelFetch(records, record + 2), texelFetch(records, record + 3));
-    Fragment f = fragment_of(decode_ray_gaussian(texels), d);
-#ifdef SURFCAST_EXACT
-    if (f.alpha > 0.0) blend_in_order(f);
+             ivec2(within % SURFCAST_TILE_WIDTH, within / SURFCAST_TILE_WIDTH);
+  Pixel first = begin_pixel(at);
+  Pixel second = begin_pixel(at + ivec2(1, 0));
+#ifdef SURFCAST_LAYERS
+  uint last = min(list.z, span.y + uint(SURFCAST_LAYERED_GAUSSIAN_ROUND));
 #else
-    blend(f);
+  uint last = min(list.z, span.y + uint(SURFCAST_GAUSSIAN_ROUND));
 #endif
+  for (uint i = span.y; i < last && max(first.state.a, second.state.a) >= 0.0; ++i) {
+    RayGaussian g = fetch_gaussian(int(list.y + i));
+    draw(g, first);
+    draw(g, second);
   }
-#ifdef SURFCAST_EXACT
-  for (int i = 0; i < SURFCAST_EXACT_SORTED; ++i) blend(waiting[i]);
-#endif
-  if (last == list.z) write_codes(at, state.rgb, abs(state.a));
-  else states[index] = state;
+  end_pixel(first, at, last == list.z);
+  end_pixel(second, at + ivec2(1, 0), last == list.z);
 }

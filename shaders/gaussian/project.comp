@@ -37,7 +37,8 @@ Gaussian placed_gaussian(BlockView block, uvec4 a, uvec4 b) {
   vec3 s = gaussian_deviations(a, block.scale.y);
   mat3 axes = rotation * gaussian_axes(a, b);
   vec3 o = block.origin.xyz + rotation * (block.step.xyz * gaussian_position(a));
-  return Gaussian(o, mat3(s.x * axes[0], s.y * axes[1], s.z * axes[2]), gaussian_opacity(b));
+  return Gaussian(o, mat3(s.x * axes[0], s.y * axes[1], s.z * axes[2]),
+                  gaussian_opacity(b) * frame.background.w);
 }
 
 // sRGB codes, not negative, in the direction of the eye.
@@ -98,10 +99,30 @@ bool seen_bounds(Gaussian g, float unit, out vec2 low, out vec2 high) {
 // Depths behind the eye's plane come first, too: bits of negative numbers would not be in order.
 float depth_code(Gaussian g) { return max(g.o.z, 1e-30); }
 
+#ifdef SURFCAST_EXACT
+// Three texels of the depth on a ray: numerator, and denominator by powers of d.x and d.y (ray_record.glsl); and the
+// ray of the centre.
+void store_depth(int at, RayGaussian g) {
+  float p = float(SURFCAST_EXACT_PREFILTER) * pixel_square(g.o);
+  mat3 q = transpose(g.adjugate) * g.adjugate;
+  vec3 linear = vec3(q[2][2] + p * g.trace.x, 2.0 * (q[2].xy - p * g.trace.yz));
+  vec3 squares = vec3(q[0][0] + p * g.trace.w, 2.0 * q[0][1], q[1][1] + p * g.trace.w);
+  vec2 centre = g.o.z > 0.0 ? g.o.xy / g.o.z : vec2(0.0);
+  imageStore(keys, at, floatBitsToUint(vec4(g.n, centre.x)));
+  imageStore(keys, at + 1, floatBitsToUint(vec4(linear, centre.y)));
+  imageStore(keys, at + 2, uvec4(floatBitsToUint(squares), 0u));
+}
+const int kKey = SURFCAST_EXACT_GAUSSIAN_KEY;
+const float kPrefilter = float(SURFCAST_EXACT_PREFILTER);
+#else
+const int kKey = SURFCAST_GAUSSIAN_KEY;
+const float kPrefilter = 0.0;
+#endif
+
 void project(uvec4 run, BlockView block, int at, int place) {
   uvec4 a = texelFetch(surfels, at);
   uvec4 b = texelFetch(surfels, at + 1);
-  imageStore(keys, place, uvec4(0u));
+  imageStore(keys, kKey * place, uvec4(0u));
 #ifdef SURFCAST_CLIPPED
   if (clipped_away(run.x, a)) return;
 #endif
@@ -111,10 +132,21 @@ void project(uvec4 run, BlockView block, int at, int place) {
   bool outside;
   uvec2 range = tile_range(low, high, outside);
   if (outside) return;
-  uvec4 texels[4];
-  encode_ray_gaussian(make_ray_gaussian(g.o, g.factor, g.opacity, seen_color(run, block, g.o, at, b)), texels);
-  for (int i = 0; i < 4; ++i) imageStore(records, SURFCAST_RAY_GAUSSIAN_RECORD * place + i, texels[i]);
-  imageStore(keys, place, uvec4(floatBitsToUint(depth_code(g)), range, 0u));
+  RayGaussian seen = make_ray_gaussian(g.o, g.factor, kPrefilter);
+  vec3 color = seen_color(run, block, g.o, at, b);
+  seen.opacity = g.opacity;
+  seen.color = uvec2(packHalf2x16(color.rg), packHalf2x16(vec2(color.b, 0.0)));
+#ifdef SURFCAST_EXACT
+  store_depth(kKey * place + 1, seen);
+#else
+  seen.spread = g.o.z;
+#endif
+  uvec4 texels[SURFCAST_RAY_GAUSSIAN_RECORD];
+  encode_ray_gaussian(seen, texels);
+  for (int i = 0; i < SURFCAST_RAY_GAUSSIAN_RECORD; ++i) {
+    imageStore(records, SURFCAST_RAY_GAUSSIAN_RECORD * place + i, texels[i]);
+  }
+  imageStore(keys, kKey * place, uvec4(floatBitsToUint(depth_code(g)), range, 0u));
 }
 #else
 // The covariance on the screen, square pixels, with the added variance; and its determinant without and with it, as

@@ -1,5 +1,6 @@
 // Unpacks a Gaussian. C++ counterpart: gaussian/pack_gaussians.cpp; layout: shared/gaussian_layout.h.
 #include "shared/gaussian_layout.h"
+#include "include/rotation.glsl"
 
 // Degree of the harmonics that a picture evaluates at most.
 #ifndef SURFCAST_HARMONICS
@@ -30,16 +31,7 @@ mat3 gaussian_axes(uvec4 a, uvec4 b) {
   uvec3 high = (uvec3(a.w) >> uvec3(2u, 12u, 22u)) & 1023u;
   uvec3 low = (uvec3(b.x) >> uvec3(0u, 5u, 10u)) & 31u;
   vec3 part = (vec3((high << 5) | low) / float(SURFCAST_ROTATION_HALF) - 1.0) * 0.70710678118654752;
-  float rest = sqrt(max(1.0 - dot(part, part), 0.0));
-  uint largest = a.w & 3u;
-  float w = largest == 0u ? rest : part.x;
-  vec3 v = part;
-  if (largest == 1u) v = vec3(rest, part.y, part.z);
-  if (largest == 2u) v = vec3(part.y, rest, part.z);
-  if (largest == 3u) v = vec3(part.y, part.z, rest);
-  return mat3(1.0 - 2.0 * (v.y * v.y + v.z * v.z), 2.0 * (v.x * v.y + w * v.z), 2.0 * (v.x * v.z - w * v.y),
-              2.0 * (v.x * v.y - w * v.z), 1.0 - 2.0 * (v.x * v.x + v.z * v.z), 2.0 * (v.y * v.z + w * v.x),
-              2.0 * (v.x * v.z + w * v.y), 2.0 * (v.y * v.z - w * v.x), 1.0 - 2.0 * (v.x * v.x + v.y * v.y));
+  return axes_of_quaternion(part, a.w & 3u);
 }
 
 float gaussian_opacity(uvec4 b) { return float((b.x >> 15) & 255u) / 255.0; }

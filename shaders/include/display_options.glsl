@@ -6,7 +6,8 @@
 //   SURFCAST_COLOR_NORMAL      the colour is the normal
 #include "include/surfel.glsl"
 
-#if defined(SURFCAST_HIDES_CLASSES) || defined(SURFCAST_BY_INTENSITY) || defined(SURFCAST_BY_CLASS)
+#if defined(SURFCAST_HIDES_CLASSES) || defined(SURFCAST_BY_INTENSITY) || defined(SURFCAST_BY_CLASS) || \
+    defined(SURFCAST_OPACITY_OF_FILE) || defined(SURFCAST_OPACITY_BY_CLASS)
 layout(binding = SURFCAST_UNIT_ATTRIBUTES) uniform usamplerBuffer attributes;
 #endif
 #if defined(SURFCAST_CLIPPED) || defined(SURFCAST_COLOR_TABLE)

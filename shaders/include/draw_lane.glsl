@@ -79,10 +79,57 @@ bool composite_columns(inout LightColumns light, ColumnSums sums, Columns surfac
   return more;
 }
 
-#if defined(SURFCAST_TOGETHER)
+// What several of the ways below share: a file is included once, where it is named first, even within conditions.
+#ifdef SURFCAST_TOGETHER
+#include "include/shared_sums.glsl"
+#endif
+#ifdef SURFCAST_SELECTS
+#include "include/selection.glsl"
+#endif
+
+#if defined(SURFCAST_TRANSPARENT)
+#include "include/draw_transparent.glsl"
+#elif defined(SURFCAST_TOGETHER)
 #include "include/draw_together.glsl"
 #elif defined(SURFCAST_SELECTS)
 #include "include/draw_selected.glsl"
+#else
+#ifdef SURFCAST_MARKS
+#include "include/marked_entries.glsl"
+
+// Draws the nearest surface of a tile, which becomes the limit. False if no surface behind it can be visible. `peak`:
+// the largest weight of the list up to the surface.
+bool draw_front(TileLists tile, vec2 pixel, inout Columns limit, inout LightColumns light, out float peak) {
+  Columns surface;
+  ColumnSums sums;
+  for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
+    surface[c] = surface_at_first(light[c]);
+    sums[c] = sums_zero();
+  }
+  peak = 0.0;
+  uint smalls = find_surface_small(tile.first_small, tile.smalls, pixel, limit, surface, peak);
+  float unit = fixed_unit(peak);
+  accumulate_and_mark(tile.first_small, smalls, tile.smalls, pixel, limit, surface, unit, sums);
+  limit = surface;
+  return composite_columns(light, sums, surface, 1.0 / unit, pixel);
+}
+
+// Draws the nearest surface behind `limit`, which becomes the new limit. False if no surface behind it can be visible.
+bool draw_behind(TileLists tile, vec2 pixel, inout Columns limit, inout LightColumns light, inout float peak) {
+  Columns surface;
+  ColumnSums sums;
+  for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
+    // Nothing is behind the last surface of a pixel that is finished.
+    limit[c] = mix(Rows(0.0), limit[c], less(Rows(kOpaque), light[c].transmittance));
+    surface[c] = surface_at_first(light[c]);
+    sums[c] = sums_zero();
+  }
+  uint smalls = find_surface_marked(tile.first_small, tile.smalls, pixel, limit, surface, peak);
+  float unit = fixed_unit(peak);
+  accumulate_marked(tile.first_small, smalls, pixel, limit, surface, unit, sums);
+  limit = surface;
+  return composite_columns(light, sums, surface, 1.0 / unit, pixel);
+}
 #else
 // Draws the nearest surface behind `limit`, which becomes the new limit. False if no surface behind it can be visible.
 // Both passes leave a list where nothing that follows is in front of the surface of any pixel.
@@ -124,4 +171,5 @@ void draw(TileLists tile, int wanted, vec2 pixel, out LightColumns light) {
     if (!draw_layer(tile, layer, pixel, limit, light)) break;
   }
 }
+#endif
 #endif

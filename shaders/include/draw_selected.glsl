@@ -1,5 +1,4 @@
 // Drawing from the marked entries of a list.
-#include "include/selection.glsl"
 #include "include/unfinished.glsl"
 #ifdef SURFCAST_LEAVES_TO_SAMPLES
 #include "include/leave_to_samples.glsl"

@@ -5,25 +5,12 @@
 //
 // All lanes run through the same loops, because they wait for each other.
 
-#define SHARED_PIXELS (SURFCAST_PIXEL_LANES * SURFCAST_COLUMNS * SURFCAST_ROWS)
-#define SHARED_SUMS (8 * SHARED_PIXELS)
-
 shared uint shared_surfaces[SHARED_PIXELS];  // bits of inverse depths
 shared uint shared_peak;                     // bits of the largest weight
-shared uint shared_low[SHARED_SUMS];
-shared uint shared_high[SHARED_SUMS];
 shared uint shared_more;
 
-const uint kLanes = uint(SURFCAST_PIXEL_LANES * SURFCAST_SHARES);
-const uint kShares = uint(SURFCAST_SHARES);
 // Entries after which lanes compare their surfaces.
 const uint kRound = 32u * kShares;
-
-uint pixel_lane() { return gl_LocalInvocationIndex % uint(SURFCAST_PIXEL_LANES); }
-uint own_share() { return gl_LocalInvocationIndex / uint(SURFCAST_PIXEL_LANES); }
-uint shared_pixel(int column, int row) {
-  return (pixel_lane() * uint(SURFCAST_COLUMNS) + uint(column)) * uint(SURFCAST_ROWS) + uint(row);
-}
 
 // The most surfaces for which loops over a list of this length stay within what software GL allows.
 int layers_for(uint entries) {
@@ -64,22 +51,6 @@ float share_surfaces(inout Columns surface, inout float peak) {
   for (int i = 1; i < SHARED_PIXELS; ++i) least = min(least, shared_surfaces[i]);
   barrier();
   return uintBitsToFloat(least);
-}
-
-void give_sum(FixedSum sum, int number, int c) {
-  for (int i = 0; i < SURFCAST_ROWS; ++i) {
-    uint place = uint(number * SHARED_PIXELS) + shared_pixel(c, i);
-    atomicAdd(shared_low[place], ROW(sum.low, i));
-    atomicAdd(shared_high[place], ROW(sum.high, i));
-  }
-}
-
-void take_sum(inout FixedSum sum, int number, int c) {
-  for (int i = 0; i < SURFCAST_ROWS; ++i) {
-    uint place = uint(number * SHARED_PIXELS) + shared_pixel(c, i);
-    ROW(sum.low, i) = shared_low[place] & 0xffffu;
-    ROW(sum.high, i) = shared_high[place] + (shared_low[place] >> 16);
-  }
 }
 
 void share_sums(inout ColumnSums sums) {

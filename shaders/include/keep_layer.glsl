@@ -4,6 +4,8 @@
 
 layout(std430, binding = SURFCAST_BIND_LAYERS) writeonly buffer Layers { uint layers[]; };
 
+const float kFarthestLayer = 1e-36;  // an inverse depth
+
 // Words: inverse depth; the light of the surface behind those in front of it, and what these and itself let through, as
 // four halves. `first`: the first pixel of the column.
 void keep_layer(int layer, vec2 first, Rows inverse_depth, Rows red, Rows green, Rows blue, Rows transmittance) {

@@ -78,7 +78,9 @@ void composite(inout Light light, PixelSums sums, Rows surface, float one, vec2 
   light.green += seen * green;
   light.blue += seen * blue;
 #ifdef SURFCAST_LAYERS
-  keep_layer(light.layer++, pixel, mix(Rows(0.0), inverse_depth, less(Rows(0.0), surface)), seen * red, seen * green,
+  // Fringes that belong to no surface count as the farthest one.
+  Rows farthest = mix(Rows(0.0), Rows(kFarthestLayer), less(Rows(0.0), seen));
+  keep_layer(light.layer++, pixel, mix(farthest, inverse_depth, less(Rows(0.0), surface)), seen * red, seen * green,
              seen * blue, light.transmittance);
 #endif
 }

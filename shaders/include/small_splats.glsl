@@ -124,19 +124,22 @@ Rows weights_in(Addend a, vec2 first, Rows limit, out Rows z) {
   return mix(Rows(0.0), s.weight * larger(exp2(-form) - a.end, Rows(0.0)), visible);
 }
 
-// Adds the fragments of a splat between `limit` and `surface`.
-void add_small(int slot, float footprint, vec2 pixel, Columns limit, Columns surface, float unit,
+// Adds the fragments of a splat between `limit` and `surface`. True if it has others behind `surface`.
+bool add_small(int slot, float footprint, vec2 pixel, Columns limit, Columns surface, float unit,
                inout ColumnSums sums) {
   Addend a = addend(slot, footprint, unit);
+  Rows behind = Rows(0.0);
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
     Rows z;
-    Rows weight = weights_in(a, column(pixel, c), limit[c], z);
-    weight = mix(Rows(0.0), weight, at_most(surface[c], z));
+    Rows all = weights_in(a, column(pixel, c), limit[c], z);
+    Rows weight = mix(Rows(0.0), all, at_most(surface[c], z));
+    behind = larger(behind, all - weight);
     sums_add(sums[c], a.value, weight);
 #ifdef SURFCAST_EYE_DOME
     sums_add_depth(sums[c], unit, weight, z, surface[c]);
 #endif
   }
+  return any_of(less(Rows(0.0), behind));
 }
 
 void accumulate_small(uint first, uint count, vec2 pixel, Columns limit, Columns surface, float unit,

@@ -51,7 +51,7 @@ struct FrameConstants {
   SURFCAST_IVEC4 tiles;      // tiles across, tiles down, number of tiles, capacity of the record buffer in splats
   SURFCAST_VEC4 filter_;     // prefilter variance, visibility prefilter variance (pixels squared), factor of every
                              // surfel's weight, surfel radius of the requested spacing at distance 1 on the view axis
-  SURFCAST_VEC4 background;  // linear light
+  SURFCAST_VEC4 background;  // linear light; w: factor of the opacities of Gaussians
   SURFCAST_IVEC4 flags;      // x: cull back faces, y: per-surfel weights
   SURFCAST_IVEC4 slices;     // depth slices of a tile's list, see include/depth_slices.glsl: x: number, y: bits of the
                              // inverse depth at which the second level begins, z: bits of the levels per step of these
@@ -84,6 +84,12 @@ struct DisplayConstants {
   SURFCAST_IVEC4 axis;       // x: vertical axis, 0 to 2; y: last entry of the colour table
 };
 
+// How surfels are seen through, in pictures in which ghosts or classes have opacities.
+struct ThroughConstants {
+  SURFCAST_VEC4 ghost;        // x: factor of what clip boxes hide
+  SURFCAST_VEC4 classes[64];  // factor of each class, four in a vector
+};
+
 // Parameters of eye-dome lighting.
 struct EyeDomeConstants {
   SURFCAST_VEC4 shade;    // strength, radius in pixels, unused, unused
@@ -101,6 +107,7 @@ struct Chunk {
 #define SURFCAST_RUN_COARSEST 0x20000u  // not merged any further
 #define SURFCAST_RUN_PAIRS 0x40000u     // each pair, from the first texel on, is merged to one surfel of another run
 #define SURFCAST_RUN_SCATTER 0x80000u   // scatter, in variants of the projection that draw it
+#define SURFCAST_RUN_CURVED 0x100000u   // surfels have two texels: the second one is their curvature
 // Merged surfels replace their pair slightly early, because rounding could otherwise drop both.
 #define SURFCAST_SPACING_SLACK 0.99
 
@@ -139,6 +146,7 @@ struct Counters {
 #define SURFCAST_BIND_FRAME 0
 #define SURFCAST_BIND_DISPLAY 1
 #define SURFCAST_BIND_EYE_DOME 2
+#define SURFCAST_BIND_THROUGH 4
 // Image and texture units of buffers that exceed the size limit of storage blocks:
 #define SURFCAST_UNIT_SPLATS 0      // two uvec4 per splat
 #define SURFCAST_UNIT_DISCS 1       // uvec4 per small splat: its opaque disc; or third uvec4 of a kind's record
@@ -147,7 +155,7 @@ struct Counters {
 #define SURFCAST_UNIT_NORMALS 4     // uint per splat: packed camera space normal, in lit scenes with colour
 #define SURFCAST_UNIT_SURFELS 5     // uvec4 per texel of a block; surfels: see shared/surfel_layout.h
 #define SURFCAST_UNIT_SRGB 6        // uint per 8 bit sRGB value: root of its linear light in 11 and in 10 bits
-#define SURFCAST_UNIT_ATTRIBUTES 7  // uint per surfel: 16 bits of intensity, 8 of classification
+#define SURFCAST_UNIT_ATTRIBUTES 7  // uint per surfel: 16 bits of intensity, 8 of classification, 8 of opacity
 #define SURFCAST_UNIT_REACHES 6     // uint per list entry: what its splat may reach, see include/splat_bounds.glsl
 #define SURFCAST_UNIT_UNFINISHED 7  // columns that were handed over, in the passes that draw
 #define SURFCAST_UNIT_COLORS 8      // uint per entry of a colour table: linear light as in a splat record
@@ -158,6 +166,7 @@ static_assert(sizeof(BlockView) == 48);
 static_assert(sizeof(BlockDisplay) == 32);
 static_assert(sizeof(ClipRange) == 32);
 static_assert(sizeof(DisplayConstants) == 48);
+static_assert(sizeof(ThroughConstants) == 1040);
 static_assert(sizeof(Chunk) == 16);
 static_assert(sizeof(Counters) == 48);
 }  // namespace surfcast::layout

@@ -47,19 +47,26 @@
 #define SURFCAST_TRAINED_SPREAD 0.1
 #define SURFCAST_DISC_SCREEN 2.0
 
-// The exact picture: variance of the prefilter, square pixels; largest squared distance of a fragment, deviations; how
-// many fragments of a pixel are sorted by their own depths.
+// The exact picture: variance of the prefilter, square pixels; largest squared distance of a fragment, deviations; the
+// transmittance below which a pixel takes no more; how many fragments of a pixel are sorted by their own depths.
 #define SURFCAST_EXACT_PREFILTER 1.0
-#define SURFCAST_EXACT_CUTOFF 25.0
-#define SURFCAST_EXACT_SORTED 48
+#define SURFCAST_EXACT_CUTOFF 16.0
+#define SURFCAST_EXACT_CLEAR 0.00003
+#define SURFCAST_EXACT_SORTED 32
 
 // Texels of a Gaussian's record: shaders/gaussian/record.glsl and ray_record.glsl.
 #define SURFCAST_GAUSSIAN_RECORD 2
-#define SURFCAST_RAY_GAUSSIAN_RECORD 4
+#define SURFCAST_RAY_GAUSSIAN_RECORD 8
+// Texels of a Gaussian's key: depth and tiles; in exact pictures its depth on rays, too (render/ray_depth.h).
+#define SURFCAST_GAUSSIAN_KEY 1
+#define SURFCAST_EXACT_GAUSSIAN_KEY 4
+// Pixels of a lane that draws along rays.
+#define SURFCAST_RAY_GAUSSIAN_PIXELS 2
 // List entries of a tile that a lane draws in one dispatch: software GL ends the loops of a lane after 65535
 // iterations.
 #define SURFCAST_GAUSSIAN_ROUND 32768
-#define SURFCAST_RAY_GAUSSIAN_ROUND 1024
+// The same among surfaces: the loops over pixels and surfaces count, too.
+#define SURFCAST_LAYERED_GAUSSIAN_ROUND 512
 // Location of the depth of the nearest centre in the blending pass of discs.
 #define SURFCAST_UNIFORM_NEAR 2
 

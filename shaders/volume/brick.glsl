@@ -4,20 +4,31 @@ layout(binding = SURFCAST_UNIT_BRICKS) uniform usamplerBuffer bricks;
 layout(binding = SURFCAST_UNIT_SURFELS) uniform usamplerBuffer texels;
 layout(binding = SURFCAST_UNIT_PAGES) uniform usamplerBuffer pages;
 
-// The members of a BrickView, by the number of the brick plus 1.
-uvec4 brick_member(uint number, int member) { return texelFetch(bricks, 10 * (int(number) - 1) + member); }
-uvec4 brick_place(uint number) { return brick_member(number, 0); }
-uvec4 brick_kind(uint number) { return brick_member(number, 1); }
-vec4 brick_scale(uint number) { return uintBitsToFloat(brick_member(number, 2)); }
-vec4 brick_offset(uint number) { return uintBitsToFloat(brick_member(number, 3)); }
-vec3 brick_box_low(uint number) { return uintBitsToFloat(brick_member(number, 4).xyz); }
-vec3 brick_box_high(uint number) { return uintBitsToFloat(brick_member(number, 5).xyz); }
+// Of a BrickView, by the number of the brick plus 1.
+uvec4 brick_member(uint number, int member) { return texelFetch(bricks, 6 * (int(number) - 1) + member); }
 
-// True if something may be seen in a sub-brick.
-bool sub_brick_seen(uint number, ivec3 sub) {
-  uvec4 layers = brick_member(number, 6 + (sub.z >> 1));
-  uvec2 layer = (sub.z & 1) == 0 ? layers.xy : layers.zw;
-  return (((sub.y < 4 ? layer.x : layer.y) >> uint((sub.y & 3) * 8 + sub.x)) & 1u) != 0u;
+// A brick that is drawn, and the part of the ray in it.
+struct Brick {
+  float enter;
+  float leave;
+  int level;
+  int seen;      // its first word in the table of what is seen
+  vec4 scale;    // see BrickView
+  vec4 offset;
+  ivec4 place;
+  vec3 last;
+};
+
+Brick brick_of(uint number) {
+  uvec4 kind = brick_member(number, 1);
+  Brick brick;
+  brick.level = int(kind.x);
+  brick.seen = SURFCAST_SEEN_WORDS * (int(number) - 1);
+  brick.scale = uintBitsToFloat(brick_member(number, 2));
+  brick.offset = uintBitsToFloat(brick_member(number, 3));
+  brick.place = ivec4(brick_member(number, 0));
+  brick.last = vec3((uvec3(kind.y) >> uvec3(0u, 8u, 16u)) & 255u);
+  return brick;
 }
 
 // Weights of four samples for a place at the fraction x between the second and the third.
@@ -40,32 +51,37 @@ vec4 codes_of(uvec4 window, int shift) {
   return vec4(pair.x & 65535u, pair.x >> 16, pair.y & 65535u, pair.y >> 16);
 }
 
+// Sums over four rows of a slice: the derivatives along x and y, and the value.
+vec3 slice_sums(int start, int row, int shift, vec4 wx, vec4 dx, vec4 wy, vec4 dy) {
+  vec3 sums = vec3(0.0);
+  for (int j = 0; j < 4; ++j) {
+    vec4 codes = codes_of(texelFetch(texels, start + j * row), shift);
+    float value = dot(wx, codes);
+    sums += vec3(wy[j] * dot(dx, codes), dy[j] * value, wy[j] * value);
+  }
+  return sums;
+}
+
 // The code (w) at a place in stored indices, and its derivatives along the axes.
-vec4 brick_sample(uint number, vec3 at) {
-  uvec4 place = brick_place(number);
-  vec3 cell = clamp(floor(at), vec3(1.0), vec3((uvec3(brick_kind(number).y) >> uvec3(0u, 8u, 16u)) & 255u));
+vec4 brick_sample(Brick brick, vec3 at) {
+  vec3 cell = clamp(floor(at), vec3(1.0), brick.last);
   vec3 part = at - cell;
   ivec3 first = ivec3(cell) - 1;
   vec4 wx = cubic(part.x), wy = cubic(part.y), wz = cubic(part.z);
   vec4 dx = cubic_slope(part.x), dy = cubic_slope(part.y), dz = cubic_slope(part.z);
   int window = first.x / SURFCAST_WINDOW_STRIDE;
   int shift = first.x - window * SURFCAST_WINDOW_STRIDE;
-  int row = int(place.y), slice = int(place.z), in_page = int(place.w);
+  int row = brick.place.y, slice = brick.place.z, in_page = brick.place.w;
   int page = int((float(first.z) + 0.5) / float(in_page));  // integer divisions cost software GL far more
   int slot = first.z - page * in_page;
-  int here = int(texelFetch(pages, int(place.x) + page).x);
-  int next = int(texelFetch(pages, int(place.x) + page + (slot + 3 >= in_page ? 1 : 0)).x);
-  vec4 result = vec4(0.0);
-  for (int k = 0; k < 4; ++k) {
-    int z = slot + k;
-    int start = (z < in_page ? here + z * slice : next + (z - in_page) * slice) + first.y * row + window;
-    vec3 sums = vec3(0.0);  // of the slice: along x, along y, value
-    for (int j = 0; j < 4; ++j) {
-      vec4 codes = codes_of(texelFetch(texels, start + j * row), shift);
-      float value = dot(wx, codes);
-      sums += vec3(wy[j] * dot(dx, codes), dy[j] * value, wy[j] * value);
-    }
-    result += vec4(wz[k] * sums.xy, dz[k] * sums.z, wz[k] * sums.z);
-  }
-  return result;
+  int start = slot * slice + first.y * row + window;
+  int here = start + int(texelFetch(pages, brick.place.x + page).x);
+  int next = start + int(texelFetch(pages, brick.place.x + page + 1).x) - in_page * slice;
+  // One after another, not in a loop: software GL would select the weights anew.
+  vec3 a = slice_sums(here, row, shift, wx, dx, wy, dy);
+  vec3 b = slice_sums((slot + 1 < in_page ? here : next) + slice, row, shift, wx, dx, wy, dy);
+  vec3 c = slice_sums((slot + 2 < in_page ? here : next) + 2 * slice, row, shift, wx, dx, wy, dy);
+  vec3 d = slice_sums((slot + 3 < in_page ? here : next) + 3 * slice, row, shift, wx, dx, wy, dy);
+  vec3 sums = wz.x * a + wz.y * b + wz.z * c + wz.w * d;
+  return vec4(sums.xy, dot(dz, vec4(a.z, b.z, c.z, d.z)), sums.z);
 }

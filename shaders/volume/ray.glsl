@@ -3,6 +3,10 @@ struct Ray {
   vec3 start;      // at the anchor's distance from the eye, source indices
   vec3 direction;  // source indices per world unit, no component 0
   vec3 inverse;
+  float anchor;    // its distance from the eye, world units
+#ifdef SURFCAST_VOLUMES
+  vec2 pixel;
+#endif
   float step;      // world units between two places in the finest level
 #ifdef SURFCAST_CLIPPED
   vec3 world_start;  // relative to the anchor, world axes
@@ -23,6 +27,10 @@ Ray ray_through(vec2 pixel) {
   Ray ray;
   ray.start = vec3(volume.to_index[0].w, volume.to_index[1].w, volume.to_index[2].w) + to_index * aside;
   vec3 direction = to_index * unit;
+  ray.anchor = volume.anchor.w;
+#ifdef SURFCAST_VOLUMES
+  ray.pixel = pixel;
+#endif
   ray.step = volume.high.w / length(direction);
   ray.direction = not_zero(direction);
   ray.inverse = 1.0 / ray.direction;
@@ -49,7 +57,8 @@ float leaves(Ray ray, vec3 low, vec3 high) { return passage(ray.start, ray.inver
 layout(std430, binding = SURFCAST_BIND_VOLUME_CLIPS) readonly buffer Clips { VolumeClip clips[]; };
 
 vec2 passage_of_clip(Ray ray, int i) {
-  return passage(ray.world_start, ray.world_inverse, clips[i].low.xyz, clips[i].high.xyz);
+  VolumeClip clip = clips[volume.clips.z + i];
+  return passage(ray.world_start, ray.world_inverse, clip.low.xyz, clip.high.xyz);
 }
 
 // The first stretch of the ray within `part` that the clip boxes leave; empty if there is none. At every turn it begins

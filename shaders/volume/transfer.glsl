@@ -10,8 +10,13 @@ struct Classified {
 
 Classified classify(float scalar) {
   int bin = int(clamp(floor(scalar), 0.0, volume.transfer.x));
-  uvec4 sum = texelFetch(transfer_sums, bin);
-  uvec4 next = texelFetch(transfer_sums, bin + 1);
+#ifdef SURFCAST_VOLUMES
+  int first = int(volume.low.w);
+#else
+  const int first = 0;
+#endif
+  uvec4 sum = texelFetch(transfer_sums, first + bin);
+  uvec4 next = texelFetch(transfer_sums, first + bin + 1);
   return Classified(sum, vec4(next - sum), scalar - float(bin));
 }
 

@@ -228,6 +228,22 @@ TEST_F(BuildModelTest, SeveralInputsWithDifferentAttributesAreOneModelInParts) {
   EXPECT_EQ(model->info().color_bits, 8);
 }
 
+TEST_F(BuildModelTest, AScanWithoutOpacitiesIsOpaqueBesideOneWith) {
+  numbered(testing::square_lattice(50, 1, {0, 0, 0})).write(scan_);
+  TextScan glass;
+  glass.header = "x y z number alpha";
+  for (const glm::dvec3& p : testing::square_lattice(50, 1, {60, 0, 0})) glass.add(p, "0 51");
+  glass.write(folder_ / "glass.xyz");
+  const BuildReport report = build({scan_, folder_ / "glass.xyz"}, model_);
+  EXPECT_THAT(report.scan.notes, ::testing::Contains(HasSubstr("scan.xyz: no alpha, opaque")));
+  const Result<model::ModelFile> model = model::ModelFile::open(model_);
+  ASSERT_TRUE(model);
+  const model::AttributeRange* alpha = model->info().range_of("alpha");
+  ASSERT_NE(alpha, nullptr);
+  EXPECT_EQ(alpha->smallest, 51);
+  EXPECT_EQ(alpha->largest, 255);
+}
+
 /// Numbered points that state their radii.
 TextScan with_radii(const std::vector<glm::dvec3>& positions, double radius, size_t first = 0) {
   TextScan scan;

@@ -81,7 +81,7 @@ std::string text_of(const Result<MessageChannel::Bytes>& message) {
 }
 
 std::unique_ptr<MessageChannel> connect_to(const protocol::Endpoint& server) {
-  auto channel = connect_channel(server, in(kLong), -1);
+  auto channel = connect_channel(server, in(kLong), -1, "");
   EXPECT_TRUE(channel);
   return std::move(*channel);
 }

@@ -11,6 +11,7 @@
 #include <sys/stat.h>
 
 #include "cmd/cache_eviction.h"
+#include "model/model_file.h"
 
 namespace surfcast::cmd {
 namespace {
@@ -111,6 +112,17 @@ TEST_F(ScanCacheTest, EveryPolicyOfRadiiHasAModelOfItsOwn) {
   for (const fs::path& path : paths) EXPECT_FALSE(fs::exists(path)) << "each counts as a model of the cache";
 }
 
+TEST_F(ScanCacheTest, EverySpacingOfAMeshHasAModelOfItsOwn) {
+  std::ofstream(folder_ / "square.obj") << "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\n";
+  const auto surfels = [&](double spacing) {
+    const Result<CachedModel> model = model_of_scan(folder_ / "square.obj", {.folder = cache_, .meshes = {spacing}});
+    EXPECT_TRUE(model) << (model ? "" : model.error().message);
+    return model ? model::ModelFile::open(model->path)->info().surfels : 0;
+  };
+  EXPECT_NEAR(static_cast<double>(surfels(0.1)), 100, 30);
+  EXPECT_NEAR(static_cast<double>(surfels(0.05)), 400, 60);
+}
+
 TEST_F(ScanCacheTest, UseIsNotedAndKeepsTheTimeOfWriting) {
   const fs::path a = model("a").path;
   const fs::path b = model("b").path;
@@ -199,6 +211,38 @@ TEST_F(ScanCacheTest, AFolderThatCannotBeWrittenStillServesWhatItHas) {
   fs::permissions(cache_, fs::perms::owner_read | fs::perms::owner_exec);
   EXPECT_EQ(model("a").path, a);
   fs::permissions(cache_, fs::perms::owner_all);
+}
+
+/// A volume whose samples are in a file of their own.
+class DetachedGridTest : public ScanCacheTest {
+ protected:
+  void write_samples(char sample) const {
+    std::ofstream(folder_ / "all.raw") << std::string(1000, sample) << "abcdefgh";
+  }
+  [[nodiscard]] Result<CachedModel> model() const { return model_of_scan(folder_ / "grid.mhd", {.folder = cache_}); }
+  void SetUp() override {
+    ScanCacheTest::SetUp();
+    std::ofstream(folder_ / "grid.mhd") << "ObjectType = Image\nNDims = 3\nDimSize = 12 12 7\n"
+                                           "ElementType = MET_UCHAR\nElementDataFile = all.raw\n";
+    write_samples('a');
+  }
+};
+
+TEST_F(DetachedGridTest, AChangeOfItsSamplesGivesAnotherModel) {
+  const Result<CachedModel> first = model();
+  ASSERT_TRUE(first) << first.error().message;
+  EXPECT_EQ(model()->path, first->path);
+  write_samples('b');
+  const Result<CachedModel> second = model();
+  ASSERT_TRUE(second) << second.error().message;
+  EXPECT_NE(second->path, first->path);
+  write_samples('a');
+  EXPECT_EQ(model()->path, first->path) << "whatever the time of the file";
+}
+
+TEST_F(DetachedGridTest, WithoutItsSamplesIsAFailureThatNamesThem) {
+  fs::remove(folder_ / "all.raw");
+  EXPECT_NE(model().error().message.find("all.raw"), std::string::npos);
 }
 
 }  // namespace

@@ -47,12 +47,13 @@ class ServeTest : public ::testing::Test {
   }
 
   /// Starts a server and waits until it says that it is ready.
-  void serve(const std::string& arguments) {
+  void serve(const std::string& arguments) { serve(arguments, file("log")); }
+  void serve(const std::string& arguments, const std::string& log) {
     const std::string ready = (folder_ / "ready").string();
     std::filesystem::remove(ready);  // of a server before this one
     server_ = client::start_program({"/bin/sh", "-c",
-                                     "exec " SURFCAST_SERVER " serve --listen 127.0.0.1:0 --cache " + cache() + " " +
-                                         arguments + " > " + ready + " 2> " + (folder_ / "log").string()});
+                                     "exec " SURFCAST_SERVER " serve --listen 127.0.0.1:0 --host here --cache " +
+                                         cache() + " " + arguments + " > " + ready + " 2> " + log});
     for (int i = 0; i < 3000 && content(ready).find('\n') == std::string::npos; ++i) ::usleep(10'000);
     const std::string line = content(ready);
     const size_t url = line.find("http://");
@@ -81,11 +82,12 @@ class ServeTest : public ::testing::Test {
   }
   /// The body of the server's answer to a GET.
   [[nodiscard]] std::string get(const std::string& target) const {
-    net::RawSocket socket(static_cast<uint16_t>(std::stoi(url_.substr(url_.find(':') + 1))));
+    net::RawSocket socket(port());
     socket.send("GET " + target + " HTTP/1.1\r\nHost: here\r\nConnection: close\r\n\r\n");
     const std::string answer = socket.read_to_end(std::chrono::minutes(5));
     return answer.substr(answer.find("\r\n\r\n") + 4);
   }
+  [[nodiscard]] uint16_t port() const { return static_cast<uint16_t>(std::stoi(url_.substr(url_.find(':') + 1))); }
   [[nodiscard]] std::string cache() const { return (folder_ / "cache").string(); }
   [[nodiscard]] std::string file(const std::string& name) const { return (folder_ / name).string(); }
 

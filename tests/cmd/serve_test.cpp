@@ -1,4 +1,7 @@
 #include <algorithm>
+#include <cmath>
+
+#include <sys/stat.h>
 
 #include "cmd/serve_fixture.h"
 
@@ -23,6 +26,16 @@ TEST_F(ServeTest, AScanIsBuiltServedDrawnAndTheServerEndsWhenTold) {
   EXPECT_NE(content(file("log")).find("OpenGL"), std::string::npos);
   EXPECT_EQ(end(SIGTERM), 0);
   EXPECT_EQ(client::run_program(SURFCAST_SERVER " healthcheck --url " + url_ + " 2>&1").code, 1);
+}
+
+TEST_F(ServeTest, AReaderOfTheLogThatGoesAwayDoesNotEndTheServer) {
+  const std::string pipe = file("pipe");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const pid_t reader = client::start_program({"/bin/sh", "-c", "head -n 1 < " + pipe});
+  serve(scan_.string(), pipe);
+  ASSERT_EQ(client::wait_for_program(reader), 0);
+  EXPECT_EQ(get("/healthz"), "ok\n");
+  EXPECT_EQ(end(SIGTERM), 0) << "it says that it stops, and nobody reads it";
 }
 
 TEST_F(ServeTest, ChannelsAreTheSameByEveryWay) {
@@ -83,6 +96,21 @@ TEST_F(ServeTest, AScanIsBuiltOnceHoweverItIsNamed) {
   EXPECT_EQ(client::run_program(SURFCAST_CLIENT " models " + url_).output, "renamed\n");
   EXPECT_EQ(content(file("log")).find("building"), std::string::npos);
   EXPECT_EQ(std::distance(fs::directory_iterator(cache()), fs::directory_iterator()), 1);
+}
+
+TEST_F(ServeTest, AVolumeWithItsSamplesInAnotherFileIsBuiltAndDrawn) {
+  std::ofstream(folder_ / "ball.mhd") << "ObjectType = Image\nNDims = 3\nDimSize = 20 20 20\n"
+                                         "ElementType = MET_UCHAR\nElementDataFile = ball.raw\n";
+  std::string samples;
+  for (int i = 0; i < 8000; ++i) {
+    const double r = std::hypot(i % 20 - 9.5, i / 20 % 20 - 9.5, i / 400 - 9.5);
+    samples += static_cast<char>(std::max(0.0, 200 - 20 * r));
+  }
+  std::ofstream(folder_ / "ball.raw", std::ios::binary) << samples;
+  serve("--preview-points 100 --preview-from 1K " + file("ball.mhd"));
+  EXPECT_EQ(draw("ball").code, 0);
+  EXPECT_NE(get("/api/models/ball").find("\"grid\""), std::string::npos);
+  EXPECT_EQ(end(SIGTERM), 0);
 }
 
 TEST_F(ServeTest, WhatCannotBeServedIsAFailureThatNamesIt) {

@@ -46,9 +46,35 @@ void write_scan(const fs::path& path, int side) {
   }
 }
 
-/// A program that builds, and how often it changes files at least.
+/// Waves over three rows of bricks, as NRRD.
+void write_grid(const fs::path& path, int side) {
+  std::ofstream grid(path, std::ios::binary);
+  grid << "NRRD0004\ntype: uint8\ndimension: 3\nsizes: " << side << ' ' << side << " 70\nencoding: raw\n\n";
+  for (int i = 0; i < side * side * 70; ++i) grid.put(static_cast<char>(std::lround(99 + 90 * std::sin(0.01 * i))));
+}
+
+/// Gaussians on a wavy square, more than a block holds, as binary PLY.
+void write_gaussians(const fs::path& path, int side) {
+  std::ofstream file(path, std::ios::binary);
+  file << "ply\nformat binary_little_endian 1.0\nelement vertex " << 4 * side * side;
+  for (const char* name : {"x", "y", "z", "f_dc_0", "f_dc_1", "f_dc_2", "opacity", "scale_0", "scale_1", "scale_2",
+                           "rot_0", "rot_1", "rot_2", "rot_3"}) {
+    file << "\nproperty float " << name;
+  }
+  file << "\nend_header\n";
+  for (int i = 0; i < 4 * side * side; ++i) {
+    const int row = i / side;
+    const auto x = static_cast<float>(i % side), y = 0.25F * static_cast<float>(row);
+    const float splat[] = {x, y, std::sin(x / 9), 0.1F, 0.2F, 0.3F, 1, -2, -2, -3, 1, 0, 0, 0};
+    file.write(reinterpret_cast<const char*>(splat), sizeof(splat));
+  }
+}
+
+/// A program that builds what `write` writes, and how often it changes files at least.
 struct Builder {
   std::string name;
+  const char* source;  ///< file name
+  void (*write)(const fs::path& path, int side);
   std::vector<std::string> (*command)(const std::string& scan, const std::string& target);
   long least_moments;
 
@@ -56,19 +82,29 @@ struct Builder {
 };
 
 const Builder kBuilders[] = {
-    {"AsAWhole",
+    {"AsAWhole", "scan.ply", write_scan,
      [](const std::string& scan, const std::string& target) {
        return std::vector<std::string>{SURFCASTD, "build", scan, "--output", target};
      },
      10},
-    {"InManyParts",
+    {"InManyParts", "scan.ply", write_scan,
      [](const std::string& scan, const std::string& target) {
        return std::vector<std::string>{BUILD_IN_PARTS, scan, target, "1200"};
      },
      60},
+    {"AVolume", "grid.nrrd", write_grid,
+     [](const std::string& grid, const std::string& target) {
+       return std::vector<std::string>{SURFCASTD, "build", grid, "--output", target};
+     },
+     10},
+    {"Gaussians", "gaussians.ply", write_gaussians,
+     [](const std::string& gaussians, const std::string& target) {
+       return std::vector<std::string>{SURFCASTD, "build", gaussians, "--output", target};
+     },
+     10},
 };
 
-/// A folder with a scan, and the model that an undisturbed build makes of it.
+/// A folder with a source, and the model that an undisturbed build makes of it.
 class StoppedBuildTest : public ::testing::TestWithParam<Builder> {
  protected:
   void SetUp() override {
@@ -77,7 +113,7 @@ class StoppedBuildTest : public ::testing::TestWithParam<Builder> {
     fs::remove_all(folder_);
     fs::create_directories(folder_);
     std::signal(SIGINT, SIG_DFL);  // may be ignored, which programs inherit
-    write_scan(scan(), 100);
+    GetParam().write(source(), 100);
     const fs::path counted = folder_ / "moments";
     ASSERT_EQ(build({"SURFCAST_MOMENTS=" + counted.string()}), 0);
     moments_ = std::stol(content(counted));
@@ -89,14 +125,14 @@ class StoppedBuildTest : public ::testing::TestWithParam<Builder> {
   }
   void TearDown() override { fs::remove_all(folder_); }
 
-  [[nodiscard]] fs::path scan() const { return folder_ / "scan.ply"; }
+  [[nodiscard]] fs::path source() const { return folder_ / GetParam().source; }
   [[nodiscard]] fs::path target() const { return folder_ / "model.surf"; }
 
   /// Builds with these variables in the environment; the exit code, or 128 and the signal.
   [[nodiscard]] int build(std::vector<std::string> variables) const {
     std::vector<std::string> line{"/usr/bin/env", "LD_PRELOAD=" STOP_AT_CALL};
     line.insert(line.end(), variables.begin(), variables.end());
-    for (std::string& word : GetParam().command(scan(), target())) line.push_back(std::move(word));
+    for (std::string& word : GetParam().command(source(), target())) line.push_back(std::move(word));
     return client::wait_for_program(client::start_program(line));
   }
 
@@ -116,18 +152,18 @@ class StoppedBuildTest : public ::testing::TestWithParam<Builder> {
     return chosen;
   }
 
-  /// What is in the folder beside the scan and the model.
+  /// What is in the folder beside the source and the model.
   [[nodiscard]] std::string leftovers() const {
     std::string names;
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
-      if (entry.path() != scan() && entry.path() != target()) names += entry.path().filename().string() + ' ';
+      if (entry.path() != source() && entry.path() != target()) names += entry.path().filename().string() + ' ';
     }
     return names;
   }
 
   void remove_leftovers() const {
     for (const fs::directory_entry& entry : fs::directory_iterator(folder_)) {
-      if (entry.path() != scan() && entry.path() != target()) fs::remove(entry.path());
+      if (entry.path() != source() && entry.path() != target()) fs::remove(entry.path());
     }
   }
 

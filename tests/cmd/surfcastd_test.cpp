@@ -140,6 +140,36 @@ void write_ramp(const fs::path& path) {
   for (int i = 0; i < 512; ++i) grid << i % 8 + i / 8 % 8 + i / 64 << '\n';
 }
 
+TEST_F(SurfcastdTest, MakesSurfelsOfAMesh) {
+  std::ofstream(folder_ / "roof.obj") << "v 0 0 0 1 0 0\nv 4 0 1 1 0 0\nv 0 4 1 0 0 1\nf 1 2 3\n";
+  const Answer answer = run("build roof.obj --mesh-spacing 0.1 --output model.surf --report report.json");
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  EXPECT_EQ(answer.out.find("roof.obj: 1 triangles, "), 0U) << answer.out;
+  const nlohmann::json report = nlohmann::json::parse(content(folder_ / "report.json"));
+  ASSERT_EQ(report["meshes"].size(), 1U);
+  EXPECT_EQ(report["meshes"][0]["surfels"], report["surfels"]);
+  EXPECT_TRUE(report["meshes"][0]["two_sided"]);
+  EXPECT_NEAR(report["surfels"].get<double>(), 849, 60);  // an area of 8.49
+  EXPECT_EQ(report["estimated"]["radii"], 0);
+  const std::string summary = run("inspect model.surf").out;
+  EXPECT_NE(summary.find("color bits: 8"), std::string::npos) << summary;
+}
+
+TEST_F(SurfcastdTest, ColoursAScanWithAPictureFromAbove) {
+  std::ofstream(folder_ / "scan.xyz") << "1 1 0\n2 1 0\n1 2 0\n2 2 0\n";
+  std::ofstream(folder_ / "photo.bmp", std::ios::binary)
+      << std::string("BM\x3A\0\0\0\0\0\0\0\x36\0\0\0\x28\0\0\0\1\0\0\0\1\0\0\0\1\0\x18\0", 30) << std::string(24, '\0')
+      << std::string("\0\0\xFF\0", 4);
+  std::ofstream(folder_ / "photo.wld") << "4 0 0 -4 2 2\n";
+  const Answer answer = run("colorize scan.xyz --orthophoto photo.bmp --output model.surf");
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  EXPECT_EQ(answer.out.find("4 points have the pictures' colours, 0 are hidden from them, 0 outside\n"), 0U)
+      << answer.out;
+  const Answer without = run("colorize scan.xyz --orthophoto none.tif --output model.surf");
+  EXPECT_EQ(without.exit_code, 1);
+  EXPECT_EQ(without.err.find("surfcastd: none.tif"), 0U) << without.err;
+}
+
 TEST_F(SurfcastdTest, MakesSurfacesOfAVolume) {
   write_ramp(folder_ / "ramp.nrrd");
   const Answer answer = run("build ramp.nrrd --iso 9.5,200,30,4 --iso=4 --output model.surf --report report.json");
@@ -156,6 +186,29 @@ TEST_F(SurfcastdTest, MakesSurfacesOfAVolume) {
   EXPECT_TRUE(report["oriented"]);
   const std::string summary = run("inspect model.surf").out;
   EXPECT_NE(summary.find("iso_value"), std::string::npos) << summary;
+}
+
+TEST_F(SurfcastdTest, BuildsInspectsAndPicksTensors) {
+  std::ofstream(folder_ / "field.nrrd") << "NRRD0004\ntype: float\ndimension: 4\nsizes: 7 2 1 1\nkinds: "
+                                           "3D-masked-symmetric-matrix space space space\nencoding: ascii\n\n"
+                                           "1 3 0 0 2 0 1\n0 3 0 0 2 0 1\n";
+  const Answer built = run("build field.nrrd --output field.surf --report report.json");
+  ASSERT_EQ(built.exit_code, 0) << built.err;
+  EXPECT_EQ(built.out.find("2 samples read, 1 ellipsoids, "), 0U) << built.out;
+  EXPECT_NE(built.err.find("field: 1 of 2 glyphs cannot be drawn: 1 with a confidence below 0.5"), std::string::npos);
+  const nlohmann::json report = nlohmann::json::parse(content(folder_ / "report.json"));
+  EXPECT_EQ(report["ellipsoids"][0]["drawn"], 1);
+  const nlohmann::json summary = nlohmann::json::parse(run("inspect field.surf --json --verify").out);
+  EXPECT_EQ(summary["kinds"][0]["kind"], "ellipsoid");
+  EXPECT_EQ(summary["kinds"][0]["count"], 1);
+  EXPECT_NEAR(summary["ellipsoids"][0]["mean_fa"].get<double>(), 0.46291, 1e-5);
+  EXPECT_EQ(summary["ellipsoids"][0]["masked"], 1);
+  const Answer picked =
+      run("pick field.surf --pixel 32,32 --resolution 65,65 --json --camera-position 0,0,10 "
+          "--camera-focal-point 0,0,0 --camera-view-up 0,1,0");
+  ASSERT_EQ(picked.exit_code, 0) << picked.err;
+  EXPECT_NE(picked.out.find("eigenvalue_1"), std::string::npos) << picked.out;
+  EXPECT_EQ(run("build field.nrrd --kind teapot --output field.surf").exit_code, 2);
 }
 
 TEST_F(SurfcastdTest, ASurfaceThatTheVolumeDoesNotHaveIsAnError) {
@@ -374,7 +427,8 @@ TEST_F(SurfcastdTest, AWrongCommandIsAnsweredWithTheRightOnes) {
   EXPECT_EQ(answer.exit_code, 2);
   expect_one_line_error(answer);
   EXPECT_NE(answer.err.find("'bild' (did you mean 'build'?)"), std::string::npos) << answer.err;
-  EXPECT_NE(answer.err.find("build, healthcheck, inspect, pick, render, serve"), std::string::npos) << answer.err;
+  EXPECT_NE(answer.err.find("build, colorize, healthcheck, inspect, pick, render, serve"), std::string::npos)
+      << answer.err;
 }
 
 TEST_F(SurfcastdTest, ACommandLineWithoutACommandNamesThem) {
@@ -382,7 +436,8 @@ TEST_F(SurfcastdTest, ACommandLineWithoutACommandNamesThem) {
   EXPECT_EQ(answer.exit_code, 2);
   expect_one_line_error(answer);
   EXPECT_NE(answer.err.find("a command is missing"), std::string::npos) << answer.err;
-  EXPECT_NE(answer.err.find("build, healthcheck, inspect, pick, render, serve"), std::string::npos) << answer.err;
+  EXPECT_NE(answer.err.find("build, colorize, healthcheck, inspect, pick, render, serve"), std::string::npos)
+      << answer.err;
 }
 
 /// OpenImageIO, which was linked once, brought 247 libraries with it.

@@ -6,10 +6,12 @@
 #include <oneapi/tbb/global_control.h>
 
 #include "builder/build_model.h"
+#include "builder/gaussian_sample.h"
 #include "builder/gaussian_tree.h"
 #include "gaussian/gaussian_block.h"
 #include "gaussian/gaussian_files.h"
 #include "gaussian/gaussian_scenes.h"
+#include "gaussian/merge_gaussians.h"
 #include "model/test_folder.h"
 
 namespace surfcast::builder {
@@ -111,6 +113,40 @@ TEST(BuildGaussiansTest, TheFileDependsNeitherOnThreadsNorOnMemory) {
   EXPECT_EQ(bytes_of(folder / "little.surf"), bytes_of(folder / "expected.surf"));
 }
 
+TEST(BuildGaussiansTest, APreviewHasAWidenedSampleFromAllPartsOfTheInput) {
+  const model::TestFolder folder;
+  const std::filesystem::path ply = testing::write_ply(folder / "many.ply", many(40000));
+  BuildOptions options;
+  options.sample = 1000;
+  const auto report = build_model(std::vector{ply}, folder / "preview.surf", options, [](const BuildStep&) {});
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->gaussians, 1000U);
+  EXPECT_EQ(report->points_in_scans, 40000U);
+  options.sample = 50000;
+  const auto whole = build_model(std::vector{ply}, folder / "whole.surf", options, [](const BuildStep&) {});
+  ASSERT_TRUE(whole) << whole.error().message;
+  EXPECT_EQ(whole->gaussians, 40000U);
+}
+
+TEST(GaussianSampleTest, DoesNotDependOnTheRunsAndKeepsTheAreaOfAll) {
+  const gaussian::Gaussians all = columns_of(many(5000));
+  std::vector<glm::dvec3> expected;
+  for (const size_t length : {5000, 700, 1}) {
+    GaussianSample sample(5000, 50);
+    std::vector<glm::dvec3> kept;
+    for (size_t first = 0; first < all.size(); first += length) {
+      gaussian::Gaussians run;
+      for (size_t i = first; i < std::min(all.size(), first + length); ++i) gaussian::append(all, i, run);
+      sample.thin(run);
+      kept.insert(kept.end(), run.positions.begin(), run.positions.end());
+      for (const glm::vec3& scale : run.scales) EXPECT_NEAR(scale.x, 0.1F, 1e-6F) << "a hundredth times sqrt(100)";
+    }
+    EXPECT_EQ(kept.size(), 50U);
+    if (expected.empty()) expected = kept;
+    EXPECT_EQ(kept, expected);
+  }
+}
+
 TEST(BuildGaussiansTest, CoincidentGaussiansFillSeveralBlocks) {
   const model::TestFolder folder;
   reference::GaussianModel model = many(40000);
@@ -133,10 +169,6 @@ TEST(BuildGaussiansTest, WhatCannotBeOneModelIsRefused) {
   EXPECT_EQ(build({solid, solid}), "");
   EXPECT_EQ(build({solid, discs}),
             discs.string() + ": is trained otherwise than " + solid.string() + ": build a model of each");
-  const std::filesystem::path scan =
-      testing::write(folder / "scan.xyz", "0 0 0\n1 0 0\n0 1 0\n1 1 0\n2 2 0\n3 1 0\n4 1 0\n");
-  EXPECT_EQ(build({solid, scan}), scan.string() + ": is of another kind than " + solid.string() +
-                                      "; scans, grids and Gaussians need a model each");
 }
 
 }  // namespace

@@ -115,17 +115,19 @@ TEST_F(GaussianGLTest, DegreesBelowTheThirdAreDrawnLikewise) {
 }
 
 TEST_F(GaussianGLTest, AntialiasedModelsAreDrawnWithCompensatedOpacity) {
-  // SPZ alone states it; the reference draws what the file holds.
-  testing::SpzContent content = testing::spz_pair(3);
-  content.flags = 1;
-  const ModelPointer model =
-      testing::build_and_open(testing::write(folder_ / "antialiased.spz", testing::spz(content)), folder_ / "a.surf");
-  content.flags = 0;
-  const ModelPointer plain =
-      testing::build_and_open(testing::write(folder_ / "plain.spz", testing::spz(content)), folder_ / "p.surf");
-  picture::PictureRequest request;
-  request.width = request.height = 24;  // small on the screen, where the added variance counts
-  EXPECT_NE(draw(*renderer_, model, request).image.pixels, draw(*renderer_, plain, request).image.pixels);
+  for (const char* name : {"ball", "fog", "needles"}) {
+    const std::filesystem::path spz =
+        testing::write_antialiased_spz(folder_ / "model.spz", reference::make_gaussian_model(name));
+    const picture::Frame frame =
+        draw(*renderer_, testing::build_and_open(spz, folder_ / "model.surf"), request_of(kMid));
+    const auto camera = *geometry::make_camera_frame(kMid, kSide, kSide);
+    const GaussianModel stored = testing::reference_model(spz);
+    const auto compensated = reference::draw_as_trained(stored, camera, GaussianConvention::kAntialiased);
+    const auto plain = reference::draw_as_trained(stored, camera, GaussianConvention::kTrained);
+    EXPECT_GT(reference::covered_psnr_of_codes(codes_of(frame.image), compensated), 50) << name;
+    if (std::string(name) == "fog") continue;  // of large ones, which the added variance changes little
+    EXPECT_LT(reference::covered_psnr_of_codes(plain, compensated), 45) << name << ": the flag matters";
+  }
 }
 
 TEST_F(GaussianGLTest, DiscsAreDrawnAsTheirTrainingProgramDoes) {
@@ -142,6 +144,41 @@ TEST_F(GaussianGLTest, TheExactPictureIsThatOfTheReference) {
   EXPECT_GT(exact_decibels(reference::make_gaussian_model("near"), kInside), 45);
 }
 
+TEST_F(GaussianGLTest, TheExactPictureShowsEachOfCrossingDiscsWhereItIsInFront) {
+  GaussianSplat red = splat_at({0, 0, 0}, {1, 1, 0}, 1, {1, 0, 0});
+  GaussianSplat blue = splat_at({0, 0, -0.25}, {1, 1, 0}, 1, {0, 0, 1});
+  red.rotation = glm::angleAxis(0.5, glm::dvec3(0.2, 1, 0));
+  blue.rotation = glm::angleAxis(-0.5, glm::dvec3(0.2, 1, 0));
+  EXPECT_GT(exact_decibels({{red, blue}, 0}, look({0, 0, 4}, {0, 0, 0}, 40)), 50);
+}
+
+TEST_F(GaussianGLTest, TheExactPictureOrdersManyThatOverlapInDepth) {
+  // Long ones across each other: the order of the centres is not that of the rays.
+  GaussianModel model = reference::make_gaussian_model("needles");
+  for (size_t i = 0; i < model.splats.size(); ++i) {
+    model.splats[i].log_scale = i % 2 == 0 ? glm::dvec3(-0.7, -3, -5) : glm::dvec3(-5, -3, -0.7);
+    model.splats[i].logit = 2;
+  }
+  EXPECT_GT(exact_decibels(model, kMid), 50);
+}
+
+TEST_F(GaussianGLTest, ScalesAndDistantWorldsMakeNoDifferenceToTheExactPicture) {
+  GaussianModel model = reference::make_gaussian_model("needles");
+  model.degree = 0;
+  for (const double scale : {1e-4, 1e5}) {
+    const glm::dvec3 place = scale > 1 ? glm::dvec3(5e6, -5e6, 5e6) : glm::dvec3(0);
+    GaussianModel scaled = model;
+    for (GaussianSplat& splat : scaled.splats) {
+      splat.position = scale * splat.position + place;
+      splat.log_scale += std::log(scale);
+    }
+    geometry::Camera camera = kMid;
+    camera.position = scale * camera.position + place;
+    camera.focal_point = place;
+    EXPECT_GT(exact_decibels(scaled, camera), 50) << scale;
+  }
+}
+
 TEST_F(GaussianGLTest, HardCasesOfTheExactPicture) {
   const geometry::Camera camera = look({0, 0, 3}, {0, 0, 0}, 60);
   const glm::dvec3 orange{1, 0.5, 0.1};
@@ -154,6 +191,28 @@ TEST_F(GaussianGLTest, HardCasesOfTheExactPicture) {
   EXPECT_GT(exact_decibels(one({0, 0, 0}, {0.5, 0.3, 0}), camera), 50) << "flat";
   EXPECT_GT(exact_decibels(one({0, 0, 0}, {0.5, 0.0005, 0.0005}), camera), 50) << "a needle of 1000 to 1";
   EXPECT_GT(exact_decibels(one({0, 0, 0}, glm::dvec3(1e-4)), camera), 40) << "smaller than a pixel";
+}
+
+TEST_F(GaussianGLTest, TheOpacityOfAPictureIsAFactorOfThatOfEveryGaussian) {
+  const GaussianModel model = testing::in_single_precision(reference::make_gaussian_model("needles"));
+  const ModelPointer built = build(model);
+  GaussianModel clearer = model;
+  for (GaussianSplat& splat : clearer.splats) {
+    const double opacity = 0.4 * reference::splat_opacity(splat);
+    splat.logit = std::log(opacity / (1 - opacity));
+  }
+  const auto frame = *geometry::make_camera_frame(kMid, kSide, kSide);
+  picture::PictureRequest request = request_of(kMid);
+  request.opacity = 0.4;
+  EXPECT_GT(reference::covered_psnr_of_codes(codes_of(draw(*renderer_, built, request).image),
+                                             reference::draw_as_trained(clearer, frame, GaussianConvention::kTrained)),
+            50);
+  request.splat_convention = picture::SplatConvention::kExact;
+  EXPECT_GT(reference::covered_psnr_of_codes(codes_of(draw(*renderer_, built, request).image),
+                                             reference::draw_exactly(clearer, frame)),
+            50);
+  request.opacity = 0;
+  EXPECT_EQ(draw(*renderer_, built, request).stats.surfels_drawn, 0U);
 }
 
 TEST_F(GaussianGLTest, TheSameRequestGivesTheSameBytes) {

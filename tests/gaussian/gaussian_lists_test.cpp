@@ -97,5 +97,26 @@ TEST(GaussianListsTest, TooManyEntriesAreNoLists) {
   EXPECT_EQ(list_by_depth({}, {10, 10}, 0)->tiles.size(), 100U);
 }
 
+TEST(GaussianListsTest, ListsAreOrderedByTheDepthsOnTheRaysOfTheirTiles) {
+  // Two planes that cross at x = 0: depths 1 + x and 1 - x. A third one has no denominator in single precision.
+  const std::vector<RayDepth> depths{
+      {{1, 0, 1}, {1, 0, 0}, {}, {}}, {{-1, 0, 1}, {1, 0, 0}, {}, {}}, {{0, 0, 1}, {}, {}, {}}};
+  GaussianLists lists{{{0, 0, 3, 0}, {1, 3, 3, 0}, {2, 6, 0, 0}}, {0, 1, 2, 0, 1, 2}, 3};
+  const auto rays_of_tile = [](uint32_t tile) {
+    const glm::dvec2 middle(tile == 0 ? -0.5 : 0.5, 0);
+    return TileRays{middle - 0.1, middle + 0.1};
+  };
+  order_by_rays(depths, rays_of_tile, lists);
+  EXPECT_EQ(lists.entries, (std::vector<uint32_t>{2, 0, 1, 2, 1, 0}));
+}
+
+TEST(GaussianListsTest, WhatIsEquallyDeepOnARayStaysInOrder) {
+  const std::vector<RayDepth> depths(3, RayDepth{{0, 0, 1}, {1, 0, 0}, {}, {}});
+  GaussianLists lists{{{0, 0, 3, 0}}, {2, 0, 1}, 3};
+  order_by_rays(
+      depths, [](uint32_t) { return TileRays{}; }, lists);
+  EXPECT_EQ(lists.entries, (std::vector<uint32_t>{2, 0, 1}));
+}
+
 }  // namespace
 }  // namespace surfcast::render

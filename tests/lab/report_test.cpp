@@ -11,6 +11,7 @@
 
 #include "lab/plots.h"
 #include "lab/scenes.h"
+#include "lab/volume_report.h"
 
 namespace surfcast::lab {
 namespace {
@@ -65,6 +66,19 @@ TEST(SectionTest, ThePageOfTheDocumentationHasItsMarkers) {
   std::ostringstream page;
   page << std::ifstream(std::filesystem::path(SURFCAST_DOCS) / kResultsPage).rdbuf();
   EXPECT_TRUE(with_section(page.str(), kResultsBegin, kResultsEnd, markdown_of(example())));
+}
+
+TEST(SectionTest, ThePageHasTheMarkersOfVolumesAndTheirResultsAreLinesOf120Columns) {
+  const VolumeResults results{example(), example(), {{"chest_ct-bone", "256 x 256 x 133", 1024, 3000, 2900, 55}}};
+  std::ostringstream page;
+  page << std::ifstream(std::filesystem::path(SURFCAST_DOCS) / kResultsPage).rdbuf();
+  EXPECT_TRUE(with_section(page.str(), kVolumesBegin, kVolumesEnd, markdown_of(results)));
+  std::istringstream text(markdown_of(results));
+  for (std::string line; std::getline(text, line);) {
+    EXPECT_TRUE(line.starts_with("|") || line.size() <= 120) << line;
+  }
+  EXPECT_NE(markdown_of(results).find("| chest_ct-bone | 256 x 256 x 133 | 1024 x 1024 | 2900 ms | 55.0 dB |"),
+            std::string::npos);
 }
 
 TEST(ReportTest, LinesOfProseHave120ColumnsAtMost) {

@@ -40,6 +40,12 @@ struct ColorChannelEncoder {
   std::array<SymbolModel<256>, 2> infrared_steps;
 };
 
+struct WavePacketChannelEncoder {
+  explicit WavePacketChannelEncoder(const WavePacket& first) : last(first) {}
+  WavePacket last;
+  WavePacketEncoder packet;
+};
+
 struct ExtraChannelEncoder {
   explicit ExtraChannelEncoder(const Bytes& first) : last(first), models(first.size()) {}
   Bytes last;
@@ -52,7 +58,8 @@ class LayeredEncoder {
       : layout_(layout),
         stale_(stale),
         points_(channel_of(first), Point14::from_record(first)),
-        colors_(channel_of(first), Bytes(first + 30, first + layout.extra_offset)),
+        colors_(channel_of(first), Bytes(first + 30, first + layout.wave_offset)),
+        wave_packets_(channel_of(first), packet_of(first)),
         extra_(channel_of(first), Bytes(first + layout.extra_offset, first + layout.length)),
         extra_layers_(layout.extra_bytes()) {}
 
@@ -66,6 +73,7 @@ class LayeredEncoder {
     points_.current().encode(layers_, point, changes);
     item_channel_ = stale_ && now == before ? 0 : now;
     if (layout_.color) encode_color(record + 30);
+    if (layout_.wave_packet) encode_wave_packet(record);
     encode_extra(record + layout_.extra_offset);
   }
 
@@ -75,6 +83,7 @@ class LayeredEncoder {
                                   &layers_.user,       &layers_.source,    &layers_.time};
     if (layout_.color) all.push_back(&color_layer_);
     if (layout_.infrared) all.push_back(&infrared_layer_);
+    if (layout_.wave_packet) all.push_back(&wave_packet_layer_);
     for (LayerOut& layer : extra_layers_) all.push_back(&layer);
     Bytes sizes, bytes;
     for (LayerOut* layer : all) {
@@ -87,10 +96,14 @@ class LayeredEncoder {
   }
 
  private:
+  [[nodiscard]] WavePacket packet_of(const std::byte* record) const {
+    return layout_.wave_packet ? WavePacket::from_record(record + layout_.wave_offset) : WavePacket();
+  }
+
   template <typename State>
-  Bytes& follow(ChannelStates<State>& states) {
+  auto& follow(ChannelStates<State>& states) {
     if (states.channel() == item_channel_) return states.current().last;
-    Bytes& before = states.change(item_channel_).last;
+    auto& before = states.change(item_channel_).last;
     return stale_ ? before : states.current().last;
   }
 
@@ -104,6 +117,14 @@ class LayeredEncoder {
       channel.encode_infrared(infrared_layer_.out, last.data(), color);
     }
     std::copy_n(color, last.size(), last.begin());
+  }
+
+  void encode_wave_packet(const std::byte* record) {
+    WavePacket& last = follow(wave_packets_);
+    const WavePacket packet = packet_of(record);
+    wave_packet_layer_.changed |= !(packet == last);
+    wave_packets_.current().packet.encode(wave_packet_layer_.out, last, packet);
+    last = packet;
   }
 
   void encode_extra(const std::byte* bytes) {
@@ -120,9 +141,10 @@ class LayeredEncoder {
   uint32_t item_channel_ = 0;
   ChannelStates<Point14ChannelEncoder> points_;
   ChannelStates<ColorChannelEncoder> colors_;
+  ChannelStates<WavePacketChannelEncoder> wave_packets_;
   ChannelStates<ExtraChannelEncoder> extra_;
   Point14LayersOut layers_;
-  LayerOut color_layer_, infrared_layer_;
+  LayerOut color_layer_, infrared_layer_, wave_packet_layer_;
   std::vector<LayerOut> extra_layers_;
 };
 
@@ -134,11 +156,16 @@ std::vector<std::byte> encode_pointwise(const RecordLayout& layout, std::span<co
   Point10Encoder point(last);
   GpsTimeEncoder<true> time(layout.gps_time ? load<int64_t>(last + 20) : 0);
   ColorEncoder color;
+  WavePacketEncoder wave_packets;
   std::vector<SymbolModel<256>> extra(layout.extra_bytes());
   for (const std::byte* now = last + layout.length; now != records.data() + records.size(); now += layout.length) {
     point.encode(out, now);
     if (layout.gps_time) time.encode(out, load<int64_t>(now + 20));
     if (layout.color) color.encode(out, load_color(last + layout.color_offset), load_color(now + layout.color_offset));
+    if (layout.wave_packet) {
+      wave_packets.encode(out, WavePacket::from_record(last + layout.wave_offset),
+                          WavePacket::from_record(now + layout.wave_offset));
+    }
     for (size_t i = layout.extra_offset; i < layout.length; ++i) {
       out.symbol(extra[i - layout.extra_offset], step(last[i], now[i]));
     }

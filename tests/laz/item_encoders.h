@@ -11,6 +11,7 @@
 #include "laz/model_set.h"
 #include "laz/return_contexts.h"
 #include "laz/running_median.h"
+#include "laz/wave_packet_decoder.h"
 
 namespace surfcast::laz::testing {
 
@@ -151,6 +152,50 @@ class ColorEncoder {
 
   SymbolModel<128> changes_;
   std::array<SymbolModel<256>, 6> steps_;
+};
+
+/// The counterpart of WavePacketDecoder.
+class WavePacketEncoder {
+ public:
+  void encode(ArithmeticEncoder& out, const WavePacket& last, const WavePacket& packet) {
+    out.symbol(descriptors_, packet.descriptor);
+    encode_offset(out, last, packet.offset);
+    sizes_.encode(out, static_cast<int32_t>(last.size), static_cast<int32_t>(packet.size));
+    locations_.encode(out, static_cast<int32_t>(last.location), static_cast<int32_t>(packet.location));
+    for (uint32_t axis = 0; axis < 3; ++axis) {
+      directions_.encode(out, static_cast<int32_t>(last.direction[axis]), static_cast<int32_t>(packet.direction[axis]),
+                         axis);
+    }
+  }
+
+ private:
+  static WaveOffset way_to(const WavePacket& last, uint64_t offset) {
+    const auto step = static_cast<int64_t>(offset - last.offset);
+    if (step == 0) return WaveOffset::kSame;
+    if (step == int64_t{last.size}) return WaveOffset::kBehind;
+    return step == static_cast<int32_t>(step) ? WaveOffset::kStep : WaveOffset::kWhole;
+  }
+
+  void encode_offset(ArithmeticEncoder& out, const WavePacket& last, uint64_t offset) {
+    const WaveOffset way = way_to(last, offset);
+    out.symbol(ways_[way_], static_cast<uint32_t>(way));
+    way_ = static_cast<uint32_t>(way);
+    if (way == WaveOffset::kStep) {
+      const auto step = static_cast<int32_t>(offset - last.offset);
+      steps_.encode(out, step_, step);
+      step_ = step;
+    }
+    if (way != WaveOffset::kWhole) return;
+    out.bits(static_cast<uint32_t>(offset), 32);
+    out.bits(static_cast<uint32_t>(offset >> 32), 32);
+  }
+
+  SymbolModel<256> descriptors_;
+  std::array<SymbolModel<4>, 4> ways_;
+  uint32_t way_ = 0;
+  int32_t step_ = 0;
+  IntegerEncoder<32> steps_, sizes_, locations_;
+  IntegerEncoder<32, 3> directions_;
 };
 
 /// The counterpart of Point10Decoder.

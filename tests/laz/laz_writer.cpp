@@ -64,6 +64,7 @@ Bytes LazWriter::laszip_record() const {
   if (layout.gps_time) item(7, 8, 2);
   if (layout.color && !layout.layered) item(8, 6, 2);
   if (layout.color && layout.layered) layout.infrared ? item(12, 8, layered_version) : item(11, 6, layered_version);
+  if (layout.wave_packet) layout.layered ? item(13, 29, layered_version) : item(9, 29, 1);
   if (layout.extra_bytes() != 0)
     item(layout.layered ? 14 : 0, layout.extra_bytes(), layout.layered ? layered_version : 2);
   Bytes record;

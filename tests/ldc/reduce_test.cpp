@@ -178,6 +178,37 @@ TEST(Reduce, IntensityIsTheMeanByArea) {
   EXPECT_NEAR(coarse[0].intensity, 18, 1e-6);
 }
 
+TEST(Reduce, OpacityIsTheMeanByAreaAndLightThatOfWhatHides) {
+  std::vector<CoarseSurfel> surfels{surfel_at({0.001, 0.001, 0.5}, {0, 0, 1}, 0.001F),
+                                    surfel_at({0.002, 0.001, 0.5}, {0, 0, 1}, 0.001F)};
+  surfels[0].opacity = 0.75F;
+  surfels[0].light = {1, 0, 0};
+  surfels[1].opacity = 0.25F;
+  surfels[1].light = {0, 1, 0};
+  const CoarseSurfel mean = reduced(surfels).at(0);
+  EXPECT_NEAR(mean.opacity, 0.5, 1e-6);
+  EXPECT_NEAR(mean.light.r, 0.75, 1e-6);
+  EXPECT_NEAR(mean.light.g, 0.25, 1e-6);
+  surfels[0].opacity = surfels[1].opacity = 0;
+  EXPECT_EQ(reduced(surfels).at(0).opacity, 0);
+}
+
+TEST(CoarseSurfels, KeepOpacitiesInTheUnitOfTheirAttribute) {
+  surfel::SurfelCloud cloud;
+  cloud.positions = {{0, 0, 0}, {1, 0, 0}, {2, 0, 0}};
+  cloud.normals = {3, {0, 0, 1}};
+  cloud.radii = {1, 1, 1};
+  const std::vector<uint32_t> all{0, 1, 2};
+  for (const surfel::ScalarValues& column : {surfel::ScalarValues(std::vector<uint8_t>{0, 51, 255}),
+                                             surfel::ScalarValues(std::vector<uint16_t>{0, 13107, 65535}),
+                                             surfel::ScalarValues(std::vector<float>{0, 0.2F, 1})}) {
+    cloud.scalars = {{"alpha", column}};
+    const std::vector<CoarseSurfel> surfels = sample_surfels(cloud, all, 1);
+    EXPECT_NEAR(surfels[1].opacity, 0.2, 1e-6);
+    EXPECT_EQ(make_coarse_cloud(surfels, coarse_attributes(cloud)).scalars.at(0).values, column);
+  }
+}
+
 TEST(Reduce, AnyNumberOfCoincidentSurfelsIsOneSurfel) {
   const std::vector<CoarseSurfel> spot(100000, surfel_at({0.3, 0.4, 0.5}));
   const std::vector<CoarseSurfel> coarse = reduced(spot);

@@ -319,5 +319,22 @@ TEST(ModelFile, HasTheSameBytesFromRunToRunAndForAnyNumberOfThreads) {
   }
 }
 
+/// With a mapped file both would end the process by SIGBUS, or hand other bytes to the decoder than were checked.
+TEST(ModelFile, AFileThatIsOverwrittenOrCutOffWhileItIsOpenGivesErrors) {
+  const TestFolder folder;
+  const ModelFile model = write_and_open(sphere_cloud(50000), folder / "model.surf");
+  const std::vector<char> whole = read_bytes(folder / "model.surf");
+  ASSERT_TRUE(model.decode(0));
+  std::ofstream(folder / "model.surf", std::ios::binary) << std::string(whole.size(), 'x');
+  ASSERT_FALSE(model.decode(0));
+  EXPECT_NE(model.decode(0).error().message.find("damaged"), std::string::npos);
+  std::filesystem::resize_file(folder / "model.surf", 64);
+  ASSERT_FALSE(model.decode(0));
+  EXPECT_NE(model.decode(0).error().message.find("cut off"), std::string::npos);
+  std::ofstream(folder / "model.surf", std::ios::binary)
+      .write(whole.data(), static_cast<std::streamsize>(whole.size()));
+  EXPECT_TRUE(model.decode(0));
+}
+
 }  // namespace
 }  // namespace surfcast::model

@@ -77,7 +77,7 @@ TEST_F(ClientLimitsTest, ConnectionsOfOneAddressBeyondItsLimitAreToldSo) {
     ASSERT_FALSE(second);
     EXPECT_EQ(second.error().kind, ErrorKind::kUnavailable);
     EXPECT_THAT(second.error().message, HasSubstr("too many connections from 127.0.0.1"));
-    const std::string refused = get("/healthz");
+    const std::string refused = get("/api/models");
     EXPECT_THAT(refused, HasSubstr("HTTP/1.1 503"));
     EXPECT_THAT(refused, HasSubstr("Retry-After"));
     EXPECT_THAT(refused, HasSubstr("\"kind\": \"unavailable\""));
@@ -88,7 +88,7 @@ TEST_F(ClientLimitsTest, ConnectionsOfOneAddressBeyondItsLimitAreToldSo) {
     EXPECT_THAT(get_from(kOther, "/healthz"), HasSubstr("HTTP/1.1 200"));
     EXPECT_TRUE(first->ask(ping_request()));
   }
-  EXPECT_TRUE(eventually([this] { return get("/healthz").find("HTTP/1.1 200") != std::string::npos; }));
+  EXPECT_TRUE(eventually([this] { return get("/api/models").find("HTTP/1.1 200") != std::string::npos; }));
 }
 
 TEST_F(ClientLimitsTest, RefusedConnectionsTakeNobodysPlace) {
@@ -104,6 +104,25 @@ TEST_F(ClientLimitsTest, RefusedConnectionsTakeNobodysPlace) {
   EXPECT_THAT(metrics, HasSubstr("HTTP/1.1 200"));
   EXPECT_THAT(metrics, HasSubstr("surfcast_connections_refused_total 10"));
   EXPECT_THAT(metrics, HasSubstr("surfcast_connections_open 12"));
+}
+
+TEST_F(ClientLimitsTest, OneClientLeavesConnectionsToOthers) {
+  start();
+  const ClientLimits limits;
+  std::vector<RawSocket> silent;
+  for (size_t i = 0; i < limits.connections + 40; ++i) silent.emplace_back(port_);
+  EXPECT_THAT(get_from(kOther, "/api/models"), HasSubstr("HTTP/1.1 200"));
+}
+
+TEST_F(ClientLimitsTest, HealthIsAnsweredWhenEveryPlaceIsTaken) {
+  ServerConfig config;
+  config.clients = {.connections = 4, .connections_per_client = 0};
+  start(config);
+  std::vector<RawSocket> silent;  // more than are served and told why they are not
+  for (int i = 0; i < 60; ++i) silent.emplace_back(port_);
+  EXPECT_THAT(get("/healthz"), HasSubstr("HTTP/1.1 200"));
+  EXPECT_THAT(get("/readyz"), HasSubstr("HTTP/1.1 200"));
+  EXPECT_THAT(get("/metrics"), HasSubstr("HTTP/1.1 503"));
 }
 
 TEST_F(ClientLimitsTest, ViewsOfOneAddressCountOnAllItsConnections) {

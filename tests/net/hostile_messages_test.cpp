@@ -19,7 +19,7 @@ namespace {
 /// Takes answers as a connection would and looks whether they are answers.
 class Listener : public AnswerWriter {
  public:
-  void send(Bytes answer) override {
+  void send(Bytes answer, std::shared_ptr<const void> /*memory*/) override {
     wire::Answer message;
     EXPECT_TRUE(message.ParseFromArray(answer.data(), static_cast<int>(answer.size())));
     EXPECT_NE(message.kind_case(), wire::Answer::KIND_NOT_SET);
@@ -27,6 +27,7 @@ class Listener : public AnswerWriter {
   }
   [[nodiscard]] size_t unread_bytes() const override { return 0; }
   void answer_sent() override {}
+  void end(Bytes answer) override { send(std::move(answer), nullptr); }
 
   std::set<uint64_t> pongs;
 };
@@ -51,7 +52,8 @@ class HostileMessagesTest : public ::testing::Test {
   }
   void begin_conversation() {
     listener_ = std::make_shared<Listener>();
-    conversation_ = std::make_shared<Conversation>(context_, ++session_, io_.get_executor(), listener_, "nobody");
+    conversation_ = std::make_shared<Conversation>(context_, ++session_, io_.get_executor(), listener_, "nobody",
+                                                   Gatekeeper::Guest());
   }
   void end_conversation() {
     if (!conversation_) return;

@@ -30,6 +30,7 @@ class NetFixture : public ::testing::Test {
     ASSERT_TRUE(service);
     service_ = std::move(*service);
     config.port = port;
+    config.hosts.emplace_back("here");
     auto server = Server::create(*service_, config);
     ASSERT_TRUE(server);
     server_ = std::move(*server);

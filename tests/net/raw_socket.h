@@ -56,6 +56,13 @@ class RawSocket {
     return send(std::string_view(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
   }
 
+  /// Sends all of it, or false: nothing is taken for a second.
+  bool send_some(std::string_view bytes) {
+    const timeval patience{1, 0};
+    ::setsockopt(descriptor_, SOL_SOCKET, SO_SNDTIMEO, &patience, sizeof patience);
+    return send(bytes);
+  }
+
   /// What arrives until the server closes, or nothing more comes for `timeout`.
   std::string read_to_end(std::chrono::milliseconds timeout = std::chrono::seconds(10)) {
     std::string all;

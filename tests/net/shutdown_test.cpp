@@ -54,6 +54,36 @@ TEST_F(ShutdownTest, APictureThatTakesTooLongIsCancelled) {
   EXPECT_FALSE(connection->receive());
 }
 
+TEST_F(ShutdownTest, APictureOfHttpThatTakesTooLongIsAnsweredWithAnError) {
+  control_->slow = true;
+  ServerConfig config;
+  config.drain = milliseconds(100);
+  start(config);
+  RawSocket socket(port_);
+  socket.send(std::string_view("GET /api/models/cube/image HTTP/1.1\r\nHost: here\r\n\r\n"));
+  ASSERT_TRUE(eventually([&] { return control_->drawn == 1; }));
+  server_->stop();
+  const std::string answer = socket.read_to_end();
+  EXPECT_EQ(answer.substr(9, 3), "503");
+  EXPECT_NE(answer.find("Retry-After"), std::string::npos);
+  stop();
+}
+
+TEST_F(ShutdownTest, ReadinessEndsBeforeAnythingElse) {
+  ServerConfig config;
+  config.grace = milliseconds(60'000);
+  start(config);
+  EXPECT_EQ(get("/readyz").substr(9, 3), "200");
+  server_->stop();
+  EXPECT_TRUE(eventually([&] { return get("/readyz").substr(9, 3) == "503"; }));
+  EXPECT_EQ(get("/healthz").substr(9, 3), "200");
+  EXPECT_EQ(get("/api/models/cube/image?resolution=4,4").substr(9, 3), "200") << "who has not seen it yet is served";
+  auto connection = connect();
+  ASSERT_TRUE(connection);
+  EXPECT_TRUE(connection->ask(picture_request("cube")));
+  stop();  // the second time it ends at once
+}
+
 TEST_F(ShutdownTest, IdleConnectionsDoNotDelayTheEnd) {
   ServerConfig config;
   config.drain = milliseconds(60'000);

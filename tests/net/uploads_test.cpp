@@ -34,7 +34,8 @@ class UploadTest : public NetFixture {
     config_.uploads.folder = folder_;
     config_.uploads.bytes = 100'000;
     config_.uploads.total_bytes = 250'000;
-    config_.uploads.extensions = {".laz", ".ply"};
+    config_.uploads.extensions = {".laz", ".ply", ".nii.gz"};
+    config_.uploads.data_extensions = {".raw", ".raw.gz"};
     config_.uploads.taken = [](const std::string& name) { return name == "taken"; };
     config_.uploads.serve = [this](const fs::path& scan) -> Status {
       const std::lock_guard lock(mutex_);
@@ -87,6 +88,25 @@ TEST_F(UploadTest, AScanArrivesWholeAndIsServed) {
   EXPECT_TRUE(content("church.laz") == body);
   EXPECT_THAT(files(), ElementsAre("church.laz"));
   EXPECT_THAT(served_, ElementsAre("church.laz"));
+}
+
+TEST_F(UploadTest, AFileThatAScanWillNameIsKeptAndNotServed) {
+  start(config_);
+  const std::string answer = put("church.RAW.gz", bytes(60'000));
+  EXPECT_THAT(answer, StartsWith("HTTP/1.1 201"));
+  EXPECT_THAT(answer, HasSubstr("\"file\": \"church.RAW.gz\""));
+  EXPECT_THAT(served_, IsEmpty());
+  EXPECT_THAT(uploaded_scans(config_.uploads), IsEmpty());
+  EXPECT_THAT(put("taken.raw", "x"), StartsWith("HTTP/1.1 201")) << "it takes no name of a model";
+  EXPECT_THAT(put("church.laz", bytes(90'000)), HasSubstr("201 "));
+  EXPECT_THAT(put("other.laz", bytes(100'000)), HasSubstr("/1.1 503")) << "files of both sorts fill the folder";
+}
+
+TEST_F(UploadTest, AModelHasTheNameWithoutBothExtensions) {
+  start(config_);
+  EXPECT_THAT(put("brain.nii.gz", "x"), HasSubstr("\"model\": \"brain\""));
+  EXPECT_THAT(put("taken.nii.gz", "x"), HasSubstr("there is a model or scan of that name already"));
+  EXPECT_THAT(put(".nii.gz", "x"), StartsWith("HTTP/1.1 4"));
 }
 
 TEST_F(UploadTest, AScanInChunksArrivesWholeAndTheConnectionGoesOn) {
@@ -255,7 +275,7 @@ TEST_F(UploadTest, AListOfModelsTellsWhatIsTaken) {
   const std::string answer = get("/api/models");
   const nlohmann::json uploads = nlohmann::json::parse(answer.substr(answer.find('{')))["uploads"];
   EXPECT_EQ(uploads["max_bytes"], 100'000);
-  EXPECT_EQ(uploads["extensions"], nlohmann::json({".laz", ".ply"}));
+  EXPECT_EQ(uploads["extensions"], nlohmann::json({".laz", ".ply", ".nii.gz", ".raw", ".raw.gz"}));
 }
 
 }  // namespace

@@ -107,7 +107,10 @@ TEST_F(WebSocketTest, PagesOfOtherOriginsAreRefusedUnlessAllowed) {
     return RawWebSocket(port_, "Origin: " + origin + "\r\n").answer.substr(9, 3);
   };
   EXPECT_EQ(status("http://here"), "101");
-  EXPECT_EQ(status("https://HERE"), "101");
+  EXPECT_EQ(status("http://HERE"), "101");
+  EXPECT_EQ(status("https://here"), "403") << "the server speaks no TLS";
+  EXPECT_EQ(status("https://HERE\r\nX-Forwarded-Proto: https"), "101") << "a proxy before it does";
+  EXPECT_EQ(status("http://here\r\nX-Forwarded-Proto: https"), "403");
   EXPECT_EQ(status("https://friend.example"), "101");
   for (const char* stranger : {"http://elsewhere", "http://here.elsewhere", "http://here:81", "null", "here", "http://",
                                "http://friend.example", "https://friend.example.org"}) {

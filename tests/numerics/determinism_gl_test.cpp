@@ -51,6 +51,13 @@ class DeterminismGLTest : public ::testing::Test {
     EXPECT_TRUE(opened);
     return std::make_shared<const model::ModelFile>(std::move(*opened));
   }
+  ModelPointer model_of(const SampleMedium& sample) {
+    const std::filesystem::path path = folder_ / (sample.name + ".surf");
+    EXPECT_TRUE(std::filesystem::exists(path) || sample.build(path)) << sample.name;
+    Result<model::ModelFile> opened = model::ModelFile::open(path);
+    EXPECT_TRUE(opened);
+    return std::make_shared<const model::ModelFile>(std::move(*opened));
+  }
   picture::Frame draw(const ModelPointer& model, const picture::PictureRequest& request) {
     const std::atomic<bool> cancelled{false};
     Result<picture::Frame> frame = renderer_->draw(model, request, cancelled);
@@ -61,6 +68,15 @@ class DeterminismGLTest : public ::testing::Test {
     std::vector<uint64_t> hashes;
     for (const SamplePicture& sample : samples) {
       hashes.push_back(hash_of(draw(model_of(sample.name, sample.cloud), sample.request).image));
+    }
+    return hashes;
+  }
+  std::vector<uint64_t> draw_media() {
+    std::vector<uint64_t> hashes;
+    for (const SampleMedium& sample : sample_media()) {
+      const picture::Frame frame = draw(model_of(sample), sample.request);
+      EXPECT_TRUE(frame.converged) << sample.name;
+      hashes.push_back(hash_of(frame.image));
     }
     return hashes;
   }
@@ -102,14 +118,38 @@ TEST_F(DeterminismGLTest, AFreshRendererDrawsTheSame) {
   EXPECT_EQ(draw_all(samples), first);
 }
 
+TEST_F(DeterminismGLTest, VolumesAndGaussiansAreTheSameAgainAndByAFreshRenderer) {
+  const std::vector<uint64_t> first = draw_media();
+  EXPECT_EQ(draw_media(), first) << "again";
+  start({});
+  EXPECT_EQ(draw_media(), first) << "by a fresh renderer";
+}
+
+TEST_F(DeterminismGLTest, VolumesAndGaussiansWhoseBlocksWereDrivenOutAreTheSame) {
+  const std::vector<uint64_t> expected = draw_media();
+  render::RendererConfig small;
+  small.gpu_bytes = size_t{6} << 20;
+  small.host_bytes = 0;
+  start(small);
+  const ModelPointer evicting = model_of("large", large_globe());
+  for (int round = 0; round < 3; ++round) {
+    draw(evicting, globe_view(round, 1));
+    EXPECT_EQ(draw_media(), expected) << "round " << round;
+  }
+}
+
 TEST_F(DeterminismGLTest, OtherProcessesAndNumbersOfThreadsDrawTheSame) {
   std::string expected;
-  for (const SamplePicture& sample : sample_pictures()) {
+  const auto expect = [&](const std::string& name, const picture::Frame& frame) {
     std::array<char, 100> line{};
-    const uint64_t hash = hash_of(draw(model_of(sample.name, sample.cloud), sample.request).image);
-    std::snprintf(line.data(), line.size(), "%s %016llx\n", sample.name.c_str(), static_cast<unsigned long long>(hash));
+    std::snprintf(line.data(), line.size(), "%s %016llx\n", name.c_str(),
+                  static_cast<unsigned long long>(hash_of(frame.image)));
     expected += line.data();
+  };
+  for (const SamplePicture& sample : sample_pictures()) {
+    expect(sample.name, draw(model_of(sample.name, sample.cloud), sample.request));
   }
+  for (const SampleMedium& sample : sample_media()) expect(sample.name, draw(model_of(sample), sample.request));
   renderer_.reset();
   for (const char* threads : {"0", "1", "3"}) {  // only llvmpipe reads this variable
     const client::ProgramOutcome other = client::run_program("LP_NUM_THREADS=" + std::string(threads) +

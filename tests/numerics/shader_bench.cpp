@@ -8,21 +8,26 @@
 namespace surfcast::testing {
 namespace {
 
-std::string library() {
+void append(const char* file, std::string& text) {
+  const Result<std::string> part = render::shader_text(file);
+  if (!part) throw std::runtime_error(part.error().message);
+  text += *part;
+}
+
+std::string library(std::span<const char* const> files) {
   std::string text;
   for (const char* file : {"shared/kernel.h", "shared/frame_layout.h", "include/frame.glsl", "include/packing.glsl",
                            "include/resampling_filter.glsl", "include/splat_record.glsl", "include/fixed_sum.glsl"}) {
-    const Result<std::string> part = render::shader_text(file);
-    if (!part) throw std::runtime_error(part.error().message);
-    text += *part;
+    append(file, text);
   }
+  for (const char* file : files) append(file, text);
   return text;
 }
 
-std::string source_of(const std::string& body, int ins, int outs) {
+std::string source_of(const std::string& body, int ins, int outs, std::span<const char* const> files) {
   const std::string m = std::to_string(ins);
   const std::string n = std::to_string(outs);
-  return library() +
+  return library(files) +
          "layout(local_size_x = 64) in;\n"
          "layout(std430, binding = 0) readonly buffer Inputs { vec4 inputs[]; };\n"
          "layout(std430, binding = 1) writeonly buffer Outputs { vec4 outputs[]; };\n"
@@ -50,9 +55,9 @@ ShaderBench::ShaderBench() {
 }
 
 std::vector<glm::vec4> ShaderBench::run(const std::string& body, const layout::FrameConstants& frame, int ins, int outs,
-                                        std::span<const glm::vec4> inputs) {
+                                        std::span<const glm::vec4> inputs, std::span<const char* const> files) {
   const Result<gl::Program> program =
-      gl::make_program("bench", {{GL_COMPUTE_SHADER, "bench", source_of(body, ins, outs)}},
+      gl::make_program("bench", {{GL_COMPUTE_SHADER, "bench", source_of(body, ins, outs, files)}},
                        "#define SURFCAST_COLUMNS 1\n#define SURFCAST_ROWS 1\n");
   if (!program) {
     ADD_FAILURE() << program.error().message;

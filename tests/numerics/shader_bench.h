@@ -20,9 +20,10 @@ class ShaderBench {
  public:
   ShaderBench();
 
-  /// `inputs` has `ins` vectors per case; the result has `outs` vectors per case.
+  /// `inputs` has `ins` vectors per case; the result has `outs` vectors per case. `files`: further shader files whose
+  /// functions the body uses.
   std::vector<glm::vec4> run(const std::string& body, const layout::FrameConstants& frame, int ins, int outs,
-                             std::span<const glm::vec4> inputs);
+                             std::span<const glm::vec4> inputs, std::span<const char* const> files = {});
 
  private:
   std::unique_ptr<gl::EglContext> context_;

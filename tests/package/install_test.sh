@@ -1,12 +1,13 @@
 #!/bin/sh
-# install_test.sh CMAKE BUILD VERSION WINDOW DATA: installs into a folder of its own and looks at what is there. DATA
-# has the models of the tests.
+# install_test.sh CMAKE BUILD VERSION WINDOW DATA PYTHON: installs into a folder of its own and looks at what is there.
+# DATA has the models of the tests.
 set -eu
 cmake=$1
 build=$2
 version=$3
 window=$4
 data=$5
+python=$6
 prefix=$(mktemp -d)
 trap 'rm -rf "$prefix"' EXIT
 
@@ -47,6 +48,7 @@ done
 
 # The server finds its module of image codecs where both are installed.
 [ -s "$prefix/lib/surfcast/image_codecs.so" ] || fail "there is no module of image codecs"
+[ -s "$prefix/lib/surfcast/image_decoders.so" ] || fail "there is no module of image decoders"
 for format in png jpg webp exr; do
   "$prefix/bin/surfcastd" render "$data/sphere-and-grid-v2.surf" --resolution 32,24 --output "$prefix/picture.$format"
   [ -s "$prefix/picture.$format" ] || fail "the installed server wrote no picture in $format"
@@ -58,6 +60,12 @@ if [ "$window" != OFF ]; then
 fi
 if [ -e "$build/client/web/dist/index.html" ]; then
   cmp "$build/client/web/dist/index.html" "$prefix/share/surfcast/viewer/index.html"
+fi
+
+# The Python client is installed where its wheel was built.
+if [ -d "$build/client/python/wheel" ]; then
+  said=$(PYTHONPATH=$(echo "$prefix"/lib/python3*/dist-packages) "$python" -c 'import surfcast as s; print(s.__version__)')
+  [ "$said" = "$version" ] || fail "the Python client says: $said"
 fi
 
 unit=$prefix/lib/systemd/system/surfcastd.service

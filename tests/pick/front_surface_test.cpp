@@ -122,6 +122,20 @@ TEST_F(FrontSurface, LooksThroughClipsAndHiddenClasses) {
   EXPECT_GT(compare(model, query, 1000), 100);
 }
 
+TEST_F(FrontSurface, LooksThroughWhatLetsMostLightThrough) {
+  const model::ModelFile model = model_of(scene(kUtm));
+  kinds::PickQuery query = query_of({kUtm + glm::dvec3(150, -260, 120), kUtm, {0, 0, 1}, 35});
+  query.transparent = true;
+  query.class_opacities.assign(256, 0.3);
+  query.class_opacities[2] = 0.1;
+  EXPECT_GT(compare(model, query, 300), 10) << "surfels of several sheets together";
+  query.opacity = 0.9;
+  query.class_opacities.clear();
+  query.clip.outside.push_back({kUtm - glm::dvec3(50, 50, 50), kUtm + glm::dvec3(50, 50, 50)});
+  query.ghost = 0.1;
+  EXPECT_GT(compare(model, query, 300), 30) << "the floor behind a ghost";
+}
+
 TEST_F(FrontSurface, IsTheSameInPicturesOfSeveralRegions) {
   const model::ModelFile model = model_of(scene({0, 0, 0}));
   const kinds::PickQuery query = query_of({{150, -260, 120}, {0, 0, 0}, {0, 0, 1}, 35}, 1500, 1100);

@@ -6,6 +6,7 @@
 
 #include "protocol/endpoint.h"
 #include "protocol/errors.h"
+#include "protocol/lights_file.h"
 #include "protocol/parse.h"
 #include "protocol/picture_fields.h"
 #include "protocol/picture_query.h"
@@ -38,6 +39,51 @@ TEST(Parse, ListsHaveExactlyAsManyPartsAsAskedFor) {
   }
 }
 
+TEST(PictureFields, GlyphsAreSetFromTheirTexts) {
+  wire::DrawPicture picture;
+  EXPECT_TRUE(set_picture_field(picture, "glyph", "superquadric,2"));
+  EXPECT_TRUE(set_picture_field(picture, "glyph_radius", "unit"));
+  EXPECT_TRUE(set_picture_field(picture, "glyph_scale", "1.25"));
+  EXPECT_TRUE(set_picture_field(picture, "threshold", "fa,0.2;a,b,-1,2"));
+  EXPECT_TRUE(set_picture_field(picture, "color_by", "attribute:confidence"));
+  const wire::Glyphs& glyphs = picture.glyphs();
+  EXPECT_EQ(glyphs.shape(), wire::GLYPH_SHAPE_SUPERQUADRIC);
+  EXPECT_EQ(glyphs.sharpness(), 2);
+  EXPECT_EQ(glyphs.radius(), wire::GLYPH_RADIUS_UNIT);
+  EXPECT_EQ(glyphs.scale(), 1.25);
+  ASSERT_EQ(glyphs.thresholds_size(), 2);
+  EXPECT_EQ(glyphs.thresholds(0).attribute(), "fa");
+  EXPECT_EQ(glyphs.thresholds(0).smallest(), 0.2);
+  EXPECT_FALSE(glyphs.thresholds(0).has_largest());
+  EXPECT_EQ(glyphs.thresholds(1).attribute(), "a,b") << "names may contain commas";
+  EXPECT_EQ(glyphs.thresholds(1).largest(), 2);
+  EXPECT_EQ(picture.coloring().source(), wire::COLOR_SOURCE_ATTRIBUTE);
+  EXPECT_EQ(picture.coloring().attribute(), "confidence");
+}
+
+TEST(PictureFields, LightsAreReadFromTextAndFromJson) {
+  wire::DrawPicture picture;
+  EXPECT_TRUE(set_picture_field(picture, "lights", "0.08,0.25,20;0.5,0.7,-0.6,0.75;0,1,0,0.2"));
+  wire::Lighting read;
+  ASSERT_TRUE(parse_lights_json(R"({"ambient": 0.08, "specular": 0.25, "exponent": 20, "lights":
+      [{"direction": [0.5, 0.7, -0.6], "power": 0.75}, {"direction": [0, 1, 0], "power": 0.2}]})",
+                                read));
+  EXPECT_EQ(read.SerializeAsString(), picture.lighting().SerializeAsString());
+  ASSERT_TRUE(parse_lights_json(R"({"lights": [{"direction": [0, 0, -2]}]})", read));
+  EXPECT_EQ(read.exponent(), 32);
+  EXPECT_EQ(read.lights(0).power(), 1);
+}
+
+TEST(PictureFields, WrongLightsChangeNothing) {
+  wire::Lighting lighting;
+  lighting.set_ambient(0.5);
+  for (const char* text : {"", "[]", "{}", R"({"lights": [{}]})", R"({"lights": [{"direction": [0, 0, 0]}]})",
+                           R"({"ambient": -1, "lights": []})", R"({"lights": [{"direction": [0, 1]}]})"}) {
+    EXPECT_FALSE(parse_lights_json(text, lighting)) << text;
+  }
+  EXPECT_EQ(lighting.ambient(), 0.5);
+}
+
 TEST(PictureFields, EachFieldIsSetFromItsText) {
   wire::DrawPicture picture;
   const std::vector<std::pair<std::string, std::string>> texts = {{"position", "1,2,3"},
@@ -62,7 +108,19 @@ TEST(PictureFields, EachFieldIsSetFromItsText) {
                                                                   {"eye_dome", "1.5,2"},
                                                                   {"transfer", "mr,-1,2.5"},
                                                                   {"shaded", "on"},
-                                                                  {"splat_convention", "exact"}};
+                                                                  {"iso", "-0.5;300,1,2,255,0.25"},
+                                                                  {"slice", "1,2,3,0,0,-2;k,7.5"},
+                                                                  {"medium", "on"},
+                                                                  {"opacity", "0.5"},
+                                                                  {"opacity_by_class", "5=0.3,6=1"},
+                                                                  {"ghost", "0.1"},
+                                                                  {"xray", "sorted"},
+                                                                  {"splat_convention", "exact"},
+                                                                  {"glyph", "superquadric,2"},
+                                                                  {"glyph_radius", "root"},
+                                                                  {"glyph_scale", "1.25"},
+                                                                  {"threshold", "fa,0.2;a,b,-1,2"},
+                                                                  {"lights", "0.1,0.25,32;0,0.5,-1,0.75"}};
   EXPECT_EQ(texts.size(), picture_fields().size());
   for (const auto& [name, text] : texts) EXPECT_TRUE(set_picture_field(picture, name, text)) << name;
   EXPECT_EQ(picture.camera().focal_point().y(), 5);
@@ -95,6 +153,25 @@ TEST(PictureFields, EachFieldIsSetFromItsText) {
   EXPECT_EQ(picture.transfer().first(), -1);
   EXPECT_EQ(picture.transfer().last(), 2.5);
   EXPECT_TRUE(picture.shaded());
+  ASSERT_EQ(picture.iso_surfaces_size(), 2);
+  EXPECT_EQ(picture.iso_surfaces(0).value(), -0.5);
+  EXPECT_FALSE(picture.iso_surfaces(0).has_color());
+  EXPECT_FALSE(picture.iso_surfaces(0).has_opacity());
+  EXPECT_EQ(picture.iso_surfaces(1).color().blue(), 255u);
+  EXPECT_EQ(picture.iso_surfaces(1).opacity(), 0.25);
+  ASSERT_EQ(picture.slices_size(), 2);
+  EXPECT_EQ(picture.slices(0).point().y(), 2);
+  EXPECT_EQ(picture.slices(0).normal().z(), -2);
+  EXPECT_EQ(picture.slices(1).axis(), wire::GRID_AXIS_K);
+  EXPECT_EQ(picture.slices(1).index(), 7.5);
+  EXPECT_TRUE(picture.medium());
+  EXPECT_EQ(picture.opacity(), 0.5);
+  ASSERT_EQ(picture.class_opacities_size(), 2);
+  EXPECT_EQ(picture.class_opacities(0).code(), 5U);
+  EXPECT_EQ(picture.class_opacities(0).opacity(), 0.3);
+  EXPECT_EQ(picture.class_opacities(1).code(), 6U);
+  EXPECT_EQ(picture.ghost(), 0.1);
+  EXPECT_EQ(picture.xray(), wire::X_RAY_SORTED);
   EXPECT_EQ(picture.splat_convention(), wire::SPLAT_CONVENTION_EXACT);
 }
 
@@ -148,6 +225,34 @@ TEST(TransferFile, HoldsPointsOrAPreset) {
   EXPECT_EQ(transfer.last(), 40);
 }
 
+TEST(TransferFile, StatesExtinctionsAndLinearColours) {
+  wire::TransferFunction transfer;
+  ASSERT_TRUE(parse_transfer_json(R"({"points": [
+      {"value": 0, "color": [1, 2, 3], "extinction": 0.25, "opacity": 0.5},
+      {"value": 1, "color": [1, 2, 3], "color_linear": [0, 0.5, 1], "opacity": 0.5}]})",
+                                  transfer));
+  ASSERT_EQ(transfer.points_size(), 2);
+  EXPECT_EQ(transfer.points(0).extinction(), 0.25);
+  EXPECT_FALSE(transfer.points(0).has_color_linear());
+  EXPECT_FALSE(transfer.points(1).has_extinction());
+  EXPECT_EQ(transfer.points(1).opacity(), 0.5);
+  EXPECT_EQ(transfer.points(1).color_linear().y(), 0.5) << "wins over the colour";
+}
+
+TEST(TransferFile, ExtinctionsAndLinearColoursAreChecked) {
+  const auto accepts = [](const std::string& point) {
+    wire::DrawPicture picture = *parse_picture_query("m", "");
+    const std::string text = R"({"points": [{"value": 0, )" + point + "}]}";
+    return parse_transfer_json(text, *picture.mutable_transfer()) && check_picture(picture);
+  };
+  EXPECT_TRUE(accepts(R"("color_linear": [0, 0.5, 1], "extinction": 0)"));
+  EXPECT_TRUE(accepts(R"("color_linear": [0, 0.5, 1], "extinction": 1e6)"));
+  EXPECT_FALSE(accepts(R"("color_linear": [0, 0.5, 1], "extinction": -1)"));
+  EXPECT_FALSE(accepts(R"("color_linear": [0, 0.5, 1.5], "extinction": 1)"));
+  EXPECT_FALSE(accepts(R"("color_linear": [0, 0.5], "extinction": 1)"));
+  EXPECT_FALSE(accepts(R"("color_linear": [0, 0.5, "1"], "extinction": 1)"));
+}
+
 TEST(TransferFile, WrongTextsAreExplainedAndChangeNothing) {
   wire::TransferFunction transfer;
   transfer.set_first(1);
@@ -192,6 +297,18 @@ TEST(PictureFields, WrongTextsAreExplained) {
                                                                                    {"background", "256,0,0"},
                                                                                    {"background", "-1,0,0"},
                                                                                    {"color_by", "red"},
+                                                                                   {"color_by", "attribute:"},
+                                                                                   {"glyph", "cube"},
+                                                                                   {"glyph", "superquadric,-1"},
+                                                                                   {"glyph_radius", ""},
+                                                                                   {"glyph_scale", "0"},
+                                                                                   {"threshold", "fa"},
+                                                                                   {"threshold", ",1"},
+                                                                                   {"threshold", "fa,2,1"},
+                                                                                   {"threshold", "fa,0.2;"},
+                                                                                   {"lights", "0.1,0.2,32"},
+                                                                                   {"lights", "0.1,0.2,32;0,0,0,1"},
+                                                                                   {"lights", "lights.json"},
                                                                                    {"color_map", ""},
                                                                                    {"color_range", "1"},
                                                                                    {"color_range", "nan,1"},
@@ -217,6 +334,26 @@ TEST(PictureFields, WrongTextsAreExplained) {
                                                                                    {"transfer", "0,0,0,0"},
                                                                                    {"transfer", "0,0,0,0,0;"},
                                                                                    {"shaded", "yes"},
+                                                                                   {"iso", ""},
+                                                                                   {"iso", "nan"},
+                                                                                   {"iso", "1,2"},
+                                                                                   {"iso", "1,0,0,256"},
+                                                                                   {"iso", "1,0,0,0,1.5"},
+                                                                                   {"iso", "1;"},
+                                                                                   {"slice", "k"},
+                                                                                   {"slice", "k,"},
+                                                                                   {"slice", "x,3"},
+                                                                                   {"slice", "1,2,3,0,0,0"},
+                                                                                   {"slice", "1,2,3,0,0"},
+                                                                                   {"medium", "no"},
+                                                                                   {"opacity", "1.5"},
+                                                                                   {"opacity", "-0.1"},
+                                                                                   {"opacity_by_class", "5"},
+                                                                                   {"opacity_by_class", "5=2"},
+                                                                                   {"opacity_by_class", "256=0.5"},
+                                                                                   {"opacity_by_class", "5=0.5,"},
+                                                                                   {"ghost", "1.5"},
+                                                                                   {"xray", "yes"},
                                                                                    {"splat_convention", "inria"},
                                                                                    {"filter", "EWA"}}) {
     const Status status = set_picture_field(picture, name, text);
@@ -325,6 +462,9 @@ TEST(CheckPicture, WhatNoFlagCouldSayIsCaughtInMessagesToo) {
 TEST(Endpoint, HostsAndPortsAreToldApart) {
   EXPECT_EQ(parse_endpoint("tcp://render.example:7600")->host, "render.example");
   EXPECT_EQ(parse_endpoint("[::1]:80")->host, "::1");
+  EXPECT_FALSE(parse_endpoint("ws://a:1")->encrypted);
+  EXPECT_TRUE(parse_endpoint("wss://a:1")->encrypted && parse_endpoint("wss://a:1")->websocket);
+  EXPECT_TRUE(parse_endpoint("tcps://a:1")->encrypted && !parse_endpoint("tcps://a:1")->websocket);
   EXPECT_EQ(to_string(*parse_endpoint("[::1]:80")), "[::1]:80");
   EXPECT_EQ(parse_endpoint("127.0.0.1:0")->port, 0);
   for (const char* text : {"", "host", ":7600", "host:", "host:65536", "host:-1", "host:x", "::1:80", "[]:80",

@@ -5,6 +5,7 @@
 #include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
+#include <optional>
 
 #include "reference/headlight.h"
 #include "reference/volume_ray_caster.h"
@@ -13,6 +14,7 @@ namespace surfcast::reference {
 namespace {
 
 constexpr int kIntegrationSteps = 48;  ///< of the transfer function over a range of scalars
+constexpr int kSearchSteps = 64;       ///< of a segment in which a crossing is looked for
 
 /// The scalar at a place and its derivatives along i, j and k.
 struct Reconstructed {
@@ -68,6 +70,31 @@ struct Place {
   glm::dvec3 gradient{0};  ///< world axes
 };
 
+/// The scalar between two places, x from 0 to 1.
+double scalar_between(const Place& a, const Place& b, double x) {
+  const double span = b.t - a.t;
+  const double x2 = x * x;
+  const double x3 = x2 * x;
+  return (2 * x3 - 3 * x2 + 1) * a.scalar + (x3 - 2 * x2 + x) * span * a.slope + (3 * x2 - 2 * x3) * b.scalar +
+         (x3 - x2) * span * b.slope;
+}
+
+/// Where the scalar leaves the side of a value on which it begins; none if it stays.
+std::optional<double> leaves_side(const Place& a, const Place& b, double value, bool above) {
+  const auto stays = [&](double x) { return (scalar_between(a, b, x) >= value) == above; };
+  for (int i = 1; i <= kSearchSteps; ++i) {
+    if (stays(static_cast<double>(i) / kSearchSteps)) continue;
+    double low = static_cast<double>(i - 1) / kSearchSteps;
+    double high = static_cast<double>(i) / kSearchSteps;
+    for (int halving = 0; halving < 50; ++halving) {
+      const double middle = 0.5 * (low + high);
+      (stays(middle) ? low : high) = middle;
+    }
+    return a.t + high * (b.t - a.t);
+  }
+  return std::nullopt;
+}
+
 class CubicRay {
  public:
   CubicRay(const VolumeGrid& grid, const TransferFunction& transfer, const CubicRayParameters& parameters,
@@ -93,8 +120,9 @@ class CubicRay {
         if (part.end > part.begin) faces.insert(faces.end(), {part.begin, part.end});
       }
     }
-    const std::vector<SurfaceLayer> layers =
+    std::vector<SurfaceLayer> layers =
         parameters_.layers ? parameters_.layers(direction_) : std::vector<SurfaceLayer>();
+    add_slices(whole, layers);
     for (const SurfaceLayer& layer : layers) faces.push_back(layer.distance);
     std::ranges::sort(faces);
     auto layer = layers.begin();
@@ -120,24 +148,54 @@ class CubicRay {
     const glm::dvec3 gradient = glm::transpose(to_index_) * found.gradient;
     return {t, found.value, glm::dot(gradient, direction_), gradient};
   }
+  void add_slices(const RayInterval& whole, std::vector<SurfaceLayer>& layers) const {
+    for (const SlicePlane& slice : parameters_.slices) {
+      const double t = glm::dot(slice.normal, slice.point - eye_) / glm::dot(slice.normal, direction_);
+      if (!(t > whole.begin && t < whole.end) || !shown(t)) continue;
+      layers.push_back({t, transfer_.at(place_at(t).scalar).color, slice.opacity});
+    }
+    std::ranges::sort(layers, {}, &SurfaceLayer::distance);
+  }
   void add_stretch(double begin, double end) {
     Place last = place_at(begin);
-    auto number = static_cast<long>(std::floor((begin - anchor_) / step_ + 1e-9)) + 1;
+    Place from = last;  // for the search of crossings
+    std::vector<bool> above;
+    for (const ValueSurface& iso : parameters_.isos) above.push_back(last.scalar >= iso.value);
     while (last.t < end && ray_.transmittance > parameters_.clear) {
-      const Place next = place_at(std::min(anchor_ + static_cast<double>(number++) * step_, end));
+      const double number = std::floor((last.t - anchor_) / step_ + 1e-9) + 1;
+      Place next = place_at(std::min(anchor_ + number * step_, end));
+      const std::optional<size_t> iso = move_to_crossing(from, next, above);
       add_segment(last, next);
-      last = next;
+      if (iso) add_iso(parameters_.isos[*iso], next);
+      from = last = next;
+      if (iso) from.scalar = parameters_.isos[*iso].value;  // but for the error of the cubic
     }
   }
+  /// Moves the end of a segment to the first iso-surface that it crosses, and tells which.
+  std::optional<size_t> move_to_crossing(const Place& last, Place& next, std::vector<bool>& above) const {
+    std::optional<size_t> first;
+    double nearest = 0;
+    for (size_t i = 0; i < above.size(); ++i) {
+      const std::optional<double> t = leaves_side(last, next, parameters_.isos[i].value, above[i]);
+      if (!t || (first && *t >= nearest)) continue;
+      first = i;
+      nearest = *t;
+    }
+    if (!first) return first;
+    above[*first] = !above[*first];
+    next = place_at(nearest);
+    return first;
+  }
+  void add_iso(const ValueSurface& iso, const Place& place) {
+    ray_.add_surface(headlight(place.gradient, direction_) * iso.color, iso.opacity);
+  }
   void add_segment(const Place& a, const Place& b) {
+    if (!parameters_.medium) return;
     const double span = b.t - a.t;
     double before = a.scalar;
     for (int i = 1; i <= parameters_.parts; ++i) {
       const double x = static_cast<double>(i) / parameters_.parts;
-      const double x2 = x * x;
-      const double x3 = x2 * x;
-      const double after = (2 * x3 - 3 * x2 + 1) * a.scalar + (x3 - 2 * x2 + x) * span * a.slope +
-                           (3 * x2 - 2 * x3) * b.scalar + (x3 - x2) * span * b.slope;
+      const double after = scalar_between(a, b, x);
       const Classified seen = mean_between(transfer_, before, after);
       const double middle = x - 0.5 / parameters_.parts;
       const double shade = parameters_.shaded ? headlight(glm::mix(a.gradient, b.gradient, middle), direction_) : 1;

@@ -12,16 +12,15 @@
 namespace surfcast::reference {
 namespace {
 
-constexpr double kCovered = 0.5 / 255;       ///< opacity from which on a pixel counts as covered
-constexpr double kLevels = 255.0;            ///< of an 8 bit channel
-constexpr double kPrefilterDeviation = 1.0;  ///< pixels
+constexpr double kCovered = 0.5 / 255;  ///< opacity from which on a pixel counts as covered
+constexpr double kLevels = 255.0;       ///< of an 8 bit channel
 
 /// Weights of `samples` per pixel over the pixels -kFilterReach to +kFilterReach, sum 1.
-std::vector<double> prefilter_taps(int samples) {
+std::vector<double> prefilter_taps(int samples, double deviation) {
   std::vector<double> taps(static_cast<size_t>(2 * kFilterReach + 1) * samples);
   double sum = 0;
   for (size_t i = 0; i < taps.size(); ++i) {
-    const double x = ((static_cast<double>(i) + 0.5) / samples - (kFilterReach + 0.5)) / kPrefilterDeviation;
+    const double x = ((static_cast<double>(i) + 0.5) / samples - (kFilterReach + 0.5)) / deviation;
     sum += taps[i] = std::exp(-0.5 * x * x);
   }
   for (double& tap : taps) tap /= sum;
@@ -85,8 +84,8 @@ LightPicture prefiltered_picture(int width, int height, int samples, const Light
   return reduced(lattice, samples);
 }
 
-LightPicture reduced(const LightPicture& lattice, int samples) {
-  const std::vector<double> taps = prefilter_taps(samples);
+LightPicture reduced(const LightPicture& lattice, int samples, double deviation) {
+  const std::vector<double> taps = prefilter_taps(samples, deviation);
   LightPicture rows(lattice.width / samples - 2 * kFilterReach, lattice.height);
   LightPicture picture(rows.width, lattice.height / samples - 2 * kFilterReach);
   for (int y = 0; y < rows.height; ++y) {

@@ -32,7 +32,8 @@ LightPicture prefiltered_picture(int width, int height, int samples, const Light
 
 /// The same filter on a lattice of `samples` x `samples` per pixel that reaches kFilterReach pixels over the picture.
 constexpr int kFilterReach = 4;
-LightPicture reduced(const LightPicture& lattice, int samples);
+/// Lattices that are filtered already take a smaller standard deviation, pixels.
+LightPicture reduced(const LightPicture& lattice, int samples, double deviation = 1);
 /// The same filter on a finished picture; what lies outside of it repeats its border.
 LightPicture filtered(const LightPicture& picture);
 /// A picture without a border of `pixels` on every side.

@@ -14,29 +14,28 @@ constexpr double kOpaqueDepth = 16;  ///< optical depth of one spacing at opacit
 
 }  // namespace
 
-TransferFunction::TransferFunction(std::vector<TransferPoint> points, double spacing) : spacing_(spacing) {
+TransferFunction::TransferFunction(std::vector<TransferPoint> points, double spacing) {
   SURFCAST_EXPECTS(spacing > 0);
   std::stable_sort(points.begin(), points.end(), [](const auto& a, const auto& b) { return a.value < b.value; });
-  for (const TransferPoint& p : points) points_.push_back({p.value, linear_from_srgb8(255.0 * p.srgb), p.opacity});
-}
-
-Classified TransferFunction::classified(const glm::dvec3& color, double opacity) const {
-  return {color, std::min(-std::log1p(-std::min(opacity, 1.0)), kOpaqueDepth) / spacing_};
+  for (const TransferPoint& p : points) {
+    const double depth = std::min(-std::log1p(-std::min(p.opacity, 1.0)), kOpaqueDepth);
+    points_.push_back({p.value, {linear_from_srgb8(255.0 * p.srgb), depth / spacing}});
+  }
 }
 
 Classified TransferFunction::at(double value) const {
   if (points_.empty()) return {};
   const auto above = std::upper_bound(points_.begin(), points_.end(), value,
                                       [](double v, const Point& point) { return v < point.value; });
-  if (above == points_.begin()) return classified(above->color, above->opacity);
+  if (above == points_.begin()) return above->seen;
   const Point& a = *(above - 1);
-  if (above == points_.end()) return classified(a.color, a.opacity);
+  if (above == points_.end()) return a.seen;
   const double t = (value - a.value) / (above->value - a.value);
-  return classified(glm::mix(a.color, above->color, t), std::lerp(a.opacity, above->opacity, t));
+  return {glm::mix(a.seen.color, above->seen.color, t), std::lerp(a.seen.extinction, above->seen.extinction, t)};
 }
 
 bool TransferFunction::visible_within(double low, double high) const {
-  const auto seen = [&](const Point& p) { return p.opacity > 0 && p.value >= low && p.value <= high; };
+  const auto seen = [&](const Point& p) { return p.seen.extinction > 0 && p.value >= low && p.value <= high; };
   return at(low).extinction > 0 || at(high).extinction > 0 || std::any_of(points_.begin(), points_.end(), seen);
 }
 

@@ -19,8 +19,8 @@ struct Classified {
   double extinction = 0;  ///< 1 / world unit
 };
 
-/// Colour and extinction over the scalar. Between points, the colour in linear light and the opacity are linear; beyond
-/// the first and last they stay. Two points of one value are a step. Without points everything is clear.
+/// Colour and extinction over the scalar. Between points, the colour in linear light and the extinction are linear;
+/// beyond the first and last they stay. Two points of one value are a step. Without points everything is clear.
 class TransferFunction {
  public:
   TransferFunction() = default;
@@ -35,12 +35,9 @@ class TransferFunction {
  private:
   struct Point {
     double value;
-    glm::dvec3 color;
-    double opacity;
+    Classified seen;
   };
-  [[nodiscard]] Classified classified(const glm::dvec3& color, double opacity) const;
   std::vector<Point> points_;
-  double spacing_ = 1;
 };
 
 /// The light along a ray, composited front to back.

@@ -115,7 +115,7 @@ TEST(VolumeGrid, ReconstructsMarschnerAndLobbsSignalBestWhenCorrected) {
 TEST(TransferFunction, IsLinearBetweenPointsAndConstantBeyond) {
   const TransferFunction transfer({{1, {1, 1, 1}, 0.5}, {0, {0, 0, 0}, 0}}, 2);
   EXPECT_EQ(transfer.at(-5).extinction, 0);
-  EXPECT_NEAR(transfer.at(0.5).extinction, -std::log(0.75) / 2, 1e-12) << "opacity 0.25 over a spacing of 2";
+  EXPECT_NEAR(transfer.at(0.5).extinction, -0.5 * std::log(0.5) / 2, 1e-12) << "half of that at 1";
   EXPECT_NEAR(transfer.at(0.5).color.x, 0.5, 1e-12);
   EXPECT_NEAR(transfer.at(7).extinction, -std::log(0.5) / 2, 1e-12);
 }

@@ -57,6 +57,20 @@ enum class Reconstruction { kTrilinear, kCatmullRom };
 LightPicture ray_cast(const VolumeGrid& grid, const TransferFunction& transfer, bool shaded,
                       const geometry::CameraFrame& frame, Reconstruction reconstruction);
 
+/// The surface where the field has a value; lit by a headlight.
+struct ValueSurface {
+  double value = 0;
+  glm::dvec3 color{1};  ///< linear light
+  double opacity = 1;
+};
+
+/// A plane through the grid in the colours of the transfer function, without its opacities.
+struct SlicePlane {
+  glm::dvec3 point{0};  ///< world
+  glm::dvec3 normal{0, 0, 1};
+  double opacity = 1;
+};
+
 /// How a grid is drawn by cubic rays. The defaults are the method; the rest is for studies.
 struct CubicRayParameters {
   double step = 1;      ///< between places on the ray, in spacings of the samples along it
@@ -67,6 +81,9 @@ struct CubicRayParameters {
   SurfaceLayers layers{};
   std::vector<ClipBox> inside{};   ///< of which one must contain what is seen, if there are any
   std::vector<ClipBox> outside{};  ///< which must not
+  std::vector<ValueSurface> isos{};
+  std::vector<SlicePlane> slices{};
+  bool medium = true;  ///< what the transfer function shows is drawn
 };
 
 /// Draws a grid with one ray a pixel. The scalar and its gradient are reconstructed with the kernel of Catmull and Rom

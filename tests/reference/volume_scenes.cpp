@@ -1,10 +1,13 @@
 #include "reference/volume_scenes.h"
 
 #include <algorithm>
+#include <cmath>
+#include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <map>
 
 #include "base/contract.h"
+#include "reference/linear_picture.h"
 #include "reference/volume_ray_caster.h"
 
 namespace surfcast::reference {
@@ -44,9 +47,30 @@ const Named& by_name(const Named (&all)[kCount], const std::string& name) {
   return *found;
 }
 
+glm::dvec3 srgb_of(const glm::dvec3& linear) {
+  return {srgb_from_linear(linear.x), srgb_from_linear(linear.y), srgb_from_linear(linear.z)};
+}
+
+/// Points so close that the opacity is linear in between, too. Colours are mixed in linear light.
+std::vector<TransferPoint> with_linear_opacity(const std::vector<TransferPoint>& points) {
+  constexpr int kPieces = 32;
+  std::vector<TransferPoint> close;
+  for (size_t i = 0; i + 1 < points.size(); ++i) {
+    const glm::dvec3 below = linear_from_srgb8(255.0 * points[i].srgb);
+    const glm::dvec3 above = linear_from_srgb8(255.0 * points[i + 1].srgb);
+    for (int piece = 0; piece < kPieces; ++piece) {
+      const double part = piece / double{kPieces};
+      close.push_back({std::lerp(points[i].value, points[i + 1].value, part), srgb_of(glm::mix(below, above, part)),
+                       std::lerp(points[i].opacity, points[i + 1].opacity, part)});
+    }
+  }
+  close.push_back(points.back());
+  return close;
+}
+
 }  // namespace
 
-TransferFunction transfer_by_name(const std::string& name, double spacing) {
+std::vector<TransferPoint> transfer_points(const std::string& name) {
   const glm::dvec3 blue{0.25, 0.45, 0.9};
   const glm::dvec3 orange{0.95, 0.6, 0.2};
   const glm::dvec3 white{1, 0.95, 0.9};
@@ -57,7 +81,11 @@ TransferFunction transfer_by_name(const std::string& name, double spacing) {
       {"soft", {{0.1, blue, 0}, {0.5, orange, 0.1}, {0.9, white, 0.2}}},
       {"shell", {{0.2, blue, 0}, {0.35, blue, 0.12}, {0.5, blue, 0}, {0.6, orange, 0}, {0.8, orange, 0.4}}}};
   SURFCAST_EXPECTS(functions.contains(name));
-  return {functions.at(name), spacing};
+  return with_linear_opacity(functions.at(name));
+}
+
+TransferFunction transfer_by_name(const std::string& name, double spacing) {
+  return {transfer_points(name), spacing};
 }
 
 geometry::CameraFrame volume_view(const std::string& name, int side, double closer) {
@@ -76,7 +104,9 @@ VolumeScene make_volume_scene(const std::string& field, const std::string& view,
   VolumeScene scene;
   scene.field = named.make();
   scene.grid = sampled(scene.field, size);
-  scene.transfer = transfer_by_name(named.transfer, 2.0 / (named.samples - 1));
+  scene.points = transfer_points(named.transfer);
+  scene.spacing = 2.0 / (named.samples - 1);
+  scene.transfer = TransferFunction(scene.points, scene.spacing);
   scene.frame = volume_view(view, side);
   return scene;
 }

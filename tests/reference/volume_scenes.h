@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "geometry/camera.h"
 #include "reference/light_picture.h"
@@ -14,6 +15,8 @@ namespace surfcast::reference {
 struct VolumeScene {
   VolumeField field;
   VolumeGrid grid;
+  std::vector<TransferPoint> points;  ///< of the transfer function
+  double spacing = 1;                 ///< to which their opacities refer, world units
   TransferFunction transfer;
   bool shaded = false;
   geometry::CameraFrame frame;
@@ -25,8 +28,10 @@ struct VolumeScene {
 VolumeScene make_volume_scene(const std::string& field, const std::string& view, const glm::ivec3& size, int side);
 /// A view by name; `closer` divides its distance from the focal point.
 geometry::CameraFrame volume_view(const std::string& name, int side, double closer = 1);
-/// A transfer function: "smooth", "edge", "faint", "soft" (those of the fields above, in this order) or "shell". Its
-/// opacities are those of the given spacing, world units.
+/// The points of a transfer function: "smooth", "edge", "faint", "soft" (those of the fields above, in this order) or
+/// "shell". The opacity is linear between the values that define them.
+std::vector<TransferPoint> transfer_points(const std::string& name);
+/// The function of these points. Its opacities are those of the given spacing, world units.
 TransferFunction transfer_by_name(const std::string& name, double spacing);
 
 /// The analytic field, integrated finely along 3 x 3 rays a pixel and filtered with the pixel prefilter.

@@ -79,6 +79,18 @@ TEST(DisplayOptions, RangesAreTheModelsUnlessGiven) {
   EXPECT_TRUE(resolve_display_options(survey(), request)->attributes);
 }
 
+TEST(DisplayOptions, StepsThroughVolumesAreLongerInMotionOnly) {
+  picture::PictureRequest request;
+  request.spacing = 2;
+  EXPECT_EQ(resolve_display_options(survey(), request)->volumes.step, 1);
+  request.rest_spacing = 0;
+  EXPECT_EQ(resolve_display_options(survey(), request)->volumes.step, 2);
+  request.spacing = 0.5;
+  EXPECT_EQ(resolve_display_options(survey(), request)->volumes.step, 1);
+  request.spacing = 100;
+  EXPECT_EQ(resolve_display_options(survey(), request)->volumes.step, 2);
+}
+
 TEST(DisplayOptions, WhatAModelLacksCannotBeShownAndNeedNotBeHidden) {
   picture::PictureRequest request;
   request.hidden_classes.set(2);
@@ -89,6 +101,25 @@ TEST(DisplayOptions, WhatAModelLacksCannotBeShownAndNeedNotBeHidden) {
     request.coloring.source = source;
     EXPECT_EQ(resolve_display_options({}, request).error().kind, ErrorKind::kInvalidInput);
   }
+}
+
+TEST(DisplayOptions, OpacitiesOfTheScanCountIfSomeAreBelowOneAndSomeAboveZero) {
+  const auto counts = [](double least, double most) {
+    model::ModelInfo info = survey();
+    info.scalar_names.emplace_back("alpha");
+    info.ranges.push_back({"alpha", least, most, least, most});
+    const SeenThrough through = seen_through(info, {});
+    EXPECT_EQ(through.any, through.by_file);
+    return through.by_file;
+  };
+  EXPECT_TRUE(counts(128, 128));
+  EXPECT_TRUE(counts(0, 255));
+  EXPECT_TRUE(counts(0.2, 1));
+  EXPECT_TRUE(counts(1000, 65535));
+  EXPECT_FALSE(counts(255, 255));
+  EXPECT_FALSE(counts(1, 1));
+  EXPECT_FALSE(counts(0, 0)) << "of writers that do not know opacities";
+  EXPECT_FALSE(seen_through(survey(), {}).any);
 }
 
 TEST(DisplayOptions, HiddenClassesAreBitsByCode) {

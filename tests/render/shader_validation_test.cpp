@@ -89,6 +89,106 @@ std::vector<render::Variant> all_variants() {
   return variants;
 }
 
+/// Every combination of what matters to volumes.
+std::vector<render::Variant> volume_variants() {
+  std::vector<render::Variant> variants(32);
+  for (unsigned bits = 0; bits < variants.size(); ++bits) {
+    const auto bit = [bits](unsigned place) { return (bits >> place & 1) != 0; };
+    variants[bits].float_picture = bit(0);
+    variants[bits].clipped = bit(1);
+    variants[bits].shaded = bit(2);
+    variants[bits].layered = bit(3);
+    variants[bits].volume_surfaces = bit(4);
+  }
+  return variants;
+}
+
+/// Surfels with curvature, which add a fragment function to the programs for large splats.
+void compile_curved(render::Programs& programs, const render::PictureKinds& surfels) {
+  for (render::Variant variant : all_variants()) {
+    if (variant.hides_classes || variant.clipped || variant.scatter || variant.blends_behind) continue;
+    variant.curved = true;
+    EXPECT_TRUE(programs.variant(variant, surfels));
+    EXPECT_TRUE(programs.long_lists(variant, surfels, SURFCAST_LONG_LIST));
+  }
+}
+
+/// Surfaces that are kept for what is drawn between them.
+void compile_layers(render::Programs& programs, const render::PictureKinds& surfels) {
+  for (render::Variant variant : all_variants()) {
+    if (!variant.eye_dome || variant.silhouettes || variant.blends_behind) continue;
+    variant.layered = true;
+    EXPECT_TRUE(programs.variant(variant, surfels));
+    EXPECT_TRUE(programs.long_lists(variant, surfels, SURFCAST_LONG_LIST));
+  }
+}
+
+void compile(render::Programs& programs, const render::Variant& variant, const render::PictureKinds& surfels) {
+  EXPECT_TRUE(programs.variant(variant, surfels));
+  EXPECT_TRUE(programs.long_lists(variant, surfels, SURFCAST_LONG_LIST));
+}
+
+/// The ways to state opacities, which concern the projection.
+void compile_opacities(render::Programs& programs, const render::PictureKinds& surfels) {
+  for (unsigned bits = 0; bits < 16; ++bits) {
+    const auto bit = [bits](unsigned place) { return (bits >> place & 1) != 0; };
+    render::Variant variant;
+    variant.colored = variant.transparent = true;
+    variant.by_file = bit(0);
+    variant.by_class = bit(1);
+    variant.ghosts = variant.clipped = bit(2);
+    variant.xray = bit(3);
+    compile(programs, variant, surfels);
+    variant.color = picture::SurfelColor::kClassification;
+    variant.scatter = variant.curved = true;
+    compile(programs, variant, surfels);
+  }
+}
+
+/// Surfels that are seen through: surfaces, a medium, and surfaces that are kept for what is drawn between them. Each
+/// in one way that differs from a plain picture.
+void compile_transparent(render::Programs& programs, const render::PictureKinds& surfels) {
+  compile_opacities(programs, surfels);
+  for (const auto change :
+       {&render::Variant::transparent, &render::Variant::lit, &render::Variant::eye_dome,
+        &render::Variant::float_picture, &render::Variant::blends_behind, &render::Variant::curved}) {
+    for (const bool colored : {false, true}) {
+      render::Variant variant;
+      variant.colored = colored;
+      variant.*change = variant.transparent = true;
+      compile(programs, variant, surfels);
+      variant.density = true;
+      compile(programs, variant, surfels);
+      variant.density = false;
+      variant.layered = variant.eye_dome = true;
+      if (!variant.blends_behind) compile(programs, variant, surfels);
+    }
+  }
+}
+
+/// Gaussians between surfaces, drawn or kept for volumes.
+void compile_gaussians_between(render::Programs& programs) {
+  for (const auto form : {render::GaussianForm::kTrained, render::GaussianForm::kFlat, render::GaussianForm::kExact}) {
+    for (unsigned bits = 0; bits < 4; ++bits) {
+      render::Variant variant;
+      variant.layered = true;
+      variant.keeps = (bits & 1) != 0;
+      variant.float_picture = (bits & 2) != 0;
+      EXPECT_TRUE(programs.gaussians(variant, form));
+    }
+  }
+}
+
+/// One volume and several, alone, between surfaces and between Gaussians.
+void compile_volumes(render::Programs& programs) {
+  for (render::Variant variant : volume_variants()) {
+    for (const size_t volumes : {1, 2, 4}) EXPECT_TRUE(programs.volumes(variant, volumes));
+    if (!variant.layered) continue;
+    variant.codes = true;
+    for (const size_t volumes : {1, 2}) EXPECT_TRUE(programs.volumes(variant, volumes));
+  }
+}
+
 /// The texts of the shaders of all variants, for processors and for GPUs.
 std::set<std::string> all_shaders() {
   const RecordingDriver driver;
@@ -111,6 +211,11 @@ std::set<std::string> all_shaders() {
         }
       }
     }
+    compile_curved(*programs, surfels);
+    compile_layers(*programs, surfels);
+    compile_transparent(*programs, surfels);
+    compile_gaussians_between(*programs);
+    compile_volumes(*programs);
     // Work groups of another size.
     EXPECT_TRUE(programs->long_lists(all_variants().back(), surfels, uint32_t{1} << 20));
   }

@@ -1,6 +1,7 @@
 #include "residency/packing.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <random>
 
@@ -172,8 +173,21 @@ TEST(PackBlock, WhatIsMergedShowsTheAttributesOfOneOfItsOwn) {
   ASSERT_GT(packed.surfels.size(), block.size()) << "some are merged";
   ASSERT_EQ(packed.attributes.size(), packed.surfels.size());
   for (size_t i = 0; i < packed.surfels.size(); ++i) {
-    EXPECT_EQ(packed.attributes[i] >> 16, classes[packed.representatives[i]]);
+    EXPECT_EQ((packed.attributes[i] >> 16) & 255, classes[packed.representatives[i]]);
   }
+}
+
+TEST(PackBlock, OpacitiesAreThoseOfTheFileOrFull) {
+  std::mt19937 random(9);
+  model::DecodedBlock block = block_of(3, 1000, random);
+  PackedSurfels without = pack_block(block, 8, true);
+  pack_attributes(block, without);
+  for (const uint32_t word : without.attributes) EXPECT_EQ(word >> 24, 255U);
+  block.scalars.push_back({"alpha", std::vector<float>{0, 0.2F, std::nanf("")}});
+  PackedSurfels packed = pack_block(block, 8, true);
+  pack_attributes(block, packed);
+  constexpr std::array kOpacities{0U, 51U, 255U};
+  for (size_t i = 0; i < 3; ++i) EXPECT_EQ(packed.attributes[i] >> 24, kOpacities.at(packed.representatives[i]));
 }
 
 }  // namespace

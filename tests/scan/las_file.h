@@ -35,7 +35,7 @@ inline Bytes LasFile::record(int32_t x, int32_t y, int32_t z) const {
 }
 
 inline std::string LasFile::text() const {
-  const auto header_size = static_cast<uint16_t>(minor == 4 ? 375 : minor == 3 ? 235 : 227);
+  const auto header_size = static_cast<uint16_t>(minor == 5 ? 393 : minor == 4 ? 375 : minor == 3 ? 235 : 227);
   const auto count = static_cast<uint32_t>(records.size());
   Bytes file(std::string(header_size, '\0'));
   file.set(0, 'L').set(1, 'A').set(2, 'S').set(3, 'F');
@@ -44,7 +44,7 @@ inline std::string LasFile::text() const {
   file.set(104, static_cast<uint8_t>(format));
   file.set(105, static_cast<uint16_t>(las_record_bytes(format) + extra_bytes));
   if (minor < 4) file.set(107, count);
-  if (minor == 4) file.set<uint64_t>(247, count);
+  if (minor >= 4) file.set<uint64_t>(247, count);
   for (size_t axis = 0; axis < 3; ++axis) {
     file.set(131 + 8 * axis, scale[axis]).set(155 + 8 * axis, offset[axis]);
   }

@@ -72,10 +72,24 @@ TEST_P(LasFormatTest, ReadsEveryFieldOfTheFormat) {
   if (color != 0) record.set<uint16_t>(color, 65535).set<uint16_t>(color + 2, 256).set<uint16_t>(color + 4, 1);
   const bool has_nir = file.format == 8 || file.format == 10;
   if (has_nir) record.set<uint16_t>(36, 5000);
+  const size_t wave_offsets[] = {0, 0, 0, 0, 28, 34, 0, 0, 0, 30, 38};
+  const size_t wave = wave_offsets[file.format];
+  if (wave != 0) {
+    record.set<uint8_t>(wave, 3).set<uint64_t>(wave + 1, uint64_t{1} << 40).set<uint32_t>(wave + 9, 512);
+    record.set<float>(wave + 13, 1.5F).set<float>(wave + 17, 2).set<float>(wave + 21, -3).set<float>(wave + 25, 4);
+  }
   file.records = {record.text()};
 
   const Result<testing::WholeScan> points = read(file);
   ASSERT_TRUE(points) << points.error().message;
+  EXPECT_EQ(scalar_values<uint8_t>(*points, "wave_packet_index").size(), wave != 0 ? 1U : 0U);
+  EXPECT_THAT(scalar_values<uint8_t>(*points, "wave_packet_index"), Each(3));
+  EXPECT_THAT(scalar_values<uint64_t>(*points, "wave_packet_offset"), Each(uint64_t{1} << 40));
+  EXPECT_THAT(scalar_values<uint32_t>(*points, "wave_packet_size"), Each(512));
+  EXPECT_THAT(scalar_values<float>(*points, "wave_return_location"), Each(1.5F));
+  EXPECT_THAT(scalar_values<float>(*points, "wave_dx"), Each(2));
+  EXPECT_THAT(scalar_values<float>(*points, "wave_dy"), Each(-3));
+  EXPECT_THAT(scalar_values<float>(*points, "wave_dz"), Each(4));
   EXPECT_THAT(scalar_values<uint16_t>(*points, "intensity"), ElementsAre(40000));
   EXPECT_THAT(scalar_values<uint8_t>(*points, "return_number"), ElementsAre(2));
   EXPECT_THAT(scalar_values<uint8_t>(*points, "number_of_returns"), ElementsAre(5));
@@ -103,7 +117,7 @@ TEST_P(LasFormatTest, ReadsEveryFieldOfTheFormat) {
 INSTANTIATE_TEST_SUITE_P(AllFormats, LasFormatTest, ::testing::Range(0, 11));
 
 TEST(LasReaderTest, AllVersionsAreRead) {
-  for (int minor = 0; minor <= 4; ++minor) {
+  for (int minor = 0; minor <= 5; ++minor) {
     LasFile file;
     file.minor = minor;
     file.records = {file.record(100, 200, 300).text()};
@@ -201,7 +215,7 @@ std::string message_with(size_t offset, T value, int minor = 2) {
 
 TEST(LasReaderTest, BadHeadersAreNamed) {
   EXPECT_THAT(message_with<uint8_t>(24, 2), HasSubstr("version 2.2"));
-  EXPECT_THAT(message_with<uint8_t>(25, 5), HasSubstr("version 1.5"));
+  EXPECT_THAT(message_with<uint8_t>(25, 6), HasSubstr("version 1.6"));
   EXPECT_THAT(message_with<uint16_t>(94, 226), HasSubstr("header size"));
   EXPECT_THAT(message_with<uint16_t>(94, 60000), HasSubstr("truncated"));
   EXPECT_THAT(message_with<uint32_t>(96, 100), HasSubstr("begin in the header"));

@@ -6,7 +6,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "laz/byte_access.h"
+#include "laz/laz_writer.h"
 #include "scan/bytes.h"
+#include "scan/las_file.h"
 #include "scan/las_reader.h"
 #include "scan/scan_stream.h"
 #include "scan/whole_scan.h"
@@ -75,6 +78,41 @@ TEST(LazReaderTest, FilesWithChangedBytesAreReadOrRefused) {
       const Result<testing::WholeScan> points = testing::read_whole(testing::as_bytes(damaged), "scan.laz");
       ASSERT_LE(points ? points->positions.size() : 0, 1000U);
     }
+  }
+}
+
+/// A file with one chunk for all points.
+std::string one_chunk(size_t points) {
+  laz::testing::LazWriter writer;
+  writer.chunk_size = 0xFFFFFFFE;
+  std::vector<std::byte> records(writer.record_length * points);
+  for (size_t i = 0; i < points; ++i) laz::store(&records[i * writer.record_length], static_cast<int32_t>(i));
+  const std::vector<std::byte> record = writer.laszip_record();
+  testing::LasFile file;
+  file.variable_record_count = 1;
+  testing::Bytes head(std::string(54, '\0'));
+  head.set(18, uint16_t{22204}).set(20, static_cast<uint16_t>(record.size()));
+  std::string text = head.text();
+  text.replace(2, 14, "laszip encoded");
+  file.variable_records = text + std::string(reinterpret_cast<const char*>(record.data()), record.size());
+  std::string whole = file.text();
+  const std::vector<std::byte> data = writer.point_data(records, whole.size());
+  whole[104] = static_cast<char>(0x80);
+  laz::store(reinterpret_cast<std::byte*>(&whole[107]), static_cast<uint32_t>(points));
+  return whole + std::string(reinterpret_cast<const char*>(data.data()), data.size());
+}
+
+TEST(LazReaderTest, ALargeChunkIsReadInSlicesInAnyOrder) {
+  const size_t count = 3 * kPieceRows + 5;
+  const std::string content = one_chunk(count);
+  const Result<std::unique_ptr<RowSource>> rows = las_rows(testing::as_bytes(content));
+  ASSERT_TRUE(rows) << rows.error().message;
+  ASSERT_EQ((*rows)->pieces(), 4U);
+  for (const size_t piece : {1, 3, 0, 2, 2}) {
+    const Result<PointTable> table = (*rows)->read(piece);
+    ASSERT_TRUE(table);
+    EXPECT_EQ(table->rows, std::min(kPieceRows, count - piece * kPieceRows));
+    EXPECT_EQ(laz::load<int32_t>(table->records.data()), static_cast<int32_t>(piece * kPieceRows));
   }
 }
 

@@ -76,6 +76,15 @@ TEST(PlyReaderTest, AsciiReadsAnyOrder) {
   EXPECT_FALSE(points->colors);
 }
 
+TEST(PlyReaderTest, AlphaInWideIntegersHasTheTypeOfItsValues) {
+  const std::string head =
+      "ply\nformat ascii 1.0\nelement vertex 2\nproperty float x\nproperty float y\nproperty float z\n"
+      "property int alpha\nend_header\n";
+  const Result<testing::WholeScan> points = testing::read_whole(as_bytes(head + "1 2 3 255\n1 2 4 0\n"), "scan.ply");
+  ASSERT_TRUE(points) << points.error().message;
+  EXPECT_THAT(scalar_values<uint8_t>(*points, "alpha"), ElementsAre(255, 0));
+}
+
 TEST(PlyReaderTest, GaussiansAreRefused) {
   const std::string text =
       "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"

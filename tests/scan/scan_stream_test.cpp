@@ -88,9 +88,8 @@ TEST(ScanStreamTest, RandomDamageNeverCrashes) {
 
 TEST(ScanStreamTest, OtherFilesGetOneLineThatSaysWhatTheyAre) {
   const std::pair<const char*, std::string> others[] = {
-      {"a.e57", "ASTM-E57"}, {"a.pnts", "pnts"},      {"a.glb", "glTF"},
-      {"a.spz", "\x1F\x8B"}, {"a.obj", "v 1 2 3\n"},  {"a.pts", "[Expe/PointSet/Binary/0.1]\n"},
-      {"a.json", "{}"},      {"a.splat", "\1\2\3\4"}, {"a.unknown", "\1\2\3\4"},
+      {"a.glb", "glTF"}, {"a.spz", "\x1F\x8B"},   {"a.obj", "v 1 2 3\n"},    {"a.pts", "[Expe/PointSet/ASCII/0.1]\n"},
+      {"a.json", "{}"},  {"a.splat", "\1\2\3\4"}, {"a.unknown", "\1\2\3\4"},
   };
   for (const auto& [name, text] : others) {
     const Result<testing::WholeScan> points = read(name, text);

@@ -169,6 +169,24 @@ TEST(Scatter, SheetsOneBehindTheOtherAreSurfacesOfTheirOwn) {
   EXPECT_NEAR(radii[2500], (4 + 2 * std::sqrt(2)) / 6, 0.02);
 }
 
+TEST(Scatter, MostOfASheetBeforeAnotherHasTheRadiiOfTheSheetAloneUpToItsBorder) {
+  constexpr int kSide = 40;
+  const std::vector<glm::dvec3> sheet = plane(kSide);
+  std::vector<glm::dvec3> sheets = sheet;
+  for (const glm::dvec3& p : sheet) sheets.push_back(p + glm::dvec3(0, 0, 3 * kSpacing));
+  const surfel::SurfelCloud alone = surfels_at(sheet);
+  const surfel::SurfelCloud both = surfels_at(sheets);
+  const auto within = [&](double x) { return x > 0.5 * kSpacing && x < (kSide - 1.5) * kSpacing; };
+  int narrower = 0;
+  for (size_t i = 0; i < alone.size(); ++i) {
+    if (!within(alone.positions[i].x) || !within(alone.positions[i].y)) continue;
+    const auto same = std::ranges::find(both.positions, alone.positions[i]);
+    ASSERT_NE(same, both.positions.end());
+    narrower += both.radii[static_cast<size_t>(same - both.positions.begin())] < 0.95F * alone.radii[i] ? 1 : 0;
+  }
+  EXPECT_LT(narrower, 100);  // of 1444
+}
+
 TEST(Scatter, LeavesAreNoLayers) {
   // A crown of 400 leaves of nine points: each is flat, in a direction of its own.
   std::mt19937 random(11);

@@ -95,6 +95,12 @@ TEST(TextReaderTest, SevenColumnsAreIntensityAndColourUnlessTheLastIsOpaqueAlpha
   EXPECT_THAT(scalar_values<uint8_t>(plain, "intensity"), ElementsAre(9, 8));
 }
 
+TEST(TextReaderTest, OneIsOpaqueWhereNoAlphaIsLarger) {
+  EXPECT_THAT(scalar_values<double>(read("x y z alpha\n1 2 3 1\n1 2 3 0\n"), "alpha"), ElementsAre(1, 0));
+  EXPECT_THAT(scalar_values<double>(read("x y z alpha\n1 2 3 1\n1 2 3 0.5\n"), "alpha"), ElementsAre(1, 0.5));
+  EXPECT_THAT(scalar_values<uint8_t>(read("x y z alpha\n1 2 3 0\n1 2 3 200\n"), "alpha"), ElementsAre(0, 200));
+}
+
 TEST(TextReaderTest, NineAndTenColumnsHoldColourAndNormal) {
   const ScanPoints nine = read("1 2 3 10 20 30 0 0 -1\n");
   EXPECT_THAT(nine.colors->values, ElementsAre(glm::u16vec3(10, 20, 30)));

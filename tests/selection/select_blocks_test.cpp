@@ -123,6 +123,32 @@ TEST(SelectBlocks, ASubtreeWhoseNormalsAllFaceAwayIsSkipped) {
   EXPECT_THAT(select_blocks(SelectionTree(entries), view_from({0, 0, 0}), {}, all_of(entries)).draw, ElementsAre(1));
 }
 
+TEST(SelectBlocks, GhostsOfClippedBlocksAreSelectedCoarser) {
+  const ldc::BlockTree blocks = two_splits();
+  const SelectionTree tree(blocks);
+  const geometry::CameraFrame frame = view_from({0, 0, 0});
+  geometry::Clip clip;
+  clip.inside.push_back({{-5, -5, -25}, {-1.5, 5, -15}});  // the first and, in part, the second child
+  const double coarse = projected_spacing(blocks.blocks()[1], frame);
+  SelectionCriteria criteria{.clip = &clip};
+  EXPECT_THAT(select_blocks(tree, frame, criteria, all_of(blocks)).target, ::testing::Each(::testing::Lt(13U)));
+  criteria.ghost_spacing = 1.5 * coarse;
+  const BlockSelection ghosts = select_blocks(tree, frame, criteria, all_of(blocks));
+  expect_cut(tree, frame, ghosts.target);
+  EXPECT_THAT(ghosts.refined, ElementsAre(0, 1, 2)) << "what is shown is at the finest level";
+  EXPECT_THAT(ghosts.target, ::testing::IsSupersetOf({3U, 4U})) << "what is clipped away is not";
+  criteria.ghost_spacing = 0.5 * coarse;
+  EXPECT_THAT(select_blocks(tree, frame, criteria, all_of(blocks)).refined, ElementsAre(0, 1, 2, 3, 4));
+}
+
+TEST(SelectBlocks, WhatIsSeenThroughShowsItsBackFaces) {
+  const ldc::BlockTree blocks({facing(block_at({0, 0, -20}, 1), {0, 0, -1}, 0.1F)});
+  const SelectionTree tree(blocks);
+  const geometry::CameraFrame frame = view_from({0, 0, 0});
+  EXPECT_THAT(select_blocks(tree, frame, {}, all_of(blocks)).target, IsEmpty());
+  EXPECT_THAT(select_blocks(tree, frame, {.sides = Sides::kBoth}, all_of(blocks)).target, ElementsAre(0));
+}
+
 TEST(SelectBlocks, FromWithinTheModelWhatSurroundsTheEyeIsRefinedFirst) {
   std::mt19937 random(11);
   const ldc::BlockTree blocks(random_tree(random, 5, false));

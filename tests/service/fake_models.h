@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "service/frame_renderer.h"
+#include "service/model_name.h"
 #include "service/model_source.h"
 
 namespace surfcast::service {
@@ -24,7 +25,8 @@ class FakeModels : public ModelSource {
     return name == "cube" ? cube_edition.load() : 0;
   }
   [[nodiscard]] Result<ModelDescription> describe(const std::string& name) const override {
-    if (name != "cube" && name != "teapot") return fail(ErrorKind::kNotFound, name + ": there is no such model");
+    if (name != "cube" && name != "teapot")
+      return fail(ErrorKind::kNotFound, shown_name(name) + ": there is no such model");
     ModelDescription description;
     description.info.surfels = 1234;
     description.info.bounds.include(glm::dvec3{-1, -2, -3});
@@ -41,7 +43,7 @@ class FakeModels : public ModelSource {
     return description;
   }
   [[nodiscard]] Result<std::shared_ptr<const model::ModelFile>> open(const std::string& name) const override {
-    return fail(ErrorKind::kNotFound, name + ": there is no file of this model");
+    return fail(ErrorKind::kNotFound, shown_name(name) + ": there is no file of this model");
   }
 
   std::vector<ScanStatus> scan_list;  ///< set it before the service starts
@@ -92,7 +94,7 @@ class FakeRenderer : public FrameRenderer {
       return fail(ErrorKind::kCancelled, "cancelled");
     }
     const bool known = model == "cube" || model == "teapot" || model == "noise";
-    if (!known) return fail(ErrorKind::kNotFound, model + ": there is no such model");
+    if (!known) return fail(ErrorKind::kNotFound, shown_name(model) + ": there is no such model");
     control_->editions.push_back(request.edition);
     picture::Frame frame;
     frame.preview = request.edition > 0 && request.edition <= control_->preview_editions;

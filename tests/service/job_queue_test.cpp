@@ -87,6 +87,33 @@ TEST(JobQueue, ARemovedJobIsNeverHandedOut) {
   EXPECT_EQ(queue.size(), 0u);
 }
 
+TEST(JobQueue, TheClientOnWhichLeastTimeWasSpentComesFirst) {
+  JobQueue queue(10);
+  ASSERT_TRUE(queue.push({7, 1}, 10, Priority::kStill));
+  ASSERT_TRUE(queue.push({7, 2}, 20, Priority::kStill));
+  ASSERT_TRUE(queue.push({8, 3}, 30, Priority::kStill));
+  queue.shares().charge(7, 5);
+  EXPECT_EQ(queue.next_client(Priority::kStill), 8U);
+  EXPECT_EQ(drain(queue), (std::vector<JobId>{30, 10, 20}));
+}
+
+TEST(JobQueue, AJobThatIsNotAcceptedHoldsUpItsSessionAlone) {
+  JobQueue queue(10);
+  ASSERT_TRUE(queue.push(1, 10, Priority::kStill));
+  ASSERT_TRUE(queue.push(1, 11, Priority::kStill));
+  ASSERT_TRUE(queue.push(2, 20, Priority::kStill));
+  const auto not_the_first = [](JobId job) { return job != 10; };
+  EXPECT_EQ(queue.pop(Priority::kStill, not_the_first), 20U);
+  EXPECT_EQ(queue.pop(Priority::kStill, not_the_first), std::nullopt);
+}
+
+TEST(JobQueue, OneClientLeavesPlacesForOthers) {
+  JobQueue queue(16);
+  for (JobId job = 0; job < 14; ++job) ASSERT_TRUE(queue.push({7, job}, job, Priority::kStill));
+  EXPECT_FALSE(queue.push({7, 99}, 99, Priority::kStill));
+  EXPECT_TRUE(queue.push({8, 100}, 100, Priority::kStill));
+}
+
 TEST(JobQueue, AnEmptyQueueHasNothing) {
   JobQueue queue(1);
   EXPECT_EQ(queue.pop(Priority::kStill), std::nullopt);

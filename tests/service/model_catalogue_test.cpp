@@ -119,5 +119,29 @@ TEST_F(ModelCatalogueTest, AFolderThatVanishesHoldsNothing) {
   EXPECT_TRUE(catalogue.names().empty());
 }
 
+TEST_F(ModelCatalogueTest, AFolderThatHasNotChangedIsNotReadAgain) {
+  write("a.surf", 3);
+  const auto long_ago = fs::file_time_type::clock::now() - std::chrono::hours(1);
+  fs::last_write_time(folder_, long_ago);
+  const ModelCatalogue catalogue({}, {folder_});
+  EXPECT_EQ(catalogue.names(), std::vector<std::string>{"a"});
+  write("b.surf", 3);
+  fs::last_write_time(folder_, long_ago);  // as if nothing had happened
+  EXPECT_EQ(catalogue.names(), std::vector<std::string>{"a"});
+  write("c.surf", 3);
+  EXPECT_EQ(catalogue.names(), (std::vector<std::string>{"a", "b", "c"}));
+}
+
+TEST_F(ModelCatalogueTest, AFileThatIsRemovedIsClosed) {
+  write("a.surf", 3);
+  const ModelCatalogue catalogue({}, {folder_});
+  std::weak_ptr<const model::ModelFile> model = *catalogue.open("a");
+  catalogue.close_removed();
+  EXPECT_FALSE(model.expired());
+  fs::remove(folder_ / "a.surf");
+  catalogue.close_removed();
+  EXPECT_TRUE(model.expired());
+}
+
 }  // namespace
 }  // namespace surfcast::service

@@ -59,10 +59,10 @@ TEST_F(RenderServiceTest, ASecondSessionDoesNotWaitBehindAllOfTheFirst) {
   control_->slow = true;
   start();
   std::vector<std::future<Result<EncodedPicture>>> futures;
-  futures.push_back(draw(1, job_for("cube")).second);
+  futures.push_back(draw({9, 1}, job_for("cube")).second);
   wait_for_drawing(1);
-  for (int i = 0; i < 4; ++i) futures.push_back(draw(1, job_for("cube")).second);
-  futures.push_back(draw(2, job_for("teapot")).second);
+  for (int i = 0; i < 4; ++i) futures.push_back(draw({9, 1}, job_for("cube")).second);
+  futures.push_back(draw({9, 2}, job_for("teapot")).second);
   control_->slow = false;
   for (auto& future : futures) EXPECT_TRUE(future.get());
   ASSERT_EQ(control_->order.size(), 6u);
@@ -186,10 +186,10 @@ TEST_F(RenderServiceTest, StoppingEndsAMotionInTheMiddleOfAPicture) {
 TEST_F(RenderServiceTest, AJobThatWaitsMayDrawSomethingElseInItsPlace) {
   start();
   control_->slow = true;
-  auto first = draw(1, job_for("cube"));
+  auto first = draw({9, 1}, job_for("cube"));
   wait_for_drawing(1);
-  auto second = draw(1, job_for("cube"));
-  auto third = draw(2, job_for("cube"));
+  auto second = draw({9, 1}, job_for("cube"));
+  auto third = draw({9, 2}, job_for("cube"));
   PictureJob other = job_for("teapot");
   other.request.width = 16;
   EXPECT_TRUE(service_->replace(second.first, other));

@@ -2,145 +2,66 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cstring>
-#include <ostream>
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include "ldc/subtree.h"
 #include "model/write_blocks.h"
+#include "reference/volume_goals.h"
 #include "reference/volume_ray_caster.h"
 #include "reference/volume_scenes.h"
 #include "render/renderer.h"
 #include "support/clouds.h"
 #include "volume/grid_scene.h"
+#include "volume/volume_pictures.h"
+#include "volume/volume_renderer_fixture.h"
 
 namespace surfcast::render {
 namespace {
 
 using reference::LightPicture;
 using reference::VolumeScene;
+using testing::light_of;
+using testing::mean_opacity;
+using testing::request_of;
 
-constexpr int kSide = 128;  // pixels
+constexpr int kSide = reference::kGoalSide;
 
-class VolumeGL : public ::testing::Test {
+class VolumeGL : public testing::VolumeRendererTest {
  protected:
-  static void SetUpTestSuite() {
-    RendererConfig config;
-    config.kinds = testing::kinds_with_plain_bricks();
-    Result<std::unique_ptr<Renderer>> created = Renderer::create(config);
-    ASSERT_TRUE(created) << created.error().message;
-    renderer_ = std::move(*created);
-    folder_ = std::filesystem::path(::testing::TempDir()) / ("surfcast_volumes_" + std::to_string(getpid()));
-    std::filesystem::create_directories(folder_);
+  static picture::Image draw(const testing::ModelPointer& model, const picture::PictureRequest& request) {
+    return frame_of(model, request).image;
   }
-  static void TearDownTestSuite() {
-    renderer_.reset();
-    std::filesystem::remove_all(folder_);
-  }
-
-  static std::shared_ptr<const model::ModelFile> model_of(const reference::VolumeGrid& grid) {
-    Result<model::ModelFile> model = model::ModelFile::open(testing::write_volume(folder_ / "volume.surf", grid));
-    EXPECT_TRUE(model) << (model ? "" : model.error().message);
-    return std::make_shared<const model::ModelFile>(std::move(*model));
-  }
-
-  static picture::Image draw(const std::shared_ptr<const model::ModelFile>& model,
-                             const picture::PictureRequest& request) {
-    const std::atomic<bool> never{false};
-    Result<picture::Frame> frame = renderer_->draw(model, request, never);
-    EXPECT_TRUE(frame) << (frame ? "" : frame.error().message);
-    return frame ? std::move(frame->image) : picture::Image{};
-  }
-
-  static inline std::unique_ptr<Renderer> renderer_;
-  static inline std::filesystem::path folder_;
 };
 
-LightPicture light_of(const picture::Image& image) {
-  LightPicture light(image.width, image.height);
-  for (size_t i = 0; i < light.pixels.size(); ++i) {
-    glm::vec4 pixel;
-    std::memcpy(&pixel, image.pixels.data() + i * sizeof pixel, sizeof pixel);
-    light.pixels[i] = glm::dvec4(pixel);
-  }
-  return light;
+std::vector<picture::TransferPoint> picture_points(const std::vector<reference::TransferPoint>& points) {
+  std::vector<picture::TransferPoint> result;
+  for (const reference::TransferPoint& p : points) result.push_back({p.value, p.srgb, p.opacity});
+  return result;
 }
 
-std::vector<picture::TransferPoint> transfer_points(const std::string& field) {
-  const glm::dvec3 blue{0.25, 0.45, 0.9};
-  const glm::dvec3 orange{0.95, 0.6, 0.2};
-  const glm::dvec3 white{1, 0.95, 0.9};
-  if (field == "torus") return {{0.15, blue, 0}, {0.5, orange, 0.15}, {0.9, white, 0.35}};
-  if (field == "ball") return {{0.33, orange, 0}, {0.67, white, 0.9}};
-  if (field == "blobs") return {{0.1, blue, 0}, {0.5, orange, 0.1}, {0.9, white, 0.25}};
-  return {{0.1, blue, 0}, {0.5, orange, 0.1}, {0.9, white, 0.2}};
-}
-
-struct Goal {
-  const char* name;
-  const char* field;
-  const char* view;
-  glm::ivec3 size;
-  double psnr;  // dB, at least
-  double closer = 1;
-};
-std::ostream& operator<<(std::ostream& out, const Goal& goal) {
-  return out << goal.name << ' ' << goal.psnr << " dB";
-}
-
-/// A view from a place in the direction of another.
-picture::PictureRequest request_of(const geometry::CameraFrame& frame) {
-  picture::PictureRequest request;
-  request.width = frame.width;
-  request.height = frame.height;
-  const double angle = 2 * std::atan(0.5 * frame.height / frame.eta) * 180 / M_PI;
-  request.camera = geometry::Camera{frame.eye, frame.eye + frame.forward, frame.up, angle};
-  request.format = picture::PixelFormat::kLinearFloat;
-  return request;
-}
-
-class VolumeAccuracyGL : public VolumeGL, public ::testing::WithParamInterface<Goal> {};
+class VolumeAccuracyGL : public VolumeGL, public ::testing::WithParamInterface<reference::VolumeGoal> {};
 
 TEST_P(VolumeAccuracyGL, IsAtLeastTheLimit) {
-  const Goal& goal = GetParam();
+  const reference::VolumeGoal& goal = GetParam();
   VolumeScene scene = reference::make_volume_scene(goal.field, goal.view, goal.size, kSide);
   scene.frame = reference::volume_view(goal.view, kSide, goal.closer);
   picture::PictureRequest request = request_of(scene.frame);
-  request.volumes.transfer.points = transfer_points(goal.field);
-  request.volumes.transfer.spacing = 2.0 / (std::string(goal.field) == "ml" ? 40 : 31);
+  request.volumes.transfer.points = picture_points(scene.points);
+  request.volumes.transfer.spacing = scene.spacing;
   const LightPicture drawn = light_of(draw(model_of(scene.grid), request));
   const double found = covered_psnr(drawn, ideal_picture(scene));
   RecordProperty("dB", std::to_string(found));
-  EXPECT_GE(found, goal.psnr);
+  EXPECT_GE(found, goal.rays);
 }
 
-INSTANTIATE_TEST_SUITE_P(Views, VolumeAccuracyGL,
-                         ::testing::Values(Goal{"torus_mid", "torus", "mid", glm::ivec3(32), 48},
-                                           Goal{"torus_closer", "torus", "mid", glm::ivec3(32), 48, 1.1},
-                                           Goal{"torus_farther", "torus", "mid", glm::ivec3(32), 48, 0.9},
-                                           Goal{"ball_mid", "ball", "mid", glm::ivec3(32), 36},
-                                           Goal{"ball_closer", "ball", "mid", glm::ivec3(32), 36, 1.1},
-                                           Goal{"ball_farther", "ball", "mid", glm::ivec3(32), 36, 0.9},
-                                           Goal{"blobs_mid", "blobs", "mid", glm::ivec3(32), 52},
-                                           Goal{"blobs_closer", "blobs", "mid", glm::ivec3(32), 52, 1.1},
-                                           Goal{"blobs_farther", "blobs", "mid", glm::ivec3(32), 52, 0.9},
-                                           Goal{"ml_mid", "ml", "mid", glm::ivec3(41), 36.5},
-                                           Goal{"ml_closer", "ml", "mid", glm::ivec3(41), 36.5, 1.1},
-                                           Goal{"ml_farther", "ml", "mid", glm::ivec3(41), 36.5, 0.9},
-                                           Goal{"torus_low", "torus", "low", glm::ivec3(32), 47},
-                                           Goal{"torus_wide", "torus", "wide", glm::ivec3(32), 48},
-                                           Goal{"torus_near", "torus", "near", glm::ivec3(32), 45.5},
-                                           Goal{"torus_inside", "torus", "inside", glm::ivec3(32), 36.5},
-                                           Goal{"torus_anisotropic", "torus", "mid", glm::ivec3(32, 32, 16), 38.5},
-                                           Goal{"torus_far", "torus", "far", glm::ivec3(64), 36}),
+INSTANTIATE_TEST_SUITE_P(Views, VolumeAccuracyGL, ::testing::ValuesIn(reference::kVolumeGoals),
                          [](const auto& goal) { return std::string(goal.param.name); });
 
 /// A drawing of a grid on the device and in double precision.
 struct Comparison {
   reference::VolumeGrid grid;
-  std::vector<picture::TransferPoint> points = transfer_points("torus");
+  std::vector<picture::TransferPoint> points = picture_points(reference::transfer_points("smooth"));
   double spacing = 2.0 / 31;
   geometry::CameraFrame frame = reference::volume_view("mid", kSide);
   geometry::Clip clip{};
@@ -172,18 +93,12 @@ LightPicture in_double(const Comparison& comparison) {
                          parameters);
 }
 
-double opacity_of(const LightPicture& picture) {
-  double sum = 0;
-  for (const glm::dvec4& pixel : picture.pixels) sum += pixel.w;
-  return sum / static_cast<double>(picture.pixels.size());
-}
-
 class VolumePrecisionGL : public VolumeGL {
  protected:
   static void expect_same(const Comparison& comparison, const std::string& what) {
     const LightPicture drawn = light_of(draw(model_of(comparison.grid), request_of(comparison)));
     const LightPicture expected = in_double(comparison);
-    EXPECT_GT(opacity_of(expected), 0.005) << what << ": the picture must show something";
+    EXPECT_GT(mean_opacity(expected), 0.005) << what << ": the picture must show something";
     const double found = covered_psnr(drawn, expected);
     RecordProperty(what + "_dB", std::to_string(found));
     EXPECT_GE(found, 55) << what;
@@ -210,7 +125,7 @@ TEST_F(VolumePrecisionGL, ShadedVolumesAreDrawnAsInDoublePrecision) {
   comparison.shaded = true;
   expect_same(comparison, "torus");
   comparison.grid = reference::sampled(reference::ball_field(), glm::ivec3(32, 32, 20));
-  comparison.points = transfer_points("ball");
+  comparison.points = picture_points(reference::transfer_points("edge"));
   expect_same(comparison, "ball");
 }
 
@@ -247,7 +162,7 @@ TEST_F(VolumePrecisionGL, WithoutPointsOrOpacityNothingIsDrawn) {
   for (const std::vector<picture::TransferPoint>& points :
        {std::vector<picture::TransferPoint>{}, {{0.2, glm::dvec3(1), 0}, {0.9, glm::dvec3(1), 0}}}) {
     comparison.points = points;
-    EXPECT_EQ(opacity_of(light_of(draw(model_of(comparison.grid), request_of(comparison)))), 0);
+    EXPECT_EQ(mean_opacity(light_of(draw(model_of(comparison.grid), request_of(comparison)))), 0);
   }
 }
 

@@ -1,13 +1,13 @@
 import { describe, expect, it } from 'vitest';
 import { between, fly, orbit, pan, turnBetween, zoom } from '../src/camera/motion';
-import { cameraOf, poseAxes, poseOf, skyOf, type Pose, type UpAxis } from '../src/camera/pose';
+import { cameraOf, flipped, poseAxes, poseOf, skyOf, type Pose, type UpAxis } from '../src/camera/pose';
 import { pointAt, project, projectionOf, projectLine, type Projection } from '../src/camera/projection';
 import { corners, fit, standardView, viewAlong, viewNames } from '../src/camera/standard_views';
 import { distance, dot, vector, type Vector } from '../src/camera/vector';
 import { expectNear, expectPixel } from './support/near';
 
 const pose: Pose = { position: vector(10, -20, 5), yaw: 0.4, pitch: -0.3, distance: 25, viewAngle: 40 };
-const ups: readonly UpAxis[] = ['y', 'z', '-y'];
+const ups: readonly UpAxis[] = ['y', 'z', '-y', '-z'];
 
 function seen(from: Pose, up: UpAxis): Projection {
   const axes = poseAxes(from, up);
@@ -21,12 +21,12 @@ describe('a pose', () => {
     for (const [a, b] of [[right, above], [above, forward], [forward, right]] as const) {
       expect(dot(a, b)).toBeCloseTo(0, 12);
     }
-    expect(dot(right, skyOf(up))).toBe(0);
+    expect(Math.abs(dot(right, skyOf(up)))).toBe(0); // exactly, of either sign
     expect(dot(above, skyOf(up))).toBeGreaterThan(0);
   });
 
   it.each(ups)('comes back from its camera (%s up)', (up) => {
-    const back = poseOf(cameraOf(pose, up), up);
+    const back = poseOf(cameraOf(pose, up, false), up);
     expectNear(back.position, pose.position, 1e-4);
     expect(back.yaw).toBeCloseTo(pose.yaw, 5);
     expect(back.pitch).toBeCloseTo(pose.pitch, 5);
@@ -35,9 +35,17 @@ describe('a pose', () => {
 
   it.each(ups)('keeps its heading when it looks straight down (%s up)', (up) => {
     const down = { ...pose, pitch: -Math.PI / 2, yaw: 2.1 };
-    const camera = cameraOf(down, up);
+    const camera = cameraOf(down, up, false);
     expect(camera.viewUp).toBeDefined();
     expect(poseOf(camera, up).yaw).toBeCloseTo(2.1, 5);
+  });
+
+  it.each(ups)('states its vertical axis where the server assumes another one (%s up)', (up) => {
+    expect(cameraOf(pose, up, false).viewUp).toBeUndefined();
+    const { viewUp } = cameraOf(pose, up, true);
+    expect(dot(viewUp!, skyOf(up))).toBeGreaterThan(0);
+    expect(dot(viewUp!, skyOf(flipped(up)))).toBeLessThan(0);
+    expect(flipped(flipped(up))).toBe(up);
   });
 
   it.each(ups)('asks with the very camera that it was made from until it moves (%s up)', (up) => {
@@ -45,10 +53,10 @@ describe('a pose', () => {
       const pitch = Math.sin(i) * 1.57;
       const far = 10 ** (3 * Math.sin(i * 2.3));
       const there = vector(4_500_000 + i * 1.37, 300_000 - i, 17.123456789 * i);
-      const camera = cameraOf({ ...pose, position: there, yaw: i * 0.7, pitch, distance: far }, up);
+      const camera = cameraOf({ ...pose, position: there, yaw: i * 0.7, pitch, distance: far }, up, false);
       const made = poseOf(camera, up);
-      expect(cameraOf(made, up)).toBe(camera);
-      const moved = cameraOf({ ...made, position: vector(0, 0, 0) }, up);
+      expect(cameraOf(made, up, false)).toBe(camera);
+      const moved = cameraOf({ ...made, position: vector(0, 0, 0) }, up, false);
       expect(moved.position).toEqual(vector(0, 0, 0));
     }
   });

@@ -1,11 +1,13 @@
 import { create } from '@bufbuild/protobuf';
 import { describe, expect, it } from 'vitest';
 import { ModelDescriptionSchema } from '../src/generated/surfcast_pb';
-import { contentsOf } from '../src/state/contents';
+import { contentsOf, kindOf } from '../src/state/contents';
 
 describe('the contents of a model', () => {
   it('are points on servers that do not tell kinds apart', () => {
-    expect(contentsOf(create(ModelDescriptionSchema, { surfels: 1_234_567n }))).toBe('1.2M points');
+    const scan = create(ModelDescriptionSchema, { surfels: 1_234_567n });
+    expect(contentsOf(scan)).toBe('1.2M points');
+    expect(kindOf(scan)).toBe('Scan');
   });
 
   it('name every kind', () => {
@@ -14,9 +16,11 @@ describe('the contents of a model', () => {
         { kind: 'surfel', items: 900n },
         { kind: 'grid', items: 8n },
         { kind: 'gaussian', items: 152_746n },
+        { kind: 'ellipsoid', items: 40_141n },
       ],
       volumes: [{ size: [2, 2, 2] }],
     });
-    expect(contentsOf(model)).toBe('900 points, 152.7K Gaussians, volume of 2 × 2 × 2');
+    expect(contentsOf(model)).toBe('900 points, 152.7K Gaussians, 40.1K ellipsoids, volume of 2 × 2 × 2');
+    expect(kindOf(model)).toBe('Scan and Volume and Gaussians and Ellipsoids');
   });
 });

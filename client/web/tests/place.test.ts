@@ -11,7 +11,8 @@ const camera = {
 };
 
 const display: DisplayOptions = {
-  source: 'intensity',
+  source: 'attribute',
+  attribute: 'mean, of 2 & 3 #',
   map: 'turbo',
   range: [-5.5, 1200],
   hiddenClasses: [7, 18],
@@ -31,7 +32,43 @@ const display: DisplayOptions = {
     ],
   },
   shaded: true,
+  surfaces: [
+    { value: -500.5, color: undefined, opacity: 1 },
+    { value: 300, color: { red: 230, green: 220, blue: 9 }, opacity: 0.5 },
+  ],
+  slices: [
+    { axis: 'k', index: 40.5 },
+    { axis: undefined, point: vector(1, 2, 3), normal: vector(0, 0, -1) },
+  ],
+  medium: false,
+  opacity: 0.25,
+  classOpacities: [
+    { code: 5, opacity: 0.3 },
+    { code: 6, opacity: 0 },
+  ],
+  ghost: 0.1,
+  xray: 'sorted',
+  upsideDown: true,
   splatConvention: 'exact',
+  glyphs: {
+    shape: 'superquadric',
+    sharpness: 2.5,
+    radius: 'root',
+    scale: 0.125,
+    thresholds: [
+      { attribute: 'fa', smallest: 0.2, largest: undefined },
+      { attribute: 'a,b', smallest: -1, largest: 3.5 },
+    ],
+  },
+  lighting: {
+    ambient: 0.08,
+    specular: 0.25,
+    exponent: 32,
+    lights: [
+      { direction: vector(0.5, 0.7, -0.6), power: 0.75 },
+      { direction: vector(-1, 0, 0), power: 0 },
+    ],
+  },
 };
 
 describe('a link', () => {
@@ -52,9 +89,24 @@ describe('a link', () => {
     '#/lion?color_by=smell&color_map=&color_range=1&hide_classes=x,-1,70000&clip_box=1,2,3&eye_dome=-1&background=1,2,256',
     '#/lion?spacing=-3&eye_dome=1,0',
     '#/lion?transfer=bone&shaded=yes&splat_convention=inria',
+    '#/lion?iso=1,2&slice=x,3&medium=yes&opacity=2',
+    '#/lion?iso=5;1,2,3,256&slice=k,1;1,2,3,0,0,0&opacity=-1',
+    '#/lion?opacity_by_class=5,6=2,256=0.5,a=1&ghost=2&xray=yes',
+    '#/lion?glyph=cube,3&glyph_radius=2&glyph_scale=-1&threshold=fa,2,1&lights=1,1,1',
+    '#/lion?glyph_scale=Infinity&threshold=fa;mode,1&lights=1,1;0,0,1,1&color_by=attribute:',
+    '#/lion?glyph=superq&threshold=,1&lights=1,1,1;0,0,0,1&color_by=attribute',
     '#/lion?&&=&',
   ])('with nonsense shows the model as usual: %s', (hash) => {
     expect(parsePlace(hash)).toEqual({ model: 'lion', camera: undefined, display: defaultDisplay });
+  });
+
+  it('has the names of the command line for what ellipsoids are coloured by', () => {
+    const of = (part: Partial<DisplayOptions>): string =>
+      formatPlace({ model: 'a', camera: undefined, display: { ...defaultDisplay, ...part } });
+    expect(of({ source: 'direction' })).toBe('#/a?color_by=direction');
+    expect(of({ source: 'attribute', attribute: 'fa' })).toBe('#/a?color_by=fa');
+    expect(of({ source: 'attribute', attribute: 'trace' })).toBe('#/a?color_by=attribute:trace');
+    expect(parsePlace('#/a?color_by=mode').display).toMatchObject({ source: 'attribute', attribute: 'mode' });
   });
 
   it('with an impossible view angle takes the usual one', () => {

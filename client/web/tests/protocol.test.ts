@@ -132,7 +132,7 @@ describe('a link', () => {
   const states: LinkState[] = [];
   const link: { current?: Link } = {};
   afterEach(() => link.current?.close());
-  const follow = (opened: (connection: Connection) => void): void => {
+  const follow = (opened: (connection: Connection, views: readonly bigint[]) => void): void => {
     states.length = 0;
     link.current = new Link(server.url, {
       changed: (state) => states.push(state),
@@ -151,6 +151,37 @@ describe('a link', () => {
     await vi.waitFor(() => expect(states.at(-1)?.kind).toBe('waiting'));
     server = await FakeServer.start(port);
     await vi.waitFor(() => expect(opened).toHaveLength(2), { timeout: 5000 });
+  });
+
+  it('goes on with its session, and learns which views are open again', async () => {
+    const secrets: string[] = [];
+    const opened: (readonly bigint[])[] = [];
+    const answer: FakeServer['answer'] = ({ kind }) => {
+      if (kind.case !== 'resume') return undefined;
+      secrets.push(kind.value.session);
+      return { case: 'resumed', value: { session: `secret ${secrets.length}`, views: [7n] } };
+    };
+    server.answer = answer;
+    follow((_, views) => opened.push(views));
+    await vi.waitFor(() => expect(secrets).toEqual(['']));
+    const { port } = server;
+    await server.stop();
+    server = await FakeServer.start(port);
+    server.answer = answer;
+    await vi.waitFor(() => expect(opened).toEqual([[], [7n]]), { timeout: 5000 });
+    expect(secrets).toEqual(['', 'secret 1']);
+  });
+
+  it('comes back at once to whoever goes on for a server that leaves', async () => {
+    const opened: Connection[] = [];
+    follow((connection) => opened.push(connection));
+    await vi.waitFor(() => expect(opened).toHaveLength(1));
+    vi.spyOn(Date, 'now').mockReturnValue(1000);
+    vi.spyOn(Math, 'random').mockReturnValue(0);
+    server.leave();
+    await vi.waitFor(() => expect(opened).toHaveLength(2));
+    vi.restoreAllMocks();
+    expect(states.find(({ kind }) => kind === 'waiting')).toMatchObject({ until: 1000 });
   });
 
   it('does not come back to a server of another version', async () => {
@@ -190,6 +221,21 @@ describe('a view', () => {
     await vi.waitFor(() => expect(painted()).toHaveLength(4));
     expect(painted().map((request) => (request.kind.value as { frame: bigint }).frame)).toEqual([1n, 2n, 2n, 2n]);
     connection.close();
+  });
+
+  it('goes on over another connection under its id', async () => {
+    const frames: ArrivedFrame[] = [];
+    const first = await connect();
+    const view = new ViewSession(first, picture, { frame: (frame) => frames.push(frame), failed: () => undefined });
+    view.update(picture, false);
+    first.close();
+    const second = await connect();
+    view.goOn(second);
+    server.send(view.id, { case: 'viewFrame', value: { frame: 1n, update: 1n, picture: {} } });
+    await vi.waitFor(() => expect(frames).toHaveLength(1));
+    expect(view.update(picture, false)).toBe(2n);
+    await vi.waitFor(() => expect(server.requests.at(-1)?.id).toBe(view.id));
+    second.close();
   });
 
   it('that the server ends says why', async () => {

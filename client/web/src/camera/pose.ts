@@ -1,7 +1,10 @@
 import { add, addScaled, cross, distance, dot, normalize, scale, subtract, vector, type Vector } from './vector';
 
-/** The vertical axis of the model. With '-y' it points down: trained models mostly have the axes of their cameras. */
-export type UpAxis = 'y' | 'z' | '-y';
+/**
+ * The vertical axis of the model. With '-y' and '-z' it points down: trained models mostly have the axes of their
+ * cameras, and the slices of some scanners begin at the head.
+ */
+export type UpAxis = 'y' | 'z' | '-y' | '-z';
 
 /**
  * Position and direction of the eye in the form used for navigation. The horizon is always level, and vertical view
@@ -9,7 +12,7 @@ export type UpAxis = 'y' | 'z' | '-y';
  */
 export interface Pose {
   readonly position: Vector;
-  readonly yaw: number; // clockwise seen from above; 0 looks along y (z-up), -z (y-up) or z (-y up)
+  readonly yaw: number; // clockwise seen from above; 0 looks along y (z-up and -z up), -z (y-up) or z (-y up)
   readonly pitch: number; // -pi/2 straight down, pi/2 straight up
   readonly distance: number; // to the point of interest, world units
   readonly viewAngle: number; // vertical, degrees
@@ -41,7 +44,11 @@ const zUp: Level = { east: vector(1, 0, 0), north: vector(0, 1, 0), sky: vector(
 const yUp: Level = { east: vector(1, 0, 0), north: vector(0, 0, -1), sky: vector(0, 1, 0) };
 
 const yDown: Level = { east: vector(1, 0, 0), north: vector(0, 0, 1), sky: vector(0, -1, 0) };
-const levels: Readonly<Record<UpAxis, Level>> = { y: yUp, z: zUp, '-y': yDown };
+const zDown: Level = { east: vector(-1, 0, 0), north: vector(0, 1, 0), sky: vector(0, 0, -1) };
+const levels: Readonly<Record<UpAxis, Level>> = { y: yUp, z: zUp, '-y': yDown, '-z': zDown };
+
+/** The same axis, pointing the other way. */
+export const flipped = (up: UpAxis): UpAxis => (({ y: '-y', z: '-z', '-y': 'y', '-z': 'z' }) as const)[up];
 
 const levelOf = (up: UpAxis): Level => levels[up];
 export const skyOf = (up: UpAxis): Vector => levelOf(up).sky;
@@ -98,13 +105,14 @@ const roundedVector = (v: Vector, decimals: number): Vector =>
 
 /**
  * The camera of a pose, rounded to numbers short enough for a link. Picture requests use exactly these numbers, so that
- * a link and a command line give the same picture.
+ * a link and a command line give the same picture. `statesUp`: the vertical axis is not the one that the server
+ * assumes.
  */
-export function cameraOf(pose: Pose, up: UpAxis): Camera {
-  return statedCameras.get(pose) ?? roundedCamera(pose, up);
+export function cameraOf(pose: Pose, up: UpAxis, statesUp: boolean): Camera {
+  return statedCameras.get(pose) ?? roundedCamera(pose, up, statesUp);
 }
 
-function roundedCamera(pose: Pose, up: UpAxis): Camera {
+function roundedCamera(pose: Pose, up: UpAxis, statesUp: boolean): Camera {
   const decimals = decimalsFor(pose.distance);
   const axes = poseAxes(pose, up);
   const camera = {
@@ -112,5 +120,6 @@ function roundedCamera(pose: Pose, up: UpAxis): Camera {
     focalPoint: roundedVector(addScaled(pose.position, axes.forward, pose.distance), decimals),
     viewAngle: rounded(pose.viewAngle, 4),
   };
-  return Math.abs(pose.pitch) > statedUpPitch ? { ...camera, viewUp: roundedVector(axes.up, 6) } : camera;
+  const steep = Math.abs(pose.pitch) > statedUpPitch;
+  return steep || statesUp ? { ...camera, viewUp: roundedVector(axes.up, 6) } : camera;
 }

@@ -2,6 +2,7 @@ import type { Course } from '../camera/motion';
 import type { ViewName } from '../camera/standard_views';
 import { finish, undoPoint } from '../measure/measurement_list';
 import * as store from '../state/store';
+import { nudgeWindow, openVolume } from '../state/volume';
 import type { CameraNavigator } from '../view/camera_navigator';
 
 /** Keys of the standard views, by `KeyboardEvent.key`. */
@@ -23,6 +24,7 @@ const toolKeys: Readonly<Record<string, store.Tool>> = {
   k: 'angle',
   b: 'area',
   p: 'profile',
+  v: 'window',
 };
 
 /** By `KeyboardEvent.code`, so that the positions of the keys are the same with every keyboard layout. */
@@ -113,6 +115,12 @@ export class Keyboard {
     const direction = directions[event.key];
     if (!direction || !this.onStage()) return false;
     const { navigator } = this;
+    if (store.tool.peek() === 'window') {
+      const [right, down] = direction;
+      const part = event.shiftKey ? 5 : 1;
+      nudgeWindow(right * part, -down * part);
+      return true;
+    }
     const turning = store.flying.peek() ? navigator.looking : navigator.orbiting(() => undefined);
     navigator.nudge(event.shiftKey ? navigator.panning(() => undefined) : turning, direction[0] * 6, direction[1] * 6);
     return true;
@@ -161,6 +169,7 @@ export class Keyboard {
 }
 
 export function chooseTool(tool: store.Tool): void {
+  if (tool === 'window' && !openVolume()) return;
   finish();
   store.tool.value = tool;
 }

@@ -3,6 +3,8 @@ import type { Pixel } from '../camera/vector';
 import { handleAt, pulled, pullOf, type Handle } from '../overlay/clip_handles';
 import { diagonal } from '../camera/standard_views';
 import * as store from '../state/store';
+import { setWindow, windowed } from '../state/volume';
+import { draggedWindow, windowNow, type Window, type Windowed } from '../volume/window';
 import { type Anchor, type Probe } from '../view/probe';
 import type { Drag } from '../view/camera_animator';
 import type { CameraNavigator } from '../view/camera_navigator';
@@ -24,12 +26,20 @@ interface Stroke {
   coasts: boolean;
 }
 
+/** A drag of the window of a volume, from the pixel where it began. */
+interface WindowDrag {
+  readonly from: Pixel;
+  readonly of: Windowed;
+  readonly start: Window;
+}
+
 /** Mouse, wheel and touch input on the picture. */
 export class StageInput {
   private readonly pointers = new Map<number, Pixel>();
   private stroke: Stroke | undefined;
   private pinch: Anchor | undefined;
   private pull: { handle: Handle; value: number; index: number } | undefined;
+  private windowDrag: WindowDrag | undefined;
   private wheelAnchor: { anchor: Anchor; time: number } | undefined;
   private lastClick: Press | undefined;
 
@@ -75,7 +85,7 @@ export class StageInput {
   }
 
   private begin(event: PointerEvent, at: Pixel): void {
-    if (this.grab(at)) return;
+    if (this.grab(at) || this.beginWindow(event, at)) return;
     const anchor = this.probe.anchor(at);
     const drag = this.dragFor(event, anchor);
     const down = { at: { x: event.clientX, y: event.clientY }, time: event.timeStamp };
@@ -96,6 +106,7 @@ export class StageInput {
     }
     const at = this.pixelOf(event);
     if (this.pointers.size === 2) this.movePinch(event.pointerId, at);
+    else if (this.windowDrag) this.moveWindow(this.windowDrag, at);
     else if (this.pull) this.movePull({ x: at.x - before.x, y: at.y - before.y });
     else if (this.stroke) this.moveStroke(this.stroke, event, before, at);
     this.pointers.set(event.pointerId, at);
@@ -125,8 +136,9 @@ export class StageInput {
     const stroke = this.stroke;
     this.stroke = undefined;
     this.navigator.hold(false);
-    if (this.pull) {
+    if (this.pull || this.windowDrag) {
       this.pull = undefined;
+      this.windowDrag = undefined;
       this.navigator.adjust(false);
     } else if (stroke && !cancelled) {
       this.release(stroke, event);
@@ -156,6 +168,8 @@ export class StageInput {
 
   private beginPinch(): void {
     this.stroke = undefined;
+    if (this.windowDrag) this.navigator.adjust(false);
+    this.windowDrag = undefined;
     this.navigator.hold(true);
     const [a, b] = this.two();
     this.pinch = this.probe.anchor({ x: (a.x + b.x) / 2, y: (a.y + b.y) / 2 });
@@ -203,6 +217,22 @@ export class StageInput {
     const anchor = near && time - last.time < wheelPause ? last.anchor : this.probe.anchor(pixel);
     this.wheelAnchor = { anchor, time };
     return this.wheelAnchor;
+  }
+
+  // ---- window and level ----
+
+  private beginWindow(event: PointerEvent, at: Pixel): boolean {
+    const of = store.tool.peek() === 'window' && event.button === 0 && !event.shiftKey ? windowed() : undefined;
+    if (!of) return false;
+    this.windowDrag = { from: at, of, start: windowNow(of) };
+    this.navigator.adjust(true);
+    return true;
+  }
+
+  private moveWindow({ from, of, start }: WindowDrag, at: Pixel): void {
+    const { width, height } = store.stageSize.peek();
+    const side = Math.max(1, Math.min(width, height));
+    setWindow(of, draggedWindow(start, of.span, (at.x - from.x) / side, (from.y - at.y) / side));
   }
 
   // ---- handles of clip boxes ----

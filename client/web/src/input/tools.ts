@@ -16,7 +16,7 @@ export class Tools {
   async click(pixel: Pixel): Promise<void> {
     const kind = measuring();
     const tool = store.tool.peek();
-    if (tool === 'navigate') {
+    if (tool === 'navigate' || tool === 'window') {
       store.inspection.value = undefined;
       return;
     }

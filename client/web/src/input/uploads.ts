@@ -21,9 +21,8 @@ export interface UploadRules {
 
 /** Why a file is not sent; undefined: it is. */
 export function refusal(file: { name: string; size: number }, rules: UploadRules): string | undefined {
-  const dot = file.name.lastIndexOf('.');
-  const extension = dot < 0 ? '' : file.name.slice(dot).toLowerCase();
-  if (!rules.extensions.includes(extension)) {
+  const name = file.name.toLowerCase();
+  if (!rules.extensions.some((extension) => name.endsWith(extension))) {
     return `Not a scan by its name. This server takes ${rules.extensions.join(' ')}.`;
   }
   if (file.size === 0) return 'The file is empty.';
@@ -44,9 +43,18 @@ export function problemOf(status: number, text: string): string {
   return status > 0 ? `The server answered ${status}.` : 'The connection was lost.';
 }
 
-/** The name of the model in the answer to a scan that has arrived. */
-export function modelOf(text: string): string {
-  return (JSON.parse(text) as { model: string }).model;
+/** The name of the model in the answer to a file that has arrived; undefined: it holds the samples of another file. */
+export function modelOf(text: string): string | undefined {
+  return (JSON.parse(text) as { model?: string }).model;
+}
+
+/** Headers whose samples are in other files, and meshes, whose materials and pictures are. */
+const detached = ['.nhdr', '.mhd', '.hdr', '.hdr.gz', '.obj', '.gltf', '.ply'];
+
+/** The order in which files are sent: what a header names is there before it. */
+export function inOrder<File extends { readonly name: string }>(files: readonly File[]): readonly File[] {
+  const isHeader = ({ name }: File): boolean => detached.some((extension) => name.toLowerCase().endsWith(extension));
+  return [...files.filter((file) => !isHeader(file)), ...files.filter(isHeader)];
 }
 
 const atOnce = 1; // so that the first scan is there soon
@@ -61,7 +69,7 @@ export class Uploader {
   constructor(private readonly arrived: () => void) {}
 
   add(files: readonly File[], rules: UploadRules): void {
-    for (const file of files) {
+    for (const file of inOrder(files)) {
       const id = this.nextId++;
       const problem = refusal(file, rules);
       const upload: Upload = { id, name: file.name, sent: 0, state: problem ? 'failed' : 'sending' };
@@ -93,7 +101,8 @@ export class Uploader {
       this.running.delete(id);
       const { status } = request;
       if (status === 201) {
-        change(id, { sent: 1, state: 'done', model: modelOf(request.responseText) });
+        const model = modelOf(request.responseText);
+        change(id, { sent: 1, state: 'done', ...(model === undefined ? {} : { model }) });
         this.arrived();
       } else {
         change(id, { state: 'failed', problem: problemOf(status, request.responseText) });

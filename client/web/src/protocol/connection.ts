@@ -19,8 +19,11 @@ export class RequestError extends Error {
 export interface ConnectionEvents {
   /** The hellos are exchanged; requests may be sent from now on. */
   opened(hello: Hello): void;
-  /** Called once, also if the connection never opened. Without a refusal the connection was lost. */
-  closed(refusal: Refusal | undefined): void;
+  /**
+   * Called once, also if the connection never opened. Without a refusal the connection was lost, or the server leaves
+   * and another one may go on.
+   */
+  closed(refusal: Refusal | undefined, leaving: boolean): void;
   received(bytes: number): void;
 }
 
@@ -29,6 +32,9 @@ type Listener = (kind: AnswerKind, bytes: number) => void;
 
 const program = 'surfcast viewer';
 const helloTimeout = 10_000; // ms
+const goingAway = 1001; // RFC 6455, 7.4.1
+
+let lastId = 0n; // of all connections: a view keeps its id when it goes on over another one
 
 /** One WebSocket connection: hellos, then requests and answers, matched by id. */
 export class Connection {
@@ -37,7 +43,6 @@ export class Connection {
   private readonly helloTimer: ReturnType<typeof setTimeout>;
   private welcomed = false;
   private ended = false;
-  private nextId = 1n;
 
   constructor(
     url: string,
@@ -47,7 +52,7 @@ export class Connection {
     this.socket.binaryType = 'arraybuffer';
     this.socket.onopen = () => this.socket.send(encodeHello(program));
     this.socket.onmessage = (event: MessageEvent<unknown>) => this.take(event.data);
-    this.socket.onclose = () => this.end(undefined);
+    this.socket.onclose = ({ code }: CloseEvent) => this.end(undefined, code === goingAway);
     this.helloTimer = setTimeout(() => {
       if (!this.welcomed) this.end({ message: 'The server does not answer.', again: true });
     }, helloTimeout);
@@ -75,10 +80,15 @@ export class Connection {
 
   /** Sends a request that has any number of answers, until `unlisten`. Returns the id for later messages. */
   listen(kind: RequestKind, listener: Listener): bigint {
-    const id = this.nextId++;
-    this.listeners.set(id, listener);
+    const id = ++lastId;
+    this.listenAs(id, listener);
     this.send(id, kind);
     return id;
+  }
+
+  /** Receives the answers with an id of an earlier connection. */
+  listenAs(id: bigint, listener: Listener): void {
+    this.listeners.set(id, listener);
   }
 
   unlisten(id: bigint): void {
@@ -117,10 +127,14 @@ export class Connection {
       this.end({ message: 'The server sent an invalid message.', again: true });
       return;
     }
+    if (answer.kind.case === 'error' && answer.kind.value.code === ErrorCode.DENIED) {
+      this.end({ message: `${answer.kind.value.message}. Reload the page to log in.`, again: false });
+      return;
+    }
     this.listeners.get(answer.id)?.(answer.kind, bytes.length);
   }
 
-  private end(refusal: Refusal | undefined): void {
+  private end(refusal: Refusal | undefined, leaving = false): void {
     if (this.ended) return;
     this.ended = true;
     clearTimeout(this.helloTimer);
@@ -129,7 +143,7 @@ export class Connection {
     this.listeners.clear();
     const broken = create(ErrorSchema, { code: ErrorCode.UNAVAILABLE, message: 'The connection ended.' });
     for (const listener of waiting) listener({ case: 'error', value: broken }, 0);
-    this.events.closed(refusal);
+    this.events.closed(refusal, leaving);
   }
 }
 

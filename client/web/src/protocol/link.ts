@@ -10,16 +10,20 @@ export type LinkState =
 
 export interface LinkEvents {
   changed(state: LinkState): void;
-  opened(connection: Connection): void;
+  /** `views`: ids of views that go on. */
+  opened(connection: Connection, views: readonly bigint[]): void;
   closed(): void;
   received(bytes: number): void;
 }
 
-/** A connection that is reopened after it is lost, with exponential backoff. */
+const soon = 200; // ms: another server goes on
+
+/** A connection that is reopened after it is lost, with exponential backoff. The server's session goes on. */
 export class Link {
   private connection: Connection | undefined;
   private timer: ReturnType<typeof setTimeout> | undefined;
   private attempt = 0;
+  private session = '';
   private closed = false;
 
   constructor(
@@ -50,15 +54,30 @@ export class Link {
       opened: (hello: Hello) => {
         this.attempt = 0;
         this.events.changed({ kind: 'open', server: hello.program });
-        this.events.opened(connection);
+        void this.resume(connection);
       },
-      closed: (refusal) => this.lost(refusal),
+      closed: (refusal, leaving) => this.lost(refusal, leaving),
       received: (bytes) => this.events.received(bytes),
     });
     this.connection = connection;
   }
 
-  private lost(refusal: Refusal | undefined): void {
+  /** Goes on with the session of the former connection. The first one has nothing to wait for. */
+  private async resume(connection: Connection): Promise<void> {
+    const first = this.session === '';
+    if (first) this.events.opened(connection, []);
+    let views: readonly bigint[] = [];
+    try {
+      const resumed = await connection.ask({ case: 'resume', value: { session: this.session } }, 'resumed');
+      this.session = resumed.session;
+      views = resumed.views;
+    } catch {
+      this.session = ''; // a server that keeps none, or the connection has ended
+    }
+    if (!first && connection === this.connection) this.events.opened(connection, views);
+  }
+
+  private lost(refusal: Refusal | undefined, leaving: boolean): void {
     this.connection = undefined;
     this.events.closed();
     if (this.closed) return;
@@ -66,7 +85,8 @@ export class Link {
       this.events.changed({ kind: 'refused', message: refusal.message });
       return;
     }
-    const wait = backoff(this.attempt++, Math.random());
+    const wait = leaving && this.attempt === 0 ? soon * Math.random() : backoff(this.attempt, Math.random());
+    this.attempt += 1;
     this.timer = setTimeout(() => this.connect(), wait);
     const message = refusal?.message ?? 'The server cannot be reached.';
     this.events.changed({ kind: 'waiting', until: Date.now() + wait, message });

@@ -7,15 +7,24 @@ import {
   ColorSource,
   DrawPictureSchema,
   FileFormat,
+  GlyphRadius,
+  GlyphShape,
+  GridAxis,
   SplatConvention,
   TransferPreset,
+  XRay,
   type Box as WireBox,
   type Camera as WireCamera,
   type DrawPicture,
+  type GlyphsSchema,
+  type IsoSurfaceSchema,
+  type SliceSchema,
   type TransferFunctionSchema,
   type Vector3,
 } from '../generated/surfcast_pb';
-import type { ColorMapName, ColorSourceName, DisplayOptions } from '../state/display_options';
+import { defaultGlyphs, type GlyphOptions, type GlyphRadiusName } from '../state/glyph_options';
+import type { ColorMapName, ColorSourceName, DisplayOptions, XRayName } from '../state/display_options';
+import type { GridAxis as GridAxisName, IsoSurface, Slice } from '../volume/surfaces';
 import { defaultTransfer, type PresetName, type Transfer } from '../volume/transfer';
 
 export interface Size {
@@ -29,6 +38,9 @@ const sources: Readonly<Record<ColorSourceName, ColorSource>> = {
   elevation: ColorSource.ELEVATION,
   classification: ColorSource.CLASSIFICATION,
   normal: ColorSource.NORMAL,
+  direction: ColorSource.DIRECTION,
+  dec: ColorSource.DEC,
+  attribute: ColorSource.ATTRIBUTE,
 };
 
 const maps: Readonly<Record<ColorMapName, ColorMap>> = {
@@ -36,6 +48,12 @@ const maps: Readonly<Record<ColorMapName, ColorMap>> = {
   turbo: ColorMap.TURBO,
   gray: ColorMap.GRAY,
   terrain: ColorMap.TERRAIN,
+};
+
+const xrays: Readonly<Record<XRayName, XRay>> = {
+  off: XRay.OFF,
+  sorted: XRay.SORTED,
+  density: XRay.DENSITY,
 };
 
 const presets: Readonly<Record<PresetName, TransferPreset>> = {
@@ -50,6 +68,38 @@ function wireTransfer({ preset, range, points }: Transfer): MessageInitShape<typ
   return { preset: presets[preset], ...(range ? { first: range[0], last: range[1] } : {}) };
 }
 
+const axes: Readonly<Record<GridAxisName, GridAxis>> = { i: GridAxis.I, j: GridAxis.J, k: GridAxis.K };
+
+const wireSurface = ({ value, color, opacity }: IsoSurface): MessageInitShape<typeof IsoSurfaceSchema> => ({
+  value,
+  opacity,
+  ...(color ? { color } : {}),
+});
+
+const wireSlice = (slice: Slice): MessageInitShape<typeof SliceSchema> =>
+  slice.axis ? { axis: axes[slice.axis], index: slice.index } : { point: slice.point, normal: slice.normal };
+
+const radii: Readonly<Record<GlyphRadiusName, GlyphRadius>> = {
+  eigenvalue: GlyphRadius.EIGENVALUE,
+  root: GlyphRadius.ROOT,
+  unit: GlyphRadius.UNIT,
+};
+
+function wireGlyphs(glyphs: GlyphOptions): MessageInitShape<typeof GlyphsSchema> {
+  const { shape, sharpness, radius, scale, thresholds } = glyphs;
+  return {
+    shape: shape === 'superquadric' ? GlyphShape.SUPERQUADRIC : GlyphShape.ELLIPSOID,
+    sharpness,
+    radius: radii[radius],
+    ...(scale === undefined ? {} : { scale }),
+    thresholds: thresholds.map(({ attribute, smallest, largest }) => ({
+      attribute,
+      smallest,
+      ...(largest === undefined ? {} : { largest }),
+    })),
+  };
+}
+
 /** The request for a picture. Without a camera the server chooses a view of the whole model. */
 export function pictureOf(
   model: string,
@@ -62,6 +112,7 @@ export function pictureOf(
   const coloring = {
     source: sources[display.source],
     map: maps[display.map],
+    ...(display.source === 'attribute' ? { attribute: display.attribute } : {}),
     ...(first !== undefined && last !== undefined ? { first, last } : {}),
   };
   const picture: MessageInitShape<typeof DrawPictureSchema> = {
@@ -77,7 +128,16 @@ export function pictureOf(
     ...(display.eyeDome.strength > 0 ? { eyeDome: display.eyeDome } : {}),
     ...(display.transfer === defaultTransfer ? {} : { transfer: wireTransfer(display.transfer) }),
     shaded: display.shaded,
+    isoSurfaces: display.surfaces.map(wireSurface),
+    slices: display.slices.map(wireSlice),
+    ...(display.medium === undefined ? {} : { medium: display.medium }),
+    ...(display.opacity === 1 ? {} : { opacity: display.opacity }),
+    classOpacities: display.classOpacities.map(({ code, opacity }) => ({ code, opacity })),
+    ghost: display.ghost,
+    xray: xrays[display.xray],
     splatConvention: display.splatConvention === 'exact' ? SplatConvention.EXACT : SplatConvention.TRAINED,
+    ...(display.glyphs === defaultGlyphs ? {} : { glyphs: wireGlyphs(display.glyphs) }),
+    ...(display.lighting ? { lighting: { ...display.lighting, lights: [...display.lighting.lights] } } : {}),
   };
   return create(DrawPictureSchema, picture);
 }

@@ -2,13 +2,29 @@ import type { ModelDescription } from '../generated/surfcast_pb';
 
 const compact = new Intl.NumberFormat('en', { notation: 'compact', maximumFractionDigits: 1 });
 
-const names: Readonly<Record<string, string>> = { surfel: 'points', gaussian: 'Gaussians' };
+const itemNames: Readonly<Record<string, string>> = {
+  surfel: 'points',
+  gaussian: 'Gaussians',
+  ellipsoid: 'ellipsoids',
+};
+const kindNames: Readonly<Record<string, string>> = {
+  surfel: 'Scan',
+  grid: 'Volume',
+  gaussian: 'Gaussians',
+  ellipsoid: 'Ellipsoids',
+};
+
+/** The kinds of a model: "Volume", "Scan and Volume". */
+export function kindOf({ kinds }: ModelDescription): string {
+  const names = kinds.map(({ kind }) => kindNames[kind] ?? kind);
+  return names.length > 0 ? names.join(' and ') : kindNames['surfel']!; // none: of a server before 1.3
+}
 
 /** What a model holds, in one line: "1.2M points, volume of 512 × 512 × 300". */
 export function contentsOf({ kinds, surfels, volumes }: ModelDescription): string {
   if (kinds.length === 0) return `${compact.format(Number(surfels))} points`; // of a server before 1.3
   const counted = kinds
     .filter(({ kind }) => kind !== 'grid')
-    .map(({ kind, items }) => `${compact.format(Number(items))} ${names[kind] ?? kind}`);
+    .map(({ kind, items }) => `${compact.format(Number(items))} ${itemNames[kind] ?? kind}`);
   return [...counted, ...volumes.map(({ size }) => `volume of ${size.join(' × ')}`)].join(', ');
 }

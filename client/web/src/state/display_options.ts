@@ -1,7 +1,13 @@
 import type { Box } from '../camera/standard_views';
+import type { IsoSurface, Slice } from '../volume/surfaces';
 import { defaultTransfer, type Transfer } from '../volume/transfer';
+import { defaultGlyphs, type GlyphOptions, type Lighting } from './glyph_options';
 
-export const colorSources = ['rgb', 'intensity', 'elevation', 'classification', 'normal'] as const;
+/** The last three are of ellipsoids. */
+export const colorSources = [
+  ...(['rgb', 'intensity', 'elevation', 'classification', 'normal'] as const),
+  ...(['direction', 'dec', 'attribute'] as const),
+] as const;
 export type ColorSourceName = (typeof colorSources)[number];
 
 export const colorMaps = ['viridis', 'turbo', 'gray', 'terrain'] as const;
@@ -9,6 +15,15 @@ export type ColorMapName = (typeof colorMaps)[number];
 
 export const splatConventions = ['trained', 'exact'] as const;
 export type SplatConventionName = (typeof splatConventions)[number];
+
+export const xrays = ['off', 'sorted', 'density'] as const;
+export type XRayName = (typeof xrays)[number];
+
+/** A factor of the opacities of a class. */
+export interface ClassOpacity {
+  readonly code: number;
+  readonly opacity: number; // 0 to 1
+}
 
 export interface Clip {
   readonly box: Box;
@@ -24,6 +39,7 @@ export interface Rgb {
 /** How the model is shown, apart from the camera. */
 export interface DisplayOptions {
   readonly source: ColorSourceName;
+  readonly attribute: string; // of the source 'attribute'
   readonly map: ColorMapName;
   readonly range: readonly [number, number] | undefined; // undefined: the model's own
   readonly hiddenClasses: readonly number[];
@@ -33,7 +49,18 @@ export interface DisplayOptions {
   readonly spacing: number; // projected surfel spacing at which refinement at rest stops, pixels; 0: every surfel
   readonly transfer: Transfer; // of volumes
   readonly shaded: boolean; // volumes are lit
+  readonly surfaces: readonly IsoSurface[]; // of volumes
+  readonly slices: readonly Slice[]; // of volumes
+  /** What the transfer function shows is drawn; undefined: unless there are surfaces or slices and no function. */
+  readonly medium: boolean | undefined;
+  readonly opacity: number; // 0 to 1; a factor of all opacities
+  readonly classOpacities: readonly ClassOpacity[]; // of surfels
+  readonly ghost: number; // 0 to 1; of surfels that clips hide
+  readonly xray: XRayName; // of surfels
+  readonly upsideDown: boolean; // the model is shown with its vertical axis pointing the other way
   readonly splatConvention: SplatConventionName;
+  readonly glyphs: GlyphOptions; // ellipsoids
+  readonly lighting: Lighting | undefined; // of ellipsoids; undefined: a headlight
 }
 
 /** Slightly darker than the panels, so that the picture appears to be behind them. */
@@ -41,6 +68,7 @@ export const defaultBackground: Rgb = { red: 14, green: 18, blue: 22 };
 
 export const defaultDisplay: DisplayOptions = {
   source: 'rgb',
+  attribute: 'fa',
   map: 'viridis',
   range: undefined,
   hiddenClasses: [],
@@ -50,8 +78,22 @@ export const defaultDisplay: DisplayOptions = {
   spacing: 1,
   transfer: defaultTransfer,
   shaded: false,
+  surfaces: [],
+  slices: [],
+  medium: undefined,
+  opacity: 1,
+  classOpacities: [],
+  ghost: 0,
+  xray: 'off',
+  upsideDown: false,
   splatConvention: 'trained',
+  glyphs: defaultGlyphs,
+  lighting: undefined,
 };
+
+/** Whether what the transfer function shows is drawn. */
+export const showsMedium = ({ medium, surfaces, slices, transfer }: DisplayOptions): boolean =>
+  medium ?? (transfer !== defaultTransfer || (surfaces.length === 0 && slices.length === 0));
 
 export const toHex = (color: Rgb): string =>
   '#' + [color.red, color.green, color.blue].map((part) => part.toString(16).padStart(2, '0')).join('');

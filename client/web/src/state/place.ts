@@ -6,9 +6,13 @@ import {
   defaultBackground,
   defaultDisplay,
   splatConventions,
+  xrays,
+  type ClassOpacity,
   type Clip,
   type DisplayOptions,
 } from './display_options';
+import { glyphParameters, parseGlyphs, parseLights } from './glyph_options';
+import { formatSlices, formatSurfaces, parseSlices, parseSurfaces } from '../volume/surfaces';
 import { formatTransfer, parseTransfer } from '../volume/transfer';
 
 /** The contents of a link: model, camera and display options. Parameters are those of `GET /api/models/..`. */
@@ -57,13 +61,48 @@ function classesIn(text: string | null): number[] {
   return codes.map(Number).filter((code) => code < 65536);
 }
 
+const shareIn = (text: string | null, usual: number): number => {
+  const share = numbersIn(text, 1)?.[0] ?? usual;
+  return share >= 0 && share <= 1 ? share : usual;
+};
+
+function classOpacitiesIn(text: string | null): ClassOpacity[] {
+  return (text ?? '').split(',').flatMap((part) => {
+    const [, code, share = null] = /^(\d+)=(.+)$/.exec(part) ?? [];
+    const opacity = shareIn(share, Number.NaN);
+    return Number(code) < 256 && !Number.isNaN(opacity) ? [{ code: Number(code), opacity }] : [];
+  });
+}
+
+const switchIn = (text: string | null): boolean | undefined =>
+  text === 'on' ? true : text === 'off' ? false : undefined;
+
+const byName = 'attribute:';
+const derivedAttributes: readonly string[] = ['fa', 'mode', 'md']; // of ellipsoids
+
+/** What colours the model, and by which attribute. */
+function sourceIn(text: string | null): Pick<DisplayOptions, 'source' | 'attribute'> {
+  const { source, attribute } = defaultDisplay;
+  if (text?.startsWith(byName) && text.length > byName.length) {
+    return { source: 'attribute', attribute: text.slice(byName.length) };
+  }
+  if (text && derivedAttributes.includes(text)) return { source: 'attribute', attribute: text };
+  return { source: colorSources.find((name) => name === text && name !== 'attribute') ?? source, attribute };
+}
+
+function sourceText({ source, attribute }: DisplayOptions): string | undefined {
+  if (source === defaultDisplay.source) return undefined;
+  if (source !== 'attribute') return source;
+  return derivedAttributes.includes(attribute) ? attribute : byName + encodeURIComponent(attribute);
+}
+
 function displayIn(values: URLSearchParams): DisplayOptions {
   const range = numbersIn(values.get('color_range'), 2);
   const spacing = numbersIn(values.get('spacing'), 1)?.[0];
   const background = numbersIn(values.get('background'), 3);
   const inByte = background?.every((part) => Number.isInteger(part) && part >= 0 && part <= 255);
   return {
-    source: colorSources.find((name) => name === values.get('color_by')) ?? defaultDisplay.source,
+    ...sourceIn(values.get('color_by')),
     map: colorMaps.find((name) => name === values.get('color_map')) ?? defaultDisplay.map,
     range: range && range[0]! < range[1]! ? [range[0]!, range[1]!] : undefined,
     hiddenClasses: classesIn(values.get('hide_classes')),
@@ -74,8 +113,18 @@ function displayIn(values: URLSearchParams): DisplayOptions {
     spacing: spacing !== undefined && spacing >= 0 ? spacing : defaultDisplay.spacing,
     transfer: parseTransfer(values.get('transfer')),
     shaded: values.get('shaded') === 'on',
+    surfaces: parseSurfaces(values.get('iso')),
+    slices: parseSlices(values.get('slice')),
+    medium: switchIn(values.get('medium')),
+    opacity: shareIn(values.get('opacity'), 1),
+    classOpacities: classOpacitiesIn(values.get('opacity_by_class')),
+    ghost: shareIn(values.get('ghost'), defaultDisplay.ghost),
+    xray: xrays.find((name) => name === values.get('xray')) ?? defaultDisplay.xray,
+    upsideDown: values.get('upside_down') === 'on',
     splatConvention:
       splatConventions.find((name) => name === values.get('splat_convention')) ?? defaultDisplay.splatConvention,
+    glyphs: parseGlyphs(values),
+    lighting: parseLights(values.get('lights')),
   };
 }
 
@@ -101,12 +150,15 @@ const clipList = (clips: readonly Clip[], inverted: boolean): string | undefined
   return boxes.length > 0 ? boxes.join(';') : undefined;
 };
 
+const classList = (classes: readonly ClassOpacity[]): string | undefined =>
+  classes.length > 0 ? classes.map(({ code, opacity }) => `${code}=${opacity}`).join(',') : undefined;
+
 /** Only the parameters that differ from their defaults. */
 function displayParameters(display: DisplayOptions): Record<string, string | undefined> {
   const { background, eyeDome } = display;
   const usual = background.red === defaultBackground.red && background.green === defaultBackground.green;
   return {
-    color_by: display.source === defaultDisplay.source ? undefined : display.source,
+    color_by: sourceText(display),
     color_map: display.map === defaultDisplay.map ? undefined : display.map,
     color_range: display.range?.join(','),
     hide_classes: display.hiddenClasses.length > 0 ? display.hiddenClasses.join(',') : undefined,
@@ -120,7 +172,16 @@ function displayParameters(display: DisplayOptions): Record<string, string | und
     spacing: display.spacing === defaultDisplay.spacing ? undefined : String(display.spacing),
     transfer: formatTransfer(display.transfer),
     shaded: display.shaded ? 'on' : undefined,
+    iso: formatSurfaces(display.surfaces),
+    slice: formatSlices(display.slices),
+    medium: display.medium === undefined ? undefined : display.medium ? 'on' : 'off',
+    opacity: display.opacity === 1 ? undefined : String(display.opacity),
+    opacity_by_class: classList(display.classOpacities),
+    ghost: display.ghost === defaultDisplay.ghost ? undefined : String(display.ghost),
+    xray: display.xray === defaultDisplay.xray ? undefined : display.xray,
+    upside_down: display.upsideDown ? 'on' : undefined,
     splat_convention: display.splatConvention === defaultDisplay.splatConvention ? undefined : display.splatConvention,
+    ...glyphParameters(display.glyphs, display.lighting),
   };
 }
 

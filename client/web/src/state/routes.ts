@@ -44,7 +44,7 @@ function forgetModel(): void {
 /** The hash of a link to the current view. */
 export function currentHash(): string {
   const pose = store.pose.peek();
-  const camera = pose ? cameraOf(pose, store.upAxis.peek()) : store.firstCamera.peek();
+  const camera = pose ? cameraOf(pose, store.upAxis.peek(), store.display.peek().upsideDown) : store.firstCamera.peek();
   return formatPlace({ model: store.model.peek(), camera, display: store.display.peek() });
 }
 

@@ -1,6 +1,6 @@
 import { computed, signal } from '@preact/signals';
 import type { Camera, UpAxis, Pose } from '../camera/pose';
-import { skyOf } from '../camera/pose';
+import { flipped, skyOf } from '../camera/pose';
 import { projectionOf, type Projection } from '../camera/projection';
 import { diagonal, type Box } from '../camera/standard_views';
 import { decimalsOf } from '../measure/format';
@@ -48,7 +48,7 @@ export const firstCamera = signal<Camera | undefined>(undefined);
 // ---- written by the panels ----
 
 export const display = signal<DisplayOptions>(defaultDisplay);
-export type Tool = 'navigate' | 'inspect' | MeasureKind | 'clip';
+export type Tool = 'navigate' | 'inspect' | MeasureKind | 'clip' | 'window';
 export const tool = signal<Tool>('navigate');
 export const flying = signal(false);
 export type Panel = 'look' | 'measure' | 'clip' | 'model';
@@ -93,8 +93,9 @@ export const description = computed(() =>
 /** The open model, if it is a scan whose model is not complete. */
 export const openScan = computed(() => (model.value === undefined ? undefined : scans.value.get(model.value)));
 export const upAxis = computed<UpAxis>(() => {
-  if (description.value?.zUp !== false) return 'z';
-  return description.value.upsideDown ? '-y' : 'y';
+  const axis = description.value?.zUp === false ? 'y' : 'z';
+  const turned = (description.value?.upsideDown ?? false) !== display.value.upsideDown;
+  return turned ? flipped(axis) : axis;
 });
 export const bounds = computed<Box>(() => boxFrom(description.value?.bounds));
 
@@ -110,3 +111,12 @@ export const shownProjection = computed<Projection | undefined>(() => {
   if (!frame?.resolution || !camera) return undefined;
   return projectionOf(camera, skyOf(upAxis.value), frame.resolution.width, frame.resolution.height);
 });
+
+/** Colours and opacities by attribute belong to surfels. A server that does not count its items by kind has no others. */
+export function hasSurfels(): boolean {
+  const kinds = description.value?.kinds ?? [];
+  return kinds.length === 0 || kinds.some(({ kind }) => kind === 'surfel');
+}
+
+/** The tensor fields and tables of ellipsoids of the open model. */
+export const ellipsoids = computed(() => description.value?.ellipsoids ?? []);

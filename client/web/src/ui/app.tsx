@@ -4,6 +4,7 @@ import { chooseTool, togglePanel } from '../input/keyboard';
 import { formatNumber } from '../measure/format';
 import { gradientOf } from '../state/palette';
 import * as store from '../state/store';
+import { openVolume, windowText } from '../state/volume';
 import { useActions } from './actions';
 import { ClipPanel } from './clip_panel';
 import { IconButton } from './controls';
@@ -11,7 +12,7 @@ import { Gallery } from './gallery';
 import { Gizmo } from './gizmo';
 import { HelpDialog } from './help_dialog';
 import { InspectCard } from './inspect_card';
-import { DisplayPanel, mapped, shownRange } from './display_panel';
+import { DisplayPanel, mapped, mappedName, shownRange } from './display_panel';
 import { MeasurePanel } from './measure_panel';
 import { ModelPanel } from './model_panel';
 import { ScreenshotDialog } from './screenshot_dialog';
@@ -32,12 +33,13 @@ function Canvases(): JSX.Element {
 
 function Legend(): JSX.Element | null {
   const { source, map } = store.display.value;
+  const name = mappedName(store.display.value);
   if (!mapped(source) || !store.shownFrame.value) return null;
   const [first, last] = shownRange();
   const decimals = Math.max(0, 2 - Math.floor(Math.log10(Math.max(1e-9, last - first))));
   return (
-    <figure class="legend" aria-label={`Colours of ${source}`}>
-      <figcaption>{source}</figcaption>
+    <figure class="legend" aria-label={`Colours of ${name}`}>
+      <figcaption>{name}</figcaption>
       <span class="ramp" style={{ background: gradientOf(map) }} />
       <span class="ends">
         <span>{formatNumber(first, decimals)}</span>
@@ -48,7 +50,9 @@ function Legend(): JSX.Element | null {
 }
 
 function Hint(): JSX.Element | null {
-  const text = store.notice.value ?? hintFor(store.tool.value, store.flying.value, store.growing.value !== undefined);
+  const tool = store.tool.value;
+  const hint = hintFor(tool, store.flying.value, store.growing.value !== undefined);
+  const text = store.notice.value ?? (tool === 'window' ? `${windowText()}. ${hint}` : hint);
   if (!text || !store.shownFrame.value) return null;
   return (
     <p class={store.notice.value ? 'hint said' : 'hint'} role="status">
@@ -120,6 +124,10 @@ export function App(): JSX.Element {
   useEffect(() => {
     if (store.panel.value !== 'clip' && store.tool.peek() === 'clip') chooseTool('navigate');
   }, [store.panel.value]);
+  // Another model may have no window.
+  useEffect(() => {
+    if (store.description.value && !openVolume() && store.tool.peek() === 'window') chooseTool('navigate');
+  }, [store.description.value]);
   const shown = store.model.value !== undefined && !store.galleryOpen.value;
   return (
     <div class={shown && store.panel.value && store.description.value ? 'page with-panel' : 'page'}>

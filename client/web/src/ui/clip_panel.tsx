@@ -5,6 +5,7 @@ import type { Clip } from '../state/display_options';
 import { bounds, editedClip, lengthDecimals, display, tool } from '../state/store';
 import { Choices, IconButton, NumberField, Section } from './controls';
 import { Icon } from './icons';
+import { Ghost } from './opacity_section';
 import { SpanSlider } from './span_slider';
 
 function AxisRow({ clip, index, axis }: { clip: Clip; index: number; axis: AxisName }): JSX.Element {
@@ -88,6 +89,7 @@ export function ClipPanel(): JSX.Element {
           A box shows or hides the part of the scan inside it. Drag the dots on its sides to fit it.
         </p>
       )}
+      {clips.length > 0 && <Ghost />}
       <ul class="cards">
         {clips.map((clip, index) => (
           <ClipCard key={index} {...{ clip, index }} />

@@ -83,6 +83,27 @@ export function Choices<Value extends string>(props: ChoicesProps<Value>): JSX.E
   );
 }
 
+interface SelectProps {
+  readonly label: string;
+  readonly value: string;
+  readonly options: readonly string[];
+  readonly onChange: (value: string) => void;
+}
+
+/** One of many names. */
+export function Select({ label, value, options, onChange }: SelectProps): JSX.Element {
+  return (
+    <label class="number">
+      <span>{label}</span>
+      <select aria-label={label} value={value} onChange={(event) => onChange(event.currentTarget.value)}>
+        {options.map((option) => (
+          <option key={option}>{option}</option>
+        ))}
+      </select>
+    </label>
+  );
+}
+
 interface SliderProps {
   readonly label: string;
   readonly value: number;
@@ -103,6 +124,7 @@ export function Slider({ label, value, min, max, step, shown, onInput }: SliderP
       <output>{shown ?? value}</output>
       <input
         type="range"
+        aria-label={label} // a label element would name the output
         style={{ '--part': `${part}%` }}
         {...{ value, min, max, step }}
         onPointerDown={() => navigator.adjust(true)}

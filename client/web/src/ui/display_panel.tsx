@@ -12,8 +12,11 @@ import {
   type Rgb,
 } from '../state/display_options';
 import { classColor, className, gradientOf } from '../state/palette';
-import { bounds, description, display, upAxis } from '../state/store';
-import { Choices, NumberField, Section, Slider } from './controls';
+import { attributeNames, attributeRange } from '../state/ellipsoids';
+import { bounds, description, display, ellipsoids, hasSurfels, upAxis } from '../state/store';
+import { Choices, NumberField, Section, Select, Slider } from './controls';
+import { GlyphSections } from './glyph_sections';
+import { OpacitySection } from './opacity_section';
 import { GaussianSection, VolumeSections } from './volume_sections';
 
 const change = (part: Partial<DisplayOptions>): void => void (display.value = { ...display.peek(), ...part });
@@ -24,12 +27,28 @@ const sourceLabels: Readonly<Record<ColorSourceName, string>> = {
   elevation: 'Elevation',
   classification: 'Class',
   normal: 'Normal',
+  direction: 'Direction',
+  dec: 'Direction by FA',
+  attribute: 'Attribute',
 };
+
+const labelOf = (source: ColorSourceName): string =>
+  source === 'rgb' && !hasSurfels() ? 'Own' : sourceLabels[source];
 
 const has = (attribute: string): boolean => description.value?.attributes.includes(attribute) ?? false;
 
 const available = (source: ColorSourceName): boolean =>
   source === 'intensity' || source === 'classification' ? has(source) : true;
+
+const ofSurfels: readonly ColorSourceName[] = ['intensity', 'classification', 'normal'];
+const ofEllipsoids: readonly ColorSourceName[] = ['direction', 'dec', 'attribute'];
+
+/** What the items of the open model can be coloured by. */
+const offered = (): readonly ColorSourceName[] =>
+  colorSources.filter(
+    (source) =>
+      (hasSurfels() || !ofSurfels.includes(source)) && (ellipsoids.value.length > 0 || !ofEllipsoids.includes(source)),
+  );
 
 /** The range of the colour map when the display options state none. */
 function defaultRange(source: ColorSourceName): readonly [number, number] {
@@ -37,11 +56,17 @@ function defaultRange(source: ColorSourceName): readonly [number, number] {
     const { min, max } = bounds.value;
     return [heightOf(min, upAxis.value), heightOf(max, upAxis.value)];
   }
+  if (source === 'attribute') return attributeRange(ellipsoids.value, display.value.attribute);
   const range = description.value?.ranges.find((each) => each.attribute === source);
   return range ? [range.low, range.high] : [0, 1];
 }
 
-export const mapped = (source: ColorSourceName): boolean => source === 'intensity' || source === 'elevation';
+export const mapped = (source: ColorSourceName): boolean =>
+  source === 'intensity' || source === 'elevation' || source === 'attribute';
+
+/** What the colours of the map are of. */
+export const mappedName = ({ source, attribute }: DisplayOptions): string =>
+  source === 'attribute' ? attribute : source;
 
 export const shownRange = (): readonly [number, number] => display.value.range ?? defaultRange(display.value.source);
 
@@ -89,9 +114,17 @@ function Coloring(): JSX.Element {
       <Choices
         label="Colour by"
         value={source}
-        options={colorSources.map((value) => ({ value, label: sourceLabels[value], disabled: !available(value) }))}
+        options={offered().map((value) => ({ value, label: labelOf(value), disabled: !available(value) }))}
         onChange={(value) => change({ source: value, range: undefined })}
       />
+      {source === 'attribute' && (
+        <Select
+          label="Attribute"
+          value={display.value.attribute}
+          options={attributeNames(ellipsoids.value)}
+          onChange={(attribute) => change({ attribute, range: undefined })}
+        />
+      )}
       {mapped(source) && (
         <>
           <Maps />
@@ -222,19 +255,15 @@ function Detail(): JSX.Element {
   );
 }
 
-/** Colours by attribute belong to surfels; a server that does not count its items by kind has nothing else. */
-function hasSurfels(): boolean {
-  const kinds = description.value?.kinds ?? [];
-  return kinds.length === 0 || kinds.some(({ kind }) => kind === 'surfel');
-}
-
 export function DisplayPanel(): JSX.Element {
   return (
     <>
       <VolumeSections />
       <GaussianSection />
-      {hasSurfels() && <Coloring />}
+      <GlyphSections />
+      {(hasSurfels() || ellipsoids.value.length > 0) && <Coloring />}
       <Classes />
+      {hasSurfels() && <OpacitySection />}
       <Depth />
       <Background />
       <Detail />

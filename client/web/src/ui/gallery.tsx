@@ -1,7 +1,7 @@
 import type { JSX } from 'preact';
 import { useEffect, useState } from 'preact/hooks';
 import type { ScanStatus } from '../generated/surfcast_pb';
-import { contentsOf } from '../state/contents';
+import { contentsOf, kindOf } from '../state/contents';
 import { openModel } from '../state/routes';
 import { failed, progressText } from '../state/scans';
 import { descriptions, galleryOpen, link, model, models, scans, uploads } from '../state/store';
@@ -67,6 +67,7 @@ function OpenCard({ name, scan }: { name: string; scan: ScanStatus | undefined }
       <button type="button" class="model-card" aria-current={name === model.value} onClick={choose}>
         <Thumbnail key={`${name} ${scan?.edition ?? ''}`} name={name} edition={scan?.edition} />
         <span class="name">{name}</span>
+        {description && <span class="kind">{kindOf(description)}</span>}
         <span class="faint">
           {scan ? progressText(scan) : description ? contentsOf(description) : '…'}
         </span>
@@ -117,7 +118,7 @@ function SendScans(): JSX.Element | null {
   };
   return (
     <label class="send-scans">
-      <span class="faint">Send scans to this server: drop them on the page, or choose them</span>
+      <span class="faint">Send scans, volumes or Gaussians to this server: drop them on the page, or choose them</span>
       <input type="file" multiple accept={rules.extensions.join(',')} onChange={send} />
     </label>
   );

@@ -50,7 +50,7 @@ export function Gizmo(): JSX.Element | null {
             key={`${tip.axis}${tip.positive}`}
             class={`axis ${tip.axis}`}
             opacity={tip.depth > 0.2 ? 0.55 : 1}
-            tabIndex={0}
+            tabindex={0}
             role="button"
             aria-label={`From ${tip.positive ? '+' : '−'}${tip.axis}`}
             onClick={() => press(tip)}

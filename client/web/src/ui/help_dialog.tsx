@@ -24,6 +24,7 @@ const keys: Rows = [
   ['1 … 7', 'front, right, back, left, top, bottom, iso'],
   ['G', 'fly: W A S D, Q E down and up, Shift faster, wheel sets the speed'],
   ['N, I', 'navigate, inspect points'],
+  ['V', 'window and level of a volume: drag, or arrows, with Shift faster'],
   ['M, H, K, B, P', 'distance, height, angle, area, profile'],
   ['O, C', 'display options, clip boxes'],
   ['X', 'save a picture'],

@@ -9,6 +9,7 @@ const hints: Readonly<Record<Tool, readonly [string, string]>> = {
   area: ['Click the corners of the area.', 'Click the next corner. Finish with Enter or a double click.'],
   profile: ['Click the points of the profile.', 'Click the next point. Finish with Enter or a double click.'],
   clip: ['Click the centre of the new box.', 'Click the centre of the new box.'],
+  window: ['Drag: window sideways, level up and down.', ''],
 };
 
 /** Instruction for the selected tool; `begun`: a measurement is in progress. */

@@ -1,11 +1,13 @@
 import type { JSX } from 'preact';
 import { formatExact } from '../measure/format';
+import { glyphOf, linesOf } from '../state/glyph';
 import { className } from '../state/palette';
 import { inspection } from '../state/store';
 import { vectorFrom } from '../protocol/pictures';
 import type { Vector } from '../camera/vector';
 import { copyText, notAllowed } from './clipboard';
 import { IconButton } from './controls';
+import { GlyphPicture } from './glyph_picture';
 
 const coordinates = (v: Vector): string => [v.x, v.y, v.z].map(formatExact).join(' ');
 
@@ -19,10 +21,10 @@ export function InspectCard(): JSX.Element | null {
   if (!shown) return null;
   const { result, at } = shown;
   const { color, normal } = result;
-  const rows: [string, JSX.Element | string][] = result.attributes.map(({ attribute, value }) => [
-    attribute,
-    valueOf(attribute, value),
-  ]);
+  const glyph = glyphOf(result.attributes);
+  const rows: [string, JSX.Element | string][] = glyph
+    ? linesOf(result.attributes, ({ attribute, value }) => valueOf(attribute, value))
+    : result.attributes.map(({ attribute, value }) => [attribute, valueOf(attribute, value)]);
   if (color) {
     const css = `rgb(${color.red}, ${color.green}, ${color.blue})`;
     rows.unshift([
@@ -44,6 +46,7 @@ export function InspectCard(): JSX.Element | null {
         <IconButton icon="copy" label="Copy coordinates" onPress={() => void copyText(coordinates(at), 'Coordinates copied.', notAllowed)} />
         <IconButton icon="close" label="Close" onPress={() => (inspection.value = undefined)} />
       </header>
+      {glyph && <GlyphPicture glyph={glyph} color={color && [color.red, color.green, color.blue]} />}
       <dl class="coordinates">
         {(['x', 'y', 'z'] as const).map((axis) => (
           <div key={axis}>

@@ -1,8 +1,10 @@
 import type { ComponentChildren, JSX } from 'preact';
-import type { ModelDescription, VolumeDescription } from '../generated/surfcast_pb';
+import type { EllipsoidDescription, ModelDescription, VolumeDescription } from '../generated/surfcast_pb';
 import { formatNumber } from '../measure/format';
-import { bounds, description, lengthDecimals, upAxis } from '../state/store';
-import { Section } from './controls';
+import { kindOf } from '../state/contents';
+import { bounds, description, display, lengthDecimals, upAxis } from '../state/store';
+import { useActions } from './actions';
+import { Section, Switch } from './controls';
 import { Views } from './views';
 
 function Row({ name, children }: { name: string; children: ComponentChildren }): JSX.Element {
@@ -16,7 +18,7 @@ function Row({ name, children }: { name: string; children: ComponentChildren }):
 
 const count = (value: bigint | number): string => formatNumber(Number(value), 0);
 
-const kindLabels: Readonly<Record<string, string>> = { surfel: 'Points', grid: 'Samples', gaussian: 'Gaussians' };
+const kindLabels: Readonly<Record<string, string>> = { surfel: 'Points', grid: 'Samples', gaussian: 'Gaussians', ellipsoid: 'Ellipsoids' };
 
 /** The number of items of each kind; of a server that does not tell kinds apart, the points. */
 function Items({ model }: { model: ModelDescription }): JSX.Element {
@@ -38,6 +40,27 @@ function Volume({ volume }: { volume: VolumeDescription }): JSX.Element {
         <Row name="Samples">{volume.size.join(' × ')}</Row>
         <Row name="Spacing">{volume.spacing.map(significant).join(' × ') + unit(volume.lengthUnit)}</Row>
         <Row name="Values">{`${significant(volume.low)} – ${significant(volume.high)}${unit(volume.sampleUnit)}`}</Row>
+      </dl>
+    </Section>
+  );
+}
+
+function Ellipsoids({ source }: { source: EllipsoidDescription }): JSX.Element {
+  const significant = (value: number): string => String(Number(value.toPrecision(5)));
+  const unit = source.sampleUnit ? ` ${source.sampleUnit}` : '';
+  return (
+    <Section title={source.name || 'Ellipsoids'}>
+      <dl class="facts">
+        {source.size.length > 0 && <Row name="Samples">{source.size.join(' × ')}</Row>}
+        <Row name="Drawn">{`${count(source.drawn)} of ${count(source.samples)}`}</Row>
+        <Row name="Mean FA">{significant(source.meanFa)}</Row>
+        <Row name="Mean mode">{significant(source.meanMode)}</Row>
+        <Row name={source.tensors ? 'Mean eigenvalues' : 'Mean semi-axes'}>
+          {source.meanValues.map(significant).join(' ') + unit}
+        </Row>
+        {source.ranges.map(({ attribute, smallest, largest }) => (
+          <Row key={attribute} name={attribute}>{`${significant(smallest)} – ${significant(largest)}`}</Row>
+        ))}
       </dl>
     </Section>
   );
@@ -71,6 +94,7 @@ function Extent(): JSX.Element {
 }
 
 export function ModelPanel(): JSX.Element | null {
+  const { navigator } = useActions();
   const model = description.value;
   if (!model) return null;
   const color = model.colorBits > 0 ? `${model.colorBits} bits a channel` : 'none';
@@ -79,6 +103,7 @@ export function ModelPanel(): JSX.Element | null {
       <Views where="in-panel" />
       <Section title={model.model}>
         <dl class="facts">
+          <Row name="Kind">{kindOf(model)}</Row>
           <Items model={model} />
           {model.spacing > 0 && <Row name="Point spacing">{model.spacing.toPrecision(3)}</Row>}
           <Row name="Colour">{color}</Row>
@@ -86,9 +111,13 @@ export function ModelPanel(): JSX.Element | null {
           <Row name="Levels of detail">{model.levels}</Row>
           <Row name="Blocks">{count(model.blocks)}</Row>
         </dl>
+        <Switch label="Upside down" checked={display.value.upsideDown} onChange={() => navigator.turnOver()} />
       </Section>
       {model.volumes.map((volume, i) => (
         <Volume key={i} volume={volume} />
+      ))}
+      {model.ellipsoids.map((source, i) => (
+        <Ellipsoids key={i} source={source} />
       ))}
       <Section title="Extent">
         <Extent />

@@ -31,7 +31,7 @@ async function shoot(
   const now = pose.peek();
   const wire = formats.find((each) => each.value === format)?.wire ?? FileFormat.PNG;
   const shown = every ? { ...display.peek(), spacing: 0 } : display.peek();
-  const request = pictureOf(name, now && cameraOf(now, upAxis.peek()), shown, size, wire);
+  const request = pictureOf(name, now && cameraOf(now, upAxis.peek(), display.peek().upsideDown), shown, size, wire);
   const picture = await controller.draw(request, started);
   saveFile(picture.data, `${name}.${format}`, mediaType(wire));
 }

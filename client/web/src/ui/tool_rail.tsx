@@ -2,6 +2,7 @@ import type { JSX } from 'preact';
 import { chooseTool, togglePanel } from '../input/keyboard';
 import { measureKinds, type MeasureKind } from '../measure/measurement';
 import * as store from '../state/store';
+import { openVolume } from '../state/volume';
 import { IconButton } from './controls';
 import { Icon, type IconName } from './icons';
 import { measureLabels } from './measure_panel';
@@ -58,6 +59,15 @@ export function ToolRail(): JSX.Element {
           onPress={() => chooseTool(kind)}
         />
       ))}
+      {openVolume() && (
+        <IconButton
+          icon="window"
+          label="Window and level"
+          hint="V"
+          pressed={tool === 'window'}
+          onPress={() => chooseTool('window')}
+        />
+      )}
       <hr />
       {(['look', 'clip', 'model'] as const).map((name) => (
         <IconButton
@@ -107,6 +117,17 @@ export function PhoneBar(): JSX.Element {
           store.panel.value = undefined;
         }}
       />
+      {openVolume() && (
+        <PhoneButton
+          icon="window"
+          label="Window"
+          pressed={tool === 'window'}
+          onPress={() => {
+            chooseTool(tool === 'window' ? 'navigate' : 'window');
+            store.panel.value = undefined;
+          }}
+        />
+      )}
       {(['measure', 'look', 'clip', 'model'] as const).map((name) => (
         <PhoneButton
           key={name}

@@ -22,6 +22,8 @@ const height = 120;
 const bars = 96;
 const shades = 32; // of the strip of colours
 const handle = 6;
+const reach = 2 * handle; // of the pointer around a point
+const touchReach = 24; // CSS pixels
 const narrowest = 1e-4; // window, of the range of the values
 
 /** Small opacities matter most, so heights are their square roots. */
@@ -94,8 +96,24 @@ function ColorStrip(props: TransferEditorProps): JSX.Element {
   );
 }
 
+const curveLabel =
+  'Opacity over value. Drag points; click to add one. ' +
+  'Arrows move the chosen point, Page up and down choose, Delete removes';
+
+/** What a key does to the chosen point: steps in value and height, hundredths of the drawing. */
+const steps: Readonly<Record<string, readonly [number, number]>> = {
+  ArrowLeft: [-1, 0],
+  ArrowRight: [1, 0],
+  ArrowDown: [0, -1],
+  ArrowUp: [0, 1],
+};
+
+/** What a key chooses instead of a point: the one before or after it. */
+const choices: Readonly<Record<string, number>> = { PageUp: -1, PageDown: 1 };
+
 interface CurveProps extends TransferEditorProps {
   readonly chosen: number;
+  readonly chosenNow: () => number; // also of a key that comes before the next drawing
   readonly logarithmic: boolean;
   readonly onChoose: (index: number) => void;
 }
@@ -117,14 +135,14 @@ function Curve(props: CurveProps): JSX.Element {
   const near = (event: JSX.TargetedPointerEvent<SVGSVGElement>): number => {
     const box = event.currentTarget.getBoundingClientRect();
     const scale = box.width / width;
-    return points.findIndex(
-      (point) =>
-        Math.hypot(
-          event.clientX - box.left - x(point.value) * scale,
-          event.clientY - box.top - (y(point.opacity) * box.height) / height,
-        ) <=
-        2 * handle,
+    const away = points.map((point) =>
+      Math.hypot(
+        event.clientX - box.left - x(point.value) * scale,
+        event.clientY - box.top - (y(point.opacity) * box.height) / height,
+      ),
     );
+    const nearest = Math.min(...away);
+    return nearest <= (event.pointerType === 'touch' ? touchReach : reach) ? away.indexOf(nearest) : -1;
   };
   const begin = (event: JSX.TargetedPointerEvent<SVGSVGElement>): void => {
     event.currentTarget.setPointerCapture(event.pointerId);
@@ -144,6 +162,26 @@ function Curve(props: CurveProps): JSX.Element {
     dragged.current = undefined;
     navigator.adjust(false);
   };
+  const nudge = ([right, up]: readonly [number, number], factor: number): void => {
+    const index = props.chosenNow();
+    const point = points[index];
+    if (!point) return;
+    const value = point.value + ((to - from) * right * factor) / 100;
+    const part = heightOfOpacity(point.opacity) + (up * factor) / 100;
+    props.onChange(movePoint(points, index, value, opacityOfHeight(Math.min(1, part))));
+  };
+  const press = (event: JSX.TargetedKeyboardEvent<SVGSVGElement>): boolean => {
+    const index = props.chosenNow();
+    const step = steps[event.key];
+    const choice = choices[event.key];
+    if (step) nudge(step, event.shiftKey ? 0.1 : 1);
+    else if (choice !== undefined) props.onChoose(Math.min(points.length - 1, Math.max(0, index + choice)));
+    else if (event.key === 'Delete' || event.key === 'Backspace') {
+      props.onChange(removePoint(points, index));
+      props.onChoose(Math.max(0, index - 1));
+    } else return false;
+    return true;
+  };
   const line = points.map((point) => `${x(point.value)},${y(point.opacity)}`).join(' ');
   const first = points[0];
   const last = points[points.length - 1];
@@ -153,9 +191,9 @@ function Curve(props: CurveProps): JSX.Element {
       class="curve"
       viewBox={`0 0 ${width} ${height}`}
       preserveAspectRatio="none"
-      tabIndex={0}
+      tabindex={0} // of an SVG element, as the attribute is written
       role="application"
-      aria-label="Opacity over value. Drag points; click to add one; Delete removes the chosen one"
+      aria-label={curveLabel}
       onPointerDown={begin}
       onPointerMove={(event) => {
         if (dragged.current === undefined) return;
@@ -165,11 +203,9 @@ function Curve(props: CurveProps): JSX.Element {
       onPointerUp={stop}
       onPointerCancel={stop}
       onKeyDown={(event) => {
-        if (event.key !== 'Delete' && event.key !== 'Backspace') return;
+        if (!press(event)) return;
         event.preventDefault();
         event.stopPropagation();
-        props.onChange(removePoint(points, chosen));
-        props.onChoose(Math.max(0, chosen - 1));
       }}
     >
       <Histogram {...props} />
@@ -190,14 +226,24 @@ function Curve(props: CurveProps): JSX.Element {
 
 /** Edits the colours and opacities of a volume over the histogram of its values. */
 export function TransferEditor(props: TransferEditorProps): JSX.Element {
-  const [choice, setChosen] = useState(0);
+  const [choice, setChoice] = useState(0);
+  const latest = useRef(choice);
+  const setChosen = (index: number): void => {
+    latest.current = index;
+    setChoice(index);
+  };
   const [logarithmic, setLogarithmic] = useState(true);
   const { points } = props;
   const chosen = Math.min(choice, points.length - 1);
   const point = points[chosen];
   return (
     <div class="transfer">
-      <Curve {...props} {...{ chosen, logarithmic }} onChoose={setChosen} />
+      <Curve
+        {...props}
+        {...{ chosen, logarithmic }}
+        chosenNow={() => Math.min(latest.current, points.length - 1)}
+        onChoose={setChosen}
+      />
       <ColorStrip {...props} />
       {point && (
         <div class="point-fields">

@@ -18,7 +18,8 @@ function Row({ upload }: { upload: Upload }): JSX.Element {
     <li class={upload.state}>
       <span class="name">{upload.name}</span>
       {upload.state === 'sending' && <span class="faint">{Math.floor(upload.sent * 100)} %</span>}
-      {upload.state === 'done' && (
+      {upload.state === 'done' && !upload.model && <span class="faint">waits for its header</span>}
+      {upload.state === 'done' && upload.model && (
         <button type="button" onClick={open}>
           Open
         </button>
@@ -35,7 +36,7 @@ function Row({ upload }: { upload: Upload }): JSX.Element {
 }
 
 export function UploadsCard(): JSX.Element | null {
-  if (dropping.value) return <div class="drop-here">Drop scans here to send them to the server</div>;
+  if (dropping.value) return <div class="drop-here">Drop scans, volumes or Gaussians here to send them to the server</div>;
   if (uploadList.value.length === 0) return null;
   return (
     <section class="uploads" aria-label="Scans on their way">

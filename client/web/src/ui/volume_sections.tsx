@@ -1,63 +1,88 @@
 import type { JSX } from 'preact';
-import { TransferPreset, type VolumeDescription } from '../generated/surfcast_pb';
+import { chooseTool } from '../input/keyboard';
 import { splatConventions, type DisplayOptions, type SplatConventionName } from '../state/display_options';
-import { description, display } from '../state/store';
-import { fitTo, rangeOf, type PresetName, type Transfer, type TransferPoint } from '../volume/transfer';
-import { Choices, Section, Switch } from './controls';
+import { description, display, hasSurfels, panel, tool } from '../state/store';
+import { decimalsFor, openVolume, pointsOf, setWindow, windowed } from '../state/volume';
+import type { PresetName, TransferPoint } from '../volume/transfer';
+import { windowNow } from '../volume/window';
+import { Choices, NumberField, Section, Switch } from './controls';
+import { Opacity } from './opacity_section';
+import { SliceSection, SurfaceSection } from './surface_sections';
 import { TransferEditor } from './transfer_editor';
 
 const change = (part: Partial<DisplayOptions>): void => void (display.value = { ...display.peek(), ...part });
 
-const presetLabels: readonly { value: PresetName; label: string; preset: TransferPreset }[] = [
-  { value: 'gray', label: 'Grey', preset: TransferPreset.GRAY },
-  { value: 'ct-bone', label: 'CT bone', preset: TransferPreset.CT_BONE },
-  { value: 'ct-soft', label: 'CT soft', preset: TransferPreset.CT_SOFT },
-  { value: 'mr', label: 'MR', preset: TransferPreset.MR },
+const presetLabels: readonly { value: PresetName; label: string }[] = [
+  { value: 'gray', label: 'Grey' },
+  { value: 'ct-bone', label: 'CT bone' },
+  { value: 'ct-soft', label: 'CT soft' },
+  { value: 'mr', label: 'MR' },
 ];
 
-/** The points that the server uses: those chosen, or the preset's for this volume. */
-function pointsOf(transfer: Transfer, volume: VolumeDescription): readonly TransferPoint[] {
-  if (transfer.points.length > 0) return transfer.points;
-  const number = presetLabels.find(({ value }) => value === transfer.preset)?.preset;
-  const found = volume.presets.find(({ preset }) => preset === number)?.points ?? [];
-  const points = found.map(({ value, color, opacity }) => ({
-    value,
-    opacity,
-    color: { red: color?.red ?? 0, green: color?.green ?? 0, blue: color?.blue ?? 0 },
-  }));
-  return transfer.range ? fitTo(points, rangeOf(points), transfer.range) : points;
+/** Level and window as numbers, and the tool that drags them on the picture. */
+function WindowFields(): JSX.Element | null {
+  const of = windowed();
+  if (!of) return null;
+  const now = windowNow(of);
+  const decimals = decimalsFor(of.span);
+  const dragging = tool.value === 'window';
+  const choose = (): void => {
+    chooseTool(dragging ? 'navigate' : 'window');
+    if (!dragging && innerWidth < 860) panel.value = undefined; // the panel lies over the picture
+  };
+  return (
+    <div class="range-fields">
+      <NumberField
+        label="Level"
+        value={now.level}
+        decimals={decimals}
+        onChange={(level) => setWindow(of, { ...now, level })}
+      />
+      <NumberField
+        label="Window"
+        value={now.width}
+        decimals={decimals}
+        onChange={(width) => setWindow(of, { ...now, width })}
+      />
+      <button type="button" class="quiet" aria-pressed={dragging} onClick={choose}>
+        Drag on picture
+      </button>
+    </div>
+  );
 }
 
-/** Enough decimals to tell a thousandth of the range apart. */
-const decimalsFor = (span: number): number =>
-  span > 0 ? Math.min(6, Math.max(0, Math.ceil(3 - Math.log10(span)))) : 3;
-
 export function VolumeSections(): JSX.Element | null {
-  const volume = description.value?.volumes[0];
+  const volume = openVolume();
   if (!volume) return null;
   const { transfer, shaded } = display.value;
   const own = transfer.points.length > 0;
   const set = (points: readonly TransferPoint[]): void => change({ transfer: { ...transfer, points } });
   return (
-    <Section title={`Colour and opacity by value${volume.sampleUnit && `, ${volume.sampleUnit}`}`}>
-      <Choices<PresetName | 'own'>
-        label="Preset"
-        value={own ? 'own' : transfer.preset}
-        options={[...presetLabels, { value: 'own', label: 'Own', disabled: !own }]}
-        onChange={(chosen) => {
-          if (chosen !== 'own') change({ transfer: { preset: chosen, range: undefined, points: [] } });
-        }}
-      />
-      <TransferEditor
-        points={pointsOf(transfer, volume)}
-        low={volume.low}
-        high={volume.high}
-        counts={volume.histogram.map(Number)}
-        decimals={decimalsFor(volume.high - volume.low)}
-        onChange={set}
-      />
-      <Switch label="Light by gradient" checked={shaded} onChange={(on) => change({ shaded: on })} />
-    </Section>
+    <>
+      <Section title={`Colour and opacity by value${volume.sampleUnit && `, ${volume.sampleUnit}`}`}>
+        <Choices<PresetName | 'own'>
+          label="Preset"
+          value={own ? 'own' : transfer.preset}
+          options={[...presetLabels, { value: 'own', label: 'Own', disabled: !own }]}
+          onChange={(chosen) => {
+            if (chosen !== 'own') change({ transfer: { preset: chosen, range: undefined, points: [] } });
+          }}
+        />
+        <TransferEditor
+          points={pointsOf(transfer, volume)}
+          low={volume.low}
+          high={volume.high}
+          counts={volume.histogram.map(Number)}
+          decimals={decimalsFor(volume.high - volume.low)}
+          onChange={set}
+        />
+        <WindowFields />
+        <Switch label="Light by gradient" checked={shaded} onChange={(on) => change({ shaded: on })} />
+        {!hasSurfels() && <Opacity />}
+      </Section>
+      <SurfaceSection volume={volume} />
+      <SliceSection size={volume.size} medium />
+    </>
   );
 }
 
@@ -73,6 +98,7 @@ export function GaussianSection(): JSX.Element | null {
         options={splatConventions.map((value) => ({ value, label: conventionLabels[value] }))}
         onChange={(splatConvention) => change({ splatConvention })}
       />
+      {!openVolume() && !hasSurfels() && <Opacity />}
     </Section>
   );
 }

@@ -1,3 +1,4 @@
+import { batch } from '@preact/signals';
 import { look, orbit, pan, zoom, type Course } from '../camera/motion';
 import { focalPoint, type Pose } from '../camera/pose';
 import { diagonal, fit, standardView, type ViewName } from '../camera/standard_views';
@@ -174,6 +175,16 @@ export class CameraNavigator {
   fit(): void {
     const pose = store.pose.peek();
     if (pose) this.travelTo(fit(pose, store.upAxis.peek(), store.bounds.peek(), this.aspect()));
+  }
+
+  /** Shows the whole model with its vertical axis pointing the other way. */
+  turnOver(): void {
+    this.animator.stop();
+    const display = store.display.peek();
+    batch(() => {
+      store.display.value = { ...display, upsideDown: !display.upsideDown };
+      this.change((pose) => fit(pose, store.upAxis.peek(), store.bounds.peek(), this.aspect()));
+    });
   }
 
   standard(name: ViewName): void {

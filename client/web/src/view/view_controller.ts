@@ -33,6 +33,12 @@ const sameRequest = (a: ViewRequest | undefined, b: ViewRequest): boolean =>
 const figuresEvery = 500; // ms
 const listEvery = 500; // ms, while scans are being built
 
+/** A view whose connection is gone. The server may have kept it. */
+interface LostView {
+  readonly session: ViewSession;
+  readonly sent: ViewRequest | undefined;
+}
+
 /**
  * Synchronizes the page and the server. Sends changes of the store's model, pose and display options, at most one
  * update per animation frame, and paints the frames received. Reopens the view when the connection is lost.
@@ -44,6 +50,7 @@ export class ViewController {
   private connection: Connection | undefined;
   private session: ViewSession | undefined;
   private sent: ViewRequest | undefined;
+  private lost: LostView | undefined;
   private readonly sentAt = new Map<bigint, number>(); // update: performance.now()
   private scheduled = false;
   private failures = 0;
@@ -63,7 +70,7 @@ export class ViewController {
     });
     this.link = new Link(url, {
       changed: (state) => (store.link.value = state),
-      opened: (connection) => this.opened(connection),
+      opened: (connection, views) => this.opened(connection, views),
       closed: () => this.closed(),
       received: (bytes) => this.collector.bytes(bytes, performance.now()),
     });
@@ -124,15 +131,34 @@ export class ViewController {
     throw new RequestError(ErrorCode.UNAVAILABLE, 'There is no connection to the server.');
   }
 
-  private opened(connection: Connection): void {
+  private opened(connection: Connection, views: readonly bigint[]): void {
     this.connection = connection;
+    const kept = this.lost && views.includes(this.lost.session.id) ? this.lost : undefined;
+    this.lost = undefined;
+    if (kept) this.goOn(connection, kept);
+    for (const view of views.filter((id) => id !== kept?.session.id)) {
+      void connection.ask({ case: 'closeView', value: { view } }, 'viewClosed').catch(() => undefined);
+    }
     void this.listModels(connection);
     this.openView();
   }
 
+  /** The server has opened the view again; what has changed meanwhile is sent. */
+  private goOn(connection: Connection, { session, sent }: LostView): void {
+    clearTimeout(this.retryTimer);
+    store.viewProblem.value = undefined;
+    this.painter.reset();
+    this.session = session;
+    this.sent = sent;
+    session.goOn(connection);
+    this.schedule();
+  }
+
   private closed(): void {
+    const { lost } = this;
     this.connection = undefined;
     this.endView();
+    this.lost = lost;
   }
 
   /** Asks for the models now, and again as long as scans are being built. */
@@ -211,13 +237,16 @@ export class ViewController {
     this.sentAt.clear();
     store.wantedUpdate.value = 0n;
     this.sent = { ...request, moving: false };
-    this.session = new ViewSession(connection, request.picture, {
+    const session: ViewSession = new ViewSession(connection, request.picture, {
       frame: (frame) => void this.painter.take(frame),
       failed: (error) => {
+        this.lost = { session, sent: this.sent };
         this.session = undefined;
         this.failed(error);
       },
     });
+    this.session = session;
+    this.lost = undefined;
     this.schedule();
   }
 
@@ -226,6 +255,7 @@ export class ViewController {
     this.session?.close();
     this.session = undefined;
     this.sent = undefined;
+    this.lost = undefined;
     store.frameIsCurrent.value = false;
   }
 
@@ -241,7 +271,7 @@ export class ViewController {
     const size = store.stageSize.peek();
     if (model === undefined || size.width < 1 || size.height < 1) return undefined;
     const pose = store.pose.peek();
-    const camera = pose && cameraOf(pose, store.upAxis.peek());
+    const camera = pose && cameraOf(pose, store.upAxis.peek(), store.display.peek().upsideDown);
     return { picture: pictureOf(model, camera, store.display.peek(), size), moving: store.moving.peek() };
   }
 

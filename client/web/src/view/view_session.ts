@@ -11,17 +11,25 @@ export interface ViewEvents {
 
 /** One view of a model over one connection: sends updates and receives frames. */
 export class ViewSession {
-  private readonly id: bigint;
-  private readonly assembler = new FrameAssembler();
+  readonly id: bigint;
+  private assembler = new FrameAssembler();
   private lastUpdate = 0n;
   private ended = false;
 
   constructor(
-    private readonly connection: Connection,
+    private connection: Connection,
     picture: DrawPicture,
     private readonly events: ViewEvents,
   ) {
     this.id = connection.listen({ case: 'openView', value: { picture } }, (answer, bytes) => this.take(answer, bytes));
+  }
+
+  /** Goes on over another connection, whose server has the view open again. Its frames are counted anew. */
+  goOn(connection: Connection): void {
+    this.connection = connection;
+    this.assembler = new FrameAssembler();
+    this.ended = false;
+    connection.listenAs(this.id, (answer, bytes) => this.take(answer, bytes));
   }
 
   /** Sends an update. Returns its number, which frames that show it repeat. */

@@ -55,6 +55,11 @@ export class FakeServer {
     for (const socket of this.sockets) socket.send(bytes);
   }
 
+  /** Says that it goes away, as a server does that stops. */
+  leave(): void {
+    for (const socket of this.sockets) socket.close(1001);
+  }
+
   async stop(): Promise<void> {
     for (const socket of this.sockets) socket.terminate();
     await new Promise((resolve) => this.server.close(resolve));

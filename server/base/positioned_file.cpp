@@ -1,0 +1,50 @@
+#include "base/positioned_file.h"
+
+#include <cerrno>
+#include <cstring>
+#include <string>
+
+#include <fcntl.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+namespace surfcast {
+
+Result<PositionedFile> PositionedFile::open(const std::filesystem::path& path) {
+  const auto error = [&path](const char* what, int code) {
+    return fail(code == ENOENT ? ErrorKind::kNotFound : ErrorKind::kIo,
+                path.string() + ": " + what + ": " + std::strerror(code));
+  };
+  // Without O_NONBLOCK a pipe of that name would block the caller.
+  const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
+  if (descriptor < 0) return error("cannot open", errno);
+  struct stat information {};
+  if (::fstat(descriptor, &information) != 0 || !S_ISREG(information.st_mode)) {
+    const int code = S_ISDIR(information.st_mode) ? EISDIR : EINVAL;
+    ::close(descriptor);
+    return error("cannot read", code);
+  }
+  return PositionedFile(descriptor, static_cast<uint64_t>(information.st_size));
+}
+
+PositionedFile::~PositionedFile() {
+  if (descriptor_ >= 0) ::close(descriptor_);
+}
+
+Status PositionedFile::read(uint64_t offset, std::span<std::byte> bytes) const {
+  while (!bytes.empty()) {
+    const ssize_t count = ::pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
+    if (count < 0 && errno == EINTR) continue;
+    if (count < 0) return fail(ErrorKind::kIo, std::string("cannot read: ") + std::strerror(errno));
+    if (count == 0) return fail(ErrorKind::kInvalidInput, "the file has been cut off");
+    offset += static_cast<uint64_t>(count);
+    bytes = bytes.subspan(static_cast<size_t>(count));
+  }
+  return {};
+}
+
+void PositionedFile::prefetch(uint64_t offset, uint64_t size) const {
+  ::posix_fadvise(descriptor_, static_cast<off_t>(offset), static_cast<off_t>(size), POSIX_FADV_WILLNEED);
+}
+
+}  // namespace surfcast

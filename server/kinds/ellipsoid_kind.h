@@ -1,0 +1,20 @@
+#pragma once
+
+#include "kinds/kind.h"
+
+namespace surfcast::kinds {
+
+/// The ellipsoids of tensor fields and tables (ellipsoid/ellipsoid_block.h).
+class EllipsoidKind : public Kind {
+ public:
+  [[nodiscard]] std::string_view name() const override;
+  [[nodiscard]] Result<residency::PackedBlock> load(const model::ModelFile& model, uint32_t block,
+                                                    bool attributes) const override;
+  [[nodiscard]] Result<std::shared_ptr<const SourceBlock>> decode(const model::ModelFile& model,
+                                                                  uint32_t block) const override;
+  [[nodiscard]] KindShaders shaders() const override { return {}; }
+  [[nodiscard]] DrawnAs drawn_as() const override { return DrawnAs::kGlyphs; }
+  [[nodiscard]] uint64_t texels(const model::ModelInfo& info, uint32_t items) const override;
+};
+
+}  // namespace surfcast::kinds

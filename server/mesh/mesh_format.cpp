@@ -1,0 +1,81 @@
+#include "mesh/mesh_format.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cstring>
+#include <string>
+#include <string_view>
+
+#include "mesh/ply_mesh.h"
+#include "scan/text_tokens.h"
+
+namespace surfcast::mesh {
+namespace {
+
+/// Bytes that are looked at to tell text formats apart.
+constexpr size_t kLook = 65536;
+
+std::string extension_of(const std::filesystem::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  return extension;
+}
+
+/// Binary STL has no signature, and some files begin like those of text. The size decides: 84 bytes and 50 a triangle.
+bool is_binary_stl(std::span<const std::byte> bytes) {
+  constexpr size_t kHeader = 84;
+  constexpr uint64_t kRecord = 50;
+  if (bytes.size() < kHeader) return false;
+  uint32_t count = 0;
+  std::memcpy(&count, bytes.data() + kHeader - sizeof count, sizeof count);
+  return count > 0 && bytes.size() == kHeader + kRecord * count;
+}
+
+bool is_text_stl(std::string_view head) {
+  scan::Tokens tokens(head);
+  return tokens.next() == "solid" && head.find("facet") != std::string_view::npos;
+}
+
+/// Like those of scans, lines of OBJ may be nothing but numbers after a word: the words decide.
+bool is_obj(std::string_view head) {
+  bool vertex = false;
+  bool other = false;
+  while (!head.empty()) {
+    const size_t end = std::min(head.find_first_of("\r\n"), head.size());
+    const std::string_view word = scan::Tokens(head.substr(0, end)).next();
+    constexpr std::array<std::string_view, 7> kOther{"vt", "vn", "f", "mtllib", "usemtl", "o", "g"};
+    vertex = vertex || word == "v";
+    other = other || std::find(kOther.begin(), kOther.end(), word) != kOther.end();
+    if (vertex && other) return true;
+    head.remove_prefix(std::min(end + 1, head.size()));
+  }
+  return false;
+}
+
+bool is_gltf(std::string_view head) {
+  const size_t first = head.find_first_not_of(" \t\r\n");
+  return first != std::string_view::npos && head[first] == '{' && head.find("\"asset\"") != std::string_view::npos;
+}
+
+}  // namespace
+
+std::optional<MeshFormat> mesh_format_of(std::span<const std::byte> bytes, const std::filesystem::path& path,
+                                         FacePolicy faces) {
+  const std::string_view text = scan::as_text(bytes);
+  const std::string_view head = text.substr(0, kLook);
+  if (text.starts_with("glTF")) return MeshFormat::kGlb;
+  if (text.starts_with("ply")) {
+    return is_ply_mesh(bytes, faces) ? std::optional(MeshFormat::kPly) : std::nullopt;
+  }
+  if (is_binary_stl(bytes) || is_text_stl(head)) return MeshFormat::kStl;
+  const std::string extension = extension_of(path);
+  if (extension == ".gltf" || is_gltf(head)) return MeshFormat::kGltf;
+  if (extension == ".obj" || is_obj(head)) return MeshFormat::kObj;
+  if (extension == ".glb") return MeshFormat::kGlb;
+  if (extension == ".stl") return MeshFormat::kStl;
+  return std::nullopt;
+}
+
+}  // namespace surfcast::mesh

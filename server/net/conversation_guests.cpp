@@ -1,0 +1,80 @@
+// The part of a conversation that is about who the client is.
+#include <boost/asio/steady_timer.hpp>
+#include <functional>
+#include <memory>
+#include <utility>
+
+#include "net/conversation.h"
+
+namespace surfcast::net {
+namespace {
+
+namespace asio = boost::asio;
+
+Bytes encode_denial(uint64_t id, const std::string& reason) {
+  wire::Answer answer;
+  answer.set_id(id);
+  answer.mutable_error()->set_code(wire::ERROR_CODE_DENIED);
+  answer.mutable_error()->set_message(reason);
+  return encode_answer(answer);
+}
+
+}  // namespace
+
+/// Turns of the renderer go to the guest, on whatever connections it comes.
+void Conversation::welcome(const Gatekeeper::Guest& guest) {
+  guest_ = guest;
+  asker_.client = std::hash<std::string>()("token " + guest->name);
+  counted_guest_.reset();
+  counted_guest_.emplace(context_->gate->guests(), guest->name, &Clients::Counts::connections);
+}
+
+void Conversation::handle_authenticate(const wire::Request& request) {
+  const uint64_t id = request.id();
+  Gatekeeper& gate = *context_->gate;
+  const Gatekeeper::Guest guest = gate.enter(request.authenticate().token(), client_);
+  if (!guest && gate.wants_tokens()) return deny(id, "the token is not known here, or has ended");
+  if (guest && !views_.empty()) return deny(id, "views are open with another token");
+  if (guest && guest->connections > 0 && gate.guests()->counts_of(guest->name).connections >= guest->connections) {
+    return deny(id, "busy: this token opens " + std::to_string(guest->connections) + " connections at a time");
+  }
+  if (guest) welcome(guest);
+  if (guest) audit_token("allowed", "");
+  wire::Answer answer;
+  answer.set_id(id);
+  answer.mutable_authenticated()->set_name(guest ? guest->name : "");
+  send(encode_answer(answer));
+}
+
+/// Ends the conversation. Whoever guesses waits for it.
+void Conversation::deny(uint64_t id, const std::string& reason) {
+  ++context_->metrics.errors;
+  audit_token("denied", reason);
+  context_->sessions.forget(std::exchange(session_, {}));
+  const auto writer = writer_;
+  const auto penalty = std::make_shared<asio::steady_timer>(executor_, context_->gate->penalty(client_));
+  abandon();
+  if (!writer) return;
+  penalty->async_wait([writer, penalty, last = encode_denial(id, reason)](const boost::system::error_code&) mutable {
+    writer->end(std::move(last));
+  });
+}
+
+void Conversation::audit_token(std::string_view outcome, const std::string& reason) const {
+  if (!context_->audit) return;
+  context_->audit->write({.what = "token",
+                          .who = owner(),
+                          .client = client_,
+                          .connection = asker_.session,
+                          .outcome = outcome,
+                          .reason = reason});
+}
+
+void Conversation::check_guest() {
+  const std::string reason = context_->gate->why_ended(guest_);
+  if (reason.empty() || !writer_) return;
+  for (const auto& [id, opened] : views_) send(encode_denial(id, reason));
+  deny(0, reason);
+}
+
+}  // namespace surfcast::net

@@ -1,0 +1,61 @@
+#include "net/gatekeeper.h"
+
+#include <utility>
+
+#include "access/token_file.h"
+#include "service/model_name.h"
+
+namespace surfcast::net {
+namespace {
+
+/// Wrong secrets of a client in a minute that are answered at once. Not a setting: a secret has 256 bits, and cannot be
+/// guessed at any rate.
+constexpr size_t kFreeFailures = 10;
+constexpr std::chrono::minutes kMemory{1};
+constexpr std::chrono::milliseconds kPenalty{1000};
+
+}  // namespace
+
+Status Gatekeeper::read() {
+  if (!wants_tokens()) return {};
+  auto principals = access::read_tokens(file_);
+  if (!principals) return fail(principals.error());
+  table_ = std::make_shared<const access::TokenTable>(std::move(*principals));
+  return {};
+}
+
+Gatekeeper::Guest Gatekeeper::enter(std::string_view secret, const std::string& client) {
+  if (!table_) return nullptr;
+  Guest guest = table_->find(secret, std::chrono::system_clock::now());
+  if (guest) return guest;
+  ++denied_;
+  const Clock::time_point now = Clock::now();
+  std::erase_if(failures_, [&](const auto& entry) { return now - entry.second.since > kMemory; });
+  Failures& failures = failures_.try_emplace(client, Failures{now}).first->second;
+  ++failures.count;
+  return nullptr;
+}
+
+std::chrono::milliseconds Gatekeeper::penalty(const std::string& client) const {
+  const auto found = failures_.find(client);
+  const bool lately = found != failures_.end() && Clock::now() - found->second.since <= kMemory;
+  return lately && found->second.count > kFreeFailures ? kPenalty : std::chrono::milliseconds(0);
+}
+
+std::string Gatekeeper::why_ended(const Guest& guest) const {
+  if (!guest || !table_) return {};
+  return table_->why_ended(*guest, std::chrono::system_clock::now());
+}
+
+std::string name_for(const Gatekeeper::Guest& guest, const std::string& model) {
+  return !guest || access::may_see(*guest, model) ? model : service::hidden_name(model);
+}
+
+service::ModelList list_for(const Gatekeeper::Guest& guest, service::ModelList list) {
+  if (!guest) return list;
+  std::erase_if(list.names, [&](const std::string& name) { return !access::may_see(*guest, name); });
+  std::erase_if(list.scans, [&](const service::ScanStatus& scan) { return !access::may_see(*guest, scan.model); });
+  return list;
+}
+
+}  // namespace surfcast::net

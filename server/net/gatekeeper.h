@@ -1,0 +1,65 @@
+#pragma once
+
+#include <chrono>
+#include <cstddef>
+#include <filesystem>
+#include <map>
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "access/principal.h"
+#include "access/token_table.h"
+#include "base/result.h"
+#include "net/clients.h"
+#include "service/model_source.h"
+
+namespace surfcast::net {
+
+/// Who may come in, by the file of tokens. Used on the thread of the sockets.
+class Gatekeeper {
+ public:
+  using Guest = std::shared_ptr<const access::Principal>;
+  using Clock = std::chrono::steady_clock;
+
+  /// `tokens` empty: everybody may do everything.
+  explicit Gatekeeper(std::filesystem::path tokens) : file_(std::move(tokens)) {}
+
+  /// Reads the file, again if it has changed. After an error the former tokens hold.
+  Status read();
+  [[nodiscard]] bool wants_tokens() const { return !file_.empty(); }
+  /// Whether that guest, null for none, may ask for models.
+  [[nodiscard]] bool admits(const Guest& guest) const { return !wants_tokens() || guest; }
+
+  /// The guest with that secret; null for none. `client`, as in client_name, is who says it.
+  Guest enter(std::string_view secret, const std::string& client);
+  /// What a client waits for its answer, who named too many wrong secrets lately.
+  [[nodiscard]] std::chrono::milliseconds penalty(const std::string& client) const;
+  /// Why a guest has to leave; empty: it may stay.
+  [[nodiscard]] std::string why_ended(const Guest& guest) const;
+
+  /// What guests have open, by their names.
+  [[nodiscard]] const std::shared_ptr<Clients>& guests() const { return guests_; }
+  [[nodiscard]] uint64_t denied() const { return denied_; }
+
+ private:
+  struct Failures {
+    Clock::time_point since;
+    size_t count = 0;
+  };
+
+  std::filesystem::path file_;
+  std::shared_ptr<const access::TokenTable> table_;
+  std::map<std::string, Failures> failures_;  ///< of the last minute, by client
+  std::shared_ptr<Clients> guests_ = std::make_shared<Clients>(ClientLimits{});
+  uint64_t denied_ = 0;  ///< wrong secrets
+};
+
+/// The name by which the service is asked for a model: one under which there is nothing, if the guest may not know of
+/// it. What the service does and answers is then what it does and answers for absent ones.
+std::string name_for(const Gatekeeper::Guest& guest, const std::string& model);
+
+/// What a guest may know of a list.
+service::ModelList list_for(const Gatekeeper::Guest& guest, service::ModelList list);
+
+}  // namespace surfcast::net

@@ -1,0 +1,177 @@
+#include "net/http_places.h"
+
+#include <boost/asio/co_spawn.hpp>
+#include <boost/asio/detached.hpp>
+#include <chrono>
+#include <utility>
+
+#include "net/await_answer.h"
+#include "net/convert.h"
+#include "net/redirect_error_to.h"
+#include "protocol/picture_query.h"
+#include "protocol/profile_query.h"
+
+namespace surfcast::net {
+
+namespace asio = boost::asio;
+using boost::system::error_code;
+
+namespace {
+
+/// Between two looks at a client that has sent more than one request. Not a setting: it bounds what is drawn in vain.
+constexpr std::chrono::milliseconds kLookAgain{100};
+
+}  // namespace
+
+HttpPlaces::HttpPlaces(std::shared_ptr<NetContext> context, std::shared_ptr<HttpConnection> connection,
+                       const service::Asker& asker)
+    : context_(std::move(context)),
+      connection_(std::move(connection)),
+      asker_(asker),
+      look_again_(connection_->stream().get_executor()) {}
+
+void HttpPlaces::set_guest(Gatekeeper::Guest guest, const service::Asker& asker) {
+  guest_ = std::move(guest);
+  asker_ = asker;
+}
+
+bool HttpPlaces::cancel() {
+  return job_ && context_->service.cancel(*job_);
+}
+
+asio::awaitable<HttpAnswer> HttpPlaces::answer(HttpRoute route) {
+  switch (route.kind) {
+    case HttpRoute::Kind::kPage:
+      co_return no_viewer_answer();
+    case HttpRoute::Kind::kModels:
+      co_return co_await answer_models();
+    case HttpRoute::Kind::kModel:
+    case HttpRoute::Kind::kPicture:
+    case HttpRoute::Kind::kPick:
+    case HttpRoute::Kind::kProfile:
+      co_return co_await answer_about_model(std::move(route));
+    case HttpRoute::Kind::kHealth:
+      co_return text_answer("ok\n", "text/plain");
+    case HttpRoute::Kind::kReady:
+      if (context_->leaving) co_return error_answer({ErrorKind::kUnavailable, "the server is stopping"});
+      co_return text_answer("ready\n", "text/plain");
+    case HttpRoute::Kind::kMetrics:
+    case HttpRoute::Kind::kLogin:      // answered already
+    case HttpRoute::Kind::kLogout:     // answered already
+    case HttpRoute::Kind::kUpload:     // answered already
+    case HttpRoute::Kind::kWebSocket:  // answered already
+      break;
+  }
+  co_return answer_metrics(route.accept);
+}
+
+/// What is asked of one model.
+asio::awaitable<HttpAnswer> HttpPlaces::answer_about_model(HttpRoute route) {
+  switch (route.kind) {
+    case HttpRoute::Kind::kPicture:
+      return answer_picture(std::move(route));
+    case HttpRoute::Kind::kPick:
+      return answer_pick(std::move(route));
+    case HttpRoute::Kind::kProfile:
+      return answer_profile(std::move(route));
+    default:
+      return answer_model(std::move(route.model));
+  }
+}
+
+HttpAnswer HttpPlaces::answer_metrics(const std::string& accept) const {
+  const Exposition::Format format = exposition_format(accept);
+
+  const Clients::Counts& open = context_->clients->all();
+  const Gatekeeper& gate = *context_->gate;
+  const std::string text = metrics_text(context_->metrics,
+                                        {.connections = open.connections + open.refused,
+                                         .waiting = context_->sessions.waiting(KeptSessions::Clock::now()),
+                                         .audit_lost = context_->audit ? context_->audit->lost() : 0,
+                                         .queued = context_->service.queued(),
+                                         .picture_memory = context_->service.picture_memory(),
+                                         .guests = gate.guests()->all().connections,
+                                         .denied = gate.denied(),
+                                         .memory = context_->service.device().memory},
+                                        format);
+  return text_answer(text, media_type(format));
+}
+
+asio::awaitable<HttpAnswer> HttpPlaces::answer_models() {
+  const auto models = co_await answer_of<service::ModelList>(
+      [this](auto done) { context_->service.list_models(std::move(done), asker_.client); });
+  co_return models_answer(list_for(guest_, models), context_->config.uploads);
+}
+
+asio::awaitable<HttpAnswer> HttpPlaces::answer_model(std::string name) {
+  const auto description = co_await answer_of<Result<service::ModelDescription>>(
+      [&](auto done) { context_->service.describe_model(name_for(guest_, name), std::move(done), asker_.client); });
+  co_return description ? model_answer(name, *description) : error_answer(description.error());
+}
+
+asio::awaitable<HttpAnswer> HttpPlaces::answer_pick(HttpRoute route) {
+  Result<service::PickJob> job =
+      protocol::parse_pick_query(route.model, route.query).and_then([](const wire::PickSurfel& request) {
+        return to_job(request);
+      });
+  if (!job) co_return error_answer(job.error());
+  job->model = name_for(guest_, job->model);
+  const auto picked = co_await answer_of<Result<std::optional<kinds::PickedSurfel>>>(
+      [&](auto done) { context_->service.pick(*job, std::move(done), asker_.client); });
+  co_return picked ? pick_answer(*picked) : error_answer(picked.error());
+}
+
+asio::awaitable<HttpAnswer> HttpPlaces::answer_profile(HttpRoute route) {
+  const Result<protocol::ProfileQuery> query = protocol::parse_profile_query(route.model, route.query);
+  if (!query) co_return error_answer(query.error());
+  Result<service::ProfileJob> job = to_job(query->profile);
+  if (!job) co_return error_answer(job.error());
+  job->model = name_for(guest_, job->model);
+  connection_->wait_without_limit();
+  const auto profile = co_await answer_of<Result<service::ProfileResult>>(
+      [&](auto done) { context_->service.profile(*job, std::move(done), asker_.client); });
+  co_return profile ? profile_answer(route.model, *profile, query->format) : error_answer(profile.error());
+}
+
+asio::awaitable<HttpAnswer> HttpPlaces::answer_picture(HttpRoute route) {
+  Result<service::PictureJob> job =
+      protocol::parse_picture_query(route.model, route.query).and_then([](const wire::DrawPicture& request) {
+        return to_job(request);
+      });
+  if (!job) co_return error_answer(job.error());
+  job->model = name_for(guest_, job->model);
+  Result<service::EncodedPicture> picture = co_await draw(std::move(*job));
+  if (!picture) co_return error_answer(picture.error());
+  context_->metrics.count_picture(picture->bytes.size(), picture->stats);
+  co_return picture_answer(std::move(*picture));
+}
+
+asio::awaitable<Result<service::EncodedPicture>> HttpPlaces::draw(service::PictureJob job) {
+  connection_->wait_without_limit();
+  Result<service::EncodedPicture> picture = co_await answer_of<Result<service::EncodedPicture>>([&](auto done) {
+    job_ = context_->service.draw(asker_, std::move(job), std::move(done));
+    asio::co_spawn(
+        connection_->stream().get_executor(),
+        [](std::shared_ptr<HttpPlaces> self, service::JobId id) -> asio::awaitable<void> {
+          co_await self->cancel_when_client_leaves(id);
+        }(shared_from_this(), *job_),
+        asio::detached);
+  });
+  job_.reset();
+  look_again_.cancel();
+  connection_->stop_awaiting();  // that the client leaves
+  co_return picture;
+}
+
+/// Waits for the end of the stream while a picture is drawn: nobody waits for the picture any more then. Behind bytes
+/// that are not read yet, a next request, only the state of the connection tells, and nothing wakes.
+asio::awaitable<void> HttpPlaces::cancel_when_client_leaves(service::JobId job) {
+  error_code code = co_await connection_->await_word();
+  while (job_ == job && !code && !connection_->has_left()) {
+    look_again_.expires_after(kLookAgain);
+    co_await look_again_.async_wait(redirect_error_to(code));
+  }
+  if (job_ == job && !code) context_->service.cancel(job);
+}
+
+}  // namespace surfcast::net

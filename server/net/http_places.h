@@ -1,0 +1,48 @@
+#pragma once
+
+#include <boost/asio/awaitable.hpp>
+#include <boost/asio/steady_timer.hpp>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "net/http_answer.h"
+#include "net/http_connection.h"
+#include "net/http_route.h"
+#include "net/session.h"
+
+namespace surfcast::net {
+
+/// What is at the places of HTTP: asks the service and puts its results into answers, one at a time.
+class HttpPlaces : public std::enable_shared_from_this<HttpPlaces> {
+ public:
+  HttpPlaces(std::shared_ptr<NetContext> context, std::shared_ptr<HttpConnection> connection,
+             const service::Asker& asker);
+
+  /// The answer at a place, of those that are asked with GET.
+  boost::asio::awaitable<HttpAnswer> answer(HttpRoute route);
+  /// Who asks from here on; null: nobody that is known.
+  void set_guest(Gatekeeper::Guest guest, const service::Asker& asker);
+  /// Gives up the picture that is being drawn, if there is one; false: there is none.
+  bool cancel();
+
+ private:
+  boost::asio::awaitable<HttpAnswer> answer_about_model(HttpRoute route);
+  boost::asio::awaitable<HttpAnswer> answer_model(std::string name);
+  boost::asio::awaitable<HttpAnswer> answer_picture(HttpRoute route);
+  boost::asio::awaitable<HttpAnswer> answer_pick(HttpRoute route);
+  boost::asio::awaitable<HttpAnswer> answer_profile(HttpRoute route);
+  boost::asio::awaitable<HttpAnswer> answer_models();
+  [[nodiscard]] HttpAnswer answer_metrics(const std::string& accept) const;
+  boost::asio::awaitable<Result<service::EncodedPicture>> draw(service::PictureJob job);
+  boost::asio::awaitable<void> cancel_when_client_leaves(service::JobId job);
+
+  std::shared_ptr<NetContext> context_;
+  std::shared_ptr<HttpConnection> connection_;
+  service::Asker asker_;
+  Gatekeeper::Guest guest_;
+  std::optional<service::JobId> job_;     ///< being drawn for this client
+  boost::asio::steady_timer look_again_;  ///< whether the client is still there
+};
+
+}  // namespace surfcast::net

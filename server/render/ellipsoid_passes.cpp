@@ -1,0 +1,265 @@
+#include "render/ellipsoid_passes.h"
+
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+#include "base/preemption.h"
+#include "render/batched_dispatch.h"
+#include "render/gaussian_lists.h"
+#include "render/glyph_plan.h"
+#include "render/projection_work.h"
+#include "shared/ellipsoid_layout.h"
+
+namespace surfcast::render {
+namespace {
+
+/// The work of a region of ellipsoids.
+struct EllipsoidWork {
+  ProjectionWork projection;
+  GlyphPlan plan;
+  GlyphLights lights;
+  Region samples;                           ///< the pixels whose samples are drawn: those that the prefilter reaches
+  layout::FrameConstants sample_constants;  ///< of these
+  uint32_t count = 0;                       ///< places of records
+  EllipsoidTarget target = EllipsoidTarget::kPicture;
+};
+
+/// Gives the ellipsoids of each chunk their places, in the order of the blocks. Returns their number.
+uint32_t number_ellipsoids(ProjectionWork& work) {
+  uint32_t place = 0;
+  for (layout::Chunk& chunk : work.chunks) {
+    const uint32_t each = (chunk.run.z >> SURFCAST_RUN_ELLIPSOID_SHIFT) & SURFCAST_RUN_ELLIPSOID_TEXELS;
+    chunk.run.w = place;
+    place += (chunk.run.z & SURFCAST_RUN_COUNT) / each;
+  }
+  return place;
+}
+
+PictureKinds ellipsoid_kinds(const RegionTask& task) {
+  PictureKinds kinds = kinds_of(task);
+  std::erase_if(kinds, [](const PictureKind& kind) { return kind.kind->drawn_as() != kinds::DrawnAs::kGlyphs; });
+  return kinds;
+}
+
+EllipsoidWork plan(const RegionTask& task, EllipsoidTarget target) {
+  EllipsoidWork work;
+  work.target = target;
+  work.projection = plan_work(task, ellipsoid_kinds(task));
+  work.plan = plan_glyphs(task, drawing_unit(task));
+  work.lights = lights_of(*task.request);
+  constexpr int kReach = SURFCAST_GLYPH_REACH;
+  work.samples = {task.drawn.x - kReach, task.drawn.y - kReach, task.drawn.width + 2 * kReach,
+                  task.drawn.height + 2 * kReach};
+  work.sample_constants = frame_constants(task.frame, work.samples, *task.request, false);
+  work.count = number_ellipsoids(work.projection);
+  return work;
+}
+
+size_t pixels_of(const Region& region) {
+  return static_cast<size_t>(region.width) * static_cast<size_t>(region.height);
+}
+
+void upload_work(const RegionTask& task, const EllipsoidWork& work, SplatBuffers& buffers) {
+  upload(buffers.blocks, work.projection.blocks);
+  upload(buffers.chunks, work.projection.chunks);
+  upload_uniforms(buffers.frame, task.constants);
+  upload_uniforms(buffers.ellipsoids.frame, work.sample_constants);
+  upload(buffers.ellipsoids.views, work.plan.views);
+  upload(buffers.ellipsoids.ranges, work.plan.ranges);
+  upload_uniforms(buffers.ellipsoids.lighting, work.lights.lighting);
+  upload(buffers.ellipsoids.lights, work.lights.lights);
+  if (!task.display.clipped) return;
+  upload(buffers.block_displays, work.projection.block_displays);
+  upload(buffers.clips, work.projection.clips.empty() ? std::vector<layout::ClipRange>(1) : work.projection.clips);
+}
+
+void reserve(const EllipsoidWork& work, const EllipsoidPrograms& programs, SplatBuffers& buffers) {
+  EllipsoidBuffers& own = buffers.ellipsoids;
+  const size_t samples = pixels_of(work.samples) * programs.samples;
+  const size_t shade = work.target == EllipsoidTarget::kPicture ? sizeof(glm::uvec2) : sizeof(glm::uvec4);
+  own.records.reserve(size_t{programs.record} * std::max(work.count, 1U), buffers.lazy);
+  own.keys.reserve(std::max(work.count, 1U), buffers.lazy);
+  own.ids.reserve(samples * sizeof(GLuint));
+  own.shades.reserve(samples * shade);
+  own.rows.reserve(samples * shade);
+}
+
+Status project(const RegionTask& task, const EllipsoidWork& work, const gl::Program& program, SplatBuffers& buffers,
+               const Preemption& preemption) {
+  const gl::DebugGroup group("project ellipsoids");
+  return dispatch_in_batches({work.projection.chunks.size(), {}}, buffers.ellipsoids.project_batches, preemption, [&] {
+    buffers.ellipsoids.frame.bind_uniforms(SURFCAST_BIND_FRAME);
+    buffers.blocks.bind(SURFCAST_BIND_BLOCKS);
+    buffers.chunks.bind(SURFCAST_BIND_CHUNKS);
+    buffers.ellipsoids.views.bind(SURFCAST_BIND_GLYPH_VIEWS);
+    buffers.ellipsoids.ranges.bind(SURFCAST_BIND_GLYPH_THRESHOLDS);
+    if (task.display.clipped) {
+      buffers.block_displays.bind(SURFCAST_BIND_BLOCK_DISPLAYS);
+      buffers.clips.bind(SURFCAST_BIND_CLIPS);
+    }
+    if (work.plan.colored) task.colors->bind(SURFCAST_UNIT_COLORS);
+    buffers.ellipsoids.records.bind_for_writing(SURFCAST_UNIT_SPLATS);
+    buffers.ellipsoids.keys.bind_for_writing(SURFCAST_UNIT_BOUNDS);
+    task.surfels->bind(SURFCAST_UNIT_SURFELS);
+    glUseProgram(program.name());
+  });
+}
+
+std::optional<GaussianLists> list_ellipsoids(const RegionTask& task, const EllipsoidWork& work,
+                                             const SplatBuffers& buffers) {
+  std::vector<glm::uvec4> keys(work.count);
+  buffers.ellipsoids.keys.read(std::as_writable_bytes(std::span(keys)));
+  const glm::ivec4 tiles = work.sample_constants.tiles;
+  return list_by_depth(keys, glm::uvec2(tiles.x, tiles.y), task.list_entries);
+}
+
+void upload_lists(const GaussianLists& lists, SplatBuffers& buffers) {
+  upload(buffers.ellipsoids.tiles, lists.tiles);
+  const size_t entries = lists.entries.size();
+  buffers.ellipsoids.lists.reserve(std::max<size_t>(entries + entries / 4, 1), buffers.lazy);
+  buffers.ellipsoids.lists.write(std::as_bytes(std::span(lists.entries)));
+}
+
+/// The nearest ellipsoids of so many tiles, from an entry of their lists on.
+Status find_nearest(uint32_t tiles, uint32_t first, const EllipsoidPrograms& programs, SplatBuffers& buffers,
+                    const Preemption& preemption) {
+  const size_t lanes = size_t{tiles} * programs.lanes_of_tile;
+  const Groups groups{(lanes + programs.lanes - 1) / programs.lanes, {}};
+  return dispatch_in_batches(groups, buffers.ellipsoids.nearest_batches, preemption, [&] {
+    buffers.ellipsoids.frame.bind_uniforms(SURFCAST_BIND_FRAME);
+    buffers.ellipsoids.tiles.bind(SURFCAST_BIND_TILE_ORDER);
+    buffers.ellipsoids.ids.bind(SURFCAST_BIND_GLYPH_IDS);
+    buffers.ellipsoids.depths.bind(SURFCAST_BIND_GLYPH_DEPTHS);
+    buffers.ellipsoids.records.bind_for_reading(SURFCAST_UNIT_SPLATS);
+    buffers.ellipsoids.lists.bind_for_reading(SURFCAST_UNIT_LISTS);
+    glUseProgram(programs.nearest->name());
+    glUniform2ui(SURFCAST_UNIFORM_SPAN, tiles, first);
+  });
+}
+
+/// Tiles with long lists in several rounds.
+Status find_all_nearest(const EllipsoidWork& work, const GaussianLists& lists, const EllipsoidPrograms& programs,
+                        SplatBuffers& buffers, const Preemption& preemption) {
+  const gl::DebugGroup group("nearest ellipsoids");
+  const bool several = lists.longer_than(programs.round) > 0;
+  buffers.ellipsoids.depths.reserve((several ? pixels_of(work.samples) * programs.samples : 1) * sizeof(float));
+  auto tiles = static_cast<uint32_t>(lists.tiles.size());
+  for (uint32_t first = 0; tiles > 0;) {
+    if (Status status = find_nearest(tiles, first, programs, buffers, preemption); !status) return status;
+    first += programs.round;
+    tiles = lists.longer_than(first);
+  }
+  return {};
+}
+
+int runs_of(int pixels) {
+  return (pixels + 3) / 4;
+}
+
+/// Lights the samples and filters them into the picture.
+Status light_and_filter(const RegionTask& task, const EllipsoidWork& work, const EllipsoidPrograms& programs,
+                        SplatBuffers& buffers, const Preemption& preemption) {
+  const gl::DebugGroup group("light of ellipsoids");
+  EllipsoidBuffers& own = buffers.ellipsoids;
+  const auto dispatch = [&](const gl::Program* program, const StorageBuffer& frame, int width, int height,
+                            BatchSizer& sizer) {
+    return dispatch_in_batches(all_pixels(width, height), sizer, preemption, [&, program] {
+      frame.bind_uniforms(SURFCAST_BIND_FRAME);
+      own.lighting.bind_uniforms(SURFCAST_BIND_GLYPH_LIGHTING);
+      own.lights.bind(SURFCAST_BIND_GLYPH_LIGHTS);
+      own.records.bind_for_reading(SURFCAST_UNIT_SPLATS);
+      own.ids.bind(SURFCAST_BIND_GLYPH_IDS);
+      own.shades.bind(SURFCAST_BIND_GLYPH_SHADES);
+      own.rows.bind(SURFCAST_BIND_GLYPH_ROWS);
+      buffers.picture.bind(SURFCAST_BIND_PICTURE);
+      glUseProgram(program->name());
+      if (work.target == EllipsoidTarget::kPicture || program == programs.filter_rows) return;
+      buffers.volume.layers.bind(SURFCAST_BIND_LAYERS);
+      glUniform4i(SURFCAST_UNIFORM_SURFACES, task.drawn.x, task.drawn.y, task.drawn.width, task.drawn.height);
+    });
+  };
+  const Region& samples = work.samples;
+  Status status = dispatch(programs.shade, own.frame, samples.width, samples.height, own.shade_batches);
+  if (status) {
+    status = dispatch(programs.filter_rows, own.frame, runs_of(task.drawn.width), samples.height, own.row_batches);
+  }
+  if (status) {
+    status = dispatch(programs.filter_columns, buffers.frame, task.drawn.width, runs_of(task.drawn.height),
+                      own.column_batches);
+  }
+  return status;
+}
+
+/// All passes up to the target.
+Result<std::optional<RegionStats>> draw_passes(const RegionTask& task, EllipsoidTarget target, Programs& programs,
+                                               SplatBuffers& buffers, const Preemption& preemption) {
+  const EllipsoidWork work = plan(task, target);
+  const Result<EllipsoidPrograms> compiled = programs.ellipsoids(task.variant, work.plan.colored, target);
+  if (!compiled) return fail(compiled.error());
+  RegionStats stats;
+  const WorkStopwatch project_watch(preemption);
+  reserve(work, *compiled, buffers);
+  upload_work(task, work, buffers);
+  if (Status status = project(task, work, *compiled->project, buffers, preemption); !status) {
+    return fail(std::move(status.error()));
+  }
+  stats.project_ms = project_watch.milliseconds();
+
+  const WorkStopwatch bin_watch(preemption);
+  const std::optional<GaussianLists> lists = list_ellipsoids(task, work, buffers);
+  if (!lists) return std::optional<RegionStats>();
+  upload_lists(*lists, buffers);
+  stats.splats = lists->drawn;
+  stats.bin_ms = bin_watch.milliseconds();
+
+  const WorkStopwatch splat_watch(preemption);
+  Status status = find_all_nearest(work, *lists, *compiled, buffers, preemption);
+  if (status) status = light_and_filter(task, work, *compiled, buffers, preemption);
+  if (!status) return fail(std::move(status.error()));
+  stats.splat_ms = splat_watch.milliseconds();
+  return std::optional(stats);
+}
+
+void add(const RegionStats& more, RegionStats& stats) {
+  stats.splats += more.splats;
+  stats.project_ms += more.project_ms;
+  stats.bin_ms += more.bin_ms;
+  stats.splat_ms += more.splat_ms;
+}
+
+}  // namespace
+
+bool has_ellipsoids(const RegionTask& task) {
+  return std::ranges::any_of(task.blocks, [&](const VisibleBlock& block) {
+    return task.kinds[block.kind]->drawn_as() == kinds::DrawnAs::kGlyphs;
+  });
+}
+
+Result<std::optional<RegionStats>> add_ellipsoids(const RegionTask& task, Programs& programs, SplatBuffers& buffers,
+                                                  const Preemption& preemption) {
+  buffers.picture.reserve(1);
+  return draw_passes(task, EllipsoidTarget::kLayers, programs, buffers, preemption);
+}
+
+Result<std::optional<RegionStats>> draw_ellipsoids(const RegionTask& task, Programs& programs, SplatBuffers& buffers,
+                                                   const Preemption& preemption, std::span<std::byte> pixels) {
+  const PictureKinds surfaces = surface_kinds(task);
+  RegionStats stats;
+  if (!surfaces.empty()) {
+    Result<std::optional<RegionStats>> layers = draw_layers(task, surfaces, programs, buffers, preemption);
+    if (!layers || !*layers) return layers;
+    stats = **layers;
+  }
+  buffers.picture.reserve(pixels.size());
+  const EllipsoidTarget target = surfaces.empty() ? EllipsoidTarget::kPicture : EllipsoidTarget::kBesideSurfaces;
+  Result<std::optional<RegionStats>> drawn = draw_passes(task, target, programs, buffers, preemption);
+  if (!drawn || !*drawn) return drawn;
+  add(**drawn, stats);
+  const Result<double> read = read_picture(buffers, pixels);
+  if (!read) return fail(read.error());
+  stats.read_ms = *read;
+  return std::optional(stats);
+}
+
+}  // namespace surfcast::render

@@ -1,0 +1,128 @@
+#include "simplify/patch_growth.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <numbers>
+#include <span>
+
+#include <oneapi/tbb/enumerable_thread_specific.h>
+#include <oneapi/tbb/parallel_for.h>
+
+namespace surfcast::simplify {
+namespace {
+
+/// Radius of the smallest neighbourhood in radii of a surfel: 25 samples of an even sampling.
+constexpr double kFirstReach = 2.65;
+constexpr size_t kFirstSamples = 25;
+/// What is noise is estimated from one sample in so many.
+constexpr size_t kNoiseStride = 4;
+/// Growth of a neighbourhood from step to step.
+constexpr double kGrowth = 1.3;
+/// How far the residual may exceed that of the smallest neighbourhoods, beside the spread of its estimate, which is
+/// about one over the root of the samples.
+constexpr double kNoise = 1.05;
+/// The residual of kFirstSamples is as much too small as a fit of 6 numbers to 3 equations a sample makes it.
+constexpr double kOverfit = 1.04;
+/// Largest curvature of a neighbourhood times its radius: beyond, the surface leaves its tangent plane too steeply.
+constexpr double kMostBent = 0.7;
+/// The ring of a neighbourhood in which every eighth has to have samples, and how many samples that takes.
+constexpr double kRing = 0.55;
+constexpr size_t kSectors = 8;
+constexpr size_t kRingSamples = 60;
+/// Steps without enough samples for a fit, of places sampled sparsely.
+constexpr int kSparseSteps = 4;
+constexpr int kMostSteps = 40;
+
+Limits limits_of(const ErrorBound& bound, double reach) {
+  const double angle = bound.degrees * std::numbers::pi / 180;
+  return {angle, bound.height.value_or(kHeightPerAngle * angle * reach)};
+}
+
+/// True if the surface ends within the neighbourhood: a part of the ring has no sample (an edge, a border, a hole).
+bool ends_within(const SampledSurface& surface, const surfel::OsculatingSurface& fit, double reach,
+                 std::span<const Near> near) {
+  if (near.size() < kRingSamples) return false;
+  std::array<bool, kSectors> seen{};
+  for (const Near& n : near) {
+    const glm::dvec2 place = fit.place(surface.position(n.point));
+    if (glm::dot(place, place) < kRing * kRing * reach * reach) continue;
+    const double turn = 0.5 + 0.5 * std::atan2(place.y, place.x) / std::numbers::pi;
+    seen.at(std::min(kSectors - 1, static_cast<size_t>(turn * kSectors))) = true;
+  }
+  return std::find(seen.begin(), seen.end(), false) != seen.end();
+}
+
+}  // namespace
+
+Noise::Noise(const SampledSurface& surface) : surface_(surface) {
+  std::vector<std::optional<Residual>> found((surface.size() + kNoiseStride - 1) / kNoiseStride);
+  oneapi::tbb::enumerable_thread_specific<Scratch> scratch;
+  oneapi::tbb::parallel_for(size_t{0}, found.size(), [&](size_t i) {
+    found[i] = smallest(static_cast<uint32_t>(i * kNoiseStride), scratch.local());
+  });
+  for (size_t i = 0; i < found.size(); ++i) {
+    if (!found[i]) continue;
+    residuals_.push_back(*found[i]);
+    centres_.push_back(surface.position(static_cast<uint32_t>(i * kNoiseStride)));
+  }
+  tree_.emplace(centres_);
+}
+
+Limits Noise::around(uint32_t sample, Scratch& scratch) const {
+  tree_->within(surface_.position(sample), 2 * kFirstReach * surface_.radius(sample), scratch.near);
+  if (scratch.near.empty()) return {};
+  const auto median = [&](auto value) {
+    std::vector<double> values;
+    for (const Near& n : scratch.near) values.push_back(value(residuals_[n.point]));
+    const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+    std::nth_element(values.begin(), middle, values.end());
+    return kNoise * kOverfit * *middle;
+  };
+  return {median([](const Residual& r) { return r.angle; }), median([](const Residual& r) { return r.height; })};
+}
+
+std::optional<Residual> Noise::smallest(uint32_t sample, Scratch& scratch) const {
+  surface_.sheet(surface_.position(sample), surface_.normal(sample), kFirstReach * surface_.radius(sample),
+                 scratch.near);
+  surface_.load_samples(scratch);
+  const auto fit = fit_surface(surface_.position(sample), scratch.samples, surface_.oriented());
+  return fit ? std::optional(residual_of(*fit, scratch.samples, surface_.oriented())) : std::nullopt;
+}
+
+Patch Growth::grow(uint32_t sample, Scratch& scratch) const {
+  Patch best;
+  best.sample = sample;
+  double reach = kFirstReach * surface_.radius(sample);
+  const Limits noise = noise_.around(sample, scratch);
+  for (int step = 0; step < kMostSteps; ++step, reach *= kGrowth) {
+    surface_.sheet(surface_.position(sample), surface_.normal(sample), reach, scratch.near);
+    if (best.reach == 0 && step < kSparseSteps && scratch.near.size() < kFirstSamples) continue;
+    surface_.load_samples(scratch);
+    const auto fit = fit_surface(surface_.position(sample), scratch.samples, surface_.oriented());
+    if (!fit || fit->curvature.largest() * reach > kMostBent) break;
+    const Residual residual = residual_of(*fit, scratch.samples, surface_.oriented());
+    const Limits limits = limits_of(bound_, reach);
+    const double spread = 1 + 1 / std::sqrt(static_cast<double>(scratch.samples.size()));
+    const Limits allowed{std::max(limits.angle, spread * noise.angle), std::max(limits.height, spread * noise.height)};
+    if (!allowed.hold(residual) || ends_within(surface_, *fit, reach, scratch.near)) break;
+    const bool whole = scratch.near.size() == best.samples;  // nothing is left to grow into
+    best = {sample, reach, *fit, residual, scratch.near.size()};
+    if (whole) break;
+  }
+  if (best.reach > 0) judge(scratch, best);
+  return best;
+}
+
+/// Decides whether the patch needs its curvature.
+void Growth::judge(Scratch& scratch, Patch& patch) const {
+  surface_.sheet(surface_.position(patch.sample), surface_.normal(patch.sample), patch.reach, scratch.near);
+  surface_.load_samples(scratch);
+  const Residual flat =
+      residual_of(plane_of(patch.surface, scratch.samples, surface_.oriented()), scratch.samples, surface_.oriented());
+  patch.curved = gains(patch.residual, flat, patch.reach);
+  patch.pays = patch.curved || limits_of(bound_, patch.reach).hold(flat);
+}
+
+}  // namespace surfcast::simplify

@@ -1,0 +1,92 @@
+// Lights the nearest hits of the samples.
+#include "shared/frame_layout.h"
+#include "include/frame.glsl"
+#include "ellipsoid/record.glsl"
+#include "ellipsoid/samples.glsl"
+#include "ellipsoid/lighting.glsl"
+
+layout(location = SURFCAST_UNIFORM_FIRST_GROUP) uniform uint first_group;
+layout(local_size_x = SURFCAST_BLOCK_WIDTH, local_size_y = SURFCAST_BLOCK_HEIGHT) in;
+
+layout(binding = SURFCAST_UNIT_SPLATS) uniform usamplerBuffer records;
+layout(std430, binding = SURFCAST_BIND_GLYPH_IDS) readonly buffer Ids { uint ids[]; };
+#ifdef SURFCAST_LAYERS
+layout(std430, binding = SURFCAST_BIND_GLYPH_SHADES) writeonly buffer Shades { uvec4 shades[]; };
+#else
+layout(std430, binding = SURFCAST_BIND_GLYPH_SHADES) writeonly buffer Shades { uvec2 shades[]; };
+#endif
+
+#ifdef SURFCAST_SUPERQUADRICS
+const int kRecord = SURFCAST_SUPERQUADRIC_RECORD;
+#include "ellipsoid/superquadric.glsl"
+
+vec3 normal_of(EllipsoidHit e, int place, vec2 at, out vec3 color) {
+  uvec4 n1 = texelFetch(records, kRecord * place + 7);
+  uvec4 n2 = texelFetch(records, kRecord * place + 8);
+  uvec4 n3 = texelFetch(records, kRecord * place + 9);
+  color = vec3(unpackHalf2x16(n1.w), unpackHalf2x16(n2.w).x);
+  mat3 normals = mat3(uintBitsToFloat(n1.xyz), uintBitsToFloat(n2.xyz), uintBitsToFloat(n3.xyz));
+  return superquadric_normal(decode_superquadric(e, place), at, normals);
+}
+
+float depth_of(EllipsoidHit e, int place, vec2 at) {
+  return superquadric_depth(decode_superquadric(e, place), at);
+}
+#else
+const int kRecord = SURFCAST_ELLIPSOID_RECORD;
+
+vec3 normal_of(EllipsoidHit e, int place, vec2 at, out vec3 color) {
+  uvec4 n1 = texelFetch(records, kRecord * place + 4);
+  uvec4 n2 = texelFetch(records, kRecord * place + 5);
+  uvec4 n3 = texelFetch(records, kRecord * place + 6);
+  color = vec3(unpackHalf2x16(n1.w), unpackHalf2x16(n2.w).x);
+  mat3 n = mat3(uintBitsToFloat(n1.xyz), uintBitsToFloat(n2.xyz), uintBitsToFloat(n3.xyz));
+  return hit_normal(e, n, hit_terms(e, at));
+}
+
+float depth_of(EllipsoidHit e, int place, vec2 at) {
+  vec4 terms = hit_terms(e, at);
+  return e.depth * (terms.z + e.u * max(terms.w, 0.0));
+}
+#endif
+
+#ifdef SURFCAST_LAYERS
+#include "ellipsoid/surfaces.glsl"
+#endif
+
+// Light and coverage of a hit, and its inverse depth.
+vec4 shade(int place, vec2 pixel, out float depth) {
+  EllipsoidHit e = decode_hit(texelFetch(records, kRecord * place), texelFetch(records, kRecord * place + 1),
+                              texelFetch(records, kRecord * place + 2), texelFetch(records, kRecord * place + 3));
+  vec3 color;
+  vec2 at = place_of(e, pixel);
+  vec3 n = normal_of(e, place, at, color);
+#ifdef SURFCAST_LAYERS
+  depth = depth_of(e, place, at);
+#endif
+  return vec4(lit(color, normalize(n), vec3(ray_of_pixel(pixel), 1.0)), 1.0) * frame.background.w;
+}
+
+void main() {
+  ivec2 at = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, int(first_group) * SURFCAST_BLOCK_HEIGHT);
+  if (any(greaterThanEqual(at, frame.region.zw))) return;
+  for (int s = 0; s < SURFCAST_SAMPLES; ++s) {
+    int index = sample_index(at, s);
+    uint id = ids[index];
+    vec4 light = vec4(0.0);
+    float depth = 0.0;
+    if (id > 0u) light = shade(int(id) - 1, vec2(frame.region.xy + at) + 0.5 + kSamples[s], depth);
+#ifdef SURFCAST_LAYERS
+    // What the surfaces before the hit let through, and all of them.
+    vec2 through = surfaces_through(at, depth);
+    light *= through.x;
+    float before = 1.0 - through.x + (1.0 - frame.background.w) * (through.x - through.y);
+    vec2 surfaces = vec2(id > 0u ? before : 1.0 - through.y, 1.0 - through.y);
+    float covered = id > 0u ? frame.background.w : 0.0;
+    shades[index] = uvec4(packHalf2x16(light.rg), packHalf2x16(vec2(light.b, covered)), packHalf2x16(surfaces),
+                          floatBitsToUint(depth));
+#else
+    shades[index] = uvec2(packHalf2x16(light.rg), packHalf2x16(light.ba));
+#endif
+  }
+}

@@ -1,0 +1,128 @@
+// Superquadric glyphs (Kindlmann 2004, "Superquadric Tensor Glyphs", section 4.3): the unit sphere of an ellipsoid is
+// replaced by
+//
+//   (|x|^(2/a) + |y|^(2/a))^(a/b) + |z|^(2/b) = 1
+//
+// about the axis z, that of the largest value or, of flat tensors, of the smallest one. As a and b are at most 1, the
+// left side to the power b/2 is a norm: convex along a ray, so that its least place is found by golden section. In the
+// basis of the record a ray passes m + s d, with the place m nearest to the centre and without a difference of large
+// terms, whatever the distance of the eye. Texels behind those of the hit:
+//
+//   4 to 6: the basis in the coordinates of the shape; w: a, b, r
+//   7 to 9: columns that turn its gradients into normals in the camera frame; w: colour
+#ifdef SURFCAST_SUPERQUADRICS
+
+struct Superquadric {
+  EllipsoidHit e;
+  mat3 basis;
+  float alpha;
+  float beta;
+  float r;
+};
+
+const float kBall = 3.0;  // square of the largest distance of the shape from its centre
+const int kSearch = 18;   // steps of the golden section: places to 6e-4
+const int kBisect = 18;
+
+Superquadric decode_superquadric(EllipsoidHit e, int place) {
+  vec4 a = uintBitsToFloat(texelFetch(records, kRecord * place + 4));
+  vec4 b = uintBitsToFloat(texelFetch(records, kRecord * place + 5));
+  vec4 c = uintBitsToFloat(texelFetch(records, kRecord * place + 6));
+  return Superquadric(e, mat3(a.xyz, b.xyz, c.xyz), a.w, b.w, c.w);
+}
+
+// (p^(2/e) + q^(2/e))^(e/2) of numbers that are not negative, without overflow.
+float joined(float p, float q, float e) {
+  float most = max(max(p, q), 1e-30);
+  return most * pow(1.0 + pow(min(p, q) / most, 2.0 / e), 0.5 * e);
+}
+
+float norm_of(Superquadric q, vec3 p) {
+  vec3 a = abs(p);
+  return joined(joined(a.x, a.y, q.alpha), a.z, q.beta);
+}
+
+// The ray in the coordinates of the shape.
+struct ShapeRay {
+  vec3 m;
+  vec3 d;
+  float first;  // the part of it in the ball, ahead of the eye
+  float last;
+  float speed;  // of the inverse depth, see depth_at
+  float square;
+  float ahead;
+};
+
+ShapeRay shape_ray(Superquadric q, vec2 at) {
+  vec3 place = vec3(at, 1.0);
+  vec2 a = vec2(dot(q.e.a1, place), dot(q.e.a2, place));
+  float d = dot(q.e.d, place);
+  float aa = dot(a, a);
+  float u = q.e.u;
+  float square = u * u * aa + q.r * q.r * d * d;
+  float root = sqrt(square);
+  ShapeRay ray;
+  vec3 m = vec3(q.r * d * a, u * aa) / square;
+  ray.m = q.basis * m;
+  ray.d = q.basis * (vec3(u * a, -q.r * d) / root);
+  float half_chord = sqrt(max(kBall - dot(m, m), 0.0));
+  ray.first = max(-half_chord, -q.r * d / max(u * root, 1e-30));
+  ray.last = dot(m, m) < kBall ? half_chord : -1e30;
+  ray.speed = u * root;
+  ray.square = square;
+  ray.ahead = q.r * d;
+  return ray;
+}
+
+const float kMissed = 1e30;
+
+// The place of the first hit, or kMissed.
+float first_hit(Superquadric q, ShapeRay ray) {
+  const float kGolden = 0.61803399;
+  if (!(ray.first < ray.last)) return kMissed;
+  float low = ray.first;
+  float high = ray.last;
+  vec2 place = vec2(high - kGolden * (high - low), low + kGolden * (high - low));
+  vec2 value = vec2(norm_of(q, ray.m + place.x * ray.d), norm_of(q, ray.m + place.y * ray.d));
+  for (int i = 0; i < kSearch; ++i) {
+    if (min(value.x, value.y) <= 1.0) break;
+    bool before = value.x < value.y;  // the least one is before the second place
+    low = before ? low : place.x;
+    high = before ? place.y : high;
+    float next = before ? high - kGolden * (high - low) : low + kGolden * (high - low);
+    float found = norm_of(q, ray.m + next * ray.d);
+    place = before ? vec2(next, place.x) : vec2(place.y, next);
+    value = before ? vec2(found, value.x) : vec2(value.y, found);
+  }
+  if (min(value.x, value.y) > 1.0) return kMissed;
+  float inside = value.x <= 1.0 ? place.x : place.y;
+  float outside = ray.first;
+  for (int i = 0; i < kBisect; ++i) {
+    float middle = 0.5 * (inside + outside);
+    bool in_it = norm_of(q, ray.m + middle * ray.d) <= 1.0;
+    inside = in_it ? middle : inside;
+    outside = in_it ? outside : middle;
+  }
+  return inside;
+}
+
+// Inverse depth of the first hit at a place on the screen, 0 if there is none.
+float superquadric_depth(Superquadric q, vec2 at) {
+  ShapeRay ray = shape_ray(q, at);
+  float s = first_hit(q, ray);
+  float ahead = ray.ahead + s * ray.speed;
+  return s == kMissed || !(ahead > 0.0) ? 0.0 : ray.square * q.e.depth * q.r / ahead;
+}
+
+// Camera frame, of any length.
+vec3 superquadric_normal(Superquadric q, vec2 at, mat3 normals) {
+  ShapeRay ray = shape_ray(q, at);
+  vec3 p = ray.m + first_hit(q, ray) * ray.d;
+  vec3 a = abs(p);
+  float n = joined(a.x, a.y, q.alpha);
+  float g = max(joined(n, a.z, q.beta), 1e-30);
+  float around = pow(n / g, 2.0 / q.beta - 1.0);
+  vec2 share = pow(a.xy / max(n, 1e-30), vec2(2.0 / q.alpha - 1.0));
+  return normals * (sign(p) * vec3(around * share, pow(a.z / g, 2.0 / q.beta - 1.0)));
+}
+#endif

@@ -1,0 +1,112 @@
+#include <filesystem>
+#include <fstream>
+#include <string>
+#include <vector>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "access/secret.h"
+#include "access/token_file.h"
+#include "access/token_table.h"
+
+namespace surfcast::access {
+namespace {
+
+namespace fs = std::filesystem;
+using std::chrono::hours;
+using ::testing::HasSubstr;
+using ::testing::Not;
+
+class TokenFileTest : public ::testing::Test {
+ protected:
+  void SetUp() override { fs::remove(file_); }
+  void TearDown() override { fs::remove(file_); }
+  Result<std::vector<Principal>> read(const std::string& text) const {
+    std::ofstream(file_) << text;
+    return read_tokens(file_);
+  }
+
+  fs::path file_ = fs::path(::testing::TempDir()) /
+                   (std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) + ".json");
+};
+
+const std::string kHash(64, 'a');
+
+TEST(SecretTest, HasAKnownHashAndIsNewEachTime) {
+  EXPECT_EQ(sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");  // FIPS 180-4
+  EXPECT_NE(make_secret(), make_secret());
+  EXPECT_TRUE(is_secret(make_secret()));
+  EXPECT_FALSE(is_secret(make_secret() + "A"));
+  EXPECT_FALSE(is_secret(std::string(43, '+')));
+}
+
+TEST(PrincipalTest, SeesTheModelsOfItsPatterns) {
+  const Principal some{.name = "a", .sha256 = kHash, .models = {"church*", "tower-?", "[xy]"}};
+  for (const std::string seen : {"church", "church 2", "tower-1", "x"}) EXPECT_TRUE(may_see(some, seen)) << seen;
+  for (const std::string other : {"Church", "a church", "tower-10", "z", ""})
+    EXPECT_FALSE(may_see(some, other)) << other;
+  EXPECT_FALSE(may_see({.name = "b", .sha256 = kHash, .models = {}}, "church"));
+}
+
+TEST_F(TokenFileTest, WhatIsWrittenIsReadForItsOwnerAlone) {
+  const auto expires = *parse_time("2027-01-31T12:00:00Z");
+  const std::vector<Principal> tokens{
+      {.name = "alice", .sha256 = kHash, .models = {"*"}, .expires = expires, .connections = 3, .views = 2},
+      {.name = "bob", .sha256 = std::string(64, 'b'), .models = {}, .uploads = true}};
+  ASSERT_TRUE(write_tokens(file_, tokens));
+  EXPECT_EQ(read_tokens(file_), tokens);
+  EXPECT_EQ(fs::status(file_).permissions(), fs::perms::owner_read | fs::perms::owner_write);
+  fs::permissions(file_, fs::perms::group_read, fs::perm_options::add);
+  ASSERT_TRUE(write_tokens(file_, tokens));
+  EXPECT_NE(fs::status(file_).permissions() & fs::perms::group_read, fs::perms::none) << "a mode that was set stays";
+}
+
+TEST_F(TokenFileTest, WhatIsNoFileOfTokensIsAnErrorThatNamesIt) {
+  const std::string hash = kHash;
+  const std::string entry = R"({"name": "a", "sha256": ")" + hash + R"("})";
+  const std::vector<std::string> wrong{
+      "",
+      "[]",
+      "{}",
+      R"({"tokens": [{"name": "a"}]})",
+      R"({"tokens": [{"name": "a", "sha256": "12"}]})",
+      R"({"tokens": [)" + entry + "," + entry + "]}",
+      R"({"tokens": [{"name": "a", "sha256": ")" + hash + R"(", "models": "x"}]})",
+      R"({"tokens": [{"name": "a", "sha256": ")" + hash + R"(", "expires": "tomorrow"}]})"};
+  for (const std::string& text : wrong) {
+    const auto tokens = read(text);
+    ASSERT_FALSE(tokens) << text;
+    EXPECT_THAT(tokens.error().message, HasSubstr(file_.string()));
+    EXPECT_THAT(tokens.error().message, Not(HasSubstr("\n")));
+  }
+  EXPECT_TRUE(read(R"({"tokens": []})"));
+  EXPECT_EQ(read(R"({"tokens": [)" + entry + "]}")->size(), 1U);
+  EXPECT_FALSE(read_tokens(file_.string() + ".absent"));
+}
+
+TEST(TokenTableTest, FindsASecretUntilItExpires) {
+  const auto now = std::chrono::system_clock::now();
+  const std::string secret = make_secret();
+  const Principal principal{.name = "a", .sha256 = sha256(secret), .models = {"*"}, .expires = now + hours(1)};
+  const TokenTable table({principal});
+  ASSERT_TRUE(table.find(secret, now));
+  EXPECT_EQ(table.find(secret, now)->name, "a");
+  EXPECT_FALSE(table.find(secret, now + hours(1)));
+  EXPECT_FALSE(table.find(make_secret(), now));
+  EXPECT_FALSE(table.find("", now));
+}
+
+TEST(TokenTableTest, TellsWhyAPrincipalIsNotServedAnyMore) {
+  const auto now = std::chrono::system_clock::now();
+  Principal principal{.name = "a", .sha256 = kHash, .models = {"*"}, .expires = now + hours(1)};
+  EXPECT_EQ(TokenTable({principal}).why_ended(principal, now), "");
+  EXPECT_EQ(TokenTable({principal}).why_ended(principal, now + hours(2)), "the token has expired");
+  EXPECT_EQ(TokenTable({}).why_ended(principal, now), "the token was revoked");
+  Principal less = principal;
+  less.models = {"church"};
+  EXPECT_EQ(TokenTable({less}).why_ended(principal, now), "what the token allows has changed");
+}
+
+}  // namespace
+}  // namespace surfcast::access

@@ -1,0 +1,45 @@
+#pragma once
+
+#include <cstdint>
+#include <functional>
+#include <glm/vec3.hpp>
+#include <string>
+#include <vector>
+
+#include "simplify/quadric_fit.h"
+#include "surfel/surfel_cloud.h"
+
+namespace surfcast::testing {
+
+/// A closed surface: where the function is 0, negative inside.
+struct ImplicitSurface {
+  std::string name;
+  std::function<double(const glm::dvec3&)> distance;  ///< its slope is between `least_slope` and 1
+  std::function<glm::dvec3(const glm::dvec3&)> gradient;
+  double least_slope = 1;
+  double extent = 1;  ///< half of the side of a cube about the origin that holds it
+};
+
+/// A torus about z: radius 1 of its circle, 0.4 of its tube.
+ImplicitSurface torus();
+/// A unit sphere with bumps of up to a tenth of its radius, nine around.
+ImplicitSurface bumpy_sphere();
+/// A cube of side 1.4 with sharp edges.
+ImplicitSurface box();
+
+glm::dvec3 normal_at(const ImplicitSurface& surface, const glm::dvec3& point);
+
+/// Samples of the surface, evenly by area, in no order.
+std::vector<simplify::Sample> random_samples(const ImplicitSurface& surface, size_t count, uint32_t seed);
+/// Moves samples along their normals by `shift` spacings and turns their normals by `degrees` (standard deviations).
+void add_noise(std::vector<simplify::Sample>& samples, double spacing, double shift, double degrees, uint32_t seed);
+/// About `count` of the samples with a least distance between them; returns their numbers.
+std::vector<uint32_t> even_subset(const std::vector<simplify::Sample>& samples, size_t count);
+
+/// The mean distance of even samples: the root of the area for each.
+double spacing_of(const std::vector<simplify::Sample>& samples, const std::vector<uint32_t>& subset);
+
+/// Oriented surfels at the samples with this radius and weights of an even sampling.
+surfel::SurfelCloud surfels_of(const std::vector<simplify::Sample>& samples, double radius);
+
+}  // namespace surfcast::testing
