@@ -2,9 +2,10 @@
 
 import numpy as np
 import vtk
-from vtk.util.numpy_support import numpy_to_vtk, vtk_to_numpy
+from vtk.util.numpy_support import numpy_to_vtk
 
 import scene_files
+import vtk_window
 
 # The standard deviation of a Gaussian in radii of the scan: half a spacing.
 SIGMA = 0.46
@@ -40,27 +41,7 @@ def drawing(scene, mapper, set_up=lambda actor: None):
     actor.SetMapper(mapper)
     actor.GetProperty().LightingOff()
     set_up(actor)
-    renderer = vtk.vtkRenderer()
-    renderer.AddActor(actor)
-    camera = renderer.GetActiveCamera()
-    camera.SetPosition(*scene.position)
-    camera.SetFocalPoint(*scene.focal_point)
-    camera.SetViewUp(*scene.view_up)
-    camera.SetViewAngle(scene.view_angle)
-    renderer.ResetCameraClippingRange()
-    window = vtk.vtkRenderWindow()
-    window.SetOffScreenRendering(1)
-    window.SetMultiSamples(0)
-    window.SetSize(scene.width, scene.height)
-    window.AddRenderer(renderer)
-
-    def draw():
-        window.Render()
-        pixels = vtk.vtkUnsignedCharArray()
-        window.GetPixelData(0, 0, scene.width - 1, scene.height - 1, 0, pixels, 0)
-        return np.flipud(vtk_to_numpy(pixels).reshape(scene.height, scene.width, 3))
-
-    return draw
+    return vtk_window.drawing(scene, actor)
 
 
 def points(scene):

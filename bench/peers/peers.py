@@ -55,8 +55,8 @@ def display():
     server.wait()
 
 
-def measure_peer(options, program, method, scenes, folder, screen):
-    """The same of a method of another program. A scene that it fails to draw is missing."""
+def drawn_by(options, program, method, scenes, folder, screen):
+    """What a program of this folder reports of the scenes that it drew with a method."""
     python = options.pvpython if program == "draw_paraview.py" else sys.executable
     command = [python, str(HERE / program), method, str(options.frames), str(folder)]
     command += [str(folder / f"{name}.json") for name in scenes]
@@ -65,17 +65,20 @@ def measure_peer(options, program, method, scenes, folder, screen):
         result = subprocess.run(command, capture_output=True, text=True, env=environment, check=False)
     except FileNotFoundError:
         print(f"{method}: no program {python}", file=sys.stderr)
-        return {}
+        return []
+    drawn = [json.loads(line) for line in result.stdout.splitlines() if line.startswith("{")]
+    if len(drawn) < len(scenes):
+        print(f"{method}: {len(drawn)} of {len(scenes)} scenes; {result.stderr.strip()[-300:]}", file=sys.stderr)
+    return drawn
+
+
+def measure_peer(options, program, method, scenes, folder, screen):
+    """The same of a method of another program. A scene that it fails to draw is missing."""
     measured = {}
-    for line in result.stdout.splitlines():
-        if not line.startswith("{"):
-            continue
-        drawn = json.loads(line)
+    for drawn in drawn_by(options, program, method, scenes, folder, screen):
         ideal = scene_files.read_ppm(folder / f"{drawn['scene']}.ideal.ppm")
         error = psnr(scene_files.read_ppm(Path(drawn["picture"])), ideal)
         measured[drawn["scene"]] = (drawn["wall"], drawn["processor"], error)
-    if len(measured) < len(scenes):
-        print(f"{method}: {len(measured)} of {len(scenes)} scenes; {result.stderr.strip()[-300:]}", file=sys.stderr)
     return measured
 
 
@@ -83,7 +86,7 @@ def cell(measurement, best):
     if measurement is None:
         return ""
     wall, processor, error = measurement
-    text = f"{error:.1f} dB"
+    text = "equal" if np.isinf(error) else f"{error:.1f} dB"
     return f"{wall:.0f} ms ({processor:.0f}), " + (f"**{text}**" if error == best else text)
 
 
@@ -135,10 +138,10 @@ def svg(results, methods):
     return "\n".join(text + ["</svg>"]) + "\n"
 
 
-def replace_section(page, section):
+def replace_section(page, section, begin=BEGIN, end=END):
     text = page.read_text()
-    head, rest = text.split(BEGIN)
-    page.write_text(head + BEGIN + "\n\n" + section + "\n" + END + rest.split(END)[1])
+    head, rest = text.split(begin)
+    page.write_text(head + begin + "\n\n" + section + "\n" + end + rest.split(end)[1])
 
 
 def load_note():

@@ -10,7 +10,31 @@ import numpy as np
 POINT = np.dtype([("position", "<f8", 3), ("normal", "<f4", 3), ("radius", "<f4"), ("color", "u1", 3)])
 
 
-class Scene:
+class View:
+    """A size of a picture and a camera."""
+
+    def __init__(self, facts: dict, origin=np.zeros(3)):
+        self.width, self.height = facts["resolution"]
+        camera = facts["camera"]
+        self.position = np.array(camera["position"]) - origin
+        self.focal_point = np.array(camera["focal_point"]) - origin
+        self.view_up = np.array(camera["view_up"])
+        self.view_angle = camera["view_angle"]
+
+
+class VolumeScene(View):
+    """A file with a grid, and what its values look like: points with sRGB codes in [0, 1] and the opacity of one
+    spacing."""
+
+    def __init__(self, description: Path):
+        facts = json.loads(description.read_text())
+        super().__init__(facts)
+        self.grid = description.parent / facts["grid"]
+        self.transfer = facts["transfer"]
+        self.spacing = facts["spacing"]
+
+
+class Scene(View):
     """A scan with a camera. Positions are relative to the middle of the scan, so that single precision holds them."""
 
     def __init__(self, description: Path):
@@ -24,12 +48,7 @@ class Scene:
         self.normals = points["normal"]
         self.radii = points["radius"]
         self.colors = points["color"]
-        self.width, self.height = facts["resolution"]
-        camera = facts["camera"]
-        self.position = np.array(camera["position"]) - origin
-        self.focal_point = np.array(camera["focal_point"]) - origin
-        self.view_up = np.array(camera["view_up"])
-        self.view_angle = camera["view_angle"]
+        super().__init__(facts, origin)
 
     def radius_in_pixels(self) -> float:
         """Of the middle of the points in view."""
@@ -69,14 +88,14 @@ def write_ppm(path: Path, picture: np.ndarray) -> None:
     path.write_bytes(b"P6\n%d %d\n255\n" % (picture.shape[1], picture.shape[0]) + picture.astype(np.uint8).tobytes())
 
 
-def run(methods: dict) -> None:
+def run(methods: dict, scene_of=Scene) -> None:
     """The command line of every drawing program: METHOD FRAMES PICTURE_FOLDER SCENE.json... `methods` maps names to
     functions of a scene that return a drawing function. Prints a line of JSON for each scene."""
     import sys
 
     name, frames, folder = sys.argv[1], int(sys.argv[2]), Path(sys.argv[3])
     for description in map(Path, sys.argv[4:]):
-        picture, wall, processor = measure(methods[name](Scene(description)), frames)
+        picture, wall, processor = measure(methods[name](scene_of(description)), frames)
         target = folder / f"{description.stem}.{name}.ppm"
         write_ppm(target, picture)
         print(json.dumps({"scene": description.stem, "picture": str(target), "wall": wall, "processor": processor}),
