@@ -60,9 +60,10 @@ void repair_blocks(Bytes& bytes, const Bytes& whole) {
   for (const BlockRecord& block : directory.blocks) {
     std::array<std::byte, sizeof(uint64_t)> old{};
     std::memcpy(old.data(), &block.checksum, sizeof(uint64_t));
-    const auto found = std::ranges::search(tables, old);
-    ASSERT_FALSE(found.empty());
-    put(bytes, header.directory_offset + static_cast<size_t>(found.begin() - tables.begin()),
+    // Not std::ranges::search: clang 14 does not compile it.
+    const auto found = std::search(tables.begin(), tables.end(), old.begin(), old.end());
+    ASSERT_NE(found, tables.end());
+    put(bytes, header.directory_offset + static_cast<size_t>(found - tables.begin()),
         checksum_of(std::span(bytes).subspan(block.offset, block.bytes)));
   }
 }

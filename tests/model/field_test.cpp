@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <random>
+#include <string_view>
 
 #include <gtest/gtest.h>
 
@@ -88,7 +89,8 @@ TEST(Field, DracoDataFarLongerThanItsTableIsRefused) {
 TEST(Field, DracoDataThatStatesOtherAttributesIsRefusedBeforeItIsDecoded) {
   const std::vector<Field> fields{{{1, 2, 3}}, {{4, 9, 7000}}};
   const std::vector<std::byte> whole = encode_fields(fields);
-  const auto text = std::search(whole.begin(), whole.end(), "DRACO", "DRACO" + 5,
+  const std::string_view magic = "DRACO";
+  const auto text = std::search(whole.begin(), whole.end(), magic.begin(), magic.end(),
                                 [](std::byte a, char b) { return a == static_cast<std::byte>(b); });
   const auto draco = static_cast<size_t>(text - whole.begin());
   // Bytes from offset 15: number of attribute groups, number of attributes, then kind, type and components of the
