@@ -258,7 +258,8 @@ surfel::Grid lattice_for(const geometry::Box& bounds, std::optional<double> scal
   surfel::Grid grid;
   grid.scale = glm::dvec3(scale.value_or(scale_for(bounds)));
   // Round numbers near the points, so that the numbers of 32 bits suffice for what lies far from the origin.
-  const double step = grid.scale.x * 1e6;
+  const double wide = grid.scale.x * 1e8;
+  const double step = wide >= 1 ? std::round(wide) : wide;
   for (int axis = 0; axis < 3; ++axis) grid.offset[axis] = std::floor(bounds.min[axis] / step) * step;
   return grid;
 }

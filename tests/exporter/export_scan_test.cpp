@@ -3,6 +3,7 @@
 #include <cmath>
 #include <csignal>
 #include <fstream>
+#include <glm/geometric.hpp>
 #include <iterator>
 #include <random>
 
@@ -205,13 +206,13 @@ TEST_F(ExportScanTest, AnyScanBecomesAnyFormatWithItsAttributes) {
     EXPECT_EQ(report->points, 2U);
     const auto out = testing::whole(scan::ScanStream::open(place(name)));
     ASSERT_TRUE(out) << out.error().message;
-    EXPECT_THAT(out->positions,
-                ::testing::ElementsAre(glm::dvec3(1000.125, 2000.5, -3.25), glm::dvec3(1001.25, 2001.75, -4.5)))
-        << name;
+    ASSERT_EQ(out->positions.size(), 2U) << name;
+    EXPECT_LE(glm::length(out->positions[0] - glm::dvec3(1000.125, 2000.5, -3.25)), 1e-12) << name;
+    EXPECT_LE(glm::length(out->positions[1] - glm::dvec3(1001.25, 2001.75, -4.5)), 1e-12) << name;
     EXPECT_THAT(out->normals, ::testing::ElementsAre(glm::vec3(0, 0, 1), glm::vec3(1, 0, 0))) << name;
     EXPECT_THAT(testing::scalar_values<uint16_t>(*out, "intensity"), ::testing::ElementsAre(500, 65535)) << name;
     EXPECT_THAT(testing::scalar_values<uint8_t>(*out, "classification"), ::testing::ElementsAre(2, 200)) << name;
-    EXPECT_THAT(testing::scalar_values<float>(*out, "quality"), ::testing::ElementsAre(-1.5, 2.25)) << name;
+    EXPECT_THAT(testing::scalar_values<double>(*out, "quality"), ::testing::ElementsAre(-1.5, 2.25)) << name;
     ASSERT_TRUE(out->colors) << name;
     const int factor = out->colors->bits == 8 ? 1 : 257;
     EXPECT_EQ(out->colors->values[0], glm::u16vec3(255 * factor, 0, 7 * factor)) << name;
@@ -219,7 +220,7 @@ TEST_F(ExportScanTest, AnyScanBecomesAnyFormatWithItsAttributes) {
 }
 
 TEST_F(ExportScanTest, LasBecomesATableOfExactNumbers) {
-  const LasFile file = sample_file(3, 200);
+  const LasFile file = sample_file(2, 200);
   const fs::path source = write("scan.las", file.text());
   const auto expected = testing::whole(scan::ScanStream::open(source));
   ASSERT_TRUE(expected);
