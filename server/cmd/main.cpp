@@ -7,6 +7,7 @@
 #include "base/unfinished_file.h"
 #include "cmd/build.h"
 #include "cmd/colorize.h"
+#include "cmd/export.h"
 #include "cmd/inspect.h"
 #include "cmd/pick.h"
 #include "cmd/render.h"
@@ -33,6 +34,7 @@ int run(int argc, char** argv) {
   surfcast::Status outcome;
   surfcast::cmd::add_build_command(app, outcome);
   surfcast::cmd::add_colorize_command(app, outcome);
+  surfcast::cmd::add_export_command(app, outcome);
   surfcast::cmd::add_inspect_command(app, outcome);
   surfcast::cmd::add_serve_command(app, outcome);
   surfcast::cmd::add_render_command(app, outcome);

@@ -6,7 +6,7 @@
 
 namespace surfcast::cmd {
 
-/// `--bounds`, `--classes` and `--every`: which points of scans are read. `selection` must outlive the parsing.
+/// `--bounds`, `--corridor`, `--classes` and `--every`: which points of scans are read. `selection` must outlive the parsing.
 void add_selection_flags(CLI::App& command, scan::Selection& selection);
 
 }  // namespace surfcast::cmd

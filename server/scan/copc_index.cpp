@@ -57,8 +57,8 @@ struct Cube {
 
 class HierarchyWalk {
  public:
-  HierarchyWalk(std::span<const std::byte> file, const Cube& cube, const geometry::Box& box)
-      : file_(file), cube_(cube), box_(box) {}
+  HierarchyWalk(std::span<const std::byte> file, const Cube& cube, const geometry::Zone& zone)
+      : file_(file), cube_(cube), zone_(zone) {}
 
   Result<CopcNodes> run(const Page& root) {
     pages_.push_back(root);
@@ -90,7 +90,7 @@ class HierarchyWalk {
     if (entry.level < 0 || entry.level > kDeepest || entry.points < -1 || entry.bytes < 0) {
       return invalid_input("an entry of the COPC hierarchy is damaged");
     }
-    if (entry.points == 0 || !overlap(cube_.cell(entry), box_)) return {};
+    if (entry.points == 0 || !geometry::may_meet(zone_, cube_.cell(entry))) return {};
     if (entry.points == -1) {
       pages_.push_back({entry.offset, static_cast<uint64_t>(entry.bytes)});
     } else {
@@ -101,7 +101,7 @@ class HierarchyWalk {
 
   std::span<const std::byte> file_;
   Cube cube_;
-  geometry::Box box_;
+  const geometry::Zone& zone_;
   std::vector<Page> pages_;
   std::unordered_set<uint64_t> seen_;
   CopcNodes nodes_;
@@ -110,13 +110,13 @@ class HierarchyWalk {
 }  // namespace
 
 Result<CopcNodes> read_copc_nodes(std::span<const std::byte> file, std::span<const std::byte> record,
-                                  const geometry::Box& box) {
+                                  const geometry::Zone& zone) {
   if (record.size() < kRecordBytes) return invalid_input("the COPC record is too short");
   const auto half = load<double>(&record[24]);
   const glm::dvec3 centre(load<double>(record.data()), load<double>(&record[8]), load<double>(&record[16]));
   if (!(half > 0) || !std::isfinite(half)) return invalid_input("the COPC record states no size of the root");
   const Page root{load<uint64_t>(&record[40]), load<uint64_t>(&record[48])};
-  return HierarchyWalk(file, {centre - half, 2 * half}, box).run(root);
+  return HierarchyWalk(file, {centre - half, 2 * half}, zone).run(root);
 }
 
 }  // namespace surfcast::scan

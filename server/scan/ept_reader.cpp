@@ -145,7 +145,7 @@ Status read_page(const Key& key, const Selection& selection, EptScan& scan, std:
   for (const auto& [name, count] : json.items()) {
     const std::optional<Key> node = parse_key(name);
     if (!node || !count.is_number_integer()) return file->error("has an entry that cannot be: " + printable(name));
-    if (selection.bounds && !overlap(cell_of(scan.cube, *node), *selection.bounds)) continue;
+    if (!geometry::may_meet(selection.zone, cell_of(scan.cube, *node))) continue;
     const auto points = count.get<int64_t>();
     if (points < -1) return file->error("has a node of fewer than no points");
     if (points == -1) pages.push_back(*node);

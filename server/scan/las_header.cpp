@@ -186,6 +186,33 @@ size_t las_record_length(int point_format) {
   return kLengths.at(static_cast<size_t>(point_format));
 }
 
+std::vector<LasVariableRecord> las_variable_records(Bytes bytes, const LasHeader& header) {
+  std::vector<LasVariableRecord> records;
+  for_each_variable_record(bytes, header.data_offset, [&](std::string_view user, uint16_t id, Bytes body) {
+    const auto* head = body.data() - kRecordHeaderSize;
+    records.push_back({user.substr(0, user.find('\0')), id, {head, kRecordHeaderSize}, body});
+  });
+  return records;
+}
+
+std::vector<LasVariableRecord> las_extended_records(Bytes bytes, const LasHeader& header) {
+  constexpr size_t kHeadSize = 60;
+  std::vector<LasVariableRecord> records;
+  if (header.minor_version < 4) return records;
+  const auto count = load<uint32_t>(&bytes[243]);
+  uint64_t at = load<uint64_t>(&bytes[235]);
+  for (uint32_t i = 0; i < count && at <= bytes.size() && kHeadSize <= bytes.size() - at; ++i) {
+    const Bytes head = bytes.subspan(at, kHeadSize);
+    const auto length = load<uint64_t>(&head[20]);
+    at += kHeadSize;
+    if (length > bytes.size() - at) break;
+    const std::string_view user = as_text(head.subspan(2, 16));
+    records.push_back({user.substr(0, user.find('\0')), load<uint16_t>(&head[18]), head, bytes.subspan(at, length)});
+    at += length;
+  }
+  return records;
+}
+
 Result<LasHeader> parse_las_header(Bytes bytes) {
   if (bytes.size() < kHeaderSize) return invalid_input("truncated: the file ends within its LAS header");
   if (Status status = check_version(bytes); !status) return fail(status.error());

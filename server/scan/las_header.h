@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/result.h"
@@ -35,6 +36,20 @@ struct LasHeader {
   std::string crs;  ///< coordinate system: WKT, or "EPSG:code" of GeoKeys; empty without
   std::vector<LasExtraField> extra_fields;
 };
+
+/// A record between the header and the points, or behind them, as a part of the file.
+struct LasVariableRecord {
+  std::string_view user;  ///< without its padding
+  uint16_t id = 0;
+  std::span<const std::byte> head;  ///< 54 bytes, or 60 of an extended record
+  std::span<const std::byte> body;
+};
+
+/// All variable length records of a file with this header, as far as they lie before the points.
+std::vector<LasVariableRecord> las_variable_records(std::span<const std::byte> bytes, const LasHeader& header);
+
+/// All extended variable length records, as far as they lie within the file.
+std::vector<LasVariableRecord> las_extended_records(std::span<const std::byte> bytes, const LasHeader& header);
 
 /// Parses and checks the header. On success all `count` records lie within the file, unless they are compressed. Fails
 /// with kInvalidInput or kUnsupported.

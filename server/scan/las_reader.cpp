@@ -10,15 +10,6 @@
 namespace surfcast::scan {
 namespace {
 
-/// A value in a record. With a mask, a part of one byte: `(byte >> shift) & mask`.
-struct LasField {
-  const char* name;
-  size_t offset;
-  ScalarType type;
-  int shift = 0;
-  int mask = 0;
-};
-
 constexpr auto kU8 = ScalarType::kUint8;
 constexpr auto kU16 = ScalarType::kUint16;
 
@@ -67,26 +58,6 @@ constexpr LasField kWavePacket[] = {{"wave_packet_index", 0, kU8},
 constexpr OptionalOffsets kOptionalOffsets[] = {{0, 0, 0, 0},    {20, 0, 0, 0},   {0, 20, 0, 0},   {20, 28, 0, 0},
                                                 {20, 0, 0, 28},  {20, 28, 0, 34}, {22, 0, 0, 0},   {22, 30, 0, 0},
                                                 {22, 30, 36, 0}, {22, 0, 0, 30},  {22, 30, 36, 38}};
-
-std::vector<LasField> fields_of(int point_format) {
-  std::vector<LasField> fields;
-  if (point_format < 6) fields.assign(std::begin(kLegacyCore), std::end(kLegacyCore));
-  if (point_format >= 6) fields.assign(std::begin(kCore), std::end(kCore));
-  const OptionalOffsets& offsets = kOptionalOffsets[point_format];
-  if (offsets.gps_time != 0) fields.push_back({"gps_time", offsets.gps_time, ScalarType::kFloat64});
-  if (offsets.color != 0) {
-    fields.push_back({"red", offsets.color, kU16});
-    fields.push_back({"green", offsets.color + 2, kU16});
-    fields.push_back({"blue", offsets.color + 4, kU16});
-  }
-  if (offsets.nir != 0) fields.push_back({"nir", offsets.nir, kU16});
-  if (offsets.wave_packet == 0) return fields;
-  for (LasField field : kWavePacket) {
-    field.offset += offsets.wave_packet;
-    fields.push_back(field);
-  }
-  return fields;
-}
 
 /// Coordinates along one axis, computed as in Grid::position.
 std::vector<double> coordinates(const std::byte* at, size_t count, size_t stride, double scale, double offset) {
@@ -150,6 +121,26 @@ class LasRows : public RowSource {
 
 }  // namespace
 
+std::vector<LasField> las_fields(int point_format) {
+  std::vector<LasField> fields;
+  if (point_format < 6) fields.assign(std::begin(kLegacyCore), std::end(kLegacyCore));
+  if (point_format >= 6) fields.assign(std::begin(kCore), std::end(kCore));
+  const OptionalOffsets& offsets = kOptionalOffsets[point_format];
+  if (offsets.gps_time != 0) fields.push_back({"gps_time", offsets.gps_time, ScalarType::kFloat64});
+  if (offsets.color != 0) {
+    fields.push_back({"red", offsets.color, kU16});
+    fields.push_back({"green", offsets.color + 2, kU16});
+    fields.push_back({"blue", offsets.color + 4, kU16});
+  }
+  if (offsets.nir != 0) fields.push_back({"nir", offsets.nir, kU16});
+  if (offsets.wave_packet == 0) return fields;
+  for (LasField field : kWavePacket) {
+    field.offset += offsets.wave_packet;
+    fields.push_back(field);
+  }
+  return fields;
+}
+
 RowTraits las_traits(const LasHeader& header) {
   RowTraits traits;
   traits.grid = header.grid;
@@ -163,7 +154,7 @@ RowTraits las_traits(const LasHeader& header) {
 std::vector<ColumnInfo> las_columns(const LasHeader& header) {
   std::vector<ColumnInfo> columns;
   for (const char* axis : {"x", "y", "z"}) columns.push_back({axis, ScalarType::kFloat64, false});
-  for (const LasField& field : fields_of(header.point_format)) columns.push_back({field.name, field.type, true});
+  for (const LasField& field : las_fields(header.point_format)) columns.push_back({field.name, field.type, true});
   for (const LasExtraField& field : header.extra_fields) {
     columns.push_back({field.name, is_scaled(field) ? ScalarType::kFloat64 : field.type, false});
   }
@@ -174,11 +165,12 @@ PointTable las_table(const std::byte* records, size_t count, const LasHeader& he
   const size_t stride = header.record_length;
   PointTable table;
   table.rows = count;
+  table.las_records = records;
   for (int axis = 0; axis < 3; ++axis) {
     const std::byte* first = records + sizeof(int32_t) * static_cast<size_t>(axis);
     add_column(table, coordinates(first, count, stride, header.grid.scale[axis], header.grid.offset[axis]));
   }
-  for (const LasField& field : fields_of(header.point_format)) add_field(field, records, stride, table);
+  for (const LasField& field : las_fields(header.point_format)) add_field(field, records, stride, table);
   for (const LasExtraField& field : header.extra_fields) add_extra_field(field, records, stride, table);
   return table;
 }

@@ -19,6 +19,18 @@ namespace surfcast::scan {
 /// Of a COPC file only the nodes that may have points of the selection are read.
 Result<std::unique_ptr<RowSource>> las_rows(std::span<const std::byte> bytes, const Selection& selection = {});
 
+/// A value in a record. With a mask, a part of one byte: `(byte >> shift) & mask`.
+struct LasField {
+  const char* name;
+  size_t offset;
+  ScalarType type;
+  int shift = 0;
+  int mask = 0;
+};
+
+/// The values in the records of a point format, but for coordinates and extra bytes.
+std::vector<LasField> las_fields(int point_format);
+
 /// What the header tells of the points as a whole.
 RowTraits las_traits(const LasHeader& header);
 

@@ -140,10 +140,10 @@ class LazRows : public RowSource {
 /// All chunks of the file, or of COPC those of the nodes that meet the bounds.
 Result<laz::LazFile> open_file(std::span<const std::byte> bytes, const laz::LazPoints& points, const LasHeader& header,
                                const Selection& selection) {
-  if (!selection.bounds || header.copc_record.empty()) {
+  if (selection.zone.everywhere() || header.copc_record.empty()) {
     return laz::LazFile::open(bytes, points, header.laszip_record);
   }
-  return read_copc_nodes(bytes, header.copc_record, *selection.bounds).and_then([&](CopcNodes nodes) {
+  return read_copc_nodes(bytes, header.copc_record, selection.zone).and_then([&](CopcNodes nodes) {
     return laz::LazFile::open_chunks(bytes, points, header.laszip_record, std::move(nodes.chunks));
   });
 }

@@ -12,7 +12,7 @@
 namespace surfcast::scan {
 
 /// The points of a LAZ file with a parsed header. A piece is a chunk, or a slice of a larger one. If the selection has
-/// bounds and the file is COPC, only chunks that meet the bounds.
+/// a zone and the file is COPC, only chunks that may meet the zone.
 Result<std::unique_ptr<RowSource>> laz_rows(std::span<const std::byte> bytes, LasHeader header,
                                             const Selection& selection = {});
 

@@ -35,6 +35,8 @@ struct PointTable {
   std::vector<Column> columns;
   std::vector<surfel::ScalarValues> storage;
   std::vector<std::byte> records;  ///< decoded records into which columns point
+  /// Of a table that is LAS point records, unselected: the first of them.
+  const std::byte* las_records = nullptr;
 };
 
 /// Adds a column with `table.rows` values.

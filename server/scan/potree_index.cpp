@@ -28,12 +28,12 @@ class Chooser {
   Chooser(const geometry::Box& cube, const Selection& selection) : cube_(cube), selection_(selection) {}
 
   [[nodiscard]] bool wants(const std::string& name) const {
-    if (!selection_.bounds) return true;
+    if (selection_.zone.everywhere()) return true;
     geometry::Box cell = potree_cube(cube_, name);
     const glm::dvec3 margin = 0.01 * cell.size();
     cell.min -= margin;
     cell.max += margin;
-    return overlap(cell, *selection_.bounds);
+    return geometry::may_meet(selection_.zone, cell);
   }
 
  private:

@@ -376,7 +376,8 @@ Result<std::unique_ptr<RowSource>> potree1_rows(const fs::path& cloud, const Dec
   Result<PotreeScan> parsed = parse_cloud(cloud, selection);
   if (!parsed) return fail(std::move(parsed.error()));
   const auto scan = std::make_shared<const PotreeScan>(std::move(*parsed));
-  if (scan->nodes.empty()) return invalid_input("has no points");
+  if (scan->nodes.empty())
+    return invalid_input(selection.zone.everywhere() ? "has no points" : "has no points in the selection");
   std::vector<ColumnInfo> columns = scan->columns();
   if (scan->extension != ".bin") {
     const Result<TileFile> file = open_node(*scan, scan->nodes.front());

@@ -99,7 +99,7 @@ Status ScanStream::examine(std::span<const std::byte> bytes, const std::filesyst
           .and_then([&](std::unique_ptr<RowSource> all) { return select_rows(std::move(all), selection); });
   if (!rows) return fail(rows.error().kind, path.string() + ": " + rows.error().message);
   rows_ = std::move(*rows);
-  return examine_rows(path, sample);
+  return examine_rows(path, sample, !selection.everything());
 }
 
 Status ScanStream::examine_folder(const ScanFolder& folder, const std::filesystem::path& path,
@@ -111,15 +111,16 @@ Status ScanStream::examine_folder(const ScanFolder& folder, const std::filesyste
       });
   if (!rows) return fail(rows.error().kind, path.string() + ": " + rows.error().message);
   rows_ = std::move(*rows);
-  return examine_rows(path, sample);
+  return examine_rows(path, sample, !selection.everything());
 }
 
-Status ScanStream::examine_rows(const std::filesystem::path& path, std::optional<uint64_t> sample) {
+Status ScanStream::examine_rows(const std::filesystem::path& path, std::optional<uint64_t> sample, bool selected) {
   path_ = path;
   const auto named = [&path](const Error& error) { return fail(error.kind, path.string() + ": " + error.message); };
   if (Status taken = take_sample(sample); !taken) return named(taken.error());
   const Result<TableFacts> facts = survey_rows(*rows_, file_ ? &*file_ : nullptr);
   if (!facts) return named(facts.error());
+  if (selected && facts->rows == 0) return named({ErrorKind::kInvalidInput, "has no points in the selection"});
   Result<TableMeaning> meaning = decide_meaning(*rows_, *facts);
   if (!meaning) return named(meaning.error());
   meaning_ = std::move(*meaning);
@@ -140,7 +141,7 @@ Result<ScanStream> ScanStream::of_rows(std::unique_ptr<RowSource> rows, const st
                                        std::optional<uint64_t> sample) {
   ScanStream stream;
   stream.rows_ = std::move(rows);
-  if (Status status = stream.examine_rows(path, sample); !status) return fail(std::move(status.error()));
+  if (Status status = stream.examine_rows(path, sample, false); !status) return fail(std::move(status.error()));
   return stream;
 }
 

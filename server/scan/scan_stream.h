@@ -50,7 +50,7 @@ class ScanStream {
                  std::optional<uint64_t> sample, const Selection& selection);
   Status examine_folder(const ScanFolder& folder, const std::filesystem::path& path, const DecodingLimit& limit,
                         std::optional<uint64_t> sample, const Selection& selection);
-  Status examine_rows(const std::filesystem::path& path, std::optional<uint64_t> sample);
+  Status examine_rows(const std::filesystem::path& path, std::optional<uint64_t> sample, bool selected);
   Status take_sample(std::optional<uint64_t> sample);
 
   std::filesystem::path path_;

@@ -170,6 +170,22 @@ TEST_F(SurfcastdTest, ColoursAScanWithAPictureFromAbove) {
   EXPECT_EQ(without.err.find("surfcastd: none.tif"), 0U) << without.err;
 }
 
+TEST_F(SurfcastdTest, ExportsAPartOfAScan) {
+  std::ofstream(folder_ / "scan.xyz") << "1 1 0\n2 1 0\n1 2 0\n2 2 5\n9 9 9\n";
+  const Answer answer =
+      run("export scan.xyz --output part.csv --corridor 3,0,1,5,1@0,4 --bounds 0,0,9,1 --bounds=0,2,1,2");
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  EXPECT_EQ(answer.out.find("3 points, "), 0U) << answer.out;
+  EXPECT_EQ(content(folder_ / "part.csv"), "x,y,z\n1,1,0\n2,1,0\n1,2,0\n");
+  const Answer empty = run("export scan.xyz --output none.las --bounds 50,50,60,60");
+  EXPECT_EQ(empty.exit_code, 1);
+  expect_one_line_error(empty);
+  EXPECT_FALSE(fs::exists(folder_ / "none.las"));
+  for (const char* flag : {"--bounds 1,2,3", "--corridor 3,0,0", "--corridor 3,0,0,1,1@2", "--corridor -1,0,0,1,1"}) {
+    EXPECT_EQ(run("export scan.xyz --output part.csv " + std::string(flag)).exit_code, 2) << flag;
+  }
+}
+
 TEST_F(SurfcastdTest, MakesSurfacesOfAVolume) {
   write_ramp(folder_ / "ramp.nrrd");
   const Answer answer = run("build ramp.nrrd --iso 9.5,200,30,4 --iso=4 --output model.surf --report report.json");
@@ -427,7 +443,7 @@ TEST_F(SurfcastdTest, AWrongCommandIsAnsweredWithTheRightOnes) {
   EXPECT_EQ(answer.exit_code, 2);
   expect_one_line_error(answer);
   EXPECT_NE(answer.err.find("'bild' (did you mean 'build'?)"), std::string::npos) << answer.err;
-  EXPECT_NE(answer.err.find("build, colorize, healthcheck, inspect, pick, render, serve"), std::string::npos)
+  EXPECT_NE(answer.err.find("build, colorize, export, healthcheck, inspect, pick, render, serve"), std::string::npos)
       << answer.err;
 }
 
@@ -436,7 +452,7 @@ TEST_F(SurfcastdTest, ACommandLineWithoutACommandNamesThem) {
   EXPECT_EQ(answer.exit_code, 2);
   expect_one_line_error(answer);
   EXPECT_NE(answer.err.find("a command is missing"), std::string::npos) << answer.err;
-  EXPECT_NE(answer.err.find("build, colorize, healthcheck, inspect, pick, render, serve"), std::string::npos)
+  EXPECT_NE(answer.err.find("build, colorize, export, healthcheck, inspect, pick, render, serve"), std::string::npos)
       << answer.err;
 }
 

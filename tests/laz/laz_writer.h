@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "laz/chunk_encoders.h"
 #include "laz/laz_file.h"
 
 namespace surfcast::laz::testing {
@@ -25,6 +26,9 @@ struct LazWriter {
   [[nodiscard]] std::vector<std::byte> laszip_record() const;
   /// The point data of a file, at offset `data_offset` of it.
   [[nodiscard]] std::vector<std::byte> point_data(std::span<const std::byte> records, size_t data_offset = 0) const;
+
+ private:
+  [[nodiscard]] Coding coding() const;
 };
 
 }  // namespace surfcast::laz::testing

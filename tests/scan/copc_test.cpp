@@ -185,11 +185,11 @@ TEST_F(CopcTest, ASelectedBoxHasThePointsThatTheWholeFileHasThere) {
   ASSERT_TRUE(all) << all.error().message;
   ASSERT_EQ(all->positions.size(), all_nodes().size() * kNodePoints);
   Selection selection;
-  selection.bounds = box_of(100, 37, 25);
+  selection.zone.boxes = {box_of(100, 37, 25)};
   selection.classes = {2, 4};
   Points expected;
   for (size_t i = 0; i < all->positions.size(); ++i) {
-    if (!contains(*selection.bounds, all->positions[i]) || (all->classes[i] != 2 && all->classes[i] != 4)) continue;
+    if (!geometry::contains(selection.zone.boxes[0], all->positions[i]) || (all->classes[i] != 2 && all->classes[i] != 4)) continue;
     expected.positions.push_back(all->positions[i]);
     expected.classes.push_back(all->classes[i]);
   }
@@ -204,7 +204,7 @@ TEST_F(CopcTest, OfAHundredthOfTheAreaAtMostThreeHundredthsOfTheBytesAreRead) {
   const auto bytes = testing::as_bytes(file_);
   const Result<LasHeader> header = parse_las_header(bytes);
   ASSERT_TRUE(header);
-  const auto nodes = read_copc_nodes(bytes, header->copc_record, box_of(80.5, 80.5, 32));
+  const auto nodes = read_copc_nodes(bytes, header->copc_record, {{box_of(80.5, 80.5, 32)}, {}});
   ASSERT_TRUE(nodes) << nodes.error().message;
   uint64_t sum = header->data_offset + nodes->page_bytes;
   for (const laz::Chunk& chunk : nodes->chunks) sum += chunk.size;
@@ -222,7 +222,7 @@ TEST_F(CopcTest, EveryNthPointOfEachPieceCanBeRead) {
 std::string error_with(std::string file, size_t offset, uint64_t number) {
   laz::store(reinterpret_cast<std::byte*>(&file[offset]), number);
   Selection selection;
-  selection.bounds = box_of(0, 0, 320);
+  selection.zone.boxes = {box_of(0, 0, 320)};
   const Result<Points> points = read(file, selection);
   return points ? "" : points.error().message;
 }

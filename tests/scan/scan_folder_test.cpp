@@ -111,7 +111,7 @@ TEST_F(ScanFolderTest, TilesOfEptOutsideOfTheBoxAreNotOpened) {
             [](std::string text) { return text; });
   fs::remove(folder_ / "ept-data/1-1-0-0.bin");
   Selection selection;
-  selection.bounds = box_of({0, 0, 0}, {3, 8, 8});
+  selection.zone.boxes = {box_of({0, 0, 0}, {3, 8, 8})};
   const Result<testing::WholeScan> points = read(selection);
   ASSERT_TRUE(points) << points.error().message;
   EXPECT_THAT(points->positions, ElementsAre(glm::dvec3(2, 2, 0.25), glm::dvec3(1, 7, 7)));
@@ -180,7 +180,7 @@ TEST_F(ScanFolderTest, TheHierarchyOfPotree1MayStandInItsDescription) {
   write("data/r4.bin", bin_point(1, 2, 3));
   EXPECT_EQ(read().value().size(), 2U);
   Selection selection;
-  selection.bounds = box_of({10, 0, 0}, {11, 8, 8});
+  selection.zone.boxes = {box_of({10, 0, 0}, {11, 8, 8})};
   fs::remove(folder_ / "data/r4.bin");
   EXPECT_EQ(read(selection).value().size(), 1U);
   write("cloud.js", cloud_js(R"("hierarchy": [["r", 2]])"));

@@ -13,7 +13,7 @@
 #include "laz/running_median.h"
 #include "laz/wave_packet_decoder.h"
 
-namespace surfcast::laz::testing {
+namespace surfcast::laz {
 
 /// The counterpart of CoordinateDecoder.
 template <size_t kStepContexts>
@@ -250,4 +250,4 @@ class Point10Encoder {
   IntegerEncoder<16> source_;
 };
 
-}  // namespace surfcast::laz::testing
+}  // namespace surfcast::laz

@@ -2,10 +2,12 @@
 
 #include <optional>
 
+#include "laz/integer_encoder.h"
 #include "laz/item_encoders.h"
+#include "laz/laszip_record.h"
 #include "laz/point14_encoder.h"
 
-namespace surfcast::laz::testing {
+namespace surfcast::laz {
 namespace {
 
 using Bytes = std::vector<std::byte>;
@@ -148,9 +150,7 @@ class LayeredEncoder {
   std::vector<LayerOut> extra_layers_;
 };
 
-}  // namespace
-
-std::vector<std::byte> encode_pointwise(const RecordLayout& layout, std::span<const std::byte> records) {
+Bytes encode_pointwise(const RecordLayout& layout, std::span<const std::byte> records) {
   const std::byte* last = records.data();
   ArithmeticEncoder out;
   Point10Encoder point(last);
@@ -176,7 +176,7 @@ std::vector<std::byte> encode_pointwise(const RecordLayout& layout, std::span<co
   return chunk;
 }
 
-std::vector<std::byte> encode_layered(const RecordLayout& layout, std::span<const std::byte> records, bool stale) {
+Bytes encode_layered(const RecordLayout& layout, std::span<const std::byte> records, bool stale) {
   LayeredEncoder encoder(layout, stale, records.data());
   for (size_t at = layout.length; at < records.size(); at += layout.length) encoder.encode(&records[at]);
   Bytes chunk(records.begin(), records.begin() + static_cast<ptrdiff_t>(layout.length));
@@ -185,4 +185,62 @@ std::vector<std::byte> encode_layered(const RecordLayout& layout, std::span<cons
   return chunk;
 }
 
-}  // namespace surfcast::laz::testing
+}  // namespace
+
+Bytes encode_chunk(const Coding& coding, std::span<const std::byte> records) {
+  // Up to version 3 the items behind the point keep to the first channel until the channel changes.
+  if (coding.layout.layered) return encode_layered(coding.layout, records, coding.layered_version < 4);
+  return encode_pointwise(coding.layout, records);
+}
+
+Bytes encode_chunk_table(const Coding& coding, std::span<const ChunkSize> chunks) {
+  ArithmeticEncoder out;
+  IntegerEncoder<32, 2> numbers;
+  ChunkSize last;
+  for (const ChunkSize& chunk : chunks) {
+    if (coding.chunk_size == kVariableChunks)
+      numbers.encode(out, static_cast<int32_t>(last.points), static_cast<int32_t>(chunk.points), 0);
+    numbers.encode(out, static_cast<int32_t>(last.bytes), static_cast<int32_t>(chunk.bytes), 1);
+    last = chunk;
+  }
+  Bytes table;
+  append_number(table, uint32_t{0});  // version
+  append_number(table, static_cast<uint32_t>(chunks.size()));
+  append(table, out.finish());
+  return table;
+}
+
+Bytes encode_laszip_record(const Coding& coding) {
+  const RecordLayout& layout = coding.layout;
+  const uint16_t newer = coding.layered_version;
+  Bytes items;
+  uint16_t count = 0;
+  const auto item = [&](uint16_t type, size_t size, uint16_t version) {
+    append_number(items, type);
+    append_number(items, static_cast<uint16_t>(size));
+    append_number(items, version);
+    ++count;
+  };
+  layout.layered ? item(10, 30, newer) : item(6, 20, 2);
+  if (layout.gps_time) item(7, 8, 2);
+  if (layout.color && !layout.layered) item(8, 6, 2);
+  if (layout.color && layout.layered) layout.infrared ? item(12, 8, newer) : item(11, 6, newer);
+  if (layout.wave_packet) layout.layered ? item(13, 29, newer) : item(9, 29, 1);
+  if (layout.extra_bytes() != 0)
+    layout.layered ? item(14, layout.extra_bytes(), newer) : item(0, layout.extra_bytes(), 2);
+  Bytes record;
+  append_number(record, static_cast<uint16_t>(layout.layered ? 3 : 2));  // compressor
+  append_number(record, uint16_t{0});                                    // arithmetic coder
+  append_number(record, uint8_t{3});                                     // version 3.4, revision 3, of LASzip
+  append_number(record, uint8_t{4});
+  append_number(record, uint16_t{3});
+  append_number(record, uint32_t{0});  // options
+  append_number(record, coding.chunk_size);
+  append_number(record, int64_t{-1});  // extended records: none are special
+  append_number(record, int64_t{-1});
+  append_number(record, count);
+  append(record, items);
+  return record;
+}
+
+}  // namespace surfcast::laz

@@ -6,9 +6,9 @@
 
 #include "laz/symbol_model.h"
 
-namespace surfcast::laz::testing {
+namespace surfcast::laz {
 
-/// The counterpart of ArithmeticDecoder, after the same description.
+/// Codes symbols for ArithmeticDecoder (Said 2004, FastAC, in LASzip's variant).
 class ArithmeticEncoder {
  public:
   void bit(BitModel& model, bool one) {
@@ -23,7 +23,6 @@ class ArithmeticEncoder {
     const uint32_t lower = model.lower(symbol) * unit;
     narrow(lower, symbol + 1 < kSymbols ? model.lower(symbol + 1) * unit - lower : length_ - lower);
     model.count(symbol);
-    empty_ = false;
   }
 
   void bits(uint32_t value, int count) {
@@ -35,9 +34,8 @@ class ArithmeticEncoder {
     narrow(value * unit, unit);
   }
 
-  /// All bytes; none if no symbol was coded.
+  /// All bytes: as many as a decoder reads, which takes four ahead.
   std::vector<std::byte> finish() {
-    if (empty_) return {};
     for (int i = 0; i < 4; ++i, base_ <<= 8) put_byte();
     return bytes_;
   }
@@ -62,8 +60,7 @@ class ArithmeticEncoder {
 
   uint32_t base_ = 0;
   uint32_t length_ = 0xFFFFFFFFU;
-  bool empty_ = true;
   std::vector<std::byte> bytes_;
 };
 
-}  // namespace surfcast::laz::testing
+}  // namespace surfcast::laz

@@ -6,7 +6,7 @@
 
 #include "laz/arithmetic_encoder.h"
 
-namespace surfcast::laz::testing {
+namespace surfcast::laz {
 
 /// The counterpart of IntegerDecoder.
 template <int kBits, uint32_t kContexts = 1>
@@ -57,4 +57,4 @@ class IntegerEncoder {
   std::array<SymbolModel<256>, kBits - 7> places_;
 };
 
-}  // namespace surfcast::laz::testing
+}  // namespace surfcast::laz

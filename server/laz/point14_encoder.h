@@ -6,7 +6,7 @@
 #include "laz/item_encoders.h"
 #include "laz/point14_decoder.h"
 
-namespace surfcast::laz::testing {
+namespace surfcast::laz {
 
 /// A layer is left out unless its field is once not what the decoder would take it for.
 struct LayerOut {
@@ -15,7 +15,8 @@ struct LayerOut {
 };
 
 struct Point14LayersOut {
-  LayerOut returns_xy, z, classification, flags, intensity, angle, user, source, time;
+  LayerOut returns_xy{{}, true};  ///< which decoders expect in chunks of a single point, too
+  LayerOut z, classification, flags, intensity, angle, user, source, time;
 };
 
 /// The counterpart of Point14Channel.
@@ -43,7 +44,6 @@ class Point14ChannelEncoder {
   void encode(Point14LayersOut& out, const Point14& to, uint32_t changes) {
     const bool time_changed = changes & 16;
     ArithmeticEncoder& xy = out.returns_xy.out;
-    out.returns_xy.changed = true;
     if (changes & 4) xy.symbol(returns_[last.returns], to.returns);
     if ((changes & 3) == 3 && time_changed) xy.symbol(numbers_[last.number], to.number);
     if ((changes & 3) == 3 && !time_changed) xy.symbol(number_steps_, ((to.number - last.number) & 15U) - 2);
@@ -105,4 +105,4 @@ class Point14ChannelEncoder {
   GpsTimeEncoder<false> time_;
 };
 
-}  // namespace surfcast::laz::testing
+}  // namespace surfcast::laz

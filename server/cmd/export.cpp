@@ -1,0 +1,64 @@
+#include "cmd/export.h"
+
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <string>
+
+#include <spdlog/fmt/fmt.h>
+
+#include "base/log.h"
+#include "builder/memory_budget.h"
+#include "cmd/selection_flags.h"
+#include "exporter/export_scan.h"
+
+namespace surfcast::cmd {
+namespace {
+
+struct ExportCommand {
+  std::filesystem::path source;
+  std::filesystem::path output;
+  std::string memory;
+  exporter::ExportOptions options;
+};
+
+Status export_points(ExportCommand& command) {
+  const Result<uint64_t> budget = builder::memory_budget(builder::parse_memory_size(command.memory));
+  if (!budget) return fail(budget.error());
+  command.options.limit = scan::DecodingLimit{*budget / 4};
+  const auto report = exporter::export_scan(command.source, command.output, command.options);
+  if (!report) return fail(report.error());
+  for (const std::string& note : report->notes) spdlog::warn("{}: {}", command.source.string(), note);
+  std::cout << fmt::format("{} points, {} bytes\n", report->points, report->bytes);
+  return {};
+}
+
+}  // namespace
+
+void add_export_command(CLI::App& app, Status& outcome) {
+  auto command = std::make_shared<ExportCommand>();
+  CLI::App* export_command = app.add_subcommand("export", "Write the points of a scan, or a part of them, into a file");
+  export_command->add_option("SCAN", command->source, "Scan: a file, or the folder of a scan in many files")
+      ->required();
+  export_command
+      ->add_option("--output", command->output, "File to write; .las, .laz, .ply or .csv at its end names the format")
+      ->required();
+  add_selection_flags(*export_command, command->options.selection);
+  export_command
+      ->add_option("--scale", command->options.scale,
+                   "Steps of the coordinates of LAS and LAZ, in units of the scan (default: those of the scan)")
+      ->check(CLI::PositiveNumber);
+  export_command
+      ->add_option("--chunk", command->options.chunk_size, "Points in a chunk of LAZ, which is decoded as a whole")
+      ->check(CLI::Range(1U, 1U << 24))
+      ->capture_default_str();
+  export_command
+      ->add_option("--memory", command->memory,
+                   "Memory limit, like 4G or 512M (default: a quarter of the machine's memory)")
+      ->check([](const std::string& text) {
+        return builder::parse_memory_size(text) ? std::string() : "not a size like 4G or 512M: " + text;
+      });
+  export_command->callback([command, &outcome] { outcome = export_points(*command); });
+}
+
+}  // namespace surfcast::cmd
