@@ -2,11 +2,13 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
 #include "base/result.h"
+#include "builder/place_inputs.h"
 #include "geometry/box.h"
 #include "scan/scan_schema.h"
 #include "scan/scan_stream.h"
@@ -34,8 +36,12 @@ class BuildInputs {
                                   std::optional<bool> z_up, uint64_t max_bytes, std::optional<uint64_t> sample,
                                   const std::function<void(double)>& progress);
 
+  /// Brings all inputs into one metric coordinate system, if they state any. Those that are moved are read once more
+  /// for their bounds.
+  Result<Placement> place(const SystemOptions& options);
+
   [[nodiscard]] const scan::ScanSchema& schema() const { return schema_; }
-  [[nodiscard]] const std::vector<scan::ScanStream>& streams() const { return streams_; }
+  [[nodiscard]] const std::vector<scan::ScanSchema>& schemas() const { return schemas_; }  ///< of each input
   [[nodiscard]] uint64_t size() const;           ///< points, including unusable ones
   [[nodiscard]] uint64_t size_of_files() const;  ///< points, beyond samples too
   [[nodiscard]] geometry::Box bounds() const;    ///< of the usable positions
@@ -52,7 +58,14 @@ class BuildInputs {
     size_t piece = 0;
   };
 
+  Status move(size_t input, const crs::Transformation& transformation);
+  void merge();
+
   std::vector<scan::ScanStream> streams_;
+  std::vector<scan::ScanSchema> schemas_;                          ///< of the streams, as their points are read here
+  std::vector<geometry::Box> bounds_;                              ///< likewise
+  std::vector<std::shared_ptr<const crs::Transformation>> moves_;  ///< of the streams; null: points stay
+  std::optional<bool> z_up_;                                       ///< of all inputs
   std::vector<PieceOfInput> pieces_;
   scan::ScanSchema schema_;
 };

@@ -61,8 +61,8 @@ Status check_bounds(const geometry::Box& bounds, const std::filesystem::path& ta
 
 std::vector<InputRadii> radii_of(const BuildInputs& inputs, const BuildParts& parts) {
   std::vector<InputRadii> radii;
-  for (size_t i = 0; i < inputs.streams().size(); ++i) {
-    const scan::ScanSchema& schema = inputs.streams()[i].schema();
+  for (size_t i = 0; i < inputs.schemas().size(); ++i) {
+    const scan::ScanSchema& schema = inputs.schemas()[i];
     if (schema.radii) radii.push_back({schema.name, parts.radii()[i]});
   }
   return radii;
@@ -82,8 +82,8 @@ void note_unused_radii(const BuildOptions& options, BuildReport& report) {
 surfel::SurfelCloud common_cloud(const BuildInputs& inputs, bool oriented) {
   surfel::SurfelCloud cloud = empty_cloud(inputs.schema(), 0);
   cloud.oriented = oriented;
-  for (const scan::ScanStream& stream : inputs.streams()) {
-    cloud.sources.push_back({stream.schema().name, 0, 0, stream.schema().grid});
+  for (const scan::ScanSchema& input : inputs.schemas()) {
+    cloud.sources.push_back({input.name, 0, 0, input.grid});
   }
   return cloud;
 }
@@ -212,6 +212,7 @@ Status write(const BuildInputs& inputs, BuildParts& parts, const MemoryPlan& mem
   }
   const Result<model::ModelWriter*> writer = output.writer(model::schema_of(common));
   if (!writer) return fail(writer.error());
+  (*writer)->set_georeference(report.georeference);
   ModelPass pass(parts, **writer, options, std::move(simplified));
   if (Status status = pass.write_parts(memory, clock); !status) return status;
   clock.begin("writing levels above", 1);
@@ -238,9 +239,11 @@ Status build_surfels(std::span<const std::filesystem::path> inputs, ModelOutput&
   const std::filesystem::path& target = output.target();
   clock.begin("reading", inputs.size());
   const OpenInput open = opener(options, target, report);
-  const Result<BuildInputs> opened = BuildInputs::open(inputs, open, options.z_up, report.memory_budget, options.sample,
-                                                       [&clock](double) { clock.step(); });
+  Result<BuildInputs> opened = BuildInputs::open(inputs, open, options.z_up, report.memory_budget, options.sample,
+                                                 [&clock](double) { clock.step(); });
   if (!opened) return fail(opened.error());
+  Result<Placement> placement = opened->place(options.systems);
+  if (!placement) return fail(placement.error().kind, target.string() + ": " + placement.error().message);
   report.points_in_scans = opened->size_of_files();
   clock.know_points(opened->size());
   if (Status status = check_bounds(opened->bounds(), target); !status) return status;
@@ -248,6 +251,9 @@ Status build_surfels(std::span<const std::filesystem::path> inputs, ModelOutput&
   if (!memory) return fail(memory.error().kind, target.string() + ": " + memory.error().message);
   if (options.part_points) memory->split_into(*options.part_points);
   report.scan.notes = opened->notes();
+  report.scan.notes.insert(report.scan.notes.end(), placement->notes.begin(), placement->notes.end());
+  report.transformed = std::move(placement->transformed);
+  report.georeference = std::move(placement->georeference);
   for (const InputMesh& mesh : report.meshes) {
     for (const std::string& note : mesh.report.notes) report.scan.notes.push_back(mesh.input + ": " + note);
   }
@@ -310,6 +316,11 @@ Status check_headers(const InputsByKind& inputs) {
 Status build_kinds(const InputsByKind& inputs, ModelOutput& output, const BuildOptions& options, StageClock& clock,
                    BuildReport& report) {
   Status status = check_headers(inputs);
+  if (status && inputs.scans.empty() && (!options.systems.assigned.empty() || !options.systems.target.empty())) {
+    return fail(ErrorKind::kInvalidInput, output.target().string() +
+                                              ": no input has coordinates on the earth: "
+                                              "--crs and --to-crs need a scan or a mesh");
+  }
   if (status && !inputs.scans.empty()) status = build_surfels(inputs.scans, output, options, clock, report);
   if (status && !inputs.grids.empty()) status = build_volumes(inputs.grids, output, options, clock, report);
   if (status && !inputs.gaussians.empty()) status = build_gaussians(inputs.gaussians, output, options, clock, report);

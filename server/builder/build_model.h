@@ -13,6 +13,7 @@
 #include "builder/build_inputs.h"
 #include "builder/input_files.h"
 #include "builder/mesh_input.h"
+#include "builder/place_inputs.h"
 #include "grid/grid_header.h"
 #include "model/ellipsoid_source.h"
 #include "scan/selection.h"
@@ -32,6 +33,7 @@ struct BuildOptions {
   std::optional<simplify::ErrorBound> simplify{};  ///< of the surfaces of scans; none: every point is kept
   scan::Selection selection{};                     ///< points of scans that are read, where `open` does not read them
   MeshOptions meshes{};
+  SystemOptions systems{};          ///< where scans and meshes lie on the earth
   OpenInput open{};                 ///< how scans and grids are read as points; none: grids become volumes
   std::optional<InputKind> kind{};  ///< of all inputs, whatever their content; none: as it says
   std::optional<grid::TensorOrder> tensor_order{};  ///< of six components that nothing says the order of
@@ -54,6 +56,8 @@ struct BuildReport {
   scan::SurfelReport scan;
   std::vector<InputRadii> radii;  ///< of the inputs that have a column for them
   std::vector<InputMesh> meshes;
+  std::vector<TransformedInput> transformed{};  ///< the inputs that were brought into the system of the model
+  model::Georeference georeference{};           ///< of the model
   std::optional<simplify::SimplifyReport> simplified{};
   uint64_t points_in_scans = 0;  ///< beyond BuildOptions::sample too
   uint64_t samples = 0;          ///< of the volumes

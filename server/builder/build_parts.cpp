@@ -115,16 +115,15 @@ PartFindings spread_findings(const scan::PartSurfels& surfels, std::vector<uint3
 
 BuildParts::BuildParts(const BuildInputs& inputs, std::vector<Part> plan, const geometry::RootCube& root)
     : bounds_(inputs.bounds()), points_(inputs.size()), root_(root), plan_(std::move(plan)), finder_(plan_, root) {
-  const bool exact = std::all_of(inputs.streams().begin(), inputs.streams().end(), [](const scan::ScanStream& stream) {
-    return stream.schema().surface_step.has_value();
-  });
+  const bool exact = std::all_of(inputs.schemas().begin(), inputs.schemas().end(),
+                                 [](const scan::ScanSchema& input) { return input.surface_step.has_value(); });
   scene_ = {bounds_, inputs.schema().z_up, inputs.schema().normals && !exact};
-  for (const scan::ScanStream& stream : inputs.streams()) {
-    sensors_.push_back(stream.schema().sensor);
-    surface_steps_.push_back(stream.schema().surface_step);
-    exact_radii_.push_back(stream.schema().exact_radii);
-    two_sided_ = two_sided_ || stream.schema().two_sided;
-    names_.push_back({stream.schema().name, stream.schema().grid});
+  for (const scan::ScanSchema& input : inputs.schemas()) {
+    sensors_.push_back(input.sensor);
+    surface_steps_.push_back(input.surface_step);
+    exact_radii_.push_back(input.exact_radii);
+    two_sided_ = two_sided_ || input.two_sided;
+    names_.push_back({input.name, input.grid});
   }
 }
 

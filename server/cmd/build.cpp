@@ -30,6 +30,7 @@
 #include "builder/grid_input.h"
 #include "builder/memory_budget.h"
 #include "cmd/build_progress.h"
+#include "cmd/georeference_text.h"
 #include "cmd/iso_flag.h"
 #include "cmd/mesh_flags.h"
 #include "cmd/radius_flag.h"
@@ -58,6 +59,7 @@ struct BuildCommand {
   std::optional<builder::InputKind> kind;
   std::optional<grid::TensorOrder> tensor_order;
   builder::MeshOptions meshes;
+  builder::SystemOptions systems;
 };
 
 /// A share of the processors that a build gets by itself, points a second and processor: by the processor time of 10^7
@@ -164,6 +166,26 @@ nlohmann::ordered_json to_json(const std::vector<builder::InputMesh>& meshes) {
   return json;
 }
 
+/// The system of the model, and how inputs came into it.
+std::string system_lines(const builder::BuildReport& report) {
+  std::string lines;
+  for (const builder::TransformedInput& input : report.transformed) {
+    lines += fmt::format("{}: from {} to {} by {}, {}\n", input.input, input.from, input.to, input.operation,
+                         input.accuracy ? fmt::format("accuracy {} m", *input.accuracy) : "accuracy unknown");
+  }
+  if (report.georeference.known()) lines += "coordinate system: " + name_of(report.georeference.system) + "\n";
+  return lines;
+}
+
+nlohmann::ordered_json to_json(const std::vector<builder::TransformedInput>& inputs) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const builder::TransformedInput& input : inputs) {
+    json.push_back({{"input", input.input}, {"from", input.from}, {"to", input.to}, {"operation", input.operation}});
+    if (input.accuracy) json.back()["accuracy"] = *input.accuracy;
+  }
+  return json;
+}
+
 /// What a simplified model is, and its errors.
 std::string simplify_lines(const BuildCommand& command, const builder::BuildReport& report) {
   if (!command.simplify || !report.simplified || !report.simplified->pays) return {};
@@ -260,6 +282,10 @@ std::string to_json(const BuildCommand& command, const builder::BuildReport& rep
   if (!surfaces.empty()) json["surfaces"] = to_json(surfaces);
   for (const builder::InputEllipsoids& input : report.ellipsoids) json["ellipsoids"].push_back(to_json(input));
   if (!report.meshes.empty()) json["meshes"] = to_json(report.meshes);
+  if (report.georeference.known()) {
+    json["coordinate_system"] = json_of(report.georeference);
+    json["transformed"] = to_json(report.transformed);
+  }
   if (command.simplify && report.simplified) json["simplify"] = to_json(*command.simplify, *report.simplified);
   for (const std::filesystem::path& input : command.inputs) json["inputs"].push_back(input.string());
   // File names need not be UTF-8.
@@ -307,6 +333,7 @@ Status build(const BuildCommand& command) {
     options.kind = command.kind;
     options.tensor_order = command.tensor_order;
     options.meshes = command.meshes;
+    options.systems = command.systems;
     options.simplify = command.simplify;
     if (!command.surfaces.empty()) options.open = std::bind_front(&isosurface::SurfaceInputs::open, &surfaces);
     report = builder::build_model(command.inputs, command.output, options,
@@ -314,10 +341,19 @@ Status build(const BuildCommand& command) {
   }
   if (!report) return fail(std::move(report.error()));
   for (const std::string& note : report->scan.notes) spdlog::warn("{}", note);
-  std::cout << surface_lines(surfaces.found()) << mesh_lines(report->meshes) << radii_lines(*report)
-            << simplify_lines(command, *report) << figures(*report);
+  std::cout << surface_lines(surfaces.found()) << mesh_lines(report->meshes) << system_lines(*report)
+            << radii_lines(*report) << simplify_lines(command, *report) << figures(*report);
   if (command.report.empty()) return {};
   return write_file_atomically(command.report, to_json(command, *report, surfaces.found()));
+}
+
+void add_system_flags(CLI::App& app, builder::SystemOptions& systems) {
+  CLI::Option* assigned = app.add_option("--crs", systems.assigned,
+                                         "Coordinate system of the inputs that state none, like EPSG:25832 or WKT");
+  app.add_flag("--override-crs", systems.overrides_stated, "Take --crs for all inputs, whatever they state")
+      ->needs(assigned);
+  app.add_option("--to-crs", systems.target,
+                 "Coordinate system that all inputs are brought into (default: that of the first input)");
 }
 
 void add_kind_flags(CLI::App& app, BuildCommand& command) {
@@ -366,6 +402,7 @@ void add_build_command(CLI::App& app, Status& outcome) {
   add_iso_flag(*build_command, command->surfaces);
   add_mesh_flags(*build_command, command->meshes);
   add_simplify_flag(*build_command, command->simplify);
+  add_system_flags(*build_command, command->systems);
   build_command->add_option("--report", command->report, "Write statistics of the build to this file as JSON");
   build_command
       ->add_option("--sample", command->sample,

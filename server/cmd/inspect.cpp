@@ -4,6 +4,7 @@
 #include <iostream>
 #include <memory>
 #include <string>
+#include <utility>
 
 #include "cmd/model_summary.h"
 #include "cmd/verify_model.h"
@@ -24,7 +25,10 @@ Status inspect(const InspectOptions& options) {
   if (options.verify) {
     if (Status status = verify_model(*model); !status) return status;
   }
-  const ModelSummary summary = summarize(*model, std::filesystem::file_size(options.model));
+  Result<model::Georeference> georeference = model::load_georeference(options.model);
+  if (!georeference) return fail(std::move(georeference.error()));
+  ModelSummary summary = summarize(*model, std::filesystem::file_size(options.model));
+  summary.georeference = std::move(*georeference);
   std::cout << (options.json ? to_json(summary) : to_text(summary));
   if (options.verify && !options.json) std::cout << "verified: every block\n";
   return {};

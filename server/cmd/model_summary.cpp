@@ -8,6 +8,7 @@
 
 #include <spdlog/fmt/fmt.h>
 
+#include "cmd/georeference_text.h"
 #include "model/volume_facts.h"
 
 namespace surfcast::cmd {
@@ -179,6 +180,8 @@ std::string to_text(const ModelSummary& summary) {
   text += fmt::format("bytes: {} ({:.3f} per {})\n", summary.file_bytes, summary.bytes_per_surfel(),
                       info.surfels > 0 ? "surfel" : "item");
   text += fmt::format("bounds: {} .. {}\n", text_of(info.bounds.min), text_of(info.bounds.max));
+  if (summary.georeference.known()) text += "coordinate system: " + name_of(summary.georeference.system) + "\n";
+  if (summary.georeference.source.known()) text += "source system: " + name_of(summary.georeference.source) + "\n";
   text += fmt::format("up: {}{}\n", info.upside_down ? "-" : "", info.z_up ? "z" : "y");
   text += fmt::format("oriented: {}\n", info.oriented ? "yes" : "no");
   text += fmt::format("color bits: {}\n", info.color_bits);
@@ -219,6 +222,7 @@ std::string to_json(const ModelSummary& summary) {
       {"classes", nlohmann::ordered_json::array()},
       {"levels", nlohmann::ordered_json::array()},
   };
+  if (summary.georeference.known()) json["coordinate_system"] = json_of(summary.georeference);
   for (const model::KindCount& kind : info.kinds) json["kinds"].push_back(json_of(kind));
   for (const model::Volume& volume : summary.volumes) json["volumes"].push_back(json_of(volume));
   for (const model::EllipsoidSource& source : summary.ellipsoids) json["ellipsoids"].push_back(json_of(source));

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "model/georeference.h"
 #include "model/model_file.h"
 
 namespace surfcast::cmd {
@@ -28,6 +29,7 @@ struct ModelSummary {
   std::vector<model::Volume> volumes;
   std::vector<LevelSummary> levels;  ///< finest first
   std::vector<model::EllipsoidSource> ellipsoids{};
+  model::Georeference georeference{};
 
   /// Of the leaves, of all kinds.
   [[nodiscard]] uint64_t items() const {

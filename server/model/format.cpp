@@ -230,7 +230,7 @@ std::vector<std::byte> write_header(const ModelHeader& header) {
   writer.put(header.directory_offset);
   writer.put(header.directory_bytes);
   writer.put(header.directory_checksum);
-  writer.put(uint64_t{0});
+  writer.put(header.georeference_offset);
   writer.put(checksum_of(writer.bytes()));
   return std::move(writer).take();
 }
@@ -260,7 +260,7 @@ Result<ModelHeader> read_header(std::span<const std::byte> head, uint64_t file_b
   header.directory_offset = reader.get<uint64_t>();
   header.directory_bytes = reader.get<uint64_t>();
   header.directory_checksum = reader.get<uint64_t>();
-  reader.get<uint64_t>();
+  header.georeference_offset = reader.get<uint64_t>();
   if (reader.get<uint64_t>() != checksum_of(head.first(kHeaderChecksumAt))) return damaged("model header is damaged");
   if (header.color_bits != 0 && header.color_bits != 8 && header.color_bits != 16) {
     return damaged("model header states a wrong colour depth");
@@ -269,6 +269,10 @@ Result<ModelHeader> read_header(std::span<const std::byte> head, uint64_t file_b
   if (header.file_bytes != file_bytes) return damaged("model is cut off or has bytes after its end");
   if (header.directory_offset < kHeaderBytes || header.directory_offset > file_bytes ||
       header.directory_bytes != file_bytes - header.directory_offset) {
+    return damaged("model header points outside the file");
+  }
+  if (header.georeference_offset != 0 &&
+      (header.georeference_offset < kHeaderBytes || header.georeference_offset > header.directory_offset)) {
     return damaged("model header points outside the file");
   }
   return header;

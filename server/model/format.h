@@ -41,6 +41,7 @@ struct ModelHeader {
   uint64_t directory_offset = 0;
   uint64_t directory_bytes = 0;
   uint64_t directory_checksum = 0;
+  uint64_t georeference_offset = 0;  ///< of Georeference, which reaches to the directory; 0: the file has none
 };
 
 std::vector<std::byte> write_header(const ModelHeader& header);

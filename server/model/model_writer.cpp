@@ -23,6 +23,7 @@ struct ModelWriter::State {
   std::vector<BlockRecord> records;             ///< in the order of the file; parents are indices into this list
   std::vector<std::vector<uint32_t>> children;  ///< of each record
   AttributeStatistics statistics;
+  Georeference georeference;
 };
 
 namespace {
@@ -154,6 +155,10 @@ void ModelWriter::set_ellipsoid_sources(std::vector<EllipsoidSource> sources) {
   state_->ellipsoids = std::move(sources);
 }
 
+void ModelWriter::set_georeference(Georeference georeference) {
+  state_->georeference = std::move(georeference);
+}
+
 Result<WriteReport> ModelWriter::finish() {
   AtomicFile& file = state_->file;
   if (state_->records.empty()) return fail(ErrorKind::kInvalidInput, "no surfels to write");
@@ -172,9 +177,13 @@ Result<WriteReport> ModelWriter::finish() {
   directory.ranges = state_->statistics.ranges(names);
   directory.classes = state_->statistics.classes();
   const std::vector<std::byte> tables = write_directory(directory);
-  const std::vector<std::byte> header =
-      write_header(make_header(state_->schema, directory.version(), tables, file.position()));
-  Status status = file.append(tables);
+  const uint64_t end_of_blocks = file.position();
+  Status status;
+  if (state_->georeference.known()) status = file.append(write_georeference(state_->georeference));
+  ModelHeader facts = make_header(state_->schema, directory.version(), tables, file.position());
+  if (state_->georeference.known()) facts.georeference_offset = end_of_blocks;
+  const std::vector<std::byte> header = write_header(facts);
+  if (status) status = file.append(tables);
   if (status) status = file.overwrite(0, header);
   if (status) status = file.commit();
   if (!status) return fail(std::move(status.error()));

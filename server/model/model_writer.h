@@ -12,6 +12,7 @@
 #include "model/block_decoder.h"
 #include "model/block_encoder.h"
 #include "model/ellipsoid_source.h"
+#include "model/georeference.h"
 #include "surfel/surfel_cloud.h"
 
 namespace surfcast::model {
@@ -60,6 +61,9 @@ class ModelWriter {
 
   /// The sources whose ellipsoids are blocks of the file. Call before finish().
   void set_ellipsoid_sources(std::vector<EllipsoidSource> sources);
+
+  /// Where on the earth the model lies, if that is known. Call before finish().
+  void set_georeference(Georeference georeference);
 
   /// Writes the tables and moves the file to its target. Fails if no block was added.
   Result<WriteReport> finish();

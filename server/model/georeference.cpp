@@ -1,0 +1,67 @@
+#include "model/georeference.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/positioned_file.h"
+#include "model/byte_stream.h"
+#include "model/format.h"
+
+namespace surfcast::model {
+namespace {
+
+Result<std::vector<std::byte>> read_range(const PositionedFile& file, uint64_t first, uint64_t end) {
+  std::vector<std::byte> bytes(end - first);
+  if (Status status = file.read(first, bytes); !status) return fail(std::move(status.error()));
+  return bytes;
+}
+
+Result<Georeference> georeference_of(const PositionedFile& file) {
+  const Result<std::vector<std::byte>> head = read_range(file, 0, std::min<uint64_t>(file.size(), kHeaderBytes));
+  if (!head) return fail(head.error());
+  const Result<ModelHeader> header = read_header(*head, file.size());
+  if (!header) return fail(header.error());
+  if (header->georeference_offset == 0) return Georeference();
+  const Result<std::vector<std::byte>> bytes = read_range(file, header->georeference_offset, header->directory_offset);
+  if (!bytes) return fail(bytes.error());
+  return read_georeference(*bytes);
+}
+
+}  // namespace
+
+std::vector<std::byte> write_georeference(const Georeference& georeference) {
+  ByteWriter strings;
+  for (const CoordinateSystem* system : {&georeference.system, &georeference.source}) {
+    for (const std::string* text : {&system->name, &system->id, &system->wkt}) strings.put_string(*text);
+  }
+  ByteWriter writer;
+  writer.put(checksum_of(strings.bytes()));
+  writer.put_bytes(strings.bytes());
+  return std::move(writer).take();
+}
+
+Result<Georeference> read_georeference(std::span<const std::byte> bytes) {
+  ByteReader reader(bytes);
+  const auto checksum = reader.get<uint64_t>();
+  if (!reader.ok() || checksum != checksum_of(reader.rest())) {
+    return fail(ErrorKind::kInvalidInput, "model states a damaged coordinate system");
+  }
+  Georeference georeference;
+  for (CoordinateSystem* system : {&georeference.system, &georeference.source}) {
+    for (std::string* text : {&system->name, &system->id, &system->wkt}) *text = reader.get_string();
+  }
+  if (!reader.ok() || !reader.rest().empty() || !georeference.known()) {
+    return fail(ErrorKind::kInvalidInput, "model states a damaged coordinate system");
+  }
+  return georeference;
+}
+
+Result<Georeference> load_georeference(const std::filesystem::path& path) {
+  const Result<PositionedFile> file = PositionedFile::open(path);
+  if (!file) return fail(file.error());
+  return georeference_of(*file).map_error([&](const Error& error) {
+    return Error{error.kind, path.string() + ": " + error.message};
+  });
+}
+
+}  // namespace surfcast::model
