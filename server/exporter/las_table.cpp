@@ -10,6 +10,7 @@
 #include <string_view>
 #include <utility>
 
+#include "crs/coordinate_system.h"
 #include "exporter/las_bytes.h"
 #include "exporter/table_format.h"
 
@@ -91,9 +92,8 @@ void place_attributes(const ScanSchema& schema, LasTable& table, ExtraBytes& ext
   if (schema.radii) table.radius_offset = extra.add("Radius", ScalarType::kFloat32);
 }
 
-/// GeoKeys (OGC 19-008r4) of a code. Those of geographic systems are the codes from 4001 to 4999.
-Bytes geo_keys(uint16_t code) {
-  const bool geographic = code > 4000 && code < 5000;
+/// GeoKeys (OGC 19-008r4) of the code of a geographic or projected system.
+Bytes geo_keys(uint16_t code, bool geographic) {
   Bytes keys;
   const auto add_key = [&keys](uint16_t key, uint16_t place, uint16_t count, uint16_t value) {
     for (const uint16_t number : std::to_array<uint16_t>({key, place, count, value})) add(keys, number);
@@ -113,16 +113,21 @@ std::optional<uint16_t> epsg_code(std::string_view crs) {
   return code;
 }
 
-/// Returns whether the system is stated as WKT. Other texts, which LAS has no place for, are left out.
-bool add_system(const std::string& crs, LasHead& head) {
-  if (const auto code = epsg_code(crs)) {
-    head.records.push_back(las_record("LASF_Projection", 34735, geo_keys(*code)));
+/// Returns whether the system is stated as WKT. Codes have GeoKeys, which more programs read, if LAS knows keys for
+/// their kind. Texts that are no WKT are left out: LAS has no place for them.
+bool add_system(const std::string& text, LasHead& head) {
+  const auto code = epsg_code(text);
+  Result<crs::CoordinateSystem> system = fail(ErrorKind::kInvalidInput, "not a code of EPSG");
+  if (code) system = crs::read_system(text);
+  const bool geographic = system && system->kind == crs::SystemKind::kGeographic;
+  if (geographic || (system && system->kind == crs::SystemKind::kProjected)) {
+    head.records.push_back(las_record("LASF_Projection", 34735, geo_keys(*code, geographic)));
     return false;
   }
-  const bool wkt = crs.find('[') != std::string::npos && crs.size() < UINT16_MAX;
-  if (!wkt) return false;
-  Bytes body(crs.size() + 1);
-  put_text(body, 0, crs);
+  const std::string& wkt = system ? system->wkt : text;
+  if (wkt.find('[') == std::string::npos || wkt.size() >= UINT16_MAX) return false;
+  Bytes body(wkt.size() + 1);
+  put_text(body, 0, wkt);
   head.records.push_back(las_record("LASF_Projection", 2112, body));
   return true;
 }

@@ -1,6 +1,8 @@
 #include "exporter/las_table.h"
 
+#include <array>
 #include <cmath>
+#include <cstring>
 #include <limits>
 
 #include <gmock/gmock.h>
@@ -84,6 +86,38 @@ TEST(LasTableTest, AttributesThatNoFieldCanHoldBecomeExtraBytes) {
   ASSERT_EQ(table->head.records.size(), 1U);
   EXPECT_EQ(table->head.records[0].size(), 54U + 2 * 192);
   EXPECT_EQ(table->places[1].field.offset, 24U);
+}
+
+TEST(LasTableTest, CodesHaveTheGeoKeyOfTheirKind) {
+  struct Case {
+    const char* crs;
+    uint16_t key;  ///< of the third entry: 2048 geographic, 3072 projected (OGC 19-008r4)
+    uint16_t code;
+  };
+  for (const Case& c : {Case{"EPSG:25832", 3072, 25832}, {"EPSG:4326", 2048, 4326}, {"EPSG:6318", 2048, 6318}}) {
+    scan::ScanSchema schema = schema_of({});
+    schema.crs = c.crs;
+    const auto table = plan(schema);
+    ASSERT_TRUE(table);
+    ASSERT_EQ(table->head.records.size(), 1U) << c.crs;
+    std::array<uint16_t, 4> entry{};
+    std::memcpy(entry.data(), &table->head.records[0][54 + 16], sizeof(entry));
+    EXPECT_EQ(entry[0], c.key) << c.crs;
+    EXPECT_EQ(entry[3], c.code);
+  }
+}
+
+TEST(LasTableTest, CodesWithoutAGeoKeyAreWrittenAsWkt) {
+  scan::ScanSchema schema = schema_of({});
+  schema.crs = "EPSG:4978";  // geocentric
+  const auto table = plan(schema);
+  ASSERT_TRUE(table);
+  ASSERT_EQ(table->head.records.size(), 1U);
+  uint16_t id = 0;
+  std::memcpy(&id, &table->head.records[0][18], sizeof(id));
+  EXPECT_EQ(id, 2112);
+  schema.crs = "here";
+  EXPECT_EQ(plan(schema)->head.records.size(), 0U);
 }
 
 TEST(LasTableTest, ValuesBeyondTheirBitsAreNamed) {
