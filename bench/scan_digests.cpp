@@ -133,7 +133,7 @@ int main(int argc, char** argv) {
                     &box.max.z) != 6) {
       return 2;
     }
-    selection.bounds = box;
+    selection.zone.boxes = {box};
     first = 3;
   }
   int failures = 0;

@@ -1,163 +1,29 @@
 #include "crs/coordinate_system.h"
 
-#include <algorithm>
-#include <cctype>
-#include <cmath>
-#include <utility>
-
-#include "crs/proj_objects.h"
+#include "crs/load_proj.h"
 
 namespace surfcast::crs {
-namespace {
-
-/// The code of an authority, like EPSG:25832+7837. Nothing else is given to proj_create, which would also read files.
-bool is_code(std::string_view text) {
-  const size_t colon = text.find(':');
-  if (colon == std::string_view::npos || colon == 0 || colon + 1 == text.size()) return false;
-  const auto is_letter = [](unsigned char c) { return std::isalnum(c) != 0; };
-  const auto is_digit = [](unsigned char c) { return std::isalnum(c) != 0 || c == '+' || c == '_' || c == '.'; };
-  return std::all_of(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(colon), is_letter) &&
-         std::all_of(text.begin() + static_cast<std::ptrdiff_t>(colon) + 1, text.end(), is_digit) &&
-         text.substr(0, colon) != "init";
-}
-
-/// The first words of a text that is no system, for a line of an error.
-std::string beginning(std::string_view text) {
-  constexpr size_t kShown = 60;
-  std::string shown(text.substr(0, kShown));
-  std::replace_if(
-      shown.begin(), shown.end(), [](unsigned char c) { return std::iscntrl(c) != 0; }, ' ');
-  return text.size() > kShown ? shown + "..." : shown;
-}
-
-Object parse_text(PJ_CONTEXT* context, const std::string& text) {
-  if (!is_code(text)) return parse_system(context, text);
-  Object system(proj_create(context, text.c_str()));
-  return system && proj_is_crs(system.get()) != 0 ? std::move(system) : nullptr;
-}
-
-/// The zone of the universal transverse Mercator system, 1 to 60.
-int utm_zone(double longitude) {
-  return std::clamp(static_cast<int>(std::floor((longitude + 180) / 6)) + 1, 1, 60);
-}
-
-/// The geographic system of the datum that a geographic or geocentric system is on, in two dimensions.
-Object geographic_base(PJ_CONTEXT* context, const PJ* horizontal) {
-  if (proj_get_type(horizontal) != PJ_TYPE_GEOCENTRIC_CRS) return Object(proj_clone(context, horizontal));
-  const Object datum(proj_crs_get_datum_forced(context, horizontal));
-  const Object axes(proj_create_ellipsoidal_2D_cs(context, PJ_ELLPS2D_LATITUDE_LONGITUDE, nullptr, 0));
-  if (!datum || !axes) return nullptr;
-  return Object(proj_create_geographic_crs_from_datum(context, proj_get_name(horizontal), datum.get(), axes.get()));
-}
-
-Object utm_on(PJ_CONTEXT* context, const PJ* base, const glm::dvec2& degrees) {
-  const int zone = utm_zone(degrees.x);
-  const bool north = degrees.y >= 0;
-  const Object conversion(proj_create_conversion_utm(context, zone, north ? 1 : 0));
-  const Object axes(proj_create_cartesian_2D_cs(context, PJ_CART2D_EASTING_NORTHING, nullptr, 0));
-  if (!conversion || !axes) return nullptr;
-  const std::string name =
-      std::string(proj_get_name(base)) + " / UTM zone " + std::to_string(zone) + (north ? "N" : "S");
-  return Object(proj_create_projected_crs(context, name.c_str(), base, conversion.get(), axes.get()));
-}
-
-/// The same system as an authority states it, if one has it.
-Object identified(PJ_CONTEXT* context, Object system) {
-  int* confidence = nullptr;
-  const ObjectList found(proj_identify(context, system.get(), "EPSG", nullptr, &confidence));
-  const bool certain = found && proj_list_get_count(found.get()) > 0 && confidence[0] == 100;
-  proj_int_list_destroy(confidence);
-  return certain ? Object(proj_list_get(context, found.get(), 0)) : std::move(system);
-}
-
-}  // namespace
 
 Result<CoordinateSystem> read_system(std::string_view text) {
-  const Context context = make_context();
-  const Object system = parse_text(context.get(), std::string(text));
-  if (!system) {
-    return fail(ErrorKind::kInvalidInput, "not a coordinate system that PROJ knows: " + beginning(text));
-  }
-  CoordinateSystem described = describe(context.get(), system.get());
-  if (described.wkt.empty()) {
-    return fail(ErrorKind::kUnsupported, "a coordinate system that cannot be written as WKT: " + beginning(text));
-  }
-  return described;
+  const Result<const ProjFunctions*>& functions = load_proj();
+  if (!functions) return fail(functions.error());
+  return (*functions)->read_system(text);
 }
 
 bool are_same(const CoordinateSystem& a, const CoordinateSystem& b) {
-  if (a.wkt == b.wkt) return true;
-  const Context context = make_context();
-  const Object first = parse_system(context.get(), a.wkt);
-  const Object second = parse_system(context.get(), b.wkt);
-  return first && second &&
-         proj_is_equivalent_to_with_ctx(context.get(), first.get(), second.get(),
-                                        PJ_COMP_EQUIVALENT_EXCEPT_AXIS_ORDER_GEOGCRS) != 0;
+  return a.wkt == b.wkt || loaded_proj().are_same(a, b);
 }
 
 Result<CoordinateSystem> metric_system(const CoordinateSystem& system, const geometry::Box& degrees) {
-  if (system.is_metric()) return system;
-  const Context context = make_context();
-  const auto impossible = [&] {
-    return fail(ErrorKind::kUnsupported, "no metric system for " + system.name + ": " + last_problem(context.get()));
-  };
-  const Object parsed = parse_system(context.get(), system.wkt);
-  if (!parsed) return impossible();
-  const Object horizontal = horizontal_part(context.get(), parsed.get());
-  if (!horizontal) return impossible();
-  if (system.kind == SystemKind::kProjected) return describe(context.get(), horizontal.get());
-  if (degrees.empty()) {
-    return fail(ErrorKind::kInvalidInput, "the points are not where " + system.name + " has coordinates");
-  }
-  const Object base = geographic_base(context.get(), horizontal.get());
-  Object utm = base ? utm_on(context.get(), base.get(), glm::dvec2((degrees.min + degrees.max) * 0.5)) : nullptr;
-  if (!utm) return impossible();
-  const Object known = identified(context.get(), std::move(utm));
-  return describe(context.get(), known.get());
+  return loaded_proj().metric_system(system, degrees);
 }
 
 geometry::Box degrees_of(const CoordinateSystem& system, const geometry::Box& bounds) {
-  geometry::Box degrees;
-  if (bounds.empty() || system.kind == SystemKind::kOther) return degrees;
-  const Context context = make_context();
-  const Object parsed = parse_system(context.get(), system.wkt);
-  const Object horizontal = parsed ? horizontal_part(context.get(), parsed.get()) : nullptr;
-  constexpr double kFarthestHeight = 1e6;  // metres
-  const Object wgs84(proj_create(context.get(), "EPSG:4979"));
-  if (!horizontal || !wgs84) return degrees;
-  const Object raw(proj_create_crs_to_crs_from_pj(context.get(), horizontal.get(), wgs84.get(), nullptr, nullptr));
-  const Object to_degrees(raw ? proj_normalize_for_visualization(context.get(), raw.get()) : nullptr);
-  if (!to_degrees) return degrees;
-  for (int corner = 0; corner < 9; ++corner) {
-    glm::dvec3 p = (bounds.min + bounds.max) * 0.5;  // the last one; the corners of a box of a few metres may overflow
-    for (int axis = 0; corner < 8 && axis < 3; ++axis) {
-      p[axis] = ((corner >> axis) & 1) != 0 ? bounds.max[axis] : bounds.min[axis];
-    }
-    const PJ_COORD moved = proj_trans(to_degrees.get(), PJ_FWD, proj_coord(p.x, p.y, p.z, HUGE_VAL));
-    if (std::isfinite(moved.xyz.x) && std::isfinite(moved.xyz.y) && std::abs(moved.xyz.y) <= 90 &&
-        std::abs(moved.xyz.z) <= kFarthestHeight) {
-      degrees.include(glm::dvec3(moved.xyz.x, moved.xyz.y, 0));
-    }
-  }
-  return degrees;
+  return loaded_proj().degrees_of(system, bounds);
 }
 
 bool is_in_area_of_use(const CoordinateSystem& system, const geometry::Box& bounds) {
-  const Context context = make_context();
-  const Object parsed = parse_system(context.get(), system.wkt);
-  double west = 0;
-  double south = 0;
-  double east = 0;
-  double north = 0;
-  if (!parsed || proj_get_area_of_use(context.get(), parsed.get(), &west, &south, &east, &north, nullptr) == 0 ||
-      west < -180) {  // PROJ states -1000 for unknown
-    return true;
-  }
-  const geometry::Box degrees = degrees_of(system, bounds);
-  if (degrees.empty()) return system.kind == SystemKind::kOther;
-  const glm::dvec3 middle = (degrees.min + degrees.max) * 0.5;
-  const bool longitude = west <= east ? middle.x >= west && middle.x <= east : middle.x >= west || middle.x <= east;
-  return longitude && middle.y >= south && middle.y <= north;
+  return loaded_proj().is_in_area_of_use(system, bounds);
 }
 
 }  // namespace surfcast::crs

@@ -12,6 +12,8 @@
 
 namespace surfcast::crs {
 
+struct Operation;
+
 /// Brings positions from one system into another by one operation of PROJ, the best one for a box that needs no grid
 /// which is not installed. All methods are const and may be called from several threads at once.
 ///
@@ -38,9 +40,8 @@ class Transformation {
   void apply(std::span<glm::dvec3> positions) const;
 
  private:
-  struct State;
-  explicit Transformation(std::unique_ptr<State> state);
-  std::unique_ptr<State> state_;
+  explicit Transformation(std::unique_ptr<Operation> operation);
+  std::unique_ptr<Operation> operation_;
 };
 
 }  // namespace surfcast::crs

@@ -1,13 +1,11 @@
 #include "encode/encode_picture.h"
 
 #include <algorithm>
-#include <filesystem>
 #include <limits>
 #include <string>
 
-#include <dlfcn.h>
-
 #include "base/contract.h"
+#include "base/load_module.h"
 #include "encode/codec_module.h"
 
 namespace surfcast::encode {
@@ -16,13 +14,11 @@ namespace {
 /// Loads the module that uses OpenImageIO. The library depends on some 250 others, which take longer to load than
 /// everything else at start. So commands that encode nothing do not load it.
 Result<EncodeFunction*> load_codecs() {
-  std::error_code code;
-  const std::filesystem::path programs = std::filesystem::read_symlink("/proc/self/exe", code).parent_path();
-  const std::string path = (programs / "../lib/surfcast" / kCodecModule).lexically_normal().string();
-  void* module = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
-  void* function = module != nullptr ? dlsym(module, kEncodeSymbol) : nullptr;
-  if (function == nullptr) return fail(ErrorKind::kInternal, std::string("cannot load the image codecs: ") + dlerror());
-  return reinterpret_cast<EncodeFunction*>(function);
+  return load_function(kCodecModule, kEncodeSymbol)
+      .map([](void* function) { return reinterpret_cast<EncodeFunction*>(function); })
+      .map_error([](const Error& error) {
+        return Error{error.kind, "the image codecs: " + error.message};
+      });
 }
 
 /// Longest side of a picture in this file format, pixels. It is checked before encoding because libjpeg would otherwise
