@@ -1,6 +1,6 @@
 # The two commands of the README for a bare Debian 12: make demo, make test. They install missing packages.
-.PHONY: build demo test bench bench-volumes peers peers-volumes asan tsan package tidy format-check configure packages \
-  lint-packages fuzz
+.PHONY: build demo test bench bench-volumes peers peers-volumes peers-tensors asan tsan package tidy format-check \
+  configure packages lint-packages fuzz
 
 build: configure
 	cmake --build --preset release
@@ -34,6 +34,12 @@ peers-volumes: configure
 	@cmake/install_packages.sh peers
 	cmake --build --preset release --target volume_laboratory
 	/usr/bin/python3 bench/peers/volumes.py build/bin/volume_laboratory --docs docs $(PEERS_FLAGS) $(GRIDS)
+
+# The tensor fields FIELDS by Surfcast and by vtkTensorGlyph, into docs/peers.md.
+peers-tensors: configure
+	@cmake/install_packages.sh peers
+	cmake --build --preset release --target glyph_bench
+	/usr/bin/python3 bench/peers/glyphs.py build/bin/glyph_bench --docs docs $(PEERS_FLAGS) $(FIELDS)
 
 # Runs the fast tests without GL, the tests of damaged input and the fast numerics tests with the address and undefined
 # behaviour sanitizers. Builds only these tests, because sanitizers double the compile time. clang compiles them in two

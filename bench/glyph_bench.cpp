@@ -1,7 +1,9 @@
-// glyph_bench INPUT [SIDE] [ideal] [superquadric] [export FOLDER]: pictures of a tensor field or a table of ellipsoids,
-// the whole of it in view, at rest and in motion at full size: wall and processor time after the first picture, the
-// stages, and with `ideal` dB beside 8 x 8 exact samples a pixel in double precision. INPUT: what `surfcastd build`
-// reads, or a model. `export` writes the glyphs, the camera and the ideal picture for bench/peers/glyphs.py.
+// glyph_bench INPUT [SIDE] [ideal] [superquadric] [moving SPACING] [export FOLDER]: pictures of a tensor field or a
+// table of ellipsoids, the whole of it in view, at rest and in motion at full size: wall and processor time after the
+// first picture, the stages, and with `ideal` dB beside 8 x 8 exact samples a pixel in double precision. INPUT: what
+// `surfcastd build` reads, or a model. `moving`: the picture in motion is that of a view which moves, with as many
+// glyphs as it may have at this spacing, in pixels. `export` writes the glyphs, the camera and the ideal picture for
+// bench/peers/glyphs.py.
 
 #include <algorithm>
 #include <cmath>
@@ -111,7 +113,7 @@ picture::Frame measure(render::Renderer& renderer, const std::shared_ptr<const m
 
 int main(int argc, char** argv) {
   if (argc < 2) {
-    std::fprintf(stderr, "usage: glyph_bench INPUT [SIDE] [ideal] [superquadric] [export FOLDER]\n");
+    std::fprintf(stderr, "usage: glyph_bench INPUT [SIDE] [ideal] [superquadric] [moving SPACING] [export FOLDER]\n");
     return 2;
   }
   std::filesystem::path path = argv[1];
@@ -133,9 +135,15 @@ int main(int argc, char** argv) {
   const auto renderer = bench::value_or_exit(render::Renderer::create({}));
   const picture::Frame rest = measure(*renderer, model, request);
   request.blends_behind = true;
+  const auto moving = std::ranges::find(words, "moving");
+  if (moving != words.end() && moving + 1 != words.end()) {
+    request.spacing = std::atof(std::string(*(moving + 1)).c_str());
+    request.rest_spacing = 0;
+  }
   const picture::Frame motion = measure(*renderer, model, request);
   if (const char* folder = std::getenv("SURFCAST_BENCH_PICTURES")) {
     reference::write_ppm(std::filesystem::path(folder) / "glyphs_rest.ppm", codes_of(rest.image));
+    reference::write_ppm(std::filesystem::path(folder) / "glyphs_motion.ppm", codes_of(motion.image));
   }
   if (ideal) {
     const auto frame = bench::value_or_exit(geometry::make_camera_frame(rest.camera, request.width, request.height));

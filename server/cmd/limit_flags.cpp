@@ -225,6 +225,10 @@ void add_server_flags(CLI::App& command, service::ServiceLimits& service, render
   add_size(command, "motion-upload", renderer.upload_bytes,
            "Blocks stored on the GPU in one picture in motion (default 16M). More: pictures in motion wait; less: "
            "detail arrives later");
+  add_count(command, "motion-glyphs", renderer.motion_glyphs,
+            "Ellipsoids of a picture in motion for each surfel that a surface over the whole picture has (default 2). "
+            "More: frames are drawn smaller; less: coarser ellipsoids while the view moves",
+            {1, 1'000'000});
   add_count(command, "remembered-views", renderer.viewers,
             "Views of one model whose motion is remembered (default 64). More: memory; less: detail flickers where "
             "more than these move");

@@ -23,6 +23,7 @@ class FileBlocks : public residency::BlockSource {
   [[nodiscard]] Result<residency::PackedBlock> load(uint32_t block, bool attributes) const override;
   /// The number of a block's kind in the table of kinds.
   [[nodiscard]] uint32_t kind_of(uint32_t block) const { return numbers_[model_->blocks()[block].kind]; }
+  [[nodiscard]] const Kind& kind(uint32_t block) const { return *kinds_[kind_of(block)]; }
 
  private:
   std::shared_ptr<const model::ModelFile> model_;

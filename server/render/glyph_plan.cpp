@@ -152,6 +152,12 @@ std::vector<double> glyph_reaches(const model::ModelFile& model, const picture::
   return reaches;
 }
 
+uint64_t most_glyphs(const picture::PictureRequest& request, uint32_t glyphs_per_surfel) {
+  const double spacing = std::max(request.spacing, 1e-3);
+  const double surfels = static_cast<double>(request.width) * request.height / (spacing * spacing);
+  return static_cast<uint64_t>(std::min(glyphs_per_surfel * surfels, 1e18));
+}
+
 double glyph_scale(const model::EllipsoidSource& source, const picture::GlyphOptions& glyphs) {
   if (glyphs.scale) return *glyphs.scale;
   switch (glyphs.radius) {

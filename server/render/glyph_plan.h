@@ -26,6 +26,11 @@ int attribute_number(const model::EllipsoidSource& source, const std::string& na
 /// BlockEntry::max_radius states it for pictures without options of glyphs. Empty if that is large enough.
 std::vector<double> glyph_reaches(const model::ModelFile& model, const picture::GlyphOptions& glyphs);
 
+/// The most glyphs of a picture in motion: so many of them for every surfel that a surface over the whole picture would
+/// have at the same spacing. A field fills space: without a limit its glyphs would increase with the third power of the
+/// resolution, most of them hidden behind others.
+uint64_t most_glyphs(const picture::PictureRequest& request, uint32_t glyphs_per_surfel);
+
 /// Sets the range of a coloured attribute. Fails if no source has the attribute of the colour or of a threshold.
 Status resolve_glyphs(std::span<const model::EllipsoidSource> sources, const picture::PictureRequest& request,
                       DisplayOptions& display);

@@ -152,6 +152,7 @@ struct Renderer::State {
                budgets_of(config, context->software())},
         programs(std::move(passes)),
         kinds(config.kinds),
+        motion_glyphs(config.motion_glyphs),
         viewers(config.viewers),
         list_entries(std::min(config.list_entries.value_or(residency::SurfelBuffer::device_limit()),
                               residency::SurfelBuffer::device_limit())),
@@ -205,9 +206,10 @@ struct Renderer::State {
   std::array<SplatBuffers, 3> buffers;  ///< of the picture being drawn, and of those that preempt it
   size_t depth = 0;                     ///< pictures being drawn: more than 1 while one preempts another
   std::map<std::pair<picture::SurfelColor, picture::ColorMap>, ConstantTexels>
-      color_tables;     ///< made at their first use
-  size_t viewers;       ///< see RendererConfig
-  size_t list_entries;  ///< of all tile lists of a region
+      color_tables;        ///< made at their first use
+  uint32_t motion_glyphs;  ///< see RendererConfig
+  size_t viewers;          ///< see RendererConfig
+  size_t list_entries;     ///< of all tile lists of a region
   residency::SurfelBuffer surfels;
   residency::Residency residency;
   std::map<uint64_t, std::unique_ptr<Scene>> scenes;  ///< by ModelFile::id
@@ -243,16 +245,20 @@ Result<residency::PreparedView> Renderer::State::prepare(Scene& scene, const pic
                                                          const geometry::CameraFrame& frame,
                                                          const Preemption& preemption) {
   const std::vector<bool> hidden = clear_blocks(scene.model(), display.volumes);
-  const residency::ViewParameters parameters{frame,
-                                             request.spacing,
-                                             display.clipped ? &request.clip : nullptr,
-                                             display.attributes,
-                                             request.viewer != 0,
-                                             hidden.empty() ? nullptr : &hidden,
-                                             request.rest_spacing,
-                                             sides_of(display),
-                                             ghost_spacing(display, request),
-                                             display.glyph_reaches.empty() ? nullptr : &display.glyph_reaches};
+  residency::ViewParameters parameters{frame,
+                                       request.spacing,
+                                       display.clipped ? &request.clip : nullptr,
+                                       display.attributes,
+                                       request.viewer != 0,
+                                       hidden.empty() ? nullptr : &hidden,
+                                       request.rest_spacing,
+                                       sides_of(display),
+                                       ghost_spacing(display, request),
+                                       display.glyph_reaches.empty() ? nullptr : &display.glyph_reaches};
+  if (request.rest_spacing && scene.has_glyphs()) {
+    parameters.items = &scene.glyphs();
+    parameters.most_items = most_glyphs(request, motion_glyphs);
+  }
   if (request.loading == picture::Loading::kWait)
     return residency.prepare_complete(scene.viewed(), parameters, preemption);
   if (request.viewer == 0) return residency.prepare_resident(scene.viewed(), parameters, {}, {});

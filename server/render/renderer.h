@@ -22,6 +22,7 @@ struct RendererConfig {
   std::optional<size_t> host_bytes{};      ///< for packed blocks evicted from the GPU; none: default_budgets
   unsigned decoders = 0;                   ///< threads that decode blocks; 0: one for each core
   size_t upload_bytes = size_t{16} << 20;  ///< stored on the GPU for one picture in motion, which waits for it
+  uint32_t motion_glyphs = 2;              ///< of a picture in motion, see most_glyphs
   size_t viewers = 64;                   ///< of one model whose motion is remembered; least recently seen are forgotten
   bool gpu_kernels = false;              ///< also draws software GL with the kernels for GPUs: for tests
   std::optional<size_t> list_entries{};  ///< of the tiles of a region, see docs/architecture.md; none: what fits

@@ -32,6 +32,12 @@ Scene::Scene(std::shared_ptr<const model::ModelFile> model, std::shared_ptr<cons
     first_surfels_.push_back(first);
     first += block.surfels;
   }
+  if (!kinds_.glyphs) return;
+  const auto stored = model_->blocks();
+  for (uint32_t block = 0; block < stored.size(); ++block) {
+    const bool glyphs = blocks_->kind(block).drawn_as() == kinds::DrawnAs::kGlyphs;
+    glyphs_.push_back(glyphs ? stored[block].surfels : 0);
+  }
 }
 
 geometry::Camera Scene::camera_of(const picture::PictureRequest& request) const {

@@ -42,6 +42,8 @@ class Scene {
   [[nodiscard]] bool mixed() const { return kinds_.mixed; }
   [[nodiscard]] bool has_gaussians() const { return kinds_.gaussians; }
   [[nodiscard]] bool has_glyphs() const { return kinds_.glyphs; }
+  /// Per block the number of its glyphs; 0 for other kinds. Empty if the model has no glyphs.
+  [[nodiscard]] const std::vector<uint32_t>& glyphs() const { return glyphs_; }
   /// Number of surfels in the blocks before this one, modulo 2^32: the index of its first surfel in the model.
   [[nodiscard]] uint32_t first_surfel(uint32_t block) const { return first_surfels_[block]; }
   /// The requested camera, or one that shows the whole model.
@@ -65,6 +67,7 @@ class Scene {
   std::shared_ptr<const kinds::FileBlocks> blocks_;
   residency::ViewedModel viewed_;
   std::vector<uint32_t> first_surfels_;
+  std::vector<uint32_t> glyphs_;
   Kinds kinds_;
   std::list<ViewerHistory> viewers_;  ///< most recently seen first
 };

@@ -21,9 +21,9 @@ std::vector<bool> Residency::residents(const ViewedModel& model, bool attributes
 
 selection::BlockSelection Residency::select(const ViewedModel& model, const ViewParameters& parameters,
                                             std::span<const uint32_t> was_refined) const {
-  const selection::SelectionCriteria limits{parameters.spacing,       pool_.usable_surfels(), SurfelPool::kPageSurfels,
-                                            parameters.clip,          parameters.hidden,      parameters.sides,
-                                            parameters.ghost_spacing, parameters.reaches};
+  const selection::SelectionCriteria limits{
+      parameters.spacing, pool_.usable_surfels(),   SurfelPool::kPageSurfels, parameters.clip,  parameters.hidden,
+      parameters.sides,   parameters.ghost_spacing, parameters.reaches,       parameters.items, parameters.most_items};
   return selection::select_blocks(model.tree, parameters.frame, limits, residents(model, parameters.attributes),
                                   was_refined);
 }
@@ -193,6 +193,7 @@ void Residency::prefetch_rest(const ViewedModel& model, const ViewParameters& pa
   ViewParameters rest = parameters;
   rest.spacing = *parameters.rest_spacing;
   rest.moving = false;
+  rest.items = nullptr;
   std::vector<uint32_t> blocks;
   add(model, blocks_to_load(rest, select(model, rest, {})), blocks);
   loader_.prefetch(model.source, blocks, parameters.attributes);

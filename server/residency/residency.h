@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <memory>
 #include <optional>
 #include <set>
@@ -33,6 +34,9 @@ struct ViewParameters {
   selection::Sides sides = selection::Sides::kFront;
   std::optional<double> ghost_spacing{};         ///< see SelectionCriteria
   const std::vector<double>* reaches = nullptr;  ///< see SelectionCriteria; outlives the preparation
+  /// See SelectionCriteria; outlives the preparation. A picture at rest has no limit.
+  const std::vector<uint32_t>* items = nullptr;
+  uint64_t most_items = std::numeric_limits<uint64_t>::max();
 };
 
 /// The blocks that a picture is drawn from, and the cost of making them resident.

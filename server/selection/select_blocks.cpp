@@ -61,9 +61,32 @@ class Selector {
     }
   };
 
-  [[nodiscard]] uint64_t cost(uint32_t block) const {
+  /// What blocks take of the budgets.
+  struct Cost {
+    uint64_t surfels = 0;
+    uint64_t items = 0;
+
+    Cost& operator+=(const Cost& more) {
+      surfels += more.surfels;
+      items += more.items;
+      return *this;
+    }
+    Cost& operator-=(const Cost& less) {
+      surfels -= less.surfels;
+      items -= less.items;
+      return *this;
+    }
+  };
+
+  [[nodiscard]] Cost cost(uint32_t block) const {
     const uint64_t page = criteria_.page;
-    return (blocks_[block].surfels + page - 1) / page * page;
+    const uint64_t items = criteria_.items == nullptr ? 0 : (*criteria_.items)[block];
+    return {(blocks_[block].surfels + page - 1) / page * page, items};
+  }
+  /// Whether a budget does not hold `after`, though it would hold `before`.
+  [[nodiscard]] bool exceeds(const Cost& before, const Cost& after) const {
+    return (after.surfels > criteria_.surfels && after.surfels > before.surfels) ||
+           (after.items > criteria_.most_items && after.items > before.items);
   }
   [[nodiscard]] bool in_view(uint32_t block) const {
     if (criteria_.hidden != nullptr && (*criteria_.hidden)[block]) return false;
@@ -111,18 +134,18 @@ class Selector {
 
   void replace_by_children(uint32_t block) {
     std::vector<uint32_t> seen;
-    uint64_t added = 0;
+    Cost refined = used_;
+    refined -= cost(block);
     for_children(block, [&](uint32_t child) {
       if (!in_view(child)) return;
       seen.push_back(child);
-      added += cost(child);
+      refined += cost(child);
     });
-    const uint64_t left = used_ - cost(block);
-    if (left + added > criteria_.surfels && added > cost(block)) {
+    if (exceeds(used_, refined)) {
       selection_.budget_reached = true;
       return;
     }
-    used_ = left + added;
+    used_ = refined;
     states_[block].fate = Fate::kRefined;
     for (const uint32_t child : seen) keep(child);
   }
@@ -148,13 +171,14 @@ class Selector {
   bool covered_by_finer(uint32_t block) {
     std::vector<uint32_t> found;
     std::vector<uint32_t> open{block};
-    uint64_t added = 0;
+    Cost finer = used_;
+    finer -= cost(block);
     while (!open.empty()) {
       const uint32_t next = open.back();
       open.pop_back();
       if (resident_[next]) {
         found.push_back(next);
-        added += cost(next);
+        finer += cost(next);
       } else if (tree_.tree.children(next).count == 0) {
         return false;
       } else {
@@ -162,9 +186,9 @@ class Selector {
           if (in_view(child)) open.push_back(child);
         });
       }
-      if (used_ - cost(block) + added > criteria_.surfels) return false;
+      if (finer.surfels > criteria_.surfels || finer.items > criteria_.most_items) return false;
     }
-    used_ += added - cost(block);
+    used_ = finer;
     finer_.insert(finer_.end(), found.begin(), found.end());
     return true;
   }
@@ -221,7 +245,7 @@ class Selector {
   std::vector<State> states_;
   std::vector<uint32_t> seen_;  ///< in view, and in the target or refined
   std::priority_queue<Candidate> candidates_;
-  uint64_t used_ = 0;            ///< surfels of the budget
+  Cost used_;                    ///< of the budgets
   std::vector<uint32_t> finer_;  ///< descendants that stand in for blocks of the target
   BlockSelection selection_;
 };

@@ -35,6 +35,9 @@ struct SelectionCriteria {
   std::optional<double> ghost_spacing{};
   /// For each block: the least reach of its hull, where a picture draws items larger than the model states. Null: none.
   const std::vector<double>* reaches = nullptr;
+  /// For each block: the items of it that count towards `most_items`. Null: none.
+  const std::vector<uint32_t>* items = nullptr;
+  uint64_t most_items = std::numeric_limits<uint64_t>::max();  ///< a second budget, of blocks that fill space
 };
 
 /// A block that is not resident and would refine the picture.
@@ -62,13 +65,13 @@ struct BlockSelection {
 /// - Culling: subtrees outside the picture or facing away are left out (may_be_visible).
 /// - Refinement: the block with the largest projected spacing is replaced by all its children in view, until all blocks
 ///   reach the requested spacing or the budget is used up. The result is the cut of smallest error that fits. A block
-///   whose children exceed the budget stays; others may still be refined. Roots are selected even if they exceed the
-///   budget.
+///   whose children exceed one of the budgets stays; others may still be refined. Roots are selected even if they
+///   exceed the budgets.
 /// - Hysteresis: `was_refined` is `refined` of the previous picture, or empty. A refined block stays refined until its
 ///   projected spacing is a fifth below the requested one. Small camera motions then do not switch levels back and
 ///   forth. The requested spacing is still reached, because hysteresis only delays coarsening.
 /// - Stand-ins: if a block of the target is not resident, its nearest resident ancestor stands in for it and all
-///   its siblings. If the view just became coarser and the budget allows, its resident descendants stand in instead.
+///   its siblings. If the view just became coarser and the budgets allow, its resident descendants stand in instead.
 ///
 /// A finer spacing never selects coarser blocks, whatever the budget. `resident` has one element per block.
 BlockSelection select_blocks(const SelectionTree& tree, const geometry::CameraFrame& frame,

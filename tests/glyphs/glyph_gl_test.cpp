@@ -8,6 +8,8 @@
 
 #include <gtest/gtest.h>
 
+#include "builder/build_model.h"
+#include "ellipsoid/tensor_fields.h"
 #include "glyphs/glyph_scenes.h"
 #include "model/test_folder.h"
 #include "service/shader_warm_up.h"
@@ -263,6 +265,32 @@ TEST_F(Glyphs, LieBesideSurfelsWhereTheyAre) {
   EXPECT_GT(
       psnr(picture_of(behind, chosen), picture_of(testing::write_with_square(folder_ / "square.surf", {}), chosen)),
       60);
+}
+
+TEST_F(Glyphs, AreNoMoreInMotionThanASurfaceWouldHaveTwice) {
+  const std::array inputs{testing::write_tensor_field(folder_ / "field.nrrd", 40)};
+  const auto built = builder::build_model(inputs, folder_ / "field.surf", {}, [](const builder::BuildStep&) {});
+  ASSERT_TRUE(built) << built.error().message;
+  const auto model = std::make_shared<const model::ModelFile>(*model::ModelFile::open(folder_ / "field.surf"));
+  picture::PictureRequest request;  // the whole field, 3 px a sample
+  request.width = request.height = kSide;
+  request.blends_behind = true;
+  request.spacing = 2;
+  EXPECT_GT(testing::draw(*renderer_, model, request).stats.surfels_drawn, 20000U) << "a picture of its own";
+  // A budget between the cuts of the tree is spent on the larger of those that it holds.
+  const auto blocks = model->blocks();
+  uint64_t children = 0;
+  for (const ldc::BlockEntry& block : blocks) children += block.parent == 0 ? block.surfels : 0;
+  const auto glyphs_in_motion = [&](double spacing) {
+    request.spacing = spacing;
+    request.rest_spacing = 0;
+    return testing::draw(*renderer_, model, request).stats.surfels_drawn;
+  };
+  const auto spacing_for = [](double glyphs) { return std::sqrt(2.0 * kSide * kSide / glyphs); };
+  const auto most = static_cast<double>(children);
+  ASSERT_LT(blocks[0].surfels, children);
+  EXPECT_EQ(glyphs_in_motion(spacing_for(most + 1)), children) << "just enough for the children of the root";
+  EXPECT_EQ(glyphs_in_motion(spacing_for(most - 1)), blocks[0].surfels) << "one too few";
 }
 
 TEST_F(Glyphs, HaveTheirProgramsAfterTheWarmUp) {

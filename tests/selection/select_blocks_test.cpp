@@ -239,6 +239,41 @@ TEST(SelectBlocks, TheBudgetIsNeverExceededAndWhatFitsIsUsed) {
   EXPECT_EQ(drawn(4096, 1024), 4u);
 }
 
+TEST(SelectBlocks, TheBudgetOfItemsIsKeptByTheBlocksThatHaveSome) {
+  const ldc::BlockTree blocks = two_splits();
+  const SelectionTree tree(blocks);
+  const geometry::CameraFrame frame = view_from({0, 0, 0});
+  std::vector<uint32_t> items(blocks.blocks().size(), 10);
+  const auto drawn = [&](uint64_t budget) {
+    const BlockSelection s = select_blocks(tree, frame, {.items = &items, .most_items = budget}, all_of(blocks));
+    expect_cut(tree, frame, s.draw);
+    EXPECT_EQ(s.budget_reached, s.draw.size() < 16) << budget;
+    return s.draw.size();
+  };
+  EXPECT_EQ(drawn(1), 1u) << "the root is drawn whatever the budget";
+  EXPECT_EQ(drawn(39), 1u);
+  EXPECT_EQ(drawn(40), 4u);
+  EXPECT_EQ(drawn(159), 13u);
+  EXPECT_EQ(drawn(160), 16u);
+  items.assign(items.size(), 0);
+  EXPECT_EQ(drawn(0), 16u) << "without items";
+}
+
+TEST(SelectBlocks, WhatStandsInForACoarserBlockKeepsTheBudgetOfItems) {
+  const ldc::BlockTree blocks = two_splits();
+  const SelectionTree tree(blocks);
+  std::vector<bool> resident = all_of(blocks);
+  for (uint32_t b = 1; b <= 4; ++b) resident[b] = false;
+  const geometry::CameraFrame frame = view_from({0, 0, 0});
+  const std::vector<uint32_t> items(blocks.blocks().size(), 10);
+  const double spacing = 1.2 * projected_spacing(blocks.blocks()[2], frame);
+  const auto drawn = [&](uint64_t budget) {
+    return select_blocks(tree, frame, {.spacing = spacing, .items = &items, .most_items = budget}, resident).draw;
+  };
+  EXPECT_EQ(drawn(160).size(), 16u);
+  EXPECT_THAT(drawn(80), ElementsAre(0));
+}
+
 TEST(SelectBlocks, TheLargestErrorIsRefinedFirst) {
   std::vector<ldc::BlockEntry> blocks{block_at({-4, 0, -10}, 1, 0.1), block_at({4, 0, -10}, 1, 0.3)};
   split(blocks, 0, 2, 1000);
