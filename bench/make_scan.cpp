@@ -1,12 +1,15 @@
-// make_scan POINTS FILE.las: writes a generated scan as LAS 1.4, point format 7.
+// make_scan POINTS FILE.las [X,Y,SIDE]: writes a generated scan as LAS 1.4, point format 7, or of a scan of so many
+// points those of a square alone: its corner and side in metres from the corner of the scene.
 //
 // The scene is the same for any number of points, so that scans of different sizes differ only in density. Points are
 // streamed, so that a scan may be larger than memory.
 
+#include <array>
 #include <charconv>
 #include <cmath>
 #include <cstring>
 #include <iostream>
+#include <optional>
 #include <string_view>
 #include <vector>
 
@@ -76,33 +79,51 @@ std::vector<std::byte> make_header(uint64_t count) {
   return header;
 }
 
-Status write_scan(uint64_t count, const char* path) {
+Status write_scan(const surfcast::bench::ScanPart& part, const char* path) {
   surfcast::Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return surfcast::fail(file.error());
-  if (Status status = file->append(make_header(count)); !status) return status;
+  if (Status status = file->append(make_header(part.size())); !status) return status;
   std::vector<std::byte> batch;
-  for (uint64_t first = 0; first < count; first += kBatch) {
-    const uint64_t points = std::min(kBatch, count - first);
+  for (uint64_t first = 0; first < part.size(); first += kBatch) {
+    const uint64_t points = std::min(kBatch, part.size() - first);
     batch.assign(points * kRecordBytes, std::byte{0});
     oneapi::tbb::parallel_for(uint64_t{0}, points, [&](uint64_t i) {
-      put_echo(batch.data() + i * kRecordBytes, surfcast::bench::scan_echo(first + i, count), first + i);
+      const uint64_t index = part.index(first + i);
+      put_echo(batch.data() + i * kRecordBytes, surfcast::bench::scan_echo(index, part.count), index);
     });
     if (Status status = file->append(batch); !status) return status;
   }
   return file->commit();
 }
 
+/// The numbers of "X,Y,SIDE"; none if it has another form.
+std::optional<std::array<double, 3>> read_square(std::string_view text) {
+  std::array<double, 3> numbers{};
+  const char* at = text.data();
+  const char* const end = at + text.size();
+  for (size_t i = 0; i < numbers.size(); ++i) {
+    if (i > 0 && (at == end || *at++ != ',')) return std::nullopt;
+    const auto [next, code] = std::from_chars(at, end, numbers.at(i));
+    if (code != std::errc()) return std::nullopt;
+    at = next;
+  }
+  if (at != end || !(numbers[2] > 0)) return std::nullopt;
+  return numbers;
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   uint64_t count = 0;
-  const std::string_view wanted = argc == 3 ? argv[1] : "";
+  const std::string_view wanted = argc == 3 || argc == 4 ? argv[1] : "";
   const auto [end, code] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), count);
-  if (code != std::errc() || end != wanted.data() + wanted.size() || count == 0) {
-    std::cerr << "usage: make_scan POINTS FILE.las\n";
+  const auto square = read_square(argc == 4 ? argv[3] : "0,0,1000");
+  if (code != std::errc() || end != wanted.data() + wanted.size() || count == 0 || !square) {
+    std::cerr << "usage: make_scan POINTS FILE.las [X,Y,SIDE]\n";
     return 2;
   }
-  const Status status = write_scan(count, argv[2]);
+  const Status status =
+      write_scan(surfcast::bench::part_of_scan(count, (*square)[0], (*square)[1], (*square)[2]), argv[2]);
   if (!status) std::cerr << "make_scan: " << status.error().message << '\n';
   return status ? 0 : 1;
 }

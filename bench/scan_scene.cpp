@@ -7,6 +7,8 @@
 #include <glm/vec2.hpp>
 #include <numbers>
 #include <optional>
+#include <tuple>
+#include <utility>
 
 namespace surfcast::bench {
 namespace {
@@ -204,6 +206,10 @@ Echo crown_echo(const Tree& tree, const glm::dvec2& p, Dice& dice) {
   return echo;
 }
 
+uint64_t rows_of_scan(uint64_t count) {
+  return static_cast<uint64_t>(std::max(1.0, std::sqrt(static_cast<double>(count))));
+}
+
 Echo echo_from_above(const glm::dvec2& p, const BlockKey& block, const std::optional<House>& house, Dice& dice) {
   if (house && house->covers(p)) return roof_echo(*house, p, dice);
   for (uint64_t i = 0; i < kTrees; ++i) {
@@ -219,8 +225,26 @@ Echo echo_from_above(const glm::dvec2& p, const BlockKey& block, const std::opti
 
 }  // namespace
 
+ScanPart part_of_scan(uint64_t count, double x, double y, double side) {
+  const uint64_t rows = rows_of_scan(count);
+  ScanPart part{.count = count, .columns = (count + rows - 1) / rows};
+  const auto range = [side](double low, uint64_t cells) {
+    const double share = static_cast<double>(cells) / kSceneSide;
+    const auto cell = [&](double metres) {
+      return static_cast<uint64_t>(std::clamp(std::round(metres * share), 0.0, static_cast<double>(cells)));
+    };
+    return std::pair(cell(low), cell(low + side) - cell(low));
+  };
+  std::tie(part.first_column, part.width) = range(x, part.columns);
+  std::tie(part.first_row, part.rows) = range(y, rows);
+  if (part.width == 0 || part.rows == 0) return part;
+  const uint64_t end = (part.first_row + part.rows - 1) * part.columns + part.first_column + part.width;
+  part.last = end > count ? std::min(end - count, part.width) : 0;
+  return part;
+}
+
 Echo scan_echo(uint64_t index, uint64_t count) {
-  const auto rows = static_cast<uint64_t>(std::max(1.0, std::sqrt(static_cast<double>(count))));
+  const uint64_t rows = rows_of_scan(count);
   const uint64_t columns = (count + rows - 1) / rows;
   Dice dice(index ^ count << 32);
   const glm::dvec2 place((static_cast<double>(index % columns) + dice.uniform()) / static_cast<double>(columns),

@@ -23,4 +23,25 @@ inline constexpr double kSceneSide = 1000;
 /// Echo `index` of `count`. Echoes are in the order of a survey: row by row.
 Echo scan_echo(uint64_t index, uint64_t count);
 
+/// The echoes of a rectangle of the scene: parts of successive rows.
+struct ScanPart {
+  uint64_t count = 0;  ///< of the whole scan
+  uint64_t columns = 0;
+  uint64_t first_row = 0;
+  uint64_t rows = 0;  ///< of the part
+  uint64_t first_column = 0;
+  uint64_t width = 0;  ///< of a row of the part
+  uint64_t last = 0;   ///< echoes that the last row lacks, because the scan ends there
+
+  [[nodiscard]] uint64_t size() const { return rows * width - last; }
+  /// Index in the whole scan of echo `i` of the part.
+  [[nodiscard]] uint64_t index(uint64_t i) const {
+    return (first_row + i / width) * columns + first_column + i % width;
+  }
+};
+
+/// The part of a scan of `count` echoes over the square with the corner x, y and this side, metres. It is cut off where
+/// the scene ends.
+ScanPart part_of_scan(uint64_t count, double x, double y, double side);
+
 }  // namespace surfcast::bench
