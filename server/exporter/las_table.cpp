@@ -183,8 +183,8 @@ Result<surfel::Grid> grid_of(const LasPoints& points) {
 }
 
 /// Numbers of bits that a mask has no room for.
-tl::unexpected<Error> too_large(const LasPlace& place, int value) {
-  return fail(ErrorKind::kInvalidInput, std::string(place.field.name) + " " + std::to_string(value) +
+tl::unexpected<Error> too_large(const LasPlace& place, double value) {
+  return fail(ErrorKind::kInvalidInput, std::string(place.field.name) + " " + shortest(value) +
                                             " does not fit into LAS, which has room for values up to " +
                                             std::to_string(place.field.mask));
 }
@@ -234,9 +234,10 @@ class RecordMaker {
   template <typename T>
   Status put_bits(const LasPlace& place, const std::vector<T>& values) {
     for (size_t i = 0; i < rows_.size(); ++i) {
-      const auto value = static_cast<int>(values[rows_[i]]);
-      if (value > place.field.mask) return too_large(place, value);
-      bytes_[i * table_.head.record_length + place.field.offset] |= static_cast<std::byte>(value << place.field.shift);
+      const auto value = static_cast<double>(values[rows_[i]]);
+      if (!(value >= 0 && value <= place.field.mask)) return too_large(place, value);
+      bytes_[i * table_.head.record_length + place.field.offset] |=
+          static_cast<std::byte>(static_cast<int>(value) << place.field.shift);
     }
     return {};
   }

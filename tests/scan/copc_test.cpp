@@ -189,7 +189,9 @@ TEST_F(CopcTest, ASelectedBoxHasThePointsThatTheWholeFileHasThere) {
   selection.classes = {2, 4};
   Points expected;
   for (size_t i = 0; i < all->positions.size(); ++i) {
-    if (!geometry::contains(selection.zone.boxes[0], all->positions[i]) || (all->classes[i] != 2 && all->classes[i] != 4)) continue;
+    if (!geometry::contains(selection.zone.boxes[0], all->positions[i]) ||
+        (all->classes[i] != 2 && all->classes[i] != 4))
+      continue;
     expected.positions.push_back(all->positions[i]);
     expected.classes.push_back(all->classes[i]);
   }
