@@ -20,7 +20,18 @@ from browser import Page, open_page
 import surfcast
 from surfcast.testing import RunningServer
 
-PIXELS = "document.querySelector('.output canvas').toDataURL()"
+CANVAS = "document.querySelector('.output canvas')"
+PIXELS = f"{CANVAS}.toDataURL()"
+# The middle of the picture in the window, once it has stayed where it is and nothing covers it. A notebook scrolls and
+# lays itself out again after cells have run.
+MIDDLE = f"""(() => {{
+  {CANVAS}.scrollIntoView({{block: 'center'}});
+  const box = {CANVAS}.getBoundingClientRect();
+  const middle = [box.left + 160, box.top + 100];
+  const stays = String(window.lastMiddle) === String(middle);
+  window.lastMiddle = middle;
+  return stays && document.elementFromPoint(...middle) === {CANVAS} && middle;
+}})()"""
 
 
 def free_port() -> int:
@@ -92,22 +103,19 @@ async def test_dragging_turns_the_view(
     async with open_page(notebook_url, tmp_path / "profile") as page:
         await page.wait_for("window.Jupyter?.notebook?.kernel?.is_connected() && !Jupyter.notebook.kernel_busy")
         await run_cell(page, 0)
-        await page.wait_for("document.querySelector('.output canvas')?.width === 320")
+        await page.wait_for(f"{CANVAS}?.width === 320")
         drawn = await page.wait_for(f"{PIXELS}.length > 2000 && {PIXELS}")
-        box = await page.evaluate(
-            "document.querySelector('.output canvas').scrollIntoView(),"
-            "JSON.parse(JSON.stringify(document.querySelector('.output canvas').getBoundingClientRect()))"
-        )
-        x, y = box["left"] + 160, box["top"] + 100
+        x, y = await page.wait_for(MIDDLE)
         await page.mouse("mousePressed", x, y)
         for step in range(1, 6):
             await page.mouse("mouseMoved", x + 8 * step, y)
         await page.mouse("mouseReleased", x + 40, y, buttons=0)
         turned = await page.wait_for(f"{PIXELS} !== {json.dumps(drawn)} && {PIXELS}")
         assert turned != drawn
+        x, y = await page.wait_for(MIDDLE)
         await page.mouse("mousePressed", x, y)
         await page.mouse("mouseReleased", x, y, buttons=0)
-        await page.wait_for("document.querySelector('.output canvas').nextSibling.textContent.includes('intensity')")
+        await page.wait_for(f"{CANVAS}.nextSibling.textContent.includes('intensity')")
         whole = field.render(resolution=(320, 200)).camera
         said = await said_by_cell(page, 1)
         async with asyncio.timeout(60):  # gestures go one after the other, beside picks
