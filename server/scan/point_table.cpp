@@ -24,13 +24,11 @@ PointTable pick_rows(const PointTable& table, std::span<const uint32_t> rows) {
   std::byte* first = picked.records.data();
   for (const Column& column : table.columns) {
     const size_t size = size_of(column.type);
-    std::byte* to = first;
-    for (const uint32_t row : rows) {
-      std::memcpy(to, column.first + row * column.stride, size);
-      to += bytes;
+    for (size_t i = 0; i < rows.size(); ++i) {
+      std::memcpy(first + i * bytes, column.first + rows[i] * column.stride, size);
     }
     picked.columns.push_back({column.type, first, bytes, column.swapped});
-    first += size;
+    if (first != nullptr) first += size;  // null without rows
   }
   return picked;
 }

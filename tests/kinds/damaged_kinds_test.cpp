@@ -33,7 +33,7 @@ Bytes built(const TestFolder& folder, const std::filesystem::path& input) {
 Bytes volumes(const TestFolder& folder) {
   std::ofstream file(folder / "grid.nrrd", std::ios::binary);
   file << "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 40 9 7\nspacings: 1 2 3\nencoding: raw\n\n";
-  for (int i = 0; i < 40 * 9 * 7; ++i) file.put(static_cast<char>(120 + 100 * std::sin(0.1 * i)));
+  for (int i = 0; i < 40 * 9 * 7; ++i) file.put(static_cast<char>(static_cast<uint8_t>(120 + 100 * std::sin(0.1 * i))));
   file.close();
   return built(folder, folder / "grid.nrrd");
 }

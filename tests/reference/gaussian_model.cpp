@@ -29,8 +29,15 @@ class SplatMaker {
     const double r = std::sqrt(1 - z * z);
     return {r * std::cos(angle), r * std::sin(angle), z};
   }
-  glm::dvec3 in_ball(double radius) { return radius * std::cbrt(uniform(0, 1)) * direction(); }
-  glm::dquat rotation() { return glm::angleAxis(uniform(0, 2 * std::numbers::pi), direction()); }
+  // The order of the draws is stated by statements: compilers evaluate arguments in different orders.
+  glm::dvec3 in_ball(double radius) {
+    const glm::dvec3 towards = direction();
+    return radius * std::cbrt(uniform(0, 1)) * towards;
+  }
+  glm::dquat rotation() {
+    const glm::dvec3 axis = direction();
+    return glm::angleAxis(uniform(0, 2 * std::numbers::pi), axis);
+  }
 
   /// A splat with a colour about the given codes that changes with the direction.
   GaussianSplat splat(const glm::dvec3& position, const glm::dvec3& deviations, double opacity,
@@ -45,6 +52,13 @@ class SplatMaker {
       splat.harmonics[i] = {uniform(-0.05, 0.05), uniform(-0.05, 0.05), uniform(-0.05, 0.05)};
     }
     return splat;
+  }
+  /// A splat in a ball, with an opacity of a range and any colour.
+  GaussianSplat splat_in_ball(double radius, const glm::dvec3& deviations, double faintest, double densest) {
+    const glm::dvec3 color = codes();
+    const double opacity = uniform(faintest, densest);
+    const glm::dvec3 position = in_ball(radius);
+    return splat(position, deviations, opacity, color);
   }
   glm::dvec3 codes() { return {uniform(0.1, 0.9), uniform(0.1, 0.9), uniform(0.1, 0.9)}; }
 
@@ -80,7 +94,7 @@ GaussianModel fog_model() {
   GaussianModel model{{}, 3};
   for (int i = 0; i < 800; ++i) {
     const glm::dvec3 deviations{make.uniform(0.05, 0.15), make.uniform(0.05, 0.15), make.uniform(0.05, 0.15)};
-    model.splats.push_back(make.splat(make.in_ball(0.8), deviations, make.uniform(0.02, 0.15), make.codes()));
+    model.splats.push_back(make.splat_in_ball(0.8, deviations, 0.02, 0.15));
   }
   return model;
 }
@@ -91,7 +105,7 @@ GaussianModel needles_model() {
   for (int i = 0; i < 600; ++i) {
     const double length = make.uniform(0.05, 0.25);
     const glm::dvec3 deviations{length, 0.05 * length, 0.05 * length};
-    model.splats.push_back(make.splat(make.in_ball(0.8), deviations, make.uniform(0.3, 0.9), make.codes()));
+    model.splats.push_back(make.splat_in_ball(0.8, deviations, 0.3, 0.9));
   }
   return model;
 }
@@ -101,7 +115,7 @@ GaussianModel near_model() {
   GaussianModel model{{}, 3};
   for (int i = 0; i < 900; ++i) {
     const glm::dvec3 deviations{make.uniform(0.02, 0.15), make.uniform(0.02, 0.15), make.uniform(0.02, 0.15)};
-    model.splats.push_back(make.splat(make.in_ball(1), deviations, make.uniform(0.1, 0.7), make.codes()));
+    model.splats.push_back(make.splat_in_ball(1, deviations, 0.1, 0.7));
   }
   return model;
 }

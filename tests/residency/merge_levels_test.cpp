@@ -63,8 +63,12 @@ std::vector<MergedSurfel> noise(size_t count, uint32_t seed) {
   std::normal_distribution<float> part;
   std::vector<std::pair<uint64_t, MergedSurfel>> sorted;
   for (uint32_t i = 0; i < count; ++i) {
-    const glm::dvec3 p(at(random), at(random), 0.1 * at(random));
-    const glm::vec3 n = glm::normalize(glm::vec3(part(random), part(random), part(random) + 1));
+    // Filled backwards one by one: compilers evaluate arguments in different orders.
+    glm::dvec3 p;
+    glm::vec3 n;
+    for (const int axis : {2, 1, 0}) p[axis] = (axis == 2 ? 0.1 : 1) * at(random);
+    for (const int axis : {2, 1, 0}) n[axis] = part(random) + (axis == 2 ? 1 : 0);
+    n = glm::normalize(n);
     sorted.push_back(
         {geometry::interleave(glm::u32vec3(p * 100.0)), {p, n, 0.5F + 0.1F * static_cast<float>(i % 10), 1, {}, i}});
   }
