@@ -21,14 +21,15 @@ PointTable pick_rows(const PointTable& table, std::span<const uint32_t> rows) {
   PointTable picked;
   picked.rows = rows.size();
   picked.records.resize(rows.size() * bytes);
-  std::byte* first = picked.records.data();
+  size_t offset = 0;
   for (const Column& column : table.columns) {
     const size_t size = size_of(column.type);
     for (size_t i = 0; i < rows.size(); ++i) {
-      std::memcpy(first + i * bytes, column.first + rows[i] * column.stride, size);
+      std::memcpy(&picked.records[i * bytes + offset], column.first + rows[i] * column.stride, size);
     }
+    const std::byte* first = rows.empty() ? nullptr : &picked.records[offset];
     picked.columns.push_back({column.type, first, bytes, column.swapped});
-    if (first != nullptr) first += size;  // null without rows
+    offset += size;
   }
   return picked;
 }
