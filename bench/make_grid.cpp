@@ -4,23 +4,13 @@
 // and vessels, and noise of 8 steps from sample to sample. Planes are streamed, so that a grid may be larger than
 // memory.
 
-#include <charconv>
 #include <cmath>
 #include <cstdint>
-#include <iostream>
-#include <span>
 #include <string>
-#include <string_view>
-#include <vector>
 
-#include <oneapi/tbb/parallel_for.h>
-
-#include "base/atomic_file.h"
+#include "write_cube.h"
 
 namespace {
-
-using surfcast::AtomicFile;
-using surfcast::Status;
 
 /// A number from 0 to 15 that looks random (the finaliser of splitmix64).
 uint64_t noise(uint64_t sample) {
@@ -48,45 +38,22 @@ double density(double x, double y, double z) {
   return 900 * skin + 2100 * bone + 700 * vessels * edge(0.6 - r, 0.02);
 }
 
-std::vector<uint16_t> plane_of(uint64_t side, uint64_t k) {
-  std::vector<uint16_t> plane(side * side);
-  const auto place = [side](uint64_t i) { return (static_cast<double>(i) + 0.5) / static_cast<double>(side); };
-  oneapi::tbb::parallel_for(uint64_t{0}, side, [&](uint64_t j) {
-    for (uint64_t i = 0; i < side; ++i) {
-      const double value = density(place(i), place(j), place(k));
-      plane[j * side + i] = static_cast<uint16_t>(std::lround(value) + noise((k * side + j) * side + i));
-    }
-  });
-  return plane;
+uint16_t sample_at(uint64_t i, uint64_t j, uint64_t k, uint64_t side) {
+  const auto place = [side](uint64_t n) { return (static_cast<double>(n) + 0.5) / static_cast<double>(side); };
+  const double value = density(place(i), place(j), place(k));
+  return static_cast<uint16_t>(std::lround(value) + noise((k * side + j) * side + i));
 }
 
-Status write_grid(uint64_t side, const char* path) {
-  surfcast::Result<AtomicFile> file = AtomicFile::create(path);
-  if (!file) return surfcast::fail(file.error());
-  const std::string sizes = std::to_string(side) + " " + std::to_string(side) + " " + std::to_string(side);
+std::string header_of(uint64_t side) {
+  const std::string count = std::to_string(side);
   const std::string step = std::to_string(1 / static_cast<double>(side));
-  const std::string header = "NRRD0004\ntype: uint16\ndimension: 3\nsizes: " + sizes + "\nspacings: " + step + " " +
-                             step + " " + step + "\nendian: little\nencoding: raw\n\n";
-  Status status = file->append(std::as_bytes(std::span(header)));
-  for (uint64_t k = 0; k < side && status; ++k) {
-    const std::vector<uint16_t> plane = plane_of(side, k);
-    status = file->append(std::as_bytes(std::span(plane)));
-  }
-  return status ? file->commit() : status;
+  return "NRRD0004\ntype: uint16\ndimension: 3\nsizes: " + count + " " + count + " " + count + "\nspacings: " + step +
+         " " + step + " " + step + "\nendian: little\nencoding: raw\n\n";
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const std::string_view text = argc == 3 ? argv[1] : "";
-  uint64_t side = 0;
-  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), side);
-  if (code != std::errc() || end != text.data() + text.size() || side == 0) {
-    std::cerr << "usage: make_grid SIDE FILE.nrrd\n";
-    return 2;
-  }
-  const Status status = write_grid(side, argv[2]);
-  if (status) return 0;
-  std::cerr << "make_grid: " << status.error().message << "\n";
-  return 1;
+  return surfcast::bench::run_cube_program<uint16_t>("make_grid", {argv, static_cast<size_t>(argc)},
+                                                     {&header_of, &sample_at});
 }

@@ -7,26 +7,16 @@
 #include <algorithm>
 #include <array>
 #include <bit>
-#include <charconv>
 #include <cmath>
 #include <cstdint>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
 #include <glm/vec3.hpp>
-#include <iostream>
-#include <span>
 #include <string>
-#include <string_view>
-#include <vector>
 
-#include <oneapi/tbb/parallel_for.h>
-
-#include "base/atomic_file.h"
+#include "write_cube.h"
 
 namespace {
-
-using surfcast::AtomicFile;
-using surfcast::Status;
 
 static_assert(std::endian::native == std::endian::little);
 
@@ -59,45 +49,23 @@ Tensor tensor_at(const glm::dvec3& p) {
   return {float(t[0][0]), float(t[1][0]), float(t[2][0]), float(t[1][1]), float(t[2][1]), float(t[2][2])};
 }
 
-std::vector<Tensor> plane_of(uint64_t side, uint64_t k) {
-  std::vector<Tensor> plane(side * side);
-  const auto place = [side](uint64_t i) { return (2 * static_cast<double>(i) + 1) / static_cast<double>(side) - 1; };
-  oneapi::tbb::parallel_for(uint64_t{0}, side, [&](uint64_t j) {
-    for (uint64_t i = 0; i < side; ++i) plane[j * side + i] = tensor_at({place(i), place(j), place(k)});
-  });
-  return plane;
+Tensor sample_at(uint64_t i, uint64_t j, uint64_t k, uint64_t side) {
+  const auto place = [side](uint64_t n) { return (2 * static_cast<double>(n) + 1) / static_cast<double>(side) - 1; };
+  return tensor_at({place(i), place(j), place(k)});
 }
 
-Status write_field(uint64_t side, const char* path) {
-  surfcast::Result<AtomicFile> file = AtomicFile::create(path);
-  if (!file) return surfcast::fail(file.error());
-  const std::string sides = std::to_string(side) + " " + std::to_string(side) + " " + std::to_string(side);
+std::string header_of(uint64_t side) {
+  const std::string count = std::to_string(side);
   const std::string step = std::to_string(1 / static_cast<double>(side));
-  const std::string header = "NRRD0005\ntype: float\ndimension: 4\nsizes: 6 " + sides +
-                             "\nspace: right-anterior-superior\nspace directions: none (" + step + ",0,0) (0," + step +
-                             ",0) (0,0," + step +
-                             ")\nspace origin: (0,0,0)\nkinds: 3D-symmetric-matrix space space space\n"
-                             "endian: little\nencoding: raw\n\n";
-  Status status = file->append(std::as_bytes(std::span(header)));
-  for (uint64_t k = 0; k < side && status; ++k) {
-    const std::vector<Tensor> plane = plane_of(side, k);
-    status = file->append(std::as_bytes(std::span(plane)));
-  }
-  return status ? file->commit() : status;
+  return "NRRD0005\ntype: float\ndimension: 4\nsizes: 6 " + count + " " + count + " " + count +
+         "\nspace: right-anterior-superior\nspace directions: none (" + step + ",0,0) (0," + step + ",0) (0,0," + step +
+         ")\nspace origin: (0,0,0)\nkinds: 3D-symmetric-matrix space space space\n"
+         "endian: little\nencoding: raw\n\n";
 }
 
 }  // namespace
 
 int main(int argc, char** argv) {
-  const std::string_view text = argc == 3 ? argv[1] : "";
-  uint64_t side = 0;
-  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), side);
-  if (code != std::errc() || end != text.data() + text.size() || side == 0) {
-    std::cerr << "usage: make_tensors SIDE FILE.nrrd\n";
-    return 2;
-  }
-  const Status status = write_field(side, argv[2]);
-  if (status) return 0;
-  std::cerr << "make_tensors: " << status.error().message << "\n";
-  return 1;
+  return surfcast::bench::run_cube_program<Tensor>("make_tensors", {argv, static_cast<size_t>(argc)},
+                                                   {&header_of, &sample_at});
 }
