@@ -42,8 +42,8 @@ peers-tensors: configure
 	/usr/bin/python3 bench/peers/glyphs.py build/bin/glyph_bench --docs docs $(PEERS_FLAGS) $(FIELDS)
 
 # Runs the fast tests without GL, the tests of damaged input and the fast numerics tests with the address and undefined
-# behaviour sanitizers. Builds only these tests, because sanitizers double the compile time. clang compiles them in about two
-# thirds of the time of GCC.
+# behaviour sanitizers. Builds only these tests, because sanitizers double the compile time. clang compiles them in
+# about two thirds of the time of GCC.
 # Its runtime takes some thread-local blocks for those of glibc 2.19 and crashes in the search for leaks
 # (github.com/google/sanitizers/issues/1322). The preset therefore sets intercept_tls_get_addr=0.
 asan: packages
