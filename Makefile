@@ -1,5 +1,5 @@
 # The two commands of the README for a bare Debian 12: make demo, make test. They install missing packages.
-.PHONY: build demo test bench bench-volumes peers peers-volumes peers-tensors asan tsan package tidy format-check \
+.PHONY: build demo test bench bench-volumes bench-meshes peers peers-volumes peers-tensors asan tsan package tidy format-check \
   configure packages lint-packages fuzz
 
 build: configure
@@ -22,6 +22,11 @@ bench: configure
 bench-volumes: configure
 	cmake --build --preset release --target volume_laboratory
 	build/bin/volume_laboratory --docs docs $(BENCH_FLAGS) $(GRIDS)
+
+# Textured meshes as surfels and as GL draws them, against ray casting, into docs/textured-models.md.
+bench-meshes: configure
+	cmake --build --preset release --target mesh_laboratory
+	build/bin/mesh_laboratory --docs docs
 
 # The same scenes by other programs of Debian, into docs/peers.md. PEERS_FLAGS: see bench/peers/peers.py.
 peers: configure

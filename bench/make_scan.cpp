@@ -1,5 +1,6 @@
-// make_scan POINTS FILE.las [X,Y,SIDE]: writes a generated scan as LAS 1.4, point format 7, or of a scan of so many
-// points those of a square alone: its corner and side in metres from the corner of the scene.
+// make_scan POINTS FILE.las [X,Y,SIDE [forest]]: writes a generated scan as LAS 1.4, point format 7, or of a scan of so
+// many points those of a square alone: its corner and side in metres from the corner of the scene. The scene is a town,
+// or a forest.
 //
 // The scene is the same for any number of points, so that scans of different sizes differ only in density. Points are
 // streamed, so that a scan may be larger than memory.
@@ -79,7 +80,7 @@ std::vector<std::byte> make_header(uint64_t count) {
   return header;
 }
 
-Status write_scan(const surfcast::bench::ScanPart& part, const char* path) {
+Status write_scan(const surfcast::bench::ScanPart& part, surfcast::bench::Landscape landscape, const char* path) {
   surfcast::Result<AtomicFile> file = AtomicFile::create(path);
   if (!file) return surfcast::fail(file.error());
   if (Status status = file->append(make_header(part.size())); !status) return status;
@@ -89,7 +90,7 @@ Status write_scan(const surfcast::bench::ScanPart& part, const char* path) {
     batch.assign(points * kRecordBytes, std::byte{0});
     oneapi::tbb::parallel_for(uint64_t{0}, points, [&](uint64_t i) {
       const uint64_t index = part.index(first + i);
-      put_echo(batch.data() + i * kRecordBytes, surfcast::bench::scan_echo(index, part.count), index);
+      put_echo(batch.data() + i * kRecordBytes, surfcast::bench::scan_echo(index, part.count, landscape), index);
     });
     if (Status status = file->append(batch); !status) return status;
   }
@@ -115,15 +116,17 @@ std::optional<std::array<double, 3>> read_square(std::string_view text) {
 
 int main(int argc, char** argv) {
   uint64_t count = 0;
-  const std::string_view wanted = argc == 3 || argc == 4 ? argv[1] : "";
+  const std::string_view wanted = argc >= 3 && argc <= 5 ? argv[1] : "";
   const auto [end, code] = std::from_chars(wanted.data(), wanted.data() + wanted.size(), count);
-  const auto square = read_square(argc == 4 ? argv[3] : "0,0,1000");
-  if (code != std::errc() || end != wanted.data() + wanted.size() || count == 0 || !square) {
-    std::cerr << "usage: make_scan POINTS FILE.las [X,Y,SIDE]\n";
+  const auto square = read_square(argc >= 4 ? argv[3] : "0,0,1000");
+  const bool forest = argc == 5 && std::string_view(argv[4]) == "forest";
+  if (code != std::errc() || end != wanted.data() + wanted.size() || count == 0 || !square || (argc == 5 && !forest)) {
+    std::cerr << "usage: make_scan POINTS FILE.las [X,Y,SIDE [forest]]\n";
     return 2;
   }
-  const Status status =
-      write_scan(surfcast::bench::part_of_scan(count, (*square)[0], (*square)[1], (*square)[2]), argv[2]);
+  const surfcast::bench::ScanPart part = surfcast::bench::part_of_scan(count, (*square)[0], (*square)[1], (*square)[2]);
+  using surfcast::bench::Landscape;
+  const Status status = write_scan(part, forest ? Landscape::kForest : Landscape::kTown, argv[2]);
   if (!status) std::cerr << "make_scan: " << status.error().message << '\n';
   return status ? 0 : 1;
 }

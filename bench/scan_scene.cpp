@@ -5,10 +5,12 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/vec2.hpp>
-#include <numbers>
 #include <optional>
 #include <tuple>
 #include <utility>
+
+#include "scan_forest.h"
+#include "scan_random.h"
 
 namespace surfcast::bench {
 namespace {
@@ -17,48 +19,7 @@ constexpr double kBlock = 40;          // metres, street included
 constexpr double kStreet = 7;          // width of the streets between blocks
 constexpr double kRangeNoise = 0.012;  // standard deviation, metres
 
-uint64_t mix(uint64_t h) {
-  h = (h ^ (h >> 30)) * 0xbf58476d1ce4e5b9ULL;
-  h = (h ^ (h >> 27)) * 0x94d049bb133111ebULL;
-  return h ^ (h >> 31);
-}
-
-/// Deterministic random numbers: equal seeds give equal sequences.
-class Dice {
- public:
-  explicit Dice(uint64_t seed) : state_(mix(seed + 0x9e3779b97f4a7c15ULL)) {}
-
-  double uniform() {
-    state_ += 0x9e3779b97f4a7c15ULL;
-    return static_cast<double>(mix(state_) >> 11) * 0x1p-53;
-  }
-  double between(double low, double high) { return low + (high - low) * uniform(); }
-  double gaussian() {
-    const double radius = std::sqrt(-2 * std::log(1 - uniform()));
-    return radius * std::cos(2 * std::numbers::pi * uniform());
-  }
-
- private:
-  uint64_t state_;
-};
-
 // ---- ground
-
-double lattice_value(int64_t x, int64_t y) {
-  return static_cast<double>(mix(static_cast<uint64_t>(x) * 0x8da6b343 ^ static_cast<uint64_t>(y) * 0xd8163841) >> 11) *
-         0x1p-53;
-}
-
-/// Smooth noise in [0, 1] with features of size 1.
-double noise(const glm::dvec2& p) {
-  const glm::dvec2 cell = glm::floor(p);
-  const glm::dvec2 f = p - cell;
-  const glm::dvec2 t = f * f * (3.0 - 2.0 * f);
-  const auto x = static_cast<int64_t>(cell.x);
-  const auto y = static_cast<int64_t>(cell.y);
-  return glm::mix(glm::mix(lattice_value(x, y), lattice_value(x + 1, y), t.x),
-                  glm::mix(lattice_value(x, y + 1), lattice_value(x + 1, y + 1), t.x), t.y);
-}
 
 double ground_height(const glm::dvec2& p) {
   return 40 * noise(p / 400.0) + 9 * noise(p / 90.0) + 0.25 * noise(p / 4.0) + 120;
@@ -141,13 +102,6 @@ std::optional<Tree> tree_on(const BlockKey& block, uint64_t number, bool beside_
 
 // ---- echoes
 
-void paint(Echo& echo, const glm::dvec3& color, double grain, Dice& dice) {
-  const glm::dvec3 c = glm::clamp(color * (1 + grain * dice.gaussian()), 0.0, 1.0);
-  echo.color = glm::u16vec3(c * 65535.0 + 0.5);
-  const double bright = 0.3 * c.x + 0.6 * c.y + 0.1 * c.z;
-  echo.intensity = static_cast<uint16_t>(std::clamp(40000 * bright + 1500 * dice.gaussian(), 1.0, 65535.0));
-}
-
 glm::dvec3 ground_color(const glm::dvec2& p) {
   const glm::dvec2 in_block = glm::abs(p - block_of(p).centre());
   const double to_street = 0.5 * (kBlock - kStreet) - std::max(in_block.x, in_block.y);
@@ -223,6 +177,12 @@ Echo echo_from_above(const glm::dvec2& p, const BlockKey& block, const std::opti
   return ground_echo(p, dice);
 }
 
+Echo town_echo(const glm::dvec2& p, Dice& dice) {
+  const BlockKey block = block_of(p);
+  const std::optional<House> house = house_on(block);
+  return house && dice.uniform() < 0.3 ? wall_echo(*house, dice) : echo_from_above(p, block, house, dice);
+}
+
 }  // namespace
 
 ScanPart part_of_scan(uint64_t count, double x, double y, double side) {
@@ -243,16 +203,14 @@ ScanPart part_of_scan(uint64_t count, double x, double y, double side) {
   return part;
 }
 
-Echo scan_echo(uint64_t index, uint64_t count) {
+Echo scan_echo(uint64_t index, uint64_t count, Landscape landscape) {
   const uint64_t rows = rows_of_scan(count);
   const uint64_t columns = (count + rows - 1) / rows;
   Dice dice(index ^ count << 32);
   const glm::dvec2 place((static_cast<double>(index % columns) + dice.uniform()) / static_cast<double>(columns),
                          (static_cast<double>(index / columns) + dice.uniform()) / static_cast<double>(rows));
   const glm::dvec2 p = glm::min(place, 1.0) * kSceneSide;
-  const BlockKey block = block_of(p);
-  const std::optional<House> house = house_on(block);
-  Echo echo = house && dice.uniform() < 0.3 ? wall_echo(*house, dice) : echo_from_above(p, block, house, dice);
+  Echo echo = landscape == Landscape::kForest ? forest_echo(p, dice) : town_echo(p, dice);
   echo.position += kRangeNoise * glm::dvec3(dice.gaussian(), dice.gaussian(), dice.gaussian());
   echo.position = glm::max(echo.position, 0.0);
   return echo;

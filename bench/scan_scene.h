@@ -15,13 +15,16 @@ struct Echo {
   uint8_t returns = 1;
 };
 
+enum class Landscape : uint8_t { kTown, kForest };
+
 /// A square kilometre of town and parkland on rolling ground: blocks of 40 m with houses, trees or meadow between
 /// streets, scanned from the air and, for the walls, from the street. The scene is computed from hashes of positions.
-/// Scans with different numbers of echoes therefore differ only in their density.
+/// Scans with different numbers of echoes therefore differ only in their density. The forest covers the banks and
+/// foundations of a ring fort in the middle of the square.
 inline constexpr double kSceneSide = 1000;
 
 /// Echo `index` of `count`. Echoes are in the order of a survey: row by row.
-Echo scan_echo(uint64_t index, uint64_t count);
+Echo scan_echo(uint64_t index, uint64_t count, Landscape landscape = Landscape::kTown);
 
 /// The echoes of a rectangle of the scene: parts of successive rows.
 struct ScanPart {

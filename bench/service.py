@@ -6,6 +6,8 @@ Starts a server for each figure, and stops it afterwards. The exit code is 1 if 
 resume:   a view whose connection is cut, for each of --waits; the time from connecting again to the first frame.
 reload:   50 encrypted connections draw coarse pictures while the certificate is replaced five times; none may be lost.
 drain:    eight viewers and a client of pictures while the server is told to stop; the time until it has ended.
+workers:  four views whose picture changes while the process that draws is killed 100 times; the time from each kill to
+          the last view's next frame, and the sessions lost.
 health:   the time of /healthz while one client of 16 connections orders pictures, views and nonsense.
 """
 import argparse
@@ -196,7 +198,48 @@ def health(arguments):
     return wrong == 0 and max(times) < 1, f"{wrong} of 100 not answered, the slowest after {max(times):.2f} s"
 
 
-FIGURES = [resume, reload, drain, health]
+def worker_of(server):
+    """The process that draws for a server."""
+    listed = subprocess.run(["pgrep", "--parent", str(server.process.pid), "--full", "render-worker"],
+                            capture_output=True, text=True).stdout.split()
+    return int(listed[0]) if listed else None
+
+
+def frame_of(session, update):
+    """Waits for a frame that shows an update or a later one."""
+    while True:
+        frame = wire.fields(session.await_kind(wire.VIEW_FRAME)[wire.VIEW_FRAME])
+        if frame.get(2, 0) >= update:
+            return
+
+
+def workers(arguments):
+    times, lost = [], 0
+    with Server(arguments.program, arguments.model) as server:
+        sessions = [server.connect() for _ in range(4)]
+        for session in sessions:
+            open_view(server, session)
+        for kill in range(1, 101):
+            worker = worker_of(server)
+            begin = time.monotonic()
+            if worker:
+                os.kill(worker, signal.SIGKILL)
+            changed = wire.field(1, kill) + wire.field(2, wire.picture(server.model, 320, 240 + kill % 7))
+            for session in sessions:
+                session.send(5, wire.UPDATE_VIEW, changed + wire.field(3, 1))
+            for session in list(sessions):
+                try:
+                    frame_of(session, kill)
+                except OSError:
+                    sessions.remove(session)
+                    lost += 1
+            times.append(time.monotonic() - begin)
+    times.sort()
+    return lost == 0 and times[-1] < 5, (
+        f"{lost} of 4 sessions lost, frames again after {times[50]:.2f} s in the median and {times[-1]:.2f} s at most")
+
+
+FIGURES = [resume, reload, drain, workers, health]
 
 
 def main():

@@ -20,6 +20,8 @@ void add_bench_command(CLI::App& app, int interrupt, Status& outcome);
 void add_pick_command(CLI::App& app, int interrupt, Status& outcome);
 /// `profile URL/MODEL --line ... --width W --output FILE`: the points in a band along a line.
 void add_profile_command(CLI::App& app, int interrupt, Status& outcome);
+/// `export URL/MODEL --output FILE ...`: the points of a region.
+void add_export_command(CLI::App& app, int interrupt, Status& outcome);
 /// `view URL/MODEL ...`: an interactive window; runs the program surfcast-view.
 void add_view_command(CLI::App& app, Status& outcome);
 /// `ping URL [--count N]`: round trip times.

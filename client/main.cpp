@@ -26,6 +26,7 @@ int run(int argc, char** argv) {
   surfcast::client::add_bench_command(app, interrupt, outcome);
   surfcast::client::add_pick_command(app, interrupt, outcome);
   surfcast::client::add_profile_command(app, interrupt, outcome);
+  surfcast::client::add_export_command(app, interrupt, outcome);
   surfcast::client::add_view_command(app, outcome);
   surfcast::client::add_ping_command(app, interrupt, outcome);
   if (const auto code = surfcast::command_line::parse_command_line(app, program_text(), argc, argv)) return *code;

@@ -46,7 +46,7 @@ Builds models of scans, draws them without a display on OpenGL 4.5, and sends
 the pictures to browsers and thin clients. Without a GPU it draws in software.")
 # Libraries that the program loads by name at run time. Mesa's software driver is required, so pictures can be drawn on
 # every machine; NVIDIA's driver is used as well if it is installed.
-set(CPACK_DEBIAN_SERVER_PACKAGE_DEPENDS "libegl1, libopengl0, libegl-mesa0, libgl1-mesa-dri")
+set(CPACK_DEBIAN_SERVER_PACKAGE_DEPENDS "libegl1, libopengl0, libegl-mesa0, libgl1-mesa-dri, ca-certificates")
 set(CPACK_DEBIAN_SERVER_PACKAGE_SUGGESTS surfcast-client)
 set(CPACK_DEBIAN_SERVER_PACKAGE_CONTROL_EXTRA
   ${packaging}/conffiles ${packaging}/postinst ${packaging}/prerm ${packaging}/postrm)

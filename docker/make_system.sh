@@ -21,8 +21,9 @@ done
 
 # By these, NVIDIA's container toolkit knows where to put the driver's libraries, and libEGL finds a driver. The names
 # of Mesa's drivers are hard links to one file, which --archive keeps.
+# By the certificates, stores of models are known.
 cp --archive --parents "$libraries/dri" etc/debian_version etc/os-release usr/lib/os-release etc/ld.so.conf \
-  etc/ld.so.conf.d etc/nsswitch.conf etc/passwd etc/group usr/share/drirc.d usr/share/glvnd usr/share/libdrm "$root"
+  etc/ld.so.conf.d etc/nsswitch.conf etc/passwd etc/group etc/ssl/certs/ca-certificates.crt usr/share/drirc.d usr/share/glvnd usr/share/libdrm "$root"
 by_name="$libraries/libEGL.so.1 $libraries/libEGL_mesa.so.0 $libraries/libOpenGL.so.0"
 by_name="$by_name $libraries/libX11.so.6" # for versions of NVIDIA's driver that link it
 cp --dereference $by_name "$root/$libraries"

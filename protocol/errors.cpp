@@ -14,7 +14,7 @@ struct KindNames {
   std::string_view name;
 };
 
-constexpr std::array<KindNames, 8> kKinds{{
+constexpr std::array<KindNames, 9> kKinds{{
     {ErrorKind::kInternal, wire::ERROR_CODE_INTERNAL, "internal"},
     {ErrorKind::kInvalidInput, wire::ERROR_CODE_INVALID_INPUT, "invalid_input"},
     {ErrorKind::kUnsupported, wire::ERROR_CODE_UNSUPPORTED, "unsupported"},
@@ -23,6 +23,7 @@ constexpr std::array<KindNames, 8> kKinds{{
     {ErrorKind::kLimit, wire::ERROR_CODE_LIMIT, "limit"},
     {ErrorKind::kCancelled, wire::ERROR_CODE_CANCELLED, "cancelled"},
     {ErrorKind::kUnavailable, wire::ERROR_CODE_UNAVAILABLE, "unavailable"},
+    {ErrorKind::kReplaced, wire::ERROR_CODE_UNAVAILABLE, "unavailable"},  // asked again, it is opened anew
 }};
 
 const KindNames& names_of(ErrorKind kind) {

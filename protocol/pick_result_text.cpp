@@ -15,6 +15,7 @@ Json document_of(const wire::PickResult& result) {
   Json document{{"hit", result.hit()}};
   if (!result.hit()) return document;
   document["position"] = to_json(result.position());
+  if (result.has_source_position()) document["source_position"] = to_json(result.source_position());
   if (result.has_normal()) document["normal"] = to_json(result.normal());
   if (result.has_color()) document["color"] = {result.color().red(), result.color().green(), result.color().blue()};
   document["radius"] = result.radius();

@@ -144,12 +144,22 @@ Status AtomicFile::commit_new() {
   return commit(rename_new);
 }
 
+Status AtomicFile::commit_unflushed() {
+  SURFCAST_EXPECTS(descriptor_ >= 0);
+  return put_in_place(std::rename);
+}
+
 Status AtomicFile::commit(int (*move)(const char* from, const char* to)) {
   SURFCAST_EXPECTS(descriptor_ >= 0);
   if (::fsync(descriptor_) != 0) return io_error(target_, "cannot flush", errno);
+  if (Status status = put_in_place(move); !status) return status;
+  flush_directory_of(target_);
+  return {};
+}
+
+Status AtomicFile::put_in_place(int (*move)(const char* from, const char* to)) {
   if (move(temporary_.c_str(), target_.c_str()) != 0) return io_error(target_, "cannot rename into place", errno);
   ::close(std::exchange(descriptor_, -1));
-  flush_directory_of(target_);
   return {};
 }
 

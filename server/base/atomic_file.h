@@ -32,12 +32,16 @@ class AtomicFile {
   Status commit();
   /// The same, but fails where there is a file of that name.
   Status commit_new();
+  /// As commit, but does not wait for the disk: if the machine fails, the target may hold anything. For content that is
+  /// checked when it is read.
+  Status commit_unflushed();
 
  private:
   AtomicFile(std::filesystem::path target, std::filesystem::path temporary, UnfinishedFile unfinished, int descriptor);
   [[nodiscard]] bool hold() const;
   void discard() noexcept;
   Status commit(int (*move)(const char* from, const char* to));
+  Status put_in_place(int (*move)(const char* from, const char* to));
 
   std::filesystem::path target_;
   std::filesystem::path temporary_;

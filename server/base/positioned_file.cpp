@@ -10,19 +10,28 @@
 
 namespace surfcast {
 
+namespace {
+
+tl::unexpected<Error> file_error(const std::filesystem::path& name, const char* what, int code) {
+  return fail(code == ENOENT ? ErrorKind::kNotFound : ErrorKind::kIo,
+              name.string() + ": " + what + ": " + std::strerror(code));
+}
+
+}  // namespace
+
 Result<PositionedFile> PositionedFile::open(const std::filesystem::path& path) {
-  const auto error = [&path](const char* what, int code) {
-    return fail(code == ENOENT ? ErrorKind::kNotFound : ErrorKind::kIo,
-                path.string() + ": " + what + ": " + std::strerror(code));
-  };
   // Without O_NONBLOCK a pipe of that name would block the caller.
   const int descriptor = ::open(path.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK);
-  if (descriptor < 0) return error("cannot open", errno);
+  if (descriptor < 0) return file_error(path, "cannot open", errno);
+  return adopt(descriptor, path);
+}
+
+Result<PositionedFile> PositionedFile::adopt(int descriptor, const std::filesystem::path& name) {
   struct stat information {};
   if (::fstat(descriptor, &information) != 0 || !S_ISREG(information.st_mode)) {
     const int code = S_ISDIR(information.st_mode) ? EISDIR : EINVAL;
     ::close(descriptor);
-    return error("cannot read", code);
+    return file_error(name, "cannot read", code);
   }
   return PositionedFile(descriptor, static_cast<uint64_t>(information.st_size));
 }

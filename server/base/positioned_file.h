@@ -15,6 +15,8 @@ namespace surfcast {
 class PositionedFile {
  public:
   static Result<PositionedFile> open(const std::filesystem::path& path);
+  /// Takes a descriptor that is open for reading, and closes it also on failure. `name` is for errors.
+  static Result<PositionedFile> adopt(int descriptor, const std::filesystem::path& name);
 
   PositionedFile(PositionedFile&& other) noexcept
       : descriptor_(std::exchange(other.descriptor_, -1)), size_(other.size_) {}
@@ -27,6 +29,8 @@ class PositionedFile {
   PositionedFile& operator=(const PositionedFile&) = delete;
   ~PositionedFile();
 
+  /// Valid for as long as this object.
+  [[nodiscard]] int descriptor() const { return descriptor_; }
   /// Bytes of the file when it was opened.
   [[nodiscard]] uint64_t size() const { return size_; }
   /// Fills `bytes` with what is at `offset`. kIo when the disk fails, kInvalidInput when the file ends before.

@@ -16,6 +16,7 @@ enum class ErrorKind {
   kLimit,         ///< larger than a stated limit
   kCancelled,     ///< no longer wanted
   kUnavailable,   ///< a resource is missing (no GL device) or busy
+  kReplaced,      ///< a model has been replaced by another one since it was opened
   kInternal,      ///< a bug in this program
 };
 

@@ -199,6 +199,13 @@ void take_properties(const surfel::SurfelCloud& cloud, surfel::SurfelCloud& comm
   if (!surfel::CurvatureColumns(cloud.scalars).empty()) surfel::add_curvature({}, common);
 }
 
+/// True if all surfels are samples of meshes as sample_mesh makes them.
+bool is_even(const BuildInputs& inputs, const BuildOptions& options) {
+  if (options.simplify || options.radii == scan::RadiusPolicy::kEstimate) return false;
+  return std::all_of(inputs.schemas().begin(), inputs.schemas().end(),
+                     [](const scan::ScanSchema& input) { return input.exact_radii; });
+}
+
 Status write(const BuildInputs& inputs, BuildParts& parts, const MemoryPlan& memory, ModelOutput& output,
              const BuildOptions& options, StageClock& clock, BuildReport& report) {
   surfel::SurfelCloud common = common_cloud(inputs, parts.signs().oriented);
@@ -210,7 +217,9 @@ Status write(const BuildInputs& inputs, BuildParts& parts, const MemoryPlan& mem
     simplified = std::move(*surfels);
     take_properties(simplified->cloud, common);
   }
-  const Result<model::ModelWriter*> writer = output.writer(model::schema_of(common));
+  model::ModelSchema schema = model::schema_of(common);
+  schema.even = is_even(inputs, options);
+  const Result<model::ModelWriter*> writer = output.writer(std::move(schema));
   if (!writer) return fail(writer.error());
   (*writer)->set_georeference(report.georeference);
   ModelPass pass(parts, **writer, options, std::move(simplified));

@@ -37,19 +37,23 @@ Status export_points(ExportCommand& command) {
 
 void add_export_command(CLI::App& app, Status& outcome) {
   auto command = std::make_shared<ExportCommand>();
-  CLI::App* export_command = app.add_subcommand("export", "Write the points of a scan, or a part of them, into a file");
-  export_command->add_option("SCAN", command->source, "Scan: a file, or the folder of a scan in many files")
+  CLI::App* export_command =
+      app.add_subcommand("export", "Write the points of a scan or model, or a part of them, into a file");
+  export_command
+      ->add_option("SCAN", command->source, "Scan: a file, or the folder of a scan in many files; or a model (.surf)")
       ->required();
   export_command
-      ->add_option("--output", command->output, "File to write; .las, .laz, .ply or .csv at its end names the format")
+      ->add_option("--output", command->output,
+                   "File to write; .las, .laz, .ply, .csv or .npy at its end names the format")
       ->required();
   add_selection_flags(*export_command, command->options.selection);
   export_command
-      ->add_option("--scale", command->options.scale,
+      ->add_option("--scale", command->options.encoding.scale,
                    "Steps of the coordinates of LAS and LAZ, in units of the scan (default: those of the scan)")
       ->check(CLI::PositiveNumber);
   export_command
-      ->add_option("--chunk", command->options.chunk_size, "Points in a chunk of LAZ, which is decoded as a whole")
+      ->add_option("--chunk", command->options.encoding.chunk_size,
+                   "Points in a chunk of LAZ, which is decoded as a whole")
       ->check(CLI::Range(1U, 1U << 24))
       ->capture_default_str();
   export_command

@@ -9,12 +9,25 @@
 #include "base/mapped_file.h"
 #include "builder/build_gaussians.h"
 #include "builder/input_files.h"
+#include "object_store/object_url.h"
 #include "service/model_name.h"
 
 namespace surfcast::cmd {
 namespace {
 
 namespace fs = std::filesystem;
+
+/// The model of a URL, opened.
+Result<service::NamedModel> find_stored(const std::string& url, const object_store::ObjectStore& store) {
+  if (!object_store::is_model_url(url)) {
+    return fail(ErrorKind::kInvalidInput,
+                url + ": neither a model (.surf) nor a folder of models (with a / at its end)");
+  }
+  Result<model::ModelFile> model = store.open(url);
+  if (!model) return fail(std::move(model.error()));
+  return service::NamedModel{
+      object_store::object_name(url), url, {}, std::make_shared<const model::ModelFile>(std::move(*model))};
+}
 
 /// The model file of a path that is no folder; a scan is built now unless the cache has its model.
 Result<service::NamedModel> find_model(const fs::path& path, const ScanCacheConfig& cache) {
@@ -42,15 +55,15 @@ Status check_file(const fs::path& path) {
 /// The names under which files are served must differ.
 Status check_names(const NamedPaths& paths) {
   std::set<std::string> names;
-  const auto add = [&names](const fs::path& path) -> Status {
-    if (names.insert(service::model_name(path)).second) return {};
+  const auto add = [&names](const std::string& name, const fs::path& path) -> Status {
+    if (names.insert(name).second) return {};
     return fail(ErrorKind::kInvalidInput, path.string() + ": another model is served under that name");
   };
   for (const service::NamedModel& model : paths.models) {
-    if (Status status = add(model.path); !status) return status;
+    if (Status status = add(model.name, model.path); !status) return status;
   }
   for (const fs::path& scan : paths.scans) {
-    if (Status status = add(scan); !status) return status;
+    if (Status status = add(service::model_name(scan), scan); !status) return status;
   }
   return {};
 }
@@ -58,7 +71,7 @@ Status check_names(const NamedPaths& paths) {
 /// Of several scans those that cannot be read are listed with their faults. If there is nothing else to serve, it is
 /// the command line that is wrong.
 Status check_any_scan(const NamedPaths& paths) {
-  if (paths.scans.empty() || !paths.models.empty() || !paths.folders.empty()) return {};
+  if (paths.scans.empty() || !paths.models.empty() || !paths.folders.empty() || !paths.stores.empty()) return {};
   Status first;
   for (const fs::path& scan : paths.scans) {
     Status status = builder::check_input(scan);
@@ -68,11 +81,26 @@ Status check_any_scan(const NamedPaths& paths) {
   return first;
 }
 
+Status sort_url(const std::string& url, const object_store::ObjectStore& store, NamedPaths& sorted) {
+  if (url.ends_with('/')) {
+    sorted.stores.push_back(url);
+    return {};
+  }
+  Result<service::NamedModel> model = find_stored(url, store);
+  if (!model) return fail(std::move(model.error()));
+  sorted.models.push_back(std::move(*model));
+  return {};
+}
+
 }  // namespace
 
-Result<NamedPaths> sort_paths(std::span<const fs::path> paths) {
+Result<NamedPaths> sort_paths(std::span<const fs::path> paths, const object_store::ObjectStore& store) {
   NamedPaths sorted;
   for (const fs::path& path : paths) {
+    if (const std::string url = path.string(); object_store::is_object_url(url)) {
+      if (Status status = sort_url(url, store, sorted); !status) return fail(std::move(status.error()));
+      continue;
+    }
     std::error_code ignored;
     if (fs::is_directory(path, ignored) && !is_gaussian_folder(path)) {
       sorted.folders.push_back(path);
@@ -90,16 +118,19 @@ Result<NamedPaths> sort_paths(std::span<const fs::path> paths) {
   return sorted;
 }
 
-Result<std::unique_ptr<service::ModelCatalogue>> find_one_model(const fs::path& path, const ScanCacheConfig& cache) {
+Result<std::unique_ptr<service::ModelCatalogue>> find_one_model(const fs::path& path, const ScanCacheConfig& cache,
+                                                                const object_store::ObjectStore& store) {
+  const std::string url = path.string();
+  const bool stored = object_store::is_object_url(url);
   std::error_code ignored;
-  if (fs::is_directory(path, ignored) && !is_gaussian_folder(path)) {
+  if (stored ? url.ends_with('/') : fs::is_directory(path, ignored) && !is_gaussian_folder(path)) {
     return fail(ErrorKind::kInvalidInput, path.string() + ": is a folder, and one model is wanted");
   }
-  Result<service::NamedModel> model = find_model(path, cache);
+  Result<service::NamedModel> model = stored ? find_stored(url, store) : find_model(path, cache);
   if (!model) return fail(std::move(model.error()));
   std::vector<service::NamedModel> files;
   files.push_back(std::move(*model));
-  return std::make_unique<service::ModelCatalogue>(std::move(files), std::vector<fs::path>());
+  return std::make_unique<service::ModelCatalogue>(std::move(files), std::vector<fs::path>(), &store);
 }
 
 }  // namespace surfcast::cmd

@@ -45,6 +45,16 @@ void add_pick_flags(CLI::App& command, service::PickLimits& limits) {
             "Points of one profile (default 1000000). More: memory, some 200 bytes a point and 40 for each attribute; "
             "less: coarser samples of wide profiles",
             {1, 100'000'000});
+  add_count(command, "max-region-points", limits.region_points,
+            "Points of one region that are handed out (default 100000000). More: one client occupies disk and line for "
+            "long; less: large regions are refused",
+            {1, UINT64_MAX});
+  add_count(command, "max-regions", limits.regions,
+            "Regions whose points are on their way at a time (default 16). More: memory, some MiB for each; less: "
+            "refused sooner");
+  add_size(command, "region-piece", limits.region_bytes,
+           "Piece in which the file of a region is made (default 1M). More: memory of every region; less: more turns",
+           {65536, 256 * kMebibyte});
 }
 
 void add_connection_flags(CLI::App& command, net::ServerConfig& server) {
@@ -205,6 +215,25 @@ void add_renderer_flags(CLI::App& command, render::RendererConfig& renderer) {
   add_count(command, "decoders", renderer.decoders,
             "Threads that decode blocks (default: one a core). More: processor time; less: pictures wait for blocks",
             kThreads);
+}
+
+void add_worker_flags(CLI::App& command, WorkerFlags& worker) {
+  add_count(command, "workers", worker.workers,
+            "Processes that decode models and draw (default 1; 0: the server itself, which then ends with the driver "
+            "or a block that crashes it)",
+            {0, 1});
+  add_seconds(command, "worker-timeout", worker.silence,
+              "Without a sign of a worker that draws before it is replaced (default 60). More: a driver that hangs is "
+              "waited for; less: slow devices are taken for hung");
+  command
+      .add_option("--worker-readable", worker.readable,
+                  "File or folder that a driver reads beside system libraries and devices; may be repeated")
+      ->envname(protocol::environment_name("worker-readable"))
+      ->type_name("PATH");
+  command
+      .add_flag("--no-worker-sandbox", worker.no_sandbox,
+                "Let the worker read files, reach the network and start programs like the server")
+      ->envname(protocol::environment_name("no-worker-sandbox"));
 }
 
 void add_picture_flags(CLI::App& command, service::ServiceLimits& limits) {

@@ -1,6 +1,9 @@
 #pragma once
 
 #include <CLI/CLI.hpp>
+#include <chrono>
+#include <string>
+#include <vector>
 
 #include "cmd/scan_builds.h"
 #include "cmd/scan_cache.h"
@@ -10,6 +13,14 @@
 #include "service/render_service.h"
 
 namespace surfcast::cmd {
+
+/// Processes that draw.
+struct WorkerFlags {
+  unsigned workers = 1;  ///< 0: this process draws
+  bool no_sandbox = false;
+  std::vector<std::string> readable;          ///< see worker::WorkerConfig
+  std::chrono::milliseconds silence{60'000};  ///< likewise
+};
 
 // Flags that set the limits of the programs, and their variables. docs/settings.md lists them all. Targets must outlive
 // the parsing.
@@ -22,6 +33,8 @@ void add_build_flags(CLI::App& command, PreviewRule& previews, size_t& threads);
 void add_upload_flags(CLI::App& command, net::UploadConfig& uploads);
 /// `--gpu`, the memory of the renderer and its threads.
 void add_renderer_flags(CLI::App& command, render::RendererConfig& renderer);
+/// The process that draws.
+void add_worker_flags(CLI::App& command, WorkerFlags& worker);
 /// The size of a picture.
 void add_picture_flags(CLI::App& command, service::ServiceLimits& limits);
 /// What picks keep in memory.

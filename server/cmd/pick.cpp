@@ -7,6 +7,7 @@
 
 #include "cmd/find_models.h"
 #include "cmd/limit_flags.h"
+#include "cmd/store_flags.h"
 #include "net/convert.h"
 #include "protocol/request_flags.h"
 #include "service/pick_service.h"
@@ -19,20 +20,25 @@ struct PickCommand {
   protocol::PickFlags flags;
   ScanCacheConfig cache;
   service::PickLimits limits;
+  object_store::StoreConfig store;
+  uint64_t block_cache = 0;
 };
 
 Status pick(const PickCommand& command) {
-  const Result<std::unique_ptr<service::ModelCatalogue>> models = find_one_model(command.model, command.cache);
+  Result<std::shared_ptr<model::BlockCache>> blocks = open_block_cache(command.block_cache, command.cache);
+  if (!blocks) return fail(std::move(blocks.error()));
+  const object_store::ObjectStore store(command.store, std::move(*blocks));
+  const Result<std::unique_ptr<service::ModelCatalogue>> models = find_one_model(command.model, command.cache, store);
   if (!models) return fail(models.error());
   Result<service::PickJob> job =
       command.flags.request((*models)->names().front()).and_then([](const wire::PickSurfel& request) {
         return net::to_job(request);
       });
   if (!job) return fail(job.error());
-  std::promise<Result<std::optional<kinds::PickedSurfel>>> promise;
+  std::promise<Result<std::optional<service::PickedPoint>>> promise;
   service::PickService service(**models, command.limits);
   service.pick(std::move(*job), [&promise](auto picked) { promise.set_value(std::move(picked)); });
-  return promise.get_future().get().and_then([&](const std::optional<kinds::PickedSurfel>& picked) {
+  return promise.get_future().get().and_then([&](const std::optional<service::PickedPoint>& picked) {
     wire::PickResult result;
     net::to_wire(picked, result);
     return command.flags.print(result);
@@ -44,10 +50,12 @@ Status pick(const PickCommand& command) {
 void add_pick_command(CLI::App& app, Status& outcome) {
   auto command = std::make_shared<PickCommand>();
   CLI::App* sub = app.add_subcommand("pick", "Print the surfel at a pixel of a picture of a model or scan");
-  sub->add_option("MODEL", command->model, "Model file or scan")->required();
+  sub->add_option("MODEL", command->model, "Model file, its URL, or scan")->required();
   command->flags.add_to(*sub);
   add_cache_flags(*sub, command->cache);
   add_pick_cache_flag(*sub, command->limits);
+  add_store_flags(*sub, command->store);
+  add_block_cache_flag(*sub, command->block_cache);
   sub->callback([command, &outcome] {
     if (Status status = command->flags.check(); !status) throw CLI::ValidationError(status.error().message);
     outcome = pick(*command);

@@ -8,10 +8,12 @@
 #include "cmd/find_models.h"
 #include "cmd/limit_flags.h"
 #include "cmd/log_device.h"
+#include "cmd/store_flags.h"
 #include "net/convert.h"
 #include "protocol/request_flags.h"
 #include "protocol/save_picture.h"
 #include "service/catalogue_renderer.h"
+#include "service/local_renderer.h"
 #include "service/render_service.h"
 
 namespace surfcast::cmd {
@@ -23,6 +25,8 @@ struct RenderCommand {
   ScanCacheConfig cache;
   render::RendererConfig renderer;
   service::ServiceLimits limits;
+  object_store::StoreConfig store;
+  uint64_t block_cache = 0;
 };
 
 Result<wire::Picture> draw_and_wait(service::RenderService& service, const wire::DrawPicture& request) {
@@ -39,12 +43,15 @@ Result<wire::Picture> draw_and_wait(service::RenderService& service, const wire:
 }
 
 Status render(const RenderCommand& command) {
-  const Result<std::unique_ptr<service::ModelCatalogue>> models = find_one_model(command.model, command.cache);
+  Result<std::shared_ptr<model::BlockCache>> blocks = open_block_cache(command.block_cache, command.cache);
+  if (!blocks) return fail(std::move(blocks.error()));
+  const object_store::ObjectStore store(command.store, std::move(*blocks));
+  const Result<std::unique_ptr<service::ModelCatalogue>> models = find_one_model(command.model, command.cache, store);
   if (!models) return fail(models.error());
   const Result<wire::DrawPicture> request = command.flags.request((*models)->names().front());
   if (!request) return fail(request.error());
-  const auto service =
-      service::RenderService::start(**models, service::catalogue_renderers(**models, command.renderer), command.limits);
+  const auto service = service::RenderService::start(
+      **models, service::catalogue_renderers(**models, service::local_renderers(command.renderer)), command.limits);
   if (!service) return fail(service.error());
   log_device((*service)->device(), command.renderer);
   return protocol::draw_and_save(command.flags, *request,
@@ -56,11 +63,13 @@ Status render(const RenderCommand& command) {
 void add_render_command(CLI::App& app, Status& outcome) {
   auto command = std::make_shared<RenderCommand>();
   CLI::App* sub = app.add_subcommand("render", "Draw a picture of a model or scan, or the frames of a camera path");
-  sub->add_option("MODEL", command->model, "Model file or scan")->required();
+  sub->add_option("MODEL", command->model, "Model file, its URL, or scan")->required();
   command->flags.add_to(*sub);
   add_renderer_flags(*sub, command->renderer);
   add_cache_flags(*sub, command->cache);
   add_picture_flags(*sub, command->limits);
+  add_store_flags(*sub, command->store);
+  add_block_cache_flag(*sub, command->block_cache);
   sub->callback([command, &outcome] {
     if (Status status = command->flags.check(); !status) throw CLI::ValidationError(status.error().message);
     outcome = render(*command);

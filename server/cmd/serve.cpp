@@ -1,9 +1,12 @@
 #include "cmd/serve.h"
 
+#include <algorithm>
 #include <array>
 #include <atomic>
+#include <chrono>
 #include <climits>
 #include <csignal>
+#include <cstdlib>
 #include <filesystem>
 #include <iostream>
 #include <map>
@@ -23,14 +26,21 @@
 #include "cmd/limit_flags.h"
 #include "cmd/log_device.h"
 #include "cmd/program_builder.h"
+#include "cmd/render_worker.h"
 #include "cmd/scan_builds.h"
+#include "cmd/settings.h"
+#include "cmd/store_flags.h"
+#include "cmd/store_folders.h"
 #include "net/server.h"
+#include "object_store/object_url.h"
 #include "protocol/endpoint.h"
 #include "protocol/request_flags.h"
 #include "protocol/validate.h"
 #include "service/catalogue_renderer.h"
+#include "service/local_renderer.h"
 #include "service/model_name.h"
 #include "service/render_service.h"
+#include "worker/worker_renderer.h"
 
 namespace surfcast::cmd {
 namespace {
@@ -44,8 +54,12 @@ struct ServeCommand {
   std::filesystem::path viewer;
   net::SiteLimits viewer_limits;
   render::RendererConfig renderer;
+  WorkerFlags worker;
   service::ServiceLimits service;
   net::ServerConfig server;
+  object_store::StoreConfig store;
+  uint64_t block_cache = 0;
+  std::chrono::milliseconds store_refresh{60'000};
   std::filesystem::path certificate;
   std::filesystem::path key;
   LogFormat log_format = LogFormat::kText;
@@ -127,21 +141,79 @@ void serve_former_uploads(const net::UploadConfig& uploads) {
   }
 }
 
+/// Drivers keep compiled shaders in a folder that only workers use, so that the next worker draws sooner.
+void allow_shader_cache(const ScanCacheConfig& cache, worker::WorkerConfig& config) {
+  const Result<std::filesystem::path> folder = ready_cache_folder(cache);
+  if (!folder) return;
+  const std::filesystem::path shaders = *folder / "shaders";
+  std::error_code code;
+  std::filesystem::create_directories(shaders, code);
+  config.writable = {shaders.string()};
+  for (const char* variable : {"MESA_SHADER_CACHE_DIR", "__GL_SHADER_DISK_CACHE_PATH"}) {
+    config.environment.push_back(std::string(variable) + "=" + shaders.string());
+    const char* const own = std::getenv(variable);
+    if (own == nullptr) continue;
+    std::filesystem::create_directories(own, code);
+    config.writable.emplace_back(own);
+  }
+}
+
+/// Where pictures are drawn: in a worker process, or in this one.
+Result<service::ModelRendererFactory> make_renderers(const ServeCommand& command, worker::WorkerCounts& counts,
+                                                     std::function<void()> on_reset) {
+  if (command.worker.workers == 0) return service::local_renderers(command.renderer, std::move(on_reset));
+  Result<std::vector<std::string>> program = render_worker_command();
+  if (!program) return fail(program.error());
+  worker::WorkerConfig config;
+  config.command = std::move(*program);
+  config.renderer = command.renderer;
+  config.log_format = command.log_format;
+  config.sandbox = !command.worker.no_sandbox;
+  config.readable = command.worker.readable;
+  config.pixels = command.service.pixels;
+  allow_shader_cache(command.cache, config);
+  config.silence = command.worker.silence;
+  return worker::worker_renderers(config, counts);
+}
+
+/// A worker reaches no network, so that models of stores are drawn here.
+void draw_stores_here(ServeCommand& command) {
+  const auto in_store = [](const std::filesystem::path& path) { return object_store::is_object_url(path.string()); };
+  if (command.worker.workers == 0 || std::ranges::none_of(command.paths, in_store)) return;
+  spdlog::warn("models of stores are drawn by the server itself, as with --workers 0");
+  command.worker.workers = 0;
+}
+
 Status serve(ServeCommand command) {
+  draw_stores_here(command);
   Result<std::shared_ptr<const net::StaticFiles>> viewer = read_viewer(command.viewer, command.viewer_limits);
   if (!viewer) return fail(viewer.error());
   command.server.viewer = std::move(*viewer);
-  Result<NamedPaths> paths = sort_paths(command.paths);
+  Result<std::shared_ptr<model::BlockCache>> blocks = open_block_cache(command.block_cache, command.cache);
+  if (!blocks) return fail(std::move(blocks.error()));
+  const object_store::ObjectStore store(command.store, std::move(*blocks));
+  Result<NamedPaths> paths = sort_paths(command.paths, store);
   if (!paths) return fail(paths.error());
-  service::ModelCatalogue models(std::move(paths->models), std::move(paths->folders));
+  service::ModelCatalogue models(std::move(paths->models), std::move(paths->folders), &store);
+  StoreFolders stores(store, models, std::move(paths->stores));
+  if (Status status = stores.list(); !status) return status;
+  stores.watch(command.store_refresh);
   std::atomic<bool> gpu_reset = false;
   const auto on_reset = [&gpu_reset] {
     gpu_reset = true;
     ::kill(::getpid(), SIGTERM);
   };
+  worker::WorkerCounts workers;
+  Result<service::ModelRendererFactory> renderers = make_renderers(command, workers, on_reset);
+  if (!renderers) return fail(renderers.error());
   const auto service = service::RenderService::start(
-      models, service::catalogue_renderers(models, command.renderer, on_reset), command.service);
+      models, service::catalogue_renderers(models, std::move(*renderers)), command.service);
   if (!service) return fail(service.error());
+  if (command.worker.workers > 0) {
+    command.server.workers = [&workers] {
+      return net::WorkerGauges{workers.started, workers.ended, workers.quarantined};
+    };
+  }
   log_device((*service)->device(), command.renderer);
   add_machine_name(command.server.hosts);
   ScanBuilds* builder = nullptr;  // set before the server runs
@@ -200,7 +272,8 @@ void add_serve_command(CLI::App& app, Status& outcome) {
   auto command = std::make_shared<ServeCommand>();
   CLI::App* sub = app.add_subcommand("serve", "Serve models over TCP and HTTP");
   sub->add_option("PATH", command->paths,
-                  "Model files, folders of model files, and scans (default: the current folder)");
+                  "Model files, folders of model files, URLs of both (those of folders end with a slash), and scans "
+                  "(default: the current folder)");
   sub->add_option("--listen", command->listen, "HOST:PORT to listen on; port 0: any free port (default 127.0.0.1:7600)")
       ->envname(protocol::environment_name("listen"));
   sub->add_option("--viewer", command->viewer, "Folder of the browser viewer (default: the one built or installed)")
@@ -220,10 +293,16 @@ void add_serve_command(CLI::App& app, Status& outcome) {
       ->check(CLI::Range(1.0, protocol::kMaxFramesPerSecond));
   add_tls_flags(*sub, *command);
   add_renderer_flags(*sub, command->renderer);
+  add_worker_flags(*sub, command->worker);
   add_cache_flags(*sub, command->cache);
   add_build_flags(*sub, command->previews, command->build_threads);
   add_upload_flags(*sub, command->server.uploads);
   add_picture_flags(*sub, command->service);
+  add_store_flags(*sub, command->store);
+  add_block_cache_flag(*sub, command->block_cache);
+  add_seconds(
+      *sub, "store-refresh", command->store_refresh,
+      "Before folders in stores are listed again (default 60). More: new models are seen later; less: requests");
   add_server_flags(*sub, command->service, command->renderer, command->server, command->viewer_limits);
   sub->add_option("--log-format", command->log_format, "Lines of the log: text or json (default text)")
       ->envname(protocol::environment_name("log-format"))

@@ -11,6 +11,7 @@
 namespace surfcast::cmd {
 
 Result<uint64_t> parse_size(const std::string& text, const SettingRange& range) {
+  if (text == "0" && range.least == 0) return 0;  // which is no memory to build in
   const std::optional<uint64_t> bytes = builder::parse_memory_size(text);
   if (!bytes) return fail(ErrorKind::kInvalidInput, "not a size like 4G or 512M: " + text);
   if (*bytes < range.least) {

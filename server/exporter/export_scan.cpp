@@ -9,11 +9,13 @@
 #include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 
+#include "base/atomic_file.h"
 #include "base/mapped_file.h"
-#include "exporter/csv_writer.h"
 #include "exporter/las_copy.h"
 #include "exporter/las_table.h"
-#include "exporter/ply_writer.h"
+#include "exporter/model_points.h"
+#include "exporter/point_encoder.h"
+#include "exporter/point_writer.h"
 #include "exporter/table_format.h"
 #include "scan/las_records.h"
 #include "scan/scan_folder.h"
@@ -48,8 +50,20 @@ std::string extension_of(const fs::path& path) {
   return extension;
 }
 
-bool is_las(const std::string& extension) {
-  return extension == ".las" || extension == ".laz";
+/// The format of a file, by its extension.
+Result<PointFormat> format_of(const fs::path& target) {
+  const std::string extension = extension_of(target);
+  if (!extension.empty()) {
+    if (const auto format = point_format_of(std::string_view(extension).substr(1))) return *format;
+  }
+  std::string names;
+  for (const auto& [name, format] : kPointFormats) names += (names.empty() ? "." : ", .") + std::string(name);
+  return fail(ErrorKind::kUnsupported,
+              target.string() + ": its extension names none of the formats that are written: " + names);
+}
+
+bool is_las(PointFormat format) {
+  return format == PointFormat::kLas || format == PointFormat::kLaz;
 }
 
 /// Whether the source is a single file of point records.
@@ -62,11 +76,12 @@ Result<bool> holds_records(const fs::path& source) {
   return *format == scan::ScanFormat::kLas;
 }
 
-Result<ExportReport> copy_records(const fs::path& source, const fs::path& target, const ExportOptions& options) {
+Result<ExportReport> copy_records(const fs::path& source, const fs::path& target, PointFormat format,
+                                  const ExportOptions& options) {
   const Result<scan::LasRecords> records = scan::LasRecords::open(source, options.selection);
   if (!records) return fail(records.error());
-  LasCopy copy = plan_las_copy(records->header(), records->file(), extension_of(target) == ".laz");
-  copy.head.chunk_size = options.chunk_size;
+  LasCopy copy = plan_las_copy(records->header(), records->file(), format == PointFormat::kLaz);
+  copy.head.chunk_size = options.encoding.chunk_size;
   Result<LasFileWriter> writer = LasFileWriter::create(target, copy.head);
   if (!writer) return fail(std::move(writer.error()));
   using Bytes = std::vector<std::byte>;
@@ -78,6 +93,37 @@ Result<ExportReport> copy_records(const fs::path& source, const fs::path& target
     return fail(ErrorKind::kInvalidInput, source.string() + ": has no points in the selection");
   return writer->finish().map([&](uint64_t bytes) { return ExportReport{writer->points(), bytes, copy.notes}; });
 }
+
+/// A file of encoded points.
+class EncodedFile : public PointWriter {
+ public:
+  static Result<std::unique_ptr<PointWriter>> create(const fs::path& target, std::unique_ptr<PointEncoder> encoder) {
+    Result<AtomicFile> file = AtomicFile::create(target);
+    if (!file) return fail(std::move(file.error()));
+    if (Status status = file->append(encoder->head()); !status) return fail(std::move(status.error()));
+    return std::make_unique<EncodedFile>(std::move(*file), std::move(encoder));
+  }
+  EncodedFile(AtomicFile file, std::unique_ptr<PointEncoder> encoder)
+      : file_(std::move(file)), encoder_(std::move(encoder)) {}
+
+  Status append(const scan::ScanPoints& points) override {
+    written_ += points.size();
+    return encoder_->rows(points).and_then([this](const std::vector<std::byte>& bytes) { return file_.append(bytes); });
+  }
+  [[nodiscard]] uint64_t written() const override { return written_; }
+  Result<uint64_t> finish() override {
+    Status status = file_.append(encoder_->tail());
+    const uint64_t bytes = file_.position();
+    if (status) status = file_.commit();
+    if (!status) return fail(std::move(status.error()));
+    return bytes;
+  }
+
+ private:
+  AtomicFile file_;
+  std::unique_ptr<PointEncoder> encoder_;
+  uint64_t written_ = 0;
+};
 
 class LasTableWriter : public PointWriter {
  public:
@@ -97,32 +143,35 @@ class LasTableWriter : public PointWriter {
 };
 
 Result<std::unique_ptr<PointWriter>> create_las(const fs::path& target, const scan::ScanStream& scan,
-                                                const ExportOptions& options, std::vector<std::string>& notes) {
-  LasPoints points{&scan.schema(), scan.bounds(), scan.size(), options.scale, extension_of(target) == ".laz"};
+                                                PointFormat format, const ExportOptions& options,
+                                                std::vector<std::string>& notes) {
+  LasPoints points{&scan.schema(), scan.bounds(), scan.size(), options.encoding.scale, format == PointFormat::kLaz};
   Result<LasTable> table = plan_las_table(points);
   if (!table) return fail(std::move(table.error()));
   if (!scan.schema().grid || *scan.schema().grid != table->grid)
     notes.push_back("coordinates are rounded to multiples of " + shortest(table->grid.scale.x));
-  table->head.chunk_size = options.chunk_size;
+  table->head.chunk_size = options.encoding.chunk_size;
   Result<LasFileWriter> file = LasFileWriter::create(target, table->head);
   if (!file) return fail(std::move(file.error()));
   return std::make_unique<LasTableWriter>(std::move(*file), std::move(*table));
 }
 
 Result<std::unique_ptr<PointWriter>> create_writer(const fs::path& target, const scan::ScanStream& scan,
-                                                   const ExportOptions& options, std::vector<std::string>& notes) {
-  const std::string extension = extension_of(target);
-  if (extension == ".ply") return create_ply(target, scan.schema(), scan.size());
-  if (extension == ".csv") return create_csv(target, scan.schema());
-  return create_las(target, scan, options, notes);
+                                                   PointFormat format, const ExportOptions& options,
+                                                   std::vector<std::string>& notes) {
+  // Not all is known beforehand that LAS states before its points: some of them may lack coordinates.
+  if (is_las(format)) return create_las(target, scan, format, options, notes);
+  return make_point_encoder(format, scan.schema(), {.count = scan.size(), .bounds = scan.bounds()}, options.encoding)
+      .and_then([&](std::unique_ptr<PointEncoder> encoder) { return EncodedFile::create(target, std::move(encoder)); });
 }
 
-Result<ExportReport> convert_points(const fs::path& source, const fs::path& target, const ExportOptions& options) {
+Result<ExportReport> convert_points(const fs::path& source, const fs::path& target, PointFormat format,
+                                    const ExportOptions& options) {
   const Result<scan::ScanStream> scan = scan::ScanStream::open(source, options.limit, {}, options.selection);
   if (!scan) return fail(scan.error());
   ExportReport report;
   report.notes = scan->schema().notes;
-  const Result<std::unique_ptr<PointWriter>> writer = create_writer(target, *scan, options, report.notes);
+  const Result<std::unique_ptr<PointWriter>> writer = create_writer(target, *scan, format, options, report.notes);
   if (!writer) return fail(writer.error());
   const Status written = for_each_piece<scan::ScanPoints>(
       scan->pieces(), [&](size_t piece) { return scan->read(piece); },
@@ -137,18 +186,56 @@ Result<ExportReport> convert_points(const fs::path& source, const fs::path& targ
   });
 }
 
+Result<PointFacts> count_points(const ModelPoints& points, WantedFacts wanted) {
+  PointFacts facts;
+  const Status counted = for_each_piece<PointFacts>(
+      points.pieces(), [&](size_t piece) { return points.count(piece, wanted); },
+      [&facts](const PointFacts& piece) -> Status {
+        facts.add(piece);
+        return {};
+      });
+  if (!counted) return fail(counted.error());
+  return facts;
+}
+
+Result<ExportReport> export_model(const fs::path& source, const fs::path& target, PointFormat format,
+                                  const ExportOptions& options) {
+  Result<model::ModelFile> file = model::ModelFile::open(source);
+  if (!file) return fail(std::move(file.error()));
+  const Result<ModelPoints> points =
+      ModelPoints::open(std::make_shared<const model::ModelFile>(std::move(*file)), source.string(),
+                        {.points = options.selection, .source_coordinates = true});
+  if (!points) return fail(points.error());
+  const Result<PointFacts> facts = count_points(*points, facts_for(format));
+  if (!facts) return fail(facts.error());
+  if (facts->count == 0) return fail(ErrorKind::kInvalidInput, source.string() + ": has no points in the selection");
+  Result<std::unique_ptr<PointEncoder>> encoder =
+      make_point_encoder(format, points->schema(), *facts, options.encoding);
+  if (!encoder) return fail(encoder.error());
+  ExportReport report{facts->count, 0, {}};
+  if (std::string note = (*encoder)->note(); !note.empty()) report.notes.push_back(std::move(note));
+  const Result<std::unique_ptr<PointWriter>> writer = EncodedFile::create(target, std::move(*encoder));
+  if (!writer) return fail(writer.error());
+  const Status written = for_each_piece<scan::ScanPoints>(
+      points->pieces(), [&](size_t piece) { return points->read(piece); },
+      [&](const scan::ScanPoints& piece) { return (*writer)->append(piece); });
+  if (!written) return fail(written.error());
+  return (*writer)->finish().map([&](uint64_t bytes) {
+    report.bytes = bytes;
+    return report;
+  });
+}
+
 }  // namespace
 
 Result<ExportReport> export_scan(const fs::path& source, const fs::path& target, const ExportOptions& options) {
-  const std::string extension = extension_of(target);
-  if (std::find(std::begin(kExtensions), std::end(kExtensions), extension) == std::end(kExtensions)) {
-    return fail(ErrorKind::kUnsupported,
-                target.string() + ": the name must end in .las, .laz, .ply or .csv, which are the formats written");
-  }
+  const Result<PointFormat> format = format_of(target);
+  if (!format) return fail(format.error());
+  if (extension_of(source) == ".surf") return export_model(source, target, *format, options);
   const Result<bool> records = holds_records(source);
   if (!records) return fail(records.error());
-  if (*records && is_las(extension) && !options.scale) return copy_records(source, target, options);
-  return convert_points(source, target, options);
+  if (*records && is_las(*format) && !options.encoding.scale) return copy_records(source, target, *format, options);
+  return convert_points(source, target, *format, options);
 }
 
 }  // namespace surfcast::exporter

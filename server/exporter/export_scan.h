@@ -2,24 +2,20 @@
 
 #include <cstdint>
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <vector>
 
 #include "base/result.h"
+#include "exporter/point_encoder.h"
 #include "scan/row_source.h"
 #include "scan/selection.h"
 
 namespace surfcast::exporter {
 
-/// The extensions of the formats that are written, with their dots.
-inline constexpr const char* kExtensions[] = {".las", ".laz", ".ply", ".csv"};
-
 struct ExportOptions {
-  scan::Selection selection;    ///< the points that are taken
-  scan::DecodingLimit limit;    ///< of formats that can only be decoded whole
-  std::optional<double> scale;  ///< steps of LAS coordinates; none: those of the source, or see lattice_for
-  uint32_t chunk_size = 50000;  ///< points of a chunk of LAZ
+  scan::Selection selection;  ///< the points that are taken; for models see ModelSelection
+  scan::DecodingLimit limit;  ///< of formats that can only be decoded whole
+  EncoderOptions encoding;
 };
 
 struct ExportReport {
@@ -30,7 +26,8 @@ struct ExportReport {
 
 /// Writes the selected points of a scan, in file order, into a file whose extension names its format. The target
 /// appears whole or not at all. LAS and LAZ to LAS and LAZ: records are copied byte by byte, see las_copy.h. Fails
-/// where no point is selected. Every error names the file and the fault.
+/// where no point is selected. Every error names the file and the fault. A source whose name ends in .surf is a model;
+/// its points come in the order of its file, in the system of the scan that it was built of.
 Result<ExportReport> export_scan(const std::filesystem::path& source, const std::filesystem::path& target,
                                  const ExportOptions& options);
 

@@ -2,6 +2,8 @@
 
 #include <array>
 #include <charconv>
+#include <cstring>
+#include <type_traits>
 #include <variant>
 
 namespace surfcast::exporter {
@@ -21,6 +23,16 @@ void add_vectors(scan::PointTable& table, ScalarType type, const std::vector<glm
 /// Colours of 8 bits are kept in 16, of which the lower byte comes first.
 ScalarType color_type(const scan::ScanSchema& schema) {
   return schema.color_bits == 8 ? ScalarType::kUint8 : ScalarType::kUint16;
+}
+
+template <typename T>
+void store_value(std::byte* at, T value, bool wide_integers) {
+  if (std::is_integral_v<T> && sizeof(T) == 8 && !wide_integers) {
+    const auto number = static_cast<double>(value);
+    std::memcpy(at, &number, sizeof(number));
+  } else {
+    std::memcpy(at, &value, sizeof(value));
+  }
 }
 
 }  // namespace
@@ -56,6 +68,20 @@ scan::PointTable table_of(const scan::ScanPoints& points, const scan::ScanSchema
         scalar.values);
   }
   return table;
+}
+
+std::vector<std::byte> packed_rows(const scan::PointTable& table, bool wide_integers) {
+  static_assert(sizeof(double) == sizeof(uint64_t));
+  size_t length = 0;
+  for (const scan::Column& column : table.columns) length += scan::size_of(column.type);
+  std::vector<std::byte> rows(table.rows * length);
+  size_t offset = 0;
+  for (const scan::Column& column : table.columns) {
+    scan::for_each_value(column, table.rows,
+                         [&](size_t i, auto value) { store_value(&rows[i * length + offset], value, wide_integers); });
+    offset += scan::size_of(column.type);
+  }
+  return rows;
 }
 
 std::string shortest(double number) {

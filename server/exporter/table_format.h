@@ -16,6 +16,9 @@ std::vector<scan::ColumnInfo> columns_of(const scan::ScanSchema& schema);
 /// The points as a table with these columns, which refers to the points.
 scan::PointTable table_of(const scan::ScanPoints& points, const scan::ScanSchema& schema);
 
+/// The rows one after another, without padding. Unless `wide_integers` is set, integers of 64 bits become doubles.
+std::vector<std::byte> packed_rows(const scan::PointTable& table, bool wide_integers);
+
 /// As few digits as give the number back.
 std::string shortest(double number);
 

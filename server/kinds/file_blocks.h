@@ -2,6 +2,7 @@
 
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "kinds/kind_table.h"
@@ -19,7 +20,8 @@ class FileBlocks : public residency::BlockSource {
   /// The tree of the model. Blocks count as many items as their texels need at kMaxPackedPerSurfel each, so that
   /// budgets are those of memory.
   [[nodiscard]] const ldc::BlockTree& tree() const override { return tree_ ? *tree_ : model_->tree(); }
-  void prefetch(uint32_t block) const override { model_->prefetch(block); }
+  void prefetch(std::span<const uint32_t> blocks) const override { model_->prefetch(blocks); }
+  void forget(uint32_t block) const override { model_->forget(block); }
   [[nodiscard]] Result<residency::PackedBlock> load(uint32_t block, bool attributes) const override;
   /// The number of a block's kind in the table of kinds.
   [[nodiscard]] uint32_t kind_of(uint32_t block) const { return numbers_[model_->blocks()[block].kind]; }

@@ -8,6 +8,7 @@
 #include "base/hash.h"
 #include "mesh/cell_lattice.h"
 #include "mesh/placed_triangle.h"
+#include "mesh/texture.h"
 
 namespace surfcast::mesh {
 namespace {
@@ -62,20 +63,19 @@ void add_edges(const Patch& patch, const Triangle& triangle, uint32_t number, st
 }  // namespace
 
 std::optional<std::array<glm::dvec2, 3>> texel_corners(const Vertices& vertices, const Triangle& triangle,
-                                                       const Texture& texture) {
+                                                       const glm::ivec2& size) {
   constexpr double kMost = 1 << 26;
-  const glm::dvec2 size(texture.width, texture.height);
   std::array<glm::dvec2, 3> corners{};
   for (size_t k = 0; k < 3; ++k) {
     if (triangle[k].uv == kNone) return std::nullopt;
-    corners[k] = vertices.uvs[triangle[k].uv] * size;
+    corners[k] = vertices.uvs[triangle[k].uv] * glm::dvec2(size);
     if (!(std::abs(corners[k].x) < kMost && std::abs(corners[k].y) < kMost)) return std::nullopt;
   }
   return corners;
 }
 
-ChartMap::ChartMap(std::span<const Patch* const> patches, const Texture& texture, const std::array<Wrap, 2>& wrap)
-    : width_(texture.width), owners_(texture.texels.size(), kNone) {
+ChartMap::ChartMap(std::span<const Patch* const> patches, const glm::ivec2& size, const std::array<Wrap, 2>& wrap)
+    : width_(size.x), owners_(static_cast<size_t>(size.x) * static_cast<size_t>(size.y), kNone) {
   std::vector<EdgeOf> edges;
   uint32_t count = 0;
   for (const Patch* patch : patches) {
@@ -87,19 +87,19 @@ ChartMap::ChartMap(std::span<const Patch* const> patches, const Texture& texture
     if (edges[i].first == edges[i - 1].first) sets.join(edges[i].second, edges[i - 1].second);
   }
   uint32_t number = 0;
-  double left = kMostCovers * static_cast<double>(texture.texels.size());
+  double left = kMostCovers * static_cast<double>(owners_.size());
   for (const Patch* patch : patches) {
     std::vector<uint32_t>& charts = charts_.emplace_back();
     for (const Triangle& triangle : *patch->triangles) {
       const uint32_t chart = charts.emplace_back(sets.find(number++));
-      const auto corners = texel_corners(*patch->vertices, triangle, texture);
+      const auto corners = texel_corners(*patch->vertices, triangle, size);
       if (!corners) continue;
       const CellTriangle cells(*corners);
       if (cells.twice_area() > 2 * left) continue;
       left -= cells.twice_area() / 2;
       cells.for_each_cell(cells.first_row(), cells.end_row(), [&](int64_t i, int64_t j, const glm::dvec3&) {
-        const int64_t x = wrapped(i, texture.width, wrap[0]);
-        const int64_t y = wrapped(j, texture.height, wrap[1]);
+        const int64_t x = wrapped(i, size.x, wrap[0]);
+        const int64_t y = wrapped(j, size.y, wrap[1]);
         uint32_t& owner = owners_[static_cast<size_t>(y * width_ + x)];
         if (owner == kNone) owner = chart;
       });

@@ -35,12 +35,28 @@ struct ImageSource {
   std::optional<std::string> unavailable;  ///< why it cannot be read, known beforehand
 };
 
+/// Where an image of opacities states them.
+enum class OpacityChannel : uint8_t {
+  kAuto,  ///< alpha if any texel is not opaque, else luminance
+  kRed,
+  kGreen,
+  kBlue,
+  kLuminance,
+};
+
+/// An image of opacities, which counts beside the alpha of colours.
+struct OpacityMap {
+  size_t image = 0;  ///< of Mesh::images; may be that of the colours
+  OpacityChannel channel = OpacityChannel::kAuto;
+};
+
 struct Material {
   std::string name;
   glm::vec4 color{1};           ///< linear light and alpha; a factor on the texture
   std::optional<size_t> image;  ///< of Mesh::images; its colours are sRGB
-  std::array<Wrap, 2> wrap{};   ///< along u and v
-  glm::vec4 without_image{1};   ///< takes the place of `color` if the image is missing
+  std::optional<OpacityMap> opacity;
+  std::array<Wrap, 2> wrap{};  ///< along u and v, of all images
+  glm::vec4 without_image{1};  ///< takes the place of `color` if the image is missing
   AlphaMode alpha = AlphaMode::kOpaque;
   float cutoff = 0.5F;  ///< of kMask
   bool culled = false;  ///< back faces are not shown

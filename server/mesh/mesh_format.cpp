@@ -38,8 +38,10 @@ bool is_text_stl(std::string_view head) {
   return tokens.next() == "solid" && head.find("facet") != std::string_view::npos;
 }
 
-/// Like those of scans, lines of OBJ may be nothing but numbers after a word: the words decide.
+/// Like those of scans, lines of OBJ may be nothing but numbers after a word: the words decide. The bytes of a binary
+/// scan hold such lines by chance.
 bool is_obj(std::string_view head) {
+  if (head.find('\0') != std::string_view::npos) return false;
   bool vertex = false;
   bool other = false;
   while (!head.empty()) {

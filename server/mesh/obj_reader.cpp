@@ -137,21 +137,60 @@ glm::vec4 plain_color(const tinyobj::material_t& material) {
   return {surfel::to_linear(code, 16), static_cast<float>(std::clamp(material.dissolve, 0.0, 1.0))};
 }
 
+/// The images of a file, each once.
+class NamedImages {
+ public:
+  NamedImages(std::filesystem::path model, std::vector<ImageSource>& images)
+      : model_(std::move(model)), images_(images) {}
+
+  size_t number_of(const std::string& name) {
+    const auto [known, fresh] = numbers_.try_emplace(name, images_.size());
+    if (fresh) images_.push_back(named_image(model_, name));
+    return known->second;
+  }
+
+ private:
+  std::filesystem::path model_;
+  std::vector<ImageSource>& images_;
+  std::map<std::string, size_t> numbers_;
+};
+
+/// `m`, the matte, is what the library states where a file does not say (`-imfchan`).
+OpacityChannel channel_of(char stated) {
+  switch (stated) {
+    case 'r':
+      return OpacityChannel::kRed;
+    case 'g':
+      return OpacityChannel::kGreen;
+    case 'b':
+      return OpacityChannel::kBlue;
+    case 'l':
+      return OpacityChannel::kLuminance;
+    default:
+      return OpacityChannel::kAuto;
+  }
+}
+
 /// Kd counts only without a texture, beside which exporters leave any number. It is the colour that programs show, so
-/// it is sRGB as the pixels of textures are.
-Material material_of(const tinyobj::material_t& stated, const std::filesystem::path& model, Mesh& mesh,
-                     std::map<std::string, size_t>& images) {
+/// it is sRGB as the pixels of textures are. Opacities are the product of d and map_d, and of the alpha of map_Kd where
+/// one of them is stated.
+Material material_of(const tinyobj::material_t& stated, NamedImages& images) {
   Material material;
   material.name = stated.name;
   material.color = plain_color(stated);
   material.without_image = material.color;
-  if (material.color.a < 1) material.alpha = AlphaMode::kBlend;
-  if (stated.diffuse_texname.empty()) return material;
-  const auto [known, fresh] = images.try_emplace(stated.diffuse_texname, mesh.images.size());
-  if (fresh) mesh.images.push_back(named_image(model, stated.diffuse_texname));
-  material.image = known->second;
-  material.color = glm::vec4(1, 1, 1, material.color.a);
-  material.wrap.fill(stated.diffuse_texopt.clamp ? Wrap::kClamp : Wrap::kRepeat);
+  const bool colored = !stated.diffuse_texname.empty();
+  const bool mapped = !stated.alpha_texname.empty();
+  if (mapped || material.color.a < 1) material.alpha = AlphaMode::kBlend;
+  if (mapped) {
+    material.opacity = OpacityMap{images.number_of(stated.alpha_texname), channel_of(stated.alpha_texopt.imfchan)};
+  }
+  if (colored) {
+    material.image = images.number_of(stated.diffuse_texname);
+    material.color = glm::vec4(1, 1, 1, material.color.a);
+  }
+  const tinyobj::texture_option_t& options = colored ? stated.diffuse_texopt : stated.alpha_texopt;
+  if (colored || mapped) material.wrap.fill(options.clamp ? Wrap::kClamp : Wrap::kRepeat);
   return material;
 }
 
@@ -201,10 +240,10 @@ Result<std::vector<std::vector<Triangle>>> triangles_of(const Loaded& loaded, co
 
 void note_left_out(const std::vector<tinyobj::material_t>& materials, std::vector<std::string>& notes) {
   const bool any = std::any_of(materials.begin(), materials.end(), [](const tinyobj::material_t& m) {
-    return !m.alpha_texname.empty() || !m.bump_texname.empty() || !m.normal_texname.empty() ||
-           !m.specular_texname.empty() || !m.emissive_texname.empty() || !m.displacement_texname.empty();
+    return !m.bump_texname.empty() || !m.normal_texname.empty() || !m.specular_texname.empty() ||
+           !m.emissive_texname.empty() || !m.displacement_texname.empty();
   });
-  if (any) notes.emplace_back("of the textures those of diffuse colour alone are used");
+  if (any) notes.emplace_back("of the textures those of diffuse colour and opacity alone are used");
 }
 
 }  // namespace
@@ -218,9 +257,9 @@ Result<Mesh> read_obj(const ModelFile& file, const scan::DecodingLimit& limit) {
   const auto vertices = std::make_shared<const Vertices>(vertices_of(loaded->attributes));
   Result<std::vector<std::vector<Triangle>>> triangles = triangles_of(*loaded, *vertices);
   if (!triangles) return fail(std::move(triangles.error()));
-  std::map<std::string, size_t> images;
+  NamedImages images(file.path, mesh.images);
   for (const tinyobj::material_t& material : loaded->materials) {
-    mesh.materials.push_back(material_of(material, file.path, mesh, images));
+    mesh.materials.push_back(material_of(material, images));
   }
   mesh.materials.emplace_back();
   note_left_out(loaded->materials, mesh.notes);

@@ -107,7 +107,7 @@ double cuts_of(double length, double other) {
 
 }  // namespace
 
-PatchFacts facts_of(const Patch& patch, const Texture* texture) {
+PatchFacts facts_of(const Patch& patch, const std::optional<glm::ivec2>& size) {
   PatchFacts facts;
   std::vector<std::pair<double, double>> bends;
   for (const Triangle& triangle : *patch.triangles) {
@@ -115,7 +115,7 @@ PatchFacts facts_of(const Patch& patch, const Texture* texture) {
     facts.area += placed.area();
     ++facts.triangles;
     if (!patch.vertices->normals.empty()) bends.emplace_back(bend_of(placed), placed.area());
-    const auto corners = texture != nullptr ? texel_corners(*patch.vertices, triangle, *texture) : std::nullopt;
+    const auto corners = size ? texel_corners(*patch.vertices, triangle, *size) : std::nullopt;
     if (corners) facts.texels += twice_area(*corners) / 2;
   }
   facts.bend = upper_decile(bends, facts.area);

@@ -9,7 +9,6 @@
 #include "mesh/cell_lattice.h"
 #include "mesh/mesh.h"
 #include "mesh/placed_triangle.h"
-#include "mesh/texture.h"
 
 namespace surfcast::mesh {
 
@@ -31,7 +30,8 @@ struct PatchFacts {
   [[nodiscard]] double texel() const { return texels > 0 ? std::sqrt(area / texels) : 0; }
 };
 
-[[nodiscard]] PatchFacts facts_of(const Patch& patch, const Texture* texture);
+/// `size`: texels of its texture; none without.
+[[nodiscard]] PatchFacts facts_of(const Patch& patch, const std::optional<glm::ivec2>& size);
 
 /// `usual`: the spacing of surfaces without texture. `wanted`: the spacing asked for.
 [[nodiscard]] PatchPlan plan_patch(const PatchFacts& facts, double usual, std::optional<double> wanted);

@@ -6,6 +6,7 @@
 #include <glm/geometric.hpp>
 #include <map>
 #include <memory>
+#include <set>
 #include <utility>
 
 #include <oneapi/tbb/parallel_for.h>
@@ -13,8 +14,10 @@
 
 #include "mesh/chart_map.h"
 #include "mesh/mesh_edges.h"
+#include "mesh/opacity_map.h"
 #include "mesh/patch_plan.h"
 #include "mesh/texel_color.h"
+#include "mesh/texture.h"
 #include "surfel/srgb.h"
 
 namespace surfcast::mesh {
@@ -62,13 +65,11 @@ struct Made {
 /// What all triangles of a material share.
 struct MaterialColors {
   const Material& material;
+  glm::vec4 factor{1};  ///< linear light and alpha
   const Texture* texture = nullptr;
   const ChartMap* charts = nullptr;
 
   [[nodiscard]] bool opaque() const { return material.alpha == AlphaMode::kOpaque; }
-  [[nodiscard]] const glm::vec4& factor() const {
-    return material.image && texture == nullptr ? material.without_image : material.color;
-  }
 };
 
 template <typename Value>
@@ -84,7 +85,7 @@ class TriangleSampler {
   TriangleSampler(const MaterialColors& colors, const MeshEdges& edges, const PatchWork& work, const Triangle& triangle,
                   uint32_t chart)
       : colors_(colors), chart_(chart), placed_(place(*work.patch, triangle, edges.inside_out())) {
-    if (colors.texture != nullptr) texels_ = texel_corners(*work.patch->vertices, triangle, *colors.texture);
+    if (colors.texture != nullptr) texels_ = texel_corners(*work.patch->vertices, triangle, colors.texture->size());
     plane_ = cells_of(placed_, texels_, work.plan);
     steps_ = CellSteps::of(plane_.cells, placed_.positions);
     radius_ = steps_.radius();
@@ -159,7 +160,7 @@ glm::vec4 TriangleSampler::texture_at(int64_t i, int64_t j, const glm::dvec3& we
 
 /// Linear light and opacity.
 glm::vec4 TriangleSampler::light_at(int64_t i, int64_t j, const glm::dvec3& weights) const {
-  glm::vec4 light = colors_.factor();
+  glm::vec4 light = colors_.factor;
   if (placed_.colors) light *= blend(*placed_.colors, weights);
   if (texels_) light *= texture_at(i, j, weights);
   if (colors_.opaque()) light.a = 1;
@@ -188,7 +189,14 @@ class MeshPass {
   Result<MeshReport> run();
 
  private:
-  const Texture* texture_of(const Material& material);
+  /// The last image of a kind that was decoded.
+  struct HeldImage {
+    size_t image = SIZE_MAX;
+    Texture texture;
+  };
+
+  const Texture* decoded(size_t image, HeldImage& held);
+  MaterialImages images_of(const Material& material);
   Status find_work();
   [[nodiscard]] double usual_spacing() const;
   void plan_work();
@@ -207,26 +215,47 @@ class MeshPass {
   MeshEdges edges_;
   std::vector<MaterialWork> work_;
   std::map<size_t, std::string> missing_;  ///< images, and why
-  size_t held_ = SIZE_MAX;                 ///< the image that is decoded
-  Texture texture_;
+  HeldImage color_;
+  HeldImage opacity_;
   MeshReport report_;
 };
 
-/// The last texture is kept: patches of one image follow each other.
-const Texture* MeshPass::texture_of(const Material& material) {
-  if (!material.image || missing_.contains(*material.image)) return nullptr;
-  if (held_ == *material.image) return &texture_;
-  held_ = SIZE_MAX;
-  texture_ = {};
-  const ImageSource& source = mesh_.images[*material.image];
+/// The last image is kept: patches of one image follow each other.
+const Texture* MeshPass::decoded(size_t image, HeldImage& held) {
+  if (missing_.contains(image)) return nullptr;
+  if (held.image == image) return &held.texture;
+  held = {};
+  const ImageSource& source = mesh_.images[image];
   Result<Texture> texture = read_texture(source, limit_);
   if (!texture) {
-    missing_.emplace(*material.image, source.name + " " + texture.error().message);
+    missing_.emplace(image, source.name + " " + texture.error().message);
     return nullptr;
   }
-  texture_ = std::move(*texture);
-  held_ = *material.image;
-  return &texture_;
+  held = {image, std::move(*texture)};
+  return &held.texture;
+}
+
+/// Bytes of a texture and of the map of its charts.
+uint64_t texture_bytes(const glm::ivec2& size) {
+  return 8 * static_cast<uint64_t>(size.x) * static_cast<uint64_t>(size.y);
+}
+
+MaterialImages MeshPass::images_of(const Material& material) {
+  MaterialImages images;
+  if (material.image) images.color = decoded(*material.image, color_);
+  if (!material.opacity) {
+    opacity_ = {};
+    return images;
+  }
+  const size_t number = material.opacity->image;
+  images.opacity = material.image == number ? images.color : decoded(number, opacity_);
+  if (images.opacity == nullptr || images.opacity == images.color) return images;
+  const uint64_t color_bytes = images.color != nullptr ? texture_bytes(images.color->size()) : 0;
+  const Status fits = limit_.check(color_bytes + texture_bytes(images.opacity->size()) + texture_bytes(*images.size()));
+  if (fits) return images;
+  missing_.emplace(number, mesh_.images[number].name + " " + fits.error().message);
+  images.opacity = nullptr;
+  return images;
 }
 
 /// Materials in the order of their images, so that each image is decoded twice at most: to plan, and to sample.
@@ -235,14 +264,16 @@ Status MeshPass::find_work() {
   for (const Patch& patch : mesh_.patches) {
     sorted[{mesh_.materials[patch.material].image.value_or(SIZE_MAX), patch.material}].push_back(&patch);
   }
-  std::map<size_t, bool> images;
+  std::set<size_t> images;
   for (const auto& [key, patches] : sorted) {
     MaterialWork& work = work_.emplace_back();
-    work.material = &mesh_.materials[key.second];
-    const Texture* texture = texture_of(*work.material);
-    if (work.material->image) images[*work.material->image] = texture != nullptr;
+    const Material& material = mesh_.materials[key.second];
+    work.material = &material;
+    const std::optional<glm::ivec2> size = images_of(material).size();
+    if (material.image) images.insert(*material.image);
+    if (material.opacity) images.insert(material.opacity->image);
     for (const Patch* patch : patches) {
-      work.patches.push_back({patch, facts_of(*patch, texture), {}});
+      work.patches.push_back({patch, facts_of(*patch, size), {}});
       report_.texels += work.patches.back().facts.texels;
     }
   }
@@ -316,12 +347,17 @@ Status MeshPass::flush(const MaterialColors& colors, std::vector<Task>& tasks) {
 }
 
 Status MeshPass::sample(const MaterialWork& work) {
-  MaterialColors colors{*work.material, texture_of(*work.material), nullptr};
+  const Material& material = *work.material;
+  std::vector<const Patch*> patches;
+  for (const PatchWork& patch : work.patches) patches.push_back(patch.patch);
+  const MaterialImages images = images_of(material);
+  const std::optional<Texture> joined = join_opacity(images, material, patches);
+  const bool missing = material.image && images.color == nullptr;
+  MaterialColors colors{material, missing ? material.without_image : material.color, joined ? &*joined : images.color,
+                        nullptr};
   std::optional<ChartMap> charts;
   if (colors.texture != nullptr) {
-    std::vector<const Patch*> patches;
-    for (const PatchWork& patch : work.patches) patches.push_back(patch.patch);
-    charts.emplace(patches, *colors.texture, work.material->wrap);
+    charts.emplace(patches, colors.texture->size(), material.wrap);
     colors.charts = &*charts;
   }
   std::vector<Task> tasks;

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <glm/vec2.hpp>
 #include <vector>
 
 namespace surfcast::mesh {
@@ -13,6 +14,7 @@ struct Texture {
   int64_t height = 0;
   std::vector<std::array<uint8_t, 4>> texels;  ///< rows from the upper edge
 
+  [[nodiscard]] glm::ivec2 size() const { return {static_cast<int>(width), static_cast<int>(height)}; }
   [[nodiscard]] const std::array<uint8_t, 4>& at(int64_t x, int64_t y) const {
     return texels[static_cast<size_t>(y * width + x)];
   }

@@ -23,6 +23,7 @@ constexpr size_t kHeaderChecksumAt = kHeaderBytes - sizeof(uint64_t);
 constexpr uint16_t kOrientedFlag = 1;
 constexpr uint16_t kZUpFlag = 2;
 constexpr uint16_t kUpsideDownFlag = 4;
+constexpr uint16_t kEvenFlag = 8;
 constexpr int kDegreeShift = 4;  // of the degree of harmonics, three bits
 constexpr int kMostDegree = 4;
 /// Flag in the type of a scalar attribute: coarse blocks have it too.
@@ -223,7 +224,7 @@ std::vector<std::byte> write_header(const ModelHeader& header) {
   writer.put_bytes(std::as_bytes(std::span(kMagic)));
   writer.put(header.version);
   writer.put(static_cast<uint16_t>((header.oriented ? kOrientedFlag : 0) | (header.z_up ? kZUpFlag : 0) |
-                                   (header.upside_down ? kUpsideDownFlag : 0) |
+                                   (header.upside_down ? kUpsideDownFlag : 0) | (header.even ? kEvenFlag : 0) |
                                    (header.harmonics_degree << kDegreeShift)));
   writer.put(static_cast<uint16_t>(header.color_bits));
   writer.put(header.file_bytes);
@@ -254,6 +255,7 @@ Result<ModelHeader> read_header(std::span<const std::byte> head, uint64_t file_b
   header.oriented = (flags & kOrientedFlag) != 0;
   header.z_up = (flags & kZUpFlag) != 0;
   header.upside_down = (flags & kUpsideDownFlag) != 0;
+  header.even = (flags & kEvenFlag) != 0;
   header.harmonics_degree = (flags >> kDegreeShift) & 7;
   header.color_bits = reader.get<uint16_t>();
   header.file_bytes = reader.get<uint64_t>();

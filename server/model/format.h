@@ -37,6 +37,7 @@ struct ModelHeader {
   int color_bits = 0;
   bool upside_down = false;
   int harmonics_degree = 0;
+  bool even = false;
   uint64_t file_bytes = 0;
   uint64_t directory_offset = 0;
   uint64_t directory_bytes = 0;

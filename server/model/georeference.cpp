@@ -3,26 +3,27 @@
 #include <algorithm>
 #include <utility>
 
-#include "base/positioned_file.h"
+#include "base/file_source.h"
 #include "model/byte_stream.h"
 #include "model/format.h"
 
 namespace surfcast::model {
 namespace {
 
-Result<std::vector<std::byte>> read_range(const PositionedFile& file, uint64_t first, uint64_t end) {
+Result<std::vector<std::byte>> read_range(const ByteSource& source, uint64_t first, uint64_t end) {
   std::vector<std::byte> bytes(end - first);
-  if (Status status = file.read(first, bytes); !status) return fail(std::move(status.error()));
+  if (Status status = source.read(first, bytes); !status) return fail(std::move(status.error()));
   return bytes;
 }
 
-Result<Georeference> georeference_of(const PositionedFile& file) {
-  const Result<std::vector<std::byte>> head = read_range(file, 0, std::min<uint64_t>(file.size(), kHeaderBytes));
+Result<Georeference> georeference_of(const ByteSource& source) {
+  const Result<std::vector<std::byte>> head = read_range(source, 0, std::min<uint64_t>(source.size(), kHeaderBytes));
   if (!head) return fail(head.error());
-  const Result<ModelHeader> header = read_header(*head, file.size());
+  const Result<ModelHeader> header = read_header(*head, source.size());
   if (!header) return fail(header.error());
   if (header->georeference_offset == 0) return Georeference();
-  const Result<std::vector<std::byte>> bytes = read_range(file, header->georeference_offset, header->directory_offset);
+  const Result<std::vector<std::byte>> bytes =
+      read_range(source, header->georeference_offset, header->directory_offset);
   if (!bytes) return fail(bytes.error());
   return read_georeference(*bytes);
 }
@@ -56,12 +57,16 @@ Result<Georeference> read_georeference(std::span<const std::byte> bytes) {
   return georeference;
 }
 
-Result<Georeference> load_georeference(const std::filesystem::path& path) {
-  const Result<PositionedFile> file = PositionedFile::open(path);
-  if (!file) return fail(file.error());
-  return georeference_of(*file).map_error([&](const Error& error) {
-    return Error{error.kind, path.string() + ": " + error.message};
+Result<Georeference> load_georeference(const ByteSource& source) {
+  return georeference_of(source).map_error([&](const Error& error) {
+    return Error{error.kind, source.name() + ": " + error.message};
   });
+}
+
+Result<Georeference> load_georeference(const std::filesystem::path& path) {
+  Result<PositionedFile> file = PositionedFile::open(path);
+  if (!file) return fail(std::move(file.error()));
+  return load_georeference(FileSource(std::move(*file), path));
 }
 
 }  // namespace surfcast::model

@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "base/byte_source.h"
 #include "base/result.h"
 
 namespace surfcast::model {
@@ -36,5 +37,6 @@ Result<Georeference> read_georeference(std::span<const std::byte> bytes);
 /// The georeference of a model file; not known if the file states none. It is read apart from the rest of the file,
 /// because drawing does without it.
 Result<Georeference> load_georeference(const std::filesystem::path& path);
+Result<Georeference> load_georeference(const ByteSource& source);
 
 }  // namespace surfcast::model

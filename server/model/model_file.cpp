@@ -6,7 +6,8 @@
 #include <utility>
 
 #include "base/contract.h"
-#include "base/positioned_file.h"
+#include "base/file_source.h"
+#include "model/block_cache.h"
 #include "model/format.h"
 #include "model/volume_tables.h"
 #include "surfel/curvature.h"
@@ -16,7 +17,8 @@ namespace surfcast::model {
 struct ModelFile::State {
   uint64_t id = 0;
   std::filesystem::path path;
-  PositionedFile file;
+  std::unique_ptr<const ByteSource> source;
+  std::shared_ptr<BlockCache> cache;  ///< may be null
   ModelInfo info;
   Directory directory;
   std::vector<ScalarColumn> coarse_scalars;  ///< scalar attributes of coarse blocks
@@ -88,25 +90,30 @@ std::vector<ldc::BlockEntry> make_entries(const Directory& directory) {
   return entries;
 }
 
+ByteRange range_of(const Directory& directory, size_t block) {
+  SURFCAST_EXPECTS(block < directory.blocks.size());
+  return {directory.blocks[block].offset, directory.blocks[block].bytes};
+}
+
 uint64_t next_id() {
   static std::atomic<uint64_t> last{0};
   return ++last;
 }
 
-Result<std::vector<std::byte>> load(const PositionedFile& file, uint64_t offset, uint64_t size) {
+Result<std::vector<std::byte>> load(const ByteSource& source, uint64_t offset, uint64_t size) {
   std::vector<std::byte> bytes(size);
-  if (Status status = file.read(offset, bytes); !status) return fail(std::move(status.error()));
+  if (Status status = source.read(offset, bytes); !status) return fail(std::move(status.error()));
   return bytes;
 }
 
-Result<ModelHeader> load_header(const PositionedFile& file) {
-  const Result<std::vector<std::byte>> head = load(file, 0, std::min<uint64_t>(file.size(), kHeaderBytes));
+Result<ModelHeader> load_header(const ByteSource& source) {
+  const Result<std::vector<std::byte>> head = load(source, 0, std::min<uint64_t>(source.size(), kHeaderBytes));
   if (!head) return fail(head.error());
-  return read_header(*head, file.size());
+  return read_header(*head, source.size());
 }
 
-Result<Directory> load_directory(const PositionedFile& file, const ModelHeader& header) {
-  const Result<std::vector<std::byte>> bytes = load(file, header.directory_offset, header.directory_bytes);
+Result<Directory> load_directory(const ByteSource& source, const ModelHeader& header) {
+  const Result<std::vector<std::byte>> bytes = load(source, header.directory_offset, header.directory_bytes);
   if (!bytes) return fail(bytes.error());
   return read_directory(*bytes, header);
 }
@@ -118,6 +125,7 @@ ModelInfo make_info(const ModelHeader& header, const Directory& directory, std::
   info.color_bits = header.color_bits;
   info.upside_down = header.upside_down;
   info.harmonics_degree = header.harmonics_degree;
+  info.even = header.even;
   for (const ScalarColumn& scalar : directory.scalars) info.scalar_names.push_back(scalar.name);
   info.source_names = directory.source_names;
   info.ranges = directory.ranges;
@@ -152,9 +160,14 @@ ModelFile::~ModelFile() = default;
 Result<ModelFile> ModelFile::open(const std::filesystem::path& path) {
   Result<PositionedFile> file = PositionedFile::open(path);
   if (!file) return fail(std::move(file.error()));
-  const Result<ModelHeader> header = load_header(*file);
+  return open(std::make_unique<FileSource>(std::move(*file), path));
+}
+
+Result<ModelFile> ModelFile::open(std::unique_ptr<const ByteSource> source, std::shared_ptr<BlockCache> cache) {
+  const std::filesystem::path path = source->name();
+  const Result<ModelHeader> header = load_header(*source);
   if (!header) return fail_naming(path, header.error());
-  Result<Directory> directory = load_directory(*file, *header);
+  Result<Directory> directory = load_directory(*source, *header);
   if (!directory) return fail_naming(path, directory.error());
 
   std::vector<ldc::BlockEntry> entries = make_entries(*directory);
@@ -169,9 +182,9 @@ Result<ModelFile> ModelFile::open(const std::filesystem::path& path) {
   std::vector<ScalarColumn> coarse_scalars;
   std::copy_if(directory->scalars.begin(), directory->scalars.end(), std::back_inserter(coarse_scalars),
                [](const ScalarColumn& scalar) { return scalar.coarse; });
-  return ModelFile(
-      std::make_unique<State>(State{next_id(), path, std::move(*file), std::move(info), std::move(*directory),
-                                    std::move(coarse_scalars), ldc::BlockTree(std::move(entries))}));
+  return ModelFile(std::make_unique<State>(State{next_id(), path, std::move(source), std::move(cache), std::move(info),
+                                                 std::move(*directory), std::move(coarse_scalars),
+                                                 ldc::BlockTree(std::move(entries))}));
 }
 
 uint64_t ModelFile::id() const {
@@ -203,10 +216,23 @@ const std::filesystem::path& ModelFile::path() const {
   return state_->path;
 }
 
-void ModelFile::prefetch(size_t block) const {
-  SURFCAST_EXPECTS(block < state_->directory.blocks.size());
-  const BlockRecord& record = state_->directory.blocks[block];
-  state_->file.prefetch(record.offset, record.bytes);
+const ByteSource& ModelFile::source() const {
+  return *state_->source;
+}
+
+void ModelFile::prefetch(std::span<const uint32_t> blocks) const {
+  std::vector<ByteRange> ranges;
+  ranges.reserve(blocks.size());
+  for (const uint32_t block : blocks) {
+    const ByteRange range = range_of(state_->directory, block);
+    const uint64_t checksum = state_->directory.blocks[block].checksum;
+    if (!state_->cache || !state_->cache->contains(checksum, range.size)) ranges.push_back(range);
+  }
+  state_->source->prefetch(ranges);
+}
+
+void ModelFile::forget(size_t block) const {
+  state_->source->forget(range_of(state_->directory, block));
 }
 
 namespace {
@@ -243,9 +269,13 @@ Result<StoredBlock> ModelFile::stored(size_t block) const {
   const BlockRecord& record = state_->directory.blocks[block];
   // What is checked is what is decoded: the file may be overwritten at any time.
   const std::span<std::byte> bytes = buffer_of_thread(record.bytes);
-  if (const Status read = state_->file.read(record.offset, bytes); !read) return fail(named(block, read.error()));
+  const StoredBlock stored_block{bytes, state_->directory.grids[record.grid], record.origin, record.extent,
+                                 record.surfels};
+  if (state_->cache && state_->cache->read(record.checksum, bytes)) return stored_block;
+  if (const Status read = state_->source->read(record.offset, bytes); !read) return fail(named(block, read.error()));
   if (checksum_of(bytes) != record.checksum) return fail(named(block, {ErrorKind::kInvalidInput, "damaged"}));
-  return StoredBlock{bytes, state_->directory.grids[record.grid], record.origin, record.extent, record.surfels};
+  if (state_->cache) state_->cache->write(record.checksum, bytes);
+  return stored_block;
 }
 
 Result<DecodedBlock> ModelFile::decode(size_t block, WantedScalars scalars) const {

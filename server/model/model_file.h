@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "base/byte_source.h"
 #include "base/result.h"
 #include "geometry/box.h"
 #include "ldc/block_tree.h"
@@ -36,6 +37,7 @@ struct ModelInfo {
   int color_bits = 0;                     ///< 8 or 16; 0: the model has no colour
   bool upside_down = false;               ///< the vertical axis points down: up is its negative end
   int harmonics_degree = 0;               ///< highest degree of the harmonics of its Gaussians
+  bool even = false;                      ///< its surfels are samples of meshes, even and with exact radii
   size_t ellipsoid_columns = 0;           ///< most columns of a source of its ellipsoids
   std::vector<std::string> scalar_names;  ///< scalar attributes of the leaves, in order
   std::vector<std::string> source_names;  ///< the input files
@@ -93,10 +95,14 @@ enum class WantedScalars {
   kAll,
 };
 
+class BlockCache;
+
 /// An open model file. All methods are const and safe to call from several threads at once.
 class ModelFile {
  public:
   static Result<ModelFile> open(const std::filesystem::path& path);
+  /// `cache`: for blocks of a source that is slower than this disk; may be null.
+  static Result<ModelFile> open(std::unique_ptr<const ByteSource> source, std::shared_ptr<BlockCache> cache = nullptr);
 
   ModelFile(ModelFile&&) noexcept;
   ModelFile& operator=(ModelFile&&) noexcept;
@@ -105,8 +111,10 @@ class ModelFile {
   [[nodiscard]] const ModelInfo& info() const;
   [[nodiscard]] const ldc::BlockTree& tree() const;
   [[nodiscard]] std::span<const ldc::BlockEntry> blocks() const { return tree().blocks(); }
-  /// Starts to read the bytes of a block that is about to be decoded. Returns immediately.
-  void prefetch(size_t block) const;
+  /// Starts to read the bytes of blocks that are about to be decoded, most urgent first. Returns immediately.
+  void prefetch(std::span<const uint32_t> blocks) const;
+  /// A block that was prefetched will not be decoded.
+  void forget(size_t block) const;
   /// The bytes of a block of any kind. Fails if their checksum is wrong.
   [[nodiscard]] Result<StoredBlock> stored(size_t block) const;
   /// The volumes whose bricks are blocks of the kind "grid"; none in most models.
@@ -120,7 +128,10 @@ class ModelFile {
   /// Checks and decodes a block of surfels. Fails on a block of another kind. Attributes are decoded in order, up to
   /// the last one that `scalars` requests.
   [[nodiscard]] Result<DecodedBlock> decode(size_t block, WantedScalars scalars = WantedScalars::kAll) const;
+  /// The path of the file, or its URL.
   [[nodiscard]] const std::filesystem::path& path() const;
+  /// Where its bytes come from.
+  [[nodiscard]] const ByteSource& source() const;
   /// An ID of this opening of the file, unique in the process and not reused after the file is closed.
   [[nodiscard]] uint64_t id() const;
 

@@ -84,6 +84,7 @@ ModelHeader make_header(const ModelSchema& schema, uint32_t version, std::span<c
   header.color_bits = schema.color_bits;
   header.upside_down = schema.upside_down;
   header.harmonics_degree = schema.harmonics_degree;
+  header.even = schema.even;
   header.file_bytes = offset + tables.size();
   header.directory_offset = offset;
   header.directory_bytes = tables.size();

@@ -26,6 +26,7 @@ struct ModelSchema {
   std::vector<ScalarColumn> scalars;
   bool upside_down = false;  ///< see ModelInfo::upside_down
   int harmonics_degree = 0;  ///< see ModelInfo::harmonics_degree
+  bool even = false;         ///< see ModelInfo::even
 };
 
 /// The schema of a model made from this cloud.

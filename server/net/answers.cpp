@@ -51,7 +51,7 @@ Outcome outcome_of(uint64_t id, const service::ModelList& models, const UploadCo
   return plain(answer);
 }
 
-Outcome outcome_of(uint64_t id, const Result<std::optional<kinds::PickedSurfel>>& picked) {
+Outcome outcome_of(uint64_t id, const Result<std::optional<service::PickedPoint>>& picked) {
   if (!picked) return failure(id, picked.error());
   wire::Answer answer;
   answer.set_id(id);
@@ -65,6 +65,22 @@ Outcome outcome_of(uint64_t id, const Result<service::ProfileResult>& profile) {
   answer.set_id(id);
   to_wire(*profile, *answer.mutable_profile());
   return plain(answer);
+}
+
+Bytes encode_total(uint64_t id, uint64_t total, bool more) {
+  wire::Answer answer;
+  answer.set_id(id);
+  answer.mutable_points()->set_total(total);
+  answer.mutable_points()->set_more(more);
+  return encode_answer(answer);
+}
+
+Bytes encode_piece(uint64_t id, const service::PointPiece& piece) {
+  wire::Answer answer;
+  answer.set_id(id);
+  answer.mutable_points()->set_data(piece.bytes.data(), piece.bytes.size());
+  answer.mutable_points()->set_more(!piece.last);
+  return encode_answer(answer);
 }
 
 Outcome outcome_of(uint64_t id, const std::string& name, const Result<service::ModelDescription>& description) {

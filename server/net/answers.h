@@ -33,8 +33,13 @@ Bytes encode_error(uint64_t id, const Error& error);
 
 Outcome outcome_of(uint64_t id, Result<service::EncodedPicture> picture);
 Outcome outcome_of(uint64_t id, const service::ModelList& models, const UploadConfig& uploads);
-Outcome outcome_of(uint64_t id, const Result<std::optional<kinds::PickedSurfel>>& picked);
+Outcome outcome_of(uint64_t id, const Result<std::optional<service::PickedPoint>>& picked);
 Outcome outcome_of(uint64_t id, const Result<service::ProfileResult>& profile);
+/// The number of points in a region; `more`: they follow.
+Bytes encode_total(uint64_t id, uint64_t total, bool more);
+/// Some bytes of their file.
+Bytes encode_piece(uint64_t id, const service::PointPiece& piece);
+
 Outcome outcome_of(uint64_t id, const std::string& name, const Result<service::ModelDescription>& description);
 
 }  // namespace surfcast::net

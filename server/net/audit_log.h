@@ -15,7 +15,7 @@ namespace surfcast::net {
 
 /// Something that somebody did, or wanted to do.
 struct AuditEvent {
-  std::string_view what;       ///< "token", "view", "picture", "pick", "profile", "describe", "upload", "end"
+  std::string_view what;       ///< "token", "view", "picture", "pick", "profile", "points", "describe", "upload", "end"
   std::string who{};           ///< name of the token; empty: none
   std::string client{};        ///< where from, as in client_name
   uint64_t connection = 0;     ///< its number, as in the log

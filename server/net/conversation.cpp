@@ -67,6 +67,8 @@ void Conversation::handle_admitted(const wire::Request& request) {
       return handle_pick(request);
     case wire::Request::kGetProfile:
       return handle_profile(request);
+    case wire::Request::kGetPoints:
+      return handle_points(request);
     case wire::Request::kCancel:
       return handle_cancel(request);
     case wire::Request::kResume:
@@ -149,7 +151,7 @@ void Conversation::handle_pick(const wire::Request& request) {
   window_.add_other(id);
   context_->service.pick(
       std::move(*job),
-      [later = answer_later(id), id](const Result<std::optional<kinds::PickedSurfel>>& picked) {
+      [later = answer_later(id), id](const Result<std::optional<service::PickedPoint>>& picked) {
         later(outcome_of(id, picked));
       },
       asker_.client);
@@ -189,7 +191,7 @@ void Conversation::hand_over(uint64_t id, Outcome outcome) {
 
 void Conversation::handle_cancel(const wire::Request& request) {
   const uint64_t target = request.cancel().request_id();
-  const bool waited = window_.remove_waiting(target);
+  const bool waited = window_.remove_waiting(target) || cancel_points(target);
   if (waited) send_error(target, {ErrorKind::kCancelled, "the request was cancelled"});
   const std::optional<service::JobId> job = window_.job(target);
   wire::Answer answer;
@@ -228,6 +230,7 @@ void Conversation::send(Bytes answer, std::shared_ptr<const void> memory) {
 
 void Conversation::resume_sending() {
   draw_next();
+  advance_points();
   advance_views();
 }
 
@@ -237,6 +240,8 @@ void Conversation::abandon() {
   }
   writer_.reset();
   for (const service::JobId job : window_.abandon()) context_->service.cancel(job);
+  for (const auto& [id, region] : regions_) *region.cancelled = true;
+  regions_.clear();
   for (const auto& [id, opened] : views_) opened.view->close();
   views_.clear();
   view_timer_.cancel();

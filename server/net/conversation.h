@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <boost/asio/any_io_executor.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <cstddef>
@@ -68,6 +69,20 @@ class Conversation : public KeptSessions::Holder, public std::enable_shared_from
   [[nodiscard]] bool has_views() const { return !views_.empty(); }
 
  private:
+  /// A message of the points of a region.
+  struct PointsMessage {
+    Bytes answer;
+    bool last = false;
+    bool failed = false;
+  };
+  /// A region whose points are on their way.
+  struct Region {
+    std::shared_ptr<std::atomic<bool>> cancelled = std::make_shared<std::atomic<bool>>(false);
+    std::shared_ptr<service::PointStream> stream{};  ///< null until they are counted
+    bool asked = false;                              ///< for the next piece
+    bool only_count = false;
+  };
+
   void handle(const wire::Request& request);
   void handle_admitted(const wire::Request& request);
   void handle_ping(const wire::Request& request);
@@ -79,6 +94,12 @@ class Conversation : public KeptSessions::Holder, public std::enable_shared_from
   void handle_other(const wire::Request& request);
   void handle_pick(const wire::Request& request);
   void handle_profile(const wire::Request& request);
+  void handle_points(const wire::Request& request);
+  void begin_points(uint64_t id, Result<std::shared_ptr<service::PointStream>> stream);
+  void advance_points();
+  void send_points(uint64_t id, PointsMessage message);
+  void finish_points(uint64_t id, Bytes answer);
+  [[nodiscard]] bool cancel_points(uint64_t id);
   void handle_cancel(const wire::Request& request);
   void handle_resume(const wire::Request& request);
   void handle_open_view(const wire::Request& request);
@@ -117,6 +138,7 @@ class Conversation : public KeptSessions::Holder, public std::enable_shared_from
     std::optional<Counted> counted_guest;
   };
   std::map<uint64_t, OpenedView> views_;  ///< by the id of their OpenView
+  std::map<uint64_t, Region> regions_;    ///< by the id of their GetPoints
   Gatekeeper::Guest guest_;               ///< null: nobody that is known
   std::optional<Counted> counted_guest_;
   std::string session_;  ///< its secret; empty: there is none

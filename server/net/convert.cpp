@@ -1,10 +1,12 @@
 #include "net/convert.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <utility>
 
 #include "protocol/picture_fields.h"
+#include "protocol/points_query.h"
 #include "protocol/profile_query.h"
 #include "protocol/validate.h"
 
@@ -19,6 +21,16 @@ glm::dvec3 from_wire(const wire::Vector3& v) {
 int clamp_to_int(uint32_t value) {
   constexpr uint32_t kLargest = std::numeric_limits<int>::max();
   return static_cast<int>(value < kLargest ? value : kLargest);
+}
+
+geometry::Corridor from_wire(const wire::Corridor& corridor) {
+  geometry::Corridor result;
+  for (int i = 0; i + 1 < corridor.line_size(); i += 2)
+    result.line.emplace_back(corridor.line(i), corridor.line(i + 1));
+  result.half_width = corridor.width() / 2;
+  if (corridor.has_low()) result.low = corridor.low();
+  if (corridor.has_high()) result.high = corridor.high();
+  return result;
 }
 
 picture::Normalization from_wire(wire::Normalization value) {
@@ -257,6 +269,24 @@ Result<service::ProfileJob> to_job(const wire::GetProfile& request) {
   for (const wire::Vector3& point : request.line()) job.query.line.push_back(from_wire(point));
   job.query.width = request.width();
   job.query.most = request.max_points();
+  return job;
+}
+
+Result<service::PointsJob> to_job(const wire::GetPoints& request) {
+  if (Status status = protocol::check_points(request); !status) return fail(std::move(status.error()));
+  service::PointsJob job;
+  job.model = request.model();
+  scan::Selection& points = job.selection.points;
+  for (const wire::Box& box : request.boxes())
+    points.zone.boxes.push_back({from_wire(box.min()), from_wire(box.max())});
+  for (const wire::Corridor& corridor : request.corridors()) points.zone.corridors.push_back(from_wire(corridor));
+  points.classes.assign(request.classes().begin(), request.classes().end());
+  points.every = std::max<uint64_t>(request.every(), 1);
+  job.selection.source_coordinates = !request.world_coordinates();
+  job.selection.normals = request.normals();
+  job.format = *exporter::point_format_of(protocol::name_of(request.format()));
+  job.most = request.max_points();
+  job.only_count = request.only_count();
   return job;
 }
 

@@ -21,8 +21,10 @@ Result<service::PickJob> to_job(const wire::PickSurfel& request);
 
 Result<service::ProfileJob> to_job(const wire::GetProfile& request);
 
+Result<service::PointsJob> to_job(const wire::GetPoints& request);
+
 void to_wire(const service::ProfileResult& result, wire::Profile& message);
-void to_wire(const std::optional<kinds::PickedSurfel>& picked, wire::PickResult& message);
+void to_wire(const std::optional<service::PickedPoint>& picked, wire::PickResult& message);
 /// Takes the bytes out of the picture.
 void to_wire(service::EncodedPicture picture, wire::Picture& message);
 /// Takes the bytes out of the message.

@@ -58,10 +58,11 @@ void to_wire(const service::ProfileResult& result, wire::Profile& message) {
   }
 }
 
-void to_wire(const std::optional<kinds::PickedSurfel>& picked, wire::PickResult& message) {
+void to_wire(const std::optional<service::PickedPoint>& picked, wire::PickResult& message) {
   message.set_hit(picked.has_value());
   if (!picked) return;
   to_wire(picked->position, message.mutable_position());
+  if (picked->source_position) to_wire(*picked->source_position, message.mutable_source_position());
   to_wire(picked->normal, message.mutable_normal());
   if (picked->color) {
     message.mutable_color()->set_red(picked->color->r);

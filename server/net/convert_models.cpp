@@ -93,6 +93,16 @@ void to_wire(const model::EllipsoidSource& source, wire::EllipsoidDescription& m
   }
 }
 
+namespace {
+
+void to_wire(const model::CoordinateSystem& system, wire::CoordinateSystem& message) {
+  message.set_name(protocol::clean_utf8(system.name));
+  message.set_id(protocol::clean_utf8(system.id));
+  message.set_wkt(protocol::clean_utf8(system.wkt));
+}
+
+}  // namespace
+
 void to_wire(const std::string& name, const service::ModelDescription& description, wire::ModelDescription& message) {
   const model::ModelInfo& info = description.info;
   message.set_model(name);
@@ -108,6 +118,9 @@ void to_wire(const std::string& name, const service::ModelDescription& descripti
   message.set_blocks(description.blocks);
   message.set_spacing(description.spacing);
   message.set_upside_down(info.upside_down);
+  const model::Georeference& georeference = description.georeference;
+  if (georeference.known()) to_wire(georeference.system, *message.mutable_system());
+  if (georeference.source.known()) to_wire(georeference.source, *message.mutable_source_system());
   for (const model::KindCount& kind : info.kinds) {
     wire::KindCount* to = message.add_kinds();
     to->set_kind(protocol::clean_utf8(kind.kind));

@@ -33,6 +33,7 @@ unsigned status_of(ErrorKind kind) {
       return 404;
     case ErrorKind::kCancelled:
     case ErrorKind::kUnavailable:
+    case ErrorKind::kReplaced:
       return 503;
     case ErrorKind::kIo:
     case ErrorKind::kInternal:
@@ -174,6 +175,42 @@ json array_of(const Values& values, const Convert& convert) {
   return array;
 }
 
+json to_json(const model::CoordinateSystem& system) {
+  return {{"name", system.name}, {"id", system.id}, {"wkt", system.wkt}};
+}
+
+json to_json(const model::Georeference& georeference) {
+  json document = to_json(georeference.system);
+  if (georeference.source.known()) document["source"] = to_json(georeference.source);
+  return document;
+}
+
+json description_of(const std::string& name, const service::ModelDescription& description) {
+  const model::ModelInfo& info = description.info;
+  return {{"model", name},
+          {"surfels", info.surfels},
+          {"bounds", {{"min", to_json(info.bounds.min)}, {"max", to_json(info.bounds.max)}}},
+          {"oriented", info.oriented},
+          {"up_axis", std::string(info.upside_down ? "-" : "") + (info.z_up ? "z" : "y")},
+          {"color_bits", info.color_bits},
+          {"attributes", info.scalar_names},
+          {"sources", info.source_names},
+          {"levels", description.levels},
+          {"blocks", description.blocks},
+          {"spacing", description.spacing},
+          {"kinds", array_of(info.kinds,
+                             [](const model::KindCount& kind) {
+                               return json{{"kind", kind.kind}, {"blocks", kind.blocks}, {"count", kind.items}};
+                             })},
+          {"volumes", array_of(description.volumes, [](const model::Volume& volume) { return to_json(volume); })},
+          {"ellipsoids",
+           array_of(description.ellipsoids, [](const model::EllipsoidSource& source) { return to_json(source); })},
+          {"ranges", array_of(info.ranges, [](const model::AttributeRange& range) { return to_json(range); })},
+          {"classes", array_of(info.classes, [](const model::ClassCount& count) {
+             return json{{"code", count.code}, {"surfels", count.surfels}};
+           })}};
+}
+
 }  // namespace
 
 HttpAnswer models_answer(const service::ModelList& models, const UploadConfig& uploads) {
@@ -192,30 +229,9 @@ HttpAnswer uploaded_answer(const char* what, const std::string& name) {
 }
 
 HttpAnswer model_answer(const std::string& name, const service::ModelDescription& description) {
-  const model::ModelInfo& info = description.info;
-  return json_answer(
-      {{"model", name},
-       {"surfels", info.surfels},
-       {"bounds", {{"min", to_json(info.bounds.min)}, {"max", to_json(info.bounds.max)}}},
-       {"oriented", info.oriented},
-       {"up_axis", std::string(info.upside_down ? "-" : "") + (info.z_up ? "z" : "y")},
-       {"color_bits", info.color_bits},
-       {"attributes", info.scalar_names},
-       {"sources", info.source_names},
-       {"levels", description.levels},
-       {"blocks", description.blocks},
-       {"spacing", description.spacing},
-       {"kinds", array_of(info.kinds,
-                          [](const model::KindCount& kind) {
-                            return json{{"kind", kind.kind}, {"blocks", kind.blocks}, {"count", kind.items}};
-                          })},
-       {"volumes", array_of(description.volumes, [](const model::Volume& volume) { return to_json(volume); })},
-       {"ellipsoids",
-        array_of(description.ellipsoids, [](const model::EllipsoidSource& source) { return to_json(source); })},
-       {"ranges", array_of(info.ranges, [](const model::AttributeRange& range) { return to_json(range); })},
-       {"classes", array_of(info.classes, [](const model::ClassCount& count) {
-          return json{{"code", count.code}, {"surfels", count.surfels}};
-        })}});
+  json document = description_of(name, description);
+  if (description.georeference.known()) document["coordinate_system"] = to_json(description.georeference);
+  return json_answer(document);
 }
 
 HttpAnswer picture_answer(service::EncodedPicture picture) {
@@ -247,7 +263,7 @@ HttpAnswer file_answer(const StaticFile& file, std::string_view if_none_match) {
   return answer;
 }
 
-HttpAnswer pick_answer(const std::optional<kinds::PickedSurfel>& picked) {
+HttpAnswer pick_answer(const std::optional<service::PickedPoint>& picked) {
   wire::PickResult result;
   to_wire(picked, result);
   return text_answer(protocol::pick_result_json(result), kJson);
@@ -262,6 +278,22 @@ HttpAnswer profile_answer(const std::string& name, const service::ProfileResult&
   answer.headers = {{"Content-Disposition", "attachment; filename=\"" + file + "\""},
                     {"X-Surfcast-Points", std::to_string(profile.band.points.size())},
                     {"X-Surfcast-Total", std::to_string(profile.band.total)},
+                    {"Cache-Control", "no-cache"}};
+  return answer;
+}
+
+HttpAnswer point_count_answer(uint64_t points) {
+  HttpAnswer answer = json_answer({{"points", points}});
+  answer.headers = {{"Cache-Control", "no-cache"}};
+  return answer;
+}
+
+HttpAnswer points_answer(const std::string& name, std::string_view format, uint64_t points) {
+  HttpAnswer answer;
+  answer.content_type = format == "csv" ? "text/csv; charset=utf-8" : "application/octet-stream";
+  const std::string file = token(name) + "-points." + std::string(format);
+  answer.headers = {{"Content-Disposition", "attachment; filename=\"" + file + "\""},
+                    {"X-Surfcast-Points", std::to_string(points)},
                     {"Cache-Control", "no-cache"}};
   return answer;
 }

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <boost/asio/awaitable.hpp>
 #include <cstddef>
+#include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -24,6 +27,8 @@ struct HttpAnswer {
   std::vector<std::pair<std::string, std::string>> headers;
   std::vector<std::byte> body;
   std::shared_ptr<const void> memory{};  ///< counts the body of a picture
+  /// Makes what follows behind `body`, piece by piece, until a piece is the last; null: nothing does.
+  std::function<boost::asio::awaitable<Result<service::PointPiece>>()> more{};
 };
 
 HttpAnswer text_answer(std::string_view text, std::string_view content_type);
@@ -43,10 +48,14 @@ HttpAnswer picture_answer(service::EncodedPicture picture);
 /// A file of the viewer, or 304 when `if_none_match`, the request's header, already names what it holds.
 HttpAnswer file_answer(const StaticFile& file, std::string_view if_none_match);
 /// What a pixel shows, as pick_result_json writes it.
-HttpAnswer pick_answer(const std::optional<kinds::PickedSurfel>& picked);
+HttpAnswer pick_answer(const std::optional<service::PickedPoint>& picked);
 /// The points of a profile as a file to save, and in the headers how many they are, and how many there are in the band.
 HttpAnswer profile_answer(const std::string& name, const service::ProfileResult& profile,
                           protocol::ProfileFormat format);
+/// {"points": 1234}
+HttpAnswer point_count_answer(uint64_t points);
+/// The beginning of a file of points to save, without a body, and in a header how many they are.
+HttpAnswer points_answer(const std::string& name, std::string_view format, uint64_t points);
 /// The page at / of a server without the viewer: how to install it.
 HttpAnswer no_viewer_answer();
 

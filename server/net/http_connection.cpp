@@ -8,6 +8,9 @@
 #include <boost/beast/http/span_body.hpp>
 #include <boost/beast/http/string_body.hpp>
 #include <boost/beast/http/write.hpp>
+#include <charconv>
+#include <span>
+#include <string>
 #include <string_view>
 #include <utility>
 
@@ -40,10 +43,32 @@ http::response<Body> response_of(const HttpAnswer& answer, const AnswerForm& for
   response.set("X-Content-Type-Options", "nosniff");
   response.set("Cross-Origin-Resource-Policy", "same-origin");  // pages of other sites cannot show or read it
   for (const auto& [name, value] : answer.headers) response.set(name, value);
-  if (answer.status != 304) response.content_length(answer.body.size());
-  response.keep_alive(form.keep_alive);
+  if (answer.more && form.version >= 11) response.chunked(true);
+  if (!answer.more && answer.status != 304) response.content_length(answer.body.size());
+  response.keep_alive(form.keep_alive && (!answer.more || form.version >= 11));
   if (!form.head) response.body() = {reinterpret_cast<const char*>(answer.body.data()), answer.body.size()};
   return response;
+}
+
+/// A piece of a body whose length is not known beforehand (RFC 9112, 7.1). HTTP/1.0 has no marks between pieces; there
+/// the body ends with the connection.
+Bytes chunk_of(const Bytes& piece, bool last, bool marked) {
+  if (!marked) return piece;
+  const auto add_text = [](Bytes& bytes, std::string_view text) {
+    const auto added = std::as_bytes(std::span(text));
+    bytes.insert(bytes.end(), added.begin(), added.end());
+  };
+  Bytes chunk;
+  if (!piece.empty()) {
+    std::array<char, 16> digits{};
+    const char* end = std::to_chars(digits.data(), digits.data() + digits.size(), piece.size(), 16).ptr;
+    add_text(chunk, {digits.data(), end});
+    add_text(chunk, "\r\n");
+    chunk.insert(chunk.end(), piece.begin(), piece.end());
+    add_text(chunk, "\r\n");
+  }
+  if (last) add_text(chunk, "0\r\n\r\n");
+  return chunk;
 }
 
 }  // namespace
@@ -84,15 +109,46 @@ asio::awaitable<std::optional<std::string>> HttpConnection::read_body(HeadParser
 asio::awaitable<bool> HttpConnection::write(const HttpAnswer& answer, const AnswerForm& form) {
   http::response<Body> response = response_of(answer, form);
   http::response_serializer<Body> serializer{response};
+  serializer.split(static_cast<bool>(answer.more));  // the head alone, whose end would be that of the body
+  const auto is_done = [&] { return answer.more ? serializer.is_header_done() : serializer.is_done(); };
   error_code code;
   const ServerConfig& config = context_->config;
   ReadingRate rate(config.stall, config.least_rate, ReadingRate::Clock::now());
-  while (!serializer.is_done() && !code && !rate.is_too_slow(ReadingRate::Clock::now())) {
+  while (!is_done() && !code && !rate.is_too_slow(ReadingRate::Clock::now())) {
     stream_.socket().expires_after(config.stall);  // for some bytes, not for all of them
     const size_t taken = co_await http::async_write_some(stream_, serializer, redirect_error_to(code));
     rate.take(taken);
   }
-  if (!serializer.is_done()) co_return false;
+  if (!is_done() || code) co_return false;
+  if (!answer.more || form.head) co_return true;
+  const bool whole = co_await write_more(answer, form);
+  co_return whole;
+}
+
+/// The rest of the body. When it cannot be made the client learns that it is not whole: its end is missing.
+asio::awaitable<bool> HttpConnection::write_more(const HttpAnswer& answer, const AnswerForm& form) {
+  const bool marked = form.version >= 11;
+  for (;;) {
+    const Result<service::PointPiece> piece = co_await answer.more();
+    if (!piece) co_return false;
+    const Bytes chunk = chunk_of(piece->bytes, piece->last, marked);
+    const bool written = co_await write_bytes(chunk);
+    if (!written || piece->last) co_return written&& marked;
+  }
+}
+
+asio::awaitable<bool> HttpConnection::write_bytes(const Bytes& bytes) {
+  const ServerConfig& config = context_->config;
+  ReadingRate rate(config.stall, config.least_rate, ReadingRate::Clock::now());
+  error_code code;
+  for (size_t sent = 0; sent < bytes.size() && !code;) {
+    if (rate.is_too_slow(ReadingRate::Clock::now())) co_return false;
+    stream_.socket().expires_after(config.stall);
+    const size_t taken = co_await stream_.async_write_some(asio::buffer(bytes.data() + sent, bytes.size() - sent),
+                                                           redirect_error_to(code));
+    sent += taken;
+    rate.take(taken);
+  }
   co_return !code;
 }
 

@@ -52,6 +52,9 @@ class HttpConnection {
   [[nodiscard]] boost::beast::flat_buffer& buffer() { return buffer_; }
 
  private:
+  boost::asio::awaitable<bool> write_more(const HttpAnswer& answer, const AnswerForm& form);
+  boost::asio::awaitable<bool> write_bytes(const Bytes& bytes);
+
   ClientStream stream_;
   boost::beast::flat_buffer buffer_;
   std::shared_ptr<const NetContext> context_;

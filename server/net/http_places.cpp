@@ -1,5 +1,6 @@
 #include "net/http_places.h"
 
+#include <atomic>
 #include <boost/asio/co_spawn.hpp>
 #include <boost/asio/detached.hpp>
 #include <chrono>
@@ -9,6 +10,7 @@
 #include "net/convert.h"
 #include "net/redirect_error_to.h"
 #include "protocol/picture_query.h"
+#include "protocol/points_query.h"
 #include "protocol/profile_query.h"
 
 namespace surfcast::net {
@@ -36,7 +38,7 @@ void HttpPlaces::set_guest(Gatekeeper::Guest guest, const service::Asker& asker)
 }
 
 bool HttpPlaces::cancel() {
-  return job_ && context_->service.cancel(*job_);
+  return give_up_ && give_up_();
 }
 
 asio::awaitable<HttpAnswer> HttpPlaces::answer(HttpRoute route) {
@@ -49,6 +51,7 @@ asio::awaitable<HttpAnswer> HttpPlaces::answer(HttpRoute route) {
     case HttpRoute::Kind::kPicture:
     case HttpRoute::Kind::kPick:
     case HttpRoute::Kind::kProfile:
+    case HttpRoute::Kind::kPoints:
       co_return co_await answer_about_model(std::move(route));
     case HttpRoute::Kind::kHealth:
       co_return text_answer("ok\n", "text/plain");
@@ -74,6 +77,8 @@ asio::awaitable<HttpAnswer> HttpPlaces::answer_about_model(HttpRoute route) {
       return answer_pick(std::move(route));
     case HttpRoute::Kind::kProfile:
       return answer_profile(std::move(route));
+    case HttpRoute::Kind::kPoints:
+      return answer_points(std::move(route));
     default:
       return answer_model(std::move(route.model));
   }
@@ -84,6 +89,7 @@ HttpAnswer HttpPlaces::answer_metrics(const std::string& accept) const {
 
   const Clients::Counts& open = context_->clients->all();
   const Gatekeeper& gate = *context_->gate;
+  const auto& workers = context_->config.workers;
   const std::string text = metrics_text(context_->metrics,
                                         {.connections = open.connections + open.refused,
                                          .waiting = context_->sessions.waiting(KeptSessions::Clock::now()),
@@ -92,7 +98,8 @@ HttpAnswer HttpPlaces::answer_metrics(const std::string& accept) const {
                                          .picture_memory = context_->service.picture_memory(),
                                          .guests = gate.guests()->all().connections,
                                          .denied = gate.denied(),
-                                         .memory = context_->service.device().memory},
+                                         .memory = context_->service.device().memory,
+                                         .workers = workers ? std::optional(workers()) : std::nullopt},
                                         format);
   return text_answer(text, media_type(format));
 }
@@ -116,7 +123,7 @@ asio::awaitable<HttpAnswer> HttpPlaces::answer_pick(HttpRoute route) {
       });
   if (!job) co_return error_answer(job.error());
   job->model = name_for(guest_, job->model);
-  const auto picked = co_await answer_of<Result<std::optional<kinds::PickedSurfel>>>(
+  const auto picked = co_await answer_of<Result<std::optional<service::PickedPoint>>>(
       [&](auto done) { context_->service.pick(*job, std::move(done), asker_.client); });
   co_return picked ? pick_answer(*picked) : error_answer(picked.error());
 }
@@ -131,6 +138,40 @@ asio::awaitable<HttpAnswer> HttpPlaces::answer_profile(HttpRoute route) {
   const auto profile = co_await answer_of<Result<service::ProfileResult>>(
       [&](auto done) { context_->service.profile(*job, std::move(done), asker_.client); });
   co_return profile ? profile_answer(route.model, *profile, query->format) : error_answer(profile.error());
+}
+
+asio::awaitable<HttpAnswer> HttpPlaces::answer_points(HttpRoute route) {
+  const Result<wire::GetPoints> request = protocol::parse_points_query(route.model, route.query);
+  if (!request) co_return error_answer(request.error());
+  Result<service::PointsJob> job = to_job(*request);
+  if (!job) co_return error_answer(job.error());
+  job->model = name_for(guest_, job->model);
+  auto stream = co_await count(std::move(*job));
+  if (!stream) co_return error_answer(stream.error());
+  const uint64_t points = (*stream)->facts().count;
+  if (request->only_count()) co_return point_count_answer(points);
+  HttpAnswer answer = points_answer(route.model, protocol::name_of(request->format()), points);
+  answer.more = [self = shared_from_this(), stream = std::move(*stream)] { return self->next_piece(stream); };
+  co_return answer;
+}
+
+asio::awaitable<Result<std::shared_ptr<service::PointStream>>> HttpPlaces::count(service::PointsJob job) {
+  using Stream = Result<std::shared_ptr<service::PointStream>>;
+  connection_->wait_without_limit();
+  const auto cancelled = std::make_shared<std::atomic<bool>>(false);
+  begin_errand([cancelled] { return !cancelled->exchange(true); });
+  Stream stream = co_await answer_of<Stream>(
+      [&](auto done) { context_->service.points(std::move(job), cancelled, std::move(done), asker_.client); });
+  end_errand();
+  co_return stream;
+}
+
+asio::awaitable<Result<service::PointPiece>> HttpPlaces::next_piece(std::shared_ptr<service::PointStream> stream) {
+  if (connection_->has_left()) co_return fail(ErrorKind::kCancelled, "the client has left");
+  connection_->wait_without_limit();
+  Result<service::PointPiece> piece = co_await answer_of<Result<service::PointPiece>>(
+      [&](auto done) { context_->service.next_piece(stream, std::move(done), asker_.client); });
+  co_return piece;
 }
 
 asio::awaitable<HttpAnswer> HttpPlaces::answer_picture(HttpRoute route) {
@@ -149,29 +190,40 @@ asio::awaitable<HttpAnswer> HttpPlaces::answer_picture(HttpRoute route) {
 asio::awaitable<Result<service::EncodedPicture>> HttpPlaces::draw(service::PictureJob job) {
   connection_->wait_without_limit();
   Result<service::EncodedPicture> picture = co_await answer_of<Result<service::EncodedPicture>>([&](auto done) {
-    job_ = context_->service.draw(asker_, std::move(job), std::move(done));
-    asio::co_spawn(
-        connection_->stream().get_executor(),
-        [](std::shared_ptr<HttpPlaces> self, service::JobId id) -> asio::awaitable<void> {
-          co_await self->cancel_when_client_leaves(id);
-        }(shared_from_this(), *job_),
-        asio::detached);
+    const service::JobId id = context_->service.draw(asker_, std::move(job), std::move(done));
+    begin_errand([this, id] { return context_->service.cancel(id); });
   });
-  job_.reset();
-  look_again_.cancel();
-  connection_->stop_awaiting();  // that the client leaves
+  end_errand();
   co_return picture;
 }
 
-/// Waits for the end of the stream while a picture is drawn: nobody waits for the picture any more then. Behind bytes
-/// that are not read yet, a next request, only the state of the connection tells, and nothing wakes.
-asio::awaitable<void> HttpPlaces::cancel_when_client_leaves(service::JobId job) {
+/// Something is done for the client from here on, which `give_up` ends.
+void HttpPlaces::begin_errand(std::function<bool()> give_up) {
+  give_up_ = std::move(give_up);
+  asio::co_spawn(
+      connection_->stream().get_executor(),
+      [](std::shared_ptr<HttpPlaces> self, uint64_t errand) -> asio::awaitable<void> {
+        co_await self->give_up_when_client_leaves(errand);
+      }(shared_from_this(), ++errand_),
+      asio::detached);
+}
+
+void HttpPlaces::end_errand() {
+  give_up_ = nullptr;
+  ++errand_;
+  look_again_.cancel();
+  connection_->stop_awaiting();  // that the client leaves
+}
+
+/// Waits for the end of the stream while something is done: nobody waits for it any more then. Behind bytes that are
+/// not read yet, a next request, only the state of the connection tells, and nothing wakes.
+asio::awaitable<void> HttpPlaces::give_up_when_client_leaves(uint64_t errand) {
   error_code code = co_await connection_->await_word();
-  while (job_ == job && !code && !connection_->has_left()) {
+  while (errand_ == errand && !code && !connection_->has_left()) {
     look_again_.expires_after(kLookAgain);
     co_await look_again_.async_wait(redirect_error_to(code));
   }
-  if (job_ == job && !code) context_->service.cancel(job);
+  if (errand_ == errand && !code) cancel();
 }
 
 }  // namespace surfcast::net

@@ -2,8 +2,9 @@
 
 #include <boost/asio/awaitable.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <cstdint>
+#include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 
 #include "net/http_answer.h"
@@ -23,7 +24,7 @@ class HttpPlaces : public std::enable_shared_from_this<HttpPlaces> {
   boost::asio::awaitable<HttpAnswer> answer(HttpRoute route);
   /// Who asks from here on; null: nobody that is known.
   void set_guest(Gatekeeper::Guest guest, const service::Asker& asker);
-  /// Gives up the picture that is being drawn, if there is one; false: there is none.
+  /// Gives up what is being done for the client, if there is something; false: there is nothing.
   bool cancel();
 
  private:
@@ -32,16 +33,22 @@ class HttpPlaces : public std::enable_shared_from_this<HttpPlaces> {
   boost::asio::awaitable<HttpAnswer> answer_picture(HttpRoute route);
   boost::asio::awaitable<HttpAnswer> answer_pick(HttpRoute route);
   boost::asio::awaitable<HttpAnswer> answer_profile(HttpRoute route);
+  boost::asio::awaitable<HttpAnswer> answer_points(HttpRoute route);
+  boost::asio::awaitable<Result<std::shared_ptr<service::PointStream>>> count(service::PointsJob job);
+  boost::asio::awaitable<Result<service::PointPiece>> next_piece(std::shared_ptr<service::PointStream> stream);
   boost::asio::awaitable<HttpAnswer> answer_models();
   [[nodiscard]] HttpAnswer answer_metrics(const std::string& accept) const;
   boost::asio::awaitable<Result<service::EncodedPicture>> draw(service::PictureJob job);
-  boost::asio::awaitable<void> cancel_when_client_leaves(service::JobId job);
+  void begin_errand(std::function<bool()> give_up);
+  void end_errand();
+  boost::asio::awaitable<void> give_up_when_client_leaves(uint64_t errand);
 
   std::shared_ptr<NetContext> context_;
   std::shared_ptr<HttpConnection> connection_;
   service::Asker asker_;
   Gatekeeper::Guest guest_;
-  std::optional<service::JobId> job_;     ///< being drawn for this client
+  std::function<bool()> give_up_;         ///< ends what is being done for this client; null: nothing is
+  uint64_t errand_ = 0;                   ///< number of what is being done
   boost::asio::steady_timer look_again_;  ///< whether the client is still there
 };
 

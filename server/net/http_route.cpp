@@ -15,6 +15,7 @@ constexpr std::string_view kUploads = "/api/uploads/";
 constexpr std::string_view kImage = "/image";
 constexpr std::string_view kPick = "/pick";
 constexpr std::string_view kProfile = "/profile";
+constexpr std::string_view kPoints = "/points";
 constexpr std::array<std::pair<std::string_view, Kind>, 8> kPlaces{{
     {"/", Kind::kPage},
     {kModels, Kind::kModels},
@@ -30,7 +31,7 @@ tl::unexpected<Error> no_such_place(std::string_view path) {
   return fail(ErrorKind::kNotFound, "there is nothing at " + std::string(path));
 }
 
-/// "NAME", "NAME/image", "NAME/pick" or "NAME/profile", what follows "/api/models/".
+/// "NAME", "NAME/image", "NAME/pick", "NAME/profile" or "NAME/points", what follows "/api/models/".
 Result<HttpRoute> route_model(std::string_view rest, std::string_view query) {
   HttpRoute route{Kind::kModel, {}, std::string(query)};
   if (rest.ends_with(kImage)) {
@@ -42,6 +43,9 @@ Result<HttpRoute> route_model(std::string_view rest, std::string_view query) {
   } else if (rest.ends_with(kProfile)) {
     route.kind = Kind::kProfile;
     rest.remove_suffix(kProfile.size());
+  } else if (rest.ends_with(kPoints)) {
+    route.kind = Kind::kPoints;
+    rest.remove_suffix(kPoints.size());
   }
   if (rest.empty() || rest.find('/') != std::string_view::npos) return no_such_place(kModels);
   Result<std::string> name = protocol::decode_escapes(rest);

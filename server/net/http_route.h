@@ -16,6 +16,7 @@ struct HttpRoute {
     kPicture,
     kPick,
     kProfile,
+    kPoints,
     kWebSocket,
     kUpload,
     kHealth,
@@ -25,8 +26,8 @@ struct HttpRoute {
     kLogout
   };
   Kind kind = Kind::kPage;
-  std::string model;     ///< of kModel, kPicture, kPick and kProfile; of kUpload the file's name
-  std::string query;     ///< of kPicture, kPick and kProfile, still escaped
+  std::string model;     ///< of kModel, kPicture, kPick, kProfile and kPoints; of kUpload the file's name
+  std::string query;     ///< of kPicture, kPick, kProfile and kPoints, still escaped
   std::string accept{};  ///< the header of the request
 };
 

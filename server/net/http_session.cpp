@@ -235,6 +235,7 @@ void HttpSession::audit_route(const HttpRoute& route) const {
   const std::string_view what = route.kind == HttpRoute::Kind::kPicture   ? "picture"
                                 : route.kind == HttpRoute::Kind::kPick    ? "pick"
                                 : route.kind == HttpRoute::Kind::kProfile ? "profile"
+                                : route.kind == HttpRoute::Kind::kPoints  ? "points"
                                 : route.kind == HttpRoute::Kind::kModel   ? "describe"
                                                                           : "";
   if (what.empty()) return;

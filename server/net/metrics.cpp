@@ -13,6 +13,14 @@ void write_tls(Exposition& out, const Metrics& m) {
             static_cast<uint64_t>(m.tls_expires));
 }
 
+void write_workers(Exposition& out, const WorkerGauges& workers) {
+  out.value("surfcast_workers_started_total", "counter", "Render workers started.", workers.started);
+  out.value("surfcast_workers_ended_total", "counter", "Render workers that crashed, were killed or hung.",
+            workers.ended);
+  out.value("surfcast_blocks_quarantined_total", "counter",
+            "Blocks that are not loaded any more, because they have ended two render workers.", workers.quarantined);
+}
+
 }  // namespace
 
 void Metrics::count_picture(size_t bytes, const picture::FrameStats& stats) {
@@ -62,6 +70,7 @@ std::string metrics_text(const Metrics& m, const Gauges& gauges, Exposition::For
             "Memory of pictures at rest that are drawn, encoded or not taken by their clients.", gauges.picture_memory);
   out.value("surfcast_gpu_memory_budget_bytes", "gauge", "Most memory for surfels on the GPU.", gauges.memory.gpu);
   out.value("surfcast_host_memory_budget_bytes", "gauge", "Most host memory for decoded blocks.", gauges.memory.host);
+  if (gauges.workers) write_workers(out, *gauges.workers);
   out.begin("surfcast_stage_seconds_total", "counter", "Time spent on pictures, by stage.");
   for (const auto& [stage, seconds] : m.stage_seconds) {
     out.add("surfcast_stage_seconds_total", label_of("stage", stage), seconds);

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -40,16 +41,24 @@ struct Metrics {
   void count_stages(const picture::FrameStats& stats, PictureTimes& times);
 };
 
+/// Processes that draw, since the start.
+struct WorkerGauges {
+  uint64_t started = 0;
+  uint64_t ended = 0;        ///< crashed, killed or hung
+  uint64_t quarantined = 0;  ///< blocks that are not loaded any more, because they have ended two workers
+};
+
 /// What there is at the moment.
 struct Gauges {
-  size_t connections = 0;         ///< open
-  size_t waiting = 0;             ///< sessions without a connection
-  uint64_t audit_lost = 0;        ///< events, since the start
-  size_t queued = 0;              ///< pictures that wait for the render thread
-  size_t picture_memory = 0;      ///< bytes of pictures at rest that are drawn, encoded or not taken yet
-  size_t guests = 0;              ///< connections with a token
-  uint64_t denied = 0;            ///< wrong tokens since the start
-  picture::MemoryBudgets memory;  ///< of the renderer
+  size_t connections = 0;                 ///< open
+  size_t waiting = 0;                     ///< sessions without a connection
+  uint64_t audit_lost = 0;                ///< events, since the start
+  size_t queued = 0;                      ///< pictures that wait for the render thread
+  size_t picture_memory = 0;              ///< bytes of pictures at rest that are drawn, encoded or not taken yet
+  size_t guests = 0;                      ///< connections with a token
+  uint64_t denied = 0;                    ///< wrong tokens since the start
+  picture::MemoryBudgets memory;          ///< of the renderer
+  std::optional<WorkerGauges> workers{};  ///< none: the server draws itself
 };
 
 /// The text that Prometheus reads.

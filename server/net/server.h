@@ -4,6 +4,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,6 +12,7 @@
 #include "base/result.h"
 #include "net/clients.h"
 #include "net/kept_sessions.h"
+#include "net/metrics.h"
 #include "net/proxy_header.h"
 #include "net/request_window.h"
 #include "net/static_files.h"
@@ -47,6 +49,7 @@ struct ServerConfig {
   std::chrono::milliseconds leave{0};       ///< then, over which clients with views are sent away one after the other
   std::chrono::milliseconds drain{5'000};   ///< then, for what is outstanding
   std::shared_ptr<const StaticFiles> viewer;  ///< served at "/"; null: a hint where to get one
+  std::function<WorkerGauges()> workers;      ///< of the processes that draw; empty: there are none
   UploadConfig uploads;                       ///< scans that clients may send
   Networks trusted_proxies;                   ///< which tell whose words they pass on
   std::vector<std::string> hosts;             ///< names of the server beside `host`, see GuardConfig

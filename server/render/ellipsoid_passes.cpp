@@ -51,7 +51,7 @@ EllipsoidWork plan(const RegionTask& task, EllipsoidTarget target) {
   constexpr int kReach = SURFCAST_GLYPH_REACH;
   work.samples = {task.drawn.x - kReach, task.drawn.y - kReach, task.drawn.width + 2 * kReach,
                   task.drawn.height + 2 * kReach};
-  work.sample_constants = frame_constants(task.frame, work.samples, *task.request, false);
+  work.sample_constants = frame_constants(task.frame, work.samples, *task.request, {});
   work.count = number_ellipsoids(work.projection);
   return work;
 }

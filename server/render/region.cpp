@@ -9,6 +9,10 @@
 namespace surfcast::render {
 namespace {
 
+/// Variance of the prefilter, pixels squared. Of a larger one, 1 would be left after the cut at r^2 = 5. Even samplings
+/// get that; uneven ones are nearer to the ideal without (docs/laboratory.md, "The prefilter's variance").
+constexpr double kPrefilter = 1;
+constexpr double kEvenPrefilter = 1.288;
 /// Variance that replaces the prefilter if only the kernel is drawn, pixels squared. It keeps the inverse finite.
 constexpr double kNoPrefilter = 1e-4;
 
@@ -65,14 +69,15 @@ int tiles_down(const Region& region) {
 }
 
 layout::FrameConstants frame_constants(const geometry::CameraFrame& frame, const Region& region,
-                                       const picture::PictureRequest& request, bool oriented) {
+                                       const picture::PictureRequest& request, const SurfelFacts& surfels) {
   layout::FrameConstants c;
   c.right = glm::vec4(glm::vec3(frame.right), static_cast<float>(frame.eta));
   c.up = glm::vec4(glm::vec3(frame.up), 0.5F * static_cast<float>(frame.width));
   c.forward = glm::vec4(glm::vec3(frame.forward), 0.5F * static_cast<float>(frame.height));
   c.region = {region.x, region.y, region.width, region.height};
   c.tiles = {tiles_across(region), tiles_down(region), tiles_across(region) * tiles_down(region), 0};
-  const double prefilter = request.filter == picture::Filter::kEwa ? 1.0 : kNoPrefilter;
+  const double whole = surfels.even ? kEvenPrefilter : kPrefilter;
+  const double prefilter = request.filter == picture::Filter::kEwa ? whole : kNoPrefilter;
   // The depth of a medium is the amount of surfels, whatever their overlaps.
   const bool per_surfel =
       request.normalization == picture::Normalization::kSurfel || request.xray == picture::XRay::kDensity;
@@ -82,7 +87,7 @@ layout::FrameConstants frame_constants(const geometry::CameraFrame& frame, const
                static_cast<float>(surfel::kRadiusOverSpacing * request.spacing / frame.eta)};
   c.background = {decode_srgb(request.background.r), decode_srgb(request.background.g),
                   decode_srgb(request.background.b), static_cast<float>(request.opacity)};
-  c.flags = {oriented ? 1 : 0, per_surfel ? 1 : 0, 0, 0};
+  c.flags = {surfels.oriented ? 1 : 0, per_surfel ? 1 : 0, 0, 0};
   return c;
 }
 

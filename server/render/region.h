@@ -38,8 +38,14 @@ Region with_margin(const Region& region, int margin, int width, int height);
 [[nodiscard]] int tiles_across(const Region& region);
 [[nodiscard]] int tiles_down(const Region& region);
 
-/// The constants of the passes for one region. `oriented`: normals tell front from back.
+/// What the passes need to know of the surfels.
+struct SurfelFacts {
+  bool oriented = false;  ///< normals tell front from back
+  bool even = false;      ///< see ModelInfo::even
+};
+
+/// The constants of the passes for one region.
 layout::FrameConstants frame_constants(const geometry::CameraFrame& frame, const Region& region,
-                                       const picture::PictureRequest& request, bool oriented);
+                                       const picture::PictureRequest& request, const SurfelFacts& surfels);
 
 }  // namespace surfcast::render

@@ -157,7 +157,7 @@ struct Renderer::State {
         list_entries(std::min(config.list_entries.value_or(residency::SurfelBuffer::device_limit()),
                               residency::SurfelBuffer::device_limit())),
         surfels(device.memory.gpu / sizeof(glm::uvec4), device.software),
-        residency(surfels, limits_of(config, device.memory)) {
+        residency(surfels, limits_of(config, device.memory), config.load_guard) {
     for (SplatBuffers& set : buffers) {
       set.srgb = ConstantTexels::make("linear roots of sRGB", residency::linear_root_table());
       set.lazy = device.software && gl::can_adopt_memory();
@@ -306,7 +306,7 @@ Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const pict
                     frame,
                     region,
                     drawn,
-                    frame_constants(frame, drawn, request, info.oriented && !variant.transparent),
+                    frame_constants(frame, drawn, request, {info.oriented && !variant.transparent, info.even}),
                     variant,
                     &request,
                     display,

@@ -14,6 +14,10 @@
 #include "picture/picture.h"
 #include "render/memory_budgets.h"
 
+namespace surfcast::residency {
+class LoadGuard;
+}
+
 namespace surfcast::render {
 
 struct RendererConfig {
@@ -28,6 +32,7 @@ struct RendererConfig {
   std::optional<size_t> list_entries{};  ///< of the tiles of a region, see docs/architecture.md; none: what fits
   std::string shader_defines{};          ///< text before every shader, for programs that measure other kernels
   kinds::KindTable kinds = kinds::built_in_kinds();  ///< kinds of blocks that can be drawn; outlives the renderer
+  residency::LoadGuard* load_guard = nullptr;        ///< is told of every block that is loaded; outlives the renderer
 };
 
 /// Draws pictures of models. Owns a GL context: create, use and destroy it on one thread.

@@ -25,13 +25,24 @@ Result<std::shared_ptr<const PackedBlock>> load_block(const BlockSource& source,
   }
 }
 
+/// The same under the eyes of a guard.
+Result<std::shared_ptr<const PackedBlock>> load_guarded(const BlockSource& source, const BlockId& id,
+                                                        LoadGuard* guard) {
+  if (guard == nullptr) return load_block(source, id);
+  if (Status entered = guard->enter(id); !entered) return fail(std::move(entered.error()));
+  Result<std::shared_ptr<const PackedBlock>> loaded = load_block(source, id);
+  guard->leave(id);
+  return loaded;
+}
+
 size_t max_packed_bytes(uint32_t surfels) {
   return size_t{kMaxPackedPerSurfel} * surfels * sizeof(glm::uvec4);
 }
 
 }  // namespace
 
-BlockLoader::BlockLoader(const LoaderLimits& limits) : limits_(limits), cache_(limits.cache_bytes) {
+BlockLoader::BlockLoader(const LoaderLimits& limits, LoadGuard* guard)
+    : limits_(limits), guard_(guard), cache_(limits.cache_bytes) {
   for (unsigned i = 0; i < std::max(1U, limits.threads); ++i) {
     threads_.emplace_back([this] { work(); });
   }
@@ -54,10 +65,11 @@ void BlockLoader::set_requests(const std::shared_ptr<const BlockSource>& source,
     const std::lock_guard lock(mutex_);
     const std::set<BlockId> known = std::exchange(requested_, {});
     for (const uint32_t block : blocks) requested_.insert({source->id(), block, attributes});
-    queue_.clear();
+    forget_queued();
     drop_unwanted();
     std::set<BlockId> coming = busy_;
     for (const LoadedBlock& loaded : ready_) coming.insert(loaded.id);
+    std::vector<uint32_t> fresh;
     for (const uint32_t block : blocks) {
       const BlockId id{source->id(), block, attributes};
       if (!coming.insert(id).second) continue;
@@ -65,10 +77,11 @@ void BlockLoader::set_requests(const std::shared_ptr<const BlockSource>& source,
         make_ready({id, std::move(cached), 0});
       } else {
         queue_.push_back({source, id});
-        // The disk reads these blocks while the first ones are decoded.
-        if (!known.contains(id)) source->prefetch(block);
+        if (!known.contains(id)) fresh.push_back(block);
       }
     }
+    // The disk or the store reads these blocks while the first ones are decoded.
+    if (!fresh.empty()) source->prefetch(fresh);
   }
   wake_workers_.notify_all();
 }
@@ -89,6 +102,13 @@ void BlockLoader::prefetch(const std::shared_ptr<const BlockSource>& source, std
     }
   }
   wake_prefetchers_.notify_all();
+}
+
+/// Empties the queue, and tells the sources which of its blocks are not requested any more.
+void BlockLoader::forget_queued() {
+  for (const Request& request : std::exchange(queue_, {})) {
+    if (!requested_.contains(request.id)) request.source->forget(request.id.block);
+  }
 }
 
 void BlockLoader::drop_unwanted() {
@@ -149,7 +169,7 @@ void BlockLoader::release_model(uint64_t model) {
 LoadedBlock BlockLoader::load(const Request& request, std::unique_lock<std::mutex>& lock) {
   lock.unlock();
   const Stopwatch watch;
-  LoadedBlock loaded{request.id, load_block(*request.source, request.id), watch.milliseconds()};
+  LoadedBlock loaded{request.id, load_guarded(*request.source, request.id, guard_), watch.milliseconds()};
   lock.lock();
   return loaded;
 }

@@ -13,6 +13,7 @@
 
 #include "base/lru_cache.h"
 #include "residency/block_source.h"
+#include "residency/load_guard.h"
 
 namespace surfcast::residency {
 
@@ -36,7 +37,8 @@ struct LoaderLimits {
 /// Additional threads of idle priority load blocks that may be requested soon into host memory.
 class BlockLoader {
  public:
-  explicit BlockLoader(const LoaderLimits& limits);
+  /// `guard`, if any, must outlive the loader.
+  explicit BlockLoader(const LoaderLimits& limits, LoadGuard* guard = nullptr);
   ~BlockLoader();
   BlockLoader(const BlockLoader&) = delete;
   BlockLoader& operator=(const BlockLoader&) = delete;
@@ -66,9 +68,11 @@ class BlockLoader {
   void keep(const LoadedBlock& loaded);
   void finish(LoadedBlock loaded);
   void make_ready(LoadedBlock loaded);
+  void forget_queued();
   void drop_unwanted();
 
   const LoaderLimits limits_;
+  LoadGuard* const guard_;
   std::mutex mutex_;  ///< guards the following members
   std::condition_variable wake_workers_;
   std::condition_variable wake_prefetchers_;

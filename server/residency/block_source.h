@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <span>
 #include <tuple>
 #include <utility>
 
@@ -19,8 +20,10 @@ class BlockSource {
   /// An ID of this model, unique in the process.
   [[nodiscard]] virtual uint64_t id() const = 0;
   [[nodiscard]] virtual const ldc::BlockTree& tree() const = 0;
-  /// Announces that a block is about to be loaded. Returns immediately.
-  virtual void prefetch(uint32_t block) const = 0;
+  /// Announces blocks that are about to be loaded, most urgent first. Returns immediately.
+  virtual void prefetch(std::span<const uint32_t> blocks) const = 0;
+  /// A block that was announced will not be loaded.
+  virtual void forget(uint32_t block) const = 0;
   /// Reads, decodes and packs a block, with or without PackedBlock::attributes.
   [[nodiscard]] virtual Result<PackedBlock> load(uint32_t block, bool attributes) const = 0;
 };

@@ -46,7 +46,10 @@ MergedSurfel mean(const MergedSurfel& a, const MergedSurfel& b, bool oriented) {
   m.scatter = a.scatter;
   m.radius = std::hypot(a.radius, b.radius);
   m.weight = mix(a.weight, b.weight);
-  m.light = mix(a.light, b.light);
+  m.opacity = mix(a.opacity, b.opacity);
+  // Light is averaged premultiplied: what is seen through counts less.
+  const float seen = m.opacity > 0 ? share * b.opacity / m.opacity : share;
+  m.light = a.light + (b.light - a.light) * seen;
   m.representative = ratio > 1 ? b.representative : a.representative;
   return m;
 }

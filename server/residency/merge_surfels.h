@@ -13,9 +13,10 @@ struct MergedSurfel {
   glm::vec3 normal{0, 0, 1};    ///< unit
   float radius = 1;             ///< world units; its square is proportional to the area that the surfel stands for
   float weight = 0;             ///< normalisation weight s_k
-  glm::vec3 light{0};           ///< linear
+  glm::vec3 light{0};           ///< linear, not multiplied by the opacity
   uint32_t representative = 0;  ///< the surfel of the largest area among those that it was merged from
   bool scatter = false;         ///< lies on no surface, as all surfels that it was merged from
+  float opacity = 1;            ///< share of the light behind it that it hides, in [0, 1]
 };
 
 /// The one or two surfels of the finer level from which a surfel was made; first != second for two.

@@ -181,9 +181,28 @@ std::vector<OnCurve> along_curve(const model::DecodedBlock& block, const glm::iv
   return surfels;
 }
 
+constexpr uint8_t kFullOpacity = 255;
+
+/// The opacities of the block's surfels, of kFullOpacity; empty without.
+std::vector<uint8_t> opacity_codes(const model::DecodedBlock& block) {
+  std::vector<uint8_t> codes;
+  for (const surfel::ScalarAttribute& scalar : block.scalars) {
+    if (scalar.name != surfel::kOpacityAttribute) continue;
+    for (size_t i = 0; i < block.size(); ++i) {
+      codes.push_back(static_cast<uint8_t>(std::lround(kFullOpacity * surfel::opacity_at(scalar.values, i))));
+    }
+  }
+  return codes;
+}
+
+uint8_t opacity_code(const MergedSurfel& surfel) {
+  return static_cast<uint8_t>(std::lround(float{kFullOpacity} * surfel.opacity));
+}
+
 /// The surfels of a block in Morton order, with positions relative to code 0.
 std::vector<MergedSurfel> surfels_of(const model::DecodedBlock& block, int color_bits, const PackedLattice& lattice) {
   const float widest = surfel::largest_drawn_radius(block.radii, block.scatter);
+  const std::vector<uint8_t> opacities = opacity_codes(block);
   std::vector<MergedSurfel> surfels;
   surfels.reserve(block.size());
   const glm::dvec3 step = lattice.step();
@@ -192,7 +211,8 @@ std::vector<MergedSurfel> surfels_of(const model::DecodedBlock& block, int color
         block.colors.empty() ? glm::vec3(0) : linear_of_code(color_code(block.colors[i], color_bits));
     surfels.push_back({glm::vec3(step * glm::dvec3(position_code(block.indices[i], lattice.shift))), block.normals[i],
                        block.is_scatter(i) ? block.radii[i] : std::min(block.radii[i], widest), block.weights[i], light,
-                       i, block.is_scatter(i)});
+                       i, block.is_scatter(i),
+                       opacities.empty() ? 1.0F : static_cast<float>(opacities[i]) / float{kFullOpacity}});
   }
   return surfels;
 }
@@ -276,6 +296,7 @@ void pack_curved(const model::DecodedBlock& block, const surfel::CurvatureColumn
     packed.surfels.push_back(texel(s));
     packed.surfels.push_back(pack_curvature(curvature.at(s.representative), s.radius / block.radii[s.representative]));
     packed.representatives.insert(packed.representatives.end(), 2, s.representative);
+    packed.opacities.insert(packed.opacities.end(), 2, opacity_code(s));
   }
   packed.runs = curved_runs(surfels);
 }
@@ -297,8 +318,10 @@ PackedSurfels pack_block(const model::DecodedBlock& block, int color_bits, bool 
   const TexelPacker texel(packed, !block.colors.empty());
   packed.surfels.reserve(sequence.surfels.size());
   packed.representatives.reserve(sequence.surfels.size());
+  packed.opacities.reserve(sequence.surfels.size());
   for (const MergedSurfel& s : sequence.surfels) {
     packed.representatives.push_back(s.representative);
+    packed.opacities.push_back(opacity_code(s));
     packed.surfels.push_back(texel(s));
   }
   packed.runs = std::move(sequence.runs);
@@ -339,33 +362,18 @@ uint32_t class_code(double value) {
   return std::isnan(value) ? 0 : static_cast<uint32_t>(std::lround(std::clamp(value, 0.0, 255.0)));
 }
 
-constexpr uint32_t kFullOpacity = 255;
-
-/// The opacities of the block's surfels, of kFullOpacity; empty without.
-std::vector<uint32_t> opacity_codes(const model::DecodedBlock& block) {
-  std::vector<uint32_t> codes;
-  for (const surfel::ScalarAttribute& scalar : block.scalars) {
-    if (scalar.name != surfel::kOpacityAttribute) continue;
-    for (size_t i = 0; i < block.size(); ++i) {
-      codes.push_back(static_cast<uint32_t>(std::lround(kFullOpacity * surfel::opacity_at(scalar.values, i))));
-    }
-  }
-  return codes;
-}
-
 }  // namespace
 
 void pack_attributes(const model::DecodedBlock& block, PackedSurfels& packed) {
   const std::vector<double> intensities = scalar_values(block, "intensity");
   const std::vector<double> classes = scalar_values(block, "classification");
-  const std::vector<uint32_t> opacities = opacity_codes(block);
   packed.intensity = scale_of(intensities);
   packed.attributes.reserve(packed.surfels.size());
-  for (const uint32_t i : packed.representatives) {
+  for (size_t k = 0; k < packed.representatives.size(); ++k) {
+    const uint32_t i = packed.representatives[k];
     const uint32_t intensity = intensities.empty() ? 0 : intensity_code(intensities[i], packed.intensity);
     const uint32_t code = classes.empty() ? 0 : class_code(classes[i]);
-    const uint32_t opacity = opacities.empty() ? kFullOpacity : opacities[i];
-    packed.attributes.push_back(intensity | (code << 16) | (opacity << 24));
+    packed.attributes.push_back(intensity | (code << 16) | (uint32_t{packed.opacities[k]} << 24));
   }
 }
 

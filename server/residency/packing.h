@@ -34,6 +34,8 @@ struct PackedSurfels {
   std::vector<glm::uvec4> surfels;
   /// For each of `surfels`, the index of the surfel of the block whose attributes it has.
   std::vector<uint32_t> representatives;
+  /// For each of `surfels`, its opacity in steps of 1/255.
+  std::vector<uint8_t> opacities;
   std::vector<PackedRun> runs;
 
   /// For each of `surfels`, 16 bits of intensity, then 8 of classification and 8 of opacity. Of a block that lacks

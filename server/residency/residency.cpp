@@ -4,8 +4,8 @@
 
 namespace surfcast::residency {
 
-Residency::Residency(SurfelSink& sink, const ResidencyLimits& limits)
-    : pool_(limits.pages, sink), loader_(limits.loader), upload_bytes_(limits.upload_bytes) {}
+Residency::Residency(SurfelSink& sink, const ResidencyLimits& limits, LoadGuard* guard)
+    : pool_(limits.pages, sink), loader_(limits.loader, guard), upload_bytes_(limits.upload_bytes) {}
 
 void Residency::release_model(uint64_t model) {
   pool_.release_model(model);
@@ -135,7 +135,8 @@ size_t Residency::upload_some(const ViewedModel& model, const ViewParameters& pa
     if (!loaded) break;
     view.decode_ms += loaded->milliseconds;
     if (!loaded->block) {
-      damaged_.insert(loaded->id.without_attributes());
+      // A store that does not answer now may answer later: the next picture requests the block again.
+      if (loaded->block.error().kind != ErrorKind::kUnavailable) damaged_.insert(loaded->id.without_attributes());
     } else if (store(model, *loaded, view)) {
       bytes += (*loaded->block)->bytes();
       ++stored;

@@ -61,7 +61,8 @@ struct ResidencyLimits {
 /// view stay resident until the next view is prepared. Used by the render thread.
 class Residency {
  public:
-  Residency(SurfelSink& sink, const ResidencyLimits& limits);
+  /// `guard`, if any, must outlive this object.
+  Residency(SurfelSink& sink, const ResidencyLimits& limits, LoadGuard* guard = nullptr);
 
   /// Prepares a picture of full quality: waits for every block of the cut, which only the budget limits. Fails if a
   /// block is damaged, and with kCancelled soon after it is cancelled.

@@ -3,14 +3,12 @@
 #include <algorithm>
 #include <atomic>
 #include <deque>
-#include <functional>
 #include <map>
 #include <memory>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "gl/reset_status.h"
 #include "service/shader_warm_up.h"
 
 namespace surfcast::service {
@@ -18,21 +16,16 @@ namespace {
 
 class CatalogueRenderer : public FrameRenderer {
  public:
-  CatalogueRenderer(const ModelCatalogue& models, std::unique_ptr<render::Renderer> renderer,
-                    std::function<void()> on_reset)
-      : models_(models), renderer_(std::move(renderer)), on_reset_(std::move(on_reset)) {
+  CatalogueRenderer(const ModelCatalogue& models, std::unique_ptr<ModelRenderer> renderer)
+      : models_(models), renderer_(std::move(renderer)) {
     if (const std::vector<std::string> names = models.names(); !names.empty()) next_model_ = names.front();
   }
 
   Result<picture::Frame> draw(const std::string& name, const picture::PictureRequest& request,
                               const Preemption& preemption) override {
-    Result<ModelCatalogue::Edition> edition = models_.open_edition(name, request.edition);
-    if (!edition) return fail(edition.error());
-    keep(name, edition->model);
-    Result<picture::Frame> frame = renderer_->draw(edition->model, request, preemption);
-    if (was_reset()) return fail(ErrorKind::kUnavailable, "the GPU was reset, and the server ends");
-    if (frame) frame->preview = edition->preview;
-    return frame;
+    Result<picture::Frame> frame = draw_once(name, request, preemption);
+    if (frame || frame.error().kind != ErrorKind::kReplaced) return frame;
+    return draw_once(name, request, preemption);  // the catalogue opens the model anew
   }
   /// Draws the next warm-up picture: of the model that was most recently drawn for the first time, or before that, of
   /// the first model in the catalogue.
@@ -51,6 +44,16 @@ class CatalogueRenderer : public FrameRenderer {
   [[nodiscard]] int max_resolution() const override { return renderer_->max_resolution(); }
 
  private:
+  Result<picture::Frame> draw_once(const std::string& name, const picture::PictureRequest& request,
+                                   const Preemption& preemption) {
+    Result<ModelCatalogue::Edition> edition = models_.open_edition(name, request.edition);
+    if (!edition) return fail(edition.error());
+    keep(name, edition->model);
+    Result<picture::Frame> frame = renderer_->draw(edition->model, request, preemption);
+    if (frame) frame->preview = edition->preview;
+    return frame;
+  }
+
   /// Notes a model as drawn, and releases the resident blocks of those that it replaces. Views may still show the
   /// edition before the newest one of a scan's model.
   void keep(const std::string& name, const std::shared_ptr<const model::ModelFile>& model) {
@@ -85,33 +88,21 @@ class CatalogueRenderer : public FrameRenderer {
     warm_ups_.assign(pictures.begin(), pictures.end());
   }
 
-  /// What was drawn since is worth nothing then, and nothing can be drawn any more.
-  bool was_reset() {
-    if (!reset_ && gl::context_was_reset()) {
-      reset_ = true;
-      on_reset_();
-    }
-    return reset_;
-  }
-
   const ModelCatalogue& models_;
   std::string next_model_;  ///< next model to warm up; empty: none
   std::shared_ptr<const model::ModelFile> warming_model_;
   std::deque<picture::PictureRequest> warm_ups_;
   std::map<std::string, std::vector<std::shared_ptr<const model::ModelFile>>> drawn_;  ///< by name, oldest first
-  std::unique_ptr<render::Renderer> renderer_;
-  std::function<void()> on_reset_;
-  bool reset_ = false;
+  std::unique_ptr<ModelRenderer> renderer_;
 };
 
 }  // namespace
 
-FrameRendererFactory catalogue_renderers(const ModelCatalogue& models, const render::RendererConfig& config,
-                                         std::function<void()> on_reset) {
-  return [&models, config, on_reset = std::move(on_reset)]() -> Result<std::unique_ptr<FrameRenderer>> {
-    Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create(config);
+FrameRendererFactory catalogue_renderers(const ModelCatalogue& models, ModelRendererFactory make_renderer) {
+  return [&models, make_renderer = std::move(make_renderer)]() -> Result<std::unique_ptr<FrameRenderer>> {
+    Result<std::unique_ptr<ModelRenderer>> renderer = make_renderer();
     if (!renderer) return fail(renderer.error());
-    return std::make_unique<CatalogueRenderer>(models, std::move(*renderer), on_reset);
+    return std::make_unique<CatalogueRenderer>(models, std::move(*renderer));
   };
 }
 

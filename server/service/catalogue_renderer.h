@@ -1,16 +1,12 @@
 #pragma once
 
-#include <functional>
-
-#include "render/renderer.h"
 #include "service/frame_renderer.h"
 #include "service/model_catalogue.h"
+#include "service/model_renderer.h"
 
 namespace surfcast::service {
 
 /// A factory of renderers for the models of a catalogue. The catalogue must outlive the factory and its renderers.
-/// `on_reset` is called on the render thread once a reset of the GPU has ended drawing for good.
-FrameRendererFactory catalogue_renderers(
-    const ModelCatalogue& models, const render::RendererConfig& config, std::function<void()> on_reset = [] {});
+FrameRendererFactory catalogue_renderers(const ModelCatalogue& models, ModelRendererFactory make_renderer);
 
 }  // namespace surfcast::service

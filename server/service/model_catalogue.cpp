@@ -5,6 +5,8 @@
 #include <system_error>
 #include <utility>
 
+#include "base/contract.h"
+#include "object_store/object_url.h"
 #include "render/transfer_presets.h"
 #include "service/model_name.h"
 #include "surfel/even_sampling.h"
@@ -72,6 +74,19 @@ Error why_not(const ScanStatus& scan) {
 
 }  // namespace
 
+ModelCatalogue::ModelCatalogue(std::vector<NamedModel> files, std::vector<fs::path> folders,
+                               const object_store::ObjectStore* store)
+    : files_(std::move(files)), folders_(std::move(folders)), store_(store) {
+  for (const NamedModel& file : files_) {
+    if (file.opened) opened_[file.name] = {file.path, {}, file.opened};
+  }
+}
+
+bool ModelCatalogue::set_stored(std::map<std::string, fs::path> models) {
+  const std::lock_guard lock(listing_mutex_);
+  return std::exchange(stored_, std::move(models)) != stored_;
+}
+
 /// To be called with listing_mutex_ locked.
 const ModelCatalogue::Listing& ModelCatalogue::listing_of(const fs::path& folder) const {
   constexpr std::chrono::seconds kResolution{2};  // of the coarsest file systems in use
@@ -92,6 +107,7 @@ std::map<std::string, fs::path> ModelCatalogue::find_all() const {
     const Listing& listing = listing_of(folder);
     models.insert(listing.models.begin(), listing.models.end());
   }
+  models.insert(stored_.begin(), stored_.end());
   return models;
 }
 
@@ -104,7 +120,8 @@ fs::path ModelCatalogue::find(const std::string& name) const {
     const Listing& listing = listing_of(folder);
     if (const auto found = listing.models.find(name); found != listing.models.end()) return found->second;
   }
-  return {};
+  const auto stored = stored_.find(name);
+  return stored == stored_.end() ? fs::path() : stored->second;
 }
 
 void ModelCatalogue::close_removed() const {
@@ -205,14 +222,23 @@ Result<std::shared_ptr<const model::ModelFile>> ModelCatalogue::open(const std::
   return open_edition(name, 0).map([](const Edition& edition) { return edition.model; });
 }
 
-/// A file is opened without a lock: a slow disk holds up only those who want that file.
+Result<model::ModelFile> ModelCatalogue::open_path(const fs::path& path) const {
+  if (!object_store::is_object_url(path.string())) return model::ModelFile::open(path);
+  SURFCAST_EXPECTS(store_ != nullptr);
+  return store_->open(path.string());
+}
+
+/// A file is opened without a lock: a slow disk or store holds up only those who want that file.
 Result<std::shared_ptr<const model::ModelFile>> ModelCatalogue::open_file(const std::string& name) const {
   const fs::path path = find(name);
   if (path.empty()) return fail(ErrorKind::kNotFound, "there is no model '" + shown_name(name) + "'");
+  // An object that has been replaced in its store is known by an answer to a request for its blocks.
+  const bool stored = object_store::is_object_url(path.string());
   std::error_code code;
-  const fs::file_time_type written = fs::last_write_time(path, code);
+  const fs::file_time_type written = stored ? fs::file_time_type() : fs::last_write_time(path, code);
   const auto is_current = [&](const Opened& opened) {
-    return opened.model && opened.path == path && opened.written == written && !code;
+    return opened.model && opened.path == path && opened.written == written && !code &&
+           !opened.model->source().replaced();
   };
   {
     const std::lock_guard lock(mutex_);
@@ -220,7 +246,7 @@ Result<std::shared_ptr<const model::ModelFile>> ModelCatalogue::open_file(const 
       return found->second.model;
     }
   }
-  Result<model::ModelFile> model = model::ModelFile::open(path);
+  Result<model::ModelFile> model = open_path(path);
   const std::lock_guard lock(mutex_);
   Opened& opened = opened_[name];
   if (is_current(opened)) return opened.model;  // another thread was faster
@@ -235,7 +261,10 @@ Result<std::shared_ptr<const model::ModelFile>> ModelCatalogue::open_file(const 
 Result<ModelDescription> ModelCatalogue::describe(const std::string& name) const {
   const Result<std::shared_ptr<const model::ModelFile>> model = open(name);
   if (!model) return fail(model.error());
+  Result<model::Georeference> georeference = model::load_georeference((*model)->source());
+  if (!georeference) return fail(std::move(georeference.error()));
   ModelDescription description;
+  description.georeference = std::move(*georeference);
   description.info = (*model)->info();
   description.spacing = typical_spacing((*model)->blocks());
   description.blocks = static_cast<uint32_t>((*model)->blocks().size());

@@ -10,6 +10,7 @@
 
 #include "base/result.h"
 #include "model/model_file.h"
+#include "object_store/object_store.h"
 #include "service/model_source.h"
 
 namespace surfcast::service {
@@ -17,18 +18,20 @@ namespace surfcast::service {
 /// A model file and the name it is served under.
 struct NamedModel {
   std::string name;
-  std::filesystem::path path;
+  std::filesystem::path path;            ///< or the URL of an object in a store
   std::shared_ptr<const void> in_use{};  ///< held for as long as the file may be opened: whoever keeps it from removal
+  std::shared_ptr<const model::ModelFile> opened{};  ///< the model, if it has been opened already
 };
 
 /// Model files by name: scans, whose models come later and are replaced by better ones, individual files, and the
 /// current content of folders ("NAME.surf"). A scan or an individual file hides a file of the same name in a folder,
-/// and an earlier folder hides a later one. A file is opened at the first request, and again after it has been
-/// replaced. A folder is read again after it has changed.
+/// and an earlier folder hides a later one; models in folders of stores come last. A file is opened at the first
+/// request, and again after it has been replaced. A folder is read again after it has changed.
 class ModelCatalogue : public ModelSource {
  public:
-  ModelCatalogue(std::vector<NamedModel> files, std::vector<std::filesystem::path> folders)
-      : files_(std::move(files)), folders_(std::move(folders)) {}
+  /// `store` opens models whose paths are URLs, and outlives them; needed only where there are such.
+  ModelCatalogue(std::vector<NamedModel> files, std::vector<std::filesystem::path> folders,
+                 const object_store::ObjectStore* store = nullptr);
 
   /// An edition of a scan's model.
   struct Edition {
@@ -49,6 +52,9 @@ class ModelCatalogue : public ModelSource {
   void note(const ScanStatus& status);
   /// Adds the next edition. The one before it stays for views that show it, until there is another one.
   void publish(const std::string& name, Edition edition);
+
+  /// Sets the models in folders of stores: their URLs by name. False if they were set to the same before.
+  bool set_stored(std::map<std::string, std::filesystem::path> models);
 
   /// Closes the files that are not there any more. They stay open for whoever still uses them.
   void close_removed() const;
@@ -87,17 +93,20 @@ class ModelCatalogue : public ModelSource {
 
   [[nodiscard]] const Listing& listing_of(const std::filesystem::path& folder) const;
   [[nodiscard]] std::map<std::string, std::filesystem::path> find_all() const;
+  [[nodiscard]] Result<model::ModelFile> open_path(const std::filesystem::path& path) const;
   [[nodiscard]] std::filesystem::path find(const std::string& name) const;
   [[nodiscard]] Result<std::shared_ptr<const model::ModelFile>> open_file(const std::string& name) const;
 
   Changed changed_ = [](bool) {};
   std::vector<NamedModel> files_;
   std::vector<std::filesystem::path> folders_;
+  const object_store::ObjectStore* store_;
   mutable std::mutex mutex_;
   std::map<std::string, Scan> scans_;             ///< by name
   mutable std::map<std::string, Opened> opened_;  ///< by name
   mutable std::mutex listing_mutex_;              ///< guards what follows; nothing else is locked under it
   mutable std::map<std::filesystem::path, Listing> listings_;
+  std::map<std::string, std::filesystem::path> stored_;
 };
 
 }  // namespace surfcast::service

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "model/georeference.h"
 #include "model/model_file.h"
 #include "picture/transfer.h"
 
@@ -24,6 +25,7 @@ struct ModelDescription {
   std::vector<model::Volume> volumes{};
   std::vector<VolumePresets> presets{};  ///< for each of the volumes
   std::vector<model::EllipsoidSource> ellipsoids{};
+  model::Georeference georeference{};
 };
 
 /// A scan whose model is not complete.

@@ -52,6 +52,25 @@ Result<kinds::PickQuery> query_of(const model::ModelFile& model, const picture::
   return query;
 }
 
+/// Counts one more for as long as it is held.
+std::shared_ptr<const void> place_among(const std::shared_ptr<std::atomic<size_t>>& counted) {
+  ++*counted;
+  return {counted.get(), [counted](const void* /*count*/) { --*counted; }};
+}
+
+/// Works on a model. One that was replaced in its store meanwhile is opened anew, once.
+template <typename Work>
+auto on_model(const ModelSource& models, const std::string& name, const Work& work) {
+  const auto once = [&]() -> decltype(work(std::declval<const model::ModelFile&>())) {
+    const Result<std::shared_ptr<const model::ModelFile>> model = models.open(name);
+    if (!model) return fail(model.error());
+    return work(**model);
+  };
+  auto result = once();
+  if (result || result.error().kind != ErrorKind::kReplaced) return result;
+  return once();
+}
+
 }  // namespace
 
 PickService::PickService(const ModelSource& models, const PickLimits& limits)
@@ -59,6 +78,9 @@ PickService::PickService(const ModelSource& models, const PickLimits& limits)
       most_waiting_(limits.waiting),
       most_points_(limits.profile_points),
       most_blocks_(limits.blocks),
+      most_region_points_(limits.region_points),
+      most_regions_(limits.regions),
+      region_bytes_(limits.region_bytes),
       blocks_(limits.block_bytes),
       searched_blocks_(limits.block_bytes),
       pool_(limits.threads, 0, limits.waiting),
@@ -71,7 +93,7 @@ PickService::~PickService() {
 void PickService::pick(PickJob job, const Done& done, ClientId client) {
   const bool room = ++waiting_ <= most_waiting_;
   const auto task = [this, job = std::move(job), done] {
-    Result<std::optional<kinds::PickedSurfel>> picked = run(job);
+    Result<std::optional<PickedPoint>> picked = run(job);
     --waiting_;
     deliver(done, std::move(picked));
   };
@@ -80,18 +102,22 @@ void PickService::pick(PickJob job, const Done& done, ClientId client) {
   done(fail(ErrorKind::kUnavailable, "the server is busy: too many picks wait"));
 }
 
-Result<std::optional<kinds::PickedSurfel>> PickService::run(const PickJob& job) {
-  return guarded([&]() -> Result<std::optional<kinds::PickedSurfel>> {
+Result<std::optional<PickedPoint>> PickService::run(const PickJob& job) {
+  return guarded([&]() -> Result<std::optional<PickedPoint>> {
     const picture::PictureRequest& request = job.request;
     if (job.x < 0 || job.y < 0 || job.x >= request.width || job.y >= request.height) {
       return fail(ErrorKind::kInvalidInput, "pixel: outside the picture");
     }
-    const Result<std::shared_ptr<const model::ModelFile>> model = models_.open(job.model);
-    if (!model) return fail(model.error());
-    Result<kinds::PickQuery> query = query_of(**model, request, job.up_from_model);
-    if (!query) return fail(query.error());
-    query->pixel = {job.x + 0.5, job.y + 0.5};
-    return pick::pick_surfel(**model, *query, blocks_, stopping_, most_blocks_);
+    return on_model(models_, job.model, [&](const model::ModelFile& model) -> Result<std::optional<PickedPoint>> {
+      Result<kinds::PickQuery> query = query_of(model, request, job.up_from_model);
+      if (!query) return fail(query.error());
+      query->pixel = {job.x + 0.5, job.y + 0.5};
+      auto picked = pick::pick_surfel(model, *query, blocks_, stopping_, most_blocks_);
+      if (!picked) return fail(std::move(picked.error()));
+      if (!*picked) return std::nullopt;
+      const std::optional<glm::dvec3> source_position = source_positions_.find(model, (*picked)->position);
+      return PickedPoint{std::move(**picked), source_position};
+    });
   });
 }
 
@@ -104,12 +130,12 @@ void PickService::find_surface(SurfaceJob job, std::shared_ptr<const std::atomic
 }
 
 Result<std::vector<pick::FrontPixel>> PickService::search(const SurfaceJob& job, const std::atomic<bool>& cancelled) {
-  const Result<std::shared_ptr<const model::ModelFile>> model = models_.open(job.model);
-  if (!model) return fail(model.error());
-  if (Status status = check_channels(job.channels, (*model)->info()); !status) return fail(std::move(status.error()));
-  const Result<kinds::PickQuery> query = query_of(**model, job.request, job.up_from_model);
-  if (!query) return fail(query.error());
-  return pick::find_front_surface(**model, *query, searched_blocks_, cancelled);
+  return on_model(models_, job.model, [&](const model::ModelFile& model) -> Result<std::vector<pick::FrontPixel>> {
+    if (Status status = check_channels(job.channels, model.info()); !status) return fail(std::move(status.error()));
+    const Result<kinds::PickQuery> query = query_of(model, job.request, job.up_from_model);
+    if (!query) return fail(query.error());
+    return pick::find_front_surface(model, *query, searched_blocks_, cancelled);
+  });
 }
 
 void PickService::profile(ProfileJob job, ProfileDone done, ClientId client) {
@@ -125,15 +151,61 @@ void PickService::profile(ProfileJob job, ProfileDone done, ClientId client) {
   searches_.post(task, client);
 }
 
-Result<ProfileResult> PickService::find_profile(const ProfileJob& job) const {
+void PickService::points(PointsJob job, std::shared_ptr<const std::atomic<bool>> cancelled, PointsDone done,
+                         ClientId client) {
+  std::shared_ptr<const void> place = place_among(regions_);
+  if (*regions_ > most_regions_) {
+    return done(fail(ErrorKind::kUnavailable, "the server is busy: the points of too many regions are on their way"));
+  }
+  const auto task = [this, job = std::move(job), cancelled = std::move(cancelled), place = std::move(place),
+                     done = std::move(done), client] {
+    const auto stream = guarded([&] { return open_stream(job, cancelled, place); });
+    if (!stream) return deliver(done, stream);
+    count(*stream, done, client);
+  };
+  searches_.post(task, client);
+}
+
+Result<std::shared_ptr<PointStream>> PickService::open_stream(PointsJob job,
+                                                              std::shared_ptr<const std::atomic<bool>> cancelled,
+                                                              std::shared_ptr<const void> place) const {
   const Result<std::shared_ptr<const model::ModelFile>> model = models_.open(job.model);
   if (!model) return fail(model.error());
+  job.most = job.most == 0 ? most_region_points_ : std::min(job.most, most_region_points_);
+  Result<std::unique_ptr<PointStream>> stream = PointStream::open(*model, job, std::move(cancelled));
+  if (!stream) return fail(std::move(stream.error()));
+  (*stream)->keep(std::move(place));
+  return std::shared_ptr<PointStream>(std::move(*stream));
+}
+
+/// A turn of counting, and then the next one.
+void PickService::count(const std::shared_ptr<PointStream>& stream, const PointsDone& done, ClientId client) {
+  if (stopping_) return deliver(done, Result<std::shared_ptr<PointStream>>(fail(ErrorKind::kCancelled, "cancelled")));
+  const Result<bool> whole = guarded([&] { return stream->count(); });
+  if (!whole) return deliver(done, Result<std::shared_ptr<PointStream>>(fail(whole.error())));
+  if (*whole) return deliver(done, Result<std::shared_ptr<PointStream>>(stream));
+  searches_.post([this, stream, done, client] { count(stream, done, client); }, client);
+}
+
+void PickService::next_piece(std::shared_ptr<PointStream> stream, PieceDone done, ClientId client) {
+  const auto task = [this, stream = std::move(stream), done = std::move(done)] {
+    deliver(done, guarded([&]() -> Result<PointPiece> {
+              if (stopping_) return fail(ErrorKind::kCancelled, "cancelled");
+              return stream->next(region_bytes_);
+            }));
+  };
+  searches_.post(task, client);
+}
+
+Result<ProfileResult> PickService::find_profile(const ProfileJob& job) const {
   pick::BandQuery query = job.query;
   query.most = query.most == 0 ? most_points_ : std::min(query.most, most_points_);
-  Result<pick::Band> band = pick::find_band(**model, query, stopping_);
-  if (!band) return fail(band.error());
-  const model::ModelInfo& info = (*model)->info();
-  return ProfileResult{std::move(*band), info.z_up, info.color_bits, info.scalar_names};
+  return on_model(models_, job.model, [&](const model::ModelFile& model) -> Result<ProfileResult> {
+    Result<pick::Band> band = pick::find_band(model, query, stopping_);
+    if (!band) return fail(band.error());
+    const model::ModelInfo& info = model.info();
+    return ProfileResult{std::move(*band), info.z_up, info.color_bits, info.scalar_names};
+  });
 }
 
 }  // namespace surfcast::service

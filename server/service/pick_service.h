@@ -15,6 +15,8 @@
 #include "picture/channels.h"
 #include "picture/picture.h"
 #include "service/model_source.h"
+#include "service/point_stream.h"
+#include "service/source_positions.h"
 #include "service/worker_pool.h"
 
 namespace surfcast::service {
@@ -25,6 +27,9 @@ struct PickLimits {
   size_t block_bytes = size_t{64} << 20;  ///< of decoded blocks that are kept for later picks
   size_t profile_points = 1'000'000;      ///< of one profile
   size_t blocks = 256;                    ///< that one pick may read, see pick::pick_surfel
+  uint64_t region_points = 100'000'000;   ///< of one region, see PointStream
+  size_t regions = 16;                    ///< whose points may be on their way at a time
+  size_t region_bytes = size_t{1} << 20;  ///< of the file of a region that are made at once
 };
 
 /// A request for the item that a picture shows in a pixel.
@@ -34,6 +39,11 @@ struct PickJob {
   bool up_from_model = false;       ///< take the model's vertical axis as the camera's view_up
   int x = 0;                        ///< pixels from the left edge
   int y = 0;                        ///< pixels from the upper edge
+};
+
+/// What a picture shows in a pixel.
+struct PickedPoint : kinds::PickedSurfel {
+  std::optional<glm::dvec3> source_position;  ///< in the system of the source, where that is not the model's
 };
 
 /// A request for what a picture shows in all its pixels.
@@ -62,8 +72,11 @@ struct ProfileResult {
 /// may be called from any thread.
 class PickService {
  public:
-  using Done = std::function<void(Result<std::optional<kinds::PickedSurfel>>)>;
+  using Done = std::function<void(Result<std::optional<PickedPoint>>)>;
   using ProfileDone = std::function<void(Result<ProfileResult>)>;
+  /// Shared, because callbacks are copied.
+  using PointsDone = std::function<void(Result<std::shared_ptr<PointStream>>)>;
+  using PieceDone = std::function<void(Result<PointPiece>)>;
   using SurfaceDone = std::function<void(Result<std::vector<pick::FrontPixel>>)>;
 
   /// `models` must outlive the service.
@@ -81,10 +94,19 @@ class PickService {
   /// Finds the points near a line, on the same thread. At most PickLimits::waiting profiles may be outstanding. `done`
   /// as of pick().
   void profile(ProfileJob job, ProfileDone done, ClientId client = 0);
+  /// Counts the points of a region, on the same thread, in turns with others. `done` as of pick(), with kCancelled soon
+  /// after `cancelled` becomes true. At most PickLimits::regions streams may be alive; each one of them counts.
+  void points(PointsJob job, std::shared_ptr<const std::atomic<bool>> cancelled, PointsDone done, ClientId client = 0);
+  /// Makes the next piece of their file, likewise. One piece of a stream may be asked for at a time.
+  void next_piece(std::shared_ptr<PointStream> stream, PieceDone done, ClientId client = 0);
 
  private:
+  void count(const std::shared_ptr<PointStream>& stream, const PointsDone& done, ClientId client);
+  [[nodiscard]] Result<std::shared_ptr<PointStream>> open_stream(PointsJob job,
+                                                                 std::shared_ptr<const std::atomic<bool>> cancelled,
+                                                                 std::shared_ptr<const void> place) const;
   [[nodiscard]] Result<ProfileResult> find_profile(const ProfileJob& job) const;
-  [[nodiscard]] Result<std::optional<kinds::PickedSurfel>> run(const PickJob& job);
+  [[nodiscard]] Result<std::optional<PickedPoint>> run(const PickJob& job);
   [[nodiscard]] Result<std::vector<pick::FrontPixel>> search(const SurfaceJob& job, const std::atomic<bool>& cancelled);
 
   const ModelSource& models_;
@@ -92,10 +114,15 @@ class PickService {
   const size_t most_waiting_;
   const size_t most_points_;
   const size_t most_blocks_;
+  const uint64_t most_region_points_;
+  const size_t most_regions_;
+  const size_t region_bytes_;
+  std::shared_ptr<std::atomic<size_t>> regions_ = std::make_shared<std::atomic<size_t>>(0);
   std::atomic<size_t> waiting_ = 0;
   std::atomic<size_t> profiles_waiting_ = 0;
   pick::SourceBlocks blocks_;
   pick::SourceBlocks searched_blocks_;  ///< apart, so that a search does not drive out those of picks
+  SourcePositions source_positions_;
   // Last, so that their threads end first.
   WorkerPool pool_;
   WorkerPool searches_;  ///< one thread

@@ -328,6 +328,21 @@ void RenderService::profile(ProfileJob job, PickService::ProfileDone done, Clien
   state_->when_available(model, run);
 }
 
+void RenderService::points(PointsJob job, std::shared_ptr<const std::atomic<bool>> cancelled,
+                           PickService::PointsDone done, ClientId client) {
+  const std::string model = job.model;
+  const auto run = [state = state_.get(), job = std::move(job), cancelled = std::move(cancelled),
+                    done = std::move(done), client](const Status& there) {
+    if (!there) return done(fail(there.error()));
+    state->picks->points(job, cancelled, done, client);
+  };
+  state_->when_available(model, run);
+}
+
+void RenderService::next_piece(std::shared_ptr<PointStream> stream, PickService::PieceDone done, ClientId client) {
+  state_->picks->next_piece(std::move(stream), std::move(done), client);
+}
+
 const picture::DeviceInfo& RenderService::device() const {
   return state_->device;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstddef>
 #include <functional>
@@ -103,8 +104,8 @@ class RenderService {
   /// Look-ups run on a thread of their own, in turns of the clients.
   void list_models(ListDone done, ClientId client = 0);
   void describe_model(const std::string& name, DescriptionDone done, ClientId client = 0);
-  /// Call it after a change of an awaited model, and now and then while there is one: pictures, picks, profiles and
-  /// descriptions that wait for it are begun, or refused after the queue's timeout.
+  /// Call it after a change of an awaited model, and now and then while there is one: pictures, picks, profiles, points
+  /// and descriptions that wait for it are begun, or refused after the queue's timeout.
   void models_changed();
   /// See ModelSource.
   [[nodiscard]] uint64_t edition(const std::string& model) const;
@@ -112,6 +113,10 @@ class RenderService {
   void pick(PickJob job, PickService::Done done, ClientId client = 0);
   /// Finds the points near a line; see PickService.
   void profile(ProfileJob job, PickService::ProfileDone done, ClientId client = 0);
+  /// Counts the points of a region, and makes their file piece by piece; see PickService.
+  void points(PointsJob job, std::shared_ptr<const std::atomic<bool>> cancelled, PickService::PointsDone done,
+              ClientId client = 0);
+  void next_piece(std::shared_ptr<PointStream> stream, PickService::PieceDone done, ClientId client = 0);
 
   [[nodiscard]] const picture::DeviceInfo& device() const;
   /// Jobs that wait for the render thread.

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 
@@ -89,6 +90,14 @@ class ServeTest : public ::testing::Test {
   }
   [[nodiscard]] uint16_t port() const { return static_cast<uint16_t>(std::stoi(url_.substr(url_.find(':') + 1))); }
   [[nodiscard]] std::string cache() const { return (folder_ / "cache").string(); }
+  /// What the cache holds of scans. The shaders of render workers are in a folder of their own.
+  [[nodiscard]] std::vector<std::string> cached() const {
+    std::vector<std::string> names;
+    for (const auto& entry : std::filesystem::directory_iterator(cache())) {
+      if (entry.path().filename() != "shaders") names.push_back(entry.path().filename());
+    }
+    return names;
+  }
   [[nodiscard]] std::string file(const std::string& name) const { return (folder_ / name).string(); }
 
   std::filesystem::path folder_;

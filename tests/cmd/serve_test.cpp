@@ -38,6 +38,62 @@ TEST_F(ServeTest, AReaderOfTheLogThatGoesAwayDoesNotEndTheServer) {
   EXPECT_EQ(end(SIGTERM), 0) << "it says that it stops, and nobody reads it";
 }
 
+/// The process that draws for a server; -1: there is none.
+pid_t worker_of(pid_t server) {
+  for (const fs::directory_entry& process : fs::directory_iterator("/proc")) {
+    const std::string name = process.path().filename();
+    if (name.find_first_not_of("0123456789") != std::string::npos) continue;
+    const std::string command = content(process.path() / "cmdline");
+    const std::string status = content(process.path() / "status");
+    const bool child = status.find("\nPPid:\t" + std::to_string(server) + "\n") != std::string::npos;
+    if (child && command.find("render-worker") != std::string::npos) return std::stoi(name);
+  }
+  return -1;
+}
+
+TEST_F(ServeTest, ARenderWorkerThatIsKilledIsReplaced) {
+  serve(scan_.string());
+  ASSERT_EQ(draw("square").code, 0);
+  const std::string drawn = content(file("drawn.png"));
+  EXPECT_FALSE(drawn.empty());
+  for (int kills = 1; kills <= 3; ++kills) {
+    const pid_t worker = worker_of(server_);
+    ASSERT_GT(worker, 0);
+    ::kill(worker, SIGKILL);
+    const client::ProgramOutcome outcome = draw("square");
+    ASSERT_EQ(outcome.code, 0) << outcome.output;
+    EXPECT_TRUE(content(file("drawn.png")) == drawn);
+  }
+  EXPECT_NE(get("/metrics").find("\nsurfcast_workers_ended_total 3\n"), std::string::npos);
+}
+
+TEST_F(ServeTest, AServerWithoutWorkersDrawsTheSamePictures) {
+  serve(scan_.string());
+  ASSERT_EQ(draw("square").code, 0);
+  const std::string drawn = content(file("drawn.png"));
+  EXPECT_EQ(end(SIGTERM), 0);
+  serve("--workers 0 " + scan_.string());
+  EXPECT_EQ(worker_of(server_), -1);
+  ASSERT_EQ(draw("square").code, 0);
+  EXPECT_TRUE(content(file("drawn.png")) == drawn);
+  EXPECT_EQ(get("/metrics").find("surfcast_workers"), std::string::npos);
+}
+
+TEST_F(ServeTest, ARenderWorkerEndsWithItsServer) {
+  serve(scan_.string());
+  ASSERT_EQ(draw("square").code, 0);
+  const pid_t worker = worker_of(server_);
+  ASSERT_GT(worker, 0);
+  end(SIGKILL);
+  const fs::path process = fs::path("/proc") / std::to_string(worker);
+  for (int i = 0; i < 3000 && fs::exists(process) && content(process / "status").find("\tZ") == std::string::npos;
+       ++i) {
+    ::usleep(10'000);
+  }
+  const std::string status = content(process / "status");
+  EXPECT_TRUE(status.empty() || status.find("Z (zombie)") != std::string::npos) << status;
+}
+
 TEST_F(ServeTest, ChannelsAreTheSameByEveryWay) {
   serve(scan_.string());
   const std::string flags = " --resolution 64,48 --channels depth,normal,position,coverage,surfel --output ";
@@ -86,6 +142,46 @@ TEST_F(ServeTest, AProfileIsTheSameByEveryWay) {
   }
 }
 
+TEST_F(ServeTest, ARegionIsTheSameByEveryWay) {
+  serve("--max-region-points 300 " + scan_.string());
+  const std::string program = SURFCAST_CLIENT " export ";
+  const std::string flags = " --box '2,3,-1,12.5,7,1' --output ";
+  for (const std::string format : {"las", "laz", "ply", "csv", "npy"}) {
+    const client::ProgramOutcome saved =
+        client::run_program(program + url_ + "/square" + flags + file("tcp." + format) + " 2>&1");
+    EXPECT_EQ(saved.code, 0) << saved.output;
+    EXPECT_EQ(saved.output, "55 points\n");
+    EXPECT_EQ(client::run_program(program + "ws://" + url_ + "/square" + flags + file("ws." + format)).code, 0);
+    EXPECT_FALSE(content(file("tcp." + format)).empty());
+    EXPECT_TRUE(content(file("tcp." + format)) == content(file("ws." + format)));
+    EXPECT_EQ(
+        client::run_program(program + url_ + "/square --box '2,3,-1,12.5,7,1' --output - --format " + format).output,
+        content(file("tcp." + format)));
+  }
+  const std::string csv = content(file("tcp.csv"));
+  EXPECT_TRUE(csv.starts_with("x,y,z,red,green,blue\n")) << csv;
+  EXPECT_EQ(std::count(csv.begin(), csv.end(), '\n'), 56);
+  EXPECT_NE(csv.find("\n12,3,0,200,100,50\n"), std::string::npos) << csv;
+  EXPECT_EQ(client::run_program(program + url_ + "/square --count").output, "400\n");
+  EXPECT_EQ(client::run_program(program + url_ + "/square --count --corridor 2,0,5,19,5").output, "60\n");
+}
+
+TEST_F(ServeTest, ARegionThatFailsLeavesNoFile) {
+  serve("--max-region-points 300 " + scan_.string());
+  const std::string program = SURFCAST_CLIENT " export " + url_ + "/square --output " + file("part.csv");
+  const client::ProgramOutcome large = client::run_program(program + " 2>&1");
+  EXPECT_EQ(large.code, 1);
+  EXPECT_NE(large.output.find("the region has more than 300 points"), std::string::npos) << large.output;
+  const client::ProgramOutcome empty = client::run_program(program + " --box '0.1,0.1,0,0.2,0.2,0' 2>&1");
+  EXPECT_EQ(empty.code, 1);
+  EXPECT_NE(empty.output.find("has no points in the region"), std::string::npos) << empty.output;
+  for (const std::string wrong : {"--box 1,2,3", "--box 1,0,0,0,1,1", "--box nan,0,0,1,1,1", "--format e57", "--count",
+                                  "--classes 256", "--every 0", "--corridor 1,0,0"}) {
+    EXPECT_EQ(client::run_program(program + " " + wrong + " 2>&1").code, 2) << wrong;
+  }
+  EXPECT_FALSE(fs::exists(file("part.csv")));
+}
+
 TEST_F(ServeTest, AScanIsBuiltOnceHoweverItIsNamed) {
   serve(scan_.string());
   ASSERT_EQ(draw("square").code, 0);  // once it is built
@@ -95,7 +191,7 @@ TEST_F(ServeTest, AScanIsBuiltOnceHoweverItIsNamed) {
   serve(copy.string());
   EXPECT_EQ(client::run_program(SURFCAST_CLIENT " models " + url_).output, "renamed\n");
   EXPECT_EQ(content(file("log")).find("building"), std::string::npos);
-  EXPECT_EQ(std::distance(fs::directory_iterator(cache()), fs::directory_iterator()), 1);
+  EXPECT_EQ(cached().size(), 1U);
 }
 
 TEST_F(ServeTest, AVolumeWithItsSamplesInAnotherFileIsBuiltAndDrawn) {
@@ -155,7 +251,7 @@ TEST_F(ServeLargeScanTest, ThePortIsOpenAtOnceAndAPreviewIsServedWhileTheModelIs
   EXPECT_NE(list.find("\"seconds_left\""), std::string::npos) << list;
   EXPECT_EQ(draw("large").code, 0);
   EXPECT_EQ(end(SIGTERM), 0) << "the build is given up";
-  EXPECT_TRUE(fs::is_empty(cache())) << "and leaves nothing behind";
+  EXPECT_TRUE(cached().empty()) << "and leaves nothing behind";
 }
 
 TEST_F(ServeTest, WhatKilledServersLeftInTheCacheIsRemoved) {

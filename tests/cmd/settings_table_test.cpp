@@ -31,7 +31,7 @@ struct Flag {
 std::vector<Flag> flags_of(const std::string& command) {
   const client::ProgramOutcome help = client::run_program(SURFCASTD " " + command + " --help");
   EXPECT_EQ(help.code, 0);
-  const std::regex form("\n  (?:-h,)?--([a-z-]+)(?:,--[a-z-]+)?(?: ([A-Z]+))?(?:[^\n]*\\(Env:([A-Z_]+)\\))?");
+  const std::regex form("\n  (?:-h,)?--([a-z0-9-]+)(?:,--[a-z-]+)?(?: ([A-Z]+))?(?:[^\n]*\\(Env:([A-Z0-9_]+)\\))?");
   std::vector<Flag> flags;
   for (std::sregex_iterator found(help.output.begin(), help.output.end(), form), end; found != end; ++found) {
     flags.push_back({(*found)[1], (*found)[2], (*found)[3]});

@@ -14,6 +14,7 @@ TEST(SettingsTest, SizesKeepToTheirRange) {
   EXPECT_EQ(*parse_size("1M", kRange), uint64_t{1} << 20);
   EXPECT_THAT(parse_size("1023", kRange).error().message, HasSubstr("at least 1K: 1023"));
   EXPECT_THAT(parse_size("2M", kRange).error().message, HasSubstr("at most 1M: 2M"));
+  EXPECT_EQ(*parse_size("0", {0, 1024}), 0U) << "for limits that may be none";
   for (const char* text : {"", "lots", "1.5M", "-1", "4GB", "0"}) {
     EXPECT_THAT(parse_size(text, kRange).error().message, HasSubstr("not a size like 4G or 512M")) << text;
   }

@@ -8,8 +8,10 @@
 #include <limits>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 #include <string>
+#include <vector>
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
@@ -184,6 +186,91 @@ TEST_F(SurfcastdTest, ExportsAPartOfAScan) {
   for (const char* flag : {"--bounds 1,2,3", "--corridor 3,0,0", "--corridor 3,0,0,1,1@2", "--corridor -1,0,0,1,1"}) {
     EXPECT_EQ(run("export scan.xyz --output part.csv " + std::string(flag)).exit_code, 2) << flag;
   }
+}
+
+/// The lines of a text, sorted.
+std::vector<std::string> sorted_lines(const std::string& text) {
+  std::vector<std::string> lines;
+  std::istringstream in(text);
+  for (std::string line; std::getline(in, line);) lines.push_back(line);
+  std::sort(lines.begin(), lines.end());
+  return lines;
+}
+
+TEST_F(SurfcastdTest, LasComesBackFromItsModelEqualInEveryField) {
+  std::ofstream scan(folder_ / "scan.csv");
+  scan << "x,y,z,red,green,blue,intensity,classification,return_number,number_of_returns,gps_time,point_source_id,"
+          "scan_angle,user_data,height_above_ground\n";
+  scan.precision(17);
+  for (int i = 0; i < 3000; ++i) {
+    scan << 448000 + i % 60 * 0.25 << ',' << 5411000 + i / 60 * 0.25 << ',' << 12 + i % 7 * 0.001 << ',' << i % 256
+         << ',' << i % 101 << ",7," << i << ',' << i % 9 << ',' << 1 + i % 3 << ",3," << 1e8 + i * 1e-6 << ',' << i % 5
+         << ',' << i % 90 - 45 << ',' << i % 250 << ',' << i * 0.5 << "\n";
+  }
+  scan.close();
+  ASSERT_EQ(run("export scan.csv --output scan.las").exit_code, 0);
+  ASSERT_EQ(run("build scan.las --output model.surf").exit_code, 0);
+  for (const std::string extension : {"las", "laz"}) {
+    const Answer exported = run("export model.surf --output back." + extension);
+    ASSERT_EQ(exported.exit_code, 0) << exported.err;
+    EXPECT_EQ(exported.err, "");
+    EXPECT_EQ(exported.out.find("3000 points, "), 0U) << exported.out;
+    ASSERT_EQ(run("export scan.las --output scan_table.csv").exit_code, 0);
+    ASSERT_EQ(run("export back." + extension + " --output back_table.csv").exit_code, 0);
+    const std::string table = content(folder_ / "scan_table.csv");
+    EXPECT_EQ(table.substr(0, table.find('\n')), content(folder_ / "back_table.csv").substr(0, table.find('\n')));
+    EXPECT_EQ(sorted_lines(content(folder_ / "back_table.csv")), sorted_lines(table));
+  }
+}
+
+TEST_F(SurfcastdTest, PointsOfAScanInDegreesComeBackInDegrees) {
+  std::ofstream scan(folder_ / "scan.csv");
+  scan << "x,y,z\n";
+  scan.precision(17);
+  for (int i = 0; i < 900; ++i) scan << 9.1 + i % 30 * 1e-5 << ',' << 48.7 + i / 30 * 1e-5 << ",250\n";
+  scan.close();
+  const Answer built = run("build scan.csv --crs EPSG:4326 --output model.surf");
+  ASSERT_EQ(built.exit_code, 0) << built.err;
+  ASSERT_EQ(run("export model.surf --output back.csv").exit_code, 0);
+  std::istringstream lines(content(folder_ / "back.csv"));
+  std::string line;
+  std::getline(lines, line);
+  std::set<int> found;
+  while (std::getline(lines, line)) {
+    double x = 0, y = 0, z = 0;
+    ASSERT_EQ(std::sscanf(line.c_str(), "%lf,%lf,%lf", &x, &y, &z), 3) << line;
+    const double column = (x - 9.1) / 1e-5, row = (y - 48.7) / 1e-5;
+    EXPECT_NEAR(column, std::round(column), 2e-3) << "a millimetre is 0.0014 of a step";
+    EXPECT_NEAR(row, std::round(row), 2e-3);
+    EXPECT_NEAR(z, 250, 2e-3);
+    found.insert(static_cast<int>(std::lround(column) + 30 * std::lround(row)));
+  }
+  EXPECT_EQ(found.size(), 900U);
+  const Answer picked = run("pick model.surf --pixel 640,360 --json");
+  ASSERT_EQ(picked.exit_code, 0) << picked.err;
+  const nlohmann::json pick = nlohmann::json::parse(picked.out);
+  ASSERT_TRUE(pick["hit"]);
+  EXPECT_GT(pick["position"][0], 400'000) << "metres";
+  EXPECT_NEAR(pick["source_position"][0], 9.10015, 2e-4);
+  EXPECT_NEAR(pick["source_position"][1], 48.70015, 2e-4);
+}
+
+TEST_F(SurfcastdTest, ExportsARegionOfAModelAndRefusesVolumes) {
+  ASSERT_EQ(run("build scan.ply --output model.surf").exit_code, 0);
+  const Answer answer = run("export model.surf --output part.csv --bounds 2,2,3,4");
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  EXPECT_EQ(sorted_lines(content(folder_ / "part.csv")),
+            sorted_lines("x,y,z,red,green,blue\n2,2,0,255,22,0\n3,2,0,255,23,0\n2,3,0,255,32,0\n3,3,0,255,33,0\n"
+                         "2,4,0,255,42,0\n3,4,0,255,43,0\n"));
+  const Answer empty = run("export model.surf --output none.las --bounds 50,50,60,60");
+  EXPECT_EQ(empty.exit_code, 1);
+  EXPECT_EQ(empty.err, "surfcastd: model.surf: has no points in the selection\n");
+  EXPECT_FALSE(fs::exists(folder_ / "none.las"));
+  write_ramp(folder_ / "ramp.nrrd");
+  ASSERT_EQ(run("build ramp.nrrd --output ramp.surf").exit_code, 0);
+  const Answer volume = run("export ramp.surf --output ramp.csv");
+  EXPECT_EQ(volume.exit_code, 1);
+  EXPECT_EQ(volume.err, "surfcastd: ramp.surf: has no points, but blocks of kind grid\n");
 }
 
 TEST_F(SurfcastdTest, MakesSurfacesOfAVolume) {

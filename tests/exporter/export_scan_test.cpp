@@ -106,7 +106,7 @@ TEST_P(ExportFormatTest, RecordsOfLasComeBackByteByByteFromLasAndLaz) {
   const fs::path source = write("scan.las", file.text());
   for (const char* name : {"out.las", "out.laz"}) {
     ExportOptions options;
-    options.chunk_size = 64;  // eleven chunks, the last of them with 60 points
+    options.encoding.chunk_size = 64;  // eleven chunks, the last of them with 60 points
     const auto report = export_scan(source, place(name), options);
     ASSERT_TRUE(report) << report.error().message;
     EXPECT_EQ(report->points, 700U);
@@ -237,7 +237,8 @@ TEST_F(ExportScanTest, OtherNamesAreRefusedWithTheFormatsThatAreWritten) {
   const fs::path source = write("scan.csv", kTable);
   const auto report = export_scan(source, place("out.e57"), {});
   ASSERT_FALSE(report);
-  EXPECT_THAT(report.error().message, HasSubstr("out.e57: the name must end in .las, .laz, .ply or .csv"));
+  EXPECT_THAT(report.error().message,
+              HasSubstr("out.e57: its extension names none of the formats that are written: .las, .laz, .ply, .csv"));
 }
 
 TEST_F(ExportScanTest, AFolderThatIsNotThereIsOneLine) {

@@ -3,6 +3,7 @@
 #include "protocol/framing.h"
 #include "protocol/hello.h"
 #include "protocol/picture_query.h"
+#include "protocol/points_query.h"
 #include "protocol/profile_query.h"
 #include "protocol/validate.h"
 
@@ -43,6 +44,7 @@ void read_request(Bytes bytes) {
   if (message.has_draw_picture()) static_cast<void>(protocol::check_picture(message.draw_picture()));
   if (message.has_open_view()) static_cast<void>(protocol::check_view(message.open_view()));
   if (message.has_get_profile()) static_cast<void>(protocol::check_profile(message.get_profile()));
+  if (message.has_get_points()) static_cast<void>(protocol::check_points(message.get_points()));
   static_cast<void>(protocol::encode_message(message, kLargestFrame));
 }
 
@@ -62,6 +64,7 @@ void read_query(Bytes bytes) {
   }
   static_cast<void>(protocol::parse_pick_query("model", text_of(bytes)));
   static_cast<void>(protocol::parse_profile_query("model", text_of(bytes)));
+  static_cast<void>(protocol::parse_points_query("model", text_of(bytes)));
 }
 
 }  // namespace surfcast::fuzz

@@ -16,7 +16,7 @@ void read_frames(Bytes bytes);   ///< the frames that follow
 void read_request(Bytes bytes);  ///< a message of a client, and the checks of what it asks for
 void read_answer(Bytes bytes);   ///< a message of a server, as a client takes it
 void read_route(Bytes bytes);    ///< the target of an HTTP request
-void read_query(Bytes bytes);    ///< the query of a picture, a pick or a profile
+void read_query(Bytes bytes);    ///< the query of a picture, a pick, a profile or points
 
 void read_scan(Bytes bytes);       ///< LAS, LAZ, PLY, PCD, PTX, Draco, E57, pnts, Expe, text: by content
 void read_grid(Bytes bytes);       ///< NRRD, MetaImage, VTK, NIfTI: by content

@@ -43,6 +43,22 @@ TEST(BuildMeshes, AModelHasASurfelForEachTexelWithExactRadii) {
   const Result<model::ModelFile> model = model::ModelFile::open(target);
   ASSERT_TRUE(model);
   EXPECT_EQ(model->info().color_bits, 8);
+  EXPECT_TRUE(model->info().even);
+}
+
+TEST(BuildMeshes, AModelIsEvenIfAllItsSurfelsAreSamplesOfMeshes) {
+  const MeshFolder folder;
+  folder.write("t.tga", mesh::targa(64, 64, texel));
+  mesh::write_square(folder, "t.tga", 8);
+  const std::filesystem::path target = folder.path() / "m.surf";
+  BuildOptions estimated;
+  estimated.radii = scan::RadiusPolicy::kEstimate;
+  build(folder.path() / "square.obj", target, estimated);
+  EXPECT_FALSE(model::ModelFile::open(target)->info().even);
+  std::string points;
+  for (int i = 0; i < 100; ++i) points += std::to_string(i % 10) + " " + std::to_string(i / 10) + " 0\n";
+  build(folder.write("points.xyz", points), target);
+  EXPECT_FALSE(model::ModelFile::open(target)->info().even);
 }
 
 TEST(BuildMeshes, PartsMakeTheSameNumberOfSurfels) {

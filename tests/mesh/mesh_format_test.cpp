@@ -38,6 +38,12 @@ TEST(MeshFormat, TablesOfNumbersAreNoMeshes) {
   EXPECT_FALSE(format_of("x y z\n1 2 3\n", "a.txt"));
 }
 
+TEST(MeshFormat, ABinaryScanWithLinesLikeThoseOfObjIsNoMesh) {
+  const std::string lines = "\nv 1\nf 1\n";
+  EXPECT_FALSE(format_of("LASF" + std::string(20, '\0') + lines, "town.las"));
+  EXPECT_EQ(format_of("# a mesh" + lines, "town.las"), MeshFormat::kObj);
+}
+
 TEST(MeshFormat, FacesOfPlyCountWhereThereAreColoursOrTextureCoordinates) {
   EXPECT_FALSE(format_of(ply("", ""), "a.ply"));
   EXPECT_EQ(format_of(ply("property uchar red\nproperty uchar green\nproperty uchar blue\n", ""), "a.ply"),

@@ -159,7 +159,7 @@ std::vector<std::string> encoded_samples() {
 TEST(SampleRequests, AreOfEveryKind) {
   std::set<int> kinds;
   for (const wire::Request& request : sample_requests()) kinds.insert(request.kind_case());
-  EXPECT_EQ(kinds.size(), 11u);
+  EXPECT_EQ(kinds.size(), 12u);
   EXPECT_FALSE(kinds.contains(wire::Request::KIND_NOT_SET));
 }
 

@@ -67,9 +67,29 @@ inline wire::DrawPicture sample_picture() {
   return picture;
 }
 
+inline wire::GetPoints sample_points() {
+  wire::GetPoints points;
+  points.set_model("cube");
+  fill(points.add_boxes()->mutable_min(), 1, 2, 3);
+  fill(points.mutable_boxes(0)->mutable_max(), 4, 5, 6);
+  wire::Corridor* corridor = points.add_corridors();
+  for (const double number : {0.0, 1.0, 2.0, 3.0}) corridor->add_line(number);
+  corridor->set_width(0.5);
+  corridor->set_low(-1);
+  corridor->set_high(8);
+  points.add_classes(2);
+  points.set_every(3);
+  points.set_format(wire::POINT_FORMAT_LAZ);
+  points.set_max_points(7);
+  points.set_only_count(true);
+  points.set_normals(true);
+  points.set_world_coordinates(true);
+  return points;
+}
+
 /// A request of every kind, each with every field set, by the name of its kind. Ids are small and different.
 inline std::vector<wire::Request> sample_requests() {
-  std::vector<wire::Request> requests(11);
+  std::vector<wire::Request> requests(12);
   requests[0].mutable_list_models();
   requests[1].mutable_describe_model()->set_model("teapot");
   *requests[2].mutable_draw_picture() = sample_picture();
@@ -91,6 +111,7 @@ inline std::vector<wire::Request> sample_requests() {
   fill(requests[10].mutable_get_profile()->add_line(), 4, 5, 6);
   requests[10].mutable_get_profile()->set_width(0.5);
   requests[10].mutable_get_profile()->set_max_points(7);
+  *requests[11].mutable_get_points() = sample_points();
   for (size_t i = 0; i < requests.size(); ++i) requests[i].set_id(i + 1);
   requests[7].set_id(7);  // the view's
   requests[8].set_id(7);

@@ -148,8 +148,9 @@ std::string renamed(std::string answer, const std::string& from, const std::stri
 
 TEST_F(TokensTest, AModelOfOthersAnswersAsOneThatIsAbsent) {
   start(config_);
-  for (const std::string what : {"", "/image?resolution=4,4", "/pick?resolution=4,4&pixel=1,1",
-                                 "/profile?line=0,0,0;1,0,0&width=1&format=csv"}) {
+  for (const std::string what :
+       {"", "/image?resolution=4,4", "/pick?resolution=4,4&pixel=1,1", "/profile?line=0,0,0;1,0,0&width=1&format=csv",
+        "/points?format=csv", "/points?count=1"}) {
     const std::string other = ask_as(some_secret_, "/api/models/teapot" + what);
     EXPECT_THAT(other, StartsWith("HTTP/1.1 404")) << what;
     EXPECT_EQ(renamed(other, "teapot", "absent"), ask_as(some_secret_, "/api/models/absent" + what)) << what;
@@ -160,6 +161,13 @@ TEST_F(TokensTest, AModelOfOthersAnswersAsOneThatIsAbsent) {
   ASSERT_FALSE(other);
   EXPECT_EQ(renamed(other.error().message, "teapot", "absent"),
             connection->ask(picture_request("absent")).error().message);
+  wire::Request points;
+  points.mutable_get_points()->set_model("teapot");
+  const auto region = connection->ask(points);
+  ASSERT_FALSE(region);
+  EXPECT_EQ(region.error().kind, ErrorKind::kNotFound);
+  points.mutable_get_points()->set_model("absent");
+  EXPECT_EQ(renamed(region.error().message, "teapot", "absent"), connection->ask(points).error().message);
   const auto view = connection->ask(view_request("teapot"));
   ASSERT_FALSE(view);
   EXPECT_EQ(view.error().kind, ErrorKind::kNotFound);

@@ -46,6 +46,8 @@ for program in $programs; do
   [ -s "$prefix/share/fish/vendor_completions.d/$program.fish" ] || fail "there is no completion for fish"
 done
 
+[ -s "$prefix/lib/surfcast/http_client.so" ] || fail "there is no module for stores"
+
 # The server finds its module of image codecs where both are installed.
 [ -s "$prefix/lib/surfcast/image_codecs.so" ] || fail "there is no module of image codecs"
 [ -s "$prefix/lib/surfcast/image_decoders.so" ] || fail "there is no module of image decoders"

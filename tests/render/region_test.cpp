@@ -30,5 +30,20 @@ TEST(Regions, AreHalvedBetweenTilesDownToOneTile) {
   EXPECT_TRUE(halves_of({4, 4, 4, 4}).empty());
 }
 
+float prefilter_variance(const SurfelFacts& surfels, picture::Filter filter) {
+  picture::PictureRequest request;
+  request.filter = filter;
+  const Result<geometry::CameraFrame> frame = geometry::make_camera_frame({}, 64, 64);
+  return frame ? frame_constants(*frame, {0, 0, 64, 64}, request, surfels).filter_.x : 0;
+}
+
+TEST(FrameConstants, EvenSamplingsHaveTheVarianceOfWhichOneIsLeft) {
+  constexpr double kLeft = 0.776;  // of a Gaussian that is cut at r^2 = 5
+  EXPECT_EQ(prefilter_variance({.even = false}, picture::Filter::kEwa), 1);
+  EXPECT_NEAR(prefilter_variance({.even = true}, picture::Filter::kEwa) * kLeft, 1, 0.001);
+  EXPECT_EQ(prefilter_variance({.even = true}, picture::Filter::kNone),
+            prefilter_variance({.even = false}, picture::Filter::kNone));
+}
+
 }  // namespace
 }  // namespace surfcast::render

@@ -139,11 +139,11 @@ TEST_F(SeeThroughGLTest, ASheetHasItsOpacityWhenTwoStationsHaveScannedIt) {
   EXPECT_LT(rms_error(drawn, 0.3), 0.02);
 }
 
-/// Planes behind each other.
+/// Planes behind each other. Every ray of the view from above meets all of up to 20 planes.
 surfel::SurfelCloud planes_of(int count) {
-  surfel::SurfelCloud cloud = testing::square(64, 2, {0, 0, 0}, {0, 0, 1}, {200, 100, 50});
+  surfel::SurfelCloud cloud = testing::square(96, 3, {0, 0, 0}, {0, 0, 1}, {200, 100, 50});
   for (int i = 1; i < count; ++i) {
-    testing::append(cloud, testing::square(64, 2, {0, 0, -0.15 * i}, {0, 0, 1}, {50, 100, 200}));
+    testing::append(cloud, testing::square(96, 3, {0, 0, -0.15 * i}, {0, 0, 1}, {50, 100, 200}));
   }
   return cloud;
 }
@@ -155,10 +155,11 @@ TEST_F(SeeThroughGLTest, PlanesLetThroughThePowerOfTheirNumber) {
   }
 }
 
-TEST_F(SeeThroughGLTest, PlanesBehindTheEightInOrderAreAMediumOfAboutTheSameOpacity) {
-  for (const int planes : {11, 20}) {
+TEST_F(SeeThroughGLTest, PlanesBehindTheEightInOrderAreAMediumOfTheSameOpacity) {
+  for (const int planes : {11, 14, 20}) {
     const double through = 1 - mean(opacities_of(planes_of(planes), view_from_above(0.2)));
-    EXPECT_NEAR(through, std::pow(0.8, planes), 0.015) << planes;
+    std::printf("[ measured ] %d planes: %.4f off\n", planes, through - std::pow(0.8, planes));
+    EXPECT_NEAR(through, std::pow(0.8, planes), 0.005) << planes;
   }
 }
 

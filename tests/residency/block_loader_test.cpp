@@ -53,6 +53,16 @@ TEST_F(BlockLoaderTest, RequestsArePrefetchedOnceSoThatTheDiskIsAheadOfTheDecode
   EXPECT_THAT(source_->prefetched(), ElementsAre(1, 2, 3, 4, 7)) << "2 is in host memory";
 }
 
+TEST_F(BlockLoaderTest, SourcesAreToldWhatIsNotWantedAnyMore) {
+  source_->hold();
+  set_requests({1, 2, 3, 4});
+  source_->wait_for_start(1);
+  set_requests({50, 3});
+  EXPECT_THAT(source_->forgotten(), ElementsAre(2, 4)) << "1 is being loaded, and 3 still wanted";
+  source_->release();
+  EXPECT_THAT(take(2), ElementsAre(50, 3));
+}
+
 TEST_F(BlockLoaderTest, WhatIsNotWantedAnyMoreIsDroppedBeforeItIsDecoded) {
   source_->hold();
   set_requests({1, 2, 3, 4});

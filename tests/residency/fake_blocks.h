@@ -22,7 +22,10 @@ class FakeBlocks : public residency::BlockSource {
 
   [[nodiscard]] uint64_t id() const override { return id_; }
   [[nodiscard]] const ldc::BlockTree& tree() const override { return tree_; }
-  void prefetch(uint32_t block) const override { prefetched_.push_back(block); }
+  void prefetch(std::span<const uint32_t> blocks) const override {
+    prefetched_.insert(prefetched_.end(), blocks.begin(), blocks.end());
+  }
+  void forget(uint32_t block) const override { forgotten_.push_back(block); }
   [[nodiscard]] Result<residency::PackedBlock> load(uint32_t block, bool attributes) const override {
     {
       std::unique_lock lock(mutex_);
@@ -53,6 +56,8 @@ class FakeBlocks : public residency::BlockSource {
   }
   /// The prefetched blocks, in order. Must be called by the thread that calls the loader.
   [[nodiscard]] const std::vector<uint32_t>& prefetched() const { return prefetched_; }
+  /// The blocks that are not announced any more, likewise.
+  [[nodiscard]] const std::vector<uint32_t>& forgotten() const { return forgotten_; }
 
  private:
   void set_held(bool held) {
@@ -70,6 +75,7 @@ class FakeBlocks : public residency::BlockSource {
   mutable std::condition_variable wake_;
   mutable std::vector<uint32_t> started_;
   mutable std::vector<uint32_t> prefetched_;
+  mutable std::vector<uint32_t> forgotten_;
   bool held_ = false;
 };
 

@@ -91,6 +91,23 @@ TEST(MergeSurfels, TwoNeighboursBecomeTheirMeanAndKeepTheirAreaAndWeight) {
   EXPECT_EQ(m.representative, 9u) << "the larger one";
 }
 
+TEST(MergeSurfels, OpacitiesAreAveragedAndLightByThemToo) {
+  const std::vector<MergedSurfel> two{{{0, 0, 0}, {0, 0, 1}, 1, 1, glm::vec3(0), 0, false, 0.2F},
+                                      {{1, 0, 0}, {0, 0, 1}, 2, 1, glm::vec3(1), 1, false, 0.8F}};
+  const MergedLevel level = merge_surfels(two, true);
+  ASSERT_EQ(level.surfels.size(), 1u);
+  EXPECT_NEAR(level.surfels.front().opacity, 0.68, 1e-6) << "by area: 1 to 4";
+  EXPECT_NEAR(level.surfels.front().light.r, 3.2 / 3.4, 1e-6) << "by area times opacity";
+}
+
+TEST(MergeSurfels, WhatIsNotSeenKeepsItsMeanLight) {
+  const std::vector<MergedSurfel> two{{{0, 0, 0}, {0, 0, 1}, 1, 1, glm::vec3(0), 0, false, 0},
+                                      {{1, 0, 0}, {0, 0, 1}, 1, 1, glm::vec3(1), 1, false, 0}};
+  const MergedSurfel merged = merge_surfels(two, true).surfels.at(0);
+  EXPECT_EQ(merged.opacity, 0);
+  EXPECT_NEAR(merged.light.r, 0.5, 1e-6);
+}
+
 TEST(MergeSurfels, TheTwoSidesOfASheetStayApartUnlessThereAreNoSides) {
   const std::vector<MergedSurfel> two{{{0, 0, 0}, {0, 0, 1}, 1, 1, glm::vec3(0), 0},
                                       {{0, 0, 0.1}, {0, 0, -1}, 1, 1, glm::vec3(0), 1}};

@@ -190,5 +190,19 @@ TEST(PackBlock, OpacitiesAreThoseOfTheFileOrFull) {
   for (size_t i = 0; i < 3; ++i) EXPECT_EQ(packed.attributes[i] >> 24, kOpacities.at(packed.representatives[i]));
 }
 
+TEST(PackBlock, WhatIsMergedHasTheMeanOpacity) {
+  std::mt19937 random(9);
+  model::DecodedBlock block = block_of(2000, 1000, random);
+  block.radii.assign(block.size(), 1);
+  std::vector<uint8_t> opacities(block.size());
+  for (size_t i = 0; i < opacities.size(); ++i) opacities[i] = i % 2 == 0 ? 40 : 200;
+  block.scalars.push_back({"alpha", opacities});
+  PackedSurfels packed = pack_block(block, 8, true);
+  pack_attributes(block, packed);
+  size_t means = 0;
+  for (const uint32_t word : packed.attributes) means += word >> 24 == 120 ? 1 : 0;
+  EXPECT_GT(means, 100U) << "of one of each";
+}
+
 }  // namespace
 }  // namespace surfcast::residency

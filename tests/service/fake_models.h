@@ -39,16 +39,20 @@ class FakeModels : public ModelSource {
     description.info.classes = {{2, 1200}, {6, 34}};
     description.spacing = 0.25;
     description.levels = 3;
+    if (name == "cube")
+      description.georeference = {{"UTM zone 32N", "EPSG:25832", "PROJCRS[1]"}, {"WGS 84", "", "GEOGCRS[2]"}};
     description.blocks = 7;
     return description;
   }
   [[nodiscard]] Result<std::shared_ptr<const model::ModelFile>> open(const std::string& name) const override {
+    if (name == "cube" && cube_file) return cube_file;
     return fail(ErrorKind::kNotFound, shown_name(name) + ": there is no file of this model");
   }
 
   std::vector<ScanStatus> scan_list;  ///< set it before the service starts
   std::string awaited_model;          ///< likewise, or before models_changed()
   std::atomic<uint64_t> cube_edition = 0;
+  std::shared_ptr<const model::ModelFile> cube_file;  ///< null: there is none
 };
 
 /// The behaviour of a fake renderer and its counters, shared with the test.

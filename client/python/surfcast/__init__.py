@@ -8,10 +8,24 @@
 
 from . import aio, measure
 from ._build import VERSION as __version__
-from ._options import DisplayOptions, PictureOptions, ViewOptions
+from ._options import DisplayOptions, PictureOptions, RegionOptions, ViewOptions
 from ._picture import LevelCount, Picture
 from ._sync import Model, Server, View, connect
-from ._values import Box, Camera, Ellipsoids, Hit, ModelInfo, Points, Range, Scan, TransferPoint, Uploads, Volume
+from ._values import (
+    Box,
+    Camera,
+    CoordinateSystem,
+    Corridor,
+    Ellipsoids,
+    Hit,
+    ModelInfo,
+    Points,
+    Range,
+    Scan,
+    TransferPoint,
+    Uploads,
+    Volume,
+)
 from ._view import Frame
 from .camera_path import CameraPath, Keyframe
 from .errors import (
@@ -35,6 +49,8 @@ __all__ = [
     "CameraPath",
     "Cancelled",
     "ConnectionLost",
+    "CoordinateSystem",
+    "Corridor",
     "Denied",
     "DisplayOptions",
     "Ellipsoids",
@@ -52,6 +68,7 @@ __all__ = [
     "PictureOptions",
     "Points",
     "Range",
+    "RegionOptions",
     "Scan",
     "Server",
     "ServerFault",

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import asyncio
 import itertools
-from collections.abc import AsyncIterator, Callable
-from contextlib import asynccontextmanager
+from collections.abc import AsyncGenerator, AsyncIterator, Callable
+from contextlib import aclosing, asynccontextmanager
 from dataclasses import dataclass
 
 from . import errors
@@ -74,7 +74,7 @@ class Link:
             return await future
         except asyncio.CancelledError:
             if request.WhichOneof("kind") == "draw_picture":
-                await self._cancel(request.id)
+                await self.cancel(request.id)
             raise
         finally:
             self._waiting.pop(request.id, None)
@@ -103,7 +103,8 @@ class Link:
         self._end(errors.ConnectionLost("the connection is closed"))
         await self._channel.close()
 
-    async def _cancel(self, request_id: int) -> None:
+    async def cancel(self, request_id: int) -> None:
+        """Tells the server that nobody waits for an answer any more."""
         cancel = wire.Request(id=next(self._ids), cancel=wire.Cancel(request_id=request_id))
         try:
             await self.send(cancel)
@@ -170,6 +171,48 @@ class Connection:
         async with turns, self.within(timeout, kind or "request"):
             patience = self.settings.patience if kind in ("pick_surfel", "get_profile") else 0.0
             return await self._ask_patiently(request, patience)
+
+    async def points(self, request: wire.GetPoints, timeout: float | None = None) -> AsyncGenerator[wire.Points, None]:
+        """The messages with the points of a region. The timeout is for each of them.
+
+        A server that is busy is asked again, as long as it has sent nothing.
+        """
+        loop = asyncio.get_running_loop()
+        end = loop.time() + self.settings.patience
+        pause = _FIRST_PAUSE
+        async with self._window:
+            while True:
+                begun = False
+                try:
+                    async with aclosing(self._messages(request, timeout)) as messages:
+                        async for message in messages:
+                            begun = True
+                            yield message
+                    return
+                except errors.Unavailable:
+                    if begun or loop.time() + pause > end:
+                        raise
+                await asyncio.sleep(pause)
+                pause = min(2 * pause, _LONGEST_PAUSE)
+
+    async def _messages(self, request: wire.GetPoints, timeout: float | None) -> AsyncGenerator[wire.Points, None]:
+        link = await self.link()
+        answers: asyncio.Queue[wire.Answer | errors.Error] = asyncio.Queue()
+        number = await link.listen(wire.Request(get_points=request), answers.put_nowait)
+        more = True
+        try:
+            while more:
+                async with self.within(timeout, "get_points"):
+                    answer = await answers.get()
+                if isinstance(answer, errors.Error):
+                    more = False
+                    raise answer
+                more = answer.points.more
+                yield answer.points
+        finally:
+            link.forget(number)
+            if more:
+                await link.cancel(number)
 
     @asynccontextmanager
     async def within(self, timeout: float | None, what: str) -> AsyncIterator[None]:

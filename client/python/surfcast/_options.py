@@ -8,8 +8,10 @@ from os import PathLike
 from pathlib import Path
 from typing import Any, Literal, TypedDict, Union
 
+import numpy as np
+
 from ._picture import FORMATS
-from ._values import PRESETS, Box, Camera, Vector, to_wire, vector_of
+from ._values import PRESETS, Box, Camera, Corridor, Vector, to_wire, vector_of
 from ._wire import surfcast_pb2 as wire
 from .errors import InvalidInput
 
@@ -91,7 +93,7 @@ def _number(name: str, value: object) -> float:
         raise _wanted(name, "a number", value) from None
 
 
-def _natural(name: str, value: object) -> int:
+def natural(name: str, value: object) -> int:
     number = _number(name, value)
     if number != int(number) or not 0 <= number <= _MOST_INTEGER:
         raise _wanted(name, "a whole number from 0", value)
@@ -109,7 +111,7 @@ def _numbers(name: str, value: Any, count: int) -> list[float]:
 
 
 def _color(name: str, value: Any) -> wire.Color:
-    red, green, blue = (_natural(name, part) for part in _numbers(name, value, 3))
+    red, green, blue = (natural(name, part) for part in _numbers(name, value, 3))
     return wire.Color(red=red, green=green, blue=blue)
 
 
@@ -122,7 +124,7 @@ def _flag(name: str, value: object) -> bool:
 
 
 def _resolution(picture: wire.DrawPicture, value: Any) -> None:
-    width, height = (_natural("resolution", part) for part in _numbers("resolution", value, 2))
+    width, height = (natural("resolution", part) for part in _numbers("resolution", value, 2))
     picture.resolution.CopyFrom(wire.Resolution(width=width, height=height))
 
 
@@ -134,7 +136,7 @@ def _format(picture: wire.DrawPicture, value: Any) -> None:
 
 
 def _quality(picture: wire.DrawPicture, value: Any) -> None:
-    picture.quality = _natural("quality", value)
+    picture.quality = natural("quality", value)
     if not 1 <= picture.quality <= 100:
         raise _wanted("quality", "1 to 100", value)
 
@@ -172,7 +174,7 @@ def _color_range(picture: wire.DrawPicture, value: Any) -> None:
 
 def _hide_classes(picture: wire.DrawPicture, value: Any) -> None:
     codes = [value] if isinstance(value, int) else value
-    picture.hidden_classes.extend(_natural("hide_classes", code) for code in codes)
+    picture.hidden_classes.extend(natural("hide_classes", code) for code in codes)
 
 
 def _clip(inverted: bool) -> Callable[[wire.DrawPicture, Any], None]:
@@ -280,7 +282,7 @@ def _opacity(picture: wire.DrawPicture, value: Any) -> None:
 def _opacity_by_class(picture: wire.DrawPicture, value: Any) -> None:
     for code, factor in value.items():
         picture.class_opacities.add(
-            code=_natural("opacity_by_class", code), opacity=_number("opacity_by_class", factor)
+            code=natural("opacity_by_class", code), opacity=_number("opacity_by_class", factor)
         )
 
 
@@ -373,6 +375,51 @@ def picture_request(model: str, camera: Camera | None, options: Mapping[str, Any
         if value is not None:
             _SETTERS[name](picture, value)
     return picture
+
+
+class RegionOptions(TypedDict, total=False):
+    """Which points are taken. Without options: all."""
+
+    box: Box | Sequence[Vector] | Iterable[Box | Sequence[Vector]]  # points in one of them
+    corridor: Corridor | Iterable[Corridor]  # and in one of these
+    classes: Iterable[int]  # and of these classes
+    every: int  # of all points of the model every n-th
+    coordinates: Literal["source", "world"]  # of the system of the scan, or of that of the model, where it differs
+
+
+def _boxes(value: Any) -> list[Box]:
+    if isinstance(value, Box):
+        return [value]
+    items = list(value)
+    corners = len(items) == 2 and not any(isinstance(item, Box) for item in items) and np.ndim(items[0]) == 1
+    return [Box(*items)] if corners else [item if isinstance(item, Box) else Box(*item) for item in items]
+
+
+def _corridor(corridor: Corridor) -> wire.Corridor:
+    message = wire.Corridor(line=[number for corner in corridor.line for number in corner], width=corridor.width)
+    if corridor.low is not None:
+        message.low = corridor.low
+    if corridor.high is not None:
+        message.high = corridor.high
+    return message
+
+
+def region_request(model: str, options: Mapping[str, Any]) -> wire.GetPoints:
+    """The request for points of a region, as an array of NumPy."""
+    for name in options:
+        if name not in RegionOptions.__annotations__:
+            raise InvalidInput(f"there is no option {name!r}")
+    given = {name: value for name, value in options.items() if value is not None}
+    request = wire.GetPoints(model=model, format=wire.POINT_FORMAT_NPY)
+    for box in _boxes(given["box"]) if "box" in given else []:
+        request.boxes.append(wire.Box(min=to_wire(box.low), max=to_wire(box.high)))
+    corridors = given.get("corridor", ())
+    for corridor in [corridors] if isinstance(corridors, Corridor) else corridors:
+        request.corridors.append(_corridor(corridor))
+    request.classes.extend(natural("classes", code) for code in given.get("classes", ()))
+    request.every = natural("every", given.get("every", 1))
+    request.world_coordinates = _choice("coordinates", ("source", "world"), given.get("coordinates", "source")) == 1
+    return request
 
 
 def line_from(line: Iterable[Vector]) -> list[wire.Vector3]:

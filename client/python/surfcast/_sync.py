@@ -13,9 +13,9 @@ from types import TracebackType
 from typing import TYPE_CHECKING, Any, TypeVar, Unpack
 
 from . import aio
-from ._options import DisplayOptions, PictureOptions, ViewOptions
+from ._options import DisplayOptions, PictureOptions, RegionOptions, ViewOptions
 from ._picture import Picture
-from ._values import Camera, Hit, ModelInfo, Points, Range, Scan, Uploads, Vector
+from ._values import Camera, CoordinateSystem, Hit, ModelInfo, Points, Range, Scan, Uploads, Vector
 from ._view import Frame
 from .camera_path import CameraPath
 from .errors import ConnectionLost, Unavailable
@@ -211,6 +211,11 @@ class Model:
         """Whether the vertical axis is z; otherwise it is y."""
         return self._known().z_up
 
+    @property
+    def crs(self) -> CoordinateSystem | None:
+        """The system of world coordinates. None: not known."""
+        return self._known().crs
+
     def render(
         self, camera: Camera | None = None, *, timeout: float | None = None, **options: Unpack[PictureOptions]
     ) -> Picture:
@@ -270,6 +275,27 @@ class Model:
         The band has no limits in height. `max_points`: an even sample of so many; 0: as many as the server allows.
         """
         return self._runner.run(self._model.profile(line, width, max_points=max_points, timeout=timeout))
+
+    def points(
+        self,
+        *,
+        attributes: Iterable[str] | None = None,
+        limit: int = 0,
+        normals: bool = False,
+        timeout: float | None = None,
+        **region: Unpack[RegionOptions],
+    ) -> Points:
+        """The points of the scan in a region, in the order of the model's file. Without a region: all.
+
+        Positions, colours and attributes have the values and types of the scan. `attributes`: only these. `limit`: more
+        points raise Limit; 0: those that the server allows. The timeout is for each of the pieces that are sent.
+        """
+        points = self._model.points(attributes=attributes, limit=limit, normals=normals, timeout=timeout, **region)
+        return self._runner.run(points)
+
+    def count_points(self, *, timeout: float | None = None, **region: Unpack[RegionOptions]) -> int:
+        """How many points there are in a region."""
+        return self._runner.run(self._model.count_points(timeout=timeout, **region))
 
     def view(
         self,

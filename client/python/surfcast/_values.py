@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import io
 import json
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from os import PathLike
 from pathlib import Path
@@ -114,6 +115,27 @@ class Box:
 
 
 @dataclass(frozen=True)
+class Corridor:
+    """What lies near a line, seen from above: round at its corners, cut off straight at its two ends.
+
+    `line`: x and y of two corners or more; z and x where y is the vertical axis. Without `low` and `high` it has no
+    limits in height.
+    """
+
+    line: Sequence[Vector]
+    width: float
+    low: float | None = None
+    high: float | None = None
+
+    def __post_init__(self) -> None:
+        try:
+            corners = tuple((float(x), float(y)) for x, y in self.line)
+        except (TypeError, ValueError):
+            raise InvalidInput(f"corridor: corners of two numbers are wanted, not {self.line!r}") from None
+        object.__setattr__(self, "line", corners)
+
+
+@dataclass(frozen=True)
 class Range:
     """The values of an attribute. For intensities 2 % of the surfels are below `low`, and 2 % above `high`."""
 
@@ -166,8 +188,20 @@ class Ellipsoids:
 
 
 @dataclass(frozen=True)
+class CoordinateSystem:
+    """A coordinate reference system. Coordinates are easting or longitude first, whatever order it states."""
+
+    name: str
+    id: str  # "EPSG:25832"; empty if no authority has it
+    wkt: str
+
+
+@dataclass(frozen=True)
 class ModelInfo:
-    """What a model holds. `bounds` has the lower and the upper corner, in world coordinates."""
+    """What a model holds. `bounds` has the lower and the upper corner, in world coordinates.
+
+    `crs` is the system of world coordinates, `source_crs` that of the scan where it is another one.
+    """
 
     name: str
     surfels: int
@@ -186,6 +220,8 @@ class ModelInfo:
     kinds: Mapping[str, int]
     volumes: tuple[Volume, ...]
     ellipsoids: tuple[Ellipsoids, ...]
+    crs: CoordinateSystem | None
+    source_crs: CoordinateSystem | None
 
 
 @dataclass(frozen=True)
@@ -210,7 +246,10 @@ class Uploads:
 
 @dataclass(frozen=True)
 class Hit:
-    """The surfel, sample or ellipsoid that a picture shows at a pixel."""
+    """The surfel, sample or ellipsoid that a picture shows at a pixel.
+
+    `source_position` is in the system of the scan (`ModelInfo.source_crs`), where that is not the one of the picture.
+    """
 
     position: Floats
     normal: Floats | None
@@ -220,6 +259,7 @@ class Hit:
     depth: float
     surfel: int
     attributes: Mapping[str, float]
+    source_position: Floats | None = None
 
 
 @dataclass(frozen=True)
@@ -227,7 +267,8 @@ class Points(Mapping[str, npt.NDArray[Any]]):
     """Points of a scan as columns: "xyz", "rgb" where the scan has colours, and the attributes.
 
     Points of a profile have "along" and "across", too. `total` counts the points of the region, of which these are an
-    even sample if there were more than allowed. Coordinates are whole numbers times `scale` plus `offset`.
+    even sample if there were more than allowed. Coordinates of a profile are whole numbers times `scale` plus `offset`,
+    which are NaN otherwise.
     """
 
     columns: Mapping[str, npt.NDArray[Any]]
@@ -290,6 +331,10 @@ def _ellipsoids_from(of: wire.EllipsoidDescription) -> Ellipsoids:
     )
 
 
+def _system_from(system: wire.CoordinateSystem) -> CoordinateSystem:
+    return CoordinateSystem(system.name, system.id, system.wkt)
+
+
 def model_info(model: wire.ModelDescription) -> ModelInfo:
     return ModelInfo(
         name=model.model,
@@ -309,6 +354,8 @@ def model_info(model: wire.ModelDescription) -> ModelInfo:
         kinds={k.kind: k.items for k in model.kinds},
         volumes=tuple(_volume_from(v) for v in model.volumes),
         ellipsoids=tuple(_ellipsoids_from(e) for e in model.ellipsoids),
+        crs=_system_from(model.system) if model.HasField("system") else None,
+        source_crs=_system_from(model.source_system) if model.HasField("source_system") else None,
     )
 
 
@@ -331,7 +378,25 @@ def hit_from(result: wire.PickResult) -> Hit | None:
         result.depth,
         result.surfel,
         {a.attribute: a.value for a in result.attributes},
+        from_wire(result.source_position) if result.HasField("source_position") else None,
     )
+
+
+def points_of_file(file: bytes, attributes: Iterable[str] | None) -> Points:
+    """The points of a file of NumPy. `attributes`: only these; None: all."""
+    rows = np.load(io.BytesIO(file), allow_pickle=False)
+    names = list(rows.dtype.names)
+    columns: dict[str, npt.NDArray[Any]] = {}
+    for name, parts in (("xyz", ("x", "y", "z")), ("normals", ("nx", "ny", "nz")), ("rgb", ("red", "green", "blue"))):
+        if parts[0] in names:
+            columns[name] = np.column_stack([rows[part] for part in parts])
+            names = [other for other in names if other not in parts]
+    for name in names if attributes is None else attributes:
+        if name not in names:
+            raise InvalidInput(f"attributes: there is no {name!r}")
+        columns[name] = np.ascontiguousarray(rows[name])
+    unknown = np.full(3, np.nan)
+    return Points(columns, len(rows), unknown, unknown)
 
 
 def points_from(profile: wire.Profile) -> Points:

@@ -6,15 +6,38 @@ import asyncio
 import os
 import time
 from collections.abc import AsyncIterator, Iterable, Sequence
+from contextlib import aclosing
 from os import PathLike
 from types import TracebackType
 from typing import Any, Unpack
 
 from ._connection import Connection, Settings
 from ._endpoint import find_token, parse_endpoint
-from ._options import DisplayOptions, PictureOptions, ViewOptions, line_from, picture_request
+from ._options import (
+    DisplayOptions,
+    PictureOptions,
+    RegionOptions,
+    ViewOptions,
+    line_from,
+    natural,
+    picture_request,
+    region_request,
+)
 from ._picture import Picture, picture_from
-from ._values import Camera, Hit, ModelInfo, Points, Scan, Uploads, Vector, hit_from, model_info, points_from, scan_from
+from ._values import (
+    Camera,
+    Hit,
+    ModelInfo,
+    Points,
+    Scan,
+    Uploads,
+    Vector,
+    hit_from,
+    model_info,
+    points_from,
+    points_of_file,
+    scan_from,
+)
 from ._view import Frame, View
 from ._wire import surfcast_pb2 as wire
 from .camera_path import CameraPath
@@ -225,6 +248,36 @@ class Model:
         """
         profile = wire.GetProfile(model=self.name, line=line_from(line), width=width, max_points=max_points)
         return points_from((await self._connection.ask(wire.Request(get_profile=profile), timeout)).profile)
+
+    async def points(
+        self,
+        *,
+        attributes: Iterable[str] | None = None,
+        limit: int = 0,
+        normals: bool = False,
+        timeout: float | None = None,
+        **region: Unpack[RegionOptions],
+    ) -> Points:
+        """The points of the scan in a region, in the order of the model's file. Without a region: all.
+
+        Positions, colours and attributes have the values and types of the scan. `attributes`: only these. `limit`: more
+        points raise Limit; 0: those that the server allows. The timeout is for each of the pieces that are sent.
+        """
+        request = region_request(self.name, region)
+        request.max_points = natural("limit", limit)
+        request.normals = normals
+        file = bytearray()
+        async with aclosing(self._connection.points(request, timeout)) as messages:
+            async for message in messages:
+                file += message.data
+        return points_of_file(bytes(file), attributes)
+
+    async def count_points(self, *, timeout: float | None = None, **region: Unpack[RegionOptions]) -> int:
+        """How many points there are in a region."""
+        request = region_request(self.name, region)
+        request.only_count = True
+        async with aclosing(self._connection.points(request, timeout)) as messages:
+            return sum([message.total async for message in messages])
 
     def view(
         self,

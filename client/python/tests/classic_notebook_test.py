@@ -22,6 +22,12 @@ from surfcast.testing import RunningServer
 
 CANVAS = "document.querySelector('.output canvas')"
 PIXELS = f"{CANVAS}.toDataURL()"
+# The pixels once there are any. Before the first frame nothing can be turned.
+DRAWN = f"""(() => {{
+  const empty = document.createElement('canvas');
+  [empty.width, empty.height] = [{CANVAS}.width, {CANVAS}.height];
+  return {PIXELS} !== empty.toDataURL() && {PIXELS};
+}})()"""
 # The middle of the picture in the window, once it has stayed where it is and nothing covers it. A notebook scrolls and
 # lays itself out again after cells have run.
 MIDDLE = f"""(() => {{
@@ -104,7 +110,7 @@ async def test_dragging_turns_the_view(
         await page.wait_for("window.Jupyter?.notebook?.kernel?.is_connected() && !Jupyter.notebook.kernel_busy")
         await run_cell(page, 0)
         await page.wait_for(f"{CANVAS}?.width === 320")
-        drawn = await page.wait_for(f"{PIXELS}.length > 2000 && {PIXELS}")
+        drawn = await page.wait_for(DRAWN)
         x, y = await page.wait_for(MIDDLE)
         await page.mouse("mousePressed", x, y)
         for step in range(1, 6):

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from sample_models import Scan, build, make_scan, write_las, write_tensors, write_volume
+from sample_models import Scan, build, make_scan, write_degrees, write_las, write_tensors, write_volume
 
 import surfcast
 from surfcast.testing import RunningServer, server
@@ -19,7 +19,7 @@ def scan() -> Scan:
 
 @pytest.fixture(scope="session")
 def models(tmp_path_factory: pytest.TempPathFactory, scan: Scan) -> Path:
-    """A folder with the models `field`, `ball` and `tensors`."""
+    """A folder with the models `field`, `ball`, `tensors` and `degrees`."""
     folder = tmp_path_factory.mktemp("models")
     write_las(scan, folder / "field.las")
     write_volume(folder / "ball.nrrd")
@@ -27,6 +27,9 @@ def models(tmp_path_factory: pytest.TempPathFactory, scan: Scan) -> Path:
     for source in ("field.las", "ball.nrrd", "tensors.csv"):
         build(folder / source, (folder / source).with_suffix(".surf"))
         (folder / source).unlink()
+    write_degrees(folder / "degrees.csv")
+    build(folder / "degrees.csv", folder / "degrees.surf", "--crs", "EPSG:4326")
+    (folder / "degrees.csv").unlink()
     return folder
 
 

@@ -83,5 +83,14 @@ def write_tensors(path: Path, side: int = 6) -> None:
     path.write_text("\n".join(rows) + "\n")
 
 
-def build(source: Path, model: Path) -> None:
-    subprocess.run([SURFCASTD, "build", source, "--output", model], check=True, capture_output=True)
+WEST, SOUTH, STEP = 9.1, 48.7, 1e-5  # degrees
+
+
+def write_degrees(path: Path, side: int = 30) -> None:
+    """A level square of points in degrees, as a table."""
+    rows = [f"{WEST + u * STEP!r},{SOUTH + v * STEP!r},250" for v in range(side) for u in range(side)]
+    path.write_text("\n".join(["x,y,z", *rows]) + "\n")
+
+
+def build(source: Path, model: Path, *flags: str) -> None:
+    subprocess.run([SURFCASTD, "build", source, "--output", model, *flags], check=True, capture_output=True)

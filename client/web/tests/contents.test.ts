@@ -1,13 +1,18 @@
 import { create } from '@bufbuild/protobuf';
 import { describe, expect, it } from 'vitest';
-import { ModelDescriptionSchema } from '../src/generated/surfcast_pb';
-import { contentsOf, kindOf } from '../src/state/contents';
+import { CoordinateSystemSchema, ModelDescriptionSchema } from '../src/generated/surfcast_pb';
+import { contentsOf, kindOf, systemName } from '../src/state/contents';
 
 describe('the contents of a model', () => {
   it('are points on servers that do not tell kinds apart', () => {
     const scan = create(ModelDescriptionSchema, { surfels: 1_234_567n });
     expect(contentsOf(scan)).toBe('1.2M points');
     expect(kindOf(scan)).toBe('Scan');
+  });
+
+  it('lie in a coordinate system with or without a code', () => {
+    expect(systemName(create(CoordinateSystemSchema, { name: 'WGS 84', id: 'EPSG:4326' }))).toBe('WGS 84 (EPSG:4326)');
+    expect(systemName(create(CoordinateSystemSchema, { name: 'a site' }))).toBe('a site');
   });
 
   it('name every kind', () => {

@@ -6,6 +6,8 @@ import { AnswerSchema, RequestSchema, type DrawPicture, type ViewFrame } from '.
 export class Wire {
   /** Updates of all views, by the order in which the page sent them. */
   readonly updates: { readonly update: bigint; readonly picture: DrawPicture | undefined }[] = [];
+  /** Kinds of all requests, in the order in which the page sent them. */
+  readonly asked: string[] = [];
   /** Whole frames, in the order in which the page gets them, each as its first piece says it. */
   readonly frames: ViewFrame[] = [];
   private begun: ViewFrame | undefined;
@@ -33,7 +35,7 @@ export class Wire {
   private connect(socket: WebSocketRoute): void {
     const server = socket.connectToServer();
     socket.onMessage((message) => {
-      if (typeof message !== 'string') this.asked(message);
+      if (typeof message !== 'string') this.noteRequest(message);
       server.send(message);
     });
     server.onMessage((message) => {
@@ -54,8 +56,9 @@ export class Wire {
     if (!piece.more) this.frames.push(this.begun!);
   }
 
-  private asked(message: Buffer): void {
+  private noteRequest(message: Buffer): void {
     const { kind } = isHello(message) ? { kind: undefined } : fromBinary(RequestSchema, message);
+    if (kind?.case) this.asked.push(kind.case);
     if (kind?.case === 'updateView') this.updates.push({ update: kind.value.update, picture: kind.value.picture });
   }
 }

@@ -1,4 +1,4 @@
-import type { ModelDescription } from '../generated/surfcast_pb';
+import type { CoordinateSystem, ModelDescription } from '../generated/surfcast_pb';
 
 const compact = new Intl.NumberFormat('en', { notation: 'compact', maximumFractionDigits: 1 });
 
@@ -19,6 +19,9 @@ export function kindOf({ kinds }: ModelDescription): string {
   const names = kinds.map(({ kind }) => kindNames[kind] ?? kind);
   return names.length > 0 ? names.join(' and ') : kindNames['surfel']!; // none: of a server before 1.3
 }
+
+/** The name of a coordinate system and its code, if it has one: "ETRS89 / UTM zone 32N (EPSG:25832)". */
+export const systemName = ({ name, id }: CoordinateSystem): string => (id ? `${name} (${id})` : name);
 
 /** What a model holds, in one line: "1.2M points, volume of 512 × 512 × 300". */
 export function contentsOf({ kinds, surfels, volumes }: ModelDescription): string {

@@ -1,8 +1,10 @@
 import type { JSX } from 'preact';
 import { formatExact } from '../measure/format';
+import { systemName } from '../state/contents';
 import { glyphOf, linesOf } from '../state/glyph';
 import { className } from '../state/palette';
-import { inspection } from '../state/store';
+import { description, inspection } from '../state/store';
+import type { CoordinateSystem } from '../generated/surfcast_pb';
 import { vectorFrom } from '../protocol/pictures';
 import type { Vector } from '../camera/vector';
 import { copyText, notAllowed } from './clipboard';
@@ -15,12 +17,35 @@ function valueOf(attribute: string, value: number): string {
   return attribute === 'classification' ? `${value} · ${className(value)}` : formatExact(value);
 }
 
+const axes = ['x', 'y', 'z'] as const;
+
+/** Coordinates of the source, where it has another system than the picture. */
+function SourceCoordinates({ at, system }: { at: Vector; system: CoordinateSystem | undefined }): JSX.Element {
+  return (
+    <>
+      {system && <p class="system">{systemName(system)}</p>}
+      <dl class="coordinates">
+        {axes.map((axis) => (
+          <div key={axis}>
+            <dt>
+              <b class={`axis ${axis}`}>{axis.toUpperCase()}</b>
+            </dt>
+            <dd data-source-axis={axis}>{formatExact(at[axis])}</dd>
+          </div>
+        ))}
+      </dl>
+    </>
+  );
+}
+
 /** All attributes of the clicked point. */
 export function InspectCard(): JSX.Element | null {
   const shown = inspection.value;
   if (!shown) return null;
   const { result, at } = shown;
   const { color, normal } = result;
+  const model = description.value;
+  const source = result.sourcePosition && vectorFrom(result.sourcePosition);
   const glyph = glyphOf(result.attributes);
   const rows: [string, JSX.Element | string][] = glyph
     ? linesOf(result.attributes, ({ attribute, value }) => valueOf(attribute, value))
@@ -43,12 +68,13 @@ export function InspectCard(): JSX.Element | null {
     <section class="inspect-card" aria-label="Point">
       <header>
         <h2>Point</h2>
-        <IconButton icon="copy" label="Copy coordinates" onPress={() => void copyText(coordinates(at), 'Coordinates copied.', notAllowed)} />
+        <IconButton icon="copy" label="Copy coordinates" onPress={() => void copyText(coordinates(source ?? at), 'Coordinates copied.', notAllowed)} />
         <IconButton icon="close" label="Close" onPress={() => (inspection.value = undefined)} />
       </header>
       {glyph && <GlyphPicture glyph={glyph} color={color && [color.red, color.green, color.blue]} />}
+      {model?.system && <p class="system">{systemName(model.system)}</p>}
       <dl class="coordinates">
-        {(['x', 'y', 'z'] as const).map((axis) => (
+        {axes.map((axis) => (
           <div key={axis}>
             <dt>
               <b class={`axis ${axis}`}>{axis.toUpperCase()}</b>
@@ -57,6 +83,7 @@ export function InspectCard(): JSX.Element | null {
           </div>
         ))}
       </dl>
+      {source && <SourceCoordinates at={source} system={model?.sourceSystem} />}
       <dl class="facts">
         {rows.map(([name, value]) => (
           <div key={name}>

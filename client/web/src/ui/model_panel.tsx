@@ -1,7 +1,7 @@
 import type { ComponentChildren, JSX } from 'preact';
 import type { EllipsoidDescription, ModelDescription, VolumeDescription } from '../generated/surfcast_pb';
 import { formatNumber } from '../measure/format';
-import { kindOf } from '../state/contents';
+import { kindOf, systemName } from '../state/contents';
 import { bounds, description, display, lengthDecimals, upAxis } from '../state/store';
 import { useActions } from './actions';
 import { Section, Switch } from './controls';
@@ -107,6 +107,8 @@ export function ModelPanel(): JSX.Element | null {
           <Items model={model} />
           {model.spacing > 0 && <Row name="Point spacing">{model.spacing.toPrecision(3)}</Row>}
           <Row name="Colour">{color}</Row>
+          {model.system && <Row name="Coordinates">{systemName(model.system)}</Row>}
+          {model.sourceSystem && <Row name="Of the scan">{systemName(model.sourceSystem)}</Row>}
           <Row name="Vertical axis">{upAxis.value.toUpperCase()}</Row>
           <Row name="Levels of detail">{model.levels}</Row>
           <Row name="Blocks">{count(model.blocks)}</Row>

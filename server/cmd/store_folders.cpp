@@ -1,0 +1,44 @@
+#include "cmd/store_folders.h"
+
+#include <condition_variable>
+#include <filesystem>
+#include <map>
+#include <mutex>
+
+#include "base/log.h"
+#include "object_store/object_url.h"
+
+namespace surfcast::cmd {
+
+Status StoreFolders::list() {
+  std::map<std::string, std::filesystem::path> models;
+  for (const std::string& url : urls_) {
+    const Result<std::vector<std::string>> found = store_.list(url);
+    if (!found) return fail(found.error());
+    for (const std::string& model : *found) models.emplace(object_store::object_name(model), model);
+  }
+  const size_t count = models.size();
+  if (models_.set_stored(std::move(models))) spdlog::info("folders of stores: {} models", count);
+  return {};
+}
+
+void StoreFolders::watch(std::chrono::milliseconds interval) {
+  if (urls_.empty()) return;
+  thread_ = std::jthread([this, interval](const std::stop_token& stop) { keep_listing(stop, interval); });
+}
+
+void StoreFolders::keep_listing(const std::stop_token& stop, std::chrono::milliseconds interval) {
+  std::mutex mutex;
+  std::condition_variable_any wake;  // by the stop token alone
+  std::unique_lock lock(mutex);
+  bool failed = false;
+  for (;;) {
+    wake.wait_for(lock, stop, interval, [] { return false; });
+    if (stop.stop_requested()) return;
+    const Status listed = list();
+    if (!listed && !failed) spdlog::warn("{}; the models found there before are kept", listed.error().message);
+    failed = !listed;
+  }
+}
+
+}  // namespace surfcast::cmd

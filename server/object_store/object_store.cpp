@@ -1,0 +1,71 @@
+#include "object_store/object_store.h"
+
+#include <utility>
+
+#include "object_store/http_client.h"
+#include "object_store/listing.h"
+#include "object_store/remote_source.h"
+
+namespace surfcast::object_store {
+namespace {
+
+Error naming(const std::string& url, const Error& error) {
+  return {error.kind, url + ": " + error.message};
+}
+
+/// The query for a page of a list, its parts in the order that signatures want. Servers that list files ignore it.
+std::string listing_query(const std::string& prefix, const std::string& next) {
+  const std::string page = next.empty() ? std::string() : "continuation-token=" + encode_query(next) + "&";
+  return "?" + page + "delimiter=%2F&list-type=2&prefix=" + encode_query(prefix);
+}
+
+}  // namespace
+
+ObjectStore::ObjectStore(StoreConfig config, std::shared_ptr<model::BlockCache> cache)
+    : config_(std::move(config)), cache_(std::move(cache)) {}
+ObjectStore::~ObjectStore() = default;
+
+Result<const HttpClient*> ObjectStore::client() const {
+  const std::lock_guard lock(mutex_);
+  if (!client_) {
+    Result<std::unique_ptr<HttpClient>> started = HttpClient::start(config_);
+    if (!started) return fail(std::move(started.error()));
+    client_ = std::move(*started);
+  }
+  return client_.get();
+}
+
+Result<model::ModelFile> ObjectStore::open(const std::string& url) const {
+  const Result<const HttpClient*> http = client();
+  if (!http) return fail(http.error());
+  const Result<StorePlace> place = place_of(url, config_);
+  if (!place) return fail(place.error());
+  Result<std::unique_ptr<RemoteSource>> source = RemoteSource::open(**http, *place, shown_url(url));
+  if (!source) return fail(std::move(source.error()));
+  return model::ModelFile::open(std::move(*source), cache_);
+}
+
+Result<std::vector<std::string>> ObjectStore::list(const std::string& url) const {
+  const Result<const HttpClient*> http = client();
+  if (!http) return fail(http.error());
+  const Result<StorePlace> place = folder_of(url, config_);
+  if (!place) return fail(place.error());
+  std::vector<std::string> models;
+  uint64_t bytes_left = config_.listing_bytes;
+  ListingPage page;
+  do {
+    HttpRequest request = (*http)->request(*place, listing_query(place->prefix, page.next));
+    request.most_bytes = bytes_left;
+    const Result<HttpAnswer> answer = (*http)->send_and_wait(std::move(request), check_whole_answer);
+    if (!answer) return fail(naming(url, answer.error()));
+    bytes_left -= answer->body.size();
+    const auto* text = reinterpret_cast<const char*>(answer->body.data());
+    Result<ListingPage> next = parse_listing({text, answer->body.size()}, place->prefix);
+    if (!next) return fail(naming(url, next.error()));
+    page = std::move(*next);
+    for (const std::string& model : page.models) models.push_back(url + (place->s3 ? model : encode_path(model)));
+  } while (!page.next.empty());
+  return models;
+}
+
+}  // namespace surfcast::object_store

@@ -1,0 +1,87 @@
+#include "service/point_stream.h"
+
+#include <utility>
+
+#include "base/stopwatch.h"
+
+namespace surfcast::service {
+namespace {
+
+/// Of a thread that others wait for. Not a setting: only how the work is split depends on it.
+constexpr double kTurnMilliseconds = 100;
+
+}  // namespace
+
+PointStream::PointStream(exporter::ModelPoints points, const PointsJob& job,
+                         std::shared_ptr<const std::atomic<bool>> cancelled)
+    : points_(std::move(points)),
+      format_(job.format),
+      wanted_(job.only_count ? exporter::WantedFacts::kNumber : exporter::facts_for(job.format)),
+      cancelled_(std::move(cancelled)) {
+  if (!job.only_count) most_ = job.most;
+}
+
+Result<std::unique_ptr<PointStream>> PointStream::open(std::shared_ptr<const model::ModelFile> model,
+                                                       const PointsJob& job,
+                                                       std::shared_ptr<const std::atomic<bool>> cancelled) {
+  Result<exporter::ModelPoints> points = exporter::ModelPoints::open(std::move(model), job.model, job.selection);
+  if (!points) return fail(std::move(points.error()));
+  return std::unique_ptr<PointStream>(new PointStream(std::move(*points), job, std::move(cancelled)));
+}
+
+Status PointStream::check() const {
+  if (cancelled_->load(std::memory_order_relaxed)) return fail(ErrorKind::kCancelled, "cancelled");
+  if (!most_ || facts_.count <= *most_) return {};
+  return fail(ErrorKind::kLimit, "the region has more than " + std::to_string(*most_) +
+                                     " points, the most there may be: ask for a smaller one, or for every n-th point");
+}
+
+Result<bool> PointStream::count() {
+  const Stopwatch watch;
+  while (counted_ < points_.pieces() && watch.milliseconds() < kTurnMilliseconds) {
+    const Result<exporter::PointFacts> piece = points_.count(counted_, wanted_);
+    if (!piece) return fail(piece.error());
+    facts_.add(*piece);
+    ++counted_;
+    if (Status status = check(); !status) return fail(std::move(status.error()));
+  }
+  if (counted_ < points_.pieces()) return false;
+  return prepare().map([] { return true; });
+}
+
+Status PointStream::prepare() {
+  if (!most_) return {};  // nothing is sent
+  auto encoder = exporter::make_point_encoder(format_, points_.schema(), facts_);
+  if (!encoder) return fail(std::move(encoder.error()));
+  encoder_ = std::move(*encoder);
+  return {};
+}
+
+Status PointStream::add_block(PointPiece& piece) {
+  if (Status status = check(); !status) return status;
+  const Result<scan::ScanPoints> points = points_.read(next_++);
+  if (!points) return fail(points.error());
+  if (points->size() == 0) return {};
+  const Result<std::vector<std::byte>> rows = encoder_->rows(*points);
+  if (!rows) return fail(rows.error());
+  piece.bytes.insert(piece.bytes.end(), rows->begin(), rows->end());
+  return {};
+}
+
+Result<PointPiece> PointStream::next(size_t bytes) {
+  const Stopwatch watch;
+  PointPiece piece;
+  Status status;
+  if (!std::exchange(begun_, true)) piece.bytes = encoder_->head();
+  while (status && next_ < points_.pieces() && piece.bytes.size() < bytes && watch.milliseconds() < kTurnMilliseconds) {
+    status = add_block(piece);
+  }
+  if (!status) return fail(std::move(status.error()));
+  if (next_ < points_.pieces()) return piece;
+  const std::vector<std::byte> tail = encoder_->tail();
+  piece.bytes.insert(piece.bytes.end(), tail.begin(), tail.end());
+  piece.last = true;
+  return piece;
+}
+
+}  // namespace surfcast::service

@@ -1,0 +1,220 @@
+#include "worker/run_worker.h"
+
+#include <chrono>
+#include <csignal>
+#include <cstdlib>
+#include <cstring>
+#include <map>
+#include <memory>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <malloc.h>
+#include <sys/prctl.h>
+#include <sys/resource.h>
+
+#include "base/file_source.h"
+#include "base/log.h"
+#include "base/log_format.h"
+#include "base/stopwatch.h"
+#include "gl/reset_status.h"
+#include "model/model_file.h"
+#include "render/renderer.h"
+#include "service/guarded.h"
+#include "worker/board_guard.h"
+#include "worker/channel.h"
+#include "worker/sandbox.h"
+#include "worker/shared_board.h"
+
+namespace surfcast::worker {
+namespace {
+
+using std::chrono::milliseconds;
+
+/// Ends the process at once: nothing of it is of use to anybody, and destructors of a driver that has failed may hang.
+[[noreturn]] void end(int code) {
+  std::_Exit(code);
+}
+
+/// A restriction that the kernel does not know is said and left out; one that fails otherwise ends the worker.
+Status restrict_with(const Status& restricted) {
+  if (restricted) return {};
+  if (restricted.error().kind != ErrorKind::kUnsupported) return restricted;
+  spdlog::warn("the render worker is less confined: {}", restricted.error().message);
+  return {};
+}
+
+class RenderWorker {
+ public:
+  RenderWorker(Channel channel, SharedBoard board)
+      : channel_(std::move(channel)), board_(std::move(board)), guard_(board_) {}
+
+  [[noreturn]] void run(kinds::KindTable kinds) {
+    answer(start(kinds));
+    if (!renderer_) end(EXIT_FAILURE);
+    for (;;) serve(next());
+  }
+
+ private:
+  /// The answer to the first message.
+  Message start(kinds::KindTable kinds) {
+    Message first = next().message;
+    auto* const configure = std::get_if<Configure>(&first);
+    if (configure == nullptr) end(EXIT_FAILURE);
+    set_log_format(configure->log_format);
+    configure->renderer.kinds = kinds;
+    configure->renderer.load_guard = &guard_;
+    auto created = service::guarded([&] { return create(*configure); });
+    if (!created) return Refused{created.error()};
+    renderer_ = std::move(*created);
+    return Ready{renderer_->device(), renderer_->max_resolution()};
+  }
+
+  static Result<std::unique_ptr<render::Renderer>> create(const Configure& configure) {
+    if (configure.sandbox) {
+      std::vector<std::string> readable = driver_paths();
+      readable.insert(readable.end(), configure.readable.begin(), configure.readable.end());
+      if (Status files = restrict_with(restrict_files(readable, configure.writable)); !files)
+        return fail(files.error());
+    }
+    Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create(configure.renderer);
+    if (!renderer || !configure.sandbox) return renderer;
+    if (Status calls = restrict_with(restrict_calls()); !calls) return fail(calls.error());
+    ::prctl(PR_SET_DUMPABLE, 0);  // no process of the same user traces it
+    return renderer;
+  }
+
+  /// The next message of the server. Memory that large pictures have left goes back to the system when none comes.
+  Received next() {
+    constexpr milliseconds kMoment{300};
+    constexpr milliseconds kLong{60'000};
+    for (milliseconds patience = kMoment;;) {
+      Result<std::optional<Received>> received = channel_.receive(patience);
+      if (!received) end(EXIT_SUCCESS);  // the server has ended
+      if (received->has_value()) return std::move(**received);
+      if (patience == kMoment) ::malloc_trim(0);
+      patience = kLong;
+    }
+  }
+
+  void answer(const Message& message) {
+    if (!channel_.send(message)) end(EXIT_SUCCESS);
+  }
+
+  /// Does what a message asks for, other than Continue.
+  void serve(Received received) {
+    if (auto* const offer = std::get_if<OfferModel>(&received.message)) {
+      accept(std::move(*offer), std::move(received.descriptor));
+    } else if (const auto* const withdraw = std::get_if<WithdrawModel>(&received.message)) {
+      drop(withdraw->model);
+    } else if (const auto* const draw = std::get_if<Draw>(&received.message)) {
+      answer(drawn(*draw));
+    } else {
+      end(EXIT_FAILURE);
+    }
+  }
+
+  void accept(OfferModel offer, Descriptor file) {
+    Result<model::ModelFile> model = service::guarded([&]() -> Result<model::ModelFile> {
+      Result<PositionedFile> opened = PositionedFile::adopt(file.release(), offer.path);
+      if (!opened) return fail(opened.error());
+      return model::ModelFile::open(std::make_unique<FileSource>(std::move(*opened), offer.path));
+    });
+    if (!model) {
+      models_[offer.model] = fail(std::move(model.error()));
+      return;
+    }
+    auto shared = std::make_shared<const model::ModelFile>(std::move(*model));
+    guard_.add(shared->id(), {offer.model,
+                              offer.path,
+                              {offer.quarantined.begin(), offer.quarantined.end()},
+                              {offer.suspected.begin(), offer.suspected.end()}});
+    models_[offer.model] = std::move(shared);
+  }
+
+  void drop(uint64_t number) {
+    const auto found = models_.find(number);
+    if (found == models_.end()) return;
+    if (found->second) {
+      renderer_->release_model(**found->second);
+      dropped_.push_back((*found->second)->id());
+    }
+    models_.erase(found);
+    forget_dropped();
+  }
+
+  /// A picture that is being drawn may still load blocks of a model that was withdrawn.
+  void forget_dropped() {
+    if (depth_ > 0) return;
+    for (const uint64_t id : dropped_) guard_.remove(id);
+    dropped_.clear();
+  }
+
+  Message drawn(const Draw& draw) {
+    const auto found = models_.find(draw.model);
+    if (found == models_.end()) return Refused{{ErrorKind::kInternal, "a picture of a model that was not offered"}};
+    if (!found->second) return Refused{found->second.error()};
+    if (depth_ >= kDeepestPictures) return Refused{{ErrorKind::kInternal, "too many pictures in the middle of others"}};
+    const std::shared_ptr<const model::ModelFile> model = *found->second;
+    const Preemption preemption(board_.cancelled(depth_), [this] { return ask_urgent(); });
+    ++depth_;
+    Result<picture::Frame> frame = service::guarded([&] { return renderer_->draw(model, draw.request, preemption); });
+    --depth_;
+    forget_dropped();
+    since_asked_ = Stopwatch();
+    if (gl::context_was_reset()) end(kGpuWasReset);
+    if (!frame) return Refused{std::move(frame.error())};
+    const bool pixels = !frame->image.pixels.empty();
+    if (frame->image.pixels.size() > board_.pixels().size()) {
+      return Refused{{ErrorKind::kLimit, "the picture is larger than what the render worker may draw"}};
+    }
+    if (pixels) std::memcpy(board_.pixels().data(), frame->image.pixels.data(), frame->image.pixels.size());
+    frame->image.pixels.clear();
+    return Drawn{std::move(*frame), pixels};
+  }
+
+  /// Asks the server whether another picture comes first, and draws those that do. Not more often than each 2 ms, so
+  /// that asking takes no noticeable part of the time.
+  bool ask_urgent() {
+    constexpr double kPauseMs = 2;
+    if (since_asked_.milliseconds() < kPauseMs) return false;
+    answer(AskUrgent{});
+    for (;;) {
+      Received received = next();
+      if (const auto* const go_on = std::get_if<Continue>(&received.message)) {
+        since_asked_ = Stopwatch();
+        return go_on->preempted;
+      }
+      serve(std::move(received));
+    }
+  }
+
+  Channel channel_;
+  SharedBoard board_;
+  BoardGuard guard_;
+  std::map<uint64_t, Result<std::shared_ptr<const model::ModelFile>>> models_;  ///< by the server's number
+  std::unique_ptr<render::Renderer> renderer_;                                  ///< ends before the guard
+  std::vector<uint64_t> dropped_;                                               ///< IDs of models withdrawn
+  size_t depth_ = 0;  ///< pictures being drawn, each in the middle of the one before
+  Stopwatch since_asked_;
+};
+
+}  // namespace
+
+void run_worker(Descriptor socket, Descriptor memory, kinds::KindTable kinds) {
+  // The server says when to end, also when all processes of its terminal or unit get a signal.
+  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, SIG_IGN);
+  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // of the thread that started it, which draws
+  const rlimit no_cores{0, 0};
+  ::setrlimit(RLIMIT_CORE, &no_cores);
+  Result<SharedBoard> board = SharedBoard::adopt(std::move(memory));
+  if (!board) {
+    spdlog::error("render worker: {}", board.error().message);
+    end(EXIT_FAILURE);
+  }
+  RenderWorker(Channel(std::move(socket)), std::move(*board)).run(kinds);
+}
+
+}  // namespace surfcast::worker

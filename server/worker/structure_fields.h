@@ -1,0 +1,184 @@
+#pragma once
+
+#include "base/result.h"
+#include "geometry/box.h"
+#include "geometry/camera.h"
+#include "geometry/clip.h"
+#include "picture/device_info.h"
+#include "picture/picture.h"
+#include "render/renderer.h"
+#include "worker/archive.h"
+
+// The members of the structures that cross between the server and a render worker. Each is taken apart by a structured
+// binding, which does not compile any more once a structure has another member.
+
+namespace surfcast {
+
+template <typename Archive, worker::Is<Error> T>
+void fields(Archive& archive, T& value) {
+  auto& [kind, message] = value;
+  archive(kind, message);
+}
+
+}  // namespace surfcast
+
+namespace surfcast::geometry {
+
+template <typename Archive, worker::Is<Box> T>
+void fields(Archive& archive, T& value) {
+  auto& [min, max] = value;
+  archive(min, max);
+}
+
+template <typename Archive, worker::Is<Clip> T>
+void fields(Archive& archive, T& value) {
+  auto& [inside, outside] = value;
+  archive(inside, outside);
+}
+
+template <typename Archive, worker::Is<Camera> T>
+void fields(Archive& archive, T& value) {
+  auto& [position, focal_point, view_up, view_angle] = value;
+  archive(position, focal_point, view_up, view_angle);
+}
+
+}  // namespace surfcast::geometry
+
+namespace surfcast::picture {
+
+template <typename Archive, worker::Is<Coloring> T>
+void fields(Archive& archive, T& value) {
+  auto& [source, map, first, last, attribute] = value;
+  archive(source, map, first, last, attribute);
+}
+
+template <typename Archive, worker::Is<EyeDome> T>
+void fields(Archive& archive, T& value) {
+  auto& [strength, radius] = value;
+  archive(strength, radius);
+}
+
+template <typename Archive, worker::Is<ClassOpacity> T>
+void fields(Archive& archive, T& value) {
+  auto& [code, opacity] = value;
+  archive(code, opacity);
+}
+
+template <typename Archive, worker::Is<TransferPoint> T>
+void fields(Archive& archive, T& value) {
+  auto& [at, color, opacity, extinction] = value;
+  archive(at, color, opacity, extinction);
+}
+
+template <typename Archive, worker::Is<Transfer> T>
+void fields(Archive& archive, T& value) {
+  auto& [points, spacing, preset, first, last] = value;
+  archive(points, spacing, preset, first, last);
+}
+
+template <typename Archive, worker::Is<IsoSurface> T>
+void fields(Archive& archive, T& value) {
+  auto& [at, color, opacity] = value;
+  archive(at, color, opacity);
+}
+
+template <typename Archive, worker::Is<Slice> T>
+void fields(Archive& archive, T& value) {
+  auto& [point, normal, axis, index] = value;
+  archive(point, normal, axis, index);
+}
+
+template <typename Archive, worker::Is<VolumeOptions> T>
+void fields(Archive& archive, T& value) {
+  auto& [transfer, shaded, medium, isos, slices] = value;
+  archive(transfer, shaded, medium, isos, slices);
+}
+
+template <typename Archive, worker::Is<Threshold> T>
+void fields(Archive& archive, T& value) {
+  auto& [attribute, smallest, largest] = value;
+  archive(attribute, smallest, largest);
+}
+
+template <typename Archive, worker::Is<GlyphOptions> T>
+void fields(Archive& archive, T& value) {
+  auto& [shape, radius, scale, sharpness, thresholds] = value;
+  archive(shape, radius, scale, sharpness, thresholds);
+}
+
+template <typename Archive, worker::Is<Light> T>
+void fields(Archive& archive, T& value) {
+  auto& [direction, power] = value;
+  archive(direction, power);
+}
+
+template <typename Archive, worker::Is<Lighting> T>
+void fields(Archive& archive, T& value) {
+  auto& [ambient, specular, exponent, lights] = value;
+  archive(ambient, specular, exponent, lights);
+}
+
+template <typename Archive, worker::Is<PictureRequest> T>
+void fields(Archive& archive, T& value) {
+  auto& [camera, width, height, normalization, filter, shading, silhouettes, blends_behind, spacing, background, format,
+         loading, edition, viewer, rest_spacing, displayed_cut, max_missing_blocks, coloring, hidden_classes, clip,
+         eye_dome, volumes, splat_convention, glyphs, lighting, opacity, xray, class_opacities, ghost] = value;
+  archive(camera, width, height, normalization, filter, shading, silhouettes, blends_behind, spacing, background);
+  archive(format, loading, edition, viewer, rest_spacing, displayed_cut, max_missing_blocks, coloring, hidden_classes);
+  archive(clip, eye_dome, volumes, splat_convention, glyphs, lighting, opacity, xray, class_opacities, ghost);
+}
+
+template <typename Archive, worker::Is<StageTime> T>
+void fields(Archive& archive, T& value) {
+  auto& [name, milliseconds] = value;
+  archive(name, milliseconds);
+}
+
+template <typename Archive, worker::Is<LevelStats> T>
+void fields(Archive& archive, T& value) {
+  auto& [level, selected, drawn] = value;
+  archive(level, selected, drawn);
+}
+
+template <typename Archive, worker::Is<FrameStats> T>
+void fields(Archive& archive, T& value) {
+  auto& [surfels_drawn, blocks_drawn, blocks_selected, holes, blocks_waited_for, blocks_missing, blocks_resident,
+         bytes_resident, levels, gl_renderer, stages] = value;
+  archive(surfels_drawn, blocks_drawn, blocks_selected, holes, blocks_waited_for, blocks_missing, blocks_resident);
+  archive(bytes_resident, levels, gl_renderer, stages);
+}
+
+/// The pixels travel in shared memory.
+template <typename Archive, worker::Is<Frame> T>
+void fields(Archive& archive, T& value) {
+  auto& [image, camera, converged, nothing_pending, cut, preview, stats] = value;
+  auto& [width, height, format, pixels] = image;
+  archive(width, height, format, camera, converged, nothing_pending, cut, preview, stats);
+}
+
+template <typename Archive, worker::Is<MemoryBudgets> T>
+void fields(Archive& archive, T& value) {
+  auto& [gpu, host] = value;
+  archive(gpu, host);
+}
+
+template <typename Archive, worker::Is<DeviceInfo> T>
+void fields(Archive& archive, T& value) {
+  auto& [vendor, renderer, version, software, memory] = value;
+  archive(vendor, renderer, version, software, memory);
+}
+
+}  // namespace surfcast::picture
+
+namespace surfcast::render {
+
+/// The worker has its own table of kinds and its own guard.
+template <typename Archive, worker::Is<RendererConfig> T>
+void fields(Archive& archive, T& value) {
+  auto& [gpu, gpu_bytes, host_bytes, decoders, upload_bytes, motion_glyphs, viewers, gpu_kernels, list_entries,
+         shader_defines, kinds, load_guard] = value;
+  archive(gpu, gpu_bytes, host_bytes, decoders, upload_bytes, motion_glyphs, viewers, gpu_kernels, list_entries);
+  archive(shader_defines);
+}
+
+}  // namespace surfcast::render

@@ -1,0 +1,112 @@
+#include <cmath>
+#include <cstdlib>
+
+#include "cmd/serve_fixture.h"
+#include "object_store/range_server.h"
+
+namespace surfcast::cmd {
+namespace {
+
+using testing::Fault;
+using testing::RangeServer;
+
+constexpr const char* kList = "/bucket/?delimiter=%2F&list-type=2&prefix=";
+
+/// A coloured surface of so many points that its model is larger than what is read when it is opened.
+std::string hills() {
+  constexpr int kSide = 200;
+  std::ostringstream ply;
+  ply << "ply\nformat ascii 1.0\nelement vertex " << kSide * kSide
+      << "\nproperty float x\nproperty float y\nproperty float z\n"
+         "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n";
+  for (int i = 0; i < kSide * kSide; ++i) {
+    const int x = i % kSide;
+    const int y = i / kSide;
+    ply << x << ' ' << y << ' ' << std::sin(0.1 * x) * std::cos(0.07 * y) * 5 << ' ' << x << ' ' << y << ' '
+        << (x * y) % 256 << '\n';
+  }
+  return ply.str();
+}
+
+/// The server itself, with models in a store.
+class ServeStoreTest : public ServeTest {
+ protected:
+  void SetUp() override {
+    ::setenv("no_proxy", "127.0.0.1", 1);
+    ServeTest::SetUp();
+    model_ = build("square", hills());
+    ASSERT_GT(model_.size(), size_t{64} << 10);
+    store_.put("/bucket/square.surf", model_);
+  }
+
+  /// The bytes of the model of a scan.
+  [[nodiscard]] std::string build(const std::string& name, const std::string& ply) const {
+    const std::string scan = file(name + "_source.ply");
+    const std::string model = file(name + ".surf");
+    EXPECT_TRUE(write_file_atomically(scan, ply));
+    EXPECT_EQ(client::run_program(SURFCAST_SERVER " build " + scan + " --output " + model + " 2>&1").code, 0);
+    return content(model);
+  }
+  /// The picture that the server draws.
+  [[nodiscard]] std::string drawn(const std::string& model) const {
+    const client::ProgramOutcome outcome = draw(model);
+    EXPECT_EQ(outcome.code, 0) << outcome.output;
+    return content(file("drawn.png"));
+  }
+  /// What a list of S3 says of objects with these keys.
+  static std::string list_of(const std::vector<std::string>& keys) {
+    std::string xml = "<?xml version=\"1.0\"?><ListBucketResult><IsTruncated>false</IsTruncated>";
+    for (const std::string& key : keys) xml += "<Contents><Key>" + key + "</Key></Contents>";
+    return xml + "</ListBucketResult>";
+  }
+
+  RangeServer store_;
+  std::string model_;
+};
+
+TEST_F(ServeStoreTest, AUrlIsServedLikeAFile) {
+  serve(store_.url("/bucket/square.surf"));
+  EXPECT_EQ(client::run_program(SURFCAST_CLIENT " models " + url_).output, "square\n");
+  const std::string from_store = drawn("square");
+  end(SIGTERM);
+  serve(file("square.surf"));
+  EXPECT_TRUE(from_store == drawn("square"));
+}
+
+TEST_F(ServeStoreTest, TheModelsOfABucketAreListedAndNewOnesAreSeen) {
+  store_.put_page(kList, list_of({"square.surf", "notes.txt"}));
+  serve(store_.url("/bucket/") + " --store-refresh 0.1");
+  EXPECT_EQ(client::run_program(SURFCAST_CLIENT " models " + url_).output, "square\n");
+  EXPECT_FALSE(drawn("square").empty());
+  store_.put("/bucket/another.surf", model_);
+  store_.put_page(kList, list_of({"square.surf", "another.surf"}));
+  EXPECT_NE(list_until("another").find("another"), std::string::npos);
+  EXPECT_FALSE(drawn("another").empty());
+}
+
+TEST_F(ServeStoreTest, AFolderThatCannotBeListedIsOneLineAndTheEnd) {
+  const client::ProgramOutcome outcome =
+      client::run_program(SURFCAST_SERVER " serve --listen 127.0.0.1:0 " + store_.url("/none/") + " 2>&1");
+  EXPECT_EQ(outcome.code, 1);
+  EXPECT_NE(outcome.output.find("surfcastd: " + store_.url("/none/") + ": the store answers 404"), std::string::npos)
+      << outcome.output;
+}
+
+TEST_F(ServeStoreTest, WhatIsInTheBlockCacheIsNotFetchedAgain) {
+  const std::string flags = store_.url("/bucket/square.surf") + " --block-cache 10M";
+  serve(flags);
+  const std::string first = drawn("square");
+  end(SIGTERM);
+  store_.forget_requests();
+  store_.fail(Fault::kForbidden, 1000, /*after=*/2);  // the model is opened, and no block can be fetched
+  serve(flags);
+  EXPECT_TRUE(drawn("square") == first);
+  end(SIGTERM);
+  std::filesystem::remove_all(cache() + "/blocks");
+  store_.fail(Fault::kNone, 0);
+  serve(flags);
+  EXPECT_TRUE(drawn("square") == first);
+}
+
+}  // namespace
+}  // namespace surfcast::cmd
