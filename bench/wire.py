@@ -1,7 +1,10 @@
 """The framed protocol as far as the programs of this folder speak it, without a library: they also send errors."""
 import struct
 
-HELLO = b"\xf5SURFCST" + b"\1\0" + b"\0\0" + b"\0\0" + b"\6\0" + b"\0\0" + b"attack"
+
+def hello(program="attack"):
+    return b"\xf5SURFCST" + struct.pack("<HHHHH", 1, 0, 0, len(program), 0) + program.encode()
+
 
 # Numbers of kinds, protocol/surfcast.proto.
 DRAW_PICTURE, PING, OPEN_VIEW, UPDATE_VIEW, FRAME_PAINTED, RESUME = 4, 6, 8, 9, 10, 14
@@ -67,11 +70,10 @@ def request(number, kind, content=b""):
 class Session:
     """A connection of the framed protocol."""
 
-    def __init__(self, connection):
+    def __init__(self, connection, program="attack"):
         self.connection = connection
-        connection.sendall(HELLO)
-        hello = self.read(18)
-        self.read(hello[14] + 256 * hello[15] + hello[16] + 256 * hello[17])
+        connection.sendall(hello(program))
+        self.read(sum(struct.unpack("<HH", self.read(18)[14:])))
 
     def read(self, size):
         parts = bytearray()

@@ -43,7 +43,7 @@ struct BenchResults {
 
 Result<std::vector<BenchRecord>> run_clients(const BenchCommand& command, const BenchPlan& plan, int interrupt) {
   BenchResults results;
-  const ClientConfig config = command.limits.config(plan.server, interrupt);
+  const ClientConfig config = command.limits.config(protocol::ModelUrl{plan.server, plan.picture.model()}, interrupt);
   BenchPlan silent = plan;
   silent.reads = false;
   {

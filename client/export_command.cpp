@@ -136,8 +136,7 @@ Status export_points(const ExportCommand& command, int interrupt) {
   if (!url) throw CLI::ValidationError(url.error().message);
   const Result<wire::GetPoints> points = request_of(command, url->model);
   if (!points) throw CLI::ValidationError(points.error().message);
-  Result<ServerConnection> connection =
-      ServerConnection::open(url->server, command.limits.config(url->server, interrupt));
+  Result<ServerConnection> connection = ServerConnection::open(url->server, command.limits.config(*url, interrupt));
   if (!connection) return fail(std::move(connection.error()));
   wire::Request request;
   *request.mutable_get_points() = *points;

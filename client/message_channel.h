@@ -28,17 +28,19 @@ class MessageChannel {
   virtual Result<Bytes> read(TimePoint deadline) = 0;
 };
 
-/// Connects to a server: a WebSocket or the framed protocol, as the endpoint says. `interrupt` and `ca` are as in
-/// ClientConfig.
+/// Connects to a server: a WebSocket or the framed protocol, as the endpoint says. `interrupt`, `ca`
+/// and `model` are as in ClientConfig.
 Result<std::unique_ptr<MessageChannel>> connect_channel(const protocol::Endpoint& server,
                                                         MessageChannel::TimePoint deadline, int interrupt,
-                                                        const std::string& ca);
+                                                        const std::string& ca, const std::string& model);
 
 class ClientSocket;
 
 /// Each message after its length. The socket is connected.
 std::unique_ptr<MessageChannel> make_framed_channel(std::unique_ptr<ClientSocket> socket);
-/// Each message one binary message of a WebSocket, which is asked for with the hellos. `host` is as in a URL.
-std::unique_ptr<MessageChannel> make_websocket_channel(std::unique_ptr<ClientSocket> socket, const std::string& host);
+/// Each message one binary message of a WebSocket, which is asked for with the hellos. `host` and `target` are as in a
+/// URL.
+std::unique_ptr<MessageChannel> make_websocket_channel(std::unique_ptr<ClientSocket> socket, const std::string& host,
+                                                       const std::string& target);
 
 }  // namespace surfcast::client

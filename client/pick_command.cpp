@@ -21,7 +21,7 @@ Status pick(const PickCommand& command, int interrupt) {
       .and_then([&](wire::PickSurfel pick) {
         wire::Request request;
         *request.mutable_pick_surfel() = std::move(pick);
-        return ask_server(url->server, command.limits.config(url->server, interrupt), std::move(request));
+        return ask_server(url->server, command.limits.config(*url, interrupt), std::move(request));
       })
       .and_then([&](const wire::Answer& answer) { return command.flags.print(answer.pick_result()); });
 }

@@ -67,7 +67,7 @@ Status fetch_profile(const ProfileCommand& command, int interrupt) {
   if (!profile) throw CLI::ValidationError(profile.error().message);
   wire::Request request;
   *request.mutable_get_profile() = *profile;
-  return ask_server(url->server, command.limits.config(url->server, interrupt), std::move(request))
+  return ask_server(url->server, command.limits.config(*url, interrupt), std::move(request))
       .and_then([&](const wire::Answer& answer) { return save(command, answer.profile(), *format); });
 }
 

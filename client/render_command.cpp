@@ -20,8 +20,7 @@ Status render(const RenderCommand& command, int interrupt) {
   if (Status status = command.flags.check(); !status) throw CLI::ValidationError(status.error().message);
   const Result<wire::DrawPicture> picture = command.flags.request(url->model);
   if (!picture) return fail(picture.error());
-  Result<ServerConnection> connection =
-      ServerConnection::open(url->server, command.limits.config(url->server, interrupt));
+  Result<ServerConnection> connection = ServerConnection::open(url->server, command.limits.config(*url, interrupt));
   if (!connection) return fail(connection.error());
   return protocol::draw_and_save(command.flags, *picture, [&](const wire::DrawPicture& wanted) {
     wire::Request request;

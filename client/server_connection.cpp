@@ -15,7 +15,7 @@ ServerConnection::ServerConnection(const protocol::Endpoint& server, const Clien
 
 Result<ServerConnection> ServerConnection::open(const protocol::Endpoint& server, const ClientConfig& config) {
   const Clock::time_point deadline = Clock::now() + config.connect;
-  auto channel = connect_channel(server, deadline, config.interrupt, config.ca);
+  auto channel = connect_channel(server, deadline, config.interrupt, config.ca, config.model);
   if (!channel) {
     return fail(channel.error().kind, protocol::to_string(server) + ": cannot connect: " + channel.error().message);
   }
@@ -51,7 +51,8 @@ tl::unexpected<Error> ServerConnection::failed(ErrorKind kind, const std::string
 }
 
 Status ServerConnection::exchange_hellos(Clock::time_point deadline) {
-  return channel_->exchange_hellos(protocol::encode_hello(protocol::make_hello("surfcast")), deadline)
+  return channel_
+      ->exchange_hellos(protocol::encode_hello(protocol::make_client_hello("surfcast", config_.model)), deadline)
       .and_then([](const MessageChannel::Bytes& answer) { return protocol::decode_hello(answer); })
       .and_then([this](protocol::Hello hello) {
         server_ = std::move(hello);

@@ -20,6 +20,7 @@ struct ClientConfig {
   int interrupt = -1;                         ///< descriptor that becomes readable to end a wait; -1: none
   std::string token{};                        ///< that is named to the server; empty: none
   std::string ca{};                           ///< certificates to trust, a PEM file; empty: those of the system
+  std::string model{};                        ///< that will be asked for, so that proxies can choose a server by it
 };
 
 /// A connection to a server after the exchange of hellos, framed or by WebSocket as the endpoint states. Calls block;

@@ -54,4 +54,10 @@ ClientConfig TimeLimits::config(const protocol::Endpoint& server, int interrupt)
           .ca = ca};
 }
 
+ClientConfig TimeLimits::config(const protocol::ModelUrl& url, int interrupt) const {
+  ClientConfig with_model = config(url.server, interrupt);
+  with_model.model = url.model;
+  return with_model;
+}
+
 }  // namespace surfcast::client

@@ -18,6 +18,8 @@ struct TimeLimits {
   void add_to(CLI::App& command);
   /// For a server. Its token is that of the file, of the variable SURFCAST_TOKEN, or that which `login` has kept.
   [[nodiscard]] ClientConfig config(const protocol::Endpoint& server, int interrupt) const;
+  /// For requests of one model.
+  [[nodiscard]] ClientConfig config(const protocol::ModelUrl& url, int interrupt) const;
 
  private:
   [[nodiscard]] std::string token_for(const protocol::Endpoint& server) const;

@@ -37,7 +37,7 @@ void async_teardown(beast::role_type /*role*/, ImpatientSocket& socket, Handler&
 
 class WebSocketChannel : public MessageChannel {
  public:
-  WebSocketChannel(std::unique_ptr<ClientSocket> socket, std::string host);
+  WebSocketChannel(std::unique_ptr<ClientSocket> socket, std::string host, std::string target);
 
   Result<Bytes> exchange_hellos(std::span<const std::byte> hello, TimePoint deadline) override;
   Status write(std::span<const std::byte> message, TimePoint deadline) override;
@@ -49,6 +49,7 @@ class WebSocketChannel : public MessageChannel {
 
   std::unique_ptr<ClientSocket> socket_;  ///< whose connection stream_ has
   std::string host_;
+  std::string target_;
   websocket::response_type response_;
   Bytes outgoing_;
   beast::flat_buffer incoming_;
@@ -58,8 +59,11 @@ class WebSocketChannel : public MessageChannel {
   websocket::stream<ImpatientSocket, /*deflate=*/false> stream_;
 };
 
-WebSocketChannel::WebSocketChannel(std::unique_ptr<ClientSocket> socket, std::string host)
-    : socket_(std::move(socket)), host_(std::move(host)), stream_(ImpatientSocket(std::move(socket_->stream()))) {
+WebSocketChannel::WebSocketChannel(std::unique_ptr<ClientSocket> socket, std::string host, std::string target)
+    : socket_(std::move(socket)),
+      host_(std::move(host)),
+      target_(std::move(target)),
+      stream_(ImpatientSocket(std::move(socket_->stream()))) {
   stream_.binary(true);
   stream_.auto_fragment(false);
   stream_.read_message_max(protocol::kMaxAnswerBytes);
@@ -71,7 +75,7 @@ WebSocketChannel::WebSocketChannel(std::unique_ptr<ClientSocket> socket, std::st
 
 /// Turns the connection into a WebSocket.
 Status WebSocketChannel::upgrade(TimePoint deadline) {
-  stream_.async_handshake(response_, host_, "/ws", upgrading_.begin());
+  stream_.async_handshake(response_, host_, target_, upgrading_.begin());
   Status outcome = socket_->finish(upgrading_, deadline);
   if (outcome || upgrading_.pending) return outcome;
   const error_code& code = upgrading_.outcome;
@@ -127,8 +131,9 @@ Result<MessageChannel::Bytes> WebSocketChannel::read(TimePoint deadline) {
 
 }  // namespace
 
-std::unique_ptr<MessageChannel> make_websocket_channel(std::unique_ptr<ClientSocket> socket, const std::string& host) {
-  return std::make_unique<WebSocketChannel>(std::move(socket), host);
+std::unique_ptr<MessageChannel> make_websocket_channel(std::unique_ptr<ClientSocket> socket, const std::string& host,
+                                                       const std::string& target) {
+  return std::make_unique<WebSocketChannel>(std::move(socket), host, target);
 }
 
 }  // namespace surfcast::client

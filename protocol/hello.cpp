@@ -5,6 +5,7 @@
 
 #include "protocol/errors.h"
 #include "protocol/little_endian.h"
+#include "protocol/url_query.h"
 
 namespace surfcast::protocol {
 namespace {
@@ -35,6 +36,12 @@ void append_text(std::vector<std::byte>& bytes, const std::string& text) {
 Hello make_hello(const std::string& program) {
   Hello hello;
   hello.program = program + " " + SURFCAST_VERSION;
+  return hello;
+}
+
+Hello make_client_hello(const std::string& program, const std::string& model) {
+  Hello hello = make_hello(program);
+  if (!model.empty()) hello.program += " model=" + encode_escapes(model);
   return hello;
 }
 

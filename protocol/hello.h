@@ -45,6 +45,9 @@ inline constexpr std::string_view kWebSocketProtocol = "surfcast.v1";
 
 /// The hello of this build. `program` is the name of the executable.
 Hello make_hello(const std::string& program);
+/// The hello of a client that will ask for `model`, if that is known: "surfcast 0.1.0 model=church". The name is
+/// escaped as in a URL. Proxies send requests for one model to one server by it; servers do not read it.
+Hello make_client_hello(const std::string& program, const std::string& model);
 /// Serializes a hello. Texts longer than kMaxHelloTextBytes are truncated.
 std::vector<std::byte> encode_hello(const Hello& hello);
 

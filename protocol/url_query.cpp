@@ -45,6 +45,22 @@ Result<std::string> decode_escapes(std::string_view text) {
   return decoded;
 }
 
+std::string encode_escapes(std::string_view text) {
+  constexpr std::string_view kDigits = "0123456789ABCDEF";
+  constexpr std::string_view kUnreserved = "-._~";  // RFC 3986, 2.3
+  std::string escaped;
+  for (const char letter : text) {
+    const auto byte = static_cast<unsigned char>(letter);
+    const bool plain = (byte | 0x20) >= 'a' && (byte | 0x20) <= 'z';
+    if (plain || (byte >= '0' && byte <= '9') || kUnreserved.find(letter) != std::string_view::npos) {
+      escaped += letter;
+    } else {
+      escaped += {'%', kDigits[byte >> 4], kDigits[byte & 15]};
+    }
+  }
+  return escaped;
+}
+
 Status for_each_parameter(std::string_view query, const SetParameter& set) {
   std::set<std::string> seen;
   while (!query.empty()) {

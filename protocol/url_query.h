@@ -10,6 +10,8 @@ namespace surfcast::protocol {
 
 /// Decodes the percent escapes ("%2C") in part of a URL. A malformed escape or an escaped NUL is an error.
 Result<std::string> decode_escapes(std::string_view text);
+/// The reverse: all but letters, digits and "-._~" become escapes.
+std::string encode_escapes(std::string_view text);
 
 /// Sets the parameter `name` from its text.
 using SetParameter = std::function<Status(const std::string& name, const std::string& text)>;

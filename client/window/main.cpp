@@ -50,7 +50,7 @@ int run(int argc, char** argv) {
   if (!request)
     return command_line::report_failure(program_text(), request.error().message, command_line::kWrongCommandLine);
   request->target_fps = target_fps;
-  const Status outcome = view_in_window(*request, limits.config(request->url.server, -1));
+  const Status outcome = view_in_window(*request, limits.config(request->url, -1));
   return outcome ? command_line::kDone
                  : command_line::report_failure(program_text(), outcome.error().message, command_line::kFailed);
 }

@@ -84,6 +84,12 @@ TEST(ServerConnection, AnAnswerThatIsNotOneIsAnError) {
   EXPECT_EQ(error_of_asking(std::string("\x02\0\0\0\xff\xff", 6), /*stays=*/true).kind, ErrorKind::kInvalidInput);
 }
 
+TEST(ServerConnection, TheHelloNamesTheModelThatWillBeAskedFor) {
+  ScriptedServer server(bytes_of(protocol::make_hello("surfcastd")), /*stays=*/true);
+  { EXPECT_TRUE(ServerConnection::open(server.endpoint(), {.connect = kLong, .answer = kLong, .model = "church"})); }
+  EXPECT_TRUE(server.heard().ends_with(" model=church")) << server.heard();
+}
+
 TEST(ServerConnection, AnInterruptEndsTheWaitAndTheServerIsTold) {
   ScriptedServer server(bytes_of(protocol::make_hello("surfcastd")), /*stays=*/true);
   std::array<int, 2> ends{};

@@ -80,8 +80,8 @@ std::string text_of(const Result<MessageChannel::Bytes>& message) {
   return {reinterpret_cast<const char*>(message->data()), message->size()};
 }
 
-std::unique_ptr<MessageChannel> connect_to(const protocol::Endpoint& server) {
-  auto channel = connect_channel(server, in(kLong), -1, "");
+std::unique_ptr<MessageChannel> connect_to(const protocol::Endpoint& server, const std::string& model = "") {
+  auto channel = connect_channel(server, in(kLong), -1, "", model);
   EXPECT_TRUE(channel);
   return std::move(*channel);
 }
@@ -162,6 +162,14 @@ TEST(WebSocketChannel, PingsBetweenPiecesAreAnsweredAndAllIsMasked) {
   EXPECT_EQ(unmasked(heard.substr(0, 11)), "hello");
   EXPECT_EQ(heard.substr(11, 2), "\x8a\x82");
   EXPECT_EQ(unmasked(heard.substr(11)), "hi");
+}
+
+TEST(WebSocketChannel, ItsAddressNamesTheModel) {
+  ScriptedServer server("HTTP/1.1 403 Forbidden\r\nContent-Length: 0\r\n\r\n");
+  protocol::Endpoint endpoint = server.endpoint();
+  endpoint.websocket = true;
+  EXPECT_FALSE(greet(*connect_to(endpoint, "old church")));
+  EXPECT_TRUE(server.heard().starts_with("GET /ws?model=old%20church HTTP/1.1\r\n")) << server.heard();
 }
 
 TEST(WebSocketChannel, WhatAServerMustNotSendIsAnErrorAtOnce) {

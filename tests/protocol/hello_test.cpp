@@ -33,6 +33,12 @@ TEST(Hello, TheLayoutIsTheOneThatEveryVersionReads) {
   EXPECT_EQ(text, std::string("\xf5SURFCST\x01\x00\x02\x00\x00\x00\x01\x00\x02\x00pmm", 21));
 }
 
+TEST(Hello, OfAClientNamesItsModelAsOneWord) {
+  EXPECT_EQ(make_client_hello("surfcast", "").program, make_hello("surfcast").program);
+  EXPECT_EQ(make_client_hello("surfcast", "old church=1").program,
+            make_hello("surfcast").program + " model=old%20church%3D1");
+}
+
 TEST(Hello, NoMethodOfHttpBeginsWithItsFirstByte) {
   EXPECT_GE(kHelloMagic[0], 0x80);
 }

@@ -39,8 +39,8 @@ class FramedChannel:
         self._writer = writer
         self._max_answer = max_answer
 
-    async def say_hello(self) -> Hello:
-        self._writer.write(client_hello())
+    async def say_hello(self, model: str) -> Hello:
+        self._writer.write(client_hello(model))
         header = await self._read(HEADER_BYTES)
         return parse_hello(header + await self._read(text_bytes(header)))
 
@@ -79,8 +79,8 @@ class WebSocketChannel:
     def __init__(self, socket: Any) -> None:
         self._socket = socket
 
-    async def say_hello(self) -> Hello:
-        await self.send(client_hello())
+    async def say_hello(self, model: str) -> Hello:
+        await self.send(client_hello(model))
         return parse_hello(await self.receive())
 
     async def send(self, message: bytes) -> None:
@@ -116,7 +116,9 @@ async def _open_framed(endpoint: Endpoint, tls: ssl.SSLContext | None, max_answe
     return FramedChannel(reader, writer, max_answer)
 
 
-async def _open_websocket(endpoint: Endpoint, tls: ssl.SSLContext | None, max_answer: int) -> WebSocketChannel:
+async def _open_websocket(
+    endpoint: Endpoint, tls: ssl.SSLContext | None, max_answer: int, model: str
+) -> WebSocketChannel:
     try:
         websockets: Any = import_module("websockets")  # whose attributes are found late
     except ImportError as error:
@@ -124,7 +126,7 @@ async def _open_websocket(endpoint: Endpoint, tls: ssl.SSLContext | None, max_an
     scheme = "wss" if endpoint.encrypted else "ws"
     try:
         socket = await websockets.connect(
-            f"{scheme}://{endpoint.address}/ws",
+            f"{scheme}://{endpoint.address}/ws" + (f"?model={quote(model, safe='')}" if model else ""),
             subprotocols=[websockets.Subprotocol(_SUBPROTOCOL)],
             compression=None,
             max_size=max_answer,
@@ -136,18 +138,20 @@ async def _open_websocket(endpoint: Endpoint, tls: ssl.SSLContext | None, max_an
     return WebSocketChannel(socket)
 
 
-async def open_channel(endpoint: Endpoint, ca: str | None, max_answer: int) -> tuple[Channel, Hello]:
-    """Connects and exchanges hellos. Raises ConnectionLost, VersionMismatch, Unavailable or Unsupported."""
+async def open_channel(
+    endpoint: Endpoint, ca: str | None, max_answer: int, model: str = ""
+) -> tuple[Channel, Hello]:
+    """Connects, exchanges hellos, and names the model that is meant, if any, to proxies. Raises ConnectionLost, VersionMismatch, Unavailable or Unsupported."""
     channel: FramedChannel | WebSocketChannel
     try:
         if endpoint.websocket:
-            channel = await _open_websocket(endpoint, tls_context(endpoint, ca), max_answer)
+            channel = await _open_websocket(endpoint, tls_context(endpoint, ca), max_answer, model)
         else:
             channel = await _open_framed(endpoint, tls_context(endpoint, ca), max_answer)
     except OSError as error:  # errors of TLS are among them
         raise ConnectionLost(f"{endpoint.address}: {error}") from error
     try:
-        hello = await channel.say_hello()
+        hello = await channel.say_hello(model)
         check_hello(hello)
     except BaseException:
         await channel.close()

@@ -45,6 +45,7 @@ class Settings:
     max_answer: int = 512 << 20
     token: str | None = None
     ca: str | None = None
+    model: str = ""
 
 
 def error_of(error: wire.Error) -> errors.Error:
@@ -281,7 +282,9 @@ class Connection:
     async def _open(self) -> Link:
         try:
             async with asyncio.timeout(self.settings.connect_timeout) as limit:
-                channel, hello = await open_channel(self.endpoint, self.settings.ca, self.settings.max_answer)
+                channel, hello = await open_channel(
+                    self.endpoint, self.settings.ca, self.settings.max_answer, self.settings.model
+                )
         except TimeoutError as error:
             if not limit.expired():
                 raise

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import struct
 from dataclasses import dataclass
+from urllib.parse import quote
 
 from ._build import PROTOCOL, VERSION
 from .errors import ConnectionLost, Unavailable, VersionMismatch
@@ -25,9 +26,11 @@ class Hello:
     message: str
 
 
-def client_hello() -> bytes:
-    """The hello of this client."""
+def client_hello(model: str) -> bytes:
+    """The hello of this client. Proxies choose a server by the model that it names, if it does."""
     program = f"surfcast-python {VERSION}".encode()
+    if model:
+        program += f" model={quote(model, safe='')}".encode()
     return _HEADER.pack(_MAGIC, *PROTOCOL, 0, len(program), 0) + program
 
 

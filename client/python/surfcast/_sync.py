@@ -422,6 +422,7 @@ def connect(
     patience: float = 5.0,
     window: int = 32,
     pictures: int = 4,
+    model: str = "",
 ) -> Server:
     """Connects to a server at HOST:PORT, with tcp:// (the default), tcps://, ws:// or wss:// before it.
 
@@ -437,4 +438,5 @@ def connect(
         patience=patience,
         window=window,
         pictures=pictures,
+        model=model,
     )

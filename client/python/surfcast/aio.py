@@ -59,13 +59,15 @@ def connect(
     patience: float = 5.0,
     window: int = 32,
     pictures: int = 4,
+    model: str = "",
 ) -> Server:
     """A server at HOST:PORT, with tcp:// (the default), tcps://, ws:// or wss:// before it. Connects when entered.
 
     `token`: by default that of SURFCAST_TOKEN, or of `surfcast login`. `ca`: a PEM file of certificates to trust with
     TLS; by default SURFCAST_CA, or those of the system. Times are in seconds: `timeout` for an answer,
     `connect_timeout`, `reconnect` for trying to connect again after a loss (0: never), `patience` for trying again
-    what a busy server refuses. `window` and `pictures` bound the requests under way.
+    what a busy server refuses. `window` and `pictures` bound the requests under way. `model`: the one that most
+    requests are for, by which a proxy chooses the server.
     """
     endpoint = parse_endpoint(address)
     settings = Settings(
@@ -77,6 +79,7 @@ def connect(
         pictures=pictures,
         token=find_token(endpoint) if token is None else token,
         ca=ca or os.environ.get("SURFCAST_CA"),
+        model=model,
     )
     return Server(Connection(endpoint, settings))
 

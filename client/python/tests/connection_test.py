@@ -93,6 +93,18 @@ async def test_a_picture_that_nobody_waits_for_is_cancelled_on_the_server() -> N
             await task
 
 
+async def test_the_model_that_is_meant_is_named_to_proxies() -> None:
+    said: list[bytes] = []
+
+    async def listen(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        header = await reader.readexactly(18)
+        said.append(await reader.readexactly(struct.unpack_from("<H", header, 14)[0]))
+        writer.write(hello())
+
+    async with mock(listen) as address, aio.connect(address, model="old church"):
+        assert said[0].endswith(b" model=old%20church")
+
+
 async def test_a_server_of_another_version_is_told_apart() -> None:
     async def other(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
         await read_hello(reader)

@@ -40,9 +40,12 @@ function makeStage(): { stage: HTMLDivElement; picture: HTMLCanvasElement; overl
   return { stage, picture, overlay };
 }
 
+/** It names the open model, by which a proxy before several servers chooses one. */
 function socketUrl(): string {
   const url = new URL('ws', location.href.replace(/[?#].*$/, ''));
   url.protocol = url.protocol === 'https:' ? 'wss:' : 'ws:';
+  const model = store.model.peek();
+  if (model !== undefined) url.searchParams.set('model', model);
   return url.href;
 }
 
@@ -52,7 +55,8 @@ const copyLink = (): Promise<void> =>
 function start(): void {
   const { stage, picture, overlay } = makeStage();
   const eye = new CameraNavigator();
-  const controller = new ViewController(socketUrl(), picture, (now) => eye.step(now));
+  startRoutes();
+  const controller = new ViewController(socketUrl, picture, (now) => eye.step(now));
   const probe = new Probe(controller);
   const uploader = new Uploader(() => controller.refreshModels());
   acceptDrops(
@@ -68,7 +72,6 @@ function start(): void {
   });
   followSize(stage, (before, after) => eye.resized(before, after));
   startOverlay(overlay);
-  startRoutes();
   openTheOnly();
   const root = document.getElementById('root');
   if (root) {

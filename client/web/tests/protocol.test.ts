@@ -131,10 +131,12 @@ describe('a connection', () => {
 describe('a link', () => {
   const states: LinkState[] = [];
   const link: { current?: Link } = {};
+  let url = '';
   afterEach(() => link.current?.close());
   const follow = (opened: (connection: Connection, views: readonly bigint[]) => void): void => {
     states.length = 0;
-    link.current = new Link(server.url, {
+    url = server.url;
+    link.current = new Link(() => url, {
       changed: (state) => states.push(state),
       opened,
       closed: () => undefined,
@@ -151,6 +153,19 @@ describe('a link', () => {
     await vi.waitFor(() => expect(states.at(-1)?.kind).toBe('waiting'));
     server = await FakeServer.start(port);
     await vi.waitFor(() => expect(opened).toHaveLength(2), { timeout: 5000 });
+  });
+
+  it('connects anew to another URL, and only then', async () => {
+    const opened: Connection[] = [];
+    follow((connection) => opened.push(connection));
+    await vi.waitFor(() => expect(opened).toHaveLength(1));
+    link.current?.renew();
+    expect(states.at(-1)?.kind).toBe('open');
+    url = `${server.url}?model=church`;
+    link.current?.renew();
+    await vi.waitFor(() => expect(opened).toHaveLength(2));
+    expect(states.map((state) => state.kind)).toEqual(['connecting', 'open', 'connecting', 'open']);
+    expect(server.targets).toEqual(['/ws', '/ws?model=church']);
   });
 
   it('goes on with its session, and learns which views are open again', async () => {

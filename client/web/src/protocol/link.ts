@@ -26,8 +26,11 @@ export class Link {
   private session = '';
   private closed = false;
 
+  private openUrl = '';
+
+  /** `url`: of the server, at the time of connecting. */
   constructor(
-    private readonly url: string,
+    private readonly url: () => string,
     private readonly events: LinkEvents,
   ) {
     this.connect();
@@ -47,16 +50,30 @@ export class Link {
     this.connect();
   }
 
+  /** Connects anew if the URL is another one than when the connection was made. Its session ends. */
+  renew(): void {
+    const former = this.connection;
+    if (!former || this.openUrl === this.url()) return;
+    this.connection = undefined;
+    this.session = '';
+    former.close();
+    this.events.closed();
+    this.connect();
+  }
+
   private connect(): void {
     clearTimeout(this.timer);
     this.events.changed({ kind: 'connecting' });
-    const connection: Connection = new Connection(this.url, {
+    this.openUrl = this.url();
+    const connection: Connection = new Connection(this.openUrl, {
       opened: (hello: Hello) => {
         this.attempt = 0;
         this.events.changed({ kind: 'open', server: hello.program });
         void this.resume(connection);
       },
-      closed: (refusal, leaving) => this.lost(refusal, leaving),
+      closed: (refusal, leaving) => {
+        if (connection === this.connection) this.lost(refusal, leaving);
+      },
       received: (bytes) => this.events.received(bytes),
     });
     this.connection = connection;
@@ -69,10 +86,10 @@ export class Link {
     let views: readonly bigint[] = [];
     try {
       const resumed = await connection.ask({ case: 'resume', value: { session: this.session } }, 'resumed');
-      this.session = resumed.session;
+      if (connection === this.connection) this.session = resumed.session;
       views = resumed.views;
     } catch {
-      this.session = ''; // a server that keeps none, or the connection has ended
+      if (connection === this.connection) this.session = ''; // a server that keeps none
     }
     if (!first && connection === this.connection) this.events.opened(connection, views);
   }

@@ -59,7 +59,7 @@ export class ViewController {
 
   /** `step` advances animations of the eye to the given time. */
   constructor(
-    url: string,
+    url: () => string,
     canvas: HTMLCanvasElement,
     private readonly step: (now: number) => boolean,
   ) {
@@ -205,7 +205,9 @@ export class ViewController {
     this.endView();
     store.viewProblem.value = undefined;
     store.shownFrame.value = undefined;
-    if (model !== undefined) this.openView();
+    if (model === undefined) return;
+    if ((store.models.peek()?.length ?? 0) > 1) this.link.renew();
+    this.openView();
   }
 
   private openView(): void {

@@ -24,12 +24,17 @@ export class FakeServer {
   /** The answer to a request; undefined: none. */
   answer: (request: Request) => AnswerInit | undefined = () => undefined;
   clientHellos: Buffer[] = [];
+  /** Of the connections, as they were asked for. */
+  readonly targets: string[] = [];
   private readonly server: WebSocketServer;
   private readonly sockets = new Set<Socket>();
 
   private constructor(port: number) {
     this.server = new WebSocketServer({ port, host: '127.0.0.1', handleProtocols: () => 'surfcast.v1' });
-    this.server.on('connection', (socket) => this.serve(socket));
+    this.server.on('connection', (socket, request) => {
+      this.targets.push(request.url ?? '');
+      this.serve(socket);
+    });
   }
 
   static async start(port = 0): Promise<FakeServer> {
