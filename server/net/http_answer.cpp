@@ -282,9 +282,9 @@ HttpAnswer profile_answer(const std::string& name, const service::ProfileResult&
   return answer;
 }
 
-HttpAnswer point_count_answer(uint64_t points) {
+HttpAnswer point_count_answer(uint64_t points, uint64_t most) {
   HttpAnswer answer = json_answer({{"points", points}});
-  answer.headers = {{"Cache-Control", "no-cache"}};
+  answer.headers = {{"X-Surfcast-Max-Points", std::to_string(most)}, {"Cache-Control", "no-cache"}};
   return answer;
 }
 

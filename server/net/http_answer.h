@@ -52,8 +52,8 @@ HttpAnswer pick_answer(const std::optional<service::PickedPoint>& picked);
 /// The points of a profile as a file to save, and in the headers how many they are, and how many there are in the band.
 HttpAnswer profile_answer(const std::string& name, const service::ProfileResult& profile,
                           protocol::ProfileFormat format);
-/// {"points": 1234}
-HttpAnswer point_count_answer(uint64_t points);
+/// {"points": 1234}, and in a header how many there may be at most in a file.
+HttpAnswer point_count_answer(uint64_t points, uint64_t most);
 /// The beginning of a file of points to save, without a body, and in a header how many they are.
 HttpAnswer points_answer(const std::string& name, std::string_view format, uint64_t points);
 /// The page at / of a server without the viewer: how to install it.

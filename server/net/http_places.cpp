@@ -149,7 +149,7 @@ asio::awaitable<HttpAnswer> HttpPlaces::answer_points(HttpRoute route) {
   auto stream = co_await count(std::move(*job));
   if (!stream) co_return error_answer(stream.error());
   const uint64_t points = (*stream)->facts().count;
-  if (request->only_count()) co_return point_count_answer(points);
+  if (request->only_count()) co_return point_count_answer(points, (*stream)->most());
   HttpAnswer answer = points_answer(route.model, protocol::name_of(request->format()), points);
   answer.more = [self = shared_from_this(), stream = std::move(*stream)] { return self->next_piece(stream); };
   co_return answer;

@@ -16,10 +16,10 @@ PointStream::PointStream(exporter::ModelPoints points, const PointsJob& job,
                          std::shared_ptr<const std::atomic<bool>> cancelled)
     : points_(std::move(points)),
       format_(job.format),
+      most_(job.most),
+      only_count_(job.only_count),
       wanted_(job.only_count ? exporter::WantedFacts::kNumber : exporter::facts_for(job.format)),
-      cancelled_(std::move(cancelled)) {
-  if (!job.only_count) most_ = job.most;
-}
+      cancelled_(std::move(cancelled)) {}
 
 Result<std::unique_ptr<PointStream>> PointStream::open(std::shared_ptr<const model::ModelFile> model,
                                                        const PointsJob& job,
@@ -31,8 +31,8 @@ Result<std::unique_ptr<PointStream>> PointStream::open(std::shared_ptr<const mod
 
 Status PointStream::check() const {
   if (cancelled_->load(std::memory_order_relaxed)) return fail(ErrorKind::kCancelled, "cancelled");
-  if (!most_ || facts_.count <= *most_) return {};
-  return fail(ErrorKind::kLimit, "the region has more than " + std::to_string(*most_) +
+  if (only_count_ || facts_.count <= most_) return {};
+  return fail(ErrorKind::kLimit, "the region has more than " + std::to_string(most_) +
                                      " points, the most there may be: ask for a smaller one, or for every n-th point");
 }
 
@@ -50,7 +50,7 @@ Result<bool> PointStream::count() {
 }
 
 Status PointStream::prepare() {
-  if (!most_) return {};  // nothing is sent
+  if (only_count_) return {};
   auto encoder = exporter::make_point_encoder(format_, points_.schema(), facts_);
   if (!encoder) return fail(std::move(encoder.error()));
   encoder_ = std::move(*encoder);

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -45,6 +44,8 @@ class PointStream {
   Result<PointPiece> next(size_t bytes);
 
   [[nodiscard]] const exporter::PointFacts& facts() const { return facts_; }
+  /// The most points that are sent; more of them can only be counted.
+  [[nodiscard]] uint64_t most() const { return most_; }
   /// Keeps something as long as the stream.
   void keep(std::shared_ptr<const void> kept) { kept_ = std::move(kept); }
 
@@ -56,7 +57,8 @@ class PointStream {
 
   exporter::ModelPoints points_;
   exporter::PointFormat format_;
-  std::optional<uint64_t> most_;  ///< none: they are only counted
+  uint64_t most_;
+  bool only_count_;
   exporter::WantedFacts wanted_;
   std::shared_ptr<const std::atomic<bool>> cancelled_;
   exporter::PointFacts facts_;

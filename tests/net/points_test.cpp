@@ -184,7 +184,9 @@ TEST_F(PointsTest, AreCountedWithoutBeingSent) {
   service::ServiceLimits limits;
   limits.picks.region_points = 10;  // counting has no limit
   serve(cloud, limits);
-  EXPECT_THAT(fetch("count=1"), AllOf(StartsWith("HTTP/1.1 200"), HasSubstr("{\n  \"points\": 10000\n}")));
+  EXPECT_THAT(fetch("count=1"), AllOf(StartsWith("HTTP/1.1 200"), HasSubstr("{\n  \"points\": 10000\n}"),
+                                      HasSubstr("X-Surfcast-Max-Points: 10\r\n")));
+  EXPECT_THAT(fetch("count=1&max_points=7"), HasSubstr("X-Surfcast-Max-Points: 7\r\n"));
   EXPECT_THAT(fetch("count=1&every=3"), HasSubstr("\"points\": 3334"));
   auto connection = connect();
   ASSERT_TRUE(connection);

@@ -7,6 +7,7 @@ import ssl
 import struct
 from importlib import import_module
 from typing import Any, Protocol
+from urllib.parse import quote
 
 from ._endpoint import Endpoint
 from ._hello import HEADER_BYTES, Hello, check_hello, client_hello, parse_hello, text_bytes

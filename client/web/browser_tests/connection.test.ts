@@ -42,7 +42,7 @@ describe('the connection', () => {
   });
 
   it('says clearly that the server speaks another version', async () => {
-    await yard.page.routeWebSocket(/\/ws$/, (socket) => {
+    await yard.page.routeWebSocket(/\/ws(\?|$)/, (socket) => {
       socket.onMessage(() => socket.send(serverHello(9, 1, 'this yard.server speaks version 9.0')));
     });
     await yard.page.goto(`${yard.server.url}#/yard`);

@@ -1,4 +1,3 @@
-import { readFile } from 'node:fs/promises';
 import { describe, expect, it } from 'vitest';
 import { worldOf } from './support/las';
 import * as look from './support/page';
@@ -6,12 +5,8 @@ import { useYard } from './support/yard';
 
 const yard = useYard();
 
-/** A file that an action saves. */
-async function saved(action: () => Promise<void>): Promise<Buffer> {
-  const download = yard.page.waitForEvent('download', { timeout: 60_000 });
-  await action();
-  return readFile(await (await download).path());
-}
+/** The bytes of a file that an action saves. */
+const saved = async (action: () => Promise<void>): Promise<Buffer> => (await look.saved(yard.page, action)).bytes;
 
 /** Points of the scene in a band from a to b, by a search of them all. */
 function pointsInBand(a: number[], b: number[], width: number): number {

@@ -63,6 +63,34 @@ describe('a scan in degrees', () => {
     expect(column).toBeLessThan(29.5);
   });
 
+  it('tells where the cursor is in its own system', async () => {
+    await square.open();
+    const { page } = square;
+    const { x, y } = await look.middle(page);
+    await page.mouse.move(x, y);
+    await page.locator('.cursor:not(.stale)').waitFor();
+    const text = (await page.locator('.cursor').textContent()) ?? '';
+    expect(text).toMatch(/^X 9\.100\d+°Y 48\.700\d+°Z 250\.\d+WGS 84 \(EPSG:4326\)$/);
+    // The picture is in metres.
+    expect(await page.locator('.scale-bar figcaption').textContent()).toMatch(/^\d+ c?m$/);
+    expect(await page.locator('.compass').count()).toBe(1);
+  });
+
+  it('is saved in either system', async () => {
+    await square.open();
+    const { page } = square;
+    const firstRow = async (choice: string): Promise<number[]> => {
+      await page.keyboard.press('e');
+      const dialog = page.getByRole('dialog');
+      await dialog.getByText('CSV', { exact: true }).click();
+      await dialog.getByText(choice, { exact: true }).click();
+      const { bytes } = await look.saved(page, () => dialog.getByRole('button', { name: 'Save as CSV' }).click());
+      return bytes.toString().split('\n')[1]!.split(',').map(Number);
+    };
+    expect((await firstRow('Of the scan'))[0]).toBeCloseTo(west, 2);
+    expect((await firstRow('Of the model'))[0]).toBeGreaterThan(400_000);
+  });
+
   it('has the names of both systems among its facts', async () => {
     await square.open();
     await square.page.getByRole('button', { name: 'Model', exact: true }).click();

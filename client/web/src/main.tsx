@@ -13,11 +13,13 @@ import { acceptDrops, Uploader } from './input/uploads';
 import { startOverlay } from './overlay/overlay';
 import { currentLink, openModel, startRoutes } from './state/routes';
 import * as store from './state/store';
+import { startViewStorage } from './state/view_storage';
 import { ActionsContext, type Actions } from './ui/actions';
 import { App } from './ui/app';
 import { copyText } from './ui/clipboard';
 import { ViewController } from './view/view_controller';
 import { CameraNavigator } from './view/camera_navigator';
+import { CursorProbe } from './view/cursor_probe';
 import { Probe } from './view/probe';
 import { followSize } from './view/stage_size';
 
@@ -65,13 +67,15 @@ function start(): void {
     (files, rules) => uploader.add(files, rules),
   );
   const actions: Actions = { controller, navigator: eye, stage, uploader, copyLink: () => void copyLink() };
-  new StageInput(stage, eye, probe, new Tools(eye, probe));
+  const cursor = new CursorProbe((pixel) => probe.pick(pixel));
+  new StageInput(stage, eye, probe, new Tools(eye, probe), cursor);
   new Keyboard(stage, eye, {
     toggleFlight: () => (store.flying.value = !store.flying.peek()),
     copyLink: actions.copyLink,
   });
   followSize(stage, (before, after) => eye.resized(before, after));
   startOverlay(overlay);
+  startViewStorage();
   openTheOnly();
   const root = document.getElementById('root');
   if (root) {

@@ -1,3 +1,4 @@
+import { readFile } from 'node:fs/promises';
 import { chromium, type Browser, type BrowserContextOptions, type Page } from 'playwright-core';
 import { expect } from 'vitest';
 
@@ -35,6 +36,14 @@ export const sharp = (page: Page): Promise<unknown> =>
 export async function lamp(page: Page): Promise<string> {
   const names = (await page.locator('.status .lamp').getAttribute('class')) ?? '';
   return names.replace('lamp ', '');
+}
+
+/** A file that an action saves. */
+export async function saved(page: Page, action: () => Promise<void>): Promise<{ name: string; bytes: Buffer }> {
+  const download = page.waitForEvent('download', { timeout: 60_000 });
+  await action();
+  const file = await download;
+  return { name: file.suggestedFilename(), bytes: await readFile(await file.path()) };
 }
 
 /** A checksum of the picture's pixels. */

@@ -18,7 +18,7 @@ export class Wire {
   /** Before the page opens its connection. */
   static async tap(page: Page): Promise<Wire> {
     const wire = new Wire();
-    await page.routeWebSocket(/\/ws$/, (socket) => wire.connect(socket));
+    await page.routeWebSocket(/\/ws(\?|$)/, (socket) => wire.connect(socket));
     return wire;
   }
 

@@ -143,7 +143,9 @@ export class Keyboard {
       l: () => this.actions.copyLink(),
       c: () => togglePanel('clip'),
       o: () => togglePanel('look'),
+      s: () => togglePanel('views'),
       x: () => (store.dialog.value = 'screenshot'),
+      e: () => openPointsDialog(),
       '?': () => (store.dialog.value = 'help'),
       '`': () => (store.figuresOpen.value = !store.figuresOpen.value),
       '+': () => this.navigator.zoomStep(-1),
@@ -172,6 +174,11 @@ export function chooseTool(tool: store.Tool): void {
   if (tool === 'window' && !openVolume()) return;
   finish();
   store.tool.value = tool;
+}
+
+/** Only scans have points to save. */
+export function openPointsDialog(): void {
+  if (store.shownFrame.peek() && store.hasSurfels()) store.dialog.value = 'points';
 }
 
 export function togglePanel(panel: store.Panel): void {

@@ -7,6 +7,7 @@ import { setWindow, windowed } from '../state/volume';
 import { draggedWindow, windowNow, type Window, type Windowed } from '../volume/window';
 import { type Anchor, type Probe } from '../view/probe';
 import type { Drag } from '../view/camera_animator';
+import type { CursorProbe } from '../view/cursor_probe';
 import type { CameraNavigator } from '../view/camera_navigator';
 import { isClick, isDouble, pinchBetween, wheelPixels, type Press } from './gestures';
 import type { Tools } from './tools';
@@ -48,11 +49,13 @@ export class StageInput {
     private readonly navigator: CameraNavigator,
     private readonly probe: Probe,
     private readonly tools: Tools,
+    private readonly cursor: CursorProbe,
   ) {
     element.addEventListener('pointerdown', (event) => this.down(event));
     element.addEventListener('pointermove', (event) => this.move(event));
     element.addEventListener('pointerup', (event) => this.up(event));
     element.addEventListener('pointercancel', (event) => this.up(event, true));
+    element.addEventListener('pointerleave', () => this.cursor.left());
     element.addEventListener('wheel', (event) => this.wheel(event), { passive: false });
     element.addEventListener('contextmenu', (event) => event.preventDefault());
   }
@@ -79,6 +82,7 @@ export class StageInput {
     this.element.setPointerCapture(event.pointerId);
     const at = this.pixelOf(event);
     this.pointers.set(event.pointerId, at);
+    this.cursor.left();
     this.navigator.stop();
     if (this.pointers.size === 1) this.begin(event, at);
     else this.beginPinch();
@@ -136,6 +140,7 @@ export class StageInput {
     const stroke = this.stroke;
     this.stroke = undefined;
     this.navigator.hold(false);
+    this.hover(event);
     if (this.pull || this.windowDrag) {
       this.pull = undefined;
       this.windowDrag = undefined;
@@ -268,7 +273,11 @@ export class StageInput {
     store.display.value = { ...display, clips: display.clips.map((other, i) => (i === pull.index ? changed : other)) };
   }
 
+  /** The pointer is over the picture with no button pressed. A finger is not: it is gone once it is lifted. */
   private hover(event: PointerEvent): void {
-    this.element.style.cursor = this.handleUnder(this.pixelOf(event)) ? 'grab' : '';
+    if (event.pointerType === 'touch') return;
+    const at = this.pixelOf(event);
+    this.element.style.cursor = this.handleUnder(at) ? 'grab' : '';
+    this.cursor.moved(at);
   }
 }

@@ -51,11 +51,11 @@ export const display = signal<DisplayOptions>(defaultDisplay);
 export type Tool = 'navigate' | 'inspect' | MeasureKind | 'clip' | 'window';
 export const tool = signal<Tool>('navigate');
 export const flying = signal(false);
-export type Panel = 'look' | 'measure' | 'clip' | 'model';
+export type Panel = 'look' | 'measure' | 'clip' | 'views' | 'model';
 export const panel = signal<Panel | undefined>(undefined);
 /** The gallery of models covers the open model. */
 export const galleryOpen = signal(false);
-export type Dialog = 'screenshot' | 'help';
+export type Dialog = 'screenshot' | 'points' | 'help';
 export const dialog = signal<Dialog | undefined>(undefined);
 /** Files are held over the page that the server would take. */
 export const dropping = signal(false);
@@ -78,6 +78,15 @@ export interface Inspection {
 }
 export const inspection = signal<Inspection | undefined>(undefined);
 export const picking = signal(false);
+/** The point under the resting pointer; written by view/cursor_probe.ts. */
+export interface CursorPoint {
+  readonly at: Vector;
+  readonly ofSource: boolean; // in the system of the source; otherwise in that of the model
+  readonly stale: boolean; // the pointer or the picture has moved since
+}
+export const cursor = signal<CursorPoint | undefined>(undefined);
+/** The last point that the server found at a pixel, world coordinates; written by view/probe.ts. */
+export const lastPick = signal<Vector | undefined>(undefined);
 export const measurements = signal<readonly Measurement[]>([]);
 /** Id of the measurement to which clicks add points. */
 export const growing = signal<number | undefined>(undefined);
@@ -110,6 +119,13 @@ export const shownProjection = computed<Projection | undefined>(() => {
   const camera = cameraFrom(frame?.picture?.camera);
   if (!frame?.resolution || !camera) return undefined;
   return projectionOf(camera, skyOf(upAxis.value), frame.resolution.width, frame.resolution.height);
+});
+
+/** The picture on the screen is the final one of the current view: the server has nothing to draw. */
+export const pictureSettled = computed(() => {
+  const frame = shownFrame.value;
+  if (!frame || !frameIsCurrent.value || updatePending.value || moving.value) return false;
+  return frame.update >= wantedUpdate.value && !frame.moving && frame.picture?.converged === true;
 });
 
 /** Colours and opacities by attribute belong to surfels. A server that does not count its items by kind has no others. */

@@ -15,6 +15,9 @@ import { InspectCard } from './inspect_card';
 import { DisplayPanel, mapped, mappedName, shownRange } from './display_panel';
 import { MeasurePanel } from './measure_panel';
 import { ModelPanel } from './model_panel';
+import { Compass, CursorReadout, ScaleBar } from './orientation';
+import { PointsDialog } from './points_dialog';
+import { SavedViewsPanel } from './saved_views_panel';
 import { ScreenshotDialog } from './screenshot_dialog';
 import { StateCards } from './state_cards';
 import { FiguresCard, Status } from './status';
@@ -65,15 +68,24 @@ function Stage(): JSX.Element {
   return (
     <main class="stage" hidden={store.model.value === undefined || store.galleryOpen.value}>
       <Canvases />
-      <Gizmo />
+      <div class="aids">
+        <Gizmo />
+        <Compass />
+      </div>
       <Hint />
       <div class="foot">
         <div class="foot-left">
           <InspectCard />
           <FiguresCard />
-          <Status />
+          <div class="foot-line">
+            <Status />
+            <CursorReadout />
+          </div>
         </div>
-        <Legend />
+        <div class="foot-right">
+          <Legend />
+          <ScaleBar />
+        </div>
       </div>
     </main>
   );
@@ -83,6 +95,7 @@ const panels: Readonly<Record<store.Panel, () => JSX.Element | null>> = {
   look: DisplayPanel,
   measure: MeasurePanel,
   clip: ClipPanel,
+  views: SavedViewsPanel,
   model: ModelPanel,
 };
 
@@ -140,6 +153,7 @@ export function App(): JSX.Element {
       <StateCards />
       <UploadsCard />
       {store.dialog.value === 'screenshot' && <ScreenshotDialog />}
+      {store.dialog.value === 'points' && <PointsDialog />}
       {store.dialog.value === 'help' && <HelpDialog />}
     </div>
   );

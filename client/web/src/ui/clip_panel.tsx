@@ -1,8 +1,9 @@
 import type { JSX } from 'preact';
+import { openPointsDialog } from '../input/keyboard';
 import { axisNames, pulled, type AxisName } from '../overlay/clip_handles';
 import { addClipInTheMiddle, changeClip, removeClip } from '../overlay/clip_list';
 import type { Clip } from '../state/display_options';
-import { bounds, editedClip, lengthDecimals, display, tool } from '../state/store';
+import { bounds, editedClip, hasSurfels, lengthDecimals, display, tool } from '../state/store';
 import { Choices, IconButton, NumberField, Section } from './controls';
 import { Icon } from './icons';
 import { Ghost } from './opacity_section';
@@ -95,6 +96,11 @@ export function ClipPanel(): JSX.Element {
           <ClipCard key={index} {...{ clip, index }} />
         ))}
       </ul>
+      {clips.length > 0 && hasSurfels() && (
+        <button type="button" onClick={openPointsDialog}>
+          <Icon name="download" size={16} /> Save the points that are shown
+        </button>
+      )}
     </Section>
   );
 }

@@ -1,16 +1,14 @@
 import type { JSX } from 'preact';
 import { FileFormat, type Picture } from '../generated/surfcast_pb';
 import {
-  wantedUpdate,
   figures,
   figuresOpen,
-  frameIsCurrent,
   link,
   moving,
   openScan,
   picking,
+  pictureSettled,
   shownFrame,
-  updatePending,
   viewProblem,
 } from '../state/store';
 import { failed, progressText } from '../state/scans';
@@ -44,8 +42,7 @@ function stateNow(): State {
   if (picking.value) return { kind: 'working', text: 'Looking' };
   if (moving.value) return { kind: 'working', text: 'Moving' };
   if (frame.picture?.preview) return { kind: 'preview', text: previewText() };
-  const wanted = frameIsCurrent.value && !updatePending.value && frame.update >= wantedUpdate.value;
-  return wanted && !frame.moving && frame.picture?.converged ? { kind: 'sharp', text: 'Sharp' } : { kind: 'working', text: 'Refining' };
+  return pictureSettled.value ? { kind: 'sharp', text: 'Sharp' } : { kind: 'working', text: 'Refining' };
 }
 
 export function Status(): JSX.Element {

@@ -11,6 +11,7 @@ export const panelNames: Readonly<Record<store.Panel, { label: string; icon: Ico
   look: { label: 'Display', icon: 'look', hint: 'O' },
   measure: { label: 'Measure', icon: 'measure', hint: '' },
   clip: { label: 'Clip', icon: 'clip', hint: 'C' },
+  views: { label: 'Views', icon: 'bookmark', hint: 'S' },
   model: { label: 'Model', icon: 'model', hint: '' },
 };
 
@@ -69,7 +70,7 @@ export function ToolRail(): JSX.Element {
         />
       )}
       <hr />
-      {(['look', 'clip', 'model'] as const).map((name) => (
+      {(['look', 'clip', 'views', 'model'] as const).map((name) => (
         <IconButton
           key={name}
           icon={panelNames[name].icon}
@@ -128,7 +129,7 @@ export function PhoneBar(): JSX.Element {
           }}
         />
       )}
-      {(['measure', 'look', 'clip', 'model'] as const).map((name) => (
+      {(['measure', 'look', 'clip', 'views', 'model'] as const).map((name) => (
         <PhoneButton
           key={name}
           icon={panelNames[name].icon}

@@ -1,4 +1,5 @@
 import type { JSX } from 'preact';
+import { openPointsDialog } from '../input/keyboard';
 import { contentsOf } from '../state/contents';
 import * as store from '../state/store';
 import { useActions } from './actions';
@@ -46,6 +47,9 @@ export function TopBar(): JSX.Element {
               hint="X"
               onPress={() => (store.dialog.value = 'screenshot')}
             />
+            {store.description.value && store.hasSurfels() && (
+              <IconButton icon="download" label="Save points" hint="E" onPress={openPointsDialog} />
+            )}
           </>
         )}
         <IconButton icon="help" label="Help" hint="?" onPress={() => (store.dialog.value = 'help')} />

@@ -1,11 +1,11 @@
 import { batch } from '@preact/signals';
 import { look, orbit, pan, zoom, type Course } from '../camera/motion';
-import { focalPoint, type Pose } from '../camera/pose';
+import { focalPoint, poseAxes, poseOf, type Camera, type Pose } from '../camera/pose';
 import { diagonal, fit, standardView, type ViewName } from '../camera/standard_views';
 import { depthOf } from '../camera/projection';
-import { distance, subtract, dot, type Pixel, type Vector } from '../camera/vector';
-import { poseAxes } from '../camera/pose';
+import { addScaled, distance, subtract, dot, type Pixel, type Vector } from '../camera/vector';
 import type { Size } from '../protocol/pictures';
+import type { DisplayOptions } from '../state/display_options';
 import * as store from '../state/store';
 import { CameraAnimator, type Drag } from './camera_animator';
 
@@ -190,6 +190,28 @@ export class CameraNavigator {
   standard(name: ViewName): void {
     const pose = store.pose.peek();
     if (pose) this.travelTo(standardView(name, pose, store.upAxis.peek(), store.bounds.peek(), this.aspect()));
+  }
+
+  /** Turns the view about its focal point until north is ahead. */
+  faceNorth(): void {
+    const pose = store.pose.peek();
+    if (!pose) return;
+    const up = store.upAxis.peek();
+    const turned = { ...pose, yaw: 0 };
+    const position = addScaled(focalPoint(pose, up), poseAxes(turned, up).forward, -pose.distance);
+    this.travelTo({ ...turned, position });
+  }
+
+  /** Travels to a camera, with other display options from the start. */
+  goTo(camera: Camera, display: DisplayOptions): void {
+    this.animator.stop();
+    const turned = display.upsideDown !== store.display.peek().upsideDown;
+    batch(() => {
+      store.display.value = display;
+      const pose = poseOf(camera, store.upAxis.peek());
+      if (turned) store.pose.value = pose; // between two vertical axes there is no path
+      else this.travelTo(pose);
+    });
   }
 
   /** Centres the view on a point and reduces the distance to it to a third. */

@@ -18,7 +18,11 @@ export class Probe {
     const { width, height } = frame.resolution;
     const x = Math.min(width - 1, Math.max(0, Math.floor(pixel.x)));
     const y = Math.min(height - 1, Math.max(0, Math.floor(pixel.y)));
-    return this.controller.pick(pictureOf(model, camera, store.display.peek(), { width, height }), x, y);
+    const picture = pictureOf(model, camera, store.display.peek(), { width, height });
+    const result = await this.controller.pick(picture, x, y);
+    const { hit, position } = result;
+    if (hit && position && model === store.model.peek()) store.lastPick.value = vectorFrom(position);
+    return result;
   }
 
   /** The point under a pixel: an estimate at first, the surfel's position once the server has answered. */

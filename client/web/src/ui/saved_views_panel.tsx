@@ -1,0 +1,144 @@
+import type { JSX } from 'preact';
+import { useRef, useState } from 'preact/hooks';
+import { parsePlace } from '../state/place';
+import { currentHash } from '../state/routes';
+import { formatViews, longestName, parseViews, usualName, withViews, type SavedView } from '../state/saved_views';
+import { model, pose, showNotice } from '../state/store';
+import { changeViews, savedViews } from '../state/view_storage';
+import { useActions } from './actions';
+import { copyText, notAllowed } from './clipboard';
+import { IconButton, Section } from './controls';
+import { Icon } from './icons';
+import { saveFile } from './save_file';
+
+/** Changes the list, or says why that is not possible. */
+function change(changed: (views: readonly SavedView[]) => readonly SavedView[], done?: string): void {
+  try {
+    changeViews(changed);
+    if (done) showNotice(done);
+  } catch (error) {
+    showNotice(error instanceof Error ? error.message : String(error));
+  }
+}
+
+function SaveForm(): JSX.Element {
+  const [name, setName] = useState('');
+  const usual = usualName(savedViews.value);
+  const save = (event: Event): void => {
+    event.preventDefault();
+    change((views) => withViews(views, [{ name: name.trim() || usual, link: currentHash() }]), 'View saved.');
+    setName('');
+  };
+  return (
+    <form class="save-view" onSubmit={save}>
+      <input
+        type="text"
+        aria-label="Name of the view"
+        placeholder={usual}
+        maxLength={longestName}
+        value={name}
+        onInput={(event) => setName(event.currentTarget.value)}
+      />
+      <button type="submit" class="primary" disabled={!pose.value}>
+        Save
+      </button>
+    </form>
+  );
+}
+
+function ViewRow({ view }: { view: SavedView }): JSX.Element {
+  const { navigator } = useActions();
+  const go = (event: MouseEvent): void => {
+    if (event.ctrlKey || event.metaKey || event.shiftKey) return; // another tab or window
+    event.preventDefault();
+    const { camera, display } = parsePlace(view.link);
+    if (camera) navigator.goTo(camera, display);
+  };
+  const address = location.href.replace(/#.*$/, '') + view.link;
+  return (
+    <li class="view-row">
+      <a href={view.link} title={view.name} onClick={go}>
+        {view.name}
+      </a>
+      <IconButton
+        icon="link"
+        label={`Copy a link to ${view.name}`}
+        onPress={() => void copyText(address, 'Link copied.', notAllowed)}
+      />
+      <IconButton
+        icon="trash"
+        label={`Remove ${view.name}`}
+        onPress={() => change((views) => views.filter(({ name }) => name !== view.name))}
+      />
+    </li>
+  );
+}
+
+const exportViews = (): void =>
+  saveFile(
+    formatViews({ model: model.peek() ?? '', views: savedViews.peek() }),
+    `${model.peek() ?? 'model'}-views.json`,
+    'application/json',
+  );
+
+async function importViews(file: File): Promise<void> {
+  try {
+    const here = model.peek() ?? '';
+    const { of, views } = parseViews(await file.text(), here);
+    const before = savedViews.peek().length;
+    changeViews((list) => withViews(list, views));
+    const added = savedViews.peek().length - before;
+    const count = added === 1 ? '1 view was added' : `${added} views were added`;
+    showNotice(of === here ? `${count}.` : `${count}, which the file has of ${of}.`);
+  } catch (error) {
+    showNotice(error instanceof Error ? error.message : String(error));
+  }
+}
+
+function Files(): JSX.Element {
+  const input = useRef<HTMLInputElement>(null);
+  return (
+    <div class="button-pair">
+      <button type="button" disabled={savedViews.value.length === 0} onClick={exportViews}>
+        <Icon name="download" size={16} /> Export
+      </button>
+      <button type="button" onClick={() => input.current?.click()}>
+        <Icon name="upload" size={16} /> Import
+      </button>
+      <input
+        ref={input}
+        type="file"
+        accept=".json,application/json"
+        aria-label="File of views"
+        hidden
+        onChange={(event) => {
+          const [file] = event.currentTarget.files ?? [];
+          if (file) void importViews(file);
+          event.currentTarget.value = ''; // so that the same file can be chosen again
+        }}
+      />
+    </div>
+  );
+}
+
+/** Named views of the open model, which this browser keeps. */
+export function SavedViewsPanel(): JSX.Element {
+  const views = savedViews.value;
+  return (
+    <>
+      <Section title="Save this view">
+        <SaveForm />
+        <p class="faint">Camera, display and clip boxes. This browser keeps them; a file takes them elsewhere.</p>
+      </Section>
+      <Section title="Saved views">
+        {views.length === 0 && <p class="faint">There are none of this model yet.</p>}
+        <ul class="view-rows">
+          {views.map((view) => (
+            <ViewRow key={view.name} view={view} />
+          ))}
+        </ul>
+        <Files />
+      </Section>
+    </>
+  );
+}
