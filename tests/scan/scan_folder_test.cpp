@@ -1,7 +1,6 @@
 #include "scan/scan_folder.h"
 
 #include <filesystem>
-#include <fstream>
 #include <random>
 
 #include <brotli/encode.h>
@@ -10,6 +9,8 @@
 #include <zstd.h>
 
 #include "scan/bytes.h"
+#include "scan/scan_folder_fixture.h"
+#include "scan/tile_files.h"
 #include "scan/whole_scan.h"
 
 namespace surfcast::scan {
@@ -19,36 +20,11 @@ namespace fs = std::filesystem;
 using testing::Bytes;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using testing::one_point;
+using testing::pnts;
 using testing::scalar_values;
+using testing::ScanFolderTest;
 using ::testing::UnorderedElementsAre;
-
-/// A folder of its own for each test.
-class ScanFolderTest : public ::testing::Test {
- protected:
-  ScanFolderTest()
-      : folder_(fs::path(::testing::TempDir()) /
-                (std::string("scan_folder_") + ::testing::UnitTest::GetInstance()->current_test_info()->name())) {
-    fs::remove_all(folder_);
-  }
-  ~ScanFolderTest() override {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-  }
-
-  void write(const std::string& name, const std::string& content) const {
-    fs::create_directories((folder_ / name).parent_path());
-    std::ofstream(folder_ / name, std::ios::binary) << content;
-  }
-  [[nodiscard]] Result<testing::WholeScan> read(const Selection& selection = {}) const {
-    return testing::whole(ScanStream::open(folder_, {}, {}, selection));
-  }
-  [[nodiscard]] std::string error() const {
-    const Result<testing::WholeScan> points = read();
-    return points ? "" : points.error().message;
-  }
-
-  fs::path folder_;
-};
 
 geometry::Box box_of(const glm::dvec3& low, const glm::dvec3& high) {
   geometry::Box box;
@@ -273,26 +249,6 @@ TEST_F(ScanFolderTest, BothEncodingsOfPotree2AreRead) {
 
 // ---- 3D Tiles
 
-std::string padded(std::string text) {
-  while (text.size() % 8 != 0) text += ' ';
-  return text;
-}
-
-std::string pnts(std::string features, const std::string& bytes, std::string batches = {},
-                 const std::string& batch_bytes = {}) {
-  features = padded(std::move(features));
-  batches = batches.empty() ? batches : padded(std::move(batches));
-  const auto size = [](const std::string& text) { return static_cast<uint32_t>(text.size()); };
-  Bytes file("pnts");
-  file.add(uint32_t{1}).add(28 + size(features) + size(bytes) + size(batches) + size(batch_bytes));
-  file.add(size(features)).add(size(bytes)).add(size(batches)).add(size(batch_bytes));
-  return file.add_text(features + bytes + batches + batch_bytes).text();
-}
-
-std::string one_point(float x) {
-  return pnts(R"({"POINTS_LENGTH": 1, "POSITION": {"byteOffset": 0}})", Bytes().add(x).add(0.0F).add(0.0F).text());
-}
-
 TEST(PntsReaderTest, QuantisedPositionsAndPackedColoursAreUnpacked) {
   const std::string bytes = Bytes()
                                 .add(uint16_t{65535})
@@ -379,15 +335,15 @@ TEST_F(ScanFolderTest, TilesetsThatLeadAstrayAreRefused) {
     return error();
   };
   write("here.pnts", one_point(1));
-  write("mesh.glb", "glTF....");
+  write("damaged.glb", "glTF....");
+  write("a.i3dm", "i3dm....");
   EXPECT_EQ(with_content("here.pnts"), "");
   EXPECT_THAT(with_content("../here.pnts"), HasSubstr("outside of its folder"));
   EXPECT_THAT(with_content("/etc/passwd"), HasSubstr("without a usable name"));
   EXPECT_THAT(with_content("http://example.org/a.pnts"), HasSubstr("outside of its folder"));
   EXPECT_THAT(with_content("tileset.json"), HasSubstr("nested too deeply"));
-  EXPECT_THAT(with_content("mesh.glb"), HasSubstr("a tile of kind glTF is not supported"));
-  write("tileset.json", R"({"asset": {}, "root": {"implicitTiling": {}}})");
-  EXPECT_THAT(error(), HasSubstr("implicit tiling"));
+  EXPECT_THAT(with_content("damaged.glb"), HasSubstr("damaged.glb: truncated: GLB header"));
+  EXPECT_THAT(with_content("a.i3dm"), HasSubstr("a tile of kind i3dm is not supported"));
 }
 
 }  // namespace

@@ -4,29 +4,34 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string_view>
 #include <vector>
 
 #include "base/result.h"
-#include "mesh/json_access.h"
-#include "mesh/readers.h"
+#include "scan/json_access.h"
+#include "scan/row_source.h"
 
-namespace surfcast::mesh {
-
-using Bytes = std::span<const std::byte>;
+namespace surfcast::scan {
 
 /// The two parts of a glTF file.
 struct GltfParts {
   Json json;
-  Bytes binary;  ///< of GLB; empty without
+  std::span<const std::byte> binary;  ///< of GLB; empty without
 };
 
+/// True for text that begins like glTF.
+bool is_gltf_text(std::string_view text);
+
 /// Splits a file, and checks its version.
-Result<GltfParts> split_gltf(Bytes file);
+Result<GltfParts> split_gltf(std::span<const std::byte> file);
 
 /// The bytes of a data URI, encoded as base64; none if it is not one.
 std::optional<std::vector<std::byte>> decode_data_uri(std::string_view uri);
+
+/// Types of components (glTF 2.0, section 3.6.2.2).
+enum GltfType : uint64_t { kGltfInt8 = 5120, kGltfUint8, kGltfInt16, kGltfUint16, kGltfUint32 = 5125, kGltfFloat };
 
 /// Values of an accessor, component fastest. Normalised integers are from -1 or 0 to 1.
 struct AccessorValues {
@@ -40,27 +45,32 @@ struct AccessorValues {
 /// aside.
 class GltfBuffers {
  public:
-  /// Opens all buffers. `limit`: for what is decoded from text, and for all values read.
-  static Result<GltfBuffers> open(const ModelFile& file, const GltfParts& parts, const scan::DecodingLimit& limit);
+  /// Opens all buffers. `file`: the path of the glTF file, whose folder holds the buffers that it names. `limit`: for
+  /// what is decoded from text, and for all values read.
+  static Result<GltfBuffers> open(const std::filesystem::path& file, const GltfParts& parts,
+                                  const DecodingLimit& limit);
 
-  [[nodiscard]] Result<Bytes> view(const Json& json, uint64_t index) const;
+  [[nodiscard]] Result<std::span<const std::byte>> view(const Json& json, uint64_t index) const;
   Result<AccessorValues> values(const Json& json, uint64_t accessor);
+  /// Of all buffers.
+  [[nodiscard]] uint64_t bytes() const { return bytes_; }
   /// Counts memory against the limit.
   Status set_aside(uint64_t bytes);
   /// Keep the bytes of views.
   [[nodiscard]] const std::vector<std::shared_ptr<const void>>& contents() const { return contents_; }
 
  private:
-  explicit GltfBuffers(const scan::DecodingLimit& limit) : limit_(limit) {}
-  Result<Bytes> open_buffer(const ModelFile& file, const Json& buffer, Bytes binary, bool first);
+  explicit GltfBuffers(const DecodingLimit& limit) : limit_(limit) {}
+  Result<std::span<const std::byte>> open_buffer(const std::filesystem::path& file, const Json& buffer,
+                                                 std::span<const std::byte> binary, bool first);
   Status read_dense(const Json& json, const Json& accessor, AccessorValues& into) const;
   Status read_sparse(const Json& json, const Json& accessor, AccessorValues& into) const;
 
-  scan::DecodingLimit limit_;
-  std::vector<Bytes> buffers_;
+  DecodingLimit limit_;
+  std::vector<std::span<const std::byte>> buffers_;
   std::vector<std::shared_ptr<const void>> contents_;
-  uint64_t bytes_ = 0;  ///< of all buffers
+  uint64_t bytes_ = 0;
   uint64_t set_aside_ = 0;
 };
 
-}  // namespace surfcast::mesh
+}  // namespace surfcast::scan
