@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "base/invalid_input.h"
+#include "scan/draco_claims.h"
 
 namespace surfcast::scan {
 namespace {
@@ -30,6 +31,7 @@ Status ValueReader::add_compressed(const Json& compressed, const Json& stated, c
   const Result<std::span<const std::byte>> bytes =
       buffers_.view(json_, integer_of(compressed, "bufferView").value_or(UINT64_MAX));
   if (!bytes) return fail(bytes.error());
+  if (Status status = buffers_.set_aside(draco_decoded_bytes(*bytes)); !status) return status;
   std::map<std::string, uint32_t> ids;
   for (const std::string& name : wanted) {
     const std::optional<uint64_t> id = integer_of(member(compressed, "attributes"), name.c_str());

@@ -1,6 +1,7 @@
 #include "scan/scan_stream.h"
 
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -135,9 +136,10 @@ Status ScanStream::examine_rows(const std::filesystem::path& path, std::optional
   return {};
 }
 
-Result<ScanStream> ScanStream::open_content(std::span<const std::byte> bytes, const std::filesystem::path& path) {
+Result<ScanStream> ScanStream::open_content(std::span<const std::byte> bytes, const std::filesystem::path& path,
+                                            const DecodingLimit& limit) {
   ScanStream stream;
-  if (Status status = stream.examine(bytes, path, {}, {}, {}); !status) return fail(std::move(status.error()));
+  if (Status status = stream.examine(bytes, path, limit, {}, {}); !status) return fail(std::move(status.error()));
   return stream;
 }
 
@@ -156,6 +158,9 @@ Result<ScanStream> ScanStream::open(const std::filesystem::path& path, const Dec
     const Status status = stream.examine_folder(*folder, path, limit, sample, selection);
     if (!status) return fail(status.error());
     return stream;
+  }
+  if (std::error_code ignored; std::filesystem::is_directory(path, ignored)) {
+    return fail(ErrorKind::kUnsupported, path.string() + ": a folder that holds no description of a scan");
   }
   Result<MappedFile> file = MappedFile::open(path);
   if (!file) return fail(std::move(file.error()));

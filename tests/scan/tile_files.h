@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <initializer_list>
+#include <map>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -97,6 +98,46 @@ inline std::string bits_of(std::initializer_list<size_t> numbers, size_t count) 
 inline std::string subtree(const std::string& json, const std::string& binary) {
   const std::string text = padded(json);
   return Bytes("subt").add(uint32_t{1}).add(uint64_t{text.size()}).add(uint64_t{binary.size()}).text() + text + binary;
+}
+
+/// A tileset of one implicit tiling.
+inline nlohmann::json implicit_tileset(const std::string& scheme, int subtree_levels, int levels) {
+  const std::string key = scheme == "OCTREE" ? "{level}/{x}/{y}/{z}" : "{level}/{x}/{y}";
+  return {{"asset", {{"version", "1.1"}}},
+          {"root",
+           {{"refine", "ADD"},
+            {"content", {{"uri", "content/" + key + ".pnts"}}},
+            {"implicitTiling",
+             {{"subdivisionScheme", scheme},
+              {"subtreeLevels", subtree_levels},
+              {"availableLevels", levels},
+              {"subtrees", {{"uri", "subtrees/" + key + ".subtree"}}}}}}}};
+}
+
+inline constexpr const char* kBitStreams = R"({"buffers": [{"byteLength": 12}], "bufferViews": [
+  {"buffer": 0, "byteLength": 1}, {"buffer": 0, "byteOffset": 4, "byteLength": 1},
+  {"buffer": 0, "byteOffset": 8, "byteLength": 2}], "tileAvailability": {"bitstream": 0},
+  "contentAvailability": [{"bitstream": 1}], "childSubtreeAvailability": {"bitstream": 2}})";
+
+/// A quadtree of three levels in subtrees of two: root, tiles (0, 1) and (1, 1), and (3, 3) below the latter.
+inline std::map<std::string, std::string> quadtree_files(const std::string& refine) {
+  std::map<std::string, std::string> files;
+  nlohmann::json tileset = implicit_tileset("QUADTREE", 2, 3);
+  tileset["root"]["refine"] = refine;
+  tileset["root"]["transform"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 100, 1};
+  files["tileset.json"] = (tileset.dump());
+  const auto spaced = [](const std::string& bits) { return bits + std::string(4 - bits.size(), '\0'); };
+  files["subtrees/0/0/0.subtree"] =
+      (subtree(kBitStreams, spaced(bits_of({0, 3, 4}, 5)) + spaced(bits_of({0, 3, 4}, 5)) + spaced(bits_of({15}, 16))));
+  files["subtrees/2/3/3.subtree"] = (R"({"tileAvailability": {"bitstream": 0}, "contentAvailability": [{"constant": 1}],
+      "childSubtreeAvailability": {"constant": 0}, "bufferViews": [{"buffer": 0, "byteOffset": 1, "byteLength": 1}],
+      "buffers": [{"uri": "bits.bin", "byteLength": 2}]})");
+  files["subtrees/2/3/bits.bin"] = ("\x01\x01");
+  files["content/0/0/0.pnts"] = (one_point(0));
+  files["content/1/0/1.pnts"] = (one_point(1));
+  files["content/1/1/1.pnts"] = (one_point(2));
+  files["content/2/3/3.pnts"] = (one_point(3));
+  return files;
 }
 
 }  // namespace surfcast::testing

@@ -1,11 +1,9 @@
 #include <cmath>
 
-#include <draco/attributes/point_attribute.h>
-#include <draco/compression/encode.h>
-#include <draco/point_cloud/point_cloud_builder.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "scan/samples.h"
 #include "scan/scan_folder_fixture.h"
 #include "scan/tile_files.h"
 
@@ -13,9 +11,11 @@ namespace surfcast::scan {
 namespace {
 
 using Json = nlohmann::json;
+using testing::draco_points;
 using ::testing::ElementsAre;
 using testing::GltfFile;
 using ::testing::HasSubstr;
+using testing::implicit_tileset;
 using testing::one_point;
 using testing::scalar_values;
 using testing::ScanFolderTest;
@@ -108,40 +108,6 @@ TEST_F(GltfTilesTest, ColoursAreLinearLight) {
   EXPECT_EQ(color_of(file).values[0], glm::u16vec3(srgb(0.25, 65535), srgb(0.5, 65535), srgb(0.25, 65535)));
 }
 
-/// Two points with colours and a number, compressed.
-GltfFile draco_points() {
-  draco::PointCloudBuilder builder;
-  builder.Start(2);
-  const int position = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
-  const int color = builder.AddAttribute(draco::GeometryAttribute::COLOR, 4, draco::DT_UINT8);
-  const int number = builder.AddAttribute(draco::GeometryAttribute::GENERIC, 1, draco::DT_UINT16);
-  for (uint32_t i = 0; i < 2; ++i) {
-    const float xyz[3] = {static_cast<float>(i), 2, 3};
-    const uint8_t rgba[4] = {static_cast<uint8_t>(255 * i), 255, 0, 255};
-    const auto value = static_cast<uint16_t>(500 + i);
-    builder.SetAttributeValueForPoint(position, draco::PointIndex(i), xyz);
-    builder.SetAttributeValueForPoint(color, draco::PointIndex(i), rgba);
-    builder.SetAttributeValueForPoint(number, draco::PointIndex(i), &value);
-  }
-  const std::unique_ptr<draco::PointCloud> cloud = builder.Finalize(false);
-  draco::Encoder encoder;
-  encoder.SetEncodingMethod(draco::POINT_CLOUD_SEQUENTIAL_ENCODING);
-  draco::EncoderBuffer buffer;
-  EXPECT_TRUE(encoder.EncodePointCloudToBuffer(*cloud, &buffer).ok());
-  GltfFile file;
-  const size_t view = file.add_view({buffer.data(), buffer.size()});
-  file.json["accessors"] = {{{"componentType", 5126}, {"count", 2}, {"type", "VEC3"}},
-                            {{"componentType", 5121}, {"count", 2}, {"type", "VEC4"}, {"normalized", true}},
-                            {{"componentType", 5123}, {"count", 2}, {"type", "SCALAR"}}};
-  file.primitive()["attributes"] = {{"POSITION", 0}, {"COLOR_0", 1}, {"_INTENSITY", 2}};
-  const Json ids = {{"POSITION", cloud->attribute(position)->unique_id()},
-                    {"COLOR_0", cloud->attribute(color)->unique_id()},
-                    {"_INTENSITY", cloud->attribute(number)->unique_id()}};
-  file.primitive()["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", view}, {"attributes", ids}};
-  file.json["extensionsRequired"] = {"KHR_draco_mesh_compression"};
-  return file;
-}
-
 TEST_F(GltfTilesTest, CompressedPointsKeepTheirAttributes) {
   GltfFile file = draco_points();
   const Result<testing::WholeScan> points = read_tile(file);
@@ -221,45 +187,10 @@ TEST_F(GltfTilesTest, AFileAloneKeepsItsVerticalAxis) {
 
 // ---- implicit tilings
 
-/// A tileset of one implicit tiling.
-Json implicit_tileset(const std::string& scheme, int subtree_levels, int levels) {
-  const std::string key = scheme == "OCTREE" ? "{level}/{x}/{y}/{z}" : "{level}/{x}/{y}";
-  return {{"asset", {{"version", "1.1"}}},
-          {"root",
-           {{"refine", "ADD"},
-            {"content", {{"uri", "content/" + key + ".pnts"}}},
-            {"implicitTiling",
-             {{"subdivisionScheme", scheme},
-              {"subtreeLevels", subtree_levels},
-              {"availableLevels", levels},
-              {"subtrees", {{"uri", "subtrees/" + key + ".subtree"}}}}}}}};
-}
-
-constexpr const char* kBitStreams = R"({"buffers": [{"byteLength": 12}], "bufferViews": [
-  {"buffer": 0, "byteLength": 1}, {"buffer": 0, "byteOffset": 4, "byteLength": 1},
-  {"buffer": 0, "byteOffset": 8, "byteLength": 2}], "tileAvailability": {"bitstream": 0},
-  "contentAvailability": [{"bitstream": 1}], "childSubtreeAvailability": {"bitstream": 2}})";
-
 class ImplicitTilesTest : public ScanFolderTest {
  protected:
-  /// A quadtree of three levels in subtrees of two: root, tiles (0, 1) and (1, 1), and (3, 3) below the latter.
   void write_quadtree(const std::string& refine) const {
-    Json tileset = implicit_tileset("QUADTREE", 2, 3);
-    tileset["root"]["refine"] = refine;
-    tileset["root"]["transform"] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 100, 1};
-    write("tileset.json", tileset.dump());
-    const auto spaced = [](const std::string& bits) { return bits + std::string(4 - bits.size(), '\0'); };
-    write("subtrees/0/0/0.subtree", testing::subtree(kBitStreams, spaced(testing::bits_of({0, 3, 4}, 5)) +
-                                                                      spaced(testing::bits_of({0, 3, 4}, 5)) +
-                                                                      spaced(testing::bits_of({15}, 16))));
-    write("subtrees/2/3/3.subtree", R"({"tileAvailability": {"bitstream": 0}, "contentAvailability": [{"constant": 1}],
-      "childSubtreeAvailability": {"constant": 0}, "bufferViews": [{"buffer": 0, "byteOffset": 1, "byteLength": 1}],
-      "buffers": [{"uri": "bits.bin", "byteLength": 2}]})");
-    write("subtrees/2/3/bits.bin", "\x01\x01");
-    write("content/0/0/0.pnts", one_point(0));
-    write("content/1/0/1.pnts", one_point(1));
-    write("content/1/1/1.pnts", one_point(2));
-    write("content/2/3/3.pnts", one_point(3));
+    for (const auto& [name, text] : testing::quadtree_files(refine)) write(name, text);
   }
 };
 
