@@ -9,6 +9,7 @@
 
 #include "base/invalid_input.h"
 #include "base/mapped_file.h"
+#include "scan/meshopt.h"
 #include "scan/named_file.h"
 #include "scan/text_tokens.h"
 
@@ -147,6 +148,10 @@ void read_item(const std::byte* from, const AccessorType& type, double* to) {
   for (size_t k = 0; k < type.components; ++k) to[k] = component_at(from + k * size, type.component, type.normalized);
 }
 
+MeshoptView meshopt_view(const Json& packed, std::string_view mode, std::string_view filter) {
+  return {integer_of(packed, "count").value_or(0), integer_of(packed, "byteStride").value_or(0), mode, filter};
+}
+
 }  // namespace
 
 bool is_gltf_text(std::string_view text) {
@@ -203,6 +208,12 @@ Result<GltfBuffers> GltfBuffers::open(const std::filesystem::path& file, const G
     buffers.buffers_.push_back(*bytes);
     buffers.bytes_ += bytes->size();
   }
+  for (const Json& view : member(parts.json, "bufferViews")) {
+    const Json& packed = member(member(view, "extensions"), kMeshoptExtension);
+    const Result<Bytes> bytes = buffers.range(packed);
+    const MeshoptView stated = meshopt_view(packed, {}, {});
+    if (bytes && meshopt_claim_is_plausible(*bytes, stated)) buffers.bytes_ += stated.count * stated.stride;
+  }
   return buffers;
 }
 
@@ -230,8 +241,7 @@ Status GltfBuffers::set_aside(uint64_t bytes) {
   return limit_.check(set_aside_);
 }
 
-Result<Bytes> GltfBuffers::view(const Json& json, uint64_t index) const {
-  const Json& stated = element(member(json, "bufferViews"), index);
+Result<Bytes> GltfBuffers::range(const Json& stated) const {
   const std::optional<uint64_t> buffer = integer_of(stated, "buffer");
   const uint64_t offset = integer_of(stated, "byteOffset").value_or(0);
   const std::optional<uint64_t> length = integer_of(stated, "byteLength");
@@ -243,7 +253,29 @@ Result<Bytes> GltfBuffers::view(const Json& json, uint64_t index) const {
   return bytes.subspan(static_cast<size_t>(offset), static_cast<size_t>(*length));
 }
 
-Status GltfBuffers::read_dense(const Json& json, const Json& accessor, AccessorValues& into) const {
+Result<Bytes> GltfBuffers::decompress(const Json& packed, uint64_t index) {
+  if (const auto known = decompressed_.find(index); known != decompressed_.end()) return known->second;
+  const Result<Bytes> bytes = range(packed);
+  if (!bytes) return bytes;
+  const std::string mode = text_of(packed, "mode");
+  const std::string filter = text_of(packed, "filter");
+  const MeshoptView stated = meshopt_view(packed, mode, filter);
+  if (!meshopt_claim_is_plausible(*bytes, stated)) return invalid_input("damaged or truncated meshopt data");
+  if (Status status = set_aside(stated.count * stated.stride); !status) return fail(std::move(status.error()));
+  Result<std::vector<std::byte>> made = decode_meshopt(*bytes, stated);
+  if (!made) return fail(std::move(made.error()));
+  const auto kept = std::make_shared<const std::vector<std::byte>>(std::move(*made));
+  contents_.push_back(kept);
+  return decompressed_[index] = Bytes(*kept);
+}
+
+Result<Bytes> GltfBuffers::view(const Json& json, uint64_t index) {
+  const Json& stated = element(member(json, "bufferViews"), index);
+  const Json& packed = member(member(stated, "extensions"), kMeshoptExtension);
+  return packed.is_object() ? decompress(packed, index) : range(stated);
+}
+
+Status GltfBuffers::read_dense(const Json& json, const Json& accessor, AccessorValues& into) {
   const AccessorType type(accessor);
   const std::optional<uint64_t> number = integer_of(accessor, "bufferView");
   if (!number) return {};  // zeros
@@ -261,7 +293,7 @@ Status GltfBuffers::read_dense(const Json& json, const Json& accessor, AccessorV
   return {};
 }
 
-Status GltfBuffers::read_sparse(const Json& json, const Json& accessor, AccessorValues& into) const {
+Status GltfBuffers::read_sparse(const Json& json, const Json& accessor, AccessorValues& into) {
   const Json& sparse = member(accessor, "sparse");
   if (!sparse.is_object()) return {};
   const AccessorType type(accessor);

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <map>
 #include <memory>
 #include <optional>
 #include <span>
@@ -20,6 +21,8 @@ struct GltfParts {
   Json json;
   std::span<const std::byte> binary;  ///< of GLB; empty without
 };
+
+inline constexpr const char* kMeshoptExtension = "EXT_meshopt_compression";
 
 /// True for text that begins like glTF.
 bool is_gltf_text(std::string_view text);
@@ -50,9 +53,10 @@ class GltfBuffers {
   static Result<GltfBuffers> open(const std::filesystem::path& file, const GltfParts& parts,
                                   const DecodingLimit& limit);
 
-  [[nodiscard]] Result<std::span<const std::byte>> view(const Json& json, uint64_t index) const;
+  /// The bytes of a buffer view, decompressed where it says so (EXT_meshopt_compression).
+  Result<std::span<const std::byte>> view(const Json& json, uint64_t index);
   Result<AccessorValues> values(const Json& json, uint64_t accessor);
-  /// Of all buffers.
+  /// Of all buffers, and of what is compressed in them.
   [[nodiscard]] uint64_t bytes() const { return bytes_; }
   /// Counts memory against the limit.
   Status set_aside(uint64_t bytes);
@@ -63,14 +67,18 @@ class GltfBuffers {
   explicit GltfBuffers(const DecodingLimit& limit) : limit_(limit) {}
   Result<std::span<const std::byte>> open_buffer(const std::filesystem::path& file, const Json& buffer,
                                                  std::span<const std::byte> binary, bool first);
-  Status read_dense(const Json& json, const Json& accessor, AccessorValues& into) const;
-  Status read_sparse(const Json& json, const Json& accessor, AccessorValues& into) const;
+  /// The bytes that a view or its compressed form names.
+  [[nodiscard]] Result<std::span<const std::byte>> range(const Json& stated) const;
+  Result<std::span<const std::byte>> decompress(const Json& packed, uint64_t index);
+  Status read_dense(const Json& json, const Json& accessor, AccessorValues& into);
+  Status read_sparse(const Json& json, const Json& accessor, AccessorValues& into);
 
   DecodingLimit limit_;
   std::vector<std::span<const std::byte>> buffers_;
   std::vector<std::shared_ptr<const void>> contents_;
   uint64_t bytes_ = 0;
   uint64_t set_aside_ = 0;
+  std::map<uint64_t, std::span<const std::byte>> decompressed_;  ///< views
 };
 
 }  // namespace surfcast::scan

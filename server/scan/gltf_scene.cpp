@@ -58,8 +58,8 @@ void push(const Json& numbers, const glm::dmat4& to_world, OpenNodes& open) {
 }  // namespace
 
 Status check_gltf_extensions(const Json& json, std::span<const std::string_view> also) {
-  constexpr std::array<std::string_view, 4> kRead{kDracoExtension, "KHR_mesh_quantization", "EXT_mesh_features",
-                                                  "EXT_structural_metadata"};
+  constexpr std::array<std::string_view, 5> kRead{kDracoExtension, kMeshoptExtension, "KHR_mesh_quantization",
+                                                  "EXT_mesh_features", "EXT_structural_metadata"};
   for (const Json& stated : member(json, "extensionsRequired")) {
     if (!stated.is_string()) continue;
     const auto name = stated.get<std::string>();

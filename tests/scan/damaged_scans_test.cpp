@@ -161,6 +161,7 @@ std::vector<Scan> all_scans() {
   add_file("draco.pnts", draco_pnts());
   add_file("points.glb", gltf().binary());
   add_file("draco.glb", testing::draco_points().binary());
+  add_file("meshopt.glb", testing::meshopt_points().binary());
   scans.push_back({"repaired.e57", {{"repaired.e57", testing::two_scans()}}, {}, repair_e57});
   Scan copc{"copc.laz", {{"copc.laz", testing::copc_file({3, 5, 2})}}, "copc.laz"};
   geometry::Box box;

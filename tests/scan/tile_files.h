@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <initializer_list>
 #include <map>
@@ -54,6 +55,20 @@ struct GltfFile {
     return json["bufferViews"].size() - 1;
   }
 
+  /// A view of compressed elements. An empty filter is left out.
+  size_t add_packed_view(const std::string& packed, const std::string& mode, size_t count, size_t stride,
+                         const std::string& filter = {}) {
+    const size_t view = add_view(packed);
+    Json& stated = json["bufferViews"][view];
+    Json extension = stated;
+    extension.update({{"mode", mode}, {"count", count}, {"byteStride", stride}});
+    if (!filter.empty()) extension["filter"] = filter;
+    stated = {{"buffer", 1}, {"byteLength", count * stride}, {"extensions", {{"EXT_meshopt_compression", extension}}}};
+    if (mode == "ATTRIBUTES") stated["byteStride"] = stride;
+    json["extensionsRequired"] = {"EXT_meshopt_compression"};
+    return view;
+  }
+
   /// `type`: of a component, as glTF numbers them; `shape`: SCALAR, VEC3 and so on.
   template <typename T>
   GltfFile& add(const std::string& attribute, int type, const std::string& shape, size_t count,
@@ -86,6 +101,88 @@ struct GltfFile {
     return file.add(size(bytes)).add_text(std::string("BIN\0", 4)).add_text(bytes).text();
   }
 };
+
+/// Elements of `stride` bytes as an attribute stream of EXT_meshopt_compression. Groups take turns at the ways in which
+/// they may be coded.
+inline std::string meshopt_attributes(const std::string& plain, size_t stride) {
+  const size_t count = plain.size() / stride;
+  const size_t block = std::min<size_t>(8192 / stride & ~size_t{15}, 256);
+  const auto difference = [&](size_t i, size_t k) -> uint8_t {
+    if (i >= count) return 0;
+    const int before = i == 0 ? 0 : plain[(i - 1) * stride + k];
+    const auto step = static_cast<int8_t>(plain[i * stride + k] - before);
+    return static_cast<uint8_t>(step < 0 ? -2 * step - 1 : 2 * step);
+  };
+  std::string packed = "\xA0";
+  for (size_t first = 0; first < count; first += block) {
+    const size_t groups = (std::min(block, count - first) + 15) / 16;
+    for (size_t k = 0; k < stride; ++k) {
+      std::string ways((groups + 3) / 4, '\0');
+      std::string data;
+      for (size_t group = 0; group < groups; ++group) {
+        std::string codes;
+        for (size_t i = 0; i < 16; ++i) codes += static_cast<char>(difference(first + group * 16 + i, k));
+        const bool still = codes == std::string(16, '\0');
+        const size_t way = still ? 0 : 1 + group % 3;
+        ways[group / 4] = static_cast<char>(ways[group / 4] | way << group % 4 * 2);
+        if (way == 3) data += codes;
+        if (way == 0 || way == 3) continue;
+        const unsigned most = way == 1 ? 3 : 15;
+        const size_t each = way == 1 ? 4 : 2;  // codes in a byte
+        std::string whole;
+        for (size_t i = 0; i < 16; i += each) {
+          unsigned byte = 0;
+          for (size_t j = i; j < i + each; ++j) {
+            const auto code = static_cast<uint8_t>(codes[j]);
+            byte = byte << (8 / each) | std::min<unsigned>(code, most);
+            if (code >= most) whole += codes[j];
+          }
+          data += static_cast<char>(byte);
+        }
+        data += whole;
+      }
+      packed += ways + data;
+    }
+  }
+  return packed + std::string(std::max<size_t>(stride, 32), '\0');
+}
+
+inline constexpr size_t kPackedPoints = 300;  // more than a block
+
+/// Quantised points, normals and indices of EXT_meshopt_compression.
+inline GltfFile meshopt_points() {
+  Bytes positions, normals, indices("\xD1");
+  for (size_t i = 0; i < kPackedPoints; ++i) {
+    positions.add(static_cast<uint16_t>(i * 217))
+        .add(static_cast<uint16_t>(i % 7))
+        .add(static_cast<uint16_t>(65535 - i));
+    positions.add(uint16_t{0});
+    // Octahedral, of 8 bits: along z, along -x, and below.
+    const int8_t x[] = {0, -127, 127};
+    const int8_t y[] = {0, 0, 127};
+    normals.add(x[i % 3]).add(y[i % 3]).add(int8_t{127}).add(int8_t{0});
+    // The first baseline counts up from 0: a step of 0, then of 1.
+    indices.add(static_cast<uint8_t>(i == 0 ? 0 : 1 << 2));
+  }
+  indices.add(uint32_t{0});
+  GltfFile file;
+  const size_t position = file.add_packed_view(meshopt_attributes(positions.text(), 8), "ATTRIBUTES", kPackedPoints, 8);
+  const size_t normal =
+      file.add_packed_view(meshopt_attributes(normals.text(), 4), "ATTRIBUTES", kPackedPoints, 4, "OCTAHEDRAL");
+  const size_t index = file.add_packed_view(indices.text(), "INDICES", kPackedPoints, 2);
+  const auto accessor = [](size_t view, int type, const char* shape, bool normalized) {
+    return nlohmann::json{{"bufferView", view},
+                          {"componentType", type},
+                          {"count", kPackedPoints},
+                          {"type", shape},
+                          {"normalized", normalized}};
+  };
+  file.json["accessors"] = {accessor(position, 5123, "VEC3", false), accessor(normal, 5120, "VEC3", true),
+                            accessor(index, 5123, "SCALAR", false)};
+  file.primitive()["attributes"] = {{"POSITION", 0}, {"NORMAL", 1}};
+  file.primitive()["indices"] = 2;
+  return file;
+}
 
 /// The bits of numbers below `count`.
 inline std::string bits_of(std::initializer_list<size_t> numbers, size_t count) {

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "scan/meshopt.h"
 #include "scan/samples.h"
 #include "scan/scan_folder_fixture.h"
 #include "scan/tile_files.h"
@@ -119,6 +120,54 @@ TEST_F(GltfTilesTest, CompressedPointsKeepTheirAttributes) {
   EXPECT_THAT(error_of_tile(file), HasSubstr("has not the points that its accessors state"));
   for (Json& accessor : file.json["accessors"]) accessor["count"] = 1'000'000;
   EXPECT_THAT(error_of_tile(file), HasSubstr("more points than its buffers can hold"));
+}
+
+TEST_F(GltfTilesTest, ViewsOfMeshoptAreDecompressed) {
+  GltfFile file = testing::meshopt_points();
+  const Result<testing::WholeScan> points = read_tile(file);
+  ASSERT_TRUE(points) << points.error().message;
+  ASSERT_EQ(points->size(), testing::kPackedPoints);
+  for (size_t i = 0; i < testing::kPackedPoints; ++i) {
+    const auto n = static_cast<double>(i);
+    EXPECT_EQ(points->positions[i], glm::dvec3(n * 217, n - 65535, i % 7)) << i;
+  }
+  EXPECT_EQ(points->normals[0], glm::vec3(0, -1, 0));
+  EXPECT_EQ(points->normals[1], glm::vec3(-1, 0, 0));
+  EXPECT_NEAR(points->normals[2].y, 1, 1e-6);
+  Json& view = file.json["bufferViews"][0]["extensions"]["EXT_meshopt_compression"];
+  view["filter"] = "QUATERNION";
+  EXPECT_THAT(error_of_tile(file), HasSubstr("the meshopt filter QUATERNION is not supported"));
+  view["mode"] = "TRIANGLES";
+  EXPECT_THAT(error_of_tile(file), HasSubstr("the meshopt mode TRIANGLES is not supported"));
+  view["mode"] = "ATTRIBUTES";
+  view["byteLength"] = 40;
+  EXPECT_THAT(error_of_tile(file), HasSubstr("damaged or truncated meshopt data"));
+}
+
+TEST(MeshoptTest, TheExampleOfItsSpecificationIsDecoded) {
+  // Sixteen differences of four bits, and the baseline 100.
+  std::string packed = "\xA0";
+  packed += "\x02";
+  packed += std::string("\x17\x5f\xf0\xbc\x77\xa9\x21\x00\x34\xb5", 10);
+  for (int k = 1; k < 4; ++k) packed += '\0';
+  packed += std::string(28, '\0') + "\x64" + std::string(3, '\0');
+  const auto made = decode_meshopt(testing::as_bytes(packed), {16, 4, "ATTRIBUTES", ""});
+  ASSERT_TRUE(made) << made.error().message;
+  int value = 100;
+  const int steps[] = {-1, -4, -3, 26, -91, 0, -6, 6, -4, -4, 5, -5, 1, -1, 0, 0};
+  for (size_t i = 0; i < 16; ++i) {
+    value += steps[i];
+    EXPECT_EQ(std::to_integer<uint8_t>((*made)[4 * i]), static_cast<uint8_t>(value)) << i;
+  }
+}
+
+TEST(MeshoptTest, ExponentsBecomeFloats) {
+  const std::string plain = testing::Bytes().add((-1 << 24) | 3).add(int32_t{0x00FFFFFF}).text();
+  const auto made =
+      decode_meshopt(testing::as_bytes(testing::meshopt_attributes(plain, 4)), {2, 4, "ATTRIBUTES", "EXPONENTIAL"});
+  ASSERT_TRUE(made) << made.error().message;
+  EXPECT_EQ(load<float>(made->data()), 1.5F);
+  EXPECT_EQ(load<float>(made->data() + 4), -1.0F);
 }
 
 TEST_F(GltfTilesTest, TilesOfBothKindsHaveTheColumnsOfAll) {
