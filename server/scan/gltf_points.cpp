@@ -25,7 +25,7 @@ using Triples = std::vector<glm::dvec3>;
 constexpr std::array<std::string_view, 4> kHarmless{"EXT_texture_webp", "KHR_texture_basisu", "KHR_texture_transform",
                                                     "CESIUM_RTC"};
 
-/// Points that a byte of Draco data may stand for.
+/// Points that a byte of Draco data, or of points with many instances, may stand for.
 constexpr uint64_t kMostPointsOfByte = 64;
 
 ScalarType type_of_accessor(const Json& accessor) {
@@ -199,8 +199,10 @@ Status GltfPoints::add_primitive(const Json& stated, const glm::dmat4& to_world)
   const Json& counted =
       indices ? element(member(parts_->json, "accessors"), *indices) : accessor_of(stated, "POSITION");
   const uint64_t points = integer_of(counted, "count").value_or(0);
-  const uint64_t most = buffers_.bytes() * (packed ? kMostPointsOfByte : 1);
-  if (points > most || points_ + points > most) return invalid_input("states more points than its buffers can hold");
+  const uint64_t most = buffers_.bytes() * kMostPointsOfByte;
+  if (points > (packed ? most : buffers_.bytes()) || points_ + points > most) {
+    return invalid_input("states more points than its buffers can hold");
+  }
   points_ += points;
   if (points > 0) scene_.push_back({&stated, to_world, points, factor_of(parts_->json, stated)});
   return {};

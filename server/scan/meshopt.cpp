@@ -186,7 +186,8 @@ Status undo_filter(const MeshoptView& view, std::vector<std::byte>& bytes) {
   } else if (view.filter == "OCTAHEDRAL" && view.stride == 8) {
     unfold_normals<int16_t>(bytes);
   } else {
-    return fail(ErrorKind::kUnsupported, "the meshopt filter " + printable(view.filter) + " is not supported");
+    return fail(ErrorKind::kUnsupported,
+                "the filter " + printable(view.filter) + " of EXT_meshopt_compression is not supported");
   }
   return {};
 }
@@ -203,7 +204,8 @@ Result<std::vector<std::byte>> decode_meshopt(Bytes packed, const MeshoptView& v
   if (!meshopt_claim_is_plausible(packed, view)) return damaged();
   if (view.mode == "INDICES") return decode_indices(packed, view.count, view.stride);
   if (view.mode != "ATTRIBUTES") {
-    return fail(ErrorKind::kUnsupported, "the meshopt mode " + printable(view.mode) + " is not supported");
+    return fail(ErrorKind::kUnsupported,
+                "the mode " + printable(view.mode) + " of EXT_meshopt_compression is not supported");
   }
   if (view.stride % 4 != 0 || view.stride > kMostStride) return damaged();
   Result<std::vector<std::byte>> made = decode_attributes(packed, view.count, view.stride);

@@ -48,10 +48,15 @@ bool is_color(const std::string& name) {
   return name == "red" || name == "green" || name == "blue";
 }
 
-/// A type that holds the values of both: of colours, which are of 8 or 16 bits, the wider one.
+bool is_channel_type(ScalarType type) {
+  return type == ScalarType::kUint8 || type == ScalarType::kUint16;
+}
+
+/// A type that holds the values of both: of colours with 8 and 16 bits the wider one.
 ScalarType common_type(const ColumnInfo& a, const ColumnInfo& b) {
   if (a.type == b.type) return a.type;
-  return is_color(a.name) ? ScalarType::kUint16 : ScalarType::kFloat64;
+  const bool colors = is_color(a.name) && is_channel_type(a.type) && is_channel_type(b.type);
+  return colors ? ScalarType::kUint16 : ScalarType::kFloat64;
 }
 
 /// Adds the columns that are not there yet.
