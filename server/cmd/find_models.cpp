@@ -10,6 +10,7 @@
 #include "builder/build_gaussians.h"
 #include "builder/input_files.h"
 #include "object_store/object_url.h"
+#include "scan/scan_folder.h"
 #include "service/model_name.h"
 
 namespace surfcast::cmd {
@@ -29,26 +30,44 @@ Result<service::NamedModel> find_stored(const std::string& url, const object_sto
       object_store::object_name(url), url, {}, std::make_shared<const model::ModelFile>(std::move(*model))};
 }
 
-/// The model file of a path that is no folder; a scan is built now unless the cache has its model.
+bool holds_models(const fs::path& folder) {
+  std::error_code code;
+  for (fs::directory_iterator at(folder, code), end; !code && at != end; at.increment(code)) {
+    if (at->path().extension() == ".surf") return true;
+  }
+  return false;
+}
+
+/// A folder that is one scan of many files, or one model of Gaussians (SOG), not a folder of models.
+bool is_scan_folder(const fs::path& path) {
+  std::error_code ignored;
+  if (!fs::is_directory(path, ignored)) return false;
+  return builder::holds_gaussians(path) || (scan::scan_folder_of(path) && !holds_models(path));
+}
+
+/// The path of a scan by which it is named: "." has no name.
+fs::path with_name(const fs::path& path) {
+  const fs::path last = path.filename();
+  if (last != "." && last != "..") return path;
+  std::error_code code;
+  const fs::path whole = fs::canonical(path, code);
+  return code ? path : whole;
+}
+
+/// The model file of a path that is no folder of models; a scan is built now unless the cache has its model.
 Result<service::NamedModel> find_model(const fs::path& path, const ScanCacheConfig& cache) {
   if (path.extension() != ".surf") {
     Result<CachedModel> built = model_of_scan(path, cache);
     if (!built) return fail(built.error());
-    return service::NamedModel{service::model_name(path), std::move(built->path), std::move(built->in_use)};
+    return service::NamedModel{service::model_name(with_name(path)), std::move(built->path), std::move(built->in_use)};
   }
   if (const Result<model::ModelFile> model = model::ModelFile::open(path); !model) return fail(model.error());
   return service::NamedModel{service::model_name(path), path};
 }
 
-/// A folder that is one model of Gaussians (SOG), not a folder of models.
-bool is_gaussian_folder(const fs::path& path) {
-  std::error_code ignored;
-  return fs::is_directory(path, ignored) && builder::holds_gaussians(path);
-}
-
 Status check_file(const fs::path& path) {
   if (path.extension() == ".surf") return model::ModelFile::open(path).map([](const model::ModelFile&) {});
-  if (is_gaussian_folder(path)) return {};
+  if (is_scan_folder(path)) return {};
   return MappedFile::open(path).map([](const MappedFile&) {});
 }
 
@@ -102,7 +121,7 @@ Result<NamedPaths> sort_paths(std::span<const fs::path> paths, const object_stor
       continue;
     }
     std::error_code ignored;
-    if (fs::is_directory(path, ignored) && !is_gaussian_folder(path)) {
+    if (fs::is_directory(path, ignored) && !is_scan_folder(path)) {
       sorted.folders.push_back(path);
       continue;
     }
@@ -110,7 +129,7 @@ Result<NamedPaths> sort_paths(std::span<const fs::path> paths, const object_stor
     if (path.extension() == ".surf") {
       sorted.models.push_back({service::model_name(path), path});
     } else {
-      sorted.scans.push_back(path);
+      sorted.scans.push_back(with_name(path));
     }
   }
   if (Status status = check_names(sorted); !status) return fail(std::move(status.error()));
@@ -123,7 +142,7 @@ Result<std::unique_ptr<service::ModelCatalogue>> find_one_model(const fs::path& 
   const std::string url = path.string();
   const bool stored = object_store::is_object_url(url);
   std::error_code ignored;
-  if (stored ? url.ends_with('/') : fs::is_directory(path, ignored) && !is_gaussian_folder(path)) {
+  if (stored ? url.ends_with('/') : fs::is_directory(path, ignored) && !is_scan_folder(path)) {
     return fail(ErrorKind::kInvalidInput, path.string() + ": is a folder, and one model is wanted");
   }
   Result<service::NamedModel> model = stored ? find_stored(url, store) : find_model(path, cache);

@@ -16,8 +16,8 @@ namespace surfcast::cmd {
 struct NamedPaths {
   std::vector<service::NamedModel> models;     ///< they open
   std::vector<std::filesystem::path> folders;  ///< of models
-  std::vector<std::filesystem::path> scans;
-  std::vector<std::string> stores;  ///< URLs of folders of models
+  std::vector<std::filesystem::path> scans;    ///< files, and folders that are a scan
+  std::vector<std::string> stores;             ///< URLs of folders of models
 };
 
 /// Sorts the paths and URLs of a command line. Fails if one does not exist, if a model does not open, if two have one

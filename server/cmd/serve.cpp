@@ -272,8 +272,8 @@ void add_serve_command(CLI::App& app, Status& outcome) {
   auto command = std::make_shared<ServeCommand>();
   CLI::App* sub = app.add_subcommand("serve", "Serve models over TCP and HTTP");
   sub->add_option("PATH", command->paths,
-                  "Model files, folders of model files, URLs of both (those of folders end with a slash), and scans "
-                  "(default: the current folder)");
+                  "Model files, folders of model files, URLs of both (those of folders end with a slash), and scans, "
+                  "which may be folders (EPT, Potree, 3D Tiles) (default: the current folder)");
   sub->add_option("--listen", command->listen, "HOST:PORT to listen on; port 0: any free port (default 127.0.0.1:7600)")
       ->envname(protocol::environment_name("listen"));
   sub->add_option("--viewer", command->viewer, "Folder of the browser viewer (default: the one built or installed)")

@@ -9,10 +9,13 @@
 #include <utility>
 
 #include "base/invalid_input.h"
-#include "mesh/gltf_draco.h"
+#include "scan/gltf_primitive.h"
 
 namespace surfcast::mesh {
 namespace {
+
+using scan::AccessorValues;
+using scan::PrimitiveValues;
 
 template <typename Vector>
 std::vector<Vector> vectors_of(const AccessorValues& values) {
@@ -53,88 +56,6 @@ std::vector<std::array<uint32_t, 3>> corners_of(const std::vector<uint32_t>& cor
   return made;
 }
 
-/// Reads the attributes and indices of a primitive.
-class ValueReader {
- public:
-  ValueReader(const Json& json, GltfBuffers& buffers) : json_(json), buffers_(buffers) {}
-  Result<PrimitiveValues> read(const Json& stated, const std::vector<std::string>& wanted);
-
- private:
-  Status add_compressed(const Json& compressed, const Json& attributes, const std::vector<std::string>& wanted,
-                        PrimitiveValues& made);
-  Status add_indices(const Json& stated, PrimitiveValues& made);
-  Status add_plain(const Json& attributes, const std::vector<std::string>& wanted, PrimitiveValues& made);
-
-  const Json& json_;
-  GltfBuffers& buffers_;
-};
-
-Status ValueReader::add_compressed(const Json& compressed, const Json& attributes,
-                                   const std::vector<std::string>& wanted, PrimitiveValues& made) {
-  const Result<Bytes> bytes = buffers_.view(json_, integer_of(compressed, "bufferView").value_or(UINT64_MAX));
-  if (!bytes) return fail(bytes.error());
-  std::map<std::string, uint32_t> ids;
-  for (const std::string& name : wanted) {
-    const std::optional<uint64_t> id = integer_of(member(compressed, "attributes"), name.c_str());
-    if (id && *id < kNone) ids.emplace(name, static_cast<uint32_t>(*id));
-  }
-  Result<PrimitiveValues> decoded = decode_draco(*bytes, ids);
-  if (!decoded) return fail(std::move(decoded.error()));
-  for (auto& [name, values] : decoded->attributes) {
-    if (Status status = buffers_.set_aside(values.values.size() * sizeof(double)); !status) return status;
-    const uint64_t number = integer_of(attributes, name.c_str()).value_or(UINT64_MAX);
-    const Json& accessor = element(member(json_, "accessors"), number);
-    const std::map<uint64_t, double> brightest{{5120, 127}, {5121, 255}, {5122, 32767}, {5123, 65535}};
-    const auto divisor = brightest.find(integer_of(accessor, "componentType").value_or(0));
-    if (!flag_of(accessor, "normalized") || divisor == brightest.end()) continue;
-    for (double& value : values.values) value = std::max(value / divisor->second, -1.0);
-  }
-  made = std::move(*decoded);
-  return {};
-}
-
-Status ValueReader::add_plain(const Json& attributes, const std::vector<std::string>& wanted, PrimitiveValues& made) {
-  for (const std::string& name : wanted) {
-    const std::optional<uint64_t> accessor = integer_of(attributes, name.c_str());
-    if (!accessor || made.attributes.contains(name)) continue;
-    Result<AccessorValues> values = buffers_.values(json_, *accessor);
-    if (!values) return fail(std::move(values.error()));
-    made.attributes.emplace(name, std::move(*values));
-  }
-  return {};
-}
-
-/// Without indices the vertices are the corners, in their order.
-Status ValueReader::add_indices(const Json& stated, PrimitiveValues& made) {
-  const size_t count = made.attributes["POSITION"].count();
-  const std::optional<uint64_t> accessor = integer_of(stated, "indices");
-  if (!accessor) {
-    for (size_t i = 0; i < count; ++i) made.indices.push_back(static_cast<uint32_t>(i));
-    return {};
-  }
-  const Result<AccessorValues> values = buffers_.values(json_, *accessor);
-  if (!values) return fail(values.error());
-  for (const double value : values->values) {
-    if (!(value >= 0 && value < static_cast<double>(count))) {
-      return invalid_input("glTF primitive with an index beyond its vertices");
-    }
-    made.indices.push_back(static_cast<uint32_t>(value));
-  }
-  return {};
-}
-
-Result<PrimitiveValues> ValueReader::read(const Json& stated, const std::vector<std::string>& wanted) {
-  PrimitiveValues made;
-  const Json& attributes = member(stated, "attributes");
-  const Json& compressed = member(member(stated, "extensions"), kDracoExtension);
-  Status status = compressed.is_object() ? add_compressed(compressed, attributes, wanted, made) : Status();
-  if (status) status = add_plain(attributes, wanted, made);
-  if (status && made.attributes["POSITION"].components != 3) status = invalid_input("glTF primitive without positions");
-  if (status && !compressed.is_object()) status = add_indices(stated, made);
-  if (!status) return fail(std::move(status.error()));
-  return made;
-}
-
 /// `uvs`: name of the texture coordinates. Attributes of another length than the positions are left out.
 std::shared_ptr<const Vertices> vertices_of(PrimitiveValues& values, const UvRule& rule, const std::string& uvs) {
   auto vertices = std::make_shared<Vertices>();
@@ -167,12 +88,12 @@ Result<std::vector<Triangle>> triangles_of(const std::vector<uint32_t>& indices,
 }  // namespace
 
 Result<std::optional<GltfTriangles>> read_gltf_triangles(const Json& json, const Json& stated, const UvRule& uv,
-                                                         GltfBuffers& buffers) {
-  const uint64_t mode = integer_of(stated, "mode").value_or(4);
+                                                         scan::GltfBuffers& buffers) {
+  const uint64_t mode = scan::gltf_mode(stated);
   if (mode < 4 || mode > 6) return std::optional<GltfTriangles>();
   const std::string uvs = "TEXCOORD_" + std::to_string(uv.set);
-  ValueReader reader(json, buffers);
-  Result<PrimitiveValues> values = reader.read(stated, {"POSITION", "NORMAL", "COLOR_0", uvs});
+  Result<PrimitiveValues> values =
+      scan::read_gltf_primitive(json, stated, {"POSITION", "NORMAL", "COLOR_0", uvs}, buffers);
   if (!values) return fail(std::move(values.error()));
   const std::shared_ptr<const Vertices> vertices = vertices_of(*values, uv, uvs);
   Result<std::vector<Triangle>> triangles = triangles_of(values->indices, mode, *vertices);

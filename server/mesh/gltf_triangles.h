@@ -5,14 +5,12 @@
 #include <vector>
 
 #include "base/result.h"
-#include "mesh/gltf_buffers.h"
 #include "mesh/gltf_materials.h"
 #include "mesh/json_access.h"
 #include "mesh/mesh.h"
+#include "scan/gltf_buffers.h"
 
 namespace surfcast::mesh {
-
-inline constexpr const char* kDracoExtension = "KHR_draco_mesh_compression";
 
 /// The triangles of a primitive of a glTF file, in the frame of its mesh.
 struct GltfTriangles {
@@ -22,6 +20,6 @@ struct GltfTriangles {
 
 /// `json`: the file, `uv`: how the texture's coordinates are found. None if the primitive is of points or lines.
 Result<std::optional<GltfTriangles>> read_gltf_triangles(const Json& json, const Json& stated, const UvRule& uv,
-                                                         GltfBuffers& buffers);
+                                                         scan::GltfBuffers& buffers);
 
 }  // namespace surfcast::mesh

@@ -8,6 +8,8 @@
 #include <string_view>
 
 #include "mesh/ply_mesh.h"
+#include "scan/gltf_buffers.h"
+#include "scan/gltf_points.h"
 #include "scan/text_tokens.h"
 
 namespace surfcast::mesh {
@@ -56,9 +58,9 @@ bool is_obj(std::string_view head) {
   return false;
 }
 
-bool is_gltf(std::string_view head) {
-  const size_t first = head.find_first_not_of(" \t\r\n");
-  return first != std::string_view::npos && head[first] == '{' && head.find("\"asset\"") != std::string_view::npos;
+/// glTF of points is a scan.
+std::optional<MeshFormat> unless_of_points(std::span<const std::byte> bytes, MeshFormat format) {
+  return scan::is_gltf_of_points(bytes) ? std::nullopt : std::optional(format);
 }
 
 }  // namespace
@@ -67,13 +69,13 @@ std::optional<MeshFormat> mesh_format_of(std::span<const std::byte> bytes, const
                                          FacePolicy faces) {
   const std::string_view text = scan::as_text(bytes);
   const std::string_view head = text.substr(0, kLook);
-  if (text.starts_with("glTF")) return MeshFormat::kGlb;
+  if (text.starts_with("glTF")) return unless_of_points(bytes, MeshFormat::kGlb);
   if (text.starts_with("ply")) {
     return is_ply_mesh(bytes, faces) ? std::optional(MeshFormat::kPly) : std::nullopt;
   }
   if (is_binary_stl(bytes) || is_text_stl(head)) return MeshFormat::kStl;
   const std::string extension = extension_of(path);
-  if (extension == ".gltf" || is_gltf(head)) return MeshFormat::kGltf;
+  if (extension == ".gltf" || scan::is_gltf_text(head)) return unless_of_points(bytes, MeshFormat::kGltf);
   if (extension == ".obj" || is_obj(head)) return MeshFormat::kObj;
   if (extension == ".glb") return MeshFormat::kGlb;
   if (extension == ".stl") return MeshFormat::kStl;

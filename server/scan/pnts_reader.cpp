@@ -2,14 +2,13 @@
 
 #include <array>
 #include <cmath>
-#include <glm/mat3x3.hpp>
-#include <glm/matrix.hpp>
 #include <optional>
 #include <string>
 #include <utility>
 
 #include "base/invalid_input.h"
 #include "scan/draco_reader.h"
+#include "scan/move_points.h"
 #include "scan/oct_normal.h"
 #include "scan/sliced_rows.h"
 #include "scan/text_tokens.h"
@@ -25,7 +24,7 @@ constexpr size_t kHeaderBytes = 28;
 Result<Json> parse_table(Bytes text) {
   if (text.empty()) return Json::object();
   Json json = Json::parse(as_text(text), nullptr, false);
-  if (!json.is_object()) return invalid_input("a table of the pnts tile is no JSON object");
+  if (!json.is_object()) return invalid_input("a table of the tile is no JSON object");
   return json;
 }
 
@@ -210,26 +209,9 @@ void add_triples(const Triples& triples, PointTable& table) {
 }
 
 void place(const PntsTile& tile, const glm::dmat4& transform, Triples& positions) {
-  const glm::dvec3 centre = vector_of(tile.features, "RTC_CENTER", glm::dvec3(0));
-  const bool still = transform == glm::dmat4(1);
-  for (glm::dvec3& position : positions) {
-    position += centre;
-    if (still) continue;
-    // Summed from left to right, as other readers do: to the last bit.
-    position = ((glm::dvec3(transform[0]) * position.x + glm::dvec3(transform[1]) * position.y) +
-                glm::dvec3(transform[2]) * position.z) +
-               glm::dvec3(transform[3]);
-  }
-}
-
-void turn(const glm::dmat4& transform, Triples& normals) {
-  if (transform == glm::dmat4(1)) return;
-  const glm::dmat3 turning = glm::transpose(glm::inverse(glm::dmat3(transform)));
-  for (glm::dvec3& normal : normals) {
-    normal = turning * normal;
-    const double length = glm::length(normal);
-    if (length > 0) normal /= length;
-  }
+  const glm::dvec3 centre = centre_of(tile);
+  for (glm::dvec3& position : positions) position += centre;
+  move_points(transform, positions);
 }
 
 std::vector<ColumnInfo> own_columns(const PntsTile& tile) {
@@ -264,7 +246,7 @@ Result<PointTable> own_table(const PntsTile& tile, const glm::dmat4& transform) 
   if (has_normal(tile.features)) {
     Result<Triples> normals = normals_of(tile);
     if (!normals) return fail(std::move(normals.error()));
-    turn(transform, *normals);
+    turn_normals(transform, *normals);
     add_triples<float>(*normals, table);
   }
   const Result<std::vector<uint32_t>> ids = batch_ids(tile);
@@ -364,23 +346,25 @@ Result<PointTable> draco_table(const PntsTile& tile, const glm::dmat4& transform
   replace<double>(columns, kPosition, positions, *table);
   Triples normals = triples_of(columns, *table, kNormal);
   if (normals.empty()) return table;
-  turn(transform, normals);
+  turn_normals(transform, normals);
   replace<float>(columns, kNormal, normals, *table);
   return table;
 }
 
 }  // namespace
 
-Result<PntsTile> parse_pnts(Bytes bytes) {
-  if (bytes.size() < kHeaderBytes) return invalid_input("truncated: the file ends within its pnts header");
+Result<TileTables> split_tile(Bytes bytes) {
+  if (bytes.size() < kHeaderBytes) return invalid_input("truncated: the file ends within its header");
   const auto version = load<uint32_t>(&bytes[4]);
-  if (version != 1)
-    return fail(ErrorKind::kUnsupported, "pnts version " + std::to_string(version) + " is not supported");
+  if (version != 1) {
+    const std::string kind = printable(as_text(bytes).substr(0, 4));
+    return fail(ErrorKind::kUnsupported, kind + " version " + std::to_string(version) + " is not supported");
+  }
   std::array<Bytes, 4> parts;
   size_t at = kHeaderBytes;
   for (size_t i = 0; i < parts.size(); ++i) {
     const auto size = load<uint32_t>(&bytes[12 + 4 * i]);
-    if (size > bytes.size() - at) return invalid_input("truncated: the tables of the pnts tile run beyond the file");
+    if (size > bytes.size() - at) return invalid_input("truncated: the tables of the tile run beyond the file");
     parts[i] = bytes.subspan(at, size);
     at += size;
   }
@@ -388,9 +372,19 @@ Result<PntsTile> parse_pnts(Bytes bytes) {
   Result<Json> batches = parse_table(parts[2]);
   if (!features) return fail(features.error());
   if (!batches) return fail(batches.error());
-  PntsTile tile{std::move(*features), parts[1], std::move(*batches), parts[3], 0};
+  return TileTables{std::move(*features), parts[1], std::move(*batches), parts[3], bytes.subspan(at)};
+}
+
+glm::dvec3 centre_of(const TileTables& tables) {
+  return vector_of(tables.features, "RTC_CENTER", glm::dvec3(0));
+}
+
+Result<PntsTile> parse_pnts(Bytes bytes) {
+  Result<TileTables> tables = split_tile(bytes);
+  if (!tables) return fail(std::move(tables.error()));
+  PntsTile tile{std::move(*tables), 0};
   tile.points = integer_of(tile.features, "POINTS_LENGTH").value_or(0);
-  if (tile.points > parts[1].size() * uint64_t{1024})
+  if (tile.points > tile.feature_bytes.size() * uint64_t{1024})
     return invalid_input("the pnts tile states more points than it can hold");
   return tile;
 }

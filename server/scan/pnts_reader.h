@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <glm/mat4x4.hpp>
+#include <glm/vec3.hpp>
 #include <memory>
 #include <span>
 #include <vector>
@@ -12,12 +14,22 @@
 
 namespace surfcast::scan {
 
-/// A point tile of 3D Tiles (`pnts`, 3D Tiles 1.0): its tables, checked for their sizes.
-struct PntsTile {
+/// The tables of a tile of 3D Tiles 1.0, checked for their sizes, and what lies behind them.
+struct TileTables {
   Json features;
   std::span<const std::byte> feature_bytes;
   Json batches;
   std::span<const std::byte> batch_bytes;
+  std::span<const std::byte> body;
+};
+
+/// Splits a file of any kind that begins with both tables. `bytes` must outlive the tables.
+Result<TileTables> split_tile(std::span<const std::byte> bytes);
+/// What positions are relative to: RTC_CENTER, or the origin.
+glm::dvec3 centre_of(const TileTables& tables);
+
+/// A point tile (`pnts`).
+struct PntsTile : TileTables {
   uint64_t points = 0;
 };
 

@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "scan/gltf_buffers.h"
 #include "scan/ptx_reader.h"
 #include "scan/text_reader.h"
 #include "scan/text_tokens.h"
@@ -18,7 +19,6 @@ using Known = std::pair<std::string_view, std::string_view>;
 
 /// Signatures of files that cannot be read as scans, with the reason.
 constexpr Known kOtherContents[] = {
-    {"glTF", "glTF meshes are not supported"},
     {"\x1F\x8B", "gzip-compressed files (SPZ among them) are not supported"},
     {"NGSP", "SPZ files of 3D Gaussians are not supported"},
     {"PK\x03\x04", "zip archives are not supported"},
@@ -71,6 +71,8 @@ std::string_view format_name(ScanFormat format) {
       return "Expe";
     case ScanFormat::kPnts:
       return "3D Tiles";
+    case ScanFormat::kGltf:
+      return "glTF";
     case ScanFormat::kText:
       break;
   }
@@ -104,6 +106,7 @@ std::optional<ScanFormat> by_content(std::string_view text) {
   if (text.starts_with("ASTM-E57")) return ScanFormat::kE57;
   if (text.starts_with("[Expe/PointSet")) return ScanFormat::kExpe;
   if (text.starts_with("pnts")) return ScanFormat::kPnts;
+  if (text.starts_with("glTF") || is_gltf_text(text)) return ScanFormat::kGltf;
   if (is_pcd(text)) return ScanFormat::kPcd;
   return std::nullopt;
 }

@@ -1,6 +1,7 @@
 #include "scan/scan_stream.h"
 
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -9,6 +10,7 @@
 #include "scan/draco_reader.h"
 #include "scan/e57_reader.h"
 #include "scan/expe_reader.h"
+#include "scan/gltf_points.h"
 #include "scan/las_reader.h"
 #include "scan/pcd_reader.h"
 #include "scan/ply_reader.h"
@@ -24,7 +26,8 @@ namespace surfcast::scan {
 namespace {
 
 Result<std::unique_ptr<RowSource>> rows_of(ScanFormat format, std::span<const std::byte> bytes,
-                                           const DecodingLimit& limit, const Selection& selection) {
+                                           const std::filesystem::path& path, const DecodingLimit& limit,
+                                           const Selection& selection) {
   switch (format) {
     case ScanFormat::kPly:
       return ply_rows(bytes);
@@ -42,6 +45,8 @@ Result<std::unique_ptr<RowSource>> rows_of(ScanFormat format, std::span<const st
       return expe_rows(bytes);
     case ScanFormat::kPnts:
       return pnts_rows(bytes, limit);
+    case ScanFormat::kGltf:
+      return gltf_rows(bytes, path, limit);
     case ScanFormat::kText:
       break;
   }
@@ -95,7 +100,7 @@ Status ScanStream::examine(std::span<const std::byte> bytes, const std::filesyst
                            const DecodingLimit& limit, std::optional<uint64_t> sample, const Selection& selection) {
   Result<std::unique_ptr<RowSource>> rows =
       scan_format_of(bytes, path)
-          .and_then([&](ScanFormat format) { return rows_of(format, bytes, limit, selection); })
+          .and_then([&](ScanFormat format) { return rows_of(format, bytes, path, limit, selection); })
           .and_then([&](std::unique_ptr<RowSource> all) { return select_rows(std::move(all), selection); });
   if (!rows) return fail(rows.error().kind, path.string() + ": " + rows.error().message);
   rows_ = std::move(*rows);
@@ -131,9 +136,10 @@ Status ScanStream::examine_rows(const std::filesystem::path& path, std::optional
   return {};
 }
 
-Result<ScanStream> ScanStream::open_content(std::span<const std::byte> bytes, const std::filesystem::path& path) {
+Result<ScanStream> ScanStream::open_content(std::span<const std::byte> bytes, const std::filesystem::path& path,
+                                            const DecodingLimit& limit) {
   ScanStream stream;
-  if (Status status = stream.examine(bytes, path, {}, {}, {}); !status) return fail(std::move(status.error()));
+  if (Status status = stream.examine(bytes, path, limit, {}, {}); !status) return fail(std::move(status.error()));
   return stream;
 }
 
@@ -152,6 +158,9 @@ Result<ScanStream> ScanStream::open(const std::filesystem::path& path, const Dec
     const Status status = stream.examine_folder(*folder, path, limit, sample, selection);
     if (!status) return fail(status.error());
     return stream;
+  }
+  if (std::error_code ignored; std::filesystem::is_directory(path, ignored)) {
+    return fail(ErrorKind::kUnsupported, path.string() + ": a folder that holds no description of a scan");
   }
   Result<MappedFile> file = MappedFile::open(path);
   if (!file) return fail(std::move(file.error()));
@@ -177,7 +186,7 @@ Status check_header(const std::filesystem::path& path) {
   const auto named = [&path](const Error& error) { return fail(error.kind, path.string() + ": " + error.message); };
   if (!format) return named(format.error());
   if (*format != ScanFormat::kPly && *format != ScanFormat::kLas) return {};
-  const Result<std::unique_ptr<RowSource>> rows = rows_of(*format, file->bytes(), {}, {});
+  const Result<std::unique_ptr<RowSource>> rows = rows_of(*format, file->bytes(), path, {}, {});
   if (!rows) return named(rows.error());
   return {};
 }

@@ -31,7 +31,8 @@ class ScanStream {
   static Result<ScanStream> open(const std::filesystem::path& path, const DecodingLimit& limit = {},
                                  std::optional<uint64_t> sample = {}, const Selection& selection = {});
   /// The same for content in memory, which must outlive the stream. `path` only names it in messages.
-  static Result<ScanStream> open_content(std::span<const std::byte> bytes, const std::filesystem::path& path);
+  static Result<ScanStream> open_content(std::span<const std::byte> bytes, const std::filesystem::path& path,
+                                         const DecodingLimit& limit = {});
   /// The same for rows that are made, not read. `path` only names them.
   static Result<ScanStream> of_rows(std::unique_ptr<RowSource> rows, const std::filesystem::path& path,
                                     std::optional<uint64_t> sample);

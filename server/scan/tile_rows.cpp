@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <system_error>
 #include <utility>
 
 #include "scan/text_tokens.h"
@@ -64,9 +65,14 @@ Result<TileFile> TileFile::open(const std::filesystem::path& folder, const std::
   const bool outside = relative.is_absolute() || name.find("..") != std::string::npos ||
                        name.find(':') != std::string::npos || name.find('\0') != std::string::npos;
   if (outside) return fail(ErrorKind::kInvalidInput, "names a file outside of its folder: " + printable(name));
-  Result<MappedFile> file = MappedFile::open(folder / relative);
+  std::filesystem::path path = folder / relative;
+  std::error_code ignored;
+  if (!std::filesystem::is_regular_file(path, ignored)) {
+    return fail(ErrorKind::kNotFound, "names a file that is not there: " + printable(name));
+  }
+  Result<MappedFile> file = MappedFile::open(path);
   if (!file) return fail(std::move(file.error()));
-  return TileFile(std::move(*file), printable(name));
+  return TileFile(std::move(*file), std::move(path), printable(name));
 }
 
 tl::unexpected<Error> TileFile::error(const Error& what) const {

@@ -21,14 +21,17 @@ class TileFile {
   static Result<TileFile> open(const std::filesystem::path& folder, const std::string& name);
 
   [[nodiscard]] std::span<const std::byte> bytes() const { return file_.bytes(); }
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   /// An error in this file.
   [[nodiscard]] tl::unexpected<Error> error(const Error& what) const;
   [[nodiscard]] tl::unexpected<Error> error(std::string what) const;
 
  private:
-  TileFile(MappedFile file, std::string name) : file_(std::move(file)), name_(std::move(name)) {}
+  TileFile(MappedFile file, std::filesystem::path path, std::string name)
+      : file_(std::move(file)), path_(std::move(path)), name_(std::move(name)) {}
 
   MappedFile file_;
+  std::filesystem::path path_;
   std::string name_;
 };
 

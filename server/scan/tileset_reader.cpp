@@ -6,8 +6,9 @@
 #include <vector>
 
 #include "base/invalid_input.h"
-#include "scan/pnts_reader.h"
+#include "scan/implicit_tiles.h"
 #include "scan/text_tokens.h"
+#include "scan/tile_content.h"
 #include "scan/tile_rows.h"
 
 namespace surfcast::scan {
@@ -24,6 +25,7 @@ constexpr size_t kMostTiles = 10'000'000;
 struct Content {
   std::string name;  ///< below the folder of the tileset
   glm::dmat4 transform{1};
+  uint64_t points = 0;
 };
 
 /// What a tile has from those above it.
@@ -42,15 +44,61 @@ glm::dmat4 transform_of(const Json& tile) {
   return matrix;
 }
 
-/// The name of a content below the folder of its tileset.
-std::string name_of(const Json& content) {
-  std::string uri = text_of(content, "uri");
-  return uri.empty() ? text_of(content, "url") : uri;
+bool is_color(const std::string& name) {
+  return name == "red" || name == "green" || name == "blue";
 }
 
+bool is_channel_type(ScalarType type) {
+  return type == ScalarType::kUint8 || type == ScalarType::kUint16;
+}
+
+/// A type that holds the values of both: of colours with 8 and 16 bits the wider one.
+ScalarType common_type(const ColumnInfo& a, const ColumnInfo& b) {
+  if (a.type == b.type) return a.type;
+  const bool colors = is_color(a.name) && is_channel_type(a.type) && is_channel_type(b.type);
+  return colors ? ScalarType::kUint16 : ScalarType::kFloat64;
+}
+
+/// Adds the columns that are not there yet.
+void merge_columns(const std::vector<ColumnInfo>& from, std::vector<ColumnInfo>& all) {
+  for (const ColumnInfo& column : from) {
+    const auto same =
+        std::find_if(all.begin(), all.end(), [&column](const ColumnInfo& known) { return known.name == column.name; });
+    if (same == all.end()) {
+      all.push_back(column);
+    } else {
+      same->type = common_type(*same, column);
+    }
+  }
+}
+
+/// A tile of an implicit tiling, in its subtree.
+struct ImplicitTile {
+  const ImplicitTiling& tiling;
+  const Subtree& subtree;
+  TileKey key;
+  uint32_t level = 0;   ///< in the subtree
+  uint64_t number = 0;  ///< in the level of the subtree, in Morton order
+
+  [[nodiscard]] bool at_last_level() const { return level + 1 == tiling.subtree_levels; }
+  /// Whether there is a tile below; of a tile at the last level, in a subtree of its own.
+  [[nodiscard]] bool has_child(uint64_t child) const {
+    if (key.level + 1 >= tiling.available_levels) return false;
+    const uint64_t below = number * tiling.children() + child;
+    return at_last_level() ? subtree.has_child(below) : subtree.has_tile(level + 1, below);
+  }
+  [[nodiscard]] bool has_children() const {
+    for (uint64_t child = 0; child < tiling.children(); ++child) {
+      if (has_child(child)) return true;
+    }
+    return false;
+  }
+};
+
+/// Finds the contents of a tileset, depth first, and the columns of their points.
 class TilesetWalk {
  public:
-  explicit TilesetWalk(fs::path folder) : folder_(std::move(folder)) {}
+  TilesetWalk(fs::path folder, const DecodingLimit& limit) : folder_(std::move(folder)), limit_(limit) {}
 
   Status read(const std::string& name, const Inherited& above) {
     if (above.depth > kDeepest) return invalid_input("tilesets are nested too deeply");
@@ -62,18 +110,26 @@ class TilesetWalk {
     return add_tile(root, fs::path(name).parent_path(), above);
   }
 
+  [[nodiscard]] const std::vector<ColumnInfo>& columns() const { return columns_; }
+  [[nodiscard]] bool others() const { return others_; }
   std::vector<Content> take() { return std::move(contents_); }
 
  private:
-  Status add_tile(const Json& tile, const fs::path& base, Inherited state) {
-    if (++state.depth > kDeepest) return invalid_input("tiles are nested too deeply");
+  Status count_tile(const Inherited& state) {
+    if (state.depth > kDeepest) return invalid_input("tiles are nested too deeply");
     if (++tiles_ > kMostTiles) return fail(ErrorKind::kLimit, "the tileset has too many tiles");
-    if (!member(tile, "implicitTiling").is_null()) {
-      return fail(ErrorKind::kUnsupported, "implicit tiling of 3D Tiles is not supported");
-    }
+    return {};
+  }
+
+  Status add_tile(const Json& tile, const fs::path& base, Inherited state) {
+    ++state.depth;
+    if (Status status = count_tile(state); !status) return status;
     state.transform = state.transform * transform_of(tile);
     const std::string refine = text_of(tile, "refine");
     if (!refine.empty()) state.replace = refine == "REPLACE" || refine == "replace";
+    const Result<std::optional<ImplicitTiling>> tiling = implicit_tiling_of(tile);
+    if (!tiling) return fail(tiling.error());
+    if (*tiling) return add_subtree(**tiling, {}, base, state);
     const Json& children = member(tile, "children");
     const bool replaced = state.replace && !children.empty();
     if (Status status = replaced ? Status() : add_contents(tile, base, state); !status) return status;
@@ -83,62 +139,76 @@ class TilesetWalk {
     return {};
   }
 
-  Status add_contents(const Json& tile, const fs::path& base, const Inherited& state) {
-    if (member(tile, "content").is_object()) return add_content(member(tile, "content"), base, state);
-    for (const Json& content : member(tile, "contents")) {
-      if (Status status = add_content(content, base, state); !status) return status;
+  Status add_subtree(const ImplicitTiling& tiling, const TileKey& root, const fs::path& base, const Inherited& state) {
+    const Result<Subtree> subtree =
+        Subtree::open(folder_, (base / name_of_tile(tiling.subtrees, root)).string(), tiling);
+    if (!subtree) return fail(subtree.error());
+    if (!subtree->has_tile(0, 0)) return {};
+    return add_implicit({tiling, *subtree, root}, base, state);
+  }
+
+  Status add_implicit(const ImplicitTile& tile, const fs::path& base, Inherited state) {
+    ++state.depth;
+    if (Status status = count_tile(state); !status) return status;
+    const bool replaced = state.replace && tile.has_children();
+    for (size_t i = 0; !replaced && i < tile.tiling.names.size(); ++i) {
+      if (!tile.subtree.has_content(i, tile.level, tile.number)) continue;
+      const std::string name = name_of_tile(tile.tiling.names[i], tile.key);
+      if (Status status = add_content(name, base, state); !status) return status;
+    }
+    for (uint64_t child = 0; child < tile.tiling.children(); ++child) {
+      if (!tile.has_child(child)) continue;
+      const TileKey key = child_of(tile.key, child);
+      const uint64_t number = tile.number * tile.tiling.children() + child;
+      Status status = tile.at_last_level()
+                          ? add_subtree(tile.tiling, key, base, state)
+                          : add_implicit({tile.tiling, tile.subtree, key, tile.level + 1, number}, base, state);
+      if (!status) return status;
     }
     return {};
   }
 
-  Status add_content(const Json& content, const fs::path& base, const Inherited& state) {
-    const std::string uri = name_of(content);
+  Status add_contents(const Json& tile, const fs::path& base, const Inherited& state) {
+    for (const Json& content : contents_of(tile)) {
+      if (Status status = add_content(content_name(content), base, state); !status) return status;
+    }
+    return {};
+  }
+
+  Status add_content(const std::string& uri, const fs::path& base, const Inherited& state) {
     const std::string name = (base / uri).string();
     if (uri.empty() || uri.front() == '/') return invalid_input("a tile has content without a usable name");
     if (fs::path(uri).extension() == ".json") return read(name, state);
-    contents_.push_back({name, state.transform});
+    const Result<TileFile> file = TileFile::open(folder_, name);
+    if (!file) return fail(file.error());
+    const Result<TileContent> content = open_tile_content(*file, limit_);
+    if (!content) return fail(content.error());
+    others_ = others_ || content->others;
+    if (content->points == 0) return {};
+    merge_columns(content->columns, columns_);
+    contents_.push_back({name, state.transform, content->points});
     return {};
   }
 
   fs::path folder_;
+  DecodingLimit limit_;
   std::vector<Content> contents_;
+  std::vector<ColumnInfo> columns_;
   size_t tiles_ = 0;
+  bool others_ = false;
 };
-
-Result<PntsTile> parse_content(const TileFile& file) {
-  if (as_text(file.bytes()).starts_with("pnts")) {
-    Result<PntsTile> tile = parse_pnts(file.bytes());
-    return tile ? std::move(tile) : file.error(tile.error());
-  }
-  const std::string kind = printable(as_text(file.bytes()).substr(0, 4));
-  return fail(ErrorKind::kUnsupported, "a tile of kind " + kind + " is not supported, only pnts are");
-}
-
-/// Adds the columns that are not there yet. Types that differ become double.
-void merge_columns(const std::vector<ColumnInfo>& from, std::vector<ColumnInfo>& all) {
-  for (const ColumnInfo& column : from) {
-    const auto same =
-        std::find_if(all.begin(), all.end(), [&column](const ColumnInfo& known) { return known.name == column.name; });
-    if (same == all.end()) {
-      all.push_back(column);
-    } else if (same->type != column.type) {
-      same->type = ScalarType::kFloat64;
-    }
-  }
-}
-
-bool is_color(const std::string& name) {
-  return name == "red" || name == "green" || name == "blue";
-}
 
 /// The values of a table in these columns. Missing colours are grey, other values zero.
 PointTable in_columns(const PointTable& table, const std::vector<ColumnInfo>& own, const std::vector<ColumnInfo>& all) {
   constexpr int kGrey = 128;
+  constexpr int kWiden = 257;  // colours of 8 bits among those of 16
   PointTable placed;
   placed.rows = table.rows;
   for (const ColumnInfo& wanted : all) {
     const auto found = std::find_if(own.begin(), own.end(),
                                     [&wanted](const ColumnInfo& column) { return column.name == wanted.name; });
+    const bool widened = is_color(wanted.name) && wanted.type == ScalarType::kUint16 &&
+                         (found == own.end() || found->type == ScalarType::kUint8);
     with_type(wanted.type, [&](auto zero) {
       using T = decltype(zero);
       std::vector<T> values(table.rows, static_cast<T>(is_color(wanted.name) ? kGrey : 0));
@@ -146,6 +216,9 @@ PointTable in_columns(const PointTable& table, const std::vector<ColumnInfo>& ow
         for_each_value(table.columns[static_cast<size_t>(found - own.begin())], table.rows,
                        // NOLINTNEXTLINE(bugprone-signed-char-misuse): numbers of 8 bits, not characters
                        [&values](size_t i, auto value) { values[i] = static_cast<T>(value); });
+      }
+      if (widened) {
+        for (T& value : values) value = static_cast<T>(value * static_cast<T>(kWiden));
       }
       add_column(placed, std::move(values));
     });
@@ -157,32 +230,26 @@ PointTable in_columns(const PointTable& table, const std::vector<ColumnInfo>& ow
 
 Result<std::unique_ptr<RowSource>> tileset_rows(const fs::path& path, const DecodingLimit& limit) {
   const fs::path folder = path.parent_path();
-  TilesetWalk walk(folder);
+  TilesetWalk walk(folder, limit);
   if (Status status = walk.read(path.filename().string(), {}); !status) return fail(status.error());
-  std::vector<Content> contents = walk.take();
   TileSet tiles;
-  for (const Content& content : contents) {
-    const Result<TileFile> file = TileFile::open(folder, content.name);
-    if (!file) return fail(file.error());
-    const Result<PntsTile> tile = parse_content(*file);
-    if (!tile) return fail(tile.error());
-    const Result<std::vector<ColumnInfo>> columns = pnts_columns(*tile, limit);
-    if (!columns) return file->error(columns.error());
-    merge_columns(*columns, tiles.columns);
-    tiles.counts.push_back(tile->points);
+  tiles.columns = walk.columns();
+  if (walk.others()) tiles.traits.notes.emplace_back("triangles and lines in its tiles are left out");
+  std::vector<Content> contents = walk.take();
+  if (contents.empty() && walk.others()) {
+    return fail(ErrorKind::kUnsupported, "has tiles of meshes alone, and points are read");
   }
-  if (tiles.columns.empty()) return invalid_input("has no points");
+  if (contents.empty()) return invalid_input("has no points");
+  for (const Content& content : contents) tiles.counts.push_back(content.points);
   tiles.read = [folder, limit, columns = tiles.columns,
                 contents = std::move(contents)](size_t index) -> Result<PointTable> {
     const Result<TileFile> file = TileFile::open(folder, contents[index].name);
     if (!file) return fail(file.error());
-    const Result<PntsTile> tile = parse_content(*file);
-    if (!tile) return fail(tile.error());
-    const Result<std::vector<ColumnInfo>> own = pnts_columns(*tile, limit);
-    if (!own) return file->error(own.error());
-    const Result<PointTable> table = pnts_table(*tile, contents[index].transform, limit);
+    const Result<TileContent> content = open_tile_content(*file, limit);
+    if (!content) return fail(content.error());
+    const Result<PointTable> table = content->table(contents[index].transform);
     if (!table) return file->error(table.error());
-    return in_columns(*table, *own, columns);
+    return in_columns(*table, content->columns, columns);
   };
   return tile_rows(std::move(tiles), limit);
 }

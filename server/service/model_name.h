@@ -5,8 +5,8 @@
 
 namespace surfcast::service {
 
-/// The name under which a file is served: without its folders and its extension, "brain" for "brain.nii.gz". A
-/// description of SOG ("meta.json") has the name of its folder.
+/// The name under which a file is served: without its folders and its extension, "brain" for "brain.nii.gz". A file
+/// that describes a folder, such as "meta.json" of SOG and "tileset.json" of 3D Tiles, has the name of its folder.
 [[nodiscard]] std::string model_name(const std::filesystem::path& path);
 
 /// A name under which there is never a model. Whoever asks for it gets the same answer as for an absent `name`.

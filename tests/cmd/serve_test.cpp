@@ -4,6 +4,7 @@
 #include <sys/stat.h>
 
 #include "cmd/serve_fixture.h"
+#include "scan/tile_files.h"
 
 namespace surfcast::cmd {
 namespace {
@@ -26,6 +27,36 @@ TEST_F(ServeTest, AScanIsBuiltServedDrawnAndTheServerEndsWhenTold) {
   EXPECT_NE(content(file("log")).find("OpenGL"), std::string::npos);
   EXPECT_EQ(end(SIGTERM), 0);
   EXPECT_EQ(client::run_program(SURFCAST_SERVER " healthcheck --url " + url_ + " 2>&1").code, 1);
+}
+
+TEST_F(ServeTest, AFolderThatIsAScanIsServedUnderItsName) {
+  testing::Bytes points;
+  for (int i = 0; i < 400; ++i) points.add(static_cast<float>(i % 20)).add(static_cast<float>(i / 20)).add(0.0F);
+  fs::create_directories(folder_ / "church");
+  const auto write = [this](const std::string& name, const std::string& text) {
+    ASSERT_TRUE(write_file_atomically(folder_ / "church" / name, text));
+  };
+  write("a.pnts", testing::pnts(R"({"POINTS_LENGTH": 400, "POSITION": {"byteOffset": 0}})", points.text()));
+  write("tileset.json", R"({"asset": {"version": "1.0"}, "root": {"content": {"uri": "a.pnts"}}})");
+  serve(file("church"));
+  EXPECT_EQ(client::run_program(SURFCAST_CLIENT " models " + url_).output, "church\n");
+  ASSERT_EQ(draw("church").code, 0);
+  const std::string drawn = content(file("drawn.png"));
+  EXPECT_FALSE(drawn.empty());
+  EXPECT_EQ(end(SIGTERM), 0);
+  serve(file("church/tileset.json"));
+  EXPECT_EQ(client::run_program(SURFCAST_CLIENT " models " + url_).output, "church\n");
+  ASSERT_EQ(draw("church").code, 0);
+  EXPECT_TRUE(content(file("drawn.png")) == drawn);
+}
+
+TEST_F(ServeTest, AFolderOfModelsIsNoScanWhateverElseItHolds) {
+  const std::string model = file("models/square.surf");
+  fs::create_directories(folder_ / "models");
+  ASSERT_EQ(client::run_program(SURFCAST_SERVER " build " + scan_.string() + " --output " + model + " 2>&1").code, 0);
+  ASSERT_TRUE(write_file_atomically(folder_ / "models/tileset.json", R"({"asset": {}, "root": {}})"));
+  serve(file("models"));
+  EXPECT_EQ(client::run_program(SURFCAST_CLIENT " models " + url_).output, "square\n");
 }
 
 TEST_F(ServeTest, AReaderOfTheLogThatGoesAwayDoesNotEndTheServer) {

@@ -26,7 +26,7 @@ void read_gaussians(const std::string& path) {
 void read_scan(Bytes bytes) {
   // A copy of its own, so that the sanitizer sees what is read beyond the end.
   const std::vector<std::byte> content(bytes.begin(), bytes.end());
-  const Result<scan::ScanStream> stream = scan::ScanStream::open_content(content, "input.xyz");
+  const Result<scan::ScanStream> stream = scan::ScanStream::open_content(content, "input.xyz", kLimit);
   if (!stream) return;
   for (size_t piece = 0; piece < stream->pieces(); ++piece) {
     if (!stream->read(piece)) return;

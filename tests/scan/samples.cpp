@@ -98,6 +98,39 @@ std::string draco_cloud(bool kd_tree) {
   return {buffer.data(), buffer.size()};
 }
 
+GltfFile draco_points() {
+  draco::PointCloudBuilder builder;
+  builder.Start(2);
+  const int position = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
+  const int color = builder.AddAttribute(draco::GeometryAttribute::COLOR, 4, draco::DT_UINT8);
+  const int number = builder.AddAttribute(draco::GeometryAttribute::GENERIC, 1, draco::DT_UINT16);
+  for (uint32_t i = 0; i < 2; ++i) {
+    const float xyz[3] = {static_cast<float>(i), 2, 3};
+    const uint8_t rgba[4] = {static_cast<uint8_t>(255 * i), 255, 0, 255};
+    const auto value = static_cast<uint16_t>(500 + i);
+    builder.SetAttributeValueForPoint(position, draco::PointIndex(i), xyz);
+    builder.SetAttributeValueForPoint(color, draco::PointIndex(i), rgba);
+    builder.SetAttributeValueForPoint(number, draco::PointIndex(i), &value);
+  }
+  const std::unique_ptr<draco::PointCloud> cloud = builder.Finalize(false);
+  draco::Encoder encoder;
+  encoder.SetEncodingMethod(draco::POINT_CLOUD_SEQUENTIAL_ENCODING);
+  draco::EncoderBuffer buffer;
+  if (!encoder.EncodePointCloudToBuffer(*cloud, &buffer).ok()) return {};
+  GltfFile file;
+  const size_t view = file.add_view({buffer.data(), buffer.size()});
+  file.json["accessors"] = {{{"componentType", 5126}, {"count", 2}, {"type", "VEC3"}},
+                            {{"componentType", 5121}, {"count", 2}, {"type", "VEC4"}, {"normalized", true}},
+                            {{"componentType", 5123}, {"count", 2}, {"type", "SCALAR"}}};
+  file.primitive()["attributes"] = {{"POSITION", 0}, {"COLOR_0", 1}, {"_INTENSITY", 2}};
+  const nlohmann::json ids = {{"POSITION", cloud->attribute(position)->unique_id()},
+                              {"COLOR_0", cloud->attribute(color)->unique_id()},
+                              {"_INTENSITY", cloud->attribute(number)->unique_id()}};
+  file.primitive()["extensions"]["KHR_draco_mesh_compression"] = {{"bufferView", view}, {"attributes", ids}};
+  file.json["extensionsRequired"] = {"KHR_draco_mesh_compression"};
+  return file;
+}
+
 std::vector<Sample> samples() {
   return {
       {"ascii.ply", ply("ascii")},

@@ -3,6 +3,8 @@
 #include <string>
 #include <vector>
 
+#include "scan/tile_files.h"
+
 namespace surfcast::testing {
 
 /// A PCD header; `fields` are its lines FIELDS to COUNT.
@@ -13,6 +15,9 @@ std::string lzf_block(const std::string& data);
 
 /// A Draco point cloud of a few hundred points with normals, colours and a generic attribute.
 std::string draco_cloud(bool kd_tree);
+
+/// Two points with colours and a number, compressed.
+GltfFile draco_points();
 
 /// A small valid file of one format.
 struct Sample {

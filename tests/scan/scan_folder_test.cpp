@@ -1,54 +1,40 @@
 #include "scan/scan_folder.h"
 
 #include <filesystem>
-#include <fstream>
 #include <random>
 
-#include <brotli/encode.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
-#include <zstd.h>
 
 #include "scan/bytes.h"
+#include "scan/folder_files.h"
+#include "scan/scan_folder_fixture.h"
+#include "scan/tile_files.h"
 #include "scan/whole_scan.h"
 
 namespace surfcast::scan {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::bin_point;
+using testing::brotli_node;
 using testing::Bytes;
+using testing::cloud_js;
 using ::testing::ElementsAre;
+using testing::ept_json;
 using ::testing::HasSubstr;
+using testing::hrc_entry;
+using testing::metadata;
+using testing::node2;
+using testing::one_point;
+using testing::pnts;
+using testing::point2;
 using testing::scalar_values;
+using testing::ScanFolderTest;
+using testing::tileset;
 using ::testing::UnorderedElementsAre;
-
-/// A folder of its own for each test.
-class ScanFolderTest : public ::testing::Test {
- protected:
-  ScanFolderTest()
-      : folder_(fs::path(::testing::TempDir()) /
-                (std::string("scan_folder_") + ::testing::UnitTest::GetInstance()->current_test_info()->name())) {
-    fs::remove_all(folder_);
-  }
-  ~ScanFolderTest() override {
-    std::error_code ignored;
-    fs::remove_all(folder_, ignored);
-  }
-
-  void write(const std::string& name, const std::string& content) const {
-    fs::create_directories((folder_ / name).parent_path());
-    std::ofstream(folder_ / name, std::ios::binary) << content;
-  }
-  [[nodiscard]] Result<testing::WholeScan> read(const Selection& selection = {}) const {
-    return testing::whole(ScanStream::open(folder_, {}, {}, selection));
-  }
-  [[nodiscard]] std::string error() const {
-    const Result<testing::WholeScan> points = read();
-    return points ? "" : points.error().message;
-  }
-
-  fs::path folder_;
-};
+using testing::write_ept;
+using testing::zstd_of;
 
 geometry::Box box_of(const glm::dvec3& low, const glm::dvec3& high) {
   geometry::Box box;
@@ -58,37 +44,6 @@ geometry::Box box_of(const glm::dvec3& low, const glm::dvec3& high) {
 }
 
 // ---- EPT
-
-std::string ept_json(const std::string& type) {
-  return R"({"bounds": [0, 0, 0, 8, 8, 8], "dataType": ")" + type + R"(", "hierarchyType": "json", "points": 3,
-    "schema": [{"name": "X", "type": "signed", "size": 4, "scale": 0.5, "offset": 1},
-               {"name": "Y", "type": "signed", "size": 4, "scale": 0.5},
-               {"name": "Z", "type": "float", "size": 8},
-               {"name": "Intensity", "type": "unsigned", "size": 2}],
-    "srs": {"authority": "EPSG", "horizontal": "2154"}})";
-}
-
-std::string ept_point(int32_t x, int32_t y, double z, uint16_t intensity) {
-  return Bytes().add(x).add(y).add(z).add(intensity).text();
-}
-
-std::string zstd_of(const std::string& text) {
-  std::string packed(ZSTD_compressBound(text.size()), '\0');
-  packed.resize(ZSTD_compress(packed.data(), packed.size(), text.data(), text.size(), 3));
-  return packed;
-}
-
-/// Three nodes, one of them in a page of its own.
-template <typename Pack>
-void write_ept(const std::function<void(const std::string&, const std::string&)>& write, const std::string& type,
-               const std::string& extension, const Pack& pack) {
-  write("ept.json", ept_json(type));
-  write("ept-hierarchy/0-0-0-0.json", R"({"0-0-0-0": 1, "1-1-0-0": 1, "1-0-1-1": -1})");
-  write("ept-hierarchy/1-0-1-1.json", R"({"1-0-1-1": 1})");
-  write("ept-data/0-0-0-0" + extension, pack(ept_point(2, 4, 0.25, 7)));
-  write("ept-data/1-1-0-0" + extension, pack(ept_point(12, 2, 3, 8)));
-  write("ept-data/1-0-1-1" + extension, pack(ept_point(0, 14, 7, 9)));
-}
 
 TEST_F(ScanFolderTest, TilesOfEptAreReadInTheOrderOfTheirKeys) {
   const auto write_file = [this](const std::string& name, const std::string& text) { write(name, text); };
@@ -138,25 +93,11 @@ TEST_F(ScanFolderTest, DamagedEptIsNamed) {
 
 // ---- Potree
 
-std::string cloud_js(const std::string& hierarchy) {
-  return R"({"version": "1.7", "octreeDir": "data", "boundingBox": {"lx": 10, "ly": 0, "lz": 0, "ux": 18, "uy": 8,
-    "uz": 8}, "pointAttributes": ["POSITION_CARTESIAN", "COLOR_PACKED", "NORMAL_OCT16"], "scale": 0.25, )" +
-         hierarchy + "}";
-}
-
 TEST_F(ScanFolderTest, Potree1WithoutAttributesIsRefused) {
   write("cloud.js", R"({"octreeDir": "data", "boundingBox": {"lx": 10, "ly": 0, "lz": 0, "ux": 18, "uy": 8, "uz": 8},
     "pointAttributes": [], "hierarchy": [["r", 1]]})");
   write("data/r.bin", "x");
   EXPECT_THAT(error(), HasSubstr("names no attributes"));
-}
-
-std::string bin_point(uint32_t x, uint32_t y, uint32_t z) {
-  return Bytes().add(x).add(y).add(z).add(uint32_t{0x00030201}).add(uint8_t{255}).add(uint8_t{128}).text();
-}
-
-std::string hrc_entry(uint8_t mask, uint32_t points) {
-  return Bytes().add(mask).add(points).text();
 }
 
 TEST_F(ScanFolderTest, NodesOfPotree1LieInTheirCubesAndFolders) {
@@ -189,63 +130,6 @@ TEST_F(ScanFolderTest, TheHierarchyOfPotree1MayStandInItsDescription) {
   EXPECT_THAT(error(), HasSubstr("hierarchy is damaged"));
 }
 
-std::string metadata(const std::string& encoding) {
-  return R"({"version": "2.0", "hierarchy": {"firstChunkSize": 44, "stepSize": 4}, "scale": [0.5, 0.5, 0.5],
-    "offset": [10, 20, 30], "boundingBox": {"min": [10, 20, 30], "max": [18, 28, 38]}, "encoding": ")" +
-         encoding +
-         R"(", "attributes": [
-      {"name": "position", "size": 12, "numElements": 3, "elementSize": 4, "type": "int32"},
-      {"name": "intensity", "size": 2, "numElements": 1, "elementSize": 2, "type": "uint16"},
-      {"name": "rgb", "size": 6, "numElements": 3, "elementSize": 2, "type": "uint16"}]})";
-}
-
-std::string node2(uint8_t type, uint8_t mask, uint32_t points, uint64_t offset, uint64_t bytes) {
-  return Bytes().add(type).add(mask).add(points).add(offset).add(bytes).text();
-}
-
-std::string point2(int32_t x, uint16_t intensity, uint16_t red) {
-  return Bytes()
-      .add(x)
-      .add(int32_t{2})
-      .add(int32_t{-3})
-      .add(intensity)
-      .add(red)
-      .add(uint16_t{300})
-      .add(uint16_t{5})
-      .text();
-}
-
-/// 16 bits of each axis, mixed.
-uint64_t mixed(uint64_t x, uint64_t y, uint64_t z) {
-  uint64_t word = 0;
-  for (int bit = 0; bit < 16; ++bit) {
-    word |= (x >> bit & 1) << 3 * bit | (y >> bit & 1) << (3 * bit + 1) | (z >> bit & 1) << (3 * bit + 2);
-  }
-  return word;
-}
-
-std::string brotli_of(const std::string& text) {
-  std::string packed(text.size() + 1000, '\0');
-  size_t size = packed.size();
-  BrotliEncoderCompress(5, BROTLI_DEFAULT_WINDOW, BROTLI_MODE_GENERIC, text.size(),
-                        reinterpret_cast<const uint8_t*>(text.data()), &size,
-                        reinterpret_cast<uint8_t*>(packed.data()));
-  packed.resize(size);
-  return packed;
-}
-
-/// The node of point2(x, intensity, red), as columns.
-std::string brotli_node(int32_t x, uint16_t intensity, uint16_t red) {
-  const auto bits = static_cast<uint32_t>(x);
-  const auto minus = static_cast<uint32_t>(-3);
-  return brotli_of(Bytes()
-                       .add(mixed(bits >> 16, 0, minus >> 16))
-                       .add(mixed(bits & 65535, 2, minus & 65535))
-                       .add(intensity)
-                       .add(mixed(red, 300, 5))
-                       .text());
-}
-
 TEST_F(ScanFolderTest, BothEncodingsOfPotree2AreRead) {
   for (const bool brotli : {false, true}) {
     fs::remove_all(folder_);
@@ -272,26 +156,6 @@ TEST_F(ScanFolderTest, BothEncodingsOfPotree2AreRead) {
 }
 
 // ---- 3D Tiles
-
-std::string padded(std::string text) {
-  while (text.size() % 8 != 0) text += ' ';
-  return text;
-}
-
-std::string pnts(std::string features, const std::string& bytes, std::string batches = {},
-                 const std::string& batch_bytes = {}) {
-  features = padded(std::move(features));
-  batches = batches.empty() ? batches : padded(std::move(batches));
-  const auto size = [](const std::string& text) { return static_cast<uint32_t>(text.size()); };
-  Bytes file("pnts");
-  file.add(uint32_t{1}).add(28 + size(features) + size(bytes) + size(batches) + size(batch_bytes));
-  file.add(size(features)).add(size(bytes)).add(size(batches)).add(size(batch_bytes));
-  return file.add_text(features + bytes + batches + batch_bytes).text();
-}
-
-std::string one_point(float x) {
-  return pnts(R"({"POINTS_LENGTH": 1, "POSITION": {"byteOffset": 0}})", Bytes().add(x).add(0.0F).add(0.0F).text());
-}
 
 TEST(PntsReaderTest, QuantisedPositionsAndPackedColoursAreUnpacked) {
   const std::string bytes = Bytes()
@@ -344,17 +208,6 @@ TEST(PntsReaderTest, DamageIsReadOrRefused) {
   }
 }
 
-/// A tileset that moves by 10 along x, whose root has content and two children, one by another tileset.
-constexpr const char* kTileset = R"({"asset": {"version": "1.0"}, "root": {"refine": "REFINE",
-  "transform": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 10, 0, 0, 1], "content": {"uri": "root.pnts"}, "children": [
-  {"content": {"uri": "a.pnts"}, "transform": [2, 0, 0, 0, 0, 2, 0, 0, 0, 0, 2, 0, 0, 5, 0, 1]},
-  {"content": {"url": "sub/more.json"}}]}})";
-
-std::string tileset(const std::string& refine) {
-  std::string text = kTileset;
-  return text.replace(text.find("REFINE"), 6, refine);
-}
-
 TEST_F(ScanFolderTest, TransformsOfTilesetsMultiplyAndReplacedTilesAreLeftOut) {
   write("root.pnts", one_point(1));
   write("a.pnts", one_point(2));
@@ -379,15 +232,15 @@ TEST_F(ScanFolderTest, TilesetsThatLeadAstrayAreRefused) {
     return error();
   };
   write("here.pnts", one_point(1));
-  write("mesh.glb", "glTF....");
+  write("damaged.glb", "glTF....");
+  write("a.i3dm", "i3dm....");
   EXPECT_EQ(with_content("here.pnts"), "");
   EXPECT_THAT(with_content("../here.pnts"), HasSubstr("outside of its folder"));
   EXPECT_THAT(with_content("/etc/passwd"), HasSubstr("without a usable name"));
   EXPECT_THAT(with_content("http://example.org/a.pnts"), HasSubstr("outside of its folder"));
   EXPECT_THAT(with_content("tileset.json"), HasSubstr("nested too deeply"));
-  EXPECT_THAT(with_content("mesh.glb"), HasSubstr("a tile of kind glTF is not supported"));
-  write("tileset.json", R"({"asset": {}, "root": {"implicitTiling": {}}})");
-  EXPECT_THAT(error(), HasSubstr("implicit tiling"));
+  EXPECT_THAT(with_content("damaged.glb"), HasSubstr("damaged.glb: truncated: GLB header"));
+  EXPECT_THAT(with_content("a.i3dm"), HasSubstr("a tile of kind i3dm is not supported"));
 }
 
 }  // namespace

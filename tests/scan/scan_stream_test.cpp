@@ -88,8 +88,13 @@ TEST(ScanStreamTest, RandomDamageNeverCrashes) {
 
 TEST(ScanStreamTest, OtherFilesGetOneLineThatSaysWhatTheyAre) {
   const std::pair<const char*, std::string> others[] = {
-      {"a.glb", "glTF"}, {"a.spz", "\x1F\x8B"},   {"a.obj", "v 1 2 3\n"},    {"a.pts", "[Expe/PointSet/ASCII/0.1]\n"},
-      {"a.json", "{}"},  {"a.splat", "\1\2\3\4"}, {"a.unknown", "\1\2\3\4"},
+      {"a.gltf", R"({"asset": {"version": "2.0"}})"},
+      {"a.spz", "\x1F\x8B"},
+      {"a.obj", "v 1 2 3\n"},
+      {"a.pts", "[Expe/PointSet/ASCII/0.1]\n"},
+      {"a.json", "{}"},
+      {"a.splat", "\1\2\3\4"},
+      {"a.unknown", "\1\2\3\4"},
   };
   for (const auto& [name, text] : others) {
     const Result<testing::WholeScan> points = read(name, text);

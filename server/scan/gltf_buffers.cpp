@@ -1,4 +1,4 @@
-#include "mesh/gltf_buffers.h"
+#include "scan/gltf_buffers.h"
 
 #include <algorithm>
 #include <array>
@@ -8,11 +8,15 @@
 #include <utility>
 
 #include "base/invalid_input.h"
-#include "mesh/model_files.h"
+#include "base/mapped_file.h"
+#include "scan/meshopt.h"
+#include "scan/named_file.h"
 #include "scan/text_tokens.h"
 
-namespace surfcast::mesh {
+namespace surfcast::scan {
 namespace {
+
+using Bytes = std::span<const std::byte>;
 
 uint32_t word_at(Bytes bytes, size_t offset) {
   uint32_t word = 0;
@@ -21,11 +25,11 @@ uint32_t word_at(Bytes bytes, size_t offset) {
 }
 
 Result<Json> parse_json(Bytes bytes) {
-  Json json = Json::parse(scan::as_text(bytes), nullptr, false);
+  Json json = Json::parse(as_text(bytes), nullptr, false);
   if (json.is_discarded() || !json.is_object()) return invalid_input("glTF file whose JSON cannot be read");
   const std::string version = text_of(member(json, "asset"), "version");
   if (!version.starts_with("2.")) {
-    return fail(ErrorKind::kUnsupported, "glTF of version " + scan::printable(version) + " is not supported");
+    return fail(ErrorKind::kUnsupported, "glTF of version " + printable(version) + " is not supported");
   }
   return json;
 }
@@ -57,19 +61,16 @@ int base64_digit(char c) {
   return c == '/' || c == '_' ? 63 : -1;
 }
 
-/// Types of components (glTF 2.0, section 3.6.2.2).
-enum ComponentType : uint64_t { kInt8 = 5120, kUint8, kInt16, kUint16, kUint32 = 5125, kFloat = 5126 };
-
 size_t component_size(uint64_t type) {
   switch (type) {
-    case kInt8:
-    case kUint8:
+    case kGltfInt8:
+    case kGltfUint8:
       return 1;
-    case kInt16:
-    case kUint16:
+    case kGltfInt16:
+    case kGltfUint16:
       return 2;
-    case kUint32:
-    case kFloat:
+    case kGltfUint32:
+    case kGltfFloat:
       return 4;
     default:
       return 0;
@@ -97,15 +98,15 @@ double load_as(const std::byte* at, bool normalized) {
 
 double component_at(const std::byte* at, uint64_t type, bool normalized) {
   switch (type) {
-    case kInt8:
+    case kGltfInt8:
       return load_as<int8_t>(at, normalized);
-    case kUint8:
+    case kGltfUint8:
       return load_as<uint8_t>(at, normalized);
-    case kInt16:
+    case kGltfInt16:
       return load_as<int16_t>(at, normalized);
-    case kUint16:
+    case kGltfUint16:
       return load_as<uint16_t>(at, normalized);
-    case kUint32:
+    case kGltfUint32:
       return load_as<uint32_t>(at, false);
     default:
       return load_as<float>(at, false);
@@ -147,10 +148,21 @@ void read_item(const std::byte* from, const AccessorType& type, double* to) {
   for (size_t k = 0; k < type.components; ++k) to[k] = component_at(from + k * size, type.component, type.normalized);
 }
 
+MeshoptView meshopt_view(const Json& packed, std::string_view mode, std::string_view filter) {
+  return {integer_of(packed, "count").value_or(0), integer_of(packed, "byteStride").value_or(0), mode, filter};
+}
+
 }  // namespace
 
+bool is_gltf_text(std::string_view text) {
+  constexpr size_t kLook = 65536;
+  const size_t first = text.find_first_not_of(" \t\r\n");
+  return first != std::string_view::npos && text[first] == '{' &&
+         text.substr(0, kLook).find("\"asset\"") != std::string_view::npos;
+}
+
 Result<GltfParts> split_gltf(Bytes file) {
-  if (!scan::as_text(file).starts_with("glTF")) {
+  if (!as_text(file).starts_with("glTF")) {
     Result<Json> json = parse_json(file);
     if (!json) return fail(std::move(json.error()));
     return GltfParts{std::move(*json), {}};
@@ -187,7 +199,8 @@ std::optional<std::vector<std::byte>> decode_data_uri(std::string_view uri) {
   return bytes;
 }
 
-Result<GltfBuffers> GltfBuffers::open(const ModelFile& file, const GltfParts& parts, const scan::DecodingLimit& limit) {
+Result<GltfBuffers> GltfBuffers::open(const std::filesystem::path& file, const GltfParts& parts,
+                                      const DecodingLimit& limit) {
   GltfBuffers buffers(limit);
   for (const Json& buffer : member(parts.json, "buffers")) {
     const Result<Bytes> bytes = buffers.open_buffer(file, buffer, parts.binary, buffers.buffers_.empty());
@@ -195,10 +208,17 @@ Result<GltfBuffers> GltfBuffers::open(const ModelFile& file, const GltfParts& pa
     buffers.buffers_.push_back(*bytes);
     buffers.bytes_ += bytes->size();
   }
+  for (const Json& view : member(parts.json, "bufferViews")) {
+    const Json& packed = member(member(view, "extensions"), kMeshoptExtension);
+    const Result<Bytes> bytes = buffers.range(packed);
+    const MeshoptView stated = meshopt_view(packed, {}, {});
+    if (bytes && meshopt_claim_is_plausible(*bytes, stated)) buffers.bytes_ += stated.count * stated.stride;
+  }
   return buffers;
 }
 
-Result<Bytes> GltfBuffers::open_buffer(const ModelFile& file, const Json& buffer, Bytes binary, bool first) {
+Result<Bytes> GltfBuffers::open_buffer(const std::filesystem::path& file, const Json& buffer, Bytes binary,
+                                       bool first) {
   const std::string uri = text_of(buffer, "uri");
   if (uri.empty()) return first ? binary : Bytes();
   if (std::optional<std::vector<std::byte>> decoded = decode_data_uri(uri)) {
@@ -207,10 +227,10 @@ Result<Bytes> GltfBuffers::open_buffer(const ModelFile& file, const Json& buffer
     contents_.push_back(kept);
     return Bytes(*kept);
   }
-  const std::optional<std::filesystem::path> path = named_file(file.path, uri);
-  if (!path) return invalid_input("names a buffer that is not in its folder: " + scan::printable(uri));
+  const std::optional<std::filesystem::path> path = named_file(file, uri);
+  if (!path) return invalid_input("names a buffer that is not in its folder: " + printable(uri));
   Result<MappedFile> mapped = MappedFile::open(*path);
-  if (!mapped) return fail(ErrorKind::kNotFound, "its buffer cannot be read: " + scan::printable(uri));
+  if (!mapped) return fail(ErrorKind::kNotFound, "its buffer cannot be read: " + printable(uri));
   const auto kept = std::make_shared<const MappedFile>(std::move(*mapped));
   contents_.push_back(kept);
   return kept->bytes();
@@ -221,8 +241,7 @@ Status GltfBuffers::set_aside(uint64_t bytes) {
   return limit_.check(set_aside_);
 }
 
-Result<Bytes> GltfBuffers::view(const Json& json, uint64_t index) const {
-  const Json& stated = element(member(json, "bufferViews"), index);
+Result<Bytes> GltfBuffers::range(const Json& stated) const {
   const std::optional<uint64_t> buffer = integer_of(stated, "buffer");
   const uint64_t offset = integer_of(stated, "byteOffset").value_or(0);
   const std::optional<uint64_t> length = integer_of(stated, "byteLength");
@@ -234,7 +253,29 @@ Result<Bytes> GltfBuffers::view(const Json& json, uint64_t index) const {
   return bytes.subspan(static_cast<size_t>(offset), static_cast<size_t>(*length));
 }
 
-Status GltfBuffers::read_dense(const Json& json, const Json& accessor, AccessorValues& into) const {
+Result<Bytes> GltfBuffers::decompress(const Json& packed, uint64_t index) {
+  if (const auto known = decompressed_.find(index); known != decompressed_.end()) return known->second;
+  const Result<Bytes> bytes = range(packed);
+  if (!bytes) return bytes;
+  const std::string mode = text_of(packed, "mode");
+  const std::string filter = text_of(packed, "filter");
+  const MeshoptView stated = meshopt_view(packed, mode, filter);
+  if (!meshopt_claim_is_plausible(*bytes, stated)) return invalid_input("damaged or truncated meshopt data");
+  if (Status status = set_aside(stated.count * stated.stride); !status) return fail(std::move(status.error()));
+  Result<std::vector<std::byte>> made = decode_meshopt(*bytes, stated);
+  if (!made) return fail(std::move(made.error()));
+  const auto kept = std::make_shared<const std::vector<std::byte>>(std::move(*made));
+  contents_.push_back(kept);
+  return decompressed_[index] = Bytes(*kept);
+}
+
+Result<Bytes> GltfBuffers::view(const Json& json, uint64_t index) {
+  const Json& stated = element(member(json, "bufferViews"), index);
+  const Json& packed = member(member(stated, "extensions"), kMeshoptExtension);
+  return packed.is_object() ? decompress(packed, index) : range(stated);
+}
+
+Status GltfBuffers::read_dense(const Json& json, const Json& accessor, AccessorValues& into) {
   const AccessorType type(accessor);
   const std::optional<uint64_t> number = integer_of(accessor, "bufferView");
   if (!number) return {};  // zeros
@@ -252,7 +293,7 @@ Status GltfBuffers::read_dense(const Json& json, const Json& accessor, AccessorV
   return {};
 }
 
-Status GltfBuffers::read_sparse(const Json& json, const Json& accessor, AccessorValues& into) const {
+Status GltfBuffers::read_sparse(const Json& json, const Json& accessor, AccessorValues& into) {
   const Json& sparse = member(accessor, "sparse");
   if (!sparse.is_object()) return {};
   const AccessorType type(accessor);
@@ -298,4 +339,4 @@ Result<AccessorValues> GltfBuffers::values(const Json& json, uint64_t accessor) 
   return values;
 }
 
-}  // namespace surfcast::mesh
+}  // namespace surfcast::scan
