@@ -7,13 +7,17 @@
 
 namespace surfcast::cmd {
 
-/// The first argument of a program that `serve` starts to draw. Users do not call it.
+/// The argument of a program that `serve` starts to draw. Users do not call it.
 inline constexpr const char* kRenderWorker = "render-worker";
 
-/// The command that starts a render worker: this program itself.
-Result<std::vector<std::string>> render_worker_command();
+/// The same of one that answers picks and the like.
+inline constexpr const char* kQueryWorker = "query-worker";
 
-/// Draws for the server that has started this process, until that ends.
-[[noreturn]] void run_render_worker();
+/// The command that starts a worker with one of these arguments: this program itself.
+Result<std::vector<std::string>> worker_command(const char* purpose);
+
+/// If the program was started with one of these arguments: draws or answers for the server that has started it, and
+/// ends with it. Otherwise returns.
+void run_as_worker(int argc, char** argv);
 
 }  // namespace surfcast::cmd
