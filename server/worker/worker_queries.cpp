@@ -1,6 +1,7 @@
 #include "worker/worker_queries.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <condition_variable>
 #include <cstring>
@@ -9,6 +10,9 @@
 #include <glm/vec3.hpp>
 #include <mutex>
 #include <optional>
+#include <stop_token>
+#include <thread>
+#include <type_traits>
 #include <utility>
 
 #include "base/log.h"
@@ -56,10 +60,22 @@ class QueryProcess {
     spdlog::info("query worker {} answers", worker_.id());
     return {};
   }
+  /// While nothing is asked: closes models that the server has closed, and replaces a worker that has ended.
+  void tend() {
+    if (!worker_.running()) return;
+    worker_.withdraw_unused(kMostModels);
+    // It says nothing unless it is asked: what there is to receive is its end.
+    const Result<std::optional<Received>> received = worker_.channel().receive(std::chrono::milliseconds(0));
+    if (received && !received->has_value()) return;
+    static_cast<void>(received ? worker_.misbehaved("is not understood") : worker_.lost());
+    if (worker_.was_lost()) worker_.bury();
+    if (const Status started = start(); !started) spdlog::error("{}", started.error().message);
+  }
   [[nodiscard]] uint64_t generation() const { return worker_.generation(); }
   [[nodiscard]] const std::shared_ptr<ClosedStreams>& closed_streams() const { return closed_; }
 
-  /// Asks, and asks another worker if this one ends. `take(message, answer)` makes an answer of the messages, and says what they are.
+  /// Asks, and asks another worker if this one ends. `take(message, answer)` makes an answer of the messages, and says
+  /// what they are.
   template <typename Answer, typename Take>
   Result<Answer> ask(const ModelPointer& model, const Message& question, const std::atomic<bool>& cancelled,
                      const Take& take) {
@@ -163,6 +179,15 @@ class QueryProcesses {
     return use(*place->process);
   }
 
+  /// See QueryProcess::tend.
+  void tend() {
+    for (Place& place : places_) {
+      if (!take(place)) continue;
+      place.process->tend();
+      give_back(place);
+    }
+  }
+
  private:
   struct Place {
     std::unique_ptr<QueryProcess> process;
@@ -175,6 +200,11 @@ class QueryProcesses {
     freed_.wait(lock, [&] { return (idle = std::ranges::find(places_, false, &Place::busy)) != places_.end(); });
     idle->busy = true;
     return &*idle;
+  }
+  /// False if it is busy.
+  bool take(Place& place) {
+    const std::lock_guard lock(mutex_);
+    return !std::exchange(place.busy, true);
   }
   void give_back(Place& place) {
     {
@@ -298,7 +328,8 @@ class WorkerQueries : public service::ModelQueries {
  public:
   WorkerQueries(const QueryWorkerConfig& config, WorkerCounts& counts)
       : picks_(config, config.limits.threads, config.limits.block_bytes, counts, blame_),
-        searches_(config, 1, config.limits.block_bytes, counts, blame_) {}
+        searches_(config, 1, config.limits.block_bytes, counts, blame_),
+        keeper_([this, pause = config.pause](const std::stop_token& stop) { keep(stop, pause); }) {}
 
   Status start() {
     return picks_.with([](QueryProcess& process) { return process.start(); });
@@ -356,10 +387,21 @@ class WorkerQueries : public service::ModelQueries {
   }
 
  private:
+  void keep(const std::stop_token& stop, std::chrono::milliseconds pause) {
+    std::mutex mutex;
+    std::condition_variable_any stopped;
+    std::unique_lock lock(mutex);
+    while (!stopped.wait_for(lock, stop, pause, [&] { return stop.stop_requested(); })) {
+      picks_.tend();
+      searches_.tend();
+    }
+  }
+
   Blame blame_;
   std::atomic<uint64_t> last_stream_ = 0;
   QueryProcesses picks_;
   QueryProcesses searches_;  ///< one, because one thread asks
+  std::jthread keeper_;      ///< looks after them while they are idle; the last member, so that it ends first
 };
 
 }  // namespace

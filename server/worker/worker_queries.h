@@ -20,6 +20,7 @@ struct QueryWorkerConfig {
   bool sandbox = true;
   std::vector<std::string> readable;          ///< files and folders that the sandbox lets it read, beside libraries
   std::chrono::milliseconds silence{60'000};  ///< without a block or a word of an answer, before it is taken for hung
+  std::chrono::milliseconds pause{2'000};     ///< between two looks at workers that are idle
   service::PickLimits limits;                 ///< threads and memory of picks
 };
 

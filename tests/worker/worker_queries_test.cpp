@@ -14,7 +14,6 @@
 #include <functional>
 #include <future>
 #include <iterator>
-#include <limits>
 #include <memory>
 #include <string>
 #include <thread>
@@ -36,8 +35,8 @@ namespace surfcast::worker {
 namespace {
 
 using std::chrono::milliseconds;
+using ::testing::ElementsAre;
 using ::testing::HasSubstr;
-using ::testing::IsEmpty;
 using ::testing::SizeIs;
 using ModelPointer = service::ModelQueries::ModelPointer;
 
@@ -423,16 +422,26 @@ std::vector<std::string> open_files(pid_t process, const std::filesystem::path& 
   return files;
 }
 
-TEST_F(WorkerQueriesTest, ModelsThatTheServerHasClosedAreClosedWithTheNextQuestion) {
-  start([](QueryWorkerConfig& config) { config.sandbox = false; });  // which hides the list of open files
+TEST_F(WorkerQueriesTest, ModelsThatTheServerHasClosedAreClosedWithoutAQuestion) {
+  start([](QueryWorkerConfig& config) {
+    config.sandbox = false;  // which hides the list of open files
+    config.pause = milliseconds(1);
+  });
   const std::filesystem::path folder = scene_->path().parent_path();
   ASSERT_TRUE(pick(square_pixel()));
   ASSERT_THAT(workers(), SizeIs(1));
-  EXPECT_THAT(open_files(workers()[0], folder), ::testing::ElementsAre("scene.surf"));
-  scene_ = open(testing::write_scene(folder_ / "other.surf"));
-  ASSERT_TRUE(pick(square_pixel()));
-  ASSERT_TRUE(pick(square_pixel()));  // the worker has done what came before this
-  EXPECT_THAT(open_files(workers()[0], folder), ::testing::ElementsAre("other.surf"));
+  EXPECT_THAT(open_files(workers()[0], folder), ElementsAre("scene.surf"));
+  scene_.reset();
+  while (!open_files(workers()[0], folder).empty()) std::this_thread::sleep_for(milliseconds(1));
+  EXPECT_EQ(counts_.ended, 0U);
+}
+
+TEST_F(WorkerQueriesTest, AnIdleWorkerThatIsKilledIsReplacedWithoutAQuestion) {
+  start([](QueryWorkerConfig& config) { config.pause = milliseconds(1); });
+  ::kill(workers().at(0), SIGKILL);
+  while (counts_.started < 2) std::this_thread::sleep_for(milliseconds(1));
+  EXPECT_EQ(counts_.ended, 1U);
+  EXPECT_TRUE(pick(ball_pixel()));
 }
 
 }  // namespace
