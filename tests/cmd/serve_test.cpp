@@ -95,6 +95,44 @@ TEST_F(ServeTest, AQueryWorkerThatIsKilledIsReplacedAndAnswersAsTheServerWould) 
   EXPECT_EQ(get(region), points);
 }
 
+/// Bytes that a process has read from files so far.
+uint64_t bytes_read(pid_t process) {
+  const std::string counts = content(fs::path("/proc") / std::to_string(process) / "io");
+  return counts.starts_with("rchar: ") ? std::stoull(counts.substr(7)) : 0;
+}
+
+TEST_F(ServeTest, AServerWithWorkersReadsNoBlocks) {
+  constexpr uint64_t kLessThanABlock = 10'000;  // and more than what else it reads
+  std::ofstream points(folder_ / "dense.xyz");
+  for (int i = 0; i < 40'000; ++i) points << i % 200 << ' ' << i / 200 << ' ' << i * 7919 % 1009 * 0.001 << '\n';
+  points.close();
+  const std::vector<std::string> questions{
+      "/api/models/dense/pick?pixel=32,24&resolution=64,48",
+      "/api/models/dense/profile?line=0,90,0;199,100,0&width=400&format=las",
+      "/api/models/dense/points?box=0,0,-1,199,199,2&format=las",
+      "/api/models/dense/image?resolution=64,48&format=exr&channels=depth",
+  };
+  std::vector<std::string> answers;
+  for (const std::string workers : {"1", "0"}) {
+    serve("--workers " + workers + " " + (folder_ / "dense.xyz").string());
+    ASSERT_EQ(draw("dense").code, 0);
+    if (bytes_read(server_) == 0) GTEST_SKIP() << "the kernel does not count what is read";
+    for (size_t i = 0; i < questions.size(); ++i) {
+      const uint64_t before = bytes_read(server_);
+      const std::string answer = get(questions[i]);
+      const uint64_t read = bytes_read(server_) - before;
+      if (workers == "1") {
+        EXPECT_LT(read, kLessThanABlock) << questions[i];
+        answers.push_back(answer);
+      } else {
+        EXPECT_GT(read, kLessThanABlock) << questions[i];
+        EXPECT_TRUE(answer == answers[i]) << questions[i];
+      }
+    }
+    EXPECT_EQ(end(SIGTERM), 0);
+  }
+}
+
 TEST_F(ServeTest, AServerWithoutWorkersDrawsTheSamePictures) {
   serve(scan_.string());
   ASSERT_EQ(draw("square").code, 0);
