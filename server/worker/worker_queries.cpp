@@ -60,9 +60,10 @@ class QueryProcess {
     spdlog::info("query worker {} answers", worker_.id());
     return {};
   }
-  /// While nothing is asked: closes models that the server has closed, and replaces a worker that has ended.
+  /// While nothing is asked: closes what the server has closed, and replaces a worker that has ended.
   void tend() {
     if (!worker_.running()) return;
+    static_cast<void>(prepare(nullptr));  // what cannot be sent is noticed below
     worker_.withdraw_unused(kMostModels);
     // It says nothing unless it is asked: what there is to receive is its end.
     const Result<std::optional<Received>> received = worker_.channel().receive(std::chrono::milliseconds(0));

@@ -436,6 +436,16 @@ TEST_F(WorkerQueriesTest, ModelsThatTheServerHasClosedAreClosedWithoutAQuestion)
   EXPECT_EQ(counts_.ended, 0U);
 }
 
+TEST_F(WorkerQueriesTest, AWorkerIsConfinedUnlessItIsNotToBe) {
+  if (status_of(::getpid()).find("\nSeccomp:\t") == std::string::npos) GTEST_SKIP() << "the kernel has no filters";
+  start();
+  EXPECT_THAT(status_of(workers().at(0)), HasSubstr("\nSeccomp:\t2\n"));
+  EXPECT_THAT(status_of(workers().at(0)), HasSubstr("\nNoNewPrivs:\t1\n"));
+  start([](QueryWorkerConfig& config) { config.sandbox = false; });
+  const std::string own = status_of(::getpid());
+  EXPECT_THAT(status_of(workers().at(0)), HasSubstr(own.substr(own.find("\nNoNewPrivs:"), 14)));
+}
+
 TEST_F(WorkerQueriesTest, AnIdleWorkerThatIsKilledIsReplacedWithoutAQuestion) {
   start([](QueryWorkerConfig& config) { config.pause = milliseconds(1); });
   ::kill(workers().at(0), SIGKILL);
