@@ -11,9 +11,9 @@
 #include "cmd/inspect.h"
 #include "cmd/pick.h"
 #include "cmd/render.h"
-#include "cmd/render_worker.h"
 #include "cmd/serve.h"
 #include "cmd/token.h"
+#include "cmd/worker_role.h"
 #include "command_line/parse_command_line.h"
 
 namespace {

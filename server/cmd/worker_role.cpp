@@ -1,4 +1,4 @@
-#include "cmd/render_worker.h"
+#include "cmd/worker_role.h"
 
 #include <filesystem>
 #include <string_view>
