@@ -34,7 +34,9 @@ void add_queue_flags(CLI::App& command, service::ServiceLimits& limits) {
 void add_pick_flags(CLI::App& command, service::PickLimits& limits) {
   add_pick_cache_flag(command, limits);
   add_count(command, "pick-threads", limits.threads,
-            "Threads that find what a pixel shows (default 2). More: processor time; less: picks wait", kThreads);
+            "Threads that find what a pixel shows, each with a process (default 2). More: memory and processor time; "
+            "less: picks wait",
+            kThreads);
   add_count(command, "max-picks", limits.waiting,
             "Picks, and profiles, that may be outstanding (default 64 each). More: longer waits; less: refused sooner");
   add_count(
@@ -42,7 +44,7 @@ void add_pick_flags(CLI::App& command, service::PickLimits& limits) {
       "Blocks of a model that one pick may read (default 256). More: wide pixels occupy a thread for longer; less: "
       "picks in small pictures of large models are refused");
   add_count(command, "max-profile-points", limits.profile_points,
-            "Points of one profile (default 1000000). More: memory, some 200 bytes a point and 40 for each attribute; "
+            "Points of one profile (default 1000000). More: memory, some 250 bytes a point and 50 for each attribute; "
             "less: coarser samples of wide profiles",
             {1, 100'000'000});
   add_count(command, "max-region-points", limits.region_points,
@@ -219,12 +221,13 @@ void add_renderer_flags(CLI::App& command, render::RendererConfig& renderer) {
 
 void add_worker_flags(CLI::App& command, WorkerFlags& worker) {
   add_count(command, "workers", worker.workers,
-            "Processes that decode models and draw (default 1; 0: the server itself, which then ends with the driver "
-            "or a block that crashes it)",
+            "Processes that decode models and draw (default 1, and one for each of --pick-threads and for searches; 0: "
+            "the server itself, which then ends with the driver or a block that crashes it)",
             {0, 1});
-  add_seconds(command, "worker-timeout", worker.silence,
-              "Without a sign of a worker that draws before it is replaced (default 60). More: a driver that hangs is "
-              "waited for; less: slow devices are taken for hung");
+  add_seconds(
+      command, "worker-timeout", worker.silence,
+      "Without a sign of a worker that draws or answers before it is replaced (default 60). More: a driver that "
+      "hangs is waited for; less: slow devices are taken for hung");
   command
       .add_option("--worker-readable", worker.readable,
                   "File or folder that a driver reads beside system libraries and devices; may be repeated")
@@ -232,7 +235,7 @@ void add_worker_flags(CLI::App& command, WorkerFlags& worker) {
       ->type_name("PATH");
   command
       .add_flag("--no-worker-sandbox", worker.no_sandbox,
-                "Let the worker read files, reach the network and start programs like the server")
+                "Let the workers read files, reach the network and start programs like the server")
       ->envname(protocol::environment_name("no-worker-sandbox"));
 }
 

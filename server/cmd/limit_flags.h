@@ -33,7 +33,7 @@ void add_build_flags(CLI::App& command, PreviewRule& previews, size_t& threads);
 void add_upload_flags(CLI::App& command, net::UploadConfig& uploads);
 /// `--gpu`, the memory of the renderer and its threads.
 void add_renderer_flags(CLI::App& command, render::RendererConfig& renderer);
-/// The process that draws.
+/// The processes that draw and decode.
 void add_worker_flags(CLI::App& command, WorkerFlags& worker);
 /// The size of a picture.
 void add_picture_flags(CLI::App& command, service::ServiceLimits& limits);

@@ -1,7 +1,6 @@
 #include <CLI/CLI.hpp>
 #include <csignal>
 #include <exception>
-#include <string_view>
 
 #include "base/log.h"
 #include "base/result.h"
@@ -12,9 +11,9 @@
 #include "cmd/inspect.h"
 #include "cmd/pick.h"
 #include "cmd/render.h"
-#include "cmd/render_worker.h"
 #include "cmd/serve.h"
 #include "cmd/token.h"
+#include "cmd/worker_role.h"
 #include "command_line/parse_command_line.h"
 
 namespace {
@@ -57,7 +56,7 @@ int main(int argc, char** argv) {
   surfcast::remove_unfinished_files_on_signals();
   try {
     surfcast::start_logging("surfcastd");
-    if (argc == 2 && std::string_view(argv[1]) == surfcast::cmd::kRenderWorker) surfcast::cmd::run_render_worker();
+    surfcast::cmd::run_as_worker(argc, argv);
     return run(argc, argv);
   } catch (const std::exception& error) {  // out of memory, mostly
     return surfcast::command_line::report_failure(program_text(), error.what(), surfcast::command_line::kFailed);

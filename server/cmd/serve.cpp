@@ -26,11 +26,11 @@
 #include "cmd/limit_flags.h"
 #include "cmd/log_device.h"
 #include "cmd/program_builder.h"
-#include "cmd/render_worker.h"
 #include "cmd/scan_builds.h"
 #include "cmd/settings.h"
 #include "cmd/store_flags.h"
 #include "cmd/store_folders.h"
+#include "cmd/worker_role.h"
 #include "net/server.h"
 #include "object_store/object_url.h"
 #include "protocol/endpoint.h"
@@ -40,6 +40,7 @@
 #include "service/local_renderer.h"
 #include "service/model_name.h"
 #include "service/render_service.h"
+#include "worker/worker_queries.h"
 #include "worker/worker_renderer.h"
 
 namespace surfcast::cmd {
@@ -162,7 +163,7 @@ void allow_shader_cache(const ScanCacheConfig& cache, worker::WorkerConfig& conf
 Result<service::ModelRendererFactory> make_renderers(const ServeCommand& command, worker::WorkerCounts& counts,
                                                      std::function<void()> on_reset) {
   if (command.worker.workers == 0) return service::local_renderers(command.renderer, std::move(on_reset));
-  Result<std::vector<std::string>> program = render_worker_command();
+  Result<std::vector<std::string>> program = worker_command(kRenderWorker);
   if (!program) return fail(program.error());
   worker::WorkerConfig config;
   config.command = std::move(*program);
@@ -174,6 +175,24 @@ Result<service::ModelRendererFactory> make_renderers(const ServeCommand& command
   allow_shader_cache(command.cache, config);
   config.silence = command.worker.silence;
   return worker::worker_renderers(config, counts);
+}
+
+/// Where picks, profiles and the like are answered; null: in this process.
+Result<std::shared_ptr<service::ModelQueries>> make_queries(const ServeCommand& command, worker::WorkerCounts& counts) {
+  if (command.worker.workers == 0) return nullptr;
+  Result<std::vector<std::string>> program = worker_command(kQueryWorker);
+  if (!program) return fail(program.error());
+  worker::QueryWorkerConfig config;
+  config.command = std::move(*program);
+  config.log_format = command.log_format;
+  config.sandbox = !command.worker.no_sandbox;
+  config.silence = command.worker.silence;
+  config.limits = command.service.picks;
+  return worker::worker_queries(config, counts);
+}
+
+net::ProcessGauges gauges_of(const worker::WorkerCounts& counts) {
+  return {counts.started, counts.ended, counts.quarantined};
 }
 
 /// A worker reaches no network, so that models of stores are drawn here.
@@ -204,15 +223,16 @@ Status serve(ServeCommand command) {
     ::kill(::getpid(), SIGTERM);
   };
   worker::WorkerCounts workers;
+  worker::WorkerCounts query_workers;
   Result<service::ModelRendererFactory> renderers = make_renderers(command, workers, on_reset);
   if (!renderers) return fail(renderers.error());
+  Result<std::shared_ptr<service::ModelQueries>> queries = make_queries(command, query_workers);
+  if (!queries) return fail(queries.error());
   const auto service = service::RenderService::start(
-      models, service::catalogue_renderers(models, std::move(*renderers)), command.service);
+      models, service::catalogue_renderers(models, std::move(*renderers)), command.service, std::move(*queries));
   if (!service) return fail(service.error());
   if (command.worker.workers > 0) {
-    command.server.workers = [&workers] {
-      return net::WorkerGauges{workers.started, workers.ended, workers.quarantined};
-    };
+    command.server.workers = [&] { return net::WorkerGauges{gauges_of(workers), gauges_of(query_workers)}; };
   }
   log_device((*service)->device(), command.renderer);
   add_machine_name(command.server.hosts);

@@ -14,11 +14,18 @@ void write_tls(Exposition& out, const Metrics& m) {
 }
 
 void write_workers(Exposition& out, const WorkerGauges& workers) {
-  out.value("surfcast_workers_started_total", "counter", "Render workers started.", workers.started);
+  const auto& [render, queries] = workers;
+  out.value("surfcast_workers_started_total", "counter", "Render workers started.", render.started);
   out.value("surfcast_workers_ended_total", "counter", "Render workers that crashed, were killed or hung.",
-            workers.ended);
+            render.ended);
   out.value("surfcast_blocks_quarantined_total", "counter",
-            "Blocks that are not loaded any more, because they have ended two render workers.", workers.quarantined);
+            "Blocks that are not loaded any more, because they have ended two render workers.", render.quarantined);
+  out.value("surfcast_query_workers_started_total", "counter", "Query workers started.", queries.started);
+  out.value("surfcast_query_workers_ended_total", "counter", "Query workers that crashed, were killed or hung.",
+            queries.ended);
+  out.value("surfcast_query_blocks_quarantined_total", "counter",
+            "Blocks that are not read for queries any more, because they have ended two query workers.",
+            queries.quarantined);
 }
 
 }  // namespace

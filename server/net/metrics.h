@@ -41,11 +41,16 @@ struct Metrics {
   void count_stages(const picture::FrameStats& stats, PictureTimes& times);
 };
 
-/// Processes that draw, since the start.
-struct WorkerGauges {
+/// Processes of one purpose, since the start.
+struct ProcessGauges {
   uint64_t started = 0;
   uint64_t ended = 0;        ///< crashed, killed or hung
-  uint64_t quarantined = 0;  ///< blocks that are not loaded any more, because they have ended two workers
+  uint64_t quarantined = 0;  ///< blocks that are not loaded any more, because they have ended two of them
+};
+
+struct WorkerGauges {
+  ProcessGauges render;   ///< processes that draw
+  ProcessGauges queries;  ///< processes that answer picks, profiles and the like
 };
 
 /// What there is at the moment.

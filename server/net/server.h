@@ -49,7 +49,7 @@ struct ServerConfig {
   std::chrono::milliseconds leave{0};       ///< then, over which clients with views are sent away one after the other
   std::chrono::milliseconds drain{5'000};   ///< then, for what is outstanding
   std::shared_ptr<const StaticFiles> viewer;  ///< served at "/"; null: a hint where to get one
-  std::function<WorkerGauges()> workers;      ///< of the processes that draw; empty: there are none
+  std::function<WorkerGauges()> workers;      ///< of its processes; empty: there are none
   UploadConfig uploads;                       ///< scans that clients may send
   Networks trusted_proxies;                   ///< which tell whose words they pass on
   std::vector<std::string> hosts;             ///< names of the server beside `host`, see GuardConfig

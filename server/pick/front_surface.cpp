@@ -24,18 +24,6 @@ struct LeafInView {
   kinds::PixelRange pixels;  ///< that its items may cover
 };
 
-/// The regions of a picture, row by row.
-std::vector<kinds::PixelRange> regions_of(const geometry::CameraFrame& frame) {
-  std::vector<kinds::PixelRange> regions;
-  for (int y = 0; y < frame.height; y += kRegionSide) {
-    for (int x = 0; x < frame.width; x += kRegionSide) {
-      const glm::ivec2 end = glm::min(glm::ivec2(x, y) + kRegionSide, glm::ivec2(frame.width, frame.height));
-      regions.push_back({{x, y}, end - 1});
-    }
-  }
-  return regions;
-}
-
 /// The pixels of a region that a box, grown by `reach` world units, may cover: those of its corners, or the whole
 /// region if it reaches the eye plane.
 kinds::PixelRange pixels_of(const geometry::Box& box, double reach, const geometry::CameraFrame& frame,
@@ -75,6 +63,7 @@ class FrontSearch {
 
   Status search(const kinds::PixelRange& region, const std::atomic<bool>& cancelled,
                 std::vector<FrontPixel>& pixels) const {
+    pixels.assign(static_cast<size_t>(region.size().x) * static_cast<size_t>(region.size().y), {});
     kinds::PixelHits hits(region);
     for (const LeafInView& leaf : leaves_in(region)) {
       if (cancelled.load(std::memory_order_relaxed)) return fail(ErrorKind::kCancelled, "cancelled");
@@ -116,12 +105,12 @@ class FrontSearch {
   /// Copies what the pixels of a region show.
   void read(const kinds::PixelHits& hits, std::vector<FrontPixel>& pixels) const {
     const kinds::PixelRange& region = hits.range();
+    auto pixel = pixels.begin();
     for (int y = region.first.y; y <= region.last.y; ++y) {
-      for (int x = region.first.x; x <= region.last.x; ++x) {
+      for (int x = region.first.x; x <= region.last.x; ++x, ++pixel) {
         const std::optional<kinds::ShownItem> item = hits.shown({x, y});
         if (!item) continue;
-        pixels[static_cast<size_t>(y) * static_cast<size_t>(query_.frame.width) + static_cast<size_t>(x)] = {
-            item->depth, numbers_[item->rank.block] + item->rank.item, item->look.normal, item->look.code};
+        *pixel = {item->depth, numbers_[item->rank.block] + item->rank.item, item->look.normal, item->look.code};
       }
     }
   }
@@ -135,14 +124,49 @@ class FrontSearch {
 
 }  // namespace
 
+std::vector<SurfaceRegion> surface_regions(int width, int height) {
+  std::vector<SurfaceRegion> regions;
+  for (int y = 0; y < height; y += kRegionSide) {
+    for (int x = 0; x < width; x += kRegionSide) {
+      const glm::ivec2 end = glm::min(glm::ivec2(x, y) + kRegionSide, glm::ivec2(width, height));
+      regions.push_back({{x, y}, end - 1});
+    }
+  }
+  return regions;
+}
+
+Status search_front_surface(const model::ModelFile& model, const kinds::PickQuery& query, SourceBlocks& blocks,
+                            const std::atomic<bool>& cancelled, const RegionDone& done) {
+  const FrontSearch search(model, query, blocks);
+  std::vector<FrontPixel> pixels;
+  for (const SurfaceRegion& region : surface_regions(query.frame.width, query.frame.height)) {
+    if (Status status = search.search(region, cancelled, pixels); !status) return status;
+    if (Status status = done(region, pixels); !status) return status;
+  }
+  return {};
+}
+
 Result<std::vector<FrontPixel>> find_front_surface(const model::ModelFile& model, const kinds::PickQuery& query,
                                                    SourceBlocks& blocks, const std::atomic<bool>& cancelled) {
-  const FrontSearch search(model, query, blocks);
-  std::vector<FrontPixel> pixels(static_cast<size_t>(query.frame.width) * static_cast<size_t>(query.frame.height));
-  for (const kinds::PixelRange& region : regions_of(query.frame)) {
-    if (Status status = search.search(region, cancelled, pixels); !status) return fail(std::move(status.error()));
+  const int width = query.frame.width;
+  std::vector<FrontPixel> picture(static_cast<size_t>(width) * static_cast<size_t>(query.frame.height));
+  const auto place = [&](const SurfaceRegion& region, std::span<const FrontPixel> pixels) -> Status {
+    place_region(region, pixels, width, picture);
+    return {};
+  };
+  if (Status status = search_front_surface(model, query, blocks, cancelled, place); !status) {
+    return fail(std::move(status.error()));
   }
-  return pixels;
+  return picture;
+}
+
+void place_region(const SurfaceRegion& region, std::span<const FrontPixel> pixels, int width,
+                  std::vector<FrontPixel>& picture) {
+  const auto row = static_cast<size_t>(region.size().x);
+  for (int y = region.first.y; y <= region.last.y; ++y, pixels = pixels.subspan(row)) {
+    const size_t start = static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(region.first.x);
+    std::ranges::copy(pixels.first(row), picture.begin() + static_cast<std::ptrdiff_t>(start));
+  }
 }
 
 }  // namespace surfcast::pick

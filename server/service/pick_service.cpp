@@ -4,53 +4,12 @@
 #include <memory>
 #include <utility>
 
-#include "model/fit_model.h"
-#include "render/display_options.h"
-#include "service/glyph_sights.h"
 #include "service/guarded.h"
+#include "service/local_queries.h"
 #include "service/picture_channels.h"
-#include "service/volume_sights.h"
 
 namespace surfcast::service {
 namespace {
-
-geometry::Camera camera_of(const model::ModelFile& model, const picture::PictureRequest& request, bool up_from_model) {
-  if (!request.camera) return model::fit_model(model, static_cast<double>(request.width) / request.height);
-  geometry::Camera camera = *request.camera;
-  if (up_from_model) camera.view_up = model.info().up();
-  return camera;
-}
-
-/// How surfels are seen through. As in the picture, but for X-rays of surfaces, whose opacities depend on the angle.
-void set_transparency(const model::ModelFile& model, const picture::PictureRequest& request, kinds::PickQuery& query) {
-  const render::SeenThrough through = render::seen_through(model.info(), request);
-  query.transparent = through.any;
-  query.by_file = through.by_file;
-  if (through.ghosts) query.ghost = request.ghost;
-  if (!through.by_class) return;
-  query.class_opacities.assign(256, 1);
-  for (const picture::ClassOpacity& of : request.class_opacities) query.class_opacities[of.code] = of.opacity;
-}
-
-/// The query of a picture, for all its pixels.
-Result<kinds::PickQuery> query_of(const model::ModelFile& model, const picture::PictureRequest& request,
-                                  bool up_from_model) {
-  const Result<geometry::CameraFrame> frame =
-      geometry::make_camera_frame(camera_of(model, request, up_from_model), request.width, request.height);
-  if (!frame) return fail(frame.error());
-  kinds::PickQuery query{*frame, glm::dvec2(0), request.clip, request.hidden_classes};
-  query.opacity = request.opacity;
-  set_transparency(model, request, query);
-  if (!model.volumes().empty()) {
-    query.volumes = std::make_shared<const std::vector<kinds::VolumeSight>>(volume_sights(model, request));
-  }
-  if (!model.ellipsoid_sources().empty()) {
-    GlyphSights sights = glyph_sights(model, request);
-    query.glyphs = std::make_shared<const std::vector<kinds::GlyphSight>>(std::move(sights.sights));
-    query.reach = sights.reach;
-  }
-  return query;
-}
 
 /// Counts one more for as long as it is held.
 std::shared_ptr<const void> place_among(const std::shared_ptr<std::atomic<size_t>>& counted) {
@@ -58,13 +17,15 @@ std::shared_ptr<const void> place_among(const std::shared_ptr<std::atomic<size_t
   return {counted.get(), [counted](const void* /*count*/) { --*counted; }};
 }
 
+using ModelPointer = ModelQueries::ModelPointer;
+
 /// Works on a model. One that was replaced in its store meanwhile is opened anew, once.
 template <typename Work>
 auto on_model(const ModelSource& models, const std::string& name, const Work& work) {
-  const auto once = [&]() -> decltype(work(std::declval<const model::ModelFile&>())) {
-    const Result<std::shared_ptr<const model::ModelFile>> model = models.open(name);
+  const auto once = [&]() -> decltype(work(std::declval<const ModelPointer&>())) {
+    const Result<ModelPointer> model = models.open(name);
     if (!model) return fail(model.error());
-    return work(**model);
+    return work(*model);
   };
   auto result = once();
   if (result || result.error().kind != ErrorKind::kReplaced) return result;
@@ -73,16 +34,15 @@ auto on_model(const ModelSource& models, const std::string& name, const Work& wo
 
 }  // namespace
 
-PickService::PickService(const ModelSource& models, const PickLimits& limits)
+PickService::PickService(const ModelSource& models, const PickLimits& limits, std::shared_ptr<ModelQueries> queries)
     : models_(models),
+      queries_(queries ? std::move(queries) : local_queries(limits.block_bytes)),
       most_waiting_(limits.waiting),
       most_points_(limits.profile_points),
       most_blocks_(limits.blocks),
       most_region_points_(limits.region_points),
       most_regions_(limits.regions),
       region_bytes_(limits.region_bytes),
-      blocks_(limits.block_bytes),
-      searched_blocks_(limits.block_bytes),
       pool_(limits.threads, 0, limits.waiting),
       searches_(1) {}
 
@@ -108,14 +68,12 @@ Result<std::optional<PickedPoint>> PickService::run(const PickJob& job) {
     if (job.x < 0 || job.y < 0 || job.x >= request.width || job.y >= request.height) {
       return fail(ErrorKind::kInvalidInput, "pixel: outside the picture");
     }
-    return on_model(models_, job.model, [&](const model::ModelFile& model) -> Result<std::optional<PickedPoint>> {
-      Result<kinds::PickQuery> query = query_of(model, request, job.up_from_model);
-      if (!query) return fail(query.error());
-      query->pixel = {job.x + 0.5, job.y + 0.5};
-      auto picked = pick::pick_surfel(model, *query, blocks_, stopping_, most_blocks_);
+    return on_model(models_, job.model, [&](const ModelPointer& model) -> Result<std::optional<PickedPoint>> {
+      const PixelQuery query{{request, job.up_from_model}, job.x, job.y, most_blocks_};
+      auto picked = queries_->pick(model, query, stopping_);
       if (!picked) return fail(std::move(picked.error()));
       if (!*picked) return std::nullopt;
-      const std::optional<glm::dvec3> source_position = source_positions_.find(model, (*picked)->position);
+      const std::optional<glm::dvec3> source_position = source_positions_.find(*model, (*picked)->position);
       return PickedPoint{std::move(**picked), source_position};
     });
   });
@@ -130,11 +88,9 @@ void PickService::find_surface(SurfaceJob job, std::shared_ptr<const std::atomic
 }
 
 Result<std::vector<pick::FrontPixel>> PickService::search(const SurfaceJob& job, const std::atomic<bool>& cancelled) {
-  return on_model(models_, job.model, [&](const model::ModelFile& model) -> Result<std::vector<pick::FrontPixel>> {
-    if (Status status = check_channels(job.channels, model.info()); !status) return fail(std::move(status.error()));
-    const Result<kinds::PickQuery> query = query_of(model, job.request, job.up_from_model);
-    if (!query) return fail(query.error());
-    return pick::find_front_surface(model, *query, searched_blocks_, cancelled);
+  return on_model(models_, job.model, [&](const ModelPointer& model) -> Result<std::vector<pick::FrontPixel>> {
+    if (Status status = check_channels(job.channels, model->info()); !status) return fail(std::move(status.error()));
+    return queries_->front_surface(model, {job.request, job.up_from_model}, cancelled);
   });
 }
 
@@ -169,10 +125,10 @@ void PickService::points(PointsJob job, std::shared_ptr<const std::atomic<bool>>
 Result<std::shared_ptr<PointStream>> PickService::open_stream(PointsJob job,
                                                               std::shared_ptr<const std::atomic<bool>> cancelled,
                                                               std::shared_ptr<const void> place) const {
-  const Result<std::shared_ptr<const model::ModelFile>> model = models_.open(job.model);
+  const Result<ModelPointer> model = models_.open(job.model);
   if (!model) return fail(model.error());
   job.most = job.most == 0 ? most_region_points_ : std::min(job.most, most_region_points_);
-  Result<std::unique_ptr<PointStream>> stream = PointStream::open(*model, job, std::move(cancelled));
+  Result<std::unique_ptr<PointStream>> stream = queries_->points(*model, job, std::move(cancelled));
   if (!stream) return fail(std::move(stream.error()));
   (*stream)->keep(std::move(place));
   return std::shared_ptr<PointStream>(std::move(*stream));
@@ -200,10 +156,10 @@ void PickService::next_piece(std::shared_ptr<PointStream> stream, PieceDone done
 Result<ProfileResult> PickService::find_profile(const ProfileJob& job) const {
   pick::BandQuery query = job.query;
   query.most = query.most == 0 ? most_points_ : std::min(query.most, most_points_);
-  return on_model(models_, job.model, [&](const model::ModelFile& model) -> Result<ProfileResult> {
-    Result<pick::Band> band = pick::find_band(model, query, stopping_);
+  return on_model(models_, job.model, [&](const ModelPointer& model) -> Result<ProfileResult> {
+    Result<pick::Band> band = queries_->band(model, query, stopping_);
     if (!band) return fail(band.error());
-    const model::ModelInfo& info = model.info();
+    const model::ModelInfo& info = model->info();
     return ProfileResult{std::move(*band), info.z_up, info.color_bits, info.scalar_names};
   });
 }

@@ -11,9 +11,9 @@
 #include "base/result.h"
 #include "pick/band.h"
 #include "pick/front_surface.h"
-#include "pick/pick_surfel.h"
 #include "picture/channels.h"
 #include "picture/picture.h"
+#include "service/model_queries.h"
 #include "service/model_source.h"
 #include "service/point_stream.h"
 #include "service/source_positions.h"
@@ -79,8 +79,9 @@ class PickService {
   using PieceDone = std::function<void(Result<PointPiece>)>;
   using SurfaceDone = std::function<void(Result<std::vector<pick::FrontPixel>>)>;
 
-  /// `models` must outlive the service.
-  explicit PickService(const ModelSource& models, const PickLimits& limits = {});
+  /// `models` must outlive the service. `queries`: null: this process answers.
+  explicit PickService(const ModelSource& models, const PickLimits& limits = {},
+                       std::shared_ptr<ModelQueries> queries = nullptr);
   /// Cancels the outstanding picks.
   ~PickService();
 
@@ -110,6 +111,7 @@ class PickService {
   [[nodiscard]] Result<std::vector<pick::FrontPixel>> search(const SurfaceJob& job, const std::atomic<bool>& cancelled);
 
   const ModelSource& models_;
+  const std::shared_ptr<ModelQueries> queries_;
   std::atomic<bool> stopping_ = false;
   const size_t most_waiting_;
   const size_t most_points_;
@@ -120,8 +122,6 @@ class PickService {
   std::shared_ptr<std::atomic<size_t>> regions_ = std::make_shared<std::atomic<size_t>>(0);
   std::atomic<size_t> waiting_ = 0;
   std::atomic<size_t> profiles_waiting_ = 0;
-  pick::SourceBlocks blocks_;
-  pick::SourceBlocks searched_blocks_;  ///< apart, so that a search does not drive out those of picks
   SourcePositions source_positions_;
   // Last, so that their threads end first.
   WorkerPool pool_;

@@ -11,6 +11,7 @@
 #include "base/result.h"
 #include "exporter/model_points.h"
 #include "exporter/point_encoder.h"
+#include "exporter/point_facts.h"
 
 namespace surfcast::service {
 
@@ -29,43 +30,30 @@ struct PointPiece {
   bool last = false;
 };
 
-/// The points of a region as a file, which is made piece by piece as it is asked for. Holds a block or two and the
-/// piece that is being made. Used by one thread at a time.
+/// The points of a region as a file, which is made piece by piece as it is asked for. Once it is cancelled, counting
+/// and making pieces fail with kCancelled. Used by one thread at a time.
 class PointStream {
  public:
-  /// Once `cancelled` is true, counting and making pieces fail with kCancelled.
-  static Result<std::unique_ptr<PointStream>> open(std::shared_ptr<const model::ModelFile> model, const PointsJob& job,
-                                                   std::shared_ptr<const std::atomic<bool>> cancelled);
+  /// `most`: of the job.
+  explicit PointStream(uint64_t most) : most_(most) {}
+  PointStream(const PointStream&) = delete;
+  PointStream& operator=(const PointStream&) = delete;
+  virtual ~PointStream() = default;
 
   /// Counts on for a turn; true once all is counted, which comes first. Fails as soon as there are more points than
   /// the job allows.
-  Result<bool> count();
+  virtual Result<bool> count() = 0;
   /// The next bytes of the file: about as many, or fewer after a turn. To be called when all is counted.
-  Result<PointPiece> next(size_t bytes);
+  virtual Result<PointPiece> next(size_t bytes) = 0;
+  [[nodiscard]] virtual const exporter::PointFacts& facts() const = 0;
 
-  [[nodiscard]] const exporter::PointFacts& facts() const { return facts_; }
   /// The most points that are sent; more of them can only be counted.
   [[nodiscard]] uint64_t most() const { return most_; }
   /// Keeps something as long as the stream.
   void keep(std::shared_ptr<const void> kept) { kept_ = std::move(kept); }
 
  private:
-  PointStream(exporter::ModelPoints points, const PointsJob& job, std::shared_ptr<const std::atomic<bool>> cancelled);
-  Status prepare();
-  Status add_block(PointPiece& piece);
-  [[nodiscard]] Status check() const;
-
-  exporter::ModelPoints points_;
-  exporter::PointFormat format_;
   uint64_t most_;
-  bool only_count_;
-  exporter::WantedFacts wanted_;
-  std::shared_ptr<const std::atomic<bool>> cancelled_;
-  exporter::PointFacts facts_;
-  size_t counted_ = 0;                               ///< pieces of the model
-  size_t next_ = 0;                                  ///< likewise, of those that are sent
-  std::unique_ptr<exporter::PointEncoder> encoder_;  ///< null until all is counted
-  bool begun_ = false;
   std::shared_ptr<const void> kept_;
 };
 

@@ -218,14 +218,15 @@ RenderService::RenderService(std::unique_ptr<State> state) : state_(std::move(st
 
 Result<std::unique_ptr<RenderService>> RenderService::start(const ModelSource& models,
                                                             FrameRendererFactory make_renderer,
-                                                            const ServiceLimits& limits) {
+                                                            const ServiceLimits& limits,
+                                                            std::shared_ptr<ModelQueries> queries) {
   auto state = std::make_unique<State>(models, limits);
   state->pool = std::make_unique<WorkerPool>(limits.encoders, /*small_threads=*/1);
   state->lookups = std::make_unique<WorkerPool>(1);
   state->motion_pool = std::make_unique<WorkerPool>(1);
   // Loads the codecs while the first picture is drawn. A failure is reported when the first picture is encoded.
   state->motion_pool->post([] { static_cast<void>(surfcast::encode::prepare_encoding()); });
-  state->picks = std::make_unique<PickService>(models, limits.picks);
+  state->picks = std::make_unique<PickService>(models, limits.picks, std::move(queries));
   std::promise<Status> promise;
   std::future<Status> started = promise.get_future();
   state->render_thread = std::jthread([raw = state.get(), make = std::move(make_renderer),

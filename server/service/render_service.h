@@ -84,9 +84,11 @@ class RenderService {
   using ListDone = std::function<void(ModelList)>;
   using DescriptionDone = std::function<void(Result<ModelDescription>)>;
 
-  /// Starts the threads. Fails if the renderer cannot be created. `models` must outlive the service.
+  /// Starts the threads. Fails if the renderer cannot be created. `models` must outlive the service. `queries` answers
+  /// what is asked about models beside pictures; null: this process does.
   static Result<std::unique_ptr<RenderService>> start(const ModelSource& models, FrameRendererFactory make_renderer,
-                                                      const ServiceLimits& limits);
+                                                      const ServiceLimits& limits,
+                                                      std::shared_ptr<ModelQueries> queries = nullptr);
   /// Cancels the outstanding jobs and joins the threads.
   ~RenderService();
 

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <bitset>
 #include <concepts>
 #include <cstddef>
@@ -38,9 +39,18 @@ class ArchiveWriter {
     }
   }
   void put(const std::string& text) { bytes_.put_string(text); }
-  template <typename T, glm::qualifier Q>
-  void put(const glm::vec<3, T, Q>& vector) {
-    (*this)(vector.x, vector.y, vector.z);
+  template <glm::length_t N, typename T, glm::qualifier Q>
+  void put(const glm::vec<N, T, Q>& vector) {
+    for (glm::length_t i = 0; i < N; ++i) put(vector[i]);
+  }
+  template <typename T, size_t N>
+  void put(const std::array<T, N>& values) {
+    for (const T& value : values) put(value);
+  }
+  /// Many values at once, which are copied as they are.
+  void put(const std::vector<std::byte>& bytes) {
+    put(static_cast<uint32_t>(bytes.size()));
+    bytes_.put_bytes(bytes);
   }
   template <size_t Bits>
   void put(const std::bitset<Bits>& bits) {
@@ -88,9 +98,17 @@ class ArchiveReader {
     }
   }
   void get(std::string& text) { text = bytes_.get_string(); }
-  template <typename T, glm::qualifier Q>
-  void get(glm::vec<3, T, Q>& vector) {
-    (*this)(vector.x, vector.y, vector.z);
+  template <glm::length_t N, typename T, glm::qualifier Q>
+  void get(glm::vec<N, T, Q>& vector) {
+    for (glm::length_t i = 0; i < N; ++i) get(vector[i]);
+  }
+  template <typename T, size_t N>
+  void get(std::array<T, N>& values) {
+    for (T& value : values) get(value);
+  }
+  void get(std::vector<std::byte>& bytes) {
+    const std::span<const std::byte> found = bytes_.get_bytes(bytes_.get<uint32_t>());
+    bytes.assign(found.begin(), found.end());
   }
   template <size_t Bits>
   void get(std::bitset<Bits>& bits) {
@@ -110,9 +128,7 @@ class ArchiveReader {
     const auto count = bytes_.get<uint32_t>();
     valid_ = valid_ && count <= bytes_.rest().size();  // each value takes a byte at least
     values.clear();
-    if (!ok()) return;
-    values.resize(count);
-    for (T& value : values) get(value);
+    for (uint32_t i = 0; i < count && ok(); ++i) get(values.emplace_back());
   }
 
   model::ByteReader bytes_;

@@ -54,6 +54,79 @@ void fields(Archive& archive, T& value) {
   archive(value.error);
 }
 
+template <typename Archive, Is<ConfigureQueries> T>
+void fields(Archive& archive, T& value) {
+  auto& [log_format, sandbox, readable, block_bytes] = value;
+  archive(log_format, sandbox, readable, block_bytes);
+}
+
+template <typename Archive, Is<Pick> T>
+void fields(Archive& archive, T& value) {
+  auto& [model, query] = value;
+  archive(model, query);
+}
+
+template <typename Archive, Is<Picked> T>
+void fields(Archive& archive, T& value) {
+  archive(value.item);
+}
+
+template <typename Archive, Is<SearchSurface> T>
+void fields(Archive& archive, T& value) {
+  auto& [model, query] = value;
+  archive(model, query);
+}
+
+template <typename Archive, Is<SurfacePart> T>
+void fields(Archive& archive, T& value) {
+  archive(value.pixels);
+}
+
+template <typename Archive, Is<FindBand> T>
+void fields(Archive& archive, T& value) {
+  auto& [model, query] = value;
+  archive(model, query);
+}
+
+template <typename Archive, Is<BandPart> T>
+void fields(Archive& archive, T& value) {
+  auto& [total, length, grid, points, values, last] = value;
+  archive(total, length, grid, points, values, last);
+}
+
+template <typename Archive, Is<OpenPoints> T>
+void fields(Archive& archive, T& value) {
+  auto& [stream, model, job] = value;
+  archive(stream, model, job);
+}
+
+template <typename Archive, Is<CountPoints> T>
+void fields(Archive& archive, T& value) {
+  archive(value.stream);
+}
+
+template <typename Archive, Is<PointsCounted> T>
+void fields(Archive& archive, T& value) {
+  auto& [facts, whole] = value;
+  archive(facts, whole);
+}
+
+template <typename Archive, Is<NextPiece> T>
+void fields(Archive& archive, T& value) {
+  auto& [stream, bytes] = value;
+  archive(stream, bytes);
+}
+
+template <typename Archive, Is<PointsPiece> T>
+void fields(Archive& archive, T& value) {
+  archive(value.piece);
+}
+
+template <typename Archive, Is<ClosePoints> T>
+void fields(Archive& archive, T& value) {
+  archive(value.stream);
+}
+
 namespace {
 
 /// Makes `message` the alternative of that number, and reads it. False if there is none.
@@ -69,6 +142,11 @@ bool read_alternative(ArchiveReader& archive, uint8_t number, Message& message) 
 }
 
 }  // namespace
+
+Error checked(Error error) {
+  if (error.kind < ErrorKind::kInvalidInput || error.kind > ErrorKind::kInternal) error.kind = ErrorKind::kInternal;
+  return error;
+}
 
 std::vector<std::byte> encode(const Message& message) {
   ArchiveWriter archive;

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <variant>
@@ -9,16 +10,23 @@
 
 #include "base/log_format.h"
 #include "base/result.h"
+#include "exporter/point_facts.h"
+#include "kinds/source_block.h"
+#include "pick/band.h"
 #include "picture/device_info.h"
 #include "picture/picture.h"
 #include "render/renderer.h"
+#include "service/model_queries.h"
+#include "service/point_stream.h"
+#include "surfel/grid.h"
 
 namespace surfcast::worker {
 
-// What the server and a render worker tell each other. The server begins. Pictures nest: while the worker draws one, it
-// asks now and then whether another one comes first, and waits for the answer.
+// What the server and a worker tell each other. The server begins. A render worker draws. Pictures nest: while the
+// worker draws one, it asks now and then whether another one comes first, and waits for the answer. A query worker
+// answers one question after the other.
 
-/// Server: the first message.
+/// Server: the first message to a render worker.
 struct Configure {
   render::RendererConfig renderer;
   LogFormat log_format = LogFormat::kText;
@@ -27,13 +35,21 @@ struct Configure {
   std::vector<std::string> writable;  ///< folders that it lets the worker change
 };
 
-/// Worker: the answer to Configure. Without a device it is Refused.
+/// Server: the first message to a query worker.
+struct ConfigureQueries {
+  LogFormat log_format = LogFormat::kText;
+  bool sandbox = true;
+  std::vector<std::string> readable;  ///< files and folders that the sandbox lets the worker read
+  uint64_t block_bytes = 0;           ///< of decoded blocks that it keeps
+};
+
+/// Worker: the answer to the first message. Without a device it is Refused. A query worker has none.
 struct Ready {
   picture::DeviceInfo device;
   int max_resolution = 0;
 };
 
-/// Server: a model that will be drawn. Its file descriptor travels along.
+/// Server: a model that will be used. Its file descriptor travels along.
 struct OfferModel {
   uint64_t model = 0;                 ///< its number
   std::string path;                   ///< for errors
@@ -41,7 +57,7 @@ struct OfferModel {
   std::vector<uint32_t> suspected;    ///< blocks that are loaded while no other one is
 };
 
-/// Server: a model that will not be drawn again.
+/// Server: a model that will not be used again.
 struct WithdrawModel {
   uint64_t model = 0;
 };
@@ -66,12 +82,76 @@ struct Drawn {
   bool pixels = false;
 };
 
-/// Worker: there is no picture, or no renderer.
+/// Worker: there is no picture, no answer, or no renderer.
 struct Refused {
   Error error;
 };
 
-using Message = std::variant<Configure, Ready, OfferModel, WithdrawModel, Draw, AskUrgent, Continue, Drawn, Refused>;
+/// Server: what is in a pixel? The answer is Picked.
+struct Pick {
+  uint64_t model = 0;
+  service::PixelQuery query;
+};
+struct Picked {
+  std::optional<kinds::PickedSurfel> item;
+};
+
+/// Server: what is in all pixels? The answer is a SurfacePart for each of pick::surface_regions, in their order.
+struct SearchSurface {
+  uint64_t model = 0;
+  service::SurfaceQuery query;
+};
+struct SurfacePart {
+  std::vector<std::byte> pixels;  ///< pick::FrontPixel as they are in memory
+};
+
+/// Server: what lies near a line? The answer is one BandPart or more.
+struct FindBand {
+  uint64_t model = 0;
+  pick::BandQuery query;
+};
+struct BandPart {
+  uint64_t total = 0;   ///< as in pick::Band
+  double length = 0;    ///< likewise
+  surfel::Grid grid{};  ///< likewise
+  std::vector<pick::BandPoint> points;
+  std::vector<double> values;  ///< of these points
+  bool last = false;
+};
+
+/// Server: the points of a region are wanted, under a number of the server's. The answer is PointsCounted.
+struct OpenPoints {
+  uint64_t stream = 0;
+  uint64_t model = 0;
+  service::PointsJob job;
+};
+/// Server: a turn of counting them. The answer is PointsCounted, too.
+struct CountPoints {
+  uint64_t stream = 0;
+};
+struct PointsCounted {
+  exporter::PointFacts facts;
+  bool whole = false;  ///< all are counted
+};
+/// Server: the next bytes of their file. The answer is PointsPiece.
+struct NextPiece {
+  uint64_t stream = 0;
+  uint64_t bytes = 0;
+};
+struct PointsPiece {
+  service::PointPiece piece;  ///< of as many bytes at most
+};
+/// Server: no more of them are wanted. There is no answer.
+struct ClosePoints {
+  uint64_t stream = 0;
+};
+
+using Message = std::variant<Configure, Ready, OfferModel, WithdrawModel, Draw, AskUrgent, Continue, Drawn, Refused,
+                             ConfigureQueries, Pick, Picked, SearchSurface, SurfacePart, FindBand, BandPart, OpenPoints,
+                             CountPoints, PointsCounted, NextPiece, PointsPiece, ClosePoints>;
+
+/// The error of a worker, which may be hostile and state any kind.
+[[nodiscard]] Error checked(Error error);
 
 [[nodiscard]] std::vector<std::byte> encode(const Message& message);
 /// Fails on bytes that are no message, whatever they are.

@@ -1,7 +1,5 @@
 #include "worker/run_worker.h"
 
-#include <chrono>
-#include <csignal>
 #include <cstdlib>
 #include <cstring>
 #include <map>
@@ -11,12 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include <malloc.h>
-#include <sys/prctl.h>
-#include <sys/resource.h>
-
 #include "base/file_source.h"
-#include "base/log.h"
 #include "base/log_format.h"
 #include "base/stopwatch.h"
 #include "gl/reset_status.h"
@@ -27,24 +20,10 @@
 #include "worker/channel.h"
 #include "worker/sandbox.h"
 #include "worker/shared_board.h"
+#include "worker/worker_life.h"
 
 namespace surfcast::worker {
 namespace {
-
-using std::chrono::milliseconds;
-
-/// Ends the process at once: nothing of it is of use to anybody, and destructors of a driver that has failed may hang.
-[[noreturn]] void end(int code) {
-  std::_Exit(code);
-}
-
-/// A restriction that the kernel does not know is said and left out; one that fails otherwise ends the worker.
-Status restrict_with(const Status& restricted) {
-  if (restricted) return {};
-  if (restricted.error().kind != ErrorKind::kUnsupported) return restricted;
-  spdlog::warn("the render worker is less confined: {}", restricted.error().message);
-  return {};
-}
 
 class RenderWorker {
  public:
@@ -52,17 +31,17 @@ class RenderWorker {
       : channel_(std::move(channel)), board_(std::move(board)), guard_(board_) {}
 
   [[noreturn]] void run(kinds::KindTable kinds) {
-    answer(start(kinds));
-    if (!renderer_) end(EXIT_FAILURE);
-    for (;;) serve(next());
+    answer_server(channel_, start(kinds));
+    if (!renderer_) end_worker(EXIT_FAILURE);
+    for (;;) serve(next_message(channel_));
   }
 
  private:
   /// The answer to the first message.
   Message start(kinds::KindTable kinds) {
-    Message first = next().message;
+    Message first = next_message(channel_).message;
     auto* const configure = std::get_if<Configure>(&first);
-    if (configure == nullptr) end(EXIT_FAILURE);
+    if (configure == nullptr) end_worker(EXIT_FAILURE);
     set_log_format(configure->log_format);
     configure->renderer.kinds = kinds;
     configure->renderer.load_guard = &guard_;
@@ -74,33 +53,14 @@ class RenderWorker {
 
   static Result<std::unique_ptr<render::Renderer>> create(const Configure& configure) {
     if (configure.sandbox) {
-      std::vector<std::string> readable = driver_paths();
-      readable.insert(readable.end(), configure.readable.begin(), configure.readable.end());
-      if (Status files = restrict_with(restrict_files(readable, configure.writable)); !files)
-        return fail(files.error());
+      OpenFiles files{driver_paths(), configure.writable};
+      files.readable.insert(files.readable.end(), configure.readable.begin(), configure.readable.end());
+      if (Status confined = confine_files(files); !confined) return fail(confined.error());
     }
     Result<std::unique_ptr<render::Renderer>> renderer = render::Renderer::create(configure.renderer);
     if (!renderer || !configure.sandbox) return renderer;
-    if (Status calls = restrict_with(restrict_calls()); !calls) return fail(calls.error());
-    ::prctl(PR_SET_DUMPABLE, 0);  // no process of the same user traces it
+    if (Status confined = confine_calls(); !confined) return fail(confined.error());
     return renderer;
-  }
-
-  /// The next message of the server. Memory that large pictures have left goes back to the system when none comes.
-  Received next() {
-    constexpr milliseconds kMoment{300};
-    constexpr milliseconds kLong{60'000};
-    for (milliseconds patience = kMoment;;) {
-      Result<std::optional<Received>> received = channel_.receive(patience);
-      if (!received) end(EXIT_SUCCESS);  // the server has ended
-      if (received->has_value()) return std::move(**received);
-      if (patience == kMoment) ::malloc_trim(0);
-      patience = kLong;
-    }
-  }
-
-  void answer(const Message& message) {
-    if (!channel_.send(message)) end(EXIT_SUCCESS);
   }
 
   /// Does what a message asks for, other than Continue.
@@ -110,9 +70,9 @@ class RenderWorker {
     } else if (const auto* const withdraw = std::get_if<WithdrawModel>(&received.message)) {
       drop(withdraw->model);
     } else if (const auto* const draw = std::get_if<Draw>(&received.message)) {
-      answer(drawn(*draw));
+      answer_server(channel_, drawn(*draw));
     } else {
-      end(EXIT_FAILURE);
+      end_worker(EXIT_FAILURE);
     }
   }
 
@@ -164,7 +124,7 @@ class RenderWorker {
     --depth_;
     forget_dropped();
     since_asked_ = Stopwatch();
-    if (gl::context_was_reset()) end(kGpuWasReset);
+    if (gl::context_was_reset()) end_worker(kGpuWasReset);
     if (!frame) return Refused{std::move(frame.error())};
     const bool pixels = !frame->image.pixels.empty();
     if (frame->image.pixels.size() > board_.pixels().size()) {
@@ -180,9 +140,9 @@ class RenderWorker {
   bool ask_urgent() {
     constexpr double kPauseMs = 2;
     if (since_asked_.milliseconds() < kPauseMs) return false;
-    answer(AskUrgent{});
+    answer_server(channel_, AskUrgent{});
     for (;;) {
-      Received received = next();
+      Received received = next_message(channel_);
       if (const auto* const go_on = std::get_if<Continue>(&received.message)) {
         since_asked_ = Stopwatch();
         return go_on->preempted;
@@ -204,17 +164,8 @@ class RenderWorker {
 }  // namespace
 
 void run_worker(Descriptor socket, Descriptor memory, kinds::KindTable kinds) {
-  // The server says when to end, also when all processes of its terminal or unit get a signal.
-  for (const int signal : {SIGINT, SIGTERM, SIGHUP, SIGQUIT}) std::signal(signal, SIG_IGN);
-  ::prctl(PR_SET_PDEATHSIG, SIGKILL);  // of the thread that started it, which draws
-  const rlimit no_cores{0, 0};
-  ::setrlimit(RLIMIT_CORE, &no_cores);
-  Result<SharedBoard> board = SharedBoard::adopt(std::move(memory));
-  if (!board) {
-    spdlog::error("render worker: {}", board.error().message);
-    end(EXIT_FAILURE);
-  }
-  RenderWorker(Channel(std::move(socket)), std::move(*board)).run(kinds);
+  SharedBoard board = begin_worker(std::move(memory));
+  RenderWorker(Channel(std::move(socket)), std::move(board)).run(kinds);
 }
 
 }  // namespace surfcast::worker

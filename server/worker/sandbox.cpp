@@ -62,7 +62,7 @@ Status allow(int ruleset, const std::string& path, uint64_t folder_rights) {
   return {};
 }
 
-/// Calls that a renderer has no use for. Those with paths are restrict_files' matter, if they can be.
+/// Calls that a worker has no use for. Those with paths are restrict_files' matter, if they can be.
 constexpr std::array kForbidden{SCMP_SYS(socket),
                                 SCMP_SYS(connect),
                                 SCMP_SYS(bind),
@@ -164,18 +164,20 @@ std::vector<std::string> driver_paths() {
   return paths;
 }
 
-Status restrict_files(const std::vector<std::string>& readable, const std::vector<std::string>& writable) {
+Status restrict_files(const OpenFiles& files) {
   landlock_ruleset_attr attributes{};
   attributes.handled_access_fs = kEverything;
   const Descriptor ruleset = make_ruleset(attributes);
   if (!ruleset) return sandbox_error("the kernel has no Landlock", errno);
-  for (const std::string& path : readable) {
+  for (const std::string& path : files.readable) {
     if (Status allowed = allow(ruleset.get(), path, kReadFolders); !allowed) return allowed;
   }
-  for (const std::string& path : writable) {
+  for (const std::string& path : files.writable) {
     if (Status allowed = allow(ruleset.get(), path, kChangeFiles); !allowed) return allowed;
   }
-  if (Status allowed = allow(ruleset.get(), "/dev", kUseDevices); !allowed) return allowed;
+  if (files.devices) {
+    if (Status allowed = allow(ruleset.get(), "/dev", kUseDevices); !allowed) return allowed;
+  }
   if (::prctl(PR_SET_NO_NEW_PRIVS, 1, 0, 0, 0) != 0) return sandbox_error("cannot give up privileges", errno);
   if (!restrict_self(ruleset.get())) return sandbox_error("cannot restrict files", errno);
   return {};

@@ -11,10 +11,16 @@ namespace surfcast::worker {
 /// environment names for drivers and libraries.
 std::vector<std::string> driver_paths();
 
-/// From here on this process, and the threads that it will start, can open nothing but devices, and for reading these
-/// files and folders. Nothing can be created, changed or removed but in the folders of `writable`. Open descriptors are
-/// not affected. Call it before the first thread is started. kUnsupported where the kernel has no Landlock.
-Status restrict_files(const std::vector<std::string>& readable, const std::vector<std::string>& writable = {});
+/// What a process may open from now on.
+struct OpenFiles {
+  std::vector<std::string> readable;    ///< files and folders
+  std::vector<std::string> writable{};  ///< folders in which it may also create, change and remove files
+  bool devices = true;
+};
+
+/// From here on this process, and the threads that it will start, can open nothing else. Open descriptors are not
+/// affected. Call it before the first thread is started. kUnsupported where the kernel has no Landlock.
+Status restrict_files(const OpenFiles& files);
 
 /// From here on all threads of this process can reach no network, start no process, run no program, and neither signal
 /// nor trace other processes. kUnsupported where the kernel has no seccomp filters.

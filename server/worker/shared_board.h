@@ -25,7 +25,7 @@ struct BoardBlock {
   bool operator==(const BoardBlock&) const = default;
 };
 
-/// Memory that the server and a render worker share. The server makes it, with a size that can never change, so that no
+/// Memory that the server and a worker share. The server makes it, with a size that can never change, so that no
 /// access of the server can fail. It holds the pixels of one picture, flags that cancel pictures, and the blocks that
 /// the worker is loading, which the server reads after the worker has ended.
 class SharedBoard {
@@ -56,6 +56,9 @@ class SharedBoard {
   /// Asks the worker to end the picture at this depth, 0 for the outermost.
   [[nodiscard]] std::atomic<bool>& cancelled(size_t depth) const { return head_->cancelled.at(depth); }
 
+  /// Counts up as a query worker gets on.
+  [[nodiscard]] std::atomic<uint64_t>& progress() const { return head_->progress; }
+
   /// Notes a block that this thread begins to load, and returns its slot; kBoardSlots if none is free.
   [[nodiscard]] size_t note(const BoardBlock& block) const;
   void clear(size_t slot) const;
@@ -71,6 +74,7 @@ class SharedBoard {
   };
   struct Head {
     std::array<std::atomic<bool>, kDeepestPictures> cancelled;
+    std::atomic<uint64_t> progress;
     std::array<Slot, kBoardSlots> slots;
   };
   static_assert(std::atomic<uint64_t>::is_always_lock_free && std::atomic<bool>::is_always_lock_free);

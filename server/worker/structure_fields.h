@@ -1,12 +1,20 @@
 #pragma once
 
 #include "base/result.h"
+#include "exporter/point_facts.h"
 #include "geometry/box.h"
 #include "geometry/camera.h"
 #include "geometry/clip.h"
+#include "geometry/zone.h"
+#include "kinds/source_block.h"
+#include "pick/band.h"
 #include "picture/device_info.h"
 #include "picture/picture.h"
 #include "render/renderer.h"
+#include "scan/selection.h"
+#include "service/model_queries.h"
+#include "service/point_stream.h"
+#include "surfel/grid.h"
 #include "worker/archive.h"
 
 // The members of the structures that cross between the server and a render worker. Each is taken apart by a structured
@@ -40,6 +48,18 @@ template <typename Archive, worker::Is<Camera> T>
 void fields(Archive& archive, T& value) {
   auto& [position, focal_point, view_up, view_angle] = value;
   archive(position, focal_point, view_up, view_angle);
+}
+
+template <typename Archive, worker::Is<Corridor> T>
+void fields(Archive& archive, T& value) {
+  auto& [line, half_width, low, high] = value;
+  archive(line, half_width, low, high);
+}
+
+template <typename Archive, worker::Is<Zone> T>
+void fields(Archive& archive, T& value) {
+  auto& [boxes, corridors] = value;
+  archive(boxes, corridors);
 }
 
 }  // namespace surfcast::geometry
@@ -182,3 +202,105 @@ void fields(Archive& archive, T& value) {
 }
 
 }  // namespace surfcast::render
+
+namespace surfcast::surfel {
+
+template <typename Archive, worker::Is<Grid> T>
+void fields(Archive& archive, T& value) {
+  auto& [scale, offset] = value;
+  archive(scale, offset);
+}
+
+}  // namespace surfcast::surfel
+
+namespace surfcast::kinds {
+
+template <typename Archive, worker::Is<PickedValue> T>
+void fields(Archive& archive, T& value) {
+  auto& [attribute, number] = value;
+  archive(attribute, number);
+}
+
+template <typename Archive, worker::Is<PickedSurfel> T>
+void fields(Archive& archive, T& value) {
+  auto& [position, normal, color, radius, distance, values, depth, number] = value;
+  archive(position, normal, color, radius, distance, values, depth, number);
+}
+
+}  // namespace surfcast::kinds
+
+namespace surfcast::pick {
+
+template <typename Archive, worker::Is<CoursePlace> T>
+void fields(Archive& archive, T& value) {
+  auto& [along, across] = value;
+  archive(along, across);
+}
+
+template <typename Archive, worker::Is<BandPoint> T>
+void fields(Archive& archive, T& value) {
+  auto& [position, place, color] = value;
+  archive(position, place, color);
+}
+
+template <typename Archive, worker::Is<BandQuery> T>
+void fields(Archive& archive, T& value) {
+  auto& [line, width, most] = value;
+  archive(line, width, most);
+}
+
+}  // namespace surfcast::pick
+
+namespace surfcast::scan {
+
+template <typename Archive, worker::Is<Selection> T>
+void fields(Archive& archive, T& value) {
+  auto& [zone, classes, every] = value;
+  archive(zone, classes, every);
+}
+
+}  // namespace surfcast::scan
+
+namespace surfcast::exporter {
+
+template <typename Archive, worker::Is<ModelSelection> T>
+void fields(Archive& archive, T& value) {
+  auto& [points, source_coordinates, normals] = value;
+  archive(points, source_coordinates, normals);
+}
+
+template <typename Archive, worker::Is<PointFacts> T>
+void fields(Archive& archive, T& value) {
+  auto& [count, bounds, returns, grid] = value;
+  archive(count, bounds, returns, grid);
+}
+
+}  // namespace surfcast::exporter
+
+namespace surfcast::service {
+
+template <typename Archive, worker::Is<SurfaceQuery> T>
+void fields(Archive& archive, T& value) {
+  auto& [request, up_from_model] = value;
+  archive(request, up_from_model);
+}
+
+template <typename Archive, worker::Is<PixelQuery> T>
+void fields(Archive& archive, T& value) {
+  auto& [picture, x, y, most_blocks] = value;
+  archive(picture, x, y, most_blocks);
+}
+
+template <typename Archive, worker::Is<PointsJob> T>
+void fields(Archive& archive, T& value) {
+  auto& [model, selection, format, most, only_count] = value;
+  archive(model, selection, format, most, only_count);
+}
+
+template <typename Archive, worker::Is<PointPiece> T>
+void fields(Archive& archive, T& value) {
+  auto& [bytes, last] = value;
+  archive(bytes, last);
+}
+
+}  // namespace surfcast::service

@@ -1,9 +1,7 @@
 #pragma once
 
-#include <atomic>
 #include <chrono>
 #include <cstddef>
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -11,6 +9,7 @@
 #include "base/log_format.h"
 #include "render/renderer.h"
 #include "service/model_renderer.h"
+#include "worker/supervisor.h"
 
 namespace surfcast::worker {
 
@@ -24,13 +23,6 @@ struct WorkerConfig {
   std::vector<std::string> writable;  ///< folders that the sandbox lets it change: caches of drivers
   size_t pixels = size_t{1} << 25;    ///< of the largest picture
   std::chrono::milliseconds silence{60'000};  ///< after which a worker that draws is taken for hung, and killed
-};
-
-/// What is counted of workers. Thread-safe.
-struct WorkerCounts {
-  std::atomic<uint64_t> started = 0;
-  std::atomic<uint64_t> ended = 0;        ///< crashed, killed or hung
-  std::atomic<uint64_t> quarantined = 0;  ///< blocks that have ended two workers
 };
 
 /// A factory of renderers that draw in a child process. Models are files, opened here and passed on as descriptors.

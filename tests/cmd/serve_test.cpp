@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include <sys/stat.h>
@@ -69,15 +70,15 @@ TEST_F(ServeTest, AReaderOfTheLogThatGoesAwayDoesNotEndTheServer) {
   EXPECT_EQ(end(SIGTERM), 0) << "it says that it stops, and nobody reads it";
 }
 
-/// The process that draws for a server; -1: there is none.
-pid_t worker_of(pid_t server) {
+/// The process that draws for a server, or that answers for it ("query-worker"); -1: there is none.
+pid_t worker_of(pid_t server, const std::string& purpose = "render-worker") {
   for (const fs::directory_entry& process : fs::directory_iterator("/proc")) {
     const std::string name = process.path().filename();
     if (name.find_first_not_of("0123456789") != std::string::npos) continue;
     const std::string command = content(process.path() / "cmdline");
     const std::string status = content(process.path() / "status");
     const bool child = status.find("\nPPid:\t" + std::to_string(server) + "\n") != std::string::npos;
-    if (child && command.find("render-worker") != std::string::npos) return std::stoi(name);
+    if (child && command.find(purpose) != std::string::npos) return std::stoi(name);
   }
   return -1;
 }
@@ -98,6 +99,71 @@ TEST_F(ServeTest, ARenderWorkerThatIsKilledIsReplaced) {
   EXPECT_NE(get("/metrics").find("\nsurfcast_workers_ended_total 3\n"), std::string::npos);
 }
 
+TEST_F(ServeTest, AQueryWorkerThatIsKilledIsReplacedAndAnswersAsTheServerWould) {
+  serve(scan_.string());
+  const std::string pick = "/api/models/square/pick?pixel=32,24&resolution=64,48";
+  const std::string profile = "/api/models/square/profile?line=2,3.2,0;12.5,3.2,9&width=1&format=csv";
+  const std::string region = "/api/models/square/points?box=2,2,-1,9,9,1&format=csv";
+  std::string picked = get(pick);
+  EXPECT_NE(picked.find("\"position\""), std::string::npos) << picked;
+  const std::string profiled = get(profile);
+  const std::string points = get(region);
+  for (int kills = 1; kills <= 3; ++kills) {
+    const pid_t worker = worker_of(server_, "query-worker");
+    ASSERT_GT(worker, 0);
+    ::kill(worker, SIGKILL);
+    EXPECT_EQ(get(pick), picked);
+    EXPECT_EQ(get(profile), profiled);
+    EXPECT_EQ(get(region), points);
+  }
+  EXPECT_NE(get("/metrics").find("\nsurfcast_query_workers_ended_total 3\n"), std::string::npos);
+  EXPECT_NE(get("/metrics").find("\nsurfcast_query_blocks_quarantined_total 0\n"), std::string::npos);
+  EXPECT_EQ(end(SIGTERM), 0);
+  serve("--workers 0 " + scan_.string());
+  EXPECT_EQ(worker_of(server_, "query-worker"), -1);
+  EXPECT_EQ(get(pick), picked);
+  EXPECT_EQ(get(profile), profiled);
+  EXPECT_EQ(get(region), points);
+}
+
+/// Bytes that a process has read from files so far.
+uint64_t bytes_read(pid_t process) {
+  const std::string counts = content(fs::path("/proc") / std::to_string(process) / "io");
+  return counts.starts_with("rchar: ") ? std::stoull(counts.substr(7)) : 0;
+}
+
+TEST_F(ServeTest, AServerWithWorkersReadsNoBlocks) {
+  constexpr uint64_t kLessThanABlock = 10'000;  // and more than what else it reads
+  std::ofstream points(folder_ / "dense.xyz");
+  for (int i = 0; i < 40'000; ++i) points << i % 200 << ' ' << i / 200 << ' ' << i * 7919 % 1009 * 0.001 << '\n';
+  points.close();
+  const std::vector<std::string> questions{
+      "/api/models/dense/pick?pixel=32,24&resolution=64,48",
+      "/api/models/dense/profile?line=0,90,0;199,100,0&width=400&format=las",
+      "/api/models/dense/points?box=0,0,-1,199,199,2&format=las",
+      "/api/models/dense/image?resolution=64,48&format=exr&channels=depth",
+  };
+  std::vector<std::string> answers;
+  for (const std::string workers : {"1", "0"}) {
+    serve("--workers " + workers + " " + (folder_ / "dense.xyz").string());
+    ASSERT_EQ(draw("dense").code, 0);
+    if (bytes_read(server_) == 0) GTEST_SKIP() << "the kernel does not count what is read";
+    for (size_t i = 0; i < questions.size(); ++i) {
+      const uint64_t before = bytes_read(server_);
+      const std::string answer = get(questions[i]);
+      const uint64_t read = bytes_read(server_) - before;
+      if (workers == "1") {
+        EXPECT_LT(read, kLessThanABlock) << questions[i];
+        answers.push_back(answer);
+      } else {
+        EXPECT_GT(read, kLessThanABlock) << questions[i];
+        EXPECT_TRUE(answer == answers[i]) << questions[i];
+      }
+    }
+    EXPECT_EQ(end(SIGTERM), 0);
+  }
+}
+
 TEST_F(ServeTest, AServerWithoutWorkersDrawsTheSamePictures) {
   serve(scan_.string());
   ASSERT_EQ(draw("square").code, 0);
@@ -110,19 +176,21 @@ TEST_F(ServeTest, AServerWithoutWorkersDrawsTheSamePictures) {
   EXPECT_EQ(get("/metrics").find("surfcast_workers"), std::string::npos);
 }
 
-TEST_F(ServeTest, ARenderWorkerEndsWithItsServer) {
+TEST_F(ServeTest, WorkersEndWithTheirServer) {
   serve(scan_.string());
   ASSERT_EQ(draw("square").code, 0);
-  const pid_t worker = worker_of(server_);
-  ASSERT_GT(worker, 0);
+  const std::array workers{worker_of(server_), worker_of(server_, "query-worker")};
+  for (const pid_t worker : workers) ASSERT_GT(worker, 0);
   end(SIGKILL);
-  const fs::path process = fs::path("/proc") / std::to_string(worker);
-  for (int i = 0; i < 3000 && fs::exists(process) && content(process / "status").find("\tZ") == std::string::npos;
-       ++i) {
-    ::usleep(10'000);
+  for (const pid_t worker : workers) {
+    const fs::path process = fs::path("/proc") / std::to_string(worker);
+    for (int i = 0; i < 3000 && fs::exists(process) && content(process / "status").find("\tZ") == std::string::npos;
+         ++i) {
+      ::usleep(10'000);
+    }
+    const std::string status = content(process / "status");
+    EXPECT_TRUE(status.empty() || status.find("Z (zombie)") != std::string::npos) << status;
   }
-  const std::string status = content(process / "status");
-  EXPECT_TRUE(status.empty() || status.find("Z (zombie)") != std::string::npos) << status;
 }
 
 TEST_F(ServeTest, ChannelsAreTheSameByEveryWay) {

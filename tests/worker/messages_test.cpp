@@ -135,6 +135,52 @@ TEST(MessagesTest, AFrameArrivesWithoutItsPixels) {
   EXPECT_EQ(received.frame.stats.stages.at(0).name, "draw");
 }
 
+/// Questions and answers in which no member has its default.
+std::vector<Message> full_queries() {
+  kinds::PickedSurfel item{{1, 2, 3}, {0, 0, 1}, glm::u8vec3(4, 5, 6), 0.5, 7, {{"fa", 0.25}, {"", -1}}, 8, 9};
+  const pick::BandPoint point{{1, 2, 3}, {4, 5}, {6, 7, 8}};
+  service::PointsJob job{"lion", {}, exporter::PointFormat::kPly, 12, true};
+  job.selection.points = {{{{{0, 0, 0}, {1, 1, 1}}}, {{{{0, 1}, {2, 3}}, 0.5, -1, 1}}}, {2, 6}, 3};
+  job.selection.source_coordinates = job.selection.normals = true;
+  exporter::PointFacts facts{5, {{0, 0, 0}, {1, 1, 1}}, {1, 2, 3}, surfel::Grid{glm::dvec3(0.1), glm::dvec3(7)}};
+  return {ConfigureQueries{LogFormat::kJson, false, {"/usr"}, 99},
+          Pick{3, {{full_request(), true}, 4, 5, 6}},
+          Picked{item},
+          SearchSurface{3, {full_request(), true}},
+          SurfacePart{{std::byte{1}, std::byte{2}}},
+          FindBand{3, {{{0, 1, 2}, {3, 4, 5}}, 0.5, 7}},
+          BandPart{9, 8, {glm::dvec3(0.1), glm::dvec3(7)}, {point, point}, {1, 2}, true},
+          OpenPoints{1, 2, job},
+          CountPoints{3},
+          PointsCounted{facts, true},
+          NextPiece{4, 5},
+          PointsPiece{{{std::byte{3}}, true}},
+          ClosePoints{6}};
+}
+
+TEST(MessagesTest, QueriesThatArrivedHaveTheBytesOfThoseThatWereSent) {
+  for (const Message& message : full_queries()) {
+    const std::vector<std::byte> bytes = encode(message);
+    const Result<Message> received = decode(bytes);
+    ASSERT_TRUE(received) << message.index();
+    EXPECT_EQ(received->index(), message.index());
+    EXPECT_EQ(encode(*received), bytes) << message.index();
+    for (size_t size = 0; size < bytes.size(); ++size) EXPECT_FALSE(decode(std::span(bytes).first(size))) << size;
+  }
+}
+
+TEST(MessagesTest, AllOfAnItemAndOfAJobArrives) {
+  const Picked picked = sent(std::get<Picked>(full_queries()[2]));
+  ASSERT_TRUE(picked.item);
+  EXPECT_EQ(picked.item->values.at(0).attribute, "fa");
+  EXPECT_EQ(picked.item->color, glm::u8vec3(4, 5, 6));
+  EXPECT_EQ(picked.item->number, 9U);
+  const service::PointsJob job = sent(std::get<OpenPoints>(full_queries()[7])).job;
+  EXPECT_EQ(job.selection.points.zone.corridors.at(0).line.at(1), glm::dvec2(2, 3));
+  EXPECT_EQ(job.selection.points.classes, (std::vector<uint8_t>{2, 6}));
+  EXPECT_TRUE(job.only_count && job.selection.normals);
+}
+
 TEST(MessagesTest, ErrorsArrive) {
   const Error error = sent(Refused{{ErrorKind::kLimit, "too large"}}).error;
   EXPECT_EQ(error.kind, ErrorKind::kLimit);
@@ -153,8 +199,9 @@ TEST(MessagesTest, EveryTruncationIsRefused) {
 
 TEST(MessagesTest, DamagedMessagesAreReadOrRefused) {
   std::mt19937 random(7);
-  const std::vector<std::vector<std::byte>> originals{encode(Draw{77, full_request()}), encode(Drawn{}),
-                                                      encode(Configure{}), encode(OfferModel{1, "a", {1, 2}, {3}})};
+  std::vector<std::vector<std::byte>> originals{encode(Draw{77, full_request()}), encode(Drawn{}), encode(Configure{}),
+                                                encode(OfferModel{1, "a", {1, 2}, {3}})};
+  for (const Message& message : full_queries()) originals.push_back(encode(message));
   size_t refused = 0;
   for (int i = 0; i < 100'000; ++i) {
     std::vector<std::byte> bytes = originals[random() % originals.size()];

@@ -48,7 +48,7 @@ class SandboxTest : public ::testing::Test {
   /// Expects that this fails with the error after files are restricted to `readable`.
   void expect_files(const std::vector<std::string>& readable, const std::function<bool()>& fails) {
     const int code = in_child([&] {
-      const Status restricted = restrict_files(readable);
+      const Status restricted = restrict_files({readable});
       if (!restricted) return restricted.error().kind == ErrorKind::kUnsupported ? kUnsupported : 2;
       return fails() ? 0 : 1;
     });
@@ -89,7 +89,7 @@ TEST_F(SandboxTest, NothingIsCreatedOrRemoved) {
 TEST_F(SandboxTest, WritableFoldersCanBeChangedAndNothingBesideThem) {
   std::filesystem::create_directories(folder_ / "cache");
   const int code = in_child([&] {
-    const Status restricted = restrict_files({folder_.string()}, {(folder_ / "cache").string()});
+    const Status restricted = restrict_files({{folder_.string()}, {(folder_ / "cache").string()}});
     if (!restricted) return kUnsupported;
     const std::string name = (folder_ / "cache" / "new").string();
     const bool inside = ::open(name.c_str(), O_WRONLY | O_CREAT, 0600) >= 0 &&
@@ -98,6 +98,15 @@ TEST_F(SandboxTest, WritableFoldersCanBeChangedAndNothingBesideThem) {
   });
   if (code == kUnsupported) GTEST_SKIP() << "the kernel has no Landlock";
   EXPECT_EQ(code, 0);
+}
+
+TEST_F(SandboxTest, DevicesCanBeOpenedUnlessTheyAreForbidden) {
+  expect_files({"/usr"}, [] { return ::open("/dev/null", O_RDWR) >= 0; });
+  const int code = in_child([] {
+    if (!restrict_files({{"/usr"}, {}, /*devices=*/false})) return kUnsupported;
+    return ::open("/dev/null", O_RDONLY) < 0 ? 0 : 1;
+  });
+  EXPECT_TRUE(code == 0 || code == kUnsupported) << code;
 }
 
 TEST_F(SandboxTest, OpenDescriptorsStayUsable) {

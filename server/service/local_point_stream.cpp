@@ -1,4 +1,4 @@
-#include "service/point_stream.h"
+#include "service/local_point_stream.h"
 
 #include <utility>
 
@@ -12,31 +12,31 @@ constexpr double kTurnMilliseconds = 100;
 
 }  // namespace
 
-PointStream::PointStream(exporter::ModelPoints points, const PointsJob& job,
-                         std::shared_ptr<const std::atomic<bool>> cancelled)
-    : points_(std::move(points)),
+LocalPointStream::LocalPointStream(exporter::ModelPoints points, const PointsJob& job,
+                                   std::shared_ptr<const std::atomic<bool>> cancelled)
+    : PointStream(job.most),
+      points_(std::move(points)),
       format_(job.format),
-      most_(job.most),
       only_count_(job.only_count),
       wanted_(job.only_count ? exporter::WantedFacts::kNumber : exporter::facts_for(job.format)),
       cancelled_(std::move(cancelled)) {}
 
-Result<std::unique_ptr<PointStream>> PointStream::open(std::shared_ptr<const model::ModelFile> model,
-                                                       const PointsJob& job,
-                                                       std::shared_ptr<const std::atomic<bool>> cancelled) {
+Result<std::unique_ptr<PointStream>> LocalPointStream::open(std::shared_ptr<const model::ModelFile> model,
+                                                            const PointsJob& job,
+                                                            std::shared_ptr<const std::atomic<bool>> cancelled) {
   Result<exporter::ModelPoints> points = exporter::ModelPoints::open(std::move(model), job.model, job.selection);
   if (!points) return fail(std::move(points.error()));
-  return std::unique_ptr<PointStream>(new PointStream(std::move(*points), job, std::move(cancelled)));
+  return std::unique_ptr<PointStream>(new LocalPointStream(std::move(*points), job, std::move(cancelled)));
 }
 
-Status PointStream::check() const {
+Status LocalPointStream::check() const {
   if (cancelled_->load(std::memory_order_relaxed)) return fail(ErrorKind::kCancelled, "cancelled");
-  if (only_count_ || facts_.count <= most_) return {};
-  return fail(ErrorKind::kLimit, "the region has more than " + std::to_string(most_) +
+  if (only_count_ || facts_.count <= most()) return {};
+  return fail(ErrorKind::kLimit, "the region has more than " + std::to_string(most()) +
                                      " points, the most there may be: ask for a smaller one, or for every n-th point");
 }
 
-Result<bool> PointStream::count() {
+Result<bool> LocalPointStream::count() {
   const Stopwatch watch;
   while (counted_ < points_.pieces() && watch.milliseconds() < kTurnMilliseconds) {
     const Result<exporter::PointFacts> piece = points_.count(counted_, wanted_);
@@ -49,7 +49,7 @@ Result<bool> PointStream::count() {
   return prepare().map([] { return true; });
 }
 
-Status PointStream::prepare() {
+Status LocalPointStream::prepare() {
   if (only_count_) return {};
   auto encoder = exporter::make_point_encoder(format_, points_.schema(), facts_);
   if (!encoder) return fail(std::move(encoder.error()));
@@ -57,7 +57,7 @@ Status PointStream::prepare() {
   return {};
 }
 
-Status PointStream::add_block(PointPiece& piece) {
+Status LocalPointStream::add_block(PointPiece& piece) {
   if (Status status = check(); !status) return status;
   const Result<scan::ScanPoints> points = points_.read(next_++);
   if (!points) return fail(points.error());
@@ -68,7 +68,7 @@ Status PointStream::add_block(PointPiece& piece) {
   return {};
 }
 
-Result<PointPiece> PointStream::next(size_t bytes) {
+Result<PointPiece> LocalPointStream::next(size_t bytes) {
   const Stopwatch watch;
   PointPiece piece;
   Status status;
