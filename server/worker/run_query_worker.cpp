@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "base/file_source.h"
+#include "base/load_module.h"
 #include "base/log_format.h"
 #include "model/model_file.h"
 #include "pick/front_surface.h"
@@ -27,9 +28,10 @@ namespace {
 /// Bytes of a message with a part of an answer, about.
 constexpr size_t kPartBytes = size_t{8} << 20;
 
-/// What PROJ reads where a file is wanted in the system of its source.
+/// PROJ, which is loaded where a file is wanted in the system of its source, and what it reads.
 std::vector<std::string> system_paths() {
-  std::vector<std::string> paths{"/usr", "/lib", "/lib64", "/etc/ld.so.cache", "/etc/localtime"};
+  std::vector<std::string> paths{
+      "/usr", "/lib", "/lib64", "/etc/ld.so.cache", "/etc/localtime", module_folder().string()};
   for (const char* variable : {"PROJ_DATA", "PROJ_LIB"}) {
     if (const char* const path = std::getenv(variable); path != nullptr) paths.emplace_back(path);
   }

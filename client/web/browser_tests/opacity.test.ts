@@ -47,6 +47,7 @@ async function loadsNothing(wire: Wire, act: () => Promise<void>): Promise<void>
   const frames = wire.frames.length;
   const asked = wire.asked.length;
   await act();
+  await expect.poll(() => wire.asked.slice(asked), { timeout: 30_000 }).toContain('updateView');
   await expect.poll(() => look.pictureSum(yard.page), { timeout: 30_000 }).not.toBe(sum);
   expect(before['resident']).toBeGreaterThan(1);
   for (const { picture } of wire.frames.slice(frames)) expect(blocksOf(picture)).toEqual({ ...before, waitedFor: 0 });
