@@ -184,6 +184,7 @@ std::string to_text(const ModelSummary& summary) {
   if (summary.georeference.source.known()) text += "source system: " + name_of(summary.georeference.source) + "\n";
   text += fmt::format("up: {}{}\n", info.upside_down ? "-" : "", info.z_up ? "z" : "y");
   text += fmt::format("oriented: {}\n", info.oriented ? "yes" : "no");
+  if (info.even) text += "sampling: even, from meshes\n";
   text += fmt::format("color bits: {}\n", info.color_bits);
   text += fmt::format("attributes: {}\n", joined(attribute_names(info)));
   for (const model::AttributeRange& range : info.ranges) {
@@ -216,6 +217,7 @@ std::string to_json(const ModelSummary& summary) {
       {"z_up", info.z_up},
       {"upside_down", info.upside_down},
       {"oriented", info.oriented},
+      {"mesh_samples", info.even},
       {"color_bits", info.color_bits},
       {"attributes", attribute_names(info)},
       {"ranges", nlohmann::ordered_json::array()},

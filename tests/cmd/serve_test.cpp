@@ -343,7 +343,7 @@ class ServeLargeScanTest : public ServeTest {
 };
 
 TEST_F(ServeLargeScanTest, ThePortIsOpenAtOnceAndAPreviewIsServedWhileTheModelIsBuilt) {
-  serve("--preview-points 20000 " + large_.string());
+  serve("--build-threads 1 --preview-points 20000 " + large_.string());
   EXPECT_EQ(client::run_program(SURFCAST_CLIENT " models " + url_).output, "large\n");
   const std::string list = list_until("\"preview\": true");
   EXPECT_NE(list.find("\"percent\""), std::string::npos) << list;

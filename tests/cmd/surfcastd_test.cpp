@@ -155,6 +155,7 @@ TEST_F(SurfcastdTest, MakesSurfelsOfAMesh) {
   EXPECT_EQ(report["estimated"]["radii"], 0);
   const std::string summary = run("inspect model.surf").out;
   EXPECT_NE(summary.find("color bits: 8"), std::string::npos) << summary;
+  EXPECT_NE(summary.find("sampling: even, from meshes"), std::string::npos) << summary;
 }
 
 TEST_F(SurfcastdTest, ColoursAScanWithAPictureFromAbove) {
