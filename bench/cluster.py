@@ -1,16 +1,18 @@
 #!/usr/bin/env python3
-"""Measures three servers behind HAProxy: cluster.py BIN MODEL [--only NAME ...]
+"""Measures servers behind proxies: cluster.py BIN MODEL [--only NAME ...]
 
-BIN is the folder of surfcastd and surfcast; MODEL is served under many names. HAProxy runs with
-deploy/haproxy/haproxy.cfg, with other ports. The exit code is 1 if a figure was missed.
+BIN is the folder of surfcastd and surfcast; MODEL is served under many names. Three servers run behind HAProxy with
+deploy/haproxy/haproxy.cfg, or one behind nginx with deploy/nginx/nginx.conf, with other ports. The exit code is 1 if a
+figure was missed.
 
-affinity:  pictures of 12 models by the framed protocol, WebSockets and HTTP; for each model the share of the server that
-           drew most of them.
+affinity:  pictures of 12 models by the framed protocol, WebSockets and HTTP; for each model the share of the server
+           that drew most of them.
 change:    the models that move to another server when one of three ends, of 200, and when it comes back.
 kill:      a server is killed under views of its model by the framed protocol, and while pictures are drawn by HTTP; the
            time until each view has frames again, and the pictures that failed.
 hot:       16 clients draw one model by HTTP from servers in which 10 pictures may wait; failures, and the servers that
            drew. HAProxy tries the next server and the first one in turns, so a model has two servers at most.
+nginx:     pictures by the three protocols, and whose connections the server counts.
 restart:   each server in turn is told to stop and started again while pictures are drawn by HTTP and a view moves.
 """
 import argparse
@@ -29,7 +31,7 @@ import time
 import wire
 
 NAMES = "abc"
-CONFIGURATION = os.path.join(os.path.dirname(__file__), "..", "deploy", "haproxy", "haproxy.cfg")
+DEPLOY = os.path.join(os.path.dirname(os.path.abspath(__file__)), "..", "deploy")
 
 
 def free_port():
@@ -62,7 +64,7 @@ class Cluster:
 
     def configuration(self):
         """The deployed file, with the ports of this cluster and a socket for its counters."""
-        with open(CONFIGURATION) as file:
+        with open(DEPLOY + "/haproxy/haproxy.cfg") as file:
             text = file.read()
         text = text.replace("bind :7600", f"bind 127.0.0.1:{self.port}")
         text = re.sub(r"server ([abc]) \S+", lambda found: f"server {found[1]} 127.0.0.1:{self.ports[found[1]]}", text)
@@ -284,11 +286,54 @@ def restart(arguments):
         thread.join()
         counts = pictures.end()
     return counts[1] == 0 and slowest[0] < 25 and max(gaps) < 5, (
-        f"three servers restarted, each ended within {slowest[0]:.1f} s; {counts[1]} of {counts[0]} pictures failed; the "
-        f"view was opened {len(gaps)} times, with a frame after {max(gaps):.2f} s at most")
+        f"three servers restarted, each ended within {slowest[0]:.1f} s; {counts[1]} of {counts[0]} pictures failed; "
+        f"the view was opened {len(gaps)} times, with a frame after {max(gaps):.2f} s at most")
 
 
-FIGURES = [affinity, change, kill, hot, restart]
+def nginx(arguments):
+    with tempfile.TemporaryDirectory() as folder:
+        port, behind = free_port(), free_port()
+        with open(DEPLOY + "/nginx/nginx.conf") as file:
+            text = file.read().replace("listen 7600;", f"listen 127.0.0.1:{port};").replace(":7601", f":{behind}")
+        with open(folder + "/nginx.conf", "w") as file:
+            file.write(f"pid {folder}/pid;\nerror_log stderr;\ndaemon off;\n" + text)
+        model = os.path.splitext(os.path.basename(arguments.model))[0]
+        server = subprocess.Popen(
+            [arguments.programs + "/surfcastd", "serve", arguments.model, "--listen", f"127.0.0.1:{behind}",
+             "--trusted-proxy", "127.0.0.1", "--max-connections-per-client", "2"],
+            stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+        server.stdout.readline()
+        proxy = subprocess.Popen(["nginx", "-c", folder + "/nginx.conf"])
+
+        def status(client):
+            try:
+                with socket.create_connection(("127.0.0.1", port), 30, (client, 0)) as connection:
+                    connection.sendall(b"GET /api/models HTTP/1.1\r\nHost: localhost\r\nConnection: close\r\n\r\n")
+                    return int(connection.recv(4096)[9:12] or 0)
+            except OSError:
+                return 0
+
+        try:
+            while status("127.0.0.1") != 200:
+                time.sleep(0.05)
+            client = [arguments.programs + "/surfcast", "render", "--resolution", "96,64", "--output",
+                      folder + "/picture.png"]
+            failed = sum(subprocess.run([*client, f"{scheme}127.0.0.1:{port}/{model}"]).returncode != 0
+                         for scheme in ("", "ws://"))
+            held = [wire.Session(socket.create_connection(("127.0.0.1", port), 30, ("127.0.0.2", 0)))
+                    for _ in range(2)]
+            same, other = status("127.0.0.2"), status("127.0.0.3")
+            for session in held:
+                session.connection.close()
+        finally:
+            for process in (proxy, server):
+                process.terminate()
+                process.wait()
+    return failed == 0 and same == 503 and other == 200, (
+        f"{failed} of 2 pictures failed; a client with two connections got {same}, another client {other}")
+
+
+FIGURES = [affinity, change, kill, hot, restart, nginx]
 
 
 def main():

@@ -340,7 +340,7 @@ void add_serve_command(CLI::App& app, Status& outcome) {
            if (!networks) throw CLI::ValidationError("--trusted-proxy", networks.error().message);
            command->server.trusted_proxies = std::move(*networks);
          },
-         "Address or network of proxies that tell their clients' addresses by version 2 of the PROXY protocol")
+         "Address or network of proxies that tell their clients' addresses by the PROXY protocol")
       ->envname(protocol::environment_name("trusted-proxy"))
       ->type_name("NETWORK");
   sub->callback([command, &outcome] {

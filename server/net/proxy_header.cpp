@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <cstring>
 
 #include "protocol/parse.h"
 
@@ -20,6 +21,22 @@ constexpr uint8_t kTcp6 = 0x21;
 
 uint8_t byte_at(std::span<const std::byte> bytes, size_t place) {
   return std::to_integer<uint8_t>(bytes[place]);
+}
+
+bool is_port(std::string_view text) {
+  const auto port = protocol::parse_unsigned(text);
+  return port && *port <= 65535;
+}
+
+/// The parts of a text between single blanks.
+std::vector<std::string_view> words_of(std::string_view text) {
+  std::vector<std::string_view> words;
+  for (size_t end = text.find(' '); end != std::string_view::npos; end = text.find(' ')) {
+    words.push_back(text.substr(0, end));
+    text.remove_prefix(end + 1);
+  }
+  words.push_back(text);
+  return words;
 }
 
 template <typename Address>
@@ -45,6 +62,31 @@ bool same_beginning(const ip::address_v6::bytes_type& a, const ip::address_v6::b
 }
 
 }  // namespace
+
+ProxyVersion proxy_version(std::span<const std::byte, kProxyProbeBytes> first) {
+  constexpr std::string_view kLine = "PROXY ";
+  if (std::memcmp(first.data(), kLine.data(), first.size()) == 0) return ProxyVersion::kText;
+  // No protocol of this server begins with this byte.
+  return byte_at(first, 0) == kSignature[0] ? ProxyVersion::kBinary : ProxyVersion::kNone;
+}
+
+// PROXY TCP4 203.0.113.7 192.0.2.1 50000 7600 (2.1 of the specification)
+Result<std::optional<ip::address>> client_of_proxy_line(std::string_view line) {
+  const std::vector<std::string_view> words = words_of(line);
+  const bool begun = words.size() >= 2 && words[0] == "PROXY";
+  if (begun && words[1] == "UNKNOWN") return std::nullopt;
+  if (!begun || words.size() != 6) return fail(ErrorKind::kInvalidInput, "the PROXY line is incomplete");
+  boost::system::error_code of_client;
+  boost::system::error_code of_proxy;
+  const ip::address client = ip::make_address(std::string(words[2]), of_client);
+  const ip::address proxy = ip::make_address(std::string(words[3]), of_proxy);
+  const bool version4 = client.is_v4() && proxy.is_v4() && words[1] == "TCP4";
+  const bool version6 = client.is_v6() && proxy.is_v6() && words[1] == "TCP6";
+  if (of_client || of_proxy || (!version4 && !version6) || !is_port(words[4]) || !is_port(words[5])) {
+    return fail(ErrorKind::kInvalidInput, "the PROXY line names no addresses of TCP");
+  }
+  return std::optional<ip::address>(client);
+}
 
 Result<size_t> proxy_rest_bytes(std::span<const std::byte> head) {
   const bool signed_so = std::ranges::equal(head.first(kSignature.size()), kSignature, {},

@@ -5,24 +5,34 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "base/result.h"
 
 namespace surfcast::net {
 
-// What a proxy says before the words of a client, of whose address it tells: version 2 of the PROXY protocol
-// (haproxy.org, doc/proxy-protocol.txt, 2.2).
+// What a proxy says before the words of a client, of whose address it tells: the PROXY protocol (haproxy.org,
+// doc/proxy-protocol.txt). Version 1 is a line of text, which nginx sends; version 2 is binary.
 
-/// A connection that begins with another byte has no such header. No protocol of this server begins with it.
-inline constexpr std::byte kProxyByte{0x0d};
-/// Of the part that tells how long the rest is.
+enum class ProxyVersion { kNone, kText, kBinary };
+
+/// Bytes that tell whether a connection begins with such a header. Each protocol of this server begins with more.
+inline constexpr size_t kProxyProbeBytes = 6;
+ProxyVersion proxy_version(std::span<const std::byte, kProxyProbeBytes> first);
+
+/// The longest line of version 1, with its end.
+inline constexpr size_t kMostProxyLine = 107;
+/// The address of the client by a line of version 1, without "\r\n". Nothing: the proxy does not know it.
+Result<std::optional<boost::asio::ip::address>> client_of_proxy_line(std::string_view line);
+
+/// Of the part of a header of version 2 that tells how long the rest is.
 inline constexpr size_t kProxyHeadBytes = 16;
 
 /// The bytes after the head; an error: this is none, or is longer than anybody needs.
 Result<size_t> proxy_rest_bytes(std::span<const std::byte> head);
 
-/// The address of the client. Nothing: the proxy speaks for itself, to see whether the server lives.
+/// The address of the client by version 2. Nothing: the proxy speaks for itself, to see whether the server lives.
 Result<std::optional<boost::asio::ip::address>> client_of_proxy(std::span<const std::byte> head,
                                                                 std::span<const std::byte> rest);
 

@@ -6,6 +6,7 @@
 #include <boost/asio/read.hpp>
 #include <boost/asio/steady_timer.hpp>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
@@ -31,7 +32,7 @@ class ProxyReader : public Session, public std::enable_shared_from_this<ProxyRea
     asio::co_spawn(
         timeout_.get_executor(),
         [](std::shared_ptr<ProxyReader> self) -> asio::awaitable<void> {
-          const std::optional<asio::ip::address> client = co_await self->read();
+          const Client client = co_await self->read();
           self->timeout_.cancel();
           if (client) self->admit_(std::move(self->socket_), *client);
         }(shared_from_this()),
@@ -44,27 +45,58 @@ class ProxyReader : public Session, public std::enable_shared_from_this<ProxyRea
   }
 
  private:
-  asio::awaitable<std::optional<asio::ip::address>> read();
-  asio::awaitable<std::optional<asio::ip::address>> read_header(const asio::ip::address& proxy);
+  using Client = std::optional<asio::ip::address>;  ///< nothing: the connection is of no use
+
+  asio::awaitable<Client> read();
+  asio::awaitable<Client> read_line(const asio::ip::address& proxy);
+  asio::awaitable<Client> read_header(const asio::ip::address& proxy);
 
   asio::steady_timer timeout_;
   tcp::socket socket_;
   AdmitClient admit_;
 };
 
-/// The address of the client; nothing: the connection is of no use.
-asio::awaitable<std::optional<asio::ip::address>> ProxyReader::read() {
+asio::awaitable<ProxyReader::Client> ProxyReader::read() {
   error_code code;
-  std::array<std::byte, 1> first{};
   const asio::ip::address proxy = socket_.remote_endpoint(code).address();
   if (code) co_return std::nullopt;
-  co_await socket_.async_receive(asio::buffer(first), tcp::socket::message_peek, redirect_error_to(code));
+  // A peek would otherwise return with the first byte, again and again until the others have come.
+  socket_.set_option(asio::socket_base::receive_low_watermark(static_cast<int>(kProxyProbeBytes)), code);
+  std::array<std::byte, kProxyProbeBytes> first{};
+  co_await socket_.async_wait(tcp::socket::wait_read, redirect_error_to(code));
   if (code) co_return std::nullopt;
-  if (first[0] != kProxyByte) co_return proxy;
-  co_return co_await read_header(proxy);
+  const size_t peeked = socket_.receive(asio::buffer(first), tcp::socket::message_peek, code);
+  if (code || peeked < first.size()) co_return std::nullopt;  // the peer has closed the connection
+  socket_.set_option(asio::socket_base::receive_low_watermark(1), code);
+  switch (proxy_version(first)) {
+    case ProxyVersion::kText:
+      co_return co_await read_line(proxy);
+    case ProxyVersion::kBinary:
+      co_return co_await read_header(proxy);
+    case ProxyVersion::kNone:
+      break;
+  }
+  co_return proxy;
 }
 
-asio::awaitable<std::optional<asio::ip::address>> ProxyReader::read_header(const asio::ip::address& proxy) {
+/// Byte by byte, because what follows the line is the client's.
+asio::awaitable<ProxyReader::Client> ProxyReader::read_line(const asio::ip::address& proxy) {
+  std::string line;
+  while (!line.ends_with("\r\n")) {
+    if (line.size() == kMostProxyLine) co_return std::nullopt;
+    char next = 0;
+    error_code code;
+    co_await asio::async_read(socket_, asio::buffer(&next, 1), redirect_error_to(code));
+    if (code) co_return std::nullopt;
+    line += next;
+  }
+  line.resize(line.size() - 2);
+  const Result<Client> client = client_of_proxy_line(line);
+  if (!client) co_return std::nullopt;
+  co_return client->value_or(proxy);
+}
+
+asio::awaitable<ProxyReader::Client> ProxyReader::read_header(const asio::ip::address& proxy) {
   error_code code;
   std::array<std::byte, kProxyHeadBytes> head{};
   co_await asio::async_read(socket_, asio::buffer(head), redirect_error_to(code));
@@ -74,7 +106,7 @@ asio::awaitable<std::optional<asio::ip::address>> ProxyReader::read_header(const
   std::vector<std::byte> rest(*bytes);
   co_await asio::async_read(socket_, asio::buffer(rest), redirect_error_to(code));
   if (code) co_return std::nullopt;
-  const Result<std::optional<asio::ip::address>> client = client_of_proxy(head, rest);
+  const Result<Client> client = client_of_proxy(head, rest);
   if (!client) co_return std::nullopt;
   co_return client->value_or(proxy);
 }

@@ -4,6 +4,7 @@
 
 #include "net/net_fixture.h"
 #include "net/proxy_header.h"
+#include "protocol/hello.h"
 
 namespace surfcast::net {
 namespace {
@@ -48,6 +49,41 @@ TEST(ProxyHeaderTest, WhatIsNoneIsAnError) {
   EXPECT_FALSE(proxy_rest_bytes(bytes_of(text).first(kProxyHeadBytes))) << "64 KiB";
 }
 
+TEST(ProxyHeaderTest, AreToldApartByTheirFirstBytes) {
+  const auto version_of = [](const std::string& text) {
+    return proxy_version(bytes_of(text).first<kProxyProbeBytes>());
+  };
+  EXPECT_EQ(version_of(header_of(7)), ProxyVersion::kBinary);
+  EXPECT_EQ(version_of("PROXY TCP4"), ProxyVersion::kText);
+  for (const char* other : {"PUT /api/uploads", "PROPFIND /", "PROXYx", "\xf5SURFCST"}) {
+    EXPECT_EQ(version_of(other), ProxyVersion::kNone) << other;
+  }
+}
+
+TEST(ProxyHeaderTest, ALineOfTextNamesTheAddressOfTheClient) {
+  for (const auto& [line, client] :
+       std::vector<std::pair<std::string, std::string>>{{"PROXY TCP4 203.0.113.7 192.0.2.1 50000 7600", "203.0.113.7"},
+                                                        {"PROXY TCP6 2001:db8::7 ::1 50000 7600", "2001:db8::7"}}) {
+    const auto named = client_of_proxy_line(line);
+    ASSERT_TRUE(named && *named) << line;
+    EXPECT_EQ((*named)->to_string(), client);
+  }
+  for (const char* unknown : {"PROXY UNKNOWN", "PROXY UNKNOWN ffff::1 ffff::2 65535 65535"}) {
+    const auto named = client_of_proxy_line(unknown);
+    EXPECT_TRUE(named && !*named) << unknown;
+  }
+}
+
+TEST(ProxyHeaderTest, AWrongLineOfTextIsAnError) {
+  for (const char* wrong :
+       {"PROXY", "PROXY ", "PROXY TCP4", "PROXY TCP4 203.0.113.7 192.0.2.1 50000", "PROXY TCP4 203.0.113.7 ::1 1 2",
+        "PROXY TCP6 203.0.113.7 192.0.2.1 1 2", "PROXY TCP4 203.0.113.7  192.0.2.1 1 2", "GET / HTTP/1.1 a b c",
+        "PROXY TCP4 203.0.113 192.0.2.1 1 2", "PROXY TCP4 203.0.113.7 192.0.2.1 1 65536",
+        "PROXY TCP4 203.0.113.7 192.0.2.1 -1 2", "PROXY TCP4 203.0.113.7 192.0.2.1 1 2 3"}) {
+    EXPECT_FALSE(client_of_proxy_line(wrong)) << wrong;
+  }
+}
+
 TEST(NetworksTest, ContainAddressesThatBeginAsTheyDo) {
   const auto networks = Networks::parse({"10.1.0.0/16", "192.0.2.4", "fd00::/8"});
   ASSERT_TRUE(networks);
@@ -89,6 +125,34 @@ TEST_F(ProxyTest, LimitsAreThoseOfTheClientThatTheProxyNames) {
   RawSocket other(port_);
   other.send(header_of(8) + std::string(kReady));
   EXPECT_EQ(other.read_http().substr(9, 3), "200");
+}
+
+TEST_F(ProxyTest, ALineOfTextCountsTheSame) {
+  start(config_);
+  const std::vector<std::byte> hello = protocol::encode_hello(protocol::make_hello("test"));
+  std::vector<RawSocket> held;
+  for (int i = 0; i < 2; ++i) {
+    held.emplace_back(port_);
+    held.back().send("PROXY TCP4 203.0.113.7 127.0.0.1 50000 7600\r\n");
+    held.back().send(hello);
+    ASSERT_EQ(held.back().read_exactly(hello.size()).size(), hello.size());
+  }
+  RawSocket third(port_);
+  third.send(header_of(7) + std::string(kReady));
+  EXPECT_EQ(third.read_http().substr(9, 3), "503");
+  RawSocket other(port_);
+  for (const char byte : "PROXY TCP6 2001:db8::7 ::1 1 2\r\n" + std::string(kReady)) other.send(std::string(1, byte));
+  EXPECT_EQ(other.read_http().substr(9, 3), "200");
+}
+
+TEST_F(ProxyTest, ALineOfTextThatDoesNotEndEndsTheConnection) {
+  start(config_);
+  RawSocket endless(port_);
+  endless.send("PROXY UNKNOWN " + std::string(200, 'x'));
+  EXPECT_TRUE(endless.closed_within(std::chrono::seconds(10)));
+  RawSocket wrong(port_);
+  wrong.send("PROXY TCP4 nobody\r\n" + std::string(kReady));
+  EXPECT_EQ(wrong.read_to_end(), "");
 }
 
 TEST_F(ProxyTest, AProxyMaySpeakForItself) {
