@@ -31,7 +31,7 @@ enum class HelloStatus : uint16_t { kWelcome = 0, kVersionRefused = 1, kBusy = 2
 struct Hello {
   ProtocolVersion version = kProtocolVersion;
   HelloStatus status = HelloStatus::kWelcome;
-  std::string program;  ///< name and version, to be displayed: "surfcastd 0.1.0"
+  std::string program;  ///< name and version, to be displayed: "surfcastd VERSION"
   std::string message;  ///< the reason when the status is not kWelcome, one line
 };
 
@@ -45,7 +45,7 @@ inline constexpr std::string_view kWebSocketProtocol = "surfcast.v1";
 
 /// The hello of this build. `program` is the name of the executable.
 Hello make_hello(const std::string& program);
-/// The hello of a client that will ask for `model`, if that is known: "surfcast 0.1.0 model=church". The name is
+/// The hello of a client that will ask for `model`, if that is known: "surfcast VERSION model=church". The name is
 /// escaped as in a URL. Proxies send requests for one model to one server by it; servers do not read it.
 Hello make_client_hello(const std::string& program, const std::string& model);
 /// Serializes a hello. Texts longer than kMaxHelloTextBytes are truncated.
