@@ -1,6 +1,6 @@
 # The two commands of the README for a bare Debian 12: make demo, make test. They install missing packages.
-.PHONY: build demo test bench bench-volumes bench-meshes peers peers-volumes peers-tensors asan tsan package tidy format-check \
-  configure packages lint-packages fuzz
+.PHONY: build demo test bench bench-volumes bench-meshes peers peers-volumes peers-tensors asan tsan package \
+  release-check tidy format-check configure packages lint-packages fuzz
 
 build: configure
 	cmake --build --preset release
@@ -81,6 +81,11 @@ package:
 	cmake --preset package
 	cmake --build --preset package
 	cpack --preset package
+
+# What users will meet: the version and the tag, the packages on a bare Debian 12, and the container image. Parts of it:
+# see the beginning of the script.
+release-check:
+	cmake/release_check.sh
 
 # clang-tidy. Files without findings are not checked again until they change. TIDY_FLAGS="--minutes 8" limits its time.
 tidy: build lint-packages
