@@ -44,7 +44,7 @@ Status ClientSocket::encrypt(const std::string& host, const std::string& ca, Clo
   if (!trust) return fail(trust.error());
   stream_.encrypt(**trust);
   tls::expect_host(stream_, host);
-  stream_.encryption()->async_handshake(boost::asio::ssl::stream_base::client, shaking_hands_.begin());
+  stream_.async_handshake(boost::asio::ssl::stream_base::client, shaking_hands_.begin());
   Status status = finish(shaking_hands_, deadline);
   if (status || shaking_hands_.pending) return status;
   return fail(ErrorKind::kIo, tls::explain_handshake(stream_, shaking_hands_.outcome));

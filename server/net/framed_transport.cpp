@@ -101,10 +101,10 @@ asio::awaitable<bool> FramedTransport::write(const Bytes& message, const std::fu
 /// still on its way to it.
 asio::awaitable<void> FramedTransport::linger() {
   error_code code;
-  if (stream_.is_encrypted()) co_await stream_.encryption()->async_shutdown(redirect_error_to(code));
+  if (stream_.is_encrypted()) co_await stream_.async_shutdown(redirect_error_to(code));
   tcp_socket().shutdown(tcp::socket::shutdown_send, code);
   while (!code) {
-    co_await stream_.socket().async_read_some(asio::buffer(buffer_), redirect_error_to(code));
+    co_await stream_.async_read_beneath(asio::buffer(buffer_), redirect_error_to(code));
   }
 }
 

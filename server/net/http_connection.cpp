@@ -156,11 +156,11 @@ asio::awaitable<bool> HttpConnection::write_bytes(const Bytes& bytes) {
 asio::awaitable<void> HttpConnection::linger() {
   error_code ignored;
   stream_.socket().expires_after(std::min(context_->config.hello, context_->config.stall));
-  if (stream_.is_encrypted()) co_await stream_.encryption()->async_shutdown(redirect_error_to(ignored));
+  if (stream_.is_encrypted()) co_await stream_.async_shutdown(redirect_error_to(ignored));
   stream_.socket().socket().shutdown(tcp::socket::shutdown_send, ignored);
   std::array<char, 4096> scratch{};
   while (!ignored && !context_->draining) {
-    co_await stream_.socket().async_read_some(asio::buffer(scratch), redirect_error_to(ignored));
+    co_await stream_.async_read_beneath(asio::buffer(scratch), redirect_error_to(ignored));
   }
   stream_.socket().close();
 }

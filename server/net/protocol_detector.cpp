@@ -86,7 +86,7 @@ asio::awaitable<bool> ProtocolDetector::begin_tls() {
   const std::shared_ptr<asio::ssl::context> identity = connection_.peer.context->tls;  // a new one may come meanwhile
   error_code code;
   connection_.stream.encrypt(*identity);
-  co_await connection_.stream.encryption()->async_handshake(asio::ssl::stream_base::server, redirect_error_to(code));
+  co_await connection_.stream.async_handshake(asio::ssl::stream_base::server, redirect_error_to(code));
   if (code) {
     ++connection_.peer.context->metrics.tls_failures;
     connection_.stream.socket().close();
