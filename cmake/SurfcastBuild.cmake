@@ -1,7 +1,7 @@
 # Build settings and helper functions of the project.
 
 option(SURFCAST_TESTS "Build the tests" ON)
-option(SURFCAST_BENCH "Build the benchmarks" ON)
+option(SURFCAST_BENCH "Define the benchmarks, which the target `benchmarks` builds" ON)
 option(SURFCAST_WINDOW "Build surfcast-view, which needs SDL and libturbojpeg" ON)
 set(SURFCAST_VIEWER AUTO CACHE STRING
   "The viewer for browsers: ON (fails without it), AUTO (warns where npm cannot build it), OFF")
@@ -23,16 +23,23 @@ if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release)
 endif()
 
+# Paths below the checkout are relative to the build folder for the cache, so that all checkouts of a machine share it.
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM)
-  set(CMAKE_CXX_COMPILER_LAUNCHER ${CCACHE_PROGRAM})
+  set(ccache_settings CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1)
   if(SURFCAST_PCH)
     # What ccache asks for before it caches compilations with precompiled headers.
-    set(CMAKE_CXX_COMPILER_LAUNCHER
-      ${CMAKE_COMMAND} -E env CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime
-      ${CCACHE_PROGRAM})
+    list(APPEND ccache_settings CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime)
     add_compile_options(-fpch-preprocess)
   endif()
+  set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env ${ccache_settings} ${CCACHE_PROGRAM})
+endif()
+
+# mold links all programs in a quarter of the time of GNU ld. Modules are left to the latter: mold also takes members of
+# archives that they do not need, which are not position-independent.
+find_program(MOLD_PROGRAM mold)
+if(MOLD_PROGRAM AND NOT SURFCAST_SANITIZE)
+  string(APPEND CMAKE_EXE_LINKER_FLAGS " -fuse-ld=mold")
 endif()
 
 find_package(Threads REQUIRED)
@@ -43,9 +50,9 @@ target_compile_options(surfcast_warnings INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion -Wnon-virtual-dtor
   -Woverloaded-virtual -Wnull-dereference -Wimplicit-fallthrough -Werror)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  # GCC 12 reports these inside inlined standard library code that is correct.
+  # GCC 12 reports these inside inlined code of the standard library and of Asio that is correct.
   target_compile_options(surfcast_warnings INTERFACE -Wno-null-dereference -Wno-maybe-uninitialized
-    -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread)
+    -Wno-restrict -Wno-array-bounds -Wno-stringop-overflow -Wno-stringop-overread -Wno-mismatched-new-delete)
 else()
   # Conditions without a branch are meant.
   target_compile_options(surfcast_warnings INTERFACE -Wno-bitwise-instead-of-logical)
@@ -92,9 +99,10 @@ set(SURFCAST_COMMON_HEADERS
   <mutex> <optional> <span> <sstream> <string> <thread> <vector> <glm/glm.hpp> <tl/expected.hpp>)
 surfcast_precompiled_headers(surfcast_module_headers HEADERS ${SURFCAST_COMMON_HEADERS})
 
-# surfcast_io_bound(TARGET): TARGET waits for the network or for disks rather than computes. Debug builds do not optimize
-# it: with the sanitizers that halves the compile time of sources that instantiate Beast.
-set(SURFCAST_IO_BOUND_OPTIONS $<$<CONFIG:Debug>:-O0>)
+# surfcast_io_bound(TARGET): TARGET waits for the network or for other threads rather than computes. -O1 compiles sources
+# that instantiate Beast in two thirds of the time of -O3. Debug builds do not optimize it: with the sanitizers that
+# halves the compile time.
+set(SURFCAST_IO_BOUND_OPTIONS $<$<CONFIG:Debug>:-O0> $<$<CONFIG:Release>:-O1>)
 surfcast_precompiled_headers(surfcast_io_bound_headers
   HEADERS ${SURFCAST_COMMON_HEADERS} OPTIONS ${SURFCAST_IO_BOUND_OPTIONS})
 function(surfcast_io_bound target)
@@ -131,20 +139,61 @@ endfunction()
 # surfcast_join_sources(TARGET): compiles several sources of TARGET together, if SURFCAST_JOIN is on. This halves the
 # compile time, because each header is read and each template instantiated once for all of them. The presets release,
 # asan-ubsan and tsan do so. The preset dev does not: in it, a change of one source compiles one source.
+# CMake's own UNITY_BUILD writes absolute paths, by which a compiler cache takes each checkout for another program.
 function(surfcast_join_sources target)
   if(SURFCAST_JOIN)
-    set_target_properties(${target} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 8)
     if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
       # It takes the unnamed namespaces of joined sources for those of headers.
       target_compile_options(${target} PRIVATE -Wno-subobject-linkage)
     endif()
+    # Deferred to the end of the folder, where the properties of all its sources are known.
+    cmake_language(EVAL CODE "cmake_language(DEFER CALL surfcast_join_sources_now ${target})")
   endif()
+endfunction()
+
+# Replaces the sources of TARGET by files that include up to SURFCAST_JOINED_SOURCES of them each.
+set(SURFCAST_JOINED_SOURCES 8)
+function(surfcast_join_sources_now target)
+  get_target_property(sources ${target} SOURCES)
+  set(joined)
+  set(kept)
+  foreach(source IN LISTS sources)
+    get_source_file_property(alone ${source} SURFCAST_COMPILE_ALONE)
+    get_source_file_property(definitions ${source} COMPILE_DEFINITIONS)
+    if(alone OR definitions OR NOT source MATCHES "\\.cpp$")
+      list(APPEND kept ${source})
+    else()
+      list(APPEND joined ${source})
+    endif()
+  endforeach()
+
+  # Parts of equal size, so that the last one is not short.
+  list(LENGTH joined count)
+  math(EXPR parts "(${count} + ${SURFCAST_JOINED_SOURCES} - 1) / ${SURFCAST_JOINED_SOURCES}")
+  set(folder ${CMAKE_CURRENT_BINARY_DIR}/${target}_joined)
+  foreach(part RANGE 1 ${parts})
+    if(parts EQUAL 0)
+      break()
+    endif()
+    math(EXPR begin "${count} * (${part} - 1) / ${parts}")
+    math(EXPR length "${count} * ${part} / ${parts} - ${begin}")
+    list(SUBLIST joined ${begin} ${length} members)
+    set(text)
+    foreach(source IN LISTS members)
+      cmake_path(ABSOLUTE_PATH source NORMALIZE)
+      cmake_path(RELATIVE_PATH source BASE_DIRECTORY ${folder})
+      string(APPEND text "#include \"${source}\"\n")
+    endforeach()
+    file(CONFIGURE OUTPUT ${folder}/part_${part}.cpp CONTENT "${text}" @ONLY)
+    list(APPEND kept ${folder}/part_${part}.cpp)
+  endforeach()
+  set_property(TARGET ${target} PROPERTY SOURCES ${kept})
 endfunction()
 
 # surfcast_compile_alone(FILE...): these sources are never joined, because they share a name of an unnamed namespace with
 # another source of their target, or hide one.
 function(surfcast_compile_alone)
-  set_source_files_properties(${ARGN} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  set_source_files_properties(${ARGN} PROPERTIES SURFCAST_COMPILE_ALONE ON)
 endfunction()
 
 # surfcast_module(NAME [IO_BOUND|COMMANDS] [SOURCES file...] [PUBLIC lib...] [PRIVATE lib...])
@@ -184,7 +233,10 @@ function(surfcast_test_data)
   set_property(SOURCE ${ARGN} APPEND PROPERTY COMPILE_DEFINITIONS SURFCAST_TEST_DATA="${PROJECT_SOURCE_DIR}/tests/data")
 endfunction()
 
-set(SURFCAST_TEST_OPTIONS $<$<CONFIG:Debug>:-O0> $<$<CONFIG:Release>:-O1>)
+# Test code runs once, so less optimization saves more compile time than it costs. Tests that compare pictures compute
+# long enough to be optimized a little. The tested libraries are built with the usual optimization.
+set(SURFCAST_TEST_OPTIONS -O0)
+set(SURFCAST_COMPUTING_TEST_OPTIONS $<$<CONFIG:Debug>:-O0> $<$<CONFIG:Release>:-O1>)
 
 # surfcast_test(NAME [WHOLE] SOURCES file... [LIBS lib...] [LABELS label...])
 # One GoogleTest program of one module. Every case becomes a separate ctest case. WHOLE keeps the cases together, for
@@ -197,10 +249,13 @@ function(surfcast_test name)
   add_executable(${name} ${ARG_SOURCES})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_link_libraries(${name} PRIVATE surfcast_warnings ${ARG_LIBS} GTest::gtest_main GTest::gmock)
-  # Test code runs once, so less optimization saves more compile time than it costs. The tested libraries are built with
-  # the usual optimization.
-  target_compile_options(${name} PRIVATE ${SURFCAST_TEST_OPTIONS})
-  surfcast_use_precompiled_headers(${name} surfcast_test_headers)
+  if(ARG_LABELS MATCHES "gl|slow")
+    target_compile_options(${name} PRIVATE ${SURFCAST_COMPUTING_TEST_OPTIONS})
+    surfcast_use_precompiled_headers(${name} surfcast_computing_test_headers)
+  else()
+    target_compile_options(${name} PRIVATE ${SURFCAST_TEST_OPTIONS})
+    surfcast_use_precompiled_headers(${name} surfcast_test_headers)
+  endif()
   surfcast_join_sources(${name})
   if(NOT ARG_LABELS)
     set(ARG_LABELS unit)

@@ -25,6 +25,8 @@ import subprocess
 import sys
 import time
 
+from compile_commands import separate_entries
+
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 RECENT_COMMITS = 10
 
@@ -33,35 +35,14 @@ def output_of(*command):
     return subprocess.run(command, cwd=ROOT, capture_output=True, text=True, check=False).stdout
 
 
-def without_precompiled_headers(command):
-    """clang cannot read those of GCC; what they would hide is seen here, too."""
-    command = re.sub(r"-include \S*cmake_pch\.hxx ?", "", command)
-    return re.sub(r"-(Winvalid-pch|fpch-preprocess) ?", "", command)
-
-
-JOINED = re.compile(r'#include "(.*\.cpp)"')
-
-
-def separate_entries(database):
-    """The compile command of each source, also of those that CMake joined (surfcast_join_sources)."""
-    for entry in database:
-        if "/Unity/unity_" not in entry["file"]:
-            yield entry
-            continue
-        for source in JOINED.findall(pathlib.Path(entry["file"]).read_text()):
-            # The object stays that of the joined sources: Ninja knows it.
-            yield {**entry, "file": source, "command": entry["command"].replace(f"-c {entry['file']}", f"-c {source}")}
-
-
 def read_entries(build, folders):
     """The sources to check: file relative to the root, compile command, object file; and a database without others."""
     entries = {}
     checked = re.compile(rf"({folders})/.*\.cpp$")
-    for entry in separate_entries(json.loads((build / "compile_commands.json").read_text())):
+    for entry in separate_entries(build):
         file = os.path.relpath(entry["file"], ROOT)
         if not checked.match(file):
             continue
-        entry["command"] = without_precompiled_headers(entry["command"])
         entries.setdefault(file, entry)
     folder = build / "tidy"
     folder.mkdir(exist_ok=True)

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "geometry/zone.h"
+
 namespace surfcast::builder {
 namespace {
 
@@ -30,11 +32,6 @@ double halo_of(const Part& part) {
   constexpr double kWidest = 0.25;
   const double points = static_cast<double>(part.count) / static_cast<double>(part.cells.size());
   return points > 0 ? std::clamp(kSpacings / std::cbrt(points), kHalo, kWidest) : kHalo;
-}
-
-bool contains(const geometry::Box& box, const glm::dvec3& p) {
-  return p.x >= box.min.x && p.y >= box.min.y && p.z >= box.min.z && p.x <= box.max.x && p.y <= box.max.y &&
-         p.z <= box.max.z;
 }
 
 bool any_contains(const std::vector<geometry::Box>& boxes, const glm::dvec3& p) {
