@@ -1,16 +1,36 @@
 # The two commands of the README for a bare Debian 12: make demo, make test. They install missing packages.
-.PHONY: build demo test bench bench-volumes bench-meshes peers peers-volumes peers-tensors asan tsan package \
-  release-check tidy format-check configure packages lint-packages fuzz
+.PHONY: build demo test check nightly benchmarks bench bench-volumes bench-meshes peers peers-volumes peers-tensors \
+  asan asan-all tsan tsan-all package release-check tidy format-check fuzz configure packages lint-packages \
+  sanitizer-packages
 
 build: configure
 	cmake --build --preset release
 
-demo: configure
-	cmake --build --preset release --target surfcastd surfcast viewer
-	cmake/demo.sh build/bin demo
+# Installs and builds what a picture needs, and nothing for tests. A build folder that is there already is used as it is.
+demo:
+	@echo 'demo 1/4: packages of Debian'
+	@cmake/install_packages.sh build run
+	@echo 'demo 2/4: programs and viewer'
+	@[ -e build/build.ninja ] || cmake --preset demo >build-demo.log || { cat build-demo.log; exit 1; }
+	@rm -f build-demo.log
+	@NINJA_STATUS='[%p] ' cmake --build --preset demo
+	@cmake/demo.sh build/bin demo
 
+# Three at a time on two processors: some tests wait more than they compute.
+TEST_JOBS = $(shell expr $$(nproc) \* 3 / 2)
 test: build
-	ctest --preset release -j2
+	ctest --preset release -j$(TEST_JOBS)
+
+# CHANGED=1: builds, and runs the tests that can see what differs from BASE (the last commit), as many as take
+# CHECK_SECONDS, nearest first. Without: the check of a change, part by part.
+CHECK_SECONDS = 60
+check:
+ifdef CHANGED
+	@$(MAKE) --no-print-directory build
+	cmake/affected_tests.py build --seconds $(CHECK_SECONDS) $(if $(BASE),--base $(BASE))
+else
+	.ci/run
+endif
 
 # Measures time and error of every drawing method and writes the results into docs/laboratory.md. SCANS: additional
 # scans or models to measure. BENCH_FLAGS: further options, see `laboratory --help`.
@@ -46,26 +66,31 @@ peers-tensors: configure
 	cmake --build --preset release --target glyph_bench
 	/usr/bin/python3 bench/peers/glyphs.py build/bin/glyph_bench --docs docs $(PEERS_FLAGS) $(FIELDS)
 
-# Runs the fast tests without GL, the tests of damaged input and the fast numerics tests with the address and undefined
-# behaviour sanitizers. Builds only these tests, because sanitizers double the compile time. clang compiles them in
-# about two thirds of the time of GCC.
+# The tests that read bytes of strangers, with the address and undefined behaviour sanitizers; asan-all: all unit tests
+# and the numerics tests that are not slow. clang compiles them in about two thirds of the time of GCC.
 # Its runtime takes some thread-local blocks for those of glibc 2.19 and crashes in the search for leaks
 # (github.com/google/sanitizers/issues/1322). The preset therefore sets intercept_tls_get_addr=0.
-asan: packages
-	@cmake/install_packages.sh sanitize
-	cmake --preset asan-ubsan
-	cmake --build --preset asan-ubsan
-	ctest --preset asan-ubsan -j2 --label-exclude 'gl|slow|programs|web' --exclude-regex _NOT_BUILT
-	ctest --preset asan-ubsan -j2 --label-regex hostile
-	ctest --preset asan-ubsan -j2 --label-regex numerics --label-exclude slow
+# BASE=REVISION: only those that can see what differs from it.
+SEEN = $(if $(BASE),--base $(BASE))
+asan: sanitizer-packages
+	cmake/sanitize.sh asan-ubsan input_tests 'bytes|hostile' $(SEEN)
 
-# The tests of the modules that use several threads, under the thread sanitizer. The runtime of GCC 12 fails on kernels
-# that randomize more than 28 bits of addresses, so randomization is switched off where the system allows that.
-FIXED_ADDRESSES = $(shell setarch --addr-no-randomize true 2>/dev/null && echo setarch --addr-no-randomize)
+asan-all: sanitizer-packages
+	cmake/sanitize.sh asan-ubsan sanitized_tests '^unit|^gl-numerics|hostile'
+
+# The tests that are about threads, under the thread sanitizer; tsan-all: also those that use sockets.
 tsan: packages
-	cmake --preset tsan
-	$(FIXED_ADDRESSES) cmake --build --preset tsan
-	$(FIXED_ADDRESSES) ctest --preset tsan -j2 --label-regex threads --exclude-regex _NOT_BUILT
+	cmake/sanitize.sh tsan thread_tests threads $(SEEN)
+
+tsan-all: packages
+	cmake/sanitize.sh tsan concurrent_tests 'threads|sockets'
+
+sanitizer-packages: packages
+	@cmake/install_packages.sh sanitize
+
+# Everything: what .ci/run leaves out, and the whole suite 20 times under load. Takes a night.
+nightly:
+	cmake/nightly.sh
 
 # libFuzzer on everything that reads bytes of strangers, so many seconds for each target.
 FUZZ_SECONDS = 60
@@ -94,8 +119,14 @@ tidy: build lint-packages
 format-check: lint-packages
 	git ls-files '*.h' '*.cpp' | xargs clang-format --dry-run --Werror
 
+# Every benchmark and laboratory.
+benchmarks: configure
+	cmake --build --preset release --target bench/all
+
+# An editor finds the compile commands of all sources in compile_commands.json.
 configure: packages
 	cmake --preset release
+	@! command -v python3 >/dev/null || cmake/compile_commands.py build
 
 packages:
 	@cmake/install_packages.sh build window python run test

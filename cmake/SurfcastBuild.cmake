@@ -23,10 +23,14 @@ if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release)
 endif()
 
-# Paths below the checkout are relative to the build folder for the cache, so that all checkouts of a machine share it.
+# For the cache, paths below the checkout are relative to the build folder, so that all checkouts of a machine share it.
+# Not so with precompiled headers of clang, which hold absolute paths.
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM)
-  set(ccache_settings CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1)
+  set(ccache_settings)
+  if(NOT SURFCAST_PCH OR CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    list(APPEND ccache_settings CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1 CCACHE_PCH_EXTSUM=1)
+  endif()
   if(SURFCAST_PCH)
     # What ccache asks for before it caches compilations with precompiled headers.
     list(APPEND ccache_settings CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime)
@@ -86,6 +90,10 @@ function(surfcast_precompiled_headers name)
   target_link_libraries(${name} PRIVATE surfcast_warnings ${ARG_LIBS})
   target_compile_options(${name} PRIVATE ${ARG_OPTIONS})
   target_precompile_headers(${name} PRIVATE ${ARG_HEADERS})
+  if(CCACHE_PROGRAM AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+    set_target_properties(${name} PROPERTIES CXX_COMPILER_LAUNCHER
+      "${CMAKE_COMMAND};-E;env;${ccache_settings};${PROJECT_SOURCE_DIR}/cmake/precompile.sh;${CCACHE_PROGRAM}")
+  endif()
 endfunction()
 
 function(surfcast_use_precompiled_headers target name)
@@ -242,14 +250,16 @@ set(SURFCAST_COMPUTING_TEST_OPTIONS $<$<CONFIG:Debug>:-O0> $<$<CONFIG:Release>:-
 # One GoogleTest program of one module. Every case becomes a separate ctest case. WHOLE keeps the cases together, for
 # programs whose start takes longer than their cases (a GL context and its shaders). A label is one word with parts that
 # ctest can select (-L gl, -LE slow): first the requirements of a test, then its suite, as in gl-slow-numerics.
-# Tests of code that uses several threads are of the suite `threads`, which runs under the thread sanitizer.
-# Slow tests of damaged input are of the suite `hostile`, which also runs under the address sanitizer.
+# Suites of the sanitizers: `bytes` and `hostile` read bytes of strangers, the latter slowly, and run under the address
+# sanitizer; `threads` is about threads and runs under the thread sanitizer; `sockets` uses threads beside, and runs
+# under it in `make nightly`, as all unit tests do under the address sanitizer.
+# COMPUTES: optimized a little, as tests with the labels gl and slow are.
 function(surfcast_test name)
-  cmake_parse_arguments(ARG "WHOLE" "" "SOURCES;LIBS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "WHOLE;COMPUTES" "" "SOURCES;LIBS;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_link_libraries(${name} PRIVATE surfcast_warnings ${ARG_LIBS} GTest::gtest_main GTest::gmock)
-  if(ARG_LABELS MATCHES "gl|slow")
+  if(ARG_COMPUTES OR ARG_LABELS MATCHES "gl|slow")
     target_compile_options(${name} PRIVATE ${SURFCAST_COMPUTING_TEST_OPTIONS})
     surfcast_use_precompiled_headers(${name} surfcast_computing_test_headers)
   else()
@@ -263,12 +273,18 @@ function(surfcast_test name)
   if(ARG_LABELS MATCHES "^unit|^gl-numerics|hostile")
     add_dependencies(sanitized_tests ${name})
   endif()
+  if(ARG_LABELS MATCHES "bytes|hostile")
+    add_dependencies(input_tests ${name})
+  endif()
   if(ARG_LABELS MATCHES "threads")
+    add_dependencies(thread_tests ${name})
+  endif()
+  if(ARG_LABELS MATCHES "threads|sockets")
     add_dependencies(concurrent_tests ${name})
   endif()
-  # Under the address sanitizer a process takes a tenth of a second to start and to look for leaks, which for 2000 cases
-  # is longer than their work.
-  if(ARG_WHOLE OR SURFCAST_SANITIZE MATCHES "address")
+  # Under a sanitizer a process takes a tenth of a second to start and to look for leaks, which for 2000 cases is longer
+  # than their work.
+  if(ARG_WHOLE OR SURFCAST_SANITIZE)
     add_test(NAME ${name} COMMAND ${name})
     set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 600)
     if(SURFCAST_SANITIZE AND ARG_LABELS MATCHES "gl")

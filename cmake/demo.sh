@@ -8,8 +8,10 @@ scan=$(dirname "$0")/../tests/data/lion.drc
 ready=$folder/ready.txt
 mkdir -p "$folder"
 
+echo "demo 3/4: model of $(basename "$scan")"
 "$programs/surfcastd" build "$scan" --output "$folder/lion.surf"
 
+echo 'demo 4/4: picture'
 port=7600
 if (: >"/dev/tcp/127.0.0.1/$port") 2>/dev/null; then
   port=0 # the port is in use: take any free one

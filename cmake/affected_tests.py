@@ -1,0 +1,191 @@
+#!/usr/bin/env python3
+"""affected_tests.py BUILD [--base REVISION] [--seconds S | --programs LABELS]: the tests that can see a change.
+
+A change is what differs from REVISION (HEAD where nothing is committed yet, else the commit before it), files that git
+does not know included. The build says what each program is made of: the statements of build.ninja, and the headers that
+Ninja noted when it compiled. A test sees its own program, the programs that this one starts, and for scripts the files
+beside them.
+
+Without further options it builds what these tests need and runs them: nearest first, and as many as the costs that
+ctest has recorded allow within --seconds. The rest is named. With --programs it prints the affected test programs that
+have one of these labels, separated by |, for a build with sanitizers.
+"""
+
+import argparse
+import collections
+import json
+import os
+import pathlib
+import re
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+# A change of these can change every program.
+EVERYTHING = re.compile(r"^(CMakeLists\.txt|CMakePresets\.json|cmake/(?!.*\.(sh|py)$))")
+
+
+def output_of(*command, cwd=ROOT):
+    return subprocess.run(command, cwd=cwd, capture_output=True, text=True, check=True).stdout
+
+
+def changed_files(base):
+    unknown = output_of("git", "ls-files", "--others", "--exclude-standard").splitlines()
+    if base is None:
+        base = "HEAD" if unknown or output_of("git", "diff", "--name-only", "HEAD") else "HEAD~1"
+    return base, output_of("git", "diff", "--name-only", base).splitlines() + unknown
+
+
+class BuildGraph:
+    """Which files each file of a build folder is made of."""
+
+    def __init__(self, build):
+        self.build = build
+        self.inputs = collections.defaultdict(set)
+        self.read_statements()
+        self.read_headers()
+
+    def name(self, path):
+        """Relative to the root for files of the checkout, links of include folders resolved."""
+        return os.path.relpath(os.path.realpath(self.build / path), ROOT)
+
+    def read_statements(self):
+        text = (self.build / "build.ninja").read_text().replace("$\n", "").replace("${cmake_ninja_workdir}", "")
+        for line in text.splitlines():
+            if not line.startswith("build "):
+                continue
+            outputs, _, rest = line[len("build "):].partition(": ")
+            rule, *inputs = re.split(r"(?<!\$) +", rest.strip())
+            if rule.startswith("CXX_COMPILER") and "||" in inputs:
+                # Only says what must exist before: generated headers, which Ninja notes when they are read.
+                inputs = inputs[: inputs.index("||")]
+            inputs = {self.name(path.replace("$ ", " ").replace("$:", ":")) for path in inputs if path not in ("|", "||")}
+            for output in re.split(r"(?<!\$) +", outputs.strip()):
+                if output != "|":
+                    self.inputs[self.name(output.replace("$ ", " ").replace("$:", ":"))] |= inputs
+
+    def read_headers(self):
+        current = None
+        for line in output_of("ninja", "-t", "deps", cwd=self.build).splitlines():
+            if line.startswith("    "):
+                self.inputs[current].add(self.name(line.strip()))
+            elif ": #deps" in line:
+                current = self.name(line.split(": #deps")[0])
+
+    def distances(self, files):
+        """How many steps each file that is made of one of `files` is away from it."""
+        users = collections.defaultdict(list)
+        for output, inputs in self.inputs.items():
+            for path in inputs:
+                users[path].append(output)
+        distance = dict.fromkeys(files, 0)
+        queue = collections.deque(files)
+        while queue:
+            path = queue.popleft()
+            for user in users[path]:
+                if user not in distance:
+                    distance[user] = distance[path] + 1
+                    queue.append(user)
+        return distance
+
+
+def script_folder(path):
+    """Scripts that run tests see the files beside them; those in a folder of tests also those around it."""
+    folder = os.path.dirname(path)
+    return os.path.dirname(folder) if os.path.basename(folder) == "tests" else folder
+
+
+class Test:
+    def __init__(self, graph, entry):
+        self.name = entry["name"]
+        properties = {p["name"]: p["value"] for p in entry.get("properties", [])}
+        self.labels = "|".join(properties.get("LABELS", []))
+        words = entry.get("command", []) + [word.partition("=")[2] for word in properties.get("ENVIRONMENT", [])]
+        files = [graph.name(word) for word in words if os.path.isabs(word) and os.path.isfile(word)]
+        own = [path for path in files if not path.startswith("..")]
+        self.program = own[0] if own else ""
+        self.seen = set(own)
+        self.folders = {script_folder(path) + "/" for path in own if not path.startswith(graph.name("."))}
+
+    def distance(self, distances, changed):
+        found = [distances[path] for path in self.seen if path in distances]
+        found += [1 for path in changed for folder in self.folders if path.startswith(folder)]
+        return min(found, default=None)
+
+
+def read_tests(graph):
+    listed = json.loads(output_of("ctest", "--test-dir", str(graph.build), "--show-only=json-v1"))
+    return [Test(graph, entry) for entry in listed["tests"]]
+
+
+def recorded_costs(build):
+    """Seconds of each test, as ctest measured them; none for a test that has not run."""
+    path = build / "Testing/Temporary/CTestCostData.txt"
+    costs = {}
+    for line in path.read_text().splitlines() if path.exists() else []:
+        words = line.split()
+        if len(words) == 3:
+            costs[words[0]] = float(words[2])
+    return costs
+
+
+def affected(build, base):
+    """(test, distance), nearest first, and whether the change can reach everything."""
+    base, changed = changed_files(base)
+    graph = BuildGraph(build)
+    tests = read_tests(graph)
+    everything = [path for path in changed if EVERYTHING.match(path)]
+    print(f"{len(changed)} files differ from {base}" + (f", {everything[0]} can change everything" if everything else ""),
+          file=sys.stderr)
+    distances = graph.distances(changed)
+    near_folders = {os.path.basename(os.path.dirname(path)) for path in changed}
+    found = []
+    for test in tests:
+        distance = test.distance(distances, changed)
+        if distance is None and not everything:
+            continue
+        own_module = any(f"/tests/{folder}/" in f"/{path}" for folder in near_folders
+                         for path in graph.inputs.get(test.program, ()))
+        found.append((not own_module, distance or 0, test))
+    return [(test, distance) for _, distance, test in sorted(found, key=lambda row: row[:2])], tests
+
+
+def run(build, base, seconds):
+    chosen, left, spent = [], [], 0.0
+    costs = recorded_costs(build)
+    rows, tests = affected(build, base)
+    for test, _ in rows:
+        cost = costs.get(test.name, 1.0)
+        fits = spent + cost <= seconds * os.cpu_count()
+        (chosen if fits else left).append(test)
+        spent += cost if fits else 0
+    print(f"{len(rows)} of {len(tests)} tests can see the change, {len(chosen)} are run", file=sys.stderr)
+    if left:
+        print(f"left for `make test`: {', '.join(sorted({os.path.basename(test.program) for test in left}))}", file=sys.stderr)
+    if not chosen:
+        return 0
+    names = build / "affected_tests.txt"
+    names.write_text("".join(f"^{re.escape(test.name)}$\n" for test in chosen))
+    return subprocess.run(["ctest", "--preset", "release", f"-j{os.cpu_count()}", "--tests-from-file", str(names)],
+                          cwd=ROOT, check=False).returncode
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("build", type=pathlib.Path)
+    parser.add_argument("--base")
+    parser.add_argument("--seconds", type=float, default=60)
+    parser.add_argument("--programs", metavar="LABELS")
+    arguments = parser.parse_args()
+    build = arguments.build.resolve()
+    if arguments.programs is None:
+        return run(build, arguments.base, arguments.seconds)
+    wanted = set(arguments.programs.split("|"))
+    rows, _ = affected(build, arguments.base)
+    print("\n".join(sorted({os.path.basename(test.program) for test, _ in rows
+                            if wanted & set(re.split("[-|]", test.labels))})))
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

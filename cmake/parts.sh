@@ -1,0 +1,40 @@
+# Sourced by scripts that run one check after another: `part NAME COMMAND...` runs one of them. At the end, or after a
+# part that has failed, the minutes of each part are printed, and the closing lines of the tests.
+minutes=()
+current=
+closing=
+
+in_minutes() { awk -v seconds="$1" -v name="$2" 'BEGIN { printf "%6.1f  %s", seconds / 60, name }'; }
+
+part() {
+  local begin=$SECONDS
+  current=$1
+  shift
+  printf '\n==== %s: %s\n' "$current" "$*"
+  "$@"
+  minutes+=("$(in_minutes $((SECONDS - begin)) "$current")")
+  current=
+}
+
+# The tests as the README runs them. Their closing lines are kept for the end.
+tests() {
+  local log code=0
+  log=$(mktemp)
+  make test 2>&1 | tee "$log" || code=$?
+  closing=$(sed -n '/tests passed, .* tests failed out of/,$p' "$log")
+  rm -f "$log"
+  return "$code"
+}
+
+report() {
+  local code=$?
+  printf '\n==== minutes\n'
+  [ ${#minutes[@]} = 0 ] || printf '%s\n' "${minutes[@]}"
+  printf '%s\n' "$(in_minutes "$SECONDS" 'in all')"
+  [ -z "$closing" ] || printf '\n%s\n' "$closing"
+  if [ -n "$current" ] && { [ "$current" != tests ] || [ -z "$closing" ]; }; then
+    printf '\n%s failed; parts: %d passed, 1 failed\n' "$current" "${#minutes[@]}"
+  fi
+  exit "$code"
+}
+trap report EXIT

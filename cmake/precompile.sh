@@ -1,0 +1,23 @@
+#!/bin/sh
+# precompile.sh COMMAND...: runs a compiler. For a precompiled header of GCC it writes a checksum beside it, of the command
+# and of all headers in it, which ccache takes in place of the file (CCACHE_PCH_EXTSUM): GCC's files are never the same
+# twice, and no two checkouts would share what is compiled with them.
+set -eu
+output=
+last=
+for word in "$@"; do
+  [ "$last" != -o ] || output=$word
+  last=$word
+done
+case $output in
+  *.gch) ;;
+  *) exec "$@" ;;
+esac
+
+rm -f "$output" "$output.sum"
+"$@"
+{
+  echo "$*" | sed "s#$CCACHE_BASEDIR/##g"
+  # The list of headers follows the colon, continued over lines.
+  sed 's/^[^ ]*:/ /; s/\\$//' "$output.d" | xargs cat
+} | sha256sum >"$output.sum"

@@ -1,0 +1,31 @@
+#!/usr/bin/env bash
+# sanitize.sh PRESET TARGET LABELS [--base REVISION]: builds TARGET with the sanitizers of PRESET and runs the tests whose
+# labels match LABELS. With --base, only the programs that can see what differs from REVISION; the build of the preset
+# `release` knows which these are.
+set -euo pipefail
+cd "$(dirname "$0")/.."
+preset=$1
+target=$2
+labels=$3
+shift 3
+
+# The thread sanitizer of GCC 12 fails on kernels that randomize more than 28 bits of addresses, so randomization is
+# switched off where the system allows that.
+fixed=()
+if [ "$preset" = tsan ] && setarch --addr-no-randomize true 2>/dev/null; then
+  fixed=(setarch --addr-no-randomize)
+fi
+
+cmake --preset "$preset" >/dev/null
+targets=("$target")
+selection=()
+if [ $# -gt 0 ]; then
+  mapfile -t targets < <(cmake/affected_tests.py build "$@" --programs "$labels")
+  if [ ${#targets[@]} = 0 ]; then
+    echo "no test with these labels sees the change"
+    exit 0
+  fi
+  selection=(--tests-regex "^($(IFS='|' && echo "${targets[*]}"))$")
+fi
+"${fixed[@]}" cmake --build --preset "$preset" --target "${targets[@]}"
+"${fixed[@]}" ctest --preset "$preset" "-j$(nproc)" --label-regex "$labels" --exclude-regex _NOT_BUILT "${selection[@]}"
