@@ -214,7 +214,7 @@ class MeshPass {
   geometry::Box bounds_;
   MeshEdges edges_;
   std::vector<MaterialWork> work_;
-  std::map<size_t, std::string> missing_;  ///< images, and why
+  std::map<size_t, Error> missing_;  ///< images, and why
   HeldImage color_;
   HeldImage opacity_;
   MeshReport report_;
@@ -228,7 +228,7 @@ const Texture* MeshPass::decoded(size_t image, HeldImage& held) {
   const ImageSource& source = mesh_.images[image];
   Result<Texture> texture = read_texture(source, limit_);
   if (!texture) {
-    missing_.emplace(image, source.name + " " + texture.error().message);
+    missing_.emplace(image, Error{texture.error().kind, source.name + " " + texture.error().message});
     return nullptr;
   }
   held = {image, std::move(*texture)};
@@ -253,7 +253,7 @@ MaterialImages MeshPass::images_of(const Material& material) {
   const uint64_t color_bytes = images.color != nullptr ? texture_bytes(images.color->size()) : 0;
   const Status fits = limit_.check(color_bytes + texture_bytes(images.opacity->size()) + texture_bytes(*images.size()));
   if (fits) return images;
-  missing_.emplace(number, mesh_.images[number].name + " " + fits.error().message);
+  missing_.emplace(number, Error{fits.error().kind, mesh_.images[number].name + " " + fits.error().message});
   images.opacity = nullptr;
   return images;
 }
@@ -279,8 +279,10 @@ Status MeshPass::find_work() {
   }
   report_.images = images.size();
   report_.images_missing = missing_.size();
-  if (!images.empty() && report_.images_missing == images.size()) {
-    return fail(ErrorKind::kInvalidInput, "all its images are missing: " + missing_.begin()->second);
+  // More memory would show images that are there: a picture without any of them is not what was asked for.
+  if (images.empty() || missing_.size() < images.size()) return {};
+  for (const auto& [image, why] : missing_) {
+    if (why.kind == ErrorKind::kLimit) return fail(why);
   }
   return {};
 }
@@ -385,7 +387,8 @@ Result<MeshReport> MeshPass::run() {
   report_.triangles = mesh_.triangles();
   report_.notes = mesh_.notes;
   if (Status status = find_work(); !status) return fail(std::move(status.error()));
-  for (const auto& [image, why] : missing_) report_.notes.push_back(why + "; its material's colour takes its place");
+  for (const auto& [image, why] : missing_)
+    report_.notes.push_back(why.message + "; its material's colour takes its place");
   plan_work();
   limit_surfels();
   bool culled = true;

@@ -55,8 +55,8 @@ using SurfelSink = std::function<Status(std::span<const MeshSurfel>)>;
 
 /// Makes surfels of a mesh: one at the centre of each texel of a triangle, with the texel's colour (Zwicker et al.
 /// 2002, section 6.4: splats of texels are the texture, filtered). Textures are decoded one after another. The surfels
-/// do not depend on the number of threads. Fails if all images are missing, and where `limit` leaves no memory for a
-/// texture.
+/// do not depend on the number of threads. Fails where `limit` leaves no memory for any
+/// of the textures.
 Result<MeshReport> sample_mesh(const Mesh& mesh, const SampleOptions& options, const scan::DecodingLimit& limit,
                                const SurfelSink& sink);
 

@@ -28,6 +28,21 @@ Result<Json> parse_table(Bytes text) {
   return json;
 }
 
+// ---- Draco's part of a tile
+
+const Json& draco_extension(const Json& table) {
+  return member(member(table, "extensions"), "3DTILES_draco_point_compression");
+}
+
+/// The number of a property of a table within the Draco data; nothing if it is in the table itself.
+std::optional<uint64_t> draco_number(const Json& table, const std::string& name) {
+  return integer_of(member(draco_extension(table), "properties"), name.c_str());
+}
+
+bool is_draco(const PntsTile& tile) {
+  return draco_extension(tile.features).is_object();
+}
+
 // ---- columns of values in the feature table and the batch table
 
 std::optional<ScalarType> component_type(const std::string& name) {
@@ -62,24 +77,30 @@ std::vector<BatchProperty> batch_properties(const PntsTile& tile) {
   std::vector<BatchProperty> properties;
   for (const auto& [name, value] : tile.batches.items()) {
     const auto type = component_type(text_of(value, "componentType"));
+    if (draco_number(tile.batches, name)) continue;
     if (type && text_of(value, "type") == "SCALAR") properties.push_back({printable(name), *type});
   }
   return properties;
 }
 
-/// The batch of every point; empty if points have none.
-Result<std::vector<uint32_t>> batch_ids(const PntsTile& tile) {
+/// The column of BATCH_ID in the feature table; nothing if points have none.
+Result<std::optional<Column>> batch_id_column(const PntsTile& tile) {
   const Json& property = member(tile.features, "BATCH_ID");
-  if (!property.is_object()) return std::vector<uint32_t>();
+  if (!property.is_object()) return std::nullopt;
   const std::string stated = text_of(property, "componentType");
   const auto type = component_type(stated.empty() ? "UNSIGNED_SHORT" : stated);
   if (!type || is_floating(*type)) return invalid_input("the type of BATCH_ID is not supported");
   const auto bytes = values_of(property, tile.feature_bytes, tile.points, size_of(*type));
   if (!bytes) return fail(bytes.error());
+  return Column{*type, bytes->data(), size_of(*type), false};
+}
+
+/// The batch of every point.
+Result<std::vector<uint32_t>> batch_ids(const PntsTile& tile, const Column& column) {
   const uint64_t batches = integer_of(tile.features, "BATCH_LENGTH").value_or(0);
   std::vector<uint32_t> ids(tile.points);
   bool inside = true;
-  for_each_value({*type, bytes->data(), size_of(*type), false}, tile.points, [&](size_t i, auto value) {
+  for_each_value(column, tile.points, [&](size_t i, auto value) {
     const auto id = static_cast<double>(value);  // exact: integers of at most 32 bits
     inside = inside && id >= 0.0 && id < static_cast<double>(batches);
     if (inside) ids[i] = static_cast<uint32_t>(id);
@@ -136,9 +157,11 @@ Result<Triples> positions_of(const PntsTile& tile) {
 
 using Color = std::array<uint8_t, 3>;
 
-bool has_color(const Json& features) {
+/// In the tables of the tile, not in its Draco data.
+bool has_color(const PntsTile& tile) {
+  if (draco_number(tile.features, "RGB") || draco_number(tile.features, "RGBA")) return false;
   for (const char* name : {"RGBA", "RGB", "RGB565", "CONSTANT_RGBA"}) {
-    if (!member(features, name).is_null()) return true;
+    if (!member(tile.features, name).is_null()) return true;
   }
   return false;
 }
@@ -175,8 +198,10 @@ Result<std::vector<Color>> colors_of(const PntsTile& tile) {
   return colors;
 }
 
-bool has_normal(const Json& features) {
-  return member(features, "NORMAL").is_object() || member(features, "NORMAL_OCT16P").is_object();
+/// In the tables of the tile, not in its Draco data.
+bool has_normal(const PntsTile& tile) {
+  if (draco_number(tile.features, "NORMAL")) return false;
+  return member(tile.features, "NORMAL").is_object() || member(tile.features, "NORMAL_OCT16P").is_object();
 }
 
 Result<Triples> normals_of(const PntsTile& tile) {
@@ -214,16 +239,68 @@ void place(const PntsTile& tile, const glm::dmat4& transform, Triples& positions
   move_points(transform, positions);
 }
 
+/// Beside positions, the columns that are in the tables of the tile.
+std::vector<ColumnInfo> columns_of_tables(const PntsTile& tile) {
+  std::vector<ColumnInfo> columns;
+  for (const char* channel : {"red", "green", "blue"}) {
+    if (has_color(tile)) columns.push_back({channel, ScalarType::kUint8, false});
+  }
+  for (const char* axis : {"nx", "ny", "nz"}) {
+    if (has_normal(tile)) columns.push_back({axis, ScalarType::kFloat32, false});
+  }
+  for (const BatchProperty& property : batch_properties(tile)) columns.push_back({property.name, property.type, false});
+  return columns;
+}
+
+Status add_colors(const PntsTile& tile, PointTable& table) {
+  const Result<std::vector<Color>> colors = colors_of(tile);
+  if (!colors) return fail(colors.error());
+  for (size_t channel = 0; channel < 3; ++channel) {
+    std::vector<uint8_t> values(colors->size());
+    for (size_t i = 0; i < values.size(); ++i) values[i] = (*colors)[i][channel];
+    add_column(table, std::move(values));
+  }
+  return {};
+}
+
+Status add_normals(const PntsTile& tile, const glm::dmat4& transform, PointTable& table) {
+  Result<Triples> normals = normals_of(tile);
+  if (!normals) return fail(std::move(normals.error()));
+  turn_normals(transform, *normals);
+  add_triples<float>(*normals, table);
+  return {};
+}
+
+/// `batch`: the batch of every point; nothing if values are stated for points.
+Status add_batch_properties(const PntsTile& tile, const std::optional<Column>& batch, PointTable& table) {
+  std::vector<uint32_t> ids;
+  if (batch) {
+    Result<std::vector<uint32_t>> read = batch_ids(tile, *batch);
+    if (!read) return fail(std::move(read.error()));
+    ids = std::move(*read);
+  }
+  for (const BatchProperty& property : batch_properties(tile)) {
+    if (Status status = add_batch_property(tile, property, ids, table); !status) return status;
+  }
+  return {};
+}
+
+/// The columns of columns_of_tables, in that order.
+Status add_tables(const PntsTile& tile, const glm::dmat4& transform, const std::optional<Column>& batch,
+                  PointTable& table) {
+  if (has_color(tile)) {
+    if (Status status = add_colors(tile, table); !status) return status;
+  }
+  if (has_normal(tile)) {
+    if (Status status = add_normals(tile, transform, table); !status) return status;
+  }
+  return add_batch_properties(tile, batch, table);
+}
+
 std::vector<ColumnInfo> own_columns(const PntsTile& tile) {
   std::vector<ColumnInfo> columns;
   for (const char* axis : {"x", "y", "z"}) columns.push_back({axis, ScalarType::kFloat64, false});
-  for (const char* channel : {"red", "green", "blue"}) {
-    if (has_color(tile.features)) columns.push_back({channel, ScalarType::kUint8, false});
-  }
-  for (const char* axis : {"nx", "ny", "nz"}) {
-    if (has_normal(tile.features)) columns.push_back({axis, ScalarType::kFloat32, false});
-  }
-  for (const BatchProperty& property : batch_properties(tile)) columns.push_back({property.name, property.type, false});
+  for (ColumnInfo& column : columns_of_tables(tile)) columns.push_back(std::move(column));
   return columns;
 }
 
@@ -234,38 +311,13 @@ Result<PointTable> own_table(const PntsTile& tile, const glm::dmat4& transform) 
   if (!positions) return fail(std::move(positions.error()));
   place(tile, transform, *positions);
   add_triples<double>(*positions, table);
-  if (has_color(tile.features)) {
-    const Result<std::vector<Color>> colors = colors_of(tile);
-    if (!colors) return fail(colors.error());
-    for (size_t channel = 0; channel < 3; ++channel) {
-      std::vector<uint8_t> values(colors->size());
-      for (size_t i = 0; i < values.size(); ++i) values[i] = (*colors)[i][channel];
-      add_column(table, std::move(values));
-    }
-  }
-  if (has_normal(tile.features)) {
-    Result<Triples> normals = normals_of(tile);
-    if (!normals) return fail(std::move(normals.error()));
-    turn_normals(transform, *normals);
-    add_triples<float>(*normals, table);
-  }
-  const Result<std::vector<uint32_t>> ids = batch_ids(tile);
-  if (!ids) return fail(ids.error());
-  for (const BatchProperty& property : batch_properties(tile)) {
-    if (Status status = add_batch_property(tile, property, *ids, table); !status) return fail(status.error());
-  }
+  const Result<std::optional<Column>> batch = batch_id_column(tile);
+  if (!batch) return fail(batch.error());
+  if (Status status = add_tables(tile, transform, *batch, table); !status) return fail(std::move(status.error()));
   return table;
 }
 
-// ---- Draco
-
-const Json& draco_extension(const Json& table) {
-  return member(member(table, "extensions"), "3DTILES_draco_point_compression");
-}
-
-bool is_draco(const PntsTile& tile) {
-  return draco_extension(tile.features).is_object();
-}
+// ---- points of Draco data
 
 /// The names that the batch table gives to attributes.
 std::string draco_name(const PntsTile& tile, const std::string& name) {
@@ -290,13 +342,14 @@ Result<std::unique_ptr<RowSource>> draco_of(const PntsTile& tile, const Decoding
   return draco_rows(*bytes, limit);
 }
 
-/// Columns of positions become doubles.
+/// Columns of positions become doubles. Those behind them are in the tables of the tile.
 std::vector<ColumnInfo> draco_columns(const PntsTile& tile, const RowSource& rows) {
   std::vector<ColumnInfo> columns = rows.columns();
   for (ColumnInfo& column : columns) {
     if (column.name == "x" || column.name == "y" || column.name == "z") column.type = ScalarType::kFloat64;
     column.name = draco_name(tile, column.name);
   }
+  for (ColumnInfo& column : columns_of_tables(tile)) columns.push_back(std::move(column));
   return columns;
 }
 
@@ -330,7 +383,20 @@ void replace(const std::vector<ColumnInfo>& columns, const std::array<const char
   }
 }
 
-/// In the order of the decoder.
+/// The batch of every point, in the Draco data or in the feature table.
+Result<std::optional<Column>> draco_batch_column(const PntsTile& tile, const std::vector<ColumnInfo>& columns,
+                                                 const PointTable& table) {
+  if (batch_properties(tile).empty()) return std::nullopt;
+  const auto number = draco_number(tile.features, "BATCH_ID");
+  if (!number) return batch_id_column(tile);
+  const size_t column = index_of(columns, "attribute_" + std::to_string(*number));
+  if (column == columns.size() || is_floating(columns[column].type)) {
+    return invalid_input("the Draco data have no BATCH_ID");
+  }
+  return table.columns[column];
+}
+
+/// In the order of the decoder, which is that of the tables: encoders keep the order of points where a tile has both.
 Result<PointTable> draco_table(const PntsTile& tile, const glm::dmat4& transform, const DecodingLimit& limit) {
   constexpr std::array<const char*, 3> kPosition{"x", "y", "z"};
   constexpr std::array<const char*, 3> kNormal{"nx", "ny", "nz"};
@@ -344,10 +410,13 @@ Result<PointTable> draco_table(const PntsTile& tile, const glm::dmat4& transform
   if (positions.empty()) return invalid_input("the pnts tile has no positions");
   place(tile, transform, positions);
   replace<double>(columns, kPosition, positions, *table);
-  Triples normals = triples_of(columns, *table, kNormal);
-  if (normals.empty()) return table;
-  turn_normals(transform, normals);
-  replace<float>(columns, kNormal, normals, *table);
+  if (Triples normals = triples_of(columns, *table, kNormal); !normals.empty()) {
+    turn_normals(transform, normals);
+    replace<float>(columns, kNormal, normals, *table);
+  }
+  const Result<std::optional<Column>> batch = draco_batch_column(tile, columns, *table);
+  if (!batch) return fail(batch.error());
+  if (Status status = add_tables(tile, transform, *batch, *table); !status) return fail(std::move(status.error()));
   return table;
 }
 

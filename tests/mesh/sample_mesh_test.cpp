@@ -157,7 +157,7 @@ TEST(SampleMesh, ASolidHasAnOutsideWhateverTheDirectionOfItsTriangles) {
   EXPECT_TRUE(sample(folder.write("b.obj", corners + "f 1 3 2\nf 1 2 4\n"), {0.05}).report.two_sided);
 }
 
-TEST(SampleMesh, AMissingImageIsANoteUnlessAllAre) {
+TEST(SampleMesh, AMissingImageIsANote) {
   const MeshFolder folder;
   folder.write("t.tga", targa(4, 4, number));
   folder.write("m.mtl", "newmtl a\nmap_Kd t.tga\nnewmtl b\nKd 1 0 0\nmap_Kd none.tga\n");
@@ -168,10 +168,41 @@ TEST(SampleMesh, AMissingImageIsANoteUnlessAllAre) {
   EXPECT_EQ(sampled.report.images_missing, 1U);
   ASSERT_EQ(sampled.report.notes.size(), 1U);
   EXPECT_NE(sampled.report.notes[0].find("none.tga"), std::string::npos);
-  const Result<Mesh> without = read(folder.write("b.obj", vertices + "usemtl b\nf 1/1 2/2 3/3\n"));
-  ASSERT_TRUE(without);
-  const auto ignore = [](std::span<const MeshSurfel>) { return Status(); };
-  EXPECT_FALSE(sample_mesh(*without, {}, {}, ignore));
+}
+
+TEST(SampleMesh, AMeshWithoutAnyOfItsImagesHasTheColoursOfItsMaterials) {
+  const MeshFolder folder;
+  folder.write("m.mtl", "newmtl b\nKd 1 0 0\nmap_Kd none.tga\n");
+  const Sampled sampled = sample(folder.write(
+      "b.obj", "mtllib m.mtl\nv 0 0 0\nv 4 0 0\nv 4 4 0\nvt 0 0\nvt 1 0\nvt 1 1\nusemtl b\nf 1/1 2/2 3/3\n"));
+  EXPECT_EQ(sampled.report.images_missing, 1U);
+  ASSERT_EQ(sampled.report.notes.size(), 1U);
+  EXPECT_NE(sampled.report.notes[0].find("none.tga"), std::string::npos);
+  ASSERT_FALSE(sampled.surfels.empty());
+}
+
+TEST(SampleMesh, ATexturedPlyWithoutItsImageIsDrawnWithoutIt) {
+  const MeshFolder folder;
+  const Sampled sampled = sample(folder.write("a.ply", R"(ply
+format ascii 1.0
+comment TextureFile none.png
+element vertex 3
+property float x
+property float y
+property float z
+element face 1
+property list uchar int vertex_indices
+property list uchar float texcoord
+end_header
+0 0 0
+4 0 0
+4 4 0
+3 0 1 2 6 0 0 1 0 1 1
+)"));
+  EXPECT_EQ(sampled.report.images_missing, 1U);
+  ASSERT_EQ(sampled.report.notes.size(), 1U);
+  EXPECT_NE(sampled.report.notes[0].find("none.png"), std::string::npos);
+  EXPECT_FALSE(sampled.surfels.empty());
 }
 
 TEST(SampleMesh, ATextureBeyondTheMemoryIsMissing) {

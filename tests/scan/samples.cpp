@@ -98,6 +98,25 @@ std::string draco_cloud(bool kd_tree) {
   return {buffer.data(), buffer.size()};
 }
 
+std::string draco_batches(uint32_t points) {
+  draco::PointCloudBuilder builder;
+  builder.Start(points);
+  const int position = builder.AddAttribute(draco::GeometryAttribute::POSITION, 3, draco::DT_FLOAT32);
+  const int batch = builder.AddAttribute(draco::GeometryAttribute::GENERIC, 1, draco::DT_UINT16);
+  for (uint32_t i = 0; i < points; ++i) {
+    const float xyz[3] = {static_cast<float>(i), 0, 0};
+    const auto id = static_cast<uint16_t>(1 - i % 2);
+    builder.SetAttributeValueForPoint(position, draco::PointIndex(i), xyz);
+    builder.SetAttributeValueForPoint(batch, draco::PointIndex(i), &id);
+  }
+  const std::unique_ptr<draco::PointCloud> cloud = builder.Finalize(false);
+  draco::Encoder encoder;
+  encoder.SetEncodingMethod(draco::POINT_CLOUD_SEQUENTIAL_ENCODING);
+  draco::EncoderBuffer buffer;
+  if (!encoder.EncodePointCloudToBuffer(*cloud, &buffer).ok()) return {};
+  return {buffer.data(), buffer.size()};
+}
+
 GltfFile draco_points() {
   draco::PointCloudBuilder builder;
   builder.Start(2);

@@ -15,6 +15,8 @@ std::string lzf_block(const std::string& data);
 
 /// A Draco point cloud of a few hundred points with normals, colours and a generic attribute.
 std::string draco_cloud(bool kd_tree);
+/// Points (i, 0, 0) in their order, and as attribute 1 the number 1 - i % 2 of their batch.
+std::string draco_batches(uint32_t points);
 
 /// Two points with colours and a number, compressed.
 GltfFile draco_points();

@@ -187,6 +187,42 @@ TEST_F(GltfTilesTest, TilesOfBothKindsHaveTheColumnsOfAll) {
   EXPECT_THAT(scalar_values<uint8_t>(*points, "classification"), ElementsAre(6, 0, 0));
 }
 
+/// A tile of three points whose Draco data hold positions and batches, and nothing else.
+std::string partly_draco(Json properties) {
+  const std::string cloud = testing::draco_batches(3);
+  const std::string beside = {'\x0A', '\x14', '\x1E', '\x28', '\x32', '\x3C', '\x46', '\x50', '\x5A', '\0', '\1', '\1'};
+  const Json packed = {{"byteOffset", 0}, {"byteLength", cloud.size()}, {"properties", std::move(properties)}};
+  const Json features = {{"POINTS_LENGTH", 3},
+                         {"BATCH_LENGTH", 2},
+                         {"POSITION", {{"byteOffset", 0}}},
+                         {"RGB", {{"byteOffset", cloud.size()}}},
+                         {"BATCH_ID", {{"byteOffset", cloud.size() + 9}, {"componentType", "UNSIGNED_BYTE"}}},
+                         {"extensions", {{"3DTILES_draco_point_compression", packed}}}};
+  return testing::pnts(features.dump(), cloud + beside,
+                       R"({"height": {"byteOffset": 0, "componentType": "UNSIGNED_SHORT", "type": "SCALAR"}})",
+                       std::string("\7\0\x9\0", 4));
+}
+
+TEST_F(GltfTilesTest, WhatIsBesideTheDracoDataOfATileIsRead) {
+  write("tileset.json", tileset_of({"a.pnts"}));
+  write("a.pnts", partly_draco({{"POSITION", 0}, {"BATCH_ID", 1}}));
+  const Result<testing::WholeScan> points = read();
+  ASSERT_TRUE(points) << points.error().message;
+  EXPECT_THAT(points->positions, ElementsAre(glm::dvec3(0), glm::dvec3(1, 0, 0), glm::dvec3(2, 0, 0)));
+  ASSERT_TRUE(points->colors);
+  EXPECT_THAT(points->colors->values,
+              ElementsAre(glm::u16vec3(10, 20, 30), glm::u16vec3(40, 50, 60), glm::u16vec3(70, 80, 90)));
+  EXPECT_THAT(scalar_values<uint16_t>(*points, "height"), ElementsAre(9, 7, 9));
+}
+
+TEST_F(GltfTilesTest, BatchesBesideTheDracoDataAreThoseOfTheFeatureTable) {
+  write("tileset.json", tileset_of({"a.pnts"}));
+  write("a.pnts", partly_draco({{"POSITION", 0}}));
+  const Result<testing::WholeScan> points = read();
+  ASSERT_TRUE(points) << points.error().message;
+  EXPECT_THAT(scalar_values<uint16_t>(*points, "height"), ElementsAre(7, 9, 9));
+}
+
 TEST_F(GltfTilesTest, IndicesAndInstancesMakeRows) {
   GltfFile file = GltfFile().positions({1, 0, 0, 2, 0, 0, 3, 0, 0});
   file.add<uint8_t>("unused", 5121, "SCALAR", 2, {2, 0});
