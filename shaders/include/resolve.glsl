@@ -78,9 +78,10 @@ void composite(inout Light light, PixelSums sums, Rows surface, float one, vec2 
   light.green += seen * green;
   light.blue += seen * blue;
 #ifdef SURFCAST_LAYERS
-  // Fringes that belong to no surface count as the farthest one.
-  Rows farthest = mix(Rows(0.0), Rows(kFarthestLayer), less(Rows(0.0), seen));
-  keep_layer(light.layer++, pixel, mix(farthest, inverse_depth, less(Rows(0.0), surface)), seen * red, seen * green,
-             seen * blue, light.transmittance);
+  // Fringes that belong to no surface count as the farthest one. A pixel that is finished, while others of its lane are
+  // not, shows nothing of this layer: its surface is the one that hides everything (kHidesAll), and none to keep.
+  Rows kept = mix(Rows(kFarthestLayer), inverse_depth, less(Rows(0.0), surface));
+  keep_layer(light.layer++, pixel, mix(Rows(0.0), kept, less(Rows(0.0), seen)), seen * red, seen * green, seen * blue,
+             light.transmittance);
 #endif
 }
