@@ -16,10 +16,11 @@ demo:
 	@NINJA_STATUS='[%p] ' cmake --build --preset demo
 	@cmake/demo.sh build/bin demo
 
+# ALL=1: also the cases that otherwise run in `make nightly` alone.
 # Three at a time on two processors: some tests wait more than they compute.
 TEST_JOBS = $(shell expr $$(nproc) \* 3 / 2)
 test: build
-	ctest --preset release -j$(TEST_JOBS)
+	ctest --preset release -j$(TEST_JOBS) $(if $(ALL),,--label-exclude nightly)
 
 # CHANGED=1: builds, and runs the tests that can see what differs from BASE (the last commit), as many as take
 # CHECK_SECONDS, nearest first. Without: the check of a change, part by part.

@@ -254,8 +254,10 @@ set(SURFCAST_COMPUTING_TEST_OPTIONS $<$<CONFIG:Debug>:-O0> $<$<CONFIG:Release>:-
 # sanitizer; `threads` is about threads and runs under the thread sanitizer; `sockets` uses threads beside, and runs
 # under it in `make nightly`, as all unit tests do under the address sanitizer.
 # COMPUTES: optimized a little, as tests with the labels gl and slow are.
+# SAMPLE: a filter of GoogleTest. The cases that it selects run in `make test`, the rest of the program in
+# `make nightly` alone: they have the suite `nightly` as well.
 function(surfcast_test name)
-  cmake_parse_arguments(ARG "WHOLE;COMPUTES" "" "SOURCES;LIBS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "WHOLE;COMPUTES" "SAMPLE" "SOURCES;LIBS;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_link_libraries(${name} PRIVATE surfcast_warnings ${ARG_LIBS} GTest::gtest_main GTest::gmock)
@@ -284,14 +286,34 @@ function(surfcast_test name)
   endif()
   # Under a sanitizer a process takes a tenth of a second to start and to look for leaks, which for 2000 cases is longer
   # than their work.
+  set(whole FALSE)
   if(ARG_WHOLE OR SURFCAST_SANITIZE)
-    add_test(NAME ${name} COMMAND ${name})
-    set_tests_properties(${name} PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 600)
-    if(SURFCAST_SANITIZE AND ARG_LABELS MATCHES "gl")
-      # Mesa leaks a little memory when its driver is unloaded.
-      set_tests_properties(${name} PROPERTIES ENVIRONMENT ASAN_OPTIONS=detect_leaks=0)
-    endif()
+    set(whole TRUE)
+  endif()
+  if(ARG_SAMPLE AND NOT SURFCAST_SANITIZE)
+    surfcast_add_cases(${name} ${name} ${whole} "${ARG_SAMPLE}" "${ARG_LABELS}")
+    surfcast_add_cases(${name} ${name}_rest ${whole} "-${ARG_SAMPLE}" "${ARG_LABELS}-nightly")
   else()
-    gtest_discover_tests(${name} DISCOVERY_TIMEOUT 60 PROPERTIES LABELS "${ARG_LABELS}" TIMEOUT 300)
+    surfcast_add_cases(${name} ${name} ${whole} "*" "${ARG_LABELS}")
+  endif()
+endfunction()
+
+# Adds the cases of a program that the filter of GoogleTest selects, as one test or each as one of its own. Long tests
+# begin first, as long as ctest has not measured them, so that none of them is left over at the end.
+function(surfcast_add_cases program name whole filter labels)
+  if(NOT whole)
+    gtest_discover_tests(${program} TEST_FILTER "${filter}" TEST_LIST ${name}_cases DISCOVERY_TIMEOUT 60
+      PROPERTIES LABELS "${labels}" TIMEOUT 300)
+    return()
+  endif()
+  set(arguments)
+  if(NOT filter STREQUAL "*")
+    set(arguments "--gtest_filter=${filter}")
+  endif()
+  add_test(NAME ${name} COMMAND ${program} ${arguments})
+  set_tests_properties(${name} PROPERTIES LABELS "${labels}" TIMEOUT 600 COST 20)
+  if(SURFCAST_SANITIZE AND labels MATCHES "gl")
+    # Mesa leaks a little memory when its driver is unloaded.
+    set_tests_properties(${name} PROPERTIES ENVIRONMENT ASAN_OPTIONS=detect_leaks=0)
   endif()
 endfunction()

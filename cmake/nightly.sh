@@ -20,7 +20,7 @@ under_load() {
   done
   for ((run = 1; run <= runs; ++run)); do
     echo "run $run of $runs under a load of $load"
-    make test || failed=$((failed + 1))
+    make test ALL=1 || failed=$((failed + 1))
   done
   kill "${busy[@]}"
   echo "$failed of $runs runs under a load of $load failed"
@@ -31,7 +31,7 @@ part 'packages' make packages lint-packages sanitizer-packages
 part 'format' make format-check
 part 'release build' make build
 part 'benchmarks' make benchmarks
-part 'tests' tests
+part 'tests' tests ALL=1
 part 'address and undefined behaviour sanitizers' make asan-all
 part 'thread sanitizer' make tsan-all
 part 'clang-tidy' make tidy

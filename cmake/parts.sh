@@ -16,11 +16,11 @@ part() {
   current=
 }
 
-# The tests as the README runs them. Their closing lines are kept for the end.
+# The tests as the README runs them, with arguments of make. Their closing lines are kept for the end.
 tests() {
   local log code=0
   log=$(mktemp)
-  make test 2>&1 | tee "$log" || code=$?
+  make test "$@" 2>&1 | tee "$log" || code=$?
   closing=$(sed -n '/tests passed, .* tests failed out of/,$p' "$log")
   rm -f "$log"
   return "$code"

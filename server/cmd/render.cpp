@@ -1,5 +1,6 @@
 #include "cmd/render.h"
 
+#include <chrono>
 #include <filesystem>
 #include <future>
 #include <memory>
@@ -24,7 +25,8 @@ struct RenderCommand {
   protocol::RequestFlags flags;
   ScanCacheConfig cache;
   render::RendererConfig renderer;
-  service::ServiceLimits limits;
+  /// Nobody else waits for the renderer, so the picture takes the time that it takes.
+  service::ServiceLimits limits{.queue_timeout = std::chrono::hours(24 * 365)};
   object_store::StoreConfig store;
   uint64_t block_cache = 0;
 };
