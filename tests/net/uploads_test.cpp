@@ -10,6 +10,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "net/net_fixture.h"
 
@@ -28,7 +29,8 @@ class UploadTest : public NetFixture {
  protected:
   void SetUp() override {
     folder_ = fs::path(::testing::TempDir()) /
-              ("uploads_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+              ("uploads_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) + "_" +
+               std::to_string(::getpid()));
     fs::remove_all(folder_);
     fs::create_directories(folder_);
     config_.uploads.folder = folder_;
