@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "access/secret.h"
 #include "access/token_file.h"
@@ -27,8 +28,9 @@ class TokenFileTest : public ::testing::Test {
     return read_tokens(file_);
   }
 
-  fs::path file_ = fs::path(::testing::TempDir()) /
-                   (std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) + ".json");
+  fs::path file_ =
+      fs::path(::testing::TempDir()) / (std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) +
+                                        "_" + std::to_string(::getpid()) + ".json");
 };
 
 const std::string kHash(64, 'a');

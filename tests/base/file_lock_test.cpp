@@ -3,6 +3,7 @@
 #include <fstream>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 namespace surfcast {
 namespace {
@@ -13,7 +14,8 @@ class FileLockTest : public ::testing::Test {
  protected:
   void SetUp() override {
     folder_ = fs::path(::testing::TempDir()) /
-              ("lock_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+              ("lock_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) + "_" +
+               std::to_string(::getpid()));
     fs::remove_all(folder_);
     fs::create_directories(folder_);
     file_ = folder_ / "file";

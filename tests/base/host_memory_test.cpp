@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 namespace surfcast {
 namespace {
@@ -30,7 +31,8 @@ class HostMemoryTest : public ::testing::Test {
   [[nodiscard]] HostMemory read() const { return read_host_memory(root_); }
 
   fs::path root_ = fs::path(::testing::TempDir()) /
-                   ("memory_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+                   ("memory_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) + "_" +
+                    std::to_string(::getpid()));
 };
 
 TEST_F(HostMemoryTest, WithoutALimitItIsTheMachines) {

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "base/atomic_file.h"
 
@@ -17,7 +18,8 @@ class ScratchFolderTest : public ::testing::Test {
  protected:
   void SetUp() override {
     parent_ = fs::path(::testing::TempDir()) /
-              ("scratch_folder_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+              ("scratch_folder_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) + "_" +
+               std::to_string(::getpid()));
     fs::remove_all(parent_);
     fs::create_directories(parent_);
   }

@@ -5,6 +5,7 @@
 #include <string>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "client/run_program.h"
 #include "net/net_fixture.h"
@@ -19,7 +20,8 @@ class ProgramTest : public net::NetFixture {
  protected:
   void SetUp() override {
     folder_ = fs::path(::testing::TempDir()) /
-              ("program_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+              ("program_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) + "_" +
+               std::to_string(::getpid()));
     fs::remove_all(folder_);
     fs::create_directories(folder_);
     start();

@@ -13,6 +13,7 @@
 
 #include <OpenImageIO/imageio.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "geometry/camera.h"
 #include "model/model_file.h"
@@ -70,7 +71,8 @@ class ChannelsTest : public ::testing::Test {
  protected:
   void SetUp() override {
     folder_ = fs::path(::testing::TempDir()) /
-              ("channels_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+              ("channels_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) + "_" +
+               std::to_string(::getpid()));
     fs::remove_all(folder_);
     fs::create_directories(folder_);
   }

@@ -9,6 +9,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include "cmd/cache_eviction.h"
 #include "model/model_file.h"
@@ -46,7 +47,8 @@ class ScanCacheTest : public ::testing::Test {
  protected:
   void SetUp() override {
     folder_ = fs::path(::testing::TempDir()) /
-              ("scan_cache_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+              ("scan_cache_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) + "_" +
+               std::to_string(::getpid()));
     fs::remove_all(folder_);
     fs::create_directories(folder_);
     for (const std::string name : {"a", "b", "c"}) {
@@ -79,7 +81,8 @@ class ScanCacheTest : public ::testing::Test {
 
   fs::path folder_;
   fs::path cache_ = fs::path(::testing::TempDir()) /
-                    ("scan_cache_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name())) /
+                    ("scan_cache_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) +
+                     "_" + std::to_string(::getpid())) /
                     "cache";
 };
 

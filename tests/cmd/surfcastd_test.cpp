@@ -15,6 +15,7 @@
 
 #include <gtest/gtest.h>
 #include <sys/wait.h>
+#include <unistd.h>
 
 #include "model/model_file.h"
 
@@ -41,7 +42,8 @@ class SurfcastdTest : public ::testing::Test {
  protected:
   void SetUp() override {
     folder_ = fs::path(::testing::TempDir()) /
-              ("surfcastd_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+              ("surfcastd_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) + "_" +
+               std::to_string(::getpid()));
     fs::remove_all(folder_);
     fs::create_directories(folder_);
     std::ofstream scan(folder_ / "scan.ply");

@@ -6,8 +6,10 @@
 #include <cmath>
 #include <filesystem>
 #include <numbers>
+#include <string>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "lab/colored_points.h"
 #include "lab/kernel_defines.h"
@@ -288,7 +290,8 @@ TEST(PlacedScanTest, ThePlaceStandsBeforeTheFirstColon) {
 }
 
 TEST(ScanPointsTest, PointsAtOnePlaceCountOnce) {
-  const std::filesystem::path path = std::filesystem::path(::testing::TempDir()) / "points_at_one_place.ply";
+  const std::filesystem::path path =
+      std::filesystem::path(::testing::TempDir()) / ("points_at_one_place_" + std::to_string(::getpid()) + ".ply");
   const LabPoints points{{{1, 2, 3}, {4, 5, 6}, {1, 2, 3}}, {{1, 1, 1}, {2, 2, 2}, {3, 3, 3}}, {7, 8, 9}, {}, true};
   ASSERT_TRUE(write_ply(points, path));
   const Result<LabPoints> read = read_points(path);

@@ -21,6 +21,12 @@ std::string hello_bytes() {
   return bytes_of(protocol::encode_hello(protocol::make_hello("test")));
 }
 
+/// Bytes of the hello at the beginning of what a server has said.
+size_t said_by_hello(const std::string& said) {
+  const auto head = std::as_bytes(std::span(said)).first<protocol::kHelloHeaderBytes>();
+  return head.size() + *protocol::hello_text_bytes(head);
+}
+
 std::string frame_of(const google::protobuf::MessageLite& message) {
   return bytes_of(protocol::framed(message));
 }
@@ -273,12 +279,13 @@ TEST_F(FramedSessionTest, AReaderThatNeverReadsCostsOnlyItself) {
   config.stall = milliseconds(400);
   start(config);
   RawSocket sleeper(port_, 4096);
-  sleeper.send(hello_bytes());
+  std::string words = hello_bytes();
   for (int id = 1; id <= kRequests; ++id) {
     wire::Request request = picture_request("noise", 512, 512);
     request.set_id(id);
-    ASSERT_TRUE(sleeper.send(frame_of(request)));
+    words += frame_of(request);
   }
+  ASSERT_TRUE(sleeper.send(words)) << "at once: the server ends the connection after a while";
   auto connection = connect();
   ASSERT_TRUE(connection);
   EXPECT_TRUE(connection->ask(picture_request("teapot")));
@@ -381,14 +388,24 @@ TEST_F(FramedSessionTest, AConnectionThatWaitsForAPictureIsNotIdle) {
   ServerConfig config;
   config.idle = milliseconds(300);
   start(config);
-  auto connection = connect();
-  ASSERT_TRUE(connection);
-  const auto id = connection->send(picture_request("cube"));
-  std::this_thread::sleep_for(milliseconds(900));
+  RawSocket socket(port_);
+  ASSERT_TRUE(socket.send(hello_bytes() + frame_of(picture_request("cube")))) << "at once, so that it is never idle";
+  ASSERT_TRUE(eventually([&] { return control_->drawn == 1; }));
+  for (int i = 0; i < 3; ++i) {
+    RawSocket idle(port_);
+    idle.send(hello_bytes());
+    ASSERT_TRUE(idle.closed_within(milliseconds(10'000))) << "the time of idle connections passes";
+  }
   control_->slow = false;
-  const auto answer = connection->receive();
-  ASSERT_TRUE(answer);
-  EXPECT_TRUE(answer->has_picture());
+  const std::string said = socket.read_to_end();
+  ASSERT_GE(said.size(), protocol::kHelloHeaderBytes);
+  protocol::FrameSplitter splitter(protocol::kMaxAnswerBytes);
+  splitter.append(std::as_bytes(std::span(said)).subspan(said_by_hello(said)));
+  const auto frame = splitter.next();
+  ASSERT_TRUE(frame && frame->has_value());
+  wire::Answer answer;
+  ASSERT_TRUE(protocol::decode_message(**frame, answer));
+  EXPECT_TRUE(answer.has_picture());
 }
 
 TEST_F(FramedSessionTest, ConnectionsBeyondTheLimitAreToldThatTheServerIsBusy) {

@@ -15,7 +15,8 @@ namespace surfcast::net {
 namespace {
 
 TEST(ServiceManagerTest, IsToldTheStateOfTheService) {
-  const std::string path = (std::filesystem::path(::testing::TempDir()) / "manager.socket").string();
+  const std::string path =
+      (std::filesystem::path(::testing::TempDir()) / ("manager_" + std::to_string(::getpid()) + ".socket")).string();
   ::unlink(path.c_str());
   const int manager = ::socket(AF_UNIX, SOCK_DGRAM, 0);
   sockaddr_un address{};

@@ -4,7 +4,15 @@
 namespace surfcast::net {
 namespace {
 
-class ShutdownTest : public NetFixture {};
+class ShutdownTest : public NetFixture {
+ protected:
+  /// Begins to stop the server, and returns once it sends idle clients away.
+  void stop_taking_connections() {
+    RawSocket idle(port_);
+    server_->stop();
+    EXPECT_TRUE(idle.closed_within(milliseconds(9000))) << "before the time for first words ends it";
+  }
+};
 
 TEST_F(ShutdownTest, APictureThatIsBeingDrawnIsFinishedAndDelivered) {
   control_->slow = true;
@@ -13,8 +21,7 @@ TEST_F(ShutdownTest, APictureThatIsBeingDrawnIsFinishedAndDelivered) {
   ASSERT_TRUE(connection);
   ASSERT_TRUE(connection->send(picture_request("cube")));
   ASSERT_TRUE(eventually([&] { return control_->drawn == 1; }));
-  server_->stop();
-  std::this_thread::sleep_for(milliseconds(50));
+  stop_taking_connections();
   control_->slow = false;
   const auto answer = connection->receive();
   ASSERT_TRUE(answer);
@@ -28,8 +35,7 @@ TEST_F(ShutdownTest, APictureOfHttpIsFinishedAndDelivered) {
   RawSocket socket(port_);
   socket.send("GET /api/models/cube/image?resolution=4,4 HTTP/1.1\r\nHost: here\r\n\r\n");
   ASSERT_TRUE(eventually([&] { return control_->drawn == 1; }));
-  server_->stop();
-  std::this_thread::sleep_for(milliseconds(50));
+  stop_taking_connections();
   control_->slow = false;
   EXPECT_NE(socket.read_to_end().find("PNG"), std::string::npos);
   stop();
@@ -48,7 +54,7 @@ TEST_F(ShutdownTest, APictureThatTakesTooLongIsCancelled) {
   ASSERT_TRUE(eventually([&] { return control_->drawn == 1 && service_->queued() == 1; }));
   const Stopwatch watch;
   stop();
-  EXPECT_LT(watch.seconds(), 10);
+  EXPECT_LT(watch.seconds(), 60) << "by themselves the pictures never end";
   EXPECT_GE(control_->cancelled, 1);
   EXPECT_EQ(control_->cancelled, control_->drawn);  // the second picture may have begun, too; none is finished
   EXPECT_FALSE(connection->receive());
@@ -57,7 +63,7 @@ TEST_F(ShutdownTest, APictureThatTakesTooLongIsCancelled) {
 TEST_F(ShutdownTest, APictureOfHttpThatTakesTooLongIsAnsweredWithAnError) {
   control_->slow = true;
   ServerConfig config;
-  config.drain = milliseconds(100);
+  config.drain = milliseconds(1000);  // also the time for the answer, which is a second at most
   start(config);
   RawSocket socket(port_);
   socket.send(std::string_view("GET /api/models/cube/image HTTP/1.1\r\nHost: here\r\n\r\n"));
@@ -97,7 +103,7 @@ TEST_F(ShutdownTest, IdleConnectionsDoNotDelayTheEnd) {
   http.read_http();
   const Stopwatch watch;
   stop();
-  EXPECT_LT(watch.seconds(), 30);
+  EXPECT_LT(watch.seconds(), 30) << "half of what a server takes that waits for them";
 }
 
 TEST_F(ShutdownTest, APortInUseIsAnErrorThatNamesIt) {

@@ -118,11 +118,11 @@ TEST_F(ViewSessionTest, AClientThatAnswersNothingGetsTwoFramesAndHoldsUpNobody) 
   open_view();
   for (uint64_t i = 1; i <= 50; ++i) {
     update(i, picture("cube", static_cast<double>(i)), /*moving=*/true);
-    std::this_thread::sleep_for(milliseconds(2));
+    std::this_thread::sleep_for(milliseconds(2));  // so that a server that draws too much has time to do so
   }
   EXPECT_TRUE(eventually([this] { return metric("surfcast_view_updates_replaced_total") >= 45; }));
   EXPECT_TRUE(eventually([this] { return metric("surfcast_view_frames_total") == 2; }));
-  std::this_thread::sleep_for(milliseconds(50));
+  std::this_thread::sleep_for(milliseconds(50));  // for a third one, which must not come
   EXPECT_EQ(metric("surfcast_view_frames_total"), 2);
   auto other = connect();
   ASSERT_TRUE(other);
@@ -152,7 +152,7 @@ TEST_F(ViewSessionTest, AnUpdateThatShowsTheSamePictureIsNotDrawnAgain) {
   update(1, picture("cube", 0), /*moving=*/false);
   wire::Request ping = ping_request();
   ASSERT_TRUE(connection_->ask(ping)) << "what comes next is no frame";
-  std::this_thread::sleep_for(milliseconds(20));
+  std::this_thread::sleep_for(milliseconds(20));  // for a picture that must not be drawn
   EXPECT_EQ(control_->drawn, drawn);
 }
 

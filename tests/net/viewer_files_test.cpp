@@ -14,7 +14,8 @@ class ViewerFilesTest : public NetFixture {
  protected:
   void SetUp() override {
     folder_ = fs::path(::testing::TempDir()) /
-              ("viewer_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+              ("viewer_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) + "_" +
+               std::to_string(::getpid()));
     fs::remove_all(folder_);
     fs::create_directories(folder_ / "dist/assets");
     write("secret.txt", "secret");

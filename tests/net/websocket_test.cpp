@@ -213,7 +213,7 @@ TEST_F(WebSocketTest, ALeavingClientHasItsPicturesCancelled) {
 
 TEST_F(WebSocketTest, ASilentClientIsAskedAndThenTakenForGone) {
   ServerConfig config;
-  config.ping = milliseconds(500);  // for the answer, too, however busy the machine
+  config.ping = milliseconds(1500);  // for the answer, too, however busy the machine
   start(config);
   RawWebSocket socket = greeted();
   EXPECT_EQ(socket.read_frame().opcode, RawWebSocket::kPing);

@@ -45,6 +45,12 @@ class RemoteSourceTest : public ::testing::Test {
     source_ = std::move(*opened);
     server_.forget_requests();
   }
+  /// The same for requests that fail so: of those that are not answered whole, nobody waits for the end.
+  void open_for(Fault fault) {
+    const bool silent = fault == Fault::kHanging || fault == Fault::kStalling;
+    config_.stall_timeout = silent ? milliseconds(1000) : config_.timeout;
+    open();
+  }
   Result<std::unique_ptr<RemoteSource>> try_open() {
     Result<std::unique_ptr<HttpClient>> client = HttpClient::start(config_);
     if (!client) return fail(client.error());
@@ -67,9 +73,10 @@ class RemoteSourceTest : public ::testing::Test {
 
   const std::string bytes_ = content(size_t{2} << 20);
   RangeServer server_;
-  StoreConfig config_{.timeout = milliseconds(6000),
-                      .connect_timeout = milliseconds(500),
-                      .stall_timeout = milliseconds(500),
+  // For answers that come, however busy the machine.
+  StoreConfig config_{.timeout = milliseconds(60'000),
+                      .connect_timeout = milliseconds(20'000),
+                      .stall_timeout = milliseconds(20'000),
                       .retries = 2};
   std::unique_ptr<HttpClient> client_;
   std::unique_ptr<RemoteSource> source_;
@@ -190,7 +197,7 @@ TEST_F(RemoteSourceTest, ASourceMayEndWhileItsRequestsAreOnTheirWay) {
 
 TEST_F(RemoteSourceTest, WhatPassesIsAskedAgainAndThenRight) {
   for (const Fault fault : {Fault::kBusy, Fault::kCut, Fault::kHanging, Fault::kStalling, Fault::kTooLong}) {
-    open();
+    open_for(fault);
     server_.fail(fault, 2);
     const Result<std::string> bytes = read(kPart);
     ASSERT_TRUE(bytes) << static_cast<int>(fault) << bytes.error().message;
@@ -201,11 +208,12 @@ TEST_F(RemoteSourceTest, WhatPassesIsAskedAgainAndThenRight) {
 
 TEST_F(RemoteSourceTest, WhatDoesNotPassEndsInTime) {
   for (const Fault fault : {Fault::kBusy, Fault::kCut, Fault::kHanging, Fault::kStalling, Fault::kTooLong}) {
-    open();
+    open_for(fault);
     server_.fail(fault, 100);
     const auto begin = std::chrono::steady_clock::now();
     const Result<std::string> bytes = read(kPart);
-    EXPECT_LT(std::chrono::steady_clock::now() - begin, config_.timeout + milliseconds(1000));
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, milliseconds(50'000))
+        << "whoever only heeds the total time takes a minute";
     ASSERT_FALSE(bytes);
     EXPECT_EQ(bytes.error().kind, ErrorKind::kUnavailable);
     EXPECT_EQ(server_.requests().size(), 3U) << "the first, and two more";
@@ -216,12 +224,13 @@ TEST_F(RemoteSourceTest, WhatDoesNotPassEndsInTime) {
 
 TEST_F(RemoteSourceTest, ATotalTimeBoundsAllAttempts) {
   config_.retries = 100;
-  config_.timeout = milliseconds(900);
+  config_.timeout = milliseconds(2500);
+  config_.stall_timeout = milliseconds(1000);
   open();
   server_.fail(Fault::kHanging, 1000);
   const auto begin = std::chrono::steady_clock::now();
   EXPECT_FALSE(read(kPart));
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, milliseconds(5000));
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, milliseconds(25'000)) << "all attempts take a hundred seconds";
 }
 
 TEST_F(RemoteSourceTest, WrongAnswersAreErrorsAtOnce) {

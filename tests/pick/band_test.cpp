@@ -10,6 +10,7 @@
 #include <set>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "model/write_model.h"
 #include "support/clouds.h"
@@ -41,7 +42,8 @@ class FindBand : public ::testing::Test {
 
   model::ModelFile model_of(const surfel::SurfelCloud& cloud) {
     path_ = std::filesystem::path(::testing::TempDir()) /
-            ("band_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) + ".surf");
+            ("band_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) + "_" +
+             std::to_string(::getpid()) + ".surf");
     EXPECT_TRUE(model::write_model(cloud, path_, {}));
     Result<model::ModelFile> model = model::ModelFile::open(path_);
     EXPECT_TRUE(model);

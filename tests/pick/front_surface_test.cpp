@@ -7,6 +7,7 @@
 #include <random>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "kinds/opaque_disc.h"
 #include "model/write_model.h"
@@ -38,7 +39,8 @@ class FrontSurface : public ::testing::Test {
 
   model::ModelFile model_of(const surfel::SurfelCloud& cloud) {
     path_ = std::filesystem::path(::testing::TempDir()) /
-            ("front_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) + ".surf");
+            ("front_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) + "_" +
+             std::to_string(::getpid()) + ".surf");
     EXPECT_TRUE(model::write_model(cloud, path_, {}));
     Result<model::ModelFile> model = model::ModelFile::open(path_);
     EXPECT_TRUE(model);

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "model/write_model.h"
 #include "reference/resampling_filter.h"
@@ -43,7 +44,8 @@ class PickSurfel : public ::testing::Test {
  protected:
   void SetUp() override {
     path_ = std::filesystem::path(::testing::TempDir()) /
-            ("pick_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) + ".surf");
+            ("pick_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) + "_" +
+             std::to_string(::getpid()) + ".surf");
   }
   void TearDown() override { std::filesystem::remove(path_); }
 

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "base/atomic_file.h"
 #include "protocol/picture_fields.h"
@@ -21,7 +22,8 @@ class RequestFlagsTest : public ::testing::Test {
   void SetUp() override {
     flags_.add_to(app_);
     folder_ = fs::path(::testing::TempDir()) /
-              ("flags_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+              ("flags_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) + "_" +
+               std::to_string(::getpid()));
     fs::create_directories(folder_);
   }
   void TearDown() override { fs::remove_all(folder_); }

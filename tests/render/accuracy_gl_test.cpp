@@ -12,6 +12,7 @@
 #include <string>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "model/write_model.h"
 #include "reference/reference_renderer.h"
@@ -61,7 +62,7 @@ class AccuracyGLTest : public ::testing::Test {
     Result<std::unique_ptr<Renderer>> created = Renderer::create(config);
     ASSERT_TRUE(created) << created.error().message;
     renderer_ = std::move(*created);
-    folder_ = fs::path(::testing::TempDir()) / "surfcast_accuracy_gl_test";
+    folder_ = fs::path(::testing::TempDir()) / ("surfcast_accuracy_gl_test_" + std::to_string(::getpid()));
     fs::create_directories(folder_);
   }
   static void TearDownTestSuite() {

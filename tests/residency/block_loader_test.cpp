@@ -98,7 +98,7 @@ TEST_F(BlockLoaderTest, ABlockThatIsBeingDecodedIsNotDecodedTwice) {
 TEST_F(BlockLoaderTest, OneRequestStatedTwiceIsOne) {
   set_requests({4, 4, 4});
   EXPECT_THAT(take(1), ElementsAre(4));
-  loader_.wait(std::chrono::milliseconds(5));
+  loader_.wait(std::chrono::milliseconds(5));  // for a second one, which must not come
   EXPECT_FALSE(loader_.take());
 }
 
@@ -153,7 +153,7 @@ TEST_F(PrefetchTest, ARequestDoesNotWaitForTheIdleThreadThatHasTheBlock) {
   source_->wait_for_start(2);
   source_->release();
   EXPECT_EQ(wanted(1), 1U);
-  loader_.wait(std::chrono::milliseconds(20));
+  loader_.wait(std::chrono::milliseconds(20));  // for the other one, which must not come
   EXPECT_FALSE(loader_.take()) << "it is handed out once";
 }
 
@@ -191,7 +191,7 @@ TEST(BlockLoader, WorkersWaitWhenNobodyTakesWhatIsReady) {
   for (uint32_t i = 0; i < 100; ++i) all[i] = i;
   loader.set_requests(source, all);
   source->wait_for_start(3);
-  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));  // for a fourth one, which must not be loaded
   EXPECT_EQ(source->started().size(), 3u);
   ASSERT_TRUE(loader.take());
   source->wait_for_start(4);

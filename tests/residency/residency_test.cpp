@@ -113,7 +113,8 @@ TEST_F(ResidencyTest, APictureAtOnceNeverWaitsForABlock) {
   const Stopwatch watch;
   PreparedView view;
   for (int i = 0; i < 100; ++i) view = now(model_);
-  EXPECT_LT(watch.milliseconds(), 5000) << "a hundred pictures while no block arrives at all";
+  EXPECT_LT(watch.seconds(), 20)
+      << "a hundred pictures while no block arrives at all, each of which takes microseconds";
   EXPECT_THAT(view.selection.draw, IsEmpty());
   EXPECT_FALSE(view.selection.converged());
   EXPECT_GT(view.waited_for, 0u);
@@ -170,8 +171,7 @@ TEST_F(ResidencyTest, AModelIsLoadedBetweenPicturesOfAnotherThatLacksNothing) {
 TEST_F(ResidencyTest, ALimitedNumberOfBytesIsUploadedInAPictureInMotion) {
   start(100, 20000);  // the limit is reached with the second block of 16000 bytes
   now(model_, 0, true);
-  source_->wait_for_start(21);
-  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  source_->wait_for_start(21);  // then twenty blocks are ready
   const size_t before = sink_.written();
   now(model_, 0, true);
   EXPECT_GT(sink_.written(), before);
@@ -368,7 +368,7 @@ TEST_F(SwitchedColorsTest, BlocksThatArriveAfterASwitchAreNotTakenForOthers) {
   for (int round = 0; round < 40; ++round) {
     const bool attributes = round / 3 % 2 == 1;
     for (int i = 0; i < 4; ++i) expect_honest(now_by(attributes, round % 2 == 0), attributes);
-    std::this_thread::sleep_for(std::chrono::microseconds(200 * (round % 5)));
+    std::this_thread::sleep_for(std::chrono::microseconds(200 * (round % 5)));  // for some blocks, or none
     if (HasFatalFailure()) return;
   }
   expect_converging(true);

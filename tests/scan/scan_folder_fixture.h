@@ -5,6 +5,7 @@
 #include <string>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "scan/whole_scan.h"
 
@@ -15,7 +16,8 @@ class ScanFolderTest : public ::testing::Test {
  protected:
   ScanFolderTest()
       : folder_(std::filesystem::path(::testing::TempDir()) /
-                (std::string("scan_folder_") + ::testing::UnitTest::GetInstance()->current_test_info()->name())) {
+                (std::string("scan_folder_") + ::testing::UnitTest::GetInstance()->current_test_info()->name() + "_" +
+                 std::to_string(::getpid()))) {
     std::filesystem::remove_all(folder_);
   }
   ~ScanFolderTest() override {

@@ -7,6 +7,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "base/atomic_file.h"
 #include "scan/bytes.h"
@@ -106,12 +107,12 @@ TEST(ScanStreamTest, OtherFilesGetOneLineThatSaysWhatTheyAre) {
 }
 
 TEST(ScanStreamTest, FilesAreReadFromTheDisk) {
-  const fs::path path = fs::path(::testing::TempDir()) / "scan_stream_test.xyz";
+  const fs::path path = fs::path(::testing::TempDir()) / ("scan_stream_test_" + std::to_string(::getpid()) + ".xyz");
   ASSERT_TRUE(write_file_atomically(path, "1 2 3\n"));
   const Result<testing::WholeScan> points = testing::whole(ScanStream::open(path));
   fs::remove(path);
   ASSERT_TRUE(points) << points.error().message;
-  EXPECT_EQ(points->name, "scan_stream_test.xyz");
+  EXPECT_EQ(points->name, path.filename());
   EXPECT_EQ(testing::whole(ScanStream::open(path)).error().kind, ErrorKind::kNotFound);
 }
 
@@ -130,7 +131,8 @@ TEST(ScanStreamTest, DefaultViewpointFarFromThePointsIsNoSensor) {
 
 TEST(ScanStreamTest, FormatsDecodedWholeAreRefusedWhereMemoryDoesNotSuffice) {
   for (const Sample& sample : testing::samples()) {
-    const fs::path path = fs::path(::testing::TempDir()) / ("limited_" + sample.name);
+    const fs::path path =
+        fs::path(::testing::TempDir()) / ("limited_" + std::to_string(::getpid()) + "_" + sample.name);
     std::ofstream(path, std::ios::binary) << sample.text;
     const Result<ScanStream> stream = ScanStream::open(path, {16});
     const bool whole = sample.text.starts_with("DRACO") || sample.text.find("binary_compressed") != std::string::npos;

@@ -42,7 +42,7 @@ TEST_F(AwaitedModelTest, PicturesOfViewsDoNotWait) {
 TEST_F(AwaitedModelTest, APictureThatWaitsTooLongIsRefused) {
   start({.queue_timeout = std::chrono::milliseconds(1)});
   auto [id, cube] = draw(1, job_for("cube"));
-  std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  std::this_thread::sleep_for(std::chrono::milliseconds(5));  // longer than the timeout
   service_->models_changed();
   const Result<EncodedPicture> picture = cube.get();
   ASSERT_FALSE(picture);
@@ -84,7 +84,7 @@ TEST_F(AwaitedModelTest, ADescriptionThatWaitsTooLongIsRefused) {
   start({.queue_timeout = std::chrono::milliseconds(1)});
   std::optional<Error> refusal;
   service_->describe_model("cube", [&](const auto& result) { refusal = result.error(); });
-  std::this_thread::sleep_for(std::chrono::milliseconds(5));
+  std::this_thread::sleep_for(std::chrono::milliseconds(5));  // longer than the timeout
   service_->models_changed();
   ASSERT_TRUE(refusal);
   EXPECT_EQ(refusal->kind, ErrorKind::kUnavailable);

@@ -38,11 +38,13 @@ TEST_F(FairnessTest, AClientWithManyConnectionsIsOneClient) {
 
 TEST_F(FairnessTest, AMotionOfAClientThatIsAheadWaitsForAPictureOfAnother) {
   control_->frame_ms = 400;  // one frame in motion is more than the patience of others
+  control_->slow = true;     // until all are asked for
   start();
   std::future<Result<EncodedPicture>> motion = draw({7, 1}, motion_of("cube")).second;
   wait_for_drawing(1);
   std::future<Result<EncodedPicture>> next = draw({7, 2}, motion_of("cube")).second;
   std::future<Result<EncodedPicture>> still = draw({8, 3}, job_for("teapot")).second;
+  control_->slow = false;
   EXPECT_TRUE(motion.get());
   EXPECT_TRUE(still.get());
   EXPECT_TRUE(next.get());
@@ -78,7 +80,7 @@ TEST_F(FairnessTest, PicturesThatNobodyTakesHoldUpLargeOnesButNotSmallOnes) {
 }
 
 TEST_F(FairnessTest, APictureForWhichThereIsNoRoomIsRefusedInTime) {
-  start({.picture_memory = size_t{16} << 20, .queue_timeout = std::chrono::milliseconds(300)});
+  start({.picture_memory = size_t{16} << 20, .queue_timeout = std::chrono::milliseconds(1500)});
   const Result<EncodedPicture> kept = draw({7, 1}, large("noise")).second.get();
   ASSERT_TRUE(kept);
   const Result<EncodedPicture> refused = draw({7, 2}, large("noise")).second.get();

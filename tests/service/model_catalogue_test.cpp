@@ -4,6 +4,7 @@
 #include <string>
 
 #include <gtest/gtest.h>
+#include <unistd.h>
 
 #include "base/atomic_file.h"
 #include "model/write_model.h"
@@ -17,7 +18,8 @@ class ModelCatalogueTest : public ::testing::Test {
  protected:
   void SetUp() override {
     folder_ = fs::path(::testing::TempDir()) /
-              ("catalogue_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()));
+              ("catalogue_" + std::string(::testing::UnitTest::GetInstance()->current_test_info()->name()) + "_" +
+               std::to_string(::getpid()));
     fs::remove_all(folder_);
     fs::create_directories(folder_ / "other");
   }

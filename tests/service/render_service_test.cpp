@@ -123,7 +123,7 @@ TEST_F(RenderServiceTest, AMotionIsInterruptedByNothing) {
   wait_for_drawing(1);
   auto [other, second] = draw(2, motion_of("teapot"));
   auto [still, third] = draw(3, job_for("cube"));
-  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));  // for a picture that must not be drawn
   EXPECT_EQ(control_->drawn, 1);
   control_->slow = false;
   EXPECT_TRUE(first.get());
@@ -140,9 +140,10 @@ TEST_F(RenderServiceTest, APictureIsDrawnBesideOneWhoNeverStopsMoving) {
   std::jthread mover([&] {
     // Two requests are outstanding at any time, so one always waits.
     std::future<Result<EncodedPicture>> last = draw(1, motion_of("cube")).second;
-    for (; moving; ++frames) std::exchange(last, draw(1, motion_of("cube")).second).wait();
+    for (; moving; ++frames, frames.notify_one()) std::exchange(last, draw(1, motion_of("cube")).second).wait();
     last.wait();
   });
+  frames.wait(0);  // the thread runs
   for (int i = 0; i < 20; ++i) EXPECT_TRUE(draw(2, job_for("teapot")).second.get());
   moving = false;
   mover.join();
@@ -210,7 +211,7 @@ TEST_F(RenderServiceTest, AJobThatWaitsTooLongIsRefusedAndNotDrawn) {
   control_->slow = true;
   auto first = draw(1, job_for("cube"));
   auto second = draw(1, job_for("cube"));
-  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));  // longer than it may wait
   control_->slow = false;
   const Result<EncodedPicture> late = second.second.get();
   ASSERT_FALSE(late);

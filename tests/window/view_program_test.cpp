@@ -29,8 +29,7 @@ TEST_F(ViewProgramTest, ComesBackToAServerThatComesBack) {
   start();
   const uint16_t port = port_;
   const pid_t program = client::start_program({SURFCAST_CLIENT, "view", url("cube"), "--resolution", "64,48"});
-  EXPECT_TRUE(eventually([this] { return metric("surfcast_view_frames_total") > 0; }));
-  std::this_thread::sleep_for(std::chrono::milliseconds(300));  // until it has painted one
+  EXPECT_TRUE(eventually([this] { return metric("surfcast_view_frames_total") > 2; })) << "it has painted one";
   stop();
   start({}, {}, port);
   EXPECT_TRUE(eventually([this] { return metric("surfcast_view_frames_total") > 0; }));

@@ -37,7 +37,8 @@ class SandboxTest : public ::testing::Test {
   // A folder of its own for each test: they run as processes side by side.
   SandboxTest()
       : folder_(std::filesystem::path(::testing::TempDir()) /
-                (std::string("sandbox_") + ::testing::UnitTest::GetInstance()->current_test_info()->name())) {
+                (std::string("sandbox_") + ::testing::UnitTest::GetInstance()->current_test_info()->name() + "_" +
+                 std::to_string(::getpid()))) {
     std::filesystem::create_directories(folder_);
     std::ofstream(folder_ / "file") << "content";
   }

@@ -16,13 +16,17 @@
 #include <iterator>
 #include <memory>
 #include <string>
+#include <system_error>
 #include <thread>
+#include <utility>
 #include <vector>
 
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <sys/types.h>
 #include <unistd.h>
 
+#include "base/descriptor.h"
 #include "builder/build_model.h"
 #include "kinds/ball_scene.h"
 #include "model/test_folder.h"
@@ -30,6 +34,7 @@
 #include "service/local_queries.h"
 #include "support/clouds.h"
 #include "worker/messages.h"
+#include "worker/shared_board.h"
 
 namespace surfcast::worker {
 namespace {
@@ -88,6 +93,27 @@ pid_t stopped_worker() {
     for (const pid_t worker : workers()) {
       if (status_of(worker).find("\nState:\tT") != std::string::npos) return worker;
     }
+    std::this_thread::sleep_for(milliseconds(1));
+  }
+}
+
+/// The memory that this process shares with its workers.
+std::vector<SharedBoard> boards() {
+  std::vector<SharedBoard> found;
+  for (const auto& link : std::filesystem::directory_iterator("/proc/self/fd")) {
+    std::error_code code;
+    if (!std::filesystem::read_symlink(link, code).string().starts_with("/memfd:surfcast-pictures")) continue;
+    auto board = SharedBoard::adopt(Descriptor(::open(link.path().c_str(), O_RDWR | O_CLOEXEC)));
+    if (board) found.push_back(std::move(*board));
+  }
+  return found;
+}
+
+/// Waits until a worker can see that its question is not wanted any more.
+void wait_for_cancellation() {
+  const std::vector<SharedBoard> shared = boards();
+  ASSERT_FALSE(shared.empty());
+  while (std::ranges::none_of(shared, [](const SharedBoard& board) { return board.cancelled(0).load(); })) {
     std::this_thread::sleep_for(milliseconds(1));
   }
 }
@@ -337,7 +363,7 @@ TEST_F(WorkerQueriesTest, ABlockThatEndsTwoWorkersIsQuarantinedByName) {
 
 TEST_F(WorkerQueriesTest, AHungWorkerIsReplacedAndItsBlockQuarantined) {
   set_block("STOPPING_BLOCK", ball_leaf());
-  start([](QueryWorkerConfig& config) { config.silence = milliseconds(500); });
+  start([](QueryWorkerConfig& config) { config.silence = milliseconds(2000); });
   const auto picked = pick(ball_pixel());
   ASSERT_FALSE(picked);
   EXPECT_THAT(picked.error().message, HasSubstr("not loaded any more"));
@@ -373,8 +399,7 @@ TEST_F(WorkerQueriesTest, CancelledSearchesEnd) {
   });
   const pid_t searching = stopped_worker();
   cancelled = true;
-  // The server passes it on every few milliseconds. If it took longer than this, the search would be whole.
-  std::this_thread::sleep_for(milliseconds(500));
+  wait_for_cancellation();
   ::kill(searching, SIGCONT);
   const auto found = front.get();
   ASSERT_FALSE(found);

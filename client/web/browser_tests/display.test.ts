@@ -12,7 +12,7 @@ describe('the display options', () => {
     await yard.page.keyboard.press('o');
     await yard.page.getByText('Elevation', { exact: true }).click();
     await yard.page.locator('.classes label', { hasText: 'Building' }).click();
-    await yard.page.waitForTimeout(600);
+    await expect.poll(() => look.pictureSum(yard.page), { timeout: 60_000 }).not.toBe(before);
     await look.sharp(yard.page);
     expect(await look.pictureSum(yard.page)).not.toBe(before);
     const place = await look.placeNow(yard.page);

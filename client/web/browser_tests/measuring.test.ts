@@ -5,6 +5,16 @@ import { useYard } from './support/yard';
 
 const yard = useYard();
 
+/** Clicks the two points of a measurement, each of which is there before the next is clicked. */
+async function measureTwoPoints(kind: string): Promise<void> {
+  const card = yard.page.locator(`.card[data-kind=${kind}]`);
+  for (const [dx, dy, figures] of [[-60, 20, '.faint'], [70, -10, '.main dd']] as const) {
+    const pixel = await look.middle(yard.page, dx, dy);
+    await yard.page.mouse.click(pixel.x, pixel.y);
+    await card.locator(figures).waitFor({ timeout: 30_000 });
+  }
+}
+
 /** The bytes of a file that an action saves. */
 const saved = async (action: () => Promise<void>): Promise<Buffer> => (await look.saved(yard.page, action)).bytes;
 
@@ -38,11 +48,7 @@ describe('the tools', () => {
     await yard.open();
     const [a, b] = [(await yard.inspect(-60, 20)).at, (await yard.inspect(70, -10)).at];
     await yard.page.keyboard.press('m');
-    for (const [dx, dy] of [[-60, 20], [70, -10]] as const) {
-      const pixel = await look.middle(yard.page, dx, dy);
-      await yard.page.mouse.click(pixel.x, pixel.y);
-      await yard.page.waitForTimeout(600);
-    }
+    await measureTwoPoints('distance');
     await yard.page.keyboard.press('Enter');
     const shown = (await yard.page.locator('.card[data-kind=distance] .main dd').textContent()) ?? '';
     const exact = Math.hypot(...a.map((value, i) => value - b[i]!));
@@ -53,11 +59,7 @@ describe('the tools', () => {
     await yard.open();
     const [a, b] = [(await yard.inspect(-60, 20)).at, (await yard.inspect(70, -10)).at];
     await yard.page.keyboard.press('p');
-    for (const [dx, dy] of [[-60, 20], [70, -10]] as const) {
-      const pixel = await look.middle(yard.page, dx, dy);
-      await yard.page.mouse.click(pixel.x, pixel.y);
-      await yard.page.waitForTimeout(600);
-    }
+    await measureTwoPoints('profile');
     await yard.page.keyboard.press('Enter');
     const card = yard.page.locator('.card[data-kind=profile]');
     await card.getByText('in the band').waitFor({ timeout: 30_000 });

@@ -94,16 +94,17 @@ describe('the cursor', () => {
     expect(picks()).toBe(1);
     const { x, y } = await look.middle(field.page);
     await field.page.mouse.down(); // which asks for the point to turn around
+    await expect.poll(picks, { timeout: 30_000 }).toBe(2);
     for (let i = 1; i <= 8; ++i) {
       await field.page.mouse.move(x + 4 * i, y);
-      await field.page.waitForTimeout(120);
+      await field.page.waitForTimeout(120); // for a question that must not be asked
     }
     expect(picks()).toBe(2);
     expect(await field.page.locator('.cursor').count()).toBe(0);
     wire.holdFrames();
     await field.page.mouse.up();
     await field.page.mouse.move(x + 5, y);
-    await field.page.waitForTimeout(800);
+    await field.page.waitForTimeout(800); // likewise
     expect(picks()).toBe(2);
     wire.releaseFrames();
   });

@@ -59,8 +59,8 @@ describe('the picture', () => {
 
   it('looks straight down and still agrees with `surfcastd render`', async () => {
     await yard.open();
-    await yard.page.keyboard.press('5');
-    await yard.page.waitForTimeout(600);
+    await look.placeNow(yard.page);
+    await look.turned(yard.page, () => yard.page.keyboard.press('5'));
     await look.sharp(yard.page);
     expect(await look.differenceFrom(yard.page, await yard.renderedFromAddress())).toBe(0);
   });
@@ -84,8 +84,7 @@ describe('a real scan', () => {
       const { position, color } = JSON.parse(picked) as { position: number[]; color: number[] };
       expect(at).toEqual(position);
       expect(rows.get('colour')).toBe(color.join(' '));
-      await yard.page.keyboard.press('5');
-      await yard.page.waitForFunction((former) => location.href !== former, yard.page.url(), { timeout: 20_000 });
+      await look.turned(yard.page, () => yard.page.keyboard.press('5'));
       await look.sharp(yard.page);
       expect(await look.differenceFrom(yard.page, await yard.renderedFromAddress(lion))).toBe(0);
     } finally {

@@ -57,6 +57,9 @@ let server: FakeServer;
 beforeEach(async () => (server = await FakeServer.start()));
 afterEach(() => server.stop());
 
+/** Waits until a check passes, however busy the machine. */
+const eventually = (check: () => void): Promise<void> => vi.waitFor(check, { timeout: 20_000 });
+
 function connect(): Promise<Connection> {
   return new Promise((resolve, reject) => {
     const connection: Connection = new Connection(server.url, {
@@ -81,7 +84,7 @@ describe('a connection', () => {
     const connection = await connect();
     const first = connection.ask({ case: 'describeModel', value: { model: 'a' } }, 'modelDescription');
     const second = connection.ask({ case: 'ping', value: {} }, 'pong');
-    await vi.waitFor(() => expect(server.requests).toHaveLength(2));
+    await eventually(() => expect(server.requests).toHaveLength(2));
     server.send(server.requests[1]!.id, { case: 'pong', value: {} });
     await second;
     server.send(server.requests[0]!.id, { case: 'modelDescription', value: { model: 'a' } });
@@ -107,7 +110,7 @@ describe('a connection', () => {
       });
     });
     const asked = connection.ask({ case: 'ping', value: {} }, 'pong');
-    await vi.waitFor(() => expect(server.requests).toHaveLength(1));
+    await eventually(() => expect(server.requests).toHaveLength(1));
     await server.stop();
     await expect(asked).rejects.toMatchObject({ code: ErrorCode.UNAVAILABLE });
     expect(refused).toEqual([undefined]);
@@ -147,23 +150,23 @@ describe('a link', () => {
   it('comes back after the server was away', async () => {
     const opened: Connection[] = [];
     follow((connection) => opened.push(connection));
-    await vi.waitFor(() => expect(opened).toHaveLength(1));
+    await eventually(() => expect(opened).toHaveLength(1));
     const { port } = server;
     await server.stop();
-    await vi.waitFor(() => expect(states.at(-1)?.kind).toBe('waiting'));
+    await eventually(() => expect(states.at(-1)?.kind).toBe('waiting'));
     server = await FakeServer.start(port);
-    await vi.waitFor(() => expect(opened).toHaveLength(2), { timeout: 5000 });
+    await eventually(() => expect(opened).toHaveLength(2));
   });
 
   it('connects anew to another URL, and only then', async () => {
     const opened: Connection[] = [];
     follow((connection) => opened.push(connection));
-    await vi.waitFor(() => expect(opened).toHaveLength(1));
+    await eventually(() => expect(opened).toHaveLength(1));
     link.current?.renew();
     expect(states.at(-1)?.kind).toBe('open');
     url = `${server.url}?model=church`;
     link.current?.renew();
-    await vi.waitFor(() => expect(opened).toHaveLength(2));
+    await eventually(() => expect(opened).toHaveLength(2));
     expect(states.map((state) => state.kind)).toEqual(['connecting', 'open', 'connecting', 'open']);
     expect(server.targets).toEqual(['/ws', '/ws?model=church']);
   });
@@ -178,23 +181,23 @@ describe('a link', () => {
     };
     server.answer = answer;
     follow((_, views) => opened.push(views));
-    await vi.waitFor(() => expect(secrets).toEqual(['']));
+    await eventually(() => expect(secrets).toEqual(['']));
     const { port } = server;
     await server.stop();
     server = await FakeServer.start(port);
     server.answer = answer;
-    await vi.waitFor(() => expect(opened).toEqual([[], [7n]]), { timeout: 5000 });
+    await eventually(() => expect(opened).toEqual([[], [7n]]));
     expect(secrets).toEqual(['', 'secret 1']);
   });
 
   it('comes back at once to whoever goes on for a server that leaves', async () => {
     const opened: Connection[] = [];
     follow((connection) => opened.push(connection));
-    await vi.waitFor(() => expect(opened).toHaveLength(1));
+    await eventually(() => expect(opened).toHaveLength(1));
     vi.spyOn(Date, 'now').mockReturnValue(1000);
     vi.spyOn(Math, 'random').mockReturnValue(0);
     server.leave();
-    await vi.waitFor(() => expect(opened).toHaveLength(2));
+    await eventually(() => expect(opened).toHaveLength(2));
     vi.restoreAllMocks();
     expect(states.find(({ kind }) => kind === 'waiting')).toMatchObject({ until: 1000 });
   });
@@ -202,7 +205,7 @@ describe('a link', () => {
   it('does not come back to a server of another version', async () => {
     server.hello = serverHello(7, 1, 'this server speaks version 7');
     follow(() => undefined);
-    await vi.waitFor(() => expect(states.at(-1)?.kind).toBe('refused'));
+    await eventually(() => expect(states.at(-1)?.kind).toBe('refused'));
     expect(states.at(-1)).toMatchObject({ message: expect.stringContaining('version 7') as string });
   });
 });
@@ -218,7 +221,7 @@ describe('a view', () => {
       failed: () => undefined,
     });
     expect([view.update(picture, true), view.update(picture, false)]).toEqual([1n, 2n]);
-    await vi.waitFor(() => expect(server.requests).toHaveLength(3));
+    await eventually(() => expect(server.requests).toHaveLength(3));
     const { id } = server.requests[0]!;
     expect(server.requests.map((request) => request.id)).toEqual([id, id, id]);
 
@@ -228,12 +231,12 @@ describe('a view', () => {
     piece(2n, [1, 2], true);
     piece(2n, [3], true);
     piece(2n, [4, 5], false);
-    await vi.waitFor(() => expect(frames).toHaveLength(1));
+    await eventually(() => expect(frames).toHaveLength(1));
     expect([...frames[0]!.frame.picture!.data]).toEqual([1, 2, 3, 4, 5]);
     view.acknowledge(2n, 3.5);
 
     const painted = () => server.requests.filter((request) => request.kind.case === 'framePainted');
-    await vi.waitFor(() => expect(painted()).toHaveLength(4));
+    await eventually(() => expect(painted()).toHaveLength(4));
     expect(painted().map((request) => (request.kind.value as { frame: bigint }).frame)).toEqual([1n, 2n, 2n, 2n]);
     connection.close();
   });
@@ -247,9 +250,9 @@ describe('a view', () => {
     const second = await connect();
     view.goOn(second);
     server.send(view.id, { case: 'viewFrame', value: { frame: 1n, update: 1n, picture: {} } });
-    await vi.waitFor(() => expect(frames).toHaveLength(1));
+    await eventually(() => expect(frames).toHaveLength(1));
     expect(view.update(picture, false)).toBe(2n);
-    await vi.waitFor(() => expect(server.requests.at(-1)?.id).toBe(view.id));
+    await eventually(() => expect(server.requests.at(-1)?.id).toBe(view.id));
     second.close();
   });
 
@@ -258,7 +261,7 @@ describe('a view', () => {
     const failed = new Promise((resolve) => {
       new ViewSession(connection, picture, { frame: () => undefined, failed: resolve });
     });
-    await vi.waitFor(() => expect(server.requests).toHaveLength(1));
+    await eventually(() => expect(server.requests).toHaveLength(1));
     const { id } = server.requests[0]!;
     server.send(id, { case: 'error', value: { code: ErrorCode.UNAVAILABLE, message: 'busy' } });
     expect(await failed).toMatchObject({ code: ErrorCode.UNAVAILABLE, message: 'busy' });

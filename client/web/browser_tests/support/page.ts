@@ -96,9 +96,17 @@ export async function drag(page: Page, dx: number, dy: number): Promise<void> {
   await page.mouse.up();
 }
 
+/** Does what changes the view, and waits until the address tells of it. */
+export async function turned(page: Page, action: () => Promise<void>): Promise<void> {
+  const former = page.url();
+  await action();
+  await page.waitForFunction((url) => location.href !== url, former, { timeout: 60_000 });
+}
+
 /** The parameters of the address once it has been updated to the view. */
 export async function placeNow(page: Page): Promise<URLSearchParams> {
   await page.waitForFunction(() => location.hash.includes('position='), undefined, { timeout: 20_000 });
-  await page.waitForTimeout(400);
+  // Timers of a page end in their order: this one after that of the address, which is shorter and began before.
+  await page.evaluate(() => new Promise((resolve) => setTimeout(resolve, 300)));
   return new URLSearchParams(new URL(page.url()).hash.split('?')[1]);
 }
