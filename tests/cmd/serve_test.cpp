@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 
 #include <sys/stat.h>
 
@@ -70,17 +71,21 @@ TEST_F(ServeTest, AReaderOfTheLogThatGoesAwayDoesNotEndTheServer) {
   EXPECT_EQ(end(SIGTERM), 0) << "it says that it stops, and nobody reads it";
 }
 
-/// The process that draws for a server, or that answers for it ("query-worker"); -1: there is none.
-pid_t worker_of(pid_t server, const std::string& purpose = "render-worker") {
+/// The child of a server whose command line meets a condition; -1: there is none.
+pid_t child_of(pid_t server, const std::function<bool(const std::string& command)>& is_meant) {
   for (const fs::directory_entry& process : fs::directory_iterator("/proc")) {
     const std::string name = process.path().filename();
     if (name.find_first_not_of("0123456789") != std::string::npos) continue;
-    const std::string command = content(process.path() / "cmdline");
     const std::string status = content(process.path() / "status");
     const bool child = status.find("\nPPid:\t" + std::to_string(server) + "\n") != std::string::npos;
-    if (child && command.find(purpose) != std::string::npos) return std::stoi(name);
+    if (child && is_meant(content(process.path() / "cmdline"))) return std::stoi(name);
   }
   return -1;
+}
+
+/// The process that draws for a server, or that answers for it ("query-worker"); -1: there is none.
+pid_t worker_of(pid_t server, const std::string& purpose = "render-worker") {
+  return child_of(server, [&](const std::string& command) { return command.find(purpose) != std::string::npos; });
 }
 
 TEST_F(ServeTest, ARenderWorkerThatIsKilledIsReplaced) {
@@ -330,7 +335,7 @@ TEST_F(ServeTest, AScanThatCannotBeBuiltIsListedWithItsReasonAndOthersAreServed)
   EXPECT_EQ(end(SIGTERM), 0);
 }
 
-/// A scan of whose model the build takes much longer than the rest of a test.
+/// A scan of whose model the build takes a while.
 class ServeLargeScanTest : public ServeTest {
  protected:
   void SetUp() override {
@@ -339,16 +344,32 @@ class ServeLargeScanTest : public ServeTest {
     for (int i = 0; i < 1'500'000; ++i) stream << i % 1500 << ' ' << i / 1500 << ' ' << (i % 1500) * (i % 7) << '\n';
   }
 
+  /// Waits until the model is being built, and returns the process. Those that make previews take samples.
+  [[nodiscard]] pid_t building() const {
+    for (int i = 0; i < 3000; ++i) {
+      const pid_t process = child_of(server_, [](const std::string& command) {
+        return command.find("--background") != std::string::npos && command.find("--sample") == std::string::npos;
+      });
+      if (process > 0) return process;
+      ::usleep(10'000);
+    }
+    return -1;
+  }
+
   fs::path large_;
 };
 
 TEST_F(ServeLargeScanTest, ThePortIsOpenAtOnceAndAPreviewIsServedWhileTheModelIsBuilt) {
   serve("--build-threads 1 --preview-points 20000 " + large_.string());
   EXPECT_EQ(client::run_program(SURFCAST_CLIENT " models " + url_).output, "large\n");
+  const pid_t build = building();
+  ASSERT_GT(build, 0);
+  ::kill(build, SIGSTOP);  // or it might be done before the preview is drawn
   const std::string list = list_until("\"preview\": true");
   EXPECT_NE(list.find("\"percent\""), std::string::npos) << list;
   EXPECT_NE(list.find("\"seconds_left\""), std::string::npos) << list;
   EXPECT_EQ(draw("large").code, 0);
+  ::kill(build, SIGCONT);
   EXPECT_EQ(end(SIGTERM), 0) << "the build is given up";
   EXPECT_TRUE(cached().empty()) << "and leaves nothing behind";
 }
