@@ -254,10 +254,10 @@ set(SURFCAST_COMPUTING_TEST_OPTIONS $<$<CONFIG:Debug>:-O0> $<$<CONFIG:Release>:-
 # sanitizer; `threads` is about threads and runs under the thread sanitizer; `sockets` uses threads beside, and runs
 # under it in `make nightly`, as all unit tests do under the address sanitizer.
 # COMPUTES: optimized a little, as tests with the labels gl and slow are.
-# SAMPLE: a filter of GoogleTest. The cases that it selects run in `make test`, the rest of the program in
-# `make nightly` alone: they have the suite `nightly` as well.
+# NIGHTLY: a filter of GoogleTest. The cases that it selects run in `make nightly` alone, not in `make test`: they are a
+# test of their own with the suite `nightly`.
 function(surfcast_test name)
-  cmake_parse_arguments(ARG "WHOLE;COMPUTES" "SAMPLE" "SOURCES;LIBS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "WHOLE;COMPUTES" "NIGHTLY" "SOURCES;LIBS;LABELS" ${ARGN})
   add_executable(${name} ${ARG_SOURCES})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_link_libraries(${name} PRIVATE surfcast_warnings ${ARG_LIBS} GTest::gtest_main GTest::gmock)
@@ -290,9 +290,9 @@ function(surfcast_test name)
   if(ARG_WHOLE OR SURFCAST_SANITIZE)
     set(whole TRUE)
   endif()
-  if(ARG_SAMPLE AND NOT SURFCAST_SANITIZE)
-    surfcast_add_cases(${name} ${name} ${whole} "${ARG_SAMPLE}" "${ARG_LABELS}")
-    surfcast_add_cases(${name} ${name}_rest ${whole} "-${ARG_SAMPLE}" "${ARG_LABELS}-nightly")
+  if(ARG_NIGHTLY AND NOT SURFCAST_SANITIZE)
+    surfcast_add_cases(${name} ${name} ${whole} "-${ARG_NIGHTLY}" "${ARG_LABELS}")
+    surfcast_add_cases(${name} ${name}_nightly ${whole} "${ARG_NIGHTLY}" "${ARG_LABELS}-nightly")
   else()
     surfcast_add_cases(${name} ${name} ${whole} "*" "${ARG_LABELS}")
   endif()

@@ -167,46 +167,6 @@ TEST_F(SurfelsAndGaussiansGL, SurfelsBesideGaussiansStayWhatTheyAre) {
   }
 }
 
-/// A ball of radius 1 about the origin, of points in a spiral, each with its own colour.
-std::filesystem::path write_ball(const std::filesystem::path& path) {
-  constexpr int kPoints = 4000;
-  std::string text;
-  for (int i = 0; i < kPoints; ++i) {
-    const double z = 1 - (2 * i + 1.0) / kPoints;
-    const double turn = 2.399963229728653 * i;  // the golden angle
-    const double r = std::sqrt(1 - z * z);
-    text += std::to_string(r * std::cos(turn)) + " " + std::to_string(r * std::sin(turn)) + " " + std::to_string(z) +
-            " " + std::to_string(100 + i % 50) + " 140 " + std::to_string(200 - i % 70) + "\n";
-  }
-  return testing::write(path, text);
-}
-
-// Pixels of a lane that are finished, while others are not, must keep nothing that hides them.
-TEST_F(SurfelsAndGaussiansGL, ACurvedSurfaceBeforeGaussiansIsDrawnAsAloneFromNearAndFar) {
-  const auto ball = write_ball(folder_ / "ball.xyz");
-  const GaussianModel hidden{{round_splat({0, 0, -3}, 1, 0.9, glm::dvec3(0.9, 0.1, 0.1))}, 0};
-  const ModelPointer alone = build({ball});
-  const ModelPointer both = build({ball, testing::write_ply(folder_ / "hidden.ply", hidden)});
-  for (const double distance : {1.15, 1.4, 2.0, 3.0, 8.0}) {
-    picture::PictureRequest request = request_of();
-    request.silhouettes = false;
-    request.camera->position = {0.3 * distance, 0, std::sqrt(0.91) * distance};
-    const picture::Image mixed = draw(*renderer_, both, request).image;
-    const picture::Image plain = draw(*renderer_, alone, request).image;
-    const double pixels = kSide / 2 / std::tan(kViewAngle / 2 * 3.14159265358979 / 180);
-    const double inside = std::min(0.7 * pixels / distance, kSide / 2 - 1.0);  // of the ball, away from its outline
-    for (int y = 0; y < kSide; ++y) {
-      for (int x = 0; x < kSide; ++x) {
-        if (std::hypot(x + 0.5 - kSide / 2, y + 0.5 - kSide / 2) > inside) continue;
-        for (int c = 0; c < 3; ++c) {
-          ASSERT_NEAR(code_at(mixed, {x, y})[c], code_at(plain, {x, y})[c], 1.01 / 255)
-              << distance << ' ' << x << ' ' << y;
-        }
-      }
-    }
-  }
-}
-
 TEST_F(SurfelsAndGaussiansGL, ListsOfSeveralRoundsHaveTheSurfaceInItsPlace) {
   // More Gaussians on the middle than a lane draws in one dispatch, half of them behind the plane.
   const glm::dvec3 front(0.1, 0.8, 0.3);
