@@ -96,7 +96,8 @@ def script_folder(path):
 
 
 class Test:
-    def __init__(self, graph, entry):
+    def __init__(self, graph, number, entry):
+        self.number = number  # by which ctest selects it
         self.name = entry["name"]
         properties = {p["name"]: p["value"] for p in entry.get("properties", [])}
         self.labels = "|".join(properties.get("LABELS", []))
@@ -115,7 +116,7 @@ class Test:
 
 def read_tests(graph):
     listed = json.loads(output_of("ctest", "--test-dir", str(graph.build), "--show-only=json-v1"))
-    return [Test(graph, entry) for entry in listed["tests"]]
+    return [Test(graph, number, entry) for number, entry in enumerate(listed["tests"], 1)]
 
 
 def recorded_costs(build):
@@ -155,6 +156,8 @@ def run(build, base, seconds):
     costs = recorded_costs(build)
     rows, tests = affected(build, base)
     for test, _ in rows:
+        if "nightly" in test.labels:
+            continue
         cost = costs.get(test.name, 1.0)
         fits = spent + cost <= seconds * os.cpu_count()
         (chosen if fits else left).append(test)
@@ -164,9 +167,11 @@ def run(build, base, seconds):
         print(f"left for `make test`: {', '.join(sorted({os.path.basename(test.program) for test in left}))}", file=sys.stderr)
     if not chosen:
         return 0
-    names = build / "affected_tests.txt"
-    names.write_text("".join(f"^{re.escape(test.name)}$\n" for test in chosen))
-    return subprocess.run(["ctest", "--preset", "release", f"-j{os.cpu_count()}", "--tests-from-file", str(names)],
+    # First, last and step of a range, and then single numbers.
+    first, *others = [str(test.number) for test in chosen]
+    numbers = build / "affected_tests.txt"
+    numbers.write_text(",".join([first, first, "1", *others]) + "\n")
+    return subprocess.run(["ctest", "--preset", "release", f"-j{os.cpu_count()}", "--tests-information", str(numbers)],
                           cwd=ROOT, check=False).returncode
 
 
