@@ -73,9 +73,10 @@ Rows surface_at_first(Light light) {
 bool composite_columns(inout LightColumns light, ColumnSums sums, Columns surface, float one, vec2 pixel) {
   bool more = false;
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
-    composite(light[c], sums[c], surface[c], one, column(pixel, c));
+    composite(light[c], sums[c], surface[c], one, column(pixel, c), c);
     more = more || any_of(both(less(Rows(0.0), surface[c]), less(Rows(kOpaque), light[c].transmittance)));
   }
+  keep_layers(pixel);
   return more;
 }
 

@@ -216,7 +216,7 @@ void take_surface(inout Pixels pixels, int c, SurfaceSums sums, Rows begin, Rows
   joins *= mix(Rows(0.0), Rows(1.0), at_most(pixels.waiting[c].end, begin));
   joins = mix(Rows(1.0), joins, open);
   Rows opacity = opacity_of(pixels.waiting[c]);
-  composite_waiting(pixels.light[c], pixels.waiting[c], opacity, 1.0 - joins, column(pixel, c));
+  composite_waiting(pixels.light[c], pixels.waiting[c], opacity, 1.0 - joins, column(pixel, c), c);
   Rows last = mix(pixels.waiting[c].end, end, open);
   wait_for_next(pixels.waiting[c], sums, last, joins, one);
   pixels.limit[c] = mix(pixels.limit[c], end, open);
@@ -226,7 +226,7 @@ void blend_medium(inout Pixels pixels, int c, SurfaceSums sums, float one, vec2 
   wait_for_next(pixels.waiting[c], sums, Rows(0.0), Rows(0.0), one);
   Rows opacity = 1.0 - exp(-kDepthUnit * pixels.waiting[c].count);
   opacity = mix(Rows(0.0), opacity, less(Rows(0.0), pixels.waiting[c].opacity));
-  composite_waiting(pixels.light[c], pixels.waiting[c], opacity, Rows(1.0), column(pixel, c));
+  composite_waiting(pixels.light[c], pixels.waiting[c], opacity, Rows(1.0), column(pixel, c), c);
 }
 
 // Draws the next surface, or with `medium` everything behind the limits. False if all pixels are finished but for what
@@ -250,6 +250,7 @@ bool draw_next(TileLists tile, vec2 pixel, float unit, bool medium, inout Pixels
       more = more || any_of(open[c]);
     }
   }
+  keep_layers(pixel);
   if (more) select_behind(tile, open, pixels.limit);
   return share_any(more);
 }
@@ -260,12 +261,13 @@ bool draw_waiting(TileLists tile, vec2 pixel, inout Pixels pixels) {
   bool more = false;
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
     Rows opacity = opacity_of(pixels.waiting[c]);
-    composite_waiting(pixels.light[c], pixels.waiting[c], opacity, Rows(1.0), column(pixel, c));
+    composite_waiting(pixels.light[c], pixels.waiting[c], opacity, Rows(1.0), column(pixel, c), c);
     BoolRows seen = less(Rows(kOpaque), pixels.light[c].transmittance);
     pixels.limit[c] = mix(Rows(0.0), pixels.limit[c], seen);
     open[c] = less(Rows(0.0), pixels.limit[c]);
     more = more || any_of(open[c]);
   }
+  keep_layers(pixel);
   if (more) select_behind(tile, open, pixels.limit);
   return share_any(more);
 }

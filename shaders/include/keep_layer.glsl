@@ -6,17 +6,34 @@ layout(std430, binding = SURFCAST_BIND_LAYERS) writeonly buffer Layers { uint la
 
 const float kFarthestLayer = 1e-36;  // an inverse depth
 
-// Words: inverse depth; the light of the surface behind those in front of it, and what these and itself let through, as
-// four halves. `first`: the first pixel of the column.
-void keep_layer(int layer, vec2 first, Rows inverse_depth, Rows red, Rows green, Rows blue, Rows transmittance) {
-  if (layer >= SURFCAST_LAYERS_KEPT) return;
+// The surface that each pixel of the lane composites now: its inverse depth, 0 for none; the light of the surface behind
+// those in front of it, and what these and itself let through, as four halves; the number of surfaces before it.
+uvec4 next_layer[SURFCAST_COLUMNS * SURFCAST_ROWS];
+
+void note_layer(int c, Rows number, Rows inverse_depth, Rows red, Rows green, Rows blue, Rows transmittance) {
   for (int i = 0; i < SURFCAST_ROWS; ++i) {
-    ivec2 at = ivec2(first) - frame.region.xy + ivec2(0, i);
-    if (any(greaterThanEqual(at, frame.region.zw)) || ROW(inverse_depth, i) <= 0.0) continue;
-    int word = ((at.y * frame.region.z + at.x) * SURFCAST_LAYERS_KEPT + layer) * SURFCAST_LAYER_WORDS;
-    layers[word] = floatBitsToUint(ROW(inverse_depth, i));
-    layers[word + 1] = packHalf2x16(vec2(ROW(red, i), ROW(green, i)));
-    layers[word + 2] = packHalf2x16(vec2(ROW(blue, i), ROW(transmittance, i)));
+    next_layer[c * SURFCAST_ROWS + i] =
+        uvec4(floatBitsToUint(ROW(inverse_depth, i)), packHalf2x16(vec2(ROW(red, i), ROW(green, i))),
+              packHalf2x16(vec2(ROW(blue, i), ROW(transmittance, i))), uint(ROW(number, i)));
   }
 }
+
+// Writes what was noted for all columns. `first`: the first pixel of the lane. The compiler does not know how often the
+// loop runs, so that it stays a loop: unrolled, it took a software driver most of a minute to compile.
+void keep_layers(vec2 first) {
+  ivec2 corner = ivec2(first) - frame.region.xy;
+  int pixels = frame.region.z > 0 ? SURFCAST_COLUMNS * SURFCAST_ROWS : 0;
+  for (int k = 0; k < pixels; ++k) {
+    uvec4 noted = next_layer[k];
+    ivec2 at = corner + ivec2(k / SURFCAST_ROWS, k % SURFCAST_ROWS);
+    bool kept = uintBitsToFloat(noted.x) > 0.0 && noted.w < uint(SURFCAST_LAYERS_KEPT);
+    if (!kept || any(greaterThanEqual(at, frame.region.zw))) continue;
+    int word = ((at.y * frame.region.z + at.x) * SURFCAST_LAYERS_KEPT + int(noted.w)) * SURFCAST_LAYER_WORDS;
+    layers[word] = noted.x;
+    layers[word + 1] = noted.y;
+    layers[word + 2] = noted.z;
+  }
+}
+#else
+void keep_layers(vec2 first) {}
 #endif

@@ -44,8 +44,8 @@ Rows headlight(Rows nx, Rows ny, Rows nz, vec2 pixel) {
 }
 
 // Blends one layer behind the layers drawn so far. `surface` is the inverse depth of its opaque discs, pushed back.
-// `one` is the weight of an integer unit of the sums.
-void composite(inout Light light, PixelSums sums, Rows surface, float one, vec2 pixel) {
+// `one` is the weight of an integer unit of the sums. `pixel` is the first one of column c.
+void composite(inout Light light, PixelSums sums, Rows surface, float one, vec2 pixel, int c) {
   Rows weight = fixed_value(sums.weight);
   Rows share = 1.0 / max(weight, Rows(1.0));
   Rows coverage = min(weight * (one / float(SURFCAST_COVERAGE_MAGNIFIED)), Rows(1.0));
@@ -81,7 +81,7 @@ void composite(inout Light light, PixelSums sums, Rows surface, float one, vec2 
   // Fringes that belong to no surface count as the farthest one. A pixel that is finished, while others of its lane are
   // not, shows nothing of this layer: its surface is the one that hides everything (kHidesAll), and none to keep.
   Rows kept = mix(Rows(kFarthestLayer), inverse_depth, less(Rows(0.0), surface));
-  keep_layer(light.layer++, pixel, mix(Rows(0.0), kept, less(Rows(0.0), seen)), seen * red, seen * green, seen * blue,
-             light.transmittance);
+  note_layer(c, Rows(float(light.layer++)), mix(Rows(0.0), kept, less(Rows(0.0), seen)), seen * red, seen * green,
+             seen * blue, light.transmittance);
 #endif
 }

@@ -114,19 +114,8 @@ Rows opacity_of(Waiting waiting) {
   return coverage * (1.0 - exp2(log2(max(1.0 - share, Rows(1e-7))) * sheets));
 }
 
-#ifdef SURFCAST_LAYERS
-// As keep_layer; each pixel has a number of its own.
-void keep_layers(Rows number, vec2 first, Rows inverse_depth, Rows red, Rows green, Rows blue, Rows transmittance) {
-  for (int layer = 0; layer < SURFCAST_LAYERS_KEPT; ++layer) {
-    Rows own = mix(Rows(0.0), inverse_depth, both(at_most(number, Rows(float(layer))),
-                                                  less(Rows(float(layer)), number + 1.0)));
-    keep_layer(layer, first, own, red, green, blue, transmittance);
-  }
-}
-#endif
-
 // Composites what waits, with this opacity, where `now` is 1 and not where it is 0.
-void composite_waiting(inout Light light, inout Waiting waiting, Rows opacity, Rows now, vec2 pixel) {
+void composite_waiting(inout Light light, inout Waiting waiting, Rows opacity, Rows now, vec2 pixel, int c) {
   Rows share = 1.0 / max(waiting.opacity, Rows(1e-30));
   Rows part = light.transmittance * opacity * now;
 #ifdef SURFCAST_EYE_DOME
@@ -157,7 +146,7 @@ void composite_waiting(inout Light light, inout Waiting waiting, Rows opacity, R
   light.blue += part * blue;
 #ifdef SURFCAST_LAYERS
   Rows farthest = mix(Rows(0.0), Rows(kFarthestLayer), less(Rows(0.0), part));
-  keep_layers(waiting.drawn, pixel, mix(farthest, inverse_depth * now, less(Rows(0.0), inverse_depth * now)),
+  note_layer(c, waiting.drawn, mix(farthest, inverse_depth * now, less(Rows(0.0), inverse_depth * now)),
               part * red, part * green, part * blue, light.transmittance);
 #endif
   waiting.drawn += mix(Rows(0.0), now, less(Rows(0.0), opacity));
