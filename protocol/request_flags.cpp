@@ -10,6 +10,7 @@
 #include "base/contract.h"
 #include "base/mapped_file.h"
 #include "protocol/camera_path.h"
+#include "protocol/film.h"
 #include "protocol/lights_file.h"
 #include "protocol/pick_result_text.h"
 #include "protocol/picture_fields.h"
@@ -111,7 +112,8 @@ void RequestFlags::set_default(std::string_view field, std::string_view text) {
 void RequestFlags::add_to(CLI::App& command) {
   command
       .add_option("--output", output_,
-                  "picture file; - is standard output and needs --format; with --path, a name with %d or %05d")
+                  "picture file; - is standard output and needs --format; with --path, a name with %d or %05d, or "
+                  "that of a film (mp4, webm)")
       ->required()
       ->envname(environment_name("output"))
       ->type_name("FILE");
@@ -150,6 +152,7 @@ void RequestFlags::add_fields_to(CLI::App& command, bool file) {
 }
 
 Result<wire::FileFormat> RequestFlags::format() const {
+  if (is_film(output_)) return wire::FILE_FORMAT_PNG;  // of the frames
   if (const std::string& given = values_.at("format"); !given.empty()) return parse_file_format(given);
   if (output_ == "-") return fail(ErrorKind::kInvalidInput, "--output - needs --format");
   std::string extension = std::filesystem::path(output_).extension().string();
@@ -163,6 +166,12 @@ Result<wire::FileFormat> RequestFlags::format() const {
 }
 
 Status RequestFlags::check() const {
+  if (is_film(output_) && path_.empty()) {
+    return fail(ErrorKind::kInvalidInput, output_ + ": a film needs the camera path --path");
+  }
+  if (is_film(output_) && !values_.at("format").empty()) {
+    return fail(ErrorKind::kInvalidInput, "--format is of pictures, and " + output_ + " is a film");
+  }
   const Result<wire::FileFormat> chosen = format();
   if (!chosen) return fail(chosen.error());
   if (!values_.at("channels").empty() && *chosen != wire::FILE_FORMAT_EXR) {
@@ -170,7 +179,8 @@ Status RequestFlags::check() const {
   }
   if (!path_.empty()) {
     if (!stats_.empty()) return fail(ErrorKind::kInvalidInput, "--stats is of one picture, and --path draws many");
-    if (const Result<std::string> name = frame_name(output_, 0); !name) return fail(name.error());
+    const Result<std::string> name = is_film(output_) ? output_ : frame_name(output_, 0);
+    if (!name) return fail(name.error());
   }
   return check_view_flags();
 }

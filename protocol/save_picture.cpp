@@ -5,6 +5,7 @@
 
 #include "base/atomic_file.h"
 #include "protocol/camera_path.h"
+#include "protocol/film.h"
 #include "protocol/picture_fields.h"
 
 namespace surfcast::protocol {
@@ -26,6 +27,40 @@ json to_json(const wire::Camera& camera) {
 Status write_to_stdout(const std::string& data) {
   if (std::fwrite(data.data(), 1, data.size(), stdout) == data.size() && std::fflush(stdout) == 0) return {};
   return fail(ErrorKind::kIo, "cannot write the picture to standard output");
+}
+
+using Draw = std::function<Result<wire::Picture>(const wire::DrawPicture&)>;
+
+/// Draws the frames of the camera path, and hands each to `take` with its number.
+Status draw_path(const RequestFlags& flags, const wire::DrawPicture& picture, const Draw& draw,
+                 const std::function<Status(int, const wire::Picture&)>& take) {
+  const Result<CameraPath> path = CameraPath::read(flags.path());
+  if (!path) return fail(path.error());
+  const Result<int> frames = path->frames(flags.frames_per_second());
+  if (!frames) return fail(frames.error());
+  for (int number = 0; number < *frames; ++number) {
+    wire::DrawPicture frame = picture;
+    *frame.mutable_camera() = path->camera_of(number, flags.frames_per_second());
+    const Result<wire::Picture> drawn = draw(frame);
+    if (!drawn) return fail(drawn.error());
+    if (Status taken = take(number, *drawn); !taken) return taken;
+  }
+  return {};
+}
+
+Status draw_frames(const RequestFlags& flags, const wire::DrawPicture& picture, const Draw& draw) {
+  return draw_path(flags, picture, draw, [&](int number, const wire::Picture& drawn) -> Status {
+    const Result<std::string> name = frame_name(flags.output(), number);
+    return name ? save_picture(drawn, *name, {}) : fail(name.error());
+  });
+}
+
+Status draw_film(const RequestFlags& flags, const wire::DrawPicture& picture, const Draw& draw) {
+  Result<FilmWriter> film = FilmWriter::create(flags.output(), flags.frames_per_second());
+  if (!film) return fail(film.error());
+  const auto add = [&](int /*number*/, const wire::Picture& drawn) { return film->append(drawn.data()); };
+  if (Status drawn = draw_path(flags, picture, draw, add); !drawn) return drawn;
+  return film->finish();
 }
 
 }  // namespace
@@ -71,20 +106,7 @@ Status draw_and_save(const RequestFlags& flags, const wire::DrawPicture& picture
     const Result<wire::Picture> drawn = draw(picture);
     return drawn ? save_picture(*drawn, flags.output(), flags.stats()) : fail(drawn.error());
   }
-  const Result<CameraPath> path = CameraPath::read(flags.path());
-  if (!path) return fail(path.error());
-  const Result<int> frames = path->frames(flags.frames_per_second());
-  if (!frames) return fail(frames.error());
-  for (int number = 0; number < *frames; ++number) {
-    wire::DrawPicture frame = picture;
-    *frame.mutable_camera() = path->camera_of(number, flags.frames_per_second());
-    const Result<std::string> name = frame_name(flags.output(), number);
-    if (!name) return fail(name.error());
-    const Result<wire::Picture> drawn = draw(frame);
-    if (!drawn) return fail(drawn.error());
-    if (Status saved = save_picture(*drawn, *name, {}); !saved) return saved;
-  }
-  return {};
+  return is_film(flags.output()) ? draw_film(flags, picture, draw) : draw_frames(flags, picture, draw);
 }
 
 }  // namespace surfcast::protocol

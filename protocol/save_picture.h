@@ -17,7 +17,8 @@ std::string picture_stats_json(const wire::Picture& picture);
 /// atomically.
 Status save_picture(const wire::Picture& picture, const std::string& output, const std::string& stats);
 
-/// Draws the picture that the flags describe, or each frame of their camera path, with `draw`, and saves the results.
+/// Draws the picture that the flags describe, or each frame of their camera path, with `draw`, and saves the results:
+/// as files, or as a film if the name of the output is that of one (is_film).
 Status draw_and_save(const RequestFlags& flags, const wire::DrawPicture& picture,
                      const std::function<Result<wire::Picture>(const wire::DrawPicture&)>& draw);
 

@@ -65,6 +65,19 @@ TEST_F(RequestFlagsTest, ABadFileOfATransferFunctionIsNamed) {
   EXPECT_NE(picture.error().message.find(file), std::string::npos);
 }
 
+TEST_F(RequestFlagsTest, AFilmNeedsAPathAndIsOfOneFormat) {
+  ASSERT_TRUE(parse({"--output", "film.mp4"}));
+  EXPECT_EQ(flags_.check().error().message, "film.mp4: a film needs the camera path --path");
+  ASSERT_TRUE(parse({"--output", "film.mp4", "--path", "path.json", "--format", "png"}));
+  EXPECT_EQ(flags_.check().error().message, "--format is of pictures, and film.mp4 is a film");
+}
+
+TEST_F(RequestFlagsTest, FramesOfAFilmArePng) {
+  ASSERT_TRUE(parse({"--output", "film.webm", "--path", "path.json"}));
+  ASSERT_TRUE(flags_.check());
+  EXPECT_EQ(flags_.request("cube")->format(), wire::FILE_FORMAT_PNG);
+}
+
 TEST_F(RequestFlagsTest, FlagsBecomeARequest) {
   ASSERT_TRUE(parse({"--output", "a.jpg", "--camera-position", "-1,2,3", "--camera-focal-point=0,0,-5", "--resolution",
                      "640,480", "--background", "9,8,7"}));
