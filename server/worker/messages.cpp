@@ -56,8 +56,8 @@ void fields(Archive& archive, T& value) {
 
 template <typename Archive, Is<ConfigureQueries> T>
 void fields(Archive& archive, T& value) {
-  auto& [log_format, sandbox, readable, block_bytes] = value;
-  archive(log_format, sandbox, readable, block_bytes);
+  auto& [log_format, sandbox, readable, block_bytes, memory] = value;
+  archive(log_format, sandbox, readable, block_bytes, memory);
 }
 
 template <typename Archive, Is<Pick> T>

@@ -41,6 +41,7 @@ struct ConfigureQueries {
   bool sandbox = true;
   std::vector<std::string> readable;  ///< files and folders that the sandbox lets the worker read
   uint64_t block_bytes = 0;           ///< of decoded blocks that it keeps
+  uint64_t memory = 0;                ///< bytes that it may allocate; 0: no limit
 };
 
 /// Worker: the answer to the first message. Without a device it is Refused. A query worker has none.

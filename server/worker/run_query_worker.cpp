@@ -85,6 +85,7 @@ class QueryWorker {
       answer(Refused{confined.error()});
       end_worker(EXIT_FAILURE);
     }
+    limit_memory(configure->memory);
     queries_ = service::local_queries(configure->block_bytes, kinds_);
     searched_blocks_ = std::make_unique<pick::SourceBlocks>(configure->block_bytes, kinds_);
     answer(Ready{});

@@ -58,6 +58,15 @@ void answer_server(Channel& channel, const Message& message) {
   if (!channel.send(message)) end_worker(EXIT_SUCCESS);
 }
 
+void limit_memory(uint64_t bytes) {
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+  bytes = 0;  // sanitizers reserve more memory than there is
+#endif
+  if (bytes == 0) return;
+  const rlimit limit{bytes, bytes};
+  ::setrlimit(RLIMIT_DATA, &limit);  // what a process allocates, but not the files that it maps
+}
+
 Status confine_files(const OpenFiles& files) {
   return unless_unknown(restrict_files(files));
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "base/descriptor.h"
@@ -23,6 +24,9 @@ SharedBoard begin_worker(Descriptor memory);
 Received next_message(Channel& channel);
 /// Ends the process if the server has ended.
 void answer_server(Channel& channel, const Message& message);
+
+/// From here on, allocations beyond these bytes fail; 0: no limit.
+void limit_memory(uint64_t bytes);
 
 /// restrict_files(). Here and below, a restriction that the kernel does not know is said and left out.
 Status confine_files(const OpenFiles& files);

@@ -4,7 +4,6 @@
 #include <cerrno>
 #include <chrono>
 #include <csignal>
-#include <cstdlib>
 #include <cstring>
 #include <thread>
 #include <utility>
@@ -15,6 +14,7 @@
 #include <unistd.h>
 
 #include "worker/run_worker.h"
+#include "worker/worker_environment.h"
 
 namespace surfcast::worker {
 namespace {
@@ -37,19 +37,16 @@ std::vector<char*> pointers_to(std::vector<std::string>& texts) {
   return pointers;
 }
 
-/// The variables of this process, and others that it does not have.
-std::vector<std::string> variables_with(const std::vector<std::string>& others) {
+/// The variables of this process.
+std::vector<std::string> own_variables() {
   std::vector<std::string> variables;
   for (char** variable = environ; *variable != nullptr; ++variable) variables.emplace_back(*variable);
-  for (const std::string& other : others) {
-    if (::getenv(other.substr(0, other.find('=')).c_str()) == nullptr) variables.push_back(other);
-  }
   return variables;
 }
 
 Result<pid_t> spawn(std::vector<std::string> command, const std::vector<std::string>& environment,
                     const Descriptor& socket, const Descriptor& memory) {
-  std::vector<std::string> variables = variables_with(environment);
+  std::vector<std::string> variables = worker_environment(own_variables(), environment);
   const std::vector<char*> arguments = pointers_to(command);
   const std::vector<char*> values = pointers_to(variables);
   const Descriptor its_socket = copy_above(socket);

@@ -27,7 +27,7 @@ bool is_its_own_fault(const ProcessEnd& end);
 class WorkerProcess {
  public:
   /// `command`: the program and its arguments, which calls run_worker with kWorkerSocket and kWorkerMemory.
-  /// `environment`: "NAME=value" of variables that this process does not have.
+  /// `environment`: "NAME=value" of variables that it gets beside those of worker_environment().
   static Result<WorkerProcess> start(const std::vector<std::string>& command,
                                      const std::vector<std::string>& environment, size_t pixel_bytes);
   WorkerProcess(WorkerProcess&& other) noexcept;

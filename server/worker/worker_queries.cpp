@@ -111,7 +111,7 @@ class QueryProcess {
             config.command,
             {},
             0,
-            ConfigureQueries{config.log_format, config.sandbox, config.readable, block_bytes}};
+            ConfigureQueries{config.log_format, config.sandbox, config.readable, block_bytes, config.memory}};
   }
 
   /// Tells the worker what it has to know before a question. `model` may be null.

@@ -19,6 +19,7 @@ struct QueryWorkerConfig {
   LogFormat log_format = LogFormat::kText;
   bool sandbox = true;
   std::vector<std::string> readable;          ///< files and folders that the sandbox lets it read, beside libraries
+  uint64_t memory = uint64_t{8} << 30;        ///< bytes that each may allocate; 0: no limit
   std::chrono::milliseconds silence{60'000};  ///< without a block or a word of an answer, before it is taken for hung
   std::chrono::milliseconds pause{2'000};     ///< between two looks at workers that are idle
   service::PickLimits limits;                 ///< threads and memory of picks

@@ -1,6 +1,6 @@
-// A query worker that knows all kinds and balls. The environment says how it fails: CRASHING_BLOCK is the number of a
-// block of balls that ends the process when it is decoded, STOPPING_BLOCK one that stops it there until it is told to
-// go on. LYING=1 makes it answer with what has no meaning.
+// A query worker that knows all kinds and balls. The environment says how it fails: SURFCAST_WORKER_CRASHING_BLOCK is
+// the number of a block of balls that ends the process when it is decoded, SURFCAST_WORKER_STOPPING_BLOCK one that
+// stops it there until it is told to go on. SURFCAST_WORKER_LYING=1 makes it answer with what has no meaning.
 
 #include <chrono>
 #include <csignal>
@@ -30,8 +30,8 @@ class FailingBalls : public testing::BallKind {
                                                                          uint32_t block) const override {
     auto decoded = BallKind::decode(model, block);
     if (!decoded) return decoded;
-    if (is_named("CRASHING_BLOCK", block)) std::raise(SIGSEGV);
-    if (is_named("STOPPING_BLOCK", block)) std::raise(SIGSTOP);
+    if (is_named("SURFCAST_WORKER_CRASHING_BLOCK", block)) std::raise(SIGSEGV);
+    if (is_named("SURFCAST_WORKER_STOPPING_BLOCK", block)) std::raise(SIGSTOP);
     return decoded;
   }
 };
@@ -68,7 +68,7 @@ struct Lie {
 int main() {
   Descriptor socket(worker::kWorkerSocket);
   Descriptor memory(worker::kWorkerMemory);
-  if (std::getenv("LYING") != nullptr) lie(worker::Channel(std::move(socket)));
+  if (std::getenv("SURFCAST_WORKER_LYING") != nullptr) lie(worker::Channel(std::move(socket)));
   static const FailingBalls kBalls;
   std::vector<const kinds::Kind*> kinds(kinds::built_in_kinds().begin(), kinds::built_in_kinds().end());
   kinds.push_back(&kBalls);

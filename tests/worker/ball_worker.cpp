@@ -1,5 +1,6 @@
-// A render worker that draws surfels and balls. The environment says how it fails: CRASHING_BLOCK is the number of a
-// block of balls that ends the process when it is loaded, LYING=1 makes it answer the first picture with nonsense.
+// A render worker that draws surfels and balls. The environment says how it fails: SURFCAST_WORKER_CRASHING_BLOCK is
+// the number of a block of balls that ends the process when it is loaded, SURFCAST_WORKER_LYING=1 makes it answer the
+// first picture with nonsense.
 
 #include <array>
 #include <chrono>
@@ -20,7 +21,7 @@ class CrashingBalls : public testing::BallKind {
  public:
   [[nodiscard]] Result<residency::PackedBlock> load(const model::ModelFile& model, uint32_t block,
                                                     bool attributes) const override {
-    const char* const crashing = std::getenv("CRASHING_BLOCK");
+    const char* const crashing = std::getenv("SURFCAST_WORKER_CRASHING_BLOCK");
     if (crashing != nullptr && std::to_string(block) == crashing) std::raise(SIGSEGV);
     return BallKind::load(model, block, attributes);
   }
@@ -44,7 +45,7 @@ class CrashingBalls : public testing::BallKind {
 int main() {
   Descriptor socket(worker::kWorkerSocket);
   Descriptor memory(worker::kWorkerMemory);
-  if (std::getenv("LYING") != nullptr) lie(worker::Channel(std::move(socket)));
+  if (std::getenv("SURFCAST_WORKER_LYING") != nullptr) lie(worker::Channel(std::move(socket)));
   static const CrashingBalls kBalls;
   static const std::array<const kinds::Kind*, 2> kKinds{kinds::built_in_kinds()[0], &kBalls};
   worker::run_worker(std::move(socket), std::move(memory), kKinds);

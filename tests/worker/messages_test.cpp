@@ -143,7 +143,7 @@ std::vector<Message> full_queries() {
   job.selection.points = {{{{{0, 0, 0}, {1, 1, 1}}}, {{{{0, 1}, {2, 3}}, 0.5, -1, 1}}}, {2, 6}, 3};
   job.selection.source_coordinates = job.selection.normals = true;
   exporter::PointFacts facts{5, {{0, 0, 0}, {1, 1, 1}}, {1, 2, 3}, surfel::Grid{glm::dvec3(0.1), glm::dvec3(7)}};
-  return {ConfigureQueries{LogFormat::kJson, false, {"/usr"}, 99},
+  return {ConfigureQueries{LogFormat::kJson, false, {"/usr"}, 99, 100},
           Pick{3, {{full_request(), true}, 4, 5, 6}},
           Picked{item},
           SearchSurface{3, {full_request(), true}},

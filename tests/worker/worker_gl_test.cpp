@@ -65,8 +65,8 @@ void signal_worker(int signal) {
 class WorkerRendererTest : public ::testing::Test {
  protected:
   void TearDown() override {
-    ::unsetenv("CRASHING_BLOCK");
-    ::unsetenv("LYING");
+    ::unsetenv("SURFCAST_WORKER_CRASHING_BLOCK");
+    ::unsetenv("SURFCAST_WORKER_LYING");
   }
 
   void start(milliseconds silence = milliseconds(60'000)) {
@@ -232,7 +232,7 @@ TEST_F(WorkerRendererTest, AHungWorkerIsReplaced) {
 TEST_F(WorkerRendererTest, ABlockThatEndsTwoWorkersIsQuarantinedByName) {
   uint32_t ball_leaf = 0;  // a leaf of balls is the last block
   while (ball_leaf + 1 < model_->blocks().size()) ++ball_leaf;
-  ::setenv("CRASHING_BLOCK", std::to_string(ball_leaf).c_str(), 1);
+  ::setenv("SURFCAST_WORKER_CRASHING_BLOCK", std::to_string(ball_leaf).c_str(), 1);
   start();
   const auto frame = draw(scene_view());
   ASSERT_FALSE(frame);
@@ -248,7 +248,7 @@ TEST_F(WorkerRendererTest, ABlockThatEndsTwoWorkersIsQuarantinedByName) {
 }
 
 TEST_F(WorkerRendererTest, AWorkerThatAnswersNonsenseIsReplacedAndThenAnError) {
-  ::setenv("LYING", "1", 1);
+  ::setenv("SURFCAST_WORKER_LYING", "1", 1);
   start();
   const auto frame = draw(scene_view());
   ASSERT_FALSE(frame);

@@ -40,8 +40,10 @@ namespace surfcast::worker {
 namespace {
 
 using std::chrono::milliseconds;
+using ::testing::ContainsRegex;
 using ::testing::ElementsAre;
 using ::testing::HasSubstr;
+using ::testing::Not;
 using ::testing::SizeIs;
 using ModelPointer = service::ModelQueries::ModelPointer;
 
@@ -66,8 +68,9 @@ service::PixelQuery pixel_of(const service::SurfaceQuery& view, int x, int y) {
   return {view, x, y, 256};
 }
 
-std::string status_of(pid_t process) {
-  std::ifstream stream("/proc/" + std::to_string(process) + "/status");
+/// A file of /proc that belongs to a process.
+std::string text_of_process(pid_t process, const char* file) {
+  std::ifstream stream("/proc/" + std::to_string(process) + "/" + file);
   return {std::istreambuf_iterator<char>(stream), {}};
 }
 
@@ -78,7 +81,7 @@ std::vector<pid_t> workers() {
   for (const auto& process : std::filesystem::directory_iterator("/proc")) {
     const std::string name = process.path().filename();
     if (name.find_first_not_of("0123456789") != std::string::npos) continue;
-    const std::string status = status_of(std::stoi(name));
+    const std::string status = text_of_process(std::stoi(name), "status");
     if (status.starts_with("Name:\tball_query") && status.find(parent) != std::string::npos) {
       found.push_back(std::stoi(name));
     }
@@ -91,7 +94,7 @@ std::vector<pid_t> workers() {
 pid_t stopped_worker() {
   for (;;) {
     for (const pid_t worker : workers()) {
-      if (status_of(worker).find("\nState:\tT") != std::string::npos) return worker;
+      if (text_of_process(worker, "status").find("\nState:\tT") != std::string::npos) return worker;
     }
     std::this_thread::sleep_for(milliseconds(1));
   }
@@ -121,7 +124,9 @@ void wait_for_cancellation() {
 class WorkerQueriesTest : public ::testing::Test {
  protected:
   void TearDown() override {
-    for (const char* variable : {"CRASHING_BLOCK", "STOPPING_BLOCK", "LYING"}) ::unsetenv(variable);
+    for (const char* variable :
+         {"SURFCAST_WORKER_CRASHING_BLOCK", "SURFCAST_WORKER_STOPPING_BLOCK", "SURFCAST_WORKER_LYING"})
+      ::unsetenv(variable);
   }
 
   void start(const std::function<void(QueryWorkerConfig&)>& change = [](QueryWorkerConfig&) {}) {
@@ -332,9 +337,9 @@ TEST_F(WorkerQueriesTest, KilledWorkersAreReplaced) {
 }
 
 TEST_F(WorkerQueriesTest, AQuestionOutlivesTheWorkerThatIsKilledInItsMiddle) {
-  set_block("STOPPING_BLOCK", ball_leaf());
+  set_block("SURFCAST_WORKER_STOPPING_BLOCK", ball_leaf());
   start();
-  ::unsetenv("STOPPING_BLOCK");  // of the next one
+  ::unsetenv("SURFCAST_WORKER_STOPPING_BLOCK");  // of the next one
   auto picked = std::async(std::launch::async, [&] { return pick(ball_pixel()); });
   ::kill(stopped_worker(), SIGKILL);
   const auto answer = picked.get();
@@ -345,7 +350,7 @@ TEST_F(WorkerQueriesTest, AQuestionOutlivesTheWorkerThatIsKilledInItsMiddle) {
 
 // This process does not crash with the block: it decodes none.
 TEST_F(WorkerQueriesTest, ABlockThatEndsTwoWorkersIsQuarantinedByName) {
-  set_block("CRASHING_BLOCK", ball_leaf());
+  set_block("SURFCAST_WORKER_CRASHING_BLOCK", ball_leaf());
   start();
   const std::string expected = "scene.surf: block " + std::to_string(ball_leaf()) +
                                ": not loaded any more, because it has ended two query workers";
@@ -362,7 +367,7 @@ TEST_F(WorkerQueriesTest, ABlockThatEndsTwoWorkersIsQuarantinedByName) {
 }
 
 TEST_F(WorkerQueriesTest, AHungWorkerIsReplacedAndItsBlockQuarantined) {
-  set_block("STOPPING_BLOCK", ball_leaf());
+  set_block("SURFCAST_WORKER_STOPPING_BLOCK", ball_leaf());
   start([](QueryWorkerConfig& config) { config.silence = milliseconds(2000); });
   const auto picked = pick(ball_pixel());
   ASSERT_FALSE(picked);
@@ -372,7 +377,7 @@ TEST_F(WorkerQueriesTest, AHungWorkerIsReplacedAndItsBlockQuarantined) {
 }
 
 TEST_F(WorkerQueriesTest, APickDoesNotWaitForASearchOrForAnotherPick) {
-  set_block("STOPPING_BLOCK", ball_leaf());
+  set_block("SURFCAST_WORKER_STOPPING_BLOCK", ball_leaf());
   start();
   start_searches();
   auto front = std::async(std::launch::async, [&] { return queries_->front_surface(scene_, scene_view(), kNever); });
@@ -390,7 +395,7 @@ TEST_F(WorkerQueriesTest, APickDoesNotWaitForASearchOrForAnotherPick) {
 }
 
 TEST_F(WorkerQueriesTest, CancelledSearchesEnd) {
-  set_block("STOPPING_BLOCK", ball_leaf());
+  set_block("SURFCAST_WORKER_STOPPING_BLOCK", ball_leaf());
   start();
   start_searches();
   std::atomic<bool> cancelled{false};
@@ -409,7 +414,7 @@ TEST_F(WorkerQueriesTest, CancelledSearchesEnd) {
 }
 
 TEST_F(WorkerQueriesTest, WorkersThatAnswerNonsenseAreReplacedAndThenAnError) {
-  ::setenv("LYING", "1", 1);
+  ::setenv("SURFCAST_WORKER_LYING", "1", 1);
   start();
   const std::array<std::function<ErrorKind()>, 4> questions{
       [&] { return pick(ball_pixel()).error().kind; },
@@ -427,6 +432,27 @@ TEST_F(WorkerQueriesTest, WorkersThatAnswerNonsenseAreReplacedAndThenAnError) {
     EXPECT_EQ(counts_.ended, ended += 2);
   }
 }
+
+TEST_F(WorkerQueriesTest, WorkersDoNotInheritSecrets) {
+  ::setenv("AWS_SECRET_ACCESS_KEY", "kept to the server", 1);
+  start([](QueryWorkerConfig& config) { config.sandbox = false; });  // a confined process hides its environment
+  ASSERT_THAT(workers(), SizeIs(1));
+  const std::string environment = text_of_process(workers().front(), "environ");
+  EXPECT_THAT(environment, HasSubstr("PATH="));
+  EXPECT_THAT(environment, Not(HasSubstr("AWS_SECRET_ACCESS_KEY")));
+  ::unsetenv("AWS_SECRET_ACCESS_KEY");
+}
+
+#if !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
+TEST_F(WorkerQueriesTest, WorkersAllocateNoMoreThanTheirShare) {
+  constexpr uint64_t kBytes = uint64_t{600} << 20;
+  start([](QueryWorkerConfig& config) { config.memory = kBytes; });
+  ASSERT_THAT(workers(), SizeIs(1));
+  const std::string limits = text_of_process(workers().front(), "limits");
+  EXPECT_THAT(limits, ContainsRegex("Max data size +" + std::to_string(kBytes) + " +" + std::to_string(kBytes)));
+  EXPECT_TRUE(pick(ball_pixel()));
+}
+#endif
 
 TEST_F(WorkerQueriesTest, AProgramThatIsNoWorkerDoesNotStart) {
   QueryWorkerConfig config;
@@ -462,13 +488,14 @@ TEST_F(WorkerQueriesTest, ModelsThatTheServerHasClosedAreClosedWithoutAQuestion)
 }
 
 TEST_F(WorkerQueriesTest, AWorkerIsConfinedUnlessItIsNotToBe) {
-  if (status_of(::getpid()).find("\nSeccomp:\t") == std::string::npos) GTEST_SKIP() << "the kernel has no filters";
+  if (text_of_process(::getpid(), "status").find("\nSeccomp:\t") == std::string::npos)
+    GTEST_SKIP() << "the kernel has no filters";
   start();
-  EXPECT_THAT(status_of(workers().at(0)), HasSubstr("\nSeccomp:\t2\n"));
-  EXPECT_THAT(status_of(workers().at(0)), HasSubstr("\nNoNewPrivs:\t1\n"));
+  EXPECT_THAT(text_of_process(workers().at(0), "status"), HasSubstr("\nSeccomp:\t2\n"));
+  EXPECT_THAT(text_of_process(workers().at(0), "status"), HasSubstr("\nNoNewPrivs:\t1\n"));
   start([](QueryWorkerConfig& config) { config.sandbox = false; });
-  const std::string own = status_of(::getpid());
-  EXPECT_THAT(status_of(workers().at(0)), HasSubstr(own.substr(own.find("\nNoNewPrivs:"), 14)));
+  const std::string own = text_of_process(::getpid(), "status");
+  EXPECT_THAT(text_of_process(workers().at(0), "status"), HasSubstr(own.substr(own.find("\nNoNewPrivs:"), 14)));
 }
 
 TEST_F(WorkerQueriesTest, AnIdleWorkerThatIsKilledIsReplacedWithoutAQuestion) {
