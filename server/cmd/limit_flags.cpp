@@ -117,6 +117,11 @@ void add_time_flags(CLI::App& command, net::ServerConfig& server) {
   add_seconds(command, "handshake-timeout", server.hello,
               "For the first words of a connection, and for every request that has begun (default 10). More: silent "
               "connections stay; less: slow networks are cut off");
+  add_seconds(
+      command, "give-way-after", server.give_way,
+      "Idle for so long, a connection is closed when a new one is beyond --max-connections or "
+      "--max-connections-per-client (default 1). More: new clients are refused; less: connections that are about "
+      "to be used are closed");
   add_seconds(command, "idle-timeout", server.idle,
               "Without a request (default 300). More: idle connections stay; less: clients connect again and again");
   add_seconds(command, "answer-timeout", server.stall,
@@ -228,6 +233,10 @@ void add_worker_flags(CLI::App& command, WorkerFlags& worker) {
       command, "worker-timeout", worker.silence,
       "Without a sign of a worker that draws or answers before it is replaced (default 60). More: a driver that "
       "hangs is waited for; less: slow devices are taken for hung");
+  add_size(command, "query-memory", worker.query_bytes,
+           "That each process that answers picks and the like may allocate (default 8G; 0: no limit). More: a damaged "
+           "model takes more memory before its answer fails; less: large answers fail",
+           {0, UINT64_MAX});
   command
       .add_option("--worker-readable", worker.readable,
                   "File or folder that a driver reads beside system libraries and devices; may be repeated")

@@ -20,6 +20,7 @@ struct WorkerFlags {
   bool no_sandbox = false;
   std::vector<std::string> readable;          ///< see worker::WorkerConfig
   std::chrono::milliseconds silence{60'000};  ///< likewise
+  uint64_t query_bytes = uint64_t{8} << 30;   ///< worker::QueryWorkerConfig::memory
 };
 
 // Flags that set the limits of the programs, and their variables. docs/settings.md lists them all. Targets must outlive

@@ -136,7 +136,7 @@ Status serve_uploaded(const std::filesystem::path& scan, const service::ModelCat
 /// Serves the scans that clients have sent to servers before this one.
 void serve_former_uploads(const net::UploadConfig& uploads) {
   if (uploads.folder.empty()) return;
-  remove_abandoned_files(uploads.folder);
+  for (const std::filesystem::path& folder : net::upload_folders(uploads)) remove_abandoned_files(folder);
   for (const std::filesystem::path& scan : net::uploaded_scans(uploads)) {
     if (const Status served = uploads.serve(scan); !served) spdlog::warn("{}", served.error().message);
   }
@@ -187,6 +187,7 @@ Result<std::shared_ptr<service::ModelQueries>> make_queries(const ServeCommand& 
   config.log_format = command.log_format;
   config.sandbox = !command.worker.no_sandbox;
   config.silence = command.worker.silence;
+  config.memory = command.worker.query_bytes;
   config.limits = command.service.picks;
   return worker::worker_queries(config, counts);
 }

@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <chrono>
 #include <cstring>
+#include <optional>
 #include <utility>
 
 #include <fcntl.h>
@@ -41,18 +42,20 @@ std::string audit_line(const AuditEvent& event, const std::string& time) {
   add_member(line, "model", event.model);
   add_member(line, "outcome", event.outcome);
   add_member(line, "reason", event.reason);
+  if (event.left_out > 0) line += ",\"left_out\":" + std::to_string(event.left_out);
   return line + "}";
 }
 
-Result<std::shared_ptr<AuditLog>> AuditLog::open(std::filesystem::path file) {
+Result<std::shared_ptr<AuditLog>> AuditLog::open(std::filesystem::path file, size_t denials) {
   const int descriptor = open_file(file);
   if (descriptor < 0) return open_failed(file);
-  return std::shared_ptr<AuditLog>(new AuditLog(std::move(file), descriptor));
+  return std::shared_ptr<AuditLog>(new AuditLog(std::move(file), descriptor, denials));
 }
 
-AuditLog::AuditLog(std::filesystem::path file, int descriptor)
+AuditLog::AuditLog(std::filesystem::path file, int descriptor, size_t denials)
     : file_(std::move(file)),
       descriptor_(descriptor),
+      denials_(denials),
       writer_(std::make_unique<service::WorkerPool>(1, 0, kMostWaiting)) {}
 
 AuditLog::~AuditLog() {
@@ -60,7 +63,15 @@ AuditLog::~AuditLog() {
   ::close(descriptor_);
 }
 
-void AuditLog::write(const AuditEvent& event) {
+void AuditLog::write(AuditEvent event) {
+  if (event.outcome == "denied") {
+    const std::optional<size_t> admitted = denials_.admit(event.client, DenialLimit::Clock::now());
+    if (!admitted) {
+      ++left_out_;
+      return;
+    }
+    event.left_out = *admitted;
+  }
   std::string line = audit_line(event, utc_text(std::chrono::system_clock::now())) + "\n";
   if (!writer_->post([this, line = std::move(line)] { append(line); })) ++lost_;
 }

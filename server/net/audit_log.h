@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "base/result.h"
+#include "net/denial_limit.h"
 #include "service/worker_pool.h"
 
 namespace surfcast::net {
@@ -22,29 +23,34 @@ struct AuditEvent {
   std::string model{};         ///< that it is about; empty: none
   std::string_view outcome{};  ///< "allowed" or "denied"
   std::string reason{};        ///< in words; empty: none
+  size_t left_out = 0;         ///< denials of the same client before this one that have no line
 };
 
 /// The line of an event, without its end: an object of JSON, of which empty members are left out.
 std::string audit_line(const AuditEvent& event, const std::string& time);
 
-/// A file to which every event is added as one line. It is written on a thread of its own: no connection waits for the
-/// disk.
+/// A file to which events are added, one line each: all that is allowed, and of denials as many as DenialLimit admits.
+/// It is written on a thread of its own: no connection waits for the disk.
 class AuditLog {
  public:
   /// Creates the file if there is none, readable for its owner alone.
-  static Result<std::shared_ptr<AuditLog>> open(std::filesystem::path file);
+  /// `denials` a minute have lines, of each client; 0: all.
+  static Result<std::shared_ptr<AuditLog>> open(std::filesystem::path file, size_t denials);
   ~AuditLog();
   AuditLog(const AuditLog&) = delete;
   AuditLog& operator=(const AuditLog&) = delete;
 
-  void write(const AuditEvent& event);
+  /// Called on one thread.
+  void write(AuditEvent event);
   /// Events that could not be written.
   [[nodiscard]] uint64_t lost() const { return lost_; }
+  /// Denials without a line, beyond their limit.
+  [[nodiscard]] uint64_t left_out() const { return left_out_; }
   /// Another file may have come under the name: what follows goes there. After an error the former one is written on.
   Status reopen();
 
  private:
-  AuditLog(std::filesystem::path file, int descriptor);
+  AuditLog(std::filesystem::path file, int descriptor, size_t denials);
   void append(const std::string& line);
 
   std::filesystem::path file_;
@@ -52,6 +58,8 @@ class AuditLog {
   int descriptor_;
   bool broken_ = false;
   std::atomic<uint64_t> lost_ = 0;
+  std::atomic<uint64_t> left_out_ = 0;
+  DenialLimit denials_;  ///< of the thread that writes events
   std::unique_ptr<service::WorkerPool> writer_;
 };
 

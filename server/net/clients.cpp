@@ -14,9 +14,13 @@ Clients::Counts Clients::counts_of(const std::string& client) const {
   return found == counts_.end() ? Counts{} : found->second;
 }
 
+bool Clients::has_all_its_connections(const std::string& client) const {
+  return reaches(counts_of(client).connections, limits_.connections_per_client);
+}
+
 std::string Clients::refusal_of_connection(const std::string& client) const {
   if (all_.connections >= limits_.connections) return "the server is busy: too many connections";
-  if (reaches(counts_of(client).connections, limits_.connections_per_client)) {
+  if (has_all_its_connections(client)) {
     return "too many connections from " + client + ": the server takes " +
            std::to_string(limits_.connections_per_client) + " of one client";
   }

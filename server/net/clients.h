@@ -28,6 +28,8 @@ class Clients {
 
   /// Why another connection of that client is not served, in words for it; empty: it is.
   [[nodiscard]] std::string refusal_of_connection(const std::string& client) const;
+  /// Whether that is because of the client's own number of connections.
+  [[nodiscard]] bool has_all_its_connections(const std::string& client) const;
   /// Likewise another view.
   [[nodiscard]] std::string refusal_of_view(const std::string& client) const;
   /// Of all clients.

@@ -94,6 +94,7 @@ HttpAnswer HttpPlaces::answer_metrics(const std::string& accept) const {
                                         {.connections = open.connections + open.refused,
                                          .waiting = context_->sessions.waiting(KeptSessions::Clock::now()),
                                          .audit_lost = context_->audit ? context_->audit->lost() : 0,
+                                         .audit_left_out = context_->audit ? context_->audit->left_out() : 0,
                                          .queued = context_->service.queued(),
                                          .picture_memory = context_->service.picture_memory(),
                                          .guests = gate.guests()->all().connections,

@@ -81,6 +81,8 @@ const StaticFile* find_file(const ServerConfig& config, std::string_view target)
 
 class HttpSession : public Session, public std::enable_shared_from_this<HttpSession> {
  public:
+  using Clock = std::chrono::steady_clock;
+
   HttpSession(Connection connection, AdoptSession adopt, const service::Asker& asker)
       : connection_(
             std::make_shared<HttpConnection>(std::move(connection.stream), connection.begun, connection.peer.context)),
@@ -104,10 +106,23 @@ class HttpSession : public Session, public std::enable_shared_from_this<HttpSess
     if (!places_->cancel()) abort();
   }
   [[nodiscard]] bool refused() const override { return !refusal_.empty() && !aborted_; }
+  [[nodiscard]] std::optional<Clock::time_point> idle_since() const override {
+    const bool waits = !answering_ && !passed_on_ && !aborted_ && refusal_.empty();
+    return waits ? std::optional(idle_since_) : std::nullopt;
+  }
+  [[nodiscard]] std::string client() const override { return open_.client(); }
   void abort() override {
     aborted_ = true;
     places_->cancel();
     if (!passed_on_) connection_->close();
+  }
+  /// Ends a request that is being answered, or a scan that is being received, with its token.
+  void check_guest() override {
+    if (!guest_ || !answering_ || passed_on_ || aborted_) return;
+    const std::string reason = context_->gate->why_ended(guest_);
+    if (reason.empty()) return;
+    audit({.what = "token", .outcome = "denied", .reason = reason});
+    abort();
   }
 
  private:
@@ -140,7 +155,8 @@ class HttpSession : public Session, public std::enable_shared_from_this<HttpSess
   bool aborted_ = false;
   bool passed_on_ = false;  ///< the connection is a WebSocket's
   std::shared_ptr<HttpPlaces> places_;
-  Gatekeeper::Guest guest_;  ///< of the request that is answered
+  Clock::time_point idle_since_ = Clock::now();  ///< while no request is answered
+  Gatekeeper::Guest guest_;                      ///< of the request that is answered
   std::optional<Counted> counted_guest_;
 };
 
@@ -148,6 +164,7 @@ asio::awaitable<void> HttpSession::serve() {
   bool going_on = true;
   while (going_on) {
     going_on = co_await serve_one();
+    idle_since_ = Clock::now();
   }
   if (!passed_on_ && connection_->is_open()) co_await connection_->linger();
 }
@@ -304,7 +321,8 @@ asio::awaitable<bool> HttpSession::serve_upload(Parser& parser) {
   const unsigned version = parser.get().version();
   bool keep_alive = parser.keep_alive();
   const std::string uploaded = route_http(view_of(parser.get().target()))->model;
-  const UploadOutcome outcome = co_await receive_scan(*context_, *connection_, parser);
+  const std::string sender = guest_ ? guest_->name : std::string();  // named: see on_disk in http_upload.cpp
+  const UploadOutcome outcome = co_await receive_scan(*context_, *connection_, parser, sender);
   const bool taken = outcome.answer.status < 400;
   audit({.what = "upload", .model = uploaded, .outcome = taken ? "allowed" : "denied"});
   if (!taken) ++context_->metrics.errors;

@@ -49,18 +49,23 @@ std::string name_of(const UploadConfig& config, const std::filesystem::path& tar
   return is_data(config, target) ? target.filename().string() : service::model_name(target);
 }
 
+/// What no two files on their way have in common: the name of their model, or their path.
+std::string key_of(const UploadConfig& config, const std::filesystem::path& target) {
+  return is_data(config, target) ? target.string() : service::model_name(target);
+}
+
 /// Whether a scan may be sent, and which one.
-Result<Announced> admit(const NetContext& context, const HeadParser& head) {
+Result<Announced> admit(const NetContext& context, const HeadParser& head, std::string_view sender) {
   const UploadConfig& config = context.config.uploads;
   if (context.draining) return fail(ErrorKind::kUnavailable, "the server is stopping");
   if (config.folder.empty()) return fail(ErrorKind::kUnsupported, "this server takes no scans; --uploads lets it");
   Announced scan;
   if (const auto length = head.content_length()) scan.bytes = *length;
-  Result<std::filesystem::path> target = upload_target(config, route_http(view_of(head.get().target()))->model);
+  Result<std::filesystem::path> target = upload_target(config, sender, route_http(view_of(head.get().target()))->model);
   if (!target) return fail(std::move(target.error()));
   scan.target = std::move(*target);
   if (scan.bytes.value_or(0) > config.bytes) return fail(too_large(config.bytes));
-  if (context.uploads.contains(name_of(config, scan.target))) {
+  if (context.uploads.contains(key_of(config, scan.target))) {
     return fail(ErrorKind::kInvalidInput, "a scan of that name is being received");
   }
   if (context.uploads.size() >= config.at_once) {
@@ -150,7 +155,8 @@ bool is_upload(const HeadParser::value_type& request) {
   return route && route->kind == HttpRoute::Kind::kUpload && request.method() == http::verb::put;
 }
 
-asio::awaitable<UploadOutcome> receive_scan(NetContext& context, HttpConnection& connection, HeadParser& head) {
+asio::awaitable<UploadOutcome> receive_scan(NetContext& context, HttpConnection& connection, HeadParser& head,
+                                            const std::string& sender) {
   const auto& request = head.get();
   const Status page = check_origin(origin_of(request), context.config.allowed_origins);
   UploadOutcome outcome;
@@ -158,13 +164,14 @@ asio::awaitable<UploadOutcome> receive_scan(NetContext& context, HttpConnection&
     outcome.answer = error_answer(page.error(), 403);
     co_return outcome;
   }
-  const Result<Announced> scan = admit(context, head);
+  const Result<Announced> scan = admit(context, head, sender);
   if (!scan) co_return refusal_of(scan.error());
   const std::string name = name_of(context.config.uploads, scan->target);
+  const std::string key = key_of(context.config.uploads, scan->target);
   const uint64_t reserved = reserved_bytes(context);
-  context.uploads.emplace(name, scan->bytes.value_or(context.config.uploads.bytes));
+  context.uploads.emplace(key, scan->bytes.value_or(context.config.uploads.bytes));
   const Status stored = co_await store(context, connection, head, *scan, reserved);
-  context.uploads.erase(name);
+  context.uploads.erase(key);
   if (!stored) co_return refusal_of(stored.error());
   outcome.answer = uploaded_answer(is_data(context.config.uploads, scan->target) ? "file" : "model", name);
   outcome.whole = true;

@@ -4,6 +4,7 @@
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/http/parser.hpp>
+#include <string>
 
 #include "net/http_answer.h"
 #include "net/session.h"
@@ -27,7 +28,9 @@ struct UploadOutcome {
   bool whole = false;
 };
 
-/// Receives the scan of a request whose head was read, and serves it. All arguments must outlive the coroutine.
-boost::asio::awaitable<UploadOutcome> receive_scan(NetContext& context, HttpConnection& connection, HeadParser& head);
+/// Receives the scan of a request whose head was read, and serves it. `sender`: the name of their token; empty: none.
+/// The references must outlive the coroutine.
+boost::asio::awaitable<UploadOutcome> receive_scan(NetContext& context, HttpConnection& connection, HeadParser& head,
+                                                   const std::string& sender);
 
 }  // namespace surfcast::net

@@ -57,6 +57,12 @@ class MessageSession : public Session, public AnswerWriter, public std::enable_s
   [[nodiscard]] bool lasts() const override { return conversation_->has_views() && !draining_; }
   void abort() override { close(); }
   [[nodiscard]] bool refused() const override { return !peer_.refusal.empty(); }
+  [[nodiscard]] std::optional<Clock::time_point> idle_since() const override {
+    const bool waits = greeted_ && outgoing_.empty() && !closing_ && !draining_ && !conversation_->has_views() &&
+                       conversation_->outstanding() == 0 && transport_->is_open();
+    return waits ? std::optional(last_request_) : std::nullopt;
+  }
+  [[nodiscard]] std::string client() const override { return peer_.open.client(); }
   void models_changed() override { conversation_->models_changed(); }
   void check_guest() override { conversation_->check_guest(); }
 

@@ -54,10 +54,14 @@ std::string metrics_text(const Metrics& m, const Gauges& gauges, Exposition::For
   out.value("surfcast_connections_open", "gauge", "Connections open now.", gauges.connections);
   out.value("surfcast_connections_refused_total", "counter", "Connections refused, too many at once.",
             m.connections_refused);
+  out.value("surfcast_connections_given_way_total", "counter", "Idle connections closed in favour of new ones.",
+            m.connections_given_way);
   write_tls(out, m);
   out.value("surfcast_guests_open", "gauge", "Connections open now that have named a token.", gauges.guests);
   out.value("surfcast_denied_total", "counter", "Tokens that are not known, or have ended.", gauges.denied);
   out.value("surfcast_audit_lost_total", "counter", "Events that the audit log could not be told.", gauges.audit_lost);
+  out.value("surfcast_audit_left_out_total", "counter", "Denials without a line of the audit log, beyond its limit.",
+            gauges.audit_left_out);
   out.value("surfcast_requests_total", "counter", "Requests read.", m.requests);
   out.value("surfcast_errors_total", "counter", "Requests answered with an error.", m.errors);
   out.value("surfcast_pictures_total", "counter", "Pictures drawn and delivered.", m.pictures);

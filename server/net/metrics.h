@@ -24,13 +24,14 @@ struct PictureTimes {
 struct Metrics {
   uint64_t connections = 0;          ///< accepted since the start
   uint64_t connections_refused = 0;  ///< too many at once, of all clients or of one
-  uint64_t tls_failures = 0;         ///< handshakes that failed
-  uint64_t tls_reloads_failed = 0;   ///< new certificates that could not be used; the former ones stay
-  double tls_expires = 0;            ///< end of the certificate, seconds since 1970; 0: no TLS
-  uint64_t requests = 0;             ///< messages and HTTP requests
-  uint64_t errors = 0;               ///< requests answered with an error
-  uint64_t pictures = 0;             ///< delivered to a session
-  uint64_t picture_bytes = 0;        ///< encoded
+  uint64_t connections_given_way = 0;
+  uint64_t tls_failures = 0;        ///< handshakes that failed
+  uint64_t tls_reloads_failed = 0;  ///< new certificates that could not be used; the former ones stay
+  double tls_expires = 0;           ///< end of the certificate, seconds since 1970; 0: no TLS
+  uint64_t requests = 0;            ///< messages and HTTP requests
+  uint64_t errors = 0;              ///< requests answered with an error
+  uint64_t pictures = 0;            ///< delivered to a session
+  uint64_t picture_bytes = 0;       ///< encoded
   uint64_t surfels_drawn = 0;
   view::ViewCounts views;
   PictureTimes still;                           ///< pictures that are asked for one by one
@@ -58,6 +59,7 @@ struct Gauges {
   size_t connections = 0;                 ///< open
   size_t waiting = 0;                     ///< sessions without a connection
   uint64_t audit_lost = 0;                ///< events, since the start
+  uint64_t audit_left_out = 0;            ///< denials, since the start
   size_t queued = 0;                      ///< pictures that wait for the render thread
   size_t picture_memory = 0;              ///< bytes of pictures at rest that are drawn, encoded or not taken yet
   size_t guests = 0;                      ///< connections with a token

@@ -7,6 +7,8 @@
 #include <boost/asio/ip/tcp.hpp>
 #include <boost/asio/ssl/stream_base.hpp>
 #include <boost/asio/steady_timer.hpp>
+#include <chrono>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -23,6 +25,8 @@ using boost::system::error_code;
 
 /// The first byte of a client that begins with TLS: a record of a handshake. RFC 8446, 5.1.
 constexpr std::byte kHandshake{0x16};
+
+using Clock = std::chrono::steady_clock;
 
 class ProtocolDetector : public Session, public std::enable_shared_from_this<ProtocolDetector> {
  public:
@@ -47,6 +51,14 @@ class ProtocolDetector : public Session, public std::enable_shared_from_this<Pro
   [[nodiscard]] bool refused() const override {
     return !passed_on_ && !connection_.peer.refusal.empty() && connection_.stream.socket().socket().is_open();
   }
+  [[nodiscard]] std::optional<Clock::time_point> idle_since() const override {
+    const bool waits =
+        !passed_on_ && connection_.peer.refusal.empty() && connection_.stream.socket().socket().is_open();
+    return waits ? std::optional(since_) : std::nullopt;
+  }
+  [[nodiscard]] std::string client() const override {
+    return passed_on_ ? std::string() : connection_.peer.open.client();
+  }
   void abort() override {
     if (!passed_on_) connection_.stream.socket().close();
   }
@@ -60,6 +72,7 @@ class ProtocolDetector : public Session, public std::enable_shared_from_this<Pro
   Connection connection_;
   PassOn pass_on_;
   bool passed_on_ = false;
+  const Clock::time_point since_ = Clock::now();
 };
 
 /// Leaves the first byte in the socket, unless it is encrypted.

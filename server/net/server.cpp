@@ -61,6 +61,7 @@ struct Server::State {
   void await_signal();
   void admit(tcp::socket socket);
   void admit_client(tcp::socket socket, const asio::ip::address& address);
+  bool end_idle_for(const std::string& client);
   void begin(Connection connection, bool framed);
   Status use_certificate();
   void reload();
@@ -169,7 +170,7 @@ Status Server::State::watch_files() {
 
 Status Server::State::open_audit() {
   if (context->config.audit.empty()) return {};
-  auto opened = AuditLog::open(context->config.audit);
+  auto opened = AuditLog::open(context->config.audit, context->config.log_lines);
   if (!opened) return fail(opened.error());
   context->audit = std::move(*opened);
   return {};
@@ -231,6 +232,7 @@ void Server::State::admit_client(tcp::socket socket, const asio::ip::address& ad
   error_code ignored;
   const std::string client = client_name(address);
   std::string refusal = context->clients->refusal_of_connection(client);
+  if (!refusal.empty() && end_idle_for(client)) refusal.clear();
   if (!refusal.empty()) {
     ++metrics.connections_refused;
     if (context->clients->all().refused >= kRefusalsAtOnce) end_oldest_refused();
@@ -257,6 +259,26 @@ void Server::State::begin(Connection connection, bool framed) {
 void Server::State::add(const std::shared_ptr<Session>& session) {
   std::erase_if(sessions, [](const auto& weak) { return weak.expired(); });
   sessions.push_back(session);
+}
+
+/// Ends the connection that has been idle for longest: one of this client, if it has all that it may have. False if all
+/// are in use.
+bool Server::State::end_idle_for(const std::string& client) {
+  using Clock = std::chrono::steady_clock;
+  const bool own = context->clients->has_all_its_connections(client);
+  std::shared_ptr<Session> oldest;
+  Clock::time_point since = Clock::now() - context->config.give_way;
+  for (const auto& weak : sessions) {
+    const auto session = weak.lock();
+    const auto idle = session ? session->idle_since() : std::nullopt;
+    if (!idle || *idle > since || (own && session->client() != client)) continue;
+    since = *idle;
+    oldest = session;
+  }
+  if (!oldest) return false;
+  ++context->metrics.connections_given_way;
+  oldest->abort();
+  return true;
 }
 
 void Server::State::end_oldest_refused() {

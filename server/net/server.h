@@ -37,17 +37,18 @@ struct ServerConfig {
   size_t unread_bytes = size_t{64} << 20;                   ///< of answers; beyond it the connection is not read from
   size_t small_unread_bytes = size_t{1} << 20;              ///< the same of small answers, with their overhead
   size_t kept_frame_bytes = view::ViewSession::kKeptBytes;  ///< see ViewSession
-  size_t request_bytes = size_t{64} << 10;  ///< of one message of a client; ours send no more than kMaxRequestBytes
-  uint32_t http_header_bytes = 16384;       ///< of one request of HTTP
-  std::chrono::milliseconds hello{10'000};  ///< for the first words of a connection, and for any request that begins
-  std::chrono::milliseconds idle{300'000};  ///< without a whole request and with nothing outstanding
-  std::chrono::milliseconds stall{30'000};  ///< without any byte of an answer being taken
-  size_t least_rate = size_t{8} << 10;      ///< bytes of answers that a client takes each second, over `stall`; 0: none
-  std::chrono::milliseconds ping{30'000};   ///< without a word on a WebSocket, before the client is asked for one
-  KeptSessions::Limits sessions;            ///< whose clients may come back
-  std::chrono::milliseconds grace{0};       ///< for others to see that the server stops, before it does
-  std::chrono::milliseconds leave{0};       ///< then, over which clients with views are sent away one after the other
-  std::chrono::milliseconds drain{5'000};   ///< then, for what is outstanding
+  size_t request_bytes = size_t{64} << 10;    ///< of one message of a client; ours send no more than kMaxRequestBytes
+  uint32_t http_header_bytes = 16384;         ///< of one request of HTTP
+  std::chrono::milliseconds hello{10'000};    ///< for the first words of a connection, and for any request that begins
+  std::chrono::milliseconds idle{300'000};    ///< without a whole request and with nothing outstanding
+  std::chrono::milliseconds give_way{1'000};  ///< idle for so long, a connection gives way to one beyond the limit
+  std::chrono::milliseconds stall{30'000};    ///< without any byte of an answer being taken
+  size_t least_rate = size_t{8} << 10;     ///< bytes of answers that a client takes each second, over `stall`; 0: none
+  std::chrono::milliseconds ping{30'000};  ///< without a word on a WebSocket, before the client is asked for one
+  KeptSessions::Limits sessions;           ///< whose clients may come back
+  std::chrono::milliseconds grace{0};      ///< for others to see that the server stops, before it does
+  std::chrono::milliseconds leave{0};      ///< then, over which clients with views are sent away one after the other
+  std::chrono::milliseconds drain{5'000};  ///< then, for what is outstanding
   std::shared_ptr<const StaticFiles> viewer;  ///< served at "/"; null: a hint where to get one
   std::function<WorkerGauges()> workers;      ///< of its processes; empty: there are none
   UploadConfig uploads;                       ///< scans that clients may send

@@ -1,9 +1,11 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -32,7 +34,7 @@ struct NetContext {
   uint64_t last_viewer = 0;                   ///< see PictureRequest::viewer
   bool leaving = false;                       ///< no longer ready: the server will stop
   bool draining = false;                      ///< no new requests; what is outstanding is finished
-  std::map<std::string, uint64_t> uploads{};  ///< scans on their way by model, and the bytes kept for them
+  std::map<std::string, uint64_t> uploads{};  ///< files on their way by key_of, and the bytes kept for them
   /// Writes what arrives, so that no other connection waits for the disk. Null: nothing may be sent.
   std::shared_ptr<service::WorkerPool> disk =
       config.uploads.folder.empty() ? nullptr : std::make_shared<service::WorkerPool>(1);
@@ -72,6 +74,10 @@ class Session {
   virtual void abort() = 0;
   /// The time for that is over: what is outstanding is given up with an answer that says so.
   virtual void give_up() { abort(); }
+  /// Since when it is served and of no use: nothing is open, outstanding or on its way. Nothing if it is in use.
+  [[nodiscard]] virtual std::optional<std::chrono::steady_clock::time_point> idle_since() const { return std::nullopt; }
+  /// Whose it is, as in client_name; empty if that is not known yet.
+  [[nodiscard]] virtual std::string client() const { return {}; }
   /// It is only told why it is not served.
   [[nodiscard]] virtual bool refused() const { return false; }
   /// Tokens may have been revoked, and time passes.

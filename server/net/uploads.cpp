@@ -5,6 +5,9 @@
 #include <system_error>
 #include <utility>
 
+#include <spdlog/fmt/fmt.h>
+
+#include "access/secret.h"
 #include "protocol/errors.h"
 #include "service/model_name.h"
 
@@ -45,14 +48,44 @@ bool ends_with_any(const fs::path& file, const std::vector<std::string>& extensi
   });
 }
 
-/// The complete files in the folder.
+/// Before the name of a sender in that of their folder. No scan's name begins like a folder and has no extension.
+constexpr std::string_view kSenderPrefix = "sender-";
+
+/// A name of which other names cannot be the same file: what is not plain stands as %XX, and a long one as its hash.
+std::string folder_name(std::string_view sender) {
+  std::string name(kSenderPrefix);
+  for (const char c : sender) {
+    const bool plain = std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '-' || c == '_';
+    name += plain ? std::string(1, c) : fmt::format("%{:02X}", static_cast<unsigned char>(c));
+  }
+  return name.size() <= kLongestName ? name : std::string(kSenderPrefix) + "%%" + access::sha256(sender);
+}
+
+/// Whether a name stays within a folder and is that of a scan or of its data.
+Status check_name(const UploadConfig& config, std::string_view name) {
+  if (!is_plain(name)) {
+    return fail(ErrorKind::kInvalidInput, "the name must be that of a file, without folders and a leading dot");
+  }
+  if (name.size() > kLongestName) {
+    return fail(ErrorKind::kInvalidInput, "the name is longer than " + std::to_string(kLongestName) + " bytes");
+  }
+  if (!ends_with_any(name, config.extensions) && !is_data(config, name)) {
+    return fail(ErrorKind::kUnsupported,
+                std::string(name) + ": not a scan by its name; known are " + known_extensions(config));
+  }
+  return {};
+}
+
+/// The complete files of all senders.
 std::vector<fs::path> uploaded_files(const UploadConfig& config) {
   std::vector<fs::path> files;
-  std::error_code code;
-  for (fs::directory_iterator entry(config.folder, code), end; !code && entry != end; entry.increment(code)) {
-    std::error_code ignored;
-    const bool named = upload_target(config, entry->path().filename().string()).has_value();
-    if (named && entry->is_regular_file(ignored)) files.push_back(entry->path());
+  for (const fs::path& folder : upload_folders(config)) {
+    std::error_code code;
+    for (fs::directory_iterator entry(folder, code), end; !code && entry != end; entry.increment(code)) {
+      std::error_code ignored;
+      const bool named = check_name(config, entry->path().filename().string()).has_value();
+      if (named && entry->is_regular_file(ignored)) files.push_back(entry->path());
+    }
   }
   return files;
 }
@@ -89,19 +122,24 @@ Error without_folder(Error error, const fs::path& target) {
 
 }  // namespace
 
-Result<fs::path> upload_target(const UploadConfig& config, std::string_view name) {
-  if (!is_plain(name)) {
-    return fail(ErrorKind::kInvalidInput, "the name must be that of a file, without folders and a leading dot");
+fs::path upload_folder(const UploadConfig& config, std::string_view sender) {
+  return sender.empty() ? config.folder : config.folder / folder_name(sender);
+}
+
+Result<fs::path> upload_target(const UploadConfig& config, std::string_view sender, std::string_view name) {
+  if (Status checked = check_name(config, name); !checked) return fail(std::move(checked.error()));
+  return upload_folder(config, sender) / name;
+}
+
+std::vector<fs::path> upload_folders(const UploadConfig& config) {
+  std::vector<fs::path> folders{config.folder};
+  std::error_code code;
+  for (fs::directory_iterator entry(config.folder, code), end; !code && entry != end; entry.increment(code)) {
+    std::error_code ignored;
+    const bool folder = entry->is_directory(ignored) && !entry->is_symlink(ignored);
+    if (folder && entry->path().filename().string().starts_with(kSenderPrefix)) folders.push_back(entry->path());
   }
-  if (name.size() > kLongestName) {
-    return fail(ErrorKind::kInvalidInput, "the name is longer than " + std::to_string(kLongestName) + " bytes");
-  }
-  const fs::path file{name};
-  if (!ends_with_any(file, config.extensions) && !is_data(config, file)) {
-    return fail(ErrorKind::kUnsupported,
-                file.string() + ": not a scan by its name; known are " + known_extensions(config));
-  }
-  return config.folder / file;
+  return folders;
 }
 
 std::vector<std::string> all_extensions(const UploadConfig& config) {
@@ -134,6 +172,7 @@ Result<IncomingScan> IncomingScan::create(const UploadConfig& config, const fs::
   if (room == 0 || bytes.value_or(0) > room) {
     return fail(ErrorKind::kUnavailable, target.filename().string() + ": the server has no room for it");
   }
+  fs::create_directory(target.parent_path(), code);  // if that fails, so does the file
   Result<AtomicFile> file = AtomicFile::create(target);
   if (!file) return fail(without_folder(std::move(file.error()), target));
   return IncomingScan(config, target, std::move(*file), bytes.value_or(room));

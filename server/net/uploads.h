@@ -17,7 +17,7 @@ namespace surfcast::net {
 
 /// Which scans clients may send, and where they go. The functions are called on a thread that may wait for the disk.
 struct UploadConfig {
-  std::filesystem::path folder;                ///< empty: none may be sent
+  std::filesystem::path folder;                ///< empty: none may be sent; files lie in it by upload_folder
   uint64_t bytes = uint64_t{10} << 30;         ///< of one file at most
   uint64_t total_bytes = uint64_t{100} << 30;  ///< of all files in the folder at most
   size_t at_once = 2;                          ///< files that are being received
@@ -30,9 +30,13 @@ struct UploadConfig {
   std::function<Status(const std::filesystem::path&)> serve;
 };
 
-/// The file that a client's name stands for: one name within the folder, of a known extension. Fails with what is wrong
-/// with the name.
-Result<std::filesystem::path> upload_target(const UploadConfig& config, std::string_view name);
+/// The folder for the files of one sender, by the name of their token; empty: of all who need no token. A scan finds
+/// the files that it names in its own folder only, and so none of other senders.
+std::filesystem::path upload_folder(const UploadConfig& config, std::string_view sender);
+
+/// The file that a client's name stands for: one name within the sender's folder, of a known extension. Fails with what
+/// is wrong with the name.
+Result<std::filesystem::path> upload_target(const UploadConfig& config, std::string_view sender, std::string_view name);
 
 /// The extensions of all files that are taken.
 std::vector<std::string> all_extensions(const UploadConfig& config);
@@ -43,7 +47,10 @@ bool is_data(const UploadConfig& config, const std::filesystem::path& file);
 /// The error of a scan that has more than these bytes.
 Error too_large(uint64_t bytes);
 
-/// The complete scans in the folder, sorted by name.
+/// The folders that files may lie in: that of those without a token, and those of senders.
+std::vector<std::filesystem::path> upload_folders(const UploadConfig& config);
+
+/// The complete scans in these folders, sorted by path.
 std::vector<std::filesystem::path> uploaded_scans(const UploadConfig& config);
 
 /// A scan on its way: written beside its target, and renamed once it is whole. Its methods wait for the disk. Their

@@ -11,12 +11,6 @@
 namespace surfcast::service {
 namespace {
 
-/// Counts one more for as long as it is held.
-std::shared_ptr<const void> place_among(const std::shared_ptr<std::atomic<size_t>>& counted) {
-  ++*counted;
-  return {counted.get(), [counted](const void* /*count*/) { --*counted; }};
-}
-
 using ModelPointer = ModelQueries::ModelPointer;
 
 /// Works on a model. One that was replaced in its store meanwhile is opened anew, once.
@@ -41,8 +35,8 @@ PickService::PickService(const ModelSource& models, const PickLimits& limits, st
       most_points_(limits.profile_points),
       most_blocks_(limits.blocks),
       most_region_points_(limits.region_points),
-      most_regions_(limits.regions),
       region_bytes_(limits.region_bytes),
+      regions_(limits.regions),
       pool_(limits.threads, 0, limits.waiting),
       searches_(1) {}
 
@@ -109,8 +103,8 @@ void PickService::profile(ProfileJob job, ProfileDone done, ClientId client) {
 
 void PickService::points(PointsJob job, std::shared_ptr<const std::atomic<bool>> cancelled, PointsDone done,
                          ClientId client) {
-  std::shared_ptr<const void> place = place_among(regions_);
-  if (*regions_ > most_regions_) {
+  std::shared_ptr<const void> place = regions_.take(client);
+  if (!place) {
     return done(fail(ErrorKind::kUnavailable, "the server is busy: the points of too many regions are on their way"));
   }
   const auto task = [this, job = std::move(job), cancelled = std::move(cancelled), place = std::move(place),

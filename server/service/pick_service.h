@@ -13,6 +13,7 @@
 #include "pick/front_surface.h"
 #include "picture/channels.h"
 #include "picture/picture.h"
+#include "service/client_places.h"
 #include "service/model_queries.h"
 #include "service/model_source.h"
 #include "service/point_stream.h"
@@ -96,7 +97,7 @@ class PickService {
   /// as of pick().
   void profile(ProfileJob job, ProfileDone done, ClientId client = 0);
   /// Counts the points of a region, on the same thread, in turns with others. `done` as of pick(), with kCancelled soon
-  /// after `cancelled` becomes true. At most PickLimits::regions streams may be alive; each one of them counts.
+  /// after `cancelled` becomes true. Each stream that is alive has one of PickLimits::regions places, by ClientPlaces.
   void points(PointsJob job, std::shared_ptr<const std::atomic<bool>> cancelled, PointsDone done, ClientId client = 0);
   /// Makes the next piece of their file, likewise. One piece of a stream may be asked for at a time.
   void next_piece(std::shared_ptr<PointStream> stream, PieceDone done, ClientId client = 0);
@@ -117,9 +118,8 @@ class PickService {
   const size_t most_points_;
   const size_t most_blocks_;
   const uint64_t most_region_points_;
-  const size_t most_regions_;
   const size_t region_bytes_;
-  std::shared_ptr<std::atomic<size_t>> regions_ = std::make_shared<std::atomic<size_t>>(0);
+  ClientPlaces regions_;
   std::atomic<size_t> waiting_ = 0;
   std::atomic<size_t> profiles_waiting_ = 0;
   SourcePositions source_positions_;

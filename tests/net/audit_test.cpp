@@ -1,6 +1,8 @@
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -9,6 +11,8 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+#include "access/secret.h"
+#include "access/token_file.h"
 #include "net/audit_log.h"
 #include "net/net_fixture.h"
 
@@ -73,7 +77,7 @@ TEST_F(AuditTest, TellsWhoAskedForWhat) {
 
 TEST_F(AuditTest, GoesOnInANewFileOnceTheFormerWasMovedAway) {
   {
-    auto log = AuditLog::open(file_);
+    auto log = AuditLog::open(file_, 0);
     ASSERT_TRUE(log);
     (*log)->write({.what = "first"});
     ASSERT_TRUE(eventually([&] { return events_in(file_).size() == 1; }));
@@ -84,6 +88,61 @@ TEST_F(AuditTest, GoesOnInANewFileOnceTheFormerWasMovedAway) {
   const std::vector<nlohmann::json> events = events_in(file_);
   ASSERT_EQ(events.size(), 1U);
   EXPECT_EQ(events[0].at("event"), "second");
+}
+
+TEST_F(AuditTest, AFloodOfDenialsHasFewLines) {
+  const std::string secret = access::make_secret();
+  ServerConfig config;
+  config.audit = file_;
+  config.log_lines = 5;
+  config.tokens = file_.string() + ".tokens";
+  ASSERT_TRUE(
+      access::write_tokens(config.tokens, {{.name = "all", .sha256 = access::sha256(secret), .models = {"*"}}}));
+  start(config);
+  const auto ask = [](const std::string& target, const std::string& token) {
+    return "GET " + target + " HTTP/1.1\r\nHost: here\r\nAuthorization: Bearer " + token + "\r\n\r\n";
+  };
+  RawSocket client(port_);
+  for (int i = 0; i < 40; ++i) {
+    ASSERT_TRUE(client.send(ask("/healthz", "wrong")));
+    ASSERT_EQ(client.read_http().substr(9, 3), "200");
+  }
+  EXPECT_NE(http(ask("/metrics", secret)).find("\nsurfcast_audit_left_out_total 35\n"), std::string::npos);
+  stop();
+  fs::remove(config.tokens);
+  std::vector<std::string> denied;
+  for (const nlohmann::json& event : events_in(file_)) {
+    if (event.at("outcome") == "denied") denied.push_back(event.at("event"));
+  }
+  EXPECT_THAT(denied, ElementsAre("token", "token", "token", "token", "token"));
+}
+
+TEST(DenialLimitTest, CountsWhatItLeavesOutForEachClient) {
+  using std::chrono::seconds;
+  const DenialLimit::Clock::time_point start = DenialLimit::Clock::now();
+  DenialLimit limit(2);
+  EXPECT_EQ(limit.admit("a", start), 0U);
+  EXPECT_EQ(limit.admit("a", start), 0U);
+  EXPECT_EQ(limit.admit("a", start), std::nullopt);
+  EXPECT_EQ(limit.admit("a", start + seconds(59)), std::nullopt);
+  EXPECT_EQ(limit.admit("b", start), 0U) << "another client has lines of its own";
+  EXPECT_EQ(limit.admit("a", start + seconds(60)), 2U);
+  EXPECT_EQ(limit.admit("a", start + seconds(60)), 0U);
+}
+
+TEST(DenialLimitTest, ManyAddressesTogetherHaveALimitToo) {
+  const DenialLimit::Clock::time_point now = DenialLimit::Clock::now();
+  DenialLimit limit(1);
+  size_t written = 0;
+  for (int i = 0; i < 20'000; ++i) written += limit.admit(std::to_string(i), now).has_value() ? 1 : 0;
+  EXPECT_EQ(written, 100U);
+}
+
+TEST_F(AuditTest, AFullDiskLosesEventsAndNothingElse) {
+  auto log = AuditLog::open("/dev/full", 0);
+  ASSERT_TRUE(log);
+  for (int i = 0; i < 3; ++i) (*log)->write({.what = "view", .outcome = "allowed"});
+  EXPECT_TRUE(eventually([&] { return (*log)->lost() == 3; }));
 }
 
 TEST_F(AuditTest, AFileThatCannotBeOpenedKeepsTheServerFromStarting) {

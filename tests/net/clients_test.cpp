@@ -69,6 +69,7 @@ class ClientLimitsTest : public NetFixture {
 TEST_F(ClientLimitsTest, ConnectionsOfOneAddressBeyondItsLimitAreToldSo) {
   ServerConfig config;
   config.clients.connections_per_client = 1;
+  config.give_way = std::chrono::hours(1);
   start(config);
   {
     auto first = connect();
@@ -94,6 +95,7 @@ TEST_F(ClientLimitsTest, ConnectionsOfOneAddressBeyondItsLimitAreToldSo) {
 TEST_F(ClientLimitsTest, RefusedConnectionsTakeNobodysPlace) {
   ServerConfig config;
   config.clients = {.connections = 2, .connections_per_client = 1};
+  config.give_way = std::chrono::hours(1);
   start(config);
   auto first = connect();
   ASSERT_TRUE(first);
@@ -117,12 +119,68 @@ TEST_F(ClientLimitsTest, OneClientLeavesConnectionsToOthers) {
 TEST_F(ClientLimitsTest, HealthIsAnsweredWhenEveryPlaceIsTaken) {
   ServerConfig config;
   config.clients = {.connections = 4, .connections_per_client = 0};
+  config.give_way = std::chrono::hours(1);
   start(config);
   std::vector<RawSocket> silent;  // more than are served and told why they are not
   for (int i = 0; i < 60; ++i) silent.emplace_back(port_);
   EXPECT_THAT(get("/healthz"), HasSubstr("HTTP/1.1 200"));
   EXPECT_THAT(get("/readyz"), HasSubstr("HTTP/1.1 200"));
   EXPECT_THAT(get("/metrics"), HasSubstr("HTTP/1.1 503"));
+}
+
+// Of each protocol one, and all that are silent.
+TEST_F(ClientLimitsTest, IdleConnectionsOfAClientGiveWayToItsNextOne) {
+  ServerConfig config;
+  config.clients.connections_per_client = 4;
+  config.give_way = milliseconds(0);
+  start(config);
+  RawSocket silent(port_);
+  auto framed = connect();
+  ASSERT_TRUE(framed && framed->ask(ping_request()));
+  RawSocket http(port_);
+  ASSERT_TRUE(http.send("GET /healthz HTTP/1.1\r\nHost: here\r\n\r\n"));
+  EXPECT_THAT(http.read_http(), HasSubstr("HTTP/1.1 200"));
+  RawWebSocket websocket(port_);
+  websocket.send_hello();
+  (void)websocket.read_message();
+  std::vector<RawSocket> next;
+  for (int i = 0; i < 4; ++i) {
+    next.emplace_back(port_);
+    ASSERT_TRUE(next.back().send("GET /api/models HTTP/1.1\r\nHost: here\r\n\r\n"));
+    EXPECT_THAT(next.back().read_http(), HasSubstr("HTTP/1.1 200"));
+  }
+  EXPECT_TRUE(silent.closed_within(std::chrono::seconds(10)));
+  EXPECT_TRUE(http.closed_within(std::chrono::seconds(10)));
+  EXPECT_FALSE(framed->ask(ping_request()));
+  EXPECT_EQ(websocket.read_message(), "") << "it is closed";
+}
+
+TEST_F(ClientLimitsTest, ConnectionsInUseGiveWayToNobody) {
+  ServerConfig config;
+  config.clients.connections_per_client = 2;
+  config.give_way = milliseconds(0);
+  start(config);
+  auto viewing = connect();
+  ASSERT_TRUE(viewing);
+  const auto view = viewing->send(open_view_request());
+  ASSERT_TRUE(view && viewing->receive()->has_view_frame());
+  auto other = connect();
+  ASSERT_TRUE(other);
+  ASSERT_TRUE(other->send(open_view_request()));
+  ASSERT_TRUE(other->receive()->has_view_frame());
+  EXPECT_THAT(get("/api/models"), HasSubstr("HTTP/1.1 503"));
+  EXPECT_THAT(get_from(kOther, "/api/models"), HasSubstr("HTTP/1.1 200"));
+}
+
+TEST_F(ClientLimitsTest, AnIdleConnectionOfAnyClientGivesWayWhereAllPlacesAreTaken) {
+  ServerConfig config;
+  config.clients = {.connections = 3, .connections_per_client = 0};
+  config.give_way = milliseconds(0);
+  start(config);
+  std::vector<RawSocket> silent;
+  for (int i = 0; i < 3; ++i) silent.emplace_back(port_);
+  EXPECT_THAT(get_from(kOther, "/api/models"), HasSubstr("HTTP/1.1 200"));
+  EXPECT_TRUE(silent.front().closed_within(std::chrono::seconds(10)));
 }
 
 TEST_F(ClientLimitsTest, ViewsOfOneAddressCountOnAllItsConnections) {

@@ -1,6 +1,8 @@
 #include <array>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 #include <memory>
 #include <set>
 #include <sstream>
@@ -11,6 +13,8 @@
 #include <gmock/gmock.h>
 #include <unistd.h>
 
+#include "access/secret.h"
+#include "access/token_file.h"
 #include "model/write_model.h"
 #include "net/net_fixture.h"
 #include "support/clouds.h"
@@ -19,6 +23,7 @@ namespace surfcast::net {
 namespace {
 
 using ::testing::AllOf;
+using ::testing::EndsWith;
 using ::testing::HasSubstr;
 using ::testing::Not;
 using ::testing::StartsWith;
@@ -378,6 +383,37 @@ TEST_F(PointsTest, TheConnectionGoesOnBehindThem) {
   const std::string request = "GET /api/models/cube/points HTTP/1.1\r\nHost: here\r\n\r\n";
   ASSERT_TRUE(socket.send(request + "GET /healthz HTTP/1.1\r\nHost: here\r\nConnection: close\r\n\r\n"));
   EXPECT_THAT(socket.read_to_end(), AllOf(HasSubstr("0\r\n\r\nHTTP/1.1 200 OK"), HasSubstr("ok\n")));
+}
+
+// The client reads nothing until the token is revoked: most of the export has not been made then.
+TEST_F(PointsTest, AnExportEndsWithItsToken) {
+  const std::filesystem::path folder =
+      std::filesystem::path(::testing::TempDir()) / ("revoked" + std::to_string(::getpid()));
+  std::filesystem::create_directories(folder);
+  const std::string secret = access::make_secret();
+  ServerConfig config;
+  config.tokens = folder / "tokens.json";
+  config.audit = folder / "audit.log";
+  ASSERT_TRUE(
+      access::write_tokens(config.tokens, {{.name = "alice", .sha256 = access::sha256(secret), .models = {"*"}}}));
+  serve(scan_of(700), {}, config);
+  RawSocket socket(port_, /*receive_buffer=*/4096);
+  socket.send("GET /api/models/cube/points?format=csv HTTP/1.1\r\nHost: here\r\nAuthorization: Bearer " + secret +
+              "\r\n\r\n");
+  const std::string begun = socket.read_exactly(4096);
+  EXPECT_THAT(begun, StartsWith("HTTP/1.1 200"));
+  ASSERT_TRUE(access::write_tokens(config.tokens, {}));
+  const auto is_told = [&] {
+    std::ifstream stream(config.audit);
+    const std::string text{std::istreambuf_iterator<char>(stream), {}};
+    return text.find("the token was revoked") != std::string::npos;
+  };
+  EXPECT_TRUE(eventually(is_told));
+  const std::string rest = socket.read_to_end();
+  EXPECT_LT(rest.size(), size_t{20'000'000});
+  EXPECT_THAT(rest, Not(EndsWith("0\r\n\r\n")));
+  stop();
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <fstream>
 #include <mutex>
 #include <nlohmann/json.hpp>
+#include <set>
 #include <sstream>
 #include <vector>
 
@@ -12,6 +13,8 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "access/secret.h"
+#include "access/token_file.h"
 #include "net/net_fixture.h"
 
 namespace surfcast::net {
@@ -262,6 +265,43 @@ TEST_F(UploadTest, AClientThatSendsTooSlowlyGivesItsPlaceUp) {
   EXPECT_TRUE(socket.closed_within(std::chrono::seconds(10)));
   EXPECT_TRUE(eventually([this] { return files().empty(); }));
   EXPECT_THAT(put("b.laz", "x"), StartsWith("HTTP/1.1 201"));
+}
+
+// A header that names samples finds those of its own sender.
+TEST_F(UploadTest, EachTokenHasAFolderOfItsOwn) {
+  const std::string alice = access::make_secret();
+  const std::string bob = access::make_secret();
+  config_.tokens = folder_ / "tokens.json";
+  const auto principal = [](const std::string& name, const std::string& secret) {
+    return access::Principal{.name = name, .sha256 = access::sha256(secret), .models = {"*"}, .uploads = true};
+  };
+  ASSERT_TRUE(access::write_tokens(config_.tokens, {principal("alice", alice), principal("../bob", bob)}));
+  start(config_);
+  const auto put_as = [&](const std::string& secret, const std::string& name, const std::string& body) {
+    return put(name, body, "Authorization: Bearer " + secret + "\r\n");
+  };
+  EXPECT_THAT(put_as(alice, "samples.raw", "hers"), StartsWith("HTTP/1.1 201"));
+  EXPECT_THAT(put_as(bob, "samples.raw", "his"), StartsWith("HTTP/1.1 201"));
+  EXPECT_THAT(put_as(bob, "house.laz", bytes(60'000)), StartsWith("HTTP/1.1 201"));
+  EXPECT_EQ(content("sender-alice/samples.raw"), "hers");
+  EXPECT_EQ(content("sender-%2E%2E%2Fbob/samples.raw"), "his");
+  EXPECT_THAT(uploaded_scans(config_.uploads), ElementsAre(folder_ / "sender-%2E%2E%2Fbob" / "house.laz"));
+  EXPECT_THAT(put_as(alice, "a.laz", bytes(95'000)), StartsWith("HTTP/1.1 201"));
+  EXPECT_THAT(put_as(alice, "b.laz", bytes(99'000)), StartsWith("HTTP/1.1 503")) << "one total for all senders";
+}
+
+TEST_F(UploadTest, FoldersOfSendersAreNeverTheSame) {
+  const std::string long_name(300, 'a');
+  std::set<fs::path> folders;
+  const std::vector<std::string> senders{"",  "a",   "A",    "a/b",     "a%2Fb",        "..",
+                                         ".", "a b", "a\nb", long_name, long_name + "b"};
+  for (const std::string& sender : senders) {
+    const fs::path folder = upload_folder(config_.uploads, sender);
+    EXPECT_EQ(sender.empty() ? folder : folder.parent_path(), folder_) << sender;
+    EXPECT_LT(folder.filename().string().size(), 220U);
+    folders.insert(folder);
+  }
+  EXPECT_EQ(folders.size(), senders.size());
 }
 
 TEST_F(UploadTest, AServerThatTakesNoneSaysSo) {
