@@ -49,12 +49,14 @@ constexpr std::array kFields{
     PictureField{"eye_dome", "eye-dome", "STRENGTH[,RADIUS]",
                  "darken pixels behind depth discontinuities: strength 0 to 100, usually 1; radius up to 8 pixels "
                  "(default 0,1.5)"},
-    PictureField{
-        "transfer", "transfer", "NAME[,FIRST,LAST]|VALUE,R,G,B,OPACITY;...",
-        "colours and opacities of volumes: gray, ct-bone, ct-soft or mr, with the values at its ends; or points "
-        "in ascending order, with the opacity of one spacing of the grid; or on the command line a JSON file "
-        "(default gray)"},
-    PictureField{"shaded", "shaded", "on|off", "lighting of volumes (default off)"},
+    PictureField{"transfer", "transfer", "NAME[,FIRST,LAST]|VALUE,R,G,B,OPACITY;...",
+                 "colours and opacities of volumes: auto (default), gray, ct-bone, ct-soft or mr, with the values at "
+                 "its ends; or "
+                 "points "
+                 "in ascending order, with the opacity of one spacing of the grid; or on the command line a JSON file "
+                 "(default gray)"},
+    PictureField{"shaded", "shaded", "on|off",
+                 "lighting of volumes (default: on with the transfer function auto, else off)"},
     PictureField{"iso", "iso", "VALUE[,R,G,B[,OPACITY]];...",
                  "surfaces of volumes where they have a value, lit (default colour light grey, opacity 1)", true},
     PictureField{"slice", "slice", "X,Y,Z,NX,NY,NZ|i,INDEX|j,INDEX|k,INDEX;...",

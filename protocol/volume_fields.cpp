@@ -133,7 +133,7 @@ bool set_opacity(wire::DrawPicture& picture, std::string_view text) {
 }  // namespace
 
 std::optional<wire::TransferPreset> parse_transfer_preset(std::string_view name) {
-  constexpr std::array<std::string_view, 4> kNames{"gray", "ct-bone", "ct-soft", "mr"};
+  constexpr std::array<std::string_view, 5> kNames{"gray", "ct-bone", "ct-soft", "mr", "auto"};
   const auto found = std::find(kNames.begin(), kNames.end(), name);
   if (found == kNames.end()) return std::nullopt;
   return static_cast<wire::TransferPreset>(found - kNames.begin());

@@ -144,6 +144,8 @@ picture::TransferPreset from_wire(wire::TransferPreset preset) {
       return picture::TransferPreset::kCtSoft;
     case wire::TRANSFER_PRESET_MR:
       return picture::TransferPreset::kMr;
+    case wire::TRANSFER_PRESET_AUTO:
+      return picture::TransferPreset::kAuto;
     default:
       return picture::TransferPreset::kGray;
   }
@@ -193,7 +195,10 @@ picture::Slice from_wire(const wire::Slice& slice) {
 }
 
 picture::VolumeOptions volume_options(const wire::DrawPicture& request) {
-  picture::VolumeOptions options{from_wire(request.transfer()), request.shaded()};
+  picture::VolumeOptions options{from_wire(request.transfer())};
+  if (!request.has_transfer()) options.transfer.preset = picture::TransferPreset::kAuto;
+  const bool automatic = options.transfer.preset == picture::TransferPreset::kAuto && options.transfer.points.empty();
+  options.shaded = request.has_shaded() ? request.shaded() : automatic && request.shading() != wire::SHADING_UNLIT;
   for (const wire::IsoSurface& surface : request.iso_surfaces()) options.isos.push_back(from_wire(surface));
   for (const wire::Slice& slice : request.slices()) options.slices.push_back(from_wire(slice));
   const bool surfaces = !options.isos.empty() || !options.slices.empty();

@@ -16,8 +16,9 @@ struct TransferPoint {
   bool operator==(const TransferPoint&) const = default;
 };
 
-enum class TransferPreset { kGray, kCtBone, kCtSoft, kMr };
-inline constexpr size_t kTransferPresets = 4;
+/// kAuto: chosen by the values of the volume.
+enum class TransferPreset { kGray, kCtBone, kCtSoft, kMr, kAuto };
+inline constexpr size_t kTransferPresets = 5;
 
 /// How the values of volumes look: points, or a preset. Between points, the colour in linear light and the extinction
 /// are linear; beyond the first and the last they stay. Two points of one value are a step.

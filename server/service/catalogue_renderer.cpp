@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "service/first_look.h"
 #include "service/shader_warm_up.h"
 
 namespace surfcast::service {
@@ -49,7 +50,8 @@ class CatalogueRenderer : public FrameRenderer {
     Result<ModelCatalogue::Edition> edition = models_.open_edition(name, request.edition);
     if (!edition) return fail(edition.error());
     keep(name, edition->model);
-    Result<picture::Frame> frame = renderer_->draw(edition->model, request, preemption);
+    const picture::PictureRequest looked = with_first_look(request, edition->model->info());
+    Result<picture::Frame> frame = renderer_->draw(edition->model, looked, preemption);
     if (frame) frame->preview = edition->preview;
     return frame;
   }

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "service/first_look.h"
+
 namespace surfcast::service {
 namespace {
 
@@ -23,7 +25,7 @@ std::vector<picture::PictureRequest> shader_warm_up_requests(const model::ModelF
   plain.spacing = 1e6;  // the coarsest blocks
   plain.silhouettes = true;
   std::vector<picture::PictureRequest> pictures;
-  add_both(plain, pictures);
+  add_both(with_first_look(plain, info), pictures);
   if (!model.ellipsoid_sources().empty()) {
     picture::PictureRequest superquadrics = plain;
     superquadrics.glyphs.shape = picture::GlyphShape::kSuperquadric;

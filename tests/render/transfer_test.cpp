@@ -129,6 +129,57 @@ TEST(TransferPresets, GrayEndsWhereOneHundredthOfTheSamplesAreBrighter) {
   EXPECT_GT(preset_points({}, volume).back().value, 0) << "a constant volume has a scale too";
 }
 
+std::vector<TransferPoint> automatic_points(const model::Volume& volume) {
+  picture::Transfer transfer;
+  transfer.preset = picture::TransferPreset::kAuto;
+  return preset_points(transfer, volume);
+}
+
+TEST(AutomaticTransfer, ShowsSkinAndBoneOfHounsfieldUnits) {
+  picture::Transfer soft;
+  soft.preset = picture::TransferPreset::kCtSoft;
+  const model::Volume volume = volume_of(-1024, 3071);
+  EXPECT_EQ(automatic_points(volume), preset_points(soft, volume));
+}
+
+// Noise of Rayleigh's distribution below 60, tissue about 400, a bright vessel at 1000.
+TEST(AutomaticTransfer, BeginsAboveTheNoiseOfMr) {
+  model::Volume volume = volume_of(0, 1024);
+  for (int i = 0; i < 60; ++i) {
+    volume.histogram[static_cast<size_t>(i)] = static_cast<uint64_t>(4000 * i * std::exp(-i * i / 450.0));
+  }
+  for (size_t i = 300; i < 500; ++i) volume.histogram[i] = 900;
+  volume.histogram[1000] = 2000;
+  const std::vector<TransferPoint> points = automatic_points(volume);
+  EXPECT_EQ(points.front().opacity, 0);
+  EXPECT_GE(points.front().value, 60);
+  EXPECT_LE(points.front().value, 300);
+  EXPECT_GT(points.back().value, 450);
+  EXPECT_GE(points.back().opacity, 0.5) << "the brightest values are seen at once";
+}
+
+TEST(AutomaticTransfer, LiesBetweenTheModesOfAnything) {
+  model::Volume volume = volume_of(-3, 7);
+  volume.histogram[100] = 50'000;
+  volume.histogram[900] = 40'000;
+  const double first = automatic_points(volume).front().value;
+  EXPECT_GT(first, -3 + 10 * 100.0 / 1024);
+  EXPECT_LE(first, -3 + 10 * 900.0 / 1024);
+}
+
+TEST(AutomaticTransfer, AscendsForVolumesThatSayNothing) {
+  model::Volume empty = volume_of(0, 0);
+  model::Volume constant = volume_of(5, 5);
+  constant.histogram[0] = 1000;
+  model::Volume nearly_constant = volume_of(0, 1);
+  nearly_constant.histogram[0] = 1'000'000;
+  nearly_constant.histogram[1023] = 1;
+  for (const model::Volume& volume : {empty, constant, nearly_constant}) {
+    const std::vector<TransferPoint> points = automatic_points(volume);
+    for (size_t i = 1; i < points.size(); ++i) EXPECT_LT(points[i - 1].value, points[i].value);
+  }
+}
+
 TEST(ClearBlocks, AreThoseInWhichTheirFunctionAndTheirDescendantsShowNothing) {
   const model::TestFolder folder;
   Result<model::ModelWriter> writer = model::ModelWriter::create(folder / "two.surf", {});

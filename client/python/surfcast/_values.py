@@ -19,7 +19,7 @@ from .errors import InvalidInput
 Vector = Union[Sequence[float], npt.NDArray[Any]]
 Floats = npt.NDArray[np.float64]
 
-PRESETS = ("gray", "ct-bone", "ct-soft", "mr")  # in the order of the messages
+PRESETS = ("gray", "ct-bone", "ct-soft", "mr", "auto")  # in the order of the messages
 
 
 def vector_of(value: Vector, what: str) -> tuple[float, float, float]:

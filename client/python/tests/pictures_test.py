@@ -62,7 +62,7 @@ def over_http(running: RunningServer, model: str, options: Mapping[str, str]) ->
         ("ball", "transfer", "ct-bone", "ct-bone"),
         ("ball", "transfer", ("gray", 100, 900), "gray,100,900"),
         ("ball", "transfer", POINTS, "0,0,0,0,0;900,255,250,240,0.3"),
-        ("ball", "shaded", True, "on"),
+        ("ball", "shaded", False, "off"),
         ("ball", "iso", 400, "400"),
         ("ball", "iso", [(400, 230, 200, 180, 0.3), 800], "400,230,200,180,0.3;800"),
         ("ball", "slice", [("k", 12)], "k,12"),
@@ -184,7 +184,7 @@ def test_a_volume_tells_its_grid(ball: surfcast.Model) -> None:
     assert volume.histogram.sum() == 24**3
     values = [point.value for point in volume.presets["gray"]]
     assert volume.low <= values[0] < values[-1] <= volume.high
-    assert set(volume.presets) == {"gray", "ct-bone", "ct-soft", "mr"}
+    assert set(volume.presets) == {"auto", "gray", "ct-bone", "ct-soft", "mr"}
 
 
 def test_a_table_of_ellipsoids_tells_its_ranges(client: surfcast.Server) -> None:

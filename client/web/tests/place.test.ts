@@ -24,7 +24,7 @@ const display: DisplayOptions = {
   background: { red: 255, green: 0, blue: 9 },
   spacing: 0,
   transfer: {
-    preset: 'gray',
+    preset: 'auto',
     range: undefined,
     points: [
       { value: -1000, color: { red: 0, green: 0, blue: 0 }, opacity: 0 },

@@ -17,7 +17,7 @@ describe('the window of a transfer function', () => {
   });
 
   it('of a preset becomes its stated ends', () => {
-    expect(withWindow(preset, { level: 40, width: 400 })).toEqual({ preset: 'gray', range: [-160, 240], points: [] });
+    expect(withWindow(preset, { level: 40, width: 400 })).toEqual({ preset: 'auto', range: [-160, 240], points: [] });
   });
 
   it('of points moves and stretches them', () => {

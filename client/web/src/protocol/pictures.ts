@@ -57,6 +57,7 @@ const xrays: Readonly<Record<XRayName, XRay>> = {
 };
 
 const presets: Readonly<Record<PresetName, TransferPreset>> = {
+  auto: TransferPreset.AUTO,
   gray: TransferPreset.GRAY,
   'ct-bone': TransferPreset.CT_BONE,
   'ct-soft': TransferPreset.CT_SOFT,
@@ -127,7 +128,7 @@ export function pictureOf(
     ...(camera ? { camera: wireCamera(camera) } : {}),
     ...(display.eyeDome.strength > 0 ? { eyeDome: display.eyeDome } : {}),
     ...(display.transfer === defaultTransfer ? {} : { transfer: wireTransfer(display.transfer) }),
-    shaded: display.shaded,
+    ...(display.shaded === undefined ? {} : { shaded: display.shaded }),
     isoSurfaces: display.surfaces.map(wireSurface),
     slices: display.slices.map(wireSlice),
     ...(display.medium === undefined ? {} : { medium: display.medium }),

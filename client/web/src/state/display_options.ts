@@ -48,7 +48,7 @@ export interface DisplayOptions {
   readonly background: Rgb;
   readonly spacing: number; // projected surfel spacing at which refinement at rest stops, pixels; 0: every surfel
   readonly transfer: Transfer; // of volumes
-  readonly shaded: boolean; // volumes are lit
+  readonly shaded: boolean | undefined; // volumes are lit; undefined: with the automatic transfer function
   readonly surfaces: readonly IsoSurface[]; // of volumes
   readonly slices: readonly Slice[]; // of volumes
   /** What the transfer function shows is drawn; undefined: unless there are surfaces or slices and no function. */
@@ -77,7 +77,7 @@ export const defaultDisplay: DisplayOptions = {
   background: defaultBackground,
   spacing: 1,
   transfer: defaultTransfer,
-  shaded: false,
+  shaded: undefined,
   surfaces: [],
   slices: [],
   medium: undefined,

@@ -6,6 +6,7 @@ import * as store from './store';
 /** The volume of the open model, and its window and level. */
 
 const numbers: Readonly<Record<PresetName, TransferPreset>> = {
+  auto: TransferPreset.AUTO,
   gray: TransferPreset.GRAY,
   'ct-bone': TransferPreset.CT_BONE,
   'ct-soft': TransferPreset.CT_SOFT,

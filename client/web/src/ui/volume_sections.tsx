@@ -13,6 +13,7 @@ import { TransferEditor } from './transfer_editor';
 const change = (part: Partial<DisplayOptions>): void => void (display.value = { ...display.peek(), ...part });
 
 const presetLabels: readonly { value: PresetName; label: string }[] = [
+  { value: 'auto', label: 'Automatic' },
   { value: 'gray', label: 'Grey' },
   { value: 'ct-bone', label: 'CT bone' },
   { value: 'ct-soft', label: 'CT soft' },
@@ -77,7 +78,7 @@ export function VolumeSections(): JSX.Element | null {
           onChange={set}
         />
         <WindowFields />
-        <Switch label="Light by gradient" checked={shaded} onChange={(on) => change({ shaded: on })} />
+        <Switch label="Light by gradient" checked={shaded ?? (transfer.preset === 'auto' && !own)} onChange={(on) => change({ shaded: on })} />
         {!hasSurfels() && <Opacity />}
       </Section>
       <SurfaceSection volume={volume} />

@@ -1,6 +1,6 @@
 import type { Rgb } from '../state/display_options';
 
-export const presets = ['gray', 'ct-bone', 'ct-soft', 'mr'] as const;
+export const presets = ['auto', 'gray', 'ct-bone', 'ct-soft', 'mr'] as const;
 export type PresetName = (typeof presets)[number];
 
 /** A point of a transfer function. */
@@ -17,7 +17,7 @@ export interface Transfer {
   readonly points: readonly TransferPoint[]; // none: the preset
 }
 
-export const defaultTransfer: Transfer = { preset: 'gray', range: undefined, points: [] };
+export const defaultTransfer: Transfer = { preset: 'auto', range: undefined, points: [] };
 
 export const maxPoints = 256;
 
