@@ -33,6 +33,11 @@ struct CoordinateSystem {
 };
 
 /// Reads WKT (1, 2 or ESRI's) or the code of an authority ("EPSG:25832", with a vertical system "EPSG:25832+7837").
+///
+/// GeoKeys may state other units than their systems have. They are written as "EPSG:26918@9003+5703@9002": after each
+/// code that of its unit of length, by EPSG; 0: the system's own. A vertical system that has the unit of the horizontal
+/// one is left out, and one that PROJ does not know, or of code 0, is a height of that unit over nothing known.
+///
 /// Errors are one line and do not name a file.
 Result<CoordinateSystem> read_system(std::string_view text);
 

@@ -109,6 +109,10 @@ CoordinateSystem describe(PJ_CONTEXT* context, const PJ* system) {
   return described;
 }
 
+double vertical_unit(PJ_CONTEXT* context, const PJ* vertical) {
+  return unit_of_axis(context, vertical, 0).value_or(1);
+}
+
 std::string last_problem(PJ_CONTEXT* context) {
   const int code = proj_context_errno(context);
   return code == 0 ? std::string("PROJ knows no way") : text_or_empty(proj_context_errno_string(context, code));

@@ -36,6 +36,9 @@ Object horizontal_part(PJ_CONTEXT* context, const PJ* system);
 /// The properties of a parsed system.
 CoordinateSystem describe(PJ_CONTEXT* context, const PJ* system);
 
+/// Metres of a unit of heights of a vertical system; 1 if that is unknown.
+double vertical_unit(PJ_CONTEXT* context, const PJ* vertical);
+
 /// What PROJ says about its last error in this context.
 std::string last_problem(PJ_CONTEXT* context);
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "crs/proj_functions.h"
@@ -14,7 +15,9 @@ bool is_code(std::string_view text) {
   const size_t colon = text.find(':');
   if (colon == std::string_view::npos || colon == 0 || colon + 1 == text.size()) return false;
   const auto is_letter = [](unsigned char c) { return std::isalnum(c) != 0; };
-  const auto is_digit = [](unsigned char c) { return std::isalnum(c) != 0 || c == '+' || c == '_' || c == '.'; };
+  const auto is_digit = [](unsigned char c) {
+    return std::isalnum(c) != 0 || std::string_view("+@_.").find(static_cast<char>(c)) != std::string_view::npos;
+  };
   return std::all_of(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(colon), is_letter) &&
          std::all_of(text.begin() + static_cast<std::ptrdiff_t>(colon) + 1, text.end(), is_digit) &&
          text.substr(0, colon) != "init";
@@ -29,8 +32,73 @@ std::string beginning(std::string_view text) {
   return text.size() > kShown ? shown + "..." : shown;
 }
 
+/// A system and a unit of length by their codes, as GeoKeys state them.
+struct CodeAndUnit {
+  std::string code;
+  std::string unit;  ///< "0": the system's own
+};
+
+/// "26918@9003"; without "@", the system's own unit.
+CodeAndUnit split_unit(std::string_view text) {
+  const size_t at = text.find('@');
+  if (at == std::string_view::npos) return {std::string(text), "0"};
+  return {std::string(text.substr(0, at)), std::string(text.substr(at + 1))};
+}
+
+struct Unit {
+  std::string name;
+  double metres = 0;
+};
+
+std::optional<Unit> length_unit(PJ_CONTEXT* context, const std::string& code) {
+  const char* name = nullptr;
+  const char* category = nullptr;
+  double metres = 0;
+  if (proj_uom_get_info_from_database(context, "EPSG", code.c_str(), &name, &metres, &category) == 0) return {};
+  if (std::string_view(category) != "linear" || !(metres > 0)) return {};
+  return Unit{name, metres};
+}
+
+/// The system with another unit of length; itself if it has that one, or if the unit is not known.
+Object with_unit(PJ_CONTEXT* context, Object system, const std::string& code) {
+  const std::optional<Unit> unit = length_unit(context, code);
+  if (!system || !unit || describe(context, system.get()).unit == unit->metres) return system;
+  return Object(
+      proj_crs_alter_cs_linear_unit(context, system.get(), unit->name.c_str(), unit->metres, "EPSG", code.c_str()));
+}
+
+/// Heights as GeoKeys state them. Null if nothing is known but that there are some.
+Object vertical_system(PJ_CONTEXT* context, const CodeAndUnit& stated) {
+  Object system(stated.code == "0" ? nullptr : proj_create(context, ("EPSG:" + stated.code).c_str()));
+  const std::optional<Unit> unit = length_unit(context, stated.unit);
+  if (system && proj_get_type(system.get()) == PJ_TYPE_VERTICAL_CRS) {
+    if (!unit || vertical_unit(context, system.get()) == unit->metres) return system;
+    return Object(proj_crs_alter_cs_linear_unit(context, system.get(), unit->name.c_str(), unit->metres, "EPSG",
+                                                stated.unit.c_str()));
+  }
+  if (!unit) return nullptr;
+  return Object(proj_create_vertical_crs(context, "unknown height", "unknown", unit->name.c_str(), unit->metres));
+}
+
+/// As coordinate_system.h describes it.
+Object parse_geo_keys(PJ_CONTEXT* context, const std::string& text) {
+  const size_t plus = text.find('+');
+  const CodeAndUnit stated = split_unit(std::string_view(text).substr(0, plus));
+  Object horizontal = with_unit(context, Object(proj_create(context, stated.code.c_str())), stated.unit);
+  if (!horizontal || proj_is_crs(horizontal.get()) == 0) return nullptr;
+  if (plus == std::string::npos) return horizontal;
+  const Object vertical = vertical_system(context, split_unit(std::string_view(text).substr(plus + 1)));
+  if (!vertical || vertical_unit(context, vertical.get()) == describe(context, horizontal.get()).unit) {
+    return horizontal;
+  }
+  const std::string name =
+      std::string(proj_get_name(horizontal.get())) + " + " + std::string(proj_get_name(vertical.get()));
+  return Object(proj_create_compound_crs(context, name.c_str(), horizontal.get(), vertical.get()));
+}
+
 Object parse_text(PJ_CONTEXT* context, const std::string& text) {
   if (!is_code(text)) return parse_system(context, text);
+  if (text.find('@') != std::string::npos) return parse_geo_keys(context, text);
   Object system(proj_create(context, text.c_str()));
   return system && proj_is_crs(system.get()) != 0 ? std::move(system) : nullptr;
 }

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 #include <string_view>
+#include <utility>
 
 #include "base/invalid_input.h"
 #include "scan/text_tokens.h"
@@ -117,23 +118,47 @@ std::string stored_text(Bytes body) {
   return stored == "\"\"" ? std::string() : std::string(stored);
 }
 
-/// The code of the coordinate system in a GeoKey directory (OGC 19-008r4): projected, or else geographic. Codes that
-/// other records define count as none.
-std::string system_of_geo_keys(Bytes body) {
-  constexpr uint16_t kGeographic = 2048;
-  constexpr uint16_t kProjected = 3072;
+/// What a GeoKey directory (OGC 19-008r4) states of the coordinate system: codes of EPSG; 0: nothing. Codes that other
+/// records define count as none.
+struct GeoKeys {
+  uint16_t geographic = 0;     // 2048
+  uint16_t projected = 0;      // 3072
+  uint16_t unit = 0;           // 3076, of the projected system
+  uint16_t vertical = 0;       // 4096
+  uint16_t vertical_unit = 0;  // 4099
+};
+
+GeoKeys read_geo_keys(Bytes body) {
   constexpr uint16_t kUserDefined = 32767;
-  uint16_t geographic = 0;
-  uint16_t projected = 0;
+  GeoKeys keys;
+  const std::array<std::pair<uint16_t, uint16_t*>, 5> wanted{{{2048, &keys.geographic},
+                                                              {3072, &keys.projected},
+                                                              {3076, &keys.unit},
+                                                              {4096, &keys.vertical},
+                                                              {4099, &keys.vertical_unit}}};
   for (size_t at = 8; at + 8 <= body.size(); at += 8) {  // behind the header: key, place, count, value
     const auto key = load<uint16_t>(&body[at]);
     const auto value = load<uint16_t>(&body[at + 6]);
-    if (load<uint16_t>(&body[at + 2]) != 0 || value == 0 || value == kUserDefined) continue;
-    if (key == kGeographic) geographic = value;
-    if (key == kProjected) projected = value;
+    if (load<uint16_t>(&body[at + 2]) != 0 || value == kUserDefined) continue;
+    for (const auto& [number, target] : wanted) {
+      if (key == number && value != 0) *target = value;
+    }
   }
-  const uint16_t code = projected != 0 ? projected : geographic;
-  return code == 0 ? std::string() : "EPSG:" + std::to_string(code);
+  return keys;
+}
+
+/// The system in the form that crs::read_system reads: projected, or else geographic. Units that are stated win over
+/// those of the systems.
+std::string system_of_geo_keys(Bytes body) {
+  const GeoKeys keys = read_geo_keys(body);
+  const uint16_t code = keys.projected != 0 ? keys.projected : keys.geographic;
+  if (code == 0) return {};
+  std::string text = "EPSG:" + std::to_string(code);
+  if (keys.projected != 0 && keys.unit != 0) text += "@" + std::to_string(keys.unit);
+  if (keys.projected != 0 && (keys.vertical != 0 || keys.vertical_unit != 0)) {
+    text += "+" + std::to_string(keys.vertical) + "@" + std::to_string(keys.vertical_unit);
+  }
+  return text;
 }
 
 /// WKT wins over GeoKeys, whatever the header says which of them there is.
@@ -233,6 +258,9 @@ Result<LasHeader> parse_las_header(Bytes bytes) {
   if (Status status = check_sizes(bytes, header); !status) return fail(status.error());
   if (header.count == 0) return invalid_input("has no points");
   parse_variable_records(bytes, header);
+  for (const LasVariableRecord& record : las_extended_records(bytes, header)) {
+    if (record.user == "LASF_Projection") take_projection(record.id, record.body, header);
+  }
   return header;
 }
 

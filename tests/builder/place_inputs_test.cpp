@@ -1,7 +1,9 @@
 #include "builder/place_inputs.h"
 
 #include <algorithm>
+#include <array>
 #include <fstream>
+#include <utility>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -177,6 +179,52 @@ TEST(PlaceInputs, ScansOfOnePlaceInTwoSystemsLieOnEachOther) {
     // Half a step of each file on each axis: 1e-4 m, and 1e-9 degrees, which are 1.1e-4 m.
     EXPECT_LT(glm::distance(positions[0][i], positions[1][i]), 2.5e-4) << i;
   }
+}
+
+/// Keys of projected coordinates: 3072, 3076 and 4099.
+std::string geo_keys_with_units(uint16_t code, uint16_t unit, uint16_t height_unit) {
+  testing::Bytes keys(std::string(40, '\0'));
+  keys.set<uint16_t>(0, 1).set<uint16_t>(2, 1).set<uint16_t>(6, 4);
+  const std::array<std::pair<uint16_t, uint16_t>, 4> entries{
+      {{1024, 1}, {3072, code}, {3076, unit}, {4099, height_unit}}};
+  for (size_t i = 0; i < entries.size(); ++i) {
+    keys.set<uint16_t>(8 + 8 * i, entries[i].first)
+        .set<uint16_t>(12 + 8 * i, 1)
+        .set<uint16_t>(14 + 8 * i, entries[i].second);
+  }
+  testing::Bytes record(std::string(54, '\0'));
+  for (size_t i = 0; i < 15; ++i) record.set(2 + i, "LASF_Projection"[i]);
+  record.set<uint16_t>(18, 34735).set<uint16_t>(20, 40);
+  return record.text() + keys.text();
+}
+
+// Coordinates in feet of a system whose own unit is the metre, heights in metres.
+TEST(PlaceInputs, FeetThatKeysStateLieOnMetres) {
+  constexpr double kFoot = 0.3048;
+  const auto place_in_feet = [](int i, int j) {
+    const glm::dvec3 place = place_in_metres(i, j);
+    return glm::dvec3(place.x / kFoot, place.y / kFoot, place.z);
+  };
+  const model::TestFolder folder;
+  const std::vector<std::filesystem::path> paths{folder / "metres.las", folder / "feet.las"};
+  write_las(paths[0], 1e-4, 1e-4, geo_keys(25832, false), place_in_metres);
+  write_las(paths[1], 1e-4, 1e-4, geo_keys_with_units(25832, 9002, 9001), place_in_feet);
+  auto inputs = BuildInputs::open(paths, {}, std::nullopt, uint64_t{1} << 28, std::nullopt, [](double) {});
+  ASSERT_TRUE(inputs) << inputs.error().message;
+  const auto placement = inputs->place({});
+  ASSERT_TRUE(placement) << placement.error().message;
+  EXPECT_EQ(placement->georeference.system.id, "EPSG:25832");
+  std::vector<std::vector<glm::dvec3>> positions(2);
+  for (size_t piece = 0; piece < inputs->pieces(); ++piece) {
+    scan::SurfelReport report;
+    const auto read = inputs->read(piece, report);
+    ASSERT_TRUE(read);
+    auto& of_input = positions[read->source];
+    of_input.insert(of_input.end(), read->points.positions.begin(), read->points.positions.end());
+  }
+  ASSERT_EQ(positions[0].size(), positions[1].size());
+  for (size_t i = 0; i < positions[0].size(); ++i)
+    EXPECT_LT(glm::distance(positions[0][i], positions[1][i]), 2.5e-4) << i;
 }
 
 TEST(PlaceInputs, AModelOfDegreesIsThatOfMetresAndStatesBothSystems) {

@@ -49,8 +49,46 @@ TEST(CoordinateSystem, MetresWithVerticalFeetAreNotMetric) {
   EXPECT_EQ(metric->id, "EPSG:26918");
 }
 
+constexpr double kFoot = 0.3048;
+constexpr double kSurveyFoot = 1200.0 / 3937;
+
+TEST(CoordinateSystem, UnitsOfGeoKeysWin) {
+  EXPECT_EQ(known_system("EPSG:26918@9001").id, "EPSG:26918") << "its own unit";
+  EXPECT_EQ(known_system("EPSG:2263@9003").id, "EPSG:2263");
+  const CoordinateSystem feet = known_system("EPSG:26918@9002");
+  EXPECT_EQ(feet.kind, SystemKind::kProjected);
+  EXPECT_DOUBLE_EQ(feet.unit, kFoot);
+  EXPECT_DOUBLE_EQ(feet.height_unit, kFoot);
+  EXPECT_TRUE(feet.is_metric());
+}
+
+TEST(CoordinateSystem, HeightsOfGeoKeysAreLeftOutUnlessTheirUnitDiffers) {
+  EXPECT_EQ(known_system("EPSG:26918+5703@0").id, "EPSG:26918");
+  EXPECT_EQ(known_system("EPSG:26918+0@9001").id, "EPSG:26918");
+  EXPECT_EQ(known_system("EPSG:26918+6360@0").id, "EPSG:26918+6360");
+  for (const char* text : {"EPSG:26918+5703@9002", "EPSG:26918+0@9002", "EPSG:26918+5103@9002"}) {  // 5103: a datum
+    const CoordinateSystem system = known_system(text);
+    EXPECT_DOUBLE_EQ(system.unit, 1) << text;
+    EXPECT_DOUBLE_EQ(system.height_unit, kFoot) << text;
+    EXPECT_FALSE(system.is_metric()) << text;
+    const Result<CoordinateSystem> metric = metric_system(system, {});
+    ASSERT_TRUE(metric) << metric.error().message;
+    EXPECT_EQ(metric->id, "EPSG:26918") << text;
+  }
+  const CoordinateSystem both = known_system("EPSG:26918@9003+5703@9001");
+  EXPECT_DOUBLE_EQ(both.unit, kSurveyFoot);
+  EXPECT_DOUBLE_EQ(both.height_unit, 1);
+}
+
+TEST(CoordinateSystem, UnknownUnitsOfGeoKeysAreThoseOfTheSystem) {
+  EXPECT_EQ(known_system("EPSG:26918@1").id, "EPSG:26918");
+  EXPECT_EQ(known_system("EPSG:26918+5103@0").id, "EPSG:26918");
+  EXPECT_EQ(known_system("EPSG:26918@9102").id, "EPSG:26918") << "a degree is no length";
+}
+
 TEST(CoordinateSystem, UnknownTextIsOneLine) {
-  for (const char* text : {"", "our site", "EPSG:999999", "PROJCS[\"cut off\n", "init:epsg", "+proj=utm +zone=32"}) {
+  for (const char* text : {"", "our site", "EPSG:999999", "PROJCS[\"cut off\n", "init:epsg", "+proj=utm +zone=32",
+                           "EPSG:999999@9001", "EPSG:@9001"}) {
     const Result<CoordinateSystem> system = read_system(text);
     ASSERT_FALSE(system) << text;
     EXPECT_THAT(system.error().message, testing::Not(testing::HasSubstr("\n")));

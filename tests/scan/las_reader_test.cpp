@@ -1,9 +1,13 @@
 #include <limits>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include "scan/las_file.h"
+#include "scan/las_header.h"
 #include "scan/whole_scan.h"
 
 namespace surfcast::scan {
@@ -200,6 +204,54 @@ TEST(LasReaderTest, WrongNumberOfVariableRecordsDoesNotHideThePoints) {
   const Result<testing::WholeScan> points = read(file);
   ASSERT_TRUE(points) << points.error().message;
   EXPECT_THAT(points->positions, ElementsAre(glm::dvec3(1, 2, 3)));
+}
+
+/// A record behind the points (LAS 1.4 R15, 2.7).
+std::string extended_record(const std::string& user, uint16_t id, const std::string& body) {
+  testing::Bytes record(std::string(60, '\0'));
+  for (size_t i = 0; i < user.size(); ++i) record.set(2 + i, user[i]);
+  return record.set(18, id).set<uint64_t>(20, body.size()).text() + body;
+}
+
+TEST(LasReaderTest, ASystemInARecordBehindThePointsIsRead) {
+  LasFile file;
+  file.minor = 4;
+  file.format = 6;
+  file.records = {file.record(1, 2, 3).text()};
+  const std::string text = file.text();
+  testing::Bytes bytes(text + extended_record("someone", 2112, "no system") +
+                       extended_record("LASF_Projection", 2112, "PROJCRS[\"a\"]"));
+  bytes.set<uint64_t>(235, text.size()).set<uint32_t>(243, 2);
+  const Result<LasHeader> header = parse_las_header(bytes.bytes());
+  ASSERT_TRUE(header) << header.error().message;
+  EXPECT_EQ(header->crs, "PROJCRS[\"a\"]");
+  bytes.set<uint64_t>(235, text.size() + 1'000'000);
+  EXPECT_EQ(parse_las_header(bytes.bytes())->crs, "") << "beyond the end of the file";
+}
+
+/// A GeoKey directory of these keys.
+std::string geo_keys(const std::vector<std::pair<uint16_t, uint16_t>>& keys) {
+  testing::Bytes body;
+  body.add<uint16_t>(1).add<uint16_t>(1).add<uint16_t>(0).add(static_cast<uint16_t>(keys.size()));
+  for (const auto& [key, value] : keys) body.add(key).add<uint16_t>(0).add<uint16_t>(1).add(value);
+  return body.text();
+}
+
+TEST(LasReaderTest, UnitsAndHeightsOfGeoKeysAreStated) {
+  const auto system_of = [](const std::vector<std::pair<uint16_t, uint16_t>>& keys) {
+    LasFile file;
+    file.variable_records = variable_record("LASF_Projection", 34735, geo_keys(keys));
+    file.variable_record_count = 1;
+    file.records = {file.record(1, 2, 3).text()};
+    return parse_las_header(as_bytes(file.text()))->crs;
+  };
+  EXPECT_EQ(system_of({{1024, 1}, {3072, 26918}}), "EPSG:26918");
+  EXPECT_EQ(system_of({{3072, 26918}, {3076, 9003}}), "EPSG:26918@9003");
+  EXPECT_EQ(system_of({{3072, 26918}, {4096, 5703}, {4099, 9002}}), "EPSG:26918+5703@9002");
+  EXPECT_EQ(system_of({{3072, 26918}, {4096, 6360}}), "EPSG:26918+6360@0");
+  EXPECT_EQ(system_of({{3072, 26918}, {3076, 9002}, {4099, 9001}}), "EPSG:26918@9002+0@9001");
+  EXPECT_EQ(system_of({{2048, 4326}, {3076, 9002}, {4099, 9002}}), "EPSG:4326") << "degrees have no unit of length";
+  EXPECT_EQ(system_of({{3072, 32767}, {3076, 9002}}), "") << "defined elsewhere";
 }
 
 /// The reader's answer to a good file of two points with one number changed.
