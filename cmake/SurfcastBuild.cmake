@@ -107,6 +107,20 @@ set(SURFCAST_COMMON_HEADERS
   <mutex> <optional> <span> <sstream> <string> <thread> <vector> <glm/glm.hpp> <tl/expected.hpp>)
 surfcast_precompiled_headers(surfcast_module_headers HEADERS ${SURFCAST_COMMON_HEADERS})
 
+# Sanitized builds do not optimize, which halves their compile time, but for modules that compute for most of the time
+# of the tests.
+if(SURFCAST_SANITIZE)
+  surfcast_precompiled_headers(surfcast_computing_module_headers HEADERS ${SURFCAST_COMMON_HEADERS} OPTIONS -O1)
+endif()
+function(surfcast_computing target)
+  if(SURFCAST_SANITIZE)
+    target_compile_options(${target} PRIVATE -O1)
+    surfcast_use_precompiled_headers(${target} surfcast_computing_module_headers)
+  else()
+    surfcast_use_precompiled_headers(${target} surfcast_module_headers)
+  endif()
+endfunction()
+
 # surfcast_io_bound(TARGET): TARGET waits for the network or for other threads rather than computes. -O1 compiles sources
 # that instantiate Beast in two thirds of the time of -O3. Debug builds do not optimize it: with the sanitizers that
 # halves the compile time.
@@ -204,17 +218,19 @@ function(surfcast_compile_alone)
   set_source_files_properties(${ARGN} PROPERTIES SURFCAST_COMPILE_ALONE ON)
 endfunction()
 
-# surfcast_module(NAME [IO_BOUND|COMMANDS] [SOURCES file...] [PUBLIC lib...] [PRIVATE lib...])
+# surfcast_module(NAME [COMPUTES|IO_BOUND|COMMANDS] [SOURCES file...] [PUBLIC lib...] [PRIVATE lib...])
 # Each folder of server/ is one static library `surfcast_NAME` with the namespace surfcast::NAME, included as
-# "NAME/header.h". Without sources it is a header-only library. IO_BOUND: see surfcast_io_bound.
-# COMMANDS: see surfcast_commands.
+# "NAME/header.h". Without sources it is a header-only library. COMPUTES, IO_BOUND, COMMANDS: see surfcast_computing,
+# surfcast_io_bound and surfcast_commands.
 function(surfcast_module name)
-  cmake_parse_arguments(ARG "IO_BOUND;COMMANDS" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ARG "COMPUTES;IO_BOUND;COMMANDS" "" "SOURCES;PUBLIC;PRIVATE" ${ARGN})
   if(ARG_SOURCES)
     add_library(surfcast_${name} STATIC ${ARG_SOURCES})
     surfcast_headers(surfcast_${name} PUBLIC ${name} ${CMAKE_CURRENT_SOURCE_DIR})
     target_link_libraries(surfcast_${name} PUBLIC ${ARG_PUBLIC} PRIVATE surfcast_warnings ${ARG_PRIVATE})
-    if(ARG_IO_BOUND)
+    if(ARG_COMPUTES)
+      surfcast_computing(surfcast_${name})
+    elseif(ARG_IO_BOUND)
       surfcast_io_bound(surfcast_${name})
     elseif(ARG_COMMANDS)
       surfcast_commands(surfcast_${name})
@@ -312,6 +328,12 @@ function(surfcast_add_cases program name whole filter labels)
   endif()
   add_test(NAME ${name} COMMAND ${program} ${arguments})
   set_tests_properties(${name} PROPERTIES LABELS "${labels}" TIMEOUT 600 COST 20)
+  if(labels MATCHES "gl")
+    set_tests_properties(${name} PROPERTIES PROCESSORS 2)  # software GL has several threads
+  endif()
+  if(labels MATCHES "hostile")
+    set_tests_properties(${name} PROPERTIES COST 40)
+  endif()
   if(SURFCAST_SANITIZE AND labels MATCHES "gl")
     # Mesa leaks a little memory when its driver is unloaded.
     set_tests_properties(${name} PROPERTIES ENVIRONMENT ASAN_OPTIONS=detect_leaks=0)
