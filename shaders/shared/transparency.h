@@ -9,16 +9,16 @@
 #define SURFCAST_SURFACE_LEAST_COSINE 0.2
 // Two finds that together have at most the WHOLE weight of a surface are one surface, if the second begins within
 // REPAIR times the depth of a disc behind the end of the first.
-#define SURFCAST_SURFACE_WHOLE 1.35
+#define SURFCAST_SURFACE_WHOLE 1.6
 #define SURFCAST_SURFACE_REPAIR 2.0
 // Beyond the whole weight, each further sheet adds MORE to the weight.
-#define SURFCAST_SURFACE_MORE 0.65
+#define SURFCAST_SURFACE_MORE 0.4
 // Sum of the per-surfel weights of the fragments on one surface of a scan, where those of an even sampling sum to 1.
 #define SURFCAST_SURFACE_SUM 0.8
 // Surfaces of a pixel that are composited one by one. All behind them are composited as one, without order.
 #define SURFCAST_SURFACES_IN_ORDER 8
 // Finds of a pixel, which are parts of surfaces, in that many walks over its list.
-#define SURFCAST_SURFACE_FINDS 10
+#define SURFCAST_SURFACE_FINDS 12
 // The least cosine of an X-ray picture: opacities grow with the way through a wall, up to this angle.
 #define SURFCAST_XRAY_LEAST_COSINE 0.1
 

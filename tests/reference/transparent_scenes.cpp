@@ -33,7 +33,8 @@ struct Sheet {
   glm::dmat3 axes{1};  ///< columns: orthogonal, of equal length
   Texture color;
   std::function<double(const glm::dvec2& uv)> opacity;
-  double noise = 0;  ///< largest distance of samples along the normal, in radii of the surfels
+  double noise = 0;           ///< of samples along the normal, in radii of the surfels
+  bool normal_noise = false;  ///< `noise` is the deviation of a normal distribution, not the largest distance
 
   [[nodiscard]] double scale() const { return glm::length(axes[0]); }
   [[nodiscard]] glm::dvec3 to_own(const glm::dvec3& v) const { return glm::transpose(axes) * v / (scale() * scale()); }
@@ -84,11 +85,13 @@ void append(const Sheet& sheet, uint32_t seed, TransparentScene& scene) {
   const surfel::SurfelCloud own = surfels_at(points);
   const surfel::ColorAttribute colors = sampled_colors(points, sheet.color);
   std::mt19937 random(seed + 100);
-  std::uniform_real_distribution<double> noise(-1, 1);
+  std::uniform_real_distribution<double> even(-1, 1);
+  std::normal_distribution<double> normal;
   for (size_t i = 0; i < points.size(); ++i) {
     const glm::dvec3 n = glm::normalize(sheet.axes * glm::dvec3(own.normals[i]));
     const double radius = own.radii[i] * sheet.scale();
-    const double off = sheet.noise > 0 ? sheet.noise * radius * noise(random) : 0;
+    double off = 0;
+    if (sheet.noise > 0) off = sheet.noise * radius * (sheet.normal_noise ? normal(random) : even(random));
     scene.cloud.positions.push_back(sheet.centre + sheet.axes * points[i].position + off * n);
     scene.cloud.normals.emplace_back(n);
     scene.cloud.radii.push_back(static_cast<float>(radius));
@@ -144,18 +147,22 @@ TransparentScene scene_of(const std::vector<Sheet>& sheets, double distance, dou
   return scene;
 }
 
-TransparentScene planes(double noise) {
+TransparentScene planes(double noise, bool normal = false) {
   std::vector<Sheet> sheets;
   for (size_t i = 0; i < 8; ++i) {
     sheets.push_back(slanted({0, 0.25 * (static_cast<double>(i) - 3.5), 0}, 1, 70, i, 0.25));
     sheets.back().noise = noise;
+    sheets.back().normal_noise = normal;
   }
   return scene_of(sheets, 4, 30);
 }
 
-TransparentScene spheres(double noise) {
+TransparentScene spheres(double noise, bool normal = false) {
   std::vector<Sheet> sheets{sphere(1, 0, 0.3), sphere(0.7, 1, 0.3), sphere(0.4, 2, 0.3)};
-  for (Sheet& sheet : sheets) sheet.noise = noise;
+  for (Sheet& sheet : sheets) {
+    sheet.noise = noise;
+    sheet.normal_noise = normal;
+  }
   return scene_of(sheets, 4, 35);
 }
 
@@ -201,8 +208,10 @@ constexpr NamedScene kScenes[] = {
     {"planes", [] { return planes(0); }},
     {"planes_noise_quarter", [] { return planes(0.25); }},
     {"planes_noise_half", [] { return planes(0.5); }},
+    {"planes_normal_noise", [] { return planes(0.5, true); }},
     {"spheres", [] { return spheres(0); }},
     {"spheres_noise_half", [] { return spheres(0.5); }},
+    {"spheres_normal_noise", [] { return spheres(0.5, true); }},
     {"sheets_two_radii", [] { return two_sheets(2); }},
     {"sheets_one_radius", [] { return two_sheets(1); }},
     {"crossing_planes", [] { return crossing_planes(); }},

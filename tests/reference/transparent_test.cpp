@@ -34,7 +34,8 @@ TEST_P(Transparency, ComesNearTheAnalyticLayers) {
 INSTANTIATE_TEST_SUITE_P(Scenes, Transparency,
                          testing::Values(Goal{"planes", 49, 45}, Goal{"planes_noise_quarter", 46, 44},
                                          Goal{"planes_noise_half", 39, 39}, Goal{"spheres", 49, 38.5},
-                                         Goal{"spheres_noise_half", 39, 34.5}, Goal{"sheets_two_radii", 42, 42},
+                                         Goal{"spheres_noise_half", 39, 34.5}, Goal{"planes_normal_noise", 39, 39},
+                                         Goal{"spheres_normal_noise", 39, 38.5}, Goal{"sheets_two_radii", 42, 42},
                                          Goal{"sheets_one_radius", 36, 36}, Goal{"crossing_planes", 49, 40},
                                          Goal{"alpha_texture", 32, 32}, Goal{"glass_shell", 40, 40}),
                          [](const auto& goal) { return std::string(goal.param.scene); });

@@ -94,15 +94,15 @@ TEST_P(LayersGLTest, ComeNearTheAnalyticLayers) {
   EXPECT_GE(psnr(drawn, expected), 45);
 }
 
-INSTANTIATE_TEST_SUITE_P(Scenes, LayersGLTest,
-                         ::testing::Values(Goal{"planes", 49, "inside"}, Goal{"planes_noise_quarter", 46, "inside"},
-                                           Goal{"planes_noise_half", 39, "inside"}, Goal{"spheres", 38.5, "whole"},
-                                           Goal{"spheres_noise_half", 34.5, "whole"},
-                                           Goal{"sheets_two_radii", 42, "inside"},
-                                           Goal{"sheets_one_radius", 36, "inside"},
-                                           Goal{"crossing_planes", 29.5, "edges"}, Goal{"alpha_texture", 32, "whole"},
-                                           Goal{"glass_shell", 40, "whole"}),
-                         [](const auto& goal) { return std::string(goal.param.scene); });
+INSTANTIATE_TEST_SUITE_P(
+    Scenes, LayersGLTest,
+    ::testing::Values(Goal{"planes", 49, "inside"}, Goal{"planes_noise_quarter", 46, "inside"},
+                      Goal{"planes_noise_half", 39, "inside"}, Goal{"spheres", 38.5, "whole"},
+                      Goal{"spheres_noise_half", 34.5, "whole"}, Goal{"planes_normal_noise", 39, "inside"},
+                      Goal{"spheres_normal_noise", 34.5, "whole"}, Goal{"sheets_two_radii", 42, "inside"},
+                      Goal{"sheets_one_radius", 36, "inside"}, Goal{"crossing_planes", 29.5, "edges"},
+                      Goal{"alpha_texture", 32, "whole"}, Goal{"glass_shell", 40, "whole"}),
+    [](const auto& goal) { return std::string(goal.param.scene); });
 
 }  // namespace
 }  // namespace surfcast::render
