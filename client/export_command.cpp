@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "base/atomic_file.h"
+#include "client/chunk_table_place.h"
 #include "client/commands.h"
 #include "client/server_connection.h"
 #include "client/time_limits.h"
@@ -41,6 +42,9 @@ Result<wire::PointFormat> format_of(const ExportCommand& command) {
   if (extension.empty()) {
     return fail(ErrorKind::kInvalidInput,
                 command.output + ": give it an extension (las, laz, ply, csv, npy), or --format");
+  }
+  if (std::filesystem::path(command.output).stem().extension() == ".copc") {
+    return fail(ErrorKind::kUnsupported, command.output + ": COPC is not written; a name without .copc gives LAZ");
   }
   return protocol::parse_point_format(std::string_view(extension).substr(1));
 }
@@ -80,18 +84,28 @@ class Target {
     return target;
   }
   Status append(const std::string& bytes) {
+    chunk_table_.add(bytes);
     if (file_) return file_->append(std::as_bytes(std::span(bytes)));
     if (std::cout.write(bytes.data(), static_cast<std::streamsize>(bytes.size()))) return {};
     return fail(ErrorKind::kIo, "cannot write to standard output");
   }
   Status finish() {
-    if (file_) return file_->commit();
+    if (file_) return finish_file();
     if (std::cout.flush()) return {};
     return fail(ErrorKind::kIo, "cannot write to standard output");
   }
 
  private:
+  Status finish_file() {
+    if (const auto correction = chunk_table_.correction()) {
+      const Status written = file_->overwrite(correction->offset, std::as_bytes(std::span(correction->bytes)));
+      if (!written) return written;
+    }
+    return file_->commit();
+  }
+
   std::optional<AtomicFile> file_;
+  ChunkTablePlace chunk_table_;
 };
 
 /// The next message with the points; an answer that is an error is one here.

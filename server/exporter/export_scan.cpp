@@ -53,6 +53,9 @@ std::string extension_of(const fs::path& path) {
 /// The format of a file, by its extension.
 Result<PointFormat> format_of(const fs::path& target) {
   const std::string extension = extension_of(target);
+  if (extension == ".laz" && extension_of(target.stem()) == ".copc") {
+    return fail(ErrorKind::kUnsupported, target.string() + ": COPC is not written; a name without .copc gives LAZ");
+  }
   if (!extension.empty()) {
     if (const auto format = point_format_of(std::string_view(extension).substr(1))) return *format;
   }

@@ -121,6 +121,15 @@ TEST_P(ExportFormatTest, RecordsOfLasComeBackByteByByteFromLasAndLaz) {
   }
 }
 
+TEST_F(ExportScanTest, ANameOfCopcIsRefused) {
+  const fs::path source = write("scan.las", sample_file(0).text());
+  const auto report = export_scan(source, place("out.copc.laz"), {});
+  ASSERT_FALSE(report);
+  EXPECT_EQ(report.error().kind, ErrorKind::kUnsupported);
+  EXPECT_THAT(report.error().message, HasSubstr("COPC is not written"));
+  EXPECT_FALSE(fs::exists(place("out.copc.laz")));
+}
+
 TEST_P(ExportFormatTest, TheHeaderStatesCountsReturnsAndBoundsOfWhatIsThere) {
   const LasFile file = sample_file(GetParam(), 100);
   const fs::path source = write("scan.las", file.text());
