@@ -1,5 +1,7 @@
 #include "cmd/find_models.h"
 
+#include <algorithm>
+#include <cctype>
 #include <set>
 #include <string>
 #include <system_error>
@@ -137,13 +139,29 @@ Result<NamedPaths> sort_paths(std::span<const fs::path> paths, const object_stor
   return sorted;
 }
 
+std::vector<fs::path> unserved_scans(const fs::path& folder) {
+  const std::vector<std::string> extensions = builder::input_extensions();
+  const auto is_scan = [&](std::string name) {
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return std::ranges::any_of(extensions, [&](const std::string& extension) { return name.ends_with(extension); });
+  };
+  std::vector<fs::path> scans;
+  std::error_code code;
+  for (fs::directory_iterator at(folder, code), end; !code && at != end; at.increment(code)) {
+    std::error_code ignored;
+    if (at->is_regular_file(ignored) && is_scan(at->path().filename().string())) scans.push_back(at->path());
+  }
+  std::ranges::sort(scans);
+  return scans;
+}
+
 Result<std::unique_ptr<service::ModelCatalogue>> find_one_model(const fs::path& path, const ScanCacheConfig& cache,
                                                                 const object_store::ObjectStore& store) {
   const std::string url = path.string();
   const bool stored = object_store::is_object_url(url);
   std::error_code ignored;
   if (stored ? url.ends_with('/') : fs::is_directory(path, ignored) && !is_scan_folder(path)) {
-    return fail(ErrorKind::kInvalidInput, path.string() + ": is a folder, and one model is wanted");
+    return fail(ErrorKind::kInvalidInput, path.string() + ": expected one model, got a folder");
   }
   Result<service::NamedModel> model = stored ? find_stored(url, store) : find_model(path, cache);
   if (!model) return fail(std::move(model.error()));

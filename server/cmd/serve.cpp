@@ -133,6 +133,17 @@ Status serve_uploaded(const std::filesystem::path& scan, const service::ModelCat
   return fail(ErrorKind::kInvalidInput, scan.string() + ": another model is served under that name");
 }
 
+/// Says which files of the folders of models are scans, which are served only where they are named.
+void warn_of_unserved_scans(const std::vector<std::filesystem::path>& folders) {
+  for (const std::filesystem::path& folder : folders) {
+    const std::vector<std::filesystem::path> scans = unserved_scans(folder);
+    if (scans.empty()) continue;
+    spdlog::warn(
+        "{}: models (.surf) are served of a folder, not its {} scan{}, such as {}: name files to have them built",
+        folder.string(), scans.size(), scans.size() == 1 ? "" : "s", scans.front().filename().string());
+  }
+}
+
 /// Serves the scans that clients have sent to servers before this one.
 void serve_former_uploads(const net::UploadConfig& uploads) {
   if (uploads.folder.empty()) return;
@@ -214,6 +225,7 @@ Status serve(ServeCommand command) {
   const object_store::ObjectStore store(command.store, std::move(*blocks));
   Result<NamedPaths> paths = sort_paths(command.paths, store);
   if (!paths) return fail(paths.error());
+  warn_of_unserved_scans(paths->folders);
   service::ModelCatalogue models(std::move(paths->models), std::move(paths->folders), &store);
   StoreFolders stores(store, models, std::move(paths->stores));
   if (Status status = stores.list(); !status) return status;
@@ -263,7 +275,7 @@ Status serve(ServeCommand command) {
             << (command.server.tls.certificate.empty() ? "http://" : "https://") << protocol::to_string(bound) << '/'
             << std::endl;
   (*server)->run(/*until_signal=*/true);
-  if (gpu_reset) return fail(ErrorKind::kUnavailable, "the GPU was reset: whoever watches the server starts it again");
+  if (gpu_reset) return fail(ErrorKind::kUnavailable, "the GPU was reset: the service manager has to restart the server");
   spdlog::info("stopped");
   return {};
 }
@@ -279,7 +291,7 @@ void add_tls_flags(CLI::App& sub, ServeCommand& command) {
       ->type_name("PATH");
   sub.add_option("--tokens", command.server.tokens,
                  "File of the tokens of those who may ask for models, see surfcastd token; read again when it changes "
-                 "and on SIGHUP (default: none are wanted)")
+                 "and on SIGHUP (default: none are required)")
       ->envname(protocol::environment_name("tokens"))
       ->type_name("FILE");
   sub.add_flag("--insecure-listen", command.insecure,

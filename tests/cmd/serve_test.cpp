@@ -1,6 +1,8 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstdint>
+#include <cstring>
 #include <functional>
 
 #include <sys/stat.h>
@@ -12,6 +14,13 @@ namespace surfcast::cmd {
 namespace {
 
 namespace fs = std::filesystem;
+
+TEST_F(ServeTest, ScansInAFolderOfModelsAreNamedAsNotServed) {
+  serve(folder_.string());
+  EXPECT_NE(content(folder_ / "log").find("not its 1 scan, such as square.ply: name files to have them built"),
+            std::string::npos)
+      << content(folder_ / "log");
+}
 
 TEST_F(ServeTest, AScanIsBuiltServedDrawnAndTheServerEndsWhenTold) {
   serve(scan_.string());
@@ -258,9 +267,15 @@ TEST_F(ServeTest, ARegionIsTheSameByEveryWay) {
     EXPECT_EQ(client::run_program(program + "ws://" + url_ + "/square" + flags + file("ws." + format)).code, 0);
     EXPECT_FALSE(content(file("tcp." + format)).empty());
     EXPECT_TRUE(content(file("tcp." + format)) == content(file("ws." + format)));
-    EXPECT_EQ(
-        client::run_program(program + url_ + "/square --box '2,3,-1,12.5,7,1' --output - --format " + format).output,
-        content(file("tcp." + format)));
+    std::string streamed =
+        client::run_program(program + url_ + "/square --box '2,3,-1,12.5,7,1' --output - --format " + format).output;
+    if (format == "laz") {  // a file states the place of the chunk table before its points, a stream at its end
+      uint32_t points = 0;
+      std::memcpy(&points, streamed.data() + 96, sizeof points);
+      EXPECT_EQ(streamed.substr(points, 8), std::string(8, '\xff'));
+      streamed.replace(points, 8, streamed.substr(streamed.size() - 8));
+    }
+    EXPECT_EQ(streamed, content(file("tcp." + format)));
   }
   const std::string csv = content(file("tcp.csv"));
   EXPECT_TRUE(csv.starts_with("x,y,z,red,green,blue\n")) << csv;
