@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstring>
+#include <random>
 #include <string>
 #include <vector>
 
@@ -284,6 +285,54 @@ TEST_F(SurfelsAndGaussiansGL, ATransparentPlaneInAVolumeIsSeenThroughAtItsDepth)
     const picture::Image drawn = draw(*renderer_, built, request).image;
     for (int c = 0; c < 3; ++c) EXPECT_NEAR(light_in_middle(drawn)[c], expected[c], 5e-3) << z;
     EXPECT_EQ(draw(*renderer_, built, request).image.pixels, drawn.pixels);
+  }
+}
+
+/// Points about a ball of radius 0.9 at random places and with noise, so that many pixels are covered in part only by
+/// the first surface.
+std::filesystem::path write_ball(const std::filesystem::path& path, int count) {
+  std::mt19937 random(5);
+  std::normal_distribution<double> normal;
+  constexpr double kNoise = 0.01;
+  std::string text;
+  for (int i = 0; i < count; ++i) {
+    const glm::dvec3 direction = glm::normalize(glm::dvec3(normal(random), normal(random), normal(random)));
+    const glm::dvec3 p = (0.9 + kNoise * normal(random)) * direction;
+    text += std::to_string(p.x) + " " + std::to_string(p.y) + " " + std::to_string(p.z) + " 200 100 40\n";
+  }
+  return testing::write(path, text);
+}
+
+// Pixels of which a surface covers nearly all, beside others that show what is behind it, at several distances.
+TEST_F(SurfelsAndGaussiansGL, ACurvedScanKeepsItsColorBeforeGaussiansThatFillThePicture) {
+  // One behind the scan, and one of its own colour before it.
+  const GaussianModel around{
+      {round_splat({0, 0, -4}, 4, 0.9, {0.1, 0.2, 0.9}), round_splat({0, 0, 0.95}, 3, 0.3, kPlane)}, 0};
+  const auto splats = testing::write_ply(folder_ / "splats.ply", around);
+  for (const int count : {4000, 20'000}) {
+    const auto ball = write_ball(folder_ / "ball.xyz", count);
+    const ModelPointer alone = build({ball});
+    const ModelPointer both = build({ball, splats});
+    for (const double distance : {1.1, 1.6, 5.0}) {
+      picture::PictureRequest request = request_of();
+      request.silhouettes = true;
+      request.camera->position = {0, 0, distance};
+      const picture::Image expected = draw(*renderer_, alone, request).image;
+      const picture::Image drawn = draw(*renderer_, both, request).image;
+      int covered = 0;
+      int wrong = 0;
+      for (int y = 0; y < kSide; ++y) {
+        for (int x = 0; x < kSide; ++x) {
+          if (expected.pixels[4 * (size_t(y) * kSide + size_t(x)) + 3] != std::byte{255}) continue;
+          ++covered;
+          const glm::dvec3 difference = glm::abs(code_at(drawn, {x, y}) - code_at(expected, {x, y}));
+          if (std::max({difference.x, difference.y, difference.z}) > 0.06) ++wrong;
+        }
+      }
+      EXPECT_GT(covered, 1000);
+      // Fringes of silhouettes have no depth of their own.
+      EXPECT_LT(wrong, covered / 20) << count << " points, distance " << distance;
+    }
   }
 }
 
