@@ -44,7 +44,7 @@ Status log_in(const LoginCommand& command, int interrupt) {
   if (command.forget) return store_token(token_store(), *server, "");
   ClientConfig config = command.limits.config(*server, interrupt);
   config.token = read_secret();
-  if (config.token.empty()) return fail(ErrorKind::kInvalidInput, "a token is wanted on standard input");
+  if (config.token.empty()) return fail(ErrorKind::kInvalidInput, "expected a token on standard input");
   const Result<ServerConnection> connection = ServerConnection::open(*server, config);
   if (!connection) return fail(connection.error());
   return store_token(token_store(), *server, config.token);

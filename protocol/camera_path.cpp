@@ -100,7 +100,7 @@ tl::unexpected<Error> invalid(const std::string& what) {
 Result<Keyframe> read_keyframe(json document, size_t number) {
   const std::string name = "keyframe " + std::to_string(number) + ": ";
   if (!document.is_object() || !document.contains("time") || !document["time"].is_number()) {
-    return invalid(name + "an object with a time is wanted");
+    return invalid(name + "expected an object with a time");
   }
   Keyframe keyframe;
   keyframe.time = document["time"].get<double>();
@@ -136,7 +136,7 @@ Status check_order(const std::vector<Keyframe>& keyframes) {
 Result<CameraPath> CameraPath::parse(std::string_view text) {
   const json document = json::parse(text, nullptr, /*allow_exceptions=*/false);
   if (!document.is_object() || !document.contains("keyframes") || !document["keyframes"].is_array()) {
-    return invalid("not a camera path: an object with an array of keyframes is wanted");
+    return invalid("not a camera path: expected an object with an array of keyframes");
   }
   std::vector<Keyframe> keyframes;
   for (const json& entry : document["keyframes"]) {
@@ -209,7 +209,7 @@ Result<std::string> frame_name(std::string_view pattern, int number) {
     const bool padded = end == i + 1 || pattern[i + 1] == '0';
     if (end == pattern.size() || pattern[end] != 'd' || !padded || width > kWidest ||
         read.ec == std::errc::result_out_of_range) {
-      return invalid(std::string(pattern) + ": %d or %05d is wanted for the number of a frame");
+      return invalid(std::string(pattern) + ": expected %d or %05d for the number of a frame");
     }
     const std::string digits = std::to_string(number);
     name.append(static_cast<size_t>(std::max(0, width - static_cast<int>(digits.size()))), '0');

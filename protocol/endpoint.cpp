@@ -23,7 +23,7 @@ std::string_view scheme_of(std::string_view text) {
 
 Result<Endpoint> parse_endpoint(std::string_view text) {
   const auto wrong = [text] {
-    return fail(ErrorKind::kInvalidInput, "'" + std::string(text) + "': HOST:PORT is wanted");
+    return fail(ErrorKind::kInvalidInput, "'" + std::string(text) + "': expected HOST:PORT");
   };
   const std::string_view scheme = scheme_of(text);
   const std::string_view address = text.substr(scheme.size());
@@ -50,7 +50,7 @@ std::string to_string(const Endpoint& endpoint) {
 Result<ModelUrl> parse_model_url(std::string_view text) {
   const size_t slash = text.find('/', scheme_of(text).size());
   if (slash == std::string_view::npos || slash + 1 == text.size()) {
-    return fail(ErrorKind::kInvalidInput, "'" + std::string(text) + "': HOST:PORT/MODEL is wanted");
+    return fail(ErrorKind::kInvalidInput, "'" + std::string(text) + "': expected HOST:PORT/MODEL");
   }
   const Result<Endpoint> server = parse_endpoint(text.substr(0, slash));
   if (!server) return fail(server.error());

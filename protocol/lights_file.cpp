@@ -43,7 +43,7 @@ Status read_light(const json& object, wire::Light& light) {
     return invalid("a light needs a direction of three numbers that are not all 0");
   }
   const std::optional<double> power = number_in(object, "power", 1);
-  if (!power) return invalid("power: a number of at least 0 is wanted");
+  if (!power) return invalid("power: expected a number of at least 0");
   light.set_power(*power);
   return {};
 }
@@ -57,9 +57,9 @@ Status parse_lights_json(std::string_view text, wire::Lighting& lighting) {
   const std::optional<double> specular = number_in(document, "specular", 0);
   const std::optional<double> exponent = number_in(document, "exponent", kExponent);
   if (!ambient || !specular || !exponent) {
-    return invalid("ambient, specular and exponent: numbers of at least 0 are wanted");
+    return invalid("ambient, specular and exponent: expected numbers of at least 0");
   }
-  if (!document.contains("lights") || !document["lights"].is_array()) return invalid("a list of lights is wanted");
+  if (!document.contains("lights") || !document["lights"].is_array()) return invalid("expected a list of lights");
   wire::Lighting read;
   read.set_ambient(*ambient);
   read.set_specular(*specular);

@@ -238,14 +238,14 @@ Status set_picture_field(wire::DrawPicture& picture, std::string_view name, std:
     if (field.name != name) continue;
     if (set_by_name(picture, name, text)) return {};
     return fail(ErrorKind::kInvalidInput,
-                std::string(name) + ": " + std::string(field.form) + " is wanted, not '" + std::string(text) + "'");
+                std::string(name) + ": expected " + std::string(field.form) + ", got '" + std::string(text) + "'");
   }
   return fail(ErrorKind::kNotFound, "there is no parameter '" + std::string(name) + "'");
 }
 
 Status set_pixel(wire::PickSurfel& pick, std::string_view text) {
   const auto values = parse_unsigneds(text, 2);
-  if (!values) return fail(ErrorKind::kInvalidInput, "pixel: X,Y is wanted, not '" + std::string(text) + "'");
+  if (!values) return fail(ErrorKind::kInvalidInput, "pixel: expected X,Y, got '" + std::string(text) + "'");
   pick.set_x((*values)[0]);
   pick.set_y((*values)[1]);
   return {};

@@ -24,7 +24,7 @@ constexpr std::array<std::pair<std::string_view, wire::PointFormat>, 5> kFormats
 
 tl::unexpected<Error> not_of_form(std::string_view name, std::string_view form, std::string_view text) {
   return fail(ErrorKind::kInvalidInput,
-              std::string(name) + ": " + std::string(form) + " is wanted, not '" + std::string(text) + "'");
+              std::string(name) + ": expected " + std::string(form) + ", got '" + std::string(text) + "'");
 }
 
 tl::unexpected<Error> invalid(std::string message) {
@@ -111,7 +111,7 @@ Status check_region_box(const wire::Box& box) {
 
 Status check_corridor(const wire::Corridor& corridor) {
   if (corridor.line_size() < 4 || corridor.line_size() % 2 != 0)
-    return invalid("corridor: two corners at least are wanted, with two coordinates each");
+    return invalid("corridor: expected at least two corners with two coordinates each");
   if (!std::all_of(corridor.line().begin(), corridor.line().end(), [](double value) { return std::isfinite(value); }))
     return invalid("corridor: coordinates must be finite numbers");
   if (!(corridor.width() > 0) || !std::isfinite(corridor.width()))

@@ -14,7 +14,7 @@ namespace {
 
 tl::unexpected<Error> wanted(std::string_view name, std::string_view form, std::string_view text) {
   return fail(ErrorKind::kInvalidInput,
-              std::string(name) + ": " + std::string(form) + " is wanted, not '" + std::string(text) + "'");
+              std::string(name) + ": expected " + std::string(form) + ", got '" + std::string(text) + "'");
 }
 
 bool set_line(wire::GetProfile& profile, std::string_view text) {
@@ -63,7 +63,7 @@ Status check_profile(const wire::GetProfile& profile) {
   if (profile.model().size() > kMaxModelNameBytes)
     return fail(ErrorKind::kInvalidInput, "the model's name is too long");
   if (profile.line_size() < 2 || profile.line_size() > kMaxProfileLine) {
-    return fail(ErrorKind::kInvalidInput, "line: 2 to 1024 points are wanted");
+    return fail(ErrorKind::kInvalidInput, "line: expected 2 to 1024 points");
   }
   for (const wire::Vector3& point : profile.line()) {
     if (!std::isfinite(point.x()) || !std::isfinite(point.y()) || !std::isfinite(point.z())) {

@@ -73,7 +73,7 @@ Status read_point(const json& object, wire::TransferPoint& point) {
 Status read_preset(const json& document, wire::TransferFunction& transfer) {
   const json& name = document["preset"];
   const auto preset = name.is_string() ? parse_transfer_preset(name.get<std::string>()) : std::nullopt;
-  if (!preset) return invalid("preset: auto, gray, ct-bone, ct-soft or mr is wanted");
+  if (!preset) return invalid("preset: expected auto, gray, ct-bone, ct-soft or mr");
   transfer.set_preset(*preset);
   if (const auto first = number_in(document, "first")) transfer.set_first(*first);
   if (const auto last = number_in(document, "last")) transfer.set_last(*last);
@@ -82,7 +82,7 @@ Status read_preset(const json& document, wire::TransferFunction& transfer) {
 
 Status read_points(const json& document, wire::TransferFunction& transfer) {
   if (!document.contains("points") || !document["points"].is_array()) {
-    return invalid("not a transfer function: an object with points or a preset is wanted");
+    return invalid("not a transfer function: expected an object with points or a preset");
   }
   for (const json& entry : document["points"]) {
     if (Status status = read_point(entry, *transfer.add_points()); !status) return status;

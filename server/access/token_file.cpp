@@ -103,7 +103,7 @@ Result<Principal::Time> parse_time(std::string_view text) {
   std::tm parts{};
   const char* const end = ::strptime(copy.c_str(), kTimeForm, &parts);
   if (end == nullptr || *end != '\0') {
-    return fail(ErrorKind::kInvalidInput, "'" + copy + "': a time like 2027-01-31T12:00:00Z is wanted");
+    return fail(ErrorKind::kInvalidInput, "'" + copy + "': expected a time like 2027-01-31T12:00:00Z");
   }
   return std::chrono::system_clock::from_time_t(::timegm(&parts));
 }

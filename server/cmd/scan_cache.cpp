@@ -143,7 +143,7 @@ Result<CacheSlot> find_cache_slot(const fs::path& scan, const ScanCacheConfig& c
   if (!folder) return fail(folder.error());
   const Result<std::optional<std::string>> name = content_name(scan, cancelled);
   if (!name) return fail(name.error());
-  if (!*name) return fail(ErrorKind::kCancelled, scan.string() + ": not wanted any more");
+  if (!*name) return fail(ErrorKind::kCancelled, scan.string() + ": cancelled");
   CacheSlot slot{*folder / key_of(**name, config), {}};
   slot.model = find_in_cache(slot.target);
   return slot;

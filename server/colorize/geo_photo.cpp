@@ -143,7 +143,7 @@ Result<PhotoFrame> parse_world_file(std::string_view text) {
   std::array<double, 6> n{};
   for (double& number : n) {
     const std::optional<double> read = scan::parse_number<double>(tokens.next());
-    if (!read) return damaged("is no world file: six numbers are wanted");
+    if (!read) return damaged("is not a world file: expected six numbers");
     number = *read;
   }
   PhotoFrame frame{glm::dmat2(n[0], n[1], n[2], n[3]), {}};

@@ -181,7 +181,7 @@ std::optional<HttpAnswer> HttpSession::refusal_of_head(const Parser& parser, con
   if (parser.is_done() || (refusal_.empty() && (is_upload(parser.get()) || is_login(parser.get())))) {
     return std::nullopt;
   }
-  return error_answer({ErrorKind::kLimit, "a request with a body is not wanted here"}, 413);
+  return error_answer({ErrorKind::kLimit, "requests with a body are not accepted here"}, 413);
 }
 
 /// Reads one request and answers it. False when the connection is at its end.
@@ -354,7 +354,7 @@ bool HttpSession::become_websocket(const Parser::value_type& request) {
 /// Says what is wrong with a request for a WebSocket that was not granted.
 HttpAnswer HttpSession::refuse_websocket(const Parser::value_type& request) const {
   if (!websocket::is_upgrade(request)) {
-    HttpAnswer refusal = error_answer({ErrorKind::kUnsupported, "this is the place of a WebSocket"}, 426);
+    HttpAnswer refusal = error_answer({ErrorKind::kUnsupported, "this path only accepts WebSocket connections"}, 426);
     refusal.headers = {{"Upgrade", "websocket"}, {"Sec-WebSocket-Version", "13"}};
     return refusal;
   }

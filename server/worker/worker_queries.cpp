@@ -86,7 +86,7 @@ class QueryProcess {
       Result<Answer> answer = ask_once<Answer>(model, question, cancelled, take, &end);
       if (answer || worker_.running()) return answer;
       attempts.ended(end.own_fault, end.blocks_blamed);
-      if (cancelled) return fail(ErrorKind::kCancelled, "no longer wanted");
+      if (cancelled) return fail(ErrorKind::kCancelled, "cancelled: the client no longer needs it");
     }
     return fail(ErrorKind::kUnavailable, "the question has ended every query worker that was to answer it");
   }

@@ -54,7 +54,7 @@ class WorkerRenderer : public service::ModelRenderer {
       const bool to_blame = generation == worker_.generation() && worker_.running();
       const Supervisor::End end = to_blame ? worker_.bury() : Supervisor::End{false, false};
       attempts.ended(end.own_fault, end.blocks_blamed);
-      if (preemption.cancelled()) return fail(ErrorKind::kCancelled, "no longer wanted");
+      if (preemption.cancelled()) return fail(ErrorKind::kCancelled, "cancelled: the client no longer needs it");
     }
     return fail(ErrorKind::kUnavailable, "the picture has ended every render worker that was to draw it");
   }

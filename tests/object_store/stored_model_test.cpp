@@ -161,7 +161,7 @@ TEST_F(StoredModelTest, AKeyOfS3IsDrawnToo) {
 }
 
 TEST_F(StoredModelTest, WhatIsNoModelIsRefused) {
-  EXPECT_THAT(draw(server_.url("/models/")).output, HasSubstr("is a folder, and one model is wanted"));
+  EXPECT_THAT(draw(server_.url("/models/")).output, HasSubstr("expected one model, got a folder"));
   EXPECT_THAT(draw(server_.url("/models/a.laz")).output, HasSubstr("neither a model"));
   EXPECT_THAT(draw(server_.url("/models/none.surf")).output, HasSubstr("404"));
 }

@@ -44,7 +44,7 @@ def parse_endpoint(text: str) -> Endpoint:
     name, _, port = address.rpartition(":")
     host = _host_of(name)
     if scheme not in _SCHEMES or host is None or not (port.isascii() and port.isdigit()) or int(port) > 65535:
-        raise InvalidInput(f"'{text}': HOST:PORT is wanted, with tcp://, tcps://, ws:// or wss:// before it")
+        raise InvalidInput(f"'{text}': expected HOST:PORT, optionally with tcp://, tcps://, ws:// or wss:// before it")
     websocket, encrypted = _SCHEMES[scheme]
     return Endpoint(host, int(port), websocket, encrypted)
 

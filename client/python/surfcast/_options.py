@@ -70,7 +70,7 @@ _MOST_INTEGER = 2**32 - 1
 
 
 def _wanted(name: str, form: str, value: object) -> InvalidInput:
-    return InvalidInput(f"{name}: {form} is wanted, not {value!r}")
+    return InvalidInput(f"{name}: expected {form}, got {value!r}")
 
 
 def _choice(name: str, names: Sequence[str], value: object) -> Any:

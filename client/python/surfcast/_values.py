@@ -27,7 +27,7 @@ def vector_of(value: Vector, what: str) -> tuple[float, float, float]:
     try:
         x, y, z = (float(part) for part in value)
     except (TypeError, ValueError):
-        raise InvalidInput(f"{what}: three numbers are wanted, not {value!r}") from None
+        raise InvalidInput(f"{what}: expected three numbers, got {value!r}") from None
     if not np.isfinite((x, y, z)).all():
         raise InvalidInput(f"{what}: numbers must be finite, not {value!r}")
     return x, y, z
@@ -131,7 +131,7 @@ class Corridor:
         try:
             corners = tuple((float(x), float(y)) for x, y in self.line)
         except (TypeError, ValueError):
-            raise InvalidInput(f"corridor: corners of two numbers are wanted, not {self.line!r}") from None
+            raise InvalidInput(f"corridor: expected corners of two numbers, got {self.line!r}") from None
         object.__setattr__(self, "line", corners)
 
 

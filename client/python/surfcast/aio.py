@@ -315,5 +315,5 @@ class Model:
             x, y = (int(part) for part in pixel)
             pick = wire.PickSurfel(picture=picture, x=x, y=y)
         except (TypeError, ValueError):
-            raise InvalidInput(f"pixel: two whole numbers from 0 are wanted, not {pixel!r}") from None
+            raise InvalidInput(f"pixel: expected two whole numbers from 0, got {pixel!r}") from None
         return hit_from((await self._connection.ask(wire.Request(pick_surfel=pick), timeout)).pick_result)

@@ -18,7 +18,7 @@ def _place(place: Place) -> npt.NDArray[np.float64]:
     position: Any = place.position if isinstance(place, Hit) else place
     point = np.asarray(position, dtype=np.float64)
     if point.shape != (3,):
-        raise InvalidInput(f"three coordinates are wanted, not {position!r}")
+        raise InvalidInput(f"expected three coordinates, got {position!r}")
     return point
 
 

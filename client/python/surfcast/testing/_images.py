@@ -118,5 +118,5 @@ def assert_image(
         comparison = compare(actual, expected)
         if comparison.psnr >= psnr:
             return
-        said = f"{comparison}; {psnr:g} dB are wanted"
+        said = f"{comparison}; expected at least {psnr:g} dB"
     raise AssertionError(f"{target.name}: {said}. Kept: {_keep(kept_in, target.stem, actual, expected)}")
