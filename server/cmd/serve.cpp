@@ -275,7 +275,8 @@ Status serve(ServeCommand command) {
             << (command.server.tls.certificate.empty() ? "http://" : "https://") << protocol::to_string(bound) << '/'
             << std::endl;
   (*server)->run(/*until_signal=*/true);
-  if (gpu_reset) return fail(ErrorKind::kUnavailable, "the GPU was reset: the service manager has to restart the server");
+  if (gpu_reset)
+    return fail(ErrorKind::kUnavailable, "the GPU was reset: the service manager has to restart the server");
   spdlog::info("stopped");
   return {};
 }
