@@ -230,16 +230,16 @@ TEST_F(PointsTest, OfABoxThatIsNoneAreAnError) {
   serve(scan_of(20));
   const std::pair<const char*, const char*> wrong[] = {
       {"box=1,0,0,0,1,1", "box: the lower corner must come first"},
-      {"box=nan,0,0,1,1,1", "box: X,Y,Z,X,Y,Z of two corners"},
-      {"box=0,0,0,inf,1,1", "box: X,Y,Z,X,Y,Z of two corners"},
-      {"box=0,0,1,1", "box: X,Y,Z,X,Y,Z of two corners"},
+      {"box=nan,0,0,1,1,1", "box: expected X,Y,Z,X,Y,Z of two corners"},
+      {"box=0,0,0,inf,1,1", "box: expected X,Y,Z,X,Y,Z of two corners"},
+      {"box=0,0,1,1", "box: expected X,Y,Z,X,Y,Z of two corners"},
       {"box=0,0,0,1,1,1&box=0,0,0,1,1,1", "box: given twice"},
       {"corridor=0,0,0,1,1", "corridor: its width must be a finite number above 0"},
-      {"corridor=1,0,0", "corridor: WIDTH,X,Y,X,Y"},
+      {"corridor=1,0,0", "corridor: expected WIDTH,X,Y,X,Y"},
       {"corridor=1,0,0,1,1@2,1", "corridor: the lower height must come first"},
-      {"classes=256", "classes: a list of codes"},
+      {"classes=256", "classes: expected a list of codes"},
       {"classes=2", "cube: has no classification to choose points by"},
-      {"every=0", "every: a count above 0"},
+      {"every=0", "every: expected a count above 0"},
       {"format=e57", "'e57' is not a format of points: las, laz, ply, csv, npy"},
       {"colour=1", "there is no parameter 'colour'"},
   };
