@@ -18,6 +18,8 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/child_process.h"
+
 namespace surfcast::protocol {
 namespace {
 
@@ -71,10 +73,7 @@ std::vector<std::string> encoder_arguments(const fs::path& target, const fs::pat
 }
 
 Result<pid_t> start(std::vector<std::string> arguments, const Descriptor& input, const Descriptor& messages) {
-  std::vector<char*> pointers;
-  pointers.reserve(arguments.size() + 1);
-  for (std::string& argument : arguments) pointers.push_back(argument.data());
-  pointers.push_back(nullptr);
+  const std::vector<char*> pointers = pointers_to(arguments);
   posix_spawn_file_actions_t actions;
   ::posix_spawn_file_actions_init(&actions);
   ::posix_spawn_file_actions_adddup2(&actions, input.get(), STDIN_FILENO);

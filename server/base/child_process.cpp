@@ -28,10 +28,7 @@ struct Child {
 
 Result<Child> start(const std::vector<std::string>& arguments) {
   std::vector<std::string> texts = arguments;
-  std::vector<char*> pointers;
-  pointers.reserve(texts.size() + 1);
-  for (std::string& text : texts) pointers.push_back(text.data());
-  pointers.push_back(nullptr);
+  const std::vector<char*> pointers = pointers_to(texts);
   std::array<int, 2> pipe{};
   if (::pipe2(pipe.data(), O_CLOEXEC) != 0) return system_error("cannot make a pipe", errno);
   posix_spawn_file_actions_t actions;
@@ -89,6 +86,14 @@ bool follow(const Child& child, Lines& lines, const Preemption& preemption) {
 }
 
 }  // namespace
+
+std::vector<char*> pointers_to(std::vector<std::string>& texts) {
+  std::vector<char*> pointers;
+  pointers.reserve(texts.size() + 1);
+  for (std::string& text : texts) pointers.push_back(text.data());
+  pointers.push_back(nullptr);
+  return pointers;
+}
 
 Result<int> run_child(const std::vector<std::string>& arguments, const std::function<void(std::string_view)>& line,
                       const Preemption& preemption) {

@@ -13,6 +13,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "base/child_process.h"
 #include "worker/run_worker.h"
 #include "worker/worker_environment.h"
 
@@ -26,15 +27,6 @@ tl::unexpected<Error> process_error(const std::string& what, int code) {
 /// A copy of a descriptor whose number is none of those that a worker gets.
 Descriptor copy_above(const Descriptor& descriptor) {
   return Descriptor(::fcntl(descriptor.get(), F_DUPFD_CLOEXEC, kWorkerMemory + 1));
-}
-
-/// Texts as programs are given them.
-std::vector<char*> pointers_to(std::vector<std::string>& texts) {
-  std::vector<char*> pointers;
-  pointers.reserve(texts.size() + 1);
-  for (std::string& text : texts) pointers.push_back(text.data());
-  pointers.push_back(nullptr);
-  return pointers;
 }
 
 /// The variables of this process.

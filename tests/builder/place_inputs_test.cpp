@@ -155,6 +155,20 @@ TEST(PlaceInputs, OptionsThatNameNoSystemFail) {
   EXPECT_THAT(nothing_to_bring.error().message, HasSubstr("--crs"));
 }
 
+/// The placed positions of each of so many inputs.
+std::vector<std::vector<glm::dvec3>> positions_of(BuildInputs& inputs, size_t count) {
+  std::vector<std::vector<glm::dvec3>> positions(count);
+  for (size_t piece = 0; piece < inputs.pieces(); ++piece) {
+    scan::SurfelReport report;
+    const auto read = inputs.read(piece, report);
+    EXPECT_TRUE(read);
+    if (!read) continue;
+    auto& of_input = positions[read->source];
+    of_input.insert(of_input.end(), read->points.positions.begin(), read->points.positions.end());
+  }
+  return positions;
+}
+
 TEST(PlaceInputs, ScansOfOnePlaceInTwoSystemsLieOnEachOther) {
   const model::TestFolder folder;
   const std::vector<std::filesystem::path> paths{folder / "metres.las", folder / "degrees.las"};
@@ -165,14 +179,7 @@ TEST(PlaceInputs, ScansOfOnePlaceInTwoSystemsLieOnEachOther) {
   const auto placement = inputs->place({});
   ASSERT_TRUE(placement) << placement.error().message;
   EXPECT_EQ(placement->georeference.system.id, "EPSG:25832");
-  std::vector<std::vector<glm::dvec3>> positions(2);
-  for (size_t piece = 0; piece < inputs->pieces(); ++piece) {
-    scan::SurfelReport report;
-    const auto read = inputs->read(piece, report);
-    ASSERT_TRUE(read);
-    auto& of_input = positions[read->source];
-    of_input.insert(of_input.end(), read->points.positions.begin(), read->points.positions.end());
-  }
+  const std::vector<std::vector<glm::dvec3>> positions = positions_of(*inputs, 2);
   ASSERT_THAT(positions[0], SizeIs(kSide * kSide));
   ASSERT_THAT(positions[1], SizeIs(kSide * kSide));
   for (size_t i = 0; i < positions[0].size(); ++i) {
@@ -214,14 +221,7 @@ TEST(PlaceInputs, FeetThatKeysStateLieOnMetres) {
   const auto placement = inputs->place({});
   ASSERT_TRUE(placement) << placement.error().message;
   EXPECT_EQ(placement->georeference.system.id, "EPSG:25832");
-  std::vector<std::vector<glm::dvec3>> positions(2);
-  for (size_t piece = 0; piece < inputs->pieces(); ++piece) {
-    scan::SurfelReport report;
-    const auto read = inputs->read(piece, report);
-    ASSERT_TRUE(read);
-    auto& of_input = positions[read->source];
-    of_input.insert(of_input.end(), read->points.positions.begin(), read->points.positions.end());
-  }
+  const std::vector<std::vector<glm::dvec3>> positions = positions_of(*inputs, 2);
   ASSERT_EQ(positions[0].size(), positions[1].size());
   for (size_t i = 0; i < positions[0].size(); ++i)
     EXPECT_LT(glm::distance(positions[0][i], positions[1][i]), 2.5e-4) << i;
