@@ -119,7 +119,7 @@ void add_time_flags(CLI::App& command, net::ServerConfig& server) {
               "connections stay; less: slow networks are cut off");
   add_seconds(
       command, "give-way-after", server.give_way,
-      "Idle for so long, a connection is closed when a new one is beyond --max-connections or "
+      "Idle time after which a connection may be closed to admit a new one beyond --max-connections or "
       "--max-connections-per-client (default 1). More: new clients are refused; less: connections that are about "
       "to be used are closed");
   add_seconds(command, "idle-timeout", server.idle,
@@ -234,7 +234,7 @@ void add_worker_flags(CLI::App& command, WorkerFlags& worker) {
       "Without a sign of a worker that draws or answers before it is replaced (default 60). More: a driver that "
       "hangs is waited for; less: slow devices are taken for hung");
   add_size(command, "query-memory", worker.query_bytes,
-           "That each process that answers picks and the like may allocate (default 8G; 0: no limit). More: a damaged "
+           "Memory of each process that answers picks, profiles and exports (default 8G; 0: no limit). More: a damaged "
            "model takes more memory before its answer fails; less: large answers fail",
            {0, UINT64_MAX});
   command

@@ -139,7 +139,8 @@ void warn_of_unserved_scans(const std::vector<std::filesystem::path>& folders) {
     const std::vector<std::filesystem::path> scans = unserved_scans(folder);
     if (scans.empty()) continue;
     spdlog::warn(
-        "{}: models (.surf) are served of a folder, not its {} scan{}, such as {}: name files to have them built",
+        "{}: only models (.surf) in a folder are served; {} scan{} skipped, such as {}: name a scan to build and serve "
+        "it",
         folder.string(), scans.size(), scans.size() == 1 ? "" : "s", scans.front().filename().string());
   }
 }

@@ -17,7 +17,7 @@ namespace fs = std::filesystem;
 
 TEST_F(ServeTest, ScansInAFolderOfModelsAreNamedAsNotServed) {
   serve(folder_.string());
-  EXPECT_NE(content(folder_ / "log").find("not its 1 scan, such as square.ply: name files to have them built"),
+  EXPECT_NE(content(folder_ / "log").find("1 scan skipped, such as square.ply: name a scan to build and serve it"),
             std::string::npos)
       << content(folder_ / "log");
 }
