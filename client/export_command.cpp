@@ -98,7 +98,7 @@ class Target {
  private:
   Status finish_file() {
     if (const auto correction = chunk_table_.correction()) {
-      const Status written = file_->overwrite(correction->offset, std::as_bytes(std::span(correction->bytes)));
+      Status written = file_->overwrite(correction->offset, std::as_bytes(std::span(correction->bytes)));
       if (!written) return written;
     }
     return file_->commit();
