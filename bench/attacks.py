@@ -16,6 +16,8 @@ import tempfile
 import threading
 import time
 
+import wire
+
 ATTACKER = "127.0.0.2"
 VICTIM = "127.0.0.1"
 HELLO = b"\xf5SURFCST" + b"\1\0" + b"\0\0" + b"\0\0" + b"\6\0" + b"\0\0" + b"attack"
@@ -160,6 +162,53 @@ def largest_pictures(target):
         f"refused {victim.refused}; health at most {max(victim.health):.2f} s; memory {before}, at most {most} MiB")
 
 
+class Mover(threading.Thread):
+    """A connection whose views move all the time: each frame is acknowledged and answered by another update."""
+
+    def __init__(self, target, views, width, height):
+        super().__init__()
+        self.picture = wire.picture(target.model, width, height)
+        self.frames = 0
+        self.session = wire.Session(target.connect())
+        for view in range(1, views + 1):
+            self.session.send(view, wire.OPEN_VIEW, wire.field(1, self.picture))
+            self.move(view, 1)
+
+    def move(self, view, update):
+        background = wire.field(9, wire.field(1, update % 255))
+        self.session.send(view, wire.UPDATE_VIEW,
+                          wire.field(1, update) + wire.field(2, self.picture + background) + wire.field(3, 1))
+
+    def run(self):
+        while True:
+            try:
+                answer = self.session.receive()
+            except OSError:
+                return
+            if wire.VIEW_FRAME not in answer:
+                continue
+            frame = wire.fields(answer[wire.VIEW_FRAME])
+            self.session.send(answer[1], wire.FRAME_PAINTED, wire.field(1, frame[1]))
+            self.frames += 1
+            self.move(answer[1], self.frames + 1)
+
+
+def moving_views(target):
+    bound = 2 * max(timed(target.picture)[1] for _ in range(10)) + 0.25
+    movers = [Mover(target, 8, 4096, 2160) for _ in range(8)]
+    with Victim(target) as victim:
+        for mover in movers:
+            mover.start()
+        time.sleep(20)
+    for mover in movers:
+        mover.session.connection.shutdown(socket.SHUT_RDWR)
+        mover.join()
+    frames = sum(mover.frames for mover in movers)
+    return victim.refused == 0 and max(victim.pictures) < bound, (
+        f"8 connections with 8 views of 4096 x 2160 each in motion, {frames} frames: another's 96 x 64 at most "
+        f"{max(victim.pictures):.2f} s, p95 {p95(victim.pictures):.2f} s, bound {bound:.2f} s; refused {victim.refused}")
+
+
 def rebinding(target):
     name = "attacker.example"
     wrong = [status(target.get("/api/models", host=name)), status(target.get("/metrics", host=name)),
@@ -210,8 +259,8 @@ def vanishing_clients(target):
     return status(answer) == 200, f"50 orders of clients that are gone: another's picture after {seconds:.2f} s"
 
 
-ATTACKS = [all_connections, unread_answers, nonsense, largest_pictures, rebinding, smuggling, slow_requests, wide_picks,
-           vanishing_clients]
+ATTACKS = [all_connections, unread_answers, nonsense, largest_pictures, moving_views, rebinding, smuggling,
+           slow_requests, wide_picks, vanishing_clients]
 
 
 def main():

@@ -32,6 +32,8 @@ struct ServiceLimits {
   /// A still picture that others wait for is drawn for so long at least before one of another session is drawn in its
   /// middle.
   std::chrono::milliseconds still_turn{250};
+  /// Likewise a motion picture, before a small still picture of another session is drawn in its middle.
+  std::chrono::milliseconds motion_turn{100};
   PickLimits picks{};
 };
 

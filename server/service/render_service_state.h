@@ -56,8 +56,8 @@ struct RenderService::State {
   JobPointer next_still_of_others(const RenderJob& current, int depth);
   Result<picture::Frame> render_frame(FrameRenderer& renderer, RenderJob& job, const Preemption& preemption);
   void draw_one(FrameRenderer& renderer, const JobPointer& job, const Preemption& preemption);
-  void draw_motion(FrameRenderer& renderer, const JobPointer& job, bool others_wait);
-  bool draw_waiting_motion(FrameRenderer& renderer, const RenderJob& current);
+  void draw_motion(FrameRenderer& renderer, const JobPointer& job, int depth, bool others_wait);
+  bool draw_waiting_motion(FrameRenderer& renderer, const RenderJob& current, int depth);
   void draw_still(FrameRenderer& renderer, const JobPointer& job, int depth);
   void cancel_superseded(JobId id);
 

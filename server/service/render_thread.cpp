@@ -44,7 +44,7 @@ void RenderService::State::run(const FrameRendererFactory& make_renderer, std::p
     if (!job) return;
     more_to_warm_up = true;  // there may be another model
     if (job->picture.priority == Priority::kMotion) {
-      draw_motion(**renderer, job, has_waiting(Priority::kStill));
+      draw_motion(**renderer, job, /*depth=*/0, has_waiting(Priority::kStill));
     } else {
       draw_still(**renderer, job, /*depth=*/0);
     }
@@ -167,10 +167,15 @@ RenderService::State::JobPointer RenderService::State::next_motion(const RenderJ
 }
 
 /// The still job of another session that is drawn in the middle of the current one; null if there is none. In the
-/// middle of one that is itself in the middle of another only a much smaller one is drawn.
+/// middle of a motion picture only a small one is drawn, and in the middle of one that is itself in the middle of another
+/// only a much smaller one.
 RenderService::State::JobPointer RenderService::State::next_still_of_others(const RenderJob& current, int depth) {
-  const size_t most = depth == 0 ? SIZE_MAX : memory_of(current.picture) / 4;
-  const auto accepts = [&](JobId id) { return has_room(id) && memory_of(jobs.at(id)->picture) <= most; };
+  const bool moves = current.picture.priority == Priority::kMotion;
+  const size_t most = depth == 0 || moves ? SIZE_MAX : memory_of(current.picture) / 4;
+  const auto accepts = [&](JobId id) {
+    const PictureJob& picture = jobs.at(id)->picture;
+    return has_room(id) && memory_of(picture) <= most && (!moves || is_small(picture));
+  };
   std::unique_lock lock(mutex);
   while (!stopping && depth < kDeepest) {
     const std::optional<JobId> id = queue.pop_of_others(Priority::kStill, current.asker, accepts);
@@ -192,17 +197,28 @@ Result<picture::Frame> RenderService::State::render_frame(FrameRenderer& rendere
   return renderer.draw(job.picture.model, request, preemption);
 }
 
-void RenderService::State::draw_motion(FrameRenderer& renderer, const JobPointer& job, bool others_wait) {
-  draw_one(renderer, job, job->cancelled);
+/// Draws a motion picture. If it takes longer than its turn, small still pictures of other sessions are drawn in its
+/// middle, a turn apart, so that they do not wait for the largest of views. They are not interrupted.
+void RenderService::State::draw_motion(FrameRenderer& renderer, const JobPointer& job, int depth, bool others_wait) {
+  const auto turn_ms = static_cast<double>(limits.motion_turn.count());
+  Stopwatch since_others;
+  const Preemption preemption(job->cancelled, [&] {
+    if (since_others.milliseconds() < turn_ms) return false;
+    const JobPointer other = next_still_of_others(*job, depth);
+    if (other) draw_still(renderer, other, kDeepest);
+    since_others = Stopwatch();
+    return other != nullptr;
+  });
+  draw_one(renderer, job, preemption);
   charge(*job, job->draw_ms);
   leave_queue(*job);
   shares.drew_motion(job->draw_ms, others_wait);
 }
 
-bool RenderService::State::draw_waiting_motion(FrameRenderer& renderer, const RenderJob& current) {
+bool RenderService::State::draw_waiting_motion(FrameRenderer& renderer, const RenderJob& current, int depth) {
   bool any = false;
   for (; const JobPointer motion = next_motion(current); any = true) {
-    draw_motion(renderer, motion, /*others_wait=*/true);
+    draw_motion(renderer, motion, depth, /*others_wait=*/true);
   }
   return any;
 }
@@ -219,7 +235,7 @@ void RenderService::State::draw_still(FrameRenderer& renderer, const JobPointer&
     shares.drew_other(drawn_ms);
     charge(*job, drawn_ms);
     left_of_turn -= drawn_ms;
-    bool preempted = depth < kDeepest && draw_waiting_motion(renderer, *job);
+    bool preempted = depth < kDeepest && draw_waiting_motion(renderer, *job, depth + 1);
     const JobPointer other = left_of_turn <= 0 ? next_still_of_others(*job, depth) : nullptr;
     if (other) {
       const Stopwatch watch;

@@ -116,9 +116,9 @@ TEST_F(RenderServiceTest, APictureInTheMiddleOfAnotherIsInterruptedByMotionAlone
   EXPECT_TRUE(third.get());
 }
 
-TEST_F(RenderServiceTest, AMotionIsInterruptedByNothing) {
+TEST_F(RenderServiceTest, AMotionIsNotInterruptedBeforeItsTurnIsOver) {
   control_->slow = true;
-  start();
+  start({.motion_turn = std::chrono::hours(1)});
   auto [id, first] = draw(1, motion_of("cube"));
   wait_for_drawing(1);
   auto [other, second] = draw(2, motion_of("teapot"));
@@ -130,6 +130,39 @@ TEST_F(RenderServiceTest, AMotionIsInterruptedByNothing) {
   EXPECT_TRUE(second.get());
   EXPECT_TRUE(third.get());
   EXPECT_EQ(control_->nested_frames, 0);
+}
+
+TEST_F(RenderServiceTest, SmallPicturesOfOthersDoNotWaitForAMotionThatTakesLong) {
+  control_->slow = true;
+  control_->slow_model = "cube";
+  start({.motion_turn = std::chrono::milliseconds(5)});
+  auto [id, motion] = draw({7, 1}, motion_of("cube"));
+  wait_for_drawing(1);
+  PictureJob large = job_for("teapot");
+  large.request.width = large.request.height = 1024;
+  auto [waits, largest] = draw({8, 2}, large);
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(draw({8, 3}, job_for("noise")).second.get());
+  EXPECT_EQ(control_->drawn, 4) << "the large one waits for the whole motion picture";
+  control_->slow = false;
+  EXPECT_TRUE(motion.get());
+  EXPECT_TRUE(largest.get());
+}
+
+TEST_F(RenderServiceTest, AMotionInTheMiddleOfTwoPicturesIsInterruptedByNothing) {
+  control_->slow = true;
+  control_->slow_model = "cube";
+  start({.still_turn = std::chrono::milliseconds(5), .motion_turn = std::chrono::milliseconds(5)});
+  auto [outer, first] = draw({7, 1}, job_for("cube"));
+  wait_for_drawing(1);
+  auto [inner, second] = draw({8, 2}, job_for("cube"));
+  wait_for_drawing(2);
+  auto [moving, third] = draw({9, 3}, motion_of("cube"));
+  wait_for_drawing(3);
+  auto [waits, fourth] = draw({10, 4}, job_for("teapot"));
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));  // for a picture that must not be drawn
+  EXPECT_EQ(control_->drawn, 3);
+  control_->slow = false;
+  for (auto* future : {&first, &second, &third, &fourth}) EXPECT_TRUE(future->get());
 }
 
 TEST_F(RenderServiceTest, APictureIsDrawnBesideOneWhoNeverStopsMoving) {
