@@ -1,14 +1,14 @@
 #!/usr/bin/env python3
-"""tidy.py BUILD [--minutes M] [--seed TEXT]: clang-tidy over the sources of a build folder, cached by content.
+"""tidy.py BUILD [--minutes M] [--base REVISION] [--seed TEXT]: clang-tidy over the sources of a build folder, cached by content.
 
 A file without a finding is not checked again until something changes that its result depends on: its own text, any
 header it includes, its compiler flags, .clang-tidy, or clang-tidy itself. The cache is SURFCAST_TIDY_CACHE, or
 surfcast-tidy beside the user's other caches. The build must have been made: Ninja knows then which headers a file
 includes.
 
-With --minutes, no further file is begun after that time. What was changed last is checked first; the rest follows in an
-order that --seed decides, so that runs with other seeds check other files. A finding fails the run, a file that was not
-reached does not.
+With --minutes, no further file is begun after that time. What differs from --base, by default the last commits, is
+checked first; the rest follows in an order that --seed decides, so that runs with other seeds check other files. A
+finding fails the run, a file that was not reached does not.
 
 --folders limits the check to some folders, separated by |. The gate leaves tests and benchmarks out: the macros of the
 test framework make them take five times as long.
@@ -28,7 +28,7 @@ import time
 from compile_commands import separate_entries
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-RECENT_COMMITS = 10
+RECENT_COMMITS = 30
 
 
 def output_of(*command):
@@ -102,8 +102,8 @@ def joined(name):
     return name.endswith((".cpp", ".cxx"))
 
 
-def order_of(files, seed):
-    recent = set(output_of("git", "diff", "--name-only", f"HEAD~{RECENT_COMMITS}").splitlines())
+def order_of(files, base, seed):
+    recent = set(output_of("git", "diff", "--name-only", base or f"HEAD~{RECENT_COMMITS}").splitlines())
     return sorted(files, key=lambda file: (file not in recent, hashlib.sha256((seed + file).encode()).digest()))
 
 
@@ -120,6 +120,7 @@ def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("--minutes", type=float, default=float("inf"))
+    parser.add_argument("--base", default="")
     parser.add_argument("--seed", default="")
     parser.add_argument("--folders", default="server|client|protocol|tests|bench")
     return parser.parse_args()
@@ -142,7 +143,7 @@ def main():
     deadline = time.monotonic() + 60 * arguments.minutes
     checked = failed = 0
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        order = order_of(wanted, arguments.seed)
+        order = order_of(wanted, arguments.base, arguments.seed)
         for file, findings in zip(order, pool.map(lambda file: check(file, database, deadline), order)):
             if findings is None:
                 continue

@@ -53,7 +53,9 @@ Status render(const RenderCommand& command) {
   const Result<wire::DrawPicture> request = command.flags.request((*models)->names().front());
   if (!request) return fail(request.error());
   const auto service = service::RenderService::start(
-      **models, service::catalogue_renderers(**models, service::local_renderers(command.renderer)), command.limits);
+      **models,
+      service::catalogue_renderers(**models, service::local_renderers(command.renderer), service::ShaderWarmUp::kOff),
+      command.limits);
   if (!service) return fail(service.error());
   log_device((*service)->device(), command.renderer);
   return protocol::draw_and_save(command.flags, *request,

@@ -64,6 +64,7 @@ struct ServeCommand {
   std::filesystem::path certificate;
   std::filesystem::path key;
   LogFormat log_format = LogFormat::kText;
+  bool no_shader_warm_up = false;
   bool insecure = false;  ///< for everybody, without TLS or without tokens
 };
 
@@ -242,8 +243,10 @@ Status serve(ServeCommand command) {
   if (!renderers) return fail(renderers.error());
   Result<std::shared_ptr<service::ModelQueries>> queries = make_queries(command, query_workers);
   if (!queries) return fail(queries.error());
+  const auto warm_up = command.no_shader_warm_up ? service::ShaderWarmUp::kOff : service::ShaderWarmUp::kOn;
   const auto service = service::RenderService::start(
-      models, service::catalogue_renderers(models, std::move(*renderers)), command.service, std::move(*queries));
+      models, service::catalogue_renderers(models, std::move(*renderers), warm_up), command.service,
+      std::move(*queries));
   if (!service) return fail(service.error());
   if (command.worker.workers > 0) {
     command.server.workers = [&] { return net::WorkerGauges{gauges_of(workers), gauges_of(query_workers)}; };
@@ -328,6 +331,10 @@ void add_serve_command(CLI::App& app, Status& outcome) {
       ->check(CLI::Range(1.0, protocol::kMaxFramesPerSecond));
   add_tls_flags(*sub, *command);
   add_renderer_flags(*sub, command->renderer);
+  sub->add_flag("--no-shader-warm-up", command->no_shader_warm_up,
+                "Compile shaders when a picture needs them, not before: an idle server then uses no processor, and the "
+                "first picture with an option waits for the driver")
+      ->envname(protocol::environment_name("no-shader-warm-up"));
   add_worker_flags(*sub, command->worker);
   add_cache_flags(*sub, command->cache);
   add_build_flags(*sub, command->previews, command->build_threads);

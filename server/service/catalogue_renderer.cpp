@@ -17,8 +17,8 @@ namespace {
 
 class CatalogueRenderer : public FrameRenderer {
  public:
-  CatalogueRenderer(const ModelCatalogue& models, std::unique_ptr<ModelRenderer> renderer)
-      : models_(models), renderer_(std::move(renderer)) {
+  CatalogueRenderer(const ModelCatalogue& models, std::unique_ptr<ModelRenderer> renderer, ShaderWarmUp warm_up)
+      : models_(models), shader_warm_up_(warm_up), renderer_(std::move(renderer)) {
     if (const std::vector<std::string> names = models.names(); !names.empty()) next_model_ = names.front();
   }
 
@@ -32,6 +32,7 @@ class CatalogueRenderer : public FrameRenderer {
   /// the first model in the catalogue.
   bool warm_up() override {
     release_removed();
+    if (shader_warm_up_ == ShaderWarmUp::kOff) return false;
     if (!next_model_.empty()) begin_warm_up(std::exchange(next_model_, {}));
     if (warm_ups_.empty()) return false;
     const std::atomic<bool> never{false};
@@ -91,6 +92,7 @@ class CatalogueRenderer : public FrameRenderer {
   }
 
   const ModelCatalogue& models_;
+  ShaderWarmUp shader_warm_up_;
   std::string next_model_;  ///< next model to warm up; empty: none
   std::shared_ptr<const model::ModelFile> warming_model_;
   std::deque<picture::PictureRequest> warm_ups_;
@@ -100,11 +102,12 @@ class CatalogueRenderer : public FrameRenderer {
 
 }  // namespace
 
-FrameRendererFactory catalogue_renderers(const ModelCatalogue& models, ModelRendererFactory make_renderer) {
-  return [&models, make_renderer = std::move(make_renderer)]() -> Result<std::unique_ptr<FrameRenderer>> {
+FrameRendererFactory catalogue_renderers(const ModelCatalogue& models, ModelRendererFactory make_renderer,
+                                         ShaderWarmUp warm_up) {
+  return [&models, make_renderer = std::move(make_renderer), warm_up]() -> Result<std::unique_ptr<FrameRenderer>> {
     Result<std::unique_ptr<ModelRenderer>> renderer = make_renderer();
     if (!renderer) return fail(renderer.error());
-    return std::make_unique<CatalogueRenderer>(models, std::move(*renderer));
+    return std::make_unique<CatalogueRenderer>(models, std::move(*renderer), warm_up);
   };
 }
 

@@ -6,7 +6,11 @@
 
 namespace surfcast::service {
 
+/// Whether the shaders of a model are compiled before a picture needs them, see shader_warm_up_requests().
+enum class ShaderWarmUp { kOff, kOn };
+
 /// A factory of renderers for the models of a catalogue. The catalogue must outlive the factory and its renderers.
-FrameRendererFactory catalogue_renderers(const ModelCatalogue& models, ModelRendererFactory make_renderer);
+FrameRendererFactory catalogue_renderers(const ModelCatalogue& models, ModelRendererFactory make_renderer,
+                                         ShaderWarmUp warm_up);
 
 }  // namespace surfcast::service
