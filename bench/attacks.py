@@ -206,7 +206,7 @@ def moving_views(target):
     frames = sum(mover.frames for mover in movers)
     return victim.refused == 0 and max(victim.pictures) < bound, (
         f"8 connections with 8 views of 4096 x 2160 each in motion, {frames} frames: another's 96 x 64 at most "
-        f"{max(victim.pictures):.2f} s, p95 {p95(victim.pictures):.2f} s, bound {bound:.2f} s; refused {victim.refused}")
+        f"{max(victim.pictures):.2f} s, p95 {p95(victim.pictures):.2f}, bound {bound:.2f}; refused {victim.refused}")
 
 
 def rebinding(target):

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""tidy.py BUILD [--minutes M] [--base REVISION] [--seed TEXT]: clang-tidy over the sources of a build folder, cached by content.
+"""tidy.py BUILD [--minutes M] [--base REVISION] [--seed TEXT]: clang-tidy over the sources of a build folder.
 
-A file without a finding is not checked again until something changes that its result depends on: its own text, any
-header it includes, its compiler flags, .clang-tidy, or clang-tidy itself. The cache is SURFCAST_TIDY_CACHE, or
-surfcast-tidy beside the user's other caches. The build must have been made: Ninja knows then which headers a file
-includes.
+Results are cached by content: a file without a finding is not checked again until something changes that its result
+depends on: its own text, any header it includes, its compiler flags, .clang-tidy, or clang-tidy itself. The cache is
+SURFCAST_TIDY_CACHE, or surfcast-tidy beside the user's other caches. The build must have been made: Ninja knows then
+which headers a file includes.
 
 With --minutes, no further file is begun after that time. What differs from --base, by default the last commits, is
 checked first; the rest follows in an order that --seed decides, so that runs with other seeds check other files. A

@@ -244,9 +244,9 @@ Status serve(ServeCommand command) {
   Result<std::shared_ptr<service::ModelQueries>> queries = make_queries(command, query_workers);
   if (!queries) return fail(queries.error());
   const auto warm_up = command.no_shader_warm_up ? service::ShaderWarmUp::kOff : service::ShaderWarmUp::kOn;
-  const auto service = service::RenderService::start(
-      models, service::catalogue_renderers(models, std::move(*renderers), warm_up), command.service,
-      std::move(*queries));
+  const auto service =
+      service::RenderService::start(models, service::catalogue_renderers(models, std::move(*renderers), warm_up),
+                                    command.service, std::move(*queries));
   if (!service) return fail(service.error());
   if (command.worker.workers > 0) {
     command.server.workers = [&] { return net::WorkerGauges{gauges_of(workers), gauges_of(query_workers)}; };

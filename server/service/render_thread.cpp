@@ -167,8 +167,8 @@ RenderService::State::JobPointer RenderService::State::next_motion(const RenderJ
 }
 
 /// The still job of another session that is drawn in the middle of the current one; null if there is none. In the
-/// middle of a motion picture only a small one is drawn, and in the middle of one that is itself in the middle of another
-/// only a much smaller one.
+/// middle of a motion picture only a small one is drawn, and in the middle of one that is itself in the middle of
+/// another only a much smaller one.
 RenderService::State::JobPointer RenderService::State::next_still_of_others(const RenderJob& current, int depth) {
   const bool moves = current.picture.priority == Priority::kMotion;
   const size_t most = depth == 0 || moves ? SIZE_MAX : memory_of(current.picture) / 4;
