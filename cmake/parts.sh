@@ -16,12 +16,22 @@ part() {
   current=
 }
 
+# The last lines of the output of each test that failed in the last run.
+failures() {
+  local folder=build/Testing/Temporary name
+  [ ! -e "$folder/LastTestsFailed.log" ] || while IFS=: read -r _ name; do
+    printf '\n---- %s\n' "$name"
+    sed -n "\\,Test: $name\$,,/^<end of output>/p" "$folder/LastTest.log" | tail -n 40
+  done <"$folder/LastTestsFailed.log"
+}
+
 # The tests as the README runs them, with arguments of make. Their closing lines are kept for the end.
 tests() {
   local log code=0
   log=$(mktemp)
+  rm -f build/Testing/Temporary/LastTestsFailed.log
   make test "$@" 2>&1 | tee "$log" || code=$?
-  closing=$(sed -n '/tests passed, .* tests failed out of/,$p' "$log")
+  closing=$(failures && sed -n '/tests passed, .* tests failed out of/,$p' "$log")
   rm -f "$log"
   return "$code"
 }

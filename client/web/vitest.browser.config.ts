@@ -5,7 +5,8 @@ export default defineConfig({
   test: {
     include: ['browser_tests/**/*.test.ts'],
     fileParallelism: false,
-    testTimeout: 120_000,
+    testTimeout: 300_000,
     hookTimeout: 120_000,
+    expect: { poll: { timeout: 90_000 } }, // as the pages of the tests
   },
 });

@@ -32,7 +32,7 @@ describe('a scan that is being built', () => {
     const hills = await Server.start(scan, 0, '--cache', cache, '--preview-points', '5000', '--preview-from', '1K');
     try {
       await yard.page.goto(hills.url);
-      await yard.page.locator('.status', { hasText: 'Preview' }).waitFor({ timeout: 60_000 });
+      await yard.page.locator('.status', { hasText: 'Preview' }).waitFor();
       await yard.page.evaluate(() => (window.name = 'not reloaded'));
       await look.drag(yard.page, 90, -30); // moves while the yard.model is built
       await look.sharp(yard.page);
@@ -45,7 +45,7 @@ describe('a scan that is being built', () => {
       expect(kinds.slice(first).some((preview) => preview)).toBe(false);
       const { blocksDrawn, blocksSelected } = wire.frames[first]!.picture!;
       expect(blocksDrawn).toBe(blocksSelected); // the yard.model comes once nothing of it is missing
-      await expect.poll(() => yard.page.locator('.status').textContent(), { timeout: 20_000 }).toContain('Sharp');
+      await expect.poll(() => yard.page.locator('.status').textContent()).toContain('Sharp');
     } finally {
       await hills.kill();
     }
@@ -72,16 +72,16 @@ describe('a scan that is being built', () => {
       await yard.page.dispatchEvent('body', 'drop', { dataTransfer: dropped });
       const row = (name: string) => yard.page.locator('.uploads li', { hasText: name });
       await row('notes.docx').getByText('Not a scan by its name').waitFor();
-      await row('bad.ply').getByText('bad.ply: ').waitFor({ timeout: 30_000 });
-      await row('shed.las').getByRole('button', { name: 'Open' }).click({ timeout: 30_000 });
+      await row('bad.ply').getByText('bad.ply: ').waitFor();
+      await row('shed.las').getByRole('button', { name: 'Open' }).click();
       await look.sharp(yard.page);
       expect(yard.page.url()).toContain('#/shed');
       expect((await readdir(uploads)).sort()).toEqual(['shed.las']);
       await yard.page.goto(`${taking.url}#/`);
       const torn = Buffer.from('1 2 3\n4 5\n');
       await yard.page.locator('.send-scans input').setInputFiles({ name: 'torn.xyz', mimeType: '', buffer: torn });
-      await row('torn.xyz').getByRole('button', { name: 'Open' }).click({ timeout: 30_000 });
-      await yard.page.getByText('torn cannot be built').waitFor({ timeout: 30_000 });
+      await row('torn.xyz').getByRole('button', { name: 'Open' }).click();
+      await yard.page.getByText('torn cannot be built').waitFor();
     } finally {
       await taking.kill();
       await rm(uploads, { recursive: true });

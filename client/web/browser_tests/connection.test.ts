@@ -28,11 +28,11 @@ describe('the connection', () => {
     await look.placeNow(yard.page);
     const [url, sum, { port }] = [yard.page.url(), await look.pictureSum(yard.page), yard.server];
     await yard.server.kill();
-    await yard.page.locator('.banner').waitFor({ timeout: 20_000 });
+    await yard.page.locator('.banner').waitFor();
     expect(await yard.page.locator('.banner').textContent()).toContain('cannot be reached');
     wire.holdFrames();
     yard.server = await Server.start(yard.model, port);
-    await expect.poll(() => wire.heldFrames, { timeout: 60_000 }).toBeGreaterThan(0);
+    await expect.poll(() => wire.heldFrames).toBeGreaterThan(0);
     expect(await look.lamp(yard.page)).toBe('working'); // the picture on the screen is the old server's
     wire.releaseFrames();
     await look.sharp(yard.page);

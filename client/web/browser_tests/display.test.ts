@@ -12,7 +12,7 @@ describe('the display options', () => {
     await yard.page.keyboard.press('o');
     await yard.page.getByText('Elevation', { exact: true }).click();
     await yard.page.locator('.classes label', { hasText: 'Building' }).click();
-    await expect.poll(() => look.pictureSum(yard.page), { timeout: 60_000 }).not.toBe(before);
+    await expect.poll(() => look.pictureSum(yard.page)).not.toBe(before);
     await look.sharp(yard.page);
     expect(await look.pictureSum(yard.page)).not.toBe(before);
     const place = await look.placeNow(yard.page);
@@ -24,7 +24,7 @@ describe('the display options', () => {
     await yard.open();
     await yard.page.keyboard.press('x');
     await yard.page.getByRole('button', { name: 'Full HD' }).click();
-    const download = yard.page.waitForEvent('download', { timeout: 60_000 });
+    const download = yard.page.waitForEvent('download');
     await yard.page.getByRole('button', { name: 'Save picture' }).click();
     const file = await readFile(await (await download).path());
     expect(file.subarray(1, 4).toString()).toBe('PNG');

@@ -11,7 +11,7 @@ async function measureTwoPoints(kind: string): Promise<void> {
   for (const [dx, dy, figures] of [[-60, 20, '.faint'], [70, -10, '.main dd']] as const) {
     const pixel = await look.middle(yard.page, dx, dy);
     await yard.page.mouse.click(pixel.x, pixel.y);
-    await card.locator(figures).waitFor({ timeout: 30_000 });
+    await card.locator(figures).waitFor();
   }
 }
 
@@ -62,7 +62,7 @@ describe('the tools', () => {
     await measureTwoPoints('profile');
     await yard.page.keyboard.press('Enter');
     const card = yard.page.locator('.card[data-kind=profile]');
-    await card.getByText('in the band').waitFor({ timeout: 30_000 });
+    await card.getByText('in the band').waitFor();
     const width = Number(await card.getByLabel('Width of the band').inputValue());
     const expected = pointsInBand(a, b, width);
     expect(expected).toBeGreaterThan(100);

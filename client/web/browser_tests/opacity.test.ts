@@ -19,7 +19,7 @@ async function settled(wire: Wire): Promise<void> {
     const last = wire.frames.at(-1);
     return last?.picture?.converged === true && last.update === (wire.updates.at(-1)?.update ?? 0n);
   };
-  await expect.poll(isFinal, { timeout: 60_000 }).toBe(true);
+  await expect.poll(isFinal).toBe(true);
 }
 
 /** Drags the thumb of a slider to shares of its length. Each step waits for a picture on its way. */
@@ -34,7 +34,7 @@ async function slide(wire: Wire, name: string, shares: readonly number[]): Promi
   for (const share of shares) {
     const frames = wire.frames.length;
     await to(share);
-    await expect.poll(() => wire.frames.length, { timeout: 30_000, interval: 5 }).toBeGreaterThan(frames);
+    await expect.poll(() => wire.frames.length, { interval: 5 }).toBeGreaterThan(frames);
   }
   await yard.page.mouse.up();
   await settled(wire);
@@ -47,8 +47,8 @@ async function loadsNothing(wire: Wire, act: () => Promise<void>): Promise<void>
   const frames = wire.frames.length;
   const asked = wire.asked.length;
   await act();
-  await expect.poll(() => wire.asked.slice(asked), { timeout: 30_000 }).toContain('updateView');
-  await expect.poll(() => look.pictureSum(yard.page), { timeout: 30_000 }).not.toBe(sum);
+  await expect.poll(() => wire.asked.slice(asked)).toContain('updateView');
+  await expect.poll(() => look.pictureSum(yard.page)).not.toBe(sum);
   expect(before['resident']).toBeGreaterThan(1);
   for (const { picture } of wire.frames.slice(frames)) expect(blocksOf(picture)).toEqual({ ...before, waitedFor: 0 });
   expect(new Set(wire.asked.slice(asked))).toEqual(new Set(['updateView', 'framePainted']));

@@ -52,10 +52,15 @@ class Field extends Session {
     return { x: Number(await text.getAttribute('x')), y: Number(await text.getAttribute('y')) };
   }
 
-  async view(key: string): Promise<void> {
-    await this.page.keyboard.press(key);
-    await this.page.locator('.status .lamp.working').waitFor({ state: 'attached' });
+  /** Does what changes the view, and waits for its picture. */
+  async turn(action: () => Promise<void>): Promise<void> {
+    await look.placeNow(this.page);
+    await look.turned(this.page, action);
     await look.sharp(this.page);
+  }
+
+  view(key: string): Promise<void> {
+    return this.turn(() => this.page.keyboard.press(key));
   }
 }
 
@@ -94,7 +99,7 @@ describe('the cursor', () => {
     expect(picks()).toBe(1);
     const { x, y } = await look.middle(field.page);
     await field.page.mouse.down(); // which asks for the point to turn around
-    await expect.poll(picks, { timeout: 30_000 }).toBe(2);
+    await expect.poll(picks).toBe(2);
     for (let i = 1; i <= 8; ++i) {
       await field.page.mouse.move(x + 4 * i, y);
       await field.page.waitForTimeout(120); // for a question that must not be asked
@@ -138,9 +143,7 @@ describe('the north arrow', () => {
     expect(fromEast.x).toBeGreaterThan(20);
     expect(Math.abs(fromEast.y)).toBeLessThan(0.01);
     await field.view('7');
-    await field.page.getByRole('button', { name: 'Turn to the north' }).click();
-    await field.page.locator('.status .lamp.working').waitFor({ state: 'attached' });
-    await look.sharp(field.page);
+    await field.turn(() => field.page.getByRole('button', { name: 'Turn to the north' }).click());
     const place = await look.placeNow(field.page);
     const [eye, focal] = ['position', 'focal_point'].map((name) => place.get(name)!.split(',').map(Number));
     expect(Math.abs(eye![0]! - focal![0]!)).toBeLessThan(0.001);

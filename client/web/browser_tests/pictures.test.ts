@@ -30,11 +30,11 @@ describe('the picture', () => {
     for (let i = 1; i <= 12; ++i) {
       const frames = wire.frames.length;
       await yard.page.mouse.move(from.x + 12 * i, from.y + 3 * i);
-      await expect.poll(() => wire.frames.length, { timeout: 30_000, interval: 5 }).toBeGreaterThan(frames);
+      await expect.poll(() => wire.frames.length, { interval: 5 }).toBeGreaterThan(frames);
     }
     await decoding.endUnordered(yard.page);
     const shown = async (): Promise<ViewFrame | undefined> => wire.frames[(await decoding.painted(yard.page)).at(-1) ?? -1];
-    await expect.poll(async () => (await shown())?.update, { timeout: 30_000 }).toBe(wire.updates.at(-1)!.update);
+    await expect.poll(async () => (await shown())?.update).toBe(wire.updates.at(-1)!.update);
 
     const painted = await decoding.painted(yard.page);
     expect(painted).toEqual([...painted].sort((a, b) => a - b)); // decoded out of order, painted in order

@@ -9,7 +9,7 @@ const yard = useYard();
 /** The parameters of the address, once they are those wanted. */
 async function addressIs(wanted: URLSearchParams): Promise<void> {
   const end = `?${decodeURIComponent(wanted.toString())}`;
-  await yard.page.waitForFunction((text) => decodeURIComponent(location.hash).endsWith(text), end, { timeout: 20_000 });
+  await yard.page.waitForFunction((text) => decodeURIComponent(location.hash).endsWith(text), end);
 }
 
 describe('saved views', () => {

@@ -19,7 +19,7 @@ async function openDialog(parameters = '', server = yard.server): Promise<void> 
 }
 
 async function shownCount(): Promise<number> {
-  const text = (await dialog().locator('.count b').textContent({ timeout: 30_000 })) ?? '';
+  const text = (await dialog().locator('.count b').textContent()) ?? '';
   return Number(text.replace(/\D/g, ''));
 }
 

@@ -51,12 +51,12 @@ class Field extends Session {
   /** Waits until a parameter of the address has a value. */
   async says(name: string, value: string | null): Promise<void> {
     const read = (): string | null => new URLSearchParams(new URL(this.page.url()).hash.split('?')[1]).get(name);
-    await expect.poll(read, { timeout: 20_000 }).toBe(value);
+    await expect.poll(read).toBe(value);
   }
 
   /** Waits for a picture that differs from the one of a checksum, and is whole. */
   async changedFrom(sum: number): Promise<number> {
-    await expect.poll(() => look.pictureSum(this.page), { timeout: 60_000 }).not.toBe(sum);
+    await expect.poll(() => look.pictureSum(this.page)).not.toBe(sum);
     await look.sharp(this.page);
     return look.pictureSum(this.page);
   }
@@ -94,7 +94,7 @@ describe('a tensor field', () => {
     await page.reload();
     await look.sharp(page);
     await page.keyboard.press('o'); // the panel narrows the picture
-    await expect.poll(() => look.pictureSum(page), { timeout: 60_000 }).toBe(sum);
+    await expect.poll(() => look.pictureSum(page)).toBe(sum);
     expect(await page.getByRole('radio', { name: 'Superquadric' }).isChecked()).toBe(true);
     expect(await page.getByRole('slider', { name: 'Power of light' }).inputValue()).toBe('0.9');
   });

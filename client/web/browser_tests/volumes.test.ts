@@ -35,13 +35,13 @@ class Ball extends Session {
   /** The parameter of the address, once it passes. */
   async parameter(name: string, passes: (value: string | null) => boolean): Promise<string> {
     const read = (): string | null => new URLSearchParams(new URL(this.page.url()).hash.split('?')[1]).get(name);
-    await expect.poll(() => passes(read()), { timeout: 20_000 }).toBe(true);
+    await expect.poll(() => passes(read())).toBe(true);
     return read() ?? '';
   }
 
   /** Waits for a picture that differs from the one of a checksum, and is whole. */
   async changedFrom(sum: number): Promise<number> {
-    await expect.poll(() => look.pictureSum(this.page), { timeout: 60_000 }).not.toBe(sum);
+    await expect.poll(() => look.pictureSum(this.page)).not.toBe(sum);
     await look.sharp(this.page);
     return look.pictureSum(this.page);
   }
@@ -240,8 +240,8 @@ describe('a volume', () => {
       );
       await ball.page.dispatchEvent('body', 'drop', { dataTransfer: dropped });
       const row = (name: string): Locator => ball.page.locator('.uploads li', { hasText: name });
-      await row('ct.raw').getByText('waits for its header').waitFor({ timeout: 30_000 });
-      await row('head.nhdr').getByRole('button', { name: 'Open' }).click({ timeout: 30_000 });
+      await row('ct.raw').getByText('waits for its header').waitFor();
+      await row('head.nhdr').getByRole('button', { name: 'Open' }).click();
       await look.sharp(ball.page);
       expect(ball.page.url()).toContain('#/head');
       expect((await readdir(uploads)).sort()).toEqual(['ct.raw', 'head.nhdr']);
@@ -275,7 +275,7 @@ describe('on a phone', () => {
       if (!(await pressed())) await display.tap();
       return pressed();
     };
-    await expect.poll(tapped, { interval: 1000, timeout: 30_000 }).toBe(true);
+    await expect.poll(tapped, { interval: 1000 }).toBe(true);
     await ball.page.getByRole('button', { name: 'Add surface' }).tap();
     await ball.page.getByRole('switch', { name: 'Across I' }).check();
     expect(await ball.page.evaluate(() => document.documentElement.scrollWidth)).toBe(360);

@@ -23,14 +23,21 @@ export const phone: BrowserContextOptions = { viewport: { width: 360, height: 74
 /** A page whose errors fail the test that uses it. */
 export async function open(browser: Browser, options: BrowserContextOptions): Promise<{ page: Page; errors: string[] }> {
   const page = await (await browser.newContext(options)).newPage();
+  page.setDefaultTimeout(90_000);
   const errors: string[] = [];
   page.on('pageerror', (error) => errors.push(error.message));
   return { page, errors };
 }
 
+/** Waits until the page has taken note of what was done last: its layout is observed once a frame. */
+const noted = (page: Page): Promise<unknown> =>
+  page.evaluate(() => new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done))));
+
 /** Waits until the picture on the screen is the converged one of the newest view. */
-export const sharp = (page: Page): Promise<unknown> =>
-  page.locator('.status .lamp.sharp').waitFor({ state: 'attached', timeout: 90_000 });
+export async function sharp(page: Page): Promise<void> {
+  await noted(page);
+  await page.locator('.status .lamp.sharp').waitFor({ state: 'attached' });
+}
 
 /** The state of the lamp in the status line: sharp, working or offline. */
 export async function lamp(page: Page): Promise<string> {
@@ -40,7 +47,7 @@ export async function lamp(page: Page): Promise<string> {
 
 /** A file that an action saves. */
 export async function saved(page: Page, action: () => Promise<void>): Promise<{ name: string; bytes: Buffer }> {
-  const download = page.waitForEvent('download', { timeout: 60_000 });
+  const download = page.waitForEvent('download');
   await action();
   const file = await download;
   return { name: file.suggestedFilename(), bytes: await readFile(await file.path()) };
@@ -100,12 +107,12 @@ export async function drag(page: Page, dx: number, dy: number): Promise<void> {
 export async function turned(page: Page, action: () => Promise<void>): Promise<void> {
   const former = page.url();
   await action();
-  await page.waitForFunction((url) => location.href !== url, former, { timeout: 60_000 });
+  await page.waitForFunction((url) => location.href !== url, former);
 }
 
 /** The parameters of the address once it has been updated to the view. */
 export async function placeNow(page: Page): Promise<URLSearchParams> {
-  await page.waitForFunction(() => location.hash.includes('position='), undefined, { timeout: 20_000 });
+  await page.waitForFunction(() => location.hash.includes('position='));
   // Timers of a page end in their order: this one after that of the address, which is shorter and began before.
   await page.evaluate(() => new Promise((resolve) => setTimeout(resolve, 300)));
   return new URLSearchParams(new URL(page.url()).hash.split('?')[1]);

@@ -95,6 +95,8 @@ export const editedClip = signal<number | undefined>(undefined);
 
 /** Size of the picture, device pixels; written by view/stage_size.ts. */
 export const stageSize = signal<Size>({ width: 0, height: 0 });
+/** The room for the picture has changed, and `stageSize` follows in a moment. */
+export const resizing = signal(false);
 
 export const description = computed(() =>
   model.value === undefined ? undefined : descriptions.value.get(model.value),
@@ -124,7 +126,8 @@ export const shownProjection = computed<Projection | undefined>(() => {
 /** The picture on the screen is the final one of the current view: the server has nothing to draw. */
 export const pictureSettled = computed(() => {
   const frame = shownFrame.value;
-  if (!frame || !frameIsCurrent.value || updatePending.value || moving.value) return false;
+  if (!frame || !frameIsCurrent.value) return false;
+  if (updatePending.value || resizing.value || moving.value) return false;
   return frame.update >= wantedUpdate.value && !frame.moving && frame.picture?.converged === true;
 });
 

@@ -14,20 +14,24 @@ export function pixelsOf(width: number, height: number, ratio: number): Size {
 /** Keeps the store's picture size equal to the size of the element. */
 export function followSize(element: HTMLElement, changed: (before: Size, after: Size) => void): void {
   let timer: ReturnType<typeof setTimeout> | undefined;
-  const take = (): void => {
+  const adopt = (): void => {
     const { clientWidth, clientHeight } = element;
     if (clientWidth === 0 || clientHeight === 0) return;
     const size = pixelsOf(clientWidth, clientHeight, devicePixelRatio);
     const now = store.stageSize.peek();
     if (size.width === now.width && size.height === now.height) return;
-    batch(() => {
-      if (now.width > 0) changed(now, size);
-      store.stageSize.value = size;
-    });
+    if (now.width > 0) changed(now, size);
+    store.stageSize.value = size;
   };
+  const take = (): void =>
+    batch(() => {
+      adopt();
+      store.resizing.value = false;
+    });
   new ResizeObserver(() => {
     clearTimeout(timer);
-    if (store.stageSize.peek().width === 0) take();
-    else timer = setTimeout(take, settle);
+    if (store.stageSize.peek().width === 0) return take();
+    store.resizing.value = true;
+    timer = setTimeout(take, settle);
   }).observe(element);
 }
