@@ -42,7 +42,7 @@ struct RenderService::State {
   // Render thread.
   void run(const FrameRendererFactory& make_renderer, std::promise<Status> started);
   [[nodiscard]] bool idle_for_a_moment();
-  [[nodiscard]] bool has_waiting(Priority priority) const;
+  [[nodiscard]] WaitingStills waiting_stills() const;
   [[nodiscard]] bool may_draw(Priority priority) const;
   [[nodiscard]] bool has_room(JobId id) const;
   [[nodiscard]] bool moves_first(ClientId other) const;
@@ -56,7 +56,7 @@ struct RenderService::State {
   JobPointer next_still_of_others(const RenderJob& current, int depth);
   Result<picture::Frame> render_frame(FrameRenderer& renderer, RenderJob& job, const Preemption& preemption);
   void draw_one(FrameRenderer& renderer, const JobPointer& job, const Preemption& preemption);
-  void draw_motion(FrameRenderer& renderer, const JobPointer& job, int depth, bool others_wait);
+  void draw_motion(FrameRenderer& renderer, const JobPointer& job, int depth, WaitingStills unfinished);
   bool draw_waiting_motion(FrameRenderer& renderer, const RenderJob& current, int depth);
   void draw_still(FrameRenderer& renderer, const JobPointer& job, int depth);
   void cancel_superseded(JobId id);

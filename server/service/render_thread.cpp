@@ -44,7 +44,7 @@ void RenderService::State::run(const FrameRendererFactory& make_renderer, std::p
     if (!job) return;
     more_to_warm_up = true;  // there may be another model
     if (job->picture.priority == Priority::kMotion) {
-      draw_motion(**renderer, job, /*depth=*/0, has_waiting(Priority::kStill));
+      draw_motion(**renderer, job, /*depth=*/0, WaitingStills::kNone);
     } else {
       draw_still(**renderer, job, /*depth=*/0);
     }
@@ -58,9 +58,11 @@ bool RenderService::State::idle_for_a_moment() {
   return !wake.wait_for(lock, kMoment, [this] { return stopping || next_priority(); });
 }
 
-bool RenderService::State::has_waiting(Priority priority) const {
+WaitingStills RenderService::State::waiting_stills() const {
   const std::lock_guard lock(mutex);
-  return queue.has_waiting(priority);
+  if (!queue.has_waiting(Priority::kStill)) return WaitingStills::kNone;
+  const auto small = [this](JobId id) { return is_small(jobs.at(id)->picture); };
+  return queue.next_client(Priority::kStill, small) ? WaitingStills::kSmall : WaitingStills::kLarge;
 }
 
 /// Whether a job may be drawn now: the encoders have room for its picture, and there is memory for it. Small pictures
@@ -198,8 +200,10 @@ Result<picture::Frame> RenderService::State::render_frame(FrameRenderer& rendere
 }
 
 /// Draws a motion picture. If it takes longer than its turn, small still pictures of other sessions are drawn in its
-/// middle, a turn apart, so that they do not wait for the largest of views. They are not interrupted.
-void RenderService::State::draw_motion(FrameRenderer& renderer, const JobPointer& job, int depth, bool others_wait) {
+/// middle, a turn apart, so that they do not wait for the largest of views. They are not interrupted. `unfinished`: the
+/// pictures in whose middle it is drawn.
+void RenderService::State::draw_motion(FrameRenderer& renderer, const JobPointer& job, int depth,
+                                       WaitingStills unfinished) {
   const auto turn_ms = static_cast<double>(limits.motion_turn.count());
   Stopwatch since_others;
   const Preemption preemption(job->cancelled, [&] {
@@ -212,13 +216,13 @@ void RenderService::State::draw_motion(FrameRenderer& renderer, const JobPointer
   draw_one(renderer, job, preemption);
   charge(*job, job->draw_ms);
   leave_queue(*job);
-  shares.drew_motion(job->draw_ms, others_wait);
+  shares.drew_motion(job->draw_ms, std::max(unfinished, waiting_stills()));
 }
 
 bool RenderService::State::draw_waiting_motion(FrameRenderer& renderer, const RenderJob& current, int depth) {
   bool any = false;
   for (; const JobPointer motion = next_motion(current); any = true) {
-    draw_motion(renderer, motion, depth, /*others_wait=*/true);
+    draw_motion(renderer, motion, depth, current.small ? WaitingStills::kSmall : WaitingStills::kLarge);
   }
   return any;
 }

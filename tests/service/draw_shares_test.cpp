@@ -24,18 +24,18 @@ class RenderThread {
   /// Draws motion frames for `ms` while no still picture waits.
   void move(double ms) {
     for (const double end = now + ms; now < end;) {
-      if (!draw_motion(/*others_wait=*/false)) now += 1;
+      if (!draw_motion(WaitingStills::kNone)) now += 1;
     }
   }
   /// Draws a still picture that takes `work_ms` alone. Returns the time that it took.
-  double rest(double work_ms) {
+  double rest(double work_ms, WaitingStills size = WaitingStills::kLarge) {
     const double begin = now;
     while (work_ms > 0) {
       const double batch = std::min(kBatchMs, work_ms);
       now += batch;
       work_ms -= batch;
       shares.drew_other(batch);
-      while (shares.motion_first() && draw_motion(/*others_wait=*/true)) {
+      while (shares.motion_first() && draw_motion(size)) {
       }
     }
     return now - begin;
@@ -48,14 +48,14 @@ class RenderThread {
 
  private:
   /// Draws the frame that has waited longest. False if no view requests one.
-  bool draw_motion(bool others_wait) {
+  bool draw_motion(WaitingStills stills) {
     Mover& mover = *std::ranges::min_element(movers, {}, &Mover::wanted_since);
     if (mover.wanted_since > now) return false;
     mover.longest_wait = std::max(mover.longest_wait, now - mover.wanted_since);
     now += mover.draw_ms;
     ++mover.frames;
     mover.wanted_since = now + mover.pause_ms;
-    shares.drew_motion(mover.draw_ms, others_wait);
+    shares.drew_motion(mover.draw_ms, stills);
     return true;
   }
 };
@@ -67,7 +67,7 @@ TEST(DrawShares, AMotionGoesFirstWhenNobodyIsOwedAnything) {
 
 TEST(DrawShares, WhoMovesAloneOwesNobody) {
   DrawShares shares;
-  for (int i = 0; i < 1000; ++i) shares.drew_motion(20, /*others_wait=*/false);
+  for (int i = 0; i < 1000; ++i) shares.drew_motion(20, WaitingStills::kNone);
   EXPECT_TRUE(shares.motion_first());
 }
 
@@ -84,6 +84,18 @@ TEST(DrawShares, APictureAtRestBesideOneThatNeverStopsTakesFourTimesItsLength) {
   const double took = thread.rest(3000);
   EXPECT_GE(took, 3.5 * 3000);
   EXPECT_LE(took, 4.2 * 3000);
+}
+
+TEST(DrawShares, ASmallPictureAtRestBesideOneThatNeverStopsTakesTwiceItsLength) {
+  RenderThread thread({{.draw_ms = 20, .pause_ms = 0}});
+  thread.move(60'000);
+  EXPECT_LE(thread.rest(300, WaitingStills::kSmall), 2 * 300 + 100);
+}
+
+TEST(DrawShares, ASmallPictureAtRestBesideExpensiveFramesTakesTwiceItsLengthAndOneOfThem) {
+  RenderThread thread({{.draw_ms = 400, .pause_ms = 0}});
+  thread.move(60'000);
+  EXPECT_LE(thread.rest(900, WaitingStills::kSmall), 2 * 900 + 400);
 }
 
 TEST(DrawShares, ManyWhoMoveLeaveAsMuchToOneWhoRests) {
