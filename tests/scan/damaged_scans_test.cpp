@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cstdlib>
 #include <ctime>
 #include <fstream>
 #include <functional>
@@ -23,6 +22,7 @@
 #include "scan/samples.h"
 #include "scan/tile_files.h"
 #include "scan/whole_scan.h"
+#include "support/damaged_inputs.h"
 
 namespace surfcast::scan {
 namespace {
@@ -325,10 +325,8 @@ TEST_P(DamagedScanTest, TheUndamagedScanIsRead) {
   EXPECT_TRUE(status) << status.error().message;
 }
 
-/// SURFCAST_DAMAGED_INPUTS says how many of each scan.
 TEST_P(DamagedScanTest, DamagedBytesAreReadOrRefusedWithinBounds) {
-  const char* wanted = std::getenv("SURFCAST_DAMAGED_INPUTS");
-  const int count = wanted == nullptr ? 250 : std::atoi(wanted);
+  const int count = testing::damaged_inputs(250);
   const Scan& scan = GetParam();
   Random random(seed_of(scan.name));
   int refused = 0;
