@@ -180,6 +180,7 @@ std::string to_text(const ModelSummary& summary) {
   text += fmt::format("bytes: {} ({:.3f} per {})\n", summary.file_bytes, summary.bytes_per_surfel(),
                       info.surfels > 0 ? "surfel" : "item");
   text += fmt::format("bounds: {} .. {}\n", text_of(info.bounds.min), text_of(info.bounds.max));
+  text += fmt::format("elevations without outliers: {} .. {}\n", info.elevation.low, info.elevation.high);
   if (summary.georeference.known()) text += "coordinate system: " + name_of(summary.georeference.system) + "\n";
   if (summary.georeference.source.known()) text += "source system: " + name_of(summary.georeference.source) + "\n";
   text += fmt::format("up: {}{}\n", info.upside_down ? "-" : "", info.z_up ? "z" : "y");
@@ -214,6 +215,7 @@ std::string to_json(const ModelSummary& summary) {
       {"bytes", summary.file_bytes},
       {"bytes_per_surfel", summary.bytes_per_surfel()},
       {"bounds", {{"min", json_of(info.bounds.min)}, {"max", json_of(info.bounds.max)}}},
+      {"elevation", {{"low", info.elevation.low}, {"high", info.elevation.high}}},
       {"z_up", info.z_up},
       {"upside_down", info.upside_down},
       {"oriented", info.oriented},

@@ -15,6 +15,7 @@
 #include "base/result.h"
 #include "geometry/box.h"
 #include "ldc/block_tree.h"
+#include "model/elevation_range.h"
 #include "model/ellipsoid_source.h"
 #include "model/kind_count.h"
 #include "model/statistics.h"
@@ -44,6 +45,7 @@ struct ModelInfo {
   std::vector<AttributeRange>
       ranges;                       ///< of the attributes that have finite values; empty if the file has no statistics
   std::vector<ClassCount> classes;  ///< classes that occur, sorted by code; likewise
+  ElevationRange elevation;         ///< of all but volumes, without outliers
 
   /// The direction that points up, unit.
   [[nodiscard]] glm::dvec3 up() const {

@@ -130,6 +130,8 @@ void to_wire(const std::string& name, const service::ModelDescription& descripti
     to_wire(description.volumes[i], description.presets[i], *message.add_volumes());
   }
   for (const model::EllipsoidSource& source : description.ellipsoids) to_wire(source, *message.add_ellipsoids());
+  message.mutable_elevation()->set_low(info.elevation.low);
+  message.mutable_elevation()->set_high(info.elevation.high);
   for (const model::AttributeRange& range : info.ranges) {
     wire::AttributeRange* to = message.add_ranges();
     to->set_attribute(protocol::clean_utf8(range.attribute));

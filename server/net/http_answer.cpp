@@ -190,6 +190,7 @@ json description_of(const std::string& name, const service::ModelDescription& de
   return {{"model", name},
           {"surfels", info.surfels},
           {"bounds", {{"min", to_json(info.bounds.min)}, {"max", to_json(info.bounds.max)}}},
+          {"elevation", {{"low", info.elevation.low}, {"high", info.elevation.high}}},
           {"oriented", info.oriented},
           {"up_axis", std::string(info.upside_down ? "-" : "") + (info.z_up ? "z" : "y")},
           {"color_bits", info.color_bits},

@@ -115,7 +115,7 @@ Result<DisplayOptions> resolve_display_options(const model::ModelInfo& info, con
   display.attributes = display.hides_classes || display.through.by_class || display.through.by_file;
   display.volumes = look_of(request);
   if (display.color == picture::SurfelColor::kElevation) {
-    set_range(coloring, info.bounds.min[display.up_axis], info.bounds.max[display.up_axis], display);
+    set_range(coloring, info.elevation.low, info.elevation.high, display);
   } else if (display.color == picture::SurfelColor::kIntensity) {
     if (!has_scalar(info, "intensity")) return lacks("intensity");
     const model::AttributeRange* stated = info.range_of("intensity");

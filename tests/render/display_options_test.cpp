@@ -52,6 +52,7 @@ model::ModelInfo survey() {
   model::ModelInfo info;
   info.bounds.include(glm::dvec3(0, 0, 10));
   info.bounds.include(glm::dvec3(5, 7, 30));
+  info.elevation = {12, 28};
   info.scalar_names = {"intensity", "classification"};
   info.ranges = {{"intensity", 0, 60000, 100, 4000}};
   return info;
@@ -66,12 +67,9 @@ TEST(DisplayOptions, WithoutOptionsNothingIsNeeded) {
 TEST(DisplayOptions, RangesAreTheModelsUnlessGiven) {
   picture::PictureRequest request;
   request.coloring.source = picture::SurfelColor::kElevation;
-  EXPECT_EQ(resolve_display_options(survey(), request)->first, 10);
-  EXPECT_EQ(resolve_display_options(survey(), request)->last, 30);
+  EXPECT_EQ(resolve_display_options(survey(), request)->first, 12) << "outliers do not set the range";
+  EXPECT_EQ(resolve_display_options(survey(), request)->last, 28);
   EXPECT_FALSE(resolve_display_options(survey(), request)->attributes) << "heights are in the positions";
-  model::ModelInfo y_up = survey();
-  y_up.z_up = false;
-  EXPECT_EQ(resolve_display_options(y_up, request)->last, 7);
   request.coloring.source = picture::SurfelColor::kIntensity;
   request.coloring.last = 9;
   EXPECT_EQ(resolve_display_options(survey(), request)->first, 100) << "outliers do not set the range";

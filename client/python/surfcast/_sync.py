@@ -192,6 +192,11 @@ class Model:
         return self._known().bounds
 
     @property
+    def elevation(self) -> tuple[float, float]:
+        """The lowest and the highest elevation, without outliers."""
+        return self._known().elevation
+
+    @property
     def attributes(self) -> tuple[str, ...]:
         """The names of the attributes."""
         return self._known().attributes

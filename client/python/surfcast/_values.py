@@ -200,12 +200,14 @@ class CoordinateSystem:
 class ModelInfo:
     """What a model holds. `bounds` has the lower and the upper corner, in world coordinates.
 
+    `elevation` has the lowest and the highest elevation without outliers.
     `crs` is the system of world coordinates, `source_crs` that of the scan where it is another one.
     """
 
     name: str
     surfels: int
     bounds: Floats
+    elevation: tuple[float, float]
     attributes: tuple[str, ...]
     ranges: Mapping[str, Range]
     classes: Mapping[int, int]
@@ -340,6 +342,7 @@ def model_info(model: wire.ModelDescription) -> ModelInfo:
         name=model.model,
         surfels=model.surfels,
         bounds=np.array((from_wire(model.bounds.min), from_wire(model.bounds.max))),
+        elevation=(model.elevation.low, model.elevation.high),
         attributes=tuple(model.attributes),
         ranges=_ranges_from(model.ranges),
         classes={c.code: c.surfels for c in model.classes},

@@ -171,6 +171,7 @@ def test_frames_of_a_path_are_those_of_the_program(tmp_path: Path, models: Path,
 def test_a_model_tells_what_it_holds(field: surfcast.Model, scan: Scan) -> None:
     assert field.surfels == len(scan.xyz)
     np.testing.assert_allclose(field.bounds, (scan.xyz.min(axis=0), scan.xyz.max(axis=0)), atol=1e-3)
+    assert field.bounds[0][2] <= field.elevation[0] < field.elevation[1] <= field.bounds[1][2]
     assert set(field.attributes) >= {"intensity", "classification"}
     assert field.classes == {code: int((scan.classification == code).sum()) for code in (2, 6)}
     assert field.ranges["intensity"].largest == scan.intensity.max()

@@ -1,5 +1,4 @@
 import type { JSX } from 'preact';
-import { heightOf } from '../camera/pose';
 import { formatNumber } from '../measure/format';
 import {
   colorMaps,
@@ -13,7 +12,7 @@ import {
 } from '../state/display_options';
 import { classColor, className, gradientOf } from '../state/palette';
 import { attributeNames, attributeRange } from '../state/ellipsoids';
-import { bounds, description, display, ellipsoids, hasSurfels, upAxis } from '../state/store';
+import { description, display, ellipsoids, hasSurfels } from '../state/store';
 import { Choices, NumberField, Section, Select, Slider } from './controls';
 import { GlyphSections } from './glyph_sections';
 import { OpacitySection } from './opacity_section';
@@ -53,8 +52,8 @@ const offered = (): readonly ColorSourceName[] =>
 /** The range of the colour map when the display options state none. */
 function defaultRange(source: ColorSourceName): readonly [number, number] {
   if (source === 'elevation') {
-    const { min, max } = bounds.value;
-    return [heightOf(min, upAxis.value), heightOf(max, upAxis.value)];
+    const range = description.value?.elevation;
+    return range ? [range.low, range.high] : [0, 1];
   }
   if (source === 'attribute') return attributeRange(ellipsoids.value, display.value.attribute);
   const range = description.value?.ranges.find((each) => each.attribute === source);
