@@ -19,6 +19,7 @@ struct Principal {
   size_t connections = 0;           ///< at a time; 0: as many as a client may have
   size_t views = 0;                 ///< at a time; 0: likewise
   bool uploads = false;             ///< may send scans, under names that the patterns allow
+  bool annotations = false;         ///< may write saved views and annotations of these models
 
   bool operator==(const Principal&) const = default;
 };

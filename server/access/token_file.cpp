@@ -31,6 +31,7 @@ Result<Principal> to_principal(const json& entry) {
   principal.connections = entry.value("connections", size_t{0});
   principal.views = entry.value("views", size_t{0});
   principal.uploads = entry.value("uploads", false);
+  principal.annotations = entry.value("annotations", false);
   const bool hash = principal.sha256.size() == kHashDigits &&
                     principal.sha256.find_first_not_of("0123456789abcdef") == std::string::npos;
   if (principal.name.empty() || !hash) return fail(ErrorKind::kInvalidInput, "a token has a name and a sha256");
@@ -47,6 +48,7 @@ json to_json(const Principal& principal) {
   if (principal.connections > 0) entry["connections"] = principal.connections;
   if (principal.views > 0) entry["views"] = principal.views;
   if (principal.uploads) entry["uploads"] = true;
+  if (principal.annotations) entry["annotations"] = true;
   return entry;
 }
 

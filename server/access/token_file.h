@@ -13,7 +13,7 @@ namespace surfcast::access {
 /// The file of tokens, JSON. It holds no secrets, only what they hash to:
 ///
 ///     {"tokens": [{"name": "alice", "sha256": "9f86...", "models": ["church*"], "expires": "2027-01-31T12:00:00Z",
-///                  "connections": 8, "views": 4, "uploads": true}]}
+///                  "connections": 8, "views": 4, "uploads": true, "annotations": true}]}
 ///
 /// All but name and sha256 may be left out; without "models" a token sees none. Errors name the file.
 Result<std::vector<Principal>> read_tokens(const std::filesystem::path& file);

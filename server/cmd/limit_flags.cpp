@@ -207,6 +207,18 @@ void add_upload_flags(CLI::App& command, net::UploadConfig& uploads) {
               "off");
 }
 
+void add_annotation_flags(CLI::App& command, net::AnnotationConfig& annotations) {
+  command
+      .add_option("--annotations", annotations.folder,
+                  "Folder of saved views and annotations, a file of JSON for each model; clients read those of models "
+                  "that they may see, and write them with PUT (default: none are kept)")
+      ->envname(protocol::environment_name("annotations"))
+      ->check(CLI::ExistingDirectory);
+  add_size(command, "annotations-size", annotations.bytes,
+           "Saved views and annotations of one model (default 256K). More: one client fills more of the disk; less: "
+           "fewer of them");
+}
+
 void add_renderer_flags(CLI::App& command, render::RendererConfig& renderer) {
   command.add_option("--gpu", renderer.gpu, "Index of the EGL device (default: the first hardware device)")
       ->envname(protocol::environment_name("gpu"))

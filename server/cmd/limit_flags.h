@@ -30,6 +30,8 @@ struct WorkerFlags {
 void add_cache_flags(CLI::App& command, ScanCacheConfig& cache);
 /// Previews of scans, and the threads of builds.
 void add_build_flags(CLI::App& command, PreviewRule& previews, size_t& threads);
+/// `--annotations` and its limit.
+void add_annotation_flags(CLI::App& command, net::AnnotationConfig& annotations);
 /// `--uploads` and its limits.
 void add_upload_flags(CLI::App& command, net::UploadConfig& uploads);
 /// `--gpu`, the memory of the renderer and its threads.

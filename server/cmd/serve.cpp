@@ -339,6 +339,7 @@ void add_serve_command(CLI::App& app, Status& outcome) {
   add_cache_flags(*sub, command->cache);
   add_build_flags(*sub, command->previews, command->build_threads);
   add_upload_flags(*sub, command->server.uploads);
+  add_annotation_flags(*sub, command->server.annotations);
   add_picture_flags(*sub, command->service);
   add_store_flags(*sub, command->store);
   add_block_cache_flag(*sub, command->block_cache);

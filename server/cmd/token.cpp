@@ -133,6 +133,8 @@ void add_token_command(CLI::App& app, Status& outcome) {
                   "Of add: connections at a time (default: no limit of its own)");
   sub->add_option("--token-views", principal.views, "Of add: views at a time (default: no limit of its own)");
   sub->add_flag("--allow-uploads", principal.uploads, "Of add: it may send scans, under names that --models allows");
+  sub->add_flag("--allow-annotations", principal.annotations,
+                "Of add: it may write saved views and annotations of the models that it opens");
   sub->callback([command, &outcome] { outcome = run(*command); });
 }
 

@@ -4,6 +4,8 @@
 #include <array>
 #include <boost/asio/buffer.hpp>
 #include <boost/asio/ip/tcp.hpp>
+#include <boost/asio/write.hpp>
+#include <boost/beast/core/string.hpp>
 #include <boost/beast/http/read.hpp>
 #include <boost/beast/http/span_body.hpp>
 #include <boost/beast/http/string_body.hpp>
@@ -95,8 +97,17 @@ asio::awaitable<error_code> HttpConnection::read_head(HeadParser& parser) {
   co_return code;
 }
 
+asio::awaitable<void> HttpConnection::say_continue(const HeadParser& head) {
+  static constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
+  if (!boost::beast::iequals(head.get()[http::field::expect], "100-continue")) co_return;
+  stream_.socket().expires_after(context_->config.stall);
+  error_code ignored;  // reading fails as well
+  co_await asio::async_write(stream_, asio::buffer(kContinue), redirect_error_to(ignored));
+}
+
 asio::awaitable<std::optional<std::string>> HttpConnection::read_body(HeadParser& head, size_t most) {
   if (head.content_length().value_or(0) > most) co_return std::nullopt;
+  co_await say_continue(head);
   http::request_parser<http::string_body> body{std::move(head)};
   body.body_limit(most);
   error_code code;

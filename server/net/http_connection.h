@@ -29,6 +29,8 @@ class HttpConnection {
 
   /// Reads the head of the next request.
   boost::asio::awaitable<boost::system::error_code> read_head(HeadParser& parser);
+  /// Tells a client that waits for it to send the body of the request whose head was read.
+  boost::asio::awaitable<void> say_continue(const HeadParser& head);
   /// Reads the body of the request whose head was read; nothing if it is longer than that, or does not arrive.
   boost::asio::awaitable<std::optional<std::string>> read_body(HeadParser& head, size_t most);
   /// False when the client does not take the answer, or too slowly.

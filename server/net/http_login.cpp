@@ -16,13 +16,23 @@ constexpr std::string_view kBegin =
     "<button>Log in</button>";
 constexpr std::string_view kEnd = "</form></body></html>\n";
 
+/// `reason` needs no escapes.
+HttpAnswer denial(unsigned status, std::string_view reason) {
+  HttpAnswer answer = text_answer(
+      "{\n  \"error\": {\n    \"kind\": \"denied\",\n    \"message\": \"" + std::string(reason) + "\"\n  }\n}\n",
+      "application/json");
+  answer.status = status;
+  return answer;
+}
+
 }  // namespace
 
+HttpAnswer forbidden_answer() {
+  return denial(403, "this token may not do that");
+}
+
 HttpAnswer denied_answer() {
-  HttpAnswer answer = text_answer(
-      "{\n  \"error\": {\n    \"kind\": \"denied\",\n    \"message\": \"a token is missing, or is not good\"\n  }\n}\n",
-      "application/json");
-  answer.status = 401;
+  HttpAnswer answer = denial(401, "a token is missing, or is not good");
   answer.headers = {{"WWW-Authenticate", "Bearer realm=\"surfcast\""}, {"Cache-Control", "no-store"}};
   return answer;
 }

@@ -8,6 +8,7 @@
 
 #include "net/await_answer.h"
 #include "net/convert.h"
+#include "net/http_annotations.h"
 #include "net/redirect_error_to.h"
 #include "protocol/picture_query.h"
 #include "protocol/points_query.h"
@@ -52,6 +53,7 @@ asio::awaitable<HttpAnswer> HttpPlaces::answer(HttpRoute route) {
     case HttpRoute::Kind::kPick:
     case HttpRoute::Kind::kProfile:
     case HttpRoute::Kind::kPoints:
+    case HttpRoute::Kind::kAnnotations:
       co_return co_await answer_about_model(std::move(route));
     case HttpRoute::Kind::kHealth:
       co_return text_answer("ok\n", "text/plain");
@@ -79,6 +81,8 @@ asio::awaitable<HttpAnswer> HttpPlaces::answer_about_model(HttpRoute route) {
       return answer_profile(std::move(route));
     case HttpRoute::Kind::kPoints:
       return answer_points(std::move(route));
+    case HttpRoute::Kind::kAnnotations:
+      return answer_annotations(*context_, {std::move(route.model), guest_, asker_});
     default:
       return answer_model(std::move(route.model));
   }

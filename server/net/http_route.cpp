@@ -12,10 +12,14 @@ using Kind = HttpRoute::Kind;
 
 constexpr std::string_view kModels = "/api/models";
 constexpr std::string_view kUploads = "/api/uploads/";
-constexpr std::string_view kImage = "/image";
-constexpr std::string_view kPick = "/pick";
-constexpr std::string_view kProfile = "/profile";
-constexpr std::string_view kPoints = "/points";
+/// What may follow the name of a model.
+constexpr std::array<std::pair<std::string_view, Kind>, 5> kOfModel{{
+    {"/image", Kind::kPicture},
+    {"/pick", Kind::kPick},
+    {"/profile", Kind::kProfile},
+    {"/points", Kind::kPoints},
+    {"/annotations", Kind::kAnnotations},
+}};
 constexpr std::array<std::pair<std::string_view, Kind>, 8> kPlaces{{
     {"/", Kind::kPage},
     {kModels, Kind::kModels},
@@ -31,21 +35,14 @@ tl::unexpected<Error> no_such_place(std::string_view path) {
   return fail(ErrorKind::kNotFound, "there is nothing at " + std::string(path));
 }
 
-/// "NAME", "NAME/image", "NAME/pick", "NAME/profile" or "NAME/points", what follows "/api/models/".
+/// "NAME", or "NAME/image" and the like: what follows "/api/models/".
 Result<HttpRoute> route_model(std::string_view rest, std::string_view query) {
   HttpRoute route{Kind::kModel, {}, std::string(query)};
-  if (rest.ends_with(kImage)) {
-    route.kind = Kind::kPicture;
-    rest.remove_suffix(kImage.size());
-  } else if (rest.ends_with(kPick)) {
-    route.kind = Kind::kPick;
-    rest.remove_suffix(kPick.size());
-  } else if (rest.ends_with(kProfile)) {
-    route.kind = Kind::kProfile;
-    rest.remove_suffix(kProfile.size());
-  } else if (rest.ends_with(kPoints)) {
-    route.kind = Kind::kPoints;
-    rest.remove_suffix(kPoints.size());
+  for (const auto& [suffix, kind] : kOfModel) {
+    if (!rest.ends_with(suffix)) continue;
+    route.kind = kind;
+    rest.remove_suffix(suffix.size());
+    break;
   }
   if (rest.empty() || rest.find('/') != std::string_view::npos) return no_such_place(kModels);
   Result<std::string> name = protocol::decode_escapes(rest);

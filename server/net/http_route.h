@@ -17,6 +17,7 @@ struct HttpRoute {
     kPick,
     kProfile,
     kPoints,
+    kAnnotations,
     kWebSocket,
     kUpload,
     kHealth,
@@ -26,7 +27,7 @@ struct HttpRoute {
     kLogout
   };
   Kind kind = Kind::kPage;
-  std::string model;     ///< of kModel, kPicture, kPick, kProfile and kPoints; of kUpload the file's name
+  std::string model;     ///< of kModel and what is asked of one; of kUpload the file's name
   std::string query;     ///< of kPicture, kPick, kProfile and kPoints, still escaped
   std::string accept{};  ///< the header of the request
 };

@@ -10,6 +10,8 @@
 #include <optional>
 #include <utility>
 
+#include "net/beast_text.h"
+#include "net/http_annotations.h"
 #include "net/http_answer.h"
 #include "net/http_connection.h"
 #include "net/http_credentials.h"
@@ -37,10 +39,6 @@ using boost::system::error_code;
 unsigned status_of(const error_code& code) {
   if (code == http::error::header_limit) return 431;
   return code == http::error::body_limit ? 413 : 400;
-}
-
-std::string_view view_of(beast::string_view text) {
-  return {text.data(), text.size()};
 }
 
 UpgradeRequest upgrade_of(const UpgradeHead& request) {
@@ -72,6 +70,11 @@ bool is_login(const HeadParser::value_type& request) {
   const Result<HttpRoute> route = route_http(view_of(request.target()));
   return route && request.method() == http::verb::post &&
          (route->kind == HttpRoute::Kind::kLogin || route->kind == HttpRoute::Kind::kLogout);
+}
+
+/// Whether a request may have a body.
+bool takes_body(const HeadParser::value_type& request) {
+  return is_upload(request) || is_annotation_write(request) || is_login(request);
 }
 
 /// The file of the viewer that a target names, query left out.
@@ -133,6 +136,8 @@ class HttpSession : public Session, public std::enable_shared_from_this<HttpSess
   [[nodiscard]] std::optional<HttpAnswer> refusal_of_head(const Parser& parser, const error_code& code) const;
   asio::awaitable<bool> serve_upload(Parser& parser);
   asio::awaitable<bool> serve_login(Parser& parser);
+  asio::awaitable<bool> serve_annotations(Parser& parser);
+  asio::awaitable<HttpAnswer> answer_annotation_write(Parser& parser);
   asio::awaitable<HttpAnswer> answer_login(Parser& parser);
   void identify(const Parser::value_type& request);
   [[nodiscard]] bool may_upload(const Parser::value_type& request) const;
@@ -178,7 +183,7 @@ std::optional<HttpAnswer> HttpSession::refusal_of_head(const Parser& parser, con
   const ServerConfig& config = context_->config;
   const auto refusal = refusal_of(guarded_head_of(parser.get()), {config.hosts, config.allowed_origins});
   if (refusal) return error_answer(refusal->error, refusal->status);
-  if (parser.is_done() || (refusal_.empty() && (is_upload(parser.get()) || is_login(parser.get())))) {
+  if (parser.is_done() || (refusal_.empty() && takes_body(parser.get()))) {
     return std::nullopt;
   }
   return error_answer({ErrorKind::kLimit, "requests with a body are not accepted here"}, 413);
@@ -200,6 +205,7 @@ asio::awaitable<bool> HttpSession::serve_one() {
   if (!refused && parser.is_done() && become_websocket(request)) co_return false;
   answering_ = true;
   if (!refused && refusal_.empty() && is_login(request)) co_return co_await serve_login(parser);
+  if (!refused && refusal_.empty() && is_annotation_write(request)) co_return co_await serve_annotations(parser);
   if (!refused && refusal_.empty() && may_upload(request)) co_return co_await serve_upload(parser);
   HttpAnswer result;
   if (refused) {
@@ -249,12 +255,13 @@ void HttpSession::audit(AuditEvent event) const {
 
 /// What is asked of a model.
 void HttpSession::audit_route(const HttpRoute& route) const {
-  const std::string_view what = route.kind == HttpRoute::Kind::kPicture   ? "picture"
-                                : route.kind == HttpRoute::Kind::kPick    ? "pick"
-                                : route.kind == HttpRoute::Kind::kProfile ? "profile"
-                                : route.kind == HttpRoute::Kind::kPoints  ? "points"
-                                : route.kind == HttpRoute::Kind::kModel   ? "describe"
-                                                                          : "";
+  const std::string_view what = route.kind == HttpRoute::Kind::kPicture       ? "picture"
+                                : route.kind == HttpRoute::Kind::kPick        ? "pick"
+                                : route.kind == HttpRoute::Kind::kProfile     ? "profile"
+                                : route.kind == HttpRoute::Kind::kPoints      ? "points"
+                                : route.kind == HttpRoute::Kind::kModel       ? "describe"
+                                : route.kind == HttpRoute::Kind::kAnnotations ? "annotations"
+                                                                              : "";
   if (what.empty()) return;
   const bool allowed = !guest_ || access::may_see(*guest_, route.model);
   audit({.what = what, .model = route.model, .outcome = allowed ? "allowed" : "denied"});
@@ -311,6 +318,33 @@ asio::awaitable<HttpAnswer> HttpSession::answer_login(Parser& parser) {
 asio::awaitable<bool> HttpSession::serve_login(Parser& parser) {
   const AnswerForm form{parser.get().version(), /*keep_alive=*/false, /*head=*/false};
   const HttpAnswer result = co_await answer_login(parser);
+  co_await connection_->write(result, form);
+  answering_ = false;
+  co_return false;
+}
+
+asio::awaitable<HttpAnswer> HttpSession::answer_annotation_write(Parser& parser) {
+  if (!context_->gate->admits(guest_)) co_return co_await deny(parser.get());
+  if (const std::string busy = refusal_of_guest(); !busy.empty()) {
+    const Error error{ErrorKind::kUnavailable, busy};
+    co_return error_answer(error, 429);
+  }
+  AnnotationRequest request{route_http(view_of(parser.get().target()))->model, guest_, asker_};
+  const std::string model = request.model;
+  HttpAnswer result = forbidden_answer();
+  if (may_annotate(guest_, model)) {
+    result = co_await receive_annotations(*context_, *connection_, parser, std::move(request));
+  }
+  audit({.what = "annotate", .model = model, .outcome = result.status < 400 ? "allowed" : "denied"});
+  co_return result;
+}
+
+/// False: the connection ends.
+asio::awaitable<bool> HttpSession::serve_annotations(Parser& parser) {
+  const unsigned version = parser.get().version();
+  const HttpAnswer result = co_await answer_annotation_write(parser);
+  if (result.status >= 400) ++context_->metrics.errors;
+  const AnswerForm form{version, /*keep_alive=*/false, /*head=*/false};
   co_await connection_->write(result, form);
   answering_ = false;
   co_return false;

@@ -1,9 +1,6 @@
 #include "net/http_upload.h"
 
 #include <algorithm>
-#include <boost/asio/buffer.hpp>
-#include <boost/asio/write.hpp>
-#include <boost/beast/core/string.hpp>
 #include <boost/beast/http/buffer_body.hpp>
 #include <boost/beast/http/read.hpp>
 #include <filesystem>
@@ -15,9 +12,10 @@
 #include <utility>
 #include <vector>
 
-#include "net/await_answer.h"
+#include "net/beast_text.h"
 #include "net/http_connection.h"
 #include "net/http_route.h"
+#include "net/on_disk.h"
 #include "net/redirect_error_to.h"
 #include "net/uploads.h"
 #include "service/model_name.h"
@@ -26,17 +24,12 @@ namespace surfcast::net {
 namespace {
 
 namespace asio = boost::asio;
-namespace beast = boost::beast;
 namespace http = boost::beast::http;
 using boost::system::error_code;
 using BodyParser = http::request_parser<http::buffer_body>;
 
 /// Bytes that are read before they are written. Not a setting: UploadConfig::timeout is that of one piece.
 constexpr size_t kPiece = size_t{64} << 10;
-
-std::string_view view_of(beast::string_view text) {
-  return {text.data(), text.size()};
-}
 
 /// What a client announces of a scan.
 struct Announced {
@@ -80,22 +73,6 @@ uint64_t reserved_bytes(const NetContext& context) {
                          [](uint64_t sum, const auto& upload) { return sum + upload.second; });
 }
 
-/// Runs `work` where it may wait for the disk. It is passed as a variable: GCC 12 ends temporaries twice that have a
-/// destructor and stand beside co_await.
-template <typename Value, typename Work>
-asio::awaitable<Value> on_disk(NetContext& context, const Work& work) {
-  return answer_of<Value>(
-      [&context, work](auto done) { context.disk->post([work, done = std::move(done)] { done(work()); }); });
-}
-
-/// Tells a client that waits for it to send the body.
-asio::awaitable<void> say_continue(const NetContext& context, ClientStream& stream) {
-  static constexpr std::string_view kContinue = "HTTP/1.1 100 Continue\r\n\r\n";
-  stream.socket().expires_after(context.config.stall);
-  error_code ignored;  // reading fails as well
-  co_await asio::async_write(stream, asio::buffer(kContinue), redirect_error_to(ignored));
-}
-
 /// Reads a body piece by piece. The next piece is read once the last one is written.
 asio::awaitable<Status> receive_body(NetContext& context, HttpConnection& connection, BodyParser& parser,
                                      std::shared_ptr<IncomingScan> scan) {
@@ -128,8 +105,7 @@ asio::awaitable<Status> store(NetContext& context, HttpConnection& connection, H
   };
   Created scan = co_await on_disk<Created>(context, create);
   if (!scan) co_return fail(scan.error());
-  if (beast::iequals(head.get()[http::field::expect], "100-continue"))
-    co_await say_continue(context, connection.stream());
+  co_await connection.say_continue(head);
   BodyParser body{std::move(head)};
   body.body_limit(boost::none);  // IncomingScan counts
   Status status = co_await receive_body(context, connection, body, *scan);

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "net/annotations.h"
 #include "net/clients.h"
 #include "net/kept_sessions.h"
 #include "net/metrics.h"
@@ -52,6 +53,7 @@ struct ServerConfig {
   std::shared_ptr<const StaticFiles> viewer;  ///< served at "/"; null: a hint where to get one
   std::function<WorkerGauges()> workers;      ///< of its processes; empty: there are none
   UploadConfig uploads;                       ///< scans that clients may send
+  AnnotationConfig annotations;               ///< saved views and annotations of models
   Networks trusted_proxies;                   ///< which tell whose words they pass on
   std::vector<std::string> hosts;             ///< names of the server beside `host`, see GuardConfig
   std::vector<std::string> allowed_origins;   ///< of pages that may open a WebSocket beside the viewer's own

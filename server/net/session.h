@@ -35,9 +35,10 @@ struct NetContext {
   bool leaving = false;                       ///< no longer ready: the server will stop
   bool draining = false;                      ///< no new requests; what is outstanding is finished
   std::map<std::string, uint64_t> uploads{};  ///< files on their way by key_of, and the bytes kept for them
-  /// Writes what arrives, so that no other connection waits for the disk. Null: nothing may be sent.
-  std::shared_ptr<service::WorkerPool> disk =
-      config.uploads.folder.empty() ? nullptr : std::make_shared<service::WorkerPool>(1);
+  /// One thread that writes what arrives, so that no other connection waits for the disk. Null: nothing may be sent.
+  std::shared_ptr<service::WorkerPool> disk = config.uploads.folder.empty() && config.annotations.folder.empty()
+                                                  ? nullptr
+                                                  : std::make_shared<service::WorkerPool>(1);
   std::shared_ptr<Clients> clients = std::make_shared<Clients>(config.clients);
   std::shared_ptr<Gatekeeper> gate = std::make_shared<Gatekeeper>(config.tokens);
   KeptSessions sessions{config.sessions};

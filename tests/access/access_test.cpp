@@ -55,7 +55,7 @@ TEST_F(TokenFileTest, WhatIsWrittenIsReadForItsOwnerAlone) {
   const auto expires = *parse_time("2027-01-31T12:00:00Z");
   const std::vector<Principal> tokens{
       {.name = "alice", .sha256 = kHash, .models = {"*"}, .expires = expires, .connections = 3, .views = 2},
-      {.name = "bob", .sha256 = std::string(64, 'b'), .models = {}, .uploads = true}};
+      {.name = "bob", .sha256 = std::string(64, 'b'), .models = {}, .uploads = true, .annotations = true}};
   ASSERT_TRUE(write_tokens(file_, tokens));
   EXPECT_EQ(read_tokens(file_), tokens);
   EXPECT_EQ(fs::status(file_).permissions(), fs::perms::owner_read | fs::perms::owner_write);

@@ -12,6 +12,8 @@ from ._options import DisplayOptions, PictureOptions, RegionOptions, ViewOptions
 from ._picture import LevelCount, Picture
 from ._sync import Model, Server, View, connect
 from ._values import (
+    Annotation,
+    Annotations,
     Box,
     Camera,
     CoordinateSystem,
@@ -21,6 +23,7 @@ from ._values import (
     ModelInfo,
     Points,
     Range,
+    SavedView,
     Scan,
     TransferPoint,
     Uploads,
@@ -44,6 +47,8 @@ from .errors import (
 )
 
 __all__ = [
+    "Annotation",
+    "Annotations",
     "Box",
     "Camera",
     "CameraPath",
@@ -69,6 +74,7 @@ __all__ = [
     "Points",
     "Range",
     "RegionOptions",
+    "SavedView",
     "Scan",
     "Server",
     "ServerFault",

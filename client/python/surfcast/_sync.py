@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, Any, TypeVar, Unpack
 from . import aio
 from ._options import DisplayOptions, PictureOptions, RegionOptions, ViewOptions
 from ._picture import Picture
-from ._values import Camera, CoordinateSystem, Hit, ModelInfo, Points, Range, Scan, Uploads, Vector
+from ._values import Annotations, Camera, CoordinateSystem, Hit, ModelInfo, Points, Range, Scan, Uploads, Vector
 from ._view import Frame
 from .camera_path import CameraPath
 from .errors import ConnectionLost, Unavailable
@@ -301,6 +301,18 @@ class Model:
     def count_points(self, *, timeout: float | None = None, **region: Unpack[RegionOptions]) -> int:
         """How many points there are in a region."""
         return self._runner.run(self._model.count_points(timeout=timeout, **region))
+
+    def annotations(self, *, timeout: float | None = None) -> Annotations:
+        """The saved views and annotations. Raises Unsupported if the server keeps none."""
+        return self._runner.run(self._model.annotations(timeout=timeout))
+
+    def write_annotations(self, annotations: Annotations, *, timeout: float | None = None) -> Annotations:
+        """Replaces the saved views and annotations; returns them with their new edition.
+
+        Raises Unavailable if somebody else has written since `annotations.edition` was read, and Denied if the token may
+        not write.
+        """
+        return self._runner.run(self._model.write_annotations(annotations, timeout=timeout))
 
     def view(
         self,

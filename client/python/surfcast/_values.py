@@ -247,6 +247,33 @@ class Uploads:
 
 
 @dataclass(frozen=True)
+class SavedView:
+    """A named view. `parameters` are those of a link: camera, display options and clip boxes."""
+
+    name: str
+    parameters: Mapping[str, str]
+
+
+@dataclass(frozen=True)
+class Annotation:
+    """A text at a point, in world coordinates, and the parameters of a view of it."""
+
+    text: str
+    position: Floats
+    parameters: Mapping[str, str]
+
+
+@dataclass(frozen=True)
+class Annotations:
+    """What a server keeps beside a model. `edition` names the state that was read; empty: any."""
+
+    views: tuple[SavedView, ...] = ()
+    annotations: tuple[Annotation, ...] = ()
+    edition: str = ""
+    writable: bool = False
+
+
+@dataclass(frozen=True)
 class Hit:
     """The surfel, sample or ellipsoid that a picture shows at a pixel.
 

@@ -25,6 +25,7 @@ from ._options import (
 )
 from ._picture import Picture, picture_from
 from ._values import (
+    Annotations,
     Camera,
     Hit,
     ModelInfo,
@@ -151,7 +152,7 @@ class Server:
 
         None: a file that others name, such as samples or textures. The timeout is for each step of the transfer.
         """
-        from ._upload import send_file  # whose modules take long to import
+        from ._http import send_file  # whose modules take long to import
 
         connection = self._connection
         model = await asyncio.to_thread(send_file, connection.endpoint, connection.settings, path, name, timeout)
@@ -168,6 +169,28 @@ class Model:
     def __init__(self, connection: Connection, name: str) -> None:
         self.name = name
         self._connection = connection
+
+    async def annotations(self, *, timeout: float | None = None) -> Annotations:
+        """The saved views and annotations. Raises Unsupported if the server keeps none."""
+        from ._http import read_annotations  # whose modules take long to import
+
+        connection = self._connection
+        return await asyncio.to_thread(
+            read_annotations, connection.endpoint, connection.settings, self.name, timeout
+        )
+
+    async def write_annotations(self, annotations: Annotations, *, timeout: float | None = None) -> Annotations:
+        """Replaces the saved views and annotations; returns them with their new edition.
+
+        Raises Unavailable if somebody else has written since `annotations.edition` was read, and Denied if the token may
+        not write.
+        """
+        from ._http import write_annotations
+
+        connection = self._connection
+        return await asyncio.to_thread(
+            write_annotations, connection.endpoint, connection.settings, self.name, annotations, timeout
+        )
 
     async def info(self, *, timeout: float | None = None) -> ModelInfo:
         """What the model holds. Raises Unavailable while there is neither a model nor a preview of a scan."""

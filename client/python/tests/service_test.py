@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import subprocess
+from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 from sample_models import SURFCASTD, Scan, write_las
 
@@ -74,6 +76,30 @@ def test_a_scan_is_sent_and_built(tmp_path: Path, models: Path, scan: Scan) -> N
             client.upload(tmp_path / "notes.doc")
         with pytest.raises(surfcast.InvalidInput):
             client.upload(tmp_path / "sent.las", "other name.las")
+
+
+def test_annotations_are_kept_beside_the_model(tmp_path: Path, models: Path) -> None:
+    gate = surfcast.SavedView("Gate", {"position": "1,2,3", "focal_point": "0,0,0"})
+    crack = surfcast.Annotation("A crack", np.array((1.5, -2.0, 300.0)), gate.parameters)
+    with server(models, arguments=["--annotations", str(tmp_path)]) as running, running.connect() as client:
+        field = client["field"]
+        before = field.annotations()
+        assert before.writable and before.views == () and before.annotations == ()
+        after = field.write_annotations(replace(before, views=(gate,), annotations=(crack,)))
+        assert after.views == (gate,) and after.edition != before.edition
+        (read,) = field.annotations().annotations
+        assert read.text == crack.text and read.parameters == crack.parameters
+        np.testing.assert_array_equal(read.position, crack.position)
+        with pytest.raises(surfcast.Unavailable, match="changed"):
+            field.write_annotations(before)
+        with pytest.raises(surfcast.InvalidInput, match="view 1"):
+            field.write_annotations(surfcast.Annotations(views=(surfcast.SavedView("", {}),)))
+        assert [path.name for path in tmp_path.iterdir()] == ["field.json"]
+
+
+def test_a_server_that_keeps_no_annotations_says_so(field: surfcast.Model) -> None:
+    with pytest.raises(surfcast.Unsupported, match="--annotations"):
+        field.annotations()
 
 
 def test_a_server_that_takes_no_scans_says_so(tmp_path: Path, client: surfcast.Server, scan: Scan) -> None:

@@ -11,6 +11,7 @@ import { StageInput } from './input/stage_input';
 import { Tools } from './input/tools';
 import { acceptDrops, Uploader } from './input/uploads';
 import { startOverlay } from './overlay/overlay';
+import { startAnnotationStorage } from './state/annotation_storage';
 import { currentLink, openModel, startRoutes } from './state/routes';
 import * as store from './state/store';
 import { startViewStorage } from './state/view_storage';
@@ -76,6 +77,7 @@ function start(): void {
   followSize(stage, (before, after) => eye.resized(before, after));
   startOverlay(overlay);
   startViewStorage();
+  startAnnotationStorage();
   openTheOnly();
   const root = document.getElementById('root');
   if (root) {

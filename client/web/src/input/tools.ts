@@ -1,10 +1,25 @@
+import { project } from '../camera/projection';
 import type { Pixel } from '../camera/vector';
 import { addPoint, finish, measuring } from '../measure/measurement_list';
 import { vectorFrom } from '../protocol/pictures';
+import { kept } from '../state/annotation_storage';
+import type { Annotation } from '../state/annotations';
 import * as store from '../state/store';
 import type { CameraNavigator } from '../view/camera_navigator';
 import type { Probe } from '../view/probe';
 import { addClipAround } from '../overlay/clip_list';
+
+const reach = 14; // CSS pixels from an annotation
+
+/** The annotation whose mark is under a pixel of the picture. */
+function annotationAt(pixel: Pixel): Annotation | undefined {
+  const view = store.shownProjection.peek();
+  if (!view) return undefined;
+  return kept.peek()?.annotations.find(({ position }) => {
+    const at = project(view, position);
+    return at && Math.hypot(at.x - pixel.x, at.y - pixel.y) <= reach * devicePixelRatio;
+  });
+}
 
 /** Applies the selected tool to clicks on the picture. */
 export class Tools {
@@ -16,6 +31,10 @@ export class Tools {
   async click(pixel: Pixel): Promise<void> {
     const kind = measuring();
     const tool = store.tool.peek();
+    if (tool === 'navigate' || tool === 'inspect') {
+      store.shownAnnotation.value = annotationAt(pixel);
+      if (store.shownAnnotation.peek()) return;
+    }
     if (tool === 'navigate' || tool === 'window') {
       store.inspection.value = undefined;
       return;

@@ -4,6 +4,8 @@ import type { UpAxis } from '../camera/pose';
 import { mix, type Vector } from '../camera/vector';
 import { linesOf } from '../measure/format';
 import { angleAt, arc, cornerBelow, isWhole, type Measurement } from '../measure/measurement';
+import { kept } from '../state/annotation_storage';
+import { shortened } from '../state/annotations';
 import * as store from '../state/store';
 import { handlesOf } from './clip_handles';
 import { Pen } from './shapes';
@@ -17,6 +19,7 @@ export const colors = {
   hide: '#f0857d',
   hideFaint: 'rgba(240, 133, 125, 0.6)',
   inspect: '#ffffff',
+  annotation: '#ffe08a',
 };
 
 function angleOf(pen: Pen, [a, middle, b]: [Vector, Vector, Vector]): void {
@@ -70,6 +73,14 @@ function clips(pen: Pen): void {
   });
 }
 
+function annotations(pen: Pen): void {
+  for (const annotation of kept.value?.annotations ?? []) {
+    const shown = annotation === store.shownAnnotation.value;
+    pen.dot(annotation.position, colors.annotation, shown ? 7 : 5);
+    pen.label(annotation.position, shortened(annotation.text, 24), colors.annotation);
+  }
+}
+
 function inspected(pen: Pen): void {
   const inspection = store.inspection.value;
   if (!inspection) return;
@@ -84,6 +95,7 @@ function draw(context: CanvasRenderingContext2D, view: Projection, ratio: number
   for (const m of store.measurements.value) {
     measurement(pen, m, store.upAxis.value, decimals, m.id === store.growing.value);
   }
+  annotations(pen);
   inspected(pen);
 }
 

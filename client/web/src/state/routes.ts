@@ -37,6 +37,7 @@ function forgetModel(): void {
   store.measurements.value = [];
   store.growing.value = undefined;
   store.inspection.value = undefined;
+  store.shownAnnotation.value = undefined;
   store.lastPick.value = undefined;
   store.editedClip.value = undefined;
   store.tool.value = 'navigate';

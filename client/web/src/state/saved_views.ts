@@ -18,8 +18,12 @@ const format = 'surfcast-views';
 const version = 1;
 
 /** The parameters of a link, which are those of the server's pictures. */
-const parametersOf = (link: string): Record<string, string> =>
+export const parametersOf = (link: string): Record<string, string> =>
   Object.fromEntries(new URLSearchParams(link.split('?', 2)[1] ?? ''));
+
+/** The link of parameters. What a link does not know is left out. */
+export const linkOf = (parameters: Readonly<Record<string, string>>, model: string): string =>
+  formatPlace(parsePlace(`#/${encodeURIComponent(model)}?${new URLSearchParams(parameters).toString()}`));
 
 /** A file of the views of a model. */
 export function formatViews({ model, views }: ViewFile): string {
@@ -36,8 +40,8 @@ function viewIn(entry: unknown, model: string): SavedView | undefined {
   const name = entry['name'].trim().slice(0, longestName);
   const isText = (pair: [string, unknown]): pair is [string, string] => typeof pair[1] === 'string';
   const texts = Object.entries(entry['parameters']).filter(isText);
-  const place = parsePlace(`#/${encodeURIComponent(model)}?${new URLSearchParams(texts).toString()}`);
-  return name !== '' && place.camera ? { name, link: formatPlace(place) } : undefined;
+  const link = linkOf(Object.fromEntries(texts), model);
+  return name !== '' && parsePlace(link).camera ? { name, link } : undefined;
 }
 
 /**

@@ -10,6 +10,7 @@ import { boxFrom, cameraFrom, type Size } from '../protocol/pictures';
 import type { Figures } from '../view/figures';
 import type { MeasureKind, Measurement } from '../measure/measurement';
 import type { Vector } from '../camera/vector';
+import type { Annotation } from './annotations';
 import { defaultDisplay, type DisplayOptions } from './display_options';
 
 /** The shared state of the page. Every part may read it; the headings below name the part that writes each signal. */
@@ -77,6 +78,8 @@ export interface Inspection {
   readonly at: Vector;
 }
 export const inspection = signal<Inspection | undefined>(undefined);
+/** The annotation whose text is shown. */
+export const shownAnnotation = signal<Annotation | undefined>(undefined);
 export const picking = signal(false);
 /** The point under the resting pointer; written by view/cursor_probe.ts. */
 export interface CursorPoint {

@@ -6,6 +6,7 @@ import { gradientOf } from '../state/palette';
 import * as store from '../state/store';
 import { openVolume, windowText } from '../state/volume';
 import { useActions } from './actions';
+import { AnnotationCard } from './annotations';
 import { ClipPanel } from './clip_panel';
 import { IconButton } from './controls';
 import { Gallery } from './gallery';
@@ -75,6 +76,7 @@ function Stage(): JSX.Element {
       <Hint />
       <div class="foot">
         <div class="foot-left">
+          <AnnotationCard />
           <InspectCard />
           <FiguresCard />
           <div class="foot-line">

@@ -7,6 +7,7 @@ import { description, inspection } from '../state/store';
 import type { CoordinateSystem } from '../generated/surfcast_pb';
 import { vectorFrom } from '../protocol/pictures';
 import type { Vector } from '../camera/vector';
+import { AnnotationForm } from './annotations';
 import { copyText, notAllowed } from './clipboard';
 import { IconButton } from './controls';
 import { GlyphPicture } from './glyph_picture';
@@ -92,6 +93,7 @@ export function InspectCard(): JSX.Element | null {
           </div>
         ))}
       </dl>
+      <AnnotationForm at={at} />
     </section>
   );
 }

@@ -1,13 +1,12 @@
 import type { JSX } from 'preact';
 import { useRef, useState } from 'preact/hooks';
-import { parsePlace } from '../state/place';
 import { currentHash } from '../state/routes';
-import { formatViews, longestName, parseViews, usualName, withViews, type SavedView } from '../state/saved_views';
+import { formatViews, longestName, parametersOf, parseViews, usualName, withViews, type SavedView } from '../state/saved_views';
 import { model, pose, showNotice } from '../state/store';
+import { kept } from '../state/annotation_storage';
 import { changeViews, savedViews } from '../state/view_storage';
-import { useActions } from './actions';
-import { copyText, notAllowed } from './clipboard';
-import { IconButton, Section } from './controls';
+import { change as changeOnServer, KeptSections, LinkRow } from './annotations';
+import { Section } from './controls';
 import { Icon } from './icons';
 import { saveFile } from './save_file';
 
@@ -29,6 +28,17 @@ function SaveForm(): JSX.Element {
     change((views) => withViews(views, [{ name: name.trim() || usual, link: currentHash() }]), 'View saved.');
     setName('');
   };
+  const saveForAll = (): void => {
+    const view = { name: name.trim() || usual, parameters: parametersOf(currentHash()) };
+    void changeOnServer(
+      ({ views, annotations }) => ({
+        views: [...views.filter((other) => other.name !== view.name), view],
+        annotations,
+      }),
+      'View saved for all.',
+    );
+    setName('');
+  };
   return (
     <form class="save-view" onSubmit={save}>
       <input
@@ -42,35 +52,12 @@ function SaveForm(): JSX.Element {
       <button type="submit" class="primary" disabled={!pose.value}>
         Save
       </button>
+      {kept.value?.writable && (
+        <button type="button" disabled={!pose.value} onClick={saveForAll}>
+          Save for all
+        </button>
+      )}
     </form>
-  );
-}
-
-function ViewRow({ view }: { view: SavedView }): JSX.Element {
-  const { navigator } = useActions();
-  const go = (event: MouseEvent): void => {
-    if (event.ctrlKey || event.metaKey || event.shiftKey) return; // another tab or window
-    event.preventDefault();
-    const { camera, display } = parsePlace(view.link);
-    if (camera) navigator.goTo(camera, display);
-  };
-  const address = location.href.replace(/#.*$/, '') + view.link;
-  return (
-    <li class="view-row">
-      <a href={view.link} title={view.name} onClick={go}>
-        {view.name}
-      </a>
-      <IconButton
-        icon="link"
-        label={`Copy a link to ${view.name}`}
-        onPress={() => void copyText(address, 'Link copied.', notAllowed)}
-      />
-      <IconButton
-        icon="trash"
-        label={`Remove ${view.name}`}
-        onPress={() => change((views) => views.filter(({ name }) => name !== view.name))}
-      />
-    </li>
   );
 }
 
@@ -134,11 +121,17 @@ export function SavedViewsPanel(): JSX.Element {
         {views.length === 0 && <p class="faint">There are none of this model yet.</p>}
         <ul class="view-rows">
           {views.map((view) => (
-            <ViewRow key={view.name} view={view} />
+            <LinkRow
+              key={view.name}
+              name={view.name}
+              link={view.link}
+              remove={() => change((list) => list.filter(({ name }) => name !== view.name))}
+            />
           ))}
         </ul>
         <Files />
       </Section>
+      <KeptSections />
     </>
   );
 }
