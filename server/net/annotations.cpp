@@ -30,7 +30,9 @@ tl::unexpected<Error> wrong(const std::string& what) {
 Status check_members(const json& object, std::initializer_list<std::string_view> names, const std::string& where) {
   if (!object.is_object()) return wrong(where + " is not an object");
   for (const auto& [name, value] : object.items()) {
-    if (std::ranges::find(names, name) == names.end()) return wrong(where + " has an unknown member '" + name + "'");
+    if (std::ranges::find(names, name) != names.end()) continue;
+    std::string problem = where;
+    return wrong(problem.append(" has an unknown member '").append(name).append("'"));
   }
   return {};
 }
