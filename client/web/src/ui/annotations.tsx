@@ -11,13 +11,15 @@ import { useActions } from './actions';
 import { copyText, notAllowed } from './clipboard';
 import { IconButton, Section } from './controls';
 
-/** Changes what the server keeps, or says why that is not possible. */
-export async function change(changed: (present: Kept) => Kept, done: string): Promise<void> {
+/** Changes what the server keeps, or says why that is not possible. True: it is changed. */
+export async function change(changed: (present: Kept) => Kept, done: string): Promise<boolean> {
   try {
     await changeKept(changed);
     showNotice(done);
+    return true;
   } catch (error) {
     showNotice(error instanceof Error ? error.message : String(error));
+    return false;
   }
 }
 
@@ -117,18 +119,22 @@ export function KeptSections(): JSX.Element | null {
 export function AnnotationForm({ at }: { at: Vector }): JSX.Element | null {
   const [text, setText] = useState('');
   if (!kept.value?.writable) return null;
-  const save = (event: Event): void => {
-    event.preventDefault();
+  const save = async (): Promise<void> => {
     const annotation = { text: text.trim(), position: at, parameters: parametersOf(currentHash()) };
-    if (annotation.text === '') return;
-    void change(
+    const saved = await change(
       ({ views, annotations }) => ({ views, annotations: [...annotations, annotation] }),
       'Annotation saved.',
     );
-    inspection.value = undefined;
+    if (saved && inspection.peek()?.at === at) inspection.value = undefined; // else the text stays to be sent again
   };
   return (
-    <form class="save-view" onSubmit={save}>
+    <form
+      class="save-view"
+      onSubmit={(event) => {
+        event.preventDefault();
+        void save();
+      }}
+    >
       <input
         type="text"
         aria-label="Text of the annotation"

@@ -28,16 +28,16 @@ function SaveForm(): JSX.Element {
     change((views) => withViews(views, [{ name: name.trim() || usual, link: currentHash() }]), 'View saved.');
     setName('');
   };
-  const saveForAll = (): void => {
+  const saveForAll = async (): Promise<void> => {
     const view = { name: name.trim() || usual, parameters: parametersOf(currentHash()) };
-    void changeOnServer(
+    const saved = await changeOnServer(
       ({ views, annotations }) => ({
         views: [...views.filter((other) => other.name !== view.name), view],
         annotations,
       }),
       'View saved for all.',
     );
-    setName('');
+    if (saved) setName('');
   };
   return (
     <form class="save-view" onSubmit={save}>
@@ -53,7 +53,7 @@ function SaveForm(): JSX.Element {
         Save
       </button>
       {kept.value?.writable && (
-        <button type="button" disabled={!pose.value} onClick={saveForAll}>
+        <button type="button" disabled={!pose.value} onClick={() => void saveForAll()}>
           Save for all
         </button>
       )}
