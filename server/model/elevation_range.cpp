@@ -8,21 +8,20 @@ namespace {
 constexpr double kTail = 0.002;
 constexpr double kMostLeftOut = 0.1;
 
-/// The number of the block's items below an elevation.
-double items_below(const ldc::BlockEntry& block, int axis, double elevation) {
-  const double low = block.bounds.min[axis];
-  const double height = block.bounds.max[axis] - low;
-  const double share = height > 0 ? (elevation - low) / height : (elevation >= low ? 1 : 0);
-  return std::clamp(share, 0.0, 1.0) * block.surfels;
+/// The number of the slab's items below an elevation.
+double items_below(const ElevationSlab& slab, double elevation) {
+  const auto [low, high] = slab.range;
+  const double share = high > low ? (elevation - low) / (high - low) : (elevation >= low ? 1 : 0);
+  return std::clamp(share, 0.0, 1.0) * slab.items;
 }
 
 /// The elevation below which this many items lie, by bisection.
-double elevation_above(std::span<const ldc::BlockEntry> leaves, int axis, double items, ElevationRange range) {
+double elevation_above(std::span<const ElevationSlab> slabs, double items, ElevationRange range) {
   constexpr int kSteps = 24;
   for (int step = 0; step < kSteps; ++step) {
     const double middle = (range.low + range.high) / 2;
     double below = 0;
-    for (const ldc::BlockEntry& block : leaves) below += items_below(block, axis, middle);
+    for (const ElevationSlab& slab : slabs) below += items_below(slab, middle);
     (below < items ? range.low : range.high) = middle;
   }
   return (range.low + range.high) / 2;
@@ -30,17 +29,16 @@ double elevation_above(std::span<const ldc::BlockEntry> leaves, int axis, double
 
 }  // namespace
 
-ElevationRange elevation_range(std::span<const ldc::BlockEntry> leaves, int up_axis) {
-  geometry::Box bounds;
+ElevationRange elevation_range(std::span<const ElevationSlab> slabs) {
+  if (slabs.empty()) return {};
+  ElevationRange all = slabs.front().range;
   double items = 0;
-  for (const ldc::BlockEntry& block : leaves) {
-    bounds.include(block.bounds);
-    items += block.surfels;
+  for (const ElevationSlab& slab : slabs) {
+    all = {std::min(all.low, slab.range.low), std::max(all.high, slab.range.high)};
+    items += slab.items;
   }
-  if (leaves.empty()) return {};
-  const ElevationRange all{bounds.min[up_axis], bounds.max[up_axis]};
-  const ElevationRange most{elevation_above(leaves, up_axis, kTail * items, all),
-                            elevation_above(leaves, up_axis, (1 - kTail) * items, all)};
+  const ElevationRange most{elevation_above(slabs, kTail * items, all),
+                            elevation_above(slabs, (1 - kTail) * items, all)};
   const bool few_left_out = most.high - most.low >= (1 - kMostLeftOut) * (all.high - all.low);
   return few_left_out || most.low >= most.high ? all : most;
 }

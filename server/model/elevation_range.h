@@ -1,8 +1,7 @@
 #pragma once
 
+#include <cstdint>
 #include <span>
-
-#include "ldc/block_tree.h"
 
 namespace surfcast::model {
 
@@ -12,10 +11,16 @@ struct ElevationRange {
   double high = 0;
 };
 
+/// The elevations of a block's items, and their number.
+struct ElevationSlab {
+  ElevationRange range;
+  uint32_t items = 0;
+};
+
 /// The elevations of the items of these blocks but for outliers, such as birds above an airborne scan and multiple
 /// echoes below it: between the 0.2nd and the 99.8th percentile, if this leaves out more than a tenth of all
 /// elevations, else all of them. The items of a block count as evenly distributed over its height. {0, 0} without
 /// blocks.
-ElevationRange elevation_range(std::span<const ldc::BlockEntry> leaves, int up_axis);
+ElevationRange elevation_range(std::span<const ElevationSlab> slabs);
 
 }  // namespace surfcast::model

@@ -134,7 +134,8 @@ ModelInfo make_info(const ModelHeader& header, const Directory& directory, std::
     info.ellipsoid_columns = std::max(info.ellipsoid_columns, source.attributes.size() - kDerivedAttributes);
   }
   for (const std::string& kind : directory.kinds) info.kinds.push_back({kind, 0, 0});
-  std::vector<ldc::BlockEntry> leaves;  // but for volumes, which are not colored by elevation
+  const int up_axis = info.z_up ? 2 : 1;
+  std::vector<ElevationSlab> slabs;  // but for volumes, which are not colored by elevation
   for (size_t i = 0; i < entries.size(); ++i) {
     const ldc::BlockEntry& entry = entries[i];
     info.levels = std::max(info.levels, entry.level + 1);
@@ -144,9 +145,11 @@ ModelInfo make_info(const ModelHeader& header, const Directory& directory, std::
     info.bounds.include(entry.bounds);
     kind.items += entry.surfels;
     info.scatter += directory.blocks[i].scatter;
-    if (kind.kind != kGridKind) leaves.push_back(entry);
+    if (kind.kind != kGridKind) {
+      slabs.push_back({{entry.bounds.min[up_axis], entry.bounds.max[up_axis]}, entry.surfels});
+    }
   }
-  info.elevation = elevation_range(leaves, info.z_up ? 2 : 1);
+  info.elevation = elevation_range(slabs);
   for (const KindCount& kind : info.kinds) {
     if (kind.kind == kSurfelKind) info.surfels = kind.items;
   }

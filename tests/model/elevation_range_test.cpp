@@ -7,61 +7,51 @@
 namespace surfcast::model {
 namespace {
 
-ldc::BlockEntry block(double low, double high, uint32_t items) {
-  ldc::BlockEntry entry;
-  entry.bounds.include(glm::dvec3(0, 3, low));
-  entry.bounds.include(glm::dvec3(50, 4, high));
-  entry.surfels = items;
-  return entry;
+ElevationSlab block(double low, double high, uint32_t items) {
+  return {{low, high}, items};
 }
 
 /// A hilly ground of 1,000,000 points between 100 m and 160 m, in blocks of 20 m.
-std::vector<ldc::BlockEntry> ground() {
+std::vector<ElevationSlab> ground() {
   return {block(100, 120, 400'000), block(110, 130, 400'000), block(140, 160, 200'000)};
 }
 
 TEST(ElevationRange, WithoutOutliersIsTheWhole) {
-  const ElevationRange range = elevation_range(ground(), 2);
+  const ElevationRange range = elevation_range(ground());
   EXPECT_EQ(range.low, 100);
   EXPECT_EQ(range.high, 160);
 }
 
 TEST(ElevationRange, LeavesOutBirdsAboveAndEchoesBelow) {
-  std::vector<ldc::BlockEntry> blocks = ground();
+  std::vector<ElevationSlab> blocks = ground();
   blocks.push_back(block(900, 900, 3));
   blocks.push_back(block(-2000, -400, 40));
-  const ElevationRange range = elevation_range(blocks, 2);
+  const ElevationRange range = elevation_range(blocks);
   EXPECT_NEAR(range.low, 100.1, 0.01) << "2000 points of 400,000 in 20 m lie below, and 40 echoes";
   EXPECT_NEAR(range.high, 159.8, 0.01) << "2000 points of 200,000 in 20 m lie above, and 3 birds";
 }
 
 TEST(ElevationRange, KeepsATowerOfManyPoints) {
-  std::vector<ldc::BlockEntry> blocks = ground();
+  std::vector<ElevationSlab> blocks = ground();
   blocks.push_back(block(160, 400, 50'000));
-  EXPECT_EQ(elevation_range(blocks, 2).high, 400);
-}
-
-TEST(ElevationRange, IsOfTheVerticalAxis) {
-  const ElevationRange range = elevation_range(ground(), 1);
-  EXPECT_EQ(range.low, 3);
-  EXPECT_EQ(range.high, 4);
+  EXPECT_EQ(elevation_range(blocks).high, 400);
 }
 
 TEST(ElevationRange, OfAPlaneHasNoWidth) {
-  const ElevationRange range = elevation_range(std::vector{block(7, 7, 1000)}, 2);
+  const ElevationRange range = elevation_range(std::vector{block(7, 7, 1000)});
   EXPECT_EQ(range.low, 7);
   EXPECT_EQ(range.high, 7);
 }
 
 TEST(ElevationRange, OfAPlaneWithOutliersIsThatOfAll) {
-  const ElevationRange range = elevation_range(std::vector{block(7, 7, 100'000), block(90, 91, 2)}, 2);
+  const ElevationRange range = elevation_range(std::vector{block(7, 7, 100'000), block(90, 91, 2)});
   EXPECT_LE(range.low, 7);
   EXPECT_GE(range.high, 7);
   EXPECT_LT(range.low, range.high);
 }
 
 TEST(ElevationRange, OfNothingIsZero) {
-  EXPECT_EQ(elevation_range({}, 2).high, 0);
+  EXPECT_EQ(elevation_range({}).high, 0);
 }
 
 }  // namespace

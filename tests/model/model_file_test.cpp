@@ -56,6 +56,19 @@ TEST(ModelFile, DescribesTheModelInItsHeader) {
   EXPECT_LT(glm::length(info.bounds.max - bounds.max), cloud.radii[0] / 128);
 }
 
+TEST(ModelFile, HasItsElevationsAlongTheVerticalAxis) {
+  const TestFolder folder;
+  surfel::SurfelCloud cloud = sphere_cloud(1000);
+  for (glm::dvec3& position : cloud.positions) position.y = 3 + 0.25 * position.y;
+  for (const bool z_up : {false, true}) {
+    cloud.z_up = z_up;
+    const ModelFile model = write_and_open(cloud, folder / (z_up ? "z.surf" : "y.surf"));
+    const int axis = z_up ? 2 : 1;
+    EXPECT_EQ(model.info().elevation.low, model.info().bounds.min[axis]);
+    EXPECT_EQ(model.info().elevation.high, model.info().bounds.max[axis]);
+  }
+}
+
 TEST(ModelFile, StoresNeitherColorNorAttributesThatAScanDoesNotHave) {
   const TestFolder folder;
   surfel::SurfelCloud cloud = sphere_cloud(100);
