@@ -52,7 +52,7 @@ def _ask(
     body: IO[bytes] | bytes | None,
     headers: Mapping[str, str],
     timeout: float | None,
-) -> tuple[int, Mapping[str, str], bytes]:
+) -> tuple[int, http.client.HTTPMessage, bytes]:
     """Status, headers and body of the answer to a request, which is method and path. The timeout is for each step."""
     if settings.token:
         headers = {**headers, "Authorization": f"Bearer {settings.token}"}
@@ -93,7 +93,7 @@ def _annotations_path(model: str) -> str:
     return f"/api/models/{quote(model, safe='')}/annotations"
 
 
-def _annotations_from(status: int, headers: Mapping[str, str], text: bytes) -> Annotations:
+def _annotations_from(status: int, headers: http.client.HTTPMessage, text: bytes) -> Annotations:
     if status != 200:
         raise _refused(status, text)
     document = json.loads(text)
