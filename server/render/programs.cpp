@@ -131,7 +131,8 @@ KindFragments fragments_of(const Variant& variant, const PictureKinds& kinds) {
 Result<Programs> Programs::create(const KernelShape& shape, const std::string& defines) {
   Programs programs;
   programs.shape_ = shape;
-  programs.defines_ = defines + define("SURFCAST_SILHOUETTE_LANES", shape.silhouette_lanes);
+  programs.defines_ = defines + define("SURFCAST_SILHOUETTE_LANES", shape.silhouette_lanes) +
+                      (shape.shifted_halves ? "#define SURFCAST_SHIFTED_HALVES\n" : "");
   Result<gl::Program> slices = compute_program("slices.comp", "slices.comp", {}, defines);
   if (!slices) return fail(std::move(slices.error()));
   Result<gl::Program> offsets = compute_program("bin_offsets.comp", "bin_offsets.comp", {}, defines);

@@ -78,6 +78,7 @@ struct KernelShape {
   int tiles_at_once = 2;      ///< tiles that a work group of the splat kernel draws side by side
   int silhouette_lanes = 32;  ///< of a work group of the silhouette passes
   int project_lanes = 64;  ///< lanes that share a chunk of surfels: one vector, or as many as hide the memory latency
+  bool shifted_halves = false;  ///< halves are converted without the built-in functions (see include/packing.glsl)
 
   /// Rows of a tile that a lane of the blending pass of Gaussians holds, if it does not hold one pixel.
   [[nodiscard]] int blend_rows() const { return whole_tiles ? SURFCAST_TILE_HEIGHT : 1; }
@@ -100,7 +101,7 @@ struct VolumePrograms {
 
 /// The shape for devices whose lanes are those of a processor's vectors.
 constexpr KernelShape software_kernels() {
-  return {.whole_tiles = true, .tiles_at_once = 8, .silhouette_lanes = 16, .project_lanes = 8};
+  return {.whole_tiles = true, .tiles_at_once = 8, .silhouette_lanes = 16, .project_lanes = 8, .shifted_halves = true};
 }
 
 /// How Gaussians are drawn: affine footprints, discs, or exact in perspective.

@@ -1,8 +1,10 @@
 // Packed formats of numbers, unit vectors and colours.
 
-// Two numbers in half precision, as packHalf2x16, except that numbers below 2^-14 may become 0. The bits of a half,
-// shifted into those of a float, are the number times 2^-112. (The built-in function costs software GL some 26
-// instructions per number, most of them for values that no splat has.)
+// Two numbers in half precision. Numbers below 2^-14 may become 0.
+#ifdef SURFCAST_SHIFTED_HALVES
+// The bits of a half, shifted into those of a float, are the number times 2^-112. (The built-in functions cost software
+// GL some 26 instructions per number, most of them for values that no splat has. Compilers for GPUs, though, may
+// multiply another factor by such a number before the power of two, and GPUs flush the subnormal product to 0.)
 uvec2 half_bits(vec2 x) {
   uvec2 u = floatBitsToUint(x * 1.92592994e-34);
   return (((u + 0x1000u) >> 13) & 0x7fffu) | ((u >> 16) & 0x8000u);
@@ -17,6 +19,10 @@ vec2 unpack_halves(uint packed_halves) {
   ivec2 u = ivec2(int(packed_halves << 16), int(packed_halves)) >> 3;  // extends the sign
   return intBitsToFloat(u & int(0x8fffe000u)) * 5.19229686e33;
 }
+#else
+uint pack_halves(vec2 x) { return packHalf2x16(x); }
+vec2 unpack_halves(uint packed_halves) { return unpackHalf2x16(packed_halves); }
+#endif
 
 // Three numbers in [0, 1] as 11, 11 and 10 bits of their square roots: near black, the steps are as fine as 8 bit sRGB
 // requires. Packed by linear_root_table in residency/packing.h.
