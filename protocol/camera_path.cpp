@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "base/mapped_file.h"
+#include "protocol/picture_fields.h"
 #include "protocol/request_flags.h"
 #include "protocol/validate.h"
 
@@ -97,6 +98,13 @@ tl::unexpected<Error> invalid(const std::string& what) {
   return fail(ErrorKind::kInvalidInput, what);
 }
 
+Status check_camera(const wire::Camera& camera) {
+  wire::DrawPicture picture;
+  picture.set_model("any");
+  *picture.mutable_camera() = camera;
+  return check_picture(picture);
+}
+
 Result<Keyframe> read_keyframe(json document, size_t number) {
   const std::string name = "keyframe " + std::to_string(number) + ": ";
   if (!document.is_object() || !document.contains("time") || !document["time"].is_number()) {
@@ -107,25 +115,45 @@ Result<Keyframe> read_keyframe(json document, size_t number) {
   document.erase("time");
   if (!std::isfinite(keyframe.time)) return invalid(name + "the time must be finite");
   Status status = parse_camera_json(document.dump(), keyframe.camera);
-  if (status) {
-    wire::DrawPicture picture;
-    picture.set_model("any");
-    *picture.mutable_camera() = keyframe.camera;
-    status = check_picture(picture);
-  }
+  if (status) status = check_camera(keyframe.camera);
   if (!status) return invalid(name + status.error().message);
   return keyframe;
 }
 
+/// The camera of a saved view. Its display options and clip boxes are not of a path.
+Result<wire::Camera> camera_of_view(const json& view) {
+  if (!view.is_object() || !view.contains("parameters") || !view["parameters"].is_object()) {
+    return invalid("expected an object with parameters");
+  }
+  wire::DrawPicture picture;
+  picture.mutable_camera()->set_view_angle(kDefaultViewAngle);
+  for (const char* field : {"position", "focal_point", "view_up", "view_angle"}) {
+    const auto found = view["parameters"].find(field);
+    if (found == view["parameters"].end()) continue;
+    if (!found->is_string()) return invalid(std::string(field) + " must be a text");
+    if (Status status = set_picture_field(picture, field, found->get<std::string>()); !status) {
+      return invalid(std::string(field) + ": " + status.error().message);
+    }
+  }
+  if (Status status = check_camera(picture.camera()); !status) return fail(status.error());
+  return picture.camera();
+}
+
+Result<Keyframe> keyframe_of_view(const json& view, size_t number, double seconds_per_view) {
+  Result<wire::Camera> camera = camera_of_view(view);
+  if (!camera) return invalid("view " + std::to_string(number) + ": " + camera.error().message);
+  return Keyframe{static_cast<double>(number) * seconds_per_view, std::move(*camera)};
+}
+
 /// Keyframes must have the same fields and ascending times.
 Status check_order(const std::vector<Keyframe>& keyframes) {
-  if (keyframes.size() < 2) return invalid("a path needs two keyframes");
+  if (keyframes.size() < 2) return invalid("a path needs two keyframes or views");
   for (size_t i = 1; i < keyframes.size(); ++i) {
     const wire::Camera& first = keyframes[0].camera;
     const wire::Camera& camera = keyframes[i].camera;
     if (!(keyframes[i - 1].time < keyframes[i].time)) return invalid("times of keyframes must ascend");
     if (first.has_view_up() != camera.has_view_up() || first.has_view_angle() != camera.has_view_angle()) {
-      return invalid("view_up and view_angle belong to all keyframes or to none");
+      return invalid("view_up and view_angle belong to all of a path or to none");
     }
   }
   return {};
@@ -133,14 +161,19 @@ Status check_order(const std::vector<Keyframe>& keyframes) {
 
 }  // namespace
 
-Result<CameraPath> CameraPath::parse(std::string_view text) {
+Result<CameraPath> CameraPath::parse(std::string_view text, double seconds_per_view) {
   const json document = json::parse(text, nullptr, /*allow_exceptions=*/false);
-  if (!document.is_object() || !document.contains("keyframes") || !document["keyframes"].is_array()) {
-    return invalid("not a camera path: expected an object with an array of keyframes");
+  const auto has_array = [&](const char* name) {
+    return document.is_object() && document.contains(name) && document[name].is_array();
+  };
+  const bool views = has_array("views");
+  if (!views && !has_array("keyframes")) {
+    return invalid("not a camera path: expected an object with an array of keyframes, or of views");
   }
   std::vector<Keyframe> keyframes;
-  for (const json& entry : document["keyframes"]) {
-    Result<Keyframe> keyframe = read_keyframe(entry, keyframes.size());
+  for (const json& entry : document[views ? "views" : "keyframes"]) {
+    Result<Keyframe> keyframe =
+        views ? keyframe_of_view(entry, keyframes.size(), seconds_per_view) : read_keyframe(entry, keyframes.size());
     if (!keyframe) return fail(keyframe.error());
     keyframes.push_back(std::move(*keyframe));
   }
@@ -148,10 +181,11 @@ Result<CameraPath> CameraPath::parse(std::string_view text) {
   return CameraPath(std::move(keyframes));
 }
 
-Result<CameraPath> CameraPath::read(const std::string& file) {
+Result<CameraPath> CameraPath::read(const std::string& file, double seconds_per_view) {
   const Result<MappedFile> mapped = MappedFile::open(file);
   if (!mapped) return fail(mapped.error());
-  Result<CameraPath> path = parse({reinterpret_cast<const char*>(mapped->bytes().data()), mapped->bytes().size()});
+  Result<CameraPath> path =
+      parse({reinterpret_cast<const char*>(mapped->bytes().data()), mapped->bytes().size()}, seconds_per_view);
   if (!path) return fail(path.error().kind, file + ": " + path.error().message);
   return path;
 }

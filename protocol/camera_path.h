@@ -26,8 +26,11 @@ class CameraPath {
  public:
   /// Parses {"keyframes": [{"time": s, "position": [x,y,z], "focal_point": [x,y,z], "view_up": [x,y,z],
   /// "view_angle": degrees}, ...]}. view_up and view_angle are optional, but each must be in all keyframes or in none.
-  static Result<CameraPath> parse(std::string_view json);
-  static Result<CameraPath> read(const std::string& file);
+  /// Also parses saved views, as the viewer exports them and as they are kept beside a model: {"views": [{"name": "",
+  /// "parameters": {"position": "x,y,z", ...}}, ...]}. Then the camera passes through the views in their order, one
+  /// every `seconds_per_view`. The view angle of a view that has none is 30 degrees, as in a link.
+  static Result<CameraPath> parse(std::string_view json, double seconds_per_view = kSecondsPerView);
+  static Result<CameraPath> read(const std::string& file, double seconds_per_view = kSecondsPerView);
 
   /// Number of frames at `per_second`. The first frame shows the first keyframe; the last frame shows the last keyframe
   /// if the duration is a whole number of frames. kLimit when there are more than kMaxFrames.
@@ -37,6 +40,7 @@ class CameraPath {
   [[nodiscard]] wire::Camera camera_of(int number, double per_second) const;
 
   static constexpr int kMaxFrames = 1'000'000;
+  static constexpr double kSecondsPerView = 4;
 
  private:
   explicit CameraPath(std::vector<Keyframe> keyframes) : keyframes_(std::move(keyframes)) {}

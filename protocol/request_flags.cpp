@@ -122,13 +122,19 @@ void RequestFlags::add_to(CLI::App& command) {
   command.add_option("--stats", stats_, "write the statistics of the picture as JSON")
       ->envname(environment_name("stats"))
       ->type_name("FILE");
-  command.add_option("--path", path_, "draw the frames of a camera path (JSON)")
+  command.add_option("--path", path_, "draw the frames of a camera path, or of a flight through saved views (JSON)")
       ->envname(environment_name("path"))
       ->type_name("FILE");
   command.add_option("--fps", fps_, "frames per second of the camera path (default 30)")
       ->envname(environment_name("fps"))
       ->type_name("NUMBER")
       ->check(CLI::Range(0.001, 1000.0));
+  command
+      .add_option("--view-seconds", seconds_per_view_,
+                  "seconds from one to the next of the saved views of --path (default 4)")
+      ->envname(environment_name("view-seconds"))
+      ->type_name("NUMBER")
+      ->check(CLI::Range(0.001, 3600.0));
 }
 
 void RequestFlags::add_view_flags_to(CLI::App& command) {

@@ -6,6 +6,7 @@
 #include <string_view>
 
 #include "base/result.h"
+#include "protocol/camera_path.h"
 #include "surfcast.pb.h"
 
 namespace CLI {
@@ -40,6 +41,7 @@ class RequestFlags {
   /// File name of a camera path, of which every frame is drawn; empty: a single picture.
   [[nodiscard]] const std::string& path() const { return path_; }
   [[nodiscard]] double frames_per_second() const { return fps_; }
+  [[nodiscard]] double seconds_per_view() const { return seconds_per_view_; }
 
  private:
   void add_fields_to(CLI::App& command, bool file);
@@ -53,6 +55,7 @@ class RequestFlags {
   std::string stats_;
   std::string path_;
   double fps_ = 30;
+  double seconds_per_view_ = CameraPath::kSecondsPerView;
 };
 
 /// The flags of `pick`.

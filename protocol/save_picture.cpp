@@ -34,7 +34,7 @@ using Draw = std::function<Result<wire::Picture>(const wire::DrawPicture&)>;
 /// Draws the frames of the camera path, and hands each to `take` with its number.
 Status draw_path(const RequestFlags& flags, const wire::DrawPicture& picture, const Draw& draw,
                  const std::function<Status(int, const wire::Picture&)>& take) {
-  const Result<CameraPath> path = CameraPath::read(flags.path());
+  const Result<CameraPath> path = CameraPath::read(flags.path(), flags.seconds_per_view());
   if (!path) return fail(path.error());
   const Result<int> frames = path->frames(flags.frames_per_second());
   if (!frames) return fail(frames.error());

@@ -84,6 +84,47 @@ TEST(CameraPath, FramesIncludeTheFirstAndTheLastKeyframe) {
   EXPECT_EQ(path_of(key(0, 0) + "," + key(1e9, 3)).frames(1000).error().kind, ErrorKind::kLimit);
 }
 
+std::string view(const std::string& parameters) {
+  return "{\"name\": \"A view\", \"parameters\": {" + parameters + "}}";
+}
+
+CameraPath flight_through(const std::string& views, double seconds_per_view) {
+  Result<CameraPath> path =
+      CameraPath::parse("{\"format\": \"surfcast-views\", \"views\": [" + views + "]}", seconds_per_view);
+  EXPECT_TRUE(path) << (path ? "" : path.error().message);
+  return std::move(*path);
+}
+
+TEST(CameraPath, PassesThroughSavedViewsInTheirOrder) {
+  const std::string rest = R"(, "focal_point": "0,5,0", "view_up": "0,0,1", "color_by": "elevation")";
+  const CameraPath path = flight_through(view(R"("position": "0,0,0")" + rest) + "," +
+                                             view(R"("position": "10,0,0", "view_angle": "50")" + rest) + "," +
+                                             view(R"("position": "-3.5,0,1")" + rest),
+                                         2.5);
+  EXPECT_EQ(x_at(path, 0), 0);
+  EXPECT_NEAR(x_at(path, 2.5), 10, 1e-12);
+  EXPECT_NEAR(x_at(path, 5), -3.5, 1e-12);
+  EXPECT_EQ(*path.frames(2), 11);
+  EXPECT_EQ(path.camera_at(0).view_angle(), 30) << "as in a link";
+  EXPECT_NEAR(path.camera_at(2.5).view_angle(), 50, 1e-12);
+}
+
+TEST(CameraPath, WrongViewsAreExplained) {
+  const std::string good = view(R"("position": "0,0,0", "focal_point": "0,5,0")");
+  for (const std::string& second :
+       {std::string("7"), std::string("{\"name\": \"None\"}"), view(""), view(R"("position": "1,0,0")"),
+        view(R"("position": [1, 0, 0], "focal_point": "0,5,0")"), view(R"("position": "1,0", "focal_point": "0,5,0")"),
+        view(R"("position": "1,0,nan", "focal_point": "1,0,0")"),
+        view(R"("position": "1,0,0", "focal_point": "0,5,0", "view_angle": "200")"),
+        view(R"("position": "1,0,0", "focal_point": "0,5,0", "view_up": "0,0,1")")}) {
+    const Result<CameraPath> path = CameraPath::parse("{\"views\": [" + good + ", " + second + "]}");
+    ASSERT_FALSE(path) << second;
+    EXPECT_EQ(path.error().kind, ErrorKind::kInvalidInput);
+    EXPECT_EQ(path.error().message.find('\n'), std::string::npos);
+  }
+  EXPECT_FALSE(CameraPath::parse("{\"views\": [" + good + "]}")) << "one view is no path";
+}
+
 TEST(CameraPath, WrongFilesAreExplained) {
   const std::string good = key(0, 0);
   const char* up = ", \"view_up\": [0, 0, 1]";

@@ -10,7 +10,7 @@ from os import PathLike
 from pathlib import Path
 from typing import Any
 
-from ._values import Camera
+from ._values import Camera, SavedView
 from .errors import InvalidInput
 
 _V = tuple[float, ...]
@@ -64,6 +64,14 @@ def _upright(up: _V, view: _V) -> _V:
     return _unit(part) if _length(part) > 1e-9 else up
 
 
+def _camera_of(view: SavedView) -> Camera:
+    fields: dict[str, Any] = {"view_angle": float(view.parameters.get("view_angle", 30))}
+    for name in ("position", "focal_point", "view_up"):
+        if name in view.parameters:
+            fields[name] = [float(number) for number in view.parameters[name].split(",")]
+    return Camera.from_dict(fields)
+
+
 @dataclass(frozen=True)
 class Keyframe:
     """A camera at a time, in seconds."""
@@ -78,18 +86,29 @@ class CameraPath:
     def __init__(self, keyframes: Iterable[Keyframe]) -> None:
         self.keyframes = tuple(keyframes)
         if len(self.keyframes) < 2:
-            raise InvalidInput("a path needs two keyframes")
+            raise InvalidInput("a path needs two keyframes or views")
         first = self.keyframes[0].camera
         for before, key in zip(self.keyframes, self.keyframes[1:]):
             if not before.time < key.time:
                 raise InvalidInput("times of keyframes must ascend")
             fields = ((first.view_up, key.camera.view_up), (first.view_angle, key.camera.view_angle))
             if any((a is None) != (b is None) for a, b in fields):
-                raise InvalidInput("view_up and view_angle belong to all keyframes or to none")
+                raise InvalidInput("view_up and view_angle belong to all of a path or to none")
 
     @classmethod
-    def from_dict(cls, document: Mapping[str, Any]) -> CameraPath:
-        """A path from the content of a path file: {"keyframes": [{"time": 0, "position": ...}, ...]}."""
+    def through(cls, views: Iterable[SavedView], seconds_per_view: float = 4.0) -> CameraPath:
+        """A flight through saved views in their order, one every `seconds_per_view`."""
+        return cls(Keyframe(number * seconds_per_view, _camera_of(view)) for number, view in enumerate(views))
+
+    @classmethod
+    def from_dict(cls, document: Mapping[str, Any], seconds_per_view: float = 4.0) -> CameraPath:
+        """A path from the content of a path file: {"keyframes": [{"time": 0, "position": ...}, ...]}.
+
+        Or from one of saved views: {"views": [{"name": ..., "parameters": {"position": "x,y,z", ...}}, ...]}.
+        """
+        if "views" in document:
+            views = (SavedView(view["name"], view["parameters"]) for view in document["views"])
+            return cls.through(views, seconds_per_view)
         keyframes = []
         for entry in document["keyframes"]:
             fields = dict(entry)
@@ -97,9 +116,9 @@ class CameraPath:
         return cls(keyframes)
 
     @classmethod
-    def read(cls, path: str | PathLike[str]) -> CameraPath:
-        """Reads a path file."""
-        return cls.from_dict(json.loads(Path(path).read_text()))
+    def read(cls, path: str | PathLike[str], seconds_per_view: float = 4.0) -> CameraPath:
+        """Reads a path file, or one of saved views."""
+        return cls.from_dict(json.loads(Path(path).read_text()), seconds_per_view)
 
     def cameras(self, fps: float = 30.0) -> Iterator[Camera]:
         """The cameras of all frames."""

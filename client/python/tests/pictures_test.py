@@ -101,7 +101,8 @@ def test_options_that_belong_together_are_drawn_as_over_http(running: RunningSer
 def test_options_are_those_of_the_command_line() -> None:
     text = subprocess.run([SURFCAST, "render", "--help"], check=True, capture_output=True, text=True).stdout
     flags = re.findall(r"^ +--([a-z-]+) .*Env:", text, re.MULTILINE)
-    of_the_program = {"output", "stats", "path", "fps", "connect_timeout", "timeout", "ca", "token_file"}
+    of_the_program = {"output", "stats", "path", "view_seconds", "fps"}
+    of_the_program |= {"connect_timeout", "timeout", "ca", "token_file"}
     names = {flag.replace("-", "_") for flag in flags if not flag.startswith("camera")}
     assert names - of_the_program == set(OPTIONS)
 
@@ -166,6 +167,37 @@ def test_frames_of_a_path_are_those_of_the_program(tmp_path: Path, models: Path,
     assert [picture.data for picture in pictures] == [
         (tmp_path / f"frame_{number}.png").read_bytes() for number in range(5)
     ]
+
+
+def test_a_flight_through_saved_views_is_that_of_the_program(
+    tmp_path: Path, models: Path, field: surfcast.Model
+) -> None:
+    centre = OFFSET + (15, 15, 0)
+
+    def text(values: Any) -> str:
+        return ",".join(repr(float(value)) for value in values)
+
+    places: list[tuple[tuple[int, int, int], dict[str, str]]] = [
+        ((0, -30, 25), {}),
+        ((20, -20, 15), {"view_angle": "40"}),
+    ]
+    saved = [
+        surfcast.SavedView(
+            f"View {number}",
+            {"position": text(centre + place), "focal_point": text(centre), "view_up": "0,0,1", **angle},
+        )
+        for number, (place, angle) in enumerate(places)
+    ]
+    path = tmp_path / "views.json"
+    views = [{"name": view.name, "parameters": dict(view.parameters)} for view in saved]
+    path.write_text(json.dumps({"format": "surfcast-views", "version": 1, "model": "field", "views": views}))
+    command = [SURFCASTD, "render", f"{models}/field.surf", "--resolution", "64,48", "--path", str(path)]
+    command += ["--view-seconds", "2", "--fps", "1", "--output", f"{tmp_path}/frame_%d.png"]
+    subprocess.run(command, check=True, capture_output=True)
+    frames = [(tmp_path / f"frame_{number}.png").read_bytes() for number in range(3)]
+    read = surfcast.CameraPath.read(path, seconds_per_view=2)
+    assert [picture.data for picture in field.render_path(read, fps=1, resolution=(64, 48))] == frames
+    assert surfcast.CameraPath.through(saved, 2).keyframes == read.keyframes
 
 
 def test_a_model_tells_what_it_holds(field: surfcast.Model, scan: Scan) -> None:

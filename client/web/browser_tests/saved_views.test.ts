@@ -62,5 +62,13 @@ describe('saved views', () => {
     await page.getByLabel('File of views').setInputFiles(path);
     await page.getByText('The file has no views of Surfcast.').waitFor();
     expect(await page.locator('.view-row').count()).toBe(1);
+
+    // Two views are a flight.
+    const copy = page.getByRole('button', { name: 'Copy the command' });
+    expect(await copy.count()).toBe(0);
+    await page.getByLabel('Name of the view').fill('Apse');
+    await page.getByRole('button', { name: 'Save', exact: true }).click();
+    await copy.waitFor();
+    expect(await copy.getAttribute('title')).toContain("/yard' --path 'yard-views.json' --output 'yard.mp4'");
   });
 });

@@ -2,7 +2,15 @@ import { describe, expect, it } from 'vitest';
 import { vector } from '../src/camera/vector';
 import { defaultDisplay } from '../src/state/display_options';
 import { formatPlace, parsePlace, type Place } from '../src/state/place';
-import { formatViews, parseViews, usualName, withViews, type SavedView } from '../src/state/saved_views';
+import {
+  filmCommand,
+  formatViews,
+  parseViews,
+  usualName,
+  viewsFile,
+  withViews,
+  type SavedView,
+} from '../src/state/saved_views';
 
 const place: Place = {
   model: 'église 2',
@@ -85,5 +93,22 @@ describe('the list of views', () => {
   it('has a name for a view without one', () => {
     expect(usualName([])).toBe('View 1');
     expect(usualName([{ name: 'View 2', link: '' }])).toBe('View 3');
+  });
+});
+
+describe('the command for a film', () => {
+  it('draws on the server of the page', () => {
+    expect(filmCommand({ protocol: 'http:', host: 'box:7600' }, 'church', viewsFile('church'))).toBe(
+      "surfcast render 'box:7600/church' --path 'church-views.json' --output 'church.mp4'",
+    );
+    expect(filmCommand({ protocol: 'https:', host: 'scans.example' }, 'a/b', viewsFile('a/b'))).toBe(
+      "surfcast render 'wss://scans.example/a/b' --path 'a-b-views.json' --output 'a-b.mp4'",
+    );
+  });
+
+  it('quotes names for a shell', () => {
+    expect(filmCommand({ protocol: 'http:', host: 'box' }, "Peter's $(house)", 'v.json')).toContain(
+      "'box/Peter'\\''s $(house)'",
+    );
   });
 });

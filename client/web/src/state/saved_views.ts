@@ -31,6 +31,18 @@ export function formatViews({ model, views }: ViewFile): string {
   return `${JSON.stringify({ format, version, model, views: entries }, undefined, 2)}\n`;
 }
 
+/** The name of a file of the views of a model. */
+export const viewsFile = (model: string): string => `${model.replaceAll('/', '-')}-views.json`;
+
+const quoted = (word: string): string => `'${word.replaceAll("'", "'\\''")}'`;
+
+/** The command line, for a shell, that makes a film of a flight through the views of a file. */
+export function filmCommand(page: Pick<Location, 'protocol' | 'host'>, model: string, file: string): string {
+  const server = page.protocol === 'https:' ? `wss://${page.host}` : page.host;
+  const film = file.replace(/-views\.json$/, '.mp4');
+  return `surfcast render ${quoted(`${server}/${model}`)} --path ${quoted(file)} --output ${quoted(film)}`;
+}
+
 const isObject = (value: unknown): value is Record<string, unknown> =>
   typeof value === 'object' && value !== null && !Array.isArray(value);
 

@@ -1,11 +1,22 @@
 import type { JSX } from 'preact';
 import { useRef, useState } from 'preact/hooks';
 import { currentHash } from '../state/routes';
-import { formatViews, longestName, parametersOf, parseViews, usualName, withViews, type SavedView } from '../state/saved_views';
+import {
+  filmCommand,
+  formatViews,
+  longestName,
+  parametersOf,
+  parseViews,
+  usualName,
+  viewsFile,
+  withViews,
+  type SavedView,
+} from '../state/saved_views';
 import { model, pose, showNotice } from '../state/store';
 import { kept } from '../state/annotation_storage';
 import { changeViews, savedViews } from '../state/view_storage';
 import { change as changeOnServer, KeptSections, LinkRow } from './annotations';
+import { copyText, notAllowed } from './clipboard';
 import { Section } from './controls';
 import { Icon } from './icons';
 import { saveFile } from './save_file';
@@ -64,7 +75,7 @@ function SaveForm(): JSX.Element {
 const exportViews = (): void =>
   saveFile(
     formatViews({ model: model.peek() ?? '', views: savedViews.peek() }),
-    `${model.peek() ?? 'model'}-views.json`,
+    viewsFile(model.peek() ?? 'model'),
     'application/json',
   );
 
@@ -80,6 +91,21 @@ async function importViews(file: File): Promise<void> {
   } catch (error) {
     showNotice(error instanceof Error ? error.message : String(error));
   }
+}
+
+/** How the exported views become a film: the server draws it for the client program. */
+function FilmHint(): JSX.Element | null {
+  const name = model.value;
+  if (name === undefined || savedViews.value.length < 2) return null;
+  const command = filmCommand(location, name, viewsFile(name));
+  return (
+    <>
+      <p class="faint">The exported file is also a path for a film:</p>
+      <button type="button" title={command} onClick={() => void copyText(command, 'Command copied.', notAllowed)}>
+        <Icon name="copy" size={16} /> Copy the command
+      </button>
+    </>
+  );
 }
 
 function Files(): JSX.Element {
@@ -130,6 +156,7 @@ export function SavedViewsPanel(): JSX.Element {
           ))}
         </ul>
         <Files />
+        <FilmHint />
       </Section>
       <KeptSections />
     </>
