@@ -24,17 +24,16 @@ if(NOT CMAKE_BUILD_TYPE)
 endif()
 
 # For the cache, paths below the checkout are relative to the build folder, so that all checkouts of a machine share it.
-# Not so with precompiled headers of clang, which hold absolute paths.
 find_program(CCACHE_PROGRAM ccache)
 if(CCACHE_PROGRAM)
-  set(ccache_settings)
-  if(NOT SURFCAST_PCH OR CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-    list(APPEND ccache_settings CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1 CCACHE_PCH_EXTSUM=1)
-  endif()
+  set(ccache_settings CCACHE_BASEDIR=${PROJECT_SOURCE_DIR} CCACHE_NOHASHDIR=1 CCACHE_PCH_EXTSUM=1)
   if(SURFCAST_PCH)
     # What ccache asks for before it caches compilations with precompiled headers.
     list(APPEND ccache_settings CCACHE_SLOPPINESS=pch_defines,time_macros,include_file_mtime,include_file_ctime)
     add_compile_options(-fpch-preprocess)
+    # As with GCC: clang finds the precompiled header beside the header. CMake's own options have a path that ccache does
+    # not make relative.
+    set(CMAKE_CXX_COMPILE_OPTIONS_USE_PCH -include <PCH_HEADER>)
   endif()
   set(CMAKE_CXX_COMPILER_LAUNCHER ${CMAKE_COMMAND} -E env ${ccache_settings} ${CCACHE_PROGRAM})
 endif()
@@ -90,7 +89,7 @@ function(surfcast_precompiled_headers name)
   target_link_libraries(${name} PRIVATE surfcast_warnings ${ARG_LIBS})
   target_compile_options(${name} PRIVATE ${ARG_OPTIONS})
   target_precompile_headers(${name} PRIVATE ${ARG_HEADERS})
-  if(CCACHE_PROGRAM AND CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  if(CCACHE_PROGRAM)
     set_target_properties(${name} PROPERTIES CXX_COMPILER_LAUNCHER
       "${CMAKE_COMMAND};-E;env;${ccache_settings};${PROJECT_SOURCE_DIR}/cmake/precompile.sh;${CCACHE_PROGRAM}")
   endif()

@@ -1,7 +1,7 @@
 #!/bin/sh
-# precompile.sh COMMAND...: runs a compiler. For a precompiled header of GCC it writes a checksum beside it, of the command
-# and of all headers in it, which ccache takes in place of the file (CCACHE_PCH_EXTSUM): GCC's files are never the same
-# twice, and no two checkouts would share what is compiled with them.
+# precompile.sh COMMAND...: runs a compiler. For a precompiled header it writes a checksum beside it, of the command and
+# of all headers in it, which ccache takes in place of the file (CCACHE_PCH_EXTSUM): GCC's files are never the same twice,
+# those of clang hold paths and times, and no two checkouts would share what is compiled with them.
 set -eu
 output=
 last=
@@ -11,6 +11,7 @@ for word in "$@"; do
 done
 case $output in
   *.gch) ;;
+  *.pch) export CCACHE_DISABLE=1 ;;  # clang refuses one that another build has made
   *) exec "$@" ;;
 esac
 
