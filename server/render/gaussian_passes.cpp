@@ -84,7 +84,7 @@ Status blend(const GaussianRound& round, const GaussianPrograms& programs, float
   });
 }
 
-void upload_lists(const GaussianLists& lists, SplatBuffers& buffers) {
+void upload_gaussian_lists(const GaussianLists& lists, SplatBuffers& buffers) {
   upload(buffers.gaussians.tiles, lists.tiles);
   const size_t entries = lists.entries.size();
   buffers.gaussians.lists.reserve(std::max<size_t>(entries + entries / 4, 1), buffers.lazy);
@@ -199,7 +199,7 @@ Result<std::optional<RegionStats>> draw_gaussians(const RegionTask& task, Progra
   const WorkStopwatch bin_watch(preemption);
   const std::optional<GaussianLists> lists = list_gaussians(task, count, buffers);
   if (!lists) return std::optional<RegionStats>();
-  upload_lists(*lists, buffers);
+  upload_gaussian_lists(*lists, buffers);
   stats.splats += lists->drawn;
   stats.bin_ms += bin_watch.milliseconds();
 
