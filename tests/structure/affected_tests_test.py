@@ -1,0 +1,42 @@
+#!/usr/bin/env python3
+"""affected_tests_test.py SOURCE BUILD: files of every kind are seen by the tests that depend on them."""
+
+import os
+import pathlib
+import sys
+
+source, build = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
+sys.path.insert(0, str(source / "cmake"))
+import affected_tests  # noqa: E402
+
+# A file, and programs or scripts of tests that must see it, and some that cannot.
+EXPECTED = [
+    ("shaders/splat.comp", {"renderer_gl_test", "shader_validation_test", "serve_test"}, {"scan_test", "laz_test"}),
+    ("shaders/shared/kernel.h", {"renderer_gl_test", "reference_test"}, {"laz_test"}),
+    ("server/scan/lzf.cpp", {"scan_test", "serve_test"}, {"laz_test"}),
+    ("server/picture/picture.h", {"renderer_gl_test", "net_test", "view_test"}, {"laz_test"}),
+    ("protocol/surfcast.proto", {"protocol_test", "net_test", "client_test"}, {"laz_test"}),
+    ("client/web/src/state/place.ts", {"run_tests.sh"}, {"scan_test"}),
+    ("client/python/surfcast/camera_path.py", {"run_tests.sh"}, {"scan_test"}),
+]
+
+
+def main():
+    graph = affected_tests.BuildGraph(build)
+    tests = affected_tests.read_tests(graph)
+    programs = {os.path.basename(test.program) for test in tests}
+    wrong = []
+    for path, seen_by, not_seen_by in EXPECTED:
+        if not (source / path).exists():
+            wrong.append(f"there is no {path}")
+            continue
+        distances = graph.distances([path])
+        seen = {os.path.basename(test.program) for test in tests if test.distance(distances, [path]) is not None}
+        wrong += [f"{path} is not seen by {name}" for name in sorted((seen_by & programs) - seen)]
+        wrong += [f"{path} is seen by {name}" for name in sorted(not_seen_by & seen)]
+        wrong += [f"there is no test {name}" for name in sorted(seen_by - programs - {"run_tests.sh"})]
+    print("\n".join(wrong) or "as expected")
+    return 1 if wrong else 0
+
+
+sys.exit(main())
