@@ -153,7 +153,7 @@ Status check_order(const std::vector<Keyframe>& keyframes) {
     const wire::Camera& camera = keyframes[i].camera;
     if (!(keyframes[i - 1].time < keyframes[i].time)) return invalid("times of keyframes must ascend");
     if (first.has_view_up() != camera.has_view_up() || first.has_view_angle() != camera.has_view_angle()) {
-      return invalid("view_up and view_angle belong to all of a path or to none");
+      return invalid("view_up and view_angle must be in all keyframes or views, or in none");
     }
   }
   return {};

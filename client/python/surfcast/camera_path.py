@@ -15,6 +15,8 @@ from .errors import InvalidInput
 
 _V = tuple[float, ...]
 
+SECONDS_PER_VIEW = 4.0  # the default of `--view-seconds`
+
 
 def _sum(a: float, u: _V, b: float, v: _V) -> _V:
     return tuple(a * x + b * y for x, y in zip(u, v))
@@ -65,10 +67,14 @@ def _upright(up: _V, view: _V) -> _V:
 
 
 def _camera_of(view: SavedView) -> Camera:
-    fields: dict[str, Any] = {"view_angle": float(view.parameters.get("view_angle", 30))}
-    for name in ("position", "focal_point", "view_up"):
-        if name in view.parameters:
-            fields[name] = [float(number) for number in view.parameters[name].split(",")]
+    """The camera of a view; 30 degrees where it has no view angle, as in a link."""
+    try:
+        fields: dict[str, Any] = {"view_angle": float(view.parameters.get("view_angle", 30))}
+        for name in ("position", "focal_point", "view_up"):
+            if name in view.parameters:
+                fields[name] = [float(number) for number in view.parameters[name].split(",")]
+    except ValueError as error:
+        raise InvalidInput(f"view {view.name}: {error}") from error
     return Camera.from_dict(fields)
 
 
@@ -93,15 +99,15 @@ class CameraPath:
                 raise InvalidInput("times of keyframes must ascend")
             fields = ((first.view_up, key.camera.view_up), (first.view_angle, key.camera.view_angle))
             if any((a is None) != (b is None) for a, b in fields):
-                raise InvalidInput("view_up and view_angle belong to all of a path or to none")
+                raise InvalidInput("view_up and view_angle must be in all keyframes or views, or in none")
 
     @classmethod
-    def through(cls, views: Iterable[SavedView], seconds_per_view: float = 4.0) -> CameraPath:
+    def through(cls, views: Iterable[SavedView], seconds_per_view: float = SECONDS_PER_VIEW) -> CameraPath:
         """A flight through saved views in their order, one every `seconds_per_view`."""
         return cls(Keyframe(number * seconds_per_view, _camera_of(view)) for number, view in enumerate(views))
 
     @classmethod
-    def from_dict(cls, document: Mapping[str, Any], seconds_per_view: float = 4.0) -> CameraPath:
+    def from_dict(cls, document: Mapping[str, Any], seconds_per_view: float = SECONDS_PER_VIEW) -> CameraPath:
         """A path from the content of a path file: {"keyframes": [{"time": 0, "position": ...}, ...]}.
 
         Or from one of saved views: {"views": [{"name": ..., "parameters": {"position": "x,y,z", ...}}, ...]}.
@@ -116,7 +122,7 @@ class CameraPath:
         return cls(keyframes)
 
     @classmethod
-    def read(cls, path: str | PathLike[str], seconds_per_view: float = 4.0) -> CameraPath:
+    def read(cls, path: str | PathLike[str], seconds_per_view: float = SECONDS_PER_VIEW) -> CameraPath:
         """Reads a path file, or one of saved views."""
         return cls.from_dict(json.loads(Path(path).read_text()), seconds_per_view)
 

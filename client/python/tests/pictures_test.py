@@ -198,6 +198,9 @@ def test_a_flight_through_saved_views_is_that_of_the_program(
     read = surfcast.CameraPath.read(path, seconds_per_view=2)
     assert [picture.data for picture in field.render_path(read, fps=1, resolution=(64, 48))] == frames
     assert surfcast.CameraPath.through(saved, 2).keyframes == read.keyframes
+    wrong = surfcast.SavedView("Wrong", {"position": "1,x,0", "focal_point": "0,0,0", "view_up": "0,0,1"})
+    with pytest.raises(surfcast.InvalidInput, match="Wrong"):
+        surfcast.CameraPath.through([saved[0], wrong])
 
 
 def test_a_model_tells_what_it_holds(field: surfcast.Model, scan: Scan) -> None:
