@@ -8,8 +8,8 @@ const yard = useYard();
 describe('the display options', () => {
   it('hides a class, colours by another attribute, and says so in its address', async () => {
     await yard.open();
+    await look.toggleOptions(yard.page);
     const before = await look.pictureSum(yard.page);
-    await yard.page.keyboard.press('o');
     await yard.page.getByText('Elevation', { exact: true }).click();
     await yard.page.locator('.classes label', { hasText: 'Building' }).click();
     await expect.poll(() => look.pictureSum(yard.page)).not.toBe(before);

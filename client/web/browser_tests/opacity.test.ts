@@ -59,7 +59,7 @@ describe('what is seen through', () => {
     const wire = await Wire.tap(yard.page);
     await yard.page.goto(`${yard.server.url}#/yard?opacity_by_class=6=0.5`); // classes are in a buffer of their own
     await look.sharp(yard.page);
-    await yard.page.keyboard.press('o');
+    await look.toggleOptions(yard.page);
     await slide(wire, 'Opacity of all', [0.9, 0.8]); // the first picture of moderate quality
     await loadsNothing(wire, () => slide(wire, 'Opacity of all', [0.6, 0.4, 0.3]));
     await loadsNothing(wire, () => slide(wire, 'Opacity of Building', [0.4, 0.25, 0.7]));

@@ -45,7 +45,7 @@ class Field extends Session {
   async open(query = ''): Promise<void> {
     await this.page.goto(`${this.server.url}#/field${query}`);
     await look.sharp(this.page);
-    await this.page.keyboard.press('o');
+    await look.toggleOptions(this.page);
   }
 
   /** Waits until a parameter of the address has a value. */
@@ -93,7 +93,7 @@ describe('a tensor field', () => {
 
     await page.reload();
     await look.sharp(page);
-    await page.keyboard.press('o'); // the panel narrows the picture
+    await look.toggleOptions(page);
     await expect.poll(() => look.pictureSum(page)).toBe(sum);
     expect(await page.getByRole('radio', { name: 'Superquadric' }).isChecked()).toBe(true);
     expect(await page.getByRole('slider', { name: 'Power of light' }).inputValue()).toBe('0.9');
@@ -118,10 +118,31 @@ describe('a tensor field', () => {
     await field.changedFrom(sum);
   });
 
+  it('keeps a threshold that is typed before the next frame', async () => {
+    await field.open();
+    const { page } = field;
+    await page.getByRole('button', { name: 'Add threshold' }).click();
+    await page.getByRole('textbox', { name: 'From' }).waitFor();
+    await page.evaluate(async () => {
+      const rendered = (): Promise<void> => new Promise((done) => setTimeout(done)); // sooner than a frame
+      const select = document.querySelector<HTMLSelectElement>('.surfaces select')!;
+      select.value = 'md';
+      select.dispatchEvent(new Event('change', { bubbles: true }));
+      await rendered();
+      const least = document.querySelector<HTMLInputElement>('.surfaces .range-fields input')!;
+      least.value = '2.5';
+      least.dispatchEvent(new InputEvent('input', { bubbles: true }));
+      await new Promise((done) => requestAnimationFrame(() => requestAnimationFrame(done)));
+      await rendered(); // effects run after a frame
+      least.dispatchEvent(new KeyboardEvent('keydown', { key: 'Enter', bubbles: true }));
+    });
+    await field.says('threshold', 'md,2.5');
+  });
+
   it('tells of the tensor under a click, with its ellipsoid enlarged', async () => {
     await field.open('?position=0,-20,0&focal_point=0,0,0&view_up=0,0,1&slice=j,2');
     const { page } = field;
-    await page.keyboard.press('o');
+    await look.toggleOptions(page);
     await page.keyboard.press('i');
     const { x, y } = await look.middle(page);
     await page.mouse.click(x, y);

@@ -71,7 +71,7 @@ const ramp = '0,0,0,0,0;500,255,0,0,0.25;1000,255,255,255,1';
 describe('the transfer function', () => {
   it('is edited over the histogram: a point is dragged, added and removed', async () => {
     await ball.open(`?transfer=${ramp}`);
-    await ball.page.keyboard.press('o');
+    await look.toggleOptions(ball.page);
     expect(await pointCount()).toBe(3);
     const before = await look.pictureSum(ball.page);
     await dragCurve([0.5, 0.5], [0.25, 0.9]); // heights are square roots of opacities
@@ -95,7 +95,7 @@ describe('the transfer function', () => {
 
   it('is edited with the keyboard', async () => {
     await ball.open(`?transfer=${ramp}`);
-    await ball.page.keyboard.press('o');
+    await look.toggleOptions(ball.page);
     await curve().focus();
     await ball.page.keyboard.press('PageDown');
     await ball.page.keyboard.press('ArrowRight');
@@ -107,7 +107,7 @@ describe('the transfer function', () => {
 
   it('is a preset until it is edited, and its window is set in numbers', async () => {
     await ball.open();
-    await ball.page.keyboard.press('o');
+    await look.toggleOptions(ball.page);
     const before = await look.pictureSum(ball.page);
     await ball.page.getByText('CT bone', { exact: true }).click();
     await ball.parameter('transfer', (text) => text === 'ct-bone');
@@ -123,7 +123,7 @@ describe('the transfer function', () => {
 
   it('lies over a histogram with a logarithmic or a linear scale', async () => {
     await ball.open();
-    await ball.page.keyboard.press('o');
+    await look.toggleOptions(ball.page);
     const bars = (): Promise<string | null> => curve().locator('.bars').getAttribute('d');
     const logarithmic = await bars();
     await ball.page.getByRole('button', { name: 'Linear histogram' }).click();
@@ -134,7 +134,7 @@ describe('the transfer function', () => {
 
   it('comes back with a link', async () => {
     await ball.open(`?transfer=${ramp}`);
-    await ball.page.keyboard.press('o');
+    await look.toggleOptions(ball.page);
     await dragCurve([0.5, 0.5], [0.4, 0.7]);
     await ball.page.getByRole('switch', { name: 'Light by gradient' }).check();
     await ball.parameter('shaded', (text) => text === 'on');
@@ -180,7 +180,7 @@ describe('surfaces and slices', () => {
     const wire = await Wire.tap(ball.page);
     await ball.open();
     const asked = () => wire.updates.at(-1)?.picture;
-    await ball.page.keyboard.press('o');
+    await look.toggleOptions(ball.page);
     await ball.page.getByRole('button', { name: 'Add surface' }).click();
     await ball.parameter('iso', (text) => text === '500');
     await ball.page.getByRole('slider', { name: 'Value of surface' }).fill('300');
@@ -199,7 +199,7 @@ describe('surfaces and slices', () => {
 
     await ball.page.reload();
     await look.sharp(ball.page);
-    await ball.page.keyboard.press('o');
+    await look.toggleOptions(ball.page);
     expect(await ball.page.getByRole('slider', { name: 'Value of surface' }).inputValue()).toBe('300');
     expect(await ball.page.getByRole('slider', { name: 'Index along K' }).inputValue()).toBe('20');
     await ball.page.getByRole('button', { name: 'Remove surface' }).click();

@@ -39,6 +39,12 @@ export async function sharp(page: Page): Promise<void> {
   await page.locator('.status .lamp.sharp').waitFor({ state: 'attached' });
 }
 
+/** Opens or closes the panel of options, and waits for the picture of the size that it leaves. */
+export async function toggleOptions(page: Page): Promise<void> {
+  await page.keyboard.press('o');
+  await sharp(page);
+}
+
 /** The state of the lamp in the status line: sharp, working or offline. */
 export async function lamp(page: Page): Promise<string> {
   const names = (await page.locator('.status .lamp').getAttribute('class')) ?? '';

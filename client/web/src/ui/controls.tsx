@@ -1,5 +1,5 @@
 import type { ComponentChildren, JSX } from 'preact';
-import { useEffect, useId, useRef, useState } from 'preact/hooks';
+import { useEffect, useId, useLayoutEffect, useRef, useState } from 'preact/hooks';
 import { useActions } from './actions';
 import { Icon, type IconName } from './icons';
 
@@ -148,7 +148,7 @@ interface NumberFieldProps {
 export function NumberField({ label, value, decimals, hideLabel, onChange }: NumberFieldProps): JSX.Element {
   const shown = String(Number(value.toFixed(decimals)));
   const [text, setText] = useState(shown);
-  useEffect(() => setText(shown), [shown]);
+  useLayoutEffect(() => setText(shown), [shown]); // before the next key: a later effect would replace what it typed
   const take = (): void => {
     const typed = Number(text.replace(',', '.'));
     if (text.trim() !== '' && Number.isFinite(typed) && text !== shown) onChange(typed);
