@@ -77,7 +77,7 @@ TEST_F(LimitsTest, ASmallGpuMemoryDrawsACoarserPictureThatSaysSo) {
 
 TEST_F(LimitsTest, TheCacheKeepsToItsSizeButForWhatIsServed) {
   serve(scan_.string());
-  ASSERT_EQ(draw("square").code, 0);  // once it is built
+  ASSERT_TRUE(draws("square"));  // once it is built
   const std::string flags = " --cache " + cache() + " --pixel 1,1 --resolution 4,4";
   ASSERT_EQ(run("pick " + other_scan() + flags).code, 0);
   EXPECT_EQ(cached().size(), 2U);

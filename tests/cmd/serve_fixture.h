@@ -64,9 +64,15 @@ class ServeTest : public ::testing::Test {
     url_ = line.substr(url + 7, line.find('/', url + 7) - url - 7);
   }
   /// Draws a small picture of a model, which waits for it.
+  /// The limit is that of the whole test: a machine under load draws in software for minutes.
   [[nodiscard]] client::ProgramOutcome draw(const std::string& model) const {
-    return client::run_program(SURFCAST_CLIENT " render " + url_ + "/" + model + " --resolution 64,48 --output " +
-                               file("drawn.png") + " 2>&1");
+    return client::run_program(SURFCAST_CLIENT " render " + url_ + "/" + model +
+                               " --timeout 290 --resolution 64,48 --output " + file("drawn.png") + " 2>&1");
+  }
+  [[nodiscard]] ::testing::AssertionResult draws(const std::string& model) const {
+    const client::ProgramOutcome outcome = draw(model);
+    if (outcome.code == 0) return ::testing::AssertionSuccess();
+    return ::testing::AssertionFailure() << outcome.output;
   }
   /// The list of models, once it contains `text`.
   [[nodiscard]] std::string list_until(const std::string& text) const {

@@ -51,13 +51,13 @@ TEST_F(ServeTest, AFolderThatIsAScanIsServedUnderItsName) {
   write("tileset.json", R"({"asset": {"version": "1.0"}, "root": {"content": {"uri": "a.pnts"}}})");
   serve(file("church"));
   EXPECT_EQ(client::run_program(SURFCAST_CLIENT " models " + url_).output, "church\n");
-  ASSERT_EQ(draw("church").code, 0);
+  ASSERT_TRUE(draws("church"));
   const std::string drawn = content(file("drawn.png"));
   EXPECT_FALSE(drawn.empty());
   EXPECT_EQ(end(SIGTERM), 0);
   serve(file("church/tileset.json"));
   EXPECT_EQ(client::run_program(SURFCAST_CLIENT " models " + url_).output, "church\n");
-  ASSERT_EQ(draw("church").code, 0);
+  ASSERT_TRUE(draws("church"));
   EXPECT_TRUE(content(file("drawn.png")) == drawn);
 }
 
@@ -99,7 +99,7 @@ pid_t worker_of(pid_t server, const std::string& purpose = "render-worker") {
 
 TEST_F(ServeTest, ARenderWorkerThatIsKilledIsReplaced) {
   serve(scan_.string());
-  ASSERT_EQ(draw("square").code, 0);
+  ASSERT_TRUE(draws("square"));
   const std::string drawn = content(file("drawn.png"));
   EXPECT_FALSE(drawn.empty());
   for (int kills = 1; kills <= 3; ++kills) {
@@ -160,7 +160,7 @@ TEST_F(ServeTest, AServerWithWorkersReadsNoBlocks) {
   std::vector<std::string> answers;
   for (const std::string workers : {"1", "0"}) {
     serve("--workers " + workers + " " + (folder_ / "dense.xyz").string());
-    ASSERT_EQ(draw("dense").code, 0);
+    ASSERT_TRUE(draws("dense"));
     if (bytes_read(server_) == 0) GTEST_SKIP() << "the kernel does not count what is read";
     for (size_t i = 0; i < questions.size(); ++i) {
       const uint64_t before = bytes_read(server_);
@@ -180,19 +180,19 @@ TEST_F(ServeTest, AServerWithWorkersReadsNoBlocks) {
 
 TEST_F(ServeTest, AServerWithoutWorkersDrawsTheSamePictures) {
   serve(scan_.string());
-  ASSERT_EQ(draw("square").code, 0);
+  ASSERT_TRUE(draws("square"));
   const std::string drawn = content(file("drawn.png"));
   EXPECT_EQ(end(SIGTERM), 0);
   serve("--workers 0 " + scan_.string());
   EXPECT_EQ(worker_of(server_), -1);
-  ASSERT_EQ(draw("square").code, 0);
+  ASSERT_TRUE(draws("square"));
   EXPECT_TRUE(content(file("drawn.png")) == drawn);
   EXPECT_EQ(get("/metrics").find("surfcast_workers"), std::string::npos);
 }
 
 TEST_F(ServeTest, WorkersEndWithTheirServer) {
   serve(scan_.string());
-  ASSERT_EQ(draw("square").code, 0);
+  ASSERT_TRUE(draws("square"));
   const std::array workers{worker_of(server_), worker_of(server_, "query-worker")};
   for (const pid_t worker : workers) ASSERT_GT(worker, 0);
   end(SIGKILL);
@@ -303,7 +303,7 @@ TEST_F(ServeTest, ARegionThatFailsLeavesNoFile) {
 
 TEST_F(ServeTest, AScanIsBuiltOnceHoweverItIsNamed) {
   serve(scan_.string());
-  ASSERT_EQ(draw("square").code, 0);  // once it is built
+  ASSERT_TRUE(draws("square"));  // once it is built
   EXPECT_EQ(end(SIGINT), 0);
   const fs::path copy = folder_ / "renamed.ply";
   fs::copy_file(scan_, copy);
@@ -323,7 +323,7 @@ TEST_F(ServeTest, AVolumeWithItsSamplesInAnotherFileIsBuiltAndDrawn) {
   }
   std::ofstream(folder_ / "ball.raw", std::ios::binary) << samples;
   serve("--preview-points 100 --preview-from 1K " + file("ball.mhd"));
-  EXPECT_EQ(draw("ball").code, 0);
+  EXPECT_TRUE(draws("ball"));
   EXPECT_NE(get("/api/models/ball").find("\"grid\""), std::string::npos);
   EXPECT_EQ(end(SIGTERM), 0);
 }
@@ -342,7 +342,7 @@ TEST_F(ServeTest, WhatCannotBeServedIsAFailureThatNamesIt) {
 TEST_F(ServeTest, AScanThatCannotBeBuiltIsListedWithItsReasonAndOthersAreServed) {
   ASSERT_TRUE(write_file_atomically(folder_ / "broken.ply", square_of_points().substr(0, 400)));
   serve(file("broken.ply") + " " + scan_.string());
-  EXPECT_EQ(draw("square").code, 0);
+  EXPECT_TRUE(draws("square"));
   const std::string list = list_until("\"state\": \"failed\"");
   EXPECT_NE(list.find("broken.ply: truncated"), std::string::npos) << list;
   EXPECT_EQ(client::run_program(SURFCAST_CLIENT " models " + url_).output, "square\n");
@@ -383,7 +383,7 @@ TEST_F(ServeLargeScanTest, ThePortIsOpenAtOnceAndAPreviewIsServedWhileTheModelIs
   const std::string list = list_until("\"preview\": true");
   EXPECT_NE(list.find("\"percent\""), std::string::npos) << list;
   EXPECT_NE(list.find("\"seconds_left\""), std::string::npos) << list;
-  EXPECT_EQ(draw("large").code, 0);
+  EXPECT_TRUE(draws("large"));
   ::kill(build, SIGCONT);
   EXPECT_EQ(end(SIGTERM), 0) << "the build is given up";
   EXPECT_TRUE(cached().empty()) << "and leaves nothing behind";
@@ -395,7 +395,7 @@ TEST_F(ServeTest, WhatKilledServersLeftInTheCacheIsRemoved) {
     ASSERT_TRUE(write_file_atomically(folder_ / name, "left"));
   }
   serve(scan_.string());
-  ASSERT_EQ(draw("square").code, 0);
+  ASSERT_TRUE(draws("square"));
   EXPECT_FALSE(fs::exists(folder_ / "cache" / "preview-a1b2c3"));
   EXPECT_FALSE(fs::exists(folder_ / "cache" / "model.surf.tmp7-2"));
   EXPECT_TRUE(fs::exists(folder_ / "cache" / "mine.txt"));
@@ -422,12 +422,12 @@ class ServeUploadsTest : public ServeTest {
 
 TEST_F(ServeUploadsTest, AScanThatIsSentIsBuiltAndServedByLaterServersToo) {
   EXPECT_NE(put("Sent.PLY", square_of_points()).find("201 Created"), std::string::npos);
-  EXPECT_EQ(draw("Sent").code, 0);
+  EXPECT_TRUE(draws("Sent"));
   ASSERT_TRUE(write_file_atomically(file("uploads/half.ply.tmp7-1"), "left by a server that was killed"));
   EXPECT_EQ(end(SIGTERM), 0);
   serve_uploads();
   EXPECT_EQ(client::run_program(SURFCAST_CLIENT " models " + url_).output, "Sent\nsquare\n");
-  EXPECT_EQ(draw("Sent").code, 0);
+  EXPECT_TRUE(draws("Sent"));
   EXPECT_EQ(std::distance(fs::directory_iterator(uploads()), fs::directory_iterator()), 1);
 }
 
