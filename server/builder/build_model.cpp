@@ -280,6 +280,7 @@ Status build_surfels(std::span<const std::filesystem::path> inputs, ModelOutput&
 struct InputsByKind {
   std::vector<std::filesystem::path> scans;
   std::vector<std::filesystem::path> grids;
+  std::vector<std::filesystem::path> fields;
   std::vector<std::filesystem::path> gaussians;
   std::vector<std::filesystem::path> ellipsoids;
 
@@ -309,7 +310,11 @@ InputKind kind_of(const std::filesystem::path& input, const BuildOptions& option
 
 InputsByKind by_kind(std::span<const std::filesystem::path> inputs, const BuildOptions& options) {
   InputsByKind kinds;
-  for (const std::filesystem::path& input : inputs) kinds.of(kind_of(input, options)).push_back(input);
+  for (const std::filesystem::path& input : inputs) {
+    const InputKind kind = kind_of(input, options);
+    const bool field = options.field && kind == InputKind::kScan && holds_field(input, *options.field);
+    (field ? kinds.fields : kinds.of(kind)).push_back(input);
+  }
   return kinds;
 }
 
@@ -325,13 +330,19 @@ Status check_headers(const InputsByKind& inputs) {
 Status build_kinds(const InputsByKind& inputs, ModelOutput& output, const BuildOptions& options, StageClock& clock,
                    BuildReport& report) {
   Status status = check_headers(inputs);
+  if (status && options.field && inputs.fields.empty()) {
+    return fail(ErrorKind::kInvalidInput,
+                output.target().string() + ": no input is a table of points with a column " + options.field->value);
+  }
   if (status && inputs.scans.empty() && (!options.systems.assigned.empty() || !options.systems.target.empty())) {
     return fail(ErrorKind::kInvalidInput, output.target().string() +
                                               ": no input has coordinates on the earth: "
                                               "--crs and --to-crs need a scan or a mesh");
   }
   if (status && !inputs.scans.empty()) status = build_surfels(inputs.scans, output, options, clock, report);
-  if (status && !inputs.grids.empty()) status = build_volumes(inputs.grids, output, options, clock, report);
+  if (status && (!inputs.grids.empty() || !inputs.fields.empty())) {
+    status = build_volumes(inputs.grids, inputs.fields, output, options, clock, report);
+  }
   if (status && !inputs.gaussians.empty()) status = build_gaussians(inputs.gaussians, output, options, clock, report);
   if (status && !inputs.ellipsoids.empty()) {
     status = build_ellipsoids(inputs.ellipsoids, output, options, clock, report);

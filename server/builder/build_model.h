@@ -11,6 +11,7 @@
 
 #include "base/result.h"
 #include "builder/build_inputs.h"
+#include "builder/field_input.h"
 #include "builder/input_files.h"
 #include "builder/mesh_input.h"
 #include "builder/place_inputs.h"
@@ -19,6 +20,7 @@
 #include "scan/selection.h"
 #include "scan/stated_radii.h"
 #include "scan/surfel_report.h"
+#include "scattered/field_options.h"
 #include "simplify/simplify.h"
 
 namespace surfcast::builder {
@@ -36,6 +38,7 @@ struct BuildOptions {
   SystemOptions systems{};          ///< where scans and meshes lie on the earth
   OpenInput open{};                 ///< how scans and grids are read as points; none: grids become volumes
   std::optional<InputKind> kind{};  ///< of all inputs, whatever their content; none: as it says
+  std::optional<scattered::FieldOptions> field{};   ///< scans with its column of values become volumes
   std::optional<grid::TensorOrder> tensor_order{};  ///< of six components that nothing says the order of
 };
 
@@ -59,8 +62,9 @@ struct BuildReport {
   std::vector<TransformedInput> transformed{};  ///< the inputs that were brought into the system of the model
   model::Georeference georeference{};           ///< of the model
   std::optional<simplify::SimplifyReport> simplified{};
-  uint64_t points_in_scans = 0;  ///< beyond BuildOptions::sample too
-  uint64_t samples = 0;          ///< of the volumes
+  uint64_t points_in_scans = 0;      ///< beyond BuildOptions::sample too
+  uint64_t samples = 0;              ///< of the volumes
+  std::vector<InputField> fields{};  ///< scans that became volumes
   uint64_t surfels = 0;
   uint64_t gaussians = 0;
   std::vector<InputEllipsoids> ellipsoids;  ///< of the inputs that have some

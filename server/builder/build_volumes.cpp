@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "builder/field_input.h"
 #include "builder/grid_input.h"
 #include "builder/volume_pass.h"
 #include "model/model_writer.h"
@@ -53,19 +54,35 @@ Status measure_all(std::vector<GridInput>& inputs, StageClock& clock, BuildRepor
   return {};
 }
 
-model::ModelSchema schema_of(std::span<const std::filesystem::path> paths, const BuildOptions& options) {
+model::ModelSchema schema_of(const std::vector<GridInput>& inputs, const BuildOptions& options) {
   model::ModelSchema schema;
   schema.z_up = options.z_up.value_or(true);  // of medical frames z is superior
-  for (const std::filesystem::path& path : paths) schema.source_names.push_back(path.filename().string());
+  for (const GridInput& input : inputs) schema.source_names.push_back(input.path().filename().string());
   return schema;
+}
+
+/// The points of one field after the other are in memory while it is sampled.
+Status add_fields(std::span<const std::filesystem::path> paths, const std::filesystem::path& target,
+                  const BuildOptions& options, StageClock& clock, BuildReport& report, std::vector<GridInput>& inputs) {
+  if (paths.empty()) return {};
+  clock.begin("sampling fields", paths.size());
+  for (const std::filesystem::path& path : paths) {
+    Result<GridInput> input =
+        open_field(path, *options.field, target, report.memory_budget, options.sample, report.fields);
+    if (!input) return fail(std::move(input.error()));
+    inputs.push_back(std::move(*input));
+    clock.step();
+  }
+  return {};
 }
 
 }  // namespace
 
-Status build_volumes(std::span<const std::filesystem::path> paths, ModelOutput& output, const BuildOptions& options,
-                     StageClock& clock, BuildReport& report) {
-  Result<std::vector<GridInput>> inputs = open_all(paths, options.sample);
+Status build_volumes(std::span<const std::filesystem::path> grids, std::span<const std::filesystem::path> fields,
+                     ModelOutput& output, const BuildOptions& options, StageClock& clock, BuildReport& report) {
+  Result<std::vector<GridInput>> inputs = open_all(grids, options.sample);
   if (!inputs) return fail(std::move(inputs.error()));
+  if (Status status = add_fields(fields, output.target(), options, clock, report, *inputs); !status) return status;
   if (Status status = check_memory(*inputs, output.target(), report.memory_budget); !status) return status;
   for (const GridInput& input : *inputs) {
     report.samples += input.volume().samples();
@@ -73,7 +90,7 @@ Status build_volumes(std::span<const std::filesystem::path> paths, ModelOutput& 
   }
   clock.know_points(report.samples);
   if (Status status = measure_all(*inputs, clock, report); !status) return status;
-  const Result<model::ModelWriter*> writer = output.writer(schema_of(paths, options));
+  const Result<model::ModelWriter*> writer = output.writer(schema_of(*inputs, options));
   if (!writer) return fail(writer.error());
   clock.begin("writing bricks", planes_of(*inputs));
   std::vector<model::Volume> volumes;

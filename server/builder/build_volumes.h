@@ -10,9 +10,10 @@
 
 namespace surfcast::builder {
 
-/// Makes a volume of each grid and adds its bricks to a model. Memory depends on the size of their planes.
-/// `report` has the budget; the rest of it is filled in.
-Status build_volumes(std::span<const std::filesystem::path> inputs, ModelOutput& output, const BuildOptions& options,
-                     StageClock& clock, BuildReport& report);
+/// Makes a volume of each grid, and of each table of points that is a field (BuildOptions::field), and adds their
+/// bricks to a model. Memory depends on the size of their planes, and on the number of points of a field. `report` has
+/// the budget; the rest of it is filled in.
+Status build_volumes(std::span<const std::filesystem::path> grids, std::span<const std::filesystem::path> fields,
+                     ModelOutput& output, const BuildOptions& options, StageClock& clock, BuildReport& report);
 
 }  // namespace surfcast::builder

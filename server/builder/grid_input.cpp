@@ -71,7 +71,12 @@ Status GridInput::failed(ErrorKind kind, const std::string& what) const {
 Result<GridInput> GridInput::open(const std::filesystem::path& path, std::optional<uint64_t> sample) {
   Result<grid::GridReader> reader = grid::GridReader::open(path);
   if (!reader) return fail(std::move(reader.error()));
-  const grid::GridHeader& header = reader->header();
+  return of(path, std::move(*reader), sample);
+}
+
+Result<GridInput> GridInput::of(const std::filesystem::path& path, grid::GridReader reader,
+                                std::optional<uint64_t> sample) {
+  const grid::GridHeader& header = reader.header();
   if (header.components() > 1) {
     return fail(ErrorKind::kUnsupported, path.string() + ": holds tensors of " + std::to_string(header.components()) +
                                              " components; volumes are made of grids with one number a sample");
@@ -83,7 +88,7 @@ Result<GridInput> GridInput::open(const std::filesystem::path& path, std::option
                                        std::to_string(model::kMaxAxisSamples));
   }
   const uint64_t stride = sample ? stride_for(header, *sample) : 1;
-  return GridInput(path, std::move(*reader), stride);
+  return GridInput(path, std::move(reader), stride);
 }
 
 bool GridInput::needs_doubles() const {

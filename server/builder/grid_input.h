@@ -23,9 +23,14 @@ class GridInput {
   /// With `sample`, every kth sample along each axis alone, so many that they are at most that number: a preview.
   static Result<GridInput> open(const std::filesystem::path& path, std::optional<uint64_t> sample = {});
 
+  /// The same for samples from elsewhere. `path` only names them.
+  static Result<GridInput> of(const std::filesystem::path& path, grid::GridReader reader,
+                              std::optional<uint64_t> sample);
+
   /// Reads all samples for the range of values. Calls `plane_done` after each plane.
   Status measure(const std::function<void()>& plane_done);
 
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   [[nodiscard]] const grid::GridHeader& header() const { return reader_.header(); }
   /// The volume as far as it is known: all of it after all planes have been read.
   [[nodiscard]] const model::Volume& volume() const { return volume_; }

@@ -30,6 +30,7 @@
 #include "builder/grid_input.h"
 #include "builder/memory_budget.h"
 #include "cmd/build_progress.h"
+#include "cmd/field_flags.h"
 #include "cmd/georeference_text.h"
 #include "cmd/iso_flag.h"
 #include "cmd/mesh_flags.h"
@@ -57,6 +58,7 @@ struct BuildCommand {
   bool background = false;
   std::vector<isosurface::IsoSurface> surfaces;  ///< of grids among the inputs
   std::optional<builder::InputKind> kind;
+  std::optional<scattered::FieldOptions> field;
   std::optional<grid::TensorOrder> tensor_order;
   builder::MeshOptions meshes;
   builder::SystemOptions systems;
@@ -164,6 +166,27 @@ nlohmann::ordered_json to_json(const std::vector<builder::InputMesh>& meshes) {
                     {"two_sided", mesh.two_sided}});
   }
   return json;
+}
+
+/// What became of the samples of fields.
+std::string field_lines(const std::vector<builder::InputField>& fields) {
+  std::string lines;
+  for (const builder::InputField& field : fields) {
+    lines += fmt::format("{}: {} samples of a field, {:.6g} from sample to sample of the volume", field.input,
+                         field.samples, field.step);
+    if (field.skipped > 0) lines += fmt::format(", {} points skipped", field.skipped);
+    if (field.widened > 0) lines += fmt::format(", {} kernels widened to that", field.widened);
+    lines += "\n";
+  }
+  return lines;
+}
+
+nlohmann::ordered_json to_json(const builder::InputField& field) {
+  return {{"input", field.input},
+          {"samples", field.samples},
+          {"skipped", field.skipped},
+          {"widened", field.widened},
+          {"step", field.step}};
 }
 
 /// The system of the model, and how inputs came into it.
@@ -281,6 +304,7 @@ std::string to_json(const BuildCommand& command, const builder::BuildReport& rep
   for (const builder::InputRadii& radii : report.radii) json["radii"].push_back(to_json(radii));
   if (!surfaces.empty()) json["surfaces"] = to_json(surfaces);
   for (const builder::InputEllipsoids& input : report.ellipsoids) json["ellipsoids"].push_back(to_json(input));
+  for (const builder::InputField& field : report.fields) json["fields"].push_back(to_json(field));
   if (!report.meshes.empty()) json["meshes"] = to_json(report.meshes);
   if (report.georeference.known()) {
     json["coordinate_system"] = json_of(report.georeference);
@@ -331,6 +355,7 @@ Status build(const BuildCommand& command) {
     options.selection = command.selection;
     options.radii = command.radii;
     options.kind = command.kind;
+    options.field = command.field;
     options.tensor_order = command.tensor_order;
     options.meshes = command.meshes;
     options.systems = command.systems;
@@ -341,8 +366,8 @@ Status build(const BuildCommand& command) {
   }
   if (!report) return fail(std::move(report.error()));
   for (const std::string& note : report->scan.notes) spdlog::warn("{}", note);
-  std::cout << surface_lines(surfaces.found()) << mesh_lines(report->meshes) << system_lines(*report)
-            << radii_lines(*report) << simplify_lines(command, *report) << figures(*report);
+  std::cout << surface_lines(surfaces.found()) << mesh_lines(report->meshes) << field_lines(report->fields)
+            << system_lines(*report) << radii_lines(*report) << simplify_lines(command, *report) << figures(*report);
   if (command.report.empty()) return {};
   return write_file_atomically(command.report, to_json(command, *report, surfaces.found()));
 }
@@ -397,6 +422,7 @@ void add_build_command(CLI::App& app, Status& outcome) {
         return builder::parse_memory_size(text) ? std::string() : "not a size like 4G or 512M: " + text;
       });
   add_kind_flags(*build_command, *command);
+  add_field_flags(*build_command, command->field);
   add_radius_flag(*build_command, command->radii);
   add_selection_flags(*build_command, command->selection);
   add_iso_flag(*build_command, command->surfaces);

@@ -60,7 +60,11 @@ Result<GridReader> GridReader::open(const std::filesystem::path& path, std::stri
   if (!format) return error({ErrorKind::kUnsupported, "not a grid of a supported format"});
   Result<StoredGrid> grid = parse(*format, {path, *file, std::string(array), order});
   if (!grid) return error(grid.error());
-  GridReader reader(path, std::move(*grid));
+  return of(path, std::move(*grid));
+}
+
+Result<GridReader> GridReader::of(const std::filesystem::path& path, StoredGrid grid) {
+  GridReader reader(path, std::move(grid));
   if (Status status = reader.named(reader.restart()); !status) return fail(std::move(status.error()));
   return reader;
 }

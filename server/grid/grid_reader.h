@@ -23,6 +23,9 @@ class GridReader {
   static Result<GridReader> open(const std::filesystem::path& path, std::string_view array = {},
                                  std::optional<TensorOrder> order = {});
 
+  /// The same for samples that are made, not stored in a file of a format. `path` only names them.
+  static Result<GridReader> of(const std::filesystem::path& path, StoredGrid grid);
+
   [[nodiscard]] const GridHeader& header() const { return grid_.header; }
   /// The files beside the header's that hold the samples.
   [[nodiscard]] std::vector<std::filesystem::path> data_files() const;
