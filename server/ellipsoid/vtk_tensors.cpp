@@ -134,6 +134,10 @@ bool is_vtk_point_set(const stream::FilePtr& file) {
   return grid::is_vtk_legacy_point_set(scan::as_text(file->bytes()));
 }
 
+bool holds_vtk_tensors(const stream::FilePtr& file) {
+  return is_vtk_point_set(file) && find_tensors(scan::as_text(file->bytes())).has_value();
+}
+
 Result<InputPtr> open_vtk_tensors(const stream::FilePtr& file, const std::filesystem::path& path,
                                   const InputOptions& options) {
   const Result<PointSet> set = find_tensors(scan::as_text(file->bytes()));

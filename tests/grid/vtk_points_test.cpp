@@ -1,7 +1,7 @@
 #include "grid/vtk_points.h"
 
 #include <algorithm>
-#include <functional>
+#include <random>
 #include <utility>
 
 #include <gmock/gmock.h>
@@ -422,6 +422,32 @@ TEST(VtkPointsTest, EveryPrefixOfAFileIsRefused) {
     const size_t needed = text.rfind(coding.format == "appended" ? "\n</AppendedData>" : "</VTKFile>");
     for (size_t size = 100; size < needed; ++size) {
       EXPECT_NE(fault(write(folder / "points.vtp", text.substr(0, size))), "") << size;
+    }
+  }
+}
+
+TEST(VtkPointsTest, DamagedFilesGivePointsOrAnErrorThatNamesThem) {
+  const model::TestFolder folder;
+  std::mt19937 random(11);
+  std::vector<std::string> files = {legacy_file(false, "POLYDATA\n" + legacy_points(false) + legacy_heights(false)),
+                                    legacy_file(true, "POLYDATA\n" + legacy_points(true) + legacy_heights(true))};
+  for (const Coding& coding : codings()) {
+    XmlWriter writer(coding);
+    const std::string heights = writer.array("Int16", "Name=\"height\"", kHeights);
+    const std::string points = writer.array("Float32", kThree, kPositions);
+    files.push_back(writer.file("PolyData", piece("NumberOfPoints=\"3\"", heights, points)));
+  }
+  for (const std::string& file : files) {
+    for (int round = 0; round < 100; ++round) {
+      std::string text = file;
+      // A digit for a digit reaches further than any byte.
+      for (int i = 0; i < 3; ++i) {
+        char& c = text[random() % text.size()];
+        const bool digit = c >= '0' && c <= '9';
+        c = digit ? static_cast<char>('0' + random() % 10) : static_cast<char>(random());
+        if (i == 0 && random() % 2 == 0) break;
+      }
+      fault(write(folder / "points.vtp", text), {size_t{1} << 26});
     }
   }
 }
