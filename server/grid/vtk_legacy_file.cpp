@@ -1,6 +1,7 @@
 #include "grid/vtk_legacy_file.h"
 
 #include <algorithm>
+#include <charconv>
 #include <optional>
 #include <utility>
 
@@ -30,6 +31,22 @@ Result<ScalarType> parse_type(std::string_view text) {
     if (known == name) return type;
   }
   return bad_header(kFormat, "type of numbers not supported", text);
+}
+
+/// VTK writes what is not a printable character of a name as "%20".
+std::string decoded_name(std::string_view text) {
+  std::string name;
+  for (size_t i = 0; i < text.size(); ++i) {
+    unsigned char byte = 0;
+    const char* const digits = text.data() + i + 1;
+    if (text[i] == '%' && text.size() - i > 2 && std::from_chars(digits, digits + 2, byte, 16).ptr == digits + 2) {
+      name += static_cast<char>(byte);
+      i += 2;
+    } else {
+      name += text[i];
+    }
+  }
+  return name;
 }
 
 /// Goes through the file section by section. The numbers of an array are passed over, not read.
@@ -230,7 +247,7 @@ class LegacyParser {
     const VtkNumbers numbers{*type, stream::saturating(*count, tuples, 0), lines_.offset()};
     if (Status status = skip_numbers(numbers.count, *type); !status) return status;
     if (!in_data_ || tuples != tuples_) return {};
-    file_.arrays.push_back({{std::string(name), *count, of_cells_, role, false}, tuples, numbers});
+    file_.arrays.push_back({{decoded_name(name), *count, of_cells_, role, false}, tuples, numbers});
     return {};
   }
 

@@ -35,6 +35,12 @@ std::string text_of(const std::vector<T>& values) {
   return text;
 }
 
+std::string joined(std::initializer_list<std::string_view> parts) {
+  std::string all;
+  for (const std::string_view part : parts) all += part;
+  return all;
+}
+
 WholeScan read(const std::filesystem::path& path) {
   const Result<WholeScan> scan = testing::whole(open_scan(path));
   EXPECT_TRUE(scan) << scan.error().message;
@@ -84,31 +90,35 @@ std::string legacy_heights(bool binary) {
   return "POINT_DATA 3\nSCALARS height short 1\nLOOKUP_TABLE default\n" + legacy_numbers_of(binary, kHeights);
 }
 
+/// The points in every data set, with whatever may be beside them.
+std::vector<std::string> legacy_files(bool binary) {
+  const auto ints = [binary](const std::vector<int32_t>& values) { return legacy_numbers_of(binary, values); };
+  const auto longs = [binary](const std::vector<int64_t>& values) { return legacy_numbers_of(binary, values); };
+  const std::string points = legacy_points(binary);
+  const std::string heights = legacy_heights(binary);
+  const std::string metadata = "METADATA\nINFORMATION 1\nNAME L2 LOCATION vtkDataArray\nDATA 2 0 9\n\n";
+  const std::string offsets = "OFFSETS vtktypeint64\n" + longs({0, 3}) + "CONNECTIVITY vtktypeint64\n";
+  return {
+      legacy_file(binary, "POLYDATA\n" + points + heights),
+      legacy_file(binary, "POLYDATA\n" + points + metadata + "VERTICES 3 6\n" + ints({1, 0, 1, 1, 1, 2}) +
+                              "LINES 1 3\n" + ints({2, 0, 1}) + "POLYGONS 1 4\n" + ints({3, 0, 1, 2}) + heights),
+      legacy_file(binary, "POLYDATA\n" + points + "POLYGONS 2 3\n" + offsets + longs({0, 1, 2}) + heights, "5.1"),
+      legacy_file(binary, "STRUCTURED_GRID\nDIMENSIONS 3 1 1\n" + points + heights, "2.0"),
+      legacy_file(binary, "UNSTRUCTURED_GRID\n" + points + "CELLS 1 4\n" + ints({3, 0, 1, 2}) + "CELL_TYPES 1\n" +
+                              ints({5}) + "CELL_DATA 1\nSCALARS quality int 1\nLOOKUP_TABLE default\n" + ints({3}) +
+                              heights),
+      legacy_file(binary,
+                  "UNSTRUCTURED_GRID\n" + points + "CELLS 2 3\n" + offsets + longs({0, 1, 2}) + "CELL_TYPES 1\n" +
+                      ints({5}) + heights + "FIELD FieldData 1\nid 1 3 vtkIdType\n" + ints({4, 5, 6}) + metadata,
+                  "5.1"),
+  };
+}
+
 TEST(VtkPointsTest, EveryLegacyDataSetWithPointsIsRead) {
   const model::TestFolder folder;
   for (const bool binary : {false, true}) {
     SCOPED_TRACE(binary);
-    const auto ints = [binary](const std::vector<int32_t>& values) { return legacy_numbers_of(binary, values); };
-    const auto longs = [binary](const std::vector<int64_t>& values) { return legacy_numbers_of(binary, values); };
-    const std::string points = legacy_points(binary);
-    const std::string heights = legacy_heights(binary);
-    const std::string metadata = "METADATA\nINFORMATION 1\nNAME L2 LOCATION vtkDataArray\nDATA 2 0 9\n\n";
-    const std::string offsets = "OFFSETS vtktypeint64\n" + longs({0, 3}) + "CONNECTIVITY vtktypeint64\n";
-    const std::vector<std::string> files = {
-        legacy_file(binary, "POLYDATA\n" + points + heights),
-        legacy_file(binary, "POLYDATA\n" + points + metadata + "VERTICES 3 6\n" + ints({1, 0, 1, 1, 1, 2}) +
-                                "LINES 1 3\n" + ints({2, 0, 1}) + "POLYGONS 1 4\n" + ints({3, 0, 1, 2}) + heights),
-        legacy_file(binary, "POLYDATA\n" + points + "POLYGONS 2 3\n" + offsets + longs({0, 1, 2}) + heights, "5.1"),
-        legacy_file(binary, "STRUCTURED_GRID\nDIMENSIONS 3 1 1\n" + points + heights, "2.0"),
-        legacy_file(binary, "UNSTRUCTURED_GRID\n" + points + "CELLS 1 4\n" + ints({3, 0, 1, 2}) + "CELL_TYPES 1\n" +
-                                ints({5}) + "CELL_DATA 1\nSCALARS quality int 1\nLOOKUP_TABLE default\n" + ints({3}) +
-                                heights),
-        legacy_file(binary,
-                    "UNSTRUCTURED_GRID\n" + points + "CELLS 2 3\n" + offsets + longs({0, 1, 2}) + "CELL_TYPES 1\n" +
-                        ints({5}) + heights + "FIELD FieldData 1\nid 1 3 vtkIdType\n" + ints({4, 5, 6}) + metadata,
-                    "5.1"),
-    };
-    for (const std::string& file : files) {
+    for (const std::string& file : legacy_files(binary)) {
       SCOPED_TRACE(file.substr(0, 60));
       expect_points(write(folder / "points.vtk", file));
     }
@@ -138,6 +148,15 @@ TEST(VtkPointsTest, LegacyNormalsColoursAndVectorsHaveTheNamesOfScans) {
   }
 }
 
+TEST(VtkPointsTest, NamesOfLegacyArraysAreDecoded) {
+  const model::TestFolder folder;
+  const std::string fields =
+      "POINT_DATA 3\nFIELD FieldData 3\nwind%20speed 1 3 int\n1 2 3\n100% 1 3 int\n4 5 6\n%zz%4 1 3 int\n7 8 9\n";
+  const WholeScan scan =
+      read(write(folder / "points.vtk", legacy_file(false, "POLYDATA\n" + legacy_points(false) + fields)));
+  EXPECT_THAT(names_of(scan), ElementsAre("wind speed", "100%", "%zz%4"));
+}
+
 TEST(VtkPointsTest, DamagedLegacyFilesAreRefused) {
   const model::TestFolder folder;
   const auto legacy_fault = [&](bool binary, const std::string& body) {
@@ -151,8 +170,8 @@ TEST(VtkPointsTest, DamagedLegacyFilesAreRefused) {
       EXPECT_THAT(legacy_fault(binary, "POLYDATA\n" + more), HasSubstr("truncated")) << count;
     }
     const std::string heights = legacy_numbers_of(binary, std::vector<int16_t>{1, 2});
-    EXPECT_THAT(legacy_fault(binary, "POLYDATA\n" + points +
-                                         "POINT_DATA 2\nSCALARS height short\nLOOKUP_TABLE default\n" + heights),
+    const std::string data = "POINT_DATA 2\nSCALARS height short\nLOOKUP_TABLE default\n";
+    EXPECT_THAT(legacy_fault(binary, joined({"POLYDATA\n", points, data, heights})),
                 HasSubstr("the array height has 2 values for 3 points"));
     EXPECT_THAT(legacy_fault(binary, "POLYDATA\nPOINTS 0 float\n"), HasSubstr("has no points"));
     EXPECT_THAT(legacy_fault(binary, "UNSTRUCTURED_GRID\n"), HasSubstr("has no points"));
@@ -281,7 +300,7 @@ TEST(VtkPointsTest, PiecesFollowEachOther) {
                    writer.array("UInt8", "Name=\"label\"", labels), writer.array("Float64", kThree, positions));
     };
     const std::string empty = "<Piece NumberOfPoints=\"0\"><PointData/><Points/></Piece>\n";
-    const std::string pieces = empty + part({1, 0, 0, 2, 0, 0}, {1, 2}) + empty + part({3, 0, 0}, {3});
+    const std::string pieces = joined({empty, part({1, 0, 0, 2, 0, 0}, {1, 2}), empty, part({3, 0, 0}, {3})});
     const WholeScan scan = read(write(folder / "points.vtu", writer.file("UnstructuredGrid", pieces)));
     EXPECT_THAT(scan.positions, ElementsAre(glm::dvec3(1, 0, 0), glm::dvec3(2, 0, 0), glm::dvec3(3, 0, 0)));
     EXPECT_THAT(scalar_values<uint8_t>(scan, "label"), ElementsAre(1, 2, 3));
