@@ -7,6 +7,7 @@
 
 #include <oneapi/tbb/parallel_for.h>
 
+#include "grid/open_scan.h"
 #include "scan/clean_points.h"
 #include "scan/merge_schemas.h"
 
@@ -42,7 +43,7 @@ Result<BuildInputs> BuildInputs::open(std::span<const std::filesystem::path> pat
   for (const std::filesystem::path& path : paths) {
     progress(static_cast<double>(inputs.streams_.size()) / static_cast<double>(paths.size()));
     const scan::DecodingLimit limit{max_bytes - inputs.held_bytes()};
-    Result<scan::ScanStream> stream = open ? open(path, limit, sample) : scan::ScanStream::open(path, limit, sample);
+    Result<scan::ScanStream> stream = open ? open(path, limit, sample) : grid::open_scan(path, limit, sample);
     if (!stream) return fail(std::move(stream.error()));
     for (size_t piece = 0; piece < stream->pieces(); ++piece) {
       inputs.pieces_.push_back({inputs.streams_.size(), piece});

@@ -21,6 +21,7 @@
 #include "builder/ordered_work.h"
 #include "builder/stage_clock.h"
 #include "ellipsoid/ellipsoid_input.h"
+#include "grid/open_scan.h"
 #include "ldc/subtree.h"
 #include "model/model_writer.h"
 #include "model/write_blocks.h"
@@ -232,7 +233,7 @@ Status write(const BuildInputs& inputs, BuildParts& parts, const MemoryPlan& mem
 OpenInput opener(const BuildOptions& options, const std::filesystem::path& target, BuildReport& report) {
   const OpenInput read = [&options](const std::filesystem::path& input, const scan::DecodingLimit& limit,
                                     std::optional<uint64_t> sample) {
-    return scan::ScanStream::open(input, limit, sample, options.selection);
+    return grid::open_scan(input, limit, sample, options.selection);
   };
   const OpenInput other = options.open ? options.open : read;
   return [&options, &report, target, other](const std::filesystem::path& input, const scan::DecodingLimit& limit,

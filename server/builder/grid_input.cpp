@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "grid/grid_format.h"
+#include "grid/vtk_points.h"
 
 namespace surfcast::builder {
 namespace {
@@ -55,7 +56,8 @@ bool is_grid(const std::filesystem::path& path) {
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) return false;
   const Result<stream::FilePtr> file = stream::open_shared(path);
-  return file && !(*file)->bytes().empty() && grid::grid_format_of(*file).has_value();
+  if (!file || (*file)->bytes().empty() || grid::is_vtk_point_set(*file)) return false;
+  return grid::grid_format_of(*file).has_value();
 }
 
 GridInput::GridInput(std::filesystem::path path, grid::GridReader reader, uint64_t stride)

@@ -11,6 +11,7 @@
 #include "gaussian/gaussian_reader.h"
 #include "gaussian/sog_meta.h"
 #include "grid/grid_reader.h"
+#include "grid/open_scan.h"
 #include "mesh/mesh_reader.h"
 #include "scan/scan_folder.h"
 #include "scan/scan_format.h"
@@ -51,7 +52,7 @@ Status check_gaussians(const fs::path& path) {
 
 /// Of a table its header alone: its rows would be read.
 Status check_ellipsoids(const fs::path& path) {
-  if (!is_grid(path)) return scan::check_header(path);
+  if (!is_grid(path) && !ellipsoid::is_vtk_point_set(path)) return scan::check_header(path);
   return ellipsoid::open_ellipsoids(path).map([](const ellipsoid::InputPtr&) {});
 }
 
@@ -96,7 +97,7 @@ Status check_input(const fs::path& path) {
     case InputKind::kScan:
       break;
   }
-  return scan::check_header(path);
+  return grid::check_scan(path);
 }
 
 Result<Files> files_of_input(const fs::path& path) {
@@ -106,7 +107,7 @@ Result<Files> files_of_input(const fs::path& path) {
     case InputKind::kGaussians:
       return files_of_gaussians(path);
     case InputKind::kEllipsoids:
-      return is_grid(path) && !ellipsoid::is_vtk_point_set(path) ? files_of_grid(path) : Files{path};
+      return is_grid(path) ? files_of_grid(path) : Files{path};
     case InputKind::kMesh:
       return mesh::files_of_mesh(path, *mesh::mesh_format_of(path));
     case InputKind::kScan:
@@ -130,6 +131,7 @@ uint64_t bytes_of_input(const fs::path& path) {
 
 std::vector<std::string> input_extensions() {
   std::vector<std::string> all = scan::scan_extensions();
+  for (const char* points : {".vtp", ".vtu", ".vts"}) all.emplace_back(points);
   for (const char* grid :
        {".nrrd", ".nhdr", ".mha", ".mhd", ".vtk", ".vti", ".nii", ".nii.gz", ".hdr", ".mif", ".mif.gz", ".mih"}) {
     all.emplace_back(grid);

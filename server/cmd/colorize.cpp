@@ -20,6 +20,7 @@
 #include "colorize/geo_photo.h"
 #include "colorize/paint_from_above.h"
 #include "colorize/paint_from_cameras.h"
+#include "grid/open_scan.h"
 #include "model/model_file.h"
 
 namespace surfcast::cmd {
@@ -46,7 +47,7 @@ Result<builder::BuildReport> build(const ColorizeCommand& command, const std::fi
   options.meshes.faces = mesh::FacePolicy::kIgnore;
   options.open = [&paint](const std::filesystem::path& input, const scan::DecodingLimit& limit,
                           std::optional<uint64_t> sample) -> Result<scan::ScanStream> {
-    Result<scan::ScanStream> scan = scan::ScanStream::open(input, limit, {});
+    Result<scan::ScanStream> scan = grid::open_scan(input, limit);
     if (!scan || !paint) return scan;
     return paint(std::move(*scan), input, sample);
   };

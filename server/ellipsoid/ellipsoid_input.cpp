@@ -7,6 +7,7 @@
 #include "ellipsoid/vtk_tensors.h"
 #include "grid/grid_format.h"
 #include "grid/grid_reader.h"
+#include "grid/vtk_points.h"
 #include "stream/mapped_stream.h"
 
 namespace surfcast::ellipsoid {
@@ -24,7 +25,7 @@ bool holds_ellipsoids(const std::filesystem::path& path, const InputOptions& opt
   if (!std::filesystem::is_regular_file(path, ignored)) return false;
   const Result<stream::FilePtr> file = stream::open_shared(path);
   if (!file || (*file)->bytes().empty()) return false;
-  if (is_vtk_point_set(*file)) return true;
+  if (grid::is_vtk_point_set(*file)) return holds_vtk_tensors(*file);
   if (grid::grid_format_of(*file)) return is_tensor_grid(path, options);
   return is_ellipsoid_table(*file, options.asked);
 }

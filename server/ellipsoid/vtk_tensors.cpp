@@ -9,20 +9,15 @@
 
 #include "ellipsoid/grid_tensors.h"
 #include "ellipsoid/shape_columns.h"
-#include "grid/header_text.h"
 #include "grid/vtk_legacy_file.h"
 #include "scan/text_tokens.h"
 
 namespace surfcast::ellipsoid {
 namespace {
 
-using grid::HeaderLines;
 using scan::ScalarType;
 
 constexpr uint64_t kRun = 16384;  // points that are read at once
-
-/// Data sets whose points have coordinates of their own.
-constexpr std::array<std::string_view, 3> kPointSets{"unstructured_grid", "polydata", "structured_grid"};
 
 /// Points and tensors of a file.
 struct PointSet {
@@ -34,11 +29,12 @@ struct PointSet {
 
 /// The first tensors of the points.
 Result<PointSet> find_tensors(std::string_view text) {
-  const Result<grid::LegacyFile> file = grid::scan_vtk_legacy(text, kPointSets);
+  const Result<grid::LegacyFile> file = grid::scan_vtk_legacy(text, grid::kVtkPointSets);
   if (!file) return fail(file.error());
   if (file->points.count == 0) return fail(ErrorKind::kInvalidInput, "VTK: the data set has no points");
   const auto of_points = [&](const grid::LegacyArray& array) {
-    return array.tensors && !array.facts.of_cells && array.tuples == file->points.count / 3;
+    return array.facts.role == grid::VtkRole::kTensors && !array.facts.of_cells &&
+           array.tuples == file->points.count / 3;
   };
   const auto found = std::ranges::find_if(file->arrays, of_points);
   if (found == file->arrays.end()) {
@@ -135,15 +131,11 @@ class VtkTensors final : public EllipsoidInput {
 }  // namespace
 
 bool is_vtk_point_set(const stream::FilePtr& file) {
-  const std::string_view text = scan::as_text(file->bytes());
-  if (!text.starts_with("# vtk DataFile")) return false;
-  HeaderLines lines(text.substr(0, 4096));
-  while (const std::optional<std::string_view> line = lines.next()) {
-    const std::vector<std::string_view> words = grid::words_of(*line);
-    if (words.size() < 2 || grid::lower_case(words[0]) != "dataset") continue;
-    return std::ranges::find(kPointSets, grid::lower_case(words[1])) != kPointSets.end();
-  }
-  return false;
+  return grid::is_vtk_legacy_point_set(scan::as_text(file->bytes()));
+}
+
+bool holds_vtk_tensors(const stream::FilePtr& file) {
+  return is_vtk_point_set(file) && find_tensors(scan::as_text(file->bytes())).has_value();
 }
 
 Result<InputPtr> open_vtk_tensors(const stream::FilePtr& file, const std::filesystem::path& path,

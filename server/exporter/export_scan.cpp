@@ -17,6 +17,7 @@
 #include "exporter/point_encoder.h"
 #include "exporter/point_writer.h"
 #include "exporter/table_format.h"
+#include "grid/open_scan.h"
 #include "scan/las_records.h"
 #include "scan/scan_folder.h"
 #include "scan/scan_format.h"
@@ -74,9 +75,9 @@ Result<bool> holds_records(const fs::path& source) {
   if (scan::scan_folder_of(source)) return false;
   const Result<MappedFile> file = MappedFile::open(source);
   if (!file) return fail(file.error());
+  // What is of no format here may be one of grid::open_scan, which reports all others.
   const Result<scan::ScanFormat> format = scan::scan_format_of(file->bytes(), source);
-  if (!format) return fail(format.error().kind, source.string() + ": " + format.error().message);
-  return *format == scan::ScanFormat::kLas;
+  return format && *format == scan::ScanFormat::kLas;
 }
 
 Result<ExportReport> copy_records(const fs::path& source, const fs::path& target, PointFormat format,
@@ -170,7 +171,7 @@ Result<std::unique_ptr<PointWriter>> create_writer(const fs::path& target, const
 
 Result<ExportReport> convert_points(const fs::path& source, const fs::path& target, PointFormat format,
                                     const ExportOptions& options) {
-  const Result<scan::ScanStream> scan = scan::ScanStream::open(source, options.limit, {}, options.selection);
+  const Result<scan::ScanStream> scan = grid::open_scan(source, options.limit, {}, options.selection);
   if (!scan) return fail(scan.error());
   ExportReport report;
   report.notes = scan->schema().notes;

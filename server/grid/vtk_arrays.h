@@ -9,11 +9,15 @@
 
 namespace surfcast::grid {
 
+/// What a VTK file uses an array for, as far as it says.
+enum class VtkRole { kNone, kScalars, kColors, kNormals, kTensors };
+
 /// What VTK files of both kinds state of an array.
 struct VtkArray {
   std::string name;
   uint64_t components = 1;
   bool of_cells = false;
+  VtkRole role = VtkRole::kNone;
   bool preferred = false;  ///< the active scalars or tensors of the file
 };
 

@@ -1,6 +1,7 @@
 #include "grid/vtk_legacy_file.h"
 
 #include <algorithm>
+#include <charconv>
 #include <optional>
 #include <utility>
 
@@ -22,14 +23,30 @@ Result<ScalarType> parse_type(std::string_view text) {
       {"short", ScalarType::kInt16},         {"unsigned_int", ScalarType::kUint32},
       {"int", ScalarType::kInt32},           {"unsigned_long", ScalarType::kUint64},
       {"long", ScalarType::kInt64},          {"vtktypeuint64", ScalarType::kUint64},
-      {"vtktypeint64", ScalarType::kInt64},  {"float", ScalarType::kFloat32},
-      {"double", ScalarType::kFloat64},
+      {"vtktypeint64", ScalarType::kInt64},  {"vtkidtype", ScalarType::kInt32},
+      {"float", ScalarType::kFloat32},       {"double", ScalarType::kFloat64},
   };
   const std::string name = lower_case(text);
   for (const auto& [known, type] : kTypes) {
     if (known == name) return type;
   }
   return bad_header(kFormat, "type of numbers not supported", text);
+}
+
+/// VTK writes what is not a printable character of a name as "%20".
+std::string decoded_name(std::string_view text) {
+  std::string name;
+  for (size_t i = 0; i < text.size(); ++i) {
+    unsigned char byte = 0;
+    const char* const digits = text.data() + i + 1;
+    if (text[i] == '%' && text.size() - i > 2 && std::from_chars(digits, digits + 2, byte, 16).ptr == digits + 2) {
+      name += static_cast<char>(byte);
+      i += 2;
+    } else {
+      name += text[i];
+    }
+  }
+  return name;
 }
 
 /// Goes through the file section by section. The numbers of an array are passed over, not read.
@@ -112,7 +129,10 @@ class LegacyParser {
     if (!second) return bad_header(kFormat, "no size of cells", line);
     HeaderLines ahead = lines_;
     const Words next = words_of(ahead.next().value_or(""));
-    if (!next.empty() && lower_case(next[0]) == "offsets") {
+    const bool by_offsets = !next.empty() && lower_case(next[0]) == "offsets";
+    // A point of POLYDATA as a vertex is no cell to anyone.
+    if (keyword != "vertices") file_.cells += by_offsets && *first > 0 ? *first - 1 : *first;
+    if (by_offsets) {
       offsets_ = *first;
       connectivity_ = *second;
       return {};
@@ -161,18 +181,23 @@ class LegacyParser {
     if (keyword == "field") return parse_fields(line, word(words, 2));
     if (keyword == "lookup_table") return skip_lookup_table(line, word(words, 2));
     if (keyword == "color_scalars") {
-      return add(line, word(words, 1), word(words, 2), file_.binary ? "unsigned_char" : "float", tuples_);
+      return add(line, word(words, 1), word(words, 2), file_.binary ? "unsigned_char" : "float", tuples_,
+                 VtkRole::kColors);
     }
     if (keyword == "scalars") {
       if (Status status = skip_table_name(); !status) return status;
-      return add(line, word(words, 1), word(words, 3).empty() ? "1" : word(words, 3), word(words, 2), tuples_);
+      return add(line, word(words, 1), word(words, 3).empty() ? "1" : word(words, 3), word(words, 2), tuples_,
+                 VtkRole::kScalars);
     }
     if (keyword == "texture_coordinates") return add(line, word(words, 1), word(words, 2), word(words, 3), tuples_);
-    if (keyword == "vectors" || keyword == "normals") return add(line, word(words, 1), "3", word(words, 2), tuples_);
-    if (keyword == "tensors") return add_tensors(line, words, "9");
-    if (keyword == "tensors6") return add_tensors(line, words, "6");
-    if (keyword == "global_ids" || keyword == "pedigree_ids")
-      return add(line, word(words, 1), "1", word(words, 2), tuples_);
+    const auto add_typed = [&](std::string_view components, VtkRole role) {
+      return add(line, word(words, 1), components, word(words, 2), tuples_, role);
+    };
+    if (keyword == "vectors") return add_typed("3", VtkRole::kNone);
+    if (keyword == "normals") return add_typed("3", VtkRole::kNormals);
+    if (keyword == "tensors") return add_typed("9", VtkRole::kTensors);
+    if (keyword == "tensors6") return add_typed("6", VtkRole::kTensors);
+    if (keyword == "global_ids" || keyword == "pedigree_ids") return add_typed("1", VtkRole::kNone);
     return bad_header(kFormat, "line not understood", line);
   }
 
@@ -214,7 +239,7 @@ class LegacyParser {
 
   /// Notes an array whose numbers begin here, and passes over them. Arrays of the whole file are only passed over.
   Status add(std::string_view line, std::string_view name, std::string_view components, std::string_view type_name,
-             uint64_t tuples) {
+             uint64_t tuples, VtkRole role = VtkRole::kNone) {
     const auto count = scan::parse_number<uint64_t>(components);
     const Result<ScalarType> type = parse_type(type_name);
     if (!count || *count == 0) return bad_header(kFormat, "no number of components", line);
@@ -222,14 +247,7 @@ class LegacyParser {
     const VtkNumbers numbers{*type, stream::saturating(*count, tuples, 0), lines_.offset()};
     if (Status status = skip_numbers(numbers.count, *type); !status) return status;
     if (!in_data_ || tuples != tuples_) return {};
-    file_.arrays.push_back({{std::string(name), *count, of_cells_, false}, false, tuples, numbers});
-    return {};
-  }
-
-  Status add_tensors(std::string_view line, const Words& words, std::string_view components) {
-    const size_t before = file_.arrays.size();
-    if (Status status = add(line, word(words, 1), components, word(words, 2), tuples_); !status) return status;
-    if (file_.arrays.size() > before) file_.arrays.back().tensors = true;
+    file_.arrays.push_back({{decoded_name(name), *count, of_cells_, role, false}, tuples, numbers});
     return {};
   }
 
@@ -267,6 +285,17 @@ class LegacyParser {
 };
 
 }  // namespace
+
+bool is_vtk_legacy_point_set(std::string_view text) {
+  if (!text.starts_with("# vtk DataFile")) return false;
+  HeaderLines lines(text.substr(0, 4096));
+  while (const std::optional<std::string_view> line = lines.next()) {
+    const std::vector<std::string_view> words = words_of(*line);
+    if (words.size() < 2 || lower_case(words[0]) != "dataset") continue;
+    return std::ranges::find(kVtkPointSets, lower_case(words[1])) != kVtkPointSets.end();
+  }
+  return false;
+}
 
 Result<LegacyFile> scan_vtk_legacy(std::string_view text, std::span<const std::string_view> datasets) {
   return LegacyParser(text, datasets).parse();

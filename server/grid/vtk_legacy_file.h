@@ -25,7 +25,6 @@ struct VtkNumbers {
 /// An array with a tuple for each point or cell.
 struct LegacyArray {
   VtkArray facts;
-  bool tensors = false;  ///< of the section TENSORS or TENSORS6
   uint64_t tuples = 0;
   VtkNumbers numbers;
 };
@@ -36,9 +35,16 @@ struct LegacyFile {
   std::array<uint64_t, 3> dimensions{};
   glm::dvec3 spacing{1.0};
   glm::dvec3 origin{0.0};
-  VtkNumbers points;  ///< coordinates; none of a regular grid
+  VtkNumbers points;   ///< coordinates; none of a regular grid
+  uint64_t cells = 0;  ///< lines, polygons, volumes; none of a structured grid
   std::vector<LegacyArray> arrays;
 };
+
+/// Data sets whose points have coordinates of their own, in lower case.
+inline constexpr std::array<std::string_view, 3> kVtkPointSets{"unstructured_grid", "polydata", "structured_grid"};
+
+/// True for a file of VTK's legacy format whose data set is one of these.
+[[nodiscard]] bool is_vtk_legacy_point_set(std::string_view text);
 
 /// Goes through a file section by section. Numbers are passed over, not read. `datasets`: those that are taken, in
 /// lower case. Fails on others, on lines that are not understood, and where numbers are missing.

@@ -1,7 +1,6 @@
 #include "grid/vtk_xml_tree.h"
 
 #include <algorithm>
-#include <limits>
 #include <memory>
 #include <utility>
 
@@ -18,22 +17,24 @@ using ParserPtr = std::unique_ptr<std::remove_pointer_t<XML_Parser>, decltype(&X
 /// Parts of the file that are given to expat, bytes.
 constexpr size_t kPart = size_t{1} << 20;
 
-class ImageParser {
+class TreeParser {
  public:
-  explicit ImageParser(std::string_view text) : text_(text), parser_(XML_ParserCreate(nullptr), XML_ParserFree) {
+  /// `head_alone`: nothing behind the tag VTKFile is parsed.
+  explicit TreeParser(std::string_view text, bool head_alone = false)
+      : text_(text), head_alone_(head_alone), parser_(XML_ParserCreate(nullptr), XML_ParserFree) {
     SURFCAST_EXPECTS(parser_ != nullptr);
     XML_SetUserData(parser_.get(), this);
     XML_SetElementHandler(
         parser_.get(),
         [](void* self, const XML_Char* name, const XML_Char** attributes) {
-          static_cast<ImageParser*>(self)->start(name, attributes);
+          static_cast<TreeParser*>(self)->start(name, attributes);
         },
-        [](void* self, const XML_Char* name) { static_cast<ImageParser*>(self)->end(name); });
+        [](void* self, const XML_Char* name) { static_cast<TreeParser*>(self)->end(name); });
     XML_SetStartDoctypeDeclHandler(parser_.get(), [](void* self, const XML_Char*, const XML_Char*, const XML_Char*,
-                                                     int) { static_cast<ImageParser*>(self)->refuse_document_type(); });
+                                                     int) { static_cast<TreeParser*>(self)->refuse_document_type(); });
   }
 
-  Result<XmlImage> parse() {
+  Result<XmlFile> parse() {
     for (size_t at = 0; at < text_.size() && !stopped_; at += kPart) {
       const std::string_view part = text_.substr(at, kPart);
       const bool last = at + part.size() == text_.size();
@@ -41,7 +42,10 @@ class ImageParser {
       if (status != XML_STATUS_OK && !stopped_) return syntax_error();
     }
     if (has_document_type_) return fail(ErrorKind::kInvalidInput, "VTK: XML with a document type");
-    return std::move(image_);
+    if (file_.appended) {
+      if (Status status = find_appended(); !status) return fail(std::move(status.error()));
+    }
+    return std::move(file_);
   }
 
  private:
@@ -71,29 +75,39 @@ class ImageParser {
     Attributes attributes;
     for (; *list != nullptr; list += 2) attributes[list[0]] = list[1];
     if (name == "VTKFile")
-      image_.file = std::move(attributes);
-    else if (name == "ImageData")
-      image_.image = std::move(attributes);
+      begin_file(std::move(attributes));
+    else if (!file_.file.empty() && name == attribute(file_.file, "type"))
+      file_.data_set = std::move(attributes);
     else if (name == "Piece")
-      image_.pieces.push_back(std::move(attributes));
-    else if (name == "PointData")
-      begin_data(image_.point_data, std::move(attributes), false);
-    else if (name == "CellData")
-      begin_data(image_.cell_data, std::move(attributes), true);
-    else if (name == "DataArray" && in_data_)
-      begin_array(std::move(attributes));
+      file_.pieces.push_back({std::move(attributes), {}, {}});
     else if (name == "AppendedData")
       end_at_appended(std::move(attributes));
+    else if (!file_.pieces.empty())
+      start_in_piece(name, std::move(attributes));
   }
 
-  void begin_data(Attributes& into, Attributes attributes, bool of_cells) {
-    into = std::move(attributes);
-    in_data_ = true;
-    of_cells_ = of_cells;
+  void begin_file(Attributes attributes) {
+    file_.file = std::move(attributes);
+    if (head_alone_) stop();
+  }
+
+  void start_in_piece(std::string_view name, Attributes attributes) {
+    XmlPiece& piece = file_.pieces.back();
+    if (name == "DataArray") {
+      if (section_) begin_array(std::move(attributes));
+    } else if (name == "Points") {
+      section_ = XmlSection::kPoints;
+    } else if (name == "PointData") {
+      piece.point_data = std::move(attributes);
+      section_ = XmlSection::kPointData;
+    } else if (name == "CellData") {
+      piece.cell_data = std::move(attributes);
+      section_ = XmlSection::kCellData;
+    }
   }
 
   void begin_array(Attributes attributes) {
-    image_.arrays.push_back({std::move(attributes), of_cells_, tag_end(), tag_end()});
+    file_.arrays.push_back({std::move(attributes), *section_, file_.pieces.size() - 1, tag_end(), tag_end()});
     array_depth_ = 1;
     has_text_ = false;
   }
@@ -106,7 +120,7 @@ class ImageParser {
 
   /// Takes the text since the last tag as that of the array, unless it is blank or the text was found before.
   void take_text() {
-    XmlArray& array = image_.arrays.back();
+    XmlArray& array = file_.arrays.back();
     if (has_text_) return;
     const std::string_view text = text_.substr(array.text_begin, tag_begin() - array.text_begin);
     has_text_ = !std::all_of(text.begin(), text.end(), scan::is_space);
@@ -115,33 +129,51 @@ class ImageParser {
 
   void end(std::string_view name) {
     if (array_depth_ > 1 && --array_depth_ == 1 && !has_text_)
-      image_.arrays.back().text_begin = tag_end();
+      file_.arrays.back().text_begin = tag_end();
     else if (array_depth_ == 1 && name == "DataArray")
       end_array();
-    if (name == "PointData" || name == "CellData") in_data_ = false;
+    if (name == "PointData" || name == "CellData" || name == "Points") section_.reset();
   }
 
   /// The end of an empty element <DataArray/> is where it begins.
   void end_array() {
-    XmlArray& array = image_.arrays.back();
+    XmlArray& array = file_.arrays.back();
     if (tag_begin() >= array.text_begin) take_text();
     array.text_end = std::max(array.text_begin, array.text_end);
     array_depth_ = 0;
   }
 
   void end_at_appended(Attributes attributes) {
-    image_.appended = std::move(attributes);
-    image_.appended_begin = tag_end();
+    file_.appended = std::move(attributes);
+    file_.appended_begin = tag_end();
     stop();
   }
 
+  /// Appended data begin behind an underscore. Behind base64 text is the end tag.
+  Status find_appended() {
+    const std::string_view encoding = attribute(*file_.appended, "encoding");
+    file_.appended_base64 = encoding == "base64";
+    if (!file_.appended_base64 && encoding != "raw") {
+      return fail(ErrorKind::kInvalidInput,
+                  "VTK: encoding of appended data not supported: " + scan::printable(encoding));
+    }
+    const size_t underscore = text_.find_first_not_of(" \t\r\n", file_.appended_begin);
+    if (underscore == std::string_view::npos || text_[underscore] != '_') {
+      return fail(ErrorKind::kInvalidInput, "VTK: appended data that do not begin with an underscore");
+    }
+    file_.appended_begin = underscore + 1;
+    file_.appended_end = file_.appended_base64 ? text_.find('<', underscore) : text_.size();
+    file_.appended_end = std::min(file_.appended_end, text_.size());
+    return {};
+  }
+
   std::string_view text_;
+  bool head_alone_;
   ParserPtr parser_;
-  XmlImage image_;
+  XmlFile file_;
   bool stopped_ = false;
   bool has_document_type_ = false;
-  bool in_data_ = false;
-  bool of_cells_ = false;
+  std::optional<XmlSection> section_;
   bool has_text_ = false;
   int array_depth_ = 0;
 };
@@ -153,8 +185,15 @@ std::string_view attribute(const Attributes& attributes, std::string_view name) 
   return at == attributes.end() ? std::string_view() : std::string_view(at->second);
 }
 
-Result<XmlImage> parse_xml_image(std::string_view text) {
-  return ImageParser(text).parse();
+Result<XmlFile> parse_vtk_xml_tree(std::string_view text) {
+  return TreeParser(text).parse();
+}
+
+std::string vtk_xml_type(std::string_view text) {
+  const std::string_view head = text.substr(0, 4096);
+  if (head.find("<VTKFile") == std::string_view::npos) return {};
+  const Result<XmlFile> file = TreeParser(head, true).parse();
+  return file ? std::string(attribute(file->file, "type")) : std::string();
 }
 
 }  // namespace surfcast::grid

@@ -16,26 +16,40 @@ using Attributes = std::map<std::string, std::string, std::less<>>;
 /// The attribute, or an empty text.
 [[nodiscard]] std::string_view attribute(const Attributes& attributes, std::string_view name);
 
+/// The elements of a piece that have arrays for its points or cells.
+enum class XmlSection { kPoints, kPointData, kCellData };
+
 struct XmlArray {
   Attributes attributes;
-  bool of_cells = false;
+  XmlSection section = XmlSection::kPointData;
+  size_t piece = 0;
   uint64_t text_begin = 0;  ///< of its text in the file, for arrays that are not appended
   uint64_t text_end = 0;
 };
 
-/// The elements of a VTK file with image data.
-struct XmlImage {
-  Attributes file;   ///< of VTKFile
-  Attributes image;  ///< of ImageData
-  std::vector<Attributes> pieces;
+struct XmlPiece {
+  Attributes attributes;
   Attributes point_data;
   Attributes cell_data;
-  std::vector<XmlArray> arrays;
-  std::optional<Attributes> appended;
-  uint64_t appended_begin = 0;  ///< behind the tag AppendedData
 };
 
-/// Parses the elements of the file up to appended data, which need not be XML. Document types are refused.
-Result<XmlImage> parse_xml_image(std::string_view text);
+/// The elements of a VTK file.
+struct XmlFile {
+  Attributes file;      ///< of VTKFile
+  Attributes data_set;  ///< of the element that has the type of the file as its name: ImageData, for example
+  std::vector<XmlPiece> pieces;
+  std::vector<XmlArray> arrays;  ///< of the sections above, in the order of the file
+  std::optional<Attributes> appended;
+  uint64_t appended_begin = 0;  ///< behind the tag AppendedData and its underscore
+  uint64_t appended_end = 0;    ///< of base64 text, or of the file
+  bool appended_base64 = false;
+};
+
+/// Parses the elements of the file up to appended data, which need not be XML. Document types are refused, and so are
+/// appended data that are neither raw nor base64.
+Result<XmlFile> parse_vtk_xml_tree(std::string_view text);
+
+/// The type of data set that the first bytes of a file state; empty if they are not those of VTK's XML.
+[[nodiscard]] std::string vtk_xml_type(std::string_view text);
 
 }  // namespace surfcast::grid

@@ -3,12 +3,13 @@
 #include <utility>
 
 #include "builder/grid_input.h"
+#include "grid/open_scan.h"
 
 namespace surfcast::isosurface {
 
 Result<scan::ScanStream> SurfaceInputs::open(const std::filesystem::path& input, const scan::DecodingLimit& limit,
                                              std::optional<uint64_t> sample) {
-  if (!builder::is_grid(input)) return scan::ScanStream::open(input, limit, sample);
+  if (!builder::is_grid(input)) return grid::open_scan(input, limit, sample);
   Result<SurfaceRows> surfaces = find_surfaces(input, surfaces_, limit.max_bytes, target_);
   if (!surfaces) return fail(std::move(surfaces.error()));
   found_.push_back({input.filename().string(), std::move(surfaces->reports)});

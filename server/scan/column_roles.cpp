@@ -10,9 +10,6 @@
 namespace surfcast::scan {
 namespace {
 
-/// More columns than any scan has. The limit bounds the time to make names unique, which is quadratic.
-constexpr size_t kMaxColumns = 1024;
-
 /// Columns by canonical name. A second column of the same name gets a name of its own.
 using NamedColumns = std::map<std::string, size_t>;
 
@@ -61,10 +58,13 @@ void take_packed_color(std::span<const ColumnInfo> columns, NamedColumns& named,
 
 }  // namespace
 
+Status check_column_count(uint64_t columns) {
+  if (columns <= kMaxColumns) return {};
+  return fail(ErrorKind::kLimit, "has more than " + std::to_string(kMaxColumns) + " values for each point");
+}
+
 Result<ColumnRoles> assign_roles(std::span<const ColumnInfo> columns, const std::vector<bool>& absent) {
-  if (columns.size() > kMaxColumns) {
-    return fail(ErrorKind::kLimit, "has more than " + std::to_string(kMaxColumns) + " values for each point");
-  }
+  if (Status status = check_column_count(columns.size()); !status) return fail(std::move(status.error()));
   NamedColumns named = name_columns(columns, absent);
   const auto position = take_triple(named, "x", "y", "z");
   if (!position) return fail(ErrorKind::kInvalidInput, "has no x, y and z for its points");

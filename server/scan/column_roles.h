@@ -14,6 +14,12 @@ namespace surfcast::scan {
 
 using ColumnTriple = std::array<size_t, 3>;
 
+/// More columns than any scan has. The limit bounds the time to make names unique, which is quadratic.
+inline constexpr size_t kMaxColumns = 1024;
+
+/// An error beyond that limit.
+[[nodiscard]] Status check_column_count(uint64_t columns);
+
 /// The roles of the columns of a table, as column indices.
 struct ColumnRoles {
   struct Scalar {

@@ -23,7 +23,7 @@ constexpr Known kOtherContents[] = {
     {"NGSP", "SPZ files of 3D Gaussians are not supported"},
     {"PK\x03\x04", "zip archives are not supported"},
     {"NRRD", "volumes (NRRD) are not supported"},
-    {"# vtk DataFile", "VTK files are not supported"},
+    {"# vtk DataFile", "volumes (VTK) are not supported"},
     {"<", "XML and HTML files are not supported"},
     {"{", "JSON files are not supported"},
     {"\x89PNG", "pictures are not scans"},

@@ -144,10 +144,13 @@ Result<ScanStream> ScanStream::open_content(std::span<const std::byte> bytes, co
 }
 
 Result<ScanStream> ScanStream::of_rows(std::unique_ptr<RowSource> rows, const std::filesystem::path& path,
-                                       std::optional<uint64_t> sample) {
+                                       std::optional<uint64_t> sample, const Selection& selection) {
   ScanStream stream;
-  stream.rows_ = std::move(rows);
-  if (Status status = stream.examine_rows(path, sample, false); !status) return fail(std::move(status.error()));
+  Result<std::unique_ptr<RowSource>> selected = select_rows(std::move(rows), selection);
+  if (!selected) return fail(selected.error().kind, path.string() + ": " + selected.error().message);
+  stream.rows_ = std::move(*selected);
+  if (Status status = stream.examine_rows(path, sample, !selection.everything()); !status)
+    return fail(std::move(status.error()));
   return stream;
 }
 

@@ -33,9 +33,9 @@ class ScanStream {
   /// The same for content in memory, which must outlive the stream. `path` only names it in messages.
   static Result<ScanStream> open_content(std::span<const std::byte> bytes, const std::filesystem::path& path,
                                          const DecodingLimit& limit = {});
-  /// The same for rows that are made, not read. `path` only names them.
+  /// The same for rows that are made, or read by someone else. `path` only names them.
   static Result<ScanStream> of_rows(std::unique_ptr<RowSource> rows, const std::filesystem::path& path,
-                                    std::optional<uint64_t> sample);
+                                    std::optional<uint64_t> sample, const Selection& selection = {});
 
   [[nodiscard]] const ScanSchema& schema() const { return meaning_.schema; }
   [[nodiscard]] uint64_t size() const { return size_; }                  ///< points, including unusable ones

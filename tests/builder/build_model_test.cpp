@@ -192,6 +192,41 @@ TEST_F(BuildModelTest, SignsOfNormalsAgreeAcrossParts) {
   }
 }
 
+/// The points of numbered() as VTK's XML, with a cell and its number.
+void write_vtu(const std::vector<glm::dvec3>& positions, const fs::path& path) {
+  const size_t count = positions.size();
+  std::ofstream file(path);
+  file.precision(17);
+  file << "<VTKFile type=\"UnstructuredGrid\"><UnstructuredGrid><Piece NumberOfPoints=\"" << count
+       << "\" NumberOfCells=\"1\">\n<Points><DataArray type=\"Float64\" NumberOfComponents=\"3\" format=\"ascii\">\n";
+  for (const glm::dvec3& p : positions) file << p.x << ' ' << p.y << ' ' << p.z << '\n';
+  file << "</DataArray></Points>\n<PointData><DataArray type=\"Int32\" Name=\"number\" format=\"ascii\">\n";
+  for (size_t i = 0; i < count; ++i) file << i << '\n';
+  file << "</DataArray><DataArray type=\"UInt8\" Name=\"Intensity\" format=\"ascii\">\n";
+  for (size_t i = 0; i < count; ++i) file << i * 7 % 256 << '\n';
+  file << "</DataArray></PointData>\n</Piece></UnstructuredGrid></VTKFile>\n";
+}
+
+TEST_F(BuildModelTest, PointsOfVtkAreAScanLikeAnyOther) {
+  const std::vector<glm::dvec3> positions = hills_and_dome(40);
+  numbered(positions).write(scan_);
+  const fs::path vtk = folder_ / "scan.vtu";
+  write_vtu(positions, vtk);
+  build({scan_}, other_);
+  const BuildReport report = build({vtk}, model_);
+  EXPECT_THAT(report.scan.notes, ::testing::Contains(HasSubstr("scan.vtu: cells are left out")));
+  const auto names = model::ModelFile::open(model_).value().info().scalar_names;
+  EXPECT_THAT(names, ::testing::IsSupersetOf({"number", "intensity"}));
+  const auto expected = surfels_of(other_);
+  const auto actual = surfels_of(model_);
+  ASSERT_EQ(actual.size(), expected.size());
+  for (const auto& [number, surfel] : expected) {
+    EXPECT_EQ(actual.at(number).position, surfel.position);
+    EXPECT_EQ(actual.at(number).normal, surfel.normal);
+    EXPECT_EQ(actual.at(number).intensity, surfel.intensity);
+  }
+}
+
 TEST_F(BuildModelTest, ThreadsDoNotChangeAByte) {
   numbered(hills_and_dome(60)).write(scan_);
   std::vector<std::vector<char>> whole;

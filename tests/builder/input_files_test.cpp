@@ -60,6 +60,28 @@ TEST(InputFilesTest, OfAFolderWithASogModelAreItsDescriptionAndItsPictures) {
   EXPECT_TRUE(check_input(sog));
 }
 
+TEST(InputFilesTest, OfVtkMayBeScansGridsOrEllipsoids) {
+  const model::TestFolder folder;
+  const std::string head = "# vtk DataFile Version 3.0\nt\nASCII\nDATASET ";
+  const std::string points = head + "POLYDATA\nPOINTS 1 float\n1 2 3\n";
+  const fs::path scan = write(folder / "scan.vtk", points);
+  EXPECT_EQ(kind_of_input(scan), InputKind::kScan);
+  EXPECT_TRUE(check_input(scan));
+  EXPECT_THAT(files_of_input(scan).value(), ElementsAre(scan));
+  const fs::path tensors = write(folder / "tensors.vtk", points + "POINT_DATA 1\nTENSORS t float\n1 0 0 0 2 0 0 0 3\n");
+  EXPECT_EQ(kind_of_input(tensors), InputKind::kEllipsoids);
+  EXPECT_TRUE(check_input(tensors));
+  EXPECT_THAT(files_of_input(tensors).value(), ElementsAre(tensors));
+  const fs::path image = write(folder / "image.vtk", head +
+                                                         "STRUCTURED_POINTS\nDIMENSIONS 1 1 1\nPOINT_DATA 1\n"
+                                                         "SCALARS s float\nLOOKUP_TABLE default\n1\n");
+  EXPECT_EQ(kind_of_input(image), InputKind::kGrid);
+  const fs::path empty = write(folder / "empty.vtp", "<VTKFile type=\"PolyData\"><PolyData/></VTKFile>");
+  EXPECT_EQ(kind_of_input(empty), InputKind::kScan);
+  EXPECT_THAT(check_input(empty).error().message, HasSubstr("empty.vtp: VTK: the data set has no points"));
+  EXPECT_THAT(input_extensions(), ::testing::IsSupersetOf({".vtk", ".vtp", ".vtu", ".vts"}));
+}
+
 TEST(InputFilesTest, AreAllThereBeforeAGridIsTaken) {
   const model::TestFolder folder;
   const fs::path meta = write(folder / "meta.mhd", kMeta + "missing.raw\n");

@@ -174,9 +174,10 @@ TEST_F(EllipsoidInputTest, VtkPointsMayBeBinary) {
   EXPECT_THAT(fault(write("cut.vtk", file.substr(0, file.size() - 9))), HasSubstr("truncated"));
 }
 
-TEST_F(EllipsoidInputTest, VtkPointsWithoutTensorsAreNamed) {
-  EXPECT_THAT(fault(write("points.vtk", vtk("DATASET POLYDATA\nPOINTS 1 float\n0 0 0\n"))),
-              HasSubstr("its points have no tensors"));
+TEST_F(EllipsoidInputTest, VtkPointsWithoutTensorsAreNoneAndNamedIfAskedFor) {
+  const auto path = write("points.vtk", vtk("DATASET POLYDATA\nPOINTS 1 float\n0 0 0\n"));
+  EXPECT_FALSE(holds_ellipsoids(path));
+  EXPECT_THAT(fault(path), HasSubstr("its points have no tensors"));
 }
 
 class NiftiTensorTest : public EllipsoidInputTest {

@@ -228,6 +228,19 @@ TEST_F(ExportScanTest, AnyScanBecomesAnyFormatWithItsAttributes) {
   }
 }
 
+TEST_F(ExportScanTest, PointsOfVtkAreAScanToo) {
+  const fs::path source =
+      write("scan.vtk",
+            "# vtk DataFile Version 3.0\nt\nASCII\nDATASET POLYDATA\nPOINTS 2 float\n1 2 3 4 5 6\nPOINT_DATA 2\n"
+            "SCALARS intensity unsigned_short\nLOOKUP_TABLE default\n7 8\n");
+  const auto report = export_scan(source, place("out.las"), {});
+  ASSERT_TRUE(report) << report.error().message;
+  const auto out = testing::whole(scan::ScanStream::open(place("out.las")));
+  ASSERT_TRUE(out) << out.error().message;
+  EXPECT_THAT(out->positions, ::testing::ElementsAre(glm::dvec3(1, 2, 3), glm::dvec3(4, 5, 6)));
+  EXPECT_THAT(testing::scalar_values<uint16_t>(*out, "intensity"), ::testing::ElementsAre(7, 8));
+}
+
 TEST_F(ExportScanTest, LasBecomesATableOfExactNumbers) {
   const LasFile file = sample_file(2, 200);
   const fs::path source = write("scan.las", file.text());

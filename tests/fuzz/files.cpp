@@ -6,6 +6,7 @@
 #include "fuzz/targets.h"
 #include "gaussian/gaussian_reader.h"
 #include "grid/grid_reader.h"
+#include "grid/open_scan.h"
 #include "mesh/mesh_reader.h"
 #include "scan/scan_stream.h"
 
@@ -34,7 +35,14 @@ void read_scan(Bytes bytes) {
 }
 
 void read_grid(Bytes bytes) {
-  Result<grid::GridReader> reader = grid::GridReader::open(input_file(bytes, "input.grid"));
+  const std::string path = input_file(bytes, "input.grid");
+  if (grid::holds_vtk_points(path)) {
+    const Result<scan::ScanStream> points = grid::open_scan(path, kLimit);
+    for (size_t piece = 0; points && piece < points->pieces() && points->read(piece); ++piece) {
+    }
+    return;
+  }
+  Result<grid::GridReader> reader = grid::GridReader::open(path);
   if (!reader) return;
   const size_t sample = reader->header().sample_bytes();
   const uint64_t samples = reader->header().samples();

@@ -19,7 +19,7 @@ void read_route(Bytes bytes);    ///< the target of an HTTP request
 void read_query(Bytes bytes);    ///< the query of a picture, a pick, a profile or points
 
 void read_scan(Bytes bytes);       ///< LAS, LAZ, PLY, PCD, PTX, Draco, E57, pnts, Expe, text: by content
-void read_grid(Bytes bytes);       ///< NRRD, MetaImage, VTK, NIfTI: by content
+void read_grid(Bytes bytes);       ///< NRRD, MetaImage, VTK with points too, NIfTI: by content
 void read_ellipsoid(Bytes bytes);  ///< NRRD, VTK, NIfTI and MRtrix of tensors, tables
 void read_mesh(Bytes bytes);       ///< OBJ, glTF, GLB, PLY with faces, STL
 void read_gaussian(Bytes bytes);   ///< PLY, SPZ, SOG: by content
