@@ -1,6 +1,7 @@
 #include "simplify/smooth_scenes.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
@@ -80,6 +81,66 @@ ImplicitSurface box() {
           1, 0.72};
 }
 
+ImplicitSurface blob() {
+  struct Ball {
+    glm::dvec3 centre;
+    double width;
+  };
+  static constexpr std::array<Ball, 4> kBalls{Ball{{-0.45, -0.1, -0.2}, 0.55}, Ball{{0.4, -0.3, 0.1}, 0.5},
+                                              Ball{{0.1, 0.5, -0.1}, 0.45}, Ball{{0, 0, 0.55}, 0.5}};
+  // A slope of exp(-r^2 / w^2) is at most sqrt(2 / e) / w.
+  constexpr double kSlope = 0.858 * (1 / 0.55 + 2 / 0.5 + 1 / 0.45);
+  const auto density = [](const glm::dvec3& p) {
+    double sum = 0;
+    for (const Ball& b : kBalls) sum += std::exp(-glm::dot(p - b.centre, p - b.centre) / (b.width * b.width));
+    return sum;
+  };
+  return {"blob", [density](const glm::dvec3& p) { return (0.5 - density(p)) / kSlope; },
+          [](const glm::dvec3& p) {
+            glm::dvec3 outwards(0);
+            for (const Ball& b : kBalls) {
+              const glm::dvec3 d = p - b.centre;
+              outwards += d * (std::exp(-glm::dot(d, d) / (b.width * b.width)) / (b.width * b.width));
+            }
+            return outwards;
+          },
+          0.1, 1.3};
+}
+
+ImplicitSurface spring() {
+  static constexpr double kRadius = 0.75;
+  constexpr double kTube = 0.16;
+  static constexpr double kRise = 0.5 / (2 * std::numbers::pi);  // for an angle of 1
+  static constexpr double kLast = 3 * std::numbers::pi;
+  const auto centre = [](double t) { return glm::dvec3(kRadius * std::cos(t), kRadius * std::sin(t), kRise * t); };
+  // The nearest point of the helix: Newton's method from the angle of the point, in each turn.
+  const auto nearest = [centre](const glm::dvec3& p) {
+    const double angle = std::atan2(p.y, p.x);
+    glm::dvec3 best = centre(0);
+    for (int turn = -2; turn <= 2; ++turn) {
+      double t = std::clamp(angle + 2 * std::numbers::pi * turn, -kLast, kLast);
+      for (int i = 0; i < 8; ++i) {
+        const double along = kRadius * (p.x * std::sin(t) - p.y * std::cos(t)) - kRise * (p.z - kRise * t);
+        const double slope = kRadius * (p.x * std::cos(t) + p.y * std::sin(t)) + kRise * kRise;
+        t = std::clamp(t - along / std::max(slope, 0.1), -kLast, kLast);
+      }
+      if (glm::distance(p, centre(t)) < glm::distance(p, best)) best = centre(t);
+    }
+    return best;
+  };
+  return {"spring", [nearest](const glm::dvec3& p) { return 0.9 * (glm::distance(p, nearest(p)) - kTube); },
+          [nearest](const glm::dvec3& p) { return p - nearest(p); }, 0.9, 1.0};
+}
+
+ImplicitSurface open_saddle() {
+  return {"open saddle",
+          [](const glm::dvec3& p) { return (p.z - 0.3 * (p.x * p.x - p.y * p.y)) / 1.4; },
+          [](const glm::dvec3& p) { return glm::dvec3(-0.6 * p.x, 0.6 * p.y, 1); },
+          0.7,
+          1,
+          1};
+}
+
 glm::dvec3 normal_at(const ImplicitSurface& surface, const glm::dvec3& point) {
   return glm::normalize(surface.gradient(point));
 }
@@ -100,7 +161,7 @@ std::vector<Sample> random_samples(const ImplicitSurface& surface, size_t count,
     const double slope = (surface.distance(p + 1e-6 * n) - surface.distance(p - 1e-6 * n)) / 2e-6;
     if (share(random) * 1.5 > slope) continue;
     for (int i = 0; i < 20; ++i) p -= surface.distance(p) / slope * normal_at(surface, p);
-    samples.push_back({p, normal_at(surface, p)});
+    if (!surface.is_cut(p)) samples.push_back({p, normal_at(surface, p)});
   }
   return samples;
 }

@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <glm/vec3.hpp>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -11,13 +13,17 @@
 
 namespace surfcast::testing {
 
-/// A closed surface: where the function is 0, negative inside.
+/// A surface: where the function is 0, negative inside. Closed, or cut off by an upright cylinder.
 struct ImplicitSurface {
   std::string name;
   std::function<double(const glm::dvec3&)> distance;  ///< its slope is between `least_slope` and 1
   std::function<glm::dvec3(const glm::dvec3&)> gradient;
   double least_slope = 1;
   double extent = 1;  ///< half of the side of a cube about the origin that holds it
+  double border = std::numeric_limits<double>::infinity();  ///< radius of the cylinder about z that cuts it off
+
+  /// True if the point lies beyond the border.
+  [[nodiscard]] bool is_cut(const glm::dvec3& p) const { return std::hypot(p.x, p.y) > border; }
 };
 
 /// A torus about z: radius 1 of its circle, 0.4 of its tube.
@@ -26,6 +32,13 @@ ImplicitSurface torus();
 ImplicitSurface bumpy_sphere();
 /// A cube of side 1.4 with sharp edges.
 ImplicitSurface box();
+
+/// Four soft balls that melt into each other.
+ImplicitSurface blob();
+/// A tube of radius 0.16 along three turns of a helix, with round ends.
+ImplicitSurface spring();
+/// z = 0.3 (x^2 - y^2) within a circle of radius 1: open, with a border.
+ImplicitSurface open_saddle();
 
 glm::dvec3 normal_at(const ImplicitSurface& surface, const glm::dvec3& point);
 
