@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "builder/spool_file.h"
+#include "grid/open_scan.h"
 #include "scan/scan_stream.h"
 #include "scattered/field_lattice.h"
 #include "scattered/field_planes.h"
@@ -93,14 +94,14 @@ Result<GridInput> sample_field(const scan::ScanStream& scan, const std::filesyst
 }  // namespace
 
 bool holds_field(const std::filesystem::path& path, const scattered::FieldOptions& options) {
-  const Result<scan::ScanStream> scan = scan::ScanStream::open(path);
+  const Result<scan::ScanStream> scan = grid::open_scan(path);
   return scan && scattered::has_field(scan->schema(), options);
 }
 
 Result<GridInput> open_field(const std::filesystem::path& path, const scattered::FieldOptions& options,
                              const std::filesystem::path& target, uint64_t memory, std::optional<uint64_t> sample,
                              std::vector<InputField>& report) {
-  const Result<scan::ScanStream> scan = scan::ScanStream::open(path, {memory});
+  const Result<scan::ScanStream> scan = grid::open_scan(path, {memory});
   if (!scan) return fail(scan.error());
   InputField found{scan->schema().name};
   const uint64_t left = memory - std::min(memory, scan->held_bytes());

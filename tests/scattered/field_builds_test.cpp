@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <iomanip>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -72,6 +73,40 @@ TEST(FieldBuilds, ATableOfSamplesBecomesAVolumeOfItsField) {
   ASSERT_EQ(model->volumes().size(), 1U);
   EXPECT_EQ(model->volumes()[0].name, "field");
   EXPECT_LE(error_of(*model, samples), 3e-5);  // codes of 16 bits
+}
+
+/// The samples as the points of an unstructured grid, as VTK writes one in text.
+std::filesystem::path write_vtu(const std::filesystem::path& path, const std::vector<StatedSample>& samples) {
+  std::ofstream out(path);
+  out << std::setprecision(17) << R"(<VTKFile type="UnstructuredGrid" version="1.0" byte_order="LittleEndian">
+<UnstructuredGrid><Piece NumberOfPoints=")"
+      << samples.size()
+      << R"(" NumberOfCells="0"><Points><DataArray type="Float64" NumberOfComponents="3" format="ascii">)";
+  for (const StatedSample& s : samples) out << s.place.x << ' ' << s.place.y << ' ' << s.place.z << '\n';
+  const auto column = [&](const char* name, const auto& of) {
+    out << R"(<DataArray type="Float64" Name=")" << name << R"(" format="ascii">)";
+    for (const StatedSample& s : samples) out << of(s) << '\n';
+    out << "</DataArray>";
+  };
+  out << "</DataArray></Points><PointData>";
+  column("v", [](const StatedSample& s) { return s.value; });
+  column("SmoothingLength", [](const StatedSample& s) { return s.size; });
+  out << R"(</PointData><Cells><DataArray type="Int64" Name="connectivity" format="ascii"></DataArray>
+<DataArray type="Int64" Name="offsets" format="ascii"></DataArray><DataArray type="UInt8" Name="types" format="ascii"></DataArray></Cells></Piece></UnstructuredGrid></VTKFile>
+)";
+  return path;
+}
+
+TEST(FieldBuilds, ThePointsOfAnUnstructuredGridAreAFieldToo) {
+  const model::TestFolder folder;
+  const std::vector<StatedSample> samples = random_samples(30, 1, 0.2, 0.4, 1);
+  const Result<BuildReport> report =
+      build({write_vtu(folder / "field.vtu", samples)}, folder / "field.surf", options_of({"v"}));
+  ASSERT_TRUE(report) << report.error().message;
+  EXPECT_EQ(report->fields.at(0).samples, 30U);
+  const Result<model::ModelFile> model = model::ModelFile::open(folder / "field.surf");
+  ASSERT_TRUE(model) << model.error().message;
+  EXPECT_LE(error_of(*model, samples), 3e-5);
 }
 
 TEST(FieldBuilds, ScansWithoutTheColumnStayScans) {
