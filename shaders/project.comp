@@ -134,13 +134,19 @@ float farthest_of_small(SmallSplat splat) {
   return max(splat.inverse_depth * (1.0 - 1.01 * splat.fall / eta()) * 0.9999, 0.0);
 }
 
+// How much larger the cutoff of a sample may be: it grows with the gain, which grows as the prefilter shrinks.
+#ifdef SURFCAST_SAMPLES_CURVED
+const float kLargerCutoff = 4.0;
+#else
+const float kLargerCutoff = 0.7;
+#endif
+
 // The pixels of which a small splat touches the centre or a sample. Samples have a narrower prefilter
-// (include/narrow.glsl), and cutoffs that are larger by up to 0.7.
+// (include/narrow.glsl).
 uvec4 pixels_with_samples(vec2 centre, ScreenVariance v, float c) {
-  const float kFarthestSample = 3.0 * sqrt(SURFCAST_SILHOUETTE_VARIANCE / 5.0);
   float removed = SURFCAST_SILHOUETTE_VARIANCE * frame.filter_.x;
   vec2 extent = sqrt(c * v.s.xz);
-  vec2 reach = max(extent, sqrt((c + 0.7) * (v.s.xz - removed)) + kFarthestSample);
+  vec2 reach = max(extent, sqrt((c + kLargerCutoff) * (v.s.xz - removed)) + float(SURFCAST_SILHOUETTE_FARTHEST));
   bool outside;
   return pixel_range(centre - reach, centre + reach, outside);
 }

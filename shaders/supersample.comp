@@ -44,6 +44,21 @@ void draw_samples(TileLists tile, int wanted, vec2 pixel, out Columns limit, out
 }
 
 #ifdef SURFCAST_LARGE
+// Sample i of a pixel, relative to its middle.
+#ifdef SURFCAST_SAMPLES_CURVED
+// Rows and columns at the quartiles' middles of a Gaussian with the samples' variance, turned by atan(1 / 4), so that no
+// two samples are at the same distance from an edge along the rows or the columns.
+vec2 sample_place(uint i) {
+  const float kSteps[4] = float[4](-1.150, -0.319, 0.319, 1.150);  // their variance is 0.712
+  const float kScale = sqrt(SURFCAST_SILHOUETTE_VARIANCE / 0.712);
+  const vec2 kTurn = vec2(0.970, 0.243);
+  vec2 place = kScale * vec2(kSteps[i % 4u], kSteps[i / 4u]);
+  return vec2(dot(place, vec2(kTurn.x, -kTurn.y)), dot(place, kTurn.yx));
+}
+#else
+vec2 sample_place(uint i) { return vec2(kSampleX[i], kSampleY[i]); }
+#endif
+
 const uint kPixels = uint(SURFCAST_SILHOUETTE_LANES / SURFCAST_SILHOUETTE_SAMPLES);  // of a work group
 
 // The samples of the work group's pixels.
@@ -57,7 +72,7 @@ void draw_sample(uint tile, ivec2 at, uint lane) {
   column_places[0] = vec2(0.0);
   Columns limit;
   LightColumns light;
-  vec2 place = vec2(frame.region.xy + at) + 0.5 + vec2(kSampleX[i], kSampleY[i]);
+  vec2 place = vec2(frame.region.xy + at) + 0.5 + sample_place(i);
   draw_samples(lists_of_tile(tile), 1, place, limit, light);
 #ifdef SURFCAST_TOGETHER
   if (own_share() != 0u) return;

@@ -50,12 +50,22 @@ std::string color_defines(picture::SurfelColor color) {
   return {};
 }
 
+/// Of the passes that draw or find silhouettes of surfels with curvature, and of the projection for them.
+std::string samples_define(const Variant& variant) {
+  return variant.curved ? "#define SURFCAST_SAMPLES_CURVED\n" : "";
+}
+
+/// Samples of a pixel at a silhouette in tiles with large splats.
+int samples_of_large(const Variant& variant) {
+  return variant.curved ? SURFCAST_CURVED_SAMPLES : SURFCAST_SILHOUETTE_SAMPLES;
+}
+
 std::string project_defines(const Variant& variant) {
   std::string defines = common_defines(variant) + color_defines(variant.color);
   if (variant.hides_classes) defines += "#define SURFCAST_HIDES_CLASSES\n";
   if (variant.clipped) defines += "#define SURFCAST_CLIPPED\n";
   if (variant.scatter) defines += "#define SURFCAST_SCATTER\n";
-  if (variant.curved) defines += "#define SURFCAST_CURVED\n";
+  if (variant.curved) defines += "#define SURFCAST_CURVED\n" + samples_define(variant);
   if (variant.transparent) defines += "#define SURFCAST_TRANSPARENT\n";
   if (variant.by_file) defines += "#define SURFCAST_OPACITY_OF_FILE\n";
   if (variant.by_class) defines += "#define SURFCAST_OPACITY_BY_CLASS\n";
@@ -227,7 +237,7 @@ Result<LongListPrograms> Programs::long_lists(const Variant& variant, const Pict
   }
   if (status && variant.silhouettes) {
     status = compile(programs.supersample_large, "supersample.comp", true,
-                     lane_defines(false) + shares(most_lanes, SURFCAST_SILHOUETTE_SAMPLES));
+                     lane_defines(false) + shares(most_lanes, samples_of_large(variant)) + samples_define(variant));
   }
   if (!status) return fail(std::move(status.error()));
   return programs;
@@ -358,9 +368,11 @@ Result<SplatPrograms> Programs::variant(const Variant& variant, const PictureKin
   if (variant.silhouettes) {
     const std::string columns = define("SURFCAST_COLUMNS", pixels_at_once());
     const std::string rows = define("SURFCAST_ROWS", SURFCAST_SILHOUETTE_SAMPLES);
-    if (status) status = compile(programs.silhouettes, plain("silhouettes.comp"), columns);
+    if (status) status = compile(programs.silhouettes, plain("silhouettes.comp"), columns + samples_define(variant));
     if (status) status = compile(programs.supersample, plain("supersample.comp"), splat + columns + rows + selecting);
-    if (status) status = compile(programs.supersample_large, with_kinds("supersample.comp"), large);
+    const std::string large_samples = large + samples_define(variant);
+    if (status) status = compile(programs.supersample_large, with_kinds("supersample.comp"), large_samples);
+    programs.samples_of_large = samples_of_large(variant);
   }
   if (status && selects(variant) && !variant.transparent) {
     const std::string column = at_once + define("SURFCAST_COLUMNS", 1) + define("SURFCAST_ROWS", SURFCAST_TILE_HEIGHT);
@@ -374,6 +386,6 @@ Result<SplatPrograms> Programs::variant(const Variant& variant, const PictureKin
   }
   if (!status) return fail(std::move(status.error()));
   return programs;
-}
+}  // namespace surfcast::render
 
 }  // namespace surfcast::render

@@ -13,6 +13,7 @@
 #include "picture/picture.h"
 #include "render/embedded_shaders.h"
 #include "shared/frame_layout.h"
+#include "shared/kernel.h"
 
 namespace surfcast::render {
 
@@ -68,7 +69,8 @@ struct SplatPrograms {
   const gl::Program* silhouettes = nullptr;
   const gl::Program* supersample = nullptr;
   const gl::Program* supersample_large = nullptr;
-  const gl::Program* eye_dome = nullptr;  ///< null without eye-dome lighting
+  int samples_of_large = SURFCAST_SILHOUETTE_SAMPLES;  ///< of a pixel in tiles with large splats
+  const gl::Program* eye_dome = nullptr;               ///< null without eye-dome lighting
 };
 
 /// The mapping of the passes to the device's vectors. It does not affect pictures.

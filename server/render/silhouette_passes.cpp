@@ -63,8 +63,8 @@ Status supersample_silhouettes(const RegionTask& task, const layout::Counters& c
     return dispatch_silhouettes(task, program, {0, count}, static_cast<uint32_t>(lanes), sizer, buffers, preemption);
   };
   LongListBatches& sizers = buffers.long_lists;
-  Status status = draw(programs.lanes.supersample_large, counts.y, shape.silhouette_lanes / SURFCAST_SILHOUETTE_SAMPLES,
-                       buffers.supersample_large_batches);
+  Status status = draw(programs.lanes.supersample_large, counts.y,
+                       shape.silhouette_lanes / programs.lanes.samples_of_large, buffers.supersample_large_batches);
   if (status) status = draw(programs.groups.supersample, counts.z, 1, sizers.supersample);
   if (status) status = draw(programs.groups.supersample_large, counts.w, 1, sizers.supersample_large);
   return status;

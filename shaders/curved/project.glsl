@@ -64,8 +64,10 @@ void ball_bounds(vec3 o, float r, out vec2 low, out vec2 high) {
   vec2 root = r * sqrt(o.xy * o.xy + h);
   vec2 first = (o.xy * o.z - root) / h;
   vec2 last = (o.xy * o.z + root) / h;
-  low = pixel_of_ray(vec2(first.x, last.y)) - 1.0;
-  high = pixel_of_ray(vec2(last.x, first.y)) + 1.0;
+  // Pixels whose samples it touches, from the middle of one to that of the next.
+  const float kMargin = float(SURFCAST_SILHOUETTE_FARTHEST) + 0.5;
+  low = pixel_of_ray(vec2(first.x, last.y)) - kMargin;
+  high = pixel_of_ray(vec2(last.x, first.y)) + kMargin;
 }
 
 // `world_n`: the stored normal.

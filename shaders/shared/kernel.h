@@ -47,10 +47,22 @@
 // variance, so the total filter is that of all other pixels. The coverage of a sample is scaled by a0 at mix(g', g,
 // COVERAGE), with its own gain g' and the gain g of the whole prefilter. A pixel is at a silhouette if, within REACH
 // pixels, the second difference of the front surface's inverse depth exceeds JUMP pixel footprints of depth.
+// Surfels with curvature have no prefilter, so the samples alone make their edges soft: in pictures with such surfels,
+// pixels of tiles with large splats have CURVED_SAMPLES samples with nearly the whole variance. The farthest one is
+// FARTHEST pixels away.
+#define SURFCAST_CURVED_SAMPLES 16
+#ifdef SURFCAST_SAMPLES_CURVED
+#define SURFCAST_SILHOUETTE_SAMPLES SURFCAST_CURVED_SAMPLES
+#define SURFCAST_SILHOUETTE_VARIANCE 0.9
+#define SURFCAST_SILHOUETTE_FARTHEST 1.6
+#define SURFCAST_SILHOUETTE_REACH 2
+#else
 #define SURFCAST_SILHOUETTE_SAMPLES 4
 #define SURFCAST_SILHOUETTE_VARIANCE 0.5
+#define SURFCAST_SILHOUETTE_FARTHEST 0.95
+#define SURFCAST_SILHOUETTE_REACH 1
+#endif
 #define SURFCAST_SILHOUETTE_COVERAGE 0.6
 #define SURFCAST_SILHOUETTE_JUMP 16.0
-#define SURFCAST_SILHOUETTE_REACH 1
 
 #endif

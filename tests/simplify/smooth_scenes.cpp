@@ -104,7 +104,7 @@ ImplicitSurface blob() {
             }
             return outwards;
           },
-          0.1, 1.3};
+          0.5, 1.3};
 }
 
 ImplicitSurface spring() {
