@@ -5,9 +5,12 @@
 #include <string>
 #include <utility>
 
+#include "builder/input_files.h"
+#include "cmd/input_summary.h"
 #include "cmd/model_summary.h"
 #include "cmd/store_flags.h"
 #include "cmd/verify_model.h"
+#include "model/format.h"
 #include "model/model_file.h"
 #include "object_store/object_store.h"
 #include "object_store/object_url.h"
@@ -22,10 +25,23 @@ struct InspectOptions {
   object_store::StoreConfig store;
 };
 
+/// A file that is no model may be one that a model is built of. What is neither is reported as no model.
+Status inspect_input(const InspectOptions& options, Error no_model) {
+  if (options.verify) return fail(std::move(no_model));
+  const Result<std::string> summary = summarize_input(options.model, options.json);
+  if (!summary && builder::kind_of_input(options.model) == builder::InputKind::kScan) return fail(std::move(no_model));
+  if (!summary) return fail(summary.error());
+  std::cout << *summary;
+  return {};
+}
+
 Status inspect(const InspectOptions& options) {
   const object_store::ObjectStore store(options.store);
   const bool stored = object_store::is_object_url(options.model);
   const Result<model::ModelFile> model = stored ? store.open(options.model) : model::ModelFile::open(options.model);
+  if (!model && !stored && model.error().message.ends_with(model::kNoModel)) {
+    return inspect_input(options, model.error());
+  }
   if (!model) return fail(model.error());
   if (options.verify) {
     if (Status status = verify_model(*model); !status) return status;
@@ -43,8 +59,9 @@ Status inspect(const InspectOptions& options) {
 
 void add_inspect_command(CLI::App& app, Status& outcome) {
   auto options = std::make_shared<InspectOptions>();
-  CLI::App* command = app.add_subcommand("inspect", "Print the contents of a model file");
-  command->add_option("MODEL", options->model, "Model file, or its URL")->required();
+  CLI::App* command = app.add_subcommand("inspect", "Print the contents of a model, or of a file that one is built of");
+  command->add_option("MODEL", options->model, "Model file or its URL, scan, volume, mesh, Gaussians or tensors")
+      ->required();
   command->add_flag("--json", options->json, "Print JSON");
   command->add_flag("--verify", options->verify, "Check every checksum and decode every block");
   add_store_flags(*command, options->store);

@@ -240,7 +240,7 @@ Result<ModelHeader> read_header(std::span<const std::byte> head, uint64_t file_b
   ByteReader reader(head);
   const std::span<const std::byte> magic = reader.get_bytes(kMagic.size());
   if (!reader.ok() || std::memcmp(magic.data(), kMagic.data(), kMagic.size()) != 0) {
-    return damaged("not a Surfcast model");
+    return damaged(kNoModel);
   }
   const auto version = reader.get<uint32_t>();
   if (reader.ok() && (version < kSurfelVersion || version > kEllipsoidsVersion)) {

@@ -160,6 +160,26 @@ TEST_F(SurfcastdTest, MakesSurfelsOfAMesh) {
   EXPECT_NE(summary.find("sampling: even, from meshes"), std::string::npos) << summary;
 }
 
+TEST_F(SurfcastdTest, InspectsFilesThatModelsAreBuiltOf) {
+  std::ofstream(folder_ / "scan.csv") << "x,y,z,intensity\n1,2,3,7\n4,6,8,9\n";
+  const nlohmann::json scan = nlohmann::json::parse(run("inspect scan.csv --json").out);
+  EXPECT_EQ(scan["kind"], "scan");
+  EXPECT_EQ(scan["points"], 2);
+  EXPECT_EQ(scan["bounds_max"], nlohmann::json({4, 6, 8}));
+  EXPECT_EQ(scan["attributes"], nlohmann::json({"intensity uint8"}));
+  EXPECT_NE(run("inspect scan.csv").out.find("bounds_min: 1.0 2.0 3.0\n"), std::string::npos);
+  std::ofstream(folder_ / "grid.nrrd") << "NRRD0004\ntype: uint8\ndimension: 3\nsizes: 2 2 2\nspacings: 1 1 2\n"
+                                          "encoding: raw\n\n12345678";
+  const std::string grid = run("inspect grid.nrrd").out;
+  EXPECT_NE(grid.find("kind: volume\n"), std::string::npos) << grid;
+  EXPECT_NE(grid.find("size: 2 2 2\n"), std::string::npos) << grid;
+  std::ofstream(folder_ / "letter.txt") << "Dear reader,\n";
+  const Answer letter = run("inspect letter.txt");
+  EXPECT_EQ(letter.exit_code, 1);
+  EXPECT_NE(letter.err.find("letter.txt: not a Surfcast model"), std::string::npos) << letter.err;
+  EXPECT_NE(run("inspect scan.csv --verify").err.find("not a Surfcast model"), std::string::npos);
+}
+
 TEST_F(SurfcastdTest, ColoursAScanWithAPictureFromAbove) {
   std::ofstream(folder_ / "scan.xyz") << "1 1 0\n2 1 0\n1 2 0\n2 2 0\n";
   std::ofstream(folder_ / "photo.bmp", std::ios::binary)
