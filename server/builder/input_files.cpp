@@ -1,5 +1,7 @@
 #include "builder/input_files.h"
 
+#include <algorithm>
+#include <cctype>
 #include <system_error>
 #include <utility>
 
@@ -82,6 +84,26 @@ InputKind kind_of_input(const fs::path& path) {
   if (ellipsoid::holds_ellipsoids(path)) return InputKind::kEllipsoids;
   if (is_grid(path)) return InputKind::kGrid;
   return is_mesh(path) ? InputKind::kMesh : InputKind::kScan;
+}
+
+Result<Files> inputs_at(const fs::path& path) {
+  std::error_code code;
+  if (!fs::is_directory(path, code) || scan::scan_folder_of(path) || fs::exists(path / "meta.json", code)) {
+    return Files{path};
+  }
+  const std::vector<std::string> extensions = input_extensions();
+  Files files;
+  for (const fs::directory_entry& entry : fs::directory_iterator(path, code)) {
+    std::string extension = entry.path().extension().string();
+    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
+    const bool known = std::ranges::find(extensions, extension) != extensions.end();
+    if (known && entry.is_regular_file(code)) files.push_back(entry.path());
+  }
+  if (files.empty()) {
+    return fail(ErrorKind::kInvalidInput, path.string() + ": a folder without a file that a model is built of");
+  }
+  std::ranges::sort(files);
+  return files;
 }
 
 Status check_input(const fs::path& path) {

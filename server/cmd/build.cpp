@@ -334,7 +334,20 @@ Status check_surfaces(const BuildCommand& command) {
   return fail(ErrorKind::kInvalidInput, command.inputs[0].string() + ": --iso needs a volume, and no input is one");
 }
 
-Status build(const BuildCommand& command) {
+/// The files of folders in place of the folders.
+Status open_folders(std::vector<std::filesystem::path>& inputs) {
+  std::vector<std::filesystem::path> files;
+  for (const std::filesystem::path& input : inputs) {
+    Result<std::vector<std::filesystem::path>> found = builder::inputs_at(input);
+    if (!found) return fail(std::move(found.error()));
+    files.insert(files.end(), found->begin(), found->end());
+  }
+  inputs = std::move(files);
+  return {};
+}
+
+Status build(BuildCommand& command) {
+  if (Status status = open_folders(command.inputs); !status) return status;
   if (Status status = check_surfaces(command); !status) return status;
   keep_freed_memory();
   if (command.background) {
@@ -406,7 +419,8 @@ void add_build_command(CLI::App& app, Status& outcome) {
   auto command = std::make_shared<BuildCommand>();
   CLI::App* build_command = app.add_subcommand("build", "Build a model file from scans or volumes");
   build_command
-      ->add_option("INPUT", command->inputs, "Scans, regular grids, Gaussians, tensor fields or tables of ellipsoids")
+      ->add_option("INPUT", command->inputs,
+                   "Scans, regular grids, Gaussians, tensor fields or tables of ellipsoids, or folders of them")
       ->required();
   build_command->add_option("--output", command->output, "Model file to write")->required();
   build_command

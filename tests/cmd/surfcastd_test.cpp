@@ -160,6 +160,20 @@ TEST_F(SurfcastdTest, MakesSurfelsOfAMesh) {
   EXPECT_NE(summary.find("sampling: even, from meshes"), std::string::npos) << summary;
 }
 
+TEST_F(SurfcastdTest, BuildsOneModelOfTheScansInAFolder) {
+  std::filesystem::create_directory(folder_ / "scans");
+  std::ofstream(folder_ / "scans" / "b.csv") << "x,y,z\n1,2,3\n4,6,8\n";
+  std::ofstream(folder_ / "scans" / "a.XYZ") << "0 0 0\n1 0 0\n0 1 0\n";
+  std::ofstream(folder_ / "scans" / "notes.md") << "not a scan\n";
+  const Answer answer = run("build scans --output model.surf");
+  ASSERT_EQ(answer.exit_code, 0) << answer.err;
+  EXPECT_EQ(answer.out.find("5 points read"), 0U) << answer.out;
+  EXPECT_NE(run("inspect model.surf").out.find("sources: a.XYZ, b.csv\n"), std::string::npos);
+  std::filesystem::create_directory(folder_ / "empty");
+  EXPECT_NE(run("build empty --output model.surf").err.find("empty: a folder without a file that a model is built of"),
+            std::string::npos);
+}
+
 TEST_F(SurfcastdTest, InspectsFilesThatModelsAreBuiltOf) {
   std::ofstream(folder_ / "scan.csv") << "x,y,z,intensity\n1,2,3,7\n4,6,8,9\n";
   const nlohmann::json scan = nlohmann::json::parse(run("inspect scan.csv --json").out);
