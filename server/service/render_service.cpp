@@ -77,8 +77,43 @@ bool RenderService::State::enqueue(const RenderJob& job) {
 
 /// Goes on with a job that has been enqueued.
 void RenderService::State::proceed(const JobPointer& job) {
-  if (needs_front_surface(job->picture.channels)) return search(job);
+  if (needs_front_surface(job->picture.channels)) {
+    {
+      const std::lock_guard lock(mutex);
+      to_search.push_back(job);
+    }
+    start_searches();
+  }
   wake.notify_one();
+}
+
+/// A job whose front surface may be looked for: there is memory for its picture.
+std::vector<RenderService::State::JobPointer>::iterator RenderService::State::next_search() {
+  return std::ranges::find_if(
+      to_search, [this](const JobPointer& job) { return memory->fits(job->asker.client, memory_of(job->picture)); });
+}
+
+/// Looks for the front surfaces for which there is memory: they take as much as the channels made of them.
+void RenderService::State::start_searches() {
+  for (;;) {
+    JobPointer job;
+    {
+      const std::lock_guard lock(mutex);
+      const auto next = stopping ? to_search.end() : next_search();
+      if (next == to_search.end()) return;
+      job = *next;
+      to_search.erase(next);
+      job->memory = memory->take(job->asker.client, memory_of(job->picture));
+    }
+    search(job);
+  }
+}
+
+/// Takes a job from those that wait for memory. False if it is not one of them.
+bool RenderService::State::leave_searches(JobId id) {
+  const bool waited = std::erase_if(to_search, [id](const JobPointer& job) { return job->id == id; }) > 0;
+  if (waited) --searching;
+  return waited;
 }
 
 /// Goes on with a job that has waited for its model.
@@ -196,6 +231,7 @@ void RenderService::State::stop() {
     stopping = true;
     without_model = std::exchange(awaiting, {});
     for (const auto& [id, job] : jobs) job->cancelled = true;
+    waiting = std::exchange(to_search, {});
     for (const Priority priority : {Priority::kMotion, Priority::kStill}) {
       while (const std::optional<JobId> id = queue.pop(priority)) {
         waiting.push_back(jobs.at(*id));
@@ -251,7 +287,7 @@ bool RenderService::cancel(JobId id) {
     if (found == state_->jobs.end()) return false;
     found->second->cancelled = true;
     const bool awaits = std::erase_if(state_->awaiting, [id](const auto& entry) { return entry.job == id; }) > 0;
-    if (awaits || state_->queue.remove(id)) waiting = found->second;
+    if (awaits || state_->queue.remove(id) || state_->leave_searches(id)) waiting = found->second;
   }
   if (waiting) state_->finish(waiting, cancelled_error());
   return true;

@@ -71,6 +71,9 @@ struct RenderService::State {
   [[nodiscard]] Status check(const PictureJob& picture) const;
   JobId add(const Asker& asker, PictureJob picture, PictureDone done);
   void search(const JobPointer& job);
+  [[nodiscard]] std::vector<JobPointer>::iterator next_search();
+  void start_searches();
+  bool leave_searches(JobId id);
   void end_search(const JobPointer& job, Result<std::vector<pick::FrontPixel>> front);
   [[nodiscard]] bool enqueue(const RenderJob& job);
   void proceed(const JobPointer& job);
@@ -104,7 +107,8 @@ struct RenderService::State {
   std::array<size_t, 2> in_encoding{};  ///< pictures being drawn or encoded, by priority, but for small ones at rest
   size_t small_in_encoding = 0;         ///< these
   std::shared_ptr<PictureMemory> memory;
-  size_t searching = 0;  ///< jobs whose front surface is being found
+  size_t searching = 0;                 ///< jobs whose front surface is being found, or is to be
+  std::vector<JobPointer> to_search{};  ///< the latter, which wait for memory
   bool stopping = false;
 
   // Declared last, so the threads end before the members that they use.

@@ -65,8 +65,8 @@ WaitingStills RenderService::State::waiting_stills() const {
   return queue.next_client(Priority::kStill, small) ? WaitingStills::kSmall : WaitingStills::kLarge;
 }
 
-/// Whether a job may be drawn now: the encoders have room for its picture, and there is memory for it. Small pictures
-/// at rest take next to none, so that they do not wait for large ones to be encoded, sent and read.
+/// Whether a job may be drawn now: the encoders have room for its picture, and there is memory for it, or it has some.
+/// Small pictures at rest take next to none, so that they do not wait for large ones to be encoded, sent and read.
 bool RenderService::State::has_room(JobId id) const {
   const RenderJob& job = *jobs.at(id);
   if (job.picture.priority == Priority::kMotion) {
@@ -74,7 +74,7 @@ bool RenderService::State::has_room(JobId id) const {
   }
   if (is_small(job.picture)) return small_in_encoding < limits.frames_in_encoding;
   return in_encoding[static_cast<size_t>(Priority::kStill)] < limits.frames_in_encoding &&
-         memory->fits(job.asker.client, memory_of(job.picture));
+         (job.memory != nullptr || memory->fits(job.asker.client, memory_of(job.picture)));
 }
 
 /// True if a job of this priority waits and has room.
@@ -118,7 +118,7 @@ RenderService::State::JobPointer RenderService::State::start(JobId id, std::uniq
     const bool still = job->picture.priority == Priority::kStill;
     job->small = still && is_small(job->picture);
     ++(job->small ? small_in_encoding : in_encoding[static_cast<size_t>(job->picture.priority)]);
-    if (still) job->memory = memory->take(job->asker.client, memory_of(job->picture));
+    if (still && job->memory == nullptr) job->memory = memory->take(job->asker.client, memory_of(job->picture));
     return job;
   }
   queue.shares().leave(job->asker.client);
@@ -133,7 +133,7 @@ void RenderService::State::refuse_late(std::unique_lock<std::mutex>& lock) {
   std::vector<JobPointer> late;
   for (const auto& [id, job] : jobs) {
     const bool waits = job->since_submission.milliseconds() > static_cast<double>(limits.queue_timeout.count());
-    if (waits && queue.remove(id)) late.push_back(job);
+    if (waits && (queue.remove(id) || leave_searches(id))) late.push_back(job);
   }
   lock.unlock();
   for (const JobPointer& job : late) {
@@ -147,10 +147,16 @@ RenderService::State::JobPointer RenderService::State::next_job() {
   constexpr std::chrono::seconds kLookAgain{1};
   std::unique_lock lock(mutex);
   for (;;) {
-    wake.wait(lock, [this] { return stopping || queue.size() > 0; });
-    const bool ready = wake.wait_for(lock, kLookAgain, [this] { return stopping || next_priority(); });
+    wake.wait(lock, [this] { return stopping || queue.size() > 0 || !to_search.empty(); });
+    const auto searches = [this] { return next_search() != to_search.end(); };
+    wake.wait_for(lock, kLookAgain, [&] { return stopping || next_priority() || searches(); });
     if (stopping) return nullptr;
-    if (!ready) {
+    if (searches()) {
+      lock.unlock();
+      start_searches();
+      lock.lock();
+    }
+    if (!next_priority()) {
       refuse_late(lock);
       continue;
     }

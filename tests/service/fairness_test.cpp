@@ -79,6 +79,34 @@ TEST_F(FairnessTest, PicturesThatNobodyTakesHoldUpLargeOnesButNotSmallOnes) {
   EXPECT_TRUE(waits.get());
 }
 
+TEST_F(FairnessTest, ChannelsWaitForMemoryBeforeTheirSurfaceIsLookedFor) {
+  start({.picture_memory = size_t{16} << 20});
+  Result<EncodedPicture> kept = draw({7, 1}, large("noise")).second.get();
+  ASSERT_TRUE(kept);
+  PictureJob with_depth = large("cube");
+  with_depth.channels.set(static_cast<size_t>(picture::Channel::kDepth));
+  auto waits = draw({7, 2}, with_depth).second;
+  auto [cancelled, given_up] = draw({7, 3}, with_depth);
+  EXPECT_TRUE(draw({7, 4}, job_for("teapot")).second.get());
+  EXPECT_EQ(waits.wait_for(std::chrono::seconds(0)), std::future_status::timeout);
+  EXPECT_TRUE(service_->cancel(cancelled));
+  EXPECT_EQ(given_up.get().error().kind, ErrorKind::kCancelled);
+  kept = fail(ErrorKind::kCancelled, "taken");
+  const Result<EncodedPicture> answer = waits.get();
+  EXPECT_TRUE(answer || answer.error().kind != ErrorKind::kUnavailable) << answer.error().message;
+}
+
+TEST_F(FairnessTest, ChannelsForWhichThereIsNoRoomAreRefusedInTime) {
+  start({.picture_memory = size_t{16} << 20, .queue_timeout = std::chrono::milliseconds(1500)});
+  const Result<EncodedPicture> kept = draw({7, 1}, large("noise")).second.get();
+  ASSERT_TRUE(kept);
+  PictureJob with_depth = large("cube");
+  with_depth.channels.set(static_cast<size_t>(picture::Channel::kDepth));
+  const Result<EncodedPicture> refused = draw({7, 2}, with_depth).second.get();
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, ErrorKind::kUnavailable);
+}
+
 TEST_F(FairnessTest, APictureForWhichThereIsNoRoomIsRefusedInTime) {
   start({.picture_memory = size_t{16} << 20, .queue_timeout = std::chrono::milliseconds(1500)});
   const Result<EncodedPicture> kept = draw({7, 1}, large("noise")).second.get();
