@@ -6,10 +6,12 @@
 #include <memory>
 #include <utility>
 
+#include "base/log.h"
 #include "cmd/find_models.h"
 #include "cmd/limit_flags.h"
 #include "cmd/log_device.h"
 #include "cmd/store_flags.h"
+#include "cmd/unused_options.h"
 #include "net/convert.h"
 #include "protocol/request_flags.h"
 #include "protocol/save_picture.h"
@@ -44,6 +46,13 @@ Result<wire::Picture> draw_and_wait(service::RenderService& service, const wire:
   });
 }
 
+/// Errors of the model are those of the picture.
+void warn_of_unused_options(const service::ModelCatalogue& models, const wire::DrawPicture& request) {
+  const Result<std::shared_ptr<const model::ModelFile>> model = models.open(request.model());
+  if (!model) return;
+  for (const std::string& line : unused_options(request, (*model)->info())) spdlog::warn("{}", line);
+}
+
 Status render(const RenderCommand& command) {
   Result<std::shared_ptr<model::BlockCache>> blocks = open_block_cache(command.block_cache, command.cache);
   if (!blocks) return fail(std::move(blocks.error()));
@@ -52,6 +61,7 @@ Status render(const RenderCommand& command) {
   if (!models) return fail(models.error());
   const Result<wire::DrawPicture> request = command.flags.request((*models)->names().front());
   if (!request) return fail(request.error());
+  warn_of_unused_options(**models, *request);
   const auto service = service::RenderService::start(
       **models,
       service::catalogue_renderers(**models, service::local_renderers(command.renderer), service::ShaderWarmUp::kOff),

@@ -174,6 +174,18 @@ TEST_F(SurfcastdTest, BuildsOneModelOfTheScansInAFolder) {
             std::string::npos);
 }
 
+TEST_F(SurfcastdTest, RenderTellsOfOptionsWithoutEffect) {
+  std::ofstream(folder_ / "scan.csv") << "x,y,z\n0,0,0\n1,0,0\n0,1,0\n";
+  ASSERT_EQ(run("build scan.csv --output scan.surf").exit_code, 0);
+  const std::string picture = "render scan.surf --resolution 8,8 --output out.png";
+  const Answer unused = run(picture + " --lights '0.1,0.2,32;0,0,-1,1' --transfer gray --glyph superquadric");
+  ASSERT_EQ(unused.exit_code, 0) << unused.err;
+  EXPECT_NE(unused.err.find("--lights without effect: the model has no ellipsoids"), std::string::npos) << unused.err;
+  EXPECT_NE(unused.err.find("--transfer without effect: the model has no volume"), std::string::npos);
+  EXPECT_NE(unused.err.find("options of glyphs without effect"), std::string::npos);
+  EXPECT_EQ(run(picture + " --shading lit").err.find("without effect"), std::string::npos);
+}
+
 TEST_F(SurfcastdTest, InspectsFilesThatModelsAreBuiltOf) {
   std::ofstream(folder_ / "scan.csv") << "x,y,z,intensity\n1,2,3,7\n4,6,8,9\n";
   const nlohmann::json scan = nlohmann::json::parse(run("inspect scan.csv --json").out);
