@@ -99,7 +99,7 @@ INSTANTIATE_TEST_SUITE_P(
         FieldCase{"density_of_gaussians",
                   StatedKernel::kGaussian,
                   StatedField::kDensity,
-                  "near",
+                  "mid",
                   "sigma",
                   {.value = "v", .combination = scattered::Combination::kDensity}},
         FieldCase{"average_of_splines",
