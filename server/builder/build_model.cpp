@@ -309,11 +309,11 @@ InputKind kind_of(const std::filesystem::path& input, const BuildOptions& option
   return options.open && kind == InputKind::kGrid ? InputKind::kScan : kind;
 }
 
-InputsByKind by_kind(std::span<const std::filesystem::path> inputs, const BuildOptions& options) {
+InputsByKind by_kind(std::span<const std::filesystem::path> inputs, const BuildOptions& options, uint64_t memory) {
   InputsByKind kinds;
   for (const std::filesystem::path& input : inputs) {
     const InputKind kind = kind_of(input, options);
-    const bool field = options.field && kind == InputKind::kScan && holds_field(input, *options.field);
+    const bool field = options.field && kind == InputKind::kScan && holds_field(input, *options.field, memory);
     (field ? kinds.fields : kinds.of(kind)).push_back(input);
   }
   return kinds;
@@ -370,7 +370,7 @@ Result<BuildReport> build_model(std::span<const std::filesystem::path> inputs, c
   ModelOutput output(target);
   {
     StageClock clock(progress, report);
-    Status status = build_kinds(by_kind(inputs, options), output, options, clock, report);
+    Status status = build_kinds(by_kind(inputs, options, *budget), output, options, clock, report);
     if (!status) return fail(std::move(status.error()));
   }
   report.seconds = stopwatch.seconds();

@@ -27,7 +27,8 @@ class SpooledSamples final : public stream::ByteStream {
     return part.size();
   }
   Status skip(uint64_t count) override {
-    offset_ += std::min(count, at_most());
+    if (count > at_most()) return fail(ErrorKind::kInternal, "the field ends before a sample that is skipped");
+    offset_ += count;
     return {};
   }
   [[nodiscard]] uint64_t at_most() const override { return spool_->size() - offset_; }
@@ -93,8 +94,8 @@ Result<GridInput> sample_field(const scan::ScanStream& scan, const std::filesyst
 
 }  // namespace
 
-bool holds_field(const std::filesystem::path& path, const scattered::FieldOptions& options) {
-  const Result<scan::ScanStream> scan = grid::open_scan(path);
+bool holds_field(const std::filesystem::path& path, const scattered::FieldOptions& options, uint64_t memory) {
+  const Result<scan::ScanStream> scan = grid::open_scan(path, {memory});
   return scan && scattered::has_field(scan->schema(), options);
 }
 

@@ -21,8 +21,9 @@ struct InputField {
   double step = 0;       ///< of the lattice, world units
 };
 
-/// True if the file can be read as a table of points and has the column of values.
-[[nodiscard]] bool holds_field(const std::filesystem::path& path, const scattered::FieldOptions& options);
+/// True if the file can be read as a table of points, within so many bytes of memory, and has the column of values.
+[[nodiscard]] bool holds_field(const std::filesystem::path& path, const scattered::FieldOptions& options,
+                               uint64_t memory);
 
 /// Evaluates scattered samples on a regular lattice, which waits in a temporary file beside the target, and is read
 /// like a grid. `memory`: bytes that the samples may take. `sample`: most samples of the lattice, for a preview. Adds

@@ -86,24 +86,29 @@ InputKind kind_of_input(const fs::path& path) {
   return is_mesh(path) ? InputKind::kMesh : InputKind::kScan;
 }
 
-Result<Files> inputs_at(const fs::path& path) {
-  std::error_code code;
-  if (!fs::is_directory(path, code) || scan::scan_folder_of(path) || fs::exists(path / "meta.json", code)) {
-    return Files{path};
-  }
+Files inputs_in(const fs::path& folder) {
   const std::vector<std::string> extensions = input_extensions();
+  const auto may_be_input = [&](std::string name) {
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+    return std::ranges::any_of(extensions, [&](const std::string& extension) { return name.ends_with(extension); });
+  };
   Files files;
-  for (const fs::directory_entry& entry : fs::directory_iterator(path, code)) {
-    std::string extension = entry.path().extension().string();
-    std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return std::tolower(c); });
-    const bool known = std::ranges::find(extensions, extension) != extensions.end();
-    if (known && entry.is_regular_file(code)) files.push_back(entry.path());
-  }
-  if (files.empty()) {
-    return fail(ErrorKind::kInvalidInput, path.string() + ": a folder without a file that a model is built of");
+  std::error_code code;
+  for (fs::directory_iterator at(folder, code), end; !code && at != end; at.increment(code)) {
+    std::error_code ignored;
+    if (at->is_regular_file(ignored) && may_be_input(at->path().filename().string())) files.push_back(at->path());
   }
   std::ranges::sort(files);
   return files;
+}
+
+Result<Files> inputs_at(const fs::path& path) {
+  std::error_code ignored;
+  const bool by_itself = scan::scan_folder_of(path) || fs::exists(path / "meta.json", ignored);
+  if (by_itself || !fs::is_directory(path, ignored)) return Files{path};
+  Files files = inputs_in(path);
+  if (!files.empty()) return files;
+  return fail(ErrorKind::kInvalidInput, path.string() + ": a folder without a file that a model is built of");
 }
 
 Status check_input(const fs::path& path) {

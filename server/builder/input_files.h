@@ -15,8 +15,10 @@ enum class InputKind { kScan, kGrid, kGaussians, kEllipsoids, kMesh };
 /// The kind of an input, by its content. What cannot be read counts as a scan: reading it reports the error.
 [[nodiscard]] InputKind kind_of_input(const std::filesystem::path& path);
 
-/// The inputs that a path names: of a folder that is no scan by itself, the files in it that may be inputs, by their
-/// extensions and in the order of their names. Fails if it has none.
+/// The files in a folder that may be inputs, by their extensions, in the order of their names.
+[[nodiscard]] std::vector<std::filesystem::path> inputs_in(const std::filesystem::path& folder);
+
+/// The inputs that a path names: of a folder that is no input by itself, those in it. Fails if it has none.
 Result<std::vector<std::filesystem::path>> inputs_at(const std::filesystem::path& path);
 
 /// What can be told of an input without reading its items: whether it is of a known format, and whether its header

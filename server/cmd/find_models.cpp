@@ -1,7 +1,6 @@
 #include "cmd/find_models.h"
 
 #include <algorithm>
-#include <cctype>
 #include <set>
 #include <string>
 #include <system_error>
@@ -137,22 +136,6 @@ Result<NamedPaths> sort_paths(std::span<const fs::path> paths, const object_stor
   if (Status status = check_names(sorted); !status) return fail(std::move(status.error()));
   if (Status status = check_any_scan(sorted); !status) return fail(std::move(status.error()));
   return sorted;
-}
-
-std::vector<fs::path> unserved_scans(const fs::path& folder) {
-  const std::vector<std::string> extensions = builder::input_extensions();
-  const auto is_scan = [&](std::string name) {
-    std::ranges::transform(name, name.begin(), [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-    return std::ranges::any_of(extensions, [&](const std::string& extension) { return name.ends_with(extension); });
-  };
-  std::vector<fs::path> scans;
-  std::error_code code;
-  for (fs::directory_iterator at(folder, code), end; !code && at != end; at.increment(code)) {
-    std::error_code ignored;
-    if (at->is_regular_file(ignored) && is_scan(at->path().filename().string())) scans.push_back(at->path());
-  }
-  std::ranges::sort(scans);
-  return scans;
 }
 
 Result<std::unique_ptr<service::ModelCatalogue>> find_one_model(const fs::path& path, const ScanCacheConfig& cache,

@@ -24,9 +24,6 @@ struct NamedPaths {
 /// name, and if there is nothing but scans that are none by their first bytes.
 Result<NamedPaths> sort_paths(std::span<const std::filesystem::path> paths, const object_store::ObjectStore& store);
 
-/// The scans in a folder of models, by their extensions, sorted: nobody serves them until they are named.
-std::vector<std::filesystem::path> unserved_scans(const std::filesystem::path& folder);
-
 /// The catalogue of one model, named by a model file, its URL, or a scan. The store outlives it.
 Result<std::unique_ptr<service::ModelCatalogue>> find_one_model(const std::filesystem::path& path,
                                                                 const ScanCacheConfig& cache,

@@ -20,12 +20,6 @@ Facts numbers(const glm::dvec3& v) {
   return {v.x, v.y, v.z};
 }
 
-const char* name_of_type(scan::ScalarType type) {
-  model::Volume volume;
-  volume.type = static_cast<uint8_t>(type);
-  return model::type_name(volume);
-}
-
 Result<Facts> facts_of_scan(const std::filesystem::path& path) {
   const Result<scan::ScanStream> scan = grid::open_scan(path);
   if (!scan) return fail(scan.error());
@@ -41,7 +35,7 @@ Result<Facts> facts_of_scan(const std::filesystem::path& path) {
   facts["radii"] = schema.radii;
   facts["attributes"] = Facts::array();
   for (const scan::ScalarField& field : schema.scalars) {
-    facts["attributes"].push_back(field.name + " " + name_of_type(field.type));
+    facts["attributes"].push_back(field.name + " " + model::type_name(static_cast<uint8_t>(field.type)));
   }
   if (schema.sensor) facts["sensor"] = numbers(*schema.sensor);
   if (!schema.crs.empty()) facts["coordinate_system"] = schema.crs;

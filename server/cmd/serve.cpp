@@ -137,7 +137,7 @@ Status serve_uploaded(const std::filesystem::path& scan, const service::ModelCat
 /// Says which files of the folders of models are scans, which are served only where they are named.
 void warn_of_unserved_scans(const std::vector<std::filesystem::path>& folders) {
   for (const std::filesystem::path& folder : folders) {
-    const std::vector<std::filesystem::path> scans = unserved_scans(folder);
+    const std::vector<std::filesystem::path> scans = builder::inputs_in(folder);
     if (scans.empty()) continue;
     spdlog::warn(
         "{}: only models (.surf) in a folder are served; {} scan{} skipped, such as {}: name a scan to build and serve "

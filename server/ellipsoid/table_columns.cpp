@@ -10,16 +10,6 @@ namespace {
 
 using Names = std::vector<std::string>;
 
-std::string key_of(std::string_view name) {
-  std::string key;
-  for (const char c : name) {
-    if (c != '_' && c != ' ') key += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  }
-  constexpr std::string_view kPrefix = "scalar";
-  if (key.size() > kPrefix.size() && key.starts_with(kPrefix)) key.erase(0, kPrefix.size());
-  return key;
-}
-
 /// The columns of these names, or none if one is missing.
 std::vector<size_t> find_all(const Names& keys, const std::vector<std::string>& wanted) {
   std::vector<size_t> columns;
@@ -53,6 +43,16 @@ std::vector<size_t> find_semi_axes(const Names& keys) {
 
 }  // namespace
 
+std::string column_key(std::string_view name) {
+  std::string key;
+  for (const char c : name) {
+    if (c != '_' && c != ' ') key += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
+  }
+  constexpr std::string_view kPrefix = "scalar";
+  if (key.size() > kPrefix.size() && key.starts_with(kPrefix)) key.erase(0, kPrefix.size());
+  return key;
+}
+
 std::vector<size_t> ShapeRoles::all() const {
   std::vector<size_t> columns;
   for (const auto* part : {&semi_axes, &quaternion, &matrix, &tensor}) {
@@ -63,7 +63,7 @@ std::vector<size_t> ShapeRoles::all() const {
 
 std::optional<ShapeRoles> shape_roles(const Names& names) {
   Names keys;
-  std::transform(names.begin(), names.end(), std::back_inserter(keys), key_of);
+  std::transform(names.begin(), names.end(), std::back_inserter(keys), column_key);
   ShapeRoles roles;
   roles.semi_axes = find_semi_axes(keys);
   if (roles.semi_axes.empty()) {

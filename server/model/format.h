@@ -46,10 +46,11 @@ struct ModelHeader {
 };
 
 std::vector<std::byte> write_header(const ModelHeader& header);
-/// Checks magic, version and checksum, and that the directory lies within a file of `file_bytes`. `head`: the first
-/// kHeaderBytes of the file, or all of a smaller one.
 /// The fault of a file that does not begin like a model.
 inline constexpr const char* kNoModel = "not a Surfcast model";
+
+/// Checks magic, version and checksum, and that the directory lies within a file of `file_bytes`. `head`: the first
+/// kHeaderBytes of the file, or all of a smaller one.
 Result<ModelHeader> read_header(std::span<const std::byte> head, uint64_t file_bytes);
 inline Result<ModelHeader> read_header(std::span<const std::byte> file) {
   return read_header(file, file.size());

@@ -5,10 +5,10 @@
 
 namespace surfcast::model {
 
-const char* type_name(const Volume& volume) {
+const char* type_name(uint8_t type) {
   constexpr std::array kTypes{"uint8", "int8",   "uint16", "int16",   "uint32",
                               "int32", "uint64", "int64",  "float32", "float64"};
-  return kTypes.at(volume.type);
+  return kTypes.at(type);
 }
 
 const char* frame_name(const Volume& volume) {

@@ -7,12 +7,10 @@
 #include <vector>
 
 #include "geometry/box.h"
+#include "model/volume.h"
 
 namespace surfcast::scattered {
 namespace {
-
-/// As model::kMaxAxisSamples; beyond it a volume has no room.
-constexpr double kMostAxisSamples = double{1U << 25U};
 
 /// Kernels that are widened to lattices of different steps.
 class Extents {
@@ -107,7 +105,7 @@ Result<FieldLattice> plan_lattice(const Samples& samples, Combination combinatio
     lattice.step = step_for(extents, *resolution);
   } else {
     const double needed = extents.fine_deviation() / steps_per_deviation(combination);
-    const double finest = std::max(needed, longest_side(unwidened) / kMostAxisSamples);
+    const double finest = std::max(needed, longest_side(unwidened) / double{model::kMaxAxisSamples});
     lattice.step = limited_step(extents, finest, static_cast<double>(most_samples));
   }
   const geometry::Box box = extents.box(lattice.step);

@@ -4,7 +4,6 @@
 #include <array>
 #include <cmath>
 #include <glm/common.hpp>
-#include <glm/geometric.hpp>
 #include <glm/matrix.hpp>
 #include <limits>
 #include <utility>
@@ -315,19 +314,6 @@ void FieldPlanes::evaluate(uint32_t slab, std::span<float> values) const {
   for (size_t i = 0; i < values.size(); ++i) {
     values[i] = static_cast<float>(combined(combining_, sums.sums[i], sums.weights.empty() ? 0 : sums.weights[i]));
   }
-}
-
-double field_at(const glm::dvec3& place, const Samples& samples, const Combining& combining) {
-  double sum = 0;
-  double weight = 0;
-  for (const KernelSample& sample : samples.kernels) {
-    const glm::dvec3 d = place - sample.centre;
-    const double squared = glm::dot(d, glm::inverse(sample.shape.matrix()) * d);
-    const double w = sample.amplitude * profile_at(samples.profile, squared);
-    sum += w * sample.value;
-    weight += w;
-  }
-  return combined(combining, sum, weight);
 }
 
 }  // namespace surfcast::scattered

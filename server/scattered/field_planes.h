@@ -83,7 +83,4 @@ class FieldPlanes {
   glm::u32vec3 coarse_size_{0};
 };
 
-/// The field at a place, by the definition: for tests and for the error of the lattice.
-[[nodiscard]] double field_at(const glm::dvec3& place, const Samples& samples, const Combining& combining);
-
 }  // namespace surfcast::scattered

@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <cmath>
 #include <limits>
 #include <span>
@@ -10,6 +9,7 @@
 #include <utility>
 #include <variant>
 
+#include "ellipsoid/table_columns.h"
 #include "geometry/box.h"
 #include "scan/neighbours.h"
 #include "scan/sites.h"
@@ -24,11 +24,10 @@ constexpr size_t kNeighbours = scan::kLargestDegree;
 constexpr std::array<std::string_view, 6> kTensorParts{"_xx", "_xy", "_xz", "_yy", "_yz", "_zz"};
 
 bool same_name(std::string_view a, std::string_view b) {
-  const auto lower = [](unsigned char c) { return std::tolower(c); };
-  return std::ranges::equal(a, b, {}, lower, lower);
+  return ellipsoid::column_key(a) == ellipsoid::column_key(b);
 }
 
-/// The name of the scan's column, in its own capitals; none if it has no such column.
+/// The name of the scan's column, as the scan has it; none if it has no such column.
 std::optional<std::string> column_named(const scan::ScanSchema& schema, std::string_view name) {
   for (const scan::ScalarField& field : schema.scalars) {
     if (same_name(field.name, name)) return field.name;
@@ -180,7 +179,7 @@ bool has_field(const scan::ScanSchema& schema, const FieldOptions& options) {
 }
 
 KernelSizes usual_sizes(const scan::ScanSchema& schema) {
-  for (const char* name : {"smoothing_length", "smoothinglength", "hsml", "h"}) {
+  for (const char* name : {"smoothing_length", "hsml", "h"}) {
     if (auto column = column_named(schema, name)) return {KernelSize::kSmoothingLength, std::move(*column), {}};
   }
   if (column_named(schema, "radius")) return {KernelSize::kRadius, "radius", {}};

@@ -24,7 +24,7 @@ struct Samples {
 [[nodiscard]] bool has_field(const scan::ScanSchema& schema, const FieldOptions& options);
 
 /// What states the sizes of a scan's kernels: the first of the columns smoothing_length, hsml, h, radius, sigma, and of
-/// cov_xx to cov_zz, that it has; otherwise the spacing. Names as written here or with other capitals.
+/// cov_xx to cov_zz, that it has; otherwise the spacing. Names are compared without case, underscores and spaces.
 [[nodiscard]] KernelSizes usual_sizes(const scan::ScanSchema& schema);
 
 /// Memory of a sample while it is read and evaluated, bytes.

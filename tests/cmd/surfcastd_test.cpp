@@ -169,6 +169,8 @@ TEST_F(SurfcastdTest, BuildsOneModelOfTheScansInAFolder) {
   ASSERT_EQ(answer.exit_code, 0) << answer.err;
   EXPECT_EQ(answer.out.find("5 points read"), 0U) << answer.out;
   EXPECT_NE(run("inspect model.surf").out.find("sources: a.XYZ, b.csv\n"), std::string::npos);
+  std::ofstream(folder_ / "scans" / "brain.nii.gz") << "damaged";  // an extension of two parts counts, too
+  EXPECT_NE(run("build scans --output model.surf").err.find("brain.nii.gz: "), std::string::npos);
   std::filesystem::create_directory(folder_ / "empty");
   EXPECT_NE(run("build empty --output model.surf").err.find("empty: a folder without a file that a model is built of"),
             std::string::npos);

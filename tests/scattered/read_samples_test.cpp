@@ -31,6 +31,9 @@ TEST(ReadSamplesTest, ARadiusIsTwiceTheSmoothingLength) {
   EXPECT_EQ(radius->kernels[0].centre, glm::dvec3(1, 2, 3));
   EXPECT_EQ(radius->kernels[0].value, 4);
   EXPECT_EQ(radius->kernels[0].shape.xx, 9);
+  const Result<Samples> spelled = read("x,y,z,v,SmoothingLength\n1,2,3,4,3\n5,6,7,8,1\n", {"V"});
+  ASSERT_TRUE(spelled) << spelled.error().message;
+  EXPECT_EQ(spelled->kernels[0].shape.xx, 9);
   const Result<Samples> length = read("x,y,z,v,hsml\n1,2,3,4,3\n5,6,7,8,1\n", {"v"});
   ASSERT_TRUE(length) << length.error().message;
   EXPECT_EQ(length->kernels[0].shape.zz, 9);

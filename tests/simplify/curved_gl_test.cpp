@@ -150,6 +150,13 @@ double psnr_inside(const SrgbPicture& a, const SrgbPicture& b, const std::vector
   return 10 * std::log10(255.0 * 255.0 * count / std::max(sum, 1e-9));
 }
 
+/// Those of some pixels that are not fully covered.
+size_t holes_in(const std::vector<bool>& pixels, const std::vector<float>& coverage) {
+  size_t holes = 0;
+  for (size_t i = 0; i < coverage.size(); ++i) holes += pixels[i] && coverage[i] < 0.999F ? 1 : 0;
+  return holes;
+}
+
 /// A surfel for each point of an even subset of the samples.
 enum class Form { kPlain, kAveraged, kCurved };
 
@@ -243,11 +250,8 @@ class CurvedGLTest : public RendererFixture {
     Errors errors{psnr_inside(plain, ideal.picture, ideal.inside), psnr_inside(averaged, ideal.picture, ideal.inside),
                   psnr_inside(curved, ideal.picture, ideal.inside), psnr_inside(curved, ideal.picture, ideal.smooth),
                   reference::psnr(curved, ideal.picture)};
-    for (size_t i = 0; i < coverage.size(); ++i) {
-      if (coverage[i] >= 0.999F) continue;
-      errors.holes += ideal.inside[i] ? 1 : 0;
-      errors.holes_smooth += ideal.smooth[i] ? 1 : 0;
-    }
+    errors.holes = holes_in(ideal.inside, coverage);
+    errors.holes_smooth = holes_in(ideal.smooth, coverage);
     std::cout << surface.name << ", " << count << " points: plain " << errors.plain << ", averaged " << errors.averaged
               << ", curved " << errors.curved << " dB inside, " << errors.curved_smooth << " away from contours, whole "
               << errors.curved_whole << ", holes " << errors.holes << "\n";
@@ -324,9 +328,7 @@ TEST_F(CurvedGLTest, ASimplifiedTorusHasNoHoles) {
   std::vector<float> coverage;
   const SrgbPicture drawn = lit_picture(cloud, view, &coverage);
   keep(drawn, "torus_simplified");
-  size_t holes = 0;
-  for (size_t i = 0; i < coverage.size(); ++i) holes += ideal.inside[i] && coverage[i] < 0.999F ? 1 : 0;
-  EXPECT_EQ(holes, 0U);
+  EXPECT_EQ(holes_in(ideal.inside, coverage), 0U);
   const double error = psnr_inside(drawn, ideal.picture, ideal.inside);
   std::cout << cloud.size() << " points: " << error << " dB\n";
   EXPECT_GE(error, 45);
@@ -358,9 +360,7 @@ TEST_F(CurvedGLTest, TheFacesOfASimplifiedBoxEndAtItsEdges) {
             << reference::psnr(drawn, ideal.picture) << " whole; outside " << outside(coverage, ideal)
             << " pixels, without borders " << outside(wide, ideal) << "\n";
   EXPECT_LT(4 * outside(coverage, ideal), outside(wide, ideal));
-  size_t holes = 0;
-  for (size_t i = 0; i < coverage.size(); ++i) holes += ideal.inside[i] && coverage[i] < 0.999F ? 1 : 0;
-  EXPECT_EQ(holes, 0U);
+  EXPECT_EQ(holes_in(ideal.inside, coverage), 0U);
 }
 
 }  // namespace
