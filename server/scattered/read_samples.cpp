@@ -40,6 +40,7 @@ std::vector<std::string> size_columns(const KernelSizes& sizes) {
   if (sizes.length || sizes.meaning == KernelSize::kSpacing) return {};
   if (sizes.meaning != KernelSize::kCovariance) return {sizes.column};
   std::vector<std::string> names;
+  names.reserve(kTensorParts.size());
   for (const std::string_view part : kTensorParts) names.push_back(sizes.column + std::string(part));
   return names;
 }
