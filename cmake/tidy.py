@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""tidy.py BUILD [--minutes M] [--base REVISION] [--seed TEXT]: clang-tidy over the sources of a build folder.
+"""tidy.py BUILD [--minutes M] [--others M] [--base REVISION] [--seed TEXT]: clang-tidy over a build folder's sources.
 
 Results are cached by content: a file without a finding is not checked again until something changes that its result
 depends on: its own text, any header it includes, its compiler flags, .clang-tidy, or clang-tidy itself. The cache is
@@ -7,8 +7,9 @@ SURFCAST_TIDY_CACHE, or surfcast-tidy beside the user's other caches. The build 
 which headers a file includes.
 
 With --minutes, no further file is begun after that time. What differs from --base, by default the last commits, is
-checked first; the rest follows in an order that --seed decides, so that runs with other seeds check other files. A
-finding fails the run, a file that was not reached does not.
+checked first; the rest follows in an order that --seed decides, so that runs with other seeds check other files. With
+--others, none of the rest is begun after that shorter time. A finding fails the run, a file that was not reached does
+not.
 
 --folders limits the check to some folders, separated by |. The gate leaves tests and benchmarks out: the macros of the
 test framework make them take five times as long.
@@ -102,9 +103,12 @@ def joined(name):
     return name.endswith((".cpp", ".cxx"))
 
 
-def order_of(files, base, seed):
-    recent = set(output_of("git", "diff", "--name-only", base or f"HEAD~{RECENT_COMMITS}").splitlines())
-    return sorted(files, key=lambda file: (file not in recent, hashlib.sha256((seed + file).encode()).digest()))
+def changed_since(base):
+    return set(output_of("git", "diff", "--name-only", base or f"HEAD~{RECENT_COMMITS}").splitlines())
+
+
+def order_of(files, changed, seed):
+    return sorted(files, key=lambda file: (file not in changed, hashlib.sha256((seed + file).encode()).digest()))
 
 
 def check(file, database, deadline):
@@ -120,6 +124,7 @@ def parse_arguments():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("build", type=pathlib.Path)
     parser.add_argument("--minutes", type=float, default=float("inf"))
+    parser.add_argument("--others", type=float, default=float("inf"))
     parser.add_argument("--base", default="")
     parser.add_argument("--seed", default="")
     parser.add_argument("--folders", default="server|client|protocol|tests|bench")
@@ -140,11 +145,17 @@ def main():
     keys = {file: key_of(entry, tool, headers, fingerprints) for file, entry in entries.items()}
     wanted = [file for file, key in keys.items() if key is None or not (cache / key).exists()]
 
-    deadline = time.monotonic() + 60 * arguments.minutes
+    begin = time.monotonic()
+    changed = changed_since(arguments.base)
+    order = order_of(wanted, changed, arguments.seed)
+
+    def check_in_time(file):
+        minutes = arguments.minutes if file in changed else min(arguments.minutes, arguments.others)
+        return check(file, database, begin + 60 * minutes)
+
     checked = failed = 0
     with concurrent.futures.ThreadPoolExecutor(os.cpu_count()) as pool:
-        order = order_of(wanted, arguments.base, arguments.seed)
-        for file, findings in zip(order, pool.map(lambda file: check(file, database, deadline), order)):
+        for file, findings in zip(order, pool.map(check_in_time, order)):
             if findings is None:
                 continue
             checked += 1
