@@ -6,8 +6,8 @@
 // passes draw the next surface while a pixel of the lane is not opaque. So a surface in front of another one has an
 // antialiased edge instead of a seam in the background colour. Elsewhere the loop ends after one iteration.
 //
-// Silhouettes are drawn twice. The variant with SURFCAST_FINDS_SILHOUETTES writes the depths from which
-// silhouettes.comp finds them, and supersample.comp draws their pixels again.
+// The variant with SURFCAST_KEEPS_FRONTS writes the depths of the front surfaces. Silhouettes are drawn twice:
+// silhouettes.comp finds them by these depths, and supersample.comp draws their pixels again.
 //
 // Tiles with and without large splats are drawn by two variants of this kernel (SURFCAST_LARGE), because the code for
 // large splats would slow down all other tiles. Tiles with long lists are drawn by two more (SURFCAST_TOGETHER), with a
@@ -31,7 +31,7 @@ layout(std430, binding = SURFCAST_BIND_TILE_ORDER) readonly buffer TileOrder { u
 #if defined(SURFCAST_DYNAMIC_TILES) && !defined(SURFCAST_TOGETHER)
 layout(std430, binding = SURFCAST_BIND_NEXT_TILES) buffer NextTiles { uint next_tiles[]; };
 #endif
-#ifdef SURFCAST_FINDS_SILHOUETTES
+#ifdef SURFCAST_KEEPS_FRONTS
 layout(std430, binding = SURFCAST_BIND_FRONTS) writeonly buffer Fronts { float fronts[]; };
 #endif
 
@@ -51,7 +51,7 @@ void write_column(Light light, Rows front, ivec2 first) {
     ivec2 at = first + ivec2(0, i);
     if (any(greaterThanEqual(at, frame.region.zw))) continue;
     write_row(light, i, at);
-#ifdef SURFCAST_FINDS_SILHOUETTES
+#ifdef SURFCAST_KEEPS_FRONTS
     fronts[at.y * frame.region.z + at.x] = ROW(front, i);
 #endif
   }

@@ -22,7 +22,8 @@ using Clock = std::chrono::steady_clock;
 void Conversation::handle_open_view(const wire::Request& request) {
   const wire::OpenView& asked = request.open_view();
   Status opened = protocol::check_view(asked);
-  if (opened) opened = open_view({request.id(), asked.picture().SerializeAsString(), 0, asked.target_fps()});
+  if (opened)
+    opened = open_view({request.id(), asked.picture().SerializeAsString(), 0, asked.target_fps(), asked.depth()});
   if (!opened) return send_error(request.id(), opened.error());
   advance_views();
 }
@@ -47,9 +48,9 @@ Status Conversation::open_view(KeptView wanted) {
   audit("view", job->model);
   job->model = name_for(guest_, job->model);
   const double fps = wanted.target_fps > 0 ? wanted.target_fps : context_->config.target_fps;
-  const auto view = std::make_shared<view::ViewSession>(context_->service, asker_, ++context_->last_viewer, fps,
-                                                        context_->metrics.views, port_of(wanted.id),
-                                                        context_->config.kept_frame_bytes);
+  const view::ViewOptions options{fps, wanted.depth, context_->config.kept_frame_bytes};
+  const auto view = std::make_shared<view::ViewSession>(context_->service, asker_, ++context_->last_viewer, options,
+                                                        context_->metrics.views, port_of(wanted.id));
   view->begin_with(wanted.quality);
   view->update({wanted.update, std::move(*job), /*changed=*/true, /*moving=*/false}, Clock::now());
   OpenedView opened{view, std::move(wanted), picture.model(),

@@ -111,6 +111,15 @@ void to_wire(service::EncodedPicture picture, wire::Picture& message) {
   }
 }
 
+void to_wire(const encode::EncodedDepth& depth, wire::DepthPlane& message) {
+  message.set_width(static_cast<uint32_t>(depth.width));
+  message.set_height(static_cast<uint32_t>(depth.height));
+  message.set_cell(static_cast<uint32_t>(depth.cell));
+  message.set_first(depth.first);
+  message.set_last(depth.last);
+  message.set_codes(depth.codes.data(), depth.codes.size());
+}
+
 void to_wire(view::ViewMessage message, wire::ViewFrame& frame) {
   frame.set_frame(message.frame);
   frame.set_more(message.more);
@@ -123,6 +132,7 @@ void to_wire(view::ViewMessage message, wire::ViewFrame& frame) {
   frame.mutable_resolution()->set_width(static_cast<uint32_t>(message.width));
   frame.mutable_resolution()->set_height(static_cast<uint32_t>(message.height));
   frame.set_moving(message.moving);
+  if (message.picture.depth) to_wire(*message.picture.depth, *frame.mutable_depth());
   to_wire(std::move(message.picture), *frame.mutable_picture());
 }
 

@@ -18,6 +18,7 @@ struct KeptView {
   std::string picture;  ///< encoded wire::DrawPicture, what was asked for last
   uint64_t update = 0;  ///< the number of that picture
   double target_fps = 0;
+  bool depth = false;                                  ///< as in OpenView
   view::QualityState quality = view::first_quality();  ///< of frames in motion
 };
 

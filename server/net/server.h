@@ -37,7 +37,7 @@ struct ServerConfig {
   double target_fps = 30;                                   ///< of views in motion whose client does not say
   size_t unread_bytes = size_t{64} << 20;                   ///< of answers; beyond it the connection is not read from
   size_t small_unread_bytes = size_t{1} << 20;              ///< the same of small answers, with their overhead
-  size_t kept_frame_bytes = view::ViewSession::kKeptBytes;  ///< see ViewSession
+  size_t kept_frame_bytes = view::ViewOptions::kKeptBytes;  ///< see ViewOptions
   size_t request_bytes = size_t{64} << 10;    ///< of one message of a client; ours send no more than kMaxRequestBytes
   uint32_t http_header_bytes = 16384;         ///< of one request of HTTP
   std::chrono::milliseconds hello{10'000};    ///< for the first words of a connection, and for any request that begins

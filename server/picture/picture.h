@@ -11,6 +11,7 @@
 
 #include "geometry/camera.h"
 #include "geometry/clip.h"
+#include "picture/depth_map.h"
 #include "picture/glyphs.h"
 #include "picture/transfer.h"
 
@@ -99,7 +100,8 @@ struct PictureRequest {
   /// Further factors for the surfels of a class, from 0 to 1; of several with the same code the last one counts. No
   /// effect on models without classes.
   std::vector<ClassOpacity> class_opacities;
-  double ghost = 0;  ///< factor of the opacities of the surfels that `clip` hides, from 0 to 1
+  double ghost = 0;      ///< factor of the opacities of the surfels that `clip` hides, from 0 to 1
+  int depth_texels = 0;  ///< a side of Frame::depth, at most; 0: none. Does not change the picture.
 };
 
 /// A rendered picture. Rows run from top to bottom without padding. Each pixel has four channels: the colour, already
@@ -147,6 +149,7 @@ struct Frame {
   bool nothing_pending = false;  ///< no missing block is about to arrive: redrawing would not improve the frame
   uint64_t cut = 0;              ///< identifies the set of blocks drawn
   bool preview = false;          ///< of a scan whose model is still being built
+  DepthMap depth;                ///< with PictureRequest::depth_texels, of pictures of opaque surfaces alone
   FrameStats stats;
 };
 

@@ -221,14 +221,14 @@ Result<LongListPrograms> Programs::long_lists(const Variant& variant, const Pict
     return {};
   };
   constexpr int kPixels = SURFCAST_TILE_WIDTH * SURFCAST_TILE_HEIGHT;
-  const std::string finding = variant.silhouettes ? "#define SURFCAST_FINDS_SILHOUETTES\n" : "";
+  const std::string fronts = variant.keeps_fronts() ? "#define SURFCAST_KEEPS_FRONTS\n" : "";
   const int small_lanes = shape_.whole_tiles ? 1 : kPixels;
   LongListPrograms programs;
   Status status = compile(programs.splat, tile_kernel(variant), false,
-                          lane_defines(shape_.whole_tiles) + shares(tile_lanes, small_lanes) + finding);
+                          lane_defines(shape_.whole_tiles) + shares(tile_lanes, small_lanes) + fronts);
   if (status) {
     status = compile(programs.splat_large, tile_kernel(variant), true,
-                     lane_defines(false) + shares(most_lanes, kPixels) + finding);
+                     lane_defines(false) + shares(most_lanes, kPixels) + fronts);
   }
   if (status && variant.silhouettes) {
     status = compile(programs.supersample, "supersample.comp", false,
@@ -360,11 +360,11 @@ Result<SplatPrograms> Programs::variant(const Variant& variant, const PictureKin
   const std::string at_once = splat + define("SURFCAST_TILES_AT_ONCE", shape_.tiles_at_once);
   const std::string small = at_once + lane_defines(shape_.whole_tiles);
   const std::string large = at_once + lane_defines(false) + "#define SURFCAST_LARGE\n";
-  const std::string finding = variant.silhouettes ? "#define SURFCAST_FINDS_SILHOUETTES\n" : "";
+  const std::string fronts = variant.keeps_fronts() ? "#define SURFCAST_KEEPS_FRONTS\n" : "";
   const std::string selecting = selects(variant) ? "#define SURFCAST_SELECTS\n" : "";
   const char* kernel = tile_kernel(variant);
-  Status status = compile(programs.splat, plain(kernel), small + finding + selecting);
-  if (status) status = compile(programs.splat_large, with_kinds(kernel), large + finding);
+  Status status = compile(programs.splat, plain(kernel), small + fronts + selecting);
+  if (status) status = compile(programs.splat_large, with_kinds(kernel), large + fronts);
   if (variant.silhouettes) {
     const std::string columns = define("SURFCAST_COLUMNS", pixels_at_once());
     const std::string rows = define("SURFCAST_ROWS", SURFCAST_SILHOUETTE_SAMPLES);

@@ -30,6 +30,7 @@ struct Variant {
   bool curved = false;   ///< the model has surfels with curvature
   bool eye_dome = false;
   bool silhouettes = false;      ///< silhouettes are supersampled
+  bool depth = false;            ///< the depth of the picture is asked for and known
   bool blends_behind = false;    ///< see PictureRequest::blends_behind
   bool transparent = false;      ///< surfels are seen through
   bool by_file = false;          ///< their opacities are those of the scan; with transparent
@@ -45,6 +46,9 @@ struct Variant {
   bool superquadrics = false;    ///< glyphs are superquadrics instead of ellipsoids
   bool exact = false;            ///< Gaussians are exact in perspective
   int harmonics = 4;             ///< highest degree of the harmonics of Gaussians that is evaluated
+
+  /// The inverse depth of the front surface of each pixel is kept.
+  [[nodiscard]] bool keeps_fronts() const { return silhouettes || depth; }
 };
 
 /// A kind that a picture shows.

@@ -7,6 +7,7 @@
 
 #include "base/stopwatch.h"
 #include "render/batched_dispatch.h"
+#include "render/depth_of_region.h"
 #include "render/depth_slices.h"
 #include "render/ellipsoid_passes.h"
 #include "render/projection_work.h"
@@ -269,6 +270,14 @@ Result<std::optional<RegionStats>> draw_surfaces(const RegionTask& task, const P
   return std::optional(stats);
 }
 
+/// Enters the region's front surfaces in the depth map of the picture.
+void read_depth(const RegionTask& task, const SplatBuffers& buffers) {
+  std::vector<float> fronts(static_cast<size_t>(task.drawn.width) * static_cast<size_t>(task.drawn.height));
+  const auto bytes = static_cast<GLsizeiptr>(fronts.size() * sizeof(float));
+  glGetNamedBufferSubData(buffers.fronts.name(), 0, bytes, fronts.data());
+  add_fronts(fronts, task.drawn, task.region, std::ldexp(1.0F, drawing_unit(task)), *task.depth);
+}
+
 /// Draws a region with volumes: surfaces first, if it has any, then the volumes between them.
 Result<std::optional<RegionStats>> draw_with_volumes(RegionTask task, const PictureKinds& kinds,
                                                      std::span<const VisibleBrick> bricks, Programs& programs,
@@ -338,7 +347,9 @@ Result<std::optional<RegionStats>> draw_region(const RegionTask& task, Programs&
   if (!drawn || !*drawn) return drawn;
   const Result<double> read = read_picture(buffers, pixels);
   if (!read) return fail(read.error());
-  (*drawn)->read_ms = *read;
+  const Stopwatch watch;
+  if (task.variant.depth) read_depth(task, buffers);
+  (*drawn)->read_ms = *read + watch.milliseconds();
   return drawn;
 }
 

@@ -40,6 +40,7 @@ struct RegionTask {
   DisplayOptions display;
   const ConstantTexels* colors = nullptr;  ///< color_table of `display`, if it is mapped
   size_t list_entries = 0;                 ///< the most entries of all tile lists together
+  picture::DepthMap* depth = nullptr;      ///< with Variant::depth: of the picture; the region's surfaces are added
 };
 
 /// Milliseconds and counts of one region.

@@ -91,6 +91,11 @@ Variant variant_of(const model::ModelInfo& info, const DisplayOptions& display,
   return variant;
 }
 
+/// Whether one depth can stand for each pixel: that of its front surface.
+bool has_one_depth(const Scene& scene, const Variant& variant) {
+  return scene.has_surfaces() && !scene.mixed() && !variant.transparent;
+}
+
 /// Copies a region from the pixels of `written`, which contains it.
 void copy_region(const Region& region, const Region& written, std::span<const std::byte> from, size_t bytes_per_pixel,
                  picture::Image& image) {
@@ -192,7 +197,7 @@ struct Renderer::State {
   Result<RegionStats> draw_regions(const Scene& scene, const picture::PictureRequest& request,
                                    const DisplayOptions& display, const geometry::CameraFrame& frame,
                                    const residency::PreparedView& view, const Preemption& preemption,
-                                   picture::Image& image);
+                                   picture::Frame& result);
   const ConstantTexels* colors_of(const DisplayOptions& display);
   [[nodiscard]] picture::FrameStats stats_of(const Scene& scene, const residency::PreparedView& view,
                                              const RegionStats& drawn) const;
@@ -281,12 +286,14 @@ const ConstantTexels* Renderer::State::colors_of(const DisplayOptions& display) 
 Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const picture::PictureRequest& request,
                                                   const DisplayOptions& display, const geometry::CameraFrame& frame,
                                                   const residency::PreparedView& view, const Preemption& preemption,
-                                                  picture::Image& image) {
+                                                  picture::Frame& result) {
   Variant variant = variant_of(scene.model().info(), display, request);
   if (!scene.has_surfaces()) variant.eye_dome = variant.silhouettes = false;
   if (scene.has_gaussians() || scene.has_glyphs()) variant.eye_dome = false;
   // Harmonics of higher degrees cost as much as all else of a projection, and change little from picture to picture.
   if (request.rest_spacing) variant.harmonics = 1;
+  variant.depth = request.depth_texels > 0 && has_one_depth(scene, variant);
+  if (variant.depth) result.depth = picture::empty_depth_map(request.width, request.height, request.depth_texels);
   variant.silhouettes &= view.nothing_pending;  // a picture that will soon be redrawn does not need supersampling
   const bool layered = scene.mixed() || scene.has_glyphs();  // many buffers for every pixel
   const int margin = variant.eye_dome || variant.silhouettes || scene.mixed() ? kNeighbourMargin : 0;
@@ -311,7 +318,8 @@ Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const pict
                     &request,
                     display,
                     colors_of(display),
-                    list_entries};
+                    list_entries,
+                    variant.depth ? &result.depth : nullptr};
     for (const uint32_t block :
          selection::blocks_in_rectangle(scene.viewed().tree, view.selection.draw, frame, drawn.x, drawn.y,
                                         drawn.x + drawn.width, drawn.y + drawn.height, sides_of(display),
@@ -335,7 +343,7 @@ Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const pict
       regions.insert(regions.end(), halves.begin(), halves.end());
       continue;
     }
-    copy_region(region, written, pixels, bytes, image);
+    copy_region(region, written, pixels, bytes, result.image);
     add(total, **stats);
   }
   return total;
@@ -392,7 +400,7 @@ Result<picture::Frame> Renderer::State::draw(const std::shared_ptr<const model::
   if (worth_drawing(request, *view, result.cut)) {
     const size_t pixels = static_cast<size_t>(request.width) * static_cast<size_t>(request.height);
     result.image.pixels.resize(pixels * pixel_bytes(request.format));
-    const Result<RegionStats> regions = draw_regions(scene, request, *display, *frame, *view, preemption, result.image);
+    const Result<RegionStats> regions = draw_regions(scene, request, *display, *frame, *view, preemption, result);
     if (!regions) return fail(regions.error());
     drawn = *regions;
   }

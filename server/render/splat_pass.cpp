@@ -6,10 +6,13 @@
 namespace surfcast::render {
 namespace {
 
-void clear_silhouettes(const RegionTask& task, bool long_lists, SplatBuffers& buffers) {
+size_t pixels_of_tiles(const RegionTask& task) {
   constexpr size_t kPixels = size_t{SURFCAST_TILE_WIDTH} * SURFCAST_TILE_HEIGHT;
-  const size_t pixels = kPixels * static_cast<size_t>(task.constants.tiles.z);
-  buffers.fronts.reserve(pixels * sizeof(float));
+  return kPixels * static_cast<size_t>(task.constants.tiles.z);
+}
+
+void clear_silhouettes(const RegionTask& task, bool long_lists, SplatBuffers& buffers) {
+  const size_t pixels = pixels_of_tiles(task);
   buffers.silhouettes.reserve(sizeof(glm::uvec4) + (long_lists ? 2 : 1) * pixels * sizeof(glm::uvec2));
   constexpr GLuint kNone[4] = {};
   glNamedBufferSubData(buffers.silhouettes.name(), 0, sizeof kNone, kNone);
@@ -50,10 +53,8 @@ void bind_for_splatting(const RegionTask& task, const SplatBuffers& buffers) {
     buffers.unfinished.bind_for_writing(SURFCAST_UNIT_UNFINISHED);
     buffers.unfinished.bind_for_reading(SURFCAST_UNIT_UNFINISHED);
   }
-  if (task.variant.silhouettes) {
-    buffers.fronts.bind(SURFCAST_BIND_FRONTS);
-    buffers.silhouettes.bind(SURFCAST_BIND_SILHOUETTES);
-  }
+  if (task.variant.keeps_fronts()) buffers.fronts.bind(SURFCAST_BIND_FRONTS);
+  if (task.variant.silhouettes) buffers.silhouettes.bind(SURFCAST_BIND_SILHOUETTES);
 }
 
 Status draw_tiles(const RegionTask& task, const TileSpan& span, const gl::Program& program, BatchSizer& sizer,
@@ -78,6 +79,7 @@ Status splat(const RegionTask& task, const layout::Counters& counters, const Reg
     buffers.depth.reserve(pixels * sizeof(glm::vec2));
   }
   if (task.variant.layered) clear_layers(task.drawn, buffers.volume.layers);
+  if (task.variant.keeps_fronts()) buffers.fronts.reserve(pixels_of_tiles(task) * sizeof(float));
   if (task.variant.silhouettes) clear_silhouettes(task, has_long_lists(counters), buffers);
   reserve_unfinished(task, programs.lanes, buffers);
   const auto tiles = static_cast<uint32_t>(task.constants.tiles.z);

@@ -7,11 +7,15 @@
 namespace surfcast::service {
 namespace {
 
-/// Adds a picture at rest and one in motion.
+constexpr int kDepthTexels = 8;
+
+/// Adds a picture at rest and one in motion, the latter for clients that warp, too.
 void add_both(picture::PictureRequest request, std::vector<picture::PictureRequest>& pictures) {
   pictures.push_back(request);
   request.normalization = picture::Normalization::kSurfel;
   request.blends_behind = true;
+  pictures.push_back(request);
+  request.depth_texels = kDepthTexels;
   pictures.push_back(request);
 }
 

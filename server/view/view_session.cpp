@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <deque>
 #include <utility>
 #include <vector>
 
@@ -14,9 +15,21 @@ constexpr double kPieceMs = 60;
 constexpr size_t kFirstPiece = size_t{64} << 10;
 constexpr size_t kMinPiece = size_t{24} << 10;
 constexpr size_t kMaxPiece = size_t{16} << 20;  // a message stays far below kMaxAnswerBytes
+// Sides of depth maps, texels. They compress to about 4 and 1.5 KB; finer ones tear where points are rough.
+constexpr int kTexelsAtRest = 160;
+constexpr int kTexelsInMotion = 80;
+constexpr size_t kLatencies = 5;
 
 int scaled(int pixels, double scale) {
   return std::max(1, static_cast<int>(std::lround(pixels * scale)));
+}
+
+/// Zero while there is none.
+ViewTime::duration median_of(const std::deque<ViewTime::duration>& durations) {
+  if (durations.empty()) return {};
+  std::vector<ViewTime::duration> sorted(durations.begin(), durations.end());
+  std::ranges::sort(sorted);
+  return sorted[sorted.size() / 2];
 }
 
 /// A picture is improvable while missing blocks are loading. A picture with holes that will be filled soon is not
@@ -30,14 +43,8 @@ FrameResult result_of(FrameKind kind, const service::EncodedPicture& picture) {
 }  // namespace
 
 ViewSession::ViewSession(service::RenderService& service, const service::Asker& asker, uint64_t viewer,
-                         double target_fps, ViewCounts& counts, ViewPort port, size_t kept_bytes)
-    : service_(service),
-      asker_(asker),
-      viewer_(viewer),
-      target_fps_(target_fps),
-      counts_(counts),
-      port_(std::move(port)),
-      kept_bytes_(kept_bytes) {
+                         const ViewOptions& options, ViewCounts& counts, ViewPort port)
+    : service_(service), asker_(asker), viewer_(viewer), options_(options), counts_(counts), port_(std::move(port)) {
   ++counts_.open;
 }
 
@@ -49,13 +56,15 @@ ViewSession::~ViewSession() {
 bool ViewSession::may_be_kept(const service::PictureJob& job) const {
   constexpr size_t kPixelBytes = 4;  // of the JPEG at rest
   const size_t pixels = static_cast<size_t>(job.request.width) * static_cast<size_t>(job.request.height);
-  return pixels * kPixelBytes <= kept_bytes_ &&
+  return pixels * kPixelBytes <= options_.kept_bytes &&
          picture::pixel_format_of(job.format) == picture::pixel_format_of(picture::FileFormat::kJpeg);
 }
 
-service::PictureJob ViewSession::picture_job(FrameKind kind, uint64_t edition, service::JobId supersedes) const {
+service::PictureJob ViewSession::picture_job(FrameKind kind, uint64_t edition, service::JobId supersedes,
+                                             ViewTime now) const {
   service::PictureJob job = newest_.picture;
   job.request.edition = edition;
+  if (options_.depth) job.request.depth_texels = kind == FrameKind::kMotion ? kTexelsInMotion : kTexelsAtRest;
   if (kind == FrameKind::kFinal) return job;
   picture::PictureRequest& request = job.request;
   request.loading = picture::Loading::kNow;
@@ -72,6 +81,7 @@ service::PictureJob ViewSession::picture_job(FrameKind kind, uint64_t edition, s
     job.keep_frame = may_be_kept(newest_.picture);
     return job;
   }
+  if (options_.depth && request.camera) request.camera = forecast_.at(now + median_of(latencies_), now);
   const MotionQuality quality = quality_of(quality_);
   request.rest_spacing = request.spacing * quality.scale;
   request.width = scaled(request.width, quality.scale);
@@ -93,21 +103,23 @@ void ViewSession::update(ViewUpdate update, ViewTime now) {
   newest_ = std::move(update);
   plan_.update(changed, newest_.moving, now);
   if (!changed) return;
+  if (newest_.picture.request.camera) forecast_.record(*newest_.picture.request.camera, now);
   newest_begun_ = false;
   displayed_cut_ = 0;
   finished_frame_.reset();
   for (const uint64_t frame : plan_.outdated()) drop(frame);
   if (outgoing_ && outgoing_->kind != FrameKind::kMotion) give_up_sending();
-  retarget();
+  retarget(now);
 }
 
 /// Replaces the request of a frame that still waits for the render thread by the newest picture.
-void ViewSession::retarget() {
+void ViewSession::retarget(ViewTime now) {
   const std::optional<uint64_t> frame = plan_.retargetable();
   if (!frame) return;
   Job& job = frames_.at(*frame);
-  if (!service_.replace(job.job, picture_job(FrameKind::kMotion, job.edition, job.supersedes))) return;
+  if (!service_.replace(job.job, picture_job(FrameKind::kMotion, job.edition, job.supersedes, now))) return;
   plan_.retarget(*frame);
+  job.begun = now;
   job.update = newest_.update;
   job.quality = quality_;
   newest_begun_ = true;
@@ -160,6 +172,7 @@ void ViewSession::draw(FrameKind kind, ViewTime now) {
   job.update = newest_.update;
   job.edition = next_edition(kind, now);
   job.quality = quality_;
+  job.begun = now;
   // A frame that is tried may come to nothing, and is in place of no other.
   job.supersedes = kind == FrameKind::kMotion && job.edition == edition_ ? last_motion_job_ : 0;
   plan_.begin(frame, kind);
@@ -170,10 +183,10 @@ void ViewSession::draw(FrameKind kind, ViewTime now) {
     });
   };
   if (kind == FrameKind::kFinal && finished_frame_) {
-    job.job =
-        service_.encode(std::exchange(finished_frame_, {}), picture_job(kind, job.edition, 0), std::move(done), asker_);
+    job.job = service_.encode(std::exchange(finished_frame_, {}), picture_job(kind, job.edition, 0, now),
+                              std::move(done), asker_);
   } else {
-    job.job = service_.draw(asker_, picture_job(kind, job.edition, job.supersedes), std::move(done));
+    job.job = service_.draw(asker_, picture_job(kind, job.edition, job.supersedes, now), std::move(done));
   }
   if (kind == FrameKind::kMotion && job.edition == edition_) last_motion_job_ = job.job;
 }
@@ -301,6 +314,7 @@ void ViewSession::send_piece(size_t bytes, ViewTime now) {
   const bool last = out.sent + bytes == out.bytes.size();
   ViewMessage message;
   if (first) message = std::move(out.message);
+  const size_t depth_bytes = message.picture.depth ? message.picture.depth->codes.size() : 0;
   message.frame = out.frame;
   if (first && last) {
     message.picture.bytes = std::move(out.bytes);
@@ -316,7 +330,7 @@ void ViewSession::send_piece(size_t bytes, ViewTime now) {
   ++job.unacknowledged;
   job.sent = last;
   plan_.send(out.kind, last);
-  link_.send(out.frame, bytes, now);
+  link_.send(out.frame, bytes + depth_bytes, now);
   counts_.bytes += bytes;
   if (last) {
     ++counts_.frames;
@@ -332,6 +346,8 @@ void ViewSession::acknowledge(uint64_t frame, double client_ms, ViewTime now) {
   --job.unacknowledged;
   plan_.acknowledge(job.kind);
   const std::optional<double> transfer = link_.acknowledge(frame, client_ms, now);
+  if (job.kind == FrameKind::kMotion && job.sent) latencies_.push_back(now - job.begun);
+  if (latencies_.size() > kLatencies) latencies_.pop_front();
   if (job.kind == FrameKind::kMotion && transfer) adapt_quality(job, *transfer, client_ms);
   erase_if_done(frame);
 }
@@ -342,7 +358,7 @@ void ViewSession::adapt_quality(Job& job, double transfer_ms, double client_ms) 
   last_cost_ = job.cost;
   // A frame drawn with an earlier quality is no evidence about the current one.
   const bool current = job.quality.draw.rung == quality_.draw.rung && job.quality.link.rung == quality_.link.rung;
-  if (current) quality_ = adapt(quality_, job.cost, target_fps_);
+  if (current) quality_ = adapt(quality_, job.cost, options_.target_fps);
 }
 
 void ViewSession::close() {

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <functional>
 #include <map>
 #include <memory>
@@ -10,6 +11,7 @@
 
 #include "base/result.h"
 #include "service/render_service.h"
+#include "view/camera_forecast.h"
 #include "view/link_estimate.h"
 #include "view/quality_controller.h"
 #include "view/view_plan.h"
@@ -55,15 +57,23 @@ struct ViewPort {
   std::function<void(std::function<void()>)> post;
 };
 
+struct ViewOptions {
+  static constexpr size_t kKeptBytes = size_t{32} << 20;  ///< a frame of 8 million pixels
+
+  double target_fps = 30;
+  /// Frames have a depth, where it is known, and the client warps them. Those in motion are drawn for the camera that
+  /// the client has when they arrive, as far as that can be told from the cameras before.
+  bool depth = false;
+  /// Of pixels at most, a frame at rest is kept to make the final picture of it without drawing again.
+  size_t kept_bytes = kKeptBytes;
+};
+
 /// A picture that follows a camera: optimised for speed during motion, refined step by step at rest (see ViewPlan). All
 /// methods must be called on the view's thread; drawing and encoding run on the threads of the service.
 class ViewSession : public std::enable_shared_from_this<ViewSession> {
  public:
-  static constexpr size_t kKeptBytes = size_t{32} << 20;  ///< a frame of 8 million pixels
-
-  /// `kept_bytes`: of pixels at most, a frame at rest is kept to make the final picture of it without drawing again.
-  ViewSession(service::RenderService& service, const service::Asker& asker, uint64_t viewer, double target_fps,
-              ViewCounts& counts, ViewPort port, size_t kept_bytes = kKeptBytes);
+  ViewSession(service::RenderService& service, const service::Asker& asker, uint64_t viewer, const ViewOptions& options,
+              ViewCounts& counts, ViewPort port);
   ~ViewSession();
   ViewSession(const ViewSession&) = delete;
   ViewSession& operator=(const ViewSession&) = delete;
@@ -91,6 +101,7 @@ class ViewSession : public std::enable_shared_from_this<ViewSession> {
     uint64_t edition = 0;           ///< of the model
     QualityState quality;
     MotionCost cost;
+    ViewTime begun;             ///< when its camera was chosen
     size_t unacknowledged = 0;  ///< messages
     bool sent = false;          ///< sent or dropped: the job ends with its last acknowledgement
   };
@@ -109,8 +120,9 @@ class ViewSession : public std::enable_shared_from_this<ViewSession> {
   void take_over(uint64_t frame, service::EncodedPicture& picture);
   [[nodiscard]] bool may_be_kept(const service::PictureJob& job) const;
   [[nodiscard]] uint64_t next_edition(FrameKind kind, ViewTime now);
-  [[nodiscard]] service::PictureJob picture_job(FrameKind kind, uint64_t edition, service::JobId supersedes) const;
-  void retarget();
+  [[nodiscard]] service::PictureJob picture_job(FrameKind kind, uint64_t edition, service::JobId supersedes,
+                                                ViewTime now) const;
+  void retarget(ViewTime now);
   void drop(uint64_t frame);
   void drop_former_editions();
   void erase_if_done(uint64_t frame);
@@ -126,10 +138,9 @@ class ViewSession : public std::enable_shared_from_this<ViewSession> {
   service::RenderService& service_;
   service::Asker asker_;
   uint64_t viewer_;
-  double target_fps_;
+  ViewOptions options_;
   ViewCounts& counts_;
   ViewPort port_;
-  size_t kept_bytes_;
   bool closed_ = false;
 
   ViewPlan plan_{ViewTiming{}};
@@ -138,6 +149,8 @@ class ViewSession : public std::enable_shared_from_this<ViewSession> {
   uint64_t successor_ = 0;  ///< the newer edition that is to take over; 0: none
   LinkEstimate link_;
   QualityState quality_ = first_quality();
+  CameraForecast forecast_;
+  std::deque<ViewTime::duration> latencies_;  ///< of the last frames in motion: from `begun` to their acknowledgement
   uint64_t last_frame_ = 0;
   bool newest_begun_ = true;  ///< drawing of the newest picture has started
   service::JobId last_motion_job_ = 0;

@@ -142,10 +142,12 @@ template <typename Archive, worker::Is<PictureRequest> T>
 void fields(Archive& archive, T& value) {
   auto& [camera, width, height, normalization, filter, shading, silhouettes, blends_behind, spacing, background, format,
          loading, edition, viewer, rest_spacing, displayed_cut, max_missing_blocks, coloring, hidden_classes, clip,
-         eye_dome, volumes, splat_convention, glyphs, lighting, opacity, xray, class_opacities, ghost] = value;
+         eye_dome, volumes, splat_convention, glyphs, lighting, opacity, xray, class_opacities, ghost, depth_texels] =
+      value;
   archive(camera, width, height, normalization, filter, shading, silhouettes, blends_behind, spacing, background);
   archive(format, loading, edition, viewer, rest_spacing, displayed_cut, max_missing_blocks, coloring, hidden_classes);
   archive(clip, eye_dome, volumes, splat_convention, glyphs, lighting, opacity, xray, class_opacities, ghost);
+  archive(depth_texels);
 }
 
 template <typename Archive, worker::Is<StageTime> T>
@@ -168,12 +170,18 @@ void fields(Archive& archive, T& value) {
   archive(bytes_resident, levels, gl_renderer, stages);
 }
 
+template <typename Archive, worker::Is<DepthMap> T>
+void fields(Archive& archive, T& value) {
+  auto& [width, height, cell, inverse] = value;
+  archive(width, height, cell, inverse);
+}
+
 /// The pixels travel in shared memory.
 template <typename Archive, worker::Is<Frame> T>
 void fields(Archive& archive, T& value) {
-  auto& [image, camera, converged, nothing_pending, cut, preview, stats] = value;
+  auto& [image, camera, converged, nothing_pending, cut, preview, depth, stats] = value;
   auto& [width, height, format, pixels] = image;
-  archive(width, height, format, camera, converged, nothing_pending, cut, preview, stats);
+  archive(width, height, format, camera, converged, nothing_pending, cut, preview, depth, stats);
 }
 
 template <typename Archive, worker::Is<MemoryBudgets> T>

@@ -11,12 +11,13 @@ namespace {
 /// A client with one view open, which answers every message of it at once unless it is told not to.
 class ViewSessionTest : public NetFixture {
  protected:
-  void open_view(const std::string& model = "cube", uint32_t width = 64, uint32_t height = 32) {
+  void open_view(const std::string& model = "cube", uint32_t width = 64, uint32_t height = 32, bool depth = false) {
     auto connection = connect();
     ASSERT_TRUE(connection);
     connection_.emplace(std::move(*connection));
     wire::Request request;
     *request.mutable_open_view()->mutable_picture() = picture(model, 0, width, height);
+    request.mutable_open_view()->set_depth(depth);
     const auto id = connection_->send(request);
     ASSERT_TRUE(id);
     view_ = *id;
@@ -100,6 +101,40 @@ TEST_F(ViewSessionTest, AViewAtRestEndsWithTheAnswerToItsPictureAndThenFallsSile
   const auto answer = connection_->ask(request);
   ASSERT_TRUE(answer) << "what comes next is this picture and no frame";
   EXPECT_EQ(answer->picture().data(), frames[2].picture().data());
+}
+
+TEST_F(ViewSessionTest, FramesHaveTheirDepthWhereTheViewAsksForIt) {
+  start();
+  open_view("noise", 320, 200, /*depth=*/true);
+  wire::ViewFrame frame;
+  do {
+    frame = next_frame();
+    const wire::Resolution& size = frame.picture().resolution();
+    const wire::DepthPlane& depth = frame.depth();
+    ASSERT_GT(depth.cell(), 0U);
+    EXPECT_EQ(depth.width(), (size.width() + depth.cell() - 1) / depth.cell());
+    EXPECT_EQ(depth.height(), (size.height() + depth.cell() - 1) / depth.cell());
+    EXPECT_LE(depth.width(), frame.moving() ? 80U : 160U);
+    EXPECT_FLOAT_EQ(static_cast<float>(depth.first()), 0.25F);
+    EXPECT_FLOAT_EQ(static_cast<float>(depth.last()), 0.5F);
+    EXPECT_FALSE(depth.codes().empty());
+  } while (!frame.picture().converged() && !HasFailure());
+
+  wire::Request request;
+  *request.mutable_draw_picture() = picture("noise", 0, 320, 200);
+  const auto answer = connection_->ask(request);
+  ASSERT_TRUE(answer);
+  EXPECT_EQ(answer->picture().data(), frame.picture().data()) << "depth stands beside the picture";
+}
+
+TEST_F(ViewSessionTest, FramesHaveNoDepthWhereTheViewDoesNotAskForIt) {
+  start();
+  open_view("noise", 320, 200);
+  wire::ViewFrame frame;
+  do {
+    frame = next_frame();
+    EXPECT_FALSE(frame.has_depth());
+  } while (!frame.picture().converged() && !HasFailure());
 }
 
 TEST_F(ViewSessionTest, FramesRepeatTheNewestUpdateAndItsCamera) {

@@ -109,6 +109,11 @@ class FakeRenderer : public FrameRenderer {
     frame.image = plain_image(request);
     if (model == "noise") add_noise(frame.image);
     if (request.camera) frame.camera = *request.camera;
+    if (request.depth_texels > 0) {
+      frame.depth = picture::empty_depth_map(request.width, request.height, request.depth_texels);
+      frame.depth.inverse.front() = 0.5F;
+      frame.depth.inverse.back() = 0.25F;
+    }
     frame.converged = true;
     frame.nothing_pending = true;
     frame.cut = 7;

@@ -32,7 +32,7 @@ class ViewOfAScanTest : public ::testing::Test {
       tasks_.push_back(std::move(task));
       wake_.notify_one();
     };
-    view_ = std::make_shared<ViewSession>(*service_, 1, 1, 30, counts_, std::move(port));
+    view_ = std::make_shared<ViewSession>(*service_, 1, 1, ViewOptions{}, counts_, std::move(port));
     update();
   }
   void TearDown() override {

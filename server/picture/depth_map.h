@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+#include <vector>
+
+namespace surfcast::picture {
+
+/// The depth of a picture, coarse: a texel for each square of `cell` x `cell` pixels, from the upper left corner on, in
+/// rows from top to bottom; squares at the right and at the lower border may be cut off. A texel is the nearest surface
+/// in its square. Nothing is in it if the depth is not known.
+struct DepthMap {
+  int width = 0;               ///< texels
+  int height = 0;              ///< texels
+  int cell = 0;                ///< pixels
+  std::vector<float> inverse;  ///< 1 / camera z, per world unit; 0: nothing but background
+};
+
+/// An empty map for a picture of this many pixels, with at most `texels` texels a side.
+inline DepthMap empty_depth_map(int width, int height, int texels) {
+  const int longer = width > height ? width : height;
+  const int cell = (longer + texels - 1) / texels;
+  DepthMap map{(width + cell - 1) / cell, (height + cell - 1) / cell, cell, {}};
+  map.inverse.assign(static_cast<size_t>(map.width) * static_cast<size_t>(map.height), 0.0F);
+  return map;
+}
+
+}  // namespace surfcast::picture
