@@ -1,0 +1,23 @@
+#pragma once
+
+#include <vector>
+
+#include "base/result.h"
+#include "surfcast.pb.h"
+
+namespace surfcast::warp {
+
+/// The depth of a frame, as the server sends it: a texel for each square of `cell` x `cell` pixels, in rows from top to
+/// bottom.
+struct DepthPlane {
+  int width = 0;               ///< texels
+  int height = 0;              ///< texels
+  int cell = 0;                ///< pixels
+  std::vector<float> inverse;  ///< 1 / depth of the nearest surface, per world unit; 0: background
+};
+
+/// The depth of a frame whose picture has `width` x `height` pixels. Fails where it does not fit to the picture, and
+/// where it is damaged. Takes no more memory than the texels of the picture.
+Result<DepthPlane> decode_depth(const wire::DepthPlane& plane, int width, int height);
+
+}  // namespace surfcast::warp

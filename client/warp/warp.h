@@ -1,0 +1,31 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <vector>
+
+#include "geometry/camera.h"
+#include "warp/warp_mesh.h"
+
+namespace surfcast::warp {
+
+/// A picture of 3 bytes a pixel, sRGB, in rows from top to bottom.
+struct Pixels {
+  int width = 0;
+  int height = 0;
+  std::vector<uint8_t> rgb;
+};
+
+/// A frame that can be warped. A frame without surfaces has no mesh.
+struct WarpFrame {
+  Pixels pixels;
+  geometry::CameraFrame camera;  ///< of as many pixels
+  WarpMesh mesh;
+};
+
+/// What `target` sees, by the frames that are there: the newest one, which decides what is where, and a former one at
+/// rest, which is sharper, where both agree. `background`: the colour where there is nothing.
+Pixels warp(const WarpFrame& newest, const WarpFrame* rest, const geometry::CameraFrame& target,
+            const std::array<uint8_t, 3>& background);
+
+}  // namespace surfcast::warp
