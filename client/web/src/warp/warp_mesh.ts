@@ -1,0 +1,213 @@
+import type { DepthPlane } from './depth_plane';
+
+/**
+ * A plane of depth as triangles. Vertices lie at the centres of the cells, and on the border of the picture. Where an
+ * edge joins two surfaces it is cut: the surfaces go on to the middle of the edge, each at its own depth, and what opens
+ * between them is filled from the farther one.
+ */
+export interface WarpMesh {
+  readonly vertices: Float32Array; // x, y (pixels of the picture), inverse depth
+  readonly surface: Uint32Array; // indices of three vertices a triangle
+  readonly background: Uint32Array;
+  readonly fills: Float32Array; // `fillFloats` for each of three vertices a triangle
+}
+
+/** Place of a vertex (x, y, inverse depth), its farthest vertex (the same), and where the colour is taken (x, y). */
+export const fillFloats = 8;
+
+const tolerance = 0.02; // relative step of inverse depth for each pixel, beyond which an edge is cut
+
+export function meshOf(plane: DepthPlane): WarpMesh {
+  return new MeshBuilder(new Lattice(plane)).mesh();
+}
+
+/** Vertices in rows: the centres of the cells, with a ring on the border of the picture around them. */
+class Lattice {
+  readonly x: Float64Array; // of the columns
+  readonly y: Float64Array; // of the rows
+  readonly d: Float32Array;
+
+  constructor(readonly plane: DepthPlane) {
+    const { width, height, cell, picture } = plane;
+    this.x = centres(width, cell, picture.width);
+    this.y = centres(height, cell, picture.height);
+    this.d = new Float32Array((width + 2) * (height + 2));
+    for (let row = 0; row < height; ++row) {
+      this.d.set(plane.values.subarray(row * width, (row + 1) * width), (row + 1) * this.columns + 1);
+      this.extend(this.x, (row + 1) * this.columns, 1);
+    }
+    for (let column = 0; column < this.columns; ++column) this.extend(this.y, column, this.columns);
+  }
+
+  get columns(): number {
+    return this.x.length;
+  }
+
+  get rows(): number {
+    return this.y.length;
+  }
+
+  /** Continues a line of vertices, whose outermost ones are not known, as far as the picture. */
+  private extend(at: Float64Array, start: number, stride: number): void {
+    const end = at.length - 1;
+    this.d[start] = this.beyond(at, start, stride, 0, 1);
+    this.d[start + end * stride] = this.beyond(at, start, stride, end, -1);
+  }
+
+  /** A surface goes on with its slope, if there is one: the two vertices before the outermost one tell. */
+  private beyond(at: Float64Array, start: number, stride: number, last: number, inwards: number): number {
+    const index = (steps: number): number => start + (last + steps * inwards) * stride;
+    const near = this.d[index(1)]!;
+    if (at.length < 4) return near;
+    const next = this.d[index(2)]!;
+    const inner = Math.min(last + inwards, last + 2 * inwards);
+    // Of the line's ends, which are not known yet, the rule for cuts takes no notice: they are 0.
+    if (near === 0 || next === 0 || this.breaks(at, inner, stride, start + inner * stride)) return near;
+    const slope = (near - next) / Math.abs(at[last + 2 * inwards]! - at[last + inwards]!);
+    return Math.max(near / 2, near + slope * Math.abs(at[last + inwards]! - at[last]!));
+  }
+
+  /**
+   * Which edges along lines of vertices are cut. Edge i goes from vertex i to the next one of its line. Only a step that
+   * neither slope beside it explains is one between surfaces.
+   */
+  cuts(at: Float64Array, stride: number): Uint8Array {
+    const { d } = this;
+    const cut = new Uint8Array(d.length);
+    const length = at.length;
+    for (let i = 0; i < d.length; ++i) {
+      const k = stride === 1 ? i % length : Math.floor(i / stride);
+      if (k + 1 >= length) continue;
+      const [a, b] = [d[i]!, d[i + stride]!];
+      if (a === b) continue;
+      cut[i] = a === 0 || b === 0 || this.breaks(at, k, stride, i) ? 1 : 0;
+    }
+    return cut;
+  }
+
+  private breaks(at: Float64Array, k: number, stride: number, i: number): boolean {
+    const { d } = this;
+    const [a, b] = [d[i]!, d[i + stride]!];
+    const length = at[k + 1]! - at[k]!;
+    const allowed = tolerance * length * Math.max(a, b);
+    if (Math.abs(b - a) <= allowed) return false;
+    const before = k > 0 ? d[i - stride]! : 0;
+    if (before > 0 && Math.abs(b - a - ((a - before) * length) / (at[k]! - at[k - 1]!)) <= allowed) return false;
+    const after = k + 2 < at.length ? d[i + 2 * stride]! : 0;
+    return !(after > 0 && Math.abs(b - a - ((after - b) * length) / (at[k + 2]! - at[k + 1]!)) <= allowed);
+  }
+}
+
+/** Positions of the centres of cells along one side of the picture, with its two ends. */
+function centres(count: number, cell: number, size: number): Float64Array {
+  const at = new Float64Array(count + 2);
+  for (let i = 0; i < count; ++i) at[i + 1] = (i * cell + Math.min(size, (i + 1) * cell)) / 2;
+  at[count + 1] = size;
+  return at;
+}
+
+class MeshBuilder {
+  private readonly across: Uint8Array; // cuts of edges within rows
+  private readonly down: Uint8Array; // cuts of edges within columns
+  private readonly vertices: number[] = [];
+  private readonly surface: number[] = [];
+  private readonly background: number[] = [];
+  private readonly fills: number[] = [];
+
+  constructor(private readonly lattice: Lattice) {
+    this.across = lattice.cuts(lattice.x, 1);
+    this.down = lattice.cuts(lattice.y, lattice.columns);
+    for (let i = 0; i < lattice.d.length; ++i) {
+      this.vertices.push(lattice.x[i % lattice.columns]!, lattice.y[Math.floor(i / lattice.columns)]!, lattice.d[i]!);
+    }
+  }
+
+  mesh(): WarpMesh {
+    const { columns, rows } = this.lattice;
+    for (let row = 0; row + 1 < rows; ++row) {
+      for (let column = 0; column + 1 < columns; ++column) this.addSquare(row * columns + column);
+    }
+    return {
+      vertices: new Float32Array(this.vertices),
+      surface: new Uint32Array(this.surface),
+      background: new Uint32Array(this.background),
+      fills: new Float32Array(this.fills),
+    };
+  }
+
+  /** Two triangles, divided so that cuts spoil the fewest. */
+  private addSquare(a: number): void {
+    const b = a + 1;
+    const c = a + this.lattice.columns;
+    const e = c + 1;
+    const [top, bottom, left, right] = [this.across[a]!, this.across[c]!, this.down[a]!, this.down[b]!];
+    const falling = (top | right) + (left | bottom);
+    const rising = (top | left) + (right | bottom);
+    if (falling <= rising) {
+      this.addTriangle(a, b, e, (top | right) !== 0);
+      this.addTriangle(a, e, c, (left | bottom) !== 0);
+    } else {
+      this.addTriangle(a, b, c, (top | left) !== 0);
+      this.addTriangle(b, e, c, (right | bottom) !== 0);
+    }
+  }
+
+  private addTriangle(a: number, b: number, c: number, cut: boolean): void {
+    const { d } = this.lattice;
+    if (cut) this.addCut([a, b, c]);
+    else if (d[a] === 0) this.background.push(a, b, c);
+    else this.surface.push(a, b, c);
+  }
+
+  /** A triangle between two surfaces: the part of each that its cells show, and behind them what fills the gap. */
+  private addCut(corners: readonly [number, number, number]): void {
+    const { d } = this.lattice;
+    const depths = corners.map((corner) => d[corner]!);
+    const middle = (Math.min(...depths) + Math.max(...depths)) / 2;
+    const near = depths.map((depth) => depth > middle);
+    const count = near.filter(Boolean).length;
+    // The corner that is alone on its side, then the other two in the same order.
+    const k = near.indexOf(count === 1);
+    const [a, b, c] = [corners[k]!, corners[(k + 1) % 3]!, corners[(k + 2) % 3]!];
+    const along = [this.half(a, b), this.half(a, c)] as const;
+    const facing = [this.half(b, a), this.half(c, a)] as const;
+    this.addPart(a, along[0], along[1]);
+    this.addPart(facing[0], b, c);
+    this.addPart(facing[0], c, facing[1]);
+    this.addFill(corners);
+  }
+
+  /** A surface does not reach to the background. */
+  private addPart(...corners: [number, number, number]): void {
+    const open = corners.filter((corner) => this.vertices[3 * corner + 2] === 0).length;
+    if (open === 0) this.surface.push(...corners);
+    else if (open === 3) this.background.push(...corners);
+  }
+
+  /** A vertex in the middle of an edge, at the depth of its first end. */
+  private half(from: number, to: number): number {
+    const { vertices } = this;
+    const at = (axis: number): number => (vertices[3 * from + axis]! + vertices[3 * to + axis]!) / 2;
+    vertices.push(at(0), at(1), vertices[3 * from + 2]!);
+    return vertices.length / 3 - 1;
+  }
+
+  /** The colour is that of the farthest corner, taken one cell away from the nearest one. */
+  private addFill(corners: readonly number[]): void {
+    const { d, plane } = this.lattice;
+    const far = corners.reduce((best, corner) => (d[corner]! < d[best]! ? corner : best));
+    const near = corners.reduce((best, corner) => (d[corner]! > d[best]! ? corner : best));
+    const [x, y, depth] = this.at(far);
+    const [fromX, fromY] = this.at(near);
+    const distance = Math.hypot(x - fromX, y - fromY);
+    const away = (to: number, from: number, size: number): number =>
+      Math.min(size - 0.5, Math.max(0.5, to + ((to - from) * plane.cell) / distance));
+    const colour = [away(x, fromX, plane.picture.width), away(y, fromY, plane.picture.height)];
+    for (const corner of corners) this.fills.push(...this.at(corner), x, y, depth, ...colour);
+  }
+
+  private at(vertex: number): [number, number, number] {
+    const { vertices } = this;
+    return [vertices[3 * vertex]!, vertices[3 * vertex + 1]!, vertices[3 * vertex + 2]!];
+  }
+}

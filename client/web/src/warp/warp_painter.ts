@@ -1,0 +1,272 @@
+import type { Projection } from '../camera/projection';
+import type { Rgb } from '../state/display_options';
+import type { DepthPlane } from './depth_plane';
+import * as shaders from './shaders';
+import { clipMatrix, rowMatrix, warpBetween } from './warp_camera';
+import { fillFloats, meshOf, type WarpMesh } from './warp_mesh';
+
+/** A frame that can be warped. */
+export interface WarpSource {
+  readonly bitmap: ImageBitmap;
+  readonly depth: DepthPlane;
+  readonly projection: Projection; // of the pixels of `bitmap`
+  readonly background: Rgb;
+}
+
+/** A frame on the GPU. */
+interface Upload {
+  readonly texture: WebGLTexture;
+  readonly vertices: WebGLBuffer;
+  readonly indices: WebGLBuffer; // those of the surface, then those of the background
+  readonly fills: WebGLBuffer;
+  readonly surfaceCount: number;
+  readonly backgroundCount: number;
+  readonly fillCount: number; // vertices
+}
+
+/** The layer below while another one is drawn over it. */
+interface Target {
+  readonly framebuffer: WebGLFramebuffer;
+  readonly color: WebGLTexture;
+  readonly depth: WebGLTexture;
+  readonly width: number;
+  readonly height: number;
+}
+
+interface Programs {
+  readonly surface: WebGLProgram;
+  readonly fill: WebGLProgram;
+  readonly copy: WebGLProgram;
+  readonly sharp: WebGLProgram;
+}
+
+const reach = 20; // how much nearer than all surfaces of a frame the eye may come before they are cut off
+
+/** Draws frames as a camera other than theirs sees them, with WebGL 2. */
+export class WarpPainter {
+  private programs: Programs | undefined;
+  private target: Target | undefined;
+  private readonly uploads = new Map<WarpSource, Upload>();
+
+  /** Undefined where the browser has no WebGL 2. `changed`: the context was lost or has come back. */
+  static on(canvas: HTMLCanvasElement, changed: () => void): WarpPainter | undefined {
+    const gl = canvas.getContext('webgl2', { alpha: false, antialias: false, depth: true });
+    return gl ? new WarpPainter(canvas, gl, changed) : undefined;
+  }
+
+  private constructor(
+    private readonly canvas: HTMLCanvasElement,
+    private readonly gl: WebGL2RenderingContext,
+    changed: () => void,
+  ) {
+    canvas.addEventListener('webglcontextlost', (event) => {
+      event.preventDefault(); // so that it comes back
+      this.programs = undefined;
+      this.target = undefined;
+      this.uploads.clear();
+      changed();
+    });
+    canvas.addEventListener('webglcontextrestored', changed);
+  }
+
+  get lost(): boolean {
+    return this.gl.isContextLost();
+  }
+
+  /** Frees what the GPU holds of a frame. */
+  forget(source: WarpSource): void {
+    const upload = this.uploads.get(source);
+    if (!upload) return;
+    this.uploads.delete(source);
+    this.gl.deleteTexture(upload.texture);
+    for (const buffer of [upload.vertices, upload.indices, upload.fills]) this.gl.deleteBuffer(buffer);
+  }
+
+  /** Draws `below` as the target sees it, and over it what `above` shows sharper. */
+  draw(below: WarpSource, above: WarpSource | undefined, target: Projection): void {
+    const { gl, canvas } = this;
+    const { width, height } = target;
+    if (canvas.width !== width) canvas.width = width;
+    if (canvas.height !== height) canvas.height = height;
+    this.programs ??= programsOf(gl);
+    gl.viewport(0, 0, width, height);
+    gl.enable(gl.DEPTH_TEST);
+    gl.depthFunc(gl.LEQUAL);
+    const nearest = 1 / (reach * Math.max(below.depth.last, above?.depth.last ?? 0));
+    if (!above) {
+      gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+      this.drawBelow(below, target, nearest);
+      return;
+    }
+    const layer = this.targetOf(width, height);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, layer.framebuffer);
+    this.drawBelow(below, target, nearest);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+    this.copy(layer);
+    this.drawAbove(above, below, layer, target, nearest);
+  }
+
+  /** The whole frame: fills first, so that surfaces at the same depth hide them. */
+  private drawBelow(source: WarpSource, target: Projection, nearest: number): void {
+    const { gl } = this;
+    const { surface, fill } = this.programs!;
+    const upload = this.uploaded(source);
+    const { red, green, blue } = source.background;
+    gl.clearColor(red / 255, green / 255, blue / 255, 0);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    this.use(fill, source, target, nearest);
+    gl.bindBuffer(gl.ARRAY_BUFFER, upload.fills);
+    [3, 3, 2].reduce((at, size, location) => {
+      gl.enableVertexAttribArray(location);
+      gl.vertexAttribPointer(location, size, gl.FLOAT, false, 4 * fillFloats, 4 * at);
+      return at + size;
+    }, 0);
+    gl.drawArrays(gl.TRIANGLES, 0, upload.fillCount);
+    this.use(surface, source, target, nearest);
+    this.bindVertices(upload);
+    gl.drawElements(gl.TRIANGLES, upload.surfaceCount + upload.backgroundCount, gl.UNSIGNED_INT, 0);
+  }
+
+  private copy(layer: Target): void {
+    const { gl } = this;
+    gl.useProgram(this.programs!.copy);
+    gl.disable(gl.DEPTH_TEST);
+    for (const location of [0, 1, 2]) gl.disableVertexAttribArray(location);
+    this.bindTexture(this.programs!.copy, 'below', 0, layer.color);
+    gl.drawArrays(gl.TRIANGLES, 0, 3);
+    gl.enable(gl.DEPTH_TEST);
+  }
+
+  private drawAbove(source: WarpSource, below: WarpSource, layer: Target, target: Projection, nearest: number): void {
+    const { gl } = this;
+    const program = this.programs!.sharp;
+    const upload = this.uploaded(source);
+    const cellsOf = ({ depth }: WarpSource): number => (depth.cell * target.width) / depth.picture.width;
+    const rangeOf = ({ depth }: WarpSource): number => depth.last - depth.first;
+    gl.clear(gl.DEPTH_BUFFER_BIT);
+    this.use(program, source, target, nearest);
+    const other = rowMatrix(warpBetween(source.projection, below.projection));
+    gl.uniformMatrix3x4fv(gl.getUniformLocation(program, 'other'), false, other);
+    gl.uniform1f(gl.getUniformLocation(program, 'cells'), cellsOf(source) + cellsOf(below));
+    gl.uniform1f(gl.getUniformLocation(program, 'steps'), (nearest * (rangeOf(source) + rangeOf(below))) / 254);
+    this.bindTexture(program, 'below', 1, layer.color);
+    this.bindTexture(program, 'belowDepth', 2, layer.depth);
+    this.bindVertices(upload);
+    gl.drawElements(gl.TRIANGLES, upload.surfaceCount, gl.UNSIGNED_INT, 0);
+  }
+
+  private use(program: WebGLProgram, source: WarpSource, target: Projection, nearest: number): void {
+    const { gl } = this;
+    const warp = warpBetween(source.projection, target);
+    gl.useProgram(program);
+    const clip = clipMatrix(warp, target.width, target.height, nearest);
+    gl.uniformMatrix4fv(gl.getUniformLocation(program, 'clip'), false, clip);
+    gl.uniform2f(gl.getUniformLocation(program, 'size'), source.projection.width, source.projection.height);
+    this.bindTexture(program, 'picture', 0, this.uploaded(source).texture);
+  }
+
+  private bindTexture(program: WebGLProgram, name: string, unit: number, texture: WebGLTexture): void {
+    const { gl } = this;
+    gl.activeTexture(gl.TEXTURE0 + unit);
+    gl.bindTexture(gl.TEXTURE_2D, texture);
+    gl.uniform1i(gl.getUniformLocation(program, name), unit);
+  }
+
+  private bindVertices(upload: Upload): void {
+    const { gl } = this;
+    gl.bindBuffer(gl.ARRAY_BUFFER, upload.vertices);
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, upload.indices);
+    gl.enableVertexAttribArray(0);
+    gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 0, 0);
+    for (const location of [1, 2]) gl.disableVertexAttribArray(location);
+  }
+
+  private uploaded(source: WarpSource): Upload {
+    const known = this.uploads.get(source);
+    if (known) return known;
+    const upload = uploadOf(this.gl, source.bitmap, meshOf(source.depth));
+    this.uploads.set(source, upload);
+    return upload;
+  }
+
+  private targetOf(width: number, height: number): Target {
+    const { gl, target } = this;
+    if (target?.width === width && target.height === height) return target;
+    if (target) {
+      gl.deleteFramebuffer(target.framebuffer);
+      for (const texture of [target.color, target.depth]) gl.deleteTexture(texture);
+    }
+    return (this.target = makeTarget(gl, width, height));
+  }
+}
+
+function uploadOf(gl: WebGL2RenderingContext, bitmap: ImageBitmap, mesh: WarpMesh): Upload {
+  const texture = textureOf(gl, gl.LINEAR);
+  gl.pixelStorei(gl.UNPACK_COLORSPACE_CONVERSION_WEBGL, gl.NONE);
+  gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE, bitmap);
+  const indices = new Uint32Array(mesh.surface.length + mesh.background.length);
+  indices.set(mesh.surface);
+  indices.set(mesh.background, mesh.surface.length);
+  return {
+    texture,
+    vertices: bufferOf(gl, gl.ARRAY_BUFFER, mesh.vertices),
+    indices: bufferOf(gl, gl.ELEMENT_ARRAY_BUFFER, indices),
+    fills: bufferOf(gl, gl.ARRAY_BUFFER, mesh.fills),
+    surfaceCount: mesh.surface.length,
+    backgroundCount: mesh.background.length,
+    fillCount: mesh.fills.length / fillFloats,
+  };
+}
+
+/** Bound to the active unit. */
+function textureOf(gl: WebGL2RenderingContext, filter: GLenum): WebGLTexture {
+  const texture = gl.createTexture();
+  gl.bindTexture(gl.TEXTURE_2D, texture);
+  for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, name, filter);
+  for (const name of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, name, gl.CLAMP_TO_EDGE);
+  return texture;
+}
+
+function bufferOf(gl: WebGL2RenderingContext, kind: GLenum, data: Float32Array | Uint32Array): WebGLBuffer {
+  const buffer = gl.createBuffer();
+  gl.bindBuffer(kind, buffer);
+  gl.bufferData(kind, data as Float32Array<ArrayBuffer> | Uint32Array<ArrayBuffer>, gl.STATIC_DRAW);
+  return buffer;
+}
+
+function makeTarget(gl: WebGL2RenderingContext, width: number, height: number): Target {
+  const color = textureOf(gl, gl.NEAREST);
+  gl.texStorage2D(gl.TEXTURE_2D, 1, gl.RGBA8, width, height);
+  const depth = textureOf(gl, gl.NEAREST);
+  gl.texStorage2D(gl.TEXTURE_2D, 1, gl.DEPTH_COMPONENT24, width, height);
+  const framebuffer = gl.createFramebuffer();
+  gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
+  gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, color, 0);
+  gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, depth, 0);
+  return { framebuffer, color, depth, width, height };
+}
+
+function programsOf(gl: WebGL2RenderingContext): Programs {
+  return {
+    surface: programOf(gl, shaders.surfaceVertex, shaders.pictureFragment),
+    fill: programOf(gl, shaders.fillVertex, shaders.pictureFragment),
+    copy: programOf(gl, shaders.copyVertex, shaders.copyFragment),
+    sharp: programOf(gl, shaders.sharpVertex, shaders.sharpFragment),
+  };
+}
+
+function programOf(gl: WebGL2RenderingContext, vertex: string, fragment: string): WebGLProgram {
+  const program = gl.createProgram();
+  for (const [kind, text] of [[gl.VERTEX_SHADER, vertex], [gl.FRAGMENT_SHADER, fragment]] as const) {
+    const shader = gl.createShader(kind);
+    if (!shader) continue; // the context is lost, and with it the program
+    gl.shaderSource(shader, text);
+    gl.compileShader(shader);
+    gl.attachShader(program, shader);
+  }
+  gl.linkProgram(program);
+  if (!gl.getProgramParameter(program, gl.LINK_STATUS) && !gl.isContextLost()) {
+    throw new Error(`A program of the warp does not compile: ${gl.getProgramInfoLog(program) ?? ''}`);
+  }
+  return program;
+}
