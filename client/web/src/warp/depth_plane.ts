@@ -13,7 +13,7 @@ export interface DepthPlane {
 }
 
 const maxTexels = 2 ** 20;
-const steps = 254; // between the codes 1 and 255
+const steps = 254; // between the codes 1 and 255, even ones of the logarithm
 
 /** Decodes the depth of a picture of the given size. Rejects planes that are damaged or do not fit the picture. */
 export async function decodePlane(plane: WirePlane, picture: Size): Promise<DepthPlane> {
@@ -21,7 +21,7 @@ export async function decodePlane(plane: WirePlane, picture: Size): Promise<Dept
   check(cell >= 1 && picture.width >= 1 && picture.height >= 1, 'no size');
   check(width === Math.ceil(picture.width / cell) && height === Math.ceil(picture.height / cell), 'another size');
   check(width * height <= maxTexels, 'too many texels');
-  check(Number.isFinite(first) && Number.isFinite(last) && first >= 0 && first < last, 'an invalid range');
+  check(Number.isFinite(first) && Number.isFinite(last) && first > 0 && first < last, 'an invalid range');
   const codes = await inflate(plane.codes, width * height);
   undoPrediction(codes, width);
   return { picture, cell, width, height, values: valuesOf(codes, first, last), first, last };
@@ -65,7 +65,7 @@ export function undoPrediction(codes: Uint8Array, width: number): void {
 
 function valuesOf(codes: Uint8Array, first: number, last: number): Float32Array {
   const table = Float32Array.from({ length: 256 }, (_, code) =>
-    code === 0 ? 0 : first + ((last - first) * (code - 1)) / steps,
+    code === 0 ? 0 : first * (last / first) ** ((code - 1) / steps),
   );
   return Float32Array.from(codes, (code) => table[code]!);
 }

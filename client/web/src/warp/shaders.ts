@@ -78,7 +78,6 @@ uniform sampler2D below;
 uniform highp sampler2D belowDepth;
 uniform vec2 size;
 uniform float cells;
-uniform float steps;
 in vec2 place;
 in vec3 placeBelow;
 out vec4 result;
@@ -99,7 +98,7 @@ void main() {
   ivec2 pixel = ivec2(gl_FragCoord.xy);
   if (texelFetch(below, pixel, 0).a > 0.0) {
     float there = 1.0 - texelFetch(belowDepth, pixel, 0).r;
-    float allowed = relative * max(here, there) + slope * cells + steps;
+    float allowed = relative * max(here, there) + slope * cells;
     if (abs(here - there) > allowed || (placeBelow.z > 0.0 && own < others)) discard;
   }
   result = vec4(texture(picture, place / size).rgb, 1.0);

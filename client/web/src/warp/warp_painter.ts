@@ -142,13 +142,11 @@ export class WarpPainter {
     const program = this.programs!.sharp;
     const upload = this.uploaded(source);
     const cellsOf = ({ depth }: WarpSource): number => (depth.cell * target.width) / depth.picture.width;
-    const rangeOf = ({ depth }: WarpSource): number => depth.last - depth.first;
     gl.clear(gl.DEPTH_BUFFER_BIT);
     this.use(program, source, target, nearest);
     const other = rowMatrix(warpBetween(source.projection, below.projection));
     gl.uniformMatrix3x4fv(gl.getUniformLocation(program, 'other'), false, other);
     gl.uniform1f(gl.getUniformLocation(program, 'cells'), cellsOf(source) + cellsOf(below));
-    gl.uniform1f(gl.getUniformLocation(program, 'steps'), (nearest * (rangeOf(source) + rangeOf(below))) / 254);
     this.bindTexture(program, 'below', 1, layer.color);
     this.bindTexture(program, 'belowDepth', 2, layer.depth);
     this.bindVertices(upload);
