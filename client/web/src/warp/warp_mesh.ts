@@ -3,7 +3,7 @@ import type { DepthPlane } from './depth_plane';
 /**
  * A plane of depth as triangles. Vertices lie at the centres of the cells, and on the border of the picture. Where an
  * edge joins two surfaces it is cut: the surfaces go on to the middle of the edge, each at its own depth, and what opens
- * between them is filled from the farther one.
+ * between them is filled from the farther one. Beside the background nothing is filled: it has one colour.
  */
 export interface WarpMesh {
   readonly vertices: Float32Array; // x, y (pixels of the picture), inverse depth
@@ -174,7 +174,7 @@ class MeshBuilder {
     this.addPart(a, along[0], along[1]);
     this.addPart(facing[0], b, c);
     this.addPart(facing[0], c, facing[1]);
-    this.addFill(corners);
+    if (Math.min(...depths) > 0) this.addFill(corners);
   }
 
   /** A surface does not reach to the background. */
