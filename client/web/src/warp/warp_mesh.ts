@@ -2,7 +2,7 @@ import type { DepthPlane } from './depth_plane';
 
 /**
  * A plane of depth as triangles. Vertices lie at the centres of the cells, and on the border of the picture. Where an
- * edge joins two surfaces it is cut: the surfaces go on to the middle of the edge, each at its own depth, and what opens
+ * edge joins two surfaces it is cut: both go on to the borders of their cells, each at its own depth, and what opens
  * between them is filled from the farther one. Beside the background nothing is filled: it has one colour.
  */
 export interface WarpMesh {
@@ -135,66 +135,54 @@ class MeshBuilder {
     };
   }
 
-  /** Two triangles, divided so that cuts spoil the fewest. */
+  /** The square between four vertices, of which `a` is the upper left one. */
   private addSquare(a: number): void {
     const b = a + 1;
     const c = a + this.lattice.columns;
     const e = c + 1;
     const [top, bottom, left, right] = [this.across[a]!, this.across[c]!, this.down[a]!, this.down[b]!];
-    const falling = (top | right) + (left | bottom);
-    const rising = (top | left) + (right | bottom);
-    if (falling <= rising) {
-      this.addTriangle(a, b, e, (top | right) !== 0);
-      this.addTriangle(a, e, c, (left | bottom) !== 0);
-    } else {
-      this.addTriangle(a, b, c, (top | left) !== 0);
-      this.addTriangle(b, e, c, (right | bottom) !== 0);
+    if ((top | bottom | left | right) === 0) {
+      this.add(a, b, e);
+      this.add(a, e, c);
+      return;
     }
+    this.addQuarter(a, b, c, e, top, left);
+    this.addQuarter(b, a, e, c, top, right);
+    this.addQuarter(c, e, a, b, bottom, left);
+    this.addQuarter(e, c, b, a, bottom, right);
+    if ((top | right) !== 0) this.addFill([a, b, e]);
+    if ((left | bottom) !== 0) this.addFill([a, e, c]);
   }
 
-  private addTriangle(a: number, b: number, c: number, cut: boolean): void {
+  private add(a: number, b: number, c: number): void {
+    (this.vertices[3 * a + 2] === 0 ? this.background : this.surface).push(a, b, c);
+  }
+
+  /** What the cell of a vertex has of a square: at its depth, and on the way to that of a neighbour on its surface. */
+  private addQuarter(own: number, beside: number, below: number, across: number, cutBeside: number, cutBelow: number): void {
     const { d } = this.lattice;
-    if (cut) this.addCut([a, b, c]);
-    else if (d[a] === 0) this.background.push(a, b, c);
-    else this.surface.push(a, b, c);
+    const depth = d[own]!;
+    const toBeside = cutBeside === 0 ? (d[beside]! - depth) / 2 : 0;
+    const toBelow = cutBelow === 0 ? (d[below]! - depth) / 2 : 0;
+    const a = this.between(own, beside, depth + toBeside);
+    const b = this.between(own, below, depth + toBelow);
+    const middle = this.between(own, across, Math.max(depth / 2, depth + toBeside + toBelow));
+    this.add(own, a, middle);
+    this.add(own, middle, b);
   }
 
-  /** A triangle between two surfaces: the part of each that its cells show, and behind them what fills the gap. */
-  private addCut(corners: readonly [number, number, number]): void {
-    const { d } = this.lattice;
-    const depths = corners.map((corner) => d[corner]!);
-    const middle = (Math.min(...depths) + Math.max(...depths)) / 2;
-    const near = depths.map((depth) => depth > middle);
-    const count = near.filter(Boolean).length;
-    // The corner that is alone on its side, then the other two in the same order.
-    const k = near.indexOf(count === 1);
-    const [a, b, c] = [corners[k]!, corners[(k + 1) % 3]!, corners[(k + 2) % 3]!];
-    const along = [this.half(a, b), this.half(a, c)] as const;
-    const facing = [this.half(b, a), this.half(c, a)] as const;
-    this.addPart(a, along[0], along[1]);
-    this.addPart(facing[0], b, c);
-    this.addPart(facing[0], c, facing[1]);
-    if (Math.min(...depths) > 0) this.addFill(corners);
-  }
-
-  /** A surface does not reach to the background. */
-  private addPart(...corners: [number, number, number]): void {
-    const open = corners.filter((corner) => this.vertices[3 * corner + 2] === 0).length;
-    if (open === 0) this.surface.push(...corners);
-    else if (open === 3) this.background.push(...corners);
-  }
-
-  /** A vertex in the middle of an edge, at the depth of its first end. */
-  private half(from: number, to: number): number {
+  /** A vertex in the middle between two. */
+  private between(one: number, other: number, depth: number): number {
     const { vertices } = this;
-    const at = (axis: number): number => (vertices[3 * from + axis]! + vertices[3 * to + axis]!) / 2;
-    vertices.push(at(0), at(1), vertices[3 * from + 2]!);
+    const at = (axis: number): number => (vertices[3 * one + axis]! + vertices[3 * other + axis]!) / 2;
+    vertices.push(at(0), at(1), depth);
     return vertices.length / 3 - 1;
   }
 
   /** The colour is that of the farthest corner, taken one cell away from the nearest one. */
   private addFill(corners: readonly number[]): void {
     const { d, plane } = this.lattice;
+    if (corners.some((corner) => d[corner] === 0)) return;
     const far = corners.reduce((best, corner) => (d[corner]! < d[best]! ? corner : best));
     const near = corners.reduce((best, corner) => (d[corner]! > d[best]! ? corner : best));
     const [x, y, depth] = this.at(far);
