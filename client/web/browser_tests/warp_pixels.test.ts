@@ -180,7 +180,8 @@ describe('a frame at rest over a newer one', () => {
     const newer: Frame = { ...wall(() => [255, 0, 0], 0.5), depth: () => 0.25, projection: camera(0, 6, 0.5) };
     const pixels = await warped(newer, wall(() => [0, 255, 0]), camera(0, 6));
     expect(count(pixels, (_x, _y, color) => !isRed(color))).toBe(0);
-    const near = await warped({ ...newer, depth: () => 1 / 6, projection: camera(0, 4, 0.5) }, wall(() => [0, 255, 0]), camera(0, 4));
+    const farther = { ...newer, depth: () => 1 / 6, projection: camera(0, 4, 0.5) };
+    const near = await warped(farther, wall(() => [0, 255, 0]), camera(0, 4));
     expect(count(near, (_x, _y, color) => !isGreen(color))).toBe(0);
   });
 });

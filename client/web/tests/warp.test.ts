@@ -84,7 +84,8 @@ type Triangle = readonly [Corner, Corner, Corner];
 
 function triangles(mesh: WarpMesh, indices: Uint32Array): Triangle[] {
   const corner = (i: number): Corner => [...mesh.vertices.subarray(3 * i, 3 * i + 3)] as unknown as Corner;
-  return Array.from({ length: indices.length / 3 }, (_, t) => [0, 1, 2].map((k) => corner(indices[3 * t + k]!)) as never);
+  const count = indices.length / 3;
+  return Array.from({ length: count }, (_, t) => [0, 1, 2].map((k) => corner(indices[3 * t + k]!)) as never);
 }
 
 const area = ([a, b, c]: Triangle): number =>
@@ -216,8 +217,10 @@ describe('the warp between two cameras', () => {
     let compared = 0;
     for (const [x, y, d] of triangles(mesh, mesh.surface).flat()) {
       if (d < 0.002) continue; // at the horizon
+      const product = (row: number, column: number, value: number): number =>
+        Math.fround(matrix[4 * column + row]! * value);
       const clip = [0, 1, 2, 3].map((row) =>
-        [x, y, 1, d].reduce((sum, value, column) => Math.fround(sum + Math.fround(matrix[4 * column + row]! * value)), 0),
+        [x, y, 1, d].reduce((sum, value, column) => Math.fround(sum + product(row, column, value)), 0),
       );
       const exact = project(target, pointAt(source, { x, y }, 1 / inverseDepthOf(source, point, normal, x, y)));
       if (!exact) continue;
@@ -247,7 +250,7 @@ describe('what is shown', () => {
     expect(shownAs(undefined, undefined, turned(0), sky).kind).toBe('kept');
   });
 
-  it('is the frame as it is until a camera is known, where it has no depth, and where it is of the present camera', () => {
+  it('is the frame as it is without a camera, without its depth, and where its camera is the present one', () => {
     expect(shownAs(rest, rest, undefined, sky).kind).toBe('picture');
     expect(shownAs(frame({ depth: undefined }), rest, turned(1), sky).kind).toBe('picture');
     expect(shownAs(newest, rest, turned(3), sky).kind).toBe('picture');

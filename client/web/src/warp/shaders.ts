@@ -68,8 +68,8 @@ void main() {
 }`;
 
 /**
- * Keeps what agrees with the layer below in depth and is not stretched more than that layer is. Inverse depths are those
- * of the window, 1 - z. A cell holds its nearest surface, so a slope shifts them by as much as it takes over a cell.
+ * Keeps what agrees with the layer below in depth and is not stretched more than that layer is. Inverse depths are
+ * those of the window, 1 - z. A cell holds its nearest surface, so a slope shifts them by what it takes over a cell.
  */
 export const sharpFragment = `#version 300 es
 precision highp float;

@@ -42,8 +42,8 @@ const combined = (a: number, row: Row, b: number, other: Row): Row => [
 
 /**
  * The warp as a matrix to clip coordinates of a target picture of `width` x `height` pixels, in columns. The window's
- * depth is 1 - nearest d', where d' is the inverse depth in the target picture. What is nearer to the eye than `nearest`
- * is cut off.
+ * depth is 1 - nearest d', where d' is the inverse depth in the target picture. What is nearer to the eye than
+ * `nearest` is cut off.
  */
 export function clipMatrix({ x, y, w }: Warp, width: number, height: number, nearest: number): Float32Array {
   const columns = ([0, 1, 2, 3] as const).map((i) => [

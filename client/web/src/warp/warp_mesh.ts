@@ -68,8 +68,8 @@ class Lattice {
   }
 
   /**
-   * Which edges along lines of vertices are cut. Edge i goes from vertex i to the next one of its line. Only a step that
-   * neither slope beside it explains is one between surfaces.
+   * Which edges along lines of vertices are cut. Edge i goes from vertex i to the next one of its line. Only a step
+   * that neither slope beside it explains is one between surfaces.
    */
   cuts(at: Float64Array, stride: number): Uint8Array {
     const { d } = this;
@@ -146,10 +146,10 @@ class MeshBuilder {
       this.add(a, e, c);
       return;
     }
-    this.addQuarter(a, b, c, e, top, left);
-    this.addQuarter(b, a, e, c, top, right);
-    this.addQuarter(c, e, a, b, bottom, left);
-    this.addQuarter(e, c, b, a, bottom, right);
+    this.addQuarter([a, b, c, e], top, left);
+    this.addQuarter([b, a, e, c], top, right);
+    this.addQuarter([c, e, a, b], bottom, left);
+    this.addQuarter([e, c, b, a], bottom, right);
     if ((top | right) !== 0) this.addFill([a, b, e]);
     if ((left | bottom) !== 0) this.addFill([a, e, c]);
   }
@@ -158,15 +158,19 @@ class MeshBuilder {
     (this.vertices[3 * a + 2] === 0 ? this.background : this.surface).push(a, b, c);
   }
 
-  /** What the cell of a vertex has of a square: at its depth, and on the way to that of a neighbour on its surface. */
-  private addQuarter(own: number, beside: number, below: number, across: number, cutBeside: number, cutBelow: number): void {
+  /**
+   * What the cell of the first corner has of a square: at its depth, and on the way to that of a neighbour on its
+   * surface. Then come the corners beside it, in its column, and across.
+   */
+  private addQuarter(corners: readonly [number, number, number, number], cutBeside: number, cutOver: number): void {
+    const [own, beside, over, across] = corners;
     const { d } = this.lattice;
     const depth = d[own]!;
     const toBeside = cutBeside === 0 ? (d[beside]! - depth) / 2 : 0;
-    const toBelow = cutBelow === 0 ? (d[below]! - depth) / 2 : 0;
+    const toOver = cutOver === 0 ? (d[over]! - depth) / 2 : 0;
     const a = this.between(own, beside, depth + toBeside);
-    const b = this.between(own, below, depth + toBelow);
-    const middle = this.between(own, across, Math.max(depth / 2, depth + toBeside + toBelow));
+    const b = this.between(own, over, depth + toOver);
+    const middle = this.between(own, across, Math.max(depth / 2, depth + toBeside + toOver));
     this.add(own, a, middle);
     this.add(own, middle, b);
   }
