@@ -130,7 +130,8 @@ describe('the mesh of a plane of depth', () => {
       expect(areaOf(near)).toBeCloseTo(100 * 60, 2);
       for (const [x, y] of near.flat()) expect(x >= 100 && x <= 200 && y >= 60 && y <= 120).toBe(true);
       const behind = [...surface, ...triangles(mesh, mesh.background)].filter(([[, , d]]) => d < 0.5);
-      expect(areaOf(near) + areaOf(behind)).toBeCloseTo(size.width * size.height, 1);
+      const open = far === 0 ? 4 * (100 + 60) + 4 * 4 : 0; // half a cell on either side of the outline is neither
+      expect(Math.abs(areaOf(near) + areaOf(behind) - size.width * size.height)).toBeLessThan(open + 0.1);
       if (far === 0) expect(fillCount(mesh)).toBe(0);
       else expect(fillCount(mesh)).toBeGreaterThan(80);
       for (let i = 0; i < mesh.fills.length; i += fillFloats) {

@@ -28,7 +28,6 @@ void main() {
   place = colour / size;
 }`;
 
-/** Alpha is 1 where something landed. */
 export const pictureFragment = `#version 300 es
 precision highp float;
 uniform sampler2D picture;
@@ -38,20 +37,19 @@ void main() {
   result = vec4(texture(picture, place).rgb, 1.0);
 }`;
 
-/** Copies the layer below. */
-export const copyVertex = `#version 300 es
+/** The background is a little nearer than what is not covered, whose depth is 1. */
+export const backgroundVertex = `#version 300 es
+layout(location = 0) in vec3 position;
+uniform mat4 clip;
 void main() {
-  vec2 corner = vec2(gl_VertexID & 1, gl_VertexID >> 1) * 4.0 - 1.0;
-  gl_Position = vec4(corner, 0.0, 1.0);
+  gl_Position = clip * vec4(position.xy, 1.0, 0.0);
+  gl_Position.z = gl_Position.w * (1.0 - 2e-6);
 }`;
 
-export const copyFragment = `#version 300 es
-precision highp float;
-uniform sampler2D below;
-out vec4 result;
-void main() {
-  result = vec4(texelFetch(below, ivec2(gl_FragCoord.xy), 0).rgb, 1.0);
-}`;
+/** Writes the depth alone. */
+export const depthFragment = `#version 300 es
+precision mediump float;
+void main() {}`;
 
 /** `other`: from a pixel and its inverse depth to the source picture of the layer below. */
 export const sharpVertex = `#version 300 es
@@ -74,7 +72,6 @@ void main() {
 export const sharpFragment = `#version 300 es
 precision highp float;
 uniform sampler2D picture;
-uniform sampler2D below;
 uniform highp sampler2D belowDepth;
 uniform vec2 size;
 uniform float cells;
@@ -96,8 +93,8 @@ void main() {
   vec2 belowAt = placeBelow.xy / placeBelow.z;
   float others = density(dFdx(belowAt), dFdy(belowAt));
   ivec2 pixel = ivec2(gl_FragCoord.xy);
-  if (texelFetch(below, pixel, 0).a > 0.0) {
-    float there = 1.0 - texelFetch(belowDepth, pixel, 0).r;
+  float there = 1.0 - texelFetch(belowDepth, pixel, 0).r;
+  if (there > 0.0) {
     float allowed = relative * max(here, there) + slope * cells;
     if (abs(here - there) > allowed || (placeBelow.z > 0.0 && own < others)) discard;
   }

@@ -3,7 +3,8 @@ import type { DepthPlane } from './depth_plane';
 /**
  * A plane of depth as triangles. Vertices lie at the centres of the cells, and on the border of the picture. Where an
  * edge joins two surfaces it is cut: both go on to the borders of their cells, each at its own depth, and what opens
- * between them is filled from the farther one. Beside the background nothing is filled: it has one colour.
+ * between them is filled from the farther one. Beside the background nothing is filled: it has one colour, and what is
+ * not covered is background.
  */
 export interface WarpMesh {
   readonly vertices: Float32Array; // x, y (pixels of the picture), inverse depth
@@ -126,6 +127,7 @@ class MeshBuilder {
     const { columns, rows } = this.lattice;
     for (let row = 0; row + 1 < rows; ++row) {
       for (let column = 0; column + 1 < columns; ++column) this.addSquare(row * columns + column);
+      this.addBackground(row * columns);
     }
     return {
       vertices: new Float32Array(this.vertices),
@@ -142,8 +144,7 @@ class MeshBuilder {
     const e = c + 1;
     const [top, bottom, left, right] = [this.across[a]!, this.across[c]!, this.down[a]!, this.down[b]!];
     if ((top | bottom | left | right) === 0) {
-      this.add(a, b, e);
-      this.add(a, e, c);
+      if (this.lattice.d[a] !== 0) this.surface.push(a, b, e, a, e, c);
       return;
     }
     this.addQuarter([a, b, c, e], top, left);
@@ -154,8 +155,16 @@ class MeshBuilder {
     if ((left | bottom) !== 0) this.addFill([a, e, c]);
   }
 
-  private add(a: number, b: number, c: number): void {
-    (this.vertices[3 * a + 2] === 0 ? this.background : this.surface).push(a, b, c);
+  /** The background between two rows of vertices. It is infinitely far, so few large triangles are as good as many. */
+  private addBackground(row: number): void {
+    const { d, columns } = this.lattice;
+    const isOpen = (i: number): boolean => d[i] === 0 && d[i + columns] === 0;
+    for (let a = row; a + 1 < row + columns; ++a) {
+      let b = a;
+      while (b + 1 < row + columns && isOpen(b) && isOpen(b + 1)) b += 1;
+      if (b > a) this.background.push(a, b, b + columns, a, b + columns, a + columns);
+      a = b;
+    }
   }
 
   /**
@@ -166,13 +175,13 @@ class MeshBuilder {
     const [own, beside, over, across] = corners;
     const { d } = this.lattice;
     const depth = d[own]!;
+    if (depth === 0) return;
     const toBeside = cutBeside === 0 ? (d[beside]! - depth) / 2 : 0;
     const toOver = cutOver === 0 ? (d[over]! - depth) / 2 : 0;
     const a = this.between(own, beside, depth + toBeside);
     const b = this.between(own, over, depth + toOver);
     const middle = this.between(own, across, Math.max(depth / 2, depth + toBeside + toOver));
-    this.add(own, a, middle);
-    this.add(own, middle, b);
+    this.surface.push(own, a, middle, own, middle, b);
   }
 
   /** A vertex in the middle between two. */

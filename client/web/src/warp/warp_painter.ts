@@ -24,10 +24,9 @@ interface Upload {
   readonly fillCount: number; // vertices
 }
 
-/** The layer below while another one is drawn over it. */
-interface Target {
+/** The depth of the layer below another one. */
+interface DepthTarget {
   readonly framebuffer: WebGLFramebuffer;
-  readonly color: WebGLTexture;
   readonly depth: WebGLTexture;
   readonly width: number;
   readonly height: number;
@@ -36,7 +35,9 @@ interface Target {
 interface Programs {
   readonly surface: WebGLProgram;
   readonly fill: WebGLProgram;
-  readonly copy: WebGLProgram;
+  readonly surfaceDepth: WebGLProgram;
+  readonly fillDepth: WebGLProgram;
+  readonly backgroundDepth: WebGLProgram;
   readonly sharp: WebGLProgram;
 }
 
@@ -45,7 +46,7 @@ const reach = 20; // how much nearer than all surfaces of a frame the eye may co
 /** Draws frames as a camera other than theirs sees them, with WebGL 2. */
 export class WarpPainter {
   private programs: Programs | undefined;
-  private target: Target | undefined;
+  private target: DepthTarget | undefined;
   private readonly uploads = new Map<WarpSource, Upload>();
 
   /** Undefined where the browser has no WebGL 2. `changed`: the context was lost or has come back. */
@@ -93,27 +94,41 @@ export class WarpPainter {
     gl.enable(gl.DEPTH_TEST);
     gl.depthFunc(gl.LEQUAL);
     const nearest = 1 / (reach * Math.max(below.depth.last, above?.depth.last ?? 0));
-    if (!above) {
-      gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-      this.drawBelow(below, target, nearest);
-      return;
-    }
-    const layer = this.targetOf(width, height);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, layer.framebuffer);
-    this.drawBelow(below, target, nearest);
+    const depth = above && this.drawDepth(below, target, nearest);
+    const { surface, fill } = this.programs;
+    const { red, green, blue } = below.background;
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    this.copy(layer);
-    this.drawAbove(above, below, layer, target, nearest);
+    gl.clearColor(red / 255, green / 255, blue / 255, 1);
+    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    this.drawSurfaces(below, fill, surface, target, nearest);
+    if (above && depth) this.drawAbove(above, below, depth, target, nearest);
   }
 
-  /** The whole frame: fills first, so that surfaces at the same depth hide them. */
-  private drawBelow(source: WarpSource, target: Projection, nearest: number): void {
+  /** Draws the depth of a frame, by which the one above is judged. */
+  private drawDepth(source: WarpSource, target: Projection, nearest: number): WebGLTexture {
     const { gl } = this;
-    const { surface, fill } = this.programs!;
+    const { surfaceDepth, fillDepth, backgroundDepth } = this.programs!;
+    const { framebuffer, depth } = this.targetOf(target.width, target.height);
     const upload = this.uploaded(source);
-    const { red, green, blue } = source.background;
-    gl.clearColor(red / 255, green / 255, blue / 255, 0);
-    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
+    gl.clear(gl.DEPTH_BUFFER_BIT);
+    this.drawSurfaces(source, fillDepth, surfaceDepth, target, nearest);
+    this.use(backgroundDepth, source, target, nearest);
+    this.bindVertices(upload);
+    gl.drawElements(gl.TRIANGLES, upload.backgroundCount, gl.UNSIGNED_INT, 4 * upload.surfaceCount);
+    return depth;
+  }
+
+  /** Fills come first, so that surfaces at the same depth hide them. */
+  private drawSurfaces(
+    source: WarpSource,
+    fill: WebGLProgram,
+    surface: WebGLProgram,
+    target: Projection,
+    nearest: number,
+  ): void {
+    const { gl } = this;
+    const upload = this.uploaded(source);
     this.use(fill, source, target, nearest);
     gl.bindBuffer(gl.ARRAY_BUFFER, upload.fills);
     [3, 3, 2].reduce((at, size, location) => {
@@ -124,20 +139,10 @@ export class WarpPainter {
     gl.drawArrays(gl.TRIANGLES, 0, upload.fillCount);
     this.use(surface, source, target, nearest);
     this.bindVertices(upload);
-    gl.drawElements(gl.TRIANGLES, upload.surfaceCount + upload.backgroundCount, gl.UNSIGNED_INT, 0);
+    gl.drawElements(gl.TRIANGLES, upload.surfaceCount, gl.UNSIGNED_INT, 0);
   }
 
-  private copy(layer: Target): void {
-    const { gl } = this;
-    gl.useProgram(this.programs!.copy);
-    gl.disable(gl.DEPTH_TEST);
-    for (const location of [0, 1, 2]) gl.disableVertexAttribArray(location);
-    this.bindTexture(this.programs!.copy, 'below', 0, layer.color);
-    gl.drawArrays(gl.TRIANGLES, 0, 3);
-    gl.enable(gl.DEPTH_TEST);
-  }
-
-  private drawAbove(source: WarpSource, below: WarpSource, layer: Target, target: Projection, nearest: number): void {
+  private drawAbove(source: WarpSource, below: WarpSource, depth: WebGLTexture, target: Projection, nearest: number): void {
     const { gl } = this;
     const program = this.programs!.sharp;
     const upload = this.uploaded(source);
@@ -147,8 +152,7 @@ export class WarpPainter {
     const other = rowMatrix(warpBetween(source.projection, below.projection));
     gl.uniformMatrix3x4fv(gl.getUniformLocation(program, 'other'), false, other);
     gl.uniform1f(gl.getUniformLocation(program, 'cells'), cellsOf(source) + cellsOf(below));
-    this.bindTexture(program, 'below', 1, layer.color);
-    this.bindTexture(program, 'belowDepth', 2, layer.depth);
+    this.bindTexture(program, 'belowDepth', 1, depth);
     this.bindVertices(upload);
     gl.drawElements(gl.TRIANGLES, upload.surfaceCount, gl.UNSIGNED_INT, 0);
   }
@@ -187,12 +191,12 @@ export class WarpPainter {
     return upload;
   }
 
-  private targetOf(width: number, height: number): Target {
+  private targetOf(width: number, height: number): DepthTarget {
     const { gl, target } = this;
     if (target?.width === width && target.height === height) return target;
     if (target) {
       gl.deleteFramebuffer(target.framebuffer);
-      for (const texture of [target.color, target.depth]) gl.deleteTexture(texture);
+      gl.deleteTexture(target.depth);
     }
     return (this.target = makeTarget(gl, width, height));
   }
@@ -232,23 +236,22 @@ function bufferOf(gl: WebGL2RenderingContext, kind: GLenum, data: Float32Array |
   return buffer;
 }
 
-function makeTarget(gl: WebGL2RenderingContext, width: number, height: number): Target {
-  const color = textureOf(gl, gl.NEAREST);
-  gl.texStorage2D(gl.TEXTURE_2D, 1, gl.RGBA8, width, height);
+function makeTarget(gl: WebGL2RenderingContext, width: number, height: number): DepthTarget {
   const depth = textureOf(gl, gl.NEAREST);
   gl.texStorage2D(gl.TEXTURE_2D, 1, gl.DEPTH_COMPONENT24, width, height);
   const framebuffer = gl.createFramebuffer();
   gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
-  gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.COLOR_ATTACHMENT0, gl.TEXTURE_2D, color, 0);
   gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, depth, 0);
-  return { framebuffer, color, depth, width, height };
+  return { framebuffer, depth, width, height };
 }
 
 function programsOf(gl: WebGL2RenderingContext): Programs {
   return {
     surface: programOf(gl, shaders.surfaceVertex, shaders.pictureFragment),
     fill: programOf(gl, shaders.fillVertex, shaders.pictureFragment),
-    copy: programOf(gl, shaders.copyVertex, shaders.copyFragment),
+    surfaceDepth: programOf(gl, shaders.surfaceVertex, shaders.depthFragment),
+    fillDepth: programOf(gl, shaders.fillVertex, shaders.depthFragment),
+    backgroundDepth: programOf(gl, shaders.backgroundVertex, shaders.depthFragment),
     sharp: programOf(gl, shaders.sharpVertex, shaders.sharpFragment),
   };
 }
