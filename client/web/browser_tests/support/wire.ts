@@ -13,6 +13,8 @@ export class Wire {
   /** The frame of each message that the page gets, and of each acknowledgement that it sends. */
   readonly pieces: bigint[] = [];
   readonly acknowledged: bigint[] = [];
+  /** The update of each frame that the page has painted, and when (performance.now()). */
+  readonly painted: { readonly update: bigint; readonly at: number }[] = [];
   /** Whole frames, in the order in which the page gets them, each as its first piece says it. */
   readonly frames: ViewFrame[] = [];
   private begun: ViewFrame | undefined;
@@ -72,11 +74,17 @@ export class Wire {
     if (!piece.more) this.frames.push(this.begun!);
   }
 
+  private noteAcknowledgement(frame: bigint): void {
+    this.acknowledged.push(frame);
+    const whole = [...this.frames].reverse().find((one) => one.frame === frame);
+    if (whole) this.painted.push({ update: whole.update, at: performance.now() });
+  }
+
   private noteRequest(message: Buffer): void {
     const { kind } = isHello(message) ? { kind: undefined } : fromBinary(RequestSchema, message);
     if (kind?.case) this.asked.push(kind.case);
     if (kind?.case === 'pickSurfel') this.picked = kind.value.picture;
-    if (kind?.case === 'framePainted') this.acknowledged.push(kind.value.frame);
+    if (kind?.case === 'framePainted') this.noteAcknowledgement(kind.value.frame);
     if (kind?.case === 'updateView') this.updates.push({ update: kind.value.update, picture: kind.value.picture });
   }
 }
