@@ -57,6 +57,7 @@ export class ViewController {
   private readonly sentAt = new Map<bigint, number>(); // update: performance.now()
   private scheduled = false;
   private ticking = false; // an animation frame is requested
+  private unacknowledged: ArrivedFrame | undefined; // painted in this animation frame
   private failures = 0;
   private retryTimer: ReturnType<typeof setTimeout> | undefined;
   private listTimer: ReturnType<typeof setTimeout> | undefined;
@@ -126,6 +127,14 @@ export class ViewController {
     }
     const shown = this.screen.show(this.presentCamera(), skyOf(store.upAxis.peek()));
     if (shown) store.shownCamera.value = shown;
+    this.acknowledge();
+  }
+
+  /** Once for each frame, when it is on the GPU: the time steers the server. Later warps of it do not count. */
+  private acknowledge(): void {
+    const frame = this.unacknowledged;
+    this.unacknowledged = undefined;
+    if (frame) this.session?.acknowledge(frame.frame.frame, performance.now() - frame.arrived);
   }
 
   async pick(picture: DrawPicture, x: number, y: number): Promise<PickResult> {
@@ -228,6 +237,7 @@ export class ViewController {
     store.viewProblem.value = undefined;
     store.shownFrame.value = undefined;
     store.shownCamera.value = undefined;
+    this.painter.reset(); // a frame of the former model that is still being decoded must not be shown
     this.screen.freeze();
     if (model === undefined) return;
     if ((store.models.peek()?.length ?? 0) > 1) this.link.renew();
@@ -325,7 +335,7 @@ export class ViewController {
   private painted(painted: PaintedFrame & DecodedFrame): void {
     const { frame } = painted;
     this.failures = 0;
-    this.session?.acknowledge(frame.frame, painted.painted - painted.arrived);
+    this.unacknowledged = painted;
     this.collector.painted(painted, this.sentAt.get(frame.update));
     // Later frames of the same update are refinements, whose delay is not a latency.
     for (const update of this.sentAt.keys()) if (update <= frame.update) this.sentAt.delete(update);

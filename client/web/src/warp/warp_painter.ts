@@ -49,10 +49,14 @@ export class WarpPainter {
   private target: DepthTarget | undefined;
   private readonly uploads = new Map<WarpSource, Upload>();
 
-  /** Undefined where the browser has no WebGL 2. `changed`: the context was lost or has come back. */
+  /** Undefined where the browser has no WebGL 2 that works. `changed`: the context was lost or has come back. */
   static on(canvas: HTMLCanvasElement, changed: () => void): WarpPainter | undefined {
     const gl = canvas.getContext('webgl2', { alpha: false, antialias: false, depth: true });
-    return gl ? new WarpPainter(canvas, gl, changed) : undefined;
+    try {
+      return gl ? new WarpPainter(canvas, gl, changed) : undefined;
+    } catch {
+      return undefined;
+    }
   }
 
   private constructor(
@@ -60,6 +64,7 @@ export class WarpPainter {
     private readonly gl: WebGL2RenderingContext,
     changed: () => void,
   ) {
+    this.programs = programsOf(gl); // now, as it takes longer than an animation frame
     canvas.addEventListener('webglcontextlost', (event) => {
       event.preventDefault(); // so that it comes back
       this.programs = undefined;
