@@ -82,7 +82,8 @@ async function warped(below: Frame, above: Frame | undefined, target: Projection
 }
 
 const noise = (x: number, y: number): Rgb => {
-  const value = (k: number): number => Math.abs(Math.floor(Math.sin(x * 12.9898 + y * 78.233 + k) * 43758.5453)) % 256;
+  const hash = (k: number): number => Math.abs(Math.floor(Math.sin(x * 12.9898 + y * 78.233 + k) * 43758.5453));
+  const value = (k: number): number => 55 + (hash(k) % 200); // never that of the background
   return [value(1), value(2), value(3)];
 };
 
@@ -111,6 +112,19 @@ describe('a frame', () => {
     const pixels = await warped({ color: noise, depth, cell: 8, projection: camera() }, undefined, camera());
     const open = '0,0,0'; // of the background
     expect(count(pixels, (x, y, color) => `${color}` !== (x < 48 ? open : `${noise(x, y)}`))).toBe(0);
+  });
+
+  it('takes no background with it at the edge of a surface', async () => {
+    const frame: Frame = {
+      color: (x) => (x < 101 ? [255, 0, 0] : [0, 0, 0]), // the last cell of the surface has 3 columns of background
+      depth: (x) => (x < 104 ? 0.5 : 0),
+      cell: 8,
+      projection: camera(),
+    };
+    const wall: Frame = { ...frame, color: () => [0, 255, 0], depth: () => 0.1 };
+    const pixels = await warped(frame, wall, camera(0.1)); // the surface moves by 10 pixels
+    expect(count(pixels, (x, _y, [r, g]) => x < 90 && (r < 250 || g > 5))).toBe(0);
+    expect(count(pixels, (x, _y, [r, g]) => x > 92 && x < 94 && r + g < 100)).toBe(0);
   });
 
   it('turns as a homography, whatever its depth', async () => {

@@ -88,6 +88,8 @@ function triangles(mesh: WarpMesh, indices: Uint32Array): Triangle[] {
   return Array.from({ length: count }, (_, t) => [0, 1, 2].map((k) => corner(indices[3 * t + k]!)) as never);
 }
 
+const surfaces = (mesh: WarpMesh): Triangle[] => [...triangles(mesh, mesh.surface), ...triangles(mesh, mesh.edges)];
+
 const area = ([a, b, c]: Triangle): number =>
   Math.abs((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])) / 2;
 const areaOf = (list: readonly Triangle[]): number => list.reduce((sum, one) => sum + area(one), 0);
@@ -104,7 +106,7 @@ describe('the mesh of a plane of depth', () => {
       const mesh = meshOf(planeOf(from, cell, ground));
       expect(fillCount(mesh)).toBe(0);
       expect(mesh.background).toHaveLength(0);
-      const all = triangles(mesh, mesh.surface);
+      const all = surfaces(mesh);
       expect(areaOf(all)).toBeCloseTo(from.width * from.height, 1);
       const largest = Math.max(...all.flat().map(([x, y, d]) => Math.abs(d - ground(x, y))));
       expect(largest).toBeLessThan(1e-5); // also on the border
@@ -123,7 +125,7 @@ describe('the mesh of a plane of depth', () => {
     it(`of a square before ${what} is cut on its outline alone`, () => {
       const size = { width: 320, height: 180 };
       const mesh = meshOf(planeOf(size, 4, (x, y) => (inSquare(x, y) ? 0.5 : far)));
-      const surface = triangles(mesh, mesh.surface);
+      const surface = surfaces(mesh);
       // Nothing joins the two, and each is shown as far as its cells go.
       for (const one of surface) expect(new Set(one.map(([, , d]) => d)).size).toBe(1);
       const near = surface.filter(([[, , d]]) => d === 0.5);
@@ -146,7 +148,7 @@ describe('the mesh of a plane of depth', () => {
   it('keeps what is one cell thin', () => {
     const size = { width: 320, height: 180 };
     const mesh = meshOf(planeOf(size, 4, (x) => (x > 160 && x < 164 ? 0.5 : 0)));
-    expect(areaOf(triangles(mesh, mesh.surface))).toBeCloseTo(4 * 180, 1);
+    expect(areaOf(surfaces(mesh))).toBeCloseTo(4 * 180, 1);
   });
 });
 
@@ -216,7 +218,7 @@ describe('the warp between two cameras', () => {
     const matrix = clipMatrix(warpBetween(source, target), 1280, 720, 1);
     const mesh = meshOf(planeOf(source, 8, (x, y) => inverseDepthOf(source, point, normal, x, y)));
     let compared = 0;
-    for (const [x, y, d] of triangles(mesh, mesh.surface).flat()) {
+    for (const [x, y, d] of surfaces(mesh).flat()) {
       if (d < 0.002) continue; // at the horizon
       const product = (row: number, column: number, value: number): number =>
         Math.fround(matrix[4 * column + row]! * value);

@@ -28,13 +28,19 @@ void main() {
   place = colour / size;
 }`;
 
+/** A cell beside the background shows some of it, which must not move with the surface. JPEG is not exact there. */
 export const pictureFragment = `#version 300 es
 precision highp float;
 uniform sampler2D picture;
 in vec2 place;
 out vec4 result;
+uniform vec3 background;
+uniform bool edges;
+const float exact = 16.0 / 255.0;
 void main() {
   result = vec4(texture(picture, place).rgb, 1.0);
+  vec3 off = abs(result.rgb - background);
+  if (edges && max(off.r, max(off.g, off.b)) < exact) discard;
 }`;
 
 /** The background is a little nearer than what is not covered, whose depth is 1. */

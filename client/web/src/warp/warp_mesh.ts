@@ -9,6 +9,7 @@ import type { DepthPlane } from './depth_plane';
 export interface WarpMesh {
   readonly vertices: Float32Array; // x, y (pixels of the picture), inverse depth
   readonly surface: Uint32Array; // indices of three vertices a triangle
+  readonly edges: Uint32Array; // the same, of surfaces beside cuts
   readonly background: Uint32Array;
   readonly fills: Float32Array; // `fillFloats` for each of three vertices a triangle
 }
@@ -112,6 +113,7 @@ class MeshBuilder {
   private readonly down: Uint8Array; // cuts of edges within columns
   private readonly vertices: number[] = [];
   private readonly surface: number[] = [];
+  private readonly edges: number[] = [];
   private readonly background: number[] = [];
   private readonly fills: number[] = [];
 
@@ -132,6 +134,7 @@ class MeshBuilder {
     return {
       vertices: new Float32Array(this.vertices),
       surface: new Uint32Array(this.surface),
+      edges: new Uint32Array(this.edges),
       background: new Uint32Array(this.background),
       fills: new Float32Array(this.fills),
     };
@@ -181,7 +184,7 @@ class MeshBuilder {
     const a = this.between(own, beside, depth + toBeside);
     const b = this.between(own, over, depth + toOver);
     const middle = this.between(own, across, Math.max(depth / 2, depth + toBeside + toOver));
-    this.surface.push(own, a, middle, own, middle, b);
+    this.edges.push(own, a, middle, own, middle, b);
   }
 
   /** A vertex in the middle between two. */

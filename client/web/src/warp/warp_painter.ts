@@ -17,9 +17,10 @@ export interface WarpSource {
 interface Upload {
   readonly texture: WebGLTexture;
   readonly vertices: WebGLBuffer;
-  readonly indices: WebGLBuffer; // those of the surface, then those of the background
+  readonly indices: WebGLBuffer; // those of the surface, of its edges and of the background
   readonly fills: WebGLBuffer;
   readonly surfaceCount: number;
+  readonly edgeCount: number;
   readonly backgroundCount: number;
   readonly fillCount: number; // vertices
 }
@@ -120,7 +121,8 @@ export class WarpPainter {
     this.drawSurfaces(source, fillDepth, surfaceDepth, target, nearest);
     this.use(backgroundDepth, source, target, nearest);
     this.bindVertices(upload);
-    gl.drawElements(gl.TRIANGLES, upload.backgroundCount, gl.UNSIGNED_INT, 4 * upload.surfaceCount);
+    const first = upload.surfaceCount + upload.edgeCount;
+    gl.drawElements(gl.TRIANGLES, upload.backgroundCount, gl.UNSIGNED_INT, 4 * first);
     return depth;
   }
 
@@ -145,9 +147,30 @@ export class WarpPainter {
     this.use(surface, source, target, nearest);
     this.bindVertices(upload);
     gl.drawElements(gl.TRIANGLES, upload.surfaceCount, gl.UNSIGNED_INT, 0);
+    this.drawEdges(source, target, nearest);
   }
 
-  private drawAbove(source: WarpSource, below: WarpSource, depth: WebGLTexture, target: Projection, nearest: number): void {
+  /** Without the background in their cells. So the picture is needed even for the depth alone. */
+  private drawEdges(source: WarpSource, target: Projection, nearest: number): void {
+    const { gl } = this;
+    const { surface } = this.programs!;
+    const { surfaceCount, edgeCount } = this.uploaded(source);
+    const { red, green, blue } = source.background;
+    this.use(surface, source, target, nearest);
+    gl.uniform3f(gl.getUniformLocation(surface, 'background'), red / 255, green / 255, blue / 255);
+    gl.uniform1i(gl.getUniformLocation(surface, 'edges'), 1);
+    gl.drawElements(gl.TRIANGLES, edgeCount, gl.UNSIGNED_INT, 4 * surfaceCount);
+    gl.uniform1i(gl.getUniformLocation(surface, 'edges'), 0);
+  }
+
+  /** Only surfaces without their edges: beside those, the newer frame shows better what is before what. */
+  private drawAbove(
+    source: WarpSource,
+    below: WarpSource,
+    depth: WebGLTexture,
+    target: Projection,
+    nearest: number,
+  ): void {
     const { gl } = this;
     const program = this.programs!.sharp;
     const upload = this.uploaded(source);
@@ -211,15 +234,17 @@ function uploadOf(gl: WebGL2RenderingContext, bitmap: ImageBitmap, mesh: WarpMes
   const texture = textureOf(gl, gl.LINEAR);
   gl.pixelStorei(gl.UNPACK_COLORSPACE_CONVERSION_WEBGL, gl.NONE);
   gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE, bitmap);
-  const indices = new Uint32Array(mesh.surface.length + mesh.background.length);
+  const indices = new Uint32Array(mesh.surface.length + mesh.edges.length + mesh.background.length);
   indices.set(mesh.surface);
-  indices.set(mesh.background, mesh.surface.length);
+  indices.set(mesh.edges, mesh.surface.length);
+  indices.set(mesh.background, mesh.surface.length + mesh.edges.length);
   return {
     texture,
     vertices: bufferOf(gl, gl.ARRAY_BUFFER, mesh.vertices),
     indices: bufferOf(gl, gl.ELEMENT_ARRAY_BUFFER, indices),
     fills: bufferOf(gl, gl.ARRAY_BUFFER, mesh.fills),
     surfaceCount: mesh.surface.length,
+    edgeCount: mesh.edges.length,
     backgroundCount: mesh.background.length,
     fillCount: mesh.fills.length / fillFloats,
   };
