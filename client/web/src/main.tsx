@@ -30,17 +30,24 @@ function canvas(className: string): HTMLCanvasElement {
   return element;
 }
 
-/** The canvas of the picture, the overlay canvas, and the element that receives pointer and key events. */
-function makeStage(): { stage: HTMLDivElement; picture: HTMLCanvasElement; overlay: HTMLCanvasElement } {
+interface Stage {
+  readonly stage: HTMLDivElement; // receives pointer and key events
+  readonly picture: HTMLCanvasElement;
+  readonly warped: HTMLCanvasElement; // over the picture, while it is warped
+  readonly overlay: HTMLCanvasElement;
+}
+
+function makeStage(): Stage {
   const stage = document.createElement('div');
   stage.className = 'canvases';
   stage.tabIndex = 0;
   stage.setAttribute('role', 'application');
   stage.setAttribute('aria-label', 'The model. Arrow keys turn it, plus and minus zoom.');
   const picture = canvas('picture');
+  const warped = canvas('warped');
   const overlay = canvas('overlay');
-  stage.append(picture, overlay);
-  return { stage, picture, overlay };
+  stage.append(picture, warped, overlay);
+  return { stage, picture, warped, overlay };
 }
 
 /** It names the open model, by which a proxy before several servers chooses one. */
@@ -56,10 +63,10 @@ const copyLink = (): Promise<void> =>
   copyText(currentLink(), 'Link copied.', 'The browser denies access to the clipboard. Copy the address instead.');
 
 function start(): void {
-  const { stage, picture, overlay } = makeStage();
+  const { stage, picture, warped, overlay } = makeStage();
   const eye = new CameraNavigator();
   startRoutes();
-  const controller = new ViewController(socketUrl, picture, (now) => eye.step(now));
+  const controller = new ViewController(socketUrl, { picture, warped }, (now) => eye.step(now));
   const probe = new Probe(controller);
   const uploader = new Uploader(() => controller.refreshModels());
   acceptDrops(

@@ -1,7 +1,6 @@
 import { computed } from '@preact/signals';
 import { appearance, east, north, scalePoint, unitPixelsAt } from '../camera/orientation';
-import { cameraFrom } from '../protocol/pictures';
-import { description, lastPick, shownFrame, shownProjection } from './store';
+import { description, lastPick, shownCamera, shownProjection } from './store';
 import { lengthUnitOf } from './units';
 import { systemFacts } from './wkt';
 
@@ -19,7 +18,7 @@ const northIsKnown = computed(() => {
 /** What the scale bar is drawn from: the model's unit of length, and the pixels of one at a point of the picture. */
 export const pictureScale = computed(() => {
   const view = shownProjection.value;
-  const camera = cameraFrom(shownFrame.value?.picture?.camera);
+  const camera = shownCamera.value;
   const unit = lengthUnit.value;
   if (!view || !camera || !unit) return undefined;
   const { at, picked } = scalePoint(view, camera.focalPoint, lastPick.value);
@@ -29,7 +28,7 @@ export const pictureScale = computed(() => {
 /** How east and north look in the middle of the picture; undefined where they are not known. */
 export const compass = computed(() => {
   const view = shownProjection.value;
-  const camera = cameraFrom(shownFrame.value?.picture?.camera);
+  const camera = shownCamera.value;
   if (!view || !camera || !northIsKnown.value) return undefined;
   const [toEast, toNorth] = [east, north].map((direction) => appearance(view, camera.focalPoint, direction));
   return toEast && toNorth ? { east: toEast, north: toNorth } : undefined;

@@ -26,8 +26,10 @@ export const uploads = signal<Uploads | undefined>(undefined);
 export const descriptions = signal<ReadonlyMap<string, ModelDescription>>(new Map());
 /** Why there is no picture; `again`: a retry is scheduled. */
 export const viewProblem = signal<{ readonly message: string; readonly again: boolean } | undefined>(undefined);
-/** The frame on the screen, without its data. */
+/** The newest frame on the screen, without its data. */
 export const shownFrame = signal<ViewFrame | undefined>(undefined);
+/** The camera of the picture on the screen: that of the frame, or the one to which the frame is warped. */
+export const shownCamera = signal<Camera | undefined>(undefined);
 /** The frame on the screen belongs to the open view, not to one that ended with its connection. */
 export const frameIsCurrent = signal(false);
 /** The first update that requested the current view. A frame of an older update shows an earlier view. */
@@ -118,10 +120,10 @@ export const lengthDecimals = computed(() =>
   decimalsOf(description.value?.spacing || diagonal(bounds.value) * 1e-4),
 );
 
-/** Projection of the frame on the screen. The overlay uses it, not the newest pose, so that it matches the picture. */
+/** Projection of the picture on the screen. The overlay uses it, not the newest pose, so that it matches the picture. */
 export const shownProjection = computed<Projection | undefined>(() => {
   const frame = shownFrame.value;
-  const camera = cameraFrom(frame?.picture?.camera);
+  const camera = shownCamera.value ?? cameraFrom(frame?.picture?.camera);
   if (!frame?.resolution || !camera) return undefined;
   return projectionOf(camera, skyOf(upAxis.value), frame.resolution.width, frame.resolution.height);
 });

@@ -1,4 +1,5 @@
-import { FileFormat, type ViewFrame } from '../generated/surfcast_pb';
+import { FileFormat, type DrawPicture, type ViewFrame } from '../generated/surfcast_pb';
+import { decodePlane, type DepthPlane } from '../warp/depth_plane';
 
 const types: Readonly<Record<FileFormat, string>> = {
   [FileFormat.PNG]: 'image/png',
@@ -14,6 +15,8 @@ export interface ArrivedFrame {
   readonly frame: ViewFrame;
   readonly bytes: number;
   readonly arrived: number;
+  /** The request that it shows, if it is known. */
+  readonly asked?: DrawPicture | undefined;
 }
 
 export interface PaintedFrame extends ArrivedFrame {
@@ -21,27 +24,29 @@ export interface PaintedFrame extends ArrivedFrame {
   readonly painted: number;
 }
 
-interface DecodedFrame extends ArrivedFrame {
+export interface DecodedFrame extends ArrivedFrame {
   readonly bitmap: ImageBitmap;
+  readonly depth: DepthPlane | undefined;
   readonly decoded: number;
 }
 
 export interface PainterEvents {
-  painted(frame: PaintedFrame): void;
+  /** A frame is decoded: `paint` should be called in the next animation frame. */
+  ready(): void;
+  /** Whoever takes this closes the bitmap. */
+  painted(frame: PaintedFrame & DecodedFrame): void;
   /** A newer frame was ready before this one could be painted. The frame must be acknowledged all the same. */
   skipped(frame: ArrivedFrame): void;
   broken(frame: ArrivedFrame): void;
 }
 
 /**
- * Paints frames on a canvas. Pictures are decoded off the main thread. Each animation frame paints the newest decoded
- * picture only.
+ * Paints frames on a canvas. Pictures are decoded off the main thread. Only the newest decoded picture is painted.
  */
 export class Painter {
   private readonly context: CanvasRenderingContext2D;
   private ready: DecodedFrame | undefined;
   private newest = 0n;
-  private scheduled = false;
   private generation = 0;
 
   constructor(
@@ -68,8 +73,11 @@ export class Painter {
     try {
       if (!picture) throw new Error('a frame without a picture');
       const file = new Blob([picture.data as Uint8Array<ArrayBuffer>], { type: mediaType(picture.format) });
-      const bitmap = await createImageBitmap(file, { colorSpaceConversion: 'none', premultiplyAlpha: 'none' });
-      if (generation === this.generation) this.queue({ ...arrived, bitmap, decoded: performance.now() });
+      const [bitmap, depth] = await Promise.all([
+        createImageBitmap(file, { colorSpaceConversion: 'none', premultiplyAlpha: 'none' }),
+        depthOf(arrived.frame),
+      ]);
+      if (generation === this.generation) this.queue({ ...arrived, bitmap, depth, decoded: performance.now() });
       else bitmap.close();
     } catch {
       if (generation === this.generation) this.events.broken(arrived);
@@ -84,9 +92,7 @@ export class Painter {
     if (this.ready) this.skip(this.ready);
     this.newest = decoded.frame.frame;
     this.ready = decoded;
-    if (this.scheduled) return;
-    this.scheduled = true;
-    requestAnimationFrame(() => this.paint());
+    this.events.ready();
   }
 
   private skip(decoded: DecodedFrame): void {
@@ -94,8 +100,8 @@ export class Painter {
     this.events.skipped(decoded);
   }
 
-  private paint(): void {
-    this.scheduled = false;
+  /** Paints the frame that is ready, if there is one. */
+  paint(): void {
     const decoded = this.ready;
     if (!decoded) return;
     this.ready = undefined;
@@ -107,7 +113,12 @@ export class Painter {
     this.canvas.hidden = false;
     this.context.imageSmoothingQuality = 'medium';
     this.context.drawImage(bitmap, 0, 0, width, height);
-    bitmap.close();
     this.events.painted({ ...decoded, painted: performance.now() });
   }
+}
+
+/** Without a depth, or with a damaged one, the frame is shown as it is. */
+async function depthOf({ depth, picture }: ViewFrame): Promise<DepthPlane | undefined> {
+  if (!depth || !picture?.resolution) return undefined;
+  return decodePlane(depth, picture.resolution).catch(() => undefined);
 }

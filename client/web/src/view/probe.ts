@@ -1,7 +1,7 @@
 import { pointAt } from '../camera/projection';
 import type { Pixel, Vector } from '../camera/vector';
 import type { PickResult } from '../generated/surfcast_pb';
-import { cameraFrom, pictureOf, vectorFrom } from '../protocol/pictures';
+import { pictureOf, vectorFrom } from '../protocol/pictures';
 import * as store from '../state/store';
 import type { ViewController } from './view_controller';
 
@@ -13,7 +13,7 @@ export class Probe {
   async pick(pixel: Pixel): Promise<PickResult | undefined> {
     const frame = store.shownFrame.peek();
     const model = store.model.peek();
-    const camera = cameraFrom(frame?.picture?.camera);
+    const camera = store.shownCamera.peek();
     if (!frame?.resolution || !camera || model === undefined) return undefined;
     const { width, height } = frame.resolution;
     const x = Math.min(width - 1, Math.max(0, Math.floor(pixel.x)));

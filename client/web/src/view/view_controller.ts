@@ -1,6 +1,6 @@
 import { equals } from '@bufbuild/protobuf';
 import { batch, effect } from '@preact/signals';
-import { cameraOf, poseOf } from '../camera/pose';
+import { cameraOf, poseOf, skyOf, type Camera } from '../camera/pose';
 import type { Vector } from '../camera/vector';
 import {
   DrawPictureSchema,
@@ -18,8 +18,9 @@ import { cameraFrom, pictureOf } from '../protocol/pictures';
 import { awaited, failed, renewed } from '../state/scans';
 import * as store from '../state/store';
 import { FigureCollector } from './figures';
-import { Painter, type ArrivedFrame, type PaintedFrame } from './painter';
-import { ViewSession } from './view_session';
+import { Painter, type ArrivedFrame, type DecodedFrame, type PaintedFrame } from './painter';
+import { Screen } from './screen';
+import { ViewSession, type ViewEvents } from './view_session';
 
 /** A requested picture, and whether more requests will follow soon. */
 interface ViewRequest {
@@ -41,11 +42,13 @@ interface LostView {
 
 /**
  * Synchronizes the page and the server. Sends changes of the store's model, pose and display options, at most one
- * update per animation frame, and paints the frames received. Reopens the view when the connection is lost.
+ * update per animation frame, and paints the frames received, warped to the present camera. Reopens the view when the
+ * connection is lost.
  */
 export class ViewController {
   private readonly link: Link;
   private readonly painter: Painter;
+  private readonly screen: Screen;
   private readonly collector = new FigureCollector();
   private connection: Connection | undefined;
   private session: ViewSession | undefined;
@@ -53,6 +56,8 @@ export class ViewController {
   private lost: LostView | undefined;
   private readonly sentAt = new Map<bigint, number>(); // update: performance.now()
   private scheduled = false;
+  private ticking = false; // an animation frame is requested
+  private unacknowledged: ArrivedFrame | undefined; // painted in this animation frame
   private failures = 0;
   private retryTimer: ReturnType<typeof setTimeout> | undefined;
   private listTimer: ReturnType<typeof setTimeout> | undefined;
@@ -60,10 +65,12 @@ export class ViewController {
   /** `step` advances animations of the eye to the given time. */
   constructor(
     url: () => string,
-    canvas: HTMLCanvasElement,
+    canvases: { readonly picture: HTMLCanvasElement; readonly warped: HTMLCanvasElement },
     private readonly step: (now: number) => boolean,
   ) {
-    this.painter = new Painter(canvas, {
+    this.screen = new Screen(canvases.warped, () => this.tick());
+    this.painter = new Painter(canvases.picture, {
+      ready: () => this.tick(),
       painted: (frame) => this.painted(frame),
       skipped: (frame) => this.session?.acknowledge(frame.frame.frame, performance.now() - frame.arrived),
       broken: (frame) => this.session?.acknowledge(frame.frame.frame, performance.now() - frame.arrived),
@@ -98,12 +105,36 @@ export class ViewController {
     if (this.scheduled) return;
     this.scheduled = true;
     store.updatePending.value = true;
-    requestAnimationFrame((now) => {
-      this.scheduled = false;
-      if (this.step(now)) this.schedule();
+    this.tick();
+  }
+
+  private tick(): void {
+    if (this.ticking) return;
+    this.ticking = true;
+    requestAnimationFrame((now) => batch(() => this.animate(now)));
+  }
+
+  /** One animation frame: the eye moves first, so that the screen shows where it is now. */
+  private animate(now: number): void {
+    this.ticking = false;
+    const due = this.scheduled;
+    this.scheduled = false;
+    if (due && this.step(now)) this.schedule();
+    this.painter.paint();
+    if (due) {
       this.send();
       store.updatePending.value = this.scheduled;
-    });
+    }
+    const shown = this.screen.show(this.presentCamera(), skyOf(store.upAxis.peek()));
+    if (shown) store.shownCamera.value = shown;
+    this.acknowledge();
+  }
+
+  /** Once for each frame, when it is on the GPU: the time steers the server. Later warps of it do not count. */
+  private acknowledge(): void {
+    const frame = this.unacknowledged;
+    this.unacknowledged = undefined;
+    if (frame) this.session?.acknowledge(frame.frame.frame, performance.now() - frame.arrived);
   }
 
   async pick(picture: DrawPicture, x: number, y: number): Promise<PickResult> {
@@ -205,6 +236,9 @@ export class ViewController {
     this.endView();
     store.viewProblem.value = undefined;
     store.shownFrame.value = undefined;
+    store.shownCamera.value = undefined;
+    this.painter.reset(); // a frame of the former model that is still being decoded must not be shown
+    this.screen.freeze();
     if (model === undefined) return;
     if ((store.models.peek()?.length ?? 0) > 1) this.link.renew();
     this.openView();
@@ -239,14 +273,15 @@ export class ViewController {
     this.sentAt.clear();
     store.wantedUpdate.value = 0n;
     this.sent = { ...request, moving: false };
-    const session: ViewSession = new ViewSession(connection, request.picture, {
+    const events: ViewEvents = {
       frame: (frame) => void this.painter.take(frame),
       failed: (error) => {
         this.lost = { session, sent: this.sent };
         this.session = undefined;
         this.failed(error);
       },
-    });
+    };
+    const session = new ViewSession(connection, request.picture, events, this.screen.warps);
     this.session = session;
     this.lost = undefined;
     this.schedule();
@@ -272,9 +307,14 @@ export class ViewController {
     const model = store.model.peek();
     const size = store.stageSize.peek();
     if (model === undefined || size.width < 1 || size.height < 1) return undefined;
+    const picture = pictureOf(model, this.presentCamera(), store.display.peek(), size);
+    return { picture, moving: store.moving.peek() };
+  }
+
+  /** The camera that is asked for; undefined until the server has chosen one. */
+  private presentCamera(): Camera | undefined {
     const pose = store.pose.peek();
-    const camera = pose && cameraOf(pose, store.upAxis.peek(), store.display.peek().upsideDown);
-    return { picture: pictureOf(model, camera, store.display.peek(), size), moving: store.moving.peek() };
+    return pose && cameraOf(pose, store.upAxis.peek(), store.display.peek().upsideDown);
   }
 
   private send(): void {
@@ -292,15 +332,16 @@ export class ViewController {
     if (!same) store.wantedUpdate.value = update;
   }
 
-  private painted(painted: PaintedFrame): void {
+  private painted(painted: PaintedFrame & DecodedFrame): void {
     const { frame } = painted;
     this.failures = 0;
-    this.session?.acknowledge(frame.frame, painted.painted - painted.arrived);
+    this.unacknowledged = painted;
     this.collector.painted(painted, this.sentAt.get(frame.update));
     // Later frames of the same update are refinements, whose delay is not a latency.
     for (const update of this.sentAt.keys()) if (update <= frame.update) this.sentAt.delete(update);
     store.shownFrame.value = withoutData(painted);
     store.frameIsCurrent.value = this.session !== undefined;
+    this.screen.take(painted, skyOf(store.upAxis.peek()));
     if (!store.pose.peek() && frame.update >= store.wantedUpdate.peek()) this.adopt(painted);
   }
 

@@ -14,14 +14,19 @@ export class ViewSession {
   readonly id: bigint;
   private assembler = new FrameAssembler();
   private lastUpdate = 0n;
+  /** What was asked for, by the number of the update. Frames show one of these; older ones are forgotten. */
+  private readonly asked = new Map<bigint, DrawPicture>();
   private ended = false;
 
   constructor(
     private connection: Connection,
     picture: DrawPicture,
     private readonly events: ViewEvents,
+    depth = false, // of the frames
   ) {
-    this.id = connection.listen({ case: 'openView', value: { picture } }, (answer, bytes) => this.take(answer, bytes));
+    this.asked.set(this.lastUpdate, picture);
+    const value = { picture, depth };
+    this.id = connection.listen({ case: 'openView', value }, (answer, bytes) => this.take(answer, bytes));
   }
 
   /** Goes on over another connection, whose server has the view open again. Its frames are counted anew. */
@@ -35,6 +40,7 @@ export class ViewSession {
   /** Sends an update. Returns its number, which frames that show it repeat. */
   update(picture: DrawPicture, moving: boolean): bigint {
     const update = ++this.lastUpdate;
+    this.asked.set(update, picture);
     if (!this.ended) this.connection.send(this.id, { case: 'updateView', value: { update, picture, moving } });
     return update;
   }
@@ -55,12 +61,17 @@ export class ViewSession {
     if (answer.case === 'viewFrame') {
       const piece = answer.value;
       const frame = this.assembler.take(piece, bytes, performance.now());
-      if (frame) this.events.frame(frame);
+      if (frame) this.events.frame({ ...frame, asked: this.askedFor(frame.frame.update) });
       else this.acknowledge(piece.frame, 0);
       return;
     }
     this.ended = true;
     this.connection.unlisten(this.id);
     if (answer.case !== 'viewClosed') this.events.failed(errorOf(answer));
+  }
+
+  private askedFor(update: bigint): DrawPicture | undefined {
+    for (const older of this.asked.keys()) if (older < update) this.asked.delete(older);
+    return this.asked.get(update);
   }
 }
