@@ -192,7 +192,7 @@ Warpable warpable(const picture::Frame& drawn) {
   const int width = drawn.image.width;
   const int height = drawn.image.height;
   Warpable result{{rgb_of(drawn.image), value_or_exit(geometry::make_camera_frame(drawn.camera, width, height)), {}}};
-  const auto encoded = encode::encode_depth(drawn.depth);
+  const auto encoded = encode::encode_depth(drawn.depth, drawn.image.width < kWidth ? 3000 : 6000);
   if (!encoded) return result;
   wire::DepthPlane plane;
   plane.set_width(static_cast<uint32_t>(encoded->width));

@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
+#include <limits>
 #include <span>
+#include <utility>
 
 #include <zlib.h>
 
@@ -65,15 +67,34 @@ std::vector<std::byte> deflated(std::span<const uint8_t> bytes) {
   return packed;
 }
 
+/// The map with squares of four texels as one.
+picture::DepthMap halved(const picture::DepthMap& map) {
+  picture::DepthMap half{(map.width + 1) / 2, (map.height + 1) / 2, 2 * map.cell, {}};
+  half.inverse.assign(static_cast<size_t>(half.width) * static_cast<size_t>(half.height), 0.0F);
+  for (int y = 0; y < map.height; ++y) {
+    for (int x = 0; x < map.width; ++x) {
+      float& texel = half.inverse[static_cast<size_t>(y / 2 * half.width + x / 2)];
+      texel = std::max(texel, map.inverse[static_cast<size_t>(y * map.width + x)]);
+    }
+  }
+  return half;
+}
+
 }  // namespace
 
-std::optional<EncodedDepth> encode_depth(const picture::DepthMap& map) {
+std::optional<EncodedDepth> encode_depth(picture::DepthMap map, size_t most_bytes) {
   const std::optional<InverseDepths> range = range_of(map.inverse);
   if (!range) return std::nullopt;
   // (One depth alone is the last code.)
   const double first = range->first < range->last ? range->first : range->first / 2.0;
-  const std::vector<uint8_t> codes = codes_of(map.inverse, first, range->last);
-  return EncodedDepth{map.width, map.height, map.cell, first, range->last, deflated(residuals_of(codes, map.width))};
+  for (;;) {
+    const std::vector<uint8_t> codes = codes_of(map.inverse, first, range->last);
+    std::vector<std::byte> packed = deflated(residuals_of(codes, map.width));
+    if (packed.size() <= most_bytes || map.inverse.size() == 1) {
+      return EncodedDepth{map.width, map.height, map.cell, first, range->last, std::move(packed)};
+    }
+    map = halved(map);
+  }
 }
 
 }  // namespace surfcast::encode

@@ -18,7 +18,8 @@ struct EncodedDepth {
   std::vector<std::byte> codes;
 };
 
-/// Encodes a depth map with 8 bits a texel (protocol/PROTOCOL.md, Depth). None if it has no surface.
-std::optional<EncodedDepth> encode_depth(const picture::DepthMap& map);
+/// Encodes a depth map with 8 bits a texel (protocol/PROTOCOL.md, Depth). A map that takes more than `most_bytes` is
+/// made coarser until it does not. None if it has no surface.
+std::optional<EncodedDepth> encode_depth(picture::DepthMap map, size_t most_bytes);
 
 }  // namespace surfcast::encode

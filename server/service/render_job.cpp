@@ -70,7 +70,7 @@ Result<EncodedPicture> encode_job(RenderJob& job, const Result<SharedFrame>& sha
     Result<std::vector<std::byte>> bytes = encode_file(job, frame);
     if (!bytes) return fail(bytes.error());
     picture.bytes = std::move(*bytes);
-    if (job.picture.request.depth_texels > 0) picture.depth = encode::encode_depth(frame.depth);
+    if (job.picture.depth_bytes > 0) picture.depth = encode::encode_depth(frame.depth, job.picture.depth_bytes);
   }
   if (job.cancelled) return cancelled_error();
   picture.encode_ms = watch.milliseconds();

@@ -15,9 +15,11 @@ constexpr double kPieceMs = 60;
 constexpr size_t kFirstPiece = size_t{64} << 10;
 constexpr size_t kMinPiece = size_t{24} << 10;
 constexpr size_t kMaxPiece = size_t{16} << 20;  // a message stays far below kMaxAnswerBytes
-// Sides of depth maps, texels. They compress to about 4 and 1.5 KB; finer ones tear where points are rough.
+// Sides of depth maps, texels, and what they take at most. Finer ones tear where points are rough.
 constexpr int kTexelsAtRest = 160;
 constexpr int kTexelsInMotion = 80;
+constexpr size_t kDepthBytesAtRest = 6000;
+constexpr size_t kDepthBytesInMotion = 3000;
 constexpr size_t kLatencies = 5;
 
 int scaled(int pixels, double scale) {
@@ -64,7 +66,10 @@ service::PictureJob ViewSession::picture_job(FrameKind kind, uint64_t edition, s
                                              ViewTime now) const {
   service::PictureJob job = newest_.picture;
   job.request.edition = edition;
-  if (options_.depth) job.request.depth_texels = kind == FrameKind::kMotion ? kTexelsInMotion : kTexelsAtRest;
+  if (options_.depth) {
+    job.request.depth_texels = kind == FrameKind::kMotion ? kTexelsInMotion : kTexelsAtRest;
+    job.depth_bytes = kind == FrameKind::kMotion ? kDepthBytesInMotion : kDepthBytesAtRest;
+  }
   if (kind == FrameKind::kFinal) return job;
   picture::PictureRequest& request = job.request;
   request.loading = picture::Loading::kNow;

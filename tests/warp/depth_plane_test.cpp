@@ -16,6 +16,8 @@ constexpr int kPictureWidth = 75;  // of the picture; its last cells are cut off
 constexpr int kPictureHeight = 38;
 constexpr int kPictureTexels = 10;
 
+constexpr size_t kEnough = 1 << 20;  // bytes
+
 wire::DepthPlane to_message(const encode::EncodedDepth& depth) {
   wire::DepthPlane plane;
   plane.set_width(static_cast<uint32_t>(depth.width));
@@ -37,7 +39,7 @@ picture::DepthMap noise(double farthest) {
 }
 
 wire::DepthPlane valid_plane() {
-  return to_message(*encode::encode_depth(noise(100)));
+  return to_message(*encode::encode_depth(noise(100), kEnough));
 }
 
 TEST(DepthMap, HasCellsThatCoverThePicture) {
@@ -51,7 +53,7 @@ TEST(DepthPlane, HasTheDepthsThatWereEncodedToHalfAStep) {
   for (const double farthest : {1.001, 2.0, 100.0, 1e7}) {
     const picture::DepthMap map = noise(farthest);
     const Result<DepthPlane> plane =
-        decode_depth(to_message(*encode::encode_depth(map)), kPictureWidth, kPictureHeight);
+        decode_depth(to_message(*encode::encode_depth(map, kEnough)), kPictureWidth, kPictureHeight);
     ASSERT_TRUE(plane) << plane.error().message;
     ASSERT_EQ(plane->inverse.size(), map.inverse.size());
     const double step = std::log(farthest) / 254;
@@ -68,14 +70,27 @@ TEST(DepthPlane, HasTheDepthsThatWereEncodedToHalfAStep) {
 TEST(DepthPlane, OfOneDepthHasIt) {
   picture::DepthMap map = picture::empty_depth_map(kPictureWidth, kPictureHeight, kPictureTexels);
   map.inverse[7] = 0.25F;
-  const Result<DepthPlane> plane = decode_depth(to_message(*encode::encode_depth(map)), kPictureWidth, kPictureHeight);
+  const Result<DepthPlane> plane =
+      decode_depth(to_message(*encode::encode_depth(map, kEnough)), kPictureWidth, kPictureHeight);
   ASSERT_TRUE(plane) << plane.error().message;
   EXPECT_FLOAT_EQ(plane->inverse[7], 0.25F);
   EXPECT_EQ(plane->inverse[8], 0);
 }
 
 TEST(DepthPlane, OfBackgroundAloneIsNone) {
-  EXPECT_FALSE(encode::encode_depth(picture::empty_depth_map(kPictureWidth, kPictureHeight, kPictureTexels)));
+  EXPECT_FALSE(encode::encode_depth(picture::empty_depth_map(kPictureWidth, kPictureHeight, kPictureTexels), kEnough));
+}
+
+TEST(DepthPlane, IsMadeCoarserUntilItTakesNoMoreThanItMay) {
+  const picture::DepthMap map = noise(100);
+  const size_t whole = encode::encode_depth(map, kEnough)->codes.size();
+  const encode::EncodedDepth less = *encode::encode_depth(map, whole - 1);
+  EXPECT_LT(less.codes.size(), whole);
+  EXPECT_EQ(less.cell, 2 * map.cell);
+  const Result<DepthPlane> plane = decode_depth(to_message(less), kPictureWidth, kPictureHeight);
+  ASSERT_TRUE(plane) << plane.error().message;
+  EXPECT_FLOAT_EQ(std::ranges::max(plane->inverse), std::ranges::max(map.inverse));
+  EXPECT_EQ(encode::encode_depth(map, 0)->width, 1);
 }
 
 TEST(DepthPlane, DepthsThatAreNoNumbersAreBackground) {
@@ -83,7 +98,8 @@ TEST(DepthPlane, DepthsThatAreNoNumbersAreBackground) {
   map.inverse[3] = std::numeric_limits<float>::quiet_NaN();
   map.inverse[4] = std::numeric_limits<float>::infinity();
   map.inverse[5] = -1;
-  const Result<DepthPlane> plane = decode_depth(to_message(*encode::encode_depth(map)), kPictureWidth, kPictureHeight);
+  const Result<DepthPlane> plane =
+      decode_depth(to_message(*encode::encode_depth(map, kEnough)), kPictureWidth, kPictureHeight);
   ASSERT_TRUE(plane) << plane.error().message;
   for (const size_t i : {3, 4, 5}) EXPECT_EQ(plane->inverse[i], 0);
 }
@@ -129,7 +145,7 @@ TEST(DepthPlane, WithDamagedCodesIsRefused) {
   // More codes than texels, as of a bomb.
   picture::DepthMap larger = picture::empty_depth_map(4096, 4096, 4096);
   larger.inverse[0] = 1;
-  plane.set_codes(to_message(*encode::encode_depth(larger)).codes());
+  plane.set_codes(to_message(*encode::encode_depth(larger, kEnough)).codes());
   EXPECT_FALSE(decode_depth(plane, kPictureWidth, kPictureHeight));
 }
 
