@@ -131,6 +131,8 @@ BenchReport make_report(const std::vector<BenchRecord>& records) {
   report.latency_begin = over(runs, 0, 1.0 / 3, latency);
   report.latency_end = over(runs, 2.0 / 3, 1, latency);
   report.outside = over(runs, 0, 1, [](const auto& frame) { return frame.latency_ms - time_in_stages(frame); });
+  report.turned = over(runs, 0, 1, [](const auto& frame) { return frame.turned; });
+  report.depth_bytes = over(runs, 0, 1, [](const auto& frame) { return static_cast<double>(frame.depth_bytes); });
   report.moving_bytes = over(runs, 0, 1, [](const auto& frame) { return static_cast<double>(frame.bytes); });
   report.moving_width = over(runs, 0, 1, [](const auto& frame) { return static_cast<double>(frame.width); });
   report.moving_spacing = over(runs, 0, 1, [](const auto& frame) { return frame.spacing; });
@@ -146,7 +148,9 @@ std::string to_text(const BenchReport& report) {
   text += line("motion latency, ms", report.latency);
   for (const auto& [name, values] : report.moving_stages) text += line("  " + name, values);
   text += line("  outside all stages", report.outside);
+  text += line("turned since, degrees", report.turned);
   text += line("bytes of a moving frame", report.moving_bytes);
+  if (report.depth_bytes.most > 0) text += line("  of its depth", report.depth_bytes);
   text += line("width of it, pixels", report.moving_width);
   text += line("spacing of it, pixels", report.moving_spacing);
   text += line("time to converged, ms", report.converged);
@@ -170,6 +174,8 @@ std::string to_json(const BenchReport& report, const std::string& url) {
                         {"latency_ms_last_third", to_json(report.latency_end)},
                         {"stages_ms", to_json(report.moving_stages)},
                         {"outside_ms", to_json(report.outside)},
+                        {"turned_degrees", to_json(report.turned)},
+                        {"depth_bytes", to_json(report.depth_bytes)},
                         {"bytes", to_json(report.moving_bytes)},
                         {"width", to_json(report.moving_width)},
                         {"spacing", to_json(report.moving_spacing)},

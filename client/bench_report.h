@@ -28,6 +28,8 @@ struct BenchReport {
   Percentiles latency_begin;      ///< in the first third of each client's run
   Percentiles latency_end;        ///< in the last third
   std::map<std::string, Percentiles> moving_stages;  ///< milliseconds of each stage, as reported by the server
+  Percentiles turned;          ///< degrees between a moving frame and the client's camera when it arrives
+  Percentiles depth_bytes;     ///< of a moving frame
   Percentiles outside;         ///< latency not covered by any stage: network, waiting for it, and the client
   Percentiles moving_bytes;    ///< of a frame
   Percentiles moving_width;    ///< pixels

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <glm/geometric.hpp>
 #include <map>
 #include <numbers>
 #include <optional>
@@ -42,6 +43,12 @@ Pose pose_on_path(const Pose& start, double seconds) {
   return zoom(around, 1 - 0.35 * std::sin(turn) * std::sin(turn), {0, 0});
 }
 
+double degrees_between(const Pose& a, const Pose& b) {
+  const glm::dvec3 from = glm::normalize(a.focal_point - a.position);
+  const glm::dvec3 to = glm::normalize(b.focal_point - b.position);
+  return std::atan2(glm::length(glm::cross(from, to)), glm::dot(from, to)) * 180 / std::numbers::pi;
+}
+
 class BenchClient {
  public:
   BenchClient(const BenchPlan& plan, View& view, int interrupt, double phase)
@@ -57,6 +64,7 @@ class BenchClient {
   Status send_update(double path_seconds, bool moving);
   Result<std::optional<BenchFrame>> receive(Clock::time_point deadline);
   [[nodiscard]] bool over() const { return Clock::now() >= end_; }
+  [[nodiscard]] Pose pose_at(Clock::time_point time) const;
 
   const BenchPlan& plan_;
   View& view_;
@@ -64,11 +72,17 @@ class BenchClient {
   double path_seconds_;
   Clock::time_point end_ = after(Clock::now(), plan_.seconds);
   Pose start_;
+  std::optional<Clock::time_point> path_start_;  ///< while moving: when the client was at the beginning of the path
   uint64_t last_update_ = 0;
   std::map<uint64_t, Clock::time_point> sent_;  ///< send times of the updates that no frame has shown yet
   Clock::time_point shown_sent_;                ///< send time of the newest update that a frame has shown
   BenchRecord record_;
 };
+
+/// Where the client looks from.
+Pose BenchClient::pose_at(Clock::time_point time) const {
+  return pose_on_path(start_, path_start_ ? Seconds(time - *path_start_).count() : path_seconds_);
+}
 
 /// Waits for the first frame, which states the initial camera.
 Status BenchClient::begin() {
@@ -112,6 +126,8 @@ Result<std::optional<BenchFrame>> BenchClient::receive(Clock::time_point deadlin
   frame.converged = !message.moving() && picture.converged() && picture.format() == plan_.picture.format() &&
                     message.update() == last_update_;
   frame.latency_ms = milliseconds_since(shown_sent_, (*received)->arrived);
+  frame.turned = degrees_between(to_pose(picture.camera()), pose_at((*received)->arrived));
+  frame.depth_bytes = message.depth().codes().size();
   frame.bytes = (*received)->bytes;
   frame.width = picture.resolution().width();
   frame.spacing = picture.spacing();
@@ -123,10 +139,10 @@ Status BenchClient::move() {
   const Clock::time_point start = Clock::now();
   const Clock::time_point stop = std::min(after(start, plan_.move_seconds), end_);
   Clock::time_point next_update = start;
-  const double path_start = path_seconds_;
+  path_start_ = after(start, -path_seconds_);
   while (Clock::now() < stop) {
     if (Clock::now() >= next_update) {
-      path_seconds_ = path_start + Seconds(Clock::now() - start).count();
+      path_seconds_ = Seconds(Clock::now() - *path_start_).count();
       if (Status status = send_update(path_seconds_, true); !status) return status;
       next_update = std::max(after(next_update, 1 / plan_.updates_per_second), Clock::now());
     }
@@ -139,6 +155,7 @@ Status BenchClient::move() {
 }
 
 Status BenchClient::rest() {
+  path_start_.reset();
   if (Status status = send_update(path_seconds_, false); !status) return status;
   const Clock::time_point stop = after(Clock::now(), plan_.rest_seconds);
   bool converged = false;
@@ -173,7 +190,7 @@ Status BenchClient::run() {
 Result<BenchRecord> run_bench_client(const BenchPlan& plan, const ClientConfig& config, double phase) {
   Result<ServerConnection> connection = ServerConnection::open(plan.server, config);
   if (!connection) return fail(connection.error());
-  Result<View> view = View::open(*connection, plan.picture, plan.target_fps);
+  Result<View> view = View::open(*connection, plan.picture, plan.target_fps, plan.depth);
   if (!view) return fail(view.error());
   BenchClient client(plan, *view, config.interrupt, phase);
   if (Status status = client.run(); !status) return fail(status.error());

@@ -14,6 +14,7 @@ struct BenchPlan {
   protocol::Endpoint server;
   wire::DrawPicture picture;       ///< its camera, if any, is the start of the path
   double target_fps = 0;           ///< as in OpenView
+  bool depth = false;              ///< as in OpenView
   double seconds = 20;             ///< of the whole run
   double move_seconds = 4;         ///< of one movement
   double rest_seconds = 5;         ///< longest rest; it ends 0.5 s after the converged picture
@@ -26,9 +27,11 @@ struct BenchFrame {
   bool moving = false;     ///< drawn while the camera moved
   bool converged = false;  ///< no better picture follows
   double latency_ms = 0;   ///< from sending the newest camera that it shows, or from the end of the movement
-  uint64_t bytes = 0;      ///< on the wire
-  uint32_t width = 0;      ///< of the picture, pixels
-  double spacing = 0;      ///< projected surfel spacing of the picture, pixels
+  double turned = 0;       ///< degrees between its view direction and that of the client when it arrived
+  uint64_t depth_bytes = 0;
+  uint64_t bytes = 0;                                  ///< on the wire
+  uint32_t width = 0;                                  ///< of the picture, pixels
+  double spacing = 0;                                  ///< projected surfel spacing of the picture, pixels
   std::vector<std::pair<std::string, double>> stages;  ///< milliseconds, as reported by the server
 };
 

@@ -6,10 +6,11 @@
 
 namespace surfcast::client {
 
-Result<View> View::open(ServerConnection& connection, const wire::DrawPicture& picture, double target_fps) {
+Result<View> View::open(ServerConnection& connection, const wire::DrawPicture& picture, double target_fps, bool depth) {
   wire::Request request;
   *request.mutable_open_view()->mutable_picture() = picture;
   request.mutable_open_view()->set_target_fps(target_fps);
+  request.mutable_open_view()->set_depth(depth);
   const Result<uint64_t> id = connection.send(std::move(request));
   if (!id) return fail(id.error());
   View view(connection, *id);

@@ -22,8 +22,9 @@ class View {
     uint64_t bytes = 0;         ///< received on the connection since the previous frame
   };
 
-  /// `target_fps` is the frame rate to hold while moving; 0: the server's default.
-  static Result<View> open(ServerConnection& connection, const wire::DrawPicture& picture, double target_fps);
+  /// `target_fps` is the frame rate to hold while moving; 0: the server's default. `depth`: as in OpenView.
+  static Result<View> open(ServerConnection& connection, const wire::DrawPicture& picture, double target_fps,
+                           bool depth = false);
 
   /// Goes on over another connection, whose server has the view open again (ServerConnection::resume).
   void go_on(ServerConnection& connection);

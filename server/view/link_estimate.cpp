@@ -2,12 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 namespace surfcast::view {
 namespace {
 
 constexpr size_t kSamples = 24;
-constexpr double kLarger = 1.5;    // times the bytes of the quickest message; smaller differences are noise
+constexpr double kLarger = 1.5;    // times the bytes of the quickest message; smaller ones are of its size
 constexpr double kNewShare = 0.3;  // weight of a new slope against the previous estimate
 
 double milliseconds_between(ViewTime from, ViewTime to) {
@@ -35,30 +36,35 @@ std::optional<double> LinkEstimate::acknowledge(uint64_t frame, double client_ms
   ViewTime begin = message.sent;
   if (last_arrival_) begin = std::max(begin, later(*last_arrival_, -round_trip_ms()));
   last_arrival_ = arrival;
-  learn({static_cast<double>(message.bytes), std::max(milliseconds_between(begin, arrival), 0.01)});
+  const double occupied = std::max(milliseconds_between(begin, arrival), 0.01);
+  learn({static_cast<double>(message.bytes), occupied, milliseconds_between(message.sent, arrival)});
   return transfer_ms(message.bytes);
 }
 
 double LinkEstimate::round_trip_ms() const {
-  if (samples_.empty()) return 0;
-  const Sample& quickest = *std::ranges::min_element(samples_, {}, &Sample::milliseconds);
-  return slope_known_ ? std::max(quickest.milliseconds - quickest.bytes * ms_per_byte_, 0.0) : 0.0;
+  if (!slope_known_) return 0;
+  double least = std::numeric_limits<double>::max();
+  for (const Sample& sample : samples_) least = std::min(least, sample.elapsed - sample.bytes * ms_per_byte_);
+  return std::max(least, 0.0);
+}
+
+/// The milliseconds of a byte, by messages of two sizes. Both groups are late by the same delays on average, while the
+/// quickest message is not: compared with that alone, delays would count as a slow line.
+std::optional<double> LinkEstimate::slope() const {
+  const Sample quickest = *std::ranges::min_element(samples_, {}, &Sample::milliseconds);
+  Group small;
+  Group large;
+  for (const Sample& s : samples_) (s.bytes < kLarger * quickest.bytes ? small : large).add(s);
+  if (large.count == 0) return std::nullopt;
+  const double milliseconds = large.mean_milliseconds() - small.mean_milliseconds();
+  return std::max(milliseconds / (large.mean_bytes() - small.mean_bytes()), 1e-9);
 }
 
 void LinkEstimate::learn(const Sample& sample) {
   samples_.push_back(sample);
   if (samples_.size() > kSamples) samples_.pop_front();
-  const Sample quickest = *std::ranges::min_element(samples_, {}, &Sample::milliseconds);
-  double bytes = 0;
-  double milliseconds = 0;
-  for (const Sample& s : samples_) {
-    if (s.bytes < kLarger * quickest.bytes) continue;
-    bytes += s.bytes - quickest.bytes;
-    milliseconds += s.milliseconds - quickest.milliseconds;
-  }
-  if (bytes > 0) {
-    const double slope = std::max(milliseconds / bytes, 1e-9);
-    ms_per_byte_ = slope_known_ ? ms_per_byte_ + kNewShare * (slope - ms_per_byte_) : slope;
+  if (const std::optional<double> measured = slope()) {
+    ms_per_byte_ = slope_known_ ? ms_per_byte_ + kNewShare * (*measured - ms_per_byte_) : *measured;
     slope_known_ = true;
   } else if (!slope_known_) {
     const double most = sample.milliseconds / std::max(sample.bytes, 1.0);
@@ -68,6 +74,16 @@ void LinkEstimate::learn(const Sample& sample) {
 
 double LinkEstimate::transfer_ms(size_t bytes) const {
   return static_cast<double>(bytes) * ms_per_byte_;
+}
+
+size_t LinkEstimate::bytes_on_the_way() const {
+  size_t bytes = 0;
+  for (const Message& message : on_the_way_) bytes += message.bytes;
+  return bytes;
+}
+
+double LinkEstimate::waits_ms(ViewTime now) const {
+  return on_the_way_.empty() ? 0 : milliseconds_between(on_the_way_.front().sent, now);
 }
 
 std::optional<size_t> LinkEstimate::bytes_in(double milliseconds) const {

@@ -10,9 +10,9 @@
 namespace surfcast::view {
 
 /// Estimates the round trip and the rate of a client's connection, from the sizes of messages and the times of their
-/// acknowledgements. The model: a message of b bytes takes round_trip + b / rate. The quickest message fixes one point
-/// of the line, larger messages its slope. While the slope is unknown, the round trip counts as zero, which estimates
-/// the rate too low rather than too high.
+/// acknowledgements. The model: a message of b bytes takes round_trip + b / rate. Messages of two sizes tell the rate,
+/// the quickest one the round trip. While the slope is unknown, the round trip counts as zero, which estimates the rate
+/// too low rather than too high.
 class LinkEstimate {
  public:
   void send(uint64_t frame, size_t bytes, ViewTime now);
@@ -24,6 +24,12 @@ class LinkEstimate {
   [[nodiscard]] double transfer_ms(size_t bytes) const;
   /// Estimated bytes that the link transfers in this time; none while nothing is known.
   [[nodiscard]] std::optional<size_t> bytes_in(double milliseconds) const;
+  /// Estimated round trip of an empty message; 0 while it is not known.
+  [[nodiscard]] double round_trip_ms() const;
+  /// Of messages that are not acknowledged.
+  [[nodiscard]] size_t bytes_on_the_way() const;
+  /// How long the oldest of them has waited for its acknowledgement; 0: there is none.
+  [[nodiscard]] double waits_ms(ViewTime now) const;
 
  private:
   struct Message {
@@ -35,9 +41,23 @@ class LinkEstimate {
   struct Sample {
     double bytes = 0;
     double milliseconds = 0;  ///< from sending, or from when the link became free, to arrival
+    double elapsed = 0;       ///< milliseconds from sending to arrival
+  };
+  /// Messages of about the same size.
+  struct Group {
+    void add(const Sample& sample) {
+      bytes += sample.bytes;
+      milliseconds += sample.milliseconds;
+      ++count;
+    }
+    [[nodiscard]] double mean_bytes() const { return bytes / count; }
+    [[nodiscard]] double mean_milliseconds() const { return milliseconds / count; }
+    double bytes = 0;
+    double milliseconds = 0;
+    int count = 0;
   };
   void learn(const Sample& sample);
-  [[nodiscard]] double round_trip_ms() const;
+  [[nodiscard]] std::optional<double> slope() const;
 
   std::deque<Message> on_the_way_;
   std::deque<Sample> samples_;            ///< the most recent ones

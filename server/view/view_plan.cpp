@@ -24,10 +24,10 @@ const ViewPlan::Job* ViewPlan::find(uint64_t frame) const {
   return found == jobs_.end() ? nullptr : &*found;
 }
 
-/// One frame may be drawn while another is encoded or in flight; more would only show older pictures. Frames at rest
+/// One frame may be drawn while another is encoded or in flight, and as many more as the window allows. Frames at rest
 /// that are in flight delay sending, but not drawing.
 bool ViewPlan::room_for_motion() const {
-  return jobs_.size() + motion_unacknowledged_ < kMaxUnacknowledged;
+  return jobs_.size() < kMaxUnacknowledged && jobs_.size() + motion_unacknowledged_ < window_;
 }
 
 FrameKind ViewPlan::wanted() const {

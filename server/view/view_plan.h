@@ -31,8 +31,10 @@ struct ViewTiming {
   std::chrono::milliseconds takeover_try{250};  ///< in motion, between two frames tried from the newer edition
 };
 
-/// The most frames, or pieces of one, that may be unacknowledged.
+/// The most frames, or pieces of one, that may be unacknowledged. More would only show older pictures, unless the
+/// client warps them and the way to it is long.
 inline constexpr size_t kMaxUnacknowledged = 2;
+inline constexpr size_t kMostUnacknowledged = 8;
 
 /// The outcome of drawing a frame.
 enum class FrameResult {
@@ -91,7 +93,9 @@ class ViewPlan {
   void acknowledge(FrameKind kind);
   /// The remaining pieces of a frame will not be sent.
   void stop_sending() { sending_ = false; }
-  [[nodiscard]] bool may_send() const { return motion_unacknowledged_ + still_unacknowledged_ < kMaxUnacknowledged; }
+  [[nodiscard]] bool may_send() const { return motion_unacknowledged_ + still_unacknowledged_ < window_; }
+  /// So many messages may be unacknowledged from now on.
+  void set_window(size_t messages) { window_ = messages; }
 
  private:
   struct Job {
@@ -109,6 +113,7 @@ class ViewPlan {
   [[nodiscard]] FrameKind wanted() const;
 
   ViewTiming timing_;
+  size_t window_ = kMaxUnacknowledged;
   uint64_t picture_ = 0;  ///< the newest
   Progress progress_ = Progress::kNone;
   ViewTime changed_at_;

@@ -140,8 +140,21 @@ void ViewSession::drop(uint64_t frame) {
   ++counts_.dropped;
 }
 
+/// The messages that may be unacknowledged. Frames that are warped may be some round trips old, so that a long way
+/// takes no frames from the client: as many are sent as fit on the way, while all that was sent arrives in time.
+size_t ViewSession::window(ViewTime now) const {
+  constexpr double kLateMs = 100;
+  const double round_trip = link_.round_trip_ms();
+  const std::optional<size_t> fits = link_.bytes_in(round_trip + kLateMs);
+  if (!options_.depth || round_trip == 0 || !fits) return kMaxUnacknowledged;
+  if (link_.bytes_on_the_way() >= *fits || link_.waits_ms(now) > 2 * round_trip + kLateMs) return kMaxUnacknowledged;
+  const auto frames = static_cast<size_t>(std::ceil(round_trip * options_.target_fps / 1000));
+  return std::min(kMaxUnacknowledged + frames, kMostUnacknowledged);
+}
+
 std::optional<ViewTime> ViewSession::advance(ViewTime now) {
   if (closed_) return std::nullopt;
+  plan_.set_window(window(now));
   send_pieces(now);
   const ViewStep step = plan_.next(now);
   if (!step.draw) return step.wake_at;

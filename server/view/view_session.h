@@ -133,6 +133,7 @@ class ViewSession : public std::enable_shared_from_this<ViewSession> {
   void give_up_sending();
   void send_pieces(ViewTime now);
   void send_piece(size_t bytes, ViewTime now);
+  [[nodiscard]] size_t window(ViewTime now) const;
   void adapt_quality(Job& job, double transfer_ms, double client_ms);
 
   service::RenderService& service_;

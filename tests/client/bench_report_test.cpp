@@ -12,6 +12,8 @@ BenchFrame moving_frame(double latency, std::vector<std::pair<std::string, doubl
   return {.moving = true,
           .converged = false,
           .latency_ms = latency,
+          .turned = latency / 10,
+          .depth_bytes = 800,
           .bytes = 1000,
           .width = 640,
           .spacing = 2,
@@ -22,6 +24,8 @@ BenchFrame final_frame(double latency) {
   return {.moving = false,
           .converged = true,
           .latency_ms = latency,
+          .turned = 0,
+          .depth_bytes = 0,
           .bytes = 9000,
           .width = 1280,
           .spacing = 1,
@@ -63,6 +67,8 @@ TEST(BenchReport, RatesAreOverClientsAndLatenciesOverFrames) {
   EXPECT_EQ(report.converged.p50, 500);
   EXPECT_EQ(report.converged.most, 900);
   EXPECT_EQ(report.moving_frames, 5u);
+  EXPECT_EQ(report.turned.p50, 3);
+  EXPECT_EQ(report.depth_bytes.most, 800);
 }
 
 TEST(BenchReport, GrowthOfLatencyShowsInItsThirds) {

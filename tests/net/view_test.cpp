@@ -212,6 +212,17 @@ TEST_F(ViewSessionTest, AClosedViewSendsNothingMore) {
   EXPECT_EQ(again.error().kind, ErrorKind::kNotFound);
 }
 
+TEST_F(ViewSessionTest, AClientThatWarpsButAnswersNothingGetsTwoFrames) {
+  start();
+  open_view("cube", 64, 32, /*depth=*/true);
+  for (uint64_t i = 1; i <= 50; ++i) {
+    update(i, picture("cube", static_cast<double>(i)), /*moving=*/true);
+    std::this_thread::sleep_for(milliseconds(2));  // so that a server that draws too much has time to do so
+  }
+  EXPECT_TRUE(eventually([this] { return metric("surfcast_view_updates_replaced_total") >= 45; }));
+  EXPECT_TRUE(eventually([this] { return metric("surfcast_view_frames_total") == 2; }));
+}
+
 TEST_F(ViewSessionTest, AViewOfNoModelEndsWithTheReason) {
   start();
   open_view("nothing");

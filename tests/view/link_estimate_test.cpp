@@ -26,6 +26,9 @@ class Line {
     return estimate.acknowledge(++acknowledged_, client_ms, at(now_ms_));
   }
 
+  /// The next acknowledgement is read so much later than it arrives.
+  void wait(double ms) { arrivals_.front() += ms; }
+
  private:
   static ViewTime at(double ms) {
     return ViewTime{} + std::chrono::duration_cast<ViewTime::duration>(std::chrono::duration<double, std::milli>(ms));
@@ -77,6 +80,35 @@ TEST(LinkEstimate, WhatAMessageWaitsForTheOneBeforeItIsNotItsOwn) {
     line.acknowledge(estimate);
   }
   EXPECT_NEAR(estimate.transfer_ms(50'000), 100, 10);
+}
+
+TEST(LinkEstimate, TheRoundTripIsKnownWhateverIsOnTheWayTogether) {
+  LinkEstimate estimate;
+  Line line(500, 150);
+  EXPECT_EQ(estimate.round_trip_ms(), 0);
+  for (const size_t bytes : {60'000, 5'000}) {
+    line.send(estimate, bytes);
+    line.acknowledge(estimate);
+  }
+  line.send(estimate, 5'000);
+  for (int i = 0; i < 100; ++i) {
+    line.send(estimate, 5'000 + static_cast<size_t>(i) * 37 % 1'500);
+    EXPECT_EQ(estimate.bytes_on_the_way() > 10'000, i > 0);
+    line.acknowledge(estimate);
+  }
+  EXPECT_NEAR(estimate.round_trip_ms(), 150, 5);
+  EXPECT_NEAR(estimate.transfer_ms(50'000), 100, 10);
+}
+
+TEST(LinkEstimate, DelaysOfAllMessagesDoNotCountAsASlowLine) {
+  LinkEstimate estimate;
+  Line line(2'500, 150);
+  for (int i = 0; i < 200; ++i) {
+    line.send(estimate, i % 3 == 0 ? 12'000 : 5'000);
+    line.wait(i * 7 % 23);  // until the acknowledgement is read
+    line.acknowledge(estimate);
+  }
+  EXPECT_LT(estimate.transfer_ms(12'000), 12);
 }
 
 TEST(LinkEstimate, TheClientsOwnTimeIsNotTheLines) {
