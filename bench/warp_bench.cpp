@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 #include <fstream>
 #include <functional>
 #include <glm/common.hpp>
@@ -16,7 +17,6 @@
 #include <string>
 #include <vector>
 
-#include "base/stopwatch.h"
 #include "bench_support.h"
 #include "encode/encode_depth.h"
 #include "geometry/camera.h"
@@ -101,7 +101,7 @@ Figures compare(const warp::Pixels& picture, const picture::Image& truth) {
     if (truth.pixels[4 * i + 3] == std::byte{0}) continue;
     int largest = 0;
     for (size_t c = 0; c < 3; ++c) {
-      const int difference = std::to_integer<int>(truth.pixels[4 * i + c]) - picture.rgb[3 * i + c];
+      const int difference = std::to_integer<int>(truth.pixels[4 * i + c]) - picture.bytes[4 * i + c];
       sum += difference * difference;
       largest = std::max(largest, std::abs(difference));
     }
@@ -112,11 +112,9 @@ Figures compare(const warp::Pixels& picture, const picture::Image& truth) {
   return {10 * std::log10(255.0 * 255.0 * 3 * pixels / std::max(sum, 1e-9)), 100 * static_cast<double>(off) / pixels};
 }
 
-warp::Pixels rgb_of(const picture::Image& image) {
-  warp::Pixels pixels{image.width, image.height, {}};
-  for (size_t i = 0; i < image.pixels.size(); ++i) {
-    if (i % 4 < 3) pixels.rgb.push_back(std::to_integer<uint8_t>(image.pixels[i]));
-  }
+warp::Pixels pixels_of(const picture::Image& image) {
+  warp::Pixels pixels{image.width, image.height, std::vector<uint8_t>(image.pixels.size())};
+  std::memcpy(pixels.bytes.data(), image.pixels.data(), image.pixels.size());
   return pixels;
 }
 
@@ -130,7 +128,7 @@ warp::Pixels stale(const warp::WarpFrame& frame, const geometry::CameraFrame& ta
   same.width = target.width;
   same.height = target.height;
   same.eta *= scale;
-  return warp::warp(flat, nullptr, same, {0, 0, 0});
+  return warp::warp(flat, nullptr, same, {0, 0, 0, 255});
 }
 
 void keep(const std::string& name, const warp::Pixels& pixels) {
@@ -138,7 +136,7 @@ void keep(const std::string& name, const warp::Pixels& pixels) {
   if (folder == nullptr) return;
   std::ofstream file(std::string(folder) + "/" + name + ".ppm", std::ios::binary);
   file << "P6\n" << pixels.width << " " << pixels.height << "\n255\n";
-  file.write(reinterpret_cast<const char*>(pixels.rgb.data()), static_cast<std::streamsize>(pixels.rgb.size()));
+  for (size_t i = 0; i < pixels.bytes.size(); i += 4) file.write(reinterpret_cast<const char*>(&pixels.bytes[i]), 3);
 }
 
 class Subject {
@@ -191,7 +189,8 @@ struct Warpable {
 Warpable warpable(const picture::Frame& drawn) {
   const int width = drawn.image.width;
   const int height = drawn.image.height;
-  Warpable result{{rgb_of(drawn.image), value_or_exit(geometry::make_camera_frame(drawn.camera, width, height)), {}}};
+  Warpable result{
+      {pixels_of(drawn.image), value_or_exit(geometry::make_camera_frame(drawn.camera, width, height)), {}}};
   const auto encoded = encode::encode_depth(drawn.depth, drawn.image.width < kWidth ? 3000 : 6000);
   if (!encoded) return result;
   wire::DepthPlane plane;
@@ -221,7 +220,7 @@ void measure(const std::string& name, const Subject& subject, bool near) {
   const Camera begin = begin_of(subject, near);
   std::printf(
       "\n| %s | present motion frame | stale rest | stale motion | rest warped | motion warped | "
-      "rest over stale motion | rest over present motion | ms |\n|---|---|---|---|---|---|---|---|\n",
+      "rest over stale motion | rest over present motion | processor ms |\n|---|---|---|---|---|---|---|---|\n",
       name.c_str());
   const Warpable rest = warpable(subject.rest(begin));
   const Warpable first_motion = warpable(subject.motion(begin));
@@ -233,7 +232,7 @@ void measure(const std::string& name, const Subject& subject, bool near) {
       const Warpable present = warpable(subject.motion(shown));
       const geometry::CameraFrame target = value_or_exit(geometry::make_camera_frame(shown, kWidth, kHeight));
       const auto warped = [&](const Warpable& newest, const Warpable* below) {
-        return warp::warp(newest.frame, below ? &below->frame : nullptr, target, {0, 0, 0});
+        return warp::warp(newest.frame, below ? &below->frame : nullptr, target, {0, 0, 0, 255});
       };
       std::printf("| %s, %.3f s |", path.name.c_str(), delay);
       print(compare(stale(present.frame, target), truth.image));
@@ -241,15 +240,15 @@ void measure(const std::string& name, const Subject& subject, bool near) {
       print(compare(warped(rest, nullptr), truth.image));
       print(compare(warped(first_motion, &rest), truth.image));
       print(compare(warped(nearly, &rest), truth.image));
-      const Stopwatch watch;
+      const double begun = bench::processor_ms();
       const warp::Pixels both = warped(present, &rest);
-      const double milliseconds = watch.milliseconds();
+      const double milliseconds = bench::processor_ms() - begun;
       print(compare(both, truth.image));
       std::printf(" %.0f |\n", milliseconds);
       std::fflush(stdout);
       if (delay == 0.1) {
         const std::string prefix = name.substr(name.find_last_of('/') + 1) + "_" + path.name.substr(0, 4);
-        keep(prefix + "_truth", rgb_of(truth.image));
+        keep(prefix + "_truth", pixels_of(truth.image));
         keep(prefix + "_motion", stale(present.frame, target));
         keep(prefix + "_rest", warped(rest, nullptr));
         keep(prefix + "_both", both);

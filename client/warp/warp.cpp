@@ -4,9 +4,13 @@
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <cstring>
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
+#include <optional>
+#include <thread>
+#include <utility>
 
 namespace surfcast::warp {
 namespace {
@@ -20,6 +24,7 @@ constexpr float kFilled = 0.9F;
 // belong to that. JPEG changes them by 2 to 4 levels.
 constexpr int kSameColor = 48;
 constexpr double kOnEdge = 1e-9;  // barycentric
+constexpr int kMostBands = 16;
 
 /// A vertex in the target: pixel times w, and w, where w is depth relative to the frame's; of background to any.
 struct Projected {
@@ -68,203 +73,290 @@ struct Target {
   std::vector<float> density;  ///< pixels of the frame in a pixel, along one direction; -1: made up
 };
 
-/// The colour at a place of a picture, by its four nearest pixels.
-std::array<uint8_t, 3> sample(const Pixels& from, double x, double y) {
-  const double column = std::clamp(x - 0.5, 0.0, from.width - 1.0);
-  const double row = std::clamp(y - 0.5, 0.0, from.height - 1.0);
-  const auto left = static_cast<int>(column);
-  const auto top = static_cast<int>(row);
-  const int right = std::min(left + 1, from.width - 1);
-  const int bottom = std::min(top + 1, from.height - 1);
-  const auto fx = static_cast<float>(column - left);
-  const auto fy = static_cast<float>(row - top);
-  const auto pixel = [&](int px, int py) {
-    return &from.rgb[3 * (static_cast<size_t>(py) * static_cast<size_t>(from.width) + static_cast<size_t>(px))];
-  };
-  const uint8_t* a = pixel(left, top);
-  const uint8_t* b = pixel(right, top);
-  const uint8_t* c = pixel(left, bottom);
-  const uint8_t* d = pixel(right, bottom);
-  std::array<uint8_t, 3> color{};
-  for (size_t i = 0; i < 3; ++i) {
-    const float upper = std::lerp(static_cast<float>(a[i]), static_cast<float>(b[i]), fx);
-    const float lower = std::lerp(static_cast<float>(c[i]), static_cast<float>(d[i]), fx);
-    color.at(i) = static_cast<uint8_t>(std::lerp(upper, lower, fy) + 0.5F);
-  }
+/// The four bytes of a pixel.
+using Color = uint32_t;
+
+Color color_at(const uint8_t* pixel) {
+  Color color = 0;
+  std::memcpy(&color, pixel, sizeof color);
   return color;
 }
 
-/// A triangle in the target. Values that are affine on the surface, divided by w, are affine on the screen.
-class Triangle {
- public:
-  Triangle(const Projected& a, const Projected& b, const Projected& c) : corners_{&a, &b, &c} {
-    if (std::min({a.place.z, b.place.z, c.place.z}) <= 0) return;  // behind the eye
-    for (size_t i = 0; i < 3; ++i) screen_.at(i) = glm::dvec2(corners_.at(i)->place) / corners_.at(i)->place.z;
-    area_ = cross(screen_[1] - screen_[0], screen_[2] - screen_[0]);
-  }
-
-  [[nodiscard]] bool visible() const { return area_ != 0; }
-
-  /// Pixels of the frame in a pixel of the target, along one direction.
-  [[nodiscard]] float density() const {
-    const double source = cross(corners_[1]->pixel - corners_[0]->pixel, corners_[2]->pixel - corners_[0]->pixel);
-    return static_cast<float>(std::sqrt(std::abs(source / area_)));
-  }
-
-  /// The least inverse depth of a corner, in the target.
-  [[nodiscard]] double farthest() const {
-    double least = corners_[0]->inverse / corners_[0]->place.z;
-    for (const Projected* corner : corners_) least = std::min(least, corner->inverse / corner->place.z);
-    return least;
-  }
-
-  /// Calls `draw(x, y, pixel of the frame, inverse depth in the target)` for each pixel whose centre is inside.
-  template <typename Draw>
-  void for_each_pixel(int width, int height, const Draw& draw) const {
-    const auto [left, right] = std::minmax({screen_[0].x, screen_[1].x, screen_[2].x});
-    const auto [top, bottom] = std::minmax({screen_[0].y, screen_[1].y, screen_[2].y});
-    const int x0 = first_centre(left, width);
-    const int x1 = first_centre(right, width);
-    const int y1 = first_centre(bottom, height);
-    for (int y = first_centre(top, height); y < y1; ++y) {
-      for (int x = x0; x < x1; ++x) draw_if_inside({x + 0.5, y + 0.5}, x, y, draw);
-    }
-  }
-
- private:
-  static double cross(const glm::dvec2& a, const glm::dvec2& b) { return a.x * b.y - a.y * b.x; }
-
-  /// The first pixel whose centre is not before this place.
-  static int first_centre(double place, int pixels) {
-    return static_cast<int>(std::clamp(std::ceil(place - 0.5), 0.0, static_cast<double>(pixels)));
-  }
-
-  /// A centre on an edge belongs to both triangles, whatever the rounding: the nearer one wins.
-  template <typename Draw>
-  void draw_if_inside(const glm::dvec2& centre, int x, int y, const Draw& draw) const {
-    std::array<double, 3> part{};
-    for (size_t i = 0; i < 3; ++i) {
-      const glm::dvec2& from = screen_.at((i + 1) % 3);
-      part.at(i) = cross(screen_.at((i + 2) % 3) - from, centre - from) / area_;
-      if (part.at(i) < -kOnEdge) return;
-    }
-    double w = 0;  // 1 / depth relative to the frame's
-    double inverse = 0;
-    glm::dvec2 pixel(0);
-    double front = 0;
-    for (size_t i = 0; i < 3; ++i) {
-      const Projected& corner = *corners_.at(i);
-      const double share = part.at(i) / corner.place.z;
-      w += share;
-      inverse += share * corner.inverse;
-      pixel += share * corner.pixel;
-      front += share * corner.front;
-    }
-    draw(x, y, pixel / w, static_cast<float>(inverse), front / w);
-  }
-
-  std::array<const Projected*, 3> corners_;
-  std::array<glm::dvec2, 3> screen_{};
-  double area_ = 0;  ///< twice, signed
-};
-
-void put(Pixels& picture, size_t at, const std::array<uint8_t, 3>& color) {
-  std::ranges::copy(color, picture.rgb.begin() + static_cast<ptrdiff_t>(3 * at));
+/// Between two colours, by 256ths. Two channels at a time, which keep out of each other's way.
+Color mixed(Color a, Color b, uint32_t part) {
+  constexpr uint32_t kEven = 0x00ff00ff;
+  constexpr uint32_t kHalf = 0x00800080;
+  const uint32_t even = ((a & kEven) * (256 - part) + (b & kEven) * part + kHalf) >> 8 & kEven;
+  const uint32_t odd = (((a >> 8) & kEven) * (256 - part) + ((b >> 8) & kEven) * part + kHalf) & ~kEven;
+  return even | odd;
 }
 
-int distance(const std::array<uint8_t, 3>& a, const std::array<uint8_t, 3>& b) {
+/// The colour at a place of a picture, by its four nearest pixels.
+Color sample(const Pixels& from, float x, float y) {
+  const float column = std::clamp(x - 0.5F, 0.0F, static_cast<float>(from.width - 1));
+  const float row = std::clamp(y - 0.5F, 0.0F, static_cast<float>(from.height - 1));
+  const auto left = static_cast<int>(column);
+  const auto top = static_cast<int>(row);
+  const auto part_x = static_cast<uint32_t>((column - static_cast<float>(left)) * 256 + 0.5F);
+  const auto part_y = static_cast<uint32_t>((row - static_cast<float>(top)) * 256 + 0.5F);
+  const ptrdiff_t right = left + 1 < from.width ? 4 : 0;
+  const ptrdiff_t below = top + 1 < from.height ? 4 * static_cast<ptrdiff_t>(from.width) : 0;
+  const uint8_t* at = from.bytes.data() + 4 * (static_cast<ptrdiff_t>(top) * from.width + left);
+  return mixed(mixed(color_at(at), color_at(at + right), part_x),
+               mixed(color_at(at + below), color_at(at + below + right), part_x), part_y);
+}
+
+/// A value that is affine on the screen.
+struct Plane {
+  double constant = 0;
+  double per_x = 0;
+  double per_y = 0;
+
+  [[nodiscard]] double at(double x, double y) const { return constant + per_x * x + per_y * y; }
+  void add(const Plane& plane, double factor) {
+    constant += factor * plane.constant;
+    per_x += factor * plane.per_x;
+    per_y += factor * plane.per_y;
+  }
+};
+
+/// A triangle in the target. Values that are affine on the surface are affine on the screen, divided by w.
+struct ScreenTriangle {
+  const MeshTriangle* mesh = nullptr;
+  std::array<Plane, 3> parts;  ///< barycentric coordinates
+  Plane w;                     ///< 1 / w
+  Plane inverse;               ///< 1 / depth in the target
+  Plane pixel_x;               ///< of the frame
+  Plane pixel_y;
+  Plane front;
+  int left = 0;  ///< pixels whose centres may be inside
+  int right = 0;
+  int top = 0;
+  int bottom = 0;
+  float farthest = 0;  ///< least inverse depth of a corner
+  float density = 0;   ///< pixels of the frame in a pixel of the target, along one direction
+  Color far = 0;       ///< of what is behind, beside an outline
+};
+
+double cross(const glm::dvec2& a, const glm::dvec2& b) {
+  return a.x * b.y - a.y * b.x;
+}
+
+/// The first pixel whose centre is not before this place.
+int first_centre(double place, int pixels) {
+  return static_cast<int>(std::clamp(std::ceil(place - 0.5), 0.0, static_cast<double>(pixels)));
+}
+
+/// The barycentric coordinates of three places, of which that of the first one is 1 there.
+Plane part_of(const glm::dvec2& one, const glm::dvec2& other, double area) {
+  const glm::dvec2 along = other - one;
+  return {(along.y * one.x - along.x * one.y) / area, -along.y / area, along.x / area};
+}
+
+/// None where it is not seen: behind the eye, from the side, or outside the picture.
+std::optional<ScreenTriangle> screen_triangle(const MeshTriangle& mesh, const Projection& projection, int width,
+                                              int height) {
+  const std::array<Projected, 3> corners{projection(mesh.corners[0]), projection(mesh.corners[1]),
+                                         projection(mesh.corners[2])};
+  std::array<glm::dvec2, 3> screen;
+  for (size_t i = 0; i < 3; ++i) {
+    if (corners.at(i).place.z <= 0) return std::nullopt;
+    screen.at(i) = glm::dvec2(corners.at(i).place) / corners.at(i).place.z;
+  }
+  const double area = cross(screen[1] - screen[0], screen[2] - screen[0]);
+  if (area == 0) return std::nullopt;
+  ScreenTriangle triangle;
+  triangle.mesh = &mesh;
+  const auto [left, right] = std::minmax({screen[0].x, screen[1].x, screen[2].x});
+  const auto [top, bottom] = std::minmax({screen[0].y, screen[1].y, screen[2].y});
+  triangle.left = first_centre(left, width);
+  triangle.right = first_centre(right, width);
+  triangle.top = first_centre(top, height);
+  triangle.bottom = first_centre(bottom, height);
+  if (triangle.left >= triangle.right || triangle.top >= triangle.bottom) return std::nullopt;
+  const double source = cross(corners[1].pixel - corners[0].pixel, corners[2].pixel - corners[0].pixel);
+  triangle.density = static_cast<float>(std::sqrt(std::abs(source / area)));
+  double farthest = corners[0].inverse / corners[0].place.z;
+  for (size_t i = 0; i < 3; ++i) {
+    const Projected& corner = corners.at(i);
+    const double share = 1 / corner.place.z;
+    const Plane part = part_of(screen.at((i + 1) % 3), screen.at((i + 2) % 3), area);
+    triangle.parts.at(i) = part;
+    triangle.w.add(part, share);
+    triangle.inverse.add(part, share * corner.inverse);
+    triangle.pixel_x.add(part, share * corner.pixel.x);
+    triangle.pixel_y.add(part, share * corner.pixel.y);
+    triangle.front.add(part, share * corner.front);
+    farthest = std::min(farthest, share * corner.inverse);
+  }
+  triangle.farthest = static_cast<float>(farthest);
+  return triangle;
+}
+
+std::vector<ScreenTriangle> screen_triangles(const WarpFrame& frame, const geometry::CameraFrame& camera) {
+  const Projection projection(frame.camera, camera);
+  std::vector<ScreenTriangle> triangles;
+  triangles.reserve(frame.mesh.size());
+  for (const MeshTriangle& mesh : frame.mesh) {
+    auto triangle = screen_triangle(mesh, projection, camera.width, camera.height);
+    if (!triangle) continue;
+    if (mesh.sheet != Sheet::kSurface) triangle->far = sample(frame.pixels, mesh.far.x, mesh.far.y);
+    triangles.push_back(*triangle);
+  }
+  return triangles;
+}
+
+void put(Pixels& picture, size_t at, Color color) {
+  std::memcpy(picture.bytes.data() + 4 * at, &color, sizeof color);
+}
+
+/// Squared, of three channels.
+int distance(Color a, Color b) {
   int sum = 0;
-  for (size_t i = 0; i < 3; ++i) sum += (a.at(i) - b.at(i)) * (a.at(i) - b.at(i));
+  for (const int shift : {0, 8, 16}) {
+    const int step = static_cast<int>(a >> shift & 0xff) - static_cast<int>(b >> shift & 0xff);
+    sum += step * step;
+  }
   return sum;
 }
 
 /// A pixel of a sheet: its colour, and whether the frame shows it there.
 struct Shown {
-  std::array<uint8_t, 3> color{};
+  Color color = 0;
   bool own = true;
 };
-
-Shown shown(const WarpFrame& frame, const MeshTriangle& mesh, const glm::dvec2& pixel, double front) {
-  if (mesh.sheet == Sheet::kFill) return {sample(frame.pixels, mesh.far.x, mesh.far.y), false};
-  const std::array<uint8_t, 3> color = sample(frame.pixels, pixel.x, pixel.y);
-  if (mesh.sheet == Sheet::kSurface) return {color, true};
-  const std::array<uint8_t, 3> far = sample(frame.pixels, mesh.far.x, mesh.far.y);
-  const bool in_front = front >= 0.5 && distance(color, far) >= kSameColor;
-  if (mesh.sheet == Sheet::kNear) return {color, in_front};
-  return in_front ? Shown{far, false} : Shown{color, true};
-}
 
 /// A place of a frame in the target.
 struct Place {
   size_t at = 0;  ///< pixel of the target
-  glm::dvec2 pixel{0};
+  float x = 0;    ///< pixel of the frame
+  float y = 0;
   float inverse = 0;  ///< in the target
-  double front = 0;
-  float density = 0;
+  bool front = false;
 };
 
-/// Calls `draw(triangle of the mesh, place, farthest inverse depth)` for each pixel of the target that a triangle
-/// covers.
+Shown shown(const Pixels& pixels, const ScreenTriangle& triangle, const Place& place) {
+  const Sheet sheet = triangle.mesh->sheet;
+  if (sheet == Sheet::kFill) return {triangle.far, false};
+  const Color color = sample(pixels, place.x, place.y);
+  if (sheet == Sheet::kSurface) return {color, true};
+  const bool in_front = place.front && distance(color, triangle.far) >= kSameColor;
+  if (sheet == Sheet::kNear) return {color, in_front};
+  return in_front ? Shown{triangle.far, false} : Shown{color, true};
+}
+
+/// Rows of the target that are drawn together.
+struct Band {
+  int top = 0;
+  int bottom = 0;
+};
+
+/// The columns of a row whose centres are inside a triangle. A centre on an edge belongs to both triangles, whatever
+/// the rounding: the nearer one wins.
+std::pair<int, int> columns_inside(const ScreenTriangle& triangle, double y) {
+  double first = triangle.left + 0.5;
+  double last = triangle.right - 0.5;
+  for (const Plane& part : triangle.parts) {
+    const double there = part.constant + part.per_y * y + kOnEdge;  // at least 0 where x = 0 is inside
+    if (part.per_x > 0) first = std::max(first, -there / part.per_x);
+    if (part.per_x < 0) last = std::min(last, -there / part.per_x);
+    if (part.per_x == 0 && there < 0) return {0, 0};
+  }
+  return {static_cast<int>(std::ceil(first - 0.5)), static_cast<int>(std::floor(last - 0.5)) + 1};
+}
+
+/// Calls `draw(place)` for each pixel of the band that the triangle covers, if it is nearer than what `inverse` has
+/// there.
 template <typename Draw>
-void for_each_place(const WarpFrame& frame, const geometry::CameraFrame& camera, const Draw& draw) {
-  const Projection projection(frame.camera, camera);
-  for (const MeshTriangle& mesh : frame.mesh) {
-    const Projected a = projection(mesh.corners[0]);
-    const Projected b = projection(mesh.corners[1]);
-    const Projected c = projection(mesh.corners[2]);
-    const Triangle triangle(a, b, c);
-    if (!triangle.visible()) continue;
-    const auto farthest = static_cast<float>(triangle.farthest());
-    const float density = triangle.density();
-    triangle.for_each_pixel(
-        camera.width, camera.height, [&](int x, int y, const glm::dvec2& pixel, float inverse, double front) {
-          const auto at = static_cast<size_t>(y) * static_cast<size_t>(camera.width) + static_cast<size_t>(x);
-          draw(mesh, Place{at, pixel, inverse, front, density}, farthest);
-        });
+void for_each_place(const ScreenTriangle& triangle, const Band& band, int width, const std::vector<float>& inverse,
+                    const Draw& draw) {
+  const bool fills = triangle.mesh->sheet == Sheet::kFill;
+  const int bottom = std::min(triangle.bottom, band.bottom);
+  for (int row = std::max(triangle.top, band.top); row < bottom; ++row) {
+    const double y = row + 0.5;
+    const auto [begin, end] = columns_inside(triangle, y);
+    for (int column = begin; column < end; ++column) {
+      const double x = column + 0.5;
+      Place place;
+      place.at = static_cast<size_t>(row) * static_cast<size_t>(width) + static_cast<size_t>(column);
+      place.inverse = fills ? triangle.farthest * kFilled : static_cast<float>(triangle.inverse.at(x, y));
+      if (place.inverse <= inverse[place.at]) continue;
+      const double w = triangle.w.at(x, y);
+      place.x = static_cast<float>(triangle.pixel_x.at(x, y) / w);
+      place.y = static_cast<float>(triangle.pixel_y.at(x, y) / w);
+      place.front = triangle.front.at(x, y) >= 0.5 * w;
+      draw(place);
+    }
   }
 }
 
 /// Draws a frame, with what fills its holes.
-void draw_newest(const WarpFrame& frame, const geometry::CameraFrame& camera, Target& target, Pixels& picture) {
-  for_each_place(frame, camera, [&](const MeshTriangle& mesh, const Place& place, float farthest) {
-    float inverse = mesh.sheet == Sheet::kFill ? farthest * kFilled : place.inverse;
-    if (inverse <= target.inverse[place.at]) return;
-    const Shown drawn = shown(frame, mesh, place.pixel, place.front);
-    if (mesh.sheet == Sheet::kNear && !drawn.own) return;
-    if (mesh.sheet == Sheet::kFar && !drawn.own) inverse *= kContinued;
-    if (inverse <= target.inverse[place.at]) return;
-    target.inverse[place.at] = inverse;
-    target.density[place.at] = drawn.own ? place.density : -1;
-    put(picture, place.at, drawn.color);
-  });
+void draw_newest(const Pixels& pixels, const std::vector<ScreenTriangle>& triangles, const Band& band, Target& target,
+                 Pixels& picture) {
+  for (const ScreenTriangle& triangle : triangles) {
+    const Sheet sheet = triangle.mesh->sheet;
+    for_each_place(triangle, band, target.width, target.inverse, [&](const Place& place) {
+      const Shown drawn = shown(pixels, triangle, place);
+      if (sheet == Sheet::kNear && !drawn.own) return;
+      const float inverse = sheet == Sheet::kFar && !drawn.own ? place.inverse * kContinued : place.inverse;
+      if (inverse <= target.inverse[place.at]) return;
+      target.inverse[place.at] = inverse;
+      target.density[place.at] = drawn.own ? triangle.density : -1;
+      put(picture, place.at, drawn.color);
+    });
+  }
 }
 
 /// Draws what a former frame shows, where the newest one shows nothing, or the same not as sharp.
-void draw_rest(const WarpFrame& frame, const geometry::CameraFrame& camera, const Target& newest, Pixels& picture) {
-  Target target(camera);
-  for_each_place(frame, camera, [&](const MeshTriangle& mesh, const Place& place, float) {
-    if (mesh.sheet == Sheet::kFill || mesh.background || place.inverse <= target.inverse[place.at]) return;
-    const Shown drawn = shown(frame, mesh, place.pixel, place.front);
-    if (!drawn.own) return;
-    target.inverse[place.at] = place.inverse;
-    const float there = newest.inverse[place.at];
-    const bool nothing = there < 0 || newest.density[place.at] < 0;
-    const bool agrees = std::abs(place.inverse - there) <= kAgreement * std::max(place.inverse, there);
-    const bool sharper = place.density >= newest.density[place.at];
-    if (nothing || (agrees && sharper)) put(picture, place.at, drawn.color);
-  });
+void draw_rest(const Pixels& pixels, const std::vector<ScreenTriangle>& triangles, const Band& band,
+               const Target& newest, Target& target, Pixels& picture) {
+  for (const ScreenTriangle& triangle : triangles) {
+    if (triangle.mesh->sheet == Sheet::kFill || triangle.mesh->background) continue;
+    for_each_place(triangle, band, target.width, target.inverse, [&](const Place& place) {
+      const float there = newest.inverse[place.at];
+      const bool nothing = there < 0 || newest.density[place.at] < 0;
+      const bool agrees = std::abs(place.inverse - there) <= kAgreement * std::max(place.inverse, there);
+      const bool wanted = nothing || (agrees && triangle.density >= newest.density[place.at]);
+      const bool certain = triangle.mesh->sheet == Sheet::kSurface;
+      const Shown drawn = wanted || !certain ? shown(pixels, triangle, place) : Shown{};
+      if (!drawn.own) return;
+      target.inverse[place.at] = place.inverse;
+      if (wanted) put(picture, place.at, drawn.color);
+    });
+  }
+}
+
+/// Calls `draw` for bands of rows, each on a thread of its own.
+template <typename Draw>
+void in_bands(int height, const Draw& draw) {
+  const int bands = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, kMostBands);
+  std::vector<std::jthread> threads;
+  for (int i = 1; i < bands; ++i)
+    threads.emplace_back([&, i] { draw(Band{height * i / bands, height * (i + 1) / bands}); });
+  draw(Band{0, height / bands});
 }
 
 }  // namespace
 
 Pixels warp(const WarpFrame& newest, const WarpFrame* rest, const geometry::CameraFrame& target,
-            const std::array<uint8_t, 3>& background) {
+            const std::array<uint8_t, 4>& background) {
   Pixels picture{target.width, target.height, {}};
-  picture.rgb.resize(3 * static_cast<size_t>(target.width) * static_cast<size_t>(target.height));
-  for (size_t at = 0; at < picture.rgb.size() / 3; ++at) put(picture, at, background);
+  picture.bytes.resize(4 * static_cast<size_t>(target.width) * static_cast<size_t>(target.height));
+  for (size_t at = 0; at < picture.bytes.size() / 4; ++at) put(picture, at, color_at(background.data()));
+  std::vector<ScreenTriangle> below;
+  std::vector<ScreenTriangle> above;
+  {
+    const std::jthread other([&] {
+      if (rest) above = screen_triangles(*rest, target);
+    });
+    below = screen_triangles(newest, target);
+  }
   Target seen(target);
-  draw_newest(newest, target, seen, picture);
-  if (rest != nullptr) draw_rest(*rest, target, seen, picture);
+  Target seen_above(target);
+  in_bands(target.height, [&](const Band& band) {
+    draw_newest(newest.pixels, below, band, seen, picture);
+    if (rest) draw_rest(rest->pixels, above, band, seen, seen_above, picture);
+  });
   return picture;
 }
 

@@ -16,8 +16,9 @@ namespace {
 constexpr int kFrameWidth = 320;
 constexpr int kFrameHeight = 200;
 constexpr int kFrameCell = 8;
-constexpr std::array<uint8_t, 3> kBackground{10, 20, 30};
 using Color = std::array<uint8_t, 3>;
+constexpr std::array<uint8_t, 4> kBackground{10, 20, 30, 255};
+constexpr Color kBackgroundColor{10, 20, 30};
 
 geometry::CameraFrame camera(const glm::dvec3& eye, const glm::dvec3& at, int width = kFrameWidth,
                              int height = kFrameHeight) {
@@ -27,7 +28,7 @@ geometry::CameraFrame camera(const glm::dvec3& eye, const glm::dvec3& at, int wi
 /// What a ray through a pixel meets: the distance along the view axis and the colour.
 struct Hit {
   double depth = 0;  ///< 0: nothing
-  Color color = kBackground;
+  Color color = kBackgroundColor;
 };
 /// `ray`: in world coordinates, with a depth of 1.
 using Scene = std::function<Hit(const glm::dvec3& eye, const glm::dvec3& ray)>;
@@ -44,7 +45,8 @@ WarpFrame draw(const Scene& scene, const geometry::CameraFrame& from, int cell =
   for (int y = 0; y < from.height; ++y) {
     for (int x = 0; x < from.width; ++x) {
       const Hit hit = hit_at(scene, from, {x + 0.5, y + 0.5});
-      frame.pixels.rgb.insert(frame.pixels.rgb.end(), hit.color.begin(), hit.color.end());
+      frame.pixels.bytes.insert(frame.pixels.bytes.end(), hit.color.begin(), hit.color.end());
+      frame.pixels.bytes.push_back(255);
       float& texel = depth.inverse[static_cast<size_t>(y / cell * depth.width + x / cell)];
       if (hit.depth > 0) texel = std::max(texel, static_cast<float>(1 / hit.depth));
     }
@@ -76,8 +78,8 @@ Hit square(const glm::dvec3& eye, const glm::dvec3& ray) {
 }
 
 Color pixel_of(const Pixels& picture, int x, int y) {
-  const auto at = 3 * (static_cast<size_t>(y) * static_cast<size_t>(picture.width) + static_cast<size_t>(x));
-  return {picture.rgb[at], picture.rgb[at + 1], picture.rgb[at + 2]};
+  const auto at = 4 * (static_cast<size_t>(y) * static_cast<size_t>(picture.width) + static_cast<size_t>(x));
+  return {picture.bytes[at], picture.bytes[at + 1], picture.bytes[at + 2]};
 }
 
 int difference(const Color& a, const Color& b) {
@@ -184,7 +186,7 @@ TEST(Warp, ASharperFrameAtRestIsShownWhereItAgrees) {
   const geometry::CameraFrame to = camera({0.1, 0, 4}, {0.1, 0, 0});
   const WarpFrame rest = draw(wall, camera({0, 0, 4}, {0, 0, 0}));
   WarpFrame newest = draw(wall, camera({0.1, 0, 4}, {0.1, 0, 0}, kFrameWidth / 2, kFrameHeight / 2), kFrameCell / 2);
-  std::ranges::fill(newest.pixels.rgb, uint8_t{0});
+  std::ranges::fill(newest.pixels.bytes, uint8_t{0});
   const Pixels both = warp(newest, &rest, to, kBackground);
   const Pixels alone = warp(rest, nullptr, to, kBackground);
   // (Beyond the border of the frame at rest the newest one is shown.)
@@ -204,7 +206,7 @@ TEST(Warp, AFrameAtRestIsNotShownWhereItIsBlurredByStretching) {
   const WarpFrame rest = draw(wall, camera({0, 0, 4}, {0, 0, 0}));
   const geometry::CameraFrame to = camera({0, 0, 1}, {0, 0, 0});
   WarpFrame newest = draw(wall, camera({0, 0, 1}, {0, 0, 0}, kFrameWidth / 2, kFrameHeight / 2), kFrameCell / 2);
-  std::ranges::fill(newest.pixels.rgb, uint8_t{0});
+  std::ranges::fill(newest.pixels.bytes, uint8_t{0});
   EXPECT_EQ(pixel_of(warp(newest, &rest, to, kBackground), kFrameWidth / 2, kFrameHeight / 2), (Color{0, 0, 0}));
 }
 
@@ -212,14 +214,14 @@ TEST(Warp, WhereNothingWasSeenIsBackground) {
   const WarpFrame frame = draw(wall, camera({0, 0, 4}, {0, 0, 0}));
   const geometry::CameraFrame away = camera({0, 0, 4}, {0, 0, 8});
   const Pixels warped = warp(frame, nullptr, away, kBackground);
-  EXPECT_EQ(pixel_of(warped, kFrameWidth / 2, kFrameHeight / 2), kBackground);
+  EXPECT_EQ(pixel_of(warped, kFrameWidth / 2, kFrameHeight / 2), kBackgroundColor);
 }
 
 TEST(Warp, PartsBehindTheEyeAreLeftOut) {
   const WarpFrame frame = draw(wall, camera({0, 0, 4}, {0, 0, 0}));
   const geometry::CameraFrame inside = camera({0, 0, -1}, {0, 0, -5});
   const Pixels warped = warp(frame, nullptr, inside, kBackground);
-  for (int x = 0; x < kFrameWidth; ++x) EXPECT_EQ(pixel_of(warped, x, kFrameHeight / 2), kBackground);
+  for (int x = 0; x < kFrameWidth; ++x) EXPECT_EQ(pixel_of(warped, x, kFrameHeight / 2), kBackgroundColor);
 }
 
 }  // namespace
