@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "client/view.h"
+#include "client/window/warped_view.h"
 #include "client/window/window.h"
 
 namespace surfcast::window {
@@ -65,7 +66,8 @@ class ViewLoop {
   Status send_update(client::View& view, bool moving);
   Status focus(client::View& view);
   Status receive(client::View& view);
-  Status paint(client::View& view, const client::View::Frame& frame);
+  Status take(client::View& view, const client::View::Frame& frame);
+  Status paint();
   [[nodiscard]] wire::DrawPicture picture() const;
   [[nodiscard]] bool resized() const { return sent_width_ != window_.width() || sent_height_ != window_.height(); }
 
@@ -83,6 +85,9 @@ class ViewLoop {
   int sent_height_ = 0;
   Clock::time_point last_update_ = Clock::now();
   Clock::time_point last_turn_ = Clock::now();
+  WarpedView shown_;
+  bool arrived_ = false;         ///< a frame that has not been shown
+  wire::Camera painted_camera_;  ///< what is on the screen was painted for it
   FrameRate rate_;
 };
 
@@ -121,7 +126,7 @@ Status ViewLoop::open_view(client::ServerConnection& connection) {
   subject_ = subject_of(answer->model_description());
   sent_width_ = window_.width();
   sent_height_ = window_.height();
-  Result<client::View> view = client::View::open(connection, picture(), request_.target_fps);
+  Result<client::View> view = client::View::open(connection, picture(), request_.target_fps, /*depth=*/true);
   if (!view) return fail(view.error());
   view_.emplace(std::move(*view));
   return {};
@@ -144,7 +149,8 @@ Status ViewLoop::step(client::View& view) {
     open_ = window_.take_events(nobody);
   }
   if (Status status = focus(view); !status) return status;
-  return receive(view);
+  if (Status status = receive(view); !status) return status;
+  return paint();
 }
 
 /// Sends a pick request for a double click, and moves the view when its result arrives.
@@ -174,25 +180,41 @@ Status ViewLoop::send_update(client::View& view, bool moving) {
 Status ViewLoop::receive(client::View& view) {
   const Result<std::optional<client::View::Frame>> frame = view.next_until(Clock::now() + kTick);
   if (!frame) return fail(frame.error());
-  return *frame ? paint(view, **frame) : Status();
+  return *frame ? take(view, **frame) : Status();
 }
 
-Status ViewLoop::paint(client::View& view, const client::View::Frame& frame) {
+/// Shows what is there of the present camera: the newest frame, or what frames are when they are warped to it.
+Status ViewLoop::paint() {
+  if (!controls_) return {};
+  const wire::Camera camera = client::to_camera(controls_->pose());
+  const bool turned = camera.SerializeAsString() != painted_camera_.SerializeAsString();
+  if (!arrived_ && !turned) return {};
+  arrived_ = false;
+  painted_camera_ = camera;
+  const std::optional<PixelImage> warped = shown_.seen_by(camera, window_.width(), window_.height());
+  return window_.show(warped ? *warped : shown_.newest());
+}
+
+Status ViewLoop::take(client::View& view, const client::View::Frame& frame) {
   const wire::Picture& picture = frame.frame.picture();
-  const Result<PixelImage> image = decode_picture(picture);
+  Result<PixelImage> image = decode_picture(picture);
   if (!image) return fail(image.error());
-  if (Status status = window_.show(*image); !status) return status;
-  if (Status status = view.painted(frame); !status) return status;
+  const int width = image->width;
+  const int height = image->height;
   if (!controls_) {
     controls_.emplace(client::to_pose(picture.camera()), subject_);
     sent_camera_ = client::to_camera(controls_->pose());
   }
+  shown_.take(frame.frame, std::move(*image));
+  arrived_ = true;
+  if (Status status = paint(); !status) return status;
+  if (Status status = view.painted(frame); !status) return status;
   rate_.count(frame.arrived);
   const std::string state = frame.frame.moving()  ? std::to_string(rate_.last()) + " frames/s"
                             : picture.converged() ? "sharp"
                                                   : "getting sharper";
   window_.set_title(request_.url.model + " - " + state + ", " + std::to_string(picture.surfels_drawn()) + " surfels, " +
-                    std::to_string(image->width) + " x " + std::to_string(image->height));
+                    std::to_string(width) + " x " + std::to_string(height));
   return {};
 }
 

@@ -1,0 +1,58 @@
+#include "client/window/warped_view.h"
+
+#include <array>
+#include <cmath>
+#include <glm/geometric.hpp>
+#include <utility>
+
+#include "geometry/camera.h"
+
+namespace surfcast::window {
+namespace {
+
+constexpr std::array<uint8_t, 4> kBlack{0, 0, 0, 255};
+
+glm::dvec3 vector_of(const wire::Vector3& v) {
+  return {v.x(), v.y(), v.z()};
+}
+
+Result<geometry::CameraFrame> frame_of(const wire::Camera& camera, int width, int height) {
+  return geometry::make_camera_frame(
+      {vector_of(camera.position()), vector_of(camera.focal_point()), vector_of(camera.view_up()), camera.view_angle()},
+      width, height);
+}
+
+/// Whether two cameras show the same, but for rounding: the server states the camera of a first picture with another
+/// view up.
+bool same_view(const geometry::CameraFrame& a, const geometry::CameraFrame& b) {
+  constexpr double kSameTurn = 1e-6;  // radians; below any pixel
+  return a.eye == b.eye && glm::distance(a.up, b.up) < kSameTurn && glm::distance(a.forward, b.forward) < kSameTurn &&
+         std::abs(a.eta / a.height - b.eta / b.height) < kSameTurn;
+}
+
+std::optional<warp::WarpFrame> warp_frame(const wire::ViewFrame& frame, const PixelImage& image) {
+  if (!frame.has_depth()) return std::nullopt;
+  const Result<warp::DepthPlane> depth = warp::decode_depth(frame.depth(), image.width, image.height);
+  const Result<geometry::CameraFrame> camera = frame_of(frame.picture().camera(), image.width, image.height);
+  if (!depth || !camera) return std::nullopt;
+  return warp::WarpFrame{
+      {image.width, image.height, image.pixels}, *camera, warp::make_warp_mesh(*depth, image.width, image.height)};
+}
+
+}  // namespace
+
+void WarpedView::take(const wire::ViewFrame& frame, PixelImage pixels) {
+  newest_ = std::move(pixels);
+  moving_ = frame.moving();
+  warp_ = warp_frame(frame, newest_);
+  if (!moving_) rest_ = warp_;
+}
+
+std::optional<PixelImage> WarpedView::seen_by(const wire::Camera& camera, int width, int height) const {
+  const Result<geometry::CameraFrame> target = frame_of(camera, width, height);
+  if (!warp_ || !target || same_view(warp_->camera, *target)) return std::nullopt;
+  warp::Pixels pixels = warp::warp(*warp_, moving_ && rest_ ? &*rest_ : nullptr, *target, kBlack);
+  return PixelImage{pixels.width, pixels.height, std::move(pixels.bytes)};
+}
+
+}  // namespace surfcast::window
