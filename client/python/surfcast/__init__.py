@@ -8,6 +8,7 @@
 
 from . import aio, measure
 from ._build import VERSION as __version__
+from ._depth import Depth
 from ._options import DisplayOptions, PictureOptions, RegionOptions, ViewOptions
 from ._picture import LevelCount, Picture
 from ._sync import Model, Server, View, connect
@@ -57,6 +58,7 @@ __all__ = [
     "CoordinateSystem",
     "Corridor",
     "Denied",
+    "Depth",
     "DisplayOptions",
     "Ellipsoids",
     "Error",

@@ -320,10 +320,11 @@ class Model:
         *,
         target_fps: float = 0.0,
         acknowledge: bool = True,
+        depth: bool = False,
         **options: Unpack[ViewOptions],
     ) -> View:
         """A view of the model, which is open while entered. See `surfcast.aio.Model.view`."""
-        return View(self, self._runner, camera, dict(options, target_fps=target_fps, acknowledge=acknowledge))
+        return View(self, self._runner, camera, dict(options, target_fps=target_fps, acknowledge=acknowledge, depth=depth))
 
     def widget(
         self,

@@ -11,6 +11,7 @@ from typing import Any, Unpack
 
 from . import errors
 from ._connection import Connection, Link
+from ._depth import Depth, depth_from
 from ._options import ViewOptions, picture_request
 from ._picture import Picture, picture_from
 from ._values import Camera
@@ -21,7 +22,9 @@ from ._wire import surfcast_pb2 as wire
 class Frame:
     """One picture of a view. `update` is the newest update that it shows; `resolution` is that of the view.
 
-    While `moving`, the picture may be smaller than the view: whoever shows it scales it up.
+    While `moving`, the picture may be smaller than the view: whoever shows it scales it up. `depth` is there if the
+    view asks for it and one depth can stand for a pixel; it belongs to `picture.camera`, which in motion is ahead of the
+    update then.
     """
 
     number: int
@@ -31,6 +34,7 @@ class Frame:
     picture: Picture
     arrived: float  # of its last byte, time.monotonic()
     opening: int = 0  # how many times the view had been opened before
+    depth: Depth | None = None
 
 
 class View:
@@ -47,6 +51,7 @@ class View:
         camera: Camera | None,
         target_fps: float,
         acknowledge: bool,
+        depth: bool,
         options: Mapping[str, Any],
     ) -> None:
         self._connection = connection
@@ -54,6 +59,7 @@ class View:
         self._camera = camera
         self._target_fps = target_fps
         self._acknowledge = acknowledge
+        self._depth = depth
         self._options = dict(options)
         self._request = picture_request(model, camera, self._options)
         self._update = 0
@@ -170,7 +176,8 @@ class View:
         link = await self._connection.link()
         self._partial = None
         self._opened_at_update = self._update
-        opened = wire.Request(open_view=wire.OpenView(picture=self._request, target_fps=self._target_fps))
+        view = wire.OpenView(picture=self._request, target_fps=self._target_fps, depth=self._depth)
+        opened = wire.Request(open_view=view)
         self._link, self._id = link, 0
         self._id = await link.listen(opened, lambda answer: self._take(link, answer))
         if self._update != self._opened_at_update:
@@ -203,14 +210,16 @@ class View:
         skipped = self._latest
         if not self._acknowledge and skipped is not None and skipped is not self._seen:
             self._start(self.painted(skipped))  # nobody will
+        picture = picture_from(frame.picture)
         self._latest = Frame(
             number=frame.frame,
             update=frame.update or self._opened_at_update,
             moving=frame.moving,
             resolution=(frame.resolution.width, frame.resolution.height),
-            picture=picture_from(frame.picture),
+            picture=picture,
             arrived=time.monotonic(),
             opening=self._openings,
+            depth=depth_from(frame.depth, picture.resolution) if frame.HasField("depth") else None,
         )
         self._start(self._notify())
 

@@ -311,14 +311,16 @@ class Model:
         *,
         target_fps: float = 0.0,
         acknowledge: bool = True,
+        depth: bool = False,
         **options: Unpack[ViewOptions],
     ) -> View:
         """A view of the model, which is open while entered.
 
         `target_fps`: while the camera moves; 0: the server's own. `acknowledge`: False if the caller tells by
-        `Frame.painted` when a frame is on the screen; otherwise frames are acknowledged when they arrive.
+        `Frame.painted` when a frame is on the screen; otherwise frames are acknowledged when they arrive. `depth`:
+        frames have a depth, and those in motion are drawn for the camera that is expected when they arrive.
         """
-        return View(self._connection, self.name, camera, target_fps, acknowledge, dict(options))
+        return View(self._connection, self.name, camera, target_fps, acknowledge, depth, dict(options))
 
     async def wait_complete(self, *, timeout: float | None = None, pause: float = 0.2) -> None:
         """Waits until the model of a scan is complete. Raises ServerFault if it could not be built."""

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import asyncio
 
+import pytest
+
 import surfcast
 from surfcast import aio
 from surfcast.testing import RunningServer
@@ -38,6 +40,25 @@ def test_the_newest_frame_wins(field: surfcast.Model, camera: surfcast.Camera) -
         assert updates == sorted(updates)
         assert updates[-1] == 21
         assert len(updates) < 21
+
+
+def test_frames_have_the_depth_of_what_is_picked(field: surfcast.Model, camera: surfcast.Camera) -> None:
+    with field.view(camera, resolution=SIZE, depth=True) as view:
+        frame = view.wait_converged(timeout=60)
+        assert frame.picture.data == field.render(camera, resolution=SIZE).data
+        assert frame.depth is not None
+        rows, columns = frame.depth.inverse.shape
+        cell = frame.depth.cell
+        assert (columns, rows) == (-(-SIZE[0] // cell), -(-SIZE[1] // cell))
+        x, y = SIZE[0] // 2, SIZE[1] // 2
+        hit = field.pick((x, y), camera, resolution=SIZE)
+        assert hit is not None
+        assert 1 / frame.depth.inverse[y // cell, x // cell] == pytest.approx(hit.depth, rel=0.05)
+
+
+def test_frames_have_no_depth_unless_it_is_asked_for(field: surfcast.Model, camera: surfcast.Camera) -> None:
+    with field.view(camera, resolution=SIZE) as view:
+        assert view.wait_converged(timeout=60).depth is None
 
 
 def test_frames_in_motion_are_marked(field: surfcast.Model, camera: surfcast.Camera) -> None:
