@@ -18,13 +18,20 @@
 #include <vector>
 
 #include "bench_support.h"
+#include "camera_paths.h"
 #include "encode/encode_depth.h"
 #include "geometry/camera.h"
 #include "warp/warp.h"
+#include "warp_error.h"
 
 namespace {
 
 using namespace surfcast;
+using bench::compare;
+using bench::Figures;
+using bench::Path;
+using bench::pixels_of;
+using bench::unwarped;
 using bench::value_or_exit;
 using geometry::Camera;
 
@@ -32,104 +39,6 @@ constexpr int kWidth = 1280;
 constexpr int kHeight = 720;
 constexpr int kTexelsAtRest = 160;
 constexpr int kTexelsInMotion = 80;
-
-/// The camera some seconds after `begin`.
-using Movement = std::function<Camera(const Camera& begin, double seconds)>;
-
-struct Path {
-  std::string name;
-  Movement at;
-};
-
-glm::dvec3 rotated(const glm::dvec3& v, const glm::dvec3& axis, double degrees) {
-  const double angle = glm::radians(degrees);
-  return v * std::cos(angle) + glm::cross(axis, v) * std::sin(angle) + axis * glm::dot(axis, v) * (1 - std::cos(angle));
-}
-
-Camera orbit(const Camera& begin, double degrees) {
-  Camera camera = begin;
-  camera.position =
-      begin.focal_point + rotated(begin.position - begin.focal_point, glm::normalize(begin.view_up), degrees);
-  return camera;
-}
-
-Camera moved(const Camera& begin, const glm::dvec3& by) {
-  Camera camera = begin;
-  camera.position += by;
-  camera.focal_point += by;
-  return camera;
-}
-
-std::vector<Path> paths() {
-  const auto dolly = [](const Camera& begin, double seconds) {
-    Camera camera = begin;
-    camera.position = begin.focal_point + (begin.position - begin.focal_point) * std::pow(2, -seconds);
-    return camera;
-  };
-  const auto fly = [](const Camera& begin, double seconds) {
-    return moved(begin, (begin.focal_point - begin.position) * (0.5 * seconds));
-  };
-  const auto fly_and_turn = [fly](const Camera& begin, double seconds) {
-    Camera camera = fly(begin, seconds);
-    camera.focal_point =
-        camera.position + rotated(camera.focal_point - camera.position, glm::normalize(begin.view_up), 30 * seconds);
-    return camera;
-  };
-  const auto pan = [](const Camera& begin, double seconds) {
-    const glm::dvec3 view = begin.focal_point - begin.position;
-    const double height = 2 * glm::length(view) * std::tan(glm::radians(begin.view_angle / 2));
-    return moved(begin, glm::normalize(glm::cross(view, begin.view_up)) * (height * seconds));
-  };
-  return {{"orbit, 45 degrees a second", [](const Camera& c, double s) { return orbit(c, 45 * s); }},
-          {"dolly, 2 times a second", dolly},
-          {"flight", fly},
-          {"flight and turn", fly_and_turn},
-          {"pan, a height a second", pan}};
-}
-
-struct Figures {
-  double psnr = 0;
-  double off = 0;  ///< percent
-};
-
-/// Over the pixels that `truth` covers.
-Figures compare(const warp::Pixels& picture, const picture::Image& truth) {
-  double sum = 0;
-  size_t off = 0;
-  size_t count = 0;
-  for (size_t i = 0; i < truth.pixels.size() / 4; ++i) {
-    if (truth.pixels[4 * i + 3] == std::byte{0}) continue;
-    int largest = 0;
-    for (size_t c = 0; c < 3; ++c) {
-      const int difference = std::to_integer<int>(truth.pixels[4 * i + c]) - picture.bytes[4 * i + c];
-      sum += difference * difference;
-      largest = std::max(largest, std::abs(difference));
-    }
-    off += largest > 20 ? 1 : 0;
-    ++count;
-  }
-  const auto pixels = static_cast<double>(std::max<size_t>(count, 1));
-  return {10 * std::log10(255.0 * 255.0 * 3 * pixels / std::max(sum, 1e-9)), 100 * static_cast<double>(off) / pixels};
-}
-
-warp::Pixels pixels_of(const picture::Image& image) {
-  warp::Pixels pixels{image.width, image.height, std::vector<uint8_t>(image.pixels.size())};
-  std::memcpy(pixels.bytes.data(), image.pixels.data(), image.pixels.size());
-  return pixels;
-}
-
-/// A picture of `target` made of one frame, scaled as a client without depth does it.
-warp::Pixels stale(const warp::WarpFrame& frame, const geometry::CameraFrame& target) {
-  const warp::DepthPlane none{1, 1, std::max(frame.camera.width, frame.camera.height), {1.0F}};
-  const warp::WarpFrame flat{frame.pixels, frame.camera,
-                             warp::make_warp_mesh(none, frame.camera.width, frame.camera.height)};
-  geometry::CameraFrame same = frame.camera;
-  const double scale = static_cast<double>(target.height) / same.height;
-  same.width = target.width;
-  same.height = target.height;
-  same.eta *= scale;
-  return warp::warp(flat, nullptr, same, {0, 0, 0, 255});
-}
 
 void keep(const std::string& name, const warp::Pixels& pixels) {
   const char* folder = std::getenv("SURFCAST_KEEP_PICTURES");
@@ -224,7 +133,7 @@ void measure(const std::string& name, const Subject& subject, bool near) {
       name.c_str());
   const Warpable rest = warpable(subject.rest(begin));
   const Warpable first_motion = warpable(subject.motion(begin));
-  for (const Path& path : paths()) {
+  for (const Path& path : bench::paths()) {
     for (const double delay : {0.033, 0.1, 0.3}) {
       const Camera shown = path.at(begin, delay);
       const picture::Frame truth = subject.rest(shown);
@@ -235,8 +144,8 @@ void measure(const std::string& name, const Subject& subject, bool near) {
         return warp::warp(newest.frame, below ? &below->frame : nullptr, target, {0, 0, 0, 255});
       };
       std::printf("| %s, %.3f s |", path.name.c_str(), delay);
-      print(compare(stale(present.frame, target), truth.image));
-      print(compare(stale(rest.frame, target), truth.image));
+      print(compare(unwarped(present.frame, target), truth.image));
+      print(compare(unwarped(rest.frame, target), truth.image));
       print(compare(warped(rest, nullptr), truth.image));
       print(compare(warped(first_motion, &rest), truth.image));
       print(compare(warped(nearly, &rest), truth.image));
@@ -249,7 +158,7 @@ void measure(const std::string& name, const Subject& subject, bool near) {
       if (delay == 0.1) {
         const std::string prefix = name.substr(name.find_last_of('/') + 1) + "_" + path.name.substr(0, 4);
         keep(prefix + "_truth", pixels_of(truth.image));
-        keep(prefix + "_motion", stale(present.frame, target));
+        keep(prefix + "_motion", unwarped(present.frame, target));
         keep(prefix + "_rest", warped(rest, nullptr));
         keep(prefix + "_both", both);
       }
