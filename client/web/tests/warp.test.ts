@@ -120,6 +120,19 @@ describe('the mesh of a plane of depth', () => {
     }
   });
 
+  it('of a rough surface keeps its depths, which have no slope', () => {
+    const size = { width: 320, height: 180 };
+    const plane = planeOf(size, 4, () => 0.1);
+    plane.values.forEach((_, i, values) => (values[i] = (i + Math.floor(i / 80)) % 2 === 0 ? 0.1 : 0.101));
+    const { vertices } = meshOf(plane);
+    for (const i of [2, 3, 40]) expect(vertices[3 * (82 * 20 + i) + 2]).toBeCloseTo(plane.values[80 * 19 + i - 1]!, 7);
+  });
+
+  it('of a single cell keeps its depth', () => {
+    const { vertices } = meshOf(planeOf({ width: 4, height: 3 }, 8, () => 0.1));
+    for (let i = 2; i < vertices.length; i += 3) expect(vertices[i]).toBeCloseTo(0.1, 6);
+  });
+
   it('of background alone has no surface', () => {
     const plane = { ...planeOf(picture, 4, () => 1), values: new Float32Array(13 * 8) };
     const mesh = meshOf(plane);
@@ -130,7 +143,8 @@ describe('the mesh of a plane of depth', () => {
     const size = { width: 320, height: 180 };
     const mesh = meshOf(planeOf(size, 4, (_x, y) => (y > 60 ? 0.1 : 0)));
     const inside = (x: number, y: number): boolean => x > 0 && x < 320 && y > 0 && y < 180;
-    const vertex = (list: Float32Array, i: number): number[] => [...list.subarray(i * fillFloats, (i + 1) * fillFloats)];
+    const vertex = (list: Float32Array, i: number): number[] =>
+      [...list.subarray(i * fillFloats, (i + 1) * fillFloats)];
     const vertices = (list: Float32Array): number[][] =>
       Array.from({ length: list.length / fillFloats }, (_, i) => vertex(list, i));
     const beyond = vertices(mesh.surroundings);

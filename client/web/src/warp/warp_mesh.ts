@@ -72,22 +72,28 @@ class Lattice {
     for (let i = 0; i < d.length; ++i) d[i] = Math.max(nearest[i]! - halfRow[i]! - halfColumn[i]!, nearest[i]! / 2);
   }
 
-  /** What a surface that is not broken on either side loses from the nearest side of its cell to the middle. */
+  /**
+   * What a surface that is not broken on either side loses from the nearest side of its cell to the middle. Its slope
+   * is that of the flatter side, or none if they do not agree in sign: the depths of rough surfaces differ without it.
+   */
   private halfSteps(nearest: Float32Array, at: Float64Array, stride: number, size: number): Float32Array {
     const cut = this.cuts(at, stride);
     const half = new Float32Array(nearest.length);
     const last = at.length - 2; // the first and the last vertices of lines are not known
-    const { cell } = this.plane;
+    if (last === 1) return half;
+    const ends = Float64Array.from(at, (_, k) => Math.min(size, k * this.plane.cell));
+    // From the nearest side of a cell to that of the next one; the last cell may be smaller.
+    const slope = (i: number, k: number): number => {
+      const step = nearest[i + stride]! - nearest[i]!;
+      return step / (step > 0 ? ends[k + 1]! - ends[k]! : ends[k]! - ends[k - 1]!);
+    };
     for (let i = 0; i < nearest.length; ++i) {
       const k = stride === 1 ? i % at.length : Math.floor(i / stride);
       if (nearest[i] === 0 || (k > 1 && cut[i - stride] === 1) || (k < last && cut[i] === 1)) continue;
-      const [before, after] = [Math.max(1, k - 1), Math.min(last, k + 1)];
-      const step = nearest[i + (after - k) * stride]! - nearest[i + (before - k) * stride]!;
-      if (step === 0) continue;
-      // From the nearest side of one cell to that of the other one; the last cell may be smaller.
-      const side = step > 0 ? 0 : 1;
-      const length = Math.min(size, (after - side) * cell) - Math.min(size, (before - side) * cell);
-      half[i] = (Math.abs(step) / length) * ((Math.min(size, k * cell) - (k - 1) * cell) / 2);
+      const after = slope(k < last ? i : i - stride, Math.min(k, last - 1));
+      const before = k > 1 ? slope(i - stride, k - 1) : after;
+      if (after * before <= 0) continue;
+      half[i] = (Math.min(Math.abs(after), Math.abs(before)) * (ends[k]! - ends[k - 1]!)) / 2;
     }
     return half;
   }
