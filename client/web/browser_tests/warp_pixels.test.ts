@@ -106,12 +106,24 @@ function count(pixels: readonly number[], counts: (x: number, y: number, color: 
 const isRed = ([r, g]: Rgb): boolean => r > 128 && g < 128;
 const isGreen = ([r, g]: Rgb): boolean => g > 128 && r < 128;
 
+// A red square at a distance of 2 before a green wall at 10; the eye moves by 0.1: by 10 pixels and by 2.
+const inSquare = (x: number, y: number): boolean => x > 112 && x < 208 && y > 48 && y < 128;
+const square: Frame = {
+  color: (x, y) => (x > 112 && x < 208 && y > 48 && y < 128 ? [255, 0, 0] : [0, 255, 0]),
+  depth: (x, y) => (x > 112 && x < 208 && y > 48 && y < 128 ? 0.5 : 0.1),
+  cell: 8,
+  projection: camera(),
+};
+
 describe('a frame', () => {
   it('is itself for its own camera, to the last byte, with all its cuts', async () => {
     const depth = (x: number, y: number): number => (x > 100 && x < 200 && y > 60 && y < 120 ? 0.5 : x < 50 ? 0 : 0.1);
-    const pixels = await warped({ color: noise, depth, cell: 8, projection: camera() }, undefined, camera());
+    const frame: Frame = { color: noise, depth, cell: 8, projection: camera() };
     const open = '0,0,0'; // of the background
-    expect(count(pixels, (x, y, color) => `${color}` !== (x < 48 ? open : `${noise(x, y)}`))).toBe(0);
+    for (const rest of [undefined, frame]) {
+      const pixels = await warped(frame, rest, camera());
+      expect(count(pixels, (x, y, color) => `${color}` !== (x < 48 ? open : `${noise(x, y)}`))).toBe(0);
+    }
   });
 
   it('takes no background with it at the edge of a surface', async () => {
@@ -143,15 +155,6 @@ describe('a frame', () => {
     expect(wrong).toBe(0);
   });
 
-  // A red square at a distance of 2 before a green wall at 10; the eye moves by 0.1: by 10 pixels and by 2.
-  const inSquare = (x: number, y: number): boolean => x > 112 && x < 208 && y > 48 && y < 128;
-  const square: Frame = {
-    color: (x, y) => (x > 112 && x < 208 && y > 48 && y < 128 ? [255, 0, 0] : [0, 255, 0]),
-    depth: (x, y) => (x > 112 && x < 208 && y > 48 && y < 128 ? 0.5 : 0.1),
-    cell: 8,
-    projection: camera(),
-  };
-
   it('shows a near square where it is, and behind it no streak of it', async () => {
     for (const moved of [0.1, -0.1]) {
       const pixels = await warped(square, undefined, camera(moved));
@@ -163,6 +166,30 @@ describe('a frame', () => {
       expect(beyond).toBe(0);
       expect(count(pixels, (x, y, color) => inSquare(x + shift, y) && !isRed(color))).toBeLessThan(2 * 80);
     }
+  });
+
+  it('shows in a cell before an outline what is behind where that is', async () => {
+    // The last cell of the near surface has 3 columns of what is behind, which move by 2 pixels and not by 10.
+    const frame: Frame = {
+      color: (x) => (x < 101 ? [255, 0, 0] : [0, 255, 0]),
+      depth: (x) => (x < 104 ? 0.5 : 0.1),
+      cell: 8,
+      projection: camera(),
+    };
+    for (const moved of [0.1, -0.1]) {
+      const pixels = await warped(frame, undefined, camera(moved));
+      const edge = 101 - 100 * moved;
+      expect(count(pixels, (x, _y, color) => Math.abs(x - edge) > 1 && isRed(color) !== x < edge)).toBe(0);
+    }
+  });
+
+  it('goes on beyond its border for an eye that turns, as far as a quarter of its height', async () => {
+    const color = (_x: number, y: number): Rgb => (y < 90 ? [255, 0, 0] : [0, 255, 0]);
+    const frame: Frame = { color, depth: () => 0.1, cell: 8, projection: camera() };
+    const pixels = await warped(frame, undefined, turned(0.1)); // by about 25 pixels, and 36 at the border
+    expect(count(pixels, (_x, y, color) => (y < 85 ? !isRed(color) : y > 95 && !isGreen(color)))).toBe(0);
+    const open = await warped({ ...frame, depth: () => 0 }, undefined, turned(0.1));
+    expect(count(open, (_x, _y, color) => `${color}` !== '0,0,0')).toBe(0);
   });
 
   it('is cut off before the eye, and not seen from behind', async () => {
@@ -182,12 +209,25 @@ describe('a frame at rest over a newer one', () => {
   });
 
   it('shows no surface that the newer one shows a nearer one before, or has gone', async () => {
-    const open: Frame = { ...wall(() => [255, 0, 0]), depth: (x) => (x < 160 ? 0.5 : 0.1) };
+    const color = (x: number): Rgb => (x < 160 ? [255, 0, 0] : [200, 0, 0]); // or there would be no outline to see
+    const open: Frame = { ...wall(color), depth: (x) => (x < 160 ? 0.5 : 0.1) };
     const under = await warped(open, wall(() => [0, 255, 0]), camera());
     expect(count(under, (x, _y, color) => x < 156 && !isRed(color))).toBe(0);
     expect(count(under, (x, _y, color) => x > 164 && !isGreen(color))).toBe(0);
     const gone = await warped({ ...open, depth: (x) => (x < 160 ? 0 : 0.1) }, wall(() => [0, 255, 0]), camera());
     expect(count(gone, (x, _y, color) => x < 152 && isGreen(color))).toBe(0);
+  });
+
+  it('shows what the newer one does not, and only makes up', async () => {
+    // Behind the square the newer one makes up the wall; the older one has seen it.
+    const older = wall(() => [0, 0, 255]);
+    const pixels = await warped(square, older, camera(0.3));
+    const isBlue = ([r, g, b]: Rgb): boolean => b > 128 && r + g < 128;
+    const opened = (x: number, y: number): boolean => x > 182 && x < 200 && y > 56 && y < 120; // from 178 to 202
+    expect(count(pixels, (x, y, color) => opened(x, y) && !isBlue(color))).toBe(0);
+    // Beyond the border, too.
+    const beside = await warped(wall(() => [255, 0, 0]), { ...older, projection: turned(0.1) }, turned(0.1));
+    expect(count(beside, (x, _y, color) => x > 300 && !isBlue(color))).toBe(0);
   });
 
   it('leaves to the newer one what is stretched more', async () => {

@@ -10,7 +10,7 @@ import { FrameAssembler } from '../src/view/assembler';
 import { decodePlane } from '../src/warp/depth_plane';
 import { sameView, shownAs, type LayerFrame } from '../src/warp/layers';
 import { clipMatrix, warpBetween, type Warp } from '../src/warp/warp_camera';
-import { fillFloats, meshOf, type WarpMesh } from '../src/warp/warp_mesh';
+import { fillFloats, meshOf, sheetFloats, type WarpMesh } from '../src/warp/warp_mesh';
 import { inverseDepthAt, inverseDepthOf, planeOf, wirePlane } from './support/planes';
 
 const sky = vector(0, 0, 1);
@@ -88,7 +88,14 @@ function triangles(mesh: WarpMesh, indices: Uint32Array): Triangle[] {
   return Array.from({ length: count }, (_, t) => [0, 1, 2].map((k) => corner(indices[3 * t + k]!)) as never);
 }
 
-const surfaces = (mesh: WarpMesh): Triangle[] => [...triangles(mesh, mesh.surface), ...triangles(mesh, mesh.edges)];
+/** Of the indices of one kind of sheets. */
+function sheets(mesh: WarpMesh, indices: Uint32Array): Triangle[] {
+  const corner = (i: number): Corner => [...mesh.sheets.subarray(sheetFloats * i).subarray(0, 3)] as unknown as Corner;
+  const count = indices.length / 3;
+  return Array.from({ length: count }, (_, t) => [0, 1, 2].map((k) => corner(indices[3 * t + k]!)) as never);
+}
+
+const surfaces = (mesh: WarpMesh): Triangle[] => [...triangles(mesh, mesh.surface), ...sheets(mesh, mesh.near)];
 
 const area = ([a, b, c]: Triangle): number =>
   Math.abs((b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1])) / 2;
@@ -113,11 +120,42 @@ describe('the mesh of a plane of depth', () => {
     }
   });
 
-  it('of background alone is background', () => {
+  it('of a rough surface keeps its depths, which have no slope', () => {
+    const size = { width: 320, height: 180 };
+    const plane = planeOf(size, 4, () => 0.1);
+    plane.values.forEach((_, i, values) => (values[i] = (i + Math.floor(i / 80)) % 2 === 0 ? 0.1 : 0.101));
+    const { vertices } = meshOf(plane);
+    for (const i of [2, 3, 40]) expect(vertices[3 * (82 * 20 + i) + 2]).toBeCloseTo(plane.values[80 * 19 + i - 1]!, 7);
+  });
+
+  it('of a single cell keeps its depth', () => {
+    const { vertices } = meshOf(planeOf({ width: 4, height: 3 }, 8, () => 0.1));
+    for (let i = 2; i < vertices.length; i += 3) expect(vertices[i]).toBeCloseTo(0.1, 6);
+  });
+
+  it('of background alone has no surface', () => {
     const plane = { ...planeOf(picture, 4, () => 1), values: new Float32Array(13 * 8) };
     const mesh = meshOf(plane);
-    expect(mesh.surface).toHaveLength(0);
-    expect(areaOf(triangles(mesh, mesh.background))).toBeCloseTo(50 * 30, 3);
+    for (const list of [mesh.surface, mesh.near, mesh.far, mesh.fills, mesh.surroundings]) expect(list).toHaveLength(0);
+  });
+
+  it('goes on beyond the border where that shows a surface', () => {
+    const size = { width: 320, height: 180 };
+    const mesh = meshOf(planeOf(size, 4, (_x, y) => (y > 60 ? 0.1 : 0)));
+    const inside = (x: number, y: number): boolean => x > 0 && x < 320 && y > 0 && y < 180;
+    const vertex = (list: Float32Array, i: number): number[] =>
+      [...list.subarray(i * fillFloats, (i + 1) * fillFloats)];
+    const vertices = (list: Float32Array): number[][] =>
+      Array.from({ length: list.length / fillFloats }, (_, i) => vertex(list, i));
+    const beyond = vertices(mesh.surroundings);
+    const [x, y] = [0, 1].map((axis) => beyond.map((one) => one[axis]!)) as [number[], number[]];
+    expect([Math.min(...x), Math.max(...x), Math.min(...y), Math.max(...y)]).toEqual([-45, 365, 62, 225]);
+    for (const [x, y, , , , depth, fromX, fromY] of beyond) {
+      expect(inside(x!, y!)).toBe(false);
+      expect(depth).toBeCloseTo(0.1, 6);
+      expect(Math.min(fromX!, 320 - fromX!, fromY!, 180 - fromY!)).toBe(0); // the border's pixel beside it
+    }
+    for (const [, , , , , depth, fromX] of vertices(mesh.holes)) expect([depth, fromX]).toEqual([0, -1]);
   });
 
   const inSquare = (x: number, y: number): boolean => x > 100 && x < 200 && y > 60 && y < 120;
@@ -131,16 +169,38 @@ describe('the mesh of a plane of depth', () => {
       const near = surface.filter(([[, , d]]) => d === 0.5);
       expect(areaOf(near)).toBeCloseTo(100 * 60, 2);
       for (const [x, y] of near.flat()) expect(x >= 100 && x <= 200 && y >= 60 && y <= 120).toBe(true);
-      const behind = [...surface, ...triangles(mesh, mesh.background)].filter(([[, , d]]) => d < 0.5);
-      const open = far === 0 ? 4 * (100 + 60) + 4 * 4 : 0; // half a cell on either side of the outline is neither
-      expect(Math.abs(areaOf(near) + areaOf(behind) - size.width * size.height)).toBeLessThan(open + 0.1);
-      if (far === 0) expect(fillCount(mesh)).toBe(0);
-      else expect(fillCount(mesh)).toBeGreaterThan(80);
+      const background = triangles(mesh, mesh.background);
+      const behind = [...surface, ...background].filter(([[, , d]]) => d < 0.5);
+      for (const [x, y] of behind.flat()) expect(inSquare(x, y)).toBe(false);
+      if (far === 0) {
+        expect(fillCount(mesh)).toBe(0);
+        expect(areaOf(behind)).toBeCloseTo(2 * 2 * (100 + 60) + 4 * 4, 2); // half a cell around; the rest is open
+      } else {
+        expect(areaOf(near) + areaOf(behind)).toBeCloseTo(size.width * size.height, 1);
+        expect(fillCount(mesh)).toBeGreaterThan(80);
+      }
       for (let i = 0; i < mesh.fills.length; i += fillFloats) {
         const [x, y, , farX, farY, depth, fromX, fromY] = mesh.fills.subarray(i, i + fillFloats) as unknown as number[];
         expect(depth).toBeCloseTo(far, 6);
         expect(inSquare(farX!, farY!) || inSquare(fromX!, fromY!)).toBe(false);
         expect(Math.hypot(x! - farX!, y! - farY!)).toBeLessThan(6);
+      }
+    });
+
+    it(`of a square before ${what} is two sheets in its outermost cells`, () => {
+      const mesh = meshOf(planeOf({ width: 320, height: 180 }, 4, (x, y) => (inSquare(x, y) ? 0.5 : far)));
+      const [shown, hidden] = far === 0 ? [mesh.farBackground, mesh.far] : [mesh.far, mesh.farBackground];
+      expect(hidden).toHaveLength(0);
+      const [near, behind] = [sheets(mesh, mesh.near), sheets(mesh, shown)];
+      expect(areaOf(near)).toBeCloseTo(100 * 60 - 92 * 52, 2);
+      expect(areaOf(behind)).toBeCloseTo(areaOf(near), 6);
+      for (const [, , d] of near.flat()) expect(d).toBe(0.5);
+      for (const [, , d] of behind.flat()) expect(d).toBeCloseTo(far, 6);
+      for (let i = 0; i < mesh.sheets.length; i += sheetFloats) {
+        const [x, y, , farX, farY] = mesh.sheets.subarray(i, i + sheetFloats) as unknown as number[];
+        expect(inSquare(farX!, farY!)).toBe(false);
+        if (far === 0) expect([farX, farY]).toEqual([-1, -1]);
+        else expect(Math.hypot(x! - farX!, y! - farY!)).toBeLessThan(9);
       }
     });
   }

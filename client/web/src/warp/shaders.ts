@@ -1,108 +1,152 @@
 /** Programs of the warp, GLSL ES 3.00. Pixels are those of the source picture, x to the right and y down. */
 
-/** `position`: pixel and inverse depth. */
-export const surfaceVertex = `#version 300 es
+/** The layer below is drawn last, over the one above: that one is in textures. */
+const version = (over: boolean, sheets = false): string =>
+  `#version 300 es\n${over ? '#define OVER\n' : ''}${sheets ? '#define SHEETS\n' : ''}`;
+
+/** The background is a little nearer than holes in it, and those than what is not covered, whose depth is 1. */
+const depths = `
+const float backgroundDepth = 1.0 - 2e-6;
+const float holeDepth = 1.0 - 1e-6;
+`;
+
+/**
+ * `position`: pixel and inverse depth. `behind`: the pixel that shows what is behind the surface in front, outside of
+ * the picture for the background. `other`: from a pixel and its inverse depth to the source picture of the layer above.
+ */
+export const surfaceVertex = (over: boolean, sheets: boolean): string => `${version(over, sheets)}${depths}
 layout(location = 0) in vec3 position;
 uniform mat4 clip;
-uniform vec2 size;
 out vec2 place;
-void main() {
-  gl_Position = clip * vec4(position.xy, 1.0, position.z);
-  place = position.xy / size;
-}`;
-
-/** A fill covers the triangle between two surfaces, at the depth of its farthest corner and a little behind it. */
-export const fillVertex = `#version 300 es
-layout(location = 0) in vec3 position;
-layout(location = 1) in vec3 farthest;
-layout(location = 2) in vec2 colour;
-uniform mat4 clip;
-uniform vec2 size;
-out vec2 place;
-const float behind = 0.97;
-void main() {
-  vec4 at = clip * vec4(position.xy, 1.0, position.z);
-  vec4 far = clip * vec4(farthest.xy, 1.0, farthest.z);
-  float depth = 1.0 - behind * (1.0 - far.z / far.w);
-  gl_Position = far.w > 0.0 ? vec4(at.xy, depth * at.w, at.w) : vec4(0.0, 0.0, 2.0, 1.0);
-  place = colour / size;
-}`;
-
-/** A cell beside the background shows some of it, which must not move with the surface. JPEG is not exact there. */
-export const pictureFragment = `#version 300 es
-precision highp float;
+#ifdef SHEETS
+layout(location = 1) in vec2 behind;
+layout(location = 2) in float near;
 uniform sampler2D picture;
-in vec2 place;
-out vec4 result;
+uniform vec2 size;
 uniform vec3 background;
-uniform bool edges;
-const float exact = 16.0 / 255.0;
-void main() {
-  result = vec4(texture(picture, place).rgb, 1.0);
-  vec3 off = abs(result.rgb - background);
-  if (edges && max(off.r, max(off.g, off.b)) < exact) discard;
-}`;
-
-/** The background is a little nearer than what is not covered, whose depth is 1. */
-export const backgroundVertex = `#version 300 es
-layout(location = 0) in vec3 position;
-uniform mat4 clip;
-void main() {
-  gl_Position = clip * vec4(position.xy, 1.0, 0.0);
-  gl_Position.z = gl_Position.w * (1.0 - 2e-6);
-}`;
-
-/** Writes the depth alone. */
-export const depthFragment = `#version 300 es
-precision mediump float;
-void main() {}`;
-
-/** `other`: from a pixel and its inverse depth to the source picture of the layer below. */
-export const sharpVertex = `#version 300 es
-layout(location = 0) in vec3 position;
-uniform mat4 clip;
+flat out vec3 far;
+flat out float front;
+#endif
+#ifdef OVER
 uniform mat3x4 other;
-out vec2 place;
-out vec3 placeBelow;
+out vec3 placeAbove;
+#endif
 void main() {
   vec4 source = vec4(position.xy, 1.0, position.z);
   gl_Position = clip * source;
   place = position.xy;
-  placeBelow = source * other;
+#ifdef SHEETS
+  if (position.z == 0.0) gl_Position.z = backgroundDepth * gl_Position.w;
+  far = behind.x < 0.0 ? background : textureLod(picture, behind / size, 0.0).rgb;
+  front = near;
+#endif
+#ifdef OVER
+  placeAbove = source * other;
+#endif
 }`;
 
 /**
- * Keeps what agrees with the layer below in depth and is not stretched more than that layer is. Inverse depths are
- * those of the window, 1 - z. A cell holds its nearest surface, so a slope shifts them by what it takes over a cell.
+ * Of the two sheets beside an outline, the far one has the pixels whose colour is that of what is behind. JPEG changes
+ * colours by 2 to 4 levels. The layer above is shown where it agrees in depth and has as many pixels of its source for
+ * one of the target. Inverse depths are those of the window, 1 - z.
  */
-export const sharpFragment = `#version 300 es
+export const surfaceFragment = (over: boolean, sheets: boolean): string => `${version(over, sheets)}
 precision highp float;
 uniform sampler2D picture;
-uniform highp sampler2D belowDepth;
 uniform vec2 size;
-uniform float cells;
 in vec2 place;
-in vec3 placeBelow;
 out vec4 result;
+#ifdef SHEETS
+flat in vec3 far;
+flat in float front;
+const float same = 47.5 / (255.0 * 255.0);
+#endif
+#ifdef OVER
+uniform sampler2D above;
+uniform highp sampler2D aboveDepth;
+in vec3 placeAbove;
+const float agreement = 0.05;
 
-const float relative = 0.05;
-
-// Pixels of a source picture for one of the target, in the direction in which they are fewest.
-float density(vec2 dx, vec2 dy) {
-  return abs(dx.x * dy.y - dx.y * dy.x) / max(max(length(dx), length(dy)), 1e-6);
+float density(vec2 at) {
+  vec2 dx = dFdx(at);
+  vec2 dy = dFdy(at);
+  return abs(dx.x * dy.y - dx.y * dy.x);
 }
+#endif
 
 void main() {
-  float here = 1.0 - gl_FragCoord.z;
-  float slope = abs(dFdx(here)) + abs(dFdy(here));
-  float own = density(dFdx(place), dFdy(place));
-  vec2 belowAt = placeBelow.xy / placeBelow.z;
-  float others = density(dFdx(belowAt), dFdy(belowAt));
+  vec3 color = texture(picture, place / size).rgb;
+#ifdef OVER
+  bool sharper = density(placeAbove.xy / placeAbove.z) >= density(place);
+#endif
+#ifdef SHEETS
+  vec3 off = color - far;
+  if ((dot(off, off) > same) != (front > 0.5)) discard;
+#endif
+#ifdef OVER
   ivec2 pixel = ivec2(gl_FragCoord.xy);
-  float there = 1.0 - texelFetch(belowDepth, pixel, 0).r;
-  if (there > 0.0) {
-    float allowed = relative * max(here, there) + slope * cells;
-    if (abs(here - there) > allowed || (placeBelow.z > 0.0 && own < others)) discard;
+  vec4 other = texelFetch(above, pixel, 0);
+  if (sharper && other.a > 0.5) {
+    float here = 1.0 - gl_FragCoord.z;
+    float there = 1.0 - texelFetch(aboveDepth, pixel, 0).r;
+    if (abs(here - there) <= agreement * max(here, there)) color = other.rgb;
   }
-  result = vec4(texture(picture, place / size).rgb, 1.0);
+#endif
+  result = vec4(color, 1.0);
+}`;
+
+/**
+ * What is made up lies behind another vertex, `farthest`, at a part of its inverse depth, in the colour of the pixel
+ * `from`, or of the background if that is outside of the picture.
+ */
+export const fillVertex = `#version 300 es
+${depths}
+layout(location = 0) in vec3 position;
+layout(location = 1) in vec3 farthest;
+layout(location = 2) in vec2 from;
+uniform mat4 clip;
+uniform sampler2D picture;
+uniform vec2 size;
+uniform vec3 background;
+uniform float part;
+out vec3 color;
+void main() {
+  vec4 at = clip * vec4(position.xy, 1.0, position.z);
+  vec4 far = clip * vec4(farthest.xy, 1.0, farthest.z);
+  float depth = min(1.0 - part * (1.0 - far.z / far.w), holeDepth);
+  gl_Position = far.w > 0.0 ? vec4(at.xy, depth * at.w, at.w) : vec4(0.0, 0.0, 2.0, 1.0);
+  color = from.x < 0.0 ? background : textureLod(picture, from / size, 0.0).rgb;
+}`;
+
+/** Whatever the layer above shows is better than what is made up. */
+export const fillFragment = (over: boolean): string => `${version(over)}
+precision highp float;
+in vec3 color;
+out vec4 result;
+#ifdef OVER
+uniform sampler2D above;
+#endif
+void main() {
+  result = vec4(color, 1.0);
+#ifdef OVER
+  vec4 other = texelFetch(above, ivec2(gl_FragCoord.xy), 0);
+  if (other.a > 0.5) result = other;
+#endif
+}`;
+
+export const backgroundVertex = `#version 300 es
+${depths}
+layout(location = 0) in vec3 position;
+uniform mat4 clip;
+void main() {
+  gl_Position = clip * vec4(position.xy, 1.0, 0.0);
+  gl_Position.z = backgroundDepth * gl_Position.w;
+}`;
+
+export const backgroundFragment = `#version 300 es
+precision mediump float;
+uniform vec3 background;
+out vec4 result;
+void main() {
+  result = vec4(background, 1.0);
 }`;

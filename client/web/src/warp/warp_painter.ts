@@ -3,7 +3,7 @@ import type { Rgb } from '../state/display_options';
 import type { DepthPlane } from './depth_plane';
 import * as shaders from './shaders';
 import { clipMatrix, rowMatrix, warpBetween } from './warp_camera';
-import { fillFloats, meshOf, type WarpMesh } from './warp_mesh';
+import { fillFloats, meshOf, sheetFloats, type WarpMesh } from './warp_mesh';
 
 /** A frame that can be warped. */
 export interface WarpSource {
@@ -13,41 +13,61 @@ export interface WarpSource {
   readonly background: Rgb;
 }
 
+/** Its floats, and where it begins. */
+type Attribute = readonly [number, number];
+
+/** A part of a buffer of indices. */
+interface Range {
+  readonly first: number;
+  readonly count: number;
+}
+
 /** A frame on the GPU. */
 interface Upload {
   readonly texture: WebGLTexture;
   readonly vertices: WebGLBuffer;
-  readonly indices: WebGLBuffer; // those of the surface, of its edges and of the background
-  readonly fills: WebGLBuffer;
-  readonly surfaceCount: number;
-  readonly edgeCount: number;
-  readonly backgroundCount: number;
-  readonly fillCount: number; // vertices
+  readonly sheets: WebGLBuffer;
+  readonly fills: WebGLBuffer; // surroundings and holes follow
+  readonly fillCount: number; // vertices, with those of surroundings
+  readonly holeCount: number;
+  readonly indices: WebGLBuffer;
+  readonly surface: Range;
+  readonly background: Range;
+  readonly near: Range;
+  readonly far: Range;
+  readonly farBackground: Range;
 }
 
-/** The depth of the layer below another one. */
-interface DepthTarget {
+/** The layer above another one. */
+interface LayerTarget {
   readonly framebuffer: WebGLFramebuffer;
+  readonly picture: WebGLTexture; // alpha: 1 where it shows something, 0 elsewhere
   readonly depth: WebGLTexture;
   readonly width: number;
   readonly height: number;
 }
 
-interface Programs {
+/** Programs that draw a frame. */
+interface FramePrograms {
   readonly surface: WebGLProgram;
+  readonly sheets: WebGLProgram;
   readonly fill: WebGLProgram;
-  readonly surfaceDepth: WebGLProgram;
-  readonly fillDepth: WebGLProgram;
-  readonly backgroundDepth: WebGLProgram;
-  readonly sharp: WebGLProgram;
+}
+
+interface Programs {
+  readonly alone: FramePrograms;
+  readonly over: FramePrograms; // the layer above
+  readonly background: WebGLProgram;
 }
 
 const reach = 20; // how much nearer than all surfaces of a frame the eye may come before they are cut off
+const continued = 0.999; // of its inverse depth: behind what the frame shows of it
+const filled = 0.9; // also behind slopes
 
 /** Draws frames as a camera other than theirs sees them, with WebGL 2. */
 export class WarpPainter {
   private programs: Programs | undefined;
-  private target: DepthTarget | undefined;
+  private target: LayerTarget | undefined;
   private readonly uploads = new Map<WarpSource, Upload>();
 
   /** Undefined where the browser has no WebGL 2 that works. `changed`: the context was lost or has come back. */
@@ -86,7 +106,8 @@ export class WarpPainter {
     if (!upload) return;
     this.uploads.delete(source);
     this.gl.deleteTexture(upload.texture);
-    for (const buffer of [upload.vertices, upload.indices, upload.fills]) this.gl.deleteBuffer(buffer);
+    const { vertices, sheets, fills, indices } = upload;
+    for (const buffer of [vertices, sheets, fills, indices]) this.gl.deleteBuffer(buffer);
   }
 
   /** Draws `below` as the target sees it, and over it what `above` shows sharper. */
@@ -98,91 +119,138 @@ export class WarpPainter {
     this.programs ??= programsOf(gl);
     gl.viewport(0, 0, width, height);
     gl.enable(gl.DEPTH_TEST);
-    gl.depthFunc(gl.LEQUAL);
     const nearest = 1 / (reach * Math.max(below.depth.last, above?.depth.last ?? 0));
-    const depth = above && this.drawDepth(below, target, nearest);
-    const { surface, fill } = this.programs;
-    const { red, green, blue } = below.background;
+    gl.depthFunc(gl.LEQUAL);
+    const layer = above && this.drawAside(above, target, nearest);
     gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-    gl.clearColor(red / 255, green / 255, blue / 255, 1);
+    this.clear(below.background, 1);
+    if (above && layer) this.drawOver(below, above, layer, target, nearest);
+    else this.drawBelow(this.programs.alone, below, target, nearest);
+  }
+
+  private clear({ red, green, blue }: Rgb, alpha: number): void {
+    const { gl } = this;
+    gl.clearColor(red / 255, green / 255, blue / 255, alpha);
     gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    this.drawSurfaces(below, fill, surface, target, nearest);
-    if (above && depth) this.drawAbove(above, below, depth, target, nearest);
   }
 
-  /** Draws the depth of a frame, by which the one above is judged. */
-  private drawDepth(source: WarpSource, target: Projection, nearest: number): WebGLTexture {
+  /** Draws what a frame shows, without the background, for the layer below to be compared to. */
+  private drawAside(source: WarpSource, target: Projection, nearest: number): LayerTarget {
     const { gl } = this;
-    const { surfaceDepth, fillDepth, backgroundDepth } = this.programs!;
-    const { framebuffer, depth } = this.targetOf(target.width, target.height);
-    const upload = this.uploaded(source);
-    gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
-    gl.clear(gl.DEPTH_BUFFER_BIT);
-    this.drawSurfaces(source, fillDepth, surfaceDepth, target, nearest);
-    this.use(backgroundDepth, source, target, nearest);
-    this.bindVertices(upload);
-    const first = upload.surfaceCount + upload.edgeCount;
-    gl.drawElements(gl.TRIANGLES, upload.backgroundCount, gl.UNSIGNED_INT, 4 * first);
-    return depth;
-  }
-
-  /** Fills come first, so that surfaces at the same depth hide them. */
-  private drawSurfaces(
-    source: WarpSource,
-    fill: WebGLProgram,
-    surface: WebGLProgram,
-    target: Projection,
-    nearest: number,
-  ): void {
-    const { gl } = this;
-    const upload = this.uploaded(source);
-    this.use(fill, source, target, nearest);
-    gl.bindBuffer(gl.ARRAY_BUFFER, upload.fills);
-    [3, 3, 2].reduce((at, size, location) => {
-      gl.enableVertexAttribArray(location);
-      gl.vertexAttribPointer(location, size, gl.FLOAT, false, 4 * fillFloats, 4 * at);
-      return at + size;
-    }, 0);
-    gl.drawArrays(gl.TRIANGLES, 0, upload.fillCount);
+    const { surface, sheets } = this.programs!.alone;
+    const { near, far } = this.uploaded(source);
+    const layer = this.targetOf(target.width, target.height);
+    gl.bindFramebuffer(gl.FRAMEBUFFER, layer.framebuffer);
+    this.clear(source.background, 0);
     this.use(surface, source, target, nearest);
-    this.bindVertices(upload);
-    gl.drawElements(gl.TRIANGLES, upload.surfaceCount, gl.UNSIGNED_INT, 0);
-    this.drawEdges(source, target, nearest);
+    this.drawSurface(source);
+    this.use(sheets, source, target, nearest);
+    this.drawSheets(source, near, far);
+    return layer;
   }
 
-  /** Without the background in their cells. So the picture is needed even for the depth alone. */
-  private drawEdges(source: WarpSource, target: Projection, nearest: number): void {
-    const { gl } = this;
-    const { surface } = this.programs!;
-    const { surfaceCount, edgeCount } = this.uploaded(source);
-    const { red, green, blue } = source.background;
-    this.use(surface, source, target, nearest);
-    gl.uniform3f(gl.getUniformLocation(surface, 'background'), red / 255, green / 255, blue / 255);
-    gl.uniform1i(gl.getUniformLocation(surface, 'edges'), 1);
-    gl.drawElements(gl.TRIANGLES, edgeCount, gl.UNSIGNED_INT, 4 * surfaceCount);
-    gl.uniform1i(gl.getUniformLocation(surface, 'edges'), 0);
-  }
-
-  /** Only surfaces without their edges: beside those, the newer frame shows better what is before what. */
-  private drawAbove(
-    source: WarpSource,
+  /** Draws the layer below with what the one above shows better, and that one where the layer below shows nothing. */
+  private drawOver(
     below: WarpSource,
-    depth: WebGLTexture,
+    above: WarpSource,
+    layer: LayerTarget,
     target: Projection,
     nearest: number,
   ): void {
     const { gl } = this;
-    const program = this.programs!.sharp;
+    const { over, background } = this.programs!;
+    const other = rowMatrix(warpBetween(below.projection, above.projection));
+    for (const program of [over.surface, over.sheets, over.fill]) {
+      gl.useProgram(program);
+      this.bindTexture(program, 'above', 1, layer.picture);
+      this.bindTexture(program, 'aboveDepth', 2, layer.depth);
+      gl.uniformMatrix3x4fv(gl.getUniformLocation(program, 'other'), false, other);
+    }
+    this.use(background, below, target, nearest);
+    this.drawBackground(below);
+    this.drawBelow(over, below, target, nearest);
+    this.drawHoles(below);
+  }
+
+  /** Draws what a frame shows, and then behind that what it does not show. */
+  private drawBelow(programs: FramePrograms, source: WarpSource, target: Projection, nearest: number): void {
+    const { gl } = this;
+    const { surface, sheets, fill } = programs;
+    const { near, far, farBackground } = this.uploaded(source);
+    this.use(surface, source, target, nearest);
+    this.drawSurface(source);
+    this.use(sheets, source, target, nearest);
+    this.drawSheets(source, near, far, farBackground);
+    gl.depthFunc(gl.LESS);
+    this.use(fill, source, target, nearest);
+    gl.uniform1f(gl.getUniformLocation(fill, 'part'), continued);
+    this.drawContinued(source);
+    gl.uniform1f(gl.getUniformLocation(fill, 'part'), filled);
+    this.drawFills(source);
+  }
+
+  private drawBackground(source: WarpSource): void {
     const upload = this.uploaded(source);
-    const cellsOf = ({ depth }: WarpSource): number => (depth.cell * target.width) / depth.picture.width;
-    gl.clear(gl.DEPTH_BUFFER_BIT);
-    this.use(program, source, target, nearest);
-    const other = rowMatrix(warpBetween(source.projection, below.projection));
-    gl.uniformMatrix3x4fv(gl.getUniformLocation(program, 'other'), false, other);
-    gl.uniform1f(gl.getUniformLocation(program, 'cells'), cellsOf(source) + cellsOf(below));
-    this.bindTexture(program, 'belowDepth', 1, depth);
-    this.bindVertices(upload);
-    gl.drawElements(gl.TRIANGLES, upload.surfaceCount, gl.UNSIGNED_INT, 0);
+    this.bindAttributes(upload.vertices, 3, [[3, 0]]);
+    this.drawRange(upload, upload.background);
+  }
+
+  private drawSurface(source: WarpSource): void {
+    const upload = this.uploaded(source);
+    this.bindAttributes(upload.vertices, 3, [[3, 0]]);
+    this.drawRange(upload, upload.surface);
+  }
+
+  private drawSheets(source: WarpSource, ...ranges: readonly Range[]): void {
+    const upload = this.uploaded(source);
+    this.bindAttributes(upload.sheets, sheetFloats, [[3, 0], [2, 3], [1, 5]]);
+    for (const range of ranges) this.drawRange(upload, range);
+  }
+
+  /** The colour of what is behind goes on behind what is in front. */
+  private drawContinued(source: WarpSource): void {
+    const upload = this.uploaded(source);
+    this.bindAttributes(upload.sheets, sheetFloats, [[3, 0], [3, 0], [2, 3]]);
+    this.drawRange(upload, upload.far);
+  }
+
+  private drawFills(source: WarpSource): void {
+    const upload = this.uploaded(source);
+    this.bindFills(upload);
+    this.gl.drawArrays(this.gl.TRIANGLES, 0, upload.fillCount);
+  }
+
+  /** After the fills, by their program. */
+  private drawHoles(source: WarpSource): void {
+    const upload = this.uploaded(source);
+    this.bindFills(upload);
+    this.gl.drawArrays(this.gl.TRIANGLES, upload.fillCount, upload.holeCount);
+  }
+
+  private bindFills({ fills }: Upload): void {
+    this.bindAttributes(fills, fillFloats, [[3, 0], [3, 3], [2, 6]]);
+  }
+
+  private drawRange(upload: Upload, { first, count }: Range): void {
+    const { gl } = this;
+    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, upload.indices);
+    gl.drawElements(gl.TRIANGLES, count, gl.UNSIGNED_INT, 4 * first);
+  }
+
+  /** Attributes 0, 1, ... of vertices of `floats` floats. */
+  private bindAttributes(buffer: WebGLBuffer, floats: number, attributes: readonly Attribute[]): void {
+    const { gl } = this;
+    gl.bindBuffer(gl.ARRAY_BUFFER, buffer);
+    for (const location of [0, 1, 2]) {
+      const attribute = attributes[location];
+      if (attribute) {
+        gl.enableVertexAttribArray(location);
+        const [size, first] = attribute;
+        gl.vertexAttribPointer(location, size, gl.FLOAT, false, 4 * floats, 4 * first);
+      } else {
+        gl.disableVertexAttribArray(location);
+      }
+    }
   }
 
   private use(program: WebGLProgram, source: WarpSource, target: Projection, nearest: number): void {
@@ -192,6 +260,8 @@ export class WarpPainter {
     const clip = clipMatrix(warp, target.width, target.height, nearest);
     gl.uniformMatrix4fv(gl.getUniformLocation(program, 'clip'), false, clip);
     gl.uniform2f(gl.getUniformLocation(program, 'size'), source.projection.width, source.projection.height);
+    const { red, green, blue } = source.background;
+    gl.uniform3f(gl.getUniformLocation(program, 'background'), red / 255, green / 255, blue / 255);
     this.bindTexture(program, 'picture', 0, this.uploaded(source).texture);
   }
 
@@ -202,15 +272,6 @@ export class WarpPainter {
     gl.uniform1i(gl.getUniformLocation(program, name), unit);
   }
 
-  private bindVertices(upload: Upload): void {
-    const { gl } = this;
-    gl.bindBuffer(gl.ARRAY_BUFFER, upload.vertices);
-    gl.bindBuffer(gl.ELEMENT_ARRAY_BUFFER, upload.indices);
-    gl.enableVertexAttribArray(0);
-    gl.vertexAttribPointer(0, 3, gl.FLOAT, false, 0, 0);
-    for (const location of [1, 2]) gl.disableVertexAttribArray(location);
-  }
-
   private uploaded(source: WarpSource): Upload {
     const known = this.uploads.get(source);
     if (known) return known;
@@ -219,70 +280,93 @@ export class WarpPainter {
     return upload;
   }
 
-  private targetOf(width: number, height: number): DepthTarget {
+  private targetOf(width: number, height: number): LayerTarget {
     const { gl, target } = this;
     if (target?.width === width && target.height === height) return target;
     if (target) {
       gl.deleteFramebuffer(target.framebuffer);
-      gl.deleteTexture(target.depth);
+      for (const texture of [target.picture, target.depth]) gl.deleteTexture(texture);
     }
     return (this.target = makeTarget(gl, width, height));
   }
+}
+
+/** Where arrays lie in the buffer that holds them one after the other. */
+function rangesOf(parts: readonly Uint32Array[]): Range[] {
+  let first = 0;
+  return parts.map(({ length: count }) => ({ first: (first += count) - count, count }));
 }
 
 function uploadOf(gl: WebGL2RenderingContext, bitmap: ImageBitmap, mesh: WarpMesh): Upload {
   const texture = textureOf(gl, gl.LINEAR);
   gl.pixelStorei(gl.UNPACK_COLORSPACE_CONVERSION_WEBGL, gl.NONE);
   gl.texImage2D(gl.TEXTURE_2D, 0, gl.RGBA8, gl.RGBA, gl.UNSIGNED_BYTE, bitmap);
-  const indices = new Uint32Array(mesh.surface.length + mesh.edges.length + mesh.background.length);
-  indices.set(mesh.surface);
-  indices.set(mesh.edges, mesh.surface.length);
-  indices.set(mesh.background, mesh.surface.length + mesh.edges.length);
+  const parts = [mesh.surface, mesh.background, mesh.near, mesh.far, mesh.farBackground];
+  const [surface, background, near, far, farBackground] = rangesOf(parts) as [Range, Range, Range, Range, Range];
   return {
     texture,
-    vertices: bufferOf(gl, gl.ARRAY_BUFFER, mesh.vertices),
-    indices: bufferOf(gl, gl.ELEMENT_ARRAY_BUFFER, indices),
-    fills: bufferOf(gl, gl.ARRAY_BUFFER, mesh.fills),
-    surfaceCount: mesh.surface.length,
-    edgeCount: mesh.edges.length,
-    backgroundCount: mesh.background.length,
-    fillCount: mesh.fills.length / fillFloats,
+    vertices: bufferOf(gl, gl.ARRAY_BUFFER, [mesh.vertices]),
+    sheets: bufferOf(gl, gl.ARRAY_BUFFER, [mesh.sheets]),
+    fills: bufferOf(gl, gl.ARRAY_BUFFER, [mesh.fills, mesh.surroundings, mesh.holes]),
+    fillCount: (mesh.fills.length + mesh.surroundings.length) / fillFloats,
+    holeCount: mesh.holes.length / fillFloats,
+    indices: bufferOf(gl, gl.ELEMENT_ARRAY_BUFFER, parts),
+    ...{ surface, background, near, far, farBackground },
   };
 }
 
-/** Bound to the active unit. */
+/** Bound to the first unit, so that those of the layer above stay bound to theirs. */
 function textureOf(gl: WebGL2RenderingContext, filter: GLenum): WebGLTexture {
   const texture = gl.createTexture();
+  gl.activeTexture(gl.TEXTURE0);
   gl.bindTexture(gl.TEXTURE_2D, texture);
   for (const name of [gl.TEXTURE_MIN_FILTER, gl.TEXTURE_MAG_FILTER]) gl.texParameteri(gl.TEXTURE_2D, name, filter);
   for (const name of [gl.TEXTURE_WRAP_S, gl.TEXTURE_WRAP_T]) gl.texParameteri(gl.TEXTURE_2D, name, gl.CLAMP_TO_EDGE);
   return texture;
 }
 
-function bufferOf(gl: WebGL2RenderingContext, kind: GLenum, data: Float32Array | Uint32Array): WebGLBuffer {
+/** A buffer of arrays one after the other. */
+function bufferOf(
+  gl: WebGL2RenderingContext,
+  kind: GLenum,
+  parts: readonly (Float32Array | Uint32Array)[],
+): WebGLBuffer {
   const buffer = gl.createBuffer();
   gl.bindBuffer(kind, buffer);
-  gl.bufferData(kind, data as Float32Array<ArrayBuffer> | Uint32Array<ArrayBuffer>, gl.STATIC_DRAW);
+  gl.bufferData(kind, parts.reduce((sum, part) => sum + part.byteLength, 0), gl.STATIC_DRAW);
+  parts.reduce((at, part) => {
+    gl.bufferSubData(kind, at, part as Float32Array<ArrayBuffer> | Uint32Array<ArrayBuffer>);
+    return at + part.byteLength;
+  }, 0);
   return buffer;
 }
 
-function makeTarget(gl: WebGL2RenderingContext, width: number, height: number): DepthTarget {
-  const depth = textureOf(gl, gl.NEAREST);
-  gl.texStorage2D(gl.TEXTURE_2D, 1, gl.DEPTH_COMPONENT24, width, height);
+function makeTarget(gl: WebGL2RenderingContext, width: number, height: number): LayerTarget {
   const framebuffer = gl.createFramebuffer();
   gl.bindFramebuffer(gl.FRAMEBUFFER, framebuffer);
-  gl.framebufferTexture2D(gl.FRAMEBUFFER, gl.DEPTH_ATTACHMENT, gl.TEXTURE_2D, depth, 0);
-  return { framebuffer, depth, width, height };
+  const attached = (format: GLenum, attachment: GLenum): WebGLTexture => {
+    const texture = textureOf(gl, gl.NEAREST);
+    gl.texStorage2D(gl.TEXTURE_2D, 1, format, width, height);
+    gl.framebufferTexture2D(gl.FRAMEBUFFER, attachment, gl.TEXTURE_2D, texture, 0);
+    return texture;
+  };
+  const picture = attached(gl.RGBA8, gl.COLOR_ATTACHMENT0);
+  const depth = attached(gl.DEPTH_COMPONENT24, gl.DEPTH_ATTACHMENT);
+  return { framebuffer, picture, depth, width, height };
 }
 
 function programsOf(gl: WebGL2RenderingContext): Programs {
+  const surface = (over: boolean, sheets: boolean): WebGLProgram =>
+    programOf(gl, shaders.surfaceVertex(over, sheets), shaders.surfaceFragment(over, sheets));
+  const ofFrames = (over: boolean): FramePrograms => ({
+    surface: surface(over, false),
+    sheets: surface(over, true),
+    fill: programOf(gl, shaders.fillVertex, shaders.fillFragment(over)),
+  });
   return {
-    surface: programOf(gl, shaders.surfaceVertex, shaders.pictureFragment),
-    fill: programOf(gl, shaders.fillVertex, shaders.pictureFragment),
-    surfaceDepth: programOf(gl, shaders.surfaceVertex, shaders.depthFragment),
-    fillDepth: programOf(gl, shaders.fillVertex, shaders.depthFragment),
-    backgroundDepth: programOf(gl, shaders.backgroundVertex, shaders.depthFragment),
-    sharp: programOf(gl, shaders.sharpVertex, shaders.sharpFragment),
+    alone: ofFrames(false),
+    over: ofFrames(true),
+    background: programOf(gl, shaders.backgroundVertex, shaders.backgroundFragment),
   };
 }
 

@@ -25,13 +25,17 @@ export function wirePlane(codes: Uint8Array, picture: Size, cell: number, first 
   return create(DepthPlaneSchema, { width, height, cell, first, last, codes: deflateSync(predicted(codes, width)) });
 }
 
-/** The plane of a function of the pixel; cells have the value at their centres. */
+/** The plane of a function of the pixel; cells have the largest value at their centres and corners. */
 export function planeOf(picture: Size, cell: number, depth: (x: number, y: number) => number): DepthPlane {
   const [width, height] = [Math.ceil(picture.width / cell), Math.ceil(picture.height / cell)];
-  const centre = (i: number, size: number): number => (i * cell + Math.min(size, (i + 1) * cell)) / 2;
-  const values = Float32Array.from({ length: width * height }, (_, i) =>
-    depth(centre(i % width, picture.width), centre(Math.floor(i / width), picture.height)),
-  );
+  const places = (i: number, size: number): number[] => {
+    const [start, end] = [i * cell, Math.min(size, (i + 1) * cell)];
+    return [start, (start + end) / 2, end];
+  };
+  const values = Float32Array.from({ length: width * height }, (_, i) => {
+    const rows = places(Math.floor(i / width), picture.height);
+    return Math.max(...places(i % width, picture.width).flatMap((x) => rows.map((y) => depth(x, y))));
+  });
   const shown = [...values].filter((value) => value > 0);
   return { picture, cell, width, height, values, first: Math.min(...shown), last: Math.max(...shown) };
 }
