@@ -1,14 +1,11 @@
-// motion_lab PORT MODEL... [near] [fps=N]: plays camera paths over emulated
-// links to a server on this machine that serves these models, and compares what
-// a client shows at each instant with the picture of its camera at that
-// instant: as clients without depth show it (the newest frame), and warped by
-// depth. `near`: from a quarter of the distance. `fps`: frames a second that
-// the client with depth asks for.
+// motion_lab PORT MODEL... [near] [fps=N] [link=MBIT,MS]: plays camera paths over emulated links to a server on this
+// machine that serves these models, and compares what a client shows at each instant with the picture of its camera at
+// that instant: as clients without depth show it (the newest frame), and warped by depth. `near`: from a quarter of the
+// distance. `fps`: frames a second that the client with depth asks for. `link`: this one alone.
 //
-// For each path and link a row of a Markdown table: frames a second, kilobytes
-// a second; then over instants 50 ms apart, PSNR in dB over covered pixels
-// (mean, and the value that one in ten is below) and the share of pixels that
-// are more than 20 levels off.
+// For each path and link a row of a Markdown table: frames a second, kilobytes a second; then over instants 50 ms
+// apart, PSNR in dB over covered pixels (mean, and the value that one in ten is below) and the share of pixels that are
+// more than 20 levels off. Instants at which the model covers less than a fiftieth of the picture do not count.
 
 #include <algorithm>
 #include <chrono>
@@ -40,25 +37,24 @@ using Clock = client::View::Clock;
 
 constexpr int kWidth = 1280;
 constexpr int kHeight = 720;
-constexpr double kSeconds = 2.5; // of a movement
-constexpr double kEvery = 0.05;  // between two instants that are judged
+constexpr double kSeconds = 2.5;  // of a movement
+constexpr double kEvery = 0.05;   // between two instants that are judged
 constexpr double kUpdateEvery = 0.016;
-constexpr double kDecode =
-    0.005; // from the arrival of a frame until it can be shown
+constexpr double kDecode = 0.005;  // from the arrival of a frame until it can be shown
 
 struct Link {
-  double megabits = 0; ///< a second
-  int round_trip = 0;  ///< ms
+  double megabits = 0;  ///< a second
+  int round_trip = 0;   ///< ms
 };
 
 struct Arrived {
-  double seconds = 0; ///< since the movement began
+  double seconds = 0;  ///< since the movement began
   wire::ViewFrame frame;
   uint64_t bytes = 0;
 };
 
-wire::Camera to_message(const Camera &camera) {
-  const auto set = [](const glm::dvec3 &from, wire::Vector3 &to) {
+wire::Camera to_message(const Camera& camera) {
+  const auto set = [](const glm::dvec3& from, wire::Vector3& to) {
     to.set_x(from.x);
     to.set_y(from.y);
     to.set_z(from.z);
@@ -71,15 +67,12 @@ wire::Camera to_message(const Camera &camera) {
   return message;
 }
 
-Camera from_message(const wire::Camera &camera) {
-  const auto vector = [](const wire::Vector3 &v) {
-    return glm::dvec3(v.x(), v.y(), v.z());
-  };
-  return {vector(camera.position()), vector(camera.focal_point()),
-          vector(camera.view_up()), camera.view_angle()};
+Camera from_message(const wire::Camera& camera) {
+  const auto vector = [](const wire::Vector3& v) { return glm::dvec3(v.x(), v.y(), v.z()); };
+  return {vector(camera.position()), vector(camera.focal_point()), vector(camera.view_up()), camera.view_angle()};
 }
 
-wire::DrawPicture request_of(const std::string &model, const Camera &camera) {
+wire::DrawPicture request_of(const std::string& model, const Camera& camera) {
   wire::DrawPicture picture;
   picture.set_model(model);
   picture.mutable_resolution()->set_width(kWidth);
@@ -95,57 +88,43 @@ double seconds_since(Clock::time_point start) {
 
 /// The frames of a movement, and before them the one at rest from which it
 /// begins.
-std::vector<Arrived> play(uint16_t port, const std::string &model,
-                          const Camera &begin, const Path &path, bool depth,
+std::vector<Arrived> play(uint16_t port, const std::string& model, const Camera& begin, const Path& path, bool depth,
                           double fps) {
-  client::ServerConnection connection = value_or_exit(
-      client::ServerConnection::open({.host = "127.0.0.1", .port = port}, {}));
-  client::View view = value_or_exit(
-      client::View::open(connection, request_of(model, begin), fps, depth));
+  client::ServerConnection connection =
+      value_or_exit(client::ServerConnection::open({.host = "127.0.0.1", .port = port}, {}));
+  client::View view = value_or_exit(client::View::open(connection, request_of(model, begin), fps, depth));
   std::vector<Arrived> frames(1);
   while (!frames.front().frame.picture().converged()) {
-    auto frame =
-        value_or_exit(view.next_until(Clock::now() + std::chrono::seconds(60)));
-    if (!frame || !view.painted(*frame))
-      std::exit(1);
+    auto frame = value_or_exit(view.next_until(Clock::now() + std::chrono::seconds(60)));
+    if (!frame || !view.painted(*frame)) std::exit(1);
     frames.front().frame = frame->frame;
   }
   const Clock::time_point start = Clock::now();
   for (double next = 0; seconds_since(start) < kSeconds;) {
     const double now = seconds_since(start);
     if (now >= next) {
-      value_or_exit(
-          view.show(request_of(model, path.at(begin, now)), /*moving=*/true));
+      value_or_exit(view.show(request_of(model, path.at(begin, now)), /*moving=*/true));
       next = std::max(next + kUpdateEvery, now);
     }
-    const auto until = start + std::chrono::duration_cast<Clock::duration>(
-                                   std::chrono::duration<double>(next));
+    const auto until = start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(next));
     const auto frame = value_or_exit(view.next_until(until));
-    if (!frame)
-      continue;
-    if (!view.painted(*frame))
-      std::exit(1);
-    frames.push_back(
-        {std::chrono::duration<double>(frame->arrived - start).count(),
-         frame->frame, frame->bytes});
+    if (!frame) continue;
+    if (!view.painted(*frame)) std::exit(1);
+    frames.push_back({std::chrono::duration<double>(frame->arrived - start).count(), frame->frame, frame->bytes});
   }
   return frames;
 }
 
 /// A frame as a client has it.
-warp::WarpFrame decoded(const wire::ViewFrame &frame) {
-  window::PixelImage image =
-      value_or_exit(window::decode_picture(frame.picture()));
-  for (size_t i = 0; i < image.pixels.size(); i += 4)
-    std::swap(image.pixels[i], image.pixels[i + 2]);
+warp::WarpFrame decoded(const wire::ViewFrame& frame) {
+  window::PixelImage image = value_or_exit(window::decode_picture(frame.picture()));
+  for (size_t i = 0; i < image.pixels.size(); i += 4) std::swap(image.pixels[i], image.pixels[i + 2]);
   const Camera camera = from_message(frame.picture().camera());
   warp::WarpFrame result{{image.width, image.height, std::move(image.pixels)},
-                         value_or_exit(geometry::make_camera_frame(
-                             camera, image.width, image.height)),
+                         value_or_exit(geometry::make_camera_frame(camera, image.width, image.height)),
                          {}};
   if (frame.has_depth()) {
-    const warp::DepthPlane depth = value_or_exit(
-        warp::decode_depth(frame.depth(), image.width, image.height));
+    const warp::DepthPlane depth = value_or_exit(warp::decode_depth(frame.depth(), image.width, image.height));
     result.mesh = warp::make_warp_mesh(depth, image.width, image.height);
   }
   return result;
@@ -155,24 +134,21 @@ warp::WarpFrame decoded(const wire::ViewFrame &frame) {
 using Truth = std::vector<picture::Image>;
 
 struct Judged {
-  double rate = 0;      ///< frames a second
-  double kilobytes = 0; ///< a second
+  double rate = 0;       ///< frames a second
+  double kilobytes = 0;  ///< a second
   std::vector<bench::Figures> figures;
 };
 
 /// Whether the model covers enough of a picture.
-bool counts(const picture::Image &image) {
+bool counts(const picture::Image& image) {
   size_t covered = 0;
-  for (size_t i = 3; i < image.pixels.size(); i += 4)
-    covered += image.pixels[i] != std::byte{0} ? 1 : 0;
+  for (size_t i = 3; i < image.pixels.size(); i += 4) covered += image.pixels[i] != std::byte{0} ? 1 : 0;
   return covered > image.pixels.size() / 4 / 50;
 }
 
-Judged judge(const std::vector<Arrived> &frames, const Camera &begin,
-             const Path &path, const Truth &truth) {
+Judged judge(const std::vector<Arrived>& frames, const Camera& begin, const Path& path, const Truth& truth) {
   Judged judged;
-  for (const Arrived &frame : frames)
-    judged.kilobytes += static_cast<double>(frame.bytes) / 1000 / kSeconds;
+  for (const Arrived& frame : frames) judged.kilobytes += static_cast<double>(frame.bytes) / 1000 / kSeconds;
   judged.rate = static_cast<double>(frames.size() - 1) / kSeconds;
   const warp::WarpFrame rest = decoded(frames.front().frame);
   size_t newest = 0;
@@ -180,85 +156,71 @@ Judged judge(const std::vector<Arrived> &frames, const Camera &begin,
   for (size_t i = 0; i < truth.size(); ++i) {
     const double now = static_cast<double>(i) * kEvery;
     const size_t before = newest;
-    while (newest + 1 < frames.size() &&
-           frames[newest + 1].seconds + kDecode <= now)
-      ++newest;
-    if (newest != before)
-      shown = decoded(frames[newest].frame);
-    if (!counts(truth[i]))
-      continue;
-    const geometry::CameraFrame target = value_or_exit(
-        geometry::make_camera_frame(path.at(begin, now), kWidth, kHeight));
+    while (newest + 1 < frames.size() && frames[newest + 1].seconds + kDecode <= now) ++newest;
+    if (newest != before) shown = decoded(frames[newest].frame);
+    if (!counts(truth[i])) continue;
+    const geometry::CameraFrame target =
+        value_or_exit(geometry::make_camera_frame(path.at(begin, now), kWidth, kHeight));
     const bool warps = !shown.mesh.empty();
-    const warp::WarpFrame *below =
-        newest > 0 && !rest.mesh.empty() ? &rest : nullptr;
-    judged.figures.push_back(
-        bench::compare(warps ? warp::warp(shown, below, target, {0, 0, 0, 255})
-                             : bench::unwarped(shown, target),
-                       truth[i]));
+    const warp::WarpFrame* below = newest > 0 && !rest.mesh.empty() ? &rest : nullptr;
+    judged.figures.push_back(bench::compare(
+        warps ? warp::warp(shown, below, target, {0, 0, 0, 255}) : bench::unwarped(shown, target), truth[i]));
   }
   return judged;
 }
 
-void print(const Judged &judged) {
+void print(const Judged& judged) {
   std::vector<double> psnr;
   double off = 0;
-  for (const bench::Figures &figures : judged.figures) {
+  for (const bench::Figures& figures : judged.figures) {
     psnr.push_back(figures.psnr);
     off += figures.off / static_cast<double>(judged.figures.size());
   }
-  const double mean = std::accumulate(psnr.begin(), psnr.end(), 0.0) /
-                      static_cast<double>(psnr.size());
+  const double mean = std::accumulate(psnr.begin(), psnr.end(), 0.0) / static_cast<double>(psnr.size());
   std::ranges::sort(psnr);
-  std::printf(" %.0f, %.0f | %.1f, %.1f / %.1f |", judged.rate,
-              judged.kilobytes, mean, psnr[psnr.size() / 10], off);
+  std::printf(" %.0f, %.0f | %.1f, %.1f / %.1f |", judged.rate, judged.kilobytes, mean, psnr[psnr.size() / 10], off);
 }
 
 class Lab {
-public:
-  Lab(uint16_t server, const std::string &file, bool near, double fps)
-      : server_(server), fps_(fps), model_(bench::open_or_exit(file)),
+ public:
+  Lab(uint16_t server, const std::string& file, bool near, double fps, std::vector<Link> links)
+      : server_(server),
+        fps_(fps),
+        links_(std::move(links)),
+        model_(bench::open_or_exit(file)),
         name_(std::filesystem::path(file).stem()),
         renderer_(value_or_exit(render::Renderer::create({}))) {
     picture::PictureRequest request;
     request.width = request.height = 16;
     request.spacing = 1e6;
     begin_ = bench::draw_or_exit(*renderer_, model_, request).camera;
-    if (near)
-      begin_.position = glm::mix(begin_.focal_point, begin_.position, 0.25);
+    if (near) begin_.position = glm::mix(begin_.focal_point, begin_.position, 0.25);
   }
 
   void run() {
-    std::printf("\n| %s | link | newest frame: frames/s, KB/s | dB, worst "
-                "tenth / %% off | warped: frames/s, KB/s | dB, "
-                "worst tenth / %% off |\n|---|---|---|---|---|---|\n",
-                name_.c_str());
-    for (const Path &path : bench::paths()) {
+    std::printf(
+        "\n| %s | link | newest frame: frames/s, KB/s | dB, worst "
+        "tenth / %% off | warped: frames/s, KB/s | dB, "
+        "worst tenth / %% off |\n|---|---|---|---|---|---|\n",
+        name_.c_str());
+    for (const Path& path : bench::paths()) {
       const Truth truth = truth_of(path);
-      for (const Link &link : {Link{1000, 0}, Link{20, 50}, Link{20, 150},
-                               Link{4, 150}, Link{20, 300}}) {
-        run(path, link, truth);
-      }
+      for (const Link& link : links_) run(path, link, truth);
     }
   }
 
-private:
-  void run(const Path &path, const Link &link, const Truth &truth) {
-    const testing::LinkRelay relay(
-        server_, {link.megabits * 1e6,
-                  std::chrono::microseconds(500 * link.round_trip)});
-    std::printf("| %s | %.0f Mbit/s, %d ms |", path.name.c_str(), link.megabits,
-                link.round_trip);
+ private:
+  void run(const Path& path, const Link& link, const Truth& truth) {
+    const testing::LinkRelay relay(server_, {link.megabits * 1e6, std::chrono::microseconds(500 * link.round_trip)});
+    std::printf("| %s | %.0f Mbit/s, %d ms |", path.name.c_str(), link.megabits, link.round_trip);
     for (const bool depth : {false, true}) {
-      print(judge(
-          play(relay.port(), name_, begin_, path, depth, depth ? fps_ : 0),
-          begin_, path, truth));
+      print(judge(play(relay.port(), name_, begin_, path, depth, depth ? fps_ : 0), begin_, path, truth));
     }
     std::printf("\n");
     std::fflush(stdout);
   }
 
-  [[nodiscard]] Truth truth_of(const Path &path) const {
+  [[nodiscard]] Truth truth_of(const Path& path) const {
     Truth truth;
     for (double now = 0; now < kSeconds; now += kEvery) {
       picture::PictureRequest request;
@@ -274,33 +236,35 @@ private:
 
   uint16_t server_;
   double fps_;
+  std::vector<Link> links_;
   std::shared_ptr<const model::ModelFile> model_;
   std::string name_;
   std::unique_ptr<render::Renderer> renderer_;
   Camera begin_;
 };
 
-} // namespace
+}  // namespace
 
-int main(int argc, char **argv) {
+int main(int argc, char** argv) {
   if (argc < 3) {
-    std::fprintf(stderr, "usage: motion_lab PORT MODEL... [near] [fps=N]\n");
+    std::fprintf(stderr, "usage: motion_lab PORT MODEL... [near] [fps=N] [link=MBIT,MS]\n");
     return 2;
   }
   bool near = false;
   double fps = 0;
+  std::vector<Link> links{{1000, 0}, {20, 50}, {20, 150}, {4, 150}, {20, 300}};
   std::vector<std::string> models;
-  for (const std::string &word :
-       std::vector<std::string>(argv + 2, argv + argc)) {
+  for (const std::string& word : std::vector<std::string>(argv + 2, argv + argc)) {
     if (word == "near") {
       near = true;
     } else if (word.starts_with("fps=")) {
       fps = std::atof(word.c_str() + 4);
+    } else if (word.starts_with("link=")) {
+      links = {{std::atof(word.c_str() + 5), std::atoi(word.c_str() + word.find(',') + 1)}};
     } else {
       models.push_back(word);
     }
   }
-  for (const std::string &model : models)
-    Lab(static_cast<uint16_t>(std::atoi(argv[1])), model, near, fps).run();
+  for (const std::string& model : models) Lab(static_cast<uint16_t>(std::atoi(argv[1])), model, near, fps, links).run();
   return 0;
 }
