@@ -82,7 +82,7 @@ picture::DepthMap halved(const picture::DepthMap& map) {
 
 }  // namespace
 
-std::optional<EncodedDepth> encode_depth(picture::DepthMap map, size_t most_bytes) {
+std::optional<picture::EncodedDepth> encode_depth(picture::DepthMap map, size_t most_bytes) {
   const std::optional<InverseDepths> range = range_of(map.inverse);
   if (!range) return std::nullopt;
   // (One depth alone is the last code.)
@@ -91,7 +91,7 @@ std::optional<EncodedDepth> encode_depth(picture::DepthMap map, size_t most_byte
     const std::vector<uint8_t> codes = codes_of(map.inverse, first, range->last);
     std::vector<std::byte> packed = deflated(residuals_of(codes, map.width));
     if (packed.size() <= most_bytes || map.inverse.size() == 1) {
-      return EncodedDepth{map.width, map.height, map.cell, first, range->last, std::move(packed)};
+      return picture::EncodedDepth{map.width, map.height, map.cell, first, range->last, std::move(packed)};
     }
     map = halved(map);
   }

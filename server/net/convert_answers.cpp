@@ -111,7 +111,7 @@ void to_wire(service::EncodedPicture picture, wire::Picture& message) {
   }
 }
 
-void to_wire(const encode::EncodedDepth& depth, wire::DepthPlane& message) {
+void to_wire(const picture::EncodedDepth& depth, wire::DepthPlane& message) {
   message.set_width(static_cast<uint32_t>(depth.width));
   message.set_height(static_cast<uint32_t>(depth.height));
   message.set_cell(static_cast<uint32_t>(depth.cell));

@@ -15,6 +15,16 @@ struct DepthMap {
   std::vector<float> inverse;  ///< 1 / camera z, per world unit; 0: nothing but background
 };
 
+/// A depth map as clients receive it: wire::DepthPlane.
+struct EncodedDepth {
+  int width = 0;     ///< texels
+  int height = 0;    ///< texels
+  int cell = 0;      ///< pixels
+  double first = 0;  ///< inverse depth of code 1, per world unit
+  double last = 0;   ///< inverse depth of code 255
+  std::vector<std::byte> codes;
+};
+
 /// An empty map for a picture of this many pixels, with at most `texels` texels a side.
 inline DepthMap empty_depth_map(int width, int height, int texels) {
   const int longer = width > height ? width : height;

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <utility>
 
+#include "encode/encode_depth.h"
 #include "encode/encode_picture.h"
 #include "service/picture_channels.h"
 

@@ -10,7 +10,6 @@
 #include <vector>
 
 #include "base/result.h"
-#include "encode/encode_depth.h"
 #include "picture/channels.h"
 #include "picture/file_format.h"
 #include "picture/picture.h"
@@ -69,7 +68,7 @@ struct EncodedPicture {
   double waited_ms = 0;          ///< waiting for the render thread
   double draw_ms = 0;
   double encode_ms = 0;
-  std::optional<encode::EncodedDepth> depth;    ///< with PictureRequest::depth_texels, if it is known
+  std::optional<picture::EncodedDepth> depth;   ///< with PictureRequest::depth_texels, if it is known
   std::shared_ptr<const picture::Frame> frame;  ///< see PictureJob::keep_frame
   std::shared_ptr<const void> memory;           ///< counts `bytes`; to be kept until they are released
   picture::FrameStats stats;                    ///< the first stage is "queue", the last one "encode"

@@ -18,7 +18,7 @@ constexpr int kPictureTexels = 10;
 
 constexpr size_t kEnough = 1 << 20;  // bytes
 
-wire::DepthPlane to_message(const encode::EncodedDepth& depth) {
+wire::DepthPlane to_message(const picture::EncodedDepth& depth) {
   wire::DepthPlane plane;
   plane.set_width(static_cast<uint32_t>(depth.width));
   plane.set_height(static_cast<uint32_t>(depth.height));
@@ -84,7 +84,7 @@ TEST(DepthPlane, OfBackgroundAloneIsNone) {
 TEST(DepthPlane, IsMadeCoarserUntilItTakesNoMoreThanItMay) {
   const picture::DepthMap map = noise(100);
   const size_t whole = encode::encode_depth(map, kEnough)->codes.size();
-  const encode::EncodedDepth less = *encode::encode_depth(map, whole - 1);
+  const picture::EncodedDepth less = *encode::encode_depth(map, whole - 1);
   EXPECT_LT(less.codes.size(), whole);
   EXPECT_EQ(less.cell, 2 * map.cell);
   const Result<DepthPlane> plane = decode_depth(to_message(less), kPictureWidth, kPictureHeight);
