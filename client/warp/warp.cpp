@@ -93,12 +93,14 @@ Color mixed(Color a, Color b, uint32_t part) {
 
 /// The colour at a place of a picture, by its four nearest pixels.
 Color sample(const Pixels& from, float x, float y) {
-  const float column = std::clamp(x - 0.5F, 0.0F, static_cast<float>(from.width - 1));
-  const float row = std::clamp(y - 0.5F, 0.0F, static_cast<float>(from.height - 1));
+  // Half of a 256th more, so that parts are rounded.
+  constexpr float kHalfPart = 1.0F / 512;
+  const float column = std::clamp(x - 0.5F, 0.0F, static_cast<float>(from.width - 1)) + kHalfPart;
+  const float row = std::clamp(y - 0.5F, 0.0F, static_cast<float>(from.height - 1)) + kHalfPart;
   const auto left = static_cast<int>(column);
   const auto top = static_cast<int>(row);
-  const auto part_x = static_cast<uint32_t>((column - static_cast<float>(left)) * 256 + 0.5F);
-  const auto part_y = static_cast<uint32_t>((row - static_cast<float>(top)) * 256 + 0.5F);
+  const auto part_x = static_cast<uint32_t>((column - static_cast<float>(left)) * 256);
+  const auto part_y = static_cast<uint32_t>((row - static_cast<float>(top)) * 256);
   const ptrdiff_t right = left + 1 < from.width ? 4 : 0;
   const ptrdiff_t below = top + 1 < from.height ? 4 * static_cast<ptrdiff_t>(from.width) : 0;
   const uint8_t* at = from.bytes.data() + 4 * (static_cast<ptrdiff_t>(top) * from.width + left);

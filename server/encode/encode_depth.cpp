@@ -71,11 +71,11 @@ std::vector<std::byte> deflated(std::span<const uint8_t> bytes) {
 picture::DepthMap halved(const picture::DepthMap& map) {
   picture::DepthMap half{(map.width + 1) / 2, (map.height + 1) / 2, 2 * map.cell, {}};
   half.inverse.assign(static_cast<size_t>(half.width) * static_cast<size_t>(half.height), 0.0F);
-  for (int y = 0; y < map.height; ++y) {
-    for (int x = 0; x < map.width; ++x) {
-      float& texel = half.inverse[static_cast<size_t>(y / 2 * half.width + x / 2)];
-      texel = std::max(texel, map.inverse[static_cast<size_t>(y * map.width + x)]);
-    }
+  const auto width = static_cast<size_t>(map.width);
+  const auto half_width = static_cast<size_t>(half.width);
+  for (size_t i = 0; i < map.inverse.size(); ++i) {
+    float& texel = half.inverse[i / width / 2 * half_width + i % width / 2];
+    texel = std::max(texel, map.inverse[i]);
   }
   return half;
 }
