@@ -17,7 +17,7 @@ struct DepthPlane {
 };
 
 /// The depth of a frame whose picture has `width` x `height` pixels. Fails where it does not fit to the picture, and
-/// where it is damaged. Takes no more memory than the texels of the picture.
+/// where it is damaged. A plane has at most 2^20 texels.
 Result<DepthPlane> decode_depth(const wire::DepthPlane& plane, int width, int height);
 
 }  // namespace surfcast::warp

@@ -166,7 +166,7 @@ std::optional<ScreenTriangle> screen_triangle(const MeshTriangle& mesh, const Pr
     screen.at(i) = glm::dvec2(corners.at(i).place) / corners.at(i).place.z;
   }
   const double area = cross(screen[1] - screen[0], screen[2] - screen[0]);
-  if (area == 0) return std::nullopt;
+  if (area == 0 || !std::isfinite(area)) return std::nullopt;
   ScreenTriangle triangle;
   triangle.mesh = &mesh;
   const auto [left, right] = std::minmax({screen[0].x, screen[1].x, screen[2].x});
@@ -264,6 +264,9 @@ std::pair<int, int> columns_inside(const ScreenTriangle& triangle, double y) {
     if (part.per_x < 0) last = std::min(last, -there / part.per_x);
     if (part.per_x == 0 && there < 0) return {0, 0};
   }
+  // (A triangle that is seen nearly from the side has edges that meet a row anywhere.)
+  first = std::min(first, triangle.right + 0.5);
+  last = std::max(last, triangle.left - 0.5);
   return {static_cast<int>(std::ceil(first - 0.5)), static_cast<int>(std::floor(last - 0.5)) + 1};
 }
 

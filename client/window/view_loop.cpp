@@ -52,7 +52,7 @@ class FrameRate {
 class ViewLoop {
  public:
   ViewLoop(const ViewRequest& request, const client::ClientConfig& config, Window& window)
-      : request_(request), config_(config), window_(window) {}
+      : request_(request), config_(config), window_(window), shown_(request.picture.background()) {}
 
   /// Connects and runs the view until the window is closed. An error when the connection fails.
   Status poll_input();

@@ -10,8 +10,6 @@
 namespace surfcast::window {
 namespace {
 
-constexpr std::array<uint8_t, 4> kBlack{0, 0, 0, 255};
-
 glm::dvec3 vector_of(const wire::Vector3& v) {
   return {v.x(), v.y(), v.z()};
 }
@@ -41,6 +39,10 @@ std::optional<warp::WarpFrame> warp_frame(const wire::ViewFrame& frame, const Pi
 
 }  // namespace
 
+WarpedView::WarpedView(const wire::Color& background)
+    : background_{static_cast<uint8_t>(background.blue()), static_cast<uint8_t>(background.green()),
+                  static_cast<uint8_t>(background.red()), 255} {}
+
 void WarpedView::take(const wire::ViewFrame& frame, PixelImage pixels) {
   newest_ = std::move(pixels);
   moving_ = frame.moving();
@@ -51,7 +53,7 @@ void WarpedView::take(const wire::ViewFrame& frame, PixelImage pixels) {
 std::optional<PixelImage> WarpedView::seen_by(const wire::Camera& camera, int width, int height) const {
   const Result<geometry::CameraFrame> target = frame_of(camera, width, height);
   if (!warp_ || !target || same_view(warp_->camera, *target)) return std::nullopt;
-  warp::Pixels pixels = warp::warp(*warp_, moving_ && rest_ ? &*rest_ : nullptr, *target, kBlack);
+  warp::Pixels pixels = warp::warp(*warp_, moving_ && rest_ ? &*rest_ : nullptr, *target, background_);
   return PixelImage{pixels.width, pixels.height, std::move(pixels.bytes)};
 }
 

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <array>
+#include <cstdint>
 #include <optional>
 
 #include "client/window/decode_picture.h"
@@ -12,6 +14,8 @@ namespace surfcast::window {
 /// present camera sees them.
 class WarpedView {
  public:
+  /// `background`: the colour of frames where they show nothing.
+  explicit WarpedView(const wire::Color& background);
   /// Takes the newest frame and its pixels. A frame whose depth is damaged counts as one without.
   void take(const wire::ViewFrame& frame, PixelImage pixels);
   /// The view of a camera, `width` x `height` pixels. Nothing where the newest frame is to be shown as it is: it has
@@ -21,6 +25,7 @@ class WarpedView {
   [[nodiscard]] const PixelImage& newest() const { return newest_; }
 
  private:
+  std::array<uint8_t, 4> background_;  ///< as a pixel of PixelImage
   PixelImage newest_;
   std::optional<warp::WarpFrame> warp_;  ///< the newest frame, if it has a depth
   std::optional<warp::WarpFrame> rest_;  ///< the last one at rest

@@ -89,7 +89,7 @@ service::PictureJob ViewSession::picture_job(FrameKind kind, uint64_t edition, s
     job.keep_frame = may_be_kept(newest_.picture);
     return job;
   }
-  if (options_.depth && request.camera) request.camera = forecast_.at(now + median_of(latencies_), now);
+  if (warps_ && request.camera) request.camera = forecast_.at(now + median_of(latencies_), now);
   const MotionQuality quality = quality_of(quality_);
   request.rest_spacing = request.spacing * quality.scale;
   request.width = scaled(request.width, quality.scale);
@@ -149,7 +149,7 @@ size_t ViewSession::window(ViewTime now) const {
   constexpr double kLateMs = 100;
   const double round_trip = link_.round_trip_ms();
   const std::optional<size_t> fits = link_.bytes_in(round_trip + kLateMs);
-  if (!options_.depth || round_trip == 0 || !fits) return kMaxUnacknowledged;
+  if (!warps_ || round_trip == 0 || !fits) return kMaxUnacknowledged;
   if (link_.bytes_on_the_way() >= *fits || link_.waits_ms(now) > 2 * round_trip + kLateMs) return kMaxUnacknowledged;
   const auto frames = static_cast<size_t>(std::ceil(round_trip * options_.target_fps / 1000));
   return std::min(kMaxUnacknowledged + frames, kMostUnacknowledged);
@@ -234,6 +234,7 @@ void ViewSession::finish(uint64_t frame, Result<service::EncodedPicture> picture
   job.cost.draw = picture->draw_ms + std::max(picture->waited_ms - last_draw_ms_, 0.0);
   job.cost.encode = picture->encode_ms;
   last_draw_ms_ = picture->draw_ms;
+  warps_ = picture->depth.has_value();
   show(frame, job.kind, std::move(*picture));
   send_pieces(now);
 }
@@ -379,8 +380,7 @@ void ViewSession::adapt_quality(Job& job, double transfer_ms, double client_ms) 
   last_cost_ = job.cost;
   // A frame drawn with an earlier quality is no evidence about the current one.
   const bool current = job.quality.draw.rung == quality_.draw.rung && job.quality.link.rung == quality_.link.rung;
-  if (current)
-    quality_ = adapt(quality_, job.cost, options_.depth ? kWarpedRate * options_.target_fps : options_.target_fps);
+  if (current) quality_ = adapt(quality_, job.cost, warps_ ? kWarpedRate * options_.target_fps : options_.target_fps);
 }
 
 void ViewSession::close() {

@@ -61,8 +61,8 @@ struct ViewOptions {
   static constexpr size_t kKeptBytes = size_t{32} << 20;  ///< a frame of 8 million pixels
 
   double target_fps = 30;
-  /// Frames have a depth, where it is known, and the client warps them. Those in motion are drawn for the camera that
-  /// the client has when they arrive, as far as that can be told from the cameras before.
+  /// Frames have a depth, where it is known, by which the client warps them. While they have one, those in motion are
+  /// drawn for the camera that the client has when they arrive, as far as that can be told from the cameras before.
   bool depth = false;
   /// Of pixels at most, a frame at rest is kept to make the final picture of it without drawing again.
   size_t kept_bytes = kKeptBytes;
@@ -151,6 +151,7 @@ class ViewSession : public std::enable_shared_from_this<ViewSession> {
   LinkEstimate link_;
   QualityState quality_ = first_quality();
   CameraForecast forecast_;
+  bool warps_ = false;                        ///< the client has a depth to warp the newest frame by
   std::deque<ViewTime::duration> latencies_;  ///< of the last frames in motion: from `begun` to their acknowledgement
   uint64_t last_frame_ = 0;
   bool newest_begun_ = true;  ///< drawing of the newest picture has started

@@ -127,6 +127,23 @@ TEST_F(ViewSessionTest, FramesHaveTheirDepthWhereTheViewAsksForIt) {
   EXPECT_EQ(answer->picture().data(), frame.picture().data()) << "depth stands beside the picture";
 }
 
+TEST_F(ViewSessionTest, FramesInMotionAreDrawnAheadWhereTheClientCanWarpThem) {
+  start();
+  for (const std::string model : {"cube", "teapot"}) {
+    open_view(model, 64, 32, /*depth=*/true);
+    converged_frame();
+    int ahead = 0;
+    for (uint64_t i = 1; i <= 40 && !HasFailure(); ++i) {
+      update(i, picture(model, 0.1 * static_cast<double>(i)), /*moving=*/true);
+      const wire::ViewFrame frame = next_frame();
+      const double x = frame.picture().camera().position().x();
+      EXPECT_GE(x, 0.1 * static_cast<double>(frame.update()) - 1e-9);
+      ahead += x > 0.1 * static_cast<double>(frame.update()) + 1e-9 ? 1 : 0;
+    }
+    EXPECT_EQ(ahead > 0, model == "cube") << ahead;
+  }
+}
+
 TEST_F(ViewSessionTest, FramesHaveNoDepthWhereTheViewDoesNotAskForIt) {
   start();
   open_view("noise", 320, 200);

@@ -109,7 +109,7 @@ class FakeRenderer : public FrameRenderer {
     frame.image = plain_image(request);
     if (model == "noise") add_noise(frame.image);
     if (request.camera) frame.camera = *request.camera;
-    if (request.depth_texels > 0) {
+    if (request.depth_texels > 0 && model != "teapot") {  // which is transparent, as it were
       frame.depth = picture::empty_depth_map(request.width, request.height, request.depth_texels);
       frame.depth.inverse.front() = 0.5F;
       frame.depth.inverse.back() = 0.25F;

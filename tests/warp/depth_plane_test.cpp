@@ -116,6 +116,16 @@ TEST(DepthPlane, ThatDoesNotFitItsPictureIsRefused) {
   }
 }
 
+TEST(DepthPlane, OfTooManyTexelsIsRefusedBeforeMemoryIsSetAside) {
+  wire::DepthPlane plane = valid_plane();
+  plane.set_cell(1);
+  plane.set_width(16384);
+  plane.set_height(16384);
+  const Result<DepthPlane> decoded = decode_depth(plane, 16384, 16384);
+  ASSERT_FALSE(decoded);
+  EXPECT_NE(decoded.error().message.find("too many texels"), std::string::npos);
+}
+
 TEST(DepthPlane, WithoutARangeIsRefused) {
   const auto with_range = [](double first, double last) {
     wire::DepthPlane plane = valid_plane();
@@ -133,6 +143,8 @@ TEST(DepthPlane, WithoutARangeIsRefused) {
   EXPECT_FALSE(with_range(kNaN, 2));
   EXPECT_FALSE(with_range(1, kNaN));
   EXPECT_FALSE(with_range(1, kInfinite));
+  EXPECT_FALSE(with_range(1e-300, 1));
+  EXPECT_FALSE(with_range(1, 1e300));
 }
 
 TEST(DepthPlane, WithDamagedCodesIsRefused) {

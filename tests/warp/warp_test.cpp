@@ -217,6 +217,20 @@ TEST(Warp, WhereNothingWasSeenIsBackground) {
   EXPECT_EQ(pixel_of(warped, kFrameWidth / 2, kFrameHeight / 2), kBackgroundColor);
 }
 
+TEST(Warp, ExtremeDepthsAndCamerasDoNoHarm) {
+  WarpFrame frame = draw(square, camera({0, 0, 4}, {0, 0, 0}));
+  for (const float factor : {1e-17F, 1e17F}) {
+    WarpFrame extreme = frame;
+    for (MeshTriangle& triangle : extreme.mesh) {
+      for (MeshVertex& vertex : triangle.corners) vertex.inverse *= vertex.pixel.x > 100 ? factor : 1;
+    }
+    for (const double step : {1e-12, 1.0, 1e12}) {
+      const geometry::CameraFrame to = camera({step, step, 4}, {step, 0, 0});
+      EXPECT_EQ(warp(extreme, &frame, to, kBackground).bytes.size(), size_t{4} * kFrameWidth * kFrameHeight);
+    }
+  }
+}
+
 TEST(Warp, PartsBehindTheEyeAreLeftOut) {
   const WarpFrame frame = draw(wall, camera({0, 0, 4}, {0, 0, 0}));
   const geometry::CameraFrame inside = camera({0, 0, -1}, {0, 0, -5});

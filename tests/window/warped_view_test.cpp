@@ -52,7 +52,7 @@ uint8_t middle(const std::optional<PixelImage>& image) {
 }
 
 TEST(WarpedView, ShowsAFrameOfThePresentCameraAsItIs) {
-  WarpedView view;
+  WarpedView view(wire::Color::default_instance());
   EXPECT_FALSE(view.seen_by(camera(0), kWidth, kHeight));
   view.take(frame(0, false), plain(kSharp));
   EXPECT_FALSE(view.seen_by(camera(0), kWidth, kHeight));
@@ -60,7 +60,7 @@ TEST(WarpedView, ShowsAFrameOfThePresentCameraAsItIs) {
 }
 
 TEST(WarpedView, WarpsToACameraThatHasGoneOn) {
-  WarpedView view;
+  WarpedView view(wire::Color::default_instance());
   view.take(frame(0, false), plain(kSharp));
   const std::optional<PixelImage> seen = view.seen_by(camera(0.1), kWidth, kHeight);
   ASSERT_TRUE(seen);
@@ -69,14 +69,14 @@ TEST(WarpedView, WarpsToACameraThatHasGoneOn) {
 }
 
 TEST(WarpedView, ShowsTheFrameAtRestUnderThatInMotion) {
-  WarpedView view;
+  WarpedView view(wire::Color::default_instance());
   view.take(frame(0, false), plain(kSharp));
   view.take(frame(0.2, true), plain(kBlurred));
   EXPECT_EQ(middle(view.seen_by(camera(0.1), kWidth, kHeight)), kSharp);
 }
 
 TEST(WarpedView, ShowsFramesWithoutDepthAsTheyAre) {
-  WarpedView view;
+  WarpedView view(wire::Color::default_instance());
   view.take(frame(0, false), plain(kSharp));
   view.take(frame(0.2, true, /*with_depth=*/false), plain(kBlurred));
   EXPECT_FALSE(view.seen_by(camera(0.1), kWidth, kHeight));
@@ -84,7 +84,7 @@ TEST(WarpedView, ShowsFramesWithoutDepthAsTheyAre) {
 }
 
 TEST(WarpedView, ADamagedDepthIsNone) {
-  WarpedView view;
+  WarpedView view(wire::Color::default_instance());
   wire::ViewFrame damaged = frame(0, false);
   damaged.mutable_depth()->set_codes("nothing");
   view.take(damaged, plain(kSharp));
@@ -92,7 +92,7 @@ TEST(WarpedView, ADamagedDepthIsNone) {
 }
 
 TEST(WarpedView, ACameraThatIsNoneShowsTheFrameAsItIs) {
-  WarpedView view;
+  WarpedView view(wire::Color::default_instance());
   view.take(frame(0, false), plain(kSharp));
   wire::Camera nowhere = camera(0);
   *nowhere.mutable_focal_point() = nowhere.position();
