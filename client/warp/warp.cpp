@@ -63,12 +63,10 @@ class Projection {
 struct Target {
   explicit Target(const geometry::CameraFrame& camera)
       : width(camera.width),
-        height(camera.height),
-        inverse(static_cast<size_t>(width) * static_cast<size_t>(height), -1.0F),
+        inverse(static_cast<size_t>(camera.width) * static_cast<size_t>(camera.height), -1.0F),
         density(inverse.size(), 0.0F) {}
 
   int width;
-  int height;
   std::vector<float> inverse;  ///< 1 / depth; -1: nothing
   std::vector<float> density;  ///< pixels of the frame in a pixel, along one direction; -1: made up
 };

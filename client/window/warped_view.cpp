@@ -28,13 +28,13 @@ bool same_view(const geometry::CameraFrame& a, const geometry::CameraFrame& b) {
          std::abs(a.eta / a.height - b.eta / b.height) < kSameTurn;
 }
 
-std::optional<warp::WarpFrame> warp_frame(const wire::ViewFrame& frame, const PixelImage& image) {
-  if (!frame.has_depth()) return std::nullopt;
+std::shared_ptr<const warp::WarpFrame> warp_frame(const wire::ViewFrame& frame, const PixelImage& image) {
+  if (!frame.has_depth()) return nullptr;
   const Result<warp::DepthPlane> depth = warp::decode_depth(frame.depth(), image.width, image.height);
   const Result<geometry::CameraFrame> camera = frame_of(frame.picture().camera(), image.width, image.height);
-  if (!depth || !camera) return std::nullopt;
-  return warp::WarpFrame{
-      {image.width, image.height, image.pixels}, *camera, warp::make_warp_mesh(*depth, image.width, image.height)};
+  if (!depth || !camera) return nullptr;
+  return std::make_shared<const warp::WarpFrame>(warp::WarpFrame{
+      {image.width, image.height, image.pixels}, *camera, warp::make_warp_mesh(*depth, image.width, image.height)});
 }
 
 }  // namespace
@@ -53,7 +53,7 @@ void WarpedView::take(const wire::ViewFrame& frame, PixelImage pixels) {
 std::optional<PixelImage> WarpedView::seen_by(const wire::Camera& camera, int width, int height) const {
   const Result<geometry::CameraFrame> target = frame_of(camera, width, height);
   if (!warp_ || !target || same_view(warp_->camera, *target)) return std::nullopt;
-  warp::Pixels pixels = warp::warp(*warp_, moving_ && rest_ ? &*rest_ : nullptr, *target, background_);
+  warp::Pixels pixels = warp::warp(*warp_, moving_ ? rest_.get() : nullptr, *target, background_);
   return PixelImage{pixels.width, pixels.height, std::move(pixels.bytes)};
 }
 

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstdint>
+#include <memory>
 #include <optional>
 
 #include "client/window/decode_picture.h"
@@ -27,8 +28,8 @@ class WarpedView {
  private:
   std::array<uint8_t, 4> background_;  ///< as a pixel of PixelImage
   PixelImage newest_;
-  std::optional<warp::WarpFrame> warp_;  ///< the newest frame, if it has a depth
-  std::optional<warp::WarpFrame> rest_;  ///< the last one at rest
+  std::shared_ptr<const warp::WarpFrame> warp_;  ///< the newest frame, if it has a depth
+  std::shared_ptr<const warp::WarpFrame> rest_;  ///< the last one at rest
   bool moving_ = false;
 };
 

@@ -111,7 +111,7 @@ void ViewSession::update(ViewUpdate update, ViewTime now) {
   newest_ = std::move(update);
   plan_.update(changed, newest_.moving, now);
   if (!changed) return;
-  if (newest_.picture.request.camera) forecast_.record(*newest_.picture.request.camera, now);
+  if (options_.depth && newest_.picture.request.camera) forecast_.record(*newest_.picture.request.camera, now);
   newest_begun_ = false;
   displayed_cut_ = 0;
   finished_frame_.reset();
