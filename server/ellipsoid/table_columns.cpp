@@ -1,9 +1,10 @@
 #include "ellipsoid/table_columns.h"
 
 #include <algorithm>
-#include <cctype>
 #include <initializer_list>
 #include <string_view>
+
+#include "scan/attribute_names.h"
 
 namespace surfcast::ellipsoid {
 namespace {
@@ -43,16 +44,6 @@ std::vector<size_t> find_semi_axes(const Names& keys) {
 
 }  // namespace
 
-std::string column_key(std::string_view name) {
-  std::string key;
-  for (const char c : name) {
-    if (c != '_' && c != ' ') key += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
-  }
-  constexpr std::string_view kPrefix = "scalar";
-  if (key.size() > kPrefix.size() && key.starts_with(kPrefix)) key.erase(0, kPrefix.size());
-  return key;
-}
-
 std::vector<size_t> ShapeRoles::all() const {
   std::vector<size_t> columns;
   for (const auto* part : {&semi_axes, &quaternion, &matrix, &tensor}) {
@@ -63,7 +54,7 @@ std::vector<size_t> ShapeRoles::all() const {
 
 std::optional<ShapeRoles> shape_roles(const Names& names) {
   Names keys;
-  std::transform(names.begin(), names.end(), std::back_inserter(keys), column_key);
+  std::transform(names.begin(), names.end(), std::back_inserter(keys), scan::attribute_key);
   ShapeRoles roles;
   roles.semi_axes = find_semi_axes(keys);
   if (roles.semi_axes.empty()) {

@@ -2,7 +2,6 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
 namespace surfcast::ellipsoid {
@@ -17,9 +16,6 @@ struct ShapeRoles {
   [[nodiscard]] std::vector<size_t> all() const;
   [[nodiscard]] bool rotated() const { return !quaternion.empty() || !matrix.empty(); }
 };
-
-/// A name of a column without case, underscores and spaces, and without a leading "scalar".
-[[nodiscard]] std::string column_key(std::string_view name);
 
 /// The columns of the shape by their names, without case, underscores and spaces: semi-axes a b c, rx ry rz,
 /// semi_axis_1 2 3 (or 0 1 2, a b c, x y z), radius_x y z; a rotation qw qx qy qz, rot_w x y z, rot_0 1 2 3 (w first),

@@ -52,7 +52,9 @@ constexpr std::array kAliases = {
     Alias{"infrared", "nir"},
 };
 
-std::string key_of(std::string_view name) {
+}  // namespace
+
+std::string attribute_key(std::string_view name) {
   std::string key;
   for (const char c : name) {
     if (c != '_' && c != ' ') key += static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -62,10 +64,8 @@ std::string key_of(std::string_view name) {
   return key;
 }
 
-}  // namespace
-
 std::string canonical_attribute_name(std::string_view name) {
-  const std::string key = key_of(name);
+  const std::string key = attribute_key(name);
   for (const auto& [alias, canonical] : kAliases) {
     if (alias == key) return std::string(canonical);
   }

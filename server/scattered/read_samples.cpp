@@ -9,8 +9,9 @@
 #include <utility>
 #include <variant>
 
-#include "ellipsoid/table_columns.h"
+#include "ellipsoid/tensor.h"
 #include "geometry/box.h"
+#include "scan/attribute_names.h"
 #include "scan/neighbours.h"
 #include "scan/sites.h"
 
@@ -24,7 +25,7 @@ constexpr size_t kNeighbours = scan::kLargestDegree;
 constexpr std::array<std::string_view, 6> kTensorParts{"_xx", "_xy", "_xz", "_yy", "_yz", "_zz"};
 
 bool same_name(std::string_view a, std::string_view b) {
-  return ellipsoid::column_key(a) == ellipsoid::column_key(b);
+  return scan::attribute_key(a) == scan::attribute_key(b);
 }
 
 /// The name of the scan's column, as the scan has it; none if it has no such column.
