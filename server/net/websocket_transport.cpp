@@ -128,6 +128,9 @@ asio::awaitable<bool> WebSocketTransport::write(const Bytes& message, const std:
 /// Returns when the client has said goodbye, too.
 asio::awaitable<void> WebSocketTransport::part(websocket::close_code reason) {
   error_code ignored;
+  // With a callback, a read that finds the client's goodbye goes on only in a later turn. If this goodbye has been
+  // written meanwhile, read and close wait for each other for ever (Beast 1.81).
+  stream_.control_callback();
   if (granted_) co_await stream_.async_close(reason, redirect_error_to(ignored));
 }
 
