@@ -122,10 +122,12 @@ warp::WarpFrame decoded(const wire::ViewFrame& frame) {
   const Camera camera = from_message(frame.picture().camera());
   warp::WarpFrame result{{image.width, image.height, std::move(image.pixels)},
                          value_or_exit(geometry::make_camera_frame(camera, image.width, image.height)),
-                         {}};
+                         {},
+                         false};
   if (frame.has_depth()) {
     const warp::DepthPlane depth = value_or_exit(warp::decode_depth(frame.depth(), image.width, image.height));
     result.mesh = warp::make_warp_mesh(depth, image.width, image.height);
+    result.seen_through = depth.seen_through;
   }
   return result;
 }

@@ -1,7 +1,7 @@
-// warp_bench MODEL...: how near frames that are warped by their depth come to the picture of the present camera.
-// For each model and movement, a row: PSNR in dB over covered pixels, and the share of pixels that are more than 20
-// levels off, both against the picture at rest of the camera that is shown. Cameras begin with a view of the whole
-// model. SURFCAST_KEEP_PICTURES names a folder for the pictures (PPM).
+// warp_bench MODEL... [opacity=NUMBER]: how near frames that are warped by their depth come to the picture of the
+// present camera. For each model and movement, a row: PSNR in dB over covered pixels, and the share of pixels that are
+// more than 20 levels off, both against the picture at rest of the camera that is shown. Cameras begin with a view of
+// the whole model. SURFCAST_KEEP_PICTURES names a folder for the pictures (PPM).
 
 #include <array>
 #include <cmath>
@@ -50,8 +50,8 @@ void keep(const std::string& name, const warp::Pixels& pixels) {
 
 class Subject {
  public:
-  explicit Subject(const std::string& path)
-      : model_(bench::open_or_exit(path)), renderer_(value_or_exit(render::Renderer::create({}))) {
+  Subject(const std::string& path, double opacity)
+      : opacity_(opacity), model_(bench::open_or_exit(path)), renderer_(value_or_exit(render::Renderer::create({}))) {
     picture::PictureRequest request;
     request.width = request.height = 16;
     request.spacing = 1e6;
@@ -67,6 +67,7 @@ class Subject {
     request.height = kHeight;
     request.spacing = 1;
     request.silhouettes = true;
+    request.opacity = opacity_;
     request.depth_texels = kTexelsAtRest;
     return bench::draw_or_exit(*renderer_, model_, request);
   }
@@ -79,11 +80,13 @@ class Subject {
     request.spacing = 2;
     request.normalization = picture::Normalization::kSurfel;
     request.blends_behind = true;
+    request.opacity = opacity_;
     request.depth_texels = kTexelsInMotion;
     return bench::draw_or_exit(*renderer_, model_, request);
   }
 
  private:
+  double opacity_;
   std::shared_ptr<const model::ModelFile> model_;
   std::unique_ptr<render::Renderer> renderer_;
   Camera first_;
@@ -99,7 +102,7 @@ Warpable warpable(const picture::Frame& drawn) {
   const int width = drawn.image.width;
   const int height = drawn.image.height;
   Warpable result{
-      {pixels_of(drawn.image), value_or_exit(geometry::make_camera_frame(drawn.camera, width, height)), {}}};
+      {pixels_of(drawn.image), value_or_exit(geometry::make_camera_frame(drawn.camera, width, height)), {}, false}};
   const auto encoded = encode::encode_depth(drawn.depth, drawn.image.width < kWidth ? 3000 : 6000);
   if (!encoded) return result;
   wire::DepthPlane plane;
@@ -110,7 +113,9 @@ Warpable warpable(const picture::Frame& drawn) {
   plane.set_last(encoded->last);
   plane.set_codes(encoded->codes.data(), encoded->codes.size());
   result.depth_bytes = encoded->codes.size();
+  plane.set_seen_through(encoded->seen_through);
   result.frame.mesh = warp::make_warp_mesh(value_or_exit(warp::decode_depth(plane, width, height)), width, height);
+  result.frame.seen_through = encoded->seen_through;
   return result;
 }
 
@@ -170,8 +175,13 @@ void measure(const std::string& name, const Subject& subject, bool near) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  double opacity = 1;
   for (int i = 1; i < argc; ++i) {
-    const Subject subject(argv[i]);
+    if (std::strncmp(argv[i], "opacity=", 8) == 0) {
+      opacity = std::atof(argv[i] + 8);
+      continue;
+    }
+    const Subject subject(argv[i], opacity);
     measure(argv[i], subject, false);
     measure(std::string(argv[i]) + ", near", subject, true);
   }

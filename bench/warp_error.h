@@ -47,7 +47,7 @@ inline warp::Pixels pixels_of(const picture::Image& image) {
 inline warp::Pixels unwarped(const warp::WarpFrame& frame, const geometry::CameraFrame& target) {
   const warp::DepthPlane none{1, 1, std::max(frame.camera.width, frame.camera.height), {1.0F}};
   const warp::WarpFrame flat{frame.pixels, frame.camera,
-                             warp::make_warp_mesh(none, frame.camera.width, frame.camera.height)};
+                             warp::make_warp_mesh(none, frame.camera.width, frame.camera.height), false};
   geometry::CameraFrame same = frame.camera;
   const double scale = static_cast<double>(target.height) / same.height;
   same.width = target.width;

@@ -21,6 +21,7 @@ layout(std430, binding = SURFCAST_BIND_TILE_ORDER) readonly buffer TileOrder { u
 layout(std430, binding = SURFCAST_BIND_NEXT_TILES) buffer NextTiles { uint next_tiles[]; };
 #endif
 
+#include "include/front.glsl"
 #include "include/draw_lane.glsl"
 #include "include/write_rows.glsl"
 
@@ -28,7 +29,12 @@ void write_pixels(Pixels pixels, ivec2 first) {
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
     for (int i = 0; i < SURFCAST_ROWS; ++i) {
       ivec2 at = first + ivec2(c, i);
-      if (all(lessThan(at, frame.region.zw))) write_row(pixels.light[c], i, at);
+      if (any(greaterThanEqual(at, frame.region.zw))) continue;
+      write_row(pixels.light[c], i, at);
+#ifdef SURFCAST_KEEPS_FRONTS
+      fronts[at.y * frame.region.z + at.x] =
+          end_front(ROW(pixels.front[c], i), ROW(pixels.light[c].transmittance, i));
+#endif
     }
   }
 }

@@ -21,6 +21,7 @@ layout(std430, binding = SURFCAST_BIND_VOLUME_LIGHT) writeonly buffer LightBuffe
 layout(binding = SURFCAST_UNIT_CELLS) uniform usamplerBuffer cells;
 layout(binding = SURFCAST_UNIT_SEEN) uniform usamplerBuffer seen_words;
 
+#include "include/front.glsl"
 #include "volume/brick.glsl"
 #include "volume/transfer.glsl"
 #include "volume/ray.glsl"
@@ -63,6 +64,17 @@ void draw_visible(Ray ray, vec2 part, inout Light light) {
 #endif
 }
 
+#ifdef SURFCAST_KEEPS_FRONTS
+// Keeps the depth of a pixel of the region.
+void keep_front(ivec2 pixel, Light light) {
+  ivec2 at = pixel - frame.region.xy;
+  if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, frame.region.zw))) return;
+  float stretched = length(vec3(ray_of_pixel(vec2(pixel) + 0.5), 1.0));
+  float inverse_distance = end_front(light.front, light.transmittance * through_surfaces);
+  fronts[at.y * frame.region.z + at.x] = stretched * volume.transfer.w * inverse_distance;
+}
+#endif
+
 #ifdef SURFCAST_LAYERS
 #ifdef SURFCAST_CODES
 #include "include/srgb.glsl"
@@ -94,7 +106,7 @@ Layer layer_at(ivec2 pixel, int layer) {
 // Draws the volume between the surfaces of the pixel. What the volume adds, and what the surfaces add through it.
 void draw_between(Ray ray, vec2 part, ivec2 pixel, out vec4 own, out vec4 of_surfaces) {
   float stretched = length(vec3(ray_of_pixel(vec2(pixel) + 0.5), 1.0));
-  Light light = Light(vec3(0.0), 1.0);  // of the volume, but for the surfaces in front
+  Light light = full_light();           // of the volume, but for the surfaces in front
   float through = 1.0;                  // the surfaces so far
   own = vec4(0.0);
   of_surfaces = vec4(0.0);
@@ -112,7 +124,15 @@ void draw_between(Ray ray, vec2 part, ivec2 pixel, out vec4 own, out vec4 of_sur
     of_surfaces += light.transmittance * vec4(layer.light.rgb, through - layer.light.a);
     through = layer.light.a;
     part.x = end;
+#ifdef SURFCAST_KEEPS_FRONTS
+    float reached = light.transmittance * through_surfaces;
+    through_surfaces = through;
+    light.front = pass_front(light.front, reached, light.transmittance * through, 1.0 / (t + ray.anchor));
+#endif
   }
+#ifdef SURFCAST_KEEPS_FRONTS
+  keep_front(pixel, light);
+#endif
 }
 #endif
 
@@ -137,8 +157,11 @@ void main() {
   lights[index] = own;
   surface_lights[index] = of_surfaces;
 #else
-  Light light = Light(vec3(0.0), 1.0);
+  Light light = full_light();
   draw_visible(ray, part, light);
   lights[index] = vec4(light.color, 1.0 - light.transmittance);
+#ifdef SURFCAST_KEEPS_FRONTS
+  keep_front(volume.light.xy + at, light);
+#endif
 #endif
 }

@@ -73,7 +73,11 @@ std::array<float, kLastCode + 1> values_of_codes(double first, double last) {
 
 Result<DepthPlane> decode_depth(const wire::DepthPlane& plane, int width, int height) {
   if (Status status = check(plane, width, height); !status) return fail(status.error());
-  DepthPlane depth{cells(width, plane.cell()), cells(height, plane.cell()), static_cast<int>(plane.cell()), {}};
+  DepthPlane depth{cells(width, plane.cell()),
+                   cells(height, plane.cell()),
+                   static_cast<int>(plane.cell()),
+                   {},
+                   plane.seen_through()};
   Result<std::vector<uint8_t>> codes =
       inflated(plane.codes(), static_cast<size_t>(depth.width) * static_cast<size_t>(depth.height));
   if (!codes) return fail(codes.error());

@@ -14,6 +14,7 @@ struct DepthPlane {
   int height = 0;              ///< texels
   int cell = 0;                ///< pixels
   std::vector<float> inverse;  ///< 1 / depth of the nearest surface, per world unit; 0: background
+  bool seen_through = false;   ///< pixels may show things at several depths
 };
 
 /// The depth of a frame whose picture has `width` x `height` pixels. Fails where it does not fit to the picture, and

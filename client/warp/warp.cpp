@@ -8,6 +8,7 @@
 #include <glm/common.hpp>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
+#include <limits>
 #include <optional>
 #include <thread>
 #include <utility>
@@ -23,6 +24,9 @@ constexpr float kFilled = 0.9F;
 // Pixels beside an outline that differ by less than this from what is behind it, squared and summed over the channels,
 // belong to that. JPEG changes them by 2 to 4 levels.
 constexpr int kSameColor = 48;
+// Where things are seen through, the frame at rest is shown where its colour does not differ by more: another depth may
+// shine through there. Frames in motion are less sharp, so that opaque ones differ everywhere.
+constexpr int kSameLook = 6000;
 constexpr double kOnEdge = 1e-9;  // barycentric
 constexpr int kMostBands = 16;
 
@@ -310,9 +314,10 @@ void draw_newest(const Pixels& pixels, const std::vector<ScreenTriangle>& triang
   }
 }
 
-/// Draws what a former frame shows, where the newest one shows nothing, or the same not as sharp.
+/// Draws what a former frame shows, where the newest one shows nothing, or the same not as sharp. `most_off`: of its
+/// colour from that of the newest, see distance().
 void draw_rest(const Pixels& pixels, const std::vector<ScreenTriangle>& triangles, const Band& band,
-               const Target& newest, Target& target, Pixels& picture) {
+               const Target& newest, int most_off, Target& target, Pixels& picture) {
   for (const ScreenTriangle& triangle : triangles) {
     if (triangle.mesh->sheet == Sheet::kFill || triangle.mesh->background) continue;
     for_each_place(triangle, band, target.width, target.inverse, [&](const Place& place) {
@@ -324,7 +329,8 @@ void draw_rest(const Pixels& pixels, const std::vector<ScreenTriangle>& triangle
       const Shown drawn = wanted || !certain ? shown(pixels, triangle, place) : Shown{};
       if (!drawn.own) return;
       target.inverse[place.at] = place.inverse;
-      if (wanted) put(picture, place.at, drawn.color);
+      const bool alike = nothing || distance(drawn.color, color_at(&picture.bytes[4 * place.at])) <= most_off;
+      if (wanted && alike) put(picture, place.at, drawn.color);
     });
   }
 }
@@ -354,11 +360,12 @@ Pixels warp(const WarpFrame& newest, const WarpFrame* rest, const geometry::Came
     });
     below = screen_triangles(newest, target);
   }
+  const int most_off = rest && rest->seen_through ? kSameLook : std::numeric_limits<int>::max();
   Target seen(target);
   Target seen_above(target);
   in_bands(target.height, [&](const Band& band) {
     draw_newest(newest.pixels, below, band, seen, picture);
-    if (rest) draw_rest(rest->pixels, above, band, seen, seen_above, picture);
+    if (rest) draw_rest(rest->pixels, above, band, seen, most_off, seen_above, picture);
   });
   return picture;
 }

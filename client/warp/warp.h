@@ -22,6 +22,7 @@ struct WarpFrame {
   Pixels pixels;
   geometry::CameraFrame camera;  ///< of as many pixels
   WarpMesh mesh;
+  bool seen_through = false;  ///< DepthPlane::seen_through
 };
 
 /// What `target` sees, by the frames that are there: the newest one, which decides what is where, and a former one at

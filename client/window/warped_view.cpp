@@ -33,8 +33,11 @@ std::shared_ptr<const warp::WarpFrame> warp_frame(const wire::ViewFrame& frame, 
   const Result<warp::DepthPlane> depth = warp::decode_depth(frame.depth(), image.width, image.height);
   const Result<geometry::CameraFrame> camera = frame_of(frame.picture().camera(), image.width, image.height);
   if (!depth || !camera) return nullptr;
-  return std::make_shared<const warp::WarpFrame>(warp::WarpFrame{
-      {image.width, image.height, image.pixels}, *camera, warp::make_warp_mesh(*depth, image.width, image.height)});
+  return std::make_shared<const warp::WarpFrame>(
+      warp::WarpFrame{{image.width, image.height, image.pixels},
+                      *camera,
+                      warp::make_warp_mesh(*depth, image.width, image.height),
+                      depth->seen_through});
 }
 
 }  // namespace

@@ -69,7 +69,7 @@ std::vector<std::byte> deflated(std::span<const uint8_t> bytes) {
 
 /// The map with squares of four texels as one.
 picture::DepthMap halved(const picture::DepthMap& map) {
-  picture::DepthMap half{(map.width + 1) / 2, (map.height + 1) / 2, 2 * map.cell, {}};
+  picture::DepthMap half{(map.width + 1) / 2, (map.height + 1) / 2, 2 * map.cell, {}, map.seen_through};
   half.inverse.assign(static_cast<size_t>(half.width) * static_cast<size_t>(half.height), 0.0F);
   const auto width = static_cast<size_t>(map.width);
   const auto half_width = static_cast<size_t>(half.width);
@@ -91,7 +91,8 @@ std::optional<picture::EncodedDepth> encode_depth(picture::DepthMap map, size_t 
     const std::vector<uint8_t> codes = codes_of(map.inverse, first, range->last);
     std::vector<std::byte> packed = deflated(residuals_of(codes, map.width));
     if (packed.size() <= most_bytes || map.inverse.size() == 1) {
-      return picture::EncodedDepth{map.width, map.height, map.cell, first, range->last, std::move(packed)};
+      return picture::EncodedDepth{map.width,   map.height,        map.cell,        first,
+                                   range->last, std::move(packed), map.seen_through};
     }
     map = halved(map);
   }

@@ -118,6 +118,7 @@ void to_wire(const picture::EncodedDepth& depth, wire::DepthPlane& message) {
   message.set_first(depth.first);
   message.set_last(depth.last);
   message.set_codes(depth.codes.data(), depth.codes.size());
+  message.set_seen_through(depth.seen_through);
 }
 
 void to_wire(view::ViewMessage message, wire::ViewFrame& frame) {

@@ -13,6 +13,7 @@ struct DepthMap {
   int height = 0;              ///< texels
   int cell = 0;                ///< pixels
   std::vector<float> inverse;  ///< 1 / camera z, per world unit; 0: nothing but background
+  bool seen_through = false;   ///< pixels may show things at several depths, of which the map has one
 };
 
 /// A depth map as clients receive it: wire::DepthPlane.
@@ -23,13 +24,14 @@ struct EncodedDepth {
   double first = 0;  ///< inverse depth of code 1, per world unit
   double last = 0;   ///< inverse depth of code 255
   std::vector<std::byte> codes;
+  bool seen_through = false;  ///< as in DepthMap
 };
 
 /// An empty map for a picture of this many pixels, with at most `texels` texels a side.
 inline DepthMap empty_depth_map(int width, int height, int texels) {
   const int longer = width > height ? width : height;
   const int cell = (longer + texels - 1) / texels;
-  DepthMap map{(width + cell - 1) / cell, (height + cell - 1) / cell, cell, {}};
+  DepthMap map{(width + cell - 1) / cell, (height + cell - 1) / cell, cell, {}, false};
   map.inverse.assign(static_cast<size_t>(map.width) * static_cast<size_t>(map.height), 0.0F);
   return map;
 }

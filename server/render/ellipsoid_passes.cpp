@@ -174,12 +174,16 @@ Status light_and_filter(const RegionTask& task, const EllipsoidWork& work, const
       own.rows.bind(SURFCAST_BIND_GLYPH_ROWS);
       buffers.picture.bind(SURFCAST_BIND_PICTURE);
       glUseProgram(program->name());
-      if (work.target == EllipsoidTarget::kPicture || program == programs.filter_rows) return;
-      buffers.volume.layers.bind(SURFCAST_BIND_LAYERS);
+      const bool layers = work.target != EllipsoidTarget::kPicture && program != programs.filter_rows;
+      const bool fronts = programs.keeps_fronts && program == programs.shade;
+      if (layers) buffers.volume.layers.bind(SURFCAST_BIND_LAYERS);
+      if (fronts) buffers.fronts.bind(SURFCAST_BIND_FRONTS);
+      if (!layers && !fronts) return;
       glUniform4i(SURFCAST_UNIFORM_SURFACES, task.drawn.x, task.drawn.y, task.drawn.width, task.drawn.height);
     });
   };
   const Region& samples = work.samples;
+  if (programs.keeps_fronts) clear_fronts(task.drawn, buffers);
   Status status = dispatch(programs.shade, own.frame, samples.width, samples.height, own.shade_batches);
   if (status) {
     status = dispatch(programs.filter_rows, own.frame, runs_of(task.drawn.width), samples.height, own.row_batches);
@@ -256,7 +260,7 @@ Result<std::optional<RegionStats>> draw_ellipsoids(const RegionTask& task, Progr
   Result<std::optional<RegionStats>> drawn = draw_passes(task, target, programs, buffers, preemption);
   if (!drawn || !*drawn) return drawn;
   add(**drawn, stats);
-  const Result<double> read = read_picture(buffers, pixels);
+  const Result<double> read = read_picture(task, buffers, pixels);
   if (!read) return fail(read.error());
   stats.read_ms = *read;
   return std::optional(stats);

@@ -73,10 +73,9 @@ Status blend(const GaussianRound& round, const GaussianPrograms& programs, float
     buffers.picture.bind(SURFCAST_BIND_PICTURE);
     buffers.gaussians.records.bind_for_reading(SURFCAST_UNIT_SPLATS);
     buffers.gaussians.lists.bind_for_reading(SURFCAST_UNIT_LISTS);
-    if (programs.layered) {
-      buffers.volume.layers.bind(SURFCAST_BIND_LAYERS);
-      buffers.gaussians.keys.bind_for_reading(SURFCAST_UNIT_BOUNDS);
-    }
+    if (programs.layered) buffers.volume.layers.bind(SURFCAST_BIND_LAYERS);
+    if (programs.needs_keys()) buffers.gaussians.keys.bind_for_reading(SURFCAST_UNIT_BOUNDS);
+    if (programs.keeps_fronts) buffers.fronts.bind(SURFCAST_BIND_FRONTS);
     if (programs.keeps) buffers.gaussians.layers.bind(SURFCAST_BIND_KEPT);
     glUseProgram(programs.blend->name());
     glUniform2ui(SURFCAST_UNIFORM_SPAN, round.tiles, round.first);
@@ -183,6 +182,7 @@ Result<std::optional<RegionStats>> draw_gaussians(const RegionTask& task, Progra
     stats.splat_ms += (*added)->splat_ms;
   }
   if (variant.keeps) clear_layers(task.drawn, buffers.gaussians.layers);
+  if (variant.depth) clear_fronts(task.drawn, buffers);
   ProjectionWork work = plan_work(task, gaussians);
   const Result<GaussianPrograms> compiled = programs.gaussians(variant, form_of(task, work));
   if (!compiled) return fail(compiled.error());
@@ -217,7 +217,7 @@ Result<std::optional<RegionStats>> draw_gaussians(const RegionTask& task, Progra
     if (!status) return fail(std::move(status.error()));
   }
   stats.splat_ms += blend_watch.milliseconds();
-  const Result<double> read = read_picture(buffers, pixels);
+  const Result<double> read = read_picture(task, buffers, pixels);
   if (!read) return fail(read.error());
   stats.read_ms = *read;
   return std::optional(stats);

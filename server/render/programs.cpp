@@ -78,6 +78,10 @@ std::string float_define(const Variant& variant) {
   return variant.float_picture ? "#define SURFCAST_FLOAT_PICTURE\n" : "";
 }
 
+std::string fronts_define(bool kept) {
+  return kept ? "#define SURFCAST_KEEPS_FRONTS\n" : "";
+}
+
 std::string layers_define(const Variant& variant) {
   return variant.layered ? "#define SURFCAST_LAYERS\n" : "";
 }
@@ -221,7 +225,7 @@ Result<LongListPrograms> Programs::long_lists(const Variant& variant, const Pict
     return {};
   };
   constexpr int kPixels = SURFCAST_TILE_WIDTH * SURFCAST_TILE_HEIGHT;
-  const std::string fronts = variant.keeps_fronts() ? "#define SURFCAST_KEEPS_FRONTS\n" : "";
+  const std::string fronts = fronts_define(variant.keeps_fronts());
   const int small_lanes = shape_.whole_tiles ? 1 : kPixels;
   LongListPrograms programs;
   Status status = compile(programs.splat, tile_kernel(variant), false,
@@ -250,7 +254,8 @@ Result<VolumePrograms> Programs::volumes(const Variant& variant, size_t volumes)
   const std::string look = std::string(variant.clipped ? "#define SURFCAST_CLIPPED\n" : "") +
                            (variant.shaded ? "#define SURFCAST_SHADED\n" : "") +
                            (gradients ? "#define SURFCAST_GRADIENTS\n" : "") +
-                           (variant.volume_surfaces ? "#define SURFCAST_SURFACES\n" : "") + layers + several;
+                           (variant.volume_surfaces ? "#define SURFCAST_SURFACES\n" : "") + layers + several +
+                           fronts_define(variant.depth);
   const std::string name = several.empty() ? "volume.comp" : "volume.comp for several volumes";
   const Result<const gl::Program*> draw = program({name, "volume.comp"}, look);
   if (!draw) return fail(draw.error());
@@ -278,10 +283,11 @@ Result<GaussianPrograms> Programs::gaussians(const Variant& variant, GaussianFor
   std::string projection = form_define + define("SURFCAST_PROJECT_LANES", shape_.project_lanes);
   projection += define("SURFCAST_HARMONICS", variant.harmonics);
   if (variant.clipped) projection += "#define SURFCAST_CLIPPED\n";
+  const bool keeps_fronts = variant.depth && !variant.keeps;  // else they are kept by what is drawn in between
   const std::string blending = form_define + define("SURFCAST_BLEND_ROWS", shape_.blend_rows()) +
                                define("SURFCAST_BLEND_LANES", static_cast<int>(programs.lanes)) +
                                float_define(variant) + layers_define(variant) +
-                               (variant.keeps ? "#define SURFCAST_KEEPS\n" : "");
+                               (variant.keeps ? "#define SURFCAST_KEEPS\n" : "") + fronts_define(keeps_fronts);
   const Result<const gl::Program*> project = program({"projection of gaussian", "gaussian/project.comp"}, projection);
   if (!project) return fail(project.error());
   const char* file = rays ? "gaussian/blend_rays.comp" : "gaussian/blend.comp";
@@ -290,6 +296,7 @@ Result<GaussianPrograms> Programs::gaussians(const Variant& variant, GaussianFor
   programs.project = *project;
   programs.blend = *blend;
   programs.layered = variant.layered;
+  programs.keeps_fronts = keeps_fronts;
   if (variant.layered) programs.round = SURFCAST_LAYERED_GAUSSIAN_ROUND;
   programs.keeps = variant.keeps;
   programs.has_near = form == GaussianForm::kFlat;
@@ -324,7 +331,11 @@ Result<EllipsoidPrograms> Programs::ellipsoids(const Variant& variant, bool mapp
   const std::string layers = target == EllipsoidTarget::kPicture ? "" : "#define SURFCAST_LAYERS\n";
   const std::string written =
       target == EllipsoidTarget::kLayers ? "#define SURFCAST_ADDS_LAYER\n" : float_define(variant);
-  if (status) status = compile(programs.shade, "light of ellipsoid", "ellipsoid/shade.comp", samples + shape + layers);
+  if (status) {
+    programs.keeps_fronts = variant.depth && target != EllipsoidTarget::kLayers;
+    const std::string fronts = fronts_define(programs.keeps_fronts);
+    status = compile(programs.shade, "light of ellipsoid", "ellipsoid/shade.comp", samples + shape + layers + fronts);
+  }
   constexpr const char* kFilter = "ellipsoid/filter.comp";
   if (status) status = compile(programs.filter_rows, kFilter, kFilter, samples + layers);
   if (status) {
@@ -360,7 +371,7 @@ Result<SplatPrograms> Programs::variant(const Variant& variant, const PictureKin
   const std::string at_once = splat + define("SURFCAST_TILES_AT_ONCE", shape_.tiles_at_once);
   const std::string small = at_once + lane_defines(shape_.whole_tiles);
   const std::string large = at_once + lane_defines(false) + "#define SURFCAST_LARGE\n";
-  const std::string fronts = variant.keeps_fronts() ? "#define SURFCAST_KEEPS_FRONTS\n" : "";
+  const std::string fronts = fronts_define(variant.keeps_fronts());
   const std::string selecting = selects(variant) ? "#define SURFCAST_SELECTS\n" : "";
   const char* kernel = tile_kernel(variant);
   Status status = compile(programs.splat, plain(kernel), small + fronts + selecting);

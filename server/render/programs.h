@@ -124,7 +124,11 @@ struct GaussianPrograms {
   uint32_t lanes = 8;          ///< of its work groups
   bool has_near = false;       ///< the blending pass needs the depth of the nearest centre
   bool keeps = false;          ///< the blending pass writes layers
-  bool layered = false;        ///< the blending pass reads the surfaces of the pixels and the keys of the Gaussians
+  bool layered = false;        ///< the blending pass reads the surfaces of the pixels
+  bool keeps_fronts = false;   ///< the blending pass writes the depths of the pixels
+
+  /// The blending pass reads the keys of the Gaussians.
+  [[nodiscard]] bool needs_keys() const { return layered || keeps_fronts; }
 };
 
 /// Where ellipsoids go: into the picture, into a picture with surfaces, which are kept in layers, or among these
@@ -138,6 +142,7 @@ struct EllipsoidPrograms {
   const gl::Program* shade = nullptr;    ///< lights it
   const gl::Program* filter_rows = nullptr;
   const gl::Program* filter_columns = nullptr;
+  bool keeps_fronts = false;   ///< `shade` writes the depths of the pixels
   uint32_t samples = 1;        ///< of a pixel
   uint32_t record = 1;         ///< texels of an ellipsoid on the screen
   uint32_t round = 1;          ///< list entries that a lane draws in one dispatch

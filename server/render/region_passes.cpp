@@ -315,18 +315,25 @@ void clear_layers(const Region& drawn, StorageBuffer& layers) {
   layers.clear();
 }
 
+void clear_fronts(const Region& drawn, SplatBuffers& buffers) {
+  buffers.fronts.reserve(static_cast<size_t>(drawn.width) * static_cast<size_t>(drawn.height) * sizeof(float));
+  buffers.fronts.clear();
+}
+
 Result<std::optional<RegionStats>> draw_layers(RegionTask task, const PictureKinds& kinds, Programs& programs,
                                                SplatBuffers& buffers, const Preemption& preemption) {
   task.variant.layered = task.variant.eye_dome = true;
   task.variant.silhouettes = false;
+  task.variant.depth = false;  // that of the pixels is known when all is drawn
   // The depth of all that is behind the front surface as one would not be known.
   task.variant.blends_behind = false;
   return draw_surfaces(task, kinds, programs, buffers, preemption);
 }
 
-Result<double> read_picture(const SplatBuffers& buffers, std::span<std::byte> pixels) {
+Result<double> read_picture(const RegionTask& task, const SplatBuffers& buffers, std::span<std::byte> pixels) {
   const Stopwatch watch;
   glGetNamedBufferSubData(buffers.picture.name(), 0, static_cast<GLsizeiptr>(pixels.size()), pixels.data());
+  if (task.variant.depth) read_depth(task, buffers);
   const double milliseconds = watch.milliseconds();
   if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
     return fail(error == GL_OUT_OF_MEMORY ? ErrorKind::kLimit : ErrorKind::kInternal,
@@ -345,11 +352,9 @@ Result<std::optional<RegionStats>> draw_region(const RegionTask& task, Programs&
       bricks.empty() ? draw_surfaces(task, kinds, programs, buffers, preemption)
                      : draw_with_volumes(task, kinds, bricks, programs, buffers, preemption);
   if (!drawn || !*drawn) return drawn;
-  const Result<double> read = read_picture(buffers, pixels);
+  const Result<double> read = read_picture(task, buffers, pixels);
   if (!read) return fail(read.error());
-  const Stopwatch watch;
-  if (task.variant.depth) read_depth(task, buffers);
-  (*drawn)->read_ms = *read + watch.milliseconds();
+  (*drawn)->read_ms = *read;
   return drawn;
 }
 

@@ -61,13 +61,17 @@ Result<std::optional<RegionStats>> draw_region(const RegionTask& task, Programs&
 /// Makes room for the layers of every pixel (shared/volume_layout.h), none of which there is yet.
 void clear_layers(const Region& drawn, StorageBuffer& layers);
 
+/// Makes room for the depths of the pixels, none of which there is yet.
+void clear_fronts(const Region& drawn, SplatBuffers& buffers);
+
 /// Draws the surfaces of a region for what is drawn between them: they are kept in `buffers.volume.layers`
 /// (shaders/include/keep_layer.glsl). Eye-dome lighting and supersampled silhouettes are left out. `kinds`: those that
 /// are drawn as surfaces. None if the tile lists are too long.
 Result<std::optional<RegionStats>> draw_layers(RegionTask task, const PictureKinds& kinds, Programs& programs,
                                                SplatBuffers& buffers, const Preemption& preemption);
 
-/// Reads the finished pixels. Returns the milliseconds that it took. Fails on errors of OpenGL up to here.
-Result<double> read_picture(const SplatBuffers& buffers, std::span<std::byte> pixels);
+/// Reads the finished pixels, and enters their depths in the depth map if it is asked for. Returns the milliseconds that
+/// it took. Fails on errors of OpenGL up to here.
+Result<double> read_picture(const RegionTask& task, const SplatBuffers& buffers, std::span<std::byte> pixels);
 
 }  // namespace surfcast::render

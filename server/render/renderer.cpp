@@ -91,11 +91,6 @@ Variant variant_of(const model::ModelInfo& info, const DisplayOptions& display,
   return variant;
 }
 
-/// Whether one depth can stand for each pixel: that of its front surface.
-bool has_one_depth(const Scene& scene, const Variant& variant) {
-  return scene.has_surfaces() && !scene.mixed() && !variant.transparent;
-}
-
 /// Copies a region from the pixels of `written`, which contains it.
 void copy_region(const Region& region, const Region& written, std::span<const std::byte> from, size_t bytes_per_pixel,
                  picture::Image& image) {
@@ -292,8 +287,9 @@ Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const pict
   if (scene.has_gaussians() || scene.has_glyphs()) variant.eye_dome = false;
   // Harmonics of higher degrees cost as much as all else of a projection, and change little from picture to picture.
   if (request.rest_spacing) variant.harmonics = 1;
-  variant.depth = request.depth_texels > 0 && has_one_depth(scene, variant);
+  variant.depth = request.depth_texels > 0 && !variant.density;  // a medium has no surfaces
   if (variant.depth) result.depth = picture::empty_depth_map(request.width, request.height, request.depth_texels);
+  result.depth.seen_through = variant.depth && (variant.transparent || !scene.model().volumes().empty());
   variant.silhouettes &= view.nothing_pending;  // a picture that will soon be redrawn does not need supersampling
   const bool layered = scene.mixed() || scene.has_glyphs();  // many buffers for every pixel
   const int margin = variant.eye_dome || variant.silhouettes || scene.mixed() ? kNeighbourMargin : 0;

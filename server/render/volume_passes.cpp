@@ -49,6 +49,7 @@ void bind(const RegionTask& task, const SplatBuffers& buffers, const gl::Program
     (task.variant.codes ? buffers.gaussians.layers : buffers.volume.layers).bind(SURFCAST_BIND_LAYERS);
     buffers.volume.surface_light.bind(SURFCAST_BIND_SURFACE_LIGHT);
   }
+  if (task.variant.depth) buffers.fronts.bind(SURFCAST_BIND_FRONTS);
   if (task.variant.volume_surfaces) {
     buffers.volume.surfaces.bind_uniforms(SURFCAST_BIND_VOLUME_SURFACES);
     buffers.volume.ramp.bind(SURFCAST_UNIT_RAMP);
@@ -104,6 +105,7 @@ Status draw_volumes(const RegionTask& task, const Region& written, double depth_
   Result<VolumePrograms> compiled = programs.volumes(task.variant, room_for_volumes(plan.constants.size()));
   if (!compiled) return fail(std::move(compiled.error()));
   upload_plan(task, plan, buffers);
+  if (task.variant.depth) clear_fronts(task.drawn, buffers);
   const auto dispatch = [&](const gl::Program* program, int width, int height, BatchSizer& sizer) {
     return dispatch_in_batches(all_pixels(width, height), sizer, preemption, [&] { bind(task, buffers, *program); });
   };

@@ -172,8 +172,8 @@ void fields(Archive& archive, T& value) {
 
 template <typename Archive, worker::Is<DepthMap> T>
 void fields(Archive& archive, T& value) {
-  auto& [width, height, cell, inverse] = value;
-  archive(width, height, cell, inverse);
+  auto& [width, height, cell, inverse, seen_through] = value;
+  archive(width, height, cell, inverse, seen_through);
 }
 
 /// The pixels travel in shared memory.

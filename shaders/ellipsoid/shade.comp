@@ -50,9 +50,8 @@ float depth_of(EllipsoidHit e, int place, vec2 at) {
 }
 #endif
 
-#ifdef SURFCAST_LAYERS
+#include "include/front.glsl"
 #include "ellipsoid/surfaces.glsl"
-#endif
 
 // Light and coverage of a hit, and its inverse depth.
 vec4 shade(int place, vec2 pixel, out float depth) {
@@ -61,15 +60,36 @@ vec4 shade(int place, vec2 pixel, out float depth) {
   vec3 color;
   vec2 at = place_of(e, pixel);
   vec3 n = normal_of(e, place, at, color);
-#ifdef SURFCAST_LAYERS
+#if defined(SURFCAST_LAYERS) || defined(SURFCAST_KEEPS_FRONTS)
   depth = depth_of(e, place, at);
 #endif
   return vec4(lit(color, normalize(n), vec3(ray_of_pixel(pixel), 1.0)), 1.0) * frame.background.w;
 }
 
+#ifdef SURFCAST_KEEPS_FRONTS
+// Keeps the depth of a pixel. `nearest`: inverse depth of the nearest hit of its samples.
+void keep_front(ivec2 at, float nearest) {
+  ivec2 pixel = at + frame.region.xy - surface_region.xy;
+  if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, surface_region.zw))) return;
+  float front = 0.0;
+  float clear = 1.0;
+#ifdef SURFCAST_LAYERS
+  int behind = pass_surfaces(pixel, 0, nearest, front, clear);
+#endif
+  float covered = nearest > 0.0 ? frame.background.w : 0.0;
+  front = pass_front(front, clear, clear * (1.0 - covered), nearest);
+  clear *= 1.0 - covered;
+#ifdef SURFCAST_LAYERS
+  pass_surfaces(pixel, behind, 0.0, front, clear);
+#endif
+  fronts[pixel.y * surface_region.z + pixel.x] = end_front(front, clear);
+}
+#endif
+
 void main() {
   ivec2 at = ivec2(gl_GlobalInvocationID.xy) + ivec2(0, int(first_group) * SURFCAST_BLOCK_HEIGHT);
   if (any(greaterThanEqual(at, frame.region.zw))) return;
+  float nearest = 0.0;
   for (int s = 0; s < SURFCAST_SAMPLES; ++s) {
     int index = sample_index(at, s);
     uint id = ids[index];
@@ -88,5 +108,9 @@ void main() {
 #else
     shades[index] = uvec2(packHalf2x16(light.rg), packHalf2x16(light.ba));
 #endif
+    nearest = max(nearest, depth);
   }
+#ifdef SURFCAST_KEEPS_FRONTS
+  keep_front(at, nearest);
+#endif
 }

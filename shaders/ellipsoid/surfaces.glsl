@@ -1,9 +1,12 @@
 // The surfaces of a pixel (include/keep_layer.glsl) beside its ellipsoids.
-#ifdef SURFCAST_LAYERS
 #include "shared/volume_layout.h"
 
-layout(std430, binding = SURFCAST_BIND_LAYERS) buffer Layers { uint layers[]; };
+#if defined(SURFCAST_LAYERS) || defined(SURFCAST_KEEPS_FRONTS)
 layout(location = SURFCAST_UNIFORM_SURFACES) uniform ivec4 surface_region;  // pixels whose surfaces are kept
+#endif
+
+#ifdef SURFCAST_LAYERS
+layout(std430, binding = SURFCAST_BIND_LAYERS) buffer Layers { uint layers[]; };
 
 int surface_word(ivec2 at, int number) {
   return ((at.y * surface_region.z + at.x) * SURFCAST_LAYERS_KEPT + number) * SURFCAST_LAYER_WORDS;
@@ -36,4 +39,19 @@ vec2 surfaces_through(ivec2 at, float depth) {
   }
   return through;
 }
+
+#ifdef SURFCAST_KEEPS_FRONTS
+// Passes the surfaces from number `first` on that are before an inverse depth (include/front.glsl). Returns the number
+// of the first one behind it. `at`: of the surfaces' region.
+int pass_surfaces(ivec2 at, int first, float depth, inout float front, inout float clear) {
+  float before = surface_clear(at, first - 1);
+  for (; surface_depth(at, first) > depth; ++first) {
+    float after = clear * surface_clear(at, first) / max(before, 1e-12);
+    front = pass_front(front, clear, after, surface_depth(at, first));
+    clear = after;
+    before = surface_clear(at, first);
+  }
+  return first;
+}
+#endif
 #endif

@@ -17,10 +17,13 @@ layout(binding = SURFCAST_UNIT_SPLATS) uniform usamplerBuffer records;
 layout(binding = SURFCAST_UNIT_LISTS) uniform usamplerBuffer lists;
 layout(std430, binding = SURFCAST_BIND_LIGHT) buffer State { vec4 states[]; };
 #include "gaussian/write_codes.glsl"
-#ifdef SURFCAST_LAYERS
-#include "gaussian/surfaces.glsl"
+#include "include/front.glsl"
+#if defined(SURFCAST_LAYERS) || defined(SURFCAST_KEEPS_FRONTS)
 // Depth (float bits) and tiles of each Gaussian, by its place.
 layout(binding = SURFCAST_UNIT_BOUNDS) uniform usamplerBuffer keys;
+#endif
+#ifdef SURFCAST_LAYERS
+#include "gaussian/surfaces.glsl"
 #ifdef SURFCAST_KEEPS
 #include "gaussian/keep_layers.glsl"
 #endif
@@ -32,6 +35,9 @@ struct Row {
   vec4 green;
   vec4 blue;
   vec4 clear;
+#ifdef SURFCAST_KEEPS_FRONTS
+  vec4 front;  // see include/front.glsl
+#endif
 #ifdef SURFCAST_LAYERS
   ivec4 passed;  // surfaces that have been blended
   vec4 next;     // depth of the next one
@@ -83,6 +89,9 @@ void blend_nearer(ivec2 at, float depth, inout Row row) {
     float before = clear;
 #endif
     if (clear > 0.0) blend_surfaces(at + ivec2(x, 0), depth, float(SURFCAST_TRAINED_CLEAR), passed, color, clear);
+#ifdef SURFCAST_KEEPS_FRONTS
+    row.front[x] = pass_front(row.front[x], row.clear[x], clear, 1.0 / row.next[x]);
+#endif
 #ifdef SURFCAST_KEEPS
     if (before > 0.0) row.filling[x].depth += (before - abs(clear)) * row.next[x];
     if (before > 0.0) end_layer(at + ivec2(x, 0), row.filling[x], color, clear);
@@ -136,10 +145,20 @@ void keep_row(ivec2 at, inout Row row, bool finished) {
 #endif
 #endif
 
+#ifdef SURFCAST_KEEPS_FRONTS
+// After a Gaussian at this depth; `before`: the row's transmittances without it.
+void pass_fronts(vec4 before, float depth, inout Row row) {
+  for (int x = 0; x < 4; ++x) row.front[x] = pass_front(row.front[x], before[x], row.clear[x], 1.0 / depth);
+}
+#endif
+
 Row load_row(ivec2 at) {
   Row row;
   row.red = row.green = row.blue = vec4(0.0);
   row.clear = vec4(1.0);
+#ifdef SURFCAST_KEEPS_FRONTS
+  row.front = vec4(0.0);
+#endif
   if (span.y == 0u) return row;
   for (int x = 0; x < 4; ++x) {
     vec4 state = inside(at + ivec2(x, 0)) ? states[state_of(at + ivec2(x, 0))] : vec4(0.0, 0.0, 0.0, -1.0);
@@ -147,6 +166,9 @@ Row load_row(ivec2 at) {
     row.green[x] = state.g;
     row.blue[x] = state.b;
     row.clear[x] = state.a;
+#ifdef SURFCAST_KEEPS_FRONTS
+    if (inside(at + ivec2(x, 0))) row.front[x] = fronts[state_of(at + ivec2(x, 0))];
+#endif
   }
   return row;
 }
@@ -160,11 +182,20 @@ void store_row(ivec2 at, Row row, bool finished) {
 #ifdef SURFCAST_KEEPS
     if (finished) continue;
 #endif
-    if (finished) write_codes_before(pixel, color, abs(row.clear[x]), behind_gaussians(pixel, row.passed[x]));
-    else states[state_of(pixel)] = vec4(color, pack_state(row.clear[x], row.passed[x]));
+    vec4 behind = behind_gaussians(pixel, row.passed[x]);
+    if (finished) write_codes_before(pixel, color, abs(row.clear[x]), behind);
+#ifdef SURFCAST_KEEPS_FRONTS
+    float through = row.clear[x] * behind.a;
+    float front = pass_front(row.front[x], row.clear[x], through, 1.0 / surface_depth(pixel, row.passed[x]));
+    fronts[state_of(pixel)] = finished ? end_front(front, through) : row.front[x];
+#endif
+    if (!finished) states[state_of(pixel)] = vec4(color, pack_state(row.clear[x], row.passed[x]));
 #else
     if (finished) write_codes(pixel, color, abs(row.clear[x]));
     else states[state_of(pixel)] = vec4(color, row.clear[x]);
+#ifdef SURFCAST_KEEPS_FRONTS
+    fronts[state_of(pixel)] = finished ? end_front(row.front[x], row.clear[x]) : row.front[x];
+#endif
 #endif
   }
 }
@@ -191,8 +222,10 @@ void main() {
     int place = int(texelFetch(lists, int(list.y + i)).x);
     ScreenGaussian g = decode_gaussian(texelFetch(records, SURFCAST_GAUSSIAN_RECORD * place),
                                        texelFetch(records, SURFCAST_GAUSSIAN_RECORD * place + 1));
-#ifdef SURFCAST_LAYERS
+#if defined(SURFCAST_LAYERS) || defined(SURFCAST_KEEPS_FRONTS)
     float depth = uintBitsToFloat(texelFetch(keys, place).x);
+#endif
+#ifdef SURFCAST_LAYERS
     for (int r = 0; r < SURFCAST_BLEND_ROWS; ++r) blend_nearer(at + ivec2(0, r), depth, rows[r]);
 #endif
     vec4 dx = pixel.x - g.centre.x + vec4(0.0, 1.0, 2.0, 3.0);
@@ -206,6 +239,10 @@ void main() {
     float clear = largest_clear(rows[0]);
     for (int r = 1; r < SURFCAST_BLEND_ROWS; ++r) clear = max(clear, largest_clear(rows[r]));
 #else
+#ifdef SURFCAST_KEEPS_FRONTS
+    vec4 before[SURFCAST_BLEND_ROWS];
+    for (int r = 0; r < SURFCAST_BLEND_ROWS; ++r) before[r] = rows[r].clear;
+#endif
     blend(g, dx, dy, rows[0]);
     float clear = largest_clear(rows[0]);
 #if SURFCAST_BLEND_ROWS == 4
@@ -213,6 +250,9 @@ void main() {
     blend(g, dx, dy + 2.0, rows[2]);
     blend(g, dx, dy + 3.0, rows[3]);
     clear = max(max(clear, largest_clear(rows[1])), max(largest_clear(rows[2]), largest_clear(rows[3])));
+#endif
+#ifdef SURFCAST_KEEPS_FRONTS
+    for (int r = 0; r < SURFCAST_BLEND_ROWS; ++r) pass_fronts(before[r], depth, rows[r]);
 #endif
 #endif
     if (clear < 0.0) break;

@@ -21,6 +21,7 @@ layout(binding = SURFCAST_UNIT_SPLATS) uniform usamplerBuffer records;
 layout(binding = SURFCAST_UNIT_LISTS) uniform usamplerBuffer lists;
 layout(std430, binding = SURFCAST_BIND_LIGHT) buffer State { vec4 states[]; };
 #include "gaussian/write_codes.glsl"
+#include "include/front.glsl"
 #ifdef SURFCAST_LAYERS
 #include "gaussian/surfaces.glsl"
 #ifdef SURFCAST_KEEPS
@@ -44,6 +45,9 @@ struct Waiting {
 struct Pixel {
   vec3 d;
   vec4 state;
+#ifdef SURFCAST_KEEPS_FRONTS
+  float front;  // see include/front.glsl
+#endif
 #ifdef SURFCAST_LAYERS
   ivec2 at;    // in the region
   int passed;  // surfaces that have been blended
@@ -121,7 +125,13 @@ void blend_nearer(float depth, inout Pixel pixel) {
   end_layer(pixel.at, pixel.filling, color, clear);
   float surface = surface_depth(pixel.at, pixel.passed);
 #endif
+#ifdef SURFCAST_KEEPS_FRONTS
+  float nearest = surface_depth(pixel.at, pixel.passed);
+#endif
   blend_surfaces(pixel.at, depth, kClear, pixel.passed, color, clear);
+#ifdef SURFCAST_KEEPS_FRONTS
+  pixel.front = pass_front(pixel.front, pixel.state.a, clear, 1.0 / nearest);
+#endif
 #ifdef SURFCAST_KEEPS
   pixel.filling.depth += (pixel.state.a - abs(clear)) * surface;
   end_layer(pixel.at, pixel.filling, color, clear);
@@ -146,6 +156,9 @@ void blend(float depth, vec4 light, inout Pixel pixel) {
 #endif
 #ifdef SURFCAST_KEEPS
   fill_layer(pixel.at, pixel.filling, pixel.state.rgb, pixel.state.a, pixel.state.a - left, depth);
+#endif
+#ifdef SURFCAST_KEEPS_FRONTS
+  pixel.front = pass_front(pixel.front, pixel.state.a, left, depth > 0.0 ? 1.0 / depth : 0.0);
 #endif
   pixel.state = vec4(pixel.state.rgb + pixel.state.a * light.a * light.rgb, left);
 #ifdef SURFCAST_EXACT
@@ -217,6 +230,9 @@ Pixel begin_pixel(ivec2 at) {
   pixel.d = vec3(ray_of_pixel(vec2(frame.region.xy + at) + 0.5), 1.0);
   pixel.state = vec4(0.0, 0.0, 0.0, inside(at) ? 1.0 : -1.0);
   if (span.y > 0u && inside(at)) pixel.state = states[state_of(at)];
+#ifdef SURFCAST_KEEPS_FRONTS
+  pixel.front = span.y > 0u && inside(at) ? fronts[state_of(at)] : 0.0;
+#endif
 #ifdef SURFCAST_LAYERS
   pixel.at = at;
   pixel.state.a = unpack_state(pixel.state.a, pixel.passed);
@@ -245,13 +261,24 @@ void end_pixel(Pixel pixel, ivec2 at, bool finished) {
 #endif
 #ifdef SURFCAST_LAYERS
 #ifndef SURFCAST_KEEPS
-  if (finished) write_codes_before(at, state.rgb, abs(state.a), behind_gaussians(at, pixel.passed));
+  vec4 behind = behind_gaussians(at, pixel.passed);
+  if (finished) write_codes_before(at, state.rgb, abs(state.a), behind);
+#ifdef SURFCAST_KEEPS_FRONTS
+  if (finished) {
+    float through = state.a * behind.a;
+    pixel.front = pass_front(pixel.front, state.a, through, 1.0 / surface_depth(at, pixel.passed));
+    pixel.state.a = through;
+  }
+#endif
 #endif
   state.a = pack_state(state.a, pixel.passed);
   if (!finished) states[state_of(at)] = state;
 #else
   if (finished) write_codes(at, state.rgb, abs(state.a));
   else states[state_of(at)] = state;
+#endif
+#ifdef SURFCAST_KEEPS_FRONTS
+  fronts[state_of(at)] = finished ? end_front(pixel.front, pixel.state.a) : pixel.front;
 #endif
 }
 

@@ -138,12 +138,20 @@ struct Pixels {
   Columns limit;  // inverse depth; 0 where nothing is left
   WaitingColumns waiting;
   LightColumns light;
+#ifdef SURFCAST_KEEPS_FRONTS
+  Columns front;  // see include/front.glsl
+#endif
 };
 
 Pixels begin_pixels(int wanted) {
   Pixels pixels;
   begin_drawing(wanted, pixels.limit, pixels.light);
-  for (int c = 0; c < SURFCAST_COLUMNS; ++c) pixels.waiting[c] = waiting_none();
+  for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
+    pixels.waiting[c] = waiting_none();
+#ifdef SURFCAST_KEEPS_FRONTS
+    pixels.front[c] = Rows(0.0);
+#endif
+  }
   return pixels;
 }
 
@@ -208,6 +216,20 @@ void add_all(TileLists tile, vec2 pixel, Columns limit, Columns surface, float u
   share_sums(sums);
 }
 
+// Composites what waits in a column, with this opacity, where `now` is 1. `end`: the inverse depth to which it reaches.
+void composite(inout Pixels pixels, int c, Rows opacity, Rows now, Rows end, vec2 pixel) {
+#ifdef SURFCAST_KEEPS_FRONTS
+  Rows before = pixels.light[c].transmittance;
+#endif
+  composite_waiting(pixels.light[c], pixels.waiting[c], opacity, now, column(pixel, c), c);
+#ifdef SURFCAST_KEEPS_FRONTS
+  Rows after = pixels.light[c].transmittance;
+  for (int i = 0; i < SURFCAST_ROWS; ++i) {
+    ROW(pixels.front[c], i) = pass_front(ROW(pixels.front[c], i), ROW(before, i), ROW(after, i), ROW(end, i));
+  }
+#endif
+}
+
 // Lets a surface wait, and composites what waited if it is not a part of the same surface.
 void take_surface(inout Pixels pixels, int c, SurfaceSums sums, Rows begin, Rows end, float one, vec2 pixel) {
   BoolRows open = is_open(pixels, c);
@@ -216,7 +238,7 @@ void take_surface(inout Pixels pixels, int c, SurfaceSums sums, Rows begin, Rows
   joins *= mix(Rows(0.0), Rows(1.0), at_most(pixels.waiting[c].end, begin));
   joins = mix(Rows(1.0), joins, open);
   Rows opacity = opacity_of(pixels.waiting[c]);
-  composite_waiting(pixels.light[c], pixels.waiting[c], opacity, 1.0 - joins, column(pixel, c), c);
+  composite(pixels, c, opacity, 1.0 - joins, pixels.waiting[c].end, pixel);
   Rows last = mix(pixels.waiting[c].end, end, open);
   wait_for_next(pixels.waiting[c], sums, last, joins, one);
   pixels.limit[c] = mix(pixels.limit[c], end, open);
@@ -226,7 +248,7 @@ void blend_medium(inout Pixels pixels, int c, SurfaceSums sums, float one, vec2 
   wait_for_next(pixels.waiting[c], sums, Rows(0.0), Rows(0.0), one);
   Rows opacity = 1.0 - exp(-kDepthUnit * pixels.waiting[c].count);
   opacity = mix(Rows(0.0), opacity, less(Rows(0.0), pixels.waiting[c].opacity));
-  composite_waiting(pixels.light[c], pixels.waiting[c], opacity, Rows(1.0), column(pixel, c), c);
+  composite(pixels, c, opacity, Rows(1.0), pixels.limit[c], pixel);
 }
 
 // Draws the next surface, or with `medium` everything behind the limits. False if all pixels are finished but for what
@@ -261,7 +283,7 @@ bool draw_waiting(TileLists tile, vec2 pixel, inout Pixels pixels) {
   bool more = false;
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
     Rows opacity = opacity_of(pixels.waiting[c]);
-    composite_waiting(pixels.light[c], pixels.waiting[c], opacity, Rows(1.0), column(pixel, c), c);
+    composite(pixels, c, opacity, Rows(1.0), pixels.waiting[c].end, pixel);
     BoolRows seen = less(Rows(kOpaque), pixels.light[c].transmittance);
     pixels.limit[c] = mix(Rows(0.0), pixels.limit[c], seen);
     open[c] = less(Rows(0.0), pixels.limit[c]);

@@ -80,7 +80,7 @@ struct VolumeClip {
 #define SURFCAST_BIND_VOLUME_LIGHT 2  // vec4 per pixel of VolumeConstants::light: premultiplied linear light, opacity
 #define SURFCAST_BIND_VOLUME_ROWS 10  // the same, filtered along rows, for the requested columns
 #define SURFCAST_BIND_LAYERS 13       // uint: surfaces of the pixels of the frame's region; inverse depth 0: no further
-#define SURFCAST_BIND_SURFACE_LIGHT 11  // vec4 per pixel of VolumeConstants::light: what surfaces add to it
+#define SURFCAST_BIND_SURFACE_LIGHT 12  // vec4 per pixel of VolumeConstants::light: what surfaces add to it
 #define SURFCAST_BIND_KEPT 11           // uint: layers with Gaussians, as codes, in the pass that blends them
 // Uniform buffer:
 #define SURFCAST_BIND_VOLUME 1

@@ -33,7 +33,30 @@ Place place_at(Ray ray, Brick brick, float t) {
 struct Light {
   vec3 color;  // premultiplied, linear
   float transmittance;
+#ifdef SURFCAST_KEEPS_FRONTS
+  float front;  // see include/front.glsl; per world unit of distance from the eye
+#endif
 };
+
+Light full_light() {
+  Light light;
+  light.color = vec3(0.0);
+  light.transmittance = 1.0;
+#ifdef SURFCAST_KEEPS_FRONTS
+  light.front = 0.0;
+#endif
+  return light;
+}
+
+#ifdef SURFCAST_KEEPS_FRONTS
+float through_surfaces = 1.0;  // what the surfaces in front of a stretch let through
+
+// After what reaches to `t` has been added; `before`: the light's transmittance without it.
+void pass_to(float t, float before, inout Light light) {
+  float after = light.transmittance * through_surfaces;
+  light.front = pass_front(light.front, before * through_surfaces, after, 1.0 / (t + volume.anchor.w));
+}
+#endif
 
 // 1 - exp(-depth).
 float opacity_of(float depth) {
@@ -71,7 +94,13 @@ void add_segment(Place a, Place b, inout Light light) {
     color *= headlight(mix(a.slope, b.slope, middle), mix(a.gradient, b.gradient, middle));
 #endif
     light.color += light.transmittance * opacity * color;
+#ifdef SURFCAST_KEEPS_FRONTS
+    float reached = light.transmittance;
+#endif
     light.transmittance *= 1.0 - opacity;
+#ifdef SURFCAST_KEEPS_FRONTS
+    pass_to(a.t + x * span, reached, light);
+#endif
     from = to;
     before = after;
   }

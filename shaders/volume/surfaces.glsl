@@ -15,14 +15,20 @@ float drawn_slice = -kNever;  // the distance up to which slices are drawn on th
 #include "volume/isosurface.glsl"
 #include "volume/slices.glsl"
 
-void add_surface(vec3 color, float opacity, inout Light light) {
+void add_surface(vec3 color, float opacity, float t, inout Light light) {
   light.color += light.transmittance * opacity * color;
+#ifdef SURFCAST_KEEPS_FRONTS
+  float reached = light.transmittance;
+#endif
   light.transmittance *= 1.0 - opacity;
+#ifdef SURFCAST_KEEPS_FRONTS
+  pass_to(t, reached, light);
+#endif
 }
 
 void add_iso_surface(int i, Place place, inout Light light) {
   float shade = surfaces.counts.w != 0 ? headlight(place.slope, place.gradient) : 1.0;
-  add_surface(shade * surfaces.iso_colors[i].rgb, surfaces.iso_colors[i].w, light);
+  add_surface(shade * surfaces.iso_colors[i].rgb, surfaces.iso_colors[i].w, place.t, light);
 }
 
 // A bit for each iso-surface: whether the scalar is not below its value.
@@ -100,7 +106,7 @@ void draw_stretch(Ray ray, vec2 stretch, inout Light light) {
     }
     if (sliced && march.t >= limit) {
       bool reached = limit - march.last.t <= 2.0 * kNudge * ray.step;  // but for a step over a border
-      if (reached) add_surface(ramp_color(march.last.scalar), surfaces.slice_opacity.x, light);
+      if (reached) add_surface(ramp_color(march.last.scalar), surfaces.slice_opacity.x, march.last.t, light);
       drawn_slice = slice;
       slice = next_slice(ray, slice);
     }

@@ -1,4 +1,5 @@
-// The depth of pictures for clients that warp them: that of the front surface, whatever else is asked for.
+// The depth of pictures for clients that warp them: that of the front surface, whatever else is asked for. Where things
+// are seen through: mixed_depth_gl_test.cpp.
 
 #include <algorithm>
 #include <cmath>
@@ -123,9 +124,9 @@ TEST_F(DepthGLTest, DoesNotChangeThePicture) {
   }
 }
 
-TEST_F(DepthGLTest, OfTransparentSurfacesIsNotKnown) {
+TEST_F(DepthGLTest, OfAMediumOfSurfelsIsNotKnown) {
   picture::PictureRequest request = view();
-  request.opacity = 0.5;
+  request.xray = picture::XRay::kDensity;
   EXPECT_TRUE(draw(scene(), request).depth.inverse.empty());
 }
 

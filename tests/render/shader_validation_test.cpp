@@ -91,7 +91,7 @@ std::vector<render::Variant> all_variants() {
 
 /// Every combination of what matters to volumes.
 std::vector<render::Variant> volume_variants() {
-  std::vector<render::Variant> variants(32);
+  std::vector<render::Variant> variants(64);
   for (unsigned bits = 0; bits < variants.size(); ++bits) {
     const auto bit = [bits](unsigned place) { return (bits >> place & 1) != 0; };
     variants[bits].float_picture = bit(0);
@@ -99,6 +99,7 @@ std::vector<render::Variant> volume_variants() {
     variants[bits].shaded = bit(2);
     variants[bits].layered = bit(3);
     variants[bits].volume_surfaces = bit(4);
+    variants[bits].depth = bit(5);
   }
   return variants;
 }
@@ -149,9 +150,9 @@ void compile_opacities(render::Programs& programs, const render::PictureKinds& s
 /// in one way that differs from a plain picture.
 void compile_transparent(render::Programs& programs, const render::PictureKinds& surfels) {
   compile_opacities(programs, surfels);
-  for (const auto change :
-       {&render::Variant::transparent, &render::Variant::lit, &render::Variant::eye_dome,
-        &render::Variant::float_picture, &render::Variant::blends_behind, &render::Variant::curved}) {
+  for (const auto change : {&render::Variant::transparent, &render::Variant::lit, &render::Variant::eye_dome,
+                            &render::Variant::float_picture, &render::Variant::blends_behind, &render::Variant::curved,
+                            &render::Variant::depth}) {
     for (const bool colored : {false, true}) {
       render::Variant variant;
       variant.colored = colored;
@@ -166,14 +167,18 @@ void compile_transparent(render::Programs& programs, const render::PictureKinds&
   }
 }
 
-/// Gaussians between surfaces, drawn or kept for volumes.
+/// Gaussians alone with the depths of the pixels, and between surfaces, drawn or kept for volumes.
 void compile_gaussians_between(render::Programs& programs) {
   for (const auto form : {render::GaussianForm::kTrained, render::GaussianForm::kFlat, render::GaussianForm::kExact}) {
-    for (unsigned bits = 0; bits < 4; ++bits) {
+    render::Variant alone;
+    alone.depth = true;
+    EXPECT_TRUE(programs.gaussians(alone, form));
+    for (unsigned bits = 0; bits < 8; ++bits) {
       render::Variant variant;
       variant.layered = true;
       variant.keeps = (bits & 1) != 0;
       variant.float_picture = (bits & 2) != 0;
+      variant.depth = (bits & 4) != 0;
       EXPECT_TRUE(programs.gaussians(variant, form));
     }
   }
@@ -186,6 +191,22 @@ void compile_volumes(render::Programs& programs) {
     if (!variant.layered) continue;
     variant.codes = true;
     for (const size_t volumes : {1, 2}) EXPECT_TRUE(programs.volumes(variant, volumes));
+  }
+}
+
+/// Ellipsoids and superquadrics in pictures, beside surfaces and among what is drawn between these.
+void compile_ellipsoids(render::Programs& programs) {
+  for (const auto target : {render::EllipsoidTarget::kPicture, render::EllipsoidTarget::kBesideSurfaces,
+                            render::EllipsoidTarget::kLayers}) {
+    for (unsigned bits = 0; bits < 32; ++bits) {
+      render::Variant variant;
+      variant.depth = (bits & 1) != 0;
+      variant.superquadrics = (bits & 2) != 0;
+      variant.clipped = (bits & 4) != 0;
+      variant.float_picture = (bits & 8) != 0;
+      variant.blends_behind = (bits & 16) != 0;
+      EXPECT_TRUE(programs.ellipsoids(variant, /*mapped=*/variant.clipped, target));
+    }
   }
 }
 
@@ -216,6 +237,7 @@ std::set<std::string> all_shaders() {
     compile_transparent(*programs, surfels);
     compile_gaussians_between(*programs);
     compile_volumes(*programs);
+    compile_ellipsoids(*programs);
     // Work groups of another size.
     EXPECT_TRUE(programs->long_lists(all_variants().back(), surfels, uint32_t{1} << 20));
   }

@@ -26,6 +26,7 @@ wire::DepthPlane to_message(const picture::EncodedDepth& depth) {
   plane.set_first(depth.first);
   plane.set_last(depth.last);
   plane.set_codes(depth.codes.data(), depth.codes.size());
+  plane.set_seen_through(depth.seen_through);
   return plane;
 }
 
@@ -63,6 +64,18 @@ TEST(DepthPlane, HasTheDepthsThatWereEncodedToHalfAStep) {
       } else {
         EXPECT_LE(std::abs(std::log(plane->inverse[i] / map.inverse[i])), step / 2 + 1e-6);
       }
+    }
+  }
+}
+
+TEST(DepthPlane, SaysWhetherThingsAreSeenThrough) {
+  for (const bool seen_through : {false, true}) {
+    picture::DepthMap map = noise(100);
+    map.seen_through = seen_through;
+    const size_t halved = encode::encode_depth(map, kEnough)->codes.size() - 1;
+    for (const size_t most : {kEnough, halved}) {
+      const auto encoded = encode::encode_depth(map, most);
+      EXPECT_EQ(decode_depth(to_message(*encoded), kPictureWidth, kPictureHeight)->seen_through, seen_through);
     }
   }
 }

@@ -39,7 +39,7 @@ Hit hit_at(const Scene& scene, const geometry::CameraFrame& camera, const glm::d
 }
 
 WarpFrame draw(const Scene& scene, const geometry::CameraFrame& from, int cell = kFrameCell) {
-  WarpFrame frame{{from.width, from.height, {}}, from, {}};
+  WarpFrame frame{{from.width, from.height, {}}, from, {}, false};
   DepthPlane depth{(from.width + cell - 1) / cell, (from.height + cell - 1) / cell, cell, {}};
   depth.inverse.assign(static_cast<size_t>(depth.width) * static_cast<size_t>(depth.height), 0);
   for (int y = 0; y < from.height; ++y) {
@@ -192,6 +192,23 @@ TEST(Warp, ASharperFrameAtRestIsShownWhereItAgrees) {
   // (Beyond the border of the frame at rest the newest one is shown.)
   for (int x = 0; x < kFrameWidth - 16; ++x) EXPECT_EQ(pixel_of(both, x, 100), pixel_of(alone, x, 100));
   EXPECT_EQ(pixel_of(both, kFrameWidth - 1, 100), (Color{0, 0, 0}));
+}
+
+TEST(Warp, WhereThingsAreSeenThroughAFrameAtRestIsShownWhereItLooksTheSame) {
+  const geometry::CameraFrame to = camera({0, 0, 4}, {0, 0, 0});
+  WarpFrame rest = draw(wall, to);
+  WarpFrame newest = draw(wall, camera({0, 0, 4}, {0, 0, 0}, kFrameWidth / 2, kFrameHeight / 2), kFrameCell / 2);
+  std::ranges::fill(rest.pixels.bytes, uint8_t{100});
+  const Color of_rest{100, 100, 100};
+  for (const int off : {20, 60}) {
+    const auto other = static_cast<uint8_t>(100 + off);
+    std::ranges::fill(newest.pixels.bytes, other);
+    for (const bool seen_through : {false, true}) {
+      rest.seen_through = seen_through;
+      const Color expected = seen_through && off > 45 ? Color{other, other, other} : of_rest;
+      EXPECT_EQ(pixel_of(warp(newest, &rest, to, kBackground), 50, 50), expected) << off << seen_through;
+    }
+  }
 }
 
 TEST(Warp, AFrameAtRestIsNotShownWhereTheNewestSeesSomethingElse) {

@@ -58,7 +58,7 @@ async function warped(below: Frame, above: Frame | undefined, target: Projection
         });
         const depth: DepthPlane = {
           ...{ picture: { width, height }, cell, width: columns, height: rows, values },
-          ...{ first: 0.001, last: Math.max(...values) },
+          ...{ first: 0.001, last: Math.max(...values), seenThrough: false },
         };
         const bitmap = await createImageBitmap(new ImageData(pixels, width, height), { premultiplyAlpha: 'none' });
         return { bitmap, depth, projection: frame.projection, background: { red: 0, green: 0, blue: 0 } };

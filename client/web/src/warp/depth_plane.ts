@@ -10,6 +10,7 @@ export interface DepthPlane {
   readonly values: Float32Array; // per world unit, along the view axis; 0: background
   readonly first: number; // least value of a surface
   readonly last: number; // largest value
+  readonly seenThrough: boolean; // pixels may show things at several depths
 }
 
 const maxTexels = 2 ** 20;
@@ -17,14 +18,14 @@ const steps = 254; // between the codes 1 and 255, even ones of the logarithm
 
 /** Decodes the depth of a picture of the given size. Rejects planes that are damaged or do not fit the picture. */
 export async function decodePlane(plane: WirePlane, picture: Size): Promise<DepthPlane> {
-  const { width, height, cell, first, last } = plane;
+  const { width, height, cell, first, last, seenThrough } = plane;
   check(cell >= 1 && picture.width >= 1 && picture.height >= 1, 'no size');
   check(width === Math.ceil(picture.width / cell) && height === Math.ceil(picture.height / cell), 'another size');
   check(width * height <= maxTexels, 'too many texels');
   check(Number.isFinite(first) && Number.isFinite(last) && first > 0 && first < last, 'an invalid range');
   const codes = await inflate(plane.codes, width * height);
   undoPrediction(codes, width);
-  return { picture, cell, width, height, values: valuesOf(codes, first, last), first, last };
+  return { picture, cell, width, height, values: valuesOf(codes, first, last), first, last, seenThrough };
 }
 
 function check(holds: boolean, problem: string): asserts holds {

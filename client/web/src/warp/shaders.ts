@@ -48,7 +48,8 @@ void main() {
 /**
  * Of the two sheets beside an outline, the far one has the pixels whose colour is that of what is behind. JPEG changes
  * colours by 2 to 4 levels. The layer above is shown where it agrees in depth and has as many pixels of its source for
- * one of the target. Inverse depths are those of the window, 1 - z.
+ * one of the target, and where its colour is not further off than `mostOff`, squared. Inverse depths are those of the
+ * window, 1 - z.
  */
 export const surfaceFragment = (over: boolean, sheets: boolean): string => `${version(over, sheets)}
 precision highp float;
@@ -65,6 +66,7 @@ const float same = 47.5 / (255.0 * 255.0);
 uniform sampler2D above;
 uniform highp sampler2D aboveDepth;
 in vec3 placeAbove;
+uniform float mostOff;
 const float agreement = 0.05;
 
 float density(vec2 at) {
@@ -89,7 +91,9 @@ void main() {
   if (sharper && other.a > 0.5) {
     float here = 1.0 - gl_FragCoord.z;
     float there = 1.0 - texelFetch(aboveDepth, pixel, 0).r;
-    if (abs(here - there) <= agreement * max(here, there)) color = other.rgb;
+    vec3 change = other.rgb - color;
+    bool alike = dot(change, change) <= mostOff;
+    if (alike && abs(here - there) <= agreement * max(here, there)) color = other.rgb;
   }
 #endif
   result = vec4(color, 1.0);

@@ -63,6 +63,10 @@ interface Programs {
 const reach = 20; // how much nearer than all surfaces of a frame the eye may come before they are cut off
 const continued = 0.999; // of its inverse depth: behind what the frame shows of it
 const filled = 0.9; // also behind slopes
+// How far the colour of the frame at rest may be from that of the newest one, squared. Where things are seen through,
+// another depth may shine through; frames in motion are less sharp, so that opaque ones differ everywhere.
+const sameLook = 6000 / 255 ** 2;
+const anyLook = 3;
 
 /** Draws frames as a camera other than theirs sees them, with WebGL 2. */
 export class WarpPainter {
@@ -165,6 +169,7 @@ export class WarpPainter {
       this.bindTexture(program, 'above', 1, layer.picture);
       this.bindTexture(program, 'aboveDepth', 2, layer.depth);
       gl.uniformMatrix3x4fv(gl.getUniformLocation(program, 'other'), false, other);
+      gl.uniform1f(gl.getUniformLocation(program, 'mostOff'), above.depth.seenThrough ? sameLook : anyLook);
     }
     this.use(background, below, target, nearest);
     this.drawBackground(below);
