@@ -37,7 +37,8 @@ export function planeOf(picture: Size, cell: number, depth: (x: number, y: numbe
     return Math.max(...places(i % width, picture.width).flatMap((x) => rows.map((y) => depth(x, y))));
   });
   const shown = [...values].filter((value) => value > 0);
-  return { picture, cell, width, height, values, first: Math.min(...shown), last: Math.max(...shown) };
+  const range = { first: Math.min(...shown), last: Math.max(...shown) };
+  return { picture, cell, width, height, values, ...range, seenThrough: false };
 }
 
 /** Inverse depth at a pixel of a plane of the scene through a point; 0 where the ray does not meet it. */
