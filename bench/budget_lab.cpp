@@ -3,7 +3,8 @@
 // `surfcastd render` has it. A row for each error: asked, expected, and true PSNR against the picture of spacing 0, in
 // dB over covered pixels; a row for each time: asked, expected, and what drawing and encoding take at the chosen
 // spacing, the median of three. Then the time of the search over that of the finest picture. The last lines are the
-// shares within the goals: -1.5 to +4 dB, and a quarter of the time; less where the finest level is reached.
+// shares within the goals: -1.5 to +4 dB, and a quarter of the time; less where the finest level is reached, and more
+// where the answer says so.
 
 #include <cmath>
 #include <cstdio>
@@ -51,7 +52,7 @@ double drawing_and_encoding_ms(const service::EncodedPicture& picture) {
   return bench::drawing_ms(*picture.frame) + picture.encode_ms;
 }
 
-/// What drawing and loading take beside the picture itself.
+/// Milliseconds of a stage; 0 if there is none.
 double stage_ms(const service::EncodedPicture& picture, const char* name) {
   for (const picture::StageTime& stage : picture.stats.stages) {
     if (stage.name == name) return stage.milliseconds;

@@ -58,6 +58,7 @@ std::optional<double> TimeSearch::next() const {
 std::optional<double> TimeSearch::towards_faster() const {
   constexpr double kStep = 1.6;
   constexpr size_t kMostSlow = 4;  // tries, each of which takes longer than asked
+  if (points_.back().spacing < kFirst) return kFirst;
   if (points_.size() >= kMostSlow) return std::nullopt;
   const double fastest = best().spacing;
   if (fastest == points_.front().spacing && fastest / kStep >= kFinestTry) return fastest / kStep;

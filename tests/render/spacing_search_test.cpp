@@ -123,6 +123,11 @@ TEST(TimeSearch, TakesTheFastestPictureIfNoneIsFastEnough) {
   EXPECT_LT(found.milliseconds, 1.1 * slow_if_coarse(std::cbrt(20.0))) << "the minimum of the curve";
 }
 
+TEST(TimeSearch, FindsTheSpacingFromAKnownPictureOfAMuchFasterView) {
+  const SpacingTime found = search_time(cost(10, 2000, 0.01), 100, SpacingTime{0.5, 90});
+  EXPECT_NEAR(found.milliseconds, 100, 25);
+}
+
 TEST(TimeSearch, BeginsWithAKnownPicture) {
   EXPECT_NEAR(first_spacing_for(SpacingTime{2, 93}, 100), 2, 1e-9);
   EXPECT_NEAR(first_spacing_for(SpacingTime{2, 93}, 400), 1, 1e-9);
