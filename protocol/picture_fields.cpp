@@ -29,6 +29,10 @@ constexpr std::array kFields{
     PictureField{"filter", "filter", "ewa|none", "anti-aliasing prefilter (default ewa)"},
     PictureField{"spacing", "spacing", "PIXELS",
                  "projected surfel spacing at which refinement stops; 0: the finest level (default 0)"},
+    PictureField{"error", "error", "DB",
+                 "choose the spacing by error: the PSNR against the finest level, in place of --spacing"},
+    PictureField{"time", "time", "MS",
+                 "choose the spacing by time: milliseconds to draw and encode, in place of --spacing"},
     PictureField{"shading", "shading", "auto|unlit|lit", "lighting of the surfels (default auto)"},
     PictureField{"splat_convention", "splat-convention", "trained|exact",
                  "models of Gaussians as they were trained, or exact in perspective (default trained)"},
@@ -175,6 +179,15 @@ bool set_spacing(wire::DrawPicture& picture, std::string_view text) {
   return true;
 }
 
+/// Sets a number above 0.
+template <typename Set>
+bool set_positive(std::string_view text, Set set) {
+  const auto value = parse_double(text);
+  if (!value || *value <= 0) return false;
+  set(*value);
+  return true;
+}
+
 bool set_background(wire::DrawPicture& picture, std::string_view text) {
   const auto values = parse_unsigneds(text, 3);
   if (!values || (*values)[0] > 255 || (*values)[1] > 255 || (*values)[2] > 255) return false;
@@ -218,6 +231,8 @@ bool set_by_name(wire::DrawPicture& picture, std::string_view name, std::string_
   }
   if (name == "filter") return set_choice(kFilters, text, [&](auto value) { picture.set_filter(value); });
   if (name == "spacing") return set_spacing(picture, text);
+  if (name == "error") return set_positive(text, [&](double value) { picture.set_error(value); });
+  if (name == "time") return set_positive(text, [&](double value) { picture.set_time_ms(value); });
   if (name == "shading") return set_choice(kShadings, text, [&](auto value) { picture.set_shading(value); });
   if (name == "splat_convention") {
     return set_choice(kSplatConventions, text, [&](auto value) { picture.set_splat_convention(value); });

@@ -107,6 +107,7 @@ Status parse_camera_json(std::string_view text, wire::Camera& camera) {
 
 void RequestFlags::set_default(std::string_view field, std::string_view text) {
   values_[std::string(field)] = std::string(text);
+  defaults_[std::string(field)] = std::string(text);
 }
 
 void RequestFlags::add_to(CLI::App& command) {
@@ -207,6 +208,14 @@ Result<wire::DrawPicture> RequestFlags::request(std::string_view model) const {
   return request(model, *chosen);
 }
 
+/// Whether a field has its default, which another one replaces.
+bool RequestFlags::is_replaced(const std::string& field) const {
+  const auto found = defaults_.find(field);
+  const auto stated = [this](const char* name) { return values_.contains(name) && !values_.at(name).empty(); };
+  return field == "spacing" && found != defaults_.end() && values_.at(field) == found->second &&
+         (stated("error") || stated("time"));
+}
+
 Result<wire::DrawPicture> RequestFlags::view_request(std::string_view model) const {
   return request(model, std::nullopt);
 }
@@ -220,7 +229,7 @@ Result<wire::DrawPicture> RequestFlags::request(std::string_view model, std::opt
     }
   }
   for (const auto& [name, text] : values_) {
-    if (text.empty()) continue;
+    if (text.empty() || is_replaced(name)) continue;
     const Status status =
         names_file(name, text) ? read_file(name, text, picture) : set_picture_field(picture, name, text);
     if (!status) return fail(status.error());

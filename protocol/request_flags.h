@@ -49,7 +49,10 @@ class RequestFlags {
   /// The request in this format; none: that of --format.
   [[nodiscard]] Result<wire::DrawPicture> request(std::string_view model, std::optional<wire::FileFormat> format) const;
 
-  std::map<std::string, std::string> values_;  ///< by field name (picture_fields()); empty text: none
+  [[nodiscard]] bool is_replaced(const std::string& field) const;
+
+  std::map<std::string, std::string> values_;    ///< by field name (picture_fields()); empty text: none
+  std::map<std::string, std::string> defaults_;  ///< those of set_default
   std::string camera_file_;
   std::string output_;
   std::string stats_;

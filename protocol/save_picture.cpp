@@ -74,22 +74,26 @@ std::string picture_stats_json(const wire::Picture& picture) {
                       {"blocks_selected", level.blocks_selected()},
                       {"blocks_drawn", level.blocks_drawn()}});
   }
-  const json document = {{"format", name_of(picture.format())},
-                         {"bytes", picture.data().size()},
-                         {"resolution", {picture.resolution().width(), picture.resolution().height()}},
-                         {"camera", to_json(picture.camera())},
-                         {"normalization", picture.normalization() == wire::NORMALIZATION_SURFEL ? "surfel" : "pixel"},
-                         {"spacing", picture.spacing()},
-                         {"converged", picture.converged()},
-                         {"surfels_drawn", picture.surfels_drawn()},
-                         {"blocks_drawn", picture.blocks_drawn()},
-                         {"blocks_selected", picture.blocks_selected()},
-                         {"blocks_waited_for", picture.blocks_waited_for()},
-                         {"blocks_resident", picture.blocks_resident()},
-                         {"bytes_resident", picture.bytes_resident()},
-                         {"levels", levels},
-                         {"gl_renderer", picture.gl_renderer()},
-                         {"milliseconds", stages}};
+  json document = {{"format", name_of(picture.format())},
+                   {"bytes", picture.data().size()},
+                   {"resolution", {picture.resolution().width(), picture.resolution().height()}},
+                   {"camera", to_json(picture.camera())},
+                   {"normalization", picture.normalization() == wire::NORMALIZATION_SURFEL ? "surfel" : "pixel"},
+                   {"spacing", picture.spacing()},
+                   {"converged", picture.converged()},
+                   {"surfels_drawn", picture.surfels_drawn()},
+                   {"blocks_drawn", picture.blocks_drawn()},
+                   {"blocks_selected", picture.blocks_selected()},
+                   {"blocks_waited_for", picture.blocks_waited_for()},
+                   {"blocks_resident", picture.blocks_resident()},
+                   {"bytes_resident", picture.bytes_resident()},
+                   {"levels", levels},
+                   {"gl_renderer", picture.gl_renderer()},
+                   {"milliseconds", stages}};
+  if (picture.expected_ms() > 0) {  // the spacing was chosen
+    document["expected_error"] = picture.expected_error();
+    document["expected_ms"] = picture.expected_ms();
+  }
   return document.dump(2, ' ', false, json::error_handler_t::replace) + "\n";
 }
 

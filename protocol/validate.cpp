@@ -51,17 +51,29 @@ Status check_channels(const wire::DrawPicture& picture) {
   return {};
 }
 
+/// What the spacing is, or is chosen for.
+Status check_spacing(const wire::DrawPicture& picture) {
+  if (!(picture.spacing() >= 0) || !std::isfinite(picture.spacing())) {
+    return invalid("spacing: must be a finite number of pixels, at least 0");
+  }
+  if (!(picture.error() >= 0) || !std::isfinite(picture.error())) {
+    return invalid("error: must be a finite number of dB, at least 0");
+  }
+  if (!(picture.time_ms() >= 0) || !std::isfinite(picture.time_ms())) {
+    return invalid("time: must be a finite number of milliseconds, at least 0");
+  }
+  const int stated = int{picture.spacing() > 0} + int{picture.error() > 0} + int{picture.time_ms() > 0};
+  return stated > 1 ? invalid("spacing, error, time: at most one may be stated") : Status();
+}
+
 Status check_numbers(const wire::DrawPicture& picture) {
   const wire::Resolution& resolution = picture.resolution();
   if (picture.has_resolution() && (resolution.width() == 0 || resolution.height() == 0)) {
     return invalid("resolution: must be at least 1,1");
   }
-  if (!(picture.spacing() >= 0) || !std::isfinite(picture.spacing())) {
-    return invalid("spacing: must be a finite number of pixels, at least 0");
-  }
   if (!valid(picture.background())) return invalid("background: each part must be at most 255");
   if (picture.quality() > 100) return invalid("quality: must be at most 100");
-  return {};
+  return check_spacing(picture);
 }
 
 Status check_coloring(const wire::Coloring& coloring) {

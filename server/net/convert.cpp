@@ -252,6 +252,8 @@ Result<service::PictureJob> to_job(const wire::DrawPicture& request) {
   job.request.splat_convention = from_wire(request.splat_convention());
   job.request.silhouettes = true;
   job.request.spacing = request.spacing();
+  job.request.error = request.error();
+  job.request.time_ms = request.time_ms();
   job.request.background = from_wire(request.background());
   set_display_options(request, job.request);
   job.format = from_wire(request.format());

@@ -89,6 +89,8 @@ void to_wire(service::EncodedPicture picture, wire::Picture& message) {
   message.set_normalization(picture.normalization == picture::Normalization::kSurfel ? wire::NORMALIZATION_SURFEL
                                                                                      : wire::NORMALIZATION_PIXEL);
   message.set_spacing(picture.spacing);
+  message.set_expected_error(picture.expected_error);
+  message.set_expected_ms(picture.expected_ms);
   message.set_converged(picture.converged && !picture.preview);
   message.set_preview(picture.preview);
   message.set_surfels_drawn(picture.stats.surfels_drawn);

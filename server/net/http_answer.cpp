@@ -245,6 +245,11 @@ HttpAnswer picture_answer(service::EncodedPicture picture) {
                     {"X-Surfcast-Converged", picture.converged && !picture.preview ? "true" : "false"},
                     {"X-Surfcast-Preview", picture.preview ? "true" : "false"},
                     {"Cache-Control", "no-cache"}};
+  if (picture.expected_ms > 0) {  // the spacing was chosen
+    answer.headers.emplace_back("X-Surfcast-Spacing", fmt::format("{}", picture.spacing));
+    answer.headers.emplace_back("X-Surfcast-Expected-Error", fmt::format("{}", picture.expected_error));
+    answer.headers.emplace_back("X-Surfcast-Expected-Ms", fmt::format("{}", picture.expected_ms));
+  }
   answer.body = std::move(picture.bytes);
   answer.memory = std::move(picture.memory);
   return answer;

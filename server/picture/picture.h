@@ -74,7 +74,11 @@ struct PictureRequest {
   bool silhouettes = false;
   /// Blends all that is behind the front surface of a pixel as if it were one surface, for pictures in motion.
   bool blends_behind = false;
-  double spacing = 0;               ///< projected spacing at which refinement stops, pixels; 0: the finest level
+  double spacing = 0;  ///< projected spacing at which refinement stops, pixels; 0: the finest level
+  /// PSNR, dB, of the 8 bit picture against the one of spacing 0, over the pixels that either covers: the spacing is
+  /// chosen for it. 0: not stated. Only with kWait.
+  double error = 0;
+  double time_ms = 0;               ///< likewise: the time of drawing and encoding
   glm::u8vec3 background{0, 0, 0};  ///< sRGB
   PixelFormat format = PixelFormat::kSrgb8;
   Loading loading = Loading::kWait;
@@ -103,6 +107,11 @@ struct PictureRequest {
   double ghost = 0;      ///< factor of the opacities of the surfels that `clip` hides, from 0 to 1
   int depth_texels = 0;  ///< a side of Frame::depth, at most; 0: none. Does not change the picture.
 };
+
+/// Whether the spacing of a picture is to be chosen for an error or a time.
+inline bool has_budget(const PictureRequest& request) {
+  return request.error > 0 || request.time_ms > 0;
+}
 
 /// A rendered picture. Rows run from top to bottom without padding. Each pixel has four channels: the colour, already
 /// blended with the background, and the pixel's coverage by the model.
@@ -148,6 +157,9 @@ struct Frame {
   bool converged = false;
   bool nothing_pending = false;  ///< no missing block is about to arrive: redrawing would not improve the frame
   uint64_t cut = 0;              ///< identifies the set of blocks drawn
+  double spacing = 0;            ///< of the picture, see PictureRequest::spacing
+  double expected_error = 0;     ///< with PictureRequest::error or time_ms: the PSNR expected, dB; 0: not known
+  double expected_ms = 0;        ///< likewise: the time of drawing, milliseconds
   bool preview = false;          ///< of a scan whose model is still being built
   DepthMap depth;                ///< with PictureRequest::depth_texels, of pictures of opaque surfaces alone
   FrameStats stats;

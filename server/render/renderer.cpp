@@ -14,6 +14,8 @@
 #include "gl/egl_context.h"
 #include "gl/gpu_memory.h"
 #include "render/clear_blocks.h"
+#include "render/draw_to_error.h"
+#include "render/draw_to_time.h"
 #include "render/ellipsoid_passes.h"
 #include "render/gaussian_passes.h"
 #include "render/glyph_plan.h"
@@ -91,15 +93,15 @@ Variant variant_of(const model::ModelInfo& info, const DisplayOptions& display,
   return variant;
 }
 
-/// Copies a region from the pixels of `written`, which contains it.
+/// Copies a region from the pixels of `written`, which contains it, to the image of `window`.
 void copy_region(const Region& region, const Region& written, std::span<const std::byte> from, size_t bytes_per_pixel,
-                 picture::Image& image) {
+                 const Region& window, picture::Image& image) {
   const size_t row = static_cast<size_t>(region.width) * bytes_per_pixel;
   const auto place = [&](int x, int y, int width) {
     return (static_cast<size_t>(y) * static_cast<size_t>(width) + static_cast<size_t>(x)) * bytes_per_pixel;
   };
   for (int y = region.y; y < region.y + region.height; ++y) {
-    std::memcpy(image.pixels.data() + place(region.x, y, image.width),
+    std::memcpy(image.pixels.data() + place(region.x - window.x, y - window.y, image.width),
                 from.data() + place(region.x - written.x, y - written.y, written.width), row);
   }
 }
@@ -121,6 +123,11 @@ std::vector<picture::LevelStats> level_stats(const ldc::BlockTree& tree, const s
   stats.reserve(levels.size());
   for (auto& [level, counts] : levels) stats.push_back({level, counts.selected, counts.drawn});
   return stats;
+}
+
+selection::Window window_of(const Region& region) {
+  return {static_cast<double>(region.x), static_cast<double>(region.y), static_cast<double>(region.x + region.width),
+          static_cast<double>(region.y + region.height)};
 }
 
 /// A hash of the drawn blocks, never 0.
@@ -174,6 +181,12 @@ struct Renderer::State {
             .upload_bytes = config.upload_bytes};
   }
 
+  /// Where searches for the spacing of a model's pictures begin.
+  struct Searched {
+    SpacingGuess error;
+    std::optional<SpacingTime> time;
+  };
+
   /// Marks a picture as being drawn during the lifetime of the object.
   struct PictureScope {
     explicit PictureScope(State& owner) : state(owner) { state.begin_picture(); }
@@ -188,14 +201,18 @@ struct Renderer::State {
   Result<Scene*> scene_of(const std::shared_ptr<const model::ModelFile>& model);
   Result<residency::PreparedView> prepare(Scene& scene, const picture::PictureRequest& request,
                                           const DisplayOptions& display, const geometry::Camera& camera,
-                                          const geometry::CameraFrame& frame, const Preemption& preemption);
+                                          const geometry::CameraFrame& frame, const std::optional<Region>& window,
+                                          const Preemption& preemption);
   Result<RegionStats> draw_regions(const Scene& scene, const picture::PictureRequest& request,
                                    const DisplayOptions& display, const geometry::CameraFrame& frame,
-                                   const residency::PreparedView& view, const Preemption& preemption,
-                                   picture::Frame& result);
+                                   const residency::PreparedView& view, const Region& window,
+                                   const Preemption& preemption, picture::Frame& result);
   const ConstantTexels* colors_of(const DisplayOptions& display);
   [[nodiscard]] picture::FrameStats stats_of(const Scene& scene, const residency::PreparedView& view,
                                              const RegionStats& drawn) const;
+  Result<picture::Frame> draw_part(const std::shared_ptr<const model::ModelFile>& model,
+                                   const picture::PictureRequest& request, const std::optional<Region>& window,
+                                   const Preemption& preemption);
   Result<picture::Frame> draw(const std::shared_ptr<const model::ModelFile>& model,
                               const picture::PictureRequest& request, const Preemption& preemption);
 
@@ -213,6 +230,7 @@ struct Renderer::State {
   residency::SurfelBuffer surfels;
   residency::Residency residency;
   std::map<uint64_t, std::unique_ptr<Scene>> scenes;  ///< by ModelFile::id
+  std::map<uint64_t, Searched> searched;              ///< likewise
   std::vector<uint64_t> to_release;                   ///< models to release once no picture is being drawn
 };
 
@@ -230,6 +248,7 @@ void Renderer::State::release_models() {
   for (const uint64_t id : std::exchange(to_release, {})) {
     residency.release_model(id);
     scenes.erase(id);
+    searched.erase(id);
   }
 }
 
@@ -243,6 +262,7 @@ Result<Scene*> Renderer::State::scene_of(const std::shared_ptr<const model::Mode
 Result<residency::PreparedView> Renderer::State::prepare(Scene& scene, const picture::PictureRequest& request,
                                                          const DisplayOptions& display, const geometry::Camera& camera,
                                                          const geometry::CameraFrame& frame,
+                                                         const std::optional<Region>& window,
                                                          const Preemption& preemption) {
   const std::vector<bool> hidden = clear_blocks(scene.model(), display.volumes);
   residency::ViewParameters parameters{frame,
@@ -255,6 +275,7 @@ Result<residency::PreparedView> Renderer::State::prepare(Scene& scene, const pic
                                        sides_of(display),
                                        ghost_spacing(display, request),
                                        display.glyph_reaches.empty() ? nullptr : &display.glyph_reaches};
+  if (window) parameters.window = window_of(*window);
   if (request.rest_spacing && scene.has_glyphs()) {
     parameters.items = &scene.glyphs();
     parameters.most_items = most_glyphs(request, motion_glyphs);
@@ -280,8 +301,8 @@ const ConstantTexels* Renderer::State::colors_of(const DisplayOptions& display) 
 
 Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const picture::PictureRequest& request,
                                                   const DisplayOptions& display, const geometry::CameraFrame& frame,
-                                                  const residency::PreparedView& view, const Preemption& preemption,
-                                                  picture::Frame& result) {
+                                                  const residency::PreparedView& view, const Region& window,
+                                                  const Preemption& preemption, picture::Frame& result) {
   Variant variant = variant_of(scene.model().info(), display, request);
   if (!scene.has_surfaces()) variant.eye_dome = variant.silhouettes = false;
   if (scene.has_gaussians() || scene.has_glyphs()) variant.eye_dome = false;
@@ -298,9 +319,10 @@ Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const pict
   RegionStats total;
   std::vector<std::byte> pixels;
   std::vector<Region> regions =
-      cut_into_regions(request.width, request.height, margin, layered ? kMaxLayeredSide : kMaxRegionSide);
+      cut_into_regions(window.width, window.height, margin, layered ? kMaxLayeredSide : kMaxRegionSide);
   while (!regions.empty()) {
-    const Region region = regions.back();
+    const Region part = regions.back();
+    const Region region{part.x + window.x, part.y + window.y, part.width, part.height};
     regions.pop_back();
     const Region drawn = with_margin(region, margin, request.width, request.height);
     RegionTask task{&surfels,
@@ -334,12 +356,12 @@ Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const pict
     const Result<std::optional<RegionStats>> stats = draw_kinds(task, programs, buffers[depth - 1], preemption, pixels);
     if (!stats) return fail(stats.error());
     if (!*stats) {
-      const std::vector<Region> halves = halves_of(region);
+      const std::vector<Region> halves = halves_of(part);
       if (halves.empty()) return fail(ErrorKind::kLimit, "too many surfels in four by four pixels");
       regions.insert(regions.end(), halves.begin(), halves.end());
       continue;
     }
-    copy_region(region, written, pixels, bytes, result.image);
+    copy_region(region, written, pixels, bytes, window, result.image);
     add(total, **stats);
   }
   return total;
@@ -364,8 +386,10 @@ picture::FrameStats Renderer::State::stats_of(const Scene& scene, const residenc
   return stats;
 }
 
-Result<picture::Frame> Renderer::State::draw(const std::shared_ptr<const model::ModelFile>& model,
-                                             const picture::PictureRequest& request, const Preemption& preemption) {
+/// Draws a picture, or a window of it, whose pixels are those of the whole picture.
+Result<picture::Frame> Renderer::State::draw_part(const std::shared_ptr<const model::ModelFile>& model,
+                                                  const picture::PictureRequest& request,
+                                                  const std::optional<Region>& window, const Preemption& preemption) {
   if (request.width < 1 || request.height < 1 || request.width > kMaxResolution || request.height > kMaxResolution) {
     return fail(ErrorKind::kLimit, "resolution: each side must lie between 1 and " + std::to_string(kMaxResolution));
   }
@@ -385,23 +409,44 @@ Result<picture::Frame> Renderer::State::draw(const std::shared_ptr<const model::
   result.camera = scene.camera_of(request);
   const Result<geometry::CameraFrame> frame = geometry::make_camera_frame(result.camera, request.width, request.height);
   if (!frame) return fail(frame.error());
-  const Result<residency::PreparedView> view = prepare(scene, request, *display, result.camera, *frame, preemption);
+  const Result<residency::PreparedView> view =
+      prepare(scene, request, *display, result.camera, *frame, window, preemption);
   if (!view) return fail(view.error());
 
   result.converged = view->selection.converged();
   result.nothing_pending = view->nothing_pending;
   result.cut = cut_of(view->selection);
-  result.image = {request.width, request.height, request.format, {}};
+  const Region drawn_part = window.value_or(Region{0, 0, request.width, request.height});
+  result.image = {drawn_part.width, drawn_part.height, request.format, {}};
   RegionStats drawn;
   if (worth_drawing(request, *view, result.cut)) {
-    const size_t pixels = static_cast<size_t>(request.width) * static_cast<size_t>(request.height);
+    const size_t pixels = static_cast<size_t>(drawn_part.width) * static_cast<size_t>(drawn_part.height);
     result.image.pixels.resize(pixels * pixel_bytes(request.format));
-    const Result<RegionStats> regions = draw_regions(scene, request, *display, *frame, *view, preemption, result);
+    const Result<RegionStats> regions =
+        draw_regions(scene, request, *display, *frame, *view, drawn_part, preemption, result);
     if (!regions) return fail(regions.error());
     drawn = *regions;
   }
   result.stats = stats_of(scene, *view, drawn);
+  result.spacing = request.spacing;
   return result;
+}
+
+Result<picture::Frame> Renderer::State::draw(const std::shared_ptr<const model::ModelFile>& model,
+                                             const picture::PictureRequest& request, const Preemption& preemption) {
+  if (!picture::has_budget(request) || request.loading == picture::Loading::kNow) {
+    return draw_part(model, request, {}, preemption);
+  }
+  if (request.time_ms > 0) {
+    const auto draw_whole = [&](const picture::PictureRequest& whole) {
+      return draw_part(model, whole, {}, preemption);
+    };
+    return draw_to_time(request, draw_whole, searched[model->id()].time);
+  }
+  const auto draw_window = [&](const picture::PictureRequest& part, const std::optional<Region>& window) {
+    return draw_part(model, part, window, preemption);
+  };
+  return draw_to_error(request, draw_window, searched[model->id()].error);
 }
 
 Result<std::unique_ptr<Renderer>> Renderer::create(const RendererConfig& config) {

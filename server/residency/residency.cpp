@@ -21,9 +21,10 @@ std::vector<bool> Residency::residents(const ViewedModel& model, bool attributes
 
 selection::BlockSelection Residency::select(const ViewedModel& model, const ViewParameters& parameters,
                                             std::span<const uint32_t> was_refined) const {
-  const selection::SelectionCriteria limits{
-      parameters.spacing, pool_.usable_surfels(),   SurfelPool::kPageSurfels, parameters.clip,  parameters.hidden,
-      parameters.sides,   parameters.ghost_spacing, parameters.reaches,       parameters.items, parameters.most_items};
+  const selection::SelectionCriteria limits{parameters.spacing,       pool_.usable_surfels(), SurfelPool::kPageSurfels,
+                                            parameters.clip,          parameters.hidden,      parameters.sides,
+                                            parameters.ghost_spacing, parameters.reaches,     parameters.items,
+                                            parameters.most_items,    parameters.window};
   return selection::select_blocks(model.tree, parameters.frame, limits, residents(model, parameters.attributes),
                                   was_refined);
 }

@@ -37,6 +37,7 @@ struct ViewParameters {
   /// See SelectionCriteria; outlives the preparation. A picture at rest has no limit.
   const std::vector<uint32_t>* items = nullptr;
   uint64_t most_items = std::numeric_limits<uint64_t>::max();
+  std::optional<selection::Window> window{};  ///< see SelectionCriteria
 };
 
 /// The blocks that a picture is drawn from, and the cost of making them resident.

@@ -22,6 +22,11 @@ double least_reach(const std::vector<double>* reaches, uint32_t block) {
   return reaches == nullptr ? 0 : (*reaches)[block];
 }
 
+Frustum frustum_of(const geometry::CameraFrame& frame, const std::optional<Window>& window) {
+  if (!window) return frustum_of(frame, 0, 0, frame.width, frame.height);
+  return frustum_of(frame, window->x0, window->y0, window->x1, window->y1);
+}
+
 class Selector {
  public:
   Selector(const SelectionTree& tree, const geometry::CameraFrame& frame, const SelectionCriteria& criteria,
@@ -29,7 +34,7 @@ class Selector {
       : tree_(tree),
         blocks_(tree.tree.blocks()),
         frame_(frame),
-        frustum_(frustum_of(frame, 0, 0, frame.width, frame.height)),
+        frustum_(frustum_of(frame, criteria.window)),
         criteria_(criteria),
         resident_(resident),
         was_refined_(was_refined),

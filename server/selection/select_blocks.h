@@ -21,6 +21,14 @@ struct SelectionTree {
   std::vector<BlockHull> hulls;
 };
 
+/// A rectangle of a picture, pixels from the top left corner.
+struct Window {
+  double x0 = 0;
+  double y0 = 0;
+  double x1 = 0;
+  double y1 = 0;
+};
+
 /// The criteria that end refinement.
 struct SelectionCriteria {
   double spacing = 0;                                       ///< projected spacing to reach, pixels; 0: the finest level
@@ -38,6 +46,7 @@ struct SelectionCriteria {
   /// For each block: the items of it that count towards `most_items`. Null: none.
   const std::vector<uint32_t>* items = nullptr;
   uint64_t most_items = std::numeric_limits<uint64_t>::max();  ///< a second budget, of blocks that fill space
+  std::optional<Window> window{};  ///< the part of the picture that is to be drawn; none: all of it
 };
 
 /// A block that is not resident and would refine the picture.

@@ -18,7 +18,10 @@ EncodedPicture describe(const RenderJob& job, const picture::Frame& frame) {
   picture.height = frame.image.height;
   picture.camera = frame.camera;
   picture.normalization = job.picture.request.normalization;
-  picture.spacing = job.picture.request.spacing;
+  const bool chosen = picture::has_budget(job.picture.request);
+  picture.spacing = chosen ? frame.spacing : job.picture.request.spacing;
+  picture.expected_error = frame.expected_error;
+  picture.expected_ms = frame.expected_ms;
   picture.converged = frame.converged;
   picture.nothing_pending = frame.nothing_pending;
   picture.cut = frame.cut;
@@ -75,6 +78,7 @@ Result<EncodedPicture> encode_job(RenderJob& job, const Result<SharedFrame>& sha
   }
   if (job.cancelled) return cancelled_error();
   picture.encode_ms = watch.milliseconds();
+  if (picture.expected_ms > 0) picture.expected_ms += picture.encode_ms;
   if (!job.front.empty()) picture.stats.stages.push_back({"surface", job.search_ms});
   picture.stats.stages.push_back({"encode", picture.encode_ms});
   return picture;

@@ -21,6 +21,10 @@ tl::unexpected<Error> busy_error() {
 
 void RenderService::State::encode_one(const JobPointer& job, Result<SharedFrame> frame) {
   Result<EncodedPicture> result = guarded([&] { return encode_job(*job, frame); });
+  if (result && job->picture.priority == Priority::kStill && job->picture.channels.none()) {
+    const size_t pixels = static_cast<size_t>(result->width) * static_cast<size_t>(result->height);
+    encode_times.record(result->format, pixels, result->encode_ms);
+  }
   frame = cancelled_error();  // releases the pixels before the render thread may draw more
   if (const auto share = std::exchange(job->memory, nullptr); share && result) {
     share->shrink(result->bytes.size());

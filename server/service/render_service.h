@@ -60,7 +60,9 @@ struct EncodedPicture {
   int height = 0;           ///< pixels
   geometry::Camera camera;  ///< the one that was used
   picture::Normalization normalization = picture::Normalization::kPixel;
-  double spacing = 0;            ///< as in PictureRequest
+  double spacing = 0;            ///< as in PictureRequest, or the one that was chosen
+  double expected_error = 0;     ///< as in Frame
+  double expected_ms = 0;        ///< as in Frame, with encoding
   bool converged = false;        ///< as in Frame
   bool nothing_pending = false;  ///< as in Frame
   uint64_t cut = 0;              ///< as in Frame

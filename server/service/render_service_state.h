@@ -15,6 +15,7 @@
 #include "base/preemption.h"
 #include "base/stopwatch.h"
 #include "service/draw_shares.h"
+#include "service/encode_times.h"
 #include "service/frame_renderer.h"
 #include "service/job_queue.h"
 #include "service/pick_service.h"
@@ -55,6 +56,8 @@ struct RenderService::State {
   JobPointer next_motion(const RenderJob& current);
   JobPointer next_still_of_others(const RenderJob& current, int depth);
   Result<picture::Frame> render_frame(FrameRenderer& renderer, RenderJob& job, const Preemption& preemption);
+  Result<double> encoding_ms(FrameRenderer& renderer, const RenderJob& job, picture::PictureRequest request,
+                             const Preemption& preemption);
   void draw_one(FrameRenderer& renderer, const JobPointer& job, const Preemption& preemption);
   void draw_motion(FrameRenderer& renderer, const JobPointer& job, int depth, WaitingStills unfinished);
   bool draw_waiting_motion(FrameRenderer& renderer, const RenderJob& current, int depth);
@@ -90,6 +93,7 @@ struct RenderService::State {
   DrawShares shares;           ///< of the render thread
   picture::DeviceInfo device;  ///< set before start() returns, constant afterwards
   int max_resolution = 0;      ///< likewise
+  EncodeTimes encode_times;    ///< of pictures at rest
 
   mutable std::mutex mutex;  ///< guards the following members
   std::condition_variable wake;

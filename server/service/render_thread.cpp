@@ -8,6 +8,7 @@
 #include <malloc.h>
 
 #include "base/stopwatch.h"
+#include "encode/encode_picture.h"
 #include "service/guarded.h"
 #include "service/render_service_state.h"
 
@@ -21,6 +22,8 @@ tl::unexpected<Error> late_error() {
 /// Pictures of which each is drawn in the middle of the one before, the first of them not counted: as many as
 /// residency::PageTable can have.
 constexpr int kDeepest = 2;
+/// What is left to drawing at least of a time that encoding takes all of, milliseconds: the fastest picture is drawn.
+constexpr double kLeastDrawingMs = 1;
 
 }  // namespace
 
@@ -202,7 +205,36 @@ Result<picture::Frame> RenderService::State::render_frame(FrameRenderer& rendere
     if (!description) return fail(description.error());
     request.camera->view_up = description->info.up();
   }
+  if (request.time_ms > 0) {
+    const Result<double> encoding = encoding_ms(renderer, job, request, preemption);
+    if (!encoding) return fail(encoding.error());
+    request.time_ms = std::max(request.time_ms - *encoding, kLeastDrawingMs);
+  }
   return renderer.draw(job.picture.model, request, preemption);
+}
+
+/// How long the file of a picture takes to encode, as far as is known. Before the first one of a format a small, coarse
+/// picture is encoded.
+Result<double> RenderService::State::encoding_ms(FrameRenderer& renderer, const RenderJob& job,
+                                                 picture::PictureRequest request, const Preemption& preemption) {
+  constexpr int kSmaller = 4;
+  constexpr double kCoarse = 4;  // pixels
+  const size_t pixels = static_cast<size_t>(request.width) * static_cast<size_t>(request.height);
+  const picture::FileFormat format = job.picture.format;
+  if (const auto known = encode_times.expected_ms(format, pixels)) return *known;
+  request.error = request.time_ms = 0;
+  request.depth_texels = 0;
+  request.spacing = kCoarse;
+  request.width = std::max(request.width / kSmaller, 1);
+  request.height = std::max(request.height / kSmaller, 1);
+  const Result<picture::Frame> small = renderer.draw(job.picture.model, request, preemption);
+  if (!small) return fail(small.error());
+  const Stopwatch watch;
+  const auto file = encode::encode_picture(small->image, format, job.picture.quality);
+  if (!file) return fail(file.error());
+  encode_times.record(format, static_cast<size_t>(request.width) * static_cast<size_t>(request.height),
+                      watch.milliseconds());
+  return encode_times.expected_ms(format, pixels).value_or(0);
 }
 
 /// Draws a motion picture. If it takes longer than its turn, small still pictures of other sessions are drawn in its

@@ -9,6 +9,12 @@
 namespace surfcast::view {
 namespace {
 
+/// Frames before the final one have a spacing of their own: only the final one is drawn to an error or a time.
+void set_interim_spacing(picture::PictureRequest& request) {
+  request.spacing = 1;
+  request.error = request.time_ms = 0;
+}
+
 constexpr int kRefinedQuality = 90;  // of the JPEG at rest
 // The transfer time of a piece. Short enough that a motion which starts behind the piece is not noticeably delayed.
 constexpr double kPieceMs = 60;
@@ -61,7 +67,7 @@ ViewSession::~ViewSession() {
 bool ViewSession::may_be_kept(const service::PictureJob& job) const {
   constexpr size_t kPixelBytes = 4;  // of the JPEG at rest
   const size_t pixels = static_cast<size_t>(job.request.width) * static_cast<size_t>(job.request.height);
-  return pixels * kPixelBytes <= options_.kept_bytes &&
+  return pixels * kPixelBytes <= options_.kept_bytes && !picture::has_budget(job.request) &&
          picture::pixel_format_of(job.format) == picture::pixel_format_of(picture::FileFormat::kJpeg);
 }
 
@@ -76,6 +82,7 @@ service::PictureJob ViewSession::picture_job(FrameKind kind, uint64_t edition, s
   if (kind == FrameKind::kFinal) return job;
   picture::PictureRequest& request = job.request;
   request.loading = picture::Loading::kNow;
+  if (picture::has_budget(request)) set_interim_spacing(request);
   job.format = picture::FileFormat::kJpeg;
   job.quality = kRefinedQuality;
   if (kind == FrameKind::kTakeover) {

@@ -140,14 +140,14 @@ void fields(Archive& archive, T& value) {
 
 template <typename Archive, worker::Is<PictureRequest> T>
 void fields(Archive& archive, T& value) {
-  auto& [camera, width, height, normalization, filter, shading, silhouettes, blends_behind, spacing, background, format,
-         loading, edition, viewer, rest_spacing, displayed_cut, max_missing_blocks, coloring, hidden_classes, clip,
-         eye_dome, volumes, splat_convention, glyphs, lighting, opacity, xray, class_opacities, ghost, depth_texels] =
-      value;
+  auto& [camera, width, height, normalization, filter, shading, silhouettes, blends_behind, spacing, error, time_ms,
+         background, format, loading, edition, viewer, rest_spacing, displayed_cut, max_missing_blocks, coloring,
+         hidden_classes, clip, eye_dome, volumes, splat_convention, glyphs, lighting, opacity, xray, class_opacities,
+         ghost, depth_texels] = value;
   archive(camera, width, height, normalization, filter, shading, silhouettes, blends_behind, spacing, background);
   archive(format, loading, edition, viewer, rest_spacing, displayed_cut, max_missing_blocks, coloring, hidden_classes);
   archive(clip, eye_dome, volumes, splat_convention, glyphs, lighting, opacity, xray, class_opacities, ghost);
-  archive(depth_texels);
+  archive(depth_texels, error, time_ms);
 }
 
 template <typename Archive, worker::Is<StageTime> T>
@@ -179,9 +179,11 @@ void fields(Archive& archive, T& value) {
 /// The pixels travel in shared memory.
 template <typename Archive, worker::Is<Frame> T>
 void fields(Archive& archive, T& value) {
-  auto& [image, camera, converged, nothing_pending, cut, preview, depth, stats] = value;
+  auto& [image, camera, converged, nothing_pending, cut, spacing, expected_error, expected_ms, preview, depth, stats] =
+      value;
   auto& [width, height, format, pixels] = image;
   archive(width, height, format, camera, converged, nothing_pending, cut, preview, depth, stats);
+  archive(spacing, expected_error, expected_ms);
 }
 
 template <typename Archive, worker::Is<MemoryBudgets> T>

@@ -88,8 +88,16 @@ inline wire::GetPoints sample_points() {
 }
 
 /// A request of every kind, each with every field set, by the name of its kind. Ids are small and different.
+/// The same, whose spacing is chosen.
+inline wire::DrawPicture sample_picture_to_error() {
+  wire::DrawPicture picture = sample_picture();
+  picture.clear_spacing();
+  picture.set_error(40);
+  return picture;
+}
+
 inline std::vector<wire::Request> sample_requests() {
-  std::vector<wire::Request> requests(12);
+  std::vector<wire::Request> requests(13);
   requests[0].mutable_list_models();
   requests[1].mutable_describe_model()->set_model("teapot");
   *requests[2].mutable_draw_picture() = sample_picture();
@@ -112,6 +120,7 @@ inline std::vector<wire::Request> sample_requests() {
   requests[10].mutable_get_profile()->set_width(0.5);
   requests[10].mutable_get_profile()->set_max_points(7);
   *requests[11].mutable_get_points() = sample_points();
+  *requests[12].mutable_draw_picture() = sample_picture_to_error();
   for (size_t i = 0; i < requests.size(); ++i) requests[i].set_id(i + 1);
   requests[7].set_id(7);  // the view's
   requests[8].set_id(7);

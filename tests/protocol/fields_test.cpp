@@ -97,6 +97,8 @@ TEST(PictureFields, EachFieldIsSetFromItsText) {
                                                                   {"normalization", "surfel"},
                                                                   {"filter", "none"},
                                                                   {"spacing", "1.5"},
+                                                                  {"error", "40"},
+                                                                  {"time", "200.5"},
                                                                   {"shading", "lit"},
                                                                   {"background", "1,2,255"},
                                                                   {"color_by", "normal"},
@@ -134,6 +136,8 @@ TEST(PictureFields, EachFieldIsSetFromItsText) {
   EXPECT_EQ(picture.normalization(), wire::NORMALIZATION_SURFEL);
   EXPECT_EQ(picture.filter(), wire::FILTER_NONE);
   EXPECT_EQ(picture.spacing(), 1.5);
+  EXPECT_EQ(picture.error(), 40);
+  EXPECT_EQ(picture.time_ms(), 200.5);
   EXPECT_EQ(picture.shading(), wire::SHADING_LIT);
   EXPECT_EQ(picture.background().blue(), 255u);
   EXPECT_EQ(picture.coloring().source(), wire::COLOR_SOURCE_NORMAL);
@@ -293,6 +297,13 @@ TEST(PictureFields, WrongTextsAreExplained) {
                                                                                    {"channels", "Z"},
                                                                                    {"channels", "depth, normal"},
                                                                                    {"spacing", "-1"},
+                                                                                   {"error", "0"},
+                                                                                   {"error", "-40"},
+                                                                                   {"error", "40 dB"},
+                                                                                   {"error", "nan"},
+                                                                                   {"time", "0"},
+                                                                                   {"time", "-1"},
+                                                                                   {"time", "inf"},
                                                                                    {"shading", ""},
                                                                                    {"background", "256,0,0"},
                                                                                    {"background", "-1,0,0"},
@@ -429,6 +440,22 @@ TEST(CheckPicture, WhatNoFlagCouldSayIsCaughtInMessagesToo) {
   EXPECT_TRUE(refused([](auto& p) { p.mutable_resolution()->set_width(5); }));
   EXPECT_TRUE(refused([&](auto& p) { p.set_spacing(nan); }));
   EXPECT_TRUE(refused([](auto& p) { p.set_spacing(-0.5); }));
+  EXPECT_FALSE(refused([](auto& p) { p.set_error(40); }));
+  EXPECT_FALSE(refused([](auto& p) { p.set_time_ms(40); }));
+  EXPECT_TRUE(refused([](auto& p) {
+    p.set_error(40);
+    p.set_time_ms(200);
+  })) << "at most one of the two";
+  EXPECT_TRUE(refused([](auto& p) {
+    p.set_error(40);
+    p.set_spacing(1);
+  })) << "nor with a spacing";
+  EXPECT_TRUE(refused([&](auto& p) { p.set_error(nan); }));
+  EXPECT_TRUE(refused([](auto& p) { p.set_error(INFINITY); }));
+  EXPECT_TRUE(refused([](auto& p) { p.set_error(-1); }));
+  EXPECT_TRUE(refused([&](auto& p) { p.set_time_ms(nan); }));
+  EXPECT_TRUE(refused([](auto& p) { p.set_time_ms(INFINITY); }));
+  EXPECT_TRUE(refused([](auto& p) { p.set_time_ms(-1); }));
   EXPECT_TRUE(refused([](auto& p) { p.mutable_background()->set_green(256); }));
   EXPECT_TRUE(refused([](auto& p) { p.set_quality(101); }));
   EXPECT_TRUE(refused([](auto& p) { p.add_channels(wire::CHANNEL_DEPTH); })) << "a PNG has none";

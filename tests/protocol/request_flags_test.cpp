@@ -3,6 +3,7 @@
 #include <CLI/CLI.hpp>
 #include <cstdlib>
 #include <filesystem>
+#include <limits>
 #include <nlohmann/json.hpp>
 
 #include <gtest/gtest.h>
@@ -175,6 +176,20 @@ TEST_F(RequestFlagsTest, AnotherDefaultHoldsUntilAFlagSaysOtherwiseZeroIncluded)
   }
 }
 
+TEST_F(RequestFlagsTest, AnErrorOrATimeReplacesTheDefaultSpacing) {
+  for (const auto& [arguments, good] :
+       {std::pair{"--error 40", true}, std::pair{"--time 200", true}, std::pair{"--spacing 2 --time 200", false}}) {
+    CLI::App app;
+    RequestFlags flags;
+    flags.set_default("spacing", "1");
+    flags.add_view_flags_to(app);
+    app.parse(arguments);
+    const Result<wire::DrawPicture> picture = flags.view_request("cube");
+    ASSERT_EQ(picture.has_value(), good) << arguments;
+    EXPECT_EQ(picture ? picture->spacing() : 0, 0) << arguments;
+  }
+}
+
 TEST_F(RequestFlagsTest, TheEnvironmentMirrorsFlagsAndTheCommandLineWins) {
   ::setenv("SURFCAST_RESOLUTION", "11,12", 1);
   ::setenv("SURFCAST_CAMERA_POSITION", "7,8,9", 1);
@@ -205,6 +220,18 @@ TEST_F(RequestFlagsTest, TheCameraOfAPicturesFiguresIsACameraFile) {
   wire::Camera camera;
   ASSERT_TRUE(parse_camera_json(stats["camera"].dump(), camera));
   EXPECT_EQ(camera.SerializeAsString(), picture.camera().SerializeAsString());
+}
+
+TEST_F(RequestFlagsTest, TheFiguresOfAPictureWhoseSpacingWasChosenStateWhatIsExpected) {
+  wire::Picture picture;
+  EXPECT_FALSE(nlohmann::json::parse(picture_stats_json(picture)).contains("expected_error"));
+  picture.set_expected_ms(150);
+  picture.set_expected_error(41.5);
+  const auto stats = nlohmann::json::parse(picture_stats_json(picture));
+  EXPECT_EQ(stats["expected_ms"], 150);
+  EXPECT_EQ(stats["expected_error"], 41.5);
+  picture.set_expected_error(std::numeric_limits<double>::infinity());
+  EXPECT_TRUE(nlohmann::json::parse(picture_stats_json(picture))["expected_error"].is_null());
 }
 
 TEST_F(RequestFlagsTest, APictureThatCannotBeWrittenLeavesNothingBehind) {

@@ -371,5 +371,20 @@ TEST(BlocksInRectangle, APartOfThePictureSeesItsBlocksOnly) {
   EXPECT_THAT(blocks_in_rectangle(tree, both, frame, 50, 0, 100, 100), ElementsAre(1));
 }
 
+TEST(SelectBlocks, AWindowNeedsTheBlocksOfTheWholePictureThatMayBeSeenInIt) {
+  std::mt19937 random(5);
+  for (int k = 0; k < 50; ++k) {
+    const ldc::BlockTree blocks(random_tree(random, 4, k % 2 == 0));
+    const SelectionTree tree(blocks);
+    const geometry::CameraFrame frame = *geometry::make_camera_frame({{0, 0, 4}, {0, 0, 0}, {0, 1, 0}, 40}, 300, 200);
+    SelectionCriteria criteria{.spacing = 4};
+    const std::vector<uint32_t> whole = select_blocks(tree, frame, criteria, all_of(blocks)).target;
+    criteria.window = Window{200, 40, 264, 104};
+    const std::vector<uint32_t> target = select_blocks(tree, frame, criteria, all_of(blocks)).target;
+    EXPECT_EQ(target, blocks_in_rectangle(tree, whole, frame, 200, 40, 264, 104));
+    EXPECT_LE(target.size(), whole.size());
+  }
+}
+
 }  // namespace
 }  // namespace surfcast::selection

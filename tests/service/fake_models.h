@@ -61,15 +61,16 @@ struct FakeRendererControl {
   std::atomic<int> cancelled = 0;      ///< pictures cancelled while they were drawn
   std::atomic<int> nested_frames = 0;  ///< times that other pictures were drawn during a slow picture
   static constexpr int kWarmUps = 3;
-  std::atomic<int> warmed_up = 0;              ///< number of warm-up steps done
-  std::atomic<int> frame_ms = 0;               ///< least duration of a picture
-  std::atomic<bool> slow = false;              ///< a picture continues until it is cancelled or `slow` becomes false
-  std::atomic<bool> slow_motion = true;        ///< motion pictures are slow too
-  std::atomic<uint64_t> preview_editions = 0;  ///< editions up to this one are previews
-  std::atomic<bool> loading = false;           ///< blocks of the newest edition are still missing
-  std::atomic<uint64_t> loading_edition = 0;   ///< that edition
-  std::vector<uint64_t> editions;              ///< asked for; read it only while nothing is drawn
-  std::string slow_model;                      ///< if not empty, pictures of other models are not slow
+  std::atomic<int> warmed_up = 0;                 ///< number of warm-up steps done
+  std::atomic<int> frame_ms = 0;                  ///< least duration of a picture
+  std::atomic<bool> slow = false;                 ///< a picture continues until it is cancelled or `slow` becomes false
+  std::atomic<bool> slow_motion = true;           ///< motion pictures are slow too
+  std::atomic<uint64_t> preview_editions = 0;     ///< editions up to this one are previews
+  std::atomic<bool> loading = false;              ///< blocks of the newest edition are still missing
+  std::atomic<uint64_t> loading_edition = 0;      ///< that edition
+  std::vector<uint64_t> editions;                 ///< asked for; read it only while nothing is drawn
+  std::vector<picture::PictureRequest> requests;  ///< likewise
+  std::string slow_model;                         ///< if not empty, pictures of other models are not slow
   std::vector<std::string>
       order;  ///< models in the order in which they were drawn; read it only while nothing is drawn
 };
@@ -82,6 +83,7 @@ class FakeRenderer : public FrameRenderer {
   Result<picture::Frame> draw(const std::string& model, const picture::PictureRequest& request,
                               const Preemption& preemption) override {
     control_->order.push_back(model);
+    control_->requests.push_back(request);
     ++control_->drawn;
     const bool slow_too = (request.viewer == 0 || control_->slow_motion) &&
                           (control_->slow_model.empty() || control_->slow_model == model);

@@ -45,6 +45,7 @@ class ViewOfAScanTest : public ::testing::Test {
     job.model = "cube";
     job.request.width = 8;
     job.request.height = 4;
+    job.request.error = error_;
     job.request.background = glm::u8vec3(static_cast<uint8_t>(++updates_));
     view_->update({updates_, std::move(job), true, moving}, Clock::now());
   }
@@ -95,6 +96,7 @@ class ViewOfAScanTest : public ::testing::Test {
   std::vector<ViewMessage> frames_;
   std::shared_ptr<ViewSession> view_;
   uint64_t updates_ = 0;
+  double error_ = 0;  ///< of the pictures asked for
 };
 
 TEST_F(ViewOfAScanTest, GoesFromPreviewToModelWithoutBeingAsked) {
@@ -153,6 +155,27 @@ TEST_F(ViewOfAScanTest, StaysWithTheModelOnceItWasShown) {
   update();
   ASSERT_TRUE(run_until(is_final));
   EXPECT_TRUE(std::ranges::none_of(frames_, [](const ViewMessage& frame) { return frame.picture.preview; }));
+}
+
+TEST_F(ViewOfAScanTest, OnlyTheFinalFrameIsDrawnToAnError) {
+  ASSERT_TRUE(run_until(is_final));
+  control_->requests.clear();
+  frames_.clear();
+  error_ = 40;
+  update(/*moving=*/true);
+  ASSERT_TRUE(run_until([](const ViewMessage& frame) { return frame.moving; }));
+  frames_.clear();
+  update();
+  ASSERT_TRUE(run_until(is_final));
+  std::vector<picture::PictureRequest> drawn = control_->requests;
+  ASSERT_GE(drawn.size(), 3U) << "in motion, at rest, and the final one: it is not made of the one before";
+  EXPECT_EQ(drawn.back().error, 40);
+  EXPECT_EQ(drawn.back().loading, picture::Loading::kWait);
+  drawn.pop_back();
+  for (const picture::PictureRequest& request : drawn) {
+    EXPECT_EQ(request.error, 0);
+    EXPECT_GE(request.spacing, 1) << "not the finest level";
+  }
 }
 
 }  // namespace

@@ -31,6 +31,8 @@ picture::PictureRequest full_request() {
   r.silhouettes = true;
   r.blends_behind = true;
   r.spacing = 1.25;
+  r.error = 41.5;
+  r.time_ms = 250;
   r.background = {9, 8, 7};
   r.format = picture::PixelFormat::kLinearFloat;
   r.loading = picture::Loading::kNow;
@@ -88,6 +90,8 @@ TEST(MessagesTest, AllOfARequestArrives) {
   EXPECT_EQ(r.lighting.lights, full_request().lighting.lights);
   EXPECT_EQ(r.class_opacities.at(0).code, 6);
   EXPECT_EQ(r.ghost, 0.125);
+  EXPECT_EQ(r.error, 41.5);
+  EXPECT_EQ(r.time_ms, 250);
 }
 
 // Every member is written and read: what was read is written as the same bytes, and what is cut off is noticed.

@@ -25,6 +25,8 @@ class DisplayOptions(TypedDict, total=False):
     normalization: Literal["pixel", "surfel"]
     filter: Literal["ewa", "none"]
     spacing: float  # projected spacing of surfels to stop at, pixels; 0: every point
+    error: float  # or the spacing is chosen for this PSNR against every point, dB
+    time: float  # or for this time of drawing and encoding, milliseconds
     shading: Literal["auto", "unlit", "lit"]
     splat_convention: Literal["trained", "exact"]
     background: Color  # sRGB, 0 to 255
@@ -149,6 +151,21 @@ def _channels(picture: wire.DrawPicture, value: Any) -> None:
 
 def _spacing(picture: wire.DrawPicture, value: Any) -> None:
     picture.spacing = _number("spacing", value)
+
+
+def _positive(name: str, value: Any) -> float:
+    number = _number(name, value)
+    if number <= 0:
+        raise _wanted(name, "a number above 0", value)
+    return number
+
+
+def _error(picture: wire.DrawPicture, value: Any) -> None:
+    picture.error = _positive("error", value)
+
+
+def _time(picture: wire.DrawPicture, value: Any) -> None:
+    picture.time_ms = _positive("time", value)
 
 
 def _background(picture: wire.DrawPicture, value: Any) -> None:
@@ -336,6 +353,8 @@ _SETTERS: dict[str, Callable[[wire.DrawPicture, Any], None]] = {
     "normalization": _chooser("normalization", ("pixel", "surfel")),
     "filter": _chooser("filter", ("ewa", "none")),
     "spacing": _spacing,
+    "error": _error,
+    "time": _time,
     "shading": _chooser("shading", ("auto", "unlit", "lit")),
     "splat_convention": _chooser("splat_convention", ("trained", "exact")),
     "background": _background,

@@ -51,6 +51,8 @@ class Picture:
     stages: Mapping[str, float]
     levels: tuple[LevelCount, ...]
     gl_renderer: str
+    expected_error: float  # with `error` or `time`: the PSNR expected, dB; inf: as with every point; 0: not known
+    expected_ms: float  # likewise: the time of drawing and encoding
 
     @cached_property
     def array(self) -> npt.NDArray[Any]:
@@ -132,4 +134,6 @@ def picture_from(picture: wire.Picture) -> Picture:
         stages={stage.name: stage.milliseconds for stage in picture.stages},
         levels=tuple(LevelCount(l.level, l.blocks_selected, l.blocks_drawn) for l in picture.levels),
         gl_renderer=picture.gl_renderer,
+        expected_error=picture.expected_error,
+        expected_ms=picture.expected_ms,
     )

@@ -88,6 +88,28 @@ def test_an_option_means_what_it_means_over_http(
     assert option in ("format", "splat_convention") or picture.data != client[model].render(resolution=SIZE).data
 
 
+def test_a_spacing_is_chosen_for_an_error_or_a_time(running: RunningServer, field: surfcast.Model) -> None:
+    picture = field.render(resolution=SIZE, error=35)
+    assert picture.expected_error >= 34 and picture.expected_ms > 0
+    assert picture.data == field.render(resolution=SIZE, spacing=picture.spacing).data
+    plenty = field.render(resolution=SIZE, time=1e7)
+    assert plenty.spacing == 0 and plenty.expected_error == float("inf")
+    assert plenty.data == field.render(resolution=SIZE).data == over_http(running, "field", {"time": "1e7"})
+    assert field.render(resolution=SIZE).expected_ms == 0
+    with pytest.raises(surfcast.InvalidInput, match="at most one"):
+        field.render(resolution=SIZE, error=35, time=100)
+    with pytest.raises(surfcast.InvalidInput, match="error"):
+        field.render(resolution=SIZE, error=0)
+
+
+def test_the_headers_state_the_spacing_that_was_chosen(running: RunningServer, field: surfcast.Model) -> None:
+    with urlopen(f"{running.url}api/models/field/image?resolution=96,64&error=35") as answer:
+        data, headers = answer.read(), dict(answer.headers)
+    assert float(headers["X-Surfcast-Expected-Error"]) >= 34
+    assert float(headers["X-Surfcast-Expected-Ms"]) > 0
+    assert data == field.render(resolution=SIZE, spacing=float(headers["X-Surfcast-Spacing"])).data
+
+
 def test_options_that_belong_together_are_drawn_as_over_http(running: RunningServer, field: surfcast.Model) -> None:
     jpeg = field.render(resolution=SIZE, format="jpg", quality=40)
     assert jpeg.data == over_http(running, "field", {"format": "jpg", "quality": "40"})
