@@ -1,0 +1,90 @@
+#include "video/video_stream.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "base/contract.h"
+#include "base/load_module.h"
+
+namespace surfcast::video {
+namespace {
+
+Result<const VideoFunctions*> load_video_functions() {
+  return load_function(kVideoModule, kVideoSymbol)
+      .map([](void* function) { return reinterpret_cast<VideoFunctionsOf*>(function)(); })
+      .map_error([](const Error& error) {
+        return Error{error.kind, "the video codec: " + error.message};
+      });
+}
+
+double pixels_of(const picture::Image& image) {
+  return static_cast<double>(image.width) * image.height;
+}
+
+}  // namespace
+
+Result<std::shared_ptr<VideoStream>> VideoStream::open() {
+  static const Result<const VideoFunctions*> functions = load_video_functions();
+  if (!functions) return fail(functions.error());
+  return std::shared_ptr<VideoStream>(new VideoStream(**functions));
+}
+
+/// Another encoder where an image is larger than the present one takes.
+void VideoStream::make_room(int width, int height) {
+  if (width <= most_width_ && height <= most_height_) return;
+  most_width_ = std::max(most_width_, width);
+  most_height_ = std::max(most_height_, height);
+  encoder_ = EncoderPointer(functions_.create(most_width_, most_height_), functions_.destroy);
+  restart();
+}
+
+Result<VideoPacket> VideoStream::encode(const picture::Image& image, const FrameOrder& order) {
+  SURFCAST_EXPECTS(image.format == picture::PixelFormat::kSrgb8 && image.width > 0 && image.height > 0);
+  make_room(std::max(image.width, order.view_width), std::max(image.height, order.view_height));
+  const bool begins = restart_.exchange(false) || !sizes_;
+  Result<CodedPicture> coded = begins ? encode_key(image, order.bytes) : encode_next(image, order.bytes);
+  if (!coded) {
+    restart();
+    return fail(coded.error());
+  }
+  const uint64_t before = std::exchange(last_frame_, order.frame);
+  return VideoPacket{std::move(coded->bytes), coded->key, coded->key ? 0 : before};
+}
+
+/// How large a key frame becomes is not known well beforehand. One that is too large is encoded again: nothing refers
+/// to it yet.
+Result<CodedPicture> VideoStream::encode_key(const picture::Image& image, size_t bytes) {
+  constexpr double kLarger = 3;  // times the bytes of other frames
+  constexpr int kTries = 3;
+  const double wanted = kLarger * static_cast<double>(bytes);
+  Result<CodedPicture> coded;
+  for (int i = 0; i < kTries; ++i) {
+    const int quantizer = quantizer_for(key_sizes_, wanted, pixels_of(image));
+    coded = encode_with(image, quantizer, /*key=*/true);
+    if (!coded || static_cast<double>(coded->bytes.size()) <= wanted || quantizer == kCoarsestQuantizer) break;
+  }
+  return coded;
+}
+
+Result<CodedPicture> VideoStream::encode_next(const picture::Image& image, size_t bytes) {
+  const int quantizer = quantizer_for(*sizes_, static_cast<double>(bytes), pixels_of(image));
+  return encode_with(image, quantizer, /*key=*/false);
+}
+
+Result<CodedPicture> VideoStream::encode_with(const picture::Image& image, int quantizer, bool key) {
+  Result<CodedPicture> coded;
+  functions_.encode(*encoder_, image, quantizer, key, coded);
+  if (coded) learn(quantizer, static_cast<double>(coded->bytes.size()), pixels_of(image), coded->key);
+  return coded;
+}
+
+void VideoStream::learn(int quantizer, double bytes, double pixels, bool key) {
+  if (!key) {
+    sizes_ = learned(*sizes_, quantizer, bytes, pixels);
+    return;
+  }
+  key_sizes_ = learned(key_sizes_, quantizer, bytes, pixels);
+  if (!sizes_) sizes_ = sizes_after_key(quantizer, bytes, pixels);
+}
+
+}  // namespace surfcast::video
