@@ -9,6 +9,7 @@ namespace {
 
 constexpr size_t kSamples = 24;
 constexpr double kLarger = 1.5;    // times the bytes of the quickest message; smaller ones are of its size
+constexpr size_t kTransfers = 4;
 constexpr double kNewShare = 0.3;  // weight of a new slope against the previous estimate
 
 double milliseconds_between(ViewTime from, ViewTime to) {
@@ -35,9 +36,12 @@ std::optional<double> LinkEstimate::acknowledge(uint64_t frame, double client_ms
   // A message sent while another one occupied the link starts when the other one has arrived.
   ViewTime begin = message.sent;
   if (last_arrival_) begin = std::max(begin, later(*last_arrival_, -round_trip_ms()));
+  const double elapsed_at_client = milliseconds_between(message.sent, arrival);
+  learn_now(static_cast<double>(message.bytes), elapsed_at_client,
+            last_arrival_ ? milliseconds_between(*last_arrival_, arrival) : elapsed_at_client);
   last_arrival_ = arrival;
   const double occupied = std::max(milliseconds_between(begin, arrival), 0.01);
-  learn({static_cast<double>(message.bytes), occupied, milliseconds_between(message.sent, arrival)});
+  learn({static_cast<double>(message.bytes), occupied, elapsed_at_client});
   return transfer_ms(message.bytes);
 }
 
@@ -70,6 +74,35 @@ void LinkEstimate::learn(const Sample& sample) {
     const double most = sample.milliseconds / std::max(sample.bytes, 1.0);
     ms_per_byte_ = ms_per_byte_ > 0 ? std::min(ms_per_byte_, most) : most;
   }
+}
+
+/// A message occupies the link since it was sent or since the one before has arrived.
+void LinkEstimate::learn_now(double bytes, double elapsed, double since_arrival) {
+  constexpr double kLeast = 0.5;  // ms: below what is noise in the times
+  fixed_round_trip_ms_ = std::min(fixed_round_trip_ms_, elapsed);
+  transfers_.push_back({bytes, std::max(std::min(elapsed - fixed_round_trip_ms_, since_arrival), kLeast)});
+  if (transfers_.size() > kTransfers) transfers_.pop_front();
+}
+
+/// What is on the way for longer than it should be is evidence already.
+std::optional<double> LinkEstimate::ms_per_byte_now(ViewTime now) const {
+  if (transfers_.empty()) return std::nullopt;
+  Transfer sum;
+  for (const Transfer& transfer : transfers_) {
+    sum.bytes += transfer.bytes;
+    sum.milliseconds += transfer.milliseconds;
+  }
+  const double acknowledged = sum.milliseconds / std::max(sum.bytes, 1.0);
+  if (on_the_way_.empty()) return acknowledged;
+  const double waits = std::min(waits_ms(now) - fixed_round_trip_ms_, milliseconds_between(*last_arrival_, now));
+  return std::max(acknowledged, waits / std::max(static_cast<double>(on_the_way_.front().bytes), 1.0));
+}
+
+std::optional<size_t> LinkEstimate::bytes_now_in(double milliseconds, ViewTime now) const {
+  constexpr double kMost = 1e9;
+  const std::optional<double> ms_per_byte = ms_per_byte_now(now);
+  if (!ms_per_byte) return std::nullopt;
+  return static_cast<size_t>(std::min(milliseconds / *ms_per_byte, kMost));
 }
 
 double LinkEstimate::transfer_ms(size_t bytes) const {

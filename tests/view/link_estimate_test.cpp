@@ -26,6 +26,11 @@ class Line {
     return estimate.acknowledge(++acknowledged_, client_ms, at(now_ms_));
   }
 
+  /// Lets time pass until a frame of the next tick would be sent.
+  void pass(double ms) { now_ms_ += ms; }
+  void set_rate(double bytes_per_ms) { bytes_per_ms_ = bytes_per_ms; }
+  [[nodiscard]] ViewTime now() const { return at(now_ms_); }
+
   /// The next acknowledgement is read so much later than it arrives.
   void wait(double ms) { arrivals_.front() += ms; }
 
@@ -131,6 +136,66 @@ TEST(LinkEstimate, LongMotionAtOneSizeForgetsNothing) {
     line.acknowledge(estimate);
   }
   EXPECT_NEAR(estimate.transfer_ms(50'000), 100, 5);
+}
+
+/// A line of 500 bytes a millisecond whose round trip is known.
+class NowEstimate : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    for (const size_t bytes : {1000, 60'000, 60'000, 5000}) exchange(bytes);
+    estimate_.fix_round_trip();
+    for (int i = 0; i < 10; ++i) exchange(12'000);
+  }
+  void exchange(size_t bytes) {
+    line_.pass(10);
+    line_.send(estimate_, bytes);
+    line_.acknowledge(estimate_);
+  }
+  [[nodiscard]] double bytes_a_ms() const {
+    return static_cast<double>(estimate_.bytes_now_in(1000, line_.now()).value_or(0)) / 1000;
+  }
+  LinkEstimate estimate_;
+  Line line_{500, 80};
+};
+
+TEST_F(NowEstimate, KnowsNothingBeforeTheFirstAcknowledgement) {
+  EXPECT_FALSE(LinkEstimate().bytes_now_in(30, line_.now()));
+}
+
+TEST_F(NowEstimate, MessagesOfOneSizeTellTheRate) {
+  EXPECT_NEAR(bytes_a_ms(), 500, 50);
+}
+
+TEST_F(NowEstimate, FollowsALineThatBecomesTenTimesAsSlow) {
+  line_.set_rate(50);
+  exchange(12'000);
+  EXPECT_LT(bytes_a_ms(), 200);
+  for (int i = 0; i < 3; ++i) exchange(3000);
+  EXPECT_NEAR(bytes_a_ms(), 50, 10);
+}
+
+TEST_F(NowEstimate, AMessageThatIsNotAcknowledgedIsEvidence) {
+  line_.send(estimate_, 12'000);
+  EXPECT_NEAR(bytes_a_ms(), 500, 50);
+  line_.pass(80 + 24);
+  EXPECT_NEAR(bytes_a_ms(), 500, 50) << "it is not late yet";
+  line_.pass(216);
+  EXPECT_NEAR(bytes_a_ms(), 50, 5);
+}
+
+TEST_F(NowEstimate, FollowsALineThatIsFastAgain) {
+  line_.set_rate(50);
+  for (int i = 0; i < 100; ++i) exchange(3000);
+  EXPECT_NEAR(bytes_a_ms(), 50, 5);
+  line_.set_rate(500);
+  for (int i = 0; i < 4; ++i) exchange(3000);
+  EXPECT_NEAR(bytes_a_ms(), 500, 50);
+}
+
+TEST_F(NowEstimate, MessagesThatWaitForOthersTellTheRate) {
+  for (int i = 0; i < 3; ++i) line_.send(estimate_, 12'000);
+  for (int i = 0; i < 3; ++i) line_.acknowledge(estimate_);
+  EXPECT_NEAR(bytes_a_ms(), 500, 50);
 }
 
 TEST(LinkEstimate, AcknowledgementsOfNothingAreIgnored) {

@@ -1,6 +1,7 @@
 #include "view/view_session.h"
 
 #include <algorithm>
+#include <atomic>
 #include <condition_variable>
 #include <deque>
 #include <mutex>
@@ -29,10 +30,16 @@ class ViewOfAScanTest : public ::testing::Test {
     port.may_draw = [] { return true; };
     port.post = [this](std::function<void()> task) {
       const std::lock_guard lock(mutex_);
+      if (lose_tasks_ > 0) {
+        --lose_tasks_;
+        return;
+      }
       tasks_.push_back(std::move(task));
       wake_.notify_one();
     };
-    view_ = std::make_shared<ViewSession>(*service_, 1, 1, ViewOptions{}, counts_, std::move(port));
+    ViewOptions options;
+    options.video = video_;
+    view_ = std::make_shared<ViewSession>(*service_, 1, 1, options, counts_, std::move(port));
     update();
   }
   void TearDown() override {
@@ -58,7 +65,8 @@ class ViewOfAScanTest : public ::testing::Test {
     const auto end = Clock::now() + std::chrono::seconds(20);
     for (size_t seen = 0; Clock::now() < end;) {
       for (; seen < frames_.size(); ++seen) {
-        view_->acknowledge(frames_[seen].frame, 1, Clock::now());
+        late_ += every_message_;
+        view_->acknowledge(frames_[seen].frame, 1, Clock::now() + late_);
         if (condition(frames_[seen])) return true;
       }
       run_tasks();
@@ -87,11 +95,16 @@ class ViewOfAScanTest : public ::testing::Test {
 
   service::FakeModels models_;
   std::shared_ptr<service::FakeRendererControl> control_ = std::make_shared<service::FakeRendererControl>();
+  bool video_ = false;
+  /// So much later each message is acknowledged than the one before, as over a link that it occupies for so long.
+  std::chrono::milliseconds every_message_{0};
+  std::chrono::milliseconds late_{0};
   std::unique_ptr<service::RenderService> service_;
   ViewCounts counts_;
   std::mutex mutex_;
   std::condition_variable wake_;
   std::deque<std::function<void()>> tasks_;
+  std::atomic<int> lose_tasks_ = 0;  ///< of the next ones
   std::vector<ViewMessage> frames_;
   std::shared_ptr<ViewSession> view_;
   uint64_t updates_ = 0;
@@ -153,6 +166,94 @@ TEST_F(ViewOfAScanTest, StaysWithTheModelOnceItWasShown) {
   update();
   ASSERT_TRUE(run_until(is_final));
   EXPECT_TRUE(std::ranges::none_of(frames_, [](const ViewMessage& frame) { return frame.picture.preview; }));
+}
+
+/// The same view, of a client that decodes VP9.
+class ViewOfAVideoTest : public ViewOfAScanTest {
+ protected:
+  ViewOfAVideoTest() { video_ = true; }
+
+  bool move_for(size_t frames) {
+    frames_.clear();
+    return move_until([this, frames](const ViewMessage&) { return frames_.size() >= frames; });
+  }
+  static bool is_packet(const ViewMessage& frame) { return frame.picture.video.has_value(); }
+  /// Whether a decoder that gets these frames, and has decoded this one before, can decode them.
+  static ::testing::AssertionResult decodable(const std::vector<ViewMessage>& frames, uint64_t last = 0) {
+    for (const ViewMessage& frame : frames) {
+      if (!is_packet(frame)) continue;
+      const service::PacketPlace& place = *frame.picture.video;
+      if (place.key ? place.refers_to != 0 : last == 0 || place.refers_to != last) {
+        return ::testing::AssertionFailure() << frame.frame << " refers to " << place.refers_to << " after " << last;
+      }
+      if (frame.more || !frame.first) return ::testing::AssertionFailure() << "packets are sent as a whole";
+      last = frame.frame;
+    }
+    return ::testing::AssertionSuccess();
+  }
+};
+
+TEST_F(ViewOfAVideoTest, SendsFilesOverAFastLink) {
+  ASSERT_TRUE(move_for(30));
+  EXPECT_TRUE(std::ranges::none_of(frames_, is_packet));
+}
+
+TEST_F(ViewOfAVideoTest, SendsOneStreamOfPacketsOverASlowLink) {
+  every_message_ = std::chrono::milliseconds(100);
+  ASSERT_TRUE(move_for(40));
+  EXPECT_TRUE(std::ranges::all_of(frames_.begin() + 30, frames_.end(), is_packet));
+  EXPECT_TRUE(decodable(frames_));
+  const auto keys = std::ranges::count_if(
+      frames_, [](const ViewMessage& frame) { return is_packet(frame) && frame.picture.video->key; });
+  EXPECT_EQ(keys, 1);
+}
+
+TEST_F(ViewOfAVideoTest, GoesOnWithTheStreamAfterARest) {
+  every_message_ = std::chrono::milliseconds(100);
+  ASSERT_TRUE(move_for(40));
+  const uint64_t last = frames_.back().frame;
+  frames_.clear();
+  update();
+  ASSERT_TRUE(run_until(is_final));
+  EXPECT_TRUE(decodable(frames_, last));
+  const auto at_rest = std::ranges::find(frames_, false, &ViewMessage::moving);
+  EXPECT_TRUE(std::none_of(at_rest, frames_.end(), is_packet));
+  std::vector<ViewMessage> all = frames_;
+  ASSERT_TRUE(move_for(20));
+  all.insert(all.end(), frames_.begin(), frames_.end());
+  EXPECT_TRUE(decodable(all, last));
+  EXPECT_TRUE(std::ranges::none_of(
+      all, [](const ViewMessage& frame) { return is_packet(frame) && frame.picture.video->key; }));
+}
+
+TEST_F(ViewOfAVideoTest, BeginsAnewAfterAPacketThatWasNotSent) {
+  every_message_ = std::chrono::milliseconds(100);
+  ASSERT_TRUE(move_for(40));
+  const uint64_t last = frames_.back().frame;
+  lose_tasks_ = 1;
+  update(/*moving=*/true);
+  while (lose_tasks_ > 0) view_->advance(Clock::now());
+  ASSERT_TRUE(move_for(20));
+  EXPECT_TRUE(decodable(frames_, last));
+  const auto is_key = [](const ViewMessage& frame) { return is_packet(frame) && frame.picture.video->key; };
+  EXPECT_EQ(std::ranges::count_if(frames_, is_key), 1);
+}
+
+TEST_F(ViewOfAVideoTest, StaysDecodableWhenTheModelTakesOver) {
+  every_message_ = std::chrono::milliseconds(100);
+  ASSERT_TRUE(move_for(40));
+  const uint64_t last = frames_.back().frame;
+  publish(2);
+  frames_.clear();
+  ASSERT_TRUE(move_until([](const ViewMessage& frame) { return !frame.picture.preview; }));
+  ASSERT_TRUE(move_until([this](const ViewMessage&) { return frames_.size() > 20; }));
+  EXPECT_TRUE(decodable(frames_, last));
+}
+
+TEST_F(ViewOfAScanTest, SendsFilesToWhoDidNotAskForVideo) {
+  every_message_ = std::chrono::milliseconds(100);
+  ASSERT_TRUE(move_until([this](const ViewMessage&) { return frames_.size() >= 40; }));
+  for (const ViewMessage& frame : frames_) EXPECT_FALSE(frame.picture.video);
 }
 
 }  // namespace
