@@ -100,4 +100,8 @@ Result<PixelImage> VideoDecoder::decode(const wire::ViewFrame& frame) {
   return image;
 }
 
+Result<PixelImage> decode_frame(const wire::ViewFrame& frame, VideoDecoder& video) {
+  return frame.has_video() ? video.decode(frame) : decode_picture(frame.picture());
+}
+
 }  // namespace surfcast::window

@@ -30,4 +30,7 @@ class VideoDecoder {
   uint64_t last_frame_ = 0;  ///< 0: none
 };
 
+/// The pixels of any frame: of its file, or of the next packet of the video.
+Result<PixelImage> decode_frame(const wire::ViewFrame& frame, VideoDecoder& video);
+
 }  // namespace surfcast::window

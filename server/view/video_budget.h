@@ -19,7 +19,7 @@ double video_scale(size_t bytes, double pixels);
 double jpeg_density(size_t bytes, double pixels, int quality);
 
 /// Whether frames become a video: files of a good quality would not fit. `file_bytes`: of such a file of a frame.
-/// `link_bytes`: that the link transfers between two frames. `is_video`: of the last frames; a change needs evidence.
+/// `link_bytes`: that the link transfers in video_frame_ms(). `is_video`: of the last frames; a change needs evidence.
 bool wants_video(double file_bytes, double link_bytes, bool is_video);
 
 /// The bytes of a file of a good quality.

@@ -150,7 +150,7 @@ size_t ViewSession::video_frame_bytes(ViewTime now) const {
 
 /// Whether the next frames in motion are packets of the video. While nothing is known of the link they are files.
 void ViewSession::choose_codec(ViewTime now) {
-  const std::optional<size_t> fits = link_.bytes_now_in(1000 / motion_fps(), now);
+  const std::optional<size_t> fits = link_.bytes_now_in(video_frame_ms(motion_fps()), now);
   if (!stream_ || !fits) return;
   const double scale = drawing_of(quality_).scale;
   const double file = good_file_bytes(file_density_, view_pixels() * scale * scale);
@@ -201,7 +201,8 @@ void ViewSession::drop(uint64_t frame) {
 size_t ViewSession::window(ViewTime now) const {
   constexpr double kLateMs = 100;
   const double round_trip = link_.round_trip_ms();
-  const std::optional<size_t> fits = link_.bytes_in(round_trip + kLateMs);
+  const double milliseconds = round_trip + kLateMs;
+  const std::optional<size_t> fits = is_video_ ? link_.bytes_now_in(milliseconds, now) : link_.bytes_in(milliseconds);
   if (!warps_ || round_trip == 0 || !fits) return kMaxUnacknowledged;
   if (link_.bytes_on_the_way() >= *fits || link_.waits_ms(now) > 2 * round_trip + kLateMs) return kMaxUnacknowledged;
   const auto frames = static_cast<size_t>(std::ceil(round_trip * options_.target_fps / 1000));
@@ -258,8 +259,8 @@ void ViewSession::draw(FrameKind kind, ViewTime now) {
     });
   };
   if (kind == FrameKind::kFinal && finished_frame_) {
-    job.job = service_.encode(std::exchange(finished_frame_, {}), picture_job(kind, frame, now), std::move(done),
-                              asker_);
+    job.job =
+        service_.encode(std::exchange(finished_frame_, {}), picture_job(kind, frame, now), std::move(done), asker_);
   } else {
     job.job = service_.draw(asker_, picture_job(kind, frame, now), std::move(done));
   }
@@ -314,8 +315,7 @@ void ViewSession::record_size(const service::EncodedPicture& picture, const Job&
   if (job.kind == FrameKind::kMotion) depth_bytes_ = picture.depth ? picture.depth->codes.size() : 0;
   if (picture.video || picture.format != picture::FileFormat::kJpeg || job.kind == FrameKind::kFinal) return;
   const int quality = job.kind == FrameKind::kMotion ? quality_of(job.quality).jpeg_quality : kRefinedQuality;
-  file_density_ =
-      jpeg_density(picture.bytes.size(), static_cast<double>(picture.width) * picture.height, quality);
+  file_density_ = jpeg_density(picture.bytes.size(), static_cast<double>(picture.width) * picture.height, quality);
 }
 
 /// A frame failed. If the server was busy the view retries later; any other error but a cancellation ends the view.
@@ -399,8 +399,9 @@ void ViewSession::erase_if_done(uint64_t frame) {
   if (found->second.sent && found->second.unacknowledged == 0) frames_.erase(found);
 }
 
-/// Sends as much as may be sent: motion frames as a whole, others in pieces small enough not to delay a motion. A packet
-/// of a video does not wait, because it could not be dropped for a newer one. When it was drawn, there was room for it.
+/// Sends as much as may be sent: motion frames as a whole, others in pieces small enough not to delay a motion. A
+/// packet of a video does not wait, because it could not be dropped for a newer one. When it was drawn, there was room
+/// for it.
 void ViewSession::send_pieces(ViewTime now) {
   while (outgoing_ && (plan_.may_send() || frames_.at(outgoing_->frame).video)) {
     const size_t rest = outgoing_->bytes.size() - outgoing_->sent;
@@ -449,7 +450,6 @@ void ViewSession::acknowledge(uint64_t frame, double client_ms, ViewTime now) {
   --job.unacknowledged;
   plan_.acknowledge(job.kind);
   const std::optional<double> transfer = link_.acknowledge(frame, client_ms, now);
-  if (!job.video) link_.fix_round_trip();
   if (job.kind == FrameKind::kMotion && job.sent) latencies_.push_back(now - job.begun);
   if (latencies_.size() > kLatencies) latencies_.pop_front();
   if (job.kind == FrameKind::kMotion && transfer) adapt_quality(job, *transfer, client_ms);

@@ -172,7 +172,7 @@ class ViewSession : public std::enable_shared_from_this<ViewSession> {
   MotionCost last_cost_;     ///< of the last motion frame acknowledged
   /// The last frame at rest of the newest picture, if it is final.
   std::shared_ptr<const picture::Frame> finished_frame_;
-  uint64_t displayed_cut_ = 0;  ///< of the last frame at rest drawn of the newest picture; 0: none
+  uint64_t displayed_cut_ = 0;                  ///< of the last frame at rest drawn of the newest picture; 0: none
   std::shared_ptr<video::VideoStream> stream_;  ///< null: no video
   bool is_video_ = false;                       ///< frames in motion become packets of it
   uint64_t last_packet_ = 0;                    ///< the frame that was the last packet sent; 0: none

@@ -222,8 +222,8 @@ TEST_F(ViewOfAVideoTest, GoesOnWithTheStreamAfterARest) {
   ASSERT_TRUE(move_for(20));
   all.insert(all.end(), frames_.begin(), frames_.end());
   EXPECT_TRUE(decodable(all, last));
-  EXPECT_TRUE(std::ranges::none_of(
-      all, [](const ViewMessage& frame) { return is_packet(frame) && frame.picture.video->key; }));
+  EXPECT_TRUE(
+      std::ranges::none_of(all, [](const ViewMessage& frame) { return is_packet(frame) && frame.picture.video->key; }));
 }
 
 TEST_F(ViewOfAVideoTest, BeginsAnewAfterAPacketThatWasNotSent) {
