@@ -161,11 +161,12 @@ TEST_F(ViewSessionTest, FramesHaveNoDepthWhereTheViewDoesNotAskForIt) {
 class ThinLinkTest : public ViewSessionTest {
  protected:
   std::vector<wire::ViewFrame> move(bool video, size_t frames) {
-    const testing::LinkRelay relay(server_->port(), {.bits_per_second = 1e6});
-    open_view("noise", 96, 64, /*depth=*/false, video, relay.port());
+    start();
+    const testing::LinkRelay relay(port_, {.bits_per_second = 1e6});
+    open_view("noise", 320, 200, /*depth=*/false, video, relay.port());
     std::vector<wire::ViewFrame> received;
     for (uint64_t i = 1; received.size() < frames && !HasFailure(); ++i) {
-      update(i, picture("noise", static_cast<double>(i), 96, 64), /*moving=*/true);
+      update(i, picture("noise", static_cast<double>(i), 320, 200), /*moving=*/true);
       received.push_back(next_frame());
     }
     return received;
