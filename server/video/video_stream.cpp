@@ -9,6 +9,8 @@
 namespace surfcast::video {
 namespace {
 
+constexpr int kNoQuantizer = -1;
+
 Result<const VideoFunctions*> load_video_functions() {
   return load_function(kVideoModule, kVideoSymbol)
       .map([](void* function) { return reinterpret_cast<VideoFunctionsOf*>(function)(); })
@@ -51,17 +53,23 @@ Result<VideoPacket> VideoStream::encode(const picture::Image& image, const Frame
   return VideoPacket{std::move(coded->bytes), coded->key, coded->key ? 0 : before};
 }
 
-/// How large a key frame becomes is not known well beforehand. One that is too large is encoded again: nothing refers
-/// to it yet.
+/// How large a key frame becomes is not known well beforehand. One that is too large, or far too small, is encoded
+/// again: nothing refers to it yet.
 Result<CodedPicture> VideoStream::encode_key(const picture::Image& image, size_t bytes) {
-  constexpr double kLarger = 3;  // times the bytes of other frames
+  constexpr double kLarger = 3;    // times the bytes of other frames
+  constexpr double kEnough = 0.6;  // of them
   constexpr int kTries = 3;
   const double wanted = kLarger * static_cast<double>(bytes);
   Result<CodedPicture> coded;
+  int before = kNoQuantizer;
   for (int i = 0; i < kTries; ++i) {
     const int quantizer = quantizer_for(key_sizes_, wanted, pixels_of(image));
+    if (quantizer == before) break;
+    before = quantizer;
     coded = encode_with(image, quantizer, /*key=*/true);
-    if (!coded || static_cast<double>(coded->bytes.size()) <= wanted || quantizer == kCoarsestQuantizer) break;
+    if (!coded) break;
+    const auto size = static_cast<double>(coded->bytes.size());
+    if (size <= wanted && size >= kEnough * wanted) break;
   }
   return coded;
 }
