@@ -4,12 +4,37 @@
 #include <utility>
 
 #include "base/contract.h"
+#include "base/host_memory.h"
 #include "base/load_module.h"
 
 namespace surfcast::video {
 namespace {
 
 constexpr int kNoQuantizer = -1;
+
+/// Pixels that the encoders of all views may have together. An encoder takes some 90 bytes for each, as long as its
+/// view is open; an eighth of the host's memory is for them. Views beyond that get files. So it is not a setting:
+/// nothing is refused.
+class EncoderRoom {
+ public:
+  bool take(int64_t pixels) {
+    if (taken_.fetch_add(pixels) + pixels <= most_) return true;
+    give_back(pixels);
+    return false;
+  }
+  void give_back(int64_t pixels) { taken_ -= pixels; }
+
+ private:
+  static constexpr int64_t kPixelBytes = 90;
+  static constexpr int64_t kLeast = int64_t{3840} * 2160;
+  const int64_t most_ = std::max(static_cast<int64_t>(read_host_memory().available) / 8 / kPixelBytes, kLeast);
+  std::atomic<int64_t> taken_ = 0;
+};
+
+EncoderRoom& encoder_room() {
+  static EncoderRoom room;
+  return room;
+}
 
 Result<const VideoFunctions*> load_video_functions() {
   return load_function(kVideoModule, kVideoSymbol)
@@ -32,17 +57,29 @@ Result<std::shared_ptr<VideoStream>> VideoStream::open() {
 }
 
 /// Another encoder where an image is larger than the present one takes.
-void VideoStream::make_room(int width, int height) {
-  if (width <= most_width_ && height <= most_height_) return;
+Status VideoStream::make_room(int width, int height) {
+  if (width <= most_width_ && height <= most_height_) return {};
+  encoder_.reset();
   most_width_ = std::max(most_width_, width);
   most_height_ = std::max(most_height_, height);
-  encoder_ = EncoderPointer(functions_.create(most_width_, most_height_), functions_.destroy);
+  const int64_t pixels = static_cast<int64_t>(most_width_) * most_height_;
+  if (!encoder_room().take(pixels)) {
+    most_width_ = most_height_ = 0;
+    return fail(ErrorKind::kLimit, "too many views have a video");
+  }
+  encoder_ = EncoderPointer(functions_.create(most_width_, most_height_),
+                            [destroy = functions_.destroy, pixels](Encoder* encoder) {
+                              destroy(encoder);
+                              encoder_room().give_back(pixels);
+                            });
   restart();
+  return {};
 }
 
 Result<VideoPacket> VideoStream::encode(const picture::Image& image, const FrameOrder& order) {
   SURFCAST_EXPECTS(image.format == picture::PixelFormat::kSrgb8 && image.width > 0 && image.height > 0);
-  make_room(std::max(image.width, order.view_width), std::max(image.height, order.view_height));
+  const int width = std::max(image.width, order.view_width);
+  if (Status room = make_room(width, std::max(image.height, order.view_height)); !room) return fail(room.error());
   const bool begins = restart_.exchange(false) || !sizes_;
   Result<CodedPicture> coded = begins ? encode_key(image, order.bytes) : encode_next(image, order.bytes);
   if (!coded) {

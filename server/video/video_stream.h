@@ -38,7 +38,8 @@ class VideoStream {
   /// Fails if the server has no module for it.
   static Result<std::shared_ptr<VideoStream>> open();
 
-  /// Encodes an sRGB image of 8 bits. Called by one thread at a time.
+  /// Encodes an sRGB image of 8 bits. Called by one thread at a time. Fails with kLimit where the encoders of other
+  /// streams leave no memory for one of this size.
   Result<VideoPacket> encode(const picture::Image& image, const FrameOrder& order);
   /// A packet does not reach the decoder: the next one to be encoded is a key frame. Called from any thread.
   void restart() { restart_ = true; }
@@ -47,7 +48,7 @@ class VideoStream {
   using EncoderPointer = std::unique_ptr<Encoder, std::function<void(Encoder*)>>;
 
   explicit VideoStream(const VideoFunctions& functions) : functions_(functions) {}
-  void make_room(int width, int height);
+  Status make_room(int width, int height);
   Result<CodedPicture> encode_key(const picture::Image& image, size_t bytes);
   Result<CodedPicture> encode_next(const picture::Image& image, size_t bytes);
   Result<CodedPicture> encode_with(const picture::Image& image, int quantizer, bool key);

@@ -27,6 +27,8 @@ constexpr size_t kLatencies = 5;
 // Clients that warp need no frame for each of the display's: fewer and sharper ones are nearer to the truth. Frames of
 // the best quality are drawn as often as the device can.
 constexpr double kWarpedRate = 0.4;
+// Of a view: larger ones get files. That is not a setting because nothing is refused.
+constexpr double kMostVideoPixels = 3840.0 * 2160;
 
 int scaled(int pixels, double scale) {
   return std::max(1, static_cast<int>(std::lround(pixels * scale)));
@@ -152,9 +154,10 @@ size_t ViewSession::video_frame_bytes(ViewTime now) const {
 void ViewSession::choose_codec(ViewTime now) {
   const std::optional<size_t> fits = link_.bytes_now_in(video_frame_ms(motion_fps()), now);
   if (!stream_ || !fits) return;
+  const bool small = view_pixels() <= kMostVideoPixels;
   const double scale = drawing_of(quality_).scale;
   const double file = good_file_bytes(file_density_, view_pixels() * scale * scale);
-  is_video_ = wants_video(file + static_cast<double>(depth_bytes_), static_cast<double>(*fits), is_video_);
+  is_video_ = small && wants_video(file + static_cast<double>(depth_bytes_), static_cast<double>(*fits), is_video_);
 }
 
 void ViewSession::update(ViewUpdate update, ViewTime now) {
@@ -180,6 +183,7 @@ void ViewSession::retarget(ViewTime now) {
   choose_codec(now);
   if (!service_.replace(job.job, picture_job(FrameKind::kMotion, *frame, now))) return;
   plan_.retarget(*frame);
+  job.video = is_video_;
   job.begun = now;
   job.update = newest_.update;
   job.quality = quality_;
@@ -253,6 +257,7 @@ void ViewSession::draw(FrameKind kind, ViewTime now) {
   plan_.begin(frame, kind);
   newest_begun_ = true;
   if (kind == FrameKind::kMotion) choose_codec(now);
+  job.video = kind == FrameKind::kMotion && is_video_;
   auto done = [weak = weak_from_this(), post = port_.post, frame](Result<service::EncodedPicture> picture) {
     post([weak, frame, picture = std::move(picture)]() mutable {
       if (const auto self = weak.lock()) self->finish(frame, std::move(picture));
@@ -290,6 +295,7 @@ void ViewSession::finish(uint64_t frame, Result<service::EncodedPicture> picture
     return withdraw(picture);
   }
   record_size(*picture, job);
+  if (job.video && !picture->video) give_up_video();
   job.video = picture->video.has_value();
   // Waiting for the previous frame is no cost of this one.
   job.cost.draw = picture->draw_ms + std::max(picture->waited_ms - last_draw_ms_, 0.0);
@@ -300,6 +306,12 @@ void ViewSession::finish(uint64_t frame, Result<service::EncodedPicture> picture
   send_pieces(now);
 }
 
+/// The codec has failed, or there is no room for its encoder.
+void ViewSession::give_up_video() {
+  stream_.reset();
+  is_video_ = false;
+}
+
 /// Whether a decoder that has got all that was sent can decode this picture.
 bool ViewSession::follows(const service::EncodedPicture& picture) const {
   return !picture.video || picture.video->key || picture.video->refers_to == last_packet_;
@@ -307,7 +319,7 @@ bool ViewSession::follows(const service::EncodedPicture& picture) const {
 
 /// This picture is not sent: the video goes on with a key frame.
 void ViewSession::withdraw(const Result<service::EncodedPicture>& picture) {
-  if (picture && picture->video) stream_->restart();
+  if (picture && picture->video && stream_) stream_->restart();
 }
 
 /// The sizes of files tell whether later ones would fit the link.

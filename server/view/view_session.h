@@ -104,7 +104,7 @@ class ViewSession : public std::enable_shared_from_this<ViewSession> {
     uint64_t edition = 0;           ///< of the model
     QualityState quality;
     MotionCost cost;
-    bool video = false;         ///< a packet of the video
+    bool video = false;         ///< to be a packet of the video; once drawn: it is one
     ViewTime begun;             ///< when its camera was chosen
     size_t unacknowledged = 0;  ///< messages
     bool sent = false;          ///< sent or dropped: the job ends with its last acknowledgement
@@ -131,6 +131,7 @@ class ViewSession : public std::enable_shared_from_this<ViewSession> {
   [[nodiscard]] double motion_fps() const;
   [[nodiscard]] size_t video_frame_bytes(ViewTime now) const;
   void choose_codec(ViewTime now);
+  void give_up_video();
   [[nodiscard]] bool follows(const service::EncodedPicture& picture) const;
   void withdraw(const Result<service::EncodedPicture>& picture);
   void record_size(const service::EncodedPicture& picture, const Job& job);

@@ -81,6 +81,14 @@ TEST_F(VideoStreamTest, FollowsFewerBytesWithTheNextFrame) {
   EXPECT_LE(encode(image, frame + 1, 4000).bytes.size(), 7000U);
 }
 
+TEST_F(VideoStreamTest, EncodersBeyondTheMemoryOfTheHostAreRefused) {
+  const picture::Image image = waves(160, 96, 0);
+  const Result<VideoPacket> refused = stream_->encode(image, {1, kBytes, 1 << 20, 1 << 20});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().kind, ErrorKind::kLimit);
+  EXPECT_TRUE(encode(image, 2).key) << "the refusal takes nothing";
+}
+
 TEST_F(VideoStreamTest, TakesTheSmallestPictures) {
   encode(noise(1, 1, 1), 1);
   encode(noise(3, 1, 2), 2);
