@@ -1,28 +1,36 @@
-// motion_lab PORT MODEL... [near] [fps=N] [link=MBIT,MS]: plays camera paths over emulated links to a server on this
-// machine that serves these models, and compares what a client shows at each instant with the picture of its camera at
-// that instant: as clients without depth show it (the newest frame), and warped by depth. `near`: from a quarter of the
-// distance. `fps`: frames a second that the client with depth asks for. `link`: this one alone.
+// motion_lab PORT MODEL... [near] [fps=N] [link=MBIT,MS] [drop]: plays camera paths over emulated links to a server on
+// this machine that serves these models, and compares what a client shows at each instant with the picture of its
+// camera at that instant: as clients without depth show it (the newest frame), warped by depth, and warped from a
+// video. `near`: from a quarter of the distance. `fps`: frames a second that the clients with depth ask for. `link`:
+// this one alone.
 //
-// For each path and link a row of a Markdown table: frames a second, kilobytes a second; then over instants 50 ms
-// apart, PSNR in dB over covered pixels (mean, and the value that one in ten is below) and the share of pixels that are
-// more than 20 levels off. Instants at which the model covers less than a fiftieth of the picture do not count.
+// For each path and link a row of a Markdown table: frames a second, kilobytes a second, their width in pixels; then
+// over instants 50 ms apart, PSNR in dB over covered pixels (mean, and the value that one in ten is below) and the
+// share of pixels that are more than 20 levels off. Instants at which the model covers less than a fiftieth of the
+// picture do not count.
+//
+// `drop`: instead, the link of the clients with depth has its rate for 4 s, a tenth of it for 4 s, and its rate again.
+// For each half second: frames, kilobytes and width; and the longest time without a frame.
 
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <cstdlib>
+#include <functional>
 #include <glm/common.hpp>
 #include <map>
 #include <memory>
 #include <numeric>
 #include <optional>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bench_support.h"
 #include "camera_paths.h"
 #include "client/view.h"
-#include "client/window/decode_picture.h"
+#include "client/window/video_decoder.h"
 #include "support/link_relay.h"
 #include "warp/warp.h"
 #include "warp_error.h"
@@ -40,6 +48,8 @@ constexpr int kHeight = 720;
 constexpr double kSeconds = 2.5;  // of a movement
 constexpr double kEvery = 0.05;   // between two instants that are judged
 constexpr double kUpdateEvery = 0.016;
+constexpr double kDropEvery = 4;
+constexpr double kDropPart = 0.1;
 constexpr double kDecode = 0.005;  // from the arrival of a frame until it can be shown
 
 struct Link {
@@ -86,13 +96,21 @@ double seconds_since(Clock::time_point start) {
   return std::chrono::duration<double>(Clock::now() - start).count();
 }
 
-/// The frames of a movement, and before them the one at rest from which it
-/// begins.
-std::vector<Arrived> play(uint16_t port, const std::string& model, const Camera& begin, const Path& path, bool depth,
-                          double fps) {
+/// A client, and what it plays.
+struct Player {
+  uint16_t port = 0;
+  std::string model;
+  Camera begin;
+  client::ViewWishes wishes;
+};
+
+/// The frames of a movement, and before them the one at rest from which it begins. `tick` gets the seconds since.
+std::vector<Arrived> play(const Player& player, const Path& path, double seconds,
+                          const std::function<void(double)>& tick) {
   client::ServerConnection connection =
-      value_or_exit(client::ServerConnection::open({.host = "127.0.0.1", .port = port}, {}));
-  client::View view = value_or_exit(client::View::open(connection, request_of(model, begin), fps, depth));
+      value_or_exit(client::ServerConnection::open({.host = "127.0.0.1", .port = player.port}, {}));
+  client::View view =
+      value_or_exit(client::View::open(connection, request_of(player.model, player.begin), player.wishes));
   std::vector<Arrived> frames(1);
   while (!frames.front().frame.picture().converged()) {
     auto frame = value_or_exit(view.next_until(Clock::now() + std::chrono::seconds(60)));
@@ -100,10 +118,11 @@ std::vector<Arrived> play(uint16_t port, const std::string& model, const Camera&
     frames.front().frame = frame->frame;
   }
   const Clock::time_point start = Clock::now();
-  for (double next = 0; seconds_since(start) < kSeconds;) {
+  for (double next = 0; seconds_since(start) < seconds;) {
     const double now = seconds_since(start);
+    tick(now);
     if (now >= next) {
-      value_or_exit(view.show(request_of(model, path.at(begin, now)), /*moving=*/true));
+      value_or_exit(view.show(request_of(player.model, path.at(player.begin, now)), /*moving=*/true));
       next = std::max(next + kUpdateEvery, now);
     }
     const auto until = start + std::chrono::duration_cast<Clock::duration>(std::chrono::duration<double>(next));
@@ -116,8 +135,8 @@ std::vector<Arrived> play(uint16_t port, const std::string& model, const Camera&
 }
 
 /// A frame as a client has it.
-warp::WarpFrame decoded(const wire::ViewFrame& frame) {
-  window::PixelImage image = value_or_exit(window::decode_picture(frame.picture()));
+warp::WarpFrame decoded(const wire::ViewFrame& frame, window::VideoDecoder& video) {
+  window::PixelImage image = value_or_exit(window::decode_frame(frame, video));
   for (size_t i = 0; i < image.pixels.size(); i += 4) std::swap(image.pixels[i], image.pixels[i + 2]);
   const Camera camera = from_message(frame.picture().camera());
   warp::WarpFrame result{{image.width, image.height, std::move(image.pixels)},
@@ -138,6 +157,8 @@ using Truth = std::vector<picture::Image>;
 struct Judged {
   double rate = 0;       ///< frames a second
   double kilobytes = 0;  ///< a second
+  double width = 0;      ///< of a frame, pixels
+  double packets = 0;    ///< of a video: their share
   std::vector<bench::Figures> figures;
 };
 
@@ -150,16 +171,22 @@ bool counts(const picture::Image& image) {
 
 Judged judge(const std::vector<Arrived>& frames, const Camera& begin, const Path& path, const Truth& truth) {
   Judged judged;
-  for (const Arrived& frame : frames) judged.kilobytes += static_cast<double>(frame.bytes) / 1000 / kSeconds;
-  judged.rate = static_cast<double>(frames.size() - 1) / kSeconds;
-  const warp::WarpFrame rest = decoded(frames.front().frame);
+  const auto count = static_cast<double>(frames.size() - 1);
+  for (const Arrived& frame : std::span(frames).subspan(1)) {
+    judged.kilobytes += static_cast<double>(frame.bytes) / 1000 / kSeconds;
+    judged.width += frame.frame.picture().resolution().width() / count;
+    judged.packets += frame.frame.has_video() ? 1 / count : 0;
+  }
+  judged.rate = count / kSeconds;
+  window::VideoDecoder video;
+  const warp::WarpFrame rest = decoded(frames.front().frame, video);
   size_t newest = 0;
   warp::WarpFrame shown = rest;
   for (size_t i = 0; i < truth.size(); ++i) {
     const double now = static_cast<double>(i) * kEvery;
-    const size_t before = newest;
-    while (newest + 1 < frames.size() && frames[newest + 1].seconds + kDecode <= now) ++newest;
-    if (newest != before) shown = decoded(frames[newest].frame);
+    while (newest + 1 < frames.size() && frames[newest + 1].seconds + kDecode <= now) {
+      shown = decoded(frames[++newest].frame, video);
+    }
     if (!counts(truth[i])) continue;
     const geometry::CameraFrame target =
         value_or_exit(geometry::make_camera_frame(path.at(begin, now), kWidth, kHeight));
@@ -180,7 +207,31 @@ void print(const Judged& judged) {
   }
   const double mean = std::accumulate(psnr.begin(), psnr.end(), 0.0) / static_cast<double>(psnr.size());
   std::ranges::sort(psnr);
-  std::printf(" %.0f, %.0f | %.1f, %.1f / %.1f |", judged.rate, judged.kilobytes, mean, psnr[psnr.size() / 10], off);
+  std::printf(" %.0f, %.0f, %.0f | %.1f, %.1f / %.1f |", judged.rate, judged.kilobytes, judged.width, mean,
+              psnr[psnr.size() / 10], off);
+  if (judged.packets > 0) std::printf(" %.0f %% packets |", 100 * judged.packets);
+}
+
+void print_drop(const std::vector<Arrived>& frames) {
+  constexpr double kPart = 0.5;  // seconds
+  std::map<int, std::vector<const Arrived*>> parts;
+  std::map<int, double> longest;
+  double before = 0;
+  for (const Arrived& frame : std::span(frames).subspan(1)) {
+    const int part = static_cast<int>(frame.seconds / kPart);
+    parts[part].push_back(&frame);
+    longest[part] = std::max(longest[part], frame.seconds - std::exchange(before, frame.seconds));
+  }
+  for (const auto& [part, arrived] : parts) {
+    double kilobytes = 0;
+    double width = 0;
+    for (const Arrived* frame : arrived) {
+      kilobytes += static_cast<double>(frame->bytes) / 1000;
+      width += frame->frame.picture().resolution().width() / static_cast<double>(arrived.size());
+    }
+    std::printf("%4.1f s: %3.0f frames/s, %4.0f KB/s, %5.0f pixels, longest %4.0f ms\n", kPart * part,
+                static_cast<double>(arrived.size()) / kPart, kilobytes / kPart, width, 1000 * longest[part]);
+  }
 }
 
 class Lab {
@@ -201,9 +252,10 @@ class Lab {
 
   void run() {
     std::printf(
-        "\n| %s | link | newest frame: frames/s, KB/s | dB, worst "
-        "tenth / %% off | warped: frames/s, KB/s | dB, "
-        "worst tenth / %% off |\n|---|---|---|---|---|---|\n",
+        "\n| %s | link | newest frame: frames/s, KB/s, width | dB, worst tenth / %% off | warped: frames/s, KB/s, "
+        "width | "
+        "dB, worst tenth / %% off | of a video: frames/s, KB/s, width | dB, worst tenth / %% off |\n"
+        "|---|---|---|---|---|---|---|---|\n",
         name_.c_str());
     for (const Path& path : bench::paths()) {
       const Truth truth = truth_of(path);
@@ -211,12 +263,35 @@ class Lab {
     }
   }
 
+  void run_drop() {
+    const Path path = bench::paths().front();
+    for (const Link& link : links_) {
+      for (const bool video : {false, true}) {
+        testing::LinkRelay relay(server_, shape_of(link));
+        const auto tick = [&](double seconds) {
+          const bool dropped = seconds > kDropEvery && seconds < 2 * kDropEvery;
+          relay.set_bits_per_second(link.megabits * 1e6 * (dropped ? kDropPart : 1));
+        };
+        std::printf("\n%s, %s, %.0f Mbit/s, %d ms\n", name_.c_str(), video ? "video" : "files", link.megabits,
+                    link.round_trip);
+        print_drop(play({relay.port(), name_, begin_, {fps_, true, video}}, path, 3 * kDropEvery, tick));
+        std::fflush(stdout);
+      }
+    }
+  }
+
  private:
+  static testing::LinkShape shape_of(const Link& link) {
+    return {link.megabits * 1e6, std::chrono::microseconds(500 * link.round_trip)};
+  }
+
   void run(const Path& path, const Link& link, const Truth& truth) {
-    const testing::LinkRelay relay(server_, {link.megabits * 1e6, std::chrono::microseconds(500 * link.round_trip)});
+    const testing::LinkRelay relay(server_, shape_of(link));
     std::printf("| %s | %.0f Mbit/s, %d ms |", path.name.c_str(), link.megabits, link.round_trip);
-    for (const bool depth : {false, true}) {
-      print(judge(play(relay.port(), name_, begin_, path, depth, depth ? fps_ : 0), begin_, path, truth));
+    const auto nothing = [](double) {};
+    for (const client::ViewWishes& wishes :
+         {client::ViewWishes{}, client::ViewWishes{fps_, true}, client::ViewWishes{fps_, true, true}}) {
+      print(judge(play({relay.port(), name_, begin_, wishes}, path, kSeconds, nothing), begin_, path, truth));
     }
     std::printf("\n");
     std::fflush(stdout);
@@ -249,16 +324,19 @@ class Lab {
 
 int main(int argc, char** argv) {
   if (argc < 3) {
-    std::fprintf(stderr, "usage: motion_lab PORT MODEL... [near] [fps=N] [link=MBIT,MS]\n");
+    std::fprintf(stderr, "usage: motion_lab PORT MODEL... [near] [fps=N] [link=MBIT,MS] [drop]\n");
     return 2;
   }
   bool near = false;
+  bool drop = false;
   double fps = 0;
   std::vector<Link> links{{1000, 0}, {20, 50}, {20, 150}, {4, 150}, {20, 300}};
   std::vector<std::string> models;
   for (const std::string& word : std::vector<std::string>(argv + 2, argv + argc)) {
     if (word == "near") {
       near = true;
+    } else if (word == "drop") {
+      drop = true;
     } else if (word.starts_with("fps=")) {
       fps = std::atof(word.c_str() + 4);
     } else if (word.starts_with("link=")) {
@@ -267,6 +345,9 @@ int main(int argc, char** argv) {
       models.push_back(word);
     }
   }
-  for (const std::string& model : models) Lab(static_cast<uint16_t>(std::atoi(argv[1])), model, near, fps, links).run();
+  for (const std::string& model : models) {
+    Lab lab(static_cast<uint16_t>(std::atoi(argv[1])), model, near, fps, links);
+    drop ? lab.run_drop() : lab.run();
+  }
   return 0;
 }

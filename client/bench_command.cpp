@@ -96,6 +96,7 @@ void add_bench_command(CLI::App& app, int interrupt, Status& outcome) {
   sub->add_option("--target-fps", plan.target_fps, "frames per second to hold while moving (default: the server's)")
       ->check(CLI::Range(0.0, 1000.0));
   sub->add_flag("--depth", plan.depth, "ask for the depth of frames, as clients that warp them do");
+  sub->add_flag("--video", plan.video, "take frames in motion as a video in VP9 where the link is thin");
   sub->add_option("--json", command->json, "write the results to this file as JSON")->type_name("FILE");
   command->flags.add_view_flags_to(*sub);
   command->limits.add_to(*sub);

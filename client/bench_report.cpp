@@ -122,6 +122,7 @@ BenchReport make_report(const std::vector<BenchRecord>& records) {
   for (const BenchRecord& record : records) {
     runs.push_back(moving_frames(record));
     report.moving_frames += runs.back().size();
+    report.video_frames += static_cast<uint64_t>(std::ranges::count(runs.back(), true, &BenchFrame::video));
     if (record.moving_seconds > 0) rates.push_back(static_cast<double>(runs.back().size()) / record.moving_seconds);
     add_counts(record, report);
   }
@@ -157,6 +158,7 @@ std::string to_text(const BenchReport& report) {
   for (const auto& [name, values] : report.rest_stages) text += line("  " + name, values);
   text += line("bytes of that frame", report.rest_bytes);
   text += std::to_string(report.updates) + " cameras, " + std::to_string(report.moving_frames) + " moving frames, " +
+          (report.video_frames > 0 ? std::to_string(report.video_frames) + " of them of a video, " : std::string()) +
           std::to_string(report.abandoned) + " given up on the way; " + std::to_string(report.converged.count) +
           " rests converged, " + std::to_string(report.unconverged) + " did not; " + std::to_string(report.bytes) +
           " bytes\n";
@@ -176,6 +178,7 @@ std::string to_json(const BenchReport& report, const std::string& url) {
                         {"outside_ms", to_json(report.outside)},
                         {"turned_degrees", to_json(report.turned)},
                         {"depth_bytes", to_json(report.depth_bytes)},
+                        {"video_frames", report.video_frames},
                         {"bytes", to_json(report.moving_bytes)},
                         {"width", to_json(report.moving_width)},
                         {"spacing", to_json(report.moving_spacing)},

@@ -39,6 +39,7 @@ struct BenchReport {
   Percentiles rest_bytes;                          ///< of a converged frame
   uint64_t updates = 0;
   uint64_t moving_frames = 0;
+  uint64_t video_frames = 0;  ///< of these: packets of a video
   uint64_t abandoned = 0;
   uint64_t unconverged = 0;
   uint64_t late = 0;

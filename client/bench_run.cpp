@@ -128,6 +128,7 @@ Result<std::optional<BenchFrame>> BenchClient::receive(Clock::time_point deadlin
   frame.latency_ms = milliseconds_since(shown_sent_, (*received)->arrived);
   frame.turned = degrees_between(to_pose(picture.camera()), pose_at((*received)->arrived));
   frame.depth_bytes = message.depth().codes().size();
+  frame.video = message.has_video();
   frame.bytes = (*received)->bytes;
   frame.width = picture.resolution().width();
   frame.spacing = picture.spacing();
@@ -190,7 +191,7 @@ Status BenchClient::run() {
 Result<BenchRecord> run_bench_client(const BenchPlan& plan, const ClientConfig& config, double phase) {
   Result<ServerConnection> connection = ServerConnection::open(plan.server, config);
   if (!connection) return fail(connection.error());
-  Result<View> view = View::open(*connection, plan.picture, plan.target_fps, plan.depth);
+  Result<View> view = View::open(*connection, plan.picture, {plan.target_fps, plan.depth, plan.video});
   if (!view) return fail(view.error());
   BenchClient client(plan, *view, config.interrupt, phase);
   if (Status status = client.run(); !status) return fail(status.error());

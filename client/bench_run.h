@@ -15,6 +15,7 @@ struct BenchPlan {
   wire::DrawPicture picture;       ///< its camera, if any, is the start of the path
   double target_fps = 0;           ///< as in OpenView
   bool depth = false;              ///< as in OpenView
+  bool video = false;              ///< asks for a video in VP9
   double seconds = 20;             ///< of the whole run
   double move_seconds = 4;         ///< of one movement
   double rest_seconds = 5;         ///< longest rest; it ends 0.5 s after the converged picture
@@ -29,6 +30,7 @@ struct BenchFrame {
   double latency_ms = 0;   ///< from sending the newest camera that it shows, or from the end of the movement
   double turned = 0;       ///< degrees between its view direction and that of the client when it arrived
   uint64_t depth_bytes = 0;
+  bool video = false;                                  ///< a packet of the video
   uint64_t bytes = 0;                                  ///< on the wire
   uint32_t width = 0;                                  ///< of the picture, pixels
   double spacing = 0;                                  ///< projected surfel spacing of the picture, pixels

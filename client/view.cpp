@@ -6,11 +6,12 @@
 
 namespace surfcast::client {
 
-Result<View> View::open(ServerConnection& connection, const wire::DrawPicture& picture, double target_fps, bool depth) {
+Result<View> View::open(ServerConnection& connection, const wire::DrawPicture& picture, const ViewWishes& wishes) {
   wire::Request request;
   *request.mutable_open_view()->mutable_picture() = picture;
-  request.mutable_open_view()->set_target_fps(target_fps);
-  request.mutable_open_view()->set_depth(depth);
+  request.mutable_open_view()->set_target_fps(wishes.target_fps);
+  request.mutable_open_view()->set_depth(wishes.depth);
+  if (wishes.video) request.mutable_open_view()->add_video(wire::VIDEO_CODEC_VP9);
   const Result<uint64_t> id = connection.send(std::move(request));
   if (!id) return fail(id.error());
   View view(connection, *id);

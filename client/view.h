@@ -10,6 +10,13 @@
 
 namespace surfcast::client {
 
+/// What a view asks for beside its picture; as in OpenView.
+struct ViewWishes {
+  double target_fps = 0;  ///< 0: the server's default
+  bool depth = false;
+  bool video = false;  ///< VP9: whoever asks for it decodes it
+};
+
 /// A view of one model, for which the server sends pictures while the camera moves and rests. The connection must
 /// outlive the view and must not be used for other requests meanwhile.
 class View {
@@ -22,9 +29,7 @@ class View {
     uint64_t bytes = 0;         ///< received on the connection since the previous frame
   };
 
-  /// `target_fps` is the frame rate to hold while moving; 0: the server's default. `depth`: as in OpenView.
-  static Result<View> open(ServerConnection& connection, const wire::DrawPicture& picture, double target_fps,
-                           bool depth = false);
+  static Result<View> open(ServerConnection& connection, const wire::DrawPicture& picture, const ViewWishes& wishes);
 
   /// Goes on over another connection, whose server has the view open again (ServerConnection::resume).
   void go_on(ServerConnection& connection);

@@ -8,6 +8,7 @@
 #include <thread>
 
 #include "client/view.h"
+#include "client/window/video_decoder.h"
 #include "client/window/warped_view.h"
 #include "client/window/window.h"
 
@@ -62,6 +63,8 @@ class ViewLoop {
 
  private:
   Status open_view(client::ServerConnection& connection);
+  Status begin_view(client::ServerConnection& connection);
+  Status reopen_without_video(client::ServerConnection& connection);
   Status step(client::View& view);
   Status send_update(client::View& view, bool moving);
   Status focus(client::View& view);
@@ -85,6 +88,9 @@ class ViewLoop {
   int sent_height_ = 0;
   Clock::time_point last_update_ = Clock::now();
   Clock::time_point last_turn_ = Clock::now();
+  VideoDecoder video_;
+  bool video_wanted_ = true;
+  bool undecodable_ = false;  ///< a packet of the video
   WarpedView shown_;
   bool arrived_ = false;         ///< a frame that has not been shown
   wire::Camera painted_camera_;  ///< what is on the screen was painted for it
@@ -105,7 +111,26 @@ Status ViewLoop::poll_input() {
   if (Status status = open_view(*connection); !status) return status;
   while (open_) {
     if (Status status = step(*view_); !status) return status;
+    if (!undecodable_) continue;
+    if (Status status = reopen_without_video(*connection); !status) return status;
   }
+  return {};
+}
+
+/// The server's video cannot be decoded: frames in motion are files from now on.
+Status ViewLoop::reopen_without_video(client::ServerConnection& connection) {
+  undecodable_ = false;
+  video_wanted_ = false;
+  if (Status status = view_->close(); !status) return status;
+  return begin_view(connection);
+}
+
+Status ViewLoop::begin_view(client::ServerConnection& connection) {
+  video_ = VideoDecoder();
+  const client::ViewWishes wishes{request_.target_fps, /*depth=*/true, video_wanted_};
+  Result<client::View> view = client::View::open(connection, picture(), wishes);
+  if (!view) return fail(view.error());
+  view_.emplace(std::move(*view));
   return {};
 }
 
@@ -126,10 +151,7 @@ Status ViewLoop::open_view(client::ServerConnection& connection) {
   subject_ = subject_of(answer->model_description());
   sent_width_ = window_.width();
   sent_height_ = window_.height();
-  Result<client::View> view = client::View::open(connection, picture(), request_.target_fps, /*depth=*/true);
-  if (!view) return fail(view.error());
-  view_.emplace(std::move(*view));
-  return {};
+  return begin_view(connection);
 }
 
 Status ViewLoop::step(client::View& view) {
@@ -197,7 +219,11 @@ Status ViewLoop::paint() {
 
 Status ViewLoop::take(client::View& view, const client::View::Frame& frame) {
   const wire::Picture& picture = frame.frame.picture();
-  Result<PixelImage> image = decode_picture(picture);
+  Result<PixelImage> image = decode_frame(frame.frame, video_);
+  if (!image && frame.frame.has_video()) {
+    undecodable_ = true;
+    return view.painted(frame);
+  }
   if (!image) return fail(image.error());
   const int width = image->width;
   const int height = image->height;

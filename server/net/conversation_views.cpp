@@ -17,13 +17,23 @@ namespace {
 namespace asio = boost::asio;
 using Clock = std::chrono::steady_clock;
 
+/// What a view is asked to show, without an update.
+KeptView kept_view(uint64_t id, const wire::OpenView& asked) {
+  KeptView view;
+  view.id = id;
+  view.picture = asked.picture().SerializeAsString();
+  view.target_fps = asked.target_fps();
+  view.depth = asked.depth();
+  view.video = std::ranges::count(asked.video(), wire::VIDEO_CODEC_VP9) > 0;
+  return view;
+}
+
 }  // namespace
 
 void Conversation::handle_open_view(const wire::Request& request) {
   const wire::OpenView& asked = request.open_view();
   Status opened = protocol::check_view(asked);
-  if (opened)
-    opened = open_view({request.id(), asked.picture().SerializeAsString(), 0, asked.target_fps(), asked.depth()});
+  if (opened) opened = open_view(kept_view(request.id(), asked));
   if (!opened) return send_error(request.id(), opened.error());
   advance_views();
 }
@@ -48,7 +58,7 @@ Status Conversation::open_view(KeptView wanted) {
   audit("view", job->model);
   job->model = name_for(guest_, job->model);
   const double fps = wanted.target_fps > 0 ? wanted.target_fps : context_->config.target_fps;
-  const view::ViewOptions options{fps, wanted.depth, context_->config.kept_frame_bytes};
+  const view::ViewOptions options{fps, wanted.depth, wanted.video, context_->config.kept_frame_bytes};
   const auto view = std::make_shared<view::ViewSession>(context_->service, asker_, ++context_->last_viewer, options,
                                                         context_->metrics.views, port_of(wanted.id));
   view->begin_with(wanted.quality);

@@ -135,6 +135,11 @@ void to_wire(view::ViewMessage message, wire::ViewFrame& frame) {
   frame.mutable_resolution()->set_width(static_cast<uint32_t>(message.width));
   frame.mutable_resolution()->set_height(static_cast<uint32_t>(message.height));
   frame.set_moving(message.moving);
+  if (const std::optional<service::PacketPlace>& place = message.picture.video) {
+    frame.mutable_video()->set_codec(wire::VIDEO_CODEC_VP9);
+    frame.mutable_video()->set_key(place->key);
+    frame.mutable_video()->set_refers_to(place->refers_to);
+  }
   if (message.picture.depth) to_wire(*message.picture.depth, *frame.mutable_depth());
   to_wire(std::move(message.picture), *frame.mutable_picture());
 }

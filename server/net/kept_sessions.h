@@ -19,6 +19,7 @@ struct KeptView {
   uint64_t update = 0;  ///< the number of that picture
   double target_fps = 0;
   bool depth = false;                                  ///< as in OpenView
+  bool video = false;                                  ///< the client decodes VP9
   view::QualityState quality = view::first_quality();  ///< of frames in motion
 };
 

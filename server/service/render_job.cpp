@@ -42,6 +42,27 @@ Result<std::vector<std::byte>> encode_file(const RenderJob& job, const picture::
   return surfcast::encode::encode_picture(frame.image, picture.format, picture.quality, &channels);
 }
 
+/// The bytes of a picture: a packet of its video where it has one, and a file where the codec fails.
+Status fill_bytes(const RenderJob& job, const picture::Frame& frame, EncodedPicture& picture) {
+  if (const std::optional<VideoJob>& video = job.picture.video) {
+    if (Result<video::VideoPacket> packet = video->stream->encode(frame.image, video->order)) {
+      picture.bytes = std::move(packet->bytes);
+      picture.video = {packet->key, packet->refers_to};
+      return {};
+    }
+  }
+  Result<std::vector<std::byte>> bytes = encode_file(job, frame);
+  if (!bytes) return fail(bytes.error());
+  picture.bytes = std::move(*bytes);
+  return {};
+}
+
+/// The picture is not delivered: if it was one of a video, the next one does not refer to it.
+tl::unexpected<Error> withdrawn(const EncodedPicture& picture, const RenderJob& job) {
+  if (picture.video) job.picture.video->stream->restart();
+  return cancelled_error();
+}
+
 }  // namespace
 
 size_t memory_of(const PictureJob& picture) {
@@ -71,12 +92,10 @@ Result<EncodedPicture> encode_job(RenderJob& job, const Result<SharedFrame>& sha
   EncodedPicture picture = describe(job, frame);
   if (job.picture.keep_frame) picture.frame = *shared;
   if (!frame.image.pixels.empty()) {
-    Result<std::vector<std::byte>> bytes = encode_file(job, frame);
-    if (!bytes) return fail(bytes.error());
-    picture.bytes = std::move(*bytes);
+    if (Status filled = fill_bytes(job, frame, picture); !filled) return fail(filled.error());
     if (job.picture.depth_bytes > 0) picture.depth = encode::encode_depth(frame.depth, job.picture.depth_bytes);
   }
-  if (job.cancelled) return cancelled_error();
+  if (job.cancelled) return withdrawn(picture, job);
   picture.encode_ms = watch.milliseconds();
   if (picture.expected_ms > 0) picture.expected_ms += picture.encode_ms;
   if (!job.front.empty()) picture.stats.stages.push_back({"surface", job.search_ms});

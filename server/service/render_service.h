@@ -17,6 +17,7 @@
 #include "service/job_queue.h"
 #include "service/model_source.h"
 #include "service/pick_service.h"
+#include "video/video_stream.h"
 
 namespace surfcast::service {
 
@@ -38,6 +39,12 @@ struct ServiceLimits {
   PickLimits picks{};
 };
 
+/// The place of a motion picture in a view's video.
+struct VideoJob {
+  std::shared_ptr<video::VideoStream> stream;
+  video::FrameOrder order;
+};
+
 /// A request for an encoded picture.
 struct PictureJob {
   std::string model;
@@ -50,6 +57,14 @@ struct PictureJob {
   Priority priority = Priority::kStill;
   JobId supersedes = 0;     ///< a job whose picture is obsolete once this one is drawn; 0: none
   bool keep_frame = false;  ///< return the frame with the picture
+  /// Of a motion picture with 8 bits a channel: it becomes a packet of this video, or a file in `format` if it cannot.
+  std::optional<VideoJob> video;
+};
+
+/// What a packet of a video is to its decoder; see video::VideoPacket.
+struct PacketPlace {
+  bool key = false;
+  uint64_t refers_to = 0;
 };
 
 /// An encoded picture and its description.
@@ -70,6 +85,7 @@ struct EncodedPicture {
   double waited_ms = 0;          ///< waiting for the render thread
   double draw_ms = 0;
   double encode_ms = 0;
+  std::optional<PacketPlace> video;             ///< `bytes` are a packet of PictureJob::video instead of a file
   std::optional<picture::EncodedDepth> depth;   ///< with PictureRequest::depth_texels, if it is known
   std::shared_ptr<const picture::Frame> frame;  ///< see PictureJob::keep_frame
   std::shared_ptr<const void> memory;           ///< counts `bytes`; to be kept until they are released

@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace surfcast::view {
 namespace {
 
 constexpr size_t kSamples = 24;
-constexpr double kLarger = 1.5;    // times the bytes of the quickest message; smaller ones are of its size
+constexpr double kLarger = 1.5;  // times the bytes of the quickest message; smaller ones are of its size
+constexpr size_t kElapsed = 256;
 constexpr double kNewShare = 0.3;  // weight of a new slope against the previous estimate
 
 double milliseconds_between(ViewTime from, ViewTime to) {
@@ -35,6 +37,7 @@ std::optional<double> LinkEstimate::acknowledge(uint64_t frame, double client_ms
   // A message sent while another one occupied the link starts when the other one has arrived.
   ViewTime begin = message.sent;
   if (last_arrival_) begin = std::max(begin, later(*last_arrival_, -round_trip_ms()));
+  learn_rate_now(message, arrival);
   last_arrival_ = arrival;
   const double occupied = std::max(milliseconds_between(begin, arrival), 0.01);
   learn({static_cast<double>(message.bytes), occupied, milliseconds_between(message.sent, arrival)});
@@ -70,6 +73,48 @@ void LinkEstimate::learn(const Sample& sample) {
     const double most = sample.milliseconds / std::max(sample.bytes, 1.0);
     ms_per_byte_ = ms_per_byte_ > 0 ? std::min(ms_per_byte_, most) : most;
   }
+}
+
+/// What the time of a message allows at most: it took the least time of any message, which is no less than the round
+/// trip, and then its own transfer. One that waited for the one before was transferred since that had arrived.
+double LinkEstimate::most_bytes_per_ms(double bytes, double elapsed, double since_arrival) const {
+  constexpr double kNoise = 5;  // ms by which times of messages vary for other reasons
+  constexpr double kLeastMs = 0.5;
+  const double least = *std::ranges::min_element(elapsed_);
+  const double waited = elapsed - since_arrival;
+  return bytes / std::max(waited > least ? since_arrival : elapsed - least - kNoise, kLeastMs);
+}
+
+/// The rate grows step by step, up to what the better one of the last two messages allows. Small messages are no
+/// evidence that more would fit.
+void LinkEstimate::learn_rate_now(const Message& message, ViewTime arrival) {
+  constexpr double kGrowth = 1.25;
+  constexpr double kEvidenceMs = 8;  // of the link, that a message takes at least
+  const auto bytes = static_cast<double>(message.bytes);
+  const double elapsed = milliseconds_between(message.sent, arrival);
+  elapsed_.push_back(elapsed);
+  if (elapsed_.size() > kElapsed) elapsed_.pop_front();
+  if (!last_arrival_) {
+    last_most_ = bytes_per_ms_now_ = bytes / std::max(elapsed, 1.0);
+    return;
+  }
+  const double most = most_bytes_per_ms(bytes, elapsed, milliseconds_between(*last_arrival_, arrival));
+  const bool evidence = bytes > kEvidenceMs * bytes_per_ms_now_;
+  const double grown = bytes_per_ms_now_ * (evidence ? kGrowth : 1);
+  bytes_per_ms_now_ = std::min(grown, std::max(most, std::exchange(last_most_, most)));
+}
+
+/// A message that is on the way for longer than it should be is evidence already.
+std::optional<size_t> LinkEstimate::bytes_now_in(double milliseconds, ViewTime now) const {
+  constexpr double kMost = 1e9;
+  if (bytes_per_ms_now_ <= 0) return std::nullopt;
+  double bytes_per_ms = bytes_per_ms_now_;
+  if (!on_the_way_.empty()) {
+    const auto bytes = static_cast<double>(on_the_way_.front().bytes);
+    const double most = most_bytes_per_ms(bytes, waits_ms(now), milliseconds_between(*last_arrival_, now));
+    bytes_per_ms = std::min(bytes_per_ms, most);
+  }
+  return static_cast<size_t>(std::min(milliseconds * bytes_per_ms, kMost));
 }
 
 double LinkEstimate::transfer_ms(size_t bytes) const {

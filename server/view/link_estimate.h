@@ -24,6 +24,9 @@ class LinkEstimate {
   [[nodiscard]] double transfer_ms(size_t bytes) const;
   /// Estimated bytes that the link transfers in this time; none while nothing is known.
   [[nodiscard]] std::optional<size_t> bytes_in(double milliseconds) const;
+  /// The same by another estimate, which follows a change of the link at once and does not need messages of different
+  /// sizes. It is too high rather than too low while the line is not full.
+  [[nodiscard]] std::optional<size_t> bytes_now_in(double milliseconds, ViewTime now) const;
   /// Estimated round trip of an empty message; 0 while it is not known.
   [[nodiscard]] double round_trip_ms() const;
   /// Of messages that are not acknowledged.
@@ -57,10 +60,15 @@ class LinkEstimate {
     int count = 0;
   };
   void learn(const Sample& sample);
+  void learn_rate_now(const Message& message, ViewTime arrival);
+  [[nodiscard]] double most_bytes_per_ms(double bytes, double elapsed, double since_arrival) const;
   [[nodiscard]] std::optional<double> slope() const;
 
   std::deque<Message> on_the_way_;
   std::deque<Sample> samples_;            ///< the most recent ones
+  std::deque<double> elapsed_;            ///< milliseconds from sending to arrival, of many messages
+  double bytes_per_ms_now_ = 0;           ///< 0: unknown
+  double last_most_ = 0;                  ///< most_bytes_per_ms() of the last message
   std::optional<ViewTime> last_arrival_;  ///< when the last acknowledged message reached the client
   double ms_per_byte_ = 0;                ///< 0: unknown
   bool slope_known_ = false;

@@ -137,17 +137,37 @@ QualityState first_quality() {
   return state;
 }
 
+namespace {
+
+double budget_of(double target_fps) {
+  return kFull * 1000 / target_fps;
+}
+
+LadderState step_drawing(const LadderState& state, const MotionCost& cost, double budget) {
+  return step(state, std::span<const DrawRung>(kDrawRungs), std::max({cost.draw, cost.encode, cost.client}), budget);
+}
+
+}  // namespace
+
 QualityState adapt(const QualityState& state, const MotionCost& cost, double target_fps) {
-  const double budget = kFull * 1000 / target_fps;
-  const double work = std::max({cost.draw, cost.encode, cost.client});
-  return {step(state.draw, std::span<const DrawRung>(kDrawRungs), work, budget),
+  const double budget = budget_of(target_fps);
+  return {step_drawing(state.draw, cost, budget),
           step(state.link, std::span<const LinkRung>(kLinkRungs), cost.transfer, budget)};
+}
+
+QualityState adapt_drawing(const QualityState& state, const MotionCost& cost, double target_fps) {
+  return {step_drawing(state.draw, cost, budget_of(target_fps)), state.link};
 }
 
 MotionQuality quality_of(const QualityState& state) {
   const DrawRung& draw = kDrawRungs[state.draw.rung];
   const LinkRung& link = kLinkRungs[state.link.rung];
   return {std::min(draw.scale, link.scale), draw.spacing, link.jpeg_quality};
+}
+
+MotionQuality drawing_of(const QualityState& state) {
+  const DrawRung& draw = kDrawRungs[state.draw.rung];
+  return {draw.scale, draw.spacing, kLinkRungs.front().jpeg_quality};
 }
 
 }  // namespace surfcast::view

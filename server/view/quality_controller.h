@@ -48,6 +48,11 @@ QualityState first_quality();
 /// one waits for twice as many frames.
 QualityState adapt(const QualityState& state, const MotionCost& cost, double target_fps);
 
+/// Likewise after a frame of a video, whose size is chosen otherwise: the link's ladder stays as it is.
+QualityState adapt_drawing(const QualityState& state, const MotionCost& cost, double target_fps);
+
 MotionQuality quality_of(const QualityState& state);
+/// Of a frame of a video: without what only the link demands of files.
+MotionQuality drawing_of(const QualityState& state);
 
 }  // namespace surfcast::view

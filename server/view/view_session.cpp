@@ -6,6 +6,9 @@
 #include <utility>
 #include <vector>
 
+#include "base/log.h"
+#include "view/video_budget.h"
+
 namespace surfcast::view {
 namespace {
 
@@ -30,6 +33,8 @@ constexpr size_t kLatencies = 5;
 // Clients that warp need no frame for each of the display's: fewer and sharper ones are nearer to the truth. Frames of
 // the best quality are drawn as often as the device can.
 constexpr double kWarpedRate = 0.4;
+// Of a view: larger ones get files. That is not a setting because nothing is refused.
+constexpr double kMostVideoPixels = 3840.0 * 2160;
 
 int scaled(int pixels, double scale) {
   return std::max(1, static_cast<int>(std::lround(pixels * scale)));
@@ -41,6 +46,18 @@ ViewTime::duration median_of(const std::deque<ViewTime::duration>& durations) {
   std::vector<ViewTime::duration> sorted(durations.begin(), durations.end());
   std::ranges::sort(sorted);
   return sorted[sorted.size() / 2];
+}
+
+/// The stream of a view; null where the server cannot encode one, which is logged once.
+std::shared_ptr<video::VideoStream> open_stream() {
+  Result<std::shared_ptr<video::VideoStream>> stream = video::VideoStream::open();
+  if (stream) return std::move(*stream);
+  static const bool logged = [&stream] {
+    spdlog::warn("frames in motion are JPEG files alone: {}", stream.error().message);
+    return true;
+  }();
+  static_cast<void>(logged);
+  return nullptr;
 }
 
 /// A picture is improvable while missing blocks are loading. A picture with holes that will be filled soon is not
@@ -57,6 +74,7 @@ ViewSession::ViewSession(service::RenderService& service, const service::Asker& 
                          const ViewOptions& options, ViewCounts& counts, ViewPort port)
     : service_(service), asker_(asker), viewer_(viewer), options_(options), counts_(counts), port_(std::move(port)) {
   ++counts_.open;
+  if (options_.video) stream_ = open_stream();
 }
 
 ViewSession::~ViewSession() {
@@ -71,10 +89,9 @@ bool ViewSession::may_be_kept(const service::PictureJob& job) const {
          picture::pixel_format_of(job.format) == picture::pixel_format_of(picture::FileFormat::kJpeg);
 }
 
-service::PictureJob ViewSession::picture_job(FrameKind kind, uint64_t edition, service::JobId supersedes,
-                                             ViewTime now) const {
+service::PictureJob ViewSession::picture_job(FrameKind kind, uint64_t frame, ViewTime now) const {
   service::PictureJob job = newest_.picture;
-  job.request.edition = edition;
+  job.request.edition = frames_.at(frame).edition;
   if (options_.depth) {
     job.request.depth_texels = kind == FrameKind::kMotion ? kTexelsInMotion : kTexelsAtRest;
     job.depth_bytes = kind == FrameKind::kMotion ? kDepthBytesInMotion : kDepthBytesAtRest;
@@ -96,8 +113,16 @@ service::PictureJob ViewSession::picture_job(FrameKind kind, uint64_t edition, s
     job.keep_frame = may_be_kept(newest_.picture);
     return job;
   }
+  make_motion_job(frame, now, job);
+  return job;
+}
+
+void ViewSession::make_motion_job(uint64_t frame, ViewTime now, service::PictureJob& job) const {
+  picture::PictureRequest& request = job.request;
   if (warps_ && request.camera) request.camera = forecast_.at(now + median_of(latencies_), now);
-  const MotionQuality quality = quality_of(quality_);
+  const video::FrameOrder order{frame, video_frame_bytes(now), request.width, request.height};
+  if (is_video_) job.video = {stream_, order};
+  const MotionQuality quality = motion_quality(order.bytes);
   request.rest_spacing = request.spacing * quality.scale;
   request.width = scaled(request.width, quality.scale);
   request.height = scaled(request.height, quality.scale);
@@ -105,11 +130,41 @@ service::PictureJob ViewSession::picture_job(FrameKind kind, uint64_t edition, s
   request.normalization = picture::Normalization::kSurfel;
   request.blends_behind = true;
   request.viewer = viewer_;
-  if (edition != edition_) request.max_missing_blocks = 0;
+  if (request.edition != edition_) request.max_missing_blocks = 0;
   job.priority = service::Priority::kMotion;
   job.quality = quality.jpeg_quality;
-  job.supersedes = supersedes;
-  return job;
+  job.supersedes = frames_.at(frame).supersedes;
+}
+
+MotionQuality ViewSession::motion_quality(size_t video_bytes) const {
+  if (!is_video_) return quality_of(quality_);
+  MotionQuality quality = drawing_of(quality_);
+  quality.scale = std::min(quality.scale, video_scale(video_bytes, view_pixels()));
+  return quality;
+}
+
+double ViewSession::view_pixels() const {
+  return static_cast<double>(newest_.picture.request.width) * newest_.picture.request.height;
+}
+
+/// Frames a second for which size and spacing are chosen.
+double ViewSession::motion_fps() const {
+  return warps_ ? kWarpedRate * options_.target_fps : options_.target_fps;
+}
+
+size_t ViewSession::video_frame_bytes(ViewTime now) const {
+  const double milliseconds = video_frame_ms(motion_fps());
+  return video_bytes(link_.bytes_now_in(milliseconds, now).value_or(kFirstPiece), depth_bytes_);
+}
+
+/// Whether the next frames in motion are packets of the video. While nothing is known of the link they are files.
+void ViewSession::choose_codec(ViewTime now) {
+  const std::optional<size_t> fits = link_.bytes_now_in(video_frame_ms(motion_fps()), now);
+  if (!stream_ || !fits) return;
+  const bool small = view_pixels() <= kMostVideoPixels;
+  const double scale = drawing_of(quality_).scale;
+  const double file = good_file_bytes(file_density_, view_pixels() * scale * scale);
+  is_video_ = small && wants_video(file + static_cast<double>(depth_bytes_), static_cast<double>(*fits), is_video_);
 }
 
 void ViewSession::update(ViewUpdate update, ViewTime now) {
@@ -132,8 +187,10 @@ void ViewSession::retarget(ViewTime now) {
   const std::optional<uint64_t> frame = plan_.retargetable();
   if (!frame) return;
   Job& job = frames_.at(*frame);
-  if (!service_.replace(job.job, picture_job(FrameKind::kMotion, job.edition, job.supersedes, now))) return;
+  choose_codec(now);
+  if (!service_.replace(job.job, picture_job(FrameKind::kMotion, *frame, now))) return;
   plan_.retarget(*frame);
+  job.video = is_video_;
   job.begun = now;
   job.update = newest_.update;
   job.quality = quality_;
@@ -155,7 +212,8 @@ void ViewSession::drop(uint64_t frame) {
 size_t ViewSession::window(ViewTime now) const {
   constexpr double kLateMs = 100;
   const double round_trip = link_.round_trip_ms();
-  const std::optional<size_t> fits = link_.bytes_in(round_trip + kLateMs);
+  const double milliseconds = round_trip + kLateMs;
+  const std::optional<size_t> fits = is_video_ ? link_.bytes_now_in(milliseconds, now) : link_.bytes_in(milliseconds);
   if (!warps_ || round_trip == 0 || !fits) return kMaxUnacknowledged;
   if (link_.bytes_on_the_way() >= *fits || link_.waits_ms(now) > 2 * round_trip + kLateMs) return kMaxUnacknowledged;
   const auto frames = static_cast<size_t>(std::ceil(round_trip * options_.target_fps / 1000));
@@ -205,24 +263,30 @@ void ViewSession::draw(FrameKind kind, ViewTime now) {
   job.supersedes = kind == FrameKind::kMotion && job.edition == edition_ ? last_motion_job_ : 0;
   plan_.begin(frame, kind);
   newest_begun_ = true;
+  if (kind == FrameKind::kMotion) choose_codec(now);
+  job.video = kind == FrameKind::kMotion && is_video_;
   auto done = [weak = weak_from_this(), post = port_.post, frame](Result<service::EncodedPicture> picture) {
     post([weak, frame, picture = std::move(picture)]() mutable {
       if (const auto self = weak.lock()) self->finish(frame, std::move(picture));
     });
   };
   if (kind == FrameKind::kFinal && finished_frame_) {
-    job.job = service_.encode(std::exchange(finished_frame_, {}), picture_job(kind, job.edition, 0, now),
-                              std::move(done), asker_);
+    job.job =
+        service_.encode(std::exchange(finished_frame_, {}), picture_job(kind, frame, now), std::move(done), asker_);
   } else {
-    job.job = service_.draw(asker_, picture_job(kind, job.edition, job.supersedes, now), std::move(done));
+    job.job = service_.draw(asker_, picture_job(kind, frame, now), std::move(done));
   }
   if (kind == FrameKind::kMotion && job.edition == edition_) last_motion_job_ = job.job;
 }
 
 void ViewSession::finish(uint64_t frame, Result<service::EncodedPicture> picture) {
-  if (closed_ || !plan_.is_pending(frame)) return;
+  if (closed_ || !plan_.is_pending(frame)) return withdraw(picture);
   Job& job = frames_.at(frame);
   if (!picture) return frame_failed(frame, picture.error());
+  if (!follows(*picture)) {
+    withdraw(picture);
+    return frame_failed(frame, {ErrorKind::kCancelled, "the frame that it refers to was not sent"});
+  }
   if (job.kind == FrameKind::kMotion && job.edition > edition_ && picture->bytes.empty()) {
     plan_.drop(frame);  // drawn from the present edition at once
     frames_.erase(frame);
@@ -235,8 +299,11 @@ void ViewSession::finish(uint64_t frame, Result<service::EncodedPicture> picture
   if (job.edition > edition_ && result != FrameResult::kNothing) take_over(frame, *picture);
   if (picture->bytes.empty() || (result == FrameResult::kNothing)) {
     frames_.erase(frame);
-    return;
+    return withdraw(picture);
   }
+  record_size(*picture, job);
+  if (job.video && !picture->video) give_up_video();
+  job.video = picture->video.has_value();
   // Waiting for the previous frame is no cost of this one.
   job.cost.draw = picture->draw_ms + std::max(picture->waited_ms - last_draw_ms_, 0.0);
   job.cost.encode = picture->encode_ms;
@@ -244,6 +311,30 @@ void ViewSession::finish(uint64_t frame, Result<service::EncodedPicture> picture
   warps_ = picture->depth.has_value();
   show(frame, job.kind, std::move(*picture));
   send_pieces(now);
+}
+
+/// The codec has failed, or there is no room for its encoder.
+void ViewSession::give_up_video() {
+  stream_.reset();
+  is_video_ = false;
+}
+
+/// Whether a decoder that has got all that was sent can decode this picture.
+bool ViewSession::follows(const service::EncodedPicture& picture) const {
+  return !picture.video || picture.video->key || picture.video->refers_to == last_packet_;
+}
+
+/// This picture is not sent: the video goes on with a key frame.
+void ViewSession::withdraw(const Result<service::EncodedPicture>& picture) {
+  if (picture && picture->video && stream_) stream_->restart();
+}
+
+/// The sizes of files tell whether later ones would fit the link.
+void ViewSession::record_size(const service::EncodedPicture& picture, const Job& job) {
+  if (job.kind == FrameKind::kMotion) depth_bytes_ = picture.depth ? picture.depth->codes.size() : 0;
+  if (picture.video || picture.format != picture::FileFormat::kJpeg || job.kind == FrameKind::kFinal) return;
+  const int quality = job.kind == FrameKind::kMotion ? quality_of(job.quality).jpeg_quality : kRefinedQuality;
+  file_density_ = jpeg_density(picture.bytes.size(), static_cast<double>(picture.width) * picture.height, quality);
 }
 
 /// A frame failed. If the server was busy the view retries later; any other error but a cancellation ends the view.
@@ -327,9 +418,11 @@ void ViewSession::erase_if_done(uint64_t frame) {
   if (found->second.sent && found->second.unacknowledged == 0) frames_.erase(found);
 }
 
-/// Sends as much as may be sent: motion frames as a whole, others in pieces small enough not to delay a motion.
+/// Sends as much as may be sent: motion frames as a whole, others in pieces small enough not to delay a motion. A
+/// packet of a video does not wait, because it could not be dropped for a newer one. When it was drawn, there was room
+/// for it.
 void ViewSession::send_pieces(ViewTime now) {
-  while (outgoing_ && plan_.may_send()) {
+  while (outgoing_ && (plan_.may_send() || frames_.at(outgoing_->frame).video)) {
     const size_t rest = outgoing_->bytes.size() - outgoing_->sent;
     const size_t piece = std::clamp(link_.bytes_in(kPieceMs).value_or(kFirstPiece), kMinPiece, kMaxPiece);
     const bool whole = outgoing_->kind == FrameKind::kMotion || rest < piece + piece / 2;
@@ -358,6 +451,7 @@ void ViewSession::send_piece(size_t bytes, ViewTime now) {
   Job& job = frames_.at(out.frame);
   ++job.unacknowledged;
   job.sent = last;
+  if (job.video) last_packet_ = out.frame;
   plan_.send(out.kind, last);
   link_.send(out.frame, bytes + depth_bytes, now);
   counts_.bytes += bytes;
@@ -387,7 +481,7 @@ void ViewSession::adapt_quality(Job& job, double transfer_ms, double client_ms) 
   last_cost_ = job.cost;
   // A frame drawn with an earlier quality is no evidence about the current one.
   const bool current = job.quality.draw.rung == quality_.draw.rung && job.quality.link.rung == quality_.link.rung;
-  if (current) quality_ = adapt(quality_, job.cost, warps_ ? kWarpedRate * options_.target_fps : options_.target_fps);
+  if (current) quality_ = (job.video ? adapt_drawing : adapt)(quality_, job.cost, motion_fps());
 }
 
 void ViewSession::close() {

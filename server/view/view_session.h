@@ -64,6 +64,9 @@ struct ViewOptions {
   /// Frames have a depth, where it is known, by which the client warps them. While they have one, those in motion are
   /// drawn for the camera that the client has when they arrive, as far as that can be told from the cameras before.
   bool depth = false;
+  /// The client decodes VP9: frames in motion may be packets of a video, where files would have to be small or coarse
+  /// for the link. Without the module of the codec they are files.
+  bool video = false;
   /// Of pixels at most, a frame at rest is kept to make the final picture of it without drawing again.
   size_t kept_bytes = kKeptBytes;
 };
@@ -101,6 +104,7 @@ class ViewSession : public std::enable_shared_from_this<ViewSession> {
     uint64_t edition = 0;           ///< of the model
     QualityState quality;
     MotionCost cost;
+    bool video = false;         ///< to be a packet of the video; once drawn: it is one
     ViewTime begun;             ///< when its camera was chosen
     size_t unacknowledged = 0;  ///< messages
     bool sent = false;          ///< sent or dropped: the job ends with its last acknowledgement
@@ -120,8 +124,17 @@ class ViewSession : public std::enable_shared_from_this<ViewSession> {
   void take_over(uint64_t frame, service::EncodedPicture& picture);
   [[nodiscard]] bool may_be_kept(const service::PictureJob& job) const;
   [[nodiscard]] uint64_t next_edition(FrameKind kind, ViewTime now);
-  [[nodiscard]] service::PictureJob picture_job(FrameKind kind, uint64_t edition, service::JobId supersedes,
-                                                ViewTime now) const;
+  [[nodiscard]] service::PictureJob picture_job(FrameKind kind, uint64_t frame, ViewTime now) const;
+  void make_motion_job(uint64_t frame, ViewTime now, service::PictureJob& job) const;
+  [[nodiscard]] MotionQuality motion_quality(size_t video_bytes) const;
+  [[nodiscard]] double view_pixels() const;
+  [[nodiscard]] double motion_fps() const;
+  [[nodiscard]] size_t video_frame_bytes(ViewTime now) const;
+  void choose_codec(ViewTime now);
+  void give_up_video();
+  [[nodiscard]] bool follows(const service::EncodedPicture& picture) const;
+  void withdraw(const Result<service::EncodedPicture>& picture);
+  void record_size(const service::EncodedPicture& picture, const Job& job);
   void retarget(ViewTime now);
   void drop(uint64_t frame);
   void drop_former_editions();
@@ -160,7 +173,12 @@ class ViewSession : public std::enable_shared_from_this<ViewSession> {
   MotionCost last_cost_;     ///< of the last motion frame acknowledged
   /// The last frame at rest of the newest picture, if it is final.
   std::shared_ptr<const picture::Frame> finished_frame_;
-  uint64_t displayed_cut_ = 0;  ///< of the last frame at rest drawn of the newest picture; 0: none
+  uint64_t displayed_cut_ = 0;                  ///< of the last frame at rest drawn of the newest picture; 0: none
+  std::shared_ptr<video::VideoStream> stream_;  ///< null: no video
+  bool is_video_ = false;                       ///< frames in motion become packets of it
+  uint64_t last_packet_ = 0;                    ///< the frame that was the last packet sent; 0: none
+  double file_density_ = 0.08;                  ///< of the last JPEG file, see jpeg_density()
+  size_t depth_bytes_ = 0;                      ///< of the last frame in motion
   std::map<uint64_t, Job> frames_;
   std::optional<Outgoing> outgoing_;
 };

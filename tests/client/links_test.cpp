@@ -11,7 +11,7 @@ TEST(ThinClient, LinksNothingOfTheServer) {
   const ProgramOutcome linked = run_program("readelf -d " SURFCAST_CLIENT);
   ASSERT_EQ(linked.code, 0);
   ASSERT_NE(linked.output.find("libprotobuf-lite"), std::string::npos);
-  for (const char* library : {"draco", "OpenImageIO", "EGL", "libGL", "epoxy", "OpenEXR", "tbb", "boost"}) {
+  for (const char* library : {"draco", "OpenImageIO", "EGL", "libGL", "epoxy", "OpenEXR", "tbb", "boost", "vpx"}) {
     EXPECT_EQ(linked.output.find(library), std::string::npos) << library;
   }
 }

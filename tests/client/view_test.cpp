@@ -89,7 +89,7 @@ class ViewTest : public ::testing::Test {
     auto connection = ServerConnection::open(server_->endpoint(), {});
     ASSERT_TRUE(connection);
     connection_ = std::make_unique<ServerConnection>(std::move(*connection));
-    auto view = View::open(*connection_, picture(), 25);
+    auto view = View::open(*connection_, picture(), {.target_fps = 25});
     ASSERT_TRUE(view);
     view_ = std::make_unique<View>(*view);
   }

@@ -103,7 +103,7 @@ TEST_P(ResumeTest, AViewOfTheClientGoesOnWhereItWas) {
   {
     ServerConnection first = connected();
     session = resume(first, "").session();
-    view.emplace(*client::View::open(first, picture(), 0));
+    view.emplace(*client::View::open(first, picture(), {}));
     ASSERT_EQ(view->show(picture(16), false).value_or(0), 1U);
     ASSERT_TRUE(first.ask(ping_request()));
   }

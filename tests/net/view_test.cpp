@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "net/net_fixture.h"
+#include "support/link_relay.h"
 
 namespace surfcast::net {
 namespace {
@@ -11,13 +12,15 @@ namespace {
 /// A client with one view open, which answers every message of it at once unless it is told not to.
 class ViewSessionTest : public NetFixture {
  protected:
-  void open_view(const std::string& model = "cube", uint32_t width = 64, uint32_t height = 32, bool depth = false) {
-    auto connection = connect();
+  void open_view(const std::string& model = "cube", uint32_t width = 64, uint32_t height = 32, bool depth = false,
+                 bool video = false, uint16_t port = 0) {
+    auto connection = port == 0 ? connect() : client::ServerConnection::open({.host = "127.0.0.1", .port = port}, {});
     ASSERT_TRUE(connection);
     connection_.emplace(std::move(*connection));
     wire::Request request;
     *request.mutable_open_view()->mutable_picture() = picture(model, 0, width, height);
     request.mutable_open_view()->set_depth(depth);
+    if (video) request.mutable_open_view()->add_video(wire::VIDEO_CODEC_VP9);
     const auto id = connection_->send(request);
     ASSERT_TRUE(id);
     view_ = *id;
@@ -152,6 +155,45 @@ TEST_F(ViewSessionTest, FramesHaveNoDepthWhereTheViewDoesNotAskForIt) {
     frame = next_frame();
     EXPECT_FALSE(frame.has_depth());
   } while (!frame.picture().converged() && !HasFailure());
+}
+
+/// Moves a view of noise over a link of 1 Mbit/s. Over it a frame of noise takes seconds as a file.
+class ThinLinkTest : public ViewSessionTest {
+ protected:
+  std::vector<wire::ViewFrame> move(bool video, size_t frames) {
+    start();
+    const testing::LinkRelay relay(port_, {.bits_per_second = 1e6});
+    open_view("noise", 320, 200, /*depth=*/false, video, relay.port());
+    std::vector<wire::ViewFrame> received;
+    for (uint64_t i = 1; received.size() < frames && !HasFailure(); ++i) {
+      update(i, picture("noise", static_cast<double>(i), 320, 200), /*moving=*/true);
+      received.push_back(next_frame());
+    }
+    return received;
+  }
+};
+
+TEST_F(ThinLinkTest, FramesInMotionArePacketsForWhoDecodesThem) {
+  const std::vector<wire::ViewFrame> frames = move(/*video=*/true, 30);
+  uint64_t last = 0;
+  size_t packets = 0;
+  for (const wire::ViewFrame& frame : frames) {
+    if (!frame.has_video()) continue;
+    EXPECT_EQ(frame.video().codec(), wire::VIDEO_CODEC_VP9);
+    EXPECT_EQ(frame.video().key(), last == 0);
+    EXPECT_EQ(frame.video().refers_to(), last);
+    EXPECT_TRUE(frame.moving());
+    last = frame.frame();
+    ++packets;
+  }
+  EXPECT_GT(packets, 10U);
+}
+
+TEST_F(ThinLinkTest, FramesAreFilesForWhoDidNotAskForVideo) {
+  for (const wire::ViewFrame& frame : move(/*video=*/false, 30)) {
+    EXPECT_FALSE(frame.has_video());
+    EXPECT_EQ(frame.picture().data().substr(0, 2), "\xff\xd8") << "JPEG";
+  }
 }
 
 TEST_F(ViewSessionTest, FramesRepeatTheNewestUpdateAndItsCamera) {

@@ -51,6 +51,7 @@ done
 # The server finds its module of image codecs where both are installed.
 [ -s "$prefix/lib/surfcast/image_codecs.so" ] || fail "there is no module of image codecs"
 [ -s "$prefix/lib/surfcast/image_decoders.so" ] || fail "there is no module of image decoders"
+[ -s "$prefix/lib/surfcast/video_codec.so" ] || fail "there is no module of the video codec"
 for format in png jpg webp exr; do
   "$prefix/bin/surfcastd" render "$data/sphere-and-grid-v2.surf" --resolution 32,24 --output "$prefix/picture.$format"
   [ -s "$prefix/picture.$format" ] || fail "the installed server wrote no picture in $format"

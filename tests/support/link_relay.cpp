@@ -54,7 +54,8 @@ struct Packet {
 /// One direction of the link: bytes are sent at the link's bandwidth and arrive after its delay.
 class Line {
  public:
-  Line(int from, int to, const LinkShape& shape) : from_(from), to_(to), shape_(shape) {}
+  Line(int from, int to, const LinkShape& shape, const std::atomic<double>& bits_per_second)
+      : from_(from), to_(to), shape_(shape), bits_per_second_(bits_per_second) {}
 
   void run(const std::stop_token& stop) {
     while (!stop.stop_requested() && (open_ || !packets_.empty())) {
@@ -87,7 +88,7 @@ class Line {
       return;
     }
     bytes.resize(static_cast<size_t>(count));
-    const std::chrono::duration<double> on_line(static_cast<double>(count) * 8 / shape_.bits_per_second);
+    const std::chrono::duration<double> on_line(static_cast<double>(count) * 8 / bits_per_second_);
     free_at_ = std::max(free_at_, Clock::now()) + std::chrono::duration_cast<Clock::duration>(on_line);
     packets_.push_back({free_at_ + shape_.delay, std::move(bytes)});
   }
@@ -109,6 +110,7 @@ class Line {
   int from_;
   int to_;
   LinkShape shape_;
+  const std::atomic<double>& bits_per_second_;
   std::deque<Packet> packets_;
   Clock::time_point free_at_ = Clock::now();
   bool open_ = true;
@@ -117,7 +119,10 @@ class Line {
 }  // namespace
 
 LinkRelay::LinkRelay(uint16_t target, const LinkShape& shape, uint16_t port)
-    : target_(target), shape_(shape), listener_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
+    : target_(target),
+      shape_(shape),
+      bits_per_second_(std::make_shared<std::atomic<double>>(shape.bits_per_second)),
+      listener_(::socket(AF_INET, SOCK_STREAM | SOCK_CLOEXEC, 0)) {
   set_option(listener_, SOL_SOCKET, SO_REUSEADDR, 1);
   set_option(listener_, SOL_SOCKET, SO_RCVBUF, kReceiveBuffer);
   sockaddr_in address = loopback(port);
@@ -152,8 +157,9 @@ void LinkRelay::carry(int client) {
   if (::connect(server, reinterpret_cast<const sockaddr*>(&address), sizeof address) != 0) return;
   for (const int socket : {client, server}) set_option(socket, IPPROTO_TCP, TCP_NODELAY, 1);
   const auto start = [this, pair](int from, int to) {
-    lines_.emplace_back(
-        [pair, from, to, shape = shape_](const std::stop_token& stop) { Line(from, to, shape).run(stop); });
+    lines_.emplace_back([pair, from, to, shape = shape_, bits = bits_per_second_](const std::stop_token& stop) {
+      Line(from, to, shape, *bits).run(stop);
+    });
   };
   start(client, server);
   start(server, client);

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
+#include <memory>
 #include <stop_token>
 #include <thread>
 #include <vector>
@@ -26,13 +28,16 @@ class LinkRelay {
   LinkRelay& operator=(const LinkRelay&) = delete;
 
   [[nodiscard]] uint16_t port() const { return port_; }
+  /// The rate from now on, in all connections. May be called from any thread.
+  void set_bits_per_second(double bits) { *bits_per_second_ = bits; }
 
  private:
   void accept_all(const std::stop_token& stop);
   void carry(int client);
 
   uint16_t target_;
-  LinkShape shape_;
+  LinkShape shape_;  ///< but for its rate
+  std::shared_ptr<std::atomic<double>> bits_per_second_;
   int listener_;
   uint16_t port_ = 0;
   std::vector<std::jthread> lines_;

@@ -26,6 +26,11 @@ class Line {
     return estimate.acknowledge(++acknowledged_, client_ms, at(now_ms_));
   }
 
+  /// Lets time pass until a frame of the next tick would be sent.
+  void pass(double ms) { now_ms_ += ms; }
+  void set_rate(double bytes_per_ms) { bytes_per_ms_ = bytes_per_ms; }
+  [[nodiscard]] ViewTime now() const { return at(now_ms_); }
+
   /// The next acknowledgement is read so much later than it arrives.
   void wait(double ms) { arrivals_.front() += ms; }
 
@@ -131,6 +136,95 @@ TEST(LinkEstimate, LongMotionAtOneSizeForgetsNothing) {
     line.acknowledge(estimate);
   }
   EXPECT_NEAR(estimate.transfer_ms(50'000), 100, 5);
+}
+
+/// A line of 500 bytes a millisecond whose round trip is known.
+class NowEstimate : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    for (const size_t bytes : {1000, 60'000, 60'000, 5000}) exchange(bytes);
+    for (int i = 0; i < 20; ++i) exchange(12'000);
+  }
+  void exchange(size_t bytes) {
+    line_.pass(50);
+    line_.send(estimate_, bytes);
+    line_.acknowledge(estimate_);
+  }
+  [[nodiscard]] double bytes_a_ms() const {
+    return static_cast<double>(estimate_.bytes_now_in(1000, line_.now()).value_or(0)) / 1000;
+  }
+  LinkEstimate estimate_;
+  Line line_{500, 80};
+};
+
+TEST_F(NowEstimate, KnowsNothingBeforeTheFirstAcknowledgement) {
+  EXPECT_FALSE(LinkEstimate().bytes_now_in(30, line_.now()));
+}
+
+TEST_F(NowEstimate, MessagesOfOneSizeTellTheRateAndAQuarterOrSo) {
+  EXPECT_GT(bytes_a_ms(), 500);
+  EXPECT_LT(bytes_a_ms(), 750);
+}
+
+TEST_F(NowEstimate, FollowsALineThatBecomesTenTimesAsSlow) {
+  line_.set_rate(50);
+  for (int i = 0; i < 2; ++i) exchange(12'000);
+  EXPECT_LT(bytes_a_ms(), 60) << "two messages are enough";
+  EXPECT_GT(bytes_a_ms(), 45);
+}
+
+TEST_F(NowEstimate, OneMessageThatTakesLongChangesNothing) {
+  const double before = bytes_a_ms();
+  line_.send(estimate_, 12'000);
+  line_.wait(60);
+  line_.acknowledge(estimate_);
+  EXPECT_GE(bytes_a_ms(), before);
+}
+
+TEST_F(NowEstimate, AMessageThatIsNotAcknowledgedIsEvidence) {
+  const double before = bytes_a_ms();
+  line_.send(estimate_, 12'000);
+  line_.pass(80 + 24);
+  EXPECT_DOUBLE_EQ(bytes_a_ms(), before) << "it is not late yet";
+  line_.pass(216);
+  EXPECT_NEAR(bytes_a_ms(), 50, 6);
+}
+
+TEST_F(NowEstimate, FollowsALineThatIsFastAgain) {
+  line_.set_rate(50);
+  for (int i = 0; i < 300; ++i) exchange(3000);  // nothing is known of the time before
+  EXPECT_LT(bytes_a_ms(), 600);
+  line_.set_rate(500);
+  int messages = 0;
+  for (; messages < 30 && bytes_a_ms() < 450; ++messages) {
+    exchange(std::max<size_t>(3000, static_cast<size_t>(20 * bytes_a_ms())));
+  }
+  EXPECT_LT(messages, 20) << "at ten a second, within two seconds";
+  for (int i = 0; i < 30; ++i) exchange(std::max<size_t>(3000, static_cast<size_t>(20 * bytes_a_ms())));
+  EXPECT_GT(bytes_a_ms(), 450);
+  EXPECT_LT(bytes_a_ms(), 1000);
+}
+
+/// Over a line of 50 bytes a millisecond, frames of 20 ms by the estimate and at least 3000 bytes.
+TEST_F(NowEstimate, ASlowLineIsNotOverrun) {
+  line_.set_rate(50);
+  for (int i = 0; i < 600; ++i) {
+    exchange(std::max<size_t>(3000, static_cast<size_t>(20 * bytes_a_ms())));
+    ASSERT_TRUE(i <= 2 || 20 * bytes_a_ms() < 10'000) << i << ' ' << bytes_a_ms();
+  }
+}
+
+TEST_F(NowEstimate, SmallMessagesDoNotProveThatLargerOnesFit) {
+  const double before = bytes_a_ms();
+  for (int i = 0; i < 100; ++i) exchange(1000);
+  EXPECT_LE(bytes_a_ms(), 1.3 * before);
+}
+
+TEST_F(NowEstimate, MessagesThatWaitForOthersTellTheRate) {
+  for (int i = 0; i < 3; ++i) line_.send(estimate_, 12'000);
+  for (int i = 0; i < 3; ++i) line_.acknowledge(estimate_);
+  EXPECT_GT(bytes_a_ms(), 450);
+  EXPECT_LT(bytes_a_ms(), 750);
 }
 
 TEST(LinkEstimate, AcknowledgementsOfNothingAreIgnored) {

@@ -107,6 +107,16 @@ TEST(QualityController, NothingHelpsTheSlowestButItStaysWithinBounds) {
   EXPECT_GE(run.shown.back().jpeg_quality, 30);
 }
 
+TEST(QualityController, FramesOfAVideoLeaveTheLinksLadderAsItIs) {
+  QualityState state = first_quality();
+  for (int i = 0; i < 100; ++i) state = adapt_drawing(state, {.draw = 1, .transfer = 1000}, 30);
+  EXPECT_EQ(state.link.rung, first_quality().link.rung);
+  EXPECT_EQ(state.draw.rung, 0U);
+  state.link.rung = 7;
+  EXPECT_LT(quality_of(state).scale, 1);
+  EXPECT_EQ(drawing_of(state).scale, 1);
+}
+
 TEST(QualityController, AHigherRateCostsQuality) {
   Ride slow;
   slow.frames(renderer(100), 200, 15);

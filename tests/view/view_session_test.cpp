@@ -1,103 +1,13 @@
 #include "view/view_session.h"
 
 #include <algorithm>
-#include <condition_variable>
-#include <deque>
-#include <mutex>
 
 #include <gtest/gtest.h>
 
-#include "service/fake_models.h"
+#include "view/view_fixture.h"
 
 namespace surfcast::view {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-
-/// A view of the scan "cube", of which there is a preview. The test's thread is the view's.
-class ViewOfAScanTest : public ::testing::Test {
- protected:
-  void SetUp() override {
-    models_.cube_edition = 1;
-    control_->preview_editions = 1;
-    auto started = service::RenderService::start(models_, service::fake_renderers(control_), {});
-    ASSERT_TRUE(started);
-    service_ = std::move(*started);
-    ViewPort port;
-    port.send = [this](ViewMessage message) { frames_.push_back(std::move(message)); };
-    port.fail = [](const Error& error) { ADD_FAILURE() << error.message; };
-    port.may_draw = [] { return true; };
-    port.post = [this](std::function<void()> task) {
-      const std::lock_guard lock(mutex_);
-      tasks_.push_back(std::move(task));
-      wake_.notify_one();
-    };
-    view_ = std::make_shared<ViewSession>(*service_, 1, 1, ViewOptions{}, counts_, std::move(port));
-    update();
-  }
-  void TearDown() override {
-    view_->close();
-    service_.reset();
-  }
-
-  void update(bool moving = false) {
-    service::PictureJob job;
-    job.model = "cube";
-    job.request.width = 8;
-    job.request.height = 4;
-    job.request.error = error_;
-    job.request.background = glm::u8vec3(static_cast<uint8_t>(++updates_));
-    view_->update({updates_, std::move(job), true, moving}, Clock::now());
-  }
-  void publish(uint64_t edition) {
-    models_.cube_edition = edition;
-    view_->model_changed();
-  }
-  /// Lets the view do what is due until a frame has come of which the condition holds; false if none comes.
-  template <typename Condition>
-  bool run_until(Condition condition) {
-    const auto end = Clock::now() + std::chrono::seconds(20);
-    for (size_t seen = 0; Clock::now() < end;) {
-      for (; seen < frames_.size(); ++seen) {
-        view_->acknowledge(frames_[seen].frame, 1, Clock::now());
-        if (condition(frames_[seen])) return true;
-      }
-      run_tasks();
-      view_->advance(Clock::now());
-    }
-    return false;
-  }
-  /// Moves the view without a rest until the condition holds of a frame; false if it does of none.
-  template <typename Condition>
-  bool move_until(Condition condition) {
-    const auto next = [&](const ViewMessage& frame) {
-      if (!condition(frame)) update(/*moving=*/true);
-      return condition(frame);
-    };
-    update(/*moving=*/true);
-    return run_until(next);
-  }
-  void run_tasks() {
-    std::unique_lock lock(mutex_);
-    wake_.wait_for(lock, std::chrono::milliseconds(2), [this] { return !tasks_.empty(); });
-    std::deque<std::function<void()>> tasks = std::exchange(tasks_, {});
-    lock.unlock();
-    for (const auto& task : tasks) task();
-  }
-  static bool is_final(const ViewMessage& frame) { return frame.picture.format == picture::FileFormat::kPng; }
-
-  service::FakeModels models_;
-  std::shared_ptr<service::FakeRendererControl> control_ = std::make_shared<service::FakeRendererControl>();
-  std::unique_ptr<service::RenderService> service_;
-  ViewCounts counts_;
-  std::mutex mutex_;
-  std::condition_variable wake_;
-  std::deque<std::function<void()>> tasks_;
-  std::vector<ViewMessage> frames_;
-  std::shared_ptr<ViewSession> view_;
-  uint64_t updates_ = 0;
-  double error_ = 0;  ///< of the pictures asked for
-};
 
 TEST_F(ViewOfAScanTest, GoesFromPreviewToModelWithoutBeingAsked) {
   ASSERT_TRUE(run_until(is_final));
@@ -176,6 +86,94 @@ TEST_F(ViewOfAScanTest, OnlyTheFinalFrameIsDrawnToAnError) {
     EXPECT_EQ(request.error, 0);
     EXPECT_GE(request.spacing, 1) << "not the finest level";
   }
+}
+
+/// The same view, of a client that decodes VP9.
+class ViewOfAVideoTest : public ViewOfAScanTest {
+ protected:
+  ViewOfAVideoTest() { video_ = true; }
+
+  bool move_for(size_t frames) {
+    frames_.clear();
+    return move_until([this, frames](const ViewMessage&) { return frames_.size() >= frames; });
+  }
+  static bool is_packet(const ViewMessage& frame) { return frame.picture.video.has_value(); }
+  /// Whether a decoder that gets these frames, and has decoded this one before, can decode them.
+  static ::testing::AssertionResult decodable(const std::vector<ViewMessage>& frames, uint64_t last = 0) {
+    for (const ViewMessage& frame : frames) {
+      if (!is_packet(frame)) continue;
+      const service::PacketPlace& place = *frame.picture.video;
+      if (place.key ? place.refers_to != 0 : last == 0 || place.refers_to != last) {
+        return ::testing::AssertionFailure() << frame.frame << " refers to " << place.refers_to << " after " << last;
+      }
+      if (frame.more || !frame.first) return ::testing::AssertionFailure() << "packets are sent as a whole";
+      last = frame.frame;
+    }
+    return ::testing::AssertionSuccess();
+  }
+};
+
+TEST_F(ViewOfAVideoTest, SendsFilesOverAFastLink) {
+  ASSERT_TRUE(move_for(30));
+  EXPECT_TRUE(std::ranges::none_of(frames_, is_packet));
+}
+
+TEST_F(ViewOfAVideoTest, SendsOneStreamOfPacketsOverASlowLink) {
+  every_message_ = std::chrono::milliseconds(100);
+  ASSERT_TRUE(move_for(40));
+  EXPECT_TRUE(std::ranges::all_of(frames_.begin() + 30, frames_.end(), is_packet));
+  EXPECT_TRUE(decodable(frames_));
+  const auto keys = std::ranges::count_if(
+      frames_, [](const ViewMessage& frame) { return is_packet(frame) && frame.picture.video->key; });
+  EXPECT_EQ(keys, 1);
+}
+
+TEST_F(ViewOfAVideoTest, GoesOnWithTheStreamAfterARest) {
+  every_message_ = std::chrono::milliseconds(100);
+  ASSERT_TRUE(move_for(40));
+  const uint64_t last = frames_.back().frame;
+  frames_.clear();
+  update();
+  ASSERT_TRUE(run_until(is_final));
+  EXPECT_TRUE(decodable(frames_, last));
+  const auto at_rest = std::ranges::find(frames_, false, &ViewMessage::moving);
+  EXPECT_TRUE(std::none_of(at_rest, frames_.end(), is_packet));
+  std::vector<ViewMessage> all = frames_;
+  ASSERT_TRUE(move_for(20));
+  all.insert(all.end(), frames_.begin(), frames_.end());
+  EXPECT_TRUE(decodable(all, last));
+  EXPECT_TRUE(
+      std::ranges::none_of(all, [](const ViewMessage& frame) { return is_packet(frame) && frame.picture.video->key; }));
+}
+
+TEST_F(ViewOfAVideoTest, BeginsAnewAfterAPacketThatWasNotSent) {
+  every_message_ = std::chrono::milliseconds(100);
+  ASSERT_TRUE(move_for(40));
+  const uint64_t last = frames_.back().frame;
+  lose_tasks_ = 1;
+  update(/*moving=*/true);
+  while (lose_tasks_ > 0) view_->advance(Clock::now());
+  ASSERT_TRUE(move_for(20));
+  EXPECT_TRUE(decodable(frames_, last));
+  const auto is_key = [](const ViewMessage& frame) { return is_packet(frame) && frame.picture.video->key; };
+  EXPECT_EQ(std::ranges::count_if(frames_, is_key), 1);
+}
+
+TEST_F(ViewOfAVideoTest, StaysDecodableWhenTheModelTakesOver) {
+  every_message_ = std::chrono::milliseconds(100);
+  ASSERT_TRUE(move_for(40));
+  const uint64_t last = frames_.back().frame;
+  publish(2);
+  frames_.clear();
+  ASSERT_TRUE(move_until([](const ViewMessage& frame) { return !frame.picture.preview; }));
+  ASSERT_TRUE(move_until([this](const ViewMessage&) { return frames_.size() > 20; }));
+  EXPECT_TRUE(decodable(frames_, last));
+}
+
+TEST_F(ViewOfAScanTest, SendsFilesToWhoDidNotAskForVideo) {
+  every_message_ = std::chrono::milliseconds(100);
+  ASSERT_TRUE(move_until([this](const ViewMessage&) { return frames_.size() >= 40; }));
+  for (const ViewMessage& frame : frames_) EXPECT_FALSE(frame.picture.video);
 }
 
 }  // namespace

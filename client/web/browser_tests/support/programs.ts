@@ -1,4 +1,5 @@
 import { execFile, spawn, type ChildProcess } from 'node:child_process';
+import { connect, createServer, type AddressInfo } from 'node:net';
 import { createInterface } from 'node:readline';
 import { promisify } from 'node:util';
 
@@ -11,6 +12,52 @@ const surfcastd = process.env['SURFCASTD'] ?? '../../build/bin/surfcastd';
 export async function surfcastdRun(...args: string[]): Promise<string> {
   return (await run(surfcastd, args)).stdout;
 }
+
+/** The program beside it that emulates a link. */
+const linkRelay = surfcastd.replace(/surfcastd$/, 'link_relay');
+
+/** An emulated link to a server on this machine. */
+export class LinkRelay {
+  private constructor(
+    private readonly process: ChildProcess,
+    readonly port: number,
+  ) {}
+
+  static async start(server: Server, megabits: number, roundTrip: number): Promise<LinkRelay> {
+    const port = await freePort();
+    const process = spawn(linkRelay, [port, server.port, megabits, roundTrip].map(String), { stdio: 'ignore' });
+    while (!(await accepts(port))) {
+      if (process.exitCode !== null) throw new Error('link_relay ended before it was ready');
+    }
+    return new LinkRelay(process, port);
+  }
+
+  async stop(): Promise<void> {
+    const ended = new Promise((resolve) => this.process.once('exit', resolve));
+    this.process.kill('SIGTERM');
+    await ended;
+  }
+}
+
+/** A port on which nothing listens. */
+async function freePort(): Promise<number> {
+  const server = createServer();
+  await new Promise<void>((resolve) => server.listen(0, '127.0.0.1', resolve));
+  const { port } = server.address() as AddressInfo;
+  await new Promise((resolve) => server.close(resolve));
+  return port;
+}
+
+const accepts = (port: number): Promise<boolean> =>
+  new Promise((resolve) => {
+    const socket = connect(port, '127.0.0.1');
+    const end = (accepted: boolean): void => {
+      socket.destroy();
+      resolve(accepted);
+    };
+    socket.once('connect', () => end(true));
+    socket.once('error', () => end(false));
+  });
 
 export class Server {
   private constructor(

@@ -1,6 +1,6 @@
 import { fromBinary, toBinary } from '@bufbuild/protobuf';
 import type { Page, WebSocketRoute } from 'playwright-core';
-import { AnswerSchema, RequestSchema, type DrawPicture, type ViewFrame } from '../../src/generated/surfcast_pb';
+import { AnswerSchema, RequestSchema, type DrawPicture, type OpenView, type ViewFrame } from '../../src/generated/surfcast_pb';
 
 /** What goes between the page and the server, seen and, where a test wants that, held up. */
 export class Wire {
@@ -17,12 +17,16 @@ export class Wire {
   readonly painted: { readonly update: bigint; readonly at: number }[] = [];
   /** Whole frames, in the order in which the page gets them, each as its first piece says it. */
   readonly frames: ViewFrame[] = [];
+  /** What views were opened with, in this order. */
+  readonly opened: OpenView[] = [];
   private begun: ViewFrame | undefined;
   heldFrames = 0;
   /** Milliseconds that each message takes, either way. */
   delay = 0;
   /** Frames lose their depth on the way, as if the server knew none. */
   flat = false;
+  /** Packets of videos lose their end on the way. */
+  damagePackets = false;
   private holding = false;
   private readonly held: (() => void)[] = [];
 
@@ -54,12 +58,17 @@ export class Wire {
       const pass = (): void =>
         this.later(() => {
           if (frame) this.noteFrame(frame);
-          socket.send(frame && this.flat ? flattened(message as Buffer) : message);
+          socket.send(frame ? this.changed(message as Buffer) : message);
         });
       if (!frame || !this.holding) return pass();
       this.heldFrames += 1;
       this.held.push(pass);
     });
+  }
+
+  private changed(message: Buffer): Buffer {
+    if (this.flat) return flattened(message);
+    return this.damagePackets ? damaged(message) : message;
   }
 
   private later(pass: () => void): void {
@@ -83,6 +92,7 @@ export class Wire {
   private noteRequest(message: Buffer): void {
     const { kind } = isHello(message) ? { kind: undefined } : fromBinary(RequestSchema, message);
     if (kind?.case) this.asked.push(kind.case);
+    if (kind?.case === 'openView') this.opened.push(kind.value);
     if (kind?.case === 'pickSurfel') this.picked = kind.value.picture;
     if (kind?.case === 'framePainted') this.noteAcknowledgement(kind.value.frame);
     if (kind?.case === 'updateView') this.updates.push({ update: kind.value.update, picture: kind.value.picture });
@@ -100,5 +110,12 @@ function frameOf(message: Buffer): ViewFrame | undefined {
 function flattened(message: Buffer): Buffer {
   const answer = fromBinary(AnswerSchema, message);
   if (answer.kind.case === 'viewFrame') delete answer.kind.value.depth;
+  return Buffer.from(toBinary(AnswerSchema, answer));
+}
+
+function damaged(message: Buffer): Buffer {
+  const answer = fromBinary(AnswerSchema, message);
+  if (answer.kind.case !== 'viewFrame' || !answer.kind.value.video || !answer.kind.value.picture) return message;
+  answer.kind.value.picture.data = answer.kind.value.picture.data.subarray(0, 3);
   return Buffer.from(toBinary(AnswerSchema, answer));
 }

@@ -1,5 +1,6 @@
 import { FileFormat, type DrawPicture, type ViewFrame } from '../generated/surfcast_pb';
 import { decodePlane, type DepthPlane } from '../warp/depth_plane';
+import { PacketDecoder } from './packet_decoder';
 
 const types: Readonly<Record<FileFormat, string>> = {
   [FileFormat.PNG]: 'image/png',
@@ -48,6 +49,7 @@ export class Painter {
   private ready: DecodedFrame | undefined;
   private newest = 0n;
   private generation = 0;
+  private readonly video = new PacketDecoder();
 
   constructor(
     private readonly canvas: HTMLCanvasElement,
@@ -63,20 +65,17 @@ export class Painter {
   reset(): void {
     this.generation += 1;
     this.newest = 0n;
+    this.video.reset();
     this.ready?.bitmap.close();
     this.ready = undefined;
   }
 
   async take(arrived: ArrivedFrame): Promise<void> {
     const { generation } = this;
-    const { picture } = arrived.frame;
+    const { frame } = arrived;
     try {
-      if (!picture) throw new Error('a frame without a picture');
-      const file = new Blob([picture.data as Uint8Array<ArrayBuffer>], { type: mediaType(picture.format) });
-      const [bitmap, depth] = await Promise.all([
-        createImageBitmap(file, { colorSpaceConversion: 'none', premultiplyAlpha: 'none' }),
-        depthOf(arrived.frame),
-      ]);
+      const decoded = frame.video ? this.video.decode(frame) : bitmapOf(frame);
+      const [bitmap, depth] = await Promise.all([decoded, depthOf(frame)]);
       if (generation === this.generation) this.queue({ ...arrived, bitmap, depth, decoded: performance.now() });
       else bitmap.close();
     } catch {
@@ -115,6 +114,13 @@ export class Painter {
     this.context.drawImage(bitmap, 0, 0, width, height);
     this.events.painted({ ...decoded, painted: performance.now() });
   }
+}
+
+/** Of a frame that is a file. */
+async function bitmapOf({ picture }: ViewFrame): Promise<ImageBitmap> {
+  if (!picture) throw new Error('a frame without a picture');
+  const file = new Blob([picture.data as Uint8Array<ArrayBuffer>], { type: mediaType(picture.format) });
+  return createImageBitmap(file, { colorSpaceConversion: 'none', premultiplyAlpha: 'none' });
 }
 
 /** Without a depth, or with a damaged one, the frame is shown as it is. */

@@ -18,6 +18,7 @@ import { cameraFrom, pictureOf } from '../protocol/pictures';
 import { awaited, failed, renewed } from '../state/scans';
 import * as store from '../state/store';
 import { FigureCollector } from './figures';
+import { decodesVideo } from './packet_decoder';
 import { Painter, type ArrivedFrame, type DecodedFrame, type PaintedFrame } from './painter';
 import { Screen } from './screen';
 import { ViewSession, type ViewEvents } from './view_session';
@@ -56,6 +57,7 @@ export class ViewController {
   private lost: LostView | undefined;
   private readonly sentAt = new Map<bigint, number>(); // update: performance.now()
   private scheduled = false;
+  private video = false; // the browser decodes videos
   private ticking = false; // an animation frame is requested
   private unacknowledged: ArrivedFrame | undefined; // painted in this animation frame
   private failures = 0;
@@ -73,8 +75,9 @@ export class ViewController {
       ready: () => this.tick(),
       painted: (frame) => this.painted(frame),
       skipped: (frame) => this.session?.acknowledge(frame.frame.frame, performance.now() - frame.arrived),
-      broken: (frame) => this.session?.acknowledge(frame.frame.frame, performance.now() - frame.arrived),
+      broken: (frame) => this.broken(frame),
     });
+    void decodesVideo().then((decodes) => (this.video = decodes));
     this.link = new Link(url, {
       changed: (state) => (store.link.value = state),
       opened: (connection, views) => this.opened(connection, views),
@@ -281,10 +284,22 @@ export class ViewController {
         this.failed(error);
       },
     };
-    const session = new ViewSession(connection, request.picture, events, this.screen.warps);
+    const session = new ViewSession(connection, request.picture, events, {
+      depth: this.screen.warps,
+      video: this.video,
+    });
     this.session = session;
     this.lost = undefined;
     this.schedule();
+  }
+
+  /** A frame that cannot be decoded is not shown. If it is a packet of a video, the view goes on without one. */
+  private broken({ frame, arrived }: ArrivedFrame): void {
+    this.session?.acknowledge(frame.frame, performance.now() - arrived);
+    if (!frame.video || !this.video) return;
+    this.video = false;
+    this.endView();
+    this.openView();
   }
 
   private endView(): void {

@@ -1,4 +1,4 @@
-import type { DrawPicture } from '../generated/surfcast_pb';
+import { VideoCodec, type DrawPicture } from '../generated/surfcast_pb';
 import { errorOf, type AnswerKind, type Connection, type RequestError } from '../protocol/connection';
 import { FrameAssembler } from './assembler';
 import type { ArrivedFrame } from './painter';
@@ -7,6 +7,12 @@ export interface ViewEvents {
   frame(frame: ArrivedFrame): void;
   /** The view has ended; nothing follows. */
   failed(error: RequestError): void;
+}
+
+/** What a view asks for beside its picture, as far as the browser can use it. */
+export interface ViewWishes {
+  readonly depth: boolean;
+  readonly video: boolean;
 }
 
 /** One view of a model over one connection: sends updates and receives frames. */
@@ -22,10 +28,10 @@ export class ViewSession {
     private connection: Connection,
     picture: DrawPicture,
     private readonly events: ViewEvents,
-    depth = false, // of the frames
+    { depth, video }: ViewWishes = { depth: false, video: false },
   ) {
     this.asked.set(this.lastUpdate, picture);
-    const value = { picture, depth };
+    const value = { picture, depth, video: video ? [VideoCodec.VP9] : [] };
     this.id = connection.listen({ case: 'openView', value }, (answer, bytes) => this.take(answer, bytes));
   }
 

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <cstddef>
+
+namespace surfcast::video {
+
+/// How many bytes pictures take: 2^(complexity - steepness * quantizer) for each pixel. Key frames depend less on the
+/// quantizer than frames that refer to others.
+struct SizeModel {
+  double complexity = 0;
+  double steepness = 0;
+};
+
+/// Of the first key frame of a stream.
+inline constexpr SizeModel kFirstKeySizes{-2.5, 0.07};
+
+/// Of the frames that refer to others, after the first key frame: they take no more than that.
+SizeModel sizes_after_key(int quantizer, double bytes, double pixels);
+
+/// The finest quantizer with which a picture of so many pixels is expected to take at most `bytes`.
+int quantizer_for(const SizeModel& model, double bytes, double pixels);
+
+/// The model after a picture that took `bytes`. One that took more than expected counts at once, so that the next one
+/// does not; one that took less by half.
+SizeModel learned(const SizeModel& model, int quantizer, double bytes, double pixels);
+
+}  // namespace surfcast::video
