@@ -251,11 +251,10 @@ Result<VolumePrograms> Programs::volumes(const Variant& variant, size_t volumes)
   const std::string several = volumes > 1 ? define("SURFCAST_VOLUMES", static_cast<int>(volumes)) : "";
   const std::string layers = layers_define(variant) + (variant.codes ? "#define SURFCAST_CODES\n" : "");
   const bool gradients = variant.shaded || variant.volume_surfaces;
-  const std::string look = std::string(variant.clipped ? "#define SURFCAST_CLIPPED\n" : "") +
-                           (variant.shaded ? "#define SURFCAST_SHADED\n" : "") +
-                           (gradients ? "#define SURFCAST_GRADIENTS\n" : "") +
-                           (variant.volume_surfaces ? "#define SURFCAST_SURFACES\n" : "") + layers + several +
-                           fronts_define(variant.depth);
+  const std::string look =
+      std::string(variant.clipped ? "#define SURFCAST_CLIPPED\n" : "") +
+      (variant.shaded ? "#define SURFCAST_SHADED\n" : "") + (gradients ? "#define SURFCAST_GRADIENTS\n" : "") +
+      (variant.volume_surfaces ? "#define SURFCAST_SURFACES\n" : "") + layers + several + fronts_define(variant.depth);
   const std::string name = several.empty() ? "volume.comp" : "volume.comp for several volumes";
   const Result<const gl::Program*> draw = program({name, "volume.comp"}, look);
   if (!draw) return fail(draw.error());
