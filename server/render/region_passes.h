@@ -70,8 +70,8 @@ void clear_fronts(const Region& drawn, SplatBuffers& buffers);
 Result<std::optional<RegionStats>> draw_layers(RegionTask task, const PictureKinds& kinds, Programs& programs,
                                                SplatBuffers& buffers, const Preemption& preemption);
 
-/// Reads the finished pixels, and enters their depths in the depth map if it is asked for. Returns the milliseconds that
-/// it took. Fails on errors of OpenGL up to here.
+/// Reads the finished pixels, and enters their depths in the depth map if it is asked for. Returns the milliseconds
+/// that it took. Fails on errors of OpenGL up to here.
 Result<double> read_picture(const RegionTask& task, const SplatBuffers& buffers, std::span<std::byte> pixels);
 
 }  // namespace surfcast::render

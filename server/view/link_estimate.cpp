@@ -80,7 +80,7 @@ void LinkEstimate::learn(const Sample& sample) {
 double LinkEstimate::most_bytes_per_ms(double bytes, double elapsed, double since_arrival) const {
   constexpr double kNoise = 5;  // ms by which times of messages vary for other reasons
   constexpr double kLeastMs = 0.5;
-  const double least = *std::ranges::min_element(elapsed_);
+  const double least = least_elapsed_ms();
   const double waited = elapsed - since_arrival;
   return bytes / std::max(waited > least ? since_arrival : elapsed - least - kNoise, kLeastMs);
 }
@@ -115,6 +115,10 @@ std::optional<size_t> LinkEstimate::bytes_now_in(double milliseconds, ViewTime n
     bytes_per_ms = std::min(bytes_per_ms, most);
   }
   return static_cast<size_t>(std::min(milliseconds * bytes_per_ms, kMost));
+}
+
+double LinkEstimate::least_elapsed_ms() const {
+  return elapsed_.empty() ? 0 : *std::ranges::min_element(elapsed_);
 }
 
 double LinkEstimate::transfer_ms(size_t bytes) const {

@@ -27,6 +27,8 @@ class LinkEstimate {
   /// The same by another estimate, which follows a change of the link at once and does not need messages of different
   /// sizes. It is too high rather than too low while the line is not full.
   [[nodiscard]] std::optional<size_t> bytes_now_in(double milliseconds, ViewTime now) const;
+  /// The least time of a message lately, which is no less than the round trip; 0 while nothing is known.
+  [[nodiscard]] double least_elapsed_ms() const;
   /// Estimated round trip of an empty message; 0 while it is not known.
   [[nodiscard]] double round_trip_ms() const;
   /// Of messages that are not acknowledged.

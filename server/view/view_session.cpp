@@ -211,7 +211,8 @@ void ViewSession::drop(uint64_t frame) {
 /// takes no frames from the client: as many are sent as fit on the way, while all that was sent arrives in time.
 size_t ViewSession::window(ViewTime now) const {
   constexpr double kLateMs = 100;
-  const double round_trip = link_.round_trip_ms();
+  // Packets of one size do not tell the rate from the round trip.
+  const double round_trip = is_video_ ? link_.least_elapsed_ms() : link_.round_trip_ms();
   const double milliseconds = round_trip + kLateMs;
   const std::optional<size_t> fits = is_video_ ? link_.bytes_now_in(milliseconds, now) : link_.bytes_in(milliseconds);
   if (!warps_ || round_trip == 0 || !fits) return kMaxUnacknowledged;

@@ -220,6 +220,16 @@ TEST_F(NowEstimate, SmallMessagesDoNotProveThatLargerOnesFit) {
   EXPECT_LE(bytes_a_ms(), 1.3 * before);
 }
 
+TEST_F(NowEstimate, TheRoundTripStaysKnownWhenALineBecomesSlowAndFastAgain) {
+  // The smallest message, of 1000 bytes, took that.
+  EXPECT_NEAR(estimate_.least_elapsed_ms(), 80 + 2, 1);
+  for (const double rate : {50, 500}) {
+    line_.set_rate(rate);
+    for (int i = 0; i < 40; ++i) exchange(12'000);
+    EXPECT_NEAR(estimate_.least_elapsed_ms(), 80 + 2, 1) << rate;
+  }
+}
+
 TEST_F(NowEstimate, MessagesThatWaitForOthersTellTheRate) {
   for (int i = 0; i < 3; ++i) line_.send(estimate_, 12'000);
   for (int i = 0; i < 3; ++i) line_.acknowledge(estimate_);
