@@ -1,13 +1,13 @@
 // link_relay LISTEN_PORT SERVER_PORT [MBIT_PER_SECOND [RTT_MS]]: emulates a network link of limited bandwidth between a
 // client and a server on one machine. Runs until it is interrupted.
 
-#include "support/link_relay.h"
-
 #include <charconv>
 #include <csignal>
 #include <cstdio>
 #include <span>
 #include <string_view>
+
+#include "support/link_relay.h"
 
 namespace {
 
