@@ -4,6 +4,8 @@
 #include <nlohmann/json.hpp>
 #include <sstream>
 
+#include <spdlog/fmt/fmt.h>
+
 #include "model/volume_facts.h"
 #include "net/convert.h"
 #include "protocol/errors.h"
