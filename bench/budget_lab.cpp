@@ -2,9 +2,9 @@
 // For each model, four views (whole, from near, grazing, from the ground) at 1280 x 720 through a service as
 // `surfcastd render` has it. A row for each error: asked, expected, and true PSNR against the picture of spacing 0, in
 // dB over covered pixels; a row for each time: asked, expected, and what drawing and encoding take at the chosen
-// spacing, the median of three. Then the time of the search over that of the finest picture. The last lines are the
-// shares within the goals: -1.5 to +4 dB, and a quarter of the time; less where the finest level is reached, and more
-// where the answer says so.
+// spacing, the median of three. Then the time of the search over that of the finest picture. The last line has the
+// pictures within the goals: -1.5 to +4 dB, and a quarter of the time, or less at the finest level; and those of which
+// the answer says that they take longer.
 
 #include <cmath>
 #include <cstdio>
@@ -95,6 +95,7 @@ class Lab {
 
   static Share errors;
   static Share times;
+  static int said_longer;
 
  private:
   [[nodiscard]] service::PictureJob job() const {
@@ -144,8 +145,8 @@ class Lab {
     for (int i = 0; i < 3; ++i) rounds.push_back(drawing_and_encoding_ms(draw_at(picture.spacing)));
     const double found = bench::median(rounds);
     const bool good = found < 1.25 * asked && (found > 0.75 * asked || picture.spacing == 0);
-    const bool cannot = picture.expected_ms > 1.25 * asked;
-    times.count(good || cannot);
+    times.count(good);
+    said_longer += int{!good && picture.expected_ms > 1.25 * asked};
     print(view, "ms", asked, picture.expected_ms, found, good, picture, finest);
   }
 
@@ -157,6 +158,7 @@ class Lab {
 
 Share Lab::errors;
 Share Lab::times;
+int Lab::said_longer = 0;
 
 }  // namespace
 
@@ -165,6 +167,7 @@ int main(int argc, char** argv) {
       "| model | view | asked | expected | true | met | spacing | search / finest "
       "|\n|---|---|---|---|---|---|---|---|\n");
   for (int i = 1; i < argc; ++i) Lab(argv[i]).run();
-  std::printf("errors: %d of %d, times: %d of %d\n", Lab::errors.met, Lab::errors.all, Lab::times.met, Lab::times.all);
+  std::printf("errors: %d of %d, times: %d of %d, and %d that were said to take longer\n", Lab::errors.met,
+              Lab::errors.all, Lab::times.met, Lab::times.all, Lab::said_longer);
   return 0;
 }

@@ -182,7 +182,7 @@ void store_row(ivec2 at, Row row, bool finished) {
 #ifdef SURFCAST_KEEPS
     if (finished) continue;
 #endif
-    vec4 behind = behind_gaussians(pixel, row.passed[x]);
+    vec4 behind = finished ? behind_gaussians(pixel, row.passed[x]) : vec4(0.0);
     if (finished) write_codes_before(pixel, color, abs(row.clear[x]), behind);
 #ifdef SURFCAST_KEEPS_FRONTS
     float through = row.clear[x] * behind.a;

@@ -261,7 +261,7 @@ void end_pixel(Pixel pixel, ivec2 at, bool finished) {
 #endif
 #ifdef SURFCAST_LAYERS
 #ifndef SURFCAST_KEEPS
-  vec4 behind = behind_gaussians(at, pixel.passed);
+  vec4 behind = finished ? behind_gaussians(at, pixel.passed) : vec4(0.0);
   if (finished) write_codes_before(at, state.rgb, abs(state.a), behind);
 #ifdef SURFCAST_KEEPS_FRONTS
   if (finished) {
