@@ -81,6 +81,16 @@ TEST(CameraForecastTest, IsBounded) {
   expect_same(forecast.at(now + std::chrono::hours(1), now), forecast.at(now + CameraForecast::kFarthest, now), 1e-12);
 }
 
+TEST(CameraForecastTest, IsBoundedWhereTwoCamerasArriveAtOnce) {
+  CameraForecast forecast;
+  const ViewTime start{};
+  forecast.record(orbiting(0), start);
+  forecast.record(orbiting(0.01), start + std::chrono::microseconds(10));
+  expect_same(forecast.at(start + milliseconds(66), start), orbiting(0.03), 1e-4);
+  EXPECT_LT(glm::distance(forecast.at(start + CameraForecast::kFarthest, start).position, orbiting(0.1).position),
+            0.01);
+}
+
 TEST(CameraForecastTest, ForgetsWhatWasBeforeThePresentMotion) {
   CameraForecast forecast;
   const ViewTime start{};
