@@ -87,7 +87,7 @@ layout::FrameConstants frame_constants(const geometry::CameraFrame& frame, const
                static_cast<float>(surfel::kRadiusOverSpacing * request.spacing / frame.eta)};
   c.background = {decode_srgb(request.background.r), decode_srgb(request.background.g),
                   decode_srgb(request.background.b), static_cast<float>(request.opacity)};
-  c.flags = {surfels.oriented ? 1 : 0, per_surfel ? 1 : 0, 0, 0};
+  c.flags = {surfels.oriented ? 1 : 0, per_surfel ? 1 : 0, surfels.even ? 1 : 0, 0};
   return c;
 }
 

@@ -70,10 +70,11 @@ Rows surface_at_first(Light light) {
 }
 
 // Blends a surface behind those drawn so far. False if no surface behind it can be visible.
-bool composite_columns(inout LightColumns light, ColumnSums sums, Columns surface, float one, vec2 pixel) {
+bool composite_columns(inout LightColumns light, ColumnSums sums, Columns before, Columns surface, float one,
+                       vec2 pixel) {
   bool more = false;
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
-    composite(light[c], sums[c], surface[c], one, column(pixel, c), c);
+    composite(light[c], sums[c], before[c], surface[c], one, column(pixel, c), c);
     more = more || any_of(both(less(Rows(0.0), surface[c]), less(Rows(kOpaque), light[c].transmittance)));
   }
   keep_layers(pixel);
@@ -111,8 +112,9 @@ bool draw_front(TileLists tile, vec2 pixel, inout Columns limit, inout LightColu
   uint smalls = find_surface_small(tile.first_small, tile.smalls, pixel, limit, surface, peak);
   float unit = fixed_unit(peak);
   accumulate_and_mark(tile.first_small, smalls, tile.smalls, pixel, limit, surface, unit, sums);
+  Columns before = limit;
   limit = surface;
-  return composite_columns(light, sums, surface, 1.0 / unit, pixel);
+  return composite_columns(light, sums, before, surface, 1.0 / unit, pixel);
 }
 
 // Draws the nearest surface behind `limit`, which becomes the new limit. False if no surface behind it can be visible.
@@ -128,8 +130,9 @@ bool draw_behind(TileLists tile, vec2 pixel, inout Columns limit, inout LightCol
   uint smalls = find_surface_marked(tile.first_small, tile.smalls, pixel, limit, surface, peak);
   float unit = fixed_unit(peak);
   accumulate_marked(tile.first_small, smalls, pixel, limit, surface, unit, sums);
+  Columns before = limit;
   limit = surface;
-  return composite_columns(light, sums, surface, 1.0 / unit, pixel);
+  return composite_columns(light, sums, before, surface, 1.0 / unit, pixel);
 }
 #else
 // Draws the nearest surface behind `limit`, which becomes the new limit. False if no surface behind it can be visible.
@@ -160,8 +163,9 @@ bool draw_layer(TileLists tile, int layer, vec2 pixel, inout Columns limit, inou
 #ifdef SURFCAST_LARGE
   accumulate_large(tile.first_large, tile.larges, 0u, 1u, pixel, limit, surface, unit, sums);
 #endif
+  Columns before = limit;
   limit = surface;
-  return composite_columns(light, sums, surface, 1.0 / unit, pixel);
+  return composite_columns(light, sums, before, surface, 1.0 / unit, pixel);
 }
 
 // Draws the first `wanted` columns of a lane.

@@ -152,12 +152,12 @@ Columns draw_layer(TileLists tile, bool first, uint words, vec2 pixel, inout Col
   float unit = fixed_unit(found.peak);
   accumulate_selected(tile, words, pixel, limit, found, last, unit, sums);
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
-    composite(light[c], sums.front[c], found.surface[c], 1.0 / unit, column(pixel, c), c);
+    composite(light[c], sums.front[c], limit[c], found.surface[c], 1.0 / unit, column(pixel, c), c);
   }
   keep_layers(pixel);
 #ifdef SURFCAST_DRAWS_REST
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
-    composite(light[c], sums.rest[c], Rows(0.0), 1.0 / unit, column(pixel, c), c);
+    composite(light[c], sums.rest[c], found.surface[c], Rows(0.0), 1.0 / unit, column(pixel, c), c);
   }
   keep_layers(pixel);
 #endif

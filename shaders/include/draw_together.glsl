@@ -119,7 +119,7 @@ bool draw_layer_together(TileLists tile, vec2 pixel, inout bool drawing, inout C
   accumulate_large(tile.first_large, tile.larges, own_share(), kShares, pixel, limit, surface, unit, sums);
 #endif
   share_sums(sums);
-  if (drawing) drawing = composite_columns(light, sums, surface, 1.0 / unit, pixel);
+  if (drawing) drawing = composite_columns(light, sums, limit, surface, 1.0 / unit, pixel);
   limit = surface;
   if (drawing) shared_more = 1u;
   barrier();

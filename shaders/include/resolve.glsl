@@ -43,14 +43,24 @@ Rows headlight(Rows nx, Rows ny, Rows nz, vec2 pixel) {
   return kAmbient + (1.0 - kAmbient) * min(along * inversesqrt(max(lengths, Rows(1e-12))), Rows(1.0));
 }
 
-// Blends one layer behind the layers drawn so far. `surface` is the inverse depth of its opaque discs, pushed back.
+// The share of the pixel in which a layer of this coverage is seen. Layers cover a pixel independently, so that their
+// transmittances multiply. Faces that meet at an edge do not: one covers what the other leaves.
+Rows seen_coverage(Rows transmittance, Rows coverage, Rows before, Rows surface) {
+  Rows seen = transmittance * coverage;
+  if (frame.flags.z == 0) return seen;
+  BoolRows adjacent = less((before - surface) * eta(), SURFCAST_ADJACENT_PIXELS * surface);
+  return mix(seen, min(coverage, transmittance), adjacent);
+}
+
+// Blends one layer behind the layers drawn so far. `surface` is the inverse depth of its opaque discs, pushed back, and
+// `before` that of the layer in front of it.
 // `one` is the weight of an integer unit of the sums. `pixel` is the first one of column c.
-void composite(inout Light light, PixelSums sums, Rows surface, float one, vec2 pixel, int c) {
+void composite(inout Light light, PixelSums sums, Rows before, Rows surface, float one, vec2 pixel, int c) {
   Rows weight = fixed_value(sums.weight);
   Rows share = 1.0 / max(weight, Rows(1.0));
   Rows coverage = min(weight * (one / float(SURFCAST_COVERAGE_MAGNIFIED)), Rows(1.0));
-  Rows seen = light.transmittance * coverage;
-  light.transmittance *= 1.0 - coverage;
+  Rows seen = seen_coverage(light.transmittance, coverage, before, surface);
+  light.transmittance -= seen;
 #ifdef SURFCAST_EYE_DOME
   // The mean inverse depth of the layer's fragments is affine on the screen where the surface is plane.
   Rows inverse_depth = surface * (1.0 + kReliefRange * fixed_value(sums.relief) * share);

@@ -52,7 +52,7 @@ struct FrameConstants {
   SURFCAST_VEC4 filter_;     // prefilter variance, visibility prefilter variance (pixels squared), factor of every
                              // surfel's weight, surfel radius of the requested spacing at distance 1 on the view axis
   SURFCAST_VEC4 background;  // linear light; w: factor of the opacities of Gaussians
-  SURFCAST_IVEC4 flags;      // x: cull back faces, y: per-surfel weights
+  SURFCAST_IVEC4 flags;      // x: cull back faces, y: per-surfel weights, z: faces that meet add their coverages
   SURFCAST_IVEC4 slices;     // depth slices of a tile's list, see include/depth_slices.glsl: x: number, y: bits of the
                              // inverse depth at which the second level begins, z: bits of the levels per step of these
 };
