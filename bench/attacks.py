@@ -25,6 +25,9 @@ UPGRADE = ("Upgrade: websocket\r\nConnection: Upgrade\r\nSec-WebSocket-Version: 
            "Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Protocol: surfcast.v1\r\n")
 
 
+PICTURE_MEMORY = 256  # MiB
+
+
 class Target:
     """A running server."""
 
@@ -209,6 +212,24 @@ def moving_views(target):
         f"{max(victim.pictures):.2f} s, p95 {p95(victim.pictures):.2f}, bound {bound:.2f}; refused {victim.refused}")
 
 
+def silent_views(target):
+    """Views at rest that acknowledge nothing. Memory counts in the server: the worker that draws has its own."""
+    before = target.memory()
+    sessions = [wire.Session(target.connect()) for _ in range(3)]
+    for session in sessions:
+        for view in range(1, 9):
+            picture = wire.picture(target.model, 3840, 2160)
+            session.send(view, wire.OPEN_VIEW, wire.field(1, picture))
+    most, end = before, time.monotonic() + 40
+    while time.monotonic() < end:
+        time.sleep(0.2)
+        most = max(most, target.memory())
+    for session in sessions:
+        session.connection.close()
+    return most - before < 1.1 * PICTURE_MEMORY, (
+        f"3 connections with 8 silent views of 3840 x 2160 each: memory {before}, at most {most} MiB")
+
+
 def rebinding(target):
     name = "attacker.example"
     wrong = [status(target.get("/api/models", host=name)), status(target.get("/metrics", host=name)),
@@ -259,7 +280,7 @@ def vanishing_clients(target):
     return status(answer) == 200, f"50 orders of clients that are gone: another's picture after {seconds:.2f} s"
 
 
-ATTACKS = [all_connections, unread_answers, nonsense, largest_pictures, moving_views, rebinding, smuggling,
+ATTACKS = [all_connections, unread_answers, nonsense, largest_pictures, moving_views, silent_views, rebinding, smuggling,
            slow_requests, wide_picks, vanishing_clients]
 
 
@@ -270,7 +291,7 @@ def main():
     parser.add_argument("--only", nargs="*", default=[attack.__name__ for attack in ATTACKS])
     parser.add_argument("--json", help="write the results to this file")
     arguments = parser.parse_args()
-    target = Target(arguments.program, arguments.model, [])
+    target = Target(arguments.program, arguments.model, ["--picture-memory", f"{PICTURE_MEMORY}M"])
     target.picture()  # what happens once has happened
     results = []
     for attack in ATTACKS:

@@ -30,12 +30,28 @@ void RenderService::State::encode_one(const JobPointer& job, Result<SharedFrame>
     share->shrink(result->bytes.size());
     result->memory = share;
   }
+  if (result) count_kept_frame(*job, *result);
   {
     const std::lock_guard lock(mutex);
     --(job->small ? small_in_encoding : in_encoding[static_cast<size_t>(job->picture.priority)]);
   }
   wake.notify_one();
   finish(job, std::move(result));
+}
+
+/// The pixels of a kept frame count until it is released. It is not kept where they leave no room for another picture
+/// like it: its client may hold it for as long as it answers nothing.
+void RenderService::State::count_kept_frame(const RenderJob& job, EncodedPicture& picture) const {
+  struct Kept {
+    SharedFrame frame;
+    std::shared_ptr<PictureMemory::Share> share;
+  };
+  const SharedFrame frame = std::exchange(picture.frame, nullptr);
+  if (!frame) return;
+  const size_t bytes = frame->image.pixels.size();
+  if (!memory->fits(job.asker.client, bytes + memory_of(job.picture))) return;
+  const auto kept = std::make_shared<const Kept>(Kept{frame, memory->take(job.asker.client, bytes)});
+  picture.frame = {kept, kept->frame.get()};
 }
 
 size_t RenderService::State::picture_memory_limit(const ServiceLimits& limits) {

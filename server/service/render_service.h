@@ -56,7 +56,7 @@ struct PictureJob {
   picture::ChannelSet channels;  ///< of the file beside colours; only of EXR and of still pictures
   Priority priority = Priority::kStill;
   JobId supersedes = 0;     ///< a job whose picture is obsolete once this one is drawn; 0: none
-  bool keep_frame = false;  ///< return the frame with the picture
+  bool keep_frame = false;  ///< return the frame with the picture, if there is memory for it
   /// Of a motion picture with 8 bits a channel: it becomes a packet of this video, or a file in `format` if it cannot.
   std::optional<VideoJob> video;
 };

@@ -69,6 +69,7 @@ struct RenderService::State {
 
   // Pool.
   void encode_one(const JobPointer& job, Result<SharedFrame> frame);
+  void count_kept_frame(const RenderJob& job, EncodedPicture& picture) const;
 
   // Any thread.
   [[nodiscard]] Status check(const PictureJob& picture) const;

@@ -79,6 +79,26 @@ TEST_F(FairnessTest, PicturesThatNobodyTakesHoldUpLargeOnesButNotSmallOnes) {
   EXPECT_TRUE(waits.get());
 }
 
+TEST_F(FairnessTest, FramesThatAreKeptCountAsPicturesAndAreDroppedWhereThereIsNoRoom) {
+  start({.picture_memory = size_t{40} << 20});  // a client has 20 MiB
+  PictureJob job = large("cube");               // 4 MiB of pixels, 8 to draw it and the next one
+  job.format = picture::FileFormat::kJpeg;
+  job.keep_frame = true;
+  std::vector<Result<EncodedPicture>> kept;
+  for (JobId id = 1; id <= 4; ++id) kept.push_back(draw({7, id}, job).second.get());
+  for (const auto& picture : kept) ASSERT_TRUE(picture);
+  EXPECT_TRUE(kept[0]->frame);
+  EXPECT_TRUE(kept[1]->frame);
+  EXPECT_FALSE(kept[2]->frame);
+  EXPECT_FALSE(kept[3]->frame);
+  EXPECT_GE(service_->picture_memory(), size_t{8} << 20);
+  kept.push_back(draw({8, 5}, job).second.get());
+  ASSERT_TRUE(kept.back());
+  EXPECT_TRUE(kept.back()->frame) << "another client has room";
+  kept.clear();
+  while (service_->picture_memory() > 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+}
+
 TEST_F(FairnessTest, ChannelsWaitForMemoryBeforeTheirSurfaceIsLookedFor) {
   start({.picture_memory = size_t{16} << 20});
   Result<EncodedPicture> kept = draw({7, 1}, large("noise")).second.get();
