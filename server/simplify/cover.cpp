@@ -58,7 +58,7 @@ void cover_level(const SampledSurface& surface, const Growth& growth, size_t lev
                    [](const Patch& a, const Patch& b) { return a.reach > b.reach; });
   const size_t least = level + 1 < kCandidates.size() ? kWorthTaking * stride : 0;
   for (const Patch& patch : candidates) {
-    if (!chosen.covered(patch.sample) && patch.samples >= least) chosen.take(patch, scratch);
+    if (!chosen.covered(patch.sample) && patch.samples >= least) chosen.take(growth.settle(patch, scratch), scratch);
   }
 }
 
@@ -93,7 +93,7 @@ Cover cover(const SampledSurface& surface, const ErrorBound& bound) {
   Scratch scratch;
   for (size_t level = 0; level < kCandidates.size(); ++level) cover_level(surface, growth, level, chosen, scratch);
   for (uint32_t sample = 0; sample < surface.size(); ++sample) {
-    if (!chosen.covered(sample)) chosen.take(growth.grow(sample, scratch), scratch);
+    if (!chosen.covered(sample)) chosen.take(growth.settle(growth.grow(sample, scratch), scratch), scratch);
   }
   return chosen;
 }

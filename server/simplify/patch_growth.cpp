@@ -34,6 +34,8 @@ constexpr size_t kRingSamples = 60;
 /// Steps without enough samples for a fit, of places sampled sparsely.
 constexpr int kSparseSteps = 4;
 constexpr int kMostSteps = 40;
+/// While a neighbourhood grows, about so many of its samples speak for all. Where it is taken, all are asked.
+constexpr size_t kSpeaking = 1024;
 
 Limits limits_of(const ErrorBound& bound, double reach) {
   const double angle = bound.degrees * std::numbers::pi / 180;
@@ -91,28 +93,58 @@ std::optional<Residual> Noise::smallest(uint32_t sample, Scratch& scratch) const
   return fit ? std::optional(residual_of(*fit, scratch.samples, surface_.oriented())) : std::nullopt;
 }
 
+std::optional<Patch> Growth::fit(uint32_t sample, double reach, const Limits& noise, Scratch& scratch) const {
+  surface_.load_samples(scratch);
+  const auto fit = fit_surface(surface_.position(sample), scratch.samples, surface_.oriented());
+  if (!fit || fit->curvature.largest() * reach > kMostBent) return std::nullopt;
+  const Residual residual = residual_of(*fit, scratch.samples, surface_.oriented());
+  const Limits limits = limits_of(bound_, reach);
+  const double spread = 1 + 1 / std::sqrt(static_cast<double>(scratch.samples.size()));
+  const Limits allowed{std::max(limits.angle, spread * noise.angle), std::max(limits.height, spread * noise.height)};
+  if (!allowed.hold(residual) || ends_within(surface_, *fit, reach, scratch.near)) return std::nullopt;
+  return Patch{sample, reach, *fit, residual, scratch.near.size()};
+}
+
 Patch Growth::grow(uint32_t sample, Scratch& scratch) const {
   Patch best;
   best.sample = sample;
   double reach = kFirstReach * surface_.radius(sample);
   const Limits noise = noise_.around(sample, scratch);
+  uint32_t stride = 1;
+  size_t before = 0;  // samples of the last step with this stride
   for (int step = 0; step < kMostSteps; ++step, reach *= kGrowth) {
-    surface_.sheet(surface_.position(sample), surface_.normal(sample), reach, scratch.near);
-    if (best.reach == 0 && step < kSparseSteps && scratch.near.size() < kFirstSamples) continue;
-    surface_.load_samples(scratch);
-    const auto fit = fit_surface(surface_.position(sample), scratch.samples, surface_.oriented());
-    if (!fit || fit->curvature.largest() * reach > kMostBent) break;
-    const Residual residual = residual_of(*fit, scratch.samples, surface_.oriented());
-    const Limits limits = limits_of(bound_, reach);
-    const double spread = 1 + 1 / std::sqrt(static_cast<double>(scratch.samples.size()));
-    const Limits allowed{std::max(limits.angle, spread * noise.angle), std::max(limits.height, spread * noise.height)};
-    if (!allowed.hold(residual) || ends_within(surface_, *fit, reach, scratch.near)) break;
-    const bool whole = scratch.near.size() == best.samples;  // nothing is left to grow into
-    best = {sample, reach, *fit, residual, scratch.near.size()};
-    if (whole) break;
+    surface_.sheet(surface_.position(sample), surface_.normal(sample), reach, scratch.near, stride);
+    const size_t samples = scratch.near.size();
+    if (best.reach == 0 && step < kSparseSteps && samples < kFirstSamples) continue;
+    const std::optional<Patch> next = fit(sample, reach, noise, scratch);
+    if (!next) break;
+    best = *next;
+    best.samples = samples * stride;
+    if (samples == before) break;  // nothing is left to grow into
+    const bool enough = samples > kSpeaking;
+    stride *= enough ? 2 : 1;
+    before = enough ? 0 : samples;
   }
-  if (best.reach > 0) judge(scratch, best);
   return best;
+}
+
+Patch Growth::settle(const Patch& grown, Scratch& scratch) const {
+  if (grown.reach == 0) return grown;
+  Patch patch = grown;
+  if (patch.samples > kSpeaking) patch = shrunk_to_bound(patch, noise_.around(patch.sample, scratch), scratch);
+  if (patch.reach > 0) judge(scratch, patch);
+  return patch;
+}
+
+/// The widest neighbourhood, from that of the patch on, all samples of which keep the bound.
+Patch Growth::shrunk_to_bound(const Patch& patch, const Limits& noise, Scratch& scratch) const {
+  for (double reach = patch.reach; reach >= 0.99 * kFirstReach * surface_.radius(patch.sample); reach /= kGrowth) {
+    surface_.sheet(surface_.position(patch.sample), surface_.normal(patch.sample), reach, scratch.near);
+    if (const std::optional<Patch> kept = fit(patch.sample, reach, noise, scratch)) return *kept;
+  }
+  Patch none;
+  none.sample = patch.sample;
+  return none;
 }
 
 /// Decides whether the patch needs its curvature.

@@ -53,8 +53,13 @@ class Growth {
   Growth(const SampledSurface& surface, const ErrorBound& bound) : surface_(surface), bound_(bound), noise_(surface) {}
 
   [[nodiscard]] Patch grow(uint32_t sample, Scratch& scratch) const;
+  /// The patch that has grown, made as much smaller as all of its samples ask for, with its flags. While a patch grows,
+  /// some of its samples speak for all.
+  [[nodiscard]] Patch settle(const Patch& grown, Scratch& scratch) const;
 
  private:
+  std::optional<Patch> fit(uint32_t sample, double reach, const Limits& noise, Scratch& scratch) const;
+  Patch shrunk_to_bound(const Patch& patch, const Limits& noise, Scratch& scratch) const;
   void judge(Scratch& scratch, Patch& patch) const;
 
   const SampledSurface& surface_;

@@ -49,20 +49,21 @@ void PointTree::split(uint32_t number) {
   nodes_.push_back({middle, end});
 }
 
-void PointTree::within(const glm::dvec3& centre, double radius, std::vector<Near>& found) const {
+void PointTree::within(const glm::dvec3& centre, double radius, std::vector<Near>& found, uint32_t stride) const {
   found.clear();
+  const uint32_t leaf = kLeaf / 2 * stride;  // has about as many points of the stride as a leaf has points
   const double square = radius * radius;
   std::array<uint32_t, 128> waiting{};  // a path of halvings has at most 32 nodes, with one beside each
   size_t count = 1;
   while (count > 0) {
     const Node& node = nodes_[waiting.at(--count)];
     if (node.first == node.end || squared_distance(centre, node.low, node.high) > square) continue;
-    if (node.children != 0) {
+    if (node.children != 0 && node.end - node.first > leaf) {
       waiting.at(count++) = node.children + 1;
       waiting.at(count++) = node.children;
       continue;
     }
-    for (uint32_t i = node.first; i < node.end; ++i) {
+    for (uint32_t i = (node.first + stride - 1) / stride * stride; i < node.end; i += stride) {
       const glm::dvec3 d = points_[order_[i]] - centre;
       if (glm::dot(d, d) <= square) found.push_back({order_[i], glm::dot(d, d)});
     }

@@ -20,8 +20,9 @@ class PointTree {
   /// The points must outlive the tree.
   explicit PointTree(std::span<const glm::dvec3> points);
 
-  /// Replaces `found` by the points within `radius` of `centre`, in a fixed order.
-  void within(const glm::dvec3& centre, double radius, std::vector<Near>& found) const;
+  /// Replaces `found` by the points within `radius` of `centre`, in a fixed order; with a stride by one in so many of
+  /// them, evenly spread.
+  void within(const glm::dvec3& centre, double radius, std::vector<Near>& found, uint32_t stride = 1) const;
 
  private:
   static constexpr uint32_t kLeaf = 16;

@@ -25,9 +25,9 @@ bool SampledSurface::same_sheet(const glm::dvec3& a, const glm::dvec3& b) const 
   return (oriented() ? cosine : std::abs(cosine)) >= kSameSheet;
 }
 
-void SampledSurface::sheet(const glm::dvec3& centre, const glm::dvec3& normal, double reach,
-                           std::vector<Near>& near) const {
-  tree_->within(centre, reach, near);
+void SampledSurface::sheet(const glm::dvec3& centre, const glm::dvec3& normal, double reach, std::vector<Near>& near,
+                           uint32_t stride) const {
+  tree_->within(centre, reach, near, stride);
   std::erase_if(near, [&](const Near& n) { return !same_sheet(normal, this->normal(n.point)); });
 }
 

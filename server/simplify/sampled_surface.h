@@ -31,8 +31,9 @@ class SampledSurface {
   [[nodiscard]] double radius(uint32_t sample) const { return cloud_.radii[rows_[sample]]; }
   [[nodiscard]] bool oriented() const { return cloud_.oriented; }
 
-  /// The samples of the sheet of `normal` within a ball.
-  void sheet(const glm::dvec3& centre, const glm::dvec3& normal, double reach, std::vector<Near>& near) const;
+  /// The samples of the sheet of `normal` within a ball, or one in `stride` of them.
+  void sheet(const glm::dvec3& centre, const glm::dvec3& normal, double reach, std::vector<Near>& near,
+             uint32_t stride = 1) const;
   /// Replaces the samples of `scratch` by those that are near.
   void load_samples(Scratch& scratch) const;
 

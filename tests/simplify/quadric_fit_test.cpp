@@ -177,5 +177,28 @@ TEST(PointTree, FindsWhatASearchOfAllPointsFinds) {
   }
 }
 
+TEST(PointTree, OfAStrideFindsEveryQuarterOfTheBallAlike) {
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> place(-1, 1);
+  std::vector<glm::dvec3> points(100000);
+  for (glm::dvec3& p : points) p = {place(random), place(random), 0};
+  const PointTree tree(points);
+  std::vector<Near> all;
+  std::vector<Near> some;
+  const glm::dvec3 centre(0.1, -0.2, 0);
+  for (const uint32_t stride : {2U, 16U, 64U}) {
+    tree.within(centre, 0.7, all);
+    tree.within(centre, 0.7, some, stride);
+    std::array<size_t, 4> quarters{};
+    for (const Near& n : some) {
+      const glm::dvec3 d = points[n.point] - centre;
+      EXPECT_LE(glm::dot(d, d), 0.49);
+      ++quarters.at((d.x > 0 ? 1 : 0) + (d.y > 0 ? 2 : 0));
+    }
+    const double expected = static_cast<double>(all.size()) / (4 * stride);
+    for (const size_t count : quarters) EXPECT_NEAR(static_cast<double>(count), expected, 0.1 * expected + 8);
+  }
+}
+
 }  // namespace
 }  // namespace surfcast::simplify
