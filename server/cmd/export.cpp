@@ -26,6 +26,7 @@ Status export_points(ExportCommand& command) {
   const Result<uint64_t> budget = builder::memory_budget(builder::parse_memory_size(command.memory));
   if (!budget) return fail(budget.error());
   command.options.limit = scan::DecodingLimit{*budget / 4};
+  command.options.octree.memory = *budget / 2;
   const auto report = exporter::export_scan(command.source, command.output, command.options);
   if (!report) return fail(report.error());
   for (const std::string& note : report->notes) spdlog::warn("{}: {}", command.source.string(), note);
