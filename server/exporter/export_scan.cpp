@@ -63,6 +63,7 @@ struct TargetForm {
 /// The form of a file, by its name.
 Result<TargetForm> form_of(const fs::path& target) {
   const std::string extension = extension_of(target);
+  if (target.filename() == "ept.json") return TargetForm{PointFormat::kLaz, OctreeForm::kEpt};
   if (extension == ".laz" && extension_of(target.stem()) == ".copc")
     return TargetForm{PointFormat::kLaz, OctreeForm::kCopc};
   if (!extension.empty()) {
@@ -70,8 +71,9 @@ Result<TargetForm> form_of(const fs::path& target) {
   }
   std::string names;
   for (const auto& [name, format] : kPointFormats) names += (names.empty() ? "." : ", .") + std::string(name);
-  return fail(ErrorKind::kUnsupported,
-              target.string() + ": its extension names none of the formats that are written: " + names + ", .copc.laz");
+  return fail(ErrorKind::kUnsupported, target.string() +
+                                           ": its extension names none of the formats that are written: " + names +
+                                           ", .copc.laz, ept.json");
 }
 
 bool is_las(PointFormat format) {

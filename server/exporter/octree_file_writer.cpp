@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "exporter/copc_file.h"
+#include "exporter/ept_folder.h"
 #include "exporter/las_bytes.h"
 #include "scan/scalar_type.h"
 
@@ -64,10 +65,13 @@ class OctreeFileWriter : public RecordWriter {
 Result<std::unique_ptr<RecordWriter>> create_octree_file(const std::filesystem::path& target, LasHead head,
                                                          OctreeForm form, const OctreeOptions& options) {
   const uint64_t batch = options.memory / 8;
-  Result<std::unique_ptr<NodeBatch>> nodes = create_copc(target, head, batch, options.page_entries);
-  (void)form;
+  const bool ept = form == OctreeForm::kEpt;
+  Result<std::unique_ptr<NodeBatch>> nodes = ept ? create_ept(target, head, batch, options.page_entries)
+                                                 : create_copc(target, head, batch, options.page_entries);
   if (!nodes) return fail(std::move(nodes.error()));
-  return std::make_unique<OctreeFileWriter>(target, std::move(head), std::move(*nodes), options);
+  // Temporary files of a folder lie beside it.
+  return std::make_unique<OctreeFileWriter>(ept ? target.parent_path() : target, std::move(head), std::move(*nodes),
+                                            options);
 }
 
 }  // namespace surfcast::exporter
