@@ -183,7 +183,7 @@ class EptFolder : public NodeBatch {
       Json json = Json::object();
       for (const size_t i : page.nodes) json[name_of(keys_[i])] = points_[i];
       for (const size_t i : page.subpages) json[name_of(keys_[pages[i].nodes.front()])] = -1;
-      const Status status = write_text("ept-hierarchy/" + name_of(keys_[page.nodes.front()]) + ".json", json.dump());
+      Status status = write_text("ept-hierarchy/" + name_of(keys_[page.nodes.front()]) + ".json", json.dump());
       if (!status) return status;
     }
     return {};

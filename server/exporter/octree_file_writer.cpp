@@ -7,7 +7,7 @@
 
 #include "exporter/copc_file.h"
 #include "exporter/ept_folder.h"
-#include "exporter/las_bytes.h"
+#include "exporter/record_places.h"
 #include "scan/scalar_type.h"
 
 namespace surfcast::exporter {

@@ -1,11 +1,8 @@
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
-#include <glm/vec3.hpp>
-#include <span>
 #include <vector>
 
 #include "base/result.h"
@@ -30,23 +27,19 @@ class NodeWriter {
 };
 
 struct OctreeOptions {
-  uint64_t leaf_points = 50000;   ///< cells with at most as many points are not divided
+  uint64_t leaf_points = 50000;   ///< cells with at most as many points, or 15, are not divided
   uint64_t memory = 1ULL << 30;   ///< bytes for points
   size_t page_entries = 1 << 15;  ///< most nodes of a page of the hierarchy, see make_pages
 };
-
-/// The least cube with the lowest corner of the points that holds all of them, within its faces. The points must be
-/// there already; records are those of LAS, with the scale and offset of the head.
-geometry::RootCube cube_of(const LasHead& head, const LasCounts& counts);
 
 /// The deepest nodes. What is in one of them is a 2^-14 part of the cube wide.
 inline constexpr int kDeepestNode = 14;
 
 /// Divides point records of LAS among the nodes of an octree. The points in the cell of a node that are in it or in one
-/// above are an even sample (even_sample.h) of those that are in it or one of its children or above, within the cell:
-/// at its faces they may be closer to those of its neighbours. Nodes whose cells have at most `leaf_points` points, or
-/// points in one place alone, and those of depth kDeepestNode have no children. The nodes and their order depend on the
-/// points alone: not on the order of these, on memory or on the number of threads.
+/// above are an even sample (even_sample.h, node_sample.h) of those that are in it or one of its children or above,
+/// within the cell: at its faces they may be closer to those of its neighbours. Nodes whose cells have at most
+/// `leaf_points` points, or points in one place alone, and those of depth kDeepestNode have no children. The nodes and
+/// their order depend on the points alone: not on the order of these, on memory or on the number of threads.
 ///
 /// Records are sorted in memory if a quarter of it holds them, and part by part otherwise, from a temporary file beside
 /// the target. Sorting takes as much again and the keys of the points. A cell of depth kDeepestNode is always a part.

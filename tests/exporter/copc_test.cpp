@@ -232,6 +232,14 @@ TEST_F(CopcTest, NodesMayBeOfAFewPoints) {
   expect_octree(copc);
 }
 
+TEST_F(CopcTest, ScalesMayBeNegative) {
+  LasFile file = hills(6, 2000);
+  file.scale[0] = -0.01;
+  const CopcContent copc = exported(write("scan.las", file.text()));
+  EXPECT_EQ(copc.records(), sorted(file.records));
+  expect_octree(copc);
+}
+
 TEST_F(CopcTest, OnePointIsAScan) {
   const LasFile file = hills(7, 1);
   const CopcContent copc = exported(write("scan.las", file.text()));
