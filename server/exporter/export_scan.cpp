@@ -111,8 +111,7 @@ Result<ExportReport> copy_records(const fs::path& source, const fs::path& target
   const int point_format = copy.head.point_format;
   const size_t record_bytes = copy.head.record_length;
   if (form.octree) {
-    std::string note = become_version_14(copy.head, records->header().crs);
-    if (!note.empty()) copy.notes.push_back(std::move(note));
+    for (std::string& note : become_version_14(copy.head, records->header().crs)) copy.notes.push_back(std::move(note));
   }
   const Result<std::unique_ptr<RecordWriter>> writer = create_records(target, copy.head, form, options);
   if (!writer) return fail(writer.error());
@@ -187,8 +186,9 @@ Result<std::unique_ptr<PointWriter>> create_las(const fs::path& target, LasPoint
   if (!table) return fail(std::move(table.error()));
   if (!points.schema->grid || *points.schema->grid != table->grid)
     notes.push_back("coordinates are rounded to multiples of " + shortest(table->grid.scale.x));
-  std::string note = form.octree ? become_version_14(table->head, points.schema->crs) : std::string();
-  if (!note.empty()) notes.push_back(std::move(note));
+  if (form.octree) {
+    for (std::string& note : become_version_14(table->head, points.schema->crs)) notes.push_back(std::move(note));
+  }
   Result<std::unique_ptr<RecordWriter>> file = create_records(target, table->head, form, options);
   if (!file) return fail(std::move(file.error()));
   return std::make_unique<LasTableWriter>(std::move(*file), std::move(*table));

@@ -14,6 +14,8 @@ namespace {
 constexpr size_t kHeaderBytes14 = 375;
 constexpr size_t kEncodingAt = 6;
 constexpr uint16_t kWktBit = 16;
+constexpr uint16_t kTimeOffsetBit = 64;  // LAS 1.5
+constexpr size_t kTimeOffsetAt = 391;
 constexpr size_t kMinorAt = 25;
 constexpr size_t kHeaderBytesAt = 94;
 constexpr size_t kWaveformStartAt = 227;
@@ -86,19 +88,26 @@ std::vector<std::byte> modern_records(std::vector<std::byte> records, int point_
   return modern;
 }
 
-std::string become_version_14(LasHead& head, const std::string& crs) {
+std::vector<std::string> become_version_14(LasHead& head, const std::string& crs) {
+  std::vector<std::string> notes;
   const int modern = modern_point_format(head.point_format);
   head.record_length += scan::las_record_length(modern) - scan::las_record_length(head.point_format);
   head.point_format = modern;
+  auto encoding = scan::load<uint16_t>(&head.header[kEncodingAt]);
+  if ((encoding & kTimeOffsetBit) != 0 && head.header.size() >= kTimeOffsetAt + sizeof(uint16_t)) {
+    const auto offset = scan::load<uint16_t>(&head.header[kTimeOffsetAt]);
+    notes.push_back("its GPS times begin at " + std::to_string(offset) + " million seconds, which LAS 1.4 cannot say");
+  }
+  encoding &= static_cast<uint16_t>(~kTimeOffsetBit);
   if (scan::load<uint8_t>(&head.header[kMinorAt]) < 3) head.header.resize(kWaveformStartAt);
   head.header.resize(kHeaderBytes14);
   put(head.header, kMinorAt, uint8_t{4});
   put(head.header, kHeaderBytesAt, static_cast<uint16_t>(kHeaderBytes14));
-  const auto encoding = scan::load<uint16_t>(&head.header[kEncodingAt]);
   const bool stated = state_wkt(head, crs);
   if (stated) std::erase_if(head.records, is_geo_key);
   put(head.header, kEncodingAt, static_cast<uint16_t>(stated ? encoding | kWktBit : encoding));
-  return stated || crs.empty() ? std::string() : "its coordinate system is not known and is kept as it is: " + crs;
+  if (!stated && !crs.empty()) notes.push_back("its coordinate system is not known and is kept as it is: " + crs);
+  return notes;
 }
 
 }  // namespace surfcast::exporter

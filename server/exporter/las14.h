@@ -18,8 +18,8 @@ int modern_point_format(int point_format);
 std::vector<std::byte> modern_records(std::vector<std::byte> records, int point_format, size_t record_bytes);
 
 /// Turns a head into one of version 1.4 with point formats 6 to 8, which state their coordinate system as WKT. `crs`:
-/// the system as the source states it. GeoKeys are left out, unless nothing knows their system: returns what is wrong
-/// with it then, for people, and otherwise nothing.
-std::string become_version_14(LasHead& head, const std::string& crs);
+/// the system as the source states it. GeoKeys are left out, unless nothing knows their system. Returns what the file
+/// does not say any more or in the wrong form, for people.
+std::vector<std::string> become_version_14(LasHead& head, const std::string& crs);
 
 }  // namespace surfcast::exporter

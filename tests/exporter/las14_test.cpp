@@ -87,6 +87,24 @@ TEST(Las14Test, GeoKeysBecomeWkt) {
   EXPECT_EQ(wkt.back(), '\0');
 }
 
+TEST(Las14Test, TheTimeOffsetOfVersion15IsSaid) {
+  testing::LasFile file;
+  file.minor = 5;
+  file.format = 6;
+  const std::string text = file.text();
+  LasHead head;
+  const auto bytes = testing::as_bytes(text);
+  head.header.assign(bytes.begin(), bytes.end());
+  head.point_format = 6;
+  head.record_length = 30;
+  put(head.header, 6, uint16_t{64 | 1});
+  put(head.header, 391, uint16_t{1300});
+  EXPECT_THAT(become_version_14(head, ""), ::testing::ElementsAre(HasSubstr("1300 million seconds")));
+  EXPECT_EQ(head.header.size(), 375U);
+  EXPECT_EQ(scan::load<uint8_t>(&head.header[25]), 4);
+  EXPECT_EQ(scan::load<uint16_t>(&head.header[6]), 1);
+}
+
 TEST(Las14Test, WktStaysAsItIs) {
   LasHead head = old_head(1);
   const std::vector<std::byte> record = las_record("LASF_Projection", 2112, std::vector<std::byte>(9));
@@ -100,7 +118,7 @@ TEST(Las14Test, ASystemThatNothingKnowsIsKeptAndSaid) {
   LasHead head = old_head(0);
   const std::vector<std::byte> record = las_record("LASF_Projection", 34735, std::vector<std::byte>(16));
   head.records.push_back(record);
-  EXPECT_THAT(become_version_14(head, "EPSG:65000"), HasSubstr("EPSG:65000"));
+  EXPECT_THAT(become_version_14(head, "EPSG:65000"), ::testing::ElementsAre(HasSubstr("EPSG:65000")));
   EXPECT_THAT(head.records, ::testing::ElementsAre(record));
   EXPECT_EQ(scan::load<uint16_t>(&head.header[6]) & 16, 0);
 }
