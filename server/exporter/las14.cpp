@@ -105,7 +105,9 @@ std::vector<std::string> become_version_14(LasHead& head, const std::string& crs
   put(head.header, kHeaderBytesAt, static_cast<uint16_t>(kHeaderBytes14));
   const bool stated = state_wkt(head, crs);
   if (stated) std::erase_if(head.records, is_geo_key);
-  put(head.header, kEncodingAt, static_cast<uint16_t>(stated ? encoding | kWktBit : encoding));
+  // Point formats from 6 on set the bit even where no system is stated.
+  const bool keyed = std::ranges::any_of(head.records, is_geo_key);
+  put(head.header, kEncodingAt, static_cast<uint16_t>(keyed ? encoding : encoding | kWktBit));
   if (!stated && !crs.empty()) notes.push_back("its coordinate system is not known and is kept as it is: " + crs);
   return notes;
 }

@@ -102,7 +102,7 @@ TEST(Las14Test, TheTimeOffsetOfVersion15IsSaid) {
   EXPECT_THAT(become_version_14(head, ""), ::testing::ElementsAre(HasSubstr("1300 million seconds")));
   EXPECT_EQ(head.header.size(), 375U);
   EXPECT_EQ(scan::load<uint8_t>(&head.header[25]), 4);
-  EXPECT_EQ(scan::load<uint16_t>(&head.header[6]), 1);
+  EXPECT_EQ(scan::load<uint16_t>(&head.header[6]), 16 | 1);
 }
 
 TEST(Las14Test, WktStaysAsItIs) {
