@@ -192,19 +192,26 @@ TEST_F(CopcTest, ADenseSpotInAWideScanFitsIntoLittleMemory) {
   EXPECT_EQ(exported(source, options).text(), whole.text());
 }
 
-TEST_F(CopcTest, PointsOfTheRootKeepTheSpacingThatIsStated) {
+TEST_F(CopcTest, TheRootIsAnEvenSampleOfTheSpacingThatIsStated) {
+  const LasFile file = hills(6, 30000);
   ExportOptions options;
   options.encoding.chunk_size = 2000;
-  const CopcContent copc = exported(write("scan.las", hills(6, 30000).text()), options);
-  const CopcContentNode& root = copc.nodes().front();
-  ASSERT_GT(root.points, 1000);
-  std::vector<glm::dvec3> positions;
-  for (const std::string& record : root.records) positions.push_back(copc.position(record));
-  double least = INFINITY;
-  for (size_t i = 0; i < positions.size(); ++i) {
-    for (size_t j = 0; j < i; ++j) least = std::min(least, glm::distance(positions[i], positions[j]));
+  const CopcContent copc = exported(write("scan.las", file.text()), options);
+  std::vector<glm::dvec3> root;
+  for (const std::string& record : copc.nodes().front().records) root.push_back(copc.position(record));
+  ASSERT_GT(root.size(), 1000U);
+  double least = INFINITY, farthest = 0;
+  for (size_t i = 0; i < root.size(); ++i) {
+    for (size_t j = 0; j < i; ++j) least = std::min(least, glm::distance(root[i], root[j]));
+  }
+  for (size_t i = 0; i < file.records.size(); i += 30) {
+    double nearest = INFINITY;
+    for (const glm::dvec3& point : root)
+      nearest = std::min(nearest, glm::distance(point, copc.position(file.records[i])));
+    farthest = std::max(farthest, nearest);
   }
   EXPECT_GE(least, 0.99999 * copc.spacing());
+  EXPECT_LE(farthest, 2 * copc.spacing());
 }
 
 TEST_F(CopcTest, AZoneReadsWhatAFilterTakes) {
