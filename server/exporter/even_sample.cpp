@@ -1,7 +1,7 @@
 #include "exporter/even_sample.h"
 
 #include <algorithm>
-#include <numeric>
+#include <utility>
 
 namespace surfcast::exporter {
 namespace {
@@ -17,13 +17,11 @@ class EvenSampler {
       : points_(points), last_(size_t{kGridCells} * kGridCells * kGridCells, kNone), before_(points.size()) {}
 
   std::vector<uint32_t> sample() {
-    std::vector<uint32_t> order(points_.size());
-    std::iota(order.begin(), order.end(), 0U);
-    std::ranges::sort(order, [this](uint32_t a, uint32_t b) {
-      return points_[a].hash != points_[b].hash ? points_[a].hash < points_[b].hash : a < b;
-    });
+    std::vector<std::pair<uint64_t, uint32_t>> order(points_.size());
+    for (uint32_t i = 0; i < order.size(); ++i) order[i] = {points_[i].hash, i};
+    std::ranges::sort(order);
     std::vector<uint32_t> chosen;
-    for (const uint32_t point : order) {
+    for (const auto& [hash, point] : order) {
       if (!has_room(points_[point].place)) continue;
       chosen.push_back(point);
       insert(point);
