@@ -44,7 +44,8 @@ Result<wire::PointFormat> format_of(const ExportCommand& command) {
                 command.output + ": give it an extension (las, laz, ply, csv, npy), or --format");
   }
   if (std::filesystem::path(command.output).stem().extension() == ".copc") {
-    return fail(ErrorKind::kUnsupported, command.output + ": COPC is not written; a name without .copc gives LAZ");
+    return fail(ErrorKind::kUnsupported,
+                command.output + ": servers send no COPC, surfcastd export writes it; a name without .copc gives LAZ");
   }
   return protocol::parse_point_format(std::string_view(extension).substr(1));
 }

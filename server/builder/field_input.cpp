@@ -5,7 +5,7 @@
 #include <span>
 #include <utility>
 
-#include "builder/spool_file.h"
+#include "base/spool_file.h"
 #include "grid/open_scan.h"
 #include "scan/scan_stream.h"
 #include "scattered/field_lattice.h"

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "builder/spool_file.h"
+#include "base/spool_file.h"
 #include "builder/spooled_rows.h"
 #include "mesh/mesh_reader.h"
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "base/result.h"
+#include "base/spool_file.h"
 #include "builder/build_inputs.h"
-#include "builder/spool_file.h"
 #include "scan/make_surfels.h"
 #include "scan/scan_schema.h"
 #include "surfel/surfel_cloud.h"

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "base/result.h"
-#include "builder/spool_file.h"
+#include "base/spool_file.h"
 
 namespace surfcast::builder {
 

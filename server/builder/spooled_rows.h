@@ -3,7 +3,7 @@
 #include <memory>
 #include <vector>
 
-#include "builder/spool_file.h"
+#include "base/spool_file.h"
 #include "scan/row_source.h"
 
 namespace surfcast::builder {

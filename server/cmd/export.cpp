@@ -26,6 +26,7 @@ Status export_points(ExportCommand& command) {
   const Result<uint64_t> budget = builder::memory_budget(builder::parse_memory_size(command.memory));
   if (!budget) return fail(budget.error());
   command.options.limit = scan::DecodingLimit{*budget / 4};
+  command.options.octree.memory = *budget / 2;
   const auto report = exporter::export_scan(command.source, command.output, command.options);
   if (!report) return fail(report.error());
   for (const std::string& note : report->notes) spdlog::warn("{}: {}", command.source.string(), note);
@@ -43,8 +44,10 @@ void add_export_command(CLI::App& app, Status& outcome) {
       ->add_option("SCAN", command->source, "Scan: a file, or the folder of a scan in many files; or a model (.surf)")
       ->required();
   export_command
-      ->add_option("--output", command->output,
-                   "File to write; .las, .laz, .ply, .csv or .npy at its end names the format")
+      ->add_option(
+          "--output", command->output,
+          "File to write; .las, .laz, .copc.laz, .ply, .csv or .npy at its end names the format. FOLDER/ept.json "
+          "writes a new folder as EPT")
       ->required();
   add_selection_flags(*export_command, command->options.selection);
   export_command
@@ -52,8 +55,10 @@ void add_export_command(CLI::App& app, Status& outcome) {
                    "Steps of the coordinates of LAS and LAZ, in units of the scan (default: those of the scan)")
       ->check(CLI::PositiveNumber);
   export_command
-      ->add_option("--chunk", command->options.encoding.chunk_size,
-                   "Points in a chunk of LAZ, which is decoded as a whole")
+      ->add_option(
+          "--chunk", command->options.encoding.chunk_size,
+          "Points in a chunk of LAZ, which is decoded as a whole; of COPC and EPT: cells with at most as many are "
+          "not divided")
       ->check(CLI::Range(1U, 1U << 24))
       ->capture_default_str();
   export_command

@@ -11,9 +11,11 @@
 
 #include "base/atomic_file.h"
 #include "base/mapped_file.h"
+#include "exporter/las14.h"
 #include "exporter/las_copy.h"
 #include "exporter/las_table.h"
 #include "exporter/model_points.h"
+#include "exporter/octree_file_writer.h"
 #include "exporter/point_encoder.h"
 #include "exporter/point_writer.h"
 #include "exporter/table_format.h"
@@ -27,6 +29,7 @@ namespace surfcast::exporter {
 namespace {
 
 namespace fs = std::filesystem;
+using Bytes = std::vector<std::byte>;
 
 /// Calls `use` with all pieces in order, which are read by all threads, as many at a time as there are threads.
 template <typename T>
@@ -51,19 +54,26 @@ std::string extension_of(const fs::path& path) {
   return extension;
 }
 
-/// The format of a file, by its extension.
-Result<PointFormat> format_of(const fs::path& target) {
+/// What is written.
+struct TargetForm {
+  PointFormat format = PointFormat::kLaz;
+  std::optional<OctreeForm> octree;  ///< none: points in their order
+};
+
+/// The form of a file, by its name.
+Result<TargetForm> form_of(const fs::path& target) {
   const std::string extension = extension_of(target);
-  if (extension == ".laz" && extension_of(target.stem()) == ".copc") {
-    return fail(ErrorKind::kUnsupported, target.string() + ": COPC is not written; a name without .copc gives LAZ");
-  }
+  if (target.filename() == "ept.json") return TargetForm{PointFormat::kLaz, OctreeForm::kEpt};
+  if (extension == ".laz" && extension_of(target.stem()) == ".copc")
+    return TargetForm{PointFormat::kLaz, OctreeForm::kCopc};
   if (!extension.empty()) {
-    if (const auto format = point_format_of(std::string_view(extension).substr(1))) return *format;
+    if (const auto format = point_format_of(std::string_view(extension).substr(1))) return TargetForm{*format, {}};
   }
   std::string names;
   for (const auto& [name, format] : kPointFormats) names += (names.empty() ? "." : ", .") + std::string(name);
-  return fail(ErrorKind::kUnsupported,
-              target.string() + ": its extension names none of the formats that are written: " + names);
+  return fail(ErrorKind::kUnsupported, target.string() +
+                                           ": its extension names none of the formats that are written: " + names +
+                                           ", .copc.laz, ept.json");
 }
 
 bool is_las(PointFormat format) {
@@ -80,22 +90,42 @@ Result<bool> holds_records(const fs::path& source) {
   return format && *format == scan::ScanFormat::kLas;
 }
 
-Result<ExportReport> copy_records(const fs::path& source, const fs::path& target, PointFormat format,
+Result<std::unique_ptr<RecordWriter>> create_records(const fs::path& target, LasHead head, const TargetForm& form,
+                                                     const ExportOptions& options) {
+  head.chunk_size = options.encoding.chunk_size;
+  if (form.octree) {
+    OctreeOptions octree = options.octree;
+    octree.leaf_points = options.encoding.chunk_size;
+    return create_octree_file(target, std::move(head), *form.octree, octree);
+  }
+  Result<LasFileWriter> file = LasFileWriter::create(target, std::move(head));
+  if (!file) return fail(std::move(file.error()));
+  return std::make_unique<LasFileWriter>(std::move(*file));
+}
+
+Result<ExportReport> copy_records(const fs::path& source, const fs::path& target, const TargetForm& form,
                                   const ExportOptions& options) {
   const Result<scan::LasRecords> records = scan::LasRecords::open(source, options.selection);
   if (!records) return fail(records.error());
-  LasCopy copy = plan_las_copy(records->header(), records->file(), format == PointFormat::kLaz);
-  copy.head.chunk_size = options.encoding.chunk_size;
-  Result<LasFileWriter> writer = LasFileWriter::create(target, copy.head);
-  if (!writer) return fail(std::move(writer.error()));
-  using Bytes = std::vector<std::byte>;
+  LasCopy copy = plan_las_copy(records->header(), records->file(), form.format == PointFormat::kLaz);
+  const int point_format = copy.head.point_format;
+  const size_t record_bytes = copy.head.record_length;
+  if (form.octree) {
+    for (std::string& note : become_version_14(copy.head, records->header().crs)) copy.notes.push_back(std::move(note));
+  }
+  const Result<std::unique_ptr<RecordWriter>> writer = create_records(target, copy.head, form, options);
+  if (!writer) return fail(writer.error());
+  const auto as_written = [&](Bytes piece) {
+    piece = without_packets(std::move(piece), records->header(), copy);
+    return form.octree ? modern_records(std::move(piece), point_format, record_bytes) : piece;
+  };
   const Status copied = for_each_piece<Bytes>(
-      records->pieces(), [&](size_t piece) { return records->read(piece); },
-      [&](Bytes piece) { return writer->append(without_packets(std::move(piece), records->header(), copy)); });
+      records->pieces(), [&](size_t piece) { return records->read(piece).map(as_written); },
+      [&](const Bytes& piece) { return (*writer)->append(piece); });
   if (!copied) return fail(copied.error());
-  if (writer->points() == 0)
+  if ((*writer)->points() == 0)
     return fail(ErrorKind::kInvalidInput, source.string() + ": has no points in the selection");
-  return writer->finish().map([&](uint64_t bytes) { return ExportReport{writer->points(), bytes, copy.notes}; });
+  return (*writer)->finish().map([&](uint64_t bytes) { return ExportReport{(*writer)->points(), bytes, copy.notes}; });
 }
 
 /// A file of encoded points.
@@ -131,51 +161,59 @@ class EncodedFile : public PointWriter {
 
 class LasTableWriter : public PointWriter {
  public:
-  LasTableWriter(LasFileWriter file, LasTable table) : file_(std::move(file)), table_(std::move(table)) {}
+  LasTableWriter(std::unique_ptr<RecordWriter> file, LasTable table)
+      : file_(std::move(file)), table_(std::move(table)) {}
 
   Status append(const scan::ScanPoints& points) override {
     return las_records_of(points, table_).and_then([this](const std::vector<std::byte>& records) {
-      return file_.append(records);
+      return file_->append(records);
     });
   }
-  [[nodiscard]] uint64_t written() const override { return file_.points(); }
-  Result<uint64_t> finish() override { return file_.finish(); }
+  [[nodiscard]] uint64_t written() const override { return file_->points(); }
+  Result<uint64_t> finish() override { return file_->finish(); }
 
  private:
-  LasFileWriter file_;
+  std::unique_ptr<RecordWriter> file_;
   LasTable table_;
 };
 
-Result<std::unique_ptr<PointWriter>> create_las(const fs::path& target, const scan::ScanStream& scan,
-                                                PointFormat format, const ExportOptions& options,
-                                                std::vector<std::string>& notes) {
-  LasPoints points{&scan.schema(), scan.bounds(), scan.size(), options.encoding.scale, format == PointFormat::kLaz};
+Result<std::unique_ptr<PointWriter>> create_las(const fs::path& target, LasPoints points, const TargetForm& form,
+                                                const ExportOptions& options, std::vector<std::string>& notes) {
+  points.scale = options.encoding.scale;
+  points.compressed = form.format == PointFormat::kLaz;
+  points.modern = form.octree.has_value();
   Result<LasTable> table = plan_las_table(points);
   if (!table) return fail(std::move(table.error()));
-  if (!scan.schema().grid || *scan.schema().grid != table->grid)
+  if (!points.schema->grid || *points.schema->grid != table->grid)
     notes.push_back("coordinates are rounded to multiples of " + shortest(table->grid.scale.x));
-  table->head.chunk_size = options.encoding.chunk_size;
-  Result<LasFileWriter> file = LasFileWriter::create(target, table->head);
+  if (form.octree) {
+    for (std::string& note : become_version_14(table->head, points.schema->crs)) notes.push_back(std::move(note));
+  }
+  Result<std::unique_ptr<RecordWriter>> file = create_records(target, table->head, form, options);
   if (!file) return fail(std::move(file.error()));
   return std::make_unique<LasTableWriter>(std::move(*file), std::move(*table));
 }
 
 Result<std::unique_ptr<PointWriter>> create_writer(const fs::path& target, const scan::ScanStream& scan,
-                                                   PointFormat format, const ExportOptions& options,
+                                                   const TargetForm& form, const ExportOptions& options,
                                                    std::vector<std::string>& notes) {
   // Not all is known beforehand that LAS states before its points: some of them may lack coordinates.
-  if (is_las(format)) return create_las(target, scan, format, options, notes);
-  return make_point_encoder(format, scan.schema(), {.count = scan.size(), .bounds = scan.bounds()}, options.encoding)
+  if (is_las(form.format)) {
+    const LasPoints points{.schema = &scan.schema(), .bounds = scan.bounds(), .count = scan.size()};
+    return create_las(target, points, form, options, notes);
+  }
+  return make_point_encoder(form.format, scan.schema(), {.count = scan.size(), .bounds = scan.bounds()},
+                            options.encoding)
       .and_then([&](std::unique_ptr<PointEncoder> encoder) { return EncodedFile::create(target, std::move(encoder)); });
 }
 
-Result<ExportReport> convert_points(const fs::path& source, const fs::path& target, PointFormat format,
+Result<ExportReport> convert_points(const fs::path& source, const fs::path& target, const TargetForm& form,
                                     const ExportOptions& options) {
   const Result<scan::ScanStream> scan = grid::open_scan(source, options.limit, {}, options.selection);
   if (!scan) return fail(scan.error());
   ExportReport report;
   report.notes = scan->schema().notes;
-  const Result<std::unique_ptr<PointWriter>> writer = create_writer(target, *scan, format, options, report.notes);
+  const Result<std::unique_ptr<PointWriter>> writer = create_writer(target, *scan, form, options, report.notes);
   if (!writer) return fail(writer.error());
   const Status written = for_each_piece<scan::ScanPoints>(
       scan->pieces(), [&](size_t piece) { return scan->read(piece); },
@@ -202,7 +240,23 @@ Result<PointFacts> count_points(const ModelPoints& points, WantedFacts wanted) {
   return facts;
 }
 
-Result<ExportReport> export_model(const fs::path& source, const fs::path& target, PointFormat format,
+Result<std::unique_ptr<PointWriter>> create_model_writer(const fs::path& target, scan::ScanSchema schema,
+                                                         const PointFacts& facts, const TargetForm& form,
+                                                         const ExportOptions& options,
+                                                         std::vector<std::string>& notes) {
+  if (form.octree) {
+    schema.grid = facts.grid;
+    const LasPoints points{.schema = &schema, .bounds = facts.bounds, .count = facts.count};
+    return create_las(target, points, form, options, notes);
+  }
+  Result<std::unique_ptr<PointEncoder>> encoder =
+      make_point_encoder(form.format, std::move(schema), facts, options.encoding);
+  if (!encoder) return fail(std::move(encoder.error()));
+  if (std::string note = (*encoder)->note(); !note.empty()) notes.push_back(std::move(note));
+  return EncodedFile::create(target, std::move(*encoder));
+}
+
+Result<ExportReport> export_model(const fs::path& source, const fs::path& target, const TargetForm& form,
                                   const ExportOptions& options) {
   Result<model::ModelFile> file = model::ModelFile::open(source);
   if (!file) return fail(std::move(file.error()));
@@ -210,15 +264,12 @@ Result<ExportReport> export_model(const fs::path& source, const fs::path& target
       ModelPoints::open(std::make_shared<const model::ModelFile>(std::move(*file)), source.string(),
                         {.points = options.selection, .source_coordinates = true});
   if (!points) return fail(points.error());
-  const Result<PointFacts> facts = count_points(*points, facts_for(format));
+  const Result<PointFacts> facts = count_points(*points, facts_for(form.format));
   if (!facts) return fail(facts.error());
   if (facts->count == 0) return fail(ErrorKind::kInvalidInput, source.string() + ": has no points in the selection");
-  Result<std::unique_ptr<PointEncoder>> encoder =
-      make_point_encoder(format, points->schema(), *facts, options.encoding);
-  if (!encoder) return fail(encoder.error());
   ExportReport report{facts->count, 0, {}};
-  if (std::string note = (*encoder)->note(); !note.empty()) report.notes.push_back(std::move(note));
-  const Result<std::unique_ptr<PointWriter>> writer = EncodedFile::create(target, std::move(*encoder));
+  const Result<std::unique_ptr<PointWriter>> writer =
+      create_model_writer(target, points->schema(), *facts, form, options, report.notes);
   if (!writer) return fail(writer.error());
   const Status written = for_each_piece<scan::ScanPoints>(
       points->pieces(), [&](size_t piece) { return points->read(piece); },
@@ -233,13 +284,13 @@ Result<ExportReport> export_model(const fs::path& source, const fs::path& target
 }  // namespace
 
 Result<ExportReport> export_scan(const fs::path& source, const fs::path& target, const ExportOptions& options) {
-  const Result<PointFormat> format = format_of(target);
-  if (!format) return fail(format.error());
-  if (extension_of(source) == ".surf") return export_model(source, target, *format, options);
+  const Result<TargetForm> form = form_of(target);
+  if (!form) return fail(form.error());
+  if (extension_of(source) == ".surf") return export_model(source, target, *form, options);
   const Result<bool> records = holds_records(source);
   if (!records) return fail(records.error());
-  if (*records && is_las(*format) && !options.encoding.scale) return copy_records(source, target, *format, options);
-  return convert_points(source, target, *format, options);
+  if (*records && is_las(form->format) && !options.encoding.scale) return copy_records(source, target, *form, options);
+  return convert_points(source, target, *form, options);
 }
 
 }  // namespace surfcast::exporter

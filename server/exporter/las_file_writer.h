@@ -9,19 +9,19 @@
 #include "base/atomic_file.h"
 #include "base/result.h"
 #include "exporter/las_counts.h"
+#include "exporter/record_writer.h"
 
 namespace surfcast::exporter {
 
-/// Writes a LAS or LAZ file of point records. The file appears under its name when `finish` has succeeded.
-class LasFileWriter {
+/// Writes a LAS or LAZ file of point records, in their order.
+class LasFileWriter : public RecordWriter {
  public:
   static Result<LasFileWriter> create(const std::filesystem::path& target, LasHead head);
 
   /// Appends records of `record_length` bytes. LAZ keeps those of chunks that are not full.
-  Status append(std::span<const std::byte> records);
-  [[nodiscard]] uint64_t points() const { return counts_.points; }
-  /// Bytes of the file.
-  Result<uint64_t> finish();
+  Status append(std::span<const std::byte> records) override;
+  [[nodiscard]] uint64_t points() const override { return counts_.points; }
+  Result<uint64_t> finish() override;
 
  private:
   struct Chunk {

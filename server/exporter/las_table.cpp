@@ -40,7 +40,8 @@ bool needs_new_format(const ScanSchema& schema) {
 int point_format_of(const LasPoints& points) {
   const ScanSchema& schema = *points.schema;
   const bool color = schema.color_bits != 0;
-  if (needs_new_format(schema) || points.count > UINT32_MAX) return has(schema, {"nir"}) ? 8 : color ? 7 : 6;
+  if (points.modern || needs_new_format(schema) || points.count > UINT32_MAX)
+    return has(schema, {"nir"}) ? 8 : color ? 7 : 6;
   return (has(schema, {"gps_time"}) ? 1 : 0) + (color ? 2 : 0);
 }
 

@@ -20,8 +20,9 @@ struct LasPoints {
   const scan::ScanSchema* schema = nullptr;  ///< outlives the plan
   geometry::Box bounds;                      ///< of all points
   uint64_t count = 0;
-  std::optional<double> scale;  ///< steps of the coordinates; none: see lattice_for
+  std::optional<double> scale{};  ///< steps of the coordinates; none: see lattice_for
   bool compressed = false;
+  bool modern = false;  ///< version 1.4 and point formats from 6 on, whatever suffices
 };
 
 /// Where the values of an attribute lie in a record.

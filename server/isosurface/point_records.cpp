@@ -52,7 +52,7 @@ void PointRecords::append(const SurfacePoint& point, const IsoSurface& surface, 
   if (colored_) put(surface.color.value_or(glm::u8vec3(kGrey)), records);
 }
 
-std::unique_ptr<scan::RowSource> rows_of(builder::SpoolFile file, const PointRecords& records) {
+std::unique_ptr<scan::RowSource> rows_of(SpoolFile file, const PointRecords& records) {
   scan::RowTraits traits;
   traits.surface_step = records.surface_step();
   return builder::spooled_rows(std::move(file), records.columns(), traits);

@@ -7,7 +7,7 @@
 #include <span>
 #include <vector>
 
-#include "builder/spool_file.h"
+#include "base/spool_file.h"
 #include "isosurface/iso_surface.h"
 #include "isosurface/surface_point.h"
 #include "scan/row_source.h"
@@ -35,6 +35,6 @@ class PointRecords {
 };
 
 /// The records of a file as rows.
-std::unique_ptr<scan::RowSource> rows_of(builder::SpoolFile file, const PointRecords& records);
+std::unique_ptr<scan::RowSource> rows_of(SpoolFile file, const PointRecords& records);
 
 }  // namespace surfcast::isosurface

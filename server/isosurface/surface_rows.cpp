@@ -9,7 +9,7 @@
 #include <oneapi/tbb/parallel_for.h>
 #include <spdlog/fmt/fmt.h>
 
-#include "builder/spool_file.h"
+#include "base/spool_file.h"
 #include "grid/grid_reader.h"
 #include "isosurface/plane_points.h"
 #include "isosurface/point_records.h"
@@ -76,8 +76,7 @@ struct PackedPlane {
 /// Finds the points of all surfaces in one pass over the planes of a grid.
 class SurfacePass {
  public:
-  SurfacePass(grid::GridReader& reader, std::span<const IsoSurface> surfaces, int64_t together,
-              builder::SpoolFile& file)
+  SurfacePass(grid::GridReader& reader, std::span<const IsoSurface> surfaces, int64_t together, SpoolFile& file)
       : reader_(reader),
         size_(Index(reader.header().size[0], reader.header().size[1], reader.header().size[2])),
         together_(together),
@@ -119,7 +118,7 @@ class SurfacePass {
   int64_t together_;
   PointRecords records_;
   SampleWindow samples_;
-  builder::SpoolFile& file_;
+  SpoolFile& file_;
   std::vector<SurfacePlanes> surfaces_;
   int64_t first_plane_ = 0;  ///< of SurfacePlanes::planes
   int64_t written_ = 0;      ///< planes
@@ -228,7 +227,7 @@ Result<SurfaceRows> find_surfaces(const std::filesystem::path& grid, std::span<c
   if (Status status = check_scalar(reader->header()); !status) return named(status.error());
   const Result<int64_t> together = planes_together(reader->header(), memory);
   if (!together) return named(together.error());
-  Result<builder::SpoolFile> file = builder::SpoolFile::create(target);
+  Result<SpoolFile> file = SpoolFile::create(target);
   if (!file) return fail(std::move(file.error()));
   SurfacePass pass(*reader, surfaces, *together, *file);
   if (Status status = pass.run(); !status) return fail(std::move(status.error()));

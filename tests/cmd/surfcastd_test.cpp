@@ -261,7 +261,7 @@ TEST_F(SurfcastdTest, LasComesBackFromItsModelEqualInEveryField) {
   scan.close();
   ASSERT_EQ(run("export scan.csv --output scan.las").exit_code, 0);
   ASSERT_EQ(run("build scan.las --output model.surf").exit_code, 0);
-  for (const std::string extension : {"las", "laz"}) {
+  for (const std::string extension : {"las", "laz", "copc.laz"}) {
     const Answer exported = run("export model.surf --output back." + extension);
     ASSERT_EQ(exported.exit_code, 0) << exported.err;
     EXPECT_EQ(exported.err, "");

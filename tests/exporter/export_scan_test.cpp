@@ -121,15 +121,6 @@ TEST_P(ExportFormatTest, RecordsOfLasComeBackByteByByteFromLasAndLaz) {
   }
 }
 
-TEST_F(ExportScanTest, ANameOfCopcIsRefused) {
-  const fs::path source = write("scan.las", sample_file(0).text());
-  const auto report = export_scan(source, place("out.copc.laz"), {});
-  ASSERT_FALSE(report);
-  EXPECT_EQ(report.error().kind, ErrorKind::kUnsupported);
-  EXPECT_THAT(report.error().message, HasSubstr("COPC is not written"));
-  EXPECT_FALSE(fs::exists(place("out.copc.laz")));
-}
-
 TEST_P(ExportFormatTest, TheHeaderStatesCountsReturnsAndBoundsOfWhatIsThere) {
   const LasFile file = sample_file(GetParam(), 100);
   const fs::path source = write("scan.las", file.text());
@@ -198,6 +189,7 @@ TEST_F(ExportScanTest, ASelectionWithoutPointsIsSaidAndLeavesNoFile) {
     const auto report = export_scan(source, place("out.las"), options);
     ASSERT_FALSE(report);
     EXPECT_EQ(report.error().message, source.string() + ": has no points in the selection");
+    EXPECT_FALSE(export_scan(source, place("out.copc.laz"), options));
   }
   EXPECT_THAT(files(), ::testing::ElementsAre("scan.csv", "scan.las"));
 }
@@ -265,7 +257,7 @@ TEST_F(ExportScanTest, OtherNamesAreRefusedWithTheFormatsThatAreWritten) {
 
 TEST_F(ExportScanTest, AFolderThatIsNotThereIsOneLine) {
   const fs::path source = write("scan.csv", kTable);
-  for (const char* name : {"none/out.las", "none/out.ply", "none/out.csv"}) {
+  for (const char* name : {"none/out.las", "none/out.copc.laz", "none/out.ply", "none/out.csv"}) {
     const auto report = export_scan(source, place(name), {});
     ASSERT_FALSE(report);
     EXPECT_EQ(report.error().kind, ErrorKind::kIo);
@@ -292,7 +284,7 @@ class FileSizeLimit {
 
 TEST_F(ExportScanTest, ADiskThatIsFullIsOneLineAndLeavesTheFileThatWasThere) {
   const fs::path source = write("scan.las", sample_file(3, 20000).text());
-  for (const char* name : {"out.las", "out.laz", "out.ply", "out.csv"}) {
+  for (const char* name : {"out.las", "out.laz", "out.copc.laz", "out.ply", "out.csv"}) {
     write(name, "what was there");
     const FileSizeLimit limit(1000);
     const auto report = export_scan(source, place(name), {});
@@ -301,7 +293,7 @@ TEST_F(ExportScanTest, ADiskThatIsFullIsOneLineAndLeavesTheFileThatWasThere) {
     EXPECT_THAT(report.error().message, HasSubstr(place(name).string() + ": cannot write"));
     EXPECT_EQ(text_of(place(name)), "what was there");
   }
-  EXPECT_EQ(files().size(), 5U);
+  EXPECT_EQ(files().size(), 6U);
 }
 
 }  // namespace

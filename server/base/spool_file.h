@@ -7,7 +7,7 @@
 
 #include "base/result.h"
 
-namespace surfcast::builder {
+namespace surfcast {
 
 /// A temporary file without a name, in the folder of the target. Its disk space is freed when it is closed, however the
 /// program ends. Errors name the target.
@@ -37,4 +37,4 @@ class SpoolFile {
   uint64_t size_ = 0;
 };
 
-}  // namespace surfcast::builder
+}  // namespace surfcast

@@ -1,4 +1,4 @@
-#include "builder/spool_file.h"
+#include "base/spool_file.h"
 
 #include <cerrno>
 #include <cstdlib>
@@ -9,10 +9,10 @@
 #include <fcntl.h>
 #include <unistd.h>
 
-namespace surfcast::builder {
+namespace surfcast {
 namespace {
 
-tl::unexpected<Error> io_error(const std::filesystem::path& target, const char* what, int code) {
+tl::unexpected<Error> spool_error(const std::filesystem::path& target, const char* what, int code) {
   return fail(ErrorKind::kIo, target.string() + ": " + what + ": " + std::strerror(code));
 }
 
@@ -31,7 +31,7 @@ int open_unnamed(const std::filesystem::path& target) {
 
 Result<SpoolFile> SpoolFile::create(const std::filesystem::path& target) {
   const int descriptor = open_unnamed(target);
-  if (descriptor < 0) return io_error(target, "cannot create a temporary file beside it", errno);
+  if (descriptor < 0) return spool_error(target, "cannot create a temporary file beside it", errno);
   return SpoolFile(target, descriptor);
 }
 
@@ -54,7 +54,7 @@ Result<uint64_t> SpoolFile::append(std::span<const std::byte> bytes) {
   while (!bytes.empty()) {
     const ssize_t written = ::pwrite(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(size_));
     if (written < 0 && errno == EINTR) continue;
-    if (written < 0) return io_error(target_, "cannot write the temporary file beside it", errno);
+    if (written < 0) return spool_error(target_, "cannot write the temporary file beside it", errno);
     bytes = bytes.subspan(static_cast<size_t>(written));
     size_ += static_cast<uint64_t>(written);
   }
@@ -65,7 +65,7 @@ Status SpoolFile::read(uint64_t offset, std::span<std::byte> bytes) const {
   while (!bytes.empty()) {
     const ssize_t got = ::pread(descriptor_, bytes.data(), bytes.size(), static_cast<off_t>(offset));
     if (got < 0 && errno == EINTR) continue;
-    if (got <= 0) return io_error(target_, "cannot read the temporary file beside it", got < 0 ? errno : EIO);
+    if (got <= 0) return spool_error(target_, "cannot read the temporary file beside it", got < 0 ? errno : EIO);
     bytes = bytes.subspan(static_cast<size_t>(got));
     offset += static_cast<uint64_t>(got);
   }
@@ -77,4 +77,4 @@ void SpoolFile::release(uint64_t offset, uint64_t size) const {
               static_cast<off_t>(size));
 }
 
-}  // namespace surfcast::builder
+}  // namespace surfcast

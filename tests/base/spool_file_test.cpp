@@ -1,4 +1,4 @@
-#include "builder/spool_file.h"
+#include "base/spool_file.h"
 
 #include <vector>
 
@@ -7,7 +7,7 @@
 
 #include "model/test_folder.h"
 
-namespace surfcast::builder {
+namespace surfcast {
 namespace {
 
 std::vector<std::byte> numbers(size_t count, int first) {
@@ -60,4 +60,4 @@ TEST(SpoolFileTest, FailuresNameTheTarget) {
 }
 
 }  // namespace
-}  // namespace surfcast::builder
+}  // namespace surfcast

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <cmath>
+#include <cstdint>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "scan/las_file.h"
+
+namespace surfcast::exporter {
+
+/// A record before the points.
+inline std::string named_record(const std::string& user, uint16_t id, const std::string& body) {
+  testing::Bytes record(std::string(54, '\0'));
+  for (size_t i = 0; i < user.size(); ++i) record.set(2 + i, user[i]);
+  record.set(18, id).set(20, static_cast<uint16_t>(body.size())).add_text(body);
+  return record.text();
+}
+
+/// A hilly surface of random points with any attributes, denser on one side, and a few points far from it.
+inline testing::LasFile hills(int format, size_t count = 6000) {
+  testing::LasFile file;
+  file.format = format;
+  file.minor = format < 6 ? 2 : 4;
+  file.extra_bytes = 3;
+  file.scale[2] = 0.002;
+  file.offset[0] = 4.5e6;
+  file.variable_records = named_record("LASF_Projection", 2112, "PROJCS[\"somewhere\"]") +
+                          named_record("somebody", 7, "something of theirs");
+  file.variable_record_count = 2;
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> number(0, 1);
+  for (size_t i = 0; i < count; ++i) {
+    const double u = std::pow(number(random), 2), v = number(random);
+    const double height = i % 50 == 0 ? 30000 * number(random) : 4000 * std::sin(7 * u) * std::cos(5 * v);
+    testing::Bytes record =
+        file.record(static_cast<int32_t>(10000 * u), static_cast<int32_t>(9000 * v), static_cast<int32_t>(height));
+    std::string text = record.text();
+    for (size_t at = 12; at < text.size(); ++at) text[at] = static_cast<char>(random());
+    testing::Bytes whole(text);
+    if (format >= 6) whole.set(22, 1000 * number(random));
+    file.records.push_back(whole.text());
+  }
+  return file;
+}
+
+}  // namespace surfcast::exporter
