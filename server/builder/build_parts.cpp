@@ -47,6 +47,17 @@ PartFindings spread_findings(const scan::PartSurfels& surfels, std::vector<uint3
   return findings;
 }
 
+/// Leaves the values of the points that were kept.
+template <typename T>
+std::vector<T> kept_values(std::vector<T> values, const std::vector<uint8_t>& kept) {
+  size_t next = 0;
+  for (size_t i = 0; i < kept.size(); ++i) {
+    if (kept[i] != 0) values[next++] = values[i];
+  }
+  values.resize(next);
+  return values;
+}
+
 }  // namespace
 
 BuildParts::BuildParts(const BuildInputs& inputs, std::vector<Part> plan)
@@ -59,8 +70,8 @@ Result<BuildParts> BuildParts::gather(const BuildInputs& inputs, const Division&
   Result<std::vector<Part>> parts = divide_points(inputs, root, division, clock, {});
   if (!parts) return fail(std::move(parts.error()));
   BuildParts build(inputs, std::move(*parts));
-  Status status = build.size() == 1 ? build.collect(inputs, clock, report)
-                                    : build.spool(inputs, division.memory, target, clock, report);
+  Status status =
+      build.size() == 1 ? build.collect(inputs, clock, report) : build.spool(inputs, division, target, clock, report);
   if (!status) return fail(std::move(status.error()));
   return build;
 }
@@ -92,16 +103,18 @@ Status BuildParts::collect(const BuildInputs& inputs, StageClock& clock, scan::S
   return {};
 }
 
-Status BuildParts::spool(const BuildInputs& inputs, const MemoryPlan& memory, const std::filesystem::path& target,
+Status BuildParts::spool(const BuildInputs& inputs, const Division& division, const std::filesystem::path& target,
                          StageClock& clock, scan::SurfelReport& report) {
   Result<SpoolFile> file = SpoolFile::create(target);
   if (!file) return fail(std::move(file.error()));
   store_.emplace(std::move(*file), inputs.schema(), frame_->names, size());
   Status status = distribute_points(inputs, numbers_below(inputs.pieces()), frame_->finder, frame_->root, {}, *store_,
                                     clock, report);
-  if (!status || parts_at_once(memory) > 0) return status;
-  return fail(ErrorKind::kLimit, target.string() + ": some points are too close together to be worked on in parts of " +
-                                     "this memory budget");
+  if (!status || parts_at_once(division.memory) > 0) return status;
+  return fail(ErrorKind::kLimit,
+              target.string() + (division.parts ? ": so few parts do not fit into this memory budget"
+                                                : ": some points are too close together to be worked on in parts of "
+                                                  "this memory budget"));
 }
 
 size_t BuildParts::parts_at_once(const MemoryPlan& memory) const {
@@ -149,15 +162,16 @@ Result<FinishedPart> BuildParts::take(size_t part) {
   if (!findings) return fail(std::move(findings.error()));
   reorder(points->cloud, findings->order);
   store_->release(part);
+  const std::vector<uint8_t>& kept = findings->kept;
   scan::PartSurfels surfels;
   surfels.cloud = std::move(points->cloud);
-  surfels.trees = std::move(findings->trees);
-  surfels.estimates = {std::move(findings->radii), std::move(findings->kinds)};
   surfels.cloud.normals = std::move(findings->normals);
+  scan::keep_surfels(surfels.cloud, {kept.begin(), kept.end()});
+  surfels.trees = kept_values(std::move(findings->trees), kept);
+  surfels.estimates = {kept_values(std::move(findings->radii), kept), kept_values(std::move(findings->kinds), kept)};
   settle_surfels(decisions_, *spacing_, part, points->inputs, surfels);
-  const auto end_own = findings->kept.begin() + static_cast<std::ptrdiff_t>(points->own);
-  const auto own = static_cast<size_t>(std::count(findings->kept.begin(), end_own, uint8_t{1}));
-  scan::keep_surfels(surfels.cloud, {findings->kept.begin(), findings->kept.end()});
+  const auto end_own = kept.begin() + static_cast<std::ptrdiff_t>(points->own);
+  const auto own = static_cast<size_t>(std::count(kept.begin(), end_own, uint8_t{1}));
   return FinishedPart{std::move(surfels.cloud), own};
 }
 

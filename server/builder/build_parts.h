@@ -43,7 +43,7 @@ class BuildParts {
 
  private:
   BuildParts(const BuildInputs& inputs, std::vector<Part> plan);
-  Status spool(const BuildInputs& inputs, const MemoryPlan& memory, const std::filesystem::path& target,
+  Status spool(const BuildInputs& inputs, const Division& division, const std::filesystem::path& target,
                StageClock& clock, scan::SurfelReport& report);
   Status collect(const BuildInputs& inputs, StageClock& clock, scan::SurfelReport& report);
 

@@ -384,6 +384,7 @@ void add_build_command(CLI::App& app, Status& outcome) {
   add_iso_flag(*build_command, command->surfaces);
   add_mesh_flags(*build_command, command->meshes);
   add_simplify_flag(*build_command, command->simplify);
+  build_command->get_option("--parts")->excludes("--simplify");
   add_system_flags(*build_command, command->systems);
   build_command->add_option("--report", command->report, "Write statistics of the build to this file as JSON");
   build_command

@@ -158,6 +158,44 @@ TEST_F(BuildStepsTest, OptionsReachTheModel) {
   EXPECT_TRUE(bytes_in(model_) == built_at_once(options));
 }
 
+TEST_F(BuildStepsTest, ScansThatMoveIntoAnotherSystemComeToTheSamePlace) {
+  TextScan moved;
+  for (const glm::dvec3& p : hills_and_dome(60)) moved.add(p + glm::dvec3(800000, 5500000, 0), "1 1");
+  moved.write(first_);
+  moved.write(second_);
+  PlanRequest request = request_for(4);
+  request.systems = {"EPSG:25832", false, "EPSG:25833"};
+  const Result<PlanOutcome> planned = plan_build(inputs(), work_, request, kSilent);
+  ASSERT_TRUE(planned) << planned.error().message;
+  EXPECT_EQ(planned->transformed.size(), 2U);
+  make_parts(4);
+  ASSERT_TRUE(build_signs(place_, kSilent));
+  make_blocks(4);
+  ASSERT_TRUE(merge_parts(place_, model_, kSilent));
+  BuildOptions options;
+  options.systems = request.systems;
+  options.parts = 4;
+  EXPECT_TRUE(bytes_in(model_) == built_at_once(options));
+}
+
+TEST_F(BuildStepsTest, StatedRadiiAreDecidedForAllParts) {
+  // Radii of twice the spacing are scaled by one factor, which no part alone decides. All of the second scan are
+  // duplicates, so that nothing is known of its radii.
+  TextScan stated;
+  stated.header = "x y z radius intensity";
+  for (const glm::dvec3& p : hills_and_dome(80)) stated.add(p, "2.0 1");
+  stated.write(first_);
+  stated.write(second_);
+  ASSERT_TRUE(plan(7));
+  make_parts(7);
+  const Result<SignsOutcome> signs = build_signs(place_, kSilent);
+  ASSERT_TRUE(signs);
+  EXPECT_EQ(signs->radii.size(), 2U);
+  make_blocks(7);
+  ASSERT_TRUE(merge_parts(place_, model_, kSilent));
+  EXPECT_TRUE(bytes_in(model_) == built_at_once(7));
+}
+
 TEST_F(BuildStepsTest, AStepThatWasDoneIsNotRepeated) {
   make_all(4);
   std::map<fs::path, fs::file_time_type> times;
