@@ -143,8 +143,9 @@ Status WorkFolder::check_all(WorkStep step) const {
     if (!found) missing.add(part + 1, found.error().kind);
   }
   if (missing.none()) return {};
-  return fail(ErrorKind::kNotFound, folder_.string() + ": " + name_of(step) + " of " + std::to_string(parts()) + " " +
-                                        missing.text() + "; run " + command(step, "K") + " for each");
+  return fail(ErrorKind::kNotFound, folder_.string() + ": of the " + std::to_string(parts()) + " files " +
+                                        name_of(step) + "-K, " + missing.text() + "; run " + command(step, "K") +
+                                        " for each");
 }
 
 }  // namespace surfcast::builder

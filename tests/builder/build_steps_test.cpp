@@ -234,7 +234,8 @@ TEST_F(BuildStepsTest, MissingPartsAreNamed) {
   for (const size_t part : {1, 2, 4, 5, 6, 11, 16}) ASSERT_TRUE(build_part(place_, part, kSilent));
   const Error error = build_signs(place_, kSilent).error();
   EXPECT_EQ(error.kind, ErrorKind::kNotFound);
-  EXPECT_THAT(error.message, AllOf(HasSubstr("part of 16 missing: 3, 7-10, 12-15"), HasSubstr("build-part K")));
+  EXPECT_THAT(error.message,
+              AllOf(HasSubstr("of the 16 files part-K, missing: 3, 7-10, 12-15"), HasSubstr("build-part K")));
 }
 
 TEST_F(BuildStepsTest, MissingBlocksAreNamedBeforeMerging) {
@@ -243,7 +244,7 @@ TEST_F(BuildStepsTest, MissingBlocksAreNamedBeforeMerging) {
   ASSERT_TRUE(build_signs(place_, kSilent));
   ASSERT_TRUE(build_part_blocks(place_, 2, kSilent));
   const Error error = merge_parts(place_, model_, kSilent).error();
-  EXPECT_THAT(error.message, AllOf(HasSubstr("blocks of 4 missing: 1, 3-4"), HasSubstr("build-blocks K")));
+  EXPECT_THAT(error.message, AllOf(HasSubstr("of the 4 files blocks-K, missing: 1, 3-4"), HasSubstr("build-blocks K")));
   EXPECT_FALSE(fs::exists(model_));
 }
 

@@ -119,7 +119,7 @@ TEST_F(BuildStepProgramsTest, MissingPartsAreOneLineAndAFailure) {
   EXPECT_EQ(run({"/bin/sh", "-c", line}), 1);
   const std::string text = bytes_in(said);
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 1) << text;
-  EXPECT_NE(text.find("blocks of 4 missing: 1-4"), std::string::npos) << text;
+  EXPECT_NE(text.find("of the 4 files blocks-K, missing: 1-4"), std::string::npos) << text;
   EXPECT_FALSE(fs::exists(model()));
 }
 
