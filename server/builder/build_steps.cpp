@@ -124,6 +124,7 @@ Result<MemoryPlan> memory_of(const BuildInputs& inputs, uint64_t budget, const f
 
 std::vector<fs::path> paths_of(const std::vector<PlannedInput>& inputs) {
   std::vector<fs::path> paths;
+  paths.reserve(inputs.size());
   for (const PlannedInput& input : inputs) paths.push_back(input.path);
   return paths;
 }
@@ -214,6 +215,15 @@ Status check_unchanged(const BuildPlan& plan, const std::vector<bool>& needed, c
                                           "build-plan INPUT... --work " + folder.string() + "` again");
   }
   return {};
+}
+
+/// Writes the result of a step by `write`.
+template <typename Write>
+Status write_result(const WorkFolder& folder, WorkStep step, size_t part, const Write& write) {
+  Result<WorkFileWriter> file = folder.create(step, part);
+  if (!file) return fail(std::move(file.error()));
+  const Status status = write(*file);
+  return status ? file->finish() : status;
 }
 
 /// The points of a part and those around it.
@@ -376,10 +386,8 @@ bool is_merged(const WorkFolder& folder, const fs::path& target) {
 }
 
 Status note_merged(const WorkFolder& folder, const fs::path& target) {
-  Result<WorkFileWriter> file = folder.create(WorkStep::kMerge);
-  if (!file) return fail(std::move(file.error()));
-  const Status status = file->add(bytes_of_text(trace_of(target)));
-  return status ? file->finish() : status;
+  return write_result(folder, WorkStep::kMerge, 0,
+                      [&target](WorkFileWriter& file) { return file.add(bytes_of_text(trace_of(target))); });
 }
 
 }  // namespace
@@ -417,10 +425,8 @@ Result<PartOutcome> build_part(const WorkPlace& work, size_t part, const BuildPr
   if (!points) return fail(std::move(points.error()));
   (*clock).begin("making surfels", 1);
   MadePart made = make_part(frame, std::move(*points), *index, plan.request.radii, false);
-  Result<WorkFileWriter> file = folder->create(WorkStep::kPart, *index);
-  if (!file) return fail(std::move(file.error()));
-  Status status = write_part(*file, made);
-  if (status) status = file->finish();
+  const Status status =
+      write_result(*folder, WorkStep::kPart, *index, [&made](WorkFileWriter& file) { return write_part(file, made); });
   if (!status) return fail(std::move(status.error()));
   return PartOutcome{false, made.own, made.surfels.cloud.size() - made.own};
 }
@@ -438,10 +444,9 @@ Result<SignsOutcome> build_signs(const WorkPlace& work, const BuildProgress& pro
   Result<SceneEvidence> evidence = evidence_of(*folder, frame.names.size(), *clock, scene.report);
   if (!evidence) return fail(std::move(evidence.error()));
   scene.decisions = evidence->decide(frame, folder->plan().request.radii, scene.report);
-  Result<WorkFileWriter> file = folder->create(WorkStep::kSigns);
-  if (!file) return fail(std::move(file.error()));
-  Status status = write_scene(*file, scene, std::move(*evidence).take_samples());
-  if (status) status = file->finish();
+  const std::vector<scan::SurfaceSample> samples = std::move(*evidence).take_samples();
+  const Status status = write_result(*folder, WorkStep::kSigns, 0,
+                                     [&](WorkFileWriter& file) { return write_scene(file, scene, samples); });
   if (!status) return fail(std::move(status.error()));
   return outcome_of(scene, *inputs, folder->plan().request.radii);
 }
@@ -462,10 +467,8 @@ Result<BlocksOutcome> build_part_blocks(const WorkPlace& work, size_t part, cons
   const size_t own = finished->own;
   const PartBlocks made =
       make_part_blocks(std::move(*finished), frame.parts[*index], frame.root, folder->plan().request.precision);
-  Result<WorkFileWriter> file = folder->create(WorkStep::kBlocks, *index);
-  if (!file) return fail(std::move(file.error()));
-  Status status = write_part_blocks(*file, made);
-  if (status) status = file->finish();
+  const Status status = write_result(*folder, WorkStep::kBlocks, *index,
+                                     [&made](WorkFileWriter& file) { return write_part_blocks(file, made); });
   if (!status) return fail(std::move(status.error()));
   return BlocksOutcome{false, made.subtree.blocks.size(), own};
 }

@@ -5,7 +5,6 @@
 #include <vector>
 
 #include "base/positioned_file.h"
-#include "builder/build_plan.h"
 
 namespace surfcast::builder {
 namespace {
