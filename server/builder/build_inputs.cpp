@@ -7,6 +7,7 @@
 
 #include <oneapi/tbb/parallel_for.h>
 
+#include "base/contract.h"
 #include "grid/open_scan.h"
 #include "scan/clean_points.h"
 #include "scan/merge_schemas.h"
@@ -36,6 +37,14 @@ bool is_finite(const glm::dvec3& p) {
 
 }  // namespace
 
+void BuildInputs::add(InputFacts facts, std::optional<scan::ScanStream> stream) {
+  for (size_t piece = 0; piece < facts.pieces; ++piece) pieces_.push_back({streams_.size(), piece});
+  schemas_.push_back(facts.scan.meaning.schema);
+  facts_.push_back(std::move(facts));
+  streams_.push_back(std::move(stream));
+  moves_.emplace_back();
+}
+
 Result<BuildInputs> BuildInputs::open(std::span<const std::filesystem::path> paths, const OpenInput& open,
                                       std::optional<bool> z_up, uint64_t max_bytes, std::optional<uint64_t> sample,
                                       const std::function<void(double)>& progress) {
@@ -45,16 +54,34 @@ Result<BuildInputs> BuildInputs::open(std::span<const std::filesystem::path> pat
     const scan::DecodingLimit limit{max_bytes - inputs.held_bytes()};
     Result<scan::ScanStream> stream = open ? open(path, limit, sample) : grid::open_scan(path, limit, sample);
     if (!stream) return fail(std::move(stream.error()));
-    for (size_t piece = 0; piece < stream->pieces(); ++piece) {
-      inputs.pieces_.push_back({inputs.streams_.size(), piece});
-    }
-    inputs.schemas_.push_back(stream->schema());
-    inputs.bounds_.push_back(stream->bounds());
-    inputs.streams_.push_back(std::move(*stream));
+    InputFacts facts{stream->facts(), stream->bounds(), stream->pieces()};
+    inputs.add(std::move(facts), std::move(*stream));
   }
-  inputs.moves_.resize(inputs.streams_.size());
   inputs.z_up_ = z_up;
   inputs.merge();
+  return inputs;
+}
+
+Result<BuildInputs> BuildInputs::reopen(const Reopening& reopening, std::vector<InputFacts> facts) {
+  SURFCAST_EXPECTS(reopening.paths.size() == facts.size() && reopening.read.size() == facts.size());
+  BuildInputs inputs;
+  for (size_t i = 0; i < facts.size(); ++i) {
+    std::optional<scan::ScanStream> stream;
+    if (reopening.read[i]) {
+      const scan::DecodingLimit limit{reopening.max_bytes - inputs.held_bytes()};
+      Result<scan::ScanStream> opened =
+          grid::reopen_scan(reopening.paths[i], limit, reopening.selection, facts[i].scan);
+      if (!opened) return fail(std::move(opened.error()));
+      if (opened->pieces() != facts[i].pieces) {
+        return fail(ErrorKind::kInvalidInput, reopening.paths[i].string() + ": has changed since it was first read");
+      }
+      stream = std::move(*opened);
+    }
+    inputs.add(std::move(facts[i]), std::move(stream));
+  }
+  inputs.z_up_ = reopening.z_up;
+  Result<Placement> placement = inputs.find_place(reopening.systems);
+  if (!placement) return fail(std::move(placement.error()));
   return inputs;
 }
 
@@ -63,21 +90,34 @@ void BuildInputs::merge() {
   schema_.z_up = z_up_.value_or(schema_.z_up);
 }
 
-Result<Placement> BuildInputs::place(const SystemOptions& options) {
-  Result<Placement> placement = place_inputs(schemas_, bounds_, options);
+/// Finds out how all inputs come into one system, and what their schemas are there.
+Result<Placement> BuildInputs::find_place(const SystemOptions& options) {
+  std::vector<geometry::Box> bounds;
+  for (const InputFacts& input : facts_) bounds.push_back(input.scan.bounds);
+  Result<Placement> placement = place_inputs(schemas_, bounds, options);
   if (!placement) return placement;
-  for (size_t input = 0; input < streams_.size(); ++input) {
-    if (!placement->moves[input]) continue;
-    moves_[input] = placement->moves[input];
-    if (Status status = move(input, *moves_[input]); !status) return fail(std::move(status.error()));
+  moves_ = placement->moves;
+  georeference_ = placement->georeference;
+  for (size_t input = 0; input < moves_.size(); ++input) {
+    if (moves_[input]) move_schema(*moves_[input], schemas_[input]);
   }
   merge();
   return placement;
 }
 
-/// Reads all points of the input, because a box around them is no box in another system.
-Status BuildInputs::move(size_t input, const crs::Transformation& transformation) {
-  const scan::ScanStream& stream = streams_[input];
+Result<Placement> BuildInputs::place(const SystemOptions& options) {
+  Result<Placement> placement = find_place(options);
+  if (!placement) return placement;
+  for (size_t input = 0; input < streams_.size(); ++input) {
+    if (!moves_[input]) continue;
+    if (Status status = measure(input); !status) return fail(std::move(status.error()));
+  }
+  return placement;
+}
+
+/// Reads all points of an input that is moved, because a box around them is no box in another system.
+Status BuildInputs::measure(size_t input) {
+  const scan::ScanStream& stream = *streams_[input];
   std::vector<Result<geometry::Box>> boxes(stream.pieces());
   oneapi::tbb::parallel_for(size_t{0}, stream.pieces(), [&](size_t piece) {
     Result<scan::ScanPoints> points = stream.read(piece);
@@ -85,43 +125,43 @@ Status BuildInputs::move(size_t input, const crs::Transformation& transformation
       boxes[piece] = fail(std::move(points.error()));
       return;
     }
-    transformation.apply(points->positions);
+    moves_[input]->apply(points->positions);
     geometry::Box box;
     for (const glm::dvec3& p : points->positions) {
       if (is_finite(p)) box.include(p);
     }
     boxes[piece] = box;
   });
-  bounds_[input] = {};
+  geometry::Box& bounds = facts_[input].bounds;
+  bounds = {};
   for (const Result<geometry::Box>& box : boxes) {
     if (!box) return fail(box.error());
-    bounds_[input].include(*box);
+    bounds.include(*box);
   }
-  move_schema(transformation, schemas_[input]);
   return {};
 }
 
 uint64_t BuildInputs::size() const {
   uint64_t size = 0;
-  for (const scan::ScanStream& stream : streams_) size += stream.size();
+  for (const InputFacts& input : facts_) size += input.scan.points;
   return size;
 }
 
 uint64_t BuildInputs::size_of_files() const {
   uint64_t size = 0;
-  for (const scan::ScanStream& stream : streams_) size += stream.size_of_file();
+  for (const InputFacts& input : facts_) size += input.scan.points_of_file;
   return size;
 }
 
 uint64_t BuildInputs::held_bytes() const {
   uint64_t bytes = 0;
-  for (const scan::ScanStream& stream : streams_) bytes += stream.held_bytes();
+  for (const std::optional<scan::ScanStream>& stream : streams_) bytes += stream ? stream->held_bytes() : 0;
   return bytes;
 }
 
 geometry::Box BuildInputs::bounds() const {
   geometry::Box box;
-  for (const geometry::Box& bounds : bounds_) box.include(bounds);
+  for (const InputFacts& input : facts_) box.include(input.bounds);
   return box;
 }
 
@@ -131,7 +171,8 @@ std::vector<std::string> BuildInputs::notes() const {
 
 Result<InputPiece> BuildInputs::read(size_t piece, scan::SurfelReport& report) const {
   const auto& [source, number] = pieces_[piece];
-  Result<scan::ScanPoints> points = streams_[source].read(number);
+  SURFCAST_EXPECTS(streams_[source].has_value());
+  Result<scan::ScanPoints> points = streams_[source]->read(number);
   if (!points) return fail(std::move(points.error()));
   if (moves_[source]) move_points(*moves_[source], *points);
   report.points_read += points->size();

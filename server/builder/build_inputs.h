@@ -26,6 +26,23 @@ struct InputPiece {
   scan::ScanPoints points;
 };
 
+/// What is known of an input once all of it was read.
+struct InputFacts {
+  scan::ScanFacts scan;  ///< of its points as they are in the file
+  geometry::Box bounds;  ///< of its usable points as they are read here
+  size_t pieces = 0;
+};
+
+/// How inputs are opened again.
+struct Reopening {
+  std::vector<std::filesystem::path> paths;
+  std::vector<bool> read;  ///< for each input; the others are not opened, and none of their pieces may be read
+  scan::Selection selection;
+  std::optional<bool> z_up;
+  uint64_t max_bytes = 0;  ///< see BuildInputs::open
+  SystemOptions systems;
+};
+
 /// All inputs of a build as one stream of points with a common schema.
 class BuildInputs {
  public:
@@ -36,11 +53,16 @@ class BuildInputs {
                                   std::optional<bool> z_up, uint64_t max_bytes, std::optional<uint64_t> sample,
                                   const std::function<void(double)>& progress);
 
+  /// Opens inputs that were opened and placed before, without reading all of them. `facts`: what was found then.
+  static Result<BuildInputs> reopen(const Reopening& reopening, std::vector<InputFacts> facts);
+
   /// Brings all inputs into one metric coordinate system, if they state any. Those that are moved are read once more
   /// for their bounds.
   Result<Placement> place(const SystemOptions& options);
 
   [[nodiscard]] const scan::ScanSchema& schema() const { return schema_; }
+  [[nodiscard]] const std::vector<InputFacts>& facts() const { return facts_; }            ///< of each input
+  [[nodiscard]] const model::Georeference& georeference() const { return georeference_; }  ///< once they are placed
   [[nodiscard]] const std::vector<scan::ScanSchema>& schemas() const { return schemas_; }  ///< of each input
   [[nodiscard]] uint64_t size() const;           ///< points, including unusable ones
   [[nodiscard]] uint64_t size_of_files() const;  ///< points, beyond samples too
@@ -58,14 +80,17 @@ class BuildInputs {
     size_t piece = 0;
   };
 
-  Status move(size_t input, const crs::Transformation& transformation);
+  void add(InputFacts facts, std::optional<scan::ScanStream> stream);
+  Result<Placement> find_place(const SystemOptions& options);
+  Status measure(size_t input);
   void merge();
 
-  std::vector<scan::ScanStream> streams_;
+  std::vector<std::optional<scan::ScanStream>> streams_;
+  std::vector<InputFacts> facts_;                                  ///< of the streams
   std::vector<scan::ScanSchema> schemas_;                          ///< of the streams, as their points are read here
-  std::vector<geometry::Box> bounds_;                              ///< likewise
   std::vector<std::shared_ptr<const crs::Transformation>> moves_;  ///< of the streams; null: points stay
-  std::optional<bool> z_up_;                                       ///< of all inputs
+  model::Georeference georeference_;
+  std::optional<bool> z_up_;  ///< of all inputs
   std::vector<PieceOfInput> pieces_;
   scan::ScanSchema schema_;
 };

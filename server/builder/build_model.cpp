@@ -1,24 +1,22 @@
 #include "builder/build_model.h"
 
 #include <algorithm>
-#include <cmath>
 #include <memory>
-#include <numeric>
 #include <string>
 #include <utility>
 
-#include <unistd.h>
-
+#include "builder/build_checks.h"
 #include "builder/build_ellipsoids.h"
 #include "builder/build_gaussians.h"
 #include "builder/build_inputs.h"
 #include "builder/build_parts.h"
 #include "builder/build_volumes.h"
-#include "builder/cloud_columns.h"
 #include "builder/grid_input.h"
 #include "builder/memory_budget.h"
 #include "builder/model_output.h"
+#include "builder/model_properties.h"
 #include "builder/ordered_work.h"
+#include "builder/part_blocks.h"
 #include "builder/stage_clock.h"
 #include "ellipsoid/ellipsoid_input.h"
 #include "grid/open_scan.h"
@@ -26,102 +24,25 @@
 #include "model/model_writer.h"
 #include "model/write_blocks.h"
 #include "surfel/curvature.h"
-#include "surfel/normalization_weights.h"
 
 namespace surfcast::builder {
 namespace {
-
-/// Finds errors of the target before the build, not after it.
-Status check_target(const std::filesystem::path& target, std::span<const std::filesystem::path> inputs) {
-  const std::filesystem::path folder = target.parent_path().empty() ? "." : target.parent_path();
-  std::error_code ignored;  // if a file does not exist, reading it reports the error
-  if (!std::filesystem::is_directory(folder, ignored)) {
-    return fail(ErrorKind::kIo, target.string() + ": no such folder: " + folder.string());
-  }
-  if (::access(folder.c_str(), W_OK) != 0) {
-    return fail(ErrorKind::kIo, target.string() + ": cannot write into the folder " + folder.string());
-  }
-  for (const std::filesystem::path& input : inputs) {
-    if (std::filesystem::equivalent(input, target, ignored)) {
-      return fail(ErrorKind::kInvalidInput, target.string() + ": is an input too and would be overwritten");
-    }
-  }
-  return {};
-}
-
-Status check_bounds(const geometry::Box& bounds, const std::filesystem::path& target) {
-  // Far beyond any scan, and small enough for box sizes and their squares to stay finite.
-  constexpr double kLimit = 1e150;
-  if (bounds.empty()) {
-    return fail(ErrorKind::kInvalidInput, target.string() + ": no usable point is left of the input");
-  }
-  const glm::dvec3 farthest = glm::max(glm::abs(bounds.min), glm::abs(bounds.max));
-  if (std::max({farthest.x, farthest.y, farthest.z}) < kLimit) return {};
-  return fail(ErrorKind::kInvalidInput, target.string() + ": a position of the input is too far away to be stored");
-}
-
-std::vector<InputRadii> radii_of(const BuildInputs& inputs, const BuildParts& parts) {
-  std::vector<InputRadii> radii;
-  for (size_t i = 0; i < inputs.schemas().size(); ++i) {
-    const scan::ScanSchema& schema = inputs.schemas()[i];
-    if (schema.radii) radii.push_back({schema.name, parts.radii()[i]});
-  }
-  return radii;
-}
-
-/// One line for each input whose radii are not used although they should be.
-void note_unused_radii(const BuildOptions& options, BuildReport& report) {
-  if (options.radii == scan::RadiusPolicy::kEstimate) return;
-  for (const auto& [input, decision] : report.radii) {
-    if (decision.outcome == scan::RadiusOutcome::kEstimated) {
-      report.scan.notes.push_back(input + ": " + scan::describe(decision));
-    }
-  }
-}
-
-/// A cloud without surfels that has the common properties of all clouds of the model.
-surfel::SurfelCloud common_cloud(const BuildInputs& inputs, bool oriented) {
-  surfel::SurfelCloud cloud = empty_cloud(inputs.schema(), 0);
-  cloud.oriented = oriented;
-  for (const scan::ScanSchema& input : inputs.schemas()) {
-    cloud.sources.push_back({input.name, 0, 0, input.grid});
-  }
-  return cloud;
-}
-
-/// The region of a part: one cell, or some of the octants of the parent of its cells.
-ldc::Region region_of(const Part& part, const geometry::RootCube& root, size_t own) {
-  const bool whole = part.cells.size() == 1;
-  return {root, whole ? part.cells[0] : part.cells[0].parent(), whole, own};
-}
-
-/// Block numbers start with 0 in every part. In the file they are consecutive over all parts.
-void renumber(uint32_t first, ldc::Subtree& subtree) {
-  for (ldc::TreeBlock& block : subtree.blocks) {
-    for (uint32_t& child : block.children) child += first;
-  }
-  for (ldc::FrontCell& cell : subtree.front) {
-    for (uint32_t& block : cell.blocks) block += first;
-  }
-}
 
 /// Computes the weights of all surfels, makes the blocks and writes them, part by part.
 class ModelPass {
  public:
   /// `simplified`: the surfels of the only part, if they were simplified.
   ModelPass(BuildParts& parts, model::ModelWriter& writer, const BuildOptions& options,
-            std::optional<BuildParts::Finished> simplified)
-      : parts_(parts), writer_(writer), simplified_(std::move(simplified)) {
-    partition_.precision = options.precision;
-  }
+            std::optional<FinishedPart> simplified)
+      : parts_(parts), writer_(writer), simplified_(std::move(simplified)), precision_(options.precision) {}
 
   Status write_parts(const MemoryPlan& memory, StageClock& clock) {
     clock.begin("writing blocks", parts_.size());
     return work_in_order(parts_.size(), parts_.parts_at_once(memory),
                          [&](size_t part) -> Result<std::function<Status()>> {
-                           Result<Work> work = make_work(part);
-                           if (!work) return fail(std::move(work.error()));
-                           return [this, &clock, shared = std::make_shared<Work>(std::move(*work))] {
+                           Result<PartBlocks> blocks = make_blocks(part);
+                           if (!blocks) return fail(std::move(blocks.error()));
+                           return [this, &clock, shared = std::make_shared<PartBlocks>(std::move(*blocks))] {
                              clock.step();
                              return write(*shared);
                            };
@@ -136,34 +57,23 @@ class ModelPass {
   }
 
  private:
-  struct Work {
-    surfel::SurfelCloud cloud;
-    ldc::Subtree subtree;
-  };
-
-  Result<Work> make_work(size_t part) {
-    Result<BuildParts::Finished> surfels = simplified_ ? std::move(*simplified_) : parts_.take(part);
+  Result<PartBlocks> make_blocks(size_t part) {
+    Result<FinishedPart> surfels = simplified_ ? std::move(*simplified_) : parts_.take(part);
     if (!surfels) return fail(std::move(surfels.error()));
-    Work work{std::move(surfels->cloud), {}};
-    work.cloud.weights = surfel::normalization_weights(work.cloud);
-    if (surfels->own > 0) {
-      const ldc::Region region = region_of(parts_.plan(part), parts_.root(), surfels->own);
-      work.subtree = ldc::build_subtree(work.cloud, region, partition_, 0);
-    }
-    return work;
+    return make_part_blocks(std::move(*surfels), parts_.plan(part), parts_.root(), precision_);
   }
 
-  Status write(Work& work) {
-    renumber(static_cast<uint32_t>(blocks_), work.subtree);
-    blocks_ += work.subtree.blocks.size();
-    for (ldc::FrontCell& cell : work.subtree.front) front_.push_back(std::move(cell));
-    return model::write_blocks(writer_, work.cloud, work.subtree.blocks, {});
+  Status write(PartBlocks& part) {
+    renumber(static_cast<uint32_t>(blocks_), part.subtree);
+    blocks_ += part.subtree.blocks.size();
+    for (ldc::FrontCell& cell : part.subtree.front) front_.push_back(std::move(cell));
+    return model::write_blocks(writer_, part.cloud, part.subtree.blocks, {});
   }
 
   BuildParts& parts_;
   model::ModelWriter& writer_;
-  std::optional<BuildParts::Finished> simplified_;
-  ldc::PartitionOptions partition_;
+  std::optional<FinishedPart> simplified_;
+  std::optional<double> precision_;
   size_t blocks_ = 0;
   ldc::Front front_;
 };
@@ -181,10 +91,10 @@ std::string describe(const simplify::SimplifyReport& report) {
 }
 
 /// The surfels of the only part, simplified.
-Result<BuildParts::Finished> simplify_whole(BuildParts& parts, const simplify::ErrorBound& bound, StageClock& clock,
-                                            BuildReport& report) {
+Result<FinishedPart> simplify_whole(BuildParts& parts, const simplify::ErrorBound& bound, StageClock& clock,
+                                    BuildReport& report) {
   clock.begin("simplifying", 1);
-  Result<BuildParts::Finished> surfels = parts.take(0);
+  Result<FinishedPart> surfels = parts.take(0);
   if (!surfels) return surfels;
   report.simplified = simplify::simplify(bound, surfels->cloud);
   surfels->own = surfels->cloud.size();
@@ -200,26 +110,19 @@ void take_properties(const surfel::SurfelCloud& cloud, surfel::SurfelCloud& comm
   if (!surfel::CurvatureColumns(cloud.scalars).empty()) surfel::add_curvature({}, common);
 }
 
-/// True if all surfels are samples of meshes as sample_mesh makes them.
-bool is_even(const BuildInputs& inputs, const BuildOptions& options) {
-  if (options.simplify || options.radii == scan::RadiusPolicy::kEstimate) return false;
-  return std::all_of(inputs.schemas().begin(), inputs.schemas().end(),
-                     [](const scan::ScanSchema& input) { return input.exact_radii; });
-}
-
 Status write(const BuildInputs& inputs, BuildParts& parts, const MemoryPlan& memory, ModelOutput& output,
              const BuildOptions& options, StageClock& clock, BuildReport& report) {
   surfel::SurfelCloud common = common_cloud(inputs, parts.signs().oriented);
-  std::optional<BuildParts::Finished> simplified;
+  std::optional<FinishedPart> simplified;
   if (options.simplify) {
     if (Status status = check_whole(parts, output.target()); !status) return status;
-    Result<BuildParts::Finished> surfels = simplify_whole(parts, *options.simplify, clock, report);
+    Result<FinishedPart> surfels = simplify_whole(parts, *options.simplify, clock, report);
     if (!surfels) return fail(std::move(surfels.error()));
     simplified = std::move(*surfels);
     take_properties(simplified->cloud, common);
   }
   model::ModelSchema schema = model::schema_of(common);
-  schema.even = is_even(inputs, options);
+  schema.even = !options.simplify && is_even(inputs, options.radii);
   const Result<model::ModelWriter*> writer = output.writer(std::move(schema));
   if (!writer) return fail(writer.error());
   (*writer)->set_georeference(report.georeference);
@@ -267,13 +170,14 @@ Status build_surfels(std::span<const std::filesystem::path> inputs, ModelOutput&
   for (const InputMesh& mesh : report.meshes) {
     for (const std::string& note : mesh.report.notes) report.scan.notes.push_back(mesh.input + ": " + note);
   }
-  Result<BuildParts> parts = BuildParts::gather(*opened, *memory, target, clock, report.scan);
+  Result<BuildParts> parts = BuildParts::gather(*opened, {*memory, options.parts}, target, clock, report.scan);
   if (!parts) return fail(std::move(parts.error()));
   report.parts += parts->size();
   Status made = parts->make_surfels(*memory, options.radii, clock, report.scan);
   if (!made) return made;
-  report.radii = radii_of(*opened, *parts);
-  note_unused_radii(options, report);
+  report.radii = radii_of(opened->schemas(), parts->radii());
+  const std::vector<std::string> unused = unused_radii(options.radii, report.radii);
+  report.scan.notes.insert(report.scan.notes.end(), unused.begin(), unused.end());
   return write(*opened, *parts, *memory, output, options, clock, report);
 }
 

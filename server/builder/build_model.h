@@ -30,6 +30,7 @@ struct BuildOptions {
   std::optional<bool> z_up;             ///< vertical axis z (true) or y; none: as each scan's format or points suggest
   std::optional<uint64_t> memory;       ///< limit of resident memory, bytes; none: a quarter of the machine's memory
   std::optional<uint64_t> part_points;  ///< largest number of points of a part; none: as the memory allows
+  std::optional<size_t> parts{};        ///< parts that scans are divided into; none: as the memory allows
   scan::RadiusPolicy radii = scan::RadiusPolicy::kAuto;
   std::optional<uint64_t> sample{};  ///< points of each scan, spread over it, that a preview is made of; none: all
   std::optional<simplify::ErrorBound> simplify{};  ///< of the surfaces of scans; none: every point is kept

@@ -89,6 +89,11 @@ bool PartFinder::is_near(uint32_t part, const glm::dvec3& point) const {
   return any_contains(with_halo_[part], point);
 }
 
+bool PartFinder::may_need(uint32_t part, const geometry::Box& box) const {
+  return std::any_of(with_halo_[part].begin(), with_halo_[part].end(),
+                     [&box](const geometry::Box& halo) { return geometry::overlap(halo, box); });
+}
+
 scan::SitePlace PartFinder::place(uint32_t part, const glm::dvec3& point) const {
   if (ends_.size() == 1) return {};
   scan::SitePlace place;

@@ -33,6 +33,9 @@ class PartFinder {
     }
   }
 
+  /// False only if no point of the box belongs to the part or to its halo.
+  [[nodiscard]] bool may_need(uint32_t part, const geometry::Box& box) const;
+
   /// The place of a point of the part or of its halo.
   [[nodiscard]] scan::SitePlace place(uint32_t part, const glm::dvec3& point) const;
 

@@ -21,4 +21,8 @@ struct Part {
 /// depth may have more. Adjacent siblings share a part if they fit.
 std::vector<Part> plan_parts(std::span<const CountedCell> cells, uint64_t limit);
 
+/// Divides the counted cells into `parts` parts, in Morton order: again and again the largest part is cut in two,
+/// between the cells or octants where the halves are most alike. Fewer parts where nothing is left to cut.
+std::vector<Part> plan_part_count(std::span<const CountedCell> cells, size_t parts);
+
 }  // namespace surfcast::builder

@@ -9,15 +9,12 @@
 #include <filesystem>
 #include <functional>
 #include <iostream>
-#include <limits>
 #include <map>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
-#include <thread>
 #include <vector>
 
-#include <malloc.h>
 #include <oneapi/tbb/global_control.h>
 #include <spdlog/fmt/fmt.h>
 #include <sys/prctl.h>
@@ -29,6 +26,7 @@
 #include "builder/build_model.h"
 #include "builder/grid_input.h"
 #include "builder/memory_budget.h"
+#include "cmd/build_flags.h"
 #include "cmd/build_progress.h"
 #include "cmd/field_flags.h"
 #include "cmd/georeference_text.h"
@@ -45,16 +43,14 @@ namespace {
 struct BuildCommand {
   std::vector<std::filesystem::path> inputs;
   std::filesystem::path output;
-  std::optional<double> precision;
-  std::string up;
-  std::string memory;
+  ModelFlags model;
+  std::optional<size_t> parts;
   scan::RadiusPolicy radii = scan::RadiusPolicy::kAuto;
   std::filesystem::path report;
   std::optional<uint64_t> sample;
   scan::Selection selection;
   std::optional<simplify::ErrorBound> simplify;
-  size_t threads = 0;  ///< 0: one a core
-  std::string progress = "auto";
+  RunFlags run;
   bool background = false;
   std::vector<isosurface::IsoSurface> surfaces;  ///< of grids among the inputs
   std::optional<builder::InputKind> kind;
@@ -63,15 +59,6 @@ struct BuildCommand {
   builder::MeshOptions meshes;
   builder::SystemOptions systems;
 };
-
-/// A share of the processors that a build gets by itself, points a second and processor: by the processor time of 10^7
-/// points.
-constexpr double kPointsPerSecondAndCore = 250'000;
-
-ProgressStyle style_of(const std::string& wanted) {
-  if (wanted == "json") return ProgressStyle::kJson;
-  return wanted != "none" && ::isatty(STDERR_FILENO) == 1 ? ProgressStyle::kTerminal : ProgressStyle::kNone;
-}
 
 /// Leaves the processors to other programs, and ends when the program that started this one does. What has already
 /// ended is noticed by a changed parent.
@@ -187,17 +174,6 @@ nlohmann::ordered_json to_json(const builder::InputField& field) {
           {"skipped", field.skipped},
           {"widened", field.widened},
           {"step", field.step}};
-}
-
-/// The system of the model, and how inputs came into it.
-std::string system_lines(const builder::BuildReport& report) {
-  std::string lines;
-  for (const builder::TransformedInput& input : report.transformed) {
-    lines += fmt::format("{}: from {} to {} by {}, {}\n", input.input, input.from, input.to, input.operation,
-                         input.accuracy ? fmt::format("accuracy {} m", *input.accuracy) : "accuracy unknown");
-  }
-  if (report.georeference.known()) lines += "coordinate system: " + name_of(report.georeference.system) + "\n";
-  return lines;
 }
 
 nlohmann::ordered_json to_json(const std::vector<builder::TransformedInput>& inputs) {
@@ -316,15 +292,6 @@ std::string to_json(const BuildCommand& command, const builder::BuildReport& rep
   return json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
 }
 
-/// Keeps memory that is freed for the arrays of the next stage: to return it and to get new pages costs a tenth of the
-/// time of a build. The process ends with the build.
-void keep_freed_memory() {
-#ifdef __GLIBC__
-  ::mallopt(M_MMAP_THRESHOLD, std::numeric_limits<int>::max());
-  ::mallopt(M_TRIM_THRESHOLD, std::numeric_limits<int>::max());
-#endif
-}
-
 /// An error if surfaces are wanted and no input has any. What does not exist is an error of reading.
 Status check_surfaces(const BuildCommand& command) {
   const auto may_have = [](const std::filesystem::path& input) {
@@ -332,18 +299,6 @@ Status check_surfaces(const BuildCommand& command) {
   };
   if (command.surfaces.empty() || std::any_of(command.inputs.begin(), command.inputs.end(), may_have)) return {};
   return fail(ErrorKind::kInvalidInput, command.inputs[0].string() + ": --iso needs a volume, and no input is one");
-}
-
-/// The files of folders in place of the folders.
-Status open_folders(std::vector<std::filesystem::path>& inputs) {
-  std::vector<std::filesystem::path> files;
-  for (const std::filesystem::path& input : inputs) {
-    Result<std::vector<std::filesystem::path>> found = builder::inputs_at(input);
-    if (!found) return fail(std::move(found.error()));
-    files.insert(files.end(), found->begin(), found->end());
-  }
-  inputs = std::move(files);
-  return {};
 }
 
 Status build(BuildCommand& command) {
@@ -354,16 +309,17 @@ Status build(BuildCommand& command) {
     if (Status status = go_into_background(command.sample.has_value()); !status) return status;
   }
   std::optional<oneapi::tbb::global_control> threads;
-  if (command.threads > 0) threads.emplace(oneapi::tbb::global_control::max_allowed_parallelism, command.threads);
+  if (command.run.threads > 0)
+    threads.emplace(oneapi::tbb::global_control::max_allowed_parallelism, command.run.threads);
   Result<builder::BuildReport> report;
   isosurface::SurfaceInputs surfaces(command.surfaces, command.output);
   {
-    const size_t cores = command.threads > 0 ? command.threads : std::max(1U, std::thread::hardware_concurrency());
-    BuildProgressReport progress(style_of(command.progress), kPointsPerSecondAndCore * static_cast<double>(cores));
+    BuildProgressReport progress(command.run.style(), command.run.points_per_second());
     builder::BuildOptions options;
-    options.precision = command.precision;
-    if (!command.up.empty()) options.z_up = command.up == "z";
-    options.memory = builder::parse_memory_size(command.memory);
+    options.precision = command.model.precision;
+    options.z_up = command.model.z_up();
+    options.memory = builder::parse_memory_size(command.model.memory);
+    options.parts = command.parts;
     options.sample = command.sample;
     options.selection = command.selection;
     options.radii = command.radii;
@@ -380,18 +336,10 @@ Status build(BuildCommand& command) {
   if (!report) return fail(std::move(report.error()));
   for (const std::string& note : report->scan.notes) spdlog::warn("{}", note);
   std::cout << surface_lines(surfaces.found()) << mesh_lines(report->meshes) << field_lines(report->fields)
-            << system_lines(*report) << radii_lines(*report) << simplify_lines(command, *report) << figures(*report);
+            << system_lines(report->transformed, report->georeference) << radii_lines(*report)
+            << simplify_lines(command, *report) << figures(*report);
   if (command.report.empty()) return {};
   return write_file_atomically(command.report, to_json(command, *report, surfaces.found()));
-}
-
-void add_system_flags(CLI::App& app, builder::SystemOptions& systems) {
-  CLI::Option* assigned = app.add_option("--crs", systems.assigned,
-                                         "Coordinate system of the inputs that state none, like EPSG:25832 or WKT");
-  app.add_flag("--override-crs", systems.overrides_stated, "Take --crs for all inputs, whatever they state")
-      ->needs(assigned);
-  app.add_option("--to-crs", systems.target,
-                 "Coordinate system that all inputs are brought into (default: that of the first input)");
 }
 
 void add_kind_flags(CLI::App& app, BuildCommand& command) {
@@ -423,18 +371,12 @@ void add_build_command(CLI::App& app, Status& outcome) {
                    "Scans, regular grids, Gaussians, tensor fields or tables of ellipsoids, or folders of them")
       ->required();
   build_command->add_option("--output", command->output, "Model file to write")->required();
+  add_model_flags(*build_command, command->model);
   build_command
-      ->add_option("--precision", command->precision,
-                   "Largest error of a stored position, in units of the scan (default: 1/256 of each radius)")
+      ->add_option("--parts", command->parts,
+                   "Parts that scans are worked on in (default: as the memory allows). The model is that of build-plan "
+                   "with the same number")
       ->check(CLI::PositiveNumber);
-  build_command->add_option("--up", command->up, "Vertical axis: y or z (default: derived from the scan)")
-      ->check(CLI::IsMember({"y", "z"}));
-  build_command
-      ->add_option("--memory", command->memory,
-                   "Memory limit of the build, like 4G or 512M (default: a quarter of the machine's memory)")
-      ->check([](const std::string& text) {
-        return builder::parse_memory_size(text) ? std::string() : "not a size like 4G or 512M: " + text;
-      });
   add_kind_flags(*build_command, *command);
   add_field_flags(*build_command, command->field);
   add_radius_flag(*build_command, command->radii);
@@ -442,6 +384,7 @@ void add_build_command(CLI::App& app, Status& outcome) {
   add_iso_flag(*build_command, command->surfaces);
   add_mesh_flags(*build_command, command->meshes);
   add_simplify_flag(*build_command, command->simplify);
+  build_command->get_option("--parts")->excludes("--simplify");
   add_system_flags(*build_command, command->systems);
   build_command->add_option("--report", command->report, "Write statistics of the build to this file as JSON");
   build_command
@@ -449,12 +392,7 @@ void add_build_command(CLI::App& app, Status& outcome) {
                    "Build a preview: of about that many points of each scan, spread over it, with radii for their "
                    "spacing, or of as many samples of each volume")
       ->check(CLI::PositiveNumber);
-  build_command->add_option("--threads", command->threads, "Threads of the build (default: one a core)")
-      ->check(CLI::Range(1, 1024));
-  build_command
-      ->add_option("--progress", command->progress,
-                   "On standard error: auto (a line on a terminal, the default), json (lines for programs), none")
-      ->check(CLI::IsMember({"auto", "json", "none"}));
+  add_run_flags(*build_command, command->run);
   build_command->add_flag("--background", command->background,
                           "Leave the processors to other programs, and end when the program that started this ends");
   build_command->callback([command, &outcome] { outcome = build(*command); });

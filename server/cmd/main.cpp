@@ -6,6 +6,7 @@
 #include "base/result.h"
 #include "base/unfinished_file.h"
 #include "cmd/build.h"
+#include "cmd/build_steps.h"
 #include "cmd/colorize.h"
 #include "cmd/export.h"
 #include "cmd/inspect.h"
@@ -34,6 +35,7 @@ int run(int argc, char** argv) {
   app.require_subcommand(1);
   surfcast::Status outcome;
   surfcast::cmd::add_build_command(app, outcome);
+  surfcast::cmd::add_build_step_commands(app, outcome);
   surfcast::cmd::add_colorize_command(app, outcome);
   surfcast::cmd::add_export_command(app, outcome);
   surfcast::cmd::add_inspect_command(app, outcome);

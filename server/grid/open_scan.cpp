@@ -37,6 +37,15 @@ Result<scan::ScanStream> open_scan(const std::filesystem::path& path, const scan
   return scan::ScanStream::of_rows(std::move(*rows), path, sample, selection);
 }
 
+Result<scan::ScanStream> reopen_scan(const std::filesystem::path& path, const scan::DecodingLimit& limit,
+                                     const scan::Selection& selection, const scan::ScanFacts& facts) {
+  const stream::FilePtr file = vtk_points_at(path);
+  if (file == nullptr) return scan::ScanStream::reopen(path, limit, selection, facts);
+  Result<std::unique_ptr<scan::RowSource>> rows = vtk_point_rows(file, limit);
+  if (!rows) return in_file(rows.error(), path);
+  return scan::ScanStream::reopen_rows(std::move(*rows), path, selection, facts);
+}
+
 Status check_scan(const std::filesystem::path& path) {
   const stream::FilePtr file = vtk_points_at(path);
   if (file == nullptr) return scan::check_header(path);

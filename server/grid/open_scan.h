@@ -15,6 +15,10 @@ namespace surfcast::grid {
 Result<scan::ScanStream> open_scan(const std::filesystem::path& path, const scan::DecodingLimit& limit = {},
                                    std::optional<uint64_t> sample = {}, const scan::Selection& selection = {});
 
+/// The same, without reading all of it: opening it before found `facts`, with the same selection.
+Result<scan::ScanStream> reopen_scan(const std::filesystem::path& path, const scan::DecodingLimit& limit,
+                                     const scan::Selection& selection, const scan::ScanFacts& facts);
+
 /// What can be told of such a scan without reading its points.
 Status check_scan(const std::filesystem::path& path);
 

@@ -148,6 +148,10 @@ void ModelWriter::add_schema(const ModelSchema& schema) {
   own.harmonics_degree = std::max(own.harmonics_degree, schema.harmonics_degree);
 }
 
+void ModelWriter::add_statistics(const AttributeStatistics& statistics) {
+  state_->statistics.add(statistics);
+}
+
 void ModelWriter::set_volumes(std::vector<Volume> volumes) {
   state_->volumes = std::move(volumes);
 }

@@ -57,6 +57,9 @@ class ModelWriter {
   /// axis stay those of the schema that came first.
   void add_schema(const ModelSchema& schema);
 
+  /// Adds statistics of source surfels whose blocks are added without them.
+  void add_statistics(const AttributeStatistics& statistics);
+
   /// The volumes whose bricks are blocks of the file. Call before finish().
   void set_volumes(std::vector<Volume> volumes);
 

@@ -67,6 +67,35 @@ void AttributeStatistics::add(const AttributeStatistics& other) {
   for (size_t code = 0; code < classes_.size(); ++code) classes_[code] += other.classes_[code];
 }
 
+void AttributeStatistics::write(ByteWriter& bytes) const {
+  bytes.put_varint(extremes_.size());
+  for (const Extremes& extremes : extremes_) {
+    bytes.put(extremes.smallest);
+    bytes.put(extremes.largest);
+  }
+  bytes.put_varint(intensities_.size());
+  for (const auto& [bucket, count] : intensities_) {
+    bytes.put(bucket);
+    bytes.put_varint(count);
+  }
+  for (const uint64_t count : classes_) bytes.put_varint(count);
+}
+
+AttributeStatistics AttributeStatistics::read(ByteReader& bytes) {
+  AttributeStatistics statistics;
+  for (uint64_t left = bytes.get_varint(); left > 0 && bytes.ok(); --left) {
+    Extremes& extremes = statistics.extremes_.emplace_back();
+    extremes.smallest = bytes.get<double>();
+    extremes.largest = bytes.get<double>();
+  }
+  for (uint64_t left = bytes.get_varint(); left > 0 && bytes.ok(); --left) {
+    const auto bucket = bytes.get<uint16_t>();
+    statistics.intensities_[bucket] = bytes.get_varint();
+  }
+  for (uint64_t& count : statistics.classes_) count = bytes.get_varint();
+  return statistics;
+}
+
 /// The intensity below which this share of the surfels lies, to the resolution of a bucket.
 double AttributeStatistics::percentile(double share, const Extremes& bounds) const {
   uint64_t total = 0;

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "model/byte_stream.h"
 #include "surfel/surfel_cloud.h"
 
 namespace surfcast::model {
@@ -35,6 +36,10 @@ class AttributeStatistics {
 
   /// Adds the statistics of other surfels with the same attributes.
   void add(const AttributeStatistics& other);
+
+  void write(ByteWriter& bytes) const;
+  /// What `write` wrote; the reader is not ok if it is anything else.
+  static AttributeStatistics read(ByteReader& bytes);
 
   /// One range for each attribute with finite values. `names` are the names of all attributes, in order.
   [[nodiscard]] std::vector<AttributeRange> ranges(std::span<const std::string> names) const;

@@ -32,32 +32,38 @@ EncodedBlock encode(const surfel::SurfelCloud& cloud, const ldc::TreeBlock& bloc
 
 }  // namespace
 
-Status write_blocks(ModelWriter& writer, const surfel::SurfelCloud& cloud, std::span<const ldc::TreeBlock> blocks,
-                    const std::function<void(size_t)>& progress) {
+Status encode_blocks(const surfel::SurfelCloud& cloud, std::span<const ldc::TreeBlock> blocks,
+                     const std::function<Status(size_t number, const EncodedBlock& block)>& take) {
   namespace tbb = oneapi::tbb;
   using Encoded = std::pair<size_t, EncodedBlock>;
   size_t next = 0;
   Status status;
   std::atomic<bool> failed = false;  // the first and the last filter run concurrently
-  const auto take = [&](tbb::flow_control& control) -> size_t {
+  const auto next_number = [&](tbb::flow_control& control) -> size_t {
     if (next < blocks.size() && !failed) return next++;
     control.stop();
     return 0;
   };
   const auto encode_next = [&](size_t i) -> Encoded { return {i, encode(cloud, blocks[i])}; };
-  const auto append = [&](const Encoded& encoded) {
-    const auto& [i, block] = encoded;
+  const auto hand_over = [&](const Encoded& encoded) {
     if (failed) return;
-    const Result<uint32_t> added = writer.add(block, blocks[i].key, blocks[i].children);
-    if (!added) status = fail(added.error());
-    failed = !added;
-    if (progress) progress(i + 1);
+    status = take(encoded.first, encoded.second);
+    failed = !status;
   };
   const auto tokens = static_cast<size_t>(tbb::info::default_concurrency()) * 4;
-  tbb::parallel_pipeline(tokens, tbb::make_filter<void, size_t>(tbb::filter_mode::serial_in_order, take) &
+  tbb::parallel_pipeline(tokens, tbb::make_filter<void, size_t>(tbb::filter_mode::serial_in_order, next_number) &
                                      tbb::make_filter<size_t, Encoded>(tbb::filter_mode::parallel, encode_next) &
-                                     tbb::make_filter<Encoded, void>(tbb::filter_mode::serial_in_order, append));
+                                     tbb::make_filter<Encoded, void>(tbb::filter_mode::serial_in_order, hand_over));
   return status;
+}
+
+Status write_blocks(ModelWriter& writer, const surfel::SurfelCloud& cloud, std::span<const ldc::TreeBlock> blocks,
+                    const std::function<void(size_t)>& progress) {
+  return encode_blocks(cloud, blocks, [&](size_t i, const EncodedBlock& block) -> Status {
+    const Result<uint32_t> added = writer.add(block, blocks[i].key, blocks[i].children);
+    if (progress) progress(i + 1);
+    return added ? Status() : fail(added.error());
+  });
 }
 
 }  // namespace surfcast::model

@@ -92,73 +92,85 @@ Status ScanStream::take_sample(std::optional<uint64_t> sample) {
   Result<RowSample> taken = sample_rows(*rows_, *sample);
   if (!taken) return fail(std::move(taken.error()));
   rows_ = std::move(taken->rows);
-  size_of_file_ = taken->of_rows;
+  facts_.points_of_file = taken->of_rows;
   return {};
 }
 
 Status ScanStream::examine(std::span<const std::byte> bytes, const std::filesystem::path& path,
-                           const DecodingLimit& limit, std::optional<uint64_t> sample, const Selection& selection) {
+                           const Opening& opening) {
   Result<std::unique_ptr<RowSource>> rows =
       scan_format_of(bytes, path)
-          .and_then([&](ScanFormat format) { return rows_of(format, bytes, path, limit, selection); })
-          .and_then([&](std::unique_ptr<RowSource> all) { return select_rows(std::move(all), selection); });
+          .and_then([&](ScanFormat format) { return rows_of(format, bytes, path, opening.limit, opening.selection); })
+          .and_then([&](std::unique_ptr<RowSource> all) { return select_rows(std::move(all), opening.selection); });
   if (!rows) return fail(rows.error().kind, path.string() + ": " + rows.error().message);
   rows_ = std::move(*rows);
-  return examine_rows(path, sample, !selection.everything());
+  return examine_rows(path, opening);
 }
 
-Status ScanStream::examine_folder(const ScanFolder& folder, const std::filesystem::path& path,
-                                  const DecodingLimit& limit, std::optional<uint64_t> sample,
-                                  const Selection& selection) {
+Status ScanStream::examine_folder(const ScanFolder& folder, const std::filesystem::path& path, const Opening& opening) {
   Result<std::unique_ptr<RowSource>> rows =
-      folder_rows(folder, limit, selection).and_then([&](std::unique_ptr<RowSource> all) {
-        return select_rows(std::move(all), selection);
+      folder_rows(folder, opening.limit, opening.selection).and_then([&](std::unique_ptr<RowSource> all) {
+        return select_rows(std::move(all), opening.selection);
       });
   if (!rows) return fail(rows.error().kind, path.string() + ": " + rows.error().message);
   rows_ = std::move(*rows);
-  return examine_rows(path, sample, !selection.everything());
+  return examine_rows(path, opening);
 }
 
-Status ScanStream::examine_rows(const std::filesystem::path& path, std::optional<uint64_t> sample, bool selected) {
+Status ScanStream::examine_rows(const std::filesystem::path& path, const Opening& opening) {
   path_ = path;
+  if (opening.facts != nullptr) {
+    facts_ = *opening.facts;
+    return {};
+  }
   const auto named = [&path](const Error& error) { return fail(error.kind, path.string() + ": " + error.message); };
-  if (Status taken = take_sample(sample); !taken) return named(taken.error());
+  if (Status taken = take_sample(opening.sample); !taken) return named(taken.error());
   const Result<TableFacts> facts = survey_rows(*rows_, file_ ? &*file_ : nullptr);
   if (!facts) return named(facts.error());
-  if (selected && facts->rows == 0) return named({ErrorKind::kInvalidInput, "has no points in the selection"});
+  if (!opening.selection.everything() && facts->rows == 0) {
+    return named({ErrorKind::kInvalidInput, "has no points in the selection"});
+  }
   Result<TableMeaning> meaning = decide_meaning(*rows_, *facts);
   if (!meaning) return named(meaning.error());
-  meaning_ = std::move(*meaning);
-  meaning_.schema.name = path.filename().string();
-  size_ = facts->rows;
-  if (!sample) size_of_file_ = size_;
-  bounds_ = facts->bounds;
+  facts_.meaning = std::move(*meaning);
+  facts_.meaning.schema.name = path.filename().string();
+  facts_.points = facts->rows;
+  if (!opening.sample) facts_.points_of_file = facts_.points;
+  facts_.bounds = facts->bounds;
   return {};
 }
 
 Result<ScanStream> ScanStream::open_content(std::span<const std::byte> bytes, const std::filesystem::path& path,
                                             const DecodingLimit& limit) {
   ScanStream stream;
-  if (Status status = stream.examine(bytes, path, limit, {}, {}); !status) return fail(std::move(status.error()));
+  if (Status status = stream.examine(bytes, path, {limit, {}, {}}); !status) return fail(std::move(status.error()));
+  return stream;
+}
+
+Result<ScanStream> ScanStream::of_rows_as(std::unique_ptr<RowSource> rows, const std::filesystem::path& path,
+                                          const Opening& opening) {
+  ScanStream stream;
+  Result<std::unique_ptr<RowSource>> selected = select_rows(std::move(rows), opening.selection);
+  if (!selected) return fail(selected.error().kind, path.string() + ": " + selected.error().message);
+  stream.rows_ = std::move(*selected);
+  if (Status status = stream.examine_rows(path, opening); !status) return fail(std::move(status.error()));
   return stream;
 }
 
 Result<ScanStream> ScanStream::of_rows(std::unique_ptr<RowSource> rows, const std::filesystem::path& path,
                                        std::optional<uint64_t> sample, const Selection& selection) {
-  ScanStream stream;
-  Result<std::unique_ptr<RowSource>> selected = select_rows(std::move(rows), selection);
-  if (!selected) return fail(selected.error().kind, path.string() + ": " + selected.error().message);
-  stream.rows_ = std::move(*selected);
-  if (Status status = stream.examine_rows(path, sample, !selection.everything()); !status)
-    return fail(std::move(status.error()));
-  return stream;
+  return of_rows_as(std::move(rows), path, {{}, sample, selection});
 }
 
-Result<ScanStream> ScanStream::open(const std::filesystem::path& path, const DecodingLimit& limit,
-                                    std::optional<uint64_t> sample, const Selection& selection) {
+Result<ScanStream> ScanStream::reopen_rows(std::unique_ptr<RowSource> rows, const std::filesystem::path& path,
+                                           const Selection& selection, const ScanFacts& facts) {
+  return of_rows_as(std::move(rows), path, {{}, {}, selection, &facts});
+}
+
+Result<ScanStream> ScanStream::open_as(const std::filesystem::path& path, const Opening& opening) {
   ScanStream stream;
   if (const std::optional<ScanFolder> folder = scan_folder_of(path)) {
-    const Status status = stream.examine_folder(*folder, path, limit, sample, selection);
+    const Status status = stream.examine_folder(*folder, path, opening);
     if (!status) return fail(status.error());
     return stream;
   }
@@ -168,15 +180,25 @@ Result<ScanStream> ScanStream::open(const std::filesystem::path& path, const Dec
   Result<MappedFile> file = MappedFile::open(path);
   if (!file) return fail(std::move(file.error()));
   stream.file_ = std::move(*file);
-  if (Status status = stream.examine(stream.file_->bytes(), path, limit, sample, selection); !status)
+  if (Status status = stream.examine(stream.file_->bytes(), path, opening); !status)
     return fail(std::move(status.error()));
   return stream;
+}
+
+Result<ScanStream> ScanStream::open(const std::filesystem::path& path, const DecodingLimit& limit,
+                                    std::optional<uint64_t> sample, const Selection& selection) {
+  return open_as(path, {limit, sample, selection});
+}
+
+Result<ScanStream> ScanStream::reopen(const std::filesystem::path& path, const DecodingLimit& limit,
+                                      const Selection& selection, const ScanFacts& facts) {
+  return open_as(path, {limit, {}, selection, &facts});
 }
 
 Result<ScanPoints> ScanStream::read(size_t piece) const {
   const Result<PointTable> table = rows_->read(piece);
   if (!table) return fail(table.error().kind, path_.string() + ": " + table.error().message);
-  ScanPoints points = points_of(*table, meaning_);
+  ScanPoints points = points_of(*table, facts_.meaning);
   if (file_) file_->release_pages();
   return points;
 }

@@ -129,6 +129,22 @@ void RadiusComparison::add(const RadiusComparison& part) {
   std::transform(part.histogram_.begin(), part.histogram_.end(), histogram_.begin(), histogram_.begin(), std::plus<>());
 }
 
+std::vector<uint64_t> RadiusComparison::numbers() const {
+  std::vector<uint64_t> numbers{stated_, missing_, stated_scatter_, missing_scatter_};
+  numbers.insert(numbers.end(), histogram_.begin(), histogram_.end());
+  return numbers;
+}
+
+std::optional<RadiusComparison> RadiusComparison::of_numbers(std::span<const uint64_t> numbers) {
+  constexpr size_t kTotals = 4;
+  if (numbers.size() != kTotals && numbers.size() != kTotals + 2 * kOctaves * kSteps + 1) return std::nullopt;
+  RadiusComparison comparison;
+  comparison.add_stated(numbers[0], numbers[2]);
+  comparison.add_missing(numbers[1], numbers[3]);
+  comparison.histogram_.assign(numbers.begin() + kTotals, numbers.end());
+  return comparison;
+}
+
 uint64_t RadiusComparison::ratios() const {
   return std::accumulate(histogram_.begin(), histogram_.end(), uint64_t{0});
 }

@@ -42,6 +42,9 @@ class RadiusComparison {
   [[nodiscard]] uint64_t ratios() const;
   [[nodiscard]] uint64_t stated_scatter() const { return stated_scatter_; }
   [[nodiscard]] uint64_t missing_scatter() const { return missing_scatter_; }
+  /// All counts as numbers, and the comparison that they state; none if they state none.
+  [[nodiscard]] std::vector<uint64_t> numbers() const;
+  static std::optional<RadiusComparison> of_numbers(std::span<const uint64_t> numbers);
   /// The ratio that a share of the ratios is below, with a relative error of at most 2^(1/128). There must be ratios.
   [[nodiscard]] double quantile(double share) const;
 

@@ -56,6 +56,31 @@ TEST(Statistics, RangesAndCountsAreThoseOfTheValues) {
   EXPECT_EQ(classes[1].code, 200u);
 }
 
+TEST(Statistics, WhatIsWrittenComesBack) {
+  const AttributeStatistics statistics = all_of(survey());
+  ByteWriter bytes;
+  statistics.write(bytes);
+  ByteReader reader(bytes.bytes());
+  const AttributeStatistics read = AttributeStatistics::read(reader);
+  EXPECT_TRUE(reader.ok() && reader.rest().empty());
+  ASSERT_EQ(read.ranges(kNames).size(), 3u);
+  for (size_t i = 0; i < kNames.size(); ++i) {
+    const AttributeRange expected = statistics.ranges(kNames)[i];
+    const AttributeRange range = read.ranges(kNames)[i];
+    EXPECT_EQ(range.smallest, expected.smallest);
+    EXPECT_EQ(range.largest, expected.largest);
+    EXPECT_EQ(range.low, expected.low);
+    EXPECT_EQ(range.high, expected.high);
+  }
+  ASSERT_EQ(read.classes().size(), 2u);
+  EXPECT_EQ(read.classes()[1].surfels, 3000u);
+  for (size_t size = 0; size < bytes.bytes().size(); ++size) {
+    ByteReader cut(bytes.bytes().first(size));
+    AttributeStatistics::read(cut);
+    EXPECT_FALSE(cut.ok()) << size;
+  }
+}
+
 TEST(Statistics, TheOrderOfBlocksDoesNotMatter) {
   const surfel::SurfelCloud cloud = survey();
   std::vector<uint32_t> odd;

@@ -1,8 +1,10 @@
 #include "scan/scan_stream.h"
 
+#include <algorithm>
 #include <filesystem>
 #include <fstream>
 #include <random>
+#include <span>
 #include <string>
 
 #include <gmock/gmock.h>
@@ -114,6 +116,36 @@ TEST(ScanStreamTest, FilesAreReadFromTheDisk) {
   ASSERT_TRUE(points) << points.error().message;
   EXPECT_EQ(points->name, path.filename());
   EXPECT_EQ(testing::whole(ScanStream::open(path)).error().kind, ErrorKind::kNotFound);
+}
+
+TEST(ScanStreamTest, ReopenedScansAreThoseThatWereOpened) {
+  Selection selection;
+  selection.every = 2;
+  for (const Sample& sample : testing::samples()) {
+    const fs::path path =
+        fs::path(::testing::TempDir()) / ("reopened_" + std::to_string(::getpid()) + "_" + sample.name);
+    ASSERT_TRUE(write_file_atomically(path, sample.text));
+    const Result<ScanStream> opened = ScanStream::open(path, {}, {}, selection);
+    ASSERT_TRUE(opened) << opened.error().message;
+    const Result<ScanStream> reopened = ScanStream::reopen(path, {}, selection, opened->facts());
+    ASSERT_TRUE(reopened) << reopened.error().message;
+    EXPECT_EQ(reopened->size(), opened->size());
+    EXPECT_EQ(reopened->schema().scalars, opened->schema().scalars);
+    ASSERT_EQ(reopened->pieces(), opened->pieces());
+    for (size_t piece = 0; piece < opened->pieces(); ++piece) {
+      const Result<ScanPoints> points = reopened->read(piece);
+      ASSERT_TRUE(points);
+      const ScanPoints expected = opened->read(piece).value();
+      const auto bytes = [](const auto& values) { return std::as_bytes(std::span(values)); };  // some are no numbers
+      EXPECT_TRUE(std::ranges::equal(bytes(points->positions), bytes(expected.positions))) << sample.name;
+      ASSERT_EQ(points->colors.has_value(), expected.colors.has_value()) << sample.name;
+      const auto colors = [](const ScanPoints& of) {
+        return of.colors ? of.colors->values : decltype(of.colors->values)();
+      };
+      EXPECT_EQ(colors(*points), colors(expected)) << sample.name;
+    }
+    fs::remove(path);
+  }
 }
 
 TEST(ScanStreamTest, FilesThatMissTheirHeaderAreRefused) {

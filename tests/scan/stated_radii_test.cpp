@@ -260,6 +260,24 @@ TEST(RadiusComparisonTest, PartsAddUpInAnyOrder) {
   }
 }
 
+TEST(RadiusComparisonTest, ItsNumbersStateAllOfIt) {
+  RadiusComparison comparison;
+  EXPECT_EQ(RadiusComparison::of_numbers(comparison.numbers())->numbers(), comparison.numbers());
+  comparison.add_stated(7, 2);
+  comparison.add_missing(5, 1);
+  for (const double ratio : {0.5, 1.0, 1.1, 4.0}) comparison.add_ratio(ratio);
+  const std::optional<RadiusComparison> read = RadiusComparison::of_numbers(comparison.numbers());
+  ASSERT_TRUE(read);
+  EXPECT_EQ(read->stated(), 7U);
+  EXPECT_EQ(read->missing(), 5U);
+  EXPECT_EQ(read->stated_scatter(), 2U);
+  EXPECT_EQ(read->missing_scatter(), 1U);
+  EXPECT_EQ(read->ratios(), 4U);
+  EXPECT_EQ(read->quantile(0.5), comparison.quantile(0.5));
+  EXPECT_FALSE(RadiusComparison::of_numbers({}));
+  EXPECT_FALSE(RadiusComparison::of_numbers(std::vector<uint64_t>(5)));
+}
+
 TEST(RadiusComparisonTest, QuantilesAreWithinHalfAStep) {
   RadiusComparison comparison;
   for (int i = 0; i <= 100; ++i) comparison.add_ratio(0.5 + 0.01 * i);
