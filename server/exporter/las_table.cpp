@@ -114,14 +114,16 @@ std::optional<uint16_t> epsg_code(std::string_view crs) {
   return code;
 }
 
-/// Returns whether the system is stated as WKT. Codes have GeoKeys, which more programs read, if LAS knows keys for
-/// their kind. Texts that are no WKT are left out: LAS has no place for them.
+/// Returns whether the system is stated as WKT, as it always is with point formats from 6 on. With others codes have
+/// GeoKeys, which more programs read, if LAS knows keys for their kind. Texts that are no WKT are left out: LAS has no
+/// place for them.
 bool add_system(const std::string& text, LasHead& head) {
   const auto code = epsg_code(text);
   Result<crs::CoordinateSystem> system = fail(ErrorKind::kInvalidInput, "not a code of EPSG");
   if (code) system = crs::read_system(text);
   const bool geographic = system && system->kind == crs::SystemKind::kGeographic;
-  if (geographic || (system && system->kind == crs::SystemKind::kProjected)) {
+  const bool has_key = geographic || (system && system->kind == crs::SystemKind::kProjected);
+  if (has_key && head.point_format < 6) {
     head.records.push_back(las_record("LASF_Projection", 34735, geo_keys(*code, geographic)));
     return false;
   }
@@ -286,7 +288,8 @@ Result<LasTable> plan_las_table(const LasPoints& points) {
   table.head.record_length = extra.length;
   if (!extra.entries.empty()) table.head.records.push_back(las_record("LASF_Spec", 4, extra.entries));
   const bool wkt = add_system(schema.crs, table.head);
-  table.head.header = header_of(table, wkt || table.head.point_format >= 6, wkt);
+  const bool modern = table.head.point_format >= 6;  // these set the bit of WKT even where no system is stated
+  table.head.header = header_of(table, wkt || modern, wkt || modern);
   return table;
 }
 

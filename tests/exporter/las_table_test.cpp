@@ -120,6 +120,23 @@ TEST(LasTableTest, CodesWithoutAGeoKeyAreWrittenAsWkt) {
   EXPECT_EQ(plan(schema)->head.records.size(), 0U);
 }
 
+TEST(LasTableTest, PointFormatsFrom6OnStateTheirSystemAsWkt) {
+  for (const char* crs : {"EPSG:25832", "EPSG:4326", ""}) {
+    scan::ScanSchema schema = schema_of({{"classification", ScalarType::kUint8}});
+    schema.crs = crs;
+    const auto table = plan(schema);
+    ASSERT_TRUE(table);
+    uint16_t encoding = 0;
+    std::memcpy(&encoding, &table->head.header[6], sizeof(encoding));
+    EXPECT_EQ(encoding, 16) << crs;
+    const bool stated = *crs != 0;
+    ASSERT_EQ(table->head.records.size(), stated ? 1U : 0U);
+    uint16_t id = 2112;
+    if (stated) std::memcpy(&id, &table->head.records[0][18], sizeof(id));
+    EXPECT_EQ(id, 2112) << crs;
+  }
+}
+
 TEST(LasTableTest, ValuesBeyondTheirBitsAreNamed) {
   const scan::ScanSchema schema = schema_of({{"return_number", ScalarType::kUint8}});
   const auto table = plan(schema);
