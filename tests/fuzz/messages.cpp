@@ -6,6 +6,7 @@
 #include "protocol/points_query.h"
 #include "protocol/profile_query.h"
 #include "protocol/validate.h"
+#include "warp/depth_plane.h"
 
 namespace surfcast::fuzz {
 namespace {
@@ -52,6 +53,12 @@ void read_answer(Bytes bytes) {
   wire::Answer message;
   if (!protocol::decode_message(bytes, message)) return;
   if (message.has_profile()) static_cast<void>(protocol::check_profile_answer(message.profile()));
+}
+
+void read_depth(Bytes bytes) {
+  wire::DepthPlane plane;
+  if (!protocol::decode_message(bytes, plane)) return;
+  static_cast<void>(warp::decode_depth(plane, 64, 48));
 }
 
 void read_route(Bytes bytes) {

@@ -15,6 +15,7 @@ void read_hello(Bytes bytes);    ///< the first bytes of a framed connection
 void read_frames(Bytes bytes);   ///< the frames that follow
 void read_request(Bytes bytes);  ///< a message of a client, and the checks of what it asks for
 void read_answer(Bytes bytes);   ///< a message of a server, as a client takes it
+void read_depth(Bytes bytes);    ///< the depth of a frame, as a client warps by it
 void read_route(Bytes bytes);    ///< the target of an HTTP request
 void read_query(Bytes bytes);    ///< the query of a picture, a pick, a profile or points
 
@@ -34,13 +35,12 @@ struct Target {
   void (*run)(Bytes bytes);
 };
 
-inline constexpr std::array kTargets{Target{"hello", read_hello},         Target{"frames", read_frames},
-                                     Target{"request", read_request},     Target{"answer", read_answer},
-                                     Target{"route", read_route},         Target{"query", read_query},
-                                     Target{"scan", read_scan},           Target{"grid", read_grid},
-                                     Target{"ellipsoid", read_ellipsoid}, Target{"mesh", read_mesh},
-                                     Target{"gaussian", read_gaussian},   Target{"splat", read_splat},
-                                     Target{"model", read_model},         Target{"gaussian_block", read_gaussian_block},
-                                     Target{"brick", read_brick}};
+inline constexpr std::array kTargets{
+    Target{"hello", read_hello},         Target{"frames", read_frames}, Target{"request", read_request},
+    Target{"answer", read_answer},       Target{"depth", read_depth},   Target{"route", read_route},
+    Target{"query", read_query},         Target{"scan", read_scan},     Target{"grid", read_grid},
+    Target{"ellipsoid", read_ellipsoid}, Target{"mesh", read_mesh},     Target{"gaussian", read_gaussian},
+    Target{"splat", read_splat},         Target{"model", read_model},   Target{"gaussian_block", read_gaussian_block},
+    Target{"brick", read_brick}};
 
 }  // namespace surfcast::fuzz
