@@ -9,6 +9,7 @@
 #include "protocol/points_query.h"
 #include "protocol/profile_query.h"
 #include "protocol/validate.h"
+#include "surfel/srgb.h"
 
 namespace surfcast::net {
 namespace {
@@ -155,12 +156,8 @@ glm::u8vec3 from_wire(const wire::Color& color) {
   return {color.red(), color.green(), color.blue()};
 }
 
-double srgb_from_linear(double light) {
-  return light <= 0.0031308 ? 12.92 * light : 1.055 * std::pow(light, 1 / 2.4) - 0.055;
-}
-
 glm::dvec3 srgb_from_linear(const wire::Vector3& light) {
-  return {srgb_from_linear(light.x()), srgb_from_linear(light.y()), srgb_from_linear(light.z())};
+  return {surfel::encode_srgb(light.x()), surfel::encode_srgb(light.y()), surfel::encode_srgb(light.z())};
 }
 
 picture::TransferPoint from_wire(const wire::TransferPoint& point) {

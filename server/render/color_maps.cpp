@@ -6,6 +6,8 @@
 #include <glm/common.hpp>
 #include <span>
 
+#include "surfel/srgb.h"
+
 namespace surfcast::render {
 namespace {
 
@@ -77,9 +79,9 @@ glm::u8vec3 unnamed_class_color(uint8_t code) {
   return {channel(0), channel(4), channel(2)};
 }
 
-/// The square root of the linear light of an sRGB value (IEC 61966-2-1).
+/// The square root of the linear light of an sRGB value.
 double linear_root(double encoded) {
-  return std::sqrt(encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4));
+  return std::sqrt(surfel::decode_srgb(encoded));
 }
 
 /// Unpacked by unpack_linear_color in shaders/include/packing.glsl.

@@ -5,6 +5,7 @@
 
 #include "shared/kernel.h"
 #include "surfel/even_sampling.h"
+#include "surfel/srgb.h"
 
 namespace surfcast::render {
 namespace {
@@ -16,9 +17,8 @@ constexpr double kEvenPrefilter = 1.288;
 /// Variance that replaces the prefilter if only the kernel is drawn, pixels squared. It keeps the inverse finite.
 constexpr double kNoPrefilter = 1e-4;
 
-float decode_srgb(uint8_t value) {
-  const double encoded = value / 255.0;
-  return static_cast<float>(encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4));
+float light_of(uint8_t value) {
+  return static_cast<float>(surfel::decode_srgb(value / 255.0));
 }
 
 }  // namespace
@@ -85,8 +85,8 @@ layout::FrameConstants frame_constants(const geometry::CameraFrame& frame, const
                                          : surfel::even_sampling_weight(SURFCAST_KERNEL_SIGMA);
   c.filter_ = {prefilter, SURFCAST_VISIBILITY_PIXELS * SURFCAST_VISIBILITY_PIXELS, weight_scale,
                static_cast<float>(surfel::kRadiusOverSpacing * request.spacing / frame.eta)};
-  c.background = {decode_srgb(request.background.r), decode_srgb(request.background.g),
-                  decode_srgb(request.background.b), static_cast<float>(request.opacity)};
+  c.background = {light_of(request.background.r), light_of(request.background.g), light_of(request.background.b),
+                  static_cast<float>(request.opacity)};
   c.flags = {surfels.oriented ? 1 : 0, per_surfel ? 1 : 0, surfels.even ? 1 : 0, 0};
   return c;
 }

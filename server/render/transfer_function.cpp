@@ -6,6 +6,7 @@
 
 #include "base/contract.h"
 #include "shared/volume_layout.h"
+#include "surfel/srgb.h"
 
 namespace surfcast::render {
 namespace {
@@ -14,10 +15,6 @@ constexpr double kOpaqueDepth = 16;    ///< optical depth of one spacing at opac
 constexpr double kLargestDepth = 256;  ///< of one spacing
 /// Of a sum over all bins. Differences of sums must fit in 31 bits.
 constexpr double kLargestSum = 2147480000;
-
-double linear_from_srgb(double code) {
-  return code <= 0.04045 ? code / 12.92 : std::pow((code + 0.055) / 1.055, 2.4);
-}
 
 /// Optical depth of one spacing. `opacity`: factor of the opacity of a spacing.
 double depth_of(const picture::TransferPoint& point, double spacing, double opacity) {
@@ -40,7 +37,7 @@ std::vector<glm::uvec4> rounded_sums(const std::vector<glm::dvec4>& bins, const 
 }  // namespace
 
 glm::dvec3 linear_from_srgb(const glm::dvec3& color) {
-  return {linear_from_srgb(color.x), linear_from_srgb(color.y), linear_from_srgb(color.z)};
+  return {surfel::decode_srgb(color.x), surfel::decode_srgb(color.y), surfel::decode_srgb(color.z)};
 }
 
 std::vector<picture::TransferPoint> sorted_points(std::span<const picture::TransferPoint> points) {

@@ -5,7 +5,11 @@
 
 namespace surfcast::surfel {
 
-/// Linear light in [0, 1] of an sRGB colour (IEC 61966-2-1). `bits` is 8 or 16 per channel.
+/// The transfer function of sRGB (IEC 61966-2-1) and its inverse, of values in [0, 1].
+double decode_srgb(double encoded);
+double encode_srgb(double linear);
+
+/// Linear light in [0, 1] of an sRGB colour. `bits` is 8 or 16 per channel.
 glm::vec3 to_linear(const glm::u16vec3& color, int bits);
 
 /// The nearest sRGB colour of `bits` per channel. Light outside [0, 1] is clamped.

@@ -3,12 +3,13 @@
 // they meet nothing ends. Silhouettes are supersampled like those of discs.
 #include "curved/surface.glsl"
 #include "include/resampling_filter.glsl"
+#include "include/srgb.glsl"
 
 #ifdef SURFCAST_COLOR_NORMAL
 // A world normal as colour, as in include/display_options.glsl, in linear light.
 vec3 color_of_normal(vec3 n) {
-  vec3 s = clamp(0.5 * (frame.right.xyz * n.x + frame.up.xyz * n.y + frame.forward.xyz * n.z) + 0.5, 0.0, 1.0);
-  return mix(s / 12.92, pow((s + 0.055) / 1.055, vec3(2.4)), greaterThan(s, vec3(0.04045)));
+  vec3 s = 0.5 * (frame.right.xyz * n.x + frame.up.xyz * n.y + frame.forward.xyz * n.z) + 0.5;
+  return decode_srgb(clamp(s, 0.0, 1.0));
 }
 #endif
 

@@ -5,6 +5,7 @@
 #include "include/frame.glsl"
 #include "include/display_options.glsl"
 #include "include/packing.glsl"
+#include "include/srgb.glsl"
 #include "include/tile_range.glsl"
 #include "ellipsoid/texel.glsl"
 #include "ellipsoid/record.glsl"
@@ -66,18 +67,13 @@ vec3 semi_axes(GlyphView view, vec3 values, float factor) {
   return max(v, vec3(kFlattest * v.x));
 }
 
-// sRGB to linear light, IEC 61966-2-1.
-vec3 linear_of(vec3 code) {
-  return mix(code / 12.92, pow((code + 0.055) / 1.055, vec3(2.4)), greaterThan(code, vec3(0.04045)));
-}
-
 // Linear light. Colours do not depend on the directions that equal values leave open.
 vec3 color_of(GlyphView view, uvec4 run, int at, uvec4 a, vec3 values, vec3 direction) {
   if (view.look.y == SURFCAST_GLYPH_DIRECTION) {
     float w = (values.x - values.y) / values.x;
-    return linear_of(0.5 * (1.0 - w) + w * abs(direction));
+    return decode_srgb(0.5 * (1.0 - w) + w * abs(direction));
   }
-  if (view.look.y == SURFCAST_GLYPH_DEC) return linear_of(fractional_anisotropy(values) * abs(direction));
+  if (view.look.y == SURFCAST_GLYPH_DEC) return decode_srgb(fractional_anisotropy(values) * abs(direction));
 #ifdef SURFCAST_GLYPH_COLORS
   if (view.look.y == SURFCAST_GLYPH_ATTRIBUTE || view.look.y == SURFCAST_GLYPH_HEIGHT) {
     float value = view.look.y == SURFCAST_GLYPH_HEIGHT ? ellipsoid_position(a)[view.look.z]
@@ -86,7 +82,7 @@ vec3 color_of(GlyphView view, uvec4 run, int at, uvec4 a, vec3 values, vec3 dire
     return unpack_linear_color(texelFetch(colors, int(clamp(place, 0.0, 1.0) * float(view.look.w) + 0.5)).x);
   }
 #endif
-  return (run.z & SURFCAST_RUN_ELLIPSOID_COLORED) != 0u ? linear_of(ellipsoid_color(a)) : vec3(0.8);
+  return (run.z & SURFCAST_RUN_ELLIPSOID_COLORED) != 0u ? decode_srgb(ellipsoid_color(a)) : vec3(0.8);
 }
 
 // Exponents of a superquadric, about its axis and along it; z: 1 if the axis is that of the largest value, 0 if it is
