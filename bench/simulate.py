@@ -30,7 +30,8 @@ class Stages:
     """Processor time of one picture, seconds."""
     draw: float
     encode: float = 0
-    network: float = 0  # clients, proxy and protocols: a half before and a half after the server
+    serve: float = 0    # of the server for protocols: a half before it is drawn and a half after it is encoded
+    network: float = 0  # of clients and proxy, likewise
     load: float = 0     # to draw it from a model of which nothing is in memory, beyond `draw`
 
 
@@ -39,6 +40,7 @@ class Arrival:
     """A picture that is asked for, whatever becomes of the ones before."""
     time: float  # seconds
     model: int
+    stages: Stages | None = None  # None: drawn from those of the setup
 
 
 @dataclasses.dataclass(frozen=True)
@@ -219,14 +221,19 @@ class Server:
         self._frames = self._encoding = 0
         self._models: collections.OrderedDict[int, None] = collections.OrderedDict()  # the last one was used last
 
-    def take(self, picture: Picture, answer: Action) -> bool:
-        """False if the queue is full; `answer` is called when the picture is encoded."""
-        if len(self._waiting) >= self.setup.queue:
-            return False
-        picture.queued = self.clock.now
-        self._waiting.append((picture, answer))
-        self._draw_next()
-        return True
+    def take(self, picture: Picture, answer: Callable[[bool], None]) -> None:
+        """Calls `answer` with False if the queue is full, and else when the picture is encoded."""
+        half = picture.stages.serve / 2
+
+        def received() -> None:
+            if len(self._waiting) >= self.setup.queue:
+                answer(False)
+                return
+            picture.queued = self.clock.now
+            self._waiting.append((picture, lambda: self.processor.run(half, functools.partial(answer, True))))
+            self._draw_next()
+
+        self.processor.run(half, received)
 
     def _draw_next(self) -> None:
         if self._drawing or not self._waiting or self._frames >= self.setup.frames:
@@ -293,7 +300,7 @@ class Simulation:
 
     def run(self) -> Result:
         for arrival in self.setup.arrivals:
-            self.clock.at(arrival.time, functools.partial(self.ask, arrival.model, lambda: None))
+            self.clock.at(arrival.time, functools.partial(self.ask, arrival.model, lambda: None, arrival.stages))
         for _ in range(self.setup.clients):
             self.clock.at(self.dice.expovariate(1 / self.setup.think) if self.setup.think else 0, self.client)
         self.clock.run()
@@ -310,7 +317,7 @@ class Simulation:
 
         self.ask(self.dice.choices(range(self.setup.models), cum_weights=self.popularity)[0], think)
 
-    def ask(self, model: int, then: Action) -> None:
+    def ask(self, model: int, then: Action, stages: Stages | None = None) -> None:
         counts = self.clock.now >= self.setup.warm_up
         self.result.asked += counts
         self.change_present(counts)
@@ -320,7 +327,7 @@ class Simulation:
                 self.count(picture, answered)
             then()
 
-        picture = Picture(model, self.dice.choice(self.setup.stages), self.clock.now, done)
+        picture = Picture(model, stages or self.dice.choice(self.setup.stages), self.clock.now, done)
         self.network.run(picture.stages.network / 2, functools.partial(self.attempt, picture))
 
     def route(self, model: int) -> tuple[int, int]:
@@ -331,15 +338,15 @@ class Simulation:
 
     def attempt(self, picture: Picture) -> None:
         """Tries the two servers of a model in turns."""
-        for attempt in range(self.setup.attempts):
-            server = self.servers[self.route(picture.model)[attempt % 2]]
-            picture.attempts = attempt + 1
-            if server.take(picture, functools.partial(self.answer, picture)):
-                return
-        picture.done(False)
+        server = self.servers[self.route(picture.model)[picture.attempts % 2]]
+        picture.attempts += 1
+        server.take(picture, functools.partial(self.answer, picture))
 
-    def answer(self, picture: Picture) -> None:
-        self.network.run(picture.stages.network / 2, functools.partial(picture.done, True))
+    def answer(self, picture: Picture, answered: bool) -> None:
+        if answered or picture.attempts == self.setup.attempts:
+            self.network.run(picture.stages.network / 2, functools.partial(picture.done, answered))
+        else:
+            self.attempt(picture)
 
     def change_present(self, change: int) -> None:
         self.present_time += self.present * (self.clock.now - self.changed)
@@ -356,7 +363,8 @@ class Simulation:
             self.result.waits.append(picture.waited)
 
     def summary(self) -> Result:
-        result, all_time = self.result, self.clock.now
+        """The run ends with the last answer; clients that still think do not count."""
+        result, all_time = self.result, self.changed
         result.end = all_time
         result.latencies.sort()
         result.waits.sort()

@@ -7,8 +7,8 @@ import sys
 import unittest
 
 sys.path.insert(0, sys.argv.pop(1))
-import simulate  # noqa: E402  # pylint: disable=wrong-import-position
-from simulate import Arrival, Setup, Stages, poisson, simulate as run  # noqa: E402  # pylint: disable=C0413
+import simulate  # noqa: E402
+from simulate import Arrival, Setup, Stages, poisson, simulate as run  # noqa: E402
 
 ENDLESS = 10 ** 9
 # Service times of mean 1 with an exponential distribution: the middles of classes that are equally likely.
@@ -26,7 +26,7 @@ class OneServer(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
         cls.load = 0.5
-        arrivals = poisson(cls.load, 300_000, seed=3)
+        arrivals = poisson(cls.load, 200_000, seed=3)
         cls.exponential = run(Setup(EXPONENTIAL, queue=ENDLESS, arrivals=arrivals, cores=1, warm_up=1000))
         cls.constant = run(Setup(CONSTANT, queue=ENDLESS, arrivals=arrivals, cores=1, warm_up=1000))
 
@@ -132,6 +132,14 @@ class Stage(unittest.TestCase):
         result = run(Setup(CONSTANT, clients=5, think=0, seconds=100))
         self.assertEqual(result.latencies[50], 5)
         self.assertEqual(result.drawing, [1])
+
+    def test_a_run_ends_with_the_last_answer(self):
+        # About 20 of the clients ask; most of the others would after 100 s.
+        self.assertLess(run(Setup(CONSTANT, clients=200, think=100, seconds=10)).end, 40)
+
+    def test_protocols_take_time_of_the_server_beside_drawing(self):
+        result = run(Setup([Stages(1, serve=0.5)], arrivals=[Arrival(0, 0)] * 2))
+        self.assertEqual(result.latencies, [1.5, 2.5])
 
     def test_closed_clients_with_pauses(self):
         # The machine repair model: with N clients, load a = service / pause, P(0) = 1 / sum(N! / (N - n)! a^n).
