@@ -26,7 +26,7 @@ constexpr double kWidestDisc = 2;
 constexpr double kWidestRoughDisc = 1;
 /// The layers close a surface together, with half the diagonal of a cell of its sampling: 0.65 radii.
 constexpr double kWidestLayer = 0.7;
-constexpr double kWidestScatter = 1.0 / 3;
+constexpr double kWidestScatter = 0.28;
 constexpr double kWidestThread = 0.5;
 
 bool is_flat(const Spread& spread, double thickest) {
