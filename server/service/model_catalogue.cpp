@@ -111,6 +111,14 @@ std::map<std::string, fs::path> ModelCatalogue::find_all() const {
   return models;
 }
 
+bool ModelCatalogue::remote(const std::string& name) const {
+  const auto file = std::ranges::find(files_, name, &NamedModel::name);
+  if (file != files_.end()) return object_store::is_object_url(file->path.string());
+  const std::lock_guard lock(listing_mutex_);
+  const auto holds = [&](const auto& listing) { return listing.second.models.contains(name); };
+  return stored_.contains(name) && std::ranges::none_of(listings_, holds);
+}
+
 /// The file of a model; empty if there is none.
 fs::path ModelCatalogue::find(const std::string& name) const {
   const auto file = std::ranges::find(files_, name, &NamedModel::name);

@@ -63,6 +63,8 @@ class ModelCatalogue : public ModelSource {
   [[nodiscard]] std::vector<ScanStatus> scans() const override;
   [[nodiscard]] bool awaited(const std::string& name) const override;
   [[nodiscard]] uint64_t edition(const std::string& name) const override;
+  /// True for models of stores, by what is known of the folders since they were last read.
+  [[nodiscard]] bool remote(const std::string& name) const override;
   /// The edition of a scan's model, or the newest one if it is 0 or gone.
   [[nodiscard]] Result<Edition> open_edition(const std::string& name, uint64_t edition) const;
   [[nodiscard]] Result<ModelDescription> describe(const std::string& name) const override;

@@ -181,7 +181,7 @@ void RangeServer::release() {
 
 void RangeServer::wait_for_held(size_t requests) {
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [&] { return at_once_ == requests; });
+  changed_.wait(lock, [&] { return at_once_ >= requests; });
 }
 
 void RangeServer::forget_requests() {

@@ -61,7 +61,7 @@ class RangeServer {
   /// From now on answers wait until release().
   void hold();
   void release();
-  /// Waits until so many requests are held.
+  /// Waits until so many requests are held, or more.
   void wait_for_held(size_t requests);
 
   [[nodiscard]] std::string url(const std::string& path) const;

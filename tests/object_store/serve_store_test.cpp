@@ -84,6 +84,29 @@ TEST_F(ServeStoreTest, TheModelsOfABucketAreListedAndNewOnesAreSeen) {
   EXPECT_FALSE(drawn("another").empty());
 }
 
+TEST_F(ServeStoreTest, AFileIsDrawnByAWorkerAndAtOnceWhileAStoreHangs) {
+  ASSERT_FALSE(build("near", square_of_points()).empty());
+  store_.put_page(kList, list_of({"square.surf"}));
+  serve(file("near.surf") + " " + store_.url("/bucket/") +
+        " --store-timeout 1000 --store-stall-timeout 1000 --no-shader-warm-up");
+  store_.hold();
+  std::vector<pid_t> waiting;
+  for (int client = 0; client < 4; ++client) {
+    waiting.push_back(
+        client::start_program({SURFCAST_CLIENT, "render", url_ + "/square", "--timeout", "290", "--resolution", "64,48",
+                               "--output", file("far" + std::to_string(client) + ".png")}));
+  }
+  store_.wait_for_held(1);
+  EXPECT_FALSE(drawn("near").empty());
+  EXPECT_NE(get("/api/models/near").find("\"near\""), std::string::npos);
+  EXPECT_NE(get("/metrics").find("surfcast_workers_started_total 1\n"), std::string::npos);
+  EXPECT_NE(get("/metrics").find("surfcast_query_workers_started_total 1\n"), std::string::npos);
+  for (const pid_t client : waiting) EXPECT_EQ(::waitpid(client, nullptr, WNOHANG), 0) << "it waits for the store";
+  store_.release();
+  for (const pid_t client : waiting) EXPECT_EQ(client::wait_for_program(client), 0);
+  EXPECT_TRUE(content(file("far0.png")) == drawn("square"));
+}
+
 TEST_F(ServeStoreTest, AFolderThatCannotBeListedIsOneLineAndTheEnd) {
   const client::ProgramOutcome outcome =
       client::run_program(SURFCAST_SERVER " serve --listen 127.0.0.1:0 " + store_.url("/none/") + " 2>&1");
