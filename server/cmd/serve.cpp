@@ -250,6 +250,7 @@ Status serve(ServeCommand command) {
   command.server.viewer = std::move(*viewer);
   Result<std::shared_ptr<model::BlockCache>> blocks = open_block_cache(command.block_cache, command.cache);
   if (!blocks) return fail(std::move(blocks.error()));
+  command.store.log_lines = command.server.log_lines;
   const object_store::ObjectStore store(command.store, std::move(*blocks));
   Result<NamedPaths> paths = sort_paths(command.paths, store);
   if (!paths) return fail(paths.error());
@@ -257,7 +258,7 @@ Status serve(ServeCommand command) {
   service::ModelCatalogue models(std::move(paths->models), std::move(paths->folders), &store);
   StoreFolders stores(store, models, std::move(paths->stores));
   if (Status status = stores.list(); !status) return status;
-  stores.watch(command.store_refresh);
+  if (places.stores) stores.watch(command.store_refresh);
   std::atomic<bool> gpu_reset = false;
   const auto on_reset = [&gpu_reset] {
     gpu_reset = true;
@@ -369,9 +370,10 @@ void add_serve_command(CLI::App& app, Status& outcome) {
   add_picture_flags(*sub, command->service);
   add_store_flags(*sub, command->store);
   add_block_cache_flag(*sub, command->block_cache);
-  add_seconds(
-      *sub, "store-refresh", command->store_refresh,
-      "Before folders in stores are listed again (default 60). More: new models are seen later; less: requests");
+  add_seconds(*sub, "store-refresh", command->store_refresh,
+              "Before folders in stores are listed again, and open models are looked after (default 60). More: new and "
+              "replaced "
+              "models are seen later; less: requests");
   add_server_flags(*sub, command->service, command->renderer, command->server, command->viewer_limits);
   sub->add_option("--log-format", command->log_format, "Lines of the log: text or json (default text)")
       ->envname(protocol::environment_name("log-format"))
