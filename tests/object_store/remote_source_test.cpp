@@ -241,10 +241,11 @@ TEST_F(RemoteSourceTest, ALinkThatGoesOnMayTakeLongerAndWaitingForATurnDoesNotCo
   const auto other = RemoteSource::open(*client_, StorePlace{server_.url(kPath), {}, false}, "the other");
   ASSERT_TRUE(other);
   server_.fail(Fault::kDripping, 2);
-  const auto waits = std::async(std::launch::async, [&] { return read(kPart).has_value(); });
+  auto waits = std::async(std::launch::async, [&] { return read(kPart).has_value(); });
   std::string bytes(kPart.size, '\0');
   EXPECT_TRUE((*other)->read(kPart.offset, std::as_writable_bytes(std::span(bytes))));
   EXPECT_TRUE(bytes == expected(kPart));
+  EXPECT_TRUE(waits.get());
 }
 
 TEST_F(RemoteSourceTest, ALinkBelowTheLeastRateIsGivenUpInTime) {
