@@ -344,7 +344,8 @@ RenderService::~RenderService() {
 }
 
 JobId RenderService::draw(const Asker& asker, PictureJob job, PictureDone done) {
-  return state_of(job.model).add(asker, std::move(job), std::move(done));
+  State& state = state_of(job.model);
+  return state.add(asker, std::move(job), std::move(done));
 }
 
 bool RenderService::cancel(JobId id) {
