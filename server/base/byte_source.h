@@ -38,6 +38,9 @@ class ByteSource {
   virtual void forget(const ByteRange& /*range*/) const {}
   /// Of an open file, to pass it to another process; -1: the source is no file.
   [[nodiscard]] virtual int descriptor() const { return -1; }
+  /// Finds out whether the source has been replaced, which replaced() says afterwards. Waits for a slow source, and
+  /// changes nothing if it does not answer.
+  virtual void look_for_replacement() const {}
   /// True once reading has failed with kReplaced. Nothing can be read any more: the source has to be opened anew.
   [[nodiscard]] virtual bool replaced() const { return false; }
 };

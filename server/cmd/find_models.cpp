@@ -19,13 +19,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// The model of a URL, opened.
-Result<service::NamedModel> find_stored(const std::string& url, const object_store::ObjectStore& store) {
+/// The model of a URL, opened. `shown`: what its errors call it.
+Result<service::NamedModel> find_stored(const std::string& url, const std::string& shown,
+                                        const object_store::ObjectStore& store) {
   if (!object_store::is_model_url(url)) {
     return fail(ErrorKind::kInvalidInput,
-                url + ": neither a model (.surf) nor a folder of models (with a / at its end)");
+                shown + ": neither a model (.surf) nor a folder of models (with a / at its end)");
   }
-  Result<model::ModelFile> model = store.open(url);
+  Result<model::ModelFile> model = store.open(url, shown);
   if (!model) return fail(std::move(model.error()));
   return service::NamedModel{
       object_store::object_name(url), url, {}, std::make_shared<const model::ModelFile>(std::move(*model))};
@@ -106,8 +107,9 @@ Status sort_url(const std::string& url, const object_store::ObjectStore& store, 
     sorted.stores.push_back(url);
     return {};
   }
-  Result<service::NamedModel> model = find_stored(url, store);
-  if (!model) return fail(std::move(model.error()));
+  const std::string name = object_store::object_name(url);
+  Result<service::NamedModel> model = find_stored(url, name, store);
+  if (!model) return fail(model.error().kind, object_store::shown_url(url) + ": " + model.error().message);
   sorted.models.push_back(std::move(*model));
   return {};
 }
@@ -146,7 +148,8 @@ Result<std::unique_ptr<service::ModelCatalogue>> find_one_model(const fs::path& 
   if (stored ? url.ends_with('/') : fs::is_directory(path, ignored) && !is_scan_folder(path)) {
     return fail(ErrorKind::kInvalidInput, path.string() + ": expected one model, got a folder");
   }
-  Result<service::NamedModel> model = stored ? find_stored(url, store) : find_model(path, cache);
+  Result<service::NamedModel> model =
+      stored ? find_stored(url, object_store::shown_url(url), store) : find_model(path, cache);
   if (!model) return fail(std::move(model.error()));
   std::vector<service::NamedModel> files;
   files.push_back(std::move(*model));

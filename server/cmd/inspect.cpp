@@ -38,7 +38,8 @@ Status inspect_input(const InspectOptions& options, Error no_model) {
 Status inspect(const InspectOptions& options) {
   const object_store::ObjectStore store(options.store);
   const bool stored = object_store::is_object_url(options.model);
-  const Result<model::ModelFile> model = stored ? store.open(options.model) : model::ModelFile::open(options.model);
+  const Result<model::ModelFile> model = stored ? store.open(options.model, object_store::shown_url(options.model))
+                                                : model::ModelFile::open(options.model);
   if (!model && !stored && model.error().message.ends_with(model::kNoModel)) {
     return inspect_input(options, model.error());
   }

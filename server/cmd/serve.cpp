@@ -11,6 +11,7 @@
 #include <iostream>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -209,21 +210,47 @@ net::ProcessGauges gauges_of(const worker::WorkerCounts& counts) {
   return {counts.started, counts.ended, counts.quarantined};
 }
 
-/// A worker reaches no network, so that models of stores are drawn here.
-void draw_stores_here(ServeCommand& command) {
+/// Where models are that a command line names, or that clients may send.
+struct ModelPlaces {
+  bool files = false;
+  bool stores = false;
+};
+
+ModelPlaces places_of(const ServeCommand& command) {
   const auto in_store = [](const std::filesystem::path& path) { return object_store::is_object_url(path.string()); };
-  if (command.worker.workers == 0 || std::ranges::none_of(command.paths, in_store)) return;
-  spdlog::warn("models of stores are drawn by the server itself, as with --workers 0");
-  command.worker.workers = 0;
+  const bool uploads = !command.server.uploads.folder.empty();
+  return {uploads || !std::ranges::all_of(command.paths, in_store), std::ranges::any_of(command.paths, in_store)};
+}
+
+/// A worker reaches no network, so that models of stores are drawn here. Without others there is no need for workers.
+void draw_stores_here(ServeCommand& command, const ModelPlaces& places) {
+  if (command.worker.workers == 0 || !places.stores) return;
+  spdlog::warn("models of stores are drawn by the server itself, without a sandbox");
+  if (!places.files) command.worker.workers = 0;
+}
+
+service::ShaderWarmUp warm_up_of(const ServeCommand& command) {
+  return command.no_shader_warm_up ? service::ShaderWarmUp::kOff : service::ShaderWarmUp::kOn;
+}
+
+/// Who draws models of stores beside those of files: this process. None where there are not both.
+std::optional<service::Drawers> store_drawers(const ServeCommand& command, const service::ModelCatalogue& models,
+                                              const ModelPlaces& places, std::function<void()> on_reset) {
+  if (!places.files || !places.stores) return std::nullopt;
+  return service::Drawers{service::catalogue_renderers(models,
+                                                       service::local_renderers(command.renderer, std::move(on_reset)),
+                                                       warm_up_of(command), service::ModelPlace::kStore)};
 }
 
 Status serve(ServeCommand command) {
-  draw_stores_here(command);
+  const ModelPlaces places = places_of(command);
+  draw_stores_here(command, places);
   Result<std::shared_ptr<const net::StaticFiles>> viewer = read_viewer(command.viewer, command.viewer_limits);
   if (!viewer) return fail(viewer.error());
   command.server.viewer = std::move(*viewer);
   Result<std::shared_ptr<model::BlockCache>> blocks = open_block_cache(command.block_cache, command.cache);
   if (!blocks) return fail(std::move(blocks.error()));
+  command.store.log_lines = command.server.log_lines;
   const object_store::ObjectStore store(command.store, std::move(*blocks));
   Result<NamedPaths> paths = sort_paths(command.paths, store);
   if (!paths) return fail(paths.error());
@@ -231,7 +258,7 @@ Status serve(ServeCommand command) {
   service::ModelCatalogue models(std::move(paths->models), std::move(paths->folders), &store);
   StoreFolders stores(store, models, std::move(paths->stores));
   if (Status status = stores.list(); !status) return status;
-  stores.watch(command.store_refresh);
+  if (places.stores) stores.watch(command.store_refresh);
   std::atomic<bool> gpu_reset = false;
   const auto on_reset = [&gpu_reset] {
     gpu_reset = true;
@@ -243,10 +270,10 @@ Status serve(ServeCommand command) {
   if (!renderers) return fail(renderers.error());
   Result<std::shared_ptr<service::ModelQueries>> queries = make_queries(command, query_workers);
   if (!queries) return fail(queries.error());
-  const auto warm_up = command.no_shader_warm_up ? service::ShaderWarmUp::kOff : service::ShaderWarmUp::kOn;
-  const auto service =
-      service::RenderService::start(models, service::catalogue_renderers(models, std::move(*renderers), warm_up),
-                                    command.service, std::move(*queries));
+  const auto own_place = places.files ? service::ModelPlace::kFile : service::ModelPlace::kAnywhere;
+  const auto service = service::RenderService::start(
+      models, service::catalogue_renderers(models, std::move(*renderers), warm_up_of(command), own_place),
+      command.service, std::move(*queries), store_drawers(command, models, places, on_reset));
   if (!service) return fail(service.error());
   if (command.worker.workers > 0) {
     command.server.workers = [&] { return net::WorkerGauges{gauges_of(workers), gauges_of(query_workers)}; };
@@ -343,9 +370,10 @@ void add_serve_command(CLI::App& app, Status& outcome) {
   add_picture_flags(*sub, command->service);
   add_store_flags(*sub, command->store);
   add_block_cache_flag(*sub, command->block_cache);
-  add_seconds(
-      *sub, "store-refresh", command->store_refresh,
-      "Before folders in stores are listed again (default 60). More: new models are seen later; less: requests");
+  add_seconds(*sub, "store-refresh", command->store_refresh,
+              "Before folders in stores are listed again, and open models are looked after (default 60). More: new and "
+              "replaced "
+              "models are seen later; less: requests");
   add_server_flags(*sub, command->service, command->renderer, command->server, command->viewer_limits);
   sub->add_option("--log-format", command->log_format, "Lines of the log: text or json (default text)")
       ->envname(protocol::environment_name("log-format"))

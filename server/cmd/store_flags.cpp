@@ -10,13 +10,17 @@ constexpr uint64_t kMostRange = uint64_t{1} << 30;
 
 void add_time_flags_of_store(CLI::App& command, object_store::StoreConfig& store) {
   add_seconds(command, "store-timeout", store.timeout,
-              "For a part of a model in a store, with all that is tried again (default 10). More: pictures wait for "
-              "stores that do not answer; less: slow ones are given up");
+              "For a part of a model in a store, from when it is asked for, with all that is tried again (default 8). "
+              "More: pictures wait for stores that do not answer; less: slow ones are given up");
   add_seconds(command, "store-connect-timeout", store.connect_timeout,
               "For a connection to a store (default 3). More and less as for --store-timeout");
   add_seconds(command, "store-stall-timeout", store.stall_timeout,
               "Without a byte of a store's answer before it is asked again (default 3). More: hanging connections cost "
               "more time; less: slow stores are asked twice");
+  add_size(command, "store-least-rate", store.least_rate,
+           "Bytes each second of an answer that is waited for beyond --store-timeout (default 8K; 0: none is). More: "
+           "slow networks fail; less: pictures wait for them",
+           {0, 1 << 30});
   add_count(command, "store-retries", store.retries,
             "Times that a store is asked again which is busy or does not answer (default 3). More: load on a busy "
             "store; less: pictures fail sooner",

@@ -23,8 +23,17 @@ Status StoreFolders::list() {
 }
 
 void StoreFolders::watch(std::chrono::milliseconds interval) {
-  if (urls_.empty()) return;
   thread_ = std::jthread([this, interval](const std::stop_token& stop) { keep_listing(stop, interval); });
+}
+
+/// The catalogue opens those anew that have been replaced.
+void StoreFolders::look_for_replaced(const std::stop_token& stop) const {
+  for (const std::shared_ptr<const model::ModelFile>& model : models_.opened_in_stores()) {
+    if (stop.stop_requested()) return;
+    if (model->source().replaced()) continue;
+    model->source().look_for_replacement();
+    if (model->source().replaced()) spdlog::info("{}: was replaced in its store", model->source().name());
+  }
 }
 
 void StoreFolders::keep_listing(const std::stop_token& stop, std::chrono::milliseconds interval) {
@@ -38,6 +47,7 @@ void StoreFolders::keep_listing(const std::stop_token& stop, std::chrono::millis
     const Status listed = list();
     if (!listed && !failed) spdlog::warn("{}; the models found there before are kept", listed.error().message);
     failed = !listed;
+    look_for_replaced(stop);
   }
 }
 

@@ -10,7 +10,8 @@
 
 namespace surfcast::cmd {
 
-/// Tells a catalogue which models are in folders of stores. Store and catalogue must outlive it.
+/// Tells a catalogue which models are in folders of stores, and notices when those that are open are replaced. Store
+/// and catalogue must outlive it.
 class StoreFolders {
  public:
   StoreFolders(const object_store::ObjectStore& store, service::ModelCatalogue& models, std::vector<std::string> urls)
@@ -18,11 +19,13 @@ class StoreFolders {
 
   /// Lists all folders. Fails without a change if one cannot be listed.
   Status list();
-  /// Lists them again after each interval, in a thread of its own. A store that does not answer changes nothing.
+  /// Lists them again after each interval, and looks for replaced models, in a thread of its own. A store that does not
+  /// answer changes nothing.
   void watch(std::chrono::milliseconds interval);
 
  private:
   void keep_listing(const std::stop_token& stop, std::chrono::milliseconds interval);
+  void look_for_replaced(const std::stop_token& stop) const;
 
   const object_store::ObjectStore& store_;
   service::ModelCatalogue& models_;

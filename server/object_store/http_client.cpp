@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "base/load_module.h"
+#include "base/log.h"
 
 namespace surfcast::object_store {
 namespace {
@@ -52,7 +53,8 @@ struct HttpClient::Attempts {
 Result<std::unique_ptr<HttpClient>> HttpClient::start(const StoreConfig& config) {
   const Result<const HttpFunctions*>& functions = load_http();
   if (!functions) return fail(functions.error());
-  const HttpLimits limits{config.requests, config.connect_timeout, config.stall_timeout, config.authorities.string()};
+  const HttpLimits limits{config.requests, config.connect_timeout, config.stall_timeout, config.least_rate,
+                          config.authorities.string()};
   const Result<void*> client = (*functions)->start(limits);
   if (!client) return fail(client.error());
   return std::unique_ptr<HttpClient>(new HttpClient(config, **functions, *client));
@@ -75,7 +77,7 @@ HttpRequest HttpClient::request(const StorePlace& place, const std::string& quer
 }
 
 void HttpClient::send(HttpRequest request, Check check, Done done) const {
-  request.deadline = Clock::now() + config_.timeout;
+  request.time = config_.timeout;
   attempt(std::make_shared<Attempts>(Attempts{std::move(request), std::move(check), std::move(done)}));
 }
 
@@ -84,13 +86,27 @@ void HttpClient::attempt(const std::shared_ptr<Attempts>& attempts) const {
   functions_.send(client_, attempts->request, [this, attempts](HttpAnswer answer) {
     std::optional<AnswerFault> fault = attempts->check(answer);
     if (!fault) return attempts->done(std::move(answer));
+    std::optional<Clock::time_point>& deadline = attempts->request.deadline;
+    if (!deadline) deadline = answer.sent + config_.timeout;
     const Clock::time_point again = Clock::now() + retry_pause(attempts->count, random_share());
-    if (!fault->again || attempts->count > config_.retries || again >= attempts->request.deadline) {
-      return attempts->done(fail(std::move(fault->error)));
+    if (!fault->again || attempts->count > config_.retries || again >= *deadline) {
+      return attempts->done(fail(error_of(attempts->request, std::move(*fault))));
     }
     attempts->request.not_before = again;
     attempt(attempts);
   });
+}
+
+/// The error of a request that failed for good. The log has the line about it, or the error itself says all.
+Error HttpClient::error_of(const HttpRequest& request, AnswerFault fault) const {
+  const std::string message = fault.error.message + (fault.detail.empty() ? "" : ": " + fault.detail);
+  if (!config_.log_lines) return {fault.error.kind, message};
+  if (fault.error.kind == ErrorKind::kReplaced) return std::move(fault.error);
+  if (const std::optional<size_t> left_out = lines_.admit(Clock::now())) {
+    spdlog::warn("{}: {}{}", shown_url(request.url), message,
+                 *left_out > 0 ? ", and " + std::to_string(*left_out) + " such lines before were left out" : "");
+  }
+  return std::move(fault.error);
 }
 
 Result<HttpAnswer> HttpClient::send_and_wait(HttpRequest request, const Check& check) const {

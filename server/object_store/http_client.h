@@ -4,6 +4,7 @@
 #include <memory>
 #include <optional>
 
+#include "base/log_limit.h"
 #include "object_store/http_module.h"
 #include "object_store/object_url.h"
 #include "object_store/range_answer.h"
@@ -41,12 +42,15 @@ class HttpClient {
   struct Attempts;
 
   HttpClient(const StoreConfig& config, const HttpFunctions& functions, void* client)
-      : config_(config), functions_(functions), client_(client) {}
+      : config_(config), functions_(functions), client_(client), lines_(config.log_lines.value_or(0)) {}
   void attempt(const std::shared_ptr<Attempts>& attempts) const;
+
+  [[nodiscard]] Error error_of(const HttpRequest& request, AnswerFault fault) const;
 
   const StoreConfig config_;
   const HttpFunctions& functions_;
   void* client_;
+  mutable LogLimit lines_;  ///< of the client's thread
 };
 
 }  // namespace surfcast::object_store

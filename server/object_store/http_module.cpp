@@ -32,6 +32,7 @@ struct Transfer {
   std::unique_ptr<curl_slist, void (*)(curl_slist*)> headers{nullptr, curl_slist_free_all};
   std::array<char, CURL_ERROR_SIZE> reason{};
   Clock::time_point progress{};  ///< of the last byte
+  Clock::time_point deadline{};
   size_t refusal_bytes = 0;
   bool too_long = false;
 
@@ -53,11 +54,17 @@ std::string_view trimmed(std::string_view text) {
   return text.substr(first, text.find_last_not_of(" \t\r\n") - first + 1);
 }
 
+void forget_answer(HttpAnswer& answer) {
+  const Clock::time_point sent = answer.sent;
+  answer = {};
+  answer.sent = sent;
+}
+
 size_t take_header(char* data, size_t one, size_t count, void* user) {
   auto& transfer = *static_cast<Transfer*>(user);
   transfer.progress = Clock::now();
   const std::string_view line(data, one * count);
-  if (line.starts_with("HTTP/")) transfer.answer = {};  // of an answer before this one: 100 Continue
+  if (line.starts_with("HTTP/")) forget_answer(transfer.answer);  // one before this one: 100 Continue
   const size_t colon = line.find(':');
   if (colon == std::string_view::npos) return line.size();
   const std::string_view name = line.substr(0, colon);
@@ -172,7 +179,8 @@ class CurlClient {
       const auto here = next++;
       if ((*here)->request.not_before > now) continue;
       Transfer& transfer = **here;
-      transfer.progress = now;
+      transfer.answer.sent = transfer.progress = now;
+      transfer.deadline = transfer.request.deadline.value_or(now + transfer.request.time);
       set_options(transfer, limits_);
       active_.splice(active_.end(), waiting_, here);
       curl_multi_add_handle(multi_, transfer.easy.get());
@@ -207,16 +215,24 @@ class CurlClient {
     Transfers overdue;
     for (auto next = waiting_.begin(); next != waiting_.end();) {
       const auto here = next++;
-      if (now >= (*here)->request.deadline) overdue.splice(overdue.end(), waiting_, here);
+      if ((*here)->request.deadline && now >= *(*here)->request.deadline) overdue.splice(overdue.end(), waiting_, here);
     }
     for (const std::unique_ptr<Transfer>& transfer : overdue) {
+      transfer->answer.sent = now;
       transfer->answer.fault = "not asked in time";
       transfer->done(std::move(transfer->answer));
     }
   }
 
+  /// When a request is given up unless more bytes come.
   [[nodiscard]] Clock::time_point end_of(const Transfer& transfer) const {
-    return std::min(transfer.request.deadline, transfer.progress + limits_.stall);
+    return std::min(std::max(transfer.deadline, live_until(transfer)), transfer.progress + limits_.stall);
+  }
+
+  /// As long as what has come of a body is as much as the least rate gives.
+  [[nodiscard]] Clock::time_point live_until(const Transfer& transfer) const {
+    if (limits_.least_rate == 0) return transfer.answer.sent;
+    return transfer.answer.sent + std::chrono::milliseconds(1'000 * transfer.answer.body.size() / limits_.least_rate);
   }
 
   /// When something has to be done next even if no byte arrives.
@@ -225,7 +241,7 @@ class CurlClient {
     Clock::time_point next = Clock::now() + kMost;
     for (const auto& transfer : active_) next = std::min(next, end_of(*transfer));
     for (const auto& transfer : waiting_) {
-      next = std::min(next, transfer->request.deadline);
+      if (transfer->request.deadline) next = std::min(next, *transfer->request.deadline);
       if (active_.size() < limits_.requests) next = std::min(next, transfer->request.not_before);
     }
     const auto left = std::chrono::ceil<std::chrono::milliseconds>(next - Clock::now());

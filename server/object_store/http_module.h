@@ -27,9 +27,10 @@ struct HttpRequest {
   std::vector<std::string> headers;  ///< "Name: value"
   std::optional<ByteRange> range;    ///< not empty; without one all is asked for
   std::optional<Signing> signing;
-  uint64_t most_bytes = 0;         ///< of a body that is wanted; a longer one is a fault
-  Clock::time_point not_before{};  ///< when it is sent
-  Clock::time_point deadline{};    ///< when it is given up
+  uint64_t most_bytes = 0;                    ///< of a body that is wanted; a longer one is a fault
+  Clock::time_point not_before{};             ///< when it is sent at the earliest
+  std::chrono::milliseconds time{};           ///< from being sent until it is given up
+  std::optional<Clock::time_point> deadline;  ///< when it is given up, sent or not; empty: by `time`
 };
 
 /// What came back. Only the body of a wanted status is kept: 206 for a range, else 200. The body of another 200, all of
@@ -41,6 +42,7 @@ struct HttpAnswer {
   std::string content_range;
   std::string location;
   std::vector<std::byte> body;
+  HttpRequest::Clock::time_point sent{};  ///< when the request was
 };
 using HttpDone = std::function<void(HttpAnswer answer)>;
 
@@ -48,7 +50,10 @@ struct HttpLimits {
   size_t requests = 16;                      ///< at a time
   std::chrono::milliseconds connect{3'000};  ///< for one connection
   std::chrono::milliseconds stall{3'000};    ///< without a byte
-  std::string authorities;                   ///< file of certificates; empty: the system's
+  /// Bytes of a body that come each second, on an average since the request was sent, while it is not given up; 0:
+  /// none.
+  uint64_t least_rate = 0;
+  std::string authorities;  ///< file of certificates; empty: the system's
 };
 
 /// What the module does. A client has one thread, which calls back. `stop` ends the thread and drops what is

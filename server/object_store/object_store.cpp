@@ -35,12 +35,12 @@ Result<const HttpClient*> ObjectStore::client() const {
   return client_.get();
 }
 
-Result<model::ModelFile> ObjectStore::open(const std::string& url) const {
+Result<model::ModelFile> ObjectStore::open(const std::string& url, const std::string& name) const {
   const Result<const HttpClient*> http = client();
   if (!http) return fail(http.error());
   const Result<StorePlace> place = place_of(url, config_);
   if (!place) return fail(place.error());
-  Result<std::unique_ptr<RemoteSource>> source = RemoteSource::open(**http, *place, shown_url(url));
+  Result<std::unique_ptr<RemoteSource>> source = RemoteSource::open(**http, *place, name);
   if (!source) return fail(std::move(source.error()));
   return model::ModelFile::open(std::move(*source), cache_);
 }

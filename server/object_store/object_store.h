@@ -22,8 +22,9 @@ class ObjectStore {
   ObjectStore(const ObjectStore&) = delete;
   ObjectStore& operator=(const ObjectStore&) = delete;
 
-  /// Opens the model of a URL. Two requests: one for its beginning, one for its tables.
-  [[nodiscard]] Result<model::ModelFile> open(const std::string& url) const;
+  /// Opens the model of a URL, which its errors call by `name`. Two requests: one for its beginning, one for its
+  /// tables.
+  [[nodiscard]] Result<model::ModelFile> open(const std::string& url, const std::string& name) const;
   /// The URLs of the models directly in a folder, whose URL ends with a slash.
   [[nodiscard]] Result<std::vector<std::string>> list(const std::string& url) const;
 

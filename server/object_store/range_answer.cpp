@@ -62,15 +62,22 @@ AnswerFault fault_of_status(const HttpAnswer& answer) {
   }
   if (answer.status >= 500) return passing(said);
   if (answer.status / 100 == 3) {
-    return lasting(ErrorKind::kUnsupported,
-                   said + ", a redirection, which is not followed: " + shown_url(answer.location));
+    AnswerFault fault = lasting(ErrorKind::kUnsupported, said + ", a redirection, which is not followed");
+    fault.detail = shown_url(answer.location);
+    return fault;
   }
   return lasting(ErrorKind::kIo, said);
 }
 
+AnswerFault silence(std::string why) {
+  AnswerFault fault = passing("the store does not answer");
+  fault.detail = std::move(why);
+  return fault;
+}
+
 /// Faults that answers of every kind may have.
 std::optional<AnswerFault> check_status(const HttpAnswer& answer, int wanted) {
-  if (!answer.fault.empty()) return passing("the store does not answer: " + answer.fault);
+  if (!answer.fault.empty()) return silence(answer.fault);
   if (answer.status != wanted) return fault_of_status(answer);
   return std::nullopt;
 }

@@ -19,6 +19,7 @@ struct ObjectVersion {
 struct AnswerFault {
   Error error;
   bool again = false;
+  std::string detail{};  ///< what else is known; may name hosts
 };
 
 /// The value of a header "Content-Range: bytes FIRST-LAST/SIZE"; none for any other.

@@ -24,6 +24,7 @@ struct Fetch {
   size_t readers = 0;             ///< threads that wait for it
   bool running = false;
   bool done = false;
+  uint64_t held = 0;  ///< bytes of memory, from when it begins
   Status outcome{};
   std::vector<std::byte> bytes{};  ///< constant once it is done
 };
@@ -91,12 +92,32 @@ class RemoteSource::State : public std::enable_shared_from_this<RemoteSource::St
     start_more();
   }
 
+  /// Asks for one byte of the version that was opened.
+  void look_for_replacement() {
+    const ByteRange first_byte{0, 1};
+    HttpRequest request = request_for(first_byte);
+    const Result<HttpAnswer> answer = client_.send_and_wait(
+        std::move(request),
+        [this, first_byte](const HttpAnswer& first) { return check_range_answer(first, first_byte, version_); });
+    if (answer || answer.error().kind != ErrorKind::kReplaced) return;
+    const std::lock_guard lock(mutex_);
+    replaced_ = true;
+  }
+
   [[nodiscard]] bool replaced() const {
     const std::lock_guard lock(mutex_);
     return replaced_;
   }
 
  private:
+  [[nodiscard]] HttpRequest request_for(const ByteRange& range) const {
+    HttpRequest request = client_.request(place_);
+    request.headers.push_back("If-Match: " + version_.etag);
+    request.range = range;
+    request.most_bytes = range.size;
+    return request;
+  }
+
   // All of what follows is called with mutex_ locked, except `arrive`.
 
   [[nodiscard]] FetchPointer find(const ByteRange& range) const {
@@ -138,13 +159,9 @@ class RemoteSource::State : public std::enable_shared_from_this<RemoteSource::St
   void start(const FetchPointer& fetch) {
     fetch->running = true;
     ++running_;
-    held_ += fetch->range.size;
-    HttpRequest request = client_.request(place_);
-    request.headers.push_back("If-Match: " + version_.etag);
-    request.range = fetch->range;
-    request.most_bytes = fetch->range.size;
+    held_ += fetch->held = fetch->range.size;
     client_.send(
-        std::move(request),
+        request_for(fetch->range),
         [range = fetch->range, version = version_](const HttpAnswer& answer) {
           return check_range_answer(answer, range, version);
         },
@@ -164,8 +181,8 @@ class RemoteSource::State : public std::enable_shared_from_this<RemoteSource::St
         fetch.bytes = std::move(answer->body);
       } else {
         replaced_ |= answer.error().kind == ErrorKind::kReplaced;
-        fetch.outcome = fail(std::move(answer.error()));
-        fetch.wanted.clear();  // whoever reads one of these later asks again
+        if (answer.error().kind == ErrorKind::kUnavailable) fail_queued(answer.error());
+        give_up(fetch, std::move(answer.error()));
       }
       drop_unused();
       start_more();
@@ -173,12 +190,22 @@ class RemoteSource::State : public std::enable_shared_from_this<RemoteSource::St
     arrived_.notify_all();
   }
 
+  static void give_up(Fetch& fetch, Error error) {
+    fetch.done = true;
+    fetch.outcome = fail(std::move(error));
+    fetch.wanted.clear();  // whoever reads one of these later asks again
+  }
+
+  void fail_queued(const Error& error) {
+    for (const FetchPointer& fetch : std::exchange(queue_, {})) give_up(*fetch, error);
+  }
+
   /// Drops what nobody will read: fetches that have not begun, and memory of those that are done.
   void drop_unused() {
     std::erase_if(fetches_, [this](const FetchPointer& fetch) {
       if (fetch->running || fetch->readers > 0 || !fetch->wanted.empty()) return false;
       if (fetch->done) {
-        held_ -= fetch->range.size;
+        held_ -= fetch->held;
       } else {
         std::erase(queue_, fetch);
       }
@@ -235,6 +262,10 @@ void RemoteSource::prefetch(std::span<const ByteRange> ranges) const {
 
 void RemoteSource::forget(const ByteRange& range) const {
   state_->forget(range);
+}
+
+void RemoteSource::look_for_replacement() const {
+  state_->look_for_replacement();
 }
 
 bool RemoteSource::replaced() const {

@@ -10,7 +10,8 @@ namespace surfcast::object_store {
 /// An object of a store, read by ranges. Its version is that of the first answer: later answers must have it.
 ///
 /// Ranges that were announced by `prefetch` are joined (join_ranges) and requested at once, several requests at a time;
-/// what arrives waits in memory until it is read. `read` of any other range is a request of its own.
+/// what arrives waits in memory until it is read. `read` of any other range is a request of its own. If the store does
+/// not answer a request in time, those that wait behind it fail, too: they would take as long.
 class RemoteSource : public ByteSource {
  public:
   /// Reads the beginning of the object. `name`: for errors. The client must outlive the source.
@@ -23,6 +24,7 @@ class RemoteSource : public ByteSource {
   [[nodiscard]] Status read(uint64_t offset, std::span<std::byte> bytes) const override;
   void prefetch(std::span<const ByteRange> ranges) const override;
   void forget(const ByteRange& range) const override;
+  void look_for_replacement() const override;
   [[nodiscard]] bool replaced() const override;
 
  private:

@@ -17,9 +17,12 @@ namespace {
 
 class CatalogueRenderer : public FrameRenderer {
  public:
-  CatalogueRenderer(const ModelCatalogue& models, std::unique_ptr<ModelRenderer> renderer, ShaderWarmUp warm_up)
+  CatalogueRenderer(const ModelCatalogue& models, std::unique_ptr<ModelRenderer> renderer, ShaderWarmUp warm_up,
+                    ModelPlace place)
       : models_(models), shader_warm_up_(warm_up), renderer_(std::move(renderer)) {
-    if (const std::vector<std::string> names = models.names(); !names.empty()) next_model_ = names.front();
+    const std::vector<std::string> names = models.names();
+    const auto first = std::ranges::find_if(names, [&](const std::string& name) { return lies_in(name, place); });
+    if (first != names.end()) next_model_ = *first;
   }
 
   Result<picture::Frame> draw(const std::string& name, const picture::PictureRequest& request,
@@ -46,6 +49,10 @@ class CatalogueRenderer : public FrameRenderer {
   [[nodiscard]] int max_resolution() const override { return renderer_->max_resolution(); }
 
  private:
+  [[nodiscard]] bool lies_in(const std::string& name, ModelPlace place) const {
+    return place == ModelPlace::kAnywhere || models_.remote(name) == (place == ModelPlace::kStore);
+  }
+
   Result<picture::Frame> draw_once(const std::string& name, const picture::PictureRequest& request,
                                    const Preemption& preemption) {
     Result<ModelCatalogue::Edition> edition = models_.open_edition(name, request.edition);
@@ -103,12 +110,13 @@ class CatalogueRenderer : public FrameRenderer {
 }  // namespace
 
 FrameRendererFactory catalogue_renderers(const ModelCatalogue& models, ModelRendererFactory make_renderer,
-                                         ShaderWarmUp warm_up) {
-  return [&models, make_renderer = std::move(make_renderer), warm_up]() -> Result<std::unique_ptr<FrameRenderer>> {
-    Result<std::unique_ptr<ModelRenderer>> renderer = make_renderer();
-    if (!renderer) return fail(renderer.error());
-    return std::make_unique<CatalogueRenderer>(models, std::move(*renderer), warm_up);
-  };
+                                         ShaderWarmUp warm_up, ModelPlace place) {
+  return
+      [&models, make_renderer = std::move(make_renderer), warm_up, place]() -> Result<std::unique_ptr<FrameRenderer>> {
+        Result<std::unique_ptr<ModelRenderer>> renderer = make_renderer();
+        if (!renderer) return fail(renderer.error());
+        return std::make_unique<CatalogueRenderer>(models, std::move(*renderer), warm_up, place);
+      };
 }
 
 }  // namespace surfcast::service

@@ -9,8 +9,11 @@ namespace surfcast::service {
 /// Whether the shaders of a model are compiled before a picture needs them, see shader_warm_up_requests().
 enum class ShaderWarmUp { kOff, kOn };
 
+/// Of which models a renderer compiles shaders before their first pictures.
+enum class ModelPlace { kAnywhere, kFile, kStore };
+
 /// A factory of renderers for the models of a catalogue. The catalogue must outlive the factory and its renderers.
 FrameRendererFactory catalogue_renderers(const ModelCatalogue& models, ModelRendererFactory make_renderer,
-                                         ShaderWarmUp warm_up);
+                                         ShaderWarmUp warm_up, ModelPlace place = ModelPlace::kAnywhere);
 
 }  // namespace surfcast::service

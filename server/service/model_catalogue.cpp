@@ -111,6 +111,14 @@ std::map<std::string, fs::path> ModelCatalogue::find_all() const {
   return models;
 }
 
+bool ModelCatalogue::remote(const std::string& name) const {
+  const auto file = std::ranges::find(files_, name, &NamedModel::name);
+  if (file != files_.end()) return object_store::is_object_url(file->path.string());
+  const std::lock_guard lock(listing_mutex_);
+  const auto holds = [&](const auto& listing) { return listing.second.models.contains(name); };
+  return stored_.contains(name) && std::ranges::none_of(listings_, holds);
+}
+
 /// The file of a model; empty if there is none.
 fs::path ModelCatalogue::find(const std::string& name) const {
   const auto file = std::ranges::find(files_, name, &NamedModel::name);
@@ -222,10 +230,10 @@ Result<std::shared_ptr<const model::ModelFile>> ModelCatalogue::open(const std::
   return open_edition(name, 0).map([](const Edition& edition) { return edition.model; });
 }
 
-Result<model::ModelFile> ModelCatalogue::open_path(const fs::path& path) const {
+Result<model::ModelFile> ModelCatalogue::open_path(const std::string& shown, const fs::path& path) const {
   if (!object_store::is_object_url(path.string())) return model::ModelFile::open(path);
   SURFCAST_EXPECTS(store_ != nullptr);
-  return store_->open(path.string());
+  return store_->open(path.string(), shown);
 }
 
 /// A file is opened without a lock: a slow disk or store holds up only those who want that file.
@@ -236,17 +244,19 @@ Result<std::shared_ptr<const model::ModelFile>> ModelCatalogue::open_file(const 
   const bool stored = object_store::is_object_url(path.string());
   std::error_code code;
   const fs::file_time_type written = stored ? fs::file_time_type() : fs::last_write_time(path, code);
+  std::string shown = name;  // in errors, if it is in a store: what whoever opened it first called it
   const auto is_current = [&](const Opened& opened) {
     return opened.model && opened.path == path && opened.written == written && !code &&
            !opened.model->source().replaced();
   };
   {
     const std::lock_guard lock(mutex_);
-    if (const auto found = opened_.find(name); found != opened_.end() && is_current(found->second)) {
-      return found->second.model;
+    if (const auto found = opened_.find(name); found != opened_.end()) {
+      if (is_current(found->second)) return found->second.model;
+      if (found->second.model && found->second.path == path) shown = found->second.model->source().name();
     }
   }
-  Result<model::ModelFile> model = open_path(path);
+  Result<model::ModelFile> model = open_path(shown, path);
   const std::lock_guard lock(mutex_);
   Opened& opened = opened_[name];
   if (is_current(opened)) return opened.model;  // another thread was faster
@@ -256,6 +266,15 @@ Result<std::shared_ptr<const model::ModelFile>> ModelCatalogue::open_file(const 
   }
   opened = {path, written, std::make_shared<const model::ModelFile>(std::move(*model))};
   return opened.model;
+}
+
+std::vector<std::shared_ptr<const model::ModelFile>> ModelCatalogue::opened_in_stores() const {
+  std::vector<std::shared_ptr<const model::ModelFile>> models;
+  const std::lock_guard lock(mutex_);
+  for (const auto& [name, opened] : opened_) {
+    if (opened.model && object_store::is_object_url(opened.path.string())) models.push_back(opened.model);
+  }
+  return models;
 }
 
 Result<ModelDescription> ModelCatalogue::describe(const std::string& name) const {

@@ -56,6 +56,9 @@ class ModelCatalogue : public ModelSource {
   /// Sets the models in folders of stores: their URLs by name. False if they were set to the same before.
   bool set_stored(std::map<std::string, std::filesystem::path> models);
 
+  /// The models of stores that are open: somebody has to find out now and then whether they have been replaced.
+  [[nodiscard]] std::vector<std::shared_ptr<const model::ModelFile>> opened_in_stores() const;
+
   /// Closes the files that are not there any more. They stay open for whoever still uses them.
   void close_removed() const;
 
@@ -63,6 +66,8 @@ class ModelCatalogue : public ModelSource {
   [[nodiscard]] std::vector<ScanStatus> scans() const override;
   [[nodiscard]] bool awaited(const std::string& name) const override;
   [[nodiscard]] uint64_t edition(const std::string& name) const override;
+  /// True for models of stores, by what is known of the folders since they were last read.
+  [[nodiscard]] bool remote(const std::string& name) const override;
   /// The edition of a scan's model, or the newest one if it is 0 or gone.
   [[nodiscard]] Result<Edition> open_edition(const std::string& name, uint64_t edition) const;
   [[nodiscard]] Result<ModelDescription> describe(const std::string& name) const override;
@@ -93,7 +98,7 @@ class ModelCatalogue : public ModelSource {
 
   [[nodiscard]] const Listing& listing_of(const std::filesystem::path& folder) const;
   [[nodiscard]] std::map<std::string, std::filesystem::path> find_all() const;
-  [[nodiscard]] Result<model::ModelFile> open_path(const std::filesystem::path& path) const;
+  [[nodiscard]] Result<model::ModelFile> open_path(const std::string& shown, const std::filesystem::path& path) const;
   [[nodiscard]] std::filesystem::path find(const std::string& name) const;
   [[nodiscard]] Result<std::shared_ptr<const model::ModelFile>> open_file(const std::string& name) const;
 

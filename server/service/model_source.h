@@ -60,6 +60,9 @@ class ModelSource {
   /// Number of the newest edition of a scan's model: previews and the model itself follow each other, each better than
   /// the one before. 0: there is none, or the model is no scan's.
   [[nodiscard]] virtual uint64_t edition(const std::string& /*name*/) const { return 0; }
+  /// Whether the bytes of the model come over the network, so that all who work on it may wait for long. Does not
+  /// access the disk.
+  [[nodiscard]] virtual bool remote(const std::string& /*name*/) const { return false; }
   [[nodiscard]] virtual Result<ModelDescription> describe(const std::string& name) const = 0;
   /// The model of this name. The pointer changes when the file is replaced.
   [[nodiscard]] virtual Result<std::shared_ptr<const model::ModelFile>> open(const std::string& name) const = 0;

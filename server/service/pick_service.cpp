@@ -118,13 +118,14 @@ void PickService::points(PointsJob job, std::shared_ptr<const std::atomic<bool>>
 
 Result<std::shared_ptr<PointStream>> PickService::open_stream(PointsJob job,
                                                               std::shared_ptr<const std::atomic<bool>> cancelled,
-                                                              std::shared_ptr<const void> place) const {
+                                                              std::shared_ptr<const void> place) {
   const Result<ModelPointer> model = models_.open(job.model);
   if (!model) return fail(model.error());
   job.most = job.most == 0 ? most_region_points_ : std::min(job.most, most_region_points_);
   Result<std::unique_ptr<PointStream>> stream = queries_->points(*model, job, std::move(cancelled));
   if (!stream) return fail(std::move(stream.error()));
   (*stream)->keep(std::move(place));
+  (*stream)->set_service(*this);
   return std::shared_ptr<PointStream>(std::move(*stream));
 }
 

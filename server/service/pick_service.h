@@ -106,7 +106,7 @@ class PickService {
   void count(const std::shared_ptr<PointStream>& stream, const PointsDone& done, ClientId client);
   [[nodiscard]] Result<std::shared_ptr<PointStream>> open_stream(PointsJob job,
                                                                  std::shared_ptr<const std::atomic<bool>> cancelled,
-                                                                 std::shared_ptr<const void> place) const;
+                                                                 std::shared_ptr<const void> place);
   [[nodiscard]] Result<ProfileResult> find_profile(const ProfileJob& job) const;
   [[nodiscard]] Result<std::optional<PickedPoint>> run(const PickJob& job);
   [[nodiscard]] Result<std::vector<pick::FrontPixel>> search(const SurfaceJob& job, const std::atomic<bool>& cancelled);

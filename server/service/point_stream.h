@@ -15,6 +15,8 @@
 
 namespace surfcast::service {
 
+class PickService;
+
 /// A request for the points of a region.
 struct PointsJob {
   std::string model;
@@ -51,10 +53,14 @@ class PointStream {
   [[nodiscard]] uint64_t most() const { return most_; }
   /// Keeps something as long as the stream.
   void keep(std::shared_ptr<const void> kept) { kept_ = std::move(kept); }
+  /// The service that makes the pieces; null until one has taken the stream.
+  [[nodiscard]] PickService* service() const { return service_; }
+  void set_service(PickService& service) { service_ = &service; }
 
  private:
   uint64_t most_;
   std::shared_ptr<const void> kept_;
+  PickService* service_ = nullptr;
 };
 
 }  // namespace surfcast::service

@@ -13,6 +13,9 @@
 namespace surfcast::service {
 namespace {
 
+/// Jobs of remote models have numbers above this one.
+constexpr JobId kFirstRemoteJob = JobId{1} << 63U;
+
 tl::unexpected<Error> busy_error() {
   return fail(ErrorKind::kUnavailable, "the server is busy: too many pictures wait");
 }
@@ -243,6 +246,20 @@ void RenderService::State::finish(const JobPointer& job, Result<EncodedPicture> 
   deliver(job->done, std::move(result));
 }
 
+bool RenderService::State::cancel(JobId id) {
+  JobPointer waiting;
+  {
+    const std::lock_guard lock(mutex);
+    const auto found = jobs.find(id);
+    if (found == jobs.end()) return false;
+    found->second->cancelled = true;
+    const bool awaits = std::erase_if(awaiting, [id](const auto& entry) { return entry.job == id; }) > 0;
+    if (awaits || queue.remove(id) || leave_searches(id)) waiting = found->second;
+  }
+  if (waiting) finish(waiting, cancelled_error());
+  return true;
+}
+
 void RenderService::State::stop() {
   std::vector<JobPointer> waiting;
   std::vector<Awaiting> without_model;
@@ -270,82 +287,107 @@ void RenderService::State::stop() {
   memory->close();
 }
 
-RenderService::RenderService(std::unique_ptr<State> state) : state_(std::move(state)) {}
+Status RenderService::State::start_threads(Drawers drawers) {
+  pool = std::make_unique<WorkerPool>(limits.encoders, /*small_threads=*/1);
+  lookups = std::make_unique<WorkerPool>(1);
+  motion_pool = std::make_unique<WorkerPool>(1);
+  // Loads the codecs while the first picture is drawn. A failure is reported when the first picture is encoded.
+  motion_pool->post([] { static_cast<void>(surfcast::encode::prepare_encoding()); });
+  picks = std::make_unique<PickService>(models, limits.picks, std::move(drawers.queries));
+  std::promise<Status> promise;
+  std::future<Status> started = promise.get_future();
+  render_thread = std::jthread([this, make = std::move(drawers.make_renderer), made = std::move(promise)]() mutable {
+    run(make, std::move(made));
+  });
+  return started.get();
+}
+
+RenderService::RenderService(std::unique_ptr<State> state, std::unique_ptr<State> remote)
+    : state_(std::move(state)), remote_(std::move(remote)) {}
+
+RenderService::State& RenderService::state_of(const std::string& model) const {
+  return remote_ && state_->models.remote(model) ? *remote_ : *state_;
+}
+
+RenderService::State& RenderService::state_of(JobId job) const {
+  return remote_ && job > kFirstRemoteJob ? *remote_ : *state_;
+}
 
 Result<std::unique_ptr<RenderService>> RenderService::start(const ModelSource& models,
                                                             FrameRendererFactory make_renderer,
                                                             const ServiceLimits& limits,
-                                                            std::shared_ptr<ModelQueries> queries) {
-  auto state = std::make_unique<State>(models, limits);
-  state->pool = std::make_unique<WorkerPool>(limits.encoders, /*small_threads=*/1);
-  state->lookups = std::make_unique<WorkerPool>(1);
-  state->motion_pool = std::make_unique<WorkerPool>(1);
-  // Loads the codecs while the first picture is drawn. A failure is reported when the first picture is encoded.
-  state->motion_pool->post([] { static_cast<void>(surfcast::encode::prepare_encoding()); });
-  state->picks = std::make_unique<PickService>(models, limits.picks, std::move(queries));
-  std::promise<Status> promise;
-  std::future<Status> started = promise.get_future();
-  state->render_thread = std::jthread([raw = state.get(), make = std::move(make_renderer),
-                                       made = std::move(promise)]() mutable { raw->run(make, std::move(made)); });
-  if (Status status = started.get(); !status) return fail(status.error());
-  return std::unique_ptr<RenderService>(new RenderService(std::move(state)));
+                                                            std::shared_ptr<ModelQueries> queries,
+                                                            std::optional<Drawers> remote) {
+  auto first = std::make_unique<State>(models, limits, kNoJob);
+  auto second = remote ? std::make_unique<State>(models, limits, kFirstRemoteJob) : nullptr;
+  const auto look_again = [one = first.get(), other = second.get()] {
+    one->look_again();
+    if (other != nullptr) other->look_again();
+  };
+  first->memory = std::make_shared<PictureMemory>(State::picture_memory_limit(limits), look_again);
+  if (second) second->memory = first->memory;
+  // Stops what has been started if the rest does not start.
+  std::unique_ptr<RenderService> service(new RenderService(std::move(first), std::move(second)));
+  if (Status status = service->state_->start_threads({std::move(make_renderer), std::move(queries)}); !status) {
+    return fail(std::move(status.error()));
+  }
+  if (!remote) return service;
+  if (Status status = service->remote_->start_threads(std::move(*remote)); !status) {
+    return fail(std::move(status.error()));
+  }
+  return service;
 }
 
 RenderService::~RenderService() {
+  if (remote_) remote_->stop();
   state_->stop();
 }
 
 JobId RenderService::draw(const Asker& asker, PictureJob job, PictureDone done) {
-  return state_->add(asker, std::move(job), std::move(done));
+  State& state = state_of(job.model);
+  return state.add(asker, std::move(job), std::move(done));
 }
 
 bool RenderService::cancel(JobId id) {
-  State::JobPointer waiting;
-  {
-    const std::lock_guard lock(state_->mutex);
-    const auto found = state_->jobs.find(id);
-    if (found == state_->jobs.end()) return false;
-    found->second->cancelled = true;
-    const bool awaits = std::erase_if(state_->awaiting, [id](const auto& entry) { return entry.job == id; }) > 0;
-    if (awaits || state_->queue.remove(id) || state_->leave_searches(id)) waiting = found->second;
-  }
-  if (waiting) state_->finish(waiting, cancelled_error());
-  return true;
+  return state_of(id).cancel(id);
 }
 
 JobId RenderService::encode(std::shared_ptr<const picture::Frame> frame, PictureJob picture, PictureDone done,
                             const Asker& asker) {
   SURFCAST_EXPECTS(frame->image.format == picture::pixel_format_of(picture.format));
+  State& state = state_of(picture.model);
   const auto job = std::make_shared<RenderJob>();
   job->picture = std::move(picture);
   job->picture.priority = Priority::kStill;
   job->done = std::move(done);
   job->asker = asker;
   job->small = is_small(job->picture);
-  job->memory = state_->memory->take(asker.client, memory_of(job->picture));
+  job->memory = state.memory->take(asker.client, memory_of(job->picture));
   {
-    const std::lock_guard lock(state_->mutex);
-    job->id = ++state_->last_id;
-    state_->jobs.emplace(job->id, job);
-    ++(job->small ? state_->small_in_encoding : state_->in_encoding[static_cast<size_t>(Priority::kStill)]);
+    const std::lock_guard lock(state.mutex);
+    job->id = ++state.last_id;
+    state.jobs.emplace(job->id, job);
+    ++(job->small ? state.small_in_encoding : state.in_encoding[static_cast<size_t>(Priority::kStill)]);
   }
-  state_->pool->post([state = state_.get(), job,
-                      frame = std::move(frame)]() mutable { state->encode_one(job, SharedFrame(std::move(frame))); },
-                     asker.client, job->small ? TaskSize::kSmall : TaskSize::kLarge);
+  state.pool->post(
+      [&state, job, frame = std::move(frame)]() mutable { state.encode_one(job, SharedFrame(std::move(frame))); },
+      asker.client, job->small ? TaskSize::kSmall : TaskSize::kLarge);
   return job->id;
 }
 
 bool RenderService::replace(JobId id, PictureJob picture) {
-  if (!state_->check(picture)) return false;
-  const std::lock_guard lock(state_->mutex);
-  if (!state_->queue.contains(id)) return false;
-  SURFCAST_EXPECTS(state_->jobs.at(id)->picture.priority == picture.priority);
-  state_->jobs.at(id)->picture = std::move(picture);
+  State& state = state_of(id);
+  if (!state.check(picture)) return false;
+  const std::lock_guard lock(state.mutex);
+  if (!state.queue.contains(id)) return false;
+  SURFCAST_EXPECTS(state.jobs.at(id)->picture.priority == picture.priority);
+  state.jobs.at(id)->picture = std::move(picture);
   return true;
 }
 
 void RenderService::models_changed() {
   state_->models_changed();
+  if (remote_) remote_->models_changed();
 }
 
 uint64_t RenderService::edition(const std::string& model) const {
@@ -360,7 +402,8 @@ void RenderService::list_models(ListDone done, ClientId client) {
 }
 
 void RenderService::describe_model(const std::string& name, DescriptionDone done, ClientId client) {
-  state_->when_available(name, [state = state_.get(), name, done = std::move(done), client](const Status& there) {
+  State& state = state_of(name);
+  state.when_available(name, [state = &state, name, done = std::move(done), client](const Status& there) {
     if (!there) return done(fail(there.error()));
     state->lookups->post([state, name, done] { deliver(done, guarded([&] { return state->models.describe(name); })); },
                          client);
@@ -369,35 +412,40 @@ void RenderService::describe_model(const std::string& name, DescriptionDone done
 
 void RenderService::pick(PickJob job, PickService::Done done, ClientId client) {
   const std::string model = job.model;
-  const auto run = [state = state_.get(), job = std::move(job), done = std::move(done), client](const Status& there) {
+  State& state = state_of(model);
+  const auto run = [state = &state, job = std::move(job), done = std::move(done), client](const Status& there) {
     if (!there) return done(fail(there.error()));
     state->picks->pick(job, done, client);
   };
-  state_->when_available(model, run);
+  state.when_available(model, run);
 }
 
 void RenderService::profile(ProfileJob job, PickService::ProfileDone done, ClientId client) {
   const std::string model = job.model;
-  const auto run = [state = state_.get(), job = std::move(job), done = std::move(done), client](const Status& there) {
+  State& state = state_of(model);
+  const auto run = [state = &state, job = std::move(job), done = std::move(done), client](const Status& there) {
     if (!there) return done(fail(there.error()));
     state->picks->profile(job, done, client);
   };
-  state_->when_available(model, run);
+  state.when_available(model, run);
 }
 
 void RenderService::points(PointsJob job, std::shared_ptr<const std::atomic<bool>> cancelled,
                            PickService::PointsDone done, ClientId client) {
   const std::string model = job.model;
-  const auto run = [state = state_.get(), job = std::move(job), cancelled = std::move(cancelled),
-                    done = std::move(done), client](const Status& there) {
+  State& state = state_of(model);
+  const auto run = [state = &state, job = std::move(job), cancelled = std::move(cancelled), done = std::move(done),
+                    client](const Status& there) {
     if (!there) return done(fail(there.error()));
     state->picks->points(job, cancelled, done, client);
   };
-  state_->when_available(model, run);
+  state.when_available(model, run);
 }
 
 void RenderService::next_piece(std::shared_ptr<PointStream> stream, PickService::PieceDone done, ClientId client) {
-  state_->picks->next_piece(std::move(stream), std::move(done), client);
+  PickService* const service = stream->service();
+  SURFCAST_EXPECTS(service != nullptr);
+  service->next_piece(std::move(stream), std::move(done), client);
 }
 
 const picture::DeviceInfo& RenderService::device() const {
@@ -408,9 +456,13 @@ size_t RenderService::picture_memory() const {
   return state_->memory->held();
 }
 
+size_t RenderService::State::queued() const {
+  const std::lock_guard lock(mutex);
+  return queue.size();
+}
+
 size_t RenderService::queued() const {
-  const std::lock_guard lock(state_->mutex);
-  return state_->queue.size();
+  return state_->queued() + (remote_ ? remote_->queued() : 0);
 }
 
 }  // namespace surfcast::service

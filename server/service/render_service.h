@@ -92,9 +92,18 @@ struct EncodedPicture {
   picture::FrameStats stats;                    ///< the first stage is "queue", the last one "encode"
 };
 
+/// Who draws models.
+struct Drawers {
+  FrameRendererFactory make_renderer;
+  std::shared_ptr<ModelQueries> queries{};  ///< answers what is asked about them beside pictures; null: this process
+};
+
 /// Draws and encodes pictures. One render thread owns the renderer and takes jobs from a queue that is fair between
 /// clients and their sessions. A small pool encodes still pictures; motion pictures have an encoder thread of their
 /// own. Motion pictures may preempt still pictures (see DrawShares). All methods may be called from any thread.
+///
+/// Remote models (see ModelSource) may have a queue and threads of their own, so that nobody else waits for the
+/// network.
 ///
 /// A picture with channels of its front surface waits until that has been found, and then for the render thread.
 ///
@@ -108,10 +117,12 @@ class RenderService {
   using DescriptionDone = std::function<void(Result<ModelDescription>)>;
 
   /// Starts the threads. Fails if the renderer cannot be created. `models` must outlive the service. `queries` answers
-  /// what is asked about models beside pictures; null: this process does.
+  /// what is asked about models beside pictures; null: this process does. `remote`: who draws remote models, beside the
+  /// others; none: whoever draws those. Only the memory of pictures is shared then; other limits are of each queue.
   static Result<std::unique_ptr<RenderService>> start(const ModelSource& models, FrameRendererFactory make_renderer,
                                                       const ServiceLimits& limits,
-                                                      std::shared_ptr<ModelQueries> queries = nullptr);
+                                                      std::shared_ptr<ModelQueries> queries = nullptr,
+                                                      std::optional<Drawers> remote = std::nullopt);
   /// Cancels the outstanding jobs and joins the threads.
   ~RenderService();
 
@@ -151,8 +162,11 @@ class RenderService {
 
  private:
   struct State;
-  explicit RenderService(std::unique_ptr<State> state);
+  RenderService(std::unique_ptr<State> state, std::unique_ptr<State> remote);
+  [[nodiscard]] State& state_of(const std::string& model) const;
+  [[nodiscard]] State& state_of(JobId job) const;
   std::unique_ptr<State> state_;
+  std::unique_ptr<State> remote_;  ///< of remote models; null: they have none of their own
 };
 
 }  // namespace surfcast::service

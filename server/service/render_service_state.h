@@ -28,17 +28,17 @@ namespace surfcast::service {
 /// The number of no job: jobs count from 1.
 inline constexpr JobId kNoJob = 0;
 
-/// The service itself. Its render thread is in render_thread.cpp.
+/// The service of some models, with a queue and threads of their own. Its render thread is in render_thread.cpp.
 struct RenderService::State {
   using JobPointer = std::shared_ptr<RenderJob>;
   /// Gets an error if the model is not there in time.
   using Proceed = std::function<void(const Status& there)>;
 
-  State(const ModelSource& source, const ServiceLimits& service_limits)
-      : models(source),
-        limits(service_limits),
-        queue(service_limits.queued_jobs),
-        memory(std::make_shared<PictureMemory>(picture_memory_limit(service_limits), [this] { look_again(); })) {}
+  /// `jobs_before`: the first job has the next number. `memory` is to be set before the threads start.
+  State(const ModelSource& source, const ServiceLimits& service_limits, JobId jobs_before)
+      : models(source), limits(service_limits), queue(service_limits.queued_jobs), last_id(jobs_before) {}
+
+  [[nodiscard]] Status start_threads(Drawers drawers);
 
   // Render thread.
   void run(const FrameRendererFactory& make_renderer, std::promise<Status> started);
@@ -86,6 +86,8 @@ struct RenderService::State {
   [[nodiscard]] bool waits_for_model(const PictureJob& picture) const;
   void when_available(const std::string& model, const Proceed& proceed);
   void models_changed();
+  bool cancel(JobId id);
+  [[nodiscard]] size_t queued() const;
   void finish(const JobPointer& job, Result<EncodedPicture> result);
   void stop();
 
@@ -108,12 +110,12 @@ struct RenderService::State {
   };
   std::vector<Awaiting> awaiting;
   std::map<JobId, JobPointer> jobs;  ///< outstanding: waiting, being drawn or being encoded
-  JobId last_id = 0;
-  std::array<size_t, 2> in_encoding{};  ///< pictures being drawn or encoded, by priority, but for small ones at rest
-  size_t small_in_encoding = 0;         ///< these
-  std::shared_ptr<PictureMemory> memory;
-  size_t searching = 0;                 ///< jobs whose front surface is being found, or is to be
-  std::vector<JobPointer> to_search{};  ///< the latter, which wait for memory
+  JobId last_id;
+  std::array<size_t, 2> in_encoding{};    ///< pictures being drawn or encoded, by priority, but for small ones at rest
+  size_t small_in_encoding = 0;           ///< these
+  std::shared_ptr<PictureMemory> memory;  ///< of all models
+  size_t searching = 0;                   ///< jobs whose front surface is being found, or is to be
+  std::vector<JobPointer> to_search{};    ///< the latter, which wait for memory
   bool stopping = false;
 
   // Declared last, so the threads end before the members that they use.

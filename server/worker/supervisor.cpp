@@ -48,6 +48,11 @@ tl::unexpected<Error> Supervisor::not_started(const std::string& why) {
   return fail(ErrorKind::kUnavailable, "the " + start_.name + " did not start: " + why + ", " + text_of(end));
 }
 
+Status check_passable(const model::ModelFile& model) {
+  if (model.source().descriptor() >= 0) return {};
+  return fail(ErrorKind::kReplaced, "the model lies in a store now");
+}
+
 Status Supervisor::offer(const std::shared_ptr<const model::ModelFile>& model) {
   const auto [place, unknown] = offered_.try_emplace(model->id());
   place->second = {model, ++uses_};

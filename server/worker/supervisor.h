@@ -71,7 +71,7 @@ class Supervisor {
   /// Its answer to the first message, also that of one that has ended.
   [[nodiscard]] const Ready& ready() const { return ready_; }
 
-  /// Passes a model on that the worker does not know yet.
+  /// Passes a model on that the worker does not know yet. It has to be a file, see check_passable().
   Status offer(const std::shared_ptr<const model::ModelFile>& model);
   /// Withdraws a model that will not be used again, and forgets what it was blamed for.
   void withdraw(uint64_t model);
@@ -112,5 +112,9 @@ class Supervisor {
   std::map<uint64_t, Offered> offered_;  ///< by ModelFile::id: the models that the worker knows
   uint64_t uses_ = 0;
 };
+
+/// Workers reach no network, so that models of stores cannot be passed on. kReplaced if this is one: it has taken the
+/// place of a file of its name.
+Status check_passable(const model::ModelFile& model);
 
 }  // namespace surfcast::worker

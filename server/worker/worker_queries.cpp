@@ -80,6 +80,7 @@ class QueryProcess {
   template <typename Answer, typename Take>
   Result<Answer> ask(const ModelPointer& model, const Message& question, const std::atomic<bool>& cancelled,
                      const Take& take) {
+    if (Status passable = check_passable(*model); !passable) return fail(std::move(passable.error()));
     for (Attempts attempts; !attempts.exhausted();) {
       if (Status started = start(); !started) return fail(std::move(started.error()));
       Supervisor::End end;

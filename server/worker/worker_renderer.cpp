@@ -43,6 +43,7 @@ class WorkerRenderer : public service::ModelRenderer {
                               const picture::PictureRequest& request, const Preemption& preemption) override {
     if (pixels_of(request) > most_pixels_)
       return fail(ErrorKind::kLimit, "the picture has more pixels than may be drawn");
+    if (Status passable = check_passable(*model); !passable) return fail(std::move(passable.error()));
     for (Attempts attempts; !attempts.exhausted();) {
       if (Status started = start(); !started) return fail(std::move(started.error()));
       const uint64_t generation = worker_.generation();

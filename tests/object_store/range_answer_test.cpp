@@ -94,9 +94,10 @@ TEST(RangeAnswerTest, ARedirectionIsNamedWithoutTheSignatureThatItMayHold) {
   HttpAnswer answer;
   answer.status = 307;
   answer.location = "https://elsewhere/a.surf?X-Amz-Signature=secret";
-  const std::string message = check_range_answer(answer, kAsked, kVersion)->error.message;
-  EXPECT_THAT(message, HasSubstr("https://elsewhere/a.surf"));
-  EXPECT_THAT(message, Not(HasSubstr("secret")));
+  const std::optional<AnswerFault> fault = check_range_answer(answer, kAsked, kVersion);
+  ASSERT_TRUE(fault);
+  EXPECT_THAT(fault->error.message, Not(HasSubstr("elsewhere")));
+  EXPECT_EQ(fault->detail, "https://elsewhere/a.surf");
 }
 
 TEST(RangeAnswerTest, TheFirstAnswerStatesTheVersion) {

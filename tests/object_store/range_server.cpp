@@ -23,6 +23,18 @@ bool send_all(int connection, std::string_view bytes) {
   return true;
 }
 
+/// Takes two seconds and a half.
+bool send_in_drops(int connection, std::string_view bytes) {
+  constexpr size_t kDrops = 10;
+  const size_t drop = bytes.size() / kDrops + 1;
+  while (!bytes.empty()) {
+    if (!send_all(connection, bytes.substr(0, drop))) return false;
+    bytes.remove_prefix(std::min(drop, bytes.size()));
+    ::usleep(250'000);
+  }
+  return true;
+}
+
 /// The header of the next request, with its empty line; empty at the end of the connection.
 std::string read_head(int connection, std::string& unread) {
   for (;;) {
@@ -181,7 +193,7 @@ void RangeServer::release() {
 
 void RangeServer::wait_for_held(size_t requests) {
   std::unique_lock lock(mutex_);
-  changed_.wait(lock, [&] { return at_once_ == requests; });
+  changed_.wait(lock, [&] { return at_once_ >= requests; });
 }
 
 void RangeServer::forget_requests() {
@@ -224,7 +236,8 @@ void RangeServer::serve(int connection) {
       bytes_ += answer.sent;
     }
     bool open = answer.head.empty() || send_all(connection, answer.head);
-    open = open && send_all(connection, std::string_view(answer.body).substr(0, answer.sent));
+    const std::string_view body = std::string_view(answer.body).substr(0, answer.sent);
+    open = open && (answer.drips ? send_in_drops(connection, body) : send_all(connection, body));
     if (answer.hangs) read_head(connection, unread);  // until the client gives up
     if (!open || answer.ends || answer.hangs) break;
   }
@@ -293,6 +306,7 @@ RangeServer::Answer RangeServer::range_answer(const Request& request, const Obje
   answer.sent = half ? count / 2 : count;
   answer.ends = fault == Fault::kCut;
   answer.hangs = fault == Fault::kStalling;
+  answer.drips = fault == Fault::kDripping;
   return answer;
 }
 

@@ -27,6 +27,7 @@ enum class Fault {
   kCut,           ///< the connection ends after half of the body
   kHanging,       ///< nothing is answered
   kStalling,      ///< nothing more comes after half of the body
+  kDripping,      ///< the body comes over seconds
   kWrongBytes,    ///< a byte of the body is another one
   kWrongRange,    ///< Content-Range states another range
   kShiftedRange,  ///< the range after the one that was asked for, and Content-Range says so
@@ -61,7 +62,7 @@ class RangeServer {
   /// From now on answers wait until release().
   void hold();
   void release();
-  /// Waits until so many requests are held.
+  /// Waits until so many requests are held, or more.
   void wait_for_held(size_t requests);
 
   [[nodiscard]] std::string url(const std::string& path) const;
@@ -89,7 +90,8 @@ class RangeServer {
     std::string body;
     size_t sent = 0;  ///< of the body
     bool hangs = false;
-    bool ends = false;  ///< the connection, after what is sent
+    bool ends = false;   ///< the connection, after what is sent
+    bool drips = false;  ///< in pieces, with pauses between them
   };
 
   void accept_connections();

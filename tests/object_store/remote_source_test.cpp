@@ -233,6 +233,80 @@ TEST_F(RemoteSourceTest, ATotalTimeBoundsAllAttempts) {
   EXPECT_LT(std::chrono::steady_clock::now() - begin, milliseconds(25'000)) << "all attempts take a hundred seconds";
 }
 
+TEST_F(RemoteSourceTest, ALinkThatGoesOnMayTakeLongerAndWaitingForATurnDoesNotCount) {
+  config_.requests = 1;
+  config_.timeout = milliseconds(2000);
+  config_.least_rate = 1;
+  open();
+  const auto other = RemoteSource::open(*client_, StorePlace{server_.url(kPath), {}, false}, "the other");
+  ASSERT_TRUE(other);
+  server_.fail(Fault::kDripping, 2);
+  auto waits = std::async(std::launch::async, [&] { return read(kPart).has_value(); });
+  std::string bytes(kPart.size, '\0');
+  EXPECT_TRUE((*other)->read(kPart.offset, std::as_writable_bytes(std::span(bytes))));
+  EXPECT_TRUE(bytes == expected(kPart));
+  EXPECT_TRUE(waits.get());
+}
+
+TEST_F(RemoteSourceTest, ALinkBelowTheLeastRateIsGivenUpInTime) {
+  config_.timeout = milliseconds(1000);
+  config_.retries = 0;
+  for (const uint64_t rate : {uint64_t{0}, kPart.size}) {
+    config_.least_rate = rate;
+    open();
+    server_.fail(Fault::kDripping, 1);
+    const Result<std::string> bytes = read(kPart);
+    ASSERT_FALSE(bytes) << rate;
+    EXPECT_EQ(bytes.error().kind, ErrorKind::kUnavailable);
+  }
+}
+
+TEST_F(RemoteSourceTest, WhatWaitsBehindARequestThatIsGivenUpFailsWithIt) {
+  config_.requests = 1;
+  config_.retries = 0;
+  config_.join.gap = 0;
+  config_.stall_timeout = milliseconds(1000);
+  open();
+  server_.fail(Fault::kHanging, 1);
+  const std::vector<ByteRange> ranges{{100'000, 10'000}, {200'000, 10'000}, {300'000, 10'000}};
+  source_->prefetch(ranges);
+  std::vector<std::future<bool>> readers;
+  for (const ByteRange& range : ranges) {
+    readers.push_back(std::async(std::launch::async, [&] { return read(range).has_value(); }));
+  }
+  EXPECT_FALSE(readers[0].get());
+  for (std::future<bool>& reader : readers) {
+    if (reader.valid()) reader.wait();
+  }
+  EXPECT_TRUE(read(ranges[2]) == expected(ranges[2])) << "an error is not kept";
+}
+
+TEST_F(RemoteSourceTest, AReplacementIsFoundWithoutReading) {
+  open();
+  source_->look_for_replacement();
+  EXPECT_FALSE(source_->replaced());
+  server_.fail(Fault::kAbsent, 1);
+  source_->look_for_replacement();
+  EXPECT_FALSE(source_->replaced());
+  server_.put(kPath, content(bytes_.size(), 2));
+  source_->look_for_replacement();
+  EXPECT_TRUE(source_->replaced());
+}
+
+TEST_F(RemoteSourceTest, WhereTheLogHasTheFaultsErrorsNameNoHosts) {
+  const StorePlace nobody{"http://127.0.0.1:1/a.surf", {}, false};
+  for (const std::optional<size_t> lines : {std::optional<size_t>(), std::optional<size_t>(10)}) {
+    config_.log_lines = lines;
+    const auto client = HttpClient::start(config_);
+    const std::string silent = RemoteSource::open(**client, nobody, "a").error().message;
+    EXPECT_EQ(silent.find("127.0.0.1") == std::string::npos, lines.has_value()) << silent;
+    server_.fail(Fault::kRedirection, 1);
+    const StorePlace place{server_.url(kPath), {}, false};
+    const std::string redirected = RemoteSource::open(**client, place, "a").error().message;
+    EXPECT_EQ(redirected.find("elsewhere") == std::string::npos, lines.has_value()) << redirected;
+  }
+}
+
 TEST_F(RemoteSourceTest, WrongAnswersAreErrorsAtOnce) {
   const std::vector<std::pair<Fault, ErrorKind>> kinds{
       {Fault::kWholeObject, ErrorKind::kUnsupported},  {Fault::kForbidden, ErrorKind::kIo},

@@ -84,6 +84,72 @@ TEST_F(ServeStoreTest, TheModelsOfABucketAreListedAndNewOnesAreSeen) {
   EXPECT_FALSE(drawn("another").empty());
 }
 
+TEST_F(ServeStoreTest, AFileIsDrawnByAWorkerAndAtOnceWhileAStoreHangs) {
+  ASSERT_FALSE(build("near", square_of_points()).empty());
+  store_.put_page(kList, list_of({"square.surf"}));
+  serve(file("near.surf") + " " + store_.url("/bucket/") +
+        " --store-timeout 1000 --store-stall-timeout 1000 --no-shader-warm-up");
+  store_.hold();
+  std::vector<pid_t> waiting;
+  for (int client = 0; client < 4; ++client) {
+    waiting.push_back(
+        client::start_program({SURFCAST_CLIENT, "render", url_ + "/square", "--timeout", "290", "--resolution", "64,48",
+                               "--output", file("far" + std::to_string(client) + ".png")}));
+  }
+  store_.wait_for_held(1);
+  EXPECT_FALSE(drawn("near").empty());
+  EXPECT_NE(get("/api/models/near").find("\"near\""), std::string::npos);
+  EXPECT_NE(get("/metrics").find("surfcast_workers_started_total 1\n"), std::string::npos);
+  EXPECT_NE(get("/metrics").find("surfcast_query_workers_started_total 1\n"), std::string::npos);
+  for (const pid_t client : waiting) EXPECT_EQ(::waitpid(client, nullptr, WNOHANG), 0) << "it waits for the store";
+  store_.release();
+  for (const pid_t client : waiting) EXPECT_EQ(client::wait_for_program(client), 0);
+  EXPECT_TRUE(content(file("far0.png")) == drawn("square"));
+}
+
+TEST_F(ServeStoreTest, AReplacedModelIsNoticedWhileAllItsBlocksAreResident) {
+  serve(store_.url("/bucket/square.surf") + " --store-refresh 0.1");
+  const std::string before = drawn("square");
+  EXPECT_TRUE(drawn("square") == before);
+  store_.put("/bucket/square.surf", build("flat", square_of_points()));
+  std::string after = before;
+  for (int i = 0; i < 1000 && after == before; ++i) after = drawn("square");
+  end(SIGTERM);
+  serve(file("flat.surf"));
+  EXPECT_TRUE(after == drawn("flat"));
+}
+
+/// With the default times.
+TEST_F(ServeStoreTest, WhateverIsWrongWithAStoreIsAnErrorWithinTenSecondsThatNamesNoUrl) {
+  store_.put_page(kList, list_of({"square.surf"}));
+  for (const size_t after : {0U, 2U}) {  // of the first request, or of blocks
+    for (const Fault fault :
+         {Fault::kAbsent, Fault::kForbidden, Fault::kReplaced, Fault::kNoSuchRange, Fault::kBusy, Fault::kCut,
+          Fault::kHanging, Fault::kStalling, Fault::kWrongBytes, Fault::kRedirection}) {
+      store_.fail(Fault::kNone, 0);
+      serve(store_.url("/bucket/") + " --no-shader-warm-up");
+      store_.fail(fault, 10'000, after);
+      const auto begin = std::chrono::steady_clock::now();
+      const client::ProgramOutcome outcome = draw("square");
+      EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10)) << outcome.output;
+      EXPECT_NE(outcome.code, 0) << static_cast<int>(fault);
+      EXPECT_NE(outcome.output.find(": square: "), std::string::npos) << outcome.output;
+      EXPECT_EQ(outcome.output.find("bucket"), std::string::npos) << outcome.output;
+      end(SIGTERM);
+    }
+  }
+}
+
+TEST_F(ServeStoreTest, ClientsSeeTheNameOfAModelAndTheLogItsUrl) {
+  serve(store_.url("/bucket/square.surf") + " --no-shader-warm-up");
+  store_.fail(Fault::kForbidden, 10'000);
+  const client::ProgramOutcome outcome = draw("square");
+  EXPECT_NE(outcome.output.find(": square: block 0: the store answers 403"), std::string::npos) << outcome.output;
+  EXPECT_EQ(outcome.output.find("bucket"), std::string::npos) << outcome.output;
+  EXPECT_NE(content(file("log")).find(store_.url("/bucket/square.surf") + ": the store answers 403"),
+            std::string::npos);
+}
+
 TEST_F(ServeStoreTest, AFolderThatCannotBeListedIsOneLineAndTheEnd) {
   const client::ProgramOutcome outcome =
       client::run_program(SURFCAST_SERVER " serve --listen 127.0.0.1:0 " + store_.url("/none/") + " 2>&1");

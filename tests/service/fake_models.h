@@ -24,6 +24,7 @@ class FakeModels : public ModelSource {
   [[nodiscard]] uint64_t edition(const std::string& name) const override {
     return name == "cube" ? cube_edition.load() : 0;
   }
+  [[nodiscard]] bool remote(const std::string& name) const override { return name == remote_model; }
   [[nodiscard]] Result<ModelDescription> describe(const std::string& name) const override {
     if (name != "cube" && name != "teapot")
       return fail(ErrorKind::kNotFound, shown_name(name) + ": there is no such model");
@@ -51,6 +52,7 @@ class FakeModels : public ModelSource {
 
   std::vector<ScanStatus> scan_list;  ///< set it before the service starts
   std::string awaited_model;          ///< likewise, or before models_changed()
+  std::string remote_model;           ///< set it before the service starts
   std::atomic<uint64_t> cube_edition = 0;
   std::shared_ptr<const model::ModelFile> cube_file;  ///< null: there is none
 };

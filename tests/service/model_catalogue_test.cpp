@@ -43,6 +43,18 @@ class ModelCatalogueTest : public ::testing::Test {
   fs::path folder_;
 };
 
+TEST_F(ModelCatalogueTest, ModelsOfStoresAreRemoteUnlessAFileHasTheirName) {
+  write("a.surf", 3);
+  ModelCatalogue catalogue({{"c", "https://host/c.surf"}, {"d", write("other/d.surf", 3)}}, {folder_});
+  catalogue.set_stored({{"a", "https://host/a.surf"}, {"b", "https://host/b.surf"}, {"d", "https://host/d.surf"}});
+  EXPECT_EQ(catalogue.names().size(), 4U);
+  EXPECT_FALSE(catalogue.remote("a"));
+  EXPECT_TRUE(catalogue.remote("b"));
+  EXPECT_TRUE(catalogue.remote("c"));
+  EXPECT_FALSE(catalogue.remote("d"));
+  EXPECT_FALSE(catalogue.remote("none"));
+}
+
 TEST_F(ModelCatalogueTest, FoldersAreLookedAtAnew) {
   const ModelCatalogue catalogue({}, {folder_});
   EXPECT_TRUE(catalogue.names().empty());

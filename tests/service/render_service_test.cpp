@@ -274,6 +274,26 @@ TEST_F(RenderServiceTest, TheRendererWarmsUpWhileNobodyWaitsAndAgainAfterAPictur
   wait_for_warm_ups(FakeRendererControl::kWarmUps + 1);
 }
 
+TEST_F(RenderServiceTest, RemoteModelsHaveARendererOfTheirOwnThatHoldsUpNobodyElse) {
+  models_.remote_model = "teapot";
+  const auto remote = std::make_shared<FakeRendererControl>();
+  remote->slow = true;
+  auto started = RenderService::start(models_, fake_renderers(control_), {}, nullptr, Drawers{fake_renderers(remote)});
+  ASSERT_TRUE(started);
+  service_ = std::move(*started);
+  auto hanging = draw(1, job_for("teapot"));
+  auto waiting = draw(1, job_for("teapot"));
+  while (remote->drawn == 0) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  EXPECT_TRUE(draw(1, job_for("cube")).second.get());
+  EXPECT_EQ(service_->queued(), 1U);
+  EXPECT_TRUE(service_->replace(waiting.first, job_for("teapot")));
+  EXPECT_TRUE(service_->cancel(waiting.first));
+  EXPECT_TRUE(service_->cancel(hanging.first));
+  EXPECT_FALSE(hanging.second.get());
+  EXPECT_FALSE(waiting.second.get());
+  EXPECT_EQ(control_->drawn, 1);
+}
+
 TEST_F(RenderServiceTest, AServiceWithoutARendererDoesNotStart) {
   const auto started = RenderService::start(
       models_,
