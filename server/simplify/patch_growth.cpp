@@ -138,9 +138,12 @@ Patch Growth::settle(const Patch& grown, Scratch& scratch) const {
 
 /// The widest neighbourhood, from that of the patch on, all samples of which keep the bound.
 Patch Growth::shrunk_to_bound(const Patch& patch, const Limits& noise, Scratch& scratch) const {
-  for (double reach = patch.reach; reach >= 0.99 * kFirstReach * surface_.radius(patch.sample); reach /= kGrowth) {
+  const double least = 0.99 * kFirstReach * surface_.radius(patch.sample);  // but for rounding, that of the first step
+  double reach = patch.reach;
+  while (reach >= least) {
     surface_.sheet(surface_.position(patch.sample), surface_.normal(patch.sample), reach, scratch.near);
     if (const std::optional<Patch> kept = fit(patch.sample, reach, noise, scratch)) return *kept;
+    reach /= kGrowth;
   }
   Patch none;
   none.sample = patch.sample;
