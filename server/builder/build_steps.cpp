@@ -427,7 +427,7 @@ Result<PartOutcome> build_part(const WorkPlace& work, size_t part, const BuildPr
   MadePart made = make_part(frame, std::move(*points), *index, plan.request.radii, false);
   const Status status =
       write_result(*folder, WorkStep::kPart, *index, [&made](WorkFileWriter& file) { return write_part(file, made); });
-  if (!status) return fail(std::move(status.error()));
+  if (!status) return fail(status.error());
   return PartOutcome{false, made.own, made.surfels.cloud.size() - made.own};
 }
 
@@ -447,7 +447,7 @@ Result<SignsOutcome> build_signs(const WorkPlace& work, const BuildProgress& pro
   const std::vector<scan::SurfaceSample> samples = std::move(*evidence).take_samples();
   const Status status = write_result(*folder, WorkStep::kSigns, 0,
                                      [&](WorkFileWriter& file) { return write_scene(file, scene, samples); });
-  if (!status) return fail(std::move(status.error()));
+  if (!status) return fail(status.error());
   return outcome_of(scene, *inputs, folder->plan().request.radii);
 }
 
@@ -469,7 +469,7 @@ Result<BlocksOutcome> build_part_blocks(const WorkPlace& work, size_t part, cons
       make_part_blocks(std::move(*finished), frame.parts[*index], frame.root, folder->plan().request.precision);
   const Status status = write_result(*folder, WorkStep::kBlocks, *index,
                                      [&made](WorkFileWriter& file) { return write_part_blocks(file, made); });
-  if (!status) return fail(std::move(status.error()));
+  if (!status) return fail(status.error());
   return BlocksOutcome{false, made.subtree.blocks.size(), own};
 }
 
