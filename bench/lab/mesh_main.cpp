@@ -17,6 +17,7 @@
 #include "lab/mesh_scenes.h"
 #include "lab/renderer_thread.h"
 #include "lab/report.h"
+#include "lab/srgb_pictures.h"
 #include "lab/text_file.h"
 #include "mesh/mesh_reader.h"
 
@@ -73,15 +74,6 @@ struct MeshResult {
   MeshError sampled;  ///< kSamples along each axis, with the prefilter
 };
 
-reference::SrgbPicture colors_of(const picture::Image& image) {
-  reference::SrgbPicture colors{image.width, image.height, {}};
-  for (size_t i = 0; i + 3 < image.pixels.size(); i += 4) {
-    const auto level = [&](size_t c) { return static_cast<uint8_t>(image.pixels[i + c]); };
-    colors.pixels.emplace_back(level(0), level(1), level(2));
-  }
-  return colors;
-}
-
 /// A scene, ready to be drawn in every way.
 class MeshSubject {
  public:
@@ -129,7 +121,7 @@ class MeshSubject {
     request.silhouettes = true;
     request.spacing = spacing;
     reference::SrgbPicture picture;
-    renderer.run([&](render::Renderer& r) { picture = colors_of(bench::draw_or_exit(r, model_, request).image); });
+    renderer.run([&](render::Renderer& r) { picture = picture_of(bench::draw_or_exit(r, model_, request).image); });
     return picture;
   }
 

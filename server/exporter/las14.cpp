@@ -21,8 +21,6 @@ constexpr size_t kHeaderBytesAt = 94;
 constexpr size_t kWaveformStartAt = 227;
 constexpr double kAngleStep = 0.006;  // degrees
 
-constexpr size_t kWktId = 2112;
-
 uint8_t bits(const std::byte* record, size_t at) {
   return std::to_integer<uint8_t>(record[at]);
 }
@@ -46,7 +44,7 @@ bool is_projection(const std::vector<std::byte>& record) {
 }
 
 bool is_wkt(const std::vector<std::byte>& record) {
-  return is_projection(record) && scan::load<uint16_t>(&record[18]) == kWktId;
+  return is_projection(record) && scan::load<uint16_t>(&record[18]) == kWktRecord;
 }
 
 bool is_geo_key(const std::vector<std::byte>& record) {
@@ -59,9 +57,7 @@ bool state_wkt(LasHead& head, const std::string& crs) {
   if (std::ranges::any_of(head.records, is_wkt) || std::ranges::any_of(head.extended, is_wkt)) return true;
   const Result<crs::CoordinateSystem> system = crs::read_system(crs);
   if (!system || system->wkt.size() >= UINT16_MAX) return false;
-  std::vector<std::byte> body(system->wkt.size() + 1);
-  put_text(body, 0, system->wkt);
-  head.records.push_back(las_record("LASF_Projection", kWktId, body));
+  head.records.push_back(wkt_record(system->wkt));
   return true;
 }
 

@@ -38,4 +38,13 @@ inline std::vector<std::byte> las_record(std::string_view user, uint16_t id, std
   return record;
 }
 
+inline constexpr uint16_t kWktRecord = 2112;
+
+/// The record of a coordinate system as WKT, which has fewer than 65535 bytes.
+inline std::vector<std::byte> wkt_record(std::string_view wkt) {
+  std::vector<std::byte> body(wkt.size() + 1);
+  put_text(body, 0, wkt);
+  return las_record("LASF_Projection", kWktRecord, body);
+}
+
 }  // namespace surfcast::exporter

@@ -129,9 +129,7 @@ bool add_system(const std::string& text, LasHead& head) {
   }
   const std::string& wkt = system ? system->wkt : text;
   if (wkt.find('[') == std::string::npos || wkt.size() >= UINT16_MAX) return false;
-  Bytes body(wkt.size() + 1);
-  put_text(body, 0, wkt);
-  head.records.push_back(las_record("LASF_Projection", 2112, body));
+  head.records.push_back(wkt_record(wkt));
   return true;
 }
 

@@ -73,15 +73,19 @@ class BuildStepsTest : public ::testing::Test {
       ASSERT_TRUE(made) << made.error().message;
     }
   }
-  void make_all(size_t count) const {
-    const Result<PlanOutcome> planned = plan(count);
-    ASSERT_TRUE(planned) << planned.error().message;
+  /// All steps after the plan.
+  void make_planned(size_t count) const {
     make_parts(count);
     const Result<SignsOutcome> signs = build_signs(place_, kSilent);
     ASSERT_TRUE(signs) << signs.error().message;
     make_blocks(count);
     const Result<MergeOutcome> merged = merge_parts(place_, model_, kSilent);
     ASSERT_TRUE(merged) << merged.error().message;
+  }
+  void make_all(size_t count) const {
+    const Result<PlanOutcome> planned = plan(count);
+    ASSERT_TRUE(planned) << planned.error().message;
+    make_planned(count);
   }
   /// The bytes of the model that one process builds.
   [[nodiscard]] std::string built_at_once(const BuildOptions& options) const {
@@ -145,10 +149,7 @@ TEST_F(BuildStepsTest, OptionsReachTheModel) {
   request.radii = scan::RadiusPolicy::kEstimate;
   request.selection.every = 2;
   ASSERT_TRUE(plan_build(inputs(), work_, request, kSilent));
-  make_parts(4);
-  ASSERT_TRUE(build_signs(place_, kSilent));
-  make_blocks(4);
-  ASSERT_TRUE(merge_parts(place_, model_, kSilent));
+  ASSERT_NO_FATAL_FAILURE(make_planned(4));
   BuildOptions options;
   options.precision = request.precision;
   options.z_up = request.z_up;
@@ -168,10 +169,7 @@ TEST_F(BuildStepsTest, ScansThatMoveIntoAnotherSystemComeToTheSamePlace) {
   const Result<PlanOutcome> planned = plan_build(inputs(), work_, request, kSilent);
   ASSERT_TRUE(planned) << planned.error().message;
   EXPECT_EQ(planned->transformed.size(), 2U);
-  make_parts(4);
-  ASSERT_TRUE(build_signs(place_, kSilent));
-  make_blocks(4);
-  ASSERT_TRUE(merge_parts(place_, model_, kSilent));
+  ASSERT_NO_FATAL_FAILURE(make_planned(4));
   BuildOptions options;
   options.systems = request.systems;
   options.parts = 4;
@@ -274,10 +272,7 @@ TEST_F(BuildStepsTest, ResultsOfAnotherPlanAreRefusedByName) {
   EXPECT_THAT(build_part_blocks(place_, 1, kSilent).error().message,
               AllOf(HasSubstr("part-1: belongs to another plan"), HasSubstr("build-part 1")));
   EXPECT_THAT(merge_parts(place_, model_, kSilent).error().message, HasSubstr("of another plan: 1-4"));
-  make_parts(4);
-  ASSERT_TRUE(build_signs(place_, kSilent));
-  make_blocks(4);
-  ASSERT_TRUE(merge_parts(place_, model_, kSilent));
+  ASSERT_NO_FATAL_FAILURE(make_planned(4));
   BuildOptions options;
   options.parts = 4;
   options.precision = 0.01;

@@ -1,14 +1,12 @@
 // The steps of a build in parts as programs: killed in the middle of what they write, and called by schedulers.
 
 #include <algorithm>
-#include <cmath>
 #include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <numeric>
 #include <random>
-#include <sstream>
 #include <string>
 #include <vector>
 
@@ -16,6 +14,7 @@
 #include <unistd.h>
 
 #include "client/run_program.h"
+#include "cmd/wavy_scan.h"
 
 namespace surfcast::cmd {
 namespace {
@@ -23,25 +22,8 @@ namespace {
 namespace fs = std::filesystem;
 using Words = std::vector<std::string>;
 
-std::string bytes_in(const fs::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
-
-/// A wavy square of points, as binary PLY.
-void write_waves(const fs::path& path, int side) {
-  std::ofstream scan(path, std::ios::binary);
-  scan << "ply\nformat binary_little_endian 1.0\nelement vertex " << side * side
-       << "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
-  for (int i = 0; i < side * side; ++i) {
-    const int row = i / side;
-    const auto x = static_cast<float>(i % side), y = static_cast<float>(row);
-    const float point[] = {x, y, std::sin(x / 9) * std::cos(y / 7)};
-    scan.write(reinterpret_cast<const char*>(point), sizeof(point));
-  }
-}
+using testing::bytes_in;
+using testing::write_waves;
 
 Words operator+(Words words, const Words& more) {
   words.insert(words.end(), more.begin(), more.end());

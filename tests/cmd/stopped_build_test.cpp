@@ -8,13 +8,13 @@
 #include <fstream>
 #include <ostream>
 #include <set>
-#include <sstream>
 #include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
 
 #include "client/run_program.h"
+#include "cmd/wavy_scan.h"
 
 namespace surfcast::cmd {
 namespace {
@@ -25,26 +25,6 @@ namespace fs = std::filesystem;
 constexpr long kMoments = 40;
 /// So many at the end are all tried: there the model takes its place.
 constexpr long kLastMoments = 16;
-
-std::string content(const fs::path& path) {
-  std::ifstream stream(path, std::ios::binary);
-  std::ostringstream text;
-  text << stream.rdbuf();
-  return text.str();
-}
-
-/// A wavy square of points, as binary PLY.
-void write_scan(const fs::path& path, int side) {
-  std::ofstream scan(path, std::ios::binary);
-  scan << "ply\nformat binary_little_endian 1.0\nelement vertex " << side * side
-       << "\nproperty float x\nproperty float y\nproperty float z\nend_header\n";
-  for (int i = 0; i < side * side; ++i) {
-    const int row = i / side;
-    const auto x = static_cast<float>(i % side), y = static_cast<float>(row);
-    const float point[] = {x, y, std::sin(x / 9) * std::cos(y / 7)};
-    scan.write(reinterpret_cast<const char*>(point), sizeof(point));
-  }
-}
 
 /// Waves over three rows of bricks, as NRRD.
 void write_grid(const fs::path& path, int side) {
@@ -82,12 +62,12 @@ struct Builder {
 };
 
 const Builder kBuilders[] = {
-    {"AsAWhole", "scan.ply", write_scan,
+    {"AsAWhole", "scan.ply", testing::write_waves,
      [](const std::string& scan, const std::string& target) {
        return std::vector<std::string>{SURFCASTD, "build", scan, "--output", target};
      },
      10},
-    {"InManyParts", "scan.ply", write_scan,
+    {"InManyParts", "scan.ply", testing::write_waves,
      [](const std::string& scan, const std::string& target) {
        return std::vector<std::string>{BUILD_IN_PARTS, scan, target, "1200"};
      },
@@ -116,9 +96,9 @@ class StoppedBuildTest : public ::testing::TestWithParam<Builder> {
     GetParam().write(source(), 100);
     const fs::path counted = folder_ / "moments";
     ASSERT_EQ(build({"SURFCAST_MOMENTS=" + counted.string()}), 0);
-    moments_ = std::stol(content(counted));
+    moments_ = std::stol(testing::bytes_in(counted));
     ASSERT_GE(moments_, GetParam().least_moments);
-    whole_ = content(target());
+    whole_ = testing::bytes_in(target());
     ASSERT_FALSE(whole_.empty());
     fs::remove(counted);
     fs::remove(target());
@@ -183,7 +163,7 @@ TEST_P(StoppedBuildTest, TheTargetIsAbsentOrWhole) {
     stopped += stop_build(moment, signal) ? 1 : 0;
     const bool exists = fs::exists(target());
     if (exists) {
-      ASSERT_TRUE(content(target()) == whole_) << "a model that is not whole, stopped at " << moment;
+      ASSERT_TRUE(testing::bytes_in(target()) == whole_) << "a model that is not whole, stopped at " << moment;
     }
     (exists ? was_whole : was_absent) = true;
     if (signal == SIGINT) {
@@ -203,7 +183,7 @@ TEST_P(StoppedBuildTest, AnOldModelStaysUntilTheNewOneIsWhole) {
     std::ofstream(target(), std::ios::binary) << old;
     const int signal = moment % 3 == 0 ? SIGINT : SIGKILL;
     static_cast<void>(stop_build(moment, signal));
-    const std::string now = content(target());
+    const std::string now = testing::bytes_in(target());
     ASSERT_TRUE(now == old || now == whole_) << now.size() << ", stopped at " << moment;
     (now == old ? was_old : was_whole) = true;
     if (signal == SIGINT) {

@@ -1,6 +1,7 @@
 #include "builder/build_model.h"
 #include "lab/mesh_caster.h"
 #include "lab/mesh_scenes.h"
+#include "lab/srgb_pictures.h"
 #include "mesh/mesh_reader.h"
 #include "render/gl_fixture.h"
 
@@ -17,15 +18,6 @@ struct View {
   double inside;
 };
 
-reference::SrgbPicture colors_of(const picture::Image& image) {
-  reference::SrgbPicture colors{image.width, image.height, {}};
-  for (size_t i = 0; i + 3 < image.pixels.size(); i += 4) {
-    const auto level = [&](size_t c) { return static_cast<uint8_t>(image.pixels[i + c]); };
-    colors.pixels.emplace_back(level(0), level(1), level(2));
-  }
-  return colors;
-}
-
 class TexturedCubeGLTest : public testing::RendererFixture, public ::testing::WithParamInterface<View> {
  protected:
   MeshError measure(const View& view) {
@@ -38,7 +30,7 @@ class TexturedCubeGLTest : public testing::RendererFixture, public ::testing::Wi
     request.camera = geometry::Camera{view.eye, {0, 0, 0}, {0, 0, 1}, 30};
     request.width = request.height = kSide;
     request.silhouettes = true;
-    const reference::SrgbPicture drawn = colors_of(draw(model_, request).image);
+    const reference::SrgbPicture drawn = picture_of(draw(model_, request).image);
 
     const Result<mesh::Mesh> mesh = mesh::read_mesh(file, mesh::MeshFormat::kObj, {});
     const auto frame = geometry::make_camera_frame(*request.camera, kSide, kSide);
