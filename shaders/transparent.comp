@@ -25,7 +25,7 @@ layout(std430, binding = SURFCAST_BIND_NEXT_TILES) buffer NextTiles { uint next_
 #include "include/draw_lane.glsl"
 #include "include/write_rows.glsl"
 
-void write_pixels(Pixels pixels, ivec2 first) {
+void write_pixels(ivec2 first) {
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
     for (int i = 0; i < SURFCAST_ROWS; ++i) {
       ivec2 at = first + ivec2(c, i);
@@ -60,18 +60,18 @@ void main() {
   ivec2 lane = ivec2(pixel_lane() % uint(kLanesAcross), pixel_lane() / uint(kLanesAcross));
   ivec2 local = first_pixel(index, lane);
   vec2 pixel = vec2(frame.region.xy + local) + 0.5;
-  Pixels pixels = begin_pixels(SURFCAST_COLUMNS);
+  begin_pixels(SURFCAST_COLUMNS);
   float unit = unit_of_list(tile, pixel);
   int finds = finds_for(tile.smalls, tile.larges);
   bool medium = kMedium;
   for (int find = 1;; ++find) {
-    bool more = draw_next(tile, pixel, unit, medium, pixels);
+    bool more = draw_next(tile, pixel, unit, medium);
     if (medium) break;
     if (more && find < finds) continue;
-    if (!draw_waiting(tile, pixel, pixels)) break;
+    if (!draw_waiting(tile, pixel)) break;
     medium = true;
   }
-  if (own_start() == 0u) write_pixels(pixels, local);
+  if (own_start() == 0u) write_pixels(local);
 }
 #else
 // The state of a lane.
@@ -82,7 +82,6 @@ struct LaneState {
   int find;
   bool medium;  // everything behind the surfaces is drawn at once
   float unit;
-  Pixels pixels;
 };
 
 // Index within the work group of the lane's next tile; span.z or more if there is none.
@@ -106,7 +105,7 @@ bool begin(inout LaneState state, bool first) {
   state.local = first_pixel(index, ivec2(gl_LocalInvocationID.x % uint(kLanesAcross), gl_LocalInvocationID.y));
   state.find = 0;
   state.medium = kMedium;
-  state.pixels = begin_pixels(SURFCAST_COLUMNS);
+  begin_pixels(SURFCAST_COLUMNS);
   state.unit = unit_of_list(state.tile, vec2(frame.region.xy + state.local) + 0.5);
   return true;
 }
@@ -117,14 +116,14 @@ void main() {
   bool drawing = begin(state, true);
   while (drawing) {
     vec2 pixel = vec2(frame.region.xy + state.local) + 0.5;
-    bool more = draw_next(state.tile, pixel, state.unit, state.medium, state.pixels);
+    bool more = draw_next(state.tile, pixel, state.unit, state.medium);
     ++state.find;
     if (!state.medium) {
       if (more && state.find < finds_for(state.tile.smalls, state.tile.larges)) continue;
-      state.medium = draw_waiting(state.tile, pixel, state.pixels);
+      state.medium = draw_waiting(state.tile, pixel);
       if (state.medium) continue;
     }
-    if (state.drawn) write_pixels(state.pixels, state.local);
+    if (state.drawn) write_pixels(state.local);
     drawing = begin(state, false);
   }
 }

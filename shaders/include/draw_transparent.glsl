@@ -133,7 +133,6 @@ void sum_up(TileLists tile, vec2 pixel, Columns limit, Columns surface, float un
 #include "include/large_transparent.glsl"
 #endif
 
-// The pixels of a lane.
 struct Pixels {
   Columns limit;  // inverse depth; 0 where nothing is left
   WaitingColumns waiting;
@@ -143,8 +142,11 @@ struct Pixels {
 #endif
 };
 
-Pixels begin_pixels(int wanted) {
-  Pixels pixels;
+// Those of the lane. No parameter of the functions below: the compiler of NVIDIA (driver 580) loses what draw_waiting
+// changes in a structure that it passes on.
+Pixels pixels;
+
+void begin_pixels(int wanted) {
   begin_drawing(wanted, pixels.limit, pixels.light);
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
     pixels.waiting[c] = waiting_none();
@@ -152,7 +154,6 @@ Pixels begin_pixels(int wanted) {
     pixels.front[c] = Rows(0.0);
 #endif
   }
-  return pixels;
 }
 
 // 1 for the unit of sums; the peak of the list bounds all terms.
@@ -178,17 +179,17 @@ const float kInOrder = float(SURFCAST_SURFACES_IN_ORDER);
 #endif
 
 // Pixels of a column that are looked at again.
-BoolRows is_open(Pixels pixels, int c) {
+BoolRows is_open(int c) {
   Rows left = pixels.light[c].transmittance * (1.0 - opacity_of(pixels.waiting[c]));
   BoolRows seen = both(less(Rows(0.0), pixels.limit[c]), less(Rows(kOpaque), left));
   return both(seen, less(pixels.waiting[c].drawn, Rows(kInOrder)));
 }
 
 // Finds where the next surface ends.
-Columns next_end(TileLists tile, vec2 pixel, Pixels pixels, out Columns begin) {
+Columns next_end(TileLists tile, vec2 pixel, out Columns begin) {
   Ends ends;
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
-    ends.end[c] = mix(Rows(kHidesAll), Rows(0.0), is_open(pixels, c));
+    ends.end[c] = mix(Rows(kHidesAll), Rows(0.0), is_open(c));
     ends.begin[c] = Rows(0.0);
   }
 #ifdef SURFCAST_LARGE
@@ -217,7 +218,7 @@ void add_all(TileLists tile, vec2 pixel, Columns limit, Columns surface, float u
 }
 
 // Composites what waits in a column, with this opacity, where `now` is 1. `end`: the inverse depth to which it reaches.
-void composite(inout Pixels pixels, int c, Rows opacity, Rows now, Rows end, vec2 pixel) {
+void composite(int c, Rows opacity, Rows now, Rows end, vec2 pixel) {
 #ifdef SURFCAST_KEEPS_FRONTS
   Rows before = pixels.light[c].transmittance;
 #endif
@@ -231,33 +232,33 @@ void composite(inout Pixels pixels, int c, Rows opacity, Rows now, Rows end, vec
 }
 
 // Lets a surface wait, and composites what waited if it is not a part of the same surface.
-void take_surface(inout Pixels pixels, int c, SurfaceSums sums, Rows begin, Rows end, float one, vec2 pixel) {
-  BoolRows open = is_open(pixels, c);
+void take_surface(int c, SurfaceSums sums, Rows begin, Rows end, float one, vec2 pixel) {
+  BoolRows open = is_open(c);
   Rows count = pixels.waiting[c].count + fixed_value(sums.count) * one;
   Rows joins = mix(Rows(0.0), Rows(1.0), at_most(count, Rows(SURFCAST_SURFACE_WHOLE)));
   joins *= mix(Rows(0.0), Rows(1.0), at_most(pixels.waiting[c].end, begin));
   joins = mix(Rows(1.0), joins, open);
   Rows opacity = opacity_of(pixels.waiting[c]);
-  composite(pixels, c, opacity, 1.0 - joins, pixels.waiting[c].end, pixel);
+  composite(c, opacity, 1.0 - joins, pixels.waiting[c].end, pixel);
   Rows last = mix(pixels.waiting[c].end, end, open);
   wait_for_next(pixels.waiting[c], sums, last, joins, one);
   pixels.limit[c] = mix(pixels.limit[c], end, open);
 }
 
-void blend_medium(inout Pixels pixels, int c, SurfaceSums sums, float one, vec2 pixel) {
+void blend_medium(int c, SurfaceSums sums, float one, vec2 pixel) {
   wait_for_next(pixels.waiting[c], sums, Rows(0.0), Rows(0.0), one);
   Rows opacity = 1.0 - exp(-kDepthUnit * pixels.waiting[c].count);
   opacity = mix(Rows(0.0), opacity, less(Rows(0.0), pixels.waiting[c].opacity));
-  composite(pixels, c, opacity, Rows(1.0), pixels.limit[c], pixel);
+  composite(c, opacity, Rows(1.0), pixels.limit[c], pixel);
 }
 
 // Draws the next surface, or with `medium` everything behind the limits. False if all pixels are finished but for what
 // waits.
-bool draw_next(TileLists tile, vec2 pixel, float unit, bool medium, inout Pixels pixels) {
+bool draw_next(TileLists tile, vec2 pixel, float unit, bool medium) {
   Columns begin;
   Columns end;
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) end[c] = begin[c] = Rows(0.0);
-  if (!medium) end = next_end(tile, pixel, pixels, begin);
+  if (!medium) end = next_end(tile, pixel, begin);
   SurfaceColumns sums;
   add_all(tile, pixel, pixels.limit, end, unit, medium, sums);
   BoolColumns open;
@@ -265,10 +266,10 @@ bool draw_next(TileLists tile, vec2 pixel, float unit, bool medium, inout Pixels
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
     open[c] = BoolRows(false);
     if (medium) {
-      blend_medium(pixels, c, sums[c], 1.0 / unit, pixel);
+      blend_medium(c, sums[c], 1.0 / unit, pixel);
     } else {
-      take_surface(pixels, c, sums[c], begin[c], end[c], 1.0 / unit, pixel);
-      open[c] = is_open(pixels, c);
+      take_surface(c, sums[c], begin[c], end[c], 1.0 / unit, pixel);
+      open[c] = is_open(c);
       more = more || any_of(open[c]);
     }
   }
@@ -278,12 +279,12 @@ bool draw_next(TileLists tile, vec2 pixel, float unit, bool medium, inout Pixels
 }
 
 // Draws what waits. True if something is left behind it.
-bool draw_waiting(TileLists tile, vec2 pixel, inout Pixels pixels) {
+bool draw_waiting(TileLists tile, vec2 pixel) {
   BoolColumns open;
   bool more = false;
   for (int c = 0; c < SURFCAST_COLUMNS; ++c) {
     Rows opacity = opacity_of(pixels.waiting[c]);
-    composite(pixels, c, opacity, Rows(1.0), pixels.waiting[c].end, pixel);
+    composite(c, opacity, Rows(1.0), pixels.waiting[c].end, pixel);
     BoolRows seen = less(Rows(kOpaque), pixels.light[c].transmittance);
     pixels.limit[c] = mix(Rows(0.0), pixels.limit[c], seen);
     open[c] = less(Rows(0.0), pixels.limit[c]);
