@@ -31,6 +31,7 @@ from ._values import (
     Volume,
 )
 from ._view import Frame
+from ._warp import warp
 from .camera_path import CameraPath, Keyframe
 from .errors import (
     Cancelled,
@@ -93,4 +94,5 @@ __all__ = [
     "aio",
     "connect",
     "measure",
+    "warp",
 ]

@@ -16,10 +16,12 @@ class Depth:
     """The nearest surface in each square of `cell` x `cell` pixels of a picture, from its upper left corner on.
 
     `inverse`: 1 / distance from the eye along the view axis, per world unit, the top row first; 0 is background.
+    `seen_through`: pixels may show things at several depths.
     """
 
     cell: int
     inverse: npt.NDArray[np.float32]
+    seen_through: bool = False
 
 
 def depth_from(plane: wire.DepthPlane, resolution: tuple[int, int]) -> Depth | None:
@@ -34,7 +36,8 @@ def depth_from(plane: wire.DepthPlane, resolution: tuple[int, int]) -> Depth | N
         return None
     if len(codes) != width * height or not inflater.eof:
         return None
-    return Depth(plane.cell, _values(plane.first, plane.last)[_without_prediction(codes, width, height)])
+    inverse = _values(plane.first, plane.last)[_without_prediction(codes, width, height)]
+    return Depth(plane.cell, inverse, plane.seen_through)
 
 
 def _values(first: float, last: float) -> npt.NDArray[np.float32]:

@@ -1,0 +1,220 @@
+"""The triangles of a frame with depth. The rules are those of `client/warp/warp_mesh.h`, for all triangles at once."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from enum import IntEnum
+from typing import Any
+
+import numpy as np
+import numpy.typing as npt
+
+from ._depth import Depth
+
+_A = npt.NDArray[Any]
+
+# An edge is cut if the inverse depths of its ends differ by more than this part of the larger one for each pixel
+# between them, and neither of the slopes beside it explains that.
+_STEP_PER_PIXEL = 0.03
+_SURROUNDINGS = 0.25  # width of what is continued beyond the border, heights of the frame
+
+
+class Sheet(IntEnum):
+    """Beside an outline a frame is two sheets: the surface in front, and what is behind it."""
+
+    SURFACE = 0  # away from outlines
+    NEAR = 1
+    FAR = 2
+    FILL = 3  # what the frame does not show: between the two, and beyond the border
+
+
+@dataclass(frozen=True, eq=False)
+class WarpMesh:
+    """n triangles of three corners."""
+
+    pixel: _A  # (n, 3, 2), from the upper left corner of the frame
+    inverse: _A  # (n, 3), 1 / depth; 0: infinitely far
+    front: _A  # (n, 3), 1 where a corner is the surface in front, 0 where it is what is behind
+    sheet: _A  # (n,)
+    background: _A  # (n,), of SURFACE: infinitely far
+    far: _A  # (n, 2), of the other sheets: where the frame shows what is behind, pixels
+
+    def only(self, chosen: _A) -> WarpMesh:
+        return WarpMesh(*(values[chosen] for values in vars(self).values()))
+
+
+def make_warp_mesh(depth: Depth, resolution: tuple[int, int]) -> WarpMesh:
+    grid = _Grid(depth, resolution)
+    parts = [*_sheets(grid), _surroundings(grid, _SURROUNDINGS * resolution[1])]
+    return WarpMesh(*(np.concatenate(values) for values in zip(*(vars(part).values() for part in parts))))
+
+
+def _places(texels: int, cell: int, pixels: int) -> _A:
+    """Centres of the cells along one side, with both ends of the side."""
+    first = np.arange(texels) * cell
+    return np.concatenate([[0], (first + np.minimum(first + cell, pixels)) / 2, [pixels]])
+
+
+def _cuts(inverse: _A, cell: int) -> _A:
+    """Whether the surface is broken between each value of a row and the next."""
+    a, b = inverse[:, :-1], inverse[:, 1:]
+    tolerance = _STEP_PER_PIXEL * cell * np.maximum(a, b)
+    step = b - a
+    there = (a != 0) & (b != 0)
+    explained = np.zeros(step.shape, bool)
+    explained[:, 1:] |= there[:, :-1] & (np.abs(step[:, :-1] - step[:, 1:]) <= tolerance[:, 1:])
+    explained[:, :-1] |= there[:, 1:] & (np.abs(step[:, 1:] - step[:, :-1]) <= tolerance[:, :-1])
+    cuts: _A = np.where(there, (np.abs(step) > tolerance) & ~explained, a != b)
+    return cuts
+
+
+class _Grid:
+    """The texels with a ring around them, whose vertices lie on the border of the frame."""
+
+    def __init__(self, depth: Depth, resolution: tuple[int, int]) -> None:
+        rows, columns = depth.inverse.shape
+        self.cell = depth.cell
+        self.x = _places(columns, depth.cell, resolution[0])
+        self.y = _places(rows, depth.cell, resolution[1])
+        self.inverse = np.pad(depth.inverse.astype(np.float64), 1, mode="edge")
+        self._move_to_centres()
+        self._extend(self.inverse[1:-1])
+        self._extend(self.inverse.T)
+        self.cut_right = _cuts(self.inverse, self.cell)
+        self.cut_down = _cuts(self.inverse.T, self.cell).T
+
+    def _half_steps(self, inverse: _A) -> _A:
+        """The change across half a cell of each row, where the surface is not broken on either side."""
+        cuts = _cuts(inverse, self.cell)
+        steps: _A = np.where(cuts[:, :-1] | cuts[:, 1:], 0, np.abs(inverse[:, 2:] - inverse[:, :-2]) / 4)
+        return steps
+
+    def _move_to_centres(self) -> None:
+        """A texel is the nearest point of its cell, which on a slanted surface is a corner of it."""
+        nearest = self.inverse[1:-1, 1:-1]
+        steps = self._half_steps(self.inverse[1:-1]) + self._half_steps(self.inverse[:, 1:-1].T).T
+        nearest[...] = np.maximum(nearest - steps, nearest / 2)
+
+    def _extend(self, inverse: _A) -> None:
+        """Continues the slopes of each row to both ends, half a cell beyond the last centres."""
+        if inverse.shape[1] <= 3:
+            return
+        for row in (inverse, inverse[:, ::-1]):
+            last, before = row[:, 1], row[:, 2]
+            beyond = np.maximum(last + (last - before) / 2, last / 2)
+            row[:, 0] = np.where(_cuts(row[:, :4], self.cell)[:, 1], last, beyond)
+
+    def pixels(self, at: _A) -> _A:
+        """The places of vertices by their numbers, row after row."""
+        return np.stack([self.x[at % len(self.x)], self.y[at // len(self.x)]], axis=-1)
+
+
+class _Outlines:
+    """What outlines beside each vertex separate. Away from them, both sheets are its own depth."""
+
+    def __init__(self, grid: _Grid) -> None:
+        numbers = np.arange(grid.inverse.size).reshape(grid.inverse.shape)
+        self.near, self.far, self.far_at = grid.inverse.copy(), grid.inverse.copy(), numbers.copy()
+        self.beside = np.zeros(grid.inverse.shape, bool)
+        left, right = (..., np.s_[:-1]), (..., np.s_[1:])
+        upper, lower = (np.s_[:-1], ...), (np.s_[1:], ...)
+        neighbours: tuple[tuple[Any, Any, _A], ...] = (
+            (right, left, grid.cut_right),
+            (left, right, grid.cut_right),
+            (lower, upper, grid.cut_down),
+            (upper, lower, grid.cut_down),
+        )
+        for own, other, cuts in neighbours:
+            there = grid.inverse[other]
+            self.beside[own] |= cuts
+            self.near[own] = np.where(cuts, np.maximum(self.near[own], there), self.near[own])
+            farther = cuts & (there < self.far[own])
+            self.far[own] = np.where(farther, there, self.far[own])
+            self.far_at[own] = np.where(farther, numbers[other], self.far_at[own])
+
+
+def _triangles(grid: _Grid) -> tuple[_A, _A]:
+    """Two triangles for each square: the numbers of their corners, and whether one of their edges is cut."""
+    numbers = np.arange(grid.inverse.size).reshape(grid.inverse.shape)
+    a, b, c, d = (numbers[y : y - 1 or None, x : x - 1 or None] for y in (0, 1) for x in (0, 1))
+    top, bottom = grid.cut_right[:-1], grid.cut_right[1:]
+    left, right = grid.cut_down[:, :-1], grid.cut_down[:, 1:]
+    # Divided between the ends of the diagonal that are nearer to each other.
+    inverse = grid.inverse.ravel()
+    falling = np.abs(inverse[a] - inverse[d]) <= np.abs(inverse[b] - inverse[c])
+    first = np.where(falling, [a, b, d], [a, b, c])
+    second = np.where(falling, [a, d, c], [b, d, c])
+    cut = [top | np.where(falling, right, left), bottom | np.where(falling, left, right)]
+    corners = np.concatenate([first.reshape(3, -1), second.reshape(3, -1)], axis=1).T
+    return corners, np.concatenate([part.ravel() for part in cut])
+
+
+def _sheets(grid: _Grid) -> list[WarpMesh]:
+    corners, cut = _triangles(grid)
+    outlines = _Outlines(grid)
+    beside = outlines.beside.ravel()[corners]
+    inverse = grid.inverse.ravel()[corners]
+    across = corners[np.arange(len(corners)), beside.argmax(axis=1)]  # the first corner beside an outline
+    none = np.zeros_like(inverse)
+    plain = WarpMesh(
+        pixel=grid.pixels(corners),
+        inverse=inverse,
+        front=none,
+        sheet=np.full(len(corners), Sheet.SURFACE),
+        background=(inverse == 0).all(axis=1),
+        far=grid.pixels(outlines.far_at.ravel()[across]),
+    )
+    outlined = beside.any(axis=1)
+    split = replace(plain, background=np.zeros(len(corners), bool))
+    near, far = (values.ravel()[corners] for values in (outlines.near, outlines.far))
+    nearest = np.where(beside, near, 0).max(axis=1, keepdims=True)
+    farthest = np.where(beside, far, np.inf).min(axis=1, keepdims=True)
+    in_front = nearest - inverse <= inverse - farthest
+    in_near = np.where(beside, near, np.where(in_front, inverse, nearest))
+    in_far = np.where(beside, far, np.where(in_front, farthest, inverse))
+
+    def sheet(kind: Sheet, inverse: _A, front: _A, chosen: _A) -> WarpMesh:
+        kinds = np.full(len(corners), kind)
+        return replace(split, inverse=inverse, front=front, sheet=kinds).only(chosen)
+
+    return [
+        plain.only(~outlined),
+        sheet(Sheet.FILL, inverse, none, outlined & cut),
+        sheet(Sheet.FAR, in_far, in_front.astype(float), outlined),
+        sheet(Sheet.NEAR, in_near, in_front.astype(float), outlined),
+    ]
+
+
+def _surroundings(grid: _Grid, margin: float) -> WarpMesh:
+    """Strips beyond the border, for what a turning eye sees there, in the colours of the border."""
+    numbers = np.arange(grid.inverse.size).reshape(grid.inverse.shape)
+    sides = (
+        (numbers[0], (0, -margin)),
+        (numbers[-1], (0, margin)),
+        (numbers[:, 0], (-margin, 0)),
+        (numbers[:, -1], (margin, 0)),
+    )
+    pixel, inverse = [], []
+    for along, outwards in sides:
+        ends = np.stack([along[:-1], along[1:]], axis=1)
+        inner, depth = grid.pixels(ends), grid.inverse.ravel()[ends]
+        quad = np.concatenate([inner, inner + np.asarray(outwards)], axis=1)  # from, to, both of them outside
+        for corners in ([0, 1, 3], [0, 3, 2]):
+            pixel.append(quad[:, corners])
+            inverse.append(depth[:, [corner % 2 for corner in corners]])
+    count = sum(map(len, pixel))
+    far = np.concatenate([each for along, _ in sides for each in [_middles(grid, along)] * 2])
+    return WarpMesh(
+        pixel=np.concatenate(pixel),
+        inverse=np.concatenate(inverse),
+        front=np.zeros((count, 3)),
+        sheet=np.full(count, Sheet.FILL),
+        background=np.zeros(count, bool),
+        far=far,
+    )
+
+
+def _middles(grid: _Grid, along: _A) -> _A:
+    places = grid.pixels(along)
+    middles: _A = (places[:-1] + places[1:]) / 2
+    return middles
