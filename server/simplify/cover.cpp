@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <glm/geometric.hpp>
+#include <utility>
 
 #include <oneapi/tbb/enumerable_thread_specific.h>
 #include <oneapi/tbb/parallel_for.h>
@@ -78,6 +79,28 @@ void Cover::take(const Patch& patch, Scratch& scratch) {
   surface_.sheet(centre, surface_.normal(patch.sample), kCovered * patch.reach, scratch.near);
   for (const Near& n : scratch.near) claim(n.point, number, std::sqrt(n.square) / std::max(patch.reach, 1e-300));
   claim(patch.sample, number, -1);
+}
+
+void Cover::release_patches_below(size_t samples) {
+  std::vector<size_t> counts(patches_.size(), 0);
+  for (const uint32_t owner : owner_) ++counts[owner];
+  std::vector<uint32_t> numbers(patches_.size(), kNobody);
+  std::vector<Patch> kept;
+  for (size_t i = 0; i < patches_.size(); ++i) {
+    if (counts[i] < samples) continue;
+    numbers[i] = static_cast<uint32_t>(kept.size());
+    kept.push_back(patches_[i]);
+  }
+  for (uint32_t sample = 0; sample < owner_.size(); ++sample) {
+    uint32_t& owner = owner_[sample];
+    owner = numbers[owner];
+    if (owner != kNobody) continue;
+    owner = static_cast<uint32_t>(kept.size());
+    Patch alone;
+    alone.sample = sample;
+    kept.push_back(alone);
+  }
+  patches_ = std::move(kept);
 }
 
 void Cover::claim(uint32_t sample, uint32_t patch, double nearness) {

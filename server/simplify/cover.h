@@ -24,6 +24,8 @@ class Cover {
   [[nodiscard]] const std::vector<uint32_t>& owners() const { return owner_; }
 
   void take(const Patch& patch, Scratch& scratch);
+  /// Patches of fewer samples than this are replaced by their samples.
+  void release_patches_below(size_t samples);
 
  private:
   static constexpr uint32_t kNobody = std::numeric_limits<uint32_t>::max();

@@ -20,11 +20,9 @@ constexpr size_t kFirstSamples = 25;
 constexpr size_t kNoiseStride = 4;
 /// Growth of a neighbourhood from step to step.
 constexpr double kGrowth = 1.3;
-/// How far the residual may exceed that of the smallest neighbourhoods, beside the spread of its estimate, which is
-/// about one over the root of the samples.
+/// How far the residual may exceed the noise, beside the spread of its estimate, which is about one over the root of
+/// the samples.
 constexpr double kNoise = 1.05;
-/// The residual of kFirstSamples is as much too small as a fit of 6 numbers to 3 equations a sample makes it.
-constexpr double kOverfit = 1.04;
 /// Largest curvature of a neighbourhood times its radius: beyond, the surface leaves its tangent plane too steeply.
 constexpr double kMostBent = 0.7;
 /// The ring of a neighbourhood in which every eighth has to have samples, and how many samples that takes.
@@ -40,6 +38,19 @@ constexpr size_t kSpeaking = 1024;
 Limits limits_of(const ErrorBound& bound, double reach) {
   const double angle = bound.degrees * std::numbers::pi / 180;
   return {angle, bound.height.value_or(kHeightPerAngle * angle * reach)};
+}
+
+/// A fit of 6 numbers to 3 equations a sample makes residuals as much too small.
+double overfit(size_t samples) {
+  constexpr double kShare = 6.0 / 3;
+  return 1 / std::sqrt(1 - kShare / static_cast<double>(std::max<size_t>(samples, kLeastSamples)));
+}
+
+/// The part of two residuals that is the same in both, where the rest of the second one is `growth` times that of the
+/// first. Squares add.
+double constant_part(double first, double second, double growth) {
+  const double square = growth * growth;
+  return std::sqrt(std::max(0.0, (square * first * first - second * second) / (square - 1)));
 }
 
 /// True if the surface ends within the neighbourhood: a part of the ring has no sample (an edge, a border, a hole).
@@ -59,14 +70,14 @@ bool ends_within(const SampledSurface& surface, const surfel::OsculatingSurface&
 }  // namespace
 
 Noise::Noise(const SampledSurface& surface) : surface_(surface) {
-  std::vector<std::optional<Residual>> found((surface.size() + kNoiseStride - 1) / kNoiseStride);
+  std::vector<std::optional<Limits>> found((surface.size() + kNoiseStride - 1) / kNoiseStride);
   oneapi::tbb::enumerable_thread_specific<Scratch> scratch;
   oneapi::tbb::parallel_for(size_t{0}, found.size(), [&](size_t i) {
-    found[i] = smallest(static_cast<uint32_t>(i * kNoiseStride), scratch.local());
+    found[i] = estimate(static_cast<uint32_t>(i * kNoiseStride), scratch.local());
   });
   for (size_t i = 0; i < found.size(); ++i) {
     if (!found[i]) continue;
-    residuals_.push_back(*found[i]);
+    estimates_.push_back(*found[i]);
     centres_.push_back(surface.position(static_cast<uint32_t>(i * kNoiseStride)));
   }
   tree_.emplace(centres_);
@@ -75,22 +86,35 @@ Noise::Noise(const SampledSurface& surface) : surface_(surface) {
 Limits Noise::around(uint32_t sample, Scratch& scratch) const {
   tree_->within(surface_.position(sample), 2 * kFirstReach * surface_.radius(sample), scratch.near);
   if (scratch.near.empty()) return {};
-  const auto median = [&](auto value) {
+  const auto median = [&](double Limits::*value) {
     std::vector<double> values;
-    for (const Near& n : scratch.near) values.push_back(value(residuals_[n.point]));
+    for (const Near& n : scratch.near) values.push_back(estimates_[n.point].*value);
     const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
     std::nth_element(values.begin(), middle, values.end());
-    return kNoise * kOverfit * *middle;
+    return kNoise * *middle;
   };
-  return {median([](const Residual& r) { return r.angle; }), median([](const Residual& r) { return r.height; })};
+  return {median(&Limits::angle), median(&Limits::height)};
 }
 
-std::optional<Residual> Noise::smallest(uint32_t sample, Scratch& scratch) const {
-  surface_.sheet(surface_.position(sample), surface_.normal(sample), kFirstReach * surface_.radius(sample),
-                 scratch.near);
+/// The residual of the surface that fits a neighbourhood.
+std::optional<Residual> Noise::within(uint32_t sample, double reach, Scratch& scratch) const {
+  surface_.sheet(surface_.position(sample), surface_.normal(sample), reach, scratch.near);
   surface_.load_samples(scratch);
   const auto fit = fit_surface(surface_.position(sample), scratch.samples, surface_.oriented());
-  return fit ? std::optional(residual_of(*fit, scratch.samples, surface_.oriented())) : std::nullopt;
+  if (!fit) return std::nullopt;
+  Residual residual = residual_of(*fit, scratch.samples, surface_.oriented());
+  residual.angle *= overfit(scratch.samples.size());
+  residual.height *= overfit(scratch.samples.size());
+  return residual;
+}
+
+std::optional<Limits> Noise::estimate(uint32_t sample, Scratch& scratch) const {
+  const double reach = kFirstReach * surface_.radius(sample);
+  const std::optional<Residual> first = within(sample, reach, scratch);
+  const std::optional<Residual> second = within(sample, kGrowth * reach, scratch);
+  if (!first || !second) return std::nullopt;
+  return Limits{constant_part(first->angle, second->angle, std::pow(kGrowth, 2)),
+                constant_part(first->height, second->height, std::pow(kGrowth, 3))};
 }
 
 std::optional<Patch> Growth::fit(uint32_t sample, double reach, const Limits& noise, Scratch& scratch) const {

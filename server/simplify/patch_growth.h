@@ -28,7 +28,8 @@ struct Limits {
   [[nodiscard]] bool hold(const Residual& r) const { return r.angle <= angle && r.height <= height; }
 };
 
-/// What is noise around a place: the median residual of the smallest neighbourhoods there.
+/// What is noise around a place: the part of the residuals there that does not grow with the neighbourhood. What a
+/// quadric leaves of a smooth surface grows, in angle with the square and in height with the cube of the radius.
 class Noise {
  public:
   explicit Noise(const SampledSurface& surface);
@@ -38,10 +39,11 @@ class Noise {
   [[nodiscard]] Limits around(uint32_t sample, Scratch& scratch) const;
 
  private:
-  [[nodiscard]] std::optional<Residual> smallest(uint32_t sample, Scratch& scratch) const;
+  [[nodiscard]] std::optional<Residual> within(uint32_t sample, double reach, Scratch& scratch) const;
+  [[nodiscard]] std::optional<Limits> estimate(uint32_t sample, Scratch& scratch) const;
 
   const SampledSurface& surface_;
-  std::vector<Residual> residuals_;
+  std::vector<Limits> estimates_;
   std::vector<glm::dvec3> centres_;
   std::optional<PointTree> tree_;
 };

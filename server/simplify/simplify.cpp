@@ -21,6 +21,8 @@ namespace {
 /// Directions among which the nearest border of a surfel is sought, and how far samples are looked for, in its radii.
 constexpr size_t kBorderDirections = 64;
 constexpr double kBorderReach = 1.3;
+/// A model of which parts stay as they are pays from half of the samples on.
+constexpr double kLeastGain = 2;
 /// Neighbours whose mean distance is the radius of a surfel, as in scan/spacing.h.
 constexpr size_t kRadiusNeighbours = 6;
 
@@ -59,7 +61,8 @@ std::vector<double> radii_of(const SampledSurface& surface, const Cover& chosen)
   return radii;
 }
 
-SimplifyReport report_of(const SampledSurface& surface, const Cover& chosen) {
+/// `least`: samples for each surfel from which on it pays.
+SimplifyReport report_of(const SampledSurface& surface, const Cover& chosen, double least) {
   SimplifyReport report;
   report.samples = surface.size();
   report.points = chosen.patches().size();
@@ -71,9 +74,9 @@ SimplifyReport report_of(const SampledSurface& surface, const Cover& chosen) {
     report.degrees = std::max(report.degrees, p.residual.angle * 180 / std::numbers::pi);
     report.height = std::max(report.height, p.residual.height);
   }
-  if (static_cast<double>(surface.size()) < kLeastSamplesPerPoint * static_cast<double>(report.points)) {
-    report.reason = "a surfel would stand for fewer than 20 points";
-  } else if (2 * paying < report.points) {
+  if (static_cast<double>(surface.size()) < least * static_cast<double>(report.points)) {
+    report.reason = "a surfel would stand for fewer than 20 points on more than half of the surface";
+  } else if (2 * paying < report.points - report.kept) {
     report.reason = "curvature would not lower the error of half of the surfels";
   }
   report.pays = report.reason.empty();
@@ -186,8 +189,12 @@ SimplifyReport simplify(const ErrorBound& bound, surfel::SurfelCloud& cloud) {
       report.reason = "no point lies on a surface";
       return report;
     }
-    const Cover chosen = cover(surface, bound);
-    report = report_of(surface, chosen);
+    Cover chosen = cover(surface, bound);
+    report = report_of(surface, chosen, kLeastSamplesPerPoint);
+    if (!report.pays) {
+      chosen.release_patches_below(static_cast<size_t>(kLeastSamplesPerPoint));
+      report = report_of(surface, chosen, kLeastGain);
+    }
     if (report.pays) apply(surface, chosen, cloud);
   }
   return report;

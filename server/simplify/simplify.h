@@ -35,8 +35,9 @@ struct SimplifyReport {
 /// osculating surface keeps the bound in it; noise is no error of the surface, so that the residual may be a twentieth
 /// above that of the smallest neighbourhood. Every sample is within 0.62 of the neighbourhood of a surfel.
 ///
-/// Where it does not pay the cloud is unchanged: fewer than half of the surfels keep the bound as a plane or need their
-/// curvature for it, or each stands for fewer than 20 samples.
+/// Where surfels would stand for fewer than 20 samples on average, those that do are replaced by their samples. Where
+/// it does not pay even so the cloud is unchanged: fewer than half of the surfels keep the bound as a plane or need
+/// their curvature for it, or more than half of the samples would be left.
 ///
 /// Positions and normals are those of the fits, colours are means, other attributes those of the sample nearest to the
 /// centre of the neighbourhood. Deterministic.

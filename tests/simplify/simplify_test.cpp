@@ -112,6 +112,37 @@ TEST_P(SimplifyBounds, AreKeptOnTheBumpySphere) {
 
 INSTANTIATE_TEST_SUITE_P(Degrees, SimplifyBounds, ::testing::Values(2.0, 4.0));
 
+TEST(Simplify, KeepsItsBoundWhereSmallNeighbourhoodsAreBent) {
+  for (const testing::ImplicitSurface& surface : {testing::spring(), testing::blob()}) {
+    const Simplified s = simplified(surface, 20000, {1, std::nullopt});
+    std::cout << surface.name << ": " << s.report.points << " points, kept " << s.report.kept << ", "
+              << s.report.degrees << " degrees\n";
+    EXPECT_LE(s.report.degrees, 1) << surface.name;
+    EXPECT_TRUE(!s.report.pays || measure(s.before, s.after).degrees <= 1) << surface.name;
+  }
+}
+
+TEST(Simplify, KeepsThePointsOfPartsThatItDoesNotFit) {
+  std::vector<Sample> samples = testing::random_samples(testing::torus(), 20000, 11);
+  std::vector<Sample> spring = testing::random_samples(testing::spring(), 5000, 12);
+  for (Sample& sample : spring) sample.position.x += 4;
+  samples.insert(samples.end(), spring.begin(), spring.end());
+  const surfel::SurfelCloud before = testing::surfels_of(samples, 0.03);
+  surfel::SurfelCloud after = before;
+  const SimplifyReport report = simplify({2, std::nullopt}, after);
+  std::cout << report.points << " points, kept " << report.kept << ", " << report.degrees << " degrees\n";
+  ASSERT_TRUE(report.pays) << report.reason;
+  EXPECT_LE(report.degrees, 2);
+  EXPECT_GT(report.kept, 3000U);
+  EXPECT_LT(report.points, 10000U);
+  const auto of_spring = [](const surfel::SurfelCloud& cloud) {
+    return std::ranges::count_if(cloud.positions, [](const glm::dvec3& p) { return p.x > 2.5; });
+  };
+  EXPECT_GT(of_spring(after), 3000);
+  EXPECT_LT(static_cast<ptrdiff_t>(after.size()) - of_spring(after), 5000);
+  EXPECT_EQ(measure(before, after).uncovered, 0U);
+}
+
 TEST(Simplify, KeepsAStatedHeight) {
   const Simplified s = simplified(testing::torus(), 20000, {8, 0.002});
   ASSERT_TRUE(s.report.pays) << s.report.reason;
