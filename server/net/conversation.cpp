@@ -24,7 +24,7 @@ constexpr size_t kMostUnknown = 3;
 
 Conversation::Conversation(std::shared_ptr<NetContext> context, const service::Asker& asker,
                            asio::any_io_executor executor, std::shared_ptr<AnswerWriter> writer, std::string client,
-                           const Gatekeeper::Guest& guest)
+                           const Gatekeeper::User& user)
     : context_(std::move(context)),
       asker_(asker),
       client_(std::move(client)),
@@ -32,7 +32,7 @@ Conversation::Conversation(std::shared_ptr<NetContext> context, const service::A
       writer_(std::move(writer)),
       window_(context_->config.requests),
       view_timer_(executor_) {
-  if (guest) welcome(guest);
+  if (user) welcome(user);
 }
 
 Status Conversation::receive(std::span<const std::byte> message) {
@@ -101,7 +101,7 @@ void Conversation::handle_picture(const wire::Request& request) {
   Result<service::PictureJob> job = to_job(request.draw_picture());
   if (!job) return send_error(request.id(), job.error());
   audit_once("picture", job->model);
-  job->model = name_for(guest_, job->model);
+  job->model = name_for(user_, job->model);
   window_.add_picture(request.id(), std::move(*job));
   draw_next();
 }
@@ -126,15 +126,15 @@ void Conversation::handle_other(const wire::Request& request) {
   window_.add_other(id);
   if (request.has_list_models()) {
     return context_->service.list_models(
-        [later = answer_later(id), id, context = context_, guest = guest_](const service::ModelList& models) {
-          later(outcome_of(id, list_for(guest, models), context->config.uploads));
+        [later = answer_later(id), id, context = context_, user = user_](const service::ModelList& models) {
+          later(outcome_of(id, list_for(user, models), context->config.uploads));
         },
         asker_.client);
   }
   const std::string& name = request.describe_model().model();
   audit_once("describe", name);
   context_->service.describe_model(
-      name_for(guest_, name),
+      name_for(user_, name),
       [later = answer_later(id), id, name](const Result<service::ModelDescription>& description) {
         later(outcome_of(id, name, description));
       },
@@ -147,7 +147,7 @@ void Conversation::handle_pick(const wire::Request& request) {
   Result<service::PickJob> job = to_job(request.pick_surfel());
   if (!job) return send_error(id, job.error());
   audit_once("pick", job->model);
-  job->model = name_for(guest_, job->model);
+  job->model = name_for(user_, job->model);
   window_.add_other(id);
   context_->service.pick(
       std::move(*job),
@@ -163,7 +163,7 @@ void Conversation::handle_profile(const wire::Request& request) {
   Result<service::ProfileJob> job = to_job(request.get_profile());
   if (!job) return send_error(id, job.error());
   audit_once("profile", job->model);
-  job->model = name_for(guest_, job->model);
+  job->model = name_for(user_, job->model);
   window_.add_other(id);
   context_->service.profile(
       std::move(*job),
@@ -202,7 +202,7 @@ void Conversation::handle_cancel(const wire::Request& request) {
 
 void Conversation::audit(std::string_view what, const std::string& model) {
   if (!context_->audit) return;
-  const bool allowed = !guest_ || access::may_see(*guest_, model);
+  const bool allowed = !user_ || access::may_see(*user_, model);
   context_->audit->write({.what = what,
                           .who = owner(),
                           .client = client_,

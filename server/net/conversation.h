@@ -47,7 +47,7 @@ class Conversation : public KeptSessions::Holder, public std::enable_shared_from
  public:
   /// `writer` is kept until abandon() and while an answer is outstanding. `client`: see client_name.
   Conversation(std::shared_ptr<NetContext> context, const service::Asker& asker, boost::asio::any_io_executor executor,
-               std::shared_ptr<AnswerWriter> writer, std::string client, const Gatekeeper::Guest& guest);
+               std::shared_ptr<AnswerWriter> writer, std::string client, const Gatekeeper::User& user);
 
   /// Handles one encoded Request. Fails when it is none: the stream is of no use any more then.
   Status receive(std::span<const std::byte> message);
@@ -55,10 +55,10 @@ class Conversation : public KeptSessions::Holder, public std::enable_shared_from
   void resume_sending();
   /// Models may have newer editions, which views are to show.
   void models_changed();
-  /// Ends the conversation, with the reason, if the guest has to leave.
-  void check_guest();
+  /// Ends the conversation, with the reason, if the user has to leave.
+  void check_user();
   /// Whether the client may ask for models.
-  [[nodiscard]] bool admitted() const { return context_->gate->admits(guest_); }
+  [[nodiscard]] bool admitted() const { return context_->gate->admits(user_); }
   /// Takes no more requests: the server stops.
   void refuse_requests() { refusing_ = true; }
   /// Cancels what is outstanding; nothing is sent from here on. Views wait for the client, if it has begun a session.
@@ -87,7 +87,7 @@ class Conversation : public KeptSessions::Holder, public std::enable_shared_from
   void handle_admitted(const wire::Request& request);
   void handle_ping(const wire::Request& request);
   void handle_authenticate(const wire::Request& request);
-  void welcome(const Gatekeeper::Guest& guest);
+  void welcome(const Gatekeeper::User& user);
   void deny(uint64_t id, const std::string& reason);
   [[nodiscard]] std::string refusal_of_view() const;
   void handle_picture(const wire::Request& request);
@@ -106,7 +106,7 @@ class Conversation : public KeptSessions::Holder, public std::enable_shared_from
   Status open_view(KeptView wanted);
   [[nodiscard]] Status check_room_for_view(uint64_t id) const;
   [[nodiscard]] std::vector<KeptView> views_to_keep() const;
-  [[nodiscard]] std::string owner() const { return guest_ ? guest_->name : ""; }
+  [[nodiscard]] std::string owner() const { return user_ ? user_->name : ""; }
   void handle_update_view(const wire::Request& request);
   void handle_painted(const wire::Request& request);
   void handle_close_view(const wire::Request& request);
@@ -135,12 +135,12 @@ class Conversation : public KeptSessions::Holder, public std::enable_shared_from
     KeptView wanted;  ///< its quality is that at the beginning
     std::string model;
     Counted counted;
-    std::optional<Counted> counted_guest;
+    std::optional<Counted> counted_user;
   };
   std::map<uint64_t, OpenedView> views_;  ///< by the id of their OpenView
   std::map<uint64_t, Region> regions_;    ///< by the id of their GetPoints
-  Gatekeeper::Guest guest_;               ///< null: nobody that is known
-  std::optional<Counted> counted_guest_;
+  Gatekeeper::User user_;                 ///< null: nobody that is known
+  std::optional<Counted> counted_user_;
   std::string session_;  ///< its secret; empty: there is none
   bool refusing_ = false;
   std::set<std::string> audited_;         ///< what was asked of which model

@@ -24,7 +24,7 @@ void Conversation::handle_points(const wire::Request& request) {
   Result<service::PointsJob> job = to_job(request.get_points());
   if (!job) return send_error(id, job.error());
   audit_once("points", job->model);
-  job->model = name_for(guest_, job->model);
+  job->model = name_for(user_, job->model);
   window_.add_other(id);
   Region region;
   region.only_count = job->only_count;

@@ -56,7 +56,7 @@ Status Conversation::open_view(KeptView wanted) {
   Result<service::PictureJob> job = to_job(picture);
   if (!job) return fail(job.error());
   audit("view", job->model);
-  job->model = name_for(guest_, job->model);
+  job->model = name_for(user_, job->model);
   const double fps = wanted.target_fps > 0 ? wanted.target_fps : context_->config.target_fps;
   const view::ViewOptions options{fps, wanted.depth, wanted.video, context_->config.kept_frame_bytes};
   const auto view = std::make_shared<view::ViewSession>(context_->service, asker_, ++context_->last_viewer, options,
@@ -65,7 +65,7 @@ Status Conversation::open_view(KeptView wanted) {
   view->update({wanted.update, std::move(*job), /*changed=*/true, /*moving=*/false}, Clock::now());
   OpenedView opened{view, std::move(wanted), picture.model(),
                     Counted(context_->clients, client_, &Clients::Counts::views), std::nullopt};
-  if (guest_) opened.counted_guest.emplace(context_->gate->guests(), guest_->name, &Clients::Counts::views);
+  if (user_) opened.counted_user.emplace(context_->gate->users(), user_->name, &Clients::Counts::views);
   const uint64_t id = opened.wanted.id;
   views_.emplace(id, std::move(opened));
   return {};
@@ -111,9 +111,9 @@ std::vector<KeptView> Conversation::hand_over() {
 
 /// Why there may not be another view; empty: there may.
 std::string Conversation::refusal_of_view() const {
-  const Clients& guests = *context_->gate->guests();
-  if (guest_ && guest_->views > 0 && guests.counts_of(guest_->name).views >= guest_->views) {
-    return "busy: this token opens " + std::to_string(guest_->views) + " views at a time";
+  const Clients& users = *context_->gate->users();
+  if (user_ && user_->views > 0 && users.counts_of(user_->name).views >= user_->views) {
+    return "busy: this token opens " + std::to_string(user_->views) + " views at a time";
   }
   return context_->clients->refusal_of_view(client_);
 }
@@ -129,7 +129,7 @@ void Conversation::handle_update_view(const wire::Request& request) {
   if (!checked) return end_view(request.id(), checked.error());
   Result<service::PictureJob> job = to_job(update.picture());
   if (!job) return end_view(request.id(), job.error());
-  job->model = name_for(guest_, job->model);
+  job->model = name_for(user_, job->model);
   std::string picture = update.picture().SerializeAsString();
   const bool changed = picture != found->second.wanted.picture;
   found->second.wanted.picture = std::move(picture);

@@ -24,10 +24,10 @@ Status Gatekeeper::read() {
   return {};
 }
 
-Gatekeeper::Guest Gatekeeper::enter(std::string_view secret, const std::string& client) {
+Gatekeeper::User Gatekeeper::enter(std::string_view secret, const std::string& client) {
   if (!table_) return nullptr;
-  Guest guest = table_->find(secret, std::chrono::system_clock::now());
-  if (guest) return guest;
+  User user = table_->find(secret, std::chrono::system_clock::now());
+  if (user) return user;
   ++denied_;
   const Clock::time_point now = Clock::now();
   std::erase_if(failures_, [&](const auto& entry) { return now - entry.second.since > kMemory; });
@@ -42,19 +42,19 @@ std::chrono::milliseconds Gatekeeper::penalty(const std::string& client) const {
   return lately && found->second.count > kFreeFailures ? kPenalty : std::chrono::milliseconds(0);
 }
 
-std::string Gatekeeper::why_ended(const Guest& guest) const {
-  if (!guest || !table_) return {};
-  return table_->why_ended(*guest, std::chrono::system_clock::now());
+std::string Gatekeeper::why_ended(const User& user) const {
+  if (!user || !table_) return {};
+  return table_->why_ended(*user, std::chrono::system_clock::now());
 }
 
-std::string name_for(const Gatekeeper::Guest& guest, const std::string& model) {
-  return !guest || access::may_see(*guest, model) ? model : service::hidden_name(model);
+std::string name_for(const Gatekeeper::User& user, const std::string& model) {
+  return !user || access::may_see(*user, model) ? model : service::hidden_name(model);
 }
 
-service::ModelList list_for(const Gatekeeper::Guest& guest, service::ModelList list) {
-  if (!guest) return list;
-  std::erase_if(list.names, [&](const std::string& name) { return !access::may_see(*guest, name); });
-  std::erase_if(list.scans, [&](const service::ScanStatus& scan) { return !access::may_see(*guest, scan.model); });
+service::ModelList list_for(const Gatekeeper::User& user, service::ModelList list) {
+  if (!user) return list;
+  std::erase_if(list.names, [&](const std::string& name) { return !access::may_see(*user, name); });
+  std::erase_if(list.scans, [&](const service::ScanStatus& scan) { return !access::may_see(*user, scan.model); });
   return list;
 }
 

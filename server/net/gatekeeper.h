@@ -19,7 +19,7 @@ namespace surfcast::net {
 /// Who may come in, by the file of tokens. Used on the thread of the sockets.
 class Gatekeeper {
  public:
-  using Guest = std::shared_ptr<const access::Principal>;
+  using User = std::shared_ptr<const access::Principal>;
   using Clock = std::chrono::steady_clock;
 
   /// `tokens` empty: everybody may do everything.
@@ -28,18 +28,18 @@ class Gatekeeper {
   /// Reads the file, again if it has changed. After an error the former tokens hold.
   Status read();
   [[nodiscard]] bool wants_tokens() const { return !file_.empty(); }
-  /// Whether that guest, null for none, may ask for models.
-  [[nodiscard]] bool admits(const Guest& guest) const { return !wants_tokens() || guest; }
+  /// Whether that user, null for none, may ask for models.
+  [[nodiscard]] bool admits(const User& user) const { return !wants_tokens() || user; }
 
-  /// The guest with that secret; null for none. `client`, as in client_name, is who says it.
-  Guest enter(std::string_view secret, const std::string& client);
+  /// The user with that secret; null for none. `client`, as in client_name, is who says it.
+  User enter(std::string_view secret, const std::string& client);
   /// What a client waits for its answer, who named too many wrong secrets lately.
   [[nodiscard]] std::chrono::milliseconds penalty(const std::string& client) const;
-  /// Why a guest has to leave; empty: it may stay.
-  [[nodiscard]] std::string why_ended(const Guest& guest) const;
+  /// Why a user has to leave; empty: it may stay.
+  [[nodiscard]] std::string why_ended(const User& user) const;
 
-  /// What guests have open, by their names.
-  [[nodiscard]] const std::shared_ptr<Clients>& guests() const { return guests_; }
+  /// What users have open, by their names.
+  [[nodiscard]] const std::shared_ptr<Clients>& users() const { return users_; }
   [[nodiscard]] uint64_t denied() const { return denied_; }
 
  private:
@@ -51,15 +51,15 @@ class Gatekeeper {
   std::filesystem::path file_;
   std::shared_ptr<const access::TokenTable> table_;
   std::map<std::string, Failures> failures_;  ///< of the last minute, by client
-  std::shared_ptr<Clients> guests_ = std::make_shared<Clients>(ClientLimits{});
+  std::shared_ptr<Clients> users_ = std::make_shared<Clients>(ClientLimits{});
   uint64_t denied_ = 0;  ///< wrong secrets
 };
 
-/// The name by which the service is asked for a model: one under which there is nothing, if the guest may not know of
+/// The name by which the service is asked for a model: one under which there is nothing, if the user may not know of
 /// it. What the service does and answers is then what it does and answers for absent ones.
-std::string name_for(const Gatekeeper::Guest& guest, const std::string& model);
+std::string name_for(const Gatekeeper::User& user, const std::string& model);
 
-/// What a guest may know of a list.
-service::ModelList list_for(const Gatekeeper::Guest& guest, service::ModelList list);
+/// What a user may know of a list.
+service::ModelList list_for(const Gatekeeper::User& user, service::ModelList list);
 
 }  // namespace surfcast::net

@@ -8,7 +8,6 @@
 #include "net/await_answer.h"
 #include "net/beast_text.h"
 #include "net/http_connection.h"
-#include "net/http_route.h"
 #include "net/on_disk.h"
 #include "net/upgrade.h"
 
@@ -40,13 +39,13 @@ std::optional<std::string> edition_in(std::string_view if_match) {
   return std::string(if_match);
 }
 
-/// Whether there is such a model for the guest, and a place for its annotations.
+/// Whether there is such a model for the user, and a place for its annotations.
 asio::awaitable<Status> check_model(NetContext& context, const AnnotationRequest& request) {
   if (context.config.annotations.folder.empty()) {
     co_return fail(ErrorKind::kUnsupported, "this server keeps no annotations; --annotations lets it");
   }
   const auto description = co_await answer_of<Result<service::ModelDescription>>([&](auto done) {
-    context.service.describe_model(name_for(request.guest, request.model), std::move(done), request.asker.client);
+    context.service.describe_model(name_for(request.user, request.model), std::move(done), request.asker.client);
   });
   if (!description) co_return fail(description.error());
   co_return Status();
@@ -54,13 +53,8 @@ asio::awaitable<Status> check_model(NetContext& context, const AnnotationRequest
 
 }  // namespace
 
-bool is_annotation_write(const HeadParser::value_type& request) {
-  const Result<HttpRoute> route = route_http(view_of(request.target()));
-  return route && route->kind == HttpRoute::Kind::kAnnotations && request.method() == http::verb::put;
-}
-
-bool may_annotate(const Gatekeeper::Guest& guest, const std::string& model) {
-  return !guest || (guest->annotations && access::may_see(*guest, model));
+bool may_annotate(const Gatekeeper::User& user, const std::string& model) {
+  return !user || (user->annotations && access::may_see(*user, model));
 }
 
 asio::awaitable<HttpAnswer> answer_annotations(NetContext& context, AnnotationRequest request) {
@@ -70,7 +64,7 @@ asio::awaitable<HttpAnswer> answer_annotations(NetContext& context, AnnotationRe
     return read_annotations(config, model);
   };
   const auto annotations = co_await on_disk<Result<Annotations>>(context, read);
-  co_return answer_of_document(annotations, may_annotate(request.guest, request.model));
+  co_return answer_of_document(annotations, may_annotate(request.user, request.model));
 }
 
 asio::awaitable<HttpAnswer> receive_annotations(NetContext& context, HttpConnection& connection, HeadParser& head,

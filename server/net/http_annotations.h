@@ -15,15 +15,12 @@ class HttpConnection;
 /// Who asks, and about which model.
 struct AnnotationRequest {
   std::string model;
-  Gatekeeper::Guest guest{};
+  Gatekeeper::User user{};
   service::Asker asker;
 };
 
-/// Whether a client begins to send the annotations of a model.
-bool is_annotation_write(const HeadParser::value_type& request);
-
-/// Whether a guest, null for anybody, may write the annotations of a model.
-bool may_annotate(const Gatekeeper::Guest& guest, const std::string& model);
+/// Whether a user, null for anybody, may write the annotations of a model.
+bool may_annotate(const Gatekeeper::User& user, const std::string& model);
 
 /// The answer to GET: the document, and its edition as the ETag. The references must outlive the coroutine.
 boost::asio::awaitable<HttpAnswer> answer_annotations(NetContext& context, AnnotationRequest request);

@@ -19,18 +19,15 @@ using HeadParser = boost::beast::http::request_parser<boost::beast::http::empty_
 /// Where a request comes from. The result points into it.
 RequestOrigin origin_of(const HeadParser::value_type& request);
 
-/// Whether a client begins to send a scan.
-bool is_upload(const HeadParser::value_type& request);
-
 /// The answer to a client that sends a scan. `whole`: nothing of the request is unread.
 struct UploadOutcome {
   HttpAnswer answer;
   bool whole = false;
 };
 
-/// Receives the scan of a request whose head was read, and serves it. `sender`: the name of their token; empty: none.
-/// The references must outlive the coroutine.
+/// Receives the scan of a request whose head was read, under the name of that file, and serves it. `sender`: the name
+/// of their token; empty: none. The references must outlive the coroutine.
 boost::asio::awaitable<UploadOutcome> receive_scan(NetContext& context, HttpConnection& connection, HeadParser& head,
-                                                   const std::string& sender);
+                                                   const std::string& file, const std::string& sender);
 
 }  // namespace surfcast::net

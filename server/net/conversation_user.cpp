@@ -21,28 +21,28 @@ Bytes encode_denial(uint64_t id, const std::string& reason) {
 
 }  // namespace
 
-/// Turns of the renderer go to the guest, on whatever connections it comes.
-void Conversation::welcome(const Gatekeeper::Guest& guest) {
-  guest_ = guest;
-  asker_.client = std::hash<std::string>()("token " + guest->name);
-  counted_guest_.reset();
-  counted_guest_.emplace(context_->gate->guests(), guest->name, &Clients::Counts::connections);
+/// Turns of the renderer go to the user, on whatever connections it comes.
+void Conversation::welcome(const Gatekeeper::User& user) {
+  user_ = user;
+  asker_.client = std::hash<std::string>()("token " + user->name);
+  counted_user_.reset();
+  counted_user_.emplace(context_->gate->users(), user->name, &Clients::Counts::connections);
 }
 
 void Conversation::handle_authenticate(const wire::Request& request) {
   const uint64_t id = request.id();
   Gatekeeper& gate = *context_->gate;
-  const Gatekeeper::Guest guest = gate.enter(request.authenticate().token(), client_);
-  if (!guest && gate.wants_tokens()) return deny(id, "the token is not known here, or has ended");
-  if (guest && !views_.empty()) return deny(id, "views are open with another token");
-  if (guest && guest->connections > 0 && gate.guests()->counts_of(guest->name).connections >= guest->connections) {
-    return deny(id, "busy: this token opens " + std::to_string(guest->connections) + " connections at a time");
+  const Gatekeeper::User user = gate.enter(request.authenticate().token(), client_);
+  if (!user && gate.wants_tokens()) return deny(id, "the token is not known here, or has ended");
+  if (user && !views_.empty()) return deny(id, "views are open with another token");
+  if (user && user->connections > 0 && gate.users()->counts_of(user->name).connections >= user->connections) {
+    return deny(id, "busy: this token opens " + std::to_string(user->connections) + " connections at a time");
   }
-  if (guest) welcome(guest);
-  if (guest) audit_token("allowed", "");
+  if (user) welcome(user);
+  if (user) audit_token("allowed", "");
   wire::Answer answer;
   answer.set_id(id);
-  answer.mutable_authenticated()->set_name(guest ? guest->name : "");
+  answer.mutable_authenticated()->set_name(user ? user->name : "");
   send(encode_answer(answer));
 }
 
@@ -70,8 +70,8 @@ void Conversation::audit_token(std::string_view outcome, const std::string& reas
                           .reason = reason});
 }
 
-void Conversation::check_guest() {
-  const std::string reason = context_->gate->why_ended(guest_);
+void Conversation::check_user() {
+  const std::string reason = context_->gate->why_ended(user_);
   if (reason.empty() || !writer_) return;
   for (const auto& [id, opened] : views_) send(encode_denial(id, reason));
   deny(0, reason);

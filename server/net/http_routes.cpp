@@ -1,4 +1,4 @@
-#include "net/http_places.h"
+#include "net/http_routes.h"
 
 #include <atomic>
 #include <boost/asio/co_spawn.hpp>
@@ -26,69 +26,61 @@ constexpr std::chrono::milliseconds kLookAgain{100};
 
 }  // namespace
 
-HttpPlaces::HttpPlaces(std::shared_ptr<NetContext> context, std::shared_ptr<HttpConnection> connection,
+HttpRoutes::HttpRoutes(std::shared_ptr<NetContext> context, std::shared_ptr<HttpConnection> connection,
                        const service::Asker& asker)
     : context_(std::move(context)),
       connection_(std::move(connection)),
       asker_(asker),
       look_again_(connection_->stream().get_executor()) {}
 
-void HttpPlaces::set_guest(Gatekeeper::Guest guest, const service::Asker& asker) {
-  guest_ = std::move(guest);
+void HttpRoutes::set_user(Gatekeeper::User user, const service::Asker& asker) {
+  user_ = std::move(user);
   asker_ = asker;
 }
 
-bool HttpPlaces::cancel() {
+bool HttpRoutes::cancel() {
   return give_up_ && give_up_();
 }
 
-asio::awaitable<HttpAnswer> HttpPlaces::answer(HttpRoute route) {
-  switch (route.kind) {
-    case HttpRoute::Kind::kPage:
+asio::awaitable<HttpAnswer> HttpRoutes::answer(ServerRoute route, const std::string& accept) {
+  switch (route) {
+    case ServerRoute::kPage:
       co_return no_viewer_answer();
-    case HttpRoute::Kind::kModels:
+    case ServerRoute::kModels:
       co_return co_await answer_models();
-    case HttpRoute::Kind::kModel:
-    case HttpRoute::Kind::kPicture:
-    case HttpRoute::Kind::kPick:
-    case HttpRoute::Kind::kProfile:
-    case HttpRoute::Kind::kPoints:
-    case HttpRoute::Kind::kAnnotations:
-      co_return co_await answer_about_model(std::move(route));
-    case HttpRoute::Kind::kHealth:
+    case ServerRoute::kHealth:
       co_return text_answer("ok\n", "text/plain");
-    case HttpRoute::Kind::kReady:
+    case ServerRoute::kReady:
       if (context_->leaving) co_return error_answer({ErrorKind::kUnavailable, "the server is stopping"});
       co_return text_answer("ready\n", "text/plain");
-    case HttpRoute::Kind::kMetrics:
-    case HttpRoute::Kind::kLogin:      // answered already
-    case HttpRoute::Kind::kLogout:     // answered already
-    case HttpRoute::Kind::kUpload:     // answered already
-    case HttpRoute::Kind::kWebSocket:  // answered already
+    case ServerRoute::kMetrics:
+    case ServerRoute::kLogin:      // answered already
+    case ServerRoute::kLogout:     // answered already
+    case ServerRoute::kWebSocket:  // answered already
       break;
   }
-  co_return answer_metrics(route.accept);
+  co_return answer_metrics(accept);
 }
 
-/// What is asked of one model.
-asio::awaitable<HttpAnswer> HttpPlaces::answer_about_model(HttpRoute route) {
-  switch (route.kind) {
-    case HttpRoute::Kind::kPicture:
-      return answer_picture(std::move(route));
-    case HttpRoute::Kind::kPick:
-      return answer_pick(std::move(route));
-    case HttpRoute::Kind::kProfile:
-      return answer_profile(std::move(route));
-    case HttpRoute::Kind::kPoints:
-      return answer_points(std::move(route));
-    case HttpRoute::Kind::kAnnotations:
-      return answer_annotations(*context_, {std::move(route.model), guest_, asker_});
-    default:
-      return answer_model(std::move(route.model));
+asio::awaitable<HttpAnswer> HttpRoutes::answer(const ModelRoute& route) {
+  switch (route.resource) {
+    case ModelRoute::Resource::kPicture:
+      return answer_picture(route);
+    case ModelRoute::Resource::kPick:
+      return answer_pick(route);
+    case ModelRoute::Resource::kProfile:
+      return answer_profile(route);
+    case ModelRoute::Resource::kPoints:
+      return answer_points(route);
+    case ModelRoute::Resource::kAnnotations:
+      return answer_annotations(*context_, {route.model, user_, asker_});
+    case ModelRoute::Resource::kDescription:
+      break;
   }
+  return answer_model(route.model);
 }
 
-HttpAnswer HttpPlaces::answer_metrics(const std::string& accept) const {
+HttpAnswer HttpRoutes::answer_metrics(const std::string& accept) const {
   const Exposition::Format format = exposition_format(accept);
 
   const Clients::Counts& open = context_->clients->all();
@@ -101,7 +93,7 @@ HttpAnswer HttpPlaces::answer_metrics(const std::string& accept) const {
                                          .audit_left_out = context_->audit ? context_->audit->left_out() : 0,
                                          .queued = context_->service.queued(),
                                          .picture_memory = context_->service.picture_memory(),
-                                         .guests = gate.guests()->all().connections,
+                                         .users = gate.users()->all().connections,
                                          .denied = gate.denied(),
                                          .memory = context_->service.device().memory,
                                          .workers = workers ? std::optional(workers()) : std::nullopt},
@@ -109,48 +101,48 @@ HttpAnswer HttpPlaces::answer_metrics(const std::string& accept) const {
   return text_answer(text, media_type(format));
 }
 
-asio::awaitable<HttpAnswer> HttpPlaces::answer_models() {
+asio::awaitable<HttpAnswer> HttpRoutes::answer_models() {
   const auto models = co_await answer_of<service::ModelList>(
       [this](auto done) { context_->service.list_models(std::move(done), asker_.client); });
-  co_return models_answer(list_for(guest_, models), context_->config.uploads);
+  co_return models_answer(list_for(user_, models), context_->config.uploads);
 }
 
-asio::awaitable<HttpAnswer> HttpPlaces::answer_model(std::string name) {
+asio::awaitable<HttpAnswer> HttpRoutes::answer_model(const std::string& name) {
   const auto description = co_await answer_of<Result<service::ModelDescription>>(
-      [&](auto done) { context_->service.describe_model(name_for(guest_, name), std::move(done), asker_.client); });
+      [&](auto done) { context_->service.describe_model(name_for(user_, name), std::move(done), asker_.client); });
   co_return description ? model_answer(name, *description) : error_answer(description.error());
 }
 
-asio::awaitable<HttpAnswer> HttpPlaces::answer_pick(HttpRoute route) {
+asio::awaitable<HttpAnswer> HttpRoutes::answer_pick(const ModelRoute& route) {
   Result<service::PickJob> job =
       protocol::parse_pick_query(route.model, route.query).and_then([](const wire::PickSurfel& request) {
         return to_job(request);
       });
   if (!job) co_return error_answer(job.error());
-  job->model = name_for(guest_, job->model);
+  job->model = name_for(user_, job->model);
   const auto picked = co_await answer_of<Result<std::optional<service::PickedPoint>>>(
       [&](auto done) { context_->service.pick(*job, std::move(done), asker_.client); });
   co_return picked ? pick_answer(*picked) : error_answer(picked.error());
 }
 
-asio::awaitable<HttpAnswer> HttpPlaces::answer_profile(HttpRoute route) {
+asio::awaitable<HttpAnswer> HttpRoutes::answer_profile(const ModelRoute& route) {
   const Result<protocol::ProfileQuery> query = protocol::parse_profile_query(route.model, route.query);
   if (!query) co_return error_answer(query.error());
   Result<service::ProfileJob> job = to_job(query->profile);
   if (!job) co_return error_answer(job.error());
-  job->model = name_for(guest_, job->model);
+  job->model = name_for(user_, job->model);
   connection_->wait_without_limit();
   const auto profile = co_await answer_of<Result<service::ProfileResult>>(
       [&](auto done) { context_->service.profile(*job, std::move(done), asker_.client); });
   co_return profile ? profile_answer(route.model, *profile, query->format) : error_answer(profile.error());
 }
 
-asio::awaitable<HttpAnswer> HttpPlaces::answer_points(HttpRoute route) {
+asio::awaitable<HttpAnswer> HttpRoutes::answer_points(const ModelRoute& route) {
   const Result<wire::GetPoints> request = protocol::parse_points_query(route.model, route.query);
   if (!request) co_return error_answer(request.error());
   Result<service::PointsJob> job = to_job(*request);
   if (!job) co_return error_answer(job.error());
-  job->model = name_for(guest_, job->model);
+  job->model = name_for(user_, job->model);
   auto stream = co_await count(std::move(*job));
   if (!stream) co_return error_answer(stream.error());
   const uint64_t points = (*stream)->facts().count;
@@ -160,18 +152,18 @@ asio::awaitable<HttpAnswer> HttpPlaces::answer_points(HttpRoute route) {
   co_return answer;
 }
 
-asio::awaitable<Result<std::shared_ptr<service::PointStream>>> HttpPlaces::count(service::PointsJob job) {
+asio::awaitable<Result<std::shared_ptr<service::PointStream>>> HttpRoutes::count(service::PointsJob job) {
   using Stream = Result<std::shared_ptr<service::PointStream>>;
   connection_->wait_without_limit();
   const auto cancelled = std::make_shared<std::atomic<bool>>(false);
-  begin_errand([cancelled] { return !cancelled->exchange(true); });
+  begin_request([cancelled] { return !cancelled->exchange(true); });
   Stream stream = co_await answer_of<Stream>(
       [&](auto done) { context_->service.points(std::move(job), cancelled, std::move(done), asker_.client); });
-  end_errand();
+  end_request();
   co_return stream;
 }
 
-asio::awaitable<Result<service::PointPiece>> HttpPlaces::next_piece(std::shared_ptr<service::PointStream> stream) {
+asio::awaitable<Result<service::PointPiece>> HttpRoutes::next_piece(std::shared_ptr<service::PointStream> stream) {
   if (connection_->has_left()) co_return fail(ErrorKind::kCancelled, "the client has left");
   connection_->wait_without_limit();
   Result<service::PointPiece> piece = co_await answer_of<Result<service::PointPiece>>(
@@ -179,56 +171,56 @@ asio::awaitable<Result<service::PointPiece>> HttpPlaces::next_piece(std::shared_
   co_return piece;
 }
 
-asio::awaitable<HttpAnswer> HttpPlaces::answer_picture(HttpRoute route) {
+asio::awaitable<HttpAnswer> HttpRoutes::answer_picture(const ModelRoute& route) {
   Result<service::PictureJob> job =
       protocol::parse_picture_query(route.model, route.query).and_then([](const wire::DrawPicture& request) {
         return to_job(request);
       });
   if (!job) co_return error_answer(job.error());
-  job->model = name_for(guest_, job->model);
+  job->model = name_for(user_, job->model);
   Result<service::EncodedPicture> picture = co_await draw(std::move(*job));
   if (!picture) co_return error_answer(picture.error());
   context_->metrics.count_picture(picture->bytes.size(), picture->stats);
   co_return picture_answer(std::move(*picture));
 }
 
-asio::awaitable<Result<service::EncodedPicture>> HttpPlaces::draw(service::PictureJob job) {
+asio::awaitable<Result<service::EncodedPicture>> HttpRoutes::draw(service::PictureJob job) {
   connection_->wait_without_limit();
   Result<service::EncodedPicture> picture = co_await answer_of<Result<service::EncodedPicture>>([&](auto done) {
     const service::JobId id = context_->service.draw(asker_, std::move(job), std::move(done));
-    begin_errand([this, id] { return context_->service.cancel(id); });
+    begin_request([this, id] { return context_->service.cancel(id); });
   });
-  end_errand();
+  end_request();
   co_return picture;
 }
 
 /// Something is done for the client from here on, which `give_up` ends.
-void HttpPlaces::begin_errand(std::function<bool()> give_up) {
+void HttpRoutes::begin_request(std::function<bool()> give_up) {
   give_up_ = std::move(give_up);
   asio::co_spawn(
       connection_->stream().get_executor(),
-      [](std::shared_ptr<HttpPlaces> self, uint64_t errand) -> asio::awaitable<void> {
-        co_await self->give_up_when_client_leaves(errand);
-      }(shared_from_this(), ++errand_),
+      [](std::shared_ptr<HttpRoutes> self, uint64_t request) -> asio::awaitable<void> {
+        co_await self->give_up_when_client_leaves(request);
+      }(shared_from_this(), ++request_),
       asio::detached);
 }
 
-void HttpPlaces::end_errand() {
+void HttpRoutes::end_request() {
   give_up_ = nullptr;
-  ++errand_;
+  ++request_;
   look_again_.cancel();
   connection_->stop_awaiting();  // that the client leaves
 }
 
 /// Waits for the end of the stream while something is done: nobody waits for it any more then. Behind bytes that are
 /// not read yet, a next request, only the state of the connection tells, and nothing wakes.
-asio::awaitable<void> HttpPlaces::give_up_when_client_leaves(uint64_t errand) {
+asio::awaitable<void> HttpRoutes::give_up_when_client_leaves(uint64_t request) {
   error_code code = co_await connection_->await_word();
-  while (errand_ == errand && !code && !connection_->has_left()) {
+  while (request_ == request && !code && !connection_->has_left()) {
     look_again_.expires_after(kLookAgain);
     co_await look_again_.async_wait(redirect_error_to(code));
   }
-  if (errand_ == errand && !code) cancel();
+  if (request_ == request && !code) cancel();
 }
 
 }  // namespace surfcast::net

@@ -14,41 +14,41 @@
 
 namespace surfcast::net {
 
-/// What is at the places of HTTP: asks the service and puts its results into answers, one at a time.
-class HttpPlaces : public std::enable_shared_from_this<HttpPlaces> {
+/// Answers what is asked at the routes of HTTP: asks the service and puts its results into answers, one at a time.
+class HttpRoutes : public std::enable_shared_from_this<HttpRoutes> {
  public:
-  HttpPlaces(std::shared_ptr<NetContext> context, std::shared_ptr<HttpConnection> connection,
+  HttpRoutes(std::shared_ptr<NetContext> context, std::shared_ptr<HttpConnection> connection,
              const service::Asker& asker);
 
-  /// The answer at a place, of those that are asked with GET.
-  boost::asio::awaitable<HttpAnswer> answer(HttpRoute route);
+  /// The answer to a GET. `accept`: the header of the request. The references must outlive the coroutine.
+  boost::asio::awaitable<HttpAnswer> answer(ServerRoute route, const std::string& accept);
+  boost::asio::awaitable<HttpAnswer> answer(const ModelRoute& route);
   /// Who asks from here on; null: nobody that is known.
-  void set_guest(Gatekeeper::Guest guest, const service::Asker& asker);
+  void set_user(Gatekeeper::User user, const service::Asker& asker);
   /// Gives up what is being done for the client, if there is something; false: there is nothing.
   bool cancel();
 
  private:
-  boost::asio::awaitable<HttpAnswer> answer_about_model(HttpRoute route);
-  boost::asio::awaitable<HttpAnswer> answer_model(std::string name);
-  boost::asio::awaitable<HttpAnswer> answer_picture(HttpRoute route);
-  boost::asio::awaitable<HttpAnswer> answer_pick(HttpRoute route);
-  boost::asio::awaitable<HttpAnswer> answer_profile(HttpRoute route);
-  boost::asio::awaitable<HttpAnswer> answer_points(HttpRoute route);
+  boost::asio::awaitable<HttpAnswer> answer_model(const std::string& name);
+  boost::asio::awaitable<HttpAnswer> answer_picture(const ModelRoute& route);
+  boost::asio::awaitable<HttpAnswer> answer_pick(const ModelRoute& route);
+  boost::asio::awaitable<HttpAnswer> answer_profile(const ModelRoute& route);
+  boost::asio::awaitable<HttpAnswer> answer_points(const ModelRoute& route);
   boost::asio::awaitable<Result<std::shared_ptr<service::PointStream>>> count(service::PointsJob job);
   boost::asio::awaitable<Result<service::PointPiece>> next_piece(std::shared_ptr<service::PointStream> stream);
   boost::asio::awaitable<HttpAnswer> answer_models();
   [[nodiscard]] HttpAnswer answer_metrics(const std::string& accept) const;
   boost::asio::awaitable<Result<service::EncodedPicture>> draw(service::PictureJob job);
-  void begin_errand(std::function<bool()> give_up);
-  void end_errand();
-  boost::asio::awaitable<void> give_up_when_client_leaves(uint64_t errand);
+  void begin_request(std::function<bool()> give_up);
+  void end_request();
+  boost::asio::awaitable<void> give_up_when_client_leaves(uint64_t request);
 
   std::shared_ptr<NetContext> context_;
   std::shared_ptr<HttpConnection> connection_;
   service::Asker asker_;
-  Gatekeeper::Guest guest_;
+  Gatekeeper::User user_;
   std::function<bool()> give_up_;         ///< ends what is being done for this client; null: nothing is
-  uint64_t errand_ = 0;                   ///< number of what is being done
+  uint64_t request_ = 0;                  ///< number of what is being done
   boost::asio::steady_timer look_again_;  ///< whether the client is still there
 };
 
