@@ -69,7 +69,7 @@ asio::awaitable<HttpAnswer> answer_annotations(NetContext& context, AnnotationRe
 
 asio::awaitable<HttpAnswer> receive_annotations(NetContext& context, HttpConnection& connection, HeadParser& head,
                                                 AnnotationRequest request) {
-  const Status page = check_origin(origin_of(head.get()), context.config.allowed_origins);
+  const Status page = check_origin(origin_of(head.get(), connection.tls()), context.config.allowed_origins);
   if (!page) co_return error_answer(page.error(), 403);
   const AnnotationConfig& config = context.config.annotations;
   const Status known = co_await check_model(context, request);

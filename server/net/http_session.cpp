@@ -41,11 +41,11 @@ unsigned status_of(const error_code& code) {
   return code == http::error::body_limit ? 413 : 400;
 }
 
-UpgradeRequest upgrade_of(const UpgradeHead& request) {
-  return {origin_of(request), view_of(request[http::field::sec_websocket_protocol])};
+UpgradeRequest upgrade_of(const UpgradeHead& request, bool tls) {
+  return {origin_of(request, tls), view_of(request[http::field::sec_websocket_protocol])};
 }
 
-RequestHead guarded_head_of(const HeadParser::value_type& request) {
+RequestHead guarded_head_of(const HeadParser::value_type& request, bool tls) {
   return {.version = request.version(),
           .get = request.method() == http::verb::get || request.method() == http::verb::head,
           .hosts = request.count(http::field::host),
@@ -54,7 +54,7 @@ RequestHead guarded_head_of(const HeadParser::value_type& request) {
           .transfer_encoding = view_of(request[http::field::transfer_encoding]),
           .content_length = request.count(http::field::content_length) > 0,
           .origin = view_of(request[http::field::origin]),
-          .forwarded_scheme = view_of(request["X-Forwarded-Proto"]),
+          .scheme = scheme_of(request, tls),
           .fetch_site = view_of(request["Sec-Fetch-Site"]),
           .fetch_mode = view_of(request["Sec-Fetch-Mode"]),
           .fetch_destination = view_of(request["Sec-Fetch-Dest"])};
@@ -209,7 +209,8 @@ std::optional<HttpAnswer> HttpSession::refusal_of_head(const Parser& parser, con
     return error_answer({ErrorKind::kInvalidInput, "not a request of HTTP/1.1: " + code.message()}, status_of(code));
   }
   const ServerConfig& config = context_->config;
-  const auto refusal = refusal_of(guarded_head_of(parser.get()), {config.hosts, config.allowed_origins});
+  const auto refusal =
+      refusal_of(guarded_head_of(parser.get(), connection_->tls()), {config.hosts, config.allowed_origins});
   if (refusal) return error_answer(refusal->error, refusal->status);
   if (parser.is_done() || (refusal_.empty() && body != SentBody::kNone)) return std::nullopt;
   return error_answer({ErrorKind::kLimit, "requests with a body are not accepted here"}, 413);
@@ -224,7 +225,6 @@ asio::awaitable<bool> HttpSession::serve_one() {
   if (code == http::error::end_of_stream || !connection_->is_open()) co_return false;
   if (code && code.category() != http::make_error_code(http::error::bad_method).category()) co_return false;
   ++context_->metrics.requests;
-  if (connection_->stream().is_encrypted()) parser.get().set("X-Forwarded-Proto", "https");  // as a proxy would say
   const Parser::value_type& head = parser.get();
   const HttpRequest request(head);
   const std::optional<HttpAnswer> refused = refusal_of_head(parser, code, request.sends);
@@ -316,8 +316,9 @@ asio::awaitable<HttpAnswer> HttpSession::deny(const HttpRequest& request) {
 
 asio::awaitable<HttpAnswer> HttpSession::answer_login(Parser& parser, const HttpRequest& request) {
   constexpr size_t kMostBytes = 1024;  // of the form
-  const bool encrypted = view_of(parser.get()["X-Forwarded-Proto"]) == "https";
-  const Status page = check_origin(origin_of(parser.get()), context_->config.allowed_origins);
+  const RequestOrigin origin = origin_of(parser.get(), connection_->tls());
+  const bool encrypted = origin.scheme == "https";
+  const Status page = check_origin(origin, context_->config.allowed_origins);
   if (!page) co_return error_answer(page.error(), 403);
   const bool logout = leads_to(request.target.route, ServerRoute::kLogout);
   const std::optional<std::string> form = co_await connection_->read_body(parser, kMostBytes);
@@ -390,7 +391,7 @@ bool HttpSession::become_websocket(const HttpRequest& request) {
   const Parser::value_type& head = request.head;
   if (!leads_to(request.target.route, ServerRoute::kWebSocket) || !websocket::is_upgrade(head)) return false;
   if (context_->draining || connection_->buffer().size() > 0 || !refusal_of_user().empty() ||
-      !check_upgrade(upgrade_of(head), context_->config.allowed_origins)) {
+      !check_upgrade(upgrade_of(head, connection_->tls()), context_->config.allowed_origins)) {
     return false;
   }
   connection_->wait_without_limit();
@@ -410,7 +411,7 @@ HttpAnswer HttpSession::refuse_websocket(const Parser::value_type& head) const {
     return refusal;
   }
   if (context_->draining) return error_answer({ErrorKind::kUnavailable, "the server is stopping"});
-  const Status checked = check_upgrade(upgrade_of(head), context_->config.allowed_origins);
+  const Status checked = check_upgrade(upgrade_of(head, connection_->tls()), context_->config.allowed_origins);
   if (!checked) return error_answer(checked.error(), checked.error().kind == ErrorKind::kUnsupported ? 400 : 403);
   return error_answer({ErrorKind::kInvalidInput, "nothing may be sent before the WebSocket is granted"}, 400);
 }

@@ -121,15 +121,18 @@ UploadOutcome refusal_of(const Error& error) {
 
 }  // namespace
 
-RequestOrigin origin_of(const HeadParser::value_type& request) {
-  return {view_of(request[http::field::host]), view_of(request[http::field::origin]),
-          view_of(request["X-Forwarded-Proto"])};
+std::string_view scheme_of(const HeadParser::value_type& request, bool tls) {
+  return tls ? "https" : view_of(request["X-Forwarded-Proto"]);
+}
+
+RequestOrigin origin_of(const HeadParser::value_type& request, bool tls) {
+  return {view_of(request[http::field::host]), view_of(request[http::field::origin]), scheme_of(request, tls)};
 }
 
 asio::awaitable<UploadOutcome> receive_scan(NetContext& context, HttpConnection& connection, HeadParser& head,
                                             const std::string& file, const std::string& sender) {
   const auto& request = head.get();
-  const Status page = check_origin(origin_of(request), context.config.allowed_origins);
+  const Status page = check_origin(origin_of(request, connection.tls()), context.config.allowed_origins);
   UploadOutcome outcome;
   if (!page) {
     outcome.answer = error_answer(page.error(), 403);

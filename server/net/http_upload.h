@@ -5,6 +5,7 @@
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/http/parser.hpp>
 #include <string>
+#include <string_view>
 
 #include "net/http_answer.h"
 #include "net/session.h"
@@ -16,8 +17,11 @@ class HttpConnection;
 
 using HeadParser = boost::beast::http::request_parser<boost::beast::http::empty_body>;
 
+/// The scheme by which the client has reached this server, `tls` telling whether by TLS, or a proxy before it, which
+/// says so in a header; empty: not known. The result points into the request.
+std::string_view scheme_of(const HeadParser::value_type& request, bool tls);
 /// Where a request comes from. The result points into it.
-RequestOrigin origin_of(const HeadParser::value_type& request);
+RequestOrigin origin_of(const HeadParser::value_type& request, bool tls);
 
 /// The answer to a client that sends a scan. `whole`: nothing of the request is unread.
 struct UploadOutcome {
