@@ -24,9 +24,9 @@ Bytes encode_denial(uint64_t id, const std::string& reason) {
 /// Turns of the renderer go to the user, on whatever connections it comes.
 void Conversation::welcome(const Gatekeeper::User& user) {
   user_ = user;
-  asker_.client = std::hash<std::string>()("token " + user->name);
+  asker_.client = client_id(client_, user);
   counted_user_.reset();
-  counted_user_.emplace(context_->gate->users(), user->name, &Clients::Counts::connections);
+  counted_user_ = context_->gate->count(user, &Clients::Counts::connections);
 }
 
 void Conversation::handle_authenticate(const wire::Request& request) {
@@ -35,9 +35,7 @@ void Conversation::handle_authenticate(const wire::Request& request) {
   const Gatekeeper::User user = gate.enter(request.authenticate().token(), client_);
   if (!user && gate.wants_tokens()) return deny(id, "the token is not known here, or has ended");
   if (user && !views_.empty()) return deny(id, "views are open with another token");
-  if (user && user->connections > 0 && gate.users()->counts_of(user->name).connections >= user->connections) {
-    return deny(id, "busy: this token opens " + std::to_string(user->connections) + " connections at a time");
-  }
+  if (const std::string busy = gate.refusal_of_connection(user); !busy.empty()) return deny(id, busy);
   if (user) welcome(user);
   if (user) audit_token("allowed", "");
   wire::Answer answer;

@@ -64,8 +64,8 @@ Status Conversation::open_view(KeptView wanted) {
   view->begin_with(wanted.quality);
   view->update({wanted.update, std::move(*job), /*changed=*/true, /*moving=*/false}, Clock::now());
   OpenedView opened{view, std::move(wanted), picture.model(),
-                    Counted(context_->clients, client_, &Clients::Counts::views), std::nullopt};
-  if (user_) opened.counted_user.emplace(context_->gate->users(), user_->name, &Clients::Counts::views);
+                    Counted(context_->clients, client_, &Clients::Counts::views),
+                    context_->gate->count(user_, &Clients::Counts::views)};
   const uint64_t id = opened.wanted.id;
   views_.emplace(id, std::move(opened));
   return {};
@@ -111,11 +111,8 @@ std::vector<KeptView> Conversation::hand_over() {
 
 /// Why there may not be another view; empty: there may.
 std::string Conversation::refusal_of_view() const {
-  const Clients& users = *context_->gate->users();
-  if (user_ && user_->views > 0 && users.counts_of(user_->name).views >= user_->views) {
-    return "busy: this token opens " + std::to_string(user_->views) + " views at a time";
-  }
-  return context_->clients->refusal_of_view(client_);
+  std::string refusal = context_->gate->refusal_of_view(user_);
+  return refusal.empty() ? context_->clients->refusal_of_view(client_) : refusal;
 }
 
 void Conversation::handle_update_view(const wire::Request& request) {

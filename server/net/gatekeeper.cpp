@@ -1,5 +1,6 @@
 #include "net/gatekeeper.h"
 
+#include <functional>
 #include <utility>
 
 #include "access/token_file.h"
@@ -13,6 +14,12 @@ namespace {
 constexpr size_t kFreeFailures = 10;
 constexpr std::chrono::minutes kMemory{1};
 constexpr std::chrono::milliseconds kPenalty{1000};
+
+/// Why a user who has `open` of `limit` things may not have another; empty: they may. 0: there is no limit.
+std::string refusal_of_one_more(size_t open, size_t limit, const char* things) {
+  if (limit == 0 || open < limit) return {};
+  return "busy: this token opens " + std::to_string(limit) + " " + things + " at a time";
+}
 
 }  // namespace
 
@@ -45,6 +52,25 @@ std::chrono::milliseconds Gatekeeper::penalty(const std::string& client) const {
 std::string Gatekeeper::why_ended(const User& user) const {
   if (!user || !table_) return {};
   return table_->why_ended(*user, std::chrono::system_clock::now());
+}
+
+std::string Gatekeeper::refusal_of_connection(const User& user) const {
+  if (!user) return {};
+  return refusal_of_one_more(users_->counts_of(user->name).connections, user->connections, "connections");
+}
+
+std::string Gatekeeper::refusal_of_view(const User& user) const {
+  if (!user) return {};
+  return refusal_of_one_more(users_->counts_of(user->name).views, user->views, "views");
+}
+
+std::optional<Counted> Gatekeeper::count(const User& user, size_t Clients::Counts::*what) const {
+  if (!user) return std::nullopt;
+  return Counted(users_, user->name, what);
+}
+
+service::ClientId client_id(const std::string& client, const Gatekeeper::User& user) {
+  return std::hash<std::string>()(user ? "token " + user->name : client);
 }
 
 std::string name_for(const Gatekeeper::User& user, const std::string& model) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -12,6 +13,7 @@
 #include "access/token_table.h"
 #include "base/result.h"
 #include "net/clients.h"
+#include "service/client_shares.h"
 #include "service/model_source.h"
 
 namespace surfcast::net {
@@ -38,8 +40,14 @@ class Gatekeeper {
   /// Why a user has to leave; empty: it may stay.
   [[nodiscard]] std::string why_ended(const User& user) const;
 
-  /// What users have open, by their names.
-  [[nodiscard]] const std::shared_ptr<Clients>& users() const { return users_; }
+  /// Why a user, null for none, may not have another connection; empty: they may.
+  [[nodiscard]] std::string refusal_of_connection(const User& user) const;
+  /// Likewise another view.
+  [[nodiscard]] std::string refusal_of_view(const User& user) const;
+  /// Counts a connection or a view of a user for as long as the result lives; nothing of nobody.
+  [[nodiscard]] std::optional<Counted> count(const User& user, size_t Clients::Counts::*what) const;
+  /// Connections that users have open.
+  [[nodiscard]] size_t connections() const { return users_->all().connections; }
   [[nodiscard]] uint64_t denied() const { return denied_; }
 
  private:
@@ -50,10 +58,14 @@ class Gatekeeper {
 
   std::filesystem::path file_;
   std::shared_ptr<const access::TokenTable> table_;
-  std::map<std::string, Failures> failures_;  ///< of the last minute, by client
-  std::shared_ptr<Clients> users_ = std::make_shared<Clients>(ClientLimits{});
-  uint64_t denied_ = 0;  ///< wrong secrets
+  std::map<std::string, Failures> failures_;                                    ///< of the last minute, by client
+  std::shared_ptr<Clients> users_ = std::make_shared<Clients>(ClientLimits{});  ///< what they have open, by their names
+  uint64_t denied_ = 0;                                                         ///< wrong secrets
 };
+
+/// By which the service knows who asks, and gives turns: the user, on whatever connections they come, or, if that is
+/// null, the client (see client_name).
+service::ClientId client_id(const std::string& client, const Gatekeeper::User& user);
 
 /// The name by which the service is asked for a model: one under which there is nothing, if the user may not know of
 /// it. What the service does and answers is then what it does and answers for absent ones.

@@ -93,7 +93,7 @@ HttpAnswer HttpRoutes::answer_metrics(const std::string& accept) const {
                                          .audit_left_out = context_->audit ? context_->audit->left_out() : 0,
                                          .queued = context_->service.queued(),
                                          .picture_memory = context_->service.picture_memory(),
-                                         .users = gate.users()->all().connections,
+                                         .users = gate.connections(),
                                          .denied = gate.denied(),
                                          .memory = context_->service.device().memory,
                                          .workers = workers ? std::optional(workers()) : std::nullopt},

@@ -260,14 +260,12 @@ void HttpSession::identify(const Parser::value_type& head) {
   user_ = token.empty() ? nullptr : context_->gate->enter(token, open_.client());
   const bool wrong = !token.empty() && !user_ && context_->gate->wants_tokens();
   if (wrong) audit({.what = "token", .outcome = "denied"});
-  service::Asker asker = asker_;
-  if (user_) asker.client = std::hash<std::string>()("token " + user_->name);
-  routes_->set_user(user_, asker);
+  routes_->set_user(user_, {client_id(open_.client(), user_), asker_.session});
   const bool same = user_ && counted_user_ && counted_user_->client() == user_->name;
   if (same) return;
   counted_user_.reset();
   if (!user_ || !refusal_of_user().empty()) return;
-  counted_user_.emplace(context_->gate->users(), user_->name, &Clients::Counts::connections);
+  counted_user_ = context_->gate->count(user_, &Clients::Counts::connections);
   audit({.what = "token", .outcome = "allowed"});
 }
 
@@ -288,9 +286,7 @@ void HttpSession::audit_route(const ModelRoute& route) const {
 
 /// Why a user who may come in has to wait; empty: it has not.
 std::string HttpSession::refusal_of_user() const {
-  if (!user_ || counted_user_ || user_->connections == 0) return {};
-  if (context_->gate->users()->counts_of(user_->name).connections < user_->connections) return {};
-  return "busy: this token opens " + std::to_string(user_->connections) + " connections at a time";
+  return counted_user_ ? std::string() : context_->gate->refusal_of_connection(user_);
 }
 
 /// Whether a scan is begun by somebody who may send one under that name.
