@@ -14,6 +14,7 @@
 #include <string_view>
 #include <vector>
 
+#include "access/authorization.h"
 #include "base/result.h"
 #include "net/answers.h"
 #include "net/kept_sessions.h"
@@ -120,8 +121,9 @@ class Conversation : public KeptSessions::Holder, public std::enable_shared_from
   void send(Bytes answer, std::shared_ptr<const void> memory = {});
   void send_error(uint64_t id, const Error& error);
   void audit_token(std::string_view outcome, const std::string& reason) const;
-  void audit(std::string_view what, const std::string& model);
-  void audit_once(std::string_view what, const std::string& model);
+  [[nodiscard]] access::Rights rights() const { return context_->gate->rights(user_); }
+  void audit(std::string_view what, const access::AuthorizedModel& model);
+  void audit_once(std::string_view what, const access::AuthorizedModel& model);
 
   std::shared_ptr<NetContext> context_;
   service::Asker asker_;
@@ -133,7 +135,7 @@ class Conversation : public KeptSessions::Holder, public std::enable_shared_from
   struct OpenedView {
     std::shared_ptr<view::ViewSession> view;
     KeptView wanted;  ///< its quality is that at the beginning
-    std::string model;
+    access::AuthorizedModel model;
     Counted counted;
     std::optional<Counted> counted_user;
   };

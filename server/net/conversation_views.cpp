@@ -53,18 +53,17 @@ Status Conversation::open_view(KeptView wanted) {
   if (Status room = check_room_for_view(wanted.id); !room) return room;
   wire::DrawPicture picture;
   picture.ParseFromString(wanted.picture);
-  Result<service::PictureJob> job = to_job(picture);
+  const access::AuthorizedModel model = rights().authorize(picture.model());
+  Result<service::PictureJob> job = to_job(picture, model);
   if (!job) return fail(job.error());
-  audit("view", job->model);
-  job->model = name_for(user_, job->model);
+  audit("view", model);
   const double fps = wanted.target_fps > 0 ? wanted.target_fps : context_->config.target_fps;
   const view::ViewOptions options{fps, wanted.depth, wanted.video, context_->config.kept_frame_bytes};
-  const auto view = std::make_shared<view::ViewSession>(context_->service, asker_, ++context_->last_viewer, options,
-                                                        context_->metrics.views, port_of(wanted.id));
+  const auto view = std::make_shared<view::ViewSession>(context_->service, asker_, model, ++context_->last_viewer,
+                                                        options, context_->metrics.views, port_of(wanted.id));
   view->begin_with(wanted.quality);
   view->update({wanted.update, std::move(*job), /*changed=*/true, /*moving=*/false}, Clock::now());
-  OpenedView opened{view, std::move(wanted), picture.model(),
-                    Counted(context_->clients, client_, &Clients::Counts::views),
+  OpenedView opened{view, std::move(wanted), model, Counted(context_->clients, client_, &Clients::Counts::views),
                     context_->gate->count(user_, &Clients::Counts::views)};
   const uint64_t id = opened.wanted.id;
   views_.emplace(id, std::move(opened));
@@ -119,14 +118,13 @@ void Conversation::handle_update_view(const wire::Request& request) {
   const wire::UpdateView& update = request.update_view();
   const auto found = views_.find(request.id());
   if (found == views_.end()) return;  // it may have ended while this was on its way
-  if (update.picture().model() != found->second.model) {
+  if (update.picture().model() != found->second.model.name()) {
     return end_view(request.id(), {ErrorKind::kInvalidInput, "a view stays with its model"});
   }
   const Status checked = protocol::check_view_picture(update.picture());
   if (!checked) return end_view(request.id(), checked.error());
-  Result<service::PictureJob> job = to_job(update.picture());
+  Result<service::PictureJob> job = to_job(update.picture(), found->second.model);
   if (!job) return end_view(request.id(), job.error());
-  job->model = name_for(user_, job->model);
   std::string picture = update.picture().SerializeAsString();
   const bool changed = picture != found->second.wanted.picture;
   found->second.wanted.picture = std::move(picture);

@@ -4,7 +4,6 @@
 #include <utility>
 
 #include "access/token_file.h"
-#include "service/model_name.h"
 
 namespace surfcast::net {
 namespace {
@@ -29,6 +28,10 @@ Status Gatekeeper::read() {
   if (!principals) return fail(principals.error());
   table_ = std::make_shared<const access::TokenTable>(std::move(*principals));
   return {};
+}
+
+access::Rights Gatekeeper::rights(const User& user) const {
+  return wants_tokens() ? access::Rights::of(user) : access::Rights::unlimited();
 }
 
 Gatekeeper::User Gatekeeper::enter(std::string_view secret, const std::string& client) {
@@ -71,17 +74,6 @@ std::optional<Counted> Gatekeeper::count(const User& user, size_t Clients::Count
 
 service::ClientId client_id(const std::string& client, const Gatekeeper::User& user) {
   return std::hash<std::string>()(user ? "token " + user->name : client);
-}
-
-std::string name_for(const Gatekeeper::User& user, const std::string& model) {
-  return !user || access::may_see(*user, model) ? model : service::hidden_name(model);
-}
-
-service::ModelList list_for(const Gatekeeper::User& user, service::ModelList list) {
-  if (!user) return list;
-  std::erase_if(list.names, [&](const std::string& name) { return !access::may_see(*user, name); });
-  std::erase_if(list.scans, [&](const service::ScanStatus& scan) { return !access::may_see(*user, scan.model); });
-  return list;
 }
 
 }  // namespace surfcast::net

@@ -9,12 +9,12 @@
 #include <string>
 #include <string_view>
 
+#include "access/authorization.h"
 #include "access/principal.h"
 #include "access/token_table.h"
 #include "base/result.h"
 #include "net/clients.h"
 #include "service/client_shares.h"
-#include "service/model_source.h"
 
 namespace surfcast::net {
 
@@ -32,6 +32,9 @@ class Gatekeeper {
   [[nodiscard]] bool wants_tokens() const { return !file_.empty(); }
   /// Whether that user, null for none, may ask for models.
   [[nodiscard]] bool admits(const User& user) const { return !wants_tokens() || user; }
+
+  /// What that user, null for none, may do with models.
+  [[nodiscard]] access::Rights rights(const User& user) const;
 
   /// The user with that secret; null for none. `client`, as in client_name, is who says it.
   User enter(std::string_view secret, const std::string& client);
@@ -66,12 +69,5 @@ class Gatekeeper {
 /// By which the service knows who asks, and gives turns: the user, on whatever connections they come, or, if that is
 /// null, the client (see client_name).
 service::ClientId client_id(const std::string& client, const Gatekeeper::User& user);
-
-/// The name by which the service is asked for a model: one under which there is nothing, if the user may not know of
-/// it. What the service does and answers is then what it does and answers for absent ones.
-std::string name_for(const Gatekeeper::User& user, const std::string& model);
-
-/// What a user may know of a list.
-service::ModelList list_for(const Gatekeeper::User& user, service::ModelList list);
 
 }  // namespace surfcast::net

@@ -33,8 +33,8 @@ HttpRoutes::HttpRoutes(std::shared_ptr<NetContext> context, std::shared_ptr<Http
       asker_(asker),
       look_again_(connection_->stream().get_executor()) {}
 
-void HttpRoutes::set_user(Gatekeeper::User user, const service::Asker& asker) {
-  user_ = std::move(user);
+void HttpRoutes::set_user(access::Rights rights, const service::Asker& asker) {
+  rights_ = std::move(rights);
   asker_ = asker;
 }
 
@@ -62,22 +62,23 @@ asio::awaitable<HttpAnswer> HttpRoutes::answer(ServerRoute route, const std::str
   co_return answer_metrics(accept);
 }
 
-asio::awaitable<HttpAnswer> HttpRoutes::answer(const ModelRoute& route) {
+asio::awaitable<HttpAnswer> HttpRoutes::answer(const ModelRoute& route, const access::AuthorizedModel& model) {
   switch (route.resource) {
     case ModelRoute::Resource::kPicture:
-      return answer_picture(route);
+      return answer_picture(route.query, model);
     case ModelRoute::Resource::kPick:
-      return answer_pick(route);
+      return answer_pick(route.query, model);
     case ModelRoute::Resource::kProfile:
-      return answer_profile(route);
+      return answer_profile(route.query, model);
     case ModelRoute::Resource::kPoints:
-      return answer_points(route);
+      return answer_points(route.query, model);
     case ModelRoute::Resource::kAnnotations:
-      return answer_annotations(*context_, {route.model, user_, asker_});
+      return answer_annotations(*context_, model, rights_.authorize_annotations(model.name()).has_value(),
+                                asker_.client);
     case ModelRoute::Resource::kDescription:
       break;
   }
-  return answer_model(route.model);
+  return answer_model(model);
 }
 
 HttpAnswer HttpRoutes::answer_metrics(const std::string& accept) const {
@@ -103,51 +104,48 @@ HttpAnswer HttpRoutes::answer_metrics(const std::string& accept) const {
 
 asio::awaitable<HttpAnswer> HttpRoutes::answer_models() {
   const auto models = co_await answer_of<service::ModelList>(
-      [this](auto done) { context_->service.list_models(std::move(done), asker_.client); });
-  co_return models_answer(list_for(user_, models), context_->config.uploads);
+      [this](auto done) { context_->service.list_models(rights_, std::move(done), asker_.client); });
+  co_return models_answer(models, context_->config.uploads);
 }
 
-asio::awaitable<HttpAnswer> HttpRoutes::answer_model(const std::string& name) {
+asio::awaitable<HttpAnswer> HttpRoutes::answer_model(const access::AuthorizedModel& model) {
   const auto description = co_await answer_of<Result<service::ModelDescription>>(
-      [&](auto done) { context_->service.describe_model(name_for(user_, name), std::move(done), asker_.client); });
-  co_return description ? model_answer(name, *description) : error_answer(description.error());
+      [&](auto done) { context_->service.describe_model(model, std::move(done), asker_.client); });
+  co_return description ? model_answer(model.name(), *description) : error_answer(description.error());
 }
 
-asio::awaitable<HttpAnswer> HttpRoutes::answer_pick(const ModelRoute& route) {
+asio::awaitable<HttpAnswer> HttpRoutes::answer_pick(const std::string& query, const access::AuthorizedModel& model) {
   Result<service::PickJob> job =
-      protocol::parse_pick_query(route.model, route.query).and_then([](const wire::PickSurfel& request) {
-        return to_job(request);
+      protocol::parse_pick_query(model.name(), query).and_then([&](const wire::PickSurfel& request) {
+        return to_job(request, model);
       });
   if (!job) co_return error_answer(job.error());
-  job->model = name_for(user_, job->model);
   const auto picked = co_await answer_of<Result<std::optional<service::PickedPoint>>>(
       [&](auto done) { context_->service.pick(*job, std::move(done), asker_.client); });
   co_return picked ? pick_answer(*picked) : error_answer(picked.error());
 }
 
-asio::awaitable<HttpAnswer> HttpRoutes::answer_profile(const ModelRoute& route) {
-  const Result<protocol::ProfileQuery> query = protocol::parse_profile_query(route.model, route.query);
-  if (!query) co_return error_answer(query.error());
-  Result<service::ProfileJob> job = to_job(query->profile);
+asio::awaitable<HttpAnswer> HttpRoutes::answer_profile(const std::string& query, const access::AuthorizedModel& model) {
+  const Result<protocol::ProfileQuery> wanted = protocol::parse_profile_query(model.name(), query);
+  if (!wanted) co_return error_answer(wanted.error());
+  Result<service::ProfileJob> job = to_job(wanted->profile, model);
   if (!job) co_return error_answer(job.error());
-  job->model = name_for(user_, job->model);
   connection_->wait_without_limit();
   const auto profile = co_await answer_of<Result<service::ProfileResult>>(
       [&](auto done) { context_->service.profile(*job, std::move(done), asker_.client); });
-  co_return profile ? profile_answer(route.model, *profile, query->format) : error_answer(profile.error());
+  co_return profile ? profile_answer(model.name(), *profile, wanted->format) : error_answer(profile.error());
 }
 
-asio::awaitable<HttpAnswer> HttpRoutes::answer_points(const ModelRoute& route) {
-  const Result<wire::GetPoints> request = protocol::parse_points_query(route.model, route.query);
+asio::awaitable<HttpAnswer> HttpRoutes::answer_points(const std::string& query, const access::AuthorizedModel& model) {
+  const Result<wire::GetPoints> request = protocol::parse_points_query(model.name(), query);
   if (!request) co_return error_answer(request.error());
-  Result<service::PointsJob> job = to_job(*request);
+  Result<service::PointsJob> job = to_job(*request, model);
   if (!job) co_return error_answer(job.error());
-  job->model = name_for(user_, job->model);
   auto stream = co_await count(std::move(*job));
   if (!stream) co_return error_answer(stream.error());
   const uint64_t points = (*stream)->facts().count;
   if (request->only_count()) co_return point_count_answer(points, (*stream)->most());
-  HttpAnswer answer = points_answer(route.model, protocol::name_of(request->format()), points);
+  HttpAnswer answer = points_answer(model.name(), protocol::name_of(request->format()), points);
   answer.more = [self = shared_from_this(), stream = std::move(*stream)] { return self->next_piece(stream); };
   co_return answer;
 }
@@ -171,13 +169,12 @@ asio::awaitable<Result<service::PointPiece>> HttpRoutes::next_piece(std::shared_
   co_return piece;
 }
 
-asio::awaitable<HttpAnswer> HttpRoutes::answer_picture(const ModelRoute& route) {
+asio::awaitable<HttpAnswer> HttpRoutes::answer_picture(const std::string& query, const access::AuthorizedModel& model) {
   Result<service::PictureJob> job =
-      protocol::parse_picture_query(route.model, route.query).and_then([](const wire::DrawPicture& request) {
-        return to_job(request);
+      protocol::parse_picture_query(model.name(), query).and_then([&](const wire::DrawPicture& request) {
+        return to_job(request, model);
       });
   if (!job) co_return error_answer(job.error());
-  job->model = name_for(user_, job->model);
   Result<service::EncodedPicture> picture = co_await draw(std::move(*job));
   if (!picture) co_return error_answer(picture.error());
   context_->metrics.count_picture(picture->bytes.size(), picture->stats);

@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 
+#include "access/authorization.h"
 #include "net/http_answer.h"
 #include "net/http_connection.h"
 #include "net/http_route.h"
@@ -22,18 +23,18 @@ class HttpRoutes : public std::enable_shared_from_this<HttpRoutes> {
 
   /// The answer to a GET. `accept`: the header of the request. The references must outlive the coroutine.
   boost::asio::awaitable<HttpAnswer> answer(ServerRoute route, const std::string& accept);
-  boost::asio::awaitable<HttpAnswer> answer(const ModelRoute& route);
-  /// Who asks from here on; null: nobody that is known.
-  void set_user(Gatekeeper::User user, const service::Asker& asker);
+  boost::asio::awaitable<HttpAnswer> answer(const ModelRoute& route, const access::AuthorizedModel& model);
+  /// Who asks from here on, and what they may do.
+  void set_user(access::Rights rights, const service::Asker& asker);
   /// Gives up what is being done for the client, if there is something; false: there is nothing.
   bool cancel();
 
  private:
-  boost::asio::awaitable<HttpAnswer> answer_model(const std::string& name);
-  boost::asio::awaitable<HttpAnswer> answer_picture(const ModelRoute& route);
-  boost::asio::awaitable<HttpAnswer> answer_pick(const ModelRoute& route);
-  boost::asio::awaitable<HttpAnswer> answer_profile(const ModelRoute& route);
-  boost::asio::awaitable<HttpAnswer> answer_points(const ModelRoute& route);
+  boost::asio::awaitable<HttpAnswer> answer_model(const access::AuthorizedModel& model);
+  boost::asio::awaitable<HttpAnswer> answer_picture(const std::string& query, const access::AuthorizedModel& model);
+  boost::asio::awaitable<HttpAnswer> answer_pick(const std::string& query, const access::AuthorizedModel& model);
+  boost::asio::awaitable<HttpAnswer> answer_profile(const std::string& query, const access::AuthorizedModel& model);
+  boost::asio::awaitable<HttpAnswer> answer_points(const std::string& query, const access::AuthorizedModel& model);
   boost::asio::awaitable<Result<std::shared_ptr<service::PointStream>>> count(service::PointsJob job);
   boost::asio::awaitable<Result<service::PointPiece>> next_piece(std::shared_ptr<service::PointStream> stream);
   boost::asio::awaitable<HttpAnswer> answer_models();
@@ -46,7 +47,7 @@ class HttpRoutes : public std::enable_shared_from_this<HttpRoutes> {
   std::shared_ptr<NetContext> context_;
   std::shared_ptr<HttpConnection> connection_;
   service::Asker asker_;
-  Gatekeeper::User user_;
+  access::Rights rights_ = access::Rights::of(nullptr);
   std::function<bool()> give_up_;         ///< ends what is being done for this client; null: nothing is
   uint64_t request_ = 0;                  ///< number of what is being done
   boost::asio::steady_timer look_again_;  ///< whether the client is still there

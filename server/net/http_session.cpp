@@ -83,12 +83,6 @@ struct HttpRequest {
   SentBody sends;
 };
 
-/// The name of the model that a request is about, or of the file that it sends.
-const std::string& name_in(const HttpRequest& request) {
-  const auto* const upload = std::get_if<UploadRoute>(&*request.target.route);
-  return upload != nullptr ? upload->file : std::get<ModelRoute>(*request.target.route).model;
-}
-
 /// As the audit log calls what is asked of a model.
 std::string_view audited_name(ModelRoute::Resource resource) {
   switch (resource) {
@@ -161,19 +155,18 @@ class HttpSession : public Session, public std::enable_shared_from_this<HttpSess
   asio::awaitable<bool> serve_one();
   [[nodiscard]] std::optional<HttpAnswer> refusal_of_head(const Parser& parser, const error_code& code,
                                                           SentBody body) const;
-  asio::awaitable<bool> serve_upload(Parser& parser, const HttpRequest& request);
+  asio::awaitable<bool> serve_upload(Parser& parser, const access::AuthorizedUpload& upload);
   asio::awaitable<bool> serve_login(Parser& parser, const HttpRequest& request);
   asio::awaitable<bool> serve_annotations(Parser& parser, const HttpRequest& request);
   asio::awaitable<HttpAnswer> answer_annotation_write(Parser& parser, const HttpRequest& request);
   asio::awaitable<HttpAnswer> answer_login(Parser& parser, const HttpRequest& request);
   void identify(const Parser::value_type& head);
-  [[nodiscard]] bool may_upload(const HttpRequest& request) const;
+  [[nodiscard]] std::optional<access::AuthorizedUpload> authorize_upload(const std::string& file) const;
   [[nodiscard]] std::string refusal_of_user() const;
   asio::awaitable<void> wait_for_penalty();
   asio::awaitable<HttpAnswer> deny(const HttpRequest& request);
   asio::awaitable<HttpAnswer> answer(const HttpRequest& request);
   void audit(AuditEvent event) const;
-  void audit_route(const ModelRoute& route) const;
   bool become_websocket(const HttpRequest& request);
   [[nodiscard]] HttpAnswer refuse_websocket(const Parser::value_type& head) const;
 
@@ -234,7 +227,10 @@ asio::awaitable<bool> HttpSession::serve_one() {
   const SentBody sends = !refused && refusal_.empty() ? request.sends : SentBody::kNone;
   if (sends == SentBody::kLogin) co_return co_await serve_login(parser, request);
   if (sends == SentBody::kAnnotations) co_return co_await serve_annotations(parser, request);
-  if (sends == SentBody::kScan && may_upload(request)) co_return co_await serve_upload(parser, request);
+  if (sends == SentBody::kScan) {
+    const auto upload = authorize_upload(std::get<UploadRoute>(*request.target.route).file);
+    if (upload) co_return co_await serve_upload(parser, *upload);
+  }
   HttpAnswer result;
   if (refused) {
     result = *refused;
@@ -260,7 +256,7 @@ void HttpSession::identify(const Parser::value_type& head) {
   user_ = token.empty() ? nullptr : context_->gate->enter(token, open_.client());
   const bool wrong = !token.empty() && !user_ && context_->gate->wants_tokens();
   if (wrong) audit({.what = "token", .outcome = "denied"});
-  routes_->set_user(user_, {client_id(open_.client(), user_), asker_.session});
+  routes_->set_user(context_->gate->rights(user_), {client_id(open_.client(), user_), asker_.session});
   const bool same = user_ && counted_user_ && counted_user_->client() == user_->name;
   if (same) return;
   counted_user_.reset();
@@ -278,22 +274,15 @@ void HttpSession::audit(AuditEvent event) const {
   context_->audit->write(event);
 }
 
-/// What is asked of a model.
-void HttpSession::audit_route(const ModelRoute& route) const {
-  const bool allowed = !user_ || access::may_see(*user_, route.model);
-  audit({.what = audited_name(route.resource), .model = route.model, .outcome = allowed ? "allowed" : "denied"});
-}
-
 /// Why a user who may come in has to wait; empty: it has not.
 std::string HttpSession::refusal_of_user() const {
   return counted_user_ ? std::string() : context_->gate->refusal_of_connection(user_);
 }
 
-/// Whether a scan is begun by somebody who may send one under that name.
-bool HttpSession::may_upload(const HttpRequest& request) const {
-  if (!context_->gate->admits(user_) || !refusal_of_user().empty()) return false;
-  if (!user_) return true;
-  return user_->uploads && access::may_see(*user_, service::model_name(name_in(request)));
+/// Nothing if whoever begins to send a scan may not, or not under that name.
+std::optional<access::AuthorizedUpload> HttpSession::authorize_upload(const std::string& file) const {
+  if (!refusal_of_user().empty()) return std::nullopt;
+  return context_->gate->rights(user_).authorize_upload(file, service::model_name(file));
 }
 
 asio::awaitable<void> HttpSession::wait_for_penalty() {
@@ -343,11 +332,11 @@ asio::awaitable<HttpAnswer> HttpSession::answer_annotation_write(Parser& parser,
     const Error error{ErrorKind::kUnavailable, busy};
     co_return error_answer(error, 429);
   }
-  const std::string model = name_in(request);
-  AnnotationRequest write{model, user_, asker_};
+  const std::string& model = std::get<ModelRoute>(*request.target.route).model;
+  const auto annotations = context_->gate->rights(user_).authorize_annotations(model);
   HttpAnswer result = forbidden_answer();
-  if (may_annotate(user_, model)) {
-    result = co_await receive_annotations(*context_, *connection_, parser, std::move(write));
+  if (annotations) {
+    result = co_await receive_annotations(*context_, *connection_, parser, *annotations, asker_.client);
   }
   audit({.what = "annotate", .model = model, .outcome = result.status < 400 ? "allowed" : "denied"});
   co_return result;
@@ -365,14 +354,12 @@ asio::awaitable<bool> HttpSession::serve_annotations(Parser& parser, const HttpR
 }
 
 /// Receives a scan and answers. False when the connection is at its end.
-asio::awaitable<bool> HttpSession::serve_upload(Parser& parser, const HttpRequest& request) {
+asio::awaitable<bool> HttpSession::serve_upload(Parser& parser, const access::AuthorizedUpload& upload) {
   const unsigned version = parser.get().version();
   bool keep_alive = parser.keep_alive();
-  const std::string& uploaded = name_in(request);
-  const std::string sender = user_ ? user_->name : std::string();  // named: see on_disk in http_upload.cpp
-  const UploadOutcome outcome = co_await receive_scan(*context_, *connection_, parser, uploaded, sender);
+  const UploadOutcome outcome = co_await receive_scan(*context_, *connection_, parser, upload);
   const bool taken = outcome.answer.status < 400;
-  audit({.what = "upload", .model = uploaded, .outcome = taken ? "allowed" : "denied"});
+  audit({.what = "upload", .model = upload.file(), .outcome = taken ? "allowed" : "denied"});
   if (!taken) ++context_->metrics.errors;
   keep_alive = keep_alive && outcome.whole && !context_->leaving;
   const AnswerForm form{version, keep_alive, /*head=*/false};
@@ -452,8 +439,9 @@ asio::awaitable<HttpAnswer> HttpSession::answer(const HttpRequest& request) {
     co_return co_await routes_->answer(*of_server, accept);
   }
   const ModelRoute& of_model = std::get<ModelRoute>(*route);
-  audit_route(of_model);
-  co_return co_await routes_->answer(of_model);
+  const access::AuthorizedModel model = context_->gate->rights(user_).authorize(of_model.model);
+  audit(question_about(model, audited_name(of_model.resource)));
+  co_return co_await routes_->answer(of_model, model);
 }
 
 }  // namespace

@@ -47,14 +47,13 @@ std::string key_of(const UploadConfig& config, const std::filesystem::path& targ
 }
 
 /// Whether a scan may be sent, and which one.
-Result<Announced> admit(const NetContext& context, const HeadParser& head, std::string_view file,
-                        std::string_view sender) {
+Result<Announced> admit(const NetContext& context, const HeadParser& head, const access::AuthorizedUpload& upload) {
   const UploadConfig& config = context.config.uploads;
   if (context.draining) return fail(ErrorKind::kUnavailable, "the server is stopping");
   if (config.folder.empty()) return fail(ErrorKind::kUnsupported, "this server takes no scans; --uploads lets it");
   Announced scan;
   if (const auto length = head.content_length()) scan.bytes = *length;
-  Result<std::filesystem::path> target = upload_target(config, sender, file);
+  Result<std::filesystem::path> target = upload_target(config, upload.sender(), upload.file());
   if (!target) return fail(std::move(target.error()));
   scan.target = std::move(*target);
   if (scan.bytes.value_or(0) > config.bytes) return fail(too_large(config.bytes));
@@ -130,7 +129,7 @@ RequestOrigin origin_of(const HeadParser::value_type& request, bool tls) {
 }
 
 asio::awaitable<UploadOutcome> receive_scan(NetContext& context, HttpConnection& connection, HeadParser& head,
-                                            const std::string& file, const std::string& sender) {
+                                            const access::AuthorizedUpload& upload) {
   const auto& request = head.get();
   const Status page = check_origin(origin_of(request, connection.tls()), context.config.allowed_origins);
   UploadOutcome outcome;
@@ -138,7 +137,7 @@ asio::awaitable<UploadOutcome> receive_scan(NetContext& context, HttpConnection&
     outcome.answer = error_answer(page.error(), 403);
     co_return outcome;
   }
-  const Result<Announced> scan = admit(context, head, file, sender);
+  const Result<Announced> scan = admit(context, head, upload);
   if (!scan) co_return refusal_of(scan.error());
   const std::string name = name_of(context.config.uploads, scan->target);
   const std::string key = key_of(context.config.uploads, scan->target);

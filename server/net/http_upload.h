@@ -4,9 +4,9 @@
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/http/parser.hpp>
-#include <string>
 #include <string_view>
 
+#include "access/authorization.h"
 #include "net/http_answer.h"
 #include "net/session.h"
 #include "net/upgrade.h"
@@ -29,9 +29,8 @@ struct UploadOutcome {
   bool whole = false;
 };
 
-/// Receives the scan of a request whose head was read, under the name of that file, and serves it. `sender`: the name
-/// of their token; empty: none. The references must outlive the coroutine.
+/// Receives the scan of a request whose head was read, and serves it. The references must outlive the coroutine.
 boost::asio::awaitable<UploadOutcome> receive_scan(NetContext& context, HttpConnection& connection, HeadParser& head,
-                                                   const std::string& file, const std::string& sender);
+                                                   const access::AuthorizedUpload& upload);
 
 }  // namespace surfcast::net

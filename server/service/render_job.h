@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "base/result.h"
@@ -14,6 +15,9 @@ namespace surfcast::service {
 
 /// A picture on its way through the service.
 struct RenderJob {
+  RenderJob(const Asker& of, PictureJob wanted, RenderService::PictureDone then)
+      : asker(of), picture(std::move(wanted)), done(std::move(then)) {}
+
   JobId id = 0;
   Asker asker;
   PictureJob picture;

@@ -20,6 +20,14 @@ tl::unexpected<Error> busy_error() {
   return fail(ErrorKind::kUnavailable, "the server is busy: too many pictures wait");
 }
 
+/// What may be known of a list.
+ModelList list_of(const access::Rights& rights, ModelList all) {
+  const auto hidden = [&](const std::string& name) { return !rights.authorize(name).allowed(); };
+  std::erase_if(all.names, hidden);
+  std::erase_if(all.scans, [&](const ScanStatus& scan) { return hidden(scan.model); });
+  return all;
+}
+
 }  // namespace
 
 void RenderService::State::encode_one(const JobPointer& job, Result<SharedFrame> frame) {
@@ -87,7 +95,7 @@ Status RenderService::State::check(const PictureJob& picture) const {
 
 /// Views ask again by themselves.
 bool RenderService::State::waits_for_model(const PictureJob& picture) const {
-  return picture.request.loading == picture::Loading::kWait && models.awaited(picture.model);
+  return picture.request.loading == picture::Loading::kWait && models.awaited(picture.model.served_name());
 }
 
 /// Puts a job into the queue, or makes room for the search that precedes it. False if there is no room.
@@ -154,17 +162,14 @@ void RenderService::State::end_waiting(const JobPointer& job, const Status& ther
 
 JobId RenderService::State::add(const Asker& asker, PictureJob picture, PictureDone done) {
   const Status checked = check(picture);
-  const auto job = std::make_shared<RenderJob>();
-  job->asker = asker;
-  job->picture = std::move(picture);
-  job->done = std::move(done);
+  const auto job = std::make_shared<RenderJob>(asker, std::move(picture), std::move(done));
   std::unique_lock lock(mutex);
   job->id = ++last_id;
   const bool waits = waits_for_model(job->picture);
-  const bool room =
-      checked && !stopping &&
-      (waits ? await_model(job->id, job->picture.model, [this, job](const Status& there) { end_waiting(job, there); })
-             : enqueue(*job));
+  const bool room = checked && !stopping &&
+                    (waits ? await_model(job->id, job->picture.model.served_name(),
+                                         [this, job](const Status& there) { end_waiting(job, there); })
+                           : enqueue(*job));
   if (room) jobs.emplace(job->id, job);
   lock.unlock();
   if (!room) {
@@ -344,7 +349,7 @@ RenderService::~RenderService() {
 }
 
 JobId RenderService::draw(const Asker& asker, PictureJob job, PictureDone done) {
-  State& state = state_of(job.model);
+  State& state = state_of(job.model.served_name());
   return state.add(asker, std::move(job), std::move(done));
 }
 
@@ -355,12 +360,9 @@ bool RenderService::cancel(JobId id) {
 JobId RenderService::encode(std::shared_ptr<const picture::Frame> frame, PictureJob picture, PictureDone done,
                             const Asker& asker) {
   SURFCAST_EXPECTS(frame->image.format == picture::pixel_format_of(picture.format));
-  State& state = state_of(picture.model);
-  const auto job = std::make_shared<RenderJob>();
-  job->picture = std::move(picture);
+  State& state = state_of(picture.model.served_name());
+  const auto job = std::make_shared<RenderJob>(asker, std::move(picture), std::move(done));
   job->picture.priority = Priority::kStill;
-  job->done = std::move(done);
-  job->asker = asker;
   job->small = is_small(job->picture);
   job->memory = state.memory->take(asker.client, memory_of(job->picture));
   {
@@ -390,18 +392,19 @@ void RenderService::models_changed() {
   if (remote_) remote_->models_changed();
 }
 
-uint64_t RenderService::edition(const std::string& model) const {
-  return state_->models.edition(model);
+uint64_t RenderService::edition(const access::AuthorizedModel& model) const {
+  return state_->models.edition(model.served_name());
 }
 
-void RenderService::list_models(ListDone done, ClientId client) {
-  const auto list = [state = state_.get()]() -> Result<ModelList> {
-    return ModelList{state->models.names(), state->models.scans()};
+void RenderService::list_models(access::Rights rights, ListDone done, ClientId client) {
+  const auto list = [state = state_.get(), rights = std::move(rights)]() -> Result<ModelList> {
+    return list_of(rights, {state->models.names(), state->models.scans()});
   };
   state_->lookups->post([list, done = std::move(done)] { done(guarded(list).value_or(ModelList())); }, client);
 }
 
-void RenderService::describe_model(const std::string& name, DescriptionDone done, ClientId client) {
+void RenderService::describe_model(const access::AuthorizedModel& model, DescriptionDone done, ClientId client) {
+  const std::string name = model.served_name();
   State& state = state_of(name);
   state.when_available(name, [state = &state, name, done = std::move(done), client](const Status& there) {
     if (!there) return done(fail(there.error()));
@@ -411,7 +414,7 @@ void RenderService::describe_model(const std::string& name, DescriptionDone done
 }
 
 void RenderService::pick(PickJob job, PickService::Done done, ClientId client) {
-  const std::string model = job.model;
+  const std::string model = job.model.served_name();
   State& state = state_of(model);
   const auto run = [state = &state, job = std::move(job), done = std::move(done), client](const Status& there) {
     if (!there) return done(fail(there.error()));
@@ -421,7 +424,7 @@ void RenderService::pick(PickJob job, PickService::Done done, ClientId client) {
 }
 
 void RenderService::profile(ProfileJob job, PickService::ProfileDone done, ClientId client) {
-  const std::string model = job.model;
+  const std::string model = job.model.served_name();
   State& state = state_of(model);
   const auto run = [state = &state, job = std::move(job), done = std::move(done), client](const Status& there) {
     if (!there) return done(fail(there.error()));
@@ -432,7 +435,7 @@ void RenderService::profile(ProfileJob job, PickService::ProfileDone done, Clien
 
 void RenderService::points(PointsJob job, std::shared_ptr<const std::atomic<bool>> cancelled,
                            PickService::PointsDone done, ClientId client) {
-  const std::string model = job.model;
+  const std::string model = job.model.served_name();
   State& state = state_of(model);
   const auto run = [state = &state, job = std::move(job), cancelled = std::move(cancelled), done = std::move(done),
                     client](const Status& there) {

@@ -201,7 +201,7 @@ Result<picture::Frame> RenderService::State::render_frame(FrameRenderer& rendere
   picture::PictureRequest request = job.picture.request;
   request.format = picture::pixel_format_of(job.picture.format);
   if (request.camera && job.picture.up_from_model) {
-    const Result<ModelDescription> description = models.describe(job.picture.model);
+    const Result<ModelDescription> description = models.describe(job.picture.model.served_name());
     if (!description) return fail(description.error());
     request.camera->view_up = description->info.up();
   }
@@ -210,7 +210,7 @@ Result<picture::Frame> RenderService::State::render_frame(FrameRenderer& rendere
     if (!encoding) return fail(encoding.error());
     request.time_ms = std::max(request.time_ms - *encoding, kLeastDrawingMs);
   }
-  return renderer.draw(job.picture.model, request, preemption);
+  return renderer.draw(job.picture.model.served_name(), request, preemption);
 }
 
 /// How long the file of a picture takes to encode, as far as is known. Before the first one of a format a small, coarse
@@ -227,7 +227,7 @@ Result<double> RenderService::State::encoding_ms(FrameRenderer& renderer, const 
   request.spacing = kCoarse;
   request.width = std::max(request.width / kSmaller, 1);
   request.height = std::max(request.height / kSmaller, 1);
-  const Result<picture::Frame> small = renderer.draw(job.picture.model, request, preemption);
+  const Result<picture::Frame> small = renderer.draw(job.picture.model.served_name(), request, preemption);
   if (!small) return fail(small.error());
   const Stopwatch watch;
   const auto file = encode::encode_picture(small->image, format, job.picture.quality);

@@ -70,9 +70,16 @@ FrameResult result_of(FrameKind kind, const service::EncodedPicture& picture) {
 
 }  // namespace
 
-ViewSession::ViewSession(service::RenderService& service, const service::Asker& asker, uint64_t viewer,
-                         const ViewOptions& options, ViewCounts& counts, ViewPort port)
-    : service_(service), asker_(asker), viewer_(viewer), options_(options), counts_(counts), port_(std::move(port)) {
+ViewSession::ViewSession(service::RenderService& service, const service::Asker& asker,
+                         const access::AuthorizedModel& model, uint64_t viewer, const ViewOptions& options,
+                         ViewCounts& counts, ViewPort port)
+    : service_(service),
+      asker_(asker),
+      viewer_(viewer),
+      options_(options),
+      counts_(counts),
+      port_(std::move(port)),
+      newest_{0, service::PictureJob{model}} {
   ++counts_.open;
   if (options_.video) stream_ = open_stream();
 }

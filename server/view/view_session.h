@@ -75,8 +75,9 @@ struct ViewOptions {
 /// methods must be called on the view's thread; drawing and encoding run on the threads of the service.
 class ViewSession : public std::enable_shared_from_this<ViewSession> {
  public:
-  ViewSession(service::RenderService& service, const service::Asker& asker, uint64_t viewer, const ViewOptions& options,
-              ViewCounts& counts, ViewPort port);
+  /// All its pictures are of that model.
+  ViewSession(service::RenderService& service, const service::Asker& asker, const access::AuthorizedModel& model,
+              uint64_t viewer, const ViewOptions& options, ViewCounts& counts, ViewPort port);
   ~ViewSession();
   ViewSession(const ViewSession&) = delete;
   ViewSession& operator=(const ViewSession&) = delete;

@@ -18,7 +18,6 @@
 #include "net/http_credentials.h"
 #include "net/net_fixture.h"
 #include "net/raw_websocket.h"
-#include "service/model_name.h"
 
 namespace surfcast::net {
 namespace {
@@ -364,12 +363,6 @@ TEST(HttpCredentialsTest, AreFoundWhereverTheyAre) {
   EXPECT_EQ(token_of_form("token=%zz"), "");
   EXPECT_THAT(login_cookie("abc", /*encrypted=*/true), StartsWith("__Host-surfcast=abc; Path=/;"));
   EXPECT_THAT(login_cookie("abc", /*encrypted=*/true), HasSubstr("; Secure"));
-}
-
-TEST(ModelNameTest, AHiddenNameReadsAsItWas) {
-  EXPECT_NE(service::hidden_name("cube"), "cube");
-  EXPECT_EQ(service::shown_name(service::hidden_name("cube")), "cube");
-  EXPECT_EQ(service::shown_name("cube"), "cube");
 }
 
 }  // namespace

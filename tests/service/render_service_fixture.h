@@ -33,8 +33,7 @@ class RenderServiceTest : public ::testing::Test {
     while (control_->drawn < pictures) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   static PictureJob job_for(const std::string& model) {
-    PictureJob job;
-    job.model = model;
+    PictureJob job{authorized(model)};
     job.request.width = 8;
     job.request.height = 4;
     return job;
