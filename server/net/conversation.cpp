@@ -22,12 +22,12 @@ constexpr size_t kMostUnknown = 3;
 
 }  // namespace
 
-Conversation::Conversation(std::shared_ptr<NetContext> context, const service::Asker& asker,
-                           asio::any_io_executor executor, std::shared_ptr<AnswerWriter> writer, std::string client,
+Conversation::Conversation(std::shared_ptr<NetContext> context, const service::Client& client,
+                           asio::any_io_executor executor, std::shared_ptr<AnswerWriter> writer, std::string name,
                            const Gatekeeper::User& user)
     : context_(std::move(context)),
-      asker_(asker),
-      client_(std::move(client)),
+      client_(client),
+      client_name_(std::move(name)),
       executor_(std::move(executor)),
       writer_(std::move(writer)),
       window_(context_->config.requests),
@@ -113,7 +113,7 @@ void Conversation::draw_next() {
     if (!next) return;
     const uint64_t id = next->first;
     const service::JobId job = context_->service.draw(
-        asker_, std::move(next->second), [later = answer_later(id), id](Result<service::EncodedPicture> picture) {
+        client_, std::move(next->second), [later = answer_later(id), id](Result<service::EncodedPicture> picture) {
           later(outcome_of(id, std::move(picture)));
         });
     window_.set_job(id, job);
@@ -130,7 +130,7 @@ void Conversation::handle_other(const wire::Request& request) {
         [later = answer_later(id), id, context = context_](const service::ModelList& models) {
           later(outcome_of(id, models, context->config.uploads));
         },
-        asker_.client);
+        client_.id);
   }
   const access::AuthorizedModel model = rights().authorize(request.describe_model().model());
   audit_once("describe", model);
@@ -139,7 +139,7 @@ void Conversation::handle_other(const wire::Request& request) {
       [later = answer_later(id), id, name = model.name()](const Result<service::ModelDescription>& description) {
         later(outcome_of(id, name, description));
       },
-      asker_.client);
+      client_.id);
 }
 
 void Conversation::handle_pick(const wire::Request& request) {
@@ -155,7 +155,7 @@ void Conversation::handle_pick(const wire::Request& request) {
       [later = answer_later(id), id](const Result<std::optional<service::PickedPoint>>& picked) {
         later(outcome_of(id, picked));
       },
-      asker_.client);
+      client_.id);
 }
 
 void Conversation::handle_profile(const wire::Request& request) {
@@ -168,7 +168,7 @@ void Conversation::handle_profile(const wire::Request& request) {
   context_->service.profile(
       std::move(*job),
       [later = answer_later(id), id](const Result<service::ProfileResult>& profile) { later(outcome_of(id, profile)); },
-      asker_.client);
+      client_.id);
 }
 
 /// A function for any thread that hands an answer over to this object.
@@ -204,8 +204,8 @@ void Conversation::audit(std::string_view what, const access::AuthorizedModel& m
   if (!context_->audit) return;
   AuditEvent event = question_about(model, what);
   event.who = owner();
-  event.client = client_;
-  event.connection = asker_.session;
+  event.client = client_name_;
+  event.connection = client_.session;
   context_->audit->write(std::move(event));
 }
 

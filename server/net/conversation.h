@@ -46,9 +46,10 @@ class AnswerWriter {
 /// else happens on the thread of the sockets.
 class Conversation : public KeptSessions::Holder, public std::enable_shared_from_this<Conversation> {
  public:
-  /// `writer` is kept until abandon() and while an answer is outstanding. `client`: see client_name.
-  Conversation(std::shared_ptr<NetContext> context, const service::Asker& asker, boost::asio::any_io_executor executor,
-               std::shared_ptr<AnswerWriter> writer, std::string client, const Gatekeeper::User& user);
+  /// `writer` is kept until abandon() and while an answer is outstanding. `name`: of the client, see client_name.
+  Conversation(std::shared_ptr<NetContext> context, const service::Client& client,
+               boost::asio::any_io_executor executor, std::shared_ptr<AnswerWriter> writer, std::string name,
+               const Gatekeeper::User& user);
 
   /// Handles one encoded Request. Fails when it is none: the stream is of no use any more then.
   Status receive(std::span<const std::byte> message);
@@ -126,8 +127,8 @@ class Conversation : public KeptSessions::Holder, public std::enable_shared_from
   void audit_once(std::string_view what, const access::AuthorizedModel& model);
 
   std::shared_ptr<NetContext> context_;
-  service::Asker asker_;
-  std::string client_;
+  service::Client client_;
+  std::string client_name_;
   boost::asio::any_io_executor executor_;
   std::shared_ptr<AnswerWriter> writer_;  ///< null once abandoned
   RequestWindow window_;

@@ -35,7 +35,7 @@ void Conversation::handle_points(const wire::Request& request) {
       if (!*cancelled) self->begin_points(id, std::move(stream));
     });
   };
-  context_->service.points(std::move(*job), cancelled, counted, asker_.client);
+  context_->service.points(std::move(*job), cancelled, counted, client_.id);
 }
 
 void Conversation::begin_points(uint64_t id, Result<std::shared_ptr<service::PointStream>> stream) {
@@ -65,7 +65,7 @@ void Conversation::advance_points() {
         if (!*cancelled) self->send_points(id, std::move(message));
       });
     };
-    context_->service.next_piece(region.stream, made, asker_.client);
+    context_->service.next_piece(region.stream, made, client_.id);
   }
 }
 

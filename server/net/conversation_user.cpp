@@ -24,7 +24,7 @@ Bytes encode_denial(uint64_t id, const std::string& reason) {
 /// Turns of the renderer go to the user, on whatever connections it comes.
 void Conversation::welcome(const Gatekeeper::User& user) {
   user_ = user;
-  asker_.client = client_id(client_, user);
+  client_.id = client_id(client_name_, user);
   counted_user_.reset();
   counted_user_ = context_->gate->count(user, &Clients::Counts::connections);
 }
@@ -32,7 +32,7 @@ void Conversation::welcome(const Gatekeeper::User& user) {
 void Conversation::handle_authenticate(const wire::Request& request) {
   const uint64_t id = request.id();
   Gatekeeper& gate = *context_->gate;
-  const Gatekeeper::User user = gate.enter(request.authenticate().token(), client_);
+  const Gatekeeper::User user = gate.enter(request.authenticate().token(), client_name_);
   if (!user && gate.wants_tokens()) return deny(id, "the token is not known here, or has ended");
   if (user && !views_.empty()) return deny(id, "views are open with another token");
   if (const std::string busy = gate.refusal_of_connection(user); !busy.empty()) return deny(id, busy);
@@ -50,7 +50,7 @@ void Conversation::deny(uint64_t id, const std::string& reason) {
   audit_token("denied", reason);
   context_->sessions.forget(std::exchange(session_, {}));
   const auto writer = writer_;
-  const auto penalty = std::make_shared<asio::steady_timer>(executor_, context_->gate->penalty(client_));
+  const auto penalty = std::make_shared<asio::steady_timer>(executor_, context_->gate->penalty(client_name_));
   abandon();
   if (!writer) return;
   penalty->async_wait([writer, penalty, last = encode_denial(id, reason)](const boost::system::error_code&) mutable {
@@ -62,8 +62,8 @@ void Conversation::audit_token(std::string_view outcome, const std::string& reas
   if (!context_->audit) return;
   context_->audit->write({.what = "token",
                           .who = owner(),
-                          .client = client_,
-                          .connection = asker_.session,
+                          .client = client_name_,
+                          .connection = client_.session,
                           .outcome = outcome,
                           .reason = reason});
 }

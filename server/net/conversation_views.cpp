@@ -59,11 +59,11 @@ Status Conversation::open_view(KeptView wanted) {
   audit("view", model);
   const double fps = wanted.target_fps > 0 ? wanted.target_fps : context_->config.target_fps;
   const view::ViewOptions options{fps, wanted.depth, wanted.video, context_->config.kept_frame_bytes};
-  const auto view = std::make_shared<view::ViewSession>(context_->service, asker_, model, ++context_->last_viewer,
+  const auto view = std::make_shared<view::ViewSession>(context_->service, client_, model, ++context_->last_viewer,
                                                         options, context_->metrics.views, port_of(wanted.id));
   view->begin_with(wanted.quality);
   view->update({wanted.update, std::move(*job), /*changed=*/true, /*moving=*/false}, Clock::now());
-  OpenedView opened{view, std::move(wanted), model, Counted(context_->clients, client_, &Clients::Counts::views),
+  OpenedView opened{view, std::move(wanted), model, Counted(context_->clients, client_name_, &Clients::Counts::views),
                     context_->gate->count(user_, &Clients::Counts::views)};
   const uint64_t id = opened.wanted.id;
   views_.emplace(id, std::move(opened));
@@ -75,7 +75,7 @@ void Conversation::handle_resume(const wire::Request& request) {
   KeptSessions& sessions = context_->sessions;
   sessions.forget(session_);
   std::vector<KeptView> views = sessions.take(request.resume().session(), owner(), Clock::now());
-  session_ = sessions.begin(weak_from_this(), owner(), client_);
+  session_ = sessions.begin(weak_from_this(), owner(), client_name_);
   wire::Answer answer;
   answer.set_id(request.id());
   wire::Resumed& resumed = *answer.mutable_resumed();
@@ -111,7 +111,7 @@ std::vector<KeptView> Conversation::hand_over() {
 /// Why there may not be another view; empty: there may.
 std::string Conversation::refusal_of_view() const {
   std::string refusal = context_->gate->refusal_of_view(user_);
-  return refusal.empty() ? context_->clients->refusal_of_view(client_) : refusal;
+  return refusal.empty() ? context_->clients->refusal_of_view(client_name_) : refusal;
 }
 
 void Conversation::handle_update_view(const wire::Request& request) {

@@ -27,15 +27,15 @@ constexpr std::chrono::milliseconds kLookAgain{100};
 }  // namespace
 
 HttpRoutes::HttpRoutes(std::shared_ptr<NetContext> context, std::shared_ptr<HttpConnection> connection,
-                       const service::Asker& asker)
+                       const service::Client& client)
     : context_(std::move(context)),
       connection_(std::move(connection)),
-      asker_(asker),
+      client_(client),
       look_again_(connection_->stream().get_executor()) {}
 
-void HttpRoutes::set_user(access::Rights rights, const service::Asker& asker) {
+void HttpRoutes::set_user(access::Rights rights, const service::Client& client) {
   rights_ = std::move(rights);
-  asker_ = asker;
+  client_ = client;
 }
 
 bool HttpRoutes::cancel() {
@@ -73,8 +73,7 @@ asio::awaitable<HttpAnswer> HttpRoutes::answer(const ModelRoute& route, const ac
     case ModelRoute::Resource::kPoints:
       return answer_points(route.query, model);
     case ModelRoute::Resource::kAnnotations:
-      return answer_annotations(*context_, model, rights_.authorize_annotations(model.name()).has_value(),
-                                asker_.client);
+      return answer_annotations(*context_, model, rights_.authorize_annotations(model.name()).has_value(), client_.id);
     case ModelRoute::Resource::kDescription:
       break;
   }
@@ -104,13 +103,13 @@ HttpAnswer HttpRoutes::answer_metrics(const std::string& accept) const {
 
 asio::awaitable<HttpAnswer> HttpRoutes::answer_models() {
   const auto models = co_await answer_of<service::ModelList>(
-      [this](auto done) { context_->service.list_models(rights_, std::move(done), asker_.client); });
+      [this](auto done) { context_->service.list_models(rights_, std::move(done), client_.id); });
   co_return models_answer(models, context_->config.uploads);
 }
 
 asio::awaitable<HttpAnswer> HttpRoutes::answer_model(const access::AuthorizedModel& model) {
   const auto description = co_await answer_of<Result<service::ModelDescription>>(
-      [&](auto done) { context_->service.describe_model(model, std::move(done), asker_.client); });
+      [&](auto done) { context_->service.describe_model(model, std::move(done), client_.id); });
   co_return description ? model_answer(model.name(), *description) : error_answer(description.error());
 }
 
@@ -121,7 +120,7 @@ asio::awaitable<HttpAnswer> HttpRoutes::answer_pick(const std::string& query, co
       });
   if (!job) co_return error_answer(job.error());
   const auto picked = co_await answer_of<Result<std::optional<service::PickedPoint>>>(
-      [&](auto done) { context_->service.pick(*job, std::move(done), asker_.client); });
+      [&](auto done) { context_->service.pick(*job, std::move(done), client_.id); });
   co_return picked ? pick_answer(*picked) : error_answer(picked.error());
 }
 
@@ -132,7 +131,7 @@ asio::awaitable<HttpAnswer> HttpRoutes::answer_profile(const std::string& query,
   if (!job) co_return error_answer(job.error());
   connection_->wait_without_limit();
   const auto profile = co_await answer_of<Result<service::ProfileResult>>(
-      [&](auto done) { context_->service.profile(*job, std::move(done), asker_.client); });
+      [&](auto done) { context_->service.profile(*job, std::move(done), client_.id); });
   co_return profile ? profile_answer(model.name(), *profile, wanted->format) : error_answer(profile.error());
 }
 
@@ -156,7 +155,7 @@ asio::awaitable<Result<std::shared_ptr<service::PointStream>>> HttpRoutes::count
   const auto cancelled = std::make_shared<std::atomic<bool>>(false);
   begin_request([cancelled] { return !cancelled->exchange(true); });
   Stream stream = co_await answer_of<Stream>(
-      [&](auto done) { context_->service.points(std::move(job), cancelled, std::move(done), asker_.client); });
+      [&](auto done) { context_->service.points(std::move(job), cancelled, std::move(done), client_.id); });
   end_request();
   co_return stream;
 }
@@ -165,7 +164,7 @@ asio::awaitable<Result<service::PointPiece>> HttpRoutes::next_piece(std::shared_
   if (connection_->has_left()) co_return fail(ErrorKind::kCancelled, "the client has left");
   connection_->wait_without_limit();
   Result<service::PointPiece> piece = co_await answer_of<Result<service::PointPiece>>(
-      [&](auto done) { context_->service.next_piece(stream, std::move(done), asker_.client); });
+      [&](auto done) { context_->service.next_piece(stream, std::move(done), client_.id); });
   co_return piece;
 }
 
@@ -184,7 +183,7 @@ asio::awaitable<HttpAnswer> HttpRoutes::answer_picture(const std::string& query,
 asio::awaitable<Result<service::EncodedPicture>> HttpRoutes::draw(service::PictureJob job) {
   connection_->wait_without_limit();
   Result<service::EncodedPicture> picture = co_await answer_of<Result<service::EncodedPicture>>([&](auto done) {
-    const service::JobId id = context_->service.draw(asker_, std::move(job), std::move(done));
+    const service::JobId id = context_->service.draw(client_, std::move(job), std::move(done));
     begin_request([this, id] { return context_->service.cancel(id); });
   });
   end_request();

@@ -19,13 +19,13 @@ namespace surfcast::net {
 class HttpRoutes : public std::enable_shared_from_this<HttpRoutes> {
  public:
   HttpRoutes(std::shared_ptr<NetContext> context, std::shared_ptr<HttpConnection> connection,
-             const service::Asker& asker);
+             const service::Client& client);
 
   /// The answer to a GET. `accept`: the header of the request. The references must outlive the coroutine.
   boost::asio::awaitable<HttpAnswer> answer(ServerRoute route, const std::string& accept);
   boost::asio::awaitable<HttpAnswer> answer(const ModelRoute& route, const access::AuthorizedModel& model);
   /// Who asks from here on, and what they may do.
-  void set_user(access::Rights rights, const service::Asker& asker);
+  void set_user(access::Rights rights, const service::Client& client);
   /// Gives up what is being done for the client, if there is something; false: there is nothing.
   bool cancel();
 
@@ -46,7 +46,7 @@ class HttpRoutes : public std::enable_shared_from_this<HttpRoutes> {
 
   std::shared_ptr<NetContext> context_;
   std::shared_ptr<HttpConnection> connection_;
-  service::Asker asker_;
+  service::Client client_;
   access::Rights rights_ = access::Rights::of(nullptr);
   std::function<bool()> give_up_;         ///< ends what is being done for this client; null: nothing is
   uint64_t request_ = 0;                  ///< number of what is being done

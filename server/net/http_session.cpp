@@ -106,15 +106,15 @@ class HttpSession : public Session, public std::enable_shared_from_this<HttpSess
  public:
   using Clock = std::chrono::steady_clock;
 
-  HttpSession(Connection connection, AdoptSession adopt, const service::Asker& asker)
+  HttpSession(Connection connection, AdoptSession adopt, const service::Client& client)
       : connection_(
             std::make_shared<HttpConnection>(std::move(connection.stream), connection.begun, connection.peer.context)),
         context_(std::move(connection.peer.context)),
         open_(std::move(connection.peer.open)),
-        asker_(asker),
+        client_(client),
         refusal_(std::move(connection.peer.refusal)),
         adopt_(std::move(adopt)),
-        routes_(std::make_shared<HttpRoutes>(context_, connection_, asker_)) {}
+        routes_(std::make_shared<HttpRoutes>(context_, connection_, client_)) {}
 
   void start() {
     asio::co_spawn(
@@ -173,7 +173,7 @@ class HttpSession : public Session, public std::enable_shared_from_this<HttpSess
   std::shared_ptr<HttpConnection> connection_;
   std::shared_ptr<NetContext> context_;
   Counted open_;
-  service::Asker asker_;
+  service::Client client_;
   std::string refusal_;  ///< as in Peer
   AdoptSession adopt_;
   bool answering_ = false;
@@ -256,7 +256,7 @@ void HttpSession::identify(const Parser::value_type& head) {
   user_ = token.empty() ? nullptr : context_->gate->enter(token, open_.client());
   const bool wrong = !token.empty() && !user_ && context_->gate->wants_tokens();
   if (wrong) audit({.what = "token", .outcome = "denied"});
-  routes_->set_user(context_->gate->rights(user_), {client_id(open_.client(), user_), asker_.session});
+  routes_->set_user(context_->gate->rights(user_), {client_id(open_.client(), user_), client_.session});
   const bool same = user_ && counted_user_ && counted_user_->client() == user_->name;
   if (same) return;
   counted_user_.reset();
@@ -269,7 +269,7 @@ void HttpSession::identify(const Parser::value_type& head) {
 void HttpSession::audit(AuditEvent event) const {
   if (!context_->audit) return;
   event.client = open_.client();
-  event.connection = asker_.session;
+  event.connection = client_.session;
   if (user_) event.who = user_->name;
   context_->audit->write(event);
 }
@@ -336,7 +336,7 @@ asio::awaitable<HttpAnswer> HttpSession::answer_annotation_write(Parser& parser,
   const auto annotations = context_->gate->rights(user_).authorize_annotations(model);
   HttpAnswer result = forbidden_answer();
   if (annotations) {
-    result = co_await receive_annotations(*context_, *connection_, parser, *annotations, asker_.client);
+    result = co_await receive_annotations(*context_, *connection_, parser, *annotations, client_.id);
   }
   audit({.what = "annotate", .model = model, .outcome = result.status < 400 ? "allowed" : "denied"});
   co_return result;
@@ -382,7 +382,7 @@ bool HttpSession::become_websocket(const HttpRequest& request) {
   auto transport = make_websocket_transport(std::move(connection_->stream()), head, context_->config.ping,
                                             context_->config.request_bytes);
   counted_user_.reset();
-  adopt_(start_message_session(std::move(transport), {context_, std::move(open_), asker_.session, refusal_, user_}));
+  adopt_(start_message_session(std::move(transport), {context_, std::move(open_), client_.session, refusal_, user_}));
   return true;
 }
 
@@ -447,8 +447,8 @@ asio::awaitable<HttpAnswer> HttpSession::answer(const HttpRequest& request) {
 }  // namespace
 
 std::shared_ptr<Session> start_http_session(Connection connection, AdoptSession adopt) {
-  const service::Asker asker = connection.peer.asker();
-  const auto session = std::make_shared<HttpSession>(std::move(connection), std::move(adopt), asker);
+  const service::Client client = connection.peer.client();
+  const auto session = std::make_shared<HttpSession>(std::move(connection), std::move(adopt), client);
   session->start();
   return session;
 }

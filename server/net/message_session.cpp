@@ -44,7 +44,7 @@ class MessageSession : public Session, public AnswerWriter, public std::enable_s
         room_(transport_->executor(), Clock::time_point::max()) {}
 
   void start() {
-    conversation_ = std::make_shared<Conversation>(peer_.context, peer_.asker(), transport_->executor(),
+    conversation_ = std::make_shared<Conversation>(peer_.context, peer_.client(), transport_->executor(),
                                                    shared_from_this(), peer_.open.client(), peer_.user);
     spawn([](auto self) -> asio::awaitable<void> { co_await self->read_all(); });
     spawn([](auto self) -> asio::awaitable<void> { co_await self->watch(); });

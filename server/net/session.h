@@ -58,7 +58,7 @@ struct Peer {
   Counted open;  ///< the connection
   service::SessionId id = 0;
   /// By which the service knows the connection and its client.
-  [[nodiscard]] service::Asker asker() const { return {client_id(open.client(), user), id}; }
+  [[nodiscard]] service::Client client() const { return {client_id(open.client(), user), id}; }
   std::string refusal;      ///< why it is not served, which it is told before the connection ends; empty: it is served
   Gatekeeper::User user{};  ///< who it is, as far as it has said so; null: nobody
 };

@@ -60,8 +60,8 @@ void RenderService::State::count_kept_frame(const RenderJob& job, EncodedPicture
   const SharedFrame frame = std::exchange(picture.frame, nullptr);
   if (!frame) return;
   const size_t bytes = frame->image.pixels.size();
-  if (!memory->fits(job.asker.client, bytes + memory_of(job.picture))) return;
-  const auto kept = std::make_shared<const Kept>(Kept{frame, memory->take(job.asker.client, bytes)});
+  if (!memory->fits(job.client.id, bytes + memory_of(job.picture))) return;
+  const auto kept = std::make_shared<const Kept>(Kept{frame, memory->take(job.client.id, bytes)});
   picture.frame = {kept, kept->frame.get()};
 }
 
@@ -100,7 +100,7 @@ bool RenderService::State::waits_for_model(const PictureJob& picture) const {
 
 /// Puts a job into the queue, or makes room for the search that precedes it. False if there is no room.
 bool RenderService::State::enqueue(const RenderJob& job) {
-  if (!needs_front_surface(job.picture.channels)) return queue.push(job.asker, job.id, job.picture.priority);
+  if (!needs_front_surface(job.picture.channels)) return queue.push(job.client, job.id, job.picture.priority);
   if (searching >= limits.queued_jobs) return false;
   ++searching;
   return true;
@@ -121,7 +121,7 @@ void RenderService::State::proceed(const JobPointer& job) {
 /// A job whose front surface may be looked for: there is memory for its picture.
 std::vector<RenderService::State::JobPointer>::iterator RenderService::State::next_search() {
   return std::ranges::find_if(
-      to_search, [this](const JobPointer& job) { return memory->fits(job->asker.client, memory_of(job->picture)); });
+      to_search, [this](const JobPointer& job) { return memory->fits(job->client.id, memory_of(job->picture)); });
 }
 
 /// Looks for the front surfaces for which there is memory: they take as much as the channels made of them.
@@ -134,7 +134,7 @@ void RenderService::State::start_searches() {
       if (next == to_search.end()) return;
       job = *next;
       to_search.erase(next);
-      job->memory = memory->take(job->asker.client, memory_of(job->picture));
+      job->memory = memory->take(job->client.id, memory_of(job->picture));
     }
     search(job);
   }
@@ -160,9 +160,9 @@ void RenderService::State::end_waiting(const JobPointer& job, const Status& ther
   finish(job, busy_error());
 }
 
-JobId RenderService::State::add(const Asker& asker, PictureJob picture, PictureDone done) {
+JobId RenderService::State::add(const Client& client, PictureJob picture, PictureDone done) {
   const Status checked = check(picture);
-  const auto job = std::make_shared<RenderJob>(asker, std::move(picture), std::move(done));
+  const auto job = std::make_shared<RenderJob>(client, std::move(picture), std::move(done));
   std::unique_lock lock(mutex);
   job->id = ++last_id;
   const bool waits = waits_for_model(job->picture);
@@ -186,8 +186,7 @@ void RenderService::State::search(const JobPointer& job) {
   const std::shared_ptr<const std::atomic<bool>> cancelled(job, &job->cancelled);
   picks->find_surface(
       {picture.model, picture.request, picture.up_from_model, picture.channels}, cancelled,
-      [this, job](Result<std::vector<pick::FrontPixel>> front) { end_search(job, std::move(front)); },
-      job->asker.client);
+      [this, job](Result<std::vector<pick::FrontPixel>> front) { end_search(job, std::move(front)); }, job->client.id);
 }
 
 void RenderService::State::end_search(const JobPointer& job, Result<std::vector<pick::FrontPixel>> front) {
@@ -198,7 +197,7 @@ void RenderService::State::end_search(const JobPointer& job, Result<std::vector<
     job->front = std::move(*front);
     job->search_ms = job->since_submission.milliseconds();
     job->since_submission = Stopwatch();
-    if (queue.push(job->asker, job->id, job->picture.priority)) {
+    if (queue.push(job->client, job->id, job->picture.priority)) {
       lock.unlock();
       return wake.notify_one();
     }
@@ -277,7 +276,7 @@ void RenderService::State::stop() {
     for (const Priority priority : {Priority::kMotion, Priority::kStill}) {
       while (const std::optional<JobId> id = queue.pop(priority)) {
         waiting.push_back(jobs.at(*id));
-        queue.shares().leave(waiting.back()->asker.client);
+        queue.shares().leave(waiting.back()->client.id);
       }
     }
   }
@@ -348,9 +347,9 @@ RenderService::~RenderService() {
   state_->stop();
 }
 
-JobId RenderService::draw(const Asker& asker, PictureJob job, PictureDone done) {
+JobId RenderService::draw(const Client& client, PictureJob job, PictureDone done) {
   State& state = state_of(job.model.served_name());
-  return state.add(asker, std::move(job), std::move(done));
+  return state.add(client, std::move(job), std::move(done));
 }
 
 bool RenderService::cancel(JobId id) {
@@ -358,13 +357,13 @@ bool RenderService::cancel(JobId id) {
 }
 
 JobId RenderService::encode(std::shared_ptr<const picture::Frame> frame, PictureJob picture, PictureDone done,
-                            const Asker& asker) {
+                            const Client& client) {
   SURFCAST_EXPECTS(frame->image.format == picture::pixel_format_of(picture.format));
   State& state = state_of(picture.model.served_name());
-  const auto job = std::make_shared<RenderJob>(asker, std::move(picture), std::move(done));
+  const auto job = std::make_shared<RenderJob>(client, std::move(picture), std::move(done));
   job->picture.priority = Priority::kStill;
   job->small = is_small(job->picture);
-  job->memory = state.memory->take(asker.client, memory_of(job->picture));
+  job->memory = state.memory->take(client.id, memory_of(job->picture));
   {
     const std::lock_guard lock(state.mutex);
     job->id = ++state.last_id;
@@ -373,7 +372,7 @@ JobId RenderService::encode(std::shared_ptr<const picture::Frame> frame, Picture
   }
   state.pool->post(
       [&state, job, frame = std::move(frame)]() mutable { state.encode_one(job, SharedFrame(std::move(frame))); },
-      asker.client, job->small ? TaskSize::kSmall : TaskSize::kLarge);
+      client.id, job->small ? TaskSize::kSmall : TaskSize::kLarge);
   return job->id;
 }
 

@@ -130,13 +130,13 @@ class RenderService {
   ~RenderService();
 
   /// A picture of a model that is awaited (see ModelSource) waits for it; pictures of views fail at once.
-  JobId draw(const Asker& asker, PictureJob job, PictureDone done);
+  JobId draw(const Client& client, PictureJob job, PictureDone done);
   /// Replaces the picture of a job that still waits for the render thread. False if the job does not wait any more, or
   /// if the new picture is invalid.
   bool replace(JobId job, PictureJob picture);
   /// Encodes `picture` from a frame that was drawn for the same request.
   JobId encode(std::shared_ptr<const picture::Frame> frame, PictureJob picture, PictureDone done,
-               const Asker& asker = {});
+               const Client& client = {});
   /// True if the job was outstanding. Its callback then gets kCancelled, unless the picture is already being delivered.
   bool cancel(JobId job);
 
