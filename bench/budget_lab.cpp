@@ -15,6 +15,7 @@
 #include <string>
 #include <vector>
 
+#include "access/authorization.h"
 #include "bench_support.h"
 #include "picture_error.h"
 #include "service/catalogue_renderer.h"
@@ -99,8 +100,7 @@ class Lab {
 
  private:
   [[nodiscard]] service::PictureJob job() const {
-    service::PictureJob job;
-    job.model = models_->names().front();
+    service::PictureJob job{access::Rights::unlimited().authorize(models_->names().front())};
     job.request.camera = camera_;
     job.request.silhouettes = true;
     job.keep_frame = true;

@@ -24,9 +24,6 @@ struct Principal {
   bool operator==(const Principal&) const = default;
 };
 
-/// Whether a model may be known to a principal.
-bool may_see(const Principal& principal, const std::string& model);
-
 /// Whether the token is no longer good at that time.
 bool has_expired(const Principal& principal, Principal::Time now);
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <utility>
 
+#include "access/authorization.h"
 #include "cmd/find_models.h"
 #include "cmd/limit_flags.h"
 #include "cmd/store_flags.h"
@@ -32,7 +33,7 @@ Status pick(const PickCommand& command) {
   if (!models) return fail(models.error());
   Result<service::PickJob> job =
       command.flags.request((*models)->names().front()).and_then([](const wire::PickSurfel& request) {
-        return net::to_job(request);
+        return net::to_job(request, access::Rights::unlimited().authorize(request.picture().model()));
       });
   if (!job) return fail(job.error());
   std::promise<Result<std::optional<service::PickedPoint>>> promise;

@@ -6,6 +6,7 @@
 #include <memory>
 #include <utility>
 
+#include "access/authorization.h"
 #include "base/log.h"
 #include "cmd/find_models.h"
 #include "cmd/limit_flags.h"
@@ -34,7 +35,7 @@ struct RenderCommand {
 };
 
 Result<wire::Picture> draw_and_wait(service::RenderService& service, const wire::DrawPicture& request) {
-  Result<service::PictureJob> job = net::to_job(request);
+  Result<service::PictureJob> job = net::to_job(request, access::Rights::unlimited().authorize(request.model()));
   if (!job) return fail(job.error());
   std::promise<Result<service::EncodedPicture>> promise;
   service.draw(0, std::move(*job),

@@ -33,6 +33,10 @@ void add_member(std::string& line, std::string_view name, std::string_view value
 
 }  // namespace
 
+AuditEvent question_about(const access::AuthorizedModel& model, std::string_view what) {
+  return {.what = what, .model = model.name(), .outcome = model.allowed() ? "allowed" : "denied"};
+}
+
 std::string audit_line(const AuditEvent& event, const std::string& time) {
   std::string line = "{\"time\":\"" + time + "\"";
   add_member(line, "event", event.what);

@@ -8,6 +8,7 @@
 #include <string>
 #include <string_view>
 
+#include "access/authorization.h"
 #include "base/result.h"
 #include "net/denial_limit.h"
 #include "service/worker_pool.h"
@@ -25,6 +26,9 @@ struct AuditEvent {
   std::string reason{};        ///< in words; empty: none
   size_t left_out = 0;         ///< denials of the same client before this one that have no line
 };
+
+/// That a model was asked about, with what was decided.
+AuditEvent question_about(const access::AuthorizedModel& model, std::string_view what);
 
 /// The line of an event, without its end: an object of JSON, of which empty members are left out.
 std::string audit_line(const AuditEvent& event, const std::string& time);

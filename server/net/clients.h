@@ -56,7 +56,12 @@ class Counted {
     if (clients_) clients_->remove(client_, what_);
   }
   Counted(Counted&&) = default;
-  Counted& operator=(Counted&&) = delete;
+  Counted& operator=(Counted&& other) noexcept {
+    std::swap(clients_, other.clients_);
+    std::swap(client_, other.client_);
+    std::swap(what_, other.what_);
+    return *this;
+  }
 
   [[nodiscard]] const std::string& client() const { return client_; }
 

@@ -22,17 +22,17 @@ constexpr size_t kMostUnknown = 3;
 
 }  // namespace
 
-Conversation::Conversation(std::shared_ptr<NetContext> context, const service::Asker& asker,
-                           asio::any_io_executor executor, std::shared_ptr<AnswerWriter> writer, std::string client,
-                           const Gatekeeper::Guest& guest)
+Conversation::Conversation(std::shared_ptr<NetContext> context, const service::Client& client,
+                           asio::any_io_executor executor, std::shared_ptr<AnswerWriter> writer, std::string name,
+                           const Gatekeeper::User& user)
     : context_(std::move(context)),
-      asker_(asker),
-      client_(std::move(client)),
+      client_(client),
+      client_name_(std::move(name)),
       executor_(std::move(executor)),
       writer_(std::move(writer)),
       window_(context_->config.requests),
       view_timer_(executor_) {
-  if (guest) welcome(guest);
+  if (user) welcome(user);
 }
 
 Status Conversation::receive(std::span<const std::byte> message) {
@@ -98,10 +98,10 @@ void Conversation::handle_picture(const wire::Request& request) {
   if (const Status admitted = window_.admit(request.id()); !admitted) {
     return send_error(request.id(), admitted.error());
   }
-  Result<service::PictureJob> job = to_job(request.draw_picture());
+  const wire::DrawPicture& picture = request.draw_picture();
+  Result<service::PictureJob> job = to_job(picture, rights().authorize(picture.model()));
   if (!job) return send_error(request.id(), job.error());
   audit_once("picture", job->model);
-  job->model = name_for(guest_, job->model);
   window_.add_picture(request.id(), std::move(*job));
   draw_next();
 }
@@ -113,7 +113,7 @@ void Conversation::draw_next() {
     if (!next) return;
     const uint64_t id = next->first;
     const service::JobId job = context_->service.draw(
-        asker_, std::move(next->second), [later = answer_later(id), id](Result<service::EncodedPicture> picture) {
+        client_, std::move(next->second), [later = answer_later(id), id](Result<service::EncodedPicture> picture) {
           later(outcome_of(id, std::move(picture)));
         });
     window_.set_job(id, job);
@@ -126,49 +126,49 @@ void Conversation::handle_other(const wire::Request& request) {
   window_.add_other(id);
   if (request.has_list_models()) {
     return context_->service.list_models(
-        [later = answer_later(id), id, context = context_, guest = guest_](const service::ModelList& models) {
-          later(outcome_of(id, list_for(guest, models), context->config.uploads));
+        rights(),
+        [later = answer_later(id), id, context = context_](const service::ModelList& models) {
+          later(outcome_of(id, models, context->config.uploads));
         },
-        asker_.client);
+        client_.id);
   }
-  const std::string& name = request.describe_model().model();
-  audit_once("describe", name);
+  const access::AuthorizedModel model = rights().authorize(request.describe_model().model());
+  audit_once("describe", model);
   context_->service.describe_model(
-      name_for(guest_, name),
-      [later = answer_later(id), id, name](const Result<service::ModelDescription>& description) {
+      model,
+      [later = answer_later(id), id, name = model.name()](const Result<service::ModelDescription>& description) {
         later(outcome_of(id, name, description));
       },
-      asker_.client);
+      client_.id);
 }
 
 void Conversation::handle_pick(const wire::Request& request) {
   const uint64_t id = request.id();
   if (const Status admitted = window_.admit(id); !admitted) return send_error(id, admitted.error());
-  Result<service::PickJob> job = to_job(request.pick_surfel());
+  const wire::PickSurfel& pick = request.pick_surfel();
+  Result<service::PickJob> job = to_job(pick, rights().authorize(pick.picture().model()));
   if (!job) return send_error(id, job.error());
   audit_once("pick", job->model);
-  job->model = name_for(guest_, job->model);
   window_.add_other(id);
   context_->service.pick(
       std::move(*job),
       [later = answer_later(id), id](const Result<std::optional<service::PickedPoint>>& picked) {
         later(outcome_of(id, picked));
       },
-      asker_.client);
+      client_.id);
 }
 
 void Conversation::handle_profile(const wire::Request& request) {
   const uint64_t id = request.id();
   if (const Status admitted = window_.admit(id); !admitted) return send_error(id, admitted.error());
-  Result<service::ProfileJob> job = to_job(request.get_profile());
+  Result<service::ProfileJob> job = to_job(request.get_profile(), rights().authorize(request.get_profile().model()));
   if (!job) return send_error(id, job.error());
   audit_once("profile", job->model);
-  job->model = name_for(guest_, job->model);
   window_.add_other(id);
   context_->service.profile(
       std::move(*job),
       [later = answer_later(id), id](const Result<service::ProfileResult>& profile) { later(outcome_of(id, profile)); },
-      asker_.client);
+      client_.id);
 }
 
 /// A function for any thread that hands an answer over to this object.
@@ -200,21 +200,19 @@ void Conversation::handle_cancel(const wire::Request& request) {
   send(encode_answer(answer));
 }
 
-void Conversation::audit(std::string_view what, const std::string& model) {
+void Conversation::audit(std::string_view what, const access::AuthorizedModel& model) {
   if (!context_->audit) return;
-  const bool allowed = !guest_ || access::may_see(*guest_, model);
-  context_->audit->write({.what = what,
-                          .who = owner(),
-                          .client = client_,
-                          .connection = asker_.session,
-                          .model = model,
-                          .outcome = allowed ? "allowed" : "denied"});
+  AuditEvent event = question_about(model, what);
+  event.who = owner();
+  event.client = client_name_;
+  event.connection = client_.session;
+  context_->audit->write(std::move(event));
 }
 
 /// A client that asks the same again and again makes one line.
-void Conversation::audit_once(std::string_view what, const std::string& model) {
+void Conversation::audit_once(std::string_view what, const access::AuthorizedModel& model) {
   constexpr size_t kRemembered = 256;
-  if (!context_->audit || !audited_.insert(std::string(what) + ' ' + model).second) return;
+  if (!context_->audit || !audited_.insert(std::string(what) + ' ' + model.name()).second) return;
   if (audited_.size() > kRemembered) audited_.clear();
   audit(what, model);
 }

@@ -14,6 +14,7 @@
 #include <string_view>
 #include <vector>
 
+#include "access/authorization.h"
 #include "base/result.h"
 #include "net/answers.h"
 #include "net/kept_sessions.h"
@@ -45,9 +46,10 @@ class AnswerWriter {
 /// else happens on the thread of the sockets.
 class Conversation : public KeptSessions::Holder, public std::enable_shared_from_this<Conversation> {
  public:
-  /// `writer` is kept until abandon() and while an answer is outstanding. `client`: see client_name.
-  Conversation(std::shared_ptr<NetContext> context, const service::Asker& asker, boost::asio::any_io_executor executor,
-               std::shared_ptr<AnswerWriter> writer, std::string client, const Gatekeeper::Guest& guest);
+  /// `writer` is kept until abandon() and while an answer is outstanding. `name`: of the client, see client_name.
+  Conversation(std::shared_ptr<NetContext> context, const service::Client& client,
+               boost::asio::any_io_executor executor, std::shared_ptr<AnswerWriter> writer, std::string name,
+               const Gatekeeper::User& user);
 
   /// Handles one encoded Request. Fails when it is none: the stream is of no use any more then.
   Status receive(std::span<const std::byte> message);
@@ -55,10 +57,10 @@ class Conversation : public KeptSessions::Holder, public std::enable_shared_from
   void resume_sending();
   /// Models may have newer editions, which views are to show.
   void models_changed();
-  /// Ends the conversation, with the reason, if the guest has to leave.
-  void check_guest();
+  /// Ends the conversation, with the reason, if the user has to leave.
+  void check_user();
   /// Whether the client may ask for models.
-  [[nodiscard]] bool admitted() const { return context_->gate->admits(guest_); }
+  [[nodiscard]] bool admitted() const { return context_->gate->admits(user_); }
   /// Takes no more requests: the server stops.
   void refuse_requests() { refusing_ = true; }
   /// Cancels what is outstanding; nothing is sent from here on. Views wait for the client, if it has begun a session.
@@ -87,7 +89,7 @@ class Conversation : public KeptSessions::Holder, public std::enable_shared_from
   void handle_admitted(const wire::Request& request);
   void handle_ping(const wire::Request& request);
   void handle_authenticate(const wire::Request& request);
-  void welcome(const Gatekeeper::Guest& guest);
+  void welcome(const Gatekeeper::User& user);
   void deny(uint64_t id, const std::string& reason);
   [[nodiscard]] std::string refusal_of_view() const;
   void handle_picture(const wire::Request& request);
@@ -106,7 +108,7 @@ class Conversation : public KeptSessions::Holder, public std::enable_shared_from
   Status open_view(KeptView wanted);
   [[nodiscard]] Status check_room_for_view(uint64_t id) const;
   [[nodiscard]] std::vector<KeptView> views_to_keep() const;
-  [[nodiscard]] std::string owner() const { return guest_ ? guest_->name : ""; }
+  [[nodiscard]] std::string owner() const { return user_ ? user_->name : ""; }
   void handle_update_view(const wire::Request& request);
   void handle_painted(const wire::Request& request);
   void handle_close_view(const wire::Request& request);
@@ -120,12 +122,13 @@ class Conversation : public KeptSessions::Holder, public std::enable_shared_from
   void send(Bytes answer, std::shared_ptr<const void> memory = {});
   void send_error(uint64_t id, const Error& error);
   void audit_token(std::string_view outcome, const std::string& reason) const;
-  void audit(std::string_view what, const std::string& model);
-  void audit_once(std::string_view what, const std::string& model);
+  [[nodiscard]] access::Rights rights() const { return context_->gate->rights(user_); }
+  void audit(std::string_view what, const access::AuthorizedModel& model);
+  void audit_once(std::string_view what, const access::AuthorizedModel& model);
 
   std::shared_ptr<NetContext> context_;
-  service::Asker asker_;
-  std::string client_;
+  service::Client client_;
+  std::string client_name_;
   boost::asio::any_io_executor executor_;
   std::shared_ptr<AnswerWriter> writer_;  ///< null once abandoned
   RequestWindow window_;
@@ -133,14 +136,14 @@ class Conversation : public KeptSessions::Holder, public std::enable_shared_from
   struct OpenedView {
     std::shared_ptr<view::ViewSession> view;
     KeptView wanted;  ///< its quality is that at the beginning
-    std::string model;
+    access::AuthorizedModel model;
     Counted counted;
-    std::optional<Counted> counted_guest;
+    std::optional<Counted> counted_user;
   };
   std::map<uint64_t, OpenedView> views_;  ///< by the id of their OpenView
   std::map<uint64_t, Region> regions_;    ///< by the id of their GetPoints
-  Gatekeeper::Guest guest_;               ///< null: nobody that is known
-  std::optional<Counted> counted_guest_;
+  Gatekeeper::User user_;                 ///< null: nobody that is known
+  std::optional<Counted> counted_user_;
   std::string session_;  ///< its secret; empty: there is none
   bool refusing_ = false;
   std::set<std::string> audited_;         ///< what was asked of which model

@@ -21,13 +21,12 @@ constexpr size_t kUnreadPieces = size_t{2} << 20;
 void Conversation::handle_points(const wire::Request& request) {
   const uint64_t id = request.id();
   if (const Status admitted = window_.admit(id); !admitted) return send_error(id, admitted.error());
-  Result<service::PointsJob> job = to_job(request.get_points());
+  Result<service::PointsJob> job = to_job(request.get_points(), rights().authorize(request.get_points().model()));
   if (!job) return send_error(id, job.error());
   audit_once("points", job->model);
-  job->model = name_for(guest_, job->model);
   window_.add_other(id);
   Region region;
-  region.only_count = job->only_count;
+  region.only_count = job->query.only_count;
   const auto cancelled = region.cancelled;
   regions_.emplace(id, std::move(region));
   const auto counted = [self = share_across_threads(shared_from_this(), executor_), id,
@@ -36,7 +35,7 @@ void Conversation::handle_points(const wire::Request& request) {
       if (!*cancelled) self->begin_points(id, std::move(stream));
     });
   };
-  context_->service.points(std::move(*job), cancelled, counted, asker_.client);
+  context_->service.points(std::move(*job), cancelled, counted, client_.id);
 }
 
 void Conversation::begin_points(uint64_t id, Result<std::shared_ptr<service::PointStream>> stream) {
@@ -66,7 +65,7 @@ void Conversation::advance_points() {
         if (!*cancelled) self->send_points(id, std::move(message));
       });
     };
-    context_->service.next_piece(region.stream, made, asker_.client);
+    context_->service.next_piece(region.stream, made, client_.id);
   }
 }
 

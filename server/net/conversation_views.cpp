@@ -53,19 +53,18 @@ Status Conversation::open_view(KeptView wanted) {
   if (Status room = check_room_for_view(wanted.id); !room) return room;
   wire::DrawPicture picture;
   picture.ParseFromString(wanted.picture);
-  Result<service::PictureJob> job = to_job(picture);
+  const access::AuthorizedModel model = rights().authorize(picture.model());
+  Result<service::PictureJob> job = to_job(picture, model);
   if (!job) return fail(job.error());
-  audit("view", job->model);
-  job->model = name_for(guest_, job->model);
+  audit("view", model);
   const double fps = wanted.target_fps > 0 ? wanted.target_fps : context_->config.target_fps;
   const view::ViewOptions options{fps, wanted.depth, wanted.video, context_->config.kept_frame_bytes};
-  const auto view = std::make_shared<view::ViewSession>(context_->service, asker_, ++context_->last_viewer, options,
-                                                        context_->metrics.views, port_of(wanted.id));
+  const auto view = std::make_shared<view::ViewSession>(context_->service, client_, model, ++context_->last_viewer,
+                                                        options, context_->metrics.views, port_of(wanted.id));
   view->begin_with(wanted.quality);
   view->update({wanted.update, std::move(*job), /*changed=*/true, /*moving=*/false}, Clock::now());
-  OpenedView opened{view, std::move(wanted), picture.model(),
-                    Counted(context_->clients, client_, &Clients::Counts::views), std::nullopt};
-  if (guest_) opened.counted_guest.emplace(context_->gate->guests(), guest_->name, &Clients::Counts::views);
+  OpenedView opened{view, std::move(wanted), model, Counted(context_->clients, client_name_, &Clients::Counts::views),
+                    context_->gate->count(user_, &Clients::Counts::views)};
   const uint64_t id = opened.wanted.id;
   views_.emplace(id, std::move(opened));
   return {};
@@ -76,7 +75,7 @@ void Conversation::handle_resume(const wire::Request& request) {
   KeptSessions& sessions = context_->sessions;
   sessions.forget(session_);
   std::vector<KeptView> views = sessions.take(request.resume().session(), owner(), Clock::now());
-  session_ = sessions.begin(weak_from_this(), owner(), client_);
+  session_ = sessions.begin(weak_from_this(), owner(), client_name_);
   wire::Answer answer;
   answer.set_id(request.id());
   wire::Resumed& resumed = *answer.mutable_resumed();
@@ -111,25 +110,21 @@ std::vector<KeptView> Conversation::hand_over() {
 
 /// Why there may not be another view; empty: there may.
 std::string Conversation::refusal_of_view() const {
-  const Clients& guests = *context_->gate->guests();
-  if (guest_ && guest_->views > 0 && guests.counts_of(guest_->name).views >= guest_->views) {
-    return "busy: this token opens " + std::to_string(guest_->views) + " views at a time";
-  }
-  return context_->clients->refusal_of_view(client_);
+  std::string refusal = context_->gate->refusal_of_view(user_);
+  return refusal.empty() ? context_->clients->refusal_of_view(client_name_) : refusal;
 }
 
 void Conversation::handle_update_view(const wire::Request& request) {
   const wire::UpdateView& update = request.update_view();
   const auto found = views_.find(request.id());
   if (found == views_.end()) return;  // it may have ended while this was on its way
-  if (update.picture().model() != found->second.model) {
+  if (update.picture().model() != found->second.model.name()) {
     return end_view(request.id(), {ErrorKind::kInvalidInput, "a view stays with its model"});
   }
   const Status checked = protocol::check_view_picture(update.picture());
   if (!checked) return end_view(request.id(), checked.error());
-  Result<service::PictureJob> job = to_job(update.picture());
+  Result<service::PictureJob> job = to_job(update.picture(), found->second.model);
   if (!job) return end_view(request.id(), job.error());
-  job->model = name_for(guest_, job->model);
   std::string picture = update.picture().SerializeAsString();
   const bool changed = picture != found->second.wanted.picture;
   found->second.wanted.picture = std::move(picture);

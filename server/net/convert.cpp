@@ -234,11 +234,10 @@ geometry::Camera from_wire(const wire::Camera& camera) {
 
 }  // namespace
 
-Result<service::PictureJob> to_job(const wire::DrawPicture& request) {
+Result<service::PictureJob> to_job(const wire::DrawPicture& request, const access::AuthorizedModel& model) {
   if (Status status = protocol::check_picture(request); !status) return fail(status.error());
   const wire::Resolution& resolution = request.resolution();
-  service::PictureJob job;
-  job.model = request.model();
+  service::PictureJob job{model};
   if (request.has_camera()) job.request.camera = from_wire(request.camera());
   job.up_from_model = request.has_camera() && !request.camera().has_view_up();
   job.request.width = clamp_to_int(request.has_resolution() ? resolution.width() : protocol::kDefaultWidth);
@@ -259,38 +258,37 @@ Result<service::PictureJob> to_job(const wire::DrawPicture& request) {
   return job;
 }
 
-Result<service::PickJob> to_job(const wire::PickSurfel& request) {
-  Result<service::PictureJob> picture = to_job(request.picture());
+Result<service::PickJob> to_job(const wire::PickSurfel& request, const access::AuthorizedModel& model) {
+  Result<service::PictureJob> picture = to_job(request.picture(), model);
   if (!picture) return fail(picture.error());
   return service::PickJob{std::move(picture->model), std::move(picture->request), picture->up_from_model,
                           clamp_to_int(request.x()), clamp_to_int(request.y())};
 }
 
-Result<service::ProfileJob> to_job(const wire::GetProfile& request) {
+Result<service::ProfileJob> to_job(const wire::GetProfile& request, const access::AuthorizedModel& model) {
   if (Status status = protocol::check_profile(request); !status) return fail(std::move(status.error()));
-  service::ProfileJob job;
-  job.model = request.model();
+  service::ProfileJob job{model};
   for (const wire::Vector3& point : request.line()) job.query.line.push_back(from_wire(point));
   job.query.width = request.width();
   job.query.most = request.max_points();
   return job;
 }
 
-Result<service::PointsJob> to_job(const wire::GetPoints& request) {
+Result<service::PointsJob> to_job(const wire::GetPoints& request, const access::AuthorizedModel& model) {
   if (Status status = protocol::check_points(request); !status) return fail(std::move(status.error()));
-  service::PointsJob job;
-  job.model = request.model();
-  scan::Selection& points = job.selection.points;
+  service::PointsJob job{model};
+  service::PointsQuery& query = job.query;
+  scan::Selection& points = query.selection.points;
   for (const wire::Box& box : request.boxes())
     points.zone.boxes.push_back({from_wire(box.min()), from_wire(box.max())});
   for (const wire::Corridor& corridor : request.corridors()) points.zone.corridors.push_back(from_wire(corridor));
   points.classes.assign(request.classes().begin(), request.classes().end());
   points.every = std::max<uint64_t>(request.every(), 1);
-  job.selection.source_coordinates = !request.world_coordinates();
-  job.selection.normals = request.normals();
-  job.format = *exporter::point_format_of(protocol::name_of(request.format()));
-  job.most = request.max_points();
-  job.only_count = request.only_count();
+  query.selection.source_coordinates = !request.world_coordinates();
+  query.selection.normals = request.normals();
+  query.format = *exporter::point_format_of(protocol::name_of(request.format()));
+  query.most = request.max_points();
+  query.only_count = request.only_count();
   return job;
 }
 

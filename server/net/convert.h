@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "access/authorization.h"
 #include "net/uploads.h"
 #include "service/model_source.h"
 #include "service/render_service.h"
@@ -14,14 +15,15 @@ namespace surfcast::net {
 
 // Messages of the wire and values of the service, both ways.
 
-/// The job that a request asks for, once it has been checked; what it leaves out gets its default.
-Result<service::PictureJob> to_job(const wire::DrawPicture& request);
+/// The job that a request asks for, once it has been checked; what it leaves out gets its default. `model`: the one
+/// that it names.
+Result<service::PictureJob> to_job(const wire::DrawPicture& request, const access::AuthorizedModel& model);
 
-Result<service::PickJob> to_job(const wire::PickSurfel& request);
+Result<service::PickJob> to_job(const wire::PickSurfel& request, const access::AuthorizedModel& model);
 
-Result<service::ProfileJob> to_job(const wire::GetProfile& request);
+Result<service::ProfileJob> to_job(const wire::GetProfile& request, const access::AuthorizedModel& model);
 
-Result<service::PointsJob> to_job(const wire::GetPoints& request);
+Result<service::PointsJob> to_job(const wire::GetPoints& request, const access::AuthorizedModel& model);
 
 void to_wire(const service::ProfileResult& result, wire::Profile& message);
 void to_wire(const std::optional<service::PickedPoint>& picked, wire::PickResult& message);

@@ -1,9 +1,9 @@
 #include "net/gatekeeper.h"
 
+#include <functional>
 #include <utility>
 
 #include "access/token_file.h"
-#include "service/model_name.h"
 
 namespace surfcast::net {
 namespace {
@@ -13,6 +13,12 @@ namespace {
 constexpr size_t kFreeFailures = 10;
 constexpr std::chrono::minutes kMemory{1};
 constexpr std::chrono::milliseconds kPenalty{1000};
+
+/// Why a user who has `open` of `limit` things may not have another; empty: they may. 0: there is no limit.
+std::string refusal_of_one_more(size_t open, size_t limit, const char* things) {
+  if (limit == 0 || open < limit) return {};
+  return "busy: this token opens " + std::to_string(limit) + " " + things + " at a time";
+}
 
 }  // namespace
 
@@ -24,10 +30,14 @@ Status Gatekeeper::read() {
   return {};
 }
 
-Gatekeeper::Guest Gatekeeper::enter(std::string_view secret, const std::string& client) {
+access::Rights Gatekeeper::rights(const User& user) const {
+  return wants_tokens() ? access::Rights::of(user) : access::Rights::unlimited();
+}
+
+Gatekeeper::User Gatekeeper::enter(std::string_view secret, const std::string& client) {
   if (!table_) return nullptr;
-  Guest guest = table_->find(secret, std::chrono::system_clock::now());
-  if (guest) return guest;
+  User user = table_->find(secret, std::chrono::system_clock::now());
+  if (user) return user;
   ++denied_;
   const Clock::time_point now = Clock::now();
   std::erase_if(failures_, [&](const auto& entry) { return now - entry.second.since > kMemory; });
@@ -42,20 +52,28 @@ std::chrono::milliseconds Gatekeeper::penalty(const std::string& client) const {
   return lately && found->second.count > kFreeFailures ? kPenalty : std::chrono::milliseconds(0);
 }
 
-std::string Gatekeeper::why_ended(const Guest& guest) const {
-  if (!guest || !table_) return {};
-  return table_->why_ended(*guest, std::chrono::system_clock::now());
+std::string Gatekeeper::why_ended(const User& user) const {
+  if (!user || !table_) return {};
+  return table_->why_ended(*user, std::chrono::system_clock::now());
 }
 
-std::string name_for(const Gatekeeper::Guest& guest, const std::string& model) {
-  return !guest || access::may_see(*guest, model) ? model : service::hidden_name(model);
+std::string Gatekeeper::refusal_of_connection(const User& user) const {
+  if (!user) return {};
+  return refusal_of_one_more(users_->counts_of(user->name).connections, user->connections, "connections");
 }
 
-service::ModelList list_for(const Gatekeeper::Guest& guest, service::ModelList list) {
-  if (!guest) return list;
-  std::erase_if(list.names, [&](const std::string& name) { return !access::may_see(*guest, name); });
-  std::erase_if(list.scans, [&](const service::ScanStatus& scan) { return !access::may_see(*guest, scan.model); });
-  return list;
+std::string Gatekeeper::refusal_of_view(const User& user) const {
+  if (!user) return {};
+  return refusal_of_one_more(users_->counts_of(user->name).views, user->views, "views");
+}
+
+std::optional<Counted> Gatekeeper::count(const User& user, size_t Clients::Counts::*what) const {
+  if (!user) return std::nullopt;
+  return Counted(users_, user->name, what);
+}
+
+service::ClientId client_id(const std::string& client, const Gatekeeper::User& user) {
+  return std::hash<std::string>()(user ? "token " + user->name : client);
 }
 
 }  // namespace surfcast::net

@@ -5,21 +5,23 @@
 #include <filesystem>
 #include <map>
 #include <memory>
+#include <optional>
 #include <string>
 #include <string_view>
 
+#include "access/authorization.h"
 #include "access/principal.h"
 #include "access/token_table.h"
 #include "base/result.h"
 #include "net/clients.h"
-#include "service/model_source.h"
+#include "service/client_shares.h"
 
 namespace surfcast::net {
 
 /// Who may come in, by the file of tokens. Used on the thread of the sockets.
 class Gatekeeper {
  public:
-  using Guest = std::shared_ptr<const access::Principal>;
+  using User = std::shared_ptr<const access::Principal>;
   using Clock = std::chrono::steady_clock;
 
   /// `tokens` empty: everybody may do everything.
@@ -28,18 +30,27 @@ class Gatekeeper {
   /// Reads the file, again if it has changed. After an error the former tokens hold.
   Status read();
   [[nodiscard]] bool wants_tokens() const { return !file_.empty(); }
-  /// Whether that guest, null for none, may ask for models.
-  [[nodiscard]] bool admits(const Guest& guest) const { return !wants_tokens() || guest; }
+  /// Whether that user, null for none, may ask for models.
+  [[nodiscard]] bool admits(const User& user) const { return !wants_tokens() || user; }
 
-  /// The guest with that secret; null for none. `client`, as in client_name, is who says it.
-  Guest enter(std::string_view secret, const std::string& client);
+  /// What that user, null for none, may do with models.
+  [[nodiscard]] access::Rights rights(const User& user) const;
+
+  /// The user with that secret; null for none. `client`, as in client_name, is who says it.
+  User enter(std::string_view secret, const std::string& client);
   /// What a client waits for its answer, who named too many wrong secrets lately.
   [[nodiscard]] std::chrono::milliseconds penalty(const std::string& client) const;
-  /// Why a guest has to leave; empty: it may stay.
-  [[nodiscard]] std::string why_ended(const Guest& guest) const;
+  /// Why a user has to leave; empty: it may stay.
+  [[nodiscard]] std::string why_ended(const User& user) const;
 
-  /// What guests have open, by their names.
-  [[nodiscard]] const std::shared_ptr<Clients>& guests() const { return guests_; }
+  /// Why a user, null for none, may not have another connection; empty: they may.
+  [[nodiscard]] std::string refusal_of_connection(const User& user) const;
+  /// Likewise another view.
+  [[nodiscard]] std::string refusal_of_view(const User& user) const;
+  /// Counts a connection or a view of a user for as long as the result lives; nothing of nobody.
+  [[nodiscard]] std::optional<Counted> count(const User& user, size_t Clients::Counts::*what) const;
+  /// Connections that users have open.
+  [[nodiscard]] size_t connections() const { return users_->all().connections; }
   [[nodiscard]] uint64_t denied() const { return denied_; }
 
  private:
@@ -50,16 +61,13 @@ class Gatekeeper {
 
   std::filesystem::path file_;
   std::shared_ptr<const access::TokenTable> table_;
-  std::map<std::string, Failures> failures_;  ///< of the last minute, by client
-  std::shared_ptr<Clients> guests_ = std::make_shared<Clients>(ClientLimits{});
-  uint64_t denied_ = 0;  ///< wrong secrets
+  std::map<std::string, Failures> failures_;                                    ///< of the last minute, by client
+  std::shared_ptr<Clients> users_ = std::make_shared<Clients>(ClientLimits{});  ///< what they have open, by their names
+  uint64_t denied_ = 0;                                                         ///< wrong secrets
 };
 
-/// The name by which the service is asked for a model: one under which there is nothing, if the guest may not know of
-/// it. What the service does and answers is then what it does and answers for absent ones.
-std::string name_for(const Gatekeeper::Guest& guest, const std::string& model);
-
-/// What a guest may know of a list.
-service::ModelList list_for(const Gatekeeper::Guest& guest, service::ModelList list);
+/// By which the service knows who asks, and gives turns: the user, on whatever connections they come, or, if that is
+/// null, the client (see client_name).
+service::ClientId client_id(const std::string& client, const Gatekeeper::User& user);
 
 }  // namespace surfcast::net

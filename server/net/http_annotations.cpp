@@ -8,7 +8,6 @@
 #include "net/await_answer.h"
 #include "net/beast_text.h"
 #include "net/http_connection.h"
-#include "net/http_route.h"
 #include "net/on_disk.h"
 #include "net/upgrade.h"
 
@@ -40,45 +39,38 @@ std::optional<std::string> edition_in(std::string_view if_match) {
   return std::string(if_match);
 }
 
-/// Whether there is such a model for the guest, and a place for its annotations.
-asio::awaitable<Status> check_model(NetContext& context, const AnnotationRequest& request) {
+/// Whether there is such a model for the client, and a place for its annotations.
+asio::awaitable<Status> check_model(NetContext& context, const access::AuthorizedModel& model,
+                                    service::ClientId client) {
   if (context.config.annotations.folder.empty()) {
     co_return fail(ErrorKind::kUnsupported, "this server keeps no annotations; --annotations lets it");
   }
-  const auto description = co_await answer_of<Result<service::ModelDescription>>([&](auto done) {
-    context.service.describe_model(name_for(request.guest, request.model), std::move(done), request.asker.client);
-  });
+  const auto description = co_await answer_of<Result<service::ModelDescription>>(
+      [&](auto done) { context.service.describe_model(model, std::move(done), client); });
   if (!description) co_return fail(description.error());
   co_return Status();
 }
 
 }  // namespace
 
-bool is_annotation_write(const HeadParser::value_type& request) {
-  const Result<HttpRoute> route = route_http(view_of(request.target()));
-  return route && route->kind == HttpRoute::Kind::kAnnotations && request.method() == http::verb::put;
-}
-
-bool may_annotate(const Gatekeeper::Guest& guest, const std::string& model) {
-  return !guest || (guest->annotations && access::may_see(*guest, model));
-}
-
-asio::awaitable<HttpAnswer> answer_annotations(NetContext& context, AnnotationRequest request) {
-  const Status known = co_await check_model(context, request);
+asio::awaitable<HttpAnswer> answer_annotations(NetContext& context, const access::AuthorizedModel& model, bool writable,
+                                               service::ClientId client) {
+  const Status known = co_await check_model(context, model, client);
   if (!known) co_return error_answer(known.error());
-  const auto read = [&config = context.config.annotations, model = request.model] {
-    return read_annotations(config, model);
+  const auto read = [&config = context.config.annotations, name = model.name()] {
+    return read_annotations(config, name);
   };
   const auto annotations = co_await on_disk<Result<Annotations>>(context, read);
-  co_return answer_of_document(annotations, may_annotate(request.guest, request.model));
+  co_return answer_of_document(annotations, writable);
 }
 
 asio::awaitable<HttpAnswer> receive_annotations(NetContext& context, HttpConnection& connection, HeadParser& head,
-                                                AnnotationRequest request) {
-  const Status page = check_origin(origin_of(head.get()), context.config.allowed_origins);
+                                                const access::AuthorizedAnnotations& annotations,
+                                                service::ClientId client) {
+  const Status page = check_origin(origin_of(head.get(), connection.tls()), context.config.allowed_origins);
   if (!page) co_return error_answer(page.error(), 403);
   const AnnotationConfig& config = context.config.annotations;
-  const Status known = co_await check_model(context, request);
+  const Status known = co_await check_model(context, annotations.model(), client);
   if (!known) co_return error_answer(known.error());
   const std::optional<std::string> replaced = edition_in(view_of(head.get()[http::field::if_match]));
   const std::optional<std::string> document = co_await connection.read_body(head, config.bytes);
@@ -86,11 +78,11 @@ asio::awaitable<HttpAnswer> receive_annotations(NetContext& context, HttpConnect
     const Error error{ErrorKind::kLimit, "the annotations did not arrive, or are longer than allowed"};
     co_return error_answer(error, 413);
   }
-  const auto write = [&config, model = request.model, document = *document, replaced] {
-    return write_annotations(config, model, document, replaced);
+  const auto write = [&config, name = annotations.model().name(), document = *document, replaced] {
+    return write_annotations(config, name, document, replaced);
   };
-  const auto annotations = co_await on_disk<Result<Annotations>>(context, write);
-  co_return answer_of_document(annotations, /*writable=*/true);
+  const auto written = co_await on_disk<Result<Annotations>>(context, write);
+  co_return answer_of_document(written, /*writable=*/true);
 }
 
 }  // namespace surfcast::net

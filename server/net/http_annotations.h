@@ -1,9 +1,8 @@
 #pragma once
 
 #include <boost/asio/awaitable.hpp>
-#include <string>
 
-#include "net/gatekeeper.h"
+#include "access/authorization.h"
 #include "net/http_answer.h"
 #include "net/http_upload.h"
 #include "net/session.h"
@@ -12,25 +11,16 @@ namespace surfcast::net {
 
 class HttpConnection;
 
-/// Who asks, and about which model.
-struct AnnotationRequest {
-  std::string model;
-  Gatekeeper::Guest guest{};
-  service::Asker asker;
-};
-
-/// Whether a client begins to send the annotations of a model.
-bool is_annotation_write(const HeadParser::value_type& request);
-
-/// Whether a guest, null for anybody, may write the annotations of a model.
-bool may_annotate(const Gatekeeper::Guest& guest, const std::string& model);
-
-/// The answer to GET: the document, and its edition as the ETag. The references must outlive the coroutine.
-boost::asio::awaitable<HttpAnswer> answer_annotations(NetContext& context, AnnotationRequest request);
+/// The answer to GET: the document, and its edition as the ETag. `writable`: the client may write it. The references
+/// must outlive the coroutine.
+boost::asio::awaitable<HttpAnswer> answer_annotations(NetContext& context, const access::AuthorizedModel& model,
+                                                      bool writable, service::ClientId client);
 
 /// Receives the document of a PUT whose head was read, and writes it. With If-Match, only if the present edition is
 /// that one: else 412. The references must outlive the coroutine.
 boost::asio::awaitable<HttpAnswer> receive_annotations(NetContext& context, HttpConnection& connection,
-                                                       HeadParser& head, AnnotationRequest request);
+                                                       HeadParser& head,
+                                                       const access::AuthorizedAnnotations& annotations,
+                                                       service::ClientId client);
 
 }  // namespace surfcast::net

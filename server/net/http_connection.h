@@ -46,6 +46,8 @@ class HttpConnection {
   void stop_awaiting();
   /// Whether the client has closed the connection, or its side of it.
   [[nodiscard]] bool has_left();
+  /// Whether TLS carries the connection.
+  [[nodiscard]] bool tls() const { return stream_.is_encrypted(); }
   [[nodiscard]] bool is_open() const { return stream_.socket().socket().is_open(); }
   void close() { stream_.socket().close(); }
 

@@ -14,7 +14,6 @@
 
 #include "net/beast_text.h"
 #include "net/http_connection.h"
-#include "net/http_route.h"
 #include "net/on_disk.h"
 #include "net/redirect_error_to.h"
 #include "net/uploads.h"
@@ -48,13 +47,13 @@ std::string key_of(const UploadConfig& config, const std::filesystem::path& targ
 }
 
 /// Whether a scan may be sent, and which one.
-Result<Announced> admit(const NetContext& context, const HeadParser& head, std::string_view sender) {
+Result<Announced> admit(const NetContext& context, const HeadParser& head, const access::AuthorizedUpload& upload) {
   const UploadConfig& config = context.config.uploads;
   if (context.draining) return fail(ErrorKind::kUnavailable, "the server is stopping");
   if (config.folder.empty()) return fail(ErrorKind::kUnsupported, "this server takes no scans; --uploads lets it");
   Announced scan;
   if (const auto length = head.content_length()) scan.bytes = *length;
-  Result<std::filesystem::path> target = upload_target(config, sender, route_http(view_of(head.get().target()))->model);
+  Result<std::filesystem::path> target = upload_target(config, upload.sender(), upload.file());
   if (!target) return fail(std::move(target.error()));
   scan.target = std::move(*target);
   if (scan.bytes.value_or(0) > config.bytes) return fail(too_large(config.bytes));
@@ -121,26 +120,24 @@ UploadOutcome refusal_of(const Error& error) {
 
 }  // namespace
 
-RequestOrigin origin_of(const HeadParser::value_type& request) {
-  return {view_of(request[http::field::host]), view_of(request[http::field::origin]),
-          view_of(request["X-Forwarded-Proto"])};
+std::string_view scheme_of(const HeadParser::value_type& request, bool tls) {
+  return tls ? "https" : view_of(request["X-Forwarded-Proto"]);
 }
 
-bool is_upload(const HeadParser::value_type& request) {
-  const Result<HttpRoute> route = route_http(view_of(request.target()));
-  return route && route->kind == HttpRoute::Kind::kUpload && request.method() == http::verb::put;
+RequestOrigin origin_of(const HeadParser::value_type& request, bool tls) {
+  return {view_of(request[http::field::host]), view_of(request[http::field::origin]), scheme_of(request, tls)};
 }
 
 asio::awaitable<UploadOutcome> receive_scan(NetContext& context, HttpConnection& connection, HeadParser& head,
-                                            const std::string& sender) {
+                                            const access::AuthorizedUpload& upload) {
   const auto& request = head.get();
-  const Status page = check_origin(origin_of(request), context.config.allowed_origins);
+  const Status page = check_origin(origin_of(request, connection.tls()), context.config.allowed_origins);
   UploadOutcome outcome;
   if (!page) {
     outcome.answer = error_answer(page.error(), 403);
     co_return outcome;
   }
-  const Result<Announced> scan = admit(context, head, sender);
+  const Result<Announced> scan = admit(context, head, upload);
   if (!scan) co_return refusal_of(scan.error());
   const std::string name = name_of(context.config.uploads, scan->target);
   const std::string key = key_of(context.config.uploads, scan->target);

@@ -4,8 +4,9 @@
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/http/parser.hpp>
-#include <string>
+#include <string_view>
 
+#include "access/authorization.h"
 #include "net/http_answer.h"
 #include "net/session.h"
 #include "net/upgrade.h"
@@ -16,11 +17,11 @@ class HttpConnection;
 
 using HeadParser = boost::beast::http::request_parser<boost::beast::http::empty_body>;
 
+/// The scheme by which the client has reached this server, `tls` telling whether by TLS, or a proxy before it, which
+/// says so in a header; empty: not known. The result points into the request.
+std::string_view scheme_of(const HeadParser::value_type& request, bool tls);
 /// Where a request comes from. The result points into it.
-RequestOrigin origin_of(const HeadParser::value_type& request);
-
-/// Whether a client begins to send a scan.
-bool is_upload(const HeadParser::value_type& request);
+RequestOrigin origin_of(const HeadParser::value_type& request, bool tls);
 
 /// The answer to a client that sends a scan. `whole`: nothing of the request is unread.
 struct UploadOutcome {
@@ -28,9 +29,8 @@ struct UploadOutcome {
   bool whole = false;
 };
 
-/// Receives the scan of a request whose head was read, and serves it. `sender`: the name of their token; empty: none.
-/// The references must outlive the coroutine.
+/// Receives the scan of a request whose head was read, and serves it. The references must outlive the coroutine.
 boost::asio::awaitable<UploadOutcome> receive_scan(NetContext& context, HttpConnection& connection, HeadParser& head,
-                                                   const std::string& sender);
+                                                   const access::AuthorizedUpload& upload);
 
 }  // namespace surfcast::net

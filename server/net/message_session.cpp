@@ -44,8 +44,8 @@ class MessageSession : public Session, public AnswerWriter, public std::enable_s
         room_(transport_->executor(), Clock::time_point::max()) {}
 
   void start() {
-    conversation_ = std::make_shared<Conversation>(peer_.context, peer_.asker(), transport_->executor(),
-                                                   shared_from_this(), peer_.open.client(), peer_.guest);
+    conversation_ = std::make_shared<Conversation>(peer_.context, peer_.client(), transport_->executor(),
+                                                   shared_from_this(), peer_.open.client(), peer_.user);
     spawn([](auto self) -> asio::awaitable<void> { co_await self->read_all(); });
     spawn([](auto self) -> asio::awaitable<void> { co_await self->watch(); });
   }
@@ -64,7 +64,7 @@ class MessageSession : public Session, public AnswerWriter, public std::enable_s
   }
   [[nodiscard]] std::string client() const override { return peer_.open.client(); }
   void models_changed() override { conversation_->models_changed(); }
-  void check_guest() override { conversation_->check_guest(); }
+  void check_user() override { conversation_->check_user(); }
 
   void send(Bytes answer, std::shared_ptr<const void> memory) override;
   [[nodiscard]] size_t unread_bytes() const override { return outgoing_bytes_; }

@@ -57,7 +57,7 @@ std::string metrics_text(const Metrics& m, const Gauges& gauges, Exposition::For
   out.value("surfcast_connections_given_way_total", "counter", "Idle connections closed in favour of new ones.",
             m.connections_given_way);
   write_tls(out, m);
-  out.value("surfcast_guests_open", "gauge", "Connections open now that have named a token.", gauges.guests);
+  out.value("surfcast_guests_open", "gauge", "Connections open now that have named a token.", gauges.users);
   out.value("surfcast_denied_total", "counter", "Tokens that are not known, or have ended.", gauges.denied);
   out.value("surfcast_audit_lost_total", "counter", "Events that the audit log could not be told.", gauges.audit_lost);
   out.value("surfcast_audit_left_out_total", "counter", "Denials without a line of the audit log, beyond its limit.",

@@ -62,7 +62,7 @@ struct Gauges {
   uint64_t audit_left_out = 0;            ///< denials, since the start
   size_t queued = 0;                      ///< pictures that wait for the render thread
   size_t picture_memory = 0;              ///< bytes of pictures at rest that are drawn, encoded or not taken yet
-  size_t guests = 0;                      ///< connections with a token
+  size_t users = 0;                       ///< connections with a token
   uint64_t denied = 0;                    ///< wrong tokens since the start
   picture::MemoryBudgets memory;          ///< of the renderer
   std::optional<WorkerGauges> workers{};  ///< none: the server draws itself

@@ -60,7 +60,7 @@ bool is_link(const RequestHead& head) {
 
 std::optional<RequestRefusal> refusal_of_site(const RequestHead& head, const GuardConfig& config) {
   if (head.fetch_site != "cross-site" || is_link(head)) return std::nullopt;
-  if (!head.origin.empty() && check_origin({head.host, head.origin, head.forwarded_scheme}, config.allowed_origins)) {
+  if (!head.origin.empty() && check_origin({head.host, head.origin, head.scheme}, config.allowed_origins)) {
     return std::nullopt;
   }
   return RequestRefusal{403,

@@ -20,8 +20,8 @@ struct RequestHead {
   std::string_view transfer_encoding;
   bool content_length = false;
   std::string_view origin;
-  std::string_view forwarded_scheme;  ///< X-Forwarded-Proto: how a client has reached the proxy before this server
-  std::string_view fetch_site;        ///< Sec-Fetch-Site and so on: what a browser says of the page that asks
+  std::string_view scheme;      ///< how the client has reached this server, or the proxy before it (X-Forwarded-Proto)
+  std::string_view fetch_site;  ///< Sec-Fetch-Site and so on: what a browser says of the page that asks
   std::string_view fetch_mode;
   std::string_view fetch_destination;
 };

@@ -66,7 +66,7 @@ struct Server::State {
   Status use_certificate();
   void reload();
   void reload_tokens();
-  asio::awaitable<void> check_guests();
+  asio::awaitable<void> check_users();
   Status watch_files();
   Status open_audit();
   void await_reload();
@@ -80,7 +80,7 @@ struct Server::State {
   asio::signal_set signals{io};
   asio::signal_set reload_signals{io};
   std::shared_ptr<FileWatch> watched;
-  asio::steady_timer guest_check{io};
+  asio::steady_timer user_check{io};
   asio::steady_timer watchdog{io};
   bool stopped = false;
   bool hurried = false;  ///< the second signal has come: nobody is waited for to leave
@@ -143,17 +143,17 @@ void Server::State::reload() {
 void Server::State::reload_tokens() {
   const Status read = context->gate->read();
   if (!read) return spdlog::error("the former tokens stay: {}", read.error().message);
-  tell_all(&Session::check_guest);
+  tell_all(&Session::check_user);
 }
 
 /// Tokens end while time passes. Not a setting: nobody notices a second.
-asio::awaitable<void> Server::State::check_guests() {
+asio::awaitable<void> Server::State::check_users() {
   constexpr std::chrono::seconds kInterval{1};
   error_code code;
   while (!code && !context->draining) {
-    guest_check.expires_after(kInterval);
-    co_await guest_check.async_wait(redirect_error_to(code));
-    if (!code) tell_all(&Session::check_guest);
+    user_check.expires_after(kInterval);
+    co_await user_check.async_wait(redirect_error_to(code));
+    if (!code) tell_all(&Session::check_user);
   }
 }
 
@@ -363,7 +363,7 @@ asio::awaitable<void> Server::State::drain() {
   signals.cancel(code);
   reload_signals.cancel(code);
   if (watched) watched->stop();
-  guest_check.cancel();
+  user_check.cancel();
   tell_all(&Session::drain);
   co_await wait_for_sessions(context->config.drain);
   tell_all(&Session::give_up);
@@ -406,7 +406,7 @@ void Server::run(bool until_signal) {
     notify_manager("READY=1");
   }
   asio::co_spawn(state_->io, state_->accept_all(), asio::detached);
-  if (state_->context->gate->wants_tokens()) asio::co_spawn(state_->io, state_->check_guests(), asio::detached);
+  if (state_->context->gate->wants_tokens()) asio::co_spawn(state_->io, state_->check_users(), asio::detached);
   for (bool running = true; running;) {
     try {
       state_->io.run();

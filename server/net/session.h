@@ -58,9 +58,9 @@ struct Peer {
   Counted open;  ///< the connection
   service::SessionId id = 0;
   /// By which the service knows the connection and its client.
-  [[nodiscard]] service::Asker asker() const { return {std::hash<std::string>()(open.client()), id}; }
-  std::string refusal;  ///< why it is not served, which it is told before the connection ends; empty: it is served
-  Gatekeeper::Guest guest{};  ///< who it is, as far as it has said so; null: nobody
+  [[nodiscard]] service::Client client() const { return {client_id(open.client(), user), id}; }
+  std::string refusal;      ///< why it is not served, which it is told before the connection ends; empty: it is served
+  Gatekeeper::User user{};  ///< who it is, as far as it has said so; null: nobody
 };
 
 /// Somebody who looks after a connection.
@@ -82,7 +82,7 @@ class Session {
   /// It is only told why it is not served.
   [[nodiscard]] virtual bool refused() const { return false; }
   /// Tokens may have been revoked, and time passes.
-  virtual void check_guest() {}
+  virtual void check_user() {}
   /// Models may have newer editions.
   virtual void models_changed() {}
 };

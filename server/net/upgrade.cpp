@@ -25,7 +25,7 @@ bool offers(std::string_view list, std::string_view protocol) {
 
 /// The origin of the server's own pages.
 std::string own_origin(const RequestOrigin& request) {
-  const std::string_view scheme = request.forwarded_scheme.empty() ? "http" : request.forwarded_scheme;
+  const std::string_view scheme = request.scheme.empty() ? "http" : request.scheme;
   return std::string(scheme) + "://" + std::string(request.host);
 }
 

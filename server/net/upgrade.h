@@ -11,8 +11,8 @@ namespace surfcast::net {
 /// Where a request comes from; empty: the header was not there.
 struct RequestOrigin {
   std::string_view host;
-  std::string_view origin;            ///< of the page, as the browser states it; programs state none
-  std::string_view forwarded_scheme;  ///< "https" where a proxy before the server speaks TLS
+  std::string_view origin;  ///< of the page, as the browser states it; programs state none
+  std::string_view scheme;  ///< "https" where the server, or a proxy before it, speaks TLS
 };
 
 /// A page may talk to the server that it came from, by the same scheme. Another one needs its origin

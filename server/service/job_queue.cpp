@@ -8,18 +8,18 @@ namespace surfcast::service {
 size_t JobQueue::waiting_of(ClientId client) const {
   size_t count = 0;
   for (const Lines& lines : lines_) {
-    for (const Line& line : lines) count += line.asker.client == client ? line.jobs.size() : 0;
+    for (const Line& line : lines) count += line.client.id == client ? line.jobs.size() : 0;
   }
   return count;
 }
 
-bool JobQueue::push(const Asker& asker, JobId job, Priority priority) {
-  if (size_ >= limit_ || waiting_of(asker.client) >= limit_ - limit_ / 8) return false;
+bool JobQueue::push(const Client& client, JobId job, Priority priority) {
+  if (size_ >= limit_ || waiting_of(client.id) >= limit_ - limit_ / 8) return false;
   Lines& lines = lines_[static_cast<size_t>(priority)];
-  auto line = std::ranges::find_if(lines, [&](const Line& other) { return other.asker.session == asker.session; });
-  if (line == lines.end()) line = lines.insert(lines.end(), Line{asker, {}});
+  auto line = std::ranges::find_if(lines, [&](const Line& other) { return other.client.session == client.session; });
+  if (line == lines.end()) line = lines.insert(lines.end(), Line{client, {}});
   line->jobs.push_back(job);
-  shares_.enter(asker.client);
+  shares_.enter(client.id);
   ++size_;
   return true;
 }
@@ -29,7 +29,7 @@ JobQueue::Lines::const_iterator JobQueue::next(const Lines& lines, const Accepts
   auto best = lines.end();
   for (auto line = lines.begin(); line != lines.end(); ++line) {
     if (!accepts(*line)) continue;
-    if (best == lines.end() || shares_.used(line->asker.client) < shares_.used(best->asker.client)) best = line;
+    if (best == lines.end() || shares_.used(line->client.id) < shares_.used(best->client.id)) best = line;
   }
   return best;
 }
@@ -39,17 +39,17 @@ std::optional<JobId> JobQueue::pop(Priority priority, const Accepts& accepts) {
   return take(lines, next(lines, [&](const Line& line) { return !accepts || accepts(line.jobs.front()); }));
 }
 
-std::optional<JobId> JobQueue::pop_of_others(Priority priority, const Asker& asker, const Accepts& accepts) {
+std::optional<JobId> JobQueue::pop_of_others(Priority priority, const Client& client, const Accepts& accepts) {
   Lines& lines = lines_[static_cast<size_t>(priority)];
   return take(lines, next(lines, [&](const Line& line) {
-                return line.asker.session != asker.session && (!accepts || accepts(line.jobs.front()));
+                return line.client.session != client.session && (!accepts || accepts(line.jobs.front()));
               }));
 }
 
 std::optional<ClientId> JobQueue::next_client(Priority priority, const Accepts& accepts) const {
   const Lines& lines = lines_[static_cast<size_t>(priority)];
   const auto line = next(lines, [&](const Line& each) { return !accepts || accepts(each.jobs.front()); });
-  return line == lines.end() ? std::nullopt : std::optional(line->asker.client);
+  return line == lines.end() ? std::nullopt : std::optional(line->client.id);
 }
 
 std::optional<JobId> JobQueue::take(Lines& lines, const Lines::const_iterator& place) {
@@ -69,7 +69,7 @@ bool JobQueue::remove(JobId job) {
     for (auto line = lines.begin(); line != lines.end(); ++line) {
       if (std::erase(line->jobs, job) == 0) continue;
       --size_;
-      shares_.leave(line->asker.client);
+      shares_.leave(line->client.id);
       if (line->jobs.empty()) lines.erase(line);
       return true;
     }

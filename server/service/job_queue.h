@@ -15,14 +15,14 @@ namespace surfcast::service {
 using SessionId = uint64_t;
 using JobId = uint64_t;
 
-/// A connection, and the client that it belongs to.
-struct Asker {
-  Asker() = default;
+/// A client, and the connection by which it asks.
+struct Client {
+  Client() = default;
   /// A connection whose client has no other.
-  Asker(SessionId only_session) : client(only_session), session(only_session) {}  // NOLINT(google-explicit-constructor)
-  Asker(ClientId of_client, SessionId of_session) : client(of_client), session(of_session) {}
+  Client(SessionId only_session) : id(only_session), session(only_session) {}  // NOLINT(google-explicit-constructor)
+  Client(ClientId of_client, SessionId of_session) : id(of_client), session(of_session) {}
 
-  ClientId client = 0;
+  ClientId id = 0;
   SessionId session = 0;
 };
 
@@ -40,12 +40,12 @@ class JobQueue {
   explicit JobQueue(size_t limit) : limit_(limit) {}
 
   /// False if the queue is full; the job is then not added.
-  [[nodiscard]] bool push(const Asker& asker, JobId job, Priority priority);
+  [[nodiscard]] bool push(const Client& client, JobId job, Priority priority);
   /// Whether a job may be taken now.
   using Accepts = std::function<bool(JobId)>;
   std::optional<JobId> pop(Priority priority, const Accepts& accepts = {});
   /// The next job of another session than this one.
-  std::optional<JobId> pop_of_others(Priority priority, const Asker& asker, const Accepts& accepts = {});
+  std::optional<JobId> pop_of_others(Priority priority, const Client& client, const Accepts& accepts = {});
   /// The client whose job would be popped; none if there is no such job.
   [[nodiscard]] std::optional<ClientId> next_client(Priority priority, const Accepts& accepts = {}) const;
   [[nodiscard]] bool has_waiting(Priority priority) const { return !lines_[static_cast<size_t>(priority)].empty(); }
@@ -60,7 +60,7 @@ class JobQueue {
 
  private:
   struct Line {
-    Asker asker;
+    Client client;
     std::deque<JobId> jobs;  ///< never empty between calls
   };
 

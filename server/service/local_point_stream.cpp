@@ -12,21 +12,21 @@ constexpr double kTurnMilliseconds = 100;
 
 }  // namespace
 
-LocalPointStream::LocalPointStream(exporter::ModelPoints points, const PointsJob& job,
+LocalPointStream::LocalPointStream(exporter::ModelPoints points, const PointsQuery& query,
                                    std::shared_ptr<const std::atomic<bool>> cancelled)
-    : PointStream(job.most),
+    : PointStream(query.most),
       points_(std::move(points)),
-      format_(job.format),
-      only_count_(job.only_count),
-      wanted_(job.only_count ? exporter::WantedFacts::kNumber : exporter::facts_for(job.format)),
+      format_(query.format),
+      only_count_(query.only_count),
+      wanted_(query.only_count ? exporter::WantedFacts::kNumber : exporter::facts_for(query.format)),
       cancelled_(std::move(cancelled)) {}
 
 Result<std::unique_ptr<PointStream>> LocalPointStream::open(std::shared_ptr<const model::ModelFile> model,
-                                                            const PointsJob& job,
+                                                            const PointsQuery& query,
                                                             std::shared_ptr<const std::atomic<bool>> cancelled) {
-  Result<exporter::ModelPoints> points = exporter::ModelPoints::open(std::move(model), job.model, job.selection);
+  Result<exporter::ModelPoints> points = exporter::ModelPoints::open(std::move(model), query.model, query.selection);
   if (!points) return fail(std::move(points.error()));
-  return std::unique_ptr<PointStream>(new LocalPointStream(std::move(*points), job, std::move(cancelled)));
+  return std::unique_ptr<PointStream>(new LocalPointStream(std::move(*points), query, std::move(cancelled)));
 }
 
 Status LocalPointStream::check() const {

@@ -14,7 +14,8 @@ namespace surfcast::service {
 /// A stream whose blocks are decoded in this process. Holds a block or two and the piece that is being made.
 class LocalPointStream : public PointStream {
  public:
-  static Result<std::unique_ptr<PointStream>> open(std::shared_ptr<const model::ModelFile> model, const PointsJob& job,
+  static Result<std::unique_ptr<PointStream>> open(std::shared_ptr<const model::ModelFile> model,
+                                                   const PointsQuery& query,
                                                    std::shared_ptr<const std::atomic<bool>> cancelled);
 
   Result<bool> count() override;
@@ -22,7 +23,7 @@ class LocalPointStream : public PointStream {
   [[nodiscard]] const exporter::PointFacts& facts() const override { return facts_; }
 
  private:
-  LocalPointStream(exporter::ModelPoints points, const PointsJob& job,
+  LocalPointStream(exporter::ModelPoints points, const PointsQuery& query,
                    std::shared_ptr<const std::atomic<bool>> cancelled);
   Status prepare();
   Status add_block(PointPiece& piece);

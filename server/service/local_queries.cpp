@@ -79,9 +79,9 @@ class LocalQueries : public ModelQueries {
     return pick::find_band(*model, query, cancelled);
   }
 
-  Result<std::unique_ptr<PointStream>> points(const ModelPointer& model, const PointsJob& job,
+  Result<std::unique_ptr<PointStream>> points(const ModelPointer& model, const PointsQuery& query,
                                               std::shared_ptr<const std::atomic<bool>> cancelled) override {
-    return LocalPointStream::open(model, job, std::move(cancelled));
+    return LocalPointStream::open(model, query, std::move(cancelled));
   }
 
  private:

@@ -5,6 +5,7 @@
 #include <system_error>
 #include <utility>
 
+#include "access/authorization.h"
 #include "base/contract.h"
 #include "object_store/object_url.h"
 #include "render/transfer_presets.h"
@@ -239,7 +240,7 @@ Result<model::ModelFile> ModelCatalogue::open_path(const std::string& shown, con
 /// A file is opened without a lock: a slow disk or store holds up only those who want that file.
 Result<std::shared_ptr<const model::ModelFile>> ModelCatalogue::open_file(const std::string& name) const {
   const fs::path path = find(name);
-  if (path.empty()) return fail(ErrorKind::kNotFound, "there is no model '" + shown_name(name) + "'");
+  if (path.empty()) return fail(ErrorKind::kNotFound, "there is no model '" + access::shown_name(name) + "'");
   // An object that has been replaced in its store is known by an answer to a request for its blocks.
   const bool stored = object_store::is_object_url(path.string());
   std::error_code code;

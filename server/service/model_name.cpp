@@ -7,9 +7,6 @@
 namespace surfcast::service {
 namespace {
 
-/// What no file's name contains.
-constexpr char kNoName = '/';
-
 /// Files that describe the folder that they lie in: SOG, EPT, Potree, 3D Tiles.
 constexpr std::array<std::string_view, 5> kDescriptions{"meta.json", "ept.json", "cloud.js", "metadata.json",
                                                         "tileset.json"};
@@ -27,14 +24,6 @@ std::string model_name(const std::filesystem::path& path) {
       folder || (is_description(path) && path.has_parent_path()) ? path.parent_path() : path;
   const std::filesystem::path name = named.filename();
   return name.extension() == ".gz" ? name.stem().stem().string() : name.stem().string();
-}
-
-std::string hidden_name(const std::string& name) {
-  return kNoName + name;
-}
-
-std::string shown_name(const std::string& name) {
-  return name.starts_with(kNoName) ? name.substr(1) : name;
 }
 
 }  // namespace surfcast::service

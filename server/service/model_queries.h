@@ -47,7 +47,7 @@ class ModelQueries {
   /// See pick::find_band.
   virtual Result<pick::Band> band(const ModelPointer& model, const pick::BandQuery& query,
                                   const std::atomic<bool>& cancelled) = 0;
-  virtual Result<std::unique_ptr<PointStream>> points(const ModelPointer& model, const PointsJob& job,
+  virtual Result<std::unique_ptr<PointStream>> points(const ModelPointer& model, const PointsQuery& query,
                                                       std::shared_ptr<const std::atomic<bool>> cancelled) = 0;
 };
 

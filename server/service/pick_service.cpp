@@ -62,14 +62,15 @@ Result<std::optional<PickedPoint>> PickService::run(const PickJob& job) {
     if (job.x < 0 || job.y < 0 || job.x >= request.width || job.y >= request.height) {
       return fail(ErrorKind::kInvalidInput, "pixel: outside the picture");
     }
-    return on_model(models_, job.model, [&](const ModelPointer& model) -> Result<std::optional<PickedPoint>> {
-      const PixelQuery query{{request, job.up_from_model}, job.x, job.y, most_blocks_};
-      auto picked = queries_->pick(model, query, stopping_);
-      if (!picked) return fail(std::move(picked.error()));
-      if (!*picked) return std::nullopt;
-      const std::optional<glm::dvec3> source_position = source_positions_.find(*model, (*picked)->position);
-      return PickedPoint{std::move(**picked), source_position};
-    });
+    return on_model(
+        models_, job.model.served_name(), [&](const ModelPointer& model) -> Result<std::optional<PickedPoint>> {
+          const PixelQuery query{{request, job.up_from_model}, job.x, job.y, most_blocks_};
+          auto picked = queries_->pick(model, query, stopping_);
+          if (!picked) return fail(std::move(picked.error()));
+          if (!*picked) return std::nullopt;
+          const std::optional<glm::dvec3> source_position = source_positions_.find(*model, (*picked)->position);
+          return PickedPoint{std::move(**picked), source_position};
+        });
   });
 }
 
@@ -82,10 +83,12 @@ void PickService::find_surface(SurfaceJob job, std::shared_ptr<const std::atomic
 }
 
 Result<std::vector<pick::FrontPixel>> PickService::search(const SurfaceJob& job, const std::atomic<bool>& cancelled) {
-  return on_model(models_, job.model, [&](const ModelPointer& model) -> Result<std::vector<pick::FrontPixel>> {
-    if (Status status = check_channels(job.channels, model->info()); !status) return fail(std::move(status.error()));
-    return queries_->front_surface(model, {job.request, job.up_from_model}, cancelled);
-  });
+  return on_model(models_, job.model.served_name(),
+                  [&](const ModelPointer& model) -> Result<std::vector<pick::FrontPixel>> {
+                    if (Status status = check_channels(job.channels, model->info()); !status)
+                      return fail(std::move(status.error()));
+                    return queries_->front_surface(model, {job.request, job.up_from_model}, cancelled);
+                  });
 }
 
 void PickService::profile(ProfileJob job, ProfileDone done, ClientId client) {
@@ -119,10 +122,12 @@ void PickService::points(PointsJob job, std::shared_ptr<const std::atomic<bool>>
 Result<std::shared_ptr<PointStream>> PickService::open_stream(PointsJob job,
                                                               std::shared_ptr<const std::atomic<bool>> cancelled,
                                                               std::shared_ptr<const void> place) {
-  const Result<ModelPointer> model = models_.open(job.model);
+  const Result<ModelPointer> model = models_.open(job.model.served_name());
   if (!model) return fail(model.error());
-  job.most = job.most == 0 ? most_region_points_ : std::min(job.most, most_region_points_);
-  Result<std::unique_ptr<PointStream>> stream = queries_->points(*model, job, std::move(cancelled));
+  PointsQuery& query = job.query;
+  query.model = job.model.name();
+  query.most = query.most == 0 ? most_region_points_ : std::min(query.most, most_region_points_);
+  Result<std::unique_ptr<PointStream>> stream = queries_->points(*model, query, std::move(cancelled));
   if (!stream) return fail(std::move(stream.error()));
   (*stream)->keep(std::move(place));
   (*stream)->set_service(*this);
@@ -151,7 +156,7 @@ void PickService::next_piece(std::shared_ptr<PointStream> stream, PieceDone done
 Result<ProfileResult> PickService::find_profile(const ProfileJob& job) const {
   pick::BandQuery query = job.query;
   query.most = query.most == 0 ? most_points_ : std::min(query.most, most_points_);
-  return on_model(models_, job.model, [&](const ModelPointer& model) -> Result<ProfileResult> {
+  return on_model(models_, job.model.served_name(), [&](const ModelPointer& model) -> Result<ProfileResult> {
     Result<pick::Band> band = queries_->band(model, query, stopping_);
     if (!band) return fail(band.error());
     const model::ModelInfo& info = model->info();

@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "access/authorization.h"
 #include "base/result.h"
 #include "pick/band.h"
 #include "pick/front_surface.h"
@@ -35,11 +36,11 @@ struct PickLimits {
 
 /// A request for the item that a picture shows in a pixel.
 struct PickJob {
-  std::string model;
-  picture::PictureRequest request;  ///< camera, resolution, clip and hidden classes matter
-  bool up_from_model = false;       ///< take the model's vertical axis as the camera's view_up
-  int x = 0;                        ///< pixels from the left edge
-  int y = 0;                        ///< pixels from the upper edge
+  access::AuthorizedModel model;
+  picture::PictureRequest request{};  ///< camera, resolution, clip and hidden classes matter
+  bool up_from_model = false;         ///< take the model's vertical axis as the camera's view_up
+  int x = 0;                          ///< pixels from the left edge
+  int y = 0;                          ///< pixels from the upper edge
 };
 
 /// What a picture shows in a pixel.
@@ -49,7 +50,7 @@ struct PickedPoint : kinds::PickedSurfel {
 
 /// A request for what a picture shows in all its pixels.
 struct SurfaceJob {
-  std::string model;
+  access::AuthorizedModel model;
   picture::PictureRequest request;  ///< as in PickJob
   bool up_from_model = false;       ///< likewise
   picture::ChannelSet channels;     ///< that will be made of it; an error if the model cannot have one of them
@@ -57,8 +58,14 @@ struct SurfaceJob {
 
 /// A request for the points near a line.
 struct ProfileJob {
-  std::string model;
-  pick::BandQuery query;  ///< `most`: 0 or more than PickLimits::profile_points: as many as that
+  access::AuthorizedModel model;
+  pick::BandQuery query{};  ///< `most`: 0 or more than PickLimits::profile_points: as many as that
+};
+
+/// A request for the points of a region.
+struct PointsJob {
+  access::AuthorizedModel model;
+  PointsQuery query{};
 };
 
 /// The points near a line, and what is needed to describe them.

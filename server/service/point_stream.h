@@ -17,9 +17,9 @@ namespace surfcast::service {
 
 class PickService;
 
-/// A request for the points of a region.
-struct PointsJob {
-  std::string model;
+/// The points of a region of an open model that are wanted.
+struct PointsQuery {
+  std::string model;  ///< its name, for the file
   exporter::ModelSelection selection;
   exporter::PointFormat format = exporter::PointFormat::kLas;
   uint64_t most = 0;        ///< more points than that are an error; 0: as many as PickLimits::region_points

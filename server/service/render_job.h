@@ -2,6 +2,7 @@
 
 #include <atomic>
 #include <memory>
+#include <utility>
 #include <vector>
 
 #include "base/result.h"
@@ -14,8 +15,11 @@ namespace surfcast::service {
 
 /// A picture on its way through the service.
 struct RenderJob {
+  RenderJob(const Client& of, PictureJob wanted, RenderService::PictureDone then)
+      : client(of), picture(std::move(wanted)), done(std::move(then)) {}
+
   JobId id = 0;
-  Asker asker;
+  Client client;
   PictureJob picture;
   RenderService::PictureDone done;
   std::atomic<bool> cancelled = false;

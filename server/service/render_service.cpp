@@ -20,6 +20,14 @@ tl::unexpected<Error> busy_error() {
   return fail(ErrorKind::kUnavailable, "the server is busy: too many pictures wait");
 }
 
+/// What may be known of a list.
+ModelList list_of(const access::Rights& rights, ModelList all) {
+  const auto hidden = [&](const std::string& name) { return !rights.authorize(name).allowed(); };
+  std::erase_if(all.names, hidden);
+  std::erase_if(all.scans, [&](const ScanStatus& scan) { return hidden(scan.model); });
+  return all;
+}
+
 }  // namespace
 
 void RenderService::State::encode_one(const JobPointer& job, Result<SharedFrame> frame) {
@@ -52,8 +60,8 @@ void RenderService::State::count_kept_frame(const RenderJob& job, EncodedPicture
   const SharedFrame frame = std::exchange(picture.frame, nullptr);
   if (!frame) return;
   const size_t bytes = frame->image.pixels.size();
-  if (!memory->fits(job.asker.client, bytes + memory_of(job.picture))) return;
-  const auto kept = std::make_shared<const Kept>(Kept{frame, memory->take(job.asker.client, bytes)});
+  if (!memory->fits(job.client.id, bytes + memory_of(job.picture))) return;
+  const auto kept = std::make_shared<const Kept>(Kept{frame, memory->take(job.client.id, bytes)});
   picture.frame = {kept, kept->frame.get()};
 }
 
@@ -87,12 +95,12 @@ Status RenderService::State::check(const PictureJob& picture) const {
 
 /// Views ask again by themselves.
 bool RenderService::State::waits_for_model(const PictureJob& picture) const {
-  return picture.request.loading == picture::Loading::kWait && models.awaited(picture.model);
+  return picture.request.loading == picture::Loading::kWait && models.awaited(picture.model.served_name());
 }
 
 /// Puts a job into the queue, or makes room for the search that precedes it. False if there is no room.
 bool RenderService::State::enqueue(const RenderJob& job) {
-  if (!needs_front_surface(job.picture.channels)) return queue.push(job.asker, job.id, job.picture.priority);
+  if (!needs_front_surface(job.picture.channels)) return queue.push(job.client, job.id, job.picture.priority);
   if (searching >= limits.queued_jobs) return false;
   ++searching;
   return true;
@@ -113,7 +121,7 @@ void RenderService::State::proceed(const JobPointer& job) {
 /// A job whose front surface may be looked for: there is memory for its picture.
 std::vector<RenderService::State::JobPointer>::iterator RenderService::State::next_search() {
   return std::ranges::find_if(
-      to_search, [this](const JobPointer& job) { return memory->fits(job->asker.client, memory_of(job->picture)); });
+      to_search, [this](const JobPointer& job) { return memory->fits(job->client.id, memory_of(job->picture)); });
 }
 
 /// Looks for the front surfaces for which there is memory: they take as much as the channels made of them.
@@ -126,7 +134,7 @@ void RenderService::State::start_searches() {
       if (next == to_search.end()) return;
       job = *next;
       to_search.erase(next);
-      job->memory = memory->take(job->asker.client, memory_of(job->picture));
+      job->memory = memory->take(job->client.id, memory_of(job->picture));
     }
     search(job);
   }
@@ -152,19 +160,16 @@ void RenderService::State::end_waiting(const JobPointer& job, const Status& ther
   finish(job, busy_error());
 }
 
-JobId RenderService::State::add(const Asker& asker, PictureJob picture, PictureDone done) {
+JobId RenderService::State::add(const Client& client, PictureJob picture, PictureDone done) {
   const Status checked = check(picture);
-  const auto job = std::make_shared<RenderJob>();
-  job->asker = asker;
-  job->picture = std::move(picture);
-  job->done = std::move(done);
+  const auto job = std::make_shared<RenderJob>(client, std::move(picture), std::move(done));
   std::unique_lock lock(mutex);
   job->id = ++last_id;
   const bool waits = waits_for_model(job->picture);
-  const bool room =
-      checked && !stopping &&
-      (waits ? await_model(job->id, job->picture.model, [this, job](const Status& there) { end_waiting(job, there); })
-             : enqueue(*job));
+  const bool room = checked && !stopping &&
+                    (waits ? await_model(job->id, job->picture.model.served_name(),
+                                         [this, job](const Status& there) { end_waiting(job, there); })
+                           : enqueue(*job));
   if (room) jobs.emplace(job->id, job);
   lock.unlock();
   if (!room) {
@@ -181,8 +186,7 @@ void RenderService::State::search(const JobPointer& job) {
   const std::shared_ptr<const std::atomic<bool>> cancelled(job, &job->cancelled);
   picks->find_surface(
       {picture.model, picture.request, picture.up_from_model, picture.channels}, cancelled,
-      [this, job](Result<std::vector<pick::FrontPixel>> front) { end_search(job, std::move(front)); },
-      job->asker.client);
+      [this, job](Result<std::vector<pick::FrontPixel>> front) { end_search(job, std::move(front)); }, job->client.id);
 }
 
 void RenderService::State::end_search(const JobPointer& job, Result<std::vector<pick::FrontPixel>> front) {
@@ -193,7 +197,7 @@ void RenderService::State::end_search(const JobPointer& job, Result<std::vector<
     job->front = std::move(*front);
     job->search_ms = job->since_submission.milliseconds();
     job->since_submission = Stopwatch();
-    if (queue.push(job->asker, job->id, job->picture.priority)) {
+    if (queue.push(job->client, job->id, job->picture.priority)) {
       lock.unlock();
       return wake.notify_one();
     }
@@ -272,7 +276,7 @@ void RenderService::State::stop() {
     for (const Priority priority : {Priority::kMotion, Priority::kStill}) {
       while (const std::optional<JobId> id = queue.pop(priority)) {
         waiting.push_back(jobs.at(*id));
-        queue.shares().leave(waiting.back()->asker.client);
+        queue.shares().leave(waiting.back()->client.id);
       }
     }
   }
@@ -343,9 +347,9 @@ RenderService::~RenderService() {
   state_->stop();
 }
 
-JobId RenderService::draw(const Asker& asker, PictureJob job, PictureDone done) {
-  State& state = state_of(job.model);
-  return state.add(asker, std::move(job), std::move(done));
+JobId RenderService::draw(const Client& client, PictureJob job, PictureDone done) {
+  State& state = state_of(job.model.served_name());
+  return state.add(client, std::move(job), std::move(done));
 }
 
 bool RenderService::cancel(JobId id) {
@@ -353,16 +357,13 @@ bool RenderService::cancel(JobId id) {
 }
 
 JobId RenderService::encode(std::shared_ptr<const picture::Frame> frame, PictureJob picture, PictureDone done,
-                            const Asker& asker) {
+                            const Client& client) {
   SURFCAST_EXPECTS(frame->image.format == picture::pixel_format_of(picture.format));
-  State& state = state_of(picture.model);
-  const auto job = std::make_shared<RenderJob>();
-  job->picture = std::move(picture);
+  State& state = state_of(picture.model.served_name());
+  const auto job = std::make_shared<RenderJob>(client, std::move(picture), std::move(done));
   job->picture.priority = Priority::kStill;
-  job->done = std::move(done);
-  job->asker = asker;
   job->small = is_small(job->picture);
-  job->memory = state.memory->take(asker.client, memory_of(job->picture));
+  job->memory = state.memory->take(client.id, memory_of(job->picture));
   {
     const std::lock_guard lock(state.mutex);
     job->id = ++state.last_id;
@@ -371,7 +372,7 @@ JobId RenderService::encode(std::shared_ptr<const picture::Frame> frame, Picture
   }
   state.pool->post(
       [&state, job, frame = std::move(frame)]() mutable { state.encode_one(job, SharedFrame(std::move(frame))); },
-      asker.client, job->small ? TaskSize::kSmall : TaskSize::kLarge);
+      client.id, job->small ? TaskSize::kSmall : TaskSize::kLarge);
   return job->id;
 }
 
@@ -390,18 +391,19 @@ void RenderService::models_changed() {
   if (remote_) remote_->models_changed();
 }
 
-uint64_t RenderService::edition(const std::string& model) const {
-  return state_->models.edition(model);
+uint64_t RenderService::edition(const access::AuthorizedModel& model) const {
+  return state_->models.edition(model.served_name());
 }
 
-void RenderService::list_models(ListDone done, ClientId client) {
-  const auto list = [state = state_.get()]() -> Result<ModelList> {
-    return ModelList{state->models.names(), state->models.scans()};
+void RenderService::list_models(access::Rights rights, ListDone done, ClientId client) {
+  const auto list = [state = state_.get(), rights = std::move(rights)]() -> Result<ModelList> {
+    return list_of(rights, {state->models.names(), state->models.scans()});
   };
   state_->lookups->post([list, done = std::move(done)] { done(guarded(list).value_or(ModelList())); }, client);
 }
 
-void RenderService::describe_model(const std::string& name, DescriptionDone done, ClientId client) {
+void RenderService::describe_model(const access::AuthorizedModel& model, DescriptionDone done, ClientId client) {
+  const std::string name = model.served_name();
   State& state = state_of(name);
   state.when_available(name, [state = &state, name, done = std::move(done), client](const Status& there) {
     if (!there) return done(fail(there.error()));
@@ -411,7 +413,7 @@ void RenderService::describe_model(const std::string& name, DescriptionDone done
 }
 
 void RenderService::pick(PickJob job, PickService::Done done, ClientId client) {
-  const std::string model = job.model;
+  const std::string model = job.model.served_name();
   State& state = state_of(model);
   const auto run = [state = &state, job = std::move(job), done = std::move(done), client](const Status& there) {
     if (!there) return done(fail(there.error()));
@@ -421,7 +423,7 @@ void RenderService::pick(PickJob job, PickService::Done done, ClientId client) {
 }
 
 void RenderService::profile(ProfileJob job, PickService::ProfileDone done, ClientId client) {
-  const std::string model = job.model;
+  const std::string model = job.model.served_name();
   State& state = state_of(model);
   const auto run = [state = &state, job = std::move(job), done = std::move(done), client](const Status& there) {
     if (!there) return done(fail(there.error()));
@@ -432,7 +434,7 @@ void RenderService::profile(ProfileJob job, PickService::ProfileDone done, Clien
 
 void RenderService::points(PointsJob job, std::shared_ptr<const std::atomic<bool>> cancelled,
                            PickService::PointsDone done, ClientId client) {
-  const std::string model = job.model;
+  const std::string model = job.model.served_name();
   State& state = state_of(model);
   const auto run = [state = &state, job = std::move(job), cancelled = std::move(cancelled), done = std::move(done),
                     client](const Status& there) {

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "access/authorization.h"
 #include "base/result.h"
 #include "picture/channels.h"
 #include "picture/file_format.h"
@@ -47,18 +48,18 @@ struct VideoJob {
 
 /// A request for an encoded picture.
 struct PictureJob {
-  std::string model;
-  picture::PictureRequest request;  ///< its pixel format is replaced by that of `format`
-  bool up_from_model = false;       ///< take the model's vertical axis as the camera's view_up
+  access::AuthorizedModel model;
+  picture::PictureRequest request{};  ///< its pixel format is replaced by that of `format`
+  bool up_from_model = false;         ///< take the model's vertical axis as the camera's view_up
   picture::FileFormat format = picture::FileFormat::kPng;
-  int quality = 90;              ///< of JPEG and WebP, 1 to 100
-  size_t depth_bytes = 0;        ///< with PictureRequest::depth_texels: of EncodedPicture::depth, at most
-  picture::ChannelSet channels;  ///< of the file beside colours; only of EXR and of still pictures
+  int quality = 90;                ///< of JPEG and WebP, 1 to 100
+  size_t depth_bytes = 0;          ///< with PictureRequest::depth_texels: of EncodedPicture::depth, at most
+  picture::ChannelSet channels{};  ///< of the file beside colours; only of EXR and of still pictures
   Priority priority = Priority::kStill;
   JobId supersedes = 0;     ///< a job whose picture is obsolete once this one is drawn; 0: none
   bool keep_frame = false;  ///< return the frame with the picture, if there is memory for it
   /// Of a motion picture with 8 bits a channel: it becomes a packet of this video, or a file in `format` if it cannot.
-  std::optional<VideoJob> video;
+  std::optional<VideoJob> video{};
 };
 
 /// What a packet of a video is to its decoder; see video::VideoPacket.
@@ -107,6 +108,8 @@ struct Drawers {
 ///
 /// A picture with channels of its front surface waits until that has been found, and then for the render thread.
 ///
+/// Whatever is about a model takes an access::AuthorizedModel: who may know of which is decided before, and only there.
+///
 /// Callbacks run on a thread of the service. If a job is refused, or cancelled while it waits for the render thread,
 /// its callback runs on the calling thread before the call returns. Callbacks must not block. Each is called exactly
 /// once, or again with an error if it throws (out of memory).
@@ -127,24 +130,24 @@ class RenderService {
   ~RenderService();
 
   /// A picture of a model that is awaited (see ModelSource) waits for it; pictures of views fail at once.
-  JobId draw(const Asker& asker, PictureJob job, PictureDone done);
+  JobId draw(const Client& client, PictureJob job, PictureDone done);
   /// Replaces the picture of a job that still waits for the render thread. False if the job does not wait any more, or
   /// if the new picture is invalid.
   bool replace(JobId job, PictureJob picture);
   /// Encodes `picture` from a frame that was drawn for the same request.
   JobId encode(std::shared_ptr<const picture::Frame> frame, PictureJob picture, PictureDone done,
-               const Asker& asker = {});
+               const Client& client = {});
   /// True if the job was outstanding. Its callback then gets kCancelled, unless the picture is already being delivered.
   bool cancel(JobId job);
 
-  /// Look-ups run on a thread of their own, in turns of the clients.
-  void list_models(ListDone done, ClientId client = 0);
-  void describe_model(const std::string& name, DescriptionDone done, ClientId client = 0);
+  /// Look-ups run on a thread of their own, in turns of the clients. A list has what the rights allow to know of.
+  void list_models(access::Rights rights, ListDone done, ClientId client = 0);
+  void describe_model(const access::AuthorizedModel& model, DescriptionDone done, ClientId client = 0);
   /// Call it after a change of an awaited model, and now and then while there is one: pictures, picks, profiles, points
   /// and descriptions that wait for it are begun, or refused after the queue's timeout.
   void models_changed();
   /// See ModelSource.
-  [[nodiscard]] uint64_t edition(const std::string& model) const;
+  [[nodiscard]] uint64_t edition(const access::AuthorizedModel& model) const;
   /// Finds the item in a pixel; see PickService.
   void pick(PickJob job, PickService::Done done, ClientId client = 0);
   /// Finds the points near a line; see PickService.

@@ -73,7 +73,7 @@ struct RenderService::State {
 
   // Any thread.
   [[nodiscard]] Status check(const PictureJob& picture) const;
-  JobId add(const Asker& asker, PictureJob picture, PictureDone done);
+  JobId add(const Client& client, PictureJob picture, PictureDone done);
   void search(const JobPointer& job);
   [[nodiscard]] std::vector<JobPointer>::iterator next_search();
   void start_searches();

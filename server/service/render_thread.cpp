@@ -77,7 +77,7 @@ bool RenderService::State::has_room(JobId id) const {
   }
   if (is_small(job.picture)) return small_in_encoding < limits.frames_in_encoding;
   return in_encoding[static_cast<size_t>(Priority::kStill)] < limits.frames_in_encoding &&
-         (job.memory != nullptr || memory->fits(job.asker.client, memory_of(job.picture)));
+         (job.memory != nullptr || memory->fits(job.client.id, memory_of(job.picture)));
 }
 
 /// True if a job of this priority waits and has room.
@@ -103,13 +103,13 @@ void RenderService::State::charge(const RenderJob& job, double milliseconds) {
   // A user who moves a view has three quarters of the time, as DrawShares gives to motion.
   const double weight = job.picture.priority == Priority::kMotion ? 1.0 / 3 : 1;
   const std::lock_guard lock(mutex);
-  queue.shares().charge(job.asker.client, weight * milliseconds);
+  queue.shares().charge(job.client.id, weight * milliseconds);
 }
 
 /// A job that has left the queue does not count for its client any more.
 void RenderService::State::leave_queue(const RenderJob& job) {
   const std::lock_guard lock(mutex);
-  queue.shares().leave(job.asker.client);
+  queue.shares().leave(job.client.id);
 }
 
 /// Takes a job that has left the queue. Null if the job has waited too long. It is then refused, because its client has
@@ -121,10 +121,10 @@ RenderService::State::JobPointer RenderService::State::start(JobId id, std::uniq
     const bool still = job->picture.priority == Priority::kStill;
     job->small = still && is_small(job->picture);
     ++(job->small ? small_in_encoding : in_encoding[static_cast<size_t>(job->picture.priority)]);
-    if (still && job->memory == nullptr) job->memory = memory->take(job->asker.client, memory_of(job->picture));
+    if (still && job->memory == nullptr) job->memory = memory->take(job->client.id, memory_of(job->picture));
     return job;
   }
-  queue.shares().leave(job->asker.client);
+  queue.shares().leave(job->client.id);
   lock.unlock();
   finish(job, late_error());
   lock.lock();
@@ -171,7 +171,7 @@ RenderService::State::JobPointer RenderService::State::next_job() {
 /// The motion job that preempts the current still picture; null if there is none.
 RenderService::State::JobPointer RenderService::State::next_motion(const RenderJob& current) {
   std::unique_lock lock(mutex);
-  while (!stopping && may_draw(Priority::kMotion) && moves_first(current.asker.client)) {
+  while (!stopping && may_draw(Priority::kMotion) && moves_first(current.client.id)) {
     if (JobPointer job = start(*queue.pop(Priority::kMotion), lock)) return job;
   }
   return nullptr;
@@ -189,7 +189,7 @@ RenderService::State::JobPointer RenderService::State::next_still_of_others(cons
   };
   std::unique_lock lock(mutex);
   while (!stopping && depth < kDeepest) {
-    const std::optional<JobId> id = queue.pop_of_others(Priority::kStill, current.asker, accepts);
+    const std::optional<JobId> id = queue.pop_of_others(Priority::kStill, current.client, accepts);
     if (!id) return nullptr;
     if (JobPointer job = start(*id, lock)) return job;
   }
@@ -201,7 +201,7 @@ Result<picture::Frame> RenderService::State::render_frame(FrameRenderer& rendere
   picture::PictureRequest request = job.picture.request;
   request.format = picture::pixel_format_of(job.picture.format);
   if (request.camera && job.picture.up_from_model) {
-    const Result<ModelDescription> description = models.describe(job.picture.model);
+    const Result<ModelDescription> description = models.describe(job.picture.model.served_name());
     if (!description) return fail(description.error());
     request.camera->view_up = description->info.up();
   }
@@ -210,7 +210,7 @@ Result<picture::Frame> RenderService::State::render_frame(FrameRenderer& rendere
     if (!encoding) return fail(encoding.error());
     request.time_ms = std::max(request.time_ms - *encoding, kLeastDrawingMs);
   }
-  return renderer.draw(job.picture.model, request, preemption);
+  return renderer.draw(job.picture.model.served_name(), request, preemption);
 }
 
 /// How long the file of a picture takes to encode, as far as is known. Before the first one of a format a small, coarse
@@ -227,7 +227,7 @@ Result<double> RenderService::State::encoding_ms(FrameRenderer& renderer, const 
   request.spacing = kCoarse;
   request.width = std::max(request.width / kSmaller, 1);
   request.height = std::max(request.height / kSmaller, 1);
-  const Result<picture::Frame> small = renderer.draw(job.picture.model, request, preemption);
+  const Result<picture::Frame> small = renderer.draw(job.picture.model.served_name(), request, preemption);
   if (!small) return fail(small.error());
   const Stopwatch watch;
   const auto file = encode::encode_picture(small->image, format, job.picture.quality);
@@ -308,7 +308,7 @@ void RenderService::State::draw_one(FrameRenderer& renderer, const JobPointer& j
   }
   WorkerPool& encoder = job->picture.priority == Priority::kMotion ? *motion_pool : *pool;
   encoder.post([this, job, shared = std::move(shared)]() mutable { encode_one(job, std::move(shared)); },
-               job->asker.client, job->small ? TaskSize::kSmall : TaskSize::kLarge);
+               job->client.id, job->small ? TaskSize::kSmall : TaskSize::kLarge);
 }
 
 /// Cancels a picture that a newer one supersedes, if its encoding has not begun.

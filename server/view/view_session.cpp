@@ -70,9 +70,16 @@ FrameResult result_of(FrameKind kind, const service::EncodedPicture& picture) {
 
 }  // namespace
 
-ViewSession::ViewSession(service::RenderService& service, const service::Asker& asker, uint64_t viewer,
-                         const ViewOptions& options, ViewCounts& counts, ViewPort port)
-    : service_(service), asker_(asker), viewer_(viewer), options_(options), counts_(counts), port_(std::move(port)) {
+ViewSession::ViewSession(service::RenderService& service, const service::Client& client,
+                         const access::AuthorizedModel& model, uint64_t viewer, const ViewOptions& options,
+                         ViewCounts& counts, ViewPort port)
+    : service_(service),
+      client_(client),
+      viewer_(viewer),
+      options_(options),
+      counts_(counts),
+      port_(std::move(port)),
+      newest_{0, service::PictureJob{model}} {
   ++counts_.open;
   if (options_.video) stream_ = open_stream();
 }
@@ -273,9 +280,9 @@ void ViewSession::draw(FrameKind kind, ViewTime now) {
   };
   if (kind == FrameKind::kFinal && finished_frame_) {
     job.job =
-        service_.encode(std::exchange(finished_frame_, {}), picture_job(kind, frame, now), std::move(done), asker_);
+        service_.encode(std::exchange(finished_frame_, {}), picture_job(kind, frame, now), std::move(done), client_);
   } else {
-    job.job = service_.draw(asker_, picture_job(kind, frame, now), std::move(done));
+    job.job = service_.draw(client_, picture_job(kind, frame, now), std::move(done));
   }
   if (kind == FrameKind::kMotion && job.edition == edition_) last_motion_job_ = job.job;
 }

@@ -75,8 +75,9 @@ struct ViewOptions {
 /// methods must be called on the view's thread; drawing and encoding run on the threads of the service.
 class ViewSession : public std::enable_shared_from_this<ViewSession> {
  public:
-  ViewSession(service::RenderService& service, const service::Asker& asker, uint64_t viewer, const ViewOptions& options,
-              ViewCounts& counts, ViewPort port);
+  /// All its pictures are of that model.
+  ViewSession(service::RenderService& service, const service::Client& client, const access::AuthorizedModel& model,
+              uint64_t viewer, const ViewOptions& options, ViewCounts& counts, ViewPort port);
   ~ViewSession();
   ViewSession(const ViewSession&) = delete;
   ViewSession& operator=(const ViewSession&) = delete;
@@ -150,7 +151,7 @@ class ViewSession : public std::enable_shared_from_this<ViewSession> {
   void adapt_quality(Job& job, double transfer_ms, double client_ms);
 
   service::RenderService& service_;
-  service::Asker asker_;
+  service::Client client_;
   uint64_t viewer_;
   ViewOptions options_;
   ViewCounts& counts_;

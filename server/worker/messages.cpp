@@ -96,8 +96,8 @@ void fields(Archive& archive, T& value) {
 
 template <typename Archive, Is<OpenPoints> T>
 void fields(Archive& archive, T& value) {
-  auto& [stream, model, job] = value;
-  archive(stream, model, job);
+  auto& [stream, model, query] = value;
+  archive(stream, model, query);
 }
 
 template <typename Archive, Is<CountPoints> T>

@@ -124,7 +124,7 @@ struct BandPart {
 struct OpenPoints {
   uint64_t stream = 0;
   uint64_t model = 0;
-  service::PointsJob job;
+  service::PointsQuery query;
 };
 /// Server: a turn of counting them. The answer is PointsCounted, too.
 struct CountPoints {

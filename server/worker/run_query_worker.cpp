@@ -173,7 +173,7 @@ class QueryWorker {
       const Result<ModelPointer> model = model_of(open_points.model);
       if (!model) return fail(model.error());
       const std::shared_ptr<const std::atomic<bool>> cancelled(std::shared_ptr<void>(), &board_.cancelled(0));
-      auto points = queries_->points(*model, open_points.job, cancelled);
+      auto points = queries_->points(*model, open_points.query, cancelled);
       if (!points) return fail(std::move(points.error()));
       const PointsCounted counted{(*points)->facts(), false};
       streams_[open_points.stream] = {std::move(*points), {}};

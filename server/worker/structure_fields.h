@@ -301,7 +301,7 @@ void fields(Archive& archive, T& value) {
   archive(picture, x, y, most_blocks);
 }
 
-template <typename Archive, worker::Is<PointsJob> T>
+template <typename Archive, worker::Is<PointsQuery> T>
 void fields(Archive& archive, T& value) {
   auto& [model, selection, format, most, only_count] = value;
   archive(model, selection, format, most, only_count);

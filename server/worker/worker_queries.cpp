@@ -378,14 +378,14 @@ class WorkerQueries : public service::ModelQueries {
     });
   }
 
-  Result<std::unique_ptr<service::PointStream>> points(const ModelPointer& model, const service::PointsJob& job,
+  Result<std::unique_ptr<service::PointStream>> points(const ModelPointer& model, const service::PointsQuery& query,
                                                        std::shared_ptr<const std::atomic<bool>> cancelled) override {
     return searches_.with([&](QueryProcess& process) -> Result<std::unique_ptr<service::PointStream>> {
       const uint64_t number = ++last_stream_;
-      const Result<PointsCounted> opened =
-          process.ask<PointsCounted>(model, OpenPoints{number, model->id(), job}, *cancelled, take_one<PointsCounted>);
+      const Result<PointsCounted> opened = process.ask<PointsCounted>(model, OpenPoints{number, model->id(), query},
+                                                                      *cancelled, take_one<PointsCounted>);
       if (!opened) return fail(opened.error());
-      return std::make_unique<WorkerPointStream>(searches_, process, number, job.most, std::move(cancelled));
+      return std::make_unique<WorkerPointStream>(searches_, process, number, query.most, std::move(cancelled));
     });
   }
 

@@ -1,12 +1,15 @@
 #include <filesystem>
 #include <fstream>
+#include <memory>
 #include <string>
+#include <type_traits>
 #include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "access/authorization.h"
 #include "access/secret.h"
 #include "access/token_file.h"
 #include "access/token_table.h"
@@ -43,13 +46,66 @@ TEST(SecretTest, HasAKnownHashAndIsNewEachTime) {
   EXPECT_FALSE(is_secret(std::string(43, '+')));
 }
 
-TEST(PrincipalTest, SeesTheModelsOfItsPatterns) {
-  const Principal some{.name = "a", .sha256 = kHash, .models = {"church*", "tower-?", "[xy]"}};
-  for (const std::string seen : {"church", "church 2", "tower-1", "x"}) EXPECT_TRUE(may_see(some, seen)) << seen;
-  for (const std::string other : {"Church", "a church", "tower-10", "z", ""})
-    EXPECT_FALSE(may_see(some, other)) << other;
-  EXPECT_FALSE(may_see({.name = "b", .sha256 = kHash, .models = {}}, "church"));
+Rights rights_of(const Principal& principal) {
+  return Rights::of(std::make_shared<const Principal>(principal));
 }
+
+TEST(RightsTest, AllowTheModelsOfTheirPatterns) {
+  const Rights some = rights_of({.name = "a", .sha256 = kHash, .models = {"church*", "tower-?", "[xy]"}});
+  for (const std::string seen : {"church", "church 2", "tower-1", "x"}) {
+    EXPECT_TRUE(some.authorize(seen).allowed()) << seen;
+  }
+  for (const std::string other : {"Church", "a church", "tower-10", "z", ""}) {
+    EXPECT_FALSE(some.authorize(other).allowed()) << other;
+  }
+  EXPECT_FALSE(rights_of({.name = "b", .sha256 = kHash, .models = {}}).authorize("church").allowed());
+  EXPECT_FALSE(Rights::of(nullptr).authorize("church").allowed()) << "nobody may do nothing";
+  EXPECT_TRUE(Rights::unlimited().authorize("church").allowed());
+}
+
+TEST(RightsTest, AModelThatIsNotAllowedIsLookedUpUnderANameThatNoneHas) {
+  const AuthorizedModel allowed = Rights::unlimited().authorize("church");
+  EXPECT_EQ(allowed.name(), "church");
+  EXPECT_EQ(allowed.served_name(), "church");
+  const AuthorizedModel denied = Rights::of(nullptr).authorize("church");
+  EXPECT_EQ(denied.name(), "church");
+  EXPECT_NE(denied.served_name().find('/'), std::string::npos) << "no name of a file has one";
+  EXPECT_EQ(shown_name(denied.served_name()), "church");
+  EXPECT_EQ(shown_name(allowed.served_name()), "church");
+}
+
+TEST(RightsTest, WritingNeedsARightOfItsOwn) {
+  const Rights reader = rights_of({.name = "a", .sha256 = kHash, .models = {"*"}});
+  EXPECT_FALSE(reader.authorize_annotations("church"));
+  EXPECT_FALSE(reader.authorize_upload("church.laz", "church"));
+
+  const Rights writer =
+      rights_of({.name = "b", .sha256 = kHash, .models = {"church"}, .uploads = true, .annotations = true});
+  EXPECT_FALSE(writer.authorize_annotations("tower"));
+  EXPECT_FALSE(writer.authorize_upload("tower.laz", "tower"));
+  const auto annotations = writer.authorize_annotations("church");
+  ASSERT_TRUE(annotations);
+  EXPECT_TRUE(annotations->model().allowed());
+  const auto upload = writer.authorize_upload("church.laz", "church");
+  ASSERT_TRUE(upload);
+  EXPECT_EQ(upload->file(), "church.laz");
+  EXPECT_EQ(upload->sender(), "b");
+
+  EXPECT_FALSE(Rights::of(nullptr).authorize_annotations("church"));
+  EXPECT_FALSE(Rights::of(nullptr).authorize_upload("church.laz", "church"));
+  EXPECT_TRUE(Rights::unlimited().authorize_annotations("church"));
+  const auto of_anybody = Rights::unlimited().authorize_upload("church.laz", "church");
+  ASSERT_TRUE(of_anybody);
+  EXPECT_EQ(of_anybody->sender(), "");
+}
+
+// Rights alone make what stands for their decision.
+static_assert(!std::is_default_constructible_v<AuthorizedModel> && !std::is_default_constructible_v<Rights>);
+static_assert(!std::is_constructible_v<AuthorizedModel, std::string>);
+static_assert(!std::is_constructible_v<AuthorizedModel, std::string, bool>);
+static_assert(!std::is_constructible_v<AuthorizedAnnotations, AuthorizedModel>);
+static_assert(!std::is_constructible_v<AuthorizedUpload, std::string, std::string>);
+static_assert(!std::is_constructible_v<Rights, std::shared_ptr<const Principal>, bool>);
 
 TEST_F(TokenFileTest, WhatIsWrittenIsReadForItsOwnerAlone) {
   const auto expires = *parse_time("2027-01-31T12:00:00Z");

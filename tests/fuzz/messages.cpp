@@ -62,7 +62,7 @@ void read_depth(Bytes bytes) {
 }
 
 void read_route(Bytes bytes) {
-  static_cast<void>(net::route_http(text_of(bytes)));
+  static_cast<void>(net::parse_target(text_of(bytes)));
 }
 
 void read_query(Bytes bytes) {

@@ -53,7 +53,7 @@ class HostileMessagesTest : public ::testing::Test {
   void begin_conversation() {
     listener_ = std::make_shared<Listener>();
     conversation_ = std::make_shared<Conversation>(context_, ++session_, io_.get_executor(), listener_, "nobody",
-                                                   Gatekeeper::Guest());
+                                                   Gatekeeper::User());
   }
   void end_conversation() {
     if (!conversation_) return;

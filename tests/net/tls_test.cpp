@@ -84,6 +84,26 @@ TEST_F(TlsTest, AnswersHttpOnTheSamePort) {
   EXPECT_THAT(get("/api/models"), HasSubstr("cube")) << "this machine may do without";
 }
 
+/// A cookie of a browser that came through TLS is sent back through TLS alone.
+TEST_F(TlsTest, TheConnectionTellsWhetherItsCookiesAreSecure) {
+  start(config_);
+  const auto request = [](const std::string& headers) {
+    return "POST /api/logout HTTP/1.1\r\nHost: here\r\n" + headers + "Content-Length: 6\r\n\r\ntoken=";
+  };
+  const auto through_tls = [&](const std::string& headers) {
+    std::ofstream(folder_ / "request") << request(headers);
+    return output_of("openssl s_client -quiet -connect 127.0.0.1:" + std::to_string(port_) + " < " +
+                     (folder_ / "request").string() + " 2> /dev/null");
+  };
+  const std::string secure = "Set-Cookie: __Host-surfcast=; Path=/; HttpOnly; SameSite=Strict; Secure";
+  EXPECT_THAT(through_tls(""), HasSubstr(secure));
+  EXPECT_THAT(through_tls("X-Forwarded-Proto: http\r\n"), HasSubstr(secure)) << "a client cannot say otherwise";
+  EXPECT_THAT(through_tls("Origin: https://here\r\n"), HasSubstr(secure));
+  EXPECT_THAT(through_tls("Origin: http://here\r\nX-Forwarded-Proto: http\r\n"), StartsWith("HTTP/1.1 403"));
+  EXPECT_THAT(http(request("")), HasSubstr("Set-Cookie: surfcast=;"));
+  EXPECT_THAT(http(request("X-Forwarded-Proto: https\r\n")), HasSubstr(secure)) << "a proxy speaks TLS";
+}
+
 TEST_F(TlsTest, AServerThatIsNotTrustedIsNotTalkedTo) {
   start(config_);
   const auto unknown = open(false, "");

@@ -2,6 +2,7 @@
 #include <chrono>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -17,7 +18,6 @@
 #include "net/http_credentials.h"
 #include "net/net_fixture.h"
 #include "net/raw_websocket.h"
-#include "service/model_name.h"
 
 namespace surfcast::net {
 namespace {
@@ -325,6 +325,32 @@ TEST(GatekeeperTest, WhoeverGuessesWaits) {
   fs::remove(file);
 }
 
+TEST(GatekeeperTest, AUserIsOneClientWhereverTheyComeFrom) {
+  const auto user = [](size_t connections) {
+    return std::make_shared<const Principal>(
+        Principal{.name = "some", .sha256 = {}, .models = {}, .connections = connections, .views = 1});
+  };
+  EXPECT_EQ(client_id("10.0.0.1", user(0)), client_id("10.0.0.2", user(0)));
+  EXPECT_NE(client_id("10.0.0.1", user(0)), client_id("10.0.0.1", nullptr));
+  EXPECT_NE(client_id("10.0.0.1", nullptr), client_id("10.0.0.2", nullptr));
+
+  const Gatekeeper gate("");
+  EXPECT_FALSE(gate.count(nullptr, &Clients::Counts::connections)) << "nobody has no number of their own";
+  std::optional<Counted> first = gate.count(user(2), &Clients::Counts::connections);
+  EXPECT_EQ(gate.refusal_of_connection(user(2)), "");
+  const auto second = gate.count(user(2), &Clients::Counts::connections);
+  EXPECT_EQ(gate.refusal_of_connection(user(2)), "busy: this token opens 2 connections at a time");
+  EXPECT_EQ(gate.refusal_of_connection(user(0)), "") << "without a limit";
+  EXPECT_EQ(gate.refusal_of_connection(nullptr), "");
+  EXPECT_EQ(gate.refusal_of_view(user(2)), "") << "views have a limit of their own";
+  first = gate.count(user(2), &Clients::Counts::views);
+  EXPECT_EQ(gate.refusal_of_connection(user(2)), "");
+  EXPECT_EQ(gate.refusal_of_view(user(2)), "busy: this token opens 1 views at a time");
+  first.reset();
+  EXPECT_EQ(gate.refusal_of_view(user(2)), "");
+  EXPECT_EQ(gate.connections(), 1U);
+}
+
 TEST(HttpCredentialsTest, AreFoundWhereverTheyAre) {
   EXPECT_EQ(token_of({"Bearer abc", "", ""}), "abc");
   EXPECT_EQ(token_of({"bearer abc", "surfcast=other", ""}), "abc");
@@ -337,12 +363,6 @@ TEST(HttpCredentialsTest, AreFoundWhereverTheyAre) {
   EXPECT_EQ(token_of_form("token=%zz"), "");
   EXPECT_THAT(login_cookie("abc", /*encrypted=*/true), StartsWith("__Host-surfcast=abc; Path=/;"));
   EXPECT_THAT(login_cookie("abc", /*encrypted=*/true), HasSubstr("; Secure"));
-}
-
-TEST(ModelNameTest, AHiddenNameReadsAsItWas) {
-  EXPECT_NE(service::hidden_name("cube"), "cube");
-  EXPECT_EQ(service::shown_name(service::hidden_name("cube")), "cube");
-  EXPECT_EQ(service::shown_name("cube"), "cube");
 }
 
 }  // namespace

@@ -63,13 +63,12 @@ TEST_F(AwaitedModelTest, DescriptionsAndPicksWaitForTheModel) {
   start();
   std::atomic<int> answers = 0;
   std::promise<Result<ModelDescription>> description;
-  service_->describe_model("cube", [&](auto result) {
+  service_->describe_model(authorized("cube"), [&](auto result) {
     ++answers;
     description.set_value(std::move(result));
   });
   std::promise<Error> pick;
-  PickJob pick_job;
-  pick_job.model = "cube";
+  PickJob pick_job{authorized("cube")};
   service_->pick(pick_job, [&](const auto& picked) {
     ++answers;
     pick.set_value(picked.error());
@@ -83,7 +82,7 @@ TEST_F(AwaitedModelTest, DescriptionsAndPicksWaitForTheModel) {
 TEST_F(AwaitedModelTest, ADescriptionThatWaitsTooLongIsRefused) {
   start({.queue_timeout = std::chrono::milliseconds(1)});
   std::optional<Error> refusal;
-  service_->describe_model("cube", [&](const auto& result) { refusal = result.error(); });
+  service_->describe_model(authorized("cube"), [&](const auto& result) { refusal = result.error(); });
   std::this_thread::sleep_for(std::chrono::milliseconds(5));  // longer than the timeout
   service_->models_changed();
   ASSERT_TRUE(refusal);

@@ -12,8 +12,7 @@ namespace {
 using FairnessTest = RenderServiceTest;
 
 PictureJob large(const std::string& model) {
-  PictureJob job;
-  job.model = model;
+  PictureJob job{authorized(model)};
   job.request.width = 1024;
   job.request.height = 1024;
   return job;

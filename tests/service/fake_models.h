@@ -9,11 +9,16 @@
 #include <utility>
 #include <vector>
 
+#include "access/authorization.h"
 #include "service/frame_renderer.h"
-#include "service/model_name.h"
 #include "service/model_source.h"
 
 namespace surfcast::service {
+
+/// A model as somebody asks for it who may know of all.
+inline access::AuthorizedModel authorized(const std::string& name) {
+  return access::Rights::unlimited().authorize(name);
+}
 
 /// Two models: "cube", z-up, and "teapot", y-up.
 class FakeModels : public ModelSource {
@@ -27,7 +32,7 @@ class FakeModels : public ModelSource {
   [[nodiscard]] bool remote(const std::string& name) const override { return name == remote_model; }
   [[nodiscard]] Result<ModelDescription> describe(const std::string& name) const override {
     if (name != "cube" && name != "teapot")
-      return fail(ErrorKind::kNotFound, shown_name(name) + ": there is no such model");
+      return fail(ErrorKind::kNotFound, access::shown_name(name) + ": there is no such model");
     ModelDescription description;
     description.info.surfels = 1234;
     description.info.bounds.include(glm::dvec3{-1, -2, -3});
@@ -47,7 +52,7 @@ class FakeModels : public ModelSource {
   }
   [[nodiscard]] Result<std::shared_ptr<const model::ModelFile>> open(const std::string& name) const override {
     if (name == "cube" && cube_file) return cube_file;
-    return fail(ErrorKind::kNotFound, shown_name(name) + ": there is no file of this model");
+    return fail(ErrorKind::kNotFound, access::shown_name(name) + ": there is no file of this model");
   }
 
   std::vector<ScanStatus> scan_list;  ///< set it before the service starts
@@ -102,7 +107,7 @@ class FakeRenderer : public FrameRenderer {
       return fail(ErrorKind::kCancelled, "cancelled");
     }
     const bool known = model == "cube" || model == "teapot" || model == "noise";
-    if (!known) return fail(ErrorKind::kNotFound, shown_name(model) + ": there is no such model");
+    if (!known) return fail(ErrorKind::kNotFound, access::shown_name(model) + ": there is no such model");
     control_->editions.push_back(request.edition);
     picture::Frame frame;
     frame.preview = request.edition > 0 && request.edition <= control_->preview_editions;

@@ -24,17 +24,16 @@ class RenderServiceTest : public ::testing::Test {
     ASSERT_TRUE(started);
     service_ = std::move(*started);
   }
-  std::pair<JobId, std::future<Result<EncodedPicture>>> draw(const Asker& asker, PictureJob job) {
+  std::pair<JobId, std::future<Result<EncodedPicture>>> draw(const Client& client, PictureJob job) {
     const auto promise = std::make_shared<std::promise<Result<EncodedPicture>>>();
-    const JobId id = service_->draw(asker, std::move(job), [promise](auto result) { promise->set_value(result); });
+    const JobId id = service_->draw(client, std::move(job), [promise](auto result) { promise->set_value(result); });
     return {id, promise->get_future()};
   }
   void wait_for_drawing(int pictures) const {
     while (control_->drawn < pictures) std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
   static PictureJob job_for(const std::string& model) {
-    PictureJob job;
-    job.model = model;
+    PictureJob job{authorized(model)};
     job.request.width = 8;
     job.request.height = 4;
     return job;

@@ -49,7 +49,7 @@ TEST_F(RenderServiceTest, FrontSurfacesBeyondTheLimitAreRefusedAndStopWithTheSer
 TEST_F(RenderServiceTest, ProfilesOfNoModelAreErrors) {
   start();
   std::promise<Result<ProfileResult>> promise;
-  service_->profile({"nowhere", {{{0, 0, 0}, {1, 0, 0}}, 1, 0}},
+  service_->profile({authorized("nowhere"), {{{0, 0, 0}, {1, 0, 0}}, 1, 0}},
                     [&](auto result) { promise.set_value(std::move(result)); });
   EXPECT_EQ(promise.get_future().get().error().kind, ErrorKind::kNotFound);
 }
@@ -134,10 +134,10 @@ TEST_F(RenderServiceTest, AFrameThatIsKeptIsEncodedAgainWithoutBeingDrawn) {
 TEST_F(RenderServiceTest, ModelsAreListedAndDescribed) {
   start();
   std::promise<std::vector<std::string>> names;
-  service_->list_models([&](ModelList list) { names.set_value(std::move(list.names)); });
+  service_->list_models(access::Rights::unlimited(), [&](ModelList list) { names.set_value(std::move(list.names)); });
   EXPECT_EQ(names.get_future().get(), (std::vector<std::string>{"cube", "teapot"}));
   std::promise<Result<ModelDescription>> description;
-  service_->describe_model("teapot", [&](auto result) { description.set_value(std::move(result)); });
+  service_->describe_model(authorized("teapot"), [&](auto result) { description.set_value(std::move(result)); });
   const Result<ModelDescription> teapot = description.get_future().get();
   ASSERT_TRUE(teapot);
   EXPECT_EQ(teapot->blocks, 7u);
@@ -162,7 +162,7 @@ TEST_F(RenderServiceTest, PicksBeyondTheirLimitAreRefusedAtOnce) {
   limits.picks.waiting = 0;
   start(limits);
   std::optional<Error> error;
-  service_->pick({}, [&error](const auto& picked) { error = picked.error(); });
+  service_->pick({authorized("cube")}, [&error](const auto& picked) { error = picked.error(); });
   ASSERT_TRUE(error);
   EXPECT_EQ(error->kind, ErrorKind::kUnavailable);
 }

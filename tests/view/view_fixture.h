@@ -43,7 +43,8 @@ class ViewOfAScanTest : public ::testing::Test {
     };
     ViewOptions options;
     options.video = video_;
-    view_ = std::make_shared<ViewSession>(*service_, 1, 1, options, counts_, std::move(port));
+    view_ =
+        std::make_shared<ViewSession>(*service_, 1, service::authorized("cube"), 1, options, counts_, std::move(port));
     update();
   }
   void TearDown() override {
@@ -52,8 +53,7 @@ class ViewOfAScanTest : public ::testing::Test {
   }
 
   void update(bool moving = false) {
-    service::PictureJob job;
-    job.model = "cube";
+    service::PictureJob job{service::authorized("cube")};
     job.request.width = 8;
     job.request.height = 4;
     job.request.error = error_;

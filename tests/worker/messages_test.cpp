@@ -143,9 +143,9 @@ TEST(MessagesTest, AFrameArrivesWithoutItsPixels) {
 std::vector<Message> full_queries() {
   kinds::PickedSurfel item{{1, 2, 3}, {0, 0, 1}, glm::u8vec3(4, 5, 6), 0.5, 7, {{"fa", 0.25}, {"", -1}}, 8, 9};
   const pick::BandPoint point{{1, 2, 3}, {4, 5}, {6, 7, 8}};
-  service::PointsJob job{"lion", {}, exporter::PointFormat::kPly, 12, true};
-  job.selection.points = {{{{{0, 0, 0}, {1, 1, 1}}}, {{{{0, 1}, {2, 3}}, 0.5, -1, 1}}}, {2, 6}, 3};
-  job.selection.source_coordinates = job.selection.normals = true;
+  service::PointsQuery points{"lion", {}, exporter::PointFormat::kPly, 12, true};
+  points.selection.points = {{{{{0, 0, 0}, {1, 1, 1}}}, {{{{0, 1}, {2, 3}}, 0.5, -1, 1}}}, {2, 6}, 3};
+  points.selection.source_coordinates = points.selection.normals = true;
   exporter::PointFacts facts{5, {{0, 0, 0}, {1, 1, 1}}, {1, 2, 3}, surfel::Grid{glm::dvec3(0.1), glm::dvec3(7)}};
   return {ConfigureQueries{LogFormat::kJson, false, {"/usr"}, 99, 100},
           Pick{3, {{full_request(), true}, 4, 5, 6}},
@@ -154,7 +154,7 @@ std::vector<Message> full_queries() {
           SurfacePart{{std::byte{1}, std::byte{2}}},
           FindBand{3, {{{0, 1, 2}, {3, 4, 5}}, 0.5, 7}},
           BandPart{9, 8, {glm::dvec3(0.1), glm::dvec3(7)}, {point, point}, {1, 2}, true},
-          OpenPoints{1, 2, job},
+          OpenPoints{1, 2, points},
           CountPoints{3},
           PointsCounted{facts, true},
           NextPiece{4, 5},
@@ -179,10 +179,10 @@ TEST(MessagesTest, AllOfAnItemAndOfAJobArrives) {
   EXPECT_EQ(picked.item->values.at(0).attribute, "fa");
   EXPECT_EQ(picked.item->color, glm::u8vec3(4, 5, 6));
   EXPECT_EQ(picked.item->number, 9U);
-  const service::PointsJob job = sent(std::get<OpenPoints>(full_queries()[7])).job;
-  EXPECT_EQ(job.selection.points.zone.corridors.at(0).line.at(1), glm::dvec2(2, 3));
-  EXPECT_EQ(job.selection.points.classes, (std::vector<uint8_t>{2, 6}));
-  EXPECT_TRUE(job.only_count && job.selection.normals);
+  const service::PointsQuery points = sent(std::get<OpenPoints>(full_queries()[7])).query;
+  EXPECT_EQ(points.selection.points.zone.corridors.at(0).line.at(1), glm::dvec2(2, 3));
+  EXPECT_EQ(points.selection.points.classes, (std::vector<uint8_t>{2, 6}));
+  EXPECT_TRUE(points.only_count && points.selection.normals);
 }
 
 TEST(MessagesTest, ErrorsArrive) {

@@ -279,10 +279,10 @@ TEST_F(WorkerQueriesTest, PointsOfRegionsAreThoseOfThisProcess) {
   start();
   const auto cancelled = std::make_shared<const std::atomic<bool>>(false);
   for (const exporter::PointFormat format : {exporter::PointFormat::kCsv, exporter::PointFormat::kLaz}) {
-    service::PointsJob job{"survey", {}, format, 1'000'000, false};
-    job.selection.points.zone.boxes.push_back({{-40, -60, -1}, {40, 60, 1}});
-    auto there = queries_->points(model, job, cancelled);
-    auto here = here_->points(model, job, cancelled);
+    service::PointsQuery query{"survey", {}, format, 1'000'000, false};
+    query.selection.points.zone.boxes.push_back({{-40, -60, -1}, {40, 60, 1}});
+    auto there = queries_->points(model, query, cancelled);
+    auto here = here_->points(model, query, cancelled);
     ASSERT_TRUE(there && here) << (there ? "" : there.error().message);
     const auto [bytes, count] = all_of(**there, 65536);
     EXPECT_GT(count, 10'000U);
@@ -294,14 +294,14 @@ TEST_F(WorkerQueriesTest, PointsOfAWorkerThatEndsAreAnErrorAndOthersAreFoundAgai
   const ModelPointer model = survey(300);
   start();
   const auto cancelled = std::make_shared<const std::atomic<bool>>(false);
-  const service::PointsJob job{"survey", {}, exporter::PointFormat::kCsv, 1'000'000, false};
-  auto lost = queries_->points(model, job, cancelled);
+  const service::PointsQuery query{"survey", {}, exporter::PointFormat::kCsv, 1'000'000, false};
+  auto lost = queries_->points(model, query, cancelled);
   ASSERT_TRUE(lost);
   for (const pid_t worker : workers()) ::kill(worker, SIGKILL);
   const auto counted = (*lost)->count();
   ASSERT_FALSE(counted);
   EXPECT_EQ(counted.error().kind, ErrorKind::kUnavailable);
-  auto again = queries_->points(model, job, cancelled);
+  auto again = queries_->points(model, query, cancelled);
   ASSERT_TRUE(again) << again.error().message;
   EXPECT_EQ(all_of(**again, 65536).second, 90'000U);
   EXPECT_FALSE((*lost)->count()) << "another worker does not know them";
