@@ -25,31 +25,6 @@ bool set_attribute(wire::DrawPicture& picture, std::string_view text) {
   return true;
 }
 
-bool set_source(wire::DrawPicture& picture, std::string_view text) {
-  constexpr std::array<std::string_view, 7> kNames{"rgb",    "intensity", "elevation", "classification",
-                                                   "normal", "direction", "dec"};
-  const auto found = std::find(kNames.begin(), kNames.end(), text);
-  if (found == kNames.end()) return set_attribute(picture, text);
-  picture.mutable_coloring()->set_source(static_cast<wire::ColorSource>(found - kNames.begin()));
-  return true;
-}
-
-bool set_map(wire::DrawPicture& picture, std::string_view text) {
-  constexpr std::array<std::string_view, 4> kNames{"viridis", "turbo", "gray", "terrain"};
-  const auto found = std::find(kNames.begin(), kNames.end(), text);
-  if (found == kNames.end()) return false;
-  picture.mutable_coloring()->set_map(static_cast<wire::ColorMap>(found - kNames.begin()));
-  return true;
-}
-
-bool set_range(wire::DrawPicture& picture, std::string_view text) {
-  const std::optional<Numbers> values = parse_doubles(text, 2);
-  if (!values || !((*values)[0] < (*values)[1])) return false;
-  picture.mutable_coloring()->set_first((*values)[0]);
-  picture.mutable_coloring()->set_last((*values)[1]);
-  return true;
-}
-
 /// The parts of a text between separators; an empty text has one part.
 std::vector<std::string_view> split(std::string_view text, char separator) {
   std::vector<std::string_view> parts;
@@ -61,50 +36,9 @@ std::vector<std::string_view> split(std::string_view text, char separator) {
   return parts;
 }
 
-bool set_hidden_classes(wire::DrawPicture& picture, std::string_view text) {
-  std::vector<uint32_t> codes;
-  for (const std::string_view part : split(text, ',')) {
-    const std::optional<uint32_t> code = parse_unsigned(part);
-    if (!code || *code > kMaxClassCode) return false;
-    codes.push_back(*code);
-  }
-  picture.mutable_hidden_classes()->Assign(codes.begin(), codes.end());
-  return true;
-}
-
 std::optional<double> parse_share(std::string_view text) {
   const std::optional<double> value = parse_double(text);
   return value && *value >= 0 && *value <= 1 ? value : std::nullopt;
-}
-
-bool set_class_opacities(wire::DrawPicture& picture, std::string_view text) {
-  google::protobuf::RepeatedPtrField<wire::ClassOpacity> classes;
-  for (const std::string_view part : split(text, ',')) {
-    const size_t equals = part.find('=');
-    if (equals == std::string_view::npos) return false;
-    const std::optional<uint32_t> code = parse_unsigned(part.substr(0, equals));
-    const std::optional<double> opacity = parse_share(part.substr(equals + 1));
-    if (!code || *code > kMaxClassCode || !opacity) return false;
-    wire::ClassOpacity* added = classes.Add();
-    added->set_code(*code);
-    added->set_opacity(*opacity);
-  }
-  picture.mutable_class_opacities()->Swap(&classes);
-  return true;
-}
-
-bool set_ghost(wire::DrawPicture& picture, std::string_view text) {
-  const std::optional<double> factor = parse_share(text);
-  if (factor) picture.set_ghost(*factor);
-  return factor.has_value();
-}
-
-bool set_xray(wire::DrawPicture& picture, std::string_view text) {
-  constexpr std::array<std::string_view, 3> kNames{"off", "sorted", "density"};
-  const auto found = std::find(kNames.begin(), kNames.end(), text);
-  if (found == kNames.end()) return false;
-  picture.set_xray(static_cast<wire::XRay>(found - kNames.begin()));
-  return true;
 }
 
 std::optional<wire::ClipBox> parse_clip_box(std::string_view text, bool inverted) {
@@ -139,6 +73,60 @@ bool set_clip_boxes(wire::DrawPicture& picture, std::string_view text, bool inve
   return true;
 }
 
+}  // namespace
+
+bool set_color_source(wire::DrawPicture& picture, std::string_view text) {
+  constexpr std::array<std::string_view, 7> kNames{"rgb",    "intensity", "elevation", "classification",
+                                                   "normal", "direction", "dec"};
+  const auto found = std::find(kNames.begin(), kNames.end(), text);
+  if (found == kNames.end()) return set_attribute(picture, text);
+  picture.mutable_coloring()->set_source(static_cast<wire::ColorSource>(found - kNames.begin()));
+  return true;
+}
+
+bool set_color_range(wire::DrawPicture& picture, std::string_view text) {
+  const std::optional<Numbers> values = parse_doubles(text, 2);
+  if (!values || !((*values)[0] < (*values)[1])) return false;
+  picture.mutable_coloring()->set_first((*values)[0]);
+  picture.mutable_coloring()->set_last((*values)[1]);
+  return true;
+}
+
+bool set_hidden_classes(wire::DrawPicture& picture, std::string_view text) {
+  std::vector<uint32_t> codes;
+  for (const std::string_view part : split(text, ',')) {
+    const std::optional<uint32_t> code = parse_unsigned(part);
+    if (!code || *code > kMaxClassCode) return false;
+    codes.push_back(*code);
+  }
+  picture.mutable_hidden_classes()->Assign(codes.begin(), codes.end());
+  return true;
+}
+
+bool set_class_opacities(wire::DrawPicture& picture, std::string_view text) {
+  google::protobuf::RepeatedPtrField<wire::ClassOpacity> classes;
+  for (const std::string_view part : split(text, ',')) {
+    const size_t equals = part.find('=');
+    if (equals == std::string_view::npos) return false;
+    const std::optional<uint32_t> code = parse_unsigned(part.substr(0, equals));
+    const std::optional<double> opacity = parse_share(part.substr(equals + 1));
+    if (!code || *code > kMaxClassCode || !opacity) return false;
+    wire::ClassOpacity* added = classes.Add();
+    added->set_code(*code);
+    added->set_opacity(*opacity);
+  }
+  picture.mutable_class_opacities()->Swap(&classes);
+  return true;
+}
+
+bool set_boxes_to_show(wire::DrawPicture& picture, std::string_view text) {
+  return set_clip_boxes(picture, text, false);
+}
+
+bool set_boxes_to_hide(wire::DrawPicture& picture, std::string_view text) {
+  return set_clip_boxes(picture, text, true);
+}
+
 bool set_eye_dome(wire::DrawPicture& picture, std::string_view text) {
   const size_t comma = text.find(',');
   const std::optional<double> strength = parse_double(text.substr(0, comma));
@@ -149,21 +137,6 @@ bool set_eye_dome(wire::DrawPicture& picture, std::string_view text) {
   picture.mutable_eye_dome()->set_strength(*strength);
   picture.mutable_eye_dome()->set_radius(*radius);
   return true;
-}
-
-}  // namespace
-
-bool set_display_field(wire::DrawPicture& picture, std::string_view name, std::string_view text) {
-  if (name == "color_by") return set_source(picture, text);
-  if (name == "color_map") return set_map(picture, text);
-  if (name == "color_range") return set_range(picture, text);
-  if (name == "hide_classes") return set_hidden_classes(picture, text);
-  if (name == "opacity_by_class") return set_class_opacities(picture, text);
-  if (name == "ghost") return set_ghost(picture, text);
-  if (name == "xray") return set_xray(picture, text);
-  if (name == "clip_box") return set_clip_boxes(picture, text, false);
-  if (name == "clip_out") return set_clip_boxes(picture, text, true);
-  return name == "eye_dome" && set_eye_dome(picture, text);
 }
 
 }  // namespace surfcast::protocol

@@ -6,8 +6,17 @@
 
 namespace surfcast::protocol {
 
-/// Sets one display option of a picture request: color_by, color_map, color_range, hide_classes, clip_box, clip_out or
-/// eye_dome. False when `name` is not one of these or `text` is not a valid value.
-bool set_display_field(wire::DrawPicture& picture, std::string_view name, std::string_view text);
+// Display options with a structure, set from their texts. False when the text is no value of the option: then the
+// picture stays as it was.
+
+bool set_color_source(wire::DrawPicture& picture, std::string_view text);
+bool set_color_range(wire::DrawPicture& picture, std::string_view text);
+bool set_hidden_classes(wire::DrawPicture& picture, std::string_view text);
+bool set_class_opacities(wire::DrawPicture& picture, std::string_view text);
+/// Replaces the boxes that are not inverted, and keeps the others.
+bool set_boxes_to_show(wire::DrawPicture& picture, std::string_view text);
+/// Replaces the inverted boxes, and keeps the others.
+bool set_boxes_to_hide(wire::DrawPicture& picture, std::string_view text);
+bool set_eye_dome(wire::DrawPicture& picture, std::string_view text);
 
 }  // namespace surfcast::protocol

@@ -1,7 +1,6 @@
 #include "protocol/glyph_fields.h"
 
 #include <algorithm>
-#include <array>
 #include <optional>
 #include <string>
 #include <utility>
@@ -11,40 +10,6 @@
 
 namespace surfcast::protocol {
 namespace {
-
-template <size_t Count>
-std::optional<int> find_name(const std::array<std::string_view, Count>& names, std::string_view name) {
-  const auto found = std::ranges::find(names, name);
-  return found == names.end() ? std::nullopt : std::optional(static_cast<int>(found - names.begin()));
-}
-
-bool set_shape(wire::DrawPicture& picture, std::string_view text) {
-  constexpr std::array<std::string_view, 2> kNames{"ellipsoid", "superquadric"};
-  const size_t comma = text.find(',');
-  const std::optional<int> shape = find_name(kNames, text.substr(0, comma));
-  if (!shape) return false;
-  if (comma != std::string_view::npos) {
-    const std::optional<double> sharpness = parse_double(text.substr(comma + 1));
-    if (!sharpness || !(*sharpness >= 0 && *sharpness <= kMaxSharpness)) return false;
-    picture.mutable_glyphs()->set_sharpness(*sharpness);
-  }
-  picture.mutable_glyphs()->set_shape(static_cast<wire::GlyphShape>(*shape));
-  return true;
-}
-
-bool set_radius(wire::DrawPicture& picture, std::string_view text) {
-  constexpr std::array<std::string_view, 3> kNames{"eigenvalue", "root", "unit"};
-  const std::optional<int> radius = find_name(kNames, text);
-  if (radius) picture.mutable_glyphs()->set_radius(static_cast<wire::GlyphRadius>(*radius));
-  return radius.has_value();
-}
-
-bool set_scale(wire::DrawPicture& picture, std::string_view text) {
-  const std::optional<double> scale = parse_double(text);
-  if (!scale || !(*scale > 0)) return false;
-  picture.mutable_glyphs()->set_scale(*scale);
-  return true;
-}
 
 /// ATTRIBUTE,MIN or ATTRIBUTE,MIN,MAX. Names may contain commas: the numbers are the last parts.
 bool set_threshold(wire::Threshold& threshold, std::string_view text) {
@@ -64,6 +29,31 @@ bool set_threshold(wire::Threshold& threshold, std::string_view text) {
   return false;
 }
 
+bool set_light(wire::Light& light, std::string_view text) {
+  const auto values = parse_doubles(text, 4);
+  if (!values || !((*values)[3] >= 0)) return false;
+  light.mutable_direction()->set_x((*values)[0]);
+  light.mutable_direction()->set_y((*values)[1]);
+  light.mutable_direction()->set_z((*values)[2]);
+  light.set_power((*values)[3]);
+  return (*values)[0] != 0 || (*values)[1] != 0 || (*values)[2] != 0;
+}
+
+}  // namespace
+
+bool set_glyph(wire::DrawPicture& picture, std::string_view text) {
+  const size_t comma = text.find(',');
+  const std::optional<int> shape = parse_choice("ellipsoid|superquadric", text.substr(0, comma));
+  if (!shape) return false;
+  if (comma != std::string_view::npos) {
+    const std::optional<double> sharpness = parse_double(text.substr(comma + 1));
+    if (!sharpness || !(*sharpness >= 0 && *sharpness <= kMaxSharpness)) return false;
+    picture.mutable_glyphs()->set_sharpness(*sharpness);
+  }
+  picture.mutable_glyphs()->set_shape(static_cast<wire::GlyphShape>(*shape));
+  return true;
+}
+
 bool set_thresholds(wire::DrawPicture& picture, std::string_view text) {
   google::protobuf::RepeatedPtrField<wire::Threshold> thresholds;
   for (size_t end = 0; end != std::string_view::npos;) {
@@ -74,16 +64,6 @@ bool set_thresholds(wire::DrawPicture& picture, std::string_view text) {
   if (thresholds.size() > kMaxThresholds) return false;
   picture.mutable_glyphs()->mutable_thresholds()->Swap(&thresholds);
   return true;
-}
-
-bool set_light(wire::Light& light, std::string_view text) {
-  const auto values = parse_doubles(text, 4);
-  if (!values || !((*values)[3] >= 0)) return false;
-  light.mutable_direction()->set_x((*values)[0]);
-  light.mutable_direction()->set_y((*values)[1]);
-  light.mutable_direction()->set_z((*values)[2]);
-  light.set_power((*values)[3]);
-  return (*values)[0] != 0 || (*values)[1] != 0 || (*values)[2] != 0;
 }
 
 bool set_lights(wire::DrawPicture& picture, std::string_view text) {
@@ -104,16 +84,6 @@ bool set_lights(wire::DrawPicture& picture, std::string_view text) {
   if (lighting.lights_size() > kMaxLights) return false;
   *picture.mutable_lighting() = std::move(lighting);
   return true;
-}
-
-}  // namespace
-
-bool set_glyph_field(wire::DrawPicture& picture, std::string_view name, std::string_view text) {
-  if (name == "glyph") return set_shape(picture, text);
-  if (name == "glyph_radius") return set_radius(picture, text);
-  if (name == "glyph_scale") return set_scale(picture, text);
-  if (name == "threshold") return set_thresholds(picture, text);
-  return name == "lights" && set_lights(picture, text);
 }
 
 }  // namespace surfcast::protocol

@@ -6,8 +6,11 @@
 
 namespace surfcast::protocol {
 
-/// Sets the field of the look of ellipsoids that has this name. False if there is none, or if the text is not a value
-/// of it: then the picture stays as it was.
-bool set_glyph_field(wire::DrawPicture& picture, std::string_view name, std::string_view text);
+// Options of ellipsoids with a structure, set from their texts. False when the text is no value of the option: then the
+// picture stays as it was.
+
+bool set_glyph(wire::DrawPicture& picture, std::string_view text);
+bool set_thresholds(wire::DrawPicture& picture, std::string_view text);
+bool set_lights(wire::DrawPicture& picture, std::string_view text);
 
 }  // namespace surfcast::protocol

@@ -49,4 +49,13 @@ std::optional<std::vector<uint32_t>> parse_unsigneds(std::string_view text, size
   return parse_list<uint32_t>(text, count, parse_unsigned);
 }
 
+std::optional<int> parse_choice(std::string_view names, std::string_view text) {
+  for (int number = 0;; ++number) {
+    const size_t end = names.find('|');
+    if (names.substr(0, end) == text) return number;
+    if (end == std::string_view::npos) return std::nullopt;
+    names.remove_prefix(end + 1);
+  }
+}
+
 }  // namespace surfcast::protocol

@@ -17,4 +17,7 @@ std::optional<uint32_t> parse_unsigned(std::string_view text);
 std::optional<std::vector<double>> parse_doubles(std::string_view text, size_t count);
 std::optional<std::vector<uint32_t>> parse_unsigneds(std::string_view text, size_t count);
 
+/// The number of a name among those of "first|second|third".
+std::optional<int> parse_choice(std::string_view names, std::string_view text);
+
 }  // namespace surfcast::protocol

@@ -4,6 +4,8 @@
 #include <limits>
 #include <string>
 
+#include "protocol/picture_fields.h"
+
 namespace surfcast::protocol {
 namespace {
 
@@ -32,15 +34,6 @@ Status check_camera(const wire::Camera& camera) {
   return {};
 }
 
-Status check_choices(const wire::DrawPicture& picture) {
-  if (!wire::FileFormat_IsValid(picture.format())) return invalid("format: unknown");
-  if (!wire::Normalization_IsValid(picture.normalization())) return invalid("normalization: unknown");
-  if (!wire::Filter_IsValid(picture.filter())) return invalid("filter: unknown");
-  if (!wire::Shading_IsValid(picture.shading())) return invalid("shading: unknown");
-  if (!wire::SplatConvention_IsValid(picture.splat_convention())) return invalid("splat_convention: unknown");
-  return {};
-}
-
 Status check_channels(const wire::DrawPicture& picture) {
   for (const int channel : picture.channels()) {
     if (!wire::Channel_IsValid(channel)) return invalid("channels: unknown");
@@ -51,17 +44,8 @@ Status check_channels(const wire::DrawPicture& picture) {
   return {};
 }
 
-/// What the spacing is, or is chosen for.
+/// The spacing is stated, or chosen for an error or a time.
 Status check_spacing(const wire::DrawPicture& picture) {
-  if (!(picture.spacing() >= 0) || !std::isfinite(picture.spacing())) {
-    return invalid("spacing: must be a finite number of pixels, at least 0");
-  }
-  if (!(picture.error() >= 0) || !std::isfinite(picture.error())) {
-    return invalid("error: must be a finite number of dB, at least 0");
-  }
-  if (!(picture.time_ms() >= 0) || !std::isfinite(picture.time_ms())) {
-    return invalid("time: must be a finite number of milliseconds, at least 0");
-  }
   const int stated = int{picture.spacing() > 0} + int{picture.error() > 0} + int{picture.time_ms() > 0};
   return stated > 1 ? invalid("spacing, error, time: at most one may be stated") : Status();
 }
@@ -71,7 +55,6 @@ Status check_numbers(const wire::DrawPicture& picture) {
   if (picture.has_resolution() && (resolution.width() == 0 || resolution.height() == 0)) {
     return invalid("resolution: must be at least 1,1");
   }
-  if (!valid(picture.background())) return invalid("background: each part must be at most 255");
   if (picture.quality() > 100) return invalid("quality: must be at most 100");
   return check_spacing(picture);
 }
@@ -82,7 +65,6 @@ Status check_coloring(const wire::Coloring& coloring) {
       (coloring.attribute().empty() || coloring.attribute().size() > kMaxAttributeBytes)) {
     return invalid("color_by: an attribute must be named");
   }
-  if (!wire::ColorMap_IsValid(coloring.map())) return invalid("color_map: unknown");
   if (!std::isfinite(coloring.first()) || !std::isfinite(coloring.last())) {
     return invalid("color_range: must be finite numbers");
   }
@@ -171,7 +153,6 @@ Status check_volume_options(const wire::DrawPicture& picture) {
   }
   if (Status status = check_iso_surfaces(picture); !status) return status;
   if (Status status = check_slices(picture); !status) return status;
-  if (!is_share(picture.opacity())) return invalid("opacity: must lie between 0 and 1");
   return check_transfer_points(transfer);
 }
 
@@ -181,10 +162,6 @@ bool names_attribute(const std::string& name) {
 
 Status check_glyphs(const wire::Glyphs& glyphs) {
   if (!wire::GlyphShape_IsValid(glyphs.shape())) return invalid("glyph: unknown shape");
-  if (!wire::GlyphRadius_IsValid(glyphs.radius())) return invalid("glyph_radius: unknown");
-  if (glyphs.has_scale() && !(glyphs.scale() > 0 && std::isfinite(glyphs.scale()))) {
-    return invalid("glyph_scale: must be a finite number above 0");
-  }
   if (glyphs.has_sharpness() && !(glyphs.sharpness() >= 0 && glyphs.sharpness() <= kMaxSharpness)) {
     return invalid("glyph: the sharpness must lie between 0 and 10");
   }
@@ -216,8 +193,8 @@ Status check_lighting(const wire::Lighting& lighting) {
   return {};
 }
 
-/// How surfels are seen through.
-Status check_opacities(const wire::DrawPicture& picture) {
+/// How surfels of single classes are seen through.
+Status check_class_opacities(const wire::DrawPicture& picture) {
   if (picture.class_opacities_size() > static_cast<int>(kMaxClassCode) + 1) {
     return invalid("opacity_by_class: too many classes");
   }
@@ -225,8 +202,6 @@ Status check_opacities(const wire::DrawPicture& picture) {
     if (of.code() > kMaxClassCode) return invalid("opacity_by_class: codes must be at most 255");
     if (!is_share(of.opacity())) return invalid("opacity_by_class: factors must lie between 0 and 1");
   }
-  if (!is_share(picture.ghost())) return invalid("ghost: must lie between 0 and 1");
-  if (!wire::XRay_IsValid(picture.xray())) return invalid("xray: unknown");
   return {};
 }
 
@@ -236,7 +211,7 @@ Status check_display_options(const wire::DrawPicture& picture) {
     if (code > kMaxClassCode) return invalid("hide_classes: codes must be at most 255");
   }
   if (Status status = check_clip_boxes(picture); !status) return status;
-  if (Status status = check_opacities(picture); !status) return status;
+  if (Status status = check_class_opacities(picture); !status) return status;
   const wire::EyeDomeLighting& eye_dome = picture.eye_dome();
   if (!(eye_dome.strength() >= 0 && eye_dome.strength() <= kMaxEyeDomeStrength)) {
     return invalid("eye_dome: the strength must lie between 0 and 100");
@@ -257,7 +232,8 @@ Status check_picture(const wire::DrawPicture& picture) {
   if (picture.has_camera()) {
     if (Status status = check_camera(picture.camera()); !status) return status;
   }
-  if (Status status = check_choices(picture); !status) return status;
+  if (!wire::FileFormat_IsValid(picture.format())) return invalid("format: unknown");
+  if (Status status = check_plain_fields(picture); !status) return status;
   if (Status status = check_channels(picture); !status) return status;
   if (Status status = check_numbers(picture); !status) return status;
   return check_display_options(picture);

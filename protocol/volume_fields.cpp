@@ -68,19 +68,6 @@ bool set_preset(wire::TransferFunction& transfer, std::string_view text) {
   return true;
 }
 
-bool set_transfer(wire::DrawPicture& picture, std::string_view text) {
-  wire::TransferFunction transfer;
-  if (!set_preset(transfer, text) && !set_list(*transfer.mutable_points(), text, set_point)) return false;
-  *picture.mutable_transfer() = std::move(transfer);
-  return true;
-}
-
-bool set_shaded(wire::DrawPicture& picture, std::string_view text) {
-  if (text != "on" && text != "off") return false;
-  picture.set_shaded(text == "on");
-  return true;
-}
-
 /// VALUE, VALUE,R,G,B or VALUE,R,G,B,OPACITY.
 bool set_iso_surface(wire::IsoSurface& surface, std::string_view text) {
   const auto commas = static_cast<size_t>(std::count(text.begin(), text.end(), ','));
@@ -117,19 +104,6 @@ bool set_slice(wire::Slice& slice, std::string_view text) {
   return (*values)[3] != 0 || (*values)[4] != 0 || (*values)[5] != 0;
 }
 
-bool set_medium(wire::DrawPicture& picture, std::string_view text) {
-  if (text != "on" && text != "off") return false;
-  picture.set_medium(text == "on");
-  return true;
-}
-
-bool set_opacity(wire::DrawPicture& picture, std::string_view text) {
-  const auto value = parse_double(text);
-  if (!value || !is_share(*value)) return false;
-  picture.set_opacity(*value);
-  return true;
-}
-
 }  // namespace
 
 std::optional<wire::TransferPreset> parse_transfer_preset(std::string_view name) {
@@ -139,13 +113,19 @@ std::optional<wire::TransferPreset> parse_transfer_preset(std::string_view name)
   return static_cast<wire::TransferPreset>(found - kNames.begin());
 }
 
-bool set_volume_field(wire::DrawPicture& picture, std::string_view name, std::string_view text) {
-  if (name == "transfer") return set_transfer(picture, text);
-  if (name == "iso") return set_list(*picture.mutable_iso_surfaces(), text, set_iso_surface);
-  if (name == "slice") return set_list(*picture.mutable_slices(), text, set_slice);
-  if (name == "medium") return set_medium(picture, text);
-  if (name == "opacity") return set_opacity(picture, text);
-  return name == "shaded" && set_shaded(picture, text);
+bool set_transfer(wire::DrawPicture& picture, std::string_view text) {
+  wire::TransferFunction transfer;
+  if (!set_preset(transfer, text) && !set_list(*transfer.mutable_points(), text, set_point)) return false;
+  *picture.mutable_transfer() = std::move(transfer);
+  return true;
+}
+
+bool set_iso_surfaces(wire::DrawPicture& picture, std::string_view text) {
+  return set_list(*picture.mutable_iso_surfaces(), text, set_iso_surface);
+}
+
+bool set_slices(wire::DrawPicture& picture, std::string_view text) {
+  return set_list(*picture.mutable_slices(), text, set_slice);
 }
 
 }  // namespace surfcast::protocol

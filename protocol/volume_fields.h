@@ -7,9 +7,12 @@
 
 namespace surfcast::protocol {
 
-/// Sets one option of volumes in a picture request: transfer, shaded, iso, slice, medium or opacity. False when `name`
-/// is none of them or `text` is not a valid value.
-bool set_volume_field(wire::DrawPicture& picture, std::string_view name, std::string_view text);
+// Options of volumes with a structure, set from their texts. False when the text is no value of the option: then the
+// picture stays as it was.
+
+bool set_transfer(wire::DrawPicture& picture, std::string_view text);
+bool set_iso_surfaces(wire::DrawPicture& picture, std::string_view text);
+bool set_slices(wire::DrawPicture& picture, std::string_view text);
 
 /// The preset of that name: "ct-bone".
 std::optional<wire::TransferPreset> parse_transfer_preset(std::string_view name);

@@ -1,5 +1,5 @@
-# cmake -D NPM=.. -D SOURCE=.. -D SCHEMA=.. -D BINARY=.. -D REQUIRED=0|1 -P build_viewer.cmake: brings BINARY/dist up
-# to date. Where npm's registry cannot be reached there is no viewer: an error if it is REQUIRED, as in a package; else
+# cmake -D NPM=.. -D SOURCE=.. -D SCHEMA=.. -D OPTIONS=.. -D BINARY=.. -D REQUIRED=0|1 -P build_viewer.cmake: brings
+# BINARY/dist up to date. Where npm's registry cannot be reached there is no viewer: an error if it is REQUIRED, as in a package; else
 # a warning, and the next build tries again. Errors in the viewer's own code are errors in any case.
 cmake_minimum_required(VERSION 3.25)
 set(installed ${BINARY}/installed)
@@ -27,7 +27,8 @@ endfunction()
 function(build_page)
   message(NOTICE "Building the viewer")
   execute_process(
-    COMMAND ${CMAKE_COMMAND} -E env SURFCAST_VIEWER_OUT=${BINARY}/dist ${NPM} run --silent build
+    COMMAND ${CMAKE_COMMAND} -E env SURFCAST_VIEWER_OUT=${BINARY}/dist SURFCAST_PLAIN_OPTIONS=${OPTIONS}
+      ${NPM} run --silent build
     WORKING_DIRECTORY ${SOURCE} RESULT_VARIABLE failed OUTPUT_VARIABLE output ERROR_VARIABLE output)
   if(failed)
     file(REMOVE ${page})
@@ -44,7 +45,7 @@ endif()
 
 file(GLOB_RECURSE inputs ${SOURCE}/src/* ${SOURCE}/public/*)
 list(FILTER inputs EXCLUDE REGEX /generated/)
-list(APPEND inputs ${installed} ${SCHEMA} ${SOURCE}/index.html ${SOURCE}/tsconfig.json ${SOURCE}/vite.config.ts)
+list(APPEND inputs ${installed} ${SCHEMA} ${OPTIONS} ${SOURCE}/index.html ${SOURCE}/tsconfig.json ${SOURCE}/vite.config.ts)
 foreach(input IN LISTS inputs)
   if(NOT EXISTS ${page} OR ${input} IS_NEWER_THAN ${page})
     build_page()

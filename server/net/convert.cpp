@@ -34,28 +34,6 @@ geometry::Corridor from_wire(const wire::Corridor& corridor) {
   return result;
 }
 
-picture::Normalization from_wire(wire::Normalization value) {
-  return value == wire::NORMALIZATION_SURFEL ? picture::Normalization::kSurfel : picture::Normalization::kPixel;
-}
-
-picture::Filter from_wire(wire::Filter value) {
-  return value == wire::FILTER_NONE ? picture::Filter::kNone : picture::Filter::kEwa;
-}
-
-picture::Shading from_wire(wire::Shading value) {
-  if (value == wire::SHADING_UNLIT) return picture::Shading::kUnlit;
-  return value == wire::SHADING_LIT ? picture::Shading::kLit : picture::Shading::kAuto;
-}
-
-picture::SplatConvention from_wire(wire::SplatConvention value) {
-  return value == wire::SPLAT_CONVENTION_EXACT ? picture::SplatConvention::kExact : picture::SplatConvention::kTrained;
-}
-
-picture::XRay from_wire(wire::XRay value) {
-  if (value == wire::X_RAY_SORTED) return picture::XRay::kSorted;
-  return value == wire::X_RAY_DENSITY ? picture::XRay::kDensity : picture::XRay::kOff;
-}
-
 picture::FileFormat from_wire(wire::FileFormat value) {
   switch (value) {
     case wire::FILE_FORMAT_JPEG:
@@ -203,7 +181,7 @@ picture::VolumeOptions volume_options(const wire::DrawPicture& request) {
   return options;
 }
 
-/// What is shown of the model, and in which colours.
+/// The options with a structure: what is shown of the model, and in which colours.
 void set_display_options(const wire::DrawPicture& request, picture::PictureRequest& picture) {
   picture.coloring = from_wire(request.coloring());
   for (const uint32_t code : request.hidden_classes()) picture.hidden_classes.set(code);
@@ -217,12 +195,9 @@ void set_display_options(const wire::DrawPicture& request, picture::PictureReque
   picture.volumes = volume_options(request);
   picture.glyphs = from_wire(request.glyphs());
   picture.lighting = from_wire(request.lighting());
-  if (request.has_opacity()) picture.opacity = request.opacity();
   for (const wire::ClassOpacity& of : request.class_opacities()) {
     picture.class_opacities.push_back({static_cast<uint8_t>(of.code()), of.opacity()});
   }
-  picture.ghost = request.ghost();
-  picture.xray = from_wire(request.xray());
 }
 
 geometry::Camera from_wire(const wire::Camera& camera) {
@@ -238,19 +213,12 @@ Result<service::PictureJob> to_job(const wire::DrawPicture& request, const acces
   if (Status status = protocol::check_picture(request); !status) return fail(status.error());
   const wire::Resolution& resolution = request.resolution();
   service::PictureJob job{model};
+  static_cast<picture::PlainOptions&>(job.request) = protocol::plain_options(request);
   if (request.has_camera()) job.request.camera = from_wire(request.camera());
   job.up_from_model = request.has_camera() && !request.camera().has_view_up();
   job.request.width = clamp_to_int(request.has_resolution() ? resolution.width() : protocol::kDefaultWidth);
   job.request.height = clamp_to_int(request.has_resolution() ? resolution.height() : protocol::kDefaultHeight);
-  job.request.normalization = from_wire(request.normalization());
-  job.request.filter = from_wire(request.filter());
-  job.request.shading = from_wire(request.shading());
-  job.request.splat_convention = from_wire(request.splat_convention());
   job.request.silhouettes = true;
-  job.request.spacing = request.spacing();
-  job.request.error = request.error();
-  job.request.time_ms = request.time_ms();
-  job.request.background = from_wire(request.background());
   set_display_options(request, job.request);
   job.format = from_wire(request.format());
   for (const int channel : request.channels()) job.channels.set(static_cast<size_t>(channel));

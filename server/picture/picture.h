@@ -3,7 +3,6 @@
 #include <bitset>
 #include <cstddef>
 #include <cstdint>
-#include <glm/vec3.hpp>
 #include <limits>
 #include <optional>
 #include <string>
@@ -13,17 +12,10 @@
 #include "geometry/clip.h"
 #include "picture/depth_map.h"
 #include "picture/glyphs.h"
+#include "picture/plain_options.h"
 #include "picture/transfer.h"
 
 namespace surfcast::picture {
-
-enum class Normalization { kPixel, kSurfel };
-enum class Filter { kEwa, kNone };  ///< kNone leaves out the prefilter and uses the reconstruction kernel alone
-enum class Shading { kAuto, kUnlit, kLit };
-
-/// How Gaussian models are drawn: by the rules of their training programs, or exact in perspective, filtered, and in
-/// the order of the depths in each pixel.
-enum class SplatConvention { kTrained, kExact };
 
 /// Whether a picture waits for missing blocks. kNow draws the resident blocks only and leaves the others to later
 /// pictures of the view.
@@ -51,35 +43,22 @@ struct EyeDome {
   double radius = 1.5;  ///< pixels, at most 8
 };
 
-/// X-ray pictures of surfels: walls that are seen flat are thinner than their edges, in the order of depth, or surfels
-/// are a medium that absorbs light.
-enum class XRay { kOff, kSorted, kDensity };
-
 /// The opacity of the surfels of a class.
 struct ClassOpacity {
   uint8_t code = 0;
   double opacity = 1;
 };
 
-/// All parameters of a picture of a model.
-struct PictureRequest {
+/// What else a picture is asked for: the view, what only the server decides, and the options with a structure.
+struct PictureParameters {
   std::optional<geometry::Camera> camera;  ///< none: a view that fits the whole model
   int width = 1280;                        ///< pixels
   int height = 720;                        ///< pixels
-  Normalization normalization = Normalization::kPixel;
-  Filter filter = Filter::kEwa;
-  Shading shading = Shading::kAuto;
   /// Supersamples the pixels at silhouettes (docs/kernel.md). Only under per-pixel normalisation, and only in pictures
   /// that are not about to be redrawn.
   bool silhouettes = false;
   /// Blends all that is behind the front surface of a pixel as if it were one surface, for pictures in motion.
   bool blends_behind = false;
-  double spacing = 0;  ///< projected spacing at which refinement stops, pixels; 0: the finest level
-  /// PSNR, dB, of the 8 bit picture against the one of spacing 0, over the pixels that either covers: the spacing is
-  /// chosen for it. 0: not stated. Only with kWait.
-  double error = 0;
-  double time_ms = 0;               ///< likewise: the time of drawing and encoding
-  glm::u8vec3 background{0, 0, 0};  ///< sRGB
   PixelFormat format = PixelFormat::kSrgb8;
   Loading loading = Loading::kWait;
   uint64_t edition = 0;  ///< of a scan's model, see ModelSource::edition; 0: the newest
@@ -94,19 +73,16 @@ struct PictureRequest {
   geometry::Clip clip;
   EyeDome eye_dome;
   VolumeOptions volumes;
-  SplatConvention splat_convention = SplatConvention::kTrained;
   GlyphOptions glyphs;
   Lighting lighting;  ///< of ellipsoids
-  /// From 0 to 1. A factor of the opacities of surfels, transfer functions, iso-surfaces, slices, Gaussians and
-  /// ellipsoids.
-  double opacity = 1;
-  XRay xray = XRay::kOff;
   /// Further factors for the surfels of a class, from 0 to 1; of several with the same code the last one counts. No
   /// effect on models without classes.
   std::vector<ClassOpacity> class_opacities;
-  double ghost = 0;      ///< factor of the opacities of the surfels that `clip` hides, from 0 to 1
   int depth_texels = 0;  ///< a side of Frame::depth, at most; 0: none. Does not change the picture.
 };
+
+/// All parameters of a picture of a model.
+struct PictureRequest : PlainOptions, PictureParameters {};
 
 /// Whether the spacing of a picture is to be chosen for an error or a time.
 inline bool has_budget(const PictureRequest& request) {

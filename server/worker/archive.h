@@ -139,4 +139,8 @@ class ArchiveReader {
 template <typename T, typename Structure>
 concept Is = std::same_as<std::remove_const_t<T>, Structure>;
 
+/// A base of such a parameter, which is constant if T is.
+template <typename Base, typename T>
+using BaseOf = std::conditional_t<std::is_const_v<T>, const Base, Base>;
+
 }  // namespace surfcast::worker

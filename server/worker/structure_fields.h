@@ -138,16 +138,28 @@ void fields(Archive& archive, T& value) {
   archive(ambient, specular, exponent, lights);
 }
 
+template <typename Archive, worker::Is<PlainOptions> T>
+void fields(Archive& archive, T& value) {
+  with_members(value, archive);
+}
+
+template <typename Archive, worker::Is<PictureParameters> T>
+void fields(Archive& archive, T& value) {
+  auto& [camera, width, height, silhouettes, blends_behind, format, loading, edition, viewer, rest_spacing,
+         displayed_cut, max_missing_blocks, coloring, hidden_classes, clip, eye_dome, volumes, glyphs, lighting,
+         class_opacities, depth_texels] = value;
+  archive(camera, width, height, silhouettes, blends_behind, format, loading, edition, viewer, rest_spacing);
+  archive(displayed_cut, max_missing_blocks, coloring, hidden_classes, clip, eye_dome, volumes, glyphs, lighting);
+  archive(class_opacities, depth_texels);
+}
+
+/// It has no members but those of its two bases.
 template <typename Archive, worker::Is<PictureRequest> T>
 void fields(Archive& archive, T& value) {
-  auto& [camera, width, height, normalization, filter, shading, silhouettes, blends_behind, spacing, error, time_ms,
-         background, format, loading, edition, viewer, rest_spacing, displayed_cut, max_missing_blocks, coloring,
-         hidden_classes, clip, eye_dome, volumes, splat_convention, glyphs, lighting, opacity, xray, class_opacities,
-         ghost, depth_texels] = value;
-  archive(camera, width, height, normalization, filter, shading, silhouettes, blends_behind, spacing, background);
-  archive(format, loading, edition, viewer, rest_spacing, displayed_cut, max_missing_blocks, coloring, hidden_classes);
-  archive(clip, eye_dome, volumes, splat_convention, glyphs, lighting, opacity, xray, class_opacities, ghost);
-  archive(depth_texels, error, time_ms);
+  static_assert(sizeof(PictureRequest) == sizeof(PlainOptions) + sizeof(PictureParameters));
+  worker::BaseOf<PlainOptions, T>& options = value;
+  worker::BaseOf<PictureParameters, T>& parameters = value;
+  archive(options, parameters);
 }
 
 template <typename Archive, worker::Is<StageTime> T>

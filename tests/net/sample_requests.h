@@ -1,8 +1,10 @@
 #pragma once
 
+#include <cstdlib>
 #include <string>
 #include <vector>
 
+#include "protocol/sample_fields.h"
 #include "surfcast.pb.h"
 
 namespace surfcast::net {
@@ -13,7 +15,7 @@ inline void fill(wire::Vector3* vector, double x, double y, double z) {
   vector->set_z(z);
 }
 
-/// A picture with every field set.
+/// A picture with every field set, but for those that exclude the spacing.
 inline wire::DrawPicture sample_picture() {
   wire::DrawPicture picture;
   picture.set_model("cube");
@@ -24,14 +26,8 @@ inline wire::DrawPicture sample_picture() {
   picture.mutable_resolution()->set_width(16);
   picture.mutable_resolution()->set_height(9);
   picture.set_format(wire::FILE_FORMAT_JPEG);
-  picture.set_normalization(wire::NORMALIZATION_SURFEL);
-  picture.set_filter(wire::FILTER_NONE);
-  picture.set_shading(wire::SHADING_LIT);
-  picture.set_spacing(1.5);
-  picture.mutable_background()->set_green(200);
   picture.set_quality(80);
   picture.mutable_coloring()->set_source(wire::COLOR_SOURCE_INTENSITY);
-  picture.mutable_coloring()->set_map(wire::COLOR_MAP_TURBO);
   picture.mutable_coloring()->set_first(-1);
   picture.mutable_coloring()->set_last(1);
   picture.add_hidden_classes(7);
@@ -47,7 +43,6 @@ inline wire::DrawPicture sample_picture() {
   point.mutable_color()->set_red(255);
   point.set_opacity(0.5);
   picture.mutable_transfer()->set_first(1);
-  picture.set_shaded(true);
   picture.add_iso_surfaces()->set_value(0.5);
   picture.mutable_iso_surfaces(0)->mutable_color()->set_green(9);
   picture.mutable_iso_surfaces(0)->set_opacity(0.5);
@@ -56,12 +51,12 @@ inline wire::DrawPicture sample_picture() {
   fill(slice->mutable_normal(), 0, 0, 1);
   slice->set_axis(wire::GRID_AXIS_J);
   slice->set_index(4);
-  picture.set_medium(true);
-  picture.set_opacity(0.5);
   picture.add_class_opacities()->set_code(5);
   picture.mutable_class_opacities(0)->set_opacity(0.25);
-  picture.set_ghost(0.1);
-  picture.set_xray(wire::X_RAY_SORTED);
+  for (const protocol::PictureField& field : protocol::picture_fields()) {
+    if (field.value.kind == protocol::FieldKind::kStructured || field.name == "error" || field.name == "time") continue;
+    if (!protocol::set_picture_field(picture, field.name, protocol::sample_text(field))) std::abort();
+  }
   picture.add_channels(wire::CHANNEL_DEPTH);
   picture.add_channels(wire::CHANNEL_SURFEL);
   return picture;

@@ -1,6 +1,10 @@
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <set>
+#include <sstream>
 #include <string>
+#include <type_traits>
 
 #include <gtest/gtest.h>
 
@@ -10,6 +14,7 @@
 #include "protocol/parse.h"
 #include "protocol/picture_fields.h"
 #include "protocol/picture_query.h"
+#include "protocol/sample_fields.h"
 #include "protocol/transfer_file.h"
 #include "protocol/validate.h"
 
@@ -84,7 +89,121 @@ TEST(PictureFields, WrongLightsChangeNothing) {
   EXPECT_EQ(lighting.ambient(), 0.5);
 }
 
-TEST(PictureFields, EachFieldIsSetFromItsText) {
+/// The request with this field alone.
+wire::DrawPicture with_field(const PictureField& field, const std::string& text) {
+  wire::DrawPicture picture;
+  picture.set_model("cube");
+  EXPECT_TRUE(set_picture_field(picture, field.name, text)) << field.name << '=' << text;
+  return picture;
+}
+
+std::vector<PictureField> plain_fields() {
+  std::vector<PictureField> fields;
+  for (const PictureField& field : picture_fields()) {
+    if (field.value.kind != FieldKind::kStructured) fields.push_back(field);
+  }
+  return fields;
+}
+
+TEST(PlainFields, EachIsSetFromItsTextAndPassesTheCheck) {
+  wire::DrawPicture usual;
+  usual.set_model("cube");
+  for (const PictureField& field : plain_fields()) {
+    const wire::DrawPicture picture = with_field(field, sample_text(field));
+    EXPECT_NE(picture.SerializeAsString(), usual.SerializeAsString()) << field.name;
+    EXPECT_TRUE(check_picture(picture)) << field.name;
+  }
+}
+
+TEST(PlainFields, WrongTextsAreExplainedAndChangeNothing) {
+  for (const PictureField& field : plain_fields()) {
+    wire::DrawPicture picture;
+    const std::string text = wrong_text(field);
+    const Status status = set_picture_field(picture, field.name, text);
+    ASSERT_FALSE(status) << field.name;
+    EXPECT_EQ(status.error().message,
+              std::string(field.name) + ": expected " + std::string(field.form) + ", got '" + text + "'");
+    EXPECT_EQ(picture.ByteSizeLong(), 0U) << field.name;
+  }
+}
+
+/// The bytes of all options.
+std::string bytes_of(const picture::PlainOptions& options) {
+  std::ostringstream text;
+  picture::with_members(options, [&text](const auto&... members) {
+    const auto put = [&text](const auto& member) {
+      using Member = std::decay_t<decltype(member)>;
+      if constexpr (std::is_enum_v<Member>) {
+        text << static_cast<int>(member) << ' ';
+      } else if constexpr (std::is_arithmetic_v<Member>) {
+        text << member << ' ';
+      } else {
+        text << int{member.x} << ',' << int{member.y} << ',' << int{member.z} << ' ';
+      }
+    };
+    (put(members), ...);
+  });
+  return text.str();
+}
+
+TEST(PlainFields, ThoseOfTheStructureAreReadFromMessages) {
+  const std::string usual = bytes_of(picture::PlainOptions{});
+  EXPECT_EQ(bytes_of(plain_options(wire::DrawPicture())), usual) << "what is absent has its default";
+  std::set<std::string> seen{usual};
+  size_t read = 0;
+  for (const PictureField& field : plain_fields()) {
+    if (field.value.read == nullptr) continue;
+    ++read;
+    EXPECT_TRUE(seen.insert(bytes_of(plain_options(with_field(field, sample_text(field))))).second) << field.name;
+  }
+  size_t members = 0;
+  picture::PlainOptions options;
+  picture::with_members(options, [&members](auto&... all) { members = sizeof...(all); });
+  EXPECT_EQ(read, members) << "each member has a row of the table";
+}
+
+TEST(PlainFields, TheirValuesAreThoseOfTheMessage) {
+  wire::DrawPicture picture;
+  for (const PictureField& field : plain_fields()) {
+    ASSERT_TRUE(set_picture_field(picture, field.name, sample_text(field)));
+  }
+  EXPECT_EQ(picture.normalization(), wire::NORMALIZATION_SURFEL);
+  EXPECT_EQ(picture.filter(), wire::FILTER_NONE);
+  EXPECT_EQ(picture.spacing(), 1.5);
+  EXPECT_EQ(picture.error(), 1.5);
+  EXPECT_EQ(picture.time_ms(), 1.5);
+  EXPECT_EQ(picture.shading(), wire::SHADING_LIT);
+  EXPECT_EQ(picture.background().blue(), 255U);
+  EXPECT_EQ(picture.coloring().map(), wire::COLOR_MAP_TERRAIN);
+  EXPECT_TRUE(picture.shaded());
+  EXPECT_TRUE(picture.medium());
+  EXPECT_EQ(picture.opacity(), 0.5);
+  EXPECT_EQ(picture.ghost(), 0.5);
+  EXPECT_EQ(picture.xray(), wire::X_RAY_DENSITY);
+  EXPECT_EQ(picture.splat_convention(), wire::SPLAT_CONVENTION_EXACT);
+  EXPECT_EQ(picture.glyphs().radius(), wire::GLYPH_RADIUS_UNIT);
+  EXPECT_EQ(picture.glyphs().scale(), 1.5);
+  const picture::PlainOptions options = plain_options(picture);
+  EXPECT_EQ(options.normalization, picture::Normalization::kSurfel);
+  EXPECT_EQ(options.filter, picture::Filter::kNone);
+  EXPECT_EQ(options.shading, picture::Shading::kLit);
+  EXPECT_EQ(options.splat_convention, picture::SplatConvention::kExact);
+  EXPECT_EQ(options.xray, picture::XRay::kDensity);
+  EXPECT_EQ(options.background, glm::u8vec3(1, 2, 255));
+  EXPECT_EQ(options.opacity, 0.5);
+}
+
+TEST(PlainFields, ChoicesHaveTheNumbersOfTheMessage) {
+  for (const PictureField& field : plain_fields()) {
+    if (field.value.kind != FieldKind::kChoice) continue;
+    const std::string sample = sample_text(field);
+    EXPECT_EQ(parse_choice(field.form, sample), std::count(field.form.begin(), field.form.end(), '|')) << field.name;
+    EXPECT_EQ(parse_choice(field.form, field.form), std::nullopt);
+  }
+  EXPECT_EQ(parse_choice("off|sorted", ""), std::nullopt);
+}
+
+TEST(PictureFields, EachStructuredFieldIsSetFromItsText) {
   wire::DrawPicture picture;
   const std::vector<std::pair<std::string, std::string>> texts = {{"position", "1,2,3"},
                                                                   {"focal_point", "4,5,6"},
@@ -94,36 +213,20 @@ TEST(PictureFields, EachFieldIsSetFromItsText) {
                                                                   {"format", "exr"},
                                                                   {"quality", "33"},
                                                                   {"channels", "surfel,depth"},
-                                                                  {"normalization", "surfel"},
-                                                                  {"filter", "none"},
-                                                                  {"spacing", "1.5"},
-                                                                  {"error", "40"},
-                                                                  {"time", "200.5"},
-                                                                  {"shading", "lit"},
-                                                                  {"background", "1,2,255"},
                                                                   {"color_by", "normal"},
-                                                                  {"color_map", "terrain"},
                                                                   {"color_range", "-2,7.5"},
                                                                   {"hide_classes", "2,255"},
                                                                   {"clip_box", "0,0,0,1,1,1;2,2,2,3,3,3"},
                                                                   {"clip_out", "4,4,4,5,5,5"},
                                                                   {"eye_dome", "1.5,2"},
                                                                   {"transfer", "mr,-1,2.5"},
-                                                                  {"shaded", "on"},
                                                                   {"iso", "-0.5;300,1,2,255,0.25"},
                                                                   {"slice", "1,2,3,0,0,-2;k,7.5"},
-                                                                  {"medium", "on"},
-                                                                  {"opacity", "0.5"},
                                                                   {"opacity_by_class", "5=0.3,6=1"},
-                                                                  {"ghost", "0.1"},
-                                                                  {"xray", "sorted"},
-                                                                  {"splat_convention", "exact"},
                                                                   {"glyph", "superquadric,2"},
-                                                                  {"glyph_radius", "root"},
-                                                                  {"glyph_scale", "1.25"},
                                                                   {"threshold", "fa,0.2;a,b,-1,2"},
                                                                   {"lights", "0.1,0.25,32;0,0.5,-1,0.75"}};
-  EXPECT_EQ(texts.size(), picture_fields().size());
+  EXPECT_EQ(texts.size(), picture_fields().size() - plain_fields().size());
   for (const auto& [name, text] : texts) EXPECT_TRUE(set_picture_field(picture, name, text)) << name;
   EXPECT_EQ(picture.camera().focal_point().y(), 5);
   EXPECT_EQ(picture.camera().view_angle(), 45);
@@ -133,15 +236,7 @@ TEST(PictureFields, EachFieldIsSetFromItsText) {
   ASSERT_EQ(picture.channels_size(), 2);
   EXPECT_EQ(picture.channels(0), wire::CHANNEL_SURFEL);
   EXPECT_EQ(picture.channels(1), wire::CHANNEL_DEPTH);
-  EXPECT_EQ(picture.normalization(), wire::NORMALIZATION_SURFEL);
-  EXPECT_EQ(picture.filter(), wire::FILTER_NONE);
-  EXPECT_EQ(picture.spacing(), 1.5);
-  EXPECT_EQ(picture.error(), 40);
-  EXPECT_EQ(picture.time_ms(), 200.5);
-  EXPECT_EQ(picture.shading(), wire::SHADING_LIT);
-  EXPECT_EQ(picture.background().blue(), 255u);
   EXPECT_EQ(picture.coloring().source(), wire::COLOR_SOURCE_NORMAL);
-  EXPECT_EQ(picture.coloring().map(), wire::COLOR_MAP_TERRAIN);
   EXPECT_EQ(picture.coloring().first(), -2);
   EXPECT_EQ(picture.coloring().last(), 7.5);
   ASSERT_EQ(picture.hidden_classes_size(), 2);
@@ -156,7 +251,6 @@ TEST(PictureFields, EachFieldIsSetFromItsText) {
   EXPECT_EQ(picture.transfer().preset(), wire::TRANSFER_PRESET_MR);
   EXPECT_EQ(picture.transfer().first(), -1);
   EXPECT_EQ(picture.transfer().last(), 2.5);
-  EXPECT_TRUE(picture.shaded());
   ASSERT_EQ(picture.iso_surfaces_size(), 2);
   EXPECT_EQ(picture.iso_surfaces(0).value(), -0.5);
   EXPECT_FALSE(picture.iso_surfaces(0).has_color());
@@ -168,15 +262,10 @@ TEST(PictureFields, EachFieldIsSetFromItsText) {
   EXPECT_EQ(picture.slices(0).normal().z(), -2);
   EXPECT_EQ(picture.slices(1).axis(), wire::GRID_AXIS_K);
   EXPECT_EQ(picture.slices(1).index(), 7.5);
-  EXPECT_TRUE(picture.medium());
-  EXPECT_EQ(picture.opacity(), 0.5);
   ASSERT_EQ(picture.class_opacities_size(), 2);
   EXPECT_EQ(picture.class_opacities(0).code(), 5U);
   EXPECT_EQ(picture.class_opacities(0).opacity(), 0.3);
   EXPECT_EQ(picture.class_opacities(1).code(), 6U);
-  EXPECT_EQ(picture.ghost(), 0.1);
-  EXPECT_EQ(picture.xray(), wire::X_RAY_SORTED);
-  EXPECT_EQ(picture.splat_convention(), wire::SPLAT_CONVENTION_EXACT);
 }
 
 TEST(PictureFields, ATransferFunctionIsAPresetOrPoints) {
@@ -419,6 +508,28 @@ TEST(CheckPicture, ChannelsAreOfEXRFilesAndNotOfViews) {
   EXPECT_FALSE(check_view_picture(picture));
   picture.clear_channels();
   EXPECT_TRUE(check_view_picture(picture));
+}
+
+TEST(CheckPicture, TheErrorsOfPlainFieldsNameThemAndTheirRange) {
+  const auto message = [](auto spoil) {
+    wire::DrawPicture picture = sound_picture();
+    spoil(picture);
+    const Status status = check_picture(picture);
+    return status ? "" : status.error().message;
+  };
+  EXPECT_EQ(message([](auto& p) { p.set_xray(static_cast<wire::XRay>(3)); }), "xray: unknown");
+  EXPECT_EQ(message([](auto& p) { p.set_shading(static_cast<wire::Shading>(-1)); }), "shading: unknown");
+  EXPECT_EQ(message([](auto& p) { p.mutable_glyphs()->set_radius(static_cast<wire::GlyphRadius>(3)); }),
+            "glyph_radius: unknown");
+  EXPECT_EQ(message([](auto& p) { p.set_spacing(-1); }), "spacing: must be a finite number of pixels, at least 0");
+  EXPECT_EQ(message([](auto& p) { p.set_error(-1); }), "error: must be a finite number of dB, at least 0");
+  EXPECT_EQ(message([](auto& p) { p.set_time_ms(INFINITY); }),
+            "time: must be a finite number of milliseconds, at least 0");
+  EXPECT_EQ(message([](auto& p) { p.set_opacity(1.5); }), "opacity: must lie between 0 and 1");
+  EXPECT_EQ(message([](auto& p) { p.set_ghost(NAN); }), "ghost: must lie between 0 and 1");
+  EXPECT_EQ(message([](auto& p) { p.mutable_glyphs()->set_scale(0); }), "glyph_scale: must be a finite number above 0");
+  EXPECT_EQ(message([](auto& p) { p.mutable_background()->set_red(256); }),
+            "background: each part must be at most 255");
 }
 
 TEST(CheckPicture, WhatNoFlagCouldSayIsCaughtInMessagesToo) {

@@ -3,6 +3,7 @@
 #include <limits>
 #include <random>
 #include <span>
+#include <type_traits>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -19,21 +20,27 @@ T sent(const T& message) {
   return std::get<T>(*received);
 }
 
+/// Another value of a plain option.
+template <typename Member>
+void change(Member& member) {
+  if constexpr (std::is_enum_v<Member>) {
+    member = static_cast<Member>(1);
+  } else if constexpr (std::is_arithmetic_v<Member>) {
+    member = static_cast<Member>(member + 1.25);
+  } else {
+    member = {9, 8, 7};
+  }
+}
+
 /// A request in which no member has its default.
 picture::PictureRequest full_request() {
   picture::PictureRequest r;
+  picture::with_members(static_cast<picture::PlainOptions&>(r), [](auto&... members) { (change(members), ...); });
   r.camera = geometry::Camera{{1, 2, 3}, {4, 5, 6}, {0, 0.5, 1}, 47};
   r.width = 321;
   r.height = 123;
-  r.normalization = picture::Normalization::kSurfel;
-  r.filter = picture::Filter::kNone;
-  r.shading = picture::Shading::kLit;
   r.silhouettes = true;
   r.blends_behind = true;
-  r.spacing = 1.25;
-  r.error = 41.5;
-  r.time_ms = 250;
-  r.background = {9, 8, 7};
   r.format = picture::PixelFormat::kLinearFloat;
   r.loading = picture::Loading::kNow;
   r.edition = 3;
@@ -55,17 +62,13 @@ picture::PictureRequest full_request() {
   r.volumes.medium = false;
   r.volumes.isos = {{300, {1, 0, 0}, 0.5}};
   r.volumes.slices = {{{1, 2, 3}, {0, 0, 1}, 2, 17.5}};
-  r.splat_convention = picture::SplatConvention::kExact;
   r.glyphs.shape = picture::GlyphShape::kSuperquadric;
   r.glyphs.radius = picture::GlyphRadius::kUnit;
   r.glyphs.scale = 12;
   r.glyphs.sharpness = 4;
   r.glyphs.thresholds = {{"md", 0.1, std::numeric_limits<double>::infinity()}};
   r.lighting = {0.1, 0.2, 16, {{{0, 1, 0}, 0.5}}};
-  r.opacity = 0.5;
-  r.xray = picture::XRay::kDensity;
   r.class_opacities = {{6, 0.25}};
-  r.ghost = 0.125;
   return r;
 }
 
@@ -75,7 +78,7 @@ TEST(MessagesTest, AllOfARequestArrives) {
   EXPECT_EQ(r.camera->position, glm::dvec3(1, 2, 3));
   EXPECT_EQ(r.camera->view_angle, 47);
   EXPECT_EQ(r.width, 321);
-  EXPECT_EQ(r.shading, picture::Shading::kLit);
+  EXPECT_EQ(r.shading, picture::Shading::kUnlit);
   EXPECT_TRUE(r.silhouettes && r.blends_behind);
   EXPECT_EQ(r.background, glm::u8vec3(9, 8, 7));
   EXPECT_EQ(r.rest_spacing, 0.75);
@@ -89,9 +92,9 @@ TEST(MessagesTest, AllOfARequestArrives) {
   EXPECT_EQ(r.glyphs.thresholds, full_request().glyphs.thresholds);
   EXPECT_EQ(r.lighting.lights, full_request().lighting.lights);
   EXPECT_EQ(r.class_opacities.at(0).code, 6);
-  EXPECT_EQ(r.ghost, 0.125);
-  EXPECT_EQ(r.error, 41.5);
-  EXPECT_EQ(r.time_ms, 250);
+  EXPECT_EQ(r.ghost, 1.25);
+  EXPECT_EQ(r.error, 1.25);
+  EXPECT_EQ(r.opacity, 2.25);
 }
 
 // Every member is written and read: what was read is written as the same bytes, and what is cut off is noticed.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from functools import reduce
 from os import PathLike
 from pathlib import Path
 from typing import Any, Literal, TypedDict, Union
@@ -11,44 +12,28 @@ from typing import Any, Literal, TypedDict, Union
 import numpy as np
 
 from ._picture import FORMATS
+from ._plain_options import PLAIN_FIELDS, PlainField, PlainOptions
 from ._values import PRESETS, Box, Camera, Corridor, Vector, to_wire, vector_of
 from ._wire import surfcast_pb2 as wire
 from .errors import InvalidInput
 
-Color = Sequence[int]
 Transfer = Union[str, Sequence[Any], Mapping[str, Any], "PathLike[str]"]
 
 
-class DisplayOptions(TypedDict, total=False):
+class DisplayOptions(PlainOptions, total=False):
     """What a picture shows, and how. Every option may be left out; then the server's default holds."""
 
-    normalization: Literal["pixel", "surfel"]
-    filter: Literal["ewa", "none"]
-    spacing: float  # projected spacing of surfels to stop at, pixels; 0: every point
-    error: float  # or the spacing is chosen for this PSNR against every point, dB
-    time: float  # or for this time of drawing and encoding, milliseconds
-    shading: Literal["auto", "unlit", "lit"]
-    splat_convention: Literal["trained", "exact"]
-    background: Color  # sRGB, 0 to 255
     color_by: str  # rgb, intensity, elevation, classification, normal, direction, dec, fa, mode, md, attribute:NAME
-    color_map: Literal["viridis", "turbo", "gray", "terrain"]
     color_range: tuple[float, float]
     hide_classes: Iterable[int]
     clip_box: Box | Iterable[Box | Sequence[Vector]]  # shown is what is in one of them
     clip_out: Box | Iterable[Box | Sequence[Vector]]  # and in none of these
     eye_dome: float | tuple[float, float]  # strength, or strength and radius in pixels
     transfer: Transfer  # preset, (preset, first, last), [(value, r, g, b, opacity), ...], or a transfer file's content
-    shaded: bool
     iso: float | Iterable[float | Sequence[float]]  # value, or (value, r, g, b[, opacity])
     slice: Iterable[Sequence[Any]]  # (x, y, z, nx, ny, nz), or ("i" | "j" | "k", index)
-    medium: bool
-    opacity: float
     opacity_by_class: Mapping[int, float]
-    ghost: float
-    xray: Literal["off", "sorted", "density"]
     glyph: str | tuple[str, float]  # ellipsoid, superquadric, or ("superquadric", sharpness)
-    glyph_radius: Literal["eigenvalue", "root", "unit"]
-    glyph_scale: float
     threshold: Iterable[Sequence[Any]]  # (attribute, smallest[, largest])
     lights: Mapping[str, Any] | PathLike[str]  # a lights file, or its content
 
@@ -80,10 +65,6 @@ def _choice(name: str, names: Sequence[str], value: object) -> Any:
     if not isinstance(value, str) or value not in names:
         raise _wanted(name, " or ".join(names), value)
     return names.index(value)
-
-
-def _chooser(field: str, names: Sequence[str]) -> Callable[[wire.DrawPicture, Any], None]:
-    return lambda picture, value: setattr(picture, field, _choice(field, names, value))
 
 
 def _number(name: str, value: object) -> float:
@@ -149,29 +130,6 @@ def _channels(picture: wire.DrawPicture, value: Any) -> None:
     picture.channels.extend(_choice("channels", names, name) for name in chosen)
 
 
-def _spacing(picture: wire.DrawPicture, value: Any) -> None:
-    picture.spacing = _number("spacing", value)
-
-
-def _positive(name: str, value: Any) -> float:
-    number = _number(name, value)
-    if number <= 0:
-        raise _wanted(name, "a number above 0", value)
-    return number
-
-
-def _error(picture: wire.DrawPicture, value: Any) -> None:
-    picture.error = _positive("error", value)
-
-
-def _time(picture: wire.DrawPicture, value: Any) -> None:
-    picture.time_ms = _positive("time", value)
-
-
-def _background(picture: wire.DrawPicture, value: Any) -> None:
-    picture.background.CopyFrom(_color("background", value))
-
-
 def _color_by(picture: wire.DrawPicture, value: Any) -> None:
     named = isinstance(value, str) and value.startswith("attribute:")
     if named or value in ("fa", "mode", "md"):
@@ -179,10 +137,6 @@ def _color_by(picture: wire.DrawPicture, value: Any) -> None:
         picture.coloring.attribute = value.removeprefix("attribute:")
     else:
         picture.coloring.source = _choice("color_by", _SOURCES, value)
-
-
-def _color_map(picture: wire.DrawPicture, value: Any) -> None:
-    picture.coloring.map = _choice("color_map", ("viridis", "turbo", "gray", "terrain"), value)
 
 
 def _color_range(picture: wire.DrawPicture, value: Any) -> None:
@@ -262,10 +216,6 @@ def _transfer(picture: wire.DrawPicture, value: Any) -> None:
     picture.transfer.CopyFrom(transfer)
 
 
-def _shaded(picture: wire.DrawPicture, value: Any) -> None:
-    picture.shaded = _flag("shaded", value)
-
-
 def _iso(picture: wire.DrawPicture, value: Any) -> None:
     for surface in value if isinstance(value, Iterable) else [value]:
         parts = list(surface) if isinstance(surface, Iterable) else [surface]
@@ -288,14 +238,6 @@ def _slice(picture: wire.DrawPicture, value: Any) -> None:
             picture.slices.add(point=to_wire(parts[:3]), normal=to_wire(parts[3:]))
 
 
-def _medium(picture: wire.DrawPicture, value: Any) -> None:
-    picture.medium = _flag("medium", value)
-
-
-def _opacity(picture: wire.DrawPicture, value: Any) -> None:
-    picture.opacity = _number("opacity", value)
-
-
 def _opacity_by_class(picture: wire.DrawPicture, value: Any) -> None:
     for code, factor in value.items():
         picture.class_opacities.add(
@@ -303,23 +245,11 @@ def _opacity_by_class(picture: wire.DrawPicture, value: Any) -> None:
         )
 
 
-def _ghost(picture: wire.DrawPicture, value: Any) -> None:
-    picture.ghost = _number("ghost", value)
-
-
 def _glyph(picture: wire.DrawPicture, value: Any) -> None:
     shape, sharpness = (value, None) if isinstance(value, str) else value
     picture.glyphs.shape = _choice("glyph", ("ellipsoid", "superquadric"), shape)
     if sharpness is not None:
         picture.glyphs.sharpness = _number("glyph", sharpness)
-
-
-def _glyph_radius(picture: wire.DrawPicture, value: Any) -> None:
-    picture.glyphs.radius = _choice("glyph_radius", ("eigenvalue", "root", "unit"), value)
-
-
-def _glyph_scale(picture: wire.DrawPicture, value: Any) -> None:
-    picture.glyphs.scale = _number("glyph_scale", value)
 
 
 def _threshold(picture: wire.DrawPicture, value: Any) -> None:
@@ -345,40 +275,53 @@ def _lights(picture: wire.DrawPicture, value: Any) -> None:
         )
 
 
+def _plain_value(name: str, field: PlainField, value: Any) -> Any:
+    """An option that is one value, as it is kept in a message."""
+    if field.kind == "choice":
+        return _choice(name, field.names, value)
+    if field.kind == "switch":
+        return _flag(name, value)
+    if field.kind == "color":
+        return _color(name, value)
+    number = _number(name, value)
+    if field.above is not None and number <= field.above:
+        raise _wanted(name, f"a number above {field.above:g}", value)
+    return number
+
+
+def _plain_setter(name: str, field: PlainField) -> Callable[[wire.DrawPicture, Any], None]:
+    *path, member = field.place.split(".")
+
+    def set_plain(picture: wire.DrawPicture, value: Any) -> None:
+        wanted = _plain_value(name, field, value)
+        message: Any = reduce(getattr, path, picture)
+        if field.kind == "color":
+            getattr(message, member).CopyFrom(wanted)
+        else:
+            setattr(message, member, wanted)
+
+    return set_plain
+
+
 _SETTERS: dict[str, Callable[[wire.DrawPicture, Any], None]] = {
     "resolution": _resolution,
     "format": _format,
     "quality": _quality,
     "channels": _channels,
-    "normalization": _chooser("normalization", ("pixel", "surfel")),
-    "filter": _chooser("filter", ("ewa", "none")),
-    "spacing": _spacing,
-    "error": _error,
-    "time": _time,
-    "shading": _chooser("shading", ("auto", "unlit", "lit")),
-    "splat_convention": _chooser("splat_convention", ("trained", "exact")),
-    "background": _background,
     "color_by": _color_by,
-    "color_map": _color_map,
     "color_range": _color_range,
     "hide_classes": _hide_classes,
     "clip_box": _clip(False),
     "clip_out": _clip(True),
     "eye_dome": _eye_dome,
     "transfer": _transfer,
-    "shaded": _shaded,
     "iso": _iso,
     "slice": _slice,
-    "medium": _medium,
-    "opacity": _opacity,
     "opacity_by_class": _opacity_by_class,
-    "ghost": _ghost,
-    "xray": _chooser("xray", ("off", "sorted", "density")),
     "glyph": _glyph,
-    "glyph_radius": _glyph_radius,
-    "glyph_scale": _glyph_scale,
     "threshold": _threshold,
     "lights": _lights,
+    **{name: _plain_setter(name, field) for name, field in PLAIN_FIELDS.items()},
 }
 OPTIONS = tuple(_SETTERS)
 

@@ -16,7 +16,8 @@ import pytest
 from sample_models import OFFSET, SURFCAST, SURFCASTD, Scan
 
 import surfcast
-from surfcast._options import OPTIONS
+from surfcast._options import OPTIONS, picture_request
+from surfcast._plain_options import PLAIN_FIELDS
 from surfcast.testing import RunningServer
 
 SIZE = (96, 64)
@@ -127,6 +128,16 @@ def test_options_are_those_of_the_command_line() -> None:
     of_the_program |= {"connect_timeout", "timeout", "ca", "token_file"}
     names = {flag.replace("-", "_") for flag in flags if not flag.startswith("camera")}
     assert names - of_the_program == set(OPTIONS)
+
+
+@pytest.mark.parametrize("name", PLAIN_FIELDS)
+def test_plain_options_are_members_of_the_message(name: str) -> None:
+    field = PLAIN_FIELDS[name]
+    of_kinds: dict[str, Any] = {"switch": True, "number": 0.5, "color": (1, 2, 255)}
+    value: Any = field.names[-1] if field.kind == "choice" else of_kinds[field.kind]
+    assert picture_request("field", None, {name: value}) != picture_request("field", None, {})
+    with pytest.raises(surfcast.InvalidInput, match=f"{name}: expected "):
+        picture_request("field", None, {name: "none of them"})
 
 
 def test_a_picture_is_that_of_the_program(

@@ -11,6 +11,7 @@ const camera = {
 };
 
 const display: DisplayOptions = {
+  ...defaultDisplay,
   source: 'attribute',
   attribute: 'mean, of 2 & 3 #',
   map: 'turbo',

@@ -3,16 +3,12 @@ import type { Camera } from '../camera/pose';
 import type { Box } from '../camera/standard_views';
 import { vector, type Vector } from '../camera/vector';
 import {
-  ColorMap,
   ColorSource,
   DrawPictureSchema,
   FileFormat,
-  GlyphRadius,
   GlyphShape,
   GridAxis,
-  SplatConvention,
   TransferPreset,
-  XRay,
   type Box as WireBox,
   type Camera as WireCamera,
   type DrawPicture,
@@ -22,8 +18,9 @@ import {
   type TransferFunctionSchema,
   type Vector3,
 } from '../generated/surfcast_pb';
-import { defaultGlyphs, type GlyphOptions, type GlyphRadiusName } from '../state/glyph_options';
-import type { ColorMapName, ColorSourceName, DisplayOptions, XRayName } from '../state/display_options';
+import { choices, plainMembers } from '../generated/plain_options';
+import { defaultGlyphs, type GlyphOptions } from '../state/glyph_options';
+import type { ColorSourceName, DisplayOptions } from '../state/display_options';
 import type { GridAxis as GridAxisName, IsoSurface, Slice } from '../volume/surfaces';
 import { defaultTransfer, type PresetName, type Transfer } from '../volume/transfer';
 
@@ -41,19 +38,6 @@ const sources: Readonly<Record<ColorSourceName, ColorSource>> = {
   direction: ColorSource.DIRECTION,
   dec: ColorSource.DEC,
   attribute: ColorSource.ATTRIBUTE,
-};
-
-const maps: Readonly<Record<ColorMapName, ColorMap>> = {
-  viridis: ColorMap.VIRIDIS,
-  turbo: ColorMap.TURBO,
-  gray: ColorMap.GRAY,
-  terrain: ColorMap.TERRAIN,
-};
-
-const xrays: Readonly<Record<XRayName, XRay>> = {
-  off: XRay.OFF,
-  sorted: XRay.SORTED,
-  density: XRay.DENSITY,
 };
 
 const presets: Readonly<Record<PresetName, TransferPreset>> = {
@@ -80,18 +64,12 @@ const wireSurface = ({ value, color, opacity }: IsoSurface): MessageInitShape<ty
 const wireSlice = (slice: Slice): MessageInitShape<typeof SliceSchema> =>
   slice.axis ? { axis: axes[slice.axis], index: slice.index } : { point: slice.point, normal: slice.normal };
 
-const radii: Readonly<Record<GlyphRadiusName, GlyphRadius>> = {
-  eigenvalue: GlyphRadius.EIGENVALUE,
-  root: GlyphRadius.ROOT,
-  unit: GlyphRadius.UNIT,
-};
-
 function wireGlyphs(glyphs: GlyphOptions): MessageInitShape<typeof GlyphsSchema> {
   const { shape, sharpness, radius, scale, thresholds } = glyphs;
   return {
     shape: shape === 'superquadric' ? GlyphShape.SUPERQUADRIC : GlyphShape.ELLIPSOID,
     sharpness,
-    radius: radii[radius],
+    radius: choices.glyphRadius.indexOf(radius),
     ...(scale === undefined ? {} : { scale }),
     thresholds: thresholds.map(({ attribute, smallest, largest }) => ({
       attribute,
@@ -112,31 +90,24 @@ export function pictureOf(
   const [first, last] = display.range ?? [];
   const coloring = {
     source: sources[display.source],
-    map: maps[display.map],
+    map: choices.colorMap.indexOf(display.map),
     ...(display.source === 'attribute' ? { attribute: display.attribute } : {}),
     ...(first !== undefined && last !== undefined ? { first, last } : {}),
   };
   const picture: MessageInitShape<typeof DrawPictureSchema> = {
+    ...plainMembers(display),
     model,
     resolution,
     format,
     coloring,
-    background: display.background,
-    spacing: display.spacing,
     hiddenClasses: [...display.hiddenClasses],
     clipBoxes: display.clips.map(({ box, inverted }) => ({ box, inverted })),
     ...(camera ? { camera: wireCamera(camera) } : {}),
     ...(display.eyeDome.strength > 0 ? { eyeDome: display.eyeDome } : {}),
     ...(display.transfer === defaultTransfer ? {} : { transfer: wireTransfer(display.transfer) }),
-    ...(display.shaded === undefined ? {} : { shaded: display.shaded }),
     isoSurfaces: display.surfaces.map(wireSurface),
     slices: display.slices.map(wireSlice),
-    ...(display.medium === undefined ? {} : { medium: display.medium }),
-    ...(display.opacity === 1 ? {} : { opacity: display.opacity }),
     classOpacities: display.classOpacities.map(({ code, opacity }) => ({ code, opacity })),
-    ghost: display.ghost,
-    xray: xrays[display.xray],
-    splatConvention: display.splatConvention === 'exact' ? SplatConvention.EXACT : SplatConvention.TRAINED,
     ...(display.glyphs === defaultGlyphs ? {} : { glyphs: wireGlyphs(display.glyphs) }),
     ...(display.lighting ? { lighting: { ...display.lighting, lights: [...display.lighting.lights] } } : {}),
   };

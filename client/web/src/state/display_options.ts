@@ -1,4 +1,5 @@
 import type { Box } from '../camera/standard_views';
+import { defaultPlain, type Choice, type PlainOptions } from '../generated/plain_options';
 import type { IsoSurface, Slice } from '../volume/surfaces';
 import { defaultTransfer, type Transfer } from '../volume/transfer';
 import { defaultGlyphs, type GlyphOptions, type Lighting } from './glyph_options';
@@ -10,14 +11,7 @@ export const colorSources = [
 ] as const;
 export type ColorSourceName = (typeof colorSources)[number];
 
-export const colorMaps = ['viridis', 'turbo', 'gray', 'terrain'] as const;
-export type ColorMapName = (typeof colorMaps)[number];
-
-export const splatConventions = ['trained', 'exact'] as const;
-export type SplatConventionName = (typeof splatConventions)[number];
-
-export const xrays = ['off', 'sorted', 'density'] as const;
-export type XRayName = (typeof xrays)[number];
+export type ColorMapName = Choice<'colorMap'>;
 
 /** A factor of the opacities of a class. */
 export interface ClassOpacity {
@@ -36,8 +30,8 @@ export interface Rgb {
   readonly blue: number;
 }
 
-/** How the model is shown, apart from the camera. */
-export interface DisplayOptions {
+/** How the model is shown, apart from the camera: plain options, and those with a structure. */
+export interface DisplayOptions extends PlainOptions {
   readonly source: ColorSourceName;
   readonly attribute: string; // of the source 'attribute'
   readonly map: ColorMapName;
@@ -45,28 +39,17 @@ export interface DisplayOptions {
   readonly hiddenClasses: readonly number[];
   readonly clips: readonly Clip[];
   readonly eyeDome: { readonly strength: number; readonly radius: number }; // strength 0: off
-  readonly background: Rgb;
-  readonly spacing: number; // projected surfel spacing at which refinement at rest stops, pixels; 0: every surfel
   readonly transfer: Transfer; // of volumes
-  readonly shaded: boolean | undefined; // volumes are lit; undefined: with the automatic transfer function
   readonly surfaces: readonly IsoSurface[]; // of volumes
   readonly slices: readonly Slice[]; // of volumes
-  /** What the transfer function shows is drawn; undefined: unless there are surfaces or slices and no function. */
-  readonly medium: boolean | undefined;
-  readonly opacity: number; // 0 to 1; a factor of all opacities
   readonly classOpacities: readonly ClassOpacity[]; // of surfels
-  readonly ghost: number; // 0 to 1; of surfels that clips hide
-  readonly xray: XRayName; // of surfels
   readonly upsideDown: boolean; // the model is shown with its vertical axis pointing the other way
-  readonly splatConvention: SplatConventionName;
   readonly glyphs: GlyphOptions; // ellipsoids
   readonly lighting: Lighting | undefined; // of ellipsoids; undefined: a headlight
 }
 
-/** Slightly darker than the panels, so that the picture appears to be behind them. */
-export const defaultBackground: Rgb = { red: 14, green: 18, blue: 22 };
-
 export const defaultDisplay: DisplayOptions = {
+  ...defaultPlain,
   source: 'rgb',
   attribute: 'fa',
   map: 'viridis',
@@ -74,19 +57,11 @@ export const defaultDisplay: DisplayOptions = {
   hiddenClasses: [],
   clips: [],
   eyeDome: { strength: 0, radius: 1.5 },
-  background: defaultBackground,
-  spacing: 1,
   transfer: defaultTransfer,
-  shaded: undefined,
   surfaces: [],
   slices: [],
-  medium: undefined,
-  opacity: 1,
   classOpacities: [],
-  ghost: 0,
-  xray: 'off',
   upsideDown: false,
-  splatConvention: 'trained',
   glyphs: defaultGlyphs,
   lighting: undefined,
 };

@@ -1,12 +1,12 @@
 import { vector, type Vector } from '../camera/vector';
+import { choices, type Choice } from '../generated/plain_options';
 
 /** How ellipsoids are drawn, and the texts of it: those of the parameters `glyph`, `glyph_radius`, .., `lights`. */
 
 export const glyphShapes = ['ellipsoid', 'superquadric'] as const;
 export type GlyphShapeName = (typeof glyphShapes)[number];
 
-export const glyphRadii = ['eigenvalue', 'root', 'unit'] as const;
-export type GlyphRadiusName = (typeof glyphRadii)[number];
+export type GlyphRadiusName = Choice<'glyphRadius'>;
 
 /** Ellipsoids are drawn whose attribute is in the range. */
 export interface Threshold {
@@ -91,7 +91,7 @@ export function parseGlyphs(values: URLSearchParams): GlyphOptions {
   return {
     shape: shape ?? defaultGlyphs.shape,
     sharpness: shape && sharpness >= 0 && sharpness <= maxSharpness ? sharpness : defaultGlyphs.sharpness,
-    radius: namedIn(glyphRadii, values.get('glyph_radius')) ?? defaultGlyphs.radius,
+    radius: namedIn(choices.glyphRadius, values.get('glyph_radius')) ?? defaultGlyphs.radius,
     scale: scale > 0 && Number.isFinite(scale) ? scale : undefined,
     thresholds: (thresholds && listOf(thresholds.split(';'), maxThresholds, thresholdIn)) || [],
   };

@@ -1,17 +1,9 @@
 import type { Camera } from '../camera/pose';
 import { vector, type Vector } from '../camera/vector';
-import {
-  colorMaps,
-  colorSources,
-  defaultBackground,
-  defaultDisplay,
-  splatConventions,
-  xrays,
-  type ClassOpacity,
-  type Clip,
-  type DisplayOptions,
-} from './display_options';
+import { choices, plainIn, plainParameters } from '../generated/plain_options';
+import { colorSources, defaultDisplay, type ClassOpacity, type Clip, type DisplayOptions } from './display_options';
 import { glyphParameters, parseGlyphs, parseLights } from './glyph_options';
+import { choiceIn, numberIn } from './plain_values';
 import { formatSlices, formatSurfaces, parseSlices, parseSurfaces } from '../volume/surfaces';
 import { formatTransfer, parseTransfer } from '../volume/transfer';
 
@@ -61,21 +53,13 @@ function classesIn(text: string | null): number[] {
   return codes.map(Number).filter((code) => code < 65536);
 }
 
-const shareIn = (text: string | null, usual: number): number => {
-  const share = numbersIn(text, 1)?.[0] ?? usual;
-  return share >= 0 && share <= 1 ? share : usual;
-};
-
 function classOpacitiesIn(text: string | null): ClassOpacity[] {
   return (text ?? '').split(',').flatMap((part) => {
     const [, code, share = null] = /^(\d+)=(.+)$/.exec(part) ?? [];
-    const opacity = shareIn(share, Number.NaN);
-    return Number(code) < 256 && !Number.isNaN(opacity) ? [{ code: Number(code), opacity }] : [];
+    const opacity = numberIn(share, 0, 1, false);
+    return Number(code) < 256 && opacity !== undefined ? [{ code: Number(code), opacity }] : [];
   });
 }
-
-const switchIn = (text: string | null): boolean | undefined =>
-  text === 'on' ? true : text === 'off' ? false : undefined;
 
 const byName = 'attribute:';
 const derivedAttributes: readonly string[] = ['fa', 'mode', 'md']; // of ellipsoids
@@ -98,31 +82,19 @@ function sourceText({ source, attribute }: DisplayOptions): string | undefined {
 
 function displayIn(values: URLSearchParams): DisplayOptions {
   const range = numbersIn(values.get('color_range'), 2);
-  const spacing = numbersIn(values.get('spacing'), 1)?.[0];
-  const background = numbersIn(values.get('background'), 3);
-  const inByte = background?.every((part) => Number.isInteger(part) && part >= 0 && part <= 255);
   return {
+    ...plainIn(values),
     ...sourceIn(values.get('color_by')),
-    map: colorMaps.find((name) => name === values.get('color_map')) ?? defaultDisplay.map,
+    map: choiceIn(choices.colorMap, values.get('color_map')) ?? defaultDisplay.map,
     range: range && range[0]! < range[1]! ? [range[0]!, range[1]!] : undefined,
     hiddenClasses: classesIn(values.get('hide_classes')),
     clips: [...clipsIn(values.get('clip_box'), false), ...clipsIn(values.get('clip_out'), true)],
     eyeDome: eyeDomeIn(values.get('eye_dome')),
-    background:
-      background && inByte ? { red: background[0]!, green: background[1]!, blue: background[2]! } : defaultBackground,
-    spacing: spacing !== undefined && spacing >= 0 ? spacing : defaultDisplay.spacing,
     transfer: parseTransfer(values.get('transfer')),
-    shaded: switchIn(values.get('shaded')),
     surfaces: parseSurfaces(values.get('iso')),
     slices: parseSlices(values.get('slice')),
-    medium: switchIn(values.get('medium')),
-    opacity: shareIn(values.get('opacity'), 1),
     classOpacities: classOpacitiesIn(values.get('opacity_by_class')),
-    ghost: shareIn(values.get('ghost'), defaultDisplay.ghost),
-    xray: xrays.find((name) => name === values.get('xray')) ?? defaultDisplay.xray,
     upsideDown: values.get('upside_down') === 'on',
-    splatConvention:
-      splatConventions.find((name) => name === values.get('splat_convention')) ?? defaultDisplay.splatConvention,
     glyphs: parseGlyphs(values),
     lighting: parseLights(values.get('lights')),
   };
@@ -155,9 +127,9 @@ const classList = (classes: readonly ClassOpacity[]): string | undefined =>
 
 /** Only the parameters that differ from their defaults. */
 function displayParameters(display: DisplayOptions): Record<string, string | undefined> {
-  const { background, eyeDome } = display;
-  const usual = background.red === defaultBackground.red && background.green === defaultBackground.green;
+  const { eyeDome } = display;
   return {
+    ...plainParameters(display),
     color_by: sourceText(display),
     color_map: display.map === defaultDisplay.map ? undefined : display.map,
     color_range: display.range?.join(','),
@@ -165,22 +137,11 @@ function displayParameters(display: DisplayOptions): Record<string, string | und
     clip_box: clipList(display.clips, false),
     clip_out: clipList(display.clips, true),
     eye_dome: eyeDome.strength > 0 ? `${eyeDome.strength},${eyeDome.radius}` : undefined,
-    background:
-      usual && background.blue === defaultBackground.blue
-        ? undefined
-        : `${background.red},${background.green},${background.blue}`,
-    spacing: display.spacing === defaultDisplay.spacing ? undefined : String(display.spacing),
     transfer: formatTransfer(display.transfer),
-    shaded: display.shaded === undefined ? undefined : display.shaded ? 'on' : 'off',
     iso: formatSurfaces(display.surfaces),
     slice: formatSlices(display.slices),
-    medium: display.medium === undefined ? undefined : display.medium ? 'on' : 'off',
-    opacity: display.opacity === 1 ? undefined : String(display.opacity),
     opacity_by_class: classList(display.classOpacities),
-    ghost: display.ghost === defaultDisplay.ghost ? undefined : String(display.ghost),
-    xray: display.xray === defaultDisplay.xray ? undefined : display.xray,
     upside_down: display.upsideDown ? 'on' : undefined,
-    splat_convention: display.splatConvention === defaultDisplay.splatConvention ? undefined : display.splatConvention,
     ...glyphParameters(display.glyphs, display.lighting),
   };
 }

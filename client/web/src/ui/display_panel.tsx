@@ -1,11 +1,10 @@
 import type { JSX } from 'preact';
+import { choices, defaultPlain } from '../generated/plain_options';
 import { formatNumber } from '../measure/format';
 import {
-  colorMaps,
   colorSources,
   fromHex,
   toHex,
-  defaultBackground,
   type ColorSourceName,
   type DisplayOptions,
   type Rgb,
@@ -90,7 +89,7 @@ function RangeFields(): JSX.Element {
 function Maps(): JSX.Element {
   return (
     <div class="maps" role="radiogroup" aria-label="Colour map">
-      {colorMaps.map((map) => (
+      {choices.colorMap.map((map) => (
         <label key={map} title={map}>
           <input
             type="radio"
@@ -197,7 +196,7 @@ function Depth(): JSX.Element {
 }
 
 const backgrounds: readonly (readonly [string, Rgb])[] = [
-  ['Night', defaultBackground],
+  ['Night', defaultPlain.background],
   ['Black', { red: 0, green: 0, blue: 0 }],
   ['Slate', { red: 58, green: 66, blue: 76 }],
   ['Paper', { red: 238, green: 236, blue: 230 }],

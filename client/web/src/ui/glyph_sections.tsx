@@ -1,10 +1,10 @@
 import type { JSX } from 'preact';
+import { choices } from '../generated/plain_options';
 import type { DisplayOptions } from '../state/display_options';
 import {
   anglesOf,
   directionAt,
   firstLight,
-  glyphRadii,
   glyphShapes,
   maxLights,
   maxSharpness,
@@ -257,7 +257,7 @@ export function GlyphSections(): JSX.Element | null {
         <Choices
           label="Semi-axes by"
           value={radius}
-          options={glyphRadii.map((value) => ({ value, label: radiusLabels[value] }))}
+          options={choices.glyphRadius.map((value) => ({ value, label: radiusLabels[value] }))}
           onChange={(value) => set({ radius: value, scale: undefined })}
         />
         <Size />

@@ -1,5 +1,6 @@
 import type { JSX } from 'preact';
-import { xrays, type DisplayOptions, type XRayName } from '../state/display_options';
+import { choices, type Choice } from '../generated/plain_options';
+import type { DisplayOptions } from '../state/display_options';
 import { className } from '../state/palette';
 import { description, display } from '../state/store';
 import { Choices, Section, Slider } from './controls';
@@ -10,7 +11,7 @@ const percent = (opacity: number): string => `${Math.round(opacity * 100)} %`;
 
 const bounds = { min: 0, max: 1, step: 0.01 } as const;
 
-const xrayLabels: Readonly<Record<XRayName, string>> = { off: 'Off', sorted: 'Walls', density: 'Density' };
+const xrayLabels: Readonly<Record<Choice<'xray'>, string>> = { off: 'Off', sorted: 'Walls', density: 'Density' };
 
 /** A factor of all opacities. */
 export function Opacity(): JSX.Element {
@@ -71,7 +72,7 @@ export function OpacitySection(): JSX.Element {
       <Choices
         label="X-ray"
         value={display.value.xray}
-        options={xrays.map((value) => ({ value, label: xrayLabels[value] }))}
+        options={choices.xray.map((value) => ({ value, label: xrayLabels[value] }))}
         onChange={(xray) => change({ xray })}
       />
     </Section>

@@ -1,6 +1,7 @@
 import type { JSX } from 'preact';
 import { chooseTool } from '../input/keyboard';
-import { splatConventions, type DisplayOptions, type SplatConventionName } from '../state/display_options';
+import { choices, type Choice } from '../generated/plain_options';
+import type { DisplayOptions } from '../state/display_options';
 import { description, display, hasSurfels, panel, tool } from '../state/store';
 import { decimalsFor, openVolume, pointsOf, setWindow, windowed } from '../state/volume';
 import type { PresetName, TransferPoint } from '../volume/transfer';
@@ -87,7 +88,7 @@ export function VolumeSections(): JSX.Element | null {
   );
 }
 
-const conventionLabels: Readonly<Record<SplatConventionName, string>> = { trained: 'As trained', exact: 'Exact' };
+const conventionLabels: Readonly<Record<Choice<'splatConvention'>, string>> = { trained: 'As trained', exact: 'Exact' };
 
 export function GaussianSection(): JSX.Element | null {
   if (!description.value?.kinds.some(({ kind }) => kind === 'gaussian')) return null;
@@ -96,7 +97,7 @@ export function GaussianSection(): JSX.Element | null {
       <Choices
         label="Convention"
         value={display.value.splatConvention}
-        options={splatConventions.map((value) => ({ value, label: conventionLabels[value] }))}
+        options={choices.splatConvention.map((value) => ({ value, label: conventionLabels[value] }))}
         onChange={(splatConvention) => change({ splatConvention })}
       />
       {!openVolume() && !hasSurfels() && <Opacity />}
