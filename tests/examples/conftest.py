@@ -14,7 +14,8 @@ from surfcast.testing import RunningServer, server
 
 @pytest.fixture(scope="session")
 def examples() -> Path:
-    return Path(os.environ["EXAMPLES"])
+    """The folder of the examples."""
+    return Path(os.environ["EXAMPLES"]).parent
 
 
 @pytest.fixture(scope="session")
