@@ -7,9 +7,6 @@
 
 namespace surfcast::render {
 
-/// True if a region has a block of ellipsoids.
-bool has_ellipsoids(const RegionTask& task);
-
 /// Draws a region of ellipsoids, as draw_region does with one of surfels: projects them, sorts them by depth into the
 /// lists of the tiles, finds the nearest one in every sample, lights it, and filters the samples. None if lists are too
 /// long. Surfaces of the region are drawn before, and kept in layers: each sample tells which of them are before its

@@ -7,9 +7,6 @@
 
 namespace surfcast::render {
 
-/// True if a region has a block of Gaussians.
-bool has_gaussians(const RegionTask& task);
-
 /// Draws a region of Gaussians, as draw_region does with one of surfels: projects them, sorts them by depth into the
 /// lists of the tiles, and blends them, between the surfaces of the region if it has any. None if lists are too long.
 /// Eye-dome lighting and supersampled silhouettes of the surfaces are left out.

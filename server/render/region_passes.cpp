@@ -283,7 +283,7 @@ Result<std::optional<RegionStats>> draw_with_volumes(RegionTask task, const Pict
                                                      std::span<const VisibleBrick> bricks, Programs& programs,
                                                      SplatBuffers& buffers, const Preemption& preemption) {
   const Region written = task.variant.eye_dome ? task.region : task.drawn;
-  const bool ellipsoids = has_ellipsoids(task);
+  const bool ellipsoids = has_blocks(task, kinds::DrawnAs::kGlyphs);
   RegionStats stats;
   if (!kinds.empty()) {
     Result<std::optional<RegionStats>> surfaces = draw_layers(task, kinds, programs, buffers, preemption);
@@ -308,6 +308,15 @@ Result<std::optional<RegionStats>> draw_with_volumes(RegionTask task, const Pict
 }
 
 }  // namespace
+
+RegionStats& RegionStats::operator+=(const RegionStats& more) {
+  splats += more.splats;
+  project_ms += more.project_ms;
+  bin_ms += more.bin_ms;
+  splat_ms += more.splat_ms;
+  read_ms += more.read_ms;
+  return *this;
+}
 
 void clear_layers(const Region& drawn, StorageBuffer& layers) {
   const size_t pixels = static_cast<size_t>(drawn.width) * static_cast<size_t>(drawn.height);
@@ -345,7 +354,7 @@ Result<double> read_picture(const RegionTask& task, const SplatBuffers& buffers,
 
 Result<std::optional<RegionStats>> draw_region(const RegionTask& task, Programs& programs, SplatBuffers& buffers,
                                                const Preemption& preemption, std::span<std::byte> pixels) {
-  const PictureKinds kinds = surface_kinds(task);
+  const PictureKinds kinds = kinds_of(task, kinds::DrawnAs::kSurface);
   const std::vector<VisibleBrick> bricks = bricks_of(task);
   buffers.picture.reserve(pixels.size());
   Result<std::optional<RegionStats>> drawn =

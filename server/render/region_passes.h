@@ -50,6 +50,8 @@ struct RegionStats {
   double bin_ms = 0;
   double splat_ms = 0;  ///< visibility, accumulation, normalisation, shading, eye-dome lighting
   double read_ms = 0;
+
+  RegionStats& operator+=(const RegionStats& more);
 };
 
 /// Draws a region with the passes project, bin_offsets, bin and splat; then, if requested, silhouettes, supersample and

@@ -20,6 +20,7 @@
 #include "render/gaussian_passes.h"
 #include "render/glyph_plan.h"
 #include "render/programs.h"
+#include "render/projection_work.h"
 #include "render/region_passes.h"
 #include "render/scene.h"
 #include "render/splat_buffers.h"
@@ -104,14 +105,6 @@ void copy_region(const Region& region, const Region& written, std::span<const st
     std::memcpy(image.pixels.data() + place(region.x - window.x, y - window.y, image.width),
                 from.data() + place(region.x - written.x, y - written.y, written.width), row);
   }
-}
-
-void add(RegionStats& total, const RegionStats& stats) {
-  total.splats += stats.splats;
-  total.project_ms += stats.project_ms;
-  total.bin_ms += stats.bin_ms;
-  total.splat_ms += stats.splat_ms;
-  total.read_ms += stats.read_ms;
 }
 
 /// The number of blocks by level, finest first.
@@ -350,8 +343,9 @@ Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const pict
     const Region& written = variant.eye_dome ? region : drawn;
     pixels.resize(static_cast<size_t>(written.width) * static_cast<size_t>(written.height) * bytes);
     // Volumes are blended in the same way in all regions of a picture.
-    const bool among_gaussians = has_gaussians(task) || (scene.has_gaussians() && !bricks_of(task).empty());
-    const bool glyphs = has_ellipsoids(task) && bricks_of(task).empty();
+    const bool among_gaussians =
+        has_blocks(task, kinds::DrawnAs::kGaussians) || (scene.has_gaussians() && !bricks_of(task).empty());
+    const bool glyphs = has_blocks(task, kinds::DrawnAs::kGlyphs) && bricks_of(task).empty();
     const auto draw_kinds = among_gaussians ? draw_gaussians : (glyphs ? draw_ellipsoids : draw_region);
     const Result<std::optional<RegionStats>> stats = draw_kinds(task, programs, buffers[depth - 1], preemption, pixels);
     if (!stats) return fail(stats.error());
@@ -362,7 +356,7 @@ Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const pict
       continue;
     }
     copy_region(region, written, pixels, bytes, window, result.image);
-    add(total, **stats);
+    total += **stats;
   }
   return total;
 }
