@@ -111,8 +111,7 @@ Result<std::optional<RegionStats>> draw_gaussians(const RegionTask& task, Progra
   if (ellipsoids) {
     Result<std::optional<RegionStats>> added = add_ellipsoids(task, programs, buffers, preemption);
     if (!added || !*added) return added;
-    stats.splats += (*added)->splats;
-    stats.splat_ms += (*added)->splat_ms;
+    stats += **added;
   }
   if (variant.keeps) clear_layers(task.drawn, buffers.gaussians.layers);
   if (variant.depth) clear_fronts(task.drawn, buffers);

@@ -294,8 +294,7 @@ Result<std::optional<RegionStats>> draw_with_volumes(RegionTask task, const Pict
     if (kinds.empty()) clear_layers(task.drawn, buffers.volume.layers);
     Result<std::optional<RegionStats>> added = add_ellipsoids(task, programs, buffers, preemption);
     if (!added || !*added) return added;
-    stats.splats += (*added)->splats;
-    stats.splat_ms += (*added)->splat_ms;
+    stats += **added;
   }
   task.variant.layered = !kinds.empty() || ellipsoids;
   const WorkStopwatch watch(preemption);
