@@ -2,7 +2,7 @@
 
 #include <cstdint>
 
-#include "render/region_passes.h"
+#include "render/region_task.h"
 
 namespace surfcast::render {
 

@@ -146,7 +146,6 @@ Status light_and_filter(const RegionTask& task, const EllipsoidWork& work, const
     });
   };
   const Region& samples = work.samples;
-  if (programs.keeps_fronts) clear_fronts(task.drawn, buffers);
   Status status = dispatch(programs.shade, own.frame, samples.width, samples.height, own.shade_batches);
   if (status) {
     status = dispatch(programs.filter_rows, own.frame, runs_of(task.drawn.width), samples.height, own.row_batches);
@@ -158,9 +157,14 @@ Status light_and_filter(const RegionTask& task, const EllipsoidWork& work, const
   return status;
 }
 
-/// All passes up to the target.
-Result<std::optional<RegionStats>> draw_passes(const RegionTask& task, EllipsoidTarget target, Programs& programs,
-                                               SplatBuffers& buffers, const Preemption& preemption) {
+EllipsoidTarget target_of(const PassPlaces& places) {
+  if (places.writes == Place::kSurfaces) return EllipsoidTarget::kLayers;
+  return places.reads == Place::kSurfaces ? EllipsoidTarget::kBesideSurfaces : EllipsoidTarget::kPicture;
+}
+
+Result<std::optional<RegionStats>> draw_ellipsoids(const RegionTask& task, const PassPlaces& places, Programs& programs,
+                                                   SplatBuffers& buffers, const Preemption& preemption) {
+  const EllipsoidTarget target = target_of(places);
   const EllipsoidWork work = plan(task, target);
   const Result<EllipsoidPrograms> compiled = programs.ellipsoids(task.variant, work.plan.colored, target);
   if (!compiled) return fail(compiled.error());
@@ -190,30 +194,7 @@ Result<std::optional<RegionStats>> draw_passes(const RegionTask& task, Ellipsoid
 
 }  // namespace
 
-Result<std::optional<RegionStats>> add_ellipsoids(const RegionTask& task, Programs& programs, SplatBuffers& buffers,
-                                                  const Preemption& preemption) {
-  buffers.picture.reserve(1);
-  return draw_passes(task, EllipsoidTarget::kLayers, programs, buffers, preemption);
-}
-
-Result<std::optional<RegionStats>> draw_ellipsoids(const RegionTask& task, Programs& programs, SplatBuffers& buffers,
-                                                   const Preemption& preemption, std::span<std::byte> pixels) {
-  const PictureKinds surfaces = kinds_of(task, kinds::DrawnAs::kSurface);
-  RegionStats stats;
-  if (!surfaces.empty()) {
-    Result<std::optional<RegionStats>> layers = draw_layers(task, surfaces, programs, buffers, preemption);
-    if (!layers || !*layers) return layers;
-    stats = **layers;
-  }
-  buffers.picture.reserve(pixels.size());
-  const EllipsoidTarget target = surfaces.empty() ? EllipsoidTarget::kPicture : EllipsoidTarget::kBesideSurfaces;
-  Result<std::optional<RegionStats>> drawn = draw_passes(task, target, programs, buffers, preemption);
-  if (!drawn || !*drawn) return drawn;
-  stats += **drawn;
-  const Result<double> read = read_picture(task, buffers, pixels);
-  if (!read) return fail(read.error());
-  stats.read_ms = *read;
-  return std::optional(stats);
-}
+const RegionPass kEllipsoidPass{
+    .draws = kinds::DrawnAs::kGlyphs, .leaves = Place::kSurfaces, .adds_to = Place::kSurfaces, .draw = draw_ellipsoids};
 
 }  // namespace surfcast::render

@@ -8,11 +8,9 @@
 #include "base/preemption.h"
 #include "gaussian/pack_gaussians.h"
 #include "render/batched_dispatch.h"
-#include "render/ellipsoid_passes.h"
 #include "render/gaussian_lists.h"
 #include "render/projection_work.h"
 #include "render/sorted_items.h"
-#include "render/volume_passes.h"
 #include "shared/gaussian_layout.h"
 
 namespace surfcast::render {
@@ -91,33 +89,20 @@ std::optional<GaussianLists> list_gaussians(const RegionTask& task, size_t count
   return lists;
 }
 
-}  // namespace
+/// Volumes are blended in the same way in all regions of a picture.
+bool draws_among_volumes(const RegionTask& task) {
+  return task.among_gaussians && has_blocks(task, kinds::DrawnAs::kVolume);
+}
 
-Result<std::optional<RegionStats>> draw_gaussians(const RegionTask& task, Programs& programs, SplatBuffers& buffers,
-                                                  const Preemption& preemption, std::span<std::byte> pixels) {
-  const PictureKinds surfaces = kinds_of(task, kinds::DrawnAs::kSurface);
-  RegionStats stats;
-  if (!surfaces.empty()) {
-    Result<std::optional<RegionStats>> layers = draw_layers(task, surfaces, programs, buffers, preemption);
-    if (!layers || !*layers) return layers;
-    stats = **layers;
-  }
-  const std::vector<VisibleBrick> bricks = bricks_of(task);
-  const bool ellipsoids = has_blocks(task, kinds::DrawnAs::kGlyphs);
+Result<std::optional<RegionStats>> draw_gaussians(const RegionTask& task, const PassPlaces& places, Programs& programs,
+                                                  SplatBuffers& buffers, const Preemption& preemption) {
   Variant variant = task.variant;
-  variant.keeps = !bricks.empty();
-  variant.layered = !surfaces.empty() || variant.keeps || ellipsoids;
-  if (surfaces.empty() && variant.layered) clear_layers(task.drawn, buffers.volume.layers);
-  if (ellipsoids) {
-    Result<std::optional<RegionStats>> added = add_ellipsoids(task, programs, buffers, preemption);
-    if (!added || !*added) return added;
-    stats += **added;
-  }
-  if (variant.keeps) clear_layers(task.drawn, buffers.gaussians.layers);
-  if (variant.depth) clear_fronts(task.drawn, buffers);
+  variant.keeps = places.writes == Place::kCodes;
+  variant.layered = places.reads == Place::kSurfaces;
   ProjectionWork work = plan_work(task, kinds_of(task, kinds::DrawnAs::kGaussians));
   const Result<GaussianPrograms> compiled = programs.gaussians(variant, form_of(task, work));
   if (!compiled) return fail(compiled.error());
+  RegionStats stats;
   const WorkStopwatch project_watch(preemption);
   const uint32_t count = number_items(work, texels_of_gaussian);
   buffers.gaussians.records.reserve(size_t{compiled->record} * std::max(count, 1U), buffers.lazy);
@@ -127,33 +112,30 @@ Result<std::optional<RegionStats>> draw_gaussians(const RegionTask& task, Progra
   if (Status status = project(task, work, *compiled->project, buffers, preemption); !status) {
     return fail(std::move(status.error()));
   }
-  stats.project_ms += project_watch.milliseconds();
+  stats.project_ms = project_watch.milliseconds();
 
   const WorkStopwatch bin_watch(preemption);
   const std::optional<GaussianLists> lists = list_gaussians(task, count, buffers.gaussians.keys);
   if (!lists) return std::optional<RegionStats>();
   upload_lists(*lists, buffers.lazy, buffers.gaussians.tiles, buffers.gaussians.lists);
-  stats.splats += lists->drawn;
-  stats.bin_ms += bin_watch.milliseconds();
+  stats.splats = lists->drawn;
+  stats.bin_ms = bin_watch.milliseconds();
 
   const WorkStopwatch blend_watch(preemption);
-  buffers.picture.reserve(pixels.size());
   // BlockView::scale.x is the unit of the projection.
   const float near = work.blocks.empty() ? 0 : static_cast<float>(SURFCAST_TRAINED_NEAR) * work.blocks.front().scale.x;
   Status status = blend_rounds(task, *lists, *compiled, near, buffers, preemption);
   if (!status) return fail(std::move(status.error()));
-  if (!bricks.empty()) {
-    RegionTask volumes = task;
-    volumes.variant.layered = volumes.variant.codes = true;
-    const double depth_unit = std::ldexp(1.0, -drawing_unit(task));
-    status = draw_volumes(volumes, task.drawn, depth_unit, bricks, programs, buffers, preemption);
-    if (!status) return fail(std::move(status.error()));
-  }
-  stats.splat_ms += blend_watch.milliseconds();
-  const Result<double> read = read_picture(task, buffers, pixels);
-  if (!read) return fail(read.error());
-  stats.read_ms = *read;
+  stats.splat_ms = blend_watch.milliseconds();
   return std::optional(stats);
 }
+
+}  // namespace
+
+const RegionPass kGaussianPass{.draws = kinds::DrawnAs::kGaussians,
+                               .also_needed = draws_among_volumes,
+                               .leaves = Place::kCodes,
+                               .adds_to = Place::kSurfaces,
+                               .draw = draw_gaussians};
 
 }  // namespace surfcast::render

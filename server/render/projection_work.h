@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "render/depth_slices.h"
-#include "render/region_passes.h"
+#include "render/region_task.h"
 
 namespace surfcast::render {
 

@@ -14,18 +14,14 @@
 #include "gl/egl_context.h"
 #include "gl/gpu_memory.h"
 #include "render/clear_blocks.h"
+#include "render/compose_region.h"
 #include "render/draw_to_error.h"
 #include "render/draw_to_time.h"
-#include "render/ellipsoid_passes.h"
-#include "render/gaussian_passes.h"
 #include "render/glyph_plan.h"
 #include "render/programs.h"
-#include "render/projection_work.h"
-#include "render/region_passes.h"
 #include "render/scene.h"
 #include "render/splat_buffers.h"
 #include "render/transfer_presets.h"
-#include "render/volume_passes.h"
 #include "residency/packing.h"
 #include "surfel/curvature.h"
 
@@ -330,7 +326,8 @@ Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const pict
                     display,
                     colors_of(display),
                     list_entries,
-                    variant.depth ? &result.depth : nullptr};
+                    variant.depth ? &result.depth : nullptr,
+                    scene.has_gaussians()};
     for (const uint32_t block :
          selection::blocks_in_rectangle(scene.viewed().tree, view.selection.draw, frame, drawn.x, drawn.y,
                                         drawn.x + drawn.width, drawn.y + drawn.height, sides_of(display),
@@ -342,12 +339,8 @@ Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const pict
     }
     const Region& written = variant.eye_dome ? region : drawn;
     pixels.resize(static_cast<size_t>(written.width) * static_cast<size_t>(written.height) * bytes);
-    // Volumes are blended in the same way in all regions of a picture.
-    const bool among_gaussians =
-        has_blocks(task, kinds::DrawnAs::kGaussians) || (scene.has_gaussians() && !bricks_of(task).empty());
-    const bool glyphs = has_blocks(task, kinds::DrawnAs::kGlyphs) && bricks_of(task).empty();
-    const auto draw_kinds = among_gaussians ? draw_gaussians : (glyphs ? draw_ellipsoids : draw_region);
-    const Result<std::optional<RegionStats>> stats = draw_kinds(task, programs, buffers[depth - 1], preemption, pixels);
+    const Result<std::optional<RegionStats>> stats =
+        compose_region(task, programs, buffers[depth - 1], preemption, pixels);
     if (!stats) return fail(stats.error());
     if (!*stats) {
       const std::vector<Region> halves = halves_of(part);

@@ -9,7 +9,7 @@
 #include "render/batched_dispatch.h"
 #include "render/gaussian_lists.h"
 #include "render/projection_work.h"
-#include "render/region_passes.h"
+#include "render/region_task.h"
 
 namespace surfcast::render {
 

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "render/region_passes.h"
+#include "render/region_task.h"
 #include "render/tile_spans.h"
 
 namespace surfcast::render {
