@@ -1,6 +1,6 @@
-// motion_lab PORT MODEL... [near] [fps=N] [link=MBIT,MS] [drop]: plays camera paths over emulated links to a server on
-// this machine that serves these models, and compares what a client shows at each instant with the picture of its
-// camera at that instant: as clients without depth show it (the newest frame), warped by depth, and warped from a
+// motion_lab PORT MODEL... [near] [fps=N] [link=MBIT,MS] [steps] [drop]: plays camera paths over emulated links to a
+// server on this machine that serves these models, and compares what a client shows at each instant with the picture of
+// its camera at that instant: as clients without depth show it (the newest frame), warped by depth, and warped from a
 // video. `near`: from a quarter of the distance. `fps`: frames a second that the clients with depth ask for. `link`:
 // this one alone.
 //
@@ -8,6 +8,11 @@
 // over instants 50 ms apart, PSNR in dB over covered pixels (mean, and the value that one in ten is below) and the
 // share of pixels that are more than 20 levels off. Instants at which the model covers less than a fiftieth of the
 // picture do not count.
+//
+// `steps`: instead, how much a picture on a display of 60 Hz changes from one to the next that its camera does not
+// explain: the difference of two pictures less that of the true ones, root mean square over covered pixels, in levels
+// (mean over all steps, and the value that one in twenty is above), beside PSNR. For frames that replace each other at
+// once, and blended over the time between two of them.
 //
 // `drop`: instead, the link of the clients with depth has its rate for 4 s, a tenth of it for 4 s, and its rate again.
 // For each half second: frames, kilobytes and width; and the longest time without a frame.
@@ -234,6 +239,87 @@ void print_drop(const std::vector<Arrived>& frames) {
   }
 }
 
+constexpr double kDisplayed = 1.0 / 60;
+constexpr double kStepsFrom = 0.8;  // seconds of a movement in which steps are judged
+constexpr double kStepsTo = 1.8;
+constexpr double kLongestBlend = 0.1;
+
+/// The newest frame at each instant, and the one before it.
+class Shown {
+ public:
+  explicit Shown(const std::vector<Arrived>& frames) : frames_(frames), newest_(decoded(frames.front().frame, video_)) {
+    rest_ = newest_;
+  }
+
+  void advance(double now) {
+    while (at_ + 1 < frames_.size() && frames_[at_ + 1].seconds + kDecode <= now) {
+      ++at_;
+      former_ = std::exchange(newest_, decoded(frames_[at_].frame, video_));
+      between_ = std::min(now - since_, kLongestBlend);
+      since_ = now;
+    }
+  }
+
+  [[nodiscard]] warp::Pixels picture(const geometry::CameraFrame& target, double now, bool blended) const {
+    warp::Pixels pixels = warp::warp(newest_, &rest_, target, {0, 0, 0, 255});
+    const double share = between_ > 0 ? (now - since_ + kDisplayed) / (between_ + kDisplayed) : 1;
+    if (!blended || !former_ || share >= 1) return pixels;
+    const warp::Pixels before = warp::warp(*former_, &rest_, target, {0, 0, 0, 255});
+    for (size_t i = 0; i < pixels.bytes.size(); ++i) {
+      const double sum = (1 - share) * before.bytes[i] + share * pixels.bytes[i];
+      pixels.bytes[i] = static_cast<uint8_t>(std::lround(sum));
+    }
+    return pixels;
+  }
+
+ private:
+  const std::vector<Arrived>& frames_;
+  window::VideoDecoder video_;
+  warp::WarpFrame rest_;
+  warp::WarpFrame newest_;
+  std::optional<warp::WarpFrame> former_;
+  size_t at_ = 0;
+  double since_ = 0;
+  double between_ = 0;
+};
+
+/// The change from one picture to the next that is not one of the true pictures.
+double unexplained(const warp::Pixels& before, const warp::Pixels& after, const picture::Image& true_before,
+                   const picture::Image& true_after) {
+  double sum = 0;
+  size_t count = 0;
+  for (size_t i = 0; i < after.bytes.size(); ++i) {
+    if (i % 4 == 3 || true_after.pixels[i / 4 * 4 + 3] == std::byte{0}) continue;
+    const int change = after.bytes[i] - before.bytes[i];
+    const int truth = std::to_integer<int>(true_after.pixels[i]) - std::to_integer<int>(true_before.pixels[i]);
+    sum += (change - truth) * (change - truth);
+    ++count;
+  }
+  return std::sqrt(sum / static_cast<double>(std::max<size_t>(count, 1)));
+}
+
+void print_steps(const std::vector<Arrived>& frames, const Camera& begin, const Path& path, const Truth& truth) {
+  for (const bool blended : {false, true}) {
+    Shown shown(frames);
+    std::vector<double> steps;
+    double psnr = 0;
+    warp::Pixels before;
+    for (size_t i = 0; i < truth.size(); ++i) {
+      const double now = kStepsFrom + static_cast<double>(i) * kDisplayed;
+      shown.advance(now);
+      const geometry::CameraFrame target =
+          value_or_exit(geometry::make_camera_frame(path.at(begin, now), kWidth, kHeight));
+      warp::Pixels picture = shown.picture(target, now, blended);
+      psnr += bench::compare(picture, truth[i]).psnr / static_cast<double>(truth.size());
+      if (i > 0) steps.push_back(unexplained(before, picture, truth[i - 1], truth[i]));
+      before = std::move(picture);
+    }
+    const double mean = std::accumulate(steps.begin(), steps.end(), 0.0) / static_cast<double>(steps.size());
+    std::ranges::sort(steps);
+    std::printf(" %.2f, %.2f / %.1f |", mean, steps[steps.size() * 19 / 20], psnr);
+  }
+}
+
 class Lab {
  public:
   Lab(uint16_t server, const std::string& file, bool near, double fps, std::vector<Link> links)
@@ -258,8 +344,23 @@ class Lab {
         "|---|---|---|---|---|---|---|---|\n",
         name_.c_str());
     for (const Path& path : bench::paths()) {
-      const Truth truth = truth_of(path);
+      const Truth truth = truth_of(path, 0, kSeconds, kEvery);
       for (const Link& link : links_) run(path, link, truth);
+    }
+  }
+
+  void run_steps() {
+    std::printf("\n| %s | link | at once: levels, largest / dB | blended |\n|---|---|---|---|\n", name_.c_str());
+    for (const Path& path : bench::paths()) {
+      const Truth truth = truth_of(path, kStepsFrom, kStepsTo, kDisplayed);
+      for (const Link& link : links_) {
+        const testing::LinkRelay relay(server_, shape_of(link));
+        std::printf("| %s | %.0f Mbit/s, %d ms |", path.name.c_str(), link.megabits, link.round_trip);
+        print_steps(play({relay.port(), name_, begin_, {fps_, true}}, path, kSeconds, [](double) {}), begin_, path,
+                    truth);
+        std::printf("\n");
+        std::fflush(stdout);
+      }
     }
   }
 
@@ -297,9 +398,10 @@ class Lab {
     std::fflush(stdout);
   }
 
-  [[nodiscard]] Truth truth_of(const Path& path) const {
+  [[nodiscard]] Truth truth_of(const Path& path, double from, double to, double every) const {
     Truth truth;
-    for (double now = 0; now < kSeconds; now += kEvery) {
+    for (int i = 0; from + i * every < to; ++i) {
+      const double now = from + i * every;
       picture::PictureRequest request;
       request.camera = path.at(begin_, now);
       request.width = kWidth;
@@ -324,11 +426,12 @@ class Lab {
 
 int main(int argc, char** argv) {
   if (argc < 3) {
-    std::fprintf(stderr, "usage: motion_lab PORT MODEL... [near] [fps=N] [link=MBIT,MS] [drop]\n");
+    std::fprintf(stderr, "usage: motion_lab PORT MODEL... [near] [fps=N] [link=MBIT,MS] [steps] [drop]\n");
     return 2;
   }
   bool near = false;
   bool drop = false;
+  bool steps = false;
   double fps = 0;
   std::vector<Link> links{{1000, 0}, {20, 50}, {20, 150}, {4, 150}, {20, 300}};
   std::vector<std::string> models;
@@ -337,6 +440,8 @@ int main(int argc, char** argv) {
       near = true;
     } else if (word == "drop") {
       drop = true;
+    } else if (word == "steps") {
+      steps = true;
     } else if (word.starts_with("fps=")) {
       fps = std::atof(word.c_str() + 4);
     } else if (word.starts_with("link=")) {
@@ -347,7 +452,7 @@ int main(int argc, char** argv) {
   }
   for (const std::string& model : models) {
     Lab lab(static_cast<uint16_t>(std::atoi(argv[1])), model, near, fps, links);
-    drop ? lab.run_drop() : lab.run();
+    drop ? lab.run_drop() : steps ? lab.run_steps() : lab.run();
   }
   return 0;
 }

@@ -149,8 +149,8 @@ TEST_F(ClientLimitsTest, IdleConnectionsOfAClientGiveWayToItsNextOne) {
     ASSERT_TRUE(next.back().send("GET /api/models HTTP/1.1\r\nHost: here\r\n\r\n"));
     EXPECT_THAT(next.back().read_http(), HasSubstr("HTTP/1.1 200"));
   }
-  EXPECT_TRUE(silent.closed_within(std::chrono::seconds(10)));
-  EXPECT_TRUE(http.closed_within(std::chrono::seconds(10)));
+  EXPECT_TRUE(silent.closed_within(RawSocket::kPatience));
+  EXPECT_TRUE(http.closed_within(RawSocket::kPatience));
   EXPECT_FALSE(framed->ask(ping_request()));
   EXPECT_EQ(websocket.read_message(), "") << "it is closed";
 }
@@ -180,7 +180,7 @@ TEST_F(ClientLimitsTest, AnIdleConnectionOfAnyClientGivesWayWhereAllPlacesAreTak
   std::vector<RawSocket> silent;
   for (int i = 0; i < 3; ++i) silent.emplace_back(port_);
   EXPECT_THAT(get_from(kOther, "/api/models"), HasSubstr("HTTP/1.1 200"));
-  EXPECT_TRUE(silent.front().closed_within(std::chrono::seconds(10)));
+  EXPECT_TRUE(silent.front().closed_within(RawSocket::kPatience));
 }
 
 TEST_F(ClientLimitsTest, ViewsOfOneAddressCountOnAllItsConnections) {

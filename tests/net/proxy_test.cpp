@@ -149,7 +149,7 @@ TEST_F(ProxyTest, ALineOfTextThatDoesNotEndEndsTheConnection) {
   start(config_);
   RawSocket endless(port_);
   endless.send("PROXY UNKNOWN " + std::string(200, 'x'));
-  EXPECT_TRUE(endless.closed_within(std::chrono::seconds(10)));
+  EXPECT_TRUE(endless.closed_within(RawSocket::kPatience));
   RawSocket wrong(port_);
   wrong.send("PROXY TCP4 nobody\r\n" + std::string(kReady));
   EXPECT_EQ(wrong.read_to_end(), "");
@@ -179,7 +179,7 @@ TEST_F(ProxyTest, AHeaderThatDoesNotComeEndsTheConnection) {
   start(config_);
   RawSocket slow(port_);
   slow.send(header_of(7).substr(0, 20));
-  EXPECT_TRUE(slow.closed_within(std::chrono::seconds(10)));
+  EXPECT_TRUE(slow.closed_within(RawSocket::kPatience));
 }
 
 }  // namespace

@@ -22,6 +22,9 @@ namespace surfcast::net {
 /// A plain loopback socket for tests that say what no well-behaved client says.
 class RawSocket {
  public:
+  /// A server that is asked for its first picture starts a worker, which takes long on a busy machine.
+  static constexpr std::chrono::seconds kPatience{60};
+
   /// `source`: the address of the loopback that the client has.
   explicit RawSocket(uint16_t port, int receive_buffer = 0, const char* source = "127.0.0.1")
       : descriptor_(::socket(AF_INET, SOCK_STREAM, 0)) {
@@ -64,7 +67,7 @@ class RawSocket {
   }
 
   /// What arrives until the server closes, or nothing more comes for `timeout`.
-  std::string read_to_end(std::chrono::milliseconds timeout = std::chrono::seconds(10)) {
+  std::string read_to_end(std::chrono::milliseconds timeout = kPatience) {
     std::string all;
     while (read_some(all, timeout)) {
     }
@@ -73,7 +76,7 @@ class RawSocket {
   /// Reads until `count` bytes are there.
   std::string read_exactly(size_t count) {
     std::string all;
-    while (all.size() < count && read_some(all, std::chrono::seconds(10), count - all.size())) {
+    while (all.size() < count && read_some(all, kPatience, count - all.size())) {
     }
     return all;
   }
@@ -81,7 +84,7 @@ class RawSocket {
   std::string read_http() {
     std::string all;
     while (all.find("\r\n\r\n") == std::string::npos) {
-      if (!read_some(all, std::chrono::seconds(10), 1)) return all;
+      if (!read_some(all, kPatience, 1)) return all;
     }
     const size_t field = all.find("Content-Length: ");
     const size_t length = field == std::string::npos ? 0 : std::stoul(all.substr(field + 16));
