@@ -2,6 +2,8 @@
 
 #include <cstdint>
 
+#include "base/preemption.h"
+#include "base/result.h"
 #include "render/region_task.h"
 
 namespace surfcast::render {

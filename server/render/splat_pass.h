@@ -1,5 +1,7 @@
 #pragma once
 
+#include "base/preemption.h"
+#include "base/result.h"
 #include "render/region_task.h"
 #include "render/tile_spans.h"
 
