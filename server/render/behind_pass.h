@@ -2,7 +2,9 @@
 
 #include <cstdint>
 
-#include "render/region_passes.h"
+#include "base/preemption.h"
+#include "base/result.h"
+#include "render/region_task.h"
 
 namespace surfcast::render {
 

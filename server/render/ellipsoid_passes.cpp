@@ -9,6 +9,7 @@
 #include "render/gaussian_lists.h"
 #include "render/glyph_plan.h"
 #include "render/projection_work.h"
+#include "render/sorted_items.h"
 #include "shared/ellipsoid_layout.h"
 
 namespace surfcast::render {
@@ -25,34 +26,21 @@ struct EllipsoidWork {
   EllipsoidTarget target = EllipsoidTarget::kPicture;
 };
 
-/// Gives the ellipsoids of each chunk their places, in the order of the blocks. Returns their number.
-uint32_t number_ellipsoids(ProjectionWork& work) {
-  uint32_t place = 0;
-  for (layout::Chunk& chunk : work.chunks) {
-    const uint32_t each = (chunk.run.z >> SURFCAST_RUN_ELLIPSOID_SHIFT) & SURFCAST_RUN_ELLIPSOID_TEXELS;
-    chunk.run.w = place;
-    place += (chunk.run.z & SURFCAST_RUN_COUNT) / each;
-  }
-  return place;
-}
-
-PictureKinds ellipsoid_kinds(const RegionTask& task) {
-  PictureKinds kinds = kinds_of(task);
-  std::erase_if(kinds, [](const PictureKind& kind) { return kind.kind->drawn_as() != kinds::DrawnAs::kGlyphs; });
-  return kinds;
+uint32_t texels_of_ellipsoid(uint32_t run) {
+  return (run >> SURFCAST_RUN_ELLIPSOID_SHIFT) & SURFCAST_RUN_ELLIPSOID_TEXELS;
 }
 
 EllipsoidWork plan(const RegionTask& task, EllipsoidTarget target) {
   EllipsoidWork work;
   work.target = target;
-  work.projection = plan_work(task, ellipsoid_kinds(task));
+  work.projection = plan_work(task, kinds_of(task, kinds::DrawnAs::kGlyphs));
   work.plan = plan_glyphs(task, drawing_unit(task));
   work.lights = lights_of(*task.request);
   constexpr int kReach = SURFCAST_GLYPH_REACH;
   work.samples = {task.drawn.x - kReach, task.drawn.y - kReach, task.drawn.width + 2 * kReach,
                   task.drawn.height + 2 * kReach};
   work.sample_constants = frame_constants(task.frame, work.samples, *task.request, {});
-  work.count = number_ellipsoids(work.projection);
+  work.count = number_items(work.projection, texels_of_ellipsoid);
   return work;
 }
 
@@ -61,17 +49,13 @@ size_t pixels_of(const Region& region) {
 }
 
 void upload_work(const RegionTask& task, const EllipsoidWork& work, SplatBuffers& buffers) {
-  upload(buffers.blocks, work.projection.blocks);
-  upload(buffers.chunks, work.projection.chunks);
+  upload_items(task, work.projection, buffers);
   upload_uniforms(buffers.frame, task.constants);
   upload_uniforms(buffers.ellipsoids.frame, work.sample_constants);
   upload(buffers.ellipsoids.views, work.plan.views);
   upload(buffers.ellipsoids.ranges, work.plan.ranges);
   upload_uniforms(buffers.ellipsoids.lighting, work.lights.lighting);
   upload(buffers.ellipsoids.lights, work.lights.lights);
-  if (!task.display.clipped) return;
-  upload(buffers.block_displays, work.projection.block_displays);
-  upload(buffers.clips, work.projection.clips.empty() ? std::vector<layout::ClipRange>(1) : work.projection.clips);
 }
 
 void reserve(const EllipsoidWork& work, const EllipsoidPrograms& programs, SplatBuffers& buffers) {
@@ -90,42 +74,26 @@ Status project(const RegionTask& task, const EllipsoidWork& work, const gl::Prog
   const gl::DebugGroup group("project ellipsoids");
   return dispatch_in_batches({work.projection.chunks.size(), {}}, buffers.ellipsoids.project_batches, preemption, [&] {
     buffers.ellipsoids.frame.bind_uniforms(SURFCAST_BIND_FRAME);
-    buffers.blocks.bind(SURFCAST_BIND_BLOCKS);
-    buffers.chunks.bind(SURFCAST_BIND_CHUNKS);
+    bind_items(task, buffers);
     buffers.ellipsoids.views.bind(SURFCAST_BIND_GLYPH_VIEWS);
     buffers.ellipsoids.ranges.bind(SURFCAST_BIND_GLYPH_THRESHOLDS);
-    if (task.display.clipped) {
-      buffers.block_displays.bind(SURFCAST_BIND_BLOCK_DISPLAYS);
-      buffers.clips.bind(SURFCAST_BIND_CLIPS);
-    }
     if (work.plan.colored) task.colors->bind(SURFCAST_UNIT_COLORS);
     buffers.ellipsoids.records.bind_for_writing(SURFCAST_UNIT_SPLATS);
     buffers.ellipsoids.keys.bind_for_writing(SURFCAST_UNIT_BOUNDS);
-    task.surfels->bind(SURFCAST_UNIT_SURFELS);
     glUseProgram(program.name());
   });
 }
 
 std::optional<GaussianLists> list_ellipsoids(const RegionTask& task, const EllipsoidWork& work,
                                              const SplatBuffers& buffers) {
-  std::vector<glm::uvec4> keys(work.count);
-  buffers.ellipsoids.keys.read(std::as_writable_bytes(std::span(keys)));
   const glm::ivec4 tiles = work.sample_constants.tiles;
-  return list_by_depth(keys, glm::uvec2(tiles.x, tiles.y), task.list_entries);
-}
-
-void upload_lists(const GaussianLists& lists, SplatBuffers& buffers) {
-  upload(buffers.ellipsoids.tiles, lists.tiles);
-  const size_t entries = lists.entries.size();
-  buffers.ellipsoids.lists.reserve(std::max<size_t>(entries + entries / 4, 1), buffers.lazy);
-  buffers.ellipsoids.lists.write(std::as_bytes(std::span(lists.entries)));
+  return list_by_depth(read_keys(work.count, buffers.ellipsoids.keys), glm::uvec2(tiles.x, tiles.y), task.list_entries);
 }
 
 /// The nearest ellipsoids of so many tiles, from an entry of their lists on.
-Status find_nearest(uint32_t tiles, uint32_t first, const EllipsoidPrograms& programs, SplatBuffers& buffers,
+Status find_nearest(const ListRound& round, const EllipsoidPrograms& programs, SplatBuffers& buffers,
                     const Preemption& preemption) {
-  const size_t lanes = size_t{tiles} * programs.lanes_of_tile;
-  const Groups groups{(lanes + programs.lanes - 1) / programs.lanes, {}};
+  const Groups groups = groups_of_tiles(round.tiles, programs.lanes_of_tile, programs.lanes);
   return dispatch_in_batches(groups, buffers.ellipsoids.nearest_batches, preemption, [&] {
     buffers.ellipsoids.frame.bind_uniforms(SURFCAST_BIND_FRAME);
     buffers.ellipsoids.tiles.bind(SURFCAST_BIND_TILE_ORDER);
@@ -134,7 +102,7 @@ Status find_nearest(uint32_t tiles, uint32_t first, const EllipsoidPrograms& pro
     buffers.ellipsoids.records.bind_for_reading(SURFCAST_UNIT_SPLATS);
     buffers.ellipsoids.lists.bind_for_reading(SURFCAST_UNIT_LISTS);
     glUseProgram(programs.nearest->name());
-    glUniform2ui(SURFCAST_UNIFORM_SPAN, tiles, first);
+    glUniform2ui(SURFCAST_UNIFORM_SPAN, round.tiles, round.first);
   });
 }
 
@@ -144,13 +112,8 @@ Status find_all_nearest(const EllipsoidWork& work, const GaussianLists& lists, c
   const gl::DebugGroup group("nearest ellipsoids");
   const bool several = lists.longer_than(programs.round) > 0;
   buffers.ellipsoids.depths.reserve((several ? pixels_of(work.samples) * programs.samples : 1) * sizeof(float));
-  auto tiles = static_cast<uint32_t>(lists.tiles.size());
-  for (uint32_t first = 0; tiles > 0;) {
-    if (Status status = find_nearest(tiles, first, programs, buffers, preemption); !status) return status;
-    first += programs.round;
-    tiles = lists.longer_than(first);
-  }
-  return {};
+  return draw_rounds(lists, programs.round,
+                     [&](const ListRound& round) { return find_nearest(round, programs, buffers, preemption); });
 }
 
 int runs_of(int pixels) {
@@ -183,7 +146,6 @@ Status light_and_filter(const RegionTask& task, const EllipsoidWork& work, const
     });
   };
   const Region& samples = work.samples;
-  if (programs.keeps_fronts) clear_fronts(task.drawn, buffers);
   Status status = dispatch(programs.shade, own.frame, samples.width, samples.height, own.shade_batches);
   if (status) {
     status = dispatch(programs.filter_rows, own.frame, runs_of(task.drawn.width), samples.height, own.row_batches);
@@ -195,9 +157,14 @@ Status light_and_filter(const RegionTask& task, const EllipsoidWork& work, const
   return status;
 }
 
-/// All passes up to the target.
-Result<std::optional<RegionStats>> draw_passes(const RegionTask& task, EllipsoidTarget target, Programs& programs,
-                                               SplatBuffers& buffers, const Preemption& preemption) {
+EllipsoidTarget target_of(const PassPlaces& places) {
+  if (places.writes == Place::kSurfaces) return EllipsoidTarget::kLayers;
+  return places.reads == Place::kSurfaces ? EllipsoidTarget::kBesideSurfaces : EllipsoidTarget::kPicture;
+}
+
+Result<std::optional<RegionStats>> draw_ellipsoids(const RegionTask& task, const PassPlaces& places, Programs& programs,
+                                                   SplatBuffers& buffers, const Preemption& preemption) {
+  const EllipsoidTarget target = target_of(places);
   const EllipsoidWork work = plan(task, target);
   const Result<EllipsoidPrograms> compiled = programs.ellipsoids(task.variant, work.plan.colored, target);
   if (!compiled) return fail(compiled.error());
@@ -213,7 +180,7 @@ Result<std::optional<RegionStats>> draw_passes(const RegionTask& task, Ellipsoid
   const WorkStopwatch bin_watch(preemption);
   const std::optional<GaussianLists> lists = list_ellipsoids(task, work, buffers);
   if (!lists) return std::optional<RegionStats>();
-  upload_lists(*lists, buffers);
+  upload_lists(*lists, buffers.lazy, buffers.ellipsoids.tiles, buffers.ellipsoids.lists);
   stats.splats = lists->drawn;
   stats.bin_ms = bin_watch.milliseconds();
 
@@ -225,45 +192,9 @@ Result<std::optional<RegionStats>> draw_passes(const RegionTask& task, Ellipsoid
   return std::optional(stats);
 }
 
-void add(const RegionStats& more, RegionStats& stats) {
-  stats.splats += more.splats;
-  stats.project_ms += more.project_ms;
-  stats.bin_ms += more.bin_ms;
-  stats.splat_ms += more.splat_ms;
-}
-
 }  // namespace
 
-bool has_ellipsoids(const RegionTask& task) {
-  return std::ranges::any_of(task.blocks, [&](const VisibleBlock& block) {
-    return task.kinds[block.kind]->drawn_as() == kinds::DrawnAs::kGlyphs;
-  });
-}
-
-Result<std::optional<RegionStats>> add_ellipsoids(const RegionTask& task, Programs& programs, SplatBuffers& buffers,
-                                                  const Preemption& preemption) {
-  buffers.picture.reserve(1);
-  return draw_passes(task, EllipsoidTarget::kLayers, programs, buffers, preemption);
-}
-
-Result<std::optional<RegionStats>> draw_ellipsoids(const RegionTask& task, Programs& programs, SplatBuffers& buffers,
-                                                   const Preemption& preemption, std::span<std::byte> pixels) {
-  const PictureKinds surfaces = surface_kinds(task);
-  RegionStats stats;
-  if (!surfaces.empty()) {
-    Result<std::optional<RegionStats>> layers = draw_layers(task, surfaces, programs, buffers, preemption);
-    if (!layers || !*layers) return layers;
-    stats = **layers;
-  }
-  buffers.picture.reserve(pixels.size());
-  const EllipsoidTarget target = surfaces.empty() ? EllipsoidTarget::kPicture : EllipsoidTarget::kBesideSurfaces;
-  Result<std::optional<RegionStats>> drawn = draw_passes(task, target, programs, buffers, preemption);
-  if (!drawn || !*drawn) return drawn;
-  add(**drawn, stats);
-  const Result<double> read = read_picture(task, buffers, pixels);
-  if (!read) return fail(read.error());
-  stats.read_ms = *read;
-  return std::optional(stats);
-}
+const RegionPass kEllipsoidPass{
+    .draws = kinds::DrawnAs::kGlyphs, .leaves = Place::kSurfaces, .adds_to = Place::kSurfaces, .draw = draw_ellipsoids};
 
 }  // namespace surfcast::render

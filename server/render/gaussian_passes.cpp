@@ -8,39 +8,16 @@
 #include "base/preemption.h"
 #include "gaussian/pack_gaussians.h"
 #include "render/batched_dispatch.h"
-#include "render/ellipsoid_passes.h"
 #include "render/gaussian_lists.h"
 #include "render/projection_work.h"
-#include "render/volume_passes.h"
+#include "render/sorted_items.h"
 #include "shared/gaussian_layout.h"
 
 namespace surfcast::render {
 namespace {
 
-/// Tiles whose lists are drawn from an entry on.
-struct GaussianRound {
-  uint32_t tiles = 0;
-  uint32_t first = 0;
-};
-
-/// Gives the Gaussians of each chunk their places, in the order of the blocks. Returns their number.
-uint32_t number_gaussians(ProjectionWork& work) {
-  uint32_t place = 0;
-  for (layout::Chunk& chunk : work.chunks) {
-    const int degree = static_cast<int>((chunk.run.z >> SURFCAST_RUN_DEGREE_SHIFT) & 7U);
-    chunk.run.w = place;
-    place += (chunk.run.z & SURFCAST_RUN_COUNT) / gaussian::texels_per_gaussian(degree);
-  }
-  return place;
-}
-
-void upload_work(const RegionTask& task, const ProjectionWork& work, SplatBuffers& buffers) {
-  upload(buffers.blocks, work.blocks);
-  upload(buffers.chunks, work.chunks);
-  upload_uniforms(buffers.frame, task.constants);
-  if (!task.display.clipped) return;
-  upload(buffers.block_displays, work.block_displays);
-  upload(buffers.clips, work.clips.empty() ? std::vector<layout::ClipRange>(1) : work.clips);
+uint32_t texels_of_gaussian(uint32_t run) {
+  return gaussian::texels_per_gaussian(static_cast<int>((run >> SURFCAST_RUN_DEGREE_SHIFT) & 7U));
 }
 
 Status project(const RegionTask& task, const ProjectionWork& work, const gl::Program& program, SplatBuffers& buffers,
@@ -48,24 +25,17 @@ Status project(const RegionTask& task, const ProjectionWork& work, const gl::Pro
   const gl::DebugGroup group("project Gaussians");
   return dispatch_in_batches({work.chunks.size(), {}}, buffers.gaussians.project_batches, preemption, [&] {
     buffers.frame.bind_uniforms(SURFCAST_BIND_FRAME);
-    buffers.blocks.bind(SURFCAST_BIND_BLOCKS);
-    buffers.chunks.bind(SURFCAST_BIND_CHUNKS);
-    if (task.display.clipped) {
-      buffers.block_displays.bind(SURFCAST_BIND_BLOCK_DISPLAYS);
-      buffers.clips.bind(SURFCAST_BIND_CLIPS);
-    }
+    bind_items(task, buffers);
     buffers.gaussians.records.bind_for_writing(SURFCAST_UNIT_SPLATS);
     buffers.gaussians.keys.bind_for_writing(SURFCAST_UNIT_BOUNDS);
-    task.surfels->bind(SURFCAST_UNIT_SURFELS);
     glUseProgram(program.name());
   });
 }
 
 /// Draws so many tiles, from an entry of their lists on. `near`: depth of the nearest centre that is drawn.
-Status blend(const GaussianRound& round, const GaussianPrograms& programs, float near, SplatBuffers& buffers,
+Status blend(const ListRound& round, const GaussianPrograms& programs, float near, SplatBuffers& buffers,
              const Preemption& preemption) {
-  const size_t lanes = size_t{round.tiles} * programs.lanes_of_tile;
-  const Groups groups{(lanes + programs.lanes - 1) / programs.lanes, {}};
+  const Groups groups = groups_of_tiles(round.tiles, programs.lanes_of_tile, programs.lanes);
   return dispatch_in_batches(groups, buffers.gaussians.blend_batches, preemption, [&] {
     buffers.frame.bind_uniforms(SURFCAST_BIND_FRAME);
     buffers.gaussians.tiles.bind(SURFCAST_BIND_TILE_ORDER);
@@ -83,13 +53,6 @@ Status blend(const GaussianRound& round, const GaussianPrograms& programs, float
   });
 }
 
-void upload_gaussian_lists(const GaussianLists& lists, SplatBuffers& buffers) {
-  upload(buffers.gaussians.tiles, lists.tiles);
-  const size_t entries = lists.entries.size();
-  buffers.gaussians.lists.reserve(std::max<size_t>(entries + entries / 4, 1), buffers.lazy);
-  buffers.gaussians.lists.write(std::as_bytes(std::span(lists.entries)));
-}
-
 /// Draws the tiles, those with long lists in several rounds.
 Status blend_rounds(const RegionTask& task, const GaussianLists& lists, const GaussianPrograms& programs, float near,
                     SplatBuffers& buffers, const Preemption& preemption) {
@@ -97,13 +60,8 @@ Status blend_rounds(const RegionTask& task, const GaussianLists& lists, const Ga
   const bool several = lists.longer_than(programs.round) > 0;
   const size_t pixels = static_cast<size_t>(task.drawn.width) * static_cast<size_t>(task.drawn.height);
   buffers.light.reserve((several ? pixels : 1) * sizeof(glm::vec4));
-  GaussianRound round{static_cast<uint32_t>(lists.tiles.size()), 0};
-  while (round.tiles > 0) {
-    if (Status status = blend(round, programs, near, buffers, preemption); !status) return status;
-    round.first += programs.round;
-    round.tiles = lists.longer_than(round.first);
-  }
-  return {};
+  return draw_rounds(lists, programs.round,
+                     [&](const ListRound& round) { return blend(round, programs, near, buffers, preemption); });
 }
 
 GaussianForm form_of(const RegionTask& task, const ProjectionWork& work) {
@@ -113,32 +71,11 @@ GaussianForm form_of(const RegionTask& task, const ProjectionWork& work) {
   return flat ? GaussianForm::kFlat : GaussianForm::kTrained;
 }
 
-/// The kinds of a picture by how they are drawn.
-struct SplitKinds {
-  PictureKinds gaussians;
-  PictureKinds surfaces;
-};
-
-SplitKinds split(const PictureKinds& kinds) {
-  SplitKinds parts;
-  for (const PictureKind& kind : kinds) {
-    if (kind.kind->drawn_as() == kinds::DrawnAs::kGaussians) parts.gaussians.push_back(kind);
-    if (kind.kind->drawn_as() == kinds::DrawnAs::kSurface) parts.surfaces.push_back(kind);
-  }
-  return parts;
-}
-
-std::vector<glm::uvec4> read_keys(size_t texels, const SplatBuffers& buffers) {
-  std::vector<glm::uvec4> keys(texels);
-  buffers.gaussians.keys.read(std::as_writable_bytes(std::span(keys)));
-  return keys;
-}
-
 /// The lists of the tiles; none if they are too long.
-std::optional<GaussianLists> list_gaussians(const RegionTask& task, size_t count, const SplatBuffers& buffers) {
+std::optional<GaussianLists> list_gaussians(const RegionTask& task, size_t count, const TexelBuffer& keys) {
   const glm::uvec2 tiles(task.constants.tiles.x, task.constants.tiles.y);
-  if (!task.variant.exact) return list_by_depth(read_keys(count, buffers), tiles, task.list_entries);
-  const ExactKeys exact = unpack_exact_keys(read_keys(count * SURFCAST_EXACT_GAUSSIAN_KEY, buffers));
+  if (!task.variant.exact) return list_by_depth(read_keys(count, keys), tiles, task.list_entries);
+  const ExactKeys exact = unpack_exact_keys(read_keys(count * SURFCAST_EXACT_GAUSSIAN_KEY, keys));
   std::optional<GaussianLists> lists = list_by_depth(exact.keys, tiles, task.list_entries);
   const auto rays_of_tile = [&](uint32_t tile) {
     const glm::dvec2 size(SURFCAST_TILE_WIDTH, SURFCAST_TILE_HEIGHT);
@@ -152,75 +89,53 @@ std::optional<GaussianLists> list_gaussians(const RegionTask& task, size_t count
   return lists;
 }
 
-}  // namespace
-
-bool has_gaussians(const RegionTask& task) {
-  return std::ranges::any_of(task.blocks, [&](const VisibleBlock& block) {
-    return task.kinds[block.kind]->drawn_as() == kinds::DrawnAs::kGaussians;
-  });
+/// Volumes are blended in the same way in all regions of a picture.
+bool draws_among_volumes(const RegionTask& task) {
+  return task.among_gaussians && has_blocks(task, kinds::DrawnAs::kVolume);
 }
 
-Result<std::optional<RegionStats>> draw_gaussians(const RegionTask& task, Programs& programs, SplatBuffers& buffers,
-                                                  const Preemption& preemption, std::span<std::byte> pixels) {
-  const auto [gaussians, surfaces] = split(kinds_of(task));
-  RegionStats stats;
-  if (!surfaces.empty()) {
-    Result<std::optional<RegionStats>> layers = draw_layers(task, surfaces, programs, buffers, preemption);
-    if (!layers || !*layers) return layers;
-    stats = **layers;
-  }
-  const std::vector<VisibleBrick> bricks = bricks_of(task);
-  const bool ellipsoids = has_ellipsoids(task);
+Result<std::optional<RegionStats>> draw_gaussians(const RegionTask& task, const PassPlaces& places, Programs& programs,
+                                                  SplatBuffers& buffers, const Preemption& preemption) {
   Variant variant = task.variant;
-  variant.keeps = !bricks.empty();
-  variant.layered = !surfaces.empty() || variant.keeps || ellipsoids;
-  if (surfaces.empty() && variant.layered) clear_layers(task.drawn, buffers.volume.layers);
-  if (ellipsoids) {
-    Result<std::optional<RegionStats>> added = add_ellipsoids(task, programs, buffers, preemption);
-    if (!added || !*added) return added;
-    stats.splats += (*added)->splats;
-    stats.splat_ms += (*added)->splat_ms;
-  }
-  if (variant.keeps) clear_layers(task.drawn, buffers.gaussians.layers);
-  if (variant.depth) clear_fronts(task.drawn, buffers);
-  ProjectionWork work = plan_work(task, gaussians);
+  variant.keeps = places.writes == Place::kCodes;
+  variant.layered = places.reads == Place::kSurfaces;
+  ProjectionWork work = plan_work(task, kinds_of(task, kinds::DrawnAs::kGaussians));
   const Result<GaussianPrograms> compiled = programs.gaussians(variant, form_of(task, work));
   if (!compiled) return fail(compiled.error());
+  RegionStats stats;
   const WorkStopwatch project_watch(preemption);
-  const uint32_t count = number_gaussians(work);
+  const uint32_t count = number_items(work, texels_of_gaussian);
   buffers.gaussians.records.reserve(size_t{compiled->record} * std::max(count, 1U), buffers.lazy);
   buffers.gaussians.keys.reserve(size_t{compiled->key} * std::max(count, 1U), buffers.lazy);
-  upload_work(task, work, buffers);
+  upload_items(task, work, buffers);
+  upload_uniforms(buffers.frame, task.constants);
   if (Status status = project(task, work, *compiled->project, buffers, preemption); !status) {
     return fail(std::move(status.error()));
   }
-  stats.project_ms += project_watch.milliseconds();
+  stats.project_ms = project_watch.milliseconds();
 
   const WorkStopwatch bin_watch(preemption);
-  const std::optional<GaussianLists> lists = list_gaussians(task, count, buffers);
+  const std::optional<GaussianLists> lists = list_gaussians(task, count, buffers.gaussians.keys);
   if (!lists) return std::optional<RegionStats>();
-  upload_gaussian_lists(*lists, buffers);
-  stats.splats += lists->drawn;
-  stats.bin_ms += bin_watch.milliseconds();
+  upload_lists(*lists, buffers.lazy, buffers.gaussians.tiles, buffers.gaussians.lists);
+  stats.splats = lists->drawn;
+  stats.bin_ms = bin_watch.milliseconds();
 
   const WorkStopwatch blend_watch(preemption);
-  buffers.picture.reserve(pixels.size());
   // BlockView::scale.x is the unit of the projection.
   const float near = work.blocks.empty() ? 0 : static_cast<float>(SURFCAST_TRAINED_NEAR) * work.blocks.front().scale.x;
   Status status = blend_rounds(task, *lists, *compiled, near, buffers, preemption);
   if (!status) return fail(std::move(status.error()));
-  if (!bricks.empty()) {
-    RegionTask volumes = task;
-    volumes.variant.layered = volumes.variant.codes = true;
-    const double depth_unit = std::ldexp(1.0, -drawing_unit(task));
-    status = draw_volumes(volumes, task.drawn, depth_unit, bricks, programs, buffers, preemption);
-    if (!status) return fail(std::move(status.error()));
-  }
-  stats.splat_ms += blend_watch.milliseconds();
-  const Result<double> read = read_picture(task, buffers, pixels);
-  if (!read) return fail(read.error());
-  stats.read_ms = *read;
+  stats.splat_ms = blend_watch.milliseconds();
   return std::optional(stats);
 }
+
+}  // namespace
+
+const RegionPass kGaussianPass{.draws = kinds::DrawnAs::kGaussians,
+                               .also_needed = draws_among_volumes,
+                               .leaves = Place::kCodes,
+                               .adds_to = Place::kSurfaces,
+                               .draw = draw_gaussians};
 
 }  // namespace surfcast::render

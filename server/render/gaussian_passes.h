@@ -1,19 +1,12 @@
 #pragma once
 
-#include <optional>
-#include <span>
-
-#include "render/region_passes.h"
+#include "render/region_pass.h"
 
 namespace surfcast::render {
 
-/// True if a region has a block of Gaussians.
-bool has_gaussians(const RegionTask& task);
-
-/// Draws a region of Gaussians, as draw_region does with one of surfels: projects them, sorts them by depth into the
-/// lists of the tiles, and blends them, between the surfaces of the region if it has any. None if lists are too long.
-/// Eye-dome lighting and supersampled silhouettes of the surfaces are left out.
-Result<std::optional<RegionStats>> draw_gaussians(const RegionTask& task, Programs& programs, SplatBuffers& buffers,
-                                                  const Preemption& preemption, std::span<std::byte> pixels);
+/// Gaussians: projects them, sorts them by depth into the lists of the tiles, and blends them between the surfaces of
+/// the region. Volumes among Gaussians are blended in the same way in all regions of a picture, so they need this pass
+/// in regions without Gaussians, too.
+extern const RegionPass kGaussianPass;
 
 }  // namespace surfcast::render

@@ -5,7 +5,7 @@
 #include <vector>
 
 #include "model/ellipsoid_source.h"
-#include "render/region_passes.h"
+#include "render/region_task.h"
 #include "shared/ellipsoid_layout.h"
 
 namespace surfcast::render {

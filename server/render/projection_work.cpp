@@ -83,20 +83,18 @@ bool needs_block_displays(const DisplayOptions& display) {
   return display.clipped || display.mapped();
 }
 
-PictureKinds kinds_of(const RegionTask& task) {
+bool has_blocks(const RegionTask& task, kinds::DrawnAs drawn_as) {
+  return std::ranges::any_of(task.blocks,
+                             [&](const VisibleBlock& block) { return task.kinds[block.kind]->drawn_as() == drawn_as; });
+}
+
+PictureKinds kinds_of(const RegionTask& task, kinds::DrawnAs drawn_as) {
   std::vector<bool> seen(task.kinds.size());
   for (const VisibleBlock& block : task.blocks) seen[block.kind] = true;
   PictureKinds kinds;
   for (uint32_t number = 0; number < seen.size(); ++number) {
-    if (seen[number] && task.kinds[number]->drawn_as() != kinds::DrawnAs::kVolume)
-      kinds.push_back({task.kinds[number], number});
+    if (seen[number] && task.kinds[number]->drawn_as() == drawn_as) kinds.push_back({task.kinds[number], number});
   }
-  return kinds;
-}
-
-PictureKinds surface_kinds(const RegionTask& task) {
-  PictureKinds kinds = kinds_of(task);
-  std::erase_if(kinds, [](const PictureKind& kind) { return kind.kind->drawn_as() != kinds::DrawnAs::kSurface; });
   return kinds;
 }
 

@@ -3,7 +3,7 @@
 #include <vector>
 
 #include "render/depth_slices.h"
-#include "render/region_passes.h"
+#include "render/region_task.h"
 
 namespace surfcast::render {
 
@@ -29,10 +29,10 @@ struct ProjectionWork {
 int drawing_unit(const RegionTask& task);
 /// True if the display options have parameters for each block.
 bool needs_block_displays(const DisplayOptions& display);
-/// The kinds of a region's blocks that are projected, sorted by number.
-PictureKinds kinds_of(const RegionTask& task);
-/// Those of them that are drawn as surfaces.
-PictureKinds surface_kinds(const RegionTask& task);
+/// True if a region has a block that is drawn so.
+bool has_blocks(const RegionTask& task, kinds::DrawnAs drawn_as);
+/// The kinds of a region's blocks that are drawn so, sorted by number.
+PictureKinds kinds_of(const RegionTask& task, kinds::DrawnAs drawn_as);
 /// The work of these kinds, in the order of the region's blocks.
 ProjectionWork plan_work(const RegionTask& task, const PictureKinds& kinds);
 

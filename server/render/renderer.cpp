@@ -14,17 +14,14 @@
 #include "gl/egl_context.h"
 #include "gl/gpu_memory.h"
 #include "render/clear_blocks.h"
+#include "render/compose_region.h"
 #include "render/draw_to_error.h"
 #include "render/draw_to_time.h"
-#include "render/ellipsoid_passes.h"
-#include "render/gaussian_passes.h"
 #include "render/glyph_plan.h"
 #include "render/programs.h"
-#include "render/region_passes.h"
 #include "render/scene.h"
 #include "render/splat_buffers.h"
 #include "render/transfer_presets.h"
-#include "render/volume_passes.h"
 #include "residency/packing.h"
 #include "surfel/curvature.h"
 
@@ -104,14 +101,6 @@ void copy_region(const Region& region, const Region& written, std::span<const st
     std::memcpy(image.pixels.data() + place(region.x - window.x, y - window.y, image.width),
                 from.data() + place(region.x - written.x, y - written.y, written.width), row);
   }
-}
-
-void add(RegionStats& total, const RegionStats& stats) {
-  total.splats += stats.splats;
-  total.project_ms += stats.project_ms;
-  total.bin_ms += stats.bin_ms;
-  total.splat_ms += stats.splat_ms;
-  total.read_ms += stats.read_ms;
 }
 
 /// The number of blocks by level, finest first.
@@ -337,7 +326,8 @@ Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const pict
                     display,
                     colors_of(display),
                     list_entries,
-                    variant.depth ? &result.depth : nullptr};
+                    variant.depth ? &result.depth : nullptr,
+                    scene.has_gaussians()};
     for (const uint32_t block :
          selection::blocks_in_rectangle(scene.viewed().tree, view.selection.draw, frame, drawn.x, drawn.y,
                                         drawn.x + drawn.width, drawn.y + drawn.height, sides_of(display),
@@ -349,11 +339,8 @@ Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const pict
     }
     const Region& written = variant.eye_dome ? region : drawn;
     pixels.resize(static_cast<size_t>(written.width) * static_cast<size_t>(written.height) * bytes);
-    // Volumes are blended in the same way in all regions of a picture.
-    const bool among_gaussians = has_gaussians(task) || (scene.has_gaussians() && !bricks_of(task).empty());
-    const bool glyphs = has_ellipsoids(task) && bricks_of(task).empty();
-    const auto draw_kinds = among_gaussians ? draw_gaussians : (glyphs ? draw_ellipsoids : draw_region);
-    const Result<std::optional<RegionStats>> stats = draw_kinds(task, programs, buffers[depth - 1], preemption, pixels);
+    const Result<std::optional<RegionStats>> stats =
+        compose_region(task, programs, buffers[depth - 1], preemption, pixels);
     if (!stats) return fail(stats.error());
     if (!*stats) {
       const std::vector<Region> halves = halves_of(part);
@@ -362,7 +349,7 @@ Result<RegionStats> Renderer::State::draw_regions(const Scene& scene, const pict
       continue;
     }
     copy_region(region, written, pixels, bytes, window, result.image);
-    add(total, **stats);
+    total += **stats;
   }
   return total;
 }

@@ -78,7 +78,6 @@ Status splat(const RegionTask& task, const layout::Counters& counters, const Reg
     buffers.light.reserve(pixels * sizeof(glm::vec4));
     buffers.depth.reserve(pixels * sizeof(glm::vec2));
   }
-  if (task.variant.layered) clear_layers(task.drawn, buffers.volume.layers);
   if (task.variant.keeps_fronts()) buffers.fronts.reserve(pixels_of_tiles(task) * sizeof(float));
   if (task.variant.silhouettes) clear_silhouettes(task, has_long_lists(counters), buffers);
   reserve_unfinished(task, programs.lanes, buffers);

@@ -1,6 +1,8 @@
 #pragma once
 
-#include "render/region_passes.h"
+#include "base/preemption.h"
+#include "base/result.h"
+#include "render/region_task.h"
 #include "render/tile_spans.h"
 
 namespace surfcast::render {

@@ -1,6 +1,7 @@
 #include "render/volume_passes.h"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 #include <utility>
 #include <vector>
@@ -8,6 +9,8 @@
 #include "base/contract.h"
 #include "render/batched_dispatch.h"
 #include "render/join_plans.h"
+#include "render/projection_work.h"
+#include "render/volume_plan.h"
 
 namespace surfcast::render {
 namespace {
@@ -63,7 +66,7 @@ void bind(const RegionTask& task, const SplatBuffers& buffers, const gl::Program
   glUseProgram(program.name());
 }
 
-/// The plans of all volumes of a region.
+/// The plans of all volumes of a region. `depth_unit`: of the depths of surfaces (Variant::layered), world units.
 JoinedPlan plan_volumes(const RegionTask& task, const Region& written, double depth_unit,
                         std::span<const VisibleBrick> bricks) {
   std::vector<VolumePlan> plans;
@@ -83,8 +86,6 @@ Status check_number(size_t volumes) {
   return fail(ErrorKind::kLimit, "more volumes in view than the device can draw: " + std::to_string(volumes));
 }
 
-}  // namespace
-
 std::vector<VisibleBrick> bricks_of(const RegionTask& task) {
   std::vector<VisibleBrick> bricks;
   for (const VisibleBlock& block : task.blocks) {
@@ -96,16 +97,15 @@ std::vector<VisibleBrick> bricks_of(const RegionTask& task) {
   return bricks;
 }
 
-Status draw_volumes(const RegionTask& task, const Region& written, double depth_unit,
-                    std::span<const VisibleBrick> bricks, Programs& programs, SplatBuffers& buffers,
-                    const Preemption& preemption) {
+/// Draws the volumes of a region into the pixels of `written`, as its variant says.
+Status draw_rays(const RegionTask& task, const Region& written, Programs& programs, SplatBuffers& buffers,
+                 const Preemption& preemption) {
   const gl::DebugGroup group("volumes");
-  const JoinedPlan plan = plan_volumes(task, written, depth_unit, bricks);
+  const JoinedPlan plan = plan_volumes(task, written, std::ldexp(1.0, -drawing_unit(task)), bricks_of(task));
   if (Status status = check_number(plan.constants.size()); !status) return status;
   Result<VolumePrograms> compiled = programs.volumes(task.variant, room_for_volumes(plan.constants.size()));
   if (!compiled) return fail(std::move(compiled.error()));
   upload_plan(task, plan, buffers);
-  if (task.variant.depth) clear_fronts(task.drawn, buffers);
   const auto dispatch = [&](const gl::Program* program, int width, int height, BatchSizer& sizer) {
     return dispatch_in_batches(all_pixels(width, height), sizer, preemption, [&] { bind(task, buffers, *program); });
   };
@@ -115,5 +115,24 @@ Status draw_volumes(const RegionTask& task, const Region& written, double depth_
   if (status) status = dispatch(compiled->filter_columns, written.width, written.height, buffers.volume.column_batches);
   return status;
 }
+
+Result<std::optional<RegionStats>> draw_volumes(const RegionTask& task, const PassPlaces& places, Programs& programs,
+                                                SplatBuffers& buffers, const Preemption& preemption) {
+  RegionTask between = task;
+  between.variant.layered = places.reads != Place::kNowhere;
+  between.variant.codes = places.reads == Place::kCodes;
+  RegionStats stats;
+  const WorkStopwatch watch(preemption);
+  const Region& written = task.variant.eye_dome ? task.region : task.drawn;
+  if (Status status = draw_rays(between, written, programs, buffers, preemption); !status) {
+    return fail(std::move(status.error()));
+  }
+  stats.splat_ms = watch.milliseconds();
+  return std::optional(stats);
+}
+
+}  // namespace
+
+const RegionPass kVolumePass{.draws = kinds::DrawnAs::kVolume, .draw = draw_volumes};
 
 }  // namespace surfcast::render

@@ -70,6 +70,17 @@ TEST_F(GlyphsAmongOthersGL, StandInVolumesWhereTheyAre) {
   }
 }
 
+TEST_F(GlyphsAmongOthersGL, CountInTheTimesOfProjectionAndListsBesideVolumes) {
+  // Volumes have neither, so all of the time is that of the glyph.
+  const picture::Frame frame = draw(*renderer_, build({cube(), glyph(0)}), request_of());
+  EXPECT_EQ(frame.stats.surfels_drawn, 1U);
+  for (const char* name : {"project", "bin", "splat"}) {
+    const auto stage = std::ranges::find(frame.stats.stages, name, &picture::StageTime::name);
+    ASSERT_NE(stage, frame.stats.stages.end()) << name;
+    EXPECT_GT(stage->milliseconds, 0) << name;
+  }
+}
+
 TEST_F(GlyphsAmongOthersGL, AreSeenThroughTransparentSurfels) {
   picture::PictureRequest request = request_of();
   request.class_opacities = {{5, 0.4}};

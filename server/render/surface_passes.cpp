@@ -1,19 +1,15 @@
-#include "render/region_passes.h"
+#include "render/surface_passes.h"
 
 #include <algorithm>
 #include <bit>
 #include <cmath>
 #include <optional>
 
-#include "base/stopwatch.h"
 #include "render/batched_dispatch.h"
-#include "render/depth_of_region.h"
 #include "render/depth_slices.h"
-#include "render/ellipsoid_passes.h"
 #include "render/projection_work.h"
 #include "render/silhouette_passes.h"
 #include "render/splat_pass.h"
-#include "render/volume_passes.h"
 
 namespace surfcast::render {
 namespace {
@@ -230,9 +226,10 @@ void shade_by_depth(const RegionTask& task, const gl::Program& program, SplatBuf
   glMemoryBarrier(GL_ALL_BARRIER_BITS);
 }
 
-/// Draws the surfaces of a region into `buffers.picture`. None if the tile lists are too long.
-Result<std::optional<RegionStats>> draw_surfaces(const RegionTask& task, const PictureKinds& kinds, Programs& programs,
-                                                 SplatBuffers& buffers, const Preemption& preemption) {
+/// Draws the surfaces of a region as its variant says. None if the tile lists are too long.
+Result<std::optional<RegionStats>> draw_variant(const RegionTask& task, Programs& programs, SplatBuffers& buffers,
+                                                const Preemption& preemption) {
+  const PictureKinds kinds = kinds_of(task, kinds::DrawnAs::kSurface);
   Result<SplatPrograms> variant = programs.variant(task.variant, kinds);
   if (!variant) return fail(variant.error());
   RegionPrograms region{std::move(*variant), {}};
@@ -270,92 +267,27 @@ Result<std::optional<RegionStats>> draw_surfaces(const RegionTask& task, const P
   return std::optional(stats);
 }
 
-/// Enters the region's front surfaces in the depth map of the picture.
-void read_depth(const RegionTask& task, const SplatBuffers& buffers) {
-  std::vector<float> fronts(static_cast<size_t>(task.drawn.width) * static_cast<size_t>(task.drawn.height));
-  const auto bytes = static_cast<GLsizeiptr>(fronts.size() * sizeof(float));
-  glGetNamedBufferSubData(buffers.fronts.name(), 0, bytes, fronts.data());
-  add_fronts(fronts, task.drawn, task.region, std::ldexp(1.0F, drawing_unit(task)), *task.depth);
+/// The variant that keeps surfaces for what is drawn between them.
+Variant layered(Variant variant) {
+  variant.layered = variant.eye_dome = true;
+  variant.silhouettes = false;
+  variant.depth = false;  // that of the pixels is known when all is drawn
+  // The depth of all that is behind the front surface as one would not be known.
+  variant.blends_behind = false;
+  return variant;
 }
 
-/// Draws a region with volumes: surfaces first, if it has any, then the volumes between them.
-Result<std::optional<RegionStats>> draw_with_volumes(RegionTask task, const PictureKinds& kinds,
-                                                     std::span<const VisibleBrick> bricks, Programs& programs,
-                                                     SplatBuffers& buffers, const Preemption& preemption) {
-  const Region written = task.variant.eye_dome ? task.region : task.drawn;
-  const bool ellipsoids = has_ellipsoids(task);
-  RegionStats stats;
-  if (!kinds.empty()) {
-    Result<std::optional<RegionStats>> surfaces = draw_layers(task, kinds, programs, buffers, preemption);
-    if (!surfaces || !*surfaces) return surfaces;
-    stats = **surfaces;
-  }
-  if (ellipsoids) {
-    if (kinds.empty()) clear_layers(task.drawn, buffers.volume.layers);
-    Result<std::optional<RegionStats>> added = add_ellipsoids(task, programs, buffers, preemption);
-    if (!added || !*added) return added;
-    stats.splats += (*added)->splats;
-    stats.splat_ms += (*added)->splat_ms;
-  }
-  task.variant.layered = !kinds.empty() || ellipsoids;
-  const WorkStopwatch watch(preemption);
-  const double depth_unit = std::ldexp(1.0, -drawing_unit(task));
-  if (Status status = draw_volumes(task, written, depth_unit, bricks, programs, buffers, preemption); !status) {
-    return fail(std::move(status.error()));
-  }
-  stats.splat_ms += watch.milliseconds();
-  return std::optional(stats);
+Result<std::optional<RegionStats>> draw_surfaces(const RegionTask& task, const PassPlaces& places, Programs& programs,
+                                                 SplatBuffers& buffers, const Preemption& preemption) {
+  if (places.writes == Place::kPicture) return draw_variant(task, programs, buffers, preemption);
+  RegionTask kept = task;
+  kept.variant = layered(task.variant);
+  return draw_variant(kept, programs, buffers, preemption);
 }
 
 }  // namespace
 
-void clear_layers(const Region& drawn, StorageBuffer& layers) {
-  const size_t pixels = static_cast<size_t>(drawn.width) * static_cast<size_t>(drawn.height);
-  layers.reserve(pixels * SURFCAST_LAYERS_KEPT * SURFCAST_LAYER_WORDS * sizeof(GLuint));
-  layers.clear();
-}
-
-void clear_fronts(const Region& drawn, SplatBuffers& buffers) {
-  buffers.fronts.reserve(static_cast<size_t>(drawn.width) * static_cast<size_t>(drawn.height) * sizeof(float));
-  buffers.fronts.clear();
-}
-
-Result<std::optional<RegionStats>> draw_layers(RegionTask task, const PictureKinds& kinds, Programs& programs,
-                                               SplatBuffers& buffers, const Preemption& preemption) {
-  task.variant.layered = task.variant.eye_dome = true;
-  task.variant.silhouettes = false;
-  task.variant.depth = false;  // that of the pixels is known when all is drawn
-  // The depth of all that is behind the front surface as one would not be known.
-  task.variant.blends_behind = false;
-  return draw_surfaces(task, kinds, programs, buffers, preemption);
-}
-
-Result<double> read_picture(const RegionTask& task, const SplatBuffers& buffers, std::span<std::byte> pixels) {
-  const Stopwatch watch;
-  glGetNamedBufferSubData(buffers.picture.name(), 0, static_cast<GLsizeiptr>(pixels.size()), pixels.data());
-  if (task.variant.depth) read_depth(task, buffers);
-  const double milliseconds = watch.milliseconds();
-  if (const GLenum error = glGetError(); error != GL_NO_ERROR) {
-    return fail(error == GL_OUT_OF_MEMORY ? ErrorKind::kLimit : ErrorKind::kInternal,
-                error == GL_OUT_OF_MEMORY ? "the GPU is out of memory for this picture"
-                                          : "OpenGL error " + std::to_string(error));
-  }
-  return milliseconds;
-}
-
-Result<std::optional<RegionStats>> draw_region(const RegionTask& task, Programs& programs, SplatBuffers& buffers,
-                                               const Preemption& preemption, std::span<std::byte> pixels) {
-  const PictureKinds kinds = surface_kinds(task);
-  const std::vector<VisibleBrick> bricks = bricks_of(task);
-  buffers.picture.reserve(pixels.size());
-  Result<std::optional<RegionStats>> drawn =
-      bricks.empty() ? draw_surfaces(task, kinds, programs, buffers, preemption)
-                     : draw_with_volumes(task, kinds, bricks, programs, buffers, preemption);
-  if (!drawn || !*drawn) return drawn;
-  const Result<double> read = read_picture(task, buffers, pixels);
-  if (!read) return fail(read.error());
-  (*drawn)->read_ms = *read;
-  return drawn;
-}
+const RegionPass kSurfacePass{
+    .draws = kinds::DrawnAs::kSurface, .leaves = Place::kSurfaces, .covers = true, .draw = draw_surfaces};
 
 }  // namespace surfcast::render
