@@ -10,7 +10,7 @@ from concurrent.futures import CancelledError, Future
 from contextlib import suppress
 from os import PathLike
 from types import TracebackType
-from typing import TYPE_CHECKING, Any, TypeVar, Unpack
+from typing import TYPE_CHECKING, Any, Generic, TypeVar, Unpack
 
 from . import aio
 from ._options import DisplayOptions, PictureOptions, RegionOptions, ViewOptions
@@ -26,6 +26,29 @@ if TYPE_CHECKING:
 T = TypeVar("T")
 
 
+class _Call(Generic[T]):
+    """A coroutine that can be cancelled at any time."""
+
+    def __init__(self, work: Coroutine[Any, Any, T]) -> None:
+        self._work = work
+        self._task: asyncio.Task[Any] | None = None
+        self._cancelled = False
+
+    async def run(self) -> T:
+        if self._cancelled:
+            raise asyncio.CancelledError
+        self._task = asyncio.current_task()
+        return await self._work
+
+    def cancel(self) -> None:
+        """In the thread of the event loop, or of a call whose coroutine will not run."""
+        self._cancelled = True
+        if self._task is not None:
+            self._task.cancel()
+        else:
+            self._work.close()
+
+
 class Runner:
     """An event loop in a thread. It ends when it is stopped, or with the program; `at_end` is run before."""
 
@@ -38,14 +61,19 @@ class Runner:
         self._thread.start()
 
     def run(self, work: Coroutine[Any, Any, T]) -> T:
-        """The result of a coroutine. Whatever interrupts the wait cancels the coroutine."""
-        future = self.start(work)
+        """The result of a coroutine. Whatever interrupts the call cancels the coroutine."""
+        call = _Call(work)
         try:
-            return future.result()
+            return self.start(call.run()).result()
         except CancelledError:
             raise ConnectionLost("the connection is closed") from None  # while the coroutine waited
         except BaseException:
-            future.cancel()
+            # Also where it was interrupted before it had the future: the coroutine may run already.
+            with self._lock:
+                if self._ending:
+                    call.cancel()
+                else:
+                    self._loop.call_soon_threadsafe(call.cancel)
             raise
 
     def start(self, work: Coroutine[Any, Any, T]) -> Future[T]:

@@ -12,9 +12,10 @@ import subprocess
 import sys
 import threading
 import tracemalloc
-from collections.abc import AsyncIterator, Awaitable, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable, Coroutine
 from contextlib import asynccontextmanager
 from pathlib import Path
+from typing import Any
 
 import pytest
 
@@ -213,6 +214,34 @@ def test_an_interrupt_cancels_the_picture() -> None:
             drawn, cancel = requests.get(timeout=60), requests.get(timeout=60)
             assert cancel.cancel.request_id == drawn.id
         runner.run(listening.__aexit__(None, None, None))
+    finally:
+        runner.stop()
+
+
+def test_an_interrupt_before_the_wait_cancels_what_has_begun(monkeypatch: pytest.MonkeyPatch) -> None:
+    begun, cancelled = threading.Event(), threading.Event()
+
+    async def work() -> None:
+        begun.set()
+        try:
+            await asyncio.sleep(3600)
+        except asyncio.CancelledError:
+            cancelled.set()
+            raise
+
+    start = asyncio.run_coroutine_threadsafe
+
+    def interrupted(coroutine: Coroutine[Any, Any, None], loop: asyncio.AbstractEventLoop) -> None:
+        start(coroutine, loop)
+        assert begun.wait(60)
+        raise KeyboardInterrupt
+
+    runner = Runner()
+    monkeypatch.setattr(asyncio, "run_coroutine_threadsafe", interrupted)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            runner.run(work())
+        assert cancelled.wait(60)
     finally:
         runner.stop()
 
