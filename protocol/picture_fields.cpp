@@ -213,10 +213,8 @@ constexpr std::array kFields{
                  structured<&set_eye_dome>("eye_dome")},
     PictureField{"transfer", "transfer", "NAME[,FIRST,LAST]|VALUE,R,G,B,OPACITY;...",
                  "colours and opacities of volumes: auto (default), gray, ct-bone, ct-soft or mr, with the values at "
-                 "its ends; or "
-                 "points "
-                 "in ascending order, with the opacity of one spacing of the grid; or on the command line a JSON file "
-                 "(default gray)",
+                 "its ends; or points in ascending order, with the opacity of one spacing of the grid; or on the "
+                 "command line a JSON file",
                  structured<&set_transfer>("transfer")},
     PictureField{"shaded", "shaded", "on|off",
                  "lighting of volumes (default: on with the transfer function auto, else off)",
