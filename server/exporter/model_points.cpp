@@ -112,7 +112,7 @@ Status ModelPoints::describe() {
 }
 
 Status ModelPoints::state_system() {
-  const Result<model::Georeference> georeference = model::load_georeference(model_->source());
+  const Result<model::Georeference> georeference = model::load_georeference(*model_);
   if (!georeference) return fail(georeference.error());
   schema_.crs = crs_text(georeference->system);
   if (!selection_.source_coordinates || !georeference->source.known()) return {};

@@ -9,6 +9,8 @@
 #include "base/file_source.h"
 #include "model/block_cache.h"
 #include "model/format.h"
+#include "model/joined_model.h"
+#include "model/model_counts.h"
 #include "model/volume_tables.h"
 #include "surfel/curvature.h"
 
@@ -23,6 +25,8 @@ struct ModelFile::State {
   Directory directory;
   std::vector<ScalarColumn> coarse_scalars;  ///< scalar attributes of coarse blocks
   ldc::BlockTree tree;
+  std::vector<Member> members{};         ///< of a joined model, which has no source and no blocks in its directory
+  std::vector<MemberOffsets> offsets{};  ///< of each member
 };
 
 namespace {
@@ -95,6 +99,13 @@ ByteRange range_of(const Directory& directory, size_t block) {
   return {directory.blocks[block].offset, directory.blocks[block].bytes};
 }
 
+std::vector<ScalarColumn> coarse_columns(std::span<const ScalarColumn> scalars) {
+  std::vector<ScalarColumn> coarse;
+  std::copy_if(scalars.begin(), scalars.end(), std::back_inserter(coarse),
+               [](const ScalarColumn& scalar) { return scalar.coarse; });
+  return coarse;
+}
+
 uint64_t next_id() {
   static std::atomic<uint64_t> last{0};
   return ++last;
@@ -134,25 +145,10 @@ ModelInfo make_info(const ModelHeader& header, const Directory& directory, std::
     info.ellipsoid_columns = std::max(info.ellipsoid_columns, source.attributes.size() - kDerivedAttributes);
   }
   for (const std::string& kind : directory.kinds) info.kinds.push_back({kind, 0, 0});
-  const int up_axis = info.z_up ? 2 : 1;
-  std::vector<ElevationSlab> slabs;  // but for volumes, which are not colored by elevation
   for (size_t i = 0; i < entries.size(); ++i) {
-    const ldc::BlockEntry& entry = entries[i];
-    info.levels = std::max(info.levels, entry.level + 1);
-    KindCount& kind = info.kinds[entry.kind];
-    ++kind.blocks;
-    if (entry.level > 0) continue;
-    info.bounds.include(entry.bounds);
-    kind.items += entry.surfels;
-    info.scatter += directory.blocks[i].scatter;
-    if (kind.kind != kGridKind) {
-      slabs.push_back({{entry.bounds.min[up_axis], entry.bounds.max[up_axis]}, entry.surfels});
-    }
+    if (entries[i].level == 0) info.scatter += directory.blocks[i].scatter;
   }
-  info.elevation = elevation_range(slabs);
-  for (const KindCount& kind : info.kinds) {
-    if (kind.kind == kSurfelKind) info.surfels = kind.items;
-  }
+  count_blocks(entries, info);
   return info;
 }
 
@@ -185,12 +181,25 @@ Result<ModelFile> ModelFile::open(std::unique_ptr<const ByteSource> source, std:
     return fail_naming(path, {ErrorKind::kInvalidInput, "the bricks of the model make no pyramid"});
   }
   ModelInfo info = make_info(*header, *directory, entries);
-  std::vector<ScalarColumn> coarse_scalars;
-  std::copy_if(directory->scalars.begin(), directory->scalars.end(), std::back_inserter(coarse_scalars),
-               [](const ScalarColumn& scalar) { return scalar.coarse; });
+  std::vector<ScalarColumn> coarse_scalars = coarse_columns(directory->scalars);
   return ModelFile(std::make_unique<State>(State{next_id(), path, std::move(source), std::move(cache), std::move(info),
                                                  std::move(*directory), std::move(coarse_scalars),
                                                  ldc::BlockTree(std::move(entries))}));
+}
+
+Result<ModelFile> ModelFile::join(std::vector<Member> members) {
+  Result<JoinedTables> tables = join_tables(members);
+  if (!tables) return fail(std::move(tables.error()));
+  std::string path;
+  for (const Member& member : members) path += (path.empty() ? "" : "+") + member.name;
+  Directory directory;
+  directory.scalars = std::move(tables->scalars);
+  directory.volumes = std::move(tables->volumes);
+  directory.ellipsoids = std::move(tables->ellipsoids);
+  std::vector<ScalarColumn> coarse_scalars = coarse_columns(directory.scalars);
+  return ModelFile(std::make_unique<State>(
+      State{next_id(), path, nullptr, nullptr, std::move(tables->info), std::move(directory), std::move(coarse_scalars),
+            ldc::BlockTree(std::move(tables->blocks)), std::move(members), std::move(tables->offsets)}));
 }
 
 uint64_t ModelFile::id() const {
@@ -213,8 +222,31 @@ std::span<const EllipsoidSource> ModelFile::ellipsoid_sources() const {
   return state_->directory.ellipsoids;
 }
 
-const BrickRecord& ModelFile::brick(size_t block) const {
+std::span<const ScalarColumn> ModelFile::scalars() const {
+  return state_->directory.scalars;
+}
+
+std::span<const Member> ModelFile::members() const {
+  return state_->members;
+}
+
+Part ModelFile::part(uint32_t block) const {
+  SURFCAST_EXPECTS(block < blocks().size());
+  if (state_->members.empty()) return {*this, block};
+  const auto after = std::ranges::upper_bound(state_->offsets, block, {}, &MemberOffsets::block);
+  const auto member = static_cast<uint32_t>(after - state_->offsets.begin()) - 1;
+  const MemberOffsets& offsets = state_->offsets[member];
+  return {*state_->members[member].model, block - offsets.block, member, offsets.volume, offsets.ellipsoids};
+}
+
+BrickRecord ModelFile::brick(size_t block) const {
   SURFCAST_EXPECTS(block < blocks().size() && state_->info.kinds[blocks()[block].kind].kind == kGridKind);
+  if (!state_->members.empty()) {
+    const Part own = part(static_cast<uint32_t>(block));
+    BrickRecord brick = own.model.brick(own.block);
+    brick.volume += own.first_volume;
+    return brick;
+  }
   return state_->directory.bricks[state_->directory.blocks[block].brick];
 }
 
@@ -223,10 +255,20 @@ const std::filesystem::path& ModelFile::path() const {
 }
 
 const ByteSource& ModelFile::source() const {
+  SURFCAST_EXPECTS(state_->members.empty());
   return *state_->source;
 }
 
 void ModelFile::prefetch(std::span<const uint32_t> blocks) const {
+  if (!state_->members.empty()) {
+    std::vector<std::vector<uint32_t>> own(state_->members.size());
+    for (const uint32_t block : blocks) {
+      const Part of = part(block);
+      own[of.member].push_back(of.block);
+    }
+    for (size_t i = 0; i < own.size(); ++i) state_->members[i].model->prefetch(own[i]);
+    return;
+  }
   std::vector<ByteRange> ranges;
   ranges.reserve(blocks.size());
   for (const uint32_t block : blocks) {
@@ -238,6 +280,10 @@ void ModelFile::prefetch(std::span<const uint32_t> blocks) const {
 }
 
 void ModelFile::forget(size_t block) const {
+  if (!state_->members.empty()) {
+    const Part own = part(static_cast<uint32_t>(block));
+    return own.model.forget(own.block);
+  }
   state_->source->forget(range_of(state_->directory, block));
 }
 
@@ -267,10 +313,18 @@ std::span<std::byte> buffer_of_thread(size_t size) {
 }  // namespace
 
 Error ModelFile::named(size_t block, const Error& error) const {
+  if (!state_->members.empty()) {
+    const Part own = part(static_cast<uint32_t>(block));
+    return own.model.named(own.block, error);
+  }
   return {error.kind, state_->path.string() + ": block " + std::to_string(block) + ": " + error.message};
 }
 
 Result<StoredBlock> ModelFile::stored(size_t block) const {
+  if (!state_->members.empty()) {
+    const Part own = part(static_cast<uint32_t>(block));
+    return own.model.stored(own.block);
+  }
   SURFCAST_EXPECTS(block < state_->directory.blocks.size());
   const BlockRecord& record = state_->directory.blocks[block];
   // What is checked is what is decoded: the file may be overwritten at any time.
@@ -285,6 +339,17 @@ Result<StoredBlock> ModelFile::stored(size_t block) const {
 }
 
 Result<DecodedBlock> ModelFile::decode(size_t block, WantedScalars scalars) const {
+  const std::span<const ScalarColumn> columns =
+      blocks()[block].level == 0 ? state_->directory.scalars : state_->coarse_scalars;
+  const size_t wanted = count_of(scalars, columns);
+  if (!state_->members.empty()) {
+    const Part own = part(static_cast<uint32_t>(block));
+    Result<DecodedBlock> decoded = own.model.decode(own.block, scalars);
+    if (!decoded) return decoded;
+    const std::vector<glm::dmat4x3>& places = state_->members[own.member].places;
+    if (!places.empty()) decoded = placed(std::move(*decoded), places[own.block]);
+    return conform(std::move(*decoded), own.model.info().color_bits, state_->info, columns.first(wanted), scalars);
+  }
   const Result<StoredBlock> stored_block = stored(block);
   if (!stored_block) return fail(stored_block.error());
   if (state_->info.kinds[blocks()[block].kind].kind != kSurfelKind) {
@@ -297,8 +362,8 @@ Result<DecodedBlock> ModelFile::decode(size_t block, WantedScalars scalars) cons
   shape.surfels = stored_block->items;
   shape.scatter = state_->directory.blocks[block].scatter;
   shape.color_bits = state_->info.color_bits;
-  shape.scalars = blocks()[block].level == 0 ? state_->directory.scalars : state_->coarse_scalars;
-  Result<DecodedBlock> decoded = decode_block(stored_block->bytes, shape, count_of(scalars, shape.scalars));
+  shape.scalars = columns;
+  Result<DecodedBlock> decoded = decode_block(stored_block->bytes, shape, wanted);
   if (!decoded) return fail(named(block, decoded.error()));
   return decoded;
 }
