@@ -36,6 +36,8 @@ class ByteSource {
   virtual void prefetch(std::span<const ByteRange> ranges) const = 0;
   /// A range that was prefetched will not be read.
   virtual void forget(const ByteRange& /*range*/) const {}
+  /// What tells its content from other content of that name: a new one has another. Empty if nothing does.
+  [[nodiscard]] virtual std::string version() const { return {}; }
   /// Of an open file, to pass it to another process; -1: the source is no file.
   [[nodiscard]] virtual int descriptor() const { return -1; }
   /// Finds out whether the source has been replaced, which replaced() says afterwards. Waits for a slow source, and

@@ -22,6 +22,7 @@ class FileSource : public ByteSource {
   void prefetch(std::span<const ByteRange> ranges) const override {
     for (const ByteRange& range : ranges) file_.prefetch(range.offset, range.size);
   }
+  [[nodiscard]] std::string version() const override { return file_.version(); }
   [[nodiscard]] int descriptor() const override { return file_.descriptor(); }
 
  private:

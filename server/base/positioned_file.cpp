@@ -52,6 +52,14 @@ Status PositionedFile::read(uint64_t offset, std::span<std::byte> bytes) const {
   return {};
 }
 
+std::string PositionedFile::version() const {
+  struct stat information {};
+  if (::fstat(descriptor_, &information) != 0) return {};
+  return std::to_string(information.st_dev) + '-' + std::to_string(information.st_ino) + '-' +
+         std::to_string(information.st_size) + '-' + std::to_string(information.st_mtim.tv_sec) + '.' +
+         std::to_string(information.st_mtim.tv_nsec);
+}
+
 void PositionedFile::prefetch(uint64_t offset, uint64_t size) const {
   ::posix_fadvise(descriptor_, static_cast<off_t>(offset), static_cast<off_t>(size), POSIX_FADV_WILLNEED);
 }

@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <span>
+#include <string>
 #include <utility>
 
 #include "base/result.h"
@@ -33,6 +34,8 @@ class PositionedFile {
   [[nodiscard]] int descriptor() const { return descriptor_; }
   /// Bytes of the file when it was opened.
   [[nodiscard]] uint64_t size() const { return size_; }
+  /// Device, number, size and time of modification.
+  [[nodiscard]] std::string version() const;
   /// Fills `bytes` with what is at `offset`. kIo when the disk fails, kInvalidInput when the file ends before.
   [[nodiscard]] Status read(uint64_t offset, std::span<std::byte> bytes) const;
   /// Tells the kernel to begin reading a part of the file. Returns at once.

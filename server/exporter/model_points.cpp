@@ -112,7 +112,7 @@ Status ModelPoints::describe() {
 }
 
 Status ModelPoints::state_system() {
-  const Result<model::Georeference> georeference = model::load_georeference(*model_);
+  const Result<model::Georeference> georeference = model_->georeference();
   if (!georeference) return fail(georeference.error());
   schema_.crs = crs_text(georeference->system);
   if (!selection_.source_coordinates || !georeference->source.known()) return {};
@@ -190,7 +190,7 @@ bool ModelPoints::takes_all_of(const geometry::Box& bounds) const {
 
 Result<PointFacts> ModelPoints::count(size_t piece, WantedFacts wanted) const {
   const ldc::BlockEntry& entry = model_->blocks()[leaves_[piece].block];
-  if (wanted == WantedFacts::kNumber && takes_all_of(entry.bounds)) {
+  if (wanted == WantedFacts::kNumber && takes_all_of(entry.bounds) && !model_->info().in_place) {
     PointFacts facts;
     const uint64_t first = first_row(leaves_[piece].first);
     if (first < entry.surfels) facts.count = 1 + (entry.surfels - 1 - first) / step();

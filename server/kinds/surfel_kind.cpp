@@ -61,7 +61,8 @@ Result<residency::PackedBlock> SurfelKind::load(const model::ModelFile& model, u
   const Result<model::DecodedBlock> decoded =
       model.decode(block, attributes ? model::WantedScalars::kDrawn : model::WantedScalars::kNone);
   if (!decoded) return fail(decoded.error());
-  residency::PackedSurfels packed = residency::pack_block(*decoded, model.info().color_bits, model.info().oriented);
+  residency::PackedSurfels packed;  // a block that was made of points may have none
+  if (decoded->size() > 0) packed = residency::pack_block(*decoded, model.info().color_bits, model.info().oriented);
   if (attributes) residency::pack_attributes(*decoded, packed);
   auto header = std::make_shared<const SurfelHeader>(packed);
   return residency::PackedBlock{packed.lattice, std::move(packed.surfels), std::move(packed.attributes),

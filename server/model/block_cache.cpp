@@ -1,6 +1,7 @@
 #include "model/block_cache.h"
 
 #include <algorithm>
+#include <cstring>
 #include <system_error>
 #include <utility>
 #include <vector>
@@ -11,6 +12,7 @@
 #include <unistd.h>
 
 #include "base/atomic_file.h"
+#include "base/hash.h"
 #include "base/positioned_file.h"
 #include "model/format.h"
 
@@ -23,6 +25,9 @@ constexpr const char* kBlockExtension = ".block";
 /// Shares of the limit: what is written before the folder is looked through again, and what is free afterwards.
 constexpr uint64_t kWrittenShare = 16;
 constexpr uint64_t kFreeShare = 8;
+
+/// Of blocks that were made: before their bytes.
+constexpr size_t kChecksumBytes = sizeof(uint64_t);
 
 struct KeptBlock {
   fs::path path;
@@ -84,10 +89,52 @@ bool BlockCache::read(uint64_t checksum, std::span<std::byte> bytes) const {
 }
 
 void BlockCache::write(uint64_t checksum, std::span<const std::byte> bytes) {
+  write_file(path_of(checksum, bytes.size()), bytes);
+}
+
+void BlockCache::write_file(const fs::path& path, std::span<const std::byte> bytes) {
   if (bytes.size() > bytes_) return;
-  Result<AtomicFile> file = AtomicFile::create(path_of(checksum, bytes.size()));
+  Result<AtomicFile> file = AtomicFile::create(path);
   if (!file || !file->append(bytes) || !file->commit_unflushed()) return;
   if ((written_ += bytes.size()) > bytes_ / kWrittenShare) remove_oldest();
+}
+
+fs::path BlockCache::path_of(const std::string& key) const {
+  return folder_ / ("made-" + hash_name(std::as_bytes(std::span(key))) + kBlockExtension);
+}
+
+bool BlockCache::contains_made(const std::string& key) const {
+  std::error_code ignored;
+  return fs::is_regular_file(path_of(key), ignored);
+}
+
+std::vector<std::byte> BlockCache::read_made(const std::string& key) const {
+  const fs::path path = path_of(key);
+  const Result<PositionedFile> file = PositionedFile::open(path);
+  if (!file) return {};
+  std::vector<std::byte> bytes;
+  if (file->size() > kChecksumBytes && file->size() <= bytes_) {
+    bytes.resize(file->size());
+    if (!file->read(0, bytes)) bytes.clear();
+  }
+  uint64_t checksum = 0;
+  if (!bytes.empty()) std::memcpy(&checksum, bytes.data(), kChecksumBytes);
+  if (!bytes.empty() && checksum_of(std::span(bytes).subspan(kChecksumBytes)) == checksum) {
+    mark_used(path);
+    bytes.erase(bytes.begin(), bytes.begin() + kChecksumBytes);
+    return bytes;
+  }
+  std::error_code ignored;
+  fs::remove(path, ignored);
+  return {};
+}
+
+void BlockCache::write_made(const std::string& key, std::span<const std::byte> bytes) {
+  const uint64_t checksum = checksum_of(bytes);
+  std::vector<std::byte> content(kChecksumBytes + bytes.size());
+  std::memcpy(content.data(), &checksum, kChecksumBytes);
+  std::ranges::copy(bytes, content.begin() + kChecksumBytes);
+  write_file(path_of(key), content);
 }
 
 void BlockCache::remove_oldest() {

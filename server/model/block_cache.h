@@ -7,6 +7,9 @@
 #include <memory>
 #include <mutex>
 #include <span>
+#include <string>
+#include <utility>
+#include <vector>
 
 #include "base/result.h"
 
@@ -28,9 +31,17 @@ class BlockCache {
   /// Keeps a block. A disk that is full is no error: the block is not kept.
   void write(uint64_t checksum, std::span<const std::byte> bytes);
 
+  // Blocks that are made of something else have no checksum before. They are kept by a key: what they are made of.
+  [[nodiscard]] bool contains_made(const std::string& key) const;
+  /// Empty if there is none, or a wrong one, which is removed.
+  [[nodiscard]] std::vector<std::byte> read_made(const std::string& key) const;
+  void write_made(const std::string& key, std::span<const std::byte> bytes);
+
  private:
   BlockCache(std::filesystem::path folder, uint64_t bytes) : folder_(std::move(folder)), bytes_(bytes) {}
   [[nodiscard]] std::filesystem::path path_of(uint64_t checksum, uint64_t size) const;
+  [[nodiscard]] std::filesystem::path path_of(const std::string& key) const;
+  void write_file(const std::filesystem::path& path, std::span<const std::byte> bytes);
   void remove_oldest();
 
   const std::filesystem::path folder_;

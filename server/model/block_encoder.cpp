@@ -115,6 +115,38 @@ Field scalar_field(const surfel::ScalarAttribute& scalar, Members members) {
       scalar.values)};
 }
 
+/// Members along a path on which neighbours are near each other, and their lattice indices.
+struct Path {
+  std::vector<uint32_t> members;
+  std::vector<uint32_t> order;  ///< of `indices`
+  std::vector<glm::ivec3> indices;
+};
+
+Path path_of(const surfel::SurfelCloud& cloud, Members members, const surfel::Grid& grid, EncodedBlock& block) {
+  Path path;
+  path.indices = make_indices(cloud, members, grid, block);
+  path.order = path_order(path.indices);
+  path.members.reserve(path.order.size());
+  for (const uint32_t i : path.order) path.members.push_back(members[i]);
+  return path;
+}
+
+uint32_t count_scatter(const surfel::SurfelCloud& cloud, Members members) {
+  return static_cast<uint32_t>(
+      std::count_if(members.begin(), members.end(), [&cloud](uint32_t s) { return cloud.is_scatter(s); }));
+}
+
+surfel::ScalarAttribute rows_of(const surfel::ScalarAttribute& scalar, Members members) {
+  return {scalar.name, std::visit(
+                           [&](const auto& values) {
+                             std::decay_t<decltype(values)> rows;
+                             rows.reserve(members.size());
+                             for (const uint32_t s : members) rows.push_back(values[s]);
+                             return surfel::ScalarValues(std::move(rows));
+                           },
+                           scalar.values)};
+}
+
 }  // namespace
 
 EncodedBlock encode_block(const surfel::SurfelCloud& cloud, std::span<const uint32_t> members,
@@ -123,17 +155,13 @@ EncodedBlock encode_block(const surfel::SurfelCloud& cloud, std::span<const uint
   EncodedBlock block;
   block.grid = grid;
   block.surfels = static_cast<uint32_t>(members.size());
-  const auto is_scatter = [&cloud](uint32_t s) { return cloud.is_scatter(s); };
-  block.scatter = static_cast<uint32_t>(std::count_if(members.begin(), members.end(), is_scatter));
-  const std::vector<glm::ivec3> indices = make_indices(cloud, members, grid, block);
-  const std::vector<uint32_t> path = path_order(indices);
-  std::vector<uint32_t> ordered;
-  ordered.reserve(path.size());
-  for (const uint32_t i : path) ordered.push_back(members[i]);
+  block.scatter = count_scatter(cloud, members);
+  const Path path = path_of(cloud, members, grid, block);
+  const std::vector<uint32_t>& ordered = path.members;
 
   const BlockFlags flags{!cloud.estimated_normals, !cloud.estimated_radii, block.scatter > 0};
   std::vector<Field> fields;
-  fields.push_back(position_field(indices, path));
+  fields.push_back(position_field(path.indices, path.order));
   fields.push_back(normal_field(cloud, ordered, flags.codes().octahedral_half, block));
   fields.push_back(radius_field(cloud, ordered, flags.codes().radius_steps, block));
   fields.push_back(
@@ -144,6 +172,29 @@ EncodedBlock encode_block(const surfel::SurfelCloud& cloud, std::span<const uint
   block.bytes = {static_cast<std::byte>(flags.byte())};
   const std::vector<std::byte> packed = encode_fields(fields);
   block.bytes.insert(block.bytes.end(), packed.begin(), packed.end());
+  return block;
+}
+
+DecodedBlock quantize_block(const surfel::SurfelCloud& cloud, std::span<const uint32_t> members,
+                            const surfel::Grid& grid) {
+  SURFCAST_EXPECTS(!members.empty());
+  EncodedBlock place;
+  const Path path = path_of(cloud, members, grid, place);
+  const bool scatter = count_scatter(cloud, members) > 0;
+  const Precision codes = BlockFlags{!cloud.estimated_normals, !cloud.estimated_radii, scatter}.codes();
+  DecodedBlock block;
+  block.grid = grid;
+  block.origin = place.origin;
+  for (const uint32_t i : path.order) block.indices.push_back(path.indices[i]);
+  for (const uint32_t s : path.members) {
+    block.normals.push_back(
+        decode_normal(encode_normal(cloud.normals[s], codes.octahedral_half), codes.octahedral_half));
+    block.radii.push_back(decode_logarithm(encode_logarithm(cloud.radii[s], codes.radius_steps), codes.radius_steps));
+    block.weights.push_back(decode_logarithm(encode_logarithm(cloud.weights[s], kWeightSteps), kWeightSteps));
+    if (scatter) block.scatter.push_back(cloud.scatter[s]);
+    if (cloud.colors) block.colors.push_back(cloud.colors->values[s]);
+  }
+  for (const surfel::ScalarAttribute& scalar : cloud.scalars) block.scalars.push_back(rows_of(scalar, path.members));
   return block;
 }
 

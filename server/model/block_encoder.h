@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "geometry/normal_cone.h"
+#include "model/decoded_block.h"
 #include "model/kind_count.h"
 #include "model/statistics.h"
 #include "model/volume.h"
@@ -37,5 +38,9 @@ struct EncodedBlock {
 /// blocks of oriented clouds without scatter, which is seen from all sides.
 EncodedBlock encode_block(const surfel::SurfelCloud& cloud, std::span<const uint32_t> members,
                           const surfel::Grid& grid);
+
+/// The same block as decode_block() would return it, without the detour: values have the resolution of their codes.
+DecodedBlock quantize_block(const surfel::SurfelCloud& cloud, std::span<const uint32_t> members,
+                            const surfel::Grid& grid);
 
 }  // namespace surfcast::model

@@ -51,10 +51,33 @@ glm::dvec3 mean_facing(const ModelFile& model) {
   return model.info().oriented ? facing_of_discs(model).mean() : glm::dvec3(0);
 }
 
+/// Where the surfels of the coarsest blocks are: cells, as the boxes of blocks in place are, say little of a surface.
+std::vector<geometry::Box> boxes_of_coarsest(const ModelFile& model) {
+  std::vector<geometry::Box> boxes;
+  for (size_t i = 0; i < model.blocks().size(); ++i) {
+    if (model.blocks()[i].parent != ldc::BlockEntry::kNoParent) continue;
+    const Result<DecodedBlock> block = model.decode(i, WantedScalars::kNone);
+    for (size_t k = 0; block && k < block->size(); ++k) {
+      const glm::dvec3 at = block->position(k);
+      boxes.push_back({at - double{block->radii[k]}, at + double{block->radii[k]}});
+    }
+  }
+  return boxes;
+}
+
 /// The bounding boxes of all leaves, including their discs. Together they follow the surface more closely than the
 /// model's own box, whose corners are mostly empty.
 std::vector<geometry::Box> boxes_of_discs(const ModelFile& model) {
   std::vector<geometry::Box> boxes;
+  const auto placed = [](const Member& member) { return !member.places.empty(); };
+  if (model.info().in_place && std::ranges::none_of(model.members(), placed)) {
+    for (const Member& member : model.members()) {
+      const std::vector<geometry::Box> own = boxes_of_discs(*member.model);
+      boxes.insert(boxes.end(), own.begin(), own.end());
+    }
+    if (model.members().empty()) boxes = boxes_of_coarsest(model);
+    if (!boxes.empty()) return boxes;
+  }
   for (const ldc::BlockEntry& block : model.blocks()) {
     if (block.level > 0) continue;
     // The largest of other kinds may be far larger than what is seen of them.

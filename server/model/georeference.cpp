@@ -6,7 +6,6 @@
 #include "base/file_source.h"
 #include "model/byte_stream.h"
 #include "model/format.h"
-#include "model/model_file.h"
 
 namespace surfcast::model {
 namespace {
@@ -62,22 +61,6 @@ Result<Georeference> load_georeference(const ByteSource& source) {
   return georeference_of(source).map_error([&](const Error& error) {
     return Error{error.kind, source.name() + ": " + error.message};
   });
-}
-
-Result<Georeference> load_georeference(const ModelFile& model) {
-  if (model.members().empty()) return load_georeference(model.source());
-  Georeference joined;
-  for (const Member& member : model.members()) {
-    const Result<Georeference> own = load_georeference(*member.model);
-    if (!own) return own;
-    if (!own->known()) continue;
-    if (!joined.known()) {
-      joined = *own;
-    } else if (own->source != joined.source) {
-      joined.source = {};
-    }
-  }
-  return joined;
 }
 
 Result<Georeference> load_georeference(const std::filesystem::path& path) {

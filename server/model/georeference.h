@@ -11,8 +11,6 @@
 
 namespace surfcast::model {
 
-class ModelFile;
-
 /// A coordinate reference system, as a model file states it.
 struct CoordinateSystem {
   std::string name;  ///< "ETRS89 / UTM zone 32N"
@@ -40,8 +38,5 @@ Result<Georeference> read_georeference(std::span<const std::byte> bytes);
 /// because drawing does without it.
 Result<Georeference> load_georeference(const std::filesystem::path& path);
 Result<Georeference> load_georeference(const ByteSource& source);
-/// Of a joined model: the system of the first member that states one, in which all lie. The source's is known if it is
-/// the same for all members that state a system.
-Result<Georeference> load_georeference(const ModelFile& model);
 
 }  // namespace surfcast::model

@@ -181,6 +181,7 @@ void describe(std::span<const Member> members, JoinedTables& tables) {
   for (const Member& member : members) {
     const ModelInfo& one = member.model->info();
     info.scatter += one.scatter;
+    info.in_place = info.in_place || one.in_place;
     info.color_bits = std::max(info.color_bits, one.color_bits);
     info.harmonics_degree = std::max(info.harmonics_degree, one.harmonics_degree);
     info.ellipsoid_columns = std::max(info.ellipsoid_columns, one.ellipsoid_columns);
@@ -190,6 +191,18 @@ void describe(std::span<const Member> members, JoinedTables& tables) {
   for (const ScalarColumn& column : tables.scalars) info.scalar_names.push_back(column.name);
   info.ranges = merged_ranges(members, tables.scalars);
   info.classes = merged_classes(members);
+}
+
+/// The numbers of items that the members state: blocks that are made when they are needed do not tell them.
+void count_items(std::span<const Member> members, ModelInfo& info) {
+  info.surfels = 0;
+  for (KindCount& kind : info.kinds) kind.items = 0;
+  for (const Member& member : members) {
+    info.surfels += member.model->info().surfels;
+    for (const KindCount& own : member.model->info().kinds) {
+      std::ranges::find(info.kinds, own.kind, &KindCount::kind)->items += own.items;
+    }
+  }
 }
 
 Status check_place(const Member& member) {
@@ -241,6 +254,7 @@ Result<JoinedTables> join_tables(std::span<const Member> members) {
   describe(members, tables);
   for (const Member& member : members) add_member(member, tables.info.oriented, tables);
   count_blocks(tables.blocks, tables.info);
+  if (tables.info.in_place) count_items(members, tables.info);
   return tables;
 }
 
@@ -260,6 +274,7 @@ DecodedBlock conform(DecodedBlock block, int color_bits, const ModelInfo& joined
 }
 
 DecodedBlock placed(DecodedBlock block, const glm::dmat4x3& place) {
+  if (block.size() == 0) return block;  // in a model whose blocks are made
   std::vector<glm::dvec3> positions;
   positions.reserve(block.size());
   geometry::Box bounds;

@@ -35,7 +35,7 @@ Result<JoinedTables> join_tables(std::span<const Member> members);
 /// A block of surfels of a member with the colours and attributes of the joined model, as scan::conform fills them in
 /// where scans are built together: colours become grey, attributes 0 or opaque. `scalars`: the attributes of `wanted`.
 /// Unless all are wanted, a block without curvature gets none.
-DecodedBlock conform(DecodedBlock block, int color_bits, const ModelInfo& joined, std::span<const ScalarColumn> scalars,
+DecodedBlock conform(DecodedBlock block, int color_bits, int joined_color_bits, std::span<const ScalarColumn> scalars,
                      WantedScalars wanted);
 
 /// A block of surfels in another place. Its lattice has steps of the same length.

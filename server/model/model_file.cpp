@@ -2,28 +2,27 @@
 
 #include <algorithm>
 #include <atomic>
-#include <iterator>
 #include <utility>
 
 #include "base/contract.h"
 #include "base/file_source.h"
 #include "model/block_cache.h"
+#include "model/block_provider.h"
 #include "model/format.h"
+#include "model/joined_blocks.h"
 #include "model/joined_model.h"
 #include "model/model_counts.h"
+#include "model/stored_blocks.h"
 #include "model/volume_tables.h"
-#include "surfel/curvature.h"
 
 namespace surfcast::model {
 
 struct ModelFile::State {
   uint64_t id = 0;
   std::filesystem::path path;
-  std::unique_ptr<const ByteSource> source;
-  std::shared_ptr<BlockCache> cache;  ///< may be null
+  std::unique_ptr<const BlockProvider> provider;
   ModelInfo info;
-  Directory directory;
-  std::vector<ScalarColumn> coarse_scalars;  ///< scalar attributes of coarse blocks
+  std::shared_ptr<const Directory> directory;
   ldc::BlockTree tree;
   std::vector<Member> members{};         ///< of a joined model, which has no source and no blocks in its directory
   std::vector<MemberOffsets> offsets{};  ///< of each member
@@ -92,18 +91,6 @@ std::vector<ldc::BlockEntry> make_entries(const Directory& directory) {
     entries.push_back(make_entry(record, directory.grids[record.grid]));
   }
   return entries;
-}
-
-ByteRange range_of(const Directory& directory, size_t block) {
-  SURFCAST_EXPECTS(block < directory.blocks.size());
-  return {directory.blocks[block].offset, directory.blocks[block].bytes};
-}
-
-std::vector<ScalarColumn> coarse_columns(std::span<const ScalarColumn> scalars) {
-  std::vector<ScalarColumn> coarse;
-  std::copy_if(scalars.begin(), scalars.end(), std::back_inserter(coarse),
-               [](const ScalarColumn& scalar) { return scalar.coarse; });
-  return coarse;
 }
 
 uint64_t next_id() {
@@ -181,10 +168,21 @@ Result<ModelFile> ModelFile::open(std::unique_ptr<const ByteSource> source, std:
     return fail_naming(path, {ErrorKind::kInvalidInput, "the bricks of the model make no pyramid"});
   }
   ModelInfo info = make_info(*header, *directory, entries);
-  std::vector<ScalarColumn> coarse_scalars = coarse_columns(directory->scalars);
-  return ModelFile(std::make_unique<State>(State{next_id(), path, std::move(source), std::move(cache), std::move(info),
-                                                 std::move(*directory), std::move(coarse_scalars),
-                                                 ldc::BlockTree(std::move(entries))}));
+  std::vector<bool> coarse(entries.size());
+  for (size_t i = 0; i < entries.size(); ++i) coarse[i] = entries[i].level > 0;
+  auto tables = std::make_shared<const Directory>(std::move(*directory));
+  auto provider = std::make_unique<const StoredBlocks>(std::move(source), std::move(cache), tables, info.color_bits,
+                                                       std::move(coarse));
+  return ModelFile(std::make_unique<State>(State{next_id(), path, std::move(provider), std::move(info),
+                                                 std::move(tables), ldc::BlockTree(std::move(entries))}));
+}
+
+ModelFile ModelFile::of_blocks(const std::filesystem::path& path, ModelInfo info, std::vector<ldc::BlockEntry> entries,
+                               std::unique_ptr<const BlockProvider> provider) {
+  set_levels(entries);
+  return ModelFile(
+      std::make_unique<State>(State{next_id(), path, std::move(provider), std::move(info),
+                                    std::make_shared<const Directory>(), ldc::BlockTree(std::move(entries))}));
 }
 
 Result<ModelFile> ModelFile::join(std::vector<Member> members) {
@@ -192,14 +190,13 @@ Result<ModelFile> ModelFile::join(std::vector<Member> members) {
   if (!tables) return fail(std::move(tables.error()));
   std::string path;
   for (const Member& member : members) path += (path.empty() ? "" : "+") + member.name;
-  Directory directory;
-  directory.scalars = std::move(tables->scalars);
-  directory.volumes = std::move(tables->volumes);
-  directory.ellipsoids = std::move(tables->ellipsoids);
-  std::vector<ScalarColumn> coarse_scalars = coarse_columns(directory.scalars);
-  return ModelFile(std::make_unique<State>(
-      State{next_id(), path, nullptr, nullptr, std::move(tables->info), std::move(directory), std::move(coarse_scalars),
-            ldc::BlockTree(std::move(tables->blocks)), std::move(members), std::move(tables->offsets)}));
+  auto directory = std::make_shared<Directory>();
+  directory->volumes = std::move(tables->volumes);
+  directory->ellipsoids = std::move(tables->ellipsoids);
+  auto provider = std::make_unique<const JoinedBlocks>(members, tables->offsets, tables->info, tables->scalars);
+  return ModelFile(std::make_unique<State>(State{next_id(), path, std::move(provider), std::move(tables->info),
+                                                 std::move(directory), ldc::BlockTree(std::move(tables->blocks)),
+                                                 std::move(members), std::move(tables->offsets)}));
 }
 
 uint64_t ModelFile::id() const {
@@ -215,15 +212,15 @@ const ldc::BlockTree& ModelFile::tree() const {
 }
 
 std::span<const Volume> ModelFile::volumes() const {
-  return state_->directory.volumes;
+  return state_->directory->volumes;
 }
 
 std::span<const EllipsoidSource> ModelFile::ellipsoid_sources() const {
-  return state_->directory.ellipsoids;
+  return state_->directory->ellipsoids;
 }
 
 std::span<const ScalarColumn> ModelFile::scalars() const {
-  return state_->directory.scalars;
+  return state_->provider->scalars();
 }
 
 std::span<const Member> ModelFile::members() const {
@@ -233,10 +230,7 @@ std::span<const Member> ModelFile::members() const {
 Part ModelFile::part(uint32_t block) const {
   SURFCAST_EXPECTS(block < blocks().size());
   if (state_->members.empty()) return {*this, block};
-  const auto after = std::ranges::upper_bound(state_->offsets, block, {}, &MemberOffsets::block);
-  const auto member = static_cast<uint32_t>(after - state_->offsets.begin()) - 1;
-  const MemberOffsets& offsets = state_->offsets[member];
-  return {*state_->members[member].model, block - offsets.block, member, offsets.volume, offsets.ellipsoids};
+  return part_of(state_->members, state_->offsets, block);
 }
 
 BrickRecord ModelFile::brick(size_t block) const {
@@ -247,7 +241,7 @@ BrickRecord ModelFile::brick(size_t block) const {
     brick.volume += own.first_volume;
     return brick;
   }
-  return state_->directory.bricks[state_->directory.blocks[block].brick];
+  return state_->directory->bricks[state_->directory->blocks[block].brick];
 }
 
 const std::filesystem::path& ModelFile::path() const {
@@ -255,62 +249,20 @@ const std::filesystem::path& ModelFile::path() const {
 }
 
 const ByteSource& ModelFile::source() const {
-  SURFCAST_EXPECTS(state_->members.empty());
-  return *state_->source;
+  return state_->provider->source();
 }
 
 void ModelFile::prefetch(std::span<const uint32_t> blocks) const {
-  if (!state_->members.empty()) {
-    std::vector<std::vector<uint32_t>> own(state_->members.size());
-    for (const uint32_t block : blocks) {
-      const Part of = part(block);
-      own[of.member].push_back(of.block);
-    }
-    for (size_t i = 0; i < own.size(); ++i) state_->members[i].model->prefetch(own[i]);
-    return;
-  }
-  std::vector<ByteRange> ranges;
-  ranges.reserve(blocks.size());
-  for (const uint32_t block : blocks) {
-    const ByteRange range = range_of(state_->directory, block);
-    const uint64_t checksum = state_->directory.blocks[block].checksum;
-    if (!state_->cache || !state_->cache->contains(checksum, range.size)) ranges.push_back(range);
-  }
-  state_->source->prefetch(ranges);
+  state_->provider->prefetch(blocks);
 }
 
 void ModelFile::forget(size_t block) const {
-  if (!state_->members.empty()) {
-    const Part own = part(static_cast<uint32_t>(block));
-    return own.model.forget(own.block);
-  }
-  state_->source->forget(range_of(state_->directory, block));
+  state_->provider->forget(block);
 }
 
-namespace {
-
-/// The number of scalar attributes to decode, counted from the first. Curvature is drawn as the normal is, whatever is
-/// asked for.
-size_t count_of(WantedScalars wanted, std::span<const ScalarColumn> scalars) {
-  if (wanted == WantedScalars::kAll) return scalars.size();
-  size_t count = 0;
-  for (size_t i = 0; i < scalars.size(); ++i) {
-    if (surfel::is_curvature_column(scalars[i].name) || (wanted == WantedScalars::kDrawn && scalars[i].coarse))
-      count = i + 1;
-  }
-  return count;
+Result<Georeference> ModelFile::georeference() const {
+  return state_->provider->georeference();
 }
-
-/// Memory for the block that this thread reads. It is used again, so that decoding takes none anew.
-std::span<std::byte> buffer_of_thread(size_t size) {
-  constexpr size_t kKept = size_t{8} << 20;  // more than the blocks of any model that was built
-  thread_local std::vector<std::byte> buffer;
-  if (buffer.size() > kKept && size <= kKept) buffer = {};
-  if (buffer.size() < size) buffer.resize(size);
-  return std::span(buffer).first(size);
-}
-
-}  // namespace
 
 Error ModelFile::named(size_t block, const Error& error) const {
   if (!state_->members.empty()) {
@@ -321,51 +273,15 @@ Error ModelFile::named(size_t block, const Error& error) const {
 }
 
 Result<StoredBlock> ModelFile::stored(size_t block) const {
-  if (!state_->members.empty()) {
-    const Part own = part(static_cast<uint32_t>(block));
-    return own.model.stored(own.block);
-  }
-  SURFCAST_EXPECTS(block < state_->directory.blocks.size());
-  const BlockRecord& record = state_->directory.blocks[block];
-  // What is checked is what is decoded: the file may be overwritten at any time.
-  const std::span<std::byte> bytes = buffer_of_thread(record.bytes);
-  const StoredBlock stored_block{bytes, state_->directory.grids[record.grid], record.origin, record.extent,
-                                 record.surfels};
-  if (state_->cache && state_->cache->read(record.checksum, bytes)) return stored_block;
-  if (const Status read = state_->source->read(record.offset, bytes); !read) return fail(named(block, read.error()));
-  if (checksum_of(bytes) != record.checksum) return fail(named(block, {ErrorKind::kInvalidInput, "damaged"}));
-  if (state_->cache) state_->cache->write(record.checksum, bytes);
-  return stored_block;
+  Result<StoredBlock> stored = state_->provider->stored(block);
+  if (!state_->members.empty()) return stored;  // its member has named an error
+  return stored.map_error([&](const Error& error) { return named(block, error); });
 }
 
 Result<DecodedBlock> ModelFile::decode(size_t block, WantedScalars scalars) const {
-  const std::span<const ScalarColumn> columns =
-      blocks()[block].level == 0 ? state_->directory.scalars : state_->coarse_scalars;
-  const size_t wanted = count_of(scalars, columns);
-  if (!state_->members.empty()) {
-    const Part own = part(static_cast<uint32_t>(block));
-    Result<DecodedBlock> decoded = own.model.decode(own.block, scalars);
-    if (!decoded) return decoded;
-    const std::vector<glm::dmat4x3>& places = state_->members[own.member].places;
-    if (!places.empty()) decoded = placed(std::move(*decoded), places[own.block]);
-    return conform(std::move(*decoded), own.model.info().color_bits, state_->info, columns.first(wanted), scalars);
-  }
-  const Result<StoredBlock> stored_block = stored(block);
-  if (!stored_block) return fail(stored_block.error());
-  if (state_->info.kinds[blocks()[block].kind].kind != kSurfelKind) {
-    return fail(named(block, {ErrorKind::kUnsupported, "has no surfels"}));
-  }
-  BlockShape shape;
-  shape.grid = stored_block->grid;
-  shape.origin = stored_block->origin;
-  shape.extent = stored_block->extent;
-  shape.surfels = stored_block->items;
-  shape.scatter = state_->directory.blocks[block].scatter;
-  shape.color_bits = state_->info.color_bits;
-  shape.scalars = columns;
-  Result<DecodedBlock> decoded = decode_block(stored_block->bytes, shape, wanted);
-  if (!decoded) return fail(named(block, decoded.error()));
-  return decoded;
+  Result<DecodedBlock> decoded = state_->provider->decode(block, scalars);
+  if (!state_->members.empty()) return decoded;
+  return decoded.map_error([&](const Error& error) { return named(block, error); });
 }
 
 }  // namespace surfcast::model

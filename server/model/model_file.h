@@ -16,14 +16,13 @@
 #include "base/result.h"
 #include "geometry/box.h"
 #include "ldc/block_tree.h"
+#include "model/decoded_block.h"
 #include "model/elevation_range.h"
 #include "model/ellipsoid_source.h"
+#include "model/georeference.h"
 #include "model/kind_count.h"
 #include "model/statistics.h"
 #include "model/volume.h"
-#include "surfel/grid.h"
-#include "surfel/scalar_attribute.h"
-#include "surfel/surfel_cloud.h"
 
 namespace surfcast::model {
 
@@ -40,6 +39,7 @@ struct ModelInfo {
   bool upside_down = false;               ///< the vertical axis points down: up is its negative end
   int harmonics_degree = 0;               ///< highest degree of the harmonics of its Gaussians
   bool even = false;                      ///< its surfels are samples of meshes, even and with exact radii
+  bool in_place = false;                  ///< its blocks are made of a tree of points when they are asked for
   size_t ellipsoid_columns = 0;           ///< most columns of a source of its ellipsoids
   std::vector<std::string> scalar_names;  ///< scalar attributes of the leaves, in order
   std::vector<std::string> source_names;  ///< the input files
@@ -61,45 +61,10 @@ struct ModelInfo {
   }
 };
 
-/// A decoded block of surfels: a structure of arrays of equal length.
-struct DecodedBlock {
-  surfel::Grid grid;
-  glm::i64vec3 origin{0};            ///< lattice index of the origin of `indices`
-  std::vector<glm::ivec3> indices;   ///< non-negative lattice steps from `origin`
-  std::vector<glm::vec3> normals;    ///< unit
-  std::vector<float> radii;          ///< world units
-  std::vector<float> weights;        ///< s_k
-  std::vector<uint8_t> scatter;      ///< 1: on no surface (SurfelCloud::scatter); empty if none of the block is
-  std::vector<glm::u16vec3> colors;  ///< in ModelInfo::color_bits; empty without colour
-  /// In a leaf, the attributes of ModelInfo::scalar_names. In a coarse block, only those of ldc::is_coarse_scalar.
-  /// Only the first ones if not all were requested.
-  std::vector<surfel::ScalarAttribute> scalars;
-
-  [[nodiscard]] size_t size() const { return indices.size(); }
-  [[nodiscard]] bool is_scatter(size_t i) const { return !scatter.empty() && scatter[i] != 0; }
-  /// World coordinates of surfel i, exact for inputs whose coordinates lie on a grid.
-  [[nodiscard]] glm::dvec3 position(size_t i) const { return grid.position(origin + glm::i64vec3(indices[i])); }
-};
-
-/// A block as stored in the file.
-struct StoredBlock {
-  std::span<const std::byte> bytes;  ///< valid until this thread reads another block
-  surfel::Grid grid;
-  glm::i64vec3 origin{0};  ///< lattice index of the lowest corner of its bounds
-  glm::u32vec3 extent{0};  ///< lattice index of the highest corner, relative to `origin`
-  uint32_t items = 0;      ///< surfels, or items of another kind
-};
-
-/// The scalar attributes to decode with a block. Decoding all of them takes about as long as decoding everything that
-/// is drawn.
-enum class WantedScalars {
-  kNone,
-  kDrawn,  ///< at least the attributes that determine colour or visibility, which coarse blocks have too
-  kAll,
-};
-
 class BlockCache;
+class BlockProvider;
 class ModelFile;
+struct Directory;
 struct ScalarColumn;
 
 /// The most models that are shown as one.
@@ -122,14 +87,18 @@ struct Part {
   uint32_t first_ellipsoids = 0;  ///< likewise, of its first source of ellipsoids
 };
 
-/// An open model file, or several that are shown as one: the forest of all their blocks. All methods are const and safe
-/// to call from several threads at once.
+/// An open model: a file, blocks that something else provides, or several models that are shown as one, the forest of
+/// all their blocks. All methods are const and safe to call from several threads at once.
 class ModelFile {
  public:
   static Result<ModelFile> open(const std::filesystem::path& path);
   /// `cache`: for blocks of a source that is slower than this disk; may be null.
   static Result<ModelFile> open(std::unique_ptr<const ByteSource> source, std::shared_ptr<BlockCache> cache = nullptr);
 
+  /// A model of surfels whose blocks are provided. `path`: what it is called. The entries form a tree of blocks of the
+  /// kind 0, which `info` names.
+  static ModelFile of_blocks(const std::filesystem::path& path, ModelInfo info, std::vector<ldc::BlockEntry> entries,
+                             std::unique_ptr<const BlockProvider> provider);
   /// Shows models as one, in this order. Fails if there are more than kMaxMembers, if two have one name, and if one has
   /// `places` and a kind that cannot be placed; the error names it.
   static Result<ModelFile> join(std::vector<Member> members);
@@ -165,9 +134,13 @@ class ModelFile {
   /// the last one that `scalars` requests. Of a joined model all blocks have all its attributes, and colours if any has
   /// them: see conform (model/joined_model.h).
   [[nodiscard]] Result<DecodedBlock> decode(size_t block, WantedScalars scalars = WantedScalars::kAll) const;
+  /// Where the model lies on the earth. It is read when it is asked for, because drawing does without it. Of a joined
+  /// model: the system of the first member that states one, in which all lie. The source's is known if it is the same
+  /// for all members that state a system.
+  [[nodiscard]] Result<Georeference> georeference() const;
   /// The path of the file, or its URL. Of a joined model, the names of its members.
   [[nodiscard]] const std::filesystem::path& path() const;
-  /// Where its bytes come from. Not of a joined model.
+  /// Where its bytes come from; of a model in many files, those of the file that describes it. Not of a joined model.
   [[nodiscard]] const ByteSource& source() const;
   /// An ID of this opening of the file, unique in the process and not reused after the file is closed.
   [[nodiscard]] uint64_t id() const;

@@ -42,7 +42,7 @@ void SurfelPool::drop(const BlockId& id) {
 /// Assigns pages to a block and writes its texels; null if there is no room.
 ResidentBlock* SurfelPool::place(const BlockId& id, const ldc::BlockTree& tree, const PackedBlock& block) {
   const auto texels = static_cast<uint32_t>(block.texels.size());
-  const uint32_t count = (texels + kPageSurfels - 1) / kPageSurfels;
+  const uint32_t count = std::max(1U, (texels + kPageSurfels - 1) / kPageSurfels);  // a block may be empty
   const std::span<const uint32_t> pages = table_.insert(id, count, [this](const BlockId& evicted) { drop(evicted); });
   if (pages.empty()) return nullptr;
   for_each_run(pages, texels, [&](size_t texel, size_t first, size_t run) {

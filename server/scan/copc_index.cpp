@@ -1,10 +1,10 @@
 #include "scan/copc_index.h"
 
-#include <algorithm>
 #include <cmath>
 #include <cstdint>
 #include <string>
 #include <unordered_set>
+#include <utility>
 
 #include "base/invalid_input.h"
 #include "scan/scalar_type.h"
@@ -17,11 +17,6 @@ constexpr size_t kRecordBytes = 160;
 constexpr size_t kEntryBytes = 32;
 /// Deeper than an octree of 32 bit coordinates can be.
 constexpr int32_t kDeepest = 31;
-
-struct Page {
-  uint64_t offset = 0;
-  uint64_t size = 0;
-};
 
 /// An entry of a page: a node, or (points -1) a page with the node and what is below it.
 struct Entry {
@@ -40,83 +35,96 @@ Entry load_entry(const std::byte* at) {
           load<int32_t>(at + 28)};
 }
 
-/// The cube of the root.
-struct Cube {
-  glm::dvec3 low{0};
-  double side = 0;
-
-  /// The cell of a node, a little larger: its points were placed before they were rounded.
-  [[nodiscard]] geometry::Box cell(const Entry& entry) const {
-    const double step = std::ldexp(side, -entry.level);
-    geometry::Box box;
-    box.min = low + step * (glm::dvec3(entry.place) - 0.01);
-    box.max = low + step * (glm::dvec3(entry.place) + 1.01);
-    return box;
-  }
-};
+/// The cell of a node, a little larger: its points were placed before they were rounded.
+geometry::Box copc_cell(const CopcInfo& info, const Entry& entry) {
+  const double step = std::ldexp(info.side, -entry.level);
+  geometry::Box box;
+  box.min = info.low + step * (glm::dvec3(entry.place) - 0.01);
+  box.max = info.low + step * (glm::dvec3(entry.place) + 1.01);
+  return box;
+}
 
 class HierarchyWalk {
  public:
-  HierarchyWalk(std::span<const std::byte> file, const Cube& cube, const geometry::Zone& zone)
-      : file_(file), cube_(cube), zone_(zone) {}
+  HierarchyWalk(const ByteSource& file, const CopcInfo& info, const geometry::Zone& zone, uint64_t most_bytes)
+      : file_(file), info_(info), zone_(zone), most_bytes_(most_bytes) {}
 
-  Result<CopcNodes> run(const Page& root) {
-    pages_.push_back(root);
+  Result<CopcNodes> run() {
+    pages_.push_back(info_.root);
     while (!pages_.empty()) {
-      const Page page = pages_.back();
-      pages_.pop_back();
-      if (Status status = read(page); !status) return fail(status.error());
+      const std::vector<ByteRange> pages = std::exchange(pages_, {});
+      for (const ByteRange& page : pages) {
+        if (Status status = check(page); !status) return fail(status.error());
+      }
+      file_.prefetch(pages);
+      for (const ByteRange& page : pages) {
+        if (Status status = read(page); !status) return fail(status.error());
+      }
     }
-    std::sort(nodes_.chunks.begin(), nodes_.chunks.end(),
-              [](const laz::Chunk& a, const laz::Chunk& b) { return a.offset < b.offset; });
     return std::move(nodes_);
   }
 
  private:
-  Status read(const Page& page) {
+  Status check(const ByteRange& page) {
     if (page.offset > file_.size() || page.size > file_.size() - page.offset) {
       return invalid_input("truncated: a page of the COPC hierarchy lies beyond the end of the file");
     }
     if (page.size % kEntryBytes != 0) return invalid_input("a page of the COPC hierarchy has a size that cannot be");
     if (!seen_.insert(page.offset).second) return invalid_input("a page of the COPC hierarchy is within itself");
     nodes_.page_bytes += page.size;
-    for (uint64_t at = page.offset; at < page.offset + page.size; at += kEntryBytes) {
-      if (Status status = take(load_entry(&file_[at])); !status) return status;
+    if (nodes_.page_bytes > file_.size()) return invalid_input("pages of the COPC hierarchy overlap");
+    if (nodes_.page_bytes <= most_bytes_) return {};
+    return fail(ErrorKind::kLimit,
+                "the COPC hierarchy has more than the " + std::to_string(most_bytes_) + " bytes that are allowed");
+  }
+
+  Status read(const ByteRange& page) {
+    std::vector<std::byte> bytes(page.size);
+    if (Status status = file_.read(page.offset, bytes); !status) return status;
+    for (size_t at = 0; at < bytes.size(); at += kEntryBytes) {
+      if (Status status = take(load_entry(&bytes[at])); !status) return status;
     }
     return {};
   }
 
   Status take(const Entry& entry) {
-    if (entry.level < 0 || entry.level > kDeepest || entry.points < -1 || entry.bytes < 0) {
+    const bool sound = entry.level >= 0 && entry.level <= kDeepest && entry.points >= -1 && entry.bytes >= 0;
+    if (!sound || ((entry.place.x | entry.place.y | entry.place.z) >> entry.level) != 0) {
       return invalid_input("an entry of the COPC hierarchy is damaged");
     }
-    if (entry.points == 0 || !geometry::may_meet(zone_, cube_.cell(entry))) return {};
+    if (!geometry::may_meet(zone_, copc_cell(info_, entry))) return {};
+    const ByteRange range{entry.offset, static_cast<uint64_t>(entry.bytes)};
     if (entry.points == -1) {
-      pages_.push_back({entry.offset, static_cast<uint64_t>(entry.bytes)});
+      pages_.push_back(range);
     } else {
-      nodes_.chunks.push_back({0, static_cast<uint64_t>(entry.points), entry.offset, static_cast<size_t>(entry.bytes)});
+      nodes_.nodes.push_back({entry.level, entry.place, range, static_cast<uint64_t>(entry.points)});
     }
     return {};
   }
 
-  std::span<const std::byte> file_;
-  Cube cube_;
+  const ByteSource& file_;
+  const CopcInfo& info_;
   const geometry::Zone& zone_;
-  std::vector<Page> pages_;
+  uint64_t most_bytes_;
+  std::vector<ByteRange> pages_;  ///< to be read next
   std::unordered_set<uint64_t> seen_;
   CopcNodes nodes_;
 };
 
 }  // namespace
 
-Result<CopcNodes> read_copc_nodes(std::span<const std::byte> file, std::span<const std::byte> record,
-                                  const geometry::Zone& zone) {
+Result<CopcInfo> read_copc_info(std::span<const std::byte> record) {
   if (record.size() < kRecordBytes) return invalid_input("the COPC record is too short");
   const auto half = load<double>(&record[24]);
   const glm::dvec3 centre(load<double>(record.data()), load<double>(&record[8]), load<double>(&record[16]));
   if (!(half > 0) || !std::isfinite(half)) return invalid_input("the COPC record states no size of the root");
-  const Page root{load<uint64_t>(&record[40]), load<uint64_t>(&record[48])};
-  return HierarchyWalk(file, {centre - half, 2 * half}, zone).run(root);
+  return CopcInfo{
+      centre - half, 2 * half, load<double>(&record[32]), {load<uint64_t>(&record[40]), load<uint64_t>(&record[48])}};
+}
+
+Result<CopcNodes> read_copc_nodes(const ByteSource& file, const CopcInfo& info, const geometry::Zone& zone,
+                                  uint64_t most_bytes) {
+  return HierarchyWalk(file, info, zone, most_bytes).run();
 }
 
 }  // namespace surfcast::scan

@@ -6,6 +6,7 @@
 #include <utility>
 #include <vector>
 
+#include "base/memory_source.h"
 #include "laz/laz_file.h"
 #include "scan/copc_index.h"
 #include "scan/las_reader.h"
@@ -137,14 +138,26 @@ class LazRows : public RowSource {
   mutable SliceReader reader_{file_};
 };
 
+/// The chunks of nodes with points, in file order.
+std::vector<laz::Chunk> chunks_of(const CopcNodes& nodes) {
+  std::vector<laz::Chunk> chunks;
+  for (const CopcNode& node : nodes.nodes) {
+    if (node.points > 0) chunks.push_back({0, node.points, node.chunk.offset, node.chunk.size});
+  }
+  std::ranges::sort(chunks, {}, &laz::Chunk::offset);
+  return chunks;
+}
+
 /// All chunks of the file, or of COPC those of the nodes that meet the bounds.
 Result<laz::LazFile> open_file(std::span<const std::byte> bytes, const laz::LazPoints& points, const LasHeader& header,
                                const Selection& selection) {
   if (selection.zone.everywhere() || header.copc_record.empty()) {
     return laz::LazFile::open(bytes, points, header.laszip_record);
   }
-  return read_copc_nodes(bytes, header.copc_record, selection.zone).and_then([&](CopcNodes nodes) {
-    return laz::LazFile::open_chunks(bytes, points, header.laszip_record, std::move(nodes.chunks));
+  const Result<CopcInfo> info = read_copc_info(header.copc_record);
+  if (!info) return fail(info.error());
+  return read_copc_nodes(MemorySource(bytes), *info, selection.zone).and_then([&](const CopcNodes& nodes) {
+    return laz::LazFile::open_chunks(bytes, points, header.laszip_record, chunks_of(nodes));
   });
 }
 

@@ -406,7 +406,7 @@ std::vector<std::shared_ptr<const model::ModelFile>> ModelCatalogue::opened_in_s
 Result<ModelDescription> ModelCatalogue::describe(const std::string& name) const {
   const Result<std::shared_ptr<const model::ModelFile>> model = open(name);
   if (!model) return fail(model.error());
-  Result<model::Georeference> georeference = model::load_georeference(**model);
+  Result<model::Georeference> georeference = (*model)->georeference();
   if (!georeference) return fail(std::move(georeference.error()));
   ModelDescription description;
   description.georeference = std::move(*georeference);

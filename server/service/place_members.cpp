@@ -111,7 +111,7 @@ bool are_same(const model::CoordinateSystem& a, const model::CoordinateSystem& b
 Status place_members(std::vector<model::Member>& members) {
   std::optional<model::CoordinateSystem> common;
   for (model::Member& member : members) {
-    const Result<model::Georeference> georeference = model::load_georeference(*member.model);
+    const Result<model::Georeference> georeference = member.model->georeference();
     if (!georeference) return fail(georeference.error());
     if (!georeference->known()) continue;
     if (!common) common = georeference->system;

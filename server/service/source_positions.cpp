@@ -19,7 +19,7 @@ std::shared_ptr<const SourcePositions::Way> SourcePositions::way_of(const model:
   const std::lock_guard lock(mutex_);
   if (auto found = ways_.find(model.id())) return found;
   auto made = std::make_shared<Way>();
-  if (const Result<model::Georeference> georeference = model::load_georeference(model)) {
+  if (const Result<model::Georeference> georeference = model.georeference()) {
     auto way = exporter::way_to_source(*georeference, model.info().bounds);
     if (way) made->transformation = std::move(*way);
   }

@@ -1,6 +1,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "base/memory_source.h"
 #include "laz/byte_access.h"
 #include "scan/bytes.h"
 #include "scan/copc_file.h"
@@ -88,10 +89,12 @@ TEST_F(CopcTest, OfAHundredthOfTheAreaAtMostThreeHundredthsOfTheBytesAreRead) {
   const auto bytes = testing::as_bytes(file_);
   const Result<LasHeader> header = parse_las_header(bytes);
   ASSERT_TRUE(header);
-  const auto nodes = read_copc_nodes(bytes, header->copc_record, {{box_of(80.5, 80.5, 32)}, {}});
+  const Result<CopcInfo> info = read_copc_info(header->copc_record);
+  ASSERT_TRUE(info);
+  const auto nodes = read_copc_nodes(MemorySource(bytes), *info, {{box_of(80.5, 80.5, 32)}, {}});
   ASSERT_TRUE(nodes) << nodes.error().message;
   uint64_t sum = header->data_offset + nodes->page_bytes;
-  for (const laz::Chunk& chunk : nodes->chunks) sum += chunk.size;
+  for (const CopcNode& node : nodes->nodes) sum += node.chunk.size;
   EXPECT_LT(static_cast<double>(sum), 0.03 * static_cast<double>(file_.size()));
 }
 

@@ -95,7 +95,7 @@ TEST(PlaceMembers, ScansOfTwoZonesLieWhereTheTransformationPutsThem) {
   }
   EXPECT_EQ(found, wanted.size());
   EXPECT_LT(largest, 0.01 * kSpacing);
-  EXPECT_EQ(model::load_georeference(*joined)->system.id, "EPSG:25832");
+  EXPECT_EQ(joined->georeference()->system.id, "EPSG:25832");
 }
 
 TEST(PlaceMembers, ModelsOfOneSystemOrOfNoneLieAsTheyAre) {

@@ -1,0 +1,117 @@
+#include "point_tree/block_keeper.h"
+
+#include <span>
+
+#include "base/idle_priority.h"
+#include "model/block_encoder.h"
+#include "model/byte_stream.h"
+#include "model/format.h"
+
+namespace surfcast::point_tree {
+namespace {
+
+/// Blocks that wait to be coded: with their clouds some 200 MB at most.
+constexpr size_t kMostWaiting = 64;
+
+void write_vector(model::ByteWriter& writer, const glm::dvec3& v) {
+  for (int axis = 0; axis < 3; ++axis) writer.put(v[axis]);
+}
+
+glm::dvec3 read_vector(model::ByteReader& reader) {
+  glm::dvec3 v;
+  for (int axis = 0; axis < 3; ++axis) v[axis] = reader.get<double>();
+  return v;
+}
+
+}  // namespace
+
+std::vector<std::byte> encode_made(const MadeBlock& block) {
+  model::ByteWriter writer;
+  writer.put(static_cast<uint32_t>(block.members.size()));
+  if (block.members.empty()) return std::move(writer).take();
+  const model::EncodedBlock encoded = model::encode_block(*block.cloud, block.members, block.grid);
+  writer.put(encoded.scatter);
+  write_vector(writer, encoded.grid.scale);
+  write_vector(writer, encoded.grid.offset);
+  for (int axis = 0; axis < 3; ++axis) writer.put(encoded.origin[axis]);
+  for (int axis = 0; axis < 3; ++axis) writer.put(encoded.extent[axis]);
+  writer.put_bytes(encoded.bytes);
+  return std::move(writer).take();
+}
+
+std::optional<model::DecodedBlock> decode_made(std::span<const std::byte> bytes, int color_bits,
+                                               std::span<const model::ScalarColumn> scalars) {
+  model::ByteReader reader(bytes);
+  model::BlockShape shape;
+  shape.surfels = reader.get<uint32_t>();
+  if (!reader.ok() || shape.surfels > model::kMaxBlockSurfels) return std::nullopt;
+  if (shape.surfels == 0) return model::DecodedBlock();
+  shape.scatter = reader.get<uint32_t>();
+  shape.grid.scale = read_vector(reader);
+  shape.grid.offset = read_vector(reader);
+  for (int axis = 0; axis < 3; ++axis) shape.origin[axis] = reader.get<int64_t>();
+  for (int axis = 0; axis < 3; ++axis) shape.extent[axis] = reader.get<uint32_t>();
+  if (!reader.ok()) return std::nullopt;
+  shape.color_bits = color_bits;
+  shape.scalars = scalars;
+  Result<model::DecodedBlock> block = model::decode_block(reader.rest(), shape, scalars.size());
+  return block ? std::optional(std::move(*block)) : std::nullopt;
+}
+
+BlockKeeper::BlockKeeper(std::shared_ptr<model::BlockCache> cache, std::string identity, int color_bits,
+                         std::vector<model::ScalarColumn> scalars)
+    : cache_(std::move(cache)),
+      identity_(std::move(identity)),
+      color_bits_(color_bits),
+      scalars_(std::move(scalars)),
+      thread_([this] { work(); }) {}
+
+BlockKeeper::~BlockKeeper() {
+  {
+    const std::lock_guard lock(mutex_);
+    stopping_ = true;
+  }
+  wake_.notify_all();
+}
+
+std::string BlockKeeper::key_of(uint32_t block) const {
+  return identity_ + '#' + std::to_string(block);
+}
+
+bool BlockKeeper::contains(uint32_t block) const {
+  return cache_->contains_made(key_of(block));
+}
+
+std::optional<model::DecodedBlock> BlockKeeper::find(uint32_t block) const {
+  const std::vector<std::byte> bytes = cache_->read_made(key_of(block));
+  return bytes.empty() ? std::nullopt : decode_made(bytes, color_bits_, scalars_);
+}
+
+void BlockKeeper::keep(const std::vector<MadeBlock>& blocks) {
+  {
+    const std::lock_guard lock(mutex_);
+    for (const MadeBlock& block : blocks) {
+      if (queue_.size() < kMostWaiting) queue_.push_back(block);
+    }
+  }
+  wake_.notify_all();
+}
+
+/// Waits. None when the keeper ends: what still waits then is coded first.
+std::optional<MadeBlock> BlockKeeper::next() {
+  std::unique_lock lock(mutex_);
+  wake_.wait(lock, [this] { return stopping_ || !queue_.empty(); });
+  if (queue_.empty()) return std::nullopt;
+  MadeBlock block = std::move(queue_.front());
+  queue_.pop_front();
+  return block;
+}
+
+void BlockKeeper::work() {
+  use_idle_priority();
+  while (const std::optional<MadeBlock> block = next()) {
+    cache_->write_made(key_of(block->block), encode_made(*block));
+  }
+}
+
+}  // namespace surfcast::point_tree

@@ -1,0 +1,124 @@
+#include "point_tree/ept_points.h"
+
+#include <cmath>
+#include <utility>
+
+#include "base/invalid_input.h"
+#include "scan/ept_index.h"
+
+namespace surfcast::point_tree {
+namespace {
+
+/// More than a description, and than a tile of an octree of points.
+constexpr uint64_t kMostDescription = uint64_t{16} << 20;
+constexpr uint64_t kMostTile = uint64_t{256} << 20;
+
+scan::EptKey ept_key(const ldc::OctreeKey& key) {
+  return {key.depth, key.x, key.y, key.z};
+}
+
+class EptReader : public NodeReader {
+ public:
+  EptReader(std::unique_ptr<const ByteSource> description, std::unique_ptr<const FileFolder> folder,
+            scan::EptDescription ept, scan::EptColumns columns, std::vector<std::byte> root)
+      : description_(std::move(description)),
+        folder_(std::move(folder)),
+        ept_(std::move(ept)),
+        columns_(std::move(columns.columns)),
+        root_(std::move(root)) {
+    traits_.crs = ept_.crs;
+    traits_.grid = columns.grid;
+  }
+
+  [[nodiscard]] const scan::RowTraits& traits() const override { return traits_; }
+  [[nodiscard]] const std::vector<scan::ColumnInfo>& columns() const override { return columns_; }
+  [[nodiscard]] const ByteSource& source() const override { return *description_; }
+  void prefetch(std::span<const Node> nodes) const override {
+    std::vector<std::string> names;
+    names.reserve(nodes.size());
+    for (const Node& node : nodes) names.push_back(name_of_tile(node));
+    folder_->prefetch(names);
+  }
+  void forget(const Node& node) const override { folder_->forget(name_of_tile(node)); }
+
+  [[nodiscard]] Result<scan::PointTable> read(const Node& node) const override {
+    if (node.key.depth == 0) return points_of_tile(node, root_);
+    const Result<std::vector<std::byte>> tile = folder_->read(name_of_tile(node), kMostTile);
+    if (!tile) return fail(tile.error());
+    return points_of_tile(node, *tile);
+  }
+
+ private:
+  [[nodiscard]] Result<scan::PointTable> points_of_tile(const Node& node, std::span<const std::byte> tile) const {
+    Result<scan::PointTable> table = scan::ept_points(ept_, columns_, tile, node.points);
+    if (table && table->rows != node.points) return invalid_input("has not the points that the hierarchy states");
+    return table;
+  }
+  [[nodiscard]] std::string name_of_tile(const Node& node) const {
+    return scan::ept_tile_name(ept_, ept_key(node.key));
+  }
+
+  std::unique_ptr<const ByteSource> description_;
+  std::unique_ptr<const FileFolder> folder_;
+  scan::EptDescription ept_;
+  std::vector<scan::ColumnInfo> columns_;
+  std::vector<std::byte> root_;  ///< its tile, which says what all tiles have
+  scan::RowTraits traits_;
+};
+
+Result<scan::EptDescription> read_description(const ByteSource& file) {
+  if (file.size() > kMostDescription) return fail(ErrorKind::kLimit, "is too large for a description");
+  std::vector<std::byte> bytes(file.size());
+  if (Status status = file.read(0, bytes); !status) return fail(std::move(status.error()));
+  return scan::parse_ept(bytes);
+}
+
+/// The cube of the root. Cells of other boxes would not be cubes.
+Result<Cells> cells_of(const scan::EptDescription& ept) {
+  const glm::dvec3 size = ept.cube.size();
+  const double side = size.x;
+  const bool cube = side > 0 && std::isfinite(side) && std::abs(size.y - side) <= 1e-6 * side &&
+                    std::abs(size.z - side) <= 1e-6 * side;
+  if (!cube) return invalid_input("the EPT bounds are no cube");
+  return Cells{ept.cube.min, side};
+}
+
+Result<NodeTree> arrange_ept(const scan::EptDescription& ept, const scan::EptNodes& read) {
+  const Result<Cells> cells = cells_of(ept);
+  if (!cells) return fail(cells.error());
+  std::vector<Node> nodes;
+  nodes.reserve(read.size());
+  for (const auto& [key, points] : read) {
+    Node node;
+    node.key = {static_cast<uint8_t>(key[0]), key[1], key[2], key[3]};
+    node.points = points;
+    nodes.push_back(node);
+  }
+  constexpr double kCommonSpan = 128;
+  const double span = ept.span >= 1 && std::isfinite(ept.span) ? ept.span : kCommonSpan;
+  return arrange_nodes(std::move(nodes), *cells, cells->side / span);
+}
+
+}  // namespace
+
+Result<OpenedTree> open_ept(std::unique_ptr<const ByteSource> description, std::unique_ptr<const FileFolder> folder,
+                            uint64_t most_bytes) {
+  Result<scan::EptDescription> ept = read_description(*description);
+  if (!ept) return fail(std::move(ept.error()));
+  const Result<scan::EptNodes> nodes = scan::read_ept_nodes(*ept, *folder, {}, most_bytes);
+  if (!nodes) return fail(nodes.error());
+  Result<NodeTree> tree = arrange_ept(*ept, *nodes);
+  if (!tree) return fail(std::move(tree.error()));
+  Result<std::vector<std::byte>> root = folder->read(scan::ept_tile_name(*ept, {0, 0, 0, 0}), kMostTile);
+  if (!root) return fail(std::move(root.error()));
+  Result<scan::EptColumns> columns = scan::ept_columns(*ept, *root);
+  if (!columns) return fail(std::move(columns.error()));
+  OpenedTree opened;
+  opened.bounds = ept->conforming;
+  opened.tree = std::move(*tree);
+  opened.reader = std::make_unique<const EptReader>(std::move(description), std::move(folder), std::move(*ept),
+                                                    std::move(*columns), std::move(*root));
+  return opened;
+}
+
+}  // namespace surfcast::point_tree

@@ -1,0 +1,121 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <future>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "base/lru_cache.h"
+#include "model/block_decoder.h"
+#include "model/block_provider.h"
+#include "point_tree/block_keeper.h"
+#include "point_tree/block_table.h"
+#include "point_tree/make_blocks.h"
+#include "point_tree/node_points.h"
+#include "scan/table_meaning.h"
+
+namespace surfcast::point_tree {
+
+/// What a tree and its blocks are, once it is open.
+struct TreeFrame {
+  OpenedTree opened;
+  BlockTable table;
+  scan::TableMeaning meaning;
+  double radius = 0;  ///< see plan_blocks
+  model::Georeference georeference;
+};
+
+/// Values by number, each made once, however many threads ask for it at a time. Those used last stay in memory.
+template <typename Value>
+class SharedValues {
+ public:
+  explicit SharedValues(size_t bytes) : kept_(bytes) {}
+
+  using Pointer = std::shared_ptr<const Value>;
+
+  void put(uint32_t number, Pointer value, size_t bytes) const {
+    const std::lock_guard lock(mutex_);
+    kept_.put(number, std::move(value), bytes);
+  }
+
+  /// Whether a value is in memory, or being made.
+  [[nodiscard]] bool has(uint32_t number) const {
+    const std::lock_guard lock(mutex_);
+    return kept_.find(number) != nullptr || running_.contains(number);
+  }
+
+  /// `make`: gives a Result<Pointer>. An error is that of all who wait, and is not kept.
+  template <typename Make, typename Size>
+  [[nodiscard]] Result<Pointer> get(uint32_t number, const Make& make, const Size& bytes) const {
+    std::promise<Result<Pointer>> promise;
+    {
+      std::unique_lock lock(mutex_);
+      if (Pointer kept = kept_.find(number)) return kept;
+      if (const auto running = running_.find(number); running != running_.end()) {
+        const std::shared_future<Result<Pointer>> result = running->second;
+        lock.unlock();
+        return result.get();
+      }
+      running_.emplace(number, promise.get_future().share());
+    }
+    Result<Pointer> made = make();
+    {
+      const std::lock_guard lock(mutex_);
+      running_.erase(number);
+      if (made) kept_.put(number, *made, bytes(**made));
+    }
+    promise.set_value(made);
+    return made;
+  }
+
+ private:
+  mutable std::mutex mutex_;  ///< guards what follows
+  mutable LruCache<uint32_t, Value> kept_;
+  mutable std::map<uint32_t, std::shared_future<Result<Pointer>>> running_;
+};
+
+/// Makes the blocks of a tree of points when they are asked for. The points of nodes are kept in memory, because those
+/// of a node are in the blocks of all its descendants, and so are blocks, because those of a node are made together.
+class TreeBlocks : public model::BlockProvider {
+ public:
+  /// `memory`: bytes for points and blocks. `cache`: keeps blocks on this disk; may be null. `root`: the points of the
+  /// root, of which `root_blocks` were made.
+  TreeBlocks(TreeFrame frame, size_t memory, std::shared_ptr<model::BlockCache> cache,
+             std::shared_ptr<const NodePoints> root, const std::vector<MadeBlock>& root_blocks);
+
+  void prefetch(std::span<const uint32_t> blocks) const override;
+  void forget(size_t block) const override;
+  [[nodiscard]] Result<model::StoredBlock> stored(size_t block) const override;
+  [[nodiscard]] Result<model::DecodedBlock> decode(size_t block, model::WantedScalars scalars) const override;
+  [[nodiscard]] std::span<const model::ScalarColumn> scalars() const override { return columns_; }
+  [[nodiscard]] Result<model::Georeference> georeference() const override { return frame_.georeference; }
+  [[nodiscard]] const ByteSource& source() const override { return frame_.opened.reader->source(); }
+
+ private:
+  using Blocks = std::vector<model::DecodedBlock>;  ///< of a node, in the order of BlockTable::of_node
+
+  [[nodiscard]] Result<std::shared_ptr<const NodePoints>> points_of(uint32_t node) const;
+  [[nodiscard]] Result<std::shared_ptr<const Blocks>> blocks_of(uint32_t node) const;
+  [[nodiscard]] std::shared_ptr<const Blocks> take(const std::vector<MadeBlock>& made) const;
+  [[nodiscard]] Result<std::shared_ptr<const Blocks>> make(uint32_t node) const;
+  void announce(std::span<const uint32_t> blocks) const;
+  [[nodiscard]] bool is_kept(uint32_t block) const;
+  [[nodiscard]] model::DecodedBlock with_scalars(const model::DecodedBlock& block, uint32_t number,
+                                                 model::WantedScalars scalars) const;
+
+  const TreeFrame frame_;
+  const std::vector<model::ScalarColumn> columns_;  ///< the attributes of leaves
+  const std::shared_ptr<const NodePoints> root_;
+  SharedValues<NodePoints> points_;
+  SharedValues<Blocks> blocks_;
+  std::unique_ptr<BlockKeeper> keeper_;  ///< null: blocks are not kept on disk
+  mutable std::mutex announced_mutex_;
+  mutable std::map<uint32_t, std::vector<uint32_t>> announced_;  ///< nodes by the blocks for which they were announced
+};
+
+}  // namespace surfcast::point_tree
