@@ -5,6 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "base/byte_source.h"
+#include "base/file_folder.h"
+#include "base/result.h"
 #include "model/model_file.h"
 #include "object_store/store_config.h"
 
