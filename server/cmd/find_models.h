@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "cmd/in_place_flags.h"
 #include "cmd/scan_cache.h"
 #include "service/model_catalogue.h"
 
@@ -22,11 +23,13 @@ struct NamedPaths {
 
 /// Sorts the paths and URLs of a command line. Fails if one does not exist, if a model does not open, if two have one
 /// name, and if there is nothing but scans that are none by their first bytes.
-Result<NamedPaths> sort_paths(std::span<const std::filesystem::path> paths, const object_store::ObjectStore& store);
+Result<NamedPaths> sort_paths(std::span<const std::filesystem::path> paths, const object_store::ObjectStore& store,
+                              const InPlaceOpener& in_place);
 
 /// The catalogue of one model, named by a model file, its URL, or a scan. The store outlives it.
 Result<std::unique_ptr<service::ModelCatalogue>> find_one_model(const std::filesystem::path& path,
                                                                 const ScanCacheConfig& cache,
-                                                                const object_store::ObjectStore& store);
+                                                                const object_store::ObjectStore& store,
+                                                                const InPlaceOpener& in_place);
 
 }  // namespace surfcast::cmd

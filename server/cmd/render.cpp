@@ -32,6 +32,7 @@ struct RenderCommand {
   service::ServiceLimits limits{.queue_timeout = std::chrono::hours(24 * 365)};
   object_store::StoreConfig store;
   uint64_t block_cache = 0;
+  InPlaceOptions in_place;
 };
 
 Result<wire::Picture> draw_and_wait(service::RenderService& service, const wire::DrawPicture& request) {
@@ -57,8 +58,10 @@ void warn_of_unused_options(const service::ModelCatalogue& models, const wire::D
 Status render(const RenderCommand& command) {
   Result<std::shared_ptr<model::BlockCache>> blocks = open_block_cache(command.block_cache, command.cache);
   if (!blocks) return fail(std::move(blocks.error()));
-  const object_store::ObjectStore store(command.store, std::move(*blocks));
-  const Result<std::unique_ptr<service::ModelCatalogue>> models = find_one_model(command.model, command.cache, store);
+  const object_store::ObjectStore store(command.store, *blocks);
+  const InPlaceOpener in_place(store, command.in_place, std::move(*blocks));
+  const Result<std::unique_ptr<service::ModelCatalogue>> models =
+      find_one_model(command.model, command.cache, store, in_place);
   if (!models) return fail(models.error());
   const Result<wire::DrawPicture> request = command.flags.request((*models)->names().front());
   if (!request) return fail(request.error());
@@ -85,6 +88,7 @@ void add_render_command(CLI::App& app, Status& outcome) {
   add_picture_flags(*sub, command->limits);
   add_store_flags(*sub, command->store);
   add_block_cache_flag(*sub, command->block_cache);
+  add_in_place_flags(*sub, command->in_place);
   sub->callback([command, &outcome] {
     if (Status status = command->flags.check(); !status) throw CLI::ValidationError(status.error().message);
     outcome = render(*command);

@@ -79,7 +79,11 @@ ModelCatalogue::ModelCatalogue(std::vector<NamedModel> files, std::vector<fs::pa
                                const object_store::ObjectStore* store)
     : files_(std::move(files)), folders_(std::move(folders)), store_(store) {
   for (const NamedModel& file : files_) {
-    if (file.opened) opened_[file.name] = {file.path, {}, file.opened};
+    if (!file.opened) continue;
+    std::error_code ignored;
+    const bool here = !object_store::is_object_url(file.path.string());
+    opened_[file.name] = {file.path, here ? fs::last_write_time(file.path, ignored) : fs::file_time_type(),
+                          file.opened};
   }
 }
 
@@ -114,7 +118,7 @@ std::map<std::string, fs::path> ModelCatalogue::find_all() const {
 
 bool ModelCatalogue::remote(const std::string& name) const {
   const auto file = std::ranges::find(files_, name, &NamedModel::name);
-  if (file != files_.end()) return object_store::is_object_url(file->path.string());
+  if (file != files_.end()) return file->open_in_place || object_store::is_object_url(file->path.string());
   const std::lock_guard lock(listing_mutex_);
   const auto holds = [&](const auto& listing) { return listing.second.models.contains(name); };
   return stored_.contains(name) && std::ranges::none_of(listings_, holds);
@@ -231,7 +235,10 @@ Result<std::shared_ptr<const model::ModelFile>> ModelCatalogue::open(const std::
   return open_edition(name, 0).map([](const Edition& edition) { return edition.model; });
 }
 
-Result<model::ModelFile> ModelCatalogue::open_path(const std::string& shown, const fs::path& path) const {
+Result<model::ModelFile> ModelCatalogue::open_path(const std::string& name, const std::string& shown,
+                                                   const fs::path& path) const {
+  const auto file = std::ranges::find(files_, name, &NamedModel::name);
+  if (file != files_.end() && file->open_in_place) return file->open_in_place(shown);
   if (!object_store::is_object_url(path.string())) return model::ModelFile::open(path);
   SURFCAST_EXPECTS(store_ != nullptr);
   return store_->open(path.string(), shown);
@@ -257,7 +264,7 @@ Result<std::shared_ptr<const model::ModelFile>> ModelCatalogue::open_file(const 
       if (found->second.model && found->second.path == path) shown = found->second.model->source().name();
     }
   }
-  Result<model::ModelFile> model = open_path(shown, path);
+  Result<model::ModelFile> model = open_path(name, shown, path);
   const std::lock_guard lock(mutex_);
   Opened& opened = opened_[name];
   if (is_current(opened)) return opened.model;  // another thread was faster
@@ -281,7 +288,7 @@ std::vector<std::shared_ptr<const model::ModelFile>> ModelCatalogue::opened_in_s
 Result<ModelDescription> ModelCatalogue::describe(const std::string& name) const {
   const Result<std::shared_ptr<const model::ModelFile>> model = open(name);
   if (!model) return fail(model.error());
-  Result<model::Georeference> georeference = model::load_georeference((*model)->source());
+  Result<model::Georeference> georeference = (*model)->georeference();
   if (!georeference) return fail(std::move(georeference.error()));
   ModelDescription description;
   description.georeference = std::move(*georeference);
