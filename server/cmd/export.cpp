@@ -9,8 +9,12 @@
 
 #include "base/log.h"
 #include "builder/memory_budget.h"
+#include "cmd/in_place_flags.h"
 #include "cmd/selection_flags.h"
+#include "cmd/store_flags.h"
 #include "exporter/export_scan.h"
+#include "object_store/object_store.h"
+#include "object_store/object_url.h"
 
 namespace surfcast::cmd {
 namespace {
@@ -20,14 +24,34 @@ struct ExportCommand {
   std::filesystem::path output;
   std::string memory;
   exporter::ExportOptions options;
+  object_store::StoreConfig store;
+  InPlaceOptions in_place;
 };
+
+/// The points of a model in a store, of a scan in place, or of a file.
+Result<exporter::ExportReport> export_source(const ExportCommand& command) {
+  const std::string source = command.source.string();
+  const object_store::ObjectStore store(command.store);
+  const InPlaceOpener in_place(store, command.in_place, nullptr);
+  const bool stored = object_store::is_object_url(source);
+  if (!stored && !in_place.opens(command.source)) {
+    return exporter::export_scan(command.source, command.output, command.options);
+  }
+  const std::string shown = stored ? object_store::shown_url(source) : source;
+  Result<model::ModelFile> model =
+      in_place.opens(command.source) ? in_place.open(command.source, shown) : store.open(source, shown);
+  return std::move(model).and_then([&](model::ModelFile opened) {
+    return exporter::export_model(std::make_shared<const model::ModelFile>(std::move(opened)), command.output,
+                                  command.options);
+  });
+}
 
 Status export_points(ExportCommand& command) {
   const Result<uint64_t> budget = builder::memory_budget(builder::parse_memory_size(command.memory));
   if (!budget) return fail(budget.error());
   command.options.limit = scan::DecodingLimit{*budget / 4};
   command.options.octree.memory = *budget / 2;
-  const auto report = exporter::export_scan(command.source, command.output, command.options);
+  const auto report = export_source(command);
   if (!report) return fail(report.error());
   for (const std::string& note : report->notes) spdlog::warn("{}: {}", command.source.string(), note);
   std::cout << fmt::format("{} points, {} bytes\n", report->points, report->bytes);
@@ -41,7 +65,10 @@ void add_export_command(CLI::App& app, Status& outcome) {
   CLI::App* export_command =
       app.add_subcommand("export", "Write the points of a scan or model, or a part of them, into a file");
   export_command
-      ->add_option("SCAN", command->source, "Scan: a file, or the folder of a scan in many files; or a model (.surf)")
+      ->add_option(
+          "SCAN", command->source,
+          "Scan: a file, or the folder of a scan in many files; or a model (.surf); or the URL of a model, or of an "
+          "octree of points (COPC, EPT)")
       ->required();
   export_command
       ->add_option(
@@ -67,6 +94,8 @@ void add_export_command(CLI::App& app, Status& outcome) {
       ->check([](const std::string& text) {
         return builder::parse_memory_size(text) ? std::string() : "not a size like 4G or 512M: " + text;
       });
+  add_store_flags(*export_command, command->store);
+  add_in_place_flags(*export_command, command->in_place);
   export_command->callback([command, &outcome] { outcome = export_points(*command); });
 }
 

@@ -33,6 +33,31 @@ Result<service::NamedModel> find_stored(const std::string& url, const std::strin
       object_store::object_name(url), url, {}, std::make_shared<const model::ModelFile>(std::move(*model))};
 }
 
+/// The path of a scan by which it is named: "." has no name.
+fs::path with_name(const fs::path& path) {
+  const fs::path last = path.filename();
+  if (last != "." && last != "..") return path;
+  std::error_code code;
+  const fs::path whole = fs::canonical(path, code);
+  return code ? path : whole;
+}
+
+/// A scan that is shown in place, opened. `shown`: what its errors call it.
+Result<service::NamedModel> find_in_place(const fs::path& path, const std::string& shown,
+                                          const InPlaceOpener& in_place) {
+  Result<model::ModelFile> model = in_place.open(path, shown);
+  if (!model) return fail(std::move(model.error()));
+  const bool stored = object_store::is_object_url(path.string());
+  service::NamedModel named;
+  // A folder of a store is called like one of this machine.
+  named.name = stored ? service::model_name(object_store::decode_percent(object_store::shown_url(path.string())))
+                      : service::model_name(with_name(path));
+  named.path = path;
+  named.opened = std::make_shared<const model::ModelFile>(std::move(*model));
+  named.open_in_place = [path, in_place](const std::string& name) { return in_place.open(path, name); };
+  return named;
+}
+
 bool holds_models(const fs::path& folder) {
   std::error_code code;
   for (fs::directory_iterator at(folder, code), end; !code && at != end; at.increment(code)) {
@@ -46,15 +71,6 @@ bool is_scan_folder(const fs::path& path) {
   std::error_code ignored;
   if (!fs::is_directory(path, ignored)) return false;
   return builder::holds_gaussians(path) || (scan::scan_folder_of(path) && !holds_models(path));
-}
-
-/// The path of a scan by which it is named: "." has no name.
-fs::path with_name(const fs::path& path) {
-  const fs::path last = path.filename();
-  if (last != "." && last != "..") return path;
-  std::error_code code;
-  const fs::path whole = fs::canonical(path, code);
-  return code ? path : whole;
 }
 
 /// The model file of a path that is no folder of models; a scan is built now unless the cache has its model.
@@ -103,13 +119,15 @@ Status check_any_scan(const NamedPaths& paths) {
   return first;
 }
 
-Status sort_url(const std::string& url, const object_store::ObjectStore& store, NamedPaths& sorted) {
+Status sort_url(const std::string& url, const object_store::ObjectStore& store, const InPlaceOpener& in_place,
+                NamedPaths& sorted) {
   if (url.ends_with('/')) {
     sorted.stores.push_back(url);
     return {};
   }
   const std::string name = object_store::object_name(url);
-  Result<service::NamedModel> model = find_stored(url, name, store);
+  Result<service::NamedModel> model =
+      in_place.opens(url) ? find_in_place(url, name, in_place) : find_stored(url, name, store);
   if (!model) return fail(model.error().kind, object_store::shown_url(url) + ": " + model.error().message);
   sorted.models.push_back(std::move(*model));
   return {};
@@ -117,14 +135,16 @@ Status sort_url(const std::string& url, const object_store::ObjectStore& store, 
 
 /// The model of a path or URL.
 Result<service::NamedModel> find_one(const fs::path& path, const ScanCacheConfig& cache,
-                                     const object_store::ObjectStore& store) {
+                                     const object_store::ObjectStore& store, const InPlaceOpener& in_place) {
   const std::string url = path.string();
   const bool stored = object_store::is_object_url(url);
   std::error_code ignored;
   if (stored ? url.ends_with('/') : fs::is_directory(path, ignored) && !is_scan_folder(path)) {
     return fail(ErrorKind::kInvalidInput, path.string() + ": expected one model, got a folder");
   }
-  return stored ? find_stored(url, object_store::shown_url(url), store) : find_model(path, cache);
+  const std::string shown = stored ? object_store::shown_url(url) : url;
+  if (in_place.opens(path)) return find_in_place(path, shown, in_place);
+  return stored ? find_stored(url, shown, store) : find_model(path, cache);
 }
 
 /// Each of the paths, or those that it joins if there is no file of its name. URLs have plus signs of their own.
@@ -153,11 +173,18 @@ void set_apart(std::vector<service::NamedModel>& models) {
 
 }  // namespace
 
-Result<NamedPaths> sort_paths(std::span<const fs::path> paths, const object_store::ObjectStore& store) {
+Result<NamedPaths> sort_paths(std::span<const fs::path> paths, const object_store::ObjectStore& store,
+                              const InPlaceOpener& in_place) {
   NamedPaths sorted;
   for (const fs::path& path : paths) {
     if (const std::string url = path.string(); object_store::is_object_url(url)) {
-      if (Status status = sort_url(url, store, sorted); !status) return fail(std::move(status.error()));
+      if (Status status = sort_url(url, store, in_place, sorted); !status) return fail(std::move(status.error()));
+      continue;
+    }
+    if (in_place.opens(path)) {
+      Result<service::NamedModel> model = find_in_place(path, path.string(), in_place);
+      if (!model) return fail(std::move(model.error()));
+      sorted.models.push_back(std::move(*model));
       continue;
     }
     std::error_code ignored;
@@ -178,10 +205,10 @@ Result<NamedPaths> sort_paths(std::span<const fs::path> paths, const object_stor
 }
 
 Result<FoundModel> find_shown_model(std::span<const fs::path> paths, const ScanCacheConfig& cache,
-                                    const object_store::ObjectStore& store) {
+                                    const object_store::ObjectStore& store, const InPlaceOpener& in_place) {
   std::vector<service::NamedModel> files;
   for (const fs::path& path : members_of_paths(paths)) {
-    Result<service::NamedModel> model = find_one(path, cache, store);
+    Result<service::NamedModel> model = find_one(path, cache, store, in_place);
     if (!model) return fail(std::move(model.error()));
     files.push_back(std::move(*model));
   }

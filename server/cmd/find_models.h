@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "base/result.h"
+#include "cmd/in_place_flags.h"
 #include "cmd/scan_cache.h"
 #include "service/model_catalogue.h"
 
@@ -22,7 +23,8 @@ struct NamedPaths {
 
 /// Sorts the paths and URLs of a command line. Fails if one does not exist, if a model does not open, if two have one
 /// name, and if there is nothing but scans that are none by their first bytes.
-Result<NamedPaths> sort_paths(std::span<const std::filesystem::path> paths, const object_store::ObjectStore& store);
+Result<NamedPaths> sort_paths(std::span<const std::filesystem::path> paths, const object_store::ObjectStore& store,
+                              const InPlaceOpener& in_place);
 
 /// A catalogue and the name in it of what is asked for.
 struct FoundModel {
@@ -33,6 +35,6 @@ struct FoundModel {
 /// Finds a model by a model file, its URL, or a scan. Several are shown together: several paths, or "a.surf+b.surf"
 /// where there is no file of that name. The store outlives the catalogue.
 Result<FoundModel> find_shown_model(std::span<const std::filesystem::path> paths, const ScanCacheConfig& cache,
-                                    const object_store::ObjectStore& store);
+                                    const object_store::ObjectStore& store, const InPlaceOpener& in_place);
 
 }  // namespace surfcast::cmd

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "builder/input_files.h"
+#include "cmd/in_place_flags.h"
 #include "cmd/input_summary.h"
 #include "cmd/model_summary.h"
 #include "cmd/store_flags.h"
@@ -23,6 +24,7 @@ struct InspectOptions {
   bool json = false;
   bool verify = false;
   object_store::StoreConfig store;
+  InPlaceOptions in_place;
 };
 
 /// A file that is no model may be one that a model is built of. What is neither is reported as no model.
@@ -38,8 +40,11 @@ Status inspect_input(const InspectOptions& options, Error no_model) {
 Status inspect(const InspectOptions& options) {
   const object_store::ObjectStore store(options.store);
   const bool stored = object_store::is_object_url(options.model);
-  const Result<model::ModelFile> model = stored ? store.open(options.model, object_store::shown_url(options.model))
-                                                : model::ModelFile::open(options.model);
+  const InPlaceOpener in_place(store, options.in_place, nullptr);
+  const std::string shown = stored ? object_store::shown_url(options.model) : options.model;
+  const Result<model::ModelFile> model = in_place.opens(options.model) ? in_place.open(options.model, shown)
+                                         : stored                      ? store.open(options.model, shown)
+                                                                       : model::ModelFile::open(options.model);
   if (!model && !stored && model.error().message.ends_with(model::kNoModel)) {
     return inspect_input(options, model.error());
   }
@@ -47,7 +52,7 @@ Status inspect(const InspectOptions& options) {
   if (options.verify) {
     if (Status status = verify_model(*model); !status) return status;
   }
-  Result<model::Georeference> georeference = model::load_georeference(model->source());
+  Result<model::Georeference> georeference = model->georeference();
   if (!georeference) return fail(std::move(georeference.error()));
   ModelSummary summary = summarize(*model, model->source().size());
   summary.georeference = std::move(*georeference);
@@ -66,6 +71,7 @@ void add_inspect_command(CLI::App& app, Status& outcome) {
   command->add_flag("--json", options->json, "Print JSON");
   command->add_flag("--verify", options->verify, "Check every checksum and decode every block");
   add_store_flags(*command, options->store);
+  add_in_place_flags(*command, options->in_place);
   command->callback([options, &outcome] { outcome = inspect(*options); });
 }
 

@@ -167,6 +167,8 @@ std::string to_text(const ModelSummary& summary) {
   const model::ModelInfo& info = summary.info;
   std::string text = fmt::format("model: {}\n", summary.path.string());
   text += fmt::format("sources: {}\n", joined(info.source_names));
+  if (info.in_place)
+    text += "in place: blocks are made of its points when they are needed; counts of levels are bounds\n";
   text += fmt::format("surfels: {}\n", info.surfels);
   if (info.scatter > 0) {
     const double share = static_cast<double>(info.scatter) / static_cast<double>(info.surfels);
@@ -208,6 +210,7 @@ std::string to_json(const ModelSummary& summary) {
   nlohmann::ordered_json json{
       {"model", summary.path.string()},
       {"sources", info.source_names},
+      {"in_place", info.in_place},
       {"surfels", info.surfels},
       {"scatter", info.scatter},
       {"kinds", nlohmann::ordered_json::array()},

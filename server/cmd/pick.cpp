@@ -24,13 +24,15 @@ struct PickCommand {
   service::PickLimits limits;
   object_store::StoreConfig store;
   uint64_t block_cache = 0;
+  InPlaceOptions in_place;
 };
 
 Status pick(const PickCommand& command) {
   Result<std::shared_ptr<model::BlockCache>> blocks = open_block_cache(command.block_cache, command.cache);
   if (!blocks) return fail(std::move(blocks.error()));
-  const object_store::ObjectStore store(command.store, std::move(*blocks));
-  const Result<FoundModel> found = find_shown_model(command.models, command.cache, store);
+  const object_store::ObjectStore store(command.store, *blocks);
+  const InPlaceOpener in_place(store, command.in_place, std::move(*blocks));
+  const Result<FoundModel> found = find_shown_model(command.models, command.cache, store, in_place);
   if (!found) return fail(found.error());
   const service::ModelCatalogue& models = *found->models;
   Result<service::PickJob> job = command.flags.request(found->name).and_then([](const wire::PickSurfel& request) {
@@ -58,6 +60,7 @@ void add_pick_command(CLI::App& app, Status& outcome) {
   add_pick_cache_flag(*sub, command->limits);
   add_store_flags(*sub, command->store);
   add_block_cache_flag(*sub, command->block_cache);
+  add_in_place_flags(*sub, command->in_place);
   sub->callback([command, &outcome] {
     if (Status status = command->flags.check(); !status) throw CLI::ValidationError(status.error().message);
     outcome = pick(*command);

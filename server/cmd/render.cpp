@@ -33,6 +33,7 @@ struct RenderCommand {
   service::ServiceLimits limits{.queue_timeout = std::chrono::hours(24 * 365)};
   object_store::StoreConfig store;
   uint64_t block_cache = 0;
+  InPlaceOptions in_place;
 };
 
 Result<wire::Picture> draw_and_wait(service::RenderService& service, const wire::DrawPicture& request) {
@@ -58,8 +59,9 @@ void warn_of_unused_options(const service::ModelCatalogue& models, const wire::D
 Status render(const RenderCommand& command) {
   Result<std::shared_ptr<model::BlockCache>> blocks = open_block_cache(command.block_cache, command.cache);
   if (!blocks) return fail(std::move(blocks.error()));
-  const object_store::ObjectStore store(command.store, std::move(*blocks));
-  const Result<FoundModel> found = find_shown_model(command.models, command.cache, store);
+  const object_store::ObjectStore store(command.store, *blocks);
+  const InPlaceOpener in_place(store, command.in_place, std::move(*blocks));
+  const Result<FoundModel> found = find_shown_model(command.models, command.cache, store, in_place);
   if (!found) return fail(found.error());
   const service::ModelCatalogue& models = *found->models;
   const Result<wire::DrawPicture> request = command.flags.request(found->name);
@@ -87,6 +89,7 @@ void add_render_command(CLI::App& app, Status& outcome) {
   add_picture_flags(*sub, command->limits);
   add_store_flags(*sub, command->store);
   add_block_cache_flag(*sub, command->block_cache);
+  add_in_place_flags(*sub, command->in_place);
   sub->callback([command, &outcome] {
     if (Status status = command->flags.check(); !status) throw CLI::ValidationError(status.error().message);
     outcome = render(*command);

@@ -61,6 +61,7 @@ struct ServeCommand {
   net::ServerConfig server;
   object_store::StoreConfig store;
   uint64_t block_cache = 0;
+  InPlaceOptions in_place;
   std::chrono::milliseconds store_refresh{60'000};
   std::filesystem::path certificate;
   std::filesystem::path key;
@@ -213,19 +214,22 @@ net::ProcessGauges gauges_of(const worker::WorkerCounts& counts) {
 /// Where models are that a command line names, or that clients may send.
 struct ModelPlaces {
   bool files = false;
-  bool stores = false;
+  bool stores = false;  ///< or scans in place
 };
 
 ModelPlaces places_of(const ServeCommand& command) {
-  const auto in_store = [](const std::filesystem::path& path) { return object_store::is_object_url(path.string()); };
+  const auto drawn_here = [&command](const std::filesystem::path& path) {
+    return object_store::is_object_url(path.string()) || is_in_place(path, command.in_place);
+  };
   const bool uploads = !command.server.uploads.folder.empty();
-  return {uploads || !std::ranges::all_of(command.paths, in_store), std::ranges::any_of(command.paths, in_store)};
+  return {uploads || !std::ranges::all_of(command.paths, drawn_here), std::ranges::any_of(command.paths, drawn_here)};
 }
 
-/// A worker reaches no network, so that models of stores are drawn here. Without others there is no need for workers.
+/// A worker reaches no network and opens no file, so that models of stores and scans in place are drawn here. Without
+/// others there is no need for workers.
 void draw_stores_here(ServeCommand& command, const ModelPlaces& places) {
   if (command.worker.workers == 0 || !places.stores) return;
-  spdlog::warn("models of stores are drawn by the server itself, without a sandbox");
+  spdlog::warn("models of stores and scans in place are drawn by the server itself, without a sandbox");
   if (!places.files) command.worker.workers = 0;
 }
 
@@ -251,8 +255,9 @@ Status serve(ServeCommand command) {
   Result<std::shared_ptr<model::BlockCache>> blocks = open_block_cache(command.block_cache, command.cache);
   if (!blocks) return fail(std::move(blocks.error()));
   command.store.log_lines = command.server.log_lines;
-  const object_store::ObjectStore store(command.store, std::move(*blocks));
-  Result<NamedPaths> paths = sort_paths(command.paths, store);
+  const object_store::ObjectStore store(command.store, *blocks);
+  const InPlaceOpener in_place(store, command.in_place, std::move(*blocks));
+  Result<NamedPaths> paths = sort_paths(command.paths, store, in_place);
   if (!paths) return fail(paths.error());
   warn_of_unserved_scans(paths->folders);
   service::ModelCatalogue models(std::move(paths->models), std::move(paths->folders), &store);
@@ -370,6 +375,7 @@ void add_serve_command(CLI::App& app, Status& outcome) {
   add_picture_flags(*sub, command->service);
   add_store_flags(*sub, command->store);
   add_block_cache_flag(*sub, command->block_cache);
+  add_in_place_flags(*sub, command->in_place);
   add_seconds(*sub, "store-refresh", command->store_refresh,
               "Before folders in stores are listed again, and open models are looked after (default 60). More: new and "
               "replaced "

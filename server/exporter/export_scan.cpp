@@ -256,17 +256,15 @@ Result<std::unique_ptr<PointWriter>> create_model_writer(const fs::path& target,
   return EncodedFile::create(target, std::move(*encoder));
 }
 
-Result<ExportReport> export_model(const fs::path& source, const fs::path& target, const TargetForm& form,
-                                  const ExportOptions& options) {
-  Result<model::ModelFile> file = model::ModelFile::open(source);
-  if (!file) return fail(std::move(file.error()));
+Result<ExportReport> export_points_of_model(std::shared_ptr<const model::ModelFile> model, const fs::path& target,
+                                            const TargetForm& form, const ExportOptions& options) {
+  const std::string source = model->path().string();
   const Result<ModelPoints> points =
-      ModelPoints::open(std::make_shared<const model::ModelFile>(std::move(*file)), source.string(),
-                        {.points = options.selection, .source_coordinates = true});
+      ModelPoints::open(std::move(model), source, {.points = options.selection, .source_coordinates = true});
   if (!points) return fail(points.error());
   const Result<PointFacts> facts = count_points(*points, facts_for(form.format));
   if (!facts) return fail(facts.error());
-  if (facts->count == 0) return fail(ErrorKind::kInvalidInput, source.string() + ": has no points in the selection");
+  if (facts->count == 0) return fail(ErrorKind::kInvalidInput, source + ": has no points in the selection");
   ExportReport report{facts->count, 0, {}};
   const Result<std::unique_ptr<PointWriter>> writer =
       create_model_writer(target, points->schema(), *facts, form, options, report.notes);
@@ -286,11 +284,22 @@ Result<ExportReport> export_model(const fs::path& source, const fs::path& target
 Result<ExportReport> export_scan(const fs::path& source, const fs::path& target, const ExportOptions& options) {
   const Result<TargetForm> form = form_of(target);
   if (!form) return fail(form.error());
-  if (extension_of(source) == ".surf") return export_model(source, target, *form, options);
+  if (extension_of(source) == ".surf") {
+    return model::ModelFile::open(source).and_then([&](model::ModelFile model) {
+      return export_points_of_model(std::make_shared<const model::ModelFile>(std::move(model)), target, *form, options);
+    });
+  }
   const Result<bool> records = holds_records(source);
   if (!records) return fail(records.error());
   if (*records && is_las(form->format) && !options.encoding.scale) return copy_records(source, target, *form, options);
   return convert_points(source, target, *form, options);
+}
+
+Result<ExportReport> export_model(std::shared_ptr<const model::ModelFile> model, const fs::path& target,
+                                  const ExportOptions& options) {
+  const Result<TargetForm> form = form_of(target);
+  if (!form) return fail(form.error());
+  return export_points_of_model(std::move(model), target, *form, options);
 }
 
 }  // namespace surfcast::exporter

@@ -2,12 +2,14 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <memory>
 #include <string>
 #include <vector>
 
 #include "base/result.h"
 #include "exporter/point_encoder.h"
 #include "exporter/point_octree.h"
+#include "model/model_file.h"
 #include "scan/row_source.h"
 #include "scan/selection.h"
 
@@ -34,5 +36,9 @@ struct ExportReport {
 /// its points come in the order of its file, in the system of the scan that it was built of.
 Result<ExportReport> export_scan(const std::filesystem::path& source, const std::filesystem::path& target,
                                  const ExportOptions& options);
+
+/// The same for a model that is open.
+Result<ExportReport> export_model(std::shared_ptr<const model::ModelFile> model, const std::filesystem::path& target,
+                                  const ExportOptions& options);
 
 }  // namespace surfcast::exporter

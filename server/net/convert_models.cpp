@@ -122,6 +122,7 @@ void to_wire(const std::string& name, const service::ModelDescription& descripti
   to_wire(info.bounds.min, message.mutable_bounds()->mutable_min());
   to_wire(info.bounds.max, message.mutable_bounds()->mutable_max());
   message.set_oriented(info.oriented);
+  message.set_in_place(info.in_place);
   message.set_z_up(info.z_up);
   message.set_color_bits(static_cast<uint32_t>(info.color_bits));
   for (const std::string& attribute : info.scalar_names) message.add_attributes(protocol::clean_utf8(attribute));

@@ -1,9 +1,11 @@
 #include "object_store/object_store.h"
 
+#include <algorithm>
 #include <utility>
 
 #include "object_store/http_client.h"
 #include "object_store/listing.h"
+#include "object_store/remote_folder.h"
 #include "object_store/remote_source.h"
 
 namespace surfcast::object_store {
@@ -35,14 +37,27 @@ Result<const HttpClient*> ObjectStore::client() const {
   return client_.get();
 }
 
-Result<model::ModelFile> ObjectStore::open(const std::string& url, const std::string& name) const {
+Result<std::unique_ptr<ByteSource>> ObjectStore::open_source(const std::string& url, const std::string& name) const {
   const Result<const HttpClient*> http = client();
   if (!http) return fail(http.error());
   const Result<StorePlace> place = place_of(url, config_);
   if (!place) return fail(place.error());
-  Result<std::unique_ptr<RemoteSource>> source = RemoteSource::open(**http, *place, name);
-  if (!source) return fail(std::move(source.error()));
-  return model::ModelFile::open(std::move(*source), cache_);
+  return RemoteSource::open(**http, *place, name).map([](std::unique_ptr<RemoteSource> source) {
+    return std::unique_ptr<ByteSource>(std::move(source));
+  });
+}
+
+Result<std::unique_ptr<FileFolder>> ObjectStore::open_folder(const std::string& url) const {
+  const Result<const HttpClient*> http = client();
+  if (!http) return fail(http.error());
+  const size_t query = std::min(shown_url(url).size(), url.size());
+  const std::string path = url.substr(0, query);
+  return std::make_unique<RemoteFolder>(**http, path.substr(0, path.rfind('/') + 1) + url.substr(query));
+}
+
+Result<model::ModelFile> ObjectStore::open(const std::string& url, const std::string& name) const {
+  return open_source(url, name).and_then(
+      [&](std::unique_ptr<ByteSource> source) { return model::ModelFile::open(std::move(source), cache_); });
 }
 
 Result<std::vector<std::string>> ObjectStore::list(const std::string& url) const {

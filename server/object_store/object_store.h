@@ -5,6 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "base/byte_source.h"
+#include "base/file_folder.h"
+#include "base/result.h"
 #include "model/model_file.h"
 #include "object_store/store_config.h"
 
@@ -25,6 +28,10 @@ class ObjectStore {
   /// Opens the model of a URL, which its errors call by `name`. Two requests: one for its beginning, one for its
   /// tables.
   [[nodiscard]] Result<model::ModelFile> open(const std::string& url, const std::string& name) const;
+  /// An object of any kind. One request, for its beginning.
+  [[nodiscard]] Result<std::unique_ptr<ByteSource>> open_source(const std::string& url, const std::string& name) const;
+  /// The objects beside the one of a URL.
+  [[nodiscard]] Result<std::unique_ptr<FileFolder>> open_folder(const std::string& url) const;
   /// The URLs of the models directly in a folder, whose URL ends with a slash.
   [[nodiscard]] Result<std::vector<std::string>> list(const std::string& url) const;
 

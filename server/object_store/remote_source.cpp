@@ -44,6 +44,10 @@ class RemoteSource::State : public std::enable_shared_from_this<RemoteSource::St
 
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] uint64_t size() const { return version_.size; }
+  /// Of a URL all but its query, which may be a signature that changes.
+  [[nodiscard]] std::string version() const {
+    return place_.url.substr(0, place_.url.find('?')) + ' ' + version_.etag + ' ' + std::to_string(version_.size);
+  }
 
   Status read(const ByteRange& range, std::span<std::byte> bytes) {
     if (range.end() > version_.size) return fail(ErrorKind::kInvalidInput, "the object ends before");
@@ -262,6 +266,10 @@ void RemoteSource::prefetch(std::span<const ByteRange> ranges) const {
 
 void RemoteSource::forget(const ByteRange& range) const {
   state_->forget(range);
+}
+
+std::string RemoteSource::version() const {
+  return state_->version();
 }
 
 void RemoteSource::look_for_replacement() const {

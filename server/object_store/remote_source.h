@@ -24,6 +24,7 @@ class RemoteSource : public ByteSource {
   [[nodiscard]] Status read(uint64_t offset, std::span<std::byte> bytes) const override;
   void prefetch(std::span<const ByteRange> ranges) const override;
   void forget(const ByteRange& range) const override;
+  [[nodiscard]] std::string version() const override;
   void look_for_replacement() const override;
   [[nodiscard]] bool replaced() const override;
 

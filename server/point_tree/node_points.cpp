@@ -6,6 +6,7 @@
 #include <variant>
 
 #include "base/invalid_input.h"
+#include "geometry/zone.h"
 #include "point_tree/columns.h"
 #include "scan/clean_points.h"
 #include "scan/column_roles.h"

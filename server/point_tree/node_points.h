@@ -27,6 +27,8 @@ class NodeReader {
   [[nodiscard]] virtual const std::vector<scan::ColumnInfo>& columns() const = 0;
   /// The file that describes the tree.
   [[nodiscard]] virtual const ByteSource& source() const = 0;
+  /// See ByteSource; of all files.
+  [[nodiscard]] virtual std::string version() const { return source().version(); }
   /// Announces nodes that are about to be read, most urgent first. Returns at once.
   virtual void prefetch(std::span<const Node> nodes) const = 0;
   /// A node that was announced will not be read.

@@ -15,6 +15,7 @@
 #include "point_tree/copc_points.h"
 #include "point_tree/ept_points.h"
 #include "point_tree/make_blocks.h"
+#include "point_tree/potree_points.h"
 #include "point_tree/tree_blocks.h"
 
 namespace surfcast::point_tree {
@@ -129,17 +130,32 @@ Result<model::ModelFile> open_tree(OpenedTree opened, const InPlaceLimits& limit
 std::optional<TreeFormat> tree_format_of(std::string_view path) {
   if (path.ends_with(".copc.laz")) return TreeFormat::kCopc;
   if (path == "ept.json" || path.ends_with("/ept.json")) return TreeFormat::kEpt;
+  if (path == "metadata.json" || path.ends_with("/metadata.json")) return TreeFormat::kPotree2;
   return std::nullopt;
 }
+
+namespace {
+
+Result<OpenedTree> open_format(TreeFormat format, std::unique_ptr<const ByteSource> file,
+                               std::unique_ptr<const FileFolder> folder, uint64_t most_bytes) {
+  switch (format) {
+    case TreeFormat::kCopc:
+      return open_copc(std::move(file), most_bytes);
+    case TreeFormat::kEpt:
+      return open_ept(std::move(file), std::move(folder), most_bytes);
+    case TreeFormat::kPotree2:
+      break;
+  }
+  return open_potree(std::move(file), most_bytes);
+}
+
+}  // namespace
 
 Result<model::ModelFile> open_in_place(TreeFormat format, std::unique_ptr<const ByteSource> file,
                                        std::unique_ptr<const FileFolder> folder, const InPlaceLimits& limits,
                                        std::shared_ptr<model::BlockCache> cache) {
   const std::string name = file->name();
-  Result<OpenedTree> tree = format == TreeFormat::kCopc
-                                ? open_copc(std::move(file), limits.hierarchy_bytes)
-                                : open_ept(std::move(file), std::move(folder), limits.hierarchy_bytes);
-  return std::move(tree)
+  return open_format(format, std::move(file), std::move(folder), limits.hierarchy_bytes)
       .and_then([&](OpenedTree opened) { return open_tree(std::move(opened), limits, std::move(cache)); })
       .map_error([&](const Error& error) {
         return Error{error.kind, name + ": " + error.message};

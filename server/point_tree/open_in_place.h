@@ -22,8 +22,9 @@ struct InPlaceLimits {
 
 /// What an octree of points is stored as.
 enum class TreeFormat {
-  kCopc,  ///< one file, "x.copc.laz"
-  kEpt,   ///< a folder of files that "ept.json" describes
+  kCopc,     ///< one file, "x.copc.laz"
+  kEpt,      ///< a folder of files that "ept.json" describes
+  kPotree2,  ///< the same, "metadata.json"; of this machine only
 };
 
 /// The format of what a path or URL (without its query) names; none if it is no octree of points by its name.

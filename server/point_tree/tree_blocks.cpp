@@ -45,8 +45,8 @@ std::vector<model::ScalarColumn> columns_of_blocks(const scan::ScanSchema& schem
 }
 
 /// What blocks on disk are known by; empty if the source does not tell its versions apart.
-std::string identity_of(const ByteSource& source) {
-  const std::string version = source.version();
+std::string identity_of(const NodeReader& reader) {
+  const std::string version = reader.version();
   return version.empty() ? version : "point tree " + std::to_string(kMakerVersion) + ' ' + version;
 }
 
@@ -59,7 +59,7 @@ TreeBlocks::TreeBlocks(TreeFrame frame, size_t memory, std::shared_ptr<model::Bl
       root_(std::move(root)),
       points_(memory / kPointsShare),
       blocks_(memory - memory / kPointsShare) {
-  std::string identity = identity_of(source());
+  std::string identity = identity_of(*frame_.opened.reader);
   if (cache && !identity.empty()) {
     keeper_ = std::make_unique<BlockKeeper>(std::move(cache), std::move(identity), frame_.meaning.schema.color_bits,
                                             columns_);

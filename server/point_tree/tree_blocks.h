@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "base/idle_priority.h"
 #include "base/lru_cache.h"
 #include "model/block_decoder.h"
 #include "model/block_provider.h"
@@ -49,34 +50,44 @@ class SharedValues {
     return kept_.find(number) != nullptr || running_.contains(number);
   }
 
-  /// `make`: gives a Result<Pointer>. An error is that of all who wait, and is not kept.
+  /// `make`: gives a Result<Pointer>. An error is that of all who wait, and is not kept. Nobody waits for a thread of
+  /// idle priority but such threads: others make the value again.
   template <typename Make, typename Size>
   [[nodiscard]] Result<Pointer> get(uint32_t number, const Make& make, const Size& bytes) const {
-    std::promise<Result<Pointer>> promise;
+    const auto own = std::make_shared<Running>();
     {
       std::unique_lock lock(mutex_);
       if (Pointer kept = kept_.find(number)) return kept;
-      if (const auto running = running_.find(number); running != running_.end()) {
-        const std::shared_future<Result<Pointer>> result = running->second;
+      const auto running = running_.find(number);
+      if (running != running_.end() && (own->idle || !running->second->idle)) {
+        const std::shared_ptr<Running> other = running->second;
         lock.unlock();
-        return result.get();
+        return other->result.get();
       }
-      running_.emplace(number, promise.get_future().share());
+      running_[number] = own;
     }
     Result<Pointer> made = make();
     {
       const std::lock_guard lock(mutex_);
-      running_.erase(number);
+      const auto running = running_.find(number);
+      if (running != running_.end() && running->second == own) running_.erase(running);
       if (made) kept_.put(number, *made, bytes(**made));
     }
-    promise.set_value(made);
+    own->promise.set_value(made);
     return made;
   }
 
  private:
+  /// A value that a thread makes.
+  struct Running {
+    std::promise<Result<Pointer>> promise;
+    std::shared_future<Result<Pointer>> result{promise.get_future().share()};
+    bool idle = has_idle_priority();
+  };
+
   mutable std::mutex mutex_;  ///< guards what follows
   mutable LruCache<uint32_t, Value> kept_;
-  mutable std::map<uint32_t, std::shared_future<Result<Pointer>>> running_;
+  mutable std::map<uint32_t, std::shared_ptr<Running>> running_;
 };
 
 /// Makes the blocks of a tree of points when they are asked for. The points of nodes are kept in memory, because those

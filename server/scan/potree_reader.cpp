@@ -40,6 +40,7 @@ struct PotreeScan {
   glm::dvec3 offset{0};  ///< version 2
   std::vector<Attribute> attributes;
   std::vector<PotreeNode> nodes;
+  double spacing = 0;  ///< version 2: of the points of the root; 0: not stated
   // Version 1.
   std::string directory;
   uint64_t step = 0;      ///< digits of a folder's name; 0: all nodes in one folder
@@ -297,6 +298,7 @@ Result<PotreeScan> parse_metadata(const fs::path& path, const Selection& selecti
     return fail(ErrorKind::kUnsupported, "Potree encoding " + printable(encoding) + " is not supported");
   }
   scan.brotli = encoding == "BROTLI";
+  scan.spacing = number_of(json, "spacing", 0);
   for (const Json& entry : member(json, "attributes")) {
     Result<Attribute> attribute = parse_attribute(entry);
     if (!attribute) return fail(std::move(attribute.error()));
@@ -348,12 +350,8 @@ std::vector<std::byte> records_of_columns(const PotreeScan& scan, const std::vec
   return records;
 }
 
-Result<PointTable> read_node2(const PotreeScan& scan, const PotreeNode& node) {
-  const std::span<const std::byte> all = scan.points->bytes();
-  if (node.offset > all.size() || node.bytes > all.size() - node.offset) {
-    return scan.points->error("truncated: node " + node.name + " lies beyond the end of the file");
-  }
-  const std::span<const std::byte> bytes = all.subspan(node.offset, node.bytes);
+/// `bytes`: of the node.
+Result<PointTable> points_of_node2(const PotreeScan& scan, const PotreeNode& node, std::span<const std::byte> bytes) {
   if (!scan.brotli) {
     if (node.bytes != node.points * scan.record_bytes()) return scan.points->error("node " + node.name + " is damaged");
     return record_table(scan, {bytes.begin(), bytes.end()}, scan.offset, true);
@@ -367,6 +365,14 @@ Result<PointTable> read_node2(const PotreeScan& scan, const PotreeNode& node) {
     return scan.points->error("node " + node.name + " is damaged");
   }
   return record_table(scan, records_of_columns(scan, columns, node.points), scan.offset, true);
+}
+
+Result<PointTable> read_node2(const PotreeScan& scan, const PotreeNode& node) {
+  const std::span<const std::byte> all = scan.points->bytes();
+  if (node.offset > all.size() || node.bytes > all.size() - node.offset) {
+    return scan.points->error("truncated: node " + node.name + " lies beyond the end of the file");
+  }
+  return points_of_node2(scan, node, all.subspan(node.offset, node.bytes));
 }
 
 }  // namespace
@@ -409,6 +415,15 @@ Result<std::unique_ptr<RowSource>> potree2_rows(const fs::path& metadata, const 
   TileSet tiles = tiles_of(*scan, scan->columns());
   tiles.read = [scan](size_t tile) { return read_node2(*scan, scan->nodes[tile]); };
   return tile_rows(std::move(tiles), limit);
+}
+
+Result<Potree2Folder> open_potree2(const fs::path& metadata) {
+  Result<PotreeScan> parsed = parse_metadata(metadata, {});
+  if (!parsed) return fail(std::move(parsed.error()));
+  const auto scan = std::make_shared<const PotreeScan>(std::move(*parsed));
+  return Potree2Folder{
+      scan->cube, scan->spacing, scan->nodes, scan->columns(),
+      [scan](const PotreeNode& node, std::span<const std::byte> bytes) { return points_of_node2(*scan, node, bytes); }};
 }
 
 }  // namespace surfcast::scan

@@ -101,7 +101,11 @@ ModelCatalogue::ModelCatalogue(std::vector<NamedModel> files, std::vector<fs::pa
                                const object_store::ObjectStore* store)
     : files_(std::move(files)), folders_(std::move(folders)), store_(store) {
   for (const NamedModel& file : files_) {
-    if (file.opened) opened_[file.name] = {file.path, {}, file.opened};
+    if (!file.opened) continue;
+    std::error_code ignored;
+    const bool here = !object_store::is_object_url(file.path.string());
+    opened_[file.name] = {file.path, here ? fs::last_write_time(file.path, ignored) : fs::file_time_type(),
+                          file.opened};
   }
 }
 
@@ -139,7 +143,7 @@ bool ModelCatalogue::remote(const std::string& served_name) const {
   if (!members.empty()) return std::ranges::any_of(members, [this](const std::string& name) { return remote(name); });
   const std::string name = name_alone(served_name);
   const auto file = std::ranges::find(files_, name, &NamedModel::name);
-  if (file != files_.end()) return object_store::is_object_url(file->path.string());
+  if (file != files_.end()) return file->open_in_place || object_store::is_object_url(file->path.string());
   const std::lock_guard lock(listing_mutex_);
   const auto holds = [&](const auto& listing) { return listing.second.models.contains(name); };
   return stored_.contains(name) && std::ranges::none_of(listings_, holds);
@@ -356,7 +360,10 @@ Result<std::shared_ptr<const model::ModelFile>> ModelCatalogue::open(const std::
   return open_edition(name, 0).map([](const Edition& edition) { return edition.model; });
 }
 
-Result<model::ModelFile> ModelCatalogue::open_path(const std::string& shown, const fs::path& path) const {
+Result<model::ModelFile> ModelCatalogue::open_path(const std::string& name, const std::string& shown,
+                                                   const fs::path& path) const {
+  const auto file = std::ranges::find(files_, name, &NamedModel::name);
+  if (file != files_.end() && file->open_in_place) return file->open_in_place(shown);
   if (!object_store::is_object_url(path.string())) return model::ModelFile::open(path);
   SURFCAST_EXPECTS(store_ != nullptr);
   return store_->open(path.string(), shown);
@@ -382,7 +389,7 @@ Result<std::shared_ptr<const model::ModelFile>> ModelCatalogue::open_file(const 
       if (found->second.model && found->second.path == path) shown = found->second.model->source().name();
     }
   }
-  Result<model::ModelFile> model = open_path(shown, path);
+  Result<model::ModelFile> model = open_path(name, shown, path);
   const std::lock_guard lock(mutex_);
   Opened& opened = opened_[name];
   if (is_current(opened)) return opened.model;  // another thread was faster

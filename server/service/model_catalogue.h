@@ -21,6 +21,8 @@ struct NamedModel {
   std::filesystem::path path;            ///< or the URL of an object in a store
   std::shared_ptr<const void> in_use{};  ///< held for as long as the file may be opened: whoever keeps it from removal
   std::shared_ptr<const model::ModelFile> opened{};  ///< the model, if it has been opened already
+  /// Opens a scan that is shown in place, which errors call by the argument. Empty: the path is that of a model.
+  std::function<Result<model::ModelFile>(const std::string& shown)> open_in_place{};
 };
 
 /// Model files by name: scans, whose models come later and are replaced by better ones, individual files, and the
@@ -71,7 +73,7 @@ class ModelCatalogue : public ModelSource {
   [[nodiscard]] std::vector<ScanStatus> scans() const override;
   [[nodiscard]] bool awaited(const std::string& served_name) const override;
   [[nodiscard]] uint64_t edition(const std::string& served_name) const override;
-  /// True for models of stores, by what is known of the folders since they were last read.
+  /// True for models of stores and for scans in place, by what is known of the folders since they were last read.
   [[nodiscard]] bool remote(const std::string& served_name) const override;
   /// The edition of a scan's model, or the newest one if it is 0 or gone. Models are joined in their newest editions.
   [[nodiscard]] Result<Edition> open_edition(const std::string& name, uint64_t edition) const;
@@ -110,7 +112,8 @@ class ModelCatalogue : public ModelSource {
 
   [[nodiscard]] const Listing& listing_of(const std::filesystem::path& folder) const;
   [[nodiscard]] std::map<std::string, std::filesystem::path> find_all() const;
-  [[nodiscard]] Result<model::ModelFile> open_path(const std::string& shown, const std::filesystem::path& path) const;
+  [[nodiscard]] Result<model::ModelFile> open_path(const std::string& name, const std::string& shown,
+                                                   const std::filesystem::path& path) const;
   [[nodiscard]] std::filesystem::path find(const std::string& name) const;
   [[nodiscard]] bool has_alone(const std::string& name) const;
   [[nodiscard]] bool known_alone(const std::string& name) const;

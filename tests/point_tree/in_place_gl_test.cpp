@@ -53,8 +53,8 @@ void write_hills(const fs::path& path) {
       << "\nproperty double x\nproperty double y\nproperty double z\n"
          "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n";
   for (int i = 0; i < kSide * kSide; ++i) {
-    const double u = std::pow((i % kSide + 0.35 * (i * 7919 % 101) / 101.0) / kSide, 1.4);
-    const double v = std::pow((i / kSide + 0.35 * (i * 104729 % 103) / 103.0) / kSide, 1.4);
+    const double u = std::pow((i % kSide + 0.35 * (i % 7919 * 37 % 101) / 101.0) / kSide, 1.4);
+    const double v = std::pow((i / kSide + 0.35 * (i % 10007 * 61 % 103) / 103.0) / kSide, 1.4);
     const double x = 100 * u;
     const double y = 100 * v;
     ply << x << ' ' << y << ' ' << 6 * std::sin(0.1 * x) * std::cos(0.07 * y) << ' '
