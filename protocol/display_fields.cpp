@@ -103,6 +103,16 @@ bool set_hidden_classes(wire::DrawPicture& picture, std::string_view text) {
   return true;
 }
 
+bool set_hidden_models(wire::DrawPicture& picture, std::string_view text) {
+  google::protobuf::RepeatedPtrField<std::string> models;
+  for (const std::string_view name : split(text, ',')) {
+    if (name.empty() || name.size() > kMaxModelNameBytes || models.size() == static_cast<int>(kMaxJoinedModels)) return false;
+    *models.Add() = std::string(name);
+  }
+  picture.mutable_hidden_models()->Swap(&models);
+  return true;
+}
+
 bool set_class_opacities(wire::DrawPicture& picture, std::string_view text) {
   google::protobuf::RepeatedPtrField<wire::ClassOpacity> classes;
   for (const std::string_view part : split(text, ',')) {

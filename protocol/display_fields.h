@@ -12,6 +12,7 @@ namespace surfcast::protocol {
 bool set_color_source(wire::DrawPicture& picture, std::string_view text);
 bool set_color_range(wire::DrawPicture& picture, std::string_view text);
 bool set_hidden_classes(wire::DrawPicture& picture, std::string_view text);
+bool set_hidden_models(wire::DrawPicture& picture, std::string_view text);
 bool set_class_opacities(wire::DrawPicture& picture, std::string_view text);
 /// Replaces the boxes that are not inverted, and keeps the others.
 bool set_boxes_to_show(wire::DrawPicture& picture, std::string_view text);

@@ -22,6 +22,7 @@ Json document_of(const wire::PickResult& result) {
   document["distance"] = result.distance();
   document["depth"] = result.depth();
   document["surfel"] = result.surfel();
+  if (!result.model().empty()) document["model"] = result.model();
   document["attributes"] = Json::object();
   for (const wire::AttributeValue& value : result.attributes()) {
     document["attributes"][value.attribute()] = value.value();
@@ -35,6 +36,7 @@ std::string dump(const Json& value, int indent = -1) {
 
 /// A value as text: "yes" or "no" for a boolean, numbers separated by blanks for a vector.
 std::string plain(const Json& value) {
+  if (value.is_string()) return value.get<std::string>();
   if (value.is_boolean()) return value.get<bool>() ? "yes" : "no";
   if (!value.is_array()) return dump(value);
   std::string text;

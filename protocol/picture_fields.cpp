@@ -201,6 +201,8 @@ constexpr std::array kFields{
                  structured<&set_color_range>("coloring.first")},
     PictureField{"hide_classes", "hide-classes", "CODE,CODE,...", "classification codes to hide, 0 to 255 each",
                  structured<&set_hidden_classes>("hidden_classes")},
+    PictureField{"hide_models", "hide-models", "NAME,NAME,...", "models to hide of several that are shown together",
+                 structured<&set_hidden_models>("hidden_models")},
     PictureField{"clip_box", "clip-box", "X0,Y0,Z0,X1,Y1,Z1;...",
                  "show only surfels inside the box (inside any of several boxes), world coordinates",
                  structured<&set_boxes_to_show>("clip_boxes"), true},

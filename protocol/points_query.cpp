@@ -153,8 +153,7 @@ Status set_points_field(wire::GetPoints& points, std::string_view name, std::str
 }
 
 Status check_points(const wire::GetPoints& points) {
-  if (points.model().empty()) return invalid("a model must be named");
-  if (points.model().size() > kMaxModelNameBytes) return invalid("the model's name is too long");
+  if (Status status = check_model_name(points.model()); !status) return status;
   if (points.boxes_size() > kMaxRegionBoxes) return invalid("box: at most 64 are possible");
   if (points.corridors_size() > kMaxCorridors) return invalid("corridor: at most 64 are possible");
   for (const wire::Box& box : points.boxes()) {

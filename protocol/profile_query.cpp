@@ -59,9 +59,7 @@ Status set_profile_field(wire::GetProfile& profile, std::string_view name, std::
 }
 
 Status check_profile(const wire::GetProfile& profile) {
-  if (profile.model().empty()) return fail(ErrorKind::kInvalidInput, "a model must be named");
-  if (profile.model().size() > kMaxModelNameBytes)
-    return fail(ErrorKind::kInvalidInput, "the model's name is too long");
+  if (Status status = check_model_name(profile.model()); !status) return status;
   if (profile.line_size() < 2 || profile.line_size() > kMaxProfileLine) {
     return fail(ErrorKind::kInvalidInput, "line: expected 2 to 1024 points");
   }

@@ -1,5 +1,6 @@
 #include "protocol/validate.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -205,6 +206,14 @@ Status check_class_opacities(const wire::DrawPicture& picture) {
   return {};
 }
 
+Status check_hidden_models(const wire::DrawPicture& picture) {
+  if (picture.hidden_models().size() > static_cast<int>(kMaxJoinedModels)) return invalid("hide_models: too many models");
+  for (const std::string& name : picture.hidden_models()) {
+    if (name.empty() || name.size() > kMaxModelNameBytes) return invalid("hide_models: names of 1 to 512 bytes");
+  }
+  return {};
+}
+
 Status check_display_options(const wire::DrawPicture& picture) {
   if (Status status = check_coloring(picture.coloring()); !status) return status;
   for (const uint32_t code : picture.hidden_classes()) {
@@ -212,6 +221,7 @@ Status check_display_options(const wire::DrawPicture& picture) {
   }
   if (Status status = check_clip_boxes(picture); !status) return status;
   if (Status status = check_class_opacities(picture); !status) return status;
+  if (Status status = check_hidden_models(picture); !status) return status;
   const wire::EyeDomeLighting& eye_dome = picture.eye_dome();
   if (!(eye_dome.strength() >= 0 && eye_dome.strength() <= kMaxEyeDomeStrength)) {
     return invalid("eye_dome: the strength must lie between 0 and 100");
@@ -226,9 +236,21 @@ Status check_display_options(const wire::DrawPicture& picture) {
 
 }  // namespace
 
+Status check_model_name(const std::string& name) {
+  if (name.empty()) return invalid("a model must be named");
+  size_t models = 0;
+  for (std::string_view rest = name;; ++models) {
+    const size_t end = std::min(rest.find('+'), rest.size());
+    if (end > kMaxModelNameBytes) return invalid("the model's name is too long");
+    if (end == rest.size()) break;
+    rest.remove_prefix(end + 1);
+  }
+  if (models >= kMaxJoinedModels) return invalid("the name joins more than 64 models");
+  return {};
+}
+
 Status check_picture(const wire::DrawPicture& picture) {
-  if (picture.model().empty()) return invalid("a model must be named");
-  if (picture.model().size() > kMaxModelNameBytes) return invalid("the model's name is too long");
+  if (Status status = check_model_name(picture.model()); !status) return status;
   if (picture.has_camera()) {
     if (Status status = check_camera(picture.camera()); !status) return status;
   }

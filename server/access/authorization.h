@@ -11,22 +11,35 @@ namespace surfcast::access {
 
 /// A model that somebody asks for, and whether they may know of it. Rights alone makes one: whoever takes it as an
 /// argument cannot be called without that decision. One that is not allowed is asked for all the same, under a name
-/// that no model has, so that the answer is that for a model that is absent, and comes of the same work.
+/// that no model has, so that the answer is that for a model that is absent, and comes of the same work. A name such as
+/// "a+b" is that of one model, or of several that are shown together: these are two decisions.
 class AuthorizedModel {
  public:
   /// As it was asked for.
   [[nodiscard]] const std::string& name() const { return name_; }
-  [[nodiscard]] bool allowed() const { return allowed_; }
+  /// The model of exactly this name, or the models that it joins.
+  [[nodiscard]] bool allowed() const { return alone_ || joined_; }
+  /// The model of exactly this name.
+  [[nodiscard]] bool allowed_alone() const { return alone_; }
   /// Under which it is looked up.
   [[nodiscard]] std::string served_name() const;
 
  private:
   friend class Rights;
-  AuthorizedModel(std::string name, bool allowed) : name_(std::move(name)), allowed_(allowed) {}
+  AuthorizedModel(std::string name, bool alone, bool joined) : name_(std::move(name)), alone_(alone), joined_(joined) {}
 
   std::string name_;
-  bool allowed_;
+  bool alone_;
+  bool joined_;  ///< it joins models, and each of them is allowed
 };
+
+/// What a served name stands for.
+struct ServedName {
+  std::string name;    ///< as it was asked for: errors write this
+  bool alone = true;   ///< the model of exactly this name may be the answer
+  bool joined = true;  ///< otherwise those that it joins
+};
+[[nodiscard]] ServedName parse_served_name(const std::string& served_name);
 
 /// As errors write a name that was looked up: that which was asked for.
 std::string shown_name(const std::string& served_name);

@@ -7,6 +7,7 @@
 #include <utility>
 #include <vector>
 
+#include "access/joined_name.h"
 #include "base/mapped_file.h"
 #include "builder/build_gaussians.h"
 #include "builder/input_files.h"
@@ -132,6 +133,44 @@ Status sort_url(const std::string& url, const object_store::ObjectStore& store, 
   return {};
 }
 
+/// The model of a path or URL.
+Result<service::NamedModel> find_one(const fs::path& path, const ScanCacheConfig& cache,
+                                     const object_store::ObjectStore& store, const InPlaceOpener& in_place) {
+  const std::string url = path.string();
+  const bool stored = object_store::is_object_url(url);
+  std::error_code ignored;
+  if (stored ? url.ends_with('/') : fs::is_directory(path, ignored) && !is_scan_folder(path)) {
+    return fail(ErrorKind::kInvalidInput, path.string() + ": expected one model, got a folder");
+  }
+  const std::string shown = stored ? object_store::shown_url(url) : url;
+  if (in_place.opens(path)) return find_in_place(path, shown, in_place);
+  return stored ? find_stored(url, shown, store) : find_model(path, cache);
+}
+
+/// Each of the paths, or those that it joins if there is no file of its name. URLs have plus signs of their own.
+std::vector<fs::path> members_of_paths(std::span<const fs::path> paths) {
+  std::vector<fs::path> all;
+  for (const fs::path& path : paths) {
+    std::error_code ignored;
+    const bool whole = object_store::is_object_url(path.string()) || fs::exists(path, ignored);
+    const std::vector<std::string> members = whole ? std::vector<std::string>() : access::members_of(path.string());
+    if (members.empty()) all.push_back(path);
+    all.insert(all.end(), members.begin(), members.end());
+  }
+  return all;
+}
+
+/// Gives models that are to be joined names that differ and have no plus sign.
+void set_apart(std::vector<service::NamedModel>& models) {
+  std::set<std::string> taken;
+  for (service::NamedModel& model : models) {
+    std::ranges::replace(model.name, access::kJoin, '_');
+    std::string name = model.name;
+    for (int number = 2; !taken.insert(name).second; ++number) name = model.name + "_" + std::to_string(number);
+    model.name = std::move(name);
+  }
+}
+
 }  // namespace
 
 Result<NamedPaths> sort_paths(std::span<const fs::path> paths, const object_store::ObjectStore& store,
@@ -165,23 +204,19 @@ Result<NamedPaths> sort_paths(std::span<const fs::path> paths, const object_stor
   return sorted;
 }
 
-Result<std::unique_ptr<service::ModelCatalogue>> find_one_model(const fs::path& path, const ScanCacheConfig& cache,
-                                                                const object_store::ObjectStore& store,
-                                                                const InPlaceOpener& in_place) {
-  const std::string url = path.string();
-  const bool stored = object_store::is_object_url(url);
-  std::error_code ignored;
-  if (stored ? url.ends_with('/') : fs::is_directory(path, ignored) && !is_scan_folder(path)) {
-    return fail(ErrorKind::kInvalidInput, path.string() + ": expected one model, got a folder");
-  }
-  const std::string shown = stored ? object_store::shown_url(url) : url;
-  Result<service::NamedModel> model = in_place.opens(path) ? find_in_place(path, shown, in_place)
-                                      : stored             ? find_stored(url, shown, store)
-                                                           : find_model(path, cache);
-  if (!model) return fail(std::move(model.error()));
+Result<FoundModel> find_shown_model(std::span<const fs::path> paths, const ScanCacheConfig& cache,
+                                    const object_store::ObjectStore& store, const InPlaceOpener& in_place) {
   std::vector<service::NamedModel> files;
-  files.push_back(std::move(*model));
-  return std::make_unique<service::ModelCatalogue>(std::move(files), std::vector<fs::path>(), &store);
+  for (const fs::path& path : members_of_paths(paths)) {
+    Result<service::NamedModel> model = find_one(path, cache, store, in_place);
+    if (!model) return fail(std::move(model.error()));
+    files.push_back(std::move(*model));
+  }
+  if (files.size() > 1) set_apart(files);
+  std::string name = files.front().name;
+  for (size_t i = 1; i < files.size(); ++i) name += access::kJoin + files[i].name;
+  auto models = std::make_unique<service::ModelCatalogue>(std::move(files), std::vector<fs::path>(), &store);
+  return FoundModel{std::move(models), std::move(name)};
 }
 
 }  // namespace surfcast::cmd

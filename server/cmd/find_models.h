@@ -26,10 +26,15 @@ struct NamedPaths {
 Result<NamedPaths> sort_paths(std::span<const std::filesystem::path> paths, const object_store::ObjectStore& store,
                               const InPlaceOpener& in_place);
 
-/// The catalogue of one model, named by a model file, its URL, or a scan. The store outlives it.
-Result<std::unique_ptr<service::ModelCatalogue>> find_one_model(const std::filesystem::path& path,
-                                                                const ScanCacheConfig& cache,
-                                                                const object_store::ObjectStore& store,
-                                                                const InPlaceOpener& in_place);
+/// A catalogue and the name in it of what is asked for.
+struct FoundModel {
+  std::unique_ptr<service::ModelCatalogue> models;
+  std::string name;
+};
+
+/// Finds a model by a model file, its URL, or a scan. Several are shown together: several paths, or "a.surf+b.surf"
+/// where there is no file of that name. The store outlives the catalogue.
+Result<FoundModel> find_shown_model(std::span<const std::filesystem::path> paths, const ScanCacheConfig& cache,
+                                    const object_store::ObjectStore& store, const InPlaceOpener& in_place);
 
 }  // namespace surfcast::cmd

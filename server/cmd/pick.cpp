@@ -4,6 +4,7 @@
 #include <future>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "access/authorization.h"
 #include "cmd/find_models.h"
@@ -17,7 +18,7 @@ namespace surfcast::cmd {
 namespace {
 
 struct PickCommand {
-  std::filesystem::path model;
+  std::vector<std::filesystem::path> models;
   protocol::PickFlags flags;
   ScanCacheConfig cache;
   service::PickLimits limits;
@@ -31,16 +32,15 @@ Status pick(const PickCommand& command) {
   if (!blocks) return fail(std::move(blocks.error()));
   const object_store::ObjectStore store(command.store, *blocks);
   const InPlaceOpener in_place(store, command.in_place, std::move(*blocks));
-  const Result<std::unique_ptr<service::ModelCatalogue>> models =
-      find_one_model(command.model, command.cache, store, in_place);
-  if (!models) return fail(models.error());
-  Result<service::PickJob> job =
-      command.flags.request((*models)->names().front()).and_then([](const wire::PickSurfel& request) {
-        return net::to_job(request, access::Rights::unlimited().authorize(request.picture().model()));
-      });
+  const Result<FoundModel> found = find_shown_model(command.models, command.cache, store, in_place);
+  if (!found) return fail(found.error());
+  const service::ModelCatalogue& models = *found->models;
+  Result<service::PickJob> job = command.flags.request(found->name).and_then([](const wire::PickSurfel& request) {
+    return net::to_job(request, access::Rights::unlimited().authorize(request.picture().model()));
+  });
   if (!job) return fail(job.error());
   std::promise<Result<std::optional<service::PickedPoint>>> promise;
-  service::PickService service(**models, command.limits);
+  service::PickService service(models, command.limits);
   service.pick(std::move(*job), [&promise](auto picked) { promise.set_value(std::move(picked)); });
   return promise.get_future().get().and_then([&](const std::optional<service::PickedPoint>& picked) {
     wire::PickResult result;
@@ -54,7 +54,7 @@ Status pick(const PickCommand& command) {
 void add_pick_command(CLI::App& app, Status& outcome) {
   auto command = std::make_shared<PickCommand>();
   CLI::App* sub = app.add_subcommand("pick", "Print the surfel at a pixel of a picture of a model or scan");
-  sub->add_option("MODEL", command->model, "Model file, its URL, or scan")->required();
+  sub->add_option("MODEL", command->models, "Model file, its URL, or scan; several are shown together")->required();
   command->flags.add_to(*sub);
   add_cache_flags(*sub, command->cache);
   add_pick_cache_flag(*sub, command->limits);

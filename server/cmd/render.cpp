@@ -5,6 +5,7 @@
 #include <future>
 #include <memory>
 #include <utility>
+#include <vector>
 
 #include "access/authorization.h"
 #include "base/log.h"
@@ -24,7 +25,7 @@ namespace surfcast::cmd {
 namespace {
 
 struct RenderCommand {
-  std::filesystem::path model;
+  std::vector<std::filesystem::path> models;
   protocol::RequestFlags flags;
   ScanCacheConfig cache;
   render::RendererConfig renderer;
@@ -60,15 +61,15 @@ Status render(const RenderCommand& command) {
   if (!blocks) return fail(std::move(blocks.error()));
   const object_store::ObjectStore store(command.store, *blocks);
   const InPlaceOpener in_place(store, command.in_place, std::move(*blocks));
-  const Result<std::unique_ptr<service::ModelCatalogue>> models =
-      find_one_model(command.model, command.cache, store, in_place);
-  if (!models) return fail(models.error());
-  const Result<wire::DrawPicture> request = command.flags.request((*models)->names().front());
+  const Result<FoundModel> found = find_shown_model(command.models, command.cache, store, in_place);
+  if (!found) return fail(found.error());
+  const service::ModelCatalogue& models = *found->models;
+  const Result<wire::DrawPicture> request = command.flags.request(found->name);
   if (!request) return fail(request.error());
-  warn_of_unused_options(**models, *request);
+  warn_of_unused_options(models, *request);
   const auto service = service::RenderService::start(
-      **models,
-      service::catalogue_renderers(**models, service::local_renderers(command.renderer), service::ShaderWarmUp::kOff),
+      models,
+      service::catalogue_renderers(models, service::local_renderers(command.renderer), service::ShaderWarmUp::kOff),
       command.limits);
   if (!service) return fail(service.error());
   log_device((*service)->device(), command.renderer);
@@ -81,7 +82,7 @@ Status render(const RenderCommand& command) {
 void add_render_command(CLI::App& app, Status& outcome) {
   auto command = std::make_shared<RenderCommand>();
   CLI::App* sub = app.add_subcommand("render", "Draw a picture of a model or scan, or the frames of a camera path");
-  sub->add_option("MODEL", command->model, "Model file, its URL, or scan")->required();
+  sub->add_option("MODEL", command->models, "Model file, its URL, or scan; several are shown together")->required();
   command->flags.add_to(*sub);
   add_renderer_flags(*sub, command->renderer);
   add_cache_flags(*sub, command->cache);

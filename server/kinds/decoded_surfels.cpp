@@ -26,8 +26,13 @@ double value_at(const surfel::ScalarValues& values, size_t i) {
 
 }  // namespace
 
-DecodedSurfels::DecodedSurfels(model::DecodedBlock block, const model::ModelInfo& info)
-    : block_(std::move(block)), curvature_(block_.scalars), oriented_(info.oriented), color_bits_(info.color_bits) {}
+DecodedSurfels::DecodedSurfels(model::DecodedBlock block, const model::ModelInfo& info, const model::ModelInfo& own)
+    : block_(std::move(block)),
+      curvature_(block_.scalars),
+      oriented_(info.oriented),
+      color_bits_(info.color_bits),
+      colored_(own.color_bits > 0),
+      told_(own.scalar_names) {}
 
 size_t DecodedSurfels::bytes() const {
   size_t bytes = bytes_of(block_.indices) + bytes_of(block_.normals) + bytes_of(block_.radii) +
@@ -151,11 +156,12 @@ PickedSurfel DecodedSurfels::describe(const PickQuery& query, uint32_t surfel) c
   PickedSurfel picked;
   picked.position = block_.position(surfel);
   picked.normal = normal_of(query, surfel);
-  if (!block_.colors.empty()) picked.color = color_of(surfel);
+  if (colored_) picked.color = color_of(surfel);
   picked.radius = double{block_.radii[surfel]};
   picked.distance = glm::length(picked.position - query.frame.eye);
   for (const surfel::ScalarAttribute& scalar : block_.scalars) {
-    if (surfel::is_curvature_column(scalar.name)) continue;  // no attribute of the source
+    const bool told = std::ranges::find(told_, scalar.name) != told_.end();
+    if (!told || surfel::is_curvature_column(scalar.name)) continue;  // no attribute of the source
     picked.values.push_back({scalar.name, value_at(scalar.values, surfel)});
   }
   return picked;

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <string>
+#include <vector>
+
 #include "kinds/opaque_disc.h"
 #include "kinds/source_block.h"
 #include "model/model_file.h"
@@ -9,7 +12,8 @@ namespace surfcast::kinds {
 /// A decoded block of surfels for picking.
 class DecodedSurfels : public SourceBlock {
  public:
-  DecodedSurfels(model::DecodedBlock block, const model::ModelInfo& info);
+  /// `own`: of the member that a block of a joined model is from; it has the colours and attributes that are told.
+  DecodedSurfels(model::DecodedBlock block, const model::ModelInfo& info, const model::ModelInfo& own);
 
   [[nodiscard]] size_t bytes() const override;
   /// Tests the opaque discs of the surfels (hit_disc).
@@ -43,6 +47,8 @@ class DecodedSurfels : public SourceBlock {
   surfel::CurvatureColumns curvature_;  ///< of the block
   bool oriented_;
   int color_bits_;
+  bool colored_;
+  std::vector<std::string> told_;  ///< attributes
 };
 
 }  // namespace surfcast::kinds

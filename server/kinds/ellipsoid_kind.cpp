@@ -11,11 +11,14 @@
 namespace surfcast::kinds {
 namespace {
 
+/// Its source is that of the whole model.
 Result<ellipsoid::EllipsoidBlock> decode_ellipsoid_block(const model::ModelFile& model, uint32_t block) {
-  const Result<model::StoredBlock> stored = model.stored(block);
+  const model::Part part = model.part(block);
+  const Result<model::StoredBlock> stored = part.model.stored(part.block);
   if (!stored) return fail(stored.error());
-  Result<ellipsoid::EllipsoidBlock> decoded = ellipsoid::decode_ellipsoids(*stored, model.ellipsoid_sources());
+  Result<ellipsoid::EllipsoidBlock> decoded = ellipsoid::decode_ellipsoids(*stored, part.model.ellipsoid_sources());
   if (!decoded) return fail(model.named(block, decoded.error()));
+  decoded->source += part.first_ellipsoids;
   return decoded;
 }
 

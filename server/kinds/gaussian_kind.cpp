@@ -20,7 +20,7 @@ Result<gaussian::GaussianBlock> decode_gaussian_block(const model::ModelFile& mo
   if (!stored) return fail(stored.error());
   Result<gaussian::GaussianBlock> decoded = gaussian::decode_gaussians(*stored);
   if (!decoded) return fail(model.named(block, decoded.error()));
-  if (decoded->codes.traits.degree > model.info().harmonics_degree) {
+  if (decoded->codes.traits.degree > model.part(block).model.info().harmonics_degree) {
     return fail(model.named(block, {ErrorKind::kInvalidInput, "harmonics of a higher degree than the model states"}));
   }
   return decoded;

@@ -34,8 +34,9 @@ struct PickQuery {
   /// How surfels are seen through, beside `opacity`, see picture::PictureRequest. By class; empty: all are 1.
   std::vector<double> class_opacities{};
   double ghost = 0;
-  bool by_file = false;      ///< opacities are those of the scan
-  bool transparent = false;  ///< surfels are seen through, and from behind
+  bool by_file = false;                ///< opacities are those of the scan
+  bool transparent = false;            ///< surfels are seen through, and from behind
+  std::vector<bool> hidden_members{};  ///< see model::hidden_members
 
   /// Whether something of what lies in the box may be shown.
   [[nodiscard]] bool may_show(const geometry::Box& box) const { return ghost > 0 || clip.may_show(box); }
@@ -61,6 +62,7 @@ struct PickedSurfel {
   std::vector<PickedValue> values;   ///< all attributes, in the model's order
   double depth = 0;                  ///< camera z of the item in the pixel, world units
   uint64_t number = 0;               ///< items of the leaves before it, in the order of the file
+  std::optional<uint32_t> member{};  ///< of a joined model: the one that it is of
 };
 
 /// A decoded block with all attributes in the file.

@@ -72,7 +72,7 @@ Result<residency::PackedBlock> SurfelKind::load(const model::ModelFile& model, u
 Result<std::shared_ptr<const SourceBlock>> SurfelKind::decode(const model::ModelFile& model, uint32_t block) const {
   Result<model::DecodedBlock> decoded = model.decode(block);
   if (!decoded) return fail(std::move(decoded.error()));
-  return std::make_shared<const DecodedSurfels>(std::move(*decoded), model.info());
+  return std::make_shared<const DecodedSurfels>(std::move(*decoded), model.info(), model.part(block).model.info());
 }
 
 }  // namespace surfcast::kinds

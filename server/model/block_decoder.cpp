@@ -7,6 +7,7 @@
 #include "model/field.h"
 #include "model/quantize.h"
 #include "model/scalar_bits.h"
+#include "surfel/curvature.h"
 
 namespace surfcast::model {
 namespace {
@@ -87,6 +88,16 @@ surfel::ScalarAttribute read_scalar(const ScalarColumn& attribute, const Column&
 }
 
 }  // namespace
+
+size_t count_of(WantedScalars wanted, std::span<const ScalarColumn> scalars) {
+  if (wanted == WantedScalars::kAll) return scalars.size();
+  size_t count = 0;
+  for (size_t i = 0; i < scalars.size(); ++i) {
+    if (surfel::is_curvature_column(scalars[i].name) || (wanted == WantedScalars::kDrawn && scalars[i].coarse))
+      count = i + 1;
+  }
+  return count;
+}
 
 Result<DecodedBlock> decode_block(std::span<const std::byte> bytes, const BlockShape& shape, size_t scalars) {
   if (bytes.empty()) return fail(ErrorKind::kInvalidInput, "cut off");

@@ -19,6 +19,10 @@ struct ScalarColumn {
   bool coarse = false;  ///< also stored by coarse blocks
 };
 
+/// The number of scalar attributes to decode, counted from the first. Curvature is drawn as the normal is, whatever is
+/// asked for.
+[[nodiscard]] size_t count_of(WantedScalars wanted, std::span<const ScalarColumn> scalars);
+
 /// The expected content of a block, known from the tables of the file.
 struct BlockShape {
   surfel::Grid grid;

@@ -11,6 +11,8 @@
 
 namespace surfcast::model {
 
+struct ScalarColumn;
+
 /// Where the blocks of a model come from: a model file, or what makes them of something else. Errors name neither model
 /// nor block. Safe to use from several threads at once.
 class BlockProvider {
@@ -23,6 +25,8 @@ class BlockProvider {
   [[nodiscard]] virtual Result<StoredBlock> stored(size_t block) const = 0;
   /// Of a block of surfels.
   [[nodiscard]] virtual Result<DecodedBlock> decode(size_t block, WantedScalars scalars) const = 0;
+  /// The attributes of leaves, in order, with their types.
+  [[nodiscard]] virtual std::span<const ScalarColumn> scalars() const = 0;
   [[nodiscard]] virtual Result<Georeference> georeference() const = 0;
   [[nodiscard]] virtual const ByteSource& source() const = 0;
 };

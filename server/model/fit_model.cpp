@@ -69,8 +69,15 @@ std::vector<geometry::Box> boxes_of_coarsest(const ModelFile& model) {
 /// model's own box, whose corners are mostly empty.
 std::vector<geometry::Box> boxes_of_discs(const ModelFile& model) {
   std::vector<geometry::Box> boxes;
-  if (model.info().in_place) boxes = boxes_of_coarsest(model);
-  if (!boxes.empty()) return boxes;
+  const auto placed = [](const Member& member) { return !member.places.empty(); };
+  if (model.info().in_place && std::ranges::none_of(model.members(), placed)) {
+    for (const Member& member : model.members()) {
+      const std::vector<geometry::Box> own = boxes_of_discs(*member.model);
+      boxes.insert(boxes.end(), own.begin(), own.end());
+    }
+    if (model.members().empty()) boxes = boxes_of_coarsest(model);
+    if (!boxes.empty()) return boxes;
+  }
   for (const ldc::BlockEntry& block : model.blocks()) {
     if (block.level > 0) continue;
     // The largest of other kinds may be far larger than what is seen of them.

@@ -9,6 +9,9 @@
 #include "model/block_cache.h"
 #include "model/block_provider.h"
 #include "model/format.h"
+#include "model/joined_blocks.h"
+#include "model/joined_model.h"
+#include "model/model_counts.h"
 #include "model/stored_blocks.h"
 #include "model/volume_tables.h"
 
@@ -21,6 +24,8 @@ struct ModelFile::State {
   ModelInfo info;
   std::shared_ptr<const Directory> directory;
   ldc::BlockTree tree;
+  std::vector<Member> members{};         ///< of a joined model, which has no source and no blocks in its directory
+  std::vector<MemberOffsets> offsets{};  ///< of each member
 };
 
 namespace {
@@ -127,25 +132,10 @@ ModelInfo make_info(const ModelHeader& header, const Directory& directory, std::
     info.ellipsoid_columns = std::max(info.ellipsoid_columns, source.attributes.size() - kDerivedAttributes);
   }
   for (const std::string& kind : directory.kinds) info.kinds.push_back({kind, 0, 0});
-  const int up_axis = info.z_up ? 2 : 1;
-  std::vector<ElevationSlab> slabs;  // but for volumes, which are not colored by elevation
   for (size_t i = 0; i < entries.size(); ++i) {
-    const ldc::BlockEntry& entry = entries[i];
-    info.levels = std::max(info.levels, entry.level + 1);
-    KindCount& kind = info.kinds[entry.kind];
-    ++kind.blocks;
-    if (entry.level > 0) continue;
-    info.bounds.include(entry.bounds);
-    kind.items += entry.surfels;
-    info.scatter += directory.blocks[i].scatter;
-    if (kind.kind != kGridKind) {
-      slabs.push_back({{entry.bounds.min[up_axis], entry.bounds.max[up_axis]}, entry.surfels});
-    }
+    if (entries[i].level == 0) info.scatter += directory.blocks[i].scatter;
   }
-  info.elevation = elevation_range(slabs);
-  for (const KindCount& kind : info.kinds) {
-    if (kind.kind == kSurfelKind) info.surfels = kind.items;
-  }
+  count_blocks(entries, info);
   return info;
 }
 
@@ -195,6 +185,20 @@ ModelFile ModelFile::of_blocks(const std::filesystem::path& path, ModelInfo info
                                     std::make_shared<const Directory>(), ldc::BlockTree(std::move(entries))}));
 }
 
+Result<ModelFile> ModelFile::join(std::vector<Member> members) {
+  Result<JoinedTables> tables = join_tables(members);
+  if (!tables) return fail(std::move(tables.error()));
+  std::string path;
+  for (const Member& member : members) path += (path.empty() ? "" : "+") + member.name;
+  auto directory = std::make_shared<Directory>();
+  directory->volumes = std::move(tables->volumes);
+  directory->ellipsoids = std::move(tables->ellipsoids);
+  auto provider = std::make_unique<const JoinedBlocks>(members, tables->offsets, tables->info, tables->scalars);
+  return ModelFile(std::make_unique<State>(State{next_id(), path, std::move(provider), std::move(tables->info),
+                                                 std::move(directory), ldc::BlockTree(std::move(tables->blocks)),
+                                                 std::move(members), std::move(tables->offsets)}));
+}
+
 uint64_t ModelFile::id() const {
   return state_->id;
 }
@@ -215,8 +219,28 @@ std::span<const EllipsoidSource> ModelFile::ellipsoid_sources() const {
   return state_->directory->ellipsoids;
 }
 
-const BrickRecord& ModelFile::brick(size_t block) const {
+std::span<const ScalarColumn> ModelFile::scalars() const {
+  return state_->provider->scalars();
+}
+
+std::span<const Member> ModelFile::members() const {
+  return state_->members;
+}
+
+Part ModelFile::part(uint32_t block) const {
+  SURFCAST_EXPECTS(block < blocks().size());
+  if (state_->members.empty()) return {*this, block};
+  return part_of(state_->members, state_->offsets, block);
+}
+
+BrickRecord ModelFile::brick(size_t block) const {
   SURFCAST_EXPECTS(block < blocks().size() && state_->info.kinds[blocks()[block].kind].kind == kGridKind);
+  if (!state_->members.empty()) {
+    const Part own = part(static_cast<uint32_t>(block));
+    BrickRecord brick = own.model.brick(own.block);
+    brick.volume += own.first_volume;
+    return brick;
+  }
   return state_->directory->bricks[state_->directory->blocks[block].brick];
 }
 
@@ -241,15 +265,23 @@ Result<Georeference> ModelFile::georeference() const {
 }
 
 Error ModelFile::named(size_t block, const Error& error) const {
+  if (!state_->members.empty()) {
+    const Part own = part(static_cast<uint32_t>(block));
+    return own.model.named(own.block, error);
+  }
   return {error.kind, state_->path.string() + ": block " + std::to_string(block) + ": " + error.message};
 }
 
 Result<StoredBlock> ModelFile::stored(size_t block) const {
-  return state_->provider->stored(block).map_error([&](const Error& error) { return named(block, error); });
+  Result<StoredBlock> stored = state_->provider->stored(block);
+  if (!state_->members.empty()) return stored;  // its member has named an error
+  return stored.map_error([&](const Error& error) { return named(block, error); });
 }
 
 Result<DecodedBlock> ModelFile::decode(size_t block, WantedScalars scalars) const {
-  return state_->provider->decode(block, scalars).map_error([&](const Error& error) { return named(block, error); });
+  Result<DecodedBlock> decoded = state_->provider->decode(block, scalars);
+  if (!state_->members.empty()) return decoded;
+  return decoded.map_error([&](const Error& error) { return named(block, error); });
 }
 
 }  // namespace surfcast::model

@@ -3,6 +3,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
+#include <glm/mat4x3.hpp>
 #include <glm/vec3.hpp>
 #include <memory>
 #include <optional>
@@ -62,10 +63,32 @@ struct ModelInfo {
 
 class BlockCache;
 class BlockProvider;
+class ModelFile;
 struct Directory;
+struct ScalarColumn;
 
-/// An open model: a file, or blocks that something else provides. All methods are const and safe to call from several
-/// threads at once.
+/// The most models that are shown as one.
+inline constexpr size_t kMaxMembers = 64;
+
+/// A model that is shown together with others.
+struct Member {
+  std::string name;  ///< under which it is known
+  std::shared_ptr<const ModelFile> model;
+  /// For each of its blocks the affine map from its world to that of the first member; empty: these are the same.
+  std::vector<glm::dmat4x3> places{};
+};
+
+/// A block as a member of a joined model has it. A plain model is its own only part.
+struct Part {
+  const ModelFile& model;
+  uint32_t block = 0;             ///< of the member
+  uint32_t member = 0;            ///< index of the member
+  uint32_t first_volume = 0;      ///< the number of the member's first volume among those of the joined model
+  uint32_t first_ellipsoids = 0;  ///< likewise, of its first source of ellipsoids
+};
+
+/// An open model: a file, blocks that something else provides, or several models that are shown as one, the forest of
+/// all their blocks. All methods are const and safe to call from several threads at once.
 class ModelFile {
  public:
   static Result<ModelFile> open(const std::filesystem::path& path);
@@ -76,6 +99,9 @@ class ModelFile {
   /// kind 0, which `info` names.
   static ModelFile of_blocks(const std::filesystem::path& path, ModelInfo info, std::vector<ldc::BlockEntry> entries,
                              std::unique_ptr<const BlockProvider> provider);
+  /// Shows models as one, in this order. Fails if there are more than kMaxMembers, if two have one name, and if one has
+  /// `places` and a kind that cannot be placed; the error names it.
+  static Result<ModelFile> join(std::vector<Member> members);
 
   ModelFile(ModelFile&&) noexcept;
   ModelFile& operator=(ModelFile&&) noexcept;
@@ -88,24 +114,33 @@ class ModelFile {
   void prefetch(std::span<const uint32_t> blocks) const;
   /// A block that was prefetched will not be decoded.
   void forget(size_t block) const;
-  /// The bytes of a block of any kind. Fails if their checksum is wrong.
+  /// The bytes of a block of any kind. Fails if their checksum is wrong. Of a joined model, those of the member.
   [[nodiscard]] Result<StoredBlock> stored(size_t block) const;
   /// The volumes whose bricks are blocks of the kind "grid"; none in most models.
   [[nodiscard]] std::span<const Volume> volumes() const;
+  /// The scalar attributes of the leaves, in the order of ModelInfo::scalar_names.
+  [[nodiscard]] std::span<const ScalarColumn> scalars() const;
+  /// The models of a joined one; none of a file.
+  [[nodiscard]] std::span<const Member> members() const;
+  /// Where kinds that number their volumes or sources, or state limits, read a block.
+  [[nodiscard]] Part part(uint32_t block) const;
   /// The place of a block of the kind "grid". It lies within its volume, and its parent stands for it.
-  [[nodiscard]] const BrickRecord& brick(size_t block) const;
+  [[nodiscard]] BrickRecord brick(size_t block) const;
   /// The sources of the blocks of the kind "ellipsoid"; none in most models.
   [[nodiscard]] std::span<const EllipsoidSource> ellipsoid_sources() const;
   /// Prefixes an error about a block with the names of file and block.
   [[nodiscard]] Error named(size_t block, const Error& error) const;
   /// Checks and decodes a block of surfels. Fails on a block of another kind. Attributes are decoded in order, up to
-  /// the last one that `scalars` requests.
+  /// the last one that `scalars` requests. Of a joined model all blocks have all its attributes, and colours if any has
+  /// them: see conform (model/joined_model.h).
   [[nodiscard]] Result<DecodedBlock> decode(size_t block, WantedScalars scalars = WantedScalars::kAll) const;
-  /// Where the model lies on the earth. It is read when it is asked for, because drawing does without it.
+  /// Where the model lies on the earth. It is read when it is asked for, because drawing does without it. Of a joined
+  /// model: the system of the first member that states one, in which all lie. The source's is known if it is the same
+  /// for all members that state a system.
   [[nodiscard]] Result<Georeference> georeference() const;
-  /// The path of the file, or its URL.
+  /// The path of the file, or its URL. Of a joined model, the names of its members.
   [[nodiscard]] const std::filesystem::path& path() const;
-  /// Where its bytes come from; of a model in many files, those of the file that describes it.
+  /// Where its bytes come from; of a model in many files, those of the file that describes it. Not of a joined model.
   [[nodiscard]] const ByteSource& source() const;
   /// An ID of this opening of the file, unique in the process and not reused after the file is closed.
   [[nodiscard]] uint64_t id() const;

@@ -5,22 +5,9 @@
 #include <utility>
 
 #include "base/contract.h"
-#include "surfel/curvature.h"
 
 namespace surfcast::model {
 namespace {
-
-/// The number of scalar attributes to decode, counted from the first. Curvature is drawn as the normal is, whatever is
-/// asked for.
-size_t count_of(WantedScalars wanted, std::span<const ScalarColumn> scalars) {
-  if (wanted == WantedScalars::kAll) return scalars.size();
-  size_t count = 0;
-  for (size_t i = 0; i < scalars.size(); ++i) {
-    if (surfel::is_curvature_column(scalars[i].name) || (wanted == WantedScalars::kDrawn && scalars[i].coarse))
-      count = i + 1;
-  }
-  return count;
-}
 
 /// Memory for the block that this thread reads. It is used again, so that decoding takes none anew.
 std::span<std::byte> buffer_of_thread(size_t size) {

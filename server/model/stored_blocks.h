@@ -21,6 +21,7 @@ class StoredBlocks : public BlockProvider {
   void forget(size_t block) const override;
   [[nodiscard]] Result<StoredBlock> stored(size_t block) const override;
   [[nodiscard]] Result<DecodedBlock> decode(size_t block, WantedScalars scalars) const override;
+  [[nodiscard]] std::span<const ScalarColumn> scalars() const override { return directory_->scalars; }
   [[nodiscard]] Result<Georeference> georeference() const override { return load_georeference(*source_); }
   [[nodiscard]] const ByteSource& source() const override { return *source_; }
 

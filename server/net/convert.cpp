@@ -185,6 +185,7 @@ picture::VolumeOptions volume_options(const wire::DrawPicture& request) {
 void set_display_options(const wire::DrawPicture& request, picture::PictureRequest& picture) {
   picture.coloring = from_wire(request.coloring());
   for (const uint32_t code : request.hidden_classes()) picture.hidden_classes.set(code);
+  picture.hidden_models.assign(request.hidden_models().begin(), request.hidden_models().end());
   for (const wire::ClipBox& clip : request.clip_boxes()) {
     const geometry::Box box{from_wire(clip.box().min()), from_wire(clip.box().max())};
     (clip.inverted() ? picture.clip.outside : picture.clip.inside).push_back(box);

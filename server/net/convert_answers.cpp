@@ -73,6 +73,7 @@ void to_wire(const std::optional<service::PickedPoint>& picked, wire::PickResult
   message.set_distance(picked->distance);
   message.set_depth(picked->depth);
   message.set_surfel(picked->number);
+  message.set_model(protocol::clean_utf8(picked->model));
   for (const kinds::PickedValue& value : picked->values) {
     wire::AttributeValue* attribute = message.add_attributes();
     attribute->set_attribute(protocol::clean_utf8(value.attribute));

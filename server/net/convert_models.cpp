@@ -101,6 +101,18 @@ void to_wire(const model::CoordinateSystem& system, wire::CoordinateSystem& mess
   message.set_wkt(protocol::clean_utf8(system.wkt));
 }
 
+void to_wire(const model::KindCount& kind, wire::KindCount& message) {
+  message.set_kind(protocol::clean_utf8(kind.kind));
+  message.set_items(kind.items);
+}
+
+void to_wire(const service::MemberDescription& member, wire::MemberDescription& message) {
+  message.set_model(protocol::clean_utf8(member.name));
+  net::to_wire(member.bounds.min, message.mutable_bounds()->mutable_min());
+  net::to_wire(member.bounds.max, message.mutable_bounds()->mutable_max());
+  for (const model::KindCount& kind : member.kinds) to_wire(kind, *message.add_kinds());
+}
+
 }  // namespace
 
 void to_wire(const std::string& name, const service::ModelDescription& description, wire::ModelDescription& message) {
@@ -122,11 +134,8 @@ void to_wire(const std::string& name, const service::ModelDescription& descripti
   const model::Georeference& georeference = description.georeference;
   if (georeference.known()) to_wire(georeference.system, *message.mutable_system());
   if (georeference.source.known()) to_wire(georeference.source, *message.mutable_source_system());
-  for (const model::KindCount& kind : info.kinds) {
-    wire::KindCount* to = message.add_kinds();
-    to->set_kind(protocol::clean_utf8(kind.kind));
-    to->set_items(kind.items);
-  }
+  for (const model::KindCount& kind : info.kinds) to_wire(kind, *message.add_kinds());
+  for (const service::MemberDescription& member : description.members) to_wire(member, *message.add_members());
   for (size_t i = 0; i < description.volumes.size(); ++i) {
     to_wire(description.volumes[i], description.presets[i], *message.add_volumes());
   }

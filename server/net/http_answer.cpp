@@ -187,11 +187,25 @@ json to_json(const model::Georeference& georeference) {
   return document;
 }
 
+json to_json(const geometry::Box& box) {
+  return {{"min", to_json(box.min)}, {"max", to_json(box.max)}};
+}
+
+json to_json(const std::vector<model::KindCount>& kinds) {
+  return array_of(kinds, [](const model::KindCount& kind) {
+    return json{{"kind", kind.kind}, {"blocks", kind.blocks}, {"count", kind.items}};
+  });
+}
+
+json to_json(const service::MemberDescription& member) {
+  return {{"model", member.name}, {"bounds", to_json(member.bounds)}, {"kinds", to_json(member.kinds)}};
+}
+
 json description_of(const std::string& name, const service::ModelDescription& description) {
   const model::ModelInfo& info = description.info;
   return {{"model", name},
           {"surfels", info.surfels},
-          {"bounds", {{"min", to_json(info.bounds.min)}, {"max", to_json(info.bounds.max)}}},
+          {"bounds", to_json(info.bounds)},
           {"elevation", {{"low", info.elevation.low}, {"high", info.elevation.high}}},
           {"oriented", info.oriented},
           {"up_axis", std::string(info.upside_down ? "-" : "") + (info.z_up ? "z" : "y")},
@@ -201,10 +215,7 @@ json description_of(const std::string& name, const service::ModelDescription& de
           {"levels", description.levels},
           {"blocks", description.blocks},
           {"spacing", description.spacing},
-          {"kinds", array_of(info.kinds,
-                             [](const model::KindCount& kind) {
-                               return json{{"kind", kind.kind}, {"blocks", kind.blocks}, {"count", kind.items}};
-                             })},
+          {"kinds", to_json(info.kinds)},
           {"volumes", array_of(description.volumes, [](const model::Volume& volume) { return to_json(volume); })},
           {"ellipsoids",
            array_of(description.ellipsoids, [](const model::EllipsoidSource& source) { return to_json(source); })},
@@ -234,6 +245,10 @@ HttpAnswer uploaded_answer(const char* what, const std::string& name) {
 HttpAnswer model_answer(const std::string& name, const service::ModelDescription& description) {
   json document = description_of(name, description);
   if (description.georeference.known()) document["coordinate_system"] = to_json(description.georeference);
+  if (!description.members.empty()) {
+    document["members"] =
+        array_of(description.members, [](const service::MemberDescription& member) { return to_json(member); });
+  }
   return json_answer(document);
 }
 

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "model/hidden_members.h"
 #include "pick/leaf_numbers.h"
 #include "selection/block_hull.h"
 #include "selection/frustum.h"
@@ -84,7 +85,7 @@ class FrontSearch {
     const selection::Frustum frustum(frame, region.first.x - kReachInPixels, region.first.y - kReachInPixels,
                                      region.last.x + 1 + kReachInPixels, region.last.y + 1 + kReachInPixels);
     std::vector<LeafInView> leaves;
-    std::vector<uint32_t> open(model_.tree().roots().begin(), model_.tree().roots().end());
+    std::vector<uint32_t> open = model::shown_roots(model_, query_.hidden_members);
     const auto sides = query_.transparent ? selection::Sides::kBoth : selection::Sides::kFront;
     while (!open.empty()) {
       const uint32_t block = open.back();

@@ -6,6 +6,7 @@
 #include <map>
 #include <string>
 
+#include "model/hidden_members.h"
 #include "pick/leaf_numbers.h"
 #include "selection/block_hull.h"
 #include "selection/frustum.h"
@@ -84,7 +85,7 @@ class Picker {
     const selection::Frustum frustum(frame_, query_.pixel.x - kReachInPixels, query_.pixel.y - kReachInPixels,
                                      query_.pixel.x + kReachInPixels, query_.pixel.y + kReachInPixels);
     std::vector<LeafOnRay> leaves;
-    std::vector<uint32_t> open(model_.tree().roots().begin(), model_.tree().roots().end());
+    std::vector<uint32_t> open = model::shown_roots(model_, query_.hidden_members);
     const auto sides = query_.transparent ? selection::Sides::kBoth : selection::Sides::kFront;
     while (!open.empty()) {
       const uint32_t block = open.back();
@@ -150,6 +151,7 @@ class Picker {
     kinds::PickedSurfel picked = blocks_.at(candidate.rank.block)->describe(query, candidate.rank.item);
     picked.depth = candidate.depth;
     picked.number = leaf_numbers(model_)[candidate.rank.block] + candidate.rank.item;
+    if (!model_.members().empty()) picked.member = model_.part(candidate.rank.block).member;
     return picked;
   }
 

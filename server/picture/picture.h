@@ -78,7 +78,8 @@ struct PictureParameters {
   /// Further factors for the surfels of a class, from 0 to 1; of several with the same code the last one counts. No
   /// effect on models without classes.
   std::vector<ClassOpacity> class_opacities;
-  int depth_texels = 0;  ///< a side of Frame::depth, at most; 0: none. Does not change the picture.
+  std::vector<std::string> hidden_models;  ///< members of a joined model that are not shown, by name
+  int depth_texels = 0;                    ///< a side of Frame::depth, at most; 0: none. Does not change the picture.
 };
 
 /// All parameters of a picture of a model.

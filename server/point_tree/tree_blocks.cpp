@@ -55,13 +55,14 @@ std::string identity_of(const NodeReader& reader) {
 TreeBlocks::TreeBlocks(TreeFrame frame, size_t memory, std::shared_ptr<model::BlockCache> cache,
                        std::shared_ptr<const NodePoints> root, const std::vector<MadeBlock>& root_blocks)
     : frame_(std::move(frame)),
+      columns_(columns_of_blocks(frame_.meaning.schema)),
       root_(std::move(root)),
       points_(memory / kPointsShare),
       blocks_(memory - memory / kPointsShare) {
   std::string identity = identity_of(*frame_.opened.reader);
   if (cache && !identity.empty()) {
     keeper_ = std::make_unique<BlockKeeper>(std::move(cache), std::move(identity), frame_.meaning.schema.color_bits,
-                                            columns_of_blocks(frame_.meaning.schema));
+                                            columns_);
   }
   std::shared_ptr<const Blocks> blocks = take(root_blocks);
   blocks_.put(0, blocks, bytes_of_blocks(*blocks));

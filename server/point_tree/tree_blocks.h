@@ -12,6 +12,7 @@
 
 #include "base/idle_priority.h"
 #include "base/lru_cache.h"
+#include "model/block_decoder.h"
 #include "model/block_provider.h"
 #include "point_tree/block_keeper.h"
 #include "point_tree/block_table.h"
@@ -102,6 +103,7 @@ class TreeBlocks : public model::BlockProvider {
   void forget(size_t block) const override;
   [[nodiscard]] Result<model::StoredBlock> stored(size_t block) const override;
   [[nodiscard]] Result<model::DecodedBlock> decode(size_t block, model::WantedScalars scalars) const override;
+  [[nodiscard]] std::span<const model::ScalarColumn> scalars() const override { return columns_; }
   [[nodiscard]] Result<model::Georeference> georeference() const override { return frame_.georeference; }
   [[nodiscard]] const ByteSource& source() const override { return frame_.opened.reader->source(); }
 
@@ -118,6 +120,7 @@ class TreeBlocks : public model::BlockProvider {
                                                  model::WantedScalars scalars) const;
 
   const TreeFrame frame_;
+  const std::vector<model::ScalarColumn> columns_;  ///< the attributes of leaves
   const std::shared_ptr<const NodePoints> root_;
   SharedValues<NodePoints> points_;
   SharedValues<Blocks> blocks_;

@@ -1,5 +1,6 @@
 #include "render/clear_blocks.h"
 
+#include "model/hidden_members.h"
 #include "render/visible_parts.h"
 
 namespace surfcast::render {
@@ -14,11 +15,31 @@ bool shows(const model::BrickRecord& brick, const VisibleParts& visible, const g
 }
 
 bool may_show(const model::ModelFile& model, size_t block, const std::vector<VisibleParts>& visible) {
-  const model::BrickRecord& brick = model.brick(block);
+  const model::BrickRecord brick = model.brick(block);
   return shows(brick, visible[brick.volume], model.volumes()[brick.volume].size);
 }
 
 }  // namespace
+
+namespace {
+
+/// Hides the blocks of these members, too.
+void hide_members(const model::ModelFile& model, const std::vector<bool>& hidden_members, std::vector<bool>& hidden) {
+  hidden.resize(model.blocks().size(), false);
+  for (uint32_t block = 0; block < hidden.size(); ++block) {
+    if (hidden_members[model.part(block).member]) hidden[block] = true;
+  }
+}
+
+}  // namespace
+
+std::vector<bool> hidden_blocks(const model::ModelFile& model, const VolumeLook& look,
+                                std::span<const std::string> hidden_models) {
+  std::vector<bool> hidden = clear_blocks(model, look);
+  const std::vector<bool> members = model::hidden_members(model, hidden_models);
+  if (!members.empty()) hide_members(model, members, hidden);
+  return hidden;
+}
 
 std::vector<bool> clear_blocks(const model::ModelFile& model, const VolumeLook& look) {
   if (model.volumes().empty()) return {};

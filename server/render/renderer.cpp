@@ -253,7 +253,7 @@ Result<residency::PreparedView> Renderer::State::prepare(Scene& scene, const pic
                                                          const geometry::CameraFrame& frame,
                                                          const std::optional<Region>& window,
                                                          const Preemption& preemption) {
-  const std::vector<bool> hidden = clear_blocks(scene.model(), display.volumes);
+  const std::vector<bool> hidden = hidden_blocks(scene.model(), display.volumes, request.hidden_models);
   residency::ViewParameters parameters{frame,
                                        request.spacing,
                                        display.clipped ? &request.clip : nullptr,

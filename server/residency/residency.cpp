@@ -37,10 +37,11 @@ std::vector<uint32_t> Residency::missing(const ViewedModel& model, std::span<con
   return missing;
 }
 
-/// The roots that have children: they represent everything while no finer block is resident.
-std::vector<uint32_t> Residency::coarse_roots(const ViewedModel& model) const {
+/// The roots that have children: they represent everything that may show while no finer block is resident.
+std::vector<uint32_t> Residency::coarse_roots(const ViewedModel& model, const std::vector<bool>* hidden) const {
   std::vector<uint32_t> coarse;
   for (const uint32_t root : model.tree.tree.roots()) {
+    if (hidden != nullptr && (*hidden)[root]) continue;
     if (model.tree.tree.children(root).count > 0) coarse.push_back(root);
   }
   return coarse;
@@ -107,7 +108,7 @@ Result<PreparedView> Residency::prepare_complete(const ViewedModel& model, const
                                                  const Preemption& preemption) {
   PreparedView view;
   pool_.begin_frame();
-  const std::vector<uint32_t> roots = missing(model, coarse_roots(model), parameters.attributes);
+  const std::vector<uint32_t> roots = missing(model, coarse_roots(model, parameters.hidden), parameters.attributes);
   if (Status status = load(model, roots, parameters.attributes, preemption, view); !status)
     return fail(std::move(status.error()));
 
@@ -169,7 +170,7 @@ std::vector<selection::WantedBlock> Residency::blocks_to_load(const ViewParamete
 /// The blocks to load next: the roots, then the missing blocks of the view.
 std::vector<uint32_t> Residency::load_requests(const ViewedModel& model, const ViewParameters& parameters,
                                                const selection::BlockSelection& selection) const {
-  std::vector<uint32_t> blocks = missing(model, coarse_roots(model), parameters.attributes);
+  std::vector<uint32_t> blocks = missing(model, coarse_roots(model, parameters.hidden), parameters.attributes);
   std::erase_if(blocks, [&](uint32_t block) { return damaged_.contains({model.source->id(), block}); });
   add(model, blocks_to_load(parameters, selection), blocks);
   if (blocks.empty()) add(model, selection.wanted, blocks);  // substitutes for damaged blocks

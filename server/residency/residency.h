@@ -91,7 +91,7 @@ class Residency {
                                                  std::span<const uint32_t> was_refined) const;
   [[nodiscard]] std::vector<uint32_t> missing(const ViewedModel& model, std::span<const uint32_t> blocks,
                                               bool attributes) const;
-  [[nodiscard]] std::vector<uint32_t> coarse_roots(const ViewedModel& model) const;
+  [[nodiscard]] std::vector<uint32_t> coarse_roots(const ViewedModel& model, const std::vector<bool>* hidden) const;
   void add(const ViewedModel& model, std::span<const selection::WantedBlock> wanted,
            std::vector<uint32_t>& blocks) const;
   [[nodiscard]] static std::vector<selection::WantedBlock> blocks_to_load(const ViewParameters& parameters,

@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "scan/scalar_type.h"
+#include "surfel/conform_scalars.h"
 #include "surfel/opacity.h"
 
 namespace surfcast::scan {
@@ -12,24 +13,8 @@ namespace {
 
 constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
 
-/// The smallest type that holds all values of both types; double if none does.
-ScalarType common_type(ScalarType a, ScalarType b) {
-  if (a == b) return a;
-  const auto holds = [](ScalarType wide, ScalarType narrow) {
-    return with_type(wide, [narrow](auto w) {
-      return with_type(narrow, [](auto n) {
-        using Wide = std::numeric_limits<decltype(w)>;
-        using Narrow = std::numeric_limits<decltype(n)>;
-        return Wide::digits >= Narrow::digits && (Wide::is_signed || !Narrow::is_signed) &&
-               (!Wide::is_integer || Narrow::is_integer);
-      });
-    });
-  };
-  for (int type = 0; type <= static_cast<int>(ScalarType::kFloat64); ++type) {
-    const auto candidate = static_cast<ScalarType>(type);
-    if (holds(candidate, a) && holds(candidate, b)) return candidate;
-  }
-  return ScalarType::kFloat64;
+uint8_t code_of(ScalarType type) {
+  return static_cast<uint8_t>(type);
 }
 
 template <typename Named>
@@ -43,7 +28,8 @@ void merge_scalars(const std::vector<ScalarField>& more, std::vector<ScalarField
     if (known == merged.end()) {
       merged.push_back(field);
     } else {
-      merged[static_cast<size_t>(known - merged.begin())].type = common_type(known->type, field.type);
+      ScalarType& type = merged[static_cast<size_t>(known - merged.begin())].type;
+      type = static_cast<ScalarType>(surfel::common_type(code_of(type), code_of(field.type)));
     }
   }
 }
@@ -60,54 +46,16 @@ void conform_colors(int bits, ScanPoints& points) {
   points.colors->bits = bits;
 }
 
-surfel::ScalarValues convert(surfel::ScalarValues values, ScalarType type) {
-  if (type_of(values) == type) return values;
-  return with_type(type, [&](auto zero) {
-    using T = decltype(zero);
-    return std::visit(
-        [](const auto& from) {
-          std::vector<T> to(from.size());
-          std::transform(from.begin(), from.end(), to.begin(), [](auto v) { return static_cast<T>(v); });
-          return surfel::ScalarValues(std::move(to));
-        },
-        values);
-  });
-}
-
-/// Opacities in the unit of another type.
-surfel::ScalarValues convert_opacities(const surfel::ScalarValues& values, ScalarType type) {
-  return with_type(type, [&values](auto zero) {
-    using T = decltype(zero);
-    std::vector<T> to(surfel::value_count(values));
-    for (size_t i = 0; i < to.size(); ++i) {
-      to[i] = surfel::opacity_as<T>(surfel::opacity_at(values, i));
-    }
-    return surfel::ScalarValues(std::move(to));
-  });
-}
-
-/// What stands for an attribute that a scan lacks: full opacity, or 0.
-surfel::ScalarValues filling(const ScalarField& field, size_t count) {
-  return with_type(field.type, [&](auto zero) {
-    using T = decltype(zero);
-    const bool opacity = field.name == surfel::kOpacityAttribute;
-    const T value = opacity ? surfel::opacity_as<T>(1) : zero;
-    return surfel::ScalarValues(std::vector<T>(count, value));
-  });
-}
-
 void conform_scalars(const std::vector<ScalarField>& fields, ScanPoints& points) {
   std::vector<surfel::ScalarAttribute> conformed;
   for (const ScalarField& field : fields) {
     const auto own = find_named(points.scalars, field.name);
     if (own == points.scalars.end()) {
-      conformed.push_back({field.name, filling(field, points.size())});
+      conformed.push_back({field.name, surfel::filling(field.name, code_of(field.type), points.size())});
       continue;
     }
     auto& values = points.scalars[static_cast<size_t>(own - points.scalars.begin())].values;
-    const bool rescaled = field.name == surfel::kOpacityAttribute && type_of(values) != field.type;
-    conformed.push_back(
-        {field.name, rescaled ? convert_opacities(values, field.type) : convert(std::move(values), field.type)});
+    conformed.push_back({field.name, surfel::conformed(field.name, std::move(values), code_of(field.type))});
   }
   points.scalars = std::move(conformed);
 }

@@ -67,6 +67,7 @@ class CatalogueRenderer : public FrameRenderer {
   /// Notes a model as drawn, and releases the resident blocks of those that it replaces. Views may still show the
   /// edition before the newest one of a scan's model.
   void keep(const std::string& name, const std::shared_ptr<const model::ModelFile>& model) {
+    if (!model->members().empty()) note_join(name);
     std::vector<std::shared_ptr<const model::ModelFile>>& drawn = drawn_[name];
     if (std::ranges::find(drawn, model) != drawn.end()) return;
     if (drawn.empty()) next_model_ = name;
@@ -78,12 +79,23 @@ class CatalogueRenderer : public FrameRenderer {
     }
   }
 
+  /// Anyone can join models in many ways: only the joins that were drawn last stay.
+  void note_join(const std::string& name) {
+    std::erase(joins_, name);
+    joins_.push_back(name);
+    if (joins_.size() <= ModelCatalogue::kKeptJoins) return;
+    for (const auto& model : drawn_[joins_.front()]) renderer_->release_model(*model);
+    drawn_.erase(joins_.front());
+    joins_.erase(joins_.begin());
+  }
+
   /// Releases what is resident of models whose files have gone.
   void release_removed() {
     models_.close_removed();
     std::erase_if(drawn_, [this](const auto& entry) {
       if (models_.has(entry.first)) return false;
       for (const auto& model : entry.second) renderer_->release_model(*model);
+      std::erase(joins_, entry.first);
       return true;
     });
   }
@@ -104,6 +116,7 @@ class CatalogueRenderer : public FrameRenderer {
   std::shared_ptr<const model::ModelFile> warming_model_;
   std::deque<picture::PictureRequest> warm_ups_;
   std::map<std::string, std::vector<std::shared_ptr<const model::ModelFile>>> drawn_;  ///< by name, oldest first
+  std::vector<std::string> joins_;                                                     ///< of them, least recent first
   std::unique_ptr<ModelRenderer> renderer_;
 };
 

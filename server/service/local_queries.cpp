@@ -3,6 +3,7 @@
 #include <utility>
 
 #include "model/fit_model.h"
+#include "model/hidden_members.h"
 #include "pick/pick_surfel.h"
 #include "pick/source_blocks.h"
 #include "render/display_options.h"
@@ -40,6 +41,7 @@ Result<kinds::PickQuery> query_of(const model::ModelFile& model, const SurfaceQu
   if (!frame) return fail(frame.error());
   kinds::PickQuery query{*frame, glm::dvec2(0), request.clip, request.hidden_classes};
   query.opacity = request.opacity;
+  query.hidden_members = model::hidden_members(model, request.hidden_models);
   set_transparency(model, request, query);
   if (!model.volumes().empty()) {
     query.volumes = std::make_shared<const std::vector<kinds::VolumeSight>>(volume_sights(model, request));

@@ -6,10 +6,12 @@
 #include <utility>
 
 #include "access/authorization.h"
+#include "access/joined_name.h"
 #include "base/contract.h"
 #include "object_store/object_url.h"
 #include "render/transfer_presets.h"
 #include "service/model_name.h"
+#include "service/place_members.h"
 #include "surfel/even_sampling.h"
 
 namespace surfcast::service {
@@ -58,6 +60,26 @@ double typical_spacing(std::span<const ldc::BlockEntry> blocks) {
     if (2 * below >= surfels) return radius / surfel::kRadiusOverSpacing;
   }
   return 0;
+}
+
+/// The name under which a model alone is looked up: one that there is not, if it must not be the answer.
+std::string name_alone(const std::string& served_name) {
+  const access::ServedName wanted = access::parse_served_name(served_name);
+  return wanted.alone ? wanted.name : served_name;
+}
+
+/// The members of a joined model, where they lie in it.
+std::vector<MemberDescription> members_in(const model::ModelFile& model) {
+  std::vector<MemberDescription> members;
+  for (const model::Member& member : model.members()) {
+    members.push_back({member.name, {}, member.model->info().kinds});
+  }
+  if (members.empty()) return members;
+  for (uint32_t block = 0; block < model.blocks().size(); ++block) {
+    if (model.blocks()[block].level == 0)
+      members[model.part(block).member].bounds.include(model.blocks()[block].bounds);
+  }
+  return members;
 }
 
 /// Why a scan cannot be drawn.
@@ -116,7 +138,10 @@ std::map<std::string, fs::path> ModelCatalogue::find_all() const {
   return models;
 }
 
-bool ModelCatalogue::remote(const std::string& name) const {
+bool ModelCatalogue::remote(const std::string& served_name) const {
+  const std::vector<std::string> members = known_members_of(served_name);
+  if (!members.empty()) return std::ranges::any_of(members, [this](const std::string& name) { return remote(name); });
+  const std::string name = name_alone(served_name);
   const auto file = std::ranges::find(files_, name, &NamedModel::name);
   if (file != files_.end()) return file->open_in_place || object_store::is_object_url(file->path.string());
   const std::lock_guard lock(listing_mutex_);
@@ -141,6 +166,10 @@ void ModelCatalogue::close_removed() const {
   const std::map<std::string, fs::path> models = find_all();
   const std::lock_guard lock(mutex_);
   std::erase_if(opened_, [&](const auto& entry) { return !models.contains(entry.first); });
+  std::erase_if(joined_, [&](const auto& entry) {
+    return std::ranges::any_of(
+        entry.first, [&](const std::string& member) { return !models.contains(member) && !scans_.contains(member); });
+  });
 }
 
 bool ModelCatalogue::add_scan(const std::string& name) {
@@ -154,10 +183,44 @@ bool ModelCatalogue::add_scan(const std::string& name) {
   return true;
 }
 
-bool ModelCatalogue::has(const std::string& name) const {
+bool ModelCatalogue::has_alone(const std::string& name) const {
   if (!find(name).empty()) return true;
   const std::lock_guard lock(mutex_);
   return scans_.contains(name);
+}
+
+/// The same by what is known of the folders since they were last read.
+bool ModelCatalogue::known_alone(const std::string& name) const {
+  if (std::ranges::find(files_, name, &NamedModel::name) != files_.end()) return true;
+  {
+    const std::lock_guard lock(listing_mutex_);
+    const auto holds = [&](const auto& listing) { return listing.second.models.contains(name); };
+    if (stored_.contains(name) || std::ranges::any_of(listings_, holds)) return true;
+  }
+  const std::lock_guard lock(mutex_);
+  return scans_.contains(name);
+}
+
+/// The names of the models that are meant, if it is not one model alone, which `is_one` tells.
+std::vector<std::string> ModelCatalogue::members_of(const std::string& served_name, IsOne is_one) const {
+  const access::ServedName wanted = access::parse_served_name(served_name);
+  if (!wanted.joined) return {};
+  std::vector<std::string> members = access::members_of(wanted.name);
+  if (!members.empty() && wanted.alone && (this->*is_one)(wanted.name)) return {};
+  return members;
+}
+
+/// For decisions that are not to access the disk. None if there are too many.
+std::vector<std::string> ModelCatalogue::known_members_of(const std::string& served_name) const {
+  std::vector<std::string> members = members_of(served_name, &ModelCatalogue::known_alone);
+  if (members.size() > model::kMaxMembers) members.clear();
+  return members;
+}
+
+bool ModelCatalogue::has(const std::string& name) const {
+  const std::vector<std::string> members = members_of(name, &ModelCatalogue::has_alone);
+  if (members.empty()) return has_alone(name_alone(name));
+  return std::ranges::all_of(members, [this](const std::string& member) { return has_alone(member); });
 }
 
 void ModelCatalogue::note(const ScanStatus& status) {
@@ -206,20 +269,82 @@ std::vector<ScanStatus> ModelCatalogue::scans() const {
   return incomplete;
 }
 
-bool ModelCatalogue::awaited(const std::string& name) const {
+bool ModelCatalogue::awaited(const std::string& served_name) const {
+  const std::vector<std::string> members = known_members_of(served_name);
+  if (!members.empty()) return std::ranges::any_of(members, [this](const std::string& name) { return awaited(name); });
+  const std::string name = name_alone(served_name);
   const std::lock_guard lock(mutex_);
   const auto found = scans_.find(name);
   return found != scans_.end() && found->second.edition == 0 &&
          found->second.status.state != ScanStatus::State::kFailed;
 }
 
-uint64_t ModelCatalogue::edition(const std::string& name) const {
+/// Of joined models the sum, which grows with each.
+uint64_t ModelCatalogue::edition(const std::string& served_name) const {
+  uint64_t sum = 0;
+  const std::vector<std::string> members = known_members_of(served_name);
+  for (const std::string& member : members) sum += edition(member);
+  if (!members.empty()) return sum;
+  const std::string name = name_alone(served_name);
   const std::lock_guard lock(mutex_);
   const auto found = scans_.find(name);
   return found == scans_.end() ? 0 : found->second.edition;
 }
 
 Result<ModelCatalogue::Edition> ModelCatalogue::open_edition(const std::string& name, uint64_t edition) const {
+  const std::vector<std::string> members = members_of(name, &ModelCatalogue::has_alone);
+  return members.empty() ? open_alone(name_alone(name), edition) : open_joined(members);
+}
+
+Result<ModelCatalogue::Edition> ModelCatalogue::open_joined(const std::vector<std::string>& names) const {
+  if (names.size() > model::kMaxMembers) {
+    return fail(ErrorKind::kLimit, "at most " + std::to_string(model::kMaxMembers) + " models can be shown together");
+  }
+  std::vector<std::shared_ptr<const model::ModelFile>> models;
+  auto in_use = std::make_shared<std::vector<std::shared_ptr<const void>>>();
+  bool preview = false;
+  for (const std::string& name : names) {
+    Result<Edition> member = open_alone(name, 0);
+    if (!member) return member;
+    models.push_back(member->model);
+    in_use->push_back(std::move(member->in_use));
+    preview = preview || member->preview;
+  }
+  return join(names, std::move(models)).map([&](std::shared_ptr<const model::ModelFile> model) {
+    return Edition{std::move(model), preview, in_use};
+  });
+}
+
+/// The same model as long as the members are the same. Those used last are kept.
+Result<std::shared_ptr<const model::ModelFile>> ModelCatalogue::join(
+    const std::vector<std::string>& names, std::vector<std::shared_ptr<const model::ModelFile>> models) const {
+  {
+    const std::lock_guard lock(mutex_);
+    const auto found = joined_.find(names);
+    if (found != joined_.end() && found->second.members == models) {
+      found->second.used = ++joins_;
+      return found->second.model;
+    }
+  }
+  std::vector<model::Member> members;
+  for (size_t i = 0; i < names.size(); ++i) members.push_back({names[i], models[i]});
+  if (Status placed = place_members(members); !placed) return fail(std::move(placed.error()));
+  Result<model::ModelFile> made = model::ModelFile::join(std::move(members));
+  if (!made) return fail(std::move(made.error()));
+  const std::lock_guard lock(mutex_);
+  Joined& joined = joined_[names];
+  if (joined.members != models) {
+    joined = {std::move(models), std::make_shared<const model::ModelFile>(std::move(*made))};
+  }
+  joined.used = ++joins_;
+  std::shared_ptr<const model::ModelFile> model = joined.model;
+  while (joined_.size() > kKeptJoins) {
+    joined_.erase(std::ranges::min_element(joined_, {}, [](const auto& entry) { return entry.second.used; }));
+  }
+  return model;
+}
+
+Result<ModelCatalogue::Edition> ModelCatalogue::open_alone(const std::string& name, uint64_t edition) const {
   {
     const std::lock_guard lock(mutex_);
     if (const auto found = scans_.find(name); found != scans_.end()) {
@@ -300,6 +425,7 @@ Result<ModelDescription> ModelCatalogue::describe(const std::string& name) const
   const std::span<const model::EllipsoidSource> ellipsoids = (*model)->ellipsoid_sources();
   description.ellipsoids.assign(ellipsoids.begin(), ellipsoids.end());
   for (const model::Volume& volume : volumes) description.presets.push_back(presets_of(volume));
+  description.members = members_in(**model);
   for (const ldc::BlockEntry& block : (*model)->blocks()) {
     description.levels = std::max(description.levels, static_cast<uint32_t>(block.level + 1));
   }

@@ -28,9 +28,13 @@ struct NamedModel {
 /// Model files by name: scans, whose models come later and are replaced by better ones, individual files, and the
 /// current content of folders ("NAME.surf"). A scan or an individual file hides a file of the same name in a folder,
 /// and an earlier folder hides a later one; models in folders of stores come last. A file is opened at the first
-/// request, and again after it has been replaced. A folder is read again after it has changed.
+/// request, and again after it has been replaced. A folder is read again after it has changed. A name such as "a+b"
+/// that no model has is that of several models, shown as one.
 class ModelCatalogue : public ModelSource {
  public:
+  /// Joined models that are kept. One takes about 200 bytes for each block of its members.
+  static constexpr size_t kKeptJoins = 16;
+
   /// `store` opens models whose paths are URLs, and outlives them; needed only where there are such.
   ModelCatalogue(std::vector<NamedModel> files, std::vector<std::filesystem::path> folders,
                  const object_store::ObjectStore* store = nullptr);
@@ -48,7 +52,8 @@ class ModelCatalogue : public ModelSource {
   void on_change(Changed changed) { changed_ = std::move(changed); }
   /// Adds a scan whose model will be published. False if there is a file or scan of that name.
   [[nodiscard]] bool add_scan(const std::string& name);
-  /// Whether there is a file or a scan of that name. Unlike `names`, counts scans that failed.
+  /// Whether there is a file or a scan of that name, or of each that it joins. Unlike `names`, counts scans that
+  /// failed.
   [[nodiscard]] bool has(const std::string& name) const;
   /// How far a scan is: kWaiting, kBuilding or kFailed. Of a scan that was published, kFailed leaves the preview.
   void note(const ScanStatus& status);
@@ -66,11 +71,11 @@ class ModelCatalogue : public ModelSource {
 
   [[nodiscard]] std::vector<std::string> names() const override;
   [[nodiscard]] std::vector<ScanStatus> scans() const override;
-  [[nodiscard]] bool awaited(const std::string& name) const override;
-  [[nodiscard]] uint64_t edition(const std::string& name) const override;
+  [[nodiscard]] bool awaited(const std::string& served_name) const override;
+  [[nodiscard]] uint64_t edition(const std::string& served_name) const override;
   /// True for models of stores and for scans in place, by what is known of the folders since they were last read.
-  [[nodiscard]] bool remote(const std::string& name) const override;
-  /// The edition of a scan's model, or the newest one if it is 0 or gone.
+  [[nodiscard]] bool remote(const std::string& served_name) const override;
+  /// The edition of a scan's model, or the newest one if it is 0 or gone. Models are joined in their newest editions.
   [[nodiscard]] Result<Edition> open_edition(const std::string& name, uint64_t edition) const;
   [[nodiscard]] Result<ModelDescription> describe(const std::string& name) const override;
   [[nodiscard]] Result<std::shared_ptr<const model::ModelFile>> open(const std::string& name) const override;
@@ -80,6 +85,13 @@ class ModelCatalogue : public ModelSource {
     std::filesystem::path path;
     std::filesystem::file_time_type written;
     std::shared_ptr<const model::ModelFile> model;
+  };
+
+  /// Models that are shown as one.
+  struct Joined {
+    std::vector<std::shared_ptr<const model::ModelFile>> members;
+    std::shared_ptr<const model::ModelFile> model;
+    uint64_t used = 0;  ///< the higher, the later
   };
 
   struct Scan {
@@ -103,6 +115,15 @@ class ModelCatalogue : public ModelSource {
   [[nodiscard]] Result<model::ModelFile> open_path(const std::string& name, const std::string& shown,
                                                    const std::filesystem::path& path) const;
   [[nodiscard]] std::filesystem::path find(const std::string& name) const;
+  [[nodiscard]] bool has_alone(const std::string& name) const;
+  [[nodiscard]] bool known_alone(const std::string& name) const;
+  using IsOne = bool (ModelCatalogue::*)(const std::string& name) const;
+  [[nodiscard]] std::vector<std::string> members_of(const std::string& served_name, IsOne is_one) const;
+  [[nodiscard]] std::vector<std::string> known_members_of(const std::string& served_name) const;
+  [[nodiscard]] Result<Edition> open_alone(const std::string& name, uint64_t edition) const;
+  [[nodiscard]] Result<Edition> open_joined(const std::vector<std::string>& names) const;
+  [[nodiscard]] Result<std::shared_ptr<const model::ModelFile>> join(
+      const std::vector<std::string>& names, std::vector<std::shared_ptr<const model::ModelFile>> models) const;
   [[nodiscard]] Result<std::shared_ptr<const model::ModelFile>> open_file(const std::string& name) const;
 
   Changed changed_ = [](bool) {};
@@ -110,9 +131,11 @@ class ModelCatalogue : public ModelSource {
   std::vector<std::filesystem::path> folders_;
   const object_store::ObjectStore* store_;
   mutable std::mutex mutex_;
-  std::map<std::string, Scan> scans_;             ///< by name
-  mutable std::map<std::string, Opened> opened_;  ///< by name
-  mutable std::mutex listing_mutex_;              ///< guards what follows; nothing else is locked under it
+  std::map<std::string, Scan> scans_;                          ///< by name
+  mutable std::map<std::string, Opened> opened_;               ///< by name
+  mutable std::map<std::vector<std::string>, Joined> joined_;  ///< by the names of the members
+  mutable uint64_t joins_ = 0;                                 ///< uses of them
+  mutable std::mutex listing_mutex_;                           ///< guards what follows; nothing else is locked under it
   mutable std::map<std::filesystem::path, Listing> listings_;
   std::map<std::string, std::filesystem::path> stored_;
 };

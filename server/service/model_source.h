@@ -16,6 +16,13 @@ namespace surfcast::service {
 /// The points of each picture::TransferPreset for a volume.
 using VolumePresets = std::array<std::vector<picture::TransferPoint>, picture::kTransferPresets>;
 
+/// One of several models that are shown as one.
+struct MemberDescription {
+  std::string name;
+  geometry::Box bounds;
+  std::vector<model::KindCount> kinds;
+};
+
 /// The description of a model for users.
 struct ModelDescription {
   model::ModelInfo info;
@@ -26,6 +33,7 @@ struct ModelDescription {
   std::vector<VolumePresets> presets{};  ///< for each of the volumes
   std::vector<model::EllipsoidSource> ellipsoids{};
   model::Georeference georeference{};
+  std::vector<MemberDescription> members{};  ///< of a joined model
 };
 
 /// A scan whose model is not complete.

@@ -26,6 +26,12 @@ auto on_model(const ModelSource& models, const std::string& name, const Work& wo
   return once();
 }
 
+/// Empty of a plain model, and if the process that picked states what there is not.
+std::string member_name(const model::ModelFile& model, const kinds::PickedSurfel& picked) {
+  const bool known = picked.member && *picked.member < model.members().size();
+  return known ? model.members()[*picked.member].name : std::string();
+}
+
 }  // namespace
 
 PickService::PickService(const ModelSource& models, const PickLimits& limits, std::shared_ptr<ModelQueries> queries)
@@ -69,7 +75,8 @@ Result<std::optional<PickedPoint>> PickService::run(const PickJob& job) {
           if (!picked) return fail(std::move(picked.error()));
           if (!*picked) return std::nullopt;
           const std::optional<glm::dvec3> source_position = source_positions_.find(*model, (*picked)->position);
-          return PickedPoint{std::move(**picked), source_position};
+          std::string member = member_name(*model, **picked);
+          return PickedPoint{std::move(**picked), source_position, std::move(member)};
         });
   });
 }

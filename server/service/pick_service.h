@@ -46,6 +46,7 @@ struct PickJob {
 /// What a picture shows in a pixel.
 struct PickedPoint : kinds::PickedSurfel {
   std::optional<glm::dvec3> source_position;  ///< in the system of the source, where that is not the model's
+  std::string model{};                        ///< of a joined model: the name of the one that the item is of
 };
 
 /// A request for what a picture shows in all its pixels.

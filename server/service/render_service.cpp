@@ -22,7 +22,7 @@ tl::unexpected<Error> busy_error() {
 
 /// What may be known of a list.
 ModelList list_of(const access::Rights& rights, ModelList all) {
-  const auto hidden = [&](const std::string& name) { return !rights.authorize(name).allowed(); };
+  const auto hidden = [&](const std::string& name) { return !rights.authorize(name).allowed_alone(); };
   std::erase_if(all.names, hidden);
   std::erase_if(all.scans, [&](const ScanStatus& scan) { return hidden(scan.model); });
   return all;

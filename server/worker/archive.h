@@ -5,6 +5,7 @@
 #include <concepts>
 #include <cstddef>
 #include <cstdint>
+#include <glm/mat4x3.hpp>
 #include <glm/vec3.hpp>
 #include <optional>
 #include <span>
@@ -42,6 +43,9 @@ class ArchiveWriter {
   template <glm::length_t N, typename T, glm::qualifier Q>
   void put(const glm::vec<N, T, Q>& vector) {
     for (glm::length_t i = 0; i < N; ++i) put(vector[i]);
+  }
+  void put(const glm::dmat4x3& matrix) {
+    for (glm::length_t i = 0; i < 4; ++i) put(matrix[i]);
   }
   template <typename T, size_t N>
   void put(const std::array<T, N>& values) {
@@ -101,6 +105,9 @@ class ArchiveReader {
   template <glm::length_t N, typename T, glm::qualifier Q>
   void get(glm::vec<N, T, Q>& vector) {
     for (glm::length_t i = 0; i < N; ++i) get(vector[i]);
+  }
+  void get(glm::dmat4x3& matrix) {
+    for (glm::length_t i = 0; i < 4; ++i) get(matrix[i]);
   }
   template <typename T, size_t N>
   void get(std::array<T, N>& values) {

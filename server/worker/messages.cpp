@@ -24,6 +24,18 @@ void fields(Archive& archive, T& value) {
   archive(model, path, quarantined, suspected);
 }
 
+template <typename Archive, Is<OfferJoin::Part> T>
+void fields(Archive& archive, T& value) {
+  auto& [model, name, places] = value;
+  archive(model, name, places);
+}
+
+template <typename Archive, Is<OfferJoin> T>
+void fields(Archive& archive, T& value) {
+  auto& [model, parts, path, quarantined, suspected] = value;
+  archive(model, parts, path, quarantined, suspected);
+}
+
 template <typename Archive, Is<WithdrawModel> T>
 void fields(Archive& archive, T& value) {
   archive(value.model);

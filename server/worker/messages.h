@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <glm/mat4x3.hpp>
 #include <optional>
 #include <span>
 #include <string>
@@ -56,6 +57,21 @@ struct OfferModel {
   std::string path;                   ///< for errors
   std::vector<uint32_t> quarantined;  ///< blocks that are not loaded
   std::vector<uint32_t> suspected;    ///< blocks that are loaded while no other one is
+};
+
+/// Server: models that will be used as one. All have been offered.
+struct OfferJoin {
+  /// A member, as model::Member has it.
+  struct Part {
+    uint64_t model = 0;
+    std::string name;
+    std::vector<glm::dmat4x3> places;
+  };
+  uint64_t model = 0;  ///< its number
+  std::vector<Part> parts;
+  std::string path;                   ///< as in OfferModel
+  std::vector<uint32_t> quarantined;  ///< likewise
+  std::vector<uint32_t> suspected;    ///< likewise
 };
 
 /// Server: a model that will not be used again.
@@ -149,7 +165,7 @@ struct ClosePoints {
 
 using Message = std::variant<Configure, Ready, OfferModel, WithdrawModel, Draw, AskUrgent, Continue, Drawn, Refused,
                              ConfigureQueries, Pick, Picked, SearchSurface, SurfacePart, FindBand, BandPart, OpenPoints,
-                             CountPoints, PointsCounted, NextPiece, PointsPiece, ClosePoints>;
+                             CountPoints, PointsCounted, NextPiece, PointsPiece, ClosePoints, OfferJoin>;
 
 /// The error of a worker, which may be hostile and state any kind.
 [[nodiscard]] Error checked(Error error);

@@ -20,6 +20,7 @@
 #include "service/local_queries.h"
 #include "worker/block_watch.h"
 #include "worker/channel.h"
+#include "worker/offered_models.h"
 #include "worker/worker_life.h"
 
 namespace surfcast::worker {
@@ -123,6 +124,7 @@ class QueryWorker {
   void handle(OfferModel& offer, Descriptor& descriptor) {
     models_[offer.model] = service::guarded([&] { return open(offer, std::move(descriptor)); });
   }
+  void handle(OfferJoin& join, Descriptor& /*descriptor*/) { models_[join.model] = joined_model(join, models_); }
   void handle(WithdrawModel& withdraw, Descriptor& /*descriptor*/) { models_.erase(withdraw.model); }
 
   void handle(Pick& pick, Descriptor& /*descriptor*/) {
@@ -235,8 +237,8 @@ class QueryWorker {
   const kinds::KindTable kinds_;
   std::unique_ptr<service::ModelQueries> queries_;
   std::unique_ptr<pick::SourceBlocks> searched_blocks_;
-  std::map<uint64_t, Result<ModelPointer>> models_;  ///< by the server's number
-  std::map<uint64_t, Stream> streams_;               ///< likewise
+  OfferedModels models_;
+  std::map<uint64_t, Stream> streams_;  ///< by the server's number
 };
 
 }  // namespace

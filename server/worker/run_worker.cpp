@@ -18,6 +18,7 @@
 #include "service/guarded.h"
 #include "worker/board_guard.h"
 #include "worker/channel.h"
+#include "worker/offered_models.h"
 #include "worker/sandbox.h"
 #include "worker/shared_board.h"
 #include "worker/worker_life.h"
@@ -67,6 +68,8 @@ class RenderWorker {
   void serve(Received received) {
     if (auto* const offer = std::get_if<OfferModel>(&received.message)) {
       accept(std::move(*offer), std::move(received.descriptor));
+    } else if (const auto* const join = std::get_if<OfferJoin>(&received.message)) {
+      keep(*join, joined_model(*join, models_));
     } else if (const auto* const withdraw = std::get_if<WithdrawModel>(&received.message)) {
       drop(withdraw->model);
     } else if (const auto* const draw = std::get_if<Draw>(&received.message)) {
@@ -82,16 +85,21 @@ class RenderWorker {
       if (!opened) return fail(opened.error());
       return model::ModelFile::open(std::make_unique<FileSource>(std::move(*opened), offer.path));
     });
-    if (!model) {
-      models_[offer.model] = fail(std::move(model.error()));
-      return;
+    keep(offer, std::move(model).map([](model::ModelFile opened) {
+      return std::make_shared<const model::ModelFile>(std::move(opened));
+    }));
+  }
+
+  /// Keeps a model, or the error of opening it, under the number of its offer.
+  template <typename Offer>
+  void keep(const Offer& offer, OfferedModel model) {
+    if (model) {
+      guard_.add((*model)->id(), {offer.model,
+                                  offer.path,
+                                  {offer.quarantined.begin(), offer.quarantined.end()},
+                                  {offer.suspected.begin(), offer.suspected.end()}});
     }
-    auto shared = std::make_shared<const model::ModelFile>(std::move(*model));
-    guard_.add(shared->id(), {offer.model,
-                              offer.path,
-                              {offer.quarantined.begin(), offer.quarantined.end()},
-                              {offer.suspected.begin(), offer.suspected.end()}});
-    models_[offer.model] = std::move(shared);
+    models_[offer.model] = std::move(model);
   }
 
   void drop(uint64_t number) {
@@ -154,10 +162,10 @@ class RenderWorker {
   Channel channel_;
   SharedBoard board_;
   BoardGuard guard_;
-  std::map<uint64_t, Result<std::shared_ptr<const model::ModelFile>>> models_;  ///< by the server's number
-  std::unique_ptr<render::Renderer> renderer_;                                  ///< ends before the guard
-  std::vector<uint64_t> dropped_;                                               ///< IDs of models withdrawn
-  size_t depth_ = 0;  ///< pictures being drawn, each in the middle of the one before
+  OfferedModels models_;
+  std::unique_ptr<render::Renderer> renderer_;  ///< ends before the guard
+  std::vector<uint64_t> dropped_;               ///< IDs of models withdrawn
+  size_t depth_ = 0;                            ///< pictures being drawn, each in the middle of the one before
   Stopwatch since_asked_;
 };
 

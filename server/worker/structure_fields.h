@@ -147,10 +147,10 @@ template <typename Archive, worker::Is<PictureParameters> T>
 void fields(Archive& archive, T& value) {
   auto& [camera, width, height, silhouettes, blends_behind, format, loading, edition, viewer, rest_spacing,
          displayed_cut, max_missing_blocks, coloring, hidden_classes, clip, eye_dome, volumes, glyphs, lighting,
-         class_opacities, depth_texels] = value;
+         class_opacities, hidden_models, depth_texels] = value;
   archive(camera, width, height, silhouettes, blends_behind, format, loading, edition, viewer, rest_spacing);
   archive(displayed_cut, max_missing_blocks, coloring, hidden_classes, clip, eye_dome, volumes, glyphs, lighting);
-  archive(class_opacities, depth_texels);
+  archive(class_opacities, hidden_models, depth_texels);
 }
 
 /// It has no members but those of its two bases.
@@ -245,8 +245,8 @@ void fields(Archive& archive, T& value) {
 
 template <typename Archive, worker::Is<PickedSurfel> T>
 void fields(Archive& archive, T& value) {
-  auto& [position, normal, color, radius, distance, values, depth, number] = value;
-  archive(position, normal, color, radius, distance, values, depth, number);
+  auto& [position, normal, color, radius, distance, values, depth, number, member] = value;
+  archive(position, normal, color, radius, distance, values, depth, number, member);
 }
 
 }  // namespace surfcast::kinds

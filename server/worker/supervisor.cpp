@@ -49,6 +49,10 @@ tl::unexpected<Error> Supervisor::not_started(const std::string& why) {
 }
 
 Status check_passable(const model::ModelFile& model) {
+  for (const model::Member& member : model.members()) {
+    if (Status passable = check_passable(*member.model); !passable) return passable;
+  }
+  if (!model.members().empty()) return {};
   if (model.source().descriptor() >= 0) return {};
   return fail(ErrorKind::kReplaced, "the model lies in a store now");
 }
@@ -57,10 +61,21 @@ Status Supervisor::offer(const std::shared_ptr<const model::ModelFile>& model) {
   const auto [place, unknown] = offered_.try_emplace(model->id());
   place->second = {model, ++uses_};
   if (!unknown) return {};
+  if (!model->members().empty()) return offer_join(*model);
   SURFCAST_EXPECTS(model->source().descriptor() >= 0);
   const OfferModel message{model->id(), model->path().string(), blame_.quarantined(model->id()),
                            blame_.suspected(model->id())};
   return channel().send(message, model->source().descriptor());
+}
+
+Status Supervisor::offer_join(const model::ModelFile& model) {
+  OfferJoin message{
+      model.id(), {}, model.path().string(), blame_.quarantined(model.id()), blame_.suspected(model.id())};
+  for (const model::Member& member : model.members()) {
+    if (Status offered = offer(member.model); !offered) return offered;
+    message.parts.push_back({member.model->id(), member.name, member.places});
+  }
+  return channel().send(message);
 }
 
 void Supervisor::withdraw(uint64_t model) {

@@ -71,7 +71,8 @@ class Supervisor {
   /// Its answer to the first message, also that of one that has ended.
   [[nodiscard]] const Ready& ready() const { return ready_; }
 
-  /// Passes a model on that the worker does not know yet. It has to be a file, see check_passable().
+  /// Passes a model on that the worker does not know yet, of a joined one its members, too. All have to be files, see
+  /// check_passable().
   Status offer(const std::shared_ptr<const model::ModelFile>& model);
   /// Withdraws a model that will not be used again, and forgets what it was blamed for.
   void withdraw(uint64_t model);
@@ -99,6 +100,7 @@ class Supervisor {
   };
 
   Status configure();
+  Status offer_join(const model::ModelFile& model);
   tl::unexpected<Error> not_started(const std::string& why);
 
   const WorkerStart start_;

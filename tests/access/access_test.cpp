@@ -10,6 +10,7 @@
 #include <unistd.h>
 
 #include "access/authorization.h"
+#include "access/joined_name.h"
 #include "access/secret.h"
 #include "access/token_file.h"
 #include "access/token_table.h"
@@ -72,6 +73,45 @@ TEST(RightsTest, AModelThatIsNotAllowedIsLookedUpUnderANameThatNoneHas) {
   EXPECT_NE(denied.served_name().find('/'), std::string::npos) << "no name of a file has one";
   EXPECT_EQ(shown_name(denied.served_name()), "church");
   EXPECT_EQ(shown_name(allowed.served_name()), "church");
+}
+
+TEST(RightsTest, ModelsThatAreJoinedAreAllowedTogether) {
+  EXPECT_EQ(members_of("a+b+c"), (std::vector<std::string>{"a", "b", "c"}));
+  for (const std::string alone : {"a", "", "+", "a+", "+a", "a++b"}) EXPECT_TRUE(members_of(alone).empty()) << alone;
+
+  const Rights some = rights_of({.name = "a", .sha256 = kHash, .models = {"nave", "tower-?"}});
+  const AuthorizedModel both = some.authorize("nave+tower-1");
+  EXPECT_TRUE(both.allowed());
+  EXPECT_FALSE(both.allowed_alone()) << "a model of exactly this name";
+  EXPECT_FALSE(some.authorize("nave+crypt").allowed());
+  EXPECT_FALSE(some.authorize("crypt+nave").allowed());
+}
+
+// What may be looked up under a served name is what was allowed, whatever the name that was asked for looks like.
+TEST(RightsTest, AServedNameSaysWhatMayBeTheAnswer) {
+  struct Case {
+    std::vector<std::string> patterns;
+    bool alone = false;
+    bool joined = false;
+  };
+  for (const Case& of : {Case{{"*"}, true, true}, Case{{"a+*"}, true, false}, Case{{"a", "b"}, false, true},
+                         Case{{"a"}, false, false}, Case{{"[ab]", "a[+]b"}, true, true}}) {
+    const Rights rights = rights_of({.name = "x", .sha256 = kHash, .models = of.patterns});
+    const ServedName served = parse_served_name(rights.authorize("a+b").served_name());
+    EXPECT_EQ(served.name, "a+b");
+    EXPECT_EQ(served.alone, of.alone) << of.patterns.front();
+    EXPECT_EQ(served.joined, of.joined) << of.patterns.front();
+  }
+  const Rights everything = rights_of({.name = "x", .sha256 = kHash, .models = {"*"}});
+  const Rights nothing = Rights::of(nullptr);
+  for (const std::string asked : {"/a+b", "/0a+b", "/1a+b", "/2a+b", "//2a+b", "a/+b", "a+/2b", "/2/2a+b"}) {
+    for (const Rights& rights : {everything, nothing}) {
+      const AuthorizedModel model = rights.authorize(asked);
+      const ServedName served = parse_served_name(model.served_name());
+      EXPECT_FALSE(model.allowed() || served.alone || served.joined) << asked;
+      EXPECT_EQ(served.name, asked);
+    }
+  }
 }
 
 TEST(RightsTest, WritingNeedsARightOfItsOwn) {

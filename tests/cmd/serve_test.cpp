@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <cstring>
 #include <functional>
+#include <nlohmann/json.hpp>
 
 #include <sys/stat.h>
 
@@ -283,6 +284,64 @@ TEST_F(ServeTest, ARegionIsTheSameByEveryWay) {
   EXPECT_NE(csv.find("\n12,3,0,200,100,50\n"), std::string::npos) << csv;
   EXPECT_EQ(client::run_program(program + url_ + "/square --count").output, "400\n");
   EXPECT_EQ(client::run_program(program + url_ + "/square --count --corridor 2,0,5,19,5").output, "60\n");
+}
+
+TEST_F(ServeTest, SeveralModelsAreShownAsOne) {
+  const auto build = [&](const std::string& name, int east) {
+    std::ostringstream text;
+    text << "x,y,z,red,green,blue\n";
+    for (int i = 0; i < 400; ++i) text << east + i % 20 << ',' << i / 20 << ",0,200,100,50\n";
+    ASSERT_TRUE(write_file_atomically(folder_ / (name + ".csv"), text.str()));
+    ASSERT_EQ(
+        client::run_program(SURFCAST_SERVER " build " + file(name + ".csv") + " --output " + file(name + ".surf")).code,
+        0);
+  };
+  build("west", 0);
+  build("east", 20);
+  build("a+b", 40);
+  serve(file("west.surf") + " " + file("east.surf") + " " + file("a+b.surf"));
+
+  // The same picture by every way, and another one than of either model.
+  const std::string camera = "position=20,10,60&focal_point=20,10,0&view_up=0,1,0&resolution=96,64";
+  const std::string flags =
+      " --camera-position 20,10,60 --camera-focal-point 20,10,0 --camera-view-up 0,1,0 --resolution 96,64 --output ";
+  const std::string over_http = get("/api/models/west+east/image?" + camera);
+  ASSERT_EQ(over_http.substr(1, 3), "PNG") << over_http;
+  ASSERT_EQ(client::run_program(SURFCAST_CLIENT " render " + url_ + "/west+east" + flags + file("framed.png")).code, 0);
+  EXPECT_EQ(content(folder_ / "framed.png"), over_http);
+  for (const std::string& files :
+       {file("west.surf") + "+" + file("east.surf"), file("west.surf") + " " + file("east.surf")}) {
+    const auto local = client::run_program(SURFCAST_SERVER " render " + files + flags + file("local.png") + " 2>&1");
+    ASSERT_EQ(local.code, 0) << local.output;
+    EXPECT_EQ(content(folder_ / "local.png"), over_http);
+  }
+  const std::string west = get("/api/models/west/image?" + camera);
+  EXPECT_NE(west, over_http);
+  EXPECT_EQ(get("/api/models/west+east/image?hide_models=east&" + camera), west);
+
+  // Descriptions, picks and points.
+  const auto description = nlohmann::json::parse(get("/api/models/west+east"));
+  EXPECT_EQ(description["surfels"], 800);
+  ASSERT_EQ(description["members"].size(), 2U);
+  EXPECT_EQ(description["members"][1]["model"], "east");
+  EXPECT_EQ(description["members"][1]["bounds"]["min"][0], 20);
+  const auto picked = nlohmann::json::parse(get("/api/models/west+east/pick?pixel=60,32&" + camera));
+  ASSERT_EQ(picked["hit"], true) << picked;
+  EXPECT_EQ(picked["model"], "east");
+  const std::string hidden = get("/api/models/west+east/pick?pixel=60,32&hide_models=east&" + camera);
+  EXPECT_EQ(nlohmann::json::parse(hidden)["hit"], false);
+  EXPECT_EQ(nlohmann::json::parse(get("/api/models/west+east/points?count=1"))["points"], 800);
+  const auto pick = client::run_program(SURFCAST_SERVER " pick " + file("west.surf") + " " + file("east.surf") +
+                                        " --pixel 60,32 --json --camera-position 20,10,60 --camera-focal-point "
+                                        "20,10,0 --camera-view-up 0,1,0 --resolution 96,64");
+  ASSERT_EQ(pick.code, 0) << pick.output;
+  EXPECT_EQ(nlohmann::json::parse(pick.output)["model"], "east");
+
+  // A model of exactly that name, models that are not there, and one twice.
+  EXPECT_EQ(nlohmann::json::parse(get("/api/models/a+b"))["surfels"], 400);
+  ASSERT_EQ(client::run_program(SURFCAST_SERVER " render " + file("a+b.surf") + flags + file("plus.png")).code, 0);
+  EXPECT_NE(get("/api/models/west+south").find("there is no model 'south'"), std::string::npos);
+  EXPECT_NE(get("/api/models/west+west").find("west: is named twice"), std::string::npos);
 }
 
 TEST_F(ServeTest, ARegionThatFailsLeavesNoFile) {

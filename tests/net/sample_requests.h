@@ -32,6 +32,7 @@ inline wire::DrawPicture sample_picture() {
   picture.mutable_coloring()->set_last(1);
   picture.add_hidden_classes(7);
   picture.add_hidden_classes(300);
+  picture.add_hidden_models("nave");
   wire::ClipBox* clip = picture.add_clip_boxes();
   fill(clip->mutable_box()->mutable_min(), -1, -1, -1);
   fill(clip->mutable_box()->mutable_max(), 1, 2, 3);

@@ -346,5 +346,39 @@ TEST_F(PickSurfel, APixelAsWideAsTheModelIsRefused) {
   EXPECT_EQ(refused.error().kind, ErrorKind::kLimit);
 }
 
+TEST_F(PickSurfel, OfAJoinedModelNamesTheMemberAndLeavesOutHiddenOnes) {
+  surfel::SurfelCloud near = testing::square(50, 100, {0, 0, 30}, {0, 0, 1}, {255, 0, 0});
+  surfel::SurfelCloud far = testing::square(50, 100, {0, 0, 0}, {0, 0, 1}, {0, 0, 255});
+  far.scalars = {{"classification", std::vector<uint8_t>(far.size(), 6)}};
+  near.colors.reset();
+  const auto front = std::make_shared<const model::ModelFile>(model_of(near));
+  const auto back = std::make_shared<const model::ModelFile>(model_of(far));
+  const Result<model::ModelFile> joined = model::ModelFile::join({{"front", front}, {"back", back}});
+  ASSERT_TRUE(joined);
+  kinds::PickQuery query = query_at(160, 120, {{0, 0, 200}, {0, 0, 0}, {0, 1, 0}, 30});
+
+  const auto first = pick(*joined, query);
+  ASSERT_TRUE(first);
+  EXPECT_EQ(first->member, 0U);
+  EXPECT_NEAR(first->position.z, 30, 0.1);
+  EXPECT_FALSE(first->color) << "it has the grey of a joined model, which is no colour of the scan";
+  EXPECT_TRUE(first->values.empty());
+  EXPECT_EQ(first->number, pick(*front, query)->number);
+
+  query.hidden_members = {true, false};
+  const auto second = pick(*joined, query);
+  ASSERT_TRUE(second);
+  EXPECT_EQ(second->member, 1U);
+  EXPECT_EQ(second->color, glm::u8vec3(0, 0, 255));
+  ASSERT_EQ(second->values.size(), 1U);
+  EXPECT_EQ(second->values[0].value, 6);
+  query.hidden_members = {};
+  EXPECT_EQ(second->number, near.size() + pick(*back, query)->number) << "numbers go on from member to member";
+  EXPECT_FALSE(pick(*back, query)->member);
+
+  query.hidden_members = {true, true};
+  EXPECT_FALSE(pick(*joined, query));
+}
+
 }  // namespace
 }  // namespace surfcast::pick

@@ -216,6 +216,7 @@ TEST(PictureFields, EachStructuredFieldIsSetFromItsText) {
                                                                   {"color_by", "normal"},
                                                                   {"color_range", "-2,7.5"},
                                                                   {"hide_classes", "2,255"},
+                                                                  {"hide_models", "nave,tower 2"},
                                                                   {"clip_box", "0,0,0,1,1,1;2,2,2,3,3,3"},
                                                                   {"clip_out", "4,4,4,5,5,5"},
                                                                   {"eye_dome", "1.5,2"},
@@ -241,6 +242,8 @@ TEST(PictureFields, EachStructuredFieldIsSetFromItsText) {
   EXPECT_EQ(picture.coloring().last(), 7.5);
   ASSERT_EQ(picture.hidden_classes_size(), 2);
   EXPECT_EQ(picture.hidden_classes(1), 255u);
+  ASSERT_EQ(picture.hidden_models_size(), 2);
+  EXPECT_EQ(picture.hidden_models(1), "tower 2");
   ASSERT_EQ(picture.clip_boxes_size(), 3);
   EXPECT_EQ(picture.clip_boxes(1).box().max().z(), 3);
   EXPECT_FALSE(picture.clip_boxes(1).inverted());
@@ -417,6 +420,8 @@ TEST(PictureFields, WrongTextsAreExplained) {
                                                                                    {"hide_classes", "256"},
                                                                                    {"hide_classes", "1,,2"},
                                                                                    {"hide_classes", "-1"},
+                                                                                   {"hide_models", ""},
+                                                                                   {"hide_models", "a,,b"},
                                                                                    {"clip_box", "1,0,0,0,1,1"},
                                                                                    {"clip_box", "0,0,0,1,1,1;"},
                                                                                    {"clip_out", "0,0,0,1,1"},
@@ -542,6 +547,14 @@ TEST(CheckPicture, WhatNoFlagCouldSayIsCaughtInMessagesToo) {
   };
   EXPECT_TRUE(refused([](auto& p) { p.clear_model(); }));
   EXPECT_TRUE(refused([](auto& p) { p.set_model(std::string(600, 'x')); }));
+  EXPECT_TRUE(refused([](auto& p) { p.set_model("a+" + std::string(600, 'x')); }));
+  const auto joined = [](int count) {
+    std::string name(300, 'a');
+    for (int i = 1; i < count; ++i) name += "+" + std::string(300, 'b');
+    return name;
+  };
+  EXPECT_FALSE(refused([&](auto& p) { p.set_model(joined(64)); }));
+  EXPECT_TRUE(refused([&](auto& p) { p.set_model(joined(65)); }));
   EXPECT_TRUE(refused([](auto& p) { p.mutable_camera()->clear_position(); }));
   EXPECT_TRUE(refused([](auto& p) { p.mutable_camera()->clear_focal_point(); }));
   EXPECT_TRUE(refused([&](auto& p) { p.mutable_camera()->mutable_position()->set_y(nan); }));
@@ -587,6 +600,11 @@ TEST(CheckPicture, WhatNoFlagCouldSayIsCaughtInMessagesToo) {
     p.mutable_coloring()->set_last(3);
   }));
   EXPECT_TRUE(refused([](auto& p) { p.add_hidden_classes(256); }));
+  EXPECT_TRUE(refused([](auto& p) { p.add_hidden_models(""); }));
+  EXPECT_TRUE(refused([](auto& p) { p.add_hidden_models(std::string(513, 'a')); }));
+  EXPECT_TRUE(refused([](auto& p) {
+    for (int i = 0; i < 65; ++i) p.add_hidden_models("a");
+  }));
   EXPECT_TRUE(refused([&](auto& p) { p.add_clip_boxes()->mutable_box()->mutable_max()->set_x(nan); }));
   EXPECT_TRUE(refused([](auto& p) { p.add_clip_boxes()->mutable_box()->mutable_max()->set_x(-1); }));
   EXPECT_TRUE(refused([](auto& p) {

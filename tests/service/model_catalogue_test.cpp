@@ -6,6 +6,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include "access/authorization.h"
 #include "base/atomic_file.h"
 #include "model/write_model.h"
 
@@ -155,6 +156,90 @@ TEST_F(ModelCatalogueTest, AFileThatIsRemovedIsClosed) {
   fs::remove(folder_ / "a.surf");
   catalogue.close_removed();
   EXPECT_TRUE(model.expired());
+}
+
+TEST_F(ModelCatalogueTest, ANameWithPlusSignsJoinsModels) {
+  write("a.surf", 3);
+  write("b.surf", 4);
+  const ModelCatalogue catalogue({}, {folder_});
+  const auto joined = catalogue.open("a+b");
+  ASSERT_TRUE(joined) << joined.error().message;
+  EXPECT_EQ((*joined)->info().surfels, 7U);
+  EXPECT_EQ(*catalogue.open("a+b"), *joined) << "the same model as long as its members are";
+  EXPECT_TRUE(catalogue.has("a+b"));
+  EXPECT_FALSE(catalogue.has("a+c"));
+  const auto description = catalogue.describe("b+a");
+  ASSERT_TRUE(description);
+  ASSERT_EQ(description->members.size(), 2U);
+  EXPECT_EQ(description->members[0].name, "b");
+  EXPECT_EQ(description->members[1].kinds.at(0).items, 3U);
+  EXPECT_EQ(catalogue.names(), (std::vector<std::string>{"a", "b"})) << "joins are not listed";
+
+  const auto absent = catalogue.open("a+c");
+  ASSERT_FALSE(absent);
+  EXPECT_EQ(absent.error().kind, ErrorKind::kNotFound);
+  EXPECT_EQ(absent.error().message, "there is no model 'c'");
+}
+
+TEST_F(ModelCatalogueTest, AModelOfExactlyThatNameIsNoJoin) {
+  write("a.surf", 3);
+  write("b.surf", 4);
+  write("a+b.surf", 100);
+  const ModelCatalogue catalogue({}, {folder_});
+  EXPECT_EQ(catalogue.describe("a+b")->info.surfels, 100U);
+  EXPECT_EQ(catalogue.describe("b+a")->info.surfels, 7U);
+  const auto some = [](const std::vector<std::string>& patterns) {
+    return access::Rights::of(std::make_shared<const access::Principal>(access::Principal{
+                                  .name = "some", .sha256 = std::string(64, 'a'), .models = patterns}))
+        .authorize("a+b")
+        .served_name();
+  };
+  EXPECT_EQ(catalogue.describe(some({"a+b"}))->info.surfels, 100U);
+  EXPECT_EQ(catalogue.describe(some({"a", "b"}))->info.surfels, 7U) << "they know of no model of that name";
+  const auto hidden = catalogue.describe(some({"a"}));
+  ASSERT_FALSE(hidden);
+  EXPECT_EQ(hidden.error().message, "there is no model 'a+b'");
+  fs::remove(folder_ / "a+b.surf");
+  EXPECT_FALSE(catalogue.describe(some({"a+*"}))) << "the join needs rights to each of its members";
+}
+
+TEST_F(ModelCatalogueTest, AJoinIsMadeAnewWhenAMemberIsReplaced) {
+  write("a.surf", 3);
+  const fs::path path = write("b.surf", 4);
+  const ModelCatalogue catalogue({}, {folder_});
+  const auto first = catalogue.open("a+b");
+  ASSERT_TRUE(first);
+  write("b.surf", 5);
+  fs::last_write_time(path, fs::last_write_time(path) + std::chrono::seconds(5));
+  const auto second = catalogue.open("a+b");
+  ASSERT_TRUE(second);
+  EXPECT_EQ((*second)->info().surfels, 8U);
+  EXPECT_EQ((*first)->info().surfels, 7U);
+}
+
+TEST_F(ModelCatalogueTest, AJoinWaitsForItsScans) {
+  write("a.surf", 3);
+  ModelCatalogue catalogue({}, {folder_});
+  ASSERT_TRUE(catalogue.add_scan("scan"));
+  EXPECT_TRUE(catalogue.awaited("a+scan"));
+  EXPECT_EQ(catalogue.open("a+scan").error().kind, ErrorKind::kUnavailable);
+  const auto built = std::make_shared<const model::ModelFile>(*model::ModelFile::open(write("other/scan.surf", 4)));
+  catalogue.publish("scan", {built, true});
+  EXPECT_FALSE(catalogue.awaited("a+scan"));
+  EXPECT_EQ(catalogue.edition("a+scan"), 1U);
+  const auto preview = catalogue.open_edition("a+scan", 0);
+  ASSERT_TRUE(preview);
+  EXPECT_TRUE(preview->preview);
+  EXPECT_EQ(preview->model->info().surfels, 7U);
+}
+
+TEST_F(ModelCatalogueTest, AJoinHasAtMost64Members) {
+  write("a.surf", 3);
+  std::string name = "a";
+  for (int i = 0; i < 64; ++i) name += "+a";
+  const auto joined = ModelCatalogue({}, {folder_}).open(name);
+  ASSERT_FALSE(joined);
+  EXPECT_EQ(joined.error().kind, ErrorKind::kLimit);
 }
 
 }  // namespace

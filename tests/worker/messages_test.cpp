@@ -69,6 +69,7 @@ picture::PictureRequest full_request() {
   r.glyphs.thresholds = {{"md", 0.1, std::numeric_limits<double>::infinity()}};
   r.lighting = {0.1, 0.2, 16, {{{0, 1, 0}, 0.5}}};
   r.class_opacities = {{6, 0.25}};
+  r.hidden_models = {"tower", "nave"};
   return r;
 }
 
@@ -92,6 +93,7 @@ TEST(MessagesTest, AllOfARequestArrives) {
   EXPECT_EQ(r.glyphs.thresholds, full_request().glyphs.thresholds);
   EXPECT_EQ(r.lighting.lights, full_request().lighting.lights);
   EXPECT_EQ(r.class_opacities.at(0).code, 6);
+  EXPECT_EQ(r.hidden_models, (std::vector<std::string>{"tower", "nave"}));
   EXPECT_EQ(r.ghost, 1.25);
   EXPECT_EQ(r.error, 1.25);
   EXPECT_EQ(r.opacity, 2.25);
@@ -144,7 +146,7 @@ TEST(MessagesTest, AFrameArrivesWithoutItsPixels) {
 
 /// Questions and answers in which no member has its default.
 std::vector<Message> full_queries() {
-  kinds::PickedSurfel item{{1, 2, 3}, {0, 0, 1}, glm::u8vec3(4, 5, 6), 0.5, 7, {{"fa", 0.25}, {"", -1}}, 8, 9};
+  kinds::PickedSurfel item{{1, 2, 3}, {0, 0, 1}, glm::u8vec3(4, 5, 6), 0.5, 7, {{"fa", 0.25}, {"", -1}}, 8, 9, 3};
   const pick::BandPoint point{{1, 2, 3}, {4, 5}, {6, 7, 8}};
   service::PointsQuery points{"lion", {}, exporter::PointFormat::kPly, 12, true};
   points.selection.points = {{{{{0, 0, 0}, {1, 1, 1}}}, {{{{0, 1}, {2, 3}}, 0.5, -1, 1}}}, {2, 6}, 3};
@@ -162,7 +164,8 @@ std::vector<Message> full_queries() {
           PointsCounted{facts, true},
           NextPiece{4, 5},
           PointsPiece{{{std::byte{3}}, true}},
-          ClosePoints{6}};
+          ClosePoints{6},
+          OfferJoin{7, {{1, "nave", {}}, {2, "tower", {glm::dmat4x3(2), glm::dmat4x3(3)}}}, "nave+tower", {4}, {5, 6}}};
 }
 
 TEST(MessagesTest, QueriesThatArrivedHaveTheBytesOfThoseThatWereSent) {
@@ -182,10 +185,19 @@ TEST(MessagesTest, AllOfAnItemAndOfAJobArrives) {
   EXPECT_EQ(picked.item->values.at(0).attribute, "fa");
   EXPECT_EQ(picked.item->color, glm::u8vec3(4, 5, 6));
   EXPECT_EQ(picked.item->number, 9U);
+  EXPECT_EQ(picked.item->member, 3U);
   const service::PointsQuery points = sent(std::get<OpenPoints>(full_queries()[7])).query;
   EXPECT_EQ(points.selection.points.zone.corridors.at(0).line.at(1), glm::dvec2(2, 3));
   EXPECT_EQ(points.selection.points.classes, (std::vector<uint8_t>{2, 6}));
   EXPECT_TRUE(points.only_count && points.selection.normals);
+}
+
+TEST(MessagesTest, AllOfAJoinArrives) {
+  const OfferJoin join = sent(std::get<OfferJoin>(full_queries().back()));
+  ASSERT_EQ(join.parts.size(), 2U);
+  EXPECT_EQ(join.parts[1].name, "tower");
+  EXPECT_EQ(join.parts[1].places, (std::vector<glm::dmat4x3>{glm::dmat4x3(2), glm::dmat4x3(3)}));
+  EXPECT_EQ(join.suspected, (std::vector<uint32_t>{5, 6}));
 }
 
 TEST(MessagesTest, ErrorsArrive) {

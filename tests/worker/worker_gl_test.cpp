@@ -125,6 +125,27 @@ class WorkerRendererTest : public ::testing::Test {
   std::unique_ptr<service::ModelRenderer> renderer_;
 };
 
+TEST_F(WorkerRendererTest, ModelsThatAreJoinedArePassedOnAsOne) {
+  const ModelPointer other = open(testing::write_scene(folder_ / "other.surf"));
+  Result<model::ModelFile> joined = model::ModelFile::join({{"scene", model_}, {"other", other}});
+  ASSERT_TRUE(joined);
+  model_ = std::make_shared<const model::ModelFile>(std::move(*joined));
+  start();
+  const Result<picture::Frame> both = draw(scene_view());
+  ASSERT_TRUE(both) << both.error().message;
+  EXPECT_EQ(both->image.pixels, drawn_here(scene_view()).image.pixels);
+  picture::PictureRequest request = scene_view();
+  request.hidden_models = {"other"};
+  const Result<picture::Frame> one = draw(request);
+  ASSERT_TRUE(one);
+  EXPECT_EQ(2 * one->stats.blocks_selected, both->stats.blocks_selected);
+  // The worker is lost: the next one is told again of both.
+  signal_worker(SIGKILL);
+  const Result<picture::Frame> again = draw(scene_view());
+  ASSERT_TRUE(again) << again.error().message;
+  EXPECT_EQ(again->image.pixels, both->image.pixels);
+}
+
 TEST_F(WorkerRendererTest, PicturesHaveTheBytesOfThoseDrawnHere) {
   start();
   for (const picture::PixelFormat format : {picture::PixelFormat::kSrgb8, picture::PixelFormat::kLinearFloat}) {

@@ -203,6 +203,24 @@ TEST_F(WorkerQueriesTest, PicksAndSurfacesOfSurfelsAreThoseOfThisProcess) {
   EXPECT_EQ(counts_.ended, 0U);
 }
 
+TEST_F(WorkerQueriesTest, PicksInJoinedModelsAreThoseOfThisProcess) {
+  Result<model::ModelFile> joined = model::ModelFile::join({{"survey", survey(40)}, {"scene", scene_}});
+  ASSERT_TRUE(joined);
+  const auto both = std::make_shared<const model::ModelFile>(std::move(*joined));
+  start();
+  expect_equal_picks(both, scene_view());
+  service::SurfaceQuery without = scene_view();
+  without.request.hidden_models = {"survey"};
+  expect_equal_picks(both, without);
+  const auto picked = queries_->pick(both, pixel_of(without, 14, 15), kNever);
+  ASSERT_TRUE(picked && *picked);
+  EXPECT_EQ((*picked)->member, 1U);
+  const auto band = queries_->band(both, {{{-1, 0, 0}, {1, 0, 0}}, 1, 99}, kNever);
+  ASSERT_TRUE(band) << band.error().message;
+  EXPECT_EQ(band->total, here_->band(both, {{{-1, 0, 0}, {1, 0, 0}}, 1, 99}, kNever)->total);
+  EXPECT_EQ(counts_.ended, 0U);
+}
+
 TEST_F(WorkerQueriesTest, PicksInVolumesAreThoseOfThisProcess) {
   std::ofstream file(folder_ / "cone.nrrd", std::ios::binary);
   file << "NRRD0004\ntype: float\ndimension: 3\nsizes: 32 32 32\nspacings: 1 1 1\nencoding: raw\nendian: little\n\n";

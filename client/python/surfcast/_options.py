@@ -26,6 +26,7 @@ class DisplayOptions(PlainOptions, total=False):
     color_by: str  # rgb, intensity, elevation, classification, normal, direction, dec, fa, mode, md, attribute:NAME
     color_range: tuple[float, float]
     hide_classes: Iterable[int]
+    hide_models: str | Iterable[str]  # of several that are shown together
     clip_box: Box | Iterable[Box | Sequence[Vector]]  # shown is what is in one of them
     clip_out: Box | Iterable[Box | Sequence[Vector]]  # and in none of these
     eye_dome: float | tuple[float, float]  # strength, or strength and radius in pixels
@@ -146,6 +147,13 @@ def _color_range(picture: wire.DrawPicture, value: Any) -> None:
 def _hide_classes(picture: wire.DrawPicture, value: Any) -> None:
     codes = [value] if isinstance(value, int) else value
     picture.hidden_classes.extend(natural("hide_classes", code) for code in codes)
+
+
+def _hide_models(picture: wire.DrawPicture, value: Any) -> None:
+    names = [value] if isinstance(value, str) else list(value)
+    if not all(isinstance(name, str) and name for name in names):
+        raise _wanted("hide_models", "names of models", value)
+    picture.hidden_models.extend(names)
 
 
 def _clip(inverted: bool) -> Callable[[wire.DrawPicture, Any], None]:
@@ -311,6 +319,7 @@ _SETTERS: dict[str, Callable[[wire.DrawPicture, Any], None]] = {
     "color_by": _color_by,
     "color_range": _color_range,
     "hide_classes": _hide_classes,
+    "hide_models": _hide_models,
     "clip_box": _clip(False),
     "clip_out": _clip(True),
     "eye_dome": _eye_dome,

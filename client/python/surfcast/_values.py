@@ -224,6 +224,7 @@ class ModelInfo:
     ellipsoids: tuple[Ellipsoids, ...]
     crs: CoordinateSystem | None
     source_crs: CoordinateSystem | None
+    members: Mapping[str, Mapping[str, int]]  # of several that are shown together: the items of each kind, by name
 
 
 @dataclass(frozen=True)
@@ -289,6 +290,7 @@ class Hit:
     surfel: int
     attributes: Mapping[str, float]
     source_position: Floats | None = None
+    model: str | None = None  # of several that are shown together: the one that the item is of
 
 
 @dataclass(frozen=True)
@@ -386,6 +388,7 @@ def model_info(model: wire.ModelDescription) -> ModelInfo:
         ellipsoids=tuple(_ellipsoids_from(e) for e in model.ellipsoids),
         crs=_system_from(model.system) if model.HasField("system") else None,
         source_crs=_system_from(model.source_system) if model.HasField("source_system") else None,
+        members={m.model: {k.kind: k.items for k in m.kinds} for m in model.members},
     )
 
 
@@ -409,6 +412,7 @@ def hit_from(result: wire.PickResult) -> Hit | None:
         result.surfel,
         {a.attribute: a.value for a in result.attributes},
         from_wire(result.source_position) if result.HasField("source_position") else None,
+        result.model or None,
     )
 
 

@@ -132,9 +132,13 @@ class Server:
         return [scan_from(scan) for scan in (await self._list(timeout)).scans]
 
     async def model(self, name: str, *, timeout: float | None = None) -> Model:
-        """A model by its name, or a scan of which there is none yet. Raises NotFound otherwise."""
+        """A model by its name, or a scan of which there is none yet. Raises NotFound otherwise.
+
+        Names with plus signs between them are several models, shown as one.
+        """
         served = await self._list(timeout)
-        if name not in served.models and all(scan.model != name for scan in served.scans):
+        known = {*served.models, *(scan.model for scan in served.scans)}
+        if name not in known and not known.issuperset(name.split("+")):
             raise NotFound(f"there is no model '{name}'")
         return Model(self._connection, name)
 

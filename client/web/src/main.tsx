@@ -23,6 +23,7 @@ import { CameraNavigator } from './view/camera_navigator';
 import { CursorProbe } from './view/cursor_probe';
 import { Probe } from './view/probe';
 import { followSize } from './view/stage_size';
+import { startSwipe } from './view/swipe_picture';
 
 function canvas(className: string): HTMLCanvasElement {
   const element = document.createElement('canvas');
@@ -34,6 +35,7 @@ interface Stage {
   readonly stage: HTMLDivElement; // receives pointer and key events
   readonly picture: HTMLCanvasElement;
   readonly warped: HTMLCanvasElement; // over the picture, while it is warped
+  readonly swiped: HTMLCanvasElement; // over both, on the right of the line between two models
   readonly overlay: HTMLCanvasElement;
 }
 
@@ -45,9 +47,10 @@ function makeStage(): Stage {
   stage.setAttribute('aria-label', 'The model. Arrow keys turn it, plus and minus zoom.');
   const picture = canvas('picture');
   const warped = canvas('warped');
+  const swiped = canvas('swiped');
   const overlay = canvas('overlay');
-  stage.append(picture, warped, overlay);
-  return { stage, picture, warped, overlay };
+  stage.append(picture, warped, swiped, overlay);
+  return { stage, picture, warped, swiped, overlay };
 }
 
 /** It names the open model, by which a proxy before several servers chooses one. */
@@ -63,7 +66,7 @@ const copyLink = (): Promise<void> =>
   copyText(currentLink(), 'Link copied.', 'The browser denies access to the clipboard. Copy the address instead.');
 
 function start(): void {
-  const { stage, picture, warped, overlay } = makeStage();
+  const { stage, picture, warped, swiped, overlay } = makeStage();
   const eye = new CameraNavigator();
   startRoutes();
   const controller = new ViewController(socketUrl, { picture, warped }, (now) => eye.step(now));
@@ -83,6 +86,7 @@ function start(): void {
   });
   followSize(stage, (before, after) => eye.resized(before, after));
   startOverlay(overlay);
+  startSwipe(swiped, controller);
   startViewStorage();
   startAnnotationStorage();
   openTheOnly();

@@ -17,6 +17,7 @@ const display: DisplayOptions = {
   map: 'turbo',
   range: [-5.5, 1200],
   hiddenClasses: [7, 18],
+  hiddenModels: ['tower 2', 'crypt & nave'],
   clips: [
     { box: { min: vector(0, 1, 2), max: vector(3, 4, 5.5) }, inverted: false },
     { box: { min: vector(-1, -1, -1), max: vector(1, 1, 1) }, inverted: true },

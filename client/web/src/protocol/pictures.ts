@@ -101,6 +101,7 @@ export function pictureOf(
     format,
     coloring,
     hiddenClasses: [...display.hiddenClasses],
+    hiddenModels: [...display.hiddenModels],
     clipBoxes: display.clips.map(({ box, inverted }) => ({ box, inverted })),
     ...(camera ? { camera: wireCamera(camera) } : {}),
     ...(display.eyeDome.strength > 0 ? { eyeDome: display.eyeDome } : {}),

@@ -1,4 +1,4 @@
-import type { CoordinateSystem, ModelDescription } from '../generated/surfcast_pb';
+import type { CoordinateSystem, KindCount, MemberDescription, ModelDescription } from '../generated/surfcast_pb';
 
 const compact = new Intl.NumberFormat('en', { notation: 'compact', maximumFractionDigits: 1 });
 
@@ -23,11 +23,18 @@ export function kindOf({ kinds }: ModelDescription): string {
 /** The name of a coordinate system and its code, if it has one: "ETRS89 / UTM zone 32N (EPSG:25832)". */
 export const systemName = ({ name, id }: CoordinateSystem): string => (id ? `${name} (${id})` : name);
 
+/** The items of each kind but volumes: "1.2M points". */
+const countsOf = (kinds: readonly KindCount[]): string[] =>
+  kinds
+    .filter(({ kind }) => kind !== 'grid')
+    .map(({ kind, items }) => `${compact.format(Number(items))} ${itemNames[kind] ?? kind}`);
+
+/** What one of several models holds, in one line: "1.2M points, volume". */
+export const memberContents = ({ kinds }: MemberDescription): string =>
+  [...countsOf(kinds), ...(kinds.some(({ kind }) => kind === 'grid') ? ['volume'] : [])].join(', ');
+
 /** What a model holds, in one line: "1.2M points, volume of 512 × 512 × 300". */
 export function contentsOf({ kinds, surfels, volumes }: ModelDescription): string {
   if (kinds.length === 0) return `${compact.format(Number(surfels))} points`; // of a server before 1.3
-  const counted = kinds
-    .filter(({ kind }) => kind !== 'grid')
-    .map(({ kind, items }) => `${compact.format(Number(items))} ${itemNames[kind] ?? kind}`);
-  return [...counted, ...volumes.map(({ size }) => `volume of ${size.join(' × ')}`)].join(', ');
+  return [...countsOf(kinds), ...volumes.map(({ size }) => `volume of ${size.join(' × ')}`)].join(', ');
 }

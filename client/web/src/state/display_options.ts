@@ -37,6 +37,7 @@ export interface DisplayOptions extends PlainOptions {
   readonly map: ColorMapName;
   readonly range: readonly [number, number] | undefined; // undefined: the model's own
   readonly hiddenClasses: readonly number[];
+  readonly hiddenModels: readonly string[]; // of several that are shown together
   readonly clips: readonly Clip[];
   readonly eyeDome: { readonly strength: number; readonly radius: number }; // strength 0: off
   readonly transfer: Transfer; // of volumes
@@ -55,6 +56,7 @@ export const defaultDisplay: DisplayOptions = {
   map: 'viridis',
   range: undefined,
   hiddenClasses: [],
+  hiddenModels: [],
   clips: [],
   eyeDome: { strength: 0, radius: 1.5 },
   transfer: defaultTransfer,

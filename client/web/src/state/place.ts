@@ -88,6 +88,7 @@ function displayIn(values: URLSearchParams): DisplayOptions {
     map: choiceIn(choices.colorMap, values.get('color_map')) ?? defaultDisplay.map,
     range: range && range[0]! < range[1]! ? [range[0]!, range[1]!] : undefined,
     hiddenClasses: classesIn(values.get('hide_classes')),
+    hiddenModels: (values.get('hide_models') ?? '').split(',').filter((name) => name !== ''),
     clips: [...clipsIn(values.get('clip_box'), false), ...clipsIn(values.get('clip_out'), true)],
     eyeDome: eyeDomeIn(values.get('eye_dome')),
     transfer: parseTransfer(values.get('transfer')),
@@ -134,6 +135,7 @@ function displayParameters(display: DisplayOptions): Record<string, string | und
     color_map: display.map === defaultDisplay.map ? undefined : display.map,
     color_range: display.range?.join(','),
     hide_classes: display.hiddenClasses.length > 0 ? display.hiddenClasses.join(',') : undefined,
+    hide_models: display.hiddenModels.length > 0 ? display.hiddenModels.map(encodeURIComponent).join(',') : undefined,
     clip_box: clipList(display.clips, false),
     clip_out: clipList(display.clips, true),
     eye_dome: eyeDome.strength > 0 ? `${eyeDome.strength},${eyeDome.radius}` : undefined,
@@ -158,6 +160,6 @@ export function formatPlace(place: Place): string {
     ...displayParameters(place.display),
   };
   const said = Object.entries(values).flatMap(([name, value]) => (value === undefined ? [] : [`${name}=${value}`]));
-  const path = `#/${encodeURIComponent(place.model)}`;
+  const path = `#/${encodeURIComponent(place.model).replaceAll('%2B', '+')}`;
   return said.length > 0 ? `${path}?${said.join('&')}` : path;
 }

@@ -12,6 +12,20 @@ export function openModel(name: string | undefined): void {
   history.pushState(null, '', location.href.replace(/#.*$/, '') + currentHash());
 }
 
+/** Shows other models in the view that is open: its camera, its look and what was measured stay. */
+export function showInstead(name: string): void {
+  const kept = name.split('+');
+  const display = store.display.peek();
+  const hiddenModels = display.hiddenModels.filter((hidden) => kept.includes(hidden));
+  const camera = parsePlace(currentHash()).camera;
+  batch(() => {
+    store.display.value = { ...display, hiddenModels };
+    store.firstCamera.value = camera;
+    store.model.value = name;
+  });
+  history.pushState(null, '', currentLink());
+}
+
 function show(hash: string): void {
   const place = parsePlace(hash);
   const here = place.model === store.model.peek() && store.pose.peek() !== undefined;

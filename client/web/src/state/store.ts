@@ -12,6 +12,7 @@ import type { MeasureKind, Measurement } from '../measure/measurement';
 import type { Vector } from '../camera/vector';
 import type { Annotation } from './annotations';
 import { defaultDisplay, type DisplayOptions } from './display_options';
+import { membersOf, shownName, type Swipe } from './joined';
 
 /** The shared state of the page. Every part may read it; the headings below name the part that writes each signal. */
 
@@ -51,6 +52,10 @@ export const firstCamera = signal<Camera | undefined>(undefined);
 // ---- written by the panels ----
 
 export const display = signal<DisplayOptions>(defaultDisplay);
+/** The models between which the view is divided; see `swipe`. */
+export const wantedSwipe = signal<Swipe | undefined>(undefined);
+/** Where the line is, as a share of the width of the picture. */
+export const swipeAt = signal(0.5);
 export type Tool = 'navigate' | 'inspect' | MeasureKind | 'clip' | 'window';
 export const tool = signal<Tool>('navigate');
 export const flying = signal(false);
@@ -105,6 +110,17 @@ export const resizing = signal(false);
 
 export const description = computed(() =>
   model.value === undefined ? undefined : descriptions.value.get(model.value),
+);
+/** The names of the models in the view: one, or several that are shown together. */
+export const members = computed(() => membersOf(model.value, description.value));
+/** The models on both sides of the line, while both are in the view. */
+export const swipe = computed(() => {
+  const wanted = wantedSwipe.value;
+  return wanted && members.value.includes(wanted.left) && members.value.includes(wanted.right) ? wanted : undefined;
+});
+/** The name of what is shown of the model: without the models that are hidden. */
+export const shownModel = computed(() =>
+  model.value === undefined ? undefined : shownName(members.value, display.value.hiddenModels),
 );
 /** The open model, if it is a scan whose model is not complete. */
 export const openScan = computed(() => (model.value === undefined ? undefined : scans.value.get(model.value)));

@@ -24,6 +24,7 @@ import { StateCards } from './state_cards';
 import { FiguresCard, Status } from './status';
 import { hintFor } from './hints';
 import { PhoneBar, ToolRail, panelNames } from './tool_rail';
+import { SwipeLine } from './swipe_line';
 import { TopBar } from './top_bar';
 import { UploadsCard } from './uploads_card';
 
@@ -69,6 +70,7 @@ function Stage(): JSX.Element {
   return (
     <main class="stage" hidden={store.model.value === undefined || store.galleryOpen.value}>
       <Canvases />
+      <SwipeLine />
       <div class="aids">
         <Gizmo />
         <Compass />

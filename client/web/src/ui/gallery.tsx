@@ -2,11 +2,13 @@ import type { JSX } from 'preact';
 import { useEffect, useState } from 'preact/hooks';
 import type { ScanStatus } from '../generated/surfcast_pb';
 import { contentsOf, kindOf } from '../state/contents';
-import { openModel } from '../state/routes';
+import { canJoin, withMember } from '../state/joined';
+import { openModel, showInstead } from '../state/routes';
 import { failed, progressText } from '../state/scans';
-import { descriptions, galleryOpen, link, model, models, scans, uploads } from '../state/store';
+import { descriptions, galleryOpen, link, members, model, models, scans, uploads } from '../state/store';
 import { useActions } from './actions';
 import { IconButton } from './controls';
+import { Icon } from './icons';
 
 const thumbnail = (name: string): string =>
   `api/models/${encodeURIComponent(name)}/image?resolution=480,300&spacing=1.5&format=jpg&quality=80&background=18,22,27`;
@@ -62,9 +64,19 @@ function OpenCard({ name, scan }: { name: string; scan: ScanStatus | undefined }
     galleryOpen.value = false;
     if (name !== model.peek()) openModel(name);
   };
+  const shown = members.value.includes(name);
+  const add = (): void => {
+    galleryOpen.value = false;
+    showInstead(withMember(members.peek(), name));
+  };
   return (
     <li>
-      <button type="button" class="model-card" aria-current={name === model.value} onClick={choose}>
+      {!shown && canJoin(members.value, name) && (
+        <button type="button" class="add-model" title={`Show ${name}, too, in the open view`} onClick={add}>
+          <Icon name="plus" size={16} /> Add to the view
+        </button>
+      )}
+      <button type="button" class="model-card" aria-current={shown} onClick={choose}>
         <Thumbnail key={`${name} ${scan?.edition ?? ''}`} name={name} edition={scan?.edition} />
         <span class="name">{name}</span>
         {description && <span class="kind">{kindOf(description)}</span>}

@@ -64,6 +64,7 @@ export function InspectCard(): JSX.Element | null {
     const n = vectorFrom(normal);
     rows.push(['normal', [n.x, n.y, n.z].map((part) => part.toFixed(3)).join('  ')]);
   }
+  if (result.model) rows.unshift(['model', result.model]);
   rows.push(['distance', result.distance.toPrecision(6)]);
   return (
     <section class="inspect-card" aria-label="Point">

@@ -5,6 +5,7 @@ import { kindOf, systemName } from '../state/contents';
 import { bounds, description, display, lengthDecimals, upAxis } from '../state/store';
 import { useActions } from './actions';
 import { Section, Switch } from './controls';
+import { MembersSection } from './members_section';
 import { Views } from './views';
 
 function Row({ name, children }: { name: string; children: ComponentChildren }): JSX.Element {
@@ -101,6 +102,7 @@ export function ModelPanel(): JSX.Element | null {
   return (
     <>
       <Views where="in-panel" />
+      <MembersSection />
       <Section title={model.model}>
         <dl class="facts">
           <Row name="Kind">{kindOf(model)}</Row>

@@ -13,7 +13,7 @@ import {
 import { systemName } from '../state/contents';
 import { className } from '../state/palette';
 import { regionOf, type Region, type ShownRegion } from '../state/region';
-import { bounds, description, dialog, display, model, openScan, showNotice } from '../state/store';
+import { bounds, description, dialog, display, openScan, showNotice, shownModel } from '../state/store';
 import { Choices, Dialog, NumberField, Switch } from './controls';
 import { download } from './save_file';
 
@@ -28,7 +28,7 @@ function useCount(region: Region | undefined, every: number): Counting {
     setCounting(undefined);
     if (!region) return undefined;
     const abort = new AbortController();
-    countPoints(countUrl(location.href, model.peek() ?? '', region, every), abort.signal).then(
+    countPoints(countUrl(location.href, shownModel.peek() ?? '', region, every), abort.signal).then(
       (done) => setCounting({ done }),
       (error: unknown) => {
         if (!abort.signal.aborted) setCounting({ problem: error instanceof Error ? error.message : String(error) });
@@ -122,7 +122,7 @@ export function PointsDialog(): JSX.Element {
   const fits = count !== undefined && count.points <= count.most;
   const save = (): void => {
     if (!region) return;
-    const name = model.peek() ?? '';
+    const name = shownModel.peek() ?? '';
     download(fileUrl(location.href, name, region, { format, every, normals, world }), `${name}-points.${format}`);
     showNotice('The server sends the points; the browser shows how far they are.');
     dialog.value = undefined;

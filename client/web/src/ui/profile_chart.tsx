@@ -5,7 +5,7 @@ import { bandAddress, bandOf, bandPoints, drawBand, usualWidth, type Band } from
 import { chartOf, type Chart } from '../measure/chart';
 import { formatNumber } from '../measure/format';
 import { profileOf } from '../measure/measurement';
-import { description, lengthDecimals, model, upAxis } from '../state/store';
+import { description, lengthDecimals, shownModel, upAxis } from '../state/store';
 import { useActions } from './actions';
 import { NumberField } from './controls';
 import { Icon } from './icons';
@@ -27,7 +27,7 @@ type BandState =
 function useBand(points: readonly Vector[], width: number, wanted: boolean): BandState {
   const { controller } = useActions();
   const [state, setState] = useState<BandState>({ kind: 'none' });
-  const name = model.value;
+  const name = shownModel.value;
   useEffect(() => {
     if (!wanted || name === undefined) return undefined;
     let current = true;
@@ -95,7 +95,7 @@ export function ProfileChart({ points, open }: { points: readonly Vector[]; open
   const state = useBand(points, width, !open);
   const band = state.kind === 'there' && state.band.along.length > 0 ? state.band : undefined;
   const chart = chartOf(profileOf(points, upAxis.value), frame, band ? [band.low, band.high] : []);
-  const address = (format: 'csv' | 'las'): string => bandAddress(model.value ?? '', points, width, format);
+  const address = (format: 'csv' | 'las'): string => bandAddress(shownModel.value ?? '', points, width, format);
   return (
     <>
       <div class="chart">

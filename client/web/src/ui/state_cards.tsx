@@ -1,6 +1,7 @@
 import type { JSX } from 'preact';
 import { useEffect, useState } from 'preact/hooks';
 import type { ScanStatus } from '../generated/surfcast_pb';
+import { isServed } from '../state/joined';
 import { failed, progressText } from '../state/scans';
 import { galleryOpen, link, model, models, openScan, shownFrame, viewProblem } from '../state/store';
 import { useActions } from './actions';
@@ -47,7 +48,7 @@ function Refused({ message }: { message: string }): JSX.Element {
 
 function Problem({ message, again }: { message: string; again: boolean }): JSX.Element {
   const { controller } = useActions();
-  const missing = model.value !== undefined && models.value !== undefined && !models.value.includes(model.value);
+  const missing = model.value !== undefined && models.value !== undefined && !isServed(model.value, models.value);
   const title = again ? 'The server is busy' : missing ? 'No such model' : 'This view cannot be shown';
   return (
     <div class="state-card" role="alert">

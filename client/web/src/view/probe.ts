@@ -2,6 +2,7 @@ import { pointAt } from '../camera/projection';
 import type { Pixel, Vector } from '../camera/vector';
 import type { PickResult } from '../generated/surfcast_pb';
 import { pictureOf, vectorFrom } from '../protocol/pictures';
+import { hiddenAt } from '../state/joined';
 import * as store from '../state/store';
 import type { ViewController } from './view_controller';
 
@@ -18,7 +19,10 @@ export class Probe {
     const { width, height } = frame.resolution;
     const x = Math.min(width - 1, Math.max(0, Math.floor(pixel.x)));
     const y = Math.min(height - 1, Math.max(0, Math.floor(pixel.y)));
-    const picture = pictureOf(model, camera, store.display.peek(), { width, height });
+    const display = store.display.peek();
+    const side = x < store.swipeAt.peek() * width ? 'left' : 'right';
+    const hiddenModels = hiddenAt(side, display.hiddenModels, store.swipe.peek());
+    const picture = pictureOf(model, camera, { ...display, hiddenModels }, { width, height });
     const result = await this.controller.pick(picture, x, y);
     const { hit, position } = result;
     if (hit && position && model === store.model.peek()) store.lastPick.value = vectorFrom(position);

@@ -15,6 +15,7 @@ import { backoff } from '../protocol/backoff';
 import { RequestError, type Connection } from '../protocol/connection';
 import { Link } from '../protocol/link';
 import { cameraFrom, pictureOf } from '../protocol/pictures';
+import { hiddenAt } from '../state/joined';
 import { awaited, failed, renewed } from '../state/scans';
 import * as store from '../state/store';
 import { FigureCollector } from './figures';
@@ -87,7 +88,7 @@ export class ViewController {
     effect(() => this.follow(store.model.value));
     effect(() => {
       // Reading the signals subscribes this effect to them.
-      void [store.pose.value, store.display.value, store.stageSize.value, store.moving.value];
+      void [store.pose.value, store.display.value, store.stageSize.value, store.moving.value, store.swipe.value];
       this.schedule();
     });
     addEventListener('pagehide', () => this.link.close());
@@ -322,7 +323,9 @@ export class ViewController {
     const model = store.model.peek();
     const size = store.stageSize.peek();
     if (model === undefined || size.width < 1 || size.height < 1) return undefined;
-    const picture = pictureOf(model, this.presentCamera(), store.display.peek(), size);
+    const display = store.display.peek();
+    const hiddenModels = hiddenAt('left', display.hiddenModels, store.swipe.peek());
+    const picture = pictureOf(model, this.presentCamera(), { ...display, hiddenModels }, size);
     return { picture, moving: store.moving.peek() };
   }
 
