@@ -140,7 +140,6 @@ int main(int argc, char** argv) {
     }
   }
   const auto renderer = value_or_exit(render::Renderer::create({}));
-  value_or_exit(encode::prepare_encoding().map([] { return 0; }));
   std::printf(
       "| model, path | video: KB | dB, worst | ms | JPEG 85: KB | dB, worst | ms | 65: KB | dB, worst | ms | 45: KB | "
       "dB, worst | ms |\n|---|---|---|---|---|---|---|---|---|---|---|---|---|\n");

@@ -2,7 +2,7 @@
 
 option(SURFCAST_TESTS "Build the tests" ON)
 option(SURFCAST_BENCH "Define the benchmarks, which the target `benchmarks` builds" ON)
-option(SURFCAST_WINDOW "Build surfcast-view, which needs SDL and libturbojpeg" ON)
+option(SURFCAST_WINDOW "Build surfcast-view, which needs SDL" ON)
 set(SURFCAST_VIEWER AUTO CACHE STRING
   "The viewer for browsers: ON (fails without it), AUTO (warns where npm cannot build it), OFF")
 set_property(CACHE SURFCAST_VIEWER PROPERTY STRINGS ON AUTO OFF)

@@ -140,8 +140,7 @@ Result<Files> files_of_input(const fs::path& path) {
     case InputKind::kScan:
       break;
   }
-  const std::optional<scan::ScanFolder> folder = scan::scan_folder_of(path);
-  return folder ? scan::files_of_folder(*folder) : Files{path};
+  return scan::files_of_scan(path);
 }
 
 uint64_t bytes_of_input(const fs::path& path) {
@@ -169,8 +168,8 @@ std::vector<std::string> input_extensions() {
 }
 
 std::vector<std::string> data_extensions() {
-  return {".raw", ".raw.gz", ".raw.bz2", ".zraw", ".img", ".img.gz", ".dat", ".mtl", ".bin",
-          ".png", ".jpg",    ".jpeg",    ".webp", ".tif", ".tiff",   ".bmp", ".tga"};
+  return {".raw", ".raw.gz", ".raw.bz2", ".zraw", ".img",  ".img.gz", ".dat",  ".mtl", ".bin",
+          ".prj", ".png",    ".jpg",     ".jpeg", ".webp", ".tif",    ".tiff", ".bmp", ".tga"};
 }
 
 }  // namespace surfcast::builder

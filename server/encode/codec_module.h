@@ -5,7 +5,7 @@
 
 #include "base/result.h"
 #include "picture/channels.h"
-#include "picture/file_format.h"
+#include "picture/picture.h"
 
 namespace surfcast::encode {
 
@@ -17,11 +17,11 @@ namespace surfcast::encode {
 /// The file of the module, in the folder lib/surfcast beside the program's folder.
 inline constexpr const char* kCodecModule = "image_codecs.so";
 /// The function that the module exports.
-inline constexpr const char* kEncodeSymbol = "surfcast_encode_picture";
-using EncodeFunction = void(const picture::Image& image, picture::FileFormat format, int quality,
-                            const picture::Channels* channels, Result<std::vector<std::byte>>& bytes);
+inline constexpr const char* kEncodeSymbol = "surfcast_encode_exr";
+using EncodeFunction = void(const picture::Image& image, const picture::Channels* channels,
+                            Result<std::vector<std::byte>>& bytes);
 
 }  // namespace surfcast::encode
 
-/// Exported by the module. Arguments as of encode_picture().
-extern "C" [[gnu::visibility("default")]] surfcast::encode::EncodeFunction surfcast_encode_picture;
+/// Exported by the module. Arguments as of encode_picture() for an EXR file.
+extern "C" [[gnu::visibility("default")]] surfcast::encode::EncodeFunction surfcast_encode_exr;

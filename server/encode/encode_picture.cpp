@@ -7,22 +7,23 @@
 #include "base/contract.h"
 #include "base/load_module.h"
 #include "encode/codec_module.h"
+#include "encode/frame_codecs.h"
 
 namespace surfcast::encode {
 namespace {
 
 /// Loads the module that uses OpenImageIO. The library depends on some 250 others, which take longer to load than
-/// everything else at start. So commands that encode nothing do not load it.
-Result<EncodeFunction*> load_codecs() {
+/// everything else at start. So only pictures as EXR load it.
+Result<EncodeFunction*> load_exr_codec() {
   return load_function(kCodecModule, kEncodeSymbol)
       .map([](void* function) { return reinterpret_cast<EncodeFunction*>(function); })
       .map_error([](const Error& error) {
-        return Error{error.kind, "the image codecs: " + error.message};
+        return Error{error.kind, "the codec of EXR: " + error.message};
       });
 }
 
-/// Longest side of a picture in this file format, pixels. It is checked before encoding because libjpeg would otherwise
-/// terminate the process.
+/// Longest side of a picture in this file format, pixels. The libraries have limits of their own, and messages that
+/// tell less.
 int largest_side(picture::FileFormat format) {
   switch (format) {
     case picture::FileFormat::kJpeg:
@@ -37,16 +38,15 @@ int largest_side(picture::FileFormat format) {
   return std::numeric_limits<int>::max();
 }
 
-const Result<EncodeFunction*>& codecs() {
-  static const Result<EncodeFunction*> loaded = load_codecs();
-  return loaded;
+Result<std::vector<std::byte>> encode_exr(const picture::Image& image, const picture::Channels* channels) {
+  static const Result<EncodeFunction*> codec = load_exr_codec();
+  if (!codec) return fail(codec.error());
+  Result<std::vector<std::byte>> bytes;
+  (*codec)(image, channels, bytes);
+  return bytes;
 }
 
 }  // namespace
-
-Status prepare_encoding() {
-  return codecs() ? Status() : fail(codecs().error());
-}
 
 Result<std::vector<std::byte>> encode_picture(const picture::Image& image, picture::FileFormat format, int quality,
                                               const picture::Channels* channels) {
@@ -58,10 +58,17 @@ Result<std::vector<std::byte>> encode_picture(const picture::Image& image, pictu
     return fail(ErrorKind::kLimit, "a side of more than " + std::to_string(largest_side(format)) +
                                        " pixels cannot be stored in this file format");
   }
-  if (!codecs()) return fail(codecs().error());
-  Result<std::vector<std::byte>> bytes;
-  (*codecs())(image, format, quality, channels, bytes);
-  return bytes;
+  switch (format) {
+    case picture::FileFormat::kPng:
+      return encode_png(image);
+    case picture::FileFormat::kJpeg:
+      return encode_jpeg(image, quality);
+    case picture::FileFormat::kWebp:
+      return encode_webp(image, quality);
+    case picture::FileFormat::kExr:
+      break;
+  }
+  return encode_exr(image, channels);
 }
 
 }  // namespace surfcast::encode

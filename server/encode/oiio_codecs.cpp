@@ -1,8 +1,7 @@
-// The module that encodes pictures with OpenImageIO; encode_picture.cpp loads it.
+// The module that encodes EXR files with OpenImageIO; encode_picture.cpp loads it.
 #include <algorithm>
 #include <cstring>
 #include <memory>
-#include <string>
 
 #include <OpenImageIO/filesystem.h>
 #include <OpenImageIO/imageio.h>
@@ -14,35 +13,12 @@ namespace {
 
 constexpr int kChannels = 3;  // channels of a file
 
-/// OpenImageIO's name of the writer.
-const char* writer_of(picture::FileFormat format) {
-  switch (format) {
-    case picture::FileFormat::kJpeg:
-      return "jpeg";
-    case picture::FileFormat::kWebp:
-      return "webp";
-    case picture::FileFormat::kExr:
-      return "openexr";
-    case picture::FileFormat::kPng:
-      break;
-  }
-  return "png";
-}
-
-OIIO::ImageSpec make_spec(const picture::Image& image, picture::FileFormat format, int quality) {
-  const bool is_float = image.format == picture::PixelFormat::kLinearFloat;
-  OIIO::ImageSpec spec(image.width, image.height, kChannels, is_float ? OIIO::TypeDesc::FLOAT : OIIO::TypeDesc::UINT8);
-  spec.attribute("oiio:ColorSpace", is_float ? "Linear" : "sRGB");
-  if (format == picture::FileFormat::kPng) {
-    // Level 1 of zlib takes a third of the time of the default level; files are half as large again.
-    spec.attribute("png:compressionLevel", 1);
-  } else if (format == picture::FileFormat::kExr) {
-    spec.attribute("compression", "zip:1");  // lossless; level 1 for the same reason
-    // The writer would otherwise store the time of day, and equal images would not give equal bytes.
-    spec.attribute("DateTime", "1970:01:01 00:00:00");
-  } else {
-    spec.attribute("Compression", std::string(writer_of(format)) + ":" + std::to_string(quality));
-  }
+OIIO::ImageSpec make_spec(const picture::Image& image) {
+  OIIO::ImageSpec spec(image.width, image.height, kChannels, OIIO::TypeDesc::FLOAT);
+  spec.attribute("oiio:ColorSpace", "Linear");
+  spec.attribute("compression", "zip:1");  // lossless; level 1 takes a third of the time of the default level
+  // The writer would otherwise store the time of day, and equal images would not give equal bytes.
+  spec.attribute("DateTime", "1970:01:01 00:00:00");
   return spec;
 }
 
@@ -96,16 +72,16 @@ tl::unexpected<Error> writer_failed(OIIO::ImageOutput& writer) {
   return fail(ErrorKind::kInternal, "cannot encode the picture: " + writer.geterror());
 }
 
-Result<std::vector<std::byte>> encode_with_oiio(const picture::Image& image, picture::FileFormat format, int quality,
-                                                const picture::Channels* channels) {
-  const std::unique_ptr<OIIO::ImageOutput> writer = OIIO::ImageOutput::create(writer_of(format));
-  if (!writer) return fail(ErrorKind::kInternal, std::string("no writer of ") + writer_of(format));
+Result<std::vector<std::byte>> encode_exr(const picture::Image& image, const picture::Channels* channels) {
+  constexpr const char* kWriter = "openexr";
+  const std::unique_ptr<OIIO::ImageOutput> writer = OIIO::ImageOutput::create(kWriter);
+  if (!writer) return fail(ErrorKind::kInternal, "OpenImageIO has no writer of EXR");
   std::vector<unsigned char> bytes;
   OIIO::Filesystem::IOVecOutput memory(bytes);
   if (!writer->set_ioproxy(&memory)) return writer_failed(*writer);
-  OIIO::ImageSpec spec = make_spec(image, format, quality);
+  OIIO::ImageSpec spec = make_spec(image);
   if (channels != nullptr) add_channels(*channels, spec);
-  if (!writer->open(writer_of(format), spec)) return writer_failed(*writer);
+  if (!writer->open(kWriter, spec)) return writer_failed(*writer);
   if (!write_pixels(*writer, spec, image, channels) || !writer->close()) return writer_failed(*writer);
   const auto* first = reinterpret_cast<const std::byte*>(bytes.data());
   return std::vector<std::byte>(first, first + bytes.size());
@@ -114,8 +90,7 @@ Result<std::vector<std::byte>> encode_with_oiio(const picture::Image& image, pic
 }  // namespace
 }  // namespace surfcast::encode
 
-void surfcast_encode_picture(const surfcast::picture::Image& image, surfcast::picture::FileFormat format, int quality,
-                             const surfcast::picture::Channels* channels,
-                             surfcast::Result<std::vector<std::byte>>& bytes) {
-  bytes = surfcast::encode::encode_with_oiio(image, format, quality, channels);
+void surfcast_encode_exr(const surfcast::picture::Image& image, const surfcast::picture::Channels* channels,
+                         surfcast::Result<std::vector<std::byte>>& bytes) {
+  bytes = surfcast::encode::encode_exr(image, channels);
 }

@@ -20,7 +20,7 @@ std::string_view trimmed(std::string_view text) {
 
 /// A number in an attribute. Missing or empty: `otherwise`.
 template <typename T>
-Result<T> number_of(const XmlNode& node, std::string_view attribute, T otherwise) {
+Result<T> attribute_of(const XmlNode& node, std::string_view attribute, T otherwise) {
   const std::string* text = node.attribute(attribute);
   if (text == nullptr || trimmed(*text).empty()) return otherwise;
   const std::optional<T> number = parse_number<T>(trimmed(*text));
@@ -38,8 +38,8 @@ double child_number(const XmlNode& node, std::string_view name, double otherwise
 
 Status read_limits(const XmlNode& node, E57Field& field) {
   using Limits = std::numeric_limits<int64_t>;
-  const Result<int64_t> low = number_of<int64_t>(node, "minimum", Limits::min());
-  const Result<int64_t> high = number_of<int64_t>(node, "maximum", Limits::max());
+  const Result<int64_t> low = attribute_of<int64_t>(node, "minimum", Limits::min());
+  const Result<int64_t> high = attribute_of<int64_t>(node, "maximum", Limits::max());
   if (!low) return fail(low.error());
   if (!high) return fail(high.error());
   if (*low > *high) return invalid_input("E57 field " + printable(node.name) + " has a minimum above its maximum");
@@ -50,8 +50,8 @@ Status read_limits(const XmlNode& node, E57Field& field) {
 }
 
 Status read_scale(const XmlNode& node, E57Field& field) {
-  const Result<double> scale = number_of<double>(node, "scale", 1);
-  const Result<double> offset = number_of<double>(node, "offset", 0);
+  const Result<double> scale = attribute_of<double>(node, "scale", 1);
+  const Result<double> offset = attribute_of<double>(node, "offset", 0);
   if (!scale) return fail(scale.error());
   if (!offset) return fail(offset.error());
   field.scale = *scale;
@@ -128,8 +128,8 @@ Result<E57Scan> parse_scan(const XmlNode& node) {
   if (prototype == nullptr) return invalid_input("an E57 scan has no points");
   E57Scan scan;
   if (const XmlNode* name = node.child("name")) scan.name = printable(name->text);
-  const Result<uint64_t> section = number_of<uint64_t>(*points, "fileOffset", 0);
-  const Result<uint64_t> count = number_of<uint64_t>(*points, "recordCount", 0);
+  const Result<uint64_t> section = attribute_of<uint64_t>(*points, "fileOffset", 0);
+  const Result<uint64_t> count = attribute_of<uint64_t>(*points, "recordCount", 0);
   if (!section) return fail(section.error());
   if (!count) return fail(count.error());
   scan.section = *section;

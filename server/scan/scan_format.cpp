@@ -7,6 +7,7 @@
 #include <string_view>
 #include <utility>
 
+#include "scan/ascii_grid_reader.h"
 #include "scan/gltf_buffers.h"
 #include "scan/ptx_reader.h"
 #include "scan/text_reader.h"
@@ -63,6 +64,8 @@ std::string_view format_name(ScanFormat format) {
       return "PCD";
     case ScanFormat::kPtx:
       return "PTX";
+    case ScanFormat::kAsciiGrid:
+      return "ESRI ASCII grid";
     case ScanFormat::kDraco:
       return "Draco";
     case ScanFormat::kE57:
@@ -108,6 +111,7 @@ std::optional<ScanFormat> by_content(std::string_view text) {
   if (text.starts_with("pnts")) return ScanFormat::kPnts;
   if (text.starts_with("glTF") || is_gltf_text(text)) return ScanFormat::kGltf;
   if (is_pcd(text)) return ScanFormat::kPcd;
+  if (looks_like_ascii_grid(text)) return ScanFormat::kAsciiGrid;
   return std::nullopt;
 }
 

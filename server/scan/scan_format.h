@@ -10,7 +10,7 @@
 
 namespace surfcast::scan {
 
-enum class ScanFormat { kPly, kLas, kPcd, kPtx, kText, kDraco, kE57, kExpe, kPnts, kGltf };
+enum class ScanFormat { kPly, kLas, kPcd, kPtx, kAsciiGrid, kText, kDraco, kE57, kExpe, kPnts, kGltf };
 
 /// Detects the format of a file from its first bytes, or from its extension if they are ambiguous. Fails with the
 /// reason if the file is empty, not recognised, or of a known format that cannot be read as a scan.

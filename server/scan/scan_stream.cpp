@@ -1,5 +1,6 @@
 #include "scan/scan_stream.h"
 
+#include <optional>
 #include <string>
 #include <system_error>
 #include <utility>
@@ -7,6 +8,7 @@
 
 #include <oneapi/tbb/parallel_for.h>
 
+#include "scan/ascii_grid_reader.h"
 #include "scan/draco_reader.h"
 #include "scan/e57_reader.h"
 #include "scan/expe_reader.h"
@@ -21,6 +23,7 @@
 #include "scan/scan_format.h"
 #include "scan/selected_rows.h"
 #include "scan/text_reader.h"
+#include "scan/text_tokens.h"
 
 namespace surfcast::scan {
 namespace {
@@ -37,6 +40,8 @@ Result<std::unique_ptr<RowSource>> rows_of(ScanFormat format, std::span<const st
       return pcd_rows(bytes, limit);
     case ScanFormat::kPtx:
       return ptx_rows(bytes);
+    case ScanFormat::kAsciiGrid:
+      return ascii_grid_rows(bytes, path);
     case ScanFormat::kDraco:
       return draco_rows(bytes, limit);
     case ScanFormat::kE57:
@@ -201,6 +206,16 @@ Result<ScanPoints> ScanStream::read(size_t piece) const {
   ScanPoints points = points_of(*table, facts_.meaning);
   if (file_) file_->release_pages();
   return points;
+}
+
+std::vector<std::filesystem::path> files_of_scan(const std::filesystem::path& path) {
+  if (const std::optional<ScanFolder> folder = scan_folder_of(path)) return files_of_folder(*folder);
+  std::vector<std::filesystem::path> files = {path};
+  const std::filesystem::path projection = projection_file(path);
+  if (std::error_code ignored; !std::filesystem::exists(projection, ignored)) return files;
+  const Result<MappedFile> file = MappedFile::open(path);
+  if (file && looks_like_ascii_grid(as_text(file->bytes()))) files.push_back(projection);
+  return files;
 }
 
 Status check_header(const std::filesystem::path& path) {

@@ -85,6 +85,10 @@ class ScanStream {
   ScanFacts facts_;
 };
 
+/// All files that a scan is read from: everything in the folder of EPT, Potree and tilesets, the description first; of
+/// an ESRI ASCII grid the file of its coordinate system, too.
+std::vector<std::filesystem::path> files_of_scan(const std::filesystem::path& path);
+
 /// What can be told of a scan from its header: whether it exists, has a known format, and its header makes sense.
 /// Formats without a header pass.
 Status check_header(const std::filesystem::path& path);

@@ -295,8 +295,6 @@ Status RenderService::State::start_threads(Drawers drawers) {
   pool = std::make_unique<WorkerPool>(limits.encoders, /*small_threads=*/1);
   lookups = std::make_unique<WorkerPool>(1);
   motion_pool = std::make_unique<WorkerPool>(1);
-  // Loads the codecs while the first picture is drawn. A failure is reported when the first picture is encoded.
-  motion_pool->post([] { static_cast<void>(surfcast::encode::prepare_encoding()); });
   picks = std::make_unique<PickService>(models, limits.picks, std::move(drawers.queries));
   std::promise<Status> promise;
   std::future<Status> started = promise.get_future();

@@ -49,6 +49,17 @@ TEST(InputFilesTest, AreTheFileAndThoseThatItNames) {
   EXPECT_THAT(files(scan), ElementsAre(scan));
 }
 
+TEST(InputFilesTest, OfAnAsciiGridAreItsOwnAndThatOfItsCoordinateSystem) {
+  const model::TestFolder folder;
+  const fs::path grid = write(folder / "dem.asc", "ncols 1\nnrows 1\nxllcorner 0\nyllcorner 0\ncellsize 1\n5\n");
+  EXPECT_THAT(files_of_input(grid).value(), ElementsAre(grid));
+  const fs::path system = write(folder / "dem.prj", "LOCAL_CS[\"site\"]");
+  EXPECT_THAT(files_of_input(grid).value(), ElementsAre(grid, system));
+  const fs::path points = write(folder / "points.asc", "1 2 3\n");
+  write(folder / "points.prj", "LOCAL_CS[\"site\"]");
+  EXPECT_THAT(files_of_input(points).value(), ElementsAre(points));
+}
+
 TEST(InputFilesTest, OfAFolderWithASogModelAreItsDescriptionAndItsPictures) {
   const model::TestFolder folder;
   const fs::path sog = folder / "robot";

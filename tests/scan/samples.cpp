@@ -165,6 +165,8 @@ std::vector<Sample> samples() {
       {"header.csv", "X,Y,Z,Red,Green,Blue\n1,2,3,255,0,0\n4,5,6,0,255,0\n"},
       {"station.ptx",
        "1\n2\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n1 0 0 0\n0 1 0 0\n0 0 1 0\n5 6 7 1\n1 2 3 0.5 1 2 3\n0 0 0 0.5 0 0 0\n"},
+      {"heights.asc",
+       "ncols 3\nnrows 2\nxllcorner 10\nyllcorner 20\ncellsize 2\nNODATA_value -9999\n1 2.5 3\n-9999 5 6\n"},
       {"kd_tree.drc", draco_cloud(true)},
       {"sequential.drc", draco_cloud(false)},
   };

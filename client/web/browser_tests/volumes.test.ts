@@ -32,11 +32,12 @@ class Ball extends Session {
     await look.sharp(this.page);
   }
 
-  /** The parameter of the address, once it passes. */
+  /** The parameter of the address, once it passes after all that has been done: not in the midst of a drag. */
   async parameter(name: string, passes: (value: string | null) => boolean): Promise<string> {
-    const read = (): string | null => new URLSearchParams(new URL(this.page.url()).hash.split('?')[1]).get(name);
-    await expect.poll(() => passes(read())).toBe(true);
-    return read() ?? '';
+    let value: string | null = null;
+    const read = async (): Promise<boolean> => passes((value = (await look.placeNow(this.page)).get(name)));
+    await expect.poll(read).toBe(true);
+    return value ?? '';
   }
 
   /** Waits for a picture that differs from the one of a checksum, and is whole. */

@@ -12,6 +12,7 @@ const flags = [
   '--disable-background-networking',
   '--disable-component-update',
   '--disable-sync',
+  '--disable-site-isolation-trials', // one process less for each page
 ];
 
 export const launch = (): Promise<Browser> =>
@@ -118,6 +119,7 @@ export async function turned(page: Page, action: () => Promise<void>): Promise<v
 
 /** The parameters of the address once it has been updated to the view. */
 export async function placeNow(page: Page): Promise<URLSearchParams> {
+  await noted(page);
   await page.waitForFunction(() => location.hash.includes('position='));
   // Timers of a page end in their order: this one after that of the address, which is shorter and began before.
   await page.evaluate(() => new Promise((resolve) => setTimeout(resolve, 300)));
