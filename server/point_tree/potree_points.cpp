@@ -28,7 +28,9 @@ ldc::OctreeKey key_of_name(std::string_view name) {
 class PotreeReader : public NodeReader {
  public:
   PotreeReader(std::unique_ptr<const ByteSource> description, FileSource points, scan::Potree2Folder folder)
-      : description_(std::move(description)), points_(std::move(points)), folder_(std::move(folder)) {}
+      : description_(std::move(description)), points_(std::move(points)), folder_(std::move(folder)) {
+    traits_.grid = folder_.grid;
+  }
 
   [[nodiscard]] const scan::RowTraits& traits() const override { return traits_; }
   [[nodiscard]] const std::vector<scan::ColumnInfo>& columns() const override { return folder_.columns; }

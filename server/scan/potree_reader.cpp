@@ -422,7 +422,11 @@ Result<Potree2Folder> open_potree2(const fs::path& metadata) {
   if (!parsed) return fail(std::move(parsed.error()));
   const auto scan = std::make_shared<const PotreeScan>(std::move(*parsed));
   return Potree2Folder{
-      scan->cube, scan->spacing, scan->nodes, scan->columns(),
+      scan->cube,
+      scan->spacing,
+      {scan->scale, scan->offset},
+      scan->nodes,
+      scan->columns(),
       [scan](const PotreeNode& node, std::span<const std::byte> bytes) { return points_of_node2(*scan, node, bytes); }};
 }
 

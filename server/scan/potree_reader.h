@@ -11,6 +11,7 @@
 #include "scan/potree_index.h"
 #include "scan/row_source.h"
 #include "scan/selection.h"
+#include "surfel/grid.h"
 
 namespace surfcast::scan {
 
@@ -25,6 +26,7 @@ Result<std::unique_ptr<RowSource>> potree2_rows(const std::filesystem::path& met
 struct Potree2Folder {
   geometry::Box cube;
   double spacing = 0;  ///< of the points of the root, as stated; 0: not stated
+  surfel::Grid grid;   ///< of all positions
   std::vector<PotreeNode> nodes;
   std::vector<ColumnInfo> columns;
   /// The points of a node, whose bytes of octree.bin these are. They refer to nothing else than the table. Thread-safe.
