@@ -98,6 +98,7 @@ std::vector<ClassCount> merged_classes(std::span<const Member> members) {
   if (counts.empty()) return {};
   if (without > 0) counts[0] += without;
   std::vector<ClassCount> classes;
+  classes.reserve(counts.size());
   for (const auto& [code, surfels] : counts) classes.push_back({code, surfels});
   return classes;
 }
