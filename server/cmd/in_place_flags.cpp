@@ -51,15 +51,22 @@ bool is_in_place(const std::filesystem::path& path, const InPlaceOptions& option
   return options.files && point_tree::tree_format_of(file.string()) && std::filesystem::exists(file, ignored);
 }
 
+Result<model::ModelFile> InPlaceOpener::open_stored(const std::string& url, const std::string& shown) const {
+  Result<std::unique_ptr<FileFolder>> folder = store_->open_folder(url);
+  if (!folder) return fail(std::move(folder.error()));
+  return store_->open_source(url, shown).and_then([&](std::unique_ptr<ByteSource> source) {
+    return point_tree::open_in_place(*point_tree::tree_format_of(object_store::shown_url(url)), std::move(source),
+                                     std::move(*folder), options_.limits, cache_);
+  });
+}
+
 Result<model::ModelFile> InPlaceOpener::open(const std::filesystem::path& path, const std::string& shown) const {
   const std::string url = path.string();
   if (object_store::is_object_url(url)) {
-    const point_tree::TreeFormat format = *point_tree::tree_format_of(object_store::shown_url(url));
-    Result<std::unique_ptr<FileFolder>> folder = store_->open_folder(url);
-    if (!folder) return fail(std::move(folder.error()));
-    return store_->open_source(url, shown).and_then([&](std::unique_ptr<ByteSource> source) {
-      return point_tree::open_in_place(format, std::move(source), std::move(*folder), options_.limits, cache_);
-    });
+    Result<model::ModelFile> model = open_stored(url, shown);
+    // Replaced between two of the requests that opening takes.
+    const bool again = !model && model.error().kind == ErrorKind::kReplaced;
+    return again ? open_stored(url, shown) : std::move(model);
   }
   const std::filesystem::path described = tree_file(path);
   Result<PositionedFile> file = PositionedFile::open(described);

@@ -37,6 +37,8 @@ class InPlaceOpener {
   [[nodiscard]] Result<model::ModelFile> open(const std::filesystem::path& path, const std::string& shown) const;
 
  private:
+  [[nodiscard]] Result<model::ModelFile> open_stored(const std::string& url, const std::string& shown) const;
+
   const object_store::ObjectStore* store_;
   InPlaceOptions options_;
   std::shared_ptr<model::BlockCache> cache_;

@@ -13,7 +13,6 @@ namespace surfcast::point_tree {
 /// The values of some rows, appended to others.
 template <typename T>
 void append_rows(const std::vector<T>& from, std::span<const uint32_t> rows, std::vector<T>& to) {
-  to.reserve(to.size() + rows.size());
   for (const uint32_t row : rows) to.push_back(from[row]);
 }
 
@@ -23,8 +22,8 @@ inline void append_rows(const surfel::ScalarValues& from, std::span<const uint32
 }
 
 /// No points, with the attributes of others. `Points`: ScanPoints or SurfelCloud.
-template <typename Points = scan::ScanPoints>
-Points empty_like(const scan::ScanPoints& other) {
+template <typename Points = scan::ScanPoints, typename From>
+Points empty_like(const From& other) {
   Points none;
   if (other.colors) none.colors = surfel::ColorAttribute{other.colors->bits, {}};
   for (const surfel::ScalarAttribute& scalar : other.scalars) {
@@ -37,8 +36,8 @@ Points empty_like(const scan::ScanPoints& other) {
 }
 
 /// Appends rows of points to points with the same attributes. Radii are not needed.
-template <typename Points>
-void append_points(const scan::ScanPoints& from, std::span<const uint32_t> rows, Points& to) {
+template <typename From, typename Points>
+void append_points(const From& from, std::span<const uint32_t> rows, Points& to) {
   append_rows(from.positions, rows, to.positions);
   if (!from.normals.empty()) append_rows(from.normals, rows, to.normals);
   if (from.colors) append_rows(from.colors->values, rows, to.colors->values);

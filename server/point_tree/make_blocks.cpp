@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
+#include <numeric>
 #include <utility>
 
 #include "geometry/morton.h"
@@ -21,54 +21,42 @@ namespace {
 /// the node and four times that of its parent, more than the 32 nearest neighbours need.
 constexpr double kHalo = 1.0 / 16;
 
-/// A point of a path.
-struct PathPoint {
-  uint64_t code = 0;
-  uint32_t step = 0;  ///< of the path
-  uint32_t row = 0;
+/// Rows of a node.
+using Rows = std::vector<uint32_t>;
 
-  [[nodiscard]] bool operator<(const PathPoint& other) const {
-    return std::tie(code, step, row) < std::tie(other.code, other.step, other.row);
-  }
-};
-
-/// The points of a path in a cell, along the Morton order.
-std::vector<PathPoint> points_within(const PointPath& path, const CodeRange& cell) {
-  std::vector<PathPoint> points;
-  for (uint32_t step = 0; step < path.size(); ++step) {
-    const std::vector<uint64_t>& codes = path[step]->codes;
-    const auto first = std::ranges::lower_bound(codes, cell.first);
-    const auto last = std::lower_bound(first, codes.end(), cell.last);
-    for (auto code = first; code != last; ++code) {
-      points.push_back({*code, step, static_cast<uint32_t>(code - codes.begin())});
-    }
-  }
-  std::sort(points.begin(), points.end());
-  return points;
+/// The rows of a node in a cell.
+Rows rows_within(const NodePoints& node, const CodeRange& cell) {
+  const auto first = std::ranges::lower_bound(node.codes, cell.first);
+  const auto last = std::lower_bound(first, node.codes.end(), cell.last);
+  Rows rows(static_cast<size_t>(last - first));
+  std::iota(rows.begin(), rows.end(), static_cast<uint32_t>(first - node.codes.begin()));
+  return rows;
 }
 
-/// The points of a path in a box, but not in the cell within.
-std::vector<PathPoint> points_around(const PointPath& path, const CodeRange& cell, const geometry::Box& box) {
-  std::vector<PathPoint> points;
-  for (uint32_t step = 0; step < path.size(); ++step) {
-    const NodePoints& node = *path[step];
-    for (uint32_t row = 0; row < node.codes.size(); ++row) {
-      if (cell.contains(node.codes[row]) || !geometry::contains(box, node.points.positions[row])) continue;
-      points.push_back({node.codes[row], step, row});
-    }
+/// The rows of a node in a box, but not in the cell within.
+Rows rows_around(const NodePoints& node, const CodeRange& cell, const geometry::Box& box) {
+  Rows rows;
+  for (uint32_t row = 0; row < node.codes.size(); ++row) {
+    if (!cell.contains(node.codes[row]) && geometry::contains(box, node.points.positions[row])) rows.push_back(row);
   }
-  return points;
+  return rows;
 }
 
-/// Appends points in their order. Runs of one step are appended together.
-void append(const PointPath& path, std::span<const PathPoint> points, surfel::SurfelCloud& cloud) {
-  std::vector<uint32_t> rows;
-  for (size_t i = 0; i < points.size();) {
-    const uint32_t step = points[i].step;
-    rows.clear();
-    for (; i < points.size() && points[i].step == step; ++i) rows.push_back(points[i].row);
-    append_points(path[step]->points, rows, cloud);
+/// The points of a path in a cell, along the Morton order; equal ones by the depth of their nodes.
+CellSurfels points_within(const PointPath& path, const CodeRange& range) {
+  CellSurfels unsorted{empty_like<surfel::SurfelCloud>(path.front()->points), {}};
+  for (const std::shared_ptr<const NodePoints>& node : path) {
+    const Rows rows = rows_within(*node, range);
+    append_points(node->points, rows, unsorted.cloud);
+    for (const uint32_t row : rows) unsorted.codes.push_back(node->codes[row]);
   }
+  Rows order(unsorted.codes.size());
+  std::iota(order.begin(), order.end(), 0U);
+  std::ranges::stable_sort(order, {}, [&](uint32_t i) { return unsorted.codes[i]; });
+  CellSurfels sorted{empty_like<surfel::SurfelCloud>(unsorted.cloud), {}};
+  append_points(unsorted.cloud, order, sorted.cloud);
+  append_rows(unsorted.codes, order, sorted.codes);
+  return sorted;
 }
 
 void drop_duplicates(CellSurfels& cell) {
@@ -93,6 +81,7 @@ scan::PartFrame frame_of(const surfel::SurfelCloud& cloud, const Cells& cells, c
   frame.surface_steps = {std::nullopt};
   frame.inputs = {0};
   frame.radii = scan::RadiusPolicy::kEstimate;
+  frame.sides = false;
   frame.points = cloud.size();
   return frame;
 }
@@ -193,11 +182,8 @@ CellSurfels surfels_of_node(const NodeTree& tree, uint32_t node, const PointPath
   const ldc::OctreeKey& key = tree.nodes[node].key;
   const scan::ScanSchema& schema = meaning.schema;
   const CodeRange range(key);
-  const std::vector<PathPoint> own = points_within(path, range);
-  CellSurfels cell{empty_like<surfel::SurfelCloud>(path.front()->points), {}};
-  append(path, own, cell.cloud);
-  for (const PathPoint& point : own) cell.codes.push_back(point.code);
-  if (own.empty()) return cell;
+  CellSurfels cell = points_within(path, range);
+  if (cell.codes.empty()) return cell;
   cell.cloud.sources = {{schema.name, 0, cell.cloud.size(), schema.grid}};
   drop_duplicates(cell);
   const size_t count = cell.codes.size();
@@ -205,7 +191,9 @@ CellSurfels surfels_of_node(const NodeTree& tree, uint32_t node, const PointPath
   const double halo = kHalo * cells.side_of(key.depth);
   around.min -= halo;
   around.max += halo;
-  append(path, points_around(path, range, around), cell.cloud);
+  for (const std::shared_ptr<const NodePoints>& step : path) {
+    append_points(step->points, rows_around(*step, range, around), cell.cloud);
+  }
   estimate_surfels(cells, key, schema, cell.cloud);
   cell.cloud.weights = surfel::normalization_weights(cell.cloud);
   cut(cell.cloud, count);

@@ -228,10 +228,10 @@ void find_radii(const Sites& sites, const NeighbourGraph& graph, const SiteFacts
 
 /// Copies the normals of the sites to points without one. Returns the tree of each point, or kNoTree.
 std::vector<uint32_t> fill_normals(const Sites& sites, const NeighbourGraph& graph, const SiteFacts& facts,
-                                   std::vector<glm::vec3> normals, surfel::SurfelCloud& cloud, PartSigns& signs,
-                                   SurfelReport& report) {
-  const std::vector<uint32_t> tree_of =
-      orient_normals({sites, graph, facts.known, facts.towards, facts.places}, normals, signs);
+                                   std::vector<glm::vec3> normals, bool sides, surfel::SurfelCloud& cloud,
+                                   PartSigns& signs, SurfelReport& report) {
+  std::vector<uint32_t> tree_of(sides ? 0 : sites.size(), kNoTree);
+  if (sides) tree_of = orient_normals({sites, graph, facts.known, facts.towards, facts.places}, normals, signs);
   std::vector<uint32_t> trees(cloud.size(), kNoTree);
   cloud.normals.resize(cloud.size(), glm::vec3(std::nanf("")));
   report.normals_estimated += count_own(sites, facts, [&](size_t i) {
@@ -260,7 +260,8 @@ PartSurfels make_surfels(surfel::SurfelCloud cloud, const PartFrame& frame, Part
   PartSurfels made;
   made.cloud = std::move(cloud);
   find_radii(sites, findings.graph, facts, std::move(findings.guesses), frame, made);
-  made.trees = fill_normals(sites, findings.graph, facts, std::move(findings.normals), made.cloud, signs, report);
+  made.trees =
+      fill_normals(sites, findings.graph, facts, std::move(findings.normals), frame.sides, made.cloud, signs, report);
   return made;
 }
 

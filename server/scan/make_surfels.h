@@ -25,6 +25,7 @@ struct PartFrame {
   std::vector<std::optional<double>> surface_steps;  ///< of each source, see ScanSchema; empty: none is known
   std::vector<size_t> inputs;                        ///< index of the input of each source
   RadiusPolicy radii = RadiusPolicy::kAuto;
+  bool sides = true;    ///< whether estimated normals are to have signs that are consistent
   uint64_t points = 0;  ///< of the whole cloud
 };
 

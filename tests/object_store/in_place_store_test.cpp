@@ -1,0 +1,168 @@
+#include <chrono>
+#include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "client/run_program.h"
+#include "model/test_folder.h"
+#include "object_store/range_server.h"
+
+namespace surfcast::object_store {
+namespace {
+
+using testing::Fault;
+using ::testing::HasSubstr;
+using testing::RangeServer;
+
+namespace fs = std::filesystem;
+
+constexpr const char* kCopc = "/scans/hills.copc.laz";
+
+std::string file_content(const fs::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  std::ostringstream text;
+  text << stream.rdbuf();
+  return text.str();
+}
+
+/// The program itself shows scans in place that a server holds, which fails as it is told.
+class InPlaceStoreTest : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    ::setenv("no_proxy", "127.0.0.1", 1);
+    write_scan("hills", 0);
+    server_.put(kCopc, file_content(file("hills.copc.laz")));
+  }
+
+  /// A coloured surface as COPC and EPT; `turn`: of its colours.
+  void write_scan(const std::string& name, int turn) const {
+    constexpr int kSide = 250;
+    std::ofstream ply(file(name + ".ply"));
+    ply << "ply\nformat ascii 1.0\nelement vertex " << kSide * kSide
+        << "\nproperty float x\nproperty float y\nproperty float z\n"
+           "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n";
+    for (int i = 0; i < kSide * kSide; ++i) {
+      const int x = i % kSide;
+      const int y = i / kSide;
+      ply << x << ' ' << y << ' ' << std::sin(0.1 * x) * std::cos(0.07 * y) * 5 << ' ' << (x + turn) % 256 << ' ' << y
+          << ' ' << (x * y + turn) % 256 << '\n';
+    }
+    ply.close();
+    for (const char* target : {".copc.laz", "/ept.json"}) {
+      ASSERT_EQ(client::run_program(SURFCASTD " export " + file(name + ".ply") + " --chunk 2000 --output " +
+                                    file(name + target) + " 2>&1")
+                    .code,
+                0);
+    }
+  }
+
+  /// Puts all files of the EPT folder into the store. Returns the URL of its description.
+  [[nodiscard]] std::string put_ept() {
+    for (const auto& entry : fs::recursive_directory_iterator(file("hills"))) {
+      if (!entry.is_regular_file()) continue;
+      const std::string path = "/scans/hills/" + fs::relative(entry.path(), file("hills")).string();
+      if (path.ends_with("/ept.json")) {
+        server_.put(path, file_content(entry.path()));
+      } else {
+        server_.put_page(path, file_content(entry.path()));
+      }
+    }
+    return server_.url("/scans/hills/ept.json");
+  }
+
+  [[nodiscard]] client::ProgramOutcome draw(const std::string& scan, const std::string& flags = {}) const {
+    fs::remove(picture());
+    return client::run_program(SURFCASTD " render " + scan + " --in-place --resolution 160,120 --output " + picture() +
+                               " --store-timeout 3 --store-stall-timeout 0.3 " + flags + " 2>&1 >/dev/null");
+  }
+  [[nodiscard]] std::string drawn(const std::string& scan, const std::string& flags = {}) const {
+    const client::ProgramOutcome outcome = draw(scan, flags);
+    EXPECT_EQ(outcome.code, 0) << outcome.output;
+    return file_content(picture());
+  }
+  [[nodiscard]] std::string file(const std::string& name) const { return (folder_ / name.c_str()).string(); }
+  [[nodiscard]] std::string picture() const { return file("picture.png"); }
+
+  model::TestFolder folder_;
+  RangeServer server_;
+};
+
+TEST_F(InPlaceStoreTest, AUrlIsShownLikeTheFileAndOnlyWhatAPictureNeedsIsFetched) {
+  const std::string expected = drawn(file("hills.copc.laz"));
+  EXPECT_TRUE(drawn(server_.url(kCopc)) == expected);
+  server_.forget_requests();
+  const uint64_t before = server_.bytes();
+  EXPECT_FALSE(drawn(server_.url(kCopc), "--spacing 8").empty());
+  EXPECT_LT(server_.bytes() - before, fs::file_size(file("hills.copc.laz")) / 2);
+}
+
+TEST_F(InPlaceStoreTest, AFolderOfEptIsShownLikeOneOfThisMachine) {
+  const std::string expected = drawn(file("hills"));
+  EXPECT_TRUE(drawn(put_ept()) == expected);
+}
+
+TEST_F(InPlaceStoreTest, BlocksOnDiskAreNotMadeAgainAndShowTheSame) {
+  const std::string cache = "--block-cache 64M --cache " + file("cache");
+  const std::string first = drawn(server_.url(kCopc), cache);
+  const uint64_t before = server_.bytes();
+  EXPECT_TRUE(drawn(server_.url(kCopc), cache) == first);
+  EXPECT_LT(server_.bytes() - before, before / 2) << "the head, the hierarchy and the root";
+}
+
+TEST_F(InPlaceStoreTest, InspectPickAndExportTakeUrls) {
+  const client::ProgramOutcome inspected = client::run_program(SURFCASTD " inspect " + server_.url(kCopc));
+  EXPECT_THAT(inspected.output, HasSubstr("in place"));
+  EXPECT_THAT(inspected.output, HasSubstr("surfels: 62500"));
+  const client::ProgramOutcome picked =
+      client::run_program(SURFCASTD " pick " + server_.url(kCopc) + " --resolution 160,120 --pixel 80,60 2>&1");
+  EXPECT_EQ(picked.code, 0) << picked.output;
+  const client::ProgramOutcome exported =
+      client::run_program(SURFCASTD " export " + server_.url(kCopc) + " --output " + file("out.csv") + " 2>&1");
+  EXPECT_THAT(exported.output, HasSubstr("62500 points"));
+}
+
+TEST_F(InPlaceStoreTest, WhatPassesChangesNoPixel) {
+  const std::string expected = drawn(file("hills.copc.laz"));
+  for (const Fault fault : {Fault::kBusy, Fault::kCut, Fault::kHanging, Fault::kStalling}) {
+    server_.fail(fault, 2, /*after=*/2);
+    EXPECT_TRUE(drawn(server_.url(kCopc)) == expected) << static_cast<int>(fault);
+  }
+}
+
+TEST_F(InPlaceStoreTest, WhatDoesNotPassIsOneLineInTimeAndNoPicture) {
+  const auto start = std::chrono::steady_clock::now();
+  ASSERT_EQ(draw(file("hills.copc.laz")).code, 0);
+  const auto usual = std::chrono::steady_clock::now() - start;
+  for (const Fault fault :
+       {Fault::kWholeObject, Fault::kForbidden, Fault::kAbsent, Fault::kNoSuchRange, Fault::kBusy, Fault::kCut,
+        Fault::kHanging, Fault::kStalling, Fault::kWrongRange, Fault::kShiftedRange, Fault::kReplaced}) {
+    server_.fail(fault, 1000, /*after=*/2);
+    const auto begin = std::chrono::steady_clock::now();
+    const client::ProgramOutcome outcome = draw(server_.url(kCopc));
+    EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(8) + 2 * usual)
+        << "without the flags it would be ten seconds more than usual";
+    EXPECT_EQ(outcome.code, 1) << static_cast<int>(fault);
+    EXPECT_THAT(outcome.output, HasSubstr("surfcastd: " + server_.url(kCopc)));
+    EXPECT_FALSE(fs::exists(picture())) << static_cast<int>(fault);
+  }
+}
+
+TEST_F(InPlaceStoreTest, AScanThatIsReplacedWhileItIsDrawnIsOpenedAnewAndNeverMixed) {
+  write_scan("other", 100);
+  const std::string other = file_content(file("other.copc.laz"));
+  const std::string expected = drawn(file("other.copc.laz"));
+  ASSERT_FALSE(expected == drawn(file("hills.copc.laz")));
+  for (const size_t answers : {1U, 2U, 3U}) {  // before the hierarchy, the root, and other nodes
+    server_.put(kCopc, file_content(file("hills.copc.laz")));
+    server_.put_after(answers, kCopc, other);
+    EXPECT_TRUE(drawn(server_.url(kCopc)) == expected) << answers;
+  }
+}
+
+}  // namespace
+}  // namespace surfcast::object_store
