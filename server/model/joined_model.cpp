@@ -98,6 +98,7 @@ std::vector<ClassCount> merged_classes(std::span<const Member> members) {
   if (counts.empty()) return {};
   if (without > 0) counts[0] += without;
   std::vector<ClassCount> classes;
+  classes.reserve(counts.size());
   for (const auto& [code, surfels] : counts) classes.push_back({code, surfels});
   return classes;
 }
@@ -258,9 +259,9 @@ Result<JoinedTables> join_tables(std::span<const Member> members) {
   return tables;
 }
 
-DecodedBlock conform(DecodedBlock block, int color_bits, const ModelInfo& joined, std::span<const ScalarColumn> scalars,
+DecodedBlock conform(DecodedBlock block, int color_bits, int joined_color_bits, std::span<const ScalarColumn> scalars,
                      WantedScalars wanted) {
-  conform_colors(color_bits, joined.color_bits, block);
+  conform_colors(color_bits, joined_color_bits, block);
   std::vector<surfel::ScalarAttribute> conformed;
   for (const ScalarColumn& column : scalars) {
     if (wanted != WantedScalars::kAll && is_left_out(column.name, block)) continue;

@@ -18,6 +18,11 @@ namespace {
 constexpr size_t kFirstCorner = 7;
 using Probes = std::array<glm::dvec3, kFirstCorner + 8>;
 
+/// Where the middle of the low face along an axis is; that of the high one follows.
+size_t low_face(int axis) {
+  return 1 + 2 * static_cast<size_t>(axis);
+}
+
 /// Half the size of a block, at least half a spacing, so that derivatives are those of a length.
 glm::dvec3 half_size(const ldc::BlockEntry& block) {
   const double least = block.spacing > 0 ? block.spacing : 1;
@@ -30,8 +35,8 @@ Probes probes_of(const glm::dvec3& centre, const glm::dvec3& half) {
   for (int axis = 0; axis < 3; ++axis) {
     glm::dvec3 step(0);
     step[axis] = half[axis];
-    probes[static_cast<size_t>(1 + 2 * axis)] = centre - step;
-    probes[static_cast<size_t>(2 + 2 * axis)] = centre + step;
+    probes[low_face(axis)] = centre - step;
+    probes[low_face(axis) + 1] = centre + step;
   }
   for (int corner = 0; corner < 8; ++corner) {
     const glm::dvec3 sides(corner & 1, corner >> 1 & 1, corner >> 2 & 1);
@@ -44,7 +49,7 @@ Probes probes_of(const glm::dvec3& centre, const glm::dvec3& half) {
 glm::dmat4x3 map_of(const glm::dvec3& centre, const glm::dvec3& half, const Probes& there) {
   glm::dmat4x3 map;
   for (int axis = 0; axis < 3; ++axis) {
-    const auto low = static_cast<size_t>(1 + 2 * axis);
+    const size_t low = low_face(axis);
     map[axis] = (there[low + 1] - there[low]) / (2 * half[axis]);
   }
   map[3] = there[0] - glm::dmat3(map[0], map[1], map[2]) * centre;
