@@ -207,7 +207,8 @@ Status check_class_opacities(const wire::DrawPicture& picture) {
 }
 
 Status check_hidden_models(const wire::DrawPicture& picture) {
-  if (picture.hidden_models().size() > static_cast<int>(kMaxJoinedModels)) return invalid("hide_models: too many models");
+  if (picture.hidden_models().size() > static_cast<int>(kMaxJoinedModels))
+    return invalid("hide_models: too many models");
   for (const std::string& name : picture.hidden_models()) {
     if (name.empty() || name.size() > kMaxModelNameBytes) return invalid("hide_models: names of 1 to 512 bytes");
   }

@@ -152,6 +152,7 @@ Volume one_brick_volume(const std::string& name) {
   volume.name = name;
   volume.size = {40, 33, 1};
   volume.histogram.assign(kHistogramBins, 0);
+  volume.histogram.front() = volume.samples();
   volume.high = 1;
   return volume;
 }
@@ -176,7 +177,9 @@ ModelPointer volume_model(const std::filesystem::path& path, const std::string& 
   }
   writer->set_volumes({one_brick_volume(name)});
   if (!writer->finish()) throw std::runtime_error("the volume cannot be written");
-  return shared(*ModelFile::open(path));
+  Result<ModelFile> model = ModelFile::open(path);
+  if (!model) throw std::runtime_error(model.error().message);
+  return shared(std::move(*model));
 }
 
 TEST(JoinedModel, NumbersTheVolumesOfAllMembers) {
