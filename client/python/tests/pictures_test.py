@@ -51,7 +51,7 @@ def over_http(running: RunningServer, model: str, options: Mapping[str, str]) ->
         ("field", "color_by", "intensity", "intensity"),
         ("field", "color_by", "classification", "classification"),
         ("field", "hide_classes", [6], "6"),
-        ("field+ball", "hide_models", ["ball"], "ball"),
+        ("ball+tensors", "hide_models", ["tensors"], "tensors"),
         ("field", "clip_box", surfcast.Box(BOX[:3], BOX[3:]), BOX_TEXT),
         ("field", "clip_out", [(BOX[:3], BOX[3:])], BOX_TEXT),
         ("field", "eye_dome", 1.0, "1"),
