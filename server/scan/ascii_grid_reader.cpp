@@ -28,9 +28,8 @@ struct GridHeader {
 
   /// The middle of a cell; cells are counted from the north-western one, row by row.
   [[nodiscard]] glm::dvec2 middle(uint64_t cell) const {
-    const auto column = static_cast<double>(cell % columns);
-    const auto from_south = static_cast<double>(rows - 1 - cell / columns);
-    return first + step * glm::dvec2(column, from_south);
+    const uint64_t from_north = cell / columns;
+    return first + step * glm::dvec2(cell % columns, rows - 1 - from_north);
   }
   [[nodiscard]] bool has_value(double height) const { return std::isfinite(height) && height != no_value; }
 };
