@@ -106,8 +106,7 @@ bool set_hidden_classes(wire::DrawPicture& picture, std::string_view text) {
 bool set_hidden_models(wire::DrawPicture& picture, std::string_view text) {
   google::protobuf::RepeatedPtrField<std::string> models;
   for (const std::string_view name : split(text, ',')) {
-    if (name.empty() || name.size() > kMaxModelNameBytes || models.size() == static_cast<int>(kMaxJoinedModels))
-      return false;
+    if (name.empty()) return false;  // check_picture has the other limits
     *models.Add() = std::string(name);
   }
   picture.mutable_hidden_models()->Swap(&models);

@@ -151,7 +151,7 @@ class Planner {
 uint64_t most_points_of_ancestors(const NodeTree& tree, uint32_t node) {
   // Cells of the spacing along a side, as stated or as is common; one more on either side for what is not aligned.
   const double stated = tree.cells.side / tree.spacing;
-  const double cells = std::isfinite(stated) ? std::clamp(stated, 32.0, 1024.0) : 128.0;
+  const double cells = std::isfinite(stated) ? std::clamp(stated, 32.0, 1024.0) : kCommonCells;
   uint64_t sum = 0;
   int above = 1;
   for (uint32_t at = tree.nodes[node].parent; at != Node::kNone; at = tree.nodes[at].parent, ++above) {

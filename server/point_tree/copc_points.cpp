@@ -137,9 +137,8 @@ Result<OpenedTree> open_copc(std::unique_ptr<const ByteSource> file, uint64_t mo
   if (!read) return fail(read.error());
   Result<std::vector<Node>> nodes = checked_nodes(*read, head->header.record_length, file->size());
   if (!nodes) return fail(std::move(nodes.error()));
-  constexpr double kCommonCells = 128;  // along the side of a node
-  const double spacing = info->spacing > 0 && info->spacing <= info->side ? info->spacing : info->side / kCommonCells;
-  Result<NodeTree> tree = arrange_nodes(std::move(*nodes), {info->low, info->side}, spacing);
+  const Cells cells{info->low, info->side};
+  Result<NodeTree> tree = arrange_nodes(std::move(*nodes), cells, root_spacing(cells, info->spacing));
   if (!tree) return fail(std::move(tree.error()));
   OpenedTree opened;
   opened.bounds = stated_bounds(head->bytes);

@@ -1,6 +1,5 @@
 #include "point_tree/ept_points.h"
 
-#include <cmath>
 #include <utility>
 
 #include "base/invalid_input.h"
@@ -73,18 +72,8 @@ Result<scan::EptDescription> read_description(const ByteSource& file) {
   return scan::parse_ept(bytes);
 }
 
-/// The cube of the root. Cells of other boxes would not be cubes.
-Result<Cells> cells_of(const scan::EptDescription& ept) {
-  const glm::dvec3 size = ept.cube.size();
-  const double side = size.x;
-  const bool cube = side > 0 && std::isfinite(side) && std::abs(size.y - side) <= 1e-6 * side &&
-                    std::abs(size.z - side) <= 1e-6 * side;
-  if (!cube) return invalid_input("the EPT bounds are no cube");
-  return Cells{ept.cube.min, side};
-}
-
 Result<NodeTree> arrange_ept(const scan::EptDescription& ept, const scan::EptNodes& read) {
-  const Result<Cells> cells = cells_of(ept);
+  const Result<Cells> cells = cells_below(ept.cube);
   if (!cells) return fail(cells.error());
   std::vector<Node> nodes;
   nodes.reserve(read.size());
@@ -94,9 +83,7 @@ Result<NodeTree> arrange_ept(const scan::EptDescription& ept, const scan::EptNod
     node.points = points;
     nodes.push_back(node);
   }
-  constexpr double kCommonSpan = 128;
-  const double span = ept.span >= 1 && std::isfinite(ept.span) ? ept.span : kCommonSpan;
-  return arrange_nodes(std::move(nodes), *cells, cells->side / span);
+  return arrange_nodes(std::move(nodes), *cells, root_spacing(*cells, cells->side / ept.span));
 }
 
 }  // namespace

@@ -104,27 +104,11 @@ void estimate_surfels(const Cells& cells, const ldc::OctreeKey& key, const scan:
   cloud.oriented = schema.normals;
 }
 
-template <typename T>
-void cut(std::vector<T>& values, size_t count) {
-  if (values.size() > count) values.resize(count);
-}
-
 /// Leaves the first surfels.
 void cut(surfel::SurfelCloud& cloud, size_t count) {
-  cut(cloud.positions, count);
-  cut(cloud.normals, count);
-  cut(cloud.radii, count);
-  cut(cloud.weights, count);
-  cut(cloud.scatter, count);
-  if (cloud.colors) cut(cloud.colors->values, count);
-  for (surfel::ScalarAttribute& scalar : cloud.scalars) {
-    std::visit([count](auto& values) { cut(values, count); }, scalar.values);
-  }
-  cloud.sources.front().count = count;
-}
-
-uint32_t octant_at(uint64_t code, int depth) {
-  return ldc::octant_of_code(code, depth);
+  std::vector<bool> keep(cloud.size(), false);
+  std::fill_n(keep.begin(), count, true);
+  scan::keep_surfels(cloud, keep);
 }
 
 /// The surfels that a plan takes, before they are thinned or divided.
@@ -132,7 +116,7 @@ std::vector<uint32_t> members_of(const NodeTree& tree, const BlockPlan& plan, st
   const Node& node = tree.nodes[plan.node];
   std::vector<uint32_t> members;
   for (uint32_t i = 0; i < codes.size(); ++i) {
-    const uint32_t octant = octant_at(codes[i], node.key.depth);
+    const uint32_t octant = ldc::octant_of_code(codes[i], node.key.depth);
     const bool in_child = node.children[octant] != Node::kNone;
     const bool taken = plan.share == Share::kCell || (plan.share == Share::kOctant && octant == plan.octant) ||
                        (plan.share == Share::kRest && !in_child);

@@ -92,6 +92,19 @@ std::vector<uint32_t> NodeTree::path_to(uint32_t node) const {
   return path;
 }
 
+Result<Cells> cells_below(const geometry::Box& cube) {
+  const glm::dvec3 size = cube.size();
+  const double largest_error = 1e-6 * size.x;
+  const bool is_cube = size.x > 0 && std::isfinite(size.x) && std::abs(size.y - size.x) <= largest_error &&
+                       std::abs(size.z - size.x) <= largest_error;
+  if (!is_cube) return invalid_input("the bounds of the octree are no cube");
+  return Cells{cube.min, size.x};
+}
+
+double root_spacing(const Cells& cells, double stated) {
+  return stated > 0 && stated <= cells.side ? stated : cells.side / kCommonCells;
+}
+
 Result<NodeTree> arrange_nodes(std::vector<Node> nodes, const Cells& cells, double spacing) {
   const auto deep = std::ranges::find_if(nodes, [](const Node& n) { return n.key.depth > kDeepest; });
   if (deep != nodes.end()) {

@@ -41,6 +41,15 @@ struct Cells {
   [[nodiscard]] uint64_t code_of(const glm::dvec3& point, const ldc::OctreeKey& cell) const;
 };
 
+/// Cells along the side of a node, each with one point at most, that octrees of points commonly have.
+inline constexpr double kCommonCells = 128;
+
+/// The cells below a cube. An error if the box is none: its cells would not be cubes.
+Result<Cells> cells_below(const geometry::Box& cube);
+
+/// The spacing of the root as stated, or as is common if that makes no sense. World units.
+double root_spacing(const Cells& cells, double stated);
+
 /// The codes of the points in a cell: those in [first, last).
 struct CodeRange {
   uint64_t first = 0;

@@ -1,6 +1,5 @@
 #include "point_tree/potree_points.h"
 
-#include <cmath>
 #include <filesystem>
 #include <string_view>
 #include <system_error>
@@ -58,10 +57,8 @@ class PotreeReader : public NodeReader {
 };
 
 Result<NodeTree> arrange_potree(const scan::Potree2Folder& folder, uint64_t file_bytes) {
-  const glm::dvec3 size = folder.cube.size();
-  if (!(size.x > 0) || std::abs(size.y - size.x) > 1e-6 * size.x || std::abs(size.z - size.x) > 1e-6 * size.x) {
-    return invalid_input("the bounding box of the Potree octree is no cube");
-  }
+  const Result<Cells> cells = cells_below(folder.cube);
+  if (!cells) return fail(cells.error());
   std::vector<Node> nodes;
   nodes.reserve(folder.nodes.size());
   uint64_t bytes = 0;
@@ -77,9 +74,7 @@ Result<NodeTree> arrange_potree(const scan::Potree2Folder& folder, uint64_t file
     nodes.push_back(node);
   }
   if (bytes > file_bytes) return invalid_input("the bytes of its nodes overlap");
-  constexpr double kCommonCells = 128;
-  const bool stated = folder.spacing > 0 && folder.spacing <= size.x;
-  return arrange_nodes(std::move(nodes), {folder.cube.min, size.x}, stated ? folder.spacing : size.x / kCommonCells);
+  return arrange_nodes(std::move(nodes), *cells, root_spacing(*cells, folder.spacing));
 }
 
 }  // namespace

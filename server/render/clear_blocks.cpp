@@ -1,5 +1,8 @@
 #include "render/clear_blocks.h"
 
+#include <algorithm>
+#include <cstddef>
+
 #include "model/hidden_members.h"
 #include "render/visible_parts.h"
 
@@ -23,11 +26,14 @@ bool may_show(const model::ModelFile& model, size_t block, const std::vector<Vis
 
 namespace {
 
-/// Hides the blocks of these members, too.
+/// Hides the blocks of these members, too. The blocks of a member follow those of the one before.
 void hide_members(const model::ModelFile& model, const std::vector<bool>& hidden_members, std::vector<bool>& hidden) {
   hidden.resize(model.blocks().size(), false);
-  for (uint32_t block = 0; block < hidden.size(); ++block) {
-    if (hidden_members[model.part(block).member]) hidden[block] = true;
+  auto block = hidden.begin();
+  for (size_t member = 0; member < hidden_members.size(); ++member) {
+    const auto end = block + static_cast<std::ptrdiff_t>(model.members()[member].model->blocks().size());
+    if (hidden_members[member]) std::fill(block, end, true);
+    block = end;
   }
 }
 

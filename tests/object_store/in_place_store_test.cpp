@@ -1,5 +1,4 @@
 #include <chrono>
-#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <fstream>
@@ -10,6 +9,7 @@
 
 #include "client/run_program.h"
 #include "model/test_folder.h"
+#include "object_store/hills.h"
 #include "object_store/range_server.h"
 
 namespace surfcast::object_store {
@@ -41,18 +41,7 @@ class InPlaceStoreTest : public ::testing::Test {
 
   /// A coloured surface as COPC and EPT; `turn`: of its colours.
   void write_scan(const std::string& name, int turn) const {
-    constexpr int kSide = 250;
-    std::ofstream ply(file(name + ".ply"));
-    ply << "ply\nformat ascii 1.0\nelement vertex " << kSide * kSide
-        << "\nproperty float x\nproperty float y\nproperty float z\n"
-           "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n";
-    for (int i = 0; i < kSide * kSide; ++i) {
-      const int x = i % kSide;
-      const int y = i / kSide;
-      ply << x << ' ' << y << ' ' << std::sin(0.1 * x) * std::cos(0.07 * y) * 5 << ' ' << (x + turn) % 256 << ' ' << y
-          << ' ' << (x * y + turn) % 256 << '\n';
-    }
-    ply.close();
+    std::ofstream(file(name + ".ply")) << testing::hills(250, turn);
     for (const char* target : {".copc.laz", "/ept.json"}) {
       ASSERT_EQ(client::run_program(SURFCASTD " export " + file(name + ".ply") + " --chunk 2000 --output " +
                                     file(name + target) + " 2>&1")

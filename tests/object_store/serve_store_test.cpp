@@ -1,7 +1,7 @@
-#include <cmath>
 #include <cstdlib>
 
 #include "cmd/serve_fixture.h"
+#include "object_store/hills.h"
 #include "object_store/range_server.h"
 
 namespace surfcast::cmd {
@@ -12,21 +12,8 @@ using testing::RangeServer;
 
 constexpr const char* kList = "/bucket/?delimiter=%2F&list-type=2&prefix=";
 
-/// A coloured surface of so many points that its model is larger than what is read when it is opened.
-std::string hills() {
-  constexpr int kSide = 200;
-  std::ostringstream ply;
-  ply << "ply\nformat ascii 1.0\nelement vertex " << kSide * kSide
-      << "\nproperty float x\nproperty float y\nproperty float z\n"
-         "property uchar red\nproperty uchar green\nproperty uchar blue\nend_header\n";
-  for (int i = 0; i < kSide * kSide; ++i) {
-    const int x = i % kSide;
-    const int y = i / kSide;
-    ply << x << ' ' << y << ' ' << std::sin(0.1 * x) * std::cos(0.07 * y) * 5 << ' ' << x << ' ' << y << ' '
-        << (x * y) % 256 << '\n';
-  }
-  return ply.str();
-}
+/// Points on a side of a surface whose model is larger than what is read when it is opened.
+constexpr int kHillsSide = 200;
 
 /// The server itself, with models in a store.
 class ServeStoreTest : public ServeTest {
@@ -34,7 +21,7 @@ class ServeStoreTest : public ServeTest {
   void SetUp() override {
     ::setenv("no_proxy", "127.0.0.1", 1);
     ServeTest::SetUp();
-    model_ = build("square", hills());
+    model_ = build("square", testing::hills(kHillsSide));
     ASSERT_GT(model_.size(), size_t{64} << 10);
     store_.put("/bucket/square.surf", model_);
   }
