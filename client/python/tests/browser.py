@@ -61,7 +61,7 @@ async def _address(process: subprocess.Popen[str]) -> str:
 @asynccontextmanager
 async def open_page(url: str, folder: Path) -> AsyncIterator[Page]:
     """A page in a browser of its own, whose profile is in `folder`."""
-    program = shutil.which("chromium")
+    program = shutil.which("chromium-headless-shell") or shutil.which("chromium")
     assert program is not None
     flags = ["--headless", "--no-sandbox", "--disable-gpu", "--remote-debugging-port=0", "--window-size=1280,1000"]
     process = subprocess.Popen([program, *flags, f"--user-data-dir={folder}"], stderr=subprocess.PIPE, text=True)
