@@ -7,6 +7,8 @@ cd "$(dirname "$0")/.."
 
 # Inputs that are checked in full rather than by a sample.
 export SURFCAST_DAMAGED_INPUTS=10000
+export SURFCAST_STOPPED_BUILDS=40
+export SURFCAST_SOAK_SECONDS=60
 
 runs=${SURFCAST_NIGHTLY_RUNS:-20}
 load=${SURFCAST_NIGHTLY_LOAD:-4}

@@ -15,6 +15,7 @@
 
 #include "client/run_program.h"
 #include "cmd/wavy_scan.h"
+#include "support/sample_size.h"
 
 namespace surfcast::cmd {
 namespace {
@@ -22,7 +23,7 @@ namespace {
 namespace fs = std::filesystem;
 
 /// Moments that are tried beside the last ones, at even distances, where a build has more of them.
-constexpr long kMoments = 40;
+const long kMoments = testing::sample_size("SURFCAST_STOPPED_BUILDS", 10);
 /// So many at the end are all tried: there the model takes its place.
 constexpr long kLastMoments = 16;
 

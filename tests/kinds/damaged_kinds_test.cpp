@@ -13,7 +13,7 @@
 #include "kinds/kind_table.h"
 #include "model/damage.h"
 #include "model/format.h"
-#include "support/damaged_inputs.h"
+#include "support/sample_size.h"
 
 namespace surfcast::kinds {
 namespace {
@@ -123,7 +123,7 @@ TEST_P(DamagedKinds, AnyChangedByteIsNoticed) {
 
 TEST_P(DamagedKinds, ChangedTablesWithRightChecksumsAreRefusedOrDecode) {
   std::mt19937 random(2);
-  for (int rounds = testing::damaged_inputs(kSample); rounds > 0 && !HasFailure(); --rounds) {
+  for (int rounds = testing::sample_size("SURFCAST_DAMAGED_INPUTS", kSample); rounds > 0 && !HasFailure(); --rounds) {
     Bytes bytes = flipped(header_.directory_offset, whole_.size(), random);
     model::repair_tables(bytes, header_.directory_offset);
     static_cast<void>(read_within_bounds(folder_, bytes));
@@ -133,7 +133,7 @@ TEST_P(DamagedKinds, ChangedTablesWithRightChecksumsAreRefusedOrDecode) {
 TEST_P(DamagedKinds, ChangedBlocksWithRightChecksumsAreRefusedOrDecode) {
   std::mt19937 random(3);
   int decoded = 0;
-  for (int rounds = testing::damaged_inputs(kSample); rounds > 0 && !HasFailure(); --rounds) {
+  for (int rounds = testing::sample_size("SURFCAST_DAMAGED_INPUTS", kSample); rounds > 0 && !HasFailure(); --rounds) {
     Bytes bytes = flipped(model::kHeaderBytes, header_.directory_offset, random);
     model::repair_blocks(bytes, whole_);
     model::repair_tables(bytes, header_.directory_offset);

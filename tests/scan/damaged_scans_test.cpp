@@ -22,7 +22,7 @@
 #include "scan/samples.h"
 #include "scan/tile_files.h"
 #include "scan/whole_scan.h"
-#include "support/damaged_inputs.h"
+#include "support/sample_size.h"
 
 namespace surfcast::scan {
 namespace {
@@ -326,7 +326,7 @@ TEST_P(DamagedScanTest, TheUndamagedScanIsRead) {
 }
 
 TEST_P(DamagedScanTest, DamagedBytesAreReadOrRefusedWithinBounds) {
-  const int count = testing::damaged_inputs(250);
+  const int count = testing::sample_size("SURFCAST_DAMAGED_INPUTS", 250);
   const Scan& scan = GetParam();
   Random random(seed_of(scan.name));
   int refused = 0;

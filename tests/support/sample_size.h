@@ -4,10 +4,11 @@
 
 namespace surfcast::testing {
 
-/// The number of damaged inputs that a test tries: a sample, or SURFCAST_DAMAGED_INPUTS as in `make nightly`.
-inline int damaged_inputs(int sample) {
-  const char* wanted = std::getenv("SURFCAST_DAMAGED_INPUTS");
-  return wanted == nullptr ? sample : std::atoi(wanted);
+/// How many samples a test tries: as many as the environment variable `name` says, which `make nightly` sets, or
+/// `usual`.
+inline int sample_size(const char* name, int usual) {
+  const char* wanted = std::getenv(name);
+  return wanted == nullptr ? usual : std::atoi(wanted);
 }
 
 }  // namespace surfcast::testing
