@@ -261,10 +261,11 @@ endfunction()
 set(SURFCAST_TEST_OPTIONS -O0)
 set(SURFCAST_COMPUTING_TEST_OPTIONS $<$<CONFIG:Debug>:-O0> $<$<CONFIG:Release>:-O1>)
 
-# surfcast_test(NAME [WHOLE] SOURCES file... [LIBS lib...] [LABELS label...])
-# One GoogleTest program of one module. Every case becomes a separate ctest case. WHOLE keeps the cases together, for
-# programs whose start takes longer than their cases (a GL context and its shaders). A label is one word with parts that
-# ctest can select (-L gl, -LE slow): first the requirements of a test, then its suite, as in gl-slow-numerics.
+# surfcast_test(NAME [PARTS n] SOURCES file... [LIBS lib...] [LABELS label...])
+# One GoogleTest program of one module, and one test of ctest: most cases take less time than a process needs to start.
+# PARTS: the cases are dealt out to n tests, NAME_1 to NAME_n, which run beside each other. For programs that take more
+# than half a minute. A label is one word with parts that ctest can select (-L gl, -LE slow): first the requirements of a
+# test, then its suite, as in gl-slow-numerics.
 # Suites of the sanitizers: `bytes` and `hostile` read bytes of strangers, the latter slowly, and run under the address
 # sanitizer; `threads` is about threads and runs under the thread sanitizer; `sockets` uses threads beside, and runs
 # under it in `make nightly`, as all unit tests do under the address sanitizer.
@@ -272,7 +273,10 @@ set(SURFCAST_COMPUTING_TEST_OPTIONS $<$<CONFIG:Debug>:-O0> $<$<CONFIG:Release>:-
 # NIGHTLY: a filter of GoogleTest. The cases that it selects run in `make nightly` alone, not in `make test`: they are a
 # test of their own with the suite `nightly`.
 function(surfcast_test name)
-  cmake_parse_arguments(ARG "WHOLE;COMPUTES" "NIGHTLY" "SOURCES;LIBS;LABELS" ${ARGN})
+  cmake_parse_arguments(ARG "COMPUTES" "NIGHTLY;PARTS" "SOURCES;LIBS;LABELS" ${ARGN})
+  if(NOT ARG_PARTS)
+    set(ARG_PARTS 1)
+  endif()
   add_executable(${name} ${ARG_SOURCES})
   target_include_directories(${name} PRIVATE ${PROJECT_SOURCE_DIR}/tests)
   target_link_libraries(${name} PRIVATE surfcast_warnings ${ARG_LIBS} GTest::gtest_main GTest::gmock)
@@ -299,46 +303,41 @@ function(surfcast_test name)
   if(ARG_LABELS MATCHES "threads|sockets")
     add_dependencies(concurrent_tests ${name})
   endif()
-  # Under a sanitizer a process takes a tenth of a second to start and to look for leaks, which for 2000 cases is longer
-  # than their work.
-  set(whole FALSE)
-  if(ARG_WHOLE OR SURFCAST_SANITIZE)
-    set(whole TRUE)
-  endif()
   if(ARG_NIGHTLY AND NOT SURFCAST_SANITIZE)
-    surfcast_add_cases(${name} ${name} ${whole} "-${ARG_NIGHTLY}" "${ARG_LABELS}")
-    surfcast_add_cases(${name} ${name}_nightly ${whole} "${ARG_NIGHTLY}" "${ARG_LABELS}-nightly")
+    surfcast_add_cases(${name} ${name} ${ARG_PARTS} "-${ARG_NIGHTLY}" "${ARG_LABELS}")
+    surfcast_add_cases(${name} ${name}_nightly 1 "${ARG_NIGHTLY}" "${ARG_LABELS}-nightly")
   else()
-    surfcast_add_cases(${name} ${name} ${whole} "*" "${ARG_LABELS}")
+    surfcast_add_cases(${name} ${name} ${ARG_PARTS} "*" "${ARG_LABELS}")
   endif()
 endfunction()
 
-# Adds the cases of a program that the filter of GoogleTest selects, as one test or each as one of its own. Long tests
-# begin first, as long as ctest has not measured them, so that none of them is left over at the end.
-function(surfcast_add_cases program name whole filter labels)
-  if(NOT whole)
-    set(cost 0)
-    if(labels MATCHES "slow")
-      set(cost 60)
-    endif()
-    gtest_discover_tests(${program} TEST_FILTER "${filter}" TEST_LIST ${name}_cases DISCOVERY_TIMEOUT 60
-      PROPERTIES LABELS "${labels}" TIMEOUT 300 COST ${cost})
-    return()
-  endif()
+# Adds the cases of a program that the filter of GoogleTest selects, as `parts` tests. Long tests begin first, as long as
+# ctest has not measured them, so that none of them is left over at the end.
+function(surfcast_add_cases program name parts filter labels)
   set(arguments)
   if(NOT filter STREQUAL "*")
     set(arguments "--gtest_filter=${filter}")
   endif()
-  add_test(NAME ${name} COMMAND ${program} ${arguments})
-  set_tests_properties(${name} PROPERTIES LABELS "${labels}" TIMEOUT 600 COST 20)
-  if(labels MATCHES "gl")
-    set_tests_properties(${name} PROPERTIES PROCESSORS 2)  # software GL has several threads
-  endif()
-  if(labels MATCHES "hostile|slow")
-    set_tests_properties(${name} PROPERTIES COST 40)
-  endif()
-  if(SURFCAST_SANITIZE AND labels MATCHES "gl")
-    # Mesa leaks a little memory when its driver is unloaded.
-    set_tests_properties(${name} PROPERTIES ENVIRONMENT ASAN_OPTIONS=detect_leaks=0)
-  endif()
+  foreach(part RANGE 1 ${parts})
+    set(test ${name})
+    set(environment)
+    if(parts GREATER 1)
+      set(test ${name}_${part})
+      math(EXPR index "${part} - 1")
+      set(environment GTEST_TOTAL_SHARDS=${parts} GTEST_SHARD_INDEX=${index})
+    endif()
+    add_test(NAME ${test} COMMAND ${program} ${arguments})
+    set(cost 20)
+    if(labels MATCHES "hostile|slow" OR parts GREATER 1)
+      set(cost 40)
+    endif()
+    if(labels MATCHES "gl")
+      set_tests_properties(${test} PROPERTIES PROCESSORS 2)  # software GL has several threads
+      if(SURFCAST_SANITIZE)
+        list(APPEND environment ASAN_OPTIONS=detect_leaks=0)  # Mesa leaks a little when its driver is unloaded
+      endif()
+    endif()
+    set_tests_properties(${test} PROPERTIES
+      LABELS "${labels}" TIMEOUT 600 COST ${cost} ENVIRONMENT "${environment}")
+  endforeach()
 endfunction()

@@ -19,6 +19,7 @@ import pathlib
 import re
 import subprocess
 import sys
+import tempfile
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 # A change of these can change every program.
@@ -101,6 +102,7 @@ class Test:
         self.name = entry["name"]
         properties = {p["name"]: p["value"] for p in entry.get("properties", [])}
         self.labels = "|".join(properties.get("LABELS", []))
+        self.estimated_cost = float(properties.get("COST", 1))  # seconds
         words = entry.get("command", []) + [word.partition("=")[2] for word in properties.get("ENVIRONMENT", [])]
         files = [graph.name(word) for word in words if os.path.isabs(word) and os.path.isfile(word)]
         own = [path for path in files if not path.startswith("..")]
@@ -115,7 +117,10 @@ class Test:
 
 
 def read_tests(graph):
-    listed = json.loads(output_of("ctest", "--test-dir", str(graph.build), "--show-only=json-v1"))
+    # From a folder of its own, because ctest empties the log of the last run in the folder where it lists tests.
+    with tempfile.TemporaryDirectory() as folder:
+        pathlib.Path(folder, "CTestTestfile.cmake").write_text(f'subdirs("{graph.build}")\n')
+        listed = json.loads(output_of("ctest", "--test-dir", folder, "--show-only=json-v1"))
     return [Test(graph, number, entry) for number, entry in enumerate(listed["tests"], 1)]
 
 
@@ -158,7 +163,7 @@ def run(build, base, seconds):
     for test, _ in rows:
         if "nightly" in test.labels:
             continue
-        cost = costs.get(test.name, 1.0)
+        cost = costs.get(test.name, test.estimated_cost)
         fits = spent + cost <= seconds * os.cpu_count()
         (chosen if fits else left).append(test)
         spent += cost if fits else 0

@@ -25,13 +25,21 @@ failures() {
   done <"$folder/LastTestsFailed.log"
 }
 
+# How many cases of GoogleTest the last run had, and which it skipped.
+cases() {
+  local log=build/Testing/Temporary/LastTest.log
+  printf 'cases of GoogleTest: %d passed, %d skipped\n' "$(grep -c '^\[       OK \]' "$log")" \
+    "$(grep -c '^\[  SKIPPED \] .* ms)$' "$log")"
+  sed -n 's/^\[  SKIPPED \] \(.*\) ([0-9]* ms)$/  skipped: \1/p' "$log"
+}
+
 # The tests as the README runs them, with arguments of make. Their closing lines are kept for the end.
 tests() {
   local log code=0
   log=$(mktemp)
   rm -f build/Testing/Temporary/LastTestsFailed.log
   make test "$@" 2>&1 | tee "$log" || code=$?
-  closing=$(failures && sed -n '/tests passed, .* tests failed out of/,$p' "$log")
+  closing=$(failures && sed -n '/tests passed, .* tests failed out of/,$p' "$log" && cases)
   rm -f "$log"
   return "$code"
 }

@@ -25,8 +25,8 @@ if [ $# -gt 0 ]; then
     echo "no test with these labels sees the change"
     exit 0
   fi
-  # A further test of a program has the program's name and a word.
-  selection=(--tests-regex "^($(IFS='|' && echo "${targets[*]}"))(_[a-z]+)?$")
+  # A further test of a program has the program's name and a word or a number.
+  selection=(--tests-regex "^($(IFS='|' && echo "${targets[*]}"))(_[a-z]+|_[0-9]+)?$")
 fi
 "${fixed[@]}" cmake --build --preset "$preset" --target "${targets[@]}"
-"${fixed[@]}" ctest --preset "$preset" "-j$(nproc)" --label-regex "$labels" --exclude-regex _NOT_BUILT "${selection[@]}"
+"${fixed[@]}" ctest --preset "$preset" "-j$(nproc)" --label-regex "$labels" "${selection[@]}"
