@@ -9,9 +9,9 @@
 #include <string>
 #include <vector>
 
+#include "estimation/neighbours.h"
 #include "reference/reference_renderer.h"
 #include "reference/scenes.h"
-#include "scan/neighbours.h"
 #include "surfel/even_sampling.h"
 
 namespace surfcast::reference {
@@ -110,7 +110,7 @@ std::vector<Choice> variations(double KernelParameters::*constant, const char* n
 }
 
 /// The colours that magnified kernels reconstruct at the sites from one coefficient per site.
-std::vector<glm::dvec3> reconstructed(const scan::Sites& sites, const scan::NeighbourGraph& graph,
+std::vector<glm::dvec3> reconstructed(const estimation::Sites& sites, const estimation::NeighbourGraph& graph,
                                       const std::vector<double>& radii, const std::vector<glm::dvec3>& coefficients) {
   const KernelParameters kernel;
   const double rim = std::exp(-0.5 * kernel.cutoff_magnified);
@@ -134,8 +134,8 @@ std::vector<glm::dvec3> reconstructed(const scan::Sites& sites, const scan::Neig
 /// Splatting", Zwicker et al. 2001, section 4). The colours are stored with 8 bits, as samples are.
 void correct_colors(surfel::SurfelCloud& cloud, int times) {
   constexpr size_t kNeighbours = 24;
-  const scan::Sites sites = scan::find_sites(cloud.positions, cloud.bounds());
-  const scan::NeighbourGraph graph = scan::find_neighbours(sites, kNeighbours);
+  const estimation::Sites sites = estimation::find_sites(cloud.positions, cloud.bounds());
+  const estimation::NeighbourGraph graph = estimation::find_neighbours(sites, kNeighbours);
   std::vector<double> radii(sites.size());
   std::vector<glm::dvec3> samples(sites.size());
   for (size_t i = 0; i < cloud.size(); ++i) {

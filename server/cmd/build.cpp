@@ -45,7 +45,7 @@ struct BuildCommand {
   std::filesystem::path output;
   ModelFlags model;
   std::optional<size_t> parts;
-  scan::RadiusPolicy radii = scan::RadiusPolicy::kAuto;
+  estimation::RadiusPolicy radii = estimation::RadiusPolicy::kAuto;
   std::filesystem::path report;
   std::optional<uint64_t> sample;
   scan::Selection selection;
@@ -218,15 +218,15 @@ std::string radii_lines(const builder::BuildReport& report) {
   for (const auto& [input, decision] : report.radii) {
     const bool of_mesh = std::any_of(report.meshes.begin(), report.meshes.end(),
                                      [&name = input](const builder::InputMesh& mesh) { return mesh.input == name; });
-    if (of_mesh || decision.outcome == scan::RadiusOutcome::kEstimated) continue;
-    lines += fmt::format("{}: {}\n", input, scan::describe(decision));
+    if (of_mesh || decision.outcome == estimation::RadiusOutcome::kEstimated) continue;
+    lines += fmt::format("{}: {}\n", input, estimation::describe(decision));
   }
   return lines;
 }
 
 nlohmann::ordered_json to_json(const builder::InputRadii& radii) {
   constexpr std::array kOutcomes{"kept", "scaled", "estimated"};
-  const scan::RadiusDecision& decision = radii.decision;
+  const estimation::RadiusDecision& decision = radii.decision;
   nlohmann::ordered_json json{{"input", radii.input},
                               {"outcome", kOutcomes.at(static_cast<size_t>(decision.outcome))},
                               {"stated", decision.stated},
@@ -235,7 +235,7 @@ nlohmann::ordered_json to_json(const builder::InputRadii& radii) {
     const auto& [median, least, most] = *decision.stating;
     json["spacings"] = {{"median", median}, {"least", least}, {"most", most}};
   }
-  if (decision.outcome == scan::RadiusOutcome::kScaled) json["factor"] = decision.factor;
+  if (decision.outcome == estimation::RadiusOutcome::kScaled) json["factor"] = decision.factor;
   return json;
 }
 

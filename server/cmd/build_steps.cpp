@@ -88,8 +88,8 @@ Status decide_signs(const StepCommand& command) {
   if (!signs) return fail(signs.error());
   warn_of(signs->notes);
   for (const auto& [input, decision] : signs->radii) {
-    if (decision.outcome == scan::RadiusOutcome::kEstimated) continue;
-    std::cout << fmt::format("{}: {}\n", input, scan::describe(decision));
+    if (decision.outcome == estimation::RadiusOutcome::kEstimated) continue;
+    std::cout << fmt::format("{}: {}\n", input, estimation::describe(decision));
   }
   std::cout << (signs->done_before ? "signs were resolved before\n"
                 : signs->oriented  ? "surfaces have a front and a back\n"

@@ -32,7 +32,7 @@ struct ColorizeCommand {
   std::filesystem::path cameras;
   std::filesystem::path output;
   std::string memory;
-  scan::RadiusPolicy radii = scan::RadiusPolicy::kAuto;
+  estimation::RadiusPolicy radii = estimation::RadiusPolicy::kAuto;
 };
 
 /// Opens a scan with the colours of pictures.

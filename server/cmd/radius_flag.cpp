@@ -8,18 +8,18 @@
 namespace surfcast::cmd {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, scan::RadiusPolicy>, 3> kPolicies = {
-    {{"auto", scan::RadiusPolicy::kAuto},
-     {"keep", scan::RadiusPolicy::kKeep},
-     {"estimate", scan::RadiusPolicy::kEstimate}}};
+constexpr std::array<std::pair<std::string_view, estimation::RadiusPolicy>, 3> kPolicies = {
+    {{"auto", estimation::RadiusPolicy::kAuto},
+     {"keep", estimation::RadiusPolicy::kKeep},
+     {"estimate", estimation::RadiusPolicy::kEstimate}}};
 
-scan::RadiusPolicy radius_policy(const std::string& name) {
+estimation::RadiusPolicy radius_policy(const std::string& name) {
   return std::ranges::find(kPolicies, name, [](const auto& entry) { return entry.first; })->second;
 }
 
 }  // namespace
 
-CLI::Option* add_radius_flag(CLI::App& command, scan::RadiusPolicy& policy) {
+CLI::Option* add_radius_flag(CLI::App& command, estimation::RadiusPolicy& policy) {
   return command
       .add_option_function<std::string>(
           "--radii", [&policy](const std::string& name) { policy = radius_policy(name); },
@@ -28,7 +28,7 @@ CLI::Option* add_radius_flag(CLI::App& command, scan::RadiusPolicy& policy) {
       ->check(CLI::IsMember({"auto", "keep", "estimate"}));
 }
 
-std::string name_of(scan::RadiusPolicy policy) {
+std::string name_of(estimation::RadiusPolicy policy) {
   return std::string(std::ranges::find(kPolicies, policy, [](const auto& entry) { return entry.second; })->first);
 }
 

@@ -31,7 +31,8 @@ namespace fs = std::filesystem;
 /// How models are built that are not built as by default.
 std::string manner_of(const ScanCacheConfig& config) {
   std::string manner;
-  if (config.radii != scan::RadiusPolicy::kAuto) manner += fmt::format(" radii {}", static_cast<int>(config.radii));
+  if (config.radii != estimation::RadiusPolicy::kAuto)
+    manner += fmt::format(" radii {}", static_cast<int>(config.radii));
   for (const std::string& argument : arguments_of(config.meshes)) manner += " " + argument;
   return manner;
 }

@@ -8,7 +8,7 @@
 
 #include "base/result.h"
 #include "builder/mesh_input.h"
-#include "scan/stated_radii.h"
+#include "estimation/stated_radii.h"
 
 namespace surfcast::cmd {
 
@@ -19,7 +19,7 @@ struct ScanCacheConfig {
   std::filesystem::path folder;            ///< empty: default_cache_folder
   std::optional<uint64_t> bytes{};         ///< of models at most; none: default_cache_bytes
   std::optional<uint64_t> build_memory{};  ///< see BuildOptions::memory
-  scan::RadiusPolicy radii = scan::RadiusPolicy::kAuto;
+  estimation::RadiusPolicy radii = estimation::RadiusPolicy::kAuto;
   builder::MeshOptions meshes{};
 };
 

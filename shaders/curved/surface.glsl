@@ -1,5 +1,5 @@
 // The osculating surface of a surfel with curvature (Kalaiah and Varshney 2001, section 3): below the tangent plane by
-// q . K q / 2. C++ counterpart, in double precision: server/surfel/curvature.h.
+// q . K q / 2. C++ counterpart, in double precision: server/foundation/surfel/curvature.h.
 
 // Axes of the tangent plane (Duff 2017). Stored normals stay away from the switch between the two forms.
 void tangent_frame(vec3 n, out vec3 u, out vec3 v) {

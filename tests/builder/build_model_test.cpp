@@ -255,7 +255,7 @@ TEST_F(BuildModelTest, RadiiAreScaledAlikeWhateverTheParts) {
   for (const BuildReport& report : {whole, parts}) {
     ASSERT_EQ(report.radii.size(), 1U);
     EXPECT_EQ(report.radii[0].input, "scan.xyz");
-    EXPECT_EQ(report.radii[0].decision.outcome, scan::RadiusOutcome::kScaled);
+    EXPECT_EQ(report.radii[0].decision.outcome, estimation::RadiusOutcome::kScaled);
     EXPECT_EQ(report.radii[0].decision.stated, positions.size());
     EXPECT_EQ(report.scan.radii_estimated, 0U);
     EXPECT_TRUE(report.scan.notes.empty());
@@ -275,10 +275,10 @@ TEST_F(BuildModelTest, KeptRadiiComeBackAndEstimatedOnesAreThoseOfAScanWithout) 
   build({folder_ / "without.xyz"}, other_);
   const auto without = surfels_of(other_);
   for (BuildOptions options : {BuildOptions{}, in_parts_of(900)}) {
-    options.radii = scan::RadiusPolicy::kKeep;
-    EXPECT_EQ(build({scan_}, model_, options).radii[0].decision.outcome, scan::RadiusOutcome::kKept);
+    options.radii = estimation::RadiusPolicy::kKeep;
+    EXPECT_EQ(build({scan_}, model_, options).radii[0].decision.outcome, estimation::RadiusOutcome::kKept);
     for (const auto& [number, surfel] : surfels_of(model_)) ASSERT_NEAR(surfel.radius, 0.25F, 1e-4F) << number;
-    options.radii = scan::RadiusPolicy::kEstimate;
+    options.radii = estimation::RadiusPolicy::kEstimate;
     const BuildReport report = build({scan_}, model_, options);
     EXPECT_EQ(report.scan.radii_estimated, positions.size());
     EXPECT_TRUE(report.scan.notes.empty()) << "as asked for";

@@ -60,7 +60,7 @@ PlanRequest full_request() {
   request.program = "1.2.3";
   request.precision = 0.1;
   request.z_up = false;
-  request.radii = scan::RadiusPolicy::kEstimate;
+  request.radii = estimation::RadiusPolicy::kEstimate;
   request.selection.zone.boxes = {box_between({0, 0, -kInfinite}, {1, 1, kInfinite})};
   request.selection.zone.corridors = {{{{1, 2}, {3, 4}}, 0.5, -kInfinite, 9}};
   request.selection.classes = {2, 6};

@@ -146,7 +146,7 @@ TEST_F(BuildStepsTest, OptionsReachTheModel) {
   PlanRequest request = request_for(4);
   request.precision = 0.01;
   request.z_up = false;
-  request.radii = scan::RadiusPolicy::kEstimate;
+  request.radii = estimation::RadiusPolicy::kEstimate;
   request.selection.every = 2;
   ASSERT_TRUE(plan_build(inputs(), work_, request, kSilent));
   ASSERT_NO_FATAL_FAILURE(make_planned(4));

@@ -159,7 +159,7 @@ TEST(PlaceInputs, OptionsThatNameNoSystemFail) {
 std::vector<std::vector<glm::dvec3>> positions_of(BuildInputs& inputs, size_t count) {
   std::vector<std::vector<glm::dvec3>> positions(count);
   for (size_t piece = 0; piece < inputs.pieces(); ++piece) {
-    scan::SurfelReport report;
+    estimation::SurfelReport report;
     const auto read = inputs.read(piece, report);
     EXPECT_TRUE(read);
     if (!read) continue;

@@ -103,7 +103,8 @@ TEST_F(ScanCacheTest, TheModelUsedLeastRecentlyGoesFirst) {
 
 TEST_F(ScanCacheTest, EveryPolicyOfRadiiHasAModelOfItsOwn) {
   std::set<fs::path> paths;
-  for (const auto radii : {scan::RadiusPolicy::kAuto, scan::RadiusPolicy::kKeep, scan::RadiusPolicy::kEstimate}) {
+  for (const auto radii :
+       {estimation::RadiusPolicy::kAuto, estimation::RadiusPolicy::kKeep, estimation::RadiusPolicy::kEstimate}) {
     for (int times = 0; times < 2; ++times) {
       const Result<CachedModel> model = model_of_scan(folder_ / "a.xyz", {.folder = cache_, .radii = radii});
       ASSERT_TRUE(model);

@@ -36,7 +36,7 @@ TEST(BuildMeshes, AModelHasASurfelForEachTexelWithExactRadii) {
   ASSERT_EQ(report.meshes.size(), 1U);
   EXPECT_EQ(report.meshes[0].report.triangles, 2U);
   ASSERT_EQ(report.radii.size(), 1U);
-  EXPECT_EQ(report.radii[0].decision.outcome, scan::RadiusOutcome::kKept);
+  EXPECT_EQ(report.radii[0].decision.outcome, estimation::RadiusOutcome::kKept);
   EXPECT_FALSE(report.scan.oriented);  // a square has two sides
   EXPECT_EQ(report.scan.normals_estimated, 0U);
   EXPECT_EQ(report.scan.scatter, 0U);
@@ -52,7 +52,7 @@ TEST(BuildMeshes, AModelIsEvenIfAllItsSurfelsAreSamplesOfMeshes) {
   mesh::write_square(folder, "t.tga", 8);
   const std::filesystem::path target = folder.path() / "m.surf";
   BuildOptions estimated;
-  estimated.radii = scan::RadiusPolicy::kEstimate;
+  estimated.radii = estimation::RadiusPolicy::kEstimate;
   build(folder.path() / "square.obj", target, estimated);
   EXPECT_FALSE(model::ModelFile::open(target)->info().even);
   std::string points;

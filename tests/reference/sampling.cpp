@@ -6,8 +6,8 @@
 #include <random>
 
 #include "base/contract.h"
+#include "estimation/spacing.h"
 #include "reference/linear_picture.h"
-#include "scan/spacing.h"
 
 namespace surfcast::reference {
 namespace {
@@ -82,10 +82,11 @@ surfel::SurfelCloud surfels_at(const std::vector<SurfacePoint>& points) {
     cloud.positions.push_back(p.position);
     cloud.normals.emplace_back(p.normal);
   }
-  const scan::Sites sites = scan::find_sites(cloud.positions, cloud.bounds());
+  const estimation::Sites sites = estimation::find_sites(cloud.positions, cloud.bounds());
   std::vector<glm::vec3> normals(sites.size());
   for (size_t i = 0; i < points.size(); ++i) normals[sites.of_point[i]] = cloud.normals[i];
-  const std::vector<float> radii = scan::estimate_radii(sites, scan::find_neighbours(sites, kNeighbours), normals);
+  const std::vector<float> radii =
+      estimation::estimate_radii(sites, estimation::find_neighbours(sites, kNeighbours), normals);
   for (const uint32_t site : sites.of_point) cloud.radii.push_back(radii[site]);
   cloud.sources = {{"scene", 0, points.size(), std::nullopt}};
   return cloud;

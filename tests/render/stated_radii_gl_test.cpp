@@ -59,7 +59,7 @@ class StatedRadiiGLTest : public testing::RendererFixture {
 
   /// Builds a model of a scene, from that many files.
   static std::shared_ptr<const model::ModelFile> built(const Scene& scene, const RadiusOf& radius,
-                                                       scan::RadiusPolicy policy, size_t files) {
+                                                       estimation::RadiusPolicy policy, size_t files) {
     const std::filesystem::path target = folder_ / "scan.surf";
     std::vector<std::filesystem::path> inputs;
     for (size_t file = 0; file < files; ++file) {
@@ -75,8 +75,8 @@ class StatedRadiiGLTest : public testing::RendererFixture {
     return std::make_shared<const model::ModelFile>(std::move(*opened));
   }
 
-  Interior interior(const Scene& scene, const RadiusOf& radius, scan::RadiusPolicy policy = scan::RadiusPolicy::kAuto,
-                    size_t files = 1) {
+  Interior interior(const Scene& scene, const RadiusOf& radius,
+                    estimation::RadiusPolicy policy = estimation::RadiusPolicy::kAuto, size_t files = 1) {
     const auto model = built(scene, radius, policy, files);
     const std::atomic<bool> cancelled{false};
     const Result<picture::Frame> frame = renderer_->draw(model, scene.request, cancelled);
@@ -117,7 +117,7 @@ TEST_F(StatedRadiiGLTest, FromAfarAPlaneIsOpaqueWhateverMultipleOfItsSpacingIsSt
 
 TEST_F(StatedRadiiGLTest, KeptRadiiOfHalfTheSpacingLetTheBackgroundThrough) {
   const auto half = [](size_t) { return 0.5 * kSpacing; };
-  const Interior inside = interior(from_afar("smooth_oblique", 12), half, scan::RadiusPolicy::kKeep);
+  const Interior inside = interior(from_afar("smooth_oblique", 12), half, estimation::RadiusPolicy::kKeep);
   EXPECT_LT(inside.coverage, 0.5) << "or the other tests show nothing";
 }
 
@@ -130,7 +130,7 @@ TEST_F(StatedRadiiGLTest, FromAfarAPlaneIsOpaqueWhereHalfOfItsPointsLackARadius)
 
 TEST_F(StatedRadiiGLTest, FromAfarAPlaneIsOpaqueWhoseFilesFollowDifferentConventions) {
   const auto radius = [](size_t i) { return (i % 2 == 0 ? 0.5 : 2) * kSpacing; };
-  const Interior inside = interior(from_afar("smooth_oblique", 12), radius, scan::RadiusPolicy::kAuto, 2);
+  const Interior inside = interior(from_afar("smooth_oblique", 12), radius, estimation::RadiusPolicy::kAuto, 2);
   EXPECT_GE(inside.coverage, 0.995);
   EXPECT_GE(inside.psnr, 39);
 }

@@ -1,7 +1,7 @@
 #include "scan/surfels_of.h"
 
-#include "scan/clean_points.h"
-#include "scan/make_surfels.h"
+#include "estimation/clean_points.h"
+#include "estimation/make_surfels.h"
 #include "scan/merge_schemas.h"
 #include "scan/unit_normal.h"
 
@@ -36,7 +36,8 @@ surfel::SurfelCloud cloud_of(scan::ScanPoints points, std::vector<surfel::Source
 
 }  // namespace
 
-surfel::SurfelCloud surfels_of(std::vector<WholeScan> scans, scan::SurfelReport& report, scan::RadiusPolicy radii) {
+surfel::SurfelCloud surfels_of(std::vector<WholeScan> scans, estimation::SurfelReport& report,
+                               estimation::RadiusPolicy radii) {
   std::vector<scan::ScanSchema> schemas;
   for (WholeScan& scan : scans) {
     schemas.push_back(schema_of(scan));
@@ -45,12 +46,12 @@ surfel::SurfelCloud surfels_of(std::vector<WholeScan> scans, scan::SurfelReport&
   const scan::ScanSchema merged = scan::merge_schemas(schemas);
   report.notes = scan::describe_fillings(schemas, merged);
   scan::ScanPoints all;
-  scan::PartFrame frame;
+  estimation::PartFrame frame;
   frame.radii = radii;
   std::vector<surfel::SourceRange> sources;
   for (WholeScan& scan : scans) {
     report.points_read += scan.size();
-    scan::drop_unusable_points(scan, report);
+    estimation::drop_unusable_points(scan, report);
     sources.push_back({scan.name, all.size(), scan.size(), scan.grid});
     frame.inputs.push_back(frame.inputs.size());
     frame.sensors.push_back(scan.sensor);
@@ -59,21 +60,21 @@ surfel::SurfelCloud surfels_of(std::vector<WholeScan> scans, scan::SurfelReport&
   }
   surfel::SurfelCloud cloud = cloud_of(std::move(all), std::move(sources));
   cloud.z_up = merged.z_up;
-  std::vector<bool> keep = scan::find_duplicates(cloud);
+  std::vector<bool> keep = estimation::find_duplicates(cloud);
   report.duplicates = static_cast<uint64_t>(std::count(keep.begin(), keep.end(), true));
   keep.flip();
-  scan::keep_surfels(cloud, keep);
-  std::vector<scan::PartSigns> signs(1);
-  scan::PartSurfels surfels = scan::make_surfels(std::move(cloud), frame, signs[0], report);
-  scan::apply_signs(scan::resolve_signs(signs, {frame.bounds, merged.z_up, merged.normals}), 0, surfels);
-  std::vector<scan::RadiusDecision> decisions;
-  for (const scan::RadiusComparison& comparison : surfels.radii) {
-    decisions.push_back(scan::decide_radii(comparison, radii));
+  estimation::keep_surfels(cloud, keep);
+  std::vector<estimation::PartSigns> signs(1);
+  estimation::PartSurfels surfels = estimation::make_surfels(std::move(cloud), frame, signs[0], report);
+  estimation::apply_signs(estimation::resolve_signs(signs, {frame.bounds, merged.z_up, merged.normals}), 0, surfels);
+  std::vector<estimation::RadiusDecision> decisions;
+  for (const estimation::RadiusComparison& comparison : surfels.radii) {
+    decisions.push_back(estimation::decide_radii(comparison, radii));
     report.radii_estimated += decisions.back().estimated();
     report.scatter += decisions.back().scatter();
   }
-  scan::apply_radii(decisions, frame.inputs, surfels.estimates, scan::SurfaceSpacing(surfels.samples, frame.bounds),
-                    surfels.cloud);
+  estimation::apply_radii(decisions, frame.inputs, surfels.estimates,
+                          estimation::SurfaceSpacing(surfels.samples, frame.bounds), surfels.cloud);
   return surfels.cloud;
 }
 

@@ -13,8 +13,8 @@ import affected_tests  # noqa: E402
 EXPECTED = [
     ("shaders/splat.comp", {"renderer_gl_test", "shader_validation_test", "serve_test"}, {"scan_test", "laz_test"}),
     ("shaders/shared/kernel.h", {"renderer_gl_test", "reference_test"}, {"laz_test"}),
-    ("server/scan/lzf.cpp", {"scan_test", "serve_test"}, {"laz_test"}),
-    ("server/picture/picture.h", {"renderer_gl_test", "net_test", "view_test"}, {"laz_test"}),
+    ("server/formats/scan/lzf.cpp", {"scan_test", "serve_test"}, {"laz_test"}),
+    ("server/draw/picture/picture.h", {"renderer_gl_test", "net_test", "view_test"}, {"laz_test"}),
     ("protocol/surfcast.proto", {"protocol_test", "net_test", "client_test"}, {"laz_test"}),
     ("client/web/src/state/place.ts", {"run_tests.sh"}, {"scan_test"}),
     ("client/python/surfcast/camera_path.py", {"run_tests.sh"}, {"scan_test"}),

@@ -1,6 +1,6 @@
 import type { ColorMapName } from './display_options';
 
-/** The server's colours (server/render/color_maps.cpp), for legends. */
+/** The server's colours (server/draw/render/color_maps.cpp), for legends. */
 
 const maps: Readonly<Record<ColorMapName, readonly string[]>> = {
   viridis: ['440154', '472d7b', '3b528b', '2c728e', '21918c', '27ad81', '5ec962', 'aadc32', 'fde725'],
