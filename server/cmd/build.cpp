@@ -1,5 +1,3 @@
-#include "cmd/build.h"
-
 #include <algorithm>
 #include <array>
 #include <cerrno>
@@ -28,6 +26,7 @@
 #include "builder/memory_budget.h"
 #include "cmd/build_flags.h"
 #include "cmd/build_progress.h"
+#include "cmd/commands.h"
 #include "cmd/field_flags.h"
 #include "cmd/georeference_text.h"
 #include "cmd/iso_flag.h"

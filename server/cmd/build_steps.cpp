@@ -1,4 +1,4 @@
-#include "cmd/build_steps.h"
+#include "builder/build_steps.h"
 
 #include <filesystem>
 #include <iostream>
@@ -12,9 +12,9 @@
 
 #include "base/log.h"
 #include "base/stopwatch.h"
-#include "builder/build_steps.h"
 #include "builder/memory_budget.h"
 #include "cmd/build_flags.h"
+#include "cmd/commands.h"
 #include "cmd/radius_flag.h"
 #include "cmd/selection_flags.h"
 

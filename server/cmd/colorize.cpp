@@ -1,5 +1,3 @@
-#include "cmd/colorize.h"
-
 #include <algorithm>
 #include <filesystem>
 #include <functional>
@@ -16,6 +14,7 @@
 #include "base/scratch_folder.h"
 #include "builder/build_model.h"
 #include "builder/memory_budget.h"
+#include "cmd/commands.h"
 #include "cmd/radius_flag.h"
 #include "colorize/geo_photo.h"
 #include "colorize/paint_from_above.h"

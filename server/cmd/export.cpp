@@ -1,5 +1,3 @@
-#include "cmd/export.h"
-
 #include <filesystem>
 #include <iostream>
 #include <memory>
@@ -9,6 +7,7 @@
 
 #include "base/log.h"
 #include "builder/memory_budget.h"
+#include "cmd/commands.h"
 #include "cmd/in_place_flags.h"
 #include "cmd/selection_flags.h"
 #include "cmd/store_flags.h"

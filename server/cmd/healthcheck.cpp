@@ -3,7 +3,7 @@
 #include <string>
 
 #include "client/server_connection.h"
-#include "cmd/serve.h"
+#include "cmd/commands.h"
 #include "cmd/settings.h"
 #include "protocol/request_flags.h"
 

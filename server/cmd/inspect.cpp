@@ -1,11 +1,10 @@
-#include "cmd/inspect.h"
-
 #include <iostream>
 #include <memory>
 #include <string>
 #include <utility>
 
 #include "builder/input_files.h"
+#include "cmd/commands.h"
 #include "cmd/in_place_flags.h"
 #include "cmd/input_summary.h"
 #include "cmd/model_summary.h"

@@ -1,5 +1,3 @@
-#include "cmd/pick.h"
-
 #include <filesystem>
 #include <future>
 #include <memory>
@@ -7,6 +5,7 @@
 #include <vector>
 
 #include "access/authorization.h"
+#include "cmd/commands.h"
 #include "cmd/find_models.h"
 #include "cmd/limit_flags.h"
 #include "cmd/store_flags.h"

@@ -1,5 +1,3 @@
-#include "cmd/render.h"
-
 #include <chrono>
 #include <filesystem>
 #include <future>
@@ -9,6 +7,7 @@
 
 #include "access/authorization.h"
 #include "base/log.h"
+#include "cmd/commands.h"
 #include "cmd/find_models.h"
 #include "cmd/limit_flags.h"
 #include "cmd/log_device.h"

@@ -1,5 +1,3 @@
-#include "cmd/serve.h"
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -23,6 +21,7 @@
 #include "base/log.h"
 #include "base/log_format.h"
 #include "builder/input_files.h"
+#include "cmd/commands.h"
 #include "cmd/find_models.h"
 #include "cmd/limit_flags.h"
 #include "cmd/log_device.h"

@@ -1,5 +1,3 @@
-#include "cmd/token.h"
-
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -13,6 +11,7 @@
 
 #include "access/secret.h"
 #include "access/token_file.h"
+#include "cmd/commands.h"
 #include "protocol/parse.h"
 #include "protocol/request_flags.h"
 

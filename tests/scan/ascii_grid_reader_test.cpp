@@ -1,5 +1,3 @@
-#include "scan/ascii_grid_reader.h"
-
 #include <filesystem>
 #include <fstream>
 #include <string>
@@ -9,6 +7,7 @@
 
 #include "model/test_folder.h"
 #include "scan/bytes.h"
+#include "scan/readers.h"
 #include "scan/whole_scan.h"
 
 namespace surfcast::scan {

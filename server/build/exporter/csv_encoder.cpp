@@ -1,5 +1,3 @@
-#include "exporter/csv_encoder.h"
-
 #include <array>
 #include <charconv>
 #include <span>
@@ -7,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "exporter/point_encoders.h"
 #include "exporter/table_format.h"
 
 namespace surfcast::exporter {

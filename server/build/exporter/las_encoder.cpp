@@ -1,5 +1,3 @@
-#include "exporter/las_encoder.h"
-
 #include <algorithm>
 #include <span>
 #include <string>
@@ -9,6 +7,7 @@
 #include "exporter/las_bytes.h"
 #include "exporter/las_coding.h"
 #include "exporter/las_table.h"
+#include "exporter/point_encoders.h"
 #include "exporter/table_format.h"
 
 namespace surfcast::exporter {

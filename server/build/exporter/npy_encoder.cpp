@@ -1,10 +1,9 @@
-#include "exporter/npy_encoder.h"
-
 #include <array>
 #include <string>
 #include <utility>
 
 #include "exporter/las_bytes.h"
+#include "exporter/point_encoders.h"
 #include "exporter/table_format.h"
 
 namespace surfcast::exporter {

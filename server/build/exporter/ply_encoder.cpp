@@ -1,5 +1,3 @@
-#include "exporter/ply_encoder.h"
-
 #include <array>
 #include <cstring>
 #include <span>
@@ -7,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "exporter/point_encoders.h"
 #include "exporter/table_format.h"
 
 namespace surfcast::exporter {

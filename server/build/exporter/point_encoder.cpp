@@ -2,10 +2,7 @@
 
 #include <algorithm>
 
-#include "exporter/csv_encoder.h"
-#include "exporter/las_encoder.h"
-#include "exporter/npy_encoder.h"
-#include "exporter/ply_encoder.h"
+#include "exporter/point_encoders.h"
 
 namespace surfcast::exporter {
 

@@ -9,11 +9,8 @@
 
 #include "base/stopwatch.h"
 #include "render/depth_of_region.h"
-#include "render/ellipsoid_passes.h"
-#include "render/gaussian_passes.h"
 #include "render/projection_work.h"
-#include "render/surface_passes.h"
-#include "render/volume_passes.h"
+#include "render/region_passes.h"
 
 namespace surfcast::render {
 namespace {

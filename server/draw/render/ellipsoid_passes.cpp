@@ -1,5 +1,3 @@
-#include "render/ellipsoid_passes.h"
-
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -9,6 +7,7 @@
 #include "render/gaussian_lists.h"
 #include "render/glyph_plan.h"
 #include "render/projection_work.h"
+#include "render/region_passes.h"
 #include "render/sorted_items.h"
 #include "shared/ellipsoid_layout.h"
 

@@ -1,5 +1,3 @@
-#include "render/gaussian_passes.h"
-
 #include <algorithm>
 #include <cmath>
 #include <glm/common.hpp>
@@ -10,6 +8,7 @@
 #include "render/batched_dispatch.h"
 #include "render/gaussian_lists.h"
 #include "render/projection_work.h"
+#include "render/region_passes.h"
 #include "render/sorted_items.h"
 #include "shared/gaussian_layout.h"
 

@@ -1,5 +1,3 @@
-#include "render/surface_passes.h"
-
 #include <algorithm>
 #include <bit>
 #include <cmath>
@@ -8,6 +6,7 @@
 #include "render/batched_dispatch.h"
 #include "render/depth_slices.h"
 #include "render/projection_work.h"
+#include "render/region_passes.h"
 #include "render/silhouette_passes.h"
 #include "render/splat_pass.h"
 

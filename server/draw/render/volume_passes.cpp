@@ -1,5 +1,3 @@
-#include "render/volume_passes.h"
-
 #include <algorithm>
 #include <cmath>
 #include <string>
@@ -10,6 +8,7 @@
 #include "render/batched_dispatch.h"
 #include "render/join_plans.h"
 #include "render/projection_work.h"
+#include "render/region_passes.h"
 #include "render/volume_plan.h"
 
 namespace surfcast::render {

@@ -1,8 +1,6 @@
 #include "grid/grid_format.h"
 
-#include "grid/meta_image.h"
-#include "grid/mrtrix.h"
-#include "grid/nifti.h"
+#include "grid/readers.h"
 #include "scan/text_tokens.h"
 
 namespace surfcast::grid {

@@ -8,12 +8,7 @@
 
 #include "base/contract.h"
 #include "grid/grid_format.h"
-#include "grid/meta_image.h"
-#include "grid/mrtrix.h"
-#include "grid/nifti.h"
-#include "grid/nrrd.h"
-#include "grid/vtk_legacy.h"
-#include "grid/vtk_xml.h"
+#include "grid/readers.h"
 
 namespace surfcast::grid {
 namespace {

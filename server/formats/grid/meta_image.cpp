@@ -1,5 +1,3 @@
-#include "grid/meta_image.h"
-
 #include <algorithm>
 #include <bit>
 #include <map>
@@ -7,6 +5,7 @@
 #include <vector>
 
 #include "grid/header_text.h"
+#include "grid/readers.h"
 #include "scan/text_tokens.h"
 
 namespace surfcast::grid {

@@ -1,5 +1,3 @@
-#include "grid/mrtrix.h"
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -10,6 +8,7 @@
 #include <vector>
 
 #include "grid/header_text.h"
+#include "grid/readers.h"
 #include "scan/text_tokens.h"
 #include "stream/inflate_stream.h"
 

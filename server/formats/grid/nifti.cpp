@@ -1,5 +1,3 @@
-#include "grid/nifti.h"
-
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -11,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "grid/readers.h"
 #include "scan/text_tokens.h"
 #include "stream/inflate_stream.h"
 

@@ -1,5 +1,3 @@
-#include "grid/nrrd.h"
-
 #include <bit>
 #include <map>
 #include <utility>
@@ -8,6 +6,7 @@
 #include "grid/header_text.h"
 #include "grid/nrrd_axes.h"
 #include "grid/nrrd_text.h"
+#include "grid/readers.h"
 #include "scan/text_tokens.h"
 
 namespace surfcast::grid {

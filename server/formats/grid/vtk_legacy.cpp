@@ -1,11 +1,10 @@
-#include "grid/vtk_legacy.h"
-
 #include <array>
 #include <bit>
 #include <utility>
 #include <vector>
 
 #include "grid/header_text.h"
+#include "grid/readers.h"
 #include "grid/vtk_legacy_file.h"
 #include "scan/text_tokens.h"
 

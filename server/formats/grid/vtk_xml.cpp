@@ -1,9 +1,8 @@
-#include "grid/vtk_xml.h"
-
 #include <utility>
 #include <vector>
 
 #include "grid/header_text.h"
+#include "grid/readers.h"
 #include "grid/vtk_arrays.h"
 #include "grid/vtk_xml_arrays.h"
 #include "scan/text_tokens.h"

@@ -1,5 +1,3 @@
-#include "scan/ascii_grid_reader.h"
-
 #include <algorithm>
 #include <array>
 #include <cctype>
@@ -14,6 +12,7 @@
 #include <vector>
 
 #include "scan/point_table.h"
+#include "scan/readers.h"
 #include "scan/text_tokens.h"
 
 namespace surfcast::scan {

@@ -1,5 +1,3 @@
-#include "scan/draco_reader.h"
-
 #include <array>
 #include <exception>
 #include <memory>
@@ -12,6 +10,7 @@
 
 #include "scan/draco_claims.h"
 #include "scan/point_table.h"
+#include "scan/readers.h"
 #include "scan/sliced_rows.h"
 #include "scan/text_tokens.h"
 

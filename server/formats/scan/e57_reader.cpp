@@ -1,5 +1,3 @@
-#include "scan/e57_reader.h"
-
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -12,6 +10,7 @@
 #include "scan/e57_header.h"
 #include "scan/e57_pages.h"
 #include "scan/e57_streams.h"
+#include "scan/readers.h"
 
 namespace surfcast::scan {
 namespace {

@@ -1,5 +1,3 @@
-#include "scan/ept_reader.h"
-
 #include <memory>
 #include <string>
 #include <utility>
@@ -7,6 +5,7 @@
 #include "base/disk_folder.h"
 #include "base/mapped_file.h"
 #include "scan/ept_index.h"
+#include "scan/readers.h"
 #include "scan/tile_rows.h"
 
 namespace surfcast::scan {

@@ -1,11 +1,10 @@
-#include "scan/expe_reader.h"
-
 #include <string>
 #include <string_view>
 #include <utility>
 #include <vector>
 
 #include "base/invalid_input.h"
+#include "scan/readers.h"
 #include "scan/sliced_rows.h"
 #include "scan/text_tokens.h"
 

@@ -1,5 +1,3 @@
-#include "scan/pcd_reader.h"
-
 #include <optional>
 #include <string>
 #include <utility>
@@ -8,6 +6,7 @@
 #include "scan/lzf.h"
 #include "scan/pcd_header.h"
 #include "scan/point_table.h"
+#include "scan/readers.h"
 #include "scan/sliced_rows.h"
 #include "scan/text_tokens.h"
 

@@ -1,5 +1,3 @@
-#include "scan/ply_reader.h"
-
 #include <algorithm>
 #include <bit>
 #include <optional>
@@ -9,6 +7,7 @@
 
 #include "scan/ply_header.h"
 #include "scan/point_table.h"
+#include "scan/readers.h"
 #include "scan/sliced_rows.h"
 #include "scan/text_tokens.h"
 

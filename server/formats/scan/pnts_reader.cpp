@@ -7,9 +7,9 @@
 #include <utility>
 
 #include "base/invalid_input.h"
-#include "scan/draco_reader.h"
 #include "scan/move_points.h"
 #include "scan/oct_normal.h"
+#include "scan/readers.h"
 #include "scan/sliced_rows.h"
 #include "scan/text_tokens.h"
 #include "scan/tile_rows.h"

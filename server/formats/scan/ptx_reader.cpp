@@ -1,5 +1,3 @@
-#include "scan/ptx_reader.h"
-
 #include <array>
 #include <limits>
 #include <optional>
@@ -9,6 +7,7 @@
 #include <vector>
 
 #include "scan/point_table.h"
+#include "scan/readers.h"
 #include "scan/text_tokens.h"
 
 namespace surfcast::scan {

@@ -5,11 +5,10 @@
 #include <utility>
 
 #include "base/mapped_file.h"
-#include "scan/ept_reader.h"
 #include "scan/json_access.h"
 #include "scan/potree_reader.h"
+#include "scan/readers.h"
 #include "scan/text_tokens.h"
-#include "scan/tileset_reader.h"
 
 namespace surfcast::scan {
 namespace {

@@ -7,10 +7,8 @@
 #include <string_view>
 #include <utility>
 
-#include "scan/ascii_grid_reader.h"
 #include "scan/gltf_buffers.h"
-#include "scan/ptx_reader.h"
-#include "scan/text_reader.h"
+#include "scan/readers.h"
 #include "scan/text_tokens.h"
 
 namespace surfcast::scan {

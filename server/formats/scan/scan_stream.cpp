@@ -8,21 +8,14 @@
 
 #include <oneapi/tbb/parallel_for.h>
 
-#include "scan/ascii_grid_reader.h"
-#include "scan/draco_reader.h"
-#include "scan/e57_reader.h"
-#include "scan/expe_reader.h"
 #include "scan/gltf_points.h"
 #include "scan/las_reader.h"
-#include "scan/pcd_reader.h"
-#include "scan/ply_reader.h"
 #include "scan/pnts_reader.h"
-#include "scan/ptx_reader.h"
+#include "scan/readers.h"
 #include "scan/sampled_rows.h"
 #include "scan/scan_folder.h"
 #include "scan/scan_format.h"
 #include "scan/selected_rows.h"
-#include "scan/text_reader.h"
 #include "scan/text_tokens.h"
 
 namespace surfcast::scan {

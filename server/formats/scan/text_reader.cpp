@@ -1,5 +1,3 @@
-#include "scan/text_reader.h"
-
 #include <algorithm>
 #include <charconv>
 #include <cstdint>
@@ -7,6 +5,7 @@
 #include <utility>
 
 #include "scan/attribute_names.h"
+#include "scan/readers.h"
 #include "scan/text_tokens.h"
 
 namespace surfcast::scan {

@@ -1,5 +1,3 @@
-#include "scan/tileset_reader.h"
-
 #include <algorithm>
 #include <string>
 #include <utility>
@@ -7,6 +5,7 @@
 
 #include "base/invalid_input.h"
 #include "scan/implicit_tiles.h"
+#include "scan/readers.h"
 #include "scan/text_tokens.h"
 #include "scan/tile_content.h"
 #include "scan/tile_rows.h"

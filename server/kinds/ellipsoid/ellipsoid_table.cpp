@@ -9,9 +9,8 @@
 #include "ellipsoid/shape_columns.h"
 #include "ellipsoid/table_columns.h"
 #include "scan/ply_header.h"
-#include "scan/ply_reader.h"
+#include "scan/readers.h"
 #include "scan/scan_stream.h"
-#include "scan/text_reader.h"
 #include "scan/text_tokens.h"
 
 namespace surfcast::ellipsoid {

@@ -1,8 +1,7 @@
 #include "gaussian/gaussian_format.h"
 
-#include "gaussian/ply_gaussians.h"
+#include "gaussian/readers.h"
 #include "gaussian/sog_meta.h"
-#include "gaussian/spz_gaussians.h"
 #include "scan/text_tokens.h"
 
 namespace surfcast::gaussian {

@@ -4,10 +4,7 @@
 #include <utility>
 
 #include "gaussian/gaussian_format.h"
-#include "gaussian/ply_gaussians.h"
-#include "gaussian/sog_gaussians.h"
-#include "gaussian/splat_gaussians.h"
-#include "gaussian/spz_gaussians.h"
+#include "gaussian/readers.h"
 
 namespace surfcast::gaussian {
 namespace {

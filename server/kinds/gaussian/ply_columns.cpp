@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "scan/ply_reader.h"
+#include "scan/readers.h"
 
 namespace surfcast::gaussian {
 

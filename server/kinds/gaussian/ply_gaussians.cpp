@@ -1,5 +1,3 @@
-#include "gaussian/ply_gaussians.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -8,6 +6,7 @@
 #include <utility>
 
 #include "gaussian/ply_columns.h"
+#include "gaussian/readers.h"
 #include "scan/ply_header.h"
 
 namespace surfcast::gaussian {

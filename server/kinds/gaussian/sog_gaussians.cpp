@@ -1,11 +1,10 @@
-#include "gaussian/sog_gaussians.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
 #include <utility>
 
+#include "gaussian/readers.h"
 #include "gaussian/sog_meta.h"
 #include "gaussian/sog_picture.h"
 #include "scan/text_tokens.h"

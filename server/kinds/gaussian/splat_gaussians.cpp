@@ -1,8 +1,7 @@
-#include "gaussian/splat_gaussians.h"
-
 #include <string>
 #include <utility>
 
+#include "gaussian/readers.h"
 #include "scan/scalar_type.h"
 
 namespace surfcast::gaussian {

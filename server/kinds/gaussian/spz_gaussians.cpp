@@ -1,5 +1,3 @@
-#include "gaussian/spz_gaussians.h"
-
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -10,6 +8,7 @@
 #include <utility>
 
 #include "base/contract.h"
+#include "gaussian/readers.h"
 #include "scan/scalar_type.h"
 #include "stream/inflate_stream.h"
 #include "stream/zstd_stream.h"
