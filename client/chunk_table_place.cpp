@@ -13,7 +13,7 @@ constexpr size_t kOffsetOfPoints = 96;
 constexpr size_t kPointFormat = 104;
 constexpr uint8_t kCompressed = 0x80;  // set in the point format by LASzip
 /// Records before the points; a file with more is left as it is.
-constexpr size_t kMostHead = size_t{16} << 20;
+constexpr size_t kMaxHead = size_t{16} << 20;
 
 uint64_t number_at(std::string_view bytes, size_t offset, size_t size) {
   uint64_t value = 0;
@@ -32,8 +32,8 @@ std::optional<size_t> points_of_laz(std::string_view head) {
 
 void ChunkTablePlace::add(std::string_view bytes) {
   size_ += bytes.size();
-  if (head_.size() < kMostHead) {
-    head_.append(bytes.substr(0, kMostHead - head_.size()));
+  if (head_.size() < kMaxHead) {
+    head_.append(bytes.substr(0, kMaxHead - head_.size()));
     const std::optional<size_t> points = points_of_laz(head_);
     if (points) head_.resize(std::min(head_.size(), *points + kPlaceBytes));
   }

@@ -98,15 +98,13 @@ Axis axis_of(const Column& values, double scale, double offset) {
   const auto [low, high] = std::minmax_element(values.begin(), values.end());
   axis.low = *low;
   axis.high = *high;
-  constexpr double kMost = std::numeric_limits<int32_t>::max();
-  const auto fits = [&] {
-    return std::abs(axis.step_of(axis.low)) < kMost && std::abs(axis.step_of(axis.high)) < kMost;
-  };
+  constexpr double kMax = std::numeric_limits<int32_t>::max();
+  const auto fits = [&] { return std::abs(axis.step_of(axis.low)) < kMax && std::abs(axis.step_of(axis.high)) < kMax; };
   if (fits()) return axis;
   axis.offset += axis.step_of(axis.low) * axis.scale;
   if (fits()) return axis;
   axis.offset = axis.low;
-  axis.scale = (axis.high - axis.low) / (kMost - 1);
+  axis.scale = (axis.high - axis.low) / (kMax - 1);
   return axis;
 }
 
@@ -130,10 +128,10 @@ LasLayout layout_of(const wire::Profile& profile) {
                  axis_of(profile.z(), profile.scale().z(), profile.offset().z())};
   layout.colored = profile.color_bits() > 0;
   // A record's length has 16 bits, and so has that of the descriptions.
-  constexpr size_t kMostExtra = std::numeric_limits<uint16_t>::max() / kExtraDescription;
+  constexpr size_t kMaxExtra = std::numeric_limits<uint16_t>::max() / kExtraDescription;
   for (const wire::AttributeColumn& attribute : profile.attributes()) {
     const bool known = las_field(attribute.attribute()) != nullptr || attribute.attribute() == "gps_time";
-    if (!known && layout.extra.size() < kMostExtra) layout.extra.push_back(&attribute);
+    if (!known && layout.extra.size() < kMaxExtra) layout.extra.push_back(&attribute);
   }
   return layout;
 }

@@ -14,9 +14,9 @@ namespace surfcast::warp {
 namespace {
 
 constexpr int kLastCode = 255;
-constexpr uint64_t kMostTexels = 1 << 20;
+constexpr uint64_t kMaxTexels = 1 << 20;
 // Inverse depths beyond these are no depths of a scene, and their products might not be finite.
-constexpr double kLeast = 1e-18;
+constexpr double kMin = 1e-18;
 constexpr double kLargest = 1e18;
 
 tl::unexpected<Error> damaged(const std::string& what) {
@@ -36,8 +36,8 @@ Status check(const wire::DepthPlane& plane, int width, int height) {
       plane.height() != static_cast<uint32_t>(cells(height, plane.cell()))) {
     return damaged("its size does not fit to that of the picture");
   }
-  if (uint64_t{plane.width()} * plane.height() > kMostTexels) return damaged("too many texels");
-  const bool range = plane.first() >= kLeast && plane.first() < plane.last() && plane.last() <= kLargest;
+  if (uint64_t{plane.width()} * plane.height() > kMaxTexels) return damaged("too many texels");
+  const bool range = plane.first() >= kMin && plane.first() < plane.last() && plane.last() <= kLargest;
   return range ? Status() : damaged("a range that is none");
 }
 

@@ -28,7 +28,7 @@ constexpr int kSameColor = 48;
 // shine through there. Frames in motion are less sharp, so that opaque ones differ everywhere.
 constexpr int kSameLook = 6000;
 constexpr double kOnEdge = 1e-9;  // barycentric
-constexpr int kMostBands = 16;
+constexpr int kMaxBands = 16;
 
 /// A vertex in the target: pixel times w, and w, where w is depth relative to the frame's; of background to any.
 struct Projected {
@@ -338,7 +338,7 @@ void draw_rest(const Pixels& pixels, const std::vector<ScreenTriangle>& triangle
 /// Calls `draw` for bands of rows, each on a thread of its own.
 template <typename Draw>
 void in_bands(int height, const Draw& draw) {
-  const int bands = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, kMostBands);
+  const int bands = std::clamp(static_cast<int>(std::thread::hardware_concurrency()), 1, kMaxBands);
   std::vector<std::jthread> threads;
   for (int i = 1; i < bands; ++i)
     threads.emplace_back([&, i] { draw(Band{height * i / bands, height * (i + 1) / bands}); });

@@ -62,10 +62,10 @@ struct BuildCommand {
 /// Leaves the processors to other programs, and ends when the program that started this one does. What has already
 /// ended is noticed by a changed parent.
 Status go_into_background(bool sample) {
-  constexpr int kLeastPriority = 19;
+  constexpr int kMinPriority = 19;
   constexpr int kSamplePriority = 5;  // done within seconds, for which somebody waits
   const pid_t parent = ::getppid();
-  if (::setpriority(PRIO_PROCESS, 0, sample ? kSamplePriority : kLeastPriority) != 0 ||
+  if (::setpriority(PRIO_PROCESS, 0, sample ? kSamplePriority : kMinPriority) != 0 ||
       ::prctl(PR_SET_PDEATHSIG, SIGTERM) != 0) {
     return fail(ErrorKind::kIo, std::string("cannot go into the background: ") + std::strerror(errno));
   }

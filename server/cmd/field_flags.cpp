@@ -43,7 +43,7 @@ void add_lattice_flags(CLI::App& command, CLI::Option* value, std::optional<scat
       .add_option_function<uint32_t>(
           "--resolution", [&field](uint32_t samples) { made(field).resolution = samples; },
           "Samples of the volume along its longest axis (default: as the kernels need, at most 134 million in all)")
-      ->check(CLI::Range(scattered::kLeastResolution, model::kMaxAxisSamples))
+      ->check(CLI::Range(scattered::kMinResolution, model::kMaxAxisSamples))
       ->needs(value);
   command
       .add_option_function<double>(

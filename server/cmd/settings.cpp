@@ -33,15 +33,15 @@ Result<uint64_t> parse_count(const std::string& text, const SettingRange& range)
 }
 
 Result<std::chrono::milliseconds> parse_seconds(const std::string& text) {
-  constexpr double kLeast = 0.001;
-  constexpr double kMost = 864'000;
+  constexpr double kMin = 0.001;
+  constexpr double kMax = 864'000;
   double seconds = 0;
   const char* end = text.data() + text.size();
   const auto [rest, code] = std::from_chars(text.data(), end, seconds);
-  if (code == std::errc() && rest == end && seconds >= kLeast && seconds <= kMost) {
+  if (code == std::errc() && rest == end && seconds >= kMin && seconds <= kMax) {
     return std::chrono::milliseconds(std::llround(seconds * 1e3));
   }
-  return fail(ErrorKind::kInvalidInput, fmt::format("must be seconds from {} to {}: {}", kLeast, kMost, text));
+  return fail(ErrorKind::kInvalidInput, fmt::format("must be seconds from {} to {}: {}", kMin, kMax, text));
 }
 
 std::string size_text(uint64_t bytes) {

@@ -6,7 +6,7 @@
 namespace surfcast::cmd {
 namespace {
 
-constexpr uint64_t kMostRange = uint64_t{1} << 30;
+constexpr uint64_t kMaxRange = uint64_t{1} << 30;
 
 void add_time_flags_of_store(CLI::App& command, object_store::StoreConfig& store) {
   add_seconds(command, "store-timeout", store.timeout,
@@ -57,11 +57,11 @@ void add_store_flags(CLI::App& command, object_store::StoreConfig& store) {
   add_size(command, "store-gap", store.join.gap,
            "Bytes between two blocks that are read with them to save a request (default 256K). More: bytes in vain; "
            "less: requests",
-           {0, kMostRange});
+           {0, kMaxRange});
   add_size(command, "store-run", store.join.run,
            "Blocks read by one request (default 4M). More: the first block of a request waits for the last; less: "
            "requests",
-           {1, kMostRange});
+           {1, kMaxRange});
   add_count(command, "store-waste", store.join.waste_percent,
             "Percent of the blocks' bytes that are read between them at most (default 20). More: bytes in vain; less: "
             "requests",

@@ -4,7 +4,7 @@
 #include "kinds/append_record.glsl"
 
 // Deviation of the kernel, pixels, below which a surfel is drawn as a disc.
-const float kLeastBent = 0.5;
+const float kMinBent = 0.5;
 
 bool has_curvature(uvec4 run) { return (run.z & SURFCAST_RUN_CURVED) != 0u; }
 
@@ -32,7 +32,7 @@ Shape shape_of(uvec4 run, int at) {
 bool is_bent(Surfel s, Shape shape) {
   float deviation = float(SURFCAST_KERNEL_SIGMA) * s.radius * eta();
   bool flat_disc = all(equal(shape.bend, vec3(0.0))) && all(equal(shape.border, vec2(0.0)));
-  return !flat_disc && deviation >= kLeastBent * s.o.z;
+  return !flat_disc && deviation >= kMinBent * s.o.z;
 }
 
 // The shape in the tangent frame of the normal's camera coordinates.

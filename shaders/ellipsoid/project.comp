@@ -88,11 +88,11 @@ vec3 color_of(GlyphView view, uvec4 run, int at, uvec4 a, vec3 values, vec3 dire
 // Exponents of a superquadric, about its axis and along it; z: 1 if the axis is that of the largest value, 0 if it is
 // that of the smallest one.
 vec3 shape_of(vec3 values, float sharpness) {
-  const float kLeast = 0.02;  // sharp to a hundredth of a semi-axis
+  const float kMin = 0.02;  // sharp to a hundredth of a semi-axis
   float sum = values.x + values.y + values.z;
   float linear = (values.x - values.y) / sum;
   float planar = 2.0 * (values.y - values.z) / sum;
-  vec2 e = max(pow(max(1.0 - vec2(linear, planar), 1e-6), vec2(sharpness)), kLeast);
+  vec2 e = max(pow(max(1.0 - vec2(linear, planar), 1e-6), vec2(sharpness)), kMin);
   return planar > linear ? vec3(e, 0.0) : vec3(e.yx, 1.0);
 }
 

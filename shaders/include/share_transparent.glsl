@@ -96,14 +96,14 @@ void share_sums(inout SurfaceColumns sums) {}
 #endif
 
 #ifdef SURFCAST_BLENDS_BEHIND
-const uint kMostFinds = 2u;  // in motion; what is behind them is a medium
+const uint kMaxFinds = 2u;  // in motion; what is behind them is a medium
 #else
-const uint kMostFinds = uint(SURFCAST_SURFACE_FINDS);
+const uint kMaxFinds = uint(SURFCAST_SURFACE_FINDS);
 #endif
 
 // The most finds for which the loops over a list stay within what software GL allows. A find walks three times over the
 // small splats, four of them at a time, and over the large ones, one at a time.
 int finds_for(uint smalls, uint larges) {
   const uint kIterations = 48000u;
-  return int(clamp(kIterations * kStride / max(smalls + 4u * larges, 1u), 1u, kMostFinds));
+  return int(clamp(kIterations * kStride / max(smalls + 4u * larges, 1u), 1u, kMaxFinds));
 }

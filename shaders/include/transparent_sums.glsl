@@ -63,14 +63,14 @@ struct SurfaceValue {
 };
 
 // Of a medium, what counts is optical depth.
-const float kMostOpacity = 1.0 - 1.0 / 4096.0;
+const float kMaxOpacity = 1.0 - 1.0 / 4096.0;
 const float kDepthUnit = 8.0;
 
 SurfaceValue surface_value(uint color, int slot, Through through, float unit, bool medium) {
   SurfaceValue value;
   value.count = through.count * unit;
   value.opacity = value.count * through.opacity;
-  if (medium) value.count *= -log(1.0 - min(through.opacity, kMostOpacity)) * (1.0 / kDepthUnit);
+  if (medium) value.count *= -log(1.0 - min(through.opacity, kMaxOpacity)) * (1.0 / kDepthUnit);
   value.seen = splat_value(color, slot, value.opacity);
   value.seen.one = unit;
   return value;

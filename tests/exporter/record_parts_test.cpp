@@ -55,9 +55,9 @@ TEST_F(RecordPartsTest, WhatIsInMemoryIsOnePartInItsOrder) {
 }
 
 TEST_F(RecordPartsTest, PartsAreTheLargestCellsThatTheLimitAllows) {
-  constexpr uint64_t kMost = 100;
+  constexpr uint64_t kMax = 100;
   const RecordPlaces places(head_, cube_of(head_, counts_));
-  RecordParts parts(places, {kMost, 14});
+  RecordParts parts(places, {kMax, 14});
   RecordSpool records = spool(1 << 14);
   ASSERT_FALSE(records.is_resident());
   ASSERT_TRUE(parts.divide(records, target()));
@@ -72,8 +72,8 @@ TEST_F(RecordPartsTest, PartsAreTheLargestCellsThatTheLimitAllows) {
   for (size_t i = 0; i < parts.parts().size(); ++i) {
     const RecordPart& part = parts.parts()[i];
     EXPECT_EQ(part.count, count(part.key));
-    EXPECT_LE(part.count, kMost);
-    EXPECT_GT(count(part.key.parent()), kMost);
+    EXPECT_LE(part.count, kMax);
+    EXPECT_GT(count(part.key.parent()), kMax);
     EXPECT_TRUE(i == 0 || parts.parts()[i - 1].first < part.first);
     const auto bytes = parts.take(i);
     ASSERT_TRUE(bytes) << bytes.error().message;

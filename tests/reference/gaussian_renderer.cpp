@@ -15,12 +15,12 @@ namespace surfcast::reference {
 namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
-constexpr int kTrainedTile = 16;      ///< pixels
-constexpr int kTile = 8;              ///< of exact pictures, pixels
-constexpr int kBorder = 5;            ///< pixels about an exact picture in which there may be rays
-constexpr double kLeastSpread = 0.1;  ///< square pixels, of the larger axis' squared distance from the mean
-constexpr double kReach = 3;          ///< of a splat as trained, deviations
-constexpr double kDiscScreen = 2;     ///< inverse variance of a disc's smallest footprint (Huang 2024), 1 / px^2
+constexpr int kTrainedTile = 16;    ///< pixels
+constexpr int kTile = 8;            ///< of exact pictures, pixels
+constexpr int kBorder = 5;          ///< pixels about an exact picture in which there may be rays
+constexpr double kMinSpread = 0.1;  ///< square pixels, of the larger axis' squared distance from the mean
+constexpr double kReach = 3;        ///< of a splat as trained, deviations
+constexpr double kDiscScreen = 2;   ///< inverse variance of a disc's smallest footprint (Huang 2024), 1 / px^2
 
 struct Fragment {
   double depth = 0;
@@ -134,7 +134,7 @@ class TrainedScene {
     if (!rules_.tiles || convention_ == GaussianConvention::kFlat) return lists_.everywhere();
     const glm::dvec3 s = splat.footprint.footprint();
     const double middle = 0.5 * (s.x + s.y);
-    const double larger = middle + std::sqrt(std::max(kLeastSpread, middle * middle - (s.x * s.y - s.z * s.z)));
+    const double larger = middle + std::sqrt(std::max(kMinSpread, middle * middle - (s.x * s.y - s.z * s.z)));
     const double radius = std::ceil(kReach * std::sqrt(larger));
     // The rasterizer counts pixels from the centre of the first.
     const glm::dvec2 low = (splat.pixel - 0.5 - radius) / static_cast<double>(kTrainedTile);

@@ -19,9 +19,9 @@
 namespace surfcast::reference {
 namespace {
 
-constexpr int kBand = 4;              ///< rows of pixels that are drawn together
-constexpr int kNeighbourhood = 2;     ///< spacings over which a kernel and the slabs that it is in reach
-constexpr double kLeastWeight = 0.5;  ///< of a slab at which its scalar is known
+constexpr int kBand = 4;            ///< rows of pixels that are drawn together
+constexpr int kNeighbourhood = 2;   ///< spacings over which a kernel and the slabs that it is in reach
+constexpr double kMinWeight = 0.5;  ///< of a slab at which its scalar is known
 
 /// A kernel of the grid.
 struct GridKernel {
@@ -236,12 +236,12 @@ class SlabPass {
   /// planes of the lattice that the ray meets head-on, sums ripple by up to a seventh. So do the weights.
   static void normalize(std::vector<SlabSum>& sums) {
     for (SlabSum& sum : sums) {
-      if (sum.weight >= kLeastWeight) sum.value /= sum.weight;
+      if (sum.weight >= kMinWeight) sum.value /= sum.weight;
     }
   }
   /// Whether the scalar is known on both sides. Where it is not, kernels are left out because they cannot show.
   [[nodiscard]] bool known(const SlabSum& a, const SlabSum& b) const {
-    return !parameters_.normalized || std::min(a.weight, b.weight) >= kLeastWeight;
+    return !parameters_.normalized || std::min(a.weight, b.weight) >= kMinWeight;
   }
 
   void note(uint64_t fragments, const std::vector<SlabSum>& sums) {

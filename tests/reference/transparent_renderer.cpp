@@ -16,9 +16,9 @@
 namespace surfcast::reference {
 namespace {
 
-constexpr int kTile = 8;                         ///< pixels
-constexpr double kMostOpacity = 1 - 1.0 / 4096;  ///< of a fragment of a medium: its optical depth is finite
-constexpr double kOpaque = 1.0 / 128;            ///< transmittance below which nothing is visible
+constexpr int kTile = 8;                        ///< pixels
+constexpr double kMaxOpacity = 1 - 1.0 / 4096;  ///< of a fragment of a medium: its optical depth is finite
+constexpr double kOpaque = 1.0 / 128;           ///< transmittance below which nothing is visible
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 struct SeenSurfel {
@@ -112,7 +112,7 @@ class Ray {
     for (const PixelFragment& f : fragments_) {
       if (f.depth <= limit) continue;
       all.add(f);
-      optical_depth -= f.count * std::log1p(-std::min(f.opacity, kMostOpacity));
+      optical_depth -= f.count * std::log1p(-std::min(f.opacity, kMaxOpacity));
     }
     blend(all, -std::expm1(-optical_depth));
   }

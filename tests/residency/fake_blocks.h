@@ -80,7 +80,7 @@ class FakeBlocks : public residency::BlockSource {
 };
 
 /// Stores the texels that a pool writes.
-class FakeSink : public residency::SurfelSink {
+class FakeSink : public residency::TexelSink {
  public:
   void write(size_t first, std::span<const glm::uvec4> surfels) override {
     for (size_t i = 0; i < surfels.size(); ++i) texels_[first + i] = surfels[i].x;

@@ -55,7 +55,7 @@ class ResidencyTest : public ::testing::Test {
     for (const uint32_t block : blocks) {
       const ResidentBlock resident = residency_->pool().at({source.id(), block});
       ASSERT_FALSE(resident.pages.empty());
-      EXPECT_EQ(sink_.at(size_t{resident.pages.front()} * SurfelPool::kPageSurfels), block);
+      EXPECT_EQ(sink_.at(size_t{resident.pages.front()} * BlockPool::kPageTexels), block);
     }
   }
 
@@ -295,7 +295,7 @@ TEST_F(ResidencyTest, AttributesOfResidentBlocksAreAddedInPlace) {
   for (const uint32_t block : view->selection.draw) {
     const ResidentBlock resident = residency_->pool().at({1, block});
     ASSERT_TRUE(resident.intensity);
-    EXPECT_EQ(sink_.attribute_at(size_t{resident.pages.front()} * SurfelPool::kPageSurfels), block);
+    EXPECT_EQ(sink_.attribute_at(size_t{resident.pages.front()} * BlockPool::kPageTexels), block);
   }
 }
 

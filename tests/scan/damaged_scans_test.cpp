@@ -34,7 +34,7 @@ using Random = std::mt19937;
 
 constexpr DecodingLimit kLimit{uint64_t{64} << 20};
 /// The limit is for what is decoded at once; a copy of it may be under way to the caller.
-constexpr size_t kMostMemory = 2 * kLimit.max_bytes + (size_t{16} << 20);
+constexpr size_t kMaxMemory = 2 * kLimit.max_bytes + (size_t{16} << 20);
 
 /// A scan in one file or several.
 struct Scan {
@@ -341,7 +341,7 @@ TEST_P(DamagedScanTest, DamagedBytesAreReadOrRefusedWithinBounds) {
     const double start = processor_seconds();
     const Status status = read(file->first, text);
     EXPECT_LT(processor_seconds() - start, 1);
-    EXPECT_LT(model::peak_bytes_in_use() - before, kMostMemory);
+    EXPECT_LT(model::peak_bytes_in_use() - before, kMaxMemory);
     if (!status) expect_one_line_for_people(status.error(), name_in_errors(file->first));
     refused += status ? 0 : 1;
     if (!scan.in_memory()) write(file->first, file->second);

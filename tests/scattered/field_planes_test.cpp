@@ -38,7 +38,7 @@ Samples samples_of(const std::vector<StatedSample>& stated, StatedKernel kernel,
 
 Combining combining_of(StatedField field) {
   constexpr std::array kCombinations{Combination::kSum, Combination::kAverage, Combination::kDensity};
-  return {kCombinations.at(static_cast<size_t>(field)), 0, kLeastWeight};
+  return {kCombinations.at(static_cast<size_t>(field)), 0, kMinWeight};
 }
 
 std::vector<float> evaluated(const FieldPlanes& field, const FieldLattice& lattice) {

@@ -109,8 +109,8 @@ Simplified simplified(const surfel::SurfelCloud& cloud, size_t count) {
     points.push_back(averages.back());
     codes.push_back({});
     const std::vector<Sample> wide = around(samples, tree, centre, 1.05 * spacing, cloud.oriented);
-    if (static_cast<double>(samples.size()) < simplify::kLeastSamplesPerPoint * static_cast<double>(subset.size()) ||
-        wide.size() < 2 * simplify::kLeastSamples) {
+    if (static_cast<double>(samples.size()) < simplify::kMinSamplesPerPoint * static_cast<double>(subset.size()) ||
+        wide.size() < 2 * simplify::kMinSamples) {
       continue;
     }
     const auto fit = simplify::fit_surface(centre.position, wide, cloud.oriented);

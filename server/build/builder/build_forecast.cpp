@@ -23,7 +23,7 @@ constexpr std::array<StageShare, 6> kShares{{
 /// The same for builds of volumes.
 constexpr std::array<StageShare, 2> kVolumeShares{{{"measuring samples", 0.15}, {"writing bricks", 0.85}}};
 /// Beyond this share of a stage nothing is claimed that was not reported.
-constexpr double kMostByTime = 0.95;
+constexpr double kMaxByTime = 0.95;
 /// The pace of a build is known once this share of it is done: reading alone says little.
 constexpr double kKnownShare = 0.1;
 
@@ -72,7 +72,7 @@ double BuildForecast::expected_seconds() const {
 
 BuildOutlook BuildForecast::outlook(double seconds) {
   const double stage_seconds = expected_seconds() * stage_share_;
-  const double by_time = stage_seconds > 0 ? std::min((seconds - stage_began_) / stage_seconds, kMostByTime) : 0;
+  const double by_time = stage_seconds > 0 ? std::min((seconds - stage_began_) / stage_seconds, kMaxByTime) : 0;
   const double in_stage = std::clamp(std::max(stage_done_, by_time), 0.0, 1.0);
   shown_ = std::max(shown_, std::min(before_ + stage_share_ * in_stage, 1.0));
   const double pace = std::max(expected_seconds(), shown_ >= kKnownShare ? seconds / shown_ : 0.0);

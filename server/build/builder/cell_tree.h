@@ -54,11 +54,11 @@ class CellTree {
   }
 
  private:
-  static constexpr size_t kMostItems = 16384;  // of a block
-  static constexpr size_t kFewItems = 4096;    // leaves with fewer share a block
-  static_assert(kMostItems <= SortedRecords::kLookAhead);
+  static constexpr size_t kMaxItems = 16384;  // of a block
+  static constexpr size_t kFewItems = 4096;   // leaves with fewer share a block
+  static_assert(kMaxItems <= SortedRecords::kLookAhead);
   /// Selection refines by spacing: a parent's is larger than those of its children.
-  static constexpr float kLeastCoarsening = 1.01F;
+  static constexpr float kMinCoarsening = 1.01F;
 
   /// What stands for a cell: its blocks, and the items that its parent is made of.
   struct Cell {
@@ -98,7 +98,7 @@ class CellTree {
   /// The number of Items of a cell that come next, or one more than a block holds.
   Result<size_t> count(const ldc::OctreeKey& key) {
     const auto belongs = [&](uint64_t code) { return ldc::key_of_code(code, key.depth) == key; };
-    for (size_t low = 0, high = kMostItems + 1;;) {
+    for (size_t low = 0, high = kMaxItems + 1;;) {
       if (low == high) return low;
       const size_t middle = (low + high) / 2;
       const Result<std::optional<uint64_t>> code = kind_.code(middle);
@@ -122,8 +122,8 @@ class CellTree {
       const Result<size_t> size = count(key);
       if (!size) return fail(size.error());
       if (*size == 0) return Cell();
-      if (*size > kMostItems && divisible) return divide(key, leaves);
-      if (Status taken = take_leaf(key, std::min(*size, kMostItems), leaves); !taken) return fail(taken.error());
+      if (*size > kMaxItems && divisible) return divide(key, leaves);
+      if (Status taken = take_leaf(key, std::min(*size, kMaxItems), leaves); !taken) return fail(taken.error());
     }
   }
 
@@ -153,10 +153,10 @@ class CellTree {
       below.spacing = std::max(below.spacing, cell.spacing);
       cell = {};
     }
-    MergedItems<Items> merged = kind_.merge(below.items, box_of(key), kMostItems);
+    MergedItems<Items> merged = kind_.merge(below.items, box_of(key), kMaxItems);
     model::EncodedBlock block = kind_.encode(merged.items, true);
     const auto sampled = static_cast<float>(surfel::kRadiusOverSpacing * merged.side);
-    block.spacing = std::max(sampled, kLeastCoarsening * below.spacing);
+    block.spacing = std::max(sampled, kMinCoarsening * below.spacing);
     block.max_radius = std::max(block.max_radius, block.spacing);
     const Result<uint32_t> number = writer_.add(block, key, below.blocks);
     if (!number) return fail(number.error());

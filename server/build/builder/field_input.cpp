@@ -72,7 +72,7 @@ Result<GridInput> sample_field(const scan::ScanStream& scan, const std::filesyst
   const Result<scattered::FieldLattice> lattice =
       sample
           ? scattered::plan_lattice(*samples, options.combination, {}, *sample)
-          : scattered::plan_lattice(*samples, options.combination, options.resolution, scattered::kMostLatticeSamples);
+          : scattered::plan_lattice(*samples, options.combination, options.resolution, scattered::kMaxLatticeSamples);
   if (!lattice) return fail(lattice.error().kind, path.string() + ": " + lattice.error().message);
   if (const uint64_t bytes = scattered::FieldPlanes::bytes_for(*lattice); bytes > memory) {
     return fail(ErrorKind::kLimit, path.string() + ": a volume of " + std::to_string(lattice->samples()) +

@@ -69,7 +69,7 @@ Result<MemoryPlan> plan_memory(uint64_t budget, uint64_t held, const scan::ScanS
                                        " is too small for these points: it takes at least " + in_mebibytes(least));
   }
   plan.for_parts = budget - kReserve - held;
-  plan.whole_points = std::min<uint64_t>(plan.for_parts / plan.per_point, uint64_t{estimation::kMostSites});
+  plan.whole_points = std::min<uint64_t>(plan.for_parts / plan.per_point, uint64_t{estimation::kMaxSites});
   const double points = static_cast<double>(plan.for_parts) / (kWithHalo * static_cast<double>(plan.per_point));
   plan.part_points = std::max(kMinPart, static_cast<uint64_t>(points / kPartsAtOnce));
   return plan;

@@ -16,7 +16,7 @@ namespace surfcast::builder {
 /// How meshes become surfels.
 struct MeshOptions {
   std::optional<double> spacing{};  ///< see mesh::SampleOptions
-  uint64_t most_surfels = mesh::kMostSurfels;
+  uint64_t most_surfels = mesh::kMaxSurfels;
   mesh::FacePolicy faces = mesh::FacePolicy::kAuto;
 };
 

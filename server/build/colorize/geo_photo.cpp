@@ -61,14 +61,14 @@ class TiffTags {
   template <typename T>
   [[nodiscard]] std::vector<T> values(uint16_t tag, uint16_t type) const {
     constexpr uint64_t kEntry = 12;
-    constexpr uint32_t kMostValues = 65536;
+    constexpr uint32_t kMaxValues = 65536;
     std::vector<T> all;
     const uint64_t entries = number<uint16_t>(directory_).value_or(0);
     for (uint64_t i = 0; i < entries; ++i) {
       const uint64_t entry = directory_ + 2 + i * kEntry;
       if (number<uint16_t>(entry) != tag || number<uint16_t>(entry + 2) != type) continue;
       const uint32_t count = number<uint32_t>(entry + 4).value_or(0);
-      if (count > kMostValues) return {};
+      if (count > kMaxValues) return {};
       const uint64_t first = count * sizeof(T) <= 4 ? entry + 8 : number<uint32_t>(entry + 8).value_or(UINT32_MAX);
       for (uint32_t k = 0; k < count; ++k) {
         const std::optional<T> value = number<T>(first + k * sizeof(T));

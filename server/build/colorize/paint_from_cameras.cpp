@@ -18,7 +18,7 @@ namespace {
 /// More than the pictures show, because distortion moves their borders.
 constexpr double kMargin = 1.15;
 /// Pixels of a front surface, at most.
-constexpr double kMostPixels = 1 << 20;
+constexpr double kMaxPixels = 1 << 20;
 /// Share of a picture's shorter side over which its weight grows from nothing at the border.
 constexpr double kFeather = 0.05;
 constexpr size_t kBest = 3;
@@ -27,7 +27,7 @@ constexpr size_t kBest = 3;
 geometry::CameraFrame frame_of(const PhotoCamera& camera, const mesh::Texture& texture) {
   const glm::dvec2 size(texture.width, texture.height);
   const glm::dvec2 reach = kMargin * glm::max(camera.principal, size - camera.principal) / camera.focal;
-  const double fitting = std::sqrt(kMostPixels / (4 * reach.x * reach.y));
+  const double fitting = std::sqrt(kMaxPixels / (4 * reach.x * reach.y));
   geometry::CameraFrame frame;
   frame.eye = camera.position;
   const glm::dmat3 to_world = glm::transpose(camera.to_camera);

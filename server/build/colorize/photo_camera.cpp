@@ -26,13 +26,13 @@ std::optional<std::vector<double>> numbers_of(const Json& json, const char* name
 }
 
 bool is_rotation(const glm::dmat3& matrix) {
-  constexpr double kMostError = 1e-3;
+  constexpr double kMaxError = 1e-3;
   const glm::dmat3 product = matrix * glm::transpose(matrix);
   double error = 0;
   for (int i = 0; i < 3; ++i) {
     for (int j = 0; j < 3; ++j) error = std::max(error, std::abs(product[i][j] - (i == j ? 1 : 0)));
   }
-  return error < kMostError && glm::determinant(matrix) > 0;
+  return error < kMaxError && glm::determinant(matrix) > 0;
 }
 
 /// None if something is missing or makes no sense.

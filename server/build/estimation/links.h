@@ -17,7 +17,7 @@ namespace surfcast::estimation {
 inline constexpr size_t kLinks = 8;
 
 /// The most sites of a part: pairs of linked sites have numbers of 32 bits.
-inline constexpr size_t kMostSites = (size_t{1} << 32U) / kLinks - 1;
+inline constexpr size_t kMaxSites = (size_t{1} << 32U) / kLinks - 1;
 
 /// The pairs of linked sites. A pair is linked if either site is a near neighbour of the other.
 class Links {

@@ -153,13 +153,13 @@ bool is_in_sheet(const NeighbourOffsets& neighbours, const glm::dvec3& normal) {
   constexpr double kBeside = 0.36;
   // Of two even sheets three spacings apart, 28 of 32 neighbours are in the own one, and 24 where both have a border.
   // Layers of a depth camera mostly have others before and behind them.
-  constexpr double kMost = 0.82;
-  constexpr double kMostOfTwo = 0.8;
+  constexpr double kMax = 0.82;
+  constexpr double kMaxOfTwo = 0.8;
   if (neighbours.count < kWideNeighbours) return false;
   const double twelfth = glm::length(neighbours[kNearNeighbours - 1]);
   const auto [inside, apart, in_front] = split_at_plane(neighbours, normal, kThickness * twelfth);
   const bool two = in_front == 0 || in_front == apart.size();
-  const double least = two ? kMostOfTwo : kMost;
+  const double least = two ? kMaxOfTwo : kMax;
   if (static_cast<double>(inside.size()) < least * static_cast<double>(neighbours.count)) return false;
   return std::ranges::all_of(apart, [&, &inside = inside](const glm::dvec3& other) {
     return std::ranges::any_of(inside,

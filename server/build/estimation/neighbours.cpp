@@ -29,16 +29,16 @@ constexpr size_t kLeafSites = 64;
 constexpr uint32_t kSlotBits = 10;
 constexpr uint32_t kSlotMask = (1U << kSlotBits) - 1;
 /// Candidates of a run of sites, at most. Where there are more, the run is halved.
-constexpr size_t kMostCandidates = size_t{1} << kSlotBits;
+constexpr size_t kMaxCandidates = size_t{1} << kSlotBits;
 /// Candidates of one site that are sorted, at most.
-constexpr size_t kMostSorted = 128;
+constexpr size_t kMaxSorted = 128;
 /// Candidates are padded to a multiple of this, so that loops over them consist of whole vectors.
 constexpr size_t kPadding = 16;
 /// Farther from every candidate than any other: its squared distance is infinite.
 constexpr float kNowhere = 1e30F;
 
 using Nearest = NearestList<kLargestDegree>;
-using NearestIds = std::array<uint32_t, kMostSorted>;
+using NearestIds = std::array<uint32_t, kMaxSorted>;
 
 /// More than any squared distance.
 constexpr double kUncertain = std::numeric_limits<double>::infinity();
@@ -54,10 +54,10 @@ struct Candidates {
   double extent = 0;  ///< largest coordinate, scaled
   size_t count = 0;
   size_t first = 0;  ///< the slot of the first site of the run; the others follow
-  alignas(64) std::array<float, kMostCandidates> x;
-  alignas(64) std::array<float, kMostCandidates> y;
-  alignas(64) std::array<float, kMostCandidates> z;
-  std::array<uint32_t, kMostCandidates> sites;
+  alignas(64) std::array<float, kMaxCandidates> x;
+  alignas(64) std::array<float, kMaxCandidates> y;
+  alignas(64) std::array<float, kMaxCandidates> z;
+  std::array<uint32_t, kMaxCandidates> sites;
 
   void clear(const Box& box, double wanted_reach) {
     origin = box.centre();
@@ -89,7 +89,7 @@ struct Candidates {
 
 /// Keys of candidates: the bits of a squared distance, which ascend with it, with the lowest ones replaced by the slot.
 using Key = int32_t;
-using Keys = std::array<Key, kMostCandidates>;
+using Keys = std::array<Key, kMaxCandidates>;
 
 /// The key of the largest candidate at this squared distance.
 Key last_key(double d2) {
@@ -128,11 +128,11 @@ size_t keep_up_to(Key last, size_t count, Keys& keys) {
   return kept;
 }
 
-/// Sorts at most kMostSorted different keys: the place of each is the number of smaller ones, which takes no branches.
+/// Sorts at most kMaxSorted different keys: the place of each is the number of smaller ones, which takes no branches.
 SURFCAST_VECTOR_CLONES void sort_keys(size_t count, Keys& keys) {
-  std::array<Key, kMostSorted> unsorted;
+  std::array<Key, kMaxSorted> unsorted;
   std::copy_n(keys.begin(), count, unsorted.begin());
-  const size_t padded = std::min((count + 7) / 8 * 8, kMostSorted);
+  const size_t padded = std::min((count + 7) / 8 * 8, kMaxSorted);
   std::fill(unsorted.begin() + count, unsorted.begin() + padded, std::numeric_limits<Key>::max());
   for (size_t i = 0; i < count; ++i) {
     const Key key = unsorted[i];
@@ -185,7 +185,7 @@ class Search {
         if (i == run.first) candidates.first = candidates.count;
         const glm::dvec3& p = sites_.positions[i];
         if (squared_distance(p, glm::clamp(p, box.min, box.max)) > reach * reach) continue;
-        fits = candidates.count < kMostCandidates;
+        fits = candidates.count < kMaxCandidates;
         if (fits) candidates.add(i, p);
       }
       return fits;
@@ -235,10 +235,10 @@ class Search {
     size_t count = keep_up_to(last_key(scaled + 2 * candidates.error(scaled)), candidates.padded(), keys);
     if (count < degree_) return false;
     const auto kth = static_cast<std::ptrdiff_t>(degree_ - 1);
-    if (count > kMostSorted) {
+    if (count > kMaxSorted) {
       std::nth_element(keys.begin(), keys.begin() + kth, keys.begin() + static_cast<std::ptrdiff_t>(count));
       count = keep_up_to(last_needed(candidates, keys[degree_ - 1]), count, keys);
-      if (count > kMostSorted) return false;
+      if (count > kMaxSorted) return false;
     }
     sort_keys(count, keys);
     const Key last = last_needed(candidates, keys[degree_ - 1]);
@@ -261,7 +261,7 @@ class Search {
   }
 
   void sort_exactly(uint32_t site, std::span<uint32_t> nearest) const {
-    std::array<Found, kMostSorted> found;
+    std::array<Found, kMaxSorted> found;
     const auto end = std::transform(nearest.begin(), nearest.end(), found.begin(), [&](uint32_t other) {
       return Found{distance_between(site, other), other};
     });

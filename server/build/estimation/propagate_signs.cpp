@@ -51,7 +51,7 @@ class LinkContacts {
  public:
   LinkContacts(const Sites& sites, const Links& links, std::span<const glm::vec3> normals)
       : sites_(sites), links_(links), normals_(normals) {
-    SURFCAST_EXPECTS(links.sites() <= kMostSites);
+    SURFCAST_EXPECTS(links.sites() <= kMaxSites);
   }
 
   [[nodiscard]] bool empty() const { return links_.sites() < 2; }

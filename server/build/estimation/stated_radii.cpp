@@ -19,9 +19,9 @@ constexpr size_t kNearest = 6;
 
 // Authors mean a share of the spacing or a multiple of it. Radii in other units are far off, and radii that do not
 // follow the sampling spread. docs/kernel.md has the spread of conventions and of unrelated radii.
-constexpr double kLeastSpacings = 0.4;
-constexpr double kMostSpacings = 3;
-constexpr double kMostSpread = 2.5;
+constexpr double kMinSpacings = 0.4;
+constexpr double kMaxSpacings = 3;
+constexpr double kMaxSpread = 2.5;
 constexpr double kTail = 0.05;
 constexpr uint64_t kFewest = 64;
 
@@ -73,7 +73,7 @@ double ratio_at(size_t site, const StatedSite& point, const std::vector<StatedSi
 }
 
 bool follow_the_sampling(const RadiiInSpacings& radii) {
-  return radii.median >= kLeastSpacings && radii.median <= kMostSpacings && radii.most <= kMostSpread * radii.least;
+  return radii.median >= kMinSpacings && radii.median <= kMaxSpacings && radii.most <= kMaxSpread * radii.least;
 }
 
 /// A radius is neither 0 nor infinite.

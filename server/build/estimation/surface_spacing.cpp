@@ -24,7 +24,7 @@ namespace {
 constexpr size_t kNearest = 8;
 constexpr uint64_t kPointsPerSample = 8;
 /// Samples of a whole cloud, at most: 28 bytes each, and a tree over them.
-constexpr uint64_t kMostSamples = uint64_t{1} << 20;
+constexpr uint64_t kMaxSamples = uint64_t{1} << 20;
 
 constexpr size_t kAsked = 6;
 constexpr int kMutual = 2;
@@ -56,17 +56,17 @@ std::vector<Entry> sort_samples(std::span<const SurfaceSample> samples) {
 
 /// Places that are worked on together, and the most samples around them. Where there are more, the run is halved.
 constexpr size_t kRun = 64;
-constexpr size_t kMostNear = 256;
+constexpr size_t kMaxNear = 256;
 
 /// Samples around a run of places as arrays for vector instructions, in ascending order of their numbers.
 struct NearSamples {
   double bound = 0;  ///< of the squared distances of the nearest samples of any of the places
   size_t count = 0;
-  alignas(64) std::array<double, kMostNear> x;
-  alignas(64) std::array<double, kMostNear> y;
-  alignas(64) std::array<double, kMostNear> z;
-  alignas(64) std::array<double, kMostNear> squared_distances;
-  std::array<uint32_t, kMostNear> numbers;
+  alignas(64) std::array<double, kMaxNear> x;
+  alignas(64) std::array<double, kMaxNear> y;
+  alignas(64) std::array<double, kMaxNear> z;
+  alignas(64) std::array<double, kMaxNear> squared_distances;
+  std::array<uint32_t, kMaxNear> numbers;
 
   void add(uint32_t number, const glm::dvec3& position) {
     x[count] = position.x;
@@ -89,25 +89,25 @@ SURFCAST_VECTOR_CLONES void measure(const glm::dvec3& from, NearSamples& near) {
 }
 
 /// The most samples that are ranked. Where there are more, they are sorted.
-constexpr size_t kMostRanked = 64;
+constexpr size_t kMaxRanked = 64;
 
 /// Samples that may be among the nearest of a place, by their squared distances.
 struct Ranked {
   size_t count = 0;
-  alignas(64) std::array<double, kMostRanked> squared_distances;
-  std::array<uint32_t, kMostRanked> numbers;            ///< ascending
-  alignas(64) std::array<uint64_t, kMostRanked> ranks;  ///< by distance, then by number
+  alignas(64) std::array<double, kMaxRanked> squared_distances;
+  std::array<uint32_t, kMaxRanked> numbers;            ///< ascending
+  alignas(64) std::array<uint64_t, kMaxRanked> ranks;  ///< by distance, then by number
 };
 
 /// Keeps the samples that are at most as far away as `bound`. False if they are too many.
 bool keep_near(const NearSamples& near, double bound, Ranked& kept) {
-  std::array<uint32_t, kMostNear> inside;
+  std::array<uint32_t, kMaxNear> inside;
   size_t count = 0;
   for (uint32_t i = 0; i < near.count; ++i) {
     inside[count] = i;
     count += near.squared_distances[i] <= bound ? 1 : 0;
   }
-  if (count > kMostRanked) return false;
+  if (count > kMaxRanked) return false;
   for (size_t i = 0; i < count; ++i) {
     kept.squared_distances[i] = near.squared_distances[inside[i]];
     kept.numbers[i] = near.numbers[inside[i]];
@@ -118,7 +118,7 @@ bool keep_near(const NearSamples& near, double bound, Ranked& kept) {
 
 /// The rank of each is the number of those before it, which takes no branches.
 SURFCAST_VECTOR_CLONES void rank(Ranked& kept) {
-  const size_t padded = std::min((kept.count + 7) / 8 * 8, kMostRanked);
+  const size_t padded = std::min((kept.count + 7) / 8 * 8, kMaxRanked);
   std::fill(kept.squared_distances.begin() + kept.count, kept.squared_distances.begin() + padded, 0.0);
   std::fill(kept.ranks.begin(), kept.ranks.begin() + padded, uint64_t{0});
   for (uint64_t j = 0; j < kept.count; ++j) {
@@ -140,7 +140,7 @@ Nearest nearest_of(const NearSamples& near, size_t degree, double bound) {
     return nearest;
   }
   rank(kept);
-  std::array<uint32_t, kMostRanked> by_rank;
+  std::array<uint32_t, kMaxRanked> by_rank;
   for (uint32_t i = 0; i < kept.count; ++i) by_rank[kept.ranks[i]] = i;
   for (size_t i = 0; i < degree; ++i) nearest.add({kept.squared_distances[by_rank[i]], kept.numbers[by_rank[i]]});
   return nearest;
@@ -162,7 +162,7 @@ struct Places {
 }  // namespace
 
 uint64_t points_per_sample(uint64_t points) {
-  return std::max(kPointsPerSample, points / kMostSamples);
+  return std::max(kPointsPerSample, points / kMaxSamples);
 }
 
 bool is_sampled(const Sites& sites, const NeighbourGraph& graph, uint32_t site, uint64_t per_sample) {
@@ -223,7 +223,7 @@ struct SurfaceSpacing::Index {
       for (uint32_t i = run.first; i < run.last && fits; ++i) {
         const glm::dvec3& p = positions[i];
         if (squared_distance(p, glm::clamp(p, box.min, box.max)) > near.bound) continue;
-        fits = near.count < kMostNear;
+        fits = near.count < kMaxNear;
         if (fits) near.add(i, positions[i]);
       }
       return fits;

@@ -12,7 +12,7 @@
 namespace surfcast::estimation {
 namespace {
 
-constexpr size_t kMostNeighbours = 16;
+constexpr size_t kMaxNeighbours = 16;
 constexpr int kDirections = 8;
 constexpr double kNone = std::numeric_limits<double>::infinity();
 
@@ -34,7 +34,7 @@ Tangents tangents_of(const glm::dvec3& n) {
 
 /// The neighbours in the tangent plane, as arrays for vector instructions.
 struct Bearings {
-  using Numbers = std::array<double, kMostNeighbours>;
+  using Numbers = std::array<double, kMaxNeighbours>;
 
   size_t count = 0;
   alignas(32) Numbers u;  ///< place along the tangents; (1, 0) for a neighbour exactly above or below the site
@@ -45,10 +45,10 @@ struct Bearings {
 };
 
 SURFCAST_VECTOR_CLONES void find_bearings(const NeighbourOffsets& neighbours, const Tangents& t, Bearings& bearings) {
-  constexpr double kLeast = 0.5 * (1 + 1e-12);  // excludes neighbours at 45 degrees however they round
+  constexpr double kMin = 0.5 * (1 + 1e-12);  // excludes neighbours at 45 degrees however they round
   const glm::dvec3 e0 = t.e0;
   const glm::dvec3 e1 = t.e1;
-  for (size_t i = 0; i < kMostNeighbours; ++i) {
+  for (size_t i = 0; i < kMaxNeighbours; ++i) {
     const double x = neighbours.x[i];
     const double y = neighbours.y[i];
     const double z = neighbours.z[i];
@@ -65,9 +65,9 @@ SURFCAST_VECTOR_CLONES void find_bearings(const NeighbourOffsets& neighbours, co
     const double diagonal = 0.5 * both * both;
     bearings.u[i] = u;
     bearings.v[i] = v;
-    bearings.along_axis[i] = axis > kLeast * squared_length ? squared_distance * squared_length / axis : kNone;
+    bearings.along_axis[i] = axis > kMin * squared_length ? squared_distance * squared_length / axis : kNone;
     bearings.along_diagonal[i] =
-        diagonal > kLeast * squared_length ? squared_distance * squared_length / diagonal : kNone;
+        diagonal > kMin * squared_length ? squared_distance * squared_length / diagonal : kNone;
   }
 }
 
@@ -119,7 +119,7 @@ bool may_be_open(const Bearings& bearings) {
 /// The unit vector along the bisector of the wide angle if there is exactly one, otherwise zero.
 glm::dvec3 opening_of(const Bearings& bearings, const Tangents& t) {
   if (!may_be_open(bearings)) return glm::dvec3(0);
-  std::array<double, kMostNeighbours> angles{};
+  std::array<double, kMaxNeighbours> angles{};
   const auto end = angles.begin() + static_cast<std::ptrdiff_t>(bearings.count);
   std::transform(bearings.v.begin(), bearings.v.begin() + static_cast<std::ptrdiff_t>(bearings.count),
                  bearings.u.begin(), angles.begin(), [](double v, double u) { return std::atan2(v, u); });
@@ -145,7 +145,7 @@ glm::dvec3 opening_of(const Bearings& bearings, const Tangents& t) {
 Surroundings find_surroundings(const NeighbourOffsets& neighbours, size_t count, const glm::dvec3& normal) {
   const Tangents t = tangents_of(normal);
   Bearings bearings;
-  bearings.count = std::min({count, neighbours.count, kMostNeighbours});
+  bearings.count = std::min({count, neighbours.count, kMaxNeighbours});
   find_bearings(neighbours, t, bearings);
   return {reach_of(bearings), opening_of(bearings, t)};
 }

@@ -57,10 +57,10 @@ class EvenSampler {
 
   /// To a point or one of those before it in its cell.
   [[nodiscard]] bool is_close(const glm::vec3& place, uint32_t point) const {
-    constexpr auto kLeast = static_cast<float>(kSampleSpacing * kSampleSpacing);
+    constexpr auto kMin = static_cast<float>(kSampleSpacing * kSampleSpacing);
     for (; point != kNone; point = before_[point]) {
       const glm::vec3 way = points_[point].place - place;
-      if (way.x * way.x + way.y * way.y + way.z * way.z < kLeast) return true;
+      if (way.x * way.x + way.y * way.y + way.z * way.z < kMin) return true;
     }
     return false;
   }

@@ -14,7 +14,7 @@ namespace {
 /// field.
 constexpr double kClose = 0.02;
 /// Smooth fields take two; near a hard edge, where the field overshoots, three or four arrive.
-constexpr int kMostSteps = 5;
+constexpr int kMaxSteps = 5;
 /// Halvings of an edge: to the precision of a double near 1000.
 constexpr int kHalvings = 40;
 
@@ -41,7 +41,7 @@ std::optional<SurfacePoint> follow_gradient(const SampleWindow& samples, const I
   const glm::dvec3 lowest = glm::max(start - static_cast<double>(kReach), glm::dvec3(0));
   const glm::dvec3 highest = glm::min(start + static_cast<double>(kReach), last);
   glm::dvec3 place = start;
-  for (int taken = 0; taken < kMostSteps; ++taken) {
+  for (int taken = 0; taken < kMaxSteps; ++taken) {
     const FieldValue field = field_at(samples, place);
     const glm::dvec3 step = newton_step(field, value, place, last);
     const double length = glm::length(step);

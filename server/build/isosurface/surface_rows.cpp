@@ -19,7 +19,7 @@ namespace surfcast::isosurface {
 namespace {
 
 /// Planes that are worked on together: enough rows for all threads.
-constexpr int64_t kMostPlanes = 32;
+constexpr int64_t kMaxPlanes = 32;
 /// Memory for planes that is used even if there is more.
 constexpr uint64_t kUsefulMemory = uint64_t{64} << 20;
 
@@ -56,7 +56,7 @@ Result<int64_t> planes_together(const grid::GridHeader& header, uint64_t memory)
     return fail(ErrorKind::kLimit, fmt::format("a plane of its samples takes {} bytes of memory; {} are left for {}",
                                                plane, memory, kPlanesBefore + kPlanesBehind + 1));
   }
-  return std::clamp<int64_t>(fitting(kUsefulMemory), 1, std::min(most, kMostPlanes));
+  return std::clamp<int64_t>(fitting(kUsefulMemory), 1, std::min(most, kMaxPlanes));
 }
 
 /// The moved samples of successive planes for one surface.

@@ -11,7 +11,7 @@ namespace surfcast::point_tree {
 namespace {
 
 /// Blocks that wait to be coded: with their clouds some 200 MB at most.
-constexpr size_t kMostWaiting = 64;
+constexpr size_t kMaxWaiting = 64;
 
 void write_vector(model::ByteWriter& writer, const glm::dvec3& v) {
   for (int axis = 0; axis < 3; ++axis) writer.put(v[axis]);
@@ -91,7 +91,7 @@ void BlockKeeper::keep(const std::vector<MadeBlock>& blocks) {
   {
     const std::lock_guard lock(mutex_);
     for (const MadeBlock& block : blocks) {
-      if (queue_.size() < kMostWaiting) queue_.push_back(block);
+      if (queue_.size() < kMaxWaiting) queue_.push_back(block);
     }
   }
   wake_.notify_all();

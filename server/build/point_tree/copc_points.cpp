@@ -25,9 +25,9 @@ constexpr size_t kHeaderBytes = 375;
 constexpr size_t kDataOffsetAt = 96;
 constexpr size_t kBoundsAt = 179;
 /// More than the records before the points have.
-constexpr uint64_t kMostHead = uint64_t{16} << 20;
+constexpr uint64_t kMaxHead = uint64_t{16} << 20;
 /// Of the points of a node.
-constexpr uint64_t kMostRecordBytes = uint64_t{256} << 20;
+constexpr uint64_t kMaxRecordBytes = uint64_t{256} << 20;
 
 Result<LasHead> read_head(const ByteSource& file) {
   LasHead head;
@@ -37,7 +37,7 @@ Result<LasHead> read_head(const ByteSource& file) {
                    std::equal(head.bytes.begin(), head.bytes.begin() + 4, reinterpret_cast<const std::byte*>("LASF"));
   if (!las) return invalid_input("is no COPC file");
   const uint64_t size = scan::load<uint32_t>(&head.bytes[kDataOffsetAt]);
-  if (size > std::min(kMostHead, file.size())) return invalid_input("the LAS points begin too far within the file");
+  if (size > std::min(kMaxHead, file.size())) return invalid_input("the LAS points begin too far within the file");
   head.bytes.resize(std::max<uint64_t>(size, kHeaderBytes));
   if (Status status = file.read(0, head.bytes); !status) return fail(std::move(status.error()));
   Result<scan::LasHeader> header = scan::parse_las_header(head.bytes);
@@ -117,8 +117,7 @@ Result<std::vector<Node>> checked_nodes(const scan::CopcNodes& read, size_t reco
     const laz::Chunk chunk{0, node.points, node.bytes.offset, node.bytes.size};
     const Status sound = node.points > 0 ? laz::check_chunk(chunk, record_length, file_bytes) : Status();
     if (!sound) return fail(sound.error());
-    if (node.points > kMostRecordBytes / record_length)
-      return invalid_input("a node has too many points to be decoded");
+    if (node.points > kMaxRecordBytes / record_length) return invalid_input("a node has too many points to be decoded");
     chunk_bytes += node.bytes.size;
     nodes.push_back(node);
   }

@@ -9,8 +9,8 @@ namespace surfcast::point_tree {
 namespace {
 
 /// More than a description, and than a tile of an octree of points.
-constexpr uint64_t kMostDescription = uint64_t{16} << 20;
-constexpr uint64_t kMostTile = uint64_t{256} << 20;
+constexpr uint64_t kMaxDescription = uint64_t{16} << 20;
+constexpr uint64_t kMaxTile = uint64_t{256} << 20;
 
 scan::EptKey ept_key(const ldc::OctreeKey& key) {
   return {key.depth, key.x, key.y, key.z};
@@ -42,7 +42,7 @@ class EptReader : public NodeReader {
 
   [[nodiscard]] Result<scan::PointTable> read(const Node& node) const override {
     if (node.key.depth == 0) return points_of_tile(node, root_);
-    const Result<std::vector<std::byte>> tile = folder_->read(name_of_tile(node), kMostTile);
+    const Result<std::vector<std::byte>> tile = folder_->read(name_of_tile(node), kMaxTile);
     if (!tile) return fail(tile.error());
     return points_of_tile(node, *tile);
   }
@@ -66,7 +66,7 @@ class EptReader : public NodeReader {
 };
 
 Result<scan::EptDescription> read_description(const ByteSource& file) {
-  if (file.size() > kMostDescription) return fail(ErrorKind::kLimit, "is too large for a description");
+  if (file.size() > kMaxDescription) return fail(ErrorKind::kLimit, "is too large for a description");
   std::vector<std::byte> bytes(file.size());
   if (Status status = file.read(0, bytes); !status) return fail(std::move(status.error()));
   return scan::parse_ept(bytes);
@@ -96,7 +96,7 @@ Result<OpenedTree> open_ept(std::unique_ptr<const ByteSource> description, std::
   if (!nodes) return fail(nodes.error());
   Result<NodeTree> tree = arrange_ept(*ept, *nodes);
   if (!tree) return fail(std::move(tree.error()));
-  Result<std::vector<std::byte>> root = folder->read(scan::ept_tile_name(*ept, {0, 0, 0, 0}), kMostTile);
+  Result<std::vector<std::byte>> root = folder->read(scan::ept_tile_name(*ept, {0, 0, 0, 0}), kMaxTile);
   if (!root) return fail(std::move(root.error()));
   Result<scan::EptColumns> columns = scan::ept_columns(*ept, *root);
   if (!columns) return fail(std::move(columns.error()));

@@ -15,7 +15,7 @@ namespace {
 constexpr int kDeepest = ldc::OctreeKey::kMaxDepth - 1;
 
 /// Of a node: far more than octrees of points have. It bounds the blocks that are planned for a node.
-constexpr uint64_t kMostPoints = uint64_t{1} << 20;
+constexpr uint64_t kMaxPoints = uint64_t{1} << 20;
 
 std::string text_of_key(const ldc::OctreeKey& key) {
   return std::to_string(key.depth) + '-' + std::to_string(key.x) + '-' + std::to_string(key.y) + '-' +
@@ -111,7 +111,7 @@ Result<NodeTree> arrange_nodes(std::vector<Node> nodes, const Cells& cells, doub
     return fail(ErrorKind::kUnsupported,
                 "has nodes deeper than " + std::to_string(kDeepest) + " levels: " + text_of_key(deep->key));
   }
-  const auto large = std::ranges::find_if(nodes, [](const Node& n) { return n.points > kMostPoints; });
+  const auto large = std::ranges::find_if(nodes, [](const Node& n) { return n.points > kMaxPoints; });
   if (large != nodes.end()) {
     return fail(ErrorKind::kUnsupported, "node " + text_of_key(large->key) + " has " + std::to_string(large->points) +
                                              " points, too many to be shown in place: build a model of the scan");

@@ -74,7 +74,7 @@ double limited_step(const Extents& extents, double step, double most) {
 /// The step with so many samples along the longest axis. Wider kernels take a larger box, so it is found by iteration.
 double step_for(const Extents& extents, uint32_t resolution) {
   constexpr int kIterations = 30;
-  const double steps = std::max(resolution, kLeastResolution) - 1.0;
+  const double steps = std::max(resolution, kMinResolution) - 1.0;
   double step = longest_side(extents.box(0)) / steps;
   for (int i = 0; i < kIterations; ++i) {
     const double next = longest_side(extents.box(step)) / steps;

@@ -21,7 +21,7 @@ struct FieldLattice {
 };
 
 /// The most samples of a lattice whose resolution is not stated.
-inline constexpr uint64_t kMostLatticeSamples = uint64_t{1} << 27;
+inline constexpr uint64_t kMaxLatticeSamples = uint64_t{1} << 27;
 /// Steps of the lattice to the deviation of a kernel: cubic interpolation of a Gaussian is then off by 0.2 % of its
 /// peak at most. An average of few samples has narrower features than their kernels.
 [[nodiscard]] constexpr double steps_per_deviation(Combination combination) {
@@ -31,7 +31,7 @@ inline constexpr uint64_t kMostLatticeSamples = uint64_t{1} << 27;
 inline constexpr double kFinerShare = 0.02;
 
 /// The least resolution: kernels as wide as a step would reach beyond coarser ones.
-inline constexpr uint32_t kLeastResolution = 16;
+inline constexpr uint32_t kMinResolution = 16;
 
 /// A lattice for these kernels: as fine as they need, with at most `most_samples`, or with `resolution` samples along
 /// its longest axis. It has room for kernels widened to its step. Fails if a place is too far away.

@@ -10,7 +10,7 @@
 namespace surfcast::scattered {
 
 /// FieldOptions::least_weight by default.
-inline constexpr double kLeastWeight = 0.1;
+inline constexpr double kMinWeight = 0.1;
 
 /// How the kernels W of samples with values v make a field. W is 1 at its centre, or its integral is 1.
 enum class Combination {
@@ -45,7 +45,7 @@ struct FieldOptions {
   /// Of kAverage: the value where there are no samples; none: the lowest one.
   std::optional<double> background{};
   /// Of kAverage: where the sum of kernels is less, the background has the rest of the weight.
-  double least_weight = kLeastWeight;
+  double least_weight = kMinWeight;
 };
 
 /// Parses `radius=COLUMN`, `smoothing=COLUMN`, `sigma=COLUMN`, each also with a length in place of the column,

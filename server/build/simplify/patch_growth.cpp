@@ -24,14 +24,14 @@ constexpr double kGrowth = 1.3;
 /// the samples.
 constexpr double kNoise = 1.05;
 /// Largest curvature of a neighbourhood times its radius: beyond, the surface leaves its tangent plane too steeply.
-constexpr double kMostBent = 0.7;
+constexpr double kMaxBent = 0.7;
 /// The ring of a neighbourhood in which every eighth has to have samples, and how many samples that takes.
 constexpr double kRing = 0.55;
 constexpr size_t kSectors = 8;
 constexpr size_t kRingSamples = 60;
 /// Steps without enough samples for a fit, of places sampled sparsely.
 constexpr int kSparseSteps = 4;
-constexpr int kMostSteps = 40;
+constexpr int kMaxSteps = 40;
 /// While a neighbourhood grows, about so many of its samples speak for all. Where it is taken, all are asked.
 constexpr size_t kSpeaking = 1024;
 
@@ -43,7 +43,7 @@ Limits limits_of(const ErrorBound& bound, double reach) {
 /// A fit of 6 numbers to 3 equations a sample makes residuals as much too small.
 double overfit(size_t samples) {
   constexpr double kShare = 6.0 / 3;
-  return 1 / std::sqrt(1 - kShare / static_cast<double>(std::max<size_t>(samples, kLeastSamples)));
+  return 1 / std::sqrt(1 - kShare / static_cast<double>(std::max<size_t>(samples, kMinSamples)));
 }
 
 /// The part of two residuals that is the same in both, where the rest of the second one is `growth` times that of the
@@ -120,7 +120,7 @@ std::optional<Limits> Noise::estimate(uint32_t sample, Scratch& scratch) const {
 std::optional<Patch> Growth::fit(uint32_t sample, double reach, const Limits& noise, Scratch& scratch) const {
   surface_.load_samples(scratch);
   const auto fit = fit_surface(surface_.position(sample), scratch.samples, surface_.oriented());
-  if (!fit || fit->curvature.largest() * reach > kMostBent) return std::nullopt;
+  if (!fit || fit->curvature.largest() * reach > kMaxBent) return std::nullopt;
   const Residual residual = residual_of(*fit, scratch.samples, surface_.oriented());
   const Limits limits = limits_of(bound_, reach);
   const double spread = 1 + 1 / std::sqrt(static_cast<double>(scratch.samples.size()));
@@ -136,7 +136,7 @@ Patch Growth::grow(uint32_t sample, Scratch& scratch) const {
   const Limits noise = noise_.around(sample, scratch);
   uint32_t stride = 1;
   size_t before = 0;  // samples of the last step with this stride
-  for (int step = 0; step < kMostSteps; ++step, reach *= kGrowth) {
+  for (int step = 0; step < kMaxSteps; ++step, reach *= kGrowth) {
     surface_.sheet(surface_.position(sample), surface_.normal(sample), reach, scratch.near, stride);
     const size_t samples = scratch.near.size();
     if (best.reach == 0 && step < kSparseSteps && samples < kFirstSamples) continue;

@@ -80,7 +80,7 @@ void QuadricFit::add(const Sample& sample, bool oriented) {
 }
 
 std::optional<surfel::OsculatingSurface> QuadricFit::solve() const {
-  if (samples_ < kLeastSamples) return std::nullopt;
+  if (samples_ < kMinSamples) return std::nullopt;
   using Matrix = Eigen::Matrix<double, kUnknowns, kUnknowns, Eigen::RowMajor>;
   const Eigen::LDLT<Matrix, Eigen::Lower> factors(Eigen::Map<const Matrix>(matrix_.data()));
   const Eigen::Matrix<double, kUnknowns, 1> x =

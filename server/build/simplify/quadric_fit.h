@@ -16,7 +16,7 @@ struct Sample {
 };
 
 /// The least samples that determine a surface: there are six unknowns and three equations a sample, with noise.
-inline constexpr size_t kLeastSamples = 6;
+inline constexpr size_t kMinSamples = 6;
 
 /// Fits an osculating surface to samples by least squares: the heights and the slopes of the normals in one problem, in
 /// units of the neighbourhood's radius, slopes weighted by 1/4. Heights alone need twice as many samples against noise,
@@ -65,8 +65,8 @@ surfel::OsculatingSurface plane_of(const surfel::OsculatingSurface& fit, std::sp
                                    bool oriented);
 
 /// True if curvature lowers the residual of samples within `reach` by 15 % against their plane. With fewer than
-/// kLeastSamplesPerPoint for each surfel six numbers fit the noise, and the averages are better, whatever this says.
+/// kMinSamplesPerPoint for each surfel six numbers fit the noise, and the averages are better, whatever this says.
 bool gains(const Residual& curved, const Residual& flat, double reach);
-inline constexpr double kLeastSamplesPerPoint = 20;
+inline constexpr double kMinSamplesPerPoint = 20;
 
 }  // namespace surfcast::simplify

@@ -22,7 +22,7 @@ namespace {
 constexpr size_t kBorderDirections = 64;
 constexpr double kBorderReach = 1.3;
 /// A model of which parts stay as they are pays from half of the samples on.
-constexpr double kLeastGain = 2;
+constexpr double kMinGain = 2;
 /// Neighbours whose mean distance is the radius of a surfel, as in scan/spacing.h.
 constexpr size_t kRadiusNeighbours = 6;
 
@@ -190,10 +190,10 @@ SimplifyReport simplify(const ErrorBound& bound, surfel::SurfelCloud& cloud) {
       return report;
     }
     Cover chosen = cover(surface, bound);
-    report = report_of(surface, chosen, kLeastSamplesPerPoint);
+    report = report_of(surface, chosen, kMinSamplesPerPoint);
     if (!report.pays) {
-      chosen.release_patches_below(static_cast<size_t>(kLeastSamplesPerPoint));
-      report = report_of(surface, chosen, kLeastGain);
+      chosen.release_patches_below(static_cast<size_t>(kMinSamplesPerPoint));
+      report = report_of(surface, chosen, kMinGain);
     }
     if (report.pays) apply(surface, chosen, cloud);
   }

@@ -16,11 +16,11 @@ constexpr int kBins = 24 * kBinsPerOctave;
 /// Integer weight of an item in a bin: sums do not depend on the order of their terms.
 constexpr uint64_t kItem = 4096;
 
-constexpr uint64_t kLeastItems = 8;  // per tile; a picture of one surface at the finest spacing has about as many
+constexpr uint64_t kMinItems = 8;  // per tile; a picture of one surface at the finest spacing has about as many
 
 int32_t count_for(uint64_t items, size_t tiles) {
   const uint64_t per_tile = items / std::max<size_t>(tiles, 1);
-  if (per_tile < kLeastItems) return 1;
+  if (per_tile < kMinItems) return 1;
   return static_cast<int32_t>(std::min<uint64_t>(2 * per_tile, SURFCAST_SLICES));
 }
 

@@ -6,7 +6,7 @@
 #include "model/model_file.h"
 #include "picture/picture.h"
 #include "render/volume_plan.h"
-#include "residency/surfel_pool.h"
+#include "residency/block_pool.h"
 #include "shared/frame_layout.h"
 
 namespace surfcast::render {

@@ -4,11 +4,11 @@
 
 #include "base/preemption.h"
 #include "render/batched_dispatch.h"
-#include "render/gaussian_lists.h"
 #include "render/glyph_plan.h"
 #include "render/projection_work.h"
 #include "render/region_passes.h"
 #include "render/sorted_items.h"
+#include "render/tile_lists.h"
 #include "shared/ellipsoid_layout.h"
 
 namespace surfcast::render {
@@ -83,8 +83,8 @@ Status project(const RegionTask& task, const EllipsoidWork& work, const gl::Prog
   });
 }
 
-std::optional<GaussianLists> list_ellipsoids(const RegionTask& task, const EllipsoidWork& work,
-                                             const SplatBuffers& buffers) {
+std::optional<TileLists> list_ellipsoids(const RegionTask& task, const EllipsoidWork& work,
+                                         const SplatBuffers& buffers) {
   const glm::ivec4 tiles = work.sample_constants.tiles;
   return list_by_depth(read_keys(work.count, buffers.ellipsoids.keys), glm::uvec2(tiles.x, tiles.y), task.list_entries);
 }
@@ -106,7 +106,7 @@ Status find_nearest(const ListRound& round, const EllipsoidPrograms& programs, S
 }
 
 /// Tiles with long lists in several rounds.
-Status find_all_nearest(const EllipsoidWork& work, const GaussianLists& lists, const EllipsoidPrograms& programs,
+Status find_all_nearest(const EllipsoidWork& work, const TileLists& lists, const EllipsoidPrograms& programs,
                         SplatBuffers& buffers, const Preemption& preemption) {
   const gl::DebugGroup group("nearest ellipsoids");
   const bool several = lists.longer_than(programs.round) > 0;
@@ -177,7 +177,7 @@ Result<std::optional<RegionStats>> draw_ellipsoids(const RegionTask& task, const
   stats.project_ms = project_watch.milliseconds();
 
   const WorkStopwatch bin_watch(preemption);
-  const std::optional<GaussianLists> lists = list_ellipsoids(task, work, buffers);
+  const std::optional<TileLists> lists = list_ellipsoids(task, work, buffers);
   if (!lists) return std::optional<RegionStats>();
   upload_lists(*lists, buffers.lazy, buffers.ellipsoids.tiles, buffers.ellipsoids.lists);
   stats.splats = lists->drawn;

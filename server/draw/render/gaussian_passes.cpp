@@ -6,10 +6,10 @@
 #include "base/preemption.h"
 #include "gaussian/pack_gaussians.h"
 #include "render/batched_dispatch.h"
-#include "render/gaussian_lists.h"
 #include "render/projection_work.h"
 #include "render/region_passes.h"
 #include "render/sorted_items.h"
+#include "render/tile_lists.h"
 #include "shared/gaussian_layout.h"
 
 namespace surfcast::render {
@@ -53,7 +53,7 @@ Status blend(const ListRound& round, const GaussianPrograms& programs, float nea
 }
 
 /// Draws the tiles, those with long lists in several rounds.
-Status blend_rounds(const RegionTask& task, const GaussianLists& lists, const GaussianPrograms& programs, float near,
+Status blend_rounds(const RegionTask& task, const TileLists& lists, const GaussianPrograms& programs, float near,
                     SplatBuffers& buffers, const Preemption& preemption) {
   const gl::DebugGroup group("blend Gaussians");
   const bool several = lists.longer_than(programs.round) > 0;
@@ -71,11 +71,11 @@ GaussianForm form_of(const RegionTask& task, const ProjectionWork& work) {
 }
 
 /// The lists of the tiles; none if they are too long.
-std::optional<GaussianLists> list_gaussians(const RegionTask& task, size_t count, const TexelBuffer& keys) {
+std::optional<TileLists> list_gaussians(const RegionTask& task, size_t count, const TexelBuffer& keys) {
   const glm::uvec2 tiles(task.constants.tiles.x, task.constants.tiles.y);
   if (!task.variant.exact) return list_by_depth(read_keys(count, keys), tiles, task.list_entries);
   const ExactKeys exact = unpack_exact_keys(read_keys(count * SURFCAST_EXACT_GAUSSIAN_KEY, keys));
-  std::optional<GaussianLists> lists = list_by_depth(exact.keys, tiles, task.list_entries);
+  std::optional<TileLists> lists = list_by_depth(exact.keys, tiles, task.list_entries);
   const auto rays_of_tile = [&](uint32_t tile) {
     const glm::dvec2 size(SURFCAST_TILE_WIDTH, SURFCAST_TILE_HEIGHT);
     const glm::dvec2 corner =
@@ -114,7 +114,7 @@ Result<std::optional<RegionStats>> draw_gaussians(const RegionTask& task, const 
   stats.project_ms = project_watch.milliseconds();
 
   const WorkStopwatch bin_watch(preemption);
-  const std::optional<GaussianLists> lists = list_gaussians(task, count, buffers.gaussians.keys);
+  const std::optional<TileLists> lists = list_gaussians(task, count, buffers.gaussians.keys);
   if (!lists) return std::optional<RegionStats>();
   upload_lists(*lists, buffers.lazy, buffers.gaussians.tiles, buffers.gaussians.lists);
   stats.splats = lists->drawn;

@@ -34,11 +34,10 @@ void add_chunks(const VisibleBlock& block, uint32_t view, const residency::Texel
                 std::vector<layout::Chunk>& chunks) {
   const uint32_t end = run.first + run.count;
   for (uint32_t first = run.first; first < end;) {
-    const uint32_t in_page = first % residency::SurfelPool::kPageSurfels;
+    const uint32_t in_page = first % residency::BlockPool::kPageTexels;
     const uint32_t texel =
-        block.resident->pages[first / residency::SurfelPool::kPageSurfels] * residency::SurfelPool::kPageSurfels +
-        in_page;
-    const uint32_t count = std::min(end - first, residency::SurfelPool::kPageSurfels - in_page);
+        block.resident->pages[first / residency::BlockPool::kPageTexels] * residency::BlockPool::kPageTexels + in_page;
+    const uint32_t count = std::min(end - first, residency::BlockPool::kPageTexels - in_page);
     chunks.push_back(
         {glm::uvec4(view, texel, count | run.flags, residency::kMaxPackedPerSurfel * block.first_surfel + first)});
     first += count;

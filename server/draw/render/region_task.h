@@ -9,8 +9,8 @@
 #include "render/programs.h"
 #include "render/region.h"
 #include "render/splat_buffers.h"
-#include "residency/surfel_buffer.h"
-#include "residency/surfel_pool.h"
+#include "residency/block_memory.h"
+#include "residency/block_pool.h"
 #include "selection/block_hull.h"
 
 namespace surfcast::render {
@@ -25,7 +25,7 @@ struct VisibleBlock {
 
 /// All inputs for drawing one region.
 struct RegionTask {
-  const residency::SurfelBuffer* surfels = nullptr;
+  const residency::BlockMemory* surfels = nullptr;
   kinds::KindTable kinds;
   std::vector<VisibleBlock> blocks;
   geometry::CameraFrame frame;

@@ -135,7 +135,7 @@ MemoryBudgets budgets_of(const RendererConfig& config, bool software) {
   const MemoryBudgets by_default =
       default_budgets({read_host_memory().available, software ? std::nullopt : gl::free_gpu_memory()});
   const uint64_t wanted = config.gpu_bytes.value_or(by_default.gpu);
-  const uint64_t possible = residency::SurfelBuffer::device_limit() / 2 * sizeof(glm::uvec4);
+  const uint64_t possible = residency::BlockMemory::device_limit() / 2 * sizeof(glm::uvec4);
   return {std::min(wanted, possible), config.host_bytes.value_or(by_default.host)};
 }
 
@@ -150,8 +150,8 @@ struct Renderer::State {
         kinds(config.kinds),
         motion_glyphs(config.motion_glyphs),
         viewers(config.viewers),
-        list_entries(std::min(config.list_entries.value_or(residency::SurfelBuffer::device_limit()),
-                              residency::SurfelBuffer::device_limit())),
+        list_entries(std::min(config.list_entries.value_or(residency::BlockMemory::device_limit()),
+                              residency::BlockMemory::device_limit())),
         surfels(device.memory.gpu / sizeof(glm::uvec4), device.software),
         residency(surfels, limits_of(config, device.memory), config.load_guard) {
     for (SplatBuffers& set : buffers) {
@@ -165,7 +165,7 @@ struct Renderer::State {
     const size_t ready = std::clamp<size_t>(memory.host / 4, size_t{16} << 20, size_t{64} << 20);
     const unsigned cores = std::max(1U, std::thread::hardware_concurrency());
     const unsigned threads = config.decoders > 0 ? config.decoders : cores;
-    return {.pages = static_cast<uint32_t>(memory.gpu / sizeof(glm::uvec4) / residency::SurfelPool::kPageSurfels),
+    return {.pages = static_cast<uint32_t>(memory.gpu / sizeof(glm::uvec4) / residency::BlockPool::kPageTexels),
             .loader = {threads, threads, memory.host, ready},
             .upload_bytes = config.upload_bytes};
   }
@@ -216,7 +216,7 @@ struct Renderer::State {
   uint32_t motion_glyphs;  ///< see RendererConfig
   size_t viewers;          ///< see RendererConfig
   size_t list_entries;     ///< of all tile lists of a region
-  residency::SurfelBuffer surfels;
+  residency::BlockMemory surfels;
   residency::Residency residency;
   std::map<uint64_t, std::unique_ptr<Scene>> scenes;  ///< by ModelFile::id
   std::map<uint64_t, Searched> searched;              ///< likewise

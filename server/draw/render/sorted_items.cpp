@@ -37,14 +37,14 @@ std::vector<glm::uvec4> read_keys(size_t texels, const TexelBuffer& keys) {
   return read;
 }
 
-void upload_lists(const GaussianLists& lists, bool lazily, StorageBuffer& tiles, TexelBuffer& entries) {
+void upload_lists(const TileLists& lists, bool lazily, StorageBuffer& tiles, TexelBuffer& entries) {
   upload(tiles, lists.tiles);
   const size_t count = lists.entries.size();
   entries.reserve(std::max<size_t>(count + count / 4, 1), lazily);
   entries.write(std::as_bytes(std::span(lists.entries)));
 }
 
-Status draw_rounds(const GaussianLists& lists, uint32_t entries, const std::function<Status(const ListRound&)>& draw) {
+Status draw_rounds(const TileLists& lists, uint32_t entries, const std::function<Status(const ListRound&)>& draw) {
   ListRound round{static_cast<uint32_t>(lists.tiles.size()), 0};
   while (round.tiles > 0) {
     if (Status status = draw(round); !status) return status;

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "render/batched_dispatch.h"
-#include "render/gaussian_lists.h"
 #include "render/projection_work.h"
 #include "render/region_task.h"
+#include "render/tile_lists.h"
 
 namespace surfcast::render {
 
@@ -29,7 +29,7 @@ void bind_items(const RegionTask& task, const SplatBuffers& buffers);
 std::vector<glm::uvec4> read_keys(size_t texels, const TexelBuffer& keys);
 
 /// `lazily`: see TexelBuffer::reserve.
-void upload_lists(const GaussianLists& lists, bool lazily, StorageBuffer& tiles, TexelBuffer& entries);
+void upload_lists(const TileLists& lists, bool lazily, StorageBuffer& tiles, TexelBuffer& entries);
 
 /// Tiles whose lists are drawn from an entry on.
 struct ListRound {
@@ -38,7 +38,7 @@ struct ListRound {
 };
 
 /// Draws all lists, so many entries in a round: those of long lists in several rounds.
-Status draw_rounds(const GaussianLists& lists, uint32_t entries, const std::function<Status(const ListRound&)>& draw);
+Status draw_rounds(const TileLists& lists, uint32_t entries, const std::function<Status(const ListRound&)>& draw);
 
 /// The work groups of so many tiles.
 Groups groups_of_tiles(uint32_t tiles, uint32_t lanes_of_tile, uint32_t lanes_of_group);

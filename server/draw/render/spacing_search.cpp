@@ -16,7 +16,7 @@ constexpr double kTooSmall = 1.5;  // taken above it, dB
 constexpr double kSlope = 10;      // dB for each doubling of the spacing: typical
 constexpr double kLongestStep = 2;
 constexpr double kShortestStep = 0.2;  // doublings
-constexpr size_t kMostPoints = 8;
+constexpr size_t kMaxPoints = 8;
 constexpr double kFinest = 1.0 / 64;  // pixels: a finer spacing is the finest level
 constexpr double kCoarsest = 256;     // pixels: nothing coarser looks like the model
 
@@ -50,7 +50,7 @@ SpacingError SpacingSearch::best() const {
 
 std::optional<double> SpacingSearch::next() const {
   const double above = best().decibels - target_;
-  if ((above >= -kTooLarge && above <= kTooSmall) || points_.size() >= kMostPoints) return std::nullopt;
+  if ((above >= -kTooLarge && above <= kTooSmall) || points_.size() >= kMaxPoints) return std::nullopt;
   const auto coarse = std::ranges::find_if(points_, [this](const auto& point) { return point.decibels < target_; });
   if (coarse == points_.end()) {
     return points_.back().spacing >= kCoarsest ? std::nullopt : std::optional(beyond(points_.back()));

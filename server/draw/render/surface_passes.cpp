@@ -90,7 +90,7 @@ layout::Counters read_counters(const SplatBuffers& buffers) {
 
 /// The most splats of a region. Each record has two texels, and a list entry has room for a number of so many bits.
 size_t most_splats() {
-  return std::min(residency::SurfelBuffer::device_limit() / 2, size_t{1} << SURFCAST_SLICE_SHIFT);
+  return std::min(residency::BlockMemory::device_limit() / 2, size_t{1} << SURFCAST_SLICE_SHIFT);
 }
 
 /// The initial capacity in splats. With lazily committed memory there is room for every surfel, so the projection is

@@ -14,7 +14,7 @@ constexpr double kOver = 1.1;       // of the time: fits
 constexpr double kFirst = 4;        // pixels: about the fastest pictures
 constexpr double kFinestTry = 0.1;  // pixels: a finer spacing is the finest level
 constexpr double kCoarsestTry = 8;  // pixels: coarser pictures are not faster
-constexpr size_t kMostTries = 7;
+constexpr size_t kMaxTries = 7;
 
 double surfels_at(double spacing) {
   return 1 / (spacing * spacing);
@@ -47,7 +47,7 @@ SpacingTime TimeSearch::best() const {
 
 std::optional<double> TimeSearch::next() const {
   const SpacingTime found = best();
-  if (points_.size() >= kMostTries) return std::nullopt;
+  if (points_.size() >= kMaxTries) return std::nullopt;
   if (!fits(found)) return towards_faster();
   if (found.milliseconds >= kShort * asked_ || found.spacing == 0) return std::nullopt;
   const auto at = std::ranges::find(points_, found.spacing, &SpacingTime::spacing);
@@ -57,9 +57,9 @@ std::optional<double> TimeSearch::next() const {
 /// A step beyond the best point on a side where there is none. None if it lies between others.
 std::optional<double> TimeSearch::towards_faster() const {
   constexpr double kStep = 1.6;
-  constexpr size_t kMostSlow = 4;  // tries, each of which takes longer than asked
+  constexpr size_t kMaxSlow = 4;  // tries, each of which takes longer than asked
   if (points_.back().spacing < kFirst) return kFirst;
-  if (points_.size() >= kMostSlow) return std::nullopt;
+  if (points_.size() >= kMaxSlow) return std::nullopt;
   const double fastest = best().spacing;
   if (fastest == points_.front().spacing && fastest / kStep >= kFinestTry) return fastest / kStep;
   if (fastest == points_.back().spacing && kStep * fastest <= kCoarsestTry) return kStep * fastest;

@@ -16,7 +16,7 @@
 namespace surfcast::render {
 namespace {
 
-static_assert(residency::SurfelPool::kPageSurfels == SURFCAST_PAGE_TEXELS);
+static_assert(residency::BlockPool::kPageTexels == SURFCAST_PAGE_TEXELS);
 static_assert(volume::kBrickSamples == SURFCAST_BRICK && volume::kSubBrickSamples == SURFCAST_SUB_BRICK);
 static_assert(volume::kHaloBefore == SURFCAST_BRICK_HALO);
 
@@ -188,8 +188,8 @@ void add_clips(const std::vector<geometry::Box>& boxes, const Anchor& anchor, st
 
 /// Iso-surfaces and slices in bins of the transfer function.
 void set_surfaces(const VolumePlace& place, const VolumeLook& look, const TransferTable& table, VolumePlan& plan) {
-  constexpr size_t kMost = SURFCAST_VOLUME_SURFACES;
-  SURFCAST_EXPECTS(look.isos.size() <= kMost && look.slices.size() <= kMost);
+  constexpr size_t kMax = SURFCAST_VOLUME_SURFACES;
+  SURFCAST_EXPECTS(look.isos.size() <= kMax && look.slices.size() <= kMax);
   layout::VolumeSurfaces& surfaces = plan.surfaces;
   const auto bin = [&](double value) { return static_cast<float>(1 + table.bins_per_value * (value - table.first)); };
   for (size_t i = 0; i < look.isos.size(); ++i) {

@@ -13,7 +13,7 @@
 #include "picture/picture.h"
 #include "render/region.h"
 #include "render/transfer_function.h"
-#include "residency/surfel_pool.h"
+#include "residency/block_pool.h"
 #include "shared/volume_layout.h"
 
 namespace surfcast::render {

@@ -17,7 +17,7 @@ constexpr int kBlueRed = -6596;
 constexpr int kBlueGreen = -22189;
 constexpr int kRedGreen = -26145;
 constexpr int kRedBlue = -2640;
-constexpr int kMost = 28785;  // of blue in the difference of blue, and of red in that of red
+constexpr int kMax = 28785;  // of blue in the difference of blue, and of red in that of red
 
 const uint8_t* row_of(const picture::Image& image, int y) {
   return reinterpret_cast<const uint8_t*>(image.pixels.data()) +
@@ -36,8 +36,8 @@ void fill_luma(const uint8_t* pixels, int width, uint8_t* luma) {
 void fill_difference(int red, int green, int blue, uint8_t& to_blue, uint8_t& to_red) {
   constexpr int kSum = 2;  // bits
   constexpr int kOffset = (128 << (kBits + kSum)) + (1 << (kBits + kSum - 1));
-  to_blue = static_cast<uint8_t>((kBlueRed * red + kBlueGreen * green + kMost * blue + kOffset) >> (kBits + kSum));
-  to_red = static_cast<uint8_t>((kMost * red + kRedGreen * green + kRedBlue * blue + kOffset) >> (kBits + kSum));
+  to_blue = static_cast<uint8_t>((kBlueRed * red + kBlueGreen * green + kMax * blue + kOffset) >> (kBits + kSum));
+  to_red = static_cast<uint8_t>((kMax * red + kRedGreen * green + kRedBlue * blue + kOffset) >> (kBits + kSum));
 }
 
 void fill_differences(const uint8_t* upper, const uint8_t* lower, int width, uint8_t* to_blue, uint8_t* to_red) {

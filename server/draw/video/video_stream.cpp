@@ -26,8 +26,8 @@ class EncoderRoom {
 
  private:
   static constexpr int64_t kPixelBytes = 90;
-  static constexpr int64_t kLeast = int64_t{3840} * 2160;
-  const int64_t most_ = std::max(static_cast<int64_t>(read_host_memory().available) / 8 / kPixelBytes, kLeast);
+  static constexpr int64_t kMin = int64_t{3840} * 2160;
+  const int64_t most_ = std::max(static_cast<int64_t>(read_host_memory().available) / 8 / kPixelBytes, kMin);
   std::atomic<int64_t> taken_ = 0;
 };
 

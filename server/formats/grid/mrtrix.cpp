@@ -20,7 +20,7 @@ using stream::StreamPtr;
 
 constexpr std::string_view kFormat = "MRtrix";
 constexpr std::string_view kMagic = "mrtrix image";
-constexpr size_t kMostHeader = size_t{1} << 20;
+constexpr size_t kMaxHeader = size_t{1} << 20;
 constexpr uint64_t kTensorImages = 6;
 
 bool is_packed(const FilePtr& file) {
@@ -255,7 +255,7 @@ bool looks_like_mrtrix(const FilePtr& file) {
 }
 
 Result<StoredGrid> parse_mrtrix(const GridFile& file) {
-  const std::string head = head_of(file.file, kMostHeader);
+  const std::string head = head_of(file.file, kMaxHeader);
   const Result<Keys> keys = split_header(head);
   if (!keys) return fail(keys.error());
   Result<StoredGrid> grid = describe(*keys);

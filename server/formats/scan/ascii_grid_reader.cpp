@@ -151,10 +151,10 @@ Result<std::vector<CellRun>> find_runs(Tokens tokens, const GridHeader& header) 
 
 /// The text of a file beside a grid; empty if there is none.
 std::string read_projection(const std::filesystem::path& path) {
-  constexpr std::streamsize kMost = 1 << 16;  // more than the WKT of any system
+  constexpr std::streamsize kMax = 1 << 16;  // more than the WKT of any system
   std::ifstream file(path, std::ios::binary);
-  std::string text(kMost, '\0');
-  file.read(text.data(), kMost);
+  std::string text(kMax, '\0');
+  file.read(text.data(), kMax);
   text.resize(static_cast<size_t>(file.gcount()));
   return text;
 }

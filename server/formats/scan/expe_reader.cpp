@@ -11,9 +11,9 @@
 namespace surfcast::scan {
 namespace {
 
-constexpr uint64_t kMostRecordBytes = 4096;
+constexpr uint64_t kMaxRecordBytes = 4096;
 /// Lines of a header, at the very most.
-constexpr int kMostLines = 256;
+constexpr int kMaxLines = 256;
 
 /// A run of bytes in every record.
 struct Property {
@@ -44,7 +44,7 @@ Status parse_line(std::string_view line, ExpeHeader& header) {
   }
   if (key != "property") return {};
   const auto bytes = parse_number<uint64_t>(words.next());
-  if (!bytes || *bytes > kMostRecordBytes) return invalid_input("Expe header: no size of property " + printable(first));
+  if (!bytes || *bytes > kMaxRecordBytes) return invalid_input("Expe header: no size of property " + printable(first));
   header.properties.push_back({std::string(first), *bytes});
   return {};
 }
@@ -52,7 +52,7 @@ Status parse_line(std::string_view line, ExpeHeader& header) {
 Result<ExpeHeader> parse_header(std::string_view text) {
   ExpeHeader header;
   size_t at = 0;
-  for (int line = 0; line < kMostLines; ++line) {
+  for (int line = 0; line < kMaxLines; ++line) {
     const size_t end = text.find('\n', at);
     if (end == std::string_view::npos) return invalid_input("truncated: the file ends within its Expe header");
     std::string_view words = text.substr(at, end - at);
@@ -90,7 +90,7 @@ Result<std::unique_ptr<RowSource>> expe_rows(std::span<const std::byte> bytes) {
   const Result<ExpeHeader> header = parse_header(text);
   if (!header) return fail(header.error());
   const uint64_t stride = header->record_bytes();
-  if (stride == 0 || stride > kMostRecordBytes) return invalid_input("the Expe header states no usable record");
+  if (stride == 0 || stride > kMaxRecordBytes) return invalid_input("the Expe header states no usable record");
   if (header->points > (bytes.size() - header->data_offset) / stride) {
     return invalid_input("truncated: the Expe header states " + std::to_string(header->points) + " points");
   }

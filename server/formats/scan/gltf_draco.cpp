@@ -16,9 +16,9 @@ namespace {
 
 /// The values of an attribute for each point; integers are normalised if the attribute says so.
 Result<AccessorValues> values_of(const draco::PointCloud& points, const draco::PointAttribute& attribute) {
-  constexpr int8_t kMostComponents = 4;
+  constexpr int8_t kMaxComponents = 4;
   const auto components = static_cast<size_t>(attribute.num_components());
-  if (components == 0 || attribute.num_components() > kMostComponents) {
+  if (components == 0 || attribute.num_components() > kMaxComponents) {
     return fail(ErrorKind::kInvalidInput, "Draco attribute of an unknown type");
   }
   AccessorValues values{components, std::vector<double>(points.num_points() * components)};

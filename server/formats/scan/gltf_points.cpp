@@ -26,7 +26,7 @@ constexpr std::array<std::string_view, 4> kHarmless{"EXT_texture_webp", "KHR_tex
                                                     "CESIUM_RTC"};
 
 /// Points that a byte of Draco data, or of points with many instances, may stand for.
-constexpr uint64_t kMostPointsOfByte = 64;
+constexpr uint64_t kMaxPointsOfByte = 64;
 
 ScalarType type_of_accessor(const Json& accessor) {
   const uint64_t stated = integer_of(accessor, "componentType").value_or(0);
@@ -199,7 +199,7 @@ Status GltfPoints::add_primitive(const Json& stated, const glm::dmat4& to_world)
   const Json& counted =
       indices ? element(member(parts_->json, "accessors"), *indices) : accessor_of(stated, "POSITION");
   const uint64_t points = integer_of(counted, "count").value_or(0);
-  const uint64_t most = buffers_.bytes() * kMostPointsOfByte;
+  const uint64_t most = buffers_.bytes() * kMaxPointsOfByte;
   if (points > (packed ? most : buffers_.bytes()) || points_ + points > most) {
     return invalid_input("states more points than its buffers can hold");
   }

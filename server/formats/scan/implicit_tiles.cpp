@@ -14,9 +14,9 @@ namespace {
 using Bytes = std::span<const std::byte>;
 
 /// Bits that number the tiles of a level of a subtree.
-constexpr uint32_t kMostSubtreeBits = 40;
+constexpr uint32_t kMaxSubtreeBits = 40;
 /// Levels whose coordinates have less than 64 bits.
-constexpr uint32_t kMostLevels = 60;
+constexpr uint32_t kMaxLevels = 60;
 
 const Json& extension(const Json& json, const char* name) {
   return member(member(json, "extensions"), name);
@@ -106,8 +106,8 @@ Result<std::optional<ImplicitTiling>> implicit_tiling_of(const Json& tile) {
   tiling.axes = scheme == "OCTREE" ? 3 : 2;
   const uint64_t subtree_levels = integer_of(stated, "subtreeLevels").value_or(0);
   const uint64_t levels =
-      integer_of(stated, "availableLevels").value_or(integer_of(stated, "maximumLevel").value_or(kMostLevels) + 1);
-  if (subtree_levels == 0 || subtree_levels * tiling.axes > kMostSubtreeBits || levels == 0 || levels > kMostLevels) {
+      integer_of(stated, "availableLevels").value_or(integer_of(stated, "maximumLevel").value_or(kMaxLevels) + 1);
+  if (subtree_levels == 0 || subtree_levels * tiling.axes > kMaxSubtreeBits || levels == 0 || levels > kMaxLevels) {
     return invalid_input("implicit tiling with levels that cannot be");
   }
   tiling.subtree_levels = static_cast<uint32_t>(subtree_levels);

@@ -26,8 +26,8 @@ std::optional<uint64_t> integer_of(const Json& json) {
   if (json.is_number_unsigned()) return json.get<uint64_t>();
   if (!json.is_number_float()) return std::nullopt;
   const auto number = json.get<double>();
-  constexpr double kMost = 9007199254740992.0;  // 2^53
-  if (!(number >= 0 && number <= kMost) || std::trunc(number) != number) return std::nullopt;
+  constexpr double kMax = 9007199254740992.0;  // 2^53
+  if (!(number >= 0 && number <= kMax) || std::trunc(number) != number) return std::nullopt;
   return static_cast<uint64_t>(number);
 }
 

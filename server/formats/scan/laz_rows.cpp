@@ -24,8 +24,8 @@ struct Slice {
 /// Records of a slice. A file may have one chunk for all of its points, and records of 64 KiB that repeat themselves,
 /// so that a chunk would take any memory as a piece.
 uint64_t slice_rows(const laz::LazFile& file) {
-  constexpr uint64_t kMostBytes = uint64_t{64} << 20;
-  return std::min(kPieceRows, kMostBytes / file.record_length());
+  constexpr uint64_t kMaxBytes = uint64_t{64} << 20;
+  return std::min(kPieceRows, kMaxBytes / file.record_length());
 }
 
 std::vector<Slice> slices_of(const laz::LazFile& file) {

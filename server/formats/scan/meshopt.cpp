@@ -23,8 +23,8 @@ constexpr std::byte kAttributes{0xA0};
 constexpr std::byte kIndices{0xD1};
 /// Elements whose differences are coded together.
 constexpr size_t kGroup = 16;
-constexpr size_t kLeastTail = 32;
-constexpr size_t kMostStride = 256;
+constexpr size_t kMinTail = 32;
+constexpr size_t kMaxStride = 256;
 
 tl::unexpected<Error> damaged() {
   return invalid_input("damaged or truncated meshopt data");
@@ -101,7 +101,7 @@ bool read_column(ByteReader& reader, size_t count, size_t stride, uint8_t value,
 }
 
 Result<std::vector<std::byte>> decode_attributes(Bytes packed, size_t count, size_t stride) {
-  const size_t tail = std::max(stride, kLeastTail);
+  const size_t tail = std::max(stride, kMinTail);
   if (packed.size() < 1 + tail || packed[0] != kAttributes) return damaged();
   const Bytes baseline = packed.last(stride);
   ByteReader reader(packed.subspan(1, packed.size() - 1 - tail));
@@ -150,7 +150,7 @@ Result<std::vector<std::byte>> decode_indices(Bytes packed, size_t count, size_t
 /// Normals: x and y on the octahedron, then what stands for one.
 template <typename T>
 void unfold_normals(std::vector<std::byte>& bytes) {
-  constexpr double kMost = std::numeric_limits<T>::max();
+  constexpr double kMax = std::numeric_limits<T>::max();
   for (size_t at = 0; at + 4 * sizeof(T) <= bytes.size(); at += 4 * sizeof(T)) {
     const auto component = [&](size_t k) { return static_cast<double>(load<T>(&bytes[at + k * sizeof(T)])); };
     const double one = std::max(component(2), 1.0);
@@ -161,7 +161,7 @@ void unfold_normals(std::vector<std::byte>& bytes) {
     n[1] -= std::copysign(fold, n[1]);
     const double length = std::hypot(n[0], n[1], n[2]);
     for (size_t k = 0; k < 3; ++k) {
-      const auto value = static_cast<T>(std::lround(std::clamp(n[k] / length, -1.0, 1.0) * kMost));
+      const auto value = static_cast<T>(std::lround(std::clamp(n[k] / length, -1.0, 1.0) * kMax));
       std::memcpy(&bytes[at + k * sizeof(T)], &value, sizeof value);
     }
   }
@@ -207,7 +207,7 @@ Result<std::vector<std::byte>> decode_meshopt(Bytes packed, const MeshoptView& v
     return fail(ErrorKind::kUnsupported,
                 "the mode " + printable(view.mode) + " of EXT_meshopt_compression is not supported");
   }
-  if (view.stride % 4 != 0 || view.stride > kMostStride) return damaged();
+  if (view.stride % 4 != 0 || view.stride > kMaxStride) return damaged();
   Result<std::vector<std::byte>> made = decode_attributes(packed, view.count, view.stride);
   if (!made) return made;
   if (Status status = undo_filter(view, *made); !status) return fail(std::move(status.error()));

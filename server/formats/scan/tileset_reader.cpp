@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 /// Tiles and tilesets within each other.
 constexpr size_t kDeepest = 256;
 /// Tiles of a tileset that refers to others: they could refer to each other without end.
-constexpr size_t kMostTiles = 10'000'000;
+constexpr size_t kMaxTiles = 10'000'000;
 
 /// A tile with points.
 struct Content {
@@ -116,7 +116,7 @@ class TilesetWalk {
  private:
   Status count_tile(const Inherited& state) {
     if (state.depth > kDeepest) return invalid_input("tiles are nested too deeply");
-    if (++tiles_ > kMostTiles) return fail(ErrorKind::kLimit, "the tileset has too many tiles");
+    if (++tiles_ > kMaxTiles) return fail(ErrorKind::kLimit, "the tileset has too many tiles");
     return {};
   }
 

@@ -31,8 +31,8 @@ uint32_t take_character(std::string_view& text) {
     valid = (byte(i) & 0xc0) == 0x80;
     character = character << 6 | (byte(i) & 0x3f);
   }
-  constexpr std::array<uint32_t, 5> kLeast{0, 0, 0x80, 0x800, 0x10000};
-  valid = valid && character >= kLeast[length] && character < 0x110000 && (character < 0xd800 || character > 0xdfff);
+  constexpr std::array<uint32_t, 5> kMin{0, 0, 0x80, 0x800, 0x10000};
+  valid = valid && character >= kMin[length] && character < 0x110000 && (character < 0xd800 || character > 0xdfff);
   text.remove_prefix(valid ? length : 1);
   return valid ? character : kReplacement;
 }

@@ -6,7 +6,7 @@
 namespace surfcast::command_line {
 namespace {
 
-constexpr size_t kMostEdits = 2;
+constexpr size_t kMaxEdits = 2;
 
 /// The optimal string alignment distance.
 size_t edits_between(std::string_view a, std::string_view b) {
@@ -30,7 +30,7 @@ size_t edits_between(std::string_view a, std::string_view b) {
 
 std::optional<std::string> closest_word(std::string_view typed, std::span<const std::string> words) {
   std::optional<std::string> closest;
-  size_t fewest = std::min(kMostEdits + 1, typed.size());
+  size_t fewest = std::min(kMaxEdits + 1, typed.size());
   for (const std::string& word : words) {
     const bool begun = !typed.empty() && word.starts_with(typed);
     const size_t edits = begun ? 0 : edits_between(typed, word);

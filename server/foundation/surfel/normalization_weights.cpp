@@ -97,9 +97,9 @@ inline double exponential(double x) {
 
 /// Sources near a site, as arrays for vector instructions.
 struct KernelBatch {
-  static constexpr size_t kMost = 32;  ///< a multiple of kLanes
+  static constexpr size_t kMax = 32;  ///< a multiple of kLanes
   static constexpr size_t kLanes = 4;
-  using Numbers = std::array<double, kMost>;
+  using Numbers = std::array<double, kMax>;
 
   size_t count = 0;
   alignas(32) Numbers x;  ///< positions
@@ -171,7 +171,7 @@ class KernelSum {
 
   void add(uint32_t source) {
     batch_.add(sites_, source);
-    if (batch_.count == KernelBatch::kMost) flush();
+    if (batch_.count == KernelBatch::kMax) flush();
   }
   double total() {
     flush();

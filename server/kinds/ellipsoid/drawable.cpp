@@ -9,10 +9,10 @@
 namespace surfcast::ellipsoid {
 namespace {
 
-constexpr double kLeastConfidence = 0.5;
+constexpr double kMinConfidence = 0.5;
 /// Blocks hold values in single precision.
-constexpr double kLeastValue = 1e-37;
-constexpr double kMostValue = 1e37;
+constexpr double kMinValue = 1e-37;
+constexpr double kMaxValue = 1e37;
 
 bool is_finite(const glm::dvec3& v) {
   return std::isfinite(v.x) && std::isfinite(v.y) && std::isfinite(v.z);
@@ -25,13 +25,13 @@ bool is_finite(const SymmetricTensor& t) {
 Verdict verdict_of(const glm::dvec3& values, bool flat) {
   if (!is_finite(values)) return Verdict::kNotFinite;
   if (!(values.x > 0) || !(flat ? values.z >= 0 : values.z > 0)) return Verdict::kNotPositive;
-  return values.x >= kLeastValue && values.x <= kMostValue ? Verdict::kDrawn : Verdict::kNotFinite;
+  return values.x >= kMinValue && values.x <= kMaxValue ? Verdict::kDrawn : Verdict::kNotFinite;
 }
 
 }  // namespace
 
 Shape shape_of(const TensorSample& sample) {
-  if (!(sample.confidence >= kLeastConfidence)) return {Verdict::kMasked, {}, {1, 0, 0, 0}};
+  if (!(sample.confidence >= kMinConfidence)) return {Verdict::kMasked, {}, {1, 0, 0, 0}};
   if (!is_finite(sample.tensor) || !is_finite(sample.position)) return {};
   const EigenSystem system = eigen_system(sample.tensor);
   const Verdict verdict = verdict_of(system.values, false);

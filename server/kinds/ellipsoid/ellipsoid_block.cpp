@@ -113,13 +113,13 @@ Status read_positions(const model::Field& field, EllipsoidBlock& block) {
 }
 
 Status read_values(const model::Field& field, int zero, EllipsoidBlock& block) {
-  constexpr uint64_t kMost = uint64_t{kValueOctaves} * kValueSteps + 1;
+  constexpr uint64_t kMax = uint64_t{kValueOctaves} * kValueSteps + 1;
   for (size_t i = 0; i < field[0].size(); ++i) {
     const uint64_t first = field[0][i];
     const uint64_t second = first - field[1][i];
     const uint64_t third = second - field[2][i];
     // A difference below 0 wraps to a number above all codes.
-    if (first == 0 || first > kMost || second > kMost || third > kMost) return damaged("values out of range");
+    if (first == 0 || first > kMax || second > kMax || third > kMax) return damaged("values out of range");
     const auto value = [zero](uint64_t code) { return decode_value(static_cast<uint32_t>(code), zero); };
     block.values.emplace_back(value(first), value(second), value(third));
     if (!std::isnormal(block.values.back().x)) return damaged("values out of range");

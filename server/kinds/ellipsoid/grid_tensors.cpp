@@ -137,9 +137,9 @@ MeasuredTensor measured_tensor(std::span<const double> c, SampleKind kind) {
 
 Result<InputPtr> open_grid_tensors(grid::GridReader reader, const std::filesystem::path& path,
                                    const InputOptions& options) {
-  constexpr uint64_t kMostIndices = uint64_t{1} << 31;
+  constexpr uint64_t kMaxIndices = uint64_t{1} << 31;
   const uint64_t longest = std::ranges::max(reader.header().size);
-  if (longest >= kMostIndices) {
+  if (longest >= kMaxIndices) {
     return fail(ErrorKind::kLimit, path.string() + ": has " + std::to_string(longest) + " samples along an axis");
   }
   const uint64_t stride = stride_for(reader.header(), options.sample);

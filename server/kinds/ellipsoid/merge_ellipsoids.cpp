@@ -14,7 +14,7 @@
 namespace surfcast::ellipsoid {
 namespace {
 
-constexpr double kLeastReduction = 0.3;
+constexpr double kMinReduction = 0.3;
 /// Merged glyphs leave gaps where those that they stand for were seen through each other.
 constexpr double kFilled = 1.25;
 
@@ -159,7 +159,7 @@ void append_scalar(const surfel::ScalarValues& from, surfel::ScalarValues& to) {
 }  // namespace
 
 MergedEllipsoids merge_ellipsoids(const Ellipsoids& ellipsoids, const MergeRule& rule) {
-  const auto wanted = static_cast<size_t>(kLeastReduction * static_cast<double>(ellipsoids.size()));
+  const auto wanted = static_cast<size_t>(kMinReduction * static_cast<double>(ellipsoids.size()));
   int level = std::max(rule.first_level, ellipsoids.level + 1);
   Grouping grouping = group_by_cube(ellipsoids, rule, level);
   while (grouping.size() > rule.most || (grouping.size() > wanted && level < rule.widest_level)) {

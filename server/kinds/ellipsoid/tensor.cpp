@@ -12,7 +12,7 @@
 namespace surfcast::ellipsoid {
 namespace {
 
-constexpr int kMostSweeps = 30;  // five or six are needed
+constexpr int kMaxSweeps = 30;  // five or six are needed
 
 /// Turns the axes p and q so that entry (p, q) becomes 0.
 void rotate(glm::dmat3& a, glm::dmat3& axes, int p, int q) {
@@ -82,7 +82,7 @@ EigenSystem eigen_system(const SymmetricTensor& tensor) {
   glm::dmat3 a = tensor.matrix();
   for (int column = 0; column < 3; ++column) a[column] /= scale;
   glm::dmat3 axes(1);
-  for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+  for (int sweep = 0; sweep < kMaxSweeps; ++sweep) {
     const double rest = std::max({std::abs(a[0][1]), std::abs(a[0][2]), std::abs(a[1][2])});
     if (rest < std::numeric_limits<double>::min()) break;
     rotate(a, axes, 0, 1);

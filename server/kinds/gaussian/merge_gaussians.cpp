@@ -16,7 +16,7 @@ namespace {
 
 constexpr int kCubesAcross = 512;
 constexpr int kFewestAcross = 8;
-constexpr double kLeastReduction = 0.3;
+constexpr double kMinReduction = 0.3;
 
 using Matrix = Eigen::Matrix3d;
 using Vector = Eigen::Vector3d;
@@ -167,7 +167,7 @@ MergedGaussians merge_gaussians(const Gaussians& gaussians, const BlockTraits& t
                                 size_t most) {
   double side = (cell.max.x - cell.min.x) / kCubesAcross;
   const double widest = (cell.max.x - cell.min.x) / kFewestAcross;
-  const auto wanted = static_cast<size_t>(kLeastReduction * static_cast<double>(gaussians.size()));
+  const auto wanted = static_cast<size_t>(kMinReduction * static_cast<double>(gaussians.size()));
   Grouping grouping = group_by_cube(gaussians, cell, side);
   while (grouping.size() > most || (grouping.size() > wanted && 2 * side <= widest)) {
     side *= 2;

@@ -13,7 +13,7 @@ namespace {
 using nlohmann::json;
 
 /// Pictures of WebP have at most 2^28 pixels.
-constexpr uint64_t kMostGaussians = uint64_t{1} << 28;
+constexpr uint64_t kMaxGaussians = uint64_t{1} << 28;
 constexpr uint64_t kLargestPalette = 65536;
 
 /// Reads values and notes the first that is wrong.
@@ -88,7 +88,7 @@ SogPalette parse_palette(Values& values) {
 
 SogMeta parse_values(Values& values) {
   SogMeta meta;
-  meta.count = values.count("/count", kMostGaussians);
+  meta.count = values.count("/count", kMaxGaussians);
   meta.antialiased = values.flag("antialias");
   meta.min = values.vector("/means/mins");
   meta.max = values.vector("/means/maxs");

@@ -6,7 +6,7 @@
 #include "ellipsoid/pack_ellipsoids.h"
 #include "kinds/decoded_ellipsoids.h"
 #include "kinds/glyph_block.h"
-#include "residency/surfel_pool.h"
+#include "residency/block_pool.h"
 
 namespace surfcast::kinds {
 namespace {
@@ -29,7 +29,7 @@ std::string_view EllipsoidKind::name() const {
 }
 
 uint64_t EllipsoidKind::texels(const model::ModelInfo& info, uint32_t items) const {
-  return ellipsoid::packed_texels(items, info.ellipsoid_columns, residency::SurfelPool::kPageSurfels);
+  return ellipsoid::packed_texels(items, info.ellipsoid_columns, residency::BlockPool::kPageTexels);
 }
 
 Result<residency::PackedBlock> EllipsoidKind::load(const model::ModelFile& model, uint32_t block,

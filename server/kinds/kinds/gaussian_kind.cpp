@@ -6,14 +6,14 @@
 #include "gaussian/gaussian_block.h"
 #include "gaussian/pack_gaussians.h"
 #include "kinds/decoded_gaussians.h"
-#include "residency/surfel_pool.h"
+#include "residency/block_pool.h"
 #include "shared/frame_layout.h"
 #include "shared/gaussian_layout.h"
 
 namespace surfcast::kinds {
 namespace {
 
-constexpr uint32_t kPage = residency::SurfelPool::kPageSurfels;
+constexpr uint32_t kPage = residency::BlockPool::kPageTexels;
 
 Result<gaussian::GaussianBlock> decode_gaussian_block(const model::ModelFile& model, uint32_t block) {
   const Result<model::StoredBlock> stored = model.stored(block);

@@ -4,14 +4,14 @@
 #include <utility>
 
 #include "model/model_file.h"
-#include "residency/surfel_pool.h"
+#include "residency/block_pool.h"
 #include "shared/ellipsoid_layout.h"
 #include "shared/frame_layout.h"
 
 namespace surfcast::kinds {
 namespace {
 
-constexpr uint32_t kPage = residency::SurfelPool::kPageSurfels;
+constexpr uint32_t kPage = residency::BlockPool::kPageTexels;
 
 }  // namespace
 

@@ -22,8 +22,8 @@ constexpr double kRadiusOverGap = 1.3;
 /// Half of the diagonal of a square; more for oblique cells. The steps become the shortest ones of the lattice (Gauss's
 /// reduction), which makes a triangle without an obtuse angle; its circumradius is the largest distance to a centre.
 double largest_gap(glm::dvec3 a, glm::dvec3 b) {
-  constexpr int kMostRounds = 32;
-  for (int round = 0; round < kMostRounds; ++round) {
+  constexpr int kMaxRounds = 32;
+  for (int round = 0; round < kMaxRounds; ++round) {
     if (glm::dot(a, a) > glm::dot(b, b)) std::swap(a, b);
     if (glm::dot(a, a) == 0) return 0;
     const double times = std::round(glm::dot(a, b) / glm::dot(a, a));

@@ -46,7 +46,7 @@ uint64_t hash_edge(uint64_t a, uint64_t b) {
 }
 
 /// How often texture coordinates may cover the image. Further triangles, of textures repeated that often, own no texel.
-constexpr double kMostCovers = 64;
+constexpr double kMaxCovers = 64;
 
 using EdgeOf = std::pair<uint64_t, uint32_t>;  ///< an edge and the number of a triangle beside it
 
@@ -64,12 +64,12 @@ void add_edges(const Patch& patch, const Triangle& triangle, uint32_t number, st
 
 std::optional<std::array<glm::dvec2, 3>> texel_corners(const Vertices& vertices, const Triangle& triangle,
                                                        const glm::ivec2& size) {
-  constexpr double kMost = 1 << 26;
+  constexpr double kMax = 1 << 26;
   std::array<glm::dvec2, 3> corners{};
   for (size_t k = 0; k < 3; ++k) {
     if (triangle[k].uv == kNone) return std::nullopt;
     corners[k] = vertices.uvs[triangle[k].uv] * glm::dvec2(size);
-    if (!(std::abs(corners[k].x) < kMost && std::abs(corners[k].y) < kMost)) return std::nullopt;
+    if (!(std::abs(corners[k].x) < kMax && std::abs(corners[k].y) < kMax)) return std::nullopt;
   }
   return corners;
 }
@@ -87,7 +87,7 @@ ChartMap::ChartMap(std::span<const Patch* const> patches, const glm::ivec2& size
     if (edges[i].first == edges[i - 1].first) sets.join(edges[i].second, edges[i - 1].second);
   }
   uint32_t number = 0;
-  double left = kMostCovers * static_cast<double>(owners_.size());
+  double left = kMaxCovers * static_cast<double>(owners_.size());
   for (const Patch* patch : patches) {
     std::vector<uint32_t>& charts = charts_.emplace_back();
     for (const Triangle& triangle : *patch->triangles) {

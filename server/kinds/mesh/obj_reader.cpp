@@ -20,7 +20,7 @@ namespace surfcast::mesh {
 namespace {
 
 /// Corners of a polygon beyond which it is refused: cutting it into triangles takes cubic time.
-constexpr size_t kMostCorners = 255;
+constexpr size_t kMaxCorners = 255;
 /// Memory of the library's arrays and ours for each byte of a file, by measurement of files with short lines.
 constexpr uint64_t kBytesPerByte = 16;
 
@@ -70,13 +70,13 @@ Status check_polygons(std::string_view text) {
     const size_t end = std::min(text.find_first_of("\r\n"), text.size());
     const std::string_view line = text.substr(0, end);
     text.remove_prefix(std::min(end + 1, text.size()));
-    if (line.size() < 2 * kMostCorners) continue;
+    if (line.size() < 2 * kMaxCorners) continue;
     scan::Tokens tokens(line);
     if (tokens.next() != "f") continue;
     size_t corners = 0;
     while (!tokens.next().empty()) ++corners;
-    if (corners > kMostCorners) {
-      return fail(ErrorKind::kLimit, "OBJ face of more than " + std::to_string(kMostCorners) + " corners");
+    if (corners > kMaxCorners) {
+      return fail(ErrorKind::kLimit, "OBJ face of more than " + std::to_string(kMaxCorners) + " corners");
     }
   }
   return {};

@@ -29,8 +29,8 @@ Texture texture_of(const std::vector<uint8_t>& values, int64_t width, int64_t he
 tl::unexpected<Error> undecodable(OIIO::ImageInput& input) {
   std::string why = input.geterror();
   why.erase(std::remove_if(why.begin(), why.end(), [](unsigned char c) { return c < ' '; }), why.end());
-  constexpr size_t kMost = 200;
-  return fail(ErrorKind::kInvalidInput, "cannot be decoded" + (why.empty() ? why : ": " + why.substr(0, kMost)));
+  constexpr size_t kMax = 200;
+  return fail(ErrorKind::kInvalidInput, "cannot be decoded" + (why.empty() ? why : ": " + why.substr(0, kMax)));
 }
 
 Result<Texture> decode(std::span<const std::byte> bytes, const std::string& reader, const SizeCheck& check) {

@@ -15,11 +15,11 @@ namespace {
 /// Texels of a triangle that are this many times as large as those of the patch say nothing about its surface.
 constexpr double kUnusable = 16;
 /// The angle within a radius from which surfels are too large for a bend.
-constexpr double kMostBend = 10 * std::numbers::pi / 180;
-constexpr double kMostHalvings = 2;  ///< for it, where there is no texture
+constexpr double kMaxBend = 10 * std::numbers::pi / 180;
+constexpr double kMaxHalvings = 2;  ///< for it, where there is no texture
 /// Cells longer than this are cut: kernels are round.
-constexpr double kMostStretch = 2;
-constexpr double kMostCuts = 64;
+constexpr double kMaxStretch = 2;
+constexpr double kMaxCuts = 64;
 
 double power_of_two_near(double x) {
   return std::exp2(std::clamp(std::round(std::log2(x)), -12.0, 24.0));
@@ -50,7 +50,7 @@ double upper_decile(std::vector<std::pair<double, double>>& value_and_area, doub
 
 /// The distance of surfels that a surface needs, halved for its bends until it is `least`.
 double bend_limit(const PatchFacts& facts, double spacing, double least) {
-  while (facts.bend * spacing > kMostBend && spacing > least) spacing /= 2;
+  while (facts.bend * spacing > kMaxBend && spacing > least) spacing /= 2;
   return spacing;
 }
 
@@ -101,8 +101,8 @@ double twice_area(const std::array<glm::dvec2, 3>& corners) {
 
 /// Cells for each texel along an axis, whose texels are `length` long where those along the other axis are `other`.
 double cuts_of(double length, double other) {
-  if (!(length > kMostStretch * other)) return 1;
-  return std::min(power_of_two_near(length / other), kMostCuts);
+  if (!(length > kMaxStretch * other)) return 1;
+  return std::min(power_of_two_near(length / other), kMaxCuts);
 }
 
 }  // namespace
@@ -132,7 +132,7 @@ PatchPlan plan_patch(const PatchFacts& facts, double usual, std::optional<double
     return plan;
   }
   if (texel == 0) {
-    plan.spacing = bend_limit(facts, usual, usual / std::exp2(kMostHalvings));
+    plan.spacing = bend_limit(facts, usual, usual / std::exp2(kMaxHalvings));
     return plan;
   }
   plan.spacing = bend_limit(facts, std::min(texel, std::max(triangle_spacing(facts), usual)), usual);

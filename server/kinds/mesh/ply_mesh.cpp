@@ -217,11 +217,11 @@ class MeshRows {
   }
 
   /// More textures than any model has; a number beyond it is none.
-  static constexpr double kMostTextures = 65536;
+  static constexpr double kMaxTextures = 65536;
 
   std::vector<Triangle>& triangles_of(const Row& row) {
     const double stated = texnumber_ ? value_at(row, texnumber_) : 0;
-    const size_t texture = stated >= 0 && stated < kMostTextures ? static_cast<size_t>(stated) : 0;
+    const size_t texture = stated >= 0 && stated < kMaxTextures ? static_cast<size_t>(stated) : 0;
     if (texture >= triangles.size()) triangles.resize(texture + 1);
     return triangles[texture];
   }

@@ -129,7 +129,7 @@ class TriangleSampler {
 /// measurements.
 double TriangleSampler::radius_at(const glm::dvec3& position) const {
   constexpr double kBeyond = 0.4;  // of the radius
-  constexpr double kLeast = 0.85;
+  constexpr double kMin = 0.85;
   double radius = radius_;
   for (size_t k = 0; k < 3; ++k) {
     if (!open_[k]) continue;
@@ -138,7 +138,7 @@ double TriangleSampler::radius_at(const glm::dvec3& position) const {
     const double length = glm::length(along);
     if (!(length > 0)) continue;
     const double distance = glm::length(glm::cross(position - from, along)) / length;
-    radius = std::min(radius, std::max(distance + kBeyond * radius_, kLeast * radius_));
+    radius = std::min(radius, std::max(distance + kBeyond * radius_, kMin * radius_));
   }
   return radius;
 }
@@ -183,7 +183,7 @@ MeshSurfel TriangleSampler::surfel_at(const glm::dvec3& weights, const glm::vec4
 /// Samples a mesh material by material.
 class MeshPass {
  public:
-  MeshPass(const Mesh& mesh, const SampleOptions& options, const scan::DecodingLimit& limit, const SurfelSink& sink)
+  MeshPass(const Mesh& mesh, const SampleOptions& options, const scan::DecodingLimit& limit, const TexelSink& sink)
       : mesh_(mesh), options_(options), limit_(limit), sink_(sink), bounds_(mesh.bounds()), edges_(mesh, bounds_) {}
 
   Result<MeshReport> run();
@@ -210,7 +210,7 @@ class MeshPass {
   const Mesh& mesh_;
   const SampleOptions& options_;
   const scan::DecodingLimit& limit_;
-  const SurfelSink& sink_;
+  const TexelSink& sink_;
   geometry::Box bounds_;
   MeshEdges edges_;
   std::vector<MaterialWork> work_;
@@ -403,7 +403,7 @@ Result<MeshReport> MeshPass::run() {
 }  // namespace
 
 Result<MeshReport> sample_mesh(const Mesh& mesh, const SampleOptions& options, const scan::DecodingLimit& limit,
-                               const SurfelSink& sink) {
+                               const TexelSink& sink) {
   return MeshPass(mesh, options, limit, sink).run();
 }
 

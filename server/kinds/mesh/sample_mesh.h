@@ -15,14 +15,14 @@
 namespace surfcast::mesh {
 
 /// More surfels than that are too many unless somebody asks for them.
-inline constexpr uint64_t kMostSurfels = 200'000'000;
+inline constexpr uint64_t kMaxSurfels = 200'000'000;
 
 struct SampleOptions {
   /// Distance of surfels, world units; textures are sampled at the power of two times or part of a texel that is
   /// nearest. None: one surfel a texel, and 1/1500 of the diagonal where there is no texture, or more for meshes of few
   /// triangles (docs/textured-models.md).
   std::optional<double> spacing{};
-  uint64_t most_surfels = kMostSurfels;  ///< distances are doubled until there are no more
+  uint64_t most_surfels = kMaxSurfels;  ///< distances are doubled until there are no more
 };
 
 /// A point of a mesh.
@@ -51,13 +51,13 @@ struct MeshReport {
 };
 
 /// Takes surfels in their order, in runs of bounded size.
-using SurfelSink = std::function<Status(std::span<const MeshSurfel>)>;
+using TexelSink = std::function<Status(std::span<const MeshSurfel>)>;
 
 /// Makes surfels of a mesh: one at the centre of each texel of a triangle, with the texel's colour (Zwicker et al.
 /// 2002, section 6.4: splats of texels are the texture, filtered). Textures are decoded one after another. The surfels
 /// do not depend on the number of threads. Fails where `limit` leaves no memory for any
 /// of the textures.
 Result<MeshReport> sample_mesh(const Mesh& mesh, const SampleOptions& options, const scan::DecodingLimit& limit,
-                               const SurfelSink& sink);
+                               const TexelSink& sink);
 
 }  // namespace surfcast::mesh

@@ -38,8 +38,8 @@ std::string reader_of(std::string_view head, const std::filesystem::path& file) 
 }
 
 Status check_size(uint64_t width, uint64_t height, const scan::DecodingLimit& limit) {
-  constexpr uint64_t kMostSide = 65536;
-  if (width == 0 || height == 0 || width > kMostSide || height > kMostSide) {
+  constexpr uint64_t kMaxSide = 65536;
+  if (width == 0 || height == 0 || width > kMaxSide || height > kMaxSide) {
     return fail(ErrorKind::kInvalidInput, "has " + std::to_string(width) + " x " + std::to_string(height) + " pixels");
   }
   return limit.check(width * height * 8);

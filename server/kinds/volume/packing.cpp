@@ -13,14 +13,14 @@ namespace {
 
 constexpr uint32_t kCodesPerTexel = 8;
 
-constexpr uint32_t kMostStored = kBrickSamples + kHalo;  ///< along an axis
+constexpr uint32_t kMaxStored = kBrickSamples + kHalo;  ///< along an axis
 
 /// The Bezier form of cubic reconstruction between two samples has the control points f, f + d / 6, g - e / 6, g. f and
 /// g are the samples, d and e the differences of the neighbours of each. With three axes, a sample has 27 such points.
 /// They bound the reconstruction in all cells beside it.
 constexpr float kSixth = 1.0F / 6;
 
-using Row = std::array<float, kMostStored>;
+using Row = std::array<float, kMaxStored>;
 
 /// The range of the control points of the samples of a row, for those that have neighbours.
 struct RowRange {

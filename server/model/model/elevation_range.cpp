@@ -6,7 +6,7 @@ namespace surfcast::model {
 namespace {
 
 constexpr double kTail = 0.002;
-constexpr double kMostLeftOut = 0.1;
+constexpr double kMaxLeftOut = 0.1;
 
 /// The number of the slab's items below an elevation.
 double items_below(const ElevationSlab& slab, double elevation) {
@@ -39,7 +39,7 @@ ElevationRange elevation_range(std::span<const ElevationSlab> slabs) {
   }
   const ElevationRange most{elevation_above(slabs, kTail * items, all),
                             elevation_above(slabs, (1 - kTail) * items, all)};
-  const bool few_left_out = most.high - most.low >= (1 - kMostLeftOut) * (all.high - all.low);
+  const bool few_left_out = most.high - most.low >= (1 - kMaxLeftOut) * (all.high - all.low);
   return few_left_out || most.low >= most.high ? all : most;
 }
 

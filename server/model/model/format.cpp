@@ -25,7 +25,7 @@ constexpr uint16_t kZUpFlag = 2;
 constexpr uint16_t kUpsideDownFlag = 4;
 constexpr uint16_t kEvenFlag = 8;
 constexpr int kDegreeShift = 4;  // of the degree of harmonics, three bits
-constexpr int kMostDegree = 4;
+constexpr int kMaxDegree = 4;
 /// Flag in the type of a scalar attribute: coarse blocks have it too.
 constexpr uint8_t kCoarseScalarFlag = 0x80;
 /// Half angle in a record without a normal cone.
@@ -267,7 +267,7 @@ Result<ModelHeader> read_header(std::span<const std::byte> head, uint64_t file_b
   if (header.color_bits != 0 && header.color_bits != 8 && header.color_bits != 16) {
     return damaged("model header states a wrong colour depth");
   }
-  if (header.harmonics_degree > kMostDegree) return damaged("model header states a wrong degree of harmonics");
+  if (header.harmonics_degree > kMaxDegree) return damaged("model header states a wrong degree of harmonics");
   if (header.file_bytes != file_bytes) return damaged("model is cut off or has bytes after its end");
   if (header.directory_offset < kHeaderBytes || header.directory_offset > file_bytes ||
       header.directory_bytes != file_bytes - header.directory_offset) {

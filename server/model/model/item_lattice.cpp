@@ -9,8 +9,8 @@
 namespace surfcast::model {
 namespace {
 
-constexpr double kLeastTolerance = 1e-30;  // keeps spacings above 0 in single precision
-constexpr size_t kFinerShare = 50;         // one item in so many may be finer than the lattice
+constexpr double kMinTolerance = 1e-30;  // keeps spacings above 0 in single precision
+constexpr size_t kFinerShare = 50;       // one item in so many may be finer than the lattice
 
 bool fits(const surfel::Grid& grid, const geometry::Box& box) {
   const glm::i64vec3 extent = grid.index(box.max) - grid.index(box.min);
@@ -22,7 +22,7 @@ bool fits(const surfel::Grid& grid, const geometry::Box& box) {
 double item_tolerance(std::vector<double> sizes, double share) {
   const auto least = sizes.begin() + static_cast<ptrdiff_t>(sizes.size() / kFinerShare);
   std::nth_element(sizes.begin(), least, sizes.end());
-  return std::max(*least / share, kLeastTolerance);
+  return std::max(*least / share, kMinTolerance);
 }
 
 surfel::Grid item_lattice(std::span<const glm::dvec3> positions, double tolerance) {

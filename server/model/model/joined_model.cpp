@@ -142,10 +142,10 @@ ldc::BlockEntry placed(ldc::BlockEntry entry, const glm::dmat4x3& place) {
 /// A lattice for the points of a block in another place: steps of a power of two, at most as long as the shortest of
 /// the lattice before, so that rounding moves points by less than half of that. Blocks of a member share it.
 surfel::Grid placed_grid(const surfel::Grid& grid, const geometry::Box& bounds, const glm::dmat4x3& place) {
-  constexpr double kMostSteps = 0x1p30;  // of the indices of a block
+  constexpr double kMaxSteps = 0x1p30;  // of the indices of a block
   const double shortest = std::min({grid.scale.x, grid.scale.y, grid.scale.z}) * stretch(place);
   const glm::dvec3 size = bounds.size();
-  const double least = std::max({size.x, size.y, size.z}) / kMostSteps;
+  const double least = std::max({size.x, size.y, size.z}) / kMaxSteps;
   double step = std::exp2(std::floor(std::log2(shortest)));
   while (step < least) step *= 2;
   return {glm::dvec3(step), glm::dvec3(0)};

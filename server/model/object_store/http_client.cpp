@@ -37,8 +37,8 @@ double random_share() {
 
 std::chrono::milliseconds retry_pause(unsigned attempts, double random) {
   constexpr double kFirstMs = 100;
-  constexpr unsigned kMostDoublings = 6;
-  const double doubled = kFirstMs * static_cast<double>(1U << std::min(attempts - 1, kMostDoublings));
+  constexpr unsigned kMaxDoublings = 6;
+  const double doubled = kFirstMs * static_cast<double>(1U << std::min(attempts - 1, kMaxDoublings));
   return std::chrono::milliseconds(static_cast<int64_t>(doubled * (0.5 + random)));
 }
 

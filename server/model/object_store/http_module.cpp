@@ -21,7 +21,7 @@ using Clock = HttpRequest::Clock;
 constexpr long kWholeStatus = 200;
 constexpr long kRangeStatus = 206;
 /// Bodies of refusals are received up to this, so that the connection can be used again.
-constexpr size_t kMostRefusal = size_t{64} << 10;
+constexpr size_t kMaxRefusal = size_t{64} << 10;
 
 /// A request on its way.
 struct Transfer {
@@ -83,7 +83,7 @@ size_t take_body(char* data, size_t one, size_t count, void* user) {
   const long status = transfer.status();
   if (status != transfer.wanted_status()) {
     transfer.refusal_bytes += bytes;
-    return status == kWholeStatus || transfer.refusal_bytes > kMostRefusal ? 0 : bytes;
+    return status == kWholeStatus || transfer.refusal_bytes > kMaxRefusal ? 0 : bytes;
   }
   std::vector<std::byte>& body = transfer.answer.body;
   transfer.too_long = body.size() + bytes > transfer.request.most_bytes;
@@ -237,8 +237,8 @@ class CurlClient {
 
   /// When something has to be done next even if no byte arrives.
   [[nodiscard]] std::chrono::milliseconds until_next() const {
-    constexpr std::chrono::milliseconds kMost{1'000};
-    Clock::time_point next = Clock::now() + kMost;
+    constexpr std::chrono::milliseconds kMax{1'000};
+    Clock::time_point next = Clock::now() + kMax;
     for (const auto& transfer : active_) next = std::min(next, end_of(*transfer));
     for (const auto& transfer : waiting_) {
       if (transfer->request.deadline) next = std::min(next, *transfer->request.deadline);

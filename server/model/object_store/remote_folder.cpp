@@ -11,7 +11,7 @@ namespace surfcast::object_store {
 namespace {
 
 /// Objects that were announced and are requested, or wait to be read. Further ones are requested when there is room.
-constexpr size_t kMostAhead = 64;
+constexpr size_t kMaxAhead = 64;
 
 /// A request for an object, from being queued until whoever announced it has read it.
 struct ObjectFetch {
@@ -89,7 +89,7 @@ class RemoteFolder::State : public std::enable_shared_from_this<RemoteFolder::St
   }
 
   void start_more() {
-    while (!queue_.empty() && ahead_ < kMostAhead) {
+    while (!queue_.empty() && ahead_ < kMaxAhead) {
       const std::string name = std::move(queue_.front());
       queue_.pop_front();
       const auto found = fetches_.find(name);

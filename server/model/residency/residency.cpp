@@ -4,7 +4,7 @@
 
 namespace surfcast::residency {
 
-Residency::Residency(SurfelSink& sink, const ResidencyLimits& limits, LoadGuard* guard)
+Residency::Residency(TexelSink& sink, const ResidencyLimits& limits, LoadGuard* guard)
     : pool_(limits.pages, sink), loader_(limits.loader, guard), upload_bytes_(limits.upload_bytes) {}
 
 void Residency::release_model(uint64_t model) {
@@ -21,7 +21,7 @@ std::vector<bool> Residency::residents(const ViewedModel& model, bool attributes
 
 selection::BlockSelection Residency::select(const ViewedModel& model, const ViewParameters& parameters,
                                             std::span<const uint32_t> was_refined) const {
-  const selection::SelectionCriteria limits{parameters.spacing,       pool_.usable_surfels(), SurfelPool::kPageSurfels,
+  const selection::SelectionCriteria limits{parameters.spacing,       pool_.usable_surfels(), BlockPool::kPageTexels,
                                             parameters.clip,          parameters.hidden,      parameters.sides,
                                             parameters.ghost_spacing, parameters.reaches,     parameters.items,
                                             parameters.most_items,    parameters.window};

@@ -9,7 +9,7 @@
 #include "base/preemption.h"
 #include "base/stopwatch.h"
 #include "residency/block_loader.h"
-#include "residency/surfel_pool.h"
+#include "residency/block_pool.h"
 #include "selection/select_blocks.h"
 
 namespace surfcast::residency {
@@ -53,7 +53,7 @@ struct PreparedView {
 };
 
 struct ResidencyLimits {
-  uint32_t pages = 0;  ///< of SurfelPool::kPageSurfels, for all models together
+  uint32_t pages = 0;  ///< of BlockPool::kPageTexels, for all models together
   LoaderLimits loader;
   size_t upload_bytes = size_t{16} << 20;  ///< per picture in motion: small enough not to delay it noticeably
 };
@@ -63,7 +63,7 @@ struct ResidencyLimits {
 class Residency {
  public:
   /// `guard`, if any, must outlive this object.
-  Residency(SurfelSink& sink, const ResidencyLimits& limits, LoadGuard* guard = nullptr);
+  Residency(TexelSink& sink, const ResidencyLimits& limits, LoadGuard* guard = nullptr);
 
   /// Prepares a picture of full quality: waits for every block of the cut, which only the budget limits. Fails if a
   /// block is damaged, and with kCancelled soon after it is cancelled.
@@ -82,7 +82,7 @@ class Residency {
   void begin_nested_frame() { pool_.begin_nested_frame(); }
   void end_nested_frame() { pool_.end_nested_frame(); }
 
-  [[nodiscard]] const SurfelPool& pool() const { return pool_; }
+  [[nodiscard]] const BlockPool& pool() const { return pool_; }
   void release_model(uint64_t model);
 
  private:
@@ -110,7 +110,7 @@ class Residency {
   void use(const ViewedModel& model, std::span<const uint32_t> blocks);
   void use(const ViewedModel& model, const selection::BlockSelection& selection);
 
-  SurfelPool pool_;
+  BlockPool pool_;
   BlockLoader loader_;
   size_t upload_bytes_;
   std::optional<uint64_t> requested_model_;  ///< whose blocks were requested last

@@ -16,7 +16,7 @@ namespace surfcast::net {
 namespace {
 
 /// Not a setting: a disk that is so far behind does not come back to write the rest.
-constexpr size_t kMostWaiting = 4096;
+constexpr size_t kMaxWaiting = 4096;
 
 int open_file(const std::filesystem::path& file) {
   return ::open(file.c_str(), O_WRONLY | O_APPEND | O_CREAT | O_CLOEXEC, 0600);
@@ -60,7 +60,7 @@ AuditLog::AuditLog(std::filesystem::path file, int descriptor, size_t denials)
     : file_(std::move(file)),
       descriptor_(descriptor),
       denials_(denials),
-      writer_(std::make_unique<service::WorkerPool>(1, 0, kMostWaiting)) {}
+      writer_(std::make_unique<service::WorkerPool>(1, 0, kMaxWaiting)) {}
 
 AuditLog::~AuditLog() {
   writer_.reset();

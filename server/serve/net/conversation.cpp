@@ -18,7 +18,7 @@ namespace {
 
 /// Requests of unknown kinds, one after another, that end a connection. A newer client asks once and takes the answer.
 /// Not a setting: it is a matter of the protocol.
-constexpr size_t kMostUnknown = 3;
+constexpr size_t kMaxUnknown = 3;
 
 }  // namespace
 
@@ -40,8 +40,7 @@ Status Conversation::receive(std::span<const std::byte> message) {
   wire::Request request;
   if (Status decoded = protocol::decode_message(message, request); !decoded) return decoded;
   unknown_ = request.kind_case() == wire::Request::KIND_NOT_SET ? unknown_ + 1 : 0;
-  if (unknown_ >= kMostUnknown)
-    return fail(ErrorKind::kUnsupported, "these requests are of no kind that is known here");
+  if (unknown_ >= kMaxUnknown) return fail(ErrorKind::kUnsupported, "these requests are of no kind that is known here");
   handle(request);
   return {};
 }

@@ -300,13 +300,13 @@ asio::awaitable<HttpAnswer> HttpSession::deny(const HttpRequest& request) {
 }
 
 asio::awaitable<HttpAnswer> HttpSession::answer_login(Parser& parser, const HttpRequest& request) {
-  constexpr size_t kMostBytes = 1024;  // of the form
+  constexpr size_t kMaxBytes = 1024;  // of the form
   const RequestOrigin origin = origin_of(parser.get(), connection_->tls());
   const bool encrypted = origin.scheme == "https";
   const Status page = check_origin(origin, context_->config.allowed_origins);
   if (!page) co_return error_answer(page.error(), 403);
   const bool logout = leads_to(request.target.route, ServerRoute::kLogout);
-  const std::optional<std::string> form = co_await connection_->read_body(parser, kMostBytes);
+  const std::optional<std::string> form = co_await connection_->read_body(parser, kMaxBytes);
   if (!form) co_return error_answer({ErrorKind::kInvalidInput, "this is no form with a token"}, 400);
   if (logout) co_return login_answer(login_cookie("", encrypted));
   const std::string token = token_of_form(*form);

@@ -13,8 +13,8 @@ namespace {
 namespace ip = boost::asio::ip;
 
 constexpr std::array<uint8_t, 12> kSignature{0x0d, 0x0a, 0x0d, 0x0a, 0x00, 0x0d, 0x0a, 0x51, 0x55, 0x49, 0x54, 0x0a};
-constexpr size_t kMostRest = 536;  // fits into one segment of TCP, as the specification wants
-constexpr uint8_t kLocal = 0x20;   // version 2, and its commands
+constexpr size_t kMaxRest = 536;  // fits into one segment of TCP, as the specification wants
+constexpr uint8_t kLocal = 0x20;  // version 2, and its commands
 constexpr uint8_t kProxied = 0x21;
 constexpr uint8_t kTcp4 = 0x11;
 constexpr uint8_t kTcp6 = 0x21;
@@ -96,7 +96,7 @@ Result<size_t> proxy_rest_bytes(std::span<const std::byte> head) {
     return fail(ErrorKind::kInvalidInput, "this is no header of version 2 of the PROXY protocol");
   }
   const size_t rest = size_t{byte_at(head, 14)} << 8 | byte_at(head, 15);
-  if (rest > kMostRest) return fail(ErrorKind::kLimit, "the PROXY header is too long");
+  if (rest > kMaxRest) return fail(ErrorKind::kLimit, "the PROXY header is too long");
   return rest;
 }
 

@@ -22,7 +22,7 @@ inline constexpr size_t kProxyProbeBytes = 6;
 ProxyVersion proxy_version(std::span<const std::byte, kProxyProbeBytes> first);
 
 /// The longest line of version 1, with its end.
-inline constexpr size_t kMostProxyLine = 107;
+inline constexpr size_t kMaxProxyLine = 107;
 /// The address of the client by a line of version 1, without "\r\n". Nothing: the proxy does not know it.
 Result<std::optional<boost::asio::ip::address>> client_of_proxy_line(std::string_view line);
 

@@ -83,7 +83,7 @@ asio::awaitable<ProxyReader::Client> ProxyReader::read() {
 asio::awaitable<ProxyReader::Client> ProxyReader::read_line(const asio::ip::address& proxy) {
   std::string line;
   while (!line.ends_with("\r\n")) {
-    if (line.size() == kMostProxyLine) co_return std::nullopt;
+    if (line.size() == kMaxProxyLine) co_return std::nullopt;
     char next = 0;
     error_code code;
     co_await asio::async_read(socket_, asio::buffer(&next, 1), redirect_error_to(code));

@@ -80,7 +80,7 @@ Status place_blocks(const crs::Transformation& way, model::Member& member) {
     Probes there = here;
     way.apply(there);
     const glm::dmat4x3 map = map_of(centre, half, there);
-    if (!(error_of(map, here, there) <= kMostPlaceError * block.spacing * way.length_factor())) {
+    if (!(error_of(map, here, there) <= kMaxPlaceError * block.spacing * way.length_factor())) {
       return fail(error_about(member, {ErrorKind::kUnsupported, "a block of it is too large for that"}));
     }
     member.places.push_back(map);

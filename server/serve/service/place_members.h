@@ -9,12 +9,12 @@
 namespace surfcast::service {
 
 /// The largest error of the place of a block, in spacings of its surfels.
-inline constexpr double kMostPlaceError = 0.25;
+inline constexpr double kMaxPlaceError = 0.25;
 
 /// Brings models that are to be joined into the system of the first that states one: states Member::places of those of
 /// another system. Models that state none lie as they are. Each block is placed by an affine map, the derivative of the
 /// transformation at its centre, which PROJ tells. At the corners of the block the map is compared with the
-/// transformation itself; fails if they differ by more than kMostPlaceError, or if there is no way into that system.
+/// transformation itself; fails if they differ by more than kMaxPlaceError, or if there is no way into that system.
 /// Errors name the member.
 Status place_members(std::vector<model::Member>& members);
 

@@ -66,10 +66,10 @@ void RenderService::State::count_kept_frame(const RenderJob& job, EncodedPicture
 }
 
 size_t RenderService::State::picture_memory_limit(const ServiceLimits& limits) {
-  constexpr size_t kMost = size_t{1} << 30;
+  constexpr size_t kMax = size_t{1} << 30;
   if (limits.picture_memory > 0) return limits.picture_memory;
   const uint64_t available = read_host_memory().available;
-  return available == 0 ? kMost : std::min<size_t>(kMost, available / 4);
+  return available == 0 ? kMax : std::min<size_t>(kMax, available / 4);
 }
 
 /// The render thread looks whether there is room now. Locking orders it behind a look that has just been taken.

@@ -23,7 +23,7 @@ tl::unexpected<Error> late_error() {
 /// residency::PageTable can have.
 constexpr int kDeepest = 2;
 /// What is left to drawing at least of a time that encoding takes all of, milliseconds: the fastest picture is drawn.
-constexpr double kLeastDrawingMs = 1;
+constexpr double kMinDrawingMs = 1;
 
 }  // namespace
 
@@ -208,7 +208,7 @@ Result<picture::Frame> RenderService::State::render_frame(FrameRenderer& rendere
   if (request.time_ms > 0) {
     const Result<double> encoding = encoding_ms(renderer, job, request, preemption);
     if (!encoding) return fail(encoding.error());
-    request.time_ms = std::max(request.time_ms - *encoding, kLeastDrawingMs);
+    request.time_ms = std::max(request.time_ms - *encoding, kMinDrawingMs);
   }
   return renderer.draw(job.picture.model.served_name(), request, preemption);
 }

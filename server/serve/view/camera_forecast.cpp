@@ -81,7 +81,7 @@ geometry::Camera CameraForecast::at(ViewTime when, ViewTime now) const {
   const Arrived& first = past_.front();
   if (now - last.at > kPause || last.at <= first.at) return last.camera;
   const ViewTime bounded = std::min(when, ViewTime(now + kFarthest));
-  const auto elapsed = std::max<ViewTime::duration>(last.at - first.at, kLeastElapsed);
+  const auto elapsed = std::max<ViewTime::duration>(last.at - first.at, kMinElapsed);
   const double steps = std::chrono::duration<double>(bounded - last.at) / std::chrono::duration<double>(elapsed);
   return continue_motion(first.camera, last.camera, std::max(steps, 0.0));
 }

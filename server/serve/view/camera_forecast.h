@@ -19,7 +19,7 @@ class CameraForecast {
   /// Motion is measured over the cameras of this time: single steps of a pointer are uneven.
   static constexpr std::chrono::milliseconds kWindow{100};
   /// Two cameras that were held up on the way arrive at once. Motion is therefore no faster than over this time.
-  static constexpr std::chrono::milliseconds kLeastElapsed{33};
+  static constexpr std::chrono::milliseconds kMinElapsed{33};
   /// Later cameras than this are not predicted.
   static constexpr std::chrono::milliseconds kFarthest{300};
   /// After so long without another camera the motion has ended.

@@ -79,10 +79,10 @@ void LinkEstimate::learn(const Sample& sample) {
 /// trip, and then its own transfer. One that waited for the one before was transferred since that had arrived.
 double LinkEstimate::most_bytes_per_ms(double bytes, double elapsed, double since_arrival) const {
   constexpr double kNoise = 5;  // ms by which times of messages vary for other reasons
-  constexpr double kLeastMs = 0.5;
+  constexpr double kMinMs = 0.5;
   const double least = least_elapsed_ms();
   const double waited = elapsed - since_arrival;
-  return bytes / std::max(waited > least ? since_arrival : elapsed - least - kNoise, kLeastMs);
+  return bytes / std::max(waited > least ? since_arrival : elapsed - least - kNoise, kMinMs);
 }
 
 /// The rate grows step by step, up to what the better one of the last two messages allows. Small messages are no
@@ -106,7 +106,7 @@ void LinkEstimate::learn_rate_now(const Message& message, ViewTime arrival) {
 
 /// A message that is on the way for longer than it should be is evidence already.
 std::optional<size_t> LinkEstimate::bytes_now_in(double milliseconds, ViewTime now) const {
-  constexpr double kMost = 1e9;
+  constexpr double kMax = 1e9;
   if (bytes_per_ms_now_ <= 0) return std::nullopt;
   double bytes_per_ms = bytes_per_ms_now_;
   if (!on_the_way_.empty()) {
@@ -114,7 +114,7 @@ std::optional<size_t> LinkEstimate::bytes_now_in(double milliseconds, ViewTime n
     const double most = most_bytes_per_ms(bytes, waits_ms(now), milliseconds_between(*last_arrival_, now));
     bytes_per_ms = std::min(bytes_per_ms, most);
   }
-  return static_cast<size_t>(std::min(milliseconds * bytes_per_ms, kMost));
+  return static_cast<size_t>(std::min(milliseconds * bytes_per_ms, kMax));
 }
 
 double LinkEstimate::least_elapsed_ms() const {
@@ -136,9 +136,9 @@ double LinkEstimate::waits_ms(ViewTime now) const {
 }
 
 std::optional<size_t> LinkEstimate::bytes_in(double milliseconds) const {
-  constexpr double kMost = 1e9;
+  constexpr double kMax = 1e9;
   if (ms_per_byte_ <= 0) return std::nullopt;
-  return static_cast<size_t>(std::min(milliseconds / ms_per_byte_, kMost));
+  return static_cast<size_t>(std::min(milliseconds / ms_per_byte_, kMax));
 }
 
 }  // namespace surfcast::view

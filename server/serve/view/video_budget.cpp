@@ -19,21 +19,21 @@ double relative_bytes(int quality) {
 }  // namespace
 
 double video_frame_ms(double fps) {
-  constexpr double kMost = 17;    // and up to as much again, because the rate is estimated too high
+  constexpr double kMax = 17;     // and up to as much again, because the rate is estimated too high
   constexpr double kShare = 0.8;  // of the time between two frames
-  return std::min(kMost, kShare * 1000 / fps);
+  return std::min(kMax, kShare * 1000 / fps);
 }
 
 size_t video_bytes(size_t link_bytes, size_t depth_bytes) {
-  constexpr size_t kLeast = 3000;  // fewer frames are better than ones of still less
-  return std::max(link_bytes - std::min(link_bytes, depth_bytes), kLeast);
+  constexpr size_t kMin = 3000;  // fewer frames are better than ones of still less
+  return std::max(link_bytes - std::min(link_bytes, depth_bytes), kMin);
 }
 
 double video_scale(size_t bytes, double pixels) {
-  constexpr double kLeastDensity = 0.002;  // bytes for each pixel
+  constexpr double kMinDensity = 0.002;  // bytes for each pixel
   constexpr std::array kScales{1.0, 0.75, 0.5, 0.375};
   constexpr double kSmallest = 0.25;
-  const double fits = std::sqrt(static_cast<double>(bytes) / (kLeastDensity * pixels));
+  const double fits = std::sqrt(static_cast<double>(bytes) / (kMinDensity * pixels));
   const auto* scale = std::ranges::find_if(kScales, [fits](double one) { return one <= fits; });
   return scale == kScales.end() ? kSmallest : *scale;
 }

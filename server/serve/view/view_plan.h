@@ -34,7 +34,7 @@ struct ViewTiming {
 /// The most frames, or pieces of one, that may be unacknowledged. More would only show older pictures, unless the
 /// client warps them and the way to it is long.
 inline constexpr size_t kMaxUnacknowledged = 2;
-inline constexpr size_t kMostUnacknowledged = 8;
+inline constexpr size_t kLargestWindow = 8;
 
 /// The outcome of drawing a frame.
 enum class FrameResult {

@@ -34,7 +34,7 @@ constexpr size_t kLatencies = 5;
 // the best quality are drawn as often as the device can.
 constexpr double kWarpedRate = 0.4;
 // Of a view: larger ones get files. That is not a setting because nothing is refused.
-constexpr double kMostVideoPixels = 3840.0 * 2160;
+constexpr double kMaxVideoPixels = 3840.0 * 2160;
 
 int scaled(int pixels, double scale) {
   return std::max(1, static_cast<int>(std::lround(pixels * scale)));
@@ -168,7 +168,7 @@ size_t ViewSession::video_frame_bytes(ViewTime now) const {
 void ViewSession::choose_codec(ViewTime now) {
   const std::optional<size_t> fits = link_.bytes_now_in(video_frame_ms(motion_fps()), now);
   if (!stream_ || !fits) return;
-  const bool small = view_pixels() <= kMostVideoPixels;
+  const bool small = view_pixels() <= kMaxVideoPixels;
   const double scale = drawing_of(quality_).scale;
   const double file = good_file_bytes(file_density_, view_pixels() * scale * scale);
   is_video_ = small && wants_video(file + static_cast<double>(depth_bytes_), static_cast<double>(*fits), is_video_);
@@ -225,7 +225,7 @@ size_t ViewSession::window(ViewTime now) const {
   if (!warps_ || round_trip == 0 || !fits) return kMaxUnacknowledged;
   if (link_.bytes_on_the_way() >= *fits || link_.waits_ms(now) > 2 * round_trip + kLateMs) return kMaxUnacknowledged;
   const auto frames = static_cast<size_t>(std::ceil(round_trip * options_.target_fps / 1000));
-  return std::min(kMaxUnacknowledged + frames, kMostUnacknowledged);
+  return std::min(kMaxUnacknowledged + frames, kLargestWindow);
 }
 
 std::optional<ViewTime> ViewSession::advance(ViewTime now) {

@@ -18,7 +18,7 @@ namespace {
 /// How long the other end may stop in the middle of a message.
 constexpr std::chrono::milliseconds kPatience{10'000};
 /// The longest message has all clip boxes, points and classes of a request, or all stages of a frame.
-constexpr uint32_t kMostBytes = uint32_t{64} << 20;
+constexpr uint32_t kMaxBytes = uint32_t{64} << 20;
 
 tl::unexpected<Error> gone(const char* why) {
   return fail(ErrorKind::kIo, std::string("the other end has gone: ") + why);
@@ -121,7 +121,7 @@ Result<std::optional<Received>> Channel::receive(std::chrono::milliseconds most)
   if (Status read = read_all(std::as_writable_bytes(std::span(&size, 1)), &descriptor); !read) {
     return fail(std::move(read.error()));
   }
-  if (size > kMostBytes) return fail(ErrorKind::kInvalidInput, "a message of " + std::to_string(size) + " bytes");
+  if (size > kMaxBytes) return fail(ErrorKind::kInvalidInput, "a message of " + std::to_string(size) + " bytes");
   std::vector<std::byte> payload(size);
   if (Status read = read_all(payload, nullptr); !read) return fail(std::move(read.error()));
   Result<Message> message = decode(payload);

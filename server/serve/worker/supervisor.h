@@ -33,11 +33,11 @@ class Attempts {
     ++ends_;
     if (own_fault && !blocks_blamed) ++faults_;
   }
-  [[nodiscard]] bool exhausted() const { return faults_ >= kMostFaults || ends_ >= kMostEnds; }
+  [[nodiscard]] bool exhausted() const { return faults_ >= kMaxFaults || ends_ >= kMaxEnds; }
 
  private:
-  static constexpr int kMostFaults = 2;
-  static constexpr int kMostEnds = 16;
+  static constexpr int kMaxFaults = 2;
+  static constexpr int kMaxEnds = 16;
 
   int faults_ = 0;
   int ends_ = 0;

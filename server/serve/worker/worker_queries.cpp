@@ -29,7 +29,7 @@ using ModelPointer = service::ModelQueries::ModelPointer;
 enum class Taken { kMore, kWhole, kNonsense };
 
 /// Models that a query worker holds open.
-constexpr size_t kMostModels = 64;
+constexpr size_t kMaxModels = 64;
 
 /// Numbers of streams of points that nobody wants any more, of which their worker has not been told. Thread-safe.
 class ClosedStreams {
@@ -64,7 +64,7 @@ class QueryProcess {
   void tend() {
     if (!worker_.running()) return;
     static_cast<void>(prepare(nullptr));  // what cannot be sent is noticed below
-    worker_.withdraw_unused(kMostModels);
+    worker_.withdraw_unused(kMaxModels);
     // It says nothing unless it is asked: what there is to receive is its end.
     const Result<std::optional<Received>> received = worker_.channel().receive(std::chrono::milliseconds(0));
     if (received && !received->has_value()) return;
@@ -122,7 +122,7 @@ class QueryProcess {
     }
     if (!model) return {};
     Status offered = worker_.offer(model);
-    worker_.withdraw_unused(kMostModels);
+    worker_.withdraw_unused(kMaxModels);
     return offered;
   }
 
@@ -236,10 +236,10 @@ bool is_finite(const glm::dvec3& vector) {
 
 /// Whether a file of points on this lattice can be written, see surfel::Grid::index.
 bool lies_on(const surfel::Grid& grid, const glm::dvec3& position) {
-  constexpr double kMostSteps = 0x1p62;
+  constexpr double kMaxSteps = 0x1p62;
   if (!is_finite(position)) return false;
   const glm::dvec3 steps = glm::abs((position - grid.offset) / grid.scale);
-  return steps.x < kMostSteps && steps.y < kMostSteps && steps.z < kMostSteps;
+  return steps.x < kMaxSteps && steps.y < kMaxSteps && steps.z < kMaxSteps;
 }
 
 /// Adds a part to a band of at most so many points. False if a well-behaved worker does not say so.

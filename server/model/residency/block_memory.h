@@ -2,7 +2,7 @@
 
 #include "base/lazy_memory.h"
 #include "gl/objects.h"
-#include "residency/surfel_pool.h"
+#include "residency/block_pool.h"
 
 namespace surfcast::residency {
 
@@ -12,13 +12,13 @@ namespace surfcast::residency {
 /// With software GL the buffer has its full size from the beginning. It is made of lazily committed memory, where only
 /// written pages count. (Enlarging a buffer takes up to a second there, because the driver clears it.) With hardware
 /// GL, enlarging is cheap but reserved memory is lost to other programs. So the buffer doubles as it fills.
-class SurfelBuffer : public SurfelSink {
+class BlockMemory : public TexelSink {
  public:
   /// The largest number of surfels in one buffer texture of the device.
   static size_t device_limit();
 
   /// `most`: capacity in surfels, not above device_limit(). `software`: the CPU computes the pixels.
-  SurfelBuffer(size_t most, bool software) : most_(most), lazy_(software && gl::can_adopt_memory()) {}
+  BlockMemory(size_t most, bool software) : most_(most), lazy_(software && gl::can_adopt_memory()) {}
 
   void write(size_t first, std::span<const glm::uvec4> surfels) override;
   void write_attributes(size_t first, std::span<const uint32_t> attributes) override;

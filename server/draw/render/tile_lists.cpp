@@ -1,4 +1,4 @@
-#include "render/gaussian_lists.h"
+#include "render/tile_lists.h"
 
 #include <algorithm>
 #include <array>
@@ -83,12 +83,12 @@ std::vector<glm::uvec4> order_tiles(std::span<const uint32_t> counts) {
 
 }  // namespace
 
-uint32_t GaussianLists::longer_than(uint32_t count) const {
+uint32_t TileLists::longer_than(uint32_t count) const {
   const auto end = std::partition_point(tiles.begin(), tiles.end(), [count](const auto& t) { return t.z > count; });
   return static_cast<uint32_t>(end - tiles.begin());
 }
 
-std::optional<GaussianLists> list_by_depth(std::span<const glm::uvec4> keys, const glm::uvec2& tiles, size_t most) {
+std::optional<TileLists> list_by_depth(std::span<const glm::uvec4> keys, const glm::uvec2& tiles, size_t most) {
   const std::vector<uint32_t> order = order_by_depth(keys);
   const std::vector<uint32_t> counts = count_entries(keys, order, tiles);
   std::vector<uint32_t> places(counts.size());
@@ -98,7 +98,7 @@ std::optional<GaussianLists> list_by_depth(std::span<const glm::uvec4> keys, con
     total += counts[tile];
     if (total > most) return std::nullopt;
   }
-  GaussianLists lists{order_tiles(counts), std::vector<uint32_t>(total), order.size()};
+  TileLists lists{order_tiles(counts), std::vector<uint32_t>(total), order.size()};
   for (const uint32_t i : order) {
     const auto [first, last] = range_of(keys[i]);
     for (uint32_t y = first.y; y <= last.y; ++y) {
@@ -109,7 +109,7 @@ std::optional<GaussianLists> list_by_depth(std::span<const glm::uvec4> keys, con
 }
 
 void order_by_rays(std::span<const RayDepth> depths, const std::function<TileRays(uint32_t tile)>& rays_of_tile,
-                   GaussianLists& lists) {
+                   TileLists& lists) {
   std::vector<std::pair<float, uint32_t>> order;
   for (const glm::uvec4& tile : lists.tiles) {
     const std::span<uint32_t> list = std::span(lists.entries).subspan(tile.y, tile.z);

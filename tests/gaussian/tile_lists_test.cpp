@@ -1,4 +1,4 @@
-#include "render/gaussian_lists.h"
+#include "render/tile_lists.h"
 
 #include <algorithm>
 #include <bit>
@@ -27,7 +27,7 @@ std::vector<glm::uvec4> keys_of(const std::vector<Placed>& placed) {
 }
 
 /// The list of a tile.
-std::vector<uint32_t> list_of(const GaussianLists& lists, uint32_t tile) {
+std::vector<uint32_t> list_of(const TileLists& lists, uint32_t tile) {
   for (const glm::uvec4& t : lists.tiles) {
     if (t.x != tile) continue;
     return {lists.entries.begin() + t.y, lists.entries.begin() + t.y + t.z};
@@ -35,7 +35,7 @@ std::vector<uint32_t> list_of(const GaussianLists& lists, uint32_t tile) {
   return {};
 }
 
-TEST(GaussianListsTest, ListsRunFromFrontToBackAndEquallyDeepOnesByPlace) {
+TEST(TileListsTest, ListsRunFromFrontToBackAndEquallyDeepOnesByPlace) {
   const std::vector<glm::uvec4> keys = keys_of({{3, {0, 0}, {1, 0}},
                                                 {1, {0, 0}, {0, 1}},
                                                 {0, {0, 0}, {1, 1}},  // not drawn
@@ -50,7 +50,7 @@ TEST(GaussianListsTest, ListsRunFromFrontToBackAndEquallyDeepOnesByPlace) {
   EXPECT_EQ(list_of(*lists, 3), (std::vector<uint32_t>{4, 3}));
 }
 
-TEST(GaussianListsTest, AreThoseOfAPlainSort) {
+TEST(TileListsTest, AreThoseOfAPlainSort) {
   std::mt19937 random(5);
   const glm::uvec2 tiles{37, 23};
   std::vector<Placed> placed;
@@ -76,7 +76,7 @@ TEST(GaussianListsTest, AreThoseOfAPlainSort) {
   }
 }
 
-TEST(GaussianListsTest, TilesAreInDescendingOrderOfTheirLists) {
+TEST(TileListsTest, TilesAreInDescendingOrderOfTheirLists) {
   std::vector<Placed> placed(6000, Placed{1, {1, 1}, {1, 1}});
   placed.resize(11000, {1, {0, 0}, {0, 0}});
   placed.push_back({1, {0, 0}, {2, 2}});
@@ -90,18 +90,18 @@ TEST(GaussianListsTest, TilesAreInDescendingOrderOfTheirLists) {
   EXPECT_EQ(lists->longer_than(0), 9U);
 }
 
-TEST(GaussianListsTest, TooManyEntriesAreNoLists) {
+TEST(TileListsTest, TooManyEntriesAreNoLists) {
   const std::vector<glm::uvec4> keys = keys_of({{1, {0, 0}, {9, 9}}});
   EXPECT_TRUE(list_by_depth(keys, {10, 10}, 100));
   EXPECT_FALSE(list_by_depth(keys, {10, 10}, 99));
   EXPECT_EQ(list_by_depth({}, {10, 10}, 0)->tiles.size(), 100U);
 }
 
-TEST(GaussianListsTest, ListsAreOrderedByTheDepthsOnTheRaysOfTheirTiles) {
+TEST(TileListsTest, ListsAreOrderedByTheDepthsOnTheRaysOfTheirTiles) {
   // Two planes that cross at x = 0: depths 1 + x and 1 - x. A third one has no denominator in single precision.
   const std::vector<RayDepth> depths{
       {{1, 0, 1}, {1, 0, 0}, {}, {}}, {{-1, 0, 1}, {1, 0, 0}, {}, {}}, {{0, 0, 1}, {}, {}, {}}};
-  GaussianLists lists{{{0, 0, 3, 0}, {1, 3, 3, 0}, {2, 6, 0, 0}}, {0, 1, 2, 0, 1, 2}, 3};
+  TileLists lists{{{0, 0, 3, 0}, {1, 3, 3, 0}, {2, 6, 0, 0}}, {0, 1, 2, 0, 1, 2}, 3};
   const auto rays_of_tile = [](uint32_t tile) {
     const glm::dvec2 middle(tile == 0 ? -0.5 : 0.5, 0);
     return TileRays{middle - 0.1, middle + 0.1};
@@ -110,9 +110,9 @@ TEST(GaussianListsTest, ListsAreOrderedByTheDepthsOnTheRaysOfTheirTiles) {
   EXPECT_EQ(lists.entries, (std::vector<uint32_t>{2, 0, 1, 2, 1, 0}));
 }
 
-TEST(GaussianListsTest, WhatIsEquallyDeepOnARayStaysInOrder) {
+TEST(TileListsTest, WhatIsEquallyDeepOnARayStaysInOrder) {
   const std::vector<RayDepth> depths(3, RayDepth{{0, 0, 1}, {1, 0, 0}, {}, {}});
-  GaussianLists lists{{{0, 0, 3, 0}}, {2, 0, 1}, 3};
+  TileLists lists{{{0, 0, 3, 0}}, {2, 0, 1}, 3};
   order_by_rays(
       depths, [](uint32_t) { return TileRays{}; }, lists);
   EXPECT_EQ(lists.entries, (std::vector<uint32_t>{2, 0, 1}));

@@ -1,4 +1,4 @@
-#include "residency/surfel_buffer.h"
+#include "residency/block_memory.h"
 
 #include <algorithm>
 
@@ -11,14 +11,14 @@ constexpr size_t kFirstCapacity = size_t{1} << 20;  // texels: 16 MiB of surfels
 
 }  // namespace
 
-size_t SurfelBuffer::device_limit() {
+size_t BlockMemory::device_limit() {
   GLint texels = 0;
   glGetIntegerv(GL_MAX_TEXTURE_BUFFER_SIZE, &texels);
   return static_cast<size_t>(texels);
 }
 
 /// Allocates the buffer in its full size, if there is enough memory.
-void SurfelBuffer::Texels::take_all(size_t most) {
+void BlockMemory::Texels::take_all(size_t most) {
   memory_ = LazyMemory(most * texel_bytes_);
   if (memory_.bytes().empty()) return;
   buffer_ = gl::adopt_memory(label_, memory_.bytes());
@@ -26,7 +26,7 @@ void SurfelBuffer::Texels::take_all(size_t most) {
   capacity_ = most;
 }
 
-void SurfelBuffer::Texels::grow(size_t texels, size_t most) {
+void BlockMemory::Texels::grow(size_t texels, size_t most) {
   SURFCAST_EXPECTS(texels <= most);
   const size_t capacity = std::clamp(std::max(2 * capacity_, texels), std::min(kFirstCapacity, most), most);
   gl::Buffer larger = gl::make_buffer(label_, capacity * texel_bytes_, GL_DYNAMIC_STORAGE_BIT);
@@ -38,7 +38,7 @@ void SurfelBuffer::Texels::grow(size_t texels, size_t most) {
   capacity_ = capacity;
 }
 
-void SurfelBuffer::Texels::write(size_t first, std::span<const std::byte> bytes, size_t most, bool lazy) {
+void BlockMemory::Texels::write(size_t first, std::span<const std::byte> bytes, size_t most, bool lazy) {
   const size_t end = first + bytes.size() / texel_bytes_;
   if (capacity_ == 0 && lazy) take_all(most);
   if (end > capacity_) grow(end, most);
@@ -46,11 +46,11 @@ void SurfelBuffer::Texels::write(size_t first, std::span<const std::byte> bytes,
                        static_cast<GLsizeiptr>(bytes.size()), bytes.data());
 }
 
-void SurfelBuffer::write(size_t first, std::span<const glm::uvec4> surfels) {
+void BlockMemory::write(size_t first, std::span<const glm::uvec4> surfels) {
   surfels_.write(first, std::as_bytes(surfels), most_, lazy_);
 }
 
-void SurfelBuffer::write_attributes(size_t first, std::span<const uint32_t> attributes) {
+void BlockMemory::write_attributes(size_t first, std::span<const uint32_t> attributes) {
   attributes_.write(first, std::as_bytes(attributes), most_, lazy_);
 }
 

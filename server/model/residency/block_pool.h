@@ -13,9 +13,9 @@
 namespace surfcast::residency {
 
 /// The destination of packed blocks: GPU memory as an array of texels. In a block of surfels, each texel is one surfel.
-class SurfelSink {
+class TexelSink {
  public:
-  virtual ~SurfelSink() = default;
+  virtual ~TexelSink() = default;
   /// Writes texels, starting at index `first`.
   virtual void write(size_t first, std::span<const glm::uvec4> texels) = 0;
   /// Writes attributes of texels, starting at texel `first`.
@@ -27,16 +27,16 @@ struct ResidentBlock {
   PackedLattice lattice;  ///< this and the following members as in PackedBlock, except `pages`
   std::shared_ptr<const BlockHeader> header;
   std::optional<LinearScale> intensity{};  ///< none: resident without attributes
-  std::span<const uint32_t> pages;  ///< each of SurfelPool::kPageSurfels texels; valid until the block is evicted
+  std::span<const uint32_t> pages;         ///< each of BlockPool::kPageTexels texels; valid until the block is evicted
 };
 
 /// The resident blocks of all models in one memory with a fixed budget.
-class SurfelPool {
+class BlockPool {
  public:
   /// Pages of 16 KiB: a block of some thousand surfels leaves half a page unused on average.
-  static constexpr uint32_t kPageSurfels = 1024;
+  static constexpr uint32_t kPageTexels = 1024;
 
-  SurfelPool(uint32_t pages, SurfelSink& sink) : table_(pages), sink_(sink) {}
+  BlockPool(uint32_t pages, TexelSink& sink) : table_(pages), sink_(sink) {}
 
   /// See PageTable.
   void begin_frame() { table_.begin_frame(); }
@@ -58,11 +58,11 @@ class SurfelPool {
 
   /// The number of surfels of blocks that may be in use at once, in whole pages; pinned pages are excluded.
   [[nodiscard]] uint64_t usable_surfels() const {
-    return uint64_t{table_.pages() - table_.pinned_pages()} * kPageSurfels / kMaxPackedPerSurfel;
+    return uint64_t{table_.pages() - table_.pinned_pages()} * kPageTexels / kMaxPackedPerSurfel;
   }
   [[nodiscard]] size_t blocks() const { return table_.blocks(); }
   [[nodiscard]] size_t bytes() const {
-    return kPageSurfels * (size_t{table_.used_pages()} * sizeof(glm::uvec4) + attribute_pages_ * sizeof(uint32_t));
+    return kPageTexels * (size_t{table_.used_pages()} * sizeof(glm::uvec4) + attribute_pages_ * sizeof(uint32_t));
   }
 
  private:
@@ -76,7 +76,7 @@ class SurfelPool {
   void drop(const BlockId& id);
 
   PageTable table_;
-  SurfelSink& sink_;
+  TexelSink& sink_;
   std::map<BlockId, ResidentBlock> blocks_;
   std::unordered_map<uint64_t, Residents> residents_;
   size_t attribute_pages_ = 0;

@@ -13,20 +13,20 @@
 
 namespace surfcast::render {
 
-/// The Gaussians of each tile, from front to back.
-struct GaussianLists {
+/// The items (Gaussians, ellipsoids) of each tile, from front to back.
+struct TileLists {
   std::vector<glm::uvec4> tiles;  ///< all tiles, longest lists first: tile, first entry, number of entries, unused
-  std::vector<uint32_t> entries;  ///< places of Gaussians among the keys
-  uint64_t drawn = 0;             ///< Gaussians that are in a list
+  std::vector<uint32_t> entries;  ///< places of items among the keys
+  uint64_t drawn = 0;             ///< items that are in a list
 
   /// How many tiles have more than this number of entries: the first ones.
   [[nodiscard]] uint32_t longer_than(uint32_t count) const;
 };
 
-/// Sorts Gaussians by depth, equally deep ones by their places, and enters them in the lists of their tiles. A key is
+/// Sorts items by depth, equally deep ones by their places, and enters them in the lists of their tiles. A key is
 /// a depth, as the bits of a positive float (0: not drawn), and the first and the last tile (16 bits each for column
 /// and row). None if there would be more than `most` entries.
-std::optional<GaussianLists> list_by_depth(std::span<const glm::uvec4> keys, const glm::uvec2& tiles, size_t most);
+std::optional<TileLists> list_by_depth(std::span<const glm::uvec4> keys, const glm::uvec2& tiles, size_t most);
 
 /// The rays of a tile's pixels: the x and y of their directions lie between these.
 struct TileRays {
@@ -35,9 +35,9 @@ struct TileRays {
 };
 
 /// Sorts the list of every tile by depths on rays of the tile. The ray is between the middle of the tile, where all
-/// could be compared, and the place nearest to the Gaussian's centre, where there is most of it; halfway comes nearest
+/// could be compared, and the place nearest to the centre of the item, where there is most of it; halfway comes nearest
 /// to the order of the pixels. What was first stays first where depths are equal.
 void order_by_rays(std::span<const RayDepth> depths, const std::function<TileRays(uint32_t tile)>& rays_of_tile,
-                   GaussianLists& lists);
+                   TileLists& lists);
 
 }  // namespace surfcast::render
